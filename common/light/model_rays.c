@@ -1,14 +1,11 @@
-/* model_rays.c - pictures of a solid model by ray tracing; points inside its solids.
+/* model_rays.c - pictures of a solid model by ray tracing.
  *
  * A picture is traced in packets of neighbouring pixels of a row. Embree works in single precision; which face a ray
  * hits comes from there, and everything else is computed from the face's plane in double precision, so that a depth
  * does not depend on how the face was cut into triangles.
  *
  * A plane n . p = o of the model is seen by a pinhole camera at c with a depth whose inverse is linear in the pixel:
- * the ray through (u, v) is c + z d, with d = R^T ((u - cx) / fx, (v - cy) / fy, 1), so 1 / z = n . d / (o - n . c).
- *
- * A point is inside closed surfaces where the solid angles under which it sees their triangles add up to 4 pi (the
- * winding number is 1), and outside where they cancel. A triangle's solid angle is that of [vanOosterom 1983]. */
+ * the ray through (u, v) is c + z d, with d = R^T ((u - cx) / fx, (v - cy) / fy, 1), so 1 / z = n . d / (o - n . c). */
 #include "common/light/model_rays.h"
 
 #include <math.h>
@@ -85,52 +82,6 @@ bool model_rays_near(const struct model_rays *m, struct vec3 p)
     bounds(m, &low, &high);
     return m->mesh.vertex_count && p.x >= low.x && p.y >= low.y && p.z >= low.z && p.x <= high.x && p.y <= high.y &&
            p.z <= high.z;
-}
-
-/* The solid angle of a triangle from p, positive if its normal points away from p. */
-static double solid_angle(const struct vec3 corner[3], struct vec3 p)
-{
-    const struct vec3 a = vec3_sub(corner[0], p), b = vec3_sub(corner[1], p), c = vec3_sub(corner[2], p);
-    const double la = vec3_length(a), lb = vec3_length(b), lc = vec3_length(c);
-    const double triple = vec3_dot(a, vec3_cross(b, c));
-    return 2 * atan2(triple, la * lb * lc + vec3_dot(a, b) * lc + vec3_dot(b, c) * la + vec3_dot(c, a) * lb);
-}
-
-static bool winds_around(const struct model_rays *m, struct vec3 p)
-{
-    double sum = 0;
-    for (int i = 0; i < m->rays.triangle_count; i++) sum += solid_angle(m->rays.triangles[i].corner, p);
-    return sum > 2 * M_PI;
-}
-
-static bool is_between(double x, double a, double b, double c, double margin)
-{
-    const double low = x - margin, high = x + margin;
-    return !(a < low && b < low && c < low) && !(a > high && b > high && c > high);
-}
-
-/* Whether p is within `margin` of the bounding box of a triangle. */
-static bool is_near_a_triangle(const struct model_rays *m, struct vec3 p, double margin)
-{
-    for (int i = 0; i < m->rays.triangle_count; i++) {
-        const struct vec3 *c = m->rays.triangles[i].corner;
-        if (is_between(p.x, c[0].x, c[1].x, c[2].x, margin) && is_between(p.y, c[0].y, c[1].y, c[2].y, margin) &&
-            is_between(p.z, c[0].z, c[1].z, c[2].z, margin))
-            return true;
-    }
-    return false;
-}
-
-bool model_rays_inside(const struct model_rays *m, struct vec3 p, double margin)
-{
-    if (winds_around(m, p)) return true;
-    /* on the way to a point that is no further than margin there is then no surface */
-    if (!(margin > 0) || !is_near_a_triangle(m, p, margin)) return false;
-    for (int i = 0; i < 27; i++) { /* towards the sides, edges and corners of a cube */
-        const struct vec3 d = {i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1};
-        if (winds_around(m, vec3_add(p, vec3_scale(vec3_normalize(d), margin)))) return true;
-    }
-    return false;
 }
 
 struct picture_job {

@@ -21,8 +21,6 @@ enum status model_rays_read(struct model_rays *m, const char *path, enum model_g
 enum status model_rays_build(struct model_rays *m, enum model_glass glass, struct err *err);
 void model_rays_release(struct model_rays *m);
 
-/* Whether a point is inside a solid, or nearer than `margin` to one. Panes of glass are solids too. */
-bool model_rays_inside(const struct model_rays *m, struct vec3 p, double margin);
 /* The largest side of the model's bounding box; 0 without vertices. */
 double model_rays_size(const struct model_rays *m);
 /* Whether a point is within that box. */

@@ -9,9 +9,11 @@
 
 #include "common/base/array.h"
 #include "common/base/outfile.h"
+#include "common/base/scan.h"
 #include "common/base/textfile.h"
 
-#define HEADER "remodel-texture"
+#define HEADER  "remodel-texture"
+#define NO_BASE "none"
 
 enum { NAME_SIZE = 1024, MAX_CORNERS = 100000 };
 
@@ -158,12 +160,35 @@ static enum status print_zone(FILE *to, const struct texture_zone *zone, struct 
     return ST_OK;
 }
 
+/* What the reader would refuse, or read as something else. */
+static enum status check_map(const struct texture_map *map, const char *path, struct err *err)
+{
+    if (map->base && !strcmp(map->base, NO_BASE))
+        return err_set(err, ST_DATA,
+                       "%s: the edit stands on an edit named \"" NO_BASE "\", the word for no edit; give that edit "
+                       "another name.",
+                       path);
+    for (int i = 0; i < map->face_count; i++)
+        if (map->faces[i].added_count > MAX_CORNERS)
+            return err_set(
+                err, ST_DATA,
+                "%s: the face %s has %d triangles of new area, wanted at most %d; split the wall or the room "
+                "that it belongs to.",
+                path, map->faces[i].name, map->faces[i].added_count, (int)MAX_CORNERS);
+    for (int i = 0; i < map->zone_count; i++)
+        if (map->zones[i].corner_count < 3 || map->zones[i].corner_count > MAX_CORNERS)
+            return err_set(err, ST_DATA, "%s: the footprint of %s has %d corners, wanted 3 to %d.", path,
+                           map->zones[i].name, map->zones[i].corner_count, (int)MAX_CORNERS);
+    return ST_OK;
+}
+
 enum status texture_map_write(const struct texture_map *map, const char *path, const struct provenance *prov,
                               struct err *err)
 {
     struct outfile file = {0};
     char base[NAME_SIZE];
-    enum status st = textfile_quote(map->base ? map->base : "none", base, sizeof base, err);
+    enum status st = check_map(map, path, err);
+    if (!st) st = textfile_quote(map->base ? map->base : NO_BASE, base, sizeof base, err);
     if (!st) st = outfile_open(&file, path, err);
     if (!st) fprintf(file.fp, HEADER " 1\n");
     if (!st && prov) provenance_print(prov, file.fp);
@@ -237,11 +262,11 @@ static enum status read_colour(struct texture_rule *rule, struct textfile *t, st
     }
     if (!st) st = textfile_expect(t, "lit", err);
     while (!st && textfile_more(t)) {
+        int64_t id;
         st = textfile_word(t, "the id of a face", &word, err);
         if (st || !strcmp(word, "within")) break;
-        char *end;
-        const long id = strtol(word, &end, 10);
-        if (*end || id < 1 || id > INT_MAX) return textfile_error(t, err, word, "the id of a face, or \"within\"");
+        if (!scan_int(word, &id) || id < 1 || id > INT_MAX)
+            return textfile_error(t, err, word, "the id of a face, or \"within\"");
         st = array_append(&rule->lit, (size_t)rule->lit_count, sizeof *rule->lit, "faces", err);
         if (!st) rule->lit[rule->lit_count++] = (int)id;
         word = NULL;
@@ -349,7 +374,7 @@ enum status texture_map_read(struct texture_map *map, const char *path, struct e
     if (!st) st = textfile_expect_line(&t, "base", err);
     if (!st) st = copy_word(&base, &t, "an edit or \"none\"", err);
     if (!st) st = textfile_end(&t, err);
-    if (!st && strcmp(base, "none"))
+    if (!st && strcmp(base, NO_BASE))
         map->base = base;
     else
         free(base);

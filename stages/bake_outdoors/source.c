@@ -21,11 +21,11 @@
 #include "common/base/textfile.h"
 #include "common/capture/photo_quality.h"
 #include "common/image/exr.h"
+#include "common/light/model_clearance.h"
 #include "common/math/distance.h"
 #include "common/texture/view_ids.h"
 
-#define ON_SURFACE 1e-6 /* of the model's size: nearer to a solid, a camera is on its surface */
-#define MAX_SIGMA  0.5f /* relative noise of a pixel from which it counts as dark */
+#define MAX_SIGMA 0.5f /* relative noise of a pixel from which it counts as dark */
 
 /* --------------------------------------------------------------------------------------------------------- the model */
 
@@ -294,7 +294,7 @@ enum status outdoors_picture_load(struct outdoors_picture *p, bool *shows, const
     const size_t pixels = (size_t)p->lens.width * (size_t)p->lens.height;
     uint32_t *faces = NULL;
     *shows = false;
-    if (model_rays_inside(&model->rays, p->center, ON_SURFACE * model_rays_size(&model->rays))) {
+    if (model_rays_enclose(&model->rays, p->center)) {
         if (p->reference)
             log_warn("lighting reference image %s is inside a solid of the model, and is left out; check its pose.",
                      p->name);

@@ -19,6 +19,7 @@
 #include "common/base/log.h"
 #include "common/base/outfile.h"
 #include "common/capture/photo_list.h"
+#include "stages/build_model/edit_chain.h"
 #include "stages/build_model/layout.h"
 #include "stages/build_model/plan_file.h"
 #include "stages/build_model/plan_picture.h"
@@ -60,60 +61,6 @@ static enum status read_frame(struct job *j, struct err *err)
     return st;
 }
 
-/* The provenance has the script's file name without its folder: the product does not depend on the scene's folder. */
-static enum status add_script(struct job *j, const char *path, struct err *err)
-{
-    const char *slash = strrchr(path, '/');
-    return provenance_add_file(&j->prov, slash ? slash + 1 : path, path, err);
-}
-
-static enum status apply_model(struct job *j, struct plan *plan, const char *path, struct err *err)
-{
-    struct script script = {0};
-    enum status st = script_read(&script, path, err);
-    if (!st && script.base)
-        st = err_set(err, ST_DATA, "%s:%d: found base %s, but only an edit stands on another edit.", path,
-                     script.base_line, script.base);
-    if (!st) st = add_script(j, path, err);
-    if (!st) st = plan_apply(plan, &script, false, j->views ? &j->placer : NULL, err);
-    script_release(&script);
-    return st;
-}
-
-/* An edit, after the one that it stands on, which is in the same folder. above: the edits that stand on it, the nearest
- * first. */
-struct edit_chain {
-    const char *path;
-    const struct edit_chain *above;
-};
-
-static enum status apply_edit(struct job *j, struct plan *plan, const struct edit_chain *edit, struct err *err)
-{
-    struct script script = {0};
-    char path[FILE_PATH];
-    enum status st = script_read(&script, edit->path, err);
-    if (!st) st = add_script(j, edit->path, err);
-    if (!st && script.base) {
-        const struct edit_chain base = {path, edit};
-        const char *slash = strrchr(edit->path, '/');
-        const int folder = slash ? (int)(slash - edit->path) : 1;
-        const int length = snprintf(path, sizeof path, "%.*s/%s.txt", folder, slash ? edit->path : ".", script.base);
-        if (length >= (int)sizeof path) st = err_set(err, ST_IO, "%s: the path is too long.", edit->path);
-        for (const struct edit_chain *e = edit; !st && e; e = e->above)
-            if (!strcmp(strrchr(path, '/') + 1, strrchr(e->path, '/') ? strrchr(e->path, '/') + 1 : e->path))
-                st = err_set(err, ST_DATA, "%s:%d: base %s goes in a circle: that edit stands on this one.", edit->path,
-                             script.base_line, script.base);
-        if (!st && !path_is_file(path))
-            st = err_set(err, ST_DATA, "%s:%d: found base %s, but there is no %s.", edit->path, script.base_line,
-                         script.base, path);
-        if (!st && !edit->above) j->edit_base = strdup(script.base);
-        if (!st) st = apply_edit(j, plan, &base, err);
-    }
-    if (!st) st = plan_apply(plan, &script, true, j->views ? &j->placer : NULL, err);
-    script_release(&script);
-    return st;
-}
-
 static enum status write_model(struct job *j, const struct plan *plan, const struct solid_mesh *mesh,
                                const struct unite_log *log, struct err *err)
 {
@@ -131,12 +78,12 @@ static enum status write_model(struct job *j, const struct plan *plan, const str
 
 /* texture.txt of an edited model. */
 static enum status write_texture(struct job *j, const struct solid_mesh *mesh, const struct solid_mesh *base,
-                                 const struct plan_places *before, const struct plan *plan, struct err *err)
+                                 const struct plan *plan, struct err *err)
 {
     struct texture_map map = {.base = j->edit_base};
     char path[FILE_PATH];
     j->edit_base = NULL;
-    enum status st = texture_rules_make(&map, mesh, base, before, plan, err);
+    enum status st = texture_rules_make(&map, mesh, base, plan, err);
     if (!st) st = file_path(path, j->out, "texture.txt", "", err);
     if (!st) st = texture_map_write(&map, path, &j->prov, err);
     texture_map_release(&map);
@@ -159,20 +106,18 @@ static void log_summary(const struct plan *plan, const struct solid_mesh *mesh, 
 
 static enum status build(struct job *j, struct err *err)
 {
+    const struct placer *placer = j->views ? &j->placer : NULL;
     struct plan plan = {0};
     struct solid_list solids = {0};
     struct solid_mesh mesh = {0}, base = {0};
     struct unite_log log = {0};
     struct solid_report report = {0};
-    struct plan_places before = {0};
     enum status st = read_frame(j, err);
     if (!st) {
         plan_begin(&plan, &j->frame);
-        st = apply_model(j, &plan, j->script, err);
+        st = plan_apply_model(&plan, j->script, placer, &j->prov, err);
     }
-    const struct edit_chain edit = {j->edit, NULL};
-    if (!st) st = plan_places_keep(&before, &plan, err);
-    if (!st && j->edit) st = apply_edit(j, &plan, &edit, err);
+    if (!st && j->edit) st = plan_apply_edit(&plan, &j->edit_base, j->edit, placer, &j->prov, err);
     if (!st) st = layout_solids(&solids, &plan, err);
     if (!st && !solids.count)
         st = err_set(err, ST_DATA, "%s: the script describes no solid; add walls, rooms or boxes.", j->script);
@@ -181,7 +126,7 @@ static enum status build(struct job *j, struct err *err)
     if (!st && j->base) st = solid_mesh_read(&base, j->base, err);
     if (!st && j->base) st = provenance_add_file(&j->prov, "model/model.txt", j->base, err);
     if (!st && j->base) st = solid_mesh_carry_ids(&mesh, &base, err);
-    if (!st && j->base) st = write_texture(j, &mesh, &base, &before, &plan, err);
+    if (!st && j->base) st = write_texture(j, &mesh, &base, &plan, err);
     if (!st) st = write_model(j, &plan, &mesh, &log, err);
     if (!st) log_summary(&plan, &mesh, &log, &report);
     solid_report_release(&report);
@@ -189,7 +134,6 @@ static enum status build(struct job *j, struct err *err)
     solid_mesh_release(&base);
     solid_mesh_release(&mesh);
     solid_list_release(&solids);
-    plan_places_release(&before);
     plan_release(&plan);
     return st;
 }

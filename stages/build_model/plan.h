@@ -166,6 +166,9 @@ struct plan {
     int wish_count, zone_count;
     struct plan_name *names; /* a hash table */
     int name_capacity, name_count;
+    /* A copy from before the first edit, in which texture has its places; NULL: there was no edit. Its names belong to
+     * this plan; it has no wishes and zones, and its rooms have no walls, edges and parts. */
+    struct plan *unedited;
 };
 
 /* Sets a plan's defaults: those of homes, in metres; without a scale they are unknown, except `ceiling` and `thickness`
@@ -173,8 +176,8 @@ struct plan {
 void plan_begin(struct plan *plan, const struct model_axes *axes);
 
 /* Applies the statements in order, then checks the whole plan; edit: checks it after every statement, so that the error
- * names the statement that breaks the building, and refuses a statement that changes nothing. placer may be NULL if no statement names a view. ST_DATA with file and
- * line. */
+ * names the statement that breaks the building, and refuses a statement that changes nothing. placer may be NULL if no
+ * statement names a view. ST_DATA with file and line. */
 enum status plan_apply(struct plan *plan, const struct script *script, bool edit, const struct placer *placer,
                        struct err *err);
 void plan_release(struct plan *plan);
@@ -199,6 +202,8 @@ double plan_wall_top(const struct plan *plan, int wall, double s0, double s1); /
 bool opening_is_there(const struct plan *plan, const struct plan_opening *o);
 /* The slot is there: neither it nor its room is removed, and it is not walled up. */
 bool slot_is_there(const struct plan *plan, const struct plan_slot *slot);
+/* The corners of a wall in plan, in order around it: in and out face at its start, out and in face at its end. */
+void wall_corners(const struct plan *plan, int wall, double corners[4][2]);
 double top_at(const struct plan_top *top, const double p[2]);
 struct plan_top level_top(double z);
 

@@ -10,9 +10,22 @@
 #include "stages/build_model/plan_internal.h"
 #include "stages/build_model/room_parts.h"
 
+static void unedited_release(struct plan *unedited)
+{
+    if (!unedited) return;
+    free(unedited->walls);
+    free(unedited->openings);
+    free(unedited->slots);
+    free(unedited->boxes);
+    free(unedited->rooms);
+    free(unedited->names);
+    free(unedited);
+}
+
 void plan_release(struct plan *plan)
 {
     if (!plan) return;
+    unedited_release(plan->unedited);
     for (int i = 0; i < plan->wall_count; i++) free(plan->walls[i].name);
     for (int i = 0; i < plan->opening_count; i++) free(plan->openings[i].name);
     for (int i = 0; i < plan->slot_count; i++) free(plan->slots[i].name);
@@ -155,10 +168,51 @@ static enum status apply_watched(struct plan_context *c, struct edit_watch *w)
     return same ? statement_error(c, "the statement changes nothing: the plan is like that already.") : ST_OK;
 }
 
+/* *to: a copy of the items, or NULL. */
+static enum status copy_items(void *to, const void *items, int count, size_t size, struct err *err)
+{
+    void *copy = malloc((size_t)count * size + 1);
+    if (copy && count) memcpy(copy, items, (size_t)count * size);
+    memcpy(to, &copy, sizeof copy);
+    return copy ? ST_OK : err_nomem(err, "the unedited plan", (size_t)count * size);
+}
+
+static enum status keep_unedited(struct plan *p, struct err *err)
+{
+    struct plan *u = malloc(sizeof *u);
+    if (!u) return err_nomem(err, "the unedited plan", sizeof *u);
+    *u = *p;
+    u->walls = NULL;
+    u->openings = NULL;
+    u->slots = NULL;
+    u->boxes = NULL;
+    u->rooms = NULL;
+    u->names = NULL;
+    u->wishes = NULL;
+    u->zones = NULL;
+    u->wish_count = u->zone_count = 0;
+    p->unedited = u;
+    enum status st = copy_items(&u->walls, p->walls, p->wall_count, sizeof *p->walls, err);
+    if (!st) st = copy_items(&u->openings, p->openings, p->opening_count, sizeof *p->openings, err);
+    if (!st) st = copy_items(&u->slots, p->slots, p->slot_count, sizeof *p->slots, err);
+    if (!st) st = copy_items(&u->boxes, p->boxes, p->box_count, sizeof *p->boxes, err);
+    if (!st) st = copy_items(&u->rooms, p->rooms, p->room_count, sizeof *p->rooms, err);
+    if (!st) st = copy_items(&u->names, p->names, p->name_capacity, sizeof *p->names, err);
+    for (int i = 0; !st && i < u->room_count; i++) {
+        struct plan_room *r = &u->rooms[i];
+        r->walls = r->edge_of = NULL;
+        r->edges = NULL;
+        r->parts = NULL;
+        r->wall_count = r->edge_count = r->part_count = 0;
+    }
+    return st;
+}
+
 static enum status apply_edit(struct plan_context *c, const struct script *script)
 {
     struct edit_watch w = {0};
-    enum status st = plan_state(&w.before, c->plan, c->err);
+    enum status st = c->plan->unedited ? ST_OK : keep_unedited(c->plan, c->err);
+    if (!st) st = plan_state(&w.before, c->plan, c->err);
     for (int i = 0; i < script->count && !st; i++) {
         c->s = &script->statements[i];
         st = needs_views(c);
@@ -170,6 +224,18 @@ static enum status apply_edit(struct plan_context *c, const struct script *scrip
     return st;
 }
 
+/* The unedited model shows the photographs. */
+static enum status needs_edit(struct plan_context *c)
+{
+    const struct statement *s = c->s;
+    const bool set_colour = s->verb == VERB_SET && !strcmp(s->name, "colour");
+    if (!set_colour && (s->verb < VERB_TEXTURE || s->verb > VERB_KEEP)) return ST_OK;
+    return statement_error(c,
+                           "\"%s\" is for edits: the unedited model shows the photographs. Write it in a script in the "
+                           "folder edits.",
+                           set_colour ? "set colour" : verb_name(s->verb));
+}
+
 enum status plan_apply(struct plan *plan, const struct script *script, bool edit, const struct placer *placer,
                        struct err *err)
 {
@@ -177,7 +243,7 @@ enum status plan_apply(struct plan *plan, const struct script *script, bool edit
     if (edit) return apply_edit(&c, script);
     for (int i = 0; i < script->count; i++) {
         c.s = &script->statements[i];
-        if (needs_views(&c) || apply_statement(&c)) return err->status;
+        if (needs_edit(&c) || needs_views(&c) || apply_statement(&c)) return err->status;
     }
     return plan_check(plan, script->path, 0, err);
 }

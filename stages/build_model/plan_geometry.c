@@ -239,3 +239,14 @@ double plan_wall_top(const struct plan *plan, int wall, double s0, double s1)
     }
     return top < HUGE_VAL ? top : top_in_rooms(plan, w, s0, s1);
 }
+
+void wall_corners(const struct plan *p, int wall, double corners[4][2])
+{
+    const struct plan_wall *w = &p->walls[wall];
+    for (int end = 0; end < 2; end++) {
+        int face_wall, face_side;
+        const struct plan_line cap = wall_cap(p, wall, end, &face_wall, &face_side);
+        for (int side = 0; side < 2; side++)
+            line_cross(wall_face(w, side), cap, corners[end == END_START ? side : 3 - side]);
+    }
+}

@@ -6,6 +6,8 @@
 #include "common/model/solid_mesh.h"
 #include "stages/build_model/layout.h"
 
+#define PICTURE_FRUSTUM 0.35 /* length of a frustum's edges, for a room 2.5 units high */
+
 /* SVG: walls, openings and boxes with their names, rooms with their sizes, the photographs' positions and fields of
  * view (up to 60 degrees to either side of their axes), a scale bar. placer may be NULL: no photographs. metric: units
  * are metres. */

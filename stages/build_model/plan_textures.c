@@ -62,9 +62,18 @@ static bool item_of(char item[80], const char *face)
     return true;
 }
 
-/* The rectangle of a place on a face: S and Z on a wall, X and Y on a floor or ceiling. */
-static enum status place_on_face(struct plan_context *c, const char *face, const struct script_place *place,
-                                 double rect[4])
+/* Places are on a wall's in or out face, on a floor or a ceiling. */
+static bool has_places(const char *face)
+{
+    const char *part = strchr(strchr(face, '/') + 1, '/');
+    if (!strncmp(face, "wall/", 5)) return part && (!strcmp(part, "/in") || !strcmp(part, "/out"));
+    return !part && (!strncmp(face, "floor/", 6) || !strncmp(face, "ceiling/", 8));
+}
+
+/* The rectangle of a place on a face: S and Z on a wall, X and Y on a floor or ceiling. plan: the edited or the unedited
+ * one. */
+static enum status place_on_face(struct plan_context *c, struct plan *plan, const char *face,
+                                 const struct script_place *place, double rect[4])
 {
     struct statement moved = *c->s;
     struct plan_context at = *c;
@@ -72,25 +81,24 @@ static enum status place_on_face(struct plan_context *c, const char *face, const
     int index;
     moved.place = *place;
     at.s = &moved;
+    at.plan = plan;
     if (!item_of(item, face)) return statement_error(c, "%s is no face.", face);
     moved.name = item;
+    if (!has_places(face))
+        return statement_error(
+            c,
+            "a place on %s cannot be given: only wall/NAME/in and out (S and Z), floor/NAME and ceiling/NAME (X and Y) "
+            "have places. Leave the second place out: the whole face gets the texture.",
+            face);
     if (!strncmp(face, "wall/", 5)) {
         double s[2], z[2];
         if (find_wall(&at, item, &index) || place_on_wall(&at, index, s, z)) return c->err->status;
         memcpy(rect, (const double[]){s[0], z[0], s[1], z[1]}, 4 * sizeof *rect);
         return ST_OK;
     }
-    const bool floor = !strncmp(face, "floor/", 6);
-    if (!floor && strncmp(face, "ceiling/", 8))
-        return statement_error(
-            c,
-            "a place on %s cannot be given: only walls (S and Z), floors and ceilings (X and Y) have "
-            "places. Leave the second place out: the whole face gets the texture.",
-            face);
+    const enum verb verb = !strncmp(face, "floor/", 6) ? VERB_HATCH : VERB_SKYLIGHT;
     double low[2], high[2];
-    if (find_room(&at, item, &index)) return c->err->status;
-    if (place_in_room(&at, &c->plan->rooms[index], floor ? VERB_HATCH : VERB_SKYLIGHT, low, high))
-        return c->err->status;
+    if (find_room(&at, item, &index) || place_in_room(&at, &plan->rooms[index], verb, low, high)) return c->err->status;
     memcpy(rect, (const double[]){low[0], low[1], high[0], high[1]}, 4 * sizeof *rect);
     return ST_OK;
 }
@@ -102,14 +110,31 @@ static enum status check_rectangle(struct plan_context *c, const char *face, con
                            rect[3] - rect[1], MIN_SIZE);
 }
 
+/* Texture cannot be copied from what the edit made. */
+static enum status check_source(struct plan_context *c, const char *face)
+{
+    struct err none = ERR_INIT;
+    struct plan_context edited = *c, unedited = *c;
+    char item[80];
+    enum name_kind kind;
+    int at;
+    unedited.plan = c->plan->unedited;
+    unedited.err = edited.err = &none;
+    if (!item_of(item, face) || !find_named(&unedited, item, ~0u, "", &kind, &at)) return ST_OK;
+    if (find_named(&edited, item, ~0u, "", &kind, &at)) return ST_OK;
+    return statement_error(c, "%s is not in the unedited model, whose texture is copied.", item);
+}
+
+/* The patch lies where the unedited model has it, also if the edit moved or removed that wall. */
 enum status apply_copy(struct plan_context *c)
 {
     const struct statement *s = c->s;
     struct plan_wish wish = {.kind = WISH_COPY, .whole = s->target.kind == PLACE_NONE};
-    if (place_on_face(c, s->name, &s->place, wish.patch) || check_rectangle(c, s->name, wish.patch))
+    if (check_source(c, s->name) || place_on_face(c, c->plan->unedited, s->name, &s->place, wish.patch) ||
+        check_rectangle(c, s->name, wish.patch))
         return c->err->status;
     if (!wish.whole &&
-        (place_on_face(c, s->other, &s->target, wish.target) || check_rectangle(c, s->other, wish.target)))
+        (place_on_face(c, c->plan, s->other, &s->target, wish.target) || check_rectangle(c, s->other, wish.target)))
         return c->err->status;
     return add_wish(c, wish, s->other, s->name);
 }

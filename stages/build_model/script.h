@@ -86,9 +86,9 @@ struct statement {
     struct script_place place, target; /* target: of copy, PLACE_NONE: the whole face */
     int end;                           /* extend: END_START or END_END */
     enum filling filling;              /* fill */
-    double values
-        [3]; /* set: the value, or a colour; colour: R G B; extend: where; split: from, to; move: by; slope: two heights; gable: also
-                             the ridge's */
+    /* set: the value, or a colour; colour: R G B; extend: where; split: from, to; move: by; slope: two heights; gable:
+     * also the ridge's */
+    double values[3];
     int value_count;
     double options[OPTION_COUNT];
     bool has_option[OPTION_COUNT];

@@ -22,51 +22,9 @@
 
 static const float default_albedo[3] = {0.75F, 0.75F, 0.75F}; /* white paint */
 
-static const double same_plane = 2e-5;  /* model units; the solids' lattice is 1e-6 */
-static const double same_cosine = 1e-9; /* 1 - cosine of normals of one plane */
-static const double near_gap = 0.6;     /* model units: farther coplanar faces are not the same surface */
+static const double near_gap = 0.6; /* model units: farther coplanar faces are not the same surface */
 
 /* ----------------------------------------------------------------------------------------------------------- places */
-
-static enum status keep(void *to, const void *items, int count, size_t size, struct err *err)
-{
-    void *copy = malloc((size_t)count * size + 1);
-    if (!copy) return err_nomem(err, "the places of a plan", (size_t)count * size);
-    if (count) memcpy(copy, items, (size_t)count * size);
-    memcpy(to, &copy, sizeof copy);
-    return ST_OK;
-}
-
-enum status plan_places_keep(struct plan_places *places, const struct plan *plan, struct err *err)
-{
-    enum status st = keep(&places->walls, plan->walls, plan->wall_count, sizeof *plan->walls, err);
-    if (!st) st = keep(&places->openings, plan->openings, plan->opening_count, sizeof *plan->openings, err);
-    if (!st) st = keep(&places->slots, plan->slots, plan->slot_count, sizeof *plan->slots, err);
-    if (!st) st = keep(&places->boxes, plan->boxes, plan->box_count, sizeof *plan->boxes, err);
-    if (st) return st;
-    places->wall_count = plan->wall_count;
-    places->opening_count = plan->opening_count;
-    places->slot_count = plan->slot_count;
-    places->box_count = plan->box_count;
-    return ST_OK;
-}
-
-void plan_places_release(struct plan_places *places)
-{
-    free(places->walls);
-    free(places->openings);
-    free(places->slots);
-    free(places->boxes);
-    *places = (struct plan_places){0};
-}
-
-/* Whether a face's name is of the item NAME: KIND/NAME/PART. */
-static bool names_item(const char *face, const char *item)
-{
-    const char *slash = strchr(face, '/');
-    const size_t length = strlen(item);
-    return slash && !strncmp(slash + 1, item, length) && (!slash[1 + length] || slash[1 + length] == '/');
-}
 
 static struct vec3 wall_shift(const struct plan_wall *before, const struct plan_wall *now)
 {
@@ -76,7 +34,7 @@ static struct vec3 wall_shift(const struct plan_wall *before, const struct plan_
 
 static bool same_size(const double a[2], const double b[2]) { return fabs((a[1] - a[0]) - (b[1] - b[0])) < 1e-9; }
 
-static struct vec3 opening_shift(const struct plan_places *places, const struct plan *plan, int i)
+static struct vec3 opening_shift(const struct plan *places, const struct plan *plan, int i)
 {
     const struct plan_opening *before = &places->openings[i], *now = &plan->openings[i];
     const struct plan_wall *wall = &plan->walls[now->wall];
@@ -109,17 +67,17 @@ static struct vec3 slot_shift(const struct plan_slot *before, const struct plan_
 }
 
 /* How far the edit moved the item that a face belongs to. */
-static struct vec3 item_shift(const char *face, const struct plan_places *before, const struct plan *plan)
+static struct vec3 item_shift(const char *face, const struct plan *before, const struct plan *plan)
 {
     for (int i = 0; i < before->wall_count; i++)
-        if (!strncmp(face, "wall/", 5) && names_item(face, plan->walls[i].name))
+        if (!strncmp(face, "wall/", 5) && texture_face_is_of(face, plan->walls[i].name))
             return wall_shift(&before->walls[i], &plan->walls[i]);
     for (int i = 0; i < before->opening_count; i++)
-        if (names_item(face, plan->openings[i].name)) return opening_shift(before, plan, i);
+        if (texture_face_is_of(face, plan->openings[i].name)) return opening_shift(before, plan, i);
     for (int i = 0; i < before->slot_count; i++)
-        if (names_item(face, plan->slots[i].name)) return slot_shift(&before->slots[i], &plan->slots[i]);
+        if (texture_face_is_of(face, plan->slots[i].name)) return slot_shift(&before->slots[i], &plan->slots[i]);
     for (int i = 0; i < before->box_count; i++)
-        if (names_item(face, plan->boxes[i].name)) return box_shift(&before->boxes[i], &plan->boxes[i]);
+        if (texture_face_is_of(face, plan->boxes[i].name)) return box_shift(&before->boxes[i], &plan->boxes[i]);
     return vec3_make(0, 0, 0);
 }
 
@@ -134,16 +92,6 @@ struct rules_job {
 static bool is_pane(const struct solid_mesh *mesh, int face)
 {
     return !strncmp(mesh->bodies[mesh->faces[face].body].name, "glass/", 6);
-}
-
-static bool parallel(const struct solid_face *a, const struct solid_face *b)
-{
-    return vec3_dot(a->normal, b->normal) > 1 - same_cosine;
-}
-
-static bool coplanar(const struct solid_face *a, const struct solid_face *b)
-{
-    return parallel(a, b) && fabs(a->offset - b->offset) <= same_plane;
 }
 
 static struct texture_rule shifted(enum texture_rule_kind kind, int from, struct vec3 by)
@@ -165,14 +113,14 @@ static int own_place(const struct rules_job *job, int face, struct vec3 *by)
     const double was = f->offset - vec3_dot(f->normal, moved);
     int best = -1;
     for (int i = 0; i < job->models.base->face_count; i++) {
-        if (solid_face_id(job->models.base, i) != id || !parallel(f, &job->models.base->faces[i])) continue;
+        if (solid_face_id(job->models.base, i) != id || !faces_are_parallel(f, &job->models.base->faces[i])) continue;
         if (best < 0 ||
             fabs(job->models.base->faces[i].offset - was) < fabs(job->models.base->faces[best].offset - was))
             best = i;
     }
     if (best < 0) return -1;
     const double across = job->models.base->faces[best].offset - was;
-    *by = vec3_sub(vec3_scale(f->normal, fabs(across) <= same_plane ? 0 : across), moved);
+    *by = vec3_sub(vec3_scale(f->normal, fabs(across) <= SAME_PLANE ? 0 : across), moved);
     return best;
 }
 
@@ -216,11 +164,12 @@ static enum status add_coplanar(const struct rules_job *job, struct texture_face
     enum status st = ST_OK;
     *edge = 0;
     for (int i = 0; !st && i < job->models.base->face_count; i++) {
-        if (!coplanar(&job->models.edited->faces[face], &job->models.base->faces[i]) || is_pane(job->models.base, i))
+        if (!faces_are_coplanar(&job->models.edited->faces[face], &job->models.base->faces[i]) ||
+            is_pane(job->models.base, i))
             continue;
         const double gap = gap_between(own, face_bounds(job->models.base, &job->triangles[1], i));
         const int id = solid_face_id(job->models.base, i);
-        if (gap <= same_plane && !has_place(to, id))
+        if (gap <= SAME_PLANE && !has_place(to, id))
             st = texture_face_add(to, shifted(TEXTURE_PLACE, id, vec3_make(0, 0, 0)), job->err);
         if (gap < least) {
             least = gap;
@@ -358,8 +307,9 @@ static enum status base_parts(struct room_part **parts, struct part_corner **cor
     if (!*parts || !*corners) return err_nomem(job->err, "triangles", 3 * most * sizeof **corners);
     for (int i = 0; i < job->models.base->face_count; i++) {
         const struct solid_face *b = &job->models.base->faces[i];
-        if (solid_face_id(job->models.base, i) != solid_face_id(job->models.edited, face) || !parallel(f, b)) continue;
-        if (fabs(b->offset - f->offset - vec3_dot(f->normal, by)) > same_plane) continue;
+        if (solid_face_id(job->models.base, i) != solid_face_id(job->models.edited, face) || !faces_are_parallel(f, b))
+            continue;
+        if (fabs(b->offset - f->offset - vec3_dot(f->normal, by)) > SAME_PLANE) continue;
         for (int k = t->first[i]; k < t->first[i + 1]; k++) {
             struct part_corner *c = *corners + 3 * *count;
             if (!flat_triangle(c, axes, job->models.base, &t->triangles[k], vec3_scale(by, -1))) continue;
@@ -412,9 +362,8 @@ static bool is_listed(const struct texture_map *map, const struct solid_mesh *me
     const struct solid_face *f = &mesh->faces[face];
     for (*at = map->face_count - 1; *at >= 0; --*at) {
         const struct texture_face *t = &map->faces[*at];
-        if (t->id == solid_face_id(mesh, face) && vec3_dot(t->normal, f->normal) > 1 - same_cosine &&
-            fabs(t->offset - f->offset) <= same_plane)
-            return true;
+        const struct solid_face plane = {.normal = t->normal, .offset = t->offset};
+        if (t->id == solid_face_id(mesh, face) && faces_are_coplanar(&plane, f)) return true;
     }
     return false;
 }
@@ -431,9 +380,9 @@ static int compare_texture_faces(const void *a, const void *b)
 }
 
 enum status texture_rules_make(struct texture_map *map, const struct solid_mesh *edited, const struct solid_mesh *base,
-                               const struct plan_places *before, const struct plan *plan, struct err *err)
+                               const struct plan *plan, struct err *err)
 {
-    struct rules_job job = {.models = {edited, base, before, plan}, .err = err};
+    struct rules_job job = {.models = {edited, base, plan->unedited, plan}, .err = err};
     enum status st = texture_wishes_check(&job.models, err);
     if (!st) st = solid_mesh_triangulate(&job.triangles[0], edited, err);
     if (!st) st = solid_mesh_triangulate(&job.triangles[1], base, err);

@@ -14,18 +14,6 @@
 
 enum { MAX_COPIES = 4096 };
 
-struct plane_axes plane_axes_of(const struct solid_face *f)
-{
-    const struct vec3 n = f->normal;
-    const struct vec3 u = fabs(n.z) < 0.999 ? vec3_normalize(vec3_cross(vec3_make(0, 0, 1), n)) : vec3_make(1, 0, 0);
-    return (struct plane_axes){u, vec3_cross(n, u), n, f->offset};
-}
-
-struct vec3 plane_axes_point(const struct plane_axes *axes, double u, double v)
-{
-    return vec3_add(vec3_scale(axes->n, axes->offset), vec3_add(vec3_scale(axes->u, u), vec3_scale(axes->v, v)));
-}
-
 enum status texture_face_add(struct texture_face *face, struct texture_rule rule, struct err *err)
 {
     if (array_append(&face->rules, (size_t)face->rule_count, sizeof *face->rules, "rules", err)) return err->status;
@@ -41,8 +29,7 @@ static bool is_face_or_part(const char *face, const char *wished)
     return !strncmp(face, wished, length) && (!face[length] || face[length] == '/');
 }
 
-/* Whether a face belongs to the item NAME: KIND/NAME or KIND/NAME/PART. */
-static bool is_of_item(const char *face, const char *item)
+bool texture_face_is_of(const char *face, const char *item)
 {
     const char *slash = strchr(face, '/');
     return slash && is_face_or_part(slash + 1, item);
@@ -81,7 +68,7 @@ static enum status check_wish(const struct texture_models *m, const struct plan_
         const char *name = m->edited->names[i].name;
         found = w->kind == WISH_COLOUR ? is_face_or_part(name, w->face)
                 : w->kind == WISH_COPY ? !strcmp(name, w->face)
-                                       : is_of_item(name, w->face);
+                                       : texture_face_is_of(name, w->face);
     }
     if (!found) return unknown_face(w, m->edited, w->face, "edited", err);
     if (w->kind != WISH_COPY || find_face(m->base, w->from) >= 0) return ST_OK;
@@ -97,50 +84,47 @@ enum status texture_wishes_check(const struct texture_models *m, struct err *err
 
 /* ------------------------------------------------------------------------------------------------------ rectangles */
 
-struct rect { /* in the axes of a plane */
-    double u[2], v[2];
-};
-
-static struct rect rect_of(const struct plane_axes *axes, struct vec3 a, struct vec3 b)
+/* A corner of a place: by S and Z on a wall, by X and Y on a floor or ceiling, which may slope. */
+static struct vec3 place_corner(const struct plan_wall *wall, double a, double b, const struct solid_face *f)
 {
-    const double ua = vec3_dot(axes->u, a), ub = vec3_dot(axes->u, b);
-    const double va = vec3_dot(axes->v, a), vb = vec3_dot(axes->v, b);
-    return (struct rect){{fmin(ua, ub), fmax(ua, ub)}, {fmin(va, vb), fmax(va, vb)}};
+    double p[2];
+    if (!wall) return vec3_make(a, b, (f->offset - f->normal.x * a - f->normal.y * b) / f->normal.z);
+    wall_point(wall, a, 0, p);
+    return vec3_make(p[0], p[1], b);
 }
 
-static struct rect face_rect(const struct solid_mesh *mesh, int face, const struct plane_axes *axes)
+static struct plane_rect place_rect(const double place[4], const struct solid_mesh *mesh, int face,
+                                    const struct plan *plan, const struct plane_axes *axes)
 {
-    const int first = mesh->loops[mesh->faces[face].loop].half_edge;
-    struct rect r = {{INFINITY, -INFINITY}, {INFINITY, -INFINITY}};
-    int h = first;
-    do {
-        const struct vec3 p = mesh->vertices[mesh->half_edges[h].origin].p;
-        const double u = vec3_dot(axes->u, p), v = vec3_dot(axes->v, p);
-        r = (struct rect){{fmin(r.u[0], u), fmax(r.u[1], u)}, {fmin(r.v[0], v), fmax(r.v[1], v)}};
-        h = mesh->half_edges[h].next;
-    } while (h != first);
-    return r;
+    const char *name = solid_face_name(mesh, face);
+    const struct plan_wall *wall = NULL;
+    for (int i = 0; !wall && !strncmp(name, "wall/", 5) && i < plan->wall_count; i++)
+        if (texture_face_is_of(name, plan->walls[i].name)) wall = &plan->walls[i];
+    const struct solid_face *f = &mesh->faces[face];
+    return plane_rect_of(axes, place_corner(wall, place[0], place[1], f), place_corner(wall, place[2], place[3], f));
 }
 
-/* A place on a wall, by S and Z, or on a floor or ceiling, by X and Y. */
-static struct rect place_rect(const double place[4], const char *face, const struct plan_wall *walls, int wall_count,
-                              const struct plane_axes *axes)
+/* The face of the base from which a patch is copied: of a ceiling with several planes, the lowest in the patch's middle.
+ */
+static int copy_source(const struct texture_models *m, const struct plan_wish *w)
 {
-    struct vec3 corners[2] = {{place[0], place[1], 0}, {place[2], place[3], 0}};
-    for (int i = 0; i < wall_count; i++) {
-        if (strncmp(face, "wall/", 5) || !is_of_item(face, walls[i].name)) continue;
-        for (int k = 0; k < 2; k++) {
-            double p[2];
-            wall_point(&walls[i], place[2 * k], 0, p);
-            corners[k] = vec3_make(p[0], p[1], place[2 * k + 1]);
-        }
+    const double x = 0.5 * (w->patch[0] + w->patch[2]), y = 0.5 * (w->patch[1] + w->patch[3]);
+    int best = find_face(m->base, w->from);
+    if (strncmp(w->from, "ceiling/", 8)) return best;
+    double least = INFINITY;
+    for (int i = 0; i < m->base->face_count; i++) {
+        const struct solid_face *f = &m->base->faces[i];
+        const double z = place_corner(NULL, x, y, f).z;
+        if (strcmp(solid_face_name(m->base, i), w->from) || z >= least) continue;
+        least = z;
+        best = i;
     }
-    return rect_of(axes, corners[0], corners[1]);
+    return best;
 }
 
 /* The map that takes `from` in one plane to `to` in another. */
-static void set_matrix(double m[3][4], const struct plane_axes *a, const struct rect *from, const struct plane_axes *b,
-                       const struct rect *to)
+static void set_matrix(double m[3][4], const struct plane_axes *a, const struct plane_rect *from,
+                       const struct plane_axes *b, const struct plane_rect *to)
 {
     const double su = (to->u[1] - to->u[0]) / (from->u[1] - from->u[0]);
     const double sv = (to->v[1] - to->v[0]) / (from->v[1] - from->v[0]);
@@ -158,11 +142,11 @@ static void set_matrix(double m[3][4], const struct plane_axes *a, const struct 
 static enum status add_copies(struct texture_face *to, const struct texture_models *m, const struct plan_wish *w,
                               int face, struct err *err)
 {
-    const int source = find_face(m->base, w->from);
+    const int source = copy_source(m, w);
     const struct plane_axes a = plane_axes_of(&m->edited->faces[face]), b = plane_axes_of(&m->base->faces[source]);
-    const struct rect patch = place_rect(w->patch, w->from, m->before->walls, m->before->wall_count, &b);
-    const struct rect target = w->whole ? face_rect(m->edited, face, &a)
-                                        : place_rect(w->target, w->face, m->plan->walls, m->plan->wall_count, &a);
+    const struct plane_rect patch = place_rect(w->patch, m->base, source, m->before, &b);
+    const struct plane_rect target =
+        w->whole ? plane_rect_of_surface(m->edited, face, &a) : place_rect(w->target, m->edited, face, m->plan, &a);
     const double width = patch.u[1] - patch.u[0], height = patch.v[1] - patch.v[0];
     const double columns = ceil((target.u[1] - target.u[0]) / width - 1e-6);
     const double rows = ceil((target.v[1] - target.v[0]) / height - 1e-6);
@@ -172,7 +156,7 @@ static enum status add_copies(struct texture_face *to, const struct texture_mode
     enum status st = ST_OK;
     for (int i = 0; !st && i < (int)(columns * rows); i++) {
         const double u = target.u[0] + width * (i % (int)columns), v = target.v[0] + height * (i / (int)columns);
-        const struct rect cell = {{u, u + width}, {v, v + height}};
+        const struct plane_rect cell = {{u, u + width}, {v, v + height}};
         const double right = fmin(u + width, target.u[1]), upper = fmin(v + height, target.v[1]);
         struct texture_rule rule = {
             .kind = TEXTURE_PLACE, .from = solid_face_id(m->base, source), .limited = !w->whole || columns * rows > 1};
@@ -203,9 +187,10 @@ static enum status add_own(struct texture_face *to, const struct texture_models 
                            int base_face, struct vec3 by, struct err *err)
 {
     const struct plane_axes a = plane_axes_of(&m->edited->faces[face]), b = plane_axes_of(&m->base->faces[base_face]);
-    const struct rect from = face_rect(m->edited, face, &a), stretched = face_rect(m->base, base_face, &b);
+    const struct plane_rect from = plane_rect_of_surface(m->edited, face, &a),
+                            stretched = plane_rect_of_surface(m->base, base_face, &b);
     const double u = vec3_dot(b.u, by), v = vec3_dot(b.v, by);
-    const struct rect cropped = {{from.u[0] + u, from.u[1] + u}, {from.v[0] + v, from.v[1] + v}};
+    const struct plane_rect cropped = {{from.u[0] + u, from.u[1] + u}, {from.v[0] + v, from.v[1] + v}};
     struct texture_rule rule = {.kind = TEXTURE_PLACE, .from = solid_face_id(m->base, base_face)};
     set_matrix(rule.matrix, &a, &from, &b, w->kind == WISH_STRETCH ? &stretched : &cropped);
     enum status st = texture_face_add(to, rule, err);
@@ -226,7 +211,8 @@ enum status texture_wishes_add(struct texture_face *to, bool *covered, const str
         } else if (w->kind == WISH_COLOUR && is_face_or_part(name, w->face)) {
             st = add_colour(to, w, lit, lit_count, err);
             *covered = true;
-        } else if ((w->kind == WISH_STRETCH || w->kind == WISH_CROP) && base_face >= 0 && is_of_item(name, w->face)) {
+        } else if ((w->kind == WISH_STRETCH || w->kind == WISH_CROP) && base_face >= 0 &&
+                   texture_face_is_of(name, w->face)) {
             st = add_own(to, m, w, face, base_face, by, err);
             *covered = true;
         }

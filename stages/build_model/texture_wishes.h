@@ -2,20 +2,13 @@
 #ifndef REMODEL_BUILD_MODEL_TEXTURE_WISHES_H
 #define REMODEL_BUILD_MODEL_TEXTURE_WISHES_H
 
-#include "stages/build_model/texture_rules.h"
-
-/* A plane with axes: u x v = n; seen from outside u points to the right and v up where the plane is upright. */
-struct plane_axes {
-    struct vec3 u, v, n;
-    double offset;
-};
-struct plane_axes plane_axes_of(const struct solid_face *f);
-struct vec3 plane_axes_point(const struct plane_axes *axes, double u, double v);
+#include "common/texture/texture_map.h"
+#include "stages/build_model/plan.h"
+#include "stages/build_model/texture_planes.h"
 
 struct texture_models {
     const struct solid_mesh *edited, *base;
-    const struct plan_places *before;
-    const struct plan *plan;
+    const struct plan *before, *plan; /* of the base, of the edited model */
 };
 
 /* ST_DATA with file and line: a statement names a face that the models do not have, or makes too many copies. */
@@ -28,6 +21,9 @@ enum status texture_wishes_add(struct texture_face *to, bool *covered, const str
 
 /* The footprints in which clutter is cleared or kept. */
 enum status texture_zones_add(struct texture_map *map, const struct plan *plan, struct err *err);
+
+/* Whether a face's name is of the item NAME: KIND/NAME or KIND/NAME/PART. */
+bool texture_face_is_of(const char *face, const char *item);
 
 /* Adds a rule; its array `lit` becomes the face's. */
 enum status texture_face_add(struct texture_face *face, struct texture_rule rule, struct err *err);

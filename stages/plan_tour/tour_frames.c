@@ -15,7 +15,7 @@
 #include <string.h>
 
 #include "common/base/array.h"
-#include "stages/plan_tour/tour_clearance.h"
+#include "common/light/model_clearance.h"
 
 static const double ease_out = 1, ease_in = 0.5; /* seconds */
 static const double same_place = 1e-9;           /* model units */
@@ -221,7 +221,7 @@ enum status tour_frames_make(struct camera_path *path, struct viewpoint_pairs *p
         struct view camera = camera_at(&keys[i], &keys[i + 1], t, params);
         const struct vec3 at = camera.center;
         /* a hair less, as a place on a way is rounded */
-        if (!tour_way_is_free(model, at, at, (1 - 1e-9) * params->clearance))
+        if (!model_rays_way_is_free(model, at, at, (1 - 1e-9) * params->clearance))
             return err_set(err, ST_INTERNAL, "frame %d of the tour is nearer to the model than the clearance of %.3g.",
                            f + 1, params->clearance);
         move_to_scene(&camera, axes);

@@ -1,7 +1,7 @@
 /* tour_graph.c - the graph of a tour; see tour_graph.h.
  *
  * [Colburn 2014, 4.7.1] joins two viewpoints if the segment between their centres does not meet the model, with the
- * weight 1 + d + (2/pi) theta / d. Here the segment also keeps a clearance from the model (tour_clearance.h). And
+ * weight 1 + d + (2/pi) theta / d. Here the segment also keeps a clearance from the model (model_clearance.h). And
  * theta / d, which has no limit for two photographs from one place, is theta / max(d, 2/pi). */
 #include "stages/plan_tour/tour_graph.h"
 
@@ -11,7 +11,7 @@
 
 #include "common/base/log.h"
 #include "common/base/sort.h"
-#include "stages/plan_tour/tour_clearance.h"
+#include "common/light/model_clearance.h"
 
 enum { RAYS = 128 };
 
@@ -65,7 +65,7 @@ static enum status find_nodes(struct tour_graph *g, const struct camera_set *set
         const struct view view = model_from_world_view(axes, &set->views[i]);
         struct tour_node *n = &g->nodes[g->count++];
         *n = (struct tour_node){.photo = lens->photo, .centre = view.center, .axis = photo_axis(&view, lens)};
-        n->usable = tour_way_is_free(model, n->centre, n->centre, clearance);
+        n->usable = model_rays_way_is_free(model, n->centre, n->centre, clearance);
         n->open = n->usable ? openness(model, n->centre) : 0;
         usable += n->usable;
         if (!n->usable)
@@ -119,7 +119,8 @@ enum status tour_graph_make(struct tour_graph *g, const struct camera_set *set, 
         for (size_t k = 0; k <= i; k++) {
             const struct tour_node *a = &g->nodes[i], *b = &g->nodes[k];
             double w = i == k ? 0 : INFINITY;
-            if (i != k && a->usable && b->usable && tour_way_is_free(model, a->centre, b->centre, params->clearance)) {
+            if (i != k && a->usable && b->usable &&
+                model_rays_way_is_free(model, a->centre, b->centre, params->clearance)) {
                 const double theta = atan2(vec3_length(vec3_cross(a->axis, b->axis)), vec3_dot(a->axis, b->axis));
                 w = tour_weight(distance(g, (int)i, (int)k) / g->unit, theta);
             }

@@ -12,7 +12,7 @@
 #include "common/capture/view_image.h"
 #include "common/image/exr.h"
 #include "common/image/photo.h"
-#include "common/texture/picture_made.h"
+#include "common/texture/picture_record.h"
 #include "stages/render_model/choose_pair.h"
 #include "stages/render_model/exposure.h"
 #include "stages/render_model/own_pixels.h"
@@ -29,25 +29,15 @@ static enum status write_sources(const struct model_picture *p, const char *path
     return st;
 }
 
-/* The list of what the pixels come from, in percent. */
-static enum status write_record(const struct model_picture *p, double exposure, double changed, const char *path,
-                                const struct provenance *prov, struct err *err)
+/* What the pixels come from, in percent. */
+static struct picture_record record_of(const struct model_picture *p, double exposure, double changed)
 {
+    struct picture_record record = {p->width, p->height, exposure, changed, {0}};
     const size_t pixels = (size_t)p->width * (size_t)p->height;
     size_t counts[MADE_COUNT] = {0};
-    struct outfile out = {0};
-    enum status st = outfile_open(&out, path, err);
-    if (st) return st;
     for (size_t i = 0; i < pixels; i++) counts[p->made[i]]++;
-    fputs("remodel-picture 1\n", out.fp);
-    provenance_print(prov, out.fp);
-    fprintf(out.fp, "size %d %d\nexposure %.9g\nchanged %.6g\n", p->width, p->height, exposure, changed);
-    for (int k = 0; k < MADE_COUNT; k++)
-        fprintf(out.fp, "made %s %.6g\n", picture_made_kind((enum picture_made)k)->word,
-                100.0 * (double)counts[k] / (double)pixels);
-    st = outfile_commit(&out, err);
-    outfile_discard(&out);
-    return st;
+    for (int k = 0; k < MADE_COUNT; k++) record.shares[k] = 100.0 * (double)counts[k] / (double)pixels;
+    return record;
 }
 
 /* camera: for the EXR's attributes. The record is written last. */
@@ -66,7 +56,8 @@ static enum status write_picture(const struct model_picture *p, const struct roo
     if (!st && changed > 0) st = file_path(path, out, name, "-sources.png", err);
     if (!st && changed > 0) st = write_sources(p, path, err);
     if (!st) st = file_path(path, out, name, ".txt", err);
-    return st ? st : write_record(p, exposure, changed, path, prov, err);
+    const struct picture_record record = record_of(p, exposure, changed);
+    return st ? st : picture_record_write(&record, path, prov, err);
 }
 
 /* ----------------------------------------------------------------------------------------------------- original views */

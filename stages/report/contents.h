@@ -114,7 +114,7 @@ struct contents {
     struct photo_list photos;
     struct camera_set views;
     struct lens_list lenses;
-    bool has_photos, has_views;
+    bool has_photos, has_views, has_remodel_page; /* remodel/index.html exists */
 
     struct photo_card *photo_cards; /* photos.count */
     struct view_card *view_cards;   /* views.view_count */

@@ -53,6 +53,9 @@ enum status contents_read(struct contents *c, const struct contents_sources *fro
         read_effects(c, folder, err) || read_axes(c, folder, err) || read_models(c, folder, err) ||
         read_textures(c, folder, err))
         return err->status;
+    char page[PATH_SIZE];
+    snprintf(page, sizeof page, "%s/remodel/index.html", folder);
+    c->has_remodel_page = path_is_file(page);
     return read_runs(c, from, err);
 }
 

@@ -11,11 +11,11 @@
 #include "common/base/textfile.h"
 #include "common/capture/lens_list.h"
 #include "common/capture/photo_list.h"
-#include "common/texture/picture_made.h"
+#include "common/texture/picture_record.h"
 
-struct record { /* VIEW.txt */
+struct record {
     char view[256], photo[256];
-    double exposure, changed, shares[MADE_COUNT];
+    struct picture_record file; /* VIEW.txt */
 };
 
 struct reading {
@@ -35,41 +35,6 @@ static enum status note(struct remodel_contents *c, const char *what, const stru
 
 /* ---------------------------------------------------------------------------------------------------------- records */
 
-static enum status read_made(struct record *r, struct textfile *t, struct err *err)
-{
-    char *word;
-    double share;
-    if (textfile_word(t, "what pixels come from", &word, err) || textfile_double(t, "a share", &share, err))
-        return err->status;
-    const int kind = picture_made_find(word);
-    if (kind < 0) return textfile_error(t, err, word, "a kind of pixel, such as photo");
-    r->shares[kind] = share;
-    return textfile_end(t, err);
-}
-
-static enum status read_record(struct record *r, const char *path, struct err *err)
-{
-    struct textfile t = {0};
-    int64_t version, size;
-    if (textfile_open(&t, path, err)) return err->status;
-    enum status st = textfile_expect_line(&t, "remodel-picture", err);
-    if (!st) st = textfile_int(&t, "version", 1, 1, &version, err);
-    if (!st) st = textfile_end(&t, err);
-    if (!st) st = textfile_expect_line(&t, "size", err);
-    for (int k = 0; !st && k < 2; k++) st = textfile_int(&t, "a size", 1, 1 << 20, &size, err);
-    if (!st) st = textfile_end(&t, err);
-    if (!st) st = textfile_expect_line(&t, "exposure", err);
-    if (!st) st = textfile_double(&t, "an exposure", &r->exposure, err);
-    if (!st) st = textfile_expect_line(&t, "changed", err);
-    if (!st) st = textfile_double(&t, "a share", &r->changed, err);
-    while (!st && textfile_next(&t)) {
-        st = textfile_expect(&t, "made", err);
-        if (!st) st = read_made(r, &t, err);
-    }
-    textfile_release(&t);
-    return st;
-}
-
 static int is_record(const struct dirent *e)
 {
     const char *dot = strrchr(e->d_name, '.');
@@ -77,7 +42,7 @@ static int is_record(const struct dirent *e)
 }
 
 /* What is changed, less where the view looks past the photo's border. */
-static double worth(const struct record *r) { return r->changed * (100 - r->shares[MADE_NOTHING]); }
+static double worth(const struct record *r) { return r->file.changed * (100 - r->file.shares[MADE_NOTHING]); }
 
 /* The best first, then by name. */
 static int compare_records(const void *a, const void *b)
@@ -99,9 +64,9 @@ static enum status read_records(struct reading *r, const char *folder, struct er
     for (int i = 0; i < count; i++) {
         char path[FILE_PATH], *name = names[i]->d_name;
         struct err problem = ERR_INIT;
-        struct record record = {.exposure = 1};
+        struct record record;
         if (!st) st = file_path(path, folder, name, "", err);
-        if (!st && read_record(&record, path, &problem)) {
+        if (!st && picture_record_read(&record.file, path, &problem)) {
             st = note(r->c, "a picture is left out", &problem, err);
         } else if (!st) {
             snprintf(record.view, sizeof record.view, "%.*s", (int)(strlen(name) - strlen(".txt")), name);
@@ -137,7 +102,8 @@ static enum status read_before(struct picture *p, const struct reading *r, const
     if (!st) st = file_path(path, folder, record->view, ".exr", err);
     if (!st) st = exr_read(&im, path, names, 3, err);
     for (int k = 0; !st && k < im.count; k++)
-        for (size_t i = 0; i < (size_t)im.width * (size_t)im.height; i++) im.planes[k].f[i] *= (float)record->exposure;
+        for (size_t i = 0; i < (size_t)im.width * (size_t)im.height; i++)
+            im.planes[k].f[i] *= (float)record->file.exposure;
     if (!st) st = picture_from_exr(p, &im, orientation, SIGHT_SIDE_HEIGHT, err);
     exr_image_release(&im);
     return st;
@@ -167,10 +133,10 @@ static enum status read_sight(struct edit_sight *s, const struct reading *r, con
                               const char *folder, struct err *err)
 {
     const int orientation = orientation_of(r, record->photo);
-    *s = (struct edit_sight){.changed = record->changed};
+    *s = (struct edit_sight){.changed = record->file.changed};
     memcpy(s->view, record->view, sizeof s->view);
     memcpy(s->photo, record->photo, sizeof s->photo);
-    memcpy(s->shares, record->shares, sizeof s->shares);
+    memcpy(s->shares, record->file.shares, sizeof s->shares);
     enum status st = read_before(&s->before, r, record, orientation, err);
     if (!st) st = read_picture(&s->after, folder, record->view, ".jpg", orientation, err);
     if (!st) st = read_picture(&s->sources, folder, record->view, "-sources.png", orientation, err);
@@ -189,7 +155,7 @@ static enum status read_sights(struct edit_card *card, struct reading *r, const 
         const struct record *record = &r->records[i];
         struct err problem = ERR_INIT;
         bool shown = card->sight_count == SIGHTS_SHOWN;
-        if (record->changed <= 0) break;
+        if (record->file.changed <= 0) break;
         card->changed++;
         for (int k = 0; k < card->sight_count; k++) shown |= !strcmp(card->sights[k].photo, record->photo);
         if (shown) continue;
@@ -249,7 +215,6 @@ static enum status read_edit(struct reading *r, const char *name, struct err *er
     if (!st) st = file_path(pictures, folder, "pictures", "", err);
     if (st || !has_file(folder, "model.txt")) return st;
     if (read_records(r, pictures, err)) return err->status;
-    if (!r->record_count) return ST_OK;
     if (array_append(&c->edits, (size_t)c->edit_count, sizeof *c->edits, "edits", err)) return err->status;
     struct edit_card *card = &c->edits[c->edit_count++];
     *card = (struct edit_card){.plan = file_if_there(folder, "plan.svg"),

@@ -21,7 +21,7 @@ struct edit_card {
     char *plan;                      /* file, owned; NULL: none */
     bool film, obj, gltf, ifc;       /* the files exist: NAME/tour/video.mp4, NAME/export/model.* */
     struct edit_sight *sights;       /* most changed and best seen first, each of another photo; owned */
-    int sight_count, changed, views; /* shown; views that the edit changes; views with a record */
+    int sight_count, changed, views; /* shown; views that the edit changes; views with a record: 0: no pictures yet */
 };
 
 struct remodel_contents {

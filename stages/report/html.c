@@ -68,6 +68,16 @@ void html_printf(FILE *to, const char *fmt, ...)
     html_text(to, text);
 }
 
+void html_address(FILE *to, const char *path)
+{
+    static const char kept[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-._~@/";
+    for (const char *c = path; *c; c++)
+        if (strchr(kept, *c))
+            fputc(*c, to);
+        else
+            fprintf(to, "%%%02X", (unsigned char)*c);
+}
+
 void html_base64(FILE *to, const void *bytes, size_t size)
 {
     static const char DIGITS[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";

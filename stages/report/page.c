@@ -31,6 +31,7 @@ static void put_head(FILE *to, const char *scene, const struct contents *c)
     fputs(" · remodel " REMODEL_VERSION "</p>\n<nav aria-label=\"Contents\">", to);
     if (page_has_videos(c)) fputs("<a href=\"#video\">Video</a>", to);
     if (c->model_count) fputs("<a href=\"#model\">Model</a>", to);
+    if (c->has_remodel_page) fputs("<a href=\"remodel/index.html\">Remodelled rooms</a>", to);
     if (c->texture_count) fputs("<a href=\"#textures\">Textures</a>", to);
     if (c->has_metrics || c->held.view_count) fputs("<a href=\"#evaluation\">Evaluation</a>", to);
     fputs("<a href=\"#photos\">Photographs</a>"

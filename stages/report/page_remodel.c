@@ -28,14 +28,14 @@ static const char style[] =
 /* The name of an edit as words. */
 static void put_name(FILE *to, const char *name)
 {
-    for (const char *c = name; *c; c++)
-        if (*c == '-' || *c == '_')
-            fputc(' ', to);
-        else
-            html_bytes(to, c, 1);
+    char words[256];
+    snprintf(words, sizeof words, "%s", name);
+    for (char *c = words; *c; c++)
+        if (*c == '-' || *c == '_') *c = ' ';
+    html_text(to, words);
 }
 
-static void put_head(FILE *to, const char *scene, const struct remodel_contents *c)
+static void put_head(FILE *to, const char *scene, const char *back, const struct remodel_contents *c)
 {
     fputs("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" "
           "content=\"width=device-width, initial-scale=1\">\n<meta http-equiv=\"Content-Security-Policy\" "
@@ -58,7 +58,13 @@ static void put_head(FILE *to, const char *scene, const struct remodel_contents 
         put_name(to, c->edits[i].name);
         fputs("</a>", to);
     }
-    fputs("<a href=\"#how\">What is real</a></nav>\n</header>\n<main>\n", to);
+    fputs("<a href=\"#how\">What is real</a>", to);
+    if (back) {
+        fputs("<a href=\"", to);
+        html_address(to, back);
+        fputs("\">How it was made</a>", to);
+    }
+    fputs("</nav>\n</header>\n<main>\n", to);
 }
 
 static enum status put_layer(FILE *to, const struct picture *p, const char *name, const char *alt, const char *view,
@@ -120,18 +126,27 @@ static void put_link(FILE *to, bool exists, const char *edit, const char *file, 
 {
     if (!exists) return;
     fputs("<li><a href=\"", to);
-    html_text(to, edit);
+    html_address(to, edit);
     fprintf(to, "/%s\">%s</a></li>\n", file, text);
 }
 
 static void put_film(FILE *to, const char *folder, const char *caption)
 {
     fputs("<figure><video controls preload=\"metadata\" src=\"", to);
-    html_text(to, folder);
+    html_address(to, folder);
     fprintf(to, "/tour/video.mp4\"></video><figcaption>%s</figcaption></figure>\n", caption);
 }
 
-static enum status put_edit(FILE *to, const struct remodel_contents *c, int number, struct err *err)
+/* A sentence about what does not exist, with the goal of make that makes it. */
+static void put_missing(FILE *to, bool missing, const char *what, const char *goal, const char *scene)
+{
+    if (!missing) return;
+    fprintf(to, "<p class=\"muted\">There %s yet: <code>make %s SCENE=", what, goal);
+    html_text(to, scene);
+    fputs("</code></p>\n", to);
+}
+
+static enum status put_edit(FILE *to, const char *scene, const struct remodel_contents *c, int number, struct err *err)
 {
     const struct edit_card *card = &c->edits[number];
     fprintf(to, "<section id=\"edit%d\">\n<h2>", number);
@@ -146,7 +161,10 @@ static enum status put_edit(FILE *to, const struct remodel_contents *c, int numb
     for (int i = 0; i < card->sight_count; i++)
         if (put_sight(to, &card->sights[i], number, i, err)) return err->status;
     fputs("</div>\n", to);
-    if (!card->changed) fputs("<p>No photograph shows this change.</p>\n", to);
+    put_missing(to, !card->views, "are no pictures of this change", "remodel", scene);
+    if (card->views && !card->changed) fputs("<p>No photograph shows this change.</p>\n", to);
+    if (card->changed && !card->sight_count)
+        fputs("<p>The pictures of this change cannot be read; <a href=\"#how\">the reasons</a> are below.</p>\n", to);
     fputs("<div class=\"plans\">\n", to);
     if (put_plan(to, c->plan, "before", err) || put_plan(to, card->plan, "after", err)) return err->status;
     if (card->film) put_film(to, card->name, "A walk through the rooms after the change");
@@ -158,6 +176,10 @@ static enum status put_edit(FILE *to, const struct remodel_contents *c, int numb
         put_link(to, card->obj, card->name, "export/model.obj", "3D model (OBJ)");
         fputs("</ul>\n", to);
     }
+    put_missing(to, !c->plan || !card->plan, c->plan ? "is no plan of it" : "is no plan of the rooms before", "model",
+                scene);
+    put_missing(to, !card->film, "is no film of a walk through these rooms", "tour", scene);
+    put_missing(to, !card->obj && !card->gltf && !card->ifc, "is no model of it for other programs", "exports", scene);
     fputs("</section>\n", to);
     return ST_OK;
 }
@@ -186,17 +208,19 @@ static void put_how(FILE *to, const struct remodel_contents *c)
     fputs("</section>\n", to);
 }
 
-enum status remodel_page_write(FILE *to, const char *scene, const struct remodel_contents *c, struct err *err)
+enum status remodel_page_write(FILE *to, const char *scene, const char *back, const struct remodel_contents *c,
+                               struct err *err)
 {
-    put_head(to, scene, c);
+    put_head(to, scene, back, c);
     if (c->film) {
         fputs("<section>\n<h2>The rooms as they are</h2>\n<div class=\"plans\">\n", to);
         put_film(to, "../model", "A walk through the rooms before any change");
         fputs("</div>\n</section>\n", to);
     }
     for (int i = 0; i < c->edit_count; i++)
-        if (put_edit(to, c, i, err)) return err->status;
-    if (!c->edit_count) fputs("<p>There are no pictures of edits yet.</p>\n", to);
+        if (put_edit(to, scene, c, i, err)) return err->status;
+    if (!c->edit_count)
+        fputs("<p>There are no changes yet: describe one in the scene's folder <code>edits</code>.</p>\n", to);
     put_how(to, c);
     fputs("</main>\n<footer>Made by remodel " REMODEL_VERSION ".</footer>\n</body>\n</html>\n", to);
     return ST_OK;

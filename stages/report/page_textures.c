@@ -1,9 +1,6 @@
 /* page_textures.c - texture atlases: their pages, and the room as its views show it with their texture. */
 #include "stages/report/page_parts.h"
 
-#include <ctype.h>
-#include <string.h>
-
 enum { QUALITY = 82, SOURCES_LISTED = 8 };
 static const double LEAST_SHARE = 0.005; /* of a source that is listed */
 
@@ -11,8 +8,7 @@ static const double LEAST_SHARE = 0.005; /* of a source that is listed */
 static void put_link(FILE *to, const char *folder, const char *name, const char *file)
 {
     fprintf(to, "<a href=\"%s", folder);
-    for (const unsigned char *p = (const unsigned char *)name; *p; p++)
-        fprintf(to, isalnum(*p) || strchr("-._~@", *p) ? "%c" : "%%%02X", *p);
+    html_address(to, name);
     fprintf(to, "/%s\">", file);
 }
 

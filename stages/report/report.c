@@ -23,26 +23,28 @@ static enum status write_page(FILE *to, const char *scene, const struct contents
     return st;
 }
 
-static enum status write_remodel_page(FILE *to, const char *scene, const struct remodel_sources *from, struct err *err)
+static enum status write_remodel_page(FILE *to, const char *scene, const char *back, const struct remodel_sources *from,
+                                      struct err *err)
 {
     struct remodel_contents contents = {0};
     enum status st = remodel_contents_read(&contents, from, err);
-    if (!st) st = remodel_page_write(to, scene, &contents, err);
+    if (!st) st = remodel_page_write(to, scene, back, &contents, err);
     remodel_contents_release(&contents);
     return st;
 }
 
-static enum status check_usage(bool remodel, const struct contents_sources *from, const char *scripts, struct err *err)
+static enum status check_usage(bool remodel, const struct contents_sources *from, const char *scripts, const char *back,
+                               struct err *err)
 {
     if (remodel ? from->photos || from->stages || from->defaults : !from->photos || !from->stages)
         return err_set(err, ST_USAGE, "wanted --photos and --stages, or --remodel without them; see --help.");
-    if (scripts && !remodel) return err_set(err, ST_USAGE, "--scripts goes with --remodel.");
+    if ((scripts || back) && !remodel) return err_set(err, ST_USAGE, "--scripts and --back go with --remodel.");
     return ST_OK;
 }
 
 int main(int argc, char **argv)
 {
-    const char *scene = NULL, *out = NULL, *scripts = NULL;
+    const char *scene = NULL, *out = NULL, *scripts = NULL, *back = NULL;
     bool remodel = false;
     struct contents_sources from = {0};
     const struct cli_opt opts[] = {
@@ -57,6 +59,8 @@ int main(int argc, char **argv)
         CLI_FLAG("remodel", &remodel, "instead: the page of remodelled rooms, each edit before and after"),
         CLI_STR("scripts", &scripts, CLI_OPTIONAL,
                 "with --remodel: folder of the edits' scripts, whose comments are shown"),
+        CLI_STR("back", &back, CLI_OPTIONAL,
+                "with --remodel: address of the scene's page, to link to, relative to OUT"),
         CLI_STR("out", &out, CLI_REQUIRED, "HTML file to write"),
         CLI_END,
     };
@@ -64,10 +68,12 @@ int main(int argc, char **argv)
     struct outfile page = {0};
     struct err err = ERR_INIT;
     char records[FILE_PATH];
-    if (cli_parse(argc, argv, "report", opts, &prov, &err) == CLI_RUN && !check_usage(remodel, &from, scripts, &err) &&
-        !file_path(records, from.shared, "photos", "", &err) && !outfile_open(&page, out, &err)) {
+    if (cli_parse(argc, argv, "report", opts, &prov, &err) == CLI_RUN &&
+        !check_usage(remodel, &from, scripts, back, &err) && !file_path(records, from.shared, "photos", "", &err) &&
+        !outfile_open(&page, out, &err)) {
         const struct remodel_sources edits = {from.folder, records, scripts};
-        if (!(remodel ? write_remodel_page(page.fp, scene, &edits, &err) : write_page(page.fp, scene, &from, &err)))
+        if (!(remodel ? write_remodel_page(page.fp, scene, back, &edits, &err)
+                      : write_page(page.fp, scene, &from, &err)))
             outfile_commit(&page, &err);
     }
     err_report(&err);

@@ -11,8 +11,7 @@
 #include <stdlib.h>
 
 #include "common/base/parallel.h"
-
-#define ON_SURFACE 1e-6 /* of the model's size: nearer to a solid, a camera is on its surface */
+#include "common/light/model_clearance.h"
 
 enum { ROWS = 16 };
 
@@ -33,7 +32,7 @@ enum status view_trace(struct view_trace *t, const struct model_rays *model, con
         solid_face_inverse_depth(t->planes[i], &model->mesh.faces[i], &t->view);
         for (int k = 0; k < 3; k++) t->planes[i][k] *= axes->scale;
     }
-    t->in_solid = model_rays_inside(model, t->view.center, ON_SURFACE * model_rays_size(model));
+    t->in_solid = model_rays_enclose(model, t->view.center);
     if (!t->in_solid) model_rays_view(t->faces, model, &t->view);
     return ST_OK;
 }

@@ -4,7 +4,6 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "stages/plan_tour/tour_clearance.h"
 #include "stages/plan_tour/tour_graph.h"
 #include "stages/plan_tour/tour_stops.h"
 #include "tests/fuzz/fuzz.h"

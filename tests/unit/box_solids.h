@@ -5,6 +5,7 @@
 #include "tests/unit/scratch.h"
 
 #include "common/capture/camera_set.h"
+#include "common/light/model_rays.h"
 #include "common/model/solid_mesh.h"
 
 enum { MAX_BOXES = 16 };
@@ -54,6 +55,15 @@ static inline struct solid_mesh make_boxes(const struct box *boxes, int count)
     }
     assert_ok(solid_mesh_make(&mesh, vertices, 8 * count, polygons, 6 * count, NULL, &err), err);
     return mesh;
+}
+
+/* The caller releases it. */
+static inline struct model_rays make_rays(const struct box *boxes, int count)
+{
+    struct model_rays m = {.mesh = make_boxes(boxes, count)};
+    struct err err = ERR_INIT;
+    assert_ok(model_rays_build(&m, MODEL_WITH_GLASS, &err), err);
+    return m;
 }
 
 /* A room of 4 x 4 x 4 about the origin, with walls 1 thick. */

@@ -5,12 +5,12 @@
 
 #include "stages/build_model/unite.h"
 #include "tests/unit/build_model/scripted.h"
+#include "tests/unit/build_model/unions.h"
 
 struct made { /* an edit of a script, with its rules */
     struct plan base_plan, plan;
     struct solid_list solids[2];
     struct solid_mesh base, edited;
-    struct plan_places before;
     struct texture_map map;
 };
 
@@ -22,17 +22,15 @@ static void make(struct made *m, const char *text, const char *edit)
     snprintf(whole, sizeof whole, "remodel-script 1\n%s", edit);
     build(&m->base_plan, &m->solids[0], text, NULL);
     build(&m->plan, &m->solids[1], text, whole);
-    assert_ok(plan_places_keep(&m->before, &m->base_plan, &err), err);
     assert_ok(solids_unite(&m->base, &m->solids[0], NULL, &err), err);
     assert_ok(solids_unite(&m->edited, &m->solids[1], NULL, &err), err);
     assert_ok(solid_mesh_carry_ids(&m->edited, &m->base, &err), err);
-    assert_ok(texture_rules_make(&m->map, &m->edited, &m->base, &m->before, &m->plan, &err), err);
+    assert_ok(texture_rules_make(&m->map, &m->edited, &m->base, &m->plan, &err), err);
 }
 
 static void release(struct made *m)
 {
     texture_map_release(&m->map);
-    plan_places_release(&m->before);
     solid_mesh_release(&m->base);
     solid_mesh_release(&m->edited);
     drop(&m->base_plan, &m->solids[0]);
@@ -343,6 +341,65 @@ static void a_stretched_pane_shows_its_whole_picture(void **state)
     fail_msg("there is no pane");
 }
 
+/* The partition between the rooms makes two faces of the long wall. */
+static void a_face_in_two_parts_is_stretched_and_covered_as_one(void **state)
+{
+    struct made m;
+    int from;
+    (void)state;
+    make(&m, TWO,
+         "texture north stretch\ncopy texture wall/west/in from 1 1 to 2 2 to wall/south/in\nmove east by 0.5\n");
+    assert_true(faces_called(&m.edited, "wall/north/in") == 2 && faces_called(&m.edited, "wall/south/in") == 2);
+    /* the wall was from x 0 to 4, and is now from 0 to 4.5 */
+    for (int i = 1; i < 9; i++) {
+        const struct vec3 p = shown_at(&m, "wall/north/in", vec3_make(0.5 * i, 3, 1), &from);
+        assert_true(vec3_length(vec3_sub(p, vec3_make(0.5 * i * 4 / 4.5, 3, 1))) < 1e-5);
+        shown_at(&m, "wall/south/in", vec3_make(0.5 * i - 0.1, 0, 1.1), &from);
+        assert_string_equal(m.base.names[from - 1].name, "wall/west/in");
+    }
+    release(&m);
+}
+
+/* The gable's planes rise by 1 over 1.5, from y 0 and from y 3. */
+static void a_patch_of_a_sloping_ceiling_keeps_its_scale(void **state)
+{
+    struct made m;
+    int from;
+    (void)state;
+    make(&m, ROOM "gable hall from south 2.5 to north 2.5 ridge 3.5\n",
+         "copy texture ceiling/hall from 1 2 to 2 2.75 to wall/west/in from 0.5 0 to 2.5 1\n");
+    /* the patch is 0.75 wide in plan, and sqrt(1 + 4 / 9) times as wide along the slope */
+    const struct vec3 a = shown_at(&m, "wall/west/in", vec3_make(0, 1.5 - 1e-9, 0.1), &from);
+    const struct vec3 b = shown_at(&m, "wall/west/in", vec3_make(0, 1.5 - 1e-9, 0.6), &from);
+    assert_string_equal(m.base.names[from - 1].name, "ceiling/hall");
+    assert_true(fabs(vec3_length(vec3_sub(a, b)) - 0.5) < 1e-9);
+    for (int i = 0; i < 40; i++) {
+        const struct vec3 at = vec3_make(0, 0.5 + 0.05 * i + 0.02, 0.4);
+        const struct vec3 p = shown_at(&m, "wall/west/in", at, &from);
+        assert_true(p.x >= 1 && p.x <= 2 && p.y >= 2 && p.y <= 2.75);
+        assert_true(fabs(p.z - (2.5 + (3 - p.y) * 2 / 3)) < 1e-9); /* in the plane above the patch */
+    }
+    release(&m);
+}
+
+static void a_patch_lies_where_the_unedited_model_has_it(void **state)
+{
+    struct made m;
+    int from;
+    (void)state;
+    /* the patch is 0.5 from the north wall's left end, x 0; its left neighbour then moves */
+    make(&m, TWO, "move west by 0.5\ncopy texture wall/north/in at left 0.5 width 1 from 1 to 2 to wall/east/in\n");
+    const struct vec3 p = shown_at(&m, "wall/east/in", vec3_make(4, 3 - 0.25, 0.25), &from);
+    assert_string_equal(m.base.names[from - 1].name, "wall/north/in");
+    assert_true(vec3_length(vec3_sub(p, vec3_make(0.75, 3, 1.25))) < 1e-9);
+    release(&m);
+    /* also of a wall that is gone */
+    make(&m, TWO, "remove middle\ncopy texture wall/middle/in from 1 1 to 2 2 to wall/east/in\n");
+    shown_at(&m, "wall/east/in", vec3_make(4, 1, 1), &from);
+    assert_string_equal(m.base.names[from - 1].name, "wall/middle/in");
+    release(&m);
+}
+
 static void rooms_are_cleared_but_for_what_is_kept(void **state)
 {
     struct made m;
@@ -395,11 +452,10 @@ static void faces_that_are_not_there_are_named(void **state)
         snprintf(whole, sizeof whole, "remodel-script 1\n%s", cases[i].edit);
         build(&m.base_plan, &m.solids[0], ROOM, NULL);
         build(&m.plan, &m.solids[1], ROOM, whole);
-        assert_ok(plan_places_keep(&m.before, &m.base_plan, &err), err);
         assert_ok(solids_unite(&m.base, &m.solids[0], NULL, &err), err);
         assert_ok(solids_unite(&m.edited, &m.solids[1], NULL, &err), err);
         assert_ok(solid_mesh_carry_ids(&m.edited, &m.base, &err), err);
-        assert_int_not_equal(texture_rules_make(&m.map, &m.edited, &m.base, &m.before, &m.plan, &err), ST_OK);
+        assert_int_not_equal(texture_rules_make(&m.map, &m.edited, &m.base, &m.plan, &err), ST_OK);
         assert_err(err, ST_DATA, cases[i].words);
         release(&m);
     }
@@ -420,7 +476,15 @@ static void statements_without_meaning_are_refused(void **state)
         {"passage p on west from 1 0 to 1.5 2\nclear before p by 0\n", "a distance of 0 from the wall"},
         {"keep from 1 1 to 2 2 foot 2 top 1\n", "a top above the foot"},
         {"copy texture box/b/top from 0 0 to 1 1 to wall/west/in\n", "a place on box/b/top cannot be given"},
+        {"copy texture wall/west/in from 1 1 to 2 2 to wall/east/start from 0 0 to 1 1\n",
+         "a place on wall/east/start cannot be given"},
+        {"copy texture floor/hall/bottom from 0 0 to 1 1 to wall/west/in\n", "a place on floor/hall/bottom cannot"},
+        {"wall new parallel to west by 1 between south north\n"
+         "copy texture wall/new/in from 0 0 to 1 1 to wall/west/in\n",
+         "edit.txt:3: new is not in the unedited model, whose texture is copied."},
+        {"copy texture wall/wst/in from 0 0 to 1 1 to wall/west/in\n", "did you mean west?"},
         {"remove west\nbase other\n", "as the first statement"},
+        {"base none\n", "edit.txt:2: found \"none\", wanted the name of another edit"},
         {"set colour 1 1\n", "a share of blue light"},
         {"set colour 0.5 0.5 0.5\nset colour 0.5 0.5 0.5\n", "changes nothing"},
     };
@@ -429,6 +493,22 @@ static void statements_without_meaning_are_refused(void **state)
         char whole[1024];
         snprintf(whole, sizeof whole, "remodel-script 1\n%s", cases[i].edit);
         refused(ROOM, whole, cases[i].words);
+    }
+}
+
+static void the_unedited_model_has_no_statements_about_textures(void **state)
+{
+    static const char *const statements[] = {"set colour 1 1 1",
+                                             "texture west stretch",
+                                             "colour wall/west/in 0 0 0",
+                                             "copy texture wall/west/in from 1 1 to 2 2 to wall/east/in",
+                                             "clear all",
+                                             "keep from 1 1 to 2 2"};
+    (void)state;
+    for (size_t i = 0; i < sizeof statements / sizeof *statements; i++) {
+        char whole[1024];
+        snprintf(whole, sizeof whole, "%s%s\n", ROOM, statements[i]);
+        refused(whole, NULL, "is for edits: the unedited model shows the photographs");
     }
 }
 
@@ -450,10 +530,14 @@ int main(void)
         cmocka_unit_test(a_copied_patch_keeps_its_scale_and_is_repeated),
         cmocka_unit_test(the_last_statement_about_a_face_counts),
         cmocka_unit_test(a_stretched_pane_shows_its_whole_picture),
+        cmocka_unit_test(a_face_in_two_parts_is_stretched_and_covered_as_one),
+        cmocka_unit_test(a_patch_of_a_sloping_ceiling_keeps_its_scale),
+        cmocka_unit_test(a_patch_lies_where_the_unedited_model_has_it),
         cmocka_unit_test(rooms_are_cleared_but_for_what_is_kept),
         cmocka_unit_test(the_space_before_an_opening_is_cleared_on_both_sides),
         cmocka_unit_test(faces_that_are_not_there_are_named),
         cmocka_unit_test(statements_without_meaning_are_refused),
+        cmocka_unit_test(the_unedited_model_has_no_statements_about_textures),
     };
     return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
 }

@@ -22,8 +22,8 @@ static void every_frame_keeps_the_clearance(void **state)
     assert_true(w.path.frame_count > 60);
     for (int f = 0; f < w.path.frame_count; f++) {
         const struct vec3 at = w.path.frames[f].camera.center;
-        assert_true(tour_way_is_free(&w.rays, at, at, 0.199999));
-        if (f) assert_true(tour_way_is_free(&w.rays, w.path.frames[f - 1].camera.center, at, 0.199999));
+        assert_true(model_rays_way_is_free(&w.rays, at, at, 0.199999));
+        if (f) assert_true(model_rays_way_is_free(&w.rays, w.path.frames[f - 1].camera.center, at, 0.199999));
     }
     walk_release(&w);
 }

@@ -1,53 +1,5 @@
-/* The graph of a tour: distances from surfaces, weights, which ways are open, shortest ways. */
+/* The graph of a tour: weights, which ways are open, shortest ways. */
 #include "tests/unit/plan_tour/walk.h"
-
-static double next_random(uint32_t *state)
-{
-    *state = *state * 1664525u + 1013904223u;
-    return (double)(*state >> 8) / 16777216.0;
-}
-
-static void distances_of_a_segment_from_a_triangle_are_exact(void **state)
-{
-    (void)state;
-    const struct vec3 c[3] = {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}};
-    const struct vec3 over = {0.5, 0.5, 1}, under = {0.5, 0.5, -1}, beside = {-3, 0.5, 0}, high = {0.7, 0.4, 3};
-    assert_float_equal(segment_triangle_distance(over, over, c), 1, 1e-12);
-    assert_float_equal(segment_triangle_distance(over, high, c), 1, 1e-12);
-    assert_float_equal(segment_triangle_distance(over, under, c), 0, 0);
-    assert_float_equal(segment_triangle_distance(beside, beside, c), 3, 1e-12);
-    /* past an edge, above the plane: parallel to the edge, and across its line */
-    assert_float_equal(segment_triangle_distance(vec3_make(-1, -3, 4), vec3_make(5, -3, 4), c), 5, 1e-12);
-    assert_float_equal(segment_triangle_distance(vec3_make(1, -3, -9), vec3_make(1, -3, 9), c), 3, 1e-12);
-    /* beyond the corner (2, 0) */
-    assert_float_equal(segment_triangle_distance(vec3_make(5, -4, 0), vec3_make(9, -4, 0), c), 5, 1e-12);
-}
-
-static void distances_agree_with_points_all_over_both(void **state)
-{
-    (void)state;
-    enum { STEPS = 60 };
-    uint32_t seed = 20;
-    for (int trial = 0; trial < 40; trial++) {
-        struct vec3 p[5];
-        double least = INFINITY;
-        for (int i = 0; i < 5; i++) {
-            const double x = next_random(&seed), y = next_random(&seed);
-            p[i] = vec3_make(2 * x, 2 * y, 2 * next_random(&seed));
-        }
-        for (int s = 0; s <= STEPS; s++)
-            for (int u = 0; u <= STEPS; u++)
-                for (int v = 0; u + v <= STEPS; v++) {
-                    const struct vec3 on = vec3_add(p[0], vec3_scale(vec3_sub(p[1], p[0]), (double)s / STEPS));
-                    const struct vec3 at = vec3_add(vec3_scale(vec3_sub(p[3], p[2]), (double)u / STEPS),
-                                                    vec3_scale(vec3_sub(p[4], p[2]), (double)v / STEPS));
-                    least = fmin(least, vec3_length(vec3_sub(on, vec3_add(p[2], at))));
-                }
-        const double d = segment_triangle_distance(p[0], p[1], p + 2);
-        assert_true(d <= least + 1e-12);
-        assert_true(d > least - 0.12); /* the points are up to 0.06 apart on the segment and on the triangle */
-    }
-}
 
 static void weights_are_finite_for_coincident_viewpoints(void **state)
 {
@@ -82,10 +34,10 @@ static void a_way_keeps_the_clearance_all_along(void **state)
     const struct place places[] = {{"p1", a, 0}, {"p2", b, 0}};
     struct walk w;
     walk_make(&w, boxes, 3, places, 2);
-    assert_true(tour_way_is_free(&w.rays, a, b, 0.2999));
-    assert_false(tour_way_is_free(&w.rays, a, b, 0.3001));
-    assert_true(tour_way_is_free(&w.rays, a, a, 0.9999)); /* from the wall x = -3 */
-    assert_false(tour_way_is_free(&w.rays, a, a, 1.0001));
+    assert_true(model_rays_way_is_free(&w.rays, a, b, 0.2999));
+    assert_false(model_rays_way_is_free(&w.rays, a, b, 0.3001));
+    assert_true(model_rays_way_is_free(&w.rays, a, a, 0.9999)); /* from the wall x = -3 */
+    assert_false(model_rays_way_is_free(&w.rays, a, a, 1.0001));
     walk_release(&w);
 }
 
@@ -160,8 +112,6 @@ static void the_shortest_way_goes_through_the_gap(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(distances_of_a_segment_from_a_triangle_are_exact),
-        cmocka_unit_test(distances_agree_with_points_all_over_both),
         cmocka_unit_test(weights_are_finite_for_coincident_viewpoints),
         cmocka_unit_test(no_way_leads_through_a_wall_however_thin),
         cmocka_unit_test(a_way_keeps_the_clearance_all_along),

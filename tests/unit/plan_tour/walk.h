@@ -6,7 +6,7 @@
 
 #include <math.h>
 
-#include "stages/plan_tour/tour_clearance.h"
+#include "common/light/model_clearance.h"
 #include "stages/plan_tour/tour_frames.h"
 #include "stages/plan_tour/tour_stops.h"
 

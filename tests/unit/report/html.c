@@ -50,6 +50,18 @@ static void formatted_text_is_escaped(void **state)
     free(text);
 }
 
+static void bytes_of_an_address_are_encoded(void **state)
+{
+    char *text = NULL;
+    size_t length;
+    FILE *to = open_memstream(&text, &length);
+    (void)state;
+    html_address(to, "../a-b_c.~@1/50% \"<\xc3\xa9>?#&'");
+    fclose(to);
+    assert_string_equal(text, "../a-b_c.~@1/50%25%20%22%3C%C3%A9%3E%3F%23%26%27");
+    free(text);
+}
+
 static void base64_matches_the_rfc(void **state)
 {
     static const char *const PAIRS[][2] = {{"", ""},
@@ -102,11 +114,9 @@ static void a_file_is_encoded_like_its_bytes(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(markup_is_escaped),
-        cmocka_unit_test(utf8_is_kept_and_other_bytes_are_replaced),
-        cmocka_unit_test(formatted_text_is_escaped),
-        cmocka_unit_test(base64_matches_the_rfc),
-        cmocka_unit_test(a_file_is_encoded_like_its_bytes),
+        cmocka_unit_test(markup_is_escaped),         cmocka_unit_test(utf8_is_kept_and_other_bytes_are_replaced),
+        cmocka_unit_test(formatted_text_is_escaped), cmocka_unit_test(bytes_of_an_address_are_encoded),
+        cmocka_unit_test(base64_matches_the_rfc),    cmocka_unit_test(a_file_is_encoded_like_its_bytes),
     };
     return cmocka_run_group_tests_name("html", tests, scratch_make, scratch_remove);
 }

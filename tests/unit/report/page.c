@@ -38,6 +38,21 @@ static void missing_products_are_listed(void **state)
     free(page);
 }
 
+static void the_page_of_remodelled_rooms_is_linked_if_there_is_one(void **state)
+{
+    static const char link[] = "<a href=\"remodel/index.html\">Remodelled rooms</a>";
+    struct err err = ERR_INIT;
+    char *page = page_of("scene", NULL);
+    (void)state;
+    assert_null(strstr(page, link));
+    free(page);
+    assert_ok(make_folders(scratch_path("remodel"), &err), err);
+    scratch_write("remodel/index.html", "");
+    page = page_of("scene", NULL);
+    assert_non_null(strstr(page, link));
+    free(page);
+}
+
 static void a_missing_scene_is_an_error(void **state)
 {
     const struct contents_sources from = {scratch_path("no-such-scene"), scratch, scratch, "rectify", NULL};
@@ -159,6 +174,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(missing_products_are_listed, scratch_make, scratch_remove),
+        cmocka_unit_test_setup_teardown(the_page_of_remodelled_rooms_is_linked_if_there_is_one, scratch_make,
+                                        scratch_remove),
         cmocka_unit_test_setup_teardown(a_missing_scene_is_an_error, scratch_make, scratch_remove),
         cmocka_unit_test_setup_teardown(photographs_are_shown_and_unlisted_ones_named, scratch_make, scratch_remove),
         cmocka_unit_test_setup_teardown(forms_of_lens_show_the_chosen_one_and_those_refused, scratch_make,

@@ -6,14 +6,6 @@
 
 #include "stages/trace_ids/view_trace.h"
 
-static inline struct model_rays make_rays(const struct box *boxes, int count)
-{
-    struct model_rays m = {.mesh = make_boxes(boxes, count)};
-    struct err err = ERR_INIT;
-    assert_ok(model_rays_build(&m, MODEL_WITH_GLASS, &err), err);
-    return m;
-}
-
 static const struct model_axes same_frame = {.rotation = {1, 0, 0, 0}, .scale = 1};
 
 struct seen {

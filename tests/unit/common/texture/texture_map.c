@@ -84,6 +84,12 @@ static void what_is_wrong_is_named_with_its_line(void **state)
         {HEAD FACE "place 3 1 0 0\n", "a.txt:4"},
         {HEAD FACE "colour 0 0 1.5 lit\n", "a share of light, from 0 to 1"},
         {HEAD FACE "colour 0 0 1 lit 0\n", "the id of a face"},
+        {HEAD FACE "colour 0 0 1 lit 3.0\n", "found \"3.0\", wanted the id of a face, or \"within\""},
+        {HEAD FACE "colour 0 0 1 lit 0x3\n", "found \"0x3\""},
+        {HEAD FACE "colour 0 0 1 lit 3 \" 4\"\n", "found \" 4\""},
+        {HEAD FACE "colour 0 0 1 lit 3000000000\n", "found \"3000000000\""},
+        {HEAD FACE "colour 0 0 1 lit 99999999999999999999\n", "the id of a face"},
+        {HEAD FACE "new 100001\n", "a.txt:4"},
         {HEAD FACE "outdoors indeed\n", "a.txt:4"},
         {HEAD FACE "new 2\ntriangle 0 0 0 1 0 0 0 1 0\n", "triangle"},
         {HEAD "face 3 0 0 2 0 floor/hall\n", "a normal of length 1"},
@@ -104,6 +110,45 @@ static void what_is_wrong_is_named_with_its_line(void **state)
     }
 }
 
+static void refused_to_write(const struct texture_map *map, const char *words)
+{
+    const char *path = scratch_path("refused.txt");
+    struct err err = ERR_INIT;
+    assert_int_equal(texture_map_write(map, path, NULL, &err), ST_DATA);
+    assert_err(err, ST_DATA, words);
+    assert_int_not_equal(access(path, F_OK), 0);
+}
+
+static void what_the_reader_refuses_is_not_written(void **state)
+{
+    enum { MOST = 100000 };
+    static struct vec3 added[MOST + 1][3];
+    static double corners[MOST + 1][2];
+    char face_name[] = "wall/a/in", zone_name[] = "hall", base[] = "none";
+    struct texture_rule rule = {.kind = TEXTURE_OUTDOORS};
+    struct texture_face face = {
+        .id = 3, .name = face_name, .normal = {0, 0, 1}, .rules = &rule, .rule_count = 1, .added = added};
+    struct texture_zone zone = {.name = zone_name, .high = 1, .corners = corners};
+    struct texture_map map = {.faces = &face, .face_count = 1, .zones = &zone, .zone_count = 1}, read;
+    struct err err = ERR_INIT;
+    (void)state;
+    zone.corner_count = face.added_count = MOST; /* the most that can be read */
+    assert_ok(texture_map_write(&map, scratch_path("most.txt"), NULL, &err), err);
+    assert_ok(texture_map_read(&read, scratch_path("most.txt"), &err), err);
+    assert_true(read.faces[0].added_count == MOST && read.zones[0].corner_count == MOST);
+    texture_map_release(&read);
+    face.added_count = MOST + 1;
+    refused_to_write(&map, "refused.txt: the face wall/a/in has 100001 triangles of new area, wanted at most 100000");
+    face.added_count = 0;
+    zone.corner_count = MOST + 1;
+    refused_to_write(&map, "the footprint of hall has 100001 corners, wanted 3 to 100000");
+    zone.corner_count = 2;
+    refused_to_write(&map, "the footprint of hall has 2 corners");
+    zone.corner_count = 3;
+    map.base = base;
+    refused_to_write(&map, "the edit stands on an edit named \"none\"");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -111,6 +156,7 @@ int main(void)
         cmocka_unit_test(a_face_is_found_by_its_plane),
         cmocka_unit_test(limits_hold_points_in_either_direction),
         cmocka_unit_test(what_is_wrong_is_named_with_its_line),
+        cmocka_unit_test(what_the_reader_refuses_is_not_written),
     };
     return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
 }

@@ -1,12 +1,18 @@
-/* tour_clearance.c - how far a straight way is from a model's surfaces.
+/* model_clearance.c - how far points and straight ways are from the surfaces of a solid model.
  *
  * The distance between a segment and a triangle that do not meet is between an end of the segment and the triangle, or
  * between the segment and an edge of the triangle. All three kinds are computed exactly, so no thin wall or pane lies
  * between points that were looked at. A segment that keeps a positive distance from all surfaces is inside a solid as a
- * whole or not at all, so that one of its points decides. */
-#include "stages/plan_tour/tour_clearance.h"
+ * whole or not at all, so that one of its points decides.
+ *
+ * A point is inside closed surfaces where the solid angles under which it sees their triangles add up to 4 pi (the
+ * winding number is 1), and outside where they cancel. A triangle's solid angle is that of [vanOosterom 1983]. On a
+ * surface the sum is not defined, so the distance is looked at first. */
+#include "common/light/model_clearance.h"
 
 #include <math.h>
+
+#define ON_SURFACE 1e-6 /* of the model's size */
 
 static double clamp_share(double x) { return fmin(1, fmax(0, x)); }
 
@@ -56,15 +62,47 @@ static bool boxes_are_apart(double a, double b, double c0, double c1, double c2,
     return fmin(a, b) - margin > fmax(c0, fmax(c1, c2)) || fmax(a, b) + margin < fmin(c0, fmin(c1, c2));
 }
 
-bool tour_way_is_free(const struct model_rays *model, struct vec3 from, struct vec3 to, double clearance)
+/* Whether a segment is nearer than `margin` to a surface. */
+static bool is_near(const struct model_rays *m, struct vec3 from, struct vec3 to, double margin)
 {
-    for (int i = 0; i < model->rays.triangle_count; i++) {
-        const struct vec3 *c = model->rays.triangles[i].corner;
-        if (boxes_are_apart(from.x, to.x, c[0].x, c[1].x, c[2].x, clearance) ||
-            boxes_are_apart(from.y, to.y, c[0].y, c[1].y, c[2].y, clearance) ||
-            boxes_are_apart(from.z, to.z, c[0].z, c[1].z, c[2].z, clearance))
+    for (int i = 0; i < m->rays.triangle_count; i++) {
+        const struct vec3 *c = m->rays.triangles[i].corner;
+        if (boxes_are_apart(from.x, to.x, c[0].x, c[1].x, c[2].x, margin) ||
+            boxes_are_apart(from.y, to.y, c[0].y, c[1].y, c[2].y, margin) ||
+            boxes_are_apart(from.z, to.z, c[0].z, c[1].z, c[2].z, margin))
             continue;
-        if (segment_triangle_distance(from, to, c) < clearance) return false;
+        if (segment_triangle_distance(from, to, c) < margin) return true;
     }
-    return !model_rays_inside(model, from, 0);
+    return false;
+}
+
+/* The solid angle of a triangle from p, positive if its normal points away from p. */
+static double solid_angle(const struct vec3 corner[3], struct vec3 p)
+{
+    const struct vec3 a = vec3_sub(corner[0], p), b = vec3_sub(corner[1], p), c = vec3_sub(corner[2], p);
+    const double la = vec3_length(a), lb = vec3_length(b), lc = vec3_length(c);
+    const double triple = vec3_dot(a, vec3_cross(b, c));
+    return 2 * atan2(triple, la * lb * lc + vec3_dot(a, b) * lc + vec3_dot(b, c) * la + vec3_dot(c, a) * lb);
+}
+
+static bool winds_around(const struct model_rays *m, struct vec3 p)
+{
+    double sum = 0;
+    for (int i = 0; i < m->rays.triangle_count; i++) sum += solid_angle(m->rays.triangles[i].corner, p);
+    return sum > 2 * M_PI;
+}
+
+bool model_rays_inside(const struct model_rays *m, struct vec3 p, double margin)
+{
+    return is_near(m, p, p, margin) || winds_around(m, p);
+}
+
+bool model_rays_enclose(const struct model_rays *m, struct vec3 p)
+{
+    return model_rays_inside(m, p, ON_SURFACE * model_rays_size(m));
+}
+
+bool model_rays_way_is_free(const struct model_rays *m, struct vec3 from, struct vec3 to, double margin)
+{
+    return !is_near(m, from, to, margin) && !winds_around(m, from);
 }

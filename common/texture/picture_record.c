@@ -1,0 +1,82 @@
+/* picture_record.c - reads and writes VIEW.txt of a rendered picture; see picture_record.h. */
+#include "common/texture/picture_record.h"
+
+#include "common/base/outfile.h"
+#include "common/base/textfile.h"
+
+#define HEADER "remodel-picture"
+
+enum { MAX_SIZE = 1 << 20 };
+
+enum status picture_record_write(const struct picture_record *record, const char *path, const struct provenance *prov,
+                                 struct err *err)
+{
+    struct outfile out = {0};
+    enum status st = outfile_open(&out, path, err);
+    if (st) return st;
+    fputs(HEADER " 1\n", out.fp);
+    if (prov) provenance_print(prov, out.fp);
+    fprintf(out.fp, "size %d %d\nexposure %.9g\nchanged %.6g\n", record->width, record->height, record->exposure,
+            record->changed);
+    for (int k = 0; k < MADE_COUNT; k++)
+        fprintf(out.fp, "made %s %.6g\n", picture_made_kind((enum picture_made)k)->word, record->shares[k]);
+    st = outfile_commit(&out, err);
+    outfile_discard(&out);
+    return st;
+}
+
+static enum status read_share(struct textfile *t, double *share, struct err *err)
+{
+    static const char wanted[] = "a share, from 0 to 100";
+    if (textfile_double(t, wanted, share, err)) return err->status;
+    if (!(*share >= 0 && *share <= 100)) return textfile_wrong_number(t, *share, wanted, err);
+    return textfile_end(t, err);
+}
+
+/* seen: a bit for each kind that was read before. */
+static enum status read_made(struct picture_record *record, unsigned *seen, struct textfile *t, struct err *err)
+{
+    char *word;
+    if (textfile_word(t, "what pixels come from", &word, err)) return err->status;
+    const int kind = picture_made_find(word);
+    if (kind < 0) return textfile_error(t, err, word, "a kind of pixel, such as photo");
+    if (*seen & 1u << kind) return textfile_error(t, err, word, "each kind once");
+    *seen |= 1u << kind;
+    return read_share(t, &record->shares[kind], err);
+}
+
+static enum status read_head(struct picture_record *record, struct textfile *t, struct err *err)
+{
+    int64_t version, size[2] = {0, 0};
+    enum status st = textfile_expect_line(t, HEADER, err);
+    if (!st) st = textfile_int(t, "version", 1, 1, &version, err);
+    if (!st) st = textfile_end(t, err);
+    if (!st) st = textfile_expect_line(t, "size", err);
+    if (!st) st = textfile_int(t, "a width", 1, MAX_SIZE, &size[0], err);
+    if (!st) st = textfile_int(t, "a height", 1, MAX_SIZE, &size[1], err);
+    if (!st) st = textfile_end(t, err);
+    record->width = (int)size[0];
+    record->height = (int)size[1];
+    if (!st) st = textfile_expect_line(t, "exposure", err);
+    if (!st) st = textfile_double(t, "an exposure", &record->exposure, err);
+    if (!st && !(record->exposure > 0)) st = textfile_wrong_number(t, record->exposure, "an exposure above 0", err);
+    if (!st) st = textfile_end(t, err);
+    if (!st) st = textfile_expect_line(t, "changed", err);
+    return st ? st : read_share(t, &record->changed, err);
+}
+
+enum status picture_record_read(struct picture_record *record, const char *path, struct err *err)
+{
+    struct textfile t = {0};
+    unsigned seen = 0;
+    *record = (struct picture_record){0};
+    if (textfile_open(&t, path, err)) return err->status;
+    enum status st = read_head(record, &t, err);
+    while (!st && textfile_next(&t)) {
+        st = textfile_expect(&t, "made", err);
+        if (!st) st = read_made(record, &seen, &t, err);
+    }
+    if (st) *record = (struct picture_record){0};
+    textfile_release(&t);
+    return st;
+}

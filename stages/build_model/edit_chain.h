@@ -1,0 +1,19 @@
+/* edit_chain.h - applies script files to a plan: the model's, and edits, which may stand on other edits. */
+#ifndef REMODEL_BUILD_MODEL_EDIT_CHAIN_H
+#define REMODEL_BUILD_MODEL_EDIT_CHAIN_H
+
+#include "common/base/provenance.h"
+#include "stages/build_model/plan.h"
+
+/* Both add the scripts to prov by their file names. placer: NULL if no views are known. ST_DATA with file and line. */
+
+enum status plan_apply_model(struct plan *plan, const char *path, const struct placer *placer, struct provenance *prov,
+                             struct err *err);
+
+/* Applies an edit after the one that its statement `base` names, in the same folder, and so on. *base: that name, for
+ * the caller to free; NULL: the edit has no such statement. ST_DATA: that edit does not exist, or the edits go in a
+ * circle. */
+enum status plan_apply_edit(struct plan *plan, char **base, const char *path, const struct placer *placer,
+                            struct provenance *prov, struct err *err);
+
+#endif

@@ -1,0 +1,310 @@
+/* remodel.c - the page of remodelled rooms: edits with their pictures, plans, films and exports; what is missing, odd
+ * names, links. */
+#include "stages/report/page_remodel.h"
+
+#include "tests/unit/scratch.h"
+
+#include "common/base/outfile.h"
+#include "common/capture/lens_list.h"
+#include "common/texture/picture_record.h"
+
+enum { SIDE = 8 };
+
+static const struct provenance prov = {.stage = "test", .version = "0"};
+
+/* Writes a file in the scratch folder, whose folders are made. */
+static void put(const char *name, const char *text)
+{
+    char folder[PATH_MAX];
+    struct err err = ERR_INIT;
+    snprintf(folder, sizeof folder, "%s", scratch_path(name));
+    *strrchr(folder, '/') = '\0';
+    assert_ok(make_folders(folder, &err), err);
+    scratch_write(name, text);
+}
+
+static const char *in_edit(const char *edit, const char *file, const char *ending)
+{
+    static char name[512];
+    snprintf(name, sizeof name, "remodel/%s/%s%s", edit, file, ending);
+    return name;
+}
+
+static void put_view(const char *view)
+{
+    struct exr_image im = {0};
+    struct err err = ERR_INIT;
+    char name[64];
+    assert_ok(exr_image_init(&im, SIDE, SIDE, &err), err);
+    for (int k = 0; k < 3; k++) {
+        assert_ok(exr_add_plane(&im, (const char *const[]){"R", "G", "B"}[k], EXR_HALF, NULL, &err), err);
+        for (int i = 0; i < SIDE * SIDE; i++) im.planes[k].f[i] = 0.25F;
+    }
+    snprintf(name, sizeof name, "views/%s.exr", view);
+    assert_ok(exr_write(&im, scratch_path(name), &prov, &err), err);
+    exr_image_release(&im);
+}
+
+/* Views a, b@0 and b@1 of one photo, c. */
+static void put_views(void)
+{
+    static const char *const views[][2] = {{"a", "a"}, {"b@0", "b"}, {"b@1", "b"}, {"c", "c"}};
+    char text[512] = "remodel-lenses 1\n";
+    for (int i = 0; i < 4; i++)
+        snprintf(text + strlen(text), sizeof text - strlen(text), "%s %s PINHOLE 8 8 8 8 4 4 turn 1 0 0 0\n",
+                 views[i][0], views[i][1]);
+    put("views/lenses.txt", text);
+    for (int i = 0; i < 4; i++) put_view(views[i][0]);
+}
+
+/* The record of a view after an edit, and its pictures if the edit changes it. */
+static void put_sight(const char *edit, const char *view, double changed, double nothing)
+{
+    unsigned char grey[3 * SIDE * SIDE];
+    struct picture_record record = {SIDE, SIDE, 1.5, changed, {0}};
+    struct err err = ERR_INIT;
+    char file[64];
+    record.shares[MADE_NOTHING] = nothing;
+    record.shares[MADE_PHOTO] = 60 - nothing;
+    record.shares[MADE_WARPED] = 30;
+    record.shares[MADE_SYNTHESISED] = 10;
+    memset(grey, 99, sizeof grey);
+    snprintf(file, sizeof file, "pictures/%s", view);
+    put(in_edit(edit, file, ".txt"), "");
+    assert_ok(picture_record_write(&record, scratch_path(in_edit(edit, file, ".txt")), &prov, &err), err);
+    if (changed <= 0) return;
+    assert_ok(jpeg_write(scratch_path(in_edit(edit, file, ".jpg")), grey, SIDE, SIDE, 90, &err), err);
+    assert_ok(png_write(scratch_path(in_edit(edit, file, "-sources.png")), grey, SIDE, SIDE, 3, &err), err);
+}
+
+static void put_edit(const char *edit)
+{
+    put(in_edit(edit, "model", ".txt"), "remodel-model 1\n");
+    put_sight(edit, "a", 10, 0);
+    put_sight(edit, "b@0", 30, 0);
+    put_sight(edit, "b@1", 25, 0);
+    put_sight(edit, "c", 0, 0);
+}
+
+static int empty_scratch(void **state) { return scratch_remove(state) || scratch_make(state); }
+
+static void read_all(struct remodel_contents *c)
+{
+    char scripts[PATH_MAX];
+    struct err err = ERR_INIT;
+    snprintf(scripts, sizeof scripts, "%s", scratch_path("edits"));
+    const struct remodel_sources from = {scratch, scratch_path("photos"), scripts};
+    *c = (struct remodel_contents){0};
+    assert_ok(remodel_contents_read(c, &from, &err), err);
+}
+
+/* The page of the scratch folder; the caller frees it. */
+static char *page_of(const char *scene, const char *back)
+{
+    struct remodel_contents c;
+    struct err err = ERR_INIT;
+    char *text = NULL;
+    size_t size;
+    read_all(&c);
+    FILE *to = open_memstream(&text, &size);
+    assert_ok(remodel_page_write(to, scene, back, &c, &err), err);
+    fclose(to);
+    remodel_contents_release(&c);
+    return text;
+}
+
+static void expect_words(const char *page, const char *words)
+{
+    if (!strstr(page, words)) fail_msg("the page does not say \"%s\"", words);
+}
+
+static int count_words(const char *page, const char *words)
+{
+    int n = 0;
+    for (const char *at = page; (at = strstr(at, words)); at += strlen(words)) n++;
+    return n;
+}
+
+/* ------------------------------------------------------------------------------------------------------------ links */
+
+static void expect_target(const char *page, const char *link, size_t length)
+{
+    char path[512] = "remodel/", id[64];
+    size_t at = strlen(path);
+    if (link[0] == '#') {
+        snprintf(id, sizeof id, " id=\"%.*s\"", (int)length - 1, link + 1);
+        expect_words(page, id);
+        return;
+    }
+    for (size_t i = 0; i < length; i++, at++) {
+        unsigned code;
+        assert_null(strchr(" \"'<>&#?", link[i]));
+        path[at] = link[i];
+        if (link[i] != '%') continue;
+        assert_int_equal(sscanf(link + i + 1, "%2x", &code), 1);
+        path[at] = (char)code;
+        i += 2;
+    }
+    path[at] = '\0';
+    if (access(scratch_path(path), F_OK)) fail_msg("a link leads to %s, which is not there", path);
+}
+
+/* Each link leads to a place on the page, or to a file beside it. Returns how many lead to files. */
+static int expect_links(const char *page)
+{
+    static const char *const begins[] = {" href=\"", " src=\""};
+    int files = 0;
+    for (int k = 0; k < 2; k++)
+        for (const char *at = page; (at = strstr(at, begins[k]));) {
+            at += strlen(begins[k]);
+            const size_t length = strcspn(at, "\"");
+            if (!strncmp(at, "data:", 5)) continue;
+            expect_target(page, at, length);
+            files += *at != '#';
+        }
+    return files;
+}
+
+/* ------------------------------------------------------------------------------------------------------------ tests */
+
+static void the_views_that_an_edit_changes_most_are_shown_one_of_each_photo(void **state)
+{
+    struct remodel_contents c;
+    (void)state;
+    put_views();
+    put_edit("no-wall");
+    put_sight("past-the-border", "a", 60, 90); /* it shows little of what it changes */
+    put_sight("past-the-border", "c", 10, 0);
+    put(in_edit("past-the-border", "model", ".txt"), "");
+    read_all(&c);
+    assert_int_equal(c.edit_count, 2);
+    const struct edit_card *card = &c.edits[0];
+    assert_string_equal(card->name, "no-wall");
+    assert_true(card->views == 4 && card->changed == 3 && card->sight_count == 2);
+    assert_string_equal(card->sights[0].view, "b@0");
+    assert_string_equal(card->sights[0].photo, "b");
+    assert_string_equal(card->sights[1].view, "a");
+    assert_true(card->sights[0].before.width == SIDE && card->sights[0].after.height == SIDE);
+    assert_string_equal(c.edits[1].sights[0].view, "c");
+    remodel_contents_release(&c);
+    remodel_contents_release(&c);
+}
+
+static void the_page_has_pictures_plans_films_and_exports(void **state)
+{
+    (void)state;
+    put_views();
+    put_edit("no-wall");
+    put("edits/no-wall.txt",
+        "remodel-script 1\n# The wall <goes>,\n# and the light comes in.\nremove wall\n# no more\n");
+    put("model/plan.svg", "<svg xmlns=\"http://www.w3.org/2000/svg\"/>");
+    put("model/tour/video.mp4", "film");
+    put(in_edit("no-wall", "plan", ".svg"), "<svg xmlns=\"http://www.w3.org/2000/svg\"/>");
+    put(in_edit("no-wall", "tour/video", ".mp4"), "film");
+    put(in_edit("no-wall", "export/model", ".obj"), "o");
+    put(in_edit("no-wall", "export/model", ".glb"), "g");
+    put(in_edit("no-wall", "export/model", ".ifc"), "i");
+    char *page = page_of("loft", NULL);
+    expect_words(page, "<h1>loft, remodelled</h1>");
+    expect_words(page, "<h2>no wall</h2>");
+    expect_words(page, "<p>The wall &lt;goes&gt;, and the light comes in.</p>");
+    expect_words(page, "Seen from photograph <b>b</b>");
+    expect_words(page, "60 % of this picture is the photograph, 30 % comes from other photographs, 10 % is guessed");
+    assert_int_equal(count_words(page, "<div class=\"ba\">"), 2);
+    assert_int_equal(count_words(page, "data:image/jpeg;base64,"), 6); /* before, after, sources */
+    assert_int_equal(count_words(page, "data:image/svg+xml;base64,"), 2);
+    assert_int_equal(count_words(page, "<video "), 2);
+    assert_int_equal(expect_links(page), 5);
+    assert_null(strstr(page, "There "));
+    free(page);
+}
+
+static void what_was_not_made_is_said_and_not_linked(void **state)
+{
+    (void)state;
+    put_views();
+    char *page = page_of("loft", NULL);
+    expect_words(page, "There are no changes yet");
+    assert_int_equal(expect_links(page), 0);
+    free(page);
+    put(in_edit("bare", "model", ".txt"), "");
+    put(in_edit("removed-long-ago", "plan", ".svg"), ""); /* a folder without a model is none of an edit */
+    page = page_of("loft", NULL);
+    expect_words(page, "<h2>bare</h2>");
+    expect_words(page, "There are no pictures of this change yet: <code>make remodel SCENE=loft</code>");
+    expect_words(page, "There is no plan of the rooms before yet: <code>make model SCENE=loft</code>");
+    expect_words(page, "There is no film of a walk through these rooms yet: <code>make tour SCENE=loft</code>");
+    expect_words(page, "There is no model of it for other programs yet: <code>make exports SCENE=loft</code>");
+    assert_null(strstr(page, "No photograph shows this change"));
+    assert_null(strstr(page, "long ago"));
+    assert_int_equal(expect_links(page), 0);
+    free(page);
+    put_sight("bare", "a", 0, 0);
+    page = page_of("loft", NULL);
+    expect_words(page, "No photograph shows this change.");
+    assert_null(strstr(page, "There are no pictures of this change"));
+    free(page);
+}
+
+static void a_picture_that_cannot_be_read_is_left_out_with_the_reason(void **state)
+{
+    (void)state;
+    put_views();
+    put_edit("no-wall");
+    put(in_edit("no-wall", "pictures/b@0", ".txt"), "remodel-picture 1\nsize 8 8\nexposure nan\n");
+    put(in_edit("no-wall", "pictures/b@1", ".jpg"), "no JPEG");
+    char *page = page_of("loft", NULL);
+    expect_words(page, "b@0.txt:3: found &quot;nan&quot;");
+    expect_words(page, "b@1.jpg");
+    assert_int_equal(count_words(page, "<div class=\"ba\">"), 1);
+    expect_words(page, "Seen from photograph <b>a</b>");
+    free(page);
+    put(in_edit("no-wall", "pictures/a", ".jpg"), "");
+    page = page_of("loft", NULL);
+    expect_words(page, "The pictures of this change cannot be read");
+    expect_links(page);
+    free(page);
+}
+
+static void odd_names_are_escaped_and_their_links_lead_to_the_files(void **state)
+{
+    static const char edit[] = "a&b <c>\"d' #1 50% caf\xc3\xa9?";
+    (void)state;
+    put_views();
+    put_edit(edit);
+    put(in_edit(edit, "tour/video", ".mp4"), "film");
+    put(in_edit(edit, "export/model", ".glb"), "g");
+    char *page = page_of("<i>\"loft\"", NULL);
+    expect_words(page, "<h1>&lt;i&gt;&quot;loft&quot;, remodelled</h1>");
+    expect_words(page, "<h2>a&amp;b &lt;c&gt;&quot;d&#39; #1 50% caf\xc3\xa9?</h2>");
+    expect_words(page, "make model SCENE=&lt;i&gt;&quot;loft&quot;");
+    assert_null(strstr(page, "<c>"));
+    assert_null(strstr(page, "<i>\""));
+    assert_int_equal(expect_links(page), 2);
+    free(page);
+}
+
+static void the_page_links_back_to_that_of_the_scene(void **state)
+{
+    (void)state;
+    put_views();
+    put("remodel/index.html", "");
+    put("index.html", "");
+    char *page = page_of("loft", "../index.html");
+    expect_words(page, "<a href=\"../index.html\">How it was made</a>");
+    assert_int_equal(expect_links(page), 1);
+    free(page);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup(the_views_that_an_edit_changes_most_are_shown_one_of_each_photo, empty_scratch),
+        cmocka_unit_test_setup(the_page_has_pictures_plans_films_and_exports, empty_scratch),
+        cmocka_unit_test_setup(what_was_not_made_is_said_and_not_linked, empty_scratch),
+        cmocka_unit_test_setup(a_picture_that_cannot_be_read_is_left_out_with_the_reason, empty_scratch),
+        cmocka_unit_test_setup(odd_names_are_escaped_and_their_links_lead_to_the_files, empty_scratch),
+        cmocka_unit_test_setup(the_page_links_back_to_that_of_the_scene, empty_scratch),
+    };
+    return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
+}
