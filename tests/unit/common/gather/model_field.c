@@ -1,7 +1,9 @@
 /* The field of light of a textured model: texels, lamps, panes, the outdoors, and what an estimator makes of them. */
 #include <math.h>
 
+#include "common/capture/view_image.h"
 #include "common/gather/model_field.h"
+#include "common/image/exr.h"
 #include "common/math/numbers.h"
 #include "tests/unit/box_solids.h"
 #include "tests/unit/common/light/near.h"
@@ -358,11 +360,57 @@ static void a_pane_lets_the_sky_in_and_is_an_emitter_unless_it_is_listed(void **
     assert_near(f->field.emitters[0].luminance, 0.5, 1e-2);
     assert_near(vec3_length(f->field.emitters[0].x) * vec3_length(f->field.emitters[0].y), 4, 1e-9);
     model_field_release(&b.field);
-    b.files.lights = write_lights("opening big 0 2 2 0 0 1 1 0 0\n");
+    b.files.lights = write_lights("opening big 0 2 2 1 0 0 0 0 1\n");
     f = read_field(&b);
     assert_int_equal(f->field.emitter_count, 1);
     assert_near(f->field.emitters[0].centre.z, 2, 1e-12);
     assert_near(vec3_length(f->field.emitters[0].x), 1, 1e-12);
+    model_field_release(&b.field);
+}
+
+/* A pinhole picture of 7.5, 90 degrees wide, from (0, 1.9, 2) of the model towards +y. */
+static const char *write_reference(bool with_pose)
+{
+    static const char *const names[] = {"R", "G", "B", "clipped", "variance"};
+    static const struct mat3 towards_y = {{{1, 0, 0}, {0, 0, -1}, {0, 1, 0}}};
+    struct view v = {.cam_from_world = towards_y, .center = {0, 1.9, 2}};
+    struct exr_image im = {0};
+    struct exr_plane *plane;
+    struct err err = ERR_INIT;
+    v.translation = vec3_scale(mat3_apply(v.cam_from_world, v.center), -1);
+    assert_ok(exr_image_init(&im, 64, 64, &err), err);
+    for (int k = 0; k < 5; k++) {
+        assert_ok(exr_add_plane(&im, names[k], k == 3 ? EXR_UINT : EXR_FLOAT, &plane, &err), err);
+        for (int i = 0; i < 64 * 64 && k != 3; i++) plane->f[i] = k < 3 ? 7.5f : 1e-6f;
+    }
+    if (with_pose) exr_set_camera(&im, &v);
+    assert_ok(exr_set_attribute(&im, "remodel:lens", "PINHOLE 64 64 32 32 32 32", &err), err);
+    assert_ok(exr_write(&im, scratch_path("sky.exr"), NULL, &err), err);
+    exr_image_release(&im);
+    return scratch;
+}
+
+static void an_opening_shows_its_reference_image_and_the_outdoors_beyond_its_field(void **state)
+{
+    static const struct model_axes axes = {.rotation = {1, 0, 0, 0}, .scale = 1};
+    struct built b = {.files = {.model = write_boxes(open_room, 3), .vita = write_vita(grey, 6, 0)}};
+    struct err err = ERR_INIT;
+    (void)state;
+    b.files.outdoors = write_outdoors(0.5f, 0.5f, 0);
+    b.files.lights = write_lights("opening big 0 2 2 2 0 0 0 0 2 reference sky\nopening plain 9 2 2 0 0 2 2 0 0\n");
+    struct model_field *f = read_field(&b);
+    assert_near(look_one(f, vec3_make(0, 0, 1), up, vec3_make(0, 1, 0.5)).radiance.g, 0.5, 1e-3);
+    assert_ok(model_field_read_references(f, write_reference(true), &axes, NULL, &err), err);
+    const struct light_look inside = look_one(f, vec3_make(0, 0, 1), up, vec3_make(0, 1, 0.5));
+    assert_near(inside.radiance.g, 7.5, 1e-3);
+    assert_int_equal(inside.source, LIGHT_SKY);
+    assert_true(isinf(inside.distance));
+    /* beyond its field of 45 degrees; beside the opening; from outside */
+    assert_near(look_one(f, vec3_make(0, 1.5, 1), up, vec3_make(1.2, 1, 0)).radiance.g, 0.5, 1e-3);
+    assert_near(look_one(f, vec3_make(1.5, 1, 1), up, vec3_make(0.9, 1, 0)).radiance.g, 0.5, 1e-3);
+    assert_near(look_one(f, vec3_make(0, 3, 1), up, vec3_make(0, 1, 0.5)).radiance.g, 0.5, 1e-3);
+    assert_int_equal(model_field_read_references(f, write_reference(false), &axes, NULL, &err), ST_DATA);
+    assert_non_null(strstr(err.text, "has no pose"));
     model_field_release(&b.field);
 }
 
@@ -405,6 +453,7 @@ int main(void)
         cmocka_unit_test(without_outdoors_it_is_dark_outside),
         cmocka_unit_test(a_sun_is_found_with_its_energy_where_columns_wrap_around),
         cmocka_unit_test(a_pane_lets_the_sky_in_and_is_an_emitter_unless_it_is_listed),
+        cmocka_unit_test(an_opening_shows_its_reference_image_and_the_outdoors_beyond_its_field),
         cmocka_unit_test(an_atlas_of_a_view_is_refused),
     };
     return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
