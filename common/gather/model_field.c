@@ -85,7 +85,8 @@ static void look(const void *ctx, const struct vec3 from[RAY_PACKET], struct vec
         if (active >> k & 1) origin[k] = vec3_add(from[k], off);
     const unsigned hit = ray_scene_hit_packet(&f->model.rays, origin, direction, active, hits);
     for (int k = 0; k < RAY_PACKET; k++)
-        if (hit >> k & 1) field_atlas_prefetch(&f->atlas, solid_face_id(&f->model.mesh, (int)hits[k].id), hits[k].point);
+        if (hit >> k & 1)
+            field_atlas_prefetch(&f->atlas, solid_face_id(&f->model.mesh, (int)hits[k].id), hits[k].point);
     for (int k = 0; k < RAY_PACKET; k++) {
         double at;
         if (!(active >> k & 1)) continue;
