@@ -53,7 +53,7 @@ struct model_field {
 };
 
 /* Reads everything and adds the files to prov, which may be NULL. The caller releases the field, also after a failure.
- * ST_DATA: a damaged file, or a VITA of another model. */
+ * ST_DATA: a damaged file, or an atlas that is no VITA. */
 enum status model_field_read(struct model_field *f, const struct model_field_files *files, struct provenance *prov,
                              struct err *err);
 void model_field_release(struct model_field *f);
