@@ -2,7 +2,8 @@
  *
  * `auto` is rays: at 1 % they need a small part of the hemicube's time wherever light is bright in few directions
  * (docs/benchmarks.md, `irradiance`), and their stated error is honest. Rays are repeated with more of them until their
- * stated error is at most the target (mixture.c).
+ * stated error is at most the target (mixture.c). `cache` means rays at single points; pictures are filled by
+ * irradiance_cache.c.
  *
  * A hemicube's resolution is doubled, from COARSEST on, until the error that it states for the luminance is at most the
  * target. Each has four times the rays of the one before, so that all of them together cost a third more than the last
@@ -25,6 +26,11 @@ enum status gather_params_check(const struct gather_params *p, struct err *err)
     if (p->hemicube % 2 == 0) return ST_OK;
     return err_set(err, ST_USAGE, "hemicube = %d is odd, wanted an even number; give %d.", p->hemicube,
                    p->hemicube + 1);
+}
+
+bool gather_params_cache(const struct gather_params *p)
+{
+    return p->target_error > 0 && (!strcmp(p->estimator, "auto") || !strcmp(p->estimator, "cache"));
 }
 
 static bool gather_params_hemicube(const struct gather_params *p) { return !strcmp(p->estimator, "hemicube"); }

@@ -7,8 +7,8 @@
 
 /* Parameters of every stage that gathers light: name, type, default, min, max, unit, help */
 #define GATHER_PARAMS(X)                                                                                      \
-    X(estimator, choice, "auto", 0, 0, "auto|rays|hemicube",                                                  \
-      "how irradiance is computed; auto: the one that is fastest")                                            \
+    X(estimator, choice, "auto", 0, 0, "auto|rays|cache|hemicube",                                            \
+      "how irradiance is computed; auto: rays at single points, the cache over a view")                       \
     X(target_error, double, 0.01, 0, 1, "",                                                                   \
       "relative error of irradiance at which a gather ends; 0: it always spends all that the next two allow") \
     X(hemicube, int, 512, 2, HEMICUBE_MOST, "px", "most pixels in a row of a hemicube; even")                 \
@@ -24,6 +24,9 @@ struct gather_params {
 
 /* ST_USAGE: values that contradict each other. */
 enum status gather_params_check(const struct gather_params *p, struct err *err);
+
+/* Whether pictures are to be gathered by the cache of irradiance; it needs a target above 0. */
+bool gather_params_cache(const struct gather_params *p);
 
 /* Owned by the caller; used by several threads at once. */
 struct gatherer;

@@ -244,16 +244,25 @@ void mixture_gather(struct irradiance *e, struct mixture *m, int rays, uint64_t 
     scale_shares(m);
 }
 
-void mixture_gather_to(struct irradiance *e, struct mixture *m, double target, int least, int most, uint64_t key)
+void mixture_gather_to(struct irradiance *e, struct mixture *m, double target, double beside, int least, int most,
+                       uint64_t key)
 {
     int rays = least < most ? least : most, spent = 0;
     for (int round = 0;; round++) {
         mixture_gather(e, m, rays, key + (uint64_t)round * 0x9e3779b97f4a7c15u, true);
         e->rays = spent += e->rays;
-        const double wanted = target * rgb_luminance(e->value), found = rgb_luminance(e->error);
+        const double wanted = target * (beside + rgb_luminance(e->value)), found = rgb_luminance(e->error);
         const double left = (double)most - spent;
         if (!(found > wanted) || left < 2.0 * rays) break;
         const double growth = wanted > 0 ? pow(found / wanted, 1 / RATE) : INFINITY;
         rays = (int)fmin(rays * clamp(growth, 2, 16), left);
     }
+}
+
+bool mixture_is_light(const struct mixture *lights, struct vec3 direction, enum light_source seen)
+{
+    if (!is_light(seen)) return false;
+    for (int i = 0; i < lights->count; i++)
+        if (strategy_density(&lights->strategies[i], direction) > 0) return true;
+    return false;
 }

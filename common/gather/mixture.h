@@ -35,7 +35,12 @@ void mixture_lobe_init(struct mixture *m, const struct light_field *f, struct ga
 /* Traces at most `rays` rays, or MIXTURE_LEAST. With `learn`, the shares of a next call go by the noise of each strategy.
  * Sets everything of *e. The same key gives the same bits. */
 void mixture_gather(struct irradiance *e, struct mixture *m, int rays, uint64_t key, bool learn);
-/* The same until the standard error of the luminance is at most `target` of it, or `most` rays are spent. */
-void mixture_gather_to(struct irradiance *e, struct mixture *m, double target, int least, int most, uint64_t key);
+/* The same until the standard error of the luminance is at most `target` of it, or `most` rays are spent. The luminance
+ * `beside` is added to the integral's own: what else arrives there. */
+void mixture_gather_to(struct irradiance *e, struct mixture *m, double target, double beside, int least, int most,
+                       uint64_t key);
+
+/* Whether light seen in a direction is part of MIXTURE_LIGHTS. */
+bool mixture_is_light(const struct mixture *lights, struct vec3 direction, enum light_source seen);
 
 #endif

@@ -18,5 +18,5 @@ void ray_irradiance_to(struct irradiance *e, const struct light_field *f, struct
 {
     struct mixture m;
     mixture_init(&m, f, p, MIXTURE_ALL);
-    mixture_gather_to(e, &m, target, FIRST, most, key);
+    mixture_gather_to(e, &m, target, 0, FIRST, most, key);
 }

@@ -73,7 +73,7 @@ enum status gather_view(struct gather_job *j, const char *views, const char *nam
     if (!st) {
         const struct view view = model_from_world_view(&j->axes, &set.views[index]);
         find_points(points, j, &view);
-        st = gather_all(found, points, pixels, j, name, err);
+        st = gather_grid(found, points, view.width, view.height, j, name, err);
         if (!st) st = write_picture(j, &view, points, found, err);
     }
     free(points);

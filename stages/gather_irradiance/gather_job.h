@@ -24,4 +24,9 @@ void gather_job_release(struct gather_job *j);
 enum status gather_all(struct irradiance *results, struct gather_point *points, size_t count,
                        const struct gather_job *j, const char *what, struct err *err);
 
+/* The same for a picture or another grid of width x height points, neighbours of which are mostly close to each other: by
+ * the cache of irradiance, if the estimator is that or `auto`. */
+enum status gather_grid(struct irradiance *results, struct gather_point *points, int width, int height,
+                        const struct gather_job *j, const char *what, struct err *err);
+
 #endif
