@@ -1,0 +1,26 @@
+/* cache_record.h - indirect irradiance at a point with its gradients. */
+#ifndef REMODEL_CACHE_RECORD_H
+#define REMODEL_CACHE_RECORD_H
+
+#include "common/gather/mixture.h"
+
+struct cache_record {
+    struct gather_point point;
+    struct rgb value;             /* indirect irradiance: all light but MIXTURE_LIGHTS */
+    struct vec3 turn[3], move[3]; /* gradients of r, g, b by rotation of the normal and by translation */
+    double error;                 /* standard error of the luminance */
+    double radius;                /* within which light changes little: the harmonic mean distance, or less */
+    double light[LIGHT_SOURCES];  /* luminance by source */
+    double nearest, mean_inverse;
+    int rays;
+};
+
+/* Gathers with at least `least` rays, up to 16 times that, until the standard error is at most `target` of the luminance
+ * with `beside`, the luminance of direct light, added. */
+void cache_record_gather(struct cache_record *r, const struct light_field *f, struct gather_point p, double target,
+                         double beside, int least, uint64_t key);
+
+/* The value at another point nearby; never negative. */
+struct rgb cache_record_at(const struct cache_record *r, struct gather_point p);
+
+#endif

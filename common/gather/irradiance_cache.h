@@ -1,0 +1,33 @@
+/* irradiance_cache.h - irradiance at many points, of which neighbours are close to each other: a picture, or texels. */
+#ifndef REMODEL_IRRADIANCE_CACHE_H
+#define REMODEL_IRRADIANCE_CACHE_H
+
+#include <stdbool.h>
+
+#include "common/base/err.h"
+#include "common/gather/irradiance.h"
+
+struct irradiance_cache_job {
+    const struct light_field *field;
+    const struct gather_point *points; /* width * height; a normal of 0 0 0: none */
+    int width, height;
+    double target; /* relative error */
+    int rays;      /* most, of direct light at a point */
+    uint64_t key;
+    void (*done)(void *ctx, size_t points); /* NULL, or told how many more points are done; by several threads */
+    void *done_ctx;
+};
+
+struct irradiance_cache_stats {
+    size_t records;
+    double record_rays, direct_rays;
+};
+
+/* False: the field has so many emitters that a point does not use them all, and two points may use different ones. */
+bool irradiance_cache_suits(const struct light_field *f);
+
+/* Sets results[i] for the points with a normal; the others get 0. Same bits for any number of threads. ST_NOMEM. */
+enum status irradiance_cache_fill(struct irradiance *results, const struct irradiance_cache_job *j,
+                                  struct irradiance_cache_stats *stats, struct err *err);
+
+#endif

@@ -1,0 +1,57 @@
+/* lights.h - lights.txt: the lamps of a scene, and the openings that let daylight in.
+ *
+ * O/lights/lights.txt, written by fit_lights, holds what scenes/NAME/lights.txt declares with everything resolved: in the
+ * model's frame, scene-linear radiance. */
+#ifndef REMODEL_GATHER_LIGHTS_H
+#define REMODEL_GATHER_LIGHTS_H
+
+#include <stdbool.h>
+
+#include "common/base/provenance.h"
+#include "common/light/colour.h"
+#include "common/math/vec.h"
+
+enum lamp_shape { LAMP_DISK, LAMP_QUAD };
+
+/* A lamp has radiance S cos(t)^exponent towards an angle t <= beta from its normal, and 0 beyond. */
+struct lamp {
+    char *name; /* owned */
+    enum lamp_shape shape;
+    struct vec3 centre, normal; /* unit, towards the room */
+    struct vec3 x, y;           /* half edges of a quad; of a disk, orthogonal half axes of length `radius` */
+    double radius;              /* of a disk */
+    struct rgb radiance;        /* S */
+    double beta, exponent;      /* radians, at most pi / 2 */
+    bool bound;                 /* S is a lower bound: the lamp is saturated where it was measured */
+};
+
+/* An opening through which the sky is seen. Its references are the ids of the lighting reference images that show what
+ * lies behind it, nearest first; none: outdoors.exr alone. */
+struct daylight {
+    char *name;                       /* owned */
+    struct vec3 centre, x, y, normal; /* half edges; the normal points indoors */
+    char **references;                /* owned */
+    int reference_count;
+};
+
+/* {0} is the empty state; everything is owned. */
+struct light_list {
+    struct lamp *lamps;
+    struct daylight *openings;
+    int lamp_count, opening_count;
+};
+
+/* ST_DATA with file and line: a damaged line, a name twice, a normal that is not of unit length, a beta beyond 90 degrees,
+ * a negative radiance. */
+enum status light_list_read(struct light_list *l, const char *path, struct err *err);
+enum status light_list_write(const struct light_list *l, const char *path, const struct provenance *prov,
+                             struct err *err);
+void light_list_release(struct light_list *l);
+
+/* Radiance of a lamp towards a unit direction that points away from it. */
+struct rgb lamp_radiance(const struct lamp *l, struct vec3 direction);
+/* Irradiance from an unhidden lamp at a point with a unit normal, by quadrature to 1e-6 of it (closed forms where there
+ * are some). */
+struct rgb lamp_irradiance(const struct lamp *l, struct vec3 at, struct vec3 normal);
+
+#endif

@@ -1,0 +1,199 @@
+/* The cache of irradiance: gradients against closed forms, error of a picture, the same bits for any number of threads. */
+#include "tests/unit/common/light/near.h"
+
+#include <stdlib.h>
+
+#include "common/base/parallel.h"
+#include "common/gather/cache_record.h"
+#include "common/gather/irradiance_cache.h"
+#include "tests/unit/common/gather/fields.h"
+
+enum { WIDTH = 160, HEIGHT = 120 };
+
+/* A room of 4 x 3 x 2.5 with two boxes in it, a lamp below the ceiling and a window beyond which the sky is bright. */
+static void make_room(struct patch_field *f)
+{
+    static const struct rgb walls[6] = {{.5, .5, .5}, {.9, .3, .2},  {.4, .6, .4},
+                                        {.6, .6, .7}, {.3, .25, .2}, {.8, .8, .8}};
+    static const struct rgb wood[6] = {{.3, .2, .1}, {.2, .2, .1}, {.3, .2, .1},
+                                       {.2, .2, .1}, {.1, .1, .1}, {.5, .4, .3}};
+    field_start(f, rgb_grey(0));
+    field_add_box(f, vec3_make(0, 0, 0), vec3_make(4, 3, 2.5), walls, true);
+    field_add_box(f, vec3_make(0.5, 0.5, 0), vec3_make(1.3, 1.2, 0.9), wood, false);
+    field_add_box(f, vec3_make(2.4, 1.4, 0), vec3_make(3.1, 2.2, 1.6), wood, false);
+    for (int i = 0; i < 6; i++) f->patches[i].slope[0] = 0.3 - 0.1 * i;
+    field_name(f, field_add(f, EMITTER_DISK, vec3_make(2, 1.5, 2.49), vec3_make(0.2, 0, 0), vec3_make(0, 0.2, 0),
+                            vec3_make(0, 0, -1), rgb_make(30, 28, 24)));
+    struct patch *window = field_add(f, EMITTER_QUAD, vec3_make(0.001, 1.5, 1.4), vec3_make(0, 0.5, 0),
+                                     vec3_make(0, 0, 0.5), vec3_make(1, 0, 0), rgb_make(4, 5, 6));
+    field_name(f, window);
+    window->source = LIGHT_SKY;
+}
+
+/* What a camera in a corner of the room sees. */
+static void see_room(struct gather_point points[WIDTH * HEIGHT], const struct patch_field *f)
+{
+    const struct vec3 eye = {3.8, 0.2, 1.7}, ahead = vec3_normalize(vec3_make(-1, 0.75, -0.35));
+    const struct vec3 right = vec3_normalize(vec3_cross(ahead, vec3_make(0, 0, 1))), up = vec3_cross(right, ahead);
+    for (int i = 0; i < WIDTH * HEIGHT; i++) {
+        const double x = (i % WIDTH + 0.5) / WIDTH * 2 - 1, y = (i / WIDTH + 0.5) / HEIGHT * 2 - 1;
+        const struct vec3 d =
+            vec3_normalize(vec3_add(ahead, vec3_add(vec3_scale(right, x * 0.8), vec3_scale(up, -0.6 * y))));
+        double nearest = INFINITY;
+        points[i] = (struct gather_point){{0, 0, 0}, {0, 0, 0}};
+        for (int k = 0; k < f->count; k++) {
+            double t, ab[2];
+            if (!patch_hit(&f->patches[k], eye, d, &t, ab) || t >= nearest) continue;
+            nearest = t;
+            points[i] = (struct gather_point){vec3_add(eye, vec3_scale(d, t)), f->patches[k].normal};
+        }
+    }
+}
+
+static double box_irradiance(const struct patch_field *f, struct gather_point p)
+{
+    double sum = 0;
+    for (int i = 0; i < 6; i++) sum += PI * f->patches[i].radiance.g * patch_factor(&f->patches[i], p);
+    return sum;
+}
+
+static void gradients_are_those_of_a_box_in_closed_form(void **state)
+{
+    static const struct rgb sides[6] = {{1, 1, 1}, {1, 2, 1}, {1, 0.5, 1}, {1, 0.1, 1}, {1, 9, 1}, {1, 4, 1}};
+    const struct gather_point p = {{0.2, -0.3, 0.4}, {0, 0, 1}};
+    const double d = 1e-4;
+    struct patch_field f;
+    struct vec3 move = {0, 0, 0}, turn = {0, 0, 0};
+    double error = 0;
+    (void)state;
+    field_start(&f, rgb_grey(0));
+    field_add_box(&f, vec3_make(-1, -2, 0), vec3_make(2, 1, 1.5), sides, true);
+    for (uint64_t k = 0; k < 16; k++) {
+        struct cache_record r;
+        cache_record_gather(&r, &f.field, p, 0, 0, 1024, k);
+        move = vec3_add(move, vec3_scale(r.move[1], 1.0 / 16));
+        turn = vec3_add(turn, vec3_scale(r.turn[1], 1.0 / 16));
+        error = fmax(error, fabs(r.value.g / box_irradiance(&f, p) - 1));
+        assert_true(r.error > 0);
+    }
+    assert_true(error < 0.003);
+    for (int axis = 0; axis < 2; axis++) {
+        const struct vec3 by = axis ? vec3_make(0, d, 0) : vec3_make(d, 0, 0);
+        const struct gather_point ahead = {vec3_add(p.at, by), p.normal}, behind = {vec3_sub(p.at, by), p.normal};
+        const struct gather_point leans = {p.at, vec3_normalize(vec3_add(p.normal, by))};
+        const struct gather_point leans_back = {p.at, vec3_normalize(vec3_sub(p.normal, by))};
+        const double moved = (box_irradiance(&f, ahead) - box_irradiance(&f, behind)) / (2 * d);
+        const double turned = (box_irradiance(&f, leans) - box_irradiance(&f, leans_back)) / (2 * d);
+        print_message("move %g, true %g; turn %g, true %g\n", axis ? move.y : move.x, moved,
+                      vec3_dot(turn, vec3_cross(p.normal, by)) / d, turned);
+        assert_near(axis ? move.y : move.x, moved, 0.03);
+        assert_near(vec3_dot(turn, vec3_cross(p.normal, by)) / d, turned, 0.03);
+    }
+}
+
+static void fill(struct irradiance *results, const struct gather_point *points, const struct patch_field *f,
+                 double target, struct irradiance_cache_stats *stats)
+{
+    struct err err = ERR_INIT;
+    const struct irradiance_cache_job job = {.field = &f->field,
+                                             .points = points,
+                                             .width = WIDTH,
+                                             .height = HEIGHT,
+                                             .target = target,
+                                             .rays = 4096,
+                                             .key = 9};
+    assert_ok(irradiance_cache_fill(results, &job, stats, &err), err);
+}
+
+static void a_picture_of_a_room_is_within_its_target(void **state)
+{
+    static const double targets[] = {0.02, 0.01};
+    static struct gather_point points[WIDTH * HEIGHT];
+    static struct irradiance results[WIDTH * HEIGHT];
+    static struct patch_field f;
+    (void)state;
+    make_room(&f);
+    see_room(points, &f);
+    for (int t = 0; t < 2; t++) {
+        struct irradiance_cache_stats stats;
+        double squares = 0, stated = 0;
+        int count = 0;
+        fill(results, points, &f, targets[t], &stats);
+        for (int i = 3; i < WIDTH * HEIGHT; i += 37) {
+            struct irradiance e;
+            if (!(vec3_length(points[i].normal) > 0)) continue;
+            ray_irradiance_to(&e, &f.field, points[i], 0.002, 1 << 18, 77);
+            const double truth = rgb_luminance(e.value);
+            squares += pow(rgb_luminance(results[i].value) / truth - 1, 2);
+            stated += pow(rgb_luminance(results[i].error) / truth, 2);
+            count++;
+        }
+        print_message(
+            "target %g: RMS error %.2g %%, stated %.2g %%, %zu records of %.0f rays, %.0f direct rays a point\n",
+            targets[t], 100 * sqrt(squares / count), 100 * sqrt(stated / count), stats.records,
+            stats.record_rays / (double)stats.records, stats.direct_rays / (WIDTH * HEIGHT));
+        assert_true(sqrt(squares / count) < targets[t]);
+        assert_true(stats.records < WIDTH * HEIGHT / 4);
+    }
+}
+
+static void threads_do_not_change_a_bit(void **state)
+{
+    static struct gather_point points[WIDTH * HEIGHT];
+    static struct irradiance one[WIDTH * HEIGHT], three[WIDTH * HEIGHT];
+    static struct patch_field f;
+    (void)state;
+    make_room(&f);
+    see_room(points, &f);
+    parallel_set_threads(1);
+    fill(one, points, &f, 0.05, NULL);
+    parallel_set_threads(3);
+    fill(three, points, &f, 0.05, NULL);
+    parallel_set_threads(0);
+    assert_memory_equal(one, three, sizeof one);
+}
+
+static void points_without_a_normal_are_left_dark(void **state)
+{
+    static struct gather_point points[WIDTH * HEIGHT];
+    static struct irradiance results[WIDTH * HEIGHT];
+    static struct patch_field f;
+    struct irradiance_cache_stats stats;
+    (void)state;
+    make_room(&f);
+    fill(results, points, &f, 0.05, &stats);
+    assert_int_equal(stats.records, 0);
+    points[WIDTH + 3] = (struct gather_point){{2, 1, 0}, {0, 0, 1}};
+    fill(results, points, &f, 0.05, &stats);
+    assert_int_equal(stats.records, 1);
+    assert_near(results[0].value.g, 0, 0);
+    assert_true(results[WIDTH + 3].value.g > 0);
+}
+
+static void darkness_stays_dark(void **state)
+{
+    static struct gather_point points[WIDTH * HEIGHT];
+    static struct irradiance results[WIDTH * HEIGHT];
+    static struct patch_field f, dark;
+    (void)state;
+    make_room(&f);
+    see_room(points, &f);
+    field_start(&dark, rgb_grey(0));
+    fill(results, points, &dark, 0.05, NULL);
+    for (int i = 0; i < WIDTH * HEIGHT; i++) {
+        assert_true(results[i].value.g == 0 && results[i].error.g == 0);
+        for (int s = 0; s < LIGHT_SOURCES; s++) assert_true(results[i].from[s] == 0);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(gradients_are_those_of_a_box_in_closed_form),
+        cmocka_unit_test(a_picture_of_a_room_is_within_its_target),
+        cmocka_unit_test(threads_do_not_change_a_bit),
+        cmocka_unit_test(points_without_a_normal_are_left_dark),
+        cmocka_unit_test(darkness_stays_dark),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
