@@ -335,7 +335,29 @@ static void cluster_errors(double *errors, const double *h, const double *meat, 
     }
 }
 
-/* Standard errors of the unknowns. jacobian: [unknown][residual]. */
+/* The errors if the reflectance of all points that were marked together deviates by `texture`, in all colours. */
+static void assumed_errors(double *errors, const double *h, const double *jacobian, const struct problem *p)
+{
+    const struct light_fit *f = p->f;
+    const int n = p->unknown_count, rows = 3 * f->point_count;
+    double shift[MOST_UNKNOWNS] = {0}, variances[MOST_UNKNOWNS] = {0};
+    for (int i = 0; i < f->point_count; i++) {
+        for (int a = 0; a < n; a++)
+            for (int c = 3 * i; c < 3 * i + 3; c++)
+                shift[a] += jacobian[a * rows + c] * sqrt(p->weight[c]) * f->texture / sqrt(variance(f, i));
+        if (i + 1 < f->point_count && f->points[i + 1].cluster == f->points[i].cluster) continue;
+        for (int a = 0; a < n; a++) {
+            double moved = 0;
+            for (int b = 0; b < n; b++) moved += h[a * n + b] * shift[b];
+            variances[a] += moved * moved;
+        }
+        memset(shift, 0, sizeof shift);
+    }
+    for (int a = 0; a < n; a++) errors[a] = sqrt(variances[a]);
+}
+
+/* Standard errors of the unknowns: the largest of what single points, points marked together, and the assumed deviations
+ * of noise and material show, because few points may agree by chance. jacobian: [unknown][residual]. */
 static void find_errors(struct problem *p, double *jacobian, double errors[MOST_UNKNOWNS])
 {
     const int n = p->unknown_count, points = p->f->point_count, rows = 3 * points;
@@ -367,7 +389,8 @@ static void find_errors(struct problem *p, double *jacobian, double errors[MOST_
     memset(meat, 0, sizeof meat);
     add_meat(p, jacobian, true, meat);
     cluster_errors(clustered, h, meat, n, cluster_count(p->f), p);
-    /* few points may agree by chance, and points that were marked together deviate together */
+    for (int a = 0; a < n; a++) errors[a] = fmax(errors[a], clustered[a]);
+    assumed_errors(clustered, h, jacobian, p);
     for (int a = 0; a < n; a++) errors[a] = fmax(fmax(errors[a], clustered[a]), sqrt(h[a * n + a]));
 }
 

@@ -4,8 +4,9 @@
  *         MODEL, PLAN, AXES                             the unedited model, its openings, its frame
  *         VIEWS/cameras.txt, images.txt, lenses.txt     the cameras
  *         VIEWS/VIEW.exr, IDS/VIEW.exr                  the views that face a marked point or a lamp
- *         INDIRECT                                      irradiance without the lamps, where marked points need it
- * writes  OUT/fit.txt, then OUT/lights.txt
+ *         VITA/atlas.txt, page0.exr, ..., OUTDOORS      what else lights the marked points; or
+ *         INDIRECT                                      their irradiance without the lamps
+ * writes  OUT/declared.txt, fit.txt, then OUT/lights.txt
  * With --list instead:
  * writes  OUT                                           the points at which indirect light is needed */
 #include <stdlib.h>
@@ -14,16 +15,17 @@
 #include "common/base/cli.h"
 #include "common/base/file_path.h"
 #include "common/base/log.h"
+#include "common/gather/model_field.h"
 #include "common/math/numbers.h"
 #include "stages/fit_lights/indirect.h"
 #include "stages/fit_lights/solve.h"
 
 #define PARAM_STRUCT struct fit_lights_params
-static const struct param fit_lights_param_table[] = {FIT_LIGHTS_PARAMS(PARAM_ROW) PARAM_END};
+static const struct param fit_lights_param_table[] = {FIT_LIGHTS_PARAMS(PARAM_ROW) GATHER_PARAMS(PARAM_ROW) PARAM_END};
 #undef PARAM_STRUCT
 
 struct job {
-    const char *lamps, *model_path, *plan_path, *axes_path, *views, *ids, *indirect_path, *list, *out;
+    const char *lamps, *model_path, *plan_path, *axes_path, *views, *ids, *vita, *outdoors, *indirect_path, *list, *out;
     struct fit_lights_params params;
     struct provenance prov;
     struct annotation_list notes;
@@ -51,13 +53,48 @@ static enum status read_inputs(struct job *j, struct err *err)
     return lit_scene_resolve(&j->scene, j->lamps ? &j->notes : NULL, &j->model, j->params.grid, err);
 }
 
+#define COPY_FIELD(name, ...) memcpy(&g.name, &p->name, sizeof g.name);
+static struct gather_params gather_params_of(const struct fit_lights_params *p)
+{
+    struct gather_params g;
+    GATHER_PARAMS(COPY_FIELD)
+    return g;
+}
+
+static enum status check_params(const void *values, struct err *err)
+{
+    const struct gather_params g = gather_params_of(values);
+    return gather_params_check(&g, err);
+}
+
+/* From the field of the textured model, whose lamps, as declared, are off. */
+static enum status gather_indirect(struct job *j, struct err *err)
+{
+    char declared[FILE_PATH];
+    struct model_field field = {0};
+    struct gatherer *gatherer = NULL;
+    const struct gather_params params = gather_params_of(&j->params);
+    const struct model_field_files files = {j->model_path, j->vita, j->outdoors, declared};
+    enum status st = file_path(declared, j->out, "declared.txt", "", err);
+    if (!st) st = light_list_write(&j->scene.lights, declared, &j->prov, err);
+    if (!st) st = model_field_read(&field, &files, &j->prov, err);
+    if (!st) st = gatherer_make(&gatherer, &params, err);
+    if (!st) {
+        model_field_switch_lamp(&field, -1, false);
+        indirect_gather(&j->indirect, &j->scene, &field.field, gatherer);
+    }
+    gatherer_free(gatherer);
+    model_field_release(&field);
+    return st;
+}
+
 static enum status find_indirect(struct job *j, struct err *err)
 {
     if (!j->indirect.count) return ST_OK;
-    if (!j->indirect_path)
+    if (!j->indirect_path && !j->vita)
         return err_set(err, ST_USAGE,
-                       "%s marks points, so --indirect is needed: the irradiance at the points that --list writes.",
-                       j->lamps);
+                       "%s marks points, so --vita is needed, for the indirect light there, or --indirect.", j->lamps);
+    if (!j->indirect_path) return gather_indirect(j, err);
     if (provenance_add_file(&j->prov, "lights/indirect.txt", j->indirect_path, err)) return err->status;
     return indirect_read(&j->indirect, &j->scene, &j->model.axes, j->indirect_path, err);
 }
@@ -123,12 +160,14 @@ int main(int argc, char **argv)
         CLI_STR("axes", &j.axes_path, CLI_REQUIRED, "the model's frame, axes.txt"),
         CLI_STR("views", &j.views, CLI_REQUIRED, "folder of cameras and rectified views"),
         CLI_STR("ids", &j.ids, CLI_REQUIRED, "folder of the faces that each view shows"),
+        CLI_STR("vita", &j.vita, CLI_OPTIONAL, "folder of the view-independent atlas, for indirect light"),
+        CLI_STR("outdoors", &j.outdoors, CLI_OPTIONAL, "what lies outside, by direction; without it, it is dark"),
         CLI_STR("indirect", &j.indirect_path, CLI_OPTIONAL,
                 "irradiance without the lamps at the points that --list writes: X Y Z NX NY NZ R G B a line"),
         CLI_STR("list", &j.list, CLI_OPTIONAL,
                 "\"points\": only write the points at which indirect light is needed, to --out"),
         CLI_STR("out", &j.out, CLI_REQUIRED, "folder of lights.txt and fit.txt to write, or with --list the file"),
-        CLI_PARAMS(fit_lights_param_table, &j.params, NULL),
+        CLI_PARAMS(fit_lights_param_table, &j.params, check_params),
         CLI_END,
     };
     struct err err = ERR_INIT;

@@ -3,6 +3,7 @@
 #define REMODEL_FIT_LIGHTS_PARAMS_H
 
 #include "common/base/param.h"
+#include "common/gather/gatherer.h"
 
 /* name, type, default, min, max, unit, help */
 #define FIT_LIGHTS_PARAMS(X)                                                                                         \
@@ -16,10 +17,11 @@
 
 struct fit_lights_params {
     FIT_LIGHTS_PARAMS(PARAM_FIELD)
+    GATHER_PARAMS(PARAM_FIELD)
 };
-#define FIT_LIGHTS_PARAMS_DEFAULT        \
-    {                                    \
-        FIT_LIGHTS_PARAMS(PARAM_DEFAULT) \
+#define FIT_LIGHTS_PARAMS_DEFAULT                                     \
+    {                                                                 \
+        FIT_LIGHTS_PARAMS(PARAM_DEFAULT) GATHER_PARAMS(PARAM_DEFAULT) \
     }
 
 #endif

@@ -5,6 +5,8 @@
 #include <stdlib.h>
 
 #include "common/base/outfile.h"
+#include "common/base/parallel.h"
+#include "common/base/progress.h"
 #include "common/base/textfile.h"
 
 enum { LINE_STEP = 20 }; /* points of a line from node to node */
@@ -89,6 +91,37 @@ enum status indirect_read(struct indirect *in, const struct lit_scene *scene, co
     textfile_release(&t);
     if (!st) indirect_spread(in, scene);
     return st;
+}
+
+struct gather_job {
+    struct indirect *in;
+    const struct lit_scene *scene;
+    const struct light_field *field;
+    const struct gatherer *gatherer;
+    struct progress progress;
+};
+
+static void gather_nodes(void *ctx, size_t begin, size_t end, int thread)
+{
+    struct gather_job *j = ctx;
+    (void)thread;
+    for (size_t k = begin; k < end; k++) {
+        const struct lit_point *p = &j->scene->points[j->in->nodes[k]];
+        struct irradiance e;
+        gatherer_irradiance(&e, j->gatherer, j->field, (struct gather_point){p->at, p->normal}, k);
+        indirect_set(j->in, (int)k, e.value);
+        progress_add(&j->progress, 1);
+    }
+}
+
+void indirect_gather(struct indirect *in, const struct lit_scene *scene, const struct light_field *field,
+                     const struct gatherer *gatherer)
+{
+    struct gather_job job = {.in = in, .scene = scene, .field = field, .gatherer = gatherer};
+    progress_start(&job.progress, "indirect light", (size_t)in->count, "points");
+    parallel_for((size_t)in->count, 1, gather_nodes, &job);
+    progress_end(&job.progress);
+    indirect_spread(in, scene);
 }
 
 void indirect_set(struct indirect *in, int k, struct rgb e)

@@ -4,6 +4,7 @@
 #ifndef REMODEL_FIT_LIGHTS_INDIRECT_H
 #define REMODEL_FIT_LIGHTS_INDIRECT_H
 
+#include "common/gather/gatherer.h"
 #include "stages/fit_lights/resolve.h"
 
 /* {0} is the empty state. */
@@ -23,6 +24,9 @@ enum status indirect_list(const struct indirect *in, const struct lit_scene *sce
  * irradiance, too few or too many lines. */
 enum status indirect_read(struct indirect *in, const struct lit_scene *scene, const struct model_axes *axes,
                           const char *path, struct err *err);
+/* Gathers it from a field of light in which the lamps are off. Same bits for any number of threads. */
+void indirect_gather(struct indirect *in, const struct lit_scene *scene, const struct light_field *field,
+                     const struct gatherer *gatherer);
 /* Sets the irradiance of node k. */
 void indirect_set(struct indirect *in, int k, struct rgb irradiance);
 /* Interpolates between the nodes of lines; after all nodes are set. */
