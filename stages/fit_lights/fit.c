@@ -242,7 +242,7 @@ static enum status solve(struct problem *p, struct err *err)
     double x[MOST_UNKNOWNS];
     get_unknowns(p, x);
     for (int round = 0; round < ROUNDS; round++) {
-        if (ceres_least_squares(&problem, x, err)) return err->status;
+        if (p->unknown_count && ceres_least_squares(&problem, x, err)) return err->status;
         set_unknowns(p, x);
         renew_weights(p);
     }
@@ -335,16 +335,18 @@ static void cluster_errors(double *errors, const double *h, const double *meat, 
     }
 }
 
-/* The errors if the reflectance of all points that were marked together deviates by `texture`, in all colours. */
+/* The errors if the reflectance of all points that were marked together deviates in all colours: by `texture`, or by half of
+ * what single points of the material do, as they cover a few of its planks or bricks. */
 static void assumed_errors(double *errors, const double *h, const double *jacobian, const struct problem *p)
 {
     const struct light_fit *f = p->f;
     const int n = p->unknown_count, rows = 3 * f->point_count;
     double shift[MOST_UNKNOWNS] = {0}, variances[MOST_UNKNOWNS] = {0};
     for (int i = 0; i < f->point_count; i++) {
+        const double deviation = fmax(f->texture, 0.5 * f->materials[f->points[i].material].spread);
         for (int a = 0; a < n; a++)
             for (int c = 3 * i; c < 3 * i + 3; c++)
-                shift[a] += jacobian[a * rows + c] * sqrt(p->weight[c]) * f->texture / sqrt(variance(f, i));
+                shift[a] += jacobian[a * rows + c] * sqrt(p->weight[c]) * deviation / sqrt(variance(f, i));
         if (i + 1 < f->point_count && f->points[i + 1].cluster == f->points[i].cluster) continue;
         for (int a = 0; a < n; a++) {
             double moved = 0;
@@ -459,12 +461,12 @@ enum status light_fit_solve(struct light_fit *f, struct err *err)
         *(f->points[i].lit ? &m->lit : &m->unlit) += 1;
     }
     enum status st = list_unknowns(&p, err);
-    if (st || !p.unknown_count) return st;
+    if (st || !f->point_count) return st;
     p.direct = calloc(points * lamps + 1, sizeof *p.direct);
     p.weight = calloc(3 * points + 1, sizeof *p.weight);
     p.residual = calloc(3 * points + 1, sizeof *p.residual);
     struct weighted *scratch = calloc(3 * points + 1, sizeof *scratch);
-    double *jacobian = calloc((3 * points + 1) * (size_t)p.unknown_count, sizeof *jacobian);
+    double *jacobian = calloc((3 * points + 1) * (size_t)(p.unknown_count + 1), sizeof *jacobian);
     if (p.direct && p.weight && p.residual && scratch && jacobian)
         st = fit_all(&p, scratch, jacobian, err);
     else

@@ -287,8 +287,9 @@ static enum status add_line(struct resolver *r, int note, struct err *err)
     struct ray_hit ends[2];
     if (pixel_hit(&ends[0], r, a, a->pixel, err) || pixel_hit(&ends[1], r, a, a->pixel + 2, err)) return err->status;
     if (ends[0].id != ends[1].id || vec3_dot(ends[0].normal, ends[1].normal) < SAME_PLANE)
-        return err_set(err, ST_DATA, "%s:%d: the line of %s begins and ends on different surfaces; draw it on one.",
-                       r->notes->path, a->line, a->name);
+        return err_set(err, ST_DATA, "%s:%d: the line of %s begins on %s and ends on %s; draw it on one surface.",
+                       r->notes->path, a->line, a->name, solid_face_name(&r->model->rays.mesh, (int)ends[0].id),
+                       solid_face_name(&r->model->rays.mesh, (int)ends[1].id));
     for (int i = 0; i < LINE_POINTS; i++) {
         const double t = i / (double)(LINE_POINTS - 1);
         const struct vec3 at = vec3_add(vec3_scale(ends[0].point, 1 - t), vec3_scale(ends[1].point, t));

@@ -328,9 +328,12 @@ static void write_point(const struct solved_lights *s, const struct solve_inputs
         e[2] += d * list->lamps[l].radiance.b;
     }
     const double *k = s->materials[p->material].k_d;
-    fprintf(to, "point %d %s %.6g %.6g %.6g radiance %.6g %.6g %.6g explained %.6g %.6g %.6g\n",
+    fprintf(to,
+            "point %d %s %.6g %.6g %.6g radiance %.6g %.6g %.6g explained %.6g %.6g %.6g "
+            "indirect %.6g %.6g %.6g\n",
             in->notes->items[in->scene->points[point].note].line, p->lit ? "lit" : "unlit", at.x, at.y, at.z,
-            p->radiance[0], p->radiance[1], p->radiance[2], k[0] * e[0], k[1] * e[1], k[2] * e[2]);
+            p->radiance[0], p->radiance[1], p->radiance[2], k[0] * e[0], k[1] * e[1], k[2] * e[2], p->indirect[0],
+            p->indirect[1], p->indirect[2]);
 }
 
 enum status solved_lights_write(const struct solved_lights *s, const struct solve_inputs *in, const char *path,
