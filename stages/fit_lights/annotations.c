@@ -26,6 +26,7 @@ void annotation_list_release(struct annotation_list *list)
         free(a->references);
         free(a->name);
         free(a->view);
+        free(a->material);
     }
     free(list->items);
     free(list->path);
@@ -163,13 +164,29 @@ static enum status read_area(struct annotation *a, struct textfile *t, struct er
     return read_place(a, t, 4, err) ? err->status : read_options(a, t, err);
 }
 
+/* The rest of a rectangle, whose lower right x is a word of the line. */
+static enum status read_corner(struct annotation *a, struct textfile *t, const char *x, struct err *err)
+{
+    if (!scan_double(x, &a->pixel[2]) || !(a->pixel[2] >= 0 && a->pixel[2] <= 1e6))
+        return textfile_error(t, err, x, "a pixel's x from 0 to 1e+06, or of");
+    if (read_number(t, "a pixel's y", 0, 1e6, &a->pixel[3], err)) return err->status;
+    a->pixels = 2;
+    if (a->pixel[2] > a->pixel[0] && a->pixel[3] > a->pixel[1]) return ST_OK;
+    return textfile_error(t, err, "an empty rectangle", "its upper left and its lower right pixel");
+}
+
 static enum status read_point(struct annotation *a, struct textfile *t, struct err *err)
 {
+    char *word;
     if (read_place(a, t, 1, err)) return err->status;
-    if (textfile_more(t) && read_pixels(a, t, 1, err)) return err->status;
-    if (a->pixels == 2 && !(a->pixel[2] > a->pixel[0] && a->pixel[3] > a->pixel[1]))
-        return textfile_error(t, err, "an empty rectangle", "its upper left and its lower right pixel");
-    return textfile_end(t, err);
+    if (!textfile_more(t)) return ST_OK;
+    if (textfile_word(t, "a pixel's x, or of", &word, err)) return err->status;
+    if (strcmp(word, "of")) {
+        if (read_corner(a, t, word, err)) return err->status;
+        if (!textfile_more(t)) return ST_OK;
+        if (textfile_expect(t, "of", err)) return err->status;
+    }
+    return copy_word(t, "the name of a material", &a->material, err) ? err->status : textfile_end(t, err);
 }
 
 static enum status read_line(struct annotation *a, struct textfile *t, struct err *err)
@@ -220,6 +237,24 @@ static enum status read_statement(struct annotation_list *list, struct textfile 
     }
 }
 
+/* The points of a lamp are of one material. */
+static enum status check_materials(const struct annotation_list *list, struct err *err)
+{
+    for (int i = 0; i < list->count; i++)
+        for (int k = 0; k < i; k++) {
+            const struct annotation *a = &list->items[i], *b = &list->items[k];
+            const char *of = a->material ? a->material : a->name, *other = b->material ? b->material : b->name;
+            if (a->lamp < 0 || a->lamp != b->lamp || a->kind == NOTE_LINE || b->kind == NOTE_LINE) continue;
+            if (strcmp(of, other))
+                return err_set(
+                    err, ST_DATA,
+                    "%s:%d: found a point of the lamp %s of the material %s, but that on line %d is of %s; the "
+                    "points of a lamp must be of one material.",
+                    list->path, a->line, a->name, of, b->line, other);
+        }
+    return ST_OK;
+}
+
 static enum status find_lamps(struct annotation_list *list, struct err *err)
 {
     for (int i = 0; i < list->count; i++) {
@@ -254,6 +289,7 @@ enum status annotation_list_read(struct annotation_list *list, const char *path,
     while (!st && textfile_next(&t)) st = read_statement(list, &t, err);
     textfile_release(&t);
     if (!st) st = find_lamps(list, err);
+    if (!st) st = check_materials(list, err);
     if (st) annotation_list_release(list);
     return st ? err->status : ST_OK;
 }

@@ -7,8 +7,8 @@
  *   disk NAME in VIEW X Y rim X Y [OPTIONS] [normal NX NY NZ] [beta DEGREES|fit] [exponent E|fit]
  *   area NAME in VIEW X Y X Y X Y X Y [OPTIONS]   four corners in order
  *       OPTIONS: [off D] in front of the model's surface; [radiance R G B]
- *   lit NAME in VIEW X Y [X1 Y1]          a point, or a rectangle of points, that the lamp NAME lights
- *   unlit NAME in VIEW X Y [X1 Y1]        of the same material, and not lit by it
+ *   lit NAME in VIEW X Y [X1 Y1] [of MATERIAL]     a point, or a rectangle of points, that the lamp NAME lights
+ *   unlit NAME in VIEW X Y [X1 Y1] [of MATERIAL]   of the same material, and not lit by it
  *   line NAME in VIEW X Y X Y             of the same material, across the edge of the lamp's cone */
 #ifndef REMODEL_ANNOTATIONS_H
 #define REMODEL_ANNOTATIONS_H
@@ -36,7 +36,8 @@ struct annotation {
     enum quantity has_beta, has_exponent, has_radiance;
     double beta, exponent; /* degrees */
     double radiance[3];
-    int lamp; /* lit, unlit, line: index of their lamp's annotation */
+    char *material; /* lit, unlit: owned; NULL: the lamp's own */
+    int lamp;       /* lit, unlit, line: index of their lamp's annotation */
 };
 
 struct annotation_list {

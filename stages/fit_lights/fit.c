@@ -133,95 +133,113 @@ static enum status check_points(const struct light_fit *f, struct err *err)
     return ST_OK;
 }
 
-static const char *place_of(const struct light_fit *f, int material, bool lit)
+/* Whether a point tells of a lamp: a lit one that was marked for it, or any unlit one of its material. */
+static bool concerns(const struct light_fit *f, int point, int lamp, bool lit)
+{
+    const struct fit_point *p = &f->points[point];
+    return p->lit == lit && (lit ? p->lamp == lamp : p->material == f->lamps[lamp].material);
+}
+
+static const char *place_of(const struct light_fit *f, int lamp, bool lit)
 {
     for (int i = 0; i < f->point_count; i++)
-        if (f->points[i].material == material && f->points[i].lit == lit) return f->points[i].place;
+        if (concerns(f, i, lamp, lit)) return f->points[i].place;
     return "";
 }
 
-/* Whether the light of a material's lamp differs between its lit points and the others. */
-static enum status check_material(const struct problem *p, int material, struct err *err)
+/* The light at a point without that of one lamp. */
+static double other_light(const struct problem *p, int point, int colour, int lamp)
+{
+    return irradiance(p, point, colour) -
+           p->f->lamps[lamp].radiance[colour] * p->direct[lamp * p->f->point_count + point];
+}
+
+/* Whether a lamp's light differs between its lit points and the others. */
+static enum status check_lamp(const struct problem *p, int lamp, struct err *err)
 {
     const struct light_fit *f = p->f;
-    const struct fit_material *m = &f->materials[material];
-    const struct fit_lamp *lamp = &f->lamps[m->lamp];
-    double most[2] = {-1, -1}, least[2] = {INFINITY, INFINITY};
-    if (!m->lit || !m->unlit)
+    const char *name = f->lamps[lamp].name;
+    double most = 0, least = INFINITY;
+    int lit = 0, unlit = 0;
+    for (int i = 0; i < f->point_count; i++) {
+        const double share = p->direct[lamp * f->point_count + i] / fmax(f->points[i].indirect[1], 1e-30);
+        if (concerns(f, i, lamp, true)) {
+            most = fmax(most, share);
+            lit++;
+        } else if (concerns(f, i, lamp, false)) {
+            least = fmin(least, share);
+            unlit++;
+        }
+    }
+    if (!lit || !unlit)
         return err_set(
             err, ST_DATA,
             "the lamp %s has %d lit and %d unlit points that views show unsaturated, wanted one of each; add a line "
             "\"%s %s in VIEW X Y\".",
-            lamp->name, m->lit, m->unlit, m->lit ? "unlit" : "lit", lamp->name);
-    for (int i = 0; i < f->point_count; i++) {
-        if (f->points[i].material != material) continue;
-        const double share = p->direct[m->lamp * f->point_count + i] / fmax(f->points[i].indirect[1], 1e-30);
-        most[f->points[i].lit] = fmax(most[f->points[i].lit], share);
-        least[f->points[i].lit] = fmin(least[f->points[i].lit], share);
-    }
-    if (!(most[1] > 0))
+            name, lit, unlit, lit ? "unlit" : "lit", name);
+    if (!(most > 0))
         return err_set(
             err, ST_DATA,
             "%s: no light of the lamp %s reaches its lit points: they are outside its cone, turned away, or the "
             "model hides it from them.",
-            place_of(f, material, true), lamp->name);
-    if (most[1] - least[0] < LEAST_SHARE * most[1])
+            place_of(f, lamp, true), name);
+    if (most - least < LEAST_SHARE * most)
         return err_set(
             err, ST_DATA,
             "%s: the lamp %s gives its lit and unlit points the same irradiance, so its radiance cannot be told "
             "from the reflectance; choose unlit points outside its cone or in shadow.",
-            place_of(f, material, true), lamp->name);
+            place_of(f, lamp, true), name);
     return ST_OK;
 }
 
 /* ------------------------------------------------------------------------------------------------------- the start */
 
-/* The median k_d of a material's unlit points, given S of its lamp alone. */
-static double start_k_d(const struct problem *p, int material, int colour, double radiance, struct weighted *scratch)
+/* The median k_d of the unlit points of a lamp's material. */
+static double start_k_d(const struct problem *p, int lamp, int colour, struct weighted *scratch)
 {
     const struct light_fit *f = p->f;
-    const double *direct = p->direct + (ptrdiff_t)f->materials[material].lamp * f->point_count;
     size_t n = 0;
     for (int i = 0; i < f->point_count; i++)
-        if (f->points[i].material == material && !f->points[i].lit)
-            scratch[n++] = (struct weighted){
-                f->points[i].radiance[colour] / (f->points[i].indirect[colour] + radiance * direct[i]), 1};
+        if (concerns(f, i, lamp, false))
+            scratch[n++] = (struct weighted){f->points[i].radiance[colour] / irradiance(p, i, colour), 1};
     return weighted_percentile(scratch, n, 0.5);
 }
 
-/* The median S of a material's lit points, given k_d; 0: they are no brighter. */
-static double start_radiance(const struct problem *p, int material, int colour, double k_d, struct weighted *scratch)
+/* The median S of a lamp's lit points, given k_d; 0: they are no brighter. */
+static double start_radiance(const struct problem *p, int lamp, int colour, double k_d, struct weighted *scratch)
 {
     const struct light_fit *f = p->f;
-    const double *direct = p->direct + (ptrdiff_t)f->materials[material].lamp * f->point_count;
+    const double *direct = p->direct + (ptrdiff_t)lamp * f->point_count;
     size_t n = 0;
     for (int i = 0; i < f->point_count; i++)
-        if (f->points[i].material == material && f->points[i].lit && direct[i] > 0)
-            scratch[n++] =
-                (struct weighted){(f->points[i].radiance[colour] / k_d - f->points[i].indirect[colour]) / direct[i], 1};
-    return fmax(0, weighted_percentile(scratch, n, 0.5));
+        if (concerns(f, i, lamp, true) && direct[i] > 0)
+            scratch[n++] = (struct weighted){
+                (f->points[i].radiance[colour] / k_d - other_light(p, i, colour, lamp)) / direct[i], 1};
+    const double s = weighted_percentile(scratch, n, 0.5);
+    return s > 0 && isfinite(s) ? s : 0;
 }
 
-/* S of a lamp alone by (5.5), from medians; a few rounds, as some of its light may reach the unlit points. ST_DATA: the lit
- * points are no brighter. */
-static enum status start_lamp(struct problem *p, int material, struct weighted *scratch, struct err *err)
+/* S of the lamps by (5.5), from medians, one lamp and colour after the other; some rounds, as lamps light each other's
+ * points. ST_DATA: the lit points of a lamp are no brighter. */
+static enum status start_lamps(struct problem *p, struct weighted *scratch, struct err *err)
 {
-    struct fit_lamp *lamp = &p->f->lamps[p->f->materials[material].lamp];
-    double best = 0;
-    for (int c = 0; c < 3; c++) {
-        double s = 0;
-        for (int round = 0; round < ROUNDS; round++)
-            s = start_radiance(p, material, c, start_k_d(p, material, c, s, scratch), scratch);
-        lamp->radiance[c] = isfinite(s) ? s : 0;
-        best = fmax(best, lamp->radiance[c]);
+    const struct light_fit *f = p->f;
+    for (int round = 0; round < ROUNDS; round++)
+        for (int l = 0; l < f->lamp_count; l++)
+            for (int c = 0; f->lamps[l].fit && c < 3; c++)
+                f->lamps[l].radiance[c] = start_radiance(p, l, c, start_k_d(p, l, c, scratch), scratch);
+    for (int l = 0; l < f->lamp_count; l++) {
+        struct fit_lamp *lamp = &f->lamps[l];
+        const double best = fmax(lamp->radiance[0], fmax(lamp->radiance[1], lamp->radiance[2]));
+        if (!lamp->fit) continue;
+        if (!(best > 0))
+            return err_set(
+                err, ST_DATA,
+                "%s: the lit points of the lamp %s are no brighter than its unlit points under the indirect light "
+                "alone: the lamp is off, or they are of different materials.",
+                place_of(f, l, true), lamp->name);
+        for (int c = 0; c < 3; c++) lamp->radiance[c] = fmax(lamp->radiance[c], 0.01 * best);
     }
-    if (!(best > 0))
-        return err_set(
-            err, ST_DATA,
-            "%s: the lit points of the lamp %s are no brighter than its unlit points under the indirect light "
-            "alone: the lamp is off, or they are of different materials.",
-            place_of(p->f, material, true), lamp->name);
-    for (int c = 0; c < 3; c++) lamp->radiance[c] = fmax(lamp->radiance[c], 0.01 * best);
     return ST_OK;
 }
 
@@ -264,15 +282,17 @@ static enum status check_spread(struct problem *p, struct weighted *scratch, str
 {
     for (int m = 0; m < p->f->material_count; m++) {
         struct fit_material *material = &p->f->materials[m];
+        const char *place = "";
+        for (int i = p->f->point_count - 1; i >= 0; i--)
+            if (p->f->points[i].material == m) place = p->f->points[i].place;
         if (!(material->lit + material->unlit)) continue;
         material->spread = spread_of(p, m, scratch);
         if (material->spread > p->f->max_spread)
             return err_set(
                 err, ST_DATA,
-                "%s: the points of the lamp %s are not of one material: their reflectances differ by %.0f %%, at "
+                "%s: the points of the material %s are not of one material: their reflectances differ by %.0f %%, at "
                 "most %.0f %% are allowed (max_spread); choose points of one material.",
-                place_of(p->f, m, true), p->f->lamps[material->lamp].name, 100 * material->spread,
-                100 * p->f->max_spread);
+                place, material->name, 100 * material->spread, 100 * p->f->max_spread);
     }
     return ST_OK;
 }
@@ -439,10 +459,9 @@ static enum status fit_all(struct problem *p, struct weighted *scratch, double *
     for (int l = 0; l < f->lamp_count; l++) set_direct(p, l);
     for (int i = 0; i < 3 * f->point_count; i++) p->weight[i] = 1;
     enum status st = check_points(f, err);
-    for (int m = 0; !st && m < f->material_count; m++)
-        if (f->lamps[f->materials[m].lamp].fit) st = check_material(p, m, err);
-    for (int m = 0; !st && m < f->material_count; m++)
-        if (f->lamps[f->materials[m].lamp].fit) st = start_lamp(p, m, scratch, err);
+    for (int l = 0; !st && l < f->lamp_count; l++)
+        if (f->lamps[l].fit) st = check_lamp(p, l, err);
+    if (!st) st = start_lamps(p, scratch, err);
     if (!st) st = solve(p, err);
     if (!st) st = check_spread(p, scratch, err);
     if (st) return st;

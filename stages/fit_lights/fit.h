@@ -8,8 +8,8 @@
 
 /* A point of a material with what is known of it. */
 struct fit_point {
-    int material;
-    bool lit;           /* by the lamp that the material is annotated for */
+    int material, lamp; /* lamp: that it is annotated for */
+    bool lit;           /* by that lamp */
     double indirect[3]; /* irradiance without any lamp */
     double radiance[3]; /* observed; above 0 */
     double sigma;       /* relative standard deviation of the radiance */
@@ -19,14 +19,15 @@ struct fit_point {
 
 struct fit_lamp {
     const char *name;
+    int material; /* of its points */
     bool fit, fit_exponent;
     double radiance[3], exponent;             /* given, or to be found */
     double radiance_error[3], exponent_error; /* standard errors; 0: given */
 };
 
-/* All points of one lamp's lines lit and unlit are of one material. */
+/* The points of a lamp are of one material; several lamps may light the same one. */
 struct fit_material {
-    int lamp;
+    const char *name;
     double k_d[3], k_d_error[3];
     double spread; /* relative deviation of the points' reflectance */
     int lit, unlit;

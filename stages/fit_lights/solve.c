@@ -126,6 +126,27 @@ static enum status refuse_saturated(const struct solve_inputs *in, struct err *e
     return ST_OK;
 }
 
+/* The name of what a lamp's points are of. */
+static const char *material_name(const struct solve_inputs *in, int lamp)
+{
+    for (int i = 0; i < in->scene->point_count; i++) {
+        const struct lit_point *p = &in->scene->points[i];
+        if (p->lamp == lamp && p->kind != NOTE_LINE && in->notes->items[p->note].material)
+            return in->notes->items[p->note].material;
+    }
+    return in->scene->lights.lamps[lamp].name;
+}
+
+/* The index of a lamp's material, which is added if it is new. There are no more materials than lamps. */
+static int material_of(struct solved_lights *s, const struct solve_inputs *in, int lamp)
+{
+    const char *name = material_name(in, lamp);
+    for (int m = 0; m < s->material_count; m++)
+        if (!strcmp(s->materials[m].name, name)) return m;
+    s->materials[s->material_count] = (struct fit_material){.name = name};
+    return s->material_count++;
+}
+
 static enum status list_points(struct solved_lights *s, const struct solve_inputs *in, struct err *err)
 {
     const size_t most = (size_t)in->scene->point_count + 1;
@@ -136,7 +157,7 @@ static enum status list_points(struct solved_lights *s, const struct solve_input
     for (int i = 0; i < in->scene->point_count; i++) {
         const struct lit_point *p = &in->scene->points[i];
         struct fit_point *q = &s->points[s->point_count];
-        *q = (struct fit_point){.material = p->lamp, .lit = p->kind == NOTE_LIT};
+        *q = (struct fit_point){.material = material_of(s, in, p->lamp), .lamp = p->lamp, .lit = p->kind == NOTE_LIT};
         if (p->kind == NOTE_LINE || !summarize(q, in->seen, i, &next)) continue;
         char place[PLACE_SIZE];
         snprintf(place, sizeof place, "%s:%d", in->notes->path, in->notes->items[p->note].line);
@@ -185,18 +206,18 @@ static enum status fit_radiances(struct solved_lights *s, const struct solve_inp
         const struct lamp *l = &list->lamps[i];
         const bool fit = is_fitted(in, i);
         lamps[i] = (struct fit_lamp){.name = l->name,
+                                     .material = fit ? material_of(s, in, i) : -1,
                                      .fit = fit,
                                      .fit_exponent = fit && note_of_lamp(in, i)->has_exponent == QUANTITY_FIT,
                                      .radiance = {l->radiance.r, l->radiance.g, l->radiance.b},
                                      .exponent = l->exponent};
-        s->materials[i].lamp = i;
     }
     struct light_fit f = {s->points,
                           lamps,
                           s->materials,
                           s->point_count,
                           list->lamp_count,
-                          list->lamp_count,
+                          s->material_count,
                           direct_at,
                           &ctx,
                           in->params->texture,
@@ -276,8 +297,7 @@ enum status lights_solve(struct solved_lights *s, const struct solve_inputs *in,
     const int lamps = in->scene->lights.lamp_count;
     *s = (struct solved_lights){.lamps = calloc((size_t)lamps + 1, sizeof *s->lamps),
                                 .materials = calloc((size_t)lamps + 1, sizeof *s->materials),
-                                .lamp_count = lamps,
-                                .material_count = lamps};
+                                .lamp_count = lamps};
     if (!s->lamps || !s->materials) return err_nomem(err, "lamps", (size_t)lamps * sizeof *s->lamps);
     begin_lamps(s, in);
     if (list_points(s, in, err) || fit_cones(s, in, false, err) || take_seen(s, in, err) || fit_radiances(s, in, err) ||
@@ -294,7 +314,6 @@ static void write_lamp(const struct solved_lights *s, const struct solve_inputs 
 {
     const struct lamp *l = &in->scene->lights.lamps[i];
     const struct lamp_result *r = &s->lamps[i];
-    const struct fit_material *m = &s->materials[i];
     char name[600];
     struct err ignored = ERR_INIT;
     if (textfile_quote(l->name, name, sizeof name, &ignored)) return; /* as the reader took it, it fits */
@@ -306,10 +325,16 @@ static void write_lamp(const struct solved_lights *s, const struct solve_inputs 
         fprintf(to, "seen %s %.9g %.9g %.9g %.4g %.4g %.4g unsaturated %d saturated %d\n", name, r->seen[0], r->seen[1],
                 r->seen[2], CONFIDENCE * r->seen_error[0], CONFIDENCE * r->seen_error[1], CONFIDENCE * r->seen_error[2],
                 r->unsaturated, r->saturated);
-    if (m->lit + m->unlit)
-        fprintf(to, "material %s %.9g %.9g %.9g %.4g %.4g %.4g spread %.4g lit %d unlit %d\n", name, m->k_d[0],
-                m->k_d[1], m->k_d[2], CONFIDENCE * m->k_d_error[0], CONFIDENCE * m->k_d_error[1],
-                CONFIDENCE * m->k_d_error[2], m->spread, m->lit, m->unlit);
+}
+
+static void write_material(const struct fit_material *m, FILE *to)
+{
+    char name[600];
+    struct err ignored = ERR_INIT;
+    if (textfile_quote(m->name, name, sizeof name, &ignored)) return;
+    fprintf(to, "material %s %.9g %.9g %.9g %.4g %.4g %.4g spread %.4g lit %d unlit %d\n", name, m->k_d[0], m->k_d[1],
+            m->k_d[2], CONFIDENCE * m->k_d_error[0], CONFIDENCE * m->k_d_error[1], CONFIDENCE * m->k_d_error[2],
+            m->spread, m->lit, m->unlit);
 }
 
 /* The observed radiance and the one that the fit explains. */
@@ -344,6 +369,7 @@ enum status solved_lights_write(const struct solved_lights *s, const struct solv
     if (!st && prov) provenance_print(prov, f.fp);
     if (!st) fputs("remodel-light-fit 1\n", f.fp);
     for (int i = 0; !st && i < s->lamp_count; i++) write_lamp(s, in, i, f.fp);
+    for (int i = 0; !st && i < s->material_count; i++) write_material(&s->materials[i], f.fp);
     for (int i = 0; !st && i < s->point_count; i++) write_point(s, in, i, f.fp);
     if (!st) st = outfile_commit(&f, err);
     outfile_discard(&f);

@@ -18,7 +18,7 @@ static void lamps_windows_and_points_are_read(void **state)
                                                  "disk spot in v01 100 20 rim 110 20 off 0.1 normal 0 0 -2 beta fit "
                                                  "exponent 1.5\n"
                                                  "area panel in v01 1 2 3 4 5 6 7 8 radiance 3 2 1\n"
-                                                 "unlit panel in v01 1 2 3 4\nline spot in v03 1 2 30 40\n"),
+                                                 "unlit panel in v01 1 2 3 4 of plaster\nline spot in v03 1 2 30 40\n"),
                                    &err),
               err);
     assert_int_equal(l.count, 7);
@@ -32,6 +32,7 @@ static void lamps_windows_and_points_are_read(void **state)
     assert_true(l.items[3].has_radiance == QUANTITY_DEFAULT && l.items[3].pixel[2] == 110);
     assert_true(l.items[4].kind == NOTE_AREA && l.items[4].pixel[7] == 8 && l.items[4].radiance[1] == 2);
     assert_true(l.items[5].lamp == 4 && l.items[5].pixels == 2);
+    assert_string_equal(l.items[5].material, "plaster");
     assert_true(l.items[6].kind == NOTE_LINE && l.items[6].line == 8);
     annotation_list_release(&l);
     assert_null(l.items);
@@ -63,6 +64,9 @@ static void mistakes_are_refused(void **state)
         {HEAD SPOT "lit spot in v01 -5 5\n", "a pixel's x from 0"},
         {HEAD "area p in v01 1 2 3 4 5 6 7 8\nline p in v01 1 1 9 9\n", "only a disk has a cone"},
         {HEAD "disk a in v01 1 2 rim 3 4 beta 30\nline a in v01 1 1 9 9\n", "write beta fit there"},
+        {HEAD SPOT "lit spot in v01 5 5 on floor\n", "a pixel's x from 0 to 1e+06, or of"},
+        {HEAD SPOT "lit spot in v01 5 5 of\n", "the name of a material"},
+        {HEAD SPOT "lit spot in v01 5 5 of a\nunlit spot in v01 5 5 of b\n", "must be of one material"},
         {HEAD "window w lri_1\n", "\"reference\""},
         {HEAD "window w reference\n", "lighting reference image"},
     };

@@ -66,8 +66,8 @@ static void set_point(struct room *room, int i, int material, double x, double y
 {
     struct fit_point *p = &room->points[i];
     room->at[i] = vec3_make(x, y, 0);
-    *p =
-        (struct fit_point){.material = material, .lit = lit, .cluster = i / 5, .sigma = noise, .place = "lights.txt:7"};
+    *p = (struct fit_point){
+        .material = material, .lamp = material, .lit = lit, .cluster = i / 5, .sigma = noise, .place = "lights.txt:7"};
     for (int c = 0; c < 3; c++) {
         p->indirect[c] = (1 + 0.2 * x - 0.1 * y) * (1 - 0.1 * c);
         double e = p->indirect[c];
@@ -91,8 +91,8 @@ static void furnish(struct room *room, int lamps, int each, double exponent, dou
                                    .texture = 0.01,
                                    .max_spread = 0.25};
     for (int l = 0; l < lamps; l++) {
-        room->lamps[l] = (struct fit_lamp){.name = "spot", .fit = true, .exponent = exponent};
-        room->materials[l].lamp = l;
+        room->lamps[l] = (struct fit_lamp){.name = "spot", .material = l, .fit = true, .exponent = exponent};
+        room->materials[l].name = "floor";
         for (int k = 0; k < 2 * each; k++) {
             const bool lit = k < each;
             const double turn = 2.4 * k, r = lit ? 1.2 * sqrt((k + 0.5) / each) : 2.2 + 0.8 * (k - each) / (double)each;
@@ -142,6 +142,21 @@ static void lamps_that_light_each_others_points_are_fitted_together(void **state
     assert_ok(light_fit_solve(&room.fit, &err), err);
     assert_radiance(&room, 0, 0.03);
     assert_radiance(&room, 1, 0.03);
+}
+
+static void lamps_over_the_same_material_share_its_reflectance(void **state)
+{
+    (void)state;
+    struct room room;
+    struct err err = ERR_INIT;
+    furnish(&room, 2, 20, 0, 0.01);
+    room.lamps[1].material = 0;
+    room.fit.material_count = 1;
+    for (int i = 0; i < room.fit.point_count; i++) room.points[i].material = 0;
+    assert_ok(light_fit_solve(&room.fit, &err), err);
+    assert_radiance(&room, 0, 0.03);
+    assert_radiance(&room, 1, 0.03);
+    assert_int_equal(room.materials[0].unlit, 40);
 }
 
 static void the_exponent_is_fitted(void **state)
@@ -253,6 +268,7 @@ int main(void)
         cmocka_unit_test(one_lit_and_one_unlit_point_give_the_lamp),
         cmocka_unit_test(noise_of_photographs_leaves_the_lamp_within_three_percent),
         cmocka_unit_test(lamps_that_light_each_others_points_are_fitted_together),
+        cmocka_unit_test(lamps_over_the_same_material_share_its_reflectance),
         cmocka_unit_test(the_exponent_is_fitted),
         cmocka_unit_test(a_lit_point_on_another_material_counts_little),
         cmocka_unit_test(an_error_of_indirect_light_widens_the_interval),
