@@ -146,6 +146,18 @@ static enum status list_traces(struct line_set *s, struct err *err)
     return st;
 }
 
+/* How much an error of the marked centre turns the edge, as seen from the lamp. */
+static double click_error(const struct line_set *s)
+{
+    const struct annotation *a = &s->in->notes->items[s->in->scene->lamp_notes[s->lamp]];
+    const struct lamp *l = &s->in->scene->lights.lamps[s->lamp];
+    const double pixels = hypot(a->pixel[2] - a->pixel[0], a->pixel[3] - a->pixel[1]);
+    double nearest = INFINITY;
+    for (int k = 0; k < s->line_count; k++)
+        nearest = fmin(nearest, vec3_length(vec3_sub(s->in->scene->points[s->first[k]].at, l->centre)));
+    return pixels > 0 && nearest > 0 ? s->in->params->click * l->radius / pixels / nearest : 0;
+}
+
 enum status lines_fit_beta(double *error, const struct solve_inputs *in, int lamp, bool known, struct err *err)
 {
     const size_t points = (size_t)in->scene->point_count, lines = (size_t)lines_of_lamp(in->scene, lamp);
@@ -174,7 +186,7 @@ enum status lines_fit_beta(double *error, const struct solve_inputs *in, int lam
     if (!st) st = cone_fit_solve(&f, err);
     if (!st) {
         l->beta = f.beta;
-        *error = f.error;
+        *error = hypot(f.error, click_error(&s));
     }
     release(&s);
     return st;
