@@ -153,6 +153,15 @@ enum light_source field_atlas_look(struct rgb *radiance, const struct field_atla
     return LIGHT_NONE;
 }
 
+void field_atlas_prefetch(const struct field_atlas *a, int face, struct vec3 p)
+{
+    if (face < 0 || face >= a->ids || a->first[face] == a->first[face + 1]) return;
+    const struct atlas_tile *t = &a->atlas.tiles[a->first[face]];
+    const double x = along(t->matrix[0], p) - t->x, y = along(t->matrix[1], p) - t->y;
+    if (x >= 0 && y >= 0 && x < t->width && y < t->height)
+        __builtin_prefetch(texel_at(a, t, t->x + (int)x, t->y + (int)y));
+}
+
 /* ------------------------------------------------------------------------------------------------------------- lamps */
 
 /* A lamp seen in a tile: a texel (x, y) of the page lies q = right (x - left) + down (y - top) from its centre. */

@@ -23,6 +23,10 @@ void field_atlas_release(struct field_atlas *a);
 /* The radiance of the texel at a point of a face, model frame. LIGHT_NONE: the atlas has none there, *radiance is 0. */
 enum light_source field_atlas_look(struct rgb *radiance, const struct field_atlas *a, int face, struct vec3 p);
 
+/* The same in two steps: where the texel is likely to be, which the processor begins to load; then the look-up. In between
+ * there is time for other rays. Asking for the place is no duty. */
+void field_atlas_prefetch(const struct field_atlas *a, int face, struct vec3 p);
+
 /* A face's plane, normal . p = offset. */
 struct face_plane {
     struct vec3 normal; /* unit */

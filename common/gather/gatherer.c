@@ -1,4 +1,8 @@
-/* gatherer.c - see gatherer.h.
+/* gatherer.c - irradiance to a target error.
+ *
+ * `auto` is rays: at 1 % they need a small part of the hemicube's time wherever light is bright in few directions
+ * (docs/benchmarks.md, `irradiance`), and their stated error is honest. Rays are repeated with more of them until their
+ * stated error is at most the target (mixture.c).
  *
  * A hemicube's resolution is doubled, from COARSEST on, until the error that it states for the luminance is at most the
  * target. Each has four times the rays of the one before, so that all of them together cost a third more than the last
@@ -6,8 +10,9 @@
 #include "common/gather/gatherer.h"
 
 #include <stdlib.h>
+#include <string.h>
 
-enum { COARSEST = 32, MOST_CUBES = 16 };
+enum { COARSEST = 128, MOST_CUBES = 16 };
 
 struct gatherer {
     struct gather_params params;
@@ -22,12 +27,18 @@ enum status gather_params_check(const struct gather_params *p, struct err *err)
                    p->hemicube + 1);
 }
 
+static bool gather_params_hemicube(const struct gather_params *p) { return !strcmp(p->estimator, "hemicube"); }
+
 enum status gatherer_make(struct gatherer **g, const struct gather_params *p, struct err *err)
 {
     *g = NULL;
     struct gatherer *made = calloc(1, sizeof *made);
     if (!made) return err_nomem(err, "a gather of light", sizeof *made);
     made->params = *p;
+    if (!gather_params_hemicube(p)) {
+        *g = made;
+        return ST_OK;
+    }
     int n = p->hemicube, steps = 1;
     while (p->target_error > 0 && n % 4 == 0 && n / 2 >= COARSEST) {
         n /= 2;
@@ -52,11 +63,23 @@ void gatherer_free(struct gatherer *g)
     free(g);
 }
 
+static void gather_rays(struct irradiance *e, const struct gatherer *g, const struct light_field *f,
+                        struct gather_point p, uint64_t key)
+{
+    if (g->params.target_error > 0)
+        ray_irradiance_to(e, f, p, g->params.target_error, g->params.rays, key);
+    else
+        ray_irradiance(e, f, p, g->params.rays, key);
+}
+
 void gatherer_irradiance(struct irradiance *e, const struct gatherer *g, const struct light_field *f,
                          struct gather_point p, uint64_t key)
 {
-    (void)key;
     int rays = 0;
+    if (!g->cube_count) {
+        gather_rays(e, g, f, p, key);
+        return;
+    }
     for (int i = 0; i < g->cube_count; i++) {
         hemicube_irradiance(e, g->cubes[i], f, p);
         rays += e->rays;

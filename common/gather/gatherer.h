@@ -6,11 +6,13 @@
 #include "common/gather/irradiance.h"
 
 /* Parameters of every stage that gathers light: name, type, default, min, max, unit, help */
-#define GATHER_PARAMS(X)                                                                                             \
-    X(estimator, choice, "auto", 0, 0, "auto|hemicube", "how irradiance is computed; auto: the one that is fastest") \
-    X(target_error, double, 0.01, 0, 1, "",                                                                          \
-      "relative error of irradiance at which a gather ends; 0: it always spends all that the next two allow")        \
-    X(hemicube, int, 512, 2, HEMICUBE_MOST, "px", "most pixels in a row of a hemicube; even")
+#define GATHER_PARAMS(X)                                                                                      \
+    X(estimator, choice, "auto", 0, 0, "auto|rays|hemicube",                                                  \
+      "how irradiance is computed; auto: the one that is fastest")                                            \
+    X(target_error, double, 0.01, 0, 1, "",                                                                   \
+      "relative error of irradiance at which a gather ends; 0: it always spends all that the next two allow") \
+    X(hemicube, int, 512, 2, HEMICUBE_MOST, "px", "most pixels in a row of a hemicube; even")                 \
+    X(rays, int, 65536, 64, 1 << 24, "", "most rays of a point, with rays")
 
 struct gather_params {
     GATHER_PARAMS(PARAM_FIELD)

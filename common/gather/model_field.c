@@ -4,8 +4,8 @@
  *   - a declared lamp on its way, seen from the side that shines: S cos(t)^exponent, and 0 beyond the cone's angle;
  *   - the outside of a face: its texel in the VITA, photographed or synthesised; nothing where there is none;
  *   - the inside of a face, from a point in a solid: nothing;
- *   - the outdoors, by direction, where it leaves the model. Panes are clear: photographs through them and reference
- *     images have the light that they let through.
+ *   - the outdoors, by direction, where it leaves the model: the reference images of the opening that it passes
+ *     (field_openings.c), or outdoors.exr. Panes are clear: photographs through them have the light that they let through.
  *
  * Lamps. A lamp is a place of a ceiling, and the two agree to some millimetres only; a lamp that is up to `reach` behind
  * the surface that a ray meets is still in front of it. Texels under a lamp and around it are replaced when the field is
@@ -14,14 +14,15 @@
  * Emitters say where bright light is: every lamp; the openings of lights.txt; panes of the model that lights.txt does not
  * name, since the sky lights through those too; the suns of the outdoors (field_sky.c).
  *
- * Source: the light function L(x -> direction) of [Colburn 2014, 5.3.1 to 5.3.3]. Different here: the outdoors are one
- * picture of all lighting reference images and photographs, not one image per window. */
+ * Source: the light function L(x -> direction) of [Colburn 2014, 5.3.1 to 5.3.3]. Different here: beyond the
+ * images that an opening names, the outdoors are one picture of all lighting reference images and photographs. */
 #include "common/gather/model_field.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/gather/field_openings.h"
 #include "common/math/numbers.h"
 
 static const double REACH = 0.005;     /* of the model's size: 5 cm of 10 m */
@@ -60,13 +61,17 @@ static void see_face(struct light_look *seen, const struct model_field *f, const
                               : LIGHT_NONE;
 }
 
-static void see_outdoors(struct light_look *seen, const struct model_field *f, struct vec3 direction)
+static void see_outdoors(struct light_look *seen, const struct model_field *f, struct vec3 from, struct vec3 direction)
 {
     float rgb[3];
-    const enum outdoors_source source = outdoors_sample(rgb, &f->outdoors, direction);
     seen->distance = INFINITY;
+    if (f->opening_count && field_reference_look(rgb, f, from, direction)) {
+        seen->source = LIGHT_SKY;
+    } else {
+        const enum outdoors_source source = outdoors_sample(rgb, &f->outdoors, direction);
+        seen->source = !f->outdoors.rgb ? LIGHT_NONE : source == OUTDOORS_GUESSED ? LIGHT_SKY_GUESSED : LIGHT_SKY;
+    }
     seen->radiance = rgb_make((double)rgb[0], (double)rgb[1], (double)rgb[2]);
-    seen->source = !f->outdoors.rgb ? LIGHT_NONE : source == OUTDOORS_GUESSED ? LIGHT_SKY_GUESSED : LIGHT_SKY;
 }
 
 static void look(const void *ctx, const struct vec3 from[RAY_PACKET], struct vec3 normal,
@@ -79,6 +84,9 @@ static void look(const void *ctx, const struct vec3 from[RAY_PACKET], struct vec
     for (int k = 0; k < RAY_PACKET; k++)
         if (active >> k & 1) origin[k] = vec3_add(from[k], off);
     const unsigned hit = ray_scene_hit_packet(&f->model.rays, origin, direction, active, hits);
+    for (int k = 0; k < RAY_PACKET; k++)
+        if (hit >> k & 1)
+            field_atlas_prefetch(&f->atlas, solid_face_id(&f->model.mesh, (int)hits[k].id), hits[k].point);
     for (int k = 0; k < RAY_PACKET; k++) {
         double at;
         if (!(active >> k & 1)) continue;
@@ -89,7 +97,7 @@ static void look(const void *ctx, const struct vec3 from[RAY_PACKET], struct vec
         else if (hit >> k & 1)
             see_face(&seen[k], f, &hits[k]);
         else
-            see_outdoors(&seen[k], f, direction[k]);
+            see_outdoors(&seen[k], f, origin[k], direction[k]);
     }
 }
 
@@ -108,12 +116,8 @@ bool model_field_lift(const struct model_field *f, struct gather_point *p, doubl
 static void prepare_lamps(struct model_field *f)
 {
     for (int i = 0; i < f->lights.lamp_count; i++) {
-        const struct lamp *l = &f->lights.lamps[i];
-        const struct vec3 n = vec3_cross(l->x, l->y);
-        const double nn = vec3_dot(n, n);
-        f->lamps[i].lamp = l;
-        f->lamps[i].dual[0] = vec3_scale(vec3_cross(l->y, n), 1 / nn);
-        f->lamps[i].dual[1] = vec3_scale(vec3_cross(n, l->x), 1 / nn);
+        f->lamps[i].lamp = &f->lights.lamps[i];
+        field_dual(f->lamps[i].dual, f->lights.lamps[i].x, f->lights.lamps[i].y);
     }
 }
 
@@ -305,6 +309,7 @@ void model_field_release(struct model_field *f)
     field_atlas_release(&f->atlas);
     outdoors_release(&f->outdoors);
     light_list_release(&f->lights);
+    field_openings_release(f);
     free(f->lamps);
     free(f->emitters);
     free(f->planes);

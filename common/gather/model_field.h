@@ -7,6 +7,7 @@
 #include "common/gather/field_atlas.h"
 #include "common/gather/field_sky.h"
 #include "common/gather/irradiance.h"
+#include "common/gather/outdoors_picture.h"
 #include "common/light/model_rays.h"
 
 /* Where a model's light is read from. */
@@ -24,6 +25,14 @@ struct field_lamp {
     bool off;
 };
 
+/* An opening, ready for rays: where one passes its plane, q from its centre is a x + b y as above. */
+struct field_opening {
+    const struct daylight *opening; /* of `lights` */
+    struct vec3 dual[2];
+    int *references; /* indices of pictures that show what lies behind it, nearest first; owned */
+    int reference_count;
+};
+
 /* {0} is the empty state; everything is owned. */
 struct model_field {
     struct light_field field; /* for the estimators; its ctx is this struct, which must not move */
@@ -33,6 +42,10 @@ struct model_field {
     struct field_sky sky;
     struct light_list lights;
     struct field_lamp *lamps;
+    struct field_opening *openings; /* those with references */
+    int opening_count;
+    struct outdoors_picture *pictures; /* the references, in memory */
+    int picture_count;
     struct emitter *emitters;  /* lamps, then openings, then suns */
     struct face_plane *planes; /* of each face id */
     double reach;              /* how far a lamp may be behind the surface that it lies on, model units */
@@ -44,6 +57,12 @@ struct model_field {
 enum status model_field_read(struct model_field *f, const struct model_field_files *files, struct provenance *prov,
                              struct err *err);
 void model_field_release(struct model_field *f);
+
+/* Reads the lighting reference images that the openings of lights.txt name, FOLDER/ID.exr, with their places in the scene:
+ * a ray through such an opening sees the first of them that shows its direction, and outdoors.exr where none does. ST_DATA
+ * also: an image without a pose, or that shows nothing of the outdoors, because it lies in a solid or looks at one. */
+enum status model_field_read_references(struct model_field *f, const char *folder, const struct model_axes *axes,
+                                        struct provenance *prov, struct err *err);
 
 /* Switches a lamp (an index into `lights`; -1: all) off or on. In the place of a lamp that is off there is the ceiling, in
  * the colour of its surroundings: what is left is the light from elsewhere. Not while others gather. */

@@ -40,6 +40,27 @@ struct gather {
     double (*azimuths)[2]; /* cosine and sine, of each column of samples */
 };
 
+/* --------------------------------------------------------------------------------------------------------- the model */
+
+enum status outdoors_model_read(struct outdoors_model *m, const char *path, struct err *err)
+{
+    *m = (struct outdoors_model){0};
+    if (model_rays_read(&m->rays, path, MODEL_WITHOUT_GLASS, err)) return err->status;
+    const struct solid_mesh *mesh = &m->rays.mesh;
+    m->normals = calloc((size_t)m->rays.ids, sizeof *m->normals);
+    if (!m->normals) return err_nomem(err, "faces", (size_t)m->rays.ids * sizeof *m->normals);
+    for (int i = 0; i < mesh->face_count; i++) m->normals[solid_face_id(mesh, i)] = mesh->faces[i].normal;
+    return ST_OK;
+}
+
+void outdoors_model_release(struct outdoors_model *m)
+{
+    if (!m) return;
+    model_rays_release(&m->rays);
+    free(m->normals);
+    *m = (struct outdoors_model){0};
+}
+
 /* -------------------------------------------------------------------------------------------------------- candidates */
 
 /* Whether a goes before b in a cell's list. */
@@ -209,12 +230,19 @@ static enum status add_inputs(struct provenance *prov, const struct outdoors_pic
     return provenance_add_file(prov, name, p->ids, err);
 }
 
+static enum status load_picture(struct gather *g, int picture, bool *shows, const struct outdoors_model *model,
+                                struct err *err)
+{
+    const struct outdoors_limits limits = {g->params->edge, g->params->max_clutter};
+    return outdoors_picture_load(&g->pictures[picture], shows, &model->rays, model->normals, &limits, err);
+}
+
 static enum status first_pass(struct gather *g, int count, const struct outdoors_model *model, struct provenance *prov,
                               struct progress *progress, struct err *err)
 {
     for (int i = 0; i < count; i++) {
         g->current = i;
-        if (outdoors_picture_load(&g->pictures[i], &g->shows[i], model, g->params, err)) return err->status;
+        if (load_picture(g, i, &g->shows[i], model, err)) return err->status;
         progress_add(progress, 1);
         if (!g->shows[i]) continue;
         if (add_inputs(prov, &g->pictures[i], err)) return err->status;
@@ -240,7 +268,7 @@ static enum status second_pass(struct gather *g, int count, struct outdoors_tota
         progress_add(progress, 1);
         if (!is_chosen(g, i)) continue;
         g->current = i;
-        if (outdoors_picture_load(&g->pictures[i], &shows, model, g->params, err)) return err->status;
+        if (load_picture(g, i, &shows, model, err)) return err->status;
         parallel_for((size_t)g->out->height, ROWS, add_rows, g);
         outdoors_picture_unload(&g->pictures[i]);
         *(g->pictures[i].reference ? &totals->references : &totals->photos) += 1;

@@ -2,8 +2,9 @@
 #ifndef REMODEL_OUTDOORS_GATHER_H
 #define REMODEL_OUTDOORS_GATHER_H
 
+#include "common/gather/outdoors_picture.h"
 #include "common/texture/outdoors.h"
-#include "stages/bake_outdoors/source.h"
+#include "stages/bake_outdoors/outdoors_params.h"
 
 enum { MAX_CANDIDATES = 12 }; /* of a cell */
 
@@ -37,6 +38,15 @@ void outdoors_choose(struct outdoors_cells *cells, const struct outdoors_picture
 
 /* guess.c. Fills what no picture shows. Without any known pixel the picture stays black. */
 enum status outdoors_guess(struct outdoors *o, struct err *err);
+
+/* The model without panes, and the normals of its faces. {0} is the empty state. */
+struct outdoors_model {
+    struct model_rays rays;
+    struct vec3 *normals; /* by id of a face's name; owned */
+};
+
+enum status outdoors_model_read(struct outdoors_model *m, const char *path, struct err *err);
+void outdoors_model_release(struct outdoors_model *m);
 
 /* What a run used, for its log. */
 struct outdoors_totals {

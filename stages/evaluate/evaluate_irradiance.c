@@ -92,7 +92,9 @@ static enum status add_errors(struct evaluation *e, const char *prefix, const ch
     snprintf(name, sizeof name, "rms%s", suffix);
     if (evaluation_metric(e, NULL, prefix, name, 100 * r->rms, "%", "lower", err)) return err->status;
     snprintf(name, sizeof name, "error50%s", suffix);
-    return evaluation_metric(e, NULL, prefix, name, 100 * r->error50, "%", "lower", err);
+    if (evaluation_metric(e, NULL, prefix, name, 100 * r->error50, "%", "lower", err)) return err->status;
+    snprintf(name, sizeof name, "error90%s", suffix);
+    return evaluation_metric(e, NULL, prefix, name, 100 * r->error90, "%", "lower", err);
 }
 
 /* What is compared: the lists, each true point's partner, and whether it lies on the model. */

@@ -8,6 +8,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "common/base/sort.h"
 #include "stages/evaluate/evaluation_parts.h"
 
 #define MIN_COSINE 0.98480775301220802 /* cos 10 degrees */
@@ -50,6 +51,8 @@ enum status irradiance_errors(struct irradiance_errors *e, const struct irradian
     if (e->points) {
         e->rms = sqrt(square / reference);
         e->error50 = median(errors, e->points);
+        sort_doubles(errors, (size_t)e->points);
+        e->error90 = errors[(9 * (e->points - 1) + 5) / 10];
     }
     free(errors);
     return ST_OK;

@@ -15,6 +15,7 @@ void irradiance_partners(int *partner, const struct irradiance_list *truth, cons
 struct irradiance_errors {
     double rms;     /* sqrt(sum (E - E_true)^2 / sum E_true^2) over points and channels */
     double error50; /* median of |Y - Y_true| / Y_true of luminance */
+    double error90; /* the value that nine tenths of them do not exceed */
     int points;
 };
 

@@ -4,7 +4,8 @@
  *         MODEL, PLAN, AXES                             the unedited model, its openings, its frame
  *         VIEWS/cameras.txt, images.txt, lenses.txt     the cameras
  *         VIEWS/VIEW.exr, IDS/VIEW.exr                  the views that face a marked point or a lamp
- *         VITA/atlas.txt, page0.exr, ..., OUTDOORS      what else lights the marked points; or
+ *         VITA/atlas.txt, page0.exr, ..., OUTDOORS,     what else lights the marked points; or
+ *         REFERENCES/ID.exr
  *         INDIRECT                                      their irradiance without the lamps
  * writes  OUT/declared.txt, fit.txt, then OUT/lights.txt
  * With --list instead:
@@ -25,7 +26,8 @@ static const struct param fit_lights_param_table[] = {FIT_LIGHTS_PARAMS(PARAM_RO
 #undef PARAM_STRUCT
 
 struct job {
-    const char *lamps, *model_path, *plan_path, *axes_path, *views, *ids, *vita, *outdoors, *indirect_path, *list, *out;
+    const char *lamps, *model_path, *plan_path, *axes_path, *views, *ids, *vita, *outdoors, *references, *indirect_path,
+        *list, *out;
     struct fit_lights_params params;
     struct provenance prov;
     struct annotation_list notes;
@@ -78,6 +80,7 @@ static enum status gather_indirect(struct job *j, struct err *err)
     enum status st = file_path(declared, j->out, "declared.txt", "", err);
     if (!st) st = light_list_write(&j->scene.lights, declared, &j->prov, err);
     if (!st) st = model_field_read(&field, &files, &j->prov, err);
+    if (!st && j->references) st = model_field_read_references(&field, j->references, &j->model.axes, &j->prov, err);
     if (!st) st = gatherer_make(&gatherer, &params, err);
     if (!st) {
         model_field_switch_lamp(&field, -1, false);
@@ -162,6 +165,8 @@ int main(int argc, char **argv)
         CLI_STR("ids", &j.ids, CLI_REQUIRED, "folder of the faces that each view shows"),
         CLI_STR("vita", &j.vita, CLI_OPTIONAL, "folder of the view-independent atlas, for indirect light"),
         CLI_STR("outdoors", &j.outdoors, CLI_OPTIONAL, "what lies outside, by direction; without it, it is dark"),
+        CLI_STR("references", &j.references, CLI_OPTIONAL,
+                "folder of the lighting reference images that windows of --lamps name"),
         CLI_STR("indirect", &j.indirect_path, CLI_OPTIONAL,
                 "irradiance without the lamps at the points that --list writes: X Y Z NX NY NZ R G B a line"),
         CLI_STR("list", &j.list, CLI_OPTIONAL,

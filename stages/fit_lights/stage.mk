@@ -16,8 +16,8 @@ lights: $(LIGHTS)
 $(O)/stamp/lamps.txt: FORCE
 	+@mkdir -p $(@D); echo '$(LAMPS)' | cmp -s - $@ || echo '$(LAMPS)' >$@
 $(O)/lights/fit.txt $(O)/lights/lights.txt &: $(O)/model/model.txt $(O)/model/plan.txt $(AXES) $(CAMERAS) \
-  $(O)/views/lenses.txt $(VIEW_EXR) $(IDS_EXR) $(VITA_TXT) $(OUTDOORS) $(LAMPS) $(O)/stamp/lamps.txt \
+  $(O)/views/lenses.txt $(VIEW_EXR) $(IDS_EXR) $(VITA_TXT) $(OUTDOORS) $(if $(LAMPS),$(OUTDOORS_LRI)) $(LAMPS) $(O)/stamp/lamps.txt \
   $(call needs,fit_lights)
 	$(call stage,fit_lights,all,$(O),$(LAMPS:%=--lamps %) --model $(O)/model/model.txt --plan $(O)/model/plan.txt \
-	  --axes $(AXES) --views $(O)/views --ids $(O)/ids --vita $(O)/vita --outdoors $(OUTDOORS) --out $(O)/lights)
+	  --axes $(AXES) --views $(O)/views --ids $(O)/ids --vita $(O)/vita --outdoors $(OUTDOORS) $(if $(LAMPS),$(if $(OUTDOORS_LRI),--references $(S)/lri)) --out $(O)/lights)
 endif

@@ -4,6 +4,7 @@
  *         VITA/atlas.txt, page0.exr, ...      the radiance of its faces
  *         OUTDOORS                            what lies outside, by direction
  *         LIGHTS                              its lamps and openings
+ *         REFERENCES/ID.exr                   lighting reference images that openings name
  *         POINTS                              points and normals, in the frame of VIEWS
  *         VIEWS/cameras.txt, images.txt       the cameras
  * writes  OUT/irradiance-parts.txt, irradiance.txt   of POINTS, in the frame of VIEWS
@@ -21,7 +22,7 @@ static enum status check_params(const void *values, struct err *err) { return ga
 
 struct options {
     struct model_field_files files;
-    const char *axes, *points, *view, *views, *step;
+    const char *axes, *references, *points, *view, *views, *step;
     int face;
 };
 
@@ -45,6 +46,8 @@ static enum status gather(struct gather_job *j, const struct options *o, struct 
         provenance_add_file(&j->prov, "model/axes.txt", o->axes, err) || model_axes_read(&j->axes, o->axes, err) ||
         gatherer_make(&j->gatherer, &j->params, err))
         return err->status;
+    if (o->references && model_field_read_references(&j->field, o->references, &j->axes, &j->prov, err))
+        return err->status;
     if (o->points) return gather_points_of_file(j, o->points, err);
     if (o->view) return gather_view(j, o->views, o->view, err);
     return gather_read_step(&step, o->step, err) || gather_points_of_face(j, o->face, step, err) ? err->status : ST_OK;
@@ -61,6 +64,8 @@ int main(int argc, char **argv)
         CLI_STR("vita", &o.files.vita, CLI_REQUIRED, "folder of the view-independent atlas"),
         CLI_STR("outdoors", &o.files.outdoors, CLI_OPTIONAL, "what lies outside, by direction; without it, it is dark"),
         CLI_STR("lights", &o.files.lights, CLI_OPTIONAL, "lamps and openings, lights.txt"),
+        CLI_STR("references", &o.references, CLI_OPTIONAL,
+                "folder of the lighting reference images that openings name; without it, outdoors.exr alone counts"),
         CLI_STR("points", &o.points, CLI_OPTIONAL, "points and normals, X Y Z NX NY NZ a line, in the views' frame"),
         CLI_STR("view", &o.view, CLI_OPTIONAL, "view, each pixel of which gets the irradiance of its surface"),
         CLI_STR("views", &o.views, CLI_OPTIONAL, "folder of cameras"),

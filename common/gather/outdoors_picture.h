@@ -1,14 +1,19 @@
-/* source.h - a picture that may show the outdoors: a view or a lighting reference image, and where it does. */
-#ifndef REMODEL_OUTDOORS_SOURCE_H
-#define REMODEL_OUTDOORS_SOURCE_H
+/* outdoors_picture.h - a picture that may show the outdoors: a view or a lighting reference image, and where it does. */
+#ifndef REMODEL_OUTDOORS_PICTURE_H
+#define REMODEL_OUTDOORS_PICTURE_H
 
 #include "common/capture/lens_list.h"
 #include "common/light/model_rays.h"
 #include "common/model/model_axes.h"
-#include "stages/bake_outdoors/outdoors_params.h"
 
 /* What a sample is good for, best last. */
 enum outdoors_state { SHOWS_NOTHING, SHOWS_CLIPPED, SHOWS_OUTDOORS };
+
+/* Which pixels are left out. */
+struct outdoors_limits {
+    double edge;        /* px: those within this distance of what is not outdoors */
+    double max_clutter; /* those of a view with this clutter or more; 1: none */
+};
 
 /* {0} is the empty state. */
 struct outdoors_picture {
@@ -29,15 +34,6 @@ struct outdoors_picture {
     uint8_t *state;
 };
 
-/* The model without panes, and the normals of its faces. {0} is the empty state. */
-struct outdoors_model {
-    struct model_rays rays;
-    struct vec3 *normals; /* by id of a face's name; owned */
-};
-
-enum status outdoors_model_read(struct outdoors_model *m, const char *path, struct err *err);
-void outdoors_model_release(struct outdoors_model *m);
-
 /* Sets lens and pose of a view, which is in the model's frame, and copies the names. */
 enum status outdoors_picture_of_view(struct outdoors_picture *p, const struct view *view, const char *path,
                                      const char *ids, struct err *err);
@@ -46,10 +42,11 @@ enum status outdoors_picture_of_reference(struct outdoors_picture *p, const char
                                           bool *placed, struct err *err);
 void outdoors_picture_release(struct outdoors_picture *p);
 
-/* Traces the picture's rays and, if some leave the model, reads the picture. *shows: whether some pixel shows the
- * outdoors; if not, nothing is kept. Same bits for any number of threads. */
-enum status outdoors_picture_load(struct outdoors_picture *p, bool *shows, const struct outdoors_model *model,
-                                  const struct outdoors_params *params, struct err *err);
+/* Traces the picture's rays against the model without panes and, if some leave it, reads the picture. *shows: whether some
+ * pixel shows the outdoors; if not, nothing is kept. normals: of the faces, by id of their names; reference images need
+ * none. Same bits for any number of threads. */
+enum status outdoors_picture_load(struct outdoors_picture *p, bool *shows, const struct model_rays *model,
+                                  const struct vec3 *normals, const struct outdoors_limits *limits, struct err *err);
 void outdoors_picture_unload(struct outdoors_picture *p);
 
 /* The colour in a direction (model frame, unit length), bilinear. *facing (may be NULL): how squarely the ray passes the

@@ -1,4 +1,4 @@
-/* source.c - which pixels of a picture show the outdoors.
+/* outdoors_picture.c - which pixels of a picture show the outdoors.
  *
  * A ray through a pixel leaves the model if it meets nothing but panes of glass; the model is traced without them. Such
  * a pixel shows the outdoors unless
@@ -11,7 +11,7 @@
  * How squarely a ray passes an opening is |direction . normal| of the pane. An opening without a pane lies in a wall
  * along the model's axes, so the largest component of the direction stands for it. A reference image is taken in the
  * opening or outside; there the angle to the lens's axis counts, because fisheyes are sharpest at their centre. */
-#include "stages/bake_outdoors/source.h"
+#include "common/gather/outdoors_picture.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -26,27 +26,6 @@
 
 #define ON_SURFACE 1e-6 /* of the model's size: nearer to a solid, a camera is on its surface */
 #define MAX_SIGMA  0.5f /* relative noise of a pixel from which it counts as dark */
-
-/* --------------------------------------------------------------------------------------------------------- the model */
-
-enum status outdoors_model_read(struct outdoors_model *m, const char *path, struct err *err)
-{
-    *m = (struct outdoors_model){0};
-    if (model_rays_read(&m->rays, path, MODEL_WITHOUT_GLASS, err)) return err->status;
-    const struct solid_mesh *mesh = &m->rays.mesh;
-    m->normals = calloc((size_t)m->rays.ids, sizeof *m->normals);
-    if (!m->normals) return err_nomem(err, "faces", (size_t)m->rays.ids * sizeof *m->normals);
-    for (int i = 0; i < mesh->face_count; i++) m->normals[solid_face_id(mesh, i)] = mesh->faces[i].normal;
-    return ST_OK;
-}
-
-void outdoors_model_release(struct outdoors_model *m)
-{
-    if (!m) return;
-    model_rays_release(&m->rays);
-    free(m->normals);
-    *m = (struct outdoors_model){0};
-}
 
 /* ------------------------------------------------------------------------------------------------------ lens and pose */
 
@@ -141,12 +120,12 @@ static bool ray_of(const void *ctx, int x, int y, struct vec3 *direction)
 }
 
 /* Marks the pixels whose rays leave the model. Returns their number. */
-static size_t trace(uint8_t *leaves, uint32_t *faces, const struct outdoors_picture *p, const struct outdoors_model *m)
+static size_t trace(uint8_t *leaves, uint32_t *faces, const struct outdoors_picture *p, const struct model_rays *m)
 {
     const struct rays rays = {p, mat3_transpose(p->cam_from_model)};
     const int width = p->lens.width, height = p->lens.height;
     size_t count = 0;
-    model_rays_picture(faces, &m->rays, p->center, width, height, ray_of, &rays);
+    model_rays_picture(faces, m, p->center, width, height, ray_of, &rays);
     for (int y = 0; y < height; y++)
         for (int x = 0; x < width; x++) {
             const size_t at = (size_t)y * (size_t)width + (size_t)x;
@@ -197,8 +176,8 @@ static enum status read_pixels(struct outdoors_picture *p, struct err *err)
 }
 
 /* Leaves out clutter, and finds the panes that the rays pass. */
-static enum status use_ids(struct outdoors_picture *p, const struct outdoors_model *m,
-                           const struct outdoors_params *params, struct err *err)
+static enum status use_ids(struct outdoors_picture *p, const struct model_rays *m, const struct vec3 *normals,
+                           double max_clutter, struct err *err)
 {
     const struct rays rays = {p, mat3_transpose(p->cam_from_model)};
     const struct view size = {.width = p->lens.width, .height = p->lens.height};
@@ -207,14 +186,14 @@ static enum status use_ids(struct outdoors_picture *p, const struct outdoors_mod
     for (size_t i = 0; !st && i < (size_t)size.width * (size_t)size.height; i++) {
         struct vec3 d;
         if (!p->state[i]) continue;
-        if (ids.clutter[i] >= (float)params->max_clutter && params->max_clutter < 1) {
+        if (ids.clutter[i] >= (float)max_clutter && max_clutter < 1) {
             p->state[i] = SHOWS_NOTHING;
             continue;
         }
         ray_of(&rays, (int)(i % (size_t)size.width), (int)(i / (size_t)size.width), &d);
-        const bool pane = ids.id[i] && ids.id[i] < (uint32_t)m->rays.ids;
+        const bool pane = ids.id[i] && ids.id[i] < (uint32_t)m->ids;
         p->facing[i] =
-            (float)(pane ? fabs(vec3_dot(d, m->normals[ids.id[i]])) : fmax(fabs(d.x), fmax(fabs(d.y), fabs(d.z))));
+            (float)(pane ? fabs(vec3_dot(d, normals[ids.id[i]])) : fmax(fabs(d.x), fmax(fabs(d.y), fabs(d.z))));
     }
     view_ids_release(&ids);
     return st;
@@ -276,25 +255,25 @@ static size_t measure(struct outdoors_picture *p)
     return count;
 }
 
-static enum status load(struct outdoors_picture *p, bool *shows, uint32_t *faces, const struct outdoors_model *model,
-                        const struct outdoors_params *params, struct err *err)
+static enum status load(struct outdoors_picture *p, bool *shows, uint32_t *faces, const struct model_rays *model,
+                        const struct vec3 *normals, const struct outdoors_limits *limits, struct err *err)
 {
     if (!trace(p->state, faces, p, model)) return ST_OK;
     if (read_pixels(p, err)) return err->status;
-    if (p->ids && use_ids(p, model, params, err)) return err->status;
-    if (erode(p, params->edge, err)) return err->status;
+    if (p->ids && use_ids(p, model, normals, limits->max_clutter, err)) return err->status;
+    if (erode(p, limits->edge, err)) return err->status;
     if (!p->ids) face_lens(p);
     *shows = measure(p) > 0;
     return ST_OK;
 }
 
-enum status outdoors_picture_load(struct outdoors_picture *p, bool *shows, const struct outdoors_model *model,
-                                  const struct outdoors_params *params, struct err *err)
+enum status outdoors_picture_load(struct outdoors_picture *p, bool *shows, const struct model_rays *model,
+                                  const struct vec3 *normals, const struct outdoors_limits *limits, struct err *err)
 {
     const size_t pixels = (size_t)p->lens.width * (size_t)p->lens.height;
     uint32_t *faces = NULL;
     *shows = false;
-    if (model_rays_inside(&model->rays, p->center, ON_SURFACE * model_rays_size(&model->rays))) {
+    if (model_rays_inside(model, p->center, ON_SURFACE * model_rays_size(model))) {
         if (p->reference)
             log_warn("lighting reference image %s is inside a solid of the model, and is left out; check its pose.",
                      p->name);
@@ -304,7 +283,7 @@ enum status outdoors_picture_load(struct outdoors_picture *p, bool *shows, const
     p->facing = malloc(pixels * sizeof *p->facing);
     p->state = malloc(pixels);
     faces = malloc(pixels * sizeof *faces);
-    enum status st = p->rgb && p->facing && p->state && faces ? load(p, shows, faces, model, params, err)
+    enum status st = p->rgb && p->facing && p->state && faces ? load(p, shows, faces, model, normals, limits, err)
                                                               : err_nomem(err, "a picture", pixels * 21);
     free(faces);
     if (st || !*shows) outdoors_picture_unload(p);
