@@ -1,0 +1,499 @@
+/* fit.c - lamps and materials by robust least squares [Colburn 2014, 5.3.3].
+ *
+ * Overview. A point of a Lambertian material has the radiance L = k_d (E + sum over lamps of S_j D_j): E is its indirect
+ * irradiance, D_j that of lamp j with radiance 1. E and D_j are known; k_d of each material and S_j of each lamp are not.
+ * One lit and one unlit point determine them (5.5); more points make an overdetermined system.
+ *
+ * Mathematics. Reflectance varies from point to point by factors, and so does the error of E. So the residuals are those
+ * of logarithms, r = (log L - log k_d - log(E + sum S_j D_j)) / sigma, with sigma^2 the variance of the noise plus that of
+ * the material. Then log k_d is the weighted mean of a material's points and drops out [Golub 1973]. Left are log S_j per
+ * colour, which keeps S positive, and the square root of an exponent. Levenberg-Marquardt (Ceres) solves for these;
+ * weights of the Cauchy function, renewed in rounds, bound the influence of outliers (a lit point on a poster).
+ *
+ * The covariance is H^-1 (sum of g g^T) H^-1 with H = J^T W J and g a point's part of the gradient [Huber 1967], which
+ * needs no assumption on the residuals' variance. An error of E by a factor that is the same at all points changes S by
+ * that factor; its relative error is added.
+ *
+ * What differs from the source: points, colours and lamps are fitted together, by logarithms and robustly. */
+#include "stages/fit_lights/fit.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/base/log.h"
+#include "common/math/ceres_least_squares.h"
+#include "common/math/numbers.h"
+#include "common/math/weighted.h"
+
+enum { ROUNDS = 8, ITERATIONS = 100, MOST_UNKNOWNS = 64 };
+#define CAUCHY      2.385 /* residuals beyond it count less; 95 % efficiency for normal errors */
+#define LEAST_SHARE 1e-3  /* difference in the lamp's share of the light by which lit points must differ from others */
+#define STEP        1e-4  /* of an unknown, for derivatives */
+
+struct unknown {
+    int lamp, colour; /* colour 3: the exponent */
+};
+
+struct problem {
+    struct light_fit *f;
+    struct unknown unknowns[MOST_UNKNOWNS];
+    int unknown_count;
+    double *direct; /* [lamp][point] at the lamps' present exponents */
+    double *weight; /* per point and colour, robust; times 1 / sigma^2 it is the weight of the squared residual */
+    double *residual;
+};
+
+/* ------------------------------------------------------------------------------------------------------ the model */
+
+static void set_direct(struct problem *p, int lamp)
+{
+    const struct light_fit *f = p->f;
+    for (int i = 0; i < f->point_count; i++)
+        p->direct[lamp * f->point_count + i] = f->direct(f->ctx, lamp, i, f->lamps[lamp].exponent);
+}
+
+static void set_unknowns(struct problem *p, const double *x)
+{
+    for (int u = 0; u < p->unknown_count; u++) {
+        struct fit_lamp *l = &p->f->lamps[p->unknowns[u].lamp];
+        if (p->unknowns[u].colour < 3) {
+            l->radiance[p->unknowns[u].colour] = exp(clamp(x[u], -60, 60));
+        } else if (l->exponent != fmin(x[u] * x[u], 1000)) {
+            l->exponent = fmin(x[u] * x[u], 1000);
+            set_direct(p, p->unknowns[u].lamp);
+        }
+    }
+}
+
+static void get_unknowns(const struct problem *p, double *x)
+{
+    for (int u = 0; u < p->unknown_count; u++) {
+        const struct fit_lamp *l = &p->f->lamps[p->unknowns[u].lamp];
+        x[u] = p->unknowns[u].colour < 3 ? log(l->radiance[p->unknowns[u].colour]) : sqrt(l->exponent);
+    }
+}
+
+static double irradiance(const struct problem *p, int point, int colour)
+{
+    const struct light_fit *f = p->f;
+    double e = f->points[point].indirect[colour];
+    for (int l = 0; l < f->lamp_count; l++) e += f->lamps[l].radiance[colour] * p->direct[l * f->point_count + point];
+    return e;
+}
+
+static double variance(const struct light_fit *f, int point)
+{
+    return f->points[point].sigma * f->points[point].sigma + f->texture * f->texture + 1e-8;
+}
+
+/* Sets the residuals, not yet robust, and log k_d of the materials. */
+static void set_residuals(struct problem *p)
+{
+    struct light_fit *f = p->f;
+    for (int m = 0; m < f->material_count; m++)
+        for (int c = 0; c < 3; c++) {
+            double sum = 0, weights = 0;
+            for (int i = 0; i < f->point_count; i++) {
+                if (f->points[i].material != m) continue;
+                const double w = p->weight[3 * i + c] / variance(f, i);
+                sum += w * log(f->points[i].radiance[c] / irradiance(p, i, c));
+                weights += w;
+            }
+            f->materials[m].k_d[c] = weights > 0 ? exp(sum / weights) : 0;
+        }
+    for (int i = 0; i < f->point_count; i++)
+        for (int c = 0; c < 3; c++) {
+            const double predicted = f->materials[f->points[i].material].k_d[c] * irradiance(p, i, c);
+            p->residual[3 * i + c] = log(f->points[i].radiance[c] / predicted) / sqrt(variance(f, i));
+        }
+}
+
+static void evaluate(void *ctx, const double *x, double *residuals)
+{
+    struct problem *p = ctx;
+    set_unknowns(p, x);
+    set_residuals(p);
+    for (int i = 0; i < 3 * p->f->point_count; i++) residuals[i] = sqrt(p->weight[i]) * p->residual[i];
+}
+
+/* ----------------------------------------------------------------------------------------- what cannot be solved */
+
+static enum status check_points(const struct light_fit *f, struct err *err)
+{
+    for (int i = 0; i < f->point_count; i++) {
+        const struct fit_point *p = &f->points[i];
+        if (!p->lit && !(fmin(p->indirect[0], fmin(p->indirect[1], p->indirect[2])) > 0))
+            return err_set(
+                err, ST_DATA,
+                "%s: no indirect light reaches this unlit point, so nothing can be learned from its radiance; "
+                "choose another point.",
+                p->place);
+    }
+    return ST_OK;
+}
+
+/* Whether a point tells of a lamp: a lit one that was marked for it, or any unlit one of its material. */
+static bool concerns(const struct light_fit *f, int point, int lamp, bool lit)
+{
+    const struct fit_point *p = &f->points[point];
+    return p->lit == lit && (lit ? p->lamp == lamp : p->material == f->lamps[lamp].material);
+}
+
+static const char *place_of(const struct light_fit *f, int lamp, bool lit)
+{
+    for (int i = 0; i < f->point_count; i++)
+        if (concerns(f, i, lamp, lit)) return f->points[i].place;
+    return "";
+}
+
+/* The light at a point without that of one lamp. */
+static double other_light(const struct problem *p, int point, int colour, int lamp)
+{
+    return irradiance(p, point, colour) -
+           p->f->lamps[lamp].radiance[colour] * p->direct[lamp * p->f->point_count + point];
+}
+
+/* Whether a lamp's light differs between its lit points and the others. */
+static enum status check_lamp(const struct problem *p, int lamp, struct err *err)
+{
+    const struct light_fit *f = p->f;
+    const char *name = f->lamps[lamp].name;
+    double most = 0, least = INFINITY;
+    int lit = 0, unlit = 0;
+    for (int i = 0; i < f->point_count; i++) {
+        const double share = p->direct[lamp * f->point_count + i] / fmax(f->points[i].indirect[1], 1e-30);
+        if (concerns(f, i, lamp, true)) {
+            most = fmax(most, share);
+            lit++;
+        } else if (concerns(f, i, lamp, false)) {
+            least = fmin(least, share);
+            unlit++;
+        }
+    }
+    if (!lit || !unlit)
+        return err_set(
+            err, ST_DATA,
+            "the lamp %s has %d lit and %d unlit points that views show unsaturated, wanted one of each; add a line "
+            "\"%s %s in VIEW X Y\".",
+            name, lit, unlit, lit ? "unlit" : "lit", name);
+    if (!(most > 0))
+        return err_set(
+            err, ST_DATA,
+            "%s: no light of the lamp %s reaches its lit points: they are outside its cone, turned away, or the "
+            "model hides it from them.",
+            place_of(f, lamp, true), name);
+    if (most - least < LEAST_SHARE * most)
+        return err_set(
+            err, ST_DATA,
+            "%s: the lamp %s gives its lit and unlit points the same irradiance, so its radiance cannot be told "
+            "from the reflectance; choose unlit points outside its cone or in shadow.",
+            place_of(f, lamp, true), name);
+    return ST_OK;
+}
+
+/* ------------------------------------------------------------------------------------------------------- the start */
+
+/* The median k_d of the unlit points of a lamp's material. */
+static double start_k_d(const struct problem *p, int lamp, int colour, struct weighted *scratch)
+{
+    const struct light_fit *f = p->f;
+    size_t n = 0;
+    for (int i = 0; i < f->point_count; i++)
+        if (concerns(f, i, lamp, false))
+            scratch[n++] = (struct weighted){f->points[i].radiance[colour] / irradiance(p, i, colour), 1};
+    return weighted_percentile(scratch, n, 0.5);
+}
+
+/* The median S of a lamp's lit points, given k_d; 0: they are no brighter. */
+static double start_radiance(const struct problem *p, int lamp, int colour, double k_d, struct weighted *scratch)
+{
+    const struct light_fit *f = p->f;
+    const double *direct = p->direct + (ptrdiff_t)lamp * f->point_count;
+    size_t n = 0;
+    for (int i = 0; i < f->point_count; i++)
+        if (concerns(f, i, lamp, true) && direct[i] > 0)
+            scratch[n++] = (struct weighted){
+                (f->points[i].radiance[colour] / k_d - other_light(p, i, colour, lamp)) / direct[i], 1};
+    const double s = weighted_percentile(scratch, n, 0.5);
+    return s > 0 && isfinite(s) ? s : 0;
+}
+
+/* S of the lamps by (5.5), from medians, one lamp and colour after the other; some rounds, as lamps light each other's
+ * points. ST_DATA: the lit points of a lamp are no brighter. */
+static enum status start_lamps(struct problem *p, struct weighted *scratch, struct err *err)
+{
+    const struct light_fit *f = p->f;
+    for (int round = 0; round < ROUNDS; round++)
+        for (int l = 0; l < f->lamp_count; l++)
+            for (int c = 0; f->lamps[l].fit && c < 3; c++)
+                f->lamps[l].radiance[c] = start_radiance(p, l, c, start_k_d(p, l, c, scratch), scratch);
+    for (int l = 0; l < f->lamp_count; l++) {
+        struct fit_lamp *lamp = &f->lamps[l];
+        const double best = fmax(lamp->radiance[0], fmax(lamp->radiance[1], lamp->radiance[2]));
+        if (!lamp->fit) continue;
+        if (!(best > 0))
+            return err_set(
+                err, ST_DATA,
+                "%s: the lit points of the lamp %s are no brighter than its unlit points under the indirect light "
+                "alone: the lamp is off, or they are of different materials.",
+                place_of(f, l, true), lamp->name);
+        for (int c = 0; c < 3; c++) lamp->radiance[c] = fmax(lamp->radiance[c], 0.01 * best);
+    }
+    return ST_OK;
+}
+
+/* ------------------------------------------------------------------------------------------------------ the solution */
+
+static void renew_weights(struct problem *p)
+{
+    set_residuals(p);
+    for (int i = 0; i < 3 * p->f->point_count; i++) {
+        const double r = p->residual[i] / CAUCHY;
+        p->weight[i] = 1 / (1 + r * r);
+    }
+}
+
+static enum status solve(struct problem *p, struct err *err)
+{
+    const struct least_squares problem = {p->unknown_count, 3 * p->f->point_count, evaluate, p, ITERATIONS};
+    double x[MOST_UNKNOWNS];
+    get_unknowns(p, x);
+    for (int round = 0; round < ROUNDS; round++) {
+        if (p->unknown_count && ceres_least_squares(&problem, x, err)) return err->status;
+        set_unknowns(p, x);
+        renew_weights(p);
+    }
+    return ST_OK;
+}
+
+/* The standard deviation of a material's points, robust, as a fraction of its reflectance. */
+static double spread_of(struct problem *p, int material, struct weighted *scratch)
+{
+    const struct light_fit *f = p->f;
+    size_t n = 0;
+    for (int i = 0; i < f->point_count; i++)
+        for (int c = 0; f->points[i].material == material && c < 3; c++)
+            scratch[n++] = (struct weighted){fabs(p->residual[3 * i + c]) * sqrt(variance(f, i)), 1};
+    return weighted_percentile(scratch, n, 0.75) / 1.1503;
+}
+
+static enum status check_spread(struct problem *p, struct weighted *scratch, struct err *err)
+{
+    for (int m = 0; m < p->f->material_count; m++) {
+        struct fit_material *material = &p->f->materials[m];
+        const char *place = "";
+        for (int i = p->f->point_count - 1; i >= 0; i--)
+            if (p->f->points[i].material == m) place = p->f->points[i].place;
+        if (!(material->lit + material->unlit)) continue;
+        material->spread = spread_of(p, m, scratch);
+        if (material->spread > p->f->max_spread)
+            return err_set(
+                err, ST_DATA,
+                "%s: the points of the material %s are not of one material: their reflectances differ by %.0f %%, at "
+                "most %.0f %% are allowed (max_spread); choose points of one material.",
+                place, material->name, 100 * material->spread, 100 * p->f->max_spread);
+    }
+    return ST_OK;
+}
+
+/* --------------------------------------------------------------------------------------------------------- intervals */
+
+/* Inverts a symmetric positive matrix in place by Gauss-Jordan elimination; false: it is singular. */
+static bool invert(double *a, int n)
+{
+    for (int k = 0; k < n; k++) {
+        const double pivot = a[k * n + k];
+        if (!(fabs(pivot) > 1e-300)) return false;
+        a[k * n + k] = 1;
+        for (int j = 0; j < n; j++) a[k * n + j] /= pivot;
+        for (int i = 0; i < n; i++) {
+            const double factor = a[i * n + k];
+            if (i == k) continue;
+            a[i * n + k] = 0;
+            for (int j = 0; j < n; j++) a[i * n + j] -= factor * a[k * n + j];
+        }
+    }
+    return true;
+}
+
+static int cluster_count(const struct light_fit *f)
+{
+    int count = 0;
+    for (int i = 0; i < f->point_count; i++) count += !i || f->points[i].cluster != f->points[i - 1].cluster;
+    return count;
+}
+
+/* Adds the products of gradients, of single points or summed over clusters. Points of a cluster follow each other. */
+static void add_meat(const struct problem *p, const double *jacobian, bool clusters, double *meat)
+{
+    const int n = p->unknown_count, points = p->f->point_count, rows = 3 * points;
+    double g[MOST_UNKNOWNS] = {0};
+    for (int i = 0; i < points; i++) {
+        for (int a = 0; a < n; a++)
+            for (int c = 3 * i; c < 3 * i + 3; c++)
+                g[a] += jacobian[a * rows + c] * sqrt(p->weight[c]) * p->residual[c];
+        if (clusters && i + 1 < points && p->f->points[i + 1].cluster == p->f->points[i].cluster) continue;
+        for (int a = 0; a < n; a++)
+            for (int b = 0; b < n; b++) meat[a * n + b] += g[a] * g[b];
+        memset(g, 0, sizeof g);
+    }
+}
+
+/* The roots of the diagonal of H^-1 meat H^-1, corrected for the number of clusters. */
+static void cluster_errors(double *errors, const double *h, const double *meat, int n, int clusters,
+                           const struct problem *p)
+{
+    /* unknowns and reflectances of one colour use up clusters */
+    const int used = (n + 2) / 3 + p->f->material_count;
+    const double correction = clusters > used ? (double)clusters / (clusters - used) : clusters;
+    for (int a = 0; a < n; a++) {
+        double v = 0;
+        for (int i = 0; i < n; i++)
+            for (int j = 0; j < n; j++) v += h[a * n + i] * meat[i * n + j] * h[j * n + a];
+        errors[a] = sqrt(v * correction);
+    }
+}
+
+/* The errors if the reflectance of all points that were marked together deviates in all colours: by `texture`, or by half of
+ * what single points of the material do, as they cover a few of its planks or bricks. */
+static void assumed_errors(double *errors, const double *h, const double *jacobian, const struct problem *p)
+{
+    const struct light_fit *f = p->f;
+    const int n = p->unknown_count, rows = 3 * f->point_count;
+    double shift[MOST_UNKNOWNS] = {0}, variances[MOST_UNKNOWNS] = {0};
+    for (int i = 0; i < f->point_count; i++) {
+        const double deviation = fmax(f->texture, 0.5 * f->materials[f->points[i].material].spread);
+        for (int a = 0; a < n; a++)
+            for (int c = 3 * i; c < 3 * i + 3; c++)
+                shift[a] += jacobian[a * rows + c] * sqrt(p->weight[c]) * deviation / sqrt(variance(f, i));
+        if (i + 1 < f->point_count && f->points[i + 1].cluster == f->points[i].cluster) continue;
+        for (int a = 0; a < n; a++) {
+            double moved = 0;
+            for (int b = 0; b < n; b++) moved += h[a * n + b] * shift[b];
+            variances[a] += moved * moved;
+        }
+        memset(shift, 0, sizeof shift);
+    }
+    for (int a = 0; a < n; a++) errors[a] = sqrt(variances[a]);
+}
+
+/* Standard errors of the unknowns: the largest of what single points, points marked together, and the assumed deviations
+ * of noise and material show, because few points may agree by chance. jacobian: [unknown][residual]. */
+static void find_errors(struct problem *p, double *jacobian, double errors[MOST_UNKNOWNS])
+{
+    const int n = p->unknown_count, points = p->f->point_count, rows = 3 * points;
+    double x[MOST_UNKNOWNS] = {0}, h[MOST_UNKNOWNS * MOST_UNKNOWNS] = {0}, meat[MOST_UNKNOWNS * MOST_UNKNOWNS] = {0};
+    double *low = p->residual, clustered[MOST_UNKNOWNS];
+    get_unknowns(p, x);
+    for (int u = 0; u < n; u++) {
+        const double at = x[u], step = p->unknowns[u].colour < 3 ? STEP : STEP * fmax(1, at);
+        x[u] = at + step;
+        evaluate(p, x, jacobian + (ptrdiff_t)u * rows);
+        x[u] = at - step;
+        set_unknowns(p, x);
+        set_residuals(p);
+        for (int i = 0; i < rows; i++)
+            jacobian[u * rows + i] = (jacobian[u * rows + i] - sqrt(p->weight[i]) * low[i]) / (2 * step);
+        x[u] = at;
+    }
+    set_unknowns(p, x);
+    set_residuals(p);
+    for (int a = 0; a < n; a++)
+        for (int b = 0; b < n; b++)
+            for (int i = 0; i < rows; i++) h[a * n + b] += jacobian[a * rows + i] * jacobian[b * rows + i];
+    if (!invert(h, n)) {
+        for (int a = 0; a < n; a++) errors[a] = INFINITY;
+        return;
+    }
+    add_meat(p, jacobian, false, meat);
+    cluster_errors(errors, h, meat, n, points, p);
+    memset(meat, 0, sizeof meat);
+    add_meat(p, jacobian, true, meat);
+    cluster_errors(clustered, h, meat, n, cluster_count(p->f), p);
+    for (int a = 0; a < n; a++) errors[a] = fmax(errors[a], clustered[a]);
+    assumed_errors(clustered, h, jacobian, p);
+    for (int a = 0; a < n; a++) errors[a] = fmax(fmax(errors[a], clustered[a]), sqrt(h[a * n + a]));
+}
+
+static void set_errors(struct problem *p, const double errors[MOST_UNKNOWNS])
+{
+    struct light_fit *f = p->f;
+    for (int u = 0; u < p->unknown_count; u++) {
+        struct fit_lamp *l = &f->lamps[p->unknowns[u].lamp];
+        const int c = p->unknowns[u].colour;
+        const double e = isfinite(errors[u]) ? errors[u] : 1;
+        if (c < 3)
+            l->radiance_error[c] = l->radiance[c] * hypot(e, f->irradiance_error);
+        else
+            l->exponent_error = 2 * sqrt(l->exponent) * e + e * e;
+    }
+    for (int m = 0; m < f->material_count; m++)
+        for (int c = 0; c < 3; c++) {
+            struct fit_material *material = &f->materials[m];
+            const int n = material->lit + material->unlit;
+            material->k_d_error[c] =
+                material->k_d[c] * hypot(fmax(material->spread, f->texture) / sqrt(fmax(n, 1)), f->irradiance_error);
+        }
+}
+
+/* ---------------------------------------------------------------------------------------------------------------- all */
+
+static enum status list_unknowns(struct problem *p, struct err *err)
+{
+    for (int l = 0; l < p->f->lamp_count; l++)
+        for (int c = 0; p->f->lamps[l].fit && c < 3 + p->f->lamps[l].fit_exponent; c++) {
+            if (p->unknown_count == MOST_UNKNOWNS)
+                return err_set(err, ST_DATA,
+                               "%d lamps are too many to be fitted together, at most %d; give the radiance of some.",
+                               p->f->lamp_count, MOST_UNKNOWNS / 4);
+            p->unknowns[p->unknown_count++] = (struct unknown){l, c};
+        }
+    return ST_OK;
+}
+
+static enum status fit_all(struct problem *p, struct weighted *scratch, double *jacobian, struct err *err)
+{
+    struct light_fit *f = p->f;
+    double errors[MOST_UNKNOWNS];
+    for (int l = 0; l < f->lamp_count; l++) set_direct(p, l);
+    for (int i = 0; i < 3 * f->point_count; i++) p->weight[i] = 1;
+    enum status st = check_points(f, err);
+    for (int l = 0; !st && l < f->lamp_count; l++)
+        if (f->lamps[l].fit) st = check_lamp(p, l, err);
+    if (!st) st = start_lamps(p, scratch, err);
+    if (!st) st = solve(p, err);
+    if (!st) st = check_spread(p, scratch, err);
+    if (st) return st;
+    find_errors(p, jacobian, errors);
+    set_errors(p, errors);
+    return ST_OK;
+}
+
+enum status light_fit_solve(struct light_fit *f, struct err *err)
+{
+    struct problem p = {.f = f};
+    const size_t points = (size_t)f->point_count, lamps = (size_t)f->lamp_count;
+    for (int m = 0; m < f->material_count; m++) f->materials[m].lit = f->materials[m].unlit = 0;
+    for (int i = 0; i < f->point_count; i++) {
+        struct fit_material *m = &f->materials[f->points[i].material];
+        *(f->points[i].lit ? &m->lit : &m->unlit) += 1;
+    }
+    enum status st = list_unknowns(&p, err);
+    if (st || !f->point_count) return st;
+    p.direct = calloc(points * lamps + 1, sizeof *p.direct);
+    p.weight = calloc(3 * points + 1, sizeof *p.weight);
+    p.residual = calloc(3 * points + 1, sizeof *p.residual);
+    struct weighted *scratch = calloc(3 * points + 1, sizeof *scratch);
+    double *jacobian = calloc((3 * points + 1) * (size_t)(p.unknown_count + 1), sizeof *jacobian);
+    if (p.direct && p.weight && p.residual && scratch && jacobian)
+        st = fit_all(&p, scratch, jacobian, err);
+    else
+        st = err_nomem(err, "points of lamps", points * lamps * sizeof *p.direct);
+    free(p.direct);
+    free(p.weight);
+    free(p.residual);
+    free(scratch);
+    free(jacobian);
+    return st;
+}

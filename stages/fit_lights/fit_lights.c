@@ -1,0 +1,187 @@
+/* fit_lights.c - the lamps of a scene and the openings that let daylight in: where they are, how bright, how wide.
+ *
+ * reads   LAMPS                                         scenes/NAME/lights.txt: what a person marked; optional
+ *         MODEL, PLAN, AXES                             the unedited model, its openings, its frame
+ *         VIEWS/cameras.txt, images.txt, lenses.txt     the cameras
+ *         VIEWS/VIEW.exr, IDS/VIEW.exr                  the views that face a marked point or a lamp
+ *         VITA/atlas.txt, page0.exr, ..., OUTDOORS,     what else lights the marked points; or
+ *         REFERENCES/ID.exr
+ *         INDIRECT                                      their irradiance without the lamps
+ * writes  OUT/declared.txt, fit.txt, then OUT/lights.txt
+ * With --list instead:
+ * writes  OUT                                           the points at which indirect light is needed */
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/base/cli.h"
+#include "common/base/file_path.h"
+#include "common/base/log.h"
+#include "common/gather/model_field.h"
+#include "common/math/numbers.h"
+#include "stages/fit_lights/indirect.h"
+#include "stages/fit_lights/solve.h"
+
+#define PARAM_STRUCT struct fit_lights_params
+static const struct param fit_lights_param_table[] = {FIT_LIGHTS_PARAMS(PARAM_ROW) GATHER_PARAMS(PARAM_ROW) PARAM_END};
+#undef PARAM_STRUCT
+
+struct job {
+    const char *lamps, *model_path, *plan_path, *axes_path, *views, *ids, *vita, *outdoors, *references, *indirect_path,
+        *list, *out;
+    struct fit_lights_params params;
+    struct provenance prov;
+    struct annotation_list notes;
+    struct lit_model model;
+    struct lit_scene scene;
+    struct indirect indirect;
+};
+
+static enum status read_inputs(struct job *j, struct err *err)
+{
+    char path[FILE_PATH];
+    if (provenance_add_file(&j->prov, "model/model.txt", j->model_path, err) ||
+        model_rays_read(&j->model.rays, j->model_path, MODEL_WITHOUT_GLASS, err) ||
+        provenance_add_file(&j->prov, "model/plan.txt", j->plan_path, err) ||
+        model_plan_read(&j->model.plan, j->plan_path, err) ||
+        provenance_add_file(&j->prov, "model/axes.txt", j->axes_path, err) ||
+        model_axes_read(&j->model.axes, j->axes_path, err) || camera_set_add_camera_inputs(&j->prov, j->views, err) ||
+        camera_set_read_cameras(&j->model.set, j->views, err) ||
+        provenance_add_in(&j->prov, "views", j->views, "lenses", ".txt", path, err) ||
+        lens_list_read(&j->model.lenses, path, err))
+        return err->status;
+    if (j->lamps &&
+        (provenance_add_file(&j->prov, "lights.txt", j->lamps, err) || annotation_list_read(&j->notes, j->lamps, err)))
+        return err->status;
+    return lit_scene_resolve(&j->scene, j->lamps ? &j->notes : NULL, &j->model, j->params.grid, err);
+}
+
+#define COPY_FIELD(name, ...) memcpy(&g.name, &p->name, sizeof g.name);
+static struct gather_params gather_params_of(const struct fit_lights_params *p)
+{
+    struct gather_params g;
+    GATHER_PARAMS(COPY_FIELD)
+    return g;
+}
+
+static enum status check_params(const void *values, struct err *err)
+{
+    const struct gather_params g = gather_params_of(values);
+    return gather_params_check(&g, err);
+}
+
+/* From the field of the textured model, whose lamps, as declared, are off. */
+static enum status gather_indirect(struct job *j, struct err *err)
+{
+    char declared[FILE_PATH];
+    struct model_field field = {0};
+    struct gatherer *gatherer = NULL;
+    const struct gather_params params = gather_params_of(&j->params);
+    const struct model_field_files files = {j->model_path, j->vita, j->outdoors, declared};
+    enum status st = file_path(declared, j->out, "declared.txt", "", err);
+    if (!st) st = light_list_write(&j->scene.lights, declared, &j->prov, err);
+    if (!st) st = model_field_read(&field, &files, &j->prov, err);
+    if (!st && j->references) st = model_field_read_references(&field, j->references, &j->model.axes, &j->prov, err);
+    if (!st) st = gatherer_make(&gatherer, &params, err);
+    if (!st) {
+        model_field_switch_lamp(&field, -1, false);
+        indirect_gather(&j->indirect, &j->scene, &field.field, gatherer);
+    }
+    gatherer_free(gatherer);
+    model_field_release(&field);
+    return st;
+}
+
+static enum status find_indirect(struct job *j, struct err *err)
+{
+    if (!j->indirect.count) return ST_OK;
+    if (!j->indirect_path && !j->vita)
+        return err_set(err, ST_USAGE,
+                       "%s marks points, so --vita is needed, for the indirect light there, or --indirect.", j->lamps);
+    if (!j->indirect_path) return gather_indirect(j, err);
+    if (provenance_add_file(&j->prov, "lights/indirect.txt", j->indirect_path, err)) return err->status;
+    return indirect_read(&j->indirect, &j->scene, &j->model.axes, j->indirect_path, err);
+}
+
+static void report(const struct light_list *lights, const struct solved_lights *s)
+{
+    for (int i = 0; i < lights->lamp_count; i++) {
+        const struct lamp *l = &lights->lamps[i];
+        const struct lamp_result *r = &s->lamps[i];
+        log_note("lamp %s: radiance %.4g %.4g %.4g +- %.2g, beta %.2f +- %.2f degrees, exponent %.3g", l->name,
+                 l->radiance.r, l->radiance.g, l->radiance.b, 1.96 * r->radiance_error[1], l->beta / DEGREE,
+                 1.96 * r->beta_error / DEGREE, l->exponent);
+    }
+    log_note("%d lamps, %d openings that let daylight in", lights->lamp_count, lights->opening_count);
+}
+
+static enum status write_lights(struct job *j, const struct solved_lights *s, const struct solve_inputs *in,
+                                struct err *err)
+{
+    char path[FILE_PATH];
+    if (file_path(path, j->out, "fit.txt", "", err) || solved_lights_write(s, in, path, &j->prov, err) ||
+        file_path(path, j->out, "lights.txt", "", err) || light_list_write(&j->scene.lights, path, &j->prov, err))
+        return err->status;
+    report(&j->scene.lights, s);
+    return ST_OK;
+}
+
+static enum status fit(struct job *j, struct err *err)
+{
+    struct observations seen = {0};
+    struct direct_light direct = {0};
+    struct solved_lights solved = {0};
+    enum status st = find_indirect(j, err);
+    if (!st && j->lamps)
+        st = observe(&seen, &j->scene, &j->notes, &j->model, j->views, j->ids, &j->params, &j->prov, err);
+    if (!st) st = direct_light_make(&direct, &j->scene, &j->model, err);
+    const struct solve_inputs in = {&j->scene, &j->notes, &seen, &direct, (const double(*)[3])j->indirect.at,
+                                    &j->params};
+    if (!st) st = lights_solve(&solved, &in, err);
+    if (!st) st = write_lights(j, &solved, &in, err);
+    solved_lights_release(&solved);
+    direct_light_release(&direct);
+    observations_release(&seen);
+    return st;
+}
+
+static enum status run(struct job *j, struct err *err)
+{
+    enum status st = read_inputs(j, err);
+    if (!st) st = indirect_init(&j->indirect, &j->scene, err);
+    if (!st && j->list) return indirect_list(&j->indirect, &j->scene, &j->model.axes, j->out, &j->prov, err);
+    return st ? st : fit(j, err);
+}
+
+int main(int argc, char **argv)
+{
+    struct job j = {.params = FIT_LIGHTS_PARAMS_DEFAULT};
+    const struct cli_opt opts[] = {
+        CLI_ABOUT("Places the lamps and windows that a person marked, and fits the lamps' radiance and cones."),
+        CLI_STR("lamps", &j.lamps, CLI_OPTIONAL, "marked lamps, windows and lit points, scenes/NAME/lights.txt"),
+        CLI_STR("model", &j.model_path, CLI_REQUIRED, "the unedited model, model.txt"),
+        CLI_STR("plan", &j.plan_path, CLI_REQUIRED, "its walls and openings, plan.txt"),
+        CLI_STR("axes", &j.axes_path, CLI_REQUIRED, "the model's frame, axes.txt"),
+        CLI_STR("views", &j.views, CLI_REQUIRED, "folder of cameras and rectified views"),
+        CLI_STR("ids", &j.ids, CLI_REQUIRED, "folder of the faces that each view shows"),
+        CLI_STR("vita", &j.vita, CLI_OPTIONAL, "folder of the view-independent atlas, for indirect light"),
+        CLI_STR("outdoors", &j.outdoors, CLI_OPTIONAL, "what lies outside, by direction; without it, it is dark"),
+        CLI_STR("references", &j.references, CLI_OPTIONAL,
+                "folder of the lighting reference images that windows of --lamps name"),
+        CLI_STR("indirect", &j.indirect_path, CLI_OPTIONAL,
+                "irradiance without the lamps at the points that --list writes: X Y Z NX NY NZ R G B a line"),
+        CLI_STR("list", &j.list, CLI_OPTIONAL,
+                "\"points\": only write the points at which indirect light is needed, to --out"),
+        CLI_STR("out", &j.out, CLI_REQUIRED, "folder of lights.txt and fit.txt to write, or with --list the file"),
+        CLI_PARAMS(fit_lights_param_table, &j.params, check_params),
+        CLI_END,
+    };
+    struct err err = ERR_INIT;
+    if (cli_parse(argc, argv, "fit_lights", opts, &j.prov, &err) == CLI_RUN) run(&j, &err);
+    err_report(&err);
+    indirect_release(&j.indirect);
+    lit_scene_release(&j.scene);
+    lit_model_release(&j.model);
+    annotation_list_release(&j.notes);
+    provenance_release(&j.prov);
+    return err_exit_code(&err);
+}

@@ -1,0 +1,46 @@
+/* solve.h - the lamps of a scene: what annotations give, what is fitted, what the views show of them. */
+#ifndef REMODEL_FIT_LIGHTS_SOLVE_H
+#define REMODEL_FIT_LIGHTS_SOLVE_H
+
+#include "stages/fit_lights/direct.h"
+#include "stages/fit_lights/fit.h"
+#include "stages/fit_lights/fit_lights_params.h"
+#include "stages/fit_lights/observe.h"
+
+/* Where a lamp's radiance comes from. */
+enum lamp_source { LAMP_GIVEN, LAMP_FITTED, LAMP_MEASURED, LAMP_BOUND };
+
+/* Standard errors; 0: given. */
+struct lamp_result {
+    enum lamp_source source;
+    double radiance_error[3], beta_error, exponent_error; /* beta: radians */
+    /* what the views show of the lamp itself, towards its normal */
+    double seen[3], seen_error[3];
+    int unsaturated, saturated; /* numbers of views; with no unsaturated one, `seen` is a lower bound */
+};
+
+struct solved_lights {
+    struct lamp_result *lamps;
+    struct fit_material *materials;
+    struct fit_point *points; /* those of the fit */
+    int *point_notes;         /* the annotation of each */
+    int lamp_count, material_count, point_count;
+};
+
+struct solve_inputs {
+    struct lit_scene *scene; /* its lamps get radiance, beta, exponent */
+    const struct annotation_list *notes;
+    const struct observations *seen;
+    const struct direct_light *direct;
+    const double (*indirect)[3]; /* of each point */
+    const struct fit_lights_params *params;
+};
+
+enum status lights_solve(struct solved_lights *s, const struct solve_inputs *in, struct err *err);
+void solved_lights_release(struct solved_lights *s);
+
+/* fit.txt (docs/formats.md). */
+enum status solved_lights_write(const struct solved_lights *s, const struct solve_inputs *in, const char *path,
+                                const struct provenance *prov, struct err *err);
+
+#endif

@@ -1,0 +1,283 @@
+/* fit.c - lamps and materials of a floor under disk lamps, against sums over the lamps' area. */
+#include "stages/fit_lights/fit.h"
+
+#include <math.h>
+
+#include "common/base/rng.h"
+#include "common/gather/lights.h"
+#include "common/math/numbers.h"
+#include "tests/unit/scratch.h"
+
+enum { MOST = 200 };
+
+static const double k_d[3] = {0.22, 0.2, 0.15};
+static const double true_s[2][3] = {{260, 235, 195}, {120, 130, 150}};
+static const struct vec3 centres[2] = {{0, 0, 2.6}, {1.6, 0.3, 2.4}};
+
+struct room {
+    struct vec3 at[MOST];
+    struct fit_point points[MOST];
+    struct fit_lamp lamps[2];
+    struct fit_material materials[2];
+    double beta, exponent; /* true */
+    struct light_fit fit;
+};
+
+/* A number of the normal distribution [Box 1958]. */
+static double gauss(uint64_t index)
+{
+    const struct rng rng = rng_make(7, "fit_lights", "test");
+    return sqrt(-2 * log(1 - rng_uniform(&rng, index, 0))) * cos(2 * PI * rng_uniform(&rng, index, 1));
+}
+
+/* Irradiance of the floor from a lamp of radiance 1: a sum over its area. */
+static double plain_direct(struct vec3 centre, struct vec3 at, double beta, double exponent)
+{
+    const double radius = 0.09;
+    const int n = 100;
+    double sum = 0;
+    for (int i = 0; i < n * n; i++) {
+        const double u = (2 * (i % n) + 1.0) / n - 1, v = (2 * (i / n) + 1.0) / n - 1;
+        if (u * u + v * v > 1) continue;
+        const struct vec3 w = vec3_sub(vec3_add(centre, vec3_make(radius * u, radius * v, 0)), at);
+        const double r = vec3_length(w), cosine = w.z / r;
+        if (cosine >= cos(beta)) sum += pow(cosine, exponent) * cosine * cosine / (r * r);
+    }
+    return sum * 4 * radius * radius / n / n;
+}
+
+/* What the fit computes: the exact integral. */
+static double direct(const void *ctx, int lamp, int point, double exponent)
+{
+    const struct room *room = ctx;
+    const struct lamp l = {.shape = LAMP_DISK,
+                           .centre = centres[lamp],
+                           .normal = {0, 0, -1},
+                           .x = {0.09, 0, 0},
+                           .y = {0, -0.09, 0},
+                           .radius = 0.09,
+                           .radiance = {1, 1, 1},
+                           .beta = room->beta,
+                           .exponent = exponent};
+    return lamp_irradiance(&l, room->at[point], vec3_make(0, 0, 1)).r;
+}
+
+static void set_point(struct room *room, int i, int material, double x, double y, bool lit, double noise)
+{
+    struct fit_point *p = &room->points[i];
+    room->at[i] = vec3_make(x, y, 0);
+    *p = (struct fit_point){
+        .material = material, .lamp = material, .lit = lit, .cluster = i / 5, .sigma = noise, .place = "lights.txt:7"};
+    for (int c = 0; c < 3; c++) {
+        p->indirect[c] = (1 + 0.2 * x - 0.1 * y) * (1 - 0.1 * c);
+        double e = p->indirect[c];
+        for (int l = 0; l < room->fit.lamp_count; l++)
+            e += true_s[l][c] * plain_direct(centres[l], room->at[i], room->beta, room->exponent);
+        p->radiance[c] = k_d[c] * e * (1 + noise * gauss(3 * (uint64_t)i + (uint64_t)c));
+    }
+}
+
+/* Lit and unlit points under each lamp. */
+static void furnish(struct room *room, int lamps, int each, double exponent, double noise)
+{
+    *room = (struct room){.beta = 35 * DEGREE, .exponent = exponent};
+    room->fit = (struct light_fit){.points = room->points,
+                                   .lamps = room->lamps,
+                                   .materials = room->materials,
+                                   .lamp_count = lamps,
+                                   .material_count = lamps,
+                                   .direct = direct,
+                                   .ctx = room,
+                                   .texture = 0.01,
+                                   .max_spread = 0.25};
+    for (int l = 0; l < lamps; l++) {
+        room->lamps[l] = (struct fit_lamp){.name = "spot", .material = l, .fit = true, .exponent = exponent};
+        room->materials[l].name = "floor";
+        for (int k = 0; k < 2 * each; k++) {
+            const bool lit = k < each;
+            const double turn = 2.4 * k, r = lit ? 1.2 * sqrt((k + 0.5) / each) : 2.2 + 0.8 * (k - each) / (double)each;
+            set_point(room, room->fit.point_count++, l, centres[l].x + r * cos(turn), centres[l].y + r * sin(turn), lit,
+                      noise);
+        }
+    }
+}
+
+static void assert_radiance(const struct room *room, int lamp, double most)
+{
+    for (int c = 0; c < 3; c++) {
+        const double s = room->lamps[lamp].radiance[c], off = fabs(s / true_s[lamp][c] - 1);
+        if (!(off <= most)) fail_msg("lamp %d, colour %d: %.5g, wanted %.5g", lamp, c, s, true_s[lamp][c]);
+        assert_true(room->lamps[lamp].radiance_error[c] > 0);
+        assert_true(fabs(s - true_s[lamp][c]) < 4 * room->lamps[lamp].radiance_error[c] + 1e-3 * s);
+    }
+}
+
+static void one_lit_and_one_unlit_point_give_the_lamp(void **state)
+{
+    (void)state;
+    struct room room;
+    struct err err = ERR_INIT;
+    furnish(&room, 1, 1, 1, 0);
+    assert_ok(light_fit_solve(&room.fit, &err), err);
+    assert_radiance(&room, 0, 2e-3); /* of the sum over the lamp's area */
+    for (int c = 0; c < 3; c++) assert_true(fabs(room.materials[0].k_d[c] / k_d[c] - 1) < 2e-3);
+}
+
+static void noise_of_photographs_leaves_the_lamp_within_three_percent(void **state)
+{
+    (void)state;
+    struct room room;
+    struct err err = ERR_INIT;
+    furnish(&room, 1, 20, 1, 0.02 / 3); /* pixels with 2 %, nine for each point */
+    assert_ok(light_fit_solve(&room.fit, &err), err);
+    assert_radiance(&room, 0, 0.03);
+}
+
+static void lamps_that_light_each_others_points_are_fitted_together(void **state)
+{
+    (void)state;
+    struct room room;
+    struct err err = ERR_INIT;
+    furnish(&room, 2, 20, 0, 0.01);
+    assert_ok(light_fit_solve(&room.fit, &err), err);
+    assert_radiance(&room, 0, 0.03);
+    assert_radiance(&room, 1, 0.03);
+}
+
+static void lamps_over_the_same_material_share_its_reflectance(void **state)
+{
+    (void)state;
+    struct room room;
+    struct err err = ERR_INIT;
+    furnish(&room, 2, 20, 0, 0.01);
+    room.lamps[1].material = 0;
+    room.fit.material_count = 1;
+    for (int i = 0; i < room.fit.point_count; i++) room.points[i].material = 0;
+    assert_ok(light_fit_solve(&room.fit, &err), err);
+    assert_radiance(&room, 0, 0.03);
+    assert_radiance(&room, 1, 0.03);
+    assert_int_equal(room.materials[0].unlit, 40);
+}
+
+static void the_exponent_is_fitted(void **state)
+{
+    (void)state;
+    struct room room;
+    struct err err = ERR_INIT;
+    furnish(&room, 1, 25, 2.5, 0.005);
+    room.lamps[0].fit_exponent = true;
+    room.lamps[0].exponent = 1;
+    assert_ok(light_fit_solve(&room.fit, &err), err);
+    assert_true(fabs(room.lamps[0].exponent - 2.5) < 0.25);
+    assert_true(fabs(room.lamps[0].exponent - 2.5) < 4 * room.lamps[0].exponent_error);
+    assert_radiance(&room, 0, 0.03);
+}
+
+static void a_lit_point_on_another_material_counts_little(void **state)
+{
+    (void)state;
+    struct room room;
+    struct err err = ERR_INIT;
+    furnish(&room, 1, 20, 1, 0.01);
+    for (int c = 0; c < 3; c++) room.points[3].radiance[c] *= 0.2;
+    assert_ok(light_fit_solve(&room.fit, &err), err);
+    assert_radiance(&room, 0, 0.03);
+}
+
+static void an_error_of_indirect_light_widens_the_interval(void **state)
+{
+    (void)state;
+    struct room room;
+    struct err err = ERR_INIT;
+    furnish(&room, 1, 20, 1, 0.01);
+    room.fit.irradiance_error = 0.1;
+    for (int i = 0; i < room.fit.point_count; i++)
+        for (int c = 0; c < 3; c++) room.points[i].indirect[c] *= 1.1;
+    assert_ok(light_fit_solve(&room.fit, &err), err);
+    assert_true(fabs(room.lamps[0].radiance[1] / (1.1 * true_s[0][1]) - 1) < 0.03); /* S scales with it */
+    assert_true(room.lamps[0].radiance_error[1] > 0.1 * true_s[0][1]);
+}
+
+static void assert_refused(struct room *room, const char *why)
+{
+    struct err err = ERR_INIT;
+    assert_int_equal(light_fit_solve(&room->fit, &err), ST_DATA);
+    if (!strstr(err.text, why)) fail_msg("the error says: %s", err.text);
+}
+
+static void points_that_are_lit_alike_are_refused(void **state)
+{
+    (void)state;
+    struct room room;
+    furnish(&room, 1, 1, 1, 0);
+    set_point(&room, 1, 0, room.at[0].x, room.at[0].y, false, 0);
+    assert_refused(&room, "the same irradiance");
+}
+
+static void lit_points_that_the_lamp_does_not_reach_are_refused(void **state)
+{
+    (void)state;
+    struct room room;
+    furnish(&room, 1, 1, 1, 0);
+    set_point(&room, 0, 0, 3, 0, true, 0);
+    assert_refused(&room, "no light of the lamp spot reaches its lit points");
+}
+
+static void lit_points_that_are_no_brighter_are_refused(void **state)
+{
+    (void)state;
+    struct room room;
+    furnish(&room, 1, 3, 1, 0);
+    for (int i = 0; i < room.fit.point_count; i++)
+        for (int c = 0; c < 3; c++)
+            room.points[i].radiance[c] = k_d[c] * room.points[i].indirect[c] * (i < 3 ? 0.98 : 1);
+    assert_refused(&room, "no brighter");
+}
+
+static void an_unlit_point_without_indirect_light_is_refused(void **state)
+{
+    (void)state;
+    struct room room;
+    furnish(&room, 1, 2, 1, 0);
+    for (int c = 0; c < 3; c++) room.points[3].indirect[c] = 0;
+    assert_refused(&room, "no indirect light");
+}
+
+static void points_of_different_materials_are_refused(void **state)
+{
+    (void)state;
+    struct room room;
+    furnish(&room, 1, 12, 1, 0);
+    for (int i = 0; i < room.fit.point_count; i += 2)
+        for (int c = 0; c < 3; c++) room.points[i].radiance[c] *= 0.3;
+    assert_refused(&room, "not of one material");
+}
+
+static void a_lamp_without_unlit_points_is_refused(void **state)
+{
+    (void)state;
+    struct room room;
+    furnish(&room, 1, 2, 1, 0);
+    room.fit.point_count = 2;
+    assert_refused(&room, "add a line \"unlit spot");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(one_lit_and_one_unlit_point_give_the_lamp),
+        cmocka_unit_test(noise_of_photographs_leaves_the_lamp_within_three_percent),
+        cmocka_unit_test(lamps_that_light_each_others_points_are_fitted_together),
+        cmocka_unit_test(lamps_over_the_same_material_share_its_reflectance),
+        cmocka_unit_test(the_exponent_is_fitted),
+        cmocka_unit_test(a_lit_point_on_another_material_counts_little),
+        cmocka_unit_test(an_error_of_indirect_light_widens_the_interval),
+        cmocka_unit_test(points_that_are_lit_alike_are_refused),
+        cmocka_unit_test(lit_points_that_the_lamp_does_not_reach_are_refused),
+        cmocka_unit_test(lit_points_that_are_no_brighter_are_refused),
+        cmocka_unit_test(an_unlit_point_without_indirect_light_is_refused),
+        cmocka_unit_test(points_of_different_materials_are_refused),
+        cmocka_unit_test(a_lamp_without_unlit_points_is_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

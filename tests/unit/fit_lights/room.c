@@ -1,0 +1,266 @@
+/* solve.c, resolve.c, observe.c - from marks on noisy pictures of a room to its lamp: a spot in the ceiling of a cube lights
+ * the floor. Its light on the floor is a sum over its area, by distance from its axis. */
+#include "stages/fit_lights/solve.h"
+
+#include <math.h>
+
+#include "common/base/rng.h"
+#include "common/capture/view_image.h"
+#include "common/math/numbers.h"
+#include "common/texture/view_ids.h"
+#include "tests/unit/box_solids.h"
+
+enum { SIDE = 480, RADII = 600, VIEWS = 3 };
+
+static const double k_d[3] = {0.22, 0.2, 0.15}, true_s[3] = {260, 235, 195};
+static const double lamp_radius = 0.15, true_beta = 20 * DEGREE, noise = 0.02;
+
+static struct room {
+    struct lit_model model;
+    struct view views[VIEWS];
+    struct lens lenses[VIEWS];
+    double direct[RADII]; /* on the floor, from radiance 1, by distance from the axis in steps of 5 mm */
+    struct annotation_list notes;
+    struct lit_scene scene;
+    struct observations seen;
+    struct direct_light direct_light;
+    struct solved_lights solved;
+    double (*indirect)[3];
+} room;
+
+static double indirect_at(struct vec3 at) { return 1 + 0.15 * at.x - 0.1 * at.y; }
+
+/* A number of the normal distribution [Box 1958]. */
+static double gauss(const char *view, uint64_t index)
+{
+    const struct rng rng = rng_make(5, "fit_lights", view);
+    return sqrt(-2 * log(1 - rng_uniform(&rng, index, 0))) * cos(2 * PI * rng_uniform(&rng, index, 1));
+}
+
+static void sum_direct(void)
+{
+    const int n = 120;
+    for (int r = 0; r < RADII; r++) {
+        double sum = 0;
+        for (int i = 0; i < n * n; i++) {
+            const double u = lamp_radius * ((2 * (i % n) + 1.0) / n - 1),
+                         v = lamp_radius * ((2 * (i / n) + 1.0) / n - 1);
+            const double d2 = (u - 0.005 * r) * (u - 0.005 * r) + v * v + 16, cosine = 4 / sqrt(d2);
+            if (u * u + v * v <= lamp_radius * lamp_radius && cosine >= cos(true_beta))
+                sum += cosine * cosine * cosine / d2; /* exponent 1 */
+        }
+        room.direct[r] = sum * 4 * lamp_radius * lamp_radius / n / n;
+    }
+}
+
+/* The radiance of the floor; the ceiling and the walls are grey. */
+static void paint(float rgb[3], struct vec3 at, const char *view, uint64_t pixel)
+{
+    const double r = hypot(at.x, at.y) / 0.005;
+    const int k = clamp_int((int)r, 0, RADII - 2);
+    const double d = at.z > -1.99 ? 0 : room.direct[k] + (r - k) * (room.direct[k + 1] - room.direct[k]);
+    for (int c = 0; c < 3; c++)
+        rgb[c] =
+            (float)(k_d[c] * (indirect_at(at) + true_s[c] * d) * (1 + noise * gauss(view, 3 * pixel + (uint64_t)c)));
+}
+
+static void write_view(const struct view *v, float clipped)
+{
+    const struct provenance prov = {.stage = "test", .version = "0"};
+    struct image im = {0};
+    struct photo_quality quality = {0};
+    struct view_ids ids = {0};
+    struct err err = ERR_INIT;
+    char path[300];
+    assert_ok(image_init(&im, SIDE, SIDE, 4, &err), err);
+    assert_ok(photo_quality_init(&quality, SIDE, SIDE, &err), err);
+    assert_ok(view_ids_init(&ids, SIDE, SIDE, &err), err);
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        const struct vec3 ray = vec3_sub(view_unproject(v, i % SIDE + 0.5, i / SIDE + 0.5, 1), v->center);
+        struct ray_hit hit;
+        float *rgba = im.data + 4 * (ptrdiff_t)i;
+        assert_true(ray_scene_hit(&room.model.rays.rays, v->center, ray, &hit));
+        paint(rgba, hit.point, v->name, (uint64_t)i);
+        rgba[3] = 1;
+        const double sigma = noise * photo_luminance(rgba);
+        quality.variance[i] = (float)(sigma * sigma);
+        quality.marks[i] = (uint8_t)clipped;
+        ids.id[i] = (uint32_t)solid_face_id(&room.model.rays.mesh, (int)hit.id);
+        ids.z[i] = (float)hit.t;
+        ids.jump[i] = VIEW_IDS_FAR;
+    }
+    snprintf(path, sizeof path, "%s.exr", v->name);
+    assert_ok(view_image_write(&im, &quality, scratch_path(path), v, &prov, "exact", &err), err);
+    snprintf(path, sizeof path, "ids/%s.exr", v->name);
+    assert_ok(view_ids_write(&ids, v, scratch_path(path), &prov, &err), err);
+    view_ids_release(&ids);
+    photo_quality_release(&quality);
+    image_release(&im);
+}
+
+/* Two photos of the floor and one of the ceiling. */
+static int build(void **state)
+{
+    static const struct box boxes[] = {ROOM_OUTSIDE, ROOM_INSIDE};
+    static char names[VIEWS][2] = {"a", "b", "c"};
+    struct err err = ERR_INIT;
+    if (scratch_make(state)) return -1;
+    sum_direct();
+    room.views[0] = view_at(vec3_make(0.3, -0.2, 1.5), PI, 0, SIDE, SIDE, 300);
+    room.views[1] = view_at(vec3_make(-0.5, 0.4, 1.7), PI, 0.1, SIDE, SIDE, 300);
+    room.views[2] = view_at(vec3_make(0.2, 0.1, -1.5), 0, 0, SIDE, SIDE, 300);
+    room.model.rays.mesh = make_boxes(boxes, 2);
+    assert_ok(model_rays_build(&room.model.rays, MODEL_WITHOUT_GLASS, &err), err);
+    room.model.axes = (struct model_axes){.rotation = {1, 0, 0, 0}, .scale = 1};
+    for (int i = 0; i < VIEWS; i++) {
+        struct view *v = &room.views[i];
+        v->name = names[i];
+        room.lenses[i] =
+            (struct lens){names[i], names[i], {CAMERA_PINHOLE, SIDE, SIDE, {v->fx, v->fy, v->cx, v->cy}}, {1, 0, 0, 0}};
+        write_view(v, 0);
+    }
+    room.model.set = (struct camera_set){.views = room.views, .view_count = VIEWS};
+    room.model.lenses = (struct lens_list){room.lenses, VIEWS};
+    return 0;
+}
+
+static void release(void)
+{
+    solved_lights_release(&room.solved);
+    direct_light_release(&room.direct_light);
+    observations_release(&room.seen);
+    lit_scene_release(&room.scene);
+    annotation_list_release(&room.notes);
+    free(room.indirect);
+    room.indirect = NULL;
+}
+
+static int clean(void **state)
+{
+    release();
+    model_rays_release(&room.model.rays);
+    return scratch_remove(state);
+}
+
+/* "X Y" of a point in a view. */
+static const char *pixel(int view, double x, double y, double z)
+{
+    static char texts[16][64];
+    static int next;
+    double u = 0, v = 0;
+    assert_true(view_project(&room.views[view], vec3_make(x, y, z), &u, &v) > 0);
+    snprintf(texts[++next % 16], sizeof *texts, "%.3f %.3f", u, v);
+    return texts[next % 16];
+}
+
+static enum status solve(const char *lamp, const char *points, struct err *err)
+{
+    char text[4096];
+    static const struct fit_lights_params params = FIT_LIGHTS_PARAMS_DEFAULT;
+    struct provenance prov = {0};
+    release();
+    snprintf(text, sizeof text, "remodel-lamps 1\ndisk spot in c %s rim %s %s\n%s", pixel(2, 0, 0, 2),
+             pixel(2, lamp_radius, 0, 2), lamp, points);
+    enum status st = annotation_list_read(&room.notes, scratch_write("lights.txt", text), err);
+    if (!st) st = lit_scene_resolve(&room.scene, &room.notes, &room.model, 5, err);
+    if (!st)
+        st = observe(&room.seen, &room.scene, &room.notes, &room.model, scratch, scratch_path("ids"), &params, &prov,
+                     err);
+    if (!st) st = direct_light_make(&room.direct_light, &room.scene, &room.model, err);
+    room.indirect = calloc((size_t)room.scene.point_count + 1, sizeof *room.indirect);
+    for (int i = 0; i < room.scene.point_count; i++)
+        for (int c = 0; c < 3; c++) room.indirect[i][c] = indirect_at(room.scene.points[i].at);
+    const struct solve_inputs in = {
+        &room.scene, &room.notes, &room.seen, &room.direct_light, (const double(*)[3])room.indirect, &params};
+    if (!st) st = lights_solve(&room.solved, &in, err);
+    provenance_release(&prov);
+    return st;
+}
+
+/* Marks on the floor: points under the lamp, points aside, lines across the edge at 1.456 m. */
+static const char *marks(void)
+{
+    static char text[2048];
+    int n = 0;
+    for (int i = 0; i < 12; i++) {
+        const double x = cos(2.4 * i), y = sin(2.4 * i), r = 0.1 + 0.1 * i;
+        n += snprintf(text + n, sizeof text - (size_t)n, "lit spot in a %s\n", pixel(0, r * x, r * y, -2));
+        n += snprintf(text + n, sizeof text - (size_t)n, "unlit spot in b %s\n", pixel(1, 1.75 * x, 1.75 * y, -2));
+    }
+    for (int i = 0; i < 3; i++)
+        n += snprintf(text + n, sizeof text - (size_t)n, "line spot in a %s %s\n", pixel(0, cos(i), sin(i), -2),
+                      pixel(0, 1.8 * cos(i), 1.8 * sin(i), -2));
+    return text;
+}
+
+static void noisy_photos_give_radiance_within_three_percent_and_beta_within_half_a_degree(void **state)
+{
+    (void)state;
+    struct err err = ERR_INIT;
+    assert_ok(solve("beta fit exponent 1", marks(), &err), err);
+    const struct lamp *l = &room.scene.lights.lamps[0];
+    const double s[3] = {l->radiance.r, l->radiance.g, l->radiance.b};
+    assert_true(fabs(l->radius - lamp_radius) < 1e-4 && vec3_length(vec3_sub(l->centre, vec3_make(0, 0, 2))) < 1e-4);
+    if (fabs(l->beta - true_beta) > 0.5 * DEGREE) fail_msg("beta is %.3f degrees", l->beta / DEGREE);
+    for (int c = 0; c < 3; c++) {
+        if (fabs(s[c] / true_s[c] - 1) > 0.03) fail_msg("colour %d: %.4g, wanted %.4g", c, s[c], true_s[c]);
+        assert_true(fabs(s[c] - true_s[c]) < 2 * room.solved.lamps[0].radiance_error[c]);
+        assert_true(fabs(room.solved.materials[0].k_d[c] / k_d[c] - 1) < 0.02);
+    }
+    assert_true(room.solved.lamps[0].source == LAMP_FITTED && !l->bound);
+}
+
+static void points_that_no_photo_measures_are_refused(void **state)
+{
+    (void)state;
+    struct err err = ERR_INIT;
+    write_view(&room.views[0], PHOTO_BRIGHT);
+    write_view(&room.views[1], PHOTO_BRIGHT);
+    assert_int_equal(solve("beta 20 exponent 1", "lit spot in a 240 240\nunlit spot in a 20 20\n", &err), ST_DATA);
+    assert_non_null(strstr(err.text, "lights.txt:3: all views are saturated or dark"));
+    write_view(&room.views[0], 0);
+    write_view(&room.views[1], 0);
+}
+
+static void a_lamp_that_saturates_is_a_lower_bound(void **state)
+{
+    (void)state;
+    struct err err = ERR_INIT;
+    write_view(&room.views[2], PHOTO_BRIGHT);
+    assert_ok(solve("beta 90", "", &err), err);
+    assert_true(room.scene.lights.lamps[0].bound && room.solved.lamps[0].source == LAMP_BOUND);
+    write_view(&room.views[2], 0);
+    assert_ok(solve("beta 90", "", &err), err);
+    assert_true(!room.scene.lights.lamps[0].bound && room.solved.lamps[0].source == LAMP_MEASURED);
+    assert_true(fabs(room.scene.lights.lamps[0].radiance.g / k_d[1] - 1) < 0.05); /* its picture is grey ceiling here */
+}
+
+static void a_line_over_a_corner_is_refused(void **state)
+{
+    (void)state;
+    struct err err = ERR_INIT;
+    char text[200];
+    snprintf(text, sizeof text, "line spot in a %s %s\n", pixel(0, 1.5, 0, -2), pixel(0, 2, 0, -1));
+    assert_int_equal(solve("beta fit", text, &err), ST_DATA);
+    assert_non_null(strstr(err.text, "draw it on one surface"));
+}
+
+static void a_lamp_of_which_nothing_is_known_is_refused(void **state)
+{
+    (void)state;
+    struct err err = ERR_INIT;
+    assert_int_equal(solve("beta 1", "", &err), ST_DATA);
+    assert_non_null(strstr(err.text, "nothing says how bright the lamp spot is"));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(noisy_photos_give_radiance_within_three_percent_and_beta_within_half_a_degree),
+        cmocka_unit_test(points_that_no_photo_measures_are_refused),
+        cmocka_unit_test(a_lamp_that_saturates_is_a_lower_bound),
+        cmocka_unit_test(a_line_over_a_corner_is_refused),
+        cmocka_unit_test(a_lamp_of_which_nothing_is_known_is_refused),
+    };
+    return cmocka_run_group_tests(tests, build, clean);
+}
