@@ -33,7 +33,7 @@ static const double SPREAD = 1.6;    /* a over the square root of the target */
 static const double SPACINGS = 1;    /* a record reaches at least that many points' spacing */
 static const double WIDEST = 0.1;    /* of the points' box: a record reaches at most that far */
 static const double IN_FRONT = 0.05; /* of the radius */
-static const double SHARE = 0.7;     /* of the target, for each of records and direct light */
+static const double SHARE = 1; /* of the target, for each of records and direct light; most points are far below it */
 
 struct cache {
     const struct irradiance_cache_job *job;
