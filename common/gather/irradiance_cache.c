@@ -29,7 +29,7 @@
 #include "common/gather/cache_tree.h"
 
 enum { COARSEST = 32, CHUNK = 64, RECORD_RAYS = 1024, DIRECT_RAYS = 64 };
-static const double SPREAD = 1.6;    /* a over the square root of the target */
+static const double SPREAD = 1.2;    /* a over the square root of the target */
 static const double SPACINGS = 1;    /* a record reaches at least that many points' spacing */
 static const double WIDEST = 0.1;    /* of the points' box: a record reaches at most that far */
 static const double IN_FRONT = 0.05; /* of the radius */
