@@ -13,9 +13,9 @@ note="Lower left is better. A trusted simulator, in a room of its own: 0.28 % in
 baseline=hemicube
 match=case
 line=series label=effort panel=case across=3
-x_label="Time of all points (s)" y_label="Relative RMS error"
+x=core_s x_label="Core-seconds of all points" y_label="Relative RMS error"
 timed="core_s rays_per_core_s"
-slope="rays seconds"
+slope="rays core_s"
 repeats=3
 
 cases=${BENCH_CASES:-patch box window sun room}
