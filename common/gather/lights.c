@@ -44,6 +44,7 @@ static enum status copy_name(struct textfile *t, const char *what, char **name, 
 {
     char word[MOST_NAME + 1];
     if (textfile_word_into(t, what, word, sizeof word, err)) return err->status;
+    if (strchr(word, '\r')) return textfile_error(t, err, word, "%s without a line break", what);
     *name = strdup(word);
     return *name ? ST_OK : err_nomem(err, what, strlen(word) + 1);
 }

@@ -37,6 +37,7 @@ static enum status copy_word(struct textfile *t, const char *what, char **to, st
 {
     char word[MOST_NAME + 1];
     if (textfile_word_into(t, what, word, sizeof word, err)) return err->status;
+    if (strchr(word, '\r')) return textfile_error(t, err, word, "%s without a line break", what);
     *to = strdup(word);
     return *to ? ST_OK : err_nomem(err, what, strlen(word) + 1);
 }

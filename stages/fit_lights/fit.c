@@ -10,39 +10,20 @@
  * colour, which keeps S positive, and the square root of an exponent. Levenberg-Marquardt (Ceres) solves for these;
  * weights of the Cauchy function, renewed in rounds, bound the influence of outliers (a lit point on a poster).
  *
- * The covariance is H^-1 (sum of g g^T) H^-1 with H = J^T W J and g a point's part of the gradient [Huber 1967], which
- * needs no assumption on the residuals' variance. An error of E by a factor that is the same at all points changes S by
- * that factor; its relative error is added.
- *
  * What differs from the source: points, colours and lamps are fitted together, by logarithms and robustly. */
-#include "stages/fit_lights/fit.h"
+#include "stages/fit_lights/fit_problem.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/base/log.h"
 #include "common/math/ceres_least_squares.h"
 #include "common/math/numbers.h"
 #include "common/math/weighted.h"
 
-enum { ROUNDS = 8, ITERATIONS = 100, MOST_UNKNOWNS = 64 };
+enum { ROUNDS = 8, ITERATIONS = 100 };
 #define CAUCHY      2.385 /* residuals beyond it count less; 95 % efficiency for normal errors */
 #define LEAST_SHARE 1e-3  /* difference in the lamp's share of the light by which lit points must differ from others */
-#define STEP        1e-4  /* of an unknown, for derivatives */
-
-struct unknown {
-    int lamp, colour; /* colour 3: the exponent */
-};
-
-struct problem {
-    struct light_fit *f;
-    struct unknown unknowns[MOST_UNKNOWNS];
-    int unknown_count;
-    double *direct; /* [lamp][point] at the lamps' present exponents */
-    double *weight; /* per point and colour, robust; times 1 / sigma^2 it is the weight of the squared residual */
-    double *residual;
-};
 
 /* ------------------------------------------------------------------------------------------------------ the model */
 
@@ -53,7 +34,7 @@ static void set_direct(struct problem *p, int lamp)
         p->direct[lamp * f->point_count + i] = f->direct(f->ctx, lamp, i, f->lamps[lamp].exponent);
 }
 
-static void set_unknowns(struct problem *p, const double *x)
+void fit_set_unknowns(struct problem *p, const double *x)
 {
     for (int u = 0; u < p->unknown_count; u++) {
         struct fit_lamp *l = &p->f->lamps[p->unknowns[u].lamp];
@@ -66,7 +47,7 @@ static void set_unknowns(struct problem *p, const double *x)
     }
 }
 
-static void get_unknowns(const struct problem *p, double *x)
+void fit_get_unknowns(const struct problem *p, double *x)
 {
     for (int u = 0; u < p->unknown_count; u++) {
         const struct fit_lamp *l = &p->f->lamps[p->unknowns[u].lamp];
@@ -82,13 +63,13 @@ static double irradiance(const struct problem *p, int point, int colour)
     return e;
 }
 
-static double variance(const struct light_fit *f, int point)
+double fit_variance(const struct light_fit *f, int point)
 {
     return f->points[point].sigma * f->points[point].sigma + f->texture * f->texture + 1e-8;
 }
 
 /* Sets the residuals, not yet robust, and log k_d of the materials. */
-static void set_residuals(struct problem *p)
+void fit_set_residuals(struct problem *p)
 {
     struct light_fit *f = p->f;
     for (int m = 0; m < f->material_count; m++)
@@ -96,7 +77,7 @@ static void set_residuals(struct problem *p)
             double sum = 0, weights = 0;
             for (int i = 0; i < f->point_count; i++) {
                 if (f->points[i].material != m) continue;
-                const double w = p->weight[3 * i + c] / variance(f, i);
+                const double w = p->weight[3 * i + c] / fit_variance(f, i);
                 sum += w * log(f->points[i].radiance[c] / irradiance(p, i, c));
                 weights += w;
             }
@@ -105,15 +86,15 @@ static void set_residuals(struct problem *p)
     for (int i = 0; i < f->point_count; i++)
         for (int c = 0; c < 3; c++) {
             const double predicted = f->materials[f->points[i].material].k_d[c] * irradiance(p, i, c);
-            p->residual[3 * i + c] = log(f->points[i].radiance[c] / predicted) / sqrt(variance(f, i));
+            p->residual[3 * i + c] = log(f->points[i].radiance[c] / predicted) / sqrt(fit_variance(f, i));
         }
 }
 
-static void evaluate(void *ctx, const double *x, double *residuals)
+void fit_evaluate(void *ctx, const double *x, double *residuals)
 {
     struct problem *p = ctx;
-    set_unknowns(p, x);
-    set_residuals(p);
+    fit_set_unknowns(p, x);
+    fit_set_residuals(p);
     for (int i = 0; i < 3 * p->f->point_count; i++) residuals[i] = sqrt(p->weight[i]) * p->residual[i];
 }
 
@@ -247,7 +228,7 @@ static enum status start_lamps(struct problem *p, struct weighted *scratch, stru
 
 static void renew_weights(struct problem *p)
 {
-    set_residuals(p);
+    fit_set_residuals(p);
     for (int i = 0; i < 3 * p->f->point_count; i++) {
         const double r = p->residual[i] / CAUCHY;
         p->weight[i] = 1 / (1 + r * r);
@@ -256,12 +237,12 @@ static void renew_weights(struct problem *p)
 
 static enum status solve(struct problem *p, struct err *err)
 {
-    const struct least_squares problem = {p->unknown_count, 3 * p->f->point_count, evaluate, p, ITERATIONS};
+    const struct least_squares problem = {p->unknown_count, 3 * p->f->point_count, fit_evaluate, p, ITERATIONS};
     double x[MOST_UNKNOWNS];
-    get_unknowns(p, x);
+    fit_get_unknowns(p, x);
     for (int round = 0; round < ROUNDS; round++) {
         if (p->unknown_count && ceres_least_squares(&problem, x, err)) return err->status;
-        set_unknowns(p, x);
+        fit_set_unknowns(p, x);
         renew_weights(p);
     }
     return ST_OK;
@@ -274,7 +255,7 @@ static double spread_of(struct problem *p, int material, struct weighted *scratc
     size_t n = 0;
     for (int i = 0; i < f->point_count; i++)
         for (int c = 0; f->points[i].material == material && c < 3; c++)
-            scratch[n++] = (struct weighted){fabs(p->residual[3 * i + c]) * sqrt(variance(f, i)), 1};
+            scratch[n++] = (struct weighted){fabs(p->residual[3 * i + c]) * sqrt(fit_variance(f, i)), 1};
     return weighted_percentile(scratch, n, 0.75) / 1.1503;
 }
 
@@ -297,146 +278,6 @@ static enum status check_spread(struct problem *p, struct weighted *scratch, str
     return ST_OK;
 }
 
-/* --------------------------------------------------------------------------------------------------------- intervals */
-
-/* Inverts a symmetric positive matrix in place by Gauss-Jordan elimination; false: it is singular. */
-static bool invert(double *a, int n)
-{
-    for (int k = 0; k < n; k++) {
-        const double pivot = a[k * n + k];
-        if (!(fabs(pivot) > 1e-300)) return false;
-        a[k * n + k] = 1;
-        for (int j = 0; j < n; j++) a[k * n + j] /= pivot;
-        for (int i = 0; i < n; i++) {
-            const double factor = a[i * n + k];
-            if (i == k) continue;
-            a[i * n + k] = 0;
-            for (int j = 0; j < n; j++) a[i * n + j] -= factor * a[k * n + j];
-        }
-    }
-    return true;
-}
-
-static int cluster_count(const struct light_fit *f)
-{
-    int count = 0;
-    for (int i = 0; i < f->point_count; i++) count += !i || f->points[i].cluster != f->points[i - 1].cluster;
-    return count;
-}
-
-/* Adds the products of gradients, of single points or summed over clusters. Points of a cluster follow each other. */
-static void add_meat(const struct problem *p, const double *jacobian, bool clusters, double *meat)
-{
-    const int n = p->unknown_count, points = p->f->point_count, rows = 3 * points;
-    double g[MOST_UNKNOWNS] = {0};
-    for (int i = 0; i < points; i++) {
-        for (int a = 0; a < n; a++)
-            for (int c = 3 * i; c < 3 * i + 3; c++)
-                g[a] += jacobian[a * rows + c] * sqrt(p->weight[c]) * p->residual[c];
-        if (clusters && i + 1 < points && p->f->points[i + 1].cluster == p->f->points[i].cluster) continue;
-        for (int a = 0; a < n; a++)
-            for (int b = 0; b < n; b++) meat[a * n + b] += g[a] * g[b];
-        memset(g, 0, sizeof g);
-    }
-}
-
-/* The roots of the diagonal of H^-1 meat H^-1, corrected for the number of clusters. */
-static void cluster_errors(double *errors, const double *h, const double *meat, int n, int clusters,
-                           const struct problem *p)
-{
-    /* unknowns and reflectances of one colour use up clusters */
-    const int used = (n + 2) / 3 + p->f->material_count;
-    const double correction = clusters > used ? (double)clusters / (clusters - used) : clusters;
-    for (int a = 0; a < n; a++) {
-        double v = 0;
-        for (int i = 0; i < n; i++)
-            for (int j = 0; j < n; j++) v += h[a * n + i] * meat[i * n + j] * h[j * n + a];
-        errors[a] = sqrt(v * correction);
-    }
-}
-
-/* The errors if the reflectance of all points that were marked together deviates in all colours: by `texture`, or by half of
- * what single points of the material do, as they cover a few of its planks or bricks. */
-static void assumed_errors(double *errors, const double *h, const double *jacobian, const struct problem *p)
-{
-    const struct light_fit *f = p->f;
-    const int n = p->unknown_count, rows = 3 * f->point_count;
-    double shift[MOST_UNKNOWNS] = {0}, variances[MOST_UNKNOWNS] = {0};
-    for (int i = 0; i < f->point_count; i++) {
-        const double deviation = fmax(f->texture, 0.5 * f->materials[f->points[i].material].spread);
-        for (int a = 0; a < n; a++)
-            for (int c = 3 * i; c < 3 * i + 3; c++)
-                shift[a] += jacobian[a * rows + c] * sqrt(p->weight[c]) * deviation / sqrt(variance(f, i));
-        if (i + 1 < f->point_count && f->points[i + 1].cluster == f->points[i].cluster) continue;
-        for (int a = 0; a < n; a++) {
-            double moved = 0;
-            for (int b = 0; b < n; b++) moved += h[a * n + b] * shift[b];
-            variances[a] += moved * moved;
-        }
-        memset(shift, 0, sizeof shift);
-    }
-    for (int a = 0; a < n; a++) errors[a] = sqrt(variances[a]);
-}
-
-/* Standard errors of the unknowns: the largest of what single points, points marked together, and the assumed deviations
- * of noise and material show, because few points may agree by chance. jacobian: [unknown][residual]. */
-static void find_errors(struct problem *p, double *jacobian, double errors[MOST_UNKNOWNS])
-{
-    const int n = p->unknown_count, points = p->f->point_count, rows = 3 * points;
-    double x[MOST_UNKNOWNS] = {0}, h[MOST_UNKNOWNS * MOST_UNKNOWNS] = {0}, meat[MOST_UNKNOWNS * MOST_UNKNOWNS] = {0};
-    double *low = p->residual, clustered[MOST_UNKNOWNS];
-    get_unknowns(p, x);
-    for (int u = 0; u < n; u++) {
-        const double at = x[u], step = p->unknowns[u].colour < 3 ? STEP : STEP * fmax(1, at);
-        x[u] = at + step;
-        evaluate(p, x, jacobian + (ptrdiff_t)u * rows);
-        x[u] = at - step;
-        set_unknowns(p, x);
-        set_residuals(p);
-        for (int i = 0; i < rows; i++)
-            jacobian[u * rows + i] = (jacobian[u * rows + i] - sqrt(p->weight[i]) * low[i]) / (2 * step);
-        x[u] = at;
-    }
-    set_unknowns(p, x);
-    set_residuals(p);
-    for (int a = 0; a < n; a++)
-        for (int b = 0; b < n; b++)
-            for (int i = 0; i < rows; i++) h[a * n + b] += jacobian[a * rows + i] * jacobian[b * rows + i];
-    if (!invert(h, n)) {
-        for (int a = 0; a < n; a++) errors[a] = INFINITY;
-        return;
-    }
-    add_meat(p, jacobian, false, meat);
-    cluster_errors(errors, h, meat, n, points, p);
-    memset(meat, 0, sizeof meat);
-    add_meat(p, jacobian, true, meat);
-    cluster_errors(clustered, h, meat, n, cluster_count(p->f), p);
-    for (int a = 0; a < n; a++) errors[a] = fmax(errors[a], clustered[a]);
-    assumed_errors(clustered, h, jacobian, p);
-    for (int a = 0; a < n; a++) errors[a] = fmax(fmax(errors[a], clustered[a]), sqrt(h[a * n + a]));
-}
-
-static void set_errors(struct problem *p, const double errors[MOST_UNKNOWNS])
-{
-    struct light_fit *f = p->f;
-    for (int u = 0; u < p->unknown_count; u++) {
-        struct fit_lamp *l = &f->lamps[p->unknowns[u].lamp];
-        const int c = p->unknowns[u].colour;
-        const double e = isfinite(errors[u]) ? errors[u] : 1;
-        if (c < 3)
-            l->radiance_error[c] = l->radiance[c] * hypot(e, f->irradiance_error);
-        else
-            l->exponent_error = 2 * sqrt(l->exponent) * e + e * e;
-    }
-    for (int m = 0; m < f->material_count; m++)
-        for (int c = 0; c < 3; c++) {
-            struct fit_material *material = &f->materials[m];
-            const int n = material->lit + material->unlit;
-            material->k_d_error[c] =
-                material->k_d[c] * hypot(fmax(material->spread, f->texture) / sqrt(fmax(n, 1)), f->irradiance_error);
-        }
-}
-
 /* ---------------------------------------------------------------------------------------------------------------- all */
 
 static enum status list_unknowns(struct problem *p, struct err *err)
@@ -455,7 +296,6 @@ static enum status list_unknowns(struct problem *p, struct err *err)
 static enum status fit_all(struct problem *p, struct weighted *scratch, double *jacobian, struct err *err)
 {
     struct light_fit *f = p->f;
-    double errors[MOST_UNKNOWNS];
     for (int l = 0; l < f->lamp_count; l++) set_direct(p, l);
     for (int i = 0; i < 3 * f->point_count; i++) p->weight[i] = 1;
     enum status st = check_points(f, err);
@@ -465,8 +305,7 @@ static enum status fit_all(struct problem *p, struct weighted *scratch, double *
     if (!st) st = solve(p, err);
     if (!st) st = check_spread(p, scratch, err);
     if (st) return st;
-    find_errors(p, jacobian, errors);
-    set_errors(p, errors);
+    fit_set_errors(p, jacobian);
     return ST_OK;
 }
 

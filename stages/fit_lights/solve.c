@@ -69,12 +69,13 @@ static void measure_lamp(struct lamp_result *r, const struct solve_inputs *in, i
 }
 
 /* Says where the fit and the lamp's own picture disagree. */
-static void compare(const struct lamp_result *r, const struct lamp *l)
+static void compare(struct lamp_result *r, const struct lamp *l)
 {
     const double s[3] = {l->radiance.r, l->radiance.g, l->radiance.b};
     for (int c = 0; c < 3; c++) {
         const double interval = CONFIDENCE * hypot(r->radiance_error[c], r->seen_error[c]), off = r->seen[c] - s[c];
         if (r->unsaturated ? fabs(off) <= interval : off <= interval) continue;
+        r->disagrees = true;
         log_warn("the lamp %s: its fitted radiance of %.4g +- %.2g disagrees with %s %.4g that views show of the lamp "
                  "(colour %d); check its points, its cone and the indirect light.",
                  l->name, s[c], CONFIDENCE * r->radiance_error[c], r->unsaturated ? "the" : "the lower bound of",
@@ -322,9 +323,9 @@ static void write_lamp(const struct solved_lights *s, const struct solve_inputs 
             CONFIDENCE * r->radiance_error[1], CONFIDENCE * r->radiance_error[2], l->beta / DEGREE,
             CONFIDENCE * r->beta_error / DEGREE, l->exponent, CONFIDENCE * r->exponent_error);
     if (r->unsaturated || r->saturated)
-        fprintf(to, "seen %s %.9g %.9g %.9g %.4g %.4g %.4g unsaturated %d saturated %d\n", name, r->seen[0], r->seen[1],
-                r->seen[2], CONFIDENCE * r->seen_error[0], CONFIDENCE * r->seen_error[1], CONFIDENCE * r->seen_error[2],
-                r->unsaturated, r->saturated);
+        fprintf(to, "seen %s %.9g %.9g %.9g %.4g %.4g %.4g unsaturated %d saturated %d%s\n", name, r->seen[0],
+                r->seen[1], r->seen[2], CONFIDENCE * r->seen_error[0], CONFIDENCE * r->seen_error[1],
+                CONFIDENCE * r->seen_error[2], r->unsaturated, r->saturated, r->disagrees ? " disagrees" : "");
 }
 
 static void write_material(const struct fit_material *m, FILE *to)

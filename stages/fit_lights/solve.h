@@ -16,6 +16,7 @@ struct lamp_result {
     double radiance_error[3], beta_error, exponent_error; /* beta: radians */
     /* what the views show of the lamp itself, towards its normal */
     double seen[3], seen_error[3];
+    bool disagrees;             /* the fit and what views show differ by more than the intervals */
     int unsaturated, saturated; /* numbers of views; with no unsaturated one, `seen` is a lower bound */
 };
 

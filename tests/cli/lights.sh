@@ -55,6 +55,21 @@ marked_lamps_are_placed()
     cmp two/1/fit.txt two/2/fit.txt
 }
 
+given_indirect_light_is_for_the_points_that_are_listed()
+{
+    photo=$(first_photo)
+    marked "disk spot in $photo 100 60 rim 104 60 radiance 9 8 7" "lit spot in $photo 90 60 95 64" "unlit spot in $photo 60 60"
+    "$B/bin/fit_lights" "${inputs[@]}" --lamps marks.txt --list points --out points.txt
+    [ "$(grep -vc '^#' points.txt)" = 26 ] || { cat points.txt; fail "not 26 points"; }
+    sed '/^#/d; s/$/ 1 1 1/' points.txt >given.txt
+    fit 0 '1 lamps, 2 openings' --lamps marks.txt --indirect given.txt
+    grep -q '^material spot .* lit 25 unlit 1$' made/fit.txt || { cat made/fit.txt; fail "no material"; }
+    sed 1d given.txt >fewer.txt
+    fit 1 'fewer.txt:1: ' --lamps marks.txt --indirect fewer.txt
+    sed '$d' given.txt >fewer.txt
+    fit 1 '26 points, one for each that was listed' --lamps marks.txt --indirect fewer.txt
+}
+
 errors_say_what_is_wrong()
 {
     photo=$(first_photo)
@@ -68,4 +83,4 @@ errors_say_what_is_wrong()
     fit 2 'hemicube = 33 is odd' --set hemicube=33
 }
 
-for t in windows_let_daylight_in_unless_they_are_shut marked_lamps_are_placed errors_say_what_is_wrong; do run "$t"; done
+for t in windows_let_daylight_in_unless_they_are_shut marked_lamps_are_placed given_indirect_light_is_for_the_points_that_are_listed errors_say_what_is_wrong; do run "$t"; done

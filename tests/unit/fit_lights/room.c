@@ -208,6 +208,8 @@ static void noisy_photos_give_radiance_within_three_percent_and_beta_within_half
         assert_true(fabs(room.solved.materials[0].k_d[c] / k_d[c] - 1) < 0.02);
     }
     assert_true(room.solved.lamps[0].source == LAMP_FITTED && !l->bound);
+    /* the ceiling's picture is grey where the lamp is */
+    assert_true(room.solved.lamps[0].disagrees);
 }
 
 static void points_that_no_photo_measures_are_refused(void **state)

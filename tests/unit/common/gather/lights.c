@@ -98,6 +98,7 @@ static void damaged_lines_are_refused(void **state)
         {HEAD "quad a 0 0 0 1 0 0 2 0 0 1 1 1 90 0\n", "two directions"},
         {HEAD "quad a 0 0 0 1 0 0 0 0 0 1 1 1 90 0\n", "two directions"},
         {HEAD "opening a 0 0 0 1 0 0 0 1\n", "second half edge"},
+        {HEAD "opening a\rb 0 0 0 1 0 0 0 1 0\n", "without a line break"},
         {HEAD "opening a 0 0 0 1 0 0 0 1 0 reference\n", "lighting reference image"},
         {HEAD "opening a 0 0 0 1 0 0 0 1 0 lri_1\n", "reference"},
     };
