@@ -5,7 +5,7 @@
  * the point turns or moves.
  *
  * Mathematics. Ring j is between the angles with sin^2 = j / M and (j + 1) / M. With L the radiance of cell (j, k), r its
- * distance, u_k the tangent towards the middle of column k and v the tangent a quarter turn further [Ward 1992]:
+ * distance, u_k the tangent towards the middle of column k and v the tangent a quarter turn further [Ward 1992b]:
  *   E      = pi / (M N) sum L
  *   turn   = pi / (M N) sum L tan(t) v           so that dE = turn . (n x n') when the normal n becomes n'
  *   move   = sum_k u_k 2 pi / N sum_j sin t_j cos^2 t_j / min(r, r of ring j - 1) (L - L of ring j - 1)
@@ -19,7 +19,7 @@
  * The standard error comes from the differences of neighbouring cells in a ring: their mean square is twice the variance
  * within a cell, and a little more where light has a slope.
  *
- * Source: [Ward 1992]. Different here: lamps and openings are left out, because their light changes at the edges of
+ * Source: [Ward 1992b]. Different here: lamps and openings are left out, because their light changes at the edges of
  * shadows, which no gradient foresees; the caller gathers it at each point. */
 #include "common/gather/cache_record.h"
 

@@ -16,7 +16,7 @@
  * point is not used: things between them may hide what it sees. Radii are limited to a few points' spacing below, so that
  * corners do not get a record at each point, and to a tenth of the scene above.
  *
- * Source: [Ward 1988] for records, [Ward 1992] for gradients. Different here: direct light at each point; weights that fade;
+ * Source: [Ward 1988] for records, [Ward 1992b] for gradients. Different here: direct light at each point; weights that fade;
  * placing by levels. */
 #include "common/gather/irradiance_cache.h"
 
@@ -33,7 +33,7 @@ static const double SPREAD = 1.6;    /* a over the square root of the target */
 static const double SPACINGS = 1;    /* a record reaches at least that many points' spacing */
 static const double WIDEST = 0.1;    /* of the points' box: a record reaches at most that far */
 static const double IN_FRONT = 0.05; /* of the radius */
-static const double SHARE = 0.7;     /* of the target, for each of records and direct light */
+static const double SHARE = 1; /* of the target, for each of records and direct light; most points are far below it */
 
 struct cache {
     const struct irradiance_cache_job *job;

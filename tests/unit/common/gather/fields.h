@@ -162,4 +162,44 @@ static inline double patch_factor(const struct patch *q, struct gather_point p)
     return count > 2 ? polygon_factor(out, count, p) : 0;
 }
 
+/* A room of 4 x 3 x 2.5 with two boxes in it, a lamp below the ceiling and a window beyond which the sky is bright. */
+static inline void field_make_room(struct patch_field *f)
+{
+    static const struct rgb walls[6] = {{.5, .5, .5}, {.9, .3, .2},  {.4, .6, .4},
+                                        {.6, .6, .7}, {.3, .25, .2}, {.8, .8, .8}};
+    static const struct rgb wood[6] = {{.3, .2, .1}, {.2, .2, .1}, {.3, .2, .1},
+                                       {.2, .2, .1}, {.1, .1, .1}, {.5, .4, .3}};
+    field_start(f, rgb_grey(0));
+    field_add_box(f, vec3_make(0, 0, 0), vec3_make(4, 3, 2.5), walls, true);
+    field_add_box(f, vec3_make(0.5, 0.5, 0), vec3_make(1.3, 1.2, 0.9), wood, false);
+    field_add_box(f, vec3_make(2.4, 1.4, 0), vec3_make(3.1, 2.2, 1.6), wood, false);
+    for (int i = 0; i < 6; i++) f->patches[i].slope[0] = 0.3 - 0.1 * i;
+    field_name(f, field_add(f, EMITTER_DISK, vec3_make(2, 1.5, 2.49), vec3_make(0.2, 0, 0), vec3_make(0, 0.2, 0),
+                            vec3_make(0, 0, -1), rgb_make(30, 28, 24)));
+    struct patch *window = field_add(f, EMITTER_QUAD, vec3_make(0.001, 1.5, 1.4), vec3_make(0, 0.5, 0),
+                                     vec3_make(0, 0, 0.5), vec3_make(1, 0, 0), rgb_make(4, 5, 6));
+    field_name(f, window);
+    window->source = LIGHT_SKY;
+}
+
+/* What a camera in a corner of the room sees, row by row. */
+static inline void field_see_room(struct gather_point *points, int width, int height, const struct patch_field *f)
+{
+    const struct vec3 eye = {3.8, 0.2, 1.7}, ahead = vec3_normalize(vec3_make(-1, 0.75, -0.35));
+    const struct vec3 right = vec3_normalize(vec3_cross(ahead, vec3_make(0, 0, 1))), up = vec3_cross(right, ahead);
+    for (int i = 0; i < width * height; i++) {
+        const double x = (i % width + 0.5) / width * 2 - 1, y = (i / width + 0.5) / height * 2 - 1;
+        const struct vec3 d =
+            vec3_normalize(vec3_add(ahead, vec3_add(vec3_scale(right, x * 0.8), vec3_scale(up, -0.6 * y))));
+        double nearest = INFINITY;
+        points[i] = (struct gather_point){{0, 0, 0}, {0, 0, 0}};
+        for (int k = 0; k < f->count; k++) {
+            double t, ab[2];
+            if (!patch_hit(&f->patches[k], eye, d, &t, ab) || t >= nearest) continue;
+            nearest = t;
+            points[i] = (struct gather_point){vec3_add(eye, vec3_scale(d, t)), f->patches[k].normal};
+        }
+    }
+}
+
 #endif

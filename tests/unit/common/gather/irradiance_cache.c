@@ -10,46 +10,6 @@
 
 enum { WIDTH = 160, HEIGHT = 120 };
 
-/* A room of 4 x 3 x 2.5 with two boxes in it, a lamp below the ceiling and a window beyond which the sky is bright. */
-static void make_room(struct patch_field *f)
-{
-    static const struct rgb walls[6] = {{.5, .5, .5}, {.9, .3, .2},  {.4, .6, .4},
-                                        {.6, .6, .7}, {.3, .25, .2}, {.8, .8, .8}};
-    static const struct rgb wood[6] = {{.3, .2, .1}, {.2, .2, .1}, {.3, .2, .1},
-                                       {.2, .2, .1}, {.1, .1, .1}, {.5, .4, .3}};
-    field_start(f, rgb_grey(0));
-    field_add_box(f, vec3_make(0, 0, 0), vec3_make(4, 3, 2.5), walls, true);
-    field_add_box(f, vec3_make(0.5, 0.5, 0), vec3_make(1.3, 1.2, 0.9), wood, false);
-    field_add_box(f, vec3_make(2.4, 1.4, 0), vec3_make(3.1, 2.2, 1.6), wood, false);
-    for (int i = 0; i < 6; i++) f->patches[i].slope[0] = 0.3 - 0.1 * i;
-    field_name(f, field_add(f, EMITTER_DISK, vec3_make(2, 1.5, 2.49), vec3_make(0.2, 0, 0), vec3_make(0, 0.2, 0),
-                            vec3_make(0, 0, -1), rgb_make(30, 28, 24)));
-    struct patch *window = field_add(f, EMITTER_QUAD, vec3_make(0.001, 1.5, 1.4), vec3_make(0, 0.5, 0),
-                                     vec3_make(0, 0, 0.5), vec3_make(1, 0, 0), rgb_make(4, 5, 6));
-    field_name(f, window);
-    window->source = LIGHT_SKY;
-}
-
-/* What a camera in a corner of the room sees. */
-static void see_room(struct gather_point points[WIDTH * HEIGHT], const struct patch_field *f)
-{
-    const struct vec3 eye = {3.8, 0.2, 1.7}, ahead = vec3_normalize(vec3_make(-1, 0.75, -0.35));
-    const struct vec3 right = vec3_normalize(vec3_cross(ahead, vec3_make(0, 0, 1))), up = vec3_cross(right, ahead);
-    for (int i = 0; i < WIDTH * HEIGHT; i++) {
-        const double x = (i % WIDTH + 0.5) / WIDTH * 2 - 1, y = (i / WIDTH + 0.5) / HEIGHT * 2 - 1;
-        const struct vec3 d =
-            vec3_normalize(vec3_add(ahead, vec3_add(vec3_scale(right, x * 0.8), vec3_scale(up, -0.6 * y))));
-        double nearest = INFINITY;
-        points[i] = (struct gather_point){{0, 0, 0}, {0, 0, 0}};
-        for (int k = 0; k < f->count; k++) {
-            double t, ab[2];
-            if (!patch_hit(&f->patches[k], eye, d, &t, ab) || t >= nearest) continue;
-            nearest = t;
-            points[i] = (struct gather_point){vec3_add(eye, vec3_scale(d, t)), f->patches[k].normal};
-        }
-    }
-}
-
 static double box_irradiance(const struct patch_field *f, struct gather_point p)
 {
     double sum = 0;
@@ -112,8 +72,8 @@ static void a_picture_of_a_room_is_within_its_target(void **state)
     static struct irradiance results[WIDTH * HEIGHT];
     static struct patch_field f;
     (void)state;
-    make_room(&f);
-    see_room(points, &f);
+    field_make_room(&f);
+    field_see_room(points, WIDTH, HEIGHT, &f);
     for (int t = 0; t < 2; t++) {
         struct irradiance_cache_stats stats;
         double squares = 0, stated = 0;
@@ -143,8 +103,8 @@ static void threads_do_not_change_a_bit(void **state)
     static struct irradiance one[WIDTH * HEIGHT], three[WIDTH * HEIGHT];
     static struct patch_field f;
     (void)state;
-    make_room(&f);
-    see_room(points, &f);
+    field_make_room(&f);
+    field_see_room(points, WIDTH, HEIGHT, &f);
     parallel_set_threads(1);
     fill(one, points, &f, 0.05, NULL);
     parallel_set_threads(3);
@@ -160,7 +120,7 @@ static void points_without_a_normal_are_left_dark(void **state)
     static struct patch_field f;
     struct irradiance_cache_stats stats;
     (void)state;
-    make_room(&f);
+    field_make_room(&f);
     fill(results, points, &f, 0.05, &stats);
     assert_int_equal(stats.records, 0);
     points[WIDTH + 3] = (struct gather_point){{2, 1, 0}, {0, 0, 1}};
@@ -176,8 +136,8 @@ static void darkness_stays_dark(void **state)
     static struct irradiance results[WIDTH * HEIGHT];
     static struct patch_field f, dark;
     (void)state;
-    make_room(&f);
-    see_room(points, &f);
+    field_make_room(&f);
+    field_see_room(points, WIDTH, HEIGHT, &f);
     field_start(&dark, rgb_grey(0));
     fill(results, points, &dark, 0.05, NULL);
     for (int i = 0; i < WIDTH * HEIGHT; i++) {

@@ -1,0 +1,28 @@
+/* specular.c - light that a glossy surface reflects to a viewer.
+ *
+ * Overview. A pixel of a glossy surface has the radiance albedo E / pi + k_s I_s. E is its irradiance, and I_s what is
+ * computed here with k_s = 1: the lobe's own directions are one more strategy beside those towards emitters (mixture.c). A
+ * narrow lobe is best sampled by itself, a wide one under a small lamp by the lamp; the weights see to both.
+ *
+ * Mathematics. I = integral of L(w) f(w, view) cos(w): for Phong L k_s (R.V)^n, in which the cosine cancels [Colburn 2014,
+ * A.1.10]; for Ward L k_s exp(-tan^2(N,H) / alpha^2) / (4 pi alpha^2) sqrt(cos_light / cos_view) [Ward 1992]. In uniform
+ * light of radiance 1 with the viewer overhead, Phong's is 2 pi k_s / (n + 1).
+ *
+ * Source: [Colburn 2014, 5.4] for the integrals, [Veach 1995] for the mixture. */
+#include "common/gather/specular.h"
+
+#include <math.h>
+
+#include "common/gather/mixture.h"
+
+enum { FIRST = 512 };
+
+void specular_integral(struct irradiance *e, const struct light_field *f, struct gather_point p,
+                       const struct brdf *brdf, struct vec3 view, double target, int most, uint64_t key)
+{
+    struct mixture m;
+    *e = (struct irradiance){.nearest = INFINITY};
+    if (brdf->kind == BRDF_LAMBERT || !(brdf->gloss > 0) || !(vec3_dot(p.normal, view) > 0)) return;
+    mixture_lobe_init(&m, f, p, brdf, view);
+    mixture_gather_to(e, &m, target, 0, FIRST, most, key);
+}
