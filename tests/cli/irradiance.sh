@@ -42,9 +42,13 @@ points_of_a_file_have_what_the_face_had()
 
 bytes_do_not_depend_on_threads()
 {
+    printf 'remodel-lights 1\ndisk lamp 0 0 8 0 0 -1 3 500 500 500 50 1\n' >lamps.txt
     for n in 1 2; do
         gather 0 points "${inputs[@]}" --points points.txt --out two/$n --threads $n
         gather 0 points "${inputs[@]}" --set hemicube=4 --set target_error=0 --view "$view" --views $O/views --out two/$n --threads $n
+        for e in rays cache; do
+            gather 0 points "${inputs[@]}" --set estimator=$e --set target_error=0.3 --view "$view" --views $O/views --lights lamps.txt --out two/$n/$e --threads $n
+        done
     done
     diff -r two/1 two/2
     ! grep -rqF "$PWD" two/1 || fail "a product names a folder of this machine"
