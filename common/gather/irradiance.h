@@ -19,9 +19,11 @@ struct irradiance {
     int rays;
 };
 
-/* A plain hemicube with n x n pixels on its top [Cohen 1985], n even, at most 1024. Form factors are integrals over the
- * pixels in closed form: they sum to 1 to rounding. Owned by the caller. hemicube.c */
+/* A plain hemicube with n x n pixels on its top [Cohen 1985], n even. Form factors are integrals over the pixels in
+ * closed form: they sum to 1 to rounding. Owned by the caller. hemicube.c */
+#define HEMICUBE_MOST 1024 /* pixels in a row */
 struct hemicube;
+/* ST_USAGE: n is odd or out of range; ST_NOMEM. */
 enum status hemicube_make(struct hemicube **h, int n, struct err *err);
 void hemicube_free(struct hemicube *h);        /* NULL is allowed */
 double hemicube_sum(const struct hemicube *h); /* of all form factors */

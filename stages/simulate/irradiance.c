@@ -14,10 +14,8 @@
 #include "common/base/outfile.h"
 #include "common/base/parallel.h"
 #include "common/base/progress.h"
-#include "common/base/textfile.h"
-#include "stages/simulate/description.h"
+#include "common/light/surface_points.h"
 
-#define MAX_POINTS 10000000
 #define SAME_POINT 1e-5 /* of the distance: points closer together are the same */
 
 static int samples_of(const struct simulate_params *params)
@@ -106,6 +104,12 @@ enum status irradiance_picture(const struct picture_job *job, const struct world
 
 /* ----------------------------------------------------------------------------------------------------------- points */
 
+/* A point at which to compute irradiance. */
+struct probe {
+    struct vec3 at, normal; /* unit */
+    struct rgb irradiance;
+};
+
 struct point_list {
     struct probe *list;
     int count, samples;
@@ -113,36 +117,16 @@ struct point_list {
     struct rng rng;
 };
 
-static enum status read_point(struct textfile *t, struct probe *p, struct err *err)
+static enum status read_points(struct point_list *l, const char *path, struct err *err)
 {
-    *p = (struct probe){0};
-    enum status st = description_point(t, "a point", &p->at, err);
-    if (!st) st = description_point(t, "a normal", &p->normal, err);
-    if (!st && !(vec3_length(p->normal) > 1e-9)) st = textfile_error(t, err, "0 0 0", "a normal");
-    if (!st) st = textfile_end(t, err);
-    p->normal = vec3_normalize(p->normal);
-    return st;
-}
-
-enum status irradiance_read_points(struct probe **list, int *count, const char *path, struct err *err)
-{
-    struct textfile t = {0};
-    *list = NULL;
-    *count = 0;
-    enum status st = textfile_open(&t, path, err);
-    while (!st && textfile_next(&t)) {
-        struct probe p;
-        st = read_point(&t, &p, err);
-        if (!st) st = description_append(&t, list, *count, MAX_POINTS, sizeof p, err);
-        if (!st) (*list)[(*count)++] = p;
-    }
-    if (!st && !*count) st = err_set(err, ST_DATA, "%s has no points; write one on each line: X Y Z NX NY NZ.", path);
-    textfile_release(&t);
-    if (!st) return ST_OK;
-    free(*list);
-    *list = NULL;
-    *count = 0;
-    return st;
+    struct surface_points points = {0};
+    if (surface_points_read(&points, path, err)) return err->status;
+    l->list = calloc((size_t)points.count, sizeof *l->list);
+    for (int i = 0; l->list && i < points.count; i++)
+        l->list[i] = (struct probe){points.list[i].at, points.list[i].normal, {0, 0, 0}};
+    l->count = points.count;
+    surface_points_release(&points);
+    return l->list ? ST_OK : err_nomem(err, "points", (size_t)l->count * sizeof *l->list);
 }
 
 static void find_points(void *ctx, size_t begin, size_t end, int thread)
@@ -179,7 +163,7 @@ enum status irradiance_points(const struct picture_job *job, const struct world 
 {
     struct point_list l = {.world = w, .samples = job->params->irradiance_samples};
     char *path = NULL;
-    enum status st = irradiance_read_points(&l.list, &l.count, points, err);
+    enum status st = read_points(&l, points, err);
     if (!st && asprintf(&path, "%s/%s/irradiance-points.txt", job->out, folder) < 0) {
         path = NULL;
         st = err_nomem(err, "a file name", strlen(job->out));

@@ -11,15 +11,6 @@
 enum status irradiance_picture(const struct picture_job *job, const struct world *w, const struct world *edited,
                                const struct shoot_photo *photo, const char *folder, struct err *err);
 
-/* A point at which to compute irradiance. */
-struct probe {
-    struct vec3 at, normal; /* unit */
-    struct rgb irradiance;
-};
-
-/* Lines X Y Z NX NY NZ. The caller frees the list; on failure there is none. ST_DATA: a bad line, or no point. */
-enum status irradiance_read_points(struct probe **list, int *count, const char *path, struct err *err);
-
 /* Reads lines X Y Z NX NY NZ from `points` and writes OUT/FOLDER/irradiance-points.txt, with R G B behind each. ST_DATA:
  * a bad line, or none. */
 enum status irradiance_points(const struct picture_job *job, const struct world *w, const char *points,

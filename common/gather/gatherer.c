@@ -1,0 +1,66 @@
+/* gatherer.c - see gatherer.h.
+ *
+ * A hemicube's resolution is doubled, from COARSEST on, until the error that it states for the luminance is at most the
+ * target. Each has four times the rays of the one before, so that all of them together cost a third more than the last
+ * one alone. */
+#include "common/gather/gatherer.h"
+
+#include <stdlib.h>
+
+enum { COARSEST = 32, MOST_CUBES = 16 };
+
+struct gatherer {
+    struct gather_params params;
+    struct hemicube *cubes[MOST_CUBES]; /* each twice as fine as the one before; the last one has params.hemicube px */
+    int cube_count;
+};
+
+enum status gather_params_check(const struct gather_params *p, struct err *err)
+{
+    if (p->hemicube % 2 == 0) return ST_OK;
+    return err_set(err, ST_USAGE, "hemicube = %d is odd, wanted an even number; give %d.", p->hemicube,
+                   p->hemicube + 1);
+}
+
+enum status gatherer_make(struct gatherer **g, const struct gather_params *p, struct err *err)
+{
+    *g = NULL;
+    struct gatherer *made = calloc(1, sizeof *made);
+    if (!made) return err_nomem(err, "a gather of light", sizeof *made);
+    made->params = *p;
+    int n = p->hemicube, steps = 1;
+    while (p->target_error > 0 && n % 4 == 0 && n / 2 >= COARSEST) {
+        n /= 2;
+        steps++;
+    }
+    enum status st = ST_OK;
+    for (int i = 0; !st && i < steps; i++, n *= 2) {
+        st = hemicube_make(&made->cubes[i], n, err);
+        if (!st) made->cube_count++;
+    }
+    if (st)
+        gatherer_free(made);
+    else
+        *g = made;
+    return st;
+}
+
+void gatherer_free(struct gatherer *g)
+{
+    if (!g) return;
+    for (int i = 0; i < g->cube_count; i++) hemicube_free(g->cubes[i]);
+    free(g);
+}
+
+void gatherer_irradiance(struct irradiance *e, const struct gatherer *g, const struct light_field *f,
+                         struct gather_point p, uint64_t key)
+{
+    (void)key;
+    int rays = 0;
+    for (int i = 0; i < g->cube_count; i++) {
+        hemicube_irradiance(e, g->cubes[i], f, p);
+        rays += e->rays;
+        if (rgb_luminance(e->error) <= g->params.target_error * rgb_luminance(e->value)) break;
+    }
+    e->rays = rays;
+}

@@ -1,0 +1,312 @@
+/* model_field.c - what a ray sees in a textured model.
+ *
+ * Overview. A ray is traced against the model without its panes. What it sees is the first of:
+ *   - a declared lamp on its way, seen from the side that shines: S cos(t)^exponent, and 0 beyond the cone's angle;
+ *   - the outside of a face: its texel in the VITA, photographed or synthesised; nothing where there is none;
+ *   - the inside of a face, from a point in a solid: nothing;
+ *   - the outdoors, by direction, where it leaves the model. Panes are clear: photographs through them and reference
+ *     images have the light that they let through.
+ *
+ * Lamps. A lamp is a place of a ceiling, and the two agree to some millimetres only; a lamp that is up to `reach` behind
+ * the surface that a ray meets is still in front of it. Texels under a lamp and around it are replaced when the field is
+ * read (field_atlas.c), so that no light counts twice.
+ *
+ * Emitters say where bright light is: every lamp; the openings of lights.txt; panes of the model that lights.txt does not
+ * name, since the sky lights through those too; the suns of the outdoors (field_sky.c).
+ *
+ * Source: the light function L(x -> direction) of [Colburn 2014, 5.3.1 to 5.3.3]. Different here: the outdoors are one
+ * picture of all lighting reference images and photographs, not one image per window. */
+#include "common/gather/model_field.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/math/numbers.h"
+
+static const double REACH = 0.005;     /* of the model's size: 5 cm of 10 m */
+static const double HANGING = 0.1;     /* of the model's size: lamps further from a face leave its texels alone */
+static const double PANE_REACH = 0.01; /* of the model's size: beyond that, a pane's surroundings are looked at */
+
+/* --------------------------------------------------------------------------------------------------------------- look */
+
+/* The lamp on a ray's way to t, nearest first; sets *at. NULL: none. */
+static const struct lamp *lamp_on_way(const struct model_field *f, struct vec3 from, struct vec3 direction, double t,
+                                      double *at)
+{
+    const struct lamp *found = NULL;
+    for (int i = 0; i < f->lights.lamp_count; i++) {
+        const struct field_lamp *l = &f->lamps[i];
+        const double cosine = -vec3_dot(direction, l->lamp->normal);
+        const struct vec3 to = vec3_sub(l->lamp->centre, from);
+        if (l->off || !(cosine > 0)) continue;
+        const double distance = -vec3_dot(to, l->lamp->normal) / cosine;
+        if (!(distance > 0 && (distance - t) * cosine <= f->reach) || (found && distance >= *at)) continue;
+        const struct vec3 q = vec3_sub(vec3_scale(direction, distance), to);
+        const double a = vec3_dot(l->dual[0], q), b = vec3_dot(l->dual[1], q);
+        if (l->lamp->shape == LAMP_DISK ? a * a + b * b > 1 : fmax(fabs(a), fabs(b)) > 1) continue;
+        found = l->lamp;
+        *at = distance;
+    }
+    return found;
+}
+
+static void see_face(struct light_look *seen, const struct model_field *f, const struct ray_hit *hit)
+{
+    seen->distance = hit->t;
+    seen->radiance = rgb_make(0, 0, 0);
+    seen->source = hit->front ? field_atlas_look(&seen->radiance, &f->atlas,
+                                                 solid_face_id(&f->model.mesh, (int)hit->id), hit->point)
+                              : LIGHT_NONE;
+}
+
+static void see_outdoors(struct light_look *seen, const struct model_field *f, struct vec3 direction)
+{
+    float rgb[3];
+    const enum outdoors_source source = outdoors_sample(rgb, &f->outdoors, direction);
+    seen->distance = INFINITY;
+    seen->radiance = rgb_make((double)rgb[0], (double)rgb[1], (double)rgb[2]);
+    seen->source = !f->outdoors.rgb ? LIGHT_NONE : source == OUTDOORS_GUESSED ? LIGHT_SKY_GUESSED : LIGHT_SKY;
+}
+
+static void look(const void *ctx, const struct vec3 from[RAY_PACKET], struct vec3 normal,
+                 const struct vec3 direction[RAY_PACKET], unsigned active, struct light_look seen[RAY_PACKET])
+{
+    const struct model_field *f = ctx;
+    const struct vec3 off = vec3_scale(normal, f->model.rays.epsilon);
+    struct vec3 origin[RAY_PACKET];
+    struct ray_hit hits[RAY_PACKET];
+    for (int k = 0; k < RAY_PACKET; k++)
+        if (active >> k & 1) origin[k] = vec3_add(from[k], off);
+    const unsigned hit = ray_scene_hit_packet(&f->model.rays, origin, direction, active, hits);
+    for (int k = 0; k < RAY_PACKET; k++) {
+        double at;
+        if (!(active >> k & 1)) continue;
+        const double t = hit >> k & 1 ? hits[k].t : INFINITY;
+        const struct lamp *lamp = lamp_on_way(f, origin[k], direction[k], t, &at);
+        if (lamp)
+            seen[k] = (struct light_look){lamp_radiance(lamp, vec3_scale(direction[k], -1)), at, LIGHT_LAMP};
+        else if (hit >> k & 1)
+            see_face(&seen[k], f, &hits[k]);
+        else
+            see_outdoors(&seen[k], f, direction[k]);
+    }
+}
+
+bool model_field_lift(const struct model_field *f, struct gather_point *p, double most)
+{
+    const double epsilon = f->model.rays.epsilon;
+    struct ray_hit hit;
+    const struct vec3 from = vec3_add(p->at, vec3_scale(p->normal, epsilon));
+    if (!ray_scene_hit(&f->model.rays, from, p->normal, &hit) || hit.front || hit.t > most) return false;
+    p->at = vec3_add(p->at, vec3_scale(p->normal, hit.t + 2 * epsilon));
+    return true;
+}
+
+/* ----------------------------------------------------------------------------------------------------------- emitters */
+
+static void prepare_lamps(struct model_field *f)
+{
+    for (int i = 0; i < f->lights.lamp_count; i++) {
+        const struct lamp *l = &f->lights.lamps[i];
+        const struct vec3 n = vec3_cross(l->x, l->y);
+        const double nn = vec3_dot(n, n);
+        f->lamps[i].lamp = l;
+        f->lamps[i].dual[0] = vec3_scale(vec3_cross(l->y, n), 1 / nn);
+        f->lamps[i].dual[1] = vec3_scale(vec3_cross(n, l->x), 1 / nn);
+    }
+}
+
+static void add_lamps(struct model_field *f)
+{
+    for (int i = 0; i < f->lights.lamp_count; i++) {
+        const struct lamp *l = &f->lights.lamps[i];
+        if (f->lamps[i].off) continue;
+        f->emitters[f->field.emitter_count++] =
+            (struct emitter){.kind = l->shape == LAMP_DISK ? EMITTER_DISK : EMITTER_QUAD,
+                             .centre = l->centre,
+                             .x = l->x,
+                             .y = l->y,
+                             .normal = l->normal,
+                             .luminance = rgb_luminance(l->radiance),
+                             .beta = l->beta,
+                             .exponent = l->exponent};
+    }
+}
+
+static void add_opening(struct model_field *f, struct vec3 centre, struct vec3 x, struct vec3 y, struct vec3 normal)
+{
+    f->emitters[f->field.emitter_count++] = (struct emitter){.kind = EMITTER_QUAD,
+                                                             .centre = centre,
+                                                             .x = x,
+                                                             .y = y,
+                                                             .normal = normal,
+                                                             .luminance = field_sky_mean(&f->sky, &f->outdoors, normal),
+                                                             .beta = 0.5 * PI};
+}
+
+/* The name of a body's pane, "glass/NAME"; NULL: it is none. */
+static const char *pane_name(const struct solid_body *body)
+{
+    return strncmp(body->name, "glass/", 6) ? NULL : body->name + 6;
+}
+
+static bool is_listed(const struct light_list *l, const char *name)
+{
+    for (int i = 0; i < l->opening_count; i++)
+        if (!strcmp(l->openings[i].name, name)) return true;
+    return false;
+}
+
+static int largest_face(const struct solid_mesh *mesh, const struct solid_body *body)
+{
+    int best = body->face;
+    for (int i = body->face + 1; i < body->face + body->faces; i++)
+        if (solid_mesh_area(mesh, i) > solid_mesh_area(mesh, best)) best = i;
+    return best;
+}
+
+/* The rectangle around a face, its sides level and upright. */
+static void span_face(const struct solid_mesh *mesh, const struct solid_face *face, struct vec3 *centre, struct vec3 *x,
+                      struct vec3 *y)
+{
+    const struct vec3 up = fabs(face->normal.z) > 0.9 ? vec3_make(0, 1, 0) : vec3_make(0, 0, 1);
+    const struct vec3 u = vec3_normalize(vec3_cross(up, face->normal)), v = vec3_cross(face->normal, u);
+    double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+    const int first = mesh->loops[face->loop].half_edge;
+    int h = first;
+    do {
+        const struct vec3 p = mesh->vertices[mesh->half_edges[h].origin].p;
+        const double at[2] = {vec3_dot(u, p), vec3_dot(v, p)};
+        for (int k = 0; k < 2; k++) {
+            low[k] = fmin(low[k], at[k]);
+            high[k] = fmax(high[k], at[k]);
+        }
+        h = mesh->half_edges[h].next;
+    } while (h != first);
+    *centre = vec3_add(vec3_add(vec3_scale(u, (low[0] + high[0]) / 2), vec3_scale(v, (low[1] + high[1]) / 2)),
+                       vec3_scale(face->normal, face->offset));
+    *x = vec3_scale(u, (high[0] - low[0]) / 2);
+    *y = vec3_scale(v, (high[1] - low[1]) / 2);
+}
+
+/* A pane lets the sky in if a ray from its middle meets the model on one side only: that is indoors. */
+static void add_pane(struct model_field *f, const struct solid_body *body)
+{
+    const struct solid_face *face = &f->model.mesh.faces[largest_face(&f->model.mesh, body)];
+    struct vec3 centre, x, y;
+    struct ray_hit hit;
+    span_face(&f->model.mesh, face, &centre, &x, &y);
+    const struct vec3 off = vec3_scale(face->normal, PANE_REACH * model_rays_size(&f->model));
+    const bool front = ray_scene_hit(&f->model.rays, vec3_add(centre, off), face->normal, &hit);
+    const bool back = ray_scene_hit(&f->model.rays, vec3_sub(centre, off), vec3_scale(face->normal, -1), &hit);
+    if (front != back) add_opening(f, centre, x, y, vec3_scale(face->normal, front ? 1 : -1));
+}
+
+static void add_openings(struct model_field *f)
+{
+    for (int i = 0; i < f->lights.opening_count; i++) {
+        const struct daylight *o = &f->lights.openings[i];
+        add_opening(f, o->centre, o->x, o->y, o->normal);
+    }
+    for (int i = 0; i < f->model.mesh.body_count; i++) {
+        const struct solid_body *body = &f->model.mesh.bodies[i];
+        const char *name = pane_name(body);
+        if (name && body->faces && !is_listed(&f->lights, name)) add_pane(f, body);
+    }
+}
+
+static void list_emitters(struct model_field *f)
+{
+    f->field.emitter_count = 0;
+    add_lamps(f);
+    if (f->outdoors.rgb) add_openings(f);
+    for (int i = 0; i < f->sky.sun_count; i++) f->emitters[f->field.emitter_count++] = f->sky.suns[i];
+}
+
+void model_field_switch_lamp(struct model_field *f, int lamp, bool on)
+{
+    for (int i = 0; i < f->lights.lamp_count; i++)
+        if (lamp < 0 || i == lamp) f->lamps[i].off = !on;
+    list_emitters(f);
+}
+
+static enum status find_emitters(struct model_field *f, struct err *err)
+{
+    const size_t most =
+        (size_t)f->lights.lamp_count + (size_t)f->lights.opening_count + (size_t)f->model.mesh.body_count + MOST_SUNS;
+    f->lamps = calloc((size_t)f->lights.lamp_count + 1, sizeof *f->lamps);
+    f->emitters = calloc(most, sizeof *f->emitters);
+    if (!f->lamps || !f->emitters) return err_nomem(err, "emitters", most * sizeof *f->emitters);
+    prepare_lamps(f);
+    list_emitters(f);
+    return ST_OK;
+}
+
+/* ----------------------------------------------------------------------------------------------------------- reading */
+
+static enum status find_planes(struct model_field *f, struct err *err)
+{
+    f->planes = calloc((size_t)f->model.ids, sizeof *f->planes);
+    if (!f->planes) return err_nomem(err, "faces", (size_t)f->model.ids * sizeof *f->planes);
+    for (int i = 0; i < f->model.mesh.face_count; i++) {
+        const struct solid_face *face = &f->model.mesh.faces[i];
+        f->planes[solid_face_id(&f->model.mesh, i)] = (struct face_plane){face->normal, face->offset};
+    }
+    return ST_OK;
+}
+
+static enum status cover_lamps(struct model_field *f, struct err *err)
+{
+    const double reach = HANGING * model_rays_size(&f->model);
+    for (int i = 0; i < f->lights.lamp_count; i++)
+        for (int id = 1; id < f->model.ids; id++)
+            if (field_atlas_cover_lamp(&f->atlas, &f->covered_texels, id, f->planes[id], &f->lights.lamps[i], reach,
+                                       err))
+                return err->status;
+    return ST_OK;
+}
+
+static enum status read_files(struct model_field *f, const struct model_field_files *files, struct provenance *prov,
+                              struct err *err)
+{
+    enum status st = provenance_add_file(prov, "model/model.txt", files->model, err);
+    if (!st) st = model_rays_read(&f->model, files->model, MODEL_WITHOUT_GLASS, err);
+    if (!st) st = field_atlas_read(&f->atlas, files->vita, f->model.ids, prov, err);
+    if (!st && files->outdoors) st = provenance_add_file(prov, "outdoors/outdoors.exr", files->outdoors, err);
+    if (!st && files->outdoors) st = outdoors_read(&f->outdoors, files->outdoors, err);
+    if (!st && files->lights) st = provenance_add_file(prov, "lights/lights.txt", files->lights, err);
+    if (!st && files->lights) st = light_list_read(&f->lights, files->lights, err);
+    return st;
+}
+
+enum status model_field_read(struct model_field *f, const struct model_field_files *files, struct provenance *prov,
+                             struct err *err)
+{
+    struct provenance unused = {0};
+    *f = (struct model_field){0};
+    enum status st = read_files(f, files, prov ? prov : &unused, err);
+    provenance_release(&unused);
+    f->reach = REACH * model_rays_size(&f->model);
+    if (!st) st = find_planes(f, err);
+    if (!st) st = cover_lamps(f, err);
+    if (!st) st = field_sky_find(&f->sky, &f->outdoors, err);
+    if (!st) st = find_emitters(f, err);
+    f->field.ctx = f;
+    f->field.look = look;
+    f->field.emitters = f->emitters;
+    return st;
+}
+
+void model_field_release(struct model_field *f)
+{
+    if (!f) return;
+    model_rays_release(&f->model);
+    field_atlas_release(&f->atlas);
+    outdoors_release(&f->outdoors);
+    light_list_release(&f->lights);
+    free(f->lamps);
+    free(f->emitters);
+    free(f->planes);
+    *f = (struct model_field){0};
+}

@@ -1,0 +1,50 @@
+/* surface_points.c - see surface_points.h. */
+#include "common/light/surface_points.h"
+
+#include <stdlib.h>
+
+#include "common/base/array.h"
+#include "common/base/textfile.h"
+
+enum { MOST = 10000000 };
+
+static enum status read_vector(struct textfile *t, const char *what, struct vec3 *v, struct err *err)
+{
+    if (textfile_double(t, what, &v->x, err) || textfile_double(t, what, &v->y, err) ||
+        textfile_double(t, what, &v->z, err))
+        return err->status;
+    const double length = vec3_length(*v);
+    return length <= 1e9 ? ST_OK : textfile_wrong_number(t, length, "numbers of at most 1e9", err);
+}
+
+static enum status read_point(struct surface_points *points, struct textfile *t, struct err *err)
+{
+    struct surface_point p;
+    if (points->count == MOST) return textfile_error(t, err, "one more", "at most %d points", MOST);
+    if (read_vector(t, "a point", &p.at, err) || read_vector(t, "a normal", &p.normal, err)) return err->status;
+    if (!(vec3_length(p.normal) > 1e-9)) return textfile_error(t, err, "0 0 0", "a normal");
+    p.normal = vec3_normalize(p.normal);
+    if (textfile_end(t, err) || array_append(&points->list, (size_t)points->count, sizeof p, "points", err))
+        return err->status;
+    points->list[points->count++] = p;
+    return ST_OK;
+}
+
+enum status surface_points_read(struct surface_points *points, const char *path, struct err *err)
+{
+    struct textfile t = {0};
+    *points = (struct surface_points){0};
+    enum status st = textfile_open(&t, path, err);
+    while (!st && textfile_next(&t)) st = read_point(points, &t, err);
+    if (!st && !points->count)
+        st = err_set(err, ST_DATA, "%s has no points; write one on each line: X Y Z NX NY NZ.", path);
+    textfile_release(&t);
+    if (st) surface_points_release(points);
+    return st;
+}
+
+void surface_points_release(struct surface_points *points)
+{
+    free(points->list);
+    *points = (struct surface_points){0};
+}

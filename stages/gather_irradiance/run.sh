@@ -1,0 +1,18 @@
+# run.sh - irradiance. Sourced by common/run/run_scene.sh.
+
+check_gather_irradiance()
+{
+    [ -z "${REMODEL_POINTS-}" ] || [ -f "$REMODEL_POINTS" ] ||
+        usage "POINTS=$REMODEL_POINTS is no file. Give a file with a line X Y Z NX NY NZ for each point."
+}
+
+# the truth's points are in the frame of the views when evaluate has aligned the two
+run_irradiance()
+{
+    if [ -z "${REMODEL_POINTS-}" ] && [ -n "${REMODEL_TRUTH-}" ] && [ -e "$REMODEL_TRUTH/irradiance.txt" ] &&
+        [ ! -e "$O/evaluate/irradiance_points.txt" ]; then
+        one evaluate
+    fi
+    one irradiance
+    [ "$goal" != irradiance ] || [ ! -e "$O/relight/irradiance.txt" ] || echo "points  $O/relight/irradiance.txt"
+}
