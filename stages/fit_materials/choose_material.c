@@ -18,12 +18,6 @@
 enum { FOLDS = 5, MIN_POINTS = 6 };
 #define MIN_GAIN 2.0
 
-const char *material_kind_name(enum brdf_kind kind)
-{
-    static const char *const names[MATERIAL_KINDS] = {"lambert", "phong", "ward"};
-    return names[kind];
-}
-
 /* Groups of samples that share a point. */
 static int count_points(const struct material_samples *s)
 {

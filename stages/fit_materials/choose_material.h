@@ -2,6 +2,7 @@
 #ifndef REMODEL_CHOOSE_MATERIAL_H
 #define REMODEL_CHOOSE_MATERIAL_H
 
+#include "common/gather/materials.h"
 #include "stages/fit_materials/material_fit.h"
 
 enum { MATERIAL_KINDS = 3 };
@@ -23,7 +24,5 @@ enum status material_choose(struct material_choice *c, const struct material_sam
 /* Fits the model that a person declared. ST_DATA as above, or where the samples do not determine its lobe. */
 enum status material_declared(struct material_choice *c, const struct material_samples *s, enum brdf_kind kind,
                               struct err *err);
-
-const char *material_kind_name(enum brdf_kind kind); /* lambert, phong, ward */
 
 #endif

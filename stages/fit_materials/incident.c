@@ -34,7 +34,7 @@ static bool emitter_direction(struct vec3 *direction, const struct emitter *e, s
 {
     if (e->kind == EMITTER_SUN) {
         const double cos_t = 1 - u * (1 - e->cone);
-        *direction = frame_direction(vec3_scale(e->normal, -1), sqrt(fast_max(0, 1 - cos_t * cos_t)), cos_t, v);
+        *direction = frame_direction(e->normal, sqrt(fast_max(0, 1 - cos_t * cos_t)), cos_t, v);
         return true;
     }
     double x = 2 * u - 1, y = 2 * v - 1;
@@ -53,7 +53,7 @@ static bool emitter_direction(struct vec3 *direction, const struct emitter *e, s
 static double emitter_density(const struct emitter *e, struct vec3 at, struct vec3 direction)
 {
     if (e->kind == EMITTER_SUN) {
-        const double cos_t = -vec3_dot(e->normal, direction);
+        const double cos_t = vec3_dot(e->normal, direction);
         return cos_t >= e->cone && e->cone < 1 ? 1 / (2 * PI * (1 - e->cone)) : 0;
     }
     const struct vec3 across = vec3_cross(e->x, e->y), to = vec3_sub(e->centre, at);

@@ -56,7 +56,7 @@ static struct brdf random_brdf(enum brdf_kind kind, uint64_t seed, double *share
     b.albedo.g = room_random(&rng, seed, &at, 0.1, 0.8);
     b.albedo.b = room_random(&rng, seed, &at, 0.1, 0.8);
     const double shape = room_random(&rng, seed, &at, 0, 1);
-    b.shape = kind == BRDF_WARD ? 0.05 * pow(10, shape) : 5 * pow(100, shape);
+    if (kind != BRDF_LAMBERT) b.shape = kind == BRDF_WARD ? 0.05 * pow(10, shape) : 5 * pow(100, shape);
     *share = room_random(&rng, seed, &at, SHARE_LEAST, SHARE_MOST);
     return b;
 }
