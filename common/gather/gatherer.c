@@ -7,7 +7,7 @@
 
 #include <stdlib.h>
 
-enum { COARSEST = 32, MOST_CUBES = 16 };
+enum { COARSEST = 128, MOST_CUBES = 16 };
 
 struct gatherer {
     struct gather_params params;

@@ -3,28 +3,28 @@ FOLLOWS.gather_irradiance := bake_outdoors bake_vita
 READS.gather_irradiance := the model, axes.txt, the VITA, outdoors.exr, lights/lights.txt if there is one, points or a view's camera
 WRITES.gather_irradiance := relight/irradiance.txt, irradiance-parts.txt; relight/irradiance/VIEW.exr
 LIBS.gather_irradiance := -lembree3
-VARIABLES.gather_irradiance := POINTS
+VARIABLES.gather_irradiance := GATHER_POINTS
 STEPS.gather_irradiance := irradiance
-HELP.irradiance := the light that arrives at the points of POINTS, or of TRUTH/irradiance.txt, and at views named by IRRADIANCE_VIEWS
+HELP.irradiance := the light that arrives at the points of GATHER_POINTS, or of TRUTH/irradiance.txt, and at views named by GATHER_VIEWS
 NEEDS.irradiance := vita outdoors
 
-## POINTS=FILE: for `make irradiance`: lines X Y Z NX NY NZ, points and normals in the frame of O/views
-## IRRADIANCE_VIEWS="V W": for `make irradiance`: views of which each pixel's surface gets its irradiance
+## GATHER_POINTS=FILE: for `make irradiance`: lines X Y Z NX NY NZ, points and normals in the frame of O/views
+## GATHER_VIEWS="V W": for `make irradiance`: views of which each pixel's surface gets its irradiance
 
 ifdef GRAPH
 GIVEN_LIGHTS := $(wildcard $(O)/lights/lights.txt)
-GATHER_POINTS := $(if $(value REMODEL_POINTS),$(O)/stamp/irradiance_points.txt,$(if $(wildcard $(O)/evaluate/irradiance_points.txt),$(O)/stamp/irradiance_points.txt))
-GATHERED_VIEWS := $(IRRADIANCE_VIEWS:%=$(O)/relight/irradiance/%.exr)
+GATHERED_POINTS := $(if $(value REMODEL_GATHER_POINTS),$(O)/stamp/irradiance_points.txt,$(if $(wildcard $(O)/evaluate/irradiance_points.txt),$(O)/stamp/irradiance_points.txt))
+GATHERED_VIEWS := $(GATHER_VIEWS:%=$(O)/relight/irradiance/%.exr)
 gather_needs = $(O)/model/model.txt $(AXES) $(VITA_TXT) $(OUTDOORS) $(GIVEN_LIGHTS) $(call needs,gather_irradiance)
 gather_args = --model $(O)/model/model.txt --axes $(AXES) --vita $(O)/vita --outdoors $(OUTDOORS) $(GIVEN_LIGHTS:%=--lights %)
 .PHONY: irradiance
-irradiance: $(if $(MODEL_SCRIPT),$(if $(GATHER_POINTS),$(O)/relight/irradiance.txt) $(GATHERED_VIEWS))
+irradiance: $(if $(MODEL_SCRIPT),$(if $(GATHERED_POINTS),$(O)/relight/irradiance.txt) $(GATHERED_VIEWS))
 # the points alone, without the provenance of what wrote them
 $(O)/stamp/irradiance_points.txt: FORCE
-	+@mkdir -p $(@D); grep -v '^#' "$${REMODEL_POINTS:-$(O)/evaluate/irradiance_points.txt}" >$@.tmp; \
+	+@mkdir -p $(@D); grep -v '^#' "$${REMODEL_GATHER_POINTS:-$(O)/evaluate/irradiance_points.txt}" >$@.tmp; \
 	  cmp -s $@.tmp $@ && rm $@.tmp || mv $@.tmp $@
-$(O)/relight/irradiance.txt: $(GATHER_POINTS) $(gather_needs)
-	$(call stage,gather_irradiance,points,$(O),$(gather_args) --points $(GATHER_POINTS) --out $(O)/relight)
+$(O)/relight/irradiance.txt: $(GATHERED_POINTS) $(gather_needs)
+	$(call stage,gather_irradiance,points,$(O),$(gather_args) --points $(GATHERED_POINTS) --out $(O)/relight)
 $(GATHERED_VIEWS): $(O)/relight/irradiance/%.exr: $(CAMERAS) $(gather_needs)
 	$(call stage,gather_irradiance,$*,$(O),$(gather_args) --views $(O)/views --view $* --out $(O)/relight)
 endif

@@ -1,0 +1,101 @@
+# gather_irradiance: points, a face and a view of a synthetic room; lamps; threads; errors; make irradiance
+. tests/lib.sh
+project irradiance
+photos set >/dev/null
+boxed t textures
+m() { make -s DEPS=manual PHOTOS=set/photos SFM=set/model SCENE=t "$@" >log 2>&1 || { cat log; fail "make $*"; }; }
+printf '[bake_outdoors]\nheight = 64\nedge = 1\nmax_clutter = 1\n[gather_irradiance]\nhemicube = 32\n' >>scenes/t/scene.cfg
+m textures outdoors
+O=out/t
+view=$(ls $O/views/*.exr | sed -n 1p); view=$(basename "$view" .exr)
+inputs=(--model "$O/model/model.txt" --axes "$O/model/axes.txt" --vita "$O/vita" --outdoors "$O/outdoors/outdoors.exr" --set hemicube=32)
+
+# gather CODE WORD ARGUMENT...: runs gather_irradiance; checks its exit status and a word on standard error
+gather()
+{
+    local code=$1 word=$2 rc=0; shift 2
+    rm -rf made
+    "$B/bin/gather_irradiance" "$@" >out.txt 2>err.txt </dev/null || rc=$?
+    [ "$rc" = "$code" ] || { cat err.txt; fail "$*: exit $rc, wanted $code"; }
+    grep -qF -- "$word" err.txt || { cat err.txt; fail "$*: nothing says '$word'"; }
+    [ "$code" = 0 ] || grep -q 'gather_irradiance: error: .*[.?]$' err.txt || { cat err.txt; fail "$*: no sentence"; }
+    [ "$code" = 0 ] || [ ! -e made ] || [ -z "$(find made -type f)" ] || fail "$*: a product was left"
+}
+floor=$(sed -nE "s/^face ([0-9]+) [^ ]*floor[^ ]* 0 0 1 .*/\1/p" $O/model/model.txt | sed -n 1p)
+
+a_face_gets_points_at_a_step()
+{
+    gather 0 'mean shares of the light' "${inputs[@]}" --face "$floor" --step 4 --out two/face
+    [ "$(grep -vc '^#' two/face/irradiance/face-"$floor".txt)" -gt 3 ] || fail "too few points"
+    [ "$(grep -vc '^#' two/face/irradiance/face-"$floor".txt)" = "$(grep -vc '^#' two/face/irradiance/face-"$floor"-parts.txt)" ] || fail "another number of parts"
+    ! grep -qE 'nan|inf' two/face/irradiance/*.txt || fail "a number is none"
+    awk '!/^#/ { s = 0; for (i = 7; i <= 13; i++) s += $i; if ((s - 1) ^ 2 > 1e-9 && s != 0) exit 1 }' two/face/irradiance/face-"$floor"-parts.txt || fail "shares do not sum to 1"
+    grep -v '^#' two/face/irradiance/face-"$floor".txt | cut -d' ' -f1-6 >points.txt
+}
+
+points_of_a_file_have_what_the_face_had()
+{
+    gather 0 'points' "${inputs[@]}" --points points.txt --out two/points
+    awk 'NR == FNR { if (!/^#/) was[++n] = $8; next } !/^#/ { i++; if (!(($8 - was[i]) ^ 2 <= (1e-3 * was[i]) ^ 2)) exit 1 }' \
+        two/face/irradiance/face-"$floor".txt two/points/irradiance.txt || fail "the same points have another irradiance"
+}
+
+bytes_do_not_depend_on_threads()
+{
+    for n in 1 2; do
+        gather 0 points "${inputs[@]}" --points points.txt --out two/$n --threads $n
+        gather 0 points "${inputs[@]}" --set hemicube=4 --set target_error=0 --view "$view" --views $O/views --out two/$n --threads $n
+    done
+    diff -r two/1 two/2
+    ! grep -rqF "$PWD" two/1 || fail "a product names a folder of this machine"
+    "$B/bin/verify" --file two/1/irradiance/"$view".exr || fail "the picture is not whole"
+}
+
+a_lamp_adds_light_and_is_reported()
+{
+    gather 0 '0.0 % lamps' "${inputs[@]}" --points points.txt --out two/dark
+    awk '/^#/ { next } { x += $1; y += $2; z += $3; n++ } END { print x / n, y / n, z / n }' two/dark/irradiance.txt >middle.txt
+    printf 'remodel-lights 1\ndisk lamp 0 0 8 0 0 -1 3 500 500 500 90 0\n' >lights.txt
+    gather 0 '% lamps' "${inputs[@]}" --points points.txt --lights lights.txt --out two/lit
+    ! grep -q ' 0.0 % lamps' err.txt || { cat err.txt; fail "the lamp lights nothing"; }
+    awk 'NR == FNR { if (!/^#/) was[++n] = $8; next } !/^#/ { i++; if ($8 < was[i] * 0.999) exit 1; more += $8 > was[i] } END { exit !more }' \
+        two/dark/irradiance.txt two/lit/irradiance.txt || fail "a lamp takes light away"
+}
+
+make_gathers_at_points_and_views()
+{
+    m irradiance GATHER_POINTS=points.txt GATHER_VIEWS="$view"
+    cmp <(grep -v '^#' $O/relight/irradiance.txt) <(grep -v '^#' two/points/irradiance.txt) || fail "make gathers something else"
+    [ -s $O/relight/irradiance/"$view".exr ] || fail "no picture"
+    find $O/relight -type f -printf '%p %T@\n' | LC_ALL=C sort >before
+    m irradiance GATHER_POINTS=points.txt GATHER_VIEWS="$view"
+    find $O/relight -type f -printf '%p %T@\n' | LC_ALL=C sort | diff before - || fail "a second make made something again"
+    mkdir -p $O/lights; cp lights.txt $O/lights/
+    m irradiance GATHER_POINTS=points.txt
+    cmp <(grep -v '^#' $O/relight/irradiance.txt) <(grep -v '^#' two/lit/irradiance.txt) || fail "lights.txt changes nothing"
+}
+
+what_is_wrong_is_named()
+{
+    gather 2 'give one of --points FILE, --view NAME and --face ID' "${inputs[@]}" --out made
+    gather 2 'needs --step' "${inputs[@]}" --face "$floor" --out made
+    gather 2 'wanted a number above 0' "${inputs[@]}" --face "$floor" --step -1 --out made
+    gather 2 'the model has no such face' "${inputs[@]}" --face 99999 --step 1 --out made
+    gather 1 'give a larger step' "${inputs[@]}" --face "$floor" --step 1e-9 --out made
+    gather 1 'has no view nowhere' "${inputs[@]}" --view nowhere --views $O/views --out made
+    gather 2 'needs --views' "${inputs[@]}" --view "$view" --out made
+    gather 2 'is odd' "${inputs[@]}" --set hemicube=31 --points points.txt --out made
+    gather 1 'no-such' "${inputs[@]}" --points no-such.txt --out made
+    gather 1 'no-such' "${inputs[@]}" --points points.txt --lights no-such.txt --out made
+    echo '1 2 3 0 0 0' >bad.txt
+    gather 1 'bad.txt:1' "${inputs[@]}" --points bad.txt --out made
+    : >empty.txt
+    gather 1 'has no points' "${inputs[@]}" --points empty.txt --out made
+    gather 1 'orthogonal' --model $O/model/model.txt --axes $O/model/axes.txt --vita "$(dirname "$(ls $O/vdta/*/atlas.txt | sed -n 1p)")" --points points.txt --out made
+    ! make -s DEPS=manual PHOTOS=set/photos SFM=set/model SCENE=t irradiance GATHER_POINTS=no-such >log 2>&1 || fail "GATHER_POINTS=no-such was accepted"
+    ! make -s DEPS=manual PHOTOS=set/photos SFM=set/model SCENE=t irradiance >nothing 2>&1 || fail "irradiance of nothing was made"
+    grep -qF 'There is nothing to gather' nothing || { cat nothing; fail "nothing says what to give"; }
+    grep -qF 'GATHER_POINTS=no-such is no file' log || { cat log; fail "nothing names GATHER_POINTS"; }
+}
+
+for t in a_face_gets_points_at_a_step points_of_a_file_have_what_the_face_had bytes_do_not_depend_on_threads a_lamp_adds_light_and_is_reported make_gathers_at_points_and_views what_is_wrong_is_named; do run "$t"; done
