@@ -1,0 +1,148 @@
+/* fit_materials.c - the reflectance of materials whose regions a person marked: Lambert, Phong or Ward.
+ *
+ * reads   MARKS                                       scenes/NAME/materials.txt: regions of materials
+ *         MODEL, AXES                                 the unedited model and its frame
+ *         VIEWS/cameras.txt, images.txt, lenses.txt   the cameras
+ *         VIEWS/VIEW.exr, IDS/VIEW.exr                the views that face a marked region
+ *         VITA/atlas.txt, page0.exr, ...; OUTDOORS; LIGHTS   the light that arrives there
+ * writes  OUT/materials/NAME.jpg                      the residuals of a material in the view that shows most of it
+ *         OUT/materials/samples.txt                   all samples with what the models say
+ *         then OUT/materials.txt                      the materials */
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/base/cli.h"
+#include "common/base/file_path.h"
+#include "common/base/log.h"
+#include "common/base/outfile.h"
+#include "common/gather/model_field.h"
+#include "stages/fit_materials/fit_region.h"
+#include "stages/fit_materials/marked_materials.h"
+
+#define PARAM_STRUCT struct materials_params
+static const struct param materials_param_table[] = {MATERIALS_PARAMS(PARAM_ROW) PARAM_END};
+#undef PARAM_STRUCT
+
+struct job {
+    struct model_field_files files;
+    const char *marks_path, *axes_path, *views, *ids, *out;
+    struct materials_params params;
+    struct provenance prov;
+    struct marked_materials marks;
+    struct model_axes axes;
+    struct camera_set set;
+    struct lens_list lenses;
+    struct model_field field;
+    struct observations seen;
+};
+
+static void job_release(struct job *j)
+{
+    observations_release(&j->seen);
+    model_field_release(&j->field);
+    lens_list_release(&j->lenses);
+    camera_set_release(&j->set);
+    marked_materials_release(&j->marks);
+    provenance_release(&j->prov);
+}
+
+static enum status read_inputs(struct job *j, struct err *err)
+{
+    char path[FILE_PATH];
+    if (provenance_add_file(&j->prov, "materials.txt", j->marks_path, err) ||
+        marked_materials_read(&j->marks, j->marks_path, err) ||
+        provenance_add_file(&j->prov, "model/axes.txt", j->axes_path, err) ||
+        model_axes_read(&j->axes, j->axes_path, err) || camera_set_add_camera_inputs(&j->prov, j->views, err) ||
+        camera_set_read_cameras(&j->set, j->views, err) ||
+        provenance_add_in(&j->prov, "views", j->views, "lenses", ".txt", path, err) ||
+        lens_list_read(&j->lenses, path, err))
+        return err->status;
+    return model_field_read(&j->field, &j->files, &j->prov, err);
+}
+
+static void report(const struct material *m, const struct region_fit *f)
+{
+    const double guessed = f->shares[LIGHT_NONE] + f->shares[LIGHT_SYNTHESISED] + f->shares[LIGHT_SKY_GUESSED];
+    log_note("material %s: %s, k_d %.4g %.4g %.4g, k_s %.4g, shape %.4g, from %d samples of %d points in %d views: %s; "
+             "residuals %.3g times the noise, %.0f %% of the light is guessed",
+             m->name, material_kind_name(m->kind), m->k_d[0], m->k_d[1], m->k_d[2], m->ks, m->shape, m->samples,
+             m->points, m->views, m->why, m->scale, 100 * guessed);
+}
+
+/* One material, its picture, its samples. */
+static enum status fit_one(struct job *j, const struct observed_scene *scene, int index, FILE *samples, struct err *err)
+{
+    struct material *m = &j->marks.list.items[index];
+    struct region_fit f;
+    char folder[FILE_PATH], path[FILE_PATH];
+    enum status st = region_fit_make(&f, m, index, j->marks.declared[index], &j->seen, scene, &j->field.field, err);
+    if (!st) {
+        report(m, &f);
+        region_fit_print(samples, &f, m, &j->seen, scene);
+        st = file_path(folder, j->out, "materials", "", err) || file_path(path, folder, m->name, ".jpg", err)
+                 ? err->status
+                 : region_fit_picture(&f, &j->seen, scene, path, err);
+    }
+    region_fit_release(&f);
+    return st;
+}
+
+static enum status fit_all(struct job *j, const struct observed_scene *scene, struct err *err)
+{
+    char path[FILE_PATH];
+    struct outfile samples = {0};
+    if (file_path(path, j->out, "materials/samples", ".txt", err) || outfile_open(&samples, path, err))
+        return err->status;
+    provenance_print(&j->prov, samples.fp);
+    fprintf(samples.fp, "# material view x y, radiance R G B in the view, and by the fitted model\n");
+    enum status st = ST_OK;
+    for (int i = 0; !st && i < j->marks.list.count; i++) st = fit_one(j, scene, i, samples.fp, err);
+    if (!st) st = outfile_commit(&samples, err);
+    outfile_discard(&samples);
+    if (st || file_path(path, j->out, "materials", ".txt", err)) return err->status;
+    return material_list_write(&j->marks.list, path, &j->prov, err);
+}
+
+/* Points are on the surface that shows in the views; the light's model may have it a little off. */
+static void lift_points(struct job *j)
+{
+    for (int i = 0; i < j->seen.point_count; i++) {
+        struct gather_point p = {j->seen.points[i].at, j->seen.points[i].normal};
+        if (model_field_lift(&j->field, &p, j->field.reach)) j->seen.points[i].at = p.at;
+    }
+}
+
+static enum status run(struct job *j, struct err *err)
+{
+    if (read_inputs(j, err)) return err->status;
+    const struct observed_scene scene = {&j->field.model, &j->axes, &j->set, &j->lenses,
+                                         j->marks_path,   j->views, j->ids,  &j->params};
+    if (observe_points(&j->seen, &scene, &j->marks.list, err) || observe_views(&j->seen, &scene, &j->prov, err))
+        return err->status;
+    lift_points(j);
+    return fit_all(j, &scene, err);
+}
+
+int main(int argc, char **argv)
+{
+    struct job j = {.params = MATERIALS_PARAMS_DEFAULT};
+    const struct cli_opt opts[] = {
+        CLI_ABOUT("Fits the reflectance of materials whose regions a person marked: Lambert, Phong or Ward."),
+        CLI_STR("marks", &j.marks_path, CLI_REQUIRED, "marked regions of materials, scenes/NAME/materials.txt"),
+        CLI_STR("model", &j.files.model, CLI_REQUIRED, "the unedited model, model.txt"),
+        CLI_STR("axes", &j.axes_path, CLI_REQUIRED, "the model's frame, axes.txt"),
+        CLI_STR("views", &j.views, CLI_REQUIRED, "folder of cameras and rectified views"),
+        CLI_STR("ids", &j.ids, CLI_REQUIRED, "folder of the faces that each view shows"),
+        CLI_STR("vita", &j.files.vita, CLI_REQUIRED, "folder of the view-independent atlas"),
+        CLI_STR("outdoors", &j.files.outdoors, CLI_OPTIONAL, "what lies outside, by direction; without it, it is dark"),
+        CLI_STR("lights", &j.files.lights, CLI_OPTIONAL, "lamps and openings, lights.txt"),
+        CLI_STR("out", &j.out, CLI_REQUIRED, "folder to write to"),
+        CLI_PARAMS(materials_param_table, &j.params, NULL),
+        CLI_END,
+    };
+    struct err err = ERR_INIT;
+    if (cli_parse(argc, argv, "fit_materials", opts, &j.prov, &err) == CLI_RUN) run(&j, &err);
+    err_report(&err);
+    job_release(&j);
+    return err_exit_code(&err);
+}
