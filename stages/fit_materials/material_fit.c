@@ -6,7 +6,7 @@
  * the slope of the light, a narrow one a few highlights.
  *
  *   1. For each of STARTS widths, the other four unknowns by linear least squares, reweighted for outliers (variable
- *      projection); the three best starts are kept.
+ *      projection [Golub 1973]); the three best starts are kept.
  *   2. From each of them Levenberg-Marquardt (Ceres) in all five, with k_d, g >= 0 and s in its range; the smallest cost
  *      wins.
  *   3. The scale of the residuals, from their median, may have changed: once more from the solution.
@@ -17,7 +17,7 @@
  *
  * Intervals are 1.96 standard deviations by the inverse of the weighted normal matrix, or by the sum over points of the
  * outer products of their gradients, whichever is larger: samples of one point share its texture. The matrix has the
- * mean curvature of the loss [Huber 1981]. Intervals end at the bounds, and hold what the noise of the radiance does: not
+ * mean curvature of the loss [Huber 1964]. Intervals end at the bounds, and hold what the noise of the radiance does: not
  * an error of the light.
  * An unknown without curvature (the width of a lobe with g = 0) has the interval of its bounds. */
 #include "stages/fit_materials/material_fit.h"
