@@ -1,5 +1,5 @@
 # fit_materials: the reflectance of marked materials.
-FOLLOWS.fit_materials := trace_ids bake_outdoors bake_vita
+FOLLOWS.fit_materials := trace_ids bake_outdoors bake_vita fit_lights
 READS.fit_materials := scenes/NAME/materials.txt, the model, axes.txt, cameras, the views that face marked regions, their ids, the VITA, outdoors.exr, lights/lights.txt if there is one
 WRITES.fit_materials := lights/materials/NAME.jpg, samples.txt; lights/materials.txt
 LIBS.fit_materials := -lembree3
@@ -10,7 +10,7 @@ NEEDS.materials := vita outdoors
 ifdef GRAPH
 MARKED_MATERIALS := $(wildcard scenes/$(SCENE)/materials.txt)
 MATERIALS := $(if $(MODEL_SCRIPT),$(MARKED_MATERIALS:%=$(O)/lights/materials.txt))
-MATERIAL_LIGHTS := $(wildcard $(O)/lights/lights.txt)
+MATERIAL_LIGHTS := $(if $(MODEL_SCRIPT),$(patsubst %,$(O)/lights/lights.txt,$(wildcard scenes/$(SCENE)/lights.txt)))
 .PHONY: materials
 materials: $(MATERIALS)
 	$(if $(MATERIALS),,@echo "There is no scenes/$(SCENE)/materials.txt or no model: nothing is marked whose material could be fitted.")

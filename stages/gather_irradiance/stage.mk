@@ -1,5 +1,5 @@
 # gather_irradiance: the light that arrives at points and at the surfaces of a view.
-FOLLOWS.gather_irradiance := bake_outdoors bake_vita
+FOLLOWS.gather_irradiance := bake_outdoors bake_vita fit_lights
 READS.gather_irradiance := the model, axes.txt, the VITA, outdoors.exr, lights/lights.txt and the reference images that it names if there are any, points or a view's camera
 WRITES.gather_irradiance := relight/irradiance.txt, irradiance-parts.txt; relight/irradiance/VIEW.exr
 LIBS.gather_irradiance := -lembree3
@@ -12,7 +12,8 @@ NEEDS.irradiance := vita outdoors
 ## GATHER_VIEWS="V W": for `make irradiance`: views of which each pixel's surface gets its irradiance
 
 ifdef GRAPH
-GIVEN_LIGHTS := $(wildcard $(O)/lights/lights.txt)
+# of lamps that somebody marked; without marks the panes of the model are its openings
+GIVEN_LIGHTS := $(if $(MODEL_SCRIPT),$(patsubst %,$(O)/lights/lights.txt,$(wildcard scenes/$(SCENE)/lights.txt)))
 GATHERED_POINTS := $(if $(value REMODEL_GATHER_POINTS),$(O)/stamp/irradiance_points.txt,$(if $(wildcard $(O)/evaluate/irradiance_points.txt),$(O)/stamp/irradiance_points.txt))
 GATHERED_VIEWS := $(GATHER_VIEWS:%=$(O)/relight/irradiance/%.exr)
 gather_needs = $(O)/model/model.txt $(AXES) $(VITA_TXT) $(OUTDOORS) $(GIVEN_LIGHTS) $(GATHER_LRI) $(call needs,gather_irradiance)
