@@ -10,8 +10,19 @@ command -v clang >/dev/null && [ -n "$(find "$(clang -print-resource-dir)" -name
     { echo "Fuzzing needs clang with its run-time library: apt-get install clang libclang-rt-dev libomp-dev" >&2; exit 1; }
 mkdir -p "out/fuzz/$name/found"
 packages="OpenEXR libturbojpeg libpng libtiff-4 libraw_r libexif inih libxxhash qhull_r libdeflate"
+# shellcheck disable=SC2086 # a list of packages
+read -ra flags <<<"-std=c11 -D_GNU_SOURCE -O1 -g -mavx2 -mf16c -fopenmp -fsanitize=fuzzer,address,undefined -I. $(pkg-config --cflags $packages)"
+# the stages whose headers it includes, without their main: an archive, of which the linker takes what is needed
+rm -rf "out/fuzz/$name/obj" "out/fuzz/$name/stages.a"; mkdir "out/fuzz/$name/obj"
+for stage in $(sed -nE 's|^#include "stages/([a-z_0-9]+)/.*"$|\1|p' "tests/fuzz/fuzz_$name.c" | sort -u); do
+    for source in "stages/$stage"/*.c; do
+        [ "$source" = "stages/$stage/$stage.c" ] || echo "$source"
+    done
+done | xargs -r -d '\n' -P 2 -I{} bash -c 'clang "${@:2}" -c -o "out/fuzz/$0/obj/$(tr / . <<<"$1").o" "$1"' "$name" {} "${flags[@]}"
+find "out/fuzz/$name/obj" -name '*.o' -exec ar rcs "out/fuzz/$name/stages.a" {} +
+[ -e "out/fuzz/$name/stages.a" ] || ar rcs "out/fuzz/$name/stages.a"
 # shellcheck disable=SC2046,SC2086 # lists of flags
-clang -std=c11 -D_GNU_SOURCE -O1 -g -mavx2 -mf16c -fopenmp -fsanitize=fuzzer,address,undefined -I. $(pkg-config --cflags $packages) \
-    -o "out/fuzz/$name/fuzz" "tests/fuzz/fuzz_$name.c" $(sed -nE 's|^#include "(stages/.*)\.h"$|\1.c|p' "tests/fuzz/fuzz_$name.c") common/*/*.c -lOpenEXRCore -lembree3 -lcholmod $(pkg-config --libs $packages) -lm
+clang "${flags[@]}" -o "out/fuzz/$name/fuzz" "tests/fuzz/fuzz_$name.c" common/*/*.c "out/fuzz/$name/stages.a" -lOpenEXRCore -lembree3 -lcholmod \
+    $(pkg-config --libs $packages) -lm
 cd "out/fuzz/$name"
 OMP_NUM_THREADS=1 ASAN_OPTIONS=detect_leaks=0 ./fuzz -max_total_time="$seconds" -timeout=20 -rss_limit_mb=4096 found "$OLDPWD/tests/fuzz/corpus/$name"
