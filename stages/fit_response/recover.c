@@ -27,6 +27,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/math/cholesky.h"
+
 #define PARAM_STRUCT struct fit_params
 const struct param fit_param_table[] = {FIT_PARAMS(PARAM_ROW) PARAM_RENAMED(places, max_patches)
                                             PARAM_RENAMED(most_spread, max_spread) PARAM_END};
@@ -268,23 +270,12 @@ static double add_patch(struct normal_equations *s, const struct patch_sample *s
     return total;
 }
 
-/* Solves by Cholesky factorisation in place; b becomes the solution. False: not positive definite. */
+/* Solves in place; b becomes the solution. False: not positive definite. */
 static bool solve(struct normal_equations *s)
 {
-    for (int i = 0; i < N; i++) {
-        for (int k = 0; k <= i; k++) {
-            double sum = s->a[i][k];
-            for (int j = 0; j < k; j++) sum -= s->a[i][j] * s->a[k][j];
-            if (i == k && !(sum > 0)) return false;
-            s->a[i][k] = i == k ? sqrt(sum) : sum / s->a[k][k];
-        }
-        for (int j = 0; j < i; j++) s->b[i] -= s->a[i][j] * s->b[j];
-        s->b[i] /= s->a[i][i];
-    }
-    for (int i = N - 1; i >= 0; i--) {
-        for (int j = i + 1; j < N; j++) s->b[i] -= s->a[j][i] * s->b[j];
-        s->b[i] /= s->a[i][i];
-    }
+    if (!cholesky_factor(&s->a[0][0], N)) return false;
+    cholesky_forward(&s->a[0][0], N, s->b);
+    cholesky_backward(&s->a[0][0], N, s->b);
     return true;
 }
 
