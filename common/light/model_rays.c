@@ -15,12 +15,7 @@
 
 enum { ROWS = 4 };
 
-static bool is_glass(const struct solid_mesh *mesh, int face)
-{
-    return !strncmp(mesh->bodies[mesh->faces[face].body].name, "glass/", 6);
-}
-
-enum status model_rays_build(struct model_rays *m, enum model_glass glass, struct err *err)
+static enum status build(struct model_rays *m, enum model_glass glass, const struct model_extra *extra, struct err *err)
 {
     struct solid_triangles triangles = {0};
     m->ids = 1;
@@ -28,12 +23,14 @@ enum status model_rays_build(struct model_rays *m, enum model_glass glass, struc
     for (int i = 0; !st && i < triangles.count; i++) {
         const struct solid_triangle *t = &triangles.triangles[i];
         struct vec3 corners[3];
-        if (glass == MODEL_WITHOUT_GLASS && is_glass(&m->mesh, t->face)) continue;
+        if (glass == MODEL_WITHOUT_GLASS && solid_face_is_pane(&m->mesh, t->face)) continue;
         for (int k = 0; k < 3; k++) corners[k] = m->mesh.vertices[t->v[k]].p;
         if (!(vec3_length(vec3_cross(vec3_sub(corners[1], corners[0]), vec3_sub(corners[2], corners[0]))) > 0))
             continue;
         st = ray_scene_add_triangle(&m->rays, corners, (uint32_t)t->face, err);
     }
+    for (int i = 0; !st && extra && i < extra->count; i++)
+        st = ray_scene_add_triangle(&m->rays, extra->triangles[i], (uint32_t)(m->mesh.face_count + i), err);
     if (!st) st = ray_scene_commit(&m->rays, err);
     for (int i = 0; !st && i < m->mesh.name_count; i++)
         if (m->mesh.names[i].id >= m->ids) m->ids = m->mesh.names[i].id + 1;
@@ -41,13 +38,24 @@ enum status model_rays_build(struct model_rays *m, enum model_glass glass, struc
     return st;
 }
 
-enum status model_rays_read(struct model_rays *m, const char *path, enum model_glass glass, struct err *err)
+enum status model_rays_build(struct model_rays *m, enum model_glass glass, struct err *err)
+{
+    return build(m, glass, NULL, err);
+}
+
+enum status model_rays_read_with(struct model_rays *m, const char *path, enum model_glass glass,
+                                 const struct model_extra *extra, struct err *err)
 {
     *m = (struct model_rays){0};
     enum status st = solid_mesh_read(&m->mesh, path, err);
-    if (!st) st = model_rays_build(m, glass, err);
+    if (!st) st = build(m, glass, extra, err);
     if (st) model_rays_release(m);
     return st;
+}
+
+enum status model_rays_read(struct model_rays *m, const char *path, enum model_glass glass, struct err *err)
+{
+    return model_rays_read_with(m, path, glass, NULL, err);
 }
 
 void model_rays_release(struct model_rays *m)

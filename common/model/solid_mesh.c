@@ -3,6 +3,7 @@
 #include "common/base/hash.h"
 
 #include <limits.h>
+#include <math.h>
 #include <stdbool.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -352,4 +353,27 @@ double solid_mesh_volume(const struct solid_mesh *mesh, int body)
         }
     }
     return sum;
+}
+
+bool solid_face_is_pane(const struct solid_mesh *mesh, int face)
+{
+    return !strncmp(mesh->bodies[mesh->faces[face].body].name, "glass/", 6);
+}
+
+void solid_face_box(const struct solid_mesh *mesh, int face, struct vec3 u, struct vec3 v, double low[2],
+                    double high[2])
+{
+    const int first = mesh->loops[mesh->faces[face].loop].half_edge;
+    int h = first;
+    low[0] = low[1] = INFINITY;
+    high[0] = high[1] = -INFINITY;
+    do {
+        const struct vec3 p = mesh->vertices[mesh->half_edges[h].origin].p;
+        const double at[2] = {vec3_dot(u, p), vec3_dot(v, p)};
+        for (int k = 0; k < 2; k++) {
+            low[k] = fmin(low[k], at[k]);
+            high[k] = fmax(high[k], at[k]);
+        }
+        h = mesh->half_edges[h].next;
+    } while (h != first);
 }

@@ -14,6 +14,8 @@
 #ifndef REMODEL_SOLID_MESH_H
 #define REMODEL_SOLID_MESH_H
 
+#include <stdbool.h>
+
 #include "common/base/provenance.h"
 #include "common/math/vec.h"
 
@@ -71,6 +73,12 @@ static inline const char *solid_face_name(const struct solid_mesh *mesh, int fac
 {
     return mesh->names[mesh->faces[face].name].name;
 }
+
+/* Whether a face belongs to a pane of glass, a body "glass/...". */
+bool solid_face_is_pane(const struct solid_mesh *mesh, int face);
+/* The box around a face's outer loop, in coordinates along u and v: from low to high. */
+void solid_face_box(const struct solid_mesh *mesh, int face, struct vec3 u, struct vec3 v, double low[2],
+                    double high[2]);
 
 /* ------------------------------------------------------------------------------------------------ making a mesh */
 

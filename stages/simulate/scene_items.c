@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "stages/simulate/mesh_file.h"
+#include "common/light/obj_mesh.h"
 
 #define PERPENDICULAR 1e-6 /* largest cosine that counts as a right angle */
 
@@ -124,8 +124,10 @@ static enum status read_mesh(struct reader *r, struct scene_item *it, struct err
         path = NULL;
         st = err_nomem(err, "a file name", strlen(r->folder) + strlen(file));
     }
-    if (!st && (st = mesh_file_read(&it->triangles, &it->triangle_count, path, err)))
-        err_context(err, "%s:%d", r->file.path, r->file.line);
+    struct obj_mesh mesh = {0};
+    if (!st && (st = obj_mesh_read(&mesh, path, err))) err_context(err, "%s:%d", r->file.path, r->file.line);
+    it->triangles = mesh.triangles;
+    it->triangle_count = mesh.count;
     if (!st && r->prov) st = provenance_add_file(r->prov, file, path, err);
     if (!st) st = material_of(r, &it->material, err);
     while (!st && textfile_more(&r->file)) {

@@ -1,6 +1,5 @@
 /* fuzz_scene.c - scene files: any bytes give faces with finite areas and textures within their bounds, or an error
- * message. An edit may change base.txt; its full description is read again. Bytes that do not begin with "remodel" are
- * read as a mesh. */
+ * message. An edit may change base.txt; its full description is read again. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -8,7 +7,6 @@
 #include <unistd.h>
 
 #include "stages/simulate/geometry.h"
-#include "stages/simulate/mesh_file.h"
 #include "tests/fuzz/fuzz.h"
 #include "tests/fuzz/fuzz_scratch.h"
 
@@ -63,15 +61,6 @@ static void check_whole(const struct scene *s, const char *folder)
     unlink(path);
 }
 
-static void check_mesh(const char *path)
-{
-    struct vec3(*triangles)[3];
-    struct err err = ERR_INIT;
-    int count;
-    if (mesh_file_read(&triangles, &count, path, &err) ? !err.text[0] : count < 1) abort();
-    free(triangles);
-}
-
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     char folder[FUZZ_PATH], path[FUZZ_PATH + 64], base[FUZZ_PATH + 64];
@@ -82,9 +71,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     snprintf(base, sizeof base, "%s/base.txt", folder);
     write_file(path, data, size);
     write_file(base, BASE, sizeof BASE - 1);
-    if (size < 7 || memcmp(data, "remodel", 7)) {
-        check_mesh(path);
-    } else if (scene_read(&s, folder, "scene.txt", NULL, &err)) {
+    if (scene_read(&s, folder, "scene.txt", NULL, &err)) {
         if (!err.text[0] || s.items) abort();
     } else {
         check_scene(&s);

@@ -2,7 +2,6 @@
 #include "tests/unit/simulate/worlds.h"
 
 #include "common/base/param.h"
-#include "stages/simulate/mesh_file.h"
 
 #define HEAD "remodel-scene 1\ntexture t rgb 0.5 0.5 0.5\nmaterial m lambert t\n"
 #define SUN  "sun 0 45 1 5 5 5\n"
@@ -66,33 +65,9 @@ static void a_scene_without_light_is_rejected(void **state)
     assert_invalid(HEAD "box b 0 0 0 1 1 1 m\nlamp l quad 0 0 0 1 0 0 0 1 0 0 0 0\nglow m 0 0 0\n", "has no light");
 }
 
-static void meshes_are_read_from_obj_files(void **state)
+static void a_mesh_that_is_not_whole_is_rejected(void **state)
 {
-    struct vec3(*triangles)[3];
-    int count;
-    struct err err = ERR_INIT;
     (void)state;
-    const char *valid =
-        scratch_write("valid.obj", "# a square and a triangle\nvn 0 0 1\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\no x\n"
-                                   "f 1 2/5 3//6 4/1/1\nf -1 -2 -3\nf 1 1 2\n");
-    assert_ok(mesh_file_read(&triangles, &count, valid, &err), err);
-    assert_int_equal(count, 3); /* the triangle without area is left out */
-    assert_true(triangles[1][2].y == 1 && triangles[2][0].x == 0 && triangles[2][1].x == 1);
-    free(triangles);
-    const char *const bad[][2] = {
-        {"v 0 0\n", ":1: found the end of the line, wanted a vertex's coordinate"},
-        {"v 0 0 0\nf 1 2 1\n", ":2: found \"2\", wanted a vertex from 1 to 1"},
-        {"v 0 0 0\nf 0 1 1\n", "found \"0\""},
-        {"v 0 0 0\nf 1 1\n", ":2: found the end of the line"},
-        {"v 0 0 1e9\n", "at most 100000"},
-        {"v 0 0 0\n", "has no faces"},
-    };
-    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
-        err = (struct err)ERR_INIT;
-        assert_true(mesh_file_read(&triangles, &count, scratch_write("bad.obj", bad[i][0]), &err));
-        assert_err(err, ST_DATA, bad[i][1]);
-        assert_null(triangles);
-    }
     scratch_write("broken.obj", "v 0 0\n");
     assert_invalid(HEAD "mesh x broken.obj m\n", "scene.txt:4: ");
 }
@@ -209,7 +184,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(errors_name_line_found_and_expected_word),
         cmocka_unit_test(a_scene_without_light_is_rejected),
-        cmocka_unit_test(meshes_are_read_from_obj_files),
+        cmocka_unit_test(a_mesh_that_is_not_whole_is_rejected),
         cmocka_unit_test(faces_have_their_areas_normals_and_ids),
         cmocka_unit_test(textures_stay_below_their_bounds),
     };
