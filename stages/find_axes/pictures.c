@@ -5,13 +5,14 @@
 #include <string.h>
 
 #include "common/base/sort.h"
+#include "common/image/drawing.h"
 
 static const unsigned char X[3] = {235, 40, 40}, Y[3] = {40, 200, 60}, Z[3] = {60, 110, 255};
 static const unsigned char FLOOR[3] = {255, 215, 0}, CEILING[3] = {0, 225, 235}, WALL[3] = {235, 235, 235};
 static const double NEAR = 1e-3; /* near clipping plane, as a fraction of a line's length */
 static const double ARROW = 0.2; /* length, as a fraction of the room's width */
 
-struct canvas {
+struct sketch {
     unsigned char *pixels;
     const struct view *view;
     const struct model_axes *axes;
@@ -64,60 +65,8 @@ enum status choose_pictures(bool *chosen, int count, const struct room_inputs *i
 
 /* ---------------------------------------------------------------------------------------------------------- drawing */
 
-static void blend(unsigned char *to, const unsigned char color[3], double part)
-{
-    for (int c = 0; c < 3; c++) to[c] = (unsigned char)lround(to[c] + part * (color[c] - to[c]));
-}
-
-/* Draws a line with round ends and soft edges. */
-static void stroke(struct canvas *k, double x0, double y0, double x1, double y1, const unsigned char color[3])
-{
-    const int w = k->view->width, h = k->view->height;
-    const double dx = x1 - x0, dy = y1 - y0, square = dx * dx + dy * dy, reach = k->half + 1;
-    const int top = (int)fmin(fmax(fmin(y0, y1) - reach, 0), h);
-    const int bottom = (int)fmin(fmax(fmax(y0, y1) + reach, -1), h - 1);
-    for (int y = top; y <= bottom; y++) {
-        /* the part of the line near this row */
-        double left = fmin(x0, x1), right = fmax(x0, x1);
-        if (fabs(dy) > 0) {
-            const double a = x0 + (y + 0.5 - reach - y0) / dy * dx, b = x0 + (y + 0.5 + reach - y0) / dy * dx;
-            left = fmax(left, fmin(a, b));
-            right = fmin(right, fmax(a, b));
-        }
-        const int last = (int)fmin(fmax(right + reach, -1), w - 1);
-        for (int x = (int)fmin(fmax(left - reach, 0), w); x <= last; x++) {
-            const double px = x + 0.5 - x0, py = y + 0.5 - y0;
-            const double t = square > 0 ? fmin(fmax((px * dx + py * dy) / square, 0), 1) : 0;
-            const double part = k->half + 0.5 - hypot(px - t * dx, py - t * dy);
-            if (part > 0) blend(k->pixels + 3 * ((size_t)y * (size_t)w + (size_t)x), color, fmin(part, 1));
-        }
-    }
-}
-
-/* Clips the segment to the rectangle [Liang 1984]; false: nothing is left. */
-static bool clip(double *x0, double *y0, double *x1, double *y1, double w, double h)
-{
-    const double dx = *x1 - *x0, dy = *y1 - *y0;
-    const double p[4] = {-dx, dx, -dy, dy}, q[4] = {*x0, w - *x0, *y0, h - *y0};
-    double from = 0, to = 1;
-    for (int i = 0; i < 4; i++) {
-        if (p[i] < 0)
-            from = fmax(from, q[i] / p[i]);
-        else if (p[i] > 0)
-            to = fmin(to, q[i] / p[i]);
-        else if (q[i] < 0)
-            return false;
-    }
-    if (!(from < to)) return false;
-    *x1 = *x0 + to * dx;
-    *y1 = *y0 + to * dy;
-    *x0 += from * dx;
-    *y0 += from * dy;
-    return true;
-}
-
 /* Draws the line between two points of the model. */
-static void line(struct canvas *k, struct vec3 a, struct vec3 b, const unsigned char color[3])
+static void line(struct sketch *k, struct vec3 a, struct vec3 b, const unsigned char color[3])
 {
     const struct view *v = k->view;
     struct vec3 p = vec3_add(mat3_apply(v->cam_from_world, world_from_model_point(k->axes, a)), v->translation);
@@ -126,12 +75,13 @@ static void line(struct canvas *k, struct vec3 a, struct vec3 b, const unsigned 
     if (!(p.z > near) && !(q.z > near)) return;
     if (!(p.z > near)) p = vec3_add(q, vec3_scale(vec3_sub(p, q), (q.z - near) / (q.z - p.z)));
     if (!(q.z > near)) q = vec3_add(p, vec3_scale(vec3_sub(q, p), (p.z - near) / (p.z - q.z)));
-    double x0 = v->fx * p.x / p.z + v->cx, y0 = v->fy * p.y / p.z + v->cy;
-    double x1 = v->fx * q.x / q.z + v->cx, y1 = v->fy * q.y / q.z + v->cy;
-    if (p.z > 0 && q.z > 0 && clip(&x0, &y0, &x1, &y1, v->width, v->height)) stroke(k, x0, y0, x1, y1, color);
+    const double x0 = v->fx * p.x / p.z + v->cx, y0 = v->fy * p.y / p.z + v->cy;
+    const double x1 = v->fx * q.x / q.z + v->cx, y1 = v->fy * q.y / q.z + v->cy;
+    const struct canvas canvas = {k->pixels, v->width, v->height};
+    if (p.z > 0 && q.z > 0) draw_line(&canvas, x0, y0, x1, y1, k->half, color);
 }
 
-static void outline(struct canvas *k, const struct room *room, double z, const unsigned char color[3])
+static void outline(struct sketch *k, const struct room *room, double z, const unsigned char color[3])
 {
     for (int i = 0; i < 4; i++) {
         static const int along[5][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}, {0, 0}};
@@ -143,7 +93,7 @@ static void outline(struct canvas *k, const struct room *room, double z, const u
     }
 }
 
-static void arrows(struct canvas *k, struct vec3 at, double length)
+static void arrows(struct sketch *k, struct vec3 at, double length)
 {
     line(k, at, vec3_add(at, vec3_make(0, 0, length)), Z);
     line(k, at, vec3_add(at, vec3_make(0, length, 0)), Y);
@@ -165,7 +115,7 @@ static struct vec3 floor_ahead(const struct view *view, const struct room *room)
 void draw_room(unsigned char *pixels, const struct view *view, const struct room *room, const struct vec3 *corners,
                int corner_count)
 {
-    struct canvas k = {pixels, view, &room->axes, fmax(0.75, hypot(view->width, view->height) / 900)};
+    struct sketch k = {pixels, view, &room->axes, fmax(0.75, hypot(view->width, view->height) / 900)};
     const double length = ARROW * fmin(room->high[0] - room->low[0], room->high[1] - room->low[1]);
     if (room->axes.ceiling > 0) {
         for (int i = 0; i < 4; i++) {

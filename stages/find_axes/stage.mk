@@ -13,7 +13,7 @@ axes: $(AXES)
 # a user's marks; a file that came or went is a change whatever the files' times
 MARKED := $(wildcard $(addprefix scenes/$(SCENE)/,scale.txt axes_fix.txt))
 WAS_MARKED := $(shell sed -nE '/^[^#]/q; s/^. input (scale.txt|axes_fix.txt) .*/\1/p' $(AXES) 2>/dev/null)
-$(AXES): $(CAMERAS) $(O)/views/lenses.txt $(VIEW_EXR) $(POINTS) $(MARKED) $(S)/photos/list.txt $(call needs,find_axes) \
+$(AXES): $(VIEW_CAMERAS) $(O)/views/lenses.txt $(VIEW_EXR) $(POINTS) $(MARKED) $(S)/photos/list.txt $(call needs,find_axes) \
   $(if $(filter-out $(notdir $(MARKED)),$(WAS_MARKED))$(filter-out $(WAS_MARKED),$(notdir $(MARKED))),FORCE)
 	$(call stage,find_axes,all,$(O),--views $(O)/views --records $(S)/photos --points $(POINTS) \
 	  $(if $(filter %/scale.txt,$(MARKED)),--scale scenes/$(SCENE)/scale.txt) \

@@ -2,8 +2,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "common/base/sort.h"
 #include "common/capture/view_image.h"
+#include "common/image/drawing.h"
 #include "common/image/photo.h"
 #include "common/math/numbers.h"
 #include "stages/fit_materials/fit_region.h"
@@ -23,23 +23,6 @@ static int most_seen(const struct region_fit *f, const struct observations *o, i
     return best;
 }
 
-/* Scales the picture so that most pixels are below half of white. */
-static enum status expose(struct image *im, struct err *err)
-{
-    const size_t pixels = (size_t)im->width * (size_t)im->height;
-    float *sorted = malloc(pixels * sizeof *sorted);
-    size_t count = 0;
-    if (!sorted) return err_nomem(err, "a picture", pixels * sizeof *sorted);
-    for (size_t i = 0; i < pixels; i++)
-        if (im->data[4 * i + 3] > 0.5f) sorted[count++] = photo_luminance(im->data + 4 * i);
-    sort_floats(sorted, count);
-    const float level = count ? sorted[(size_t)(WHITE * (double)(count - 1))] : 0;
-    for (size_t i = 0; level > 0 && i < 4 * pixels; i++)
-        if (i % 4 != 3) im->data[i] *= 0.5f / level;
-    free(sorted);
-    return ST_OK;
-}
-
 /* Colour of a relative residual: white at 0, red above, blue below. */
 static void residual_colour(double residual, unsigned char colour[3])
 {
@@ -50,18 +33,6 @@ static void residual_colour(double residual, unsigned char colour[3])
     colour[2] = part >= 0 ? faded : 255;
 }
 
-/* A disc with a dark rim. */
-static void draw_dot(unsigned char *rgb, const struct image *im, double x, double y, double radius,
-                     const unsigned char colour[3])
-{
-    for (int py = (int)fmax(0, y - radius - 1); py < im->height && py <= y + radius + 1; py++)
-        for (int px = (int)fmax(0, x - radius - 1); px < im->width && px <= x + radius + 1; px++) {
-            const double off = hypot(px + 0.5 - x, py + 0.5 - y);
-            unsigned char *to = rgb + 3 * ((size_t)py * (size_t)im->width + (size_t)px);
-            for (int c = 0; off <= radius && c < 3; c++) to[c] = off > radius - 1 ? 0 : colour[c];
-        }
-}
-
 static double luminance_of(const double *rgb) { return rgb_luminance(rgb_make(rgb[0], rgb[1], rgb[2])); }
 
 enum status region_fit_picture(const struct region_fit *f, const struct observations *o,
@@ -69,20 +40,21 @@ enum status region_fit_picture(const struct region_fit *f, const struct observat
 {
     const int view = most_seen(f, o, scene->set->view_count);
     struct image im = {0};
-    if (view_image_read(&im, scene->views, &scene->set->views[view], err) || expose(&im, err)) {
+    if (view_image_read(&im, scene->views, &scene->set->views[view], err) || image_expose(&im, WHITE, 0.5, err)) {
         image_release(&im);
         return err->status;
     }
     const double radius = fmax(LEAST_RADIUS, im.width / 250.0);
     unsigned char *rgb = malloc(3 * (size_t)im.width * (size_t)im.height);
     if (rgb) image_to_srgb8(&im, rgb);
+    const struct canvas canvas = {rgb, im.width, im.height};
     for (int i = 0; rgb && i < f->samples.count; i++) {
         const struct point_sight *s = &o->sights[f->first + i];
         const double model = luminance_of(f->predicted + 3 * i), seen = luminance_of(s->radiance);
         unsigned char colour[3];
         if (s->view != view) continue;
         residual_colour(model > 0 ? seen / model - 1 : seen > 0 ? 1 : 0, colour);
-        draw_dot(rgb, &im, s->x, s->y, radius, colour);
+        draw_dot(&canvas, s->x, s->y, radius, colour);
     }
     const enum status st = rgb ? jpeg_write(path, rgb, im.width, im.height, QUALITY, err)
                                : err_nomem(err, "a picture", 3 * (size_t)im.width * (size_t)im.height);
