@@ -2,6 +2,7 @@
 #include "common/texture/model_picture.h"
 
 #include <limits.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -17,6 +18,7 @@ enum status model_picture_resize(struct model_picture *p, int width, int height,
     const size_t pixels = (size_t)width * (size_t)height;
     if (width < 1 || height < 1 || (int64_t)width * height > INT_MAX)
         return err_set(err, ST_DATA, "a picture of a model cannot have %d x %d pixels.", width, height);
+    p->has_camera = false;
     if (p->width == width && p->height == height) {
         memset(p->rgb, 0, RGB * pixels * sizeof *p->rgb);
         memset(p->z, 0, pixels * sizeof *p->z);
@@ -25,12 +27,12 @@ enum status model_picture_resize(struct model_picture *p, int width, int height,
         return ST_OK;
     }
     model_picture_release(p);
-    *p = (struct model_picture){width,
-                                height,
-                                calloc(pixels, RGB * sizeof *p->rgb),
-                                calloc(pixels, sizeof *p->z),
-                                calloc(pixels, sizeof *p->id),
-                                calloc(pixels, sizeof *p->made)};
+    *p = (struct model_picture){.width = width,
+                                .height = height,
+                                .rgb = calloc(pixels, RGB * sizeof *p->rgb),
+                                .z = calloc(pixels, sizeof *p->z),
+                                .id = calloc(pixels, sizeof *p->id),
+                                .made = calloc(pixels, sizeof *p->made)};
     if (p->rgb && p->z && p->id && p->made) return ST_OK;
     model_picture_release(p);
     return err_nomem(err, "a picture of a model",
@@ -45,6 +47,58 @@ void model_picture_release(struct model_picture *p)
     free(p->id);
     free(p->made);
     *p = (struct model_picture){0};
+}
+
+void model_picture_set_camera(struct model_picture *p, const struct camera *lens, const struct pose *cam_from_model)
+{
+    p->has_camera = true;
+    p->lens = *lens;
+    p->pose = *cam_from_model;
+}
+
+/* Numbers are printed so that reading gives the same bits. */
+static enum status write_camera(struct exr_image *im, const struct model_picture *p, struct err *err)
+{
+    char text[256], name[32];
+    const struct quat q = p->pose.rotation;
+    const struct vec3 t = p->pose.translation;
+    snprintf(text, sizeof text, "%s %d %d", camera_model_name(p->lens.model), p->lens.width, p->lens.height);
+    enum status st = exr_set_attribute(im, "remodel:lens", text, err);
+    for (int k = 0; !st && k < camera_model_params(p->lens.model); k++) {
+        snprintf(name, sizeof name, "remodel:lens%d", k);
+        snprintf(text, sizeof text, "%.17g", p->lens.params[k]);
+        st = exr_set_attribute(im, name, text, err);
+    }
+    snprintf(text, sizeof text, "%.17g %.17g %.17g %.17g %.17g %.17g %.17g", q.w, q.x, q.y, q.z, t.x, t.y, t.z);
+    return st ? st : exr_set_attribute(im, "remodel:pose", text, err);
+}
+
+/* Whether the attributes hold a camera; *p is unchanged otherwise. */
+static bool read_camera(struct model_picture *p, const struct exr_image *im)
+{
+    char word[32], name[32];
+    struct camera lens = {.width = 0};
+    struct pose pose;
+    double *n[7] = {&pose.rotation.w,    &pose.rotation.x,    &pose.rotation.y,   &pose.rotation.z,
+                    &pose.translation.x, &pose.translation.y, &pose.translation.z};
+    const char *text = exr_attribute(im, "remodel:lens"), *at = exr_attribute(im, "remodel:pose");
+    if (!text || !at || sscanf(text, "%31s %d %d", word, &lens.width, &lens.height) != 3) return false;
+    if (!camera_model_from_name(word, &lens.model)) return false;
+    for (int k = 0; k < camera_model_params(lens.model); k++) {
+        snprintf(name, sizeof name, "remodel:lens%d", k);
+        const char *value = exr_attribute(im, name);
+        if (!value) return false;
+        lens.params[k] = strtod(value, NULL);
+    }
+    for (int k = 0; k < 7; k++) {
+        char *end;
+        *n[k] = strtod(at, &end);
+        if (end == at) return false;
+        at = end;
+    }
+    if (lens.width != im->width || lens.height != im->height || camera_check(&lens, NULL)) return false;
+    model_picture_set_camera(p, &lens, &pose);
+    return true;
 }
 
 enum status model_picture_write(const struct model_picture *p, const struct view *camera, const char *path,
@@ -62,6 +116,9 @@ enum status model_picture_write(const struct model_picture *p, const struct view
         memcpy(im.planes[3].f, p->z, pixels * sizeof *p->z);
         memcpy(im.planes[4].u, p->id, pixels * sizeof *p->id);
         exr_set_camera(&im, camera);
+        if (p->has_camera) st = write_camera(&im, p, err);
+    }
+    if (!st) {
         st = exr_write(&im, path, prov, err);
     }
     exr_image_release(&im);
@@ -113,6 +170,7 @@ enum status model_picture_read(struct model_picture *p, const char *path, struct
     struct exr_image im = {0};
     enum status st = exr_read(&im, path, names, PLANES, err);
     if (!st) st = take_planes(p, &im, path, err);
+    if (!st) read_camera(p, &im);
     exr_image_release(&im);
     if (st) model_picture_release(p);
     return st;

@@ -2,6 +2,7 @@
 #ifndef REMODEL_MODEL_PICTURE_H
 #define REMODEL_MODEL_PICTURE_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 #include "common/base/provenance.h"
@@ -28,12 +29,17 @@ struct model_picture {
     float *z;      /* depth of the model's face along the camera's axis, model units; 0: none */
     uint32_t *id;  /* of that face's name in model.txt, 0: none. Panes of glass are looked through */
     uint8_t *made; /* enum picture_made */
+    bool has_camera;
+    struct camera lens; /* of has_camera: what drew the picture, ... */
+    struct pose pose;   /* ... cam_from_model */
 };
 
 /* Makes empty planes, or reuses those of the same size. */
 enum status model_picture_resize(struct model_picture *p, int width, int height, struct err *err);
 void model_picture_release(struct model_picture *p);
-/* R G B half, Z float, id and made uint. camera: in the scene's frame, for the EXR's attributes. */
+void model_picture_set_camera(struct model_picture *p, const struct camera *lens, const struct pose *cam_from_model);
+/* R G B half, Z float, id and made uint. camera: in the scene's frame, for the EXR's attributes. The lens and the pose in
+ * the model's frame, if they are set, become attributes remodel:lens, remodel:lens0, ..., remodel:pose. */
 enum status model_picture_write(const struct model_picture *p, const struct view *camera, const char *path,
                                 const struct provenance *prov, struct err *err);
 enum status model_picture_read(struct model_picture *p, const char *path, struct err *err);

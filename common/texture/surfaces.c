@@ -14,11 +14,6 @@
 #define SAME_PLANE   1e-6 /* of the model's size */
 #define SAME_NORMALS 1e-6 /* 1 - cosine */
 
-static bool is_glass(const struct solid_mesh *m, int face)
-{
-    return !strncmp(m->bodies[m->faces[face].body].name, "glass/", 6);
-}
-
 static bool same_plane(const struct surface *a, struct vec3 normal, double offset, double size)
 {
     return vec3_dot(a->normal, normal) > 1 - SAME_NORMALS && fabs(a->offset - offset) <= SAME_PLANE * size;
@@ -91,7 +86,7 @@ static enum status list_surfaces(struct surfaces *s, const struct sorted_model *
         s->list[s->count++] = (struct surface){.id = m->faces[i].id,
                                                .normal = face->normal,
                                                .offset = face->offset,
-                                               .glass = is_glass(m->mesh, m->faces[i].face)};
+                                               .glass = solid_face_is_pane(m->mesh, m->faces[i].face)};
     }
     return ST_OK;
 }

@@ -33,6 +33,8 @@ void texture_map_release(struct texture_map *map)
         free(map->zones[i].name);
         free(map->zones[i].corners);
     }
+    for (int i = 0; i < map->lamp_count; i++) free(map->lamps[i].name);
+    free(map->lamps);
     free(map->faces);
     free(map->zones);
     free(map->base);
@@ -61,6 +63,13 @@ const struct texture_face *texture_map_find(const struct texture_map *map, int i
         }
     }
     return best;
+}
+
+const double *texture_map_lamp(const struct texture_map *map, const char *name)
+{
+    for (int i = 0; i < map->lamp_count; i++)
+        if (!strcmp(map->lamps[i].name, name)) return map->lamps[i].scale;
+    return NULL;
 }
 
 /* The quadrilateral is convex; its corners run in either direction. */
@@ -140,6 +149,11 @@ static enum status print_face(FILE *to, const struct texture_face *face, struct 
     fprintf(to, "face %d", face->id);
     print_point(to, face->normal);
     fprintf(to, " %.17g %s\n", face->offset, name);
+    if (face->has_gloss) {
+        fputs("gloss ", to);
+        gloss_print(&face->gloss, to);
+        fputc('\n', to);
+    }
     for (int i = 0; i < face->rule_count; i++) print_rule(to, &face->rules[i]);
     if (face->added_count) fprintf(to, "new %d\n", face->added_count);
     for (int i = 0; i < face->added_count; i++) {
@@ -147,6 +161,14 @@ static enum status print_face(FILE *to, const struct texture_face *face, struct 
         for (int k = 0; k < 3; k++) print_point(to, face->added[i][k]);
         fputc('\n', to);
     }
+    return ST_OK;
+}
+
+static enum status print_lamp(FILE *to, const struct texture_lamp *lamp, struct err *err)
+{
+    char name[NAME_SIZE];
+    if (textfile_quote(lamp->name, name, sizeof name, err)) return err->status;
+    fprintf(to, "lamp %s %.17g %.17g %.17g\n", name, lamp->scale[0], lamp->scale[1], lamp->scale[2]);
     return ST_OK;
 }
 
@@ -168,6 +190,10 @@ static enum status check_map(const struct texture_map *map, const char *path, st
                        "%s: the edit stands on an edit named \"" NO_BASE "\", the word for no edit; give that edit "
                        "another name.",
                        path);
+    for (int i = 0; i < 3 * map->lamp_count; i++)
+        if (!(map->lamps[i / 3].scale[i % 3] >= 0 && isfinite(map->lamps[i / 3].scale[i % 3])))
+            return err_set(err, ST_DATA, "%s: found a factor of %g for the lamp %s, wanted 0 or more.", path,
+                           map->lamps[i / 3].scale[i % 3], map->lamps[i / 3].name);
     for (int i = 0; i < map->face_count; i++)
         if (map->faces[i].added_count > MAX_CORNERS)
             return err_set(
@@ -182,6 +208,14 @@ static enum status check_map(const struct texture_map *map, const char *path, st
     return ST_OK;
 }
 
+/* Maps that version 1 can hold are written as that, so that they do not change. */
+static int version_of(const struct texture_map *map)
+{
+    bool glossy = false;
+    for (int i = 0; i < map->face_count; i++) glossy |= map->faces[i].has_gloss;
+    return map->lamp_count || glossy ? 2 : 1;
+}
+
 enum status texture_map_write(const struct texture_map *map, const char *path, const struct provenance *prov,
                               struct err *err)
 {
@@ -190,9 +224,10 @@ enum status texture_map_write(const struct texture_map *map, const char *path, c
     enum status st = check_map(map, path, err);
     if (!st) st = textfile_quote(map->base ? map->base : NO_BASE, base, sizeof base, err);
     if (!st) st = outfile_open(&file, path, err);
-    if (!st) fprintf(file.fp, HEADER " 1\n");
+    if (!st) fprintf(file.fp, HEADER " %d\n", version_of(map));
     if (!st && prov) provenance_print(prov, file.fp);
     if (!st) fprintf(file.fp, "base %s\n", base);
+    for (int i = 0; !st && i < map->lamp_count; i++) st = print_lamp(file.fp, &map->lamps[i], err);
     for (int i = 0; !st && i < map->face_count; i++) st = print_face(file.fp, &map->faces[i], err);
     for (int i = 0; !st && i < map->zone_count; i++) st = print_zone(file.fp, &map->zones[i], err);
     if (!st) st = outfile_commit(&file, err);
@@ -291,6 +326,31 @@ static enum status read_rule(struct texture_face *face, struct textfile *t, cons
     return read_place(rule, t, err);
 }
 
+static enum status read_gloss(struct texture_face *face, struct textfile *t, struct err *err)
+{
+    if (face->has_gloss || face->rule_count || face->added)
+        return textfile_error(t, err, "gloss", "one line \"gloss\" right after the face's line");
+    face->has_gloss = true;
+    return gloss_read(&face->gloss, t, err) ? err->status : textfile_end(t, err);
+}
+
+static enum status read_lamp(struct texture_map *map, struct textfile *t, struct err *err)
+{
+    if (map->face_count || map->zone_count) return textfile_error(t, err, "lamp", "lamps before the lines \"face\"");
+    if (array_append(&map->lamps, (size_t)map->lamp_count, sizeof *map->lamps, "lamps", err)) return err->status;
+    struct texture_lamp *lamp = &map->lamps[map->lamp_count];
+    *lamp = (struct texture_lamp){0};
+    if (copy_word(&lamp->name, t, "the name of a lamp", err)) return err->status;
+    const bool twice = texture_map_lamp(map, lamp->name) != NULL;
+    map->lamp_count++;
+    if (twice) return textfile_error(t, err, lamp->name, "a lamp that no line above has");
+    for (int c = 0; c < 3; c++) {
+        if (textfile_double(t, "a factor of 0 or more", &lamp->scale[c], err)) return err->status;
+        if (lamp->scale[c] < 0) return textfile_wrong_number(t, lamp->scale[c], "a factor of 0 or more", err);
+    }
+    return textfile_end(t, err);
+}
+
 static enum status read_added(struct texture_face *face, struct textfile *t, struct err *err)
 {
     int count = 0;
@@ -348,16 +408,19 @@ static enum status read_zone(struct texture_map *map, struct textfile *t, bool k
 
 static enum status read_line(struct texture_map *map, struct textfile *t, struct err *err)
 {
-    static const char wanted[] = "face, place, edge, outdoors, colour, new, clear or keep";
+    static const char wanted[] = "lamp, face, gloss, place, edge, outdoors, colour, new, clear or keep";
     char *word;
     if (textfile_word(t, wanted, &word, err)) return err->status;
+    if (!strcmp(word, "lamp")) return read_lamp(map, t, err);
     if (!strcmp(word, "face")) return read_face(map, t, err);
     if (!strcmp(word, "clear") || !strcmp(word, "keep")) return read_zone(map, t, !strcmp(word, "keep"), err);
     struct texture_face *face = map->face_count && !map->zone_count ? &map->faces[map->face_count - 1] : NULL;
     const bool rule =
         !strcmp(word, "place") || !strcmp(word, "edge") || !strcmp(word, "outdoors") || !strcmp(word, "colour");
-    if (!rule && strcmp(word, "new")) return textfile_error(t, err, word, "%s", wanted);
+    const bool gloss = !strcmp(word, "gloss");
+    if (!rule && !gloss && strcmp(word, "new")) return textfile_error(t, err, word, "%s", wanted);
     if (!face) return textfile_error(t, err, word, "a line \"face\" before it");
+    if (gloss) return read_gloss(face, t, err);
     return rule ? read_rule(face, t, word, err) : read_added(face, t, err);
 }
 
@@ -369,7 +432,7 @@ enum status texture_map_read(struct texture_map *map, const char *path, struct e
     *map = (struct texture_map){0};
     if (textfile_open(&t, path, err)) return err->status;
     enum status st = textfile_expect_line(&t, HEADER, err);
-    if (!st) st = textfile_int(&t, "version", 1, 1, &version, err);
+    if (!st) st = textfile_int(&t, "version", 1, 2, &version, err);
     if (!st) st = textfile_end(&t, err);
     if (!st) st = textfile_expect_line(&t, "base", err);
     if (!st) st = copy_word(&base, &t, "an edit or \"none\"", err);

@@ -5,9 +5,12 @@
  * carries a face's id has rules, in order: the first rule that covers a point of the face gives its texture there.
  * "The baked domain" is the area of the unedited model and of all declared edits (surfaces.h), which the atlases hold.
  *
- *   remodel-texture 1
+ *   remodel-texture 1                                  2 if a line lamp or gloss follows
  *   base E|none                                        the edit that this one stands on
- *   face ID NX NY NZ OFFSET NAME                       a plane of the edited model; its rules follow
+ *   lamp NAME R G B                                    the radiance of this lamp of lights.txt is multiplied; 0 0 0: off
+ *   face ID NX NY NZ OFFSET NAME                       a plane of the edited model; its gloss and its rules follow
+ *   gloss matt|phong KS N|ward KS ALPHA                the gloss of the face (gloss.h); without this line the edit does
+ *                                                      not say it
  *   place FROM M [within X Y Z X Y Z X Y Z X Y Z]      the face FROM of the unedited model at M p, where it is baked
  *   edge FROM M [within ...]                           the baked texel of FROM nearest to M p: covers every point
  *   outdoors                                           a pane: what lies outside, by direction; covers every point
@@ -27,6 +30,7 @@
 #include <stdbool.h>
 
 #include "common/base/provenance.h"
+#include "common/light/gloss.h"
 #include "common/math/vec.h"
 
 enum texture_rule_kind { TEXTURE_PLACE, TEXTURE_EDGE, TEXTURE_OUTDOORS, TEXTURE_COLOUR };
@@ -51,6 +55,14 @@ struct texture_face {
     int rule_count;
     struct vec3 (*added)[3]; /* triangles that the unedited model lacks; owned */
     int added_count;
+    bool has_gloss;     /* the edit gives the face a gloss, which may be matt */
+    struct gloss gloss; /* on top of the rules' texture or colour */
+};
+
+/* A lamp that the edit dims, brightens or turns off. */
+struct texture_lamp {
+    char *name;      /* in lights.txt; owned */
+    double scale[3]; /* factors of its radiance: red, green, blue */
 };
 
 /* A part of the building, by its footprint, in which clutter is left out or kept. */
@@ -65,6 +77,8 @@ struct texture_zone {
 /* {0} is the empty state. */
 struct texture_map {
     char *base;                 /* NULL: none; owned */
+    struct texture_lamp *lamps; /* names are unique; owned */
+    int lamp_count;
     struct texture_face *faces; /* in order of id, then of the edited model's faces; owned */
     int face_count;
     struct texture_zone *zones; /* owned */
@@ -77,10 +91,12 @@ const struct texture_face *texture_map_find(const struct texture_map *map, int i
 /* Whether the limits of a rule hold p, a point of the rule's face. */
 bool texture_rule_holds(const struct texture_rule *rule, struct vec3 normal, struct vec3 p);
 struct vec3 texture_rule_place(const struct texture_rule *rule, struct vec3 p); /* M p */
+/* The factors of a lamp's radiance; NULL: the edit does not name it. */
+const double *texture_map_lamp(const struct texture_map *map, const char *name);
 /* Whether clutter at p is left out: p is in a zone to clear and in none to keep. */
 bool texture_map_clears(const struct texture_map *map, struct vec3 p);
 
-/* ST_DATA: the base is named "none", a face has more than 100 000 added triangles, a zone as many corners or fewer than
+/* ST_DATA: the base is named "none", a lamp's factor is below 0 or not finite, a face has more than 100 000 added triangles, a zone as many corners or fewer than
  * 3: texture_map_read() would refuse it. */
 enum status texture_map_write(const struct texture_map *map, const char *path, const struct provenance *prov,
                               struct err *err);

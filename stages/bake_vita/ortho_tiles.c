@@ -5,21 +5,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { GUTTER = 1 };                   /* texels around the area */
-static const double HORIZONTAL = 0.99; /* |normal . up| from which a surface is a floor or a ceiling */
+#include "common/texture/ortho.h"
+
+enum { GUTTER = 1 }; /* texels around the area */
 
 struct ortho { /* a surface's raster: texel (x, y) is at right (left + side (x + 0.5)) + down (top + side (y + 0.5)) */
     struct vec3 right, down;
     double left, top;
     int width, height;
 };
-
-void ortho_axes(struct vec3 *right, struct vec3 *down, struct vec3 normal)
-{
-    const struct vec3 up = fabs(normal.z) >= HORIZONTAL ? vec3_make(0, 1, 0) : vec3_make(0, 0, 1);
-    *right = vec3_normalize(vec3_cross(up, normal));
-    *down = vec3_cross(*right, normal);
-}
 
 static struct ortho make_ortho(const struct surfaces *s, int surface, double side)
 {
@@ -58,13 +52,9 @@ static struct bake_tile make_tile(const struct ortho *o, const struct surface *s
         t.raster.point[j][0] = side * right[j];
         t.raster.point[j][1] = side * down[j];
         t.raster.point[j][2] = left * right[j] + top * down[j] + s->offset * normal[j];
-        t.matrix[0][j] = right[j] / side;
-        t.matrix[1][j] = down[j] / side;
     }
     t.raster.point[3][2] = 1;
-    t.matrix[0][3] = -left / side;
-    t.matrix[1][3] = -top / side;
-    t.matrix[2][3] = 1;
+    ortho_matrix(t.matrix, o->right, o->down, side, left, top);
     return t;
 }
 

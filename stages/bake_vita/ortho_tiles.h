@@ -4,14 +4,11 @@
 
 #include "common/texture/bake.h"
 
-/* Texels of the surface's bounding rectangle, whose sides lie along the axes of ortho_axes(). */
+/* Texels of the surface's bounding rectangle, whose sides lie along the axes of ortho_axes() (common/texture/ortho.h). */
 size_t ortho_texels(const struct surfaces *s, int surface, double side);
 
 /* Adds the surface's tiles to the bake, every texel of its area wanted, with a margin of one texel for look-ups at its
  * edge. side: of a texel, model units. */
 enum status ortho_tiles_add(struct bake *b, int surface, double side, struct err *err);
-
-/* Right and down on a surface as one who faces it sees them: on a wall, down is towards the floor. Unit vectors. */
-void ortho_axes(struct vec3 *right, struct vec3 *down, struct vec3 normal);
 
 #endif

@@ -6,15 +6,14 @@
 #include <string.h>
 
 #include "common/base/file_path.h"
-#include "common/base/outfile.h"
 #include "common/base/progress.h"
-#include "common/base/textfile.h"
 #include "common/capture/view_image.h"
 #include "common/image/exr.h"
 #include "common/image/photo.h"
+#include "common/texture/exposure.h"
+#include "common/texture/picture_list.h"
 #include "common/texture/picture_record.h"
 #include "stages/render_model/choose_pair.h"
-#include "stages/render_model/exposure.h"
 #include "stages/render_model/own_pixels.h"
 
 /* What each pixel comes from, in colours. */
@@ -84,6 +83,15 @@ static enum status draw_view(struct model_picture *picture, double *changed, str
     return st;
 }
 
+/* camera: in the model's frame. */
+static void set_camera_of_view(struct model_picture *p, const struct view *camera)
+{
+    const struct camera lens = {
+        CAMERA_PINHOLE, camera->width, camera->height, {camera->fx, camera->fy, camera->cx, camera->cy}};
+    const struct pose pose = {quat_from_mat3(camera->cam_from_world), camera->translation};
+    model_picture_set_camera(p, &lens, &pose);
+}
+
 static enum status find_views(bool *wanted, const struct room *room, const struct cli_list *names, struct err *err)
 {
     for (int i = 0; i < names->count; i++) {
@@ -101,7 +109,7 @@ enum status pictures_of_views(struct room *room, const struct cli_list *views, c
 {
     struct model_picture picture = {0};
     struct progress progress;
-    const bool radiance = !strcmp(room->params->radiance, "yes");
+    const bool radiance = strcmp(room->params->radiance, "no") != 0, all = !strcmp(room->params->radiance, "all");
     bool *wanted = calloc((size_t)room->set.view_count + 1, sizeof *wanted);
     enum status st = wanted ? find_views(wanted, room, views, err)
                             : err_nomem(err, "views", (size_t)room->set.view_count * sizeof *wanted);
@@ -111,8 +119,9 @@ enum status pictures_of_views(struct room *room, const struct cli_list *views, c
         const int inputs = prov->count;
         double changed = 0;
         st = draw_view(&picture, &changed, room, i, prov, err);
+        if (!st) set_camera_of_view(&picture, &room->cameras[i]);
         if (!st)
-            st = write_picture(&picture, room, &room->set.views[i], changed, radiance && changed > 0, out,
+            st = write_picture(&picture, room, &room->set.views[i], changed, radiance && (all || changed > 0), out,
                                room->set.views[i].name, prov, err);
         provenance_keep(prov, inputs);
         progress_add(&progress, 1);
@@ -152,20 +161,12 @@ static bool is_wanted(const struct cli_list *names, const char *name)
 static enum status write_list(const struct room_cameras *cameras, const struct cli_list *names, const char *out,
                               const struct provenance *prov, struct err *err)
 {
-    char path[FILE_PATH], quoted[2 * FILE_PATH];
-    struct outfile list = {0};
-    enum status st = file_path(path, out, "pictures.txt", "", err);
-    if (!st) st = outfile_open(&list, path, err);
-    if (st) return st;
-    fputs("remodel-pictures 1\n", list.fp);
-    provenance_print(prov, list.fp);
-    for (int i = 0; !st && i < cameras->count; i++) {
-        if (!is_wanted(names, cameras->list[i].name)) continue;
-        st = textfile_quote(cameras->list[i].name, quoted, sizeof quoted, err);
-        fprintf(list.fp, "picture %s\n", quoted);
-    }
-    if (!st) st = outfile_commit(&list, err);
-    outfile_discard(&list);
+    struct picture_list list = {0};
+    enum status st = ST_OK;
+    for (int i = 0; !st && i < cameras->count; i++)
+        if (is_wanted(names, cameras->list[i].name)) st = picture_list_add(&list, cameras->list[i].name, err);
+    if (!st) st = picture_list_write(&list, out, prov, err);
+    picture_list_release(&list);
     return st;
 }
 
@@ -186,6 +187,7 @@ enum status pictures_of_cameras(struct room *room, const struct camera_source *s
         struct view view;
         st = room_camera_draw(&picture, room, camera, &pair, prov, err);
         room_camera_view(&view, camera);
+        model_picture_set_camera(&picture, &camera->lens, &camera->pose);
         if (!st) st = write_picture(&picture, room, &view, 100, true, out, camera->name, prov, err);
         provenance_keep(prov, inputs);
         progress_add(&progress, 1);
@@ -236,24 +238,16 @@ static enum status frame_exposure(double *exposure, struct room *room, const str
     return st;
 }
 
-static enum status write_frame(const struct model_picture *p, double exposure, const struct view *camera,
-                               const char *path, const struct provenance *prov, struct err *err)
+/* A frame as a picture whose light may be changed: its radiance, and its exposure in the record. */
+static enum status write_film_picture(const struct model_picture *p, double exposure, const struct view *camera,
+                                      const char *out, const struct provenance *prov, struct err *err)
 {
-    const size_t pixels = (size_t)p->width * (size_t)p->height;
-    struct exr_image im = {0};
-    float *rgba = malloc(4 * pixels * sizeof *rgba);
-    enum status st = rgba ? ST_OK : err_nomem(err, "a frame", 4 * pixels * sizeof *rgba);
-    for (size_t i = 0; !st && i < pixels; i++) {
-        for (size_t c = 0; c < 3; c++) rgba[4 * i + c] = (float)(exposure * p->rgb[3 * i + c]);
-        rgba[4 * i + 3] = p->made[i] != MADE_NOTHING;
-    }
-    if (!st) st = exr_init_rgba(&im, rgba, p->width, p->height, err);
-    if (!st) exr_set_camera(&im, camera);
-    if (!st) st = exr_set_number(&im, "remodel:exposure", exposure, err);
-    if (!st) st = exr_write(&im, path, prov, err);
-    exr_image_release(&im);
-    free(rgba);
-    return st;
+    char path[FILE_PATH];
+    const struct picture_record record = record_of(p, exposure, 100);
+    enum status st = file_path(path, out, camera->name, ".exr", err);
+    if (!st) st = model_picture_write(p, camera, path, prov, err);
+    if (!st) st = file_path(path, out, camera->name, ".txt", err);
+    return st ? st : picture_record_write(&record, path, prov, err);
 }
 
 enum status pictures_of_frames(struct room *room, const struct camera_path *path, const struct viewpoint_pairs *pairs,
@@ -262,6 +256,7 @@ enum status pictures_of_frames(struct room *room, const struct camera_path *path
     struct model_picture picture = {0};
     struct progress progress;
     enum status st = ST_OK;
+    const bool all = !strcmp(room->params->radiance, "all");
     int count = 0;
     for (int i = 0; i < path->frame_count; i++) count += wanted[i];
     progress_start(&progress, "rendering", count, "frames");
@@ -276,7 +271,11 @@ enum status pictures_of_frames(struct room *room, const struct camera_path *path
         if (!st) st = frame_exposure(&exposure, room, &pair, err);
         if (!st) st = room_draw(&picture, room, &camera, &pair, -1, prov, err);
         if (!st) st = file_path(file, out, scene->name, ".exr", err);
-        if (!st) st = write_frame(&picture, exposure, scene, file, prov, err);
+        if (!st) set_camera_of_view(&picture, &camera);
+        if (!st && all)
+            st = write_film_picture(&picture, exposure, scene, out, prov, err);
+        else if (!st)
+            st = exposure_write_frame(&picture, exposure, scene, file, prov, err);
         provenance_keep(prov, inputs);
         progress_add(&progress, 1);
     }

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "stages/render_model/exposure.h"
+#include "common/texture/exposure.h"
 
 enum { SMALL = 160 }; /* px: width of the pictures that exposures are chosen from */
 

@@ -17,11 +17,6 @@ enum { MOST_SAMPLES = 16 };
 
 /* ---------------------------------------------------------------------------------------------------------- scenes */
 
-static bool is_glass(const struct solid_mesh *mesh, int face)
-{
-    return !strncmp(mesh->bodies[mesh->faces[face].body].name, "glass/", 6);
-}
-
 /* The face of the map with the id and the plane of a face of the model; NULL: none. */
 static const struct texture_face *find_in_map(const struct shell_scene *s, int face)
 {
@@ -58,7 +53,7 @@ static enum status set_face(struct shell_scene *s, int face, bool *drawn, struct
                                         .matrix = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
     s->ids[face + 1] = (uint32_t)itself.from;
     s->faces[face].first = s->rule_count;
-    *drawn = !is_glass(&s->mesh, face) || (t && t->rule_count && t->rules[0].kind != TEXTURE_OUTDOORS);
+    *drawn = !solid_face_is_pane(&s->mesh, face) || (t && t->rule_count && t->rules[0].kind != TEXTURE_OUTDOORS);
     if (!t) return add_rule(s, face, &itself, err);
     for (int i = 0; i < t->rule_count; i++)
         if (add_rule(s, face, &t->rules[i], err)) return err->status;

@@ -9,10 +9,12 @@ HELP.remodel := what the photos would show after each edit, EDIT=E: after one; w
 NEEDS.remodel := textures outdoors
 RUN.remodel := farm
 PRODUCT.remodel := remodel
+PRODUCT.tour := tour
 HELP.tour := films through the rooms, of the model and of each edit
 NEEDS.tour := textures outdoors tour-path
 
-## EDIT=E: for `make remodel` and `make tour`: after this edit alone
+## EDIT=E: for `make remodel`, `tour` and `relight`: after this edit alone
+## DRAW="E F": edits that these goals and plain `make` draw, usually in scene.mk (all)
 ## CAMERAS=DIR: a COLMAP text model whose cameras `make remodel` draws the model and its edits from
 ## CAMERAS_FRAME=scene|model|truth: its frame: O/views (default), the room's model, or TRUTH, which has the photos' cameras
 
@@ -21,9 +23,8 @@ ifdef GRAPH
 edited = $(filter $(O)/remodel/%,$(1))
 model_args = --model $(1)/model.txt $(if $(edited),--base $(O)/model/model.txt --map $(1)/texture.txt) --axes $(AXES) --views $(O)/views \
   --vdta $(O)/vdta --vita $(O)/vita --ids $(O)/ids --depth $(O)/depth --outdoors $(OUTDOORS)
-model_needs = $(1)/model.txt $(if $(edited),$(1)/texture.txt) $(O)/model/model.txt $(AXES) $(CAMERAS) $(O)/views/lenses.txt $(VITA_TXT) $(OUTDOORS) \
+model_needs = $(1)/model.txt $(if $(edited),$(1)/texture.txt) $(O)/model/model.txt $(AXES) $(VIEW_CAMERAS) $(O)/views/lenses.txt $(VITA_TXT) $(OUTDOORS) \
   $(call needs,render_model)
-DRAWN_EDITS := $(if $(EDIT),$(filter $(EDIT),$(EDITS)),$(EDITS))
 GIVEN := $(if $(value REMODEL_CAMERAS),yes)
 .PHONY: remodel remodel-views remodel-cameras tour tour-frames
 remodel: $(if $(GIVEN),remodel-cameras,remodel-views)
@@ -46,7 +47,7 @@ define cameras_rule
 $(1)/cameras/pictures.txt: $(call model_needs,$(1)) $(VDTA_TXT) $(VIEW_EXR) $(IDS_EXR) $(DEPTH_EXR) $(S)/photos/list.txt $(O)/stamp/cameras.txt
 	$$(hide)$$(call farm,render_model,cameras-$(notdir $(1)),$$@,$(call model_args,$(1)) $$(CAMERA_ARGS) --out $(1)/cameras)
 endef
-DRAWN_MODELS := $(if $(EDIT),,$(O)/model) $(DRAWN_EDITS:%=$(O)/remodel/%)
+DRAWN_MODELS := $(if $(EDIT)$(DRAW),,$(O)/model) $(DRAWN_EDITS:%=$(O)/remodel/%)
 $(if $(MODELS),$(foreach m,$(DRAWN_MODELS),$(eval $(call cameras_rule,$(m)))))
 remodel-cameras: $(if $(MODELS),$(DRAWN_MODELS:%=%/cameras/pictures.txt))
 look::

@@ -8,8 +8,24 @@
 #include "tests/unit/scratch.h"
 
 #define HEAD "remodel-texture 1\nbase none\n"
+#define LIT  "remodel-texture 2\nbase none\n"
 #define FACE "face 3 0 0 1 0 floor/hall\n"
 #define SAME " 1 0 0 0 0 1 0 0 0 0 1 0"
+
+static void reads_back(const char *text, struct texture_map *map)
+{
+    struct err err = ERR_INIT;
+    char *again = NULL;
+    size_t size = 0;
+    assert_ok(texture_map_read(map, scratch_write("a.txt", text), &err), err);
+    assert_ok(texture_map_write(map, scratch_path("b.txt"), NULL, &err), err);
+    FILE *file = fopen(scratch_path("b.txt"), "r");
+    assert_non_null(file);
+    assert_true(getdelim(&again, &size, '\0', file) > 0);
+    fclose(file);
+    assert_string_equal(again, text);
+    free(again);
+}
 
 static void what_is_written_is_read_back(void **state)
 {
@@ -22,24 +38,37 @@ static void what_is_written_is_read_back(void **state)
         "face 9 1 0 0 -2 \"wall/a b/in\"\ncolour 0.5 0.25 0 lit 3 9 within 0 0 0 0 1 0 0 1 1 0 0 1\ncolour 1 1 1 lit\n"
         "clear hall 0 2.5 3 0 0 4 0 4 3\nkeep place -1 1 4 1 1 2 1 2 2 1 2\n";
     struct texture_map map;
-    struct err err = ERR_INIT;
-    char *again = NULL;
     (void)state;
-    assert_ok(texture_map_read(&map, scratch_write("a.txt", text), &err), err);
+    reads_back(text, &map);
     assert_string_equal(map.base, "open plan");
     assert_int_equal(map.face_count, 3);
     assert_int_equal(map.faces[0].rule_count, 2);
     assert_int_equal(map.faces[2].rules[0].lit_count, 2);
     assert_int_equal(map.zone_count, 2);
-    assert_ok(texture_map_write(&map, scratch_path("b.txt"), NULL, &err), err);
+    assert_false(map.faces[0].has_gloss);
     texture_map_release(&map);
-    FILE *file = fopen(scratch_path("b.txt"), "r");
-    size_t size = 0;
-    assert_non_null(file);
-    assert_true(getdelim(&again, &size, '\0', file) > 0);
-    fclose(file);
-    assert_string_equal(again, text);
-    free(again);
+}
+
+static void lamps_and_gloss_are_read_back(void **state)
+{
+    static const char text[] = "remodel-texture 2\nbase none\n"
+                               "lamp \"over the table\" 0 0 0\nlamp floor 2 0.5 0.10000000000000001\n"
+                               "face 3 0 0 1 0 floor/hall\ngloss phong 0.10000000000000001 30\noutdoors\n"
+                               "face 4 0 0 1 0 box/b/top\ngloss matt\n"
+                               "face 5 0 0 1 0 box/b/left\ngloss ward 0.20000000000000001 0.14999999999999999\n"
+                               "face 6 0 0 1 0 box/b/right\noutdoors\n";
+    struct texture_map map;
+    (void)state;
+    reads_back(text, &map);
+    assert_int_equal(map.lamp_count, 2);
+    assert_true(texture_map_lamp(&map, "over the table")[1] == 0);
+    assert_true(texture_map_lamp(&map, "floor")[0] == 2);
+    assert_null(texture_map_lamp(&map, "ceiling"));
+    assert_true(map.faces[0].has_gloss && map.faces[0].gloss.kind == BRDF_PHONG && map.faces[0].gloss.shape == 30);
+    assert_true(map.faces[1].has_gloss && map.faces[1].gloss.kind == BRDF_LAMBERT);
+    assert_true(map.faces[2].gloss.kind == BRDF_WARD && map.faces[2].gloss.ks == 0.2);
+    assert_false(map.faces[3].has_gloss);
+    texture_map_release(&map);
 }
 
 static void a_face_is_found_by_its_plane(void **state)
@@ -78,7 +107,7 @@ static void what_is_wrong_is_named_with_its_line(void **state)
     static const struct {
         const char *text, *words;
     } cases[] = {
-        {"remodel-texture 2\n", "a.txt:1"},
+        {"remodel-texture 3\n", "a.txt:1"},
         {HEAD "place 3" SAME "\n", "a.txt:3: found \"place\", wanted a line \"face\" before it"},
         {HEAD FACE "place 0" SAME "\n", "a.txt:4"},
         {HEAD FACE "place 3 1 0 0\n", "a.txt:4"},
@@ -98,7 +127,22 @@ static void what_is_wrong_is_named_with_its_line(void **state)
         {HEAD "clear hall 2 0 3 0 0 1 1 1 0\n", "a height above the lowest"},
         {HEAD "keep a 0 1 3 0 0 1 1 1 0\n" FACE, "faces before the lines"},
         {HEAD FACE "place 3" SAME " within 1 1 0 1 1 0 1 1 0 1 1 0\n", "four corners around an area"},
-        {HEAD "fcae 3\n", "face, place, edge"},
+        {LIT "lamp l 1 1\n", "a.txt:3: found the end of the line, wanted a factor of 0 or more"},
+        {LIT "lamp l 1 1 -1\n", "found \"-1\", wanted a factor of 0 or more"},
+        {LIT "lamp l 1 1 inf\n", "found \"inf\""},
+        {LIT "lamp l 1 1 1 1\n", "a.txt:3: found \"1\""},
+        {LIT "lamp l 1 1 1\nlamp l 0 0 0\n", "a.txt:4: found \"l\", wanted a lamp that no line above has"},
+        {LIT FACE "lamp l 1 1 1\n", "lamps before the lines \"face\""},
+        {LIT "gloss matt\n", "a.txt:3: found \"gloss\", wanted a line \"face\" before it"},
+        {LIT FACE "gloss satin\n", "found \"satin\", wanted matt, phong or ward"},
+        {LIT FACE "gloss matt 1\n", "found \"1\", wanted the end of the line"},
+        {LIT FACE "gloss phong 0.1 0.5\n", "found \"0.5\", wanted N, an exponent, from 1 to 5000"},
+        {LIT FACE "gloss ward 0.1 2\n", "found \"2\", wanted ALPHA, a roughness, from 0.02 to 1"},
+        {LIT FACE "gloss ward -1 0.1\n", "wanted KS, the strength of the gloss, from 0"},
+        {LIT FACE "gloss matt\ngloss matt\n",
+         "a.txt:5: found \"gloss\", wanted one line \"gloss\" right after the face"},
+        {LIT FACE "outdoors\ngloss matt\n", "right after the face's line"},
+        {HEAD "fcae 3\n", "lamp, face, gloss, place, edge"},
     };
     (void)state;
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
@@ -147,12 +191,18 @@ static void what_the_reader_refuses_is_not_written(void **state)
     zone.corner_count = 3;
     map.base = base;
     refused_to_write(&map, "the edit stands on an edit named \"none\"");
+    map.base = NULL;
+    struct texture_lamp lamp = {.name = zone_name, .scale = {1, -1, 1}};
+    map.lamps = &lamp;
+    map.lamp_count = 1;
+    refused_to_write(&map, "found a factor of -1 for the lamp hall");
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_is_written_is_read_back),
+        cmocka_unit_test(lamps_and_gloss_are_read_back),
         cmocka_unit_test(a_face_is_found_by_its_plane),
         cmocka_unit_test(limits_hold_points_in_either_direction),
         cmocka_unit_test(what_is_wrong_is_named_with_its_line),

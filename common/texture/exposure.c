@@ -12,13 +12,15 @@
  *
  * Source: the exposure of views between photographs is [Colburn 2014, 4.6]. Different here: it is chosen from the
  * picture itself, so that pictures of edited rooms, which no camera saw, have one too. */
-#include "stages/render_model/exposure.h"
+#include "common/texture/exposure.h"
 
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/capture/view_image.h"
+#include "common/image/exr.h"
 #include "common/image/image.h"
 #include "common/image/photo.h"
 
@@ -107,5 +109,27 @@ enum status exposure_write(const struct model_picture *p, double exposure, const
         st = png ? png_write(path, bytes, p->width, p->height, 3, err)
                  : jpeg_write(path, bytes, p->width, p->height, JPEG_QUALITY, err);
     free(bytes);
+    return st;
+}
+
+enum status exposure_write_frame(const struct model_picture *p, double exposure, const struct view *camera,
+                                 const char *path, const struct provenance *prov, struct err *err)
+{
+    const size_t pixels = (size_t)p->width * (size_t)p->height;
+    struct exr_image im = {0};
+    float *rgba = calloc(pixels, 4 * sizeof *rgba);
+    enum status st = rgba ? ST_OK : err_nomem(err, "a frame", 4 * pixels * sizeof *rgba);
+    for (size_t i = 0; !st && i < pixels; i++) {
+        for (size_t c = 0; c < 3; c++) rgba[4 * i + c] = (float)(exposure * p->rgb[3 * i + c]);
+        rgba[4 * i + 3] = p->made[i] != MADE_NOTHING;
+    }
+    if (!st) st = exr_init_rgba(&im, rgba, p->width, p->height, err);
+    if (!st) st = exr_add_plane(&im, "made", EXR_UINT, NULL, err);
+    for (size_t i = 0; !st && i < pixels; i++) im.planes[4].u[i] = p->made[i];
+    if (!st) exr_set_camera(&im, camera);
+    if (!st) st = exr_set_number(&im, "remodel:exposure", exposure, err);
+    if (!st) st = exr_write(&im, path, prov, err);
+    exr_image_release(&im);
+    free(rgba);
     return st;
 }

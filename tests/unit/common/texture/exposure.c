@@ -1,5 +1,5 @@
 /* exposure.c - the exposure that a camera would have chosen, and pictures of 8 bits. */
-#include "stages/render_model/exposure.h"
+#include "common/texture/exposure.h"
 
 #include "tests/unit/scratch.h"
 

@@ -1,6 +1,6 @@
 /* exposure.h - the exposure of a picture [Colburn 2014, 4.6]: radiance times exposure is 1 at white. */
-#ifndef REMODEL_RENDER_EXPOSURE_H
-#define REMODEL_RENDER_EXPOSURE_H
+#ifndef REMODEL_EXPOSURE_H
+#define REMODEL_EXPOSURE_H
 
 #include "common/texture/model_picture.h"
 
@@ -10,5 +10,10 @@ double exposure_choose(const struct model_picture *p, double saturated);
 
 /* Writes the picture as an 8-bit sRGB JPEG or PNG, by the ending of `path`. Pixels of MADE_NOTHING are black. */
 enum status exposure_write(const struct model_picture *p, double exposure, const char *path, struct err *err);
+
+/* Writes a film's frame: R G B A half, radiance times exposure, A 0 where MADE_NOTHING; attribute remodel:exposure. camera:
+ * scene frame. */
+enum status exposure_write_frame(const struct model_picture *p, double exposure, const struct view *camera,
+                                 const char *path, const struct provenance *prov, struct err *err);
 
 #endif

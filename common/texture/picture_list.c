@@ -1,0 +1,69 @@
+/* picture_list.c - see picture_list.h. */
+#include "common/texture/picture_list.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/base/array.h"
+#include "common/base/file_path.h"
+#include "common/base/outfile.h"
+#include "common/base/textfile.h"
+
+#define HEADER "remodel-pictures"
+
+void picture_list_release(struct picture_list *l)
+{
+    if (!l) return;
+    for (int i = 0; i < l->count; i++) free(l->names[i]);
+    free(l->names);
+    *l = (struct picture_list){0};
+}
+
+enum status picture_list_add(struct picture_list *l, const char *name, struct err *err)
+{
+    char *copy = strdup(name);
+    if (!copy) return err_nomem(err, "a name", strlen(name));
+    if (array_append(&l->names, (size_t)l->count, sizeof *l->names, "pictures", err)) {
+        free(copy);
+        return err->status;
+    }
+    l->names[l->count++] = copy;
+    return ST_OK;
+}
+
+enum status picture_list_read(struct picture_list *l, const char *folder, struct err *err)
+{
+    char path[FILE_PATH], *name;
+    struct textfile t = {0};
+    int64_t version;
+    if (file_path(path, folder, "pictures.txt", "", err) || textfile_open(&t, path, err)) return err->status;
+    enum status st = textfile_expect_line(&t, HEADER, err);
+    if (!st) st = textfile_int(&t, "version", 1, 1, &version, err);
+    if (!st) st = textfile_end(&t, err);
+    while (!st && textfile_next(&t)) {
+        st = textfile_expect(&t, "picture", err);
+        if (!st) st = textfile_word(&t, "a picture's name", &name, err);
+        if (!st) st = textfile_end(&t, err);
+        if (!st) st = picture_list_add(l, name, err);
+    }
+    textfile_release(&t);
+    return st;
+}
+
+enum status picture_list_write(const struct picture_list *l, const char *folder, const struct provenance *prov,
+                               struct err *err)
+{
+    char path[FILE_PATH], quoted[2 * FILE_PATH];
+    struct outfile f = {0};
+    if (file_path(path, folder, "pictures.txt", "", err) || outfile_open(&f, path, err)) return err->status;
+    enum status st = ST_OK;
+    fputs(HEADER " 1\n", f.fp);
+    provenance_print(prov, f.fp);
+    for (int i = 0; !st && i < l->count; i++) {
+        st = textfile_quote(l->names[i], quoted, sizeof quoted, err);
+        if (!st) fprintf(f.fp, "picture %s\n", quoted);
+    }
+    if (!st) st = outfile_commit(&f, err);
+    outfile_discard(&f);
+    return st;
+}
