@@ -172,16 +172,22 @@ static void gather(struct hemisphere *h, int rays)
     finish(h);
 }
 
-void cache_record_gather(struct cache_record *r, const struct light_field *f, struct gather_point p, double target,
-                         double beside, int least, uint64_t key)
+void cache_record_gather_once(struct cache_record *r, const struct light_field *f, struct gather_point p, int rays,
+                              uint64_t key)
 {
     struct hemisphere h = {.record = r, .field = f, .rng = rng_make(key, "gather", "cache")};
-    int spent = 0;
     r->point = p;
     frame_from_normal(p.normal, &h.x, &h.y);
     mixture_init(&h.lights, f, p, MIXTURE_LIGHTS);
+    gather(&h, rays);
+}
+
+void cache_record_gather(struct cache_record *r, const struct light_field *f, struct gather_point p, double target,
+                         double beside, int least, uint64_t key)
+{
+    int spent = 0;
     for (int rays = least;; rays *= 4) {
-        gather(&h, rays);
+        cache_record_gather_once(r, f, p, rays, key);
         spent += r->rays;
         if (r->error <= target * (beside + rgb_luminance(r->value)) || rays >= 16 * least) break;
     }

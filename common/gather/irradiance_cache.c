@@ -16,6 +16,10 @@
  * point is not used: things between them may hide what it sees. Radii are limited to a few points' spacing below, so that
  * corners do not get a record at each point, and to a tenth of the scene above.
  *
+ * Two fields. For the quotient of irradiance in two fields, each record holds both, from the same rays; its radius is the
+ * smaller one. Direct light is gathered in both by the same rays until the quotient is known well enough, so that noise
+ * which both share does not count, and none is spent where nothing has changed.
+ *
  * Source: [Ward 1988] for records, [Ward 1992b] for gradients. Different here: direct light at each point; weights that fade;
  * placing by levels. */
 #include "common/gather/irradiance_cache.h"
@@ -35,10 +39,24 @@ static const double WIDEST = 0.1;    /* of the points' box: a record reaches at 
 static const double IN_FRONT = 0.05; /* of the radius */
 static const double SHARE = 1; /* of the target, for each of records and direct light; most points are far below it */
 
+enum { SIDES = 2 };
+
+/* A record in one field, or in both. */
+struct record {
+    struct cache_record side[SIDES]; /* they share the radius */
+};
+
+struct side {
+    const struct light_field *field;
+    const struct gather_point *points;
+    struct irradiance *results;
+};
+
 struct cache {
     const struct irradiance_cache_job *job;
-    struct irradiance *results;
-    struct cache_record *records;
+    struct side sides[SIDES];
+    int side_count;
+    struct record *records;
     size_t record_count, capacity;
     struct cache_tree tree;
     double accuracy, widest; /* a; the longest reach a R */
@@ -52,25 +70,31 @@ static bool is_point(const struct gather_point *p) { return vec3_length(p->norma
 
 /* -------------------------------------------------------------------------------------------------------------- lookup */
 
-struct lookup {
-    const struct cache *cache;
+struct lookup_side {
     struct gather_point point;
-    double weight, error, radiance[LIGHT_SOURCES], nearest, mean_inverse;
+    double error, radiance[LIGHT_SOURCES], nearest, mean_inverse;
     struct rgb sum;
 };
 
-static void add_record(void *ctx, int index)
+struct lookup {
+    const struct cache *cache;
+    double weight;
+    struct lookup_side side[SIDES];
+};
+
+/* The weight of a record at a point, not above 0 where it does not count. */
+static double weigh(const struct cache *c, const struct cache_record *r, const struct gather_point *p)
 {
-    struct lookup *l = ctx;
-    const struct cache_record *r = &l->cache->records[index];
-    const struct vec3 by = vec3_sub(l->point.at, r->point.at);
+    const struct vec3 by = vec3_sub(p->at, r->point.at);
     const double distance = vec3_length(by) / r->radius;
-    if (!(distance < l->cache->accuracy)) return;
-    const double off = distance + sqrt(fmax(0, 1 - vec3_dot(l->point.normal, r->point.normal)));
-    const double w = 1 - off / l->cache->accuracy;
-    if (!(w > 0)) return;
-    if (vec3_dot(by, vec3_add(l->point.normal, r->point.normal)) / 2 < -IN_FRONT * r->radius) return;
-    l->weight += w;
+    if (!(distance < c->accuracy)) return 0;
+    const double off = distance + sqrt(fmax(0, 1 - vec3_dot(p->normal, r->point.normal)));
+    if (vec3_dot(by, vec3_add(p->normal, r->point.normal)) / 2 < -IN_FRONT * r->radius) return 0;
+    return 1 - off / c->accuracy;
+}
+
+static void add_side(struct lookup_side *l, const struct cache_record *r, double w)
+{
     l->sum = rgb_add(l->sum, rgb_scale(cache_record_at(r, l->point), w));
     l->error += w * r->error;
     for (int s = 0; s < LIGHT_SOURCES; s++) l->radiance[s] += w * r->light[s];
@@ -78,10 +102,24 @@ static void add_record(void *ctx, int index)
     if (r->nearest < l->nearest) l->nearest = r->nearest;
 }
 
+static void add_record(void *ctx, int index)
+{
+    struct lookup *l = ctx;
+    const struct cache *c = l->cache;
+    const struct record *r = &c->records[index];
+    double w = 1;
+    for (int k = 0; k < c->side_count; k++) w = fmin(w, weigh(c, &r->side[k], &l->side[k].point));
+    if (!(w > 0)) return;
+    l->weight += w;
+    for (int k = 0; k < c->side_count; k++) add_side(&l->side[k], &r->side[k], w);
+}
+
 static void look_up(struct lookup *l, const struct cache *c, size_t i)
 {
-    *l = (struct lookup){.cache = c, .point = c->job->points[i], .nearest = INFINITY};
-    cache_tree_find(&c->tree, l->point.at, add_record, l);
+    *l = (struct lookup){.cache = c};
+    for (int k = 0; k < c->side_count; k++)
+        l->side[k] = (struct lookup_side){.point = c->sides[k].points[i], .nearest = INFINITY};
+    cache_tree_find(&c->tree, l->side[0].point.at, add_record, l);
 }
 
 /* ------------------------------------------------------------------------------------------------------------- placing */
@@ -126,28 +164,49 @@ static double spacing(const struct irradiance_cache_job *j, size_t i)
     return nearest;
 }
 
-static double direct_luminance(const struct cache *c, size_t i)
+static double direct_luminance(const struct cache *c, int side, size_t i)
 {
     struct mixture m;
     struct irradiance e;
-    mixture_init(&m, c->job->field, c->job->points[i], MIXTURE_LIGHTS);
+    mixture_init(&m, c->sides[side].field, c->sides[side].points[i], MIXTURE_LIGHTS);
     if (!m.count) return 0;
     mixture_gather(&e, &m, DIRECT_RAYS, c->job->key + i, false);
     return rgb_luminance(e.value);
+}
+
+/* Gathers a record in each field, with as many rays as the more demanding one asks for. */
+static void gather_record(struct record *r, const struct cache *c, size_t i)
+{
+    double beside[SIDES];
+    int spent = 0;
+    for (int k = 0; k < c->side_count; k++) beside[k] = direct_luminance(c, k, i);
+    for (int rays = RECORD_RAYS;; rays *= 4) {
+        bool is_enough = true;
+        for (int k = 0; k < c->side_count; k++) {
+            struct cache_record *s = &r->side[k];
+            cache_record_gather_once(s, c->sides[k].field, c->sides[k].points[i], rays, c->job->key + i);
+            is_enough &= s->error <= SHARE * c->job->target * (beside[k] + rgb_luminance(s->value));
+        }
+        spent += r->side[0].rays;
+        if (is_enough || rays >= 16 * RECORD_RAYS) break;
+    }
+    for (int k = 0; k < c->side_count; k++) r->side[k].rays = spent;
 }
 
 static void gather_records(void *ctx, size_t begin, size_t end, int thread)
 {
     struct cache *c = ctx;
     (void)thread;
-    for (size_t k = begin; k < end; k++) {
-        const size_t i = c->wanted[k];
-        struct cache_record *r = &c->records[c->record_count + k];
-        cache_record_gather(r, c->job->field, c->job->points[i], SHARE * c->job->target, direct_luminance(c, i),
-                            RECORD_RAYS, c->job->key + i);
+    for (size_t n = begin; n < end; n++) {
+        const size_t i = c->wanted[n];
+        struct record *r = &c->records[c->record_count + n];
+        double radius = INFINITY;
+        gather_record(r, c, i);
+        for (int k = 0; k < c->side_count; k++) radius = fmin(radius, r->side[k].radius);
         const double gap = spacing(c->job, i), least = isfinite(gap) ? SPACINGS * gap / c->accuracy : 0;
-        r->radius = fmin(fmax(r->radius, least), c->widest / c->accuracy);
-        if (!(r->radius > 0)) r->radius = 1e-9 * c->widest / c->accuracy;
+        radius = fmin(fmax(radius, least), c->widest / c->accuracy);
+        if (!(radius > 0)) radius = 1e-9 * c->widest / c->accuracy;
+        for (int k = 0; k < c->side_count; k++) r->side[k].radius = radius;
     }
 }
 
@@ -161,7 +220,7 @@ static enum status add_level(struct cache *c, struct err *err)
         return err->status;
     parallel_for(c->wanted_count, 1, gather_records, c);
     for (size_t k = 0; k < c->wanted_count; k++) {
-        const struct cache_record *r = &c->records[c->record_count];
+        const struct cache_record *r = &c->records[c->record_count].side[0];
         if (cache_tree_add(&c->tree, (int)c->record_count++, r->point.at, c->accuracy * r->radius, err))
             return err->status;
     }
@@ -170,19 +229,62 @@ static enum status add_level(struct cache *c, struct err *err)
 
 /* ---------------------------------------------------------------------------------------------------------- evaluation */
 
-static void gather_direct(struct irradiance *e, const struct cache *c, size_t i, double beside)
+/* Relative standard error of the quotient of light in both fields, replicate by replicate: a - q b has the noise that they
+ * do not share. beside: further light in each field. */
+static double quotient_error(const struct mixture m[SIDES], const struct irradiance e[SIDES],
+                             const double beside[SIDES])
+{
+    double sum = 0, squares = 0, light[SIDES];
+    for (int k = 0; k < SIDES; k++) light[k] = beside[k] + rgb_luminance(e[k].value);
+    if (!(light[0] > 0 && light[1] > 0)) return 0;
+    const double q = light[1] / light[0];
+    for (int r = 0; r < MIXTURE_REPLICATES; r++) {
+        const double d = rgb_luminance(m[1].replicates[r]) - q * rgb_luminance(m[0].replicates[r]);
+        sum += d;
+        squares += d * d;
+    }
+    const double variance = fmax(0, squares - sum * sum / MIXTURE_REPLICATES);
+    return sqrt(variance / (MIXTURE_REPLICATES * (MIXTURE_REPLICATES - 1.0))) / light[1];
+}
+
+/* The same rays in both fields, until the quotient is known. */
+static void gather_direct_of_both(struct irradiance e[SIDES], const struct cache *c, size_t i,
+                                  const double beside[SIDES])
+{
+    struct mixture m[SIDES];
+    int spent = 0;
+    for (int k = 0; k < SIDES; k++) {
+        e[k] = (struct irradiance){.nearest = INFINITY};
+        mixture_init(&m[k], c->sides[k].field, c->sides[k].points[i], MIXTURE_LIGHTS);
+    }
+    if (!m[0].count && !m[1].count) return;
+    for (int rays = DIRECT_RAYS;; rays *= 4) {
+        for (int k = 0; k < SIDES; k++)
+            if (m[k].count) mixture_gather(&e[k], &m[k], rays, c->job->key + i, false);
+        spent += e[0].rays > e[1].rays ? e[0].rays : e[1].rays;
+        if (!(quotient_error(m, e, beside) > SHARE * c->job->target) || spent + 4 * rays > c->job->rays) break;
+    }
+    for (int k = 0; k < SIDES; k++) e[k].rays = spent;
+}
+
+static void gather_direct(struct irradiance e[SIDES], const struct cache *c, size_t i, const double beside[SIDES])
 {
     struct mixture m;
+    if (c->side_count == SIDES) {
+        gather_direct_of_both(e, c, i, beside);
+        return;
+    }
     mixture_init(&m, c->job->field, c->job->points[i], MIXTURE_LIGHTS);
-    *e = (struct irradiance){.nearest = INFINITY};
-    if (m.count) mixture_gather_to(e, &m, SHARE * c->job->target, beside, DIRECT_RAYS, c->job->rays, c->job->key + i);
+    e[0] = (struct irradiance){.nearest = INFINITY};
+    if (m.count)
+        mixture_gather_to(e, &m, SHARE * c->job->target, beside[0], DIRECT_RAYS, c->job->rays, c->job->key + i);
 }
 
 static double both(double a, double b) { return sqrt(a * a + b * b); }
 
-static void add_indirect(struct irradiance *e, const struct lookup *l)
+static void add_indirect(struct irradiance *e, const struct lookup_side *l, double weight)
 {
-    const double scale = 1 / l->weight, direct = rgb_luminance(e->value), error = l->error * scale;
+    const double scale = 1 / weight, direct = rgb_luminance(e->value), error = l->error * scale;
     double sum = 0;
     for (int s = 0; s < LIGHT_SOURCES; s++) sum += e->from[s] = e->from[s] * direct + l->radiance[s] * scale;
     for (int s = 0; s < LIGHT_SOURCES && sum > 0; s++) e->from[s] /= sum;
@@ -197,12 +299,18 @@ static void evaluate(void *ctx, size_t begin, size_t end, int thread)
     struct cache *c = ctx;
     (void)thread;
     for (size_t i = begin; i < end; i++) {
+        struct irradiance e[SIDES];
         struct lookup l;
-        c->results[i] = (struct irradiance){0};
+        double beside[SIDES] = {0};
+        for (int k = 0; k < c->side_count; k++) c->sides[k].results[i] = (struct irradiance){0};
         if (!is_point(&c->job->points[i])) continue;
         look_up(&l, c, i);
-        gather_direct(&c->results[i], c, i, rgb_luminance(l.sum) / l.weight);
-        add_indirect(&c->results[i], &l);
+        for (int k = 0; k < c->side_count; k++) beside[k] = rgb_luminance(l.side[k].sum) / l.weight;
+        gather_direct(e, c, i, beside);
+        for (int k = 0; k < c->side_count; k++) {
+            add_indirect(&e[k], &l.side[k], l.weight);
+            c->sides[k].results[i] = e[k];
+        }
     }
     if (c->job->done) c->job->done(c->job->done_ctx, end - begin);
 }
@@ -231,8 +339,8 @@ static void count(struct irradiance_cache_stats *stats, const struct cache *c)
 {
     const size_t points = (size_t)c->job->width * (size_t)c->job->height;
     *stats = (struct irradiance_cache_stats){.records = c->record_count};
-    for (size_t i = 0; i < c->record_count; i++) stats->record_rays += c->records[i].rays;
-    for (size_t i = 0; i < points; i++) stats->direct_rays += c->results[i].rays;
+    for (size_t i = 0; i < c->record_count; i++) stats->record_rays += c->records[i].side[0].rays;
+    for (size_t i = 0; i < points; i++) stats->direct_rays += c->sides[0].results[i].rays;
 }
 
 bool irradiance_cache_suits(const struct light_field *f) { return f->emitter_count < MIXTURE_MOST; }
@@ -240,7 +348,8 @@ bool irradiance_cache_suits(const struct light_field *f) { return f->emitter_cou
 enum status irradiance_cache_fill(struct irradiance *results, const struct irradiance_cache_job *j,
                                   struct irradiance_cache_stats *stats, struct err *err)
 {
-    struct cache c = {.job = j, .results = results};
+    struct cache c = {.job = j, .sides = {{j->field, j->points, results}}, .side_count = j->other.field ? SIDES : 1};
+    c.sides[1] = (struct side){j->other.field, j->other.points, j->other.results};
     enum status st = start(&c, err);
     for (c.step = COARSEST; !st && c.step >= 1; c.step /= 2) st = add_level(&c, err);
     if (!st) parallel_for((size_t)j->width * (size_t)j->height, CHUNK, evaluate, &c);

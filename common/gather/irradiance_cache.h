@@ -7,11 +7,20 @@
 #include "common/base/err.h"
 #include "common/gather/irradiance.h"
 
+/* The same grid in a second field, for the change of light from one to the other. Both fields have equal emitters: then the
+ * same rays are sent in both, and points whose surroundings are equal get equal bits. */
+struct irradiance_cache_other {
+    const struct light_field *field;   /* NULL: one field only */
+    const struct gather_point *points; /* a normal of 0 0 0 where those of the first field have none, and only there */
+    struct irradiance *results;        /* set like the first field's */
+};
+
 struct irradiance_cache_job {
     const struct light_field *field;
     const struct gather_point *points; /* width * height; a normal of 0 0 0: none */
+    struct irradiance_cache_other other;
     int width, height;
-    double target; /* relative error */
+    double target; /* relative error; with a second field, also of the quotient of both */
     int rays;      /* most, of direct light at a point */
     uint64_t key;
     void (*done)(void *ctx, size_t points); /* NULL, or told how many more points are done; by several threads */

@@ -26,6 +26,8 @@ struct light_look {
     struct rgb radiance; /* towards the point that asks; never negative, never NaN */
     double distance;     /* of what is seen, in scene units; INFINITY outdoors */
     enum light_source source;
+    int face; /* of a textured model: index of the face that is seen, or the number of faces + 2 k for the front of further
+                 surface k, + 2 k + 1 for its back; -1: none, or the field does not say */
 };
 
 enum emitter_kind {

@@ -29,6 +29,20 @@ void light_list_release(struct light_list *l)
     *l = (struct light_list){0};
 }
 
+void lamp_file_name(char to[LAMP_FILE_NAME], const struct light_list *l, int lamp)
+{
+    static const char kept[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_";
+    size_t n = 0;
+    for (const char *c = l->lamps[lamp].name; *c; c++) {
+        if (n + 4 > LAMP_FILE_NAME) {
+            snprintf(to, LAMP_FILE_NAME, "lamp%d", lamp + 1);
+            return;
+        }
+        n += (size_t)snprintf(to + n, LAMP_FILE_NAME - n, strchr(kept, *c) ? "%c" : "%%%02X", (unsigned char)*c);
+    }
+    to[n] = '\0';
+}
+
 /* ----------------------------------------------------------------------------------------------------------- reading */
 
 static enum status read_vector(struct textfile *t, const char *what, struct vec3 *v, struct err *err)

@@ -11,6 +11,10 @@
 #include "common/light/colour.h"
 #include "common/math/vec.h"
 
+/* Of the model's size, 5 cm of 10 m: a lamp that is at most this far behind a surface is still in front of it. A lamp is a
+ * place of a ceiling or hangs under it, and photographs and the model agree on that to some centimetres only. */
+#define LAMP_REACH 0.005
+
 enum lamp_shape { LAMP_DISK, LAMP_QUAD };
 
 /* A lamp has radiance S cos(t)^exponent towards an angle t <= beta from its normal, and 0 beyond. */
@@ -47,6 +51,11 @@ enum status light_list_read(struct light_list *l, const char *path, struct err *
 enum status light_list_write(const struct light_list *l, const char *path, const struct provenance *prov,
                              struct err *err);
 void light_list_release(struct light_list *l);
+
+/* The name of a lamp as that of a file, without an extension: bytes other than letters, digits, - and _ become %XX; a name
+ * that is too long for a file becomes lampN, N its number in the list from 1. */
+enum { LAMP_FILE_NAME = 208 };
+void lamp_file_name(char to[LAMP_FILE_NAME], const struct light_list *l, int lamp);
 
 /* Radiance of a lamp towards a unit direction that points away from it. */
 struct rgb lamp_radiance(const struct lamp *l, struct vec3 direction);

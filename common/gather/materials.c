@@ -139,12 +139,6 @@ enum status material_read_kind(enum brdf_kind *kind, struct textfile *t, struct 
     return textfile_error(t, err, word, "lambert, phong or ward");
 }
 
-static void shape_bounds(enum brdf_kind kind, double *least, double *most)
-{
-    *least = kind == BRDF_PHONG ? 1 : kind == BRDF_WARD ? 0.02 : 0;
-    *most = kind == BRDF_PHONG ? MATERIAL_PHONG_MOST : kind == BRDF_WARD ? 1 : 0;
-}
-
 static enum status read_material(struct material_list *l, struct textfile *t, struct err *err)
 {
     char name[MOST_WORD + 1];
@@ -155,7 +149,7 @@ static enum status read_material(struct material_list *l, struct textfile *t, st
         return err->status;
     for (int c = 0; c < 3; c++)
         if (read_bounded(t, "k_d", 0, 1e9, &m->k_d[c], err)) return err->status;
-    shape_bounds(m->kind, &least, &most);
+    gloss_shape_bounds(m->kind, &least, &most);
     if (read_bounded(t, "k_s", 0, m->kind == BRDF_LAMBERT ? 0 : 1e9, &m->ks, err) ||
         read_bounded(t, m->kind == BRDF_WARD ? "alpha" : "n", least, most, &m->shape, err))
         return err->status;

@@ -82,6 +82,7 @@ static void start(struct mixture *m, const struct light_field *f, struct gather_
     m->lobe = (struct brdf){.kind = BRDF_LAMBERT};
     m->view = p.normal;
     m->count = 0;
+    m->least = MIXTURE_LEAST;
 }
 
 void mixture_init(struct mixture *m, const struct light_field *f, struct gather_point p, enum mixture_part part)
@@ -234,11 +235,12 @@ void mixture_gather(struct irradiance *e, struct mixture *m, int rays, uint64_t 
     memset(&t, 0, sizeof t);
     t.mixture = m;
     t.nearest = INFINITY;
-    count_rays(&t, m, rays < MIXTURE_LEAST ? MIXTURE_LEAST : rays);
+    count_rays(&t, m, rays < m->least ? m->least : rays);
     for (int i = 0; i < m->count; i++)
         for (int r = 0; r < MIXTURE_REPLICATES; r++) add_set(&t, i, r, &rng);
     trace(&t);
     finish(e, &t);
+    memcpy(m->replicates, t.sums, sizeof m->replicates);
     if (!learn || !(rgb_luminance(e->error) > 0)) return;
     for (int i = 0; i < m->count; i++) m->share[i] = sqrt(variance(t.luminance[i]) * t.rays[i]);
     scale_shares(m);

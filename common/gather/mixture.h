@@ -25,6 +25,8 @@ struct mixture {
     struct strategy strategies[MIXTURE_MOST];
     double share[MIXTURE_MOST]; /* of the rays; they sum to 1 */
     int count;
+    struct rgb replicates[MIXTURE_REPLICATES]; /* the last gather's independent values, whose mean is its result */
+    int least;                                 /* rays of mixture_gather(), MIXTURE_LEAST unless the caller sets less */
 };
 
 void mixture_init(struct mixture *m, const struct light_field *f, struct gather_point p, enum mixture_part part);
@@ -32,7 +34,7 @@ void mixture_init(struct mixture *m, const struct light_field *f, struct gather_
 void mixture_lobe_init(struct mixture *m, const struct light_field *f, struct gather_point p, const struct brdf *brdf,
                        struct vec3 view);
 
-/* Traces at most `rays` rays, or MIXTURE_LEAST. With `learn`, the shares of a next call go by the noise of each strategy.
+/* Traces at most `rays` rays, or m->least, and at least MIXTURE_REPLICATES of each strategy. With `learn`, the shares of a next call go by the noise of each strategy.
  * Sets everything of *e. The same key gives the same bits. */
 void mixture_gather(struct irradiance *e, struct mixture *m, int rays, uint64_t key, bool learn);
 /* The same until the standard error of the luminance is at most `target` of it, or `most` rays are spent. The luminance

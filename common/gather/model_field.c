@@ -2,7 +2,8 @@
  *
  * Overview. A ray is traced against the model without its panes. What it sees is the first of:
  *   - a declared lamp on its way, seen from the side that shines: S cos(t)^exponent, and 0 beyond the cone's angle;
- *   - the outside of a face: its texel in the VITA, photographed or synthesised; nothing where there is none;
+ *   - the outside of a face: its texel in the VITA, photographed or synthesised; nothing where there is none; of a glossy
+ *     material, what the ray's origin sees of it (field_materials.c);
  *   - the inside of a face, from a point in a solid: nothing;
  *   - the outdoors, by direction, where it leaves the model: the reference images of the opening that it passes
  *     (field_openings.c), or outdoors.exr. Panes are clear: photographs through them have the light that they let through.
@@ -25,15 +26,13 @@
 #include "common/gather/field_openings.h"
 #include "common/math/numbers.h"
 
-static const double REACH = 0.005;     /* of the model's size: 5 cm of 10 m */
 static const double HANGING = 0.1;     /* of the model's size: lamps further from a face leave its texels alone */
 static const double PANE_REACH = 0.01; /* of the model's size: beyond that, a pane's surroundings are looked at */
 
 /* --------------------------------------------------------------------------------------------------------------- look */
 
-/* The lamp on a ray's way to t, nearest first; sets *at. NULL: none. */
-static const struct lamp *lamp_on_way(const struct model_field *f, struct vec3 from, struct vec3 direction, double t,
-                                      double *at)
+const struct lamp *model_field_lamp(const struct model_field *f, struct vec3 from, struct vec3 direction, double t,
+                                    double *at)
 {
     const struct lamp *found = NULL;
     for (int i = 0; i < f->lights.lamp_count; i++) {
@@ -52,19 +51,33 @@ static const struct lamp *lamp_on_way(const struct model_field *f, struct vec3 f
     return found;
 }
 
-static void see_face(struct light_look *seen, const struct model_field *f, const struct ray_hit *hit)
+static void see_face(struct light_look *seen, const struct model_field *f, const struct ray_hit *hit,
+                     struct vec3 direction, bool glossy)
 {
-    seen->distance = hit->t;
-    seen->radiance = rgb_make(0, 0, 0);
-    seen->source = hit->front ? field_atlas_look(&seen->radiance, &f->atlas,
-                                                 solid_face_id(&f->model.mesh, (int)hit->id), hit->point)
-                              : LIGHT_NONE;
+    *seen = (struct light_look){{0, 0, 0}, hit->t, LIGHT_NONE, -1};
+    if (!hit->front) return;
+    const struct field_texel texel =
+        field_atlas_look(&f->atlas, solid_face_id(&f->model.mesh, (int)hit->id), hit->point);
+    seen->radiance = texel.radiance;
+    seen->source = texel.source;
+    seen->face = (int)hit->id;
+    if (texel.mark < 0 || !glossy) return;
+    const struct surface_seen surface = {hit->point, hit->normal, vec3_scale(direction, -1)};
+    if (field_material_reflect(&seen->radiance, f, texel.mark, &surface)) seen->source = LIGHT_MATERIAL;
+}
+
+static void see_surface(struct light_look *seen, const struct model_field *f, const struct ray_hit *hit)
+{
+    const int k = (int)hit->id - f->model.mesh.face_count, back = !hit->front;
+    *seen = (struct light_look){f->surfaces->radiance[k][back], hit->t, LIGHT_MATERIAL,
+                                f->model.mesh.face_count + 2 * k + back};
 }
 
 static void see_outdoors(struct light_look *seen, const struct model_field *f, struct vec3 from, struct vec3 direction)
 {
     float rgb[3];
     seen->distance = INFINITY;
+    seen->face = -1;
     if (f->opening_count && field_reference_look(rgb, f, from, direction)) {
         seen->source = LIGHT_SKY;
     } else {
@@ -74,10 +87,11 @@ static void see_outdoors(struct light_look *seen, const struct model_field *f, s
     seen->radiance = rgb_make((double)rgb[0], (double)rgb[1], (double)rgb[2]);
 }
 
-static void look(const void *ctx, const struct vec3 from[RAY_PACKET], struct vec3 normal,
-                 const struct vec3 direction[RAY_PACKET], unsigned active, struct light_look seen[RAY_PACKET])
+/* glossy: whether materials count */
+static void look_from(const struct model_field *f, const struct vec3 from[RAY_PACKET], struct vec3 normal,
+                      const struct vec3 direction[RAY_PACKET], unsigned active, struct light_look seen[RAY_PACKET],
+                      bool glossy)
 {
-    const struct model_field *f = ctx;
     const struct vec3 off = vec3_scale(normal, f->model.rays.epsilon);
     struct vec3 origin[RAY_PACKET];
     struct ray_hit hits[RAY_PACKET];
@@ -85,20 +99,34 @@ static void look(const void *ctx, const struct vec3 from[RAY_PACKET], struct vec
         if (active >> k & 1) origin[k] = vec3_add(from[k], off);
     const unsigned hit = ray_scene_hit_packet(&f->model.rays, origin, direction, active, hits);
     for (int k = 0; k < RAY_PACKET; k++)
-        if (hit >> k & 1)
+        if (hit >> k & 1 && (int)hits[k].id < f->model.mesh.face_count)
             field_atlas_prefetch(&f->atlas, solid_face_id(&f->model.mesh, (int)hits[k].id), hits[k].point);
     for (int k = 0; k < RAY_PACKET; k++) {
         double at;
         if (!(active >> k & 1)) continue;
         const double t = hit >> k & 1 ? hits[k].t : INFINITY;
-        const struct lamp *lamp = lamp_on_way(f, origin[k], direction[k], t, &at);
+        const struct lamp *lamp = model_field_lamp(f, origin[k], direction[k], t, &at);
         if (lamp)
-            seen[k] = (struct light_look){lamp_radiance(lamp, vec3_scale(direction[k], -1)), at, LIGHT_LAMP};
+            seen[k] = (struct light_look){lamp_radiance(lamp, vec3_scale(direction[k], -1)), at, LIGHT_LAMP, -1};
+        else if (hit >> k & 1 && (int)hits[k].id < f->model.mesh.face_count)
+            see_face(&seen[k], f, &hits[k], direction[k], glossy);
         else if (hit >> k & 1)
-            see_face(&seen[k], f, &hits[k]);
+            see_surface(&seen[k], f, &hits[k]);
         else
             see_outdoors(&seen[k], f, origin[k], direction[k]);
     }
+}
+
+static void look(const void *ctx, const struct vec3 from[RAY_PACKET], struct vec3 normal,
+                 const struct vec3 direction[RAY_PACKET], unsigned active, struct light_look seen[RAY_PACKET])
+{
+    look_from(ctx, from, normal, direction, active, seen, true);
+}
+
+static void look_plain(const void *ctx, const struct vec3 from[RAY_PACKET], struct vec3 normal,
+                       const struct vec3 direction[RAY_PACKET], unsigned active, struct light_look seen[RAY_PACKET])
+{
+    look_from(ctx, from, normal, direction, active, seen, false);
 }
 
 bool model_field_lift(const struct model_field *f, struct gather_point *p, double most)
@@ -171,23 +199,13 @@ static int largest_face(const struct solid_mesh *mesh, const struct solid_body *
 }
 
 /* The rectangle around a face, its sides level and upright. */
-static void span_face(const struct solid_mesh *mesh, const struct solid_face *face, struct vec3 *centre, struct vec3 *x,
-                      struct vec3 *y)
+static void span_face(const struct solid_mesh *mesh, int index, struct vec3 *centre, struct vec3 *x, struct vec3 *y)
 {
+    const struct solid_face *face = &mesh->faces[index];
     const struct vec3 up = fabs(face->normal.z) > 0.9 ? vec3_make(0, 1, 0) : vec3_make(0, 0, 1);
     const struct vec3 u = vec3_normalize(vec3_cross(up, face->normal)), v = vec3_cross(face->normal, u);
-    double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
-    const int first = mesh->loops[face->loop].half_edge;
-    int h = first;
-    do {
-        const struct vec3 p = mesh->vertices[mesh->half_edges[h].origin].p;
-        const double at[2] = {vec3_dot(u, p), vec3_dot(v, p)};
-        for (int k = 0; k < 2; k++) {
-            low[k] = fmin(low[k], at[k]);
-            high[k] = fmax(high[k], at[k]);
-        }
-        h = mesh->half_edges[h].next;
-    } while (h != first);
+    double low[2], high[2];
+    solid_face_box(mesh, index, u, v, low, high);
     *centre = vec3_add(vec3_add(vec3_scale(u, (low[0] + high[0]) / 2), vec3_scale(v, (low[1] + high[1]) / 2)),
                        vec3_scale(face->normal, face->offset));
     *x = vec3_scale(u, (high[0] - low[0]) / 2);
@@ -197,10 +215,11 @@ static void span_face(const struct solid_mesh *mesh, const struct solid_face *fa
 /* A pane lets the sky in if a ray from its middle meets the model on one side only: that is indoors. */
 static void add_pane(struct model_field *f, const struct solid_body *body)
 {
-    const struct solid_face *face = &f->model.mesh.faces[largest_face(&f->model.mesh, body)];
+    const int largest = largest_face(&f->model.mesh, body);
+    const struct solid_face *face = &f->model.mesh.faces[largest];
     struct vec3 centre, x, y;
     struct ray_hit hit;
-    span_face(&f->model.mesh, face, &centre, &x, &y);
+    span_face(&f->model.mesh, largest, &centre, &x, &y);
     const struct vec3 off = vec3_scale(face->normal, PANE_REACH * model_rays_size(&f->model));
     const bool front = ray_scene_hit(&f->model.rays, vec3_add(centre, off), face->normal, &hit);
     const bool back = ray_scene_hit(&f->model.rays, vec3_sub(centre, off), vec3_scale(face->normal, -1), &hit);
@@ -220,6 +239,12 @@ static void add_openings(struct model_field *f)
     }
 }
 
+static void set_plain(struct model_field *f)
+{
+    f->plain = f->field;
+    f->plain.look = look_plain;
+}
+
 static void list_emitters(struct model_field *f)
 {
     f->field.emitter_count = 0;
@@ -233,6 +258,19 @@ void model_field_switch_lamp(struct model_field *f, int lamp, bool on)
     for (int i = 0; i < f->lights.lamp_count; i++)
         if (lamp < 0 || i == lamp) f->lamps[i].off = !on;
     list_emitters(f);
+    set_plain(f);
+}
+
+void model_field_scale_lamp(struct model_field *f, const char *name, const double scale[3])
+{
+    for (int i = 0; i < f->lights.lamp_count; i++) {
+        struct lamp *l = &f->lights.lamps[i];
+        if (strcmp(l->name, name) != 0) continue;
+        l->radiance = rgb_multiply(l->radiance, rgb_make(scale[0], scale[1], scale[2]));
+        f->lamps[i].off = !(rgb_max(l->radiance) > 0);
+    }
+    list_emitters(f);
+    set_plain(f);
 }
 
 static enum status find_emitters(struct model_field *f, struct err *err)
@@ -275,7 +313,9 @@ static enum status read_files(struct model_field *f, const struct model_field_fi
                               struct err *err)
 {
     enum status st = provenance_add_file(prov, "model/model.txt", files->model, err);
-    if (!st) st = model_rays_read(&f->model, files->model, MODEL_WITHOUT_GLASS, err);
+    f->surfaces = files->surfaces;
+    const struct model_extra *extra = files->surfaces ? &files->surfaces->triangles : NULL;
+    if (!st) st = model_rays_read_with(&f->model, files->model, MODEL_WITHOUT_GLASS, extra, err);
     if (!st) st = field_atlas_read(&f->atlas, files->vita, f->model.ids, prov, err);
     if (!st && files->outdoors) st = provenance_add_file(prov, "outdoors/outdoors.exr", files->outdoors, err);
     if (!st && files->outdoors) st = outdoors_read(&f->outdoors, files->outdoors, err);
@@ -291,7 +331,7 @@ enum status model_field_read(struct model_field *f, const struct model_field_fil
     *f = (struct model_field){0};
     enum status st = read_files(f, files, prov ? prov : &unused, err);
     provenance_release(&unused);
-    f->reach = REACH * model_rays_size(&f->model);
+    f->reach = LAMP_REACH * model_rays_size(&f->model);
     if (!st) st = find_planes(f, err);
     if (!st) st = cover_lamps(f, err);
     if (!st) st = field_sky_find(&f->sky, &f->outdoors, err);
@@ -299,6 +339,7 @@ enum status model_field_read(struct model_field *f, const struct model_field_fil
     f->field.ctx = f;
     f->field.look = look;
     f->field.emitters = f->emitters;
+    set_plain(f);
     return st;
 }
 
@@ -310,6 +351,7 @@ void model_field_release(struct model_field *f)
     outdoors_release(&f->outdoors);
     light_list_release(&f->lights);
     field_openings_release(f);
+    field_materials_release(f);
     free(f->lamps);
     free(f->emitters);
     free(f->planes);

@@ -5,6 +5,7 @@
 #define REMODEL_GATHER_MODEL_FIELD_H
 
 #include "common/gather/field_atlas.h"
+#include "common/gather/field_materials.h"
 #include "common/gather/field_sky.h"
 #include "common/gather/irradiance.h"
 #include "common/gather/outdoors_picture.h"
@@ -12,10 +13,18 @@
 
 /* Where a model's light is read from. */
 struct model_field_files {
-    const char *model;    /* model.txt */
-    const char *vita;     /* folder of the VITA */
-    const char *outdoors; /* outdoors.exr; NULL: it is dark outside */
-    const char *lights;   /* lights.txt; NULL: no lamps, and the panes of the model are its openings */
+    const char *model;                     /* model.txt */
+    const char *vita;                      /* folder of the VITA */
+    const char *outdoors;                  /* outdoors.exr; NULL: it is dark outside */
+    const char *lights;                    /* lights.txt; NULL: no lamps, and the panes of the model are its openings */
+    const struct field_surfaces *surfaces; /* NULL: none */
+};
+
+/* Further surfaces in the model, synthetic objects: triangles and what each sends out, on its front and on its back. Both
+ * arrays are the caller's, must outlive the field, and may change between gathers. */
+struct field_surfaces {
+    struct model_extra triangles;
+    const struct rgb (*radiance)[2];
 };
 
 /* A lamp, ready for rays: q, from its centre, is a x + b y with a = dual[0].q and b = dual[1].q. */
@@ -36,7 +45,9 @@ struct field_opening {
 /* {0} is the empty state; everything is owned. */
 struct model_field {
     struct light_field field; /* for the estimators; its ctx is this struct, which must not move */
-    struct model_rays model;  /* without panes: rays pass them */
+    struct light_field plain; /* the same as photographed: texels of glossy materials look alike from everywhere */
+    struct model_rays model;  /* without panes: rays pass them; with `surfaces` behind its faces */
+    const struct field_surfaces *surfaces;
     struct field_atlas atlas;
     struct outdoors outdoors;
     struct field_sky sky;
@@ -46,6 +57,7 @@ struct model_field {
     int opening_count;
     struct outdoors_picture *pictures; /* the references, in memory */
     int picture_count;
+    struct field_materials materials;
     struct emitter *emitters;  /* lamps, then openings, then suns */
     struct face_plane *planes; /* of each face id */
     double reach;              /* how far a lamp may be behind the surface that it lies on, model units */
@@ -67,6 +79,14 @@ enum status model_field_read_references(struct model_field *f, const char *folde
 /* Switches a lamp (an index into `lights`; -1: all) off or on. In the place of a lamp that is off there is the ceiling, in
  * the colour of its surroundings: what is left is the light from elsewhere. Not while others gather. */
 void model_field_switch_lamp(struct model_field *f, int lamp, bool on);
+
+/* Multiplies the radiance of the lamp of this name; 0 0 0 switches it off. Unknown names are left alone. */
+void model_field_scale_lamp(struct model_field *f, const char *name, const double scale[3]);
+
+/* The nearest lamp that is on and seen from its bright side, on a ray from `from` in a unit direction up to the distance t
+ * of a surface (INFINITY allowed), or a little behind that; sets *at to its distance. NULL: none. */
+const struct lamp *model_field_lamp(const struct model_field *f, struct vec3 from, struct vec3 direction, double t,
+                                    double *at);
 
 /* Whether a point is behind a surface of the model, that is in a solid, with the surface no further than `most` ahead
  * along its normal. Then it is moved there: photographs and the model agree on a surface to some centimetres only. */

@@ -15,14 +15,44 @@
 
 #include "common/gather/mixture.h"
 
-enum { FIRST = 512 };
+enum { FIRST = 512, FIRST_BESIDE = 128 };
+
+static bool reflects(const struct brdf *b, struct vec3 normal, struct vec3 view)
+{
+    return b->kind != BRDF_LAMBERT && b->gloss > 0 && vec3_dot(normal, view) > 0;
+}
+
+static void integrate(struct irradiance *e, const struct light_field *f, struct gather_point p, const struct brdf *brdf,
+                      struct vec3 view, double target, double beside, int least, int most, uint64_t key)
+{
+    struct mixture m;
+    *e = (struct irradiance){.nearest = INFINITY};
+    if (!reflects(brdf, p.normal, view)) return;
+    mixture_lobe_init(&m, f, p, brdf, view);
+    mixture_gather_to(e, &m, target, beside, least, most, key);
+}
 
 void specular_integral(struct irradiance *e, const struct light_field *f, struct gather_point p,
                        const struct brdf *brdf, struct vec3 view, double target, int most, uint64_t key)
 {
+    integrate(e, f, p, brdf, view, target, 0, FIRST, most, key);
+}
+
+void specular_integral_beside(struct irradiance *e, const struct light_field *f, struct gather_point p,
+                              const struct brdf *brdf, struct vec3 view, double beside, double target, int most,
+                              uint64_t key)
+{
+    integrate(e, f, p, brdf, view, target, beside, FIRST_BESIDE, most, key);
+}
+
+struct rgb specular_estimate(const struct light_field *f, struct gather_point p, const struct brdf *brdf,
+                             struct vec3 view, int rays, uint64_t key)
+{
     struct mixture m;
-    *e = (struct irradiance){.nearest = INFINITY};
-    if (brdf->kind == BRDF_LAMBERT || !(brdf->gloss > 0) || !(vec3_dot(p.normal, view) > 0)) return;
+    struct irradiance e;
+    if (!reflects(brdf, p.normal, view)) return rgb_grey(0);
     mixture_lobe_init(&m, f, p, brdf, view);
-    mixture_gather_to(e, &m, target, 0, FIRST, most, key);
+    m.least = MIXTURE_REPLICATES;
+    mixture_gather(&e, &m, rays, key, false);
+    return e.value;
 }

@@ -13,4 +13,14 @@
 void specular_integral(struct irradiance *e, const struct light_field *f, struct gather_point p,
                        const struct brdf *brdf, struct vec3 view, double target, int most, uint64_t key);
 
+/* The same until the standard error is at most `target` of the luminance with `beside` added: what else the surface shows,
+ * in the unit of the integral. Where that is bright, fewer rays do. */
+void specular_integral_beside(struct irradiance *e, const struct light_field *f, struct gather_point p,
+                              const struct brdf *brdf, struct vec3 view, double beside, double target, int most,
+                              uint64_t key);
+
+/* One rough estimate, for gathers that average many: about `rays` rays, 8 of each strategy or more. No error is learned. */
+struct rgb specular_estimate(const struct light_field *f, struct gather_point p, const struct brdf *brdf,
+                             struct vec3 view, int rays, uint64_t key);
+
 #endif

@@ -14,8 +14,9 @@ MATERIAL_LIGHTS := $(if $(MODEL_SCRIPT),$(patsubst %,$(O)/lights/lights.txt,$(wi
 .PHONY: materials
 materials: $(MATERIALS)
 	$(if $(MATERIALS),,@echo "There is no scenes/$(SCENE)/materials.txt or no model: nothing is marked whose material could be fitted.")
-$(O)/lights/materials.txt $(O)/lights/materials/samples.txt &: $(MARKED_MATERIALS) $(O)/model/model.txt $(AXES) $(CAMERAS) \
+$(O)/lights/materials.txt $(O)/lights/materials/samples.txt &: $(MARKED_MATERIALS) $(O)/model/model.txt $(AXES) $(VIEW_CAMERAS) \
   $(O)/views/lenses.txt $(VIEW_EXR) $(IDS_EXR) $(VITA_TXT) $(OUTDOORS) $(MATERIAL_LIGHTS) $(call needs,fit_materials)
 	$(call stage,fit_materials,all,$(O),--marks $(MARKED_MATERIALS) --model $(O)/model/model.txt --axes $(AXES) \
 	  --views $(O)/views --ids $(O)/ids --vita $(O)/vita --outdoors $(OUTDOORS) $(MATERIAL_LIGHTS:%=--lights %) --out $(O)/lights)
+SHOWN_ALWAYS += $(wildcard $(MATERIALS))
 endif

@@ -99,7 +99,7 @@ static inline struct light_look room_seen(const struct glossy_room *r, struct ve
         const double t = ((u[k] > 0 ? size[k] : 0) - o[k]) / u[k];
         if (t < nearest) nearest = t, wall = k == 2 ? (u[k] > 0 ? 4 : -1) : 2 * k + (u[k] > 0);
     }
-    struct light_look seen = {{0, 0, 0}, nearest, LIGHT_TEXTURE};
+    struct light_look seen = {{0, 0, 0}, nearest, LIGHT_TEXTURE, -1};
     if (wall < 0) return seen;
     const struct vec3 at = vec3_add(from, vec3_scale(d, nearest));
     seen.radiance = r->wall[wall].radiance;

@@ -29,7 +29,7 @@ static void cone_look(const void *ctx, const struct vec3 from[RAY_PACKET], struc
     for (int k = 0; k < RAY_PACKET; k++) {
         if (!(active >> k & 1)) continue;
         const bool in = vec3_dot(direction[k], c->axis) >= c->cosine;
-        seen[k] = (struct light_look){rgb_grey(in ? c->inside : c->outside), INFINITY, in ? LIGHT_LAMP : LIGHT_SKY};
+        seen[k] = (struct light_look){rgb_grey(in ? c->inside : c->outside), INFINITY, in ? LIGHT_LAMP : LIGHT_SKY, -1};
     }
 }
 

@@ -58,11 +58,11 @@ static inline struct rgb patch_radiance(const struct patch *p, struct vec3 d, co
 static inline struct light_look patch_field_look(const struct patch_field *f, struct vec3 from, struct vec3 d)
 {
     const bool in_sun = vec3_dot(d, f->to_sun) >= f->sun_cone;
-    struct light_look seen = {in_sun ? f->sun : f->background, INFINITY, LIGHT_SKY};
+    struct light_look seen = {in_sun ? f->sun : f->background, INFINITY, LIGHT_SKY, -1};
     for (int i = 0; i < f->count; i++) {
         double t, ab[2];
         if (!patch_hit(&f->patches[i], from, d, &t, ab) || t >= seen.distance) continue;
-        seen = (struct light_look){patch_radiance(&f->patches[i], d, ab), t, f->patches[i].source};
+        seen = (struct light_look){patch_radiance(&f->patches[i], d, ab), t, f->patches[i].source, -1};
     }
     return seen;
 }

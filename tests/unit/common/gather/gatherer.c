@@ -13,7 +13,7 @@ static void look(const void *ctx, const struct vec3 from[RAY_PACKET], struct vec
         if (!(active >> k & 1)) continue;
         const struct vec3 d = direction[k];
         const bool disk = vec3_dot(d, vec3_normalize(vec3_make(1, 1, 1))) > cos(10 * DEGREE);
-        seen[k] = (struct light_look){rgb_grey(disk ? 20 : 1 + d.z), INFINITY, LIGHT_SKY};
+        seen[k] = (struct light_look){rgb_grey(disk ? 20 : 1 + d.z), INFINITY, LIGHT_SKY, -1};
     }
 }
 

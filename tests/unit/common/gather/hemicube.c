@@ -82,7 +82,7 @@ static struct light_look uniform_look(const void *ctx, struct vec3 from, struct 
     (void)ctx;
     (void)from;
     (void)direction;
-    return (struct light_look){rgb_make(1, 2, 0.5), 3, LIGHT_TEXTURE};
+    return (struct light_look){rgb_make(1, 2, 0.5), 3, LIGHT_TEXTURE, -1};
 }
 
 static struct light_look disk_look(const void *ctx, struct vec3 from, struct vec3 direction)
@@ -90,8 +90,8 @@ static struct light_look disk_look(const void *ctx, struct vec3 from, struct vec
     const struct scene *s = ctx;
     const double t = vec3_dot(vec3_sub(s->centre, from), s->normal) / vec3_dot(direction, s->normal);
     const struct vec3 q = vec3_sub(vec3_add(from, vec3_scale(direction, t)), s->centre);
-    if (!(t > 0) || vec3_length(q) > s->radius) return (struct light_look){{0, 0, 0}, INFINITY, LIGHT_NONE};
-    return (struct light_look){rgb_grey(1), t, LIGHT_LAMP};
+    if (!(t > 0) || vec3_length(q) > s->radius) return (struct light_look){{0, 0, 0}, INFINITY, LIGHT_NONE, -1};
+    return (struct light_look){rgb_grey(1), t, LIGHT_LAMP, -1};
 }
 
 static double axis_of(struct vec3 v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
@@ -99,12 +99,12 @@ static double axis_of(struct vec3 v, int axis) { return axis == 0 ? v.x : axis =
 static struct light_look box_look(const void *ctx, struct vec3 from, struct vec3 direction)
 {
     const struct scene *s = ctx;
-    struct light_look seen = {{0, 0, 0}, INFINITY, LIGHT_NONE};
+    struct light_look seen = {{0, 0, 0}, INFINITY, LIGHT_NONE, -1};
     for (int side = 0; side < 6; side++) {
         const double d = axis_of(direction, side / 2);
         const double t = (axis_of(side % 2 ? s->high : s->low, side / 2) - axis_of(from, side / 2)) / d;
         if (d == 0 || (d > 0) != side % 2 || t >= seen.distance) continue;
-        seen = (struct light_look){s->sides[side], t, side < 4 ? LIGHT_TEXTURE : LIGHT_SYNTHESISED};
+        seen = (struct light_look){s->sides[side], t, side < 4 ? LIGHT_TEXTURE : LIGHT_SYNTHESISED, -1};
     }
     return seen;
 }

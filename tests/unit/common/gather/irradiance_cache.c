@@ -146,6 +146,97 @@ static void darkness_stays_dark(void **state)
     }
 }
 
+/* Fills both results from two fields with the same points. */
+static void fill_both(struct irradiance *results, struct irradiance *others, const struct gather_point *points,
+                      const struct patch_field *f, const struct patch_field *other)
+{
+    struct err err = ERR_INIT;
+    const struct irradiance_cache_job job = {.field = &f->field,
+                                             .points = points,
+                                             .other = {&other->field, points, others},
+                                             .width = WIDTH,
+                                             .height = HEIGHT,
+                                             .target = 0.05,
+                                             .rays = 1024,
+                                             .key = 9};
+    assert_ok(irradiance_cache_fill(results, &job, NULL, &err), err);
+}
+
+static void two_equal_fields_get_equal_bits(void **state)
+{
+    static struct gather_point points[WIDTH * HEIGHT];
+    static struct irradiance one[WIDTH * HEIGHT], two[WIDTH * HEIGHT];
+    static struct patch_field f, same;
+    (void)state;
+    field_make_room(&f);
+    field_make_room(&same);
+    field_see_room(points, WIDTH, HEIGHT, &f);
+    fill_both(one, two, points, &f, &same);
+    assert_memory_equal(one, two, sizeof one);
+}
+
+/* All that shines is twice as bright: the quotient is exactly 2, whatever the noise. */
+static void twice_the_field_gives_a_quotient_of_two(void **state)
+{
+    static struct gather_point points[WIDTH * HEIGHT];
+    static struct irradiance one[WIDTH * HEIGHT], two[WIDTH * HEIGHT];
+    static struct patch_field f, twice;
+    (void)state;
+    field_make_room(&f);
+    field_make_room(&twice);
+    for (int i = 0; i < twice.count; i++) twice.patches[i].radiance = rgb_scale(twice.patches[i].radiance, 2);
+    field_see_room(points, WIDTH, HEIGHT, &f);
+    fill_both(one, two, points, &f, &twice);
+    for (int i = 0; i < WIDTH * HEIGHT; i++) assert_near(two[i].value.g, 2 * one[i].value.g, 1e-12);
+}
+
+/* A change in one place alone: points that do not see it keep equal bits. */
+static void what_does_not_see_a_change_has_equal_bits(void **state)
+{
+    enum { COLUMNS = 32, ROWS = 32 };
+    static struct gather_point points[COLUMNS * ROWS];
+    static struct irradiance one[COLUMNS * ROWS], two[COLUMNS * ROWS];
+    static struct patch_field f, g;
+    struct err err = ERR_INIT;
+    (void)state;
+    field_make_room(&f);
+    field_make_room(&g);
+    g.patches[5].radiance = rgb_make(3, 2, 1); /* the ceiling */
+    for (int i = 0; i < COLUMNS * ROWS; i++) { /* the ceiling itself does not see it; the floor does */
+        const double x = 0.1 + 3.8 * (i % COLUMNS) / COLUMNS, y = 0.1 + 2.8 * (i / COLUMNS) / ROWS;
+        points[i] = i / COLUMNS < ROWS / 2 ? (struct gather_point){{x, y, 2.5}, {0, 0, -1}}
+                                           : (struct gather_point){{x, y, 0}, {0, 0, 1}};
+    }
+    const struct irradiance_cache_job job = {.field = &f.field,
+                                             .points = points,
+                                             .other = {&g.field, points, two},
+                                             .width = COLUMNS,
+                                             .height = ROWS,
+                                             .target = 0.05,
+                                             .rays = 1024};
+    assert_ok(irradiance_cache_fill(one, &job, NULL, &err), err);
+    assert_memory_equal(one, two, COLUMNS * ROWS / 2 * sizeof *one);
+    for (int i = COLUMNS * ROWS / 2; i < COLUMNS * ROWS; i++) assert_true(two[i].value.r > one[i].value.r);
+}
+
+static void two_fields_have_the_same_bits_for_any_number_of_threads(void **state)
+{
+    static struct gather_point points[WIDTH * HEIGHT];
+    static struct irradiance one[2][WIDTH * HEIGHT], two[2][WIDTH * HEIGHT];
+    static struct patch_field f, g;
+    (void)state;
+    field_make_room(&f);
+    field_make_room(&g);
+    g.patches[3].radiance = rgb_make(0.1, 0.9, 0.1);
+    field_see_room(points, WIDTH, HEIGHT, &f);
+    parallel_set_threads(1);
+    fill_both(one[0], one[1], points, &f, &g);
+    parallel_set_threads(2);
+    fill_both(two[0], two[1], points, &f, &g);
+    parallel_set_threads(0);
+    assert_memory_equal(one, two, sizeof one);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -154,6 +245,10 @@ int main(void)
         cmocka_unit_test(threads_do_not_change_a_bit),
         cmocka_unit_test(points_without_a_normal_are_left_dark),
         cmocka_unit_test(darkness_stays_dark),
+        cmocka_unit_test(two_equal_fields_get_equal_bits),
+        cmocka_unit_test(twice_the_field_gives_a_quotient_of_two),
+        cmocka_unit_test(what_does_not_see_a_change_has_equal_bits),
+        cmocka_unit_test(two_fields_have_the_same_bits_for_any_number_of_threads),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -351,8 +351,8 @@ static void smooth_looks(const void *ctx, const struct vec3 from[RAY_PACKET], st
     (void)normal;
     for (int k = 0; k < RAY_PACKET; k++)
         if (active >> k & 1)
-            seen[k] =
-                (struct light_look){rgb_grey(2 + direction[k].x + direction[k].x * direction[k].y), 1, LIGHT_TEXTURE};
+            seen[k] = (struct light_look){rgb_grey(2 + direction[k].x + direction[k].x * direction[k].y), 1,
+                                          LIGHT_TEXTURE, -1};
 }
 
 static void errors_on_smooth_light_fall_faster_than_by_three_quarters(void **state)

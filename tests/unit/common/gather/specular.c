@@ -133,6 +133,24 @@ static void no_lobe_no_gloss_and_a_viewer_below_give_nothing(void **state)
     assert_near(reflected(&f, &shiny, vec3_make(0, 0, 1), 1).value.g, 0, 0);
 }
 
+/* The error that counts is that of all that the surface shows. */
+static void a_lobe_on_a_bright_surface_needs_fewer_rays(void **state)
+{
+    const struct brdf b = gloss(BRDF_PHONG, 0.7, 10);
+    const struct vec3 view = {0, 0, 1};
+    struct patch_field f;
+    struct irradiance dark, bright;
+    (void)state;
+    field_start(&f, rgb_grey(0));
+    field_add(&f, EMITTER_DISK, vec3_make(0.2, -0.3, 2), vec3_make(0.3, 0, 0), vec3_make(0, 0.3, 0),
+              vec3_make(0, 0, -1), rgb_grey(5));
+    specular_integral_beside(&dark, &f.field, floor_point, &b, view, 0, 0.01, 1 << 16, 1);
+    specular_integral_beside(&bright, &f.field, floor_point, &b, view, 100, 0.01, 1 << 16, 1);
+    assert_true(bright.rays <= 128 && dark.rays > 8 * bright.rays);
+    assert_true(rgb_luminance(bright.error) <= 0.01 * (100 + rgb_luminance(bright.value)));
+    assert_true(rgb_luminance(dark.error) <= 0.01 * rgb_luminance(dark.value));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -141,6 +159,7 @@ int main(void)
         cmocka_unit_test(phong_at_grazing_light_does_not_explode),
         cmocka_unit_test(ward_agrees_with_quadrature),
         cmocka_unit_test(stated_errors_are_honest),
+        cmocka_unit_test(a_lobe_on_a_bright_surface_needs_fewer_rays),
         cmocka_unit_test(no_lobe_no_gloss_and_a_viewer_below_give_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
