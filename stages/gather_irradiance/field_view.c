@@ -6,6 +6,8 @@
 
 #include "common/base/file_path.h"
 #include "common/image/exr.h"
+#include "stages/gather_irradiance/light_summary.h"
+#include "stages/gather_irradiance/view_gloss.h"
 
 static struct vec3 pixel_ray(const struct view *v, int x, int y)
 {
@@ -13,15 +15,42 @@ static struct vec3 pixel_ray(const struct view *v, int x, int y)
     return mat3_apply(mat3_transpose(v->cam_from_world), d);
 }
 
-/* The point of the model that each pixel shows; a normal of 0 0 0 where there is none, or the view is in a solid. */
-static void find_points(struct gather_point *points, const struct gather_job *j, const struct view *v)
+/* What the pixels of a view show. Everything is owned. */
+struct view_surface {
+    struct gather_point *points; /* a normal of 0 0 0: nothing, or the view is in a solid */
+    int *faces;                  /* ids; 0: nothing */
+    struct irradiance *irradiance;
+    struct view_gloss gloss;
+};
+
+static enum status surface_init(struct view_surface *s, const struct view *v, struct err *err)
+{
+    const size_t pixels = (size_t)v->width * (size_t)v->height;
+    s->points = calloc(pixels + 1, sizeof *s->points);
+    s->faces = calloc(pixels + 1, sizeof *s->faces);
+    s->irradiance = calloc(pixels + 1, sizeof *s->irradiance);
+    return s->points && s->faces && s->irradiance
+               ? ST_OK
+               : err_nomem(err, "points", pixels * (sizeof *s->points + sizeof *s->irradiance));
+}
+
+static void surface_release(struct view_surface *s)
+{
+    free(s->points);
+    free(s->faces);
+    free(s->irradiance);
+    view_gloss_release(&s->gloss);
+}
+
+static void find_points(struct view_surface *s, const struct gather_job *j, const struct view *v)
 {
     for (int y = 0; y < v->height; y++)
         for (int x = 0; x < v->width; x++) {
-            struct gather_point *p = &points[(size_t)y * (size_t)v->width + (size_t)x];
+            const size_t i = (size_t)y * (size_t)v->width + (size_t)x;
             struct ray_hit hit;
-            if (ray_scene_hit(&j->field.model.rays, v->center, pixel_ray(v, x, y), &hit) && hit.front)
-                *p = (struct gather_point){hit.point, hit.normal};
+            if (!ray_scene_hit(&j->field.model.rays, v->center, pixel_ray(v, x, y), &hit) || !hit.front) continue;
+            s->points[i] = (struct gather_point){hit.point, hit.normal};
+            s->faces[i] = solid_face_id(&j->field.model.mesh, (int)hit.id);
         }
 }
 
@@ -37,47 +66,68 @@ static void set_pixel(float to[PLANES], const struct irradiance *e)
     to[UNKNOWN] = (float)unknown;
 }
 
-static enum status write_picture(const struct gather_job *j, const struct view *v, const struct gather_point *points,
-                                 const struct irradiance *e, struct err *err)
+static enum status add_irradiance(struct exr_image *im, const struct view_surface *s, struct err *err)
 {
     static const char *const names[PLANES] = {"R", "G", "B", "A", "error", "lamps", "unknown"};
+    for (int k = 0; k < PLANES; k++)
+        if (exr_add_plane(im, names[k], k <= ERROR ? EXR_FLOAT : EXR_HALF, NULL, err)) return err->status;
+    for (size_t i = 0; i < (size_t)im->width * (size_t)im->height; i++) {
+        float pixel[PLANES] = {0};
+        if (vec3_length(s->points[i].normal) > 0) set_pixel(pixel, &s->irradiance[i]);
+        for (int k = 0; k < PLANES; k++) im->planes[k].f[i] = pixel[k];
+    }
+    return ST_OK;
+}
+
+static enum status add_gloss(struct exr_image *im, const struct view_gloss *g, struct err *err)
+{
+    static const char *const names[4] = {"specular.R", "specular.G", "specular.B", "material"};
+    for (int k = 0; k < 4; k++)
+        if (exr_add_plane(im, names[k], k < 3 ? EXR_FLOAT : EXR_UINT, NULL, err)) return err->status;
+    const struct exr_plane *planes = im->planes + im->count - 4;
+    for (size_t i = 0; i < (size_t)im->width * (size_t)im->height; i++) {
+        planes[0].f[i] = (float)g->specular[i].r;
+        planes[1].f[i] = (float)g->specular[i].g;
+        planes[2].f[i] = (float)g->specular[i].b;
+        planes[3].u[i] = g->material[i];
+    }
+    return ST_OK;
+}
+
+static enum status write_picture(const struct gather_job *j, const struct view *v, const struct view_surface *s,
+                                 struct err *err)
+{
     char folder[FILE_PATH], path[FILE_PATH];
     struct exr_image im = {0};
     enum status st = file_path(folder, j->out, "irradiance", "", err);
     if (!st) st = file_path(path, folder, v->name, ".exr", err);
     if (!st) st = exr_image_init(&im, v->width, v->height, err);
-    for (int k = 0; !st && k < PLANES; k++)
-        st = exr_add_plane(&im, names[k], k <= ERROR ? EXR_FLOAT : EXR_HALF, NULL, err);
-    for (size_t i = 0; !st && i < (size_t)v->width * (size_t)v->height; i++) {
-        float pixel[PLANES] = {0};
-        if (vec3_length(points[i].normal) > 0) set_pixel(pixel, &e[i]);
-        for (int k = 0; k < PLANES; k++) im.planes[k].f[i] = pixel[k];
-    }
+    if (!st) st = add_irradiance(&im, s, err);
+    if (!st && s->gloss.material) st = add_gloss(&im, &s->gloss, err);
     if (!st) st = exr_write(&im, path, &j->prov, err);
     exr_image_release(&im);
     return st;
 }
 
-enum status gather_view(struct gather_job *j, const char *views, const char *name, struct err *err)
+enum status gather_view(struct gather_job *j, const char *views, const char *name, bool gloss, struct err *err)
 {
     struct camera_set set = {0};
+    struct view_surface s = {0};
     enum status st = camera_set_add_camera_inputs(&j->prov, views, err);
     if (!st) st = camera_set_read_cameras(&set, views, err);
     const int index = st ? -1 : camera_set_find(&set, name);
     if (!st && index < 0)
         st = err_set(err, ST_DATA, "%s has no view %s; see its images.txt for the names.", views, name);
-    const size_t pixels = st ? 0 : (size_t)set.views[index].width * (size_t)set.views[index].height;
-    struct gather_point *points = calloc(pixels + 1, sizeof *points);
-    struct irradiance *found = calloc(pixels + 1, sizeof *found);
-    if (!st && !(points && found)) st = err_nomem(err, "points", pixels * (sizeof *points + sizeof *found));
+    if (!st) st = surface_init(&s, &set.views[index], err);
     if (!st) {
         const struct view view = model_from_world_view(&j->axes, &set.views[index]);
-        find_points(points, j, &view);
-        st = gather_grid(found, points, view.width, view.height, j, name, err);
-        if (!st) st = write_picture(j, &view, points, found, err);
+        find_points(&s, j, &view);
+        st = gather_grid(s.irradiance, s.points, view.width, view.height, j, name, err);
+        if (!st) st = light_summary_of_view(j, &view, s.points, s.irradiance, err);
+        if (!st && gloss) st = view_gloss_gather(&s.gloss, j, &view, s.points, s.faces, s.irradiance, err);
+        if (!st) st = write_picture(j, &view, &s, err);
     }
-    free(points);
-    free(found);
+    surface_release(&s);
     camera_set_release(&set);
     return st;
 }

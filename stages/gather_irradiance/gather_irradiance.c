@@ -5,12 +5,18 @@
  *         OUTDOORS                            what lies outside, by direction
  *         LIGHTS                              its lamps and openings
  *         REFERENCES/ID.exr                   lighting reference images that openings name
+ *         MATERIALS                           fitted materials, which need VIEWS/lenses.txt, too
  *         POINTS                              points and normals, in the frame of VIEWS
  *         VIEWS/cameras.txt, images.txt       the cameras
  * writes  OUT/irradiance-parts.txt, irradiance.txt   of POINTS, in the frame of VIEWS
  *         OUT/irradiance/face-ID.txt          the same of points of a face
- *         OUT/irradiance/VIEW.exr             of each pixel of a view */
+ *         OUT/irradiance/VIEW.exr             of each pixel of a view
+ *         and for people, beside each of these:
+ *         NAME.light.txt, NAME.hemicubeN.jpg  where the light comes from, and what some of the points see
+ *         VIEW.white.jpg, VIEW.level.jpg, VIEW.unknown.jpg   a view's irradiance in colours */
 #include "common/base/cli.h"
+#include "common/base/log.h"
+#include "common/gather/light_record.h"
 #include "stages/gather_irradiance/field_view.h"
 #include "stages/gather_irradiance/point_lists.h"
 
@@ -18,16 +24,19 @@
 static const struct param gather_param_table[] = {GATHER_PARAMS(PARAM_ROW) PARAM_END};
 #undef PARAM_STRUCT
 
+enum { HEMICUBES = 3 };
+
 static enum status check_params(const void *values, struct err *err) { return gather_params_check(values, err); }
 
 struct options {
     struct model_field_files files;
-    const char *axes, *references, *points, *view, *views, *step;
+    const char *axes, *references, *materials, *points, *view, *views, *step;
     int face;
+    bool specular;
 };
 
 /* Exactly one of the three, with what it needs. */
-static enum status check_options(const struct options *o, struct err *err)
+static enum status check_options(const struct gather_job *j, const struct options *o, struct err *err)
 {
     if ((o->points != NULL) + (o->view != NULL) + (o->face > 0) != 1)
         return err_set(err, ST_USAGE, "give one of --points FILE, --view NAME and --face ID.");
@@ -36,26 +45,43 @@ static enum status check_options(const struct options *o, struct err *err)
     if (o->face > 0 && !o->step)
         return err_set(err, ST_USAGE, "--face %d needs --step, the distance of its points in units of the model.",
                        o->face);
+    if (j->hemicubes < 0 || j->hemicubes > LIGHT_EXAMPLES_MOST)
+        return err_set(err, ST_USAGE, "--hemicubes %d: wanted a number from 0 to %d.", j->hemicubes,
+                       LIGHT_EXAMPLES_MOST);
+    if (o->materials && !o->views)
+        return err_set(err, ST_USAGE, "--materials needs --views, the folder of the cameras in which they are marked.");
+    if (o->specular && !(o->view && o->materials))
+        return err_set(err, ST_USAGE, "--specular needs --view and --materials.");
+    return ST_OK;
+}
+
+/* What the field knows besides its own files, all of which need the axes. */
+static enum status complete_field(struct gather_job *j, const struct options *o, struct err *err)
+{
+    if (o->references && model_field_read_references(&j->field, o->references, &j->axes, &j->prov, err))
+        return err->status;
+    if (!o->materials) return ST_OK;
+    if (model_field_read_materials(&j->field, o->materials, o->views, &j->axes, &j->prov, err)) return err->status;
+    for (int i = 0; i < j->field.materials.list.count; i++)
+        log_note("material %s: %zu texels", j->field.materials.list.items[i].name, j->field.materials.texels[i]);
     return ST_OK;
 }
 
 static enum status gather(struct gather_job *j, const struct options *o, struct err *err)
 {
     double step;
-    if (check_options(o, err) || model_field_read(&j->field, &o->files, &j->prov, err) ||
+    if (check_options(j, o, err) || model_field_read(&j->field, &o->files, &j->prov, err) ||
         provenance_add_file(&j->prov, "model/axes.txt", o->axes, err) || model_axes_read(&j->axes, o->axes, err) ||
-        gatherer_make(&j->gatherer, &j->params, err))
-        return err->status;
-    if (o->references && model_field_read_references(&j->field, o->references, &j->axes, &j->prov, err))
+        gatherer_make(&j->gatherer, &j->params, err) || complete_field(j, o, err))
         return err->status;
     if (o->points) return gather_points_of_file(j, o->points, err);
-    if (o->view) return gather_view(j, o->views, o->view, err);
+    if (o->view) return gather_view(j, o->views, o->view, o->specular, err);
     return gather_read_step(&step, o->step, err) || gather_points_of_face(j, o->face, step, err) ? err->status : ST_OK;
 }
 
 int main(int argc, char **argv)
 {
-    struct gather_job job = {.params = GATHER_PARAMS_DEFAULT};
+    struct gather_job job = {.params = GATHER_PARAMS_DEFAULT, .hemicubes = HEMICUBES};
     struct options o = {0};
     const struct cli_opt opts[] = {
         CLI_ABOUT("The light that arrives at points, over a face, or at the surfaces that a view shows."),
@@ -66,11 +92,17 @@ int main(int argc, char **argv)
         CLI_STR("lights", &o.files.lights, CLI_OPTIONAL, "lamps and openings, lights.txt"),
         CLI_STR("references", &o.references, CLI_OPTIONAL,
                 "folder of the lighting reference images that openings name; without it, outdoors.exr alone counts"),
+        CLI_STR("materials", &o.materials, CLI_OPTIONAL,
+                "fitted materials, materials.txt; without it, surfaces look alike from everywhere"),
         CLI_STR("points", &o.points, CLI_OPTIONAL, "points and normals, X Y Z NX NY NZ a line, in the views' frame"),
         CLI_STR("view", &o.view, CLI_OPTIONAL, "view, each pixel of which gets the irradiance of its surface"),
+        CLI_FLAG("specular", &o.specular,
+                 "with --view and --materials: also what glossy materials reflect to the view"),
         CLI_STR("views", &o.views, CLI_OPTIONAL, "folder of cameras"),
         CLI_INT("face", &o.face, CLI_OPTIONAL, "id of a face, over which points are spread"),
         CLI_STR("step", &o.step, CLI_OPTIONAL, "distance of the points of a face, in units of the model"),
+        CLI_INT("hemicubes", &job.hemicubes, CLI_OPTIONAL,
+                "number of points, 0 to 9, for which a picture shows what they see (default 3)"),
         CLI_STR("out", &job.out, CLI_REQUIRED, "folder to write to"),
         CLI_PARAMS(gather_param_table, &job.params, check_params),
         CLI_END,

@@ -69,6 +69,7 @@ static void report(const struct irradiance *results, const struct gather_point *
              "%.1f %% outdoors beyond all pictures, %.1f %% lamps",
              100 * from[LIGHT_TEXTURE] / lit, 100 * from[LIGHT_SYNTHESISED] / lit, 100 * from[LIGHT_SKY] / lit,
              100 * from[LIGHT_SKY_GUESSED] / lit, 100 * from[LIGHT_LAMP] / lit);
+    if (from[LIGHT_MATERIAL] > 0) log_note("mean share of glossy materials: %.1f %%", 100 * from[LIGHT_MATERIAL] / lit);
     if (dark) log_note("%zu points are in the dark", dark);
 }
 

@@ -14,6 +14,7 @@ struct gather_job {
     struct model_field field;
     struct model_axes axes;
     struct gatherer *gatherer;
+    int hemicubes; /* points whose hemicube is drawn */
 };
 
 void gather_job_release(struct gather_job *j);

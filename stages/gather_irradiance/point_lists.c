@@ -9,6 +9,7 @@
 #include "common/base/file_path.h"
 #include "common/base/outfile.h"
 #include "common/light/surface_points.h"
+#include "stages/gather_irradiance/light_summary.h"
 
 enum { MOST_POINTS = 10000000 };
 
@@ -73,6 +74,7 @@ static enum status gather_points(struct gather_job *j, const char *name, const s
         at[i] = (struct gather_point){model_from_world_point(&j->axes, points->list[i].at),
                                       model_from_world_direction(&j->axes, points->list[i].normal)};
     if (!st) st = gather_all(found, at, count, j, "irradiance", err);
+    if (!st) st = light_summary_of_points(j, name, at, found, count, err);
     if (!st) st = write_parts(j, name, found, points->count, err);
     if (!st) st = write_points(j, name, points, found, err);
     free(at);
@@ -107,25 +109,6 @@ struct lattice {
     int width, height;
 };
 
-/* The box around a face's outer loop, in coordinates along u and v. */
-static void face_box(const struct solid_mesh *mesh, const struct solid_face *face, struct vec3 u, struct vec3 v,
-                     double low[2], double high[2])
-{
-    const int first = mesh->loops[face->loop].half_edge;
-    int h = first;
-    low[0] = low[1] = INFINITY;
-    high[0] = high[1] = -INFINITY;
-    do {
-        const struct vec3 p = mesh->vertices[mesh->half_edges[h].origin].p;
-        const double at[2] = {vec3_dot(u, p), vec3_dot(v, p)};
-        for (int k = 0; k < 2; k++) {
-            low[k] = fmin(low[k], at[k]);
-            high[k] = fmax(high[k], at[k]);
-        }
-        h = mesh->half_edges[h].next;
-    } while (h != first);
-}
-
 static enum status make_lattice(struct lattice *l, const struct solid_mesh *mesh, int face, double step,
                                 struct err *err)
 {
@@ -133,7 +116,7 @@ static enum status make_lattice(struct lattice *l, const struct solid_mesh *mesh
     const struct vec3 up = fabs(f->normal.z) > 0.9 ? vec3_make(0, 1, 0) : vec3_make(0, 0, 1);
     const struct vec3 u = vec3_normalize(vec3_cross(up, f->normal)), v = vec3_cross(u, f->normal);
     double low[2], high[2];
-    face_box(mesh, f, u, v, low, high);
+    solid_face_box(mesh, face, u, v, low, high);
     /* points on whole multiples of the step, so that faces of one plane share a lattice */
     const double left = ceil(low[0] / step), top = ceil(low[1] / step);
     const double width = floor(high[0] / step) - left + 1, height = floor(high[1] / step) - top + 1;

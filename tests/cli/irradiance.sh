@@ -1,4 +1,4 @@
-# gather_irradiance: points, a face and a view of a synthetic room; lamps; threads; errors; make irradiance
+# gather_irradiance: points, a face and a view of a synthetic room; lamps; glossy materials; threads; errors; make irradiance
 . tests/lib.sh
 project irradiance
 photos set >/dev/null
@@ -66,11 +66,71 @@ a_lamp_adds_light_and_is_reported()
         two/dark/irradiance.txt two/lit/irradiance.txt || fail "a lamp takes light away"
 }
 
+people_get_pictures_and_a_record()
+{
+    for name in two/points/irradiance two/face/irradiance/face-"$floor"; do
+        grep -q '^shares none ' $name.light.txt || { cat $name.light.txt; fail "no shares"; }
+        for n in 1 2 3; do "$B/bin/verify" --file $name.hemicube$n.jpg || fail "a picture of a hemicube is not whole"; done
+    done
+    for kind in white level unknown; do "$B/bin/verify" --file two/1/irradiance/"$view".$kind.jpg || fail "no picture $kind"; done
+    grep -q '^level ' two/1/irradiance/"$view".light.txt || fail "the range of the colours is not stated"
+    gather 0 points "${inputs[@]}" --points points.txt --hemicubes 0 --out made
+    [ -z "$(find made -name '*.jpg')" ] || fail "pictures that nobody wanted"
+    gather 2 'wanted a number from 0 to 9' "${inputs[@]}" --points points.txt --hemicubes 10 --out made
+}
+
+the_page_shows_the_light()
+{
+    local page=("$B/bin/report" --scene t --folder "$O" --shared "$O" --photos set/photos --stages gather_irradiance)
+    rm -rf $O/relight
+    "${page[@]}" --out dark.html
+    ! grep -q 'id="light"' dark.html || fail "a section about light that is not there"
+    cp -r two/1 $O/relight
+    cp two/points/irradiance* $O/relight
+    "${page[@]}" --out lit.html
+    rm -rf $O/relight
+    grep -q '<h4>View '"$view"'</h4>' lit.html && grep -q '<h4>Chosen points</h4>' lit.html || fail "the page lacks the light"
+    grep -q 'Where this light comes from' lit.html || fail "the page lacks the shares"
+}
+
+# materials MODEL...: one, in the middle of the photo of the view, as fit_materials writes it
+materials() { printf 'remodel-materials 1\nmaterial shiny %s\nregion shiny %s 60 40 100 40 100 80 60 80\n' "$1" "$view" >materials.txt; }
+
+glossy_materials_reflect_and_bytes_do_not_depend_on_threads()
+{
+    local fast=(--set hemicube=4 --set target_error=0.3 --set rays=64)
+    for e in 'phong 0.1 0.1 0.1 0.05 1' 'ward 0.1 0.1 0.1 0.3 0.05' 'phong 0.1 0.1 0.1 500 5000'; do
+        materials "$e"
+        for n in 1 2; do
+            rm -rf two/gloss$n
+            gather 0 'material shiny: ' "${inputs[@]}" --materials materials.txt --views $O/views "${fast[@]}" --view "$view" --specular --out two/gloss$n --threads $n
+            grep -q ' pixels show a glossy material, [1-9]' err.txt || { cat err.txt; fail "nothing is glossy"; }
+            gather 0 'mean share of glossy materials: ' "${inputs[@]}" --materials materials.txt --views $O/views "${fast[@]}" --points points.txt --out two/gloss$n --threads $n
+        done
+        diff -r two/gloss1 two/gloss2
+        ! grep -qE 'nan|inf' two/gloss1/irradiance.txt || fail "$e: a number is none"
+        "$B/bin/verify" --file two/gloss1/irradiance/"$view".exr || fail "$e: the picture is not whole"
+        grep -qa 'specular.R' two/gloss1/irradiance/"$view".exr || fail "$e: no channel specular.R"
+    done
+    grep -q '^# input lights/materials.txt ' two/gloss1/irradiance.txt || fail "the materials are not among the inputs"
+}
+
+materials_without_gloss_change_no_number()
+{
+    gather 0 points "${inputs[@]}" --points points.txt --out two/plain
+    for e in 'lambert 0.1 0.1 0.1 0 0' 'phong 0.1 0.1 0.1 0 20'; do
+        materials "$e"
+        gather 0 'material shiny: ' "${inputs[@]}" --points points.txt --materials materials.txt --views $O/views --out two/dull
+        cmp <(grep -v '^#' two/plain/irradiance.txt) <(grep -v '^#' two/dull/irradiance.txt) || fail "$e changes the light"
+    done
+}
+
 make_gathers_at_points_and_views()
 {
     m irradiance GATHER_POINTS=points.txt GATHER_VIEWS="$view"
     cmp <(grep -v '^#' $O/relight/irradiance.txt) <(grep -v '^#' two/points/irradiance.txt) || fail "make gathers something else"
     [ -s $O/relight/irradiance/"$view".exr ] || fail "no picture"
+    [ -s $O/relight/irradiance/"$view".light.txt ] || fail "no record of the light"
     find $O/relight -type f -printf '%p %T@\n' | LC_ALL=C sort >before
     m irradiance GATHER_POINTS=points.txt GATHER_VIEWS="$view"
     find $O/relight -type f -printf '%p %T@\n' | LC_ALL=C sort | diff before - || fail "a second make made something again"
@@ -78,6 +138,11 @@ make_gathers_at_points_and_views()
     echo 'remodel-lamps 1' >scenes/t/lights.txt
     m irradiance GATHER_POINTS=points.txt
     grep -q '^# input lights' $O/relight/irradiance.txt || fail "marked lamps do not reach the gather"
+    printf '[fit_materials]\npoints = 40\nviews = 4\nmax_clutter = 1\nedge = 0\n' >>scenes/t/scene.cfg
+    printf 'remodel-marked-materials 1\nmaterial paint in %s 20 20 140 20 140 100 20 100\n' "$view" >scenes/t/materials.txt
+    m irradiance GATHER_POINTS=points.txt GATHER_VIEWS="$view"
+    grep -q '^# input lights/materials.txt' $O/relight/irradiance.txt || fail "marked materials do not reach the gather"
+    grep -qa 'specular.R' $O/relight/irradiance/"$view".exr || fail "the view has no specular channels"
 }
 
 what_is_wrong_is_named()
@@ -89,6 +154,10 @@ what_is_wrong_is_named()
     gather 1 'give a larger step' "${inputs[@]}" --face "$floor" --step 1e-9 --out made
     gather 1 'has no view nowhere' "${inputs[@]}" --view nowhere --views $O/views --out made
     gather 2 'needs --views' "${inputs[@]}" --view "$view" --out made
+    gather 2 '--materials needs --views' "${inputs[@]}" --points points.txt --materials materials.txt --out made
+    gather 2 '--specular needs --view and --materials' "${inputs[@]}" --view "$view" --views $O/views --specular --out made
+    printf 'remodel-materials 1\nmaterial a phong 1 1 1 1 9\nregion a nowhere 1 1 9 1 9 9\n' >elsewhere.txt
+    gather 1 'elsewhere.txt:3: found "nowhere"' "${inputs[@]}" --points points.txt --materials elsewhere.txt --views $O/views --out made
     gather 2 'is odd' "${inputs[@]}" --set hemicube=31 --points points.txt --out made
     gather 1 'no-such' "${inputs[@]}" --points no-such.txt --out made
     gather 1 'no-such' "${inputs[@]}" --points points.txt --lights no-such.txt --out made
@@ -103,4 +172,4 @@ what_is_wrong_is_named()
     grep -qF 'GATHER_POINTS=no-such is no file' log || { cat log; fail "nothing names GATHER_POINTS"; }
 }
 
-for t in a_face_gets_points_at_a_step points_of_a_file_have_what_the_face_had bytes_do_not_depend_on_threads a_lamp_adds_light_and_is_reported make_gathers_at_points_and_views what_is_wrong_is_named; do run "$t"; done
+for t in a_face_gets_points_at_a_step points_of_a_file_have_what_the_face_had bytes_do_not_depend_on_threads a_lamp_adds_light_and_is_reported people_get_pictures_and_a_record the_page_shows_the_light glossy_materials_reflect_and_bytes_do_not_depend_on_threads materials_without_gloss_change_no_number make_gathers_at_points_and_views what_is_wrong_is_named; do run "$t"; done
