@@ -22,15 +22,16 @@ static struct vec3 part_of(const struct lamp *l, int part)
     return vec3_add(l->centre, vec3_add(vec3_scale(l->x, x), vec3_scale(l->y, y)));
 }
 
-static uint64_t seen_from(const struct lamp *l, const struct lit_point *p, const struct ray_scene *rays)
+/* Surfaces up to `reach` before the lamp's plane do not hide it, as in model_field.c. */
+static uint64_t seen_from(const struct lamp *l, const struct lit_point *p, const struct ray_scene *rays, double reach)
 {
     const struct vec3 from = vec3_add(p->at, vec3_scale(p->normal, 4 * rays->epsilon));
+    const double below = vec3_dot(vec3_sub(from, l->centre), l->normal);
+    const double end = fmax(1 - reach / below, 0);
     uint64_t seen = 0;
-    for (int i = 0; i < PARTS; i++) {
-        /* the lamp may lie on the ceiling: its own place must not hide it */
-        const struct vec3 to = vec3_add(part_of(l, i), vec3_scale(l->normal, 16 * rays->epsilon));
-        if (!ray_scene_blocked(rays, from, vec3_sub(to, from), 1)) seen |= UINT64_C(1) << i;
-    }
+    if (!(below > 0)) return 0; /* it shines to the other side */
+    for (int i = 0; i < PARTS; i++)
+        if (!ray_scene_blocked(rays, from, vec3_sub(part_of(l, i), from), end)) seen |= UINT64_C(1) << i;
     return seen;
 }
 
@@ -39,10 +40,11 @@ enum status direct_light_make(struct direct_light *d, const struct lit_scene *sc
 {
     const size_t points = (size_t)scene->point_count, lamps = (size_t)scene->lights.lamp_count;
     *d = (struct direct_light){scene, calloc(points * lamps + 1, sizeof *d->seen)};
+    const double reach = LAMP_REACH * model_rays_size(&model->rays);
     if (!d->seen) return err_nomem(err, "lamps seen from points", points * lamps * sizeof *d->seen);
     for (size_t l = 0; l < lamps; l++)
         for (size_t i = 0; i < points; i++)
-            d->seen[l * points + i] = seen_from(&scene->lights.lamps[l], &scene->points[i], &model->rays.rays);
+            d->seen[l * points + i] = seen_from(&scene->lights.lamps[l], &scene->points[i], &model->rays.rays, reach);
     return ST_OK;
 }
 

@@ -5,12 +5,14 @@
  * One lit and one unlit point determine them (5.5); more points make an overdetermined system.
  *
  * Mathematics. Reflectance varies from point to point by factors, and so does the error of E. So the residuals are those
- * of logarithms, r = (log L - log k_d - log(E + sum S_j D_j)) / sigma, with sigma^2 the variance of the noise plus that of
- * the material. Then log k_d is the weighted mean of a material's points and drops out [Golub 1973]. Left are log S_j per
- * colour, which keeps S positive, and the square root of an exponent. Levenberg-Marquardt (Ceres) solves for these;
- * weights of the Cauchy function, renewed in rounds, bound the influence of outliers (a lit point on a poster).
+ * of logarithms, r = log L - log k_d - log(E + sum S_j D_j). Their covariance (fit_texture.c) is that of the material's
+ * variation, and of noise. Then log k_d is a weighted mean of a material's points and drops out [Golub 1973]. Left are
+ * log S_j per colour, which keeps S positive, and the square root of an exponent. Levenberg-Marquardt (Ceres) solves for
+ * these; the covariance is renewed in rounds. A lamp whose picture is not saturated adds log S - log of
+ * the radiance that it shows.
  *
- * What differs from the source: points, colours and lamps are fitted together, by logarithms and robustly. */
+ * What differs from the source: points, colours and lamps are fitted together, by logarithms and robustly; neighbours
+ * vary together; what views show of a lamp counts, too. */
 #include "stages/fit_lights/fit_problem.h"
 
 #include <math.h>
@@ -18,12 +20,13 @@
 #include <string.h>
 
 #include "common/math/ceres_least_squares.h"
+#include "common/math/cholesky.h"
 #include "common/math/numbers.h"
 #include "common/math/weighted.h"
+#include "stages/fit_lights/fit_texture.h"
 
-enum { ROUNDS = 8, ITERATIONS = 100 };
-#define CAUCHY      2.385 /* residuals beyond it count less; 95 % efficiency for normal errors */
-#define LEAST_SHARE 1e-3  /* difference in the lamp's share of the light by which lit points must differ from others */
+enum { ROUNDS = 8, ESTIMATES = 4 /* rounds that estimate how materials vary */, ITERATIONS = 100 };
+#define LEAST_SHARE 1e-3 /* difference in the lamp's share of the light by which lit points must differ from others */
 
 /* ------------------------------------------------------------------------------------------------------ the model */
 
@@ -63,39 +66,47 @@ static double irradiance(const struct problem *p, int point, int colour)
     return e;
 }
 
-double fit_variance(const struct light_fit *f, int point)
-{
-    return f->points[point].sigma * f->points[point].sigma + f->texture * f->texture + 1e-8;
-}
-
-/* Sets the residuals, not yet robust, and log k_d of the materials. */
 void fit_set_residuals(struct problem *p)
 {
     struct light_fit *f = p->f;
-    for (int m = 0; m < f->material_count; m++)
-        for (int c = 0; c < 3; c++) {
+    const int n = f->point_count;
+    for (int i = 0; i < n; i++)
+        for (int c = 0; c < 3; c++) p->logs[3 * i + c] = log(f->points[i].radiance[c] / irradiance(p, i, c));
+    for (int c = 0; c < 3; c++) {
+        double *whitened = p->whitened + (ptrdiff_t)c * n;
+        for (int i = 0; i < n; i++) whitened[i] = p->logs[3 * i + c];
+        cholesky_forward(p->factor, n, whitened);
+        for (int m = 0; m < f->material_count; m++) {
+            const double *ones = p->ones + (ptrdiff_t)m * n;
             double sum = 0, weights = 0;
-            for (int i = 0; i < f->point_count; i++) {
-                if (f->points[i].material != m) continue;
-                const double w = p->weight[3 * i + c] / fit_variance(f, i);
-                sum += w * log(f->points[i].radiance[c] / irradiance(p, i, c));
-                weights += w;
+            for (int i = 0; i < n; i++) {
+                sum += ones[i] * whitened[i];
+                weights += ones[i] * ones[i];
             }
-            f->materials[m].k_d[c] = weights > 0 ? exp(sum / weights) : 0;
+            const double mean = weights > 0 ? sum / weights : 0;
+            for (int i = 0; i < n; i++) whitened[i] -= mean * ones[i];
+            f->materials[m].k_d[c] = weights > 0 ? exp(mean) : 0;
         }
-    for (int i = 0; i < f->point_count; i++)
-        for (int c = 0; c < 3; c++) {
-            const double predicted = f->materials[f->points[i].material].k_d[c] * irradiance(p, i, c);
-            p->residual[3 * i + c] = log(f->points[i].radiance[c] / predicted) / sqrt(fit_variance(f, i));
-        }
+    }
 }
+
+int fit_residual_count(const struct problem *p) { return 3 * (p->f->point_count + p->f->lamp_count); }
 
 void fit_evaluate(void *ctx, const double *x, double *residuals)
 {
     struct problem *p = ctx;
+    const size_t points = 3 * (size_t)p->f->point_count;
     fit_set_unknowns(p, x);
     fit_set_residuals(p);
-    for (int i = 0; i < 3 * p->f->point_count; i++) residuals[i] = sqrt(p->weight[i]) * p->residual[i];
+    memcpy(residuals, p->whitened, points * sizeof *residuals);
+    for (int l = 0; l < p->f->lamp_count; l++) {
+        const struct fit_lamp *lamp = &p->f->lamps[l];
+        for (int c = 0; c < 3; c++) {
+            const bool counts = lamp->fit && lamp->seen_error[c] > 0 && lamp->seen[c] > 0;
+            residuals[points + 3 * (size_t)l + (size_t)c] =
+                counts ? log(lamp->radiance[c] / lamp->seen[c]) / lamp->seen_error[c] : 0;
+        }
+    }
 }
 
 /* ----------------------------------------------------------------------------------------- what cannot be solved */
@@ -104,7 +115,7 @@ static enum status check_points(const struct light_fit *f, struct err *err)
 {
     for (int i = 0; i < f->point_count; i++) {
         const struct fit_point *p = &f->points[i];
-        if (!p->lit && !(fmin(p->indirect[0], fmin(p->indirect[1], p->indirect[2])) > 0))
+        if (p->kind == POINT_UNLIT && !(fmin(p->indirect[0], fmin(p->indirect[1], p->indirect[2])) > 0))
             return err_set(
                 err, ST_DATA,
                 "%s: no indirect light reaches this unlit point, so nothing can be learned from its radiance; "
@@ -118,7 +129,8 @@ static enum status check_points(const struct light_fit *f, struct err *err)
 static bool concerns(const struct light_fit *f, int point, int lamp, bool lit)
 {
     const struct fit_point *p = &f->points[point];
-    return p->lit == lit && (lit ? p->lamp == lamp : p->material == f->lamps[lamp].material);
+    return p->kind == (lit ? POINT_LIT : POINT_UNLIT) &&
+           (lit ? p->lamp == lamp : p->material == f->lamps[lamp].material);
 }
 
 static const char *place_of(const struct light_fit *f, int lamp, bool lit)
@@ -226,36 +238,41 @@ static enum status start_lamps(struct problem *p, struct weighted *scratch, stru
 
 /* ------------------------------------------------------------------------------------------------------ the solution */
 
-static void renew_weights(struct problem *p)
-{
-    fit_set_residuals(p);
-    for (int i = 0; i < 3 * p->f->point_count; i++) {
-        const double r = p->residual[i] / CAUCHY;
-        p->weight[i] = 1 / (1 + r * r);
-    }
-}
-
 static enum status solve(struct problem *p, struct err *err)
 {
-    const struct least_squares problem = {p->unknown_count, 3 * p->f->point_count, fit_evaluate, p, ITERATIONS};
+    const struct least_squares problem = {p->unknown_count, fit_residual_count(p), fit_evaluate, p, ITERATIONS};
     double x[MOST_UNKNOWNS];
     fit_get_unknowns(p, x);
+    for (int m = 0; m < p->f->material_count; m++) {
+        p->f->materials[m].deviation = p->f->texture;
+        p->f->materials[m].length = 0;
+        p->f->materials[m].grain = 1;
+    }
     for (int round = 0; round < ROUNDS; round++) {
+        if (fit_texture_set_covariance(p, err)) return err->status;
         if (p->unknown_count && ceres_least_squares(&problem, x, err)) return err->status;
         fit_set_unknowns(p, x);
-        renew_weights(p);
+        fit_texture_set_excess(p);
+        if (round < ESTIMATES) fit_texture_estimate(p);
     }
+    if (fit_texture_set_covariance(p, err)) return err->status;
+    fit_set_residuals(p);
     return ST_OK;
 }
 
 /* The standard deviation of a material's points, robust, as a fraction of its reflectance. */
-static double spread_of(struct problem *p, int material, struct weighted *scratch)
+static double spread_of(const struct problem *p, int material, struct weighted *scratch)
 {
     const struct light_fit *f = p->f;
     size_t n = 0;
-    for (int i = 0; i < f->point_count; i++)
-        for (int c = 0; f->points[i].material == material && c < 3; c++)
-            scratch[n++] = (struct weighted){fabs(p->residual[3 * i + c]) * sqrt(fit_variance(f, i)), 1};
+    for (int c = 0; c < 3; c++) {
+        size_t of_colour = 0;
+        for (int i = 0; i < f->point_count; i++)
+            if (f->points[i].material == material) scratch[n + of_colour++] = (struct weighted){p->logs[3 * i + c], 1};
+        const double median = weighted_percentile(scratch + n, of_colour, 0.5);
+        for (size_t i = n; i < n + of_colour; i++) scratch[i].value = fabs(scratch[i].value - median);
+        n += of_colour;
+    }
     return weighted_percentile(scratch, n, 0.75) / 1.1503;
 }
 
@@ -297,7 +314,6 @@ static enum status fit_all(struct problem *p, struct weighted *scratch, double *
 {
     struct light_fit *f = p->f;
     for (int l = 0; l < f->lamp_count; l++) set_direct(p, l);
-    for (int i = 0; i < 3 * f->point_count; i++) p->weight[i] = 1;
     enum status st = check_points(f, err);
     for (int l = 0; !st && l < f->lamp_count; l++)
         if (f->lamps[l].fit) st = check_lamp(p, l, err);
@@ -309,29 +325,55 @@ static enum status fit_all(struct problem *p, struct weighted *scratch, double *
     return ST_OK;
 }
 
+static void release(struct problem *p)
+{
+    free(p->direct);
+    free(p->logs);
+    free(p->excess);
+    free(p->factor);
+    free(p->ones);
+    free(p->whitened);
+    free(p->vector);
+    free(p->next_excess);
+}
+
+static enum status reserve(struct problem *p, struct err *err)
+{
+    const size_t n = (size_t)p->f->point_count, square = n * n;
+    if (n > MOST_FIT_POINTS)
+        return err_set(err, ST_DATA,
+                       "%s: %zu points are marked for lamps, at most %d can be fitted; lower [fit_lights] grid.",
+                       p->f->points[0].place, n, MOST_FIT_POINTS);
+    p->direct = calloc(n * (size_t)p->f->lamp_count + 1, sizeof *p->direct);
+    p->logs = calloc(3 * n, sizeof *p->logs);
+    p->excess = calloc(n, sizeof *p->excess);
+    p->factor = calloc(square, sizeof *p->factor);
+    p->ones = calloc(n * (size_t)p->f->material_count, sizeof *p->ones);
+    p->whitened = calloc(3 * n, sizeof *p->whitened);
+    p->vector = calloc(n, sizeof *p->vector);
+    p->next_excess = calloc(n, sizeof *p->next_excess);
+    if (p->direct && p->logs && p->excess && p->factor && p->ones && p->whitened && p->vector && p->next_excess)
+        return ST_OK;
+    return err_nomem(err, "points of lamps", square * sizeof *p->factor);
+}
+
 enum status light_fit_solve(struct light_fit *f, struct err *err)
 {
     struct problem p = {.f = f};
-    const size_t points = (size_t)f->point_count, lamps = (size_t)f->lamp_count;
     for (int m = 0; m < f->material_count; m++) f->materials[m].lit = f->materials[m].unlit = 0;
     for (int i = 0; i < f->point_count; i++) {
         struct fit_material *m = &f->materials[f->points[i].material];
-        *(f->points[i].lit ? &m->lit : &m->unlit) += 1;
+        m->lit += f->points[i].kind == POINT_LIT;
+        m->unlit += f->points[i].kind == POINT_UNLIT;
     }
     enum status st = list_unknowns(&p, err);
     if (st || !f->point_count) return st;
-    p.direct = calloc(points * lamps + 1, sizeof *p.direct);
-    p.weight = calloc(3 * points + 1, sizeof *p.weight);
-    p.residual = calloc(3 * points + 1, sizeof *p.residual);
-    struct weighted *scratch = calloc(3 * points + 1, sizeof *scratch);
-    double *jacobian = calloc((3 * points + 1) * (size_t)(p.unknown_count + 1), sizeof *jacobian);
-    if (p.direct && p.weight && p.residual && scratch && jacobian)
-        st = fit_all(&p, scratch, jacobian, err);
-    else
-        st = err_nomem(err, "points of lamps", points * lamps * sizeof *p.direct);
-    free(p.direct);
-    free(p.weight);
-    free(p.residual);
+    st = reserve(&p, err);
+    struct weighted *scratch = calloc(3 * (size_t)f->point_count, sizeof *scratch);
+    double *jacobian = calloc((size_t)fit_residual_count(&p) * (size_t)(p.unknown_count + 1), sizeof *jacobian);
+    if (!st && !(scratch && jacobian)) st = err_nomem(err, "points of lamps", (size_t)f->point_count);
+    if (!st) st = fit_all(&p, scratch, jacobian, err);
+    release(&p);
     free(scratch);
     free(jacobian);
     return st;

@@ -7,7 +7,7 @@
  *         VITA/atlas.txt, page0.exr, ..., OUTDOORS,     what else lights the marked points; or
  *         REFERENCES/ID.exr
  *         INDIRECT                                      their irradiance without the lamps
- * writes  OUT/declared.txt, fit.txt, then OUT/lights.txt
+ * writes  OUT/declared.txt, fit.txt, LAMP.jpg, then OUT/lights.txt
  * With --list instead:
  * writes  OUT                                           the points at which indirect light is needed */
 #include <stdlib.h>
@@ -19,6 +19,7 @@
 #include "common/gather/model_field.h"
 #include "common/math/numbers.h"
 #include "stages/fit_lights/indirect.h"
+#include "stages/fit_lights/lamp_picture.h"
 #include "stages/fit_lights/solve.h"
 
 #define PARAM_STRUCT struct fit_lights_params
@@ -76,7 +77,8 @@ static enum status gather_indirect(struct job *j, struct err *err)
     struct model_field field = {0};
     struct gatherer *gatherer = NULL;
     const struct gather_params params = gather_params_of(&j->params);
-    const struct model_field_files files = {j->model_path, j->vita, j->outdoors, declared};
+    const struct model_field_files files = {
+        .model = j->model_path, .vita = j->vita, .outdoors = j->outdoors, .lights = declared};
     enum status st = file_path(declared, j->out, "declared.txt", "", err);
     if (!st) st = light_list_write(&j->scene.lights, declared, &j->prov, err);
     if (!st) st = model_field_read(&field, &files, &j->prov, err);
@@ -119,6 +121,7 @@ static enum status write_lights(struct job *j, const struct solved_lights *s, co
 {
     char path[FILE_PATH];
     if (file_path(path, j->out, "fit.txt", "", err) || solved_lights_write(s, in, path, &j->prov, err) ||
+        lamp_pictures_write(&j->scene, &j->model, j->views, j->out, err) ||
         file_path(path, j->out, "lights.txt", "", err) || light_list_write(&j->scene.lights, path, &j->prov, err))
         return err->status;
     report(&j->scene.lights, s);

@@ -13,6 +13,8 @@
     X(max_spread, double, 0.25, 0.01, 10, "",                                                                        \
       "largest relative deviation of reflectance at which points still count as one material")                       \
     X(irradiance_error, double, 0.03, 0, 1, "", "relative error of indirect light, which the intervals include")     \
+    X(seen_error, double, 0.02, 0.001, 1, "",                                                                        \
+      "relative error of a lamp's radiance as unsaturated views show it, which then counts beside its points")       \
     X(click, double, 0.5, 0, 100, "px", "assumed error of the marked centre of a lamp, for the interval of beta")    \
     X(max_clutter, double, 0.5, 0, 1, "", "clutter of a view's pixel from which it does not show a point of the model")
 

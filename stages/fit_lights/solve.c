@@ -2,8 +2,9 @@
  *
  * Beta comes first, because a lit point counts only inside of the cone: from the steps along lines, with the lamp's radiance
  * unknown. Then all lamps' radiances, exponents and the materials are fitted together; then beta again, with the radiance
- * known and the other lamps' light added; then the radiances again. A lamp without lit points is measured where views show
- * it: where it saturates, its radiance is only a lower bound. */
+ * known and the other lamps' light added; then the radiances again. What unsaturated views show of a lamp itself is
+ * compared with that and, if it agrees, counts in a last fit. A lamp without lit points is measured where views show it: where it
+ * saturates, its radiance is only a lower bound. */
 #include "stages/fit_lights/solve.h"
 
 #include <math.h>
@@ -18,7 +19,7 @@
 #include "common/math/weighted.h"
 #include "stages/fit_lights/lines.h"
 
-enum { PLACE_SIZE = 512 };
+enum { PLACE_SIZE = 512, LINE_STRIDE = 8 /* of a line's points, one in so many is fitted */ };
 #define CONFIDENCE 1.96 /* standard errors of an interval of 95 % */
 
 static const char *const source_words[] = {"given", "fitted", "measured", "bound"};
@@ -148,6 +149,25 @@ static int material_of(struct solved_lights *s, const struct solve_inputs *in, i
     return s->material_count++;
 }
 
+static bool has_points(const struct solve_inputs *in, int lamp)
+{
+    bool found = false;
+    for (int i = 0; i < in->scene->point_count; i++)
+        found |= in->scene->points[i].lamp == lamp && in->scene->points[i].kind != NOTE_LINE;
+    return found;
+}
+
+static bool is_fitted(const struct solve_inputs *in, int lamp)
+{
+    return !note_of_lamp(in, lamp)->has_radiance && has_points(in, lamp);
+}
+
+static enum fit_point_kind point_kind(const struct lit_point *p)
+{
+    if (p->kind == NOTE_LINE) return POINT_ACROSS;
+    return p->kind == NOTE_LIT ? POINT_LIT : POINT_UNLIT;
+}
+
 static enum status list_points(struct solved_lights *s, const struct solve_inputs *in, struct err *err)
 {
     const size_t most = (size_t)in->scene->point_count + 1;
@@ -158,13 +178,14 @@ static enum status list_points(struct solved_lights *s, const struct solve_input
     for (int i = 0; i < in->scene->point_count; i++) {
         const struct lit_point *p = &in->scene->points[i];
         struct fit_point *q = &s->points[s->point_count];
-        *q = (struct fit_point){.material = material_of(s, in, p->lamp), .lamp = p->lamp, .lit = p->kind == NOTE_LIT};
-        if (p->kind == NOTE_LINE || !summarize(q, in->seen, i, &next)) continue;
+        if (p->kind == NOTE_LINE && (!is_fitted(in, p->lamp) || i % LINE_STRIDE)) continue;
+        *q = (struct fit_point){
+            .material = material_of(s, in, p->lamp), .lamp = p->lamp, .kind = point_kind(p), .at = p->at};
+        if (!summarize(q, in->seen, i, &next)) continue;
         char place[PLACE_SIZE];
         snprintf(place, sizeof place, "%s:%d", in->notes->path, in->notes->items[p->note].line);
         q->place = strdup(place);
         if (!q->place) return err_nomem(err, "a place", sizeof place);
-        q->cluster = p->note;
         memcpy(q->indirect, in->indirect[i], sizeof q->indirect);
         s->point_notes[s->point_count++] = i;
     }
@@ -184,20 +205,22 @@ static double direct_at(const void *ctx, int lamp, int point, double exponent)
     return direct_light_at(c->in->direct, lamp, c->points[point], c->in->scene->lights.lamps[lamp].beta, exponent);
 }
 
-static bool has_points(const struct solve_inputs *in, int lamp)
+/* What unsaturated views show of a lamp itself, unless it disagrees: they may show something else there. The exponent of a
+ * lamp, if that is fitted, would have to be known. */
+static void add_seen(struct fit_lamp *l, const struct lamp_result *r, const struct solve_inputs *in)
 {
-    bool found = false;
-    for (int i = 0; i < in->scene->point_count; i++)
-        found |= in->scene->points[i].lamp == lamp && in->scene->points[i].kind != NOTE_LINE;
-    return found;
+    for (int c = 0; r->unsaturated && !r->disagrees && !l->fit_exponent && c < 3; c++) {
+        if (!(r->seen[c] > 0)) return;
+        l->seen[c] = r->seen[c];
+        l->seen_error[c] = hypot(r->seen_error[c] / r->seen[c], in->params->seen_error);
+    }
 }
 
-static bool is_fitted(const struct solve_inputs *in, int lamp)
-{
-    return !note_of_lamp(in, lamp)->has_radiance && has_points(in, lamp);
-}
+/* Before beta is known well, points near a cone's edge may seem to be of another material. */
+enum pass { PASS_PROVISIONAL, PASS_POINTS, PASS_POINTS_AND_PICTURES };
 
-static enum status fit_radiances(struct solved_lights *s, const struct solve_inputs *in, struct err *err)
+static enum status fit_radiances(struct solved_lights *s, const struct solve_inputs *in, enum pass pass,
+                                 struct err *err)
 {
     struct light_list *list = &in->scene->lights;
     struct fit_lamp *lamps = calloc((size_t)list->lamp_count + 1, sizeof *lamps);
@@ -212,6 +235,7 @@ static enum status fit_radiances(struct solved_lights *s, const struct solve_inp
                                      .fit_exponent = fit && note_of_lamp(in, i)->has_exponent == QUANTITY_FIT,
                                      .radiance = {l->radiance.r, l->radiance.g, l->radiance.b},
                                      .exponent = l->exponent};
+        if (pass == PASS_POINTS_AND_PICTURES) add_seen(&lamps[i], &s->lamps[i], in);
     }
     struct light_fit f = {s->points,
                           lamps,
@@ -222,7 +246,7 @@ static enum status fit_radiances(struct solved_lights *s, const struct solve_inp
                           direct_at,
                           &ctx,
                           in->params->texture,
-                          in->params->max_spread,
+                          pass == PASS_PROVISIONAL ? INFINITY : in->params->max_spread,
                           in->params->irradiance_error};
     enum status st = light_fit_solve(&f, err);
     for (int i = 0; !st && i < list->lamp_count; i++) {
@@ -301,12 +325,17 @@ enum status lights_solve(struct solved_lights *s, const struct solve_inputs *in,
                                 .lamp_count = lamps};
     if (!s->lamps || !s->materials) return err_nomem(err, "lamps", (size_t)lamps * sizeof *s->lamps);
     begin_lamps(s, in);
-    if (list_points(s, in, err) || fit_cones(s, in, false, err) || take_seen(s, in, err) || fit_radiances(s, in, err) ||
-        fit_cones(s, in, true, err) || fit_radiances(s, in, err))
+    if (list_points(s, in, err) || fit_cones(s, in, false, err) || take_seen(s, in, err) ||
+        fit_radiances(s, in, PASS_PROVISIONAL, err) || fit_cones(s, in, true, err) ||
+        fit_radiances(s, in, PASS_POINTS, err))
         return err->status;
-    for (int i = 0; i < lamps; i++)
-        if (s->lamps[i].source == LAMP_FITTED) compare(&s->lamps[i], &in->scene->lights.lamps[i]);
-    return ST_OK;
+    bool seen = false;
+    for (int i = 0; i < lamps; i++) {
+        if (s->lamps[i].source != LAMP_FITTED) continue;
+        compare(&s->lamps[i], &in->scene->lights.lamps[i]);
+        seen |= s->lamps[i].unsaturated > 0 && !s->lamps[i].disagrees;
+    }
+    return seen ? fit_radiances(s, in, PASS_POINTS_AND_PICTURES, err) : ST_OK;
 }
 
 /* ----------------------------------------------------------------------------------------------------------- fit.txt */
@@ -354,12 +383,15 @@ static void write_point(const struct solved_lights *s, const struct solve_inputs
         e[2] += d * list->lamps[l].radiance.b;
     }
     const double *k = s->materials[p->material].k_d;
+    char name[600];
+    struct err ignored = ERR_INIT;
+    if (textfile_quote(list->lamps[p->lamp].name, name, sizeof name, &ignored)) return;
     fprintf(to,
             "point %d %s %.6g %.6g %.6g radiance %.6g %.6g %.6g explained %.6g %.6g %.6g "
-            "indirect %.6g %.6g %.6g\n",
-            in->notes->items[in->scene->points[point].note].line, p->lit ? "lit" : "unlit", at.x, at.y, at.z,
-            p->radiance[0], p->radiance[1], p->radiance[2], k[0] * e[0], k[1] * e[1], k[2] * e[2], p->indirect[0],
-            p->indirect[1], p->indirect[2]);
+            "indirect %.6g %.6g %.6g lamp %s\n",
+            in->notes->items[in->scene->points[point].note].line, p->kind == POINT_LIT ? "lit" : "unlit", at.x, at.y,
+            at.z, p->radiance[0], p->radiance[1], p->radiance[2], k[0] * e[0], k[1] * e[1], k[2] * e[2], p->indirect[0],
+            p->indirect[1], p->indirect[2], name);
 }
 
 enum status solved_lights_write(const struct solved_lights *s, const struct solve_inputs *in, const char *path,
@@ -371,7 +403,8 @@ enum status solved_lights_write(const struct solved_lights *s, const struct solv
     if (!st) fputs("remodel-light-fit 1\n", f.fp);
     for (int i = 0; !st && i < s->lamp_count; i++) write_lamp(s, in, i, f.fp);
     for (int i = 0; !st && i < s->material_count; i++) write_material(&s->materials[i], f.fp);
-    for (int i = 0; !st && i < s->point_count; i++) write_point(s, in, i, f.fp);
+    for (int i = 0; !st && i < s->point_count; i++)
+        if (s->points[i].kind != POINT_ACROSS) write_point(s, in, i, f.fp);
     if (!st) st = outfile_commit(&f, err);
     outfile_discard(&f);
     return st;

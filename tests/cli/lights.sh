@@ -50,9 +50,12 @@ marked_lamps_are_placed()
     fit 0 '2 lamps, 2 openings' --lamps marks.txt
     grep -q '^disk spot .* 9 8 7 30 0$' made/lights.txt || { cat made/lights.txt; fail "no disk"; }
     grep -q '^quad panel .* 1 1 1 90 0$' made/lights.txt || fail "no quad"
+    [ -s made/spot.jpg ] && [ -s made/panel.jpg ] || { ls made; fail "no pictures of the lamps"; }
+    "$B/bin/verify" --file made/spot.jpg || fail "the picture of a lamp is not whole"
     for n in 1 2; do "$B/bin/fit_lights" "${inputs[@]}" --lamps marks.txt --threads $n --out two/$n; done
     cmp two/1/lights.txt two/2/lights.txt
     cmp two/1/fit.txt two/2/fit.txt
+    cmp two/1/spot.jpg two/2/spot.jpg
 }
 
 given_indirect_light_is_for_the_points_that_are_listed()
@@ -64,6 +67,7 @@ given_indirect_light_is_for_the_points_that_are_listed()
     sed '/^#/d; s/$/ 1 1 1/' points.txt >given.txt
     fit 0 '1 lamps, 2 openings' --lamps marks.txt --indirect given.txt
     grep -q '^material spot .* lit 25 unlit 1$' made/fit.txt || { cat made/fit.txt; fail "no material"; }
+    [ "$(grep -c '^point .* lamp spot$' made/fit.txt)" = 26 ] || fail "points do not name their lamp"
     sed 1d given.txt >fewer.txt
     fit 1 'fewer.txt:1: ' --lamps marks.txt --indirect fewer.txt
     sed '$d' given.txt >fewer.txt

@@ -66,8 +66,12 @@ static void set_point(struct room *room, int i, int material, double x, double y
 {
     struct fit_point *p = &room->points[i];
     room->at[i] = vec3_make(x, y, 0);
-    *p = (struct fit_point){
-        .material = material, .lamp = material, .lit = lit, .cluster = i / 5, .sigma = noise, .place = "lights.txt:7"};
+    *p = (struct fit_point){.material = material,
+                            .lamp = material,
+                            .kind = lit ? POINT_LIT : POINT_UNLIT,
+                            .at = room->at[i],
+                            .sigma = noise,
+                            .place = "lights.txt:7"};
     for (int c = 0; c < 3; c++) {
         p->indirect[c] = (1 + 0.2 * x - 0.1 * y) * (1 - 0.1 * c);
         double e = p->indirect[c];
@@ -184,6 +188,70 @@ static void a_lit_point_on_another_material_counts_little(void **state)
     assert_radiance(&room, 0, 0.03);
 }
 
+/* Plaster: its reflectance varies by waves of one to three metres. */
+static double plaster(uint64_t seed, double x, double y)
+{
+    const struct rng rng = rng_make(seed, "fit_lights", "plaster");
+    double sum = 0;
+    for (uint64_t k = 0; k < 12; k++) {
+        const double turn = 2 * PI * rng_uniform(&rng, k, 0), wave = 2 * PI * (0.3 + 0.5 * rng_uniform(&rng, k, 1));
+        sum += cos(wave * (x * cos(turn) + y * sin(turn)) + 2 * PI * rng_uniform(&rng, k, 2));
+    }
+    return exp(0.06 * sum / sqrt(6));
+}
+
+/* A weak lamp over plaster, with points just inside and some just outside of the edge of its cone. */
+static void points_on_both_sides_of_an_edge_tell_the_lamp_from_the_plaster(void **state)
+{
+    (void)state;
+    enum { ROOMS = 40, EACH = 40 };
+    int inside = 0;
+    double squares = 0;
+    for (uint64_t seed = 0; seed < ROOMS; seed++) {
+        struct room room;
+        struct err err = ERR_INIT;
+        furnish(&room, 1, EACH, 1, 0.005);
+        room.fit.texture = 0.05;
+        for (int k = 0; k < 2 * EACH; k++) {
+            /* all lit points, but few of the others, lie at the edge */
+            const bool near = k < EACH || k % 4 == 0;
+            const double turn = 2 * PI * (k % EACH) / EACH, step = near ? 0.13 : 0.8;
+            const double r = 2.6 * tan(room.beta) + (k < EACH ? -step : step);
+            set_point(&room, k, 0, r * cos(turn), r * sin(turn), k < EACH, 0.005);
+            for (int c = 0; c < 3; c++) /* the rest of the light is three times as bright */
+                room.points[k].radiance[c] += 2 * k_d[c] * room.points[k].indirect[c];
+            for (int c = 0; c < 3; c++) {
+                room.points[k].indirect[c] *= 3;
+                room.points[k].radiance[c] *= plaster(seed, room.at[k].x, room.at[k].y);
+            }
+        }
+        assert_ok(light_fit_solve(&room.fit, &err), err);
+        const double off = room.lamps[0].radiance[1] - true_s[0][1];
+        inside += fabs(off) < 1.96 * room.lamps[0].radiance_error[1];
+        squares += off * off / (true_s[0][1] * true_s[0][1]);
+    }
+    const double rms = sqrt(squares / ROOMS);
+    if (!(rms < 0.11)) fail_msg("the lamp is off by %.3f", rms); /* 0.15 if points deviate at random */
+    if (inside < 34) fail_msg("%d of %d intervals of 95 %% hold the lamp", inside, ROOMS);
+}
+
+static void the_picture_of_a_lamp_counts_beside_its_points(void **state)
+{
+    (void)state;
+    struct room room;
+    struct err err = ERR_INIT;
+    furnish(&room, 1, 20, 1, 0.05);
+    assert_ok(light_fit_solve(&room.fit, &err), err);
+    const double points_alone = room.lamps[0].radiance_error[1];
+    for (int c = 0; c < 3; c++) {
+        room.lamps[0].seen[c] = 1.005 * true_s[0][c];
+        room.lamps[0].seen_error[c] = 0.01;
+    }
+    assert_ok(light_fit_solve(&room.fit, &err), err);
+    assert_radiance(&room, 0, 0.012);
+    assert_true(room.lamps[0].radiance_error[1] < fmin(points_alone, 0.011 * true_s[0][1]));
+}
+
 static void an_error_of_indirect_light_widens_the_interval(void **state)
 {
     (void)state;
@@ -271,6 +339,8 @@ int main(void)
         cmocka_unit_test(lamps_over_the_same_material_share_its_reflectance),
         cmocka_unit_test(the_exponent_is_fitted),
         cmocka_unit_test(a_lit_point_on_another_material_counts_little),
+        cmocka_unit_test(points_on_both_sides_of_an_edge_tell_the_lamp_from_the_plaster),
+        cmocka_unit_test(the_picture_of_a_lamp_counts_beside_its_points),
         cmocka_unit_test(an_error_of_indirect_light_widens_the_interval),
         cmocka_unit_test(points_that_are_lit_alike_are_refused),
         cmocka_unit_test(lit_points_that_the_lamp_does_not_reach_are_refused),

@@ -212,6 +212,23 @@ static void noisy_photos_give_radiance_within_three_percent_and_beta_within_half
     assert_true(room.solved.lamps[0].disagrees);
 }
 
+/* A beam's or a ceiling's face may come out a little below the lamp. */
+static void a_lamp_a_little_behind_a_surface_is_not_hidden(void **state)
+{
+    (void)state;
+    struct err err = ERR_INIT;
+    assert_ok(solve("beta fit exponent 1", marks(), &err), err);
+    struct lamp *l = &room.scene.lights.lamps[0];
+    const double reach = LAMP_REACH * model_rays_size(&room.model.rays);
+    for (int step = 0; step < 2; step++) {
+        l->centre.z = 2 + (step ? 1.1 : 0.9) * reach;
+        direct_light_release(&room.direct_light);
+        assert_ok(direct_light_make(&room.direct_light, &room.scene, &room.model, &err), err);
+        for (int i = 0; i < room.scene.point_count; i++)
+            assert_true(room.direct_light.seen[i] == (step ? 0 : UINT64_MAX));
+    }
+}
+
 static void points_that_no_photo_measures_are_refused(void **state)
 {
     (void)state;
@@ -259,6 +276,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(noisy_photos_give_radiance_within_three_percent_and_beta_within_half_a_degree),
+        cmocka_unit_test(a_lamp_a_little_behind_a_surface_is_not_hidden),
         cmocka_unit_test(points_that_no_photo_measures_are_refused),
         cmocka_unit_test(a_lamp_that_saturates_is_a_lower_bound),
         cmocka_unit_test(a_line_over_a_corner_is_refused),
