@@ -6,7 +6,9 @@
  *         VIEWS/cameras.txt, images.txt, lenses.txt     with --views: for places in photographs, and for the pictures
  *         POINTS                                        with --points: for walls given by rectangles
  *         BASE                                          with --edit: the unedited model, whose face ids are kept
- * writes  OUT/plan.svg, view.png, plan.txt, merged.txt, model.obj, then model.txt
+ *         SCENE/objects.txt, meshes                     with --edit: synthetic objects
+ * writes  OUT/plan.svg, view.png, plan.txt, merged.txt, model.obj, then model.txt; with --base before them texture.txt and
+ *         objects.txt
  * With --overlay PHOTO instead:
  * reads   MODEL, AXES, VIEWS, RECORDS/PHOTO.txt, PHOTOS/FILE
  * writes  OUT                                           JPEG: the photograph with the model's edges */
@@ -21,13 +23,14 @@
 #include "common/capture/photo_list.h"
 #include "stages/build_model/edit_chain.h"
 #include "stages/build_model/layout.h"
+#include "stages/build_model/objects.h"
 #include "stages/build_model/plan_file.h"
 #include "stages/build_model/plan_picture.h"
 #include "stages/build_model/texture_rules.h"
 #include "stages/build_model/unite.h"
 
 struct job {
-    const char *script, *edit, *axes, *views, *held, *points, *base, *out;
+    const char *script, *edit, *scene, *axes, *views, *held, *points, *base, *out;
     const char *overlay, *model, *photos, *records;
     struct model_params params;
     struct provenance prov;
@@ -76,18 +79,32 @@ static enum status write_model(struct job *j, const struct plan *plan, const str
     return ST_OK;
 }
 
-/* texture.txt of an edited model. */
-static enum status write_texture(struct job *j, const struct solid_mesh *mesh, const struct solid_mesh *base,
-                                 const struct plan *plan, struct err *err)
+/* texture.txt and objects.txt of an edited model. */
+static enum status write_edit(struct job *j, const struct solid_mesh *mesh, const struct solid_mesh *base,
+                              const struct plan *plan, struct err *err)
 {
     struct texture_map map = {.base = j->edit_base};
+    struct object_list objects = {0};
     char path[FILE_PATH];
     j->edit_base = NULL;
     enum status st = texture_rules_make(&map, mesh, base, plan, err);
+    if (!st) st = objects_make(&objects, plan, j->scene, err);
+    if (!st) st = file_path(path, j->out, "objects.txt", "", err);
+    if (!st) st = object_list_write(&objects, path, &j->prov, err);
     if (!st) st = file_path(path, j->out, "texture.txt", "", err);
     if (!st) st = texture_map_write(&map, path, &j->prov, err);
+    object_list_release(&objects);
     texture_map_release(&map);
     return st;
+}
+
+/* The objects of all edits, if the scene has such a file, then the edit. */
+static enum status apply_edit(struct job *j, struct plan *plan, struct err *err)
+{
+    char path[FILE_PATH];
+    if (j->scene && file_path(path, j->scene, "objects.txt", "", err)) return err->status;
+    if (j->scene && path_is_file(path) && plan_apply_objects(plan, path, &j->prov, err)) return err->status;
+    return plan_apply_edit(plan, &j->edit_base, j->edit, j->views ? &j->placer : NULL, &j->prov, err);
 }
 
 static void log_summary(const struct plan *plan, const struct solid_mesh *mesh, const struct unite_log *log,
@@ -117,7 +134,7 @@ static enum status build(struct job *j, struct err *err)
         plan_begin(&plan, &j->frame);
         st = plan_apply_model(&plan, j->script, placer, &j->prov, err);
     }
-    if (!st && j->edit) st = plan_apply_edit(&plan, &j->edit_base, j->edit, placer, &j->prov, err);
+    if (!st && j->edit) st = apply_edit(j, &plan, err);
     if (!st) st = layout_solids(&solids, &plan, err);
     if (!st && !solids.count)
         st = err_set(err, ST_DATA, "%s: the script describes no solid; add walls, rooms or boxes.", j->script);
@@ -126,7 +143,7 @@ static enum status build(struct job *j, struct err *err)
     if (!st && j->base) st = solid_mesh_read(&base, j->base, err);
     if (!st && j->base) st = provenance_add_file(&j->prov, "model/model.txt", j->base, err);
     if (!st && j->base) st = solid_mesh_carry_ids(&mesh, &base, err);
-    if (!st && j->base) st = write_texture(j, &mesh, &base, &plan, err);
+    if (!st && j->base) st = write_edit(j, &mesh, &base, &plan, err);
     if (!st) st = write_model(j, &plan, &mesh, &log, err);
     if (!st) log_summary(&plan, &mesh, &log, &report);
     solid_report_release(&report);
@@ -174,6 +191,7 @@ static enum status check_usage(const struct job *j, struct err *err)
         return err_set(err, ST_USAGE, "--overlay also needs --model, --views, --photos and --records.");
     if (j->base && !j->edit)
         return err_set(err, ST_USAGE, "--base is only for --edit: it is the model before the edit.");
+    if (j->scene && !j->edit) return err_set(err, ST_USAGE, "--scene is only for --edit: it has the edit's objects.");
     if ((j->points || j->held) && !j->views) return err_set(err, ST_USAGE, "--points and --held also need --views.");
     return ST_OK;
 }
@@ -185,6 +203,8 @@ int main(int argc, char **argv)
         CLI_ABOUT("Builds the solid model that a script describes, or draws a model's edges on a photograph."),
         CLI_STR("script", &j.script, CLI_OPTIONAL, "model script: walls, rooms, openings (docs/model-script.md)"),
         CLI_STR("edit", &j.edit, CLI_OPTIONAL, "script of changes to the model"),
+        CLI_STR("scene", &j.scene, CLI_OPTIONAL,
+                "with --edit: the scene's folder, with objects.txt for all edits and the meshes of objects"),
         CLI_STR("base", &j.base, CLI_OPTIONAL, "with --edit: model.txt of the unedited model, whose face ids are kept"),
         CLI_STR("axes", &j.axes, CLI_REQUIRED, "the model's frame, axes.txt"),
         CLI_STR("views", &j.views, CLI_OPTIONAL, "folder of cameras, for places in photographs and for the pictures"),

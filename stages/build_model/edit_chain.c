@@ -31,6 +31,24 @@ enum status plan_apply_model(struct plan *plan, const char *path, const struct p
     return st;
 }
 
+enum status plan_apply_objects(struct plan *plan, const char *path, struct provenance *prov, struct err *err)
+{
+    struct script script = {0};
+    enum status st = script_read(&script, path, err);
+    /* an edit may be named objects */
+    if (!st) st = provenance_add_file(prov, "scene/objects.txt", path, err);
+    if (!st && script.base)
+        st = err_set(err, ST_DATA, "%s:%d: found base, wanted object: this file places objects in all edits.", path,
+                     script.base_line);
+    for (int i = 0; !st && i < script.count; i++)
+        if (script.statements[i].verb != VERB_OBJECT)
+            st = err_set(err, ST_DATA, "%s:%d: found %s, wanted object: this file places objects in all edits.", path,
+                         script.statements[i].line, verb_name(script.statements[i].verb));
+    if (!st) st = plan_apply(plan, &script, true, NULL, err);
+    script_release(&script);
+    return st;
+}
+
 /* An edit, and those that stand on it, the nearest first. */
 struct chain {
     const char *path;

@@ -5,10 +5,13 @@
 #include "common/base/provenance.h"
 #include "stages/build_model/plan.h"
 
-/* Both add the scripts to prov by their file names. placer: NULL if no views are known. ST_DATA with file and line. */
+/* All add the scripts to prov by their file names. placer: NULL if no views are known. ST_DATA with file and line. */
 
 enum status plan_apply_model(struct plan *plan, const char *path, const struct placer *placer, struct provenance *prov,
                              struct err *err);
+
+/* Applies the file of objects that all edits have, which holds statements `object` alone. ST_DATA: another statement. */
+enum status plan_apply_objects(struct plan *plan, const char *path, struct provenance *prov, struct err *err);
 
 /* Applies an edit after the one that its statement `base` names, in the same folder, and so on. *base: that name, for
  * the caller to free; NULL: the edit has no such statement. ST_DATA: that edit does not exist, or the edits go in a

@@ -135,7 +135,7 @@ enum status overlay_write(const struct solid_mesh *mesh, const struct photo_came
     if (!st) st = shrink(&rgb, &width, &height, &scale, photo, side, err);
     for (int i = 0; !st && i < tris.count; i++) {
         const struct solid_triangle *t = &tris.triangles[i];
-        if (!strncmp(mesh->bodies[mesh->faces[t->face].body].name, "glass/", 6)) continue;
+        if (solid_face_is_pane(mesh, t->face)) continue;
         cube_triangle(cube, (const struct vec3[3]){mesh->vertices[t->v[0]].p, mesh->vertices[t->v[1]].p,
                                                    mesh->vertices[t->v[2]].p});
     }
@@ -144,8 +144,7 @@ enum status overlay_write(const struct solid_mesh *mesh, const struct photo_came
         const int f = mesh->loops[e->loop].face;
         if (e->twin < h) continue;
         draw_edge(rgb, width, height, scale, camera, cube, mesh->vertices[e->origin].p,
-                  mesh->vertices[mesh->half_edges[e->next].origin].p,
-                  !strncmp(mesh->bodies[mesh->faces[f].body].name, "glass/", 6));
+                  mesh->vertices[mesh->half_edges[e->next].origin].p, solid_face_is_pane(mesh, f));
     }
     if (!st) st = jpeg_write(path, rgb, width, height, 88, err);
     for (int i = 0; cube && i < 6; i++) raster_release(&cube->side[i]);

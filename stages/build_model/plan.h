@@ -121,17 +121,33 @@ struct plan_room {
 };
 
 /* What a script says of textures; resolved when the faces are known (texture_rules.h). */
-enum wish_kind { WISH_STRETCH, WISH_CROP, WISH_COLOUR, WISH_COPY };
+enum wish_kind { WISH_STRETCH, WISH_CROP, WISH_COLOUR, WISH_COPY, WISH_GLOSS };
 struct plan_wish {
     enum wish_kind kind;
     char *path; /* of the script, for messages; owned */
     int line;
-    char *face; /* the item (STRETCH, CROP), the face or faces (COLOUR), the face that gets texture (COPY); owned */
-    char *from; /* COPY: the face that has it; owned */
-    double patch[4];  /* COPY: S and Z, or X and Y, of the patch's corners */
-    double target[4]; /* the same of the place that gets it */
-    bool whole;       /* COPY: the whole face gets it */
-    double colour[3]; /* COLOUR: albedo */
+    char *
+        face; /* the item (STRETCH, CROP), the face or faces (COLOUR, GLOSS), the face that gets texture (COPY); owned */
+    char *from;         /* COPY: the face that has it; owned */
+    double patch[4];    /* COPY: S and Z, or X and Y, of the patch's corners */
+    double target[4];   /* COPY, COLOUR: the same of the place that gets it */
+    bool whole;         /* COPY, COLOUR: the whole face gets it */
+    double colour[3];   /* COLOUR: albedo */
+    struct gloss gloss; /* GLOSS */
+};
+
+struct plan_lamp {
+    char *name;      /* in lights.txt; owned */
+    double scale[3]; /* of its radiance */
+};
+
+struct plan_object { /* a synthetic object */
+    char *name;      /* owned */
+    char *path;      /* of the script, for messages; owned */
+    int line;
+    bool removed;
+    char *file; /* its mesh, in the scene's folder; owned */
+    struct script_object placed;
 };
 
 /* Clutter is left out, or kept, in a footprint. */
@@ -164,10 +180,13 @@ struct plan {
     struct plan_wish *wishes; /* in the scripts' order */
     struct plan_zone *zones;
     int wish_count, zone_count;
+    struct plan_lamp *lamps;
+    struct plan_object *objects;
+    int lamp_count, object_count;
     struct plan_name *names; /* a hash table */
     int name_capacity, name_count;
     /* A copy from before the first edit, in which texture has its places; NULL: there was no edit. Its names belong to
-     * this plan; it has no wishes and zones, and its rooms have no walls, edges and parts. */
+     * this plan; it has no wishes, zones, lamps and objects, and its rooms have no walls, edges and parts. */
     struct plan *unedited;
 };
 

@@ -44,6 +44,7 @@ void plan_release(struct plan *plan)
     free(plan->rooms);
     free(plan->names);
     plan_wishes_release(plan);
+    plan_lights_release(plan);
     *plan = (struct plan){0};
 }
 
@@ -104,12 +105,19 @@ static enum status apply_statement(struct plan_context *c)
     case VERB_COPY:
         return apply_copy(c);
     case VERB_COLOUR:
+    case VERB_PAINT:
         return apply_colour(c);
+    case VERB_LAMP:
+        return apply_lamp(c);
+    case VERB_MATERIAL:
+        return apply_material(c);
+    case VERB_OBJECT:
+        return apply_object(c);
     case VERB_CLEAR:
     case VERB_KEEP:
         return apply_zone(c);
     default:
-        return apply_remove(c);
+        return c->s->of_object ? remove_object(c) : apply_remove(c);
     }
 }
 
@@ -190,7 +198,9 @@ static enum status keep_unedited(struct plan *p, struct err *err)
     u->names = NULL;
     u->wishes = NULL;
     u->zones = NULL;
-    u->wish_count = u->zone_count = 0;
+    u->lamps = NULL;
+    u->objects = NULL;
+    u->wish_count = u->zone_count = u->lamp_count = u->object_count = 0;
     p->unedited = u;
     enum status st = copy_items(&u->walls, p->walls, p->wall_count, sizeof *p->walls, err);
     if (!st) st = copy_items(&u->openings, p->openings, p->opening_count, sizeof *p->openings, err);

@@ -100,7 +100,16 @@ enum status apply_texture(struct plan_context *c);
 enum status apply_copy(struct plan_context *c);
 enum status apply_colour(struct plan_context *c);
 enum status apply_zone(struct plan_context *c);
+enum status apply_material(struct plan_context *c);
 void plan_wishes_release(struct plan *plan);
+
+/* plan_lights.c */
+
+enum status apply_lamp(struct plan_context *c);
+enum status apply_object(struct plan_context *c);
+enum status remove_object(struct plan_context *c);
+void plan_lights_release(struct plan *plan);
+
 /* plan_state.c */
 
 /* *state: a text that differs whenever anything differs in the plan that a statement can change, except the defaults;

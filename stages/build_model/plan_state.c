@@ -47,6 +47,24 @@ static void put_rooms(FILE *to, const struct plan *plan)
     }
 }
 
+static void put_lights(FILE *to, const struct plan *plan)
+{
+    for (int i = 0; i < plan->lamp_count; i++) {
+        const struct plan_lamp *l = &plan->lamps[i];
+        if (l->scale[0] == 1 && l->scale[1] == 1 && l->scale[2] == 1) continue;
+        fprintf(to, "lamp %d", i);
+        put(to, l->scale, 3);
+    }
+    for (int i = 0; i < plan->object_count; i++) {
+        const struct plan_object *o = &plan->objects[i];
+        const struct brdf *b = &o->placed.brdf;
+        fprintf(to, "object %d %s %d", o->removed, o->file, (int)b->kind);
+        put(to, o->placed.at, 3);
+        put(to, o->placed.scale, 3);
+        put(to, (const double[]){o->placed.turn, b->albedo.r, b->albedo.g, b->albedo.b, b->ks, b->shape}, 6);
+    }
+}
+
 enum status plan_state(char **state, const struct plan *plan, struct err *err)
 {
     size_t size = 0;
@@ -62,6 +80,7 @@ enum status plan_state(char **state, const struct plan *plan, struct err *err)
         put(to, (const double[]){b->low[0], b->low[1], b->low[2], b->high[0], b->high[1], b->high[2], b->turn}, 7);
     }
     put(to, plan->colour, 3);
+    put_lights(to, plan);
     fprintf(to, "wishes %d zones %d\n", plan->wish_count, plan->zone_count);
     const int failed = ferror(to);
     if (!fclose(to) && !failed) return ST_OK;

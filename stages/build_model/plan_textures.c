@@ -1,4 +1,4 @@
-/* plan_textures.c - statements about textures, colours and clutter. What they mean for faces is found when the model has
+/* plan_textures.c - statements about textures, colours, gloss and clutter. What they mean for faces is found when the model has
  * been built (texture_rules.c). */
 #include <stdlib.h>
 #include <string.h>
@@ -42,14 +42,12 @@ enum status apply_texture(struct plan_context *c)
     return add_wish(c, (struct plan_wish){.kind = stretch ? WISH_STRETCH : WISH_CROP}, c->s->name, NULL);
 }
 
-enum status apply_colour(struct plan_context *c)
+enum status apply_material(struct plan_context *c)
 {
-    struct plan_wish wish = {.kind = WISH_COLOUR};
-    memcpy(wish.colour, c->s->values, sizeof wish.colour);
-    return add_wish(c, wish, c->s->name, NULL);
+    return add_wish(c, (struct plan_wish){.kind = WISH_GLOSS, .gloss = c->s->gloss}, c->s->name, NULL);
 }
 
-/* ------------------------------------------------------------------------------------------------------ copies */
+/* ------------------------------------------------------------------------------------------------------ places */
 
 /* The name between a face's first two slashes, or after the first; false: it is too long. */
 static bool item_of(char item[80], const char *face)
@@ -88,8 +86,8 @@ static enum status place_on_face(struct plan_context *c, struct plan *plan, cons
         return statement_error(
             c,
             "a place on %s cannot be given: only wall/NAME/in and out (S and Z), floor/NAME and ceiling/NAME (X and Y) "
-            "have places. Leave the second place out: the whole face gets the texture.",
-            face);
+            "have places. Leave the %s out: the whole face gets the %s.",
+            face, c->s->verb == VERB_COPY ? "second place" : "place", c->s->verb == VERB_COPY ? "texture" : "colour");
     if (!strncmp(face, "wall/", 5)) {
         double s[2], z[2];
         if (find_wall(&at, item, &index) || place_on_wall(&at, index, s, z)) return c->err->status;
@@ -109,6 +107,20 @@ static enum status check_rectangle(struct plan_context *c, const char *face, con
     return statement_error(c, "the place on %s is %.9g wide and %.9g high, wanted %g or more.", face, rect[2] - rect[0],
                            rect[3] - rect[1], MIN_SIZE);
 }
+
+/* colour, paint */
+enum status apply_colour(struct plan_context *c)
+{
+    const struct statement *s = c->s;
+    struct plan_wish wish = {.kind = WISH_COLOUR, .whole = s->place.kind == PLACE_NONE};
+    memcpy(wish.colour, s->values, sizeof wish.colour);
+    if (!wish.whole &&
+        (place_on_face(c, c->plan, s->name, &s->place, wish.target) || check_rectangle(c, s->name, wish.target)))
+        return c->err->status;
+    return add_wish(c, wish, s->name, NULL);
+}
+
+/* ------------------------------------------------------------------------------------------------------ copies */
 
 /* Texture cannot be copied from what the edit made. */
 static enum status check_source(struct plan_context *c, const char *face)

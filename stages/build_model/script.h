@@ -9,7 +9,7 @@
 
 #include <stdbool.h>
 
-#include "common/base/err.h"
+#include "common/light/gloss.h"
 
 enum verb {
     VERB_SET,
@@ -37,6 +37,10 @@ enum verb {
     VERB_TEXTURE,
     VERB_COPY,
     VERB_COLOUR,
+    VERB_PAINT,
+    VERB_LAMP,
+    VERB_MATERIAL,
+    VERB_OBJECT,
     VERB_CLEAR,
     VERB_KEEP,
     VERB_BASE,
@@ -75,24 +79,34 @@ enum filling { FILL_NOTHING, FILL_LEAF, FILL_GLASS, FILL_WALL, FILL_COUNT };
 
 enum { END_START, END_END, END_NONE };
 
+/* Where a synthetic object stands, in the model's frame: scaled, then turned about z, then moved. */
+struct script_object {
+    double at[3], turn, scale[3]; /* turn: degrees */
+    struct brdf brdf;
+};
+
 struct statement {
     enum verb verb;
     int line;
     const char *name;  /* what it makes or changes; set: the quantity; join: NULL */
     const char *other; /* openings: the wall or room; extend: the wall to reach, or NULL; split: the new wall; copy: the
-                           face that gets the texture; texture: "stretch" or "crop"; clear, keep: the opening */
+                           face that gets the texture; texture: "stretch" or "crop"; clear, keep: the opening; object:
+                           its mesh */
     const char **names; /* join, room: walls in order; slope, gable: the two walls */
     int name_count;
-    struct script_place place, target; /* target: of copy, PLACE_NONE: the whole face */
+    struct script_place place, target; /* target: of copy; PLACE_NONE of either: the whole face */
     int end;                           /* extend: END_START or END_END */
     enum filling filling;              /* fill */
-    /* set: the value, or a colour; colour: R G B; extend: where; split: from, to; move: by; slope: two heights; gable:
+    /* set: the value, or a colour; colour, paint: R G B; lamp: factors; extend: where; split: from, to; move: by; slope: two heights; gable:
      * also the ridge's */
     double values[3];
     int value_count;
     double options[OPTION_COUNT];
     bool has_option[OPTION_COUNT];
     bool angled, interior, closed, open; /* flags: words without a value */
+    bool of_object;                      /* remove: the name is that of an object */
+    struct gloss gloss;                  /* material */
+    struct script_object object;         /* object */
 };
 
 struct script {

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "common/base/scan.h"
+#include "common/light/object_list.h"
 #include "stages/build_model/script_internal.h"
 
 /* An albedo. */
@@ -137,10 +138,114 @@ static enum status read_copy(struct script_reader *r, struct statement *s)
     return textfile_more(&r->t) ? script_read_place(r, &s->target, s->verb) : ST_OK;
 }
 
+static const char *next_word(const struct script_reader *r) { return r->t.cursor + strspn(r->t.cursor, " \t"); }
+
+static bool next_is(const struct script_reader *r, const char *word)
+{
+    const char *next = next_word(r);
+    const size_t length = strlen(word);
+    return !strncmp(next, word, length) && (!next[length] || strchr(" \t\r", next[length]));
+}
+
+static enum status read_paint(struct script_reader *r, struct statement *s)
+{
+    if (read_face(r, &s->name)) return r->err->status;
+    if ((next_is(r, "from") || next_is(r, "in") || next_is(r, "at")) && script_read_place(r, &s->place, s->verb))
+        return r->err->status;
+    return read_rgb(r, s);
+}
+
+/* Lamps have the names of lights.txt: any word. */
+static enum status read_lamp(struct script_reader *r, struct statement *s)
+{
+    enum { MOST_LAMP_NAME = 255 };
+    char *word;
+    if (textfile_word(&r->t, "the name of a lamp", &word, r->err)) return r->err->status;
+    if (!word[0] || strlen(word) > MOST_LAMP_NAME || strchr(word, '\r'))
+        return textfile_error(&r->t, r->err, word, "the name of a lamp of lights.txt");
+    s->name = script_keep_word(r, word);
+    s->value_count = 3;
+    if (!textfile_more(&r->t)) return script_usage_error(r, NULL, s->verb);
+    if (textfile_word(&r->t, "off or scale", &word, r->err)) return r->err->status;
+    if (!strcmp(word, "off")) return ST_OK;
+    if (strcmp(word, "scale")) return script_usage_error(r, word, s->verb);
+    for (int c = 0; c < 3; c++) {
+        if (script_read_number(r, "a factor of 0 or more", &s->values[c])) return r->err->status;
+        if (s->values[c] < 0) return textfile_wrong_number(&r->t, s->values[c], "a factor of 0 or more", r->err);
+    }
+    return ST_OK;
+}
+
+static enum status read_material(struct script_reader *r, struct statement *s)
+{
+    return read_face(r, &s->name) || gloss_read(&s->gloss, &r->t, r->err) || gloss_check(&s->gloss, 0, &r->t, r->err)
+               ? r->err->status
+               : ST_OK;
+}
+
+/* One factor, or one for each axis. */
+static enum status read_scale(struct script_reader *r, double scale[3])
+{
+    for (int k = 0; k < 3; k++) {
+        const char *next = next_word(r);
+        if (k == 1 && (!*next || !strchr("+-.0123456789", *next))) {
+            scale[1] = scale[2] = scale[0];
+            return ST_OK;
+        }
+        if (script_read_number(r, "a scale", &scale[k])) return r->err->status;
+        if (!(scale[k] >= 1e-6)) return textfile_wrong_number(&r->t, scale[k], "a scale from 1e-6 to 1e6", r->err);
+    }
+    return ST_OK;
+}
+
+static enum status read_mesh_file(struct script_reader *r, const char **file)
+{
+    char *word;
+    if (textfile_word(&r->t, "a mesh, FILE.obj", &word, r->err)) return r->err->status;
+    if (!object_file_is_valid(word))
+        return textfile_error(&r->t, r->err, word,
+                              "a mesh in the scene's folder, FILE.obj or FOLDER/FILE.obj, of letters, digits, _, - and "
+                              ".");
+    *file = script_keep_word(r, word);
+    return ST_OK;
+}
+
+static enum status read_object(struct script_reader *r, struct statement *s)
+{
+    struct script_object *o = &s->object;
+    bool turned = false, scaled = false;
+    for (int k = 0; k < 3; k++) o->scale[k] = 1;
+    if (script_read_name(r, "a name", &s->name) || read_mesh_file(r, &s->other) || script_expect(r, "at", s->verb) ||
+        script_read_number(r, "X", &o->at[0]) || script_read_number(r, "Y", &o->at[1]) ||
+        script_read_number(r, "Z", &o->at[2]))
+        return r->err->status;
+    while (next_is(r, "turn") || next_is(r, "scale")) {
+        const bool turn = next_is(r, "turn");
+        bool *had = turn ? &turned : &scaled;
+        if (script_expect(r, turn ? "turn" : "scale", s->verb)) return r->err->status;
+        if (*had) return textfile_error(&r->t, r->err, turn ? "turn" : "scale", "each option once");
+        *had = true;
+        if (turn ? script_read_number(r, "an angle in degrees", &o->turn) : read_scale(r, o->scale))
+            return r->err->status;
+    }
+    if (!textfile_more(&r->t)) return script_usage_error(r, NULL, s->verb);
+    if (next_is(r, "matt") || next_is(r, "phong") || next_is(r, "ward")) return brdf_read(&o->brdf, &r->t, r->err);
+    char *word;
+    return textfile_word(&r->t, "a material", &word, r->err) ? r->err->status : script_usage_error(r, word, s->verb);
+}
+
+static enum status read_remove(struct script_reader *r, struct statement *s)
+{
+    if (script_read_name(r, "a name", &s->name)) return r->err->status;
+    if (strcmp(s->name, "object") || !textfile_more(&r->t)) return ST_OK;
+    s->of_object = true;
+    return script_read_name(r, "the name of an object", &s->name);
+}
+
 /* A place, the space before an opening, or for `clear` a room or all of them. */
 static enum status read_zone(struct script_reader *r, struct statement *s)
 {
-    const char *next = r->t.cursor + strspn(r->t.cursor, " \t");
+    const char *next = next_word(r);
     if (!strncmp(next, "before ", 7)) {
         s->value_count = 1;
         return script_expect(r, "before", s->verb) || script_read_name(r, "a door, passage or window", &s->other) ||
@@ -180,7 +285,7 @@ enum status script_read_statement(struct script_reader *r, struct statement *s)
             &r->t, r->err, word,
             "a statement: set, wall, room, slope, gable, door, passage, window, skylight, hatch, "
             "box, join, extend, split, adjust, move, change, resize, open, close, fill, remove, texture, "
-            "copy, colour, clear, keep or base");
+            "copy, colour, paint, lamp, material, object, clear, keep or base");
     }
     s->verb = (enum verb)v;
     s->line = r->t.line;
@@ -239,6 +344,21 @@ enum status script_read_statement(struct script_reader *r, struct statement *s)
         break;
     case VERB_COLOUR:
         if (read_face(r, &s->name) || read_rgb(r, s)) return r->err->status;
+        break;
+    case VERB_PAINT:
+        if (read_paint(r, s)) return r->err->status;
+        break;
+    case VERB_LAMP:
+        if (read_lamp(r, s)) return r->err->status;
+        break;
+    case VERB_MATERIAL:
+        if (read_material(r, s)) return r->err->status;
+        break;
+    case VERB_OBJECT:
+        if (read_object(r, s)) return r->err->status;
+        break;
+    case VERB_REMOVE:
+        if (read_remove(r, s)) return r->err->status;
         break;
     case VERB_CLEAR:
     case VERB_KEEP:

@@ -89,11 +89,6 @@ struct rules_job {
     struct err *err;
 };
 
-static bool is_pane(const struct solid_mesh *mesh, int face)
-{
-    return !strncmp(mesh->bodies[mesh->faces[face].body].name, "glass/", 6);
-}
-
 static struct texture_rule shifted(enum texture_rule_kind kind, int from, struct vec3 by)
 {
     return (struct texture_rule){
@@ -165,7 +160,7 @@ static enum status add_coplanar(const struct rules_job *job, struct texture_face
     *edge = 0;
     for (int i = 0; !st && i < job->models.base->face_count; i++) {
         if (!faces_are_coplanar(&job->models.edited->faces[face], &job->models.base->faces[i]) ||
-            is_pane(job->models.base, i))
+            solid_face_is_pane(job->models.base, i))
             continue;
         const double gap = gap_between(own, face_bounds(job->models.base, &job->triangles[1], i));
         const int id = solid_face_id(job->models.base, i);
@@ -197,7 +192,7 @@ static enum status find_lit(int **lit, int *count, const struct rules_job *job, 
         do {
             const int other = own ? face : m->loops[m->half_edges[m->half_edges[h].twin].loop].face;
             struct vec3 by;
-            if (!is_pane(m, other) && own_place(job, other, &by) >= 0) {
+            if (!solid_face_is_pane(m, other) && own_place(job, other, &by) >= 0) {
                 st = array_append(lit, (size_t)*count, sizeof **lit, "faces", job->err);
                 if (!st) (*lit)[(*count)++] = solid_face_id(m, other);
             }
@@ -228,7 +223,7 @@ static enum status add_defaults(const struct rules_job *job, struct texture_face
 {
     const int id = solid_face_id(job->models.edited, face);
     int edge = 0;
-    if (is_pane(job->models.edited, face))
+    if (solid_face_is_pane(job->models.edited, face))
         return texture_face_add(to, (struct texture_rule){.kind = TEXTURE_OUTDOORS}, job->err);
     if (own) {
         const enum status st = texture_face_add(to, shifted(TEXTURE_PLACE, id, by), job->err);
@@ -248,6 +243,7 @@ static enum status add_rules(const struct rules_job *job, struct texture_face *t
     enum status st = find_lit(&lit, &lit_count, job, face, *own);
     if (!st) st = texture_wishes_add(to, &covered, &job->models, face, place, *by, lit, lit_count, job->err);
     if (!st && !covered) st = add_defaults(job, to, face, *own, *by, &lit, lit_count);
+    texture_wishes_gloss(to, &job->models, face);
     free(lit);
     return st;
 }
@@ -395,6 +391,7 @@ enum status texture_rules_make(struct texture_map *map, const struct solid_mesh 
             st = add_new_area(&job, &map->faces[at], f, own_place(&job, f, &by) >= 0, by);
     }
     if (!st) st = texture_zones_add(map, plan, err);
+    if (!st) st = texture_lamps_add(map, plan, err);
     if (map->face_count) qsort(map->faces, (size_t)map->face_count, sizeof *map->faces, compare_texture_faces);
     for (int k = 0; k < 2; k++) solid_triangles_release(&job.triangles[k]);
     return st;

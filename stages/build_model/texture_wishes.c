@@ -61,15 +61,23 @@ static enum status unknown_face(const struct plan_wish *w, const struct solid_me
                    w->line, model, name);
 }
 
+/* Whether statements of this kind are about one face, not about all whose names begin so. */
+static bool is_about_one_face(const struct plan_wish *w)
+{
+    return w->kind == WISH_COPY || (w->kind == WISH_COLOUR && !w->whole);
+}
+
+/* Whether a statement is about the face of this name in the edited model. */
+static bool wish_is_about(const struct plan_wish *w, const char *face)
+{
+    if (w->kind == WISH_STRETCH || w->kind == WISH_CROP) return texture_face_is_of(face, w->face);
+    return is_about_one_face(w) ? !strcmp(face, w->face) : is_face_or_part(face, w->face);
+}
+
 static enum status check_wish(const struct texture_models *m, const struct plan_wish *w, struct err *err)
 {
     bool found = false;
-    for (int i = 0; i < m->edited->name_count && !found; i++) {
-        const char *name = m->edited->names[i].name;
-        found = w->kind == WISH_COLOUR ? is_face_or_part(name, w->face)
-                : w->kind == WISH_COPY ? !strcmp(name, w->face)
-                                       : texture_face_is_of(name, w->face);
-    }
+    for (int i = 0; i < m->edited->name_count && !found; i++) found = wish_is_about(w, m->edited->names[i].name);
     if (!found) return unknown_face(w, m->edited, w->face, "edited", err);
     if (w->kind != WISH_COPY || find_face(m->base, w->from) >= 0) return ST_OK;
     return unknown_face(w, m->base, w->from, "unedited", err);
@@ -93,13 +101,20 @@ static struct vec3 place_corner(const struct plan_wall *wall, double a, double b
     return vec3_make(p[0], p[1], b);
 }
 
-static struct plane_rect place_rect(const double place[4], const struct solid_mesh *mesh, int face,
-                                    const struct plan *plan, const struct plane_axes *axes)
+/* The wall that a face belongs to; NULL if it belongs to none. */
+static const struct plan_wall *wall_of(const struct solid_mesh *mesh, int face, const struct plan *plan)
 {
     const char *name = solid_face_name(mesh, face);
     const struct plan_wall *wall = NULL;
     for (int i = 0; !wall && !strncmp(name, "wall/", 5) && i < plan->wall_count; i++)
         if (texture_face_is_of(name, plan->walls[i].name)) wall = &plan->walls[i];
+    return wall;
+}
+
+static struct plane_rect place_rect(const double place[4], const struct solid_mesh *mesh, int face,
+                                    const struct plan *plan, const struct plane_axes *axes)
+{
+    const struct plan_wall *wall = wall_of(mesh, face, plan);
     const struct solid_face *f = &mesh->faces[face];
     return plane_rect_of(axes, place_corner(wall, place[0], place[1], f), place_corner(wall, place[2], place[3], f));
 }
@@ -170,10 +185,22 @@ static enum status add_copies(struct texture_face *to, const struct texture_mode
     return st;
 }
 
-static enum status add_colour(struct texture_face *to, const struct plan_wish *w, const int *lit, int lit_count,
-                              struct err *err)
+/* The corners of a place in the plane of a face. */
+static void place_quad(struct vec3 corners[4], const struct texture_models *m, const double place[4], int face)
 {
-    struct texture_rule rule = {.kind = TEXTURE_COLOUR, .lit_count = lit_count};
+    const struct solid_face *f = &m->edited->faces[face];
+    const struct plan_wall *wall = wall_of(m->edited, face, m->plan);
+    for (int i = 0; i < 4; i++) {
+        const struct vec3 p = place_corner(wall, place[i == 1 || i == 2 ? 2 : 0], place[i >= 2 ? 3 : 1], f);
+        corners[i] = vec3_add(p, vec3_scale(f->normal, f->offset - vec3_dot(f->normal, p)));
+    }
+}
+
+static enum status add_colour(struct texture_face *to, const struct texture_models *m, const struct plan_wish *w,
+                              int face, const int *lit, int lit_count, struct err *err)
+{
+    struct texture_rule rule = {.kind = TEXTURE_COLOUR, .lit_count = lit_count, .limited = !w->whole};
+    if (rule.limited) place_quad(rule.within, m, w->target, face);
     for (int c = 0; c < 3; c++) rule.albedo[c] = (float)w->colour[c];
     rule.lit = malloc(((size_t)lit_count + 1) * sizeof *rule.lit);
     if (!rule.lit) return err_nomem(err, "faces", (size_t)lit_count * sizeof *rule.lit);
@@ -206,13 +233,13 @@ enum status texture_wishes_add(struct texture_face *to, bool *covered, const str
     *covered = false;
     for (int i = m->plan->wish_count - 1; !st && !*covered && i >= 0; i--) {
         const struct plan_wish *w = &m->plan->wishes[i];
-        if (w->kind == WISH_COPY && !strcmp(name, w->face)) {
+        if (!wish_is_about(w, name)) continue;
+        if (w->kind == WISH_COPY) {
             st = add_copies(to, m, w, face, err);
-        } else if (w->kind == WISH_COLOUR && is_face_or_part(name, w->face)) {
-            st = add_colour(to, w, lit, lit_count, err);
-            *covered = true;
-        } else if ((w->kind == WISH_STRETCH || w->kind == WISH_CROP) && base_face >= 0 &&
-                   texture_face_is_of(name, w->face)) {
+        } else if (w->kind == WISH_COLOUR) {
+            st = add_colour(to, m, w, face, lit, lit_count, err);
+            *covered = w->whole;
+        } else if ((w->kind == WISH_STRETCH || w->kind == WISH_CROP) && base_face >= 0) {
             st = add_own(to, m, w, face, base_face, by, err);
             *covered = true;
         }
@@ -220,7 +247,32 @@ enum status texture_wishes_add(struct texture_face *to, bool *covered, const str
     return st;
 }
 
-/* ----------------------------------------------------------------------------------------------------------- zones */
+void texture_wishes_gloss(struct texture_face *to, const struct texture_models *m, int face)
+{
+    const char *name = solid_face_name(m->edited, face);
+    for (int i = 0; i < m->plan->wish_count; i++) {
+        const struct plan_wish *w = &m->plan->wishes[i];
+        if (w->kind != WISH_GLOSS || !wish_is_about(w, name)) continue;
+        to->has_gloss = true;
+        to->gloss = w->gloss;
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------- lamps and zones */
+
+enum status texture_lamps_add(struct texture_map *map, const struct plan *plan, struct err *err)
+{
+    for (int i = 0; i < plan->lamp_count; i++) {
+        const struct plan_lamp *l = &plan->lamps[i];
+        if (l->scale[0] == 1 && l->scale[1] == 1 && l->scale[2] == 1) continue;
+        if (array_append(&map->lamps, (size_t)map->lamp_count, sizeof *map->lamps, "lamps", err)) return err->status;
+        struct texture_lamp *to = &map->lamps[map->lamp_count++];
+        *to = (struct texture_lamp){.name = strdup(l->name)};
+        for (int c = 0; c < 3; c++) to->scale[c] = l->scale[c] + 0.0; /* -0 is 0 */
+        if (!to->name) return err_nomem(err, "a lamp", strlen(l->name) + 1);
+    }
+    return ST_OK;
+}
 
 static enum status add_zone(struct texture_map *map, const struct plan_zone *zone, const char *name,
                             const double (*corners)[2], int count, struct err *err)

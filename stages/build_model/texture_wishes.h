@@ -19,6 +19,12 @@ enum status texture_wishes_check(const struct texture_models *m, struct err *err
 enum status texture_wishes_add(struct texture_face *to, bool *covered, const struct texture_models *m, int face,
                                int base_face, struct vec3 by, const int *lit, int lit_count, struct err *err);
 
+/* The gloss that the last statement about a face gives it. */
+void texture_wishes_gloss(struct texture_face *to, const struct texture_models *m, int face);
+
+/* The lamps whose radiance statements change. */
+enum status texture_lamps_add(struct texture_map *map, const struct plan *plan, struct err *err);
+
 /* The footprints in which clutter is cleared or kept. */
 enum status texture_zones_add(struct texture_map *map, const struct plan *plan, struct err *err);
 

@@ -156,6 +156,58 @@ gables_and_skylights_have_their_volume()
     for n in skylight/light/left glass/light/out; do grep -q "$n" made/model.txt || fail "no face $n"; done
 }
 
+# lamps, gloss, paint and objects are data beside the model, which they do not change
+an_edit_says_what_changes_the_light()
+{
+    build 0 closed --script room.txt
+    rm -rf base home; mv made base; mkdir -p home/edits home/meshes
+    printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n' >home/meshes/a.obj
+    printf 'remodel-script 1\n# none\n' >home/edits/plain.txt
+    edited() { local code=$1 word=$2; shift 2; build "$code" "$word" --script room.txt --edit "$1" --scene home --base base/model.txt; }
+    edited 0 closed home/edits/plain.txt
+    [ "$(sed -n 1p made/texture.txt)" = 'remodel-texture 1' ] || { sed -n 1,3p made/texture.txt; fail "the version of texture.txt"; }
+    [ "$(sed -n 1p made/objects.txt)" = 'remodel-objects 1' ] && ! grep -q '^object' made/objects.txt || { cat made/objects.txt; fail "objects.txt without objects"; }
+    printf 'remodel-script 1\nobject plant meshes/a.obj at 1 1 0 matt 0.1 0.4 0.1\n' >home/objects.txt
+    cat >home/edits/dark.txt <<'END'
+remodel-script 1
+lamp "over the table" off
+lamp floor scale 2 2 1.5
+paint wall/south/in from 0.2 0.5 to 0.8 1.5 0.8 0.1 0.1
+material wall/south/in phong 0.05 40
+object tent meshes/a.obj at 2 1 0 turn 90 scale 0.5 ward 0.5 0.5 0.5 0.1 0.2
+END
+    printf 'remodel-script 1\nbase dark\nlamp floor off\nremove object tent\n' >home/edits/darker.txt
+    edited 0 'object tent: 4 triangles, from 1.5 1 0 to 2 1.5 0.5' home/edits/dark.txt
+    for line in 'lamp "over the table" 0 0 0' 'lamp floor 2 2 1.5' 'gloss phong 0.050000000000000003 40'; do
+        grep -qxF -- "$line" made/texture.txt || { grep '^lamp\|^gloss' made/texture.txt; fail "texture.txt has no line '$line'"; }
+    done
+    grep -q '^colour 0.800.* within 0.8*' made/texture.txt || fail "texture.txt has no painted place"
+    [ "$(grep -c '^gloss' made/texture.txt)" = 1 ] || fail "gloss on other faces"
+    grep -q '^object plant meshes/a.obj [0-9a-f]* 1 0 0 1 0 1 0 1 0 0 1 0 matt ' made/objects.txt && grep -q '^object tent .* ward 0.5 ' made/objects.txt || { cat made/objects.txt; fail "objects.txt"; }
+    for f in texture.txt objects.txt; do "$B/bin/verify" --file made/$f || fail "$f is not whole"; done
+    grep -v '^#' made/model.txt | diff -q - <(grep -v '^#' base/model.txt) >/dev/null || fail "the model has changed"
+    mv made dark
+    edited 0 closed home/edits/darker.txt
+    grep -qx 'lamp floor 0 0 0' made/texture.txt && grep -q '^gloss' made/texture.txt || fail "the edit below counts for nothing"
+    grep -q '^object plant' made/objects.txt && ! grep -q '^object tent' made/objects.txt || { cat made/objects.txt; fail "an object was not removed"; }
+    rm -rf copied; cp -r home copied; mv made darker
+    build 0 closed --script room.txt --edit copied/edits/darker.txt --scene copied --base base/model.txt
+    diff -r darker made || fail "products depend on the scene's folder"
+    # a changed mesh is another object; without its mesh there is none
+    printf 'v 0 0 2\nf -1 1 2\n' >>home/meshes/a.obj
+    edited 0 closed home/edits/dark.txt
+    [ "$(grep '^object' made/objects.txt | cut -d' ' -f4)" != "$(grep '^object' dark/objects.txt | cut -d' ' -f4)" ] || fail "the hash is that of the mesh before"
+    echo 'f 1 2 9' >>home/meshes/a.obj
+    edited 1 'home/meshes/a.obj:11: found "9", wanted a vertex from 1 to 5' home/edits/dark.txt
+    rm home/meshes/a.obj
+    edited 1 'home/objects.txt:2: found no file home/meshes/a.obj, wanted the mesh of the object plant' home/edits/dark.txt
+    echo 'lamp floor off' >>home/objects.txt
+    edited 1 'home/objects.txt:3: found lamp, wanted object' home/edits/dark.txt
+    rm home/objects.txt
+    build 1 'home/edits/dark.txt:6: the mesh meshes/a.obj is in the scene' --script room.txt --edit home/edits/dark.txt --base base/model.txt
+    build 2 -- '--scene is only for --edit' --script room.txt --scene home
+}
+
 # the loft's walls as scene.txt has them, by coordinates; each edit puts openings where the scene of its name has them
 edits_of_the_loft_do_not_depend_on_views()
 {
@@ -181,6 +233,8 @@ END
     mv made unedited
     local name
     for name in "$root"/scenes/loft/edits/*.txt; do
+        # a box on a floor has no wall to be placed by
+        [[ $name != */object-* ]] || continue
         ! grep -q ' in v[0-9]' "$name" || fail "$name names a view"
         build 0 closed --script loft.txt --edit "$name" --base unedited/model.txt
         mv made "$(basename "$name" .txt)"
@@ -237,6 +291,24 @@ make_builds_models_and_overlays()
     diff before after >changes || true
     ! grep -q 'out/t/model/' changes || { cat changes; fail "an edit redid the model"; }
     grep -q 'out/t/remodel/far/model.txt' changes || fail "a changed edit was not made again"
+    # meshes of objects, and the objects of all edits
+    printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >scenes/t/a.obj
+    printf 'remodel-script 1\nobject a a.obj at 0 0 0 matt 0.5 0.5 0.5\n' >scenes/t/objects.txt
+    m
+    grep -q '^object a a.obj' out/t/remodel/far/objects.txt || fail "objects.txt came, but nothing was made again"
+    list >before
+    m
+    list | diff before - || fail "with objects, a second make made something again"
+    cp out/t/remodel/far/objects.txt first.txt
+    echo 'f 3 2 1' >>scenes/t/a.obj
+    m
+    ! diff -q first.txt out/t/remodel/far/objects.txt >/dev/null || fail "a mesh changed, but nothing was made again"
+    rm scenes/t/a.obj
+    ! make -s DEPS=manual PHOTOS=set/photos SFM=set/model SCENE=t model >log 2>&1 || fail "a mesh is missing"
+    grep -q 'scenes/t/objects.txt:2: found no file scenes/t/a.obj' log || { cat log; fail "nothing names the mesh"; }
+    rm scenes/t/objects.txt
+    m
+    ! grep -q '^object' out/t/remodel/far/objects.txt || fail "objects.txt went, but nothing was made again"
     # a rectangle on the wall in the photos
     { cat scenes/t/model.txt; echo "wall seen in $first 60 40 260 120"; } >script.txt
     "$B/bin/build_model" --script script.txt --axes out/t/model/axes.txt --views out/t/views --points out/t/points/points.ply --out made >out.txt 2>err.txt || { cat err.txt; fail "a rectangle"; }
@@ -246,4 +318,4 @@ make_builds_models_and_overlays()
     grep -q "script.txt:[0-9]*: found .*did you mean $first?" err.txt || { cat err.txt; fail "no guess"; }
 }
 
-for t in a_room_is_a_closed_solid another_program_can_read_the_obj an_edit_keeps_the_ids_of_its_base errors_name_file_and_line an_edit_without_effect_is_refused gables_and_skylights_have_their_volume edits_of_the_loft_do_not_depend_on_views floors_of_two_rooms_stay_two_faces make_builds_models_and_overlays; do run "$t"; done
+for t in a_room_is_a_closed_solid another_program_can_read_the_obj an_edit_keeps_the_ids_of_its_base errors_name_file_and_line an_edit_without_effect_is_refused gables_and_skylights_have_their_volume an_edit_says_what_changes_the_light edits_of_the_loft_do_not_depend_on_views floors_of_two_rooms_stay_two_faces make_builds_models_and_overlays; do run "$t"; done

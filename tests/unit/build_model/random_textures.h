@@ -1,4 +1,4 @@
-/* random_textures.h - random statements about textures, colours and clutter for sequences.c. */
+/* random_textures.h - random statements about textures, colours, clutter and light for sequences.c. */
 #ifndef REMODEL_TESTS_RANDOM_TEXTURES_H
 #define REMODEL_TESTS_RANDOM_TEXTURES_H
 
@@ -82,6 +82,46 @@ static inline void colour_statement(const struct expected *t, const struct solid
     add_colour(line);
 }
 
+static inline void paint_statement(const struct expected *t, const struct solid_mesh *base, char *line)
+{
+    char face[FACE_SIZE];
+    some_placed_face(t, base, face);
+    snprintf(line, LINE, "paint %s", face);
+    if (one_of(4)) add_face_place(t, line, face, 0.05);
+    add_colour(line);
+}
+
+/* Lamps, gloss and objects. */
+static inline void light_statement(const struct expected *t, const struct solid_mesh *base, char *line)
+{
+    static const char *const names[] = {"a", "b", "c"};
+    const char *name = names[one_of(3)];
+    char face[FACE_SIZE];
+    switch (one_of(6)) {
+    case 0:
+        snprintf(line, LINE, "lamp %s off", name);
+        break;
+    case 1:
+        snprintf(line, LINE, "lamp %s scale %.2f %.2f %.2f", name, uniform(0, 2), uniform(0, 2), uniform(0, 2));
+        break;
+    case 2:
+    case 3:
+        some_face(t, base, face);
+        if (strrchr(face, '/') != strchr(face, '/') && one_of(3) == 0) *strrchr(face, '/') = '\0'; /* all parts */
+        snprintf(line, LINE, "material %s ", face);
+        if (one_of(3))
+            add_words(line, "ward %.3f %.2f", uniform(0, 0.2), uniform(0.02, 1));
+        else
+            add_words(line, one_of(2) ? "matt" : "phong 0.01 20");
+        break;
+    case 4:
+        snprintf(line, LINE, "remove object %s", name);
+        break;
+    default:
+        snprintf(line, LINE, "object %s x.obj at %.2f 0 0 matt 0.5 0.5 0.5", name, uniform(-3, 3));
+    }
+}
+
 static inline void copy_statement(const struct expected *t, const struct solid_mesh *base, char *line)
 {
     char face[FACE_SIZE];
@@ -114,7 +154,7 @@ static inline void zone_statement(const struct expected *t, char *line)
 /* base: the unedited model. */
 static inline void texture_statement(const struct expected *t, const struct solid_mesh *base, char *line)
 {
-    switch (one_of(8)) {
+    switch (one_of(12)) {
     case 0:
     case 1:
         colour_statement(t, base, line);
@@ -134,6 +174,14 @@ static inline void texture_statement(const struct expected *t, const struct soli
     case 6:
         snprintf(line, LINE, "set colour");
         add_colour(line);
+        break;
+    case 7:
+    case 8:
+        paint_statement(t, base, line);
+        break;
+    case 9:
+    case 10:
+        light_statement(t, base, line);
         break;
     default:
         zone_statement(t, line);

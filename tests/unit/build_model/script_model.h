@@ -67,9 +67,10 @@ struct expected_room {
 
 /* A statement about textures. Rectangles: S and Z of a wall, X and Y of a floor or ceiling. */
 struct expected_wish {
-    enum { MODEL_STRETCH, MODEL_CROP, MODEL_COLOUR, MODEL_COPY } kind;
+    enum { MODEL_STRETCH, MODEL_CROP, MODEL_COLOUR, MODEL_COPY, MODEL_GLOSS } kind;
     char face[FACE_SIZE], from[FACE_SIZE]; /* STRETCH and CROP: the item */
     double patch[4], target[4], colour[3];
+    double ks;          /* GLOSS; 0: matt */
     bool whole, unsure; /* unsure: a rectangle is not known */
 };
 
@@ -77,6 +78,17 @@ struct expected_zone { /* clutter that is cleared or kept in a rectangle, a room
     bool keep, all;
     int room;
     double low[3], high[3];
+};
+
+struct expected_lamp {
+    char name[NAME_SIZE];
+    double scale[3];
+};
+
+struct expected_object {
+    char name[NAME_SIZE];
+    bool gone;
+    double x;
 };
 
 struct expected {
@@ -91,6 +103,9 @@ struct expected {
     struct expected_wish wishes[MAX_ITEMS];
     struct expected_zone zones[MAX_ITEMS];
     int wish_count, zone_count;
+    struct expected_lamp lamps[MAX_ITEMS];
+    struct expected_object objects[MAX_ITEMS];
+    int lamp_count, object_count;
     double colour[3];                /* of new faces */
     const struct expected *unedited; /* NULL: this is the unedited model */
 };
@@ -501,7 +516,15 @@ static inline void expected_add_wish(struct expected *t, char **w, int n)
     snprintf(x->face, sizeof x->face, "%s", w[1]);
     if (w[0][0] == 't') {
         x->kind = !strcmp(w[2], "stretch") ? MODEL_STRETCH : MODEL_CROP;
+    } else if (!strcmp(w[0], "material")) {
+        x->kind = MODEL_GLOSS;
+        x->ks = strcmp(w[2], "matt") ? atof(w[3]) : 0;
+    } else if (!strcmp(w[0], "paint")) { /* paint FACE [PLACE] R G B */
+        x->whole = n == 5;
+        const int at = x->whole ? 2 : 2 + expected_face_place(t, x->face, w + 2, x->target, &x->unsure);
+        for (int c = 0; c < 3; c++) x->colour[c] = atof(w[at + c]);
     } else if (!strcmp(w[0], "colour")) {
+        x->whole = true;
         for (int c = 0; c < 3; c++) x->colour[c] = atof(w[2 + c]);
     } else { /* copy texture FACE PLACE to FACE [PLACE] */
         x->kind = MODEL_COPY;
@@ -527,6 +550,24 @@ static inline void expected_add_zone(struct expected *t, char **w, int n)
     }
 }
 
+static inline void expected_set_lamp(struct expected *t, char **w)
+{
+    int i = 0;
+    while (i < t->lamp_count && strcmp(t->lamps[i].name, w[1])) i++;
+    if (i == t->lamp_count) snprintf(t->lamps[t->lamp_count++].name, NAME_SIZE, "%s", w[1]);
+    for (int c = 0; c < 3; c++) t->lamps[i].scale[c] = strcmp(w[2], "off") ? atof(w[3 + c]) : 0;
+}
+
+/* object NAME FILE at X ..., or remove object NAME */
+static inline void expected_set_object(struct expected *t, const char *name, double x, bool gone)
+{
+    int i = 0;
+    while (i < t->object_count && strcmp(t->objects[i].name, name)) i++;
+    if (i == t->object_count) snprintf(t->objects[t->object_count++].name, NAME_SIZE, "%s", name);
+    t->objects[i].gone = gone;
+    t->objects[i].x = x;
+}
+
 /* Applies one valid statement. */
 static inline void expected_apply(struct expected *t, const char *line)
 {
@@ -541,8 +582,15 @@ static inline void expected_apply(struct expected *t, const char *line)
         for (int i = 0; i < 6; i++)
             if (!strcmp(names[i], w[1])) *values[i] = atof(w[2]);
         for (int c = 0; c < 3 && !strcmp(w[1], "colour"); c++) t->colour[c] = atof(w[2 + c]);
-    } else if (!strcmp(w[0], "texture") || !strcmp(w[0], "colour") || !strcmp(w[0], "copy")) {
+    } else if (!strcmp(w[0], "texture") || !strcmp(w[0], "colour") || !strcmp(w[0], "copy") || !strcmp(w[0], "paint") ||
+               !strcmp(w[0], "material")) {
         expected_add_wish(t, w, n);
+    } else if (!strcmp(w[0], "lamp")) {
+        expected_set_lamp(t, w);
+    } else if (!strcmp(w[0], "object")) {
+        expected_set_object(t, w[1], atof(w[4]), false);
+    } else if (!strcmp(w[0], "remove") && n == 3) {
+        expected_set_object(t, w[2], 0, true);
     } else if (!strcmp(w[0], "clear") || !strcmp(w[0], "keep")) {
         expected_add_zone(t, w, n);
     } else if (!strcmp(w[0], "wall")) {

@@ -167,6 +167,23 @@ static inline struct expected_shown expected_stretched(const struct solid_mesh *
     return shown;
 }
 
+/* Whether p, which is in the face's plane, is in the place that is painted: 1 or 0; -1: near its edge, or unknown. */
+static inline int expected_paints(const struct expected_wish *w, const struct solid_face *face, struct vec3 p)
+{
+    const double edge = 1e-4;
+    struct expected_flat flat;
+    double to[2][2];
+    if (w->whole) return 1;
+    if (w->unsure || !expected_flat_of(&flat, face)) return -1;
+    expected_flat_rect(&flat, w->target, to[0], to[1]);
+    const double q[2] = {vec3_dot(flat.u, p), vec3_dot(flat.v, p)};
+    for (int k = 0; k < 2; k++)
+        if (q[k] < to[k][0] - edge || q[k] > to[k][1] + edge) return 0;
+    for (int k = 0; k < 2; k++)
+        if (q[k] < to[k][0] + edge || q[k] > to[k][1] - edge) return -1;
+    return 1;
+}
+
 /* What the statements say that the point p of a face of the edited model shows. DEFAULT: they say nothing; UNKNOWN: not
  * computed here. */
 static inline struct expected_shown expected_shown_at(const struct expected *t, const struct solid_mesh *edited,
@@ -178,8 +195,11 @@ static inline struct expected_shown expected_shown_at(const struct expected *t, 
         const struct expected_wish *w = &t->wishes[i];
         if (w->kind == MODEL_COPY && !strcmp(w->face, name) && expected_copy_at(&shown, w, edited, base, face, p))
             return shown;
-        if (w->kind == MODEL_COLOUR && expected_is_part(name, w->face))
-            return (struct expected_shown){.kind = SHOWN_COLOUR, .colour = w->colour};
+        if (w->kind == MODEL_COLOUR && (w->whole ? expected_is_part(name, w->face) : !strcmp(name, w->face))) {
+            const int painted = expected_paints(w, &edited->faces[face], p);
+            if (painted)
+                return (struct expected_shown){painted < 0 ? SHOWN_UNKNOWN : SHOWN_COLOUR, .colour = w->colour};
+        }
         if (w->kind == MODEL_STRETCH && expected_is_of_item(name, w->face))
             return expected_stretched(edited, base, face, p);
         if (w->kind == MODEL_CROP && expected_is_of_item(name, w->face))
@@ -187,6 +207,15 @@ static inline struct expected_shown expected_shown_at(const struct expected *t, 
         shown.kind = SHOWN_DEFAULT;
     }
     return shown;
+}
+
+/* The strength of a face's gloss; -1: no statement gives it one. */
+static inline double expected_gloss(const struct expected *t, const char *face)
+{
+    double ks = -1;
+    for (int i = 0; i < t->wish_count; i++)
+        if (t->wishes[i].kind == MODEL_GLOSS && expected_is_part(face, t->wishes[i].face)) ks = t->wishes[i].ks;
+    return ks;
 }
 
 #endif

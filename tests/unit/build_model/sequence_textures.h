@@ -24,7 +24,9 @@ static inline bool same_rule(const struct texture_rule *a, const struct texture_
 static inline bool same_texture_face(const struct texture_face *a, const struct texture_face *b)
 {
     bool same = a->id == b->id && !strcmp(a->name, b->name) && same_point(a->normal, b->normal) &&
-                a->offset == b->offset && a->rule_count == b->rule_count && a->added_count == b->added_count;
+                a->offset == b->offset && a->rule_count == b->rule_count && a->added_count == b->added_count &&
+                a->has_gloss == b->has_gloss && a->gloss.kind == b->gloss.kind && a->gloss.ks == b->gloss.ks &&
+                a->gloss.shape == b->gloss.shape;
     for (int i = 0; same && i < a->rule_count; i++) same = same_rule(&a->rules[i], &b->rules[i]);
     for (int i = 0; same && i < a->added_count; i++)
         for (int k = 0; k < 3; k++) same &= same_point(a->added[i][k], b->added[i][k]);
@@ -46,6 +48,11 @@ static inline bool same_map(const struct texture_map *a, const struct texture_ma
     bool same = a->face_count == b->face_count && a->zone_count == b->zone_count;
     for (int i = 0; same && i < a->face_count; i++) same = same_texture_face(&a->faces[i], &b->faces[i]);
     for (int i = 0; same && i < a->zone_count; i++) same = same_zone(&a->zones[i], &b->zones[i]);
+    same = same && a->lamp_count == b->lamp_count;
+    for (int i = 0; same && i < a->lamp_count; i++) {
+        const double *scale = texture_map_lamp(b, a->lamps[i].name);
+        same = scale && !memcmp(scale, a->lamps[i].scale, sizeof a->lamps[i].scale);
+    }
     return same;
 }
 
@@ -210,6 +217,37 @@ static inline void check_points(const struct model *base, const struct model *m,
     }
 }
 
+/* The last statement about a lamp, a face's gloss or an object counts. */
+static inline const char *light_error(const struct model *m, const struct expected *expected)
+{
+    for (int i = 0; i < expected->lamp_count; i++) {
+        const double *scale = texture_map_lamp(&m->map, expected->lamps[i].name);
+        for (int c = 0; c < 3; c++)
+            if ((scale ? scale[c] : 1) != expected->lamps[i].scale[c]) return "a lamp has another scale";
+    }
+    for (int i = 0; i < m->map.face_count; i++) {
+        const struct texture_face *f = &m->map.faces[i];
+        if ((f->has_gloss ? f->gloss.ks : -1) != expected_gloss(expected, f->name)) return "a face has another gloss";
+    }
+    if (m->plan.object_count != expected->object_count) return "the number of objects differs";
+    for (int i = 0; i < expected->object_count; i++) {
+        const struct plan_object *o = &m->plan.objects[i];
+        if (strcmp(o->name, expected->objects[i].name) || o->removed != expected->objects[i].gone)
+            return "an object is not there, or was not removed";
+        if (!o->removed && o->placed.at[0] != expected->objects[i].x) return "an object is elsewhere";
+    }
+    return NULL;
+}
+
+static inline void check_light(const struct model *m, const struct expected *expected, const char *text,
+                               const char *edit)
+{
+    const char *error = light_error(m, expected);
+    if (!error) return;
+    explain(text, edit);
+    fail_msg("%s", error);
+}
+
 /* expected->exact must be true, and expected_shape() have been called. */
 static inline void check_clearing(const struct model *m, const struct expected *expected, const char *text,
                                   const char *edit)
@@ -230,6 +268,7 @@ static inline void check_textures(const struct model *base, const struct model *
     check_map_file(&m->map, text, edit);
     check_coverage(m, base, text, edit);
     check_points(base, m, expected, touched, rays, ray_count, shown, text, edit);
+    check_light(m, expected, text, edit);
     if (expected->exact) check_clearing(m, expected, text, edit);
 }
 

@@ -118,7 +118,8 @@ static void accept_line(struct expected *expected, const char *line)
 
 static bool is_about_textures(const char *line)
 {
-    static const char *const begins[] = {"texture ", "copy ", "colour ", "set colour ", "clear ", "keep "};
+    static const char *const begins[] = {"texture ", "copy ", "colour ",   "set colour ", "clear ",        "keep ",
+                                         "paint ",   "lamp ", "material ", "object ",     "remove object "};
     for (size_t i = 0; i < sizeof begins / sizeof *begins; i++)
         if (!strncmp(line, begins[i], strlen(begins[i]))) return true;
     return false;

@@ -3,47 +3,8 @@
 
 #include <math.h>
 
-#include "stages/build_model/unite.h"
-#include "tests/unit/build_model/scripted.h"
+#include "tests/unit/build_model/textured.h"
 #include "tests/unit/build_model/unions.h"
-
-struct made { /* an edit of a script, with its rules */
-    struct plan base_plan, plan;
-    struct solid_list solids[2];
-    struct solid_mesh base, edited;
-    struct texture_map map;
-};
-
-static void make(struct made *m, const char *text, const char *edit)
-{
-    struct err err = ERR_INIT;
-    char whole[4096];
-    *m = (struct made){0};
-    snprintf(whole, sizeof whole, "remodel-script 1\n%s", edit);
-    build(&m->base_plan, &m->solids[0], text, NULL);
-    build(&m->plan, &m->solids[1], text, whole);
-    assert_ok(solids_unite(&m->base, &m->solids[0], NULL, &err), err);
-    assert_ok(solids_unite(&m->edited, &m->solids[1], NULL, &err), err);
-    assert_ok(solid_mesh_carry_ids(&m->edited, &m->base, &err), err);
-    assert_ok(texture_rules_make(&m->map, &m->edited, &m->base, &m->plan, &err), err);
-}
-
-static void release(struct made *m)
-{
-    texture_map_release(&m->map);
-    solid_mesh_release(&m->base);
-    solid_mesh_release(&m->edited);
-    drop(&m->base_plan, &m->solids[0]);
-    drop(&m->plan, &m->solids[1]);
-}
-
-static const struct texture_face *face_of(const struct made *m, const char *name, struct vec3 p)
-{
-    for (int i = 0; i < m->map.face_count; i++)
-        if (!strcmp(m->map.faces[i].name, name)) return texture_map_find(&m->map, m->map.faces[i].id, p);
-    fail_msg("there is no face %s", name);
-    return NULL;
-}
 
 /* The face shows the unedited face `from` at `to` for its point `at`. */
 static void assert_shows(const struct made *m, const char *name, struct vec3 at, const char *from, struct vec3 to)
@@ -447,15 +408,8 @@ static void faces_that_are_not_there_are_named(void **state)
     (void)state;
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         struct err err = ERR_INIT;
-        struct made m = {0};
-        char whole[1024];
-        snprintf(whole, sizeof whole, "remodel-script 1\n%s", cases[i].edit);
-        build(&m.base_plan, &m.solids[0], ROOM, NULL);
-        build(&m.plan, &m.solids[1], ROOM, whole);
-        assert_ok(solids_unite(&m.base, &m.solids[0], NULL, &err), err);
-        assert_ok(solids_unite(&m.edited, &m.solids[1], NULL, &err), err);
-        assert_ok(solid_mesh_carry_ids(&m.edited, &m.base, &err), err);
-        assert_int_not_equal(texture_rules_make(&m.map, &m.edited, &m.base, &m.plan, &err), ST_OK);
+        struct made m;
+        assert_int_not_equal(try_make(&m, ROOM, cases[i].edit, &err), ST_OK);
         assert_err(err, ST_DATA, cases[i].words);
         release(&m);
     }
@@ -505,11 +459,7 @@ static void the_unedited_model_has_no_statements_about_textures(void **state)
                                              "clear all",
                                              "keep from 1 1 to 2 2"};
     (void)state;
-    for (size_t i = 0; i < sizeof statements / sizeof *statements; i++) {
-        char whole[1024];
-        snprintf(whole, sizeof whole, "%s%s\n", ROOM, statements[i]);
-        refused(whole, NULL, "is for edits: the unedited model shows the photographs");
-    }
+    only_for_edits(ROOM, statements, sizeof statements / sizeof *statements);
 }
 
 int main(void)
