@@ -1,0 +1,30 @@
+/* relight_params.h - parameters of relight. */
+#ifndef REMODEL_RELIGHT_PARAMS_H
+#define REMODEL_RELIGHT_PARAMS_H
+
+#include "common/base/param.h"
+
+/* name, type, default, min, max, unit, help */
+#define RELIGHT_PARAMS(X)                                                                                            \
+    X(target_error, double, 0.02, 0.0001, 1, "", "relative error of the quotient of light at which a gather ends")   \
+    X(rays, int, 8192, 64, 1 << 24, "", "most rays towards lights at a pixel, and most rays of a glossy reflection") \
+    X(light, choice, "gathered", 0, 0, "gathered|atlas",                                                             \
+      "gathered at each pixel, with sharp shadows; or that of the atlas of update_vita: fast, and the same from "    \
+      "every "                                                                                                       \
+      "camera, for films")                                                                                           \
+    X(integrals, choice, "no", 0, 0, "no|yes",                                                                       \
+      "also write the integrals of light, by lamp, from which materials and lamps can be changed without a new "     \
+      "gather")                                                                                                      \
+    X(exposure, double, 0, 0, 1e9, "",                                                                               \
+      "radiance times this is 1 at white; 0: that of the picture before it was relit")                               \
+    X(saturated, double, 0.03, 0, 1, "", "part of the pixels that a camera's own choice of exposure leaves saturated")
+
+struct relight_params {
+    RELIGHT_PARAMS(PARAM_FIELD)
+};
+#define RELIGHT_PARAMS_DEFAULT        \
+    {                                 \
+        RELIGHT_PARAMS(PARAM_DEFAULT) \
+    }
+
+#endif

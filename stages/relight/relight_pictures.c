@@ -1,0 +1,171 @@
+/* relight_pictures.c - reads what all pictures share, then relights one after another; see relight.h. */
+#include <stdio.h>
+#include <string.h>
+
+#include "common/base/file_path.h"
+#include "common/base/log.h"
+#include "common/texture/exposure.h"
+#include "common/texture/picture_list.h"
+#include "common/texture/picture_record.h"
+#include "stages/relight/integrals.h"
+#include "stages/relight/relight.h"
+#include "stages/relight/relit_files.h"
+
+enum { LAMP_RAYS = 64 };
+
+struct session {
+    struct relight_job *job;
+    struct light_change change;
+    struct camera_set set;
+    char vita[FILE_PATH], objects[FILE_PATH];
+};
+
+static enum status open_session(struct session *s, struct err *err)
+{
+    struct relight_job *j = s->job;
+    enum status st = file_path(s->vita, j->relit, "vita", "", err);
+    if (!st) st = file_path(s->objects, j->relit, "objects.txt", "", err);
+    j->files.edited_vita = s->vita;
+    j->files.object_light = s->objects;
+    if (!st) st = light_change_read(&s->change, &j->files, &j->prov, err);
+    if (!st && j->views) st = camera_set_add_camera_inputs(&j->prov, j->views, err);
+    if (!st && j->views) st = camera_set_read_cameras(&s->set, j->views, err);
+    if (!st && j->materials)
+        st = model_field_read_materials(&s->change.before, j->materials, j->views, &s->change.axes, &j->prov, err);
+    return st;
+}
+
+/* The camera in the scene's frame, for the attributes of EXR files. */
+static struct view scene_view(const struct model_picture *p, const struct model_axes *axes, const char *name)
+{
+    struct view v = {.name = name, .width = p->width, .height = p->height};
+    camera_focal(&p->lens, &v.fx, &v.fy, &v.cx, &v.cy);
+    v.cam_from_world = mat3_multiply(mat3_from_quat(p->pose.rotation), mat3_from_quat(axes->rotation));
+    v.center = world_from_model_point(axes, pose_center(&p->pose));
+    v.translation = vec3_scale(mat3_apply(v.cam_from_world, v.center), -1);
+    return v;
+}
+
+/* Reads a picture and its exposure. */
+static enum status read_picture(struct model_picture *p, double *exposure, struct relight_job *j, const char *name,
+                                struct err *err)
+{
+    char path[FILE_PATH];
+    struct picture_record record;
+    enum status st = provenance_add_in(&j->prov, "picture", j->pictures, name, ".txt", path, err);
+    if (!st) st = picture_record_read(&record, path, err);
+    if (!st) st = provenance_add_in(&j->prov, "picture", j->pictures, name, ".exr", path, err);
+    if (!st) st = model_picture_read(p, path, err);
+    if (!st && !p->has_camera)
+        st = err_set(err, ST_DATA, "%s does not say which camera drew it; draw it again with this version.", path);
+    if (!st) *exposure = record.exposure;
+    return st;
+}
+
+/* Where an object covers a pixel, the lamps light the object. */
+static enum status write_integrals(struct session *s, const struct relit *r, struct pixels *p,
+                                   const struct view *camera, struct err *err)
+{
+    struct relight_job *j = s->job;
+    char path[FILE_PATH];
+    struct lamp_light lamps = {0};
+    for (int k = 0; k < p->object_count; k++)
+        if (p->objects[k].cover >= 0.5f) p->after[p->objects[k].pixel] = p->objects[k].point;
+    enum status st = lamp_light_gather(&lamps, p, &s->change, LAMP_RAYS, err);
+    if (!st) st = file_path(path, j->out, camera->name, "-integrals.exr", err);
+    if (!st) st = integrals_write(r, p, &s->change, &lamps, camera, path, &j->prov, err);
+    lamp_light_release(&lamps);
+    return st;
+}
+
+static enum status write_frame(struct relight_job *j, const struct model_picture *picture, double exposure,
+                               const struct view *camera, struct err *err)
+{
+    char path[FILE_PATH];
+    if (file_path(path, j->out, camera->name, ".exr", err)) return err->status;
+    return exposure_write_frame(picture, exposure, camera, path, &j->prov, err);
+}
+
+static enum status relight_one(struct session *s, const char *name, struct err *err)
+{
+    struct relight_job *j = s->job;
+    struct model_picture picture = {0};
+    struct pixels pixels = {0};
+    struct relit relit = {0};
+    double exposure = 1;
+    enum status st = read_picture(&picture, &exposure, j, name, err);
+    const int view = j->views ? camera_set_find(&s->set, name) : -1;
+    const struct pixel_layers layers = {j->ids, j->depth, view < 0 ? NULL : &s->set.views[view]};
+    const bool is_own = view >= 0 && j->ids && j->depth;
+    if (!st) st = pixels_find(&pixels, &s->change, &picture, is_own ? &layers : NULL, &j->prov, err);
+    if (!st) st = relit_make(&relit, &picture, &pixels, &s->change, &j->params, err);
+    if (!st) {
+        const struct view camera = scene_view(&picture, &s->change.axes, name);
+        if (j->frames)
+            st = write_frame(j, &picture, exposure, &camera, err);
+        else if (!strcmp(j->params.integrals, "yes"))
+            st = write_integrals(s, &relit, &pixels, &camera, err);
+        if (!st && !j->frames)
+            st = relit_write(&relit, &picture, &j->params, exposure, &camera, j->out, name, &j->prov, err);
+    }
+    relit_release(&relit);
+    pixels_release(&pixels);
+    model_picture_release(&picture);
+    return st;
+}
+
+/* ------------------------------------------------------------------------------------------------------------- changes */
+
+/* A picture with changed materials and lamps, from its integrals. */
+static enum status change_one(struct relight_job *j, const char *name, struct err *err)
+{
+    char path[FILE_PATH];
+    struct model_picture picture = {0};
+    struct exr_image integrals = {0};
+    double exposure = 1;
+    enum status st = provenance_add_in(&j->prov, "relit", j->from, name, ".txt", path, err);
+    if (!st) st = relit_read_exposure(&exposure, path, err);
+    if (!st) st = provenance_add_in(&j->prov, "relit", j->from, name, ".exr", path, err);
+    if (!st) st = model_picture_read(&picture, path, err);
+    if (!st) st = provenance_add_in(&j->prov, "relit", j->from, name, "-integrals.exr", path, err);
+    if (!st) st = exr_read_any(&integrals, path, err);
+    if (!st) st = integrals_change(&picture, &integrals, j->changes, err);
+    if (!st)
+        st = changed_write(&picture, j->params.exposure > 0 ? j->params.exposure : exposure, j->out, name, &j->prov,
+                           err);
+    exr_image_release(&integrals);
+    model_picture_release(&picture);
+    return st;
+}
+
+static enum status change_all(struct relight_job *j, const struct cli_list *names, struct err *err)
+{
+    enum status st = provenance_add_file(&j->prov, "changes", j->changes, err);
+    const int inputs = j->prov.count;
+    for (int i = 0; !st && i < names->count; i++) {
+        st = change_one(j, names->items[i], err);
+        provenance_keep(&j->prov, inputs);
+    }
+    return st;
+}
+
+enum status relight(struct relight_job *j, struct err *err)
+{
+    struct session s = {.job = j};
+    struct picture_list names = {0};
+    if (j->changes) return change_all(j, &j->names, err);
+    enum status st = j->list ? picture_list_read(&names, j->pictures, err) : ST_OK;
+    for (int i = 0; !st && i < j->names.count; i++) st = picture_list_add(&names, j->names.items[i], err);
+    if (!st) st = open_session(&s, err);
+    const int inputs = j->prov.count;
+    for (int i = 0; !st && i < names.count; i++) {
+        st = relight_one(&s, names.names[i], err);
+        provenance_keep(&j->prov, inputs);
+        if (!st) log_note("relit %d of %d: %s", i + 1, names.count, names.names[i]);
+    }
+    if (!st && j->list) st = picture_list_write(&names, j->out, &j->prov, err);
+    picture_list_release(&names);
+    camera_set_release(&s.set);
+    light_change_release(&s.change);
+    return st;
+}

@@ -1,0 +1,368 @@
+/* relit.c - see relit.h.
+ *
+ * Overview. Irradiance at all pixels before and after the edit comes from one cache of irradiance with the same rays in both
+ * fields (irradiance_cache.c), or from rays at each pixel if there are more emitters than a cache can tell apart. A
+ * texture's radiance is multiplied by the quotient (light_quotient.c); a colour of the edit gets albedo / pi times the
+ * irradiance after it; a synthetic object is shaded with irradiance of its own.
+ *
+ * Gloss. A glossy surface of albedo a sends out L = a E / pi + k_s I_s. Its texture is what remains of the photograph
+ * without k_s I_s, in the light before, towards the place that the texel was photographed from; the gloss after the edit is
+ * that towards the picture's camera:
+ *   L' = (L - k_s I_s) q + k_s I_s'.
+ * Where neither the light nor the gloss has changed, L' is L bit for bit. The light itself is gathered in fields whose
+ * texels look as they were photographed: the edited model's atlas has no marks of materials, and a difference between the
+ * fields would be taken for the edit's.
+ *
+ * The light of the atlas. For films the quotient is that of the texels of both atlases (update_vita): no ray is traced, and
+ * a place looks alike in all frames.
+ *
+ * Furniture that no depth tells (free cameras) gets the quotient of the shell behind it. */
+#include "stages/relight/relit.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/base/parallel.h"
+#include "common/base/progress.h"
+#include "common/gather/specular.h"
+#include "common/math/numbers.h"
+#include "common/relight/light_quotient.h"
+
+static const float COVERED = 0.5f; /* part of a pixel from which it is an object's */
+static const double DARK =
+    1e-6; /* of the picture's mean irradiance; a place with less counts as unlit before the edit */
+static const double OFF_ALBEDO = 0.5; /* of a lamp that is off: white glass */
+
+struct apply_job {
+    struct relit *r;
+    struct model_picture *picture;
+    const struct pixels *p;
+    const struct light_change *c;
+    const struct relight_params *params;
+    const struct object_pixel *objects;
+    float (*shaded)[3]; /* of the object pixels */
+    double dark;
+    struct brdf *glosses; /* of each face of the edited model, as the edit gives it */
+    bool *has_gloss;      /* the edit gives it one */
+};
+
+void relit_release(struct relit *r)
+{
+    if (!r) return;
+    free(r->before);
+    free(r->after);
+    free(r->quotient);
+    free(r->albedo);
+    free(r->specular);
+    *r = (struct relit){0};
+}
+
+static enum status init(struct relit *r, const struct pixels *p, struct err *err)
+{
+    const size_t n = (size_t)p->width * (size_t)p->height;
+    *r = (struct relit){.width = p->width, .height = p->height};
+    r->before = calloc(n + 1, sizeof *r->before);
+    r->after = calloc(n + 1, sizeof *r->after);
+    r->quotient = calloc(n + 1, sizeof *r->quotient);
+    r->albedo = calloc(n + 1, sizeof *r->albedo);
+    if (r->before && r->after && r->quotient && r->albedo) return ST_OK;
+    return err_nomem(err, "light of the pixels", 2 * n * sizeof *r->before);
+}
+
+/* --------------------------------------------------------------------------------------------------------------- gather */
+
+static void cache_done(void *ctx, size_t points) { progress_add(ctx, (int64_t)points); }
+
+struct ray_job {
+    struct relit *r;
+    const struct pixels *p;
+    const struct light_change *c;
+    const struct relight_params *params;
+    struct progress *progress;
+};
+
+/* The same rays in both fields, as long as their noise is alike. */
+static void gather_some(void *ctx, size_t begin, size_t end, int thread)
+{
+    const struct ray_job *j = ctx;
+    (void)thread;
+    for (size_t i = begin; i < end; i++) {
+        if (!(vec3_length(j->p->before[i].normal) > 0)) continue;
+        ray_irradiance_to(&j->r->before[i], &j->c->before.plain, j->p->before[i], j->params->target_error,
+                          j->params->rays, i);
+        ray_irradiance_to(&j->r->after[i], &j->c->after.plain, j->p->after[i], j->params->target_error, j->params->rays,
+                          i);
+    }
+    cache_done(j->progress, end - begin);
+}
+
+static enum status gather(struct relit *r, const struct pixels *p, const struct light_change *c,
+                          const struct relight_params *params, struct err *err)
+{
+    struct progress progress;
+    struct irradiance_cache_stats stats;
+    const struct irradiance_cache_job job = {.field = &c->before.plain,
+                                             .points = p->before,
+                                             .other = {&c->after.plain, p->after, r->after},
+                                             .width = p->width,
+                                             .height = p->height,
+                                             .target = params->target_error,
+                                             .rays = params->rays,
+                                             .done = cache_done,
+                                             .done_ctx = &progress};
+    progress_start(&progress, "light", (int64_t)p->width * p->height, "pixels");
+    struct ray_job rays = {r, p, c, params, &progress};
+    const bool is_cached = irradiance_cache_suits(job.field);
+    enum status st = ST_OK;
+    if (is_cached)
+        st = irradiance_cache_fill(r->before, &job, &stats, err);
+    else
+        parallel_for((size_t)p->width * (size_t)p->height, 64, gather_some, &rays);
+    progress_end(&progress);
+    r->records = st || !is_cached ? 0 : stats.records;
+    return st;
+}
+
+/* ---------------------------------------------------------------------------------------------------------------- gloss */
+
+/* The reflectance of a pixel's gloss; false: it is matt. *viewpoint: from where its texel was photographed. */
+static bool gloss_of(struct brdf *after, struct brdf *before, struct vec3 *viewpoint, const struct apply_job *j,
+                     size_t i)
+{
+    const struct pixels *p = j->p;
+    *after = *before = (struct brdf){.kind = BRDF_LAMBERT};
+    *viewpoint = p->centre;
+    if (p->face[i] < 0 || p->kind[i] == PIXEL_CLUTTER || p->kind[i] == PIXEL_LAMP) return false;
+    if (p->kind[i] == PIXEL_TEXTURE) {
+        const struct vec3 at = vec3_make((double)p->texel[i][0], (double)p->texel[i][1], (double)p->texel[i][2]);
+        const int material = field_material_at(&j->c->before, p->from[i], at);
+        if (material >= 0) *before = *after = *field_material_brdf(&j->c->before, material);
+        if (material >= 0 && j->picture->made[i] != MADE_PHOTO && j->picture->made[i] != MADE_ORIGINAL)
+            field_material_viewpoint(&j->c->before, p->from[i], at, viewpoint);
+    }
+    if (j->has_gloss[p->face[i]]) *after = j->glosses[p->face[i]];
+    return before->gloss > 0 || after->gloss > 0;
+}
+
+static struct rgb reflected(const struct light_field *f, struct gather_point p, const struct brdf *b, struct vec3 from,
+                            const struct relight_params *params, uint64_t key)
+{
+    struct irradiance e = {.rays = 0};
+    if (!(b->gloss > 0)) return rgb_grey(0);
+    specular_integral(&e, f, p, b, vec3_normalize(vec3_sub(from, p.at)), params->target_error, params->rays, key);
+    return e.value;
+}
+
+/* ---------------------------------------------------------------------------------------------------------------- apply */
+
+static struct rgb get(const float *rgb) { return rgb_make((double)rgb[0], (double)rgb[1], (double)rgb[2]); }
+static void set(float *to, struct rgb rgb) { to[0] = (float)rgb.r, to[1] = (float)rgb.g, to[2] = (float)rgb.b; }
+
+static void set_quotient(struct relit *r, size_t i, struct rgb q, float a)
+{
+    set(r->quotient[i], q);
+    r->quotient[i][3] = a;
+}
+
+/* Radiance of a texture, or of furniture, after the edit. */
+static struct rgb relit_texture(struct apply_job *j, size_t i, struct rgb radiance, struct rgb gloss)
+{
+    struct relit *r = j->r;
+    bool is_bounded = !(rgb_luminance(r->before[i].value) > j->dark);
+    const struct rgb base =
+        rgb_make(fmax(radiance.r - gloss.r, 0), fmax(radiance.g - gloss.g, 0), fmax(radiance.b - gloss.b, 0));
+    const struct rgb q = light_quotient(r->before[i].value, r->after[i].value, base, &is_bounded);
+    const struct rgb albedo = light_albedo(r->before[i].value, base);
+    set_quotient(r, i, q, is_bounded ? RELIT_BOUNDED : RELIT_SURE);
+    set(r->albedo[i], rgb_make(fmin(albedo.r, LIGHT_ALBEDO_MOST), fmin(albedo.g, LIGHT_ALBEDO_MOST),
+                               fmin(albedo.b, LIGHT_ALBEDO_MOST)));
+    return rgb_multiply(base, q);
+}
+
+static bool equal(struct rgb a, struct rgb b) { return a.r == b.r && a.g == b.g && a.b == b.b; }
+
+static void apply_surface(struct apply_job *j, size_t i)
+{
+    float *pixel = j->picture->rgb + 3 * i;
+    const struct rgb was = get(pixel), after = j->r->after[i].value;
+    struct brdf brdf_after, brdf_before;
+    struct vec3 viewpoint;
+    struct rgb gloss = {0, 0, 0}, shine = {0, 0, 0};
+    if (gloss_of(&brdf_after, &brdf_before, &viewpoint, j, i)) {
+        gloss = reflected(&j->c->before.plain, j->p->before[i], &brdf_before, viewpoint, j->params, i);
+        shine = reflected(&j->c->after.plain, j->p->after[i], &brdf_after, j->p->centre, j->params, i);
+        if (j->r->specular) set(j->r->specular[i][0], gloss), set(j->r->specular[i][1], shine);
+    }
+    if (j->p->kind[i] == PIXEL_COLOUR) {
+        const struct rgb albedo = get(j->p->albedo[i]);
+        set(j->r->albedo[i], albedo);
+        set_quotient(j->r, i, rgb_grey(1), RELIT_SURE);
+        set(pixel, rgb_add(rgb_scale(rgb_multiply(albedo, after), 1 / PI), shine));
+        return;
+    }
+    const struct rgb base = relit_texture(j, i, was, gloss);
+    if (equal(get(j->r->quotient[i]), rgb_grey(1)) && equal(gloss, shine)) return;
+    set(pixel, rgb_add(base, shine));
+}
+
+static void apply_lamp(struct apply_job *j, size_t i)
+{
+    const struct rgb scale = get(j->p->albedo[i]);
+    float *pixel = j->picture->rgb + 3 * i;
+    set_quotient(j->r, i, scale, RELIT_SURE);
+    if (rgb_max(scale) > 0)
+        set(pixel, rgb_multiply(get(pixel), scale));
+    else
+        set(pixel, rgb_scale(j->r->after[i].value, OFF_ALBEDO / PI));
+}
+
+static void apply_some(void *ctx, size_t begin, size_t end, int thread)
+{
+    struct apply_job *j = ctx;
+    (void)thread;
+    for (size_t i = begin; i < end; i++) {
+        set_quotient(j->r, i, rgb_grey(1), RELIT_NONE);
+        if (j->picture->made[i] == MADE_NOTHING || j->p->kind[i] == PIXEL_KEPT) continue;
+        if (j->p->kind[i] == PIXEL_LAMP)
+            apply_lamp(j, i);
+        else
+            apply_surface(j, i);
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------------------ the atlas */
+
+static double texel_quotient(double before, double after) { return before > 0 ? after / before : 1; }
+
+static void apply_atlas_at(struct apply_job *j, size_t i)
+{
+    const struct pixels *p = j->p;
+    float *pixel = j->picture->rgb + 3 * i;
+    if (p->kind[i] != PIXEL_TEXTURE && p->kind[i] != PIXEL_COLOUR) return;
+    const int id = solid_face_id(&j->c->after.model.mesh, p->face[i]);
+    const struct field_texel now = field_atlas_look(&j->c->after.atlas, id, p->after[i].at);
+    if (now.source == LIGHT_NONE) return;
+    if (p->kind[i] == PIXEL_COLOUR) {
+        set(pixel, now.radiance);
+        set_quotient(j->r, i, rgb_grey(1), RELIT_SURE);
+        return;
+    }
+    const struct vec3 at = vec3_make((double)p->texel[i][0], (double)p->texel[i][1], (double)p->texel[i][2]);
+    const struct field_texel was = field_atlas_look(&j->c->before.atlas, p->from[i], at);
+    if (was.source == LIGHT_NONE) return;
+    const struct rgb q =
+        rgb_make(texel_quotient(was.radiance.r, now.radiance.r), texel_quotient(was.radiance.g, now.radiance.g),
+                 texel_quotient(was.radiance.b, now.radiance.b));
+    set_quotient(j->r, i, q, RELIT_SURE);
+    set(pixel, rgb_multiply(get(pixel), q));
+}
+
+static void apply_atlas(void *ctx, size_t begin, size_t end, int thread)
+{
+    struct apply_job *j = ctx;
+    (void)thread;
+    for (size_t i = begin; i < end; i++) {
+        set_quotient(j->r, i, rgb_grey(1), RELIT_NONE);
+        if (j->picture->made[i] == MADE_NOTHING) continue;
+        if (j->p->kind[i] == PIXEL_LAMP)
+            apply_lamp(j, i);
+        else
+            apply_atlas_at(j, i);
+    }
+}
+
+/* -------------------------------------------------------------------------------------------------------------- objects */
+
+static void shade_some(void *ctx, size_t begin, size_t end, int thread)
+{
+    struct apply_job *j = ctx;
+    (void)thread;
+    for (size_t k = begin; k < end; k++) {
+        const struct object_pixel *o = &j->objects[k];
+        const struct brdf *b = &j->c->objects.list.items[o->object].brdf;
+        const struct light_field *f = &j->c->after.plain;
+        const uint64_t key = (uint64_t)o->pixel;
+        struct irradiance e, s = {.rays = 0};
+        ray_irradiance_to(&e, f, o->point, j->params->target_error, j->params->rays, key);
+        if (b->gloss > 0)
+            specular_integral(&s, f, o->point, b, o->to_viewer, j->params->target_error, j->params->rays, key);
+        set(j->shaded[k], rgb_add(rgb_scale(rgb_multiply(b->albedo, e.value), 1 / PI), s.value));
+        if (o->cover < COVERED) continue;
+        j->r->after[o->pixel] = e;
+        set_quotient(j->r, (size_t)o->pixel, rgb_grey(1), RELIT_SURE);
+        if (j->r->specular) set(j->r->specular[o->pixel][1], s.value);
+    }
+}
+
+static enum status shade_objects(struct apply_job *j, struct err *err)
+{
+    const size_t count = (size_t)j->p->object_count;
+    if (!count) return ST_OK;
+    j->shaded = calloc(count, sizeof *j->shaded);
+    if (!j->shaded) return err_nomem(err, "pixels of objects", count * sizeof *j->shaded);
+    parallel_for(count, 16, shade_some, j);
+    for (size_t k = 0; k < count; k++) {
+        const struct object_pixel *o = &j->objects[k];
+        float *pixel = j->picture->rgb + 3 * (size_t)o->pixel;
+        for (int c = 0; c < 3; c++) pixel[c] = (1 - o->cover) * pixel[c] + o->cover * j->shaded[k][c];
+        if (o->cover >= COVERED || j->picture->made[o->pixel] == MADE_NOTHING) j->picture->made[o->pixel] = MADE_COLOUR;
+    }
+    free(j->shaded);
+    return ST_OK;
+}
+
+static double mean_light(const struct relit *r)
+{
+    const size_t n = (size_t)r->width * (size_t)r->height;
+    double sum = 0;
+    size_t count = 0;
+    for (size_t i = 0; i < n; i++) {
+        if (!r->before[i].rays && !(rgb_luminance(r->before[i].value) > 0)) continue;
+        sum += rgb_luminance(r->before[i].value);
+        count++;
+    }
+    return count ? sum / (double)count : 0;
+}
+
+/* Sets the gloss that the edit gives to faces; *any: some surface of the scene may be glossy. */
+static enum status find_glosses(struct apply_job *j, bool *any, struct err *err)
+{
+    const struct solid_mesh *mesh = &j->c->after.model.mesh;
+    j->glosses = calloc((size_t)mesh->face_count + 1, sizeof *j->glosses);
+    j->has_gloss = calloc((size_t)mesh->face_count + 1, sizeof *j->has_gloss);
+    if (!j->glosses || !j->has_gloss) return err_nomem(err, "faces", (size_t)mesh->face_count * sizeof *j->glosses);
+    *any = j->c->before.materials.list.count > 0;
+    for (int i = 0; i < j->c->objects.list.count; i++) *any |= j->c->objects.list.items[i].brdf.gloss > 0;
+    for (int i = 0; i < mesh->face_count; i++) {
+        const struct solid_face *f = &mesh->faces[i];
+        const struct texture_face *face =
+            texture_map_find(&j->c->map, solid_face_id(mesh, i), vec3_scale(f->normal, f->offset));
+        if (!face || !face->has_gloss) continue;
+        j->has_gloss[i] = *any = true;
+        j->glosses[i] = gloss_brdf(&face->gloss, rgb_grey(0));
+    }
+    return ST_OK;
+}
+
+enum status relit_make(struct relit *r, struct model_picture *picture, const struct pixels *p,
+                       const struct light_change *c, const struct relight_params *params, struct err *err)
+{
+    const size_t n = (size_t)p->width * (size_t)p->height;
+    struct apply_job j = {.r = r, .picture = picture, .p = p, .c = c, .params = params, .objects = p->objects};
+    bool is_glossy = false;
+    enum status st = init(r, p, err);
+    if (!st) st = find_glosses(&j, &is_glossy, err);
+    if (!st && is_glossy && !(r->specular = calloc(n + 1, sizeof *r->specular)))
+        st = err_nomem(err, "gloss", n * sizeof *r->specular);
+    const bool is_gathered = strcmp(params->light, "atlas") != 0;
+    if (!st && is_gathered) st = gather(r, p, c, params, err);
+    if (!st) {
+        j.dark = DARK * mean_light(r);
+        parallel_for(n, 256, is_gathered ? apply_some : apply_atlas, &j);
+        st = shade_objects(&j, err);
+    }
+    free(j.glosses);
+    free(j.has_gloss);
+    return st;
+}

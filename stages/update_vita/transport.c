@@ -1,0 +1,286 @@
+/* transport.c - see transport.h.
+ *
+ * Overview. From each sample, `rays` rays go by the cosine into the edited model. Where one meets a face, its colour there
+ * is added to the entries of the samples that the place lies between; what it brings from elsewhere (the sky, a texel of a
+ * face without samples) is fixed. Light of lamps and of the sky in the directions of emitters is gathered by rays towards
+ * them. The unedited model is gathered with the same random numbers, so that a sample whose surroundings are unchanged gets
+ * the same irradiance in both, and a quotient of 1 but for the order of sums. */
+#include "stages/update_vita/transport.h"
+
+#include <math.h>
+#include <stdatomic.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/base/parallel.h"
+#include "common/gather/mixture.h"
+#include "common/light/frame.h"
+#include "common/light/sobol.h"
+#include "common/math/numbers.h"
+
+enum { DIRECT_SHARE = 4 };             /* rays / this go towards emitters */
+static const double AROUND = 1.0 / 16; /* of the spacing: how far around a sample colours are averaged */
+
+/* ------------------------------------------------------------------------------------------------------------- samples */
+
+/* The mean colour of the places of one kind around a sample. */
+static void set_place(struct transport_sample *s, const struct light_change *c, int face, double spacing)
+{
+    struct vec3 x, y;
+    struct rgb sum = {0, 0, 0};
+    int count = 0;
+    light_change_place(&s->place, c, face, s->after.at);
+    frame_from_normal(s->after.normal, &x, &y);
+    for (int j = -1; j <= 1 && s->place.kind != LIGHT_PLACE_NONE; j++)
+        for (int i = -1; i <= 1; i++) {
+            struct light_place near;
+            const struct vec3 by = vec3_add(vec3_scale(x, i * AROUND * spacing), vec3_scale(y, j * AROUND * spacing));
+            light_change_place(&near, c, face, vec3_add(s->after.at, by));
+            if (near.kind != s->place.kind) continue;
+            sum = rgb_add(sum, near.colour);
+            count++;
+        }
+    if (count) s->place.colour = rgb_scale(sum, 1.0 / count);
+}
+
+static void set_places(void *ctx, size_t begin, size_t end, int thread)
+{
+    struct transport *t = ctx;
+    (void)thread;
+    for (size_t i = begin; i < end; i++) {
+        const struct net_sample *s = &t->nets->samples[i];
+        t->samples[i].after = (struct gather_point){s->at, t->nets->mesh->faces[s->face].normal};
+        set_place(&t->samples[i], t->change, s->face, t->nets->spacing);
+    }
+}
+
+static void mark_coloured(struct transport *t)
+{
+    const struct light_change *c = t->change;
+    for (int i = 0; i < t->nets->mesh->face_count; i++) {
+        const struct solid_face *f = &t->nets->mesh->faces[i];
+        const struct texture_face *listed =
+            texture_map_find(&c->map, solid_face_id(t->nets->mesh, i), vec3_scale(f->normal, f->offset));
+        for (int k = 0; listed && k < listed->rule_count; k++)
+            t->coloured[i] |= listed->rules[k].kind == TEXTURE_COLOUR;
+    }
+}
+
+enum status transport_init(struct transport *t, const struct light_change *change, const struct face_nets *nets,
+                           struct err *err)
+{
+    const struct light_objects *o = &change->objects;
+    *t = (struct transport){.change = change, .nets = nets, .count = nets->sample_count + o->element_count};
+    t->samples = calloc((size_t)t->count + 1, sizeof *t->samples);
+    t->rows = calloc((size_t)t->count + 1, sizeof *t->rows);
+    t->coloured = calloc((size_t)nets->mesh->face_count + 1, sizeof *t->coloured);
+    if (!t->samples || !t->rows || !t->coloured)
+        return err_nomem(err, "samples", (size_t)t->count * sizeof *t->samples);
+    mark_coloured(t);
+    parallel_for((size_t)nets->sample_count, 64, set_places, t);
+    for (int i = 0; i < o->element_count; i++) {
+        struct transport_sample *s = &t->samples[nets->sample_count + i];
+        s->after = o->elements[i].point;
+        s->place = (struct light_place){.kind = LIGHT_PLACE_COLOUR,
+                                        .colour = o->list.items[o->elements[i].object].brdf.albedo};
+    }
+    return ST_OK;
+}
+
+void transport_release(struct transport *t)
+{
+    if (!t) return;
+    for (int i = 0; t->rows && i < t->count; i++) free(t->rows[i].entries);
+    free(t->rows);
+    free(t->samples);
+    free(t->coloured);
+    *t = (struct transport){0};
+}
+
+/* --------------------------------------------------------------------------------------------------------------- rays */
+
+/* What the rays of one sample add up to; one for each thread. */
+struct tally {
+    double (*sums)[3]; /* by value */
+    int *touched, count;
+    bool *is_touched;
+};
+
+static void add_entry(struct tally *l, int from, struct rgb colour, double weight)
+{
+    if (!l->is_touched[from]) {
+        l->is_touched[from] = true;
+        l->touched[l->count++] = from;
+    }
+    l->sums[from][0] += weight * colour.r;
+    l->sums[from][1] += weight * colour.g;
+    l->sums[from][2] += weight * colour.b;
+}
+
+/* A colour of the edit is an albedo in the field's texels (edited_atlas.h), as it is on objects. */
+static void add_face(struct tally *l, const struct transport *t, const struct light_look *seen, struct vec3 at,
+                     struct rgb *fixed)
+{
+    const struct light_change *c = t->change;
+    const int faces = t->nets->mesh->face_count;
+    struct net_weights w;
+    if (seen->face >= faces) {
+        const int k = (seen->face - faces) / 2, side = (seen->face - faces) % 2;
+        const int element = c->objects.element[k][side];
+        const struct rgb albedo = c->objects.list.items[c->objects.object[k]].brdf.albedo;
+        add_entry(l, 2 * (t->nets->sample_count + element) + 1, albedo, 1 / PI);
+        return;
+    }
+    if (!face_nets_find(t->nets, seen->face, at, &w)) {
+        *fixed = rgb_add(*fixed, seen->radiance);
+        return;
+    }
+    bool is_colour = false;
+    if (t->coloured[seen->face]) {
+        struct light_place place;
+        light_change_place(&place, c, seen->face, at);
+        is_colour = place.kind == LIGHT_PLACE_COLOUR;
+    }
+    for (int k = 0; k < 3; k++)
+        if (w.weight[k] > 0)
+            add_entry(l, 2 * w.sample[k] + is_colour, seen->radiance, is_colour ? w.weight[k] / PI : w.weight[k]);
+}
+
+struct ray_job {
+    const struct transport *t;
+    struct tally *tally; /* NULL: all is fixed */
+    struct gather_point point;
+    const struct mixture *lights;
+    struct rgb fixed;
+};
+
+static void look(struct ray_job *j, const struct light_field *f, const struct vec3 direction[RAY_PACKET], int count)
+{
+    struct light_look seen[RAY_PACKET];
+    struct vec3 from[RAY_PACKET];
+    for (int k = 0; k < RAY_PACKET; k++) from[k] = j->point.at;
+    f->look(f->ctx, from, j->point.normal, direction, (1u << count) - 1, seen);
+    for (int k = 0; k < count; k++) {
+        if (mixture_is_light(j->lights, direction[k], seen[k].source)) continue;
+        const bool is_face = j->tally && seen[k].face >= 0 && seen[k].source != LIGHT_NONE;
+        if (is_face)
+            add_face(j->tally, j->t, &seen[k], vec3_add(j->point.at, vec3_scale(direction[k], seen[k].distance)),
+                     &j->fixed);
+        else
+            j->fixed = rgb_add(j->fixed, seen[k].radiance);
+    }
+}
+
+/* Irradiance at a point by `rays` rays, pi / rays not yet applied to what is in the tally. */
+static struct rgb gather(const struct transport *t, struct tally *tally, const struct light_field *f,
+                         struct gather_point p, int rays, uint64_t key)
+{
+    const struct rng rng = rng_make(key, "update_vita", "rays");
+    struct sobol points = sobol_make(&rng, 0, rays);
+    struct strategy cosine;
+    struct mixture lights;
+    struct irradiance direct = {.rays = 0};
+    struct vec3 direction[RAY_PACKET];
+    struct ray_job j = {.t = t, .tally = tally, .point = p, .lights = &lights};
+    int waiting = 0;
+    mixture_init(&lights, f, p, MIXTURE_LIGHTS);
+    if (lights.count) mixture_gather(&direct, &lights, rays / DIRECT_SHARE, key, false);
+    strategy_cosine(&cosine, p);
+    for (int i = 0; i < rays; i++) {
+        double u[4];
+        points.sample = (uint32_t)i;
+        sobol_group(&points, 0, u);
+        if (!strategy_sample(&cosine, u, &direction[waiting]) || ++waiting < RAY_PACKET) continue;
+        look(&j, f, direction, waiting);
+        waiting = 0;
+    }
+    if (waiting) look(&j, f, direction, waiting);
+    return rgb_add(direct.value, rgb_scale(j.fixed, PI / rays));
+}
+
+/* ---------------------------------------------------------------------------------------------------------------- rows */
+
+struct trace_job {
+    struct transport *t;
+    struct tally *tallies; /* of each thread */
+    int first, rays;
+    void (*done)(void *ctx, int64_t samples);
+    void *done_ctx;
+    atomic_bool is_short; /* of memory */
+};
+
+static int by_number(const void *a, const void *b) { return *(const int *)a - *(const int *)b; }
+
+static bool keep_entries(struct transport_row *row, struct tally *l, double scale)
+{
+    free(row->entries);
+    row->entries = malloc(((size_t)l->count + 1) * sizeof *row->entries);
+    row->count = row->entries ? l->count : 0;
+    qsort(l->touched, (size_t)l->count, sizeof *l->touched, by_number);
+    for (int i = 0; i < l->count; i++) {
+        double *sum = l->sums[l->touched[i]];
+        if (row->entries) {
+            row->entries[i].from = l->touched[i];
+            for (int c = 0; c < 3; c++) row->entries[i].rgb[c] = (float)(scale * sum[c]);
+        }
+        sum[0] = sum[1] = sum[2] = 0;
+        l->is_touched[l->touched[i]] = false;
+    }
+    l->count = 0;
+    return row->entries != NULL;
+}
+
+static void trace_some(void *ctx, size_t begin, size_t end, int thread)
+{
+    struct trace_job *j = ctx;
+    struct transport *t = j->t;
+    for (size_t n = begin; n < end; n++) {
+        const size_t i = (size_t)j->first + n;
+        const struct transport_sample *s = &t->samples[i];
+        struct transport_row *row = &t->rows[i];
+        row->before = rgb_grey(0);
+        if (s->place.kind == LIGHT_PLACE_TEXTURE)
+            row->before = gather(t, NULL, &t->change->before.field, s->place.before, j->rays, i);
+        row->fixed = gather(t, &j->tallies[thread], &t->change->after.field, s->after, j->rays, i);
+        if (!keep_entries(row, &j->tallies[thread], PI / j->rays)) j->is_short = true;
+    }
+    if (j->done) j->done(j->done_ctx, (int64_t)(end - begin));
+}
+
+enum status transport_trace(struct transport *t, int first, int rays, void (*done)(void *ctx, int64_t samples),
+                            void *done_ctx, struct err *err)
+{
+    const size_t values = 2 * (size_t)t->count + 1, threads = (size_t)parallel_threads();
+    struct trace_job j = {.t = t, .first = first, .rays = rays, .done = done, .done_ctx = done_ctx};
+    j.tallies = calloc(threads, sizeof *j.tallies);
+    enum status st = j.tallies ? ST_OK : err_nomem(err, "sums", threads * sizeof *j.tallies);
+    for (size_t k = 0; !st && k < threads; k++) {
+        struct tally *l = &j.tallies[k];
+        l->sums = calloc(values, sizeof *l->sums);
+        l->touched = calloc(values, sizeof *l->touched);
+        l->is_touched = calloc(values, sizeof *l->is_touched);
+        if (!l->sums || !l->touched || !l->is_touched) st = err_nomem(err, "sums", values * sizeof *l->sums);
+    }
+    if (!st) parallel_for((size_t)(t->count - first), 4, trace_some, &j);
+    if (!st && j.is_short) st = err_nomem(err, "what samples send to each other", sizeof(struct transport_entry));
+    for (size_t k = 0; j.tallies && k < threads; k++) {
+        free(j.tallies[k].sums);
+        free(j.tallies[k].touched);
+        free(j.tallies[k].is_touched);
+    }
+    free(j.tallies);
+    return st;
+}
+
+struct rgb transport_gather(const struct transport_row *row, const struct rgb *values)
+{
+    struct rgb sum = row->fixed;
+    for (int i = 0; i < row->count; i++) {
+        const struct transport_entry *e = &row->entries[i];
+        const struct rgb v = values[e->from];
+        sum.r += (double)e->rgb[0] * v.r;
+        sum.g += (double)e->rgb[1] * v.g;
+        sum.b += (double)e->rgb[2] * v.b;
+    }
+    return sum;
+}

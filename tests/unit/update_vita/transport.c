@@ -1,0 +1,221 @@
+/* Rays from samples: rows that sum to the irradiance, energy in a painted room, objects, the same bits for any threads. */
+#include "stages/update_vita/edited_atlas.h"
+#include "stages/update_vita/rounds.h"
+
+#include "common/base/parallel.h"
+#include "common/math/numbers.h"
+#include "tests/unit/edit_room.h"
+
+enum { RAYS = 1024 };
+
+struct traced {
+    struct light_change change;
+    struct edited_atlas atlas;
+    struct face_nets nets;
+    struct transport transport;
+};
+
+static void trace(struct traced *t, struct edit *e, double spacing)
+{
+    bool wanted[6 * MAX_BOXES];
+    struct err err = ERR_INIT;
+    *t = (struct traced){.nets = {0}};
+    edit_read(&t->change, e);
+    const struct solid_mesh *mesh = &t->change.after.model.mesh;
+    for (int i = 0; i < mesh->face_count; i++) {
+        const int id = solid_face_id(mesh, i);
+        wanted[i] = id >= FIRST && id < FIRST + 6;
+    }
+    assert_ok(edited_atlas_make(&t->atlas, &t->change, e->files.vita, &err), err);
+    assert_ok(face_nets_make(&t->nets, mesh, wanted, spacing, &err), err);
+    assert_ok(transport_init(&t->transport, &t->change, &t->nets, &err), err);
+    assert_ok(transport_trace(&t->transport, 0, RAYS, NULL, NULL, &err), err);
+}
+
+static void release(struct traced *t)
+{
+    transport_release(&t->transport);
+    face_nets_release(&t->nets);
+    edited_atlas_release(&t->atlas);
+    light_change_release(&t->change);
+}
+
+static struct rgb sum_of(const struct transport_row *row)
+{
+    struct rgb sum = row->fixed;
+    for (int i = 0; i < row->count; i++)
+        sum = rgb_add(sum, rgb_make((double)row->entries[i].rgb[0], (double)row->entries[i].rgb[1],
+                                    (double)row->entries[i].rgb[2]));
+    return sum;
+}
+
+static void rows_of_an_unchanged_room_sum_to_the_light_before(void **state)
+{
+    struct edit e = edit_of_closed_room(coloured);
+    struct traced t;
+    (void)state;
+    e.lights = "disk a 1 0 1.99 0 0 -1 0.2 50 50 50 90 0\n";
+    trace(&t, &e, 0.5);
+    assert_true(t.transport.count > 200);
+    for (int i = 0; i < t.transport.count; i++) {
+        const struct transport_row *row = &t.transport.rows[i];
+        const struct rgb sum = sum_of(row);
+        assert_near(sum.r, row->before.r, 1e-5);
+        assert_near(sum.g, row->before.g, 1e-5);
+        assert_near(sum.b, row->before.b, 1e-5);
+        for (int k = 1; k < row->count; k++) assert_true(row->entries[k - 1].from < row->entries[k].from);
+    }
+    release(&t);
+}
+
+/* Without lamps, a room of one radiance L has the irradiance pi L everywhere. */
+static void rows_of_a_uniform_room_sum_to_pi_times_its_radiance(void **state)
+{
+    struct edit e = edit_of_closed_room(plain);
+    struct traced t;
+    (void)state;
+    trace(&t, &e, 0.7);
+    for (int i = 0; i < t.transport.count; i++) {
+        assert_near(sum_of(&t.transport.rows[i]).g, 0.3 * PI, 3e-3);
+        assert_near(t.transport.rows[i].before.g, 0.3 * PI, 3e-3);
+        assert_near(t.transport.rows[i].fixed.g, 0, 0);
+    }
+    release(&t);
+}
+
+static void threads_do_not_change_a_bit(void **state)
+{
+    struct edit e = edit_of_closed_room(coloured);
+    struct traced one, two;
+    (void)state;
+    e.lights = "disk a 1 0 1.99 0 0 -1 0.2 50 50 50 90 0\n";
+    parallel_set_threads(1);
+    trace(&one, &e, 0.7);
+    parallel_set_threads(2);
+    trace(&two, &e, 0.7);
+    parallel_set_threads(0);
+    assert_int_equal(one.transport.count, two.transport.count);
+    for (int i = 0; i < one.transport.count; i++) {
+        const struct transport_row *a = &one.transport.rows[i], *b = &two.transport.rows[i];
+        assert_memory_equal(&a->before, &b->before, sizeof a->before);
+        assert_memory_equal(&a->fixed, &b->fixed, sizeof a->fixed);
+        assert_int_equal(a->count, b->count);
+        for (int k = 0; k < a->count; k++) {
+            assert_int_equal(a->entries[k].from, b->entries[k].from);
+            assert_memory_equal(a->entries[k].rgb, b->entries[k].rgb, sizeof a->entries[k].rgb);
+        }
+    }
+    release(&one);
+    release(&two);
+}
+
+/* The mean irradiance over the faces of the room, from the values that rounds found. */
+static double mean_irradiance(const struct traced *t, const struct rgb *values)
+{
+    const struct solid_mesh *mesh = &t->change.after.model.mesh;
+    double sum = 0;
+    int count = 0;
+    for (int i = 0; i < mesh->face_count; i++) {
+        const struct solid_face *f = &mesh->faces[i];
+        if (!t->nets.nets[i].count) continue;
+        for (int y = 0; y < 64; y++)
+            for (int x = 0; x < 64; x++) {
+                struct net_weights w;
+                const double a = -2 + 4 * (x + 0.5) / 64, b = -2 + 4 * (y + 0.5) / 64;
+                const struct vec3 p = f->normal.x != 0   ? vec3_make(f->offset * f->normal.x, a, b)
+                                      : f->normal.y != 0 ? vec3_make(a, f->offset * f->normal.y, b)
+                                                         : vec3_make(a, b, f->offset * f->normal.z);
+                assert_true(face_nets_find(&t->nets, i, p, &w));
+                for (int k = 0; k < 3; k++) sum += w.weight[k] * values[2 * w.sample[k] + 1].g;
+                count++;
+            }
+    }
+    return sum / count;
+}
+
+/* What a lamp sends out is what the walls absorb, and the lamp's own front, which is black: with the same irradiance on all
+ * of them, it is power / (area (1 - albedo) + front). */
+static void a_painted_room_absorbs_what_its_lamp_sends_out(void **state)
+{
+    static const float albedos[] = {0, 0.5f, 0.95f};
+    (void)state;
+    for (int k = 0; k < 3; k++) {
+        struct texture_rule paint = rule_colour(albedos[k]);
+        struct texture_face faces[6];
+        struct edit e = edit_of_closed_room(plain);
+        struct traced t;
+        struct rounds r;
+        struct err err = ERR_INIT;
+        struct solid_mesh mesh = make_slabs(closed_room, COUNT(closed_room));
+        for (int i = 0, n = 0; i < mesh.face_count; i++) {
+            const int id = solid_face_id(&mesh, i);
+            if (id >= FIRST && id < FIRST + 6)
+                faces[n++] = (struct texture_face){.name = (char *)"face",
+                                                   .normal = mesh.faces[i].normal,
+                                                   .offset = mesh.faces[i].offset,
+                                                   .rules = &paint,
+                                                   .rule_count = 1,
+                                                   .id = id};
+        }
+        for (int i = 0; i < 6; i++) /* the map is in order of id */
+            for (int n = i + 1; n < 6; n++)
+                if (faces[n].id < faces[i].id) {
+                    const struct texture_face swap = faces[i];
+                    faces[i] = faces[n], faces[n] = swap;
+                }
+        solid_mesh_release(&mesh);
+        e.map = (struct texture_map){.faces = faces, .face_count = 6};
+        e.lights = "disk a 0.3 0.2 0.5 0 0 -1 0.3 9 9 9 90 0\n"; /* hangs */
+        trace(&t, &e, 0.4);
+        assert_ok(rounds_run(&r, &t.transport, 1000, 0.002, &err), err);
+        assert_true(r.settled);
+        const double power = PI * 9 * PI * 0.3 * 0.3, area = 6 * 16;
+        const double front = PI * 0.3 * 0.3 * (albedos[k] > 0), absorbed = area * (1 - (double)albedos[k]) + front;
+        const double mean = mean_irradiance(&t, r.values);
+        print_message("albedo %g: mean irradiance %g, closed form %g\n", (double)albedos[k], mean, power / absorbed);
+        assert_near(mean, power / absorbed, 0.015);
+        rounds_release(&r);
+        release(&t);
+    }
+}
+
+static const char block[] = "object block mesh.obj %s 1 0 0 0.5 0 1 0 0.5 0 0 1 -2 matt 0.5 0.5 0.5\n";
+
+/* On the floor below an object there is no light; on the floor far from it there is about as much as before. */
+static void an_object_that_touches_the_floor_leaves_no_light_under_it(void **state)
+{
+    struct edit e = edit_of_closed_room(plain);
+    struct traced t;
+    int under = 0;
+    (void)state;
+    e.objects = block;
+    e.mesh = cube;
+    trace(&t, &e, 0.25);
+    assert_int_equal(t.transport.count, t.nets.sample_count + t.change.objects.element_count);
+    const int floor = face_named(&t.change.after.model.mesh, "floor/5");
+    for (int i = 0; i < t.transport.count; i++) {
+        const struct rgb sum = sum_of(&t.transport.rows[i]);
+        const struct vec3 p = t.transport.samples[i].after.at;
+        assert_true(isfinite(sum.r) && sum.r >= 0 && sum.r < 0.31 * PI);
+        if (i >= t.nets.sample_count || t.nets.samples[i].face != floor) continue;
+        if (!(p.x > 0.55 && p.x < 1.45 && p.y > 0.55 && p.y < 1.45)) continue;
+        under++;
+        for (int k = 0; k < t.transport.rows[i].count; k++) /* the inside of the block alone */
+            assert_true(t.transport.rows[i].entries[k].from >= 2 * t.nets.sample_count);
+        assert_near(rgb_max(t.transport.rows[i].fixed), 0, 0);
+    }
+    assert_true(under >= 9);
+    release(&t);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(rows_of_an_unchanged_room_sum_to_the_light_before),
+        cmocka_unit_test(rows_of_a_uniform_room_sum_to_pi_times_its_radiance),
+        cmocka_unit_test(threads_do_not_change_a_bit),
+        cmocka_unit_test(a_painted_room_absorbs_what_its_lamp_sends_out),
+        cmocka_unit_test(an_object_that_touches_the_floor_leaves_no_light_under_it),
+    };
+    return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
+}
