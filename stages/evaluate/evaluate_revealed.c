@@ -10,45 +10,6 @@
 
 enum { MIN_REVEALED = 200 }; /* pixels of a picture, for a value of its own */
 
-/* True ids and depths before and after the edit; false: the truth lacks some of them. */
-static bool surface_files(char paths[4][FILE_PATH], const struct evaluation *e, const struct true_set *set,
-                          const char *name)
-{
-    return true_plain_file(paths[0], e, "ids", name) && true_set_file(paths[1], set, "ids", name) &&
-           true_plain_file(paths[2], e, "depth", name) && true_set_file(paths[3], set, "depth", name);
-}
-
-struct planes { /* of a picture */
-    uint32_t *ids[2];
-    float *depths[2];
-    uint8_t *mask;
-};
-
-static void planes_release(struct planes *p)
-{
-    for (int k = 0; k < 2; k++) {
-        free(p->ids[k]);
-        free(p->depths[k]);
-    }
-    free(p->mask);
-}
-
-static enum status planes_read(struct planes *p, struct evaluation *e, char paths[4][FILE_PATH],
-                               const struct picture_map *map, struct err *err)
-{
-    const size_t pixels = (size_t)map->lens.width * (size_t)map->lens.height;
-    enum status st = ST_OK;
-    p->mask = malloc(pixels);
-    for (int k = 0; !st && k < 2; k++) {
-        p->ids[k] = malloc(pixels * sizeof *p->ids[k]);
-        p->depths[k] = malloc(pixels * sizeof *p->depths[k]);
-        if (!p->mask || !p->ids[k] || !p->depths[k]) st = err_nomem(err, "ids and depths", pixels * sizeof *p->ids[k]);
-        if (!st) st = true_ids_seen(p->ids[k], e, paths[k], map, err);
-        if (!st) st = true_depths_seen(p->depths[k], e, paths[2 + k], map, err);
-    }
-    return st;
-}
-
 struct revealed_sums {
     double square, pixels; /* sums over pictures, weighted by revealed pixels */
     size_t all;
@@ -58,18 +19,19 @@ struct revealed_sums {
 static enum status measure(struct evaluation *e, const struct renders *list, struct render *r, struct revealed_sums *s,
                            struct err *err)
 {
-    char paths[4][FILE_PATH];
-    struct planes planes = {{NULL, NULL}, {NULL, NULL}, NULL};
+    struct surface_planes planes;
     struct image truth = {0};
     double psnr;
-    if (!surface_files(paths, e, list->set, r->of->name)) return ST_OK;
+    bool found;
     const size_t pixels = (size_t)r->map.lens.width * (size_t)r->map.lens.height;
-    enum status st = render_read(e, list, r, &truth, err);
-    if (!st) st = planes_read(&planes, e, paths, &r->map, err);
-    if (!st) {
+    uint8_t *mask = malloc(pixels);
+    enum status st = surface_planes_read(&planes, &found, e, list->set, r->of->name, &r->map, err);
+    if (!st && !mask) st = err_nomem(err, "a mask", pixels);
+    if (!st && found) st = render_read(e, list, r, &truth, err);
+    if (!st && found) {
         const struct true_surface surface = {{planes.ids[0], planes.ids[1]}, {planes.depths[0], planes.depths[1]}};
-        const size_t revealed = revealed_find(planes.mask, &surface, pixels);
-        const struct radiance_pixels p = {r->picture.rgb.data, truth.data, planes.mask, pixels, r->scale, e->white};
+        const size_t revealed = revealed_find(mask, &surface, pixels);
+        const struct radiance_pixels p = {r->picture.rgb.data, truth.data, mask, pixels, r->scale, e->white};
         s->pictures++;
         s->all += pixels;
         if (revealed && revealed_psnr(&psnr, &p, planes.ids[1])) {
@@ -79,7 +41,8 @@ static enum status measure(struct evaluation *e, const struct renders *list, str
                 st = evaluation_metric(e, r->name, list->set->prefix, "revealed_psnr", psnr, "dB", "higher", err);
         }
     }
-    planes_release(&planes);
+    free(mask);
+    surface_planes_release(&planes);
     image_release(&truth);
     linear_picture_release(&r->picture);
     return st;

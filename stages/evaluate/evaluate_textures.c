@@ -154,12 +154,6 @@ static uint64_t texels_in(const struct atlas_page *page, const struct atlas_tile
     return count;
 }
 
-/* The truth shows what is behind a pane of glass, not in its plane. */
-static bool is_glass(const struct solid_mesh *mesh, int face)
-{
-    return !strncmp(mesh->bodies[mesh->faces[face].body].name, "glass/", 6);
-}
-
 static enum status add_tile(struct texture_result *r, const struct texture_job *job, const struct texel_truth *truth,
                             const struct atlas_page *page, const struct atlas_tile *tile, struct err *err)
 {
@@ -168,7 +162,7 @@ static enum status add_tile(struct texture_result *r, const struct texture_job *
     const size_t count = (size_t)tile->width * (size_t)tile->height;
     texture_seams_add(&r->seams, page, tile, job->compared ? truth->white / truth->scale : 1);
     if (face < 0) r->unknown_tiles++;
-    if (face < 0 || !job->compared || is_glass(&job->textures.mesh, face)) return ST_OK;
+    if (face < 0 || !job->compared || solid_face_is_pane(&job->textures.mesh, face)) return ST_OK;
     struct texel_facts *facts = malloc(count * sizeof *facts);
     if (!facts) return err_nomem(err, "texels", count * sizeof *facts);
     const struct solid_face *f = &job->textures.mesh.faces[face];

@@ -76,6 +76,8 @@ enum status evaluate(const struct evaluate_inputs *from, const char *out, const 
     if (!st && truth) st = evaluate_radiance(&e, err);
     if (!st && truth) st = evaluate_renders(&e, err);
     if (!st && truth) st = evaluate_revealed(&e, err);
+    if (!st && truth) st = evaluate_relit(&e, err);
+    if (!st) st = evaluate_films(&e, err);
     if (!st && truth) st = evaluate_irradiance(&e, err);
     if (!st && truth) st = evaluate_shell(&e, err);
     if (!st) st = evaluate_textures(&e, err);

@@ -45,13 +45,15 @@ enum status evaluate_faces(struct evaluation *e, struct err *err);        /* mod
 enum status evaluate_depths(struct evaluation *e, struct err *err);       /* depth.* */
 enum status evaluate_pictures(struct evaluation *e, struct err *err);     /* holdout.* */
 
-enum status evaluate_radiance(struct evaluation *e, struct err *err);         /* radiance.*; sets radiance_scale */
-enum status evaluate_renders(struct evaluation *e, struct err *err);          /* novel.*, edited.E.* */
-enum status evaluate_revealed(struct evaluation *e, struct err *err);         /* edited.E.revealed* */
-enum status evaluate_irradiance(struct evaluation *e, struct err *err);       /* irradiance.* */
-enum status evaluate_shell(struct evaluation *e, struct err *err);            /* shell.* */
-enum status evaluate_textures(struct evaluation *e, struct err *err);         /* texture.* */
-enum status evaluate_texture_cover(struct evaluation *e, struct err *err);    /* texture.covered */
+enum status evaluate_radiance(struct evaluation *e, struct err *err);      /* radiance.*; sets radiance_scale */
+enum status evaluate_renders(struct evaluation *e, struct err *err);       /* novel.*, edited.E.* */
+enum status evaluate_revealed(struct evaluation *e, struct err *err);      /* edited.E.revealed* */
+enum status evaluate_relit(struct evaluation *e, struct err *err);         /* edited.E.relit_*, edited.E.unlit_psnr */
+enum status evaluate_films(struct evaluation *e, struct err *err);         /* edited.E.flicker* */
+enum status evaluate_irradiance(struct evaluation *e, struct err *err);    /* irradiance.* */
+enum status evaluate_shell(struct evaluation *e, struct err *err);         /* shell.* */
+enum status evaluate_textures(struct evaluation *e, struct err *err);      /* texture.* */
+enum status evaluate_texture_cover(struct evaluation *e, struct err *err); /* texture.covered */
 enum status evaluate_heldout_textures(struct evaluation *e, struct err *err); /* texture.heldout_* */
 
 /* metric_add() of "PREFIX.NAME"; ST_INTERNAL: a longer name than a table holds. */

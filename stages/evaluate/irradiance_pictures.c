@@ -12,29 +12,25 @@
 #include <string.h>
 
 #include "stages/evaluate/irradiance_ratio.h"
+#include "stages/evaluate/model_pixels.h"
 #include "stages/evaluate/radiance_error.h"
 #include "stages/evaluate/renders.h"
-#include "stages/evaluate/traced_model.h"
-
-enum { ALL, ON_MODEL, OTHER, PARTS };
-static const char *const suffixes[PARTS] = {"", "_model", "_other"};
+#include "stages/evaluate/true_planes.h"
 
 struct pictures_job {
     struct evaluation *e;
-    struct model_rays model;
-    struct model_frame frame;
-    bool has_model;
+    struct model_pixels model;
     double scale; /* of found irradiance */
-    struct radiance_error errors[PARTS];
-    struct ratio_error ratios[PARTS];
+    struct radiance_error errors[PICTURE_PARTS];
+    struct ratio_error ratios[PICTURE_PARTS];
     int before_count, pair_count; /* pictures that were measured */
     uint64_t true_pixels;         /* of the pictures before an edit, with irradiance */
 };
 
 struct compared { /* a found picture and its truth, pixel by pixel */
     struct linear_picture found;
-    float *truth;         /* R G B A; A 0: no true irradiance */
-    uint8_t *part[PARTS]; /* NULL of ON_MODEL and OTHER: unknown */
+    float *truth;                 /* R G B A; A 0: no true irradiance */
+    uint8_t *part[PICTURE_PARTS]; /* NULL of PART_MODEL and PART_OTHER: unknown */
     size_t count;
 };
 
@@ -42,7 +38,7 @@ static void compared_release(struct compared *c)
 {
     linear_picture_release(&c->found);
     free(c->truth);
-    for (int k = 0; k < PARTS; k++) free(c->part[k]);
+    for (int k = 0; k < PICTURE_PARTS; k++) free(c->part[k]);
     *c = (struct compared){0};
 }
 
@@ -55,49 +51,7 @@ static enum status add_true_input(struct evaluation *e, const char *path, struct
     return provenance_add_file(e->prov, name, path, err);
 }
 
-/* The true depth of a photo or of a witness; false if there is none. */
-static bool depth_file(char path[FILE_PATH], const struct evaluation *e, const char *name)
-{
-    static const char *const folders[] = {"depth", "novel/depth"};
-    for (int k = 0; k < 2; k++) {
-        const int n = snprintf(path, FILE_PATH, "%s/%s/%s.exr", e->truth_folder, folders[k], name);
-        if (n > 0 && n < FILE_PATH && path_is_file(path)) return true;
-    }
-    return false;
-}
-
-/* Marks the found pixels on the model and the others. index: of the true pixel of each found one. */
-static enum status find_parts(struct pictures_job *job, struct compared *c, const struct true_picture *of,
-                              const int32_t *index, const char *depth, struct err *err)
-{
-    const size_t pixels = (size_t)of->lens.width * (size_t)of->lens.height;
-    struct true_photo photo = {.lens = of->lens, .pose = of->pose};
-    struct vec3 *points = malloc(pixels * sizeof *points);
-    uint32_t *ids = malloc(pixels * sizeof *ids);
-    float *distance = malloc(pixels * sizeof *distance);
-    for (int k = ON_MODEL; k < PARTS; k++) c->part[k] = calloc(c->count, 1);
-    enum status st = points && ids && distance && c->part[ON_MODEL] && c->part[OTHER]
-                         ? ST_OK
-                         : err_nomem(err, "surfaces of the model", pixels * sizeof *points);
-    if (!st) st = add_true_input(job->e, depth, err);
-    if (!st) st = true_photo_read_depth(&photo, depth, job->e->params->far, err);
-    if (!st) {
-        true_points(points, &photo);
-        traced_model_faces(ids, distance, &job->model, &job->frame, of, points);
-        for (size_t i = 0; i < c->count; i++) {
-            if (index[i] < 0 || !(vec3_length(points[index[i]]) > 0)) continue;
-            const bool on = ids[index[i]] && distance[index[i]] <= job->e->params->surface_distance;
-            c->part[on ? ON_MODEL : OTHER][i] = c->part[ALL][i];
-        }
-    }
-    free(photo.depth);
-    free(points);
-    free(ids);
-    free(distance);
-    return st;
-}
-
-/* The irradiance of the true pixel of each found one. Sets part[ALL], where something was found and is true. */
+/* The irradiance of the true pixel of each found one. Sets part[PART_ALL], where something was found and is true. */
 static enum status read_truth(struct pictures_job *job, struct compared *c, const struct render *r, int32_t *index,
                               struct err *err)
 {
@@ -113,7 +67,7 @@ static enum status read_truth(struct pictures_job *job, struct compared *c, cons
         const float *from = truth.rgb.data + 3 * (size_t)index[i];
         memcpy(c->truth + 4 * i, from, 3 * sizeof *from);
         c->truth[4 * i + 3] = from[0] + from[1] + from[2] > 0;
-        c->part[ALL][i] = c->truth[4 * i + 3] > 0;
+        c->part[PART_ALL][i] = c->truth[4 * i + 3] > 0;
     }
     linear_picture_release(&truth);
     return st;
@@ -126,18 +80,18 @@ static enum status read_compared(struct compared *c, struct pictures_job *job, c
     const struct camera *lens = &r->map.lens;
     *c = (struct compared){.count = (size_t)lens->width * (size_t)lens->height};
     c->truth = calloc(4 * c->count, sizeof *c->truth);
-    c->part[ALL] = calloc(c->count, 1);
+    c->part[PART_ALL] = calloc(c->count, 1);
     int32_t *index = malloc(c->count * sizeof *index);
-    enum status st = c->truth && c->part[ALL] && index ? ST_OK : err_nomem(err, "irradiance", 5 * c->count);
-    if (!st) st = file_path(name, "rendered", list->set->where, strrchr(r->path, '/'), err);
+    enum status st = c->truth && c->part[PART_ALL] && index ? ST_OK : err_nomem(err, "irradiance", 5 * c->count);
+    if (!st) st = file_path(name, "rendered", list->where, strrchr(r->path, '/'), err);
     if (!st) st = provenance_add_file(job->e->prov, name, r->path, err);
     if (!st) st = linear_picture_read(&c->found, r->path, err);
     if (!st && (c->found.rgb.width != lens->width || c->found.rgb.height != lens->height))
         st = err_set(err, ST_DATA, "%s is %d x %d px, but its camera %d x %d; render it again.", r->path,
                      c->found.rgb.width, c->found.rgb.height, lens->width, lens->height);
     if (!st) st = read_truth(job, c, r, index, err);
-    if (!st && job->has_model && depth_file(depth, job->e, r->of->name))
-        st = find_parts(job, c, r->of, index, depth, err);
+    if (!st && job->model.known && true_plain_file(depth, job->e, "depth", r->of->name))
+        st = model_pixels_find(c->part, &job->model, job->e, r->of, depth, index, c->count, err);
     free(index);
     if (st) compared_release(c);
     return st;
@@ -149,16 +103,16 @@ static enum status add_metric(struct evaluation *e, const char *view, const char
                               const char *unit, const char *direction, struct err *err)
 {
     char text[64];
-    snprintf(text, sizeof text, "%s%s", name, suffixes[part]);
+    snprintf(text, sizeof text, "%s%s", name, picture_part_suffixes[part]);
     return evaluation_metric(e, view, "irradiance", text, value, unit, direction, err);
 }
 
 /* The errors of a picture, or of all pictures (view NULL). */
-static enum status add_picture_errors(struct evaluation *e, const char *view, const struct radiance_error errors[PARTS],
-                                      struct err *err)
+static enum status add_picture_errors(struct evaluation *e, const char *view,
+                                      const struct radiance_error errors[PICTURE_PARTS], struct err *err)
 {
     enum status st = ST_OK;
-    for (int k = 0; !st && k < PARTS; k++) {
+    for (int k = 0; !st && k < PICTURE_PARTS; k++) {
         double rms;
         if (radiance_error_rms(&errors[k], &rms))
             st = add_metric(e, view, "picture_rms", k, 100 * rms, "%", "lower", err);
@@ -169,11 +123,11 @@ static enum status add_picture_errors(struct evaluation *e, const char *view, co
     return st;
 }
 
-static enum status add_ratio_errors(struct evaluation *e, const char *view, const struct ratio_error ratios[PARTS],
-                                    struct err *err)
+static enum status add_ratio_errors(struct evaluation *e, const char *view,
+                                    const struct ratio_error ratios[PICTURE_PARTS], struct err *err)
 {
     enum status st = ST_OK;
-    for (int k = 0; !st && k < PARTS; k++) {
+    for (int k = 0; !st && k < PICTURE_PARTS; k++) {
         const struct ratio_error *r = &ratios[k];
         if (!r->pixels || !(r->reference > 0)) continue;
         st = add_metric(e, view, "ratio_rms", k, 100 * sqrt(r->square / r->reference), "%", "lower", err) ||
@@ -181,9 +135,9 @@ static enum status add_ratio_errors(struct evaluation *e, const char *view, cons
              add_metric(e, view, "ratio_error50", k, 100 * quantiles_get(&r->errors, 0.5), "%", "lower", err) ||
              add_metric(e, view, "ratio_error90", k, 100 * quantiles_get(&r->errors, 0.9), "%", "lower", err);
     }
-    const uint64_t missing = ratios[ALL].missing, all = missing + ratios[ALL].pixels;
+    const uint64_t missing = ratios[PART_ALL].missing, all = missing + ratios[PART_ALL].pixels;
     if (!st && all)
-        st = add_metric(e, view, "ratio_missing", ALL, 100 * (double)missing / (double)all, "%", "lower", err);
+        st = add_metric(e, view, "ratio_missing", PART_ALL, 100 * (double)missing / (double)all, "%", "lower", err);
     return st ? err->status : ST_OK;
 }
 
@@ -191,10 +145,10 @@ static enum status add_ratio_errors(struct evaluation *e, const char *view, cons
 static enum status measure_picture(struct pictures_job *job, const struct compared *c, const char *view, bool sum,
                                    struct err *err)
 {
-    struct radiance_error errors[PARTS] = {{0}};
+    struct radiance_error errors[PICTURE_PARTS] = {{0}};
     uint8_t *mask = malloc(c->count);
     enum status st = mask ? ST_OK : err_nomem(err, "a mask", c->count);
-    for (int k = 0; !st && k < PARTS; k++) {
+    for (int k = 0; !st && k < PICTURE_PARTS; k++) {
         st = radiance_error_init(&errors[k], err);
         if (st || !c->part[k]) continue;
         for (size_t i = 0; i < c->count; i++) mask[i] = c->part[k][i] && c->found.known[i];
@@ -202,9 +156,9 @@ static enum status measure_picture(struct pictures_job *job, const struct compar
         radiance_error_add(&errors[k], &p);
         if (sum) radiance_error_add(&job->errors[k], &p);
     }
-    for (size_t i = 0; !st && sum && i < c->count; i++) job->true_pixels += c->part[ALL][i];
+    for (size_t i = 0; !st && sum && i < c->count; i++) job->true_pixels += c->part[PART_ALL][i];
     if (!st) st = add_picture_errors(job->e, view, errors, err);
-    for (int k = 0; k < PARTS; k++) radiance_error_release(&errors[k]);
+    for (int k = 0; k < PICTURE_PARTS; k++) radiance_error_release(&errors[k]);
     free(mask);
     return st;
 }
@@ -218,15 +172,15 @@ static float *without_alpha(const struct compared *c)
 }
 
 /* Adds the ratio of two pictures to the sums of the job and of the edit, and the picture's own to the table. */
-static enum status measure_ratio(struct pictures_job *job, struct ratio_error of_edit[PARTS], const struct compared *a,
-                                 const struct compared *b, const char *view, struct err *err)
+static enum status measure_ratio(struct pictures_job *job, struct ratio_error of_edit[PICTURE_PARTS],
+                                 const struct compared *a, const struct compared *b, const char *view, struct err *err)
 {
-    struct ratio_error own[PARTS] = {{0}};
+    struct ratio_error own[PICTURE_PARTS] = {{0}};
     uint8_t *known = malloc(a->count);
     float *before = without_alpha(a), *after = without_alpha(b);
     enum status st = known && before && after ? ST_OK : err_nomem(err, "ratios", 6 * a->count * sizeof *before);
     for (size_t i = 0; !st && i < a->count; i++) known[i] = a->found.known[i] && b->found.known[i];
-    for (int k = 0; !st && k < PARTS; k++) {
+    for (int k = 0; !st && k < PICTURE_PARTS; k++) {
         st = ratio_error_init(&own[k], err);
         if (st || !a->part[k]) continue;
         const struct ratio_pixels p = {a->found.rgb.data, b->found.rgb.data, known, before, after,
@@ -236,7 +190,7 @@ static enum status measure_ratio(struct pictures_job *job, struct ratio_error of
         ratio_error_add(&job->ratios[k], &p);
     }
     if (!st) st = add_ratio_errors(job->e, view, own, err);
-    for (int k = 0; k < PARTS; k++) ratio_error_release(&own[k]);
+    for (int k = 0; k < PICTURE_PARTS; k++) ratio_error_release(&own[k]);
     free(known);
     free(before);
     free(after);
@@ -271,32 +225,17 @@ static enum status find_pictures(struct renders *list, struct evaluation *e, con
     return st;
 }
 
-static bool same_camera(const struct picture_map *a, const struct picture_map *b)
+static enum status measure_pair(struct pictures_job *job, struct ratio_error of_edit[PICTURE_PARTS],
+                                const struct renders *list, const struct render *r, const struct renders *before,
+                                int *unpaired, struct err *err)
 {
-    bool same = a->lens.width == b->lens.width && a->lens.height == b->lens.height && a->lens.model == b->lens.model &&
-                !memcmp(a->lens.params, b->lens.params, sizeof a->lens.params);
-    for (int i = 0; i < 9; i++)
-        same = same && fabs(a->true_from_picture.m[i / 3][i % 3] - b->true_from_picture.m[i / 3][i % 3]) < 1e-9;
-    return same;
-}
-
-static const struct render *find_before(const struct renders *before, const struct render *after)
-{
-    for (int i = 0; i < before->count; i++)
-        if (!strcmp(before->list[i].name, after->name)) return &before->list[i];
-    return NULL;
-}
-
-static enum status measure_pair(struct pictures_job *job, struct ratio_error of_edit[PARTS], const struct renders *list,
-                                const struct render *r, const struct renders *before, int *unpaired, struct err *err)
-{
-    const struct render *first = find_before(before, r);
+    const struct render *first = renders_partner(before, r);
     struct compared a = {0}, b = {0};
     char view[400];
     snprintf(view, sizeof view, "%s/%s", list->set->where, r->name);
     enum status st = read_compared(&b, job, list, r, err);
     if (!st) st = measure_picture(job, &b, view, false, err);
-    if (!st && (!first || !same_camera(&first->map, &r->map))) {
+    if (!st && !first) {
         (*unpaired)++;
     } else if (!st) {
         st = read_compared(&a, job, before, first, err);
@@ -314,11 +253,11 @@ static enum status measure_edit(struct pictures_job *job, const char *where, con
     struct evaluation *e = job->e;
     struct true_set set = {0};
     struct renders list = {0};
-    struct ratio_error of_edit[PARTS] = {{0}};
+    struct ratio_error of_edit[PICTURE_PARTS] = {{0}};
     int unpaired = 0;
     enum status st = true_set_read(&set, e->truth_folder, where, e->prov, err);
     if (!st && set.count) st = find_pictures(&list, e, &set, err);
-    for (int k = 0; !st && k < PARTS; k++) st = ratio_error_init(&of_edit[k], err);
+    for (int k = 0; !st && k < PICTURE_PARTS; k++) st = ratio_error_init(&of_edit[k], err);
     for (int i = 0; !st && i < list.count; i++)
         st = measure_pair(job, of_edit, &list, &list.list[i], before, &unpaired, err);
     if (!st) st = add_ratio_errors(e, where, of_edit, err);
@@ -327,7 +266,7 @@ static enum status measure_edit(struct pictures_job *job, const char *where, con
             &e->table, err,
             "skipped the ratios of %d pictures of %s: irradiance/ has no picture of the same name and camera", unpaired,
             set.prefix);
-    for (int k = 0; k < PARTS; k++) ratio_error_release(&of_edit[k]);
+    for (int k = 0; k < PICTURE_PARTS; k++) ratio_error_release(&of_edit[k]);
     renders_release(&list);
     true_set_release(&set);
     return st;
@@ -394,26 +333,10 @@ static enum status measure_before(struct pictures_job *job, const struct renders
     if (st || !job->before_count) return st;
     if (evaluation_metric(job->e, NULL, "irradiance", "pictures", job->before_count, "1", "none", err))
         return err->status;
-    const double all = (double)job->true_pixels, found = (double)job->errors[ALL].pixels;
-    if (all > 0 && add_metric(job->e, NULL, "picture_missing", ALL, 100 * (all - found) / all, "%", "lower", err))
+    const double all = (double)job->true_pixels, found = (double)job->errors[PART_ALL].pixels;
+    if (all > 0 && add_metric(job->e, NULL, "picture_missing", PART_ALL, 100 * (all - found) / all, "%", "lower", err))
         return err->status;
     return add_picture_errors(job->e, NULL, job->errors, err);
-}
-
-static enum status read_model(struct pictures_job *job, struct err *err)
-{
-    static const struct mat3 same = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-    struct evaluation *e = job->e;
-    char path[FILE_PATH];
-    if (file_path(path, e->folder, "model/model.txt", "", err)) return err->status;
-    if (!e->aligned || !path_is_file(path))
-        return metric_note(&e->table, err, "skipped pictures of irradiance on surfaces of the model: %s",
-                           e->aligned ? "there is no model/model.txt" : "the cameras do not tell where the truth is");
-    enum status st = evaluation_input(e, path, "model", "model.txt", "", err);
-    if (!st) st = model_rays_read(&job->model, path, MODEL_WITHOUT_GLASS, err);
-    if (!st) st = model_frame_read(&job->frame, e, same, vec3_make(0, 0, 0), err);
-    job->has_model = !st;
-    return st;
 }
 
 enum status evaluate_irradiance_pictures(struct evaluation *e, struct err *err)
@@ -424,20 +347,20 @@ enum status evaluate_irradiance_pictures(struct evaluation *e, struct err *err)
     enum status st = true_set_read(&set, e->truth_folder, "irradiance", e->prov, err);
     if (!st && !set.count)
         return metric_note(&e->table, err, "skipped pictures of irradiance: the truth has none (irradiance/NAME.exr)");
-    for (int k = 0; !st && k < PARTS; k++)
+    for (int k = 0; !st && k < PICTURE_PARTS; k++)
         st = radiance_error_init(&job.errors[k], err) ? err->status : ratio_error_init(&job.ratios[k], err);
     if (!st) st = find_pictures(&before, e, &set, err);
     if (!st && before.count) {
-        st = read_model(&job, err);
+        st = model_pixels_read(&job.model, e, "model", "pictures of irradiance", err);
         if (!st) st = find_scale(&job, &before, err);
         if (!st) st = measure_before(&job, &before, err);
         if (!st) st = measure_edits(&job, &before, err);
     }
-    for (int k = 0; k < PARTS; k++) {
+    for (int k = 0; k < PICTURE_PARTS; k++) {
         radiance_error_release(&job.errors[k]);
         ratio_error_release(&job.ratios[k]);
     }
-    model_rays_release(&job.model);
+    model_pixels_release(&job.model);
     renders_release(&before);
     true_set_release(&set);
     return st;

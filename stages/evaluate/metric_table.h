@@ -10,9 +10,11 @@
 
 #include "common/base/provenance.h"
 
+enum { METRIC_NAME = 96 }; /* bytes of a name, with that of an edit */
+
 struct metric {
     char *view; /* owned; "" for the scene */
-    char name[64];
+    char name[METRIC_NAME];
     double value;
     const char *unit, *direction; /* string literals */
 };

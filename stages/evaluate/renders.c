@@ -1,6 +1,7 @@
 /* renders.c - see renders.h. */
 #include "stages/evaluate/renders.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -47,8 +48,8 @@ static enum status find_own(struct renders *list, struct evaluation *e, const ch
     char path[FILE_PATH], name[256], photo[256];
     int strange = 0, far = 0;
     double farthest = 0;
-    char as[80];
-    snprintf(as, sizeof as, "rendered/%s", list->set->where);
+    char as[96];
+    snprintf(as, sizeof as, "rendered/%.70s", list->where);
     enum status st = provenance_add_in(e->prov, as, folder, "cameras.txt", "", NULL, err);
     if (!st) st = provenance_add_in(e->prov, as, folder, "images.txt", "", NULL, err);
     if (!st) st = sfm_model_read_cameras(&m, folder, err);
@@ -103,20 +104,21 @@ static enum status find_views(struct renders *list, struct evaluation *e, const 
     return st;
 }
 
-enum status renders_find(struct renders *list, struct evaluation *e, const struct true_set *set, struct err *err)
+enum status renders_find_in(struct renders *list, struct evaluation *e, const struct true_set *set, const char *folder,
+                            const char *where, struct err *err)
 {
     struct metric_table *t = &e->table;
-    char folder[FILE_PATH], images[FILE_PATH], path[FILE_PATH];
+    char images[FILE_PATH], path[FILE_PATH];
     int with_truth = 0, rendered = 0;
     *list = (struct renders){.set = set};
+    snprintf(list->where, sizeof list->where, "%s", where);
     for (int i = 0; i < set->count; i++) with_truth += true_set_file(path, set, "hdr", set->pictures[i].name);
     if (!with_truth)
         return metric_note(t, err, "skipped pictures of %s: the truth has none (hdr/NAME.exr)", set->prefix);
-    if (file_path(folder, e->rendered, set->where, "", err) || file_path(images, folder, "images.txt", "", err))
-        return err->status;
+    if (file_path(images, folder, "images.txt", "", err)) return err->status;
     if (!path_is_folder(folder))
         return metric_note(t, err, "skipped pictures of %s: there is no folder %s of rendered pictures", set->prefix,
-                           set->where);
+                           where);
     list->own_cameras = path_is_file(images);
     if (list->own_cameras && !e->aligned)
         return metric_note(t, err, "skipped pictures of %s: the cameras do not tell where the truth is", set->prefix);
@@ -131,6 +133,30 @@ enum status renders_find(struct renders *list, struct evaluation *e, const struc
                        with_truth - rendered, with_truth, set->prefix);
 }
 
+enum status renders_find(struct renders *list, struct evaluation *e, const struct true_set *set, struct err *err)
+{
+    char folder[FILE_PATH];
+    if (file_path(folder, e->rendered, set->where, "", err)) return err->status;
+    return renders_find_in(list, e, set, folder, set->where, err);
+}
+
+static bool same_camera(const struct picture_map *a, const struct picture_map *b)
+{
+    bool same = a->lens.width == b->lens.width && a->lens.height == b->lens.height && a->lens.model == b->lens.model &&
+                !memcmp(a->lens.params, b->lens.params, sizeof a->lens.params);
+    for (int i = 0; i < 9; i++)
+        same = same && fabs(a->true_from_picture.m[i / 3][i % 3] - b->true_from_picture.m[i / 3][i % 3]) < 1e-9;
+    return same;
+}
+
+struct render *renders_partner(const struct renders *list, const struct render *r)
+{
+    for (int i = 0; i < list->count; i++)
+        if (!strcmp(list->list[i].name, r->name))
+            return same_camera(&list->list[i].map, &r->map) ? &list->list[i] : NULL;
+    return NULL;
+}
+
 void renders_release(struct renders *list)
 {
     free(list->list);
@@ -143,7 +169,7 @@ enum status render_read(struct evaluation *e, const struct renders *list, struct
     struct linear_picture whole = {0};
     char name[FILE_PATH];
     const char *file = strrchr(r->path, '/');
-    enum status st = file_path(name, "rendered", list->set->where, file, err);
+    enum status st = file_path(name, "rendered", list->where, file, err);
     if (!st) st = provenance_add_file(e->prov, name, r->path, err);
     if (!st) {
         snprintf(name, sizeof name, "truth%s", r->truth + strlen(e->truth_folder));

@@ -22,6 +22,7 @@ struct render {
 
 struct renders {
     const struct true_set *set;
+    char where[80]; /* the folder's name among the inputs, below "rendered/" */
     struct render *list;
     int count;
     bool own_cameras;
@@ -29,7 +30,13 @@ struct renders {
 
 /* The pictures that can be measured; notes in e->table say why others cannot. */
 enum status renders_find(struct renders *list, struct evaluation *e, const struct true_set *set, struct err *err);
+/* The same in FOLDER, which exists, and which the inputs call rendered/WHERE. */
+enum status renders_find_in(struct renders *list, struct evaluation *e, const struct true_set *set, const char *folder,
+                            const char *where, struct err *err);
 void renders_release(struct renders *list);
+
+/* The picture of the list with the same name and camera; NULL: there is none. */
+struct render *renders_partner(const struct renders *list, const struct render *r);
 
 /* Sets e->radiance_scale, if it is unknown, from these pictures, and e->white. */
 enum status renders_scale(struct evaluation *e, struct renders *list, struct err *err);

@@ -6,7 +6,7 @@ prepare_evaluate()
     [ -z "${REMODEL_TRUTH-}" ] || [ -d "$REMODEL_TRUTH" ] ||
         usage "TRUTH=$REMODEL_TRUTH is not a folder. Give the folder that holds cameras.txt and images.txt of the truth."
     [ -z "${REMODEL_RENDERED-}" ] || [ -d "$REMODEL_RENDERED" ] ||
-        usage "RENDERED=$REMODEL_RENDERED is not a folder. Give the folder that holds novel, edited-E or shell with rendered pictures."
+        usage "RENDERED=$REMODEL_RENDERED is not a folder. Give the folder that holds novel, edited-E, relit-E or shell with rendered pictures."
 }
 
 run_evaluate()

@@ -9,16 +9,16 @@ HELP.evaluate := the products, compared with TRUTH or with photos held out, into
 NEEDS.evaluate := depth
 
 ## TRUTH=DIR: known cameras and depths, which products are compared with (docs/evaluation.md)
-## RENDERED=DIR: with TRUTH, rendered pictures novel/, edited-E/, shell/ and irradiance/ (default: O/rendered)
+## RENDERED=DIR: with TRUTH, rendered pictures novel/, edited-E/, relit-E/, shell/ and irradiance/ (default: O/rendered)
 
 ifdef GRAPH
 RENDERED_FOLDER := $${REMODEL_RENDERED:-$(O)/rendered}
-# models of edits, and the irradiance that a relighting program wrote
+# models of edits, their relit pictures, and the irradiance that a relighting program wrote
 EDITED_MODELS := $(if $(value REMODEL_TRUTH),$(call $(if $(and $(MODELLED),$(MODELS)),made,wildcard),$(MODELS:%=%/model.txt)) \
-  $(wildcard $(foreach e,exr txt,$(addprefix $(O)/relight/,irradiance.txt irradiance/*.$(e) edited-*/irradiance/*.$(e)))))
+  $(RELIT_MEASURED) $(wildcard $(O)/relight/*/tour/video.mp4) $(wildcard $(foreach e,exr txt,$(addprefix $(O)/relight/,irradiance.txt irradiance/*.$(e) edited-*/irradiance/*.$(e)))))
 .PHONY: evaluate
 evaluate: $(O)/metrics.tsv
-$(O)/metrics.tsv: $(CAMERAS) $(O)/views/lenses.txt $(MEASURED) $(HELD_CAMERAS) $(HELD_EXR) $(HELD_FRAMES) \
+$(O)/metrics.tsv: $(VIEW_CAMERAS) $(O)/views/lenses.txt $(MEASURED) $(HELD_CAMERAS) $(HELD_EXR) $(HELD_FRAMES) \
   $(S)/photos/list.txt $(EDITED_MODELS) $(ATLASES) $(O)/stamp/truth.txt $(O)/stamp/rendered.txt $(call needs,evaluate)
 	$(call stage,evaluate,all,$(O),--folder $(O) --shared $(S) $${REMODEL_TRUTH:+--truth "$$REMODEL_TRUTH"} \
 	  --rendered "$(RENDERED_FOLDER)" --out $@)

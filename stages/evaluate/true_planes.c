@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "common/image/exr.h"
+#include "stages/evaluate/linear_picture.h"
 
 /* A channel of a true picture, and for each pixel of the rendered one the true pixel that it sees; -1: none. */
 struct seen {
@@ -59,6 +60,25 @@ enum status true_depths_seen(float *depths, struct evaluation *e, const char *pa
     return st;
 }
 
+enum status true_colours_seen(float *rgb, struct evaluation *e, const char *path, const struct picture_map *map,
+                              struct err *err)
+{
+    const size_t pixels = (size_t)map->lens.width * (size_t)map->lens.height;
+    struct linear_picture p = {0};
+    char name[FILE_PATH];
+    int32_t *index = malloc(pixels * sizeof *index);
+    snprintf(name, sizeof name, "truth%.4000s", path + strlen(e->truth_folder));
+    enum status st = index ? ST_OK : err_nomem(err, "pixels", pixels * sizeof *index);
+    if (!st) st = provenance_add_file(e->prov, name, path, err);
+    if (!st) st = linear_picture_read(&p, path, err);
+    if (!st) true_pixels_seen(index, p.rgb.width, p.rgb.height, map);
+    for (size_t i = 0; !st && i < pixels; i++)
+        for (size_t c = 0; c < 3; c++) rgb[3 * i + c] = index[i] < 0 ? 0 : p.rgb.data[3 * (size_t)index[i] + c];
+    linear_picture_release(&p);
+    free(index);
+    return st;
+}
+
 bool true_plain_file(char path[FILE_PATH], const struct evaluation *e, const char *kind, const char *name)
 {
     static const char *const folders[] = {"", "novel/"};
@@ -67,4 +87,32 @@ bool true_plain_file(char path[FILE_PATH], const struct evaluation *e, const cha
         if (n > 0 && n < FILE_PATH && path_is_file(path)) return true;
     }
     return false;
+}
+
+enum status surface_planes_read(struct surface_planes *p, bool *found, struct evaluation *e, const struct true_set *set,
+                                const char *name, const struct picture_map *map, struct err *err)
+{
+    const size_t pixels = (size_t)map->lens.width * (size_t)map->lens.height;
+    char paths[4][FILE_PATH];
+    enum status st = ST_OK;
+    *p = (struct surface_planes){{NULL, NULL}, {NULL, NULL}};
+    *found = true_plain_file(paths[0], e, "ids", name) && true_set_file(paths[1], set, "ids", name) &&
+             true_plain_file(paths[2], e, "depth", name) && true_set_file(paths[3], set, "depth", name);
+    for (int k = 0; *found && !st && k < 2; k++) {
+        p->ids[k] = malloc(pixels * sizeof *p->ids[k]);
+        p->depths[k] = malloc(pixels * sizeof *p->depths[k]);
+        if (!p->ids[k] || !p->depths[k]) st = err_nomem(err, "ids and depths", pixels * sizeof *p->ids[k]);
+        if (!st) st = true_ids_seen(p->ids[k], e, paths[k], map, err);
+        if (!st) st = true_depths_seen(p->depths[k], e, paths[2 + k], map, err);
+    }
+    return st;
+}
+
+void surface_planes_release(struct surface_planes *p)
+{
+    for (int k = 0; k < 2; k++) {
+        free(p->ids[k]);
+        free(p->depths[k]);
+    }
+    *p = (struct surface_planes){{NULL, NULL}, {NULL, NULL}};
 }

@@ -283,6 +283,46 @@ pictures_of_irradiance_are_compared_before_and_after()
     cp truth/edited-same/irradiance/b.exr t/rendered/edited-same/irradiance/
 }
 
+relit_pictures_are_compared_where_light_changes()
+{
+    says 'skipped relit pictures of edited.dark: there are none'
+    "$B/bin/simulate" --scene scene --out sim-scene --photo all --edit dark --set samples=4 2>log || { cat log; fail "simulate the dark room"; }
+    cp -r sim-scene/truth/edited-dark/{hdr,ids,depth} truth/edited-dark/
+    printf 'remodel-script 1\nremove sun\n' >dark.txt
+    "$B/bin/build_model" --axes axes.txt --script room.txt --edit dark.txt --base t/model/model.txt --out t/remodel/dark 2>log || { cat log; fail "build_model of the dark room"; }
+    # exact pictures after, and those of the unedited room before
+    mkdir -p t/relight/dark/unlit
+    cp truth/edited-dark/hdr/[ab].exr t/relight/dark/
+    cp truth/hdr/[ab].exr t/relight/dark/unlit/
+    cp truth/irradiance/a.exr t/relight/dark/a-ratio.exr
+    measure
+    within edited.dark.relit_psnr 80 100
+    within edited.dark.unlit_psnr 5 40
+    within edited.dark.relit_gain 40 95
+    within edited.dark.relit_pixels 20 95
+    within edited.dark.relit_psnr_model 80 100
+    within edited.dark.relit_revealed_psnr 60 100
+    within edited.dark.relit_gain 40 95 b
+    within edited.dark.relit_ratio_error50 1 1e6
+    awk -F'\t' '{ v[$1] = $2 } END { p = "edited.dark.relit_pixels"; exit !(v[p "_model"] + v[p "_other"] <= v[p] + 1e-6 && v[p "_model"] > 0.9 * v[p]) }' metrics.tsv || { cat metrics.tsv; fail "the parts are not those of the whole"; }
+    ! grep -q 'edited.wide.relit' metrics.tsv || fail "a picture that nobody relit is measured"
+    # RENDERED/relit-E comes first, against RENDERED/edited-E; a picture without a partner is skipped
+    mkdir -p t/rendered/relit-dark
+    cp truth/hdr/[ab].exr t/rendered/relit-dark/
+    cp truth/hdr/a.exr t/rendered/edited-dark/
+    measure
+    within edited.dark.relit_gain 0 0
+    says 'skipped 1 relit pictures of edited.dark: their pictures in the old light, with the same names and cameras, are missing'
+    # without true irradiance, radiance decides, and there is no error of a ratio
+    mv t/rendered/relit-dark relit-dark
+    mv truth/edited-dark/irradiance irradiance
+    measure
+    says 'note: of 2 relit pictures of edited.dark, where light changes is found from radiance'
+    within edited.dark.relit_gain 40 95
+    ! grep -q 'edited.dark.relit_ratio_error50' metrics.tsv || fail "an error without a truth"
+    mv irradiance truth/edited-dark/irradiance
+}
+
 hidden_faces_are_scored_apart()
 {
     says 'skipped pictures of shell: there is no folder shell'
@@ -308,7 +348,7 @@ the_page_shows_the_metrics()
     cp metrics.tsv t/
     "$B/bin/report" --scene t --folder t --shared shared --photos sim-scene/photos --stages evaluate --out page.html 2>log || { cat log; fail report; }
     ! grep -q 'metrics.* cannot be read' page.html || fail "the page cannot read the tables"
-    for m in novel.rms_clipped edited.wide.faces shell.faces_hidden radiance.scale model.ceilings; do grep -qF "<code>$m</code>" page.html || fail "the page lacks $m"; done
+    for m in novel.rms_clipped edited.dark.relit_gain edited.wide.faces shell.faces_hidden radiance.scale model.ceilings; do grep -qF "<code>$m</code>" page.html || fail "the page lacks $m"; done
 }
 
 any_number_of_threads_gives_the_same_bytes()
@@ -323,5 +363,6 @@ any_number_of_threads_gives_the_same_bytes()
 for t in the_truth_and_products_are_made exact_radiance_has_no_error pictures_are_compared_through_their_own_cameras \
     eight_bit_pictures_need_a_white_point edited_pictures_are_compared_as_views faces_of_the_model_and_its_edit_agree \
     irradiance_is_compared_on_the_model_and_elsewhere pictures_of_irradiance_are_compared_before_and_after \
+    relit_pictures_are_compared_where_light_changes \
     hidden_faces_are_scored_apart the_page_shows_the_metrics \
     any_number_of_threads_gives_the_same_bytes; do run "$t"; done
