@@ -8,6 +8,8 @@
 #include "common/capture/camera_path.h"
 #include "common/capture/lens_list.h"
 #include "common/capture/photo_list.h"
+#include "stages/report/contents_light.h"
+#include "stages/report/contents_relit.h"
 #include "stages/report/metric_rows.h"
 #include "stages/report/pictures.h"
 #include "stages/report/settings.h"
@@ -131,6 +133,9 @@ struct contents {
     int model_count;
     struct texture_card *textures;
     int texture_count, viewpoint_count; /* cards; viewpoints that have an atlas, shown or not */
+    struct light_contents light;
+    struct relit_card *relit; /* edits in the light that they make, with one view each */
+    int relit_count;
     bool has_metrics;
     struct metric_rows metrics, view_metrics;
     char (*left_out)[256]; /* photographs of the folder that are not in the list */

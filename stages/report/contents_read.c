@@ -51,7 +51,7 @@ enum status contents_read(struct contents *c, const struct contents_sources *fro
     if (read_photos(c, from->shared, from->photos, err) || read_metrics(c, folder, err) || read_views(c, folder, err) ||
         read_lens(c, folder, err) || read_held(c, folder, err) || check_age(c, folder, err) ||
         read_effects(c, folder, err) || read_axes(c, folder, err) || read_models(c, folder, err) ||
-        read_textures(c, folder, err))
+        read_textures(c, folder, err) || read_light(c, folder, err) || read_relit(c, folder, from->shared, err))
         return err->status;
     char page[PATH_SIZE];
     snprintf(page, sizeof page, "%s/remodel/index.html", folder);
@@ -81,6 +81,9 @@ void contents_release(struct contents *c)
     free(c->models);
     for (int i = 0; i < c->texture_count; i++) texture_card_release(&c->textures[i]);
     free(c->textures);
+    light_contents_release(&c->light);
+    for (int i = 0; i < c->relit_count; i++) relit_card_release(&c->relit[i]);
+    free(c->relit);
     free(c->photo_cards);
     free(c->view_cards);
     free(c->held_cards);

@@ -83,45 +83,6 @@ static enum status read_records(struct reading *r, const char *folder, struct er
 
 /* --------------------------------------------------------------------------------------------------------- pictures */
 
-static int orientation_of(const struct reading *r, const char *photo)
-{
-    struct photo_record record = {0};
-    struct err unknown = ERR_INIT; /* then the picture is upright as it is */
-    const int orientation = photo_record_read(&record, r->from->records, photo, &unknown) ? 1 : record.info.orientation;
-    photo_record_release(&record);
-    return orientation < 1 ? 1 : orientation;
-}
-
-static enum status read_before(struct picture *p, const struct reading *r, const struct record *record, int orientation,
-                               struct err *err)
-{
-    static const char *const names[] = {"R", "G", "B"};
-    struct exr_image im = {0};
-    char folder[FILE_PATH], path[FILE_PATH];
-    enum status st = file_path(folder, r->from->folder, "views", "", err);
-    if (!st) st = file_path(path, folder, record->view, ".exr", err);
-    if (!st) st = exr_read(&im, path, names, 3, err);
-    for (int k = 0; !st && k < im.count; k++)
-        for (size_t i = 0; i < (size_t)im.width * (size_t)im.height; i++)
-            im.planes[k].f[i] *= (float)record->file.exposure;
-    if (!st) st = picture_from_exr(p, &im, orientation, SIGHT_SIDE_HEIGHT, err);
-    exr_image_release(&im);
-    return st;
-}
-
-static enum status read_picture(struct picture *p, const char *folder, const char *view, const char *ending,
-                                int orientation, struct err *err)
-{
-    struct photo photo = {0};
-    char path[FILE_PATH];
-    enum status st = file_path(path, folder, view, ending, err);
-    if (!st) st = photo_read(&photo, path, err);
-    photo.info.orientation = orientation;
-    if (!st) st = picture_from_photo(p, &photo, SIGHT_SIDE_HEIGHT, err);
-    photo_release(&photo);
-    return st;
-}
-
 static void sight_release(struct edit_sight *s)
 {
     picture_release(&s->before);
@@ -132,14 +93,19 @@ static void sight_release(struct edit_sight *s)
 static enum status read_sight(struct edit_sight *s, const struct reading *r, const struct record *record,
                               const char *folder, struct err *err)
 {
-    const int orientation = orientation_of(r, record->photo);
+    const int orientation = photo_orientation(r->from->records, record->photo);
+    char views[FILE_PATH];
     *s = (struct edit_sight){.changed = record->file.changed};
     memcpy(s->view, record->view, sizeof s->view);
     memcpy(s->photo, record->photo, sizeof s->photo);
     memcpy(s->shares, record->file.shares, sizeof s->shares);
-    enum status st = read_before(&s->before, r, record, orientation, err);
-    if (!st) st = read_picture(&s->after, folder, record->view, ".jpg", orientation, err);
-    if (!st) st = read_picture(&s->sources, folder, record->view, "-sources.png", orientation, err);
+    enum status st = file_path(views, r->from->folder, "views", "", err);
+    if (!st)
+        st = sight_read_radiance(&s->before, views, record->view, record->file.exposure, orientation, SIGHT_SIDE_HEIGHT,
+                                 err);
+    if (!st) st = sight_read_picture(&s->after, folder, record->view, ".jpg", orientation, SIGHT_SIDE_HEIGHT, err);
+    if (!st)
+        st = sight_read_picture(&s->sources, folder, record->view, "-sources.png", orientation, SIGHT_SIDE_HEIGHT, err);
     if (st) sight_release(s);
     return st;
 }
@@ -206,6 +172,19 @@ static char *file_if_there(const char *folder, const char *file)
     return !file_path(path, folder, file, "", &none) && path_is_file(path) ? strdup(path) : NULL;
 }
 
+/* The edit under the light that it makes; what cannot be read of it is a note of the page. */
+static enum status read_relit(struct edit_card *card, struct reading *r, struct err *err)
+{
+    const struct relit_sources from = {r->from->folder, r->from->records, &r->lenses};
+    enum status st = relit_card_read(&card->relit, &from, card->name, RELIT_SHOWN, err);
+    for (int i = 0; !st && i < card->relit.note_count; i++) {
+        struct err problem = ERR_INIT;
+        err_set(&problem, ST_DATA, "%s", card->relit.notes[i]);
+        st = note(r->c, "light", &problem, err);
+    }
+    return st;
+}
+
 static enum status read_edit(struct reading *r, const char *name, struct err *err)
 {
     struct remodel_contents *c = r->c;
@@ -224,7 +203,8 @@ static enum status read_edit(struct reading *r, const char *name, struct err *er
                                .ifc = has_file(folder, "export/model.ifc")};
     snprintf(card->name, sizeof card->name, "%s", name);
     st = read_about(&card->about, r->from->scripts, name, err);
-    return st ? st : read_sights(card, r, pictures, err);
+    if (!st) st = read_sights(card, r, pictures, err);
+    return st ? st : read_relit(card, r, err);
 }
 
 enum status remodel_contents_read(struct remodel_contents *c, const struct remodel_sources *from, struct err *err)
@@ -254,6 +234,7 @@ void remodel_contents_release(struct remodel_contents *c)
     for (int i = 0; i < c->edit_count; i++) {
         struct edit_card *card = &c->edits[i];
         for (int k = 0; k < card->sight_count; k++) sight_release(&card->sights[k]);
+        relit_card_release(&card->relit);
         free(card->sights);
         free(card->about);
         free(card->plan);

@@ -3,6 +3,7 @@
 #define REMODEL_CONTENTS_REMODEL_H
 
 #include "common/texture/model_picture.h"
+#include "stages/report/contents_relit.h"
 #include "stages/report/pictures.h"
 
 enum { SIGHTS_SHOWN = 4, SIGHT_SIDE_HEIGHT = 560 }; /* of an edit; px */
@@ -22,6 +23,7 @@ struct edit_card {
     bool film, obj, gltf, ifc;       /* the files exist: NAME/tour/video.mp4, NAME/export/model.* */
     struct edit_sight *sights;       /* most changed and best seen first, each of another photo; owned */
     int sight_count, changed, views; /* shown; views that the edit changes; views with a record: 0: no pictures yet */
+    struct relit_card relit;         /* under the light that the edit makes */
 };
 
 struct remodel_contents {

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/image/false_colour.h"
 #include "stages/report/texture_pictures.h"
 
 enum {

@@ -11,7 +11,7 @@
 
 struct metric_row {
     char *view; /* owned; "" for the scene */
-    char name[64], unit[16], direction[16];
+    char name[96], unit[16], direction[16];
     double value;
 };
 

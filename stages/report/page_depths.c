@@ -61,13 +61,9 @@ enum status page_depths(FILE *to, const struct contents *c, struct err *err)
             "Inherited: no other view determines the depth (the point is not visible there, or the surface has no "
             "texture or repeats), so it is that of adjacent segments.</p>\n",
             to);
-    fputs("<div class=\"pairs\" style=\"--ramp:linear-gradient(90deg", to);
-    for (int k = 16; k >= 0; k--) {
-        unsigned char rgb[3];
-        depth_colour(k / 16.0, rgb);
-        fprintf(to, ",#%02x%02x%02x", rgb[0], rgb[1], rgb[2]);
-    }
-    fputs(")\">\n", to);
+    fputs("<div class=\"pairs\" style=\"--ramp:", to);
+    put_ramp(to, false);
+    fputs("\">\n", to);
     for (int i = 0; i < c->views.view_count; i++)
         if (put_view(to, c, &c->view_cards[i], err)) return err->status;
     fputs("</div>\n</section>\n", to);

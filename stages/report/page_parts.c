@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/image/false_colour.h"
+
 void put_seconds(FILE *to, double seconds)
 {
     if (seconds < 60)
@@ -62,6 +64,17 @@ enum status put_picture(FILE *to, const struct picture *p, int quality, const ch
     return st;
 }
 
+void put_ramp(FILE *to, bool rising)
+{
+    fputs("linear-gradient(90deg", to);
+    for (int k = 0; k <= 16; k++) {
+        unsigned char rgb[3];
+        ramp_colour((rising ? k : 16 - k) / 16.0, rgb);
+        fprintf(to, ",#%02x%02x%02x", rgb[0], rgb[1], rgb[2]);
+    }
+    fputs(")", to);
+}
+
 void put_view_metric(FILE *to, const struct contents *c, const char *view, const char *metric, const char *label)
 {
     const struct metric_row *m = metric_rows_find(&c->view_metrics, view, metric);
@@ -70,4 +83,15 @@ void put_view_metric(FILE *to, const struct contents *c, const char *view, const
     fprintf(to, ", %.4g ", m->value);
     if (has_unit) html_printf(to, "%s ", m->unit);
     fputs(label, to);
+}
+
+void put_slider(FILE *to, const char *label, const char *photo)
+{
+    fprintf(to,
+            "<input type=\"range\" min=\"0\" max=\"100\" value=\"50\" step=\"0.5\" aria-label=\"%s\" "
+            "oninput=\"this.parentNode.style.setProperty('--p',this.value+'%%')\">\n</div>\n<figcaption>Seen from "
+            "photograph <b>",
+            label);
+    html_text(to, photo);
+    fputs("</b></figcaption>\n", to);
 }

@@ -10,6 +10,8 @@
 enum status page_videos(FILE *to, const struct contents *c, struct err *err);
 enum status page_models(FILE *to, const struct contents *c, struct err *err);
 enum status page_textures(FILE *to, const struct contents *c, struct err *err);
+enum status page_light(FILE *to, const struct contents *c, struct err *err);
+enum status page_relit(FILE *to, const struct contents *c, struct err *err);
 enum status page_evaluation(FILE *to, const struct contents *c, struct err *err);
 enum status page_photos(FILE *to, const struct contents *c, struct err *err);
 enum status page_depths(FILE *to, const struct contents *c, struct err *err);
@@ -39,7 +41,14 @@ void put_tag(FILE *to, const char *text);
 enum status put_picture(FILE *to, const struct picture *p, int quality, const char *alt, const char *name,
                         struct err *err);
 
+/* A CSS gradient of the colours of ramp_colour(), from left to right; rising: from dark to light. */
+void put_ramp(FILE *to, bool rising);
+
 /* ", VALUE UNIT LABEL" of a view's metric; nothing if it was not measured. */
 void put_view_metric(FILE *to, const struct contents *c, const char *view, const char *metric, const char *label);
+
+/* Closes a <div class="ba"> of pictures over each other: the slider that moves the line between them, and whose photograph
+ * they are seen from. */
+void put_slider(FILE *to, const char *label, const char *photo);
 
 #endif

@@ -6,6 +6,7 @@
 #include "common/base/version.h"
 #include "common/texture/picture_made.h"
 #include "stages/report/page_parts.h"
+#include "stages/report/page_relit.h"
 #include "stages/report/style.h"
 
 enum { QUALITY = 88 };
@@ -47,6 +48,7 @@ static void put_head(FILE *to, const char *scene, const char *back, const struct
     fputs(", remodelled</title>\n<style>\n", to);
     fputs(page_style, to);
     fputs(style, to);
+    fputs(relit_style, to);
     fputs("</style>\n</head>\n<body>\n<header>\n<h1>", to);
     html_text(to, scene);
     fputs(", remodelled</h1>\n<p class=\"lead\">Your rooms as they would look after each change. Move the line over a "
@@ -101,13 +103,8 @@ static enum status put_sight(FILE *to, const struct edit_sight *s, int edit, int
         put_layer(to, &s->sources, "sources", "What each part comes from, seen from", s->view, err) ||
         put_layer(to, &s->before, "before", "Before the change, seen from", s->view, err))
         return err->status;
-    fputs("<i></i><b>before</b><b>after</b><input type=\"range\" min=\"0\" max=\"100\" value=\"50\" step=\"0.5\" "
-          "aria-label=\"Line between before and after\" "
-          "oninput=\"this.parentNode.style.setProperty('--p',this.value+'%')\">\n</div>\n<figcaption>Seen from "
-          "photograph <b>",
-          to);
-    html_text(to, s->photo);
-    fputs("</b></figcaption>\n", to);
+    fputs("<i></i><b>before</b><b>after</b>", to);
+    put_slider(to, "Line between before and after", s->photo);
     put_shares(to, s);
     fputs("</figure>\n", to);
     return ST_OK;
@@ -165,6 +162,7 @@ static enum status put_edit(FILE *to, const char *scene, const struct remodel_co
     if (card->views && !card->changed) fputs("<p>No photograph shows this change.</p>\n", to);
     if (card->changed && !card->sight_count)
         fputs("<p>The pictures of this change cannot be read; <a href=\"#how\">the reasons</a> are below.</p>\n", to);
+    if (relit_put_edit(to, &card->relit, number, err)) return err->status;
     fputs("<div class=\"plans\">\n", to);
     if (put_plan(to, c->plan, "before", err) || put_plan(to, card->plan, "after", err)) return err->status;
     if (card->film) put_film(to, card->name, "A walk through the rooms after the change");
@@ -184,14 +182,35 @@ static enum status put_edit(FILE *to, const char *scene, const struct remodel_co
     return ST_OK;
 }
 
+/* What is sure of the light, and what is guessed. */
+static void put_light(FILE *to, const struct remodel_contents *c)
+{
+    bool relit = false;
+    for (int i = 0; i < c->edit_count; i++) relit |= c->edits[i].relit.views > 0;
+    if (!relit) {
+        fputs("The light is that of the day of the photographs: a new window does not brighten the room yet. ", to);
+        return;
+    }
+    fputs(
+        "The light is that of the day of the photographs, but for the pictures <b>in the new light</b>. These "
+        "multiply the photograph by how much the light on each surface changes, calculated from the shape of the "
+        "rooms and the light that the photographs show. So shadows and patches of sun that were photographed stay "
+        "where the light stays, and patterns and colours are real. The change itself is calculated: it is sure where "
+        "the photographs show where the light comes from, and a guess where they do not, such as the sky beyond what "
+        "a window shows, or behind furniture. Where the guess would go wrong visibly it is limited, and the picture of "
+        "the change is striped. Surfaces that the change makes are lit as if they were matt. ",
+        to);
+}
+
 static void put_how(FILE *to, const struct remodel_contents *c)
 {
     fputs(
         "<section id=\"how\">\n<h2>What is real</h2>\n<p>Where the change alters nothing, a picture is the photograph "
         "itself. Where it reveals something, other photographs fill in if they show it. What no photograph shows is "
-        "guessed from what is beside it. The light is that of the day of the photographs: a new window does not "
-        "brighten the room yet. Tick \"show what is real\" to see this in colours:</p>\n<ul class=\"key\">\n",
+        "guessed from what is beside it. ",
         to);
+    put_light(to, c);
+    fputs("Tick \"show what is real\" to see this in colours:</p>\n<ul class=\"key\">\n", to);
     for (int k = MADE_PHOTO; k < MADE_COUNT; k++) {
         const struct picture_made_kind *kind = picture_made_kind((enum picture_made)k);
         fprintf(to, "<li><i class=\"flat\" style=\"background:#%02x%02x%02x\"></i>%s</li>\n", kind->rgb[0],

@@ -43,13 +43,7 @@ enum status depth_thumb_make(struct depth_thumb *d, const float *z, int width, i
 /* The stored pixel of pixel (x, y) of the upright picture; width x height is the stored size. */
 void upright_source(int orientation, int width, int height, int x, int y, int *source_x, int *source_y);
 
-/* t: 0 far, 1 near, clamped; a NaN is far. Lightness grows strictly with t. */
-void depth_colour(double t, unsigned char rgb[3]);
-
-/* The n-th of a row of colours that differ from their neighbours, and all from grey and magenta. */
-void category_colour(int n, unsigned char rgb[3]);
-
-/* t is (1/z - 1/far) / (1/near - 1/far); unknown pixels are hatched in grey. */
+/* In colours of ramp_colour((1/z - 1/far) / (1/near - 1/far)); unknown pixels are hatched in grey. */
 enum status picture_from_depth(struct picture *p, const struct depth_thumb *d, double near, double far,
                                struct err *err);
 

@@ -5,14 +5,16 @@
 
 static void metrics_of_every_group_have_a_meaning(void **state)
 {
-    static const char *const names[] = {"depth.within2",      "depth.sigma1_sure", "depth.share_unsure", "model.faces",
-                                        "edited.a-b.walls",   "novel.psnr",        "edited.no.ssim",     "radiance.rms",
-                                        "irradiance.error50", "radiance.scale",    "shell.rms_hidden",   "axes.up"};
+    static const char *const names[] = {
+        "depth.within2",    "depth.sigma1_sure", "depth.share_unsure",  "model.faces",        "edited.a-b.walls",
+        "novel.psnr",       "edited.no.ssim",    "radiance.rms",        "irradiance.error50", "radiance.scale",
+        "shell.rms_hidden", "axes.up",           "edited.a.relit_psnr", "edited.a.unlit_psnr"};
     (void)state;
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
         if (!metric_meaning(names[i])[0]) fail_msg("%s has no meaning", names[i]);
     assert_string_equal(metric_meaning("nothing"), "");
     assert_string_equal(metric_meaning("depth.error50"), "relative depth error, median");
+    assert_string_equal(metric_meaning("edited.a.relit_gain_other"), "the same on other surfaces");
     assert_string_equal(metric_meaning("irradiance.error50_model"), "the same on surfaces that the model has");
 }
 

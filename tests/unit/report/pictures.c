@@ -9,6 +9,8 @@
 
 #include <cmocka.h>
 
+#include "common/image/false_colour.h"
+
 /* The letter F in 3 x 4 pixels, stored in each of EXIF's eight orientations, which follow the table of the standard:
  * turned upright, all are the same. */
 static void every_orientation_is_turned_upright(void **state)
@@ -95,18 +97,18 @@ static double lightness(const unsigned char rgb[3])
     return y > 0.008856 ? 116 * cbrt(y) - 16 : 903.3 * y;
 }
 
-static void depth_colours_grow_lighter(void **state)
+static void ramp_colours_grow_lighter(void **state)
 {
     unsigned char rgb[3];
     double last = 0;
     (void)state;
     for (int i = 0; i <= 100; i++) {
-        depth_colour(i / 100.0, rgb);
+        ramp_colour(i / 100.0, rgb);
         double l = lightness(rgb);
         assert_true(l > last + 0.1 && l < last + (i ? 2 : 20));
         last = l;
     }
-    depth_colour(NAN, rgb);
+    ramp_colour(NAN, rgb);
     assert_true(lightness(rgb) < 20);
 }
 
@@ -125,11 +127,11 @@ static void depth_is_coloured_and_the_unknown_hatched(void **state)
     assert_float_equal(near, 1, 0);
     assert_float_equal(far, 8, 0);
     assert_int_equal(picture_from_depth(&p, &d, near, far, &err), ST_OK);
-    depth_colour(1, rgb);
+    ramp_colour(1, rgb);
     assert_memory_equal(p.rgb, rgb, 3);
-    depth_colour((0.5 - 0.125) / (1 - 0.125), rgb);
+    ramp_colour((0.5 - 0.125) / (1 - 0.125), rgb);
     assert_memory_equal(p.rgb + 3, rgb, 3);
-    depth_colour(0, rgb);
+    ramp_colour(0, rgb);
     assert_memory_equal(p.rgb + 9, rgb, 3);
     assert_int_equal(p.rgb[12], p.rgb[13]); /* grey */
     picture_release(&p);
@@ -149,7 +151,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_orientation_is_turned_upright),
         cmocka_unit_test(thumbnails_have_the_upright_height),
-        cmocka_unit_test(depth_colours_grow_lighter),
+        cmocka_unit_test(ramp_colours_grow_lighter),
         cmocka_unit_test(depth_is_coloured_and_the_unknown_hatched),
     };
     return cmocka_run_group_tests_name("pictures", tests, NULL, NULL);

@@ -86,6 +86,41 @@ static void put_edit(const char *edit)
     put_sight(edit, "c", 0, 0);
 }
 
+static void put_radiance(const char *name)
+{
+    struct exr_image im = {0};
+    struct err err = ERR_INIT;
+    assert_ok(exr_image_init(&im, SIDE, SIDE, &err), err);
+    for (int k = 0; k < 3; k++)
+        assert_ok(exr_add_plane(&im, (const char *const[]){"R", "G", "B"}[k], EXR_HALF, NULL, &err), err);
+    assert_ok(exr_write(&im, scratch_path(name), &prov, &err), err);
+    exr_image_release(&im);
+}
+
+/* A view of an edit in the light that it makes. */
+static void put_relit(const char *edit, const char *view, double changed)
+{
+    unsigned char grey[3 * SIDE * SIDE];
+    struct picture_record record = {SIDE, SIDE, 1.5, 10, {0}};
+    struct err err = ERR_INIT;
+    char name[256], file[64], text[256];
+    memset(grey, 128, sizeof grey);
+    snprintf(name, sizeof name, "relight/%s/unlit/%s.txt", edit, view);
+    put(name, "");
+    assert_ok(picture_record_write(&record, scratch_path(name), &prov, &err), err);
+    snprintf(name, sizeof name, "relight/%s/%s.txt", edit, view);
+    snprintf(text, sizeof text, "remodel-relit 1\nsize 8 8\nexposure 2\nchanged %g\nbounded 7\nkept 3\nrecords 5\n",
+             changed);
+    put(name, text);
+    for (int k = 0; k < 3; k++) {
+        snprintf(file, sizeof file, "%s%s%s", k ? "" : "unlit/", view, k < 2 ? ".jpg" : "-ratio.png");
+        snprintf(name, sizeof name, "relight/%s/%s", edit, file);
+        assert_ok(k < 2 ? jpeg_write(scratch_path(name), grey, SIDE, SIDE, 90, &err)
+                        : png_write(scratch_path(name), grey, SIDE, SIDE, 3, &err),
+                  err);
+    }
+}
+
 static int empty_scratch(void **state) { return scratch_remove(state) || scratch_make(state); }
 
 static void read_all(struct remodel_contents *c)
@@ -219,6 +254,47 @@ static void the_page_has_pictures_plans_films_and_exports(void **state)
     free(page);
 }
 
+static void an_edit_is_shown_in_the_light_that_it_makes(void **state)
+{
+    (void)state;
+    put_views();
+    put_edit("no-wall");
+    char *page = page_of("loft", NULL);
+    expect_words(page, "a new window does not brighten the room yet");
+    assert_null(strstr(page, "<h3>In the new light</h3>"));
+    free(page);
+    put_relit("no-wall", "a", 40);
+    put_relit("no-wall", "b@0", 20);
+    put_relit("no-wall", "b@1", 30);
+    put_relit("no-wall", "c", 0);
+    put("relight/no-wall/rounds.txt",
+        "remodel-light-rounds 1\nsamples 9\nbounded 1\nsettled yes\nround 1 change 0.5 left "
+        "unknown\nround 2 change 0.1 left 0.025\n");
+    put("relight/no-wall/objects.txt", "remodel-object-light 1\n");
+    put("evaluate/relit/no-wall/a.exr", "");
+    put_radiance("evaluate/relit/no-wall/a.exr");
+    page = page_of("loft", NULL);
+    expect_words(page, "<h3>In the new light</h3>");
+    assert_int_equal(count_words(page, "<b>new light</b>"), 2); /* a, and b@1 of photo b; c does not change */
+    assert_int_equal(count_words(page, "<b class=\"of k2\">truth</b>"), 1);
+    assert_int_equal(count_words(page, "data:image/jpeg;base64,"), 6 + 5 + 4);
+    expect_words(page, "The light changes on 40 % of this picture. On 7 % the change is a cautious guess (striped)");
+    expect_words(page, " 3 % keeps its light");
+    expect_words(page,
+                 "Light was followed from wall to wall 2 times; by that a place may miss up to 2.5 % of its light.");
+    assert_null(strstr(page, "does not brighten the room yet"));
+    free(page);
+    put("relight/no-wall/rounds.txt", "remodel-light-rounds 1\nsettled no\nround 1 change 0.5 left unknown\n");
+    put("relight/no-wall/a.txt", "remodel-relit 1\nsize 8 8\nexposure 2\nchanged 140\n");
+    put("relight/no-wall/b@1.jpg", "no JPEG");
+    page = page_of("loft", NULL);
+    expect_words(page, "1 time; how much of it is still missing is unknown, more than was asked for.");
+    expect_words(page, "a.txt:4: found &quot;140&quot;");
+    expect_words(page, "light: a relit picture is left out: ");
+    assert_int_equal(count_words(page, "<b>new light</b>"), 1); /* b@0 */
+    free(page);
+}
+
 static void what_was_not_made_is_said_and_not_linked(void **state)
 {
     (void)state;
@@ -301,6 +377,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup(the_views_that_an_edit_changes_most_are_shown_one_of_each_photo, empty_scratch),
         cmocka_unit_test_setup(the_page_has_pictures_plans_films_and_exports, empty_scratch),
+        cmocka_unit_test_setup(an_edit_is_shown_in_the_light_that_it_makes, empty_scratch),
         cmocka_unit_test_setup(what_was_not_made_is_said_and_not_linked, empty_scratch),
         cmocka_unit_test_setup(a_picture_that_cannot_be_read_is_left_out_with_the_reason, empty_scratch),
         cmocka_unit_test_setup(odd_names_are_escaped_and_their_links_lead_to_the_files, empty_scratch),

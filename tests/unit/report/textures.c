@@ -1,9 +1,11 @@
 /* textures.c - pictures of a box room whose texture is known: each face looked up, sources in colours, the page. */
 #include "stages/report/texture_pictures.h"
 
+#include "tests/unit/report/scratch_page.h"
 #include "tests/unit/scratch.h"
 
 #include "common/base/outfile.h"
+#include "common/image/false_colour.h"
 #include "stages/report/page.h"
 
 enum { WIDTH = 60, HEIGHT = 40, FACES = 6, TEXELS_A_UNIT = 8 };
@@ -336,20 +338,7 @@ static void category_colours_differ(void **state)
 /* -------------------------------------------------------------------------------------------------------- the page */
 
 /* The page of the scratch folder; the caller frees it. */
-static char *page_of(void)
-{
-    const struct contents_sources from = {scratch, scratch, scratch, "report", NULL};
-    struct contents c = {0};
-    struct err err = ERR_INIT;
-    char *text = NULL;
-    size_t size;
-    FILE *to = open_memstream(&text, &size);
-    assert_ok(contents_read(&c, &from, &err), err);
-    assert_ok(page_write(to, "room", &c, &err), err);
-    fclose(to);
-    contents_release(&c);
-    return text;
-}
+static char *page_of(void) { return scratch_page("room", "report"); }
 
 static int count_of(const char *page, const char *text)
 {

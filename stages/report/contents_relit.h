@@ -1,0 +1,51 @@
+/* contents_relit.h - what the pages show of the light that an edit makes (docs/formats.md, O/relight/E). */
+#ifndef REMODEL_CONTENTS_RELIT_H
+#define REMODEL_CONTENTS_RELIT_H
+
+#include "common/capture/lens_list.h"
+#include "stages/report/pictures.h"
+
+enum { RELIT_SHOWN = 4, RELIT_SIDE_HEIGHT = 480 }; /* views of an edit; px */
+
+/* What an original view shows; all pictures are upright. */
+struct relit_sight {
+    char view[256], photo[256];
+    double changed, bounded, kept; /* % of the pixels: other light; of them, bounded; light that was left alone */
+    struct picture before, unlit, relit, ratio;
+    struct picture truth; /* empty: none */
+};
+
+struct relit_card {
+    char name[256];
+    struct relit_sight *sights; /* most changed first, each of another photo; owned */
+    int sight_count, views;     /* shown; with a record */
+    int rounds;                 /* of light from face to face; 0: unknown */
+    bool settled;
+    double missing;      /* part of a place's light that later rounds may add, at most; -1: unknown */
+    char (*notes)[1024]; /* what could not be read; owned */
+    int note_count;
+};
+
+struct relit_sources {
+    const char *folder;  /* out/SCENE */
+    const char *records; /* of the photos */
+    const struct lens_list *lenses;
+};
+
+/* At most `most` views of FOLDER/relight/EDIT. views is 0 if there are none. card is empty on entry; the caller releases it
+ * in each case. What cannot be read becomes a note. ST_NOMEM. */
+enum status relit_card_read(struct relit_card *card, const struct relit_sources *from, const char *edit, int most,
+                            struct err *err);
+void relit_card_release(struct relit_card *card);
+
+/* EXIF's orientation of a photo, 1 if its record cannot be read. */
+int photo_orientation(const char *records, const char *photo);
+
+/* A JPEG or PNG, turned and shrunk. ST_IO, ST_DATA. */
+enum status sight_read_picture(struct picture *p, const char *folder, const char *view, const char *ending,
+                               int orientation, int height, struct err *err);
+/* FOLDER/VIEW.exr, radiance, times the exposure. */
+enum status sight_read_radiance(struct picture *p, const char *folder, const char *view, double exposure,
+                                int orientation, int height, struct err *err);
+
+#endif
