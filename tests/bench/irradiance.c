@@ -1,13 +1,18 @@
 /* irradiance.c - error and time of the estimators of irradiance, on fields of light that are known.
  *
- *   irradiance --case patch|box|window|sun|room --converge FILE
+ *   irradiance --case sphere|patch|box|window|sun|room --converge FILE
+ *   irradiance --case cornell --folder MESHES --converge FILE
+ *   irradiance --case model --folder PRODUCTS --converge FILE
  *   irradiance --case ... --estimator rays|blind|hemicube --effort N --truth FILE
  *
- * The first writes the true irradiance at the case's points: in closed form, or where there is none (sun, room) by rays,
- * 2^21 at each point, other random numbers than those of the measurement. The second gathers at all points with N rays each,
- * or with hemicubes of N x N pixels, by as many threads as there are cores; `blind` are rays that know of no emitter. It
- * prints "seconds S" (wall time for all points, repeated for at least 0.2 s), "core_s S", "error E" (root mean square over
- * the points of the luminance's relative error), "unit 1", "points N", "rays N" (each) and "rays_per_core_s R". */
+ * The first three write the true irradiance at the case's points: in closed form, or where there is none by rays, 2^21 at
+ * each point, other random numbers than those of the measurement. MESHES has the OBJ files of the Cornell box. PRODUCTS is
+ * out/SCENE of a textured model with outdoors, lights and evaluate/irradiance_points.txt, of which 35 points are used.
+ *
+ * The last one gathers at all points with N rays each, or with hemicubes of N x N pixels, by as many threads as there are
+ * cores; `blind` are rays that know of no emitter. It prints "seconds S" (wall time for all points, repeated for at least
+ * 0.2 s), "core_s S", "error E" (root mean square over the points of the luminance's relative error), "unit 1",
+ * "points N", "rays N" (each) and "rays_per_core_s R". */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,14 +20,22 @@
 
 #include "common/base/clock.h"
 #include "common/base/err.h"
+#include "common/base/file_path.h"
 #include "common/base/parallel.h"
+#include "common/gather/model_field.h"
+#include "common/light/surface_points.h"
+#include "tests/bench/cornell_field.h"
 #include "tests/unit/common/gather/fields.h"
 
 enum { POINTS = 35, WIDTH = 7, HEIGHT = 5, CONVERGED = 1 << 21, KEY = 20 };
 static const double SECONDS_LEAST = 0.2;
+static const double LIFT = 0.02; /* of the model's size, as gather_irradiance does */
 
 struct bench {
+    const char *folder; /* --folder */
     struct patch_field scene;
+    struct cornell_field cornell;
+    struct model_field model;
     struct light_field field;
     struct gather_point points[POINTS];
     double truth[POINTS];
@@ -38,6 +51,29 @@ static void spread_points(struct bench *b, double radius)
     for (int i = 0; i < POINTS; i++) {
         const double r = radius * sqrt((i + 0.5) / POINTS), angle = 2.399963 * i;
         b->points[i] = (struct gather_point){{r * cos(angle), r * sin(angle), 0}, {0, 0, 1}};
+    }
+}
+
+/* A sphere about the points, so large that all are in its middle, whose radiance is 1 + slope . direction. */
+static const struct vec3 sphere_slope = {0.3, -0.4, 0.7};
+
+static void look_at_sphere(const void *ctx, const struct vec3 from[RAY_PACKET], struct vec3 normal,
+                           const struct vec3 direction[RAY_PACKET], unsigned active, struct light_look seen[RAY_PACKET])
+{
+    (void)ctx, (void)from, (void)normal;
+    for (int k = 0; k < RAY_PACKET; k++)
+        if (active >> k & 1)
+            seen[k] =
+                (struct light_look){rgb_grey(1 + vec3_dot(sphere_slope, direction[k])), INFINITY, LIGHT_TEXTURE, -1};
+}
+
+/* Points whose normals are spread over all directions. */
+static void make_sphere(struct bench *b)
+{
+    b->field = (struct light_field){.look = look_at_sphere};
+    for (int i = 0; i < POINTS; i++) {
+        const double z = (2 * i + 1.0) / POINTS - 1, r = sqrt(1 - z * z), angle = 2.399963 * i;
+        b->points[i] = (struct gather_point){{0, 0, 0}, {r * cos(angle), r * sin(angle), z}};
     }
 }
 
@@ -84,10 +120,63 @@ static void make_room(struct bench *b)
     field_see_room(b->points, WIDTH, HEIGHT, &b->scene);
 }
 
+static enum status make_cornell(struct bench *b, struct err *err)
+{
+    if (cornell_make(&b->cornell, b->folder, err)) return err->status;
+    b->field = b->cornell.field;
+    cornell_see(b->points, WIDTH, HEIGHT, &b->cornell);
+    return ST_OK;
+}
+
+static enum status read_field(struct bench *b, struct err *err)
+{
+    char model[FILE_PATH], vita[FILE_PATH], outdoors[FILE_PATH], lights[FILE_PATH];
+    if (file_path(model, b->folder, "model/model.txt", "", err) || file_path(vita, b->folder, "vita", "", err) ||
+        file_path(outdoors, b->folder, "outdoors/outdoors.exr", "", err) ||
+        file_path(lights, b->folder, "lights/lights.txt", "", err))
+        return err->status;
+    const struct model_field_files files = {model, vita, outdoors, lights, NULL};
+    if (model_field_read(&b->model, &files, NULL, err)) return err->status;
+    b->field = b->model.field;
+    return ST_OK;
+}
+
+/* 35 of the points at which the scene's irradiance is evaluated, evenly out of their list. */
+static enum status read_points(struct bench *b, const struct model_axes *axes, struct err *err)
+{
+    struct surface_points all = {0};
+    char path[FILE_PATH];
+    enum status st = file_path(path, b->folder, "evaluate/irradiance_points.txt", "", err);
+    if (!st) st = surface_points_read(&all, path, err);
+    for (int i = 0; !st && i < POINTS; i++) {
+        const struct surface_point *p = &all.list[(size_t)i * (size_t)all.count / POINTS];
+        b->points[i] =
+            (struct gather_point){model_from_world_point(axes, p->at), model_from_world_direction(axes, p->normal)};
+        model_field_lift(&b->model, &b->points[i], LIFT * model_rays_size(&b->model.model));
+    }
+    surface_points_release(&all);
+    return st;
+}
+
+static enum status make_model(struct bench *b, struct err *err)
+{
+    struct model_axes axes;
+    char path[FILE_PATH];
+    if (file_path(path, b->folder, "model/axes.txt", "", err) || model_axes_read(&axes, path, err) ||
+        read_field(b, err) || read_points(b, &axes, err))
+        return err->status;
+    return ST_OK;
+}
+
 /* By closed form. False: there is none. */
 static bool is_known(struct bench *b, const char *name)
 {
-    if (!strcmp(name, "sun") || !strcmp(name, "room")) return false;
+    static const char *const known[] = {"patch", "box", "window"};
+    bool is_closed = false;
+    for (size_t i = 0; i < sizeof known / sizeof *known; i++) is_closed |= !strcmp(name, known[i]);
+    for (int i = 0; !strcmp(name, "sphere") && i < POINTS; i++)
+        b->truth[i] = PI * (1 + 2.0 / 3 * vec3_dot(sphere_slope, b->points[i].normal));
+    if (!is_closed) return !strcmp(name, "sphere");
     for (int i = 0; i < POINTS; i++) {
         double sum = 0, seen = 0;
         for (int k = 0; k < b->scene.count; k++) {
@@ -156,20 +245,26 @@ static void measure(struct bench *b)
            seconds / rounds, core, sqrt(squares), (int)POINTS, rays, rays * POINTS / fmax(core, 1e-9));
 }
 
+/* Either of the two makes a case: fields of patches, or what is read from files. */
+static const struct bench_case {
+    const char *name;
+    void (*make)(struct bench *);
+    enum status (*read)(struct bench *, struct err *);
+} cases[] = {{"sphere", make_sphere, NULL}, {"patch", make_patch, NULL},    {"box", make_box, NULL},
+             {"window", make_window, NULL}, {"sun", make_sun, NULL},        {"room", make_room, NULL},
+             {"model", NULL, make_model},   {"cornell", NULL, make_cornell}};
+
 static enum status make_case(struct bench *b, const char *name, struct err *err)
 {
-    static const struct {
-        const char *name;
-        void (*make)(struct bench *);
-    } cases[] = {
-        {"patch", make_patch}, {"box", make_box}, {"window", make_window}, {"sun", make_sun}, {"room", make_room}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         if (strcmp(cases[i].name, name)) continue;
+        if (cases[i].read && !b->folder) return err_set(err, ST_USAGE, "--case %s needs --folder.", name);
+        if (cases[i].read) return cases[i].read(b, err);
         cases[i].make(b);
-        b->field = b->scene.field;
+        if (b->scene.field.look) b->field = b->scene.field;
         return ST_OK;
     }
-    return err_set(err, ST_USAGE, "there is no case %s, wanted patch, box, window, sun or room.", name);
+    return err_set(err, ST_USAGE, "there is no case %s; the head of irradiance.c lists them.", name);
 }
 
 static const char *option(int argc, char **argv, const char *name)
@@ -186,6 +281,7 @@ static enum status run(struct bench *b, int argc, char **argv, struct err *err)
     const char *truth = option(argc, argv, "--truth");
     if (!name || !(converge || (estimator && effort && truth)))
         return err_set(err, ST_USAGE, "wanted --case NAME with --converge FILE, or --estimator, --effort and --truth.");
+    b->folder = option(argc, argv, "--folder");
     if (make_case(b, name, err)) return err->status;
     if (converge) return write_truth(b, name, converge, err);
     b->effort = atoi(effort);
@@ -202,6 +298,8 @@ int main(int argc, char **argv)
     struct err err = ERR_INIT;
     run(&b, argc, argv, &err);
     hemicube_free(b.cube);
+    cornell_release(&b.cornell);
+    model_field_release(&b.model);
     err_report(&err);
     return err_exit_code(&err);
 }

@@ -1,5 +1,5 @@
-# slope.awk TABLE - prints slopes of log y over log of each column of `over`, by least squares, for every line
-# of the plot.
+# slope.awk TABLE - prints slopes of log y over log of each column of `over`, by least squares, for every value of the
+# columns `line`.
 /^#/ { next }
 !width { width = NF; for (i = 1; i <= NF; i++) column[$i] = i; lines = split(line, keys, " "); overs = split(over, xs, " "); next }
 $(column[y]) > 0 {

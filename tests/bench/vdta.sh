@@ -49,13 +49,20 @@ every_second() { awk 'NR % 2 == 0'; }
 # four photos, spread over the list
 default_shell() { photos_of "$described" | awk '{ p[NR] = $1 } END { for (i = 0; i < 4; i++) printf "%s ", p[int(i * NR / 4) + 1] }'; }
 
-# what the pictures depend on
-pictures_text()
+# what pictures depend on
+pictures_text() # WHAT
 {
-    echo "samples $samples, shell $shell_samples of $shell_photos, sun $sun"
+    echo "$1"
     sha256sum "$described/scene.txt" "$described/cameras.txt"
     find "$described" -name '*.obj' -exec sha256sum {} + | sort
     cat "$B/code/simulate"
+}
+# whether the pictures of a list are there, made from the same
+kept_from() # LIST TEXT
+{
+    [ -e "$B/code/simulate" ] || missing "there is no $B/code/simulate; make SCENE=$scene once, which writes the checksums of the programs."
+    pictures_text "$2" >"$work/pictures"
+    cmp -s "$work/pictures" "$kept/$1"
 }
 
 tell_time() # SAMPLES PATTERN
@@ -65,16 +72,23 @@ tell_time() # SAMPLES PATTERN
 
 shoot()
 {
-    local v
-    [ -e "$B/code/simulate" ] || missing "there is no $B/code/simulate; make SCENE=$scene once, which writes the checksums of the programs."
-    pictures_text >"$work/pictures"
-    if cmp -s "$work/pictures" "$kept/pictures.txt"; then return; fi
-    say "photographing $scene at scale $scale; half of the photos twice; four photos and the witnesses without furniture. All pictures of a kind take:"
+    if kept_from pictures.txt "samples $samples"; then return; fi
+    say "photographing $scene at scale $scale. All pictures of a kind take:"
     tell_time "$samples" '^photos'
-    tell_time "$shell_samples" '^pictures of the shell'
-    rm -rf "$kept"; mkdir -p "$kept/sunny"
+    rm -rf "$kept"; mkdir -p "$kept"
     simulated --scene "$described" --out "$kept/room" --common
     simulated --scene "$described" --out "$kept/room" --photo all --set "samples=$samples"
+    mv "$work/pictures" "$kept/pictures.txt"
+}
+
+# the room without its furniture, and half of the photos under another sun
+shoot_shell()
+{
+    local v
+    if kept_from shell.txt "samples $samples, shell $shell_samples of $shell_photos, sun $sun"; then return; fi
+    say "photographing $scene at scale $scale without furniture, and half of its photos again. All pictures of a kind take:"
+    tell_time "$shell_samples" '^pictures of the shell'
+    rm -rf "$kept/room/truth/shell" "$kept/suns" "$kept/mixed"; mkdir -p "$kept/sunny"
     # ids and depths of the shell need one ray a pixel; radiance, many
     for v in $(photos_of "$described"); do
         simulated --scene "$described" --out "$kept/room" --photo "$v" --kind shell --set samples=1 --set truth_samples=1
@@ -90,7 +104,7 @@ shoot()
         simulated --scene "$kept/sunny" --out "$kept/suns" --photo "$v" --set "samples=$samples"
     done
     mix_suns
-    mv "$work/pictures" "$kept/pictures.txt"
+    mv "$work/pictures" "$kept/shell.txt"
 }
 
 # Photos under two suns, and what is true of those under the first one; the shell is known under that sun only.
@@ -111,14 +125,14 @@ mix_suns()
 
 # ------------------------------------------------------------------------------------------------------------- the chain
 
-# pixels of the scene's photos, in texts in which PHOTO X Y ... or "in PHOTO X Y ..." names them, at another scale
+# pixels of the scene's photos, in texts in which PHOTO X Y ... or "in PHOTO X Y ... [rim X Y]" names them, at another scale
 scaled()
 {
     if [ "$scale" = 1 ]; then cat "$1"; return; fi
     awk -v CONVFMT=%.12g -v s="$scale" -v photos="$(photos_of "$described" | tr '\n' ' ')" '
         BEGIN { n = split(photos, p, " "); for (i = 1; i <= n; i++) known[p[i]] = 1 }
         /^#/ { print; next }
-        { for (i = 1; i < NF; i++) if ($i in known) for (k = i + 1; k <= NF && $k ~ /^[0-9.]+$/; k++) $k *= s; print }' "$1"
+        { for (i = 1; i < NF; i++) if ($i in known || $i == "rim") for (k = i + 1; k <= NF && $k ~ /^[0-9.]+$/; k++) $k *= s; print }' "$1"
 }
 
 # a scene of the project: NAME, its photos, its truth
@@ -152,6 +166,7 @@ prepare_room()
 prepare()
 {
     prepare_room
+    shoot_shell
     new_scene mixed "$kept/mixed/photos" "$kept/mixed/truth"
     # the same cameras, so that rows differ by light alone
     echo "SFM := out/room/sfm/0" >>"$kept/project/scenes/mixed/scene.mk"

@@ -53,6 +53,20 @@ the_plot_is_an_svg_with_every_series()
     grep -q 'no column' "$scratch/err" && [ ! -e "$s" ] || fail "the message does not name the missing column"
 }
 
+# the errors are 1/sqrt(seconds): ours have 2, 20 and 200 s, and theirs twice that
+what_an_error_costs_is_interpolated()
+{
+    trivial
+    sed -i 's|slope=seconds|slope=seconds reach="0.1 0.05 0.9" panel=unit orders=things|' "$BENCHES/trivial.sh"
+    bench 0 trivial "$B"
+    says "px, ours: error 0.1 at 100 seconds, 1 of the theirs"
+    says "px, theirs: error 0.1 at 100 seconds"
+    says "px, ours: error 0.05 at more than 200 seconds"
+    says "px, ours: error 0.9 at less than 2 seconds"
+    says "slope of log error over log seconds, ours px: -0.500"
+    ! command -v gnuplot >/dev/null || grep -qF '>n^-0.50' "$BENCH_OUT/trivial.svg" || grep -qF 'n^-0.50<' "$BENCH_OUT/trivial.svg" || fail "the plot does not show the order"
+}
+
 values_other_than_times_must_repeat()
 {
     trivial
@@ -108,5 +122,25 @@ a_comparison_names_its_missing_arguments()
     grep -q 'no-such-revision' "$scratch/err" || fail "the message does not name the revision"
 }
 
-for t in a_trivial_bench_writes_the_right_table the_plot_is_an_svg_with_every_series values_other_than_times_must_repeat columns_listed_as_timed_need_not_repeat a_failing_sample_is_named \
-    missing_programs_and_benches_are_named two_builds_are_compared_pair_by_pair a_comparison_names_its_missing_arguments; do run "$t"; done
+# a sphere of linear radiance has a closed form: errors fall by four as pixels do
+the_bench_of_irradiance_knows_a_sphere()
+{
+    local i=$B/tests/bench/irradiance
+    "$i" --case sphere --converge "$scratch/truth.txt"
+    for n in 32 64; do "$i" --case sphere --estimator hemicube --effort $n --truth "$scratch/truth.txt" >"$scratch/$n.txt"; done
+    awk '$1 == "error" { e[++n] = $2 } END { exit !(e[1] < 2e-4 && e[1] / e[2] > 3.5 && e[1] / e[2] < 4.5) }' "$scratch/32.txt" "$scratch/64.txt" || { cat "$scratch"/{32,64}.txt; fail "the hemicube is not of first order in its rays"; }
+    ! "$i" --case cornell --converge "$scratch/truth.txt" 2>"$scratch/err" || fail "the Cornell box was made of nothing"
+    grep -q 'needs --folder' "$scratch/err" || fail "the message does not name the option"
+}
+
+benches_of_irradiance_leave_out_what_is_not_there()
+{
+    unset BENCHES
+    BENCH_CASES=cornell BENCH_CORNELL=$scratch/none BENCH_SCENES=nowhere bench 2 irradiance "$B"
+    says "cornell is left out"; says "nowhere is left out"
+    BENCH_SCENES=nowhere bench 3 irradiance_scenes "$B"; says "nowhere is left out"
+}
+
+for t in a_trivial_bench_writes_the_right_table the_plot_is_an_svg_with_every_series what_an_error_costs_is_interpolated values_other_than_times_must_repeat columns_listed_as_timed_need_not_repeat a_failing_sample_is_named \
+    missing_programs_and_benches_are_named two_builds_are_compared_pair_by_pair a_comparison_names_its_missing_arguments \
+    the_bench_of_irradiance_knows_a_sphere benches_of_irradiance_leave_out_what_is_not_there; do run "$t"; done

@@ -46,24 +46,26 @@ bench()
     BENCH_SCENE=room BENCH_SCALE=$1 BENCH_SAMPLES=1 BENCH_SHELL_SAMPLES=2 BENCH_SHELL="a c"
     . "$root/tests/bench/vdta.sh"
 }
+shoot_all() { { shoot; shoot_shell; } 2>"$scratch/err"; }
 times() { find "$kept" -type f -printf '%P %T@\n' | LC_ALL=C sort; }
 
 photographs_are_kept_until_the_description_changes()
 {
     bench 0.5
-    shoot 2>"$scratch/err"
+    shoot_all
     grep -q 'photographing room at scale 0.5' "$scratch/err" || fail "nothing tells that photographs are made"
     grep -q '^photos: ' "$scratch/err" || fail "nothing tells how long the photos take"
+    grep -q 'photographing room at scale 0.5 without furniture' "$scratch/err" || fail "nothing tells that the shell is photographed"
     [ "$(ls "$kept/room/photos" | wc -l)" = 4 ] || fail "wanted four photos"
     [ "$(ls "$kept/suns/photos" | tr '\n' ' ')" = 'b.jpg d.jpg ' ] || fail "wanted every second photo under another sun"
     [ "$(ls "$kept/room/truth/shell/ids" | tr '\n' ' ')" = 'a.exr b.exr c.exr d.exr w.exr ' ] || fail "the shell's ids are of other views"
     [ "$(ls "$kept/room/truth/shell/hdr" | tr '\n' ' ')" = 'a.exr c.exr w.exr ' ] || fail "the shell's radiance is of other views"
     times >"$scratch/a"
-    shoot 2>"$scratch/err"
+    shoot_all
     times | cmp - "$scratch/a" || fail "a second run made pictures again"
     [ ! -s "$scratch/err" ] || fail "a second run says something"
     sed -i 's/^photo b p 1.2/photo b p 1.25/' scenes/room/cameras.txt
-    shoot 2>"$scratch/err"
+    shoot_all
     times | cmp -s - "$scratch/a" && fail "a moved camera did not make pictures again"
     return 0
 }
@@ -71,7 +73,7 @@ photographs_are_kept_until_the_description_changes()
 half_of_the_photos_have_the_other_sun_and_no_true_shell()
 {
     bench 0.5
-    shoot 2>/dev/null
+    shoot_all
     [ "$(ls "$kept/mixed/photos" | tr '\n' ' ')" = 'a.jpg b.jpg c.jpg d.jpg ' ] || fail "photos are missing"
     cmp "$kept/mixed/photos/a.jpg" "$kept/room/photos/a.jpg" || fail "the first photo has another sun"
     ! cmp -s "$kept/mixed/photos/b.jpg" "$kept/room/photos/b.jpg" || fail "the second photo has the same sun"
@@ -91,6 +93,8 @@ scripts_follow_the_size_of_the_photos()
     grep -q '^length left right 4.5$' "$to/scale.txt" || fail "a length was scaled"
     grep -q '^camera_params = 25$' "$to/scene.cfg" || { cat "$to/scene.cfg"; fail "the lens has another focal length"; }
     cmp "$to/edits/open.txt" scenes/room/edits/open.txt || fail "the edit changed"
+    printf 'disk spot in a 8 12 rim 10 12 off 0.5\n' >marks.txt
+    [ "$(scaled marks.txt)" = 'disk spot in a 4 6 rim 5 6 off 0.5' ] || { scaled marks.txt; fail "a lamp has other marks"; }
     bench 1
     new_scene t "$kept/photos" "$kept/truth"
     cmp "$kept/project/scenes/t/model.txt" scenes/room/model.txt || fail "at full size the model changed"
