@@ -4,4 +4,7 @@ PHOTOS := out/loft/simulated/photos
 LRI := out/loft/simulated/lri
 LRI_SFM := out/loft/simulated/truth/lri
 TRUTH := out/loft/simulated/truth
-PRODUCTS := model textures
+PRODUCTS := model textures remodel tour relight
+# what is drawn unless EDIT, DRAW or RELIT_VIEWS say more: a larger window, from one photo
+DRAW ?= big-window
+RELIT_VIEWS ?= v06
