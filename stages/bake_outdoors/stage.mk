@@ -16,6 +16,6 @@ outdoors: $(OUTDOORS)
 # an image that went is a change whatever the times of the others
 $(O)/stamp/outdoors.txt: FORCE
 	+@mkdir -p $(@D); echo '$(OUTDOORS_LRI)' | cmp -s - $@ || echo '$(OUTDOORS_LRI)' >$@
-$(OUTDOORS): $(O)/model/model.txt $(AXES) $(CAMERAS) $(O)/views/lenses.txt $(VIEW_EXR) $(IDS_EXR) $(OUTDOORS_LRI) $(O)/stamp/outdoors.txt $(call needs,bake_outdoors)
+$(OUTDOORS): $(O)/model/model.txt $(AXES) $(VIEW_CAMERAS) $(O)/views/lenses.txt $(VIEW_EXR) $(IDS_EXR) $(OUTDOORS_LRI) $(O)/stamp/outdoors.txt $(call needs,bake_outdoors)
 	$(call stage,bake_outdoors,all,$(O),--model $(O)/model/model.txt --axes $(AXES) --views $(O)/views --ids $(O)/ids $(OUTDOORS_LRI:%=--reference %) --out $@)
 endif

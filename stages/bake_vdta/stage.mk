@@ -14,7 +14,7 @@ VDTA_TXT := $(if $(MODEL_SCRIPT),$(VIEWPOINTS:%=$(O)/vdta/%/atlas.txt))
 vdta: $(VDTA_TXT)
 # $(1): a photo; $(2): its views. Which other views it reads is known when it has been made, and listed in PHOTO.d
 define vdta_rule
-$(O)/vdta/$(1)/atlas.txt: $(O)/model/model.txt $(AXES) $(CAMERAS) $(O)/views/lenses.txt $(IDS_INDEX) $(foreach v,$(2),$(O)/views/$(v).exr \
+$(O)/vdta/$(1)/atlas.txt: $(O)/model/model.txt $(AXES) $(VIEW_CAMERAS) $(O)/views/lenses.txt $(IDS_INDEX) $(foreach v,$(2),$(O)/views/$(v).exr \
   $(O)/ids/$(v).exr $(O)/reveal/$(v).exr) $(call needs,bake_vdta) | $(VIEW_EXR) $(IDS_EXR)
 	$$(hide)$$(call farm,bake_vdta,$(1),$$@,--model $(O)/model/model.txt --axes $(AXES) --views $(O)/views --ids $(O)/ids \
 	  --reveal $(O)/reveal --out $(O)/vdta,,,--photo $(1) --deps $(O)/vdta/$(1).d)

@@ -15,7 +15,7 @@ FILM_VIEWS := $(P)/views.txt
 FILM_VIEWS_STAMP := $(O)/stamp/film_views$(if $(DRAWN),-drawn).txt
 .PHONY: film_views
 film_views: $(FILM_VIEWS_STAMP)
-$(FILM_VIEWS_STAMP): $(CAMERAS) $(O)/views/lenses.txt $(DRAWN) $(call needs,choose_views) \
+$(FILM_VIEWS_STAMP): $(VIEW_CAMERAS) $(O)/views/lenses.txt $(DRAWN) $(call needs,choose_views) \
   $(if $(wildcard $(FILM_VIEWS)),,FORCE)
 	$(call stage,choose_views,all,$(O),--views $(O)/views $(DRAWN:%=--subjects %) --out $(FILM_VIEWS))
 	+@mkdir -p $(@D); rm -f $(O)/stamp/film_views*.txt; echo done >$@

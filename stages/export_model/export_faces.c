@@ -328,7 +328,7 @@ static enum status add_face(const struct work *w, const struct solid_triangles *
 {
     const int id = solid_face_id(w->mesh, w->face);
     const struct vec3 at = w->mesh->vertices[triangles->triangles[triangles->first[w->face]].v[0]].p;
-    const bool pane = !strncmp(w->mesh->bodies[w->mesh->faces[w->face].body].name, "glass/", 6);
+    const bool pane = solid_face_is_pane(w->mesh, w->face);
     const struct texture_rule self[2] = {
         {.kind = pane ? TEXTURE_OUTDOORS : TEXTURE_PLACE,
          .from = id,

@@ -13,7 +13,7 @@ SUBJECTS := $(P)/subjects.txt
 subjects: $(SUBJECTS)
 # rectangles that a user drew (DRAWN) are in place of faces; a file that came or went is a change whatever its time
 WERE_DRAWN := $(shell grep -om1 '^. input subjects.txt' $(SUBJECTS) 2>/dev/null)
-$(SUBJECTS): $(CAMERAS) $(O)/views/lenses.txt $(if $(DRAWN),$(DRAWN),$(VIEW_EXR)) $(DEPTH_EXR) $(DEPTH_TXT) \
+$(SUBJECTS): $(VIEW_CAMERAS) $(O)/views/lenses.txt $(if $(DRAWN),$(DRAWN),$(VIEW_EXR)) $(DEPTH_EXR) $(DEPTH_TXT) \
   $(FILM_VIEWS) $(call needs,find_subjects) $(if $(DRAWN),$(if $(WERE_DRAWN),,FORCE),$(if $(WERE_DRAWN),FORCE)) | $(FILM_VIEWS_STAMP)
 	$(call stage,find_subjects,all,$(O),--views $(O)/views --depth $(O)/depth --records $(S)/photos --film-views $(FILM_VIEWS) \
 	  $(DRAWN:%=--subjects %) --out $@)

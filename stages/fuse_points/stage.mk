@@ -10,6 +10,6 @@ ifdef GRAPH
 POINTS := $(O)/points/points.ply
 .PHONY: points
 points: $(POINTS)
-$(POINTS): $(CAMERAS) $(DEPTH_EXR) $(DEPTH_TXT) $(call needs,fuse_points)
+$(POINTS): $(VIEW_CAMERAS) $(DEPTH_EXR) $(DEPTH_TXT) $(call needs,fuse_points)
 	$(call stage,fuse_points,all,$(O),--views $(O)/views --depth $(O)/depth --out $@)
 endif

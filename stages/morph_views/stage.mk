@@ -30,7 +30,7 @@ MORPH_TXT := $(M)/path.txt $(addprefix $(M)/path/,cameras.txt images.txt points3
 morph-path: $(M)/frames.mk
 morph-frames: $(MORPH_EXR)
 morph: $(M)/video.mp4
-MORPH_POSES := $(if $(wildcard $(O)/views/views.mk),$(CAMERAS) $(O)/views/lenses.txt)
+MORPH_POSES := $(if $(wildcard $(O)/views/views.mk),$(VIEW_CAMERAS) $(O)/views/lenses.txt)
 $(MORPH_TXT) $(M)/frames.mk &: $(foreach p,$(MORPH),$(call picture,$(p))) $(MORPH_POSES) $(O)/stamp/morph.txt $(call needs,morph_views)
 	$(call stage,morph_views,path,$(O),--photos $(PICTURES) --records $(S)/photos --first $(firstword $(MORPH)) --second $(lastword $(MORPH)) \
 	  $(if $(MORPH_POSES),--views $(O)/views) --out $(M))

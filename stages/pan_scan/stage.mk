@@ -13,7 +13,7 @@ pan_frames: $(foreach e,$(EFFECTS),$(call pan_exr,$(e)))
 pan_scan: $(EFFECTS:%=$(P)/%/pan_scan/video.mp4)
 # which view it shows depends on the path
 define pan_rule
-$(1:%=$(P)/$(2)/pan_scan/frames/%.exr) &: $(call path_txt,$(2)) $(CAMERAS) $(VIEW_EXR) $(DEPTH_EXR) $(DEPTH_TXT) $(call needs,pan_scan)
+$(1:%=$(P)/$(2)/pan_scan/frames/%.exr) &: $(call path_txt,$(2)) $(VIEW_CAMERAS) $(VIEW_EXR) $(DEPTH_EXR) $(DEPTH_TXT) $(call needs,pan_scan)
 	$$(hide)stale=$$$$(common/run/stale.sh frames $(1:%=$(P)/$(2)/pan_scan/frames/%.exr) -- $$^); \
 	  $$(call farm,pan_scan,$(2)-$(firstword $(1)),$(1:%=$(P)/$(2)/pan_scan/frames/%.exr),--views $(O)/views \
 	  --depth $(O)/depth --path $(P)/$(2) --out $(P)/$(2)/pan_scan/frames --frames,$$$$stale)

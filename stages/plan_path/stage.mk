@@ -19,7 +19,7 @@ path_all = $(call path_txt,$(1)) $(addprefix $(P)/$(1)/,effects.txt transforms.j
 path: $(foreach e,$(EFFECTS),$(call path_all,$(e)) $(if $(filter $(e),$(FILMS)),,$(call validity,$(e))))
 # $(1): a planned effect
 define path_rule
-$(call path_all,$(1)) &: $(CAMERAS) $(call validity,$(1)) $(DEPTH_EXR) $(DEPTH_TXT) $(call needs_subjects,$(1)) $(FILM_VIEWS) \
+$(call path_all,$(1)) &: $(VIEW_CAMERAS) $(call validity,$(1)) $(DEPTH_EXR) $(DEPTH_TXT) $(call needs_subjects,$(1)) $(FILM_VIEWS) \
   $(call needs,plan_path) | $(FILM_VIEWS_STAMP)
 	$$(call stage,plan_path,$(1),$(O),--views $(O)/views --film-views $(FILM_VIEWS) --depth $(O)/depth --validity $(firstword $(call validity,$(1))) \
 	  --effect $(1) $(addprefix --subjects ,$(call needs_subjects,$(1))) --out $(P)/$(1))
@@ -28,7 +28,7 @@ endef
 chained = $(sort $(shell awk '$$1 == "move" && $$2 ~ /^[A-Za-z0-9_+-]+$$/ { print $$2 }' $(call keyframes,$(1))))
 define film_rule
 $(call path_all,$(1)) &: $(call keyframes,$(1)) $(foreach m,$(CHAINED_$(1)),$(P)/$(m)/path.txt $(P)/$(m)/effects.txt) \
-  $(CAMERAS) $(O)/views/lenses.txt $(call needs,plan_path)
+  $(VIEW_CAMERAS) $(O)/views/lenses.txt $(call needs,plan_path)
 	$$(call stage,plan_path,$(1),$(O),--views $(O)/views --records $(S)/photos --keyframes $(call keyframes,$(1)) \
 	  --moves $(P) --effect $(1) --out $(P)/$(1))
 endef

@@ -16,7 +16,7 @@ effect_layers = $(P)/$(1)/effects.txt $(if $(filter $(1),$(FILMS)),,$(wildcard s
 # a film of keys may go anywhere, so it is rendered from all views
 film_views_of = $(if $(filter $(1),$(FILMS)),,$(FILM_VIEWS))
 define chunk_rule
-$(1:%=$(P)/$(2)/frames/%.exr) &: $(call path_txt,$(2)) $(call effect_layers,$(2)) $(CAMERAS) $(DEPTH_EXR) $(DEPTH_TXT) \
+$(1:%=$(P)/$(2)/frames/%.exr) &: $(call path_txt,$(2)) $(call effect_layers,$(2)) $(VIEW_CAMERAS) $(DEPTH_EXR) $(DEPTH_TXT) \
   $(call film_views_of,$(2)) $(call needs,render_views) | $(if $(filter $(2),$(FILMS)),,$(FILM_VIEWS_STAMP))
 	$$(hide)stale=$$$$(common/run/stale.sh frames $(1:%=$(P)/$(2)/frames/%.exr) -- $$^); \
 	  $$(call farm,render_views,$(2)-$(firstword $(1)),$(1:%=$(P)/$(2)/frames/%.exr),--views $(O)/views --depth $(O)/depth \
@@ -28,7 +28,7 @@ $(foreach e,$(EFFECTS),$(call chunks,chunk_rule,$(FRAMES_$(e)),$(e)))
 HELD_FRAMES := $(HELD:%=$(H)/frames/%.exr)
 heldout: $(HELD_FRAMES)
 define heldout_rule
-$(1:%=$(H)/frames/%.exr) &: $(HELD_CAMERAS) $(CAMERAS) $(DEPTH_EXR) $(DEPTH_TXT) $(call needs,render_views)
+$(1:%=$(H)/frames/%.exr) &: $(HELD_CAMERAS) $(VIEW_CAMERAS) $(DEPTH_EXR) $(DEPTH_TXT) $(call needs,render_views)
 	$$(hide)$$(call farm,render_views,heldout-$(firstword $(1)),$(1:%=$(H)/frames/%.exr),--views $(O)/views \
 	  --depth $(O)/depth --cameras $(H)/views --out $(H)/frames $(1:%=--camera %))
 endef

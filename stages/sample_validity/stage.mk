@@ -10,7 +10,7 @@ move_of = $(firstword $(subst +, ,$(1)))
 validity = $(addprefix $(P)/$(call move_of,$(1))/,validity.txt validity.png)
 # $(1): a move
 define validity_rule
-$(call validity,$(1)) &: $(CAMERAS) $(O)/views/lenses.txt $(DEPTH_EXR) $(DEPTH_TXT) $(call needs_subjects,$(1)) $(FILM_VIEWS) \
+$(call validity,$(1)) &: $(VIEW_CAMERAS) $(O)/views/lenses.txt $(DEPTH_EXR) $(DEPTH_TXT) $(call needs_subjects,$(1)) $(FILM_VIEWS) \
   $(call needs,sample_validity) | $(FILM_VIEWS_STAMP)
 	$$(call stage,sample_validity,$(1),$(O),--views $(O)/views --film-views $(FILM_VIEWS) --depth $(O)/depth --records $(S)/photos --effect $(1) \
 	  $(addprefix --subjects ,$(call needs_subjects,$(1))) --out $(P)/$(1))

@@ -30,14 +30,14 @@ else
 H := $(O)/holdout
 HELD := $(if $(HELDOUT),$(call list_in,$(H)/views/views.mk,VIEWS))
 VIEWS := $(call list_in,$(O)/views/views.mk,VIEWS)
-CAMERAS := $(addprefix $(O)/views/,cameras.txt images.txt points3D.txt)
+VIEW_CAMERAS := $(addprefix $(O)/views/,cameras.txt images.txt points3D.txt)
 HELD_CAMERAS := $(if $(HELDOUT),$(addprefix $(H)/views/,cameras.txt images.txt points3D.txt lenses.txt views.mk))
 # a view's photo; the photos that have a view
 photo_of = $(firstword $(subst @, ,$(1)))
 VIEWED := $(sort $(foreach v,$(VIEWS),$(call photo_of,$(v))))
 .PHONY: sfm
 sfm: $(O)/views/views.mk
-$(CAMERAS) $(addprefix $(O)/views/,lenses.txt residuals.txt lens_forms.txt views.mk) $(HELD_CAMERAS) &: $(S)/sfm/models.txt $(S)/photos/list.txt \
+$(VIEW_CAMERAS) $(addprefix $(O)/views/,lenses.txt residuals.txt lens_forms.txt views.mk) $(HELD_CAMERAS) &: $(S)/sfm/models.txt $(S)/photos/list.txt \
   $(S)/stamp/photo_sizes.txt $(if $(HELDOUT),$(O)/stamp/holdout.txt) $(call needs,sfm_import)
 	$(call stage,sfm_import,all,$(O),--sfm $(S)/sfm --records $(S)/photos --out $(O)/views \
 	  $(if $(HOLDOUT),--holdout $(HOLDOUT)) $(if $(HOLDOUT_VIEWS),--holdout-views '$(HOLDOUT_VIEWS)'))

@@ -9,7 +9,7 @@ NEEDS.suggest := depth
 ifdef GRAPH
 .PHONY: suggest
 suggest: $(O)/model/suggested.txt
-$(O)/model/suggested.txt: $(AXES) $(CAMERAS) $(VIEW_EXR) $(DEPTH_EXR) $(DEPTH_TXT) $(POINTS) \
+$(O)/model/suggested.txt: $(AXES) $(VIEW_CAMERAS) $(VIEW_EXR) $(DEPTH_EXR) $(DEPTH_TXT) $(POINTS) \
   $(call needs,suggest_model)
 	$(call stage,suggest_model,all,$(O),--views $(O)/views --depth $(O)/depth --points $(POINTS) --axes $(AXES) \
 	  --out $@)

@@ -17,12 +17,12 @@ REVEAL_EXR := $(IDS_VIEWS:%=$(O)/reveal/%.exr)
 ids: ids-views ids-reveal $(IDS_INDEX)
 ids-views: $(IDS_EXR) $(IDS_TXT)
 ids-reveal: $(REVEAL_EXR)
-IDS_NEEDS := $(O)/model/model.txt $(AXES) $(CAMERAS) $(call needs,trace_ids)
+IDS_NEEDS := $(O)/model/model.txt $(AXES) $(VIEW_CAMERAS) $(call needs,trace_ids)
 IDS_ARGS := --model $(O)/model/model.txt --axes $(AXES) --views $(O)/views
-EDIT_MODELS := $(EDITS:%=$(O)/remodel/%/model.txt)
+EDIT_MODELS := $(MODEL_EDITS:%=$(O)/remodel/%/model.txt)
 # an edit that went is a change whatever the times of the others
 $(O)/stamp/edits.txt: FORCE
-	+@mkdir -p $(@D); echo '$(EDITS)' | cmp -s - $@ || echo '$(EDITS)' >$@
+	+@mkdir -p $(@D); echo '$(MODEL_EDITS)' | cmp -s - $@ || echo '$(MODEL_EDITS)' >$@
 # $(1): a view. VIEW.exr of reveal is replaced only if its bytes change: VIEW.txt is what Make goes by, and the next call of
 # Make sees whether VIEW.exr changed.
 define ids_rules

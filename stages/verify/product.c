@@ -13,6 +13,7 @@
 #include "common/capture/point_cloud.h"
 #include "common/image/exr.h"
 #include "common/image/photo.h"
+#include "common/light/object_list.h"
 #include "common/texture/atlas.h"
 #include "common/texture/texture_map.h"
 
@@ -199,6 +200,14 @@ static enum status verify_texture_map(const char *path, struct err *err)
     return st;
 }
 
+static enum status verify_objects(const char *path, struct err *err)
+{
+    struct object_list list = {0};
+    const enum status st = object_list_read(&list, path, err);
+    object_list_release(&list);
+    return st;
+}
+
 static enum status verify_not_empty(const char *path, struct err *err)
 {
     struct stat info;
@@ -222,6 +231,7 @@ enum status product_verify(const char *path, struct err *err)
     const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path, *dot = strrchr(name, '.');
     if (!strcmp(name, "atlas.txt")) return verify_atlas(path, err);
     if (!strcmp(name, "texture.txt")) return verify_texture_map(path, err);
+    if (!strcmp(name, "objects.txt")) return verify_objects(path, err);
     for (size_t i = 0; dot && i < sizeof kinds / sizeof *kinds; i++)
         if (!strcasecmp(dot, kinds[i].extension)) return kinds[i].verify(path, err);
     return verify_not_empty(path, err);

@@ -3,7 +3,7 @@
 project remodel
 photos set >/dev/null
 boxed t textures
-printf 'remodel-script 1\n# A blue chest, in an empty room.\nbase bare\nbox chest from -4 6 to 4 12 top 3\ncolour box/chest 0.1 0.2 0.8\nclear hall\n' >scenes/t/edits/chest.txt
+printf 'remodel-script 1\n# A blue chest, in an empty room.\nbase bare\nbox chest from -4 6 to 4 12 top 3\ncolour box/chest 0.1 0.2 0.8\nmaterial box/chest ward 0.05 0.2\nlamp ceiling off\nclear hall\n' >scenes/t/edits/chest.txt
 printf '[bake_outdoors]\nheight = 64\n[plan_tour]\nwidth = 64\nheight = 48\nfps = 4\nspeed = 8\nclearance = 0.5\nhold = 0.25\n' >>scenes/t/scene.cfg
 m() { make -s DEPS=manual PHOTOS=set/photos SFM=set/model SCENE=t "$@" >log 2>&1 || { cat log; fail "make $*"; }; }
 refused() # WORD ARGUMENT...
@@ -67,7 +67,9 @@ given_cameras_are_drawn_in_any_frame_and_lens()
 {
     mkdir -p cams
     cp $O/views/cameras.txt $O/views/images.txt cams/; : >cams/points3D.txt
+    find $O/views $O/depth $O/vita -type f -printf '%p %T@\n' | LC_ALL=C sort >before
     m remodel CAMERAS=cams EDIT=chest
+    find $O/views $O/depth $O/vita -type f -printf '%p %T@\n' | LC_ALL=C sort | diff before - || fail "given cameras made the scene again"
     [ -s $O/remodel/chest/cameras/pictures.txt ] || fail "no list of pictures"
     "$B/bin/verify" --file "$O/remodel/chest/cameras/$view.exr" || fail "a picture is not whole"
     m remodel CAMERAS=cams CAMERAS_FRAME=truth TRUTH=cams EDIT=chest

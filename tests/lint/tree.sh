@@ -128,6 +128,17 @@ run formatted
 run generated_files_are_current
 run no_pipe_ends_before_its_input_does
 run scripts_pass_shellcheck
+# A variable that people give on the command line keeps that value, whatever a file of make assigns to it.
+variables_of_people_are_not_assigned()
+{
+    local v bad=
+    for v in $(grep -hoE '^## [A-Z_]+=' Makefile common/make/*.mk stages/*/stage.mk | sed 's/^## //; s/=//' | sort -u); do
+        bad+=$(grep -nE "^ *$v *:?= " Makefile common/make/*.mk stages/*/stage.mk || true)
+    done
+    [ -z "$bad" ] || { echo "$bad"; fail "a variable of make that people give is assigned; name the inner one otherwise"; }
+}
+
+run variables_of_people_are_not_assigned
 run documents_are_at_most_120_columns_wide
 run the_architecture_names_what_exists
 run cited_sources_are_in_the_list

@@ -25,7 +25,7 @@ NEEDS.mean_colour := views
 ifdef GRAPH
 .PHONY: mean_colour
 mean_colour: $(O)/mean_colour.txt
-$(O)/mean_colour.txt: $(CAMERAS) $(VIEW_EXR) $(call needs,mean_colour)
+$(O)/mean_colour.txt: $(VIEW_CAMERAS) $(VIEW_EXR) $(call needs,mean_colour)
 	$(call stage,mean_colour,all,$(O),--views $(O)/views --out $@)
 endif
 MK

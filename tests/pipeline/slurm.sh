@@ -41,15 +41,15 @@ chunks_of_one_and_of_seven_give_the_same_bytes()
 
 atlases_baked_on_the_cluster_are_those_of_a_local_run()
 {
-    boxed flat textures; boxed farm textures
+    boxed flat textures; boxed queued textures
     make -s DEPS=manual SFM=set/model SCENE=flat textures >log 2>&1 || { cat log; fail "local run"; }
     for lines in 1 7; do
-        rm -rf out/farm/vdta
-        make -s DEPS=manual SFM=set/model SCENE=farm JOBS=slurm VIEWS_PER_JOB=$lines textures >log 2>&1 || { cat log; fail "chunks of $lines"; }
+        rm -rf out/queued/vdta
+        make -s DEPS=manual SFM=set/model SCENE=queued JOBS=slurm VIEWS_PER_JOB=$lines textures >log 2>&1 || { cat log; fail "chunks of $lines"; }
         grep -q "bake_vdta: job .* of $((lines == 1 ? 4 : 1)) tasks" log || { cat log; fail "VIEWS_PER_JOB=$lines does not cut the array of bakes"; }
-        diff -r -x '*.d' out/flat/vdta out/farm/vdta || fail "the cluster gives other atlases"
+        diff -r -x '*.d' out/flat/vdta out/queued/vdta || fail "the cluster gives other atlases"
     done
-    diff -r out/flat/vita out/farm/vita
+    diff -r out/flat/vita out/queued/vita
 }
 
 brackets_are_merged_on_the_cluster()

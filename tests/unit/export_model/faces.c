@@ -136,8 +136,11 @@ static void a_rule_moves_texture_and_a_colour_covers_a_part(void **state)
                                     {.kind = TEXTURE_PLACE,
                                      .from = solid_face_id(&r.mesh, face),
                                      .matrix = {{1, 0, 0, 0.5}, {0, 1, 0, 0}, {0, 0, 1, 0}}}};
-    struct texture_face of = {
-        solid_face_id(&r.mesh, face), NULL, r.mesh.faces[face].normal, r.mesh.faces[face].offset, rules, 2, NULL, 0};
+    struct texture_face of = {.id = solid_face_id(&r.mesh, face),
+                              .normal = r.mesh.faces[face].normal,
+                              .offset = r.mesh.faces[face].offset,
+                              .rules = rules,
+                              .rule_count = 2};
     const struct texture_map map = {.faces = &of, .face_count = 1};
     assert_ok(export_faces_make(&f, &r.mesh, &map, &r.atlas, &err), err);
     double coloured = 0;
