@@ -24,7 +24,8 @@
 
 struct layers {
     struct layered_depth *out;
-    const struct segmentation *s;
+    const int *label;
+    int width, height;
     const struct plane *planes;
     const struct image *photo;
     double jump;
@@ -39,13 +40,13 @@ static double depth_at(const struct layers *l, int label, int x, int y)
 /* The segment of the nearest pixel within MIX_RADIUS of (x, y) that lies at another depth; -1 if there is none. */
 static int beyond_jump(const struct layers *l, int x, int y)
 {
-    int own = l->s->label[y * l->s->width + x], found = -1, nearest = MIX_RADIUS * MIX_RADIUS + 1;
+    int own = l->label[y * l->width + x], found = -1, nearest = MIX_RADIUS * MIX_RADIUS + 1;
     double here = depth_at(l, own, x, y);
     for (int j = -MIX_RADIUS; j <= MIX_RADIUS; j++)
         for (int i = -MIX_RADIUS; i <= MIX_RADIUS; i++) {
             int nx = x + i, ny = y + j, d2 = i * i + j * j;
-            if (d2 >= nearest || nx < 0 || ny < 0 || nx >= l->s->width || ny >= l->s->height) continue;
-            int other = l->s->label[ny * l->s->width + nx];
+            if (d2 >= nearest || nx < 0 || ny < 0 || nx >= l->width || ny >= l->height) continue;
+            int other = l->label[ny * l->width + nx];
             if (other < 0 || other == own || !(fabs(depth_at(l, other, x, y) - here) > l->jump)) continue;
             nearest = d2;
             found = other;
@@ -58,9 +59,9 @@ static void mark_rows(void *ctx, size_t begin, size_t end, int thread)
     const struct layers *l = ctx;
     (void)thread;
     for (int y = (int)begin; y < (int)end; y++)
-        for (int x = 0; x < l->s->width; x++) {
-            size_t i = (size_t)y * (size_t)l->s->width + (size_t)x;
-            l->near_jump[i] = l->s->label[i] >= 0 && beyond_jump(l, x, y) >= 0;
+        for (int x = 0; x < l->width; x++) {
+            size_t i = (size_t)y * (size_t)l->width + (size_t)x;
+            l->near_jump[i] = l->label[i] >= 0 && beyond_jump(l, x, y) >= 0;
         }
 }
 
@@ -74,9 +75,9 @@ static bool mean_colour(const struct layers *l, int x, int y, int label, float m
     for (int j = -MEAN_RADIUS; j <= MEAN_RADIUS; j++)
         for (int i = -MEAN_RADIUS; i <= MEAN_RADIUS; i++) {
             int nx = x + i, ny = y + j;
-            if (nx < 0 || ny < 0 || nx >= l->s->width || ny >= l->s->height) continue;
-            size_t at = (size_t)ny * (size_t)l->s->width + (size_t)nx;
-            int other = l->s->label[at];
+            if (nx < 0 || ny < 0 || nx >= l->width || ny >= l->height) continue;
+            size_t at = (size_t)ny * (size_t)l->width + (size_t)nx;
+            int other = l->label[at];
             if (other < 0 || l->near_jump[at] || !(fabs(depth_at(l, other, nx, ny) - depth) <= l->jump)) continue;
             float w = 1 / (1 + (float)(i * i + j * j));
             for (int c = 0; c < 3; c++) sum[c] += w * l->photo->data[4 * at + (size_t)c];
@@ -117,9 +118,9 @@ static void put_pixel(struct layer *layer, size_t i, const float rgb[3], float a
 
 static void split_pixel(const struct layers *l, int x, int y)
 {
-    size_t i = (size_t)y * (size_t)l->s->width + (size_t)x;
+    size_t i = (size_t)y * (size_t)l->width + (size_t)x;
     const float *pixel = l->photo->data + 4 * i;
-    int own = l->s->label[i], other = -1;
+    int own = l->label[i], other = -1;
     float own_mean[3], other_mean[3], alpha = 1;
     if (own < 0) return;
     if (l->near_jump[i]) {
@@ -149,17 +150,17 @@ static void split_rows(void *ctx, size_t begin, size_t end, int thread)
     const struct layers *l = ctx;
     (void)thread;
     for (int y = (int)begin; y < (int)end; y++)
-        for (int x = 0; x < l->s->width; x++) split_pixel(l, x, y);
+        for (int x = 0; x < l->width; x++) split_pixel(l, x, y);
 }
 
-enum status layers_make(struct layered_depth *out, const struct segmentation *s, const struct plane *planes,
+enum status layers_make(struct layered_depth *out, const int *label, const struct plane *planes,
                         const struct image *linear_rgba, double step, bool matte, struct err *err)
 {
-    size_t pixels = (size_t)s->width * (size_t)s->height;
-    struct layers l = {out, s, planes, linear_rgba, 2 * step, calloc(pixels, 1)};
+    size_t pixels = (size_t)out->width * (size_t)out->height;
+    struct layers l = {out, label, out->width, out->height, planes, linear_rgba, 2 * step, calloc(pixels, 1)};
     if (!l.near_jump) return err_nomem(err, "a mask of depth edges", pixels);
-    if (matte) parallel_for((size_t)s->height, 16, mark_rows, &l);
-    parallel_for((size_t)s->height, 16, split_rows, &l);
+    if (matte) parallel_for((size_t)out->height, 16, mark_rows, &l);
+    parallel_for((size_t)out->height, 16, split_rows, &l);
     for (size_t i = 0; i < pixels; i++)
         if (out->interior.id[i]) out->segments[out->interior.id[i] - 1].pixels++;
     free(l.near_jump);
