@@ -206,11 +206,26 @@ static __m256 inverse_depths(const struct cross_view *x, int segment, struct pla
         _mm256_set1_ps((float)plane.c));
 }
 
+static inline float sum_samples(__m256 v)
+{
+    const __m128 four = _mm_add_ps(_mm256_castps256_ps128(v), _mm256_extractf128_ps(v, 1));
+    const __m128 two = _mm_add_ps(four, _mm_movehl_ps(four, four));
+    return _mm_cvtss_f32(_mm_add_ss(two, _mm_shuffle_ps(two, two, 1)));
+}
+
 float cross_view_cost(const struct cross_view *x, int segment, struct plane plane, unsigned *occluded)
 {
+    return cross_view_bounded(x, segment, plane, INFINITY, occluded);
+}
+
+float cross_view_bounded(const struct cross_view *x, int segment, struct plane plane, float max_cost,
+                         unsigned *occluded)
+{
+    const float count = (float)(x->count * CROSS_SAMPLES), limit = max_cost * count;
     const __m256 agree = _mm256_set1_ps(AGREE_STEPS), zero = _mm256_setzero_ps();
     const __m256 inverse = inverse_depths(x, segment, plane);
     __m256 sum = zero;
+    float all = 0;
     *occluded = 0;
     if (!x->count) return 0;
     for (int k = 0; k < x->count; k++) {
@@ -228,12 +243,10 @@ float cross_view_cost(const struct cross_view *x, int segment, struct plane plan
                                             _mm256_cmp_ps(confidence, _mm256_set1_ps(MIN_OCCLUDER), _CMP_GT_OQ));
         if (__builtin_popcount((unsigned)_mm256_movemask_ps(_mm256_and_ps(known, behind))) > CROSS_SAMPLES / 2)
             *occluded |= 1u << k;
+        all = sum_samples(sum);
+        if (all > limit) break;
     }
-    _Alignas(32) float lanes[CROSS_SAMPLES];
-    _mm256_store_ps(lanes, sum);
-    float all = 0;
-    for (int i = 0; i < CROSS_SAMPLES; i++) all += lanes[i];
-    return all / (float)(x->count * CROSS_SAMPLES);
+    return all / count;
 }
 
 double cross_view_support(const struct cross_view *x, int segment, struct plane plane)

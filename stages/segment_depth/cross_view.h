@@ -48,6 +48,9 @@ void cross_view_release(struct cross_view *x);
 /* Mean inconsistency: 0 if all neighbours agree; a little above 1 if all are confident that they see through the plane.
  * *occluded: bit k is set if a surface of neighbour k hides the segment from it. */
 float cross_view_cost(const struct cross_view *x, int segment, struct plane plane, unsigned *occluded);
+/* The same; a value above max_cost, and any *occluded, as soon as it is clear that it exceeds max_cost. */
+float cross_view_bounded(const struct cross_view *x, int segment, struct plane plane, float max_cost,
+                         unsigned *occluded);
 
 /* Number of neighbours that agree at the segment's middle, each weighted by its confidence: views that have all
  * inherited a depth do not confirm it. */

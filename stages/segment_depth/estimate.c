@@ -11,22 +11,22 @@
 #include "common/base/work_estimate.h"
 #include "stages/segment_depth/neighbours.h"
 
-/* User seconds and peak memory per view, measured with --threads 1 on one core of a 2-core machine. Views of 0.39
- * megapixels: 11 core-seconds per megapixel in the first round and 8 in the second with 4 neighbours, 14 and 10 with 8
- * of which each segment is matched with 4; 250 MiB per megapixel with 4. Layers and segments take 4.9 (loft) to 8.4
- * (still-life) bytes per pixel. */
+/* User seconds and peak memory per view, measured with --threads 1 on one core of a 2-core machine. Views of 0.37
+ * megapixels with 8 neighbours, of which each segment is matched with 4: 14 core-seconds per megapixel in the first
+ * round and 10 in the second, 400 MiB per megapixel. Layers and segments take up to 16 bytes per pixel (fern). */
 static const struct {
-    double seconds, seconds_neighbour; /* per megapixel: over-segmentation, features, sweep, layers */
+    double seconds, seconds_neighbour; /* per megapixel: over-segmentation, features, sweep, pixel planes, layers */
     double pass, pass_neighbour; /* per megapixel and pass with segments of 64 pixels; x 8 / sqrt(segment_pixels) */
     double later;                /* cost of a later round's passes relative to the first round's */
     double mib, mib_megapixel, mib_neighbour; /* the program itself; per megapixel; per megapixel and neighbour */
     double bytes;                             /* per pixel */
-} cost = {1, 0.45, 0.6, 0.62, 0.5, 20, 110, 28, 8.5};
+} cost = {1, 0.45, 0.6, 0.62, 0.85, 20, 170, 28, 16};
 
 struct depth_work depth_work(double pixels, int neighbours, bool first, const struct segment_params *params)
 {
     const int matched = neighbours < params->best_neighbours ? neighbours : params->best_neighbours;
-    const double mp = pixels * 1e-6, passes = params->passes * sqrt(64.0 / params->segment_pixels);
+    const int size = first ? params->segment_pixels : params->fine_pixels;
+    const double mp = pixels * 1e-6, passes = depth_passes(params, first) * sqrt(64.0 / size);
     return (struct depth_work){
         .core_seconds = mp * (cost.seconds + cost.seconds_neighbour * neighbours +
                               passes * (first ? 1 : cost.later) * (cost.pass + cost.pass_neighbour * matched)),

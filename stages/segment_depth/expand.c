@@ -274,11 +274,11 @@ static void release(struct expander *x, int threads)
     free(x->before);
 }
 
-/* Later passes leave out the large cells, which pay off at the beginning. */
+/* Large cells pay off at the beginning: the first pass moves cells of all sizes, the second those of the smaller half,
+ * later ones, and rounds after the first, whose segments are small, the smallest only. */
 static int scale_count(const struct expander *x)
 {
-    const int left = SCALES - (x->p->cross ? 1 : 0) - x->pass;
-    return left > 2 ? left : 2;
+    return x->p->cross || x->pass > 1 ? 1 : x->pass ? SCALES / 2 : SCALES;
 }
 
 enum status expand_planes(struct plane *plane, const struct plane_problem *p, struct err *err)

@@ -18,7 +18,6 @@
 /* Weight of a pixel. Near an edge of its segment the gradients are those of the edge, which moves with the surface in
  * front; the surface behind would match at that surface's depth. So a pixel counts less, the more its colour differs
  * from a nearby pixel of another segment. */
-#define FULL_WEIGHT 16
 static int edge_weight(const struct segmentation *s, const uint8_t *packed, int pixel)
 {
     const int x = pixel % s->width, y = pixel / s->width;
@@ -36,7 +35,8 @@ static int edge_weight(const struct segmentation *s, const uint8_t *packed, int 
             }
             strongest = fmax(strongest, difference / (1 + EDGE_FALLOFF * (hypot(i, j) - 1)));
         }
-    const int weight = (int)(FULL_WEIGHT / (1 + strongest * strongest / (EDGE_DIFFERENCE * EDGE_DIFFERENCE)) + 0.5);
+    const int weight =
+        (int)(MATCH_FULL_WEIGHT / (1 + strongest * strongest / (EDGE_DIFFERENCE * EDGE_DIFFERENCE)) + 0.5);
     return weight < 1 ? 1 : weight;
 }
 
@@ -69,19 +69,23 @@ enum status matcher_init(struct matcher *m, const struct segmentation *s, const 
     m->y = aligned_alloc(32, (room + 8) * sizeof *m->y);
     m->weight = aligned_alloc(32, (room + 8) * sizeof *m->weight);
     m->features = aligned_alloc(32, (room + 8) * FEATURE_CHANNELS * sizeof *m->features);
+    const size_t pixels = (size_t)s->width * (size_t)s->height;
+    m->raster = calloc(pixels + 8, FEATURE_CHANNELS * sizeof *m->raster);
+    m->edge = malloc(pixels);
     uint8_t *packed = match_features(reference, gain, jacobian, m->noise);
-    if (!m->x || !m->y || !m->weight || !m->features || !packed) {
+    if (!m->raster || !m->edge || !m->x || !m->y || !m->weight || !m->features || !packed) {
         free(packed);
         return err_nomem(err, "the pixels of a matcher", room * 24);
     }
+    for (size_t i = 0; i < pixels * FEATURE_CHANNELS; i++) m->raster[i] = (int16_t)(FEATURE_UNIT * packed[i]);
+    for (size_t i = 0; i < pixels; i++) m->edge[i] = s->label[i] < 0 ? 0 : (uint8_t)edge_weight(s, packed, (int)i);
     for (int k = 0; k < s->count; k++) {
         const int *pixel = s->pixel + s->segments[k].first, count = s->segments[k].pixels;
         int i = m->first[k];
         for (int part = 0; part < 2; part++) /* every fourth pixel first, for match_cost_rough() */
             for (int n = 0; n < count; n++)
                 if ((pixel[n] % s->width % 2 || pixel[n] / s->width % 2) == part)
-                    put_pixel(m, i++, pixel[n], packed + (size_t)pixel[n] * FEATURE_CHANNELS,
-                              edge_weight(s, packed, pixel[n]));
+                    put_pixel(m, i++, pixel[n], packed + (size_t)pixel[n] * FEATURE_CHANNELS, m->edge[pixel[n]]);
         for (; i < m->first[k + 1]; i++) {
             put_pixel(m, i, pixel[0], packed + (size_t)pixel[0] * FEATURE_CHANNELS, 0);
             m->features[i * FEATURE_CHANNELS + 7] = -FEATURE_UNIT * 128; /* padding: never visible */
@@ -219,6 +223,8 @@ void matcher_release(struct matcher *m)
     free(m->y);
     free(m->features);
     free(m->weight);
+    free(m->raster);
+    free(m->edge);
     free(m->use);
     *m = (struct matcher){0};
 }

@@ -68,69 +68,95 @@ static inline __m256i pair_differences(const uint8_t *texture, const int *at, co
         _mm256_shuffle_epi8(_mm256_set1_epi32(corners[1]), columns));
     __m256i sample = _mm256_add_epi16(_mm256_permute2x128_si256(p, q, 0x20), _mm256_permute2x128_si256(p, q, 0x31));
     /* saturating: the padding's validity is far below any sample's */
-    __m256i difference = _mm256_abs_epi16(_mm256_subs_epi16(sample, _mm256_load_si256((const __m256i *)reference)));
+    __m256i difference = _mm256_abs_epi16(_mm256_subs_epi16(sample, _mm256_loadu_si256((const __m256i *)reference)));
     return _mm256_madd_epi16(_mm256_min_epi16(difference, limit), weight);
+}
+
+/* A plane's homography into a neighbour, and the neighbour's size, in vectors. */
+struct warp8 {
+    __m256 h[3][3];
+    __m256 right, bottom, max_u, max_v;
+    __m256i stride;
+    const uint8_t *texture;
+};
+
+static inline struct warp8 warp_make(const struct match_neighbour *n, struct plane plane)
+{
+    const double slope[3] = {plane.a, plane.b, plane.c};
+    const __m256 half = _mm256_set1_ps(0.5f);
+    struct warp8 w = {.right = _mm256_set1_ps((float)(n->width - 1)),
+                      .bottom = _mm256_set1_ps((float)(n->height - 1)),
+                      .stride = _mm256_set1_epi32(n->width + 1),
+                      .texture = n->texture};
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++) w.h[i][j] = _mm256_set1_ps((float)(n->base[i][j] + n->shift[i] * slope[j]));
+    w.max_u = _mm256_add_ps(w.right, half);
+    w.max_v = _mm256_add_ps(w.bottom, half);
+    return w;
+}
+
+/* Costs of eight pixels, times WORST, and the mask of those that the neighbour sees; lanes in the order of pixels
+ * 0 2 4 6 | 1 3 5 7. False: it sees none. reference: the pixels' features. */
+static inline __attribute__((always_inline)) bool costs8(const struct warp8 *w, __m256 x, __m256 y,
+                                                         const int16_t *reference, __m256i *cost, __m256i *mask)
+{
+    const __m256 half = _mm256_set1_ps(0.5f), zero = _mm256_setzero_ps(), small = _mm256_set1_ps(1e-9f);
+    const __m256 low = _mm256_set1_ps(-0.5f);
+    __m256 p[3];
+    for (int k = 0; k < 3; k++)
+        p[k] = _mm256_add_ps(_mm256_add_ps(_mm256_mul_ps(w->h[k][0], x), _mm256_mul_ps(w->h[k][1], y)), w->h[k][2]);
+    __m256 inverse = _mm256_div_ps(_mm256_set1_ps(1), p[2]);
+    __m256 u = _mm256_sub_ps(_mm256_mul_ps(p[0], inverse), half);
+    __m256 v = _mm256_sub_ps(_mm256_mul_ps(p[1], inverse), half);
+    __m256 visible = _mm256_and_ps(
+        _mm256_cmp_ps(p[2], small, _CMP_GT_OQ),
+        _mm256_and_ps(_mm256_and_ps(_mm256_cmp_ps(u, low, _CMP_GE_OQ), _mm256_cmp_ps(u, w->max_u, _CMP_LE_OQ)),
+                      _mm256_and_ps(_mm256_cmp_ps(v, low, _CMP_GE_OQ), _mm256_cmp_ps(v, w->max_v, _CMP_LE_OQ))));
+    if (_mm256_testz_ps(visible, visible)) return false;
+    u = _mm256_min_ps(_mm256_max_ps(u, zero), w->right); /* NaN becomes 0: max returns its second operand */
+    v = _mm256_min_ps(_mm256_max_ps(v, zero), w->bottom);
+    __m256i column = _mm256_cvttps_epi32(u), row = _mm256_cvttps_epi32(v);
+    const __m256 unit = _mm256_set1_ps(FEATURE_UNIT), fv = _mm256_sub_ps(v, _mm256_cvtepi32_ps(row));
+    const __m256 fu = _mm256_mul_ps(_mm256_sub_ps(u, _mm256_cvtepi32_ps(column)), unit);
+    /* rounded so that the corners' weights sum to FEATURE_UNIT; the upper left one may be -1 */
+    const __m256i lower_right = _mm256_cvtps_epi32(_mm256_mul_ps(fu, fv));
+    const __m256i upper_right = _mm256_sub_epi32(_mm256_cvtps_epi32(fu), lower_right);
+    const __m256i lower_left = _mm256_sub_epi32(_mm256_cvtps_epi32(_mm256_mul_ps(fv, unit)), lower_right);
+    const __m256i upper_left = _mm256_sub_epi32(
+        _mm256_set1_epi32(FEATURE_UNIT), _mm256_add_epi32(_mm256_add_epi32(lower_right, upper_right), lower_left));
+    const __m256i low_byte = _mm256_set1_epi32(255);
+    _Alignas(32) int at[8], corners[8];
+    _mm256_store_si256((__m256i *)at,
+                       _mm256_slli_epi32(_mm256_add_epi32(_mm256_mullo_epi32(row, w->stride), column), 1));
+    _mm256_store_si256(
+        (__m256i *)corners,
+        _mm256_or_si256(_mm256_or_si256(_mm256_and_si256(upper_left, low_byte), _mm256_slli_epi32(lower_left, 8)),
+                        _mm256_or_si256(_mm256_slli_epi32(upper_right, 16), _mm256_slli_epi32(lower_right, 24))));
+    __asm__(""
+            : "+m"(at), "+m"(corners)); /* keeps them in memory: loading them one by one is faster than extracting
+                                           lanes */
+    __m256i q[4];
+    for (int k = 0; k < 4; k++)
+        q[k] = pair_differences(w->texture, at + 2 * k, corners + 2 * k,
+                                reference + (ptrdiff_t)(2 * k) * FEATURE_CHANNELS);
+    /* the order of lanes does not matter to integer sums, but it does to mask and weight */
+    *cost = _mm256_hadd_epi32(_mm256_hadd_epi32(q[0], q[1]), _mm256_hadd_epi32(q[2], q[3]));
+    *mask = _mm256_permutevar8x32_epi32(_mm256_castps_si256(visible), _mm256_setr_epi32(0, 2, 4, 6, 1, 3, 5, 7));
+    *mask = _mm256_and_si256(*mask, _mm256_cmpgt_epi32(_mm256_set1_epi32(INVISIBLE_COST), *cost));
+    return true;
 }
 
 /* Raw mean cost of the pixels [begin, end) in one neighbour, 0 .. 1; *seen: how many of them it sees. */
 static float neighbour_cost(const struct matcher *m, const struct match_neighbour *n, int begin, int end,
                             struct plane plane, int *seen)
 {
-    const double slope[3] = {plane.a, plane.b, plane.c};
-    __m256 h[3][3];
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++) h[i][j] = _mm256_set1_ps((float)(n->base[i][j] + n->shift[i] * slope[j]));
-    const __m256 half = _mm256_set1_ps(0.5f), zero = _mm256_setzero_ps(), small = _mm256_set1_ps(1e-9f);
-    const __m256 right = _mm256_set1_ps((float)(n->width - 1)), bottom = _mm256_set1_ps((float)(n->height - 1));
-    const __m256 low = _mm256_set1_ps(-0.5f);
-    const __m256 max_u = _mm256_add_ps(right, half), max_v = _mm256_add_ps(bottom, half);
-    const __m256i stride = _mm256_set1_epi32(n->width + 1);
-    __m256i sum = _mm256_setzero_si256(), count = _mm256_setzero_si256(), weight_sum = count;
+    const struct warp8 warp = warp_make(n, plane);
+    __m256i sum = _mm256_setzero_si256(), count = sum, weight_sum = sum;
     for (int i = begin; i < end; i += 8) {
-        __m256 x = _mm256_load_ps(m->x + i), y = _mm256_load_ps(m->y + i), p[3];
-        for (int k = 0; k < 3; k++)
-            p[k] = _mm256_add_ps(_mm256_add_ps(_mm256_mul_ps(h[k][0], x), _mm256_mul_ps(h[k][1], y)), h[k][2]);
-        __m256 inverse = _mm256_div_ps(_mm256_set1_ps(1), p[2]);
-        __m256 u = _mm256_sub_ps(_mm256_mul_ps(p[0], inverse), half);
-        __m256 v = _mm256_sub_ps(_mm256_mul_ps(p[1], inverse), half);
-        __m256 visible = _mm256_and_ps(
-            _mm256_cmp_ps(p[2], small, _CMP_GT_OQ),
-            _mm256_and_ps(_mm256_and_ps(_mm256_cmp_ps(u, low, _CMP_GE_OQ), _mm256_cmp_ps(u, max_u, _CMP_LE_OQ)),
-                          _mm256_and_ps(_mm256_cmp_ps(v, low, _CMP_GE_OQ), _mm256_cmp_ps(v, max_v, _CMP_LE_OQ))));
-        if (_mm256_testz_ps(visible, visible)) continue;
-        u = _mm256_min_ps(_mm256_max_ps(u, zero), right); /* NaN becomes 0: max returns its second operand */
-        v = _mm256_min_ps(_mm256_max_ps(v, zero), bottom);
-        __m256i column = _mm256_cvttps_epi32(u), row = _mm256_cvttps_epi32(v);
-        const __m256 unit = _mm256_set1_ps(FEATURE_UNIT), fv = _mm256_sub_ps(v, _mm256_cvtepi32_ps(row));
-        const __m256 fu = _mm256_mul_ps(_mm256_sub_ps(u, _mm256_cvtepi32_ps(column)), unit);
-        /* rounded so that the corners' weights sum to FEATURE_UNIT; the upper left one may be -1 */
-        const __m256i lower_right = _mm256_cvtps_epi32(_mm256_mul_ps(fu, fv));
-        const __m256i upper_right = _mm256_sub_epi32(_mm256_cvtps_epi32(fu), lower_right);
-        const __m256i lower_left = _mm256_sub_epi32(_mm256_cvtps_epi32(_mm256_mul_ps(fv, unit)), lower_right);
-        const __m256i upper_left = _mm256_sub_epi32(
-            _mm256_set1_epi32(FEATURE_UNIT), _mm256_add_epi32(_mm256_add_epi32(lower_right, upper_right), lower_left));
-        const __m256i low_byte = _mm256_set1_epi32(255);
-        _Alignas(32) int at[8], corners[8];
-        _mm256_store_si256((__m256i *)at,
-                           _mm256_slli_epi32(_mm256_add_epi32(_mm256_mullo_epi32(row, stride), column), 1));
-        _mm256_store_si256(
-            (__m256i *)corners,
-            _mm256_or_si256(_mm256_or_si256(_mm256_and_si256(upper_left, low_byte), _mm256_slli_epi32(lower_left, 8)),
-                            _mm256_or_si256(_mm256_slli_epi32(upper_right, 16), _mm256_slli_epi32(lower_right, 24))));
-        __asm__(""
-                : "+m"(at),
-                  "+m"(corners)); /* keeps them in memory: loading them one by one is faster than extracting lanes */
-        const int16_t *reference = m->features + (size_t)i * FEATURE_CHANNELS;
-        __m256i q[4];
-        for (int k = 0; k < 4; k++)
-            q[k] = pair_differences(n->texture, at + 2 * k, corners + 2 * k,
-                                    reference + (ptrdiff_t)(2 * k) * FEATURE_CHANNELS);
-        /* lanes: pixels 0 2 4 6 | 1 3 5 7; their order does not matter to integer sums, but it does to mask and
-         * weight */
-        __m256i cost = _mm256_hadd_epi32(_mm256_hadd_epi32(q[0], q[1]), _mm256_hadd_epi32(q[2], q[3]));
-        __m256i mask =
-            _mm256_permutevar8x32_epi32(_mm256_castps_si256(visible), _mm256_setr_epi32(0, 2, 4, 6, 1, 3, 5, 7));
-        mask = _mm256_and_si256(mask, _mm256_cmpgt_epi32(_mm256_set1_epi32(INVISIBLE_COST), cost));
+        __m256i cost, mask;
+        if (!costs8(&warp, _mm256_load_ps(m->x + i), _mm256_load_ps(m->y + i),
+                    m->features + (size_t)i * FEATURE_CHANNELS, &cost, &mask))
+            continue;
         const __m256i weight = _mm256_load_si256((const __m256i *)(m->weight + i));
         sum = _mm256_add_epi32(sum, _mm256_mullo_epi32(_mm256_srli_epi32(_mm256_and_si256(mask, cost), 8), weight));
         weight_sum = _mm256_add_epi32(weight_sum, _mm256_and_si256(mask, weight));
@@ -150,6 +176,37 @@ static float neighbour_cost(const struct matcher *m, const struct match_neighbou
     }
     return all > 0 ? (float)((double)total * 256 / ((double)WORST * (double)all))
                    : 1; /* a pixel's weight is at least 1 */
+}
+
+void match_row(const struct matcher *m, int neighbour, struct plane plane, int x, int y, int count, float *costs)
+{
+    const struct warp8 warp = warp_make(&m->neighbours[neighbour], plane);
+    const int16_t *reference = m->raster + ((size_t)y * (size_t)m->segments->width + (size_t)x) * FEATURE_CHANNELS;
+    const __m256 lanes = _mm256_setr_ps(0.5f, 1.5f, 2.5f, 3.5f, 4.5f, 5.5f, 6.5f, 7.5f);
+    const __m256 scale = _mm256_set1_ps(1 / ((float)WORST * (m->chance_cost - m->good_cost)));
+    const __m256 offset = _mm256_set1_ps(-m->good_cost / (m->chance_cost - m->good_cost));
+    const __m256i order = _mm256_setr_epi32(0, 4, 1, 5, 2, 6, 3, 7);
+    for (int i = 0; i < count; i += 8) {
+        __m256i cost, mask;
+        __m256 out = _mm256_set1_ps(MATCH_UNSEEN);
+        if (costs8(&warp, _mm256_add_ps(_mm256_set1_ps((float)(x + i)), lanes), _mm256_set1_ps((float)y + 0.5f),
+                   reference + (size_t)i * FEATURE_CHANNELS, &cost, &mask)) {
+            const __m256 own = _mm256_add_ps(_mm256_mul_ps(_mm256_cvtepi32_ps(cost), scale), offset);
+            out = _mm256_permutevar8x32_ps(_mm256_blendv_ps(out, own, _mm256_castsi256_ps(mask)), order);
+        }
+        _mm256_storeu_ps(costs + i, out);
+    }
+}
+
+float match_rank(const struct matcher *m, const float *sorted, int count, int useful, float out_of_view)
+{
+    double sum = 0, total = 0, weight = 1;
+    if (useful > m->ranks) useful = m->ranks;
+    for (int k = 0; k < useful; k++, weight *= RANK_WEIGHT) {
+        sum += weight * (double)(k < count ? sorted[k] : out_of_view);
+        total += weight;
+    }
+    return useful ? (float)(sum / total) : out_of_view;
 }
 
 /* The segment's cost over all neighbours; one that sees less than half of the pixels does not see the segment. */
@@ -181,24 +238,18 @@ static inline float ranked_cost(const struct matcher *m, int segment, int pixels
         order[at] = 1u << k;
     }
     for (int k = 0; best && k < count && k < m->ranks; k++) *best |= order[k];
-    double sum = 0, total = 0, weight = 1;
-    if (useful > m->ranks) useful = m->ranks;
-    for (int k = 0; k < useful; k++, weight *= RANK_WEIGHT) {
-        sum += weight * (double)(k < count ? costs[k] : out_of_view);
-        total += weight;
-    }
-    return useful ? (float)(sum / total) : out_of_view;
+    return match_rank(m, costs, count, useful, out_of_view);
 }
 
-static unsigned neighbours_of(const struct matcher *m, int segment)
+unsigned match_neighbours_of(const struct matcher *m, int segment)
 {
     return (m->use ? m->use[segment] : ~0u) & ~m->excluded;
 }
 
 float match_cost(const struct matcher *m, int segment, struct plane plane, unsigned occluded)
 {
-    return ranked_cost(m, segment, m->segments->segments[segment].pixels, plane, neighbours_of(m, segment), occluded,
-                       NULL);
+    return ranked_cost(m, segment, m->segments->segments[segment].pixels, plane, match_neighbours_of(m, segment),
+                       occluded, NULL);
 }
 
 /* A fourth of a segment's pixels, rounded up to groups of eight. */
@@ -211,7 +262,7 @@ static int rough_pixels(int pixels)
 float match_cost_rough(const struct matcher *m, int segment, struct plane plane, unsigned occluded)
 {
     return ranked_cost(m, segment, rough_pixels(m->segments->segments[segment].pixels), plane,
-                       neighbours_of(m, segment), occluded, NULL);
+                       match_neighbours_of(m, segment), occluded, NULL);
 }
 
 float match_cost_sweep(const struct matcher *m, int segment, struct plane plane, unsigned use, unsigned *best)
@@ -426,7 +477,7 @@ void match_prefetch(const struct matcher *m, int segment, struct plane plane)
 {
     const struct segment *g = &m->segments->segments[segment];
     const double d = plane_at(plane, g->cx, g->cy);
-    const unsigned use = neighbours_of(m, segment);
+    const unsigned use = match_neighbours_of(m, segment);
     if (g->x1 - g->x0 > MAX_PREFETCH || g->y1 - g->y0 > MAX_PREFETCH) return;
     for (int k = 0; k < m->neighbour_count; k++) {
         const struct match_neighbour *n = &m->neighbours[k];

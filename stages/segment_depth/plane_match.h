@@ -43,6 +43,8 @@ struct matcher {
     float *x, *y; /* pixel centres */
     int16_t *features; /* FEATURE_CHANNELS per pixel */
     int *weight;       /* of each pixel, in the order of neighbour_cost()'s sums */
+    int16_t *raster;   /* the same features row by row, with room for a group of eight pixels at the end */
+    uint8_t *edge;     /* weight of each pixel row by row, 1 .. MATCH_FULL_WEIGHT */
     struct match_neighbour neighbours[MAX_NEIGHBOURS];
     int neighbour_count;
     int ranks;                    /* how many of the neighbours' costs count: the lowest */
@@ -55,6 +57,9 @@ struct matcher {
 
 #define MATCH_BEST  (-1.0f) /* minimum matching cost */
 #define MATCH_WORST 1.33f   /* maximum matching cost */
+
+#define MATCH_FULL_WEIGHT 16   /* of a pixel that is not beside an edge of its segment */
+#define MATCH_UNSEEN      1e3f /* match_row(): the neighbour does not see the pixel */
 
 /* The projection of the view's pixels into `other`: [u' v' 1] ~ base [u v 1] + shift / z. */
 void match_homography(double base[3][3], double shift[3], const struct view *view, const struct view *other);
@@ -101,6 +106,13 @@ float match_cost_sweep(const struct matcher *m, int segment, struct plane plane,
 /* The mean cost by rank of the neighbours that see the segment on the plane; MATCH_WORST if none does. Returns how many
  * do. */
 int match_evidence(const struct matcher *m, int segment, struct plane plane, unsigned occluded, float *cost);
+/* Mean by rank of `count` costs in ascending order, of `useful` neighbours; those that are missing cost out_of_view. */
+float match_rank(const struct matcher *m, const float *sorted, int count, int useful, float out_of_view);
+/* The neighbours that a segment is matched with, as a bit set. */
+unsigned match_neighbours_of(const struct matcher *m, int segment);
+/* The costs of `count` pixels from (x, y) on, each on the plane in one neighbour, MATCH_UNSEEN where that does not see
+ * them; not clamped. costs: room for the next multiple of eight. The pixels beyond the row's end are any. */
+void match_row(const struct matcher *m, int neighbour, struct plane plane, int x, int y, int count, float *costs);
 /* Prefetches the neighbours' pixels for a match_cost() that follows soon. */
 void match_prefetch(const struct matcher *m, int segment, struct plane plane);
 

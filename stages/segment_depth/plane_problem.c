@@ -32,9 +32,16 @@ float unary_cost(const struct plane_problem *p, int segment, struct plane plane,
     if (!plane_within(plane, g, p->min_inverse_z, p->max_inverse_z)) return PLANE_FORBIDDEN;
     unsigned occluded = 0;
     const float size = (float)g->pixels / (float)p->params->segment_pixels;
-    float data = p->cross ? (float)p->params->cross_view * cross_view_cost(p->cross, segment, plane, &occluded) : 0;
-    data += (float)point_evidence_cost(p->points, segment, plane, g->cx, g->cy);
-    if (size * (data + match_lower_bound(p, segment, plane)) > max_cost) return PLANE_FORBIDDEN;
+    float data = (float)point_evidence_cost(p->points, segment, plane, g->cx, g->cy);
+    const float left = max_cost / size - data - match_lower_bound(p, segment, plane),
+                part = (float)p->params->cross_view;
+    if (!(left >= 0)) return PLANE_FORBIDDEN;
+    if (p->cross) {
+        const float cross =
+            part * cross_view_bounded(p->cross, segment, plane, part > 0 ? left / part : INFINITY, &occluded);
+        if (cross > left) return PLANE_FORBIDDEN;
+        data += cross;
+    }
     data += (p->rough ? match_cost_rough : match_cost)(p->m, segment, plane, occluded);
     return size * data;
 }

@@ -47,11 +47,7 @@ static inline double problem_slant(const struct segment_params *params)
     return params->slant / (2 * sqrt(params->segment_pixels));
 }
 
-/* Later rounds start from the planes of the previous one and need fewer passes. */
-static inline int problem_passes(const struct plane_problem *p)
-{
-    return p->cross ? (p->params->passes + 1) / 2 : p->params->passes;
-}
+static inline int problem_passes(const struct plane_problem *p) { return depth_passes(p->params, !p->cross); }
 
 #define PLANE_FORBIDDEN 1e4f /* unary cost of a plane outside the depth range */
 

@@ -2,7 +2,7 @@
  *
  * A round starts from a view's planes of the round before and from its neighbours' depth then [Zitnick 2007]. Where
  * none of these has changed since the view was estimated last, another estimate would begin where that one ended. So
- * each round records the change of each view: with z the depth on the plane of the pixel's segment,
+ * each round records the change of each view: with z the depth on the plane of the pixel's segment, then and now,
  *   changed = |{pixels: |z_now - z_before| > CHANGED_PART z_before}| / |{pixels with depth}|
  * which is 1 in the first round, and 0 in a round that the view did not take part in. A view takes part in the next
  * round if its own change, or the mean of its neighbours' changes, is at least min_change; otherwise its files are
@@ -79,15 +79,16 @@ double round_change(const struct layered_depth *now, const struct layered_depth 
     size_t changed = 0, known = 0;
     for (int y = 0; y < now->height; y++)
         for (int x = 0; x < now->width; x++) {
-            const uint32_t id = now->interior.id[(size_t)y * (size_t)now->width + (size_t)x];
-            if (!id) continue;
+            const size_t i = (size_t)y * (size_t)now->width + (size_t)x;
+            if (!now->interior.id[i]) continue;
             known++;
-            if (id > (uint32_t)before->segment_count) {
+            if (!before->interior.id[i]) {
                 changed++;
                 continue;
             }
             /* |z_now - z_before| > part z_before, in inverse depths, which are positive where there is depth */
-            const double a = inverse_at(&now->segments[id - 1], x, y), b = inverse_at(&before->segments[id - 1], x, y);
+            const double a = inverse_at(&now->segments[now->interior.id[i] - 1], x, y),
+                         b = inverse_at(&before->segments[before->interior.id[i] - 1], x, y);
             changed += !(fabs(b - a) <= CHANGED_PART * a);
         }
     return known ? (double)changed / (double)known : 0;

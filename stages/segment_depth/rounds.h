@@ -16,8 +16,8 @@ enum status round_record_write(const struct round_record *r, const char *path, c
                                struct err *err);
 enum status round_record_read(struct round_record *r, const char *path, struct err *err);
 
-/* Of the pixels of `now` that have depth, the share whose depth differs by more than CHANGED_PART from that on the
- * planes of `before`, which needs no layers. Both have the same segments; pixels of other segments count as changed. */
+/* Of the pixels of `now` that have depth, the share whose depth differs by more than CHANGED_PART from that of `before`,
+ * or that had none there. Both have the same size; their segments may differ. */
 #define CHANGED_PART 0.01
 double round_change(const struct layered_depth *now, const struct layered_depth *before);
 

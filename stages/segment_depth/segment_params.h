@@ -2,11 +2,14 @@
 #ifndef REMODEL_SEGMENT_PARAMS_H
 #define REMODEL_SEGMENT_PARAMS_H
 
+#include <stdbool.h>
+
 #include "common/base/param.h"
 
 /* name, type, default, min, max, unit, help */
 #define SEGMENT_PARAMS(X)                                                                                            \
-    X(segment_pixels, int, 64, 16, 100000, "px", "mean size of a segment")                                           \
+    X(segment_pixels, int, 64, 16, 100000, "px", "mean size of a segment in the first round")                        \
+    X(fine_pixels, int, 16, 8, 100000, "px", "mean size of a segment in the rounds after the first")                 \
     X(compactness, double, 8, 0.1, 100, "",                                                                          \
       "weight of distance against colour in over-segmentation; higher: rounder segments")                            \
     X(neighbours, int, 8, 1, 16, "", "maximum number of views to match with")                                        \
@@ -22,7 +25,7 @@
       "share of pixels whose depth must change by over 1 % in a round, in a view or on average in those it is "      \
       "matched with, for the view to be estimated in the next; 0: every round estimates all views")                  \
     X(passes, int, 3, 0, 20, "",                                                                                     \
-      "optimization passes over all segments in the first round; half as many in later rounds")                      \
+      "optimization passes over all segments in the first round; a third as many in later rounds")                   \
     X(slant, double, 0.01, 0, 10, "",                                                                                \
       "cost of a slanted plane along half the outline of a mean segment, where its neighbours have other planes")    \
     X(points, double, 1, 0, 10, "", "weight of the sparse points inside a segment")                                  \
@@ -40,5 +43,11 @@ struct segment_params {
         SEGMENT_PARAMS(PARAM_DEFAULT) \
     }
 extern const struct param segment_param_table[];
+
+/* Later rounds start from the planes of the previous one and need fewer passes. */
+static inline int depth_passes(const struct segment_params *p, bool first)
+{
+    return first ? p->passes : (p->passes + 2) / 3;
+}
 
 #endif

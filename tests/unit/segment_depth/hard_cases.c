@@ -251,7 +251,7 @@ static enum status photo_on_disk(void *ctx, int view_idx, struct image *im, stru
 static void a_nan_in_a_view_is_an_error_with_its_pixel(void **state)
 {
     (void)state;
-    const struct view_source source = {photo_on_disk, NULL, NULL, NULL};
+    const struct view_source source = {photo_on_disk, NULL, NULL, NULL, NULL};
     start();
     scene_wall(&scene, 0, 0, 5, 9, 9, 0.2);
     place_cameras(3);
@@ -285,10 +285,10 @@ static void a_nan_in_a_view_is_an_error_with_its_pixel(void **state)
 }
 
 /* A previous round of another picture, or none. */
-static enum status depth_of_less(void *ctx, int view_idx, struct layered_depth *d, struct err *err)
+static enum status depth_of_narrower(void *ctx, int view_idx, struct layered_depth *d, struct err *err)
 {
     const enum status st = rounds_depth(ctx, view_idx, d, err);
-    d->segment_count -= view_idx == 0;
+    d->width -= view_idx == 0;
     return st;
 }
 static enum status no_depth(void *ctx, int view_idx, struct layered_depth *d, struct err *err)
@@ -307,9 +307,9 @@ static void a_previous_round_of_another_picture_is_an_error(void **state)
     scene_wall(&scene, 0, 0, 5, 9, 9, 0.2);
     place_cameras(2);
     before.scene = &scene;
-    const struct view_source first = {scene_photo, NULL, &scene, NULL},
-                             less = {rounds_photo, depth_of_less, &before, NULL},
-                             none = {rounds_photo, no_depth, &before, NULL};
+    const struct view_source first = {scene_photo, NULL, &scene, NULL, NULL},
+                             less = {rounds_photo, depth_of_narrower, &before, NULL, NULL},
+                             none = {rounds_photo, no_depth, &before, NULL, NULL};
     for (int k = 0; k < 2; k++)
         assert_ok(view_depth(&before.depth[k], r.neighbours, &r.neighbour_count, &scene.set, k, &first, &params, &err),
                   err);
@@ -497,7 +497,7 @@ static void an_overexposed_window_has_low_confidence_and_its_wall_is_found(void 
 static void an_extremely_long_photo_works(void **state)
 {
     (void)state;
-    const struct view_source source = {strip_photo, NULL, &scene, NULL};
+    const struct view_source source = {strip_photo, NULL, &scene, NULL, NULL};
     for (int upright = 0; upright < 2; upright++) {
         struct result r = {0};
         struct err err = ERR_INIT;
@@ -556,11 +556,11 @@ static double wrong(const struct layered_depth *d, double steps, bool all)
     return bad / (double)count;
 }
 
-/* Tolerance for a few pixels at the card's rim, as a fraction of all. */
-static const double rim = 0.001;
+/* A fourth of the pixels of the card's rim, as a fraction of all. */
+static const double rim = 0.003;
 
 /* A card in front of a wall; several views or two, with and without points, facing or slanted. */
-static void more_rounds_never_make_two_planes_worse(void **state)
+static void two_planes_are_right_in_every_round_but_for_a_rim(void **state)
 {
     (void)state;
     for (int k = 0; k < 8; k++) {
@@ -573,9 +573,9 @@ static void more_rounds_never_make_two_planes_worse(void **state)
         place_cameras(k & 2 ? 2 : 3);
         scene_points(&scene, k & 1 ? 200 : 0);
         must_work_in_rounds(d, 2, &params);
-        for (int round = 1; round < 3; round++) {
-            assert_true(wrong(&d[round], 0.5, false) <= wrong(&d[0], 0.5, false) + rim);
-            assert_true(wrong(&d[round], 2, true) <= wrong(&d[0], 2, true) + rim);
+        for (int round = 0; round < 3; round++) {
+            assert_true(wrong(&d[round], 0.5, false) <= rim);
+            assert_true(wrong(&d[round], 2, true) <= rim);
         }
         for (int round = 0; round < 3; round++) layered_depth_release(&d[round]);
     }
@@ -618,7 +618,7 @@ int main(void)
         cmocka_unit_test(a_dynamic_range_of_a_million_to_one_is_matched),
         cmocka_unit_test(an_overexposed_window_has_low_confidence_and_its_wall_is_found),
         cmocka_unit_test(an_extremely_long_photo_works),
-        cmocka_unit_test(more_rounds_never_make_two_planes_worse),
+        cmocka_unit_test(two_planes_are_right_in_every_round_but_for_a_rim),
         cmocka_unit_test(thread_counts_give_the_same_bits_in_a_second_round),
     };
     parallel_set_threads(1); /* tests run in parallel */

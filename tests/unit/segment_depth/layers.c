@@ -55,7 +55,7 @@ static void start(struct bench *b, const float near[3], const float far[3], doub
 static void make(struct bench *b, bool matte)
 {
     struct err err = ERR_INIT;
-    if (layers_make(&b->out, &b->s, b->planes, &b->photo, step, matte, &err)) fail_msg("%s", err.text);
+    if (layers_make(&b->out, b->s.label, b->planes, &b->photo, step, matte, &err)) fail_msg("%s", err.text);
 }
 
 static void finish(struct bench *b)
