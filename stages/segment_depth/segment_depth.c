@@ -5,6 +5,7 @@
  *         BEFORE/VIEW.exr, VIEW.txt, VIEW.round         with --before: depth of the view and its neighbours
  *         GIVEN/VIEW.exr or .png, depth.txt             with --given: known depth, where there is any
  *         VIEWS/lenses.txt                              for given depth in the photo's pixels
+ *         VIEWS/lenses.txt, RECORDS/ID.txt              with --records: the upper sides of the photos
  * writes  DEPS                                          make dependencies: the pictures that were read
  *         OUT with .round for .exr                      how much the depth changed in this round
  *         OUT with .txt for .exr, then OUT              segments; layers interior.* and boundary.* (RGBA, Z, id)
@@ -21,6 +22,7 @@
 #include "common/base/file_path.h"
 #include "common/base/log.h"
 #include "common/base/make_deps.h"
+#include "common/capture/upright.h"
 #include "common/capture/view_image.h"
 #include "stages/segment_depth/estimate.h"
 #include "stages/segment_depth/given_depth.h"
@@ -122,7 +124,7 @@ static enum status warn_guessed_range(const struct camera_set *set, const int *r
 
 /* What main was asked for. */
 struct request {
-    const char *views, *before, *given, *view, *out, *deps;
+    const char *views, *records, *before, *given, *view, *out, *deps;
     const struct segment_params *params;
 };
 
@@ -134,8 +136,8 @@ static enum status find_change(double *changed, const struct layered_depth *dept
     char path[FILE_PATH];
     *changed = 1;
     if (!r->before) return ST_OK;
-    enum status st = file_path(path, r->before, r->view, ".txt", err);
-    if (!st) st = layered_depth_read_segments(&before, path, err);
+    enum status st = file_path(path, r->before, r->view, ".exr", err);
+    if (!st) st = layered_depth_read(&before, path, err);
     if (!st) *changed = round_change(depth, &before);
     layered_depth_release(&before);
     return st;
@@ -155,11 +157,18 @@ static enum status make_depth(const struct request *r, const struct camera_set *
                               struct provenance *prov, struct err *err)
 {
     struct views_folder views = {r->views, r->before, r->given, set, prov};
-    const struct view_source source = {read_view, r->before ? read_depth : NULL, &views, r->given ? read_given : NULL};
+    struct vec3 *ups = NULL;
     struct layered_depth depth = {0};
     double changed = 1;
     int count = 0;
     enum status st = estimate_log(set, read[0], !r->before, r->params, err);
+    if (!st && r->records) {
+        ups = calloc((size_t)set->view_count + 1, sizeof *ups);
+        st = ups ? upright_read(ups, set, r->views, r->records, prov, err)
+                 : err_nomem(err, "upright directions", (size_t)set->view_count * sizeof *ups);
+    }
+    const struct view_source source = {read_view, r->before ? read_depth : NULL, &views, r->given ? read_given : NULL,
+                                       ups};
     if (!st) st = view_depth(&depth, read + 1, &count, set, read[0], &source, r->params, err);
     if (!st) st = find_change(&changed, &depth, r, err);
     if (!st && r->deps)
@@ -171,6 +180,7 @@ static enum status make_depth(const struct request *r, const struct camera_set *
     if (!st && r->before)
         log_note("%s: the depth of %.2f %% of the pixels changed by more than %g %%", r->view, 100 * changed,
                  100 * CHANGED_PART);
+    free(ups);
     layered_depth_release(&depth);
     return st;
 }
@@ -239,6 +249,8 @@ int main(int argc, char **argv)
     const struct cli_opt opts[] = {
         CLI_ABOUT("Layered depth of one view by multi-view segment matching."),
         CLI_STR("views", &r.views, CLI_REQUIRED, "folder of cameras and rectified views"),
+        CLI_STR("records", &r.records, CLI_OPTIONAL,
+                "folder of the photos' records, which tell their upper sides; without them all are taken as upright"),
         CLI_STR("view", &r.view, CLI_OPTIONAL, "view to work on (required, with --out)"),
         CLI_STR("before", &r.before, CLI_OPTIONAL,
                 "folder of all views' depth in the previous round; none in the first round"),

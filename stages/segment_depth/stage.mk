@@ -30,7 +30,7 @@ define depth_rule
 $(2)/$(1).exr $(2)/$(1).txt $(2)/$(1).round &: $(O)/views/$(1).exr $(if $(3),$(3)/$(1).exr) $(wildcard $(S)/stamp/given/$(1).txt) \
   $(VIEW_CAMERAS) $(call needs,segment_depth) | pictures $(filter-out %none,$(4))
 	$$(hide)$$(call farm,segment_depth,$(1),$(2)/$(1).round $(2)/$(1).txt $(2)/$(1).exr,\
-	  --view $(1) --views $(O)/views $(if $(3),--before $(3)) $(GIVEN) --out $(2)/$(1).exr --deps $(2)/$(1).d)
+	  --view $(1) --views $(O)/views --records $(S)/photos $(if $(3),--before $(3)) $(GIVEN) --out $(2)/$(1).exr --deps $(2)/$(1).d)
 endef
 # $(1): a round
 define round_rules

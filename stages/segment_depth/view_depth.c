@@ -10,7 +10,10 @@
  *   expand        expansion moves: minimum cuts over planes, slanted where that explains the pictures better
  *   refine        local search with the same energy
  *   inherit       border areas that nothing holds in the foreground take over what lies behind them
+ *   pixel_planes  each pixel chooses among the planes around it
  *   layers        opaque interiors, and mattes at depth edges
+ *
+ * Rounds after the first have smaller segments: they begin on good planes, so that these need few moves.
  *
  * What differs from the sources: planes may be slanted; sparse points are soft evidence; a round reads the neighbours'
  * depth of the previous round only, so that views are processed in parallel. */
@@ -24,6 +27,7 @@
 #include "stages/segment_depth/expand.h"
 #include "stages/segment_depth/inherit.h"
 #include "stages/segment_depth/layers.h"
+#include "stages/segment_depth/pixel_planes.h"
 #include "stages/segment_depth/plane_sweep.h"
 #include "stages/segment_depth/refine.h"
 #include "stages/segment_depth/smooth.h"
@@ -88,13 +92,13 @@ static enum status fill_segments(struct layered_depth *out, const struct plane_p
     return ST_OK;
 }
 
-/* The direction down in the view's axes, assuming that the cameras are upright on average. */
-static struct vec3 down_direction(const struct camera_set *set, const struct view *view)
+/* The direction down in the view's axes, assuming that the photos are upright on average. ups: as in view_source. */
+static struct vec3 down_direction(const struct camera_set *set, const struct vec3 *ups, const struct view *view)
 {
     struct vec3 sum = {0, 0, 0};
     for (int i = 0; i < set->view_count; i++) {
-        const double *y = set->views[i].cam_from_world.m[1];
-        sum = vec3_add(sum, vec3_make(y[0], y[1], y[2]));
+        const struct vec3 up = ups ? ups[i] : vec3_make(0, -1, 0);
+        sum = vec3_sub(sum, mat3_apply(mat3_transpose(set->views[i].cam_from_world), up));
     }
     return mat3_apply(view->cam_from_world, vec3_normalize(sum));
 }
@@ -113,18 +117,23 @@ struct solver {
     const struct segment_params *params;
 };
 
-/* The planes of this view in the previous round, and their confidence as distinctness. */
+/* The planes of this view in the previous round, whose segments may be others, at the middle pixel of each segment; and
+ * their confidence as distinctness. */
 static enum status read_previous_planes(struct plane *planes, double *distinct, const struct solver *v, struct err *err)
 {
     struct layered_depth before = {0};
     enum status st = v->source->read_depth(v->source->ctx, v->view_idx, &before, err);
-    if (!st && before.segment_count != v->m->segments->count)
+    const struct segmentation *s = v->m->segments;
+    if (!st && (before.width != s->width || before.height != s->height))
         st = err_set(err, ST_DATA,
-                     "the previous round of view %s has %d segments, but its picture has %d: the picture or the "
-                     "parameters have changed since; make the previous round again.",
-                     v->set->views[v->view_idx].name, before.segment_count, v->m->segments->count);
-    for (int i = 0; !st && i < before.segment_count; i++) {
-        const struct depth_segment *g = &before.segments[i];
+                     "the previous round of view %s has %d x %d pixels, but its picture has %d x %d: the picture has "
+                     "changed since; make the previous round again.",
+                     v->set->views[v->view_idx].name, before.width, before.height, s->width, s->height);
+    for (int i = 0; !st && i < s->count; i++) {
+        const uint32_t id = before.interior.id[s->pixel[s->segments[i].first + s->segments[i].pixels / 2]];
+        planes[i] = (struct plane){0, 0, 0.5 * (v->min_inverse_z + v->max_inverse_z)};
+        if (!id) continue; /* the view had no pixel there */
+        const struct depth_segment *g = &before.segments[id - 1];
         planes[i] = (struct plane){g->plane[0], g->plane[1], g->plane[2]};
         distinct[i] = g->confidence;
     }
@@ -214,7 +223,7 @@ static enum status start_solution(struct solution *x, const struct solver *v, st
     plane_sweep_steps(&x->sweep, v->m, v->min_inverse_z, v->max_inverse_z, v->params);
     if (v->given) x->sweep.given = &x->given;
     x->problem = (struct plane_problem){.view = view,
-                                        .down = down_direction(v->set, view),
+                                        .down = down_direction(v->set, v->source->ups, view),
                                         .m = v->m,
                                         .points = &x->points,
                                         .given = x->sweep.given,
@@ -284,7 +293,12 @@ static enum status solve(struct layered_depth *out, const struct solver *v, stru
             (plane_at(x.planes[i], s->segments[i].cx, s->segments[i].cy) - sweep->min_inverse_z) / sweep->step);
     if (!st) st = fill_segments(out, &x.problem, x.planes, x.distinct, err);
     if (!st) st = inherit(out, x.planes, &x.problem, another_round(v), err);
-    if (!st) st = layers_make(out, s, x.planes, v->picture, sweep->step, !strcmp(v->params->matte, "two_colour"), err);
+    int *label = malloc((size_t)s->width * (size_t)s->height * sizeof *label);
+    if (!st && !label) st = err_nomem(err, "the segments of pixels", (size_t)s->width * (size_t)s->height * 4);
+    if (!st) st = choose_pixel_planes(label, x.planes, &x.problem, err);
+    const bool matte = !strcmp(v->params->matte, "two_colour");
+    if (!st) st = layers_make(out, label, x.planes, v->picture, sweep->step, matte, err);
+    free(label);
     solution_release(&x);
     return st;
 }
@@ -340,6 +354,7 @@ enum status view_depth(struct layered_depth *out, int neighbours[MAX_NEIGHBOURS]
                        const struct camera_set *set, int view_idx, const struct view_source *source,
                        const struct segment_params *params, struct err *err)
 {
+    struct segment_params own = *params;
     struct observed_points seen = {0};
     struct image picture = {0};
     struct gamma_image gamma = {0};
@@ -352,7 +367,7 @@ enum status view_depth(struct layered_depth *out, int neighbours[MAX_NEIGHBOURS]
                        .picture = &picture,
                        .seen = &seen,
                        .source = source,
-                       .params = params};
+                       .params = &own};
     *out = (struct layered_depth){0};
     *neighbour_count = 0;
     enum status st = observed_points_find(&seen, set, view_idx, err);
@@ -362,7 +377,8 @@ enum status view_depth(struct layered_depth *out, int neighbours[MAX_NEIGHBOURS]
     if (!st) st = layered_depth_init(out, picture.width, picture.height, err);
     if (!st) st = find_range(&v, *neighbour_count, (size_t)picture.width * (size_t)picture.height, err);
     if (!st) st = gamma_image_make(&gamma, &picture, tone_of(&picture), err);
-    if (!st) st = oversegment(&segments, &gamma, params->segment_pixels, params->compactness, err);
+    if (source->read_depth) own.segment_pixels = params->fine_pixels;
+    if (!st) st = oversegment(&segments, &gamma, own.segment_pixels, params->compactness, err);
     if (!st) st = matcher_init(&matcher, &segments, &gamma, err);
     for (int k = 0; !st && k < *neighbour_count; k++)
         st = add_neighbour(&matcher, set, view_idx, neighbours[k], source, &seen,

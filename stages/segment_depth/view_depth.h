@@ -16,6 +16,7 @@ struct view_source {
     /* Depth that the user provides: z of each of the view's pixels, 0 if unknown; malloc'ed, NULL if none is given. The
      * callback may be NULL. */
     enum status (*read_given)(void *ctx, int view_idx, float **z, struct err *err);
+    const struct vec3 *ups; /* of each view: the upright direction in its camera (upright.h); NULL: all stand upright */
 };
 
 /* out: {0} on entry; the caller releases it. neighbours, neighbour_count: the views that were read besides view_idx.

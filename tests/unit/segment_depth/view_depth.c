@@ -402,7 +402,7 @@ static enum status unrelated_photo(void *ctx, int view_idx, struct image *im, st
 static void unrelated_photos_give_valid_depths(void **state)
 {
     (void)state;
-    const struct view_source source = {unrelated_photo, NULL, &scene, NULL};
+    const struct view_source source = {unrelated_photo, NULL, &scene, NULL, NULL};
     static const int sizes[] = {64, 300, 2000};
     start();
     scene_wall(&scene, 0, 0, 5, 30, 30, 0)->cell = 0.2;
@@ -457,7 +457,7 @@ static enum status broken_photo(void *ctx, int view_idx, struct image *im, struc
 static void an_unreadable_photo_is_an_error(void **state)
 {
     (void)state;
-    const struct view_source source = {broken_photo, NULL, &scene, NULL};
+    const struct view_source source = {broken_photo, NULL, &scene, NULL, NULL};
     const struct segment_params params = SEGMENT_PARAMS_DEFAULT;
     struct result r = {0};
     struct err err = ERR_INIT;
@@ -497,6 +497,34 @@ static void thread_counts_give_the_same_bits(void **state)
     for (int k = 0; k < 3; k++) layered_depth_release(&r[k].depth);
 }
 
+/* Photos that are stored sideways have their upper side at the left or right. */
+static void upper_sides_of_photos_turn_the_proposals(void **state)
+{
+    (void)state;
+    const struct vec3 ups[2][MAX_VIEWS] = {
+        {{0, -1, 0}, {0, -1, 0}, {0, -1, 0}, {0, -1, 0}, {0, -1, 0}, {0, -1, 0}},
+        {{-1, 0, 0}, {-1, 0, 0}, {-1, 0, 0}, {-1, 0, 0}, {-1, 0, 0}, {-1, 0, 0}},
+    };
+    const struct segment_params params = SEGMENT_PARAMS_DEFAULT;
+    struct err err = ERR_INIT;
+    struct result r[3];
+    memset(r, 0, sizeof r);
+    start();
+    scene_wall(&scene, 0, 0, 6, 9, 9, 0.3);
+    scene_wall(&scene, 0.3, 0.2, 4, 0.9, 0.8, -0.4);
+    place_cameras(3);
+    for (int k = 0; k < 3; k++) {
+        const struct view_source source = {scene_photo, NULL, &scene, NULL, k ? ups[k - 1] : NULL};
+        if (view_depth(&r[k].depth, r[k].neighbours, &r[k].neighbour_count, &scene.set, 0, &source, &params, &err))
+            fail_msg("%s", err.text);
+        check_invariants(&r[k].depth);
+    }
+    const size_t size = (size_t)(W * H) * sizeof(float);
+    assert_memory_equal(r[0].depth.interior.z, r[1].depth.interior.z, size);
+    assert_true(memcmp(r[0].depth.interior.z, r[2].depth.interior.z, size) != 0);
+    for (int k = 0; k < 3; k++) layered_depth_release(&r[k].depth);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -525,6 +553,7 @@ int main(void)
         cmocka_unit_test(extreme_parameters_work),
         cmocka_unit_test(an_unreadable_photo_is_an_error),
         cmocka_unit_test(thread_counts_give_the_same_bits),
+        cmocka_unit_test(upper_sides_of_photos_turn_the_proposals),
     };
     parallel_set_threads(1); /* tests run in parallel */
     return cmocka_run_group_tests(tests, NULL, NULL);
