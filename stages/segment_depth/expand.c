@@ -11,6 +11,9 @@
  * cells apart in both directions have disjoint regions that share no edge, and are moved in parallel; the
  * planes outside a region are those from before the group began, so that the result does not depend on threads.
  *
+ * A wall that no picture decides takes the plane of the part that one does, however large it is: after the first pass,
+ * or before it in later rounds, the scene's dominant planes (scene_planes.h) are offered to all segments at once.
+ *
  * What differs from the source: the nodes are segments, not pixels; proposals also come from the sweep, from
  * neighbouring views and from horizontal and vertical planes (plane_proposals.h); data costs are only computed while
  * they can still pay off. */
@@ -29,6 +32,8 @@
 #define NEGLIGIBLE         0.03 /* energy that a segment need not be moved for */
 #define MAX_PAIRWISE_SHARE 0.3f /* a data cost may rise by this part of max_pairwise; else the proposal is skipped */
 #define UNITS_PER_ENERGY   1e7  /* energies are rounded to multiples of 1 / UNITS_PER_ENERGY */
+#define LEAST_SHARE        0.05 /* of all votes: weight of a plane of the scene, in the first round */
+#define LEAST_SHARE_LATER  0.10 /* ... in later ones, where neighbours vote, too */
 #define APART              4    /* distance in cells between those that are moved in parallel */
 
 static const double cell_segments[SCALES] = {2.5, 7, 20, 50}; /* side of a cell, in sides of a mean segment */
@@ -204,6 +209,44 @@ static void move_cell(struct expander *x, struct worker *w, int cell, struct err
     for (int k = 0; k < count; k++) w->local[w->region[k]] = -1;
 }
 
+/* Collects the planes that the view's segments are on and those of its neighbours in the round before. */
+static enum status find_scene_planes(const struct expander *x, struct err *err)
+{
+    const struct cross_view *cross = x->p->cross;
+    const struct segmentation *s = x->s;
+    const size_t most = (size_t)s->count + (size_t)(cross ? cross->first_proposal[s->count] : 0) + 1;
+    struct plane_vote *votes = malloc(most * sizeof *votes);
+    int count = 0;
+    if (!votes) return err_nomem(err, "planes of a scene", most * sizeof *votes);
+    for (int i = 0; i < s->count; i++) {
+        const struct segment *g = &s->segments[i];
+        votes[count++] = (struct plane_vote){x->plane[i], g->cx, g->cy, g->pixels};
+        for (int k = cross ? cross->first_proposal[i] : 0; cross && k < cross->first_proposal[i + 1]; k++)
+            votes[count++] = (struct plane_vote){cross->proposals[k], g->cx, g->cy, g->pixels};
+    }
+    double total = 0;
+    for (int i = 0; i < count; i++) total += votes[i].weight;
+    const enum status st = scene_planes_find(x->p->scene, votes, count, x->p->step,
+                                             (cross ? LEAST_SHARE_LATER : LEAST_SHARE) * total, err);
+    free(votes);
+    return st;
+}
+
+/* Offers the scene's planes to all segments at once. */
+static enum status move_to_scene_planes(struct expander *x, struct err *err)
+{
+    struct worker *w = &x->workers[0];
+    enum status st = find_scene_planes(x, err);
+    memcpy(x->before, x->plane, (size_t)x->s->count * sizeof *x->plane);
+    for (int i = 0; i < x->s->count; i++) w->local[i] = w->region[i] = i;
+    for (int k = 0; !st && k < x->p->scene->count; k++) {
+        expansion_move(x, w, x->s->count, x->p->scene->planes[k], err);
+        st = err->status;
+    }
+    for (int i = 0; i < x->s->count; i++) w->local[i] = -1;
+    return st;
+}
+
 static void move_cells(void *ctx, size_t begin, size_t end, int thread)
 {
     struct expander *x = ctx;
@@ -311,6 +354,7 @@ enum status expand_planes(struct plane *plane, const struct plane_problem *p, st
         progress_start(&progress, "expansion", (int64_t)x.passes * cells, "cells");
     }
     for (x.pass = 0; !st && x.pass < x.passes; x.pass++) {
+        if (p->scene && p->cross && x.pass == 0) st = move_to_scene_planes(&x, err);
         for (x.scale = 0; !st && x.scale < scale_count(&x); x.scale++) {
             const struct cells *c = &x.cells[x.scale];
             for (int g = 0; !st && g < APART * APART; g++) {
@@ -331,6 +375,7 @@ enum status expand_planes(struct plane *plane, const struct plane_problem *p, st
                     }
             }
         }
+        if (!st && p->scene && !p->cross && x.pass == 0) st = move_to_scene_planes(&x, err);
     }
     if (!st) progress_end(&progress);
     release(&x, threads);

@@ -80,8 +80,7 @@ static int list_candidates(const struct choice *c, int i, int list[MAX_CANDIDATE
                 if (known) continue;
                 around[seen++] = other;
                 for (int n = 0; n < count && !known; n++) known = alike(c, g, list[n], other);
-                if (!known && plane_within(c->planes[other], g, c->p->min_inverse_z, c->p->max_inverse_z))
-                    list[count++] = other;
+                if (!known && problem_allows(c->p, g, c->planes[other])) list[count++] = other;
             }
     return count;
 }

@@ -17,6 +17,7 @@ static float match_lower_bound(const struct plane_problem *p, int segment, struc
     const double middle = (plane_at(plane, g->cx, g->cy) - p->min_inverse_z) / p->step;
     const double reach =
         0.5 + 0.5 * (fabs(plane.a) * (g->x1 - g->x0 + 1) + fabs(plane.b) * (g->y1 - g->y0 + 1)) / p->step;
+    if (middle + reach > p->planes || middle - reach < -1) return MATCH_BEST; /* depths that were not tried */
     const int low = middle - reach > 0 ? (int)(middle - reach) : 0;
     const int high = middle + reach < p->planes - 2 ? (int)(middle + reach) + 1 : p->planes - 1;
     const float *cost = p->cost + (size_t)segment * (size_t)p->planes;
@@ -29,10 +30,11 @@ float unary_cost(const struct plane_problem *p, int segment, struct plane plane,
 {
     const struct segment *g = &p->m->segments->segments[segment];
     if (given_depth_has(p->given, segment)) return given_depth_equals(p->given, segment, plane) ? 0 : PLANE_FORBIDDEN;
-    if (!plane_within(plane, g, p->min_inverse_z, p->max_inverse_z)) return PLANE_FORBIDDEN;
+    if (!problem_allows(p, g, plane)) return PLANE_FORBIDDEN;
     unsigned occluded = 0;
     const float size = (float)g->pixels / (float)p->params->segment_pixels;
     float data = (float)point_evidence_cost(p->points, segment, plane, g->cx, g->cy);
+    if (scene_planes_have(p->scene, plane)) data -= (float)point_evidence_far(p->points, plane, g->cx, g->cy);
     const float left = max_cost / size - data - match_lower_bound(p, segment, plane),
                 part = (float)p->params->cross_view;
     if (!(left >= 0)) return PLANE_FORBIDDEN;
@@ -51,7 +53,11 @@ double pairwise_bound(const struct plane_problem *p, int border)
     return p->params->smoothness * (double)p->weights[border] + 2 * p->slant * p->m->segments->borders[border].length;
 }
 
-static int slants(struct plane p) { return p.a != 0 || p.b != 0; }
+/* A plane of the scene is paid for already. */
+static int slants(const struct plane_problem *p, struct plane plane)
+{
+    return (plane.a != 0 || plane.b != 0) && !scene_planes_have(p->scene, plane);
+}
 
 double pairwise_cost(const struct plane_problem *p, int segment, int border, struct plane own, struct plane other)
 {
@@ -62,6 +68,6 @@ double pairwise_cost(const struct plane_problem *p, int segment, int border, str
     const double gap = fabs(a * (double)t->u + b * (double)t->v + c) + 0.5 * fabs(a * g->cx + b * g->cy + c) +
                        0.5 * fabs(a * h->cx + b * h->cy + c);
     const double steps = 0.5 * gap / p->step, jump = p->params->jump;
-    const double slant = p->slant * t->length * (slants(own) + slants(other));
+    const double slant = p->slant * t->length * (slants(p, own) + slants(p, other));
     return p->params->smoothness * (double)p->weights[border] * (steps < jump ? steps / jump : 1) + slant;
 }

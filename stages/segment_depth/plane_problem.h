@@ -4,6 +4,10 @@
  *        + sum over adjacent i, j    smoothness w_ij min(gap(P_i, P_j) / step, jump) / jump              (pairwise)
  *                                    + slant length_ij [P_i != P_j] (slanted(P_i) + slanted(P_j))
  *
+ * A dominant plane of the scene (scene_planes.h) is paid for already: it counts as not slanted, its points' cost has no
+ * bias to the far side, and it may leave the range of depths, which comes from points, by a factor of SCENE_REACH. So a
+ * blank ceiling that no view can match continues on the plane of its matched part.
+ *
  * A segment whose depth is given has one plane, of cost 0; any other costs PLANE_FORBIDDEN. size_i is in mean segments.
  * The gap is the mean difference of the two planes' inverse depths at the middle of the border and at both centroids:
  * zero for equal planes, so that a surface slants at no cost, and never more than the sum over a third plane
@@ -23,6 +27,7 @@
 #include "stages/segment_depth/given_depth.h"
 #include "stages/segment_depth/plane_match.h"
 #include "stages/segment_depth/point_evidence.h"
+#include "stages/segment_depth/scene_planes.h"
 #include "stages/segment_depth/segment_params.h"
 
 struct plane_problem { /* borrows all that it points to */
@@ -32,6 +37,7 @@ struct plane_problem { /* borrows all that it points to */
     const struct point_evidence *points;
     const struct cross_view *cross;  /* NULL in the first round */
     const struct given_depth *given; /* NULL if no depth is given */
+    struct scene_planes *scene;      /* filled by expand_planes(); NULL: none are looked for */
     const float *weights;            /* of each border, as border_weights() */
     const struct segment_params *params;
     double slant;                              /* problem_slant(), per pixel of a border */
@@ -48,6 +54,15 @@ static inline double problem_slant(const struct segment_params *params)
 }
 
 static inline int problem_passes(const struct plane_problem *p) { return depth_passes(p->params, !p->cross); }
+
+#define SCENE_REACH 3.0
+
+/* Whether a plane stays in the range of depths over a segment. */
+static inline bool problem_allows(const struct plane_problem *p, const struct segment *g, struct plane plane)
+{
+    const double reach = scene_planes_have(p->scene, plane) ? SCENE_REACH : 1;
+    return plane_within(plane, g, p->min_inverse_z / reach, p->max_inverse_z * reach);
+}
 
 #define PLANE_FORBIDDEN 1e4f /* unary cost of a plane outside the depth range */
 

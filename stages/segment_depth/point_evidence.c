@@ -128,10 +128,16 @@ void point_evidence_release(struct point_evidence *e)
     *e = (struct point_evidence){0};
 }
 
+double point_evidence_far(const struct point_evidence *e, struct plane plane, double u, double v)
+{
+    const double here = plane_at(plane, u, v);
+    return e->far_weight * fmin(fmax((here - e->min_inverse_z) / (e->max_inverse_z - e->min_inverse_z), 0), 1);
+}
+
 double point_evidence_cost(const struct point_evidence *e, int segment, struct plane plane, double u, double v)
 {
     int begin = e->first[segment], end = e->first[segment + 1];
-    double inside = 0, nearest = 1, here = plane_at(plane, u, v);
+    double inside = 0, nearest = 1;
     for (int i = begin; i < end; i++) {
         const struct observed_point *p = &e->points[i];
         inside += fmin(1, fabs(plane_at(plane, p->u, p->v) - p->inverse_z) / (2 * e->step));
@@ -143,8 +149,8 @@ double point_evidence_cost(const struct point_evidence *e, int segment, struct p
         nearest =
             fmin(nearest,
                  fabs(plane_at(plane, (double)near[k].u, (double)near[k].v) - (double)near[k].inverse_z) / tolerance);
-    double far = fmin(fmax((here - e->min_inverse_z) / (e->max_inverse_z - e->min_inverse_z), 0), 1);
-    return e->inside_weight * inside + (e->nearest_count ? e->nearest_weight * nearest : 0) + e->far_weight * far;
+    return e->inside_weight * inside + (e->nearest_count ? e->nearest_weight * nearest : 0) +
+           point_evidence_far(e, plane, u, v);
 }
 
 double point_evidence_support(const struct point_evidence *e, int segment, struct plane plane)

@@ -30,6 +30,9 @@ void point_evidence_release(struct point_evidence *e);
 /* The share of a segment's points that lie within two steps of the plane, 0 .. 1; a single point counts half. */
 double point_evidence_support(const struct point_evidence *e, int segment, struct plane plane);
 
+/* The part of that cost that grows towards the camera. */
+double point_evidence_far(const struct point_evidence *e, struct plane plane, double u, double v);
+
 /* Cost of the plane, in units of the matching cost. u, v: the segment's centroid. */
 double point_evidence_cost(const struct point_evidence *e, int segment, struct plane plane, double u, double v);
 

@@ -7,7 +7,8 @@
  *   oversegment   SLIC superpixels in gamma-encoded opponent colours
  *   given_depth   fixed planes of the segments whose depth the user provides
  *   plane_sweep   first round: cost volume over the depth range, smoothed; later rounds start from the previous planes
- *   expand        expansion moves: minimum cuts over planes, slanted where that explains the pictures better
+ *   expand        expansion moves: minimum cuts over planes, slanted where that explains the pictures better; the
+ *                 scene's dominant planes are offered to the whole view
  *   refine        local search with the same energy
  *   inherit       border areas that nothing holds in the foreground take over what lies behind them
  *   pixel_planes  each pixel chooses among the planes around it
@@ -174,6 +175,7 @@ struct solution {
     struct cross_view cross;
     struct plane_sweep sweep;
     struct given_depth given;
+    struct scene_planes scene;
     struct plane *planes;
     double *distinct; /* of each segment: distinctness() in the first round */
     float *weights, *min_match;
@@ -227,6 +229,7 @@ static enum status start_solution(struct solution *x, const struct solver *v, st
                                         .m = v->m,
                                         .points = &x->points,
                                         .given = x->sweep.given,
+                                        .scene = &x->scene,
                                         .weights = x->weights,
                                         .params = v->params,
                                         .slant = problem_slant(v->params),

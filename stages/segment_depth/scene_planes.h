@@ -1,0 +1,46 @@
+/* scene_planes.h - the dominant planes of a scene, as a view sees them: walls, floors, ceilings. */
+#ifndef REMODEL_SCENE_PLANES_H
+#define REMODEL_SCENE_PLANES_H
+
+#include <stdint.h>
+#include <string.h>
+
+#include "stages/segment_depth/plane_match.h"
+
+#define SCENE_PLANES 12
+
+struct scene_planes {
+    struct plane planes[SCENE_PLANES]; /* the most supported first */
+    int count;
+    uint64_t filter; /* of scene_planes_key() of the planes: a plane whose bit is 0 is none of them */
+};
+
+static inline unsigned scene_planes_key(struct plane p)
+{
+    uint64_t bits;
+    memcpy(&bits, &p.c, sizeof bits);
+    return (unsigned)((bits ^ bits >> 29) * 0x9e3779b97f4a7c15u >> 58);
+}
+
+/* Whether a plane is one of them, to the last bit. s may be NULL. */
+static inline bool scene_planes_have(const struct scene_planes *s, struct plane p)
+{
+    if (!s || !(s->filter >> scene_planes_key(p) & 1)) return false;
+    for (int k = 0; k < s->count; k++)
+        if (memcmp(&s->planes[k], &p, sizeof p) == 0) return true;
+    return false;
+}
+
+/* A plane that a part of the view, or of a neighbour, lies on, as far as known. */
+struct plane_vote {
+    struct plane plane;
+    double u, v;   /* where, in the view's pixels */
+    double weight; /* pixels */
+};
+
+/* The planes that most votes lie on. step: of inverse depth; least: weight that a plane must have. Planes of constant
+ * depth stand for unknown slants, and do not count. ST_NOMEM. */
+enum status scene_planes_find(struct scene_planes *s, const struct plane_vote *votes, int count, double step,
+                              double least, struct err *err);
+
+#endif
