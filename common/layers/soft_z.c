@@ -32,6 +32,8 @@
 #include <math.h>
 #include <stdbool.h>
 
+#include "common/math/lanes.h"
+
 float soft_z_weight(float dz, float gamma, float rho)
 {
     if (dz <= gamma) return 1;
@@ -62,13 +64,6 @@ struct fragment_merge {
 };
 
 static float clamp_one(float x) { return x < 1 ? x : 1; }
-
-static float sum8(__m256 v)
-{
-    const __m128 four = _mm_add_ps(_mm256_castps256_ps128(v), _mm256_extractf128_ps(v, 1));
-    const __m128 two = _mm_add_ps(four, _mm_movehl_ps(four, four));
-    return _mm_cvtss_f32(_mm_add_ss(two, _mm_shuffle_ps(two, two, 1)));
-}
 
 static float max8(__m256 v)
 {
@@ -120,7 +115,7 @@ static void find_support(struct fragment_merge *m, const struct soft_z *s)
             pro = _mm256_add_ps(pro, _mm256_mul_ps(_mm256_mul_ps(vote, alpha), _mm256_sub_ps(one, separation)));
             contra = _mm256_add_ps(contra, _mm256_mul_ps(_mm256_mul_ps(part, vote), _mm256_mul_ps(more, separation)));
         }
-        const float sum = sum8(pro), part = sum / (sum + sum8(contra) + 1e-30f);
+        const float sum = lanes_sum(pro), part = sum / (sum + lanes_sum(contra) + 1e-30f);
         m->support[i] = part * part;
     }
 }
@@ -168,10 +163,10 @@ static float merged_depth(const struct fragment_merge *m)
             sum = _mm256_add_ps(sum, part);
             z_sum = _mm256_add_ps(z_sum, _mm256_mul_ps(part, _mm256_loadu_ps(m->z + 8 * b)));
         }
-        const float weight = sum8(sum);
+        const float weight = lanes_sum(sum);
         if (!(weight > max)) continue;
         max = weight;
-        z = sum8(z_sum) / weight;
+        z = lanes_sum(z_sum) / weight;
     }
     return z;
 }

@@ -40,7 +40,8 @@ void light_contents_release(struct light_contents *l)
     *l = (struct light_contents){0};
 }
 
-/* A JPEG, upright and shrunk; nothing if there is no such file, a note if it cannot be read. */
+/* Reads a JPEG, turns it upright and shrinks it. If the file does not exist, nothing is added; if it cannot be read, a
+ * note is. */
 static enum status read_picture(struct picture *p, struct contents *c, const char *path, int orientation, int height,
                                 struct err *err)
 {

@@ -15,6 +15,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "common/math/lanes.h"
+
 #define AGREE_STEPS    2.0f  /* steps between planes that agree */
 #define OCCLUDED_COST  0.15f /* more than agreement costs, less than a violation of the neighbour's line of sight */
 #define UNKNOWN_COST   0.15f
@@ -206,13 +208,6 @@ static __m256 inverse_depths(const struct cross_view *x, int segment, struct pla
         _mm256_set1_ps((float)plane.c));
 }
 
-static inline float sum_samples(__m256 v)
-{
-    const __m128 four = _mm_add_ps(_mm256_castps256_ps128(v), _mm256_extractf128_ps(v, 1));
-    const __m128 two = _mm_add_ps(four, _mm_movehl_ps(four, four));
-    return _mm_cvtss_f32(_mm_add_ss(two, _mm_shuffle_ps(two, two, 1)));
-}
-
 float cross_view_cost(const struct cross_view *x, int segment, struct plane plane, unsigned *occluded)
 {
     return cross_view_bounded(x, segment, plane, INFINITY, occluded);
@@ -243,7 +238,7 @@ float cross_view_bounded(const struct cross_view *x, int segment, struct plane p
                                             _mm256_cmp_ps(confidence, _mm256_set1_ps(MIN_OCCLUDER), _CMP_GT_OQ));
         if (__builtin_popcount((unsigned)_mm256_movemask_ps(_mm256_and_ps(known, behind))) > CROSS_SAMPLES / 2)
             *occluded |= 1u << k;
-        all = sum_samples(sum);
+        all = lanes_sum(sum);
         if (all > limit) break;
     }
     return all / count;

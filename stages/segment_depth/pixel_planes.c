@@ -20,6 +20,7 @@
 #include <string.h>
 
 #include "common/base/parallel.h"
+#include "common/math/lanes.h"
 #include "stages/segment_depth/match_features.h"
 
 #define RINGS          2
@@ -117,13 +118,6 @@ static float window_weights(const struct choice *c, int pixel, float weights[WIN
     return sum;
 }
 
-static inline float sum8(__m256 v)
-{
-    const __m128 four = _mm_add_ps(_mm256_castps256_ps128(v), _mm256_extractf128_ps(v, 1));
-    const __m128 two = _mm_add_ps(four, _mm_movehl_ps(four, four));
-    return _mm_cvtss_f32(_mm_add_ss(two, _mm_shuffle_ps(two, two, 1)));
-}
-
 /* Mean of a window's costs; false if less than half of its weight is seen. costs: of its upper left pixel. */
 static inline bool window_mean(float *mean, const float *costs, size_t stride, const float *weights, float all)
 {
@@ -136,9 +130,9 @@ static inline bool window_mean(float *mean, const float *costs, size_t stride, c
         sum = _mm256_add_ps(sum, _mm256_mul_ps(weight, cost));
         total = _mm256_add_ps(total, weight);
     }
-    const float seen = sum8(total);
+    const float seen = lanes_sum(total);
     if (!(2 * seen > all)) return false;
-    *mean = fminf(fmaxf(sum8(sum) / seen, MATCH_BEST), MATCH_WORST);
+    *mean = fminf(fmaxf(lanes_sum(sum) / seen, MATCH_BEST), MATCH_WORST);
     return true;
 }
 
@@ -286,7 +280,7 @@ static float roughness(const struct nearby *n, float jumps)
         const __m256 apart = _mm256_andnot_ps(sign, _mm256_sub_ps(_mm256_load_ps(n->jumps + k), own));
         sum = _mm256_add_ps(sum, _mm256_mul_ps(_mm256_load_ps(n->weight + k), _mm256_min_ps(one, apart)));
     }
-    return sum8(sum) / n->sum;
+    return lanes_sum(sum) / n->sum;
 }
 
 static int choose_pixel(const struct choice *c, int i, int q)

@@ -264,7 +264,7 @@ static enum status make_case(struct bench *b, const char *name, struct err *err)
         if (b->scene.field.look) b->field = b->scene.field;
         return ST_OK;
     }
-    return err_set(err, ST_USAGE, "there is no case %s; the head of irradiance.c lists them.", name);
+    return err_set(err, ST_USAGE, "unknown case %s; irradiance.c lists the cases at its top.", name);
 }
 
 static const char *option(int argc, char **argv, const char *name)

@@ -214,7 +214,7 @@ make_products() # SCENE
 prepare()
 {
     local p s
-    for p in true_light true_photo; do [ -x "$B/tests/bench/$p" ] || missing "there is no program $B/tests/bench/$p."; done
+    for p in true_light true_photo; do [ -x "$B/tests/bench/$p" ] || missing "the program $B/tests/bench/$p is missing."; done
     [ -n "$scenes" ] || missing "no scene has the products that are needed."
     for s in $scenes; do make_products "$s"; done
 }

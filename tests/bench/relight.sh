@@ -32,7 +32,7 @@ photos() { echo "${BENCH_PHOTOS:-$shell_photos}"; }
 prepare()
 {
     local e v
-    for v in render_model bake_outdoors fit_lights update_vita relight; do [ -x "$B/bin/$v" ] || missing "there is no program $B/bin/$v."; done
+    for v in render_model bake_outdoors fit_lights update_vita relight; do [ -x "$B/bin/$v" ] || missing "the program $B/bin/$v is missing."; done
     prepare_room
     prepare_light
     made SCENE=room textures outdoors

@@ -279,7 +279,7 @@ static enum status bring_points(const struct job *j, struct err *err)
 static enum status run(struct job *j, struct err *err)
 {
     j->unit = atof(j->scale);
-    if (!(j->unit > 0)) return err_set(err, ST_USAGE, "--scale %s is no number above 0.", j->scale);
+    if (!(j->unit > 0)) return err_set(err, ST_USAGE, "--scale %s: must be a number above 0.", j->scale);
     if (read_truth(&j->truth, j->scene, err) || align(j, err) || model_axes_read(&j->axes, j->axes_path, err) ||
         replace_lamps(j, err))
         return err->status;

@@ -44,7 +44,7 @@ int main(int argc, char **argv)
         CLI_END,
     };
     if (cli_parse(argc, argv, "true_photo", opts, &prov, &err) == CLI_RUN) {
-        if (!(atof(scale) > 0)) err_set(&err, ST_USAGE, "--scale %s is no number above 0.", scale);
+        if (!(atof(scale) > 0)) err_set(&err, ST_USAGE, "--scale %s: must be a number above 0.", scale);
         (void)(err.status || exr_read(&truth, truth_path, rgb, 3, &err) ||
                exr_read(&merged, merged_path, NULL, 0, &err) || replace(&merged, &truth, atof(scale), &err) ||
                exr_write(&merged, out, &prov, &err));
