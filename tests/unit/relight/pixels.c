@@ -111,7 +111,7 @@ static void of_fifty_lamps_all_count(void **state)
 {
     static char lines[8192];
     struct texture_lamp lamps[50];
-    static char names[50][8];
+    static char names[50][16];
     struct edit e = edit_of_closed_room(lit);
     struct relit_room r;
     struct err err = ERR_INIT;
