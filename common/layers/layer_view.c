@@ -1,7 +1,8 @@
 /* layer_view.c - packing of a view's two layers: texels, the composited photo, and the cells between texels.
  *
  * Cells replace the per-segment alpha tests of [Colburn 2014, 3.6.1], which compare the ids of single texels: they make
- * bilinear look-up possible without seams between segments of one surface. */
+ * bilinear look-up possible without seams between segments of one surface. The photo has MIP levels [Williams 1983] for frames that show it
+ * reduced. */
 #include "common/layers/layer_view.h"
 
 #include <immintrin.h>
@@ -26,6 +27,41 @@ __attribute__((target("f16c"))) static void pack_rgba(uint16_t half[2][4], uint1
     __m128 sum = _mm_add_ps(_mm256_castps256_ps128(v), _mm256_extractf128_ps(v, 1));
     sum = _mm_max_ps(_mm_min_ps(sum, _mm256_castps256_ps128(max)), _mm256_castps256_ps128(min));
     _mm_storel_epi64((__m128i *)(void *)photo, _mm_cvtps_ph(sum, _MM_FROUND_TO_NEAREST_INT));
+}
+
+/* One row of a level from two of the level before, of `width` texels each. */
+static void reduce_row(uint16_t (*to)[4], const uint16_t (*top)[4], const uint16_t (*bottom)[4], int width)
+{
+    for (int x = 0; x < width; x += 2) { /* the padding to the right is empty */
+        const __m256 sum = _mm256_add_ps(_mm256_cvtph_ps(_mm_loadu_si128((const __m128i *)(const void *)(top + x))),
+                                         _mm256_cvtph_ps(_mm_loadu_si128((const __m128i *)(const void *)(bottom + x))));
+        const __m128 mean =
+            _mm_mul_ps(_mm_add_ps(_mm256_castps256_ps128(sum), _mm256_extractf128_ps(sum, 1)), _mm_set1_ps(0.25f));
+        _mm_storel_epi64((__m128i *)(void *)to[x / 2], _mm_cvtps_ph(mean, _MM_FROUND_TO_NEAREST_INT));
+    }
+}
+
+/* Makes the levels of the photo down to a few texels. Beyond its border, and where it has no depth, alpha is 0. */
+static enum status reduce_photo(struct layer_view *lv, struct err *err)
+{
+    const uint16_t(*from)[4] = (const uint16_t(*)[4])lv->photo;
+    int w = lv->width, h = lv->height, stride = lv->stride;
+    while (lv->reduced_count < PHOTO_LEVELS && w > 2 && h > 2) {
+        struct photo_level *to = &lv->reduced[lv->reduced_count];
+        const int half_w = (w + 1) / 2, half_h = (h + 1) / 2;
+        to->stride = half_w + 3;
+        to->texels = calloc((size_t)to->stride * (size_t)(half_h + 3), sizeof *to->texels);
+        if (!to->texels)
+            return err_nomem(err, "a reduced photo", (size_t)to->stride * (size_t)(half_h + 3) * sizeof *to->texels);
+        lv->reduced_count++;
+        for (int y = 0; y < half_h; y++) { /* one texel of padding above and left */
+            const uint16_t(*row)[4] = from + (size_t)(2 * y + 1) * (size_t)stride + 1;
+            reduce_row(to->texels + (size_t)(y + 1) * (size_t)to->stride + 1, row, row + stride, w);
+        }
+        from = (const uint16_t(*)[4])to->texels;
+        w = half_w, h = half_h, stride = to->stride;
+    }
+    return ST_OK;
 }
 
 static void shape_add(struct segment_shape *s, int x, int y, bool interior)
@@ -143,6 +179,7 @@ void layer_view_release(struct layer_view *lv)
     if (!lv) return;
     free(lv->texels);
     free(lv->photo);
+    for (int k = 0; k < lv->reduced_count; k++) free(lv->reduced[k].texels);
     for (int k = 0; k < 2; k++) free(lv->cells[k]);
     free(lv->many);
     free(lv->shapes);
@@ -204,7 +241,8 @@ enum status layer_view_pack(struct layer_view *lv, struct layered_depth *depth, 
     }
     layer_drop(&depth->interior);
     layer_drop(&depth->boundary);
-    const enum status st = index_cells(lv, depth, err);
+    enum status st = index_cells(lv, depth, err);
+    if (!st) st = reduce_photo(lv, err);
     if (st) layer_view_release(lv);
     return st;
 }

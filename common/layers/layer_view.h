@@ -1,4 +1,4 @@
-/* layer_view.h - a view's two layers, packed for rendering: 40 bytes a pixel, and 64 for each cell of many segments.
+/* layer_view.h - a view's two layers, packed for rendering: 43 bytes a pixel, and 64 for each cell of many segments.
  *
  * A cell is the square between the centres of a texel and of its right, lower and diagonal neighbours. In a cell of one
  * surface every segment has the photo's colour; in a split cell a segment's coverage and colour are sums over its own
@@ -37,11 +37,20 @@ struct segment_shape {
     double pixels;      /* of its interior */
 };
 
+#define PHOTO_LEVELS 8
+
+struct photo_level { /* the photo reduced by a power of two: means of 2 x 2 texels of the level before, premultiplied */
+    int stride;      /* padding as in struct layer_view */
+    uint16_t (*texels)[4];
+};
+
 struct layer_view {
     int width, height, stride; /* stride of the texels; padding: one texel left and above, two right and below */
     struct texel *texels;
-    uint16_t (*photo)[4]; /* both layers composited: half, premultiplied; same stride and padding */
-    uint32_t *cells[2];   /* first and second word of the cell that begins at each texel */
+    uint16_t (*photo)[4];                     /* both layers composited: half, premultiplied; same stride and padding */
+    struct photo_level reduced[PHOTO_LEVELS]; /* by 2, 4, 8, ... */
+    int reduced_count;
+    uint32_t *cells[2]; /* first and second word of the cell that begins at each texel */
     struct many_cell *many;
     struct segment_shape *shapes; /* of the depth map's segments, in their order */
 };

@@ -12,7 +12,12 @@
  *
  * Sampling: where all texels of a cell are one surface, the photo itself is looked up, so that neither seams between
  * segments nor the soft alpha of their boundaries show. In a split cell the texels of the segment's surface alone are
- * summed, which gives its coverage and premultiplied colour. */
+ * summed, which gives its coverage and premultiplied colour.
+ *
+ * A photo that the frame shows reduced would alias, and shimmer in a film. With n texels per pixel of the frame, from
+ * the determinant of the segment's homography in its middle, cells of one surface are looked up between the two levels
+ * of a MIP map [Williams 1983] that are nearest to log2(n) / 2 - LEVEL_BIAS. A depth map's borders are not filtered.
+ */
 #include "common/layers/layer_visibility.h"
 
 #include <immintrin.h>
@@ -21,6 +26,8 @@
 
 #include "common/layers/soft_z.h"
 
+#define LEVEL_BIAS \
+    0.5 /* a photo reduced by less than sqrt(2) is looked up as it is; bilinear levels are blurred by themselves */
 #define BORDER 0.05f /* width of the band in which a view fades out towards its border, of the picture's long side */
 
 /* --------------------------------------------------------------------------------------------- segments in tiles */
@@ -61,6 +68,19 @@ static struct drawn_segment drawn_segment_make(const struct projected_segment *p
     return s;
 }
 
+/* MIP level of a segment's photo: the homography's determinant over w^3 is the area in texels of a target pixel. */
+static float photo_level(const struct projected_segment *p, int levels)
+{
+    const double(*f)[3] = p->from_target;
+    const double w = f[2][0] * 0.5 * (p->x0 + p->x1 + 1) + f[2][1] * 0.5 * (p->y0 + p->y1 + 1) + f[2][2];
+    const double area =
+        fabs(f[0][0] * (f[1][1] * f[2][2] - f[1][2] * f[2][1]) - f[0][1] * (f[1][0] * f[2][2] - f[1][2] * f[2][0]) +
+             f[0][2] * (f[1][0] * f[2][1] - f[1][1] * f[2][0])) /
+        (w * w * w);
+    if (!(w > 0) || !(area > 1)) return 0;
+    return (float)fmax(0, fmin(levels, 0.5 * log2(area) - LEVEL_BIAS));
+}
+
 enum status drawn_view_prepare(struct drawn_view *dv, const struct layered_depth *depth, const struct layer_view *lv,
                                const struct view *view, const struct view *novel, struct err *err)
 {
@@ -71,6 +91,7 @@ enum status drawn_view_prepare(struct drawn_view *dv, const struct layered_depth
         reserve(&dv->segments, &dv->segment_capacity, (size_t)depth->segment_count + 1, sizeof *dv->segments, err);
 
     if (!st) st = reserve(&dv->sigmas, &dv->sigma_capacity, (size_t)depth->segment_count + 1, sizeof *dv->sigmas, err);
+    if (!st) st = reserve(&dv->levels, &dv->level_capacity, (size_t)depth->segment_count + 1, sizeof *dv->levels, err);
     if (!st)
         st = reserve(&dv->tile_begin, &dv->tile_capacity, (size_t)tiles_x * (size_t)tiles_y + 2, sizeof *dv->tile_begin,
                      err);
@@ -78,6 +99,7 @@ enum status drawn_view_prepare(struct drawn_view *dv, const struct layered_depth
     dv->tiles_x = tiles_x;
     dv->tile_count = tiles_x * tiles_y;
     dv->count = 0;
+    dv->reduced = false;
     for (int t = 0; t <= dv->tile_count + 1; t++) dv->tile_begin[t] = 0;
     view_relation_make(&relation, view, novel);
     uint32_t *begins = dv->tile_begin + 1; /* counting sort: tile t at t + 1 until the lists are filled */
@@ -87,6 +109,8 @@ enum status drawn_view_prepare(struct drawn_view *dv, const struct layered_depth
         if (!segment_project(&p, &relation, &depth->segments[i], &lv->shapes[i])) continue;
         const float sigma = (float)depth->segments[i].sigma;
         dv->sigmas[dv->count] = sigma > SOFT_Z_MIN_SIGMA ? sigma : SOFT_Z_MIN_SIGMA;
+        dv->levels[dv->count] = photo_level(&p, lv->reduced_count);
+        dv->reduced |= dv->levels[dv->count] > 0;
         dv->segments[dv->count++] = drawn_segment_make(&p, &depth->segments[i]);
         for (int ty = p.y0 / TILE_HEIGHT; ty <= p.y1 / TILE_HEIGHT; ty++)
             for (int tx = p.x0 / TILE_WIDTH; tx <= p.x1 / TILE_WIDTH; tx++) {
@@ -117,6 +141,7 @@ void drawn_view_release(struct drawn_view *dv)
     if (!dv) return;
     free(dv->segments);
     free(dv->sigmas);
+    free(dv->levels);
     free(dv->tile_begin);
     free(dv->tile_segments);
     *dv = (struct drawn_view){0};
@@ -279,6 +304,8 @@ void visibility_draw(struct tile_visibility *tv, const struct drawn_view *dv, co
 
 /* ------------------------------------------------------------------------------------------------------ sampling */
 
+static inline float alpha_of(__m128 rgba) { return _mm_cvtss_f32(_mm_shuffle_ps(rgba, rgba, 0xFF)); }
+
 /* Bilinear look-up of the photo in the cell that begins at texel `at`. */
 static inline __m128 photo_texel(const struct layer_view *lv, int at, float fu, float fv)
 {
@@ -323,6 +350,46 @@ static __m128 photo_cubic(const struct layer_view *lv, int at, float fu, float f
         sum = _mm_add_ps(sum, _mm_mul_ps(_mm_set1_ps(wv[y]), row));
     }
     return _mm_max_ps(sum, _mm_setzero_ps());
+}
+
+/* Bilinear look-up in a reduced photo, at (u, v) of the padded texels of the photo itself. Texels without depth and
+ * beyond the border do not count. */
+static __m128 reduced_texel(const struct layer_view *lv, int level, float u, float v)
+{
+    const struct photo_level *from = &lv->reduced[level - 1];
+    const float part = 1 / (float)(1 << level), x = (u - 0.5f) * part + 0.5f, y = (v - 0.5f) * part + 0.5f;
+    const int i = (int)x, j = (int)y;
+    const float fx = x - (float)i, fy = y - (float)j;
+    const uint16_t(*t)[4] = (const uint16_t(*)[4])from->texels + (size_t)j * (size_t)from->stride + i;
+    const __m256 top = _mm256_cvtph_ps(_mm_loadu_si128((const __m128i *)(const void *)t));
+    const __m256 bottom = _mm256_cvtph_ps(_mm_loadu_si128((const __m128i *)(const void *)(t + from->stride)));
+    const __m256 mean = _mm256_add_ps(top, _mm256_mul_ps(_mm256_sub_ps(bottom, top), _mm256_set1_ps(fy)));
+    const __m128 left = _mm256_castps256_ps128(mean), right = _mm256_extractf128_ps(mean, 1);
+    const __m128 sum = _mm_add_ps(left, _mm_mul_ps(_mm_sub_ps(right, left), _mm_set1_ps(fx)));
+    const float alpha = alpha_of(sum);
+    return alpha > 0 ? _mm_div_ps(sum, _mm_set1_ps(alpha)) : sum;
+}
+
+/* The photo between two levels; `sharp` is the photo itself there. */
+static __m128 photo_between(const struct layer_view *lv, float level, float u, float v, __m128 sharp)
+{
+    const int below = (int)level < lv->reduced_count ? (int)level : lv->reduced_count - 1;
+    const __m128 fine = below ? reduced_texel(lv, below, u, v) : sharp, coarse = reduced_texel(lv, below + 1, u, v);
+    return _mm_add_ps(fine, _mm_mul_ps(_mm_sub_ps(coarse, fine), _mm_set1_ps(level - (float)below)));
+}
+
+/* Replaces the colours of the eight pixels from i on by those of their segments' levels. */
+static void sample_reduced(struct view_samples *s, const struct drawn_view *dv, const struct layer_view *lv, size_t i,
+                           int pixels, __m256i segment, const float *u, const float *v)
+{
+    int index[8];
+    _mm256_storeu_si256((__m256i *)(void *)index, segment);
+    for (int k = 0; k < 8; k++) {
+        const float level = dv->levels[index[k]];
+        if (!(pixels >> k & 1) || !(level > 0)) continue;
+        _mm_storeu_ps(s->rgba[i + (size_t)k],
+                      photo_between(lv, level, u[k], v[k], _mm_loadu_ps(s->rgba[i + (size_t)k])));
+    }
 }
 
 static __m128 photo_at(const struct layer_view *lv, float u, float v)
@@ -377,8 +444,6 @@ static __m128 surface_at(const struct layer_view *lv, uint32_t id, float u, floa
     }
     return _mm_add_ps(_mm256_castps256_ps128(sum), _mm256_extractf128_ps(sum, 1));
 }
-
-static inline float alpha_of(__m128 rgba) { return _mm_cvtss_f32(_mm_shuffle_ps(rgba, rgba, 0xFF)); }
 
 /* Fade towards the picture's border at texel positions (u, v): 0 at the border, 1 from BORDER on. */
 static inline __m256 inside8(const struct layer_view *lv, __m256 u, __m256 v)
@@ -469,6 +534,7 @@ void visibility_sample8(struct view_samples *s, struct view_samples *behind, con
         for (int k = 0; k < 8; k++) _mm_storeu_ps(s->rgba[i + (size_t)k], photo_cubic(lv, at[k], fu[k], fv[k]));
     else
         for (int k = 0; k < 8; k++) _mm_storeu_ps(s->rgba[i + (size_t)k], photo_texel(lv, at[k], fu[k], fv[k]));
+    if (dv->reduced && full) sample_reduced(s, dv, lv, i, full, segment, tv->u + i, tv->v + i);
     if (full == 0xFF) return;
     for (int k = 0; k < 8; k++) {
         const size_t p = i + (size_t)k;

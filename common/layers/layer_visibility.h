@@ -24,11 +24,13 @@ struct drawn_segment {
 struct drawn_view { /* a view's segments projected into a novel camera and sorted into tiles */
     struct drawn_segment *segments;
     float *sigmas; /* relative uncertainty of each segment, at least SOFT_Z_MIN_SIGMA */
+    float *levels; /* MIP level at which each segment's photo is looked up; 0: the photo itself */
+    bool reduced;  /* some level is above 0 */
     int count;
     uint32_t *tile_begin;    /* tile_count + 1 indices into tile_segments */
     uint32_t *tile_segments; /* indices into segments */
     int tiles_x, tile_count;
-    size_t segment_capacity, sigma_capacity, tile_capacity, list_capacity;
+    size_t segment_capacity, sigma_capacity, level_capacity, tile_capacity, list_capacity;
 };
 
 /* Buffers of dv are reused. ST_NOMEM. */
