@@ -22,7 +22,8 @@ static void add_point(double x, double y, double z, double nx, double ny, double
 {
     const struct vec3 p = world_from_model_point(&axes, vec3_make(x, y, z));
     const struct vec3 n = world_from_model_direction(&axes, vec3_normalize(vec3_make(nx, ny, nz)));
-    cloud.points = realloc(cloud.points, (cloud.count + 1) * sizeof *cloud.points);
+    if (!(cloud.count & (cloud.count - 1))) /* a power of two: the points fill their memory */
+        cloud.points = realloc(cloud.points, (cloud.count ? 2 * cloud.count : 1) * sizeof *cloud.points);
     assert_non_null(cloud.points);
     cloud.points[cloud.count++] = (struct cloud_point){p, {(float)n.x, (float)n.y, (float)n.z}, {0}, 3, 0.9F};
 }
