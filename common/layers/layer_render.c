@@ -38,6 +38,7 @@
 #define SLOTS        (MESH_SLOTS + LAYER_MORE_VIEWS)
 #define FALLBACK     SLOTS /* slot of the fallback views */
 #define MAX_THROUGH  0.5f  /* max weight of views that see through a fallback's surface, of those that can decide */
+#define SIGHT_WIDTHS 8 /* depth uncertainties: a view sees through a surface at what is about twice as far behind it */
 #define MIN_INSIDE   1e-3f /* keeps a view visible at its border if it is the only one */
 #define MIN_WEIGHT   1e-6f /* keeps a view visible where its blending weight is 0 if it is the only one */
 #define EXTRA_WEIGHT 0.5f  /* added to the mesh's weight of the nearest view */
@@ -377,7 +378,8 @@ static enum sight sight_of(const struct frame_job *job, int view, struct vec3 po
     const struct depth_segment *seg = &job->scene->depths[view].segments[id - 1];
     const double inverse = seg->plane[0] * u + seg->plane[1] * v + seg->plane[2];
     if (!(inverse > 0)) return SIGHT_THROUGH;
-    const float rho = soft_z_rho(&job->soft, (float)z, sigma, (float)(1 / inverse), (float)seg->sigma);
+    const struct soft_z soft = {SIGHT_WIDTHS, job->soft.range};
+    const float rho = soft_z_rho(&soft, (float)z, sigma, (float)(1 / inverse), (float)seg->sigma);
     return soft_z_weight((float)(1 / inverse - z), 0.1f * rho, rho) == 0 ? SIGHT_THROUGH : SIGHT_BLOCKED;
 }
 
@@ -516,7 +518,7 @@ static void fragment_init(struct soft_z_fragment *f, const struct view_samples *
 {
     memcpy(f->rgba, from->rgba[i], sizeof f->rgba);
     f->z = from->z[i];
-    f->uncertainty = from->z[i] * from->sigma[i];
+    f->sigma = from->sigma[i];
     f->blend = blend;
     f->vote = vote;
     f->front_alpha = 0;

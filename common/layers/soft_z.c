@@ -7,9 +7,10 @@
  *           1/2 (1 + cos(pi (dz - gamma) / (rho - 2 gamma)))  gamma < dz <= rho - gamma
  *           0                                               beyond;     gamma = rho / 10
  *
- * In the thesis rho is the scene's depth range. Here, with a width of k > 0 uncertainties, two depths z_a, z_b of
- * relative uncertainties s_a, s_b have u = sqrt((s_a z_a)^2 + (s_b z_b)^2) and rho = 2 k u: the weight is 1/2 at
- * dz = k u and 0 from 1.8 k u on.
+ * In the thesis rho is the scene's depth range. Here, with a width of k > 0 uncertainties, inverse depths take the place
+ * of depths, because a match is as precise in 1/z everywhere: dz = 1/z_closest - 1/z. Two depths z_a, z_b of relative
+ * uncertainties s_a, s_b have u = sqrt((s_a / z_a)^2 + (s_b / z_b)^2) and rho = 2 k u: the weight is 1/2 at dz = k u and
+ * 0 from 1.8 k u on. In z, a far and unsure surface would show through all that is in front of it.
  *
  * soft_z_blend8 (fast renderer, one sample per view). Colour is weighted by blend x w x alpha and normalised; depth is
  * sum(w p z) / sum(w p), without blending weights. A view that enters or leaves must not make a jump, so a sample of
@@ -18,7 +19,7 @@
  * This is the formula above wherever every p is 1.
  *
  * soft_z_merge (offline renderer, all fragments of all views in one buffer [Colburn 2014, 3.6.2]). Beyond the thesis,
- * views vote. The support of a fragment is (for / (for + against))^2. For: the votes of all fragments at its depth, its
+ * views vote, with a width half as large. The support of a fragment is (for / (for + against))^2. For: the votes of all fragments at its depth, its
  * own included. Against: fragments behind it, by the alpha that they have in excess of what it leaves free (their views
  * look through it); and, by AGAINST_IN_FRONT, fragments in front of it, by the alpha that they have in excess of what
  * its own view has there. A fragment hides others and counts by its support. Of several fragments in front, only the
@@ -50,13 +51,16 @@ float soft_z_rho(const struct soft_z *s, float z_a, float sigma_a, float z_b, fl
     return 2 * s->widths * sqrtf(a * a + b * b);
 }
 
+#define VOTE_WIDTH       0.5f  /* of the soft z-buffer's width, for votes */
 #define AGAINST_IN_FRONT 0.3f  /* weight of the votes of fragments in front */
 #define FULL_SUPPORT     0.25f /* a fragment of this support hides completely */
+#define ONE_DEPTH        0.1f  /* 1 - w up to which two fragments' depths are averaged: a third of the width */
 #define BLOCKS           (SOFT_Z_MAX_FRAGMENTS / 8)
 
 /* A pixel's fragments, in vectors of eight; the padding has vote, alpha and presence 0. */
 struct fragment_merge {
-    float z[SOFT_Z_MAX_FRAGMENTS], square[SOFT_Z_MAX_FRAGMENTS]; /* square: of the uncertainty */
+    float z[SOFT_Z_MAX_FRAGMENTS], order[SOFT_Z_MAX_FRAGMENTS]; /* order: soft_z_order() */
+    float square[SOFT_Z_MAX_FRAGMENTS];                         /* of the order's uncertainty */
     float vote[SOFT_Z_MAX_FRAGMENTS], alpha[SOFT_Z_MAX_FRAGMENTS], front_alpha[SOFT_Z_MAX_FRAGMENTS];
     float support[SOFT_Z_MAX_FRAGMENTS], presence[SOFT_Z_MAX_FRAGMENTS], weight[SOFT_Z_MAX_FRAGMENTS];
     __m256 separation[SOFT_Z_MAX_FRAGMENTS][BLOCKS]; /* 1 - w of each pair */
@@ -72,17 +76,23 @@ static float max8(__m256 v)
     return _mm_cvtss_f32(_mm_max_ss(two, _mm_shuffle_ps(two, two, 1)));
 }
 
+/* Uncertainty of a fragment's soft_z_order(). */
+static float order_uncertainty(const struct soft_z *s, const struct soft_z_fragment *f)
+{
+    return s->widths > 0 ? f->sigma / f->z : f->sigma * f->z;
+}
+
 /* Whether all fragments are within gamma of each other, so that none hides or votes against another. */
 static bool one_surface(const struct soft_z *s, const struct soft_z_fragment *f, int count)
 {
-    float min = f[0].z, max = f[0].z, uncertainty = f[0].uncertainty;
+    float min = f[0].z, max = f[0].z, uncertainty = order_uncertainty(s, &f[0]);
     for (int i = 1; i < count; i++) {
         min = f[i].z < min ? f[i].z : min;
         max = f[i].z > max ? f[i].z : max;
-        uncertainty = f[i].uncertainty < uncertainty ? f[i].uncertainty : uncertainty;
+        uncertainty = fminf(uncertainty, order_uncertainty(s, &f[i]));
     }
     const float rho = s->widths > 0 ? 2 * s->widths * (float)M_SQRT2 * uncertainty : s->range;
-    return max - min <= 0.1f * rho;
+    return soft_z_order(s, max) - soft_z_order(s, min) <= 0.1f * rho;
 }
 
 /* 1 - w of fragment i and eight others. */
@@ -99,19 +109,20 @@ static __m256 separation8(const struct fragment_merge *m, const struct soft_z *s
 static void find_support(struct fragment_merge *m, const struct soft_z *s)
 {
     const __m256 one = _mm256_set1_ps(1), zero = _mm256_setzero_ps();
+    const struct soft_z votes = {s->widths * VOTE_WIDTH, s->range};
 
     for (int i = 0; i < m->count; i++) {
         const __m256 leaves = _mm256_set1_ps(1 - m->front_alpha[i] - m->alpha[i]);
         const __m256 front = _mm256_set1_ps(m->front_alpha[i]);
         __m256 pro = zero, contra = zero;
         for (int b = 0; b < m->blocks; b++) {
-            const __m256 dz = _mm256_sub_ps(_mm256_loadu_ps(m->z + 8 * b), _mm256_set1_ps(m->z[i]));
+            const __m256 dz = _mm256_sub_ps(_mm256_loadu_ps(m->order + 8 * b), _mm256_set1_ps(m->order[i]));
             const __m256 farther = _mm256_cmp_ps(dz, zero, _CMP_GT_OQ);
             const __m256 alpha = _mm256_loadu_ps(m->alpha + 8 * b), vote = _mm256_loadu_ps(m->vote + 8 * b);
             const __m256 more = _mm256_max_ps(zero, _mm256_sub_ps(alpha, _mm256_blendv_ps(front, leaves, farther)));
             const __m256 part = _mm256_blendv_ps(_mm256_set1_ps(AGAINST_IN_FRONT), one, farther);
-            const __m256 separation = separation8(m, s, i, b, dz);
-            m->separation[i][b] = separation;
+            const __m256 separation = separation8(m, &votes, i, b, dz);
+            m->separation[i][b] = separation8(m, s, i, b, dz);
             pro = _mm256_add_ps(pro, _mm256_mul_ps(_mm256_mul_ps(vote, alpha), _mm256_sub_ps(one, separation)));
             contra = _mm256_add_ps(contra, _mm256_mul_ps(_mm256_mul_ps(part, vote), _mm256_mul_ps(more, separation)));
         }
@@ -139,7 +150,8 @@ static void merge_prepare(struct fragment_merge *m, const struct soft_z *s, cons
     for (int i = 0; i < 8 * m->blocks; i++) {
         const bool is = i < count;
         m->z[i] = is ? f[i].z : 0;
-        m->square[i] = is ? f[i].uncertainty * f[i].uncertainty : 0;
+        m->order[i] = is ? soft_z_order(s, f[i].z) : 0;
+        m->square[i] = is ? order_uncertainty(s, &f[i]) * order_uncertainty(s, &f[i]) : 0;
         m->vote[i] = is ? f[i].vote : 0;
         m->alpha[i] = is ? f[i].rgba[3] : 0;
         m->front_alpha[i] = is ? f[i].front_alpha : 0;
@@ -158,7 +170,8 @@ static float merged_depth(const struct fragment_merge *m)
     for (int i = 0; i < m->count; i++) {
         __m256 sum = _mm256_setzero_ps(), z_sum = sum;
         for (int b = 0; b < m->blocks; b++) {
-            const __m256 w = _mm256_sub_ps(_mm256_set1_ps(1), m->separation[i][b]);
+            const __m256 apart = _mm256_mul_ps(m->separation[i][b], _mm256_set1_ps(1 / ONE_DEPTH));
+            const __m256 w = _mm256_max_ps(_mm256_setzero_ps(), _mm256_sub_ps(_mm256_set1_ps(1), apart));
             const __m256 part = _mm256_mul_ps(_mm256_loadu_ps(m->weight + 8 * b), w);
             sum = _mm256_add_ps(sum, part);
             z_sum = _mm256_add_ps(z_sum, _mm256_mul_ps(part, _mm256_loadu_ps(m->z + 8 * b)));

@@ -22,8 +22,11 @@ float soft_z_weight(float dz, float gamma, float rho);
 /* rho of two depths with relative uncertainties sigma. */
 float soft_z_rho(const struct soft_z *s, float z_a, float sigma_a, float z_b, float sigma_b);
 
-/* The functions below handle eight pixels at a time. The uncertainty of a depth is sigma z, with sigma at least
- * SOFT_Z_MIN_SIGMA. */
+/* What depths are compared by: with a width, -1/z, whose uncertainty is sigma / z; else z, whose uncertainty is sigma z.
+ */
+static inline float soft_z_order(const struct soft_z *s, float z) { return s->widths > 0 ? -1 / z : z; }
+
+/* The functions below handle eight pixels at a time, with depths in that order. */
 
 /* Presence p of samples with these blending weights and alphas. */
 static inline __m256 soft_z_presence8(__m256 blend, __m256 alpha)
@@ -63,7 +66,7 @@ static inline __m256 soft_z_weight8(__m256 over, __m256 rho)
     return soft_z_fall8(_mm256_max_ps(_mm256_setzero_ps(), t));
 }
 
-/* min(w, weight of samples at z behind samples c of presence p_c). */
+/* min(w, weight of samples at z behind samples c of presence p_c); z and z_c are in soft_z_order(). */
 static inline __m256 soft_z_behind8(const struct soft_z *s, __m256 w, __m256 z, __m256 uncertainty, __m256 z_c,
                                     __m256 uncertainty_c, __m256 p_c)
 {
@@ -91,14 +94,16 @@ struct soft_z_samples8 {
 static inline __attribute__((always_inline)) void
 soft_z_blend8(const struct soft_z *s, const struct soft_z_samples8 *views, int count, float (*rgba)[4], float *z)
 {
-    __m256 weight[SOFT_Z_MAX_VIEWS], presence[SOFT_Z_MAX_VIEWS], depth[SOFT_Z_MAX_VIEWS];
+    __m256 weight[SOFT_Z_MAX_VIEWS], presence[SOFT_Z_MAX_VIEWS], order[SOFT_Z_MAX_VIEWS];
     __m256 uncertainty[SOFT_Z_MAX_VIEWS], visible[SOFT_Z_MAX_VIEWS];
+    const __m256 least = _mm256_set1_ps(1e-12f); /* z is 0 where there is no sample */
     __m256 z_sum = _mm256_setzero_ps(), presence_sum = z_sum;
     float w[SOFT_Z_MAX_VIEWS][8];
 
     for (int k = 0; k < count; k++) {
-        depth[k] = _mm256_loadu_ps(views[k].z);
-        uncertainty[k] = _mm256_mul_ps(depth[k], _mm256_loadu_ps(views[k].sigma));
+        const __m256 z_k = _mm256_max_ps(least, _mm256_loadu_ps(views[k].z)), sigma = _mm256_loadu_ps(views[k].sigma);
+        order[k] = s->widths > 0 ? _mm256_div_ps(_mm256_set1_ps(-1), z_k) : z_k;
+        uncertainty[k] = _mm256_mul_ps(sigma, _mm256_andnot_ps(_mm256_set1_ps(-0.0f), order[k]));
         weight[k] = _mm256_loadu_ps(views[k].blend);
         presence[k] = soft_z_presence8(weight[k], _mm256_loadu_ps(views[k].alpha));
         visible[k] = _mm256_set1_ps(1);
@@ -107,10 +112,10 @@ soft_z_blend8(const struct soft_z *s, const struct soft_z_samples8 *views, int c
         for (int c = 0; c < count; c++)
             if (c != k)
                 visible[k] =
-                    soft_z_behind8(s, visible[k], depth[k], uncertainty[k], depth[c], uncertainty[c], presence[c]);
+                    soft_z_behind8(s, visible[k], order[k], uncertainty[k], order[c], uncertainty[c], presence[c]);
     for (int k = 0; k < count; k++) {
         const __m256 part = _mm256_mul_ps(visible[k], presence[k]);
-        z_sum = _mm256_add_ps(z_sum, _mm256_mul_ps(part, depth[k]));
+        z_sum = _mm256_add_ps(z_sum, _mm256_mul_ps(part, _mm256_loadu_ps(views[k].z)));
         presence_sum = _mm256_add_ps(presence_sum, part);
         _mm256_storeu_ps(w[k], _mm256_mul_ps(visible[k], weight[k]));
     }
@@ -126,11 +131,11 @@ soft_z_blend8(const struct soft_z *s, const struct soft_z_samples8 *views, int c
 
 /* A surface of a view in a pixel, for the offline renderer. */
 struct soft_z_fragment {
-    float rgba[4];        /* premultiplied; alpha > 0: its share of the pixel in its view, composited front to back */
-    float z, uncertainty; /* uncertainty = sigma z */
-    float blend;          /* the view's blending weight */
-    float vote;           /* weight of the view's vote, up to 1 */
-    float front_alpha;    /* alpha of what is in front of it in its view */
+    float rgba[4];     /* premultiplied; alpha > 0: its share of the pixel in its view, composited front to back */
+    float z, sigma;    /* sigma: relative uncertainty, at least SOFT_Z_MIN_SIGMA */
+    float blend;       /* the view's blending weight */
+    float vote;        /* weight of the view's vote, up to 1 */
+    float front_alpha; /* alpha of what is in front of it in its view */
 };
 
 #define SOFT_Z_MAX_FRAGMENTS 40 /* fragments */

@@ -11,6 +11,7 @@
 #include <string.h>
 
 #include "common/base/rng.h"
+#include "common/layers/layer_render.h"
 #include "common/layers/soft_z.h"
 
 #define assert_near(a, b, tolerance) assert_true(fabs((double)(a) - (double)(b)) <= (tolerance))
@@ -96,6 +97,50 @@ static void samples_are_blended_by_weight_alpha_and_depth(void **state)
     assert_near(z, 10, 1e-6);
 }
 
+static void with_a_width_inverse_depths_are_compared(void **state)
+{
+    (void)state;
+    float rgba[4], z;
+
+    /* 1/10 - 1/11 is k uncertainties: w 1/2 */
+    const double u = hypot(0.01 / 10, 0.01 / 11), k = (1.0 / 10 - 1.0 / 11) / u;
+    const struct soft_z soft = {(float)k, 1};
+    const struct sample two[] = {{{1, 0, 0, 1}, 10, 0.01f, 0.6f}, {{0, 1, 0, 1}, 11, 0.01f, 0.4f}};
+    blend(&soft, two, 2, rgba, &z);
+    assert_near(rgba[0], 0.75, 1e-4);
+    assert_near(z, (10 + 0.5 * 11) / 1.5, 1e-3);
+
+    /* a pixel without a sample, whose z is 0, beside one with a sample */
+    const struct sample none[] = {{{1, 0, 0, 1}, 10, 0.01f, 0.6f}, {{0, 0, 0, 0}, 0, 0, 0}};
+    blend(&soft, none, 2, rgba, &z);
+    assert_near(rgba[0], 1, 0);
+    assert_near(z, 10, 1e-6);
+}
+
+static struct soft_z_fragment fragment(float red, float green, float blue, float alpha, float z);
+
+static void a_far_unsure_surface_does_not_show_through(void **state)
+{
+    (void)state;
+    const struct soft_z soft = {SOFT_Z_WIDTHS, 20};
+    float rgba[4], z;
+    /* 996 behind is 2 uncertainties in z, and 340 in 1/z */
+    const struct sample two[] = {{{1, 0, 0, 1}, 4, 0.002f, 0.5f}, {{0, 1, 0, 1}, 1000, 0.5f, 0.5f}};
+    blend(&soft, two, 2, rgba, &z);
+    assert_near(rgba[0], 1, 1e-6);
+    assert_near(z, 4, 1e-6);
+
+    struct soft_z_fragment f[4];
+    for (int i = 0; i < 4; i++) {
+        f[i] = i % 2 ? fragment(0, 1, 0, 1, 1000) : fragment(1, 0, 0, 1, 4);
+        f[i].sigma = i % 2 ? 0.5f : 0.002f;
+        f[i].vote = i % 2 ? 0.3f : 1;
+    }
+    soft_z_merge(&soft, f, 4, rgba, &z);
+    assert_near(rgba[0], 1, 1e-6);
+    assert_near(z, 4, 1e-4);
+}
+
 static void a_view_enters_without_a_jump(void **state)
 {
     (void)state;
@@ -179,11 +224,8 @@ static void vector_weights_equal_scalar_ones(void **state)
 
 static struct soft_z_fragment fragment(float red, float green, float blue, float alpha, float z)
 {
-    return (struct soft_z_fragment){.rgba = {red * alpha, green * alpha, blue * alpha, alpha},
-                                    .z = z,
-                                    .uncertainty = 0.01f * z,
-                                    .blend = 1,
-                                    .vote = 1};
+    return (struct soft_z_fragment){
+        .rgba = {red * alpha, green * alpha, blue * alpha, alpha}, .z = z, .sigma = 0.01f, .blend = 1, .vote = 1};
 }
 
 static const struct soft_z narrow = {3, 10};
@@ -322,6 +364,8 @@ int main(void)
         cmocka_unit_test(weights_follow_equation_3_1),
         cmocka_unit_test(the_width_combines_two_uncertainties),
         cmocka_unit_test(samples_are_blended_by_weight_alpha_and_depth),
+        cmocka_unit_test(with_a_width_inverse_depths_are_compared),
+        cmocka_unit_test(a_far_unsure_surface_does_not_show_through),
         cmocka_unit_test(a_view_enters_without_a_jump),
         cmocka_unit_test(vector_presences_equal_scalar_ones),
         cmocka_unit_test(vector_cosines_equal_scalar_ones),
