@@ -138,11 +138,13 @@ enum status tone_layers(struct effects *layers, const struct validity *v, const 
     l->kind = tone == TONE_SATURATE || tone == TONE_DESATURATE ? EFFECT_SATURATION : EFFECT_BRIGHTNESS;
     l->region = tone == TONE_SATURATE || tone == TONE_BRIGHTEN ? EFFECT_INSIDE : EFFECT_OUTSIDE;
     l->curve = EFFECT_CUBIC;
-    subject_box(&subjects->subjects[0], &l->low, &l->high, &size);
-    l->falloff = BOX_FALLOFF * size;
     l->name = strdup("subject");
+    l->boxes = calloc(1, sizeof *l->boxes);
     l->keys = calloc(2, sizeof *l->keys);
-    if (!l->name || !l->keys) return err_nomem(err, "an effect layer", 2 * sizeof *l->keys);
+    if (!l->name || !l->boxes || !l->keys) return err_nomem(err, "an effect layer", 2 * sizeof *l->keys);
+    subject_box(&subjects->subjects[0], &l->boxes[0].low, &l->boxes[0].high, &size);
+    l->boxes[0].falloff = BOX_FALLOFF * size;
+    l->box_count = 1;
     l->key_count = 2;
     l->keys[0] = (struct effect_key){path->frames[0].time, {1}};
     l->keys[1] = (struct effect_key){path->frames[path->frame_count - 1].time, {final[tone]}};

@@ -519,11 +519,13 @@ static void tone_effects_are_layers_around_the_subject(void **state)
         plan(&film, &f, &params);
         assert_int_equal(film.layers.layer_count, 1);
         const struct effect_layer *l = &film.layers.layers[0];
-        assert_true(l->kind == tones[k].kind && l->region == tones[k].region && l->falloff > 0);
+        assert_true(l->kind == tones[k].kind && l->region == tones[k].region && l->box_count == 1);
+        const struct effect_box *b = &l->boxes[0];
+        assert_true(b->falloff > 0);
         for (int i = 0; i < 4; i++) {
             const struct vec3 c = two_subjects[0].corner[i];
-            assert_true(c.x >= l->low.x && c.x <= l->high.x && c.y >= l->low.y && c.y <= l->high.y);
-            assert_true(c.z > l->low.z && c.z < l->high.z);
+            assert_true(c.x >= b->low.x && c.x <= b->high.x && c.y >= b->low.y && c.y <= b->high.y);
+            assert_true(c.z > b->low.z && c.z < b->high.z);
         }
         effect_layer_value(l, 0, v);
         assert_float_equal(v[0], 1, 1e-12);
