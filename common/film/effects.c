@@ -4,11 +4,13 @@
  * thesis, saturation is limited per pixel so that no channel becomes negative, and layers work on scene-linear colour.
  *
  * Applying is vectorised over strips of a row. A pixel's position relative to the box is depth * ray, linear in x and
- * y, so each axis costs one multiplication and one addition. */
+ * y, so each axis costs one multiplication and one addition. The box's place and axes at the frame's time are part of
+ * the ray, which is prepared once per frame: a box that turns or moves costs as much as one that does not. */
 #include "common/film/effects.h"
 
 #include <assert.h>
 #include <ctype.h>
+#include <float.h>
 #include <locale.h>
 #include <math.h>
 #include <stdbool.h>
@@ -20,13 +22,12 @@
 #include "common/base/parallel.h"
 #include "common/base/scan.h"
 #include "common/base/textfile.h"
-#include "common/math/monotone.h"
 
-#define MAX_KEYS       100000
-#define MAX_NAME       64
-#define MAX_VALUE      100.0
-#define MAX_COORDINATE 1e9
-#define MAX_TIME       1e6
+#define MAX_KEYS   100000
+#define MAX_NAME   64
+#define MAX_VALUE  100.0
+#define MAX_TIME   1e6
+#define MIN_LENGTH 1e-6 /* of a quaternion */
 
 static const char *const kind_names[] = {"saturation", "brightness", "color"};
 static const char *const region_names[] = {"all", "inside", "outside"};
@@ -40,6 +41,8 @@ static bool name_is_valid(const char *name)
 }
 
 static int value_count(enum effect_kind kind) { return kind == EFFECT_COLOR ? 3 : 1; }
+
+static double quat_length(struct quat q) { return sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z); }
 
 enum status effects_append(struct effects *e, struct effects *from, struct err *err)
 {
@@ -60,10 +63,7 @@ enum status effects_append(struct effects *e, struct effects *from, struct err *
 void effects_release(struct effects *e)
 {
     if (!e) return;
-    for (int i = 0; i < e->layer_count; i++) {
-        free(e->layers[i].name);
-        free(e->layers[i].keys);
-    }
+    for (int i = 0; i < e->layer_count; i++) effect_layer_release(&e->layers[i]);
     free(e->layers);
     *e = (struct effects){0};
 }
@@ -124,19 +124,68 @@ static enum status read_layer(struct textfile *t, struct effects *e, bool has_re
     return ST_OK;
 }
 
+static enum status read_axes(struct textfile *t, struct quat *q, struct err *err)
+{
+    static const char *const names[] = {"qw", "qx", "qy", "qz"};
+    double *const to[] = {&q->w, &q->x, &q->y, &q->z};
+
+    for (int i = 0; i < 4; i++)
+        if (read_number(t, names[i], -MAX_EFFECT_COORDINATE, MAX_EFFECT_COORDINATE, to[i], err)) return err->status;
+    if (quat_length(*q) > MIN_LENGTH) return ST_OK;
+    return textfile_error(t, err, "a quaternion of length 0", "one of length 1: qw qx qy qz");
+}
+
+/* Reads what may follow a box's fall-off. previous: the layer's box before this one; NULL: none. */
+static enum status read_box_options(struct textfile *t, struct effect_box *box, const struct effect_box *previous,
+                                    struct err *err)
+{
+    bool has_axes = false, has_time = false;
+    char *word;
+    enum status st = ST_OK;
+
+    while (!st && textfile_more(t)) {
+        if ((st = textfile_word(t, "axes or at", &word, err))) break;
+        if (!has_axes && !strcmp(word, "axes")) {
+            st = read_axes(t, &box->box_from_world, err);
+            has_axes = true;
+        } else if (!has_time && !strcmp(word, "at")) {
+            st = read_number(t, "a time", 0, MAX_TIME, &box->time, err);
+            has_time = true;
+        } else {
+            st = textfile_error(t, err, word, "axes QW QX QY QZ, at TIME (each once) or the end of the line");
+        }
+    }
+    if (st || !previous || box->time > previous->time) return st;
+    if (!has_time)
+        return textfile_error(t, err, NULL, "at TIME, after %.9g, that of the previous region", previous->time);
+    char found[32];
+    snprintf(found, sizeof found, "at %.9g", box->time);
+    return textfile_error(t, err, found, "a time after %.9g, that of the previous region", previous->time);
+}
+
 static enum status read_region(struct textfile *t, struct effect_layer *l, struct err *err)
 {
     static const char *const corners[] = {"x0", "y0", "z0", "x1", "y1", "z1"};
-    double *const to[] = {&l->low.x, &l->low.y, &l->low.z, &l->high.x, &l->high.y, &l->high.z};
+    struct effect_box box = {0};
+    double *const to[] = {&box.low.x, &box.low.y, &box.low.z, &box.high.x, &box.high.y, &box.high.z};
     int region = 0;
     enum status st = read_word(t, "a region", region_names, &region, err);
 
+    if (st) return st;
+    if (l->box_count && l->region != (enum effect_region)region)
+        return textfile_error(t, err, region_names[region], "%s, as the layer's first region", region_names[l->region]);
     l->region = (enum effect_region)region;
-    if (st || l->region == EFFECT_ALL) return st;
+    if (l->region == EFFECT_ALL) return ST_OK;
     for (int i = 0; !st && i < 6; i++)
-        st = read_number(t, corners[i], i < 3 ? -MAX_COORDINATE : *to[i - 3], MAX_COORDINATE, to[i], err);
-    if (!st) st = read_number(t, "the fall-off", 0, MAX_COORDINATE, &l->falloff, err);
-    return st;
+        st = read_number(t, corners[i], i < 3 ? -MAX_EFFECT_COORDINATE : *to[i - 3], MAX_EFFECT_COORDINATE, to[i], err);
+    if (!st) st = read_number(t, "the fall-off", 0, MAX_EFFECT_COORDINATE, &box.falloff, err);
+    if (!st) st = read_box_options(t, &box, l->box_count ? &l->boxes[l->box_count - 1] : NULL, err);
+    if (st) return st;
+    if (l->box_count == MAX_KEYS) return textfile_error(t, err, "region", "at most %d regions in a layer", MAX_KEYS);
+    if (array_append(&l->boxes, (size_t)l->box_count, sizeof *l->boxes, "regions of a layer", err)) return err->status;
+    box.time += 0.0; /* -0 becomes 0, which is written as no time */
+    l->boxes[l->box_count++] = box;
+    return ST_OK;
 }
 
 static enum status read_curve(struct textfile *t, struct effect_layer *l, struct err *err)
@@ -194,11 +243,13 @@ enum status effects_read_layers(struct effects *e, struct textfile *t, struct er
     while (!st && textfile_next(t)) {
         struct effect_layer *l = e->layer_count ? &e->layers[e->layer_count - 1] : NULL;
         char *word;
+        /* a box may be followed by more of them, up to the curve or the first key */
+        const bool more = has_region && l->region != EFFECT_ALL && l->curve == EFFECT_LINEAR && !l->key_count;
         if ((st = textfile_word(t, "layer, region, curve or key", &word, err))) break;
         if (!strcmp(word, "layer")) {
             st = read_layer(t, e, has_region, err);
             has_region = false;
-        } else if (l && !has_region && !strcmp(word, "region")) {
+        } else if (l && (!has_region || more) && !strcmp(word, "region")) {
             st = read_region(t, l, err);
             has_region = true;
         } else if (l && has_region && !l->key_count && l->curve == EFFECT_LINEAR && !strcmp(word, "curve")) {
@@ -206,7 +257,11 @@ enum status effects_read_layers(struct effects *e, struct textfile *t, struct er
         } else if (l && has_region && !strcmp(word, "key")) {
             st = read_key(t, l, err);
         } else {
-            st = textfile_error(t, err, word, !l ? "layer" : has_region ? "key or layer" : "region");
+            st = textfile_error(t, err, word,
+                                !l            ? "layer"
+                                : !has_region ? "region"
+                                : more        ? "region, curve, key or layer"
+                                              : "key or layer");
         }
         if (!st) st = textfile_end(t, err);
     }
@@ -235,6 +290,18 @@ enum status effects_read(struct effects *e, const char *path, struct err *err)
 
 static bool within(double value, double min, double max) { return value >= min && value <= max; }
 
+static bool box_is_valid(const struct effect_box *b)
+{
+    const struct quat q = b->box_from_world;
+    const double numbers[] = {b->low.x, b->low.y, b->low.z, b->high.x, b->high.y, b->high.z, q.w, q.x, q.y, q.z};
+    bool valid = within(b->time, 0, MAX_TIME) && within(b->falloff, 0, MAX_EFFECT_COORDINATE);
+
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
+        valid = valid && within(numbers[i], -MAX_EFFECT_COORDINATE, MAX_EFFECT_COORDINATE);
+    return valid && b->low.x <= b->high.x && b->low.y <= b->high.y && b->low.z <= b->high.z &&
+           (!effect_box_is_turned(b) || quat_length(q) > MIN_LENGTH);
+}
+
 /* Whether effects_read would accept this layer. */
 static bool layer_is_valid(const struct effects *e, int index)
 {
@@ -242,11 +309,9 @@ static bool layer_is_valid(const struct effects *e, int index)
     bool valid = l->name && name_is_valid(l->name) && within(l->key_count, 1, MAX_KEYS);
 
     for (int i = 0; valid && i < index; i++) valid = strcmp(e->layers[i].name, l->name) != 0;
-    if (l->region != EFFECT_ALL)
-        valid = valid && within(l->low.x, -MAX_COORDINATE, MAX_COORDINATE) &&
-                within(l->high.x, l->low.x, MAX_COORDINATE) && within(l->low.y, -MAX_COORDINATE, MAX_COORDINATE) &&
-                within(l->high.y, l->low.y, MAX_COORDINATE) && within(l->low.z, -MAX_COORDINATE, MAX_COORDINATE) &&
-                within(l->high.z, l->low.z, MAX_COORDINATE) && within(l->falloff, 0, MAX_COORDINATE);
+    valid = valid && (l->region == EFFECT_ALL ? !l->box_count : within(l->box_count, 1, MAX_KEYS));
+    for (int i = 0; valid && i < l->box_count; i++)
+        valid = box_is_valid(&l->boxes[i]) && (!i || l->boxes[i].time > l->boxes[i - 1].time);
     for (int i = 0; valid && i < l->key_count; i++) {
         valid = within(l->keys[i].time, 0, MAX_TIME) && (!i || l->keys[i].time > l->keys[i - 1].time);
         for (int k = 0; k < value_count(l->kind); k++) valid = valid && within(l->keys[i].value[k], 0, MAX_VALUE);
@@ -254,13 +319,21 @@ static bool layer_is_valid(const struct effects *e, int index)
     return valid;
 }
 
+static void write_box(const struct effect_box *b, const char *region, FILE *to)
+{
+    const struct quat q = b->box_from_world;
+    fprintf(to, "region %s %.17g %.17g %.17g %.17g %.17g %.17g %.17g", region, b->low.x, b->low.y, b->low.z, b->high.x,
+            b->high.y, b->high.z, b->falloff);
+    if (effect_box_is_turned(b)) fprintf(to, " axes %.17g %.17g %.17g %.17g", q.w, q.x, q.y, q.z);
+    if (b->time > 0) fprintf(to, " at %.17g", b->time);
+    fprintf(to, "\n");
+}
+
 static void write_layer(const struct effect_layer *l, const char *name, FILE *to)
 {
-    fprintf(to, "layer %s %s\nregion %s", name, kind_names[l->kind], region_names[l->region]);
-    if (l->region != EFFECT_ALL)
-        fprintf(to, " %.17g %.17g %.17g %.17g %.17g %.17g %.17g", l->low.x, l->low.y, l->low.z, l->high.x, l->high.y,
-                l->high.z, l->falloff);
-    fprintf(to, "\n");
+    fprintf(to, "layer %s %s\n", name, kind_names[l->kind]);
+    if (l->region == EFFECT_ALL) fprintf(to, "region all\n");
+    for (int i = 0; i < l->box_count; i++) write_box(&l->boxes[i], region_names[l->region], to);
     if (l->curve != EFFECT_LINEAR) fprintf(to, "curve %s\n", curve_names[l->curve]);
     for (int i = 0; i < l->key_count; i++) {
         fprintf(to, "key %.17g", l->keys[i].time);
@@ -300,30 +373,6 @@ enum status effects_write(const struct effects *e, const char *path, const struc
 
 /* --------------------------------------------------------------------------------------------------------- applying */
 
-/* Slope of value k at key i of a cubic layer; 0 at the first and the last key, where the value becomes constant. */
-static double key_slope(const struct effect_layer *l, int i, int k)
-{
-    if (i == 0 || i == l->key_count - 1) return 0;
-    const struct effect_key *key = &l->keys[i];
-    const double h0 = key->time - key[-1].time, h1 = key[1].time - key->time;
-    return monotone_slope(h0, (key->value[k] - key[-1].value[k]) / h0, h1, (key[1].value[k] - key->value[k]) / h1);
-}
-
-void effect_layer_value(const struct effect_layer *l, double time, double value[3])
-{
-    int after = 0;
-    while (after < l->key_count && l->keys[after].time <= time) after++;
-    const struct effect_key *b = &l->keys[after < l->key_count ? after : after - 1], *a = after ? b - 1 : b;
-    if (after == l->key_count) a = b;
-    const double h = b->time - a->time, t = a == b ? 0 : (time - a->time) / h;
-    for (int k = 0; k < 3; k++)
-        if (l->curve == EFFECT_CUBIC && a != b)
-            value[k] =
-                monotone_value(a->value[k], b->value[k], h, key_slope(l, after - 1, k), key_slope(l, after, k), t);
-        else
-            value[k] = a->value[k] + t * (b->value[k] - a->value[k]);
-}
-
 typedef float v4 __attribute__((vector_size(16)));
 typedef float v8 __attribute__((vector_size(32)));
 typedef int32_t v8i __attribute__((vector_size(32)));
@@ -335,8 +384,8 @@ typedef int32_t v8i __attribute__((vector_size(32)));
 struct active_layer { /* a layer at one time, prepared for one camera */
     const struct effect_layer *layer;
     float change[3];  /* value - 1 */
-    double center[3]; /* the camera's centre relative to the box's */
-    double ray[3][3]; /* steps of a pixel's ray in x and in y, and the ray of pixel (0, 0), at depth 1 */
+    double center[3]; /* the camera's centre relative to the box's, along the box's axes */
+    double ray[3][3]; /* likewise: steps of a pixel's ray in x and in y, and the ray of pixel (0, 0), at depth 1 */
     double half[3];   /* half the box's size */
     float per_square; /* -1 / (2 falloff^2 ln 2): exponent of 2 per squared distance; 0 for a hard edge */
 };
@@ -347,22 +396,31 @@ struct effects_pass {
     struct rendered_frame *frame;
 };
 
-static struct active_layer prepare_layer(const struct effect_layer *l, const double value[3], const struct view *v)
+static struct active_layer prepare_layer(const struct effect_layer *l, const double value[3], double time,
+                                         const struct view *v)
 {
-    const double *r = &v->cam_from_world.m[0][0]; /* rows: the camera's axes in the world */
-    const double low[] = {l->low.x, l->low.y, l->low.z}, high[] = {l->high.x, l->high.y, l->high.z};
-    const double at[] = {v->center.x, v->center.y, v->center.z};
     struct active_layer a = {.layer = l};
+    struct effect_box box;
 
+    for (int k = 0; k < 3; k++) a.change[k] = (float)(value[l->kind == EFFECT_COLOR ? k : 0] - 1);
+    if (l->region == EFFECT_ALL) return a;
+    effect_layer_box(l, time, &box);
+    const bool turned = effect_box_is_turned(&box);
+    const struct mat3 box_from_world = mat3_from_quat(turned ? box.box_from_world : (struct quat){1, 0, 0, 0});
+    /* columns: the camera's axes along the box's */
+    const struct mat3 r = mat3_multiply(box_from_world, mat3_transpose(v->cam_from_world));
+    const struct vec3 half = vec3_scale(vec3_sub(box.high, box.low), 0.5);
+    const struct vec3 at = mat3_apply(box_from_world, vec3_sub(v->center, vec3_add(box.low, half)));
+    const double halves[] = {half.x, half.y, half.z}, center[] = {at.x, at.y, at.z};
     for (int k = 0; k < 3; k++) {
-        a.change[k] = (float)(value[l->kind == EFFECT_COLOR ? k : 0] - 1);
-        a.half[k] = (high[k] - low[k]) / 2;
-        a.center[k] = at[k] - (low[k] + a.half[k]);
-        a.ray[0][k] = r[k] / v->fx;
-        a.ray[1][k] = r[3 + k] / v->fy;
-        a.ray[2][k] = r[6 + k] + (0.5 - v->cx) * a.ray[0][k] + (0.5 - v->cy) * a.ray[1][k];
+        a.half[k] = halves[k];
+        a.center[k] = center[k];
+        a.ray[0][k] = r.m[k][0] / v->fx;
+        a.ray[1][k] = r.m[k][1] / v->fy;
+        a.ray[2][k] = r.m[k][2] + (0.5 - v->cx) * a.ray[0][k] + (0.5 - v->cy) * a.ray[1][k];
     }
-    a.per_square = l->falloff > 0 ? (float)(-1 / (2 * l->falloff * l->falloff * M_LN2)) : 0;
+    /* finite, so that it is 0 at distance 0 for the smallest fall-off too */
+    if (box.falloff > 0) a.per_square = (float)fmax(-1 / (2 * box.falloff * box.falloff * M_LN2), -FLT_MAX);
     return a;
 }
 
@@ -466,7 +524,7 @@ void effects_apply(const struct effects *e, double time, const struct view *came
         double value[3];
         effect_layer_value(&e->layers[i], time, value);
         if (value[0] == 1 && (e->layers[i].kind != EFFECT_COLOR || (value[1] == 1 && value[2] == 1))) continue;
-        active[pass.count++] = prepare_layer(&e->layers[i], value, camera);
+        active[pass.count++] = prepare_layer(&e->layers[i], value, time, camera);
     }
     if (pass.count) parallel_for((size_t)frame->height, 16, effect_rows, &pass);
 }

@@ -6,36 +6,17 @@
  *   brightness b   c (1 + w (b - 1))
  *   color r g b    as brightness, with a factor for each channel
  * Weight w: 1 for the whole picture; for a box, 1 inside and exp(-d^2 / (2 falloff^2)) at distance d from it; outside a
- * box, 1 minus that. */
+ * box, 1 minus that. A box may be turned, and may move over time (effect_layer.h). */
 #ifndef REMODEL_EFFECTS_H
 #define REMODEL_EFFECTS_H
 
 #include "common/base/provenance.h"
 #include "common/base/textfile.h"
 #include "common/capture/camera_set.h"
+#include "common/film/effect_layer.h"
 #include "common/layers/rendered_frame.h"
 
 #define MAX_EFFECT_LAYERS 64
-
-enum effect_kind { EFFECT_SATURATION, EFFECT_BRIGHTNESS, EFFECT_COLOR };
-enum effect_region { EFFECT_ALL, EFFECT_INSIDE, EFFECT_OUTSIDE };
-enum effect_curve { EFFECT_LINEAR, EFFECT_CUBIC };
-
-struct effect_key {
-    double time;     /* seconds from the start of the path */
-    double value[3]; /* EFFECT_COLOR: red, green, blue; other kinds use the first only */
-};
-
-struct effect_layer {
-    char *name;
-    enum effect_kind kind;
-    enum effect_region region;
-    enum effect_curve curve; /* interpolation between keys */
-    struct vec3 low, high;   /* corners of the box, in the world */
-    double falloff;          /* scene units; 0: hard edge */
-    struct effect_key *keys;
-    int key_count;
-};
 
 struct effects { /* {0} is valid and changes nothing */
     struct effect_layer *layers;
@@ -52,10 +33,6 @@ enum status effects_write(const struct effects *e, const char *path, const struc
  * MAX_EFFECT_LAYERS. */
 enum status effects_append(struct effects *e, struct effects *from, struct err *err);
 void effects_release(struct effects *e);
-
-/* Interpolates between keys: linearly, or by a monotone cubic (common/math/monotone.h) with slope 0 at the first and
- * the last key. Constant before the first key and after the last. */
-void effect_layer_value(const struct effect_layer *layer, double time, double value[3]);
 
 /* Applies the layers to the rgba of a frame rendered by `camera`. A pixel with z 0 is outside every box. Layers that
  * are the identity at `time` cost nothing and change no bit. Colours stay 0 or above. Same bits for any thread

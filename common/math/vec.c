@@ -37,6 +37,40 @@ struct quat quat_from_mat3(struct mat3 r)
     return (struct quat){q[0] * s, q[1] * s, q[2] * s, q[3] * s};
 }
 
+/* Half the angle between two rotations, as an angle between quaternions: 0 to pi / 2, precise at both ends. *sign gets -1
+ * if the shorter way leads to -b, which is the same rotation as b. */
+static double half_angle(struct quat a, struct quat b, double *sign)
+{
+    *sign = a.w * b.w + a.x * b.x + a.y * b.y + a.z * b.z < 0 ? -1 : 1;
+    const double u[] = {a.w, a.x, a.y, a.z}, v[] = {b.w, b.x, b.y, b.z};
+    double difference = 0, sum = 0;
+    for (int i = 0; i < 4; i++) {
+        difference += (u[i] - *sign * v[i]) * (u[i] - *sign * v[i]);
+        sum += (u[i] + *sign * v[i]) * (u[i] + *sign * v[i]);
+    }
+    return 2 * atan2(sqrt(difference), sqrt(sum));
+}
+
+double quat_angle(struct quat a, struct quat b)
+{
+    double sign;
+    return 2 * half_angle(a, b, &sign);
+}
+
+struct quat quat_slerp(struct quat a, struct quat b, double t)
+{
+    double sign;
+    const double half = half_angle(a, b, &sign);
+    double from = 1 - t, to = t;
+    if (half > 1e-6) { /* below, a straight line differs by less than rounding */
+        from = sin((1 - t) * half) / sin(half);
+        to = sin(t * half) / sin(half);
+    }
+    to *= sign;
+    return quat_normalize(
+        (struct quat){from * a.w + to * b.w, from * a.x + to * b.x, from * a.y + to * b.y, from * a.z + to * b.z});
+}
+
 void mat3_eigen_symmetric(struct mat3 a, double values[3], struct mat3 *vectors)
 {
     struct mat3 v = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};

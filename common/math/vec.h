@@ -59,6 +59,16 @@ static inline struct mat3 mat3_multiply(struct mat3 a, struct mat3 b)
 struct mat3 mat3_from_quat(struct quat q);
 /* The unit quaternion with w >= 0. */
 struct quat quat_from_mat3(struct mat3 r);
+/* Of unit length; q is not zero. */
+static inline struct quat quat_normalize(struct quat q)
+{
+    const double length = sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
+    return (struct quat){q.w / length, q.x / length, q.y / length, q.z / length};
+}
+/* The angle of the rotation from a to b, 0 to pi; both of unit length. */
+double quat_angle(struct quat a, struct quat b);
+/* From a (t = 0) to b (t = 1) at constant speed, by the shorter way [Shoemake 1985]; all of unit length. */
+struct quat quat_slerp(struct quat a, struct quat b, double t);
 /* Eigenvalues of a symmetric matrix in ascending order, and the eigenvectors as rows of `vectors`, signed so that the
  * component of largest magnitude is positive. */
 void mat3_eigen_symmetric(struct mat3 a, double values[3], struct mat3 *vectors);

@@ -257,8 +257,25 @@ static void append_key(struct effect_layer *layer, const struct effect_key *key)
         layer->keys[layer->key_count++] = *key;
 }
 
+/* The same for a box. */
+static void append_box(struct effect_layer *layer, const struct effect_box *box)
+{
+    struct effect_box *end = layer->boxes + layer->box_count;
+    bool same = layer->box_count > 1;
+    for (int i = 1; same && i <= 2; i++) {
+        struct effect_box before = end[-i];
+        before.time = box->time;
+        same = !memcmp(&before, box, sizeof before);
+    }
+    if (same)
+        end[-1] = *box;
+    else
+        layer->boxes[layer->box_count++] = *box;
+}
+
 /* Fills the keys of a move's layer over the film's time: its value at the shot's frames, and no change at the
- * neighbouring frame of the shot before and of the shot after, so that it fades in and out over joins. */
+ * neighbouring frame of the shot before and of the shot after, so that it fades in and out over joins. A box that
+ * changes follows the shot's frames too; over joins it stays as it is at the shot's end. */
 static void retime_layer(struct effect_layer *made, const struct effect_layer *layer,
                          const struct film_sources *sources, int index, double fps)
 {
@@ -269,6 +286,7 @@ static void retime_layer(struct effect_layer *made, const struct effect_layer *l
     const int step = 1 + s->frames / MAX_LAYER_KEYS; /* a file limits the number of keys */
     const double identity[3] = {1, 1, 1};
     struct effect_key key;
+    struct effect_box box;
 
     if (index) {
         key.time = (s[-1].first + s[-1].frames - 1) / fps;
@@ -277,10 +295,19 @@ static void retime_layer(struct effect_layer *made, const struct effect_layer *l
     }
     for (int f = 0; f < s->frames; f++) {
         if (f > 0 && f < s->frames - 1 && f % step) continue;
-        const double t = s->frames > 1 ? f / (s->frames - 1.0) : 0;
+        const double t = s->frames > 1 ? f / (s->frames - 1.0) : 0, time = duration * (reversed ? 1 - t : t);
         key.time = (s->first + f) / fps;
-        effect_layer_value(layer, duration * (reversed ? 1 - t : t), key.value);
+        effect_layer_value(layer, time, key.value);
         append_key(made, &key);
+        if (layer->box_count < 2) continue;
+        effect_layer_box(layer, time, &box);
+        box.time = key.time;
+        append_box(made, &box);
+    }
+    if (layer->box_count == 1) {
+        made->boxes[0] = layer->boxes[0];
+        made->boxes[0].time = 0;
+        made->box_count = 1;
     }
     if (index + 1 < sources->shot_count) {
         key.time = s[1].first / fps;
@@ -293,25 +320,24 @@ static void retime_layer(struct effect_layer *made, const struct effect_layer *l
 static enum status add_move_layer(struct effects *to, const struct effect_layer *layer,
                                   const struct film_sources *sources, int index, double fps, struct err *err)
 {
-    const int frames = sources->shots[index].frames;
-    struct effect_layer made = {.kind = layer->kind,
-                                .region = layer->region,
-                                .low = layer->low,
-                                .high = layer->high,
-                                .falloff = layer->falloff};
+    const size_t keys = (size_t)sources->shots[index].frames + 2;
+    const size_t boxes = layer->box_count > 1 ? keys - 2 : 1;
+    struct effect_layer made = {.kind = layer->kind, .region = layer->region};
     char name[128];
     snprintf(name, sizeof name, "%d:%.58s", index + 1, layer->name);
     made.name = strdup(name);
-    made.keys = calloc((size_t)frames + 2, sizeof *made.keys);
-    enum status st = made.name && made.keys ? ST_OK : err_nomem(err, "a layer", (size_t)frames * sizeof *made.keys);
+    made.keys = calloc(keys, sizeof *made.keys);
+    made.boxes = calloc(boxes, sizeof *made.boxes);
+    enum status st = made.name && made.keys && made.boxes
+                         ? ST_OK
+                         : err_nomem(err, "a layer", keys * sizeof *made.keys + boxes * sizeof *made.boxes);
     if (!st) st = array_append(&to->layers, (size_t)to->layer_count, sizeof *to->layers, "effect layers", err);
     if (!st) {
         retime_layer(&made, layer, sources, index, fps);
         to->layers[to->layer_count++] = made;
         return ST_OK;
     }
-    free(made.name);
-    free(made.keys);
+    effect_layer_release(&made);
     return st;
 }
 

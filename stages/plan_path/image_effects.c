@@ -103,20 +103,29 @@ enum status focus_frames(struct camera_path *path, double *widest, const double 
     return ST_OK;
 }
 
-/* The bounding box, along the world's axes, of the subject's quadrilateral extended by BOX_DEPTH to both sides. *size
- * gets its height. */
-static void subject_box(const struct subject *s, struct vec3 *low, struct vec3 *high, double *size)
+/* The bounding box of the subject's quadrilateral extended by BOX_DEPTH to both sides, along the quadrilateral's own
+ * axes: its upper edge, down, and its normal. */
+static struct effect_box subject_box(const struct subject *s)
 {
     const struct vec3 down = vec3_sub(s->corner[3], s->corner[0]), right = vec3_sub(s->corner[1], s->corner[0]);
-    *size = vec3_length(down);
-    const struct vec3 depth = vec3_scale(vec3_normalize(vec3_cross(right, down)), BOX_DEPTH * *size);
-    *low = vec3_make(HUGE_VAL, HUGE_VAL, HUGE_VAL);
-    *high = vec3_scale(*low, -1);
-    for (int i = 0; i < 8; i++) {
-        const struct vec3 c = vec3_add(s->corner[i % 4], vec3_scale(depth, i < 4 ? 1 : -1));
-        *low = vec3_make(fmin(low->x, c.x), fmin(low->y, c.y), fmin(low->z, c.z));
-        *high = vec3_make(fmax(high->x, c.x), fmax(high->y, c.y), fmax(high->z, c.z));
+    const struct vec3 x = vec3_normalize(right), z = vec3_normalize(vec3_cross(right, down)), y = vec3_cross(z, x);
+    const struct mat3 box_from_world = {{{x.x, x.y, x.z}, {y.x, y.y, y.z}, {z.x, z.y, z.z}}};
+    const double size = vec3_length(down);
+    struct vec3 low = vec3_make(HUGE_VAL, HUGE_VAL, HUGE_VAL), high = vec3_scale(low, -1); /* from corner 0 */
+
+    for (int i = 0; i < 4; i++) {
+        const struct vec3 c = mat3_apply(box_from_world, vec3_sub(s->corner[i], s->corner[0]));
+        low = vec3_make(fmin(low.x, c.x), fmin(low.y, c.y), fmin(low.z, c.z));
+        high = vec3_make(fmax(high.x, c.x), fmax(high.y, c.y), fmax(high.z, c.z));
     }
+    low.z -= BOX_DEPTH * size;
+    high.z += BOX_DEPTH * size;
+    const struct vec3 half = vec3_scale(vec3_sub(high, low), 0.5);
+    const struct vec3 middle = vec3_add(s->corner[0], mat3_apply(mat3_transpose(box_from_world), vec3_add(low, half)));
+    return (struct effect_box){.low = vec3_sub(middle, half),
+                               .high = vec3_add(middle, half),
+                               .falloff = BOX_FALLOFF * size,
+                               .box_from_world = quat_from_mat3(box_from_world)};
 }
 
 enum status tone_layers(struct effects *layers, const struct validity *v, const struct subject_list *subjects,
@@ -127,7 +136,6 @@ enum status tone_layers(struct effects *layers, const struct validity *v, const 
                                       [TONE_BRIGHTEN] = params->brighten,
                                       [TONE_DIM] = params->dim};
     const enum tone_effect tone = v->effect.tone;
-    double size;
 
     *layers = (struct effects){0};
     if (!tone) return ST_OK;
@@ -138,11 +146,12 @@ enum status tone_layers(struct effects *layers, const struct validity *v, const 
     l->kind = tone == TONE_SATURATE || tone == TONE_DESATURATE ? EFFECT_SATURATION : EFFECT_BRIGHTNESS;
     l->region = tone == TONE_SATURATE || tone == TONE_BRIGHTEN ? EFFECT_INSIDE : EFFECT_OUTSIDE;
     l->curve = EFFECT_CUBIC;
-    subject_box(&subjects->subjects[0], &l->low, &l->high, &size);
-    l->falloff = BOX_FALLOFF * size;
     l->name = strdup("subject");
+    l->boxes = calloc(1, sizeof *l->boxes);
     l->keys = calloc(2, sizeof *l->keys);
-    if (!l->name || !l->keys) return err_nomem(err, "an effect layer", 2 * sizeof *l->keys);
+    if (!l->name || !l->boxes || !l->keys) return err_nomem(err, "an effect layer", 2 * sizeof *l->keys);
+    l->boxes[0] = subject_box(&subjects->subjects[0]);
+    l->box_count = 1;
     l->key_count = 2;
     l->keys[0] = (struct effect_key){path->frames[0].time, {1}};
     l->keys[1] = (struct effect_key){path->frames[path->frame_count - 1].time, {final[tone]}};

@@ -111,8 +111,7 @@ struct quat rotation_between(struct quat a, struct quat b, struct vec3 da, struc
     struct quat q = multiply(a, quat_exp(vec3_scale(first, 1 - u * u * u)));
     q = multiply(q, quat_exp(vec3_scale(middle, t * t * (3 - 2 * t))));
     q = multiply(q, quat_exp(vec3_scale(last, t * t * t)));
-    const double length = sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
-    return (struct quat){q.w / length, q.x / length, q.y / length, q.z / length};
+    return quat_normalize(q);
 }
 
 struct vec3 position_between(struct vec3 a, struct vec3 b, struct vec3 da, struct vec3 db, double t)

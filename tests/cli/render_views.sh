@@ -43,6 +43,8 @@ errors_of_effects_name_file_and_line()
     render 1 'bad.txt:2: ' --effects=bad.txt
     printf 'remodel-effects 1\nlayer a saturation\nregion all\nkey 0 nan\n' >bad.txt
     render 1 'bad.txt:4: ' --effects=bad.txt
+    printf 'remodel-effects 1\nlayer a saturation\nregion inside 0 0 0 1 1 1 0 axes 0 0 0 0\nkey 0 1\n' >bad.txt
+    render 1 'bad.txt:3: found "a quaternion of length 0", wanted one of length 1' --effects=bad.txt
 }
 
 # broken_path SED FILE TEXT: the path with FILE changed by SED is rejected with file, line and text

@@ -29,8 +29,10 @@ static void same(const struct effects *a, const struct effects *b)
     for (int i = 0; i < a->layer_count; i++) {
         const struct effect_layer *x = &a->layers[i], *y = &b->layers[i];
         if (strcmp(x->name, y->name) || x->kind != y->kind || x->region != y->region || x->curve != y->curve ||
-            x->falloff != y->falloff || x->low.x != y->low.x || x->high.z != y->high.z || x->key_count != y->key_count)
+            x->box_count != y->box_count || x->key_count != y->key_count)
             abort();
+        for (int k = 0; k < x->box_count; k++)
+            if (memcmp(&x->boxes[k], &y->boxes[k], sizeof *x->boxes)) abort();
         for (int k = 0; k < x->key_count; k++)
             if (memcmp(&x->keys[k], &y->keys[k], sizeof *x->keys)) abort();
     }

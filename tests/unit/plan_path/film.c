@@ -192,7 +192,8 @@ static void effect_layers_of_moves_are_carried_over(void **state)
     assert_string_equal(e.layers[0].name, "2:s");
     assert_string_equal(e.layers[1].name, "3:s");
     assert_string_equal(e.layers[2].name, "own");
-    assert_true(e.layers[0].region == EFFECT_INSIDE && e.layers[0].falloff == 4 && e.layers[0].high.z == 3);
+    assert_true(e.layers[0].region == EFFECT_INSIDE && e.layers[0].box_count == 1);
+    assert_true(e.layers[0].boxes[0].falloff == 4 && e.layers[0].boxes[0].high.z == 3);
     for (int i = 0; i < p.frame_count; i++) {
         /* no change before the cut; the move's own value; back to no change over the join */
         const double first = i <= 10 ? 1 : i <= 21 ? 1 - (i - 11) / 10.0 : fmin(1, (i - 21) / 10.0);
@@ -202,6 +203,47 @@ static void effect_layers_of_moves_are_carried_over(void **state)
         effect_layer_value(&e.layers[1], i / 10.0, v);
         assert_true(fabs(v[0] - second) < 1e-9);
     }
+    release(&p, &e);
+}
+
+/* A box that moves by 1, softens and turns by a right angle over its move's second. */
+static void boxes_of_moves_follow_their_shots(void **state)
+{
+    (void)state;
+    struct camera_path p;
+    struct effects e, again;
+    struct err err = ERR_INIT;
+    struct effect_box b;
+    write_move("move+box", 320);
+    scratch_write("move+box/effects.txt", "remodel-effects 1\nlayer s saturation\n"
+                                          "region inside 0 0 0 1 2 3 4 at 0.22\n"
+                                          "region inside 1 0 0 2 2 3 6 axes 1 1 0 0 at 0.78\nkey 0 0.5\n");
+    make(&p, &e,
+         HEAD "key 0 view a\nkey 1 view b\nmove move+box\njoin 1\nmove move+box reversed seconds 2.1\n"
+              "remodel-effects 1\nlayer own color\nregion outside 0 0 0 1 1 1 0\n"
+              "region outside 5 5 5 6 6 6 1 at 2.5\nkey 0 1 2 3\n");
+    assert_int_equal(e.layer_count, 3);
+    for (int i = 0; i < p.frame_count; i++) {
+        for (int k = 0; k < 2; k++) {
+            const double time = k ? (i - 31) / 20.0 : (i - 11) / 10.0; /* in the move; backwards at half the speed */
+            const double way = fmin(fmax(((k ? 1 - time : time) - 0.22) / 0.56, 0), 1);
+            effect_layer_box(&e.layers[k], i / 10.0, &b);
+            assert_true(fabs(b.low.x - way) < 1e-9 && fabs(b.high.x - 1 - way) < 1e-9);
+            assert_true(fabs(b.high.z - 3) < 1e-9 && fabs(b.falloff - 4 - 2 * way) < 1e-9);
+            assert_true(fabs(atan2(b.box_from_world.x, b.box_from_world.w) - way * acos(-1) / 4) < 1e-9);
+        }
+        effect_layer_box(&e.layers[2], i / 10.0, &b); /* the film's own, in its time */
+        assert_true(fabs(b.low.x - 5 * fmin(i / 25.0, 1)) < 1e-9);
+    }
+    /* boxes that are held need no keys: at frames 0, 2 to 8 and 10, and 0, 4 to 16 and 20 */
+    assert_int_equal(e.layers[0].box_count, 9);
+    assert_int_equal(e.layers[1].box_count, 15);
+    const char *path = scratch_path("written.txt");
+    assert_ok(effects_write(&e, path, NULL, &err), err);
+    assert_ok(effects_read(&again, path, &err), err);
+    for (int k = 0; k < 3; k++)
+        assert_memory_equal(again.layers[k].boxes, e.layers[k].boxes, (size_t)e.layers[k].box_count * sizeof b);
+    effects_release(&again);
     release(&p, &e);
 }
 
@@ -293,6 +335,7 @@ int main(void)
         cmocka_unit_test(the_last_frame_shows_the_last_key),
         cmocka_unit_test(moves_and_keys_are_joined),
         cmocka_unit_test(effect_layers_of_moves_are_carried_over),
+        cmocka_unit_test(boxes_of_moves_follow_their_shots),
         cmocka_unit_test(bad_files_are_refused_with_file_and_line),
     };
     return cmocka_run_group_tests(tests, scratch_make, scratch_remove);

@@ -496,6 +496,51 @@ static void focus_is_pulled_from_the_first_to_the_second_subject(void **state)
     release_all(&film, &f);
 }
 
+/* A subject's box is as large as its rectangle, along the rectangle's axes, and 1.5 heights deep. */
+static void assert_tight_box(const struct effect_box *b, const struct subject *s)
+{
+    const struct vec3 *c = s->corner, size = vec3_sub(b->high, b->low);
+    const double width = vec3_length(vec3_sub(c[1], c[0])), height = vec3_length(vec3_sub(c[3], c[0]));
+    const struct vec3 middle = vec3_scale(vec3_add(b->low, b->high), 0.5);
+    const struct mat3 box_from_world = mat3_from_quat(b->box_from_world);
+    assert_float_equal(size.x, width, 1e-12);
+    assert_float_equal(size.y, height, 1e-12);
+    assert_float_equal(size.z, 1.5 * height, 1e-12);
+    assert_float_equal(b->falloff, 0.35 * height, 1e-12);
+    for (int i = 0; i < 4; i++) {
+        const struct vec3 at = mat3_apply(box_from_world, vec3_sub(c[i], middle));
+        assert_float_equal(at.x, i == 1 || i == 2 ? width / 2 : -width / 2, 1e-12);
+        assert_float_equal(at.y, i >= 2 ? height / 2 : -height / 2, 1e-12);
+        assert_float_equal(at.z, 0, 1e-12);
+    }
+}
+
+static void a_turned_subject_has_a_tight_box(void **state)
+{
+    (void)state;
+    struct path_frame frames[2] = {{.time = 0}, {.time = 1}};
+    const struct camera_path path = {.frames = frames, .frame_count = 2};
+    const struct validity v = {.effect = {MOVE_DOLLY_IN, FOCUS_ALL, TONE_DIM}};
+    const struct plan_params params = PLAN_PARAMS_DEFAULT;
+    struct subject s = upright_subject(0.5, 0.3, 6, 0.3, 0.4);
+    const struct subject_list list = {&s, 1};
+    struct err err = ERR_INIT;
+
+    for (int i = 0; i < 16; i++) { /* also upside down, with the normal backwards */
+        const struct mat3 turn = mat3_from_quat(quat_normalize((struct quat){i % 4, i / 4 - 1, 1, i % 3 - 1}));
+        struct subject turned = s;
+        struct effects layers;
+        for (int k = 0; k < 4; k++) turned.corner[k] = mat3_apply(turn, s.corner[k]);
+        assert_ok(tone_layers(&layers, &v, &(struct subject_list){&turned, 1}, &path, &params, &err), err);
+        assert_tight_box(&layers.layers[0].boxes[0], &turned);
+        effects_release(&layers);
+    }
+    struct effects layers;
+    assert_ok(tone_layers(&layers, &v, &list, &path, &params, &err), err);
+    assert_float_equal(layers.layers[0].boxes[0].box_from_world.w, 1, 1e-15); /* along the world's axes */
+    effects_release(&layers);
+}
+
 static void tone_effects_are_layers_around_the_subject(void **state)
 {
     (void)state;
@@ -519,12 +564,8 @@ static void tone_effects_are_layers_around_the_subject(void **state)
         plan(&film, &f, &params);
         assert_int_equal(film.layers.layer_count, 1);
         const struct effect_layer *l = &film.layers.layers[0];
-        assert_true(l->kind == tones[k].kind && l->region == tones[k].region && l->falloff > 0);
-        for (int i = 0; i < 4; i++) {
-            const struct vec3 c = two_subjects[0].corner[i];
-            assert_true(c.x >= l->low.x && c.x <= l->high.x && c.y >= l->low.y && c.y <= l->high.y);
-            assert_true(c.z > l->low.z && c.z < l->high.z);
-        }
+        assert_true(l->kind == tones[k].kind && l->region == tones[k].region && l->box_count == 1);
+        assert_tight_box(&l->boxes[0], &two_subjects[0]);
         effect_layer_value(l, 0, v);
         assert_float_equal(v[0], 1, 1e-12);
         effect_layer_value(l, film.path.frames[29].time, v);
@@ -768,6 +809,7 @@ int main(void)
         cmocka_unit_test(any_thread_count_gives_the_same_path),
         cmocka_unit_test(the_aperture_opens_with_the_subject_in_focus),
         cmocka_unit_test(focus_is_pulled_from_the_first_to_the_second_subject),
+        cmocka_unit_test(a_turned_subject_has_a_tight_box),
         cmocka_unit_test(tone_effects_are_layers_around_the_subject),
         cmocka_unit_test(one_view_is_enough_for_a_move),
         cmocka_unit_test(two_views_are_enough_for_a_move),

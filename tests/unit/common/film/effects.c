@@ -38,17 +38,22 @@ static void read_text(struct effects *e, const char *text)
 
 static double luminance(const float *c) { return 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2]; }
 
-/* The weight by its definition, in doubles. */
+/* The weight of a layer's first box by its definition, in doubles. */
 static double weight_at(const struct view *v, const struct effect_layer *l, int x, int y, float z)
 {
+    const struct effect_box *b = l->boxes;
     double inside = 0;
     if (l->region == EFFECT_ALL) return 1;
     if (z > 0) {
         const struct vec3 p = view_unproject(v, x + 0.5, y + 0.5, z);
-        const double dx = fmax(fmax(l->low.x - p.x, p.x - l->high.x), 0);
-        const double dy = fmax(fmax(l->low.y - p.y, p.y - l->high.y), 0);
-        const double dz = fmax(fmax(l->low.z - p.z, p.z - l->high.z), 0), d = sqrt(dx * dx + dy * dy + dz * dz);
-        inside = l->falloff > 0 ? exp(-d * d / (2 * l->falloff * l->falloff)) : d == 0;
+        const struct vec3 middle = vec3_scale(vec3_add(b->low, b->high), 0.5);
+        struct mat3 box_from_world = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+        if (effect_box_is_turned(b)) box_from_world = mat3_from_quat(quat_normalize(b->box_from_world));
+        const struct vec3 q = mat3_apply(box_from_world, vec3_sub(p, middle));
+        const double dx = fmax(fabs(q.x) - (b->high.x - b->low.x) / 2, 0);
+        const double dy = fmax(fabs(q.y) - (b->high.y - b->low.y) / 2, 0);
+        const double dz = fmax(fabs(q.z) - (b->high.z - b->low.z) / 2, 0), d = sqrt(dx * dx + dy * dy + dz * dz);
+        inside = b->falloff > 0 ? exp(-d * d / (2 * b->falloff * b->falloff)) : d == 0;
     }
     return l->region == EFFECT_INSIDE ? inside : 1 - inside;
 }
@@ -64,12 +69,38 @@ static void a_file_is_read(void **state)
     assert_int_equal(e.layer_count, 2);
     assert_string_equal(e.layers[0].name, "grey");
     assert_true(e.layers[0].kind == EFFECT_SATURATION && e.layers[0].region == EFFECT_OUTSIDE);
-    assert_true(e.layers[0].low.x == -1 && e.layers[0].low.z == -3 && e.layers[0].high.y == 2);
-    assert_true(e.layers[0].falloff == 0.25 && e.layers[0].key_count == 2);
+    assert_true(e.layers[0].box_count == 1 && e.layers[0].key_count == 2);
+    const struct effect_box *b = e.layers[0].boxes;
+    assert_true(b->low.x == -1 && b->low.z == -3 && b->high.y == 2 && b->falloff == 0.25);
+    assert_true(b->time == 0 && !effect_box_is_turned(b));
     assert_string_equal(e.layers[1].name, "warm light");
     assert_true(e.layers[1].kind == EFFECT_COLOR && e.layers[1].region == EFFECT_ALL);
+    assert_int_equal(e.layers[1].box_count, 0);
     assert_true(e.layers[1].keys[0].time == 1.5 && e.layers[1].keys[0].value[2] == 0.8);
     effects_release(&e);
+    effects_release(&e);
+}
+
+static void boxes_with_axes_and_times_are_read(void **state)
+{
+    (void)state;
+    struct effects e;
+
+    read_text(&e, "remodel-effects 1\nlayer a color\n"
+                  "region outside 0 0 0 1 1 1 0.5 axes 2 0 0 -2\n"
+                  "region outside 0 0 0 1 1 2 0 at 1.5 axes 0 0 1 0\n"
+                  "region outside 0 0 0 1 1 3 0 axes 0 0 1 0 at 2\n"
+                  "region outside 0 0 0 1 1 4 0 at 9\n"
+                  "curve cubic\nkey 0 1 1 1\n"
+                  "layer b brightness\nregion inside 0 0 0 1 1 1 0 at -0\nkey 0 1\n");
+    const struct effect_box *b = e.layers[0].boxes;
+    assert_int_equal(e.layers[0].box_count, 4);
+    assert_true(b[0].time == 0 && b[1].time == 1.5 && b[2].time == 2 && b[3].time == 9);
+    assert_true(b[0].box_from_world.w == 2 && b[0].box_from_world.z == -2 && b[0].falloff == 0.5);
+    assert_true(b[1].box_from_world.y == 1 && b[2].box_from_world.y == 1 && !effect_box_is_turned(&b[3]));
+    for (int i = 0; i < 4; i++) assert_true(b[i].high.z == i + 1);
+    assert_true(e.layers[0].region == EFFECT_OUTSIDE && e.layers[0].curve == EFFECT_CUBIC);
+    assert_true(e.layers[1].boxes[0].time == 0 && !signbit(e.layers[1].boxes[0].time));
     effects_release(&e);
 }
 
@@ -78,6 +109,7 @@ static void bad_files_are_refused_with_file_and_line(void **state)
     (void)state;
 #define HEAD  "remodel-effects 1\n"
 #define LAYER HEAD "layer a brightness\n"
+#define BOX   "region inside 0 0 0 1 1 1 0"
     static const struct {
         const char *text, *line, *words;
     } bad[] = {
@@ -97,6 +129,31 @@ static void bad_files_are_refused_with_file_and_line(void **state)
         {LAYER "region inside 0 0 0 1 1\n", ":3:", "wanted z1"},
         {LAYER "region inside 0 0 0 1 -1 1 0\n", ":3:", "found \"-1\", wanted y1, a number from 0"},
         {LAYER "region inside 0 0 0 1 1 1 -2\n", ":3:", "the fall-off, a number from 0"},
+        {LAYER BOX " 1\n", ":3:", "found \"1\", wanted axes QW QX QY QZ, at TIME (each once) or the end of the line"},
+        {LAYER BOX " axes 1 0 0\n", ":3:", "found the end of the line, wanted qz"},
+        {LAYER BOX " axes 1 0 0 nan\n", ":3:", "found \"nan\", wanted qz, a number from -1e+09 to 1e+09"},
+        {LAYER BOX " axes inf 0 0 0\n", ":3:", "found \"inf\", wanted qw, a number from -1e+09 to 1e+09"},
+        {LAYER BOX " axes 0 -0 0 0\n",
+         ":3:", "found \"a quaternion of length 0\", wanted one of length 1: qw qx qy qz"},
+        {LAYER BOX " axes 0 0 1e-7 0\n", ":3:", "found \"a quaternion of length 0\""},
+        {LAYER BOX " axes 1 0 0 0 axes 1 0 0 0\n",
+         ":3:", "found \"axes\", wanted axes QW QX QY QZ, at TIME (each once)"},
+        {LAYER BOX " at\n", ":3:", "found the end of the line, wanted a time"},
+        {LAYER BOX " at -1\n", ":3:", "found \"-1\", wanted a time, a number from 0 to 1000000"},
+        {LAYER BOX " at nan\n", ":3:", "found \"nan\", wanted a time"},
+        {LAYER BOX " at 1 at 2\n", ":3:", "found \"at\", wanted axes"},
+        {LAYER BOX "\n" BOX "\n",
+         ":4:", "found the end of the line, wanted at TIME, after 0, that of the previous region"},
+        {LAYER BOX " at 2\n" BOX " at 2\n",
+         ":4:", "found \"at 2\", wanted a time after 2, that of the previous region"},
+        {LAYER BOX "\nregion outside 0 0 0 1 1 1 0 at 2\n",
+         ":4:", "found \"outside\", wanted inside, as the layer's first region"},
+        {LAYER BOX "\nregion all\n", ":4:", "found \"all\", wanted inside, as the layer's first region"},
+        {LAYER BOX "\nwall\n", ":4:", "found \"wall\", wanted region, curve, key or layer"},
+        {LAYER BOX "\ncurve cubic\n" BOX " at 1\n", ":5:", "found \"region\", wanted key or layer"},
+        {LAYER BOX "\nkey 0 1\n" BOX " at 1\n", ":5:", "found \"region\", wanted key or layer"},
+        {LAYER "region all axes 1 0 0 0\n", ":3:", "found \"axes 1 0 0 0\", wanted the end of the line"},
+        {LAYER "region all at 1\n", ":3:", "found \"at 1\", wanted the end of the line"},
         {LAYER "region all\n", ":3:", "found the end of the file, wanted a key of the layer a"},
         {LAYER "region all\nregion all\n", ":4:", "wanted key or layer"},
         {LAYER "region all\nkey 0\n", ":4:", "wanted brightness"},
@@ -139,7 +196,7 @@ static void a_written_file_reads_back_the_same(void **state)
     assert_int_equal(again.layer_count, 2);
     assert_string_equal(again.layers[0].name, "a \"b\" #");
     assert_memory_equal(again.layers[0].keys, e.layers[0].keys, 2 * sizeof *e.layers[0].keys);
-    assert_true(again.layers[0].high.y == e.layers[0].high.y && again.layers[0].falloff == e.layers[0].falloff);
+    assert_memory_equal(again.layers[0].boxes, e.layers[0].boxes, sizeof *e.layers[0].boxes);
     assert_true(again.layers[1].kind == EFFECT_SATURATION && again.layers[1].region == EFFECT_ALL);
     effects_release(&again);
 
@@ -149,6 +206,47 @@ static void a_written_file_reads_back_the_same(void **state)
     struct err more = ERR_INIT; /* the old file is still there */
     assert_ok(effects_read(&again, path, &more), more);
     effects_release(&again);
+    effects_release(&e);
+}
+
+static void written_boxes_give_the_same_bytes(void **state)
+{
+    (void)state;
+    static const char text[] = "remodel-effects 1\n"
+                               "layer a brightness\n"
+                               "region inside -1 -2 -3 1 2 3 0.25\n"
+                               "region inside -1 -2 -3 1 2 3 0.5 axes 0.25 -7 0.5 1000 at 0.5\n"
+                               "region inside -1 -2 -3 1 2 3 0 axes 1 0 0 0 at 2\n"
+                               "region inside 0 0 0 0 0 0 1000000000 at 1000000\n"
+                               "curve cubic\n"
+                               "key 0 1\n"
+                               "layer b saturation\n"
+                               "region outside 0 0 0 1 1 1 0 axes 0 0 0 -1 at 4\n"
+                               "key 0 0\n";
+    struct effects e;
+    struct err err = ERR_INIT;
+    const char *path = scratch_path("again.txt");
+
+    read_text(&e, text);
+    assert_ok(effects_write(&e, path, NULL, &err), err);
+    assert_file_text(path, text);
+
+    for (int i = 0; i < 6; i++) { /* what cannot be read is not written */
+        struct effect_box *b = &e.layers[0].boxes[i < 4 ? 1 : 0], good = *b;
+        if (i == 0) b->time = 0;
+        if (i == 1) b->box_from_world = (struct quat){0, 1e-9, 0, 0};
+        if (i == 2) b->box_from_world.x = NAN;
+        if (i == 3) b->high.y = -2.5;
+        if (i == 4) e.layers[0].region = EFFECT_ALL;
+        if (i == 5) e.layers[0].box_count = 0;
+        err = (struct err)ERR_INIT;
+        assert_int_equal(effects_write(&e, path, NULL, &err), ST_DATA);
+        assert_err(err, ST_DATA, "cannot write layer 1 of 2");
+        *b = good;
+        e.layers[0].region = EFFECT_INSIDE;
+        e.layers[0].box_count = 4;
+    }
+    assert_file_text(path, text);
     effects_release(&e);
 }
 
@@ -208,6 +306,9 @@ static void layers_match_their_formulas(void **state)
         "layer a color\nregion all\nkey 0 0.5 2 1\n",
         "layer a saturation\nregion outside 0.5 0.05 1.4 1.4 0.35 2.1 0.3\nkey 0 0\n",
         "layer a saturation\nregion inside 0.5 0.05 1.4 1.4 0.35 2.1 0.3\nkey 0 2.5\n",
+        "layer a brightness\nregion inside 0.5 0.05 1.4 1.4 0.35 2.1 0.2 axes 9 1 -2 3\nkey 0 3\n",
+        "layer a color\nregion inside 0.5 0.06 1.41 1.41 0.36 2.11 0 axes 0.3 0.1 0.4 0.2\nkey 0 0.5 2 1\n",
+        "layer a saturation\nregion outside 0.5 0.05 1.4 1.4 0.35 2.1 0.3 axes 0.9 0 -0.4 0 at 7\nkey 0 0\n",
     };
     const struct view v = a_camera();
     struct rendered_frame before = {0}, f = {0};
@@ -243,6 +344,128 @@ static void layers_match_their_formulas(void **state)
         effects_release(&e);
     }
     rendered_frame_release(&before);
+    rendered_frame_release(&f);
+}
+
+/* A white frame of the plane z = 2, seen from the origin: pixels are 0.01 apart there. */
+#define SIDE 401
+static void look_at_plane(struct view *v, struct rendered_frame *f)
+{
+    struct err err = ERR_INIT;
+    *v = (struct view){.name = "0001", .width = SIDE, .height = SIDE, .fx = 200, .fy = 200, .cx = SIDE / 2.0};
+    v->cy = v->cx;
+    v->cam_from_world = (struct mat3){{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+    assert_ok(rendered_frame_resize(f, SIDE, SIDE, true, &err), err);
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        for (int k = 0; k < 4; k++) f->rgba[4 * i + k] = 1;
+        f->z[i] = 2;
+    }
+}
+
+/* The weight at the point (x, y, 2) of an applied layer that sets brightness to 0. */
+static double weight_on_plane(const struct rendered_frame *f, double x, double y)
+{
+    const int at = (int)lround(100 * x) + SIDE / 2 + SIDE * ((int)lround(100 * y) + SIDE / 2);
+    return 1 - f->rgba[4 * at];
+}
+
+static void a_box_turned_45_degrees_ends_at_its_sides(void **state)
+{
+    (void)state;
+    static const char *const texts[] = {
+        "remodel-effects 1\nlayer a brightness\n"
+        "region inside -1 -1 1 1 1 3 0 axes 0.92387953251128674 0 0 0.38268343236508977\nkey 0 0\n",
+        "remodel-effects 1\nlayer a brightness\n"
+        "region inside -1 -1 1 1 1 3 0.1 axes 0.92387953251128674 0 0 0.38268343236508977\nkey 0 0\n"};
+    struct rendered_frame f = {0};
+    struct effects e;
+    struct view v;
+
+    for (int soft = 0; soft < 2; soft++) {
+        read_text(&e, texts[soft]);
+        look_at_plane(&v, &f);
+        effects_apply(&e, 0, &v, &f);
+        for (int i = 0; i < SIDE * SIDE; i++) {
+            const double x = abs(i % SIDE - SIDE / 2) / 100.0, y = abs(i / SIDE - SIDE / 2) / 100.0;
+            const double beyond = (x + y) / sqrt(2) - 1, w = 1 - f.rgba[4 * i]; /* a square on its corner */
+            if (fabs(beyond) < 1e-5) continue;
+            if (beyond < 0) assert_true(w == 1);
+            if (beyond > (soft ? 0.6 : 0)) assert_true(w == 0);
+            if (soft && beyond > 0 && fabs(x - y) < 1) /* beside a side, not a corner */
+                assert_true(fabs(w - exp(-beyond * beyond / 0.02)) < 1e-5);
+        }
+        /* a corner of the box along the world's axes stays as it was; the turned box's own corner does not */
+        assert_true(weight_on_plane(&f, 0.99, -0.99) < (soft ? 1e-3 : 1e-9));
+        assert_true(weight_on_plane(&f, 0, 1.41) == 1 && weight_on_plane(&f, -1.41, 0) == 1);
+        effects_release(&e);
+    }
+    rendered_frame_release(&f);
+}
+
+static void a_box_turns_as_its_axes_say(void **state)
+{
+    (void)state;
+    struct rendered_frame f = {0};
+    struct effects e;
+    struct view v;
+
+    /* box_from_world turns +y to +x by 30 degrees, so the long axis of the box is (cos 30, sin 30) */
+    read_text(&e, "remodel-effects 1\nlayer a brightness\n"
+                  "region inside -0.5 0 1 1.5 0.4 3 0 axes 0.96592582628906829 0 0 -0.25881904510252076\nkey 0 0\n");
+    look_at_plane(&v, &f);
+    effects_apply(&e, 0, &v, &f);
+    for (int i = -9; i <= 9; i++) { /* the middle is (0.5, 0.2), the halves of the size 1 and 0.2 */
+        const double x = 0.5 + i * 0.1 * cos(M_PI / 6), y = 0.2 + i * 0.1 * sin(M_PI / 6);
+        assert_true(weight_on_plane(&f, x, y) == 1);
+        if (abs(i) != 4) /* 0.2 / sin 30 degrees = 0.4 */
+            assert_true((weight_on_plane(&f, 0.5 + i * 0.1, 0.2) == 1) == (abs(i) < 4));
+    }
+    effects_release(&e);
+    rendered_frame_release(&f);
+}
+
+static void a_keyed_box_moves_and_softens(void **state)
+{
+    (void)state;
+    static const double at[] = {-1, 1, 2, 3, 9};
+    struct rendered_frame f = {0};
+    struct effects e;
+    struct view v;
+
+    read_text(&e, "remodel-effects 1\nlayer a brightness\n"
+                  "region inside -1.5 -0.5 1 -0.5 0.5 3 0 at 1\n"
+                  "region inside 0.5 -0.5 1 1.5 0.5 3 0.4 axes 1 0 0 1 at 3\nkey 0 0\n");
+    for (int i = 0; i < 5; i++) {
+        look_at_plane(&v, &f);
+        effects_apply(&e, at[i], &v, &f);
+        if (i < 2) { /* before and at the first: a hard square around (-1, 0) */
+            assert_true(weight_on_plane(&f, -0.51, 0.49) == 1 && weight_on_plane(&f, -1.49, -0.49) == 1);
+            assert_true(weight_on_plane(&f, -0.49, 0) == 0 && weight_on_plane(&f, -1, 0.51) == 0);
+        } else if (i == 2) { /* halfway: in the middle, turned 45 degrees, fall-off 0.2 */
+            assert_true(weight_on_plane(&f, 0, 0.7) == 1 && weight_on_plane(&f, -0.7, 0) == 1);
+            const double beyond = 1 / sqrt(2) - 0.5;
+            assert_true(fabs(weight_on_plane(&f, 0.5, 0.5) - exp(-beyond * beyond / 0.08)) < 1e-5);
+        } else { /* at the last and after: a square around (1, 0), turned 90 degrees, fall-off 0.4 */
+            assert_true(weight_on_plane(&f, 0.51, 0.49) == 1 && weight_on_plane(&f, 1.49, -0.49) == 1);
+            assert_true(fabs(weight_on_plane(&f, 0, 0.2) - exp(-0.25 / 0.32)) < 1e-5);
+        }
+    }
+    effects_release(&e);
+    rendered_frame_release(&f);
+}
+
+static void the_smallest_fall_off_is_a_hard_edge(void **state)
+{
+    (void)state;
+    struct rendered_frame f = {0};
+    struct effects e;
+    struct view v;
+
+    read_text(&e, "remodel-effects 1\nlayer a brightness\nregion inside -1 -1 1 1 1 3 1e-300\nkey 0 0\n");
+    look_at_plane(&v, &f);
+    effects_apply(&e, 0, &v, &f);
+    assert_true(weight_on_plane(&f, 0.99, 0.99) == 1 && weight_on_plane(&f, 1.01, 0) == 0);
+    effects_release(&e);
     rendered_frame_release(&f);
 }
 
@@ -328,11 +551,12 @@ static void any_thread_count_gives_the_same_bits(void **state)
     struct rendered_frame f[2] = {{0}};
     struct effects e;
 
-    read_text(&e, "remodel-effects 1\nlayer a saturation\nregion outside 0.5 0.05 1.4 1.4 0.35 2.1 0.3\nkey 0 0\n");
+    read_text(&e, "remodel-effects 1\nlayer a saturation\nregion outside 0.5 0.05 1.4 1.4 0.35 2.1 0.3 axes 5 1 2 3\n"
+                  "region outside 0 0 1 1 1 2 0.5 at 3\nkey 0 0\n");
     for (int i = 0; i < 2; i++) {
         parallel_set_threads(1 + 2 * i);
         make_frame(&f[i]);
-        effects_apply(&e, 0, &v, &f[i]);
+        effects_apply(&e, 1.1, &v, &f[i]);
     }
     parallel_set_threads(threads);
     assert_memory_equal(f[0].rgba, f[1].rgba, W * H * 4 * sizeof(float));
@@ -344,11 +568,17 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_file_is_read),
+        cmocka_unit_test(boxes_with_axes_and_times_are_read),
         cmocka_unit_test(bad_files_are_refused_with_file_and_line),
         cmocka_unit_test(a_written_file_reads_back_the_same),
+        cmocka_unit_test(written_boxes_give_the_same_bytes),
         cmocka_unit_test(values_are_linear_between_keys),
         cmocka_unit_test(a_cubic_is_smooth_and_stays_between_its_keys),
         cmocka_unit_test(layers_match_their_formulas),
+        cmocka_unit_test(a_box_turned_45_degrees_ends_at_its_sides),
+        cmocka_unit_test(a_box_turns_as_its_axes_say),
+        cmocka_unit_test(a_keyed_box_moves_and_softens),
+        cmocka_unit_test(the_smallest_fall_off_is_a_hard_edge),
         cmocka_unit_test(layers_are_applied_in_order),
         cmocka_unit_test(identity_layers_change_no_bit),
         cmocka_unit_test(extreme_depths_and_colours_stay_finite),

@@ -50,6 +50,28 @@ static void quaternions_survive_the_round_trip(void **state)
     }
 }
 
+static void a_rotation_between_two_is_the_shorter_one(void **state)
+{
+    (void)state;
+    const double angles[] = {0, 1e-12, 1e-7, 3e-6, 0.1, 2, 3.1, acos(-1)};
+    const struct vec3 axis = vec3_make(1, -2, 0.5);
+    const struct quat a = about(vec3_make(3, 1, -1), 1.2);
+    const struct mat3 from = mat3_from_quat(a);
+    for (size_t i = 0; i < sizeof angles / sizeof *angles; i++) {
+        const struct quat b = quat_from_mat3(mat3_multiply(mat3_from_quat(about(axis, angles[i])), from));
+        assert_true(fabs(quat_angle(a, b) - angles[i]) < 1e-15 * (1 + angles[i]) * 4);
+        for (int k = 0; k < 6; k++) {
+            const double t = k % 3 / 2.0;
+            const struct quat to = k < 3 ? b : (struct quat){-b.w, -b.x, -b.y, -b.z}, q = quat_slerp(a, to, t);
+            assert_true(fabs(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z - 1) < 2e-15);
+            if (i == 7 && k % 3 == 1) continue; /* at half a turn both ways are as short */
+            assert_mat3(mat3_from_quat(q), mat3_multiply(mat3_from_quat(about(axis, t * angles[i])), from), 4e-15);
+        }
+    }
+    const struct quat third = quat_slerp(about(axis, 0.3), about(axis, 1.2), 1.0 / 3); /* at constant speed */
+    assert_mat3(mat3_from_quat(third), mat3_from_quat(about(axis, 0.6)), 4e-15);
+}
+
 static void products_are_right_handed(void **state)
 {
     (void)state;
@@ -106,6 +128,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_quaternion_rotates_about_its_axis),
         cmocka_unit_test(quaternions_survive_the_round_trip),
+        cmocka_unit_test(a_rotation_between_two_is_the_shorter_one),
         cmocka_unit_test(products_are_right_handed),
         cmocka_unit_test(eigenvectors_match_their_definition),
     };
