@@ -15,6 +15,11 @@
 # and two threads per view, and one and two views at a time. Constant z is the form of [Colburn 2014]: slants cost more
 # than they can gain.
 #
+# `candidates` chooses without the pair that is reported (left_out.awk): BENCH_CANDIDATES lists settings, each KEY=VALUE or
+# several of them with commas, the default beside them; by default each parameter that matters is halved and doubled. For
+# each pair the setting with the lowest mean error over the other pairs is chosen. The result is depth_left_out.tsv; these
+# rows are not plotted.
+#
 # Baseline: OpenCV's StereoSGBM (stereo_sgbm.c) on the same views: its best settings, left-right checked and filled;
 # block is its window; `plain` is without the margin for the left columns. It computes the depth of one view, ours of
 # two.
@@ -37,6 +42,8 @@ apartment=../shared/data/apartment
 scenes=${BENCH_SCENES-still-life loft $apartment}
 scene_size=${BENCH_SCENE_SIZE:-0.5}
 threads=${BENCH_THREADS:-1}
+candidates=${BENCH_CANDIDATES-smoothness=0.5 smoothness=2 jump=6 jump=24 slant=0.005 slant=0.02 cross_view=0.85 cross_view=3.4 \
+    segment_pixels=32 segment_pixels=128 fine_pixels=8 fine_pixels=32 passes=1 passes=6 far_bias=0.005 far_bias=0.02 compactness=4 compactness=16}
 
 # value_of FILE NAME: the last value of NAME in lines "NAME VALUE"
 value_of() { awk -v k="$2" '$1 == k { v = $2 } END { print v }' "$1"; }
@@ -146,6 +153,8 @@ settings()
         sweep Middlebury passes slanted 0 1 2; row SGBM Middlebury passes 'block 1'
         for v in draft default final; do row slanted Middlebury quality "$v"; done; row SGBM Middlebury quality 'block 1'
         [ "$(nproc)" = 1 ] || for s in threads jobs; do for v in 1 2; do row slanted Middlebury "$s" "$v"; done; done
+        # not where revisions are compared: an older one may lack a parameter
+        [ -n "$old" ] || for v in default $candidates; do row slanted Middlebury candidates "$v"; done
     fi
     for v in $found_scenes; do
         sweep "$v" neighbours slanted 1 2 4
@@ -264,7 +273,7 @@ sgbm() # KEY SIZE ARGS...
 
 sample() # SERIES SET SWEEP VALUE SIZE
 {
-    local size=$5 items=$found_pairs rounds on=$threads side=1 args=() key v
+    local size=$5 items=$found_pairs rounds on=$threads side=1 args=() key
     rounds=$(default_of rounds)
     [ "$2" = Middlebury ] || items=$2
     if [ "$1" = SGBM ]; then
@@ -273,16 +282,33 @@ sample() # SERIES SET SWEEP VALUE SIZE
         sgbm "$key" "$size" "${args[@]}" && cat "$fast/$key"
         return
     fi
+    # the lines KEY=VALUE of standard input
+    set_all() { local v; while read -r v; do case $v in rounds=*) rounds=${v#*=} ;; ?*) args+=(--set "$v") ;; esac; done; }
     [ "$1" = slanted ] || args+=(--set slant=10)
     case $3 in
     rounds) rounds=$4 ;;
     resolution) ;;
     threads) on=$4 ;;
     jobs) side=$4 ;;
-    quality) [ "$4" = default ] || while read -r v; do case $v in rounds=*) rounds=${v#*=} ;; *) args+=(--set "$v") ;; esac; done <"$work/$4" ;;
+    quality) [ "$4" = default ] || set_all <"$work/$4" ;;
+    candidates) [ "$4" = default ] || set_all <<<"${4//,/$'\n'}" ;;
     *) [ "$4" = "$(default_of "$3")" ] || args+=(--set "$3=$4") ;;
     esac
     key="$2 $r ${B//\//_} $size $on $side ${args[*]}"
     solved "$key" "$size" "$items" "$rounds" "$on" "$side" "${args[@]}" || return
-    if [ "$3" = threads ] || [ "$3" = jobs ]; then grep -v '^core_s_per_mp ' "$fast/$key.$rounds"; else cat "$fast/$key.$rounds"; fi
+    case $3 in
+    threads | jobs | candidates) grep -v '^core_s_per_mp ' "$fast/$key.$rounds" ;;
+    *) cat "$fast/$key.$rounds" ;;
+    esac
+}
+
+# of each candidate a column for each pair, or only the column error if there is one pair
+finish() # TABLE
+{
+    awk -F'\t' -v pairs="$found_pairs" '
+        /^#/ { next }
+        !n { n = NF; for (i = 1; i <= n; i++) column[$i] = i; count = split(pairs, pair, " "); next }
+        $(column["sweep"]) == "candidates" { for (i = 1; i <= count; i++) print pair[i] "\t" $(column["value"]) "\t" $(column[count > 1 ? pair[i] : "error"]) }
+        ' "$1" >"$work/candidates"
+    [ ! -s "$work/candidates" ] || left_out lower <"$work/candidates"
 }

@@ -1,9 +1,12 @@
 # render.sh - render_views: PSNR of held-out photos against time for each of its parameters; frames per second; memory.
 #
 # Scenes: BENCH_SCENES, names of scenes/ or of folders of BENCH_DATA (../shared/data) that hold photos/; others are
-# skipped. Every eighth photo is held out, or the views named after a colon (still-life:s4). Depth maps come from `make
-# SCENE=NAME HOLDOUT=8 depth`. psnr (dB), ssim and holes (%) are those of docs/evaluation.md; gain is psnr over that of
-# plain hard z. seconds and core_s_per_mp (CPU time per megapixel) are those of one frame, in memory, without reading
+# skipped with a message. Every eighth photo is held out, or the views named after a colon (still-life:s4). Depth maps come
+# from `make SCENE=NAME HOLDOUT=8 depth`. NAME-truth is the scene of the photos of NAME with the cameras of
+# BENCH_DATA/NAME/truth-cameras (true_cameras.awk). A folder with truth/novel, pictures that nobody photographed, is
+# compared with these, and nothing is held out. The first run of bonsai and apartment takes long: BENCH_SCENES="fern kermit".
+# psnr (dB), ssim and holes (%) are those of docs/evaluation.md; gain is psnr over that of plain hard z; psnr_VIEW is
+# that of a photo, in the scenes of BENCH_BY_PHOTO (sceaux: a third of 100_7100 is a tree that no other photo shows). seconds and core_s_per_mp (CPU time per megapixel) are those of one frame, in memory, without reading
 # the scene and writing files (render_rate.c); the megapixels are the photo's at any scale. peak_mib is of the process,
 # including all views. BENCH_SWEEPS="scale views": only these panels.
 #
@@ -11,6 +14,10 @@
 # to the photo's size before they are compared. `soft_z`: its width in depth uncertainties; 0 is that of [Colburn 2014],
 # the scene's depth range. `views`: the number that may contribute to a pixel: 1 (views=nearest), 3 (more_views=0), or 3
 # and that many more. `filling`: of holes, by patches (offline) or from the surroundings (fast); off is fill_diameter=0.
+#
+# `candidates` chooses without the scene that is reported (left_out.awk): BENCH_CANDIDATES lists settings, each KEY=VALUE or
+# several of them with commas, the default beside them. For each scene the setting with the best mean PSNR over the other
+# scenes is chosen. The result is render_left_out.tsv; these rows are not plotted.
 #
 # Baselines: the photo of the nearest view as it is, only in the table, because copying is not rendering; hard z, the
 # nearest view's depth map alone, by the fast renderer; constant z, the offline renderer with every segment flattened at
@@ -28,37 +35,67 @@ timed="core_s_per_mp frames_per_s core_ms"
 line=series label=value panel="scene sweep" across=4
 x=core_s_per_mp x_label="Core-seconds per megapixel" y=psnr y_label="PSNR (dB)" zero=no
 
-scenes=${BENCH_SCENES-fern sceaux kermit fountain still-life:s4}
+scenes=${BENCH_SCENES-fern sceaux kermit fountain still-life:s4 office fountain-truth bonsai apartment}
+by_photo=${BENCH_BY_PHOTO-sceaux}
+candidates=${BENCH_CANDIDATES-soft_z=0 soft_z=2 soft_z=4 soft_z=16 more_views=0 more_views=4 more_views=8 views=nearest \
+    renderer=fast fill_diameter=0 fill_diameter=24 fill_patch=9 fill_window=50}
 data=${BENCH_DATA:-../shared/data}
 rate_scene=${BENCH_RATE-still-life}
 threads=${BENCH_THREADS:-$(nproc)}
-sweeps=${BENCH_SWEEPS:-scale soft_z views filling rate memory}
+sweeps=${BENCH_SWEEPS:-scale soft_z views filling candidates rate memory}
 
 wanted() { case " $sweeps " in *" $1 "*) ;; *) return 1 ;; esac; }
 quietly() { "$@" >"$work/messages" 2>&1 || { tail -n 5 "$work/messages" >&2; missing "'$*' failed."; }; }
 made() { echo "render: make $*" >&2; quietly "${MAKE:-make}" --no-print-directory QUALITY=default "$@"; }
 
-# makes the products of NAME, without the views HELD or every eighth one; $work/NAME has the layout that evaluate reads
+# makes the products of NAME, without the views HELD or every eighth one; $work/NAME has the layout that evaluate reads, the
+# cameras to render, and frames/, where their frames belong
 prepare_scene() # NAME HELD
 {
-    local to=$work/$1 from=out/$1+holdout8 photos=()
-    if [ ! -e "scenes/$1/scene.mk" ]; then
-        if [ ! -d "$data/$1/photos" ]; then echo "render: $1 is skipped, because there is neither scenes/$1/scene.mk nor $data/$1/photos." >&2; return; fi
-        photos=(PHOTOS="$data/$1/photos")
+    local to=$work/$1 from=out/$1+holdout8 of=$data/$1 args=() novel=
+    if [[ $1 == *-truth && -d $data/${1%-truth}/truth-cameras ]]; then of=$data/${1%-truth}; fi
+    if ! grep -qs '^PHOTOS' "scenes/$1/scene.mk"; then
+        if [ ! -d "$of/photos" ]; then echo "render: $1 is skipped, because there is neither scenes/$1/scene.mk nor $of/photos." >&2; return; fi
+        args=(PHOTOS="$of/photos")
     fi
+    mkdir -p "$to/flat"
+    if [ "$of" != "$data/$1" ]; then true_model "$of" "$to/model"; args+=(SFM="$to/model"); fi
     if [ -n "$2" ]; then
-        made SCENE="$1" "${photos[@]}" HOLDOUT= HOLDOUT_VIEWS="$2" depth
+        args+=(HOLDOUT= HOLDOUT_VIEWS="$2")
         from=out/$1+holdout
+    elif [ -d "$of/truth/novel" ]; then
+        args+=(HOLDOUT= HOLDOUT_VIEWS=)
+        from=out/$1 novel=$of/truth
     else
-        made SCENE="$1" "${photos[@]}" HOLDOUT=8 HOLDOUT_VIEWS= depth
+        args+=(HOLDOUT=8 HOLDOUT_VIEWS=)
     fi
-    mkdir -p "$to/holdout/frames" "$to/flat"
+    made SCENE="$1" "${args[@]}" depth
     ln -s "$(realpath "$from/views")" "$to/views"
-    ln -s "$(realpath "$from/holdout/views")" "$to/holdout/views"
     ln -s "$(realpath "$from/depth")" "$to/layers" # not named depth: `evaluate` would evaluate it each time
     ln -s "$(realpath "out/$1")" "$to/shared"
+    if [ -n "$novel" ]; then
+        ln -s "$(realpath "$novel")" "$to/truth"
+        quietly "$B/bin/evaluate" --folder "$to" --shared "$to/shared" --truth "$to/truth/" --out "$to/metrics.tsv"
+        mkdir -p "$to/rendered/novel"
+        cp "$to"/evaluate/cameras/novel/*.txt "$to/rendered/novel/"
+        ln -s "$to/evaluate/cameras/novel" "$to/cameras"
+        ln -s rendered/novel "$to/frames"
+    else
+        mkdir -p "$to/holdout/frames"
+        ln -s "$(realpath "$from/holdout/views")" "$to/holdout/views"
+        ln -s holdout/views "$to/cameras"
+        ln -s holdout/frames "$to/frames"
+    fi
     quietly "$B/tests/bench/flatten_depth" --views "$to/views" --depth "$to/layers" --out "$to/flat"
     found_scenes+=" $1"
+}
+# the true cameras of the photos of DIR, as a model in TO
+true_model() # DIR TO
+{
+    local photos=("$1"/photos/*)
+    mkdir -p "$2"
+    quietly awk -v size="$(ffprobe -v error -show_entries stream=width,height -of csv=p=0 "${photos[0]}")" -v to="$2" \
+        -f "$here/true_cameras.awk" "$1"/truth-cameras/*.camera
 }
 
 prepare()
@@ -67,7 +104,7 @@ prepare()
     "$B/bin/render_views" --print-config >"$work/defaults"
     local s
     found_scenes=
-    if wanted scale || wanted soft_z || wanted views || wanted filling; then
+    if wanted scale || wanted soft_z || wanted views || wanted filling || wanted candidates; then
         for s in $scenes; do prepare_scene "${s%%:*}" "$(case $s in *:*) echo "${s#*:}" ;; esac)"; done
     fi
     if [ -n "$rate_scene" ] && wanted rate; then made SCENE="$rate_scene" HOLDOUT= HOLDOUT_VIEWS= path; fi
@@ -100,6 +137,8 @@ settings()
             done
             [ "$sweep" != views ] || for v in $(printf '%s\n' 4 8 12 "$(default_of more_views)" | sort -gu); do row offline "$s" views "3+$v"; done
         done
+        # not where revisions are compared: an older one may lack a parameter
+        [ -n "$old" ] || ! wanted candidates || for v in default $candidates; do row offline "$s" candidates "$v"; done
     done
     if [ -n "$rate_scene" ] && wanted rate; then
         for r in fast coverage offline; do for v in 1 2; do row "$r" "$rate_scene" rate "$v threads"; done; done
@@ -114,19 +153,21 @@ rate() { measured "$B/tests/bench/render_rate" "$@"; }
 # of a setting is kept for the rest of the repeat.
 solved()
 {
-    local of=$work/$1 key=$2; shift 2
+    local scene=$1 of=$work/$1 key=$2 truth=(); shift 2
     [ ! -e "$fast/$key" ] || return 0
-    rm -f "$of"/holdout/frames/*
-    measured "$B/tests/bench/render_rate" --threads "$threads" --views "$of/views" --cameras "$of/holdout/views" --out "$of/holdout/frames" "$@" | grep -v '^holes ' >"$fast/rendered" &&
-        "$B/bin/evaluate" --folder "$of" --shared "$of/shared" --out "$of/metrics.tsv" 2>"$work/err" || return
-    awk -F'\t' '$1 ~ /^holdout\.(psnr|ssim|holes)$/ { sub(/.*\./, "", $1); printf "%s %.5g\n", $1, $2 }' "$of/metrics.tsv" >>"$fast/rendered"
+    [ ! -e "$of/truth" ] || truth=(--truth "$of/truth/" --rendered "$of/rendered")
+    rm -f "$of"/frames/*.exr
+    measured "$B/tests/bench/render_rate" --threads "$threads" --views "$of/views" --cameras "$of/cameras" --out "$of/frames" "$@" | grep -v '^holes ' >"$fast/rendered" &&
+        "$B/bin/evaluate" --folder "$of" --shared "$of/shared" "${truth[@]}" --out "$of/metrics.tsv" 2>"$work/err" || return
+    awk -F'\t' '$1 ~ /^(holdout|novel)\.(psnr|ssim|holes)$/ { sub(/.*\./, "", $1); printf "%s %.5g\n", $1, $2 }' "$of/metrics.tsv" >>"$fast/rendered"
+    case " $by_photo " in *" $scene "*) awk -F'\t' '$2 == "holdout.psnr" { printf "psnr_%s %.5g\n", $1, $3 }' "$of/evaluate/views.tsv" >>"$fast/rendered" ;; esac
     mv "$fast/rendered" "$fast/$key"
 }
 psnr_of() { awk '$1 == "psnr" { print $2 }' "$fast/$1"; }
 
 sample() # SERIES SCENE SWEEP VALUE
 {
-    local of=$work/$2 key args=() same="$2 $r ${B//\//_}"
+    local of=$work/$2 key v args=() same="$2 $r ${B//\//_}"
     case $3 in
     rate)
         args=(--threads "${4%% *}" --views "out/$2/views" --depth "out/$2/depth" --path "out/$2/parallax/establishing_dolly")
@@ -148,11 +189,26 @@ sample() # SERIES SCENE SWEEP VALUE
         views=3) [ "$1" = fast ] || args+=(--set more_views=0) ;;
         views=*) args+=(--set "more_views=${4#3+}") ;;
         filling=off) args+=(--set fill_diameter=0) ;;
+        candidates=default) ;;
+        candidates=*) for v in ${4//,/ }; do args+=(--set "$v"); done ;;
         *) [ "$4" = "$(default_of "$3")" ] || args+=(--set "$3=$4") ;;
         esac ;;
     esac
     key="$same ${args[*]//\//_}"
     solved "$2" "$same ${hard[*]//\//_}" "${hard[@]}" && solved "$2" "$key" "${args[@]}" || return
-    if [ "$1" = 'nearest photo' ]; then grep -v '^core_s_per_mp ' "$fast/$key"; else cat "$fast/$key"; fi
+    if [ "$1" = 'nearest photo' ] || [ "$3" = candidates ]; then grep -v '^core_s_per_mp ' "$fast/$key"; else cat "$fast/$key"; fi
     awk -v a="$(psnr_of "$key")" -v b="$(psnr_of "$same ${hard[*]//\//_}")" 'BEGIN { printf "gain %.2f\n", a - b }'
+}
+
+# photos that have a column of their own are parts of their scene
+finish() # TABLE
+{
+    awk -F'\t' '
+        /^#/ { next }
+        !n { n = NF; for (i = 1; i <= n; i++) { column[$i] = i; name[i] = $i }; next }
+        $(column["sweep"]) != "candidates" { next }
+        { of = $(column["scene"]); print of "\t" $(column["value"]) "\t" $(column["psnr"]) }
+        { for (i = 1; i <= n; i++) if (name[i] ~ /^psnr_/ && $i != "-") print of "/" substr(name[i], 6) "\t" $(column["value"]) "\t" $i }
+        ' "$1" >"$work/candidates"
+    [ ! -s "$work/candidates" ] || left_out higher <"$work/candidates"
 }

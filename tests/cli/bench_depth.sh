@@ -93,6 +93,20 @@ an_incomplete_pair_is_refused()
     wants "$(cat "$scratch/err")" "cameras.txt"
 }
 
+# both pairs have the same pictures and disparities, in the layouts of cones and teddy
+settings_are_chosen_on_the_other_pairs()
+{
+    boards
+    mkdir "$scratch/pairs"
+    cp -r "$pair" "$scratch/pairs/cones"; cp -r "$pair" "$scratch/pairs/teddy"
+    REPEATS=1 BENCH_OUT=$scratch/tables BENCH_PAIRS=$scratch/pairs BENCH_SCENES='' BENCH_SWEEPS=candidates BENCH_CANDIDATES='smoothness=2 passes=1,rounds=0' \
+        tests/bench/run depth "$B" >"$scratch/out" 2>"$scratch/err" || { cat "$scratch/err"; fail "the bench failed"; }
+    wants "$(grep -v '^#' "$scratch/tables/depth.tsv" | cut -f 3,4 | tr '\t\n' '  ')" "sweep value candidates default candidates smoothness=2 candidates passes=1,rounds=0 "
+    wants "$(grep -v '^#' "$scratch/tables/depth_left_out.tsv" | cut -f 1 | tr '\n' ' ')" "scene teddy cones mean "
+    # the pairs are equal, so what is best on one is what the other gets
+    awk -F'\t' '/^#/ || $1 == "scene" { next } $3 != $5 || ($1 != "mean" && $7 != $8) { exit 1 }' "$scratch/tables/depth_left_out.tsv" || { cat "$scratch/tables/depth_left_out.tsv"; fail "equal pairs have other settings"; }
+}
+
 missing_inputs_of_the_bench_are_named()
 {
     rc=0; BENCH_PAIRS="$scratch/none" BENCH_SCENES='' tests/bench/run depth "$B" 2>"$scratch/err" || rc=$?
@@ -101,4 +115,4 @@ missing_inputs_of_the_bench_are_named()
 }
 
 for t in a_pair_becomes_a_scene pixels_seen_by_both_are_scored one_truth_suffices_to_find_hidden_pixels float_disparities_of_one_side_are_read \
-    an_incomplete_pair_is_refused missing_inputs_of_the_bench_are_named; do run "$t"; done
+    an_incomplete_pair_is_refused settings_are_chosen_on_the_other_pairs missing_inputs_of_the_bench_are_named; do run "$t"; done

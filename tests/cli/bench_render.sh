@@ -98,6 +98,41 @@ the_nearest_photo_of_a_view_is_the_view_itself()
         "$B/tests/bench/picture_error" "$scratch/photo/photo_3.exr" out/t+holdout/views/photo_4.exr | matches '^error 0$' || fail "the held-out view is not shown by a neighbour"
 }
 
+settings_are_chosen_on_the_other_scenes()
+{
+    # a second scene, whose truth has a view that nobody photographed: what photo_3 shows
+    [ -e out/t+holdout/holdout/views/photo_3.exr ] || skip "the bench made no views"
+    small u
+    sed -i 's/^passes = 1$/passes = 0\nrounds = 0/' scenes/u/scene.cfg
+    echo 'SFM := set/model' >scenes/u/scene.mk
+    local data=$scratch/data/u
+    mkdir -p "$data/truth/novel/hdr"
+    ln -s "$PWD/set/photos" "$data/photos"
+    cp set/model/{cameras,images}.txt "$data/truth/"
+    cp set/model/cameras.txt "$data/truth/novel/"
+    awk '$10 == "photo_3.jpg" { $10 = "new.jpg"; print; print "" }' set/model/images.txt >"$data/truth/novel/images.txt"
+    cp out/t+holdout/holdout/views/photo_3.exr "$data/truth/novel/hdr/new.exr"
+    local code=0
+    REPEATS=1 BENCH_OUT=$scratch/tables BENCH_DATA=$scratch/data BENCH_SCENES="t:photo_3 u" BENCH_SWEEPS=candidates BENCH_CANDIDATES="renderer=fast soft_z=2,more_views=0" BENCH_BY_PHOTO=t \
+        tests/bench/run render "$B" >"$scratch/out" 2>"$scratch/err" || code=$?
+    [ "$code" = 0 ] || { cat "$scratch/out" "$scratch/err"; fail "exit $code"; }
+    t=$scratch/tables/render.tsv
+    [ "$(grep -vc '^#' "$t")" = 7 ] || { cat "$t"; fail "wanted one row for each scene and candidate"; }
+    wants "no plot was drawn"
+    # of(SCENE, SETTING, COLUMN) of the table
+    of() { awk -F'\t' -v s="$1" -v v="$2" -v c="$3" '/^#/ { next } !n { n = NF; for (i = 1; i <= n; i++) if ($i == c) at = i; next } $2 == s && $4 == v { printf "%.2f", $at }' "$t"; }
+    chosen=$scratch/tables/render_left_out.tsv
+    [ "$(grep -v '^#' "$chosen" | cut -f 1 | tr '\n' ' ')" = "scene t t/photo_3 u mean " ] || { cat "$chosen"; fail "other rows"; }
+    for s in t u; do
+        o=$([ $s = t ] && echo u || echo t)
+        best=$(for v in default renderer=fast soft_z=2,more_views=0; do echo "$(of $o $v psnr) $v"; done | sort -k1,1nr -s | sed -n '1s/.* //p')
+        awk -F'\t' -v s=$s -v a="$(of $s default psnr)" -v b="$(of $s "$best" psnr)" -v v="$best" '$1 == s && $2 == a && $3 == b && $7 == v { found = 1 } END { exit !found }' "$chosen" ||
+            { cat "$chosen" "$t"; fail "$s does not have the setting that is best on $o, $best"; }
+    done
+    [ "$(of t default psnr)" = "$(of t default psnr_photo_3)" ] || fail "the only photo has another PSNR than its scene"
+    holds "$(of u default psnr) > $(of t default psnr)" "a photo that is not held out"
+}
+
 missing_inputs_of_the_bench_are_named()
 {
     BENCH_SCENES=nowhere BENCH_SWEEPS="scale views" bench 3
@@ -105,4 +140,4 @@ missing_inputs_of_the_bench_are_named()
 }
 
 for t in frames_are_timed_and_written segments_are_flattened_at_their_middle wrong_usage_gives_a_message a_small_scene_gets_its_table \
-    the_nearest_photo_of_a_view_is_the_view_itself missing_inputs_of_the_bench_are_named; do run "$t"; done
+    the_nearest_photo_of_a_view_is_the_view_itself settings_are_chosen_on_the_other_scenes missing_inputs_of_the_bench_are_named; do run "$t"; done
