@@ -37,7 +37,7 @@ x=core_s_per_mp x_label="Core-seconds per megapixel" y=psnr y_label="PSNR (dB)" 
 
 scenes=${BENCH_SCENES-fern sceaux kermit fountain still-life:s4 office fountain-truth bonsai apartment}
 by_photo=${BENCH_BY_PHOTO-sceaux}
-candidates=${BENCH_CANDIDATES-soft_z=0 soft_z=2 soft_z=4 soft_z=16 more_views=0 more_views=4 more_views=8 views=nearest \
+candidates=${BENCH_CANDIDATES-soft_z=0 soft_z=8 soft_z=16 soft_z=64 more_views=0 more_views=4 more_views=8 views=nearest \
     renderer=fast fill_diameter=0 fill_diameter=24 fill_patch=9 fill_window=50}
 data=${BENCH_DATA:-../shared/data}
 rate_scene=${BENCH_RATE-still-life}
@@ -130,7 +130,7 @@ settings()
             for r in fast offline; do
                 case $sweep in
                 scale) for v in ${BENCH_SCALES:-0.25 0.5 1}; do row "$r" "$s" scale "$v"; done ;;
-                soft_z) for v in $(printf '%s\n' 0 2 4 16 "$(default_of soft_z)" | sort -gu); do row "$r" "$s" soft_z "$v"; done ;;
+                soft_z) for v in $(printf '%s\n' 0 4 8 16 64 "$(default_of soft_z)" | sort -gu); do row "$r" "$s" soft_z "$v"; done ;;
                 views) for v in 1 3; do row "$r" "$s" views "$v"; done ;;
                 filling) for v in off on; do row "$r" "$s" filling "$v"; done ;;
                 esac
