@@ -129,6 +129,39 @@ static void any_thread_count_gives_the_same_bits(void **state)
     rendered_frame_release(&b);
 }
 
+/* Fallbacks are prepared by the first tile that has a hole: which one, and how many views, must not matter. */
+static void coverage_is_that_of_the_frame_for_any_thread_count(void **state)
+{
+    (void)state;
+    static const double nine[][3] = {{-0.8, -0.2, 0}, {0.8, -0.2, 0}, {-0.8, 0.2, 0}, {0.8, 0.2, 0}, {0, 0, 0},
+                                     {0, 0.6, 0.2},   {0, -0.6, 0},   {0.4, 0, -0.3}, {3, 0, 0}};
+    const int threads = parallel_threads();
+    struct rendered_frame f = {0}, cover = {0};
+    struct err err = ERR_INIT;
+    int holes = 0;
+    for (int count = 1; count <= 9; count += 4) {
+        struct scene s;
+        scene_make(&s, &square, nine, count);
+        for (int i = 0; i < 8; i++) { /* beside the views, in front of them and behind them */
+            const struct view novel = view_at(0.5 * cos(i), 0.5 * sin(i), 0.5 * i - 2);
+            parallel_set_threads(1);
+            render(&f, &s, &novel, false, 0);
+            for (int n = 1; n <= 3; n++) {
+                parallel_set_threads(n);
+                assert_int_equal(layer_coverage(&cover, &s.layers, &novel, 1, &err), ST_OK);
+                assert_memory_equal(cover.hole, f.hole, W * H);
+                assert_true(cover.hole_fraction == f.hole_fraction);
+            }
+            holes += (int)(f.hole_fraction * W * H);
+        }
+        layer_scene_release(&s.layers);
+    }
+    assert_true(holes > 1000);
+    parallel_set_threads(threads);
+    rendered_frame_release(&f);
+    rendered_frame_release(&cover);
+}
+
 static void disoccluded_pixels_are_holes_filled_from_the_far_side(void **state)
 {
     const bool offline = *(const bool *)*state;
@@ -819,6 +852,7 @@ int main(void)
         BOTH(a_silhouette_between_two_views_is_a_clean_edge),
         BOTH(infinite_colours_do_not_reach_a_frame),
         BOTH(a_nan_colour_is_black),
+        cmocka_unit_test(coverage_is_that_of_the_frame_for_any_thread_count),
         cmocka_unit_test(a_view_joins_the_nearest_views_smoothly),
         cmocka_unit_test(a_surface_that_all_other_views_see_through_is_not_visible),
         cmocka_unit_test(inconsistent_depth_maps_are_rejected),
