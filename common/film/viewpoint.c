@@ -5,9 +5,14 @@
  * - the part of the frame beyond the borders of the views that the view mesh blends there, where other views fill in
  *   with a visible seam. It is measured in a small picture at the depth of the centroid; each pixel counts by the
  *   weight of the blended views that do not contain it;
- * - the part of the scene nearer than shot->near_limit, measured on the scene's points. */
+ * - the part of the scene nearer than shot->near_limit, measured on the scene's points.
+ *
+ * Where validity alone is asked for, coverage is rendered only if the other two limits are kept, and the first invalid
+ * viewpoint of several ends the test. */
 #include "common/film/viewpoint.h"
 
+#include <immintrin.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 
 #include "common/base/parallel.h"
@@ -66,18 +71,53 @@ static double outside_fraction(const struct viewpoint_test *test, const struct v
     return sum / (small.width * small.height);
 }
 
+/* The fraction of the visible points that are too near. Weights are whole numbers of pixels, so sums are exact in any
+ * order. Four points at a time, with the operations of view_project(). */
 static double near_fraction(const struct viewpoint_test *test, const struct view *camera)
 {
-    double near = 0, total = 0;
-    for (size_t i = 0; i < test->points->count; i++) {
-        const struct scene_point *p = &test->points->points[i];
-        double u = -1, t = -1;
-        const double z = view_project(camera, p->position, &u, &t);
-        if (z <= 0 || u < 0 || u > camera->width || t < 0 || t > camera->height) continue;
-        total += p->weight;
-        if (z < test->shot->near_limit) near += p->weight;
+    const struct scene_point *points = test->points->points;
+    const size_t count = test->points->count;
+    const double(*m)[3] = camera->cam_from_world.m;
+    const double shift[3] = {camera->translation.x, camera->translation.y, camera->translation.z};
+    const __m256d zero = _mm256_setzero_pd(), limit = _mm256_set1_pd(test->shot->near_limit);
+    const __m256d width = _mm256_set1_pd(camera->width), height = _mm256_set1_pd(camera->height);
+    __m256d near = zero, total = zero;
+
+    for (size_t i = 0; i < count; i += 4) {
+        double in[4][4]; /* x, y, z and weight; the padding weighs nothing */
+        __m256d c[3];
+        for (size_t k = 0; k < 4; k++) {
+            const struct scene_point *p = &points[i + k < count ? i + k : i];
+            in[0][k] = p->position.x;
+            in[1][k] = p->position.y;
+            in[2][k] = p->position.z;
+            in[3][k] = i + k < count ? p->weight : 0;
+        }
+        const __m256d x = _mm256_loadu_pd(in[0]), y = _mm256_loadu_pd(in[1]), z = _mm256_loadu_pd(in[2]);
+        for (int r = 0; r < 3; r++) {
+            const __m256d turned = _mm256_add_pd(
+                _mm256_add_pd(_mm256_mul_pd(_mm256_set1_pd(m[r][0]), x), _mm256_mul_pd(_mm256_set1_pd(m[r][1]), y)),
+                _mm256_mul_pd(_mm256_set1_pd(m[r][2]), z));
+            c[r] = _mm256_add_pd(turned, _mm256_set1_pd(shift[r]));
+        }
+        const __m256d u = _mm256_add_pd(_mm256_mul_pd(_mm256_set1_pd(camera->fx), _mm256_div_pd(c[0], c[2])),
+                                        _mm256_set1_pd(camera->cx));
+        const __m256d v = _mm256_add_pd(_mm256_mul_pd(_mm256_set1_pd(camera->fy), _mm256_div_pd(c[1], c[2])),
+                                        _mm256_set1_pd(camera->cy));
+        __m256d seen = _mm256_cmp_pd(c[2], zero, _CMP_GT_OQ);
+        seen = _mm256_and_pd(seen,
+                             _mm256_and_pd(_mm256_cmp_pd(u, zero, _CMP_NLT_UQ), _mm256_cmp_pd(u, width, _CMP_NGT_UQ)));
+        seen = _mm256_and_pd(seen,
+                             _mm256_and_pd(_mm256_cmp_pd(v, zero, _CMP_NLT_UQ), _mm256_cmp_pd(v, height, _CMP_NGT_UQ)));
+        const __m256d weight = _mm256_and_pd(seen, _mm256_loadu_pd(in[3]));
+        total = _mm256_add_pd(total, weight);
+        near = _mm256_add_pd(near, _mm256_and_pd(weight, _mm256_cmp_pd(c[2], limit, _CMP_LT_OQ)));
     }
-    return total > 0 ? near / total : 1;
+    double sums[2][4];
+    _mm256_storeu_pd(sums[0], near);
+    _mm256_storeu_pd(sums[1], total);
+    for (int k = 1; k < 4; k++) sums[0][0] += sums[0][k], sums[1][0] += sums[1][k];
+    return sums[1][0] > 0 ? sums[0][0] / sums[1][0] : 1;
 }
 
 enum status viewpoint_measure(struct viewpoint *v, struct viewpoint_test *test, const struct view *camera,
@@ -119,10 +159,11 @@ void viewpoint_test_release(struct viewpoint_test *test)
 }
 
 struct viewpoint_batch {
-    struct viewpoint *out;
+    struct viewpoint *out; /* NULL: validity alone */
     const struct view *cameras;
     struct viewpoint_test *tests; /* one per thread */
     struct err *errors;           /* one per camera */
+    atomic_bool invalid;          /* some viewpoint is, or could not be tested */
 };
 
 static void measure_some(void *ctx, size_t begin, size_t end, int thread)
@@ -132,23 +173,48 @@ static void measure_some(void *ctx, size_t begin, size_t end, int thread)
         viewpoint_measure(&m->out[i], &m->tests[thread], &m->cameras[i], &m->errors[i]);
 }
 
+static void test_some(void *ctx, size_t begin, size_t end, int thread)
+{
+    struct viewpoint_batch *m = ctx;
+    for (size_t i = begin; i < end && !atomic_load_explicit(&m->invalid, memory_order_relaxed); i++) {
+        bool valid = false;
+        viewpoint_is_valid(&valid, &m->tests[thread], &m->cameras[i], &m->errors[i]);
+        if (!valid) atomic_store_explicit(&m->invalid, true, memory_order_relaxed);
+    }
+}
+
+static enum status run_batch(struct viewpoint_batch *m, int count, struct viewpoint_test *test, struct err *err)
+{
+    const int threads = parallel_threads();
+    m->tests = calloc((size_t)threads, sizeof *m->tests);
+    m->errors = calloc((size_t)count + 1, sizeof *m->errors);
+    enum status st = m->tests && m->errors ? ST_OK : err_nomem(err, "viewpoints", (size_t)count * sizeof *m->errors);
+
+    for (int t = 0; !st && t < threads; t++) viewpoint_test_copy(&m->tests[t], test);
+    if (!st) parallel_for((size_t)count, 1, m->out ? measure_some : test_some, m);
+    for (int i = 0; !st && i < count; i++)
+        if (m->errors[i].status) st = err_set(err, m->errors[i].status, "%s", m->errors[i].text);
+    for (int t = 0; m->tests && t < threads; t++) {
+        test->renders += m->tests[t].renders;
+        viewpoint_test_release(&m->tests[t]);
+    }
+    free(m->tests);
+    free(m->errors);
+    return st;
+}
+
 enum status viewpoints_measure(struct viewpoint *out, const struct view *cameras, int count,
                                struct viewpoint_test *test, struct err *err)
 {
-    const int threads = parallel_threads();
-    struct viewpoint_batch m = {out, cameras, calloc((size_t)threads, sizeof *m.tests),
-                                calloc((size_t)count + 1, sizeof *m.errors)};
-    enum status st = m.tests && m.errors ? ST_OK : err_nomem(err, "viewpoints", (size_t)count * sizeof *m.errors);
+    struct viewpoint_batch m = {.out = out, .cameras = cameras};
+    return run_batch(&m, count, test, err);
+}
 
-    for (int t = 0; !st && t < threads; t++) viewpoint_test_copy(&m.tests[t], test);
-    if (!st) parallel_for((size_t)count, 1, measure_some, &m);
-    for (int i = 0; !st && i < count; i++)
-        if (m.errors[i].status) st = err_set(err, m.errors[i].status, "%s", m.errors[i].text);
-    for (int t = 0; m.tests && t < threads; t++) {
-        test->renders += m.tests[t].renders;
-        viewpoint_test_release(&m.tests[t]);
-    }
-    free(m.tests);
-    free(m.errors);
+enum status viewpoints_are_valid(bool *valid, const struct view *cameras, int count, struct viewpoint_test *test,
+                                 struct err *err)
+{
+    struct viewpoint_batch m = {.cameras = cameras};
+    const enum status st = run_batch(&m, count, test, err);
+    *valid = !st && !atomic_load(&m.invalid);
     return st;
 }

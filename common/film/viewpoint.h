@@ -40,6 +40,10 @@ enum status viewpoint_is_valid(bool *valid, struct viewpoint_test *test, const s
 /* viewpoint_measure of `count` cameras on all threads. `test` gives scene and limits; its `renders` is increased. */
 enum status viewpoints_measure(struct viewpoint *out, const struct view *cameras, int count,
                                struct viewpoint_test *test, struct err *err);
+/* Whether all `count` cameras are valid, on all threads; the first that is not skips the rest, so those that are most
+ * likely invalid should come first. */
+enum status viewpoints_are_valid(bool *valid, const struct view *cameras, int count, struct viewpoint_test *test,
+                                 struct err *err);
 /* Sets up a test of the same scene and limits for another thread. */
 void viewpoint_test_copy(struct viewpoint_test *test, const struct viewpoint_test *from);
 void viewpoint_test_release(struct viewpoint_test *test);

@@ -19,11 +19,18 @@
  *
  * A frame is rendered in independent tiles: each tile draws the mesh's views one after another, then the fallbacks of
  * uncovered pixels, then blends the samples of each pixel, eight pixels at a time. Results therefore do not depend on
- * threads or on how a path is split into jobs. */
+ * threads or on how a path is split into jobs.
+ *
+ * Work that no pixel needs is not done: a view is prepared when a tile first asks for it, the views of the mesh at the
+ * frame's start and a fallback at the first hole; a tile projects only the segments that can reach its open pixels
+ * (drawn_view.h). Coverage alone goes through a tile's views by falling weight, each for the pixels that are still
+ * open, and looks up no colour. */
 #include "common/layers/layer_render.h"
 
 #include <immintrin.h>
 #include <math.h>
+#include <pthread.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -69,11 +76,19 @@ struct slot {                          /* samples of one view per pixel; which v
 
 struct tile_scratch { /* one per thread */
     struct tile_visibility visibility;
-    struct slot slots[SLOTS + 1];
+    struct drawn_tile segments; /* of the view that is drawn */
+    struct slot *slots;         /* SLOTS + 1; NULL: coverage alone */
     struct view_samples spare;
     struct patch patches[PATCHES];
     uint8_t covered[TILE_PIXELS];
     bool has_fallback[PATCHES]; /* the slot FALLBACK has samples */
+    enum status status;         /* ST_NOMEM: the frame is not complete */
+};
+
+struct frame_view { /* a view in this frame */
+    struct drawn_view drawn;
+    atomic_bool ready; /* drawn is prepared, or could not be */
+    enum status status;
 };
 
 struct frame_job {
@@ -81,14 +96,16 @@ struct frame_job {
     struct view novel;
     struct soft_z soft;
     struct view_weights *lattice; /* lattice_width a row */
-    int lattice_width;
-    struct drawn_view *drawn; /* one per view */
+    int lattice_width, lattice_height;
+    struct frame_view *views; /* one per view */
+    bool *wanted;             /* per view: some patch blends it */
+    pthread_mutex_t lock;     /* held while a view is prepared */
     struct view_distance *by_distance;
     float *extra_weight, *vote_weight; /* per view: addition to the mesh's weight, and weight of its vote */
     bool offline, nearest_alone;
     struct tile_scratch *scratch; /* one per thread */
+    size_t threads;
     struct rendered_frame *out;
-    enum status *prepared; /* of each view's drawn_view_prepare */
     int tiles_x, tiles;
 };
 
@@ -99,25 +116,49 @@ static int compare_distance(const void *a, const void *b)
     return x->view - y->view;
 }
 
-static void prepare_views(void *ctx, size_t begin, size_t end, int thread)
+static void prepare_view(struct frame_job *job, int view)
+{
+    struct frame_view *f = &job->views[view];
+    f->status = drawn_view_prepare(&f->drawn, &job->scene->depths[view], &job->scene->views[view],
+                                   &job->scene->set->views[view], &job->novel, NULL);
+    atomic_store_explicit(&f->ready, true, memory_order_release);
+}
+
+/* The view in this frame, prepared now if it was not; NULL: a tile has nothing of it. */
+static const struct drawn_view *view_in_tile(struct frame_job *job, int view, int tile)
+{
+    struct frame_view *f = &job->views[view];
+    if (!atomic_load_explicit(&f->ready, memory_order_acquire)) {
+        pthread_mutex_lock(&job->lock);
+        if (!atomic_load_explicit(&f->ready, memory_order_relaxed)) prepare_view(job, view);
+        pthread_mutex_unlock(&job->lock);
+    }
+    return !f->status && drawn_view_has_tile(&f->drawn, tile) ? &f->drawn : NULL;
+}
+
+static void prepare_wanted(void *ctx, size_t begin, size_t end, int thread)
 {
     struct frame_job *job = ctx;
     (void)thread;
     for (size_t i = begin; i < end; i++)
-        job->prepared[i] = drawn_view_prepare(&job->drawn[i], &job->scene->depths[i], &job->scene->views[i],
-                                              &job->scene->set->views[i], &job->novel, NULL);
+        if (job->wanted[i]) prepare_view(job, (int)i);
 }
 
 static void job_release(struct frame_job *job)
 {
-    for (int i = 0; job->drawn && i < job->scene->set->view_count; i++) drawn_view_release(&job->drawn[i]);
-    free(job->drawn);
+    for (int i = 0; job->views && i < job->scene->set->view_count; i++) drawn_view_release(&job->views[i].drawn);
+    for (size_t t = 0; job->scratch && t < job->threads; t++) {
+        drawn_tile_release(&job->scratch[t].segments);
+        free(job->scratch[t].slots);
+    }
+    free(job->views);
+    free(job->wanted);
     free(job->by_distance);
     free(job->scratch);
     free(job->extra_weight);
     free(job->vote_weight);
-    free(job->prepared);
     free(job->lattice);
+    pthread_mutex_destroy(&job->lock);
 }
 
 /* Samples the view mesh at the lattice's points, as the pixels of a reduced camera. */
@@ -134,6 +175,7 @@ static enum status lattice_init(struct frame_job *job, struct err *err)
     camera.cx = novel->cx / LATTICE + 0.5;
     camera.cy = novel->cy / LATTICE + 0.5;
     job->lattice_width = camera.width;
+    job->lattice_height = camera.height;
     job->lattice = malloc((size_t)camera.width * (size_t)camera.height * sizeof *job->lattice);
     if (!job->lattice) return err_nomem(err, "a frame's blending weights", sizeof *job->lattice);
     view_mesh_prepare(&mesh, &job->scene->mesh, &camera);
@@ -157,39 +199,80 @@ static void weigh_extra_views(struct frame_job *job, int more)
     }
 }
 
+/* Prepares the views that patches blend. */
+static void prepare_blended_views(struct frame_job *job)
+{
+    const size_t points = (size_t)job->lattice_width * (size_t)job->lattice_height;
+    const int views = job->scene->set->view_count;
+
+    if (job->nearest_alone)
+        job->wanted[job->by_distance[0].view] = true;
+    else
+        for (size_t i = 0; i < points; i++)
+            for (int k = 0; k < job->lattice[i].count; k++)
+                job->wanted[job->lattice[i].view[k]] |= job->lattice[i].weight[k] > 0;
+    for (int v = 0; v < views; v++) job->wanted[v] |= job->extra_weight[v] > 0;
+    parallel_for((size_t)views, 1, prepare_wanted, job);
+}
+
+static enum status job_allocate(struct frame_job *job, bool color, struct err *err)
+{
+    const size_t count = (size_t)job->scene->set->view_count + 1;
+
+    pthread_mutex_init(&job->lock, NULL);
+    job->views = calloc(count, sizeof *job->views);
+    job->wanted = calloc(count, sizeof *job->wanted);
+    job->by_distance = calloc(count, sizeof *job->by_distance);
+    job->extra_weight = calloc(count, sizeof *job->extra_weight);
+    job->vote_weight = calloc(count, sizeof *job->vote_weight);
+    job->scratch = malloc(job->threads * sizeof *job->scratch);
+    for (size_t t = 0; job->scratch && t < job->threads; t++) {
+        struct tile_scratch *s = &job->scratch[t];
+        s->segments = (struct drawn_tile){0};
+        s->slots = NULL;
+        s->status = ST_OK;
+    }
+    bool all = job->views && job->wanted && job->by_distance && job->extra_weight && job->vote_weight && job->scratch;
+    for (size_t t = 0; all && color && t < job->threads; t++)
+        all = (job->scratch[t].slots = malloc((SLOTS + 1) * sizeof *job->scratch[t].slots)) != NULL;
+    return all ? ST_OK
+               : err_nomem(err, "a frame's views",
+                           count * sizeof *job->views + job->threads * (SLOTS + 1) * sizeof(struct slot));
+}
+
 static enum status job_init(struct frame_job *job, struct rendered_frame *out, const struct layer_scene *scene,
                             const struct view *novel, const struct layer_render_options *options, bool color,
                             struct err *err)
 {
     const int views = scene->set->view_count;
-    const size_t count = (size_t)views + 1, threads = (size_t)parallel_threads();
 
     *job = (struct frame_job){.scene = scene, .novel = *novel, .out = out, .offline = options->offline};
+    job->threads = (size_t)parallel_threads();
     job->nearest_alone = options->nearest_alone;
     job->soft = layer_scene_soft_z(scene, options->soft_z);
     job->tiles_x = (novel->width + TILE_WIDTH - 1) / TILE_WIDTH;
     job->tiles = job->tiles_x * ((novel->height + TILE_HEIGHT - 1) / TILE_HEIGHT);
-    job->drawn = calloc(count, sizeof *job->drawn);
-    job->by_distance = calloc(count, sizeof *job->by_distance);
-    job->prepared = calloc(count, sizeof *job->prepared);
-    job->scratch = malloc(threads * sizeof *job->scratch);
-    job->extra_weight = calloc(count, sizeof *job->extra_weight);
-    job->vote_weight = calloc(count, sizeof *job->vote_weight);
-    if (!job->drawn || !job->by_distance || !job->prepared || !job->scratch || !job->extra_weight || !job->vote_weight)
-        return err_nomem(err, "a frame's views", count * sizeof *job->drawn + threads * sizeof *job->scratch);
-
-    enum status st = rendered_frame_resize(out, novel->width, novel->height, color, err);
+    enum status st = job_allocate(job, color, err);
+    if (!st) st = rendered_frame_resize(out, novel->width, novel->height, color, err);
     if (!st) st = lattice_init(job, err);
     if (st) return st;
-    parallel_for((size_t)views, 1, prepare_views, job);
     for (int i = 0; i < views; i++) {
-        if (job->prepared[i]) return err_nomem(err, "a view's segments", sizeof(struct drawn_segment));
         job->by_distance[i].view = i;
         job->by_distance[i].distance = vec3_length(vec3_sub(scene->set->views[i].center, novel->center));
     }
     qsort(job->by_distance, (size_t)views, sizeof *job->by_distance, compare_distance);
     if (job->offline && !job->nearest_alone) weigh_extra_views(job, options->more_views);
+    prepare_blended_views(job);
     return ST_OK;
+}
+
+/* After the tiles: whether memory was enough for all of them. */
+static enum status job_check(const struct frame_job *job, struct err *err)
+{
+    bool whole = true;
+    for (int i = 0; i < job->scene->set->view_count; i++) whole &= !job->views[i].status;
+    for (size_t t = 0; t < job->threads; t++) whole &= !job->scratch[t].status;
+    return whole ? ST_OK : err_nomem(err, "a view's segments", sizeof(struct drawn_segment));
 }
 
 static double hole_fraction(const struct rendered_frame *f)
@@ -326,15 +409,21 @@ static bool clear_patches_of(struct tile_scratch *s, const struct tile *at, int 
     return *last >= 0;
 }
 
-static void draw_view(const struct frame_job *job, struct tile_scratch *s, const struct tile *at, int view)
+/* Draws a view into the tile's open pixels. */
+static void draw_open(struct tile_scratch *s, const struct tile *at, const struct drawn_view *drawn)
 {
-    const struct drawn_view *drawn = &job->drawn[view];
+    if (visibility_draw(&s->visibility, &s->segments, drawn, at->index, NULL)) s->status = ST_NOMEM;
+}
+
+static void draw_view(struct frame_job *job, struct tile_scratch *s, const struct tile *at, int view)
+{
+    const struct drawn_view *drawn;
     const struct layer_view *lv = &job->scene->views[view];
     const __m256 min_inside = _mm256_set1_ps(MIN_INSIDE);
     int first, last;
 
     if (!clear_patches_of(s, at, view, &first, &last)) return;
-    visibility_draw(&s->visibility, drawn, lv, at->index);
+    if ((drawn = view_in_tile(job, view, at->index))) draw_open(s, at, drawn);
     for (int k = first; k <= last; k++) {
         const int n = patch_slot(&s->patches[k], view);
         if (n < 0) continue;
@@ -342,8 +431,8 @@ static void draw_view(const struct frame_job *job, struct tile_scratch *s, const
         for (int y = 0; y < at->height; y++)
             for (int x = 0; x < LATTICE; x += 8) {
                 const size_t i = (size_t)y * TILE_STRIDE + (size_t)(k * LATTICE + x);
-                visibility_sample8(&slot->front, job->offline ? &slot->behind : NULL, &s->visibility, drawn, lv, i,
-                                   at->x, at->y);
+                visibility_sample8(&slot->front, job->offline ? &slot->behind : NULL, &s->visibility, &s->segments, lv,
+                                   i, at->x, at->y);
                 mark_covered(s->covered + i, slot->front.alpha + i, job->offline ? slot->behind.alpha + i : NULL);
                 __m256 alpha = _mm256_loadu_ps(slot->front.alpha + i);
                 if (job->offline) alpha = _mm256_add_ps(alpha, _mm256_loadu_ps(slot->behind.alpha + i));
@@ -355,7 +444,7 @@ static void draw_view(const struct frame_job *job, struct tile_scratch *s, const
     }
 }
 
-static void draw_mesh_views(const struct frame_job *job, struct tile_scratch *s, const struct tile *at)
+static void draw_mesh_views(struct frame_job *job, struct tile_scratch *s, const struct tile *at)
 {
     for (int k = 0; k < at->patches; k++) patch_init(&s->patches[k], job, at->x / LATTICE + k, at->y / LATTICE);
     for (int v = 0; v < job->scene->set->view_count; v++) draw_view(job, s, at, v);
@@ -450,6 +539,7 @@ static void open_fallback(struct tile_scratch *s, int patch)
             const size_t i = (size_t)y * TILE_STRIDE + (size_t)x;
             memset(slot->front.rgba[i], 0, sizeof slot->front.rgba[i]);
             slot->front.alpha[i] = slot->front.z[i] = slot->front.sigma[i] = slot->blend[i] = 0;
+            slot->front.inside[i] = 0; /* a fallback has the smallest vote */
         }
 }
 
@@ -477,20 +567,23 @@ static void accept_fallback(const struct frame_job *job, struct tile_scratch *s,
 }
 
 /* Fallbacks of the pixels that the mesh's views leave uncovered: other views, the nearest first. */
-static void draw_fallback_views(const struct frame_job *job, struct tile_scratch *s, const struct tile *at, bool color)
+static void draw_fallback_views(struct frame_job *job, struct tile_scratch *s, const struct tile *at, bool color)
 {
-    for (int n = 0; n < job->scene->set->view_count; n++) {
+    for (int n = 0; n < job->scene->set->view_count && any_hole(s, at); n++) {
         const int view = job->by_distance[n].view;
-        const struct drawn_view *drawn = &job->drawn[view];
         const struct layer_view *lv = &job->scene->views[view];
-        if (drawn->tile_begin[at->index] == drawn->tile_begin[at->index + 1]) continue;
-        if (!clear_uncovered(s, at, view, false)) continue;
-        visibility_draw(&s->visibility, drawn, lv, at->index);
+        const struct drawn_view *drawn = view_in_tile(job, view, at->index);
+        if (!drawn || !clear_uncovered(s, at, view, false)) continue;
+        draw_open(s, at, drawn);
+        if (!s->segments.count) continue;
         for (int y = 0; y < at->height; y++)
             for (int x = s->visibility.first[y]; x <= s->visibility.last[y]; x += 8) {
                 const size_t i = (size_t)y * TILE_STRIDE + (size_t)x;
                 if (!any_visible(&s->visibility, i)) continue;
-                visibility_sample8(&s->spare, NULL, &s->visibility, drawn, lv, i, at->x, at->y);
+                if (color)
+                    visibility_sample8(&s->spare, NULL, &s->visibility, &s->segments, lv, i, at->x, at->y);
+                else
+                    visibility_cover8(&s->spare, &s->visibility, &s->segments, lv, i, at->x, at->y);
                 accept_fallback(job, s, at, i, color);
             }
     }
@@ -627,6 +720,9 @@ enum status layer_render(struct rendered_frame *out, const struct layer_scene *s
 
     if (!st) {
         parallel_for((size_t)job.tiles, 1, render_tiles, &job);
+        st = job_check(&job, err);
+    }
+    if (!st) {
         out->hole_fraction = hole_fraction(out);
         const struct soft_z soft = layer_scene_soft_z(scene, SOFT_Z_FILL_WIDTHS);
         const struct hole_photos photos = layer_photos(scene, novel, options);
@@ -638,13 +734,13 @@ enum status layer_render(struct rendered_frame *out, const struct layer_scene *s
 
 /* ------------------------------------------------------------------------------------------------------- coverage */
 
-static void cover_view(const struct frame_job *job, struct tile_scratch *s, const struct tile *at, int view)
+static void cover_view(struct frame_job *job, struct tile_scratch *s, const struct tile *at, int view)
 {
-    const struct drawn_view *drawn = &job->drawn[view];
     const struct layer_view *lv = &job->scene->views[view];
+    const struct drawn_view *drawn = view_in_tile(job, view, at->index);
 
-    if (!clear_uncovered(s, at, view, true)) return;
-    visibility_draw(&s->visibility, drawn, lv, at->index);
+    if (!drawn || !clear_uncovered(s, at, view, true)) return;
+    draw_open(s, at, drawn);
     for (int y = 0; y < at->height; y++)
         for (int x = s->visibility.first[y]; x <= s->visibility.last[y]; x += 8) {
             const size_t i = (size_t)y * TILE_STRIDE + (size_t)x;
@@ -654,13 +750,13 @@ static void cover_view(const struct frame_job *job, struct tile_scratch *s, cons
             const int full = _mm256_movemask_ps(_mm256_castsi256_ps(indices)) & present;
             for (int k = 0; k < 8; k++) s->covered[i + (size_t)k] |= full >> k & 1;
             if (full == present) continue;
-            visibility_sample8(&s->spare, NULL, &s->visibility, drawn, lv, i, at->x, at->y);
+            visibility_cover8(&s->spare, &s->visibility, &s->segments, lv, i, at->x, at->y);
             mark_covered(s->covered + i, s->spare.alpha + i, NULL);
         }
 }
 
 /* The views of the tile's patches in order of weight: the first covers nearly all pixels. */
-static void cover_mesh_views(const struct frame_job *job, struct tile_scratch *s, const struct tile *at)
+static void cover_mesh_views(struct frame_job *job, struct tile_scratch *s, const struct tile *at)
 {
     int views[PATCHES * SLOTS], count = 0;
     float sums[PATCHES * SLOTS];
@@ -689,7 +785,7 @@ static void cover_mesh_views(const struct frame_job *job, struct tile_scratch *s
 
 static void cover_tiles(void *ctx, size_t begin, size_t end, int thread)
 {
-    const struct frame_job *job = ctx;
+    struct frame_job *job = ctx;
     struct tile_scratch *s = &job->scratch[thread];
 
     for (size_t t = begin; t < end; t++) {
@@ -709,9 +805,12 @@ enum status layer_coverage(struct rendered_frame *out, const struct layer_scene 
 
     view_resize(&reduced, (int)fmax(1, lround(novel->width * scale)), (int)fmax(1, lround(novel->height * scale)));
     const struct layer_render_options options = {.soft_z = SOFT_Z_WIDTHS};
-    const enum status st = job_init(&job, out, scene, &reduced, &options, false, err);
+    enum status st = job_init(&job, out, scene, &reduced, &options, false, err);
     if (!st) {
         parallel_for((size_t)job.tiles, 1, cover_tiles, &job);
+        st = job_check(&job, err);
+    }
+    if (!st) {
         out->hole_fraction = hole_fraction(out);
         out->unfilled_fraction = out->hole_fraction;
     }

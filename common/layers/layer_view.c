@@ -1,8 +1,12 @@
 /* layer_view.c - packing of a view's two layers: texels, the composited photo, and the cells between texels.
  *
  * Cells replace the per-segment alpha tests of [Colburn 2014, 3.6.1], which compare the ids of single texels: they make
- * bilinear look-up possible without seams between segments of one surface. The photo has MIP levels [Williams 1983] for frames that show it
- * reduced. */
+ * bilinear look-up possible without seams between segments of one surface. The photo has MIP levels [Williams 1983] for
+ * frames that show it reduced.
+ *
+ * Segments are bounded and projected in groups of eight (drawn_view.c), so a group should be small in both directions:
+ * the picture is cut into strips as high as a square of eight segments of mean size, and the segments of each strip, by
+ * their centroids, are grouped from left to right. Those that nobody can see are in no group. */
 #include "common/layers/layer_view.h"
 
 #include <immintrin.h>
@@ -13,7 +17,8 @@
 
 #include "common/layers/soft_z.h"
 
-#define HALF_MAX 65504.0f
+#define HALF_MAX     65504.0f
+#define BOUNDS_SLACK 1e-9 /* of a bound of 1/z, relative to its terms */
 
 /* Both layers and their sum, the photo, as half floats. NaN becomes 0. */
 __attribute__((target("f16c"))) static void pack_rgba(uint16_t half[2][4], uint16_t photo[4], const float *interior,
@@ -174,6 +179,121 @@ static enum status index_cells(struct layer_view *lv, const struct layered_depth
     return ST_OK;
 }
 
+/* Grows bounds by a segment's box and by its plane's 1/z there, which is negative beyond the plane's horizon. */
+static void bounds_add_segment(struct group_bounds *b, int at, const struct segment_group *g, int k)
+{
+    const double u[2] = {(double)g->u0[k], (double)g->u1[k]}, v[2] = {(double)g->v0[k], (double)g->v1[k]};
+    const double a = g->plane[0][k], c = g->plane[1][k], d = g->plane[2][k];
+    const double slack = BOUNDS_SLACK * (fabs(a * u[1]) + fabs(c * v[1]) + fabs(d)); /* of rounding */
+
+    b->u0[at] = fmin(b->u0[at], u[0]);
+    b->v0[at] = fmin(b->v0[at], v[0]);
+    b->u1[at] = fmax(b->u1[at], u[1]);
+    b->v1[at] = fmax(b->v1[at], v[1]);
+    if (!isfinite(slack)) b->low_inverse[at] = 0, b->high_inverse[at] = INFINITY;
+    for (int corner = 0; corner < 4; corner++) {
+        const double inverse = a * u[corner % 2] + c * v[corner / 2] + d;
+        b->low_inverse[at] = fmin(b->low_inverse[at], fmax(0, inverse - slack));
+        b->high_inverse[at] = fmax(b->high_inverse[at], inverse + slack);
+    }
+}
+
+static void bounds_add_group(struct group_bounds *b, int at, const struct group_bounds *group, int k)
+{
+    b->u0[at] = fmin(b->u0[at], group->u0[k]);
+    b->v0[at] = fmin(b->v0[at], group->v0[k]);
+    b->u1[at] = fmax(b->u1[at], group->u1[k]);
+    b->v1[at] = fmax(b->v1[at], group->v1[k]);
+    b->low_inverse[at] = fmin(b->low_inverse[at], group->low_inverse[k]);
+    b->high_inverse[at] = fmax(b->high_inverse[at], group->high_inverse[k]);
+}
+
+static struct group_bounds bounds_empty(void)
+{
+    struct group_bounds b = {.high_inverse = {0}};
+    for (int k = 0; k < BOUNDS_GROUPS; k++) {
+        b.u0[k] = b.v0[k] = b.low_inverse[k] = INFINITY;
+        b.u1[k] = b.v1[k] = -INFINITY;
+    }
+    return b;
+}
+
+struct segment_place {
+    int strip;
+    double u;
+    uint32_t index;
+};
+
+static int compare_places(const void *a, const void *b)
+{
+    const struct segment_place *p = a, *q = b;
+    if (p->strip != q->strip) return p->strip < q->strip ? -1 : 1;
+    if (p->u != q->u) return p->u < q->u ? -1 : 1;
+    return p->index < q->index ? -1 : 1;
+}
+
+static double inverse_at_centroid(const struct depth_segment *s, const struct segment_shape *shape)
+{
+    return s->plane[0] * shape->u + s->plane[1] * shape->v + s->plane[2];
+}
+
+/* Lists the segments that can be seen, in the order of the groups. */
+static int list_places(struct segment_place *places, const struct layer_view *lv, const struct layered_depth *d)
+{
+    const double area = (double)lv->width * lv->height / (d->segment_count > 0 ? d->segment_count : 1);
+    const double height = sqrt(GROUP_SEGMENTS * area);
+    int count = 0;
+    for (int i = 0; i < d->segment_count; i++) {
+        const struct segment_shape *shape = &lv->shapes[i];
+        if (shape->x1 < shape->x0 || !(inverse_at_centroid(&d->segments[i], shape) > 0)) continue;
+        places[count++] = (struct segment_place){(int)(shape->v / height), shape->u, (uint32_t)i};
+    }
+    qsort(places, (size_t)count, sizeof *places, compare_places);
+    return count;
+}
+
+static void group_set(struct segment_group *g, int k, const struct depth_segment *s, const struct segment_shape *shape,
+                      uint32_t index)
+{
+    for (int c = 0; c < 3; c++) g->plane[c][k] = s->plane[c];
+    g->inverse_z[k] = inverse_at_centroid(s, shape);
+    g->u0[k] = (float)shape->x0 - 0.5f;
+    g->v0[k] = (float)shape->y0 - 0.5f;
+    g->u1[k] = (float)shape->x1 + 1.5f;
+    g->v1[k] = (float)shape->y1 + 1.5f;
+    g->sigma[k] = (float)s->sigma > SOFT_Z_MIN_SIGMA ? (float)s->sigma : SOFT_Z_MIN_SIGMA;
+    g->surface_gap[k] = (float)(JOIN_SIGMAS * M_SQRT2 * fmax(s->sigma, SOFT_Z_MIN_SIGMA));
+    g->index[k] = index;
+}
+
+/* Makes the groups and their bounds. */
+static enum status group_segments(struct layer_view *lv, const struct layered_depth *d, struct err *err)
+{
+    struct segment_place *places = malloc(((size_t)d->segment_count + 1) * sizeof *places);
+    if (!places) return err_nomem(err, "the segments of a view", (size_t)d->segment_count * sizeof *places);
+    const int count = list_places(places, lv, d), groups = (count + GROUP_SEGMENTS - 1) / GROUP_SEGMENTS;
+    const int blocks = (groups + BOUNDS_GROUPS - 1) / BOUNDS_GROUPS;
+
+    lv->group_count = groups;
+    lv->groups = calloc((size_t)groups + 1, sizeof *lv->groups);
+    lv->bounds = malloc(((size_t)blocks + 1) * sizeof *lv->bounds);
+    if (!lv->groups || !lv->bounds) {
+        free(places);
+        return err_nomem(err, "the segments of a view", (size_t)groups * sizeof *lv->groups);
+    }
+    for (int i = 0; i <= blocks; i++) lv->bounds[i] = bounds_empty();
+    for (int i = 0; i < count; i++) {
+        const int at = i / GROUP_SEGMENTS, k = i % GROUP_SEGMENTS;
+        const uint32_t index = places[i].index;
+        group_set(&lv->groups[at], k, &d->segments[index], &lv->shapes[index], index);
+        bounds_add_segment(&lv->bounds[at / BOUNDS_GROUPS], at % BOUNDS_GROUPS, &lv->groups[at], k);
+    }
+    for (int i = 0; i < groups; i++)
+        bounds_add_group(&lv->bounds[blocks], 0, &lv->bounds[i / BOUNDS_GROUPS], i % BOUNDS_GROUPS);
+    free(places);
+    return ST_OK;
+}
+
 void layer_view_release(struct layer_view *lv)
 {
     if (!lv) return;
@@ -183,6 +303,8 @@ void layer_view_release(struct layer_view *lv)
     for (int k = 0; k < 2; k++) free(lv->cells[k]);
     free(lv->many);
     free(lv->shapes);
+    free(lv->groups);
+    free(lv->bounds);
     *lv = (struct layer_view){0};
 }
 
@@ -243,6 +365,7 @@ enum status layer_view_pack(struct layer_view *lv, struct layered_depth *depth, 
     layer_drop(&depth->boundary);
     enum status st = index_cells(lv, depth, err);
     if (!st) st = reduce_photo(lv, err);
+    if (!st) st = group_segments(lv, depth, err);
     if (st) layer_view_release(lv);
     return st;
 }

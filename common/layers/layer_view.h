@@ -1,4 +1,5 @@
-/* layer_view.h - a view's two layers, packed for rendering: 43 bytes a pixel, and 64 for each cell of many segments.
+/* layer_view.h - a view's two layers, packed for rendering: 43 bytes a pixel, 64 for each cell of many segments, and
+ * 100 a segment.
  *
  * A cell is the square between the centres of a texel and of its right, lower and diagonal neighbours. In a cell of one
  * surface every segment has the photo's colour; in a split cell a segment's coverage and colour are sums over its own
@@ -44,6 +45,27 @@ struct photo_level { /* the photo reduced by a power of two: means of 2 x 2 texe
     uint16_t (*texels)[4];
 };
 
+/* Segments that are near each other in the picture: what projecting them needs, four or eight at a time. Each has its
+ * bounding box, grown to the outer edges of the cells that its texels touch. */
+#define GROUP_SEGMENTS 8
+
+struct segment_group {
+    double plane[3][GROUP_SEGMENTS];
+    double inverse_z[GROUP_SEGMENTS]; /* at the segment's centroid; 0: there is none, or nobody can see it */
+    float u0[GROUP_SEGMENTS], v0[GROUP_SEGMENTS], u1[GROUP_SEGMENTS], v1[GROUP_SEGMENTS]; /* px of the view */
+    float sigma[GROUP_SEGMENTS];       /* relative uncertainty, at least SOFT_Z_MIN_SIGMA */
+    float surface_gap[GROUP_SEGMENTS]; /* relative difference of 1/z beyond which another surface begins */
+    uint32_t index[GROUP_SEGMENTS];    /* in the depth map's list */
+};
+
+/* What four groups fill: rectangles of the view and ranges of 1/z. high_inverse 0: nobody sees a segment of the group. */
+#define BOUNDS_GROUPS 4
+
+struct group_bounds {
+    double u0[BOUNDS_GROUPS], v0[BOUNDS_GROUPS], u1[BOUNDS_GROUPS], v1[BOUNDS_GROUPS];
+    double low_inverse[BOUNDS_GROUPS], high_inverse[BOUNDS_GROUPS];
+};
+
 struct layer_view {
     int width, height, stride; /* stride of the texels; padding: one texel left and above, two right and below */
     struct texel *texels;
@@ -53,6 +75,9 @@ struct layer_view {
     uint32_t *cells[2]; /* first and second word of the cell that begins at each texel */
     struct many_cell *many;
     struct segment_shape *shapes; /* of the depth map's segments, in their order */
+    struct segment_group *groups;
+    struct group_bounds *bounds; /* of the groups, four by four; the last one bounds all groups in its first place */
+    int group_count;
 };
 
 /* Packs `depth` and frees its layers' planes; its segments stay. ST_DATA: a pixel's id has no segment. ST_NOMEM. */

@@ -7,8 +7,8 @@
  *
  * Two segments are one surface if their 1/z differ by at most surface_gap, relatively. The two surfaces do not depend
  * on the order in which segments are drawn, except where three or more at one pixel form a chain, each within the
- * tolerance of the next but not the first of the last: where the chain is cut depends on the order. That order is the
- * tile's list, which is always the same.
+ * tolerance of the next but not the first of the last: where the chain is cut depends on the order. That order is
+ * always the one of the depth map's list, whichever segments a tile projects (drawn_view.h).
  *
  * Sampling: where all texels of a cell are one surface, the photo itself is looked up, so that neither seams between
  * segments nor the soft alpha of their boundaries show. In a split cell the texels of the segment's surface alone are
@@ -22,130 +22,10 @@
 
 #include <immintrin.h>
 #include <math.h>
-#include <stdlib.h>
 
-#include "common/layers/soft_z.h"
-
-#define LEVEL_BIAS \
-    0.5 /* a photo reduced by less than sqrt(2) is looked up as it is; bilinear levels are blurred by themselves */
-#define BORDER 0.05f /* width of the band in which a view fades out towards its border, of the picture's long side */
-
-/* --------------------------------------------------------------------------------------------- segments in tiles */
-
-/* Room for `count` items; the old contents are lost. */
-static enum status reserve(void *buffer, size_t *capacity, size_t count, size_t size, struct err *err)
-{
-    void **at = buffer;
-    if (count <= *capacity) return ST_OK;
-    free(*at);
-    *at = malloc((count + count / 4) * size);
-    *capacity = *at ? count + count / 4 : 0;
-    return *at ? ST_OK : err_nomem(err, "a view's segments in a frame", count * size);
-}
-
-/* Linear form row . (x, y, 1), relative to (x, y). */
-static void form_at(float form[3], const double row[3], double x, double y)
-{
-    form[0] = (float)(row[0] * x + row[1] * y + row[2]);
-    form[1] = (float)row[0];
-    form[2] = (float)row[1];
-}
-
-static struct drawn_segment drawn_segment_make(const struct projected_segment *p, const struct depth_segment *segment)
-{
-    struct drawn_segment s = {.u0 = (float)p->u0, .v0 = (float)p->v0, .u1 = (float)p->u1, .v1 = (float)p->v1};
-    const double x = p->x0 + 0.5, y = p->y0 + 0.5;
-    s.id = segment->id;
-    s.surface_gap = (float)(JOIN_SIGMAS * M_SQRT2 * fmax(segment->sigma, SOFT_Z_MIN_SIGMA));
-    s.x0 = p->x0;
-    s.y0 = p->y0;
-    s.x1 = p->x1;
-    s.y1 = p->y1;
-    form_at(s.u, p->from_target[0], x, y);
-    form_at(s.v, p->from_target[1], x, y);
-    form_at(s.w, p->from_target[2], x, y);
-    form_at(s.inverse_z, p->inverse_z, x, y);
-    return s;
-}
-
-/* MIP level of a segment's photo: the homography's determinant over w^3 is the area in texels of a target pixel. */
-static float photo_level(const struct projected_segment *p, int levels)
-{
-    const double(*f)[3] = p->from_target;
-    const double w = f[2][0] * 0.5 * (p->x0 + p->x1 + 1) + f[2][1] * 0.5 * (p->y0 + p->y1 + 1) + f[2][2];
-    const double area =
-        fabs(f[0][0] * (f[1][1] * f[2][2] - f[1][2] * f[2][1]) - f[0][1] * (f[1][0] * f[2][2] - f[1][2] * f[2][0]) +
-             f[0][2] * (f[1][0] * f[2][1] - f[1][1] * f[2][0])) /
-        (w * w * w);
-    if (!(w > 0) || !(area > 1)) return 0;
-    return (float)fmax(0, fmin(levels, 0.5 * log2(area) - LEVEL_BIAS));
-}
-
-enum status drawn_view_prepare(struct drawn_view *dv, const struct layered_depth *depth, const struct layer_view *lv,
-                               const struct view *view, const struct view *novel, struct err *err)
-{
-    const int tiles_x = (novel->width + TILE_WIDTH - 1) / TILE_WIDTH;
-    const int tiles_y = (novel->height + TILE_HEIGHT - 1) / TILE_HEIGHT;
-    struct view_relation relation;
-    enum status st =
-        reserve(&dv->segments, &dv->segment_capacity, (size_t)depth->segment_count + 1, sizeof *dv->segments, err);
-
-    if (!st) st = reserve(&dv->sigmas, &dv->sigma_capacity, (size_t)depth->segment_count + 1, sizeof *dv->sigmas, err);
-    if (!st) st = reserve(&dv->levels, &dv->level_capacity, (size_t)depth->segment_count + 1, sizeof *dv->levels, err);
-    if (!st)
-        st = reserve(&dv->tile_begin, &dv->tile_capacity, (size_t)tiles_x * (size_t)tiles_y + 2, sizeof *dv->tile_begin,
-                     err);
-    if (st) return st;
-    dv->tiles_x = tiles_x;
-    dv->tile_count = tiles_x * tiles_y;
-    dv->count = 0;
-    dv->reduced = false;
-    for (int t = 0; t <= dv->tile_count + 1; t++) dv->tile_begin[t] = 0;
-    view_relation_make(&relation, view, novel);
-    uint32_t *begins = dv->tile_begin + 1; /* counting sort: tile t at t + 1 until the lists are filled */
-    size_t entries = 0;
-    for (int i = 0; i < depth->segment_count; i++) {
-        struct projected_segment p;
-        if (!segment_project(&p, &relation, &depth->segments[i], &lv->shapes[i])) continue;
-        const float sigma = (float)depth->segments[i].sigma;
-        dv->sigmas[dv->count] = sigma > SOFT_Z_MIN_SIGMA ? sigma : SOFT_Z_MIN_SIGMA;
-        dv->levels[dv->count] = photo_level(&p, lv->reduced_count);
-        dv->reduced |= dv->levels[dv->count] > 0;
-        dv->segments[dv->count++] = drawn_segment_make(&p, &depth->segments[i]);
-        for (int ty = p.y0 / TILE_HEIGHT; ty <= p.y1 / TILE_HEIGHT; ty++)
-            for (int tx = p.x0 / TILE_WIDTH; tx <= p.x1 / TILE_WIDTH; tx++) {
-                begins[ty * tiles_x + tx]++;
-                entries++;
-            }
-    }
-    st = reserve(&dv->tile_segments, &dv->list_capacity, entries + 1, sizeof *dv->tile_segments, err);
-    if (st) return st;
-    uint32_t sum = 0; /* begins[t]: from the count of tile t to its first entry */
-    for (int t = 0; t < dv->tile_count; t++) {
-        const uint32_t count = begins[t];
-        begins[t] = sum;
-        sum += count;
-    }
-    for (int i = 0; i < dv->count; i++) {
-        const struct drawn_segment *s = &dv->segments[i];
-        for (int ty = s->y0 / TILE_HEIGHT; ty <= s->y1 / TILE_HEIGHT; ty++)
-            for (int tx = s->x0 / TILE_WIDTH; tx <= s->x1 / TILE_WIDTH; tx++)
-                dv->tile_segments[begins[ty * tiles_x + tx]++] =
-                    (uint32_t)i; /* begins[t] ends at tile t + 1's first entry */
-    }
-    return ST_OK;
-}
-
-void drawn_view_release(struct drawn_view *dv)
-{
-    if (!dv) return;
-    free(dv->segments);
-    free(dv->sigmas);
-    free(dv->levels);
-    free(dv->tile_begin);
-    free(dv->tile_segments);
-    *dv = (struct drawn_view){0};
-}
+/* A photo reduced by less than sqrt(2) is looked up as it is: bilinear levels are blurred by themselves. */
+#define LEVEL_BIAS 0.5f
+#define BORDER     0.05f /* width of the band in which a view fades out towards its border, of the picture's long side */
 
 /* ------------------------------------------------------------------------------------------------------ drawing */
 
@@ -284,22 +164,57 @@ static void draw_row(struct tile_visibility *tv, size_t row, int first, int last
     }
 }
 
-void visibility_draw(struct tile_visibility *tv, const struct drawn_view *dv, const struct layer_view *lv, int tile)
+/* The pixels to draw: in the row's range of columns, and not skipped. */
+static void find_open(struct open_pixels *open, const struct tile_visibility *tv, int tile_x, int tile_y)
+{
+    int x0 = TILE_WIDTH, x1 = -1, y0 = TILE_HEIGHT, y1 = -1;
+
+    for (int y = 0; y < TILE_HEIGHT; y++) {
+        const float *inverse = tv->inverse_front + (size_t)y * TILE_STRIDE;
+        const int first = tv->first[y], last = tv->last[y];
+        open->row[y][0] = open->row[y][1] = 0;
+        for (int x = first & ~7; x <= last; x += 8) {
+            const __m256 is = _mm256_cmp_ps(_mm256_loadu_ps(inverse + x), _mm256_setzero_ps(), _CMP_EQ_OQ);
+            unsigned bits = (unsigned)_mm256_movemask_ps(is);
+            if (x < first) bits &= 0xFFu << (first - x);
+            if (last - x < 7) bits &= (2u << (last - x)) - 1;
+            open->row[y][x / 64] |= (uint64_t)bits << x % 64;
+        }
+        const uint64_t low = open->row[y][0], high = open->row[y][1];
+        if (!(low | high)) continue;
+        const int left = low ? __builtin_ctzll(low) : 64 + __builtin_ctzll(high);
+        const int right = high ? 127 - __builtin_clzll(high) : 63 - __builtin_clzll(low);
+        x0 = left < x0 ? left : x0;
+        x1 = right > x1 ? right : x1;
+        y0 = y < y0 ? y : y0;
+        y1 = y;
+    }
+    open->x = tile_x;
+    open->y = tile_y;
+    open->box = (struct pixel_box){tile_x + x0, tile_y + y0, tile_x + x1, tile_y + y1};
+}
+
+enum status visibility_draw(struct tile_visibility *tv, struct drawn_tile *segments, const struct drawn_view *dv,
+                            int tile, struct err *err)
 {
     const int tile_x = tile % dv->tiles_x * TILE_WIDTH, tile_y = tile / dv->tiles_x * TILE_HEIGHT;
+    struct open_pixels open;
 
-    for (uint32_t i = dv->tile_begin[tile]; i < dv->tile_begin[tile + 1]; i++) {
-        const uint32_t index = dv->tile_segments[i];
-        const struct drawn_segment *s = &dv->segments[index];
-        const int top = s->y0 > tile_y ? s->y0 - tile_y : 0;
-        const int bottom = s->y1 < tile_y + TILE_HEIGHT - 1 ? s->y1 - tile_y : TILE_HEIGHT - 1;
+    find_open(&open, tv, tile_x, tile_y);
+    if (drawn_tile_project(segments, dv, tile, &open, err)) return ST_NOMEM;
+    for (int i = 0; i < segments->count; i++) {
+        const uint32_t index = segments->order[i];
+        const struct drawn_segment *s = &segments->segments[index];
+        const int top = s->y0 > tile_y ? s->y0 : tile_y;
+        const int bottom = s->y1 < tile_y + TILE_HEIGHT - 1 ? s->y1 : tile_y + TILE_HEIGHT - 1;
         for (int y = top; y <= bottom; y++) {
-            const int first = s->x0 > tile_x + tv->first[y] ? s->x0 : tile_x + tv->first[y];
-            const int last = s->x1 < tile_x + tv->last[y] ? s->x1 : tile_x + tv->last[y];
-            if (first > last) continue;
-            draw_row(tv, (size_t)y * TILE_STRIDE, first, last, s, index, lv, (float)(tile_y + y - s->y0), tile_x);
+            const int first = s->x0 > tile_x + tv->first[y - tile_y] ? s->x0 : tile_x + tv->first[y - tile_y];
+            const int last = s->x1 < tile_x + tv->last[y - tile_y] ? s->x1 : tile_x + tv->last[y - tile_y];
+            if (!open_pixels_any(&open, first, y, last, y)) continue;
+            draw_row(tv, (size_t)(y - tile_y) * TILE_STRIDE, first, last, s, index, dv->lv, (float)(y - s->y0), tile_x);
         }
     }
+    return ST_OK;
 }
 
 /* ------------------------------------------------------------------------------------------------------ sampling */
@@ -378,15 +293,31 @@ static __m128 photo_between(const struct layer_view *lv, float level, float u, f
     return _mm_add_ps(fine, _mm_mul_ps(_mm_sub_ps(coarse, fine), _mm_set1_ps(level - (float)below)));
 }
 
-/* Replaces the colours of the eight pixels from i on by those of their segments' levels. */
-static void sample_reduced(struct view_samples *s, const struct drawn_view *dv, const struct layer_view *lv, size_t i,
+/* MIP level of a segment's photo: the homography's determinant over w^3 is the area in texels of a target pixel. */
+static float photo_level(const struct drawn_segment *s, int levels)
+{
+    const float dx = 0.5f * (float)(s->x1 - s->x0), dy = 0.5f * (float)(s->y1 - s->y0);
+    const float w = s->w[0] + dx * s->w[1] + dy * s->w[2];
+    const float det = s->u[1] * (s->v[2] * s->w[0] - s->v[0] * s->w[2]) -
+                      s->u[2] * (s->v[1] * s->w[0] - s->v[0] * s->w[1]) +
+                      s->u[0] * (s->v[1] * s->w[2] - s->v[2] * s->w[1]);
+    const float area = fabsf(det) / (w * w * w);
+    if (!(w > 0) || !(area > 1)) return 0;
+    return fmaxf(0, fminf((float)levels, 0.5f * log2f(area) - LEVEL_BIAS));
+}
+
+/* Replaces the colours of those of the eight pixels from i on whose segments the frame shows reduced. */
+static void sample_reduced(struct view_samples *s, const struct drawn_tile *dt, const struct layer_view *lv, size_t i,
                            int pixels, __m256i segment, const float *u, const float *v)
 {
-    int index[8];
+    int index[8], known = -1;
+    float level = 0;
+
     _mm256_storeu_si256((__m256i *)(void *)index, segment);
-    for (int k = 0; k < 8; k++) {
-        const float level = dv->levels[index[k]];
-        if (!(pixels >> k & 1) || !(level > 0)) continue;
+    for (; pixels; pixels &= pixels - 1) {
+        const int k = __builtin_ctz((unsigned)pixels);
+        if (index[k] != known) level = photo_level(&dt->segments[known = index[k]], lv->reduced_count);
+        if (!(level > 0)) continue;
         _mm_storeu_ps(s->rgba[i + (size_t)k],
                       photo_between(lv, level, u[k], v[k], _mm_loadu_ps(s->rgba[i + (size_t)k])));
     }
@@ -445,6 +376,29 @@ static __m128 surface_at(const struct layer_view *lv, uint32_t id, float u, floa
     return _mm_add_ps(_mm256_castps256_ps128(sum), _mm256_extractf128_ps(sum, 1));
 }
 
+/* Coverage by segment `id`'s surface in a split cell: the alpha of surface_at(), bit by bit. */
+static float surface_alpha(const struct layer_view *lv, uint32_t id, float u, float v)
+{
+    const int i = (int)u, j = (int)v;
+    const float fu = u - (float)i, fv = v - (float)j;
+    const size_t at = (size_t)j * (size_t)lv->stride + (size_t)i;
+    const struct texel *t = lv->texels + at;
+    const struct texel *cell[4] = {t, t + 1, t + lv->stride, t + lv->stride + 1};
+    const float weights[4] = {(1 - fu) * (1 - fv), fu * (1 - fv), (1 - fu) * fv, fu * fv};
+    uint32_t ids[CELL_IDS];
+    const int count = same_surface(lv, at, id, ids);
+    float sum[2] = {0, 0};
+
+    for (int k = 0; k < 4; k++)
+        for (int l = 0; l < 2; l++) {
+            const uint32_t own = cell[k]->id[l] & ~TEXEL_JOINED;
+            bool found = false;
+            for (int n = 0; n < count; n++) found |= own == ids[n];
+            if (found) sum[l] += weights[k] * _cvtsh_ss(cell[k]->rgba[l][3]);
+        }
+    return sum[0] + sum[1];
+}
+
 /* Fade towards the picture's border at texel positions (u, v): 0 at the border, 1 from BORDER on. */
 static inline __m256 inside8(const struct layer_view *lv, __m256 u, __m256 v)
 {
@@ -457,27 +411,41 @@ static inline __m256 inside8(const struct layer_view *lv, __m256 u, __m256 v)
     return _mm256_min_ps(_mm256_set1_ps(1), part);
 }
 
-/* Coverage and premultiplied colour of segment b at target pixel (x, y). */
-static __m128 behind_at(const struct drawn_segment *b, bool full, const struct layer_view *lv, int x, int y)
+/* Position of target pixel (x, y) on segment b, in the padded texels. */
+static void position_on(const struct drawn_segment *b, int x, int y, float *u, float *v)
 {
     const float dx = (float)(x - b->x0), dy = (float)(y - b->y0);
     const float scale = 1 / (b->w[0] + dx * b->w[1] + dy * b->w[2]);
-    const float u = (b->u[0] + dx * b->u[1] + dy * b->u[2]) * scale;
-    const float v = (b->v[0] + dx * b->v[1] + dy * b->v[2]) * scale;
+    *u = (b->u[0] + dx * b->u[1] + dy * b->u[2]) * scale;
+    *v = (b->v[0] + dx * b->v[1] + dy * b->v[2]) * scale;
+}
+
+/* Coverage and premultiplied colour of segment b at target pixel (x, y). */
+static __m128 behind_at(const struct drawn_segment *b, bool full, const struct layer_view *lv, int x, int y)
+{
+    float u, v;
+    position_on(b, x, y, &u, &v);
     return full ? photo_at(lv, u, v) : surface_at(lv, b->id, u, v);
+}
+
+static float alpha_behind(const struct drawn_segment *b, bool full, const struct layer_view *lv, int x, int y)
+{
+    float u, v;
+    position_on(b, x, y, &u, &v);
+    return full ? alpha_of(photo_at(lv, u, v)) : surface_alpha(lv, b->id, u, v);
 }
 
 /* Samples a pixel that its front covers only partly: saturating compositing, front to back. */
 static void sample_split(struct view_samples *s, struct view_samples *behind, const struct tile_visibility *tv,
-                         const struct drawn_view *dv, const struct layer_view *lv, size_t i, int x, int y)
+                         const struct drawn_tile *dt, const struct layer_view *lv, size_t i, int x, int y)
 {
     const uint32_t index = tv->behind[i];
-    __m128 sum = surface_at(lv, dv->segments[tv->front[i]].id, tv->u[i], tv->v[i]);
+    __m128 sum = surface_at(lv, dt->segments[tv->front[i]].id, tv->u[i], tv->v[i]);
     const float alpha = alpha_of(sum);
 
     if (index != VISIBLE_NONE && alpha < 1) {
         const uint32_t at = index & ~VISIBLE_FULL;
-        const __m128 back = behind_at(&dv->segments[at], index & VISIBLE_FULL, lv, x, y);
+        const __m128 back = behind_at(&dt->segments[at], index & VISIBLE_FULL, lv, x, y);
         const float back_alpha = alpha_of(back), weight = back_alpha < 1 - alpha ? back_alpha : 1 - alpha;
         const __m128 rest = weight > 0 ? _mm_mul_ps(back, _mm_set1_ps(weight / back_alpha)) : _mm_setzero_ps();
         struct view_samples *to = behind ? behind : s;
@@ -488,7 +456,7 @@ static void sample_split(struct view_samples *s, struct view_samples *behind, co
             sum = _mm_add_ps(sum, rest);
         if (behind || weight > alpha) { /* depth of the dominant surface, never a mean across a depth jump */
             to->z[i] = 1 / tv->inverse_behind[i];
-            to->sigma[i] = dv->sigmas[at];
+            to->sigma[i] = dt->sigmas[at];
         }
     }
     _mm_storeu_ps(s->rgba[i], sum);
@@ -502,7 +470,7 @@ static void sample_nothing(struct view_samples *s, size_t i)
 }
 
 void visibility_sample8(struct view_samples *s, struct view_samples *behind, const struct tile_visibility *tv,
-                        const struct drawn_view *dv, const struct layer_view *lv, size_t i, int tile_x, int tile_y)
+                        const struct drawn_tile *dt, const struct layer_view *lv, size_t i, int tile_x, int tile_y)
 {
     const __m256i index = _mm256_loadu_si256((const __m256i *)(const void *)(tv->front + i));
     const __m256i none = _mm256_cmpeq_epi32(index, _mm256_set1_epi32(-1));
@@ -519,7 +487,7 @@ void visibility_sample8(struct view_samples *s, struct view_samples *behind, con
         return;
     }
     _mm256_storeu_ps(s->z + i, _mm256_div_ps(_mm256_set1_ps(1), _mm256_loadu_ps(tv->inverse_front + i)));
-    _mm256_storeu_ps(s->sigma + i, _mm256_i32gather_ps(dv->sigmas, segment, 4));
+    _mm256_storeu_ps(s->sigma + i, _mm256_i32gather_ps(dt->sigmas, segment, 4));
     _mm256_storeu_ps(s->inside + i, inside8(lv, u, v));
     _mm256_storeu_ps(s->alpha + i, _mm256_set1_ps(1));
 
@@ -534,13 +502,59 @@ void visibility_sample8(struct view_samples *s, struct view_samples *behind, con
         for (int k = 0; k < 8; k++) _mm_storeu_ps(s->rgba[i + (size_t)k], photo_cubic(lv, at[k], fu[k], fv[k]));
     else
         for (int k = 0; k < 8; k++) _mm_storeu_ps(s->rgba[i + (size_t)k], photo_texel(lv, at[k], fu[k], fv[k]));
-    if (dv->reduced && full) sample_reduced(s, dv, lv, i, full, segment, tv->u + i, tv->v + i);
+    sample_reduced(s, dt, lv, i, full, segment, tv->u + i, tv->v + i);
     if (full == 0xFF) return;
     for (int k = 0; k < 8; k++) {
         const size_t p = i + (size_t)k;
         if (empty >> k & 1)
             sample_nothing(s, p);
         else if (!(full >> k & 1))
-            sample_split(s, behind, tv, dv, lv, p, tile_x + (int)(p % TILE_STRIDE), tile_y + (int)(p / TILE_STRIDE));
+            sample_split(s, behind, tv, dt, lv, p, tile_x + (int)(p % TILE_STRIDE), tile_y + (int)(p / TILE_STRIDE));
+    }
+}
+
+/* As sample_split() without `behind`, but no colour. */
+static void cover_split(struct view_samples *s, const struct tile_visibility *tv, const struct drawn_tile *dt,
+                        const struct layer_view *lv, size_t i, int x, int y)
+{
+    const uint32_t index = tv->behind[i];
+    float alpha = surface_alpha(lv, dt->segments[tv->front[i]].id, tv->u[i], tv->v[i]);
+
+    if (index != VISIBLE_NONE && alpha < 1) {
+        const uint32_t at = index & ~VISIBLE_FULL;
+        const float back = alpha_behind(&dt->segments[at], index & VISIBLE_FULL, lv, x, y);
+        const float weight = back < 1 - alpha ? back : 1 - alpha;
+        if (weight > alpha) {
+            s->z[i] = 1 / tv->inverse_behind[i];
+            s->sigma[i] = dt->sigmas[at];
+        }
+        alpha += weight > 0 ? back * (weight / back) : 0;
+    }
+    s->alpha[i] = alpha;
+}
+
+void visibility_cover8(struct view_samples *s, const struct tile_visibility *tv, const struct drawn_tile *dt,
+                       const struct layer_view *lv, size_t i, int tile_x, int tile_y)
+{
+    const __m256i index = _mm256_loadu_si256((const __m256i *)(const void *)(tv->front + i));
+    const __m256i none = _mm256_cmpeq_epi32(index, _mm256_set1_epi32(-1));
+    const int empty = _mm256_movemask_ps(_mm256_castsi256_ps(none));
+    const int full = _mm256_movemask_ps(_mm256_castsi256_ps(index)) & ~empty;
+    const __m256i segment = _mm256_andnot_si256(none, _mm256_and_si256(index, _mm256_set1_epi32((int)~VISIBLE_FULL)));
+    const __m256 clear = _mm256_castsi256_ps(none);
+
+    if (empty == 0xFF) {
+        _mm256_storeu_ps(s->z + i, _mm256_setzero_ps());
+        _mm256_storeu_ps(s->sigma + i, _mm256_setzero_ps());
+        _mm256_storeu_ps(s->alpha + i, _mm256_setzero_ps());
+        return;
+    }
+    const __m256 one = _mm256_set1_ps(1);
+    _mm256_storeu_ps(s->z + i, _mm256_andnot_ps(clear, _mm256_div_ps(one, _mm256_loadu_ps(tv->inverse_front + i))));
+    _mm256_storeu_ps(s->sigma + i, _mm256_andnot_ps(clear, _mm256_i32gather_ps(dt->sigmas, segment, 4)));
+    _mm256_storeu_ps(s->alpha + i, _mm256_andnot_ps(clear, one));
+    for (int lanes = ~(full | empty) & 0xFF; lanes; lanes &= lanes - 1) {
+        const size_t p = i + (size_t)__builtin_ctz((unsigned)lanes);
+        cover_split(s, tv, dt, lv, p, tile_x + (int)(p % TILE_STRIDE), tile_y + (int)(p / TILE_STRIDE));
     }
 }

@@ -4,15 +4,13 @@
  *   M = K_view R K_novel^-1,   k = K_view t,   m = M^T p / (1 - p . k)
  *   1/z_novel = m . (x, y, 1),   (u, v, 1) ~ (M + k m^T) (x, y, 1)
  * the homography that the plane induces [Hartley 2004, 13.1]. The segment is not visible if 1 - p . k <= 0: the novel
- * camera is behind the plane. */
+ * camera is behind the plane.
+ *
+ * drawn_view.c does the same for four segments at once, with the same bits: keep the order of operations in both. */
 #include "common/layers/segment_project.h"
 
 #include <math.h>
 #include <string.h>
-
-#define SLACK      1e-3 /* px */
-#define MIN_FACING 1e-6 /* min 1 - p . k: below, the plane is seen edge-on or from behind */
-#define MIN_RATIO  1e-6 /* min ratio of the depths in the novel camera and in the view */
 
 static struct mat3 intrinsics(const struct view *v)
 {
@@ -79,11 +77,11 @@ static bool target_rectangle(struct projected_segment *s, const struct view_rela
     bool inside = true;
 
     for (int i = 0; i < 4; i++)
-        inside &= row_at(plane, points[i][0], points[i][1]) >= MIN_RATIO * inverse_z &&
-                  row_at(to_target[2], points[i][0], points[i][1]) >= MIN_RATIO;
+        inside &= row_at(plane, points[i][0], points[i][1]) >= PROJECT_MIN_RATIO * inverse_z &&
+                  row_at(to_target[2], points[i][0], points[i][1]) >= PROJECT_MIN_RATIO;
     if (!inside) {
-        count = clip_polygon(points, count, plane, MIN_RATIO * inverse_z);
-        count = clip_polygon(points, count, to_target[2], MIN_RATIO);
+        count = clip_polygon(points, count, plane, PROJECT_MIN_RATIO * inverse_z);
+        count = clip_polygon(points, count, to_target[2], PROJECT_MIN_RATIO);
     }
     for (int i = 0; i < count; i++) {
         const double w = 1 / row_at(to_target[2], points[i][0], points[i][1]);
@@ -95,10 +93,10 @@ static bool target_rectangle(struct projected_segment *s, const struct view_rela
         y1 = y > y1 ? y : y1;
     }
     if (!(x1 > 0 && y1 > 0 && x0 < r->width && y0 < r->height)) return false;
-    s->x0 = x0 > 0.5 + SLACK ? (int)ceil(x0 - 0.5 - SLACK) : 0; /* pixels whose centres are inside */
-    s->y0 = y0 > 0.5 + SLACK ? (int)ceil(y0 - 0.5 - SLACK) : 0;
-    s->x1 = x1 - 0.5 + SLACK < r->width - 1 ? (int)floor(x1 - 0.5 + SLACK) : r->width - 1;
-    s->y1 = y1 - 0.5 + SLACK < r->height - 1 ? (int)floor(y1 - 0.5 + SLACK) : r->height - 1;
+    s->x0 = x0 > 0.5 + PROJECT_SLACK ? (int)ceil(x0 - 0.5 - PROJECT_SLACK) : 0; /* pixels whose centres are inside */
+    s->y0 = y0 > 0.5 + PROJECT_SLACK ? (int)ceil(y0 - 0.5 - PROJECT_SLACK) : 0;
+    s->x1 = x1 - 0.5 + PROJECT_SLACK < r->width - 1 ? (int)floor(x1 - 0.5 + PROJECT_SLACK) : r->width - 1;
+    s->y1 = y1 - 0.5 + PROJECT_SLACK < r->height - 1 ? (int)floor(y1 - 0.5 + PROJECT_SLACK) : r->height - 1;
     return s->x0 <= s->x1 && s->y0 <= s->y1;
 }
 
@@ -110,7 +108,7 @@ bool segment_project(struct projected_segment *s, const struct view_relation *r,
     const double inverse_z = row_at(p, shape->u, shape->v);
     double to_target[3][3];
 
-    if (shape->x1 < shape->x0 || !(facing > MIN_FACING) || !(inverse_z > 0)) return false;
+    if (shape->x1 < shape->x0 || !(facing > PROJECT_MIN_FACING) || !(inverse_z > 0)) return false;
     for (int i = 0; i < 3; i++)
         for (int c = 0; c < 3; c++) to_target[i][c] = r->inverse_m[i][c] + r->inverse_k[i] * p[c];
     if (!target_rectangle(s, r, p, to_target, shape->x0 - 0.5, shape->y0 - 0.5, shape->x1 + 1.5, shape->y1 + 1.5,

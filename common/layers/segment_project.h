@@ -8,6 +8,10 @@
 
 #include "common/layers/layer_view.h"
 
+#define PROJECT_SLACK      1e-3 /* px, of a bounding box in target pixels */
+#define PROJECT_MIN_FACING 1e-6 /* min 1 - p . k: below, the plane is seen edge-on or from behind */
+#define PROJECT_MIN_RATIO  1e-6 /* min ratio of the depths in the novel camera and in the view */
+
 struct view_relation {                    /* pixels from pixels: M and k of segment_project.c, both ways */
     double m[3][3], k[3];                 /* view from novel */
     double inverse_m[3][3], inverse_k[3]; /* novel from view */

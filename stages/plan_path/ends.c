@@ -177,6 +177,7 @@ static enum status rank_pairs(struct ends_search *s, struct end_pair **pairs, in
 static enum status draw_in(struct ends_search *s, struct move_ends *e, struct err *err)
 {
     const struct vec3 origin = s->v->shot.origin, from[2] = {e->at[0], e->at[1]};
+    struct move_ends widest = *e;  /* of those that are valid */
     double valid = 0, invalid = 1; /* fractions of the way from the origin to the ends */
 
     for (int i = 0; i < SHRINK_STEPS; i++) {
@@ -184,9 +185,13 @@ static enum status draw_in(struct ends_search *s, struct move_ends *e, struct er
         for (int k = 0; k < 2; k++) e->at[k] = point_between(origin, from[k], middle);
         if (ends_measure_path_if_valid(s, e, err)) return err->status;
         if (e->valid && e->angle <= s->params->max_angle)
-            valid = middle;
+            valid = middle, widest = *e;
         else
             invalid = middle;
+    }
+    if (valid > 0) {
+        *e = widest;
+        return ST_OK;
     }
     for (int k = 0; k < 2; k++) e->at[k] = point_between(origin, from[k], valid);
     return ends_measure_path(s, e, err);

@@ -62,8 +62,10 @@ enum { FRAGMENTS = 2 * CLUTTER_VIEWS };
 
 struct blend_tile { /* one per thread */
     struct tile_visibility visibility;
+    struct drawn_tile segments; /* of the view that is drawn */
     struct view_samples front[CLUTTER_VIEWS], behind[CLUTTER_VIEWS];
     bool drawn[CLUTTER_VIEWS];
+    enum status status; /* ST_NOMEM: the picture is not complete */
 };
 
 struct blend_job {
@@ -117,19 +119,20 @@ static bool draw_tile(const struct blend_job *job, struct blend_tile *t, int til
     for (int k = 0; k < job->choice->count; k++) {
         const struct drawn_view *drawn = &job->scene->drawn[k];
         const struct layer_view *layers = &job->scene->sources[job->choice->view[k]].view.layers;
-        t->drawn[k] = drawn->tile_begin[tile] != drawn->tile_begin[tile + 1];
-        if (!t->drawn[k]) continue;
-        any = true;
+        t->drawn[k] = false;
+        if (!drawn_view_has_tile(drawn, tile)) continue;
         for (size_t i = 0; i < TILE_PIXELS; i++) t->visibility.inverse_front[i] = t->visibility.inverse_behind[i] = 0;
         for (size_t i = 0; i < TILE_PIXELS; i++) t->visibility.front[i] = t->visibility.behind[i] = VISIBLE_NONE;
         for (int row = 0; row < TILE_HEIGHT; row++) {
             t->visibility.first[row] = 0;
             t->visibility.last[row] = row < height ? width - 1 : -1;
         }
-        visibility_draw(&t->visibility, drawn, layers, tile);
+        if (visibility_draw(&t->visibility, &t->segments, drawn, tile, NULL)) t->status = ST_NOMEM;
+        if (!t->segments.count) continue;
+        t->drawn[k] = any = true;
         for (int row = 0; row < height; row++)
             for (int column = 0; column < width; column += 8)
-                visibility_sample8(&t->front[k], &t->behind[k], &t->visibility, drawn, layers,
+                visibility_sample8(&t->front[k], &t->behind[k], &t->visibility, &t->segments, layers,
                                    (size_t)row * TILE_STRIDE + (size_t)column, x, y);
     }
     return any;
@@ -375,10 +378,18 @@ enum status clutter_blend(struct model_picture *p, float *cover, struct clutter_
     job.tiles = job.tiles_x * ((p->height + TILE_HEIGHT - 1) / TILE_HEIGHT);
     job.tile = malloc(threads * sizeof *job.tile);
     if (!job.tile) return err_nomem(err, "tiles of clutter", threads * sizeof *job.tile);
+    for (size_t t = 0; t < threads; t++) {
+        job.tile[t].segments = (struct drawn_tile){0};
+        job.tile[t].status = ST_OK;
+    }
     parallel_for((size_t)choice->count, 1, prepare_views, &job);
     for (int k = 0; !st && k < choice->count; k++)
         if (job.prepared[k]) st = err_nomem(err, "a view's segments", sizeof(struct drawn_segment));
     if (!st) parallel_for((size_t)job.tiles, 1, blend_tiles, &job);
+    for (size_t t = 0; t < threads; t++) {
+        if (!st && job.tile[t].status) st = err_nomem(err, "a view's segments", sizeof(struct drawn_segment));
+        drawn_tile_release(&job.tile[t].segments);
+    }
     free(job.tile);
     return st;
 }

@@ -60,12 +60,17 @@ static enum status search_z(struct cell_sampler *s, const struct shot_end *end, 
     return ST_OK;
 }
 
-/* z0_only: test z = 0 and do not search. */
-static enum status sample_cell(struct cell_sampler *s, const struct shot_end *end, bool z0_only,
+enum cell_task {
+    CELL_TEST,   /* test z = 0 alone */
+    CELL_SEARCH, /* search z; whether z = 0 is valid is known */
+    CELL_ALL
+};
+
+static enum status sample_cell(struct cell_sampler *s, const struct shot_end *end, enum cell_task task,
                                struct validity_cell *c, struct err *err)
 {
-    enum status st = is_valid(s, end, c->x, c->y, 0, &c->valid, err);
-    if (z0_only) return st;
+    enum status st = task == CELL_SEARCH ? ST_OK : is_valid(s, end, c->x, c->y, 0, &c->valid, err);
+    if (task == CELL_TEST) return st;
     if (!st && c->valid) st = search_z(s, end, c->x, c->y, -1, &c->low, err);
     if (!st && c->valid) st = search_z(s, end, c->x, c->y, 1, &c->high, err);
     return st;
@@ -152,7 +157,7 @@ struct cell_job {
     const struct shot_end *end;
     struct validity_cell *cells;
     struct err *errors; /* one per cell */
-    bool z0_only;
+    enum cell_task task;
     struct progress progress;
 };
 
@@ -160,17 +165,17 @@ static void sample_some(void *ctx, size_t begin, size_t end, int thread)
 {
     struct cell_job *job = ctx;
     for (size_t i = begin; i < end; i++) {
-        sample_cell(&job->samplers[thread], job->end, job->z0_only, &job->cells[i], &job->errors[i]);
+        sample_cell(&job->samplers[thread], job->end, job->task, &job->cells[i], &job->errors[i]);
         progress_add(&job->progress, 1);
     }
 }
 
 /* Samples cells on all threads; `what` names them for the progress line. */
 static enum status sample_cells(struct cell_sampler *s, const struct shot_end *end, struct validity_cell *cells,
-                                int count, bool z0_only, const char *what, struct err *err)
+                                int count, enum cell_task task, const char *what, struct err *err)
 {
     const int threads = parallel_threads();
-    struct cell_job job = {.end = end, .cells = cells, .z0_only = z0_only};
+    struct cell_job job = {.end = end, .cells = cells, .task = task};
     job.samplers = calloc((size_t)threads, sizeof *job.samplers);
     job.errors = calloc((size_t)count + 1, sizeof *job.errors);
     enum status st = job.samplers && job.errors ? ST_OK : err_nomem(err, "cells", (size_t)count * sizeof *job.errors);
@@ -212,7 +217,7 @@ static enum status measure_error(struct cell_sampler *s, const struct shot_end *
         original[taken++] = c;
     }
     s->test.limits.side = H_REFERENCE_SIDE;
-    if (!st && taken) st = sample_cells(s, end, again, taken, false, "cells in full pictures", err);
+    if (!st && taken) st = sample_cells(s, end, again, taken, CELL_ALL, "cells in full pictures", err);
     s->test.limits.side = side;
     for (int i = 0; !st && i < taken; i++) {
         const double apart[2] = {fabs(again[i].low - original[i]->low) / s->v->step,
@@ -235,21 +240,24 @@ static bool same_rule(const struct shot_end *a, const struct shot_end *b)
 }
 
 /* Places the cells: halves the grid until a quarter of them are valid; if that never happens, takes the size with the
- * most valid cells. */
+ * most valid cells. *task: what is left to be done. */
 static enum status fit_grid(struct cell_sampler *s, const struct shot_end *end, struct validity_region *r,
-                            double extent, struct err *err)
+                            double extent, enum cell_task *task, struct err *err)
 {
     const int cells = r->columns * r->rows;
-    double best = 1;
+    double best = 1, tested = 0;
     int max_valid = -1;
     enum status st = ST_OK;
 
     for (int i = 0; !st && i < GRID_SIZES && cells > 1 && 4 * max_valid < cells; i++) {
         place_cells(r, &s->v->shot, false, extent, pow(0.5, i));
-        st = sample_cells(s, end, r->cells, cells, true, "cells of the grid", err);
+        st = sample_cells(s, end, r->cells, cells, CELL_TEST, "cells of the grid", err);
         const int valid = validity_region_count(r);
         if (valid > max_valid) max_valid = valid, best = pow(0.5, i);
+        tested = pow(0.5, i);
     }
+    *task = best == tested ? CELL_SEARCH : CELL_ALL;
+    if (*task == CELL_SEARCH) return st;
     place_cells(r, &s->v->shot, cells == 1, extent, best);
     for (int i = 0; i < cells; i++) r->cells[i].valid = false;
     return st;
@@ -269,9 +277,10 @@ static enum status sample_end(struct cell_sampler *s, int at, const struct valid
         memcpy(r->cells, v->region[0].cells, (size_t)(side * side) * sizeof *r->cells);
         return ST_OK;
     }
-    enum status st = fit_grid(s, end, r, params->extent, err);
+    enum cell_task task;
+    enum status st = fit_grid(s, end, r, params->extent, &task, err);
     if (!st)
-        st = sample_cells(s, end, r->cells, side * side, false, at ? "cells of the end" : "cells of the start", err);
+        st = sample_cells(s, end, r->cells, side * side, task, at ? "cells of the end" : "cells of the start", err);
     return st ? st : measure_error(s, end, r, params->check_cells, &notes->error, err);
 }
 

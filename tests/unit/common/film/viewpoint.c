@@ -239,6 +239,60 @@ static void smaller_pictures_give_nearly_the_same_h(void **state)
     tear_down(&x);
 }
 
+static void all_are_valid_if_each_is(void **state)
+{
+    (void)state;
+    enum { COUNT = 5 };
+    struct fixture x;
+    struct view cameras[COUNT];
+    struct err err = ERR_INIT;
+    bool all = false;
+    set_up(&x);
+    for (int threads = 1; threads <= 3; threads += 2) {
+        parallel_set_threads(threads);
+        for (int bad = -1; bad < COUNT; bad++) { /* none, or one of them */
+            for (int i = 0; i < COUNT; i++) cameras[i] = moved(&x, 0, i == bad ? -1.5 : 0, 0.02 * i);
+            x.test.renders = 0;
+            assert_ok(viewpoints_are_valid(&all, cameras, COUNT, &x.test, &err), err);
+            assert_true(all == (bad < 0));
+            if (bad < 0) assert_int_equal(x.test.renders, COUNT);
+            if (bad == 0 && threads == 1) assert_int_equal(x.test.renders, 0); /* too much of it is outside */
+        }
+        assert_ok(viewpoints_are_valid(&all, cameras, 0, &x.test, &err), err);
+        assert_true(all);
+    }
+    parallel_set_threads(0);
+    tear_down(&x);
+}
+
+static void near_points_are_counted_as_single_projections_count_them(void **state)
+{
+    (void)state;
+    struct fixture x;
+    int some = 0;
+    set_up(&x);
+    const size_t count = x.points.count;
+    for (int i = 0; i < 40; i++) {
+        struct view camera = moved(&x, 0.2 * (i % 7) - 0.6, 0.1 * (i % 5) - 0.2, 0.3 * i);
+        double near = 0, total = 0;
+        if (i % 3 == 2) camera.cam_from_world = (struct mat3){{{0.6, 0, -0.8}, {0, 1, 0}, {0.8, 0, 0.6}}};
+        camera.translation = vec3_scale(mat3_apply(camera.cam_from_world, camera.center), -1);
+        x.points.count = count - (size_t)(i % 4); /* any remainder of four */
+        x.shot.near_limit = 1 + 0.2 * i;
+        for (size_t k = 0; k < x.points.count; k++) {
+            double u = -1, v = -1;
+            const double z = view_project(&camera, x.points.points[k].position, &u, &v);
+            if (!(z > 0) || u < 0 || u > camera.width || v < 0 || v > camera.height) continue;
+            total += x.points.points[k].weight;
+            if (z < x.shot.near_limit) near += x.points.points[k].weight;
+        }
+        assert_true(measure(&x, camera).near == (total > 0 ? near / total : 1));
+        some += near > 0 && near < total;
+    }
+    assert_true(some > 3);
+    tear_down(&x);
+}
+
 static void any_thread_count_gives_the_same_measures(void **state)
 {
     (void)state;
@@ -278,6 +332,8 @@ int main(void)
         cmocka_unit_test(h_must_be_below_its_limit),
         cmocka_unit_test(a_camera_that_sees_nothing_has_infinite_h),
         cmocka_unit_test(smaller_pictures_give_nearly_the_same_h),
+        cmocka_unit_test(all_are_valid_if_each_is),
+        cmocka_unit_test(near_points_are_counted_as_single_projections_count_them),
         cmocka_unit_test(any_thread_count_gives_the_same_measures),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

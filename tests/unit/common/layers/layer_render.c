@@ -1,6 +1,8 @@
 /* layer_render.c - novel views of scenes with known geometry, by both renderers. */
 #include "tests/unit/common/layers/formula_scene.h"
 
+#include <malloc.h>
+
 #include "common/base/parallel.h"
 
 static const double one[][3] = {{0, 0, 0}};
@@ -127,6 +129,65 @@ static void any_thread_count_gives_the_same_bits(void **state)
     layer_scene_release(&s.layers);
     rendered_frame_release(&a);
     rendered_frame_release(&b);
+}
+
+/* Fallbacks are prepared by the first tile that has a hole: which one, and how many views, must not matter. */
+static void coverage_is_that_of_the_frame_for_any_thread_count(void **state)
+{
+    (void)state;
+    static const double nine[][3] = {{-0.8, -0.2, 0}, {0.8, -0.2, 0}, {-0.8, 0.2, 0}, {0.8, 0.2, 0}, {0, 0, 0},
+                                     {0, 0.6, 0.2},   {0, -0.6, 0},   {0.4, 0, -0.3}, {3, 0, 0}};
+    const int threads = parallel_threads();
+    struct rendered_frame f = {0}, cover = {0};
+    struct err err = ERR_INIT;
+    int holes = 0;
+    for (int count = 1; count <= 9; count += 4) {
+        struct scene s;
+        scene_make(&s, &square, nine, count);
+        for (int i = 0; i < 8; i++) { /* beside the views, in front of them and behind them */
+            const struct view novel = view_at(0.5 * cos(i), 0.5 * sin(i), 0.5 * i - 2);
+            parallel_set_threads(1);
+            render(&f, &s, &novel, false, 0);
+            for (int n = 1; n <= 3; n++) {
+                parallel_set_threads(n);
+                assert_int_equal(layer_coverage(&cover, &s.layers, &novel, 1, &err), ST_OK);
+                assert_memory_equal(cover.hole, f.hole, W * H);
+                assert_true(cover.hole_fraction == f.hole_fraction);
+            }
+            holes += (int)(f.hole_fraction * W * H);
+        }
+        layer_scene_release(&s.layers);
+    }
+    assert_true(holes > 1000);
+    parallel_set_threads(threads);
+    rendered_frame_release(&f);
+    rendered_frame_release(&cover);
+}
+
+/* The offline renderer reads more of a fallback's sample than the fast one does. */
+static void frames_do_not_depend_on_what_memory_held(void **state)
+{
+    const bool offline = *(const bool *)*state;
+    static const double nine[][3] = {{-0.8, -0.2, 0}, {0.8, -0.2, 0}, {-0.8, 0.2, 0}, {0.8, 0.2, 0}, {0, 0, 0},
+                                     {0, 0.6, 0.2},   {0, -0.6, 0},   {0.4, 0, -0.3}, {3, 0, 0}};
+    static const int fills[] = {0x3F, 0xC0, 0}; /* of new memory, inverted; 0 leaves it as it is */
+    struct rendered_frame f[3] = {{0}};
+    struct scene s;
+    scene_make(&s, &square, nine, 9);
+    mallopt(M_MMAP_THRESHOLD, 1 << 30); /* fresh pages would be zero */
+    for (int i = 0; i < 8; i++) {
+        const struct view novel = view_at(0.5 * cos(i), 0.5 * sin(i), 0.5 * i - 2);
+        for (int k = 0; k < 3; k++) {
+            mallopt(M_PERTURB, fills[k]);
+            render(&f[k], &s, &novel, offline, 0);
+        }
+        for (int k = 1; k < 3; k++) {
+            assert_memory_equal(f[k].rgba, f[0].rgba, sizeof *f[0].rgba * W * H * 4);
+            assert_memory_equal(f[k].z, f[0].z, sizeof *f[0].z * W * H);
+        }
+    }
+    for (int k = 0; k < 3; k++) rendered_frame_release(&f[k]);
+    layer_scene_release(&s.layers);
 }
 
 static void disoccluded_pixels_are_holes_filled_from_the_far_side(void **state)
@@ -803,6 +864,7 @@ int main(void)
         BOTH(a_surface_of_many_segments_shows_no_cracks),
         BOTH(a_small_camera_move_changes_the_picture_little),
         BOTH(any_thread_count_gives_the_same_bits),
+        BOTH(frames_do_not_depend_on_what_memory_held),
         BOTH(disoccluded_pixels_are_holes_filled_from_the_far_side),
         BOTH(there_is_no_hole_along_a_rail),
         BOTH(picture_borders_leave_no_visible_line),
@@ -819,6 +881,7 @@ int main(void)
         BOTH(a_silhouette_between_two_views_is_a_clean_edge),
         BOTH(infinite_colours_do_not_reach_a_frame),
         BOTH(a_nan_colour_is_black),
+        cmocka_unit_test(coverage_is_that_of_the_frame_for_any_thread_count),
         cmocka_unit_test(a_view_joins_the_nearest_views_smoothly),
         cmocka_unit_test(a_surface_that_all_other_views_see_through_is_not_visible),
         cmocka_unit_test(inconsistent_depth_maps_are_rejected),

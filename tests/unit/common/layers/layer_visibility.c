@@ -29,6 +29,7 @@ struct strips {
     struct layered_depth depth;
     struct layer_view packed;
     struct drawn_view drawn;
+    struct drawn_tile segments;
     struct tile_visibility visibility;
     struct view_samples front, behind;
 };
@@ -69,6 +70,7 @@ static void strips_release(struct strips *s)
     layered_depth_release(&s->depth);
     layer_view_release(&s->packed);
     drawn_view_release(&s->drawn);
+    drawn_tile_release(&s->segments);
 }
 
 static void draw(struct strips *s, const struct view *novel)
@@ -85,10 +87,10 @@ static void draw(struct strips *s, const struct view *novel)
         s->visibility.first[y] = 0;
         s->visibility.last[y] = W - 1;
     }
-    visibility_draw(&s->visibility, &s->drawn, &s->packed, 0);
+    assert_int_equal(visibility_draw(&s->visibility, &s->segments, &s->drawn, 0, &err), ST_OK);
     for (size_t i = 0; i < TILE_PIXELS; i += 8)
         if (i % TILE_STRIDE < W)
-            visibility_sample8(&s->front, &s->behind, &s->visibility, &s->drawn, &s->packed, i, 0, 0);
+            visibility_sample8(&s->front, &s->behind, &s->visibility, &s->segments, &s->packed, i, 0, 0);
 }
 
 /* 1/z of strip k at pixel centre x of the novel camera, 0 where it has no coverage; *part: its alpha. */
@@ -215,7 +217,7 @@ static void surfaces_are_composited_front_to_back_with_saturating_alpha(void **s
         static struct view_samples both;
         for (size_t x = 0; x < W; x++) {
             const size_t i = 7 * TILE_STRIDE + x;
-            if (x % 8 == 0) visibility_sample8(&both, NULL, &s.visibility, &s.drawn, &s.packed, i, 0, 0);
+            if (x % 8 == 0) visibility_sample8(&both, NULL, &s.visibility, &s.segments, &s.packed, i, 0, 0);
         }
         for (size_t x = 0; x < W; x++) {
             const size_t i = 7 * TILE_STRIDE + x;
@@ -232,12 +234,43 @@ static void surfaces_are_composited_front_to_back_with_saturating_alpha(void **s
     strips_release(&s);
 }
 
+static void coverage_alone_has_the_same_alpha_and_depth(void **state)
+{
+    (void)state;
+    static struct view_samples all, cover;
+    struct strips s;
+    int split = 0, none = 0;
+    for (size_t o = 0; o < sizeof orders / sizeof *orders; o++) {
+        strips_make(&s, orders[o], 0.004);
+        for (int step = -8; step <= 8; step++) {
+            const struct view novel = view_at(0.4837 * step + 0.031); /* the picture's border comes into view */
+            draw(&s, &novel);
+            memset(&all, 0xFF, sizeof all);
+            memset(&cover, 0xFF, sizeof cover);
+            for (size_t x = 0; x < W; x += 8) {
+                const size_t i = 7 * TILE_STRIDE + x;
+                visibility_sample8(&all, NULL, &s.visibility, &s.segments, &s.packed, i, 0, 0);
+                visibility_cover8(&cover, &s.visibility, &s.segments, &s.packed, i, 0, 0);
+                for (size_t k = i; k < i + 8; k++) {
+                    assert_true(cover.alpha[k] == all.alpha[k] && cover.alpha[k] == all.rgba[k][3]);
+                    assert_true(cover.z[k] == all.z[k] && cover.sigma[k] == all.sigma[k]);
+                    split += all.alpha[k] > 0 && s.visibility.front[k] < VISIBLE_FULL;
+                    none += !(all.alpha[k] > 0);
+                }
+            }
+        }
+        strips_release(&s);
+    }
+    assert_true(split > 100 && none > 100);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_two_nearest_surfaces_are_kept_in_any_drawing_order),
         cmocka_unit_test(slanted_segments_are_sorted_per_pixel),
         cmocka_unit_test(surfaces_are_composited_front_to_back_with_saturating_alpha),
+        cmocka_unit_test(coverage_alone_has_the_same_alpha_and_depth),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
