@@ -17,13 +17,15 @@
 static char folder[FUZZ_PATH];
 static const char *const names[] = {"m/path.txt",    "m/path/cameras.txt", "m/path/images.txt", "m/path/points3D.txt",
                                     "m/effects.txt", "film.txt",           "layers.txt"};
+static const char effects[] =
+    "remodel-effects 1\nlayer a color\nregion all\nkey 0 1 1 1\nkey 9 2 2 0\n"
+    "layer b brightness\nregion inside 0 0 0 1 1 1 0\nregion inside 2 0 0 4 1 1 3 axes 1 2 3 4 at 1\nkey 0 2\n";
 static const char *const move[] = {
     "remodel-path 1\neffect m\nfps 2\nframes 3\nframe 0001 0 0 0\nframe 0002 0.5 0.1 3\nframe 0003 1 0.2 4\n",
     "1 PINHOLE 64 48 60 60 32 24\n2 PINHOLE 64 48 60 60 32 24\n3 PINHOLE 64 48 70 60 32 20\n",
     "1 1 0 0 0 0 0 0 1 0001.exr\n\n2 1 0 0 0 1 0 0 2 0002.exr\n\n3 0 1 0 0 2 0 1 3 0003.exr\n\n",
     "",
-    "remodel-effects 1\nlayer a color\nregion all\nkey 0 1 1 1\nkey 9 2 2 0\n"
-    "layer b brightness\nregion inside 0 0 0 1 1 1 0\nregion inside 2 0 0 4 1 1 3 axes 1 2 3 4 at 1\nkey 0 2\n",
+    effects,
 };
 enum { MOVE_FILES = 5, FILM = 5, LAYERS = 6, FILES = 7 };
 
