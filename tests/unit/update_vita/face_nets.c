@@ -106,7 +106,7 @@ static struct solid_mesh make_holed(void)
                                      {12, 13, 14, 15}, {4, 5, 13, 12}, {5, 6, 14, 13}, {6, 7, 15, 14}, {7, 4, 12, 15}};
     static const struct vec3 normals[10] = {{0, 0, -1}, {0, -1, 0}, {1, 0, 0},  {0, 1, 0},  {-1, 0, 0},
                                             {0, 0, 1},  {0, 1, 0},  {-1, 0, 0}, {0, -1, 0}, {1, 0, 0}};
-    static char names[11][8];
+    static char names[11][16];
     struct solid_polygon p[11] = {{"top", "block", {0, 0, 1}, 0, top, four, 2}};
     struct solid_mesh mesh = {0};
     struct err err = ERR_INIT;
