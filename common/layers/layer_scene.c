@@ -99,6 +99,14 @@ enum status layer_scene_init(struct layer_scene *scene, const struct camera_set 
     return st;
 }
 
+enum status layer_scene_match_exposures(struct layer_scene *scene, struct err *err)
+{
+    enum status st = photo_exposures_fit(&scene->exposures, scene->set, scene->views, err);
+    for (int i = 0; !st && i < scene->set->view_count; i++)
+        st = photo_exposures_remove(&scene->exposures, i, &scene->set->views[i], &scene->views[i], err);
+    return st;
+}
+
 struct soft_z layer_scene_soft_z(const struct layer_scene *scene, double widths)
 {
     const double range = fmax(scene->far_depth - scene->near_depth, 1e-6 * scene->far_depth);
@@ -115,5 +123,6 @@ void layer_scene_release(struct layer_scene *scene)
     free(scene->depths);
     free(scene->views);
     view_mesh_release(&scene->mesh);
+    photo_exposures_release(&scene->exposures);
     *scene = (struct layer_scene){0};
 }

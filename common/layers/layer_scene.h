@@ -3,6 +3,7 @@
 #define REMODEL_LAYER_SCENE_H
 
 #include "common/layers/layer_view.h"
+#include "common/layers/photo_exposure.h"
 #include "common/layers/soft_z.h"
 #include "common/layers/view_mesh.h"
 
@@ -14,6 +15,7 @@ struct layer_scene { /* depths[i] and views[i] belong to set->views[i] */
     double near_depth, far_depth; /* 2nd and 98th percentiles of the segments' depths over all views, each in its own
                                      camera, weighted by pixels */
     double sigma;                 /* median of the relative uncertainties of the segments, weighted by pixels */
+    struct photo_exposures exposures; /* that were removed from the views' photos */
 };
 
 /* Reads depth_folder/VIEW.exr of every view and adds each file to prov (may be NULL). The set must outlive the scene.
@@ -24,6 +26,8 @@ enum status layer_scene_read(struct layer_scene *scene, const struct camera_set 
  * depths[i] empty, also on failure. */
 enum status layer_scene_init(struct layer_scene *scene, const struct camera_set *set, struct layered_depth *depths,
                              struct err *err);
+/* Brings the photos to one exposure, once; frames then need photo_exposures_apply(). ST_NOMEM. */
+enum status layer_scene_match_exposures(struct layer_scene *scene, struct err *err);
 /* The scene's soft z-buffer; widths: in depth uncertainties, 0: the scene's depth range, as in the thesis. */
 struct soft_z layer_scene_soft_z(const struct layer_scene *scene, double widths);
 void layer_scene_release(struct layer_scene *scene);

@@ -46,9 +46,11 @@ static void reduce_row(uint16_t (*to)[4], const uint16_t (*top)[4], const uint16
     }
 }
 
-/* Makes the levels of the photo down to a few texels. Beyond its border, and where it has no depth, alpha is 0. */
-static enum status reduce_photo(struct layer_view *lv, struct err *err)
+/* Levels go down to a few texels. Beyond the photo's border, and where it has no depth, alpha is 0. */
+enum status layer_view_reduce(struct layer_view *lv, struct err *err)
 {
+    for (int k = 0; k < lv->reduced_count; k++) free(lv->reduced[k].texels);
+    lv->reduced_count = 0;
     const uint16_t(*from)[4] = (const uint16_t(*)[4])lv->photo;
     int w = lv->width, h = lv->height, stride = lv->stride;
     while (lv->reduced_count < PHOTO_LEVELS && w > 2 && h > 2) {
@@ -67,6 +69,32 @@ static enum status reduce_photo(struct layer_view *lv, struct err *err)
         w = half_w, h = half_h, stride = to->stride;
     }
     return ST_OK;
+}
+
+__attribute__((target("f16c"))) static void scale_texel(uint16_t rgba[4], __m128 factor)
+{
+    const __m128 before = _mm_cvtph_ps(_mm_loadl_epi64((const __m128i *)(const void *)rgba));
+    const __m128 after = _mm_min_ps(_mm_mul_ps(before, factor), _mm_set1_ps(HALF_MAX));
+    _mm_storel_epi64((__m128i *)(void *)rgba, _mm_cvtps_ph(after, _MM_FROUND_TO_NEAREST_INT));
+}
+
+static size_t texel_index(const struct layer_view *lv, int x, int y)
+{
+    return (size_t)(y + 1) * (size_t)lv->stride + (size_t)(x + 1);
+}
+
+__attribute__((target("f16c"))) void layer_view_photo(const struct layer_view *lv, int x, int y, float rgba[4])
+{
+    const uint16_t *texel = lv->photo[texel_index(lv, x, y)];
+    _mm_storeu_ps(rgba, _mm_cvtph_ps(_mm_loadl_epi64((const __m128i *)(const void *)texel)));
+}
+
+void layer_view_scale(struct layer_view *lv, int x, int y, const float factor[3])
+{
+    const size_t at = texel_index(lv, x, y);
+    const __m128 by = _mm_setr_ps(factor[0], factor[1], factor[2], 1);
+    for (int l = 0; l < 2; l++) scale_texel(lv->texels[at].rgba[l], by);
+    scale_texel(lv->photo[at], by);
 }
 
 static void shape_add(struct segment_shape *s, int x, int y, bool interior)
@@ -364,7 +392,7 @@ enum status layer_view_pack(struct layer_view *lv, struct layered_depth *depth, 
     layer_drop(&depth->interior);
     layer_drop(&depth->boundary);
     enum status st = index_cells(lv, depth, err);
-    if (!st) st = reduce_photo(lv, err);
+    if (!st) st = layer_view_reduce(lv, err);
     if (!st) st = group_segments(lv, depth, err);
     if (st) layer_view_release(lv);
     return st;

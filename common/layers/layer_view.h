@@ -84,4 +84,11 @@ struct layer_view {
 enum status layer_view_pack(struct layer_view *lv, struct layered_depth *depth, const char *name, struct err *err);
 void layer_view_release(struct layer_view *lv);
 
+/* The photo at pixel (x, y), premultiplied. */
+void layer_view_photo(const struct layer_view *lv, int x, int y, float rgba[4]);
+/* Multiplies the colours of pixel (x, y). layer_view_reduce() must follow. */
+void layer_view_scale(struct layer_view *lv, int x, int y, const float factor[3]);
+/* Makes the reduced photos anew. ST_NOMEM. */
+enum status layer_view_reduce(struct layer_view *lv, struct err *err);
+
 #endif

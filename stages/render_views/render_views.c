@@ -63,6 +63,7 @@ static enum status render_path(const struct render_job *job, struct provenance *
     }
     if (!st) st = film_views_keep(&set, job->film_views, prov, err);
     if (!st) st = layer_scene_read(&scene, &set, job->depth, prov, err);
+    if (!st) st = renderer_match_exposures(&scene, &job->params, err);
     if (!st) {
         renderer_init(&renderer, &scene, &path, &effects, &job->params);
         st = frames_render(&path, wanted, &renderer, job->out, prov, err);
@@ -96,6 +97,7 @@ static enum status render_cameras(const struct render_job *job, struct provenanc
     if (!st) st = camera_set_add_inputs(prov, job->views, err);
     for (int i = 0; !st && i < 2; i++) st = provenance_add_in(prov, "cameras", job->cameras, files[i], "", NULL, err);
     if (!st) st = layer_scene_read(&scene, &set, job->depth, prov, err);
+    if (!st) st = renderer_match_exposures(&scene, &job->params, err);
     if (!st) {
         renderer_init(&renderer, &scene, NULL, &none, &job->params);
         st = cameras_render(&cameras, wanted, &renderer, job->out, prov, err);

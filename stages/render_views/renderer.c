@@ -1,7 +1,10 @@
 /* renderer.c - the passes of a frame, in the order of renderer.h's table. */
 #include "stages/render_views/renderer.h"
 
+#include <math.h>
 #include <string.h>
+
+#include "common/base/log.h"
 
 #define PARAM_STRUCT struct render_params
 const struct param render_param_table[] = {RENDER_PARAMS(PARAM_ROW) PARAM_RENAMED(fill_anchors, fill_anchor_spacing)
@@ -18,6 +21,28 @@ static struct hole_photos photos_of(void *ctx, const struct view *camera)
 {
     const struct renderer *r = ctx;
     return layer_photos(r->scene, camera, &r->options);
+}
+
+static void log_exposures(const struct layer_scene *scene)
+{
+    const struct photo_exposures *e = &scene->exposures;
+    double low = INFINITY, high = -INFINITY;
+    if (!e->gain) return;
+    for (int i = 0; i < scene->set->view_count; i++) {
+        low = fmin(low, e->gain[i][1]);
+        high = fmax(high, e->gain[i][1]);
+    }
+    log_note("the brightest photo has %.2f times the exposure of the darkest: they are brought to one",
+             exp(high - low));
+}
+
+enum status renderer_match_exposures(struct layer_scene *scene, const struct render_params *params, struct err *err)
+{
+    /* a single photo needs no match */
+    if (strcmp(params->exposure, "matched") != 0 || strcmp(params->views, "nearest") == 0) return ST_OK;
+    const enum status st = layer_scene_match_exposures(scene, err);
+    if (!st) log_exposures(scene);
+    return st;
 }
 
 void renderer_init(struct renderer *r, const struct layer_scene *scene, const struct camera_path *path,
@@ -56,6 +81,7 @@ enum status renderer_frame(struct renderer *r, int frame, struct rendered_frame 
         st = aperture_render(out, &f->camera, f->aperture, f->focus, &r->aperture, render_pinhole, r, NULL, err);
     else if (!(st = render_pinhole(r, &f->camera, out, err)))
         st = defocus_apply(&r->defocus, out, &f->camera, f->aperture, f->focus, err);
+    if (!st) photo_exposures_apply(&r->scene->exposures, &r->scene->mesh, &f->camera, out);
     if (!st) effects_apply(r->effects, f->time, &f->camera, out);
     return st;
 }
@@ -63,10 +89,11 @@ enum status renderer_frame(struct renderer *r, int frame, struct rendered_frame 
 enum status renderer_camera(struct renderer *r, const struct view *camera, struct rendered_frame *out, struct err *err)
 {
     const struct hole_photos photos = photos_of(r, camera);
-    const enum status st = layer_render(out, r->scene, camera, &r->options, err);
-    return st || !r->options.offline
-               ? st
-               : exemplar_fill(out, &photos, &r->depth, r->fill_diameter, &r->exemplar, NULL, err);
+    enum status st = layer_render(out, r->scene, camera, &r->options, err);
+    if (!st && r->options.offline)
+        st = exemplar_fill(out, &photos, &r->depth, r->fill_diameter, &r->exemplar, NULL, err);
+    if (!st) photo_exposures_apply(&r->scene->exposures, &r->scene->mesh, camera, out);
+    return st;
 }
 
 void renderer_release(struct renderer *r)

@@ -6,7 +6,8 @@
  * fast       two surfaces per view, then a       narrow holes from their surroundings,  blur by a MIP map
  *            soft z across views                 wide ones by a pull-push pyramid
  *
- * Effect layers are the last pass of both. */
+ * Both blend photos of one exposure; the finished frame gets that of the photos around its camera (photo_exposure.h).
+ * Effect layers are the last pass. */
 #ifndef REMODEL_RENDER_VIEWS_RENDERER_H
 #define REMODEL_RENDER_VIEWS_RENDERER_H
 
@@ -27,6 +28,8 @@
       "offline: number of nearest views that are blended, and vote, besides those of the view mesh")         \
     X(fill_diameter, int, 6, 0, 64, "px",                                                                    \
       "holes narrower than this are filled from their surroundings; 0: no hole is filled")                   \
+    X(exposure, choice, "matched", 0, 0, "matched|taken",                                                    \
+      "photos are brought to one exposure before they are blended, or blended as they were taken")           \
     EXEMPLAR_PARAMS(X)                                                                                       \
     FILL_PATH_PARAMS(X)                                                                                      \
     APERTURE_PARAMS(X)
@@ -54,6 +57,8 @@ struct renderer {
     int frame; /* being rendered */
 };
 
+/* Brings the scene's photos to one exposure if params say so; before renderer_init(). */
+enum status renderer_match_exposures(struct layer_scene *scene, const struct render_params *params, struct err *err);
 /* scene, path and effects must outlive the renderer; path may be NULL, effects empty. */
 void renderer_init(struct renderer *r, const struct layer_scene *scene, const struct camera_path *path,
                    const struct effects *effects, const struct render_params *params);

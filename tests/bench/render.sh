@@ -38,7 +38,7 @@ x=core_s_per_mp x_label="Core-seconds per megapixel" y=psnr y_label="PSNR (dB)" 
 scenes=${BENCH_SCENES-fern sceaux kermit fountain still-life:s4 office fountain-truth bonsai apartment}
 by_photo=${BENCH_BY_PHOTO-sceaux}
 candidates=${BENCH_CANDIDATES-soft_z=0 soft_z=8 soft_z=16 soft_z=64 more_views=0 more_views=4 more_views=8 views=nearest \
-    renderer=fast fill_diameter=0 fill_diameter=24 fill_patch=9 fill_window=50}
+    renderer=fast exposure=taken fill_diameter=0 fill_diameter=24 fill_patch=9 fill_window=50}
 data=${BENCH_DATA:-../shared/data}
 rate_scene=${BENCH_RATE-still-life}
 threads=${BENCH_THREADS:-$(nproc)}

@@ -255,6 +255,7 @@ static enum status run(struct bench *b, const struct job *job, struct err *err)
     if (camera_set_read(&b->set, job->views, err) || choose_cameras(b, job, err)) return err->status;
     if (job->photo) return measure_photos(b, job, err);
     if (layer_scene_read(&b->scene, &b->set, job->depth, NULL, err)) return err->status;
+    if (renderer_match_exposures(&b->scene, &job->params, err)) return err->status;
     renderer_init(&b->renderer, &b->scene, NULL, &none, &job->params);
     return measure(b, job, err);
 }
