@@ -342,6 +342,7 @@ enum status matcher_select(struct matcher *m, const struct plane *planes, const 
 struct calibration {
     struct matcher *m;
     double min_inverse_z, max_inverse_z;
+    int depths, least;  /* depths that are tried, and at how many of them a neighbour must see a segment */
     float *best, *mean; /* raw costs over depths, of each segment in each neighbour, or NOT_VISIBLE */
 };
 #define NOT_VISIBLE 2.0f
@@ -350,7 +351,6 @@ struct calibration {
 
 static void calibrate_segments(void *ctx, size_t begin, size_t end, int thread)
 {
-    enum { DEPTHS = 48 };
     const struct calibration *job = ctx;
     const struct matcher *m = job->m;
     (void)thread;
@@ -363,9 +363,9 @@ static void calibrate_segments(void *ctx, size_t begin, size_t end, int thread)
             int count = 0;
             job->best[at] = job->mean[at] = NOT_VISIBLE;
             if (visible >= m->ranks && i % ALL_NEIGHBOURS) continue;
-            for (int d = 0; d < DEPTHS; d++) {
+            for (int d = 0; d < job->depths; d++) {
                 const struct plane plane = {
-                    0, 0, job->min_inverse_z + (job->max_inverse_z - job->min_inverse_z) * d / (DEPTHS - 1)};
+                    0, 0, job->min_inverse_z + (job->max_inverse_z - job->min_inverse_z) * d / (job->depths - 1)};
                 int seen;
                 const double cost =
                     (double)neighbour_cost(m, &m->neighbours[k], m->first[i], m->first[i] + pixels, plane, &seen);
@@ -374,7 +374,7 @@ static void calibrate_segments(void *ctx, size_t begin, size_t end, int thread)
                 sum += cost;
                 count++;
             }
-            if (2 * count < DEPTHS) continue;
+            if (count < job->least) continue;
             visible++;
             job->best[at] = (float)best;
             job->mean[at] = (float)(sum / count);
@@ -402,12 +402,30 @@ static bool mean_costs(const struct calibration *job, int begin, int end, unsign
     return true;
 }
 
+/* Whether a tenth of the segments is visible in some neighbour. */
+static bool enough_visible(const struct calibration *job)
+{
+    int visible = 0;
+    for (int i = 0; i < job->m->segments->count; i++)
+        for (int k = 0; k < job->m->neighbour_count; k++)
+            if (job->best[(size_t)i * MAX_NEIGHBOURS + (size_t)k] < NOT_VISIBLE) {
+                visible++;
+                break;
+            }
+    return 10 * visible >= job->m->segments->count;
+}
+
 enum status matcher_calibrate(struct matcher *m, double min_inverse_z, double max_inverse_z, struct err *err)
 {
     const int count = m->segments->count;
     const size_t costs = (size_t)count * MAX_NEIGHBOURS + 1;
-    struct calibration job = {m, min_inverse_z, max_inverse_z, malloc(costs * sizeof(float)),
-                              malloc(costs * sizeof(float))};
+    struct calibration job = {.m = m,
+                              .min_inverse_z = min_inverse_z,
+                              .max_inverse_z = max_inverse_z,
+                              .depths = 48,
+                              .least = 24,
+                              .best = malloc(costs * sizeof(float)),
+                              .mean = malloc(costs * sizeof(float))};
     double good, chance, contrast[MAX_NEIGHBOURS] = {0}, max_contrast = 0;
     m->out_of_view_cost = malloc(((size_t)count + 1) * sizeof *m->out_of_view_cost);
     m->occluded_cost = malloc(((size_t)count + 1) * sizeof *m->occluded_cost);
@@ -415,6 +433,11 @@ enum status matcher_calibrate(struct matcher *m, double min_inverse_z, double ma
                          ? ST_OK
                          : err_nomem(err, "costs of segments", costs * 2 * sizeof(float));
     if (!st) parallel_for((size_t)count, 32, calibrate_segments, &job);
+    if (!st && !enough_visible(&job)) { /* a strip of picture: most depths take it out of the neighbours' frames */
+        job.depths = 192;
+        job.least = 16;
+        parallel_for((size_t)count, 32, calibrate_segments, &job);
+    }
     for (int k = 0; !st && k < m->neighbour_count; k++) {
         if (mean_costs(&job, 0, count, 1u << k, &good, &chance)) contrast[k] = chance - good;
         max_contrast = fmax(max_contrast, contrast[k]);

@@ -351,6 +351,30 @@ static void calibration_maps_good_matches_to_0_and_chance_to_1(void **state)
     }
 }
 
+/* Neighbours see the view's surface at few of the depths from 10 to 1/3, as they do a strip of a fisheye picture. */
+static void views_that_neighbours_see_at_few_depths_are_calibrated(void **state)
+{
+    struct err err = ERR_INIT;
+    double good = 0, chance = 0;
+    int count = 0;
+    (void)state;
+    start();
+    scene_view(&b.scene, W, H, FOCAL, 1, 0, 0, 0);
+    match_all();
+    assert_int_equal(matcher_calibrate(&b.matcher, 0.1, 3, &err), ST_OK);
+    assert_true(b.matcher.good_cost > 0 && b.matcher.chance_cost < 1);
+    for (int i = 0; i < b.segments.count; i++) {
+        if (b.segments.segments[i].cx < 0.6 * W || !well_inside(i)) continue;
+        good += (double)match_cost(&b.matcher, i, b.truth, 0);
+        chance += (double)match_cost(&b.matcher, i, off_by(5), 0);
+        count++;
+    }
+    assert_true(count > 10);
+    assert_near(good / count, -0.2, 0.3);
+    assert_near(chance / count, 1, 0.35);
+    finish();
+}
+
 /* No visible segment, or no texture: costs stay finite and bounded. */
 static void calibration_without_texture_stays_finite(void **state)
 {
@@ -452,6 +476,7 @@ int main(void)
         cmocka_unit_test(a_worse_neighbour_has_a_lower_weight),
         cmocka_unit_test(any_plane_has_a_cost_between_0_and_1),
         cmocka_unit_test(calibration_maps_good_matches_to_0_and_chance_to_1),
+        cmocka_unit_test(views_that_neighbours_see_at_few_depths_are_calibrated),
         cmocka_unit_test(calibration_without_texture_stays_finite),
         cmocka_unit_test(an_occluded_neighbour_costs_a_fixed_amount),
         cmocka_unit_test(the_disparity_of_a_sideways_step_is_focal_length_times_baseline),
