@@ -26,7 +26,7 @@
 #define PRIOR        1e-3 /* weight of equal exposures, in observations: decides what no point does */
 #define LEAST        0.01 /* differences below are noise */
 #define LEAST_SIGMAS 3.0  /* of vignetting */
-#define MAX_VIEWS    4000 /* more are blended as they were taken: the system is dense */
+#define MAX_VIEWS    1000 /* more are blended as they were taken: the system is dense */
 #define OWN          0.01 /* of the views' spacing: a camera this near to a view has its exposure */
 
 enum { LUMINANCE = 3, CHANNELS = 4 };
@@ -264,23 +264,38 @@ static float clipped_white(const float rgba[4])
     return t * t * (3 - 2 * t);
 }
 
+struct remove_job {
+    const struct view *view;
+    struct layer_view *lv;
+    double vignetting;
+    float gain[3], grey; /* factors */
+};
+
+static void remove_rows(void *ctx, size_t begin, size_t end, int thread)
+{
+    const struct remove_job *job = ctx;
+    const struct view *v = job->view;
+    (void)thread;
+    for (int y = (int)begin; y < (int)end; y++)
+        for (int x = 0; x < job->lv->width; x++) {
+            const double dx = (x + 0.5 - v->cx) / v->fx, dy = (y + 0.5 - v->cy) / v->fy;
+            const float all = job->vignetting != 0 ? (float)exp(-job->vignetting * (dx * dx + dy * dy)) : 1;
+            float rgba[4], factor[3];
+            layer_view_photo(job->lv, x, y, rgba);
+            const float white = clipped_white(rgba);
+            for (int c = 0; c < 3; c++) factor[c] = all * (job->gain[c] + white * (job->grey - job->gain[c]));
+            layer_view_scale(job->lv, x, y, factor);
+        }
+}
+
 enum status photo_exposures_remove(const struct photo_exposures *e, int i, const struct view *view,
                                    struct layer_view *lv, struct err *err)
 {
-    float gain[3];
+    struct remove_job job = {.view = view, .lv = lv, .vignetting = e->vignetting};
     if (!e->gain) return ST_OK;
-    for (int c = 0; c < 3; c++) gain[c] = (float)exp(-e->gain[i][c]);
-    const float grey = fmaxf(1, (float)exp(-(e->gain[i][0] + e->gain[i][1] + e->gain[i][2]) / 3));
-    for (int y = 0; y < lv->height; y++)
-        for (int x = 0; x < lv->width; x++) {
-            const double dx = (x + 0.5 - view->cx) / view->fx, dy = (y + 0.5 - view->cy) / view->fy;
-            const float all = e->vignetting != 0 ? (float)exp(-e->vignetting * (dx * dx + dy * dy)) : 1;
-            float rgba[4], factor[3];
-            layer_view_photo(lv, x, y, rgba);
-            const float white = clipped_white(rgba);
-            for (int c = 0; c < 3; c++) factor[c] = all * (gain[c] + white * (grey - gain[c]));
-            layer_view_scale(lv, x, y, factor);
-        }
+    for (int c = 0; c < 3; c++) job.gain[c] = (float)exp(-e->gain[i][c]);
+    job.grey = fmaxf(1, (float)exp(-(e->gain[i][0] + e->gain[i][1] + e->gain[i][2]) / 3));
+    parallel_for((size_t)lv->height, 16, remove_rows, &job);
     return layer_view_reduce(lv, err);
 }
 

@@ -18,7 +18,8 @@ struct photo_exposures {
 };
 
 /* Compares the views' photos at the sparse points that several of them observe. All exposures are equal (gain is NULL)
- * if nothing differs by a hundredth, which is what photos of one known exposure look like. ST_NOMEM. */
+ * if nothing differs by a hundredth, which is what photos of one known exposure look like, and beyond 1000 views.
+ * ST_NOMEM. */
 enum status photo_exposures_fit(struct photo_exposures *e, const struct camera_set *set, const struct layer_view *views,
                                 struct err *err);
 void photo_exposures_release(struct photo_exposures *e);
