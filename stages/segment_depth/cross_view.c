@@ -28,13 +28,12 @@
 static bool plane_from_neighbour(struct plane *out, const double p[3], const struct view *view,
                                  const struct view *other)
 {
-    const struct vec3 n = {p[0] * other->fx, p[1] * other->fy, p[0] * other->cx + p[1] * other->cy + p[2]};
+    const struct vec3 n = plane_normal(other, (struct plane){p[0], p[1], p[2]});
     const struct mat3 r = mat3_multiply(other->cam_from_world, mat3_transpose(view->cam_from_world));
     const struct vec3 t = vec3_sub(other->translation, mat3_apply(r, view->translation));
     const double w = 1 - vec3_dot(n, t);
     if (!(fabs(w) > 1e-9)) return false;
-    const struct vec3 m = vec3_scale(mat3_apply(mat3_transpose(r), n), 1 / w);
-    *out = (struct plane){m.x / view->fx, m.y / view->fy, m.z - m.x / view->fx * view->cx - m.y / view->fy * view->cy};
+    *out = plane_of_normal(view, vec3_scale(mat3_apply(mat3_transpose(r), n), 1 / w));
     return isfinite(out->a) && isfinite(out->b) && isfinite(out->c);
 }
 

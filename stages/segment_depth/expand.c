@@ -11,8 +11,9 @@
  * cells apart in both directions have disjoint regions that share no edge, and are moved in parallel; the
  * planes outside a region are those from before the group began, so that the result does not depend on threads.
  *
- * A wall that no picture decides takes the plane of the part that one does, however large it is: after the first pass,
- * or before it in later rounds, the scene's dominant planes (scene_planes.h) are offered to all segments at once.
+ * A wall that no picture decides takes the plane of the part that one does, however large it is: after the first pass
+ * the scene's dominant planes (scene_planes.h) are offered to all segments at once. Each is then fitted to the segments
+ * that took it (plane_refit.h), and offered again, REFITS times.
  *
  * What differs from the source: the nodes are segments, not pixels; proposals also come from the sweep, from
  * neighbouring views and from horizontal and vertical planes (plane_proposals.h); data costs are only computed while
@@ -27,6 +28,7 @@
 #include "common/base/progress.h"
 #include "stages/segment_depth/max_flow.h"
 #include "stages/segment_depth/plane_proposals.h"
+#include "stages/segment_depth/plane_refit.h"
 
 #define SCALES             4
 #define NEGLIGIBLE         0.03 /* energy that a segment need not be moved for */
@@ -34,7 +36,8 @@
 #define UNITS_PER_ENERGY   1e7  /* energies are rounded to multiples of 1 / UNITS_PER_ENERGY */
 #define LEAST_SHARE        0.05 /* of all votes: weight of a plane of the scene, in the first round */
 #define LEAST_SHARE_LATER  0.10 /* ... in later ones, where neighbours vote, too */
-#define APART              4    /* distance in cells between those that are moved in parallel */
+#define REFITS             2
+#define APART              4 /* distance in cells between those that are moved in parallel */
 
 static const double cell_segments[SCALES] = {2.5, 7, 20, 50}; /* side of a cell, in sides of a mean segment */
 
@@ -232,18 +235,39 @@ static enum status find_scene_planes(const struct expander *x, struct err *err)
     return st;
 }
 
+/* Fits the scene's plane k to the segments that lie on it, which move with it. members: room for all segments. */
+static void refit_scene_plane(struct expander *x, int k, int *members)
+{
+    struct scene_planes *scene = x->p->scene;
+    int count = 0;
+    for (int i = 0; i < x->s->count; i++)
+        if (memcmp(&x->plane[i], &scene->planes[k], sizeof x->plane[i]) == 0) members[count++] = i;
+    plane_refit(scene, k, members, count, x->p);
+    for (int n = 0; n < count; n++) {
+        const int i = members[n];
+        x->plane[i] = scene->planes[k];
+        x->unary[i] = unary_cost(x->p, i, x->plane[i], INFINITY);
+        x->min_unary[i] = fminf(x->min_unary[i], x->unary[i]);
+    }
+}
+
 /* Offers the scene's planes to all segments at once. */
 static enum status move_to_scene_planes(struct expander *x, struct err *err)
 {
     struct worker *w = &x->workers[0];
-    enum status st = find_scene_planes(x, err);
+    int *members = malloc(((size_t)x->s->count + 1) * sizeof *members);
+    enum status st = members ? find_scene_planes(x, err)
+                             : err_nomem(err, "segments on a plane", (size_t)x->s->count * sizeof *members);
     memcpy(x->before, x->plane, (size_t)x->s->count * sizeof *x->plane);
     for (int i = 0; i < x->s->count; i++) w->local[i] = w->region[i] = i;
-    for (int k = 0; !st && k < x->p->scene->count; k++) {
-        expansion_move(x, w, x->s->count, x->p->scene->planes[k], err);
-        st = err->status;
-    }
+    for (int round = 0; !st && round <= REFITS; round++)
+        for (int k = 0; !st && k < x->p->scene->count; k++) {
+            if (round) refit_scene_plane(x, k, members);
+            expansion_move(x, w, x->s->count, x->p->scene->planes[k], err);
+            st = err->status;
+        }
     for (int i = 0; i < x->s->count; i++) w->local[i] = -1;
+    free(members);
     return st;
 }
 
@@ -354,7 +378,6 @@ enum status expand_planes(struct plane *plane, const struct plane_problem *p, st
         progress_start(&progress, "expansion", (int64_t)x.passes * cells, "cells");
     }
     for (x.pass = 0; !st && x.pass < x.passes; x.pass++) {
-        if (p->scene && p->cross && x.pass == 0) st = move_to_scene_planes(&x, err);
         for (x.scale = 0; !st && x.scale < scale_count(&x); x.scale++) {
             const struct cells *c = &x.cells[x.scale];
             for (int g = 0; !st && g < APART * APART; g++) {
@@ -375,7 +398,7 @@ enum status expand_planes(struct plane *plane, const struct plane_problem *p, st
                     }
             }
         }
-        if (!st && p->scene && !p->cross && x.pass == 0) st = move_to_scene_planes(&x, err);
+        if (!st && p->scene && x.pass == 0) st = move_to_scene_planes(&x, err);
     }
     if (!st) progress_end(&progress);
     release(&x, threads);

@@ -6,9 +6,9 @@
  *
  * Two adjacent segments are connected if their planes lie within `jump` steps at their border. A segment is held if it
  * and those connected to it have a mean confidence of at least `held`, and if its surface, of connected segments with
- * that mean, is large enough: confidence times size, in mean segments, sums to MIN_HELD. Slanted planes that continue a
- * held one are held, too: at both centres they agree within COPLANAR steps. So a blank ceiling or floor, which comes near
- * towards the border, stays on its plane. The others take the inverse depths d that minimize
+ * that mean, is large enough: confidence times size, in mean segments, sums to MIN_HELD. So are segments on a dominant
+ * plane of the scene (scene_planes.h), and slanted planes that continue a held one: at both centres they agree within
+ * COPLANAR steps. So a blank ceiling or floor, which comes near towards the border, stays on its plane. The others take the inverse depths d that minimize
  *   sum over adjacent i, j  w_ij |d_i - d_j|  +  far_bias sum_i size_i d_i,    d_i at most what it was,
  * given those of held segments. w_ij is the weight of the smoothness cost, so that contact with an object of another
  * colour hardly counts; contact with held foreground counts `keep` times that. Nothing is moved forwards. An area stays
@@ -137,11 +137,16 @@ static double confidence_around(const struct inherit *x, int i)
     return sum / area;
 }
 
+static bool always_held(const struct inherit *x, int i)
+{
+    return given_depth_has(x->p->given, i) || scene_planes_have(x->p->scene, x->planes[i]);
+}
+
 static void find_held(struct inherit *x)
 {
     const struct segmentation *s = x->s;
     for (int i = 0; i < s->count; i++) {
-        x->held[i] = given_depth_has(x->p->given, i) || confidence_around(x, i) >= x->caution.held;
+        x->held[i] = always_held(x, i) || confidence_around(x, i) >= x->caution.held;
         x->listed[i] = false;
     }
     for (int i = 0; i < s->count; i++) {
@@ -150,7 +155,7 @@ static void find_held(struct inherit *x)
         const int count = gather(x, i, joins_surface);
         for (int k = 0; k < count; k++) sure += x->confidence[x->members[k]] * s->segments[x->members[k]].pixels;
         if (sure >= MIN_HELD * x->p->params->segment_pixels) continue;
-        for (int k = 0; k < count; k++) x->held[x->members[k]] = given_depth_has(x->p->given, x->members[k]);
+        for (int k = 0; k < count; k++) x->held[x->members[k]] = always_held(x, x->members[k]);
     }
     memset(x->listed, 0, (size_t)s->count * sizeof *x->listed);
     for (int i = 0; i < s->count; i++) {

@@ -14,6 +14,18 @@ struct plane {
 
 static inline double plane_at(struct plane p, double u, double v) { return p.a * u + p.b * v + p.c; }
 
+/* The plane as n . X = 1, X in the axes of the camera; and back. */
+static inline struct vec3 plane_normal(const struct view *v, struct plane p)
+{
+    return vec3_make(p.a * v->fx, p.b * v->fy, plane_at(p, v->cx, v->cy));
+}
+
+static inline struct plane plane_of_normal(const struct view *v, struct vec3 n)
+{
+    const double a = n.x / v->fx, b = n.y / v->fy;
+    return (struct plane){a, b, n.z - a * v->cx - b * v->cy};
+}
+
 /* Whether a segment's plane stays in a range of inverse depths: nearly so at the centroid; over the segment and a
  * margin that its layer may extend into, from PLANE_MIN_FACTOR times min to PLANE_MAX_FACTOR times max. */
 #define PLANE_MIN_FACTOR 0.7

@@ -34,7 +34,8 @@ float unary_cost(const struct plane_problem *p, int segment, struct plane plane,
     unsigned occluded = 0;
     const float size = (float)g->pixels / (float)p->params->segment_pixels;
     float data = (float)point_evidence_cost(p->points, segment, plane, g->cx, g->cy);
-    if (scene_planes_have(p->scene, plane)) data -= (float)point_evidence_far(p->points, plane, g->cx, g->cy);
+    if (scene_planes_have(p->scene, plane))
+        data -= (float)(point_evidence_far(p->points, plane, g->cx, g->cy) + (p->cross ? 0 : SCENE_GAIN));
     const float left = max_cost / size - data - match_lower_bound(p, segment, plane),
                 part = (float)p->params->cross_view;
     if (!(left >= 0)) return PLANE_FORBIDDEN;

@@ -5,8 +5,8 @@
  *                                    + slant length_ij [P_i != P_j] (slanted(P_i) + slanted(P_j))
  *
  * A dominant plane of the scene (scene_planes.h) is paid for already: it counts as not slanted, its points' cost has no
- * bias to the far side, and it may leave the range of depths, which comes from points, by a factor of SCENE_REACH. So a
- * blank ceiling that no view can match continues on the plane of its matched part.
+ * bias to the far side, it costs SCENE_GAIN less in the first round, and it may leave the range of depths, which
+ * comes from points, by a factor of SCENE_REACH. So a blank ceiling that no view can match continues on the plane of its matched part.
  *
  * A segment whose depth is given has one plane, of cost 0; any other costs PLANE_FORBIDDEN. size_i is in mean segments.
  * The gap is the mean difference of the two planes' inverse depths at the middle of the border and at both centroids:

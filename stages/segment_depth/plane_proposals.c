@@ -39,9 +39,8 @@ static bool plane_from_normal(const struct view *v, struct vec3 normal, struct v
 {
     const double distance = vec3_dot(normal, point);
     if (!(fabs(distance) > 1e-6 * vec3_length(point))) return false;
-    const double a = normal.x / distance / v->fx, b = normal.y / distance / v->fy;
-    *out = (struct plane){a, b, normal.z / distance - a * v->cx - b * v->cy};
-    return isfinite(a) && isfinite(b) && isfinite(out->c);
+    *out = plane_of_normal(v, vec3_scale(normal, 1 / distance));
+    return isfinite(out->a) && isfinite(out->b) && isfinite(out->c);
 }
 
 bool propose_horizontal(struct plane *out, const struct plane_problem *p, const struct plane *planes, int i)

@@ -1,7 +1,8 @@
 /* scene_planes.c - dominant planes, the best supported first.
  *
- * A vote supports a plane if at its place both have the same inverse depth, to DEPTH_STEPS, and slant, to SLANT_STEPS
- * over SLANT_PIXELS. The plane that most weight supports, of those that weigh most by themselves, is fitted to the
+ * A vote supports a plane if at its place both have the same inverse depth, to a step or DEPTH_PART of it, whichever is
+ * more, and slant, to as much over SLANT_PIXELS: blank parts follow a plane at best to a few hundredths, however fine
+ * the steps are. The plane that most weight supports, of those that weigh most by themselves, is fitted to the
  * votes that support it, by least squares of inverse depth, which is linear in the picture; then these votes are
  * removed and the next plane is found. */
 #include "stages/segment_depth/scene_planes.h"
@@ -9,16 +10,16 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define DEPTH_STEPS  1.0
-#define SLANT_STEPS  1.0
+#define DEPTH_PART   0.02
 #define SLANT_PIXELS 40.0
 #define TRIED        128 /* planes whose support is measured */
 #define FITS         2
 
 static bool supports(const struct plane_vote *v, struct plane p, double step)
 {
-    return fabs(plane_at(v->plane, v->u, v->v) - plane_at(p, v->u, v->v)) < DEPTH_STEPS * step &&
-           SLANT_PIXELS * hypot(v->plane.a - p.a, v->plane.b - p.b) < SLANT_STEPS * step;
+    const double here = plane_at(p, v->u, v->v), tolerance = fmax(step, DEPTH_PART * here);
+    return fabs(plane_at(v->plane, v->u, v->v) - here) < tolerance &&
+           SLANT_PIXELS * hypot(v->plane.a - p.a, v->plane.b - p.b) < tolerance;
 }
 
 static double support_of(struct plane p, const struct plane_vote *votes, int count, double step)
@@ -112,8 +113,7 @@ enum status scene_planes_find(struct scene_planes *s, const struct plane_vote *v
         struct plane fit = best;
         for (int k = 0; k < FITS; k++) fit = fitted(fit, left, n, step);
         if (support_of(fit, left, n, step) >= most) best = fit;
-        s->planes[s->count++] = best;
-        s->filter |= (uint64_t)1 << scene_planes_key(best);
+        scene_planes_set(s, s->count++, best);
         int kept = 0;
         for (int i = 0; i < n; i++)
             if (!supports(&left[i], best, step)) left[kept++] = left[i];
