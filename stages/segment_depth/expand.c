@@ -34,7 +34,7 @@
 #define NEGLIGIBLE         0.03 /* energy that a segment need not be moved for */
 #define MAX_PAIRWISE_SHARE 0.3f /* a data cost may rise by this part of max_pairwise; else the proposal is skipped */
 #define UNITS_PER_ENERGY   1e7  /* energies are rounded to multiples of 1 / UNITS_PER_ENERGY */
-#define LEAST_SHARE        0.05 /* of all votes: weight of a plane of the scene, in the first round */
+#define LEAST_SHARE        0.03 /* of all votes: weight of a plane of the scene, in the first round */
 #define LEAST_SHARE_LATER  0.10 /* ... in later ones, where neighbours vote, too */
 #define REFITS             2
 #define APART              4 /* distance in cells between those that are moved in parallel */
