@@ -88,6 +88,22 @@ static void a_block_at_any_side_takes_over_the_wall(void **state)
     }
 }
 
+/* On a dominant plane of the scene a block that nothing matches stays: it is the near end of a ceiling. */
+static void a_block_on_a_plane_of_the_scene_stays(void **state)
+{
+    (void)state;
+    static struct scene_planes scene;
+    start();
+    assert_true(put_in_front(50, 0, 90, 40, 0) > 15);
+    scene = (struct scene_planes){.count = 1};
+    scene_planes_set(&scene, 0, (struct plane){0, 0, 0.42});
+    b.problem.scene = &scene;
+    inherit();
+    assert_memory_equal(planes, before, (size_t)b.segments.count * sizeof *planes);
+    for (int i = 0; i < b.segments.count; i++) assert_false(inherited[i]);
+    bench_release();
+}
+
 /* A matched object stands at the edge of the block, nearer than the wall: the block takes over the wall's depth. */
 static void a_block_beside_foreground_takes_over_the_wall(void **state)
 {
@@ -246,6 +262,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_block_at_any_side_takes_over_the_wall),
+        cmocka_unit_test(a_block_on_a_plane_of_the_scene_stays),
         cmocka_unit_test(a_block_beside_foreground_takes_over_the_wall),
         cmocka_unit_test(a_block_is_cut_off_from_the_foreground_that_it_touches),
         cmocka_unit_test(a_ramp_does_not_hold_a_block),

@@ -55,6 +55,18 @@ static void the_planes_of_most_votes_are_found_in_order(void **state)
     }
 }
 
+/* Votes scatter by the noise of pictures, not by the steps of a sweep. */
+static void fine_steps_find_the_same_planes(void **state)
+{
+    (void)state;
+    static struct plane_vote votes[VOTES];
+    struct scene_planes s;
+    struct err err = ERR_INIT;
+    make_votes(votes, 1);
+    assert_ok(scene_planes_find(&s, votes, VOTES, 0.05 * step, 0.05 * VOTES * 100, &err), err);
+    assert_int_equal(s.count, 2);
+}
+
 static void the_order_of_votes_does_not_matter(void **state)
 {
     (void)state;
@@ -126,6 +138,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_planes_of_most_votes_are_found_in_order),
+        cmocka_unit_test(fine_steps_find_the_same_planes),
         cmocka_unit_test(the_order_of_votes_does_not_matter),
         cmocka_unit_test(constant_depths_and_small_parts_are_no_planes_of_a_scene),
         cmocka_unit_test(a_blank_ceiling_continues_the_part_that_is_matched),
