@@ -235,13 +235,15 @@ static enum status find_scene_planes(const struct expander *x, struct err *err)
     return st;
 }
 
-/* Fits the scene's plane k to the segments that lie on it, which move with it. members: room for all segments. */
+/* Fits the scene's plane k to the segments that lie on it, which move with it; those whose depth is given stay. members:
+ * room for all segments. */
 static void refit_scene_plane(struct expander *x, int k, int *members)
 {
     struct scene_planes *scene = x->p->scene;
     int count = 0;
     for (int i = 0; i < x->s->count; i++)
-        if (memcmp(&x->plane[i], &scene->planes[k], sizeof x->plane[i]) == 0) members[count++] = i;
+        if (!given_depth_has(x->p->given, i) && memcmp(&x->plane[i], &scene->planes[k], sizeof x->plane[i]) == 0)
+            members[count++] = i;
     plane_refit(scene, k, members, count, x->p);
     for (int n = 0; n < count; n++) {
         const int i = members[n];

@@ -162,10 +162,10 @@ void plane_refit(struct scene_planes *scene, int k, const int *members, int coun
         .p = p, .scene = scene, .k = k, .members = members, .count = (count + stride - 1) / stride, .stride = stride};
     const struct plane plane = scene->planes[k];
     struct plane best = plane;
-    double lowest = INFINITY;
     struct space spaces[2];
     if (count < 3) return;
     const int kinds = list_spaces(spaces, plane, p);
+    double lowest = cost_of(&r, plane); /* kept to the last bit unless another costs less */
     for (int kind = 0; kind < kinds; kind++) {
         orthonormalize(&spaces[kind], &r);
         struct plane found = projected(plane, &spaces[kind], &r);

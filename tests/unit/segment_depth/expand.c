@@ -182,12 +182,50 @@ static void planes_stay_in_the_depth_range(void **state)
     bench_release();
 }
 
+/* A wall of which some segments have a given depth, half a step off: the rest is fitted to the pictures, they stay. */
+static void given_depth_stays_on_a_plane_of_the_scene(void **state)
+{
+    (void)state;
+    static struct plane planes[MAX_SEGMENTS], given[MAX_SEGMENTS];
+    static bool known[MAX_SEGMENTS];
+    static struct scene_planes scene;
+    const struct given_depth fixed = {.known = known, .planes = given};
+    int off = 0, moved = 0;
+    bench_empty();
+    scene_wall(&b.scene, 0, 0, 5, 8, 8, 0.4);
+    bench_views();
+    bench_make(0.12, 0.45);
+    const double slope = (bench_truth(90, 50) - bench_truth(50, 50)) / 40;
+    const struct plane plane = {slope, 0, bench_truth(50, 50) - slope * 50 + 0.5 * b.problem.step};
+    for (int i = 0; i < b.segments.count; i++) {
+        known[i] = i % 7 == 0;
+        planes[i] = given[i] = plane;
+    }
+    b.problem.given = &fixed;
+    b.problem.scene = &scene;
+    b.params.passes = 1;
+    expand(planes);
+    assert_true(scene.count > 0);
+    for (int i = 0; i < b.segments.count; i++) {
+        const struct segment *g = &b.segments.segments[i];
+        if (known[i]) {
+            assert_memory_equal(&planes[i], &plane, sizeof plane);
+            continue;
+        }
+        off += fabs(plane_at(planes[i], g->cx, g->cy) - bench_truth(g->cx, g->cy)) > 0.3 * b.problem.step;
+        moved++;
+    }
+    if (getenv("VERDICT")) print_message("  %d of %d off\n", off, moved);
+    assert_true(off < moved / 10);
+    bench_release();
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_energy_never_rises),           cmocka_unit_test(zero_passes_change_nothing),
         cmocka_unit_test(thread_counts_give_the_same_bits), cmocka_unit_test(a_blank_middle_gets_the_plane_of_its_rim),
-        cmocka_unit_test(planes_stay_in_the_depth_range),
+        cmocka_unit_test(planes_stay_in_the_depth_range),   cmocka_unit_test(given_depth_stays_on_a_plane_of_the_scene),
     };
     parallel_set_threads(1); /* tests run in parallel */
     return cmocka_run_group_tests(tests, NULL, NULL);
