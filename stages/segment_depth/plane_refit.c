@@ -6,27 +6,27 @@
  * inverse depths by one step on average. Each coordinate in turn moves up and down by a distance that halves from pass
  * to pass, as long as the sum of the members' unary terms falls.
  *
- * Most of a blank ceiling matches everywhere, and its slant is that of a few votes. Made horizontal, it has one unknown
- * left, which the little that can be matched decides. The plane that costs least is taken, where one that is horizontal
- * or vertical costs SNAP_GAIN less for each member. */
+ * Most of a blank ceiling matches at any depth, so that few votes decide its slant. A horizontal plane has only its
+ * height unknown, and the few parts that can be matched decide that. The plane of lowest cost is taken; a horizontal or
+ * vertical one counts as SNAP_GAIN cheaper per member. */
 #include "stages/segment_depth/plane_refit.h"
 
 #include <math.h>
 
 #include "common/base/parallel.h"
 
-#define MOST        1500  /* members that are looked at, spread evenly */
+#define MAX_MEMBERS 1500  /* of more members, one in two, three ... is used, so that at most these remain */
 #define FIRST_STEPS 2.0   /* how far a coordinate moves in the first pass, in steps */
 #define PASSES      5     /* the last moves by an eighth of a step */
-#define MOVES       3     /* of a coordinate in one direction, in a pass */
-#define SCAN_STEPS  16    /* in either direction: heights of a horizontal plane that are tried first */
-#define SNAP        0.3   /* radians from horizontal, or from vertical */
-#define SNAP_GAIN   0.005 /* of a mean segment */
-#define BLOCKS      32    /* sums of members, so that the result does not depend on threads */
+#define MOVES       3     /* maximum number of moves of a coordinate in one direction, in a pass */
+#define SCAN_STEPS  16    /* how far up and down the height of a horizontal plane is looked for first */
+#define SNAP        0.3   /* radians: how far a plane may be from horizontal or vertical to be made so */
+#define SNAP_GAIN   0.005 /* how much less a horizontal or vertical plane costs, per member */
+#define BLOCKS      32    /* partial sums of costs: the same for any number of threads */
 
 struct refit {
     const struct plane_problem *p;
-    struct scene_planes *scene; /* holds the plane that is tried, since one of the scene's costs less than others */
+    struct scene_planes *scene; /* plane k is the one that is tried: planes of the scene cost less than others */
     int k;
     const int *members;
     int count, stride; /* every stride-th member */
@@ -157,7 +157,7 @@ static int list_spaces(struct space spaces[2], struct plane plane, const struct 
 
 void plane_refit(struct scene_planes *scene, int k, const int *members, int count, const struct plane_problem *p)
 {
-    const int stride = count / MOST + 1;
+    const int stride = count / MAX_MEMBERS + 1;
     struct refit r = {
         .p = p, .scene = scene, .k = k, .members = members, .count = (count + stride - 1) / stride, .stride = stride};
     const struct plane plane = scene->planes[k];

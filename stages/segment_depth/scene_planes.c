@@ -113,7 +113,8 @@ enum status scene_planes_find(struct scene_planes *s, const struct plane_vote *v
         struct plane fit = best;
         for (int k = 0; k < FITS; k++) fit = fitted(fit, left, n, step);
         if (support_of(fit, left, n, step) >= most) best = fit;
-        scene_planes_set(s, s->count++, best);
+        s->count++;
+        scene_planes_set(s, s->count - 1, best);
         int kept = 0;
         for (int i = 0; i < n; i++)
             if (!supports(&left[i], best, step)) left[kept++] = left[i];

@@ -32,7 +32,7 @@ static inline bool scene_planes_have(const struct scene_planes *s, struct plane 
     return false;
 }
 
-/* Replaces plane k. */
+/* Sets plane k, which is below `count`. */
 static inline void scene_planes_set(struct scene_planes *s, int k, struct plane p)
 {
     s->planes[k] = p;

@@ -8,7 +8,7 @@
  *   given_depth   fixed planes of the segments whose depth the user provides
  *   plane_sweep   first round: cost volume over the depth range, smoothed; later rounds start from the previous planes
  *   expand        expansion moves: minimum cuts over planes, slanted where that explains the pictures better; the
- *                 scene's dominant planes are offered to the whole view
+ *                 scene's dominant planes are offered to the whole view, and fitted to what takes them
  *   refine        local search with the same energy
  *   inherit       border areas that nothing holds in the foreground take over what lies behind them
  *   pixel_planes  each pixel chooses among the planes around it
