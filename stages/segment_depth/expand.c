@@ -13,7 +13,8 @@
  *
  * A wall that no picture decides takes the plane of the part that one does, however large it is: after the first pass
  * the scene's dominant planes (scene_planes.h) are offered to all segments at once. Each is then fitted to the segments
- * that took it (plane_refit.h), and offered again, REFITS times.
+ * that took it (plane_refit.h), and offered again, REFITS times. The ground (gravity.h) is offered with them, unless
+ * the votes know it better, and is not fitted: a lawn matches nothing.
  *
  * What differs from the source: the nodes are segments, not pixels; proposals also come from the sweep, from
  * neighbouring views and from horizontal and vertical planes (plane_proposals.h); data costs are only computed while
@@ -34,6 +35,7 @@
 #define NEGLIGIBLE         0.03 /* energy that a segment need not be moved for */
 #define MAX_PAIRWISE_SHARE 0.3f /* a data cost may rise by this part of max_pairwise; else the proposal is skipped */
 #define UNITS_PER_ENERGY   1e7  /* energies are rounded to multiples of 1 / UNITS_PER_ENERGY */
+#define SAME_GROUND        0.15 /* of the ground's inverse distance, and radians */
 #define LEAST_SHARE        0.03 /* of all votes: weight of a plane of the scene, in the first round */
 #define LEAST_SHARE_LATER  0.10 /* ... in later ones, where neighbours vote, too */
 #define REFITS             2
@@ -235,6 +237,19 @@ static enum status find_scene_planes(const struct expander *x, struct err *err)
     return st;
 }
 
+/* Adds the ground, in place of the last plane if there are too many, unless one of them is about the ground. Returns how
+ * many planes come from votes. */
+static int add_ground(struct scene_planes *scene, const struct view *view, struct plane ground)
+{
+    const struct vec3 n = plane_normal(view, ground);
+    for (int k = 0; k < scene->count; k++)
+        if (vec3_length(vec3_sub(plane_normal(view, scene->planes[k]), n)) <= SAME_GROUND * vec3_length(n))
+            return scene->count;
+    if (scene->count < SCENE_PLANES) scene->count++;
+    scene_planes_set(scene, scene->count - 1, ground);
+    return scene->count - 1;
+}
+
 /* Fits the scene's plane k to the segments that lie on it, which move with it; those whose depth is given stay. members:
  * room for all segments. */
 static void refit_scene_plane(struct expander *x, int k, int *members)
@@ -260,11 +275,12 @@ static enum status move_to_scene_planes(struct expander *x, struct err *err)
     int *members = malloc(((size_t)x->s->count + 1) * sizeof *members);
     enum status st = members ? find_scene_planes(x, err)
                              : err_nomem(err, "segments on a plane", (size_t)x->s->count * sizeof *members);
+    const int fitted = x->p->ground ? add_ground(x->p->scene, x->p->view, *x->p->ground) : x->p->scene->count;
     memcpy(x->before, x->plane, (size_t)x->s->count * sizeof *x->plane);
     for (int i = 0; i < x->s->count; i++) w->local[i] = w->region[i] = i;
     for (int round = 0; !st && round <= REFITS; round++)
         for (int k = 0; !st && k < x->p->scene->count; k++) {
-            if (round) refit_scene_plane(x, k, members);
+            if (round && k < fitted) refit_scene_plane(x, k, members);
             expansion_move(x, w, x->s->count, x->p->scene->planes[k], err);
             st = err->status;
         }

@@ -7,7 +7,9 @@
 
 #include <math.h>
 
-#define SLACK 0.1f /* by which a slanted plane may match better than all constant depths that it covers */
+#define GROUND_COST   0.3f /* of a segment that lies below the ground */
+#define GROUND_MARGIN 0.9f /* of the ground's inverse depth: a segment may be that far below at no cost */
+#define SLACK         0.1f /* by which a slanted plane may match better than all constant depths that it covers */
 
 /* A bound that a segment's matching cost on a plane rarely falls below. */
 static float match_lower_bound(const struct plane_problem *p, int segment, struct plane plane)
@@ -36,6 +38,8 @@ float unary_cost(const struct plane_problem *p, int segment, struct plane plane,
     float data = (float)point_evidence_cost(p->points, segment, plane, g->cx, g->cy);
     if (scene_planes_have(p->scene, plane))
         data -= (float)(point_evidence_far(p->points, plane, g->cx, g->cy) + (p->cross ? 0 : SCENE_GAIN));
+    if (p->ground && plane_at(plane, g->cx, g->cy) < GROUND_MARGIN * plane_at(*p->ground, g->cx, g->cy))
+        data += GROUND_COST;
     const float left = max_cost / size - data - match_lower_bound(p, segment, plane),
                 part = (float)p->params->cross_view;
     if (!(left >= 0)) return PLANE_FORBIDDEN;

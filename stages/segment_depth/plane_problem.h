@@ -8,6 +8,9 @@
  * bias to the far side, it costs SCENE_GAIN less in the first round, and it may leave the range of depths, which
  * comes from points, by a factor of SCENE_REACH. So a blank ceiling that no view can match continues on the plane of its matched part.
  *
+ * A segment that lies below the scene's ground (gravity.h), by more than a tenth of the inverse depth, costs GROUND_COST
+ * more: the ground hides what is there. The ground itself may come as near as it does, by a factor of GROUND_REACH.
+ *
  * A segment whose depth is given has one plane, of cost 0; any other costs PLANE_FORBIDDEN. size_i is in mean segments.
  * The gap is the mean difference of the two planes' inverse depths at the middle of the border and at both centroids:
  * zero for equal planes, so that a surface slants at no cost, and never more than the sum over a third plane
@@ -37,6 +40,7 @@ struct plane_problem { /* borrows all that it points to */
     const struct point_evidence *points;
     const struct cross_view *cross;  /* NULL in the first round */
     const struct given_depth *given; /* NULL if no depth is given */
+    const struct plane *ground;      /* of the scene (gravity.h); NULL: unknown */
     struct scene_planes *scene;      /* filled by expand_planes(); NULL: none are looked for */
     const float *weights;            /* of each border, as border_weights() */
     const struct segment_params *params;
@@ -55,12 +59,14 @@ static inline double problem_slant(const struct segment_params *params)
 
 static inline int problem_passes(const struct plane_problem *p) { return depth_passes(p->params, !p->cross); }
 
-#define SCENE_REACH 3.0
+#define SCENE_REACH  3.0
+#define GROUND_REACH 30.0
 
 /* Whether a plane stays in the range of depths over a segment. */
 static inline bool problem_allows(const struct plane_problem *p, const struct segment *g, struct plane plane)
 {
-    const double reach = scene_planes_have(p->scene, plane) ? SCENE_REACH : 1;
+    const bool ground = p->ground && memcmp(p->ground, &plane, sizeof plane) == 0;
+    const double reach = ground ? GROUND_REACH : scene_planes_have(p->scene, plane) ? SCENE_REACH : 1;
     return plane_within(plane, g, p->min_inverse_z / reach, p->max_inverse_z * reach);
 }
 

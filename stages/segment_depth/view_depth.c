@@ -7,6 +7,7 @@
  *   oversegment   SLIC superpixels in gamma-encoded opponent colours
  *   given_depth   fixed planes of the segments whose depth the user provides
  *   plane_sweep   first round: cost volume over the depth range, smoothed; later rounds start from the previous planes
+ *   gravity       which way is down, from cameras and walls; and the ground, at the feet of what stands on it
  *   expand        expansion moves: minimum cuts over planes, slanted where that explains the pictures better; the
  *                 scene's dominant planes are offered to the whole view, and fitted to what takes them
  *   refine        local search with the same energy
@@ -26,6 +27,7 @@
 
 #include "common/math/numbers.h"
 #include "stages/segment_depth/expand.h"
+#include "stages/segment_depth/gravity.h"
 #include "stages/segment_depth/inherit.h"
 #include "stages/segment_depth/layers.h"
 #include "stages/segment_depth/pixel_planes.h"
@@ -91,17 +93,6 @@ static enum status fill_segments(struct layered_depth *out, const struct plane_p
         };
     }
     return ST_OK;
-}
-
-/* The direction down in the view's axes, assuming that the photos are upright on average. ups: as in view_source. */
-static struct vec3 down_direction(const struct camera_set *set, const struct vec3 *ups, const struct view *view)
-{
-    struct vec3 sum = {0, 0, 0};
-    for (int i = 0; i < set->view_count; i++) {
-        const struct vec3 up = ups ? ups[i] : vec3_make(0, -1, 0);
-        sum = vec3_sub(sum, mat3_apply(mat3_transpose(set->views[i].cam_from_world), up));
-    }
-    return mat3_apply(view->cam_from_world, vec3_normalize(sum));
 }
 
 struct solver {
@@ -176,10 +167,25 @@ struct solution {
     struct plane_sweep sweep;
     struct given_depth given;
     struct scene_planes scene;
+    struct plane ground;
     struct plane *planes;
     double *distinct; /* of each segment: distinctness() in the first round */
     float *weights, *min_match;
 };
+
+/* The scene's ground as the view sees it. */
+static enum status find_ground(struct solution *x, const struct solver *v, struct vec3 down, struct err *err)
+{
+    const struct view *view = &v->set->views[v->view_idx];
+    struct ground ground;
+    bool found;
+    if (ground_find(&ground, &found, v->set, down, err)) return err->status;
+    if (!found) return ST_OK;
+    const double height = ground.offset - vec3_dot(ground.down, view->center);
+    x->ground = plane_of_normal(view, vec3_scale(mat3_apply(view->cam_from_world, ground.down), 1 / height));
+    x->problem.ground = &x->ground;
+    return ST_OK;
+}
 
 /* Initial planes by a plane sweep. */
 static enum status start_first_round(struct solution *x, const struct solver *v, struct err *err)
@@ -215,6 +221,9 @@ static enum status start_solution(struct solution *x, const struct solver *v, st
 {
     const struct segmentation *s = v->m->segments;
     const struct view *view = &v->set->views[v->view_idx];
+    struct vec3 down;
+    enum status st = gravity_find(&down, v->set, v->source->ups, err);
+    if (st) return st;
     const size_t count = (size_t)s->count + 1;
     x->planes = malloc(count * sizeof *x->planes);
     x->distinct = calloc(count, sizeof *x->distinct);
@@ -225,7 +234,7 @@ static enum status start_solution(struct solution *x, const struct solver *v, st
     plane_sweep_steps(&x->sweep, v->m, v->min_inverse_z, v->max_inverse_z, v->params);
     if (v->given) x->sweep.given = &x->given;
     x->problem = (struct plane_problem){.view = view,
-                                        .down = down_direction(v->set, v->source->ups, view),
+                                        .down = mat3_apply(view->cam_from_world, down),
                                         .m = v->m,
                                         .points = &x->points,
                                         .given = x->sweep.given,
@@ -237,7 +246,8 @@ static enum status start_solution(struct solution *x, const struct solver *v, st
                                         .max_inverse_z = v->max_inverse_z,
                                         .step = x->sweep.step,
                                         .planes = x->sweep.planes};
-    enum status st = v->given ? fit_given(&x->given, v, x->sweep.step, err) : ST_OK;
+    if (v->given) st = fit_given(&x->given, v, x->sweep.step, err);
+    if (!st) st = find_ground(x, v, down, err);
     if (!st)
         st = point_evidence_make(&x->points, s, v->seen, v->min_inverse_z, v->max_inverse_z, x->sweep.step, v->params,
                                  err);

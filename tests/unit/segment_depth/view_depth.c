@@ -50,6 +50,27 @@ static void a_floor_is_found(void **state)
     layered_depth_release(&r.depth);
 }
 
+/* Before a wall, with a few pebbles on it that show where it is. */
+static void a_blank_lawn_lies_on_the_ground(void **state)
+{
+    (void)state;
+    struct result r = {0};
+    start();
+    struct painted_surface *lawn = scene_surface(&scene, vec3_make(0, 1.2, 6));
+    lawn->across = vec3_make(15, 0, 0);
+    lawn->down = vec3_make(0, 0, 6);
+    lawn->contrast = 0;
+    scene_wall(&scene, 0, -3.8, 11, 15, 5, 0);
+    place_cameras(5);
+    scene_points(&scene, 350);
+    for (int i = 0; i < 40; i++)
+        scene_point(&scene, vec3_make(4 * scene_hash(i, 1, 1) - 2, 1.2, 4 + 7 * scene_hash(i, 1, 2)), 31);
+    must_work(&r);
+    if (getenv("VERDICT")) print_message("  lawn %.3f\n", fraction_correct(&r.depth, 0, 0.03));
+    assert_true(fraction_correct(&r.depth, 0, 0.03) > 0.9);
+    layered_depth_release(&r.depth);
+}
+
 static void a_ball_is_found(void **state)
 {
     (void)state;
@@ -531,6 +552,7 @@ int main(void)
         cmocka_unit_test(a_facing_wall_is_found),
         cmocka_unit_test(a_slanted_wall_is_found),
         cmocka_unit_test(a_floor_is_found),
+        cmocka_unit_test(a_blank_lawn_lies_on_the_ground),
         cmocka_unit_test(a_ball_is_found),
         cmocka_unit_test(a_depth_edge_is_found_within_two_pixels),
         cmocka_unit_test(a_blank_wall_gets_the_depth_of_its_frame),

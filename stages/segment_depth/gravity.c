@@ -1,0 +1,216 @@
+/* gravity.c - gravity and the ground of a scene, from its cameras and sparse points.
+ *
+ * Photographers hold the horizon level, so that the mean of what is down in the photos is free of roll. But all photos
+ * of a building may be taken with the camera tilted up, and all of a table tilted down: between photos of one viewing
+ * direction, pitch does not average out. Walls and furniture decide it: on a plan, seen along gravity, the points of a
+ * wall fall on a line. So of all pitches, gravity is the one for which most pairs of points share a square of the plan.
+ * [Gallup 2007] finds directions of walls like this, by the entropy of histograms of points.
+ *
+ * Gravels and lawns match badly between photos: their texture is fine, and near. What is known of them is where walls,
+ * trees and posts end: hardly any sparse point lies below the ground. So of all planes that are level to within
+ * GROUND_TILT, the ground is the one with the highest
+ *   (points within BAND of it - BELOW_WEIGHT points below it) (1 - TILT_WEIGHT tilt in degrees). */
+#include "stages/segment_depth/gravity.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#define MOST_POINTS 4000 /* points that are looked at; of more, every n-th */
+
+#define SQUARE       0.01 /* side of a square of the plan, of the points' median distance from the cameras' centre */
+#define LEAST_RIGHT  0.5  /* length of the mean of the cameras' right axes: below, they look all around */
+#define PITCH        45   /* degrees: the largest that is tried */
+#define PITCH_COARSE 3
+#define PITCH_FINE   0.5
+#define PITCH_GAIN   2.0 /* least ratio of the pairs with and without pitch */
+#define PITCH_PAIRS  0.1 /* least difference, for each point */
+
+#define BAND         0.006 /* of the median distance, as the following lengths */
+#define BELOW_WEIGHT 3.0
+#define MOST_BELOW   0.02 /* share of all points: outliers */
+#define LEAST_SHARE  0.01 /* of all points, within BAND */
+#define LEAST_POINTS 30   /* the same, in points */
+#define LEAST_CAMERA 0.02 /* height of the lowest camera */
+#define LEAST_SPREAD 0.04 /* standard deviation of the points within BAND along the narrower direction */
+#define TILT_WEIGHT  0.03
+#define TILT_STEP    0.5 /* degrees */
+
+/* Points from the cameras' centre, and axes: right and ahead are level. */
+struct cloud {
+    struct vec3 *points;
+    double *value;   /* scratch, of each point */
+    int count, all;  /* all: of which the count is a part */
+    double distance; /* median */
+    struct vec3 centre, down, right, ahead;
+};
+
+static int compare(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static void sort_values(struct cloud *c) { qsort(c->value, (size_t)c->count, sizeof *c->value, compare); }
+
+/* Axes with `down` down, and `right` as far as it is level. */
+static void set_axes(struct cloud *c, struct vec3 down, struct vec3 right)
+{
+    c->down = vec3_normalize(down);
+    c->right = vec3_normalize(vec3_sub(right, vec3_scale(c->down, vec3_dot(right, c->down))));
+    c->ahead = vec3_cross(c->right, c->down);
+}
+
+static void cloud_release(struct cloud *c)
+{
+    free(c->points);
+    free(c->value);
+}
+
+static enum status cloud_take(struct cloud *c, const struct camera_set *set, struct err *err)
+{
+    const int all = set->model.point_count, stride = (all + MOST_POINTS - 1) / MOST_POINTS;
+    const size_t most = (size_t)(all < MOST_POINTS ? all : MOST_POINTS) + 1;
+    *c = (struct cloud){.all = all};
+    c->points = malloc(most * sizeof *c->points);
+    c->value = malloc(most * sizeof *c->value);
+    if (!c->points || !c->value) return err_nomem(err, "the points of a scene", most * sizeof *c->points);
+    for (int i = 0; i < set->view_count; i++)
+        c->centre = vec3_add(c->centre, vec3_scale(set->views[i].center, 1.0 / set->view_count));
+    for (int i = 0; i < all; i += stride) {
+        c->points[c->count] = vec3_sub(set->model.points[i].position, c->centre);
+        c->value[c->count] = vec3_length(c->points[c->count]);
+        c->count++;
+    }
+    sort_values(c);
+    c->distance = c->count ? c->value[c->count / 2] : 0;
+    return ST_OK;
+}
+
+/* `down` tilted by angles in degrees. */
+static struct vec3 tilted(const struct cloud *c, double right, double ahead)
+{
+    const double degree = M_PI / 180;
+    return vec3_normalize(vec3_add(
+        c->down, vec3_add(vec3_scale(c->right, tan(right * degree)), vec3_scale(c->ahead, tan(ahead * degree)))));
+}
+
+/* ---------------------------------------------------------------------------------------------------- gravity */
+
+/* Ordered pairs of points that share a square of the plan after a pitch. */
+static double pairs_on_plan(struct cloud *c, double pitch)
+{
+    const struct vec3 ahead = vec3_cross(c->right, tilted(c, 0, pitch));
+    const double square = SQUARE * c->distance, row = 0x1p26; /* far more squares than a row has */
+    double sum = 0;
+    for (int i = 0; i < c->count; i++)
+        c->value[i] =
+            floor(vec3_dot(c->right, c->points[i]) / square) + row * floor(vec3_dot(ahead, c->points[i]) / square);
+    sort_values(c);
+    for (int i = 0, end; i < c->count; i = end) {
+        for (end = i; end < c->count && c->value[end] == c->value[i];) end++;
+        sum += (double)(end - i) * (end - i - 1);
+    }
+    return sum;
+}
+
+static double best_pitch(struct cloud *c)
+{
+    const double none = pairs_on_plan(c, 0);
+    double best = none, pitch = 0;
+    for (int k = -PITCH / PITCH_COARSE; k <= PITCH / PITCH_COARSE; k++) {
+        const double at = k * PITCH_COARSE, sum = pairs_on_plan(c, at);
+        if (sum > best) best = sum, pitch = at;
+    }
+    const double coarse = pitch;
+    for (double a = -PITCH_COARSE; a <= PITCH_COARSE; a += PITCH_FINE) {
+        const double sum = pairs_on_plan(c, coarse + a);
+        if (sum > best) best = sum, pitch = coarse + a;
+    }
+    return best >= PITCH_GAIN * none && best - none >= PITCH_PAIRS * c->count && fabs(pitch) < PITCH ? pitch : 0;
+}
+
+enum status gravity_find(struct vec3 *down, const struct camera_set *set, const struct vec3 *ups, struct err *err)
+{
+    struct cloud c;
+    struct vec3 mean = {0, 0, 0}, right = {0, 0, 0};
+    for (int i = 0; i < set->view_count; i++) {
+        const struct mat3 world_from_cam = mat3_transpose(set->views[i].cam_from_world);
+        const struct vec3 up = ups ? ups[i] : vec3_make(0, -1, 0);
+        mean = vec3_sub(mean, mat3_apply(world_from_cam, up));
+        right = vec3_add(right, mat3_apply(world_from_cam, vec3_cross(vec3_make(0, 0, 1), up)));
+    }
+    *down = vec3_normalize(mean);
+    if (!(vec3_length(right) >= LEAST_RIGHT * set->view_count)) return ST_OK;
+    const enum status st = cloud_take(&c, set, err);
+    set_axes(&c, mean, right);
+    const double pitch = !st && c.distance > 0 ? best_pitch(&c) : 0;
+    if (pitch != 0) *down = tilted(&c, 0, pitch);
+    cloud_release(&c);
+    return st;
+}
+
+/* ----------------------------------------------------------------------------------------------------- ground */
+
+struct level { /* a plane */
+    struct vec3 down;
+    double depth; /* below the centre */
+    double score;
+};
+
+/* The best plane of one tilt, if it is better than *best. */
+static void try_tilt(struct level *best, struct cloud *c, const struct camera_set *set, double right, double ahead)
+{
+    const double tilt = hypot(right, ahead), band = BAND * c->distance;
+    const struct vec3 down = tilted(c, right, ahead);
+    const int last = c->count - 1;
+    double camera = -INFINITY; /* depth of the lowest */
+
+    if (tilt > GROUND_TILT) return;
+    for (int i = 0; i < set->view_count; i++)
+        camera = fmax(camera, vec3_dot(down, vec3_sub(set->views[i].center, c->centre)));
+    for (int i = 0; i < c->count; i++) c->value[i] = vec3_dot(down, c->points[i]);
+    sort_values(c);
+    for (int i = last, first = last, end = last; i >= 0 && c->value[i] >= camera + LEAST_CAMERA * c->distance; i--) {
+        while (end > 0 && c->value[end] > c->value[i] + band) end--;
+        while (first > 0 && c->value[first - 1] >= c->value[i] - band) first--;
+        if (last - end > MOST_BELOW * c->count) break;
+        const double score = (end - first + 1 - BELOW_WEIGHT * (last - end)) * (1 - TILT_WEIGHT * tilt);
+        if (score > best->score) *best = (struct level){down, c->value[i], score};
+    }
+}
+
+/* Whether enough points lie within the plane's band, spread over it. */
+static bool is_ground(const struct cloud *c, const struct level *level)
+{
+    double u = 0, v = 0, uu = 0, uv = 0, vv = 0;
+    int n = 0;
+
+    for (int i = 0; i < c->count; i++) {
+        if (!(fabs(vec3_dot(level->down, c->points[i]) - level->depth) <= BAND * c->distance)) continue;
+        const double x = vec3_dot(c->right, c->points[i]), y = vec3_dot(c->ahead, c->points[i]);
+        u += x, v += y, uu += x * x, uv += x * y, vv += y * y;
+        n++;
+    }
+    if (n < LEAST_SHARE * c->count || (double)n * c->all / c->count < LEAST_POINTS) return false;
+    uu = uu / n - u / n * (u / n), uv = uv / n - u / n * (v / n), vv = vv / n - v / n * (v / n);
+    const double mean = (uu + vv) / 2, narrow = mean - sqrt(fmax(0, mean * mean - (uu * vv - uv * uv)));
+    return narrow >= LEAST_SPREAD * LEAST_SPREAD * c->distance * c->distance;
+}
+
+enum status ground_find(struct ground *g, bool *found, const struct camera_set *set, struct vec3 down, struct err *err)
+{
+    const int steps = (int)(GROUND_TILT / TILT_STEP);
+    struct cloud c;
+    struct level best = {0};
+    *found = false;
+    const enum status st = cloud_take(&c, set, err);
+    if (!st && c.distance > 0) {
+        set_axes(&c, down, fabs(down.x) < 0.9 ? vec3_make(1, 0, 0) : vec3_make(0, 1, 0));
+        for (int a = -steps; a <= steps; a++)
+            for (int b = -steps; b <= steps; b++) try_tilt(&best, &c, set, a * TILT_STEP, b * TILT_STEP);
+        *found = best.score > 0 && is_ground(&c, &best);
+    }
+    if (*found) *g = (struct ground){best.down, best.depth + vec3_dot(best.down, c.centre)};
+    cloud_release(&c);
+    return st;
+}

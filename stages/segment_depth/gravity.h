@@ -1,0 +1,23 @@
+/* gravity.h - which way is down in a scene, and where its ground lies. */
+#ifndef REMODEL_GRAVITY_H
+#define REMODEL_GRAVITY_H
+
+#include "common/capture/camera_set.h"
+
+/* The ground: the nearly level plane below which there are hardly any sparse points. */
+struct ground {       /* points X on it: down . X = offset, in the scene's frame and units */
+    struct vec3 down; /* unit vector */
+    double offset;
+};
+
+/* Sets *down to the direction of gravity in the scene's frame, a unit vector. ups: for each view the direction that is
+ * up in its photo, in the view's axes; NULL: (0, -1, 0). ST_NOMEM. */
+enum status gravity_find(struct vec3 *down, const struct camera_set *set, const struct vec3 *ups, struct err *err);
+
+/* Finds the ground, at most GROUND_TILT degrees from level. *found is false if the points show none below all cameras.
+ * ST_NOMEM. */
+enum status ground_find(struct ground *g, bool *found, const struct camera_set *set, struct vec3 down, struct err *err);
+
+#define GROUND_TILT 3
+
+#endif
