@@ -237,17 +237,23 @@ static enum status find_scene_planes(const struct expander *x, struct err *err)
     return st;
 }
 
-/* Adds the ground, in place of the last plane if there are too many, unless one of them is about the ground. Returns how
- * many planes come from votes. */
-static int add_ground(struct scene_planes *scene, const struct view *view, struct plane ground)
+/* Before there are votes, the ground is the only plane of the scene. */
+static void start_with_ground(struct scene_planes *scene, const struct plane *ground)
+{
+    *scene = (struct scene_planes){.count = ground != NULL, .has_ground = ground != NULL};
+    if (ground) scene_planes_set(scene, 0, *ground);
+}
+
+/* Adds the ground to the planes of votes, in place of the last one if there are too many, unless one of them is about the
+ * ground: then votes know it better, or what looks like the ground is a table. */
+static void add_ground(struct scene_planes *scene, const struct view *view, struct plane ground)
 {
     const struct vec3 n = plane_normal(view, ground);
     for (int k = 0; k < scene->count; k++)
-        if (vec3_length(vec3_sub(plane_normal(view, scene->planes[k]), n)) <= SAME_GROUND * vec3_length(n))
-            return scene->count;
+        if (vec3_length(vec3_sub(plane_normal(view, scene->planes[k]), n)) <= SAME_GROUND * vec3_length(n)) return;
     if (scene->count < SCENE_PLANES) scene->count++;
     scene_planes_set(scene, scene->count - 1, ground);
-    return scene->count - 1;
+    scene->has_ground = true;
 }
 
 /* Fits the scene's plane k to the segments that lie on it, which move with it; those whose depth is given stay. members:
@@ -275,7 +281,11 @@ static enum status move_to_scene_planes(struct expander *x, struct err *err)
     int *members = malloc(((size_t)x->s->count + 1) * sizeof *members);
     enum status st = members ? find_scene_planes(x, err)
                              : err_nomem(err, "segments on a plane", (size_t)x->s->count * sizeof *members);
-    const int fitted = x->p->ground ? add_ground(x->p->scene, x->p->view, *x->p->ground) : x->p->scene->count;
+    if (x->p->ground) {
+        if (!st) add_ground(x->p->scene, x->p->view, *x->p->ground);
+        for (int i = 0; i < x->s->count; i++) x->unary[i] = unary_cost(x->p, i, x->plane[i], INFINITY);
+    }
+    const int fitted = x->p->scene->count - x->p->scene->has_ground;
     memcpy(x->before, x->plane, (size_t)x->s->count * sizeof *x->plane);
     for (int i = 0; i < x->s->count; i++) w->local[i] = w->region[i] = i;
     for (int round = 0; !st && round <= REFITS; round++)
@@ -392,6 +402,7 @@ enum status expand_planes(struct plane *plane, const struct plane_problem *p, st
         cells += x.cells[k].across * x.cells[k].down;
     }
     if (!st) {
+        if (p->scene) start_with_ground(p->scene, p->ground);
         parallel_for((size_t)x.s->count, 64, initial_costs, &x);
         progress_start(&progress, "expansion", (int64_t)x.passes * cells, "cells");
     }

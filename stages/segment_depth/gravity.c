@@ -9,7 +9,8 @@
  * Gravels and lawns match badly between photos: their texture is fine, and near. What is known of them is where walls,
  * trees and posts end: hardly any sparse point lies below the ground. So of all planes that are level to within
  * GROUND_TILT, the ground is the one with the highest
- *   (points within BAND of it - BELOW_WEIGHT points below it) (1 - TILT_WEIGHT tilt in degrees). */
+ *   (points within BAND of it - BELOW_WEIGHT points below it) (1 - TILT_WEIGHT tilt in degrees),
+ * and within the band it lies where most points are. Points at the lower edge of the photos do not count. */
 #include "stages/segment_depth/gravity.h"
 
 #include <math.h>
@@ -17,28 +18,31 @@
 
 #define MOST_POINTS 4000 /* points that are looked at; of more, every n-th */
 
-#define SQUARE       0.01 /* side of a square of the plan, of the points' median distance from the cameras' centre */
-#define LEAST_RIGHT  0.5  /* length of the mean of the cameras' right axes: below, they look all around */
-#define PITCH        45   /* degrees: the largest that is tried */
-#define PITCH_COARSE 3
-#define PITCH_FINE   0.5
-#define PITCH_GAIN   2.0 /* least ratio of the pairs with and without pitch */
-#define PITCH_PAIRS  0.1 /* least difference, for each point */
+#define SQUARE      0.01  /* side of a square of the plan, of the points' median distance from the cameras' centre */
+#define FINE_SQUARE 0.004 /* the same, for the last degree */
+#define LEAST_RIGHT 0.5   /* length of the mean of the cameras' right axes: below, they look all around */
+#define PITCH       45    /* degrees: the largest that is tried */
+#define OFF         6     /* degrees off the best: there are clearly fewer pairs */
+#define PITCH_GAIN  2.0   /* least ratio of the pairs */
+#define PITCH_PAIRS 0.1   /* least difference, for each point */
 
 #define BAND         0.006 /* of the median distance, as the following lengths */
+#define NARROW       0.5   /* of the band */
 #define BELOW_WEIGHT 3.0
 #define MOST_BELOW   0.02 /* share of all points: outliers */
 #define LEAST_SHARE  0.01 /* of all points, within BAND */
 #define LEAST_POINTS 30   /* the same, in points */
 #define LEAST_CAMERA 0.02 /* height of the lowest camera */
 #define LEAST_SPREAD 0.04 /* standard deviation of the points within BAND along the narrower direction */
-#define TILT_WEIGHT  0.03
+#define OPEN_BELOW   0.05 /* of a point's depth */
+#define TILT_WEIGHT  0.3
 #define TILT_STEP    0.5 /* degrees */
 
 /* Points from the cameras' centre, and axes: right and ahead are level. */
 struct cloud {
     struct vec3 *points;
     double *value;   /* scratch, of each point */
+    int feet;        /* how many of the first points may be feet: find_feet() */
     int count, all;  /* all: of which the count is a part */
     double distance; /* median */
     struct vec3 centre, down, right, ahead;
@@ -96,11 +100,11 @@ static struct vec3 tilted(const struct cloud *c, double right, double ahead)
 
 /* ---------------------------------------------------------------------------------------------------- gravity */
 
-/* Ordered pairs of points that share a square of the plan after a pitch. */
-static double pairs_on_plan(struct cloud *c, double pitch)
+/* Ordered pairs of points that share a square of the plan after a pitch; side: of squares, of the median distance. */
+static double pairs_on_plan(struct cloud *c, double pitch, double side)
 {
     const struct vec3 ahead = vec3_cross(c->right, tilted(c, 0, pitch));
-    const double square = SQUARE * c->distance, row = 0x1p26; /* far more squares than a row has */
+    const double square = side * c->distance, row = 0x1p26; /* far more squares than a row has */
     double sum = 0;
     for (int i = 0; i < c->count; i++)
         c->value[i] =
@@ -113,38 +117,56 @@ static double pairs_on_plan(struct cloud *c, double pitch)
     return sum;
 }
 
-static double best_pitch(struct cloud *c)
+/* False: no pitch is clearly better than the others. */
+static bool find_pitch(double *found, struct cloud *c)
 {
-    const double none = pairs_on_plan(c, 0);
-    double best = none, pitch = 0;
-    for (int k = -PITCH / PITCH_COARSE; k <= PITCH / PITCH_COARSE; k++) {
-        const double at = k * PITCH_COARSE, sum = pairs_on_plan(c, at);
-        if (sum > best) best = sum, pitch = at;
+    static const struct {
+        double reach, step, square;
+    } stages[] = {{PITCH, 3, SQUARE}, {3, 0.5, SQUARE}, {0.5, 0.05, FINE_SQUARE}};
+    double pitch = 0;
+    for (int k = 0; k < 3; k++) {
+        const int steps = (int)lrint(stages[k].reach / stages[k].step);
+        const double middle = pitch;
+        double best = pairs_on_plan(c, middle, stages[k].square);
+        for (int i = -steps; i <= steps; i++) {
+            const double at = middle + i * stages[k].step, pairs = pairs_on_plan(c, at, stages[k].square);
+            if (pairs > best) best = pairs, pitch = at;
+        }
     }
-    const double coarse = pitch;
-    for (double a = -PITCH_COARSE; a <= PITCH_COARSE; a += PITCH_FINE) {
-        const double sum = pairs_on_plan(c, coarse + a);
-        if (sum > best) best = sum, pitch = coarse + a;
-    }
-    return best >= PITCH_GAIN * none && best - none >= PITCH_PAIRS * c->count && fabs(pitch) < PITCH ? pitch : 0;
+    const double pairs = pairs_on_plan(c, pitch, SQUARE),
+                 off = fmax(pairs_on_plan(c, pitch - OFF, SQUARE), pairs_on_plan(c, pitch + OFF, SQUARE));
+    *found = pitch;
+    return pairs >= PITCH_GAIN * off && pairs - off >= PITCH_PAIRS * c->count && fabs(pitch) < PITCH;
 }
 
-enum status gravity_find(struct vec3 *down, const struct camera_set *set, const struct vec3 *ups, struct err *err)
+struct vec3 gravity_of_photos(const struct camera_set *set, const struct vec3 *ups)
+{
+    struct vec3 sum = {0, 0, 0};
+    for (int i = 0; i < set->view_count; i++) {
+        const struct vec3 up = ups ? ups[i] : vec3_make(0, -1, 0);
+        sum = vec3_sub(sum, mat3_apply(mat3_transpose(set->views[i].cam_from_world), up));
+    }
+    return vec3_normalize(sum);
+}
+
+enum status gravity_find(struct vec3 *down, bool *known, const struct camera_set *set, const struct vec3 *ups,
+                         struct err *err)
 {
     struct cloud c;
-    struct vec3 mean = {0, 0, 0}, right = {0, 0, 0};
+    struct vec3 right = {0, 0, 0};
+    *down = gravity_of_photos(set, ups);
     for (int i = 0; i < set->view_count; i++) {
-        const struct mat3 world_from_cam = mat3_transpose(set->views[i].cam_from_world);
         const struct vec3 up = ups ? ups[i] : vec3_make(0, -1, 0);
-        mean = vec3_sub(mean, mat3_apply(world_from_cam, up));
-        right = vec3_add(right, mat3_apply(world_from_cam, vec3_cross(vec3_make(0, 0, 1), up)));
+        right = vec3_add(right,
+                         mat3_apply(mat3_transpose(set->views[i].cam_from_world), vec3_cross(vec3_make(0, 0, 1), up)));
     }
-    *down = vec3_normalize(mean);
-    if (!(vec3_length(right) >= LEAST_RIGHT * set->view_count)) return ST_OK;
+    *known = vec3_length(right) < LEAST_RIGHT * set->view_count;
+    if (*known) return ST_OK;
     const enum status st = cloud_take(&c, set, err);
-    set_axes(&c, mean, right);
-    const double pitch = !st && c.distance > 0 ? best_pitch(&c) : 0;
-    if (pitch != 0) *down = tilted(&c, 0, pitch);
+    set_axes(&c, *down, right);
+    double pitch;
+    *known = !st && c.distance > 0 && find_pitch(&pitch, &c);
+    if (*known) *down = tilted(&c, 0, pitch);
     cloud_release(&c);
     return st;
 }
@@ -157,26 +179,70 @@ struct level { /* a plane */
     double score;
 };
 
+/* Keeps in `feet` the points below which two views see on, by OPEN_BELOW of their depth: where photos end, points end, too,
+ * without a ground. */
+static void find_feet(struct cloud *c, const struct camera_set *set)
+{
+    c->feet = 0;
+    for (int i = 0; i < c->count; i++) {
+        const struct vec3 at = vec3_add(c->points[i], c->centre);
+        int views = 0;
+        for (int k = 0; k < set->view_count && views < 2; k++) {
+            const struct view *v = &set->views[k];
+            double x, y;
+            const double z = view_project(v, at, &x, &y);
+            if (!(z > 0) || !(x >= 0 && y >= 0 && x < v->width && y < v->height)) continue;
+            if (!(view_project(v, vec3_add(at, vec3_scale(c->down, OPEN_BELOW * z)), &x, &y) > 0)) continue;
+            views += x >= 0 && y >= 0 && x < v->width && y < v->height;
+        }
+        if (views < 2) continue;
+        const struct vec3 foot = c->points[i]; /* those with feet come first */
+        c->points[i] = c->points[c->feet];
+        c->points[c->feet++] = foot;
+    }
+}
+
+/* The best plane of a normal among depths from `least` to `most`, if it is better than *best. */
+static void try_depths(struct level *best, struct cloud *c, struct vec3 down, double band, double least, double most,
+                       double weight)
+{
+    double *feet = c->value, *others = c->value + c->feet;
+    const int last = c->feet - 1, count = c->count - c->feet;
+    for (int i = 0; i < c->count; i++) c->value[i] = vec3_dot(down, c->points[i]);
+    qsort(feet, (size_t)c->feet, sizeof *feet, compare);
+    qsort(others, (size_t)count, sizeof *others, compare);
+    for (int i = last, first = last, end = last, other = count; i >= 0 && feet[i] >= least; i--) {
+        while (end > 0 && feet[end] > feet[i] + band) end--;
+        while (first > 0 && feet[first - 1] >= feet[i] - band) first--;
+        while (other > 0 && others[other - 1] > feet[i] + band) other--;
+        const int below = last - end + count - other;
+        if (below > MOST_BELOW * c->count) break;
+        const double score = (end - first + 1 - BELOW_WEIGHT * below) * weight;
+        if (feet[i] <= most && score > best->score) *best = (struct level){down, feet[i], score};
+    }
+}
+
 /* The best plane of one tilt, if it is better than *best. */
 static void try_tilt(struct level *best, struct cloud *c, const struct camera_set *set, double right, double ahead)
 {
-    const double tilt = hypot(right, ahead), band = BAND * c->distance;
+    const double tilt = hypot(right, ahead);
     const struct vec3 down = tilted(c, right, ahead);
-    const int last = c->count - 1;
     double camera = -INFINITY; /* depth of the lowest */
 
     if (tilt > GROUND_TILT) return;
     for (int i = 0; i < set->view_count; i++)
         camera = fmax(camera, vec3_dot(down, vec3_sub(set->views[i].center, c->centre)));
-    for (int i = 0; i < c->count; i++) c->value[i] = vec3_dot(down, c->points[i]);
-    sort_values(c);
-    for (int i = last, first = last, end = last; i >= 0 && c->value[i] >= camera + LEAST_CAMERA * c->distance; i--) {
-        while (end > 0 && c->value[end] > c->value[i] + band) end--;
-        while (first > 0 && c->value[first - 1] >= c->value[i] - band) first--;
-        if (last - end > MOST_BELOW * c->count) break;
-        const double score = (end - first + 1 - BELOW_WEIGHT * (last - end)) * (1 - TILT_WEIGHT * tilt);
-        if (score > best->score) *best = (struct level){down, c->value[i], score};
-    }
+    try_depths(best, c, down, BAND * c->distance, camera + LEAST_CAMERA * c->distance, INFINITY,
+               1 - TILT_WEIGHT * tilt);
+}
+
+/* The ground in its band, which also has the feet of walls: most points within NARROW of it. */
+static double exact_depth(struct cloud *c, const struct level *level)
+{
+    const double band = BAND * c->distance;
+    struct level best = {level->down, level->depth, -INFINITY};
+    try_depths(&best, c, level->down, NARROW * band, level->depth - band, level->depth + band, 1);
+    return best.depth;
 }
 
 /* Whether enough points lie within the plane's band, spread over it. */
@@ -185,7 +251,7 @@ static bool is_ground(const struct cloud *c, const struct level *level)
     double u = 0, v = 0, uu = 0, uv = 0, vv = 0;
     int n = 0;
 
-    for (int i = 0; i < c->count; i++) {
+    for (int i = 0; i < c->feet; i++) {
         if (!(fabs(vec3_dot(level->down, c->points[i]) - level->depth) <= BAND * c->distance)) continue;
         const double x = vec3_dot(c->right, c->points[i]), y = vec3_dot(c->ahead, c->points[i]);
         u += x, v += y, uu += x * x, uv += x * y, vv += y * y;
@@ -206,11 +272,12 @@ enum status ground_find(struct ground *g, bool *found, const struct camera_set *
     const enum status st = cloud_take(&c, set, err);
     if (!st && c.distance > 0) {
         set_axes(&c, down, fabs(down.x) < 0.9 ? vec3_make(1, 0, 0) : vec3_make(0, 1, 0));
+        find_feet(&c, set);
         for (int a = -steps; a <= steps; a++)
             for (int b = -steps; b <= steps; b++) try_tilt(&best, &c, set, a * TILT_STEP, b * TILT_STEP);
         *found = best.score > 0 && is_ground(&c, &best);
     }
-    if (*found) *g = (struct ground){best.down, best.depth + vec3_dot(best.down, c.centre)};
+    if (*found) *g = (struct ground){best.down, exact_depth(&c, &best) + vec3_dot(best.down, c.centre)};
     cloud_release(&c);
     return st;
 }

@@ -10,14 +10,19 @@ struct ground {       /* points X on it: down . X = offset, in the scene's frame
     double offset;
 };
 
-/* Sets *down to the direction of gravity in the scene's frame, a unit vector. ups: for each view the direction that is
- * up in its photo, in the view's axes; NULL: (0, -1, 0). ST_NOMEM. */
-enum status gravity_find(struct vec3 *down, const struct camera_set *set, const struct vec3 *ups, struct err *err);
+/* The mean of what is down in the photos, a unit vector in the scene's frame. ups: for each view the direction that is up
+ * in its photo, in the view's axes; NULL: (0, -1, 0). */
+struct vec3 gravity_of_photos(const struct camera_set *set, const struct vec3 *ups);
+
+/* Sets *down to the direction of gravity: the same, but if all photos are tilted up or down, as walls show it. *known is
+ * false if photos of one viewing direction show no walls: they may all be tilted. ST_NOMEM. */
+enum status gravity_find(struct vec3 *down, bool *known, const struct camera_set *set, const struct vec3 *ups,
+                         struct err *err);
 
 /* Finds the ground, at most GROUND_TILT degrees from level. *found is false if the points show none below all cameras.
  * ST_NOMEM. */
 enum status ground_find(struct ground *g, bool *found, const struct camera_set *set, struct vec3 down, struct err *err);
 
-#define GROUND_TILT 3
+#define GROUND_TILT 1
 
 #endif

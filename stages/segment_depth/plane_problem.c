@@ -38,7 +38,8 @@ float unary_cost(const struct plane_problem *p, int segment, struct plane plane,
     float data = (float)point_evidence_cost(p->points, segment, plane, g->cx, g->cy);
     if (scene_planes_have(p->scene, plane))
         data -= (float)(point_evidence_far(p->points, plane, g->cx, g->cy) + (p->cross ? 0 : SCENE_GAIN));
-    if (p->ground && plane_at(plane, g->cx, g->cy) < GROUND_MARGIN * plane_at(*p->ground, g->cx, g->cy))
+    const struct plane *ground = scene_planes_ground(p->scene);
+    if (ground && plane_at(plane, g->cx, g->cy) < (double)GROUND_MARGIN * plane_at(*ground, g->cx, g->cy))
         data += GROUND_COST;
     const float left = max_cost / size - data - match_lower_bound(p, segment, plane),
                 part = (float)p->params->cross_view;

@@ -8,8 +8,9 @@
  * bias to the far side, it costs SCENE_GAIN less in the first round, and it may leave the range of depths, which
  * comes from points, by a factor of SCENE_REACH. So a blank ceiling that no view can match continues on the plane of its matched part.
  *
- * A segment that lies below the scene's ground (gravity.h), by more than a tenth of the inverse depth, costs GROUND_COST
- * more: the ground hides what is there. The ground itself may come as near as it does, by a factor of GROUND_REACH.
+ * Where no segments of the view vote for the scene's ground (gravity.h), it is one of the scene's planes all the same, and
+ * may come nearer, by a factor of GROUND_REACH. A segment that lies below it, by more than a tenth of the inverse depth,
+ * costs GROUND_COST more: the ground hides what is there.
  *
  * A segment whose depth is given has one plane, of cost 0; any other costs PLANE_FORBIDDEN. size_i is in mean segments.
  * The gap is the mean difference of the two planes' inverse depths at the middle of the border and at both centroids:
@@ -40,7 +41,7 @@ struct plane_problem { /* borrows all that it points to */
     const struct point_evidence *points;
     const struct cross_view *cross;  /* NULL in the first round */
     const struct given_depth *given; /* NULL if no depth is given */
-    const struct plane *ground;      /* of the scene (gravity.h); NULL: unknown */
+    const struct plane *ground;      /* of the scene, as gravity.h finds it; NULL: unknown */
     struct scene_planes *scene;      /* filled by expand_planes(); NULL: none are looked for */
     const float *weights;            /* of each border, as border_weights() */
     const struct segment_params *params;
@@ -65,8 +66,9 @@ static inline int problem_passes(const struct plane_problem *p) { return depth_p
 /* Whether a plane stays in the range of depths over a segment. */
 static inline bool problem_allows(const struct plane_problem *p, const struct segment *g, struct plane plane)
 {
-    const bool ground = p->ground && memcmp(p->ground, &plane, sizeof plane) == 0;
-    const double reach = ground ? GROUND_REACH : scene_planes_have(p->scene, plane) ? SCENE_REACH : 1;
+    const struct plane *ground = scene_planes_ground(p->scene);
+    const bool is_ground = ground && memcmp(ground, &plane, sizeof plane) == 0;
+    const double reach = is_ground ? GROUND_REACH : scene_planes_have(p->scene, plane) ? SCENE_REACH : 1;
     return plane_within(plane, g, p->min_inverse_z / reach, p->max_inverse_z * reach);
 }
 

@@ -14,6 +14,7 @@ struct scene_planes {
     struct plane planes[SCENE_PLANES]; /* the most supported first */
     int count;
     uint64_t filter; /* of scene_planes_key() of the planes: a plane whose bit is 0 is none of them */
+    bool has_ground; /* the last plane is the ground (gravity.h) */
 };
 
 static inline unsigned scene_planes_key(struct plane p)
@@ -38,6 +39,12 @@ static inline void scene_planes_set(struct scene_planes *s, int k, struct plane 
     s->planes[k] = p;
     s->filter = 0;
     for (int j = 0; j < s->count; j++) s->filter |= (uint64_t)1 << scene_planes_key(s->planes[j]);
+}
+
+/* The ground; NULL: unknown, or as well known as any other plane. s may be NULL. */
+static inline const struct plane *scene_planes_ground(const struct scene_planes *s)
+{
+    return s && s->has_ground ? &s->planes[s->count - 1] : NULL;
 }
 
 /* A plane that a part of the view, or of a neighbour, lies on, as far as known. */

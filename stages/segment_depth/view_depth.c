@@ -174,13 +174,15 @@ struct solution {
 };
 
 /* The scene's ground as the view sees it. */
-static enum status find_ground(struct solution *x, const struct solver *v, struct vec3 down, struct err *err)
+static enum status find_ground(struct solution *x, const struct solver *v, struct err *err)
 {
     const struct view *view = &v->set->views[v->view_idx];
     struct ground ground;
+    struct vec3 down;
     bool found;
-    if (ground_find(&ground, &found, v->set, down, err)) return err->status;
-    if (!found) return ST_OK;
+    enum status st = gravity_find(&down, &found, v->set, v->source->ups, err);
+    if (!st && found) st = ground_find(&ground, &found, v->set, down, err);
+    if (st || !found) return st;
     const double height = ground.offset - vec3_dot(ground.down, view->center);
     x->ground = plane_of_normal(view, vec3_scale(mat3_apply(view->cam_from_world, ground.down), 1 / height));
     x->problem.ground = &x->ground;
@@ -221,9 +223,7 @@ static enum status start_solution(struct solution *x, const struct solver *v, st
 {
     const struct segmentation *s = v->m->segments;
     const struct view *view = &v->set->views[v->view_idx];
-    struct vec3 down;
-    enum status st = gravity_find(&down, v->set, v->source->ups, err);
-    if (st) return st;
+    const struct vec3 down = gravity_of_photos(v->set, v->source->ups);
     const size_t count = (size_t)s->count + 1;
     x->planes = malloc(count * sizeof *x->planes);
     x->distinct = calloc(count, sizeof *x->distinct);
@@ -246,8 +246,8 @@ static enum status start_solution(struct solution *x, const struct solver *v, st
                                         .max_inverse_z = v->max_inverse_z,
                                         .step = x->sweep.step,
                                         .planes = x->sweep.planes};
-    if (v->given) st = fit_given(&x->given, v, x->sweep.step, err);
-    if (!st) st = find_ground(x, v, down, err);
+    enum status st = v->given ? fit_given(&x->given, v, x->sweep.step, err) : ST_OK;
+    if (!st) st = find_ground(x, v, err);
     if (!st)
         st = point_evidence_make(&x->points, s, v->seen, v->min_inverse_z, v->max_inverse_z, x->sweep.step, v->params,
                                  err);

@@ -41,11 +41,13 @@ static void building(void)
 }
 
 /* Degrees between what is found and down. */
-static double gravity_error(void)
+static double gravity_error(bool known)
 {
     struct vec3 down;
+    bool is_known;
     struct err err = ERR_INIT;
-    assert_int_equal(gravity_find(&down, &scene.set, NULL, &err), ST_OK);
+    assert_int_equal(gravity_find(&down, &is_known, &scene.set, NULL, &err), ST_OK);
+    assert_int_equal(is_known, known);
     assert_near(vec3_length(down), 1, 1e-12);
     return asin(fmin(1, vec3_length(vec3_cross(down, vec3_make(0, 1, 0))))) * 180 / M_PI;
 }
@@ -65,7 +67,7 @@ static void walls_show_gravity_to_photos_that_are_all_tilted(void **state)
         start();
         cameras_in_a_row(pitch);
         building();
-        assert_true(gravity_error() < 1.25); /* the mean of turned and tilted photos has a roll of 1.1 itself */
+        assert_true(gravity_error(true) < 1.25); /* the mean of turned and tilted photos has a roll of 1.1 itself */
     }
 }
 
@@ -75,10 +77,10 @@ static void without_walls_gravity_is_the_mean_of_the_photos(void **state)
     start();
     cameras_in_a_row(10);
     points_in(300, -5, 5, -4, 4, 6, 14);
-    assert_near(gravity_error(), 10, 0.1);
+    assert_near(gravity_error(false), 10, 0.1);
     start();
     cameras_in_a_row(10);
-    assert_near(gravity_error(), 10, 0.1); /* no points at all */
+    assert_near(gravity_error(false), 10, 0.1); /* no points at all */
 }
 
 /* Their tilts cancel out, and a leaning wall is no reason to lean. */
@@ -89,7 +91,7 @@ static void photos_taken_all_around_show_gravity_themselves(void **state)
     for (int i = 0; i < 6; i++) camera(0, 0, 60 * i, 15);
     for (int i = 0; i < 200; i++)
         scene_point(&scene, vec3_make(4 * scene_hash(i, 1, 0), scene_hash(i, 2, 0), 5 + 0.3 * scene_hash(i, 2, 0)), 3);
-    assert_true(gravity_error() < 1e-6);
+    assert_true(gravity_error(true) < 1e-6);
 }
 
 static void the_ground_lies_at_the_foot_of_what_stands_on_it(void **state)
@@ -132,6 +134,20 @@ static void a_wall_without_a_foot_shows_no_ground(void **state)
     assert_false(find(&g)); /* no points at all */
 }
 
+/* The same points, but the photos see nothing below them. */
+static void the_lower_edge_of_the_photos_is_not_the_ground(void **state)
+{
+    (void)state;
+    struct ground g;
+    for (int pitch = 0; pitch <= 13; pitch += 13) {
+        start();
+        cameras_in_a_row(pitch);
+        building();
+        points_in(40, -5, 5, 1.5, 1.5, 3, 9);
+        assert_int_equal(find(&g), pitch == 0);
+    }
+}
+
 static void a_ceiling_is_not_the_ground(void **state)
 {
     (void)state;
@@ -151,6 +167,7 @@ int main(void)
         cmocka_unit_test(the_ground_lies_at_the_foot_of_what_stands_on_it),
         cmocka_unit_test(a_table_is_not_the_ground_where_the_floor_shows),
         cmocka_unit_test(a_wall_without_a_foot_shows_no_ground),
+        cmocka_unit_test(the_lower_edge_of_the_photos_is_not_the_ground),
         cmocka_unit_test(a_ceiling_is_not_the_ground),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -161,6 +161,36 @@ static void the_unary_term_is_the_sum_of_its_parts(void **state)
     bench_release();
 }
 
+/* Below by more than a tenth of the inverse depth; the ground alone may be much nearer than the range of depths. */
+static void what_lies_below_the_ground_costs_more(void **state)
+{
+    (void)state;
+    struct scene_planes scene = {.count = 1, .has_ground = true};
+    int below = 0, count = 0;
+    start();
+    scene_planes_set(&scene, 0, plane_of_normal(b.problem.view, vec3_make(0, 1 / 1.2, 0)));
+    const struct plane ground = scene.planes[0];
+    for (int i = 0; i < b.segments.count; i++) {
+        const struct segment *g = &b.segments.segments[i];
+        const double at = plane_at(ground, g->cx, g->cy);
+        for (int k = 0; k < 5; k++, count++) {
+            const struct plane p = {0, 0, 0.18 + 0.06 * k};
+            b.problem.scene = NULL;
+            const float alone = unary_cost(&b.problem, i, p, INFINITY);
+            b.problem.scene = &scene;
+            const bool is_below = p.c < 0.9 * at;
+            assert_near(unary_cost(&b.problem, i, p, INFINITY), alone + (is_below ? 0.3 * g->pixels / 64 : 0), 1e-4);
+            below += is_below;
+        }
+        if (at > 0.6 && at < 3) assert_true(unary_cost(&b.problem, i, ground, INFINITY) < PLANE_FORBIDDEN / 100);
+        scene.has_ground = false;
+        if (at > 2) assert_true(unary_cost(&b.problem, i, ground, INFINITY) >= PLANE_FORBIDDEN);
+        scene.has_ground = true;
+    }
+    assert_true(below > count / 40 && below < count / 2);
+    bench_release();
+}
+
 /* The limit never changes costs up to it, and forbids planes that certainly cost more. */
 static void planes_above_the_limit_are_not_matched(void **state)
 {
@@ -208,6 +238,7 @@ int main(void)
         cmocka_unit_test(a_slanted_surface_is_free_but_a_fold_costs),
         cmocka_unit_test(a_plane_outside_the_depth_range_is_forbidden),
         cmocka_unit_test(the_unary_term_is_the_sum_of_its_parts),
+        cmocka_unit_test(what_lies_below_the_ground_costs_more),
         cmocka_unit_test(planes_above_the_limit_are_not_matched),
     };
     parallel_set_threads(1); /* tests run in parallel */
