@@ -179,8 +179,8 @@ struct level { /* a plane */
     double score;
 };
 
-/* Keeps in `feet` the points below which two views see on, by OPEN_BELOW of their depth: where photos end, points end, too,
- * without a ground. */
+/* Moves to the front the points that may be feet: two views see on below them, by OPEN_BELOW of their depth. Where photos
+ * end, points end, too, without a ground. */
 static void find_feet(struct cloud *c, const struct camera_set *set)
 {
     c->feet = 0;
@@ -196,7 +196,7 @@ static void find_feet(struct cloud *c, const struct camera_set *set)
             views += x >= 0 && y >= 0 && x < v->width && y < v->height;
         }
         if (views < 2) continue;
-        const struct vec3 foot = c->points[i]; /* those with feet come first */
+        const struct vec3 foot = c->points[i];
         c->points[i] = c->points[c->feet];
         c->points[c->feet++] = foot;
     }
