@@ -16,7 +16,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define MOST_POINTS 4000 /* points that are looked at; of more, every n-th */
+#define MOST_POINTS 4000 /* a scene with more points is represented by evenly spaced ones of its list */
 
 #define SQUARE      0.01  /* side of a square of the plan, of the points' median distance from the cameras' centre */
 #define FINE_SQUARE 0.004 /* the same, for the last degree */
@@ -179,8 +179,8 @@ struct level { /* a plane */
     double score;
 };
 
-/* Moves to the front the points that may be feet: two views see on below them, by OPEN_BELOW of their depth. Where photos
- * end, points end, too, without a ground. */
+/* Moves the points that may be feet to the front of the list: at least two views show what lies below them, for
+ * OPEN_BELOW of their depth. At a photo's lower edge points end as well, but not because of a ground. */
 static void find_feet(struct cloud *c, const struct camera_set *set)
 {
     c->feet = 0;

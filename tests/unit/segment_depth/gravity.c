@@ -83,7 +83,7 @@ static void without_walls_gravity_is_the_mean_of_the_photos(void **state)
     assert_near(gravity_error(false), 10, 0.1); /* no points at all */
 }
 
-/* Their tilts cancel out, and a leaning wall is no reason to lean. */
+/* Their tilts cancel out. A leaning wall does not change the result. */
 static void photos_taken_all_around_show_gravity_themselves(void **state)
 {
     (void)state;
