@@ -8,9 +8,9 @@
  * bias to the far side, it costs SCENE_GAIN less in the first round, and it may leave the range of depths, which
  * comes from points, by a factor of SCENE_REACH. So a blank ceiling that no view can match continues on the plane of its matched part.
  *
- * Where no segments of the view vote for the scene's ground (gravity.h), it is one of the scene's planes all the same, and
- * may come nearer, by a factor of GROUND_REACH. A segment that lies below it, by more than a tenth of the inverse depth,
- * costs GROUND_COST more: the ground hides what is there.
+ * Where no segments of the view vote for the scene's ground (gravity.h), it is one of the scene's planes all the same. A
+ * segment that lies below it, by more than a tenth of the inverse depth, costs GROUND_COST more: the ground hides what is
+ * there. The ground, voted for or not, may come nearer than other planes, by a factor of GROUND_REACH.
  *
  * A segment whose depth is given has one plane, of cost 0; any other costs PLANE_FORBIDDEN. size_i is in mean segments.
  * The gap is the mean difference of the two planes' inverse depths at the middle of the border and at both centroids:
@@ -60,15 +60,10 @@ static inline double problem_slant(const struct segment_params *params)
 
 static inline int problem_passes(const struct plane_problem *p) { return depth_passes(p->params, !p->cross); }
 
-#define SCENE_REACH  3.0
-#define GROUND_REACH 30.0
-
 /* Whether a plane stays in the range of depths over a segment. */
 static inline bool problem_allows(const struct plane_problem *p, const struct segment *g, struct plane plane)
 {
-    const struct plane *ground = scene_planes_ground(p->scene);
-    const bool is_ground = ground && memcmp(ground, &plane, sizeof plane) == 0;
-    const double reach = is_ground ? GROUND_REACH : scene_planes_have(p->scene, plane) ? SCENE_REACH : 1;
+    const double reach = scene_planes_reach(p->scene, plane);
     return plane_within(plane, g, p->min_inverse_z / reach, p->max_inverse_z * reach);
 }
 

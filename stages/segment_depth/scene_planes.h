@@ -15,6 +15,7 @@ struct scene_planes {
     int count;
     uint64_t filter; /* of scene_planes_key() of the planes: a plane whose bit is 0 is none of them */
     bool has_ground; /* the last plane is the ground (gravity.h) */
+    int level;       /* number + 1 of the plane of votes that is about the ground; 0: there is none */
 };
 
 static inline unsigned scene_planes_key(struct plane p)
@@ -45,6 +46,17 @@ static inline void scene_planes_set(struct scene_planes *s, int k, struct plane 
 static inline const struct plane *scene_planes_ground(const struct scene_planes *s)
 {
     return s && s->has_ground ? &s->planes[s->count - 1] : NULL;
+}
+
+#define SCENE_REACH  3.0
+#define GROUND_REACH 30.0
+
+/* The factor by which a plane may leave the range of depths: more for the ground, whoever found it. s may be NULL. */
+static inline double scene_planes_reach(const struct scene_planes *s, struct plane p)
+{
+    if (!scene_planes_have(s, p)) return 1;
+    const int ground = s->has_ground ? s->count : s->level;
+    return ground && memcmp(&s->planes[ground - 1], &p, sizeof p) == 0 ? GROUND_REACH : SCENE_REACH;
 }
 
 /* A plane that a part of the view, or of a neighbour, lies on, as far as known. */
