@@ -251,7 +251,7 @@ static void add_ground(struct scene_planes *scene, const struct view *view, stru
     const struct vec3 n = plane_normal(view, ground);
     for (int k = 0; k < scene->count; k++)
         if (vec3_length(vec3_sub(plane_normal(view, scene->planes[k]), n)) <= SAME_GROUND * vec3_length(n)) {
-            scene->level = k + 1;
+            scene->voted_ground = k + 1;
             return;
         }
     if (scene->count < SCENE_PLANES) scene->count++;

@@ -13,9 +13,9 @@
 struct scene_planes {
     struct plane planes[SCENE_PLANES]; /* the most supported first */
     int count;
-    uint64_t filter; /* of scene_planes_key() of the planes: a plane whose bit is 0 is none of them */
-    bool has_ground; /* the last plane is the ground (gravity.h) */
-    int level;       /* number + 1 of the plane of votes that is about the ground; 0: there is none */
+    uint64_t filter;  /* of scene_planes_key() of the planes: a plane whose bit is 0 is none of them */
+    bool has_ground;  /* the last plane is the ground (gravity.h) */
+    int voted_ground; /* 1 + index of the plane of votes that is about the ground; 0: none */
 };
 
 static inline unsigned scene_planes_key(struct plane p)
@@ -55,7 +55,7 @@ static inline const struct plane *scene_planes_ground(const struct scene_planes 
 static inline double scene_planes_reach(const struct scene_planes *s, struct plane p)
 {
     if (!scene_planes_have(s, p)) return 1;
-    const int ground = s->has_ground ? s->count : s->level;
+    const int ground = s->has_ground ? s->count : s->voted_ground;
     return ground && memcmp(&s->planes[ground - 1], &p, sizeof p) == 0 ? GROUND_REACH : SCENE_REACH;
 }
 

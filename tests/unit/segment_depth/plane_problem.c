@@ -185,9 +185,9 @@ static void what_lies_below_the_ground_costs_more(void **state)
         if (at > 0.6 && at < 3) assert_true(unary_cost(&b.problem, i, ground, INFINITY) < PLANE_FORBIDDEN / 100);
         scene.has_ground = false;
         if (at > 2) assert_true(unary_cost(&b.problem, i, ground, INFINITY) >= PLANE_FORBIDDEN);
-        scene.level = 1; /* votes found the same plane: it reaches as near */
+        scene.voted_ground = 1; /* votes found the same plane: it reaches as near */
         if (at > 0.6 && at < 3) assert_true(unary_cost(&b.problem, i, ground, INFINITY) < PLANE_FORBIDDEN / 100);
-        scene.level = 0;
+        scene.voted_ground = 0;
         scene.has_ground = true;
     }
     assert_true(below > count / 40 && below < count / 2);
