@@ -20,16 +20,20 @@ static const struct {
     double later;                /* cost of a later round's passes relative to the first round's */
     double mib, mib_megapixel, mib_neighbour; /* the program itself; per megapixel; per megapixel and neighbour */
     double bytes;                             /* per pixel */
-} cost = {1, 0.45, 0.6, 0.62, 0.85, 20, 170, 28, 16};
+    double choice;                            /* per megapixel: what the full size takes after a round in half of it */
+} cost = {1, 0.45, 0.6, 0.62, 0.85, 20, 170, 28, 16, 0.9};
 
 struct depth_work depth_work(double pixels, int neighbours, bool first, const struct segment_params *params)
 {
     const int matched = neighbours < params->best_neighbours ? neighbours : params->best_neighbours;
-    const int size = first ? params->segment_pixels : params->fine_pixels;
-    const double mp = pixels * 1e-6, passes = depth_passes(params, first) * sqrt(64.0 / size);
+    const bool half = first && depth_halves(params, pixels);
+    const int size = half ? params->half_pixels : first ? params->segment_pixels : params->fine_pixels;
+    const double mp = pixels * 1e-6, part = half ? 0.25 : 1, passes = depth_passes(params, first) * sqrt(64.0 / size);
     return (struct depth_work){
-        .core_seconds = mp * (cost.seconds + cost.seconds_neighbour * neighbours +
-                              passes * (first ? 1 : cost.later) * (cost.pass + cost.pass_neighbour * matched)),
+        .core_seconds = mp * part *
+                            (cost.seconds + cost.seconds_neighbour * neighbours +
+                             passes * (first ? 1 : cost.later) * (cost.pass + cost.pass_neighbour * matched)) +
+                        (half ? mp * cost.choice : 0),
         .mib = cost.mib + mp * (cost.mib_megapixel + cost.mib_neighbour * neighbours),
         .bytes = pixels * cost.bytes,
     };

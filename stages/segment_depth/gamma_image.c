@@ -88,26 +88,55 @@ void gamma_image_release(struct gamma_image *g)
     *g = (struct gamma_image){0};
 }
 
-enum status gamma_image_halve(struct gamma_image *g, struct err *err)
+enum status gamma_image_half(struct gamma_image *half, const struct gamma_image *g, struct err *err)
 {
-    struct gamma_image half;
     int width = g->width > 1 ? g->width / 2 : 1, height = g->height > 1 ? g->height / 2 : 1;
-    if (allocate(&half, width, height, err)) return ST_NOMEM;
+    if (allocate(half, width, height, err)) return ST_NOMEM;
     for (int y = 0; y < height; y++)
         for (int x = 0; x < width; x++) {
             size_t to = (size_t)y * (size_t)width + (size_t)x;
             float sum[3] = {0};
-            half.valid[to] = 1;
+            half->valid[to] = 1;
             for (int k = 0; k < 4; k++) {
                 int fx = 2 * x + (k & 1), fy = 2 * y + (k >> 1);
                 size_t from = (size_t)(fy < g->height ? fy : g->height - 1) * (size_t)g->width +
                               (size_t)(fx < g->width ? fx : g->width - 1);
                 for (int c = 0; c < 3; c++) sum[c] += g->rgb[c][from];
-                half.valid[to] &= g->valid[from];
+                half->valid[to] &= g->valid[from];
             }
-            for (int c = 0; c < 3; c++) half.rgb[c][to] = sum[c] / 4;
+            for (int c = 0; c < 3; c++) half->rgb[c][to] = sum[c] / 4;
         }
-    half.tone = g->tone;
+    half->tone = g->tone;
+    return ST_OK;
+}
+
+enum status gamma_image_half_covering(struct gamma_image *half, const struct gamma_image *g, struct err *err)
+{
+    const int width = (g->width + 1) / 2, height = (g->height + 1) / 2;
+    if (allocate(half, width, height, err)) return ST_NOMEM;
+    for (int y = 0; y < height; y++)
+        for (int x = 0; x < width; x++) {
+            const size_t to = (size_t)y * (size_t)width + (size_t)x;
+            float sum[3] = {0};
+            int count = 0;
+            for (int k = 0; k < 4; k++) {
+                const int fx = 2 * x + (k & 1), fy = 2 * y + (k >> 1);
+                const size_t from = (size_t)fy * (size_t)g->width + (size_t)fx;
+                if (fx >= g->width || fy >= g->height || !g->valid[from]) continue;
+                for (int c = 0; c < 3; c++) sum[c] += g->rgb[c][from];
+                count++;
+            }
+            half->valid[to] = count > 0;
+            for (int c = 0; c < 3; c++) half->rgb[c][to] = count ? sum[c] / (float)count : 0;
+        }
+    half->tone = g->tone;
+    return ST_OK;
+}
+
+enum status gamma_image_halve(struct gamma_image *g, struct err *err)
+{
+    struct gamma_image half;
+    if (gamma_image_half(&half, g, err)) return err->status;
     gamma_image_release(g);
     *g = half;
     return ST_OK;

@@ -24,7 +24,13 @@ struct tone tone_of(const struct image *linear_rgba);
 enum status gamma_image_make(struct gamma_image *g, const struct image *linear_rgba, struct tone tone, struct err *err);
 void gamma_image_release(struct gamma_image *g);
 
-/* Halves the size by averaging 2x2 pixels. An odd last row or column is dropped, unless it is the only one. */
+/* A picture of half the size, by averaging 2x2 pixels. An odd last row or column is dropped, unless it is the only one.
+ * half is empty after a failure (ST_NOMEM). */
+enum status gamma_image_half(struct gamma_image *half, const struct gamma_image *g, struct err *err);
+/* The same, so that it covers all pixels of g: of an odd last row or column, too, and where only some of 2x2 are valid,
+ * whose mean it is. */
+enum status gamma_image_half_covering(struct gamma_image *half, const struct gamma_image *g, struct err *err);
+/* gamma_image_half() in place. */
 enum status gamma_image_halve(struct gamma_image *g, struct err *err);
 
 /* Bilinear colour at pixel coordinates (centres at +0.5); false outside the picture or beside an invalid pixel. */

@@ -5,6 +5,7 @@
  * four corners of a bilinear sample of all channels (plane_match.c). */
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "common/base/sort.h"
 #include "common/math/numbers.h"
@@ -210,6 +211,26 @@ enum status matcher_add(struct matcher *m, const struct camera_set *set, int vie
     free(packed);
     if (!st) m->neighbour_count++;
     return st;
+}
+
+static void *copied(const void *from, size_t size)
+{
+    void *to = from ? malloc(size) : NULL;
+    return to ? memcpy(to, from, size) : NULL;
+}
+
+enum status matcher_take(struct matcher *m, const struct matcher *half, struct err *err)
+{
+    const size_t count = (size_t)m->segments->count + 1;
+    m->ranks = half->ranks;
+    m->excluded = half->excluded;
+    m->good_cost = half->good_cost;
+    m->chance_cost = half->chance_cost;
+    m->use = copied(half->use, count * sizeof *m->use);
+    m->out_of_view_cost = copied(half->out_of_view_cost, count * sizeof *m->out_of_view_cost);
+    m->occluded_cost = copied(half->occluded_cost, count * sizeof *m->occluded_cost);
+    return (m->use || !half->use) && m->out_of_view_cost && m->occluded_cost ? ST_OK
+                                                                             : err_nomem(err, "a matcher", count * 12);
 }
 
 void matcher_release(struct matcher *m)

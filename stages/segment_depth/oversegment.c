@@ -290,6 +290,21 @@ enum status oversegment(struct segmentation *s, const struct gamma_image *g, int
     return st;
 }
 
+enum status segmentation_double(struct segmentation *s, const struct segmentation *half, const struct gamma_image *g,
+                                struct err *err)
+{
+    const int width = g->width, height = g->height;
+    *s = (struct segmentation){.width = width, .height = height, .count = half->count};
+    s->label = malloc((size_t)width * (size_t)height * sizeof *s->label);
+    if (!s->label) return err_nomem(err, "the segments of pixels", (size_t)width * (size_t)height * sizeof *s->label);
+    for (int y = 0; y < height; y++)
+        for (int x = 0; x < width; x++)
+            s->label[y * width + x] = g->valid[y * width + x] ? half->label[y / 2 * half->width + x / 2] : -1;
+    const enum status st = segment_graph_of_numbers(s, NULL, err);
+    if (st) segmentation_release(s);
+    return st;
+}
+
 void segmentation_release(struct segmentation *s)
 {
     if (!s) return;

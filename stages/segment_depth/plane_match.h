@@ -104,6 +104,9 @@ enum status matcher_add(struct matcher *m, const struct camera_set *set, int vie
  * drawn to where it is visible. Neighbours of much less contrast than the best one are excluded. Call it once, after
  * the last matcher_add() and before the first cost. */
 enum status matcher_calibrate(struct matcher *m, double min_inverse_z, double max_inverse_z, struct err *err);
+/* Takes over the calibration and the selection of a matcher of the same segments in pictures of half the size, which has
+ * the same neighbours. */
+enum status matcher_take(struct matcher *m, const struct matcher *half, struct err *err);
 /* Restricts each segment to the `ranks` neighbours that match its plane best. occluded: of each segment, as
  * match_cost(), or NULL; a neighbour that does not see it comes last. */
 enum status matcher_select(struct matcher *m, const struct plane *planes, const unsigned *occluded, struct err *err);

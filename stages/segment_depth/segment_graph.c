@@ -7,16 +7,12 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Numbers the labels from 0 in raster order of their first pixel; fills the segments and their pixel lists. */
-static enum status list_segments(struct segmentation *s, float *const lab[3], struct err *err)
+/* Numbers the labels from 0 in raster order of their first pixel. */
+static enum status number_segments(struct segmentation *s, struct err *err)
 {
     int pixels = s->width * s->height;
     int *segment_of_label = malloc((size_t)pixels * sizeof *segment_of_label);
-    s->pixel = malloc((size_t)pixels * sizeof *s->pixel);
-    if (!segment_of_label || !s->pixel) {
-        free(segment_of_label);
-        return err_nomem(err, "lists of pixels", (size_t)pixels * 8);
-    }
+    if (!segment_of_label) return err_nomem(err, "the numbers of segments", (size_t)pixels * sizeof *segment_of_label);
     for (int i = 0; i < pixels; i++) segment_of_label[i] = -1;
     s->count = 0;
     for (int i = 0; i < pixels; i++)
@@ -26,6 +22,15 @@ static enum status list_segments(struct segmentation *s, float *const lab[3], st
             s->label[i] = *n;
         }
     free(segment_of_label);
+    return ST_OK;
+}
+
+/* Fills the segments and their pixel lists. */
+static enum status list_segments(struct segmentation *s, float *const lab[3], struct err *err)
+{
+    int pixels = s->width * s->height;
+    s->pixel = malloc((size_t)pixels * sizeof *s->pixel);
+    if (!s->pixel) return err_nomem(err, "lists of pixels", (size_t)pixels * sizeof *s->pixel);
     s->segments = calloc((size_t)s->count + 1, sizeof *s->segments);
     if (!s->segments) return err_nomem(err, "segments", (size_t)s->count * sizeof *s->segments);
     for (int i = 0; i < pixels; i++)
@@ -44,7 +49,7 @@ static enum status list_segments(struct segmentation *s, float *const lab[3], st
         s->pixel[g->first + g->pixels++] = i;
         g->cx += x + 0.5;
         g->cy += y + 0.5;
-        for (int c = 0; c < 3; c++) g->colour[c] += lab[c][i];
+        for (int c = 0; lab && c < 3; c++) g->colour[c] += lab[c][i];
         g->x0 = x < g->x0 ? x : g->x0;
         g->x1 = x > g->x1 ? x : g->x1;
         g->y0 = y < g->y0 ? y : g->y0;
@@ -92,7 +97,7 @@ static int list_sides(const struct segmentation *s, float *const lab[3], struct 
                 if (sides) {
                     int a = s->label[p], b = s->label[q];
                     float d = 0;
-                    for (int c = 0; c < 3; c++) d += (lab[c][p] - lab[c][q]) * (lab[c][p] - lab[c][q]);
+                    for (int c = 0; lab && c < 3; c++) d += (lab[c][p] - lab[c][q]) * (lab[c][p] - lab[c][q]);
                     sides[count] = (struct pixel_side){a < b ? a : b, a < b ? b : a, 0.5f * (float)(x + nx + 1),
                                                        0.5f * (float)(y + ny + 1), sqrtf(d)};
                 }
@@ -154,6 +159,12 @@ static enum status list_borders(struct segmentation *s, float *const lab[3], str
 }
 
 enum status segment_graph_make(struct segmentation *s, float *const lab[3], struct err *err)
+{
+    enum status st = number_segments(s, err);
+    return st ? st : segment_graph_of_numbers(s, lab, err);
+}
+
+enum status segment_graph_of_numbers(struct segmentation *s, float *const lab[3], struct err *err)
 {
     enum status st = list_segments(s, lab, err);
     return st ? st : list_borders(s, lab, err);

@@ -10,6 +10,9 @@
 #define SEGMENT_PARAMS(X)                                                                                            \
     X(segment_pixels, int, 64, 16, 100000, "px", "mean size of a segment in the first round")                        \
     X(fine_pixels, int, 16, 8, 100000, "px", "mean size of a segment in the rounds after the first")                 \
+    X(half_from, double, 0, 0, 1000, "Mpx",                                                                          \
+      "size of a view from which on the first round matches pictures of half the size; 0: it never does")            \
+    X(half_pixels, int, 64, 8, 100000, "px", "mean size of a segment in pictures of half the size")                  \
     X(compactness, double, 8, 0.1, 100, "",                                                                          \
       "weight of distance against colour in over-segmentation; higher: rounder segments")                            \
     X(neighbours, int, 8, 1, 16, "", "maximum number of views to match with")                                        \
@@ -48,6 +51,12 @@ extern const struct param segment_param_table[];
 static inline int depth_passes(const struct segment_params *p, bool first)
 {
     return first ? p->passes : (p->passes + 2) / 3;
+}
+
+/* Whether the first round matches a view of so many pixels at half its size. */
+static inline bool depth_halves(const struct segment_params *p, double pixels)
+{
+    return p->half_from > 0 && pixels >= p->half_from * 1e6;
 }
 
 #endif

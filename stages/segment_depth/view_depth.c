@@ -15,6 +15,9 @@
  *   pixel_planes  each pixel chooses among the planes around it
  *   layers        opaque interiors, and mattes at depth edges
  *
+ * The first round of a large view may work in half the size of the pictures (level.h), up to `inherit`; then each pixel of
+ * the full size chooses. That takes less than half the time, and blank walls match better in larger segments.
+ *
  * Rounds after the first have smaller segments: they begin on good planes, so that these need few moves.
  *
  * What differs from the sources: planes may be slanted; sparse points are soft evidence; a round reads the neighbours'
@@ -30,6 +33,7 @@
 #include "stages/segment_depth/gravity.h"
 #include "stages/segment_depth/inherit.h"
 #include "stages/segment_depth/layers.h"
+#include "stages/segment_depth/level.h"
 #include "stages/segment_depth/pixel_planes.h"
 #include "stages/segment_depth/plane_sweep.h"
 #include "stages/segment_depth/refine.h"
@@ -104,7 +108,8 @@ struct solver {
     const struct image *picture;
     const struct observed_points *seen;
     double min_inverse_z, max_inverse_z;
-    float *given; /* z of each pixel, or NULL */
+    float *given;         /* z of each pixel, or NULL */
+    struct matcher *full; /* the same segments in pictures of twice the size, where pixels choose; or NULL */
     const struct view_source *source;
     const struct segment_params *params;
 };
@@ -292,6 +297,39 @@ static enum status inherit(struct layered_depth *out, struct plane *planes, cons
 /* Whether a round follows for certain, which knows better which border areas are foreground. */
 static bool another_round(const struct solver *v) { return !v->source->read_depth && v->params->rounds > 0; }
 
+/* Moves planes to pictures of twice the size. */
+static struct plane doubled(struct plane p) { return (struct plane){p.a / 2, p.b / 2, p.c}; }
+
+static void double_planes(struct layered_depth *out, struct solution *x)
+{
+    for (int i = 0; i < out->segment_count; i++) {
+        struct depth_segment *g = &out->segments[i];
+        x->planes[i] = doubled(x->planes[i]);
+        g->plane[0] = x->planes[i].a;
+        g->plane[1] = x->planes[i].b;
+    }
+    for (int k = 0; k < x->scene.count; k++) scene_planes_set(&x->scene, k, doubled(x->scene.planes[k]));
+}
+
+/* Lets pixels choose among the planes, and makes the layers. */
+static enum status make_layers(struct layered_depth *out, struct solution *x, const struct solver *v, struct err *err)
+{
+    struct plane_problem problem = x->problem;
+    const size_t pixels = (size_t)out->width * (size_t)out->height;
+    int *label = malloc(pixels * sizeof *label);
+    if (!label) return err_nomem(err, "the segments of pixels", pixels * sizeof *label);
+    if (v->full) {
+        double_planes(out, x);
+        problem.m = v->full;
+    }
+    enum status st = v->full ? matcher_take(v->full, v->m, err) : ST_OK;
+    if (!st) st = choose_pixel_planes(label, x->planes, &problem, err);
+    const bool matte = !strcmp(v->params->matte, "two_colour");
+    if (!st) st = layers_make(out, label, x->planes, v->picture, x->sweep.step, matte, err);
+    free(label);
+    return st;
+}
+
 static enum status solve(struct layered_depth *out, const struct solver *v, struct err *err)
 {
     const struct segmentation *s = v->m->segments;
@@ -306,31 +344,26 @@ static enum status solve(struct layered_depth *out, const struct solver *v, stru
             (plane_at(x.planes[i], s->segments[i].cx, s->segments[i].cy) - sweep->min_inverse_z) / sweep->step);
     if (!st) st = fill_segments(out, &x.problem, x.planes, x.distinct, err);
     if (!st) st = inherit(out, x.planes, &x.problem, another_round(v), err);
-    int *label = malloc((size_t)s->width * (size_t)s->height * sizeof *label);
-    if (!st && !label) st = err_nomem(err, "the segments of pixels", (size_t)s->width * (size_t)s->height * 4);
-    if (!st) st = choose_pixel_planes(label, x.planes, &x.problem, err);
-    const bool matte = !strcmp(v->params->matte, "two_colour");
-    if (!st) st = layers_make(out, label, x.planes, v->picture, sweep->step, matte, err);
-    free(label);
+    if (!st) st = make_layers(out, &x, v, err);
     solution_release(&x);
     return st;
 }
 
-static enum status add_neighbour(struct matcher *m, const struct camera_set *set, int view_idx, int neighbour_idx,
-                                 const struct view_source *source, const struct observed_points *seen, double typical,
-                                 const struct gamma_image *reference, struct err *err)
+/* Adds a neighbour to both levels; half may be NULL. */
+static enum status add_neighbour(struct level *full, struct level *half, int view_idx, int neighbour_idx,
+                                 const struct view_source *source, double typical, struct err *err)
 {
+    const struct tone tone = full->gamma.tone;
     struct image picture = {0};
     struct gamma_image gamma = {0};
     enum status st = source->read(source->ctx, neighbour_idx, &picture, err);
     if (!st) {
         /* a brighter photo must not be clipped where it is not clipped itself */
         const struct tone own = tone_of(&picture);
-        st = gamma_image_make(&gamma, &picture,
-                              (struct tone){fmin(reference->tone.exposure, own.exposure), reference->tone.power}, err);
+        st = gamma_image_make(&gamma, &picture, (struct tone){fmin(tone.exposure, own.exposure), tone.power}, err);
     }
     image_release(&picture);
-    if (!st) st = matcher_add(m, set, view_idx, neighbour_idx, seen, typical, reference, &gamma, err);
+    if (!st) st = level_add(full, half, view_idx, neighbour_idx, typical, &gamma, err);
     gamma_image_release(&gamma);
     return st;
 }
@@ -363,49 +396,63 @@ static enum status find_range(struct solver *v, int neighbour_count, size_t pixe
                    1 / v->max_inverse_z, 1 / v->min_inverse_z);
 }
 
+/* Makes the level of half the size, where planes are found, and its segments in the full size, where pixels choose. */
+static enum status prepare_half(struct level *half, struct level *full, struct solver *v, struct err *err)
+{
+    enum status st = level_halve(half, full, err);
+    if (!st) st = oversegment(&half->segments, &half->gamma, v->params->segment_pixels, v->params->compactness, err);
+    if (!st) st = matcher_init(&half->matcher, &half->segments, &half->gamma, err);
+    if (!st) st = segmentation_double(&full->segments, &half->segments, &full->gamma, err);
+    v->set = &half->set;
+    v->seen = &half->seen;
+    v->m = &half->matcher;
+    v->full = &full->matcher;
+    return st;
+}
+
 enum status view_depth(struct layered_depth *out, int neighbours[MAX_NEIGHBOURS], int *neighbour_count,
                        const struct camera_set *set, int view_idx, const struct view_source *source,
                        const struct segment_params *params, struct err *err)
 {
     struct segment_params own = *params;
-    struct observed_points seen = {0};
     struct image picture = {0};
-    struct gamma_image gamma = {0};
-    struct segmentation segments = {0};
-    struct matcher matcher = {0};
+    struct level full = {.set = *set}, other = {0}, *half = NULL;
     struct solver v = {.set = set,
                        .view_idx = view_idx,
                        .neighbours = neighbours,
-                       .m = &matcher,
+                       .m = &full.matcher,
                        .picture = &picture,
-                       .seen = &seen,
+                       .seen = &full.seen,
                        .source = source,
                        .params = &own};
     *out = (struct layered_depth){0};
     *neighbour_count = 0;
-    enum status st = observed_points_find(&seen, set, view_idx, err);
+    enum status st = observed_points_find(&full.seen, set, view_idx, err);
     if (!st && source->read_given) st = source->read_given(source->ctx, view_idx, &v.given, err);
-    if (!st) st = find_neighbours(neighbours, neighbour_count, set, view_idx, &seen, params, v.given, err);
+    if (!st) st = find_neighbours(neighbours, neighbour_count, set, view_idx, &full.seen, params, v.given, err);
     if (!st) st = source->read(source->ctx, view_idx, &picture, err);
     if (!st) st = layered_depth_init(out, picture.width, picture.height, err);
     if (!st) st = find_range(&v, *neighbour_count, (size_t)picture.width * (size_t)picture.height, err);
-    if (!st) st = gamma_image_make(&gamma, &picture, tone_of(&picture), err);
+    if (!st) st = gamma_image_make(&full.gamma, &picture, tone_of(&picture), err);
     if (source->read_depth) own.segment_pixels = params->fine_pixels;
-    if (!st) st = oversegment(&segments, &gamma, own.segment_pixels, params->compactness, err);
-    if (!st) st = matcher_init(&matcher, &segments, &gamma, err);
+    if (!st && !source->read_depth && !v.given && depth_halves(params, (double)picture.width * picture.height)) {
+        half = &other;
+        own.segment_pixels = params->half_pixels;
+    }
+    if (!st && half) st = prepare_half(half, &full, &v, err);
+    if (!st && !half) st = oversegment(&full.segments, &full.gamma, own.segment_pixels, own.compactness, err);
+    if (!st) st = matcher_init(&full.matcher, &full.segments, &full.gamma, err);
     for (int k = 0; !st && k < *neighbour_count; k++)
-        st = add_neighbour(&matcher, set, view_idx, neighbours[k], source, &seen,
-                           0.5 * (v.min_inverse_z + v.max_inverse_z), &gamma, err);
-    matcher.ranks = params->best_neighbours;
-    if (!st) st = matcher_calibrate(&matcher, v.min_inverse_z, v.max_inverse_z, err);
+        st =
+            add_neighbour(&full, half, view_idx, neighbours[k], source, 0.5 * (v.min_inverse_z + v.max_inverse_z), err);
+    v.m->ranks = params->best_neighbours;
+    if (!st) st = matcher_calibrate(v.m, v.min_inverse_z, v.max_inverse_z, err);
     v.neighbour_count = *neighbour_count;
     if (!st) st = solve(out, &v, err);
     if (st) layered_depth_release(out);
-    matcher_release(&matcher);
-    segmentation_release(&segments);
-    gamma_image_release(&gamma);
+    level_release(&full);
+    level_release(&other);
     image_release(&picture);
-    observed_points_release(&seen);
     free(v.given);
     return st;
 }

@@ -49,6 +49,20 @@ static void more_pixels_neighbours_and_passes_take_more(void **state)
     assert_true(depth_work(1e6, 4, true, &other).core_seconds < 0.8 * one.core_seconds);
 }
 
+static void a_first_round_in_half_the_size_takes_less(void **state)
+{
+    (void)state;
+    struct segment_params half = params;
+    half.half_from = 0.5;
+    half.half_pixels = 64;
+    const double full = depth_work(1e6, 8, true, &params).core_seconds;
+    assert_true(depth_work(1e6, 8, true, &half).core_seconds < 0.5 * full);
+    assert_true(depth_work(1e6, 8, true, &half).core_seconds > 0.2 * full);
+    /* not of views below the size, nor in later rounds */
+    assert_near(depth_work(0.4e6, 8, true, &half).core_seconds, 0.4 * full, 1e-9);
+    assert_near(depth_work(1e6, 8, false, &half).core_seconds, depth_work(1e6, 8, false, &params).core_seconds, 1e-9);
+}
+
 /* The last line is the sum over views of these sizes, each matched with two neighbours, in the first round or a later
  * one. */
 static void assert_line_of_work(const char *text, const double pixels[], const bool first[], int count)
@@ -137,6 +151,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(more_pixels_neighbours_and_passes_take_more),
+        cmocka_unit_test(a_first_round_in_half_the_size_takes_less),
         cmocka_unit_test(the_work_of_a_list_is_summed_and_divided_among_cores),
         cmocka_unit_test(an_empty_list_prints_nothing),
         cmocka_unit_test(a_faulty_list_is_an_error),

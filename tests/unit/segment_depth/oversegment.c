@@ -181,6 +181,47 @@ static void every_valid_pixel_is_in_one_connected_segment(void **state)
         }
 }
 
+/* The upper rows begin one pixel farther to the right with every four columns, so that the first pixels of segments in half
+ * the size are masked in the full one. */
+static void sawtooth(int x, int y, float rgba[4])
+{
+    noise(x, y, rgba);
+    rgba[3] = y % 12 > (x / 4 + y / 12) % 3 && (x + y) % 5 > 1;
+}
+
+static void segments_of_half_the_size_keep_their_numbers(void **state)
+{
+    (void)state;
+    static paint_fn *const paints[] = {grey, noise, blobs, islands, disc, not_numbers, sawtooth};
+    for (int k = 0; k < 7; k++)
+        for (int odd = 0; odd < 2; odd++) {
+            struct segmentation fine, s = {0}, doubled = {0};
+            struct gamma_image g, half;
+            struct err err = ERR_INIT;
+            cut(&fine, &g, 96 + odd, 60 + odd, paints[k], 64, 8);
+            assert_int_equal(gamma_image_half_covering(&half, &g, &err), ST_OK);
+            assert_true(half.width == 48 + odd && half.height == 30 + odd);
+            assert_int_equal(oversegment(&s, &half, 40, 8, &err), ST_OK);
+            assert_int_equal(segmentation_double(&doubled, &s, &g, &err), ST_OK);
+            assert_int_equal(doubled.count, s.count);
+            for (int y = 0; y < g.height; y++)
+                for (int x = 0; x < g.width; x++) {
+                    const int i = y * g.width + x, own = s.label[y / 2 * half.width + x / 2];
+                    assert_int_equal(doubled.label[i], g.valid[i] ? own : -1);
+                    assert_true(!g.valid[i] || own >= 0);
+                }
+            for (int i = 0; i < s.count; i++) {
+                assert_in_range(doubled.segments[i].pixels, 1, 4 * s.segments[i].pixels);
+                if (doubled.segments[i].pixels < 4 * s.segments[i].pixels) continue; /* masked, or cut off */
+                assert_near(doubled.segments[i].cx, 2 * s.segments[i].cx, 1e-9);
+                assert_near(doubled.segments[i].cy, 2 * s.segments[i].cy, 1e-9);
+            }
+            segmentation_release(&doubled);
+            release(&s, &half);
+            release(&fine, &g);
+        }
+}
+
 static void segments_have_about_the_requested_size(void **state)
 {
     (void)state;
@@ -324,6 +365,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_valid_pixel_is_in_one_connected_segment),
+        cmocka_unit_test(segments_of_half_the_size_keep_their_numbers),
         cmocka_unit_test(segments_have_about_the_requested_size),
         cmocka_unit_test(a_uniform_picture_gives_a_grid),
         cmocka_unit_test(odd_picture_sizes_work),

@@ -292,13 +292,17 @@ static void tiny_and_narrow_photos_work(void **state)
     (void)state;
     static const int sizes[][2] = {{1, 1}, {2, 1}, {1, 9}, {8, 8}, {3, 100}, {300, 2}, {17, 5}};
     for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++)
-        for (int points = 0; points < 2; points++) {
+        for (int k = 0; k < 4; k++) { /* without points and with, in the full size and in half of it */
+            struct segment_params params = SEGMENT_PARAMS_DEFAULT;
             struct result r = {0};
+            struct err err = ERR_INIT;
+            params.half_from = k < 2 ? 0 : 1e-9;
             start();
             scene_wall(&scene, 0, 0, 5, 90, 90, 0);
-            for (int k = 0; k < 3; k++) scene_view(&scene, sizes[i][0], sizes[i][1], 20, 0.3 * k, 0.05 * k, 0, 0);
-            scene_points(&scene, points * 60);
-            must_work(&r);
+            for (int n = 0; n < 3; n++) scene_view(&scene, sizes[i][0], sizes[i][1], 20, 0.3 * n, 0.05 * n, 0, 0);
+            scene_points(&scene, k % 2 * 60);
+            if (depth_of(&r, &params, &err)) fail_msg("%s", err.text);
+            check_invariants(&r.depth);
             assert_true(r.depth.segment_count >= 1 && r.depth.interior.z[0] > 0);
             layered_depth_release(&r.depth);
         }
@@ -450,6 +454,8 @@ static void extreme_parameters_work(void **state)
         {"segment_pixels=100000", "planes=1024", "jump=1000", NULL},
         {"segment_pixels=16", "jump=1", "smoothness=100", "passes=8", NULL},
         {"points=0", "nearest_points=0", "far_bias=0", "matte=none", NULL},
+        {"half_from=0.001", "half_pixels=8", "passes=0", NULL},
+        {"half_from=0.001", "half_pixels=100000", "planes=4", NULL},
         {"points=10", "nearest_points=10", "far_bias=10", "neighbours=1", "compactness=0.1", NULL},
     };
     start();
@@ -518,6 +524,82 @@ static void thread_counts_give_the_same_bits(void **state)
     for (int k = 0; k < 3; k++) layered_depth_release(&r[k].depth);
 }
 
+/* A disc around the middle, with single pixels and a strip one pixel wide beside it. */
+static enum status masked_photo(void *ctx, int view_idx, struct image *im, struct err *err)
+{
+    const enum status st = scene_photo(ctx, view_idx, im, err);
+    for (int y = 0; !st && y < im->height; y++)
+        for (int x = 0; x < im->width; x++)
+            if (hypot(x - im->width / 2, y - im->height / 2) > 50 && (x % 16 || y % 16) && x != im->width - 1)
+                memset(image_at(im, x, y), 0, 4 * sizeof(float));
+    return st;
+}
+
+static void planes_found_at_half_the_size_hold_for_all_pixels(void **state)
+{
+    (void)state;
+    struct segment_params params = SEGMENT_PARAMS_DEFAULT;
+    params.half_from = 1e-6;
+    for (int k = 0; k < 3; k++) { /* even and odd sizes, and a mask that leaves single pixels */
+        photo_fn *photo = k == 2 ? masked_photo : scene_photo;
+        const struct view_source source = {photo, NULL, &scene, NULL, NULL};
+        static const double offsets[][2] = {{0, 0}, {0.4, 0}, {-0.4, 0}, {0, 0.4}, {0, -0.4}};
+        struct result r = {0};
+        struct err err = ERR_INIT;
+        start();
+        scene_wall(&scene, 0, 0, 7, 12, 12, 0.2);
+        scene_wall(&scene, 0.1, 0.1, 4, 0.8, 0.7, 0)->colour[0] = 0.12f;
+        for (int n = 0; n < 5; n++)
+            scene_view(&scene, 2 * W + (k > 0), 2 * H + (k > 0), 2 * FOCAL, offsets[n][0], offsets[n][1], 0, 0);
+        scene_points(&scene, 200);
+        if (view_depth(&r.depth, r.neighbours, &r.neighbour_count, &scene.set, 0, &source, &params, &err))
+            fail_msg("%s", err.text);
+        must_be_sound_of(&r.depth, photo);
+        if (k < 2) {
+            assert_true(fraction_correct(&r.depth, 0, 0.01) > 0.97);
+            assert_true(fraction_correct(&r.depth, 1, 0.02) > 0.97); /* 0.3 px of half the size */
+            /* about as many as half the size has room for */
+            assert_near(r.depth.segment_count / (double)(W * H / params.half_pixels), 1, 0.2);
+        }
+        layered_depth_release(&r.depth);
+    }
+}
+
+static void views_below_the_size_are_not_halved(void **state)
+{
+    (void)state;
+    struct result r[3];
+    struct segment_params params = SEGMENT_PARAMS_DEFAULT;
+    struct err err = ERR_INIT;
+    memset(r, 0, sizeof r);
+    start();
+    scene_wall(&scene, 0, 0, 7, 12, 12, 0.2);
+    place_cameras(3);
+    for (int k = 0; k < 3; k++) {
+        params.half_from = k == 0 ? 0 : k == 1 ? 1.001 * W * H * 1e-6 : 0.999 * W * H * 1e-6;
+        if (depth_of(&r[k], &params, &err)) fail_msg("%s", err.text);
+    }
+    assert_memory_equal(r[0].depth.interior.z, r[1].depth.interior.z, sizeof(float) * W * H);
+    assert_true(r[2].depth.segment_count < r[0].depth.segment_count / 2);
+    for (int k = 0; k < 3; k++) layered_depth_release(&r[k].depth);
+}
+
+static void rounds_continue_from_half_the_size(void **state)
+{
+    (void)state;
+    static struct layered_depth d[2];
+    struct segment_params params = SEGMENT_PARAMS_DEFAULT;
+    params.half_from = 1e-6;
+    start();
+    scene_wall(&scene, 0, 0, 7, 12, 12, 0.2);
+    scene_wall(&scene, 0.1, 0.1, 4, 0.8, 0.7, 0)->colour[0] = 0.12f;
+    place_cameras(5);
+    scene_points(&scene, 200);
+    must_work_in_rounds(d, 1, &params);
+    assert_true(fraction_correct(&d[1], -1, 0.01) > 0.95);
+    for (int k = 0; k < 2; k++) layered_depth_release(&d[k]);
+}
+
 /* Photos that are stored sideways have their upper side at the left or right. */
 static void upper_sides_of_photos_turn_the_proposals(void **state)
 {
@@ -550,6 +632,9 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_facing_wall_is_found),
+        cmocka_unit_test(planes_found_at_half_the_size_hold_for_all_pixels),
+        cmocka_unit_test(views_below_the_size_are_not_halved),
+        cmocka_unit_test(rounds_continue_from_half_the_size),
         cmocka_unit_test(a_slanted_wall_is_found),
         cmocka_unit_test(a_floor_is_found),
         cmocka_unit_test(a_blank_lawn_lies_on_the_ground),
