@@ -12,7 +12,7 @@
     X(fine_pixels, int, 16, 8, 100000, "px", "mean size of a segment in the rounds after the first")                 \
     X(half_from, double, 0, 0, 1000, "Mpx",                                                                          \
       "size of a view from which on the first round matches pictures of half the size; 0: it never does")            \
-    X(half_pixels, int, 64, 8, 100000, "px", "mean size of a segment in pictures of half the size")                  \
+    X(half_pixels, int, 48, 8, 100000, "px", "mean size of a segment in pictures of half the size")                  \
     X(compactness, double, 8, 0.1, 100, "",                                                                          \
       "weight of distance against colour in over-segmentation; higher: rounder segments")                            \
     X(neighbours, int, 8, 1, 16, "", "maximum number of views to match with")                                        \
