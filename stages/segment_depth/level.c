@@ -1,8 +1,8 @@
 /* level.c - a view and its neighbours in one size of their pictures.
  *
- * A pixel coordinate of a picture of half the size is exactly half of the full one's, also where the size is odd, so that
- * a plane 1/z = a u + b v + c becomes (2 a, 2 b, c). The view's own picture covers all of its pixels in half the size; the
- * neighbours' are those that matcher_add() makes of finer pictures. */
+ * A pixel coordinate of a picture of half the size is exactly half of the full one's, also where the size is odd, so
+ * that a plane 1/z = a u + b v + c becomes (2 a, 2 b, c). The view's own picture covers all of its pixels in half the
+ * size; the neighbours' are those that matcher_add() makes of finer pictures. */
 #include "stages/segment_depth/level.h"
 
 #include <stdlib.h>
@@ -15,14 +15,8 @@ static enum status halve_views(struct level *half, const struct level *full, str
     half->halved = true;
     if (!half->set.views) return err_nomem(err, "cameras", count * sizeof *half->set.views);
     for (size_t i = 0; i < count; i++) {
-        struct view *v = &half->set.views[i];
-        *v = full->set.views[i];
-        v->width = (v->width + 1) / 2;
-        v->height = (v->height + 1) / 2;
-        v->fx /= 2;
-        v->fy /= 2;
-        v->cx /= 2;
-        v->cy /= 2;
+        const struct view *v = &full->set.views[i];
+        half->set.views[i] = view_halved(*v, (v->width + 1) / 2, (v->height + 1) / 2);
     }
     return ST_OK;
 }

@@ -5,7 +5,6 @@
  * four corners of a bilinear sample of all channels (plane_match.c). */
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "common/base/sort.h"
 #include "common/math/numbers.h"
@@ -194,12 +193,7 @@ enum status matcher_add(struct matcher *m, const struct camera_set *set, int vie
         double scale = sqrt(fabs(jacobian[0][0] * jacobian[1][1] - jacobian[0][1] * jacobian[1][0]));
         if (!(scale > 1.6) || picture->width < 2 || picture->height < 2) break;
         if (gamma_image_halve(picture, err)) return err->status;
-        other.width = picture->width;
-        other.height = picture->height;
-        other.fx /= 2;
-        other.fy /= 2;
-        other.cx /= 2;
-        other.cy /= 2;
+        other = view_halved(other, picture->width, picture->height);
     }
     n->width = picture->width;
     n->height = picture->height;
@@ -213,24 +207,17 @@ enum status matcher_add(struct matcher *m, const struct camera_set *set, int vie
     return st;
 }
 
-static void *copied(const void *from, size_t size)
+void matcher_take(struct matcher *m, struct matcher *half)
 {
-    void *to = from ? malloc(size) : NULL;
-    return to ? memcpy(to, from, size) : NULL;
-}
-
-enum status matcher_take(struct matcher *m, const struct matcher *half, struct err *err)
-{
-    const size_t count = (size_t)m->segments->count + 1;
     m->ranks = half->ranks;
     m->excluded = half->excluded;
     m->good_cost = half->good_cost;
     m->chance_cost = half->chance_cost;
-    m->use = copied(half->use, count * sizeof *m->use);
-    m->out_of_view_cost = copied(half->out_of_view_cost, count * sizeof *m->out_of_view_cost);
-    m->occluded_cost = copied(half->occluded_cost, count * sizeof *m->occluded_cost);
-    return (m->use || !half->use) && m->out_of_view_cost && m->occluded_cost ? ST_OK
-                                                                             : err_nomem(err, "a matcher", count * 12);
+    m->use = half->use;
+    m->out_of_view_cost = half->out_of_view_cost;
+    m->occluded_cost = half->occluded_cost;
+    half->use = NULL;
+    half->out_of_view_cost = half->occluded_cost = NULL;
 }
 
 void matcher_release(struct matcher *m)

@@ -32,9 +32,8 @@ struct segmentation {
  * Same result for any number of threads. ST_NOMEM. */
 enum status oversegment(struct segmentation *s, const struct gamma_image *g, int segment_pixels, double compactness,
                         struct err *err);
-/* The same segments, by the same numbers, in the picture g of which `half` is one of half the size
- * (gamma_image_half_covering()).
- * They have no colours, and their borders no contrast. s is {0} on entry. ST_NOMEM. */
+/* The same segments, by the same numbers, in the picture g, of which gamma_image_half_covering() made the one that
+ * `half` divides. They have no colours, and their borders no contrast. s is {0} on entry. ST_NOMEM. */
 enum status segmentation_double(struct segmentation *s, const struct segmentation *half, const struct gamma_image *g,
                                 struct err *err);
 void segmentation_release(struct segmentation *s);

@@ -73,6 +73,18 @@ struct matcher {
 #define MATCH_FULL_WEIGHT 16   /* of a pixel that is not beside an edge of its segment */
 #define MATCH_UNSEEN      1e3f /* match_row(): the neighbour does not see the pixel */
 
+/* The camera of a picture of half the size, width x height, whose pixel coordinates are exactly half of the view's. */
+static inline struct view view_halved(struct view v, int width, int height)
+{
+    v.width = width;
+    v.height = height;
+    v.fx /= 2;
+    v.fy /= 2;
+    v.cx /= 2;
+    v.cy /= 2;
+    return v;
+}
+
 /* The projection of the view's pixels into `other`: [u' v' 1] ~ base [u v 1] + shift / z. */
 void match_homography(double base[3][3], double shift[3], const struct view *view, const struct view *other);
 
@@ -104,9 +116,9 @@ enum status matcher_add(struct matcher *m, const struct camera_set *set, int vie
  * drawn to where it is visible. Neighbours of much less contrast than the best one are excluded. Call it once, after
  * the last matcher_add() and before the first cost. */
 enum status matcher_calibrate(struct matcher *m, double min_inverse_z, double max_inverse_z, struct err *err);
-/* Takes over the calibration and the selection of a matcher of the same segments in pictures of half the size, which has
- * the same neighbours. */
-enum status matcher_take(struct matcher *m, const struct matcher *half, struct err *err);
+/* Takes the calibration and the selection away from a matcher of the same segments and neighbours in half the size, which
+ * has no costs any more. */
+void matcher_take(struct matcher *m, struct matcher *half);
 /* Restricts each segment to the `ranks` neighbours that match its plane best. occluded: of each segment, as
  * match_cost(), or NULL; a neighbour that does not see it comes last. */
 enum status matcher_select(struct matcher *m, const struct plane *planes, const unsigned *occluded, struct err *err);

@@ -5,8 +5,8 @@
 #include "stages/segment_depth/oversegment.h"
 
 /* Renumbers s->label (any numbers below w * h, -1: none) from 0 in raster order of each segment's first pixel, and
- * fills the rest of s but for its size. lab: colours of the pixels; NULL: none are wanted. ST_NOMEM; the caller releases s also after a
- * failure. */
+ * fills the rest of s but for its size. lab: colours of the pixels; NULL: none are wanted. ST_NOMEM; the caller
+ * releases s also after a failure. */
 enum status segment_graph_make(struct segmentation *s, float *const lab[3], struct err *err);
 
 /* The same of labels that are numbered from 0 to s->count - 1 already, each of at least one pixel. */

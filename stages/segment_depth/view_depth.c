@@ -15,8 +15,8 @@
  *   pixel_planes  each pixel chooses among the planes around it
  *   layers        opaque interiors, and mattes at depth edges
  *
- * The first round of a large view may work in half the size of the pictures (level.h), up to `inherit`; then each pixel of
- * the full size chooses. That takes less than half the time, and blank walls match better in larger segments.
+ * The first round of a large view may work in half the size of the pictures (level.h), up to `inherit`; then each pixel
+ * of the full size chooses. That takes little more than half of the time, and blank walls match better.
  *
  * Rounds after the first have smaller segments: they begin on good planes, so that these need few moves.
  *
@@ -320,10 +320,10 @@ static enum status make_layers(struct layered_depth *out, struct solution *x, co
     if (!label) return err_nomem(err, "the segments of pixels", pixels * sizeof *label);
     if (v->full) {
         double_planes(out, x);
+        matcher_take(v->full, v->m);
         problem.m = v->full;
     }
-    enum status st = v->full ? matcher_take(v->full, v->m, err) : ST_OK;
-    if (!st) st = choose_pixel_planes(label, x->planes, &problem, err);
+    enum status st = choose_pixel_planes(label, x->planes, &problem, err);
     const bool matte = !strcmp(v->params->matte, "two_colour");
     if (!st) st = layers_make(out, label, x->planes, v->picture, x->sweep.step, matte, err);
     free(label);
