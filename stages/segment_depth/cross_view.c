@@ -7,6 +7,10 @@
  *   g < -AGREE_STEPS     more, up to OCCLUDED_COST + the neighbour's confidence: it sees through the sample, so that
  *                        one of the two depths is wrong
  *   no depth there       UNKNOWN_COST
+ * And the other way round: the neighbours' surfaces are carried into the view. A sample that lies more than AGREE_STEPS
+ * behind one sees through it, and costs up to FRONT_WEIGHT times that surface's confidence. Without this a segment that
+ * matches badly, such as a glossy front, hides behind its neighbours' surfaces, where no picture speaks against it. One
+ * neighbour alone may be wrong about what only it sees: at each sample the highest cost counts as the second highest.
  * What differs from the source: neighbours' depths are those of the previous round, weighted by their segments'
  * confidence; and the neighbours' planes, expressed in this view, become proposals of the expansion moves. */
 #include "stages/segment_depth/cross_view.h"
@@ -22,6 +26,8 @@
 #define UNKNOWN_COST   0.15f
 #define MIN_OCCLUDER   0.3f  /* confidence from which on a surface may occlude */
 #define MIN_CONFIDENCE 0.15f /* minimum weight of a neighbour's segment */
+#define FRONT_WEIGHT   1.5f
+#define MIN_FRONT      0.05f /* minimum confidence of a surface that the view would see through */
 
 /* Expresses plane `p` of view `other` in `view`: as n . X = 1 in the camera's axes, transformed by the relative pose.
  * False if the plane passes through the camera's centre. */
@@ -73,6 +79,47 @@ static enum status prepare_neighbour(struct cross_neighbour *n, const struct cro
             (struct cross_plane){(float)g->plane[0], (float)g->plane[1], (float)g->plane[2], (float)g->confidence};
     }
     return ST_OK;
+}
+
+/* Carries the neighbour's surface into the view; the nearest one stays. Pixels that nothing falls on say nothing. */
+static enum status see_neighbour(struct cross_neighbour *n, const struct cross_view *x, const struct segmentation *s,
+                                 const struct view *view, const struct view *other, struct err *err)
+{
+    const int width = n->depth.width, height = n->depth.height;
+    const size_t pixels = (size_t)s->width * (size_t)s->height, size = ((size_t)s->count + 1) * sizeof *n->fronts;
+    double base[3][3], shift[3];
+    float *nearest = calloc(pixels, sizeof *nearest), *weight = malloc(pixels * sizeof *weight);
+    n->fronts = aligned_alloc(32, size);
+    enum status st = nearest && weight && n->fronts
+                         ? ST_OK
+                         : err_nomem(err, "surfaces of a neighbour", pixels * 2 * sizeof *nearest + size);
+    match_homography(base, shift, other, view);
+    for (int i = 0; !st && i < width * height; i++) {
+        const uint32_t id = n->depth.interior.id[i];
+        if (!id) continue;
+        const struct cross_plane *plane = &n->planes[id];
+        const double u = i % width + 0.5, v = i / width + 0.5; /* centre of the pixel */
+        const double inverse = (double)plane->a * u + (double)plane->b * v + (double)plane->c;
+        double q[3];
+        for (int j = 0; j < 3; j++) q[j] = base[j][0] * u + base[j][1] * v + base[j][2] + shift[j] * inverse;
+        if (!(inverse > 0) || !(q[2] > 1e-9)) continue;
+        const double to_u = q[0] / q[2], to_v = q[1] / q[2];
+        if (!(to_u >= 0 && to_v >= 0 && to_u < s->width && to_v < s->height)) continue;
+        const size_t at = (size_t)to_v * (size_t)s->width + (size_t)to_u;
+        const float here = (float)(inverse / q[2]);
+        if (!(here > nearest[at])) continue;
+        nearest[at] = here;
+        weight[at] = FRONT_WEIGHT * fmaxf(plane->confidence, MIN_FRONT);
+    }
+    for (int i = 0; !st && i < s->count; i++)
+        for (int k = 0; k < CROSS_SAMPLES; k++) {
+            const size_t at = (size_t)x->samples[i][1][k] * (size_t)s->width + (size_t)x->samples[i][0][k];
+            n->fronts[i].inverse[k] = nearest[at];
+            n->fronts[i].weight[k] = nearest[at] > 0 ? weight[at] : 0;
+        }
+    free(nearest);
+    free(weight);
+    return st;
 }
 
 struct centroid {
@@ -136,6 +183,7 @@ enum status cross_view_make(struct cross_view *x, const struct segmentation *s, 
         st = source->read(source->ctx, neighbours[k], &n->depth, err);
         if (!st) st = segment_centroids(&centers[k], &n->depth, err);
         if (!st) st = prepare_neighbour(n, x, s->count, err);
+        if (!st) st = see_neighbour(n, x, s, view, &set->views[neighbours[k]], err);
     }
     for (int round = 0; !st && round < 2; round++) {
         for (int k = 0; k < count; k++)
@@ -156,6 +204,7 @@ void cross_view_release(struct cross_view *x)
     for (int k = 0; k < x->count; k++) {
         layered_depth_release(&x->neighbours[k].depth);
         free(x->neighbours[k].warps);
+        free(x->neighbours[k].fronts);
         free(x->neighbours[k].planes);
     }
     free(x->samples);
@@ -207,6 +256,24 @@ static __m256 inverse_depths(const struct cross_view *x, int segment, struct pla
         _mm256_set1_ps((float)plane.c));
 }
 
+/* What it costs, at each sample, to see through the neighbours' surfaces. */
+static inline __m256 cost_behind(const struct cross_view *x, int segment, __m256 inverse)
+{
+    const __m256 zero = _mm256_setzero_ps(), one = _mm256_set1_ps(1);
+    const __m256 per_agree = _mm256_set1_ps(1 / (AGREE_STEPS * (float)x->step));
+    __m256 sum = zero, highest = zero, second = zero;
+    for (int k = 0; k < x->count; k++) {
+        const struct cross_front *f = &x->neighbours[k].fronts[segment];
+        const __m256 gap = _mm256_mul_ps(_mm256_sub_ps(_mm256_load_ps(f->inverse), inverse), per_agree);
+        const __m256 through = _mm256_min_ps(_mm256_max_ps(_mm256_sub_ps(gap, one), zero), one);
+        const __m256 cost = _mm256_mul_ps(through, _mm256_load_ps(f->weight));
+        sum = _mm256_add_ps(sum, cost);
+        second = _mm256_max_ps(second, _mm256_min_ps(highest, cost));
+        highest = _mm256_max_ps(highest, cost);
+    }
+    return _mm256_add_ps(_mm256_sub_ps(sum, highest), second);
+}
+
 float cross_view_cost(const struct cross_view *x, int segment, struct plane plane, unsigned *occluded)
 {
     return cross_view_bounded(x, segment, plane, INFINITY, occluded);
@@ -218,11 +285,11 @@ float cross_view_bounded(const struct cross_view *x, int segment, struct plane p
     const float count = (float)(x->count * CROSS_SAMPLES), limit = max_cost * count;
     const __m256 agree = _mm256_set1_ps(AGREE_STEPS), zero = _mm256_setzero_ps();
     const __m256 inverse = inverse_depths(x, segment, plane);
-    __m256 sum = zero;
-    float all = 0;
+    __m256 sum = cost_behind(x, segment, inverse);
+    float all = lanes_sum(sum);
     *occluded = 0;
     if (!x->count) return 0;
-    for (int k = 0; k < x->count; k++) {
+    for (int k = 0; k < x->count && !(all > limit); k++) {
         __m256 steps, confidence;
         const __m256 known = surface_gap(&x->neighbours[k], segment, inverse, &steps, &confidence);
         const __m256 off = _mm256_max_ps(steps, _mm256_sub_ps(zero, steps));
@@ -238,7 +305,6 @@ float cross_view_bounded(const struct cross_view *x, int segment, struct plane p
         if (__builtin_popcount((unsigned)_mm256_movemask_ps(_mm256_and_ps(known, behind))) > CROSS_SAMPLES / 2)
             *occluded |= 1u << k;
         all = lanes_sum(sum);
-        if (all > limit) break;
     }
     return all / count;
 }

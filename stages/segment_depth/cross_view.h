@@ -23,10 +23,17 @@ struct cross_plane {
     float a, b, c, confidence;
 };
 
+/* The neighbour's surface as the view sees it at the samples of a segment. */
+struct cross_front {
+    float inverse[CROSS_SAMPLES]; /* 1/z */
+    float weight[CROSS_SAMPLES];  /* cost of seeing through it; 0: it is not seen there */
+};
+
 struct cross_neighbour {
     double base[3][3], shift[3]; /* as match_neighbour, at the picture's own size */
     struct layered_depth depth;
     struct cross_warp *warps;   /* of each segment of the view */
+    struct cross_front *fronts; /* of each segment of the view */
     struct cross_plane *planes; /* by the ids of depth; 0 is no segment */
 };
 
@@ -45,8 +52,8 @@ enum status cross_view_make(struct cross_view *x, const struct segmentation *s, 
                             const struct previous_depth_source *source, struct err *err);
 void cross_view_release(struct cross_view *x);
 
-/* Mean inconsistency: 0 if all neighbours agree; a little above 1 if all are confident that they see through the plane.
- * *occluded: bit k is set if a surface of neighbour k hides the segment from it. */
+/* Mean inconsistency: 0 if all neighbours agree; a little above 1 if all are confident that they see through the plane;
+ * up to 1.65 if the plane lies behind confident surfaces of all, which the view would see through. *occluded: bit k is set if a surface of neighbour k hides the segment from it. */
 float cross_view_cost(const struct cross_view *x, int segment, struct plane plane, unsigned *occluded);
 /* The same; a value above max_cost, and any *occluded, as soon as it is clear that it exceeds max_cost. */
 float cross_view_bounded(const struct cross_view *x, int segment, struct plane plane, float max_cost,

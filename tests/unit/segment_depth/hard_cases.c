@@ -172,6 +172,44 @@ static void a_floor_is_found_unless_it_is_a_mirror(void **state)
     }
 }
 
+/* The first photo shows something else on a part of the front wall, as a reflection does. */
+static const int reflected[4] = {40, 40, 80, 80}; /* x0, y0, x1, y1 */
+static enum status reflecting_photo(void *ctx, int view_idx, struct image *im, struct err *err)
+{
+    (void)ctx;
+    if (scene_photo(&scene, view_idx, im, err)) return err->status;
+    if (view_idx) return ST_OK;
+    for (int y = reflected[1]; y < reflected[3]; y++)
+        for (int x = reflected[0]; x < reflected[2]; x++)
+            scene_paint(&scene.surfaces[0], vec3_make(70 + 0.03 * x, 50 + 0.03 * y, 5), image_at(im, x, y));
+    return ST_OK;
+}
+
+/* What matches in no other view does not hide behind the wall, where no picture would speak against it: the other views
+ * know the wall. */
+static void a_reflection_beside_an_edge_does_not_hide_behind_its_wall(void **state)
+{
+    (void)state;
+    struct layered_depth d[2];
+    int pixels = 0, good[2] = {0};
+    start();
+    scene_wall(&scene, -2.5, 0, 5, 2.5, 9, 0); /* up to the middle of the picture */
+    scene_wall(&scene, 0, 0, 9, 20, 20, 0)->cell = 0.5;
+    place_cameras(5);
+    scene_points(&scene, 300);
+    must_work_in_rounds_of(d, 1, &params, reflecting_photo);
+    for (int round = 0; round < 2; round++) {
+        for (int y = reflected[1]; y < reflected[3]; y++)
+            for (int x = reflected[0]; x < reflected[2] - 4; x++) {
+                pixels += !round;
+                good[round] += fabs((double)d[round].interior.z[y * W + x] / 5 - 1) <= 0.02;
+            }
+        layered_depth_release(&d[round]);
+    }
+    if (getenv("VERDICT")) print_message("  of %d px %d, then %d are on the wall\n", pixels, good[0], good[1]);
+    assert_true(good[1] > 0.95 * pixels);
+}
+
 /* --------------------------------------------------------------------------------------------------- missing
  * neighbours */
 
@@ -609,6 +647,7 @@ int main(void)
         cmocka_unit_test(wallpaper_gets_the_depth_of_its_frame),
         cmocka_unit_test(a_highlight_on_a_glossy_floor_changes_only_its_own_pixels),
         cmocka_unit_test(a_floor_is_found_unless_it_is_a_mirror),
+        cmocka_unit_test(a_reflection_beside_an_edge_does_not_hide_behind_its_wall),
         cmocka_unit_test(a_view_without_neighbours_is_an_error),
         cmocka_unit_test(a_nan_in_a_view_is_an_error_with_its_pixel),
         cmocka_unit_test(a_previous_round_of_another_picture_is_an_error),
