@@ -71,7 +71,6 @@ static enum status prepare_neighbour(struct cross_neighbour *n, const struct cro
             const double u = (double)x->samples[i][0][k], v = (double)x->samples[i][1][k];
             for (int j = 0; j < 3; j++)
                 n->warps[i].rotated[j][k] = (float)(n->base[j][0] * u + n->base[j][1] * v + n->base[j][2]);
-            n->warps[i].steps[k] = 1 / (fmaxf(n->warps[i].rotated[2][k], 0.1f) * (float)x->step);
         }
     for (size_t k = 1; k < planes; k++) {
         const struct depth_segment *g = &n->depth.segments[k - 1];
@@ -88,11 +87,11 @@ static enum status see_neighbour(struct cross_neighbour *n, const struct cross_v
     const int width = n->depth.width, height = n->depth.height;
     const size_t pixels = (size_t)s->width * (size_t)s->height, size = ((size_t)s->count + 1) * sizeof *n->fronts;
     double base[3][3], shift[3];
-    float *nearest = calloc(pixels, sizeof *nearest), *weight = malloc(pixels * sizeof *weight);
-    n->fronts = aligned_alloc(32, size);
-    enum status st = nearest && weight && n->fronts
-                         ? ST_OK
-                         : err_nomem(err, "surfaces of a neighbour", pixels * 2 * sizeof *nearest + size);
+    float *nearest = calloc(pixels, sizeof *nearest);
+    uint8_t *confidence = calloc(pixels, 1);
+    n->fronts = malloc(size);
+    enum status st =
+        nearest && confidence && n->fronts ? ST_OK : err_nomem(err, "surfaces of a neighbour", pixels * 5 + size);
     match_homography(base, shift, other, view);
     for (int i = 0; !st && i < width * height; i++) {
         const uint32_t id = n->depth.interior.id[i];
@@ -109,16 +108,16 @@ static enum status see_neighbour(struct cross_neighbour *n, const struct cross_v
         const float here = (float)(inverse / q[2]);
         if (!(here > nearest[at])) continue;
         nearest[at] = here;
-        weight[at] = FRONT_WEIGHT * fmaxf(plane->confidence, MIN_FRONT);
+        confidence[at] = (uint8_t)lrintf(255 * fminf(fmaxf(plane->confidence, MIN_FRONT), 1));
     }
     for (int i = 0; !st && i < s->count; i++)
         for (int k = 0; k < CROSS_SAMPLES; k++) {
             const size_t at = (size_t)x->samples[i][1][k] * (size_t)s->width + (size_t)x->samples[i][0][k];
             n->fronts[i].inverse[k] = nearest[at];
-            n->fronts[i].weight[k] = nearest[at] > 0 ? weight[at] : 0;
+            n->fronts[i].confidence[k] = confidence[at];
         }
     free(nearest);
-    free(weight);
+    free(confidence);
     return st;
 }
 
@@ -215,8 +214,8 @@ void cross_view_release(struct cross_view *x)
 
 /* For each sample of a segment at inverse depth `inverse`: the steps by which the neighbour's surface is nearer, and
  * that surface's confidence. Returns the mask of lanes where the neighbour has a depth. */
-static inline __m256 surface_gap(const struct cross_neighbour *n, int segment, __m256 inverse, __m256 *steps,
-                                 __m256 *confidence)
+static inline __m256 surface_gap(const struct cross_neighbour *n, int segment, __m256 inverse, float step,
+                                 __m256 *steps, __m256 *confidence)
 {
     const struct cross_warp *at = &n->warps[segment];
     __m256 p[3];
@@ -241,8 +240,10 @@ static inline __m256 surface_gap(const struct cross_neighbour *n, int segment, _
     there = _mm256_add_ps(there, _mm256_mul_ps(_mm256_i32gather_ps(planes + 1, id, 4), v));
     there = _mm256_add_ps(there, _mm256_i32gather_ps(planes + 2, id, 4));
     *confidence = _mm256_i32gather_ps(planes + 3, id, 4);
-    *steps = _mm256_mul_ps(_mm256_sub_ps(_mm256_mul_ps(there, p[2]), inverse),
-                           _mm256_mul_ps(p[2], _mm256_load_ps(at->steps)));
+    /* steps of the view in a unit of the neighbour's inverse depth, at equal distance */
+    const __m256 scale = _mm256_max_ps(_mm256_load_ps(at->rotated[2]), _mm256_set1_ps(0.1f));
+    const __m256 per_step = _mm256_div_ps(_mm256_set1_ps(1), _mm256_mul_ps(scale, _mm256_set1_ps(step)));
+    *steps = _mm256_mul_ps(_mm256_sub_ps(_mm256_mul_ps(there, p[2]), inverse), _mm256_mul_ps(p[2], per_step));
     return _mm256_and_ps(known, _mm256_cmp_ps(there, zero, _CMP_GT_OQ));
 }
 
@@ -264,14 +265,15 @@ static inline __m256 cost_behind(const struct cross_view *x, int segment, __m256
     __m256 sum = zero, highest = zero, second = zero;
     for (int k = 0; k < x->count; k++) {
         const struct cross_front *f = &x->neighbours[k].fronts[segment];
-        const __m256 gap = _mm256_mul_ps(_mm256_sub_ps(_mm256_load_ps(f->inverse), inverse), per_agree);
+        const __m256 gap = _mm256_mul_ps(_mm256_sub_ps(_mm256_loadu_ps(f->inverse), inverse), per_agree);
         const __m256 through = _mm256_min_ps(_mm256_max_ps(_mm256_sub_ps(gap, one), zero), one);
-        const __m256 cost = _mm256_mul_ps(through, _mm256_load_ps(f->weight));
+        const __m128i confidence = _mm_loadl_epi64((const __m128i *)f->confidence);
+        const __m256 cost = _mm256_mul_ps(through, _mm256_cvtepi32_ps(_mm256_cvtepu8_epi32(confidence)));
         sum = _mm256_add_ps(sum, cost);
         second = _mm256_max_ps(second, _mm256_min_ps(highest, cost));
         highest = _mm256_max_ps(highest, cost);
     }
-    return _mm256_add_ps(_mm256_sub_ps(sum, highest), second);
+    return _mm256_mul_ps(_mm256_add_ps(_mm256_sub_ps(sum, highest), second), _mm256_set1_ps(FRONT_WEIGHT / 255));
 }
 
 float cross_view_cost(const struct cross_view *x, int segment, struct plane plane, unsigned *occluded)
@@ -291,7 +293,7 @@ float cross_view_bounded(const struct cross_view *x, int segment, struct plane p
     if (!x->count) return 0;
     for (int k = 0; k < x->count && !(all > limit); k++) {
         __m256 steps, confidence;
-        const __m256 known = surface_gap(&x->neighbours[k], segment, inverse, &steps, &confidence);
+        const __m256 known = surface_gap(&x->neighbours[k], segment, inverse, (float)x->step, &steps, &confidence);
         const __m256 off = _mm256_max_ps(steps, _mm256_sub_ps(zero, steps));
         const __m256 near = _mm256_mul_ps(_mm256_min_ps(off, agree), _mm256_set1_ps(OCCLUDED_COST / AGREE_STEPS));
         const __m256 seen_through =
@@ -316,7 +318,8 @@ double cross_view_support(const struct cross_view *x, int segment, struct plane 
     for (int k = 0; k < x->count; k++) {
         _Alignas(32) float steps[CROSS_SAMPLES], confidence[CROSS_SAMPLES];
         __m256 s, c;
-        const unsigned known = (unsigned)_mm256_movemask_ps(surface_gap(&x->neighbours[k], segment, inverse, &s, &c));
+        const unsigned known =
+            (unsigned)_mm256_movemask_ps(surface_gap(&x->neighbours[k], segment, inverse, (float)x->step, &s, &c));
         _mm256_store_ps(steps, s);
         _mm256_store_ps(confidence, c);
         if (known >> CROSS_SAMPLES / 2 & 1 && fabsf(steps[CROSS_SAMPLES / 2]) <= AGREE_STEPS)

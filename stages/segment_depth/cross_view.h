@@ -16,7 +16,6 @@ struct previous_depth_source {
 /* The samples of a segment in a neighbour: [u' v' 1] ~ rotated + shift / z. */
 struct cross_warp {
     float rotated[3][CROSS_SAMPLES];
-    float steps[CROSS_SAMPLES]; /* steps of the view in a unit of the neighbour's inverse depth, at equal distance */
 };
 
 struct cross_plane {
@@ -25,8 +24,8 @@ struct cross_plane {
 
 /* The neighbour's surface as the view sees it at the samples of a segment. */
 struct cross_front {
-    float inverse[CROSS_SAMPLES]; /* 1/z */
-    float weight[CROSS_SAMPLES];  /* cost of seeing through it; 0: it is not seen there */
+    float inverse[CROSS_SAMPLES];      /* 1/z */
+    uint8_t confidence[CROSS_SAMPLES]; /* 255 is 1; 0: it is not seen there */
 };
 
 struct cross_neighbour {
