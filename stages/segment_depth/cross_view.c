@@ -11,8 +11,10 @@
  * behind one sees through it, and costs up to FRONT_WEIGHT times that surface's confidence. Without this a segment that
  * matches badly, such as a glossy front, hides behind its neighbours' surfaces, where no picture speaks against it. One
  * neighbour alone may be wrong about what only it sees: at each sample the highest cost counts as the second highest.
+ *
  * What differs from the source: neighbours' depths are those of the previous round, weighted by their segments'
- * confidence; and the neighbours' planes, expressed in this view, become proposals of the expansion moves. */
+ * confidence; they count in both directions; and the neighbours' planes, expressed in this view, become proposals of
+ * the expansion moves. */
 #include "stages/segment_depth/cross_view.h"
 
 #include <immintrin.h>
