@@ -28,7 +28,7 @@
 #define UNKNOWN_COST   0.15f
 #define MIN_OCCLUDER   0.3f  /* confidence from which on a surface may occlude */
 #define MIN_CONFIDENCE 0.15f /* minimum weight of a neighbour's segment */
-#define FRONT_WEIGHT   1.5f
+#define FRONT_WEIGHT   1.5f  /* cost of seeing through a confident surface: more than of being seen through */
 #define MIN_FRONT      0.05f /* minimum confidence of a surface that the view would see through */
 
 /* Expresses plane `p` of view `other` in `view`: as n . X = 1 in the camera's axes, transformed by the relative pose.

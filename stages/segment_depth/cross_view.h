@@ -52,7 +52,8 @@ enum status cross_view_make(struct cross_view *x, const struct segmentation *s, 
 void cross_view_release(struct cross_view *x);
 
 /* Mean inconsistency: 0 if all neighbours agree; a little above 1 if all are confident that they see through the plane;
- * up to 1.65 if the plane lies behind confident surfaces of all, which the view would see through. *occluded: bit k is set if a surface of neighbour k hides the segment from it. */
+ * up to 1.65 if it lies behind confident surfaces of all, which the view would see through.
+ * *occluded: bit k is set if a surface of neighbour k hides the segment from it. */
 float cross_view_cost(const struct cross_view *x, int segment, struct plane plane, unsigned *occluded);
 /* The same; a value above max_cost, and any *occluded, as soon as it is clear that it exceeds max_cost. */
 float cross_view_bounded(const struct cross_view *x, int segment, struct plane plane, float max_cost,
