@@ -19,15 +19,17 @@
  * This is the formula above wherever every p is 1.
  *
  * soft_z_merge (offline renderer, all fragments of all views in one buffer [Colburn 2014, 3.6.2]). Beyond the thesis,
- * views vote, with a width half as large. The support of a fragment is (for / (for + against))^2. For: the votes of all fragments at its depth, its
- * own included. Against: fragments behind it, by the alpha that they have in excess of what it leaves free (their views
- * look through it); and, by AGAINST_IN_FRONT, fragments in front of it, by the alpha that they have in excess of what
- * its own view has there. A fragment hides others and counts by its support. Of several fragments in front, only the
- * one that hides most counts, so that at a silhouette the share that the front leaves free stays with what is behind.
+ * views vote, with a width of VOTE_WIDTHS: the z-buffer is wide, so that silhouettes at slightly different places are
+ * averaged, but surfaces apart do not vote for each other. The support of a fragment is (for / (for + against))^2.
+ * For: the votes of all fragments at its depth, its own included. Against: fragments behind it, by the alpha that they
+ * have in excess of what it leaves free (their views look through it); and, by AGAINST_IN_FRONT, fragments in front of
+ * it, by the alpha that they have in excess of what its own view has there. A fragment hides others and counts by its
+ * support. Of several fragments in front, only the one that hides most counts, so that at a silhouette the share that
+ * the front leaves free stays with what is behind.
  *
  * The fragments of one view are averaged linearly: they share the pixel's area. Colours of different views are averaged
  * as square roots: where views disagree, this mean is close to the perceived one, and a mean of radiances is too
- * bright. The depth is that of the surface of largest weight, never a mean across a depth jump. */
+ * bright. The depth is that of the surface of largest weight, as wide as votes, never a mean across a depth jump. */
 #include "common/layers/soft_z.h"
 
 #include <math.h>
@@ -51,10 +53,9 @@ float soft_z_rho(const struct soft_z *s, float z_a, float sigma_a, float z_b, fl
     return 2 * s->widths * sqrtf(a * a + b * b);
 }
 
-#define VOTE_WIDTH       0.5f  /* of the soft z-buffer's width, for votes */
+#define VOTE_WIDTHS      8     /* depth uncertainties, but never more than the soft z-buffer's width */
 #define AGAINST_IN_FRONT 0.3f  /* weight of the votes of fragments in front */
 #define FULL_SUPPORT     0.25f /* a fragment of this support hides completely */
-#define ONE_DEPTH        0.1f  /* 1 - w up to which two fragments' depths are averaged: a third of the width */
 #define BLOCKS           (SOFT_Z_MAX_FRAGMENTS / 8)
 
 /* A pixel's fragments, in vectors of eight; the padding has vote, alpha and presence 0. */
@@ -64,6 +65,7 @@ struct fragment_merge {
     float vote[SOFT_Z_MAX_FRAGMENTS], alpha[SOFT_Z_MAX_FRAGMENTS], front_alpha[SOFT_Z_MAX_FRAGMENTS];
     float support[SOFT_Z_MAX_FRAGMENTS], presence[SOFT_Z_MAX_FRAGMENTS], weight[SOFT_Z_MAX_FRAGMENTS];
     __m256 separation[SOFT_Z_MAX_FRAGMENTS][BLOCKS]; /* 1 - w of each pair */
+    __m256 apart[SOFT_Z_MAX_FRAGMENTS][BLOCKS];      /* the same by the width of votes */
     int count, blocks;
 };
 
@@ -80,6 +82,11 @@ static float max8(__m256 v)
 static float order_uncertainty(const struct soft_z *s, const struct soft_z_fragment *f)
 {
     return s->widths > 0 ? f->sigma / f->z : f->sigma * f->z;
+}
+
+static struct soft_z vote_width(const struct soft_z *s)
+{
+    return (struct soft_z){s->widths < VOTE_WIDTHS ? s->widths : VOTE_WIDTHS, s->range};
 }
 
 /* Whether all fragments are within gamma of each other, so that none hides or votes against another. */
@@ -109,7 +116,7 @@ static __m256 separation8(const struct fragment_merge *m, const struct soft_z *s
 static void find_support(struct fragment_merge *m, const struct soft_z *s)
 {
     const __m256 one = _mm256_set1_ps(1), zero = _mm256_setzero_ps();
-    const struct soft_z votes = {s->widths * VOTE_WIDTH, s->range};
+    const struct soft_z votes = vote_width(s);
 
     for (int i = 0; i < m->count; i++) {
         const __m256 leaves = _mm256_set1_ps(1 - m->front_alpha[i] - m->alpha[i]);
@@ -121,10 +128,10 @@ static void find_support(struct fragment_merge *m, const struct soft_z *s)
             const __m256 alpha = _mm256_loadu_ps(m->alpha + 8 * b), vote = _mm256_loadu_ps(m->vote + 8 * b);
             const __m256 more = _mm256_max_ps(zero, _mm256_sub_ps(alpha, _mm256_blendv_ps(front, leaves, farther)));
             const __m256 part = _mm256_blendv_ps(_mm256_set1_ps(AGAINST_IN_FRONT), one, farther);
-            const __m256 separation = separation8(m, &votes, i, b, dz);
+            const __m256 apart = m->apart[i][b] = separation8(m, &votes, i, b, dz);
             m->separation[i][b] = separation8(m, s, i, b, dz);
-            pro = _mm256_add_ps(pro, _mm256_mul_ps(_mm256_mul_ps(vote, alpha), _mm256_sub_ps(one, separation)));
-            contra = _mm256_add_ps(contra, _mm256_mul_ps(_mm256_mul_ps(part, vote), _mm256_mul_ps(more, separation)));
+            pro = _mm256_add_ps(pro, _mm256_mul_ps(_mm256_mul_ps(vote, alpha), _mm256_sub_ps(one, apart)));
+            contra = _mm256_add_ps(contra, _mm256_mul_ps(_mm256_mul_ps(part, vote), _mm256_mul_ps(more, apart)));
         }
         const float sum = lanes_sum(pro), part = sum / (sum + lanes_sum(contra) + 1e-30f);
         m->support[i] = part * part;
@@ -170,8 +177,7 @@ static float merged_depth(const struct fragment_merge *m)
     for (int i = 0; i < m->count; i++) {
         __m256 sum = _mm256_setzero_ps(), z_sum = sum;
         for (int b = 0; b < m->blocks; b++) {
-            const __m256 apart = _mm256_mul_ps(m->separation[i][b], _mm256_set1_ps(1 / ONE_DEPTH));
-            const __m256 w = _mm256_max_ps(_mm256_setzero_ps(), _mm256_sub_ps(_mm256_set1_ps(1), apart));
+            const __m256 w = _mm256_sub_ps(_mm256_set1_ps(1), m->apart[i][b]);
             const __m256 part = _mm256_mul_ps(_mm256_loadu_ps(m->weight + 8 * b), w);
             sum = _mm256_add_ps(sum, part);
             z_sum = _mm256_add_ps(z_sum, _mm256_mul_ps(part, _mm256_loadu_ps(m->z + 8 * b)));
@@ -186,7 +192,8 @@ static float merged_depth(const struct fragment_merge *m)
 
 void soft_z_merge(const struct soft_z *s, const struct soft_z_fragment *f, int count, float rgba[4], float *z)
 {
-    const bool agree = one_surface(s, f, count);
+    const struct soft_z votes = vote_width(s);
+    const bool agree = one_surface(&votes, f, count);
     float sum = 0, own_sum = 0, z_sum = 0, z_weight = 0;
     __m128 color = _mm_setzero_ps(), own = color; /* own: of the fragment's view */
     struct fragment_merge m;

@@ -284,6 +284,23 @@ static void a_single_wrong_near_view_is_outvoted(void **state)
     }
 }
 
+static void silhouettes_at_different_places_are_averaged(void **state)
+{
+    (void)state;
+    /* dz 0.05 is 16 uncertainties: less than a tenth of the z-buffer's width, and beyond that of votes. Support of the
+     * near surface: 2 for, 2 against; of the far one: 2 for, 0.3 times 2 against. */
+    const struct soft_z soft = {SOFT_Z_WIDTHS, 10};
+    const double near = pow(0.5, 2), far = pow(1 / 1.3, 2), part = near / (near + far);
+    struct soft_z_fragment f[4];
+    float rgba[4], z;
+
+    for (int i = 0; i < 4; i++) f[i] = i % 2 ? fragment(0, 0, 1, 1, 5) : fragment(1, 0, 0, 1, 4);
+    soft_z_merge(&soft, f, 4, rgba, &z);
+    assert_near(rgba[0], part * part, 1e-5);
+    assert_near(rgba[2], (1 - part) * (1 - part), 1e-5);
+    assert_near(z, 5, 1e-5); /* of the one that counts more, not a mean */
+}
+
 /* A silhouette through the pixel, in `views` views: `part` of it red and near, the rest blue and far. */
 static void rim(struct soft_z_fragment *f, int views, float part)
 {
@@ -373,6 +390,7 @@ int main(void)
         cmocka_unit_test(a_single_fragment_is_unchanged),
         cmocka_unit_test(agreeing_views_are_averaged_as_square_roots),
         cmocka_unit_test(a_single_wrong_near_view_is_outvoted),
+        cmocka_unit_test(silhouettes_at_different_places_are_averaged),
         cmocka_unit_test(a_silhouette_that_views_agree_on_keeps_its_coverage),
         cmocka_unit_test(tiny_alphas_give_a_finite_opaque_pixel),
         cmocka_unit_test(the_order_of_views_does_not_matter),
