@@ -8,7 +8,7 @@
 #include "common/layers/layer_scene.h"
 #include "common/layers/rendered_frame.h"
 
-#define SOFT_Z_WIDTHS 96 /* default width of the soft z, in depth uncertainties */
+#define SOFT_Z_WIDTHS 32 /* default width of the soft z */
 #define SOFT_Z_FILL_WIDTHS \
     3 /* width of the reversed soft z of hole filling: narrow, so that only the far side counts */
 

@@ -19,13 +19,13 @@
  * This is the formula above wherever every p is 1.
  *
  * soft_z_merge (offline renderer, all fragments of all views in one buffer [Colburn 2014, 3.6.2]). Beyond the thesis,
- * views vote, with a width of VOTE_WIDTHS: the z-buffer is wide, so that silhouettes at slightly different places are
- * averaged, but surfaces apart do not vote for each other. The support of a fragment is (for / (for + against))^2.
- * For: the votes of all fragments at its depth, its own included. Against: fragments behind it, by the alpha that they
- * have in excess of what it leaves free (their views look through it); and, by AGAINST_IN_FRONT, fragments in front of
- * it, by the alpha that they have in excess of what its own view has there. A fragment hides others and counts by its
- * support. Of several fragments in front, only the one that hides most counts, so that at a silhouette the share that
- * the front leaves free stays with what is behind.
+ * views vote, with a width of VOTE_WIDTHS. The support of a fragment is (for / (for + against))^2. For: the votes of all
+ * fragments at its depth, its own included. Against: fragments behind it, by the alpha that they have in excess of what
+ * it leaves free (their views look through it); and, by AGAINST_IN_FRONT, fragments in front of it, by the alpha that
+ * they have in excess of what its own view has there. A fragment hides others and counts by its support. Of several
+ * fragments in front, only the one that hides most counts, so that at a silhouette the share that the front leaves free
+ * stays with what is behind. A fragment that has only a part of the pixel lies at a silhouette, whose place is unsure by
+ * about a pixel in each view: it neither hides nor is hidden, so that silhouettes of several views are averaged.
  *
  * The fragments of one view are averaged linearly: they share the pixel's area. Colours of different views are averaged
  * as square roots: where views disagree, this mean is close to the perceived one, and a mean of radiances is too
@@ -53,9 +53,10 @@ float soft_z_rho(const struct soft_z *s, float z_a, float sigma_a, float z_b, fl
     return 2 * s->widths * sqrtf(a * a + b * b);
 }
 
-#define VOTE_WIDTHS      8     /* depth uncertainties, but never more than the soft z-buffer's width */
-#define AGAINST_IN_FRONT 0.3f  /* weight of the votes of fragments in front */
-#define FULL_SUPPORT     0.25f /* a fragment of this support hides completely */
+#define VOTE_WIDTHS      12      /* depth uncertainties, but never more than the soft z-buffer's width */
+#define AGAINST_IN_FRONT 0.3f    /* weight of the votes of fragments in front */
+#define FULL_SUPPORT     0.25f   /* a fragment of this support hides completely */
+#define WHOLE            0.9999f /* alpha from which on a fragment has the whole pixel */
 #define BLOCKS           (SOFT_Z_MAX_FRAGMENTS / 8)
 
 /* A pixel's fragments, in vectors of eight; the padding has vote, alpha and presence 0. */
@@ -64,8 +65,9 @@ struct fragment_merge {
     float square[SOFT_Z_MAX_FRAGMENTS];                         /* of the order's uncertainty */
     float vote[SOFT_Z_MAX_FRAGMENTS], alpha[SOFT_Z_MAX_FRAGMENTS], front_alpha[SOFT_Z_MAX_FRAGMENTS];
     float support[SOFT_Z_MAX_FRAGMENTS], presence[SOFT_Z_MAX_FRAGMENTS], weight[SOFT_Z_MAX_FRAGMENTS];
-    __m256 separation[SOFT_Z_MAX_FRAGMENTS][BLOCKS]; /* 1 - w of each pair */
-    __m256 apart[SOFT_Z_MAX_FRAGMENTS][BLOCKS];      /* the same by the width of votes */
+    float whole[SOFT_Z_MAX_FRAGMENTS];               /* 1: it has the whole pixel; 0: a part */
+    __m256 separation[SOFT_Z_MAX_FRAGMENTS][BLOCKS]; /* 1 - w of each pair of whole ones; 0 of others */
+    __m256 apart[SOFT_Z_MAX_FRAGMENTS][BLOCKS];      /* 1 - w of each pair by the width of votes */
     int count, blocks;
 };
 
@@ -129,7 +131,8 @@ static void find_support(struct fragment_merge *m, const struct soft_z *s)
             const __m256 more = _mm256_max_ps(zero, _mm256_sub_ps(alpha, _mm256_blendv_ps(front, leaves, farther)));
             const __m256 part = _mm256_blendv_ps(_mm256_set1_ps(AGAINST_IN_FRONT), one, farther);
             const __m256 apart = m->apart[i][b] = separation8(m, &votes, i, b, dz);
-            m->separation[i][b] = separation8(m, s, i, b, dz);
+            m->separation[i][b] =
+                m->whole[i] > 0 ? _mm256_mul_ps(_mm256_loadu_ps(m->whole + 8 * b), separation8(m, s, i, b, dz)) : zero;
             pro = _mm256_add_ps(pro, _mm256_mul_ps(_mm256_mul_ps(vote, alpha), _mm256_sub_ps(one, apart)));
             contra = _mm256_add_ps(contra, _mm256_mul_ps(_mm256_mul_ps(part, vote), _mm256_mul_ps(more, apart)));
         }
@@ -162,6 +165,7 @@ static void merge_prepare(struct fragment_merge *m, const struct soft_z *s, cons
         m->vote[i] = is ? f[i].vote : 0;
         m->alpha[i] = is ? f[i].rgba[3] : 0;
         m->front_alpha[i] = is ? f[i].front_alpha : 0;
+        m->whole[i] = is && f[i].rgba[3] >= WHOLE;
         m->presence[i] = m->weight[i] = 0;
     }
     find_support(m, s);

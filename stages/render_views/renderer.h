@@ -20,7 +20,7 @@
 #define RENDER_PARAMS(X)                                                                                     \
     X(renderer, choice, "offline", 0, 0, "offline|fast",                                                     \
       "rendering method: offline has the best quality, fast is for thousands of pictures")                   \
-    X(soft_z, double, SOFT_Z_WIDTHS, 0, 200, "",                                                             \
+    X(soft_z, double, SOFT_Z_WIDTHS, 0, 100, "",                                                             \
       "width of the soft z-buffer, in depth uncertainties; 0: the scene's depth range")                      \
     X(views, choice, "mesh", 0, 0, "mesh|nearest",                                                           \
       "views rendered: the three that the view mesh selects for each ray, blended, or only the nearest one") \

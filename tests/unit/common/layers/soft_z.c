@@ -284,13 +284,18 @@ static void a_single_wrong_near_view_is_outvoted(void **state)
     }
 }
 
-static void silhouettes_at_different_places_are_averaged(void **state)
+static void votes_are_narrower_than_the_z_buffer(void **state)
 {
     (void)state;
-    /* dz 0.05 is 16 uncertainties: less than a tenth of the z-buffer's width, and beyond that of votes. Support of the
-     * near surface: 2 for, 2 against; of the far one: 2 for, 0.3 times 2 against. */
     const struct soft_z soft = {SOFT_Z_WIDTHS, 10};
-    const double near = pow(0.5, 2), far = pow(1 / 1.3, 2), part = near / (near + far);
+    const double u = hypot(0.01 / 4, 0.01 / 5), dz = 1.0 / 4 - 1.0 / 5, wide = 2 * SOFT_Z_WIDTHS * u,
+                 narrow_rho = 24 * u;
+    const double w = (double)soft_z_weight((float)dz, (float)(0.1 * wide), (float)wide);
+    const double agree = (double)soft_z_weight((float)dz, (float)(0.1 * narrow_rho), (float)narrow_rho);
+    assert_true(w > 0.9 && agree < 0.3);
+    /* two views each: against the near surface what is behind it, against the far one 0.3 of what is in front */
+    const double near = pow((1 + agree) / 2, 2), far = pow((1 + agree) / (1 + agree + 0.3 * (1 - agree)), 2);
+    const double part = near / (near + w * far);
     struct soft_z_fragment f[4];
     float rgba[4], z;
 
@@ -298,7 +303,25 @@ static void silhouettes_at_different_places_are_averaged(void **state)
     soft_z_merge(&soft, f, 4, rgba, &z);
     assert_near(rgba[0], part * part, 1e-5);
     assert_near(rgba[2], (1 - part) * (1 - part), 1e-5);
-    assert_near(z, 5, 1e-5); /* of the one that counts more, not a mean */
+    assert_near(z, (part * agree * 4 + (1 - part) * 5) / (part * agree + 1 - part),
+                1e-4); /* of the far one, it counts more */
+}
+
+static void what_covers_a_part_of_the_pixel_does_not_hide(void **state)
+{
+    (void)state;
+    /* One view has a silhouette in the pixel, red in front of blue; the other has its own a pixel further, all blue. Red
+     * has 0.6 for, and against it the 0.6 that it leaves too little. Blue of the second view has 1.4 for, 0.3 times 0.6
+     * against. */
+    const double red = 0.6 * pow(0.5, 2), blue = 0.4, other = pow(1.4 / 1.58, 2), own = red + blue, sum = own + other;
+    struct soft_z_fragment f[3] = {fragment(1, 0, 0, 0.6f, 3), fragment(0, 0, 1, 0.4f, 6), fragment(0, 0, 1, 1, 6)};
+    float rgba[4], z;
+
+    f[1].front_alpha = 0.6f;
+    soft_z_merge(&narrow, f, 3, rgba, &z);
+    assert_near(rgba[0], pow(own * sqrt(red / own) / sum, 2), 1e-5);
+    assert_near(rgba[2], pow((own * sqrt(blue / own) + other) / sum, 2), 1e-5);
+    assert_near(z, 6, 1e-5);
 }
 
 /* A silhouette through the pixel, in `views` views: `part` of it red and near, the rest blue and far. */
@@ -390,7 +413,8 @@ int main(void)
         cmocka_unit_test(a_single_fragment_is_unchanged),
         cmocka_unit_test(agreeing_views_are_averaged_as_square_roots),
         cmocka_unit_test(a_single_wrong_near_view_is_outvoted),
-        cmocka_unit_test(silhouettes_at_different_places_are_averaged),
+        cmocka_unit_test(votes_are_narrower_than_the_z_buffer),
+        cmocka_unit_test(what_covers_a_part_of_the_pixel_does_not_hide),
         cmocka_unit_test(a_silhouette_that_views_agree_on_keeps_its_coverage),
         cmocka_unit_test(tiny_alphas_give_a_finite_opaque_pixel),
         cmocka_unit_test(the_order_of_views_does_not_matter),
