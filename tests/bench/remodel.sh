@@ -14,6 +14,7 @@ BENCH_HELDOUT='' . "${BENCHES:-tests/bench}/vdta.sh"
 title="Remodelled rooms and new views: PSNR against time"
 note="Upper left is better. Edits: what they reveal, after one gain for each face."
 baseline="render_views"
+label= # the key has them; beside the points they overlap
 x_label="Core-seconds per megapixel"
 timed="core_s_per_mp"
 edit_samples=${BENCH_EDIT_SAMPLES:-64}
