@@ -22,10 +22,10 @@
  * views vote, with a width of VOTE_WIDTHS. The support of a fragment is (for / (for + against))^2. For: the votes of all
  * fragments at its depth, its own included. Against: fragments behind it, by the alpha that they have in excess of what
  * it leaves free (their views look through it); and, by AGAINST_IN_FRONT, fragments in front of it, by the alpha that
- * they have in excess of what its own view has there. A fragment hides others and counts by its support. Of several
- * fragments in front, only the one that hides most counts, so that at a silhouette the share that the front leaves free
- * stays with what is behind. A fragment that has only a part of the pixel lies at a silhouette, whose place is unsure by
- * about a pixel in each view: it neither hides nor is hidden, so that silhouettes of several views are averaged.
+ * they have in excess of what its own view has there. A fragment hides others and counts by its support; of several in
+ * front of one, the one that hides most counts. A fragment that has only a part of the pixel lies at a silhouette, whose
+ * place is unsure by about a pixel in each view: it neither hides nor is hidden, so that silhouettes of several views
+ * are averaged.
  *
  * The fragments of one view are averaged linearly: they share the pixel's area. Colours of different views are averaged
  * as square roots: where views disagree, this mean is close to the perceived one, and a mean of radiances is too
@@ -65,8 +65,7 @@ struct fragment_merge {
     float square[SOFT_Z_MAX_FRAGMENTS];                         /* of the order's uncertainty */
     float vote[SOFT_Z_MAX_FRAGMENTS], alpha[SOFT_Z_MAX_FRAGMENTS], front_alpha[SOFT_Z_MAX_FRAGMENTS];
     float support[SOFT_Z_MAX_FRAGMENTS], presence[SOFT_Z_MAX_FRAGMENTS], weight[SOFT_Z_MAX_FRAGMENTS];
-    float whole[SOFT_Z_MAX_FRAGMENTS];               /* 1: it has the whole pixel; 0: a part */
-    __m256 separation[SOFT_Z_MAX_FRAGMENTS][BLOCKS]; /* 1 - w of each pair of whole ones; 0 of others */
+    __m256 separation[SOFT_Z_MAX_FRAGMENTS][BLOCKS]; /* 1 - w of whole fragments and others */
     __m256 apart[SOFT_Z_MAX_FRAGMENTS][BLOCKS];      /* 1 - w of each pair by the width of votes */
     int count, blocks;
 };
@@ -86,6 +85,7 @@ static float order_uncertainty(const struct soft_z *s, const struct soft_z_fragm
     return s->widths > 0 ? f->sigma / f->z : f->sigma * f->z;
 }
 
+/* The z-buffer's width, or that of votes if it is narrower. */
 static struct soft_z vote_width(const struct soft_z *s)
 {
     return (struct soft_z){s->widths < VOTE_WIDTHS ? s->widths : VOTE_WIDTHS, s->range};
@@ -131,8 +131,7 @@ static void find_support(struct fragment_merge *m, const struct soft_z *s)
             const __m256 more = _mm256_max_ps(zero, _mm256_sub_ps(alpha, _mm256_blendv_ps(front, leaves, farther)));
             const __m256 part = _mm256_blendv_ps(_mm256_set1_ps(AGAINST_IN_FRONT), one, farther);
             const __m256 apart = m->apart[i][b] = separation8(m, &votes, i, b, dz);
-            m->separation[i][b] =
-                m->whole[i] > 0 ? _mm256_mul_ps(_mm256_loadu_ps(m->whole + 8 * b), separation8(m, s, i, b, dz)) : zero;
+            if (m->alpha[i] >= WHOLE) m->separation[i][b] = separation8(m, s, i, b, dz);
             pro = _mm256_add_ps(pro, _mm256_mul_ps(_mm256_mul_ps(vote, alpha), _mm256_sub_ps(one, apart)));
             contra = _mm256_add_ps(contra, _mm256_mul_ps(_mm256_mul_ps(part, vote), _mm256_mul_ps(more, apart)));
         }
@@ -144,6 +143,7 @@ static void find_support(struct fragment_merge *m, const struct soft_z *s)
 /* The part of fragment i that fragments in front of it hide. */
 static float hidden_part(const struct fragment_merge *m, int i)
 {
+    if (!(m->alpha[i] >= WHOLE)) return 0;
     __m256 max = _mm256_setzero_ps();
     for (int b = 0; b < m->blocks; b++) {
         const __m256 in_front = _mm256_cmp_ps(_mm256_loadu_ps(m->z + 8 * b), _mm256_set1_ps(m->z[i]), _CMP_LT_OQ);
@@ -165,13 +165,13 @@ static void merge_prepare(struct fragment_merge *m, const struct soft_z *s, cons
         m->vote[i] = is ? f[i].vote : 0;
         m->alpha[i] = is ? f[i].rgba[3] : 0;
         m->front_alpha[i] = is ? f[i].front_alpha : 0;
-        m->whole[i] = is && f[i].rgba[3] >= WHOLE;
         m->presence[i] = m->weight[i] = 0;
     }
     find_support(m, s);
     for (int i = 0; i < count; i++)
-        m->presence[i] = clamp_one(f[i].blend * m->support[i] / SOFT_Z_FULL_BLEND) *
-                         clamp_one(m->support[i] / FULL_SUPPORT) * (f[i].front_alpha + f[i].rgba[3]);
+        if (m->alpha[i] >= WHOLE)
+            m->presence[i] =
+                clamp_one(f[i].blend * m->support[i] / SOFT_Z_FULL_BLEND) * clamp_one(m->support[i] / FULL_SUPPORT);
 }
 
 /* Mean depth of the surface of largest weight, never across a depth jump. */

@@ -288,10 +288,10 @@ static void votes_are_narrower_than_the_z_buffer(void **state)
 {
     (void)state;
     const struct soft_z soft = {SOFT_Z_WIDTHS, 10};
-    const double u = hypot(0.01 / 4, 0.01 / 5), dz = 1.0 / 4 - 1.0 / 5, wide = 2 * SOFT_Z_WIDTHS * u,
-                 narrow_rho = 24 * u;
-    const double w = (double)soft_z_weight((float)dz, (float)(0.1 * wide), (float)wide);
-    const double agree = (double)soft_z_weight((float)dz, (float)(0.1 * narrow_rho), (float)narrow_rho);
+    const double u = hypot(0.01 / 4, 0.01 / 5), dz = 1.0 / 4 - 1.0 / 5;
+    const double rho = 2 * SOFT_Z_WIDTHS * u, vote_rho = 2 * 12 * u;
+    const double w = (double)soft_z_weight((float)dz, (float)(0.1 * rho), (float)rho);
+    const double agree = (double)soft_z_weight((float)dz, (float)(0.1 * vote_rho), (float)vote_rho);
     assert_true(w > 0.9 && agree < 0.3);
     /* two views each: against the near surface what is behind it, against the far one 0.3 of what is in front */
     const double near = pow((1 + agree) / 2, 2), far = pow((1 + agree) / (1 + agree + 0.3 * (1 - agree)), 2);
