@@ -1,10 +1,10 @@
 # remodel: from a folder of photographs to a 3D pan & scan video, or to a solid model of a room. `make help` lists the rest.
 #
 # This file has the scene and how to run. common/make/ has the other parts: stages.mk puts the stages in order, top.mk is what
-# a person calls, build.mk makes the programs under out/build/FLAVOR, graph.mk is the graph of products under out/SCENE.
-# stages/NAME/stage.mk holds what all of them must know about a stage (docs/adding-a-stage.md). The top calls this file again
-# with PHASE=build, then with PHASE=graph once for each step that needs a list only a product can give: which photos, which
-# views, which frames.
+# a person calls, build.mk makes the programs under out/build/FLAVOR, graph.mk executes the graph of products of a scene.
+# stages/NAME/stage.mk holds what all of them must know about a stage, stages/NAME/rules.c its rules (docs/adding-a-stage.md).
+# The top calls this file again with PHASE=build, then with PHASE=graph for each step of a run, before which print_graph
+# prints the graph anew: which photos, views and frames there are is known only when earlier steps have listed them.
 
 SHELL := /bin/bash
 .SHELLFLAGS := -o pipefail -ec
@@ -12,6 +12,11 @@ SHELL := /bin/bash
 MAKEFLAGS += --no-builtin-rules
 .DEFAULT_GOAL := all
 .PHONY: FORCE
+hide = $(if $(V),,@)
+
+ifeq ($(PHASE),graph)
+include common/make/graph.mk
+else
 
 ## SCENE=NAME: the scene to work on, scenes/NAME/
 ## PHOTOS=DIR: folder of photos (JPEG, PNG, TIFF, EXR, raw); with a new SCENE it is written to scenes/SCENE/scene.mk
@@ -41,7 +46,6 @@ B := out/build/$(FLAVOR)
 SUB := $(MAKE) --no-print-directory
 # without a -j of the caller's, compiling uses all cores
 BUILD = $(SUB) PHASE=build $(if $(findstring -j,$(MAKEFLAGS)),,-j$(CORES))
-hide = $(if $(V),,@)
 
 ifneq ($(SCENE),)
   ifeq ($(shell [[ '$(subst ','\'',$(SCENE))' =~ ^[A-Za-z0-9_][A-Za-z0-9_-]*$$ ]] && echo good),)
@@ -57,15 +61,12 @@ ifneq ($(SCENE),)
 endif
 include common/make/stages.mk
 
-# what quality changes is in O; what all qualities share, such as the photos' records and SfM, is in S
+# what quality and a hold-out change is in O; what all runs of a scene share, such as the photos' records and SfM, is in S
 S := out/$(SCENE)
-O := $(S)$(if $(filter-out default,$(QUALITY)),+$(QUALITY))$(HELDOUT)
+O := $(S)$(if $(filter-out default,$(QUALITY)),+$(QUALITY))$(if $(HOLDOUT),+holdout$(HOLDOUT),$(if $(HOLDOUT_VIEWS),+holdout))
 
-ifeq ($(PHASE),graph)
-  include common/make/graph.mk
-else
-  ifeq ($(PHASE),)
-    include common/make/top.mk
-  endif
-  include common/make/build.mk
+ifeq ($(PHASE),)
+  include common/make/top.mk
+endif
+include common/make/build.mk
 endif

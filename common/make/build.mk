@@ -32,15 +32,18 @@ LDLIBS := -lOpenEXRCore $(shell pkg-config --libs $(PKGS) 2>/dev/null) -lm
 MORE_LIBS := $(sort $(foreach s,$(STAGES),$(LIBS.$(s)))) -lembree3 -lceres -lglog -lcholmod -lstdc++
 
 objs = $(patsubst %.c,$(B)/obj/%.o,$(patsubst %.cc,$(B)/obj/%.o,$(wildcard $(1))))
-COMMON_OBJS := $(call objs,common/*/*.c common/*/*.cc)
+# print_graph is a program of its own: it calls the rules of all stages
+GRAPH_MAIN := $(B)/obj/common/graph/print_graph.o
+COMMON_OBJS := $(filter-out $(GRAPH_MAIN),$(call objs,common/*/*.c common/*/*.cc))
 BINS := $(STAGES:%=$(B)/bin/%)
+STAGE_LIBS := $(STAGES:%=$(B)/lib/%.a)
 UNIT_TESTS := $(patsubst %.c,$(B)/%,$(wildcard tests/unit/*/*.c tests/unit/common/*/*.c))
 BENCHES := $(patsubst %.c,$(B)/%,$(wildcard tests/bench/*.c))
 FUZZ_TESTS := $(patsubst %.c,$(B)/%,$(wildcard tests/fuzz/fuzz_*.c))
 TOOLS := $(B)/tests/pipeline/make_photos
 
 .PHONY: build tests-build bench-build
-build: $(BINS) $(STAGES:%=$(B)/code/%)
+build: $(BINS) $(B)/bin/print_graph $(STAGES:%=$(B)/code/%)
 tests-build: build $(BENCHES) $(UNIT_TESTS) $(FUZZ_TESTS) $(TOOLS)
 bench-build: build $(BENCHES)
 
@@ -58,12 +61,17 @@ $(B)/obj/%.o: %.cc $(B)/flags
 archive = $(call say,AR $@)mkdir -p $(@D); rm -f $@; ar rcsD $@ $^
 $(B)/libremodel.a: $(COMMON_OBJS)
 	$(archive)
-define stage_rules
-$(B)/lib/$(1).a: $(filter-out $(B)/obj/stages/$(1)/$(1).o,$(call objs,stages/$(1)/*.c stages/$(1)/*.cc))
-	$$(archive)
-$(B)/bin/$(1): $(B)/obj/stages/$(1)/$(1).o $(B)/lib/$(1).a
-endef
-$(foreach s,$(STAGES),$(eval $(call stage_rules,$(s))))
+# the objects of a stage without its main
+stage_objs = $(filter-out $(B)/obj/stages/$(1)/$(1).o,$(call objs,stages/$(1)/*.c stages/$(1)/*.cc))
+.SECONDEXPANSION:
+$(STAGE_LIBS): $(B)/lib/%.a: $$(call stage_objs,$$*)
+	$(archive)
+$(BINS): $(B)/bin/%: $(B)/obj/stages/$$*/$$*.o $(B)/lib/%.a
+# the stages that have rules, in order, for print_graph
+$(B)/rules.def: FORCE
+	+@mkdir -p $(@D); t=$@.$$$$.tmp; printf 'STAGE(%s)\n' $(foreach s,$(STAGES),$(if $(wildcard stages/$(s)/rules.c),$(s))) >$$t; cmp -s $$t $@ && rm $$t || mv $$t $@
+$(GRAPH_MAIN): CFLAGS += -I$(B)
+$(GRAPH_MAIN): $(B)/rules.def
 $(B)/lib/bench.a: $(call objs,tests/bench/*.cc)
 	$(archive)
 
@@ -75,7 +83,8 @@ $(B)/code/%: $(B)/bin/%
 # archives may need each other; libraries that nothing needs are left out
 link = $(call say,LD $@)mkdir -p $(@D); $(CC) $(CFLAGS) -o $@ $(filter %.o,$^) -Wl,--start-group $(filter %.a,$^) -Wl,--end-group \
   -Wl,--as-needed $(LDLIBS) $(MORE_LIBS) $(1)
-$(BINS): $(B)/libremodel.a
+$(B)/bin/print_graph: $(GRAPH_MAIN) $(STAGE_LIBS)
+$(BINS) $(B)/bin/print_graph: $(B)/libremodel.a
 	$(call link)
 TESTS := $(UNIT_TESTS) $(FUZZ_TESTS) $(BENCHES) $(TOOLS)
 $(TESTS): $(B)/tests/%: $(B)/obj/tests/%.o $(B)/libremodel.a
@@ -87,9 +96,9 @@ $(BENCHES): private MORE_LIBS += -lopencv_calib3d -lopencv_imgproc -lopencv_core
 ifneq ($(filter tests-build bench-build $(B)/tests/%,$(MAKECMDGOALS)),)
 USES := $(sort $(shell grep -roE --include='*.[ch]' '^\#include "stages/[a-z_0-9]+/' tests | sed -E 's|(.*):.*/(.*)/|\1:\2|'))
 uses = $(patsubst $(1).c:%,$(B)/lib/%.a,$(filter $(1).c:%,$(USES)))
-$(foreach t,$(TESTS),$(eval $(t): $(call uses,$(t:$(B)/%=%))))
-$(foreach s,$(STAGES),$(eval $(filter $(B)/tests/unit/$(s)/%,$(UNIT_TESTS)): $(B)/lib/$(s).a \
-  $(sort $(patsubst %,$(B)/lib/%.a,$(foreach u,$(filter tests/unit/$(s)/%,$(USES)),$(lastword $(subst :, ,$(u))))))))
+stage_of_test = $(filter $(STAGES),$(word 3,$(subst /, ,$(1))))
+libs_of_test = $(if $(1),$(patsubst %,$(B)/lib/%.a,$(sort $(1) $(foreach u,$(filter tests/unit/$(1)/%,$(USES)),$(lastword $(subst :, ,$(u)))))))
+$(TESTS): $(B)/%: $$(call uses,$$*) $$(call libs_of_test,$$(call stage_of_test,$$*))
 endif
-.SECONDARY: $(call objs,tests/*/*.c tests/*/*/*.c tests/*/*/*/*.c stages/*/*.c) $(STAGES:%=$(B)/lib/%.a)
+.SECONDARY: $(call objs,tests/*/*.c tests/*/*/*.c tests/*/*/*/*.c stages/*/*.c) $(STAGE_LIBS)
 -include $(shell find $(B)/obj -name '*.d' 2>/dev/null)

@@ -1,15 +1,16 @@
 # top.mk - what a person calls.
 
-# Values with $, # and quotes reach recipes as shell variables; Make must not expand what was typed on its command line
+# Values with $, # and quotes reach a run as variables of its environment; Make must not expand what was typed on its
+# command line
 literal = $(if $(filter command environment,$(firstword $(origin $(1)))),$(value $(1)),$($(1)))
+quoted = '$(subst ','\'',$(1))'
 PASSED := $(foreach s,$(STAGES),$(VARIABLES.$(s)))
-$(foreach v,PRODUCTS $(PASSED),$(eval export REMODEL_$(v) := $$(call literal,$(v))))
-export REMODEL_PASSED := $(PASSED)
-export REMODEL_STAGES := $(STAGES)
+SETTINGS := PRODUCTS QUALITY TO FRAMES_PER_JOB $(foreach s,$(STAGES),$(SETTINGS.$(s)))
+ENVIRONMENT = $(foreach v,$(PASSED) $(SETTINGS),REMODEL_$(v)=$(call quoted,$(call literal,$(v)))) REMODEL_PASSED='$(PASSED)' \
+  REMODEL_STAGES='$(STAGES)' REMODEL_SHARED_STAGES='$(foreach s,$(STAGES),$(if $(SHARED.$(s)),$(s)))'
 
 export VIEWS_PER_JOB SLURM_ARGS
 ## TO=GOAL: the goal that `make plan` counts up to (what plain make makes)
-export REMODEL_TO = $(call literal,TO)
 dry = $(findstring n,$(filter-out --%,$(firstword -$(MAKEFLAGS))))
 # several goals of a scene follow each other: a run locks it, and takes all cores by itself
 .NOTPARALLEL:
@@ -26,7 +27,7 @@ $(GOALS) why plan:
 else
 all $(GOALS) why plan: deps
 	+@$(BUILD) build
-	+@common/run/run_scene.sh '$(SCENE)' '$(S)' '$(O)' '$@' '$(dry)' '$(JOBS)' '$(CORES)' '$(B)/bin' $(SUB)
+	+@$(ENVIRONMENT) common/run/run_scene.sh '$(SCENE)' '$(S)' '$(O)' '$@' '$(dry)' '$(JOBS)' '$(CORES)' '$(B)/bin' $(SUB)
 endif
 
 deps:

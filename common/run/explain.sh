@@ -33,8 +33,4 @@ why) # standard input: make -n --debug=b
         [ ! -e "$s.old" ] || diff "$s.old" "$s" | sed -nE "s|^< (.*)|$s: was \1|p; s|^> (.*)|$s: is \1|p" || true
     done
     ;;
-products)
-    for v in "$1"/parallax/*/video.mp4 "$1"/parallax/*/pan_scan/video.mp4; do [ ! -e "$v" ] || echo "video  $v"; done
-    [ ! -e "$1/index.html" ] || echo "page   $1/index.html"
-    ;;
 esac

@@ -3,6 +3,7 @@
 # It counts the commands that the graph would run. What is not yet known is said: pieces of work that only a product will
 # list, and stages that have no estimate ("?").
 
+matches_word() { case " $2 " in *" $1 "*) ;; *) return 1 ;; esac; } # WORD LIST
 # commands_to_come: one a line, of all steps up to the goal
 commands_to_come() { graph -n -s ${choose:+choice} "$goal" | sed -e ':a' -e '/\\$/{N;s/\\\n//;ba' -e '}' | grep -a 'run_stage.sh [a-z]* ' || true; }
 
@@ -13,8 +14,8 @@ plan_row()
     pieces=$(wc -l <"$work/of.$1")
     estimate=$(work_of "$1" <"$work/of.$1")
     if grep -q 'run_stage.sh quiet ' "$work/of.$1"; then
-        # a chunk of frames is a task of its own, with all cores
-        case $1 in render_views | pan_scan) lines=1 cpus=$cores ;; esac
+        # work that takes all cores is a task a piece
+        if matches_word "$1" "$wide_stages"; then lines=1 cpus=$cores; fi
         # shellcheck disable=SC2086 # five numbers, or none
         size=$(common/run/job_size.sh "$cpus" "$lines" $estimate)
         read -r lines mib _ <<<"$size"
@@ -46,9 +47,9 @@ print_plan()
             if (unknown != "") print "?: these have no estimate: " unknown
         }'
     [ -e "$O/views/views.mk" ] || echo "not known before structure from motion has run: which views there are, and all that is made of them"
-    if grep -q ' plan_path ' "$work/commands"; then echo "not known before plan_path has run: how many frames the films have"; fi
-    if [ -n "$choose" ]; then echo "not known before the subjects are found: which films EFFECT=$choose makes"; fi
+    hooks unknown
 }
 case $goal in all) goal=report ;; esac
+wide_stages=$(print_graph steps "$goal" | awk '$2 == "wide" { print $1 }' | tr '\n' ' ')
 print_plan
 exit 0

@@ -5,24 +5,33 @@
 # list that only a product can give. Jobs times threads never exceed CORES: each step has as many jobs as it has work,
 # and the threads that are left.
 #
-# Which steps a goal needs, in which order, comes from the stages (common/make/stages.mk). A stage may say more in
-# stages/STAGE/run.sh, which is sourced here and defines some of these functions:
+# Which steps a goal needs, in which order, comes from the rules of the stages (stages/STAGE/rules.c), which print_graph prints
+# before each call of Make. stages/STAGE/look.sh BIN S O SCENE_FOLDER, where there is one, looks at what people gave, photos
+# first, and rewrites records and stamps of what changed. A stage may say more in stages/STAGE/run.sh, which is sourced here
+# and defines some of these functions:
+#   begin_STAGE    settles variables that others read
 #   check_STAGE    refuses what is wrong before anything is made
 #   prepare_STAGE  makes what must exist before the photos can be read
 #   look_STAGE     runs after the photos have been read
-#   run_STEP       makes a step, in place of what RUN.STEP says
+#   run_STEP       makes a step, in place of what its kind says
 #   estimate_STAGE  reads the commands of per-view work, one a line, and prints what the stage's --estimate says of it
 #                  (common/base/work_estimate.h): it sets the size of the tasks on a cluster, and `make plan` adds it up
+#   dry_STAGE      before `make -n` prints: may add to `first`, which Make makes before the goal, or change `goal`
+#   unknown_STAGE  says what `make plan` cannot know yet
+#   end_STAGE      after the last step: says where the products are
 # They use the variables and functions of this script: scene, folder, S, O, goal, dry, jobs, cores, max_jobs, bin, work, the
-# films of this run in `effects`, auto or all in `choose`; usage, graph, one, farm, farm_frames, items.
+# films of this run in `effects`, auto or all in `choose`; usage, graph, one, farm, farm_frames, items, slices.
 set -euo pipefail
 scene=$1 S=$2 O=$3 goal=$4 dry=$5 jobs=$6 cores=$7 bin=$8; shift 8
 make=("$@")
 folder=scenes/$scene
 
 usage() { echo "$*" >&2; exit 2; }
-# graph ...: the graph of products, with this run's films
-graph() { "${make[@]}" PHASE=graph EFFECTS="${effects[*]}" CHOOSE="$choose" "$@"; }
+# print_graph WHAT [GOAL]: the graph of products, with this run's films (common/graph/print_graph.c)
+print_graph() { REMODEL_FILMS="${effects[*]}" REMODEL_CHOOSE=$choose "$bin/print_graph" "$1" "$folder" "$S" "$O" "$bin" "${@:2}"; }
+# execute ...: Make, on the graph as it was printed; graph ...: on that of now
+execute() { "${make[@]}" PHASE=graph O="$O" "$@"; }
+graph() { print_graph write && execute "$@"; }
 # one TARGET...: made here, with all cores
 one() { graph $quiet -j1 T="$cores" "$@"; }
 
@@ -31,13 +40,14 @@ items() { sed -nE 's|.*/run_stage.sh [a-z]+ [a-z_]+ ([^ ]+) .*|\1|p'; }
 # work_of STAGE: of commands, one a line, "ITEMS SECONDS MIB BYTES LONGEST"; nothing where the stage does not say. What makes an
 # estimate fail makes the stage fail too, which then says why
 work_of() { ! is_function "estimate_$1" || { "estimate_$1" 2>/dev/null || true; } | sed -n 's/^estimate //p'; }
+# plan_of TARGET THREADS: the pieces of work that are stale, as lines of a plan
+plan_of() { print_graph write && execute -n -s T="$2" "$1" | common/run/plan_lines.sh "$O/graph"; }
 # farm STAGE TARGET [THREADS] [LINES]: the stale products of a per-view stage, here or on the cluster, where a task has THREADS
 # cores and LINES of the plan; otherwise VIEWS_PER_JOB, or what the stage's estimate says
 farm()
 {
     local plan=$work/$1.plan count wide threads
-    : >"$plan"
-    graph -s -j1 LAUNCH=plan PLAN="$plan" T="${3:-1}" "$2"
+    plan_of "$2" "${3:-1}" >"$plan"
     count=$(wc -l <"$plan")
     [ "$count" -gt 0 ] || return 0
     if [ "$jobs" = slurm ]; then
@@ -51,7 +61,7 @@ farm()
     date +%s >"$work/$1.tally"
     export REMODEL_TALLY=$work/$1.tally REMODEL_COUNT=$count
     if [ -n "$(cut -sf3 "$plan")" ]; then farm_plan "$plan" "$2" "$wide" "$threads"
-    else graph $quiet -j"$wide" T="$threads" "$2"; fi
+    else execute $quiet -j"$wide" T="$threads" "$2"; fi
     unset REMODEL_TALLY REMODEL_COUNT
 }
 # farm_plan PLAN TARGET WIDE THREADS: runs the plan of a stage whose processes make several pieces of work, WIDE processes at a
@@ -60,8 +70,7 @@ farm_plan()
 {
     local chunks=$1.chunks lines
     if [ "$4" != 1 ]; then
-        : >"$1"
-        graph -s -j1 LAUNCH=plan PLAN="$1" T="$4" "$2"
+        plan_of "$2" "$4" >"$1"
     fi
     lines=$((($(wc -l <"$1") + 4 * $3 - 1) / (4 * $3)))
     lines=${VIEWS_PER_JOB:-$((lines < 50 ? lines : 50))}
@@ -76,8 +85,7 @@ farm_frames()
 {
     if [ "$jobs" = slurm ]; then farm "$1" "$2" "$cores" 1; else
         local plan=$work/$1.plan
-        : >"$plan"
-        graph -s -j1 LAUNCH=plan PLAN="$plan" "$2"
+        plan_of "$2" "$cores" >"$plan"
         date +%s >"$work/$1.tally"
         REMODEL_TALLY=$work/$1.tally REMODEL_COUNT=$(wc -l <"$plan") one "$2"
     fi
@@ -100,15 +108,20 @@ max_jobs=$cores
 quiet=-s
 [ -z "${V-}" ] || quiet=
 
-# the films of this run; auto and all are known once the subjects are
-read -r -a effects <<<"$(tr ' ' '\n' <<<"$REMODEL_EFFECT" | awk 'NF && !seen[$0]++' | tr '\n' ' ')"
-choose=
-case ${effects[*]} in auto | all) choose=${effects[0]} effects=() ;; esac
-# a scene that does not ask for films gets only those that are asked for by name
-case " $REMODEL_PRODUCTS $goal " in
-*" parallax "* | *" choice "* | *" path "* | *" frames "* | *" video "* | *" pan_scan "* | *" morph "*) ;;
-*) [ -n "$REMODEL_EFFECT_NAMED" ] || effects=() choose= ;;
-esac
+# slices FOLDER STAGES [CONFIG]: the effective parameters of these stages
+slices()
+{
+    local configs=(configs/default.cfg "${@:3}")
+    [ ! -e "$folder/scene.cfg" ] || configs+=("$folder/scene.cfg")
+    common/run/look.sh slices "$bin" "$1/slice" "$2" "${configs[@]}"
+}
+quality_config=("configs/$REMODEL_QUALITY.cfg")
+[ "$REMODEL_QUALITY" != default ] || quality_config=()
+
+# the films of this run, and auto or all, which are known once the subjects are
+effects=() choose=
+hooks begin
+print_graph check
 hooks check
 # a plan is a dry run whose commands are counted
 planning=
@@ -135,7 +148,10 @@ if [ "$dry" != n ] || [ -n "$planning" ]; then
 fi
 
 hooks prepare
-graph look
+slices "$O" "$REMODEL_STAGES" "${quality_config[@]}"
+# what all qualities share does not follow the parameters of one
+slices "$S" "$REMODEL_SHARED_STAGES"
+for s in $REMODEL_STAGES; do [ ! -e "stages/$s/look.sh" ] || "stages/$s/look.sh" "$bin" "$S" "$O" "$folder"; done
 hooks look
 if [ "$goal" = why ]; then
     graph -n --debug=b --no-print-directory ${choose:+choice} report | common/run/explain.sh why "$S" "$O"
@@ -146,24 +162,16 @@ fi
 if [ "$dry" = n ]; then
     [ -e "$O/views/views.mk" ] || echo "# not known before structure from motion has run: which views there are"
     first=()
-    case $goal in
-    resfm) first=(-W "$S/photos/list.txt") goal=sfm ;;
-    report | path | frames | video | pan_scan)
-        if [ -n "$choose" ]; then
-            first=(choice)
-            # two photos get their morph, unless a move is asked for by name
-            [ "${#effects[@]}" -gt 0 ] || { [ -z "$REMODEL_EFFECT_NAMED" ] && [ "$(grep -c '^[^#]' "$S/photos/list.txt")" = 2 ]; } ||
-                { echo "# not known before the subjects are found: which films EFFECT=$choose makes"; first=() goal=choice; }
-        fi ;;
-    esac
+    hooks dry
     graph T="$cores" "${first[@]}" "$goal"
     exit 0
 fi
 
-steps=$(graph -s steps GOAL="$goal")
+steps=$(print_graph steps "$goal")
 while read -r stage run step <&3; do
     if is_function "run_$step"; then "run_$step"
     elif [ "$run" = farm ]; then farm "$stage" "$step"
+    elif [ "$run" = wide ]; then farm_frames "$stage" "$step"
     else one "$step"; fi
 done 3<<<"$steps"
-case $goal in report | video | pan_scan | morph) common/run/explain.sh products "$O" ;; esac
+hooks end

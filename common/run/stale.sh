@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# stale.sh frames|views PRODUCT.exr... -- PREREQUISITE... - the products that are missing or not newer, as options of their stage:
-# frames by number, "3,4,12"; views by name, "--view a --view b".
+# stale.sh frames|views FOLDER NAME... -- PREREQUISITE... - of the products FOLDER/NAME.exr those that are missing or not newer, as
+# options of their stage: frames by number, "3,4,12"; views by name, "--view a --view b".
 set -euo pipefail
-kind=$1; shift
+kind=$1 folder=$2; shift 2
 products=()
-while [ "$1" != -- ]; do products+=("$1"); shift; done
+while [ "$1" != -- ]; do products+=("$folder/$1.exr"); shift; done
 shift
 newest=$1
 for p in "$@"; do [ ! "$p" -nt "$newest" ] || newest=$p; done

@@ -1,6 +1,20 @@
 # run.sh - checks the names of effects before hours of work, and reads what auto and all stand for. Sourced by
 # common/run/run_scene.sh, which keeps the films of the run in `effects`, and auto or all in `choose`.
 
+# the films of the run: EFFECT, or the establishing dolly. EFFECT_NAMED: those that somebody asked for by name
+begin_choose_effects()
+{
+    read -r -a effects <<<"$(tr ' ' '\n' <<<"${REMODEL_EFFECT:-establishing_dolly}" | awk 'NF && !seen[$0]++' | tr '\n' ' ')"
+    REMODEL_EFFECT_NAMED=$(tr ' ' '\n' <<<"$REMODEL_EFFECT" | awk 'NF && $0 != "auto" && $0 != "all"' | tr '\n' ' ')
+    export REMODEL_EFFECT_NAMED=${REMODEL_EFFECT_NAMED% }
+    case ${effects[*]} in auto | all) choose=${effects[0]} effects=() ;; esac
+    # a scene that does not ask for films gets only those that are asked for by name
+    case " $REMODEL_PRODUCTS $goal " in
+    *" parallax "* | *" choice "* | *" path "* | *" frames "* | *" video "* | *" pan_scan "* | *" morph "*) ;;
+    *) [ -n "$REMODEL_EFFECT_NAMED" ] || effects=() choose= ;;
+    esac
+}
+
 film_needs_a_name() { usage "$folder/keyframes/$1.txt: $1 means something else; give the film of keys another name."; }
 
 # check_effect NAME [WHY]: NAME is an effect or a film of keys
@@ -36,4 +50,15 @@ run_choice()
 {
     one choice
     read_choice
+}
+
+unknown_choose_effects() { [ -z "$choose" ] || echo "not known before the subjects are found: which films EFFECT=$choose makes"; }
+dry_choose_effects()
+{
+    case $goal in report | path | frames | video | pan_scan) ;; *) return 0 ;; esac
+    [ -n "$choose" ] || return 0
+    first=(choice)
+    # two photos get their morph, unless a move is asked for by name
+    [ "${#effects[@]}" -gt 0 ] || { [ -z "$REMODEL_EFFECT_NAMED" ] && [ "$(grep -c '^[^#]' "$S/photos/list.txt")" = 2 ]; } ||
+        { unknown_choose_effects | sed 's/^/# /'; first=(); goal=choice; }
 }

@@ -20,7 +20,7 @@ look_hdr_merge()
     esac
     [ "${REMODEL_LRI_FRAME-}" = corners ] || [ ! -e "$folder/lri.txt" ] ||
         echo "warning: $folder/lri.txt is not read; set LRI_FRAME=corners to place the images by its marks." >&2
-    graph look-lri
+    stages/hdr_merge/look_lri.sh "$bin" "$S"
 }
 
 # the response curve comes before the merges are planned

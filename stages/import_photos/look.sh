@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# look.sh BIN S SCENE_FOLDER - records of the photos, in S/photos, their sizes and their masks, in S/stamp.
+# look.sh BIN S O SCENE_FOLDER - records of the photos, in S/photos, their sizes and their masks, in S/stamp.
 set -euo pipefail
-bin=$1 folder=$2 scene=$3
+bin=$1 folder=$2 scene=$4
 . common/run/keep.sh
 
 exclude=()

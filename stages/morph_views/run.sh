@@ -3,7 +3,7 @@
 run_morph()
 {
     local id
-    graph look-morph # the photos are known only now
+    print_graph write # the photos are known only now
     [ -e "$O/stamp/morph.txt" ] ||
         usage "make morph goes from one photo to another: make morph SCENE=$scene MORPH=\"A B\", with ids that $S/photos/list.txt lists."
     for id in $(<"$O/stamp/morph.txt"); do

@@ -10,7 +10,7 @@ check_render_model()
     *) usage "CAMERAS_FRAME=$REMODEL_CAMERAS_FRAME: wanted scene, model or truth." ;;
     esac
     case $goal in remodel | tour) ;; *) return 0 ;; esac
-    [ -z "${EDIT-}" ] || [ -e "$folder/edits/$EDIT.txt" ] || usage "EDIT=$EDIT: there is no $folder/edits/$EDIT.txt."
+    [ -z "$REMODEL_EDIT" ] || [ -e "$folder/edits/$REMODEL_EDIT.txt" ] || usage "EDIT=$REMODEL_EDIT: there is no $folder/edits/$REMODEL_EDIT.txt."
 }
 
 run_remodel()

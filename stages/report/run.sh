@@ -14,3 +14,5 @@ look_report()
     common/run/keep.sh "$O/stamp/scene-page.txt" "$scene_page"
     common/run/keep.sh "$O/stamp/remodel-page.txt" "$remodel_page"
 }
+
+end_report() { case $goal in report | video | pan_scan | morph) [ ! -e "$O/index.html" ] || echo "page   $O/index.html" ;; esac; }

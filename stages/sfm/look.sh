@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# look.sh S - what SfM starts from, in S/stamp/sfm_source.txt: COLMAP, or the files of the model in SFM.
+# look.sh BIN S - what SfM starts from, in S/stamp/sfm_source.txt: COLMAP, or the files of the model in SFM.
 set -euo pipefail
-folder=$1
+folder=$2
 . common/run/keep.sh
 {
     if [ -n "${REMODEL_SFM-}" ]; then

@@ -19,3 +19,5 @@ report_changed_photos()
     [ -z "${changed// /}" ] ||
         echo "Changed since the camera poses were found: ${changed# }- the poses are kept; make resfm SCENE=$scene finds them anew."
 }
+
+dry_sfm() { [ "$goal" != resfm ] || { first=(-W "$S/photos/list.txt"); goal=sfm; }; }

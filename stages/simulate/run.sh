@@ -3,7 +3,11 @@
 check_simulate()
 {
     [ "$goal" = edited ] || return 0
-    [ -n "${EDIT-}${EDITS-}" ] || usage "make edited wants EDIT=E, where $folder/scene-E.txt describes the edited scene, EDITS=\"A B\" or EDITS=all."
+    local edit
+    [ -n "$REMODEL_EDIT$REMODEL_EDITS" ] || usage "make edited wants EDIT=E, where $folder/scene-E.txt describes the edited scene, EDITS=\"A B\" or EDITS=all."
+    for edit in $REMODEL_EDIT $REMODEL_EDITS; do
+        [ "$edit" = all ] || [ -e "$folder/scene-$edit.txt" ] || usage "EDITS: there is no $folder/scene-$edit.txt"
+    done
 }
 
 # tell_time TARGET: before pictures are made, how long each kind of them takes
@@ -19,7 +23,7 @@ prepare_simulate()
         [ -e "$S/simulated/photos.mk" ] || { echo "# nothing is known before the scene is simulated: make SCENE=$scene"; exit 0; }
         return 0
     fi
-    graph look-simulate
+    slices "$S" simulate
     one "$S/simulated/photos.mk"
     case $goal in
     edited)

@@ -9,7 +9,7 @@ photos set --views 4 >/dev/null
 small t
 m() { make -s DEPS=manual PHOTOS=set/photos SFM=set/model SCENE=t "$@" >log 2>&1 || { cat log; fail "make $*"; }; }
 
-# the stage: two files
+# the stage: three files
 add_the_stage()
 {
     mkdir stages/mean_colour
@@ -18,17 +18,26 @@ add_the_stage()
 FOLLOWS.mean_colour := rectify
 READS.mean_colour := views
 WRITES.mean_colour := mean_colour.txt
-STEPS.mean_colour := mean_colour
 HELP.mean_colour := + the mean colour of each view
-NEEDS.mean_colour := views
-
-ifdef GRAPH
-.PHONY: mean_colour
-mean_colour: $(O)/mean_colour.txt
-$(O)/mean_colour.txt: $(VIEW_CAMERAS) $(VIEW_EXR) $(call needs,mean_colour)
-	$(call stage,mean_colour,all,$(O),--views $(O)/views --out $@)
-endif
 MK
+    cat >stages/mean_colour/rules.c <<'C'
+/* rules.c - the mean colour, from all views. */
+#include "common/graph/scene_rules.h"
+
+RULES(mean_colour)
+{
+    (void)f;
+    const char *out = graph_own(g, "mean_colour.txt");
+    graph_step(g, "mean_colour", STEP_ONE, "views");
+    graph_goal(g, "mean_colour", out);
+    graph_rule(g, "all");
+    rule_makes(g, out);
+    rule_needs_cameras(g);
+    rule_needs_set(g, "views");
+    rule_option(g, "--views", FOLDER(g, CAMERAS));
+    rule_option(g, "--out", out);
+}
+C
     cat >stages/mean_colour/mean_colour.c <<'C'
 /* mean_colour.c - the mean colour of each view.
  *

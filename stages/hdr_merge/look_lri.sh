@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# look.sh BIN S - records of the lighting reference images in S/lri/photos, and in S/stamp/lri.txt what gives their cameras.
+# look_lri.sh BIN S - records of the lighting reference images in S/lri/photos, and in S/stamp/lri.txt what gives their cameras.
 set -euo pipefail
 bin=$1 folder=$2
 . common/run/keep.sh

@@ -1,0 +1,186 @@
+/* scene_rules.c - see scene_rules.h. */
+#include "common/graph/scene_rules.h"
+
+#include <string.h>
+
+#include "common/base/textfile.h"
+
+void rule_originals(struct graph *g, const char *option)
+{
+    if (*setting("SPLIT"))
+        rule_option(g, option, FOLDER(g, SPLIT_LIST));
+    else
+        rule_variable(g, option, "PHOTOS");
+}
+
+void rule_photos(struct graph *g, const struct scene_facts *f, const char *option)
+{
+    if (f->bracketed)
+        rule_option(g, option, FOLDER(g, HDR, .photo = ""));
+    else
+        rule_originals(g, option);
+}
+
+const char *photo_source(struct graph *g, const struct scene_facts *f, const char *photo)
+{
+    return f->bracketed ? PATH(g, HDR, .photo = photo) : PATH(g, PHOTO, .photo = photo);
+}
+
+void rule_masks(struct graph *g, const struct scene_facts *f)
+{
+    const char *masks = graph_text(g, "%s/masks", f->folder);
+    if (path_is_folder(masks)) rule_option(g, "--masks", masks);
+}
+
+const char *response_path(struct graph *g)
+{
+    const char *given = graph_scene_file(g, "response.txt");
+    return given ? given : PATH(g, RESPONSE);
+}
+
+void rule_needs_response(struct graph *g)
+{
+    rule_needs(g, response_path(g));
+    if (!graph_scene_file(g, "response.txt")) rule_after(g, graph_shared(g, "stamp/response.txt"));
+}
+
+const char *model_folder(struct graph *g, const struct name_list *edits, int i)
+{
+    return i < 0 ? "model" : graph_text(g, "remodel/%s", edits->names[i]);
+}
+
+bool model_is_edited(const char *model) { return strchr(model, '/') != NULL; }
+
+const char *model_name(const char *model)
+{
+    const char *slash = strrchr(model, '/');
+    return slash ? slash + 1 : model;
+}
+
+bool rule_needs_references(struct graph *g, const struct scene_facts *f)
+{
+    bool any = false;
+    for (int i = 0; i < f->references.count; i++) {
+        const char *path = PATH(g, LRI, .photo = f->references.names[i]);
+        if (!path_is_file(path)) continue;
+        any = true;
+        rule_needs(g, path);
+    }
+    return any;
+}
+
+bool scene_has_references(struct graph *g, const struct scene_facts *f)
+{
+    for (int i = 0; i < f->references.count; i++)
+        if (path_is_file(PATH(g, LRI, .photo = f->references.names[i]))) return true;
+    return false;
+}
+
+const char *fitted_lights(struct graph *g, const struct scene_facts *f)
+{
+    return f->has_model && graph_scene_file(g, "lights.txt") ? PATH(g, LIGHTS) : NULL;
+}
+
+const char *fitted_materials(struct graph *g, const struct scene_facts *f)
+{
+    return f->has_model && graph_scene_file(g, "materials.txt") ? PATH(g, MATERIALS) : NULL;
+}
+
+void rule_needs_light_change(struct graph *g, const struct scene_facts *f, const char *edit)
+{
+    const char *edited = graph_text(g, "remodel/%s", edit);
+    rule_needs(g, PATH(g, MODEL));
+    rule_needs(g, PATH(g, MODEL, .model = edited));
+    rule_needs(g, PATH(g, TEXTURE_MAP, .model = edited));
+    rule_needs(g, PATH(g, OBJECTS, .model = edited));
+    rule_needs(g, PATH(g, AXES));
+    rule_needs(g, PATH(g, ATLAS));
+    rule_needs(g, PATH(g, OUTDOORS));
+    if (!fitted_lights(g, f)) return;
+    rule_needs(g, fitted_lights(g, f));
+    rule_needs_references(g, f);
+}
+
+void rule_light_change(struct graph *g, const struct scene_facts *f, const char *edit)
+{
+    const char *edited = graph_text(g, "remodel/%s", edit);
+    rule_option(g, "--model", PATH(g, MODEL));
+    rule_option(g, "--edited", PATH(g, MODEL, .model = edited));
+    rule_option(g, "--map", PATH(g, TEXTURE_MAP, .model = edited));
+    rule_option(g, "--axes", PATH(g, AXES));
+    rule_option(g, "--vita", FOLDER(g, ATLAS));
+    rule_option(g, "--outdoors", PATH(g, OUTDOORS));
+    rule_option(g, "--lights", fitted_lights(g, f));
+    if (fitted_lights(g, f) && scene_has_references(g, f)) rule_option(g, "--references", FOLDER(g, LRI, .photo = ""));
+    rule_option(g, "--objects", PATH(g, OBJECTS, .model = edited));
+    rule_option(g, "--scene", f->folder);
+}
+
+void graph_list_if(struct graph *g, enum graph_list list, const char *path, bool wanted)
+{
+    if (wanted || path_is_file(path)) graph_list(g, list, path);
+}
+
+bool scene_asks_for_any(const struct scene_facts *f, const char *words)
+{
+    for (int i = 0; i < f->products.count; i++) {
+        const char *word = f->products.names[i], *at = strstr(words, word);
+        const size_t n = strlen(word);
+        if (at && (at == words || at[-1] == ' ') && (at[n] == ' ' || !at[n])) return true;
+    }
+    return false;
+}
+
+void rule_needs_path(struct graph *g, const char *film)
+{
+    rule_needs(g, PATH(g, PATH, .film = film));
+    rule_needs(g, PATH(g, PATH_CAMERAS, .film = film));
+    rule_needs(g, PATH(g, PATH_IMAGES, .film = film));
+    rule_needs(g, PATH(g, PATH_POINTS, .film = film));
+}
+
+void rule_needs_tour(struct graph *g, const char *tour)
+{
+    rule_needs(g, PATH(g, PATH, .film = tour));
+    rule_needs(g, PATH(g, TOUR_PAIRS, .film = tour));
+    rule_needs(g, PATH(g, PATH_CAMERAS, .film = tour));
+    rule_needs(g, PATH(g, PATH_IMAGES, .film = tour));
+}
+
+void tour_frames_read(struct graph *g, struct name_list *frames, const char *tour)
+{
+    struct textfile t = {0};
+    struct err unread = ERR_INIT; /* it has not been planned, or the program that reads it says what is wrong */
+    const char *path = PATH(g, PATH, .film = tour);
+    char *word;
+    if (!path_is_file(path) || textfile_open(&t, path, &unread)) return;
+    while (textfile_next(&t))
+        if (!textfile_word(&t, "a word", &word, &unread) && !strcmp(word, "frame") &&
+            !textfile_word(&t, "a number", &word, &unread))
+            name_list_add(frames, word, strlen(word), graph_err(g));
+    textfile_release(&t);
+}
+
+void rule_draws_model(struct graph *g, const char *model)
+{
+    const char *file = PATH(g, MODEL, .model = model);
+    const char *map = model_is_edited(model) ? PATH(g, TEXTURE_MAP, .model = model) : NULL;
+    rule_needs(g, file);
+    rule_needs(g, map);
+    rule_needs(g, map ? PATH(g, MODEL) : NULL);
+    rule_needs(g, PATH(g, AXES));
+    rule_needs_cameras(g);
+    rule_needs(g, PATH(g, LENSES));
+    rule_needs(g, PATH(g, ATLAS));
+    rule_needs(g, PATH(g, OUTDOORS));
+    rule_option(g, "--model", file);
+    rule_option(g, "--base", map ? PATH(g, MODEL) : NULL);
+    rule_option(g, "--map", map);
+    rule_option(g, "--axes", PATH(g, AXES));
+    rule_option(g, "--views", FOLDER(g, CAMERAS));
+    rule_option(g, "--vdta", graph_own(g, "vdta"));
+    rule_option(g, "--vita", FOLDER(g, ATLAS));
+    rule_option(g, "--ids", FOLDER(g, FACE_INDEX));
+    rule_option(g, "--depth", FOLDER(g, DEPTH, .view = ""));
+    rule_option(g, "--outdoors", PATH(g, OUTDOORS));
+}

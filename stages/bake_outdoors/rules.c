@@ -1,0 +1,34 @@
+/* rules.c - what lies outside of the model. Reference images are used if they are there: no scene must have any. */
+#include "common/graph/scene_rules.h"
+
+RULES(bake_outdoors)
+{
+    struct name_list images = {0};
+    graph_step(g, "outdoors", STEP_ONE, "ids");
+    graph_goal(g, "outdoors", NULL);
+    if (!f->has_model) return;
+    graph_goal(g, "outdoors", PATH(g, OUTDOORS));
+    graph_rule(g, "all");
+    rule_makes(g, PATH(g, OUTDOORS));
+    rule_needs(g, PATH(g, MODEL));
+    rule_needs(g, PATH(g, AXES));
+    rule_needs_cameras(g);
+    rule_needs(g, PATH(g, LENSES));
+    rule_needs_set(g, "views");
+    rule_needs_set(g, "ids");
+    rule_needs_references(g, f);
+    rule_option(g, "--model", PATH(g, MODEL));
+    rule_option(g, "--axes", PATH(g, AXES));
+    rule_option(g, "--views", FOLDER(g, CAMERAS));
+    rule_option(g, "--ids", FOLDER(g, FACE_INDEX));
+    for (int i = 0; i < f->references.count; i++) {
+        const char *image = PATH(g, LRI, .photo = f->references.names[i]);
+        if (!path_is_file(image)) continue;
+        rule_option(g, "--reference", image);
+        name_list_add_words(&images, image, graph_err(g));
+    }
+    /* an image that went is a change whatever the times of the others */
+    rule_needs(g, graph_stamp_list(g, "outdoors.txt", &images));
+    rule_option(g, "--out", PATH(g, OUTDOORS));
+    name_list_release(&images);
+}

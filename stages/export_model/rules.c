@@ -1,0 +1,26 @@
+/* rules.c - the textured model and its edits for other programs. The pages come first, the IFC file last. */
+#include "common/graph/scene_rules.h"
+
+RULES(export_model)
+{
+    graph_step(g, "exports", STEP_ONE, "vita");
+    graph_goal(g, "exports", NULL);
+    for (int edit = -1; f->has_model && edit < f->edits.count; edit++) {
+        const char *model = model_folder(g, &f->edits, edit), *name = model_name(model);
+        const char *map = model_is_edited(model) ? PATH(g, TEXTURE_MAP, .model = model) : NULL;
+        graph_goal(g, "exports", PATH(g, EXPORT_IFC, .model = model));
+        graph_rule(g, "%s", name);
+        rule_makes(g, PATH(g, EXPORT_IFC, .model = model));
+        rule_needs(g, PATH(g, MODEL, .model = model));
+        rule_needs(g, PATH(g, PLAN, .model = model));
+        rule_needs(g, map);
+        rule_needs(g, PATH(g, AXES));
+        rule_needs(g, PATH(g, ATLAS));
+        rule_option(g, "--name", map ? graph_text(g, "%s-%s", f->scene, name) : f->scene);
+        rule_option(g, "--model", FOLDER(g, MODEL, .model = model));
+        rule_option(g, "--map", map);
+        rule_option(g, "--axes", PATH(g, AXES));
+        rule_option(g, "--vita", FOLDER(g, ATLAS));
+        rule_option(g, "--out", FOLDER(g, EXPORT_IFC, .model = model));
+    }
+}

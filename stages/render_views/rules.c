@@ -1,0 +1,74 @@
+/* rules.c - frames of films in chunks, a process each; of a chunk only the frames that are missing or stale are
+ * rendered. A film of keys may go anywhere, so it is rendered from all views and has no layers but its own. */
+#include "common/graph/scene_rules.h"
+
+static void frames_rule(struct graph *g, const char *effect, const struct name_list *frames, int first, int count)
+{
+    const char *film = graph_text(g, "parallax/%s", effect), *effects = PATH(g, EFFECTS, .film = film);
+    const bool keyed = graph_scene_file(g, graph_text(g, "keyframes/%s.txt", effect)) != NULL;
+    const char *layers = keyed ? NULL : graph_scene_file(g, "effects.txt");
+    graph_piece(g, "%s-%s", effect, frames->names[first]);
+    for (int i = first; i < first + count; i++) {
+        const char *frame = PATH(g, FRAME, .film = film, .frame = frames->names[i]);
+        rule_makes(g, frame);
+        graph_goal(g, "frames", frame);
+    }
+    rule_needs_path(g, film);
+    rule_needs(g, effects);
+    rule_needs(g, layers);
+    rule_needs_cameras(g);
+    rule_needs_set(g, "depth");
+    if (!keyed) rule_needs(g, PATH(g, FILM_VIEWS));
+    if (!keyed) rule_after(g, graph_own(g, "stamp/film_views.txt"));
+    rule_option(g, "--views", FOLDER(g, CAMERAS));
+    rule_option(g, "--depth", FOLDER(g, DEPTH, .view = ""));
+    rule_option(g, "--path", graph_own(g, film));
+    if (!keyed) rule_option(g, "--film-views", PATH(g, FILM_VIEWS));
+    rule_option(g, "--effects", effects);
+    rule_option(g, "--effects", layers);
+    rule_option(g, "--out", FOLDER(g, FRAME, .film = film, .frame = ""));
+    rule_stale(g, STALE_FRAMES);
+}
+
+/* The cameras of held-out photos, rendered from the other views. */
+static void heldout_rule(struct graph *g, const struct name_list *held, int first, int count)
+{
+    const char *cameras = "holdout/views";
+    graph_piece(g, "heldout-%s", held->names[first]);
+    for (int i = first; i < first + count; i++) {
+        const char *frame = PATH(g, HELD_FRAME, .view = held->names[i]);
+        rule_makes(g, frame);
+        graph_goal(g, "heldout", frame);
+        graph_list(g, GRAPH_MEASURED, frame);
+    }
+    rule_needs(g, PATH(g, CAMERAS, .views = cameras));
+    rule_needs(g, PATH(g, IMAGES, .views = cameras));
+    rule_needs(g, PATH(g, POINTS3D, .views = cameras));
+    rule_needs(g, PATH(g, LENSES, .views = cameras));
+    rule_needs(g, PATH(g, VIEWS_MK, .views = cameras));
+    rule_needs_cameras(g);
+    rule_needs_set(g, "depth");
+    rule_option(g, "--views", FOLDER(g, CAMERAS));
+    rule_option(g, "--depth", FOLDER(g, DEPTH, .view = ""));
+    rule_option(g, "--cameras", FOLDER(g, CAMERAS, .views = cameras));
+    rule_option(g, "--out", FOLDER(g, HELD_FRAME, .view = ""));
+    for (int i = first; i < first + count; i++) rule_option(g, "--camera", held->names[i]);
+}
+
+RULES(render_views)
+{
+    graph_step(g, "frames", STEP_WIDE, "path");
+    graph_goal(g, "frames", NULL);
+    graph_goal(g, "heldout", NULL);
+    for (int e = 0; e < f->films.count; e++) {
+        struct name_list frames = {0};
+        const char *film = graph_text(g, "parallax/%s", f->films.names[e]);
+        name_list_read(&frames, PATH(g, FRAMES_MK, .film = film), "FRAMES", graph_err(g));
+        for (int i = 0; i < frames.count; i += f->frames_per_job)
+            frames_rule(g, f->films.names[e], &frames, i,
+                        frames.count - i < f->frames_per_job ? frames.count - i : f->frames_per_job);
+        name_list_release(&frames);
+    }
+    for (int i = 0; i < f->held.count; i += f->frames_per_job)
+        heldout_rule(g, &f->held, i, f->held.count - i < f->frames_per_job ? f->held.count - i : f->frames_per_job);
+}

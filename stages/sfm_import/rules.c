@@ -1,0 +1,51 @@
+/* rules.c - the SfM model becomes the cameras of views, in the run's own folder; with a hold-out those that are held
+ * out get a folder of their own. */
+#include <string.h>
+
+#include "common/graph/scene_rules.h"
+
+static void check_holdout(struct graph *g)
+{
+    const char *every = setting("HOLDOUT"), *views = setting("HOLDOUT_VIEWS");
+    const size_t digits = strspn(every, "0123456789");
+    if (*every && (every[digits] || digits > 9 || *every == '0'))
+        graph_refuse(g, "HOLDOUT=%s: wanted a number: every how many photos one is held out.", every);
+    if (*every && *views) graph_refuse(g, "HOLDOUT and HOLDOUT_VIEWS are both given; give one of them.");
+    if (views[strspn(views, "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_@ -")])
+        graph_refuse(g, "HOLDOUT_VIEWS=%s: names of photos and views are letters, digits, _, - and @.", views);
+}
+
+RULES(sfm_import)
+{
+    const char *held = "holdout/views";
+    check_holdout(g);
+    const char *stamp = graph_stamp(
+        g, "holdout.txt",
+        f->holds_out ? graph_text(g, "every %s\nviews %s", setting("HOLDOUT"), setting("HOLDOUT_VIEWS")) : NULL);
+    graph_step(g, "sfm", STEP_ONE, "hdr");
+    graph_goal(g, "sfm", PATH(g, VIEWS_MK));
+    graph_rule(g, "all");
+    rule_makes(g, PATH(g, CAMERAS));
+    rule_makes(g, PATH(g, IMAGES));
+    rule_makes(g, PATH(g, POINTS3D));
+    rule_makes(g, PATH(g, LENSES));
+    rule_makes(g, PATH(g, RESIDUALS));
+    rule_makes(g, PATH(g, LENS_FORMS));
+    rule_makes(g, PATH(g, VIEWS_MK));
+    if (f->holds_out) {
+        rule_makes(g, PATH(g, CAMERAS, .views = held));
+        rule_makes(g, PATH(g, IMAGES, .views = held));
+        rule_makes(g, PATH(g, POINTS3D, .views = held));
+        rule_makes(g, PATH(g, LENSES, .views = held));
+        rule_makes(g, PATH(g, VIEWS_MK, .views = held));
+    }
+    rule_needs(g, PATH(g, SFM_MODELS));
+    rule_needs(g, PATH(g, PHOTO_LIST));
+    rule_needs(g, graph_shared(g, "stamp/photo_sizes.txt"));
+    if (f->holds_out) rule_needs(g, stamp);
+    rule_option(g, "--sfm", FOLDER(g, SFM_MODELS));
+    rule_option(g, "--records", FOLDER(g, PHOTO_LIST));
+    rule_option(g, "--out", FOLDER(g, CAMERAS));
+    if (*setting("HOLDOUT")) rule_option(g, "--holdout", setting("HOLDOUT"));
+    if (*setting("HOLDOUT_VIEWS")) rule_option(g, "--holdout-views", graph_text(g, "'%s'", setting("HOLDOUT_VIEWS")));
+}

@@ -1,0 +1,236 @@
+# the graph of products, as print_graph prints it: which products need which, and what a change makes stale. No program of a
+# stage runs: products are empty files.
+. tests/lib.sh
+mkdir -p "$scratch/project/scenes"
+cd "$scratch/project" || exit 1
+for f in Makefile stages common configs; do ln -s "$root/$f" .; done
+mkdir -p out
+ln -s "$root/out/build" out/build
+stages=$(cd "$root" && make -s --no-print-directory list-stages)
+
+# given NAME=VALUE...: the settings of the calls that follow
+declare -A settings=([PRODUCTS]=parallax [STAGES]="$stages" [FILMS]=establishing_dolly [PHOTOS]=photos)
+given() { local s; for s; do settings[${s%%=*}]=${s#*=}; done; }
+# graph WHAT [GOAL]: calls print_graph for the scene t
+graph()
+{
+    local s environment=()
+    for s in "${!settings[@]}"; do environment+=("REMODEL_$s=${settings[$s]}"); done
+    env "${environment[@]}" "$root/$B/bin/print_graph" "$1" scenes/t out/t out/t "out/build/$FLAVOR/bin" "${@:2}"
+}
+# scene PHOTO...: the scene t, whose SfM has placed these photos; PHOTO@k is a view
+scene()
+{
+    rm -rf out/t scenes/t
+    mkdir -p out/t/{photos,views,slice,stamp} scenes/t
+    echo "PHOTO_IDS := $(printf '%s\n' "${@%@*}" | sort -u | tr '\n' ' ')" >out/t/photos/photos.mk
+    echo "VIEWS := $*" >out/t/views/views.mk
+    echo 'rounds = 1' >out/t/slice/segment_depth.cfg
+    for s in $stages; do touch "out/t/slice/$s.cfg"; done
+    touch out/t/photos/list.txt out/t/stamp/{photo_sizes,sfm_source,truth,rendered,cameras}.txt out/t/stamp/remodel-page.txt
+    for p in "${@%@*}"; do touch "out/t/photos/$p.txt"; done
+}
+# targets_of_graph: all files that a rule makes
+targets_of_graph() { sed -nE 's/^(out[^:&]*[^:& ])( &)?:.*/\1/p' out/t/graph/*.mk | tr ' ' '\n' | LC_ALL=C sort -u; }
+# made: every product exists, and none is stale
+made()
+{
+    local i
+    for i in 1 2 3; do # later rules are known when earlier products list their pieces
+        graph write
+        targets_of_graph | while read -r f; do [ -e "$f" ] || { mkdir -p "${f%/*}"; touch -d 2020-01-01 "$f"; }; done
+        [ -s out/t/parallax/establishing_dolly/frames.mk ] || echo 'FRAMES := 0001 0002 0003' >out/t/parallax/establishing_dolly/frames.mk
+    done
+    find out/t/ "$root/$B/code/" scenes/t -newermt 2020-01-02 -exec touch -h -d 2019-01-01 {} + 2>/dev/null || true
+    touch -d 2020-01-01 $(targets_of_graph)
+    graph write
+}
+# stale [GOAL]: the commands that would run, as "STAGE ITEM", sorted
+stale()
+{
+    graph write
+    make -s --no-print-directory PHASE=graph O=out/t -n -s "${1-report}" | sed -nE 's/.*run_stage\.sh [a-z]+ ([^ ]+ [^ ]+) .*/\1/p' | LC_ALL=C sort
+}
+# wants EXPECTED [GOAL]
+wants() { stale "${2-report}" >found; diff <(printf '%s' "$1" | sed '/^$/d') found || fail "other commands would run"; }
+# rule_of PRODUCT: its line
+rule_of() { grep -hE "^([^:]* )?$1( [^:]*)?:" out/t/graph/*.mk; }
+needs() { rule_of "$1" | sed 's/|.*//' | matches -F " $2"; }
+
+nothing_is_stale_when_all_is_made()
+{
+    scene a b c
+    made
+    wants ''
+}
+
+a_changed_photo_redoes_its_view_and_the_depth_that_reads_it()
+{
+    scene a b c
+    for v in a b c; do mkdir -p out/t/depth/round0; done
+    echo 'out/t/depth/round0/b.exr: out/t/views/b.exr out/t/views/a.exr' >out/t/depth/round0/b.d
+    made
+    touch out/t/photos/a.txt
+    wants 'rectify a
+segment_depth a
+segment_depth b
+' depth-round0
+}
+
+a_neighbour_that_is_a_view_no_more_redoes_the_depth_that_read_it()
+{
+    scene a b c
+    made
+    echo 'out/t/depth/round0/b.exr: out/t/views/b.exr out/t/views/gone.exr' >out/t/depth/round0/b.d
+    wants 'segment_depth b
+' depth-round0
+}
+
+a_parameter_redoes_its_stage_and_what_follows()
+{
+    scene a b c
+    made
+    touch out/t/slice/encode_video.cfg
+    wants 'encode_video establishing_dolly
+encode_video establishing_dolly-pan_scan
+report page
+'
+    touch out/t/slice/rectify.cfg
+    stale views >found
+    [ "$(wc -l <found)" = 3 ] || fail "a parameter of rectify does not redo all views"
+}
+
+a_changed_program_redoes_its_products_but_not_sfm()
+{
+    scene a b c
+    made
+    ! rule_of out/t/sfm/models.txt | matches "code/sfm" || fail "the program sfm redoes SfM"
+    rule_of out/t/views/a.exr | matches "out/build/$FLAVOR/code/rectify" || fail "a view does not depend on its program"
+}
+
+a_photo_is_read_once_for_its_views()
+{
+    scene a@0 a@1 b
+    graph write
+    rule_of out/t/views/a@0.exr | matches -E '^out/t/views/a@0.exr out/t/views/a@1.exr &:' || fail "the views of a photo are not made together"
+}
+
+frames_come_in_chunks_and_wait_for_all_depth()
+{
+    scene a b
+    given FRAMES_PER_JOB=2
+    made
+    [ "$(grep -c 'run_stage.sh quiet render_views' out/t/graph/render_views.mk)" = 2 ] || fail "three frames are not two chunks of two"
+    touch out/t/depth/b.txt
+    wants 'plan_path establishing_dolly
+render_views establishing_dolly-0001
+render_views establishing_dolly-0003
+sample_validity establishing_dolly
+' frames
+}
+
+what_is_held_out_is_rectified_and_not_matched()
+{
+    scene a b c
+    given HOLDOUT_VIEWS=c
+    mkdir -p out/t/holdout/views
+    echo 'VIEWS := a b' >out/t/views/views.mk
+    echo 'VIEWS := c' >out/t/holdout/views/views.mk
+    graph write
+    rule_of out/t/holdout/views/c.exr | matches rectify || true
+    grep -q 'heldout-c' out/t/graph/rectify.mk || fail "a held-out view is not rectified"
+    ! grep -q 'depth/c.exr' out/t/graph/segment_depth.mk || fail "a held-out view is matched"
+    needs out/t/metrics.tsv out/t/holdout/frames/c.exr || fail "metrics do not need the frame of the held-out view"
+}
+
+an_edit_needs_the_scripts_and_meshes_that_it_stands_on()
+{
+    scene a b
+    mkdir -p scenes/t/edits
+    printf 'remodel-script 1\n' | tee scenes/t/model.txt scenes/t/edits/low.txt >/dev/null
+    printf 'remodel-script 1\nbase low\nobject sofa sofa.obj at 1 2 0 matt 0.5 0.4 0.3\n' >scenes/t/edits/high.txt
+    touch scenes/t/sofa.obj
+    graph write
+    local edited=out/t/remodel/high/model.txt
+    needs $edited scenes/t/edits/high.txt && needs $edited scenes/t/edits/low.txt || fail "the edit does not need its base"
+    needs $edited scenes/t/sofa.obj || fail "the edit does not need its mesh"
+    ! needs $edited out/t/points/points.ply || fail "a script that places nothing in photographs needs points"
+    printf 'remodel-script 1\nwall south in a 10 20 90 80\n' >scenes/t/model.txt
+    graph write
+    needs $edited out/t/points/points.ply || fail "a script that places a wall in a photograph needs no points"
+    rm scenes/t/sofa.obj
+    graph write
+    needs $edited FORCE || fail "a missing mesh is not for the stage to report"
+}
+
+an_edit_that_went_changes_what_edits_reveal()
+{
+    scene a b
+    mkdir -p scenes/t/edits
+    printf 'remodel-script 1\n' | tee scenes/t/model.txt scenes/t/edits/one.txt scenes/t/edits/two.txt >/dev/null
+    made
+    wants '' ids
+    rm scenes/t/edits/two.txt
+    wants 'trace_ids reveal-a
+trace_ids reveal-b
+' ids-reveal
+}
+
+steps_come_in_order()
+{
+    scene a b c
+    [ "$(graph steps depth | cut -d' ' -f3 | tr '\n' ' ')" = 'hdr sfm views depth ' ] || { graph steps depth; fail "other steps for depth"; }
+    given PRODUCTS='model textures'
+    graph steps report >steps
+    for s in model ids vdta vita textures report; do
+        grep -q " $s\$" steps || fail "the step $s is missing"
+    done
+    grep -qx 'segment_depth farm depth' steps || fail "depth is not farmed"
+}
+
+pieces_of_work_name_their_products()
+{
+    scene a b
+    graph write
+    grep -qE "^segment_depth a out/t/depth/round0/a.d	out/t/depth/round0/a.exr out/t/depth/round0/a.txt out/t/depth/round0/a.round\$" out/t/graph/segment_depth.pieces ||
+        { cat out/t/graph/segment_depth.pieces; fail "no piece of work for the depth of a"; }
+    make -s --no-print-directory PHASE=graph O=out/t -n -s depth-round0 | common/run/plan_lines.sh out/t/graph >plan
+    grep -qE '^out/t/depth/round0/a.exr out/t/depth/round0/a.txt out/t/depth/round0/a.round	common/run/run_stage.sh quiet segment_depth a out/t ' plan ||
+        { cat plan; fail "no line of a plan for the depth of a"; }
+}
+
+a_graph_that_is_the_same_is_not_rewritten()
+{
+    scene a b
+    made
+    stat -c '%n %y' out/t/graph/* >before
+    graph write
+    stat -c '%n %y' out/t/graph/* | diff before - || fail "a file of the graph was rewritten"
+}
+
+wrong_settings_are_refused()
+{
+    scene a b
+    # refused SETTING WORDS
+    refused()
+    {
+        local rc=0
+        (given "$1"; graph check) >log 2>&1 || rc=$?
+        [ "$rc" = 2 ] && grep -qF "$2" log || { cat log; fail "$1: exit $rc, wanted 2 and '$2'"; }
+    }
+    refused HOLDOUT=x 'HOLDOUT=x: wanted a number'
+    refused SPLIT=3by2 'SPLIT=3by2: wanted COLUMNSxROWS'
+    refused SPLIT=1x1 'leave SPLIT out'
+    refused MORPH=a 'wanted the ids of two photos'
+    refused 'MORPH=a a' 'found one twice'
+    refused 'EFFECT=dolly$' 'effects are named with letters'
+    refused PRODUCTS=films 'wanted one or more of: model textures parallax remodel tour relight'
+    [ ! -e out/t/graph ] || fail "a check wrote the graph"
+}
+
+for t in nothing_is_stale_when_all_is_made a_changed_photo_redoes_its_view_and_the_depth_that_reads_it \
+    a_neighbour_that_is_a_view_no_more_redoes_the_depth_that_read_it a_parameter_redoes_its_stage_and_what_follows \
+    a_changed_program_redoes_its_products_but_not_sfm a_photo_is_read_once_for_its_views frames_come_in_chunks_and_wait_for_all_depth \
+    what_is_held_out_is_rectified_and_not_matched an_edit_needs_the_scripts_and_meshes_that_it_stands_on \
+    an_edit_that_went_changes_what_edits_reveal steps_come_in_order pieces_of_work_name_their_products \
+    a_graph_that_is_the_same_is_not_rewritten wrong_settings_are_refused; do run "$t"; done
