@@ -13,31 +13,18 @@
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
-#include <xxhash.h>
 
 #include "common/base/array.h"
 #include "common/base/outfile.h"
 #include "common/base/textfile.h"
 #include "common/graph/graph_print.h"
+#include "common/graph/text_pool.h"
 
-enum { WORD_LIST = 16, ARENA_BLOCK = 1 << 20 };
+enum { WORD_LIST = 16 };
 
 struct text {
     char *bytes;
     size_t size, capacity;
-};
-
-/* Texts of paths, each once, until the stage ends: rules keep pointers to them. */
-struct arena_block {
-    struct arena_block *next;
-    size_t used;
-    char bytes[ARENA_BLOCK];
-};
-
-struct path_texts {
-    struct arena_block *blocks;
-    const char **slots; /* a hash table with open addressing; NULL: free */
-    size_t slot_count, count;
 };
 
 struct named_text { /* a goal or a set */
@@ -82,7 +69,7 @@ struct graph {
     size_t step_count;
     struct asked asked[WORD_LIST];
     int asked_count;
-    struct path_texts texts;
+    struct text_pool texts;
     struct err err;
 };
 
@@ -136,57 +123,11 @@ static void empty(struct text *t)
 
 /* --- paths --- */
 
-static void release_texts(struct path_texts *texts)
-{
-    while (texts->blocks) {
-        struct arena_block *next = texts->blocks->next;
-        free(texts->blocks);
-        texts->blocks = next;
-    }
-    free(texts->slots);
-    *texts = (struct path_texts){0};
-}
-
-/* The slot of a text, or the free one where it belongs. */
-static const char **slot_of(const struct path_texts *texts, const char *text, size_t length)
-{
-    size_t i = XXH3_64bits(text, length) & (texts->slot_count - 1);
-    while (texts->slots[i] && strcmp(texts->slots[i], text)) i = (i + 1) & (texts->slot_count - 1);
-    return &texts->slots[i];
-}
-
-static enum status grow_slots(struct path_texts *texts, struct err *err)
-{
-    struct path_texts more = {.slot_count = texts->slot_count ? 2 * texts->slot_count : 1024};
-    more.slots = calloc(more.slot_count, sizeof *more.slots);
-    if (!more.slots) return err_nomem(err, "paths", more.slot_count * sizeof *more.slots);
-    for (size_t i = 0; i < texts->slot_count; i++)
-        if (texts->slots[i]) *slot_of(&more, texts->slots[i], strlen(texts->slots[i])) = texts->slots[i];
-    free(texts->slots);
-    texts->slots = more.slots;
-    texts->slot_count = more.slot_count;
-    return ST_OK;
-}
-
-/* The text as it is kept; "" after an error. */
+/* "" after an error. */
 static const char *keep_text(struct graph *g, const char *text)
 {
-    struct path_texts *texts = &g->texts;
-    const size_t size = strlen(text) + 1;
-    if (g->err.status || (2 * texts->count >= texts->slot_count && grow_slots(texts, &g->err))) return "";
-    const char **slot = slot_of(texts, text, size - 1);
-    if (*slot) return *slot;
-    if (!texts->blocks || texts->blocks->used + size > ARENA_BLOCK) {
-        struct arena_block *block = malloc(sizeof *block);
-        if (!block) return err_nomem(&g->err, "paths", sizeof *block), "";
-        block->next = texts->blocks;
-        block->used = 0;
-        texts->blocks = block;
-    }
-    *slot = memcpy(texts->blocks->bytes + texts->blocks->used, text, size);
-    texts->blocks->used += size;
-    texts->count++;
-    return *slot;
+    const char *kept = g->err.status ? NULL : text_pool_keep(&g->texts, text, &g->err);
+    return kept ? kept : "";
 }
 
 static const char *root_of(const struct graph *g, enum product_id id)
@@ -584,13 +525,13 @@ void graph_end_stage(struct graph *g)
     }
     g->goals.count = 0;
     if (!g->file.size) {
-        release_texts(&g->texts);
+        text_pool_release(&g->texts);
         return;
     }
     write_text(g, g->stage, ".mk", &g->file);
     if (g->pieces.size) write_text(g, g->stage, ".pieces", &g->pieces);
     add(g, &g->includes, graph_text(g, "include %s/graph/%s.mk\n", g->facts->own, g->stage));
-    release_texts(&g->texts);
+    text_pool_release(&g->texts);
 }
 
 static void check_products(struct graph *g)
@@ -658,6 +599,6 @@ void graph_release(struct graph *g)
     free(g->goals.items);
     free(g->sets.items);
     free(g->steps);
-    release_texts(&g->texts);
+    text_pool_release(&g->texts);
     free(g);
 }

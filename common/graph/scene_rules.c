@@ -184,3 +184,26 @@ void rule_draws_model(struct graph *g, const char *model)
     rule_option(g, "--depth", FOLDER(g, DEPTH, .view = ""));
     rule_option(g, "--outdoors", PATH(g, OUTDOORS));
 }
+
+void rule_draws_photo(struct graph *g, const char *edit, const char *pictures, const struct photo_views *p,
+                      const char *goal)
+{
+    rule_draws_model(g, graph_text(g, "remodel/%s", edit));
+    rule_needs(g, PATH(g, ATLAS, .atlas = graph_text(g, "vdta/%s", p->photo)));
+    for (int i = 0; i < p->count; i++) {
+        const char *record = PATH(g, PICTURE_RECORD, .pictures = pictures, .name = p->views[i]);
+        rule_makes(g, record);
+        graph_goal(g, goal, record);
+        rule_needs(g, PATH(g, VIEW, .view = p->views[i]));
+        rule_needs(g, PATH(g, IDS, .view = p->views[i]));
+        rule_needs(g, PATH(g, DEPTH, .view = p->views[i]));
+        rule_option(g, "--view", p->views[i]);
+    }
+    rule_option(g, "--out", graph_own(g, pictures));
+}
+
+int chunk_size(const struct scene_facts *f, const struct name_list *frames, int first)
+{
+    const int left = frames->count - first;
+    return left < f->frames_per_job ? left : f->frames_per_job;
+}

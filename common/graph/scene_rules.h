@@ -43,8 +43,14 @@ void rule_needs_tour(struct graph *g, const char *tour);
 /* The numbers of the frames of a planned tour. */
 void tour_frames_read(struct graph *g, struct name_list *frames, const char *tour);
 
+/* Frames come in chunks of FRAMES_PER_JOB: how many the one that begins with `first` has. */
+int chunk_size(const struct scene_facts *f, const struct name_list *frames, int first);
+
 /* What render_model draws a model from, by its folder below O: needs, and options. */
 void rule_draws_model(struct graph *g, const char *model);
+/* The same for the views of a photo, of an edited model: PICTURES/VIEW.txt of each, which are goals too. */
+void rule_draws_photo(struct graph *g, const char *edit, const char *pictures, const struct photo_views *p,
+                      const char *goal);
 
 /* Adds a product to a list if a run makes it (wanted), or if it exists. */
 void graph_list_if(struct graph *g, enum graph_list list, const char *path, bool wanted);

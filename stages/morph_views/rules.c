@@ -75,8 +75,7 @@ RULES(morph_views)
     if (photos.count == 2) {
         path_rule(g, f, &photos, stamp);
         name_list_read(&frames, PATH(g, FRAMES_MK, .film = film), "MORPH_FRAMES", graph_err(g));
-        for (int i = 0; i < frames.count; i += f->frames_per_job)
-            frames_rule(g, &frames, i, frames.count - i < f->frames_per_job ? frames.count - i : f->frames_per_job);
+        for (int i = 0; i < frames.count; i += f->frames_per_job) frames_rule(g, &frames, i, chunk_size(f, &frames, i));
         graph_rule(g, "morph");
         rule_by(g, "encode_video");
         rule_makes(g, video);

@@ -48,24 +48,10 @@ static void say_light(struct graph *g, const struct scene_facts *f, const char *
 
 static void unlit_rule(struct graph *g, const char *edit, const struct photo_views *p)
 {
-    const char *unlit = graph_text(g, "relight/%s/unlit", edit);
     graph_piece(g, "unlit-%s-%s", edit, p->photo);
     rule_by(g, "render_model");
-    for (int i = 0; i < p->count; i++) {
-        const char *record = PATH(g, PICTURE_RECORD, .pictures = unlit, .name = p->views[i]);
-        rule_makes(g, record);
-        graph_goal(g, "unlit", record);
-    }
-    rule_draws_model(g, graph_text(g, "remodel/%s", edit));
-    rule_needs(g, PATH(g, ATLAS, .atlas = graph_text(g, "vdta/%s", p->photo)));
-    for (int i = 0; i < p->count; i++) {
-        rule_needs(g, PATH(g, VIEW, .view = p->views[i]));
-        rule_needs(g, PATH(g, IDS, .view = p->views[i]));
-        rule_needs(g, PATH(g, DEPTH, .view = p->views[i]));
-    }
-    for (int i = 0; i < p->count; i++) rule_option(g, "--view", p->views[i]);
     rule_option(g, "--set", "radiance=all");
-    rule_option(g, "--out", graph_own(g, unlit));
+    rule_draws_photo(g, edit, graph_text(g, "relight/%s/unlit", edit), p, "unlit");
 }
 
 static void relit_rule(struct graph *g, const struct scene_facts *f, const char *edit, const struct photo_views *p)
@@ -170,7 +156,7 @@ static void tour_rules(struct graph *g, const struct scene_facts *f, const char 
     struct name_list frames = {0};
     tour_frames_read(g, &frames, walk);
     for (int i = 0; i < frames.count; i += f->frames_per_job) {
-        const int count = frames.count - i < f->frames_per_job ? frames.count - i : f->frames_per_job;
+        const int count = chunk_size(f, &frames, i);
         unlit_frames_rule(g, edit, &frames, i, count);
         relit_frames_rule(g, f, edit, &frames, i, count);
     }

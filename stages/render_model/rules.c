@@ -8,24 +8,14 @@
 
 static void picture_rule(struct graph *g, const struct scene_facts *f, const char *edit, const struct photo_views *p)
 {
-    const char *model = graph_text(g, "remodel/%s", edit), *pictures = graph_text(g, "%s/pictures", model);
+    const char *pictures = graph_text(g, "remodel/%s/pictures", edit);
     graph_piece(g, "%s-%s", edit, p->photo);
+    rule_draws_photo(g, edit, pictures, p, "remodel-views");
     for (int i = 0; i < p->count; i++) {
         const char *record = PATH(g, PICTURE_RECORD, .pictures = pictures, .name = p->views[i]);
-        rule_makes(g, record);
-        graph_goal(g, "remodel-views", record);
         graph_set(g, "pictures", record);
         if (!scene_asks_for(f, "remodel")) graph_list_if(g, GRAPH_ALWAYS_SHOWN, record, false);
     }
-    rule_draws_model(g, model);
-    rule_needs(g, PATH(g, ATLAS, .atlas = graph_text(g, "vdta/%s", p->photo)));
-    for (int i = 0; i < p->count; i++) {
-        rule_needs(g, PATH(g, VIEW, .view = p->views[i]));
-        rule_needs(g, PATH(g, IDS, .view = p->views[i]));
-        rule_needs(g, PATH(g, DEPTH, .view = p->views[i]));
-    }
-    for (int i = 0; i < p->count; i++) rule_option(g, "--view", p->views[i]);
-    rule_option(g, "--out", graph_own(g, pictures));
 }
 
 static void cameras_rule(struct graph *g, const char *model)
@@ -76,7 +66,7 @@ static void tour_rules(struct graph *g, const struct scene_facts *f, const char 
     struct name_list frames = {0};
     tour_frames_read(g, &frames, tour);
     for (int i = 0; i < frames.count; i += f->frames_per_job)
-        tour_rule(g, model, &frames, i, frames.count - i < f->frames_per_job ? frames.count - i : f->frames_per_job);
+        tour_rule(g, model, &frames, i, chunk_size(f, &frames, i));
     graph_rule(g, "tour-%s", model_name(model));
     rule_by(g, "encode_video");
     rule_makes(g, video);
