@@ -65,31 +65,6 @@ a_wrong_config_is_refused_and_the_old_products_stay()
 # made_of FOLDER...: hash and name of every product in these folders of out/t
 made_of() { (cd out/t && find "$@" -type f ! -name '.*' ! -name '*.d' | LC_ALL=C sort | xargs -d '\n' sha256sum); }
 
-a_deleted_product_is_remade_with_what_follows()
-{
-    made_of views depth parallax >before
-    snapshot out/t >a
-    # remade PRODUCT [GOAL]: deletes and remakes it
-    remade()
-    {
-        rm "out/t/$1"
-        run_scene ${2-} >log || { cat log; fail "make ${2-} after deleting $1"; }
-        [ -e "out/t/$1" ] || fail "$1 was not remade"
-    }
-    remade parallax/establishing_dolly/frames/0003.exr
-    snapshot out/t >b
-    [ "$(changed a b | tr '\n' ' ')" = "index.html parallax/establishing_dolly/frames/0003.exr parallax/establishing_dolly/video.mp4 " ] ||
-        { changed a b; fail "after a frame was deleted, wrong products were remade"; }
-    remade parallax/establishing_dolly/path.txt path
-    remade views/photo_2.exr views
-    remade views/images.txt
-    snapshot out/t >c
-    for p in parallax/establishing_dolly/path.txt views/photo_2.exr depth/photo_3.exr parallax/establishing_dolly/video.mp4; do
-        changed b c | matches -xF "$p" || { changed b c; fail "$p does not follow the deleted products"; }
-    done
-    made_of views depth parallax | diff before - || fail "other bytes came out"
-}
-
 depth_announces_its_work_and_time()
 {
     made_of depth >before
@@ -309,7 +284,7 @@ threads_splits_and_resumes_give_the_same_bytes()
 }
 
 for t in chain_from_photos_to_video a_second_make_does_nothing_even_after_a_comment_in_a_config a_parameter_redoes_its_stage_and_what_follows \
-    a_wrong_config_is_refused_and_the_old_products_stay a_deleted_product_is_remade_with_what_follows depth_announces_its_work_and_time \
+    a_wrong_config_is_refused_and_the_old_products_stay depth_announces_its_work_and_time \
     points_are_made_on_demand a_changed_photo_redoes_its_view_and_its_readers a_mask_redoes_its_view_and_its_readers \
     given_depth_is_used_and_redoes_its_view_and_its_readers an_excluded_photo_redoes_sfm a_draft_leaves_the_default_alone_and_shares_its_sfm \
     a_second_run_at_the_same_time_is_refused several_goals_run_one_after_the_other jobs_times_threads_never_exceed_the_cores \
