@@ -11,42 +11,6 @@
 
 #include "common/light/gloss.h"
 
-enum verb {
-    VERB_SET,
-    VERB_WALL,
-    VERB_ROOM,
-    VERB_SLOPE,
-    VERB_GABLE,
-    VERB_DOOR,
-    VERB_PASSAGE,
-    VERB_WINDOW,
-    VERB_SKYLIGHT,
-    VERB_HATCH,
-    VERB_BOX,
-    VERB_JOIN,
-    VERB_EXTEND,
-    VERB_SPLIT,
-    VERB_ADJUST,
-    VERB_MOVE,
-    VERB_CHANGE,
-    VERB_RESIZE,
-    VERB_OPEN,
-    VERB_CLOSE,
-    VERB_FILL,
-    VERB_REMOVE,
-    VERB_TEXTURE,
-    VERB_COPY,
-    VERB_COLOUR,
-    VERB_PAINT,
-    VERB_LAMP,
-    VERB_MATERIAL,
-    VERB_OBJECT,
-    VERB_CLEAR,
-    VERB_KEEP,
-    VERB_BASE,
-    VERB_COUNT,
-};
-
 enum place_kind { PLACE_NONE, PLACE_COORDINATES, PLACE_VIEW, PLACE_FROM_END, PLACE_PARALLEL };
 
 struct script_place {
@@ -58,20 +22,25 @@ struct script_place {
     double a[4];            /* as written: A B C D, X0 Y0 X1 Y1, D W Z0 Z1, or D */
 };
 
-enum option { /* a word of that name, then a number */
-              OPTION_THICKNESS,
-              OPTION_FOOT,
-              OPTION_TOP,
-              OPTION_FLOOR,
-              OPTION_CEILING,
-              OPTION_TURN,
-              OPTION_AT,
-              OPTION_LEFT,
-              OPTION_RIGHT,
-              OPTION_FRONT,
-              OPTION_BACK,
-              OPTION_BOTTOM,
-              OPTION_COUNT,
+/* A word of that name, then a number; from OPTION_ANGLED on a word alone. */
+enum option {
+    OPTION_THICKNESS,
+    OPTION_FOOT,
+    OPTION_TOP,
+    OPTION_FLOOR,
+    OPTION_CEILING,
+    OPTION_TURN,
+    OPTION_AT,
+    OPTION_LEFT,
+    OPTION_RIGHT,
+    OPTION_FRONT,
+    OPTION_BACK,
+    OPTION_BOTTOM,
+    OPTION_ANGLED,
+    OPTION_INTERIOR,
+    OPTION_CLOSED,
+    OPTION_OPEN,
+    OPTION_COUNT,
 };
 
 /* What closes an opening. FILL_WALL: it is walled up. */
@@ -85,8 +54,10 @@ struct script_object {
     struct brdf brdf;
 };
 
+struct verb; /* verbs.h */
+
 struct statement {
-    enum verb verb;
+    const struct verb *verb;
     int line;
     const char *name;  /* what it makes or changes; set: the quantity; join: NULL */
     const char *other; /* openings: the wall or room; extend: the wall to reach, or NULL; split: the new wall; copy: the
@@ -103,10 +74,9 @@ struct statement {
     int value_count;
     double options[OPTION_COUNT];
     bool has_option[OPTION_COUNT];
-    bool angled, interior, closed, open; /* flags: words without a value */
-    bool of_object;                      /* remove: the name is that of an object */
-    struct gloss gloss;                  /* material */
-    struct script_object object;         /* object */
+    bool of_object;              /* remove: the name is that of an object */
+    struct gloss gloss;          /* material */
+    struct script_object object; /* object */
 };
 
 struct script {
@@ -118,7 +88,6 @@ struct script {
     int count;
 };
 
-const char *verb_name(enum verb verb);
 const char *option_name(enum option option);
 const char *filling_name(enum filling filling); /* "nothing", "leaf", "glass", "wall" */
 

@@ -206,13 +206,11 @@ static enum status chained(struct plan *plan, const char *objects, const char *l
                            struct err *err)
 {
     struct provenance prov = {0};
-    char *base = NULL;
     plan_begin(plan, NULL);
     scratch_write("lower.txt", lower);
     enum status st = plan_apply_model(plan, scratch_write("model.txt", ROOM), NULL, &prov, err);
     if (!st) st = plan_apply_objects(plan, scratch_write("objects.txt", objects), &prov, err);
-    if (!st) st = plan_apply_edit(plan, &base, scratch_write("upper.txt", upper), NULL, &prov, err);
-    free(base);
+    if (!st) st = plan_apply_edit(plan, scratch_write("upper.txt", upper), NULL, &prov, err);
     provenance_release(&prov);
     return st;
 }
