@@ -4,7 +4,7 @@
 
 #include "common/base/log.h"
 #include "stages/build_model/plan_internal.h"
-#include "stages/build_model/script_internal.h"
+#include "stages/build_model/script_words.h"
 
 enum status read_adjust(struct script_reader *r, struct statement *s)
 {
@@ -361,13 +361,12 @@ enum status apply_remove(struct plan_context *c)
 
 enum status read_base(struct script_reader *r, struct statement *s)
 {
-    struct script *script = r->script;
     if (script_read_name(r, "a name", &s->name)) return r->err->status;
-    if (script->count > 1) return textfile_error(&r->t, r->err, "base", "\"base EDIT\" as the first statement, once");
+    if (r->count > 1) return textfile_error(&r->t, r->err, "base", "\"base EDIT\" as the first statement, once");
     if (!strcmp(s->name, "none"))
         return textfile_error(&r->t, r->err, "none", "the name of another edit: \"none\" is the word for no edit");
-    script->base = s->name;
-    script->base_line = s->line;
+    r->base = s->name;
+    r->base_line = s->line;
     return ST_OK;
 }
 

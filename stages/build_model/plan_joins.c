@@ -9,7 +9,7 @@
 #include "common/base/array.h"
 #include "common/base/scan.h"
 #include "stages/build_model/plan_internal.h"
-#include "stages/build_model/script_internal.h"
+#include "stages/build_model/script_words.h"
 
 static double distance_from_end(const struct plan *plan, int wall, int end, const double p[2])
 {

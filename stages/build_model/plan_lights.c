@@ -8,7 +8,7 @@
 #include "common/base/scan.h"
 #include "common/light/object_list.h"
 #include "stages/build_model/plan_internal.h"
-#include "stages/build_model/script_internal.h"
+#include "stages/build_model/script_words.h"
 
 void plan_lights_release(struct plan *plan)
 {

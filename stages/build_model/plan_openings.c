@@ -8,7 +8,7 @@
 
 #include "common/base/array.h"
 #include "stages/build_model/plan_internal.h"
-#include "stages/build_model/script_internal.h"
+#include "stages/build_model/script_words.h"
 
 enum status fill_thickness(struct plan_context *c, enum filling fill, double *thickness)
 {

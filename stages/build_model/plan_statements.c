@@ -6,7 +6,7 @@
 #include "common/base/array.h"
 #include "common/base/log.h"
 #include "stages/build_model/plan_internal.h"
-#include "stages/build_model/script_internal.h"
+#include "stages/build_model/script_words.h"
 
 enum status check_length(struct plan_context *c, const char *what, double value)
 {

@@ -5,7 +5,7 @@
 
 #include "common/base/array.h"
 #include "stages/build_model/plan_internal.h"
-#include "stages/build_model/script_internal.h"
+#include "stages/build_model/script_words.h"
 
 #define ABOVE_ALL 1e4 /* model units: heights without a limit */
 

@@ -2,13 +2,15 @@
  *
  * The first word of a line finds the statement's row in the table of verbs. Its read() reads the fixed words and names,
  * then script_words.c the options. All names are copied to one buffer of the file's size. */
+#include "stages/build_model/script.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "common/base/array.h"
 #include "common/base/scan.h"
-#include "stages/build_model/script_internal.h"
+#include "stages/build_model/script_words.h"
 
 enum { MAX_STATEMENTS = 200000 };
 
@@ -61,13 +63,13 @@ static enum status read_statement(struct script_reader *r, struct statement *s)
 
 enum status script_read(struct script *script, const char *path, struct err *err)
 {
-    struct script_reader r = {.script = script, .err = err};
+    struct script_reader r = {.err = err};
     *script = (struct script){0};
     enum status st = textfile_open(&r.t, path, err);
     if (!st) {
         script->path = strdup(path);
         /* a word and its terminating zero need no more than the word and the blank after it */
-        script->words = malloc(r.t.size + 2);
+        r.words = script->words = malloc(r.t.size + 2);
         if (!script->path || !script->words) st = err_nomem(err, "a script", r.t.size);
     }
     if (!st) st = read_header(&r);
@@ -80,8 +82,11 @@ enum status script_read(struct script *script, const char *path, struct err *err
         if (st) break;
         struct statement *s = &script->statements[script->count++];
         *s = (struct statement){0};
+        r.count = script->count;
         st = read_statement(&r, s);
     }
+    script->base = r.base;
+    script->base_line = r.base_line;
     textfile_release(&r.t);
     if (st) script_release(script);
     return st;

@@ -1,11 +1,12 @@
 /* script_words.c - words, numbers, places, faces, lists and options of a statement. */
+#include "stages/build_model/script_words.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "common/base/array.h"
 #include "common/base/scan.h"
-#include "stages/build_model/script_internal.h"
 
 static const char *const OPTIONS[OPTION_COUNT] = {"thickness", "foot",     "top",    "floor", "ceiling", "turn",
                                                   "at",        "left",     "right",  "front", "back",    "bottom",
@@ -26,7 +27,7 @@ enum status script_usage_error(struct script_reader *r, const char *found)
 const char *script_keep_word(struct script_reader *r, const char *word)
 {
     const size_t size = strlen(word) + 1;
-    char *kept = r->script->words + r->used;
+    char *kept = r->words + r->used;
     memcpy(kept, word, size);
     r->used += size;
     return kept;

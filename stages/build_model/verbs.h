@@ -5,9 +5,10 @@
 #ifndef REMODEL_BUILD_MODEL_VERBS_H
 #define REMODEL_BUILD_MODEL_VERBS_H
 
-#include "stages/build_model/script.h"
+#include "common/base/err.h"
+#include "stages/build_model/statement.h"
 
-struct script_reader; /* script_internal.h */
+struct script_reader; /* script_words.h */
 struct plan_context;  /* plan_internal.h */
 
 /* The scripts that may have a statement; of edits alone: what the unedited model, which shows the photographs, cannot

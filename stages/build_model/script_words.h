@@ -1,7 +1,7 @@
-/* script_internal.h - words, numbers, places and options of a statement, for what reads one; everything else includes
+/* script_words.h - words, numbers, places and options of a statement, for what reads one; everything else includes
  * script.h. */
-#ifndef REMODEL_BUILD_MODEL_SCRIPT_INTERNAL_H
-#define REMODEL_BUILD_MODEL_SCRIPT_INTERNAL_H
+#ifndef REMODEL_BUILD_MODEL_SCRIPT_WORDS_H
+#define REMODEL_BUILD_MODEL_SCRIPT_WORDS_H
 
 #include "common/base/textfile.h"
 #include "stages/build_model/verbs.h"
@@ -11,13 +11,17 @@ enum { MAX_NAME = 64 };
 
 struct script_reader {
     struct textfile t;
-    struct script *script;   /* what is read; its buffer `words` is large enough for all words of the file */
-    size_t used;             /* of that buffer */
-    const struct verb *verb; /* of the statement that is being read */
+    char *words; /* a buffer for all words of the file */
+    size_t used;
+    int count;               /* statements so far, with the one that is being read */
+    const struct verb *verb; /* of that one */
+    const char *base;        /* the edit that the script stands on; NULL: none */
+    int base_line;
     struct err *err;
 };
 
-/* script_words.c */
+const char *option_name(enum option option);
+const char *filling_name(enum filling filling); /* "nothing", "leaf", "glass", "wall" */
 
 /* ST_DATA: `found` (NULL: the end of the line) where the verb's usage wants something else. */
 enum status script_usage_error(struct script_reader *r, const char *found);
