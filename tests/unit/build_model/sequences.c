@@ -18,7 +18,8 @@
 #include "stages/build_model/plan_internal.h"
 
 enum { DEFAULT_SEQUENCES = 300, FURNISHINGS = 6, EDITS = 8, LINES = 10 };
-enum { MANY_SEQUENCES = 2000 }; /* in many sequences each statement is accepted in some edit */
+/* In many sequences each of the statements that random_script.h makes is accepted in some edit. */
+enum { MANY_SEQUENCES = 2000, MADE_VERBS = 32 };
 
 static int accepted, rejected, exact_models, points, textures, by_verb[64];
 
@@ -255,11 +256,13 @@ static void random_sequences_of_edits_give_the_described_solids(void **state)
     }
     print_message("%d sequences: %d edits accepted, %d rejected; %d volumes, %d points, %d textures compared\n", count,
                   accepted, rejected, exact_models, points, textures);
+    int made = 0;
     assert_true(verb_count <= (int)(sizeof by_verb / sizeof *by_verb));
     for (int v = 0; v < verb_count; v++) {
         print_message("%s %d%s", verbs[v].word, by_verb[v], v + 1 < verb_count ? ", " : " accepted in edits\n");
-        assert_true(by_verb[v] > 0 || count < MANY_SEQUENCES);
+        made += by_verb[v] > 0;
     }
+    assert_true(made >= MADE_VERBS || count < MANY_SEQUENCES);
     assert_true(accepted >= 3 * count / 2 && rejected >= count && exact_models >= 2 * count && points >= 10 * count &&
                 textures >= 10 * count);
 }
