@@ -36,6 +36,17 @@ folders_include_only_folders_below()
     [ -z "$bad" ] || { echo "$bad"; fail "includes against common/folders.txt: $(wc -l <<<"$bad")"; }
 }
 
+folders_are_permitted_only_what_they_include()
+{
+    local below to unused=
+    while IFS=' ' read -r own below; do
+        for to in $below; do
+            grep -qs "^#include \"common/$to/" "common/${own%:}"/* || unused+="${own%:} may include $to, "
+        done
+    done < <(grep -E '^[a-z]+:' common/folders.txt)
+    [ -z "$unused" ] || fail "common/folders.txt permits what nobody includes: ${unused%, }"
+}
+
 the_check_of_includes_finds_what_is_wrong()
 {
     mkdir -p "$scratch/tree/common/base" "$scratch/tree/common/film" "$scratch/tree/common/odd" "$scratch/tree/stages/a"
@@ -149,6 +160,7 @@ cited_sources_are_in_the_list()
 
 run every_header_compiles_alone
 run folders_include_only_folders_below
+run folders_are_permitted_only_what_they_include
 run the_check_of_includes_finds_what_is_wrong
 run no_files_call_each_other_in_a_circle
 run the_check_of_circles_finds_one
