@@ -7,7 +7,7 @@
  *         POINTS                                        with --points: for walls given by rectangles
  *         BASE                                          with --edit: the unedited model, whose face ids are kept
  *         SCENE/objects.txt, meshes                     with --edit: synthetic objects
- * writes  OUT/plan.svg, view.png, plan.txt, merged.txt, model.obj, then model.txt; with --base before them texture.txt and
+ * writes  OUT/plan.svg, view.png, plan.txt, merged.txt, then model.txt; with --base before them texture.txt and
  *         objects.txt
  * With --overlay PHOTO instead:
  * reads   MODEL, AXES, VIEWS, RECORDS/PHOTO.txt, PHOTOS/FILE
@@ -72,7 +72,6 @@ static enum status write_model(struct job *j, const struct plan *plan, const str
         file_path(path, j->out, "view.png", "", err) || view_picture_write(mesh, plan, placer, path, err) ||
         file_path(path, j->out, "plan.txt", "", err) || plan_write(plan, path, &j->prov, err) ||
         file_path(path, j->out, "merged.txt", "", err) || merged_write(log, path, &j->prov, err) ||
-        file_path(path, j->out, "model.obj", "", err) || solid_mesh_write_obj(mesh, path, &j->prov, err) ||
         file_path(path, j->out, "model.txt", "", err) || solid_mesh_write(mesh, path, &j->prov, err))
         return err->status;
     return ST_OK;

@@ -1,7 +1,7 @@
 # build_model: solid models of rooms, by a script and its edits.
 FOLLOWS.build_model := find_axes suggest_model
 READS.build_model := scenes/NAME/model.txt, edits/E.txt, objects.txt and the meshes of objects, axes.txt, cameras, points.ply; the photos for overlays
-WRITES.build_model := model/, remodel/E/: model.txt, model.obj, plan.txt, merged.txt, plan.svg, view.png, overlay/PHOTO.jpg; remodel/E/texture.txt, objects.txt
+WRITES.build_model := model/, remodel/E/: model.txt, plan.txt, merged.txt, plan.svg, view.png, overlay/PHOTO.jpg; remodel/E/texture.txt, objects.txt
 STEPS.build_model := model
 HELP.model := the solid model of scenes/SCENE/model.txt and of each edit in edits/, with pictures to check them
 NEEDS.model := depth
@@ -9,7 +9,7 @@ PRODUCT.model := model
 
 ifdef GRAPH
 # the model of model.txt, and one of each edit
-model_files = $(addprefix $(1)/,model.txt model.obj plan.txt merged.txt plan.svg view.png)
+model_files = $(addprefix $(1)/,model.txt plan.txt merged.txt plan.svg view.png)
 MODEL_SCRIPT := $(wildcard scenes/$(SCENE)/model.txt)
 edit_files = $(call model_files,$(1)) $(1)/texture.txt $(1)/objects.txt
 MODEL_EDITS := $(if $(MODEL_SCRIPT),$(patsubst scenes/$(SCENE)/edits/%.txt,%,$(wildcard scenes/$(SCENE)/edits/*.txt)))
