@@ -8,9 +8,10 @@
 
 enum status read_adjust(struct script_reader *r, struct statement *s)
 {
-    return script_read_name(r, "a name", &s->name) || script_read_place(r, &s->place, 1u << PLACE_FROM_END)
-               ? r->err->status
-               : ST_OK;
+    if (script_read_name(r, "a name", &s->name) || script_read_place(r, &s->place, 1u << PLACE_FROM_END))
+        return r->err->status;
+    s->by_points = s->place.kind == PLACE_VIEW;
+    return ST_OK;
 }
 
 enum status apply_adjust(struct plan_context *c)

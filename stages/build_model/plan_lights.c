@@ -93,7 +93,7 @@ enum status read_object(struct script_reader *r, struct statement *s)
     struct script_object *o = &s->object;
     bool turned = false, scaled = false;
     for (int k = 0; k < 3; k++) o->scale[k] = 1;
-    if (script_read_name(r, "a name", &s->name) || read_mesh_file(r, &s->other) || script_expect(r, "at") ||
+    if (script_read_name(r, "a name", &s->name) || read_mesh_file(r, &s->mesh) || script_expect(r, "at") ||
         script_read_number(r, "X", &o->at[0]) || script_read_number(r, "Y", &o->at[1]) ||
         script_read_number(r, "Z", &o->at[2]))
         return r->err->status;
@@ -145,11 +145,11 @@ enum status apply_object(struct plan_context *c)
     free(o->path);
     free(o->file);
     o->path = strdup(c->path);
-    o->file = strdup(s->other);
+    o->file = strdup(s->mesh);
     o->line = s->line;
     o->removed = false;
     o->placed = s->object;
-    return o->name && o->path && o->file ? ST_OK : err_nomem(c->err, "an object", strlen(c->path) + strlen(s->other));
+    return o->name && o->path && o->file ? ST_OK : err_nomem(c->err, "an object", strlen(c->path) + strlen(s->mesh));
 }
 
 static const char *nth_object(const void *ctx, int i)

@@ -152,9 +152,10 @@ static enum status place_new_wall(struct plan_context *c, struct plan_wall *w)
 
 enum status read_wall(struct script_reader *r, struct statement *s)
 {
-    return script_read_name(r, "a name", &s->name) || script_read_place(r, &s->place, 1u << PLACE_PARALLEL)
-               ? r->err->status
-               : ST_OK;
+    if (script_read_name(r, "a name", &s->name) || script_read_place(r, &s->place, 1u << PLACE_PARALLEL))
+        return r->err->status;
+    s->by_points = s->place.kind == PLACE_VIEW;
+    return ST_OK;
 }
 
 enum status apply_wall(struct plan_context *c)

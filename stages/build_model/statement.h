@@ -60,15 +60,16 @@ struct statement {
     int line;
     const char *name;  /* what it makes or changes; set: the quantity; join: NULL */
     const char *other; /* openings: the wall or room; extend: the wall to reach, or NULL; split: the new wall; copy: the
-                           face that gets the texture; texture: "stretch" or "crop"; clear, keep: the opening; object:
-                           its mesh */
+                           face that gets the texture; texture: "stretch" or "crop"; clear, keep: the opening */
+    const char *mesh;  /* object: its file in the scene's folder; else NULL */
+    bool by_points;    /* wall, adjust: the place is found by points, since it is in a view */
     const char **names; /* join, room: walls in order; slope, gable: the two walls */
     int name_count;
     struct script_place place, target; /* target: of copy; PLACE_NONE of either: the whole face */
     int end;                           /* extend: END_START or END_END */
     enum filling filling;              /* fill */
-    /* set: the value, or a colour; colour, paint: R G B; lamp: factors; extend: where; split: from, to; move: by; slope: two heights; gable:
-     * also the ridge's */
+    /* set: the value, or a colour; colour, paint: R G B; lamp: factors; extend: where; split: from, to; move: by;
+     * slope: two heights; gable: also the ridge's */
     double values[3];
     int value_count;
     double options[OPTION_COUNT];

@@ -61,6 +61,7 @@ static void the_whole_language_is_read(void **state)
     assert_true(!strcmp(s.statements[0].verb->word, "set") && s.statements[0].line == 4 &&
                 s.statements[0].values[0] == 0.01);
     assert_string_equal(s.statements[1].place.view, "v 1");
+    assert_true(s.statements[1].by_points && !s.statements[8].by_points && !s.statements[1].mesh);
     assert_true(s.statements[1].has_option[OPTION_ANGLED] && s.statements[1].options[OPTION_TOP] == 2.5 &&
                 s.statements[1].place.a[3] == 4);
     assert_int_equal(s.statements[2].name_count, 3);
