@@ -14,12 +14,8 @@
 #include "common/base/scan.h"
 #include "common/base/textfile.h"
 
-/* Names for suggestions; the new name for a renamed parameter. */
-static const char *table_name(const void *ctx, int i)
-{
-    const struct param *p = (const struct param *)ctx + i;
-    return p->kind == PARAM_renamed ? p->help : p->name;
-}
+/* Names for suggestions. */
+static const char *table_name(const void *ctx, int i) { return ((const struct param *)ctx)[i].name; }
 
 static const struct param *find(const struct param *table, const char *name)
 {
@@ -62,8 +58,6 @@ static enum status assign(const struct param *p, void *values, const char *value
     double d;
 
     switch (p->kind) {
-    case PARAM_renamed:
-        return err_set(err, ST_USAGE, "%s%s is now called %s; use that name.", where, p->name, p->help);
     case PARAM_int:
         if (!scan_int(value, &i) || (double)i < p->min || (double)i > p->max || i < INT_MIN || i > INT_MAX)
             return err_set(err, ST_USAGE, "%s%s = %s, wanted an integer from %.0f to %.0f%s%s.", where, p->name,
@@ -251,7 +245,6 @@ void params_print(const struct param *table, const void *values, const char *sec
 
     fprintf(to, "[%s]\n", section);
     for (const struct param *p = table; p->name; p++) {
-        if (p->kind == PARAM_renamed) continue;
         const bool empty = p->kind == PARAM_text && !*((const char *)values + p->offset);
         fprintf(to, empty ? "%s =" : "%s = ", p->name);
         print_value(p, values, to);
@@ -285,7 +278,6 @@ void params_explain(const struct param *table, const void *values, const char *s
 
     fprintf(to, "[%s]\n", section);
     for (const struct param *p = table; p->name; p++) {
-        if (p->kind == PARAM_renamed) continue;
         const bool empty = p->kind == PARAM_text && !*((const char *)values + p->offset);
         if (p->kind == PARAM_choice)
             snprintf(text, sizeof text, "%s (one of %s)", p->help, p->unit);
@@ -307,7 +299,6 @@ void params_help(const struct param *table, const void *values, FILE *to)
     const locale_t old = uselocale(scan_c_locale());
 
     for (const struct param *p = table; p->name; p++) {
-        if (p->kind == PARAM_renamed) continue;
         fprintf(to, "  %-20s %s\n%23s", p->name, p->help, "");
         fputs(p->kind == PARAM_text || p->kind == PARAM_choice ? "default \"" : "default ", to);
         print_value(p, values, to);

@@ -27,7 +27,7 @@
 #define PARAM_TEXT_SIZE 256
 typedef char param_text[PARAM_TEXT_SIZE];
 
-enum param_kind { PARAM_int, PARAM_double, PARAM_text, PARAM_choice, PARAM_renamed };
+enum param_kind { PARAM_int, PARAM_double, PARAM_text, PARAM_choice };
 
 #define PARAM_C_int    int
 #define PARAM_C_double double
@@ -39,8 +39,6 @@ enum param_kind { PARAM_int, PARAM_double, PARAM_text, PARAM_choice, PARAM_renam
 /* A row of a table. Where the table is defined, PARAM_STRUCT must be the struct. */
 #define PARAM_ROW(name, type, value, min, max, unit, help) \
     {#name, PARAM_##type, offsetof(PARAM_STRUCT, name), min, max, unit, help},
-/* A row for the former name of a parameter. Setting it is an error that names the new one. */
-#define PARAM_RENAMED(old, new_name) {#old, PARAM_renamed, 0, 0, 0, "", #new_name},
 #define PARAM_END                            \
     {                                        \
         NULL, PARAM_int, 0, 0, 0, NULL, NULL \
@@ -52,7 +50,7 @@ struct param {
     size_t offset;    /* of the value in the stage's struct */
     double min, max;  /* inclusive; numbers only */
     const char *unit; /* for a choice: the choices, "auto|yes|no" */
-    const char *help; /* a noun phrase; for a renamed parameter: the new name */
+    const char *help; /* a noun phrase */
 };
 
 /* Reads [section] of an INI file into `values` and ignores other sections. ST_USAGE, with file and line: an unknown

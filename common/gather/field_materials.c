@@ -29,7 +29,6 @@
 #include "common/base/file_path.h"
 #include "common/base/parallel.h"
 #include "common/capture/photo_camera.h"
-#include "common/gather/model_field.h"
 #include "common/gather/specular.h"
 #include "common/math/numbers.h"
 
@@ -37,9 +36,8 @@ enum { NESTED_RAYS = 16, MOST_REGIONS = UINT16_MAX };
 static const double GRAZING = 0.02;
 static const double EDGE_STEP = 8; /* px between the points of a region's border whose rays make its cone */
 
-void field_materials_release(struct model_field *f)
+void field_materials_release(struct field_materials *m)
 {
-    struct field_materials *m = &f->materials;
     material_list_release(&m->list);
     free(m->brdfs);
     free(m->texels);
@@ -47,24 +45,7 @@ void field_materials_release(struct model_field *f)
     *m = (struct field_materials){0};
 }
 
-/* ------------------------------------------------------------------------------------------------------------ look-up */
-
-int field_material_at(const struct model_field *f, int face_id, struct vec3 p)
-{
-    const int mark = field_atlas_look(&f->atlas, face_id, p).mark;
-    return mark < 0 ? -1 : f->materials.marks[mark].material;
-}
-
-void field_material_viewpoint(const struct model_field *f, int face_id, struct vec3 p, struct vec3 *viewpoint)
-{
-    const int mark = field_atlas_look(&f->atlas, face_id, p).mark;
-    if (mark >= 0) *viewpoint = f->materials.marks[mark].viewpoint;
-}
-
-const struct brdf *field_material_brdf(const struct model_field *f, int material)
-{
-    return &f->materials.brdfs[material];
-}
+/* --------------------------------------------------------------------------------------------------------- reflection */
 
 /* splitmix64's finalizer */
 static uint64_t mix(uint64_t h, double value)
@@ -86,23 +67,22 @@ static struct vec3 raised(struct vec3 view, struct vec3 normal)
 }
 
 /* k_s I_s */
-static struct rgb gloss_towards(const struct model_field *f, const struct brdf *b, const struct surface_seen *s,
+static struct rgb gloss_towards(const struct light_field *plain, const struct brdf *b, const struct surface_seen *s,
                                 struct vec3 view, uint64_t key)
 {
     const struct gather_point p = {s->at, s->normal};
-    return specular_estimate(&f->plain, p, b, raised(view, s->normal), NESTED_RAYS, key);
+    return specular_estimate(plain, p, b, raised(view, s->normal), NESTED_RAYS, key);
 }
 
-bool field_material_reflect(struct rgb *radiance, const struct model_field *f, int mark,
-                            const struct surface_seen *surface)
+bool field_materials_reflect(struct rgb *radiance, const struct field_materials *m, const struct light_field *plain,
+                             int mark, const struct surface_seen *surface)
 {
-    const struct field_mark *m = &f->materials.marks[mark];
-    const struct brdf *b = &f->materials.brdfs[m->material];
+    const struct brdf *b = &m->brdfs[m->marks[mark].material];
     if (!(b->gloss > 0)) return false;
     const uint64_t key = mix_vector(mix_vector(0, surface->at), surface->to_viewer);
-    const struct vec3 source = vec3_normalize(vec3_sub(m->viewpoint, surface->at));
-    const struct rgb to = gloss_towards(f, b, surface, surface->to_viewer, key);
-    const struct rgb was = gloss_towards(f, b, surface, source, key);
+    const struct vec3 source = vec3_normalize(vec3_sub(m->marks[mark].viewpoint, surface->at));
+    const struct rgb to = gloss_towards(plain, b, surface, surface->to_viewer, key);
+    const struct rgb was = gloss_towards(plain, b, surface, source, key);
     radiance->r = fmax(radiance->r + to.r - was.r, 0);
     radiance->g = fmax(radiance->g + to.g - was.g, 0);
     radiance->b = fmax(radiance->b + to.b - was.b, 0);
@@ -122,7 +102,8 @@ struct seen_region {
 };
 
 struct finder {
-    struct model_field *field;
+    struct field_materials *materials;
+    const struct field_surface *on;
     const struct model_axes *axes;
     struct camera_set set;
     struct lens_list lenses;
@@ -135,7 +116,7 @@ struct finder {
 
 static void finder_release(struct finder *d)
 {
-    for (int i = 0; d->found && i < d->field->atlas.atlas.page_count; i++) free(d->found[i]);
+    for (int i = 0; d->found && i < d->on->atlas->atlas.page_count; i++) free(d->found[i]);
     free(d->found);
     free(d->by_view);
     free(d->by_region);
@@ -231,14 +212,14 @@ static bool region_shows(const struct seen_region *s, const struct finder *d, st
     if (!photo_camera_project(&s->camera, world_from_model_point(d->axes, p), &u, &v)) return false;
     if (!(u >= 0 && v >= 0 && u <= s->camera.lens.width && v <= s->camera.lens.height)) return false;
     if (!material_region_holds(s->region, u, v)) return false;
-    const struct ray_scene *rays = &d->field->model.rays;
+    const struct ray_scene *rays = &d->on->model->rays;
     const struct vec3 from = vec3_add(p, vec3_scale(normal, rays->epsilon));
     return !ray_scene_blocked(rays, from, vec3_sub(s->centre, from), 1);
 }
 
 static uint16_t *found_at(const struct finder *d, const struct atlas_tile *t, int x, int y)
 {
-    const size_t row = (size_t)d->field->atlas.atlas.page_sizes[t->page][0];
+    const size_t row = (size_t)d->on->atlas->atlas.page_sizes[t->page][0];
     return d->found[t->page] + (size_t)(t->y + y) * row + (size_t)(t->x + x);
 }
 
@@ -248,7 +229,7 @@ static void search_tile(const struct finder *d, const struct atlas_tile *t, cons
     for (int y = 0; y < t->height; y++)
         for (int x = 0; x < t->width; x++) {
             uint16_t *found = found_at(d, t, x, y);
-            if (*found || !field_atlas_has(&d->field->atlas, t, x, y)) continue;
+            if (*found || !field_atlas_has(d->on->atlas, t, x, y)) continue;
             if (region_shows(s, d, field_atlas_place(t, *plane, x, y), plane->normal)) *found = (uint16_t)(region + 1);
         }
 }
@@ -258,9 +239,9 @@ static void search_tiles(void *ctx, size_t begin, size_t end, int thread)
     const struct finder *d = ctx;
     (void)thread;
     for (size_t i = begin; i < end; i++) {
-        const struct atlas_tile *t = &d->field->atlas.atlas.tiles[i];
-        if (t->face < 0 || t->face >= d->field->model.ids) continue;
-        const struct face_plane *plane = &d->field->planes[t->face];
+        const struct atlas_tile *t = &d->on->atlas->atlas.tiles[i];
+        if (t->face < 0 || t->face >= d->on->model->ids) continue;
+        const struct face_plane *plane = &d->on->planes[t->face];
         for (int r = 0; r < d->region_count; r++)
             if (vec3_dot(plane->normal, d->regions[r].centre) > plane->offset) search_tile(d, t, plane, r);
     }
@@ -268,7 +249,7 @@ static void search_tiles(void *ctx, size_t begin, size_t end, int thread)
 
 static enum status find_texels(struct finder *d, struct err *err)
 {
-    const struct atlas *a = &d->field->atlas.atlas;
+    const struct atlas *a = &d->on->atlas->atlas;
     d->found = calloc((size_t)a->page_count + 1, sizeof *d->found);
     if (!d->found) return err_nomem(err, "pages", (size_t)a->page_count * sizeof *d->found);
     for (int i = 0; i < a->page_count; i++) {
@@ -285,7 +266,7 @@ static enum status find_texels(struct finder *d, struct err *err)
 /* The viewpoint of a view of the atlas. False: it is unknown or behind the face, and *viewpoint is unchanged. */
 static bool find_viewpoint(struct vec3 *viewpoint, const struct finder *d, int view, const struct face_plane *plane)
 {
-    const struct atlas *a = &d->field->atlas.atlas;
+    const struct atlas *a = &d->on->atlas->atlas;
     const int at = view >= 0 && view < a->source_count ? camera_set_find(&d->set, a->sources[view]) : -1;
     if (at < 0) return false;
     const struct vec3 p = model_from_world_point(d->axes, d->set.views[at].center);
@@ -309,13 +290,13 @@ static enum status add_mark(int *mark, struct field_materials *m, int material, 
 /* Which mark a texel gets. */
 static enum status choose_mark(int *mark, struct finder *d, const struct atlas_tile *t, int x, int y, struct err *err)
 {
-    const int region = *found_at(d, t, x, y) - 1, view = field_atlas_view(&d->field->atlas, t, x, y);
+    const int region = *found_at(d, t, x, y) - 1, view = field_atlas_view(d->on->atlas, t, x, y);
     const struct seen_region *s = &d->regions[region];
     struct vec3 viewpoint = s->centre;
     int *known = &d->by_region[region];
-    if (find_viewpoint(&viewpoint, d, view, &d->field->planes[t->face]))
-        known = &d->by_view[(size_t)s->material * (size_t)d->field->atlas.atlas.source_count + (size_t)view];
-    if (!*known && add_mark(known, &d->field->materials, s->material, viewpoint, err)) return err->status;
+    if (find_viewpoint(&viewpoint, d, view, &d->on->planes[t->face]))
+        known = &d->by_view[(size_t)s->material * (size_t)d->on->atlas->atlas.source_count + (size_t)view];
+    if (!*known && add_mark(known, d->materials, s->material, viewpoint, err)) return err->status;
     *mark = *known - 1;
     return ST_OK;
 }
@@ -327,16 +308,16 @@ static enum status mark_tile(struct finder *d, const struct atlas_tile *t, struc
             int mark = 0;
             if (!*found_at(d, t, x, y)) continue;
             if (choose_mark(&mark, d, t, x, y, err)) return err->status;
-            field_atlas_mark(&d->field->atlas, t, x, y, mark);
-            d->field->materials.texels[d->field->materials.marks[mark].material]++;
+            field_atlas_mark(d->on->atlas, t, x, y, mark);
+            d->materials->texels[d->materials->marks[mark].material]++;
         }
     return ST_OK;
 }
 
 static enum status mark_texels(struct finder *d, struct err *err)
 {
-    const struct atlas *a = &d->field->atlas.atlas;
-    struct field_materials *m = &d->field->materials;
+    const struct atlas *a = &d->on->atlas->atlas;
+    struct field_materials *m = d->materials;
     const size_t pairs = (size_t)m->list.count * (size_t)a->source_count;
     d->by_view = calloc(pairs + 1, sizeof *d->by_view);
     m->marks = calloc(FIELD_ATLAS_MARKS, sizeof *m->marks);
@@ -367,16 +348,17 @@ static enum status read_cameras(struct finder *d, const char *views, struct prov
     return ST_OK;
 }
 
-enum status model_field_read_materials(struct model_field *f, const char *path, const char *views,
-                                       const struct model_axes *axes, struct provenance *prov, struct err *err)
+enum status field_materials_read(struct field_materials *m, const struct field_surface *on, const char *path,
+                                 const char *views, const struct model_axes *axes, struct provenance *prov,
+                                 struct err *err)
 {
     struct provenance unused = {0};
-    struct finder d = {.field = f, .axes = axes};
+    struct finder d = {.materials = m, .on = on, .axes = axes};
     struct provenance *to = prov ? prov : &unused;
     enum status st = provenance_add_file(to, "lights/materials.txt", path, err);
-    if (!st) st = read_list(&f->materials, path, err);
+    if (!st) st = read_list(m, path, err);
     if (!st) st = read_cameras(&d, views, to, err);
-    if (!st) st = add_regions(&d, &f->materials.list, path, err);
+    if (!st) st = add_regions(&d, &m->list, path, err);
     if (!st) st = find_texels(&d, err);
     if (!st) st = mark_texels(&d, err);
     finder_release(&d);

@@ -6,11 +6,11 @@
 #define REMODEL_GATHER_FIELD_MATERIALS_H
 
 #include "common/base/provenance.h"
+#include "common/gather/field_atlas.h"
 #include "common/gather/light_field.h"
 #include "common/gather/materials.h"
+#include "common/light/model_rays.h"
 #include "common/model/model_axes.h"
-
-struct model_field;
 
 /* A texel's material, and the place from which it was photographed. */
 struct field_mark {
@@ -27,31 +27,29 @@ struct field_materials {
     int mark_count;
 };
 
-/* Reads materials.txt and finds its regions on the model; VIEWS has cameras.txt, images.txt, lenses.txt. Once for a field,
- * after model_field_read(). From then on a ray that meets a texel of a glossy material sees it as its own origin would
- * (field_materials.c), with the source LIGHT_MATERIAL. Same bits for any number of threads. ST_DATA also: a region in a
- * view that lenses.txt does not have, more than FIELD_ATLAS_MARKS pairs of a material and a view that its texels come
- * from. */
-enum status model_field_read_materials(struct model_field *f, const char *path, const char *views,
-                                       const struct model_axes *axes, struct provenance *prov, struct err *err);
-void field_materials_release(struct model_field *f);
+/* The surfaces on which materials are. */
+struct field_surface {
+    struct field_atlas *atlas; /* its texels get marks */
+    const struct model_rays *model;
+    const struct face_plane *planes; /* of each face id */
+};
 
-/* The material at a point of a face, an index into materials.list; -1: none, or no texel. Model frame. */
-int field_material_at(const struct model_field *f, int face_id, struct vec3 p);
-/* From where the texel at a point of a face was photographed, as far as its mark knows; *viewpoint is unchanged where it has
- * none. */
-void field_material_viewpoint(const struct model_field *f, int face_id, struct vec3 p, struct vec3 *viewpoint);
-/* The reflectance of a material of the list, with its fitted k_s. */
-const struct brdf *field_material_brdf(const struct model_field *f, int material);
+/* Reads materials.txt and finds its regions on the model, once for an atlas; VIEWS has cameras.txt, images.txt, lenses.txt.
+ * Same bits for any number of threads. The caller releases m, also after a failure. ST_DATA also: a region in a view that
+ * lenses.txt does not have, more than FIELD_ATLAS_MARKS pairs of a material and a view that its texels come from. */
+enum status field_materials_read(struct field_materials *m, const struct field_surface *on, const char *path,
+                                 const char *views, const struct model_axes *axes, struct provenance *prov,
+                                 struct err *err);
+void field_materials_release(struct field_materials *m);
 
 struct surface_seen {
     struct vec3 at, normal; /* unit, of the side that is seen */
     struct vec3 to_viewer;  /* unit */
 };
 
-/* The radiance of a marked texel towards a viewer, from its radiance in the atlas. False: its material has no gloss, and
- * *radiance is unchanged. */
-bool field_material_reflect(struct rgb *radiance, const struct model_field *f, int mark,
-                            const struct surface_seen *surface);
+/* The radiance of a marked texel towards a viewer, from its radiance in the atlas. plain: the light around it, without
+ * materials. False: its material has no gloss, and *radiance is unchanged. */
+bool field_materials_reflect(struct rgb *radiance, const struct field_materials *m, const struct light_field *plain,
+                             int mark, const struct surface_seen *surface);
 
 #endif

@@ -26,12 +26,12 @@ void field_dual(struct vec3 dual[2], struct vec3 x, struct vec3 y)
 
 /* ------------------------------------------------------------------------------------------------------------ look-up */
 
-static const struct field_opening *passed(const struct model_field *f, struct vec3 from, struct vec3 direction)
+static const struct field_opening *passed(const struct field_openings *all, struct vec3 from, struct vec3 direction)
 {
     const struct field_opening *found = NULL;
     double nearest = INFINITY;
-    for (int i = 0; i < f->opening_count; i++) {
-        const struct field_opening *o = &f->openings[i];
+    for (int i = 0; i < all->count; i++) {
+        const struct field_opening *o = &all->items[i];
         const double cosine = -vec3_dot(direction, o->opening->normal);
         const struct vec3 to = vec3_sub(o->opening->centre, from);
         const double t = -vec3_dot(to, o->opening->normal) / cosine;
@@ -44,43 +44,48 @@ static const struct field_opening *passed(const struct model_field *f, struct ve
     return found;
 }
 
-bool field_reference_look(float rgb[3], const struct model_field *f, struct vec3 from, struct vec3 direction)
+bool field_openings_look(float rgb[3], const struct field_openings *o, struct vec3 from, struct vec3 direction)
 {
-    const struct field_opening *o = passed(f, from, direction);
-    for (int i = 0; o && i < o->reference_count; i++)
-        if (outdoors_picture_sample(rgb, NULL, &f->pictures[o->references[i]], direction) == SHOWS_OUTDOORS)
+    const struct field_opening *way = passed(o, from, direction);
+    for (int i = 0; way && i < way->reference_count; i++)
+        if (outdoors_picture_sample(rgb, NULL, &o->pictures[way->references[i]], direction) == SHOWS_OUTDOORS)
             return true;
     return false;
 }
 
 /* ----------------------------------------------------------------------------------------------------------- reading */
 
-void field_openings_release(struct model_field *f)
+void field_openings_release(struct field_openings *o)
 {
-    for (int i = 0; i < f->opening_count; i++) free(f->openings[i].references);
-    for (int i = 0; i < f->picture_count; i++) outdoors_picture_release(&f->pictures[i]);
-    free(f->openings);
-    free(f->pictures);
-    f->openings = NULL;
-    f->pictures = NULL;
-    f->opening_count = f->picture_count = 0;
+    for (int i = 0; i < o->count; i++) free(o->items[i].references);
+    for (int i = 0; i < o->picture_count; i++) outdoors_picture_release(&o->pictures[i]);
+    free(o->items);
+    free(o->pictures);
+    *o = (struct field_openings){0};
 }
 
-static enum status read_picture(struct model_field *f, const char *folder, const char *id,
-                                const struct model_axes *axes, struct provenance *prov, struct err *err)
+struct reading {
+    struct field_openings *openings;
+    const struct model_rays *model;
+    const char *folder;
+    const struct model_axes *axes;
+    struct provenance *prov;
+};
+
+static enum status read_picture(const struct reading *r, const char *id, struct err *err)
 {
     char path[FILE_PATH];
     bool placed, shows;
-    struct outdoors_picture *p = &f->pictures[f->picture_count++];
-    if (provenance_add_in(prov, "lri", folder, id, ".exr", path, err) ||
-        outdoors_picture_of_reference(p, path, axes, &placed, err))
+    struct outdoors_picture *p = &r->openings->pictures[r->openings->picture_count++];
+    if (provenance_add_in(r->prov, "lri", r->folder, id, ".exr", path, err) ||
+        outdoors_picture_of_reference(p, path, r->axes, &placed, err))
         return err->status;
     if (!placed)
         return err_set(err, ST_DATA,
                        "%s has no pose in the scene, but an opening of lights.txt names it; give it one by LRI_SFM or "
                        "scenes/NAME/lri.txt, and run `make lri` again.",
                        path);
-    if (outdoors_picture_load(p, &shows, &f->model, NULL, &limits, err)) return err->status;
+    if (outdoors_picture_load(p, &shows, r->model, NULL, &limits, err)) return err->status;
     if (!shows)
         return err_set(err, ST_DATA,
                        "%s shows nothing outside of the model, but an opening of lights.txt names it; check its pose, "
@@ -90,43 +95,41 @@ static enum status read_picture(struct model_field *f, const char *folder, const
 }
 
 /* The index of a reference image, read if it is new. */
-static enum status find_picture(int *index, struct model_field *f, const char *folder, const char *id,
-                                const struct model_axes *axes, struct provenance *prov, struct err *err)
+static enum status find_picture(int *index, const struct reading *r, const char *id, struct err *err)
 {
-    for (*index = 0; *index < f->picture_count; (*index)++)
-        if (!strcmp(f->pictures[*index].name, id)) return ST_OK;
-    return read_picture(f, folder, id, axes, prov, err);
+    for (*index = 0; *index < r->openings->picture_count; (*index)++)
+        if (!strcmp(r->openings->pictures[*index].name, id)) return ST_OK;
+    return read_picture(r, id, err);
 }
 
-static enum status add_opening(struct model_field *f, const struct daylight *opening, const char *folder,
-                               const struct model_axes *axes, struct provenance *prov, struct err *err)
+static enum status add_opening(const struct reading *r, const struct daylight *opening, struct err *err)
 {
     if (!opening->reference_count) return ST_OK;
-    struct field_opening *o = &f->openings[f->opening_count++];
+    struct field_opening *o = &r->openings->items[r->openings->count++];
     *o = (struct field_opening){.opening = opening};
     field_dual(o->dual, opening->x, opening->y);
     o->references = calloc((size_t)opening->reference_count, sizeof *o->references);
     if (!o->references) return err_nomem(err, "references", (size_t)opening->reference_count * sizeof *o->references);
     for (int k = 0; k < opening->reference_count; k++) {
-        if (find_picture(&o->references[k], f, folder, opening->references[k], axes, prov, err)) return err->status;
+        if (find_picture(&o->references[k], r, opening->references[k], err)) return err->status;
         o->reference_count++;
     }
     return ST_OK;
 }
 
-enum status model_field_read_references(struct model_field *f, const char *folder, const struct model_axes *axes,
-                                        struct provenance *prov, struct err *err)
+enum status field_openings_read(struct field_openings *o, const struct light_list *lights,
+                                const struct model_rays *model, const char *folder, const struct model_axes *axes,
+                                struct provenance *prov, struct err *err)
 {
     struct provenance unused = {0};
+    const struct reading r = {o, model, folder, axes, prov ? prov : &unused};
     size_t most = 1;
-    field_openings_release(f);
-    for (int i = 0; i < f->lights.opening_count; i++) most += (size_t)f->lights.openings[i].reference_count;
-    f->openings = calloc((size_t)f->lights.opening_count + 1, sizeof *f->openings);
-    f->pictures = calloc(most, sizeof *f->pictures);
-    enum status st =
-        f->openings && f->pictures ? ST_OK : err_nomem(err, "reference images", most * sizeof *f->pictures);
-    for (int i = 0; !st && i < f->lights.opening_count; i++)
-        st = add_opening(f, &f->lights.openings[i], folder, axes, prov ? prov : &unused, err);
+    field_openings_release(o);
+    for (int i = 0; i < lights->opening_count; i++) most += (size_t)lights->openings[i].reference_count;
+    o->items = calloc((size_t)lights->opening_count + 1, sizeof *o->items);
+    o->pictures = calloc(most, sizeof *o->pictures);
+    enum status st = o->items && o->pictures ? ST_OK : err_nomem(err, "reference images", most * sizeof *o->pictures);
+    for (int i = 0; !st && i < lights->opening_count; i++) st = add_opening(&r, &lights->openings[i], err);
     provenance_release(&unused);
     return st;
 }

@@ -23,7 +23,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/gather/field_openings.h"
 #include "common/math/numbers.h"
 
 static const double HANGING = 0.1;     /* of the model's size: lamps further from a face leave its texels alone */
@@ -63,7 +62,8 @@ static void see_face(struct light_look *seen, const struct model_field *f, const
     seen->face = (int)hit->id;
     if (texel.mark < 0 || !glossy) return;
     const struct surface_seen surface = {hit->point, hit->normal, vec3_scale(direction, -1)};
-    if (field_material_reflect(&seen->radiance, f, texel.mark, &surface)) seen->source = LIGHT_MATERIAL;
+    if (field_materials_reflect(&seen->radiance, &f->materials, &f->plain, texel.mark, &surface))
+        seen->source = LIGHT_MATERIAL;
 }
 
 static void see_surface(struct light_look *seen, const struct model_field *f, const struct ray_hit *hit)
@@ -78,7 +78,7 @@ static void see_outdoors(struct light_look *seen, const struct model_field *f, s
     float rgb[3];
     seen->distance = INFINITY;
     seen->face = -1;
-    if (f->opening_count && field_reference_look(rgb, f, from, direction)) {
+    if (field_openings_look(rgb, &f->openings, from, direction)) {
         seen->source = LIGHT_SKY;
     } else {
         const enum outdoors_source source = outdoors_sample(rgb, &f->outdoors, direction);
@@ -137,6 +137,18 @@ bool model_field_lift(const struct model_field *f, struct gather_point *p, doubl
     if (!ray_scene_hit(&f->model.rays, from, p->normal, &hit) || hit.front || hit.t > most) return false;
     p->at = vec3_add(p->at, vec3_scale(p->normal, hit.t + 2 * epsilon));
     return true;
+}
+
+int model_field_material(const struct model_field *f, int face_id, struct vec3 p)
+{
+    const int mark = field_atlas_look(&f->atlas, face_id, p).mark;
+    return mark < 0 ? -1 : f->materials.marks[mark].material;
+}
+
+void model_field_viewpoint(const struct model_field *f, int face_id, struct vec3 p, struct vec3 *viewpoint)
+{
+    const int mark = field_atlas_look(&f->atlas, face_id, p).mark;
+    if (mark >= 0) *viewpoint = f->materials.marks[mark].viewpoint;
 }
 
 /* ----------------------------------------------------------------------------------------------------------- emitters */
@@ -343,6 +355,19 @@ enum status model_field_read(struct model_field *f, const struct model_field_fil
     return st;
 }
 
+enum status model_field_read_references(struct model_field *f, const char *folder, const struct model_axes *axes,
+                                        struct provenance *prov, struct err *err)
+{
+    return field_openings_read(&f->openings, &f->lights, &f->model, folder, axes, prov, err);
+}
+
+enum status model_field_read_materials(struct model_field *f, const char *path, const char *views,
+                                       const struct model_axes *axes, struct provenance *prov, struct err *err)
+{
+    const struct field_surface on = {&f->atlas, &f->model, f->planes};
+    return field_materials_read(&f->materials, &on, path, views, axes, prov, err);
+}
+
 void model_field_release(struct model_field *f)
 {
     if (!f) return;
@@ -350,8 +375,8 @@ void model_field_release(struct model_field *f)
     field_atlas_release(&f->atlas);
     outdoors_release(&f->outdoors);
     light_list_release(&f->lights);
-    field_openings_release(f);
-    field_materials_release(f);
+    field_openings_release(&f->openings);
+    field_materials_release(&f->materials);
     free(f->lamps);
     free(f->emitters);
     free(f->planes);

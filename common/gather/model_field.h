@@ -4,12 +4,10 @@
 #ifndef REMODEL_GATHER_MODEL_FIELD_H
 #define REMODEL_GATHER_MODEL_FIELD_H
 
-#include "common/gather/field_atlas.h"
 #include "common/gather/field_materials.h"
+#include "common/gather/field_openings.h"
 #include "common/gather/field_sky.h"
 #include "common/gather/irradiance.h"
-#include "common/gather/outdoors_picture.h"
-#include "common/light/model_rays.h"
 
 /* Where a model's light is read from. */
 struct model_field_files {
@@ -34,14 +32,6 @@ struct field_lamp {
     bool off;
 };
 
-/* An opening, ready for rays: where one passes its plane, q from its centre is a x + b y as above. */
-struct field_opening {
-    const struct daylight *opening; /* of `lights` */
-    struct vec3 dual[2];
-    int *references; /* indices of pictures that show what lies behind it, nearest first; owned */
-    int reference_count;
-};
-
 /* {0} is the empty state; everything is owned. */
 struct model_field {
     struct light_field field; /* for the estimators; its ctx is this struct, which must not move */
@@ -53,10 +43,7 @@ struct model_field {
     struct field_sky sky;
     struct light_list lights;
     struct field_lamp *lamps;
-    struct field_opening *openings; /* those with references */
-    int opening_count;
-    struct outdoors_picture *pictures; /* the references, in memory */
-    int picture_count;
+    struct field_openings openings;
     struct field_materials materials;
     struct emitter *emitters;  /* lamps, then openings, then suns */
     struct face_plane *planes; /* of each face id */
@@ -75,6 +62,17 @@ void model_field_release(struct model_field *f);
  * also: an image without a pose, or that shows nothing of the outdoors, because it lies in a solid or looks at one. */
 enum status model_field_read_references(struct model_field *f, const char *folder, const struct model_axes *axes,
                                         struct provenance *prov, struct err *err);
+
+/* Reads materials.txt (field_materials.h), once for a field, after model_field_read(). From then on a ray that meets a texel
+ * of a glossy material sees it as its own origin would, with the source LIGHT_MATERIAL. */
+enum status model_field_read_materials(struct model_field *f, const char *path, const char *views,
+                                       const struct model_axes *axes, struct provenance *prov, struct err *err);
+
+/* The material at a point of a face, an index into materials.list; -1: none, or no texel. Model frame. */
+int model_field_material(const struct model_field *f, int face_id, struct vec3 p);
+/* From where the texel at a point of a face was photographed, as far as its mark knows; *viewpoint is unchanged where it has
+ * none. */
+void model_field_viewpoint(const struct model_field *f, int face_id, struct vec3 p, struct vec3 *viewpoint);
 
 /* Switches a lamp (an index into `lights`; -1: all) off or on. In the place of a lamp that is off there is the ceiling, in
  * the colour of its surroundings: what is left is the light from elsewhere. Not while others gather. */

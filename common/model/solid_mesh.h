@@ -159,11 +159,6 @@ void solid_triangles_release(struct solid_triangles *triangles);
 
 /* ---------------------------------------------------------------------------------------------------------- files */
 
-/* OBJ for other programs: an object per body, a group per face name, triangles with the normals of their faces. prov
- * may be NULL. */
-enum status solid_mesh_write_obj(const struct solid_mesh *mesh, const char *path, const struct provenance *prov,
-                                 struct err *err);
-
 /* model.txt (docs/formats.md). prov may be NULL. Reading restores the same bits and checks what solid_mesh_make()
  * checks; a failure leaves mesh empty. */
 enum status solid_mesh_write(const struct solid_mesh *mesh, const char *path, const struct provenance *prov,

@@ -208,14 +208,6 @@ static enum status check_map(const struct texture_map *map, const char *path, st
     return ST_OK;
 }
 
-/* Maps that version 1 can hold are written as that, so that they do not change. */
-static int version_of(const struct texture_map *map)
-{
-    bool glossy = false;
-    for (int i = 0; i < map->face_count; i++) glossy |= map->faces[i].has_gloss;
-    return map->lamp_count || glossy ? 2 : 1;
-}
-
 enum status texture_map_write(const struct texture_map *map, const char *path, const struct provenance *prov,
                               struct err *err)
 {
@@ -224,7 +216,7 @@ enum status texture_map_write(const struct texture_map *map, const char *path, c
     enum status st = check_map(map, path, err);
     if (!st) st = textfile_quote(map->base ? map->base : NO_BASE, base, sizeof base, err);
     if (!st) st = outfile_open(&file, path, err);
-    if (!st) fprintf(file.fp, HEADER " %d\n", version_of(map));
+    if (!st) fputs(HEADER " 2\n", file.fp);
     if (!st && prov) provenance_print(prov, file.fp);
     if (!st) fprintf(file.fp, "base %s\n", base);
     for (int i = 0; !st && i < map->lamp_count; i++) st = print_lamp(file.fp, &map->lamps[i], err);
@@ -432,7 +424,7 @@ enum status texture_map_read(struct texture_map *map, const char *path, struct e
     *map = (struct texture_map){0};
     if (textfile_open(&t, path, err)) return err->status;
     enum status st = textfile_expect_line(&t, HEADER, err);
-    if (!st) st = textfile_int(&t, "version", 1, 2, &version, err);
+    if (!st) st = textfile_int(&t, "version 2", 2, 2, &version, err);
     if (!st) st = textfile_end(&t, err);
     if (!st) st = textfile_expect_line(&t, "base", err);
     if (!st) st = copy_word(&base, &t, "an edit or \"none\"", err);

@@ -5,7 +5,7 @@
  * carries a face's id has rules, in order: the first rule that covers a point of the face gives its texture there.
  * "The baked domain" is the area of the unedited model and of all declared edits (surfaces.h), which the atlases hold.
  *
- *   remodel-texture 1                                  2 if a line lamp or gloss follows
+ *   remodel-texture 2
  *   base E|none                                        the edit that this one stands on
  *   lamp NAME R G B                                    the radiance of this lamp of lights.txt is multiplied; 0 0 0: off
  *   face ID NX NY NZ OFFSET NAME                       a plane of the edited model; its gloss and its rules follow

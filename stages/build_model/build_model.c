@@ -7,7 +7,7 @@
  *         POINTS                                        with --points: for walls given by rectangles
  *         BASE                                          with --edit: the unedited model, whose face ids are kept
  *         SCENE/objects.txt, meshes                     with --edit: synthetic objects
- * writes  OUT/plan.svg, view.png, plan.txt, merged.txt, model.obj, then model.txt; with --base before them texture.txt and
+ * writes  OUT/plan.svg, view.png, plan.txt, merged.txt, then model.txt; with --base before them texture.txt and
  *         objects.txt
  * With --overlay PHOTO instead:
  * reads   MODEL, AXES, VIEWS, RECORDS/PHOTO.txt, PHOTOS/FILE
@@ -34,7 +34,6 @@ struct job {
     const char *overlay, *model, *photos, *records;
     struct model_params params;
     struct provenance prov;
-    char *edit_base; /* the edit that the edit stands on; NULL: none; owned */
 
     struct model_axes frame;
     struct camera_set set, held_set;
@@ -73,7 +72,6 @@ static enum status write_model(struct job *j, const struct plan *plan, const str
         file_path(path, j->out, "view.png", "", err) || view_picture_write(mesh, plan, placer, path, err) ||
         file_path(path, j->out, "plan.txt", "", err) || plan_write(plan, path, &j->prov, err) ||
         file_path(path, j->out, "merged.txt", "", err) || merged_write(log, path, &j->prov, err) ||
-        file_path(path, j->out, "model.obj", "", err) || solid_mesh_write_obj(mesh, path, &j->prov, err) ||
         file_path(path, j->out, "model.txt", "", err) || solid_mesh_write(mesh, path, &j->prov, err))
         return err->status;
     return ST_OK;
@@ -83,10 +81,9 @@ static enum status write_model(struct job *j, const struct plan *plan, const str
 static enum status write_edit(struct job *j, const struct solid_mesh *mesh, const struct solid_mesh *base,
                               const struct plan *plan, struct err *err)
 {
-    struct texture_map map = {.base = j->edit_base};
+    struct texture_map map = {0};
     struct object_list objects = {0};
     char path[FILE_PATH];
-    j->edit_base = NULL;
     enum status st = texture_rules_make(&map, mesh, base, plan, err);
     if (!st) st = objects_make(&objects, plan, j->scene, err);
     if (!st) st = file_path(path, j->out, "objects.txt", "", err);
@@ -104,7 +101,7 @@ static enum status apply_edit(struct job *j, struct plan *plan, struct err *err)
     char path[FILE_PATH];
     if (j->scene && file_path(path, j->scene, "objects.txt", "", err)) return err->status;
     if (j->scene && path_is_file(path) && plan_apply_objects(plan, path, &j->prov, err)) return err->status;
-    return plan_apply_edit(plan, &j->edit_base, j->edit, j->views ? &j->placer : NULL, &j->prov, err);
+    return plan_apply_edit(plan, j->edit, j->views ? &j->placer : NULL, &j->prov, err);
 }
 
 static void log_summary(const struct plan *plan, const struct solid_mesh *mesh, const struct unite_log *log,
@@ -224,7 +221,6 @@ int main(int argc, char **argv)
     if (cli_parse(argc, argv, "build_model", opts, &j.prov, &err) != CLI_RUN || check_usage(&j, &err) ||
         (j.overlay ? overlay(&j, &err) : build(&j, &err)))
         err_report(&err);
-    free(j.edit_base);
     placer_release(&j.placer);
     lens_list_release(&j.held_lenses);
     camera_set_release(&j.held_set);

@@ -2,8 +2,9 @@
 #include "stages/build_model/edit_chain.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
+
+#include "stages/build_model/verbs.h"
 
 static const char *file_name(const char *path)
 {
@@ -37,13 +38,10 @@ enum status plan_apply_objects(struct plan *plan, const char *path, struct prove
     enum status st = script_read(&script, path, err);
     /* an edit may be named objects */
     if (!st) st = provenance_add_file(prov, "scene/objects.txt", path, err);
-    if (!st && script.base)
-        st = err_set(err, ST_DATA, "%s:%d: found base, wanted object: this file places objects in all edits.", path,
-                     script.base_line);
     for (int i = 0; !st && i < script.count; i++)
-        if (script.statements[i].verb != VERB_OBJECT)
+        if (!(script.statements[i].verb->where & IN_OBJECTS))
             st = err_set(err, ST_DATA, "%s:%d: found %s, wanted object: this file places objects in all edits.", path,
-                         script.statements[i].line, verb_name(script.statements[i].verb));
+                         script.statements[i].line, script.statements[i].verb->word);
     if (!st) st = plan_apply(plan, &script, true, NULL, err);
     script_release(&script);
     return st;
@@ -71,7 +69,7 @@ static enum status base_path(char path[FILE_PATH], const struct script *script, 
                    script->base, path);
 }
 
-static enum status apply_chain(struct plan *plan, char **base, const struct chain *edit, const struct placer *placer,
+static enum status apply_chain(struct plan *plan, const struct chain *edit, const struct placer *placer,
                                struct provenance *prov, struct err *err)
 {
     struct script script = {0};
@@ -80,18 +78,16 @@ static enum status apply_chain(struct plan *plan, char **base, const struct chai
     if (!st && script.base) {
         const struct chain below = {path, edit};
         st = base_path(path, &script, edit, err);
-        if (!st && !edit->above && !(*base = strdup(script.base))) st = err_nomem(err, "a name", strlen(script.base));
-        if (!st) st = apply_chain(plan, base, &below, placer, prov, err);
+        if (!st) st = apply_chain(plan, &below, placer, prov, err);
     }
     if (!st) st = plan_apply(plan, &script, true, placer, err);
     script_release(&script);
     return st;
 }
 
-enum status plan_apply_edit(struct plan *plan, char **base, const char *path, const struct placer *placer,
-                            struct provenance *prov, struct err *err)
+enum status plan_apply_edit(struct plan *plan, const char *path, const struct placer *placer, struct provenance *prov,
+                            struct err *err)
 {
     const struct chain edit = {path, NULL};
-    *base = NULL;
-    return apply_chain(plan, base, &edit, placer, prov, err);
+    return apply_chain(plan, &edit, placer, prov, err);
 }

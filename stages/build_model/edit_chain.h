@@ -13,10 +13,9 @@ enum status plan_apply_model(struct plan *plan, const char *path, const struct p
 /* Applies the file of objects that all edits have, which holds statements `object` alone. ST_DATA: another statement. */
 enum status plan_apply_objects(struct plan *plan, const char *path, struct provenance *prov, struct err *err);
 
-/* Applies an edit after the one that its statement `base` names, in the same folder, and so on. *base: that name, for
- * the caller to free; NULL: the edit has no such statement. ST_DATA: that edit does not exist, or the edits go in a
- * circle. */
-enum status plan_apply_edit(struct plan *plan, char **base, const char *path, const struct placer *placer,
-                            struct provenance *prov, struct err *err);
+/* Applies an edit after the one that its statement `base` names, in the same folder, and so on. ST_DATA: that
+ * edit does not exist, or the edits go in a circle. */
+enum status plan_apply_edit(struct plan *plan, const char *path, const struct placer *placer, struct provenance *prov,
+                            struct err *err);
 
 #endif

@@ -25,7 +25,7 @@ bool opening_filling(const struct plan *plan, const struct plan_opening *o, doub
     int side;
     if (o->fill != FILL_LEAF && o->fill != FILL_GLASS) return false;
     const bool inner = between_rooms(plan, o->wall, &side);
-    const bool flush = o->kind == VERB_WINDOW && o->fill == FILL_GLASS;
+    const bool flush = o->kind == OPENING_WINDOW && o->fill == FILL_GLASS;
     if (flush && !o->refilled && (o->interior || inner)) return false;
     off[0] = !flush || inner ? 0.5 * t - 0.5 * o->leaf : side == SIDE_OUT ? t - o->leaf : 0;
     off[1] = !flush || inner ? 0.5 * t + 0.5 * o->leaf : side == SIDE_OUT ? t : o->leaf;
@@ -39,7 +39,7 @@ static enum status add_filling(struct solid_list *list, const struct plan *p, co
     const struct plan_wall *w = &p->walls[o->wall];
     const struct plan_line in = wall_face(w, SIDE_IN);
     const bool glass = o->fill == FILL_GLASS;
-    const char *kind = glass ? "glass" : verb_name(o->kind), *leaf = glass ? "" : "leaf-";
+    const char *kind = glass ? "glass" : opening_word(o->kind), *leaf = glass ? "" : "leaf-";
     char body[NAME_SIZE];
     struct shape s = {0};
     snprintf(body, sizeof body, glass ? "glass/%s" : BODY "%.0s", o->name);

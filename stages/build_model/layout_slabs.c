@@ -21,8 +21,8 @@ struct slab { /* a floor, or the part of a ceiling in one plane */
     struct solid_list *list;
     const struct plan *plan;
     const struct plan_room *room;
-    enum verb opening; /* of its openings: VERB_HATCH for a floor */
-    int plane;         /* of the ceiling's lower face; -1: a floor */
+    enum opening_kind opening; /* of its openings: OPENING_HATCH for a floor */
+    int plane;                 /* of the ceiling's lower face; -1: a floor */
     struct err *err;
 };
 
@@ -33,7 +33,7 @@ static void slab_sides(struct shape *s, const struct slab *b, const struct part_
         const struct plan_line l = c[i].line;
         const struct plan_slot *slot = c[i].wall <= SLOT_SIDE ? &p->slots[SLOT_SIDE - c[i].wall] : NULL;
         if (slot)
-            add_side(s, l.n[0], l.n[1], 0, l.c, "%s/%s/%s", verb_name(slot->kind), slot->name, SIDES[c[i].side]);
+            add_side(s, l.n[0], l.n[1], 0, l.c, "%s/%s/%s", opening_word(slot->kind), slot->name, SIDES[c[i].side]);
         else if (c[i].wall >= 0 && !p->walls[c[i].wall].removed)
             add_side(s, l.n[0], l.n[1], 0, l.c, "wall/%s/%s", p->walls[c[i].wall].name,
                      c[i].side == SIDE_IN ? "in" : "out");
@@ -123,7 +123,7 @@ enum status add_room(struct solid_list *list, const struct plan *p, const struct
     enum status st = ST_OK;
     for (int i = 0; i < r->part_count && !st; i++)
         for (int plane = -1; plane < r->lower.count && !st; plane++) {
-            struct slab b = {list, p, r, plane < 0 ? VERB_HATCH : VERB_SKYLIGHT, plane, err};
+            struct slab b = {list, p, r, plane < 0 ? OPENING_HATCH : OPENING_SKYLIGHT, plane, err};
             st = add_around_slots(&b, r->parts[i].corners, r->parts[i].count);
         }
     return st;
@@ -135,8 +135,8 @@ static enum status add_slot_part(struct solid_list *list, const struct plan *p, 
                                  const struct plan_top *top, int plane, const double heights[2], struct err *err)
 {
     const bool glass = o->fill == FILL_GLASS;
-    const char *kind = glass ? "glass" : verb_name(o->kind), *leaf = glass ? "" : "leaf-";
-    const bool above = o->kind == VERB_SKYLIGHT; /* the room is below a skylight, above a hatch */
+    const char *kind = glass ? "glass" : opening_word(o->kind), *leaf = glass ? "" : "leaf-";
+    const bool above = o->kind == OPENING_SKYLIGHT; /* the room is below a skylight, above a hatch */
     char body[NAME_SIZE], faces[2][NAME_SIZE];
     struct part_corner c[4];
     struct shape s = {0};
@@ -156,8 +156,8 @@ static enum status add_slot_part(struct solid_list *list, const struct plan *p, 
 enum status add_slot(struct solid_list *list, const struct plan *p, const struct plan_slot *o, struct err *err)
 {
     const struct plan_room *r = &p->rooms[o->room];
-    const struct plan_top floor = level_top(r->floor), *top = o->kind == VERB_HATCH ? &floor : &r->lower;
-    const double upper = o->kind == VERB_HATCH ? 0 : r->slab, heights[2] = {upper - o->leaf, upper};
+    const struct plan_top floor = level_top(r->floor), *top = o->kind == OPENING_HATCH ? &floor : &r->lower;
+    const double upper = o->kind == OPENING_HATCH ? 0 : r->slab, heights[2] = {upper - o->leaf, upper};
     enum status st = ST_OK;
     if (o->fill != FILL_LEAF && o->fill != FILL_GLASS) return ST_OK;
     for (int i = 0; i < top->count && !st; i++) st = add_slot_part(list, p, o, top, i, heights, err);

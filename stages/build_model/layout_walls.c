@@ -183,7 +183,7 @@ static void add_column_side(struct shape *sh, const struct column *c, int upper,
         }
     }
     if (o)
-        add_side(sh, cap.n[0], cap.n[1], 0, cap.c, "%s/%s/%s", verb_name(o->kind), o->name, reveal_side(w, !upper));
+        add_side(sh, cap.n[0], cap.n[1], 0, cap.c, "%s/%s/%s", opening_word(o->kind), o->name, reveal_side(w, !upper));
     else
         add_side(sh, cap.n[0], cap.n[1], 0, cap.c, "wall/%s/top", w->name); /* a step of the top, where visible */
 }
@@ -206,11 +206,11 @@ static enum status add_piece(struct solid_list *list, const struct column *c, do
         if (o->wall != COLUMN_SIDE) add_side(&s, o->line.n[0], o->line.n[1], 0, o->line.c, "wall/%s/top", w->name);
     }
     if (below)
-        add_side(&s, 0, 0, -1, -z0, "%s/%s/head", verb_name(below->kind), below->name);
+        add_side(&s, 0, 0, -1, -z0, "%s/%s/head", opening_word(below->kind), below->name);
     else
         add_side(&s, 0, 0, -1, -z0, "wall/%s/%s", w->name, cut ? "cut" : "bottom");
     if (above)
-        add_side(&s, 0, 0, 1, z1, "%s/%s/sill", verb_name(above->kind), above->name);
+        add_side(&s, 0, 0, 1, z1, "%s/%s/sill", opening_word(above->kind), above->name);
     else if (z1 < HUGE_VAL)
         add_side(&s, 0, 0, 1, z1, "wall/%s/cut", w->name);
     for (int i = 0; !above && i < c->top->count; i++) {

@@ -2,5 +2,5 @@
 #include "stages/build_model/model_params.h"
 
 #define PARAM_STRUCT struct model_params
-const struct param model_param_table[] = {MODEL_PARAMS(PARAM_ROW) PARAM_RENAMED(least_points, min_points) PARAM_END};
+const struct param model_param_table[] = {MODEL_PARAMS(PARAM_ROW) PARAM_END};
 #undef PARAM_STRUCT

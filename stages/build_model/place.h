@@ -12,7 +12,7 @@
 #include "common/capture/point_cloud.h"
 #include "common/model/model_axes.h"
 #include "stages/build_model/model_params.h"
-#include "stages/build_model/script.h"
+#include "stages/build_model/statement.h"
 
 struct placed_point {
     float position[3], normal[3], weight; /* in the model's frame */

@@ -49,10 +49,12 @@ struct plan_top { /* of walls, or the lower face of a ceiling: the lowest of z =
     int count;
 };
 
-struct plan_opening {
+enum opening_kind { OPENING_DOOR, OPENING_PASSAGE, OPENING_WINDOW, OPENING_SKYLIGHT, OPENING_HATCH };
+
+struct plan_opening { /* in a wall: a door, a passage or a window */
     char *name;
     int line;
-    enum verb kind; /* VERB_DOOR, VERB_PASSAGE, VERB_WINDOW */
+    enum opening_kind kind;
     bool removed, interior;
     enum filling fill;
     bool refilled; /* by `fill`: a window has glass also between two rooms */
@@ -61,10 +63,10 @@ struct plan_opening {
     double s[2], z[2]; /* ascending */
 };
 
-struct plan_slot { /* an opening in a room's ceiling or floor */
+struct plan_slot { /* an opening in a room's ceiling or floor: a skylight or a hatch */
     char *name;
     int line;
-    enum verb kind; /* VERB_SKYLIGHT, VERB_HATCH */
+    enum opening_kind kind;
     bool removed;
     enum filling fill;
     double leaf; /* as of an opening */
@@ -185,8 +187,9 @@ struct plan {
     int lamp_count, object_count;
     struct plan_name *names; /* a hash table */
     int name_capacity, name_count;
+    char *base; /* the edit that the last edit stands on; NULL: none; owned */
     /* A copy from before the first edit, in which texture has its places; NULL: there was no edit. Its names belong to
-     * this plan; it has no wishes, zones, lamps and objects, and its rooms have no walls, edges and parts. */
+     * this plan; it has no base, wishes, zones, lamps and objects, and its rooms have no walls, edges and parts. */
     struct plan *unedited;
 };
 
@@ -217,6 +220,7 @@ void room_span(const struct plan *plan, const struct plan_room *room, int edge, 
 /* The edge of the room that contains the wall; -1 for none. */
 int room_edge_of(const struct plan_room *room, int wall);
 double plan_wall_top(const struct plan *plan, int wall, double s0, double s1); /* the lowest over s0 .. s1 */
+const char *opening_word(enum opening_kind kind); /* "door", ...: as in scripts and in the names of faces */
 /* The opening is there: neither it nor its wall is removed, and it is not walled up. */
 bool opening_is_there(const struct plan *plan, const struct plan_opening *o);
 /* The slot is there: neither it nor its room is removed, and it is not walled up. */

@@ -1,6 +1,6 @@
 /* plan_apply.c - applies the statements of a script to a plan.
  *
- * A statement changes the plan at once. What depends on the whole plan (whether an opening lies in its wall, whether a
+ * Each statement has a function in the table of verbs, which changes the plan at once. What depends on the whole plan (whether an opening lies in its wall, whether a
  * room's walls close) is checked once the script is read, and in an edit after each statement, so that the statement
  * which breaks the building is named. An edit's statement must also change something: the plan as a text is compared
  * with what it was before. */
@@ -43,6 +43,7 @@ void plan_release(struct plan *plan)
     free(plan->boxes);
     free(plan->rooms);
     free(plan->names);
+    free(plan->base);
     plan_wishes_release(plan);
     plan_lights_release(plan);
     *plan = (struct plan){0};
@@ -59,66 +60,6 @@ void plan_begin(struct plan *plan, const struct model_axes *axes)
     }
     if (axes && axes->ceiling > 0) plan->ceiling = axes->ceiling;
     if (axes && axes->thickness > 0) plan->thickness = axes->thickness;
-}
-
-static enum status apply_statement(struct plan_context *c)
-{
-    switch (c->s->verb) {
-    case VERB_SET:
-        return apply_set(c);
-    case VERB_WALL:
-        return apply_wall(c);
-    case VERB_ROOM:
-        return apply_room(c);
-    case VERB_SLOPE:
-    case VERB_GABLE:
-        return apply_slope(c);
-    case VERB_DOOR:
-    case VERB_PASSAGE:
-    case VERB_WINDOW:
-        return apply_opening(c);
-    case VERB_SKYLIGHT:
-    case VERB_HATCH:
-        return apply_slot(c);
-    case VERB_BOX:
-        return apply_box(c);
-    case VERB_JOIN:
-        return apply_join(c);
-    case VERB_EXTEND:
-        return apply_extend(c);
-    case VERB_SPLIT:
-        return apply_split(c);
-    case VERB_ADJUST:
-        return apply_adjust(c);
-    case VERB_MOVE:
-        return apply_move(c);
-    case VERB_CHANGE:
-        return apply_change(c);
-    case VERB_RESIZE:
-        return apply_resize(c);
-    case VERB_OPEN:
-    case VERB_CLOSE:
-    case VERB_FILL:
-        return apply_fill(c);
-    case VERB_TEXTURE:
-        return apply_texture(c);
-    case VERB_COPY:
-        return apply_copy(c);
-    case VERB_COLOUR:
-    case VERB_PAINT:
-        return apply_colour(c);
-    case VERB_LAMP:
-        return apply_lamp(c);
-    case VERB_MATERIAL:
-        return apply_material(c);
-    case VERB_OBJECT:
-        return apply_object(c);
-    case VERB_CLEAR:
-    case VERB_KEEP:
-        return apply_zone(c);
-    default:
-        return c->s->of_object ? remove_object(c) : apply_remove(c);
-    }
 }
 
 static enum status needs_views(struct plan_context *c)
@@ -147,15 +88,16 @@ static enum status unused_default(struct plan_context *c, enum plan_default whic
                                                 : "");
 }
 
-static enum status watch_set(struct plan_context *c, struct edit_watch *w)
+/* before: the defaults before the statement set some of them. */
+static enum status watch_set(struct plan_context *c, struct edit_watch *w, const double before[DEFAULTS])
 {
     for (int i = 0; i < DEFAULTS; i++) {
         const char *name;
-        const double *value = default_value(c->plan, (enum plan_default)i, &name);
-        if (strcmp(name, c->s->name)) continue;
+        const double value = *default_value(c->plan, (enum plan_default)i, &name);
+        if (!(c->set & 1u << i)) continue;
         if (w->set_line[i]) return unused_default(c, (enum plan_default)i, w->set_line[i]);
-        if (*value == c->s->values[0])
-            return statement_error(c, "the statement changes nothing: %s is %.9g already.", name, *value);
+        if (value == before[i])
+            return statement_error(c, "the statement changes nothing: %s is %.9g already.", name, value);
         w->set_line[i] = c->s->line;
     }
     return ST_OK;
@@ -164,10 +106,12 @@ static enum status watch_set(struct plan_context *c, struct edit_watch *w)
 static enum status apply_watched(struct plan_context *c, struct edit_watch *w)
 {
     char *after = NULL;
-    if (c->s->verb == VERB_SET && strcmp(c->s->name, "colour")) return watch_set(c, w) ? c->err->status : apply_set(c);
-    c->used = 0;
-    if (apply_statement(c) || plan_check(c->plan, c->path, c->s->line, c->err) || plan_state(&after, c->plan, c->err))
-        return c->err->status;
+    double before[DEFAULTS];
+    for (int i = 0; i < DEFAULTS; i++) before[i] = *default_value(c->plan, (enum plan_default)i, NULL);
+    c->used = c->set = 0;
+    if (c->s->verb->apply(c)) return c->err->status;
+    if (c->set) return watch_set(c, w, before);
+    if (plan_check(c->plan, c->path, c->s->line, c->err) || plan_state(&after, c->plan, c->err)) return c->err->status;
     for (int i = 0; i < DEFAULTS; i++)
         if (c->used & 1u << i) w->set_line[i] = 0;
     const bool same = !strcmp(w->before, after);
@@ -200,6 +144,7 @@ static enum status keep_unedited(struct plan *p, struct err *err)
     u->zones = NULL;
     u->lamps = NULL;
     u->objects = NULL;
+    u->base = NULL;
     u->wish_count = u->zone_count = u->lamp_count = u->object_count = 0;
     p->unedited = u;
     enum status st = copy_items(&u->walls, p->walls, p->wall_count, sizeof *p->walls, err);
@@ -234,26 +179,15 @@ static enum status apply_edit(struct plan_context *c, const struct script *scrip
     return st;
 }
 
-/* The unedited model shows the photographs. */
-static enum status needs_edit(struct plan_context *c)
-{
-    const struct statement *s = c->s;
-    const bool set_colour = s->verb == VERB_SET && !strcmp(s->name, "colour");
-    if (!set_colour && (s->verb < VERB_TEXTURE || s->verb > VERB_KEEP)) return ST_OK;
-    return statement_error(c,
-                           "\"%s\" is for edits: the unedited model shows the photographs. Write it in a script in the "
-                           "folder edits.",
-                           set_colour ? "set colour" : verb_name(s->verb));
-}
-
 enum status plan_apply(struct plan *plan, const struct script *script, bool edit, const struct placer *placer,
                        struct err *err)
 {
-    struct plan_context c = {.plan = plan, .path = script->path, .placer = placer, .err = err};
+    struct plan_context c = {.plan = plan, .path = script->path, .placer = placer, .err = err, .edit = edit};
     if (edit) return apply_edit(&c, script);
     for (int i = 0; i < script->count; i++) {
         c.s = &script->statements[i];
-        if (needs_edit(&c) || needs_views(&c) || apply_statement(&c)) return err->status;
+        if (!(c.s->verb->where & IN_MODEL)) return statement_for_edits(&c, c.s->verb->word);
+        if (needs_views(&c) || c.s->verb->apply(&c)) return err->status;
     }
     return plan_check(plan, script->path, 0, err);
 }

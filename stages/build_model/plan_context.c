@@ -13,3 +13,11 @@ enum status statement_error(struct plan_context *c, const char *fmt, ...)
     va_end(args);
     return err_set(c->err, ST_DATA, "%s:%d: %s", c->path, c->s->line, text);
 }
+
+enum status statement_for_edits(struct plan_context *c, const char *what)
+{
+    return statement_error(c,
+                           "\"%s\" is for edits: the unedited model shows the photographs. Write it in a script in the "
+                           "folder edits.",
+                           what);
+}

@@ -1,8 +1,18 @@
 /* plan_edits.c - statements that change what is there: its place, size, heights and filling. */
+#include <stdlib.h>
 #include <string.h>
 
 #include "common/base/log.h"
 #include "stages/build_model/plan_internal.h"
+#include "stages/build_model/script_words.h"
+
+enum status read_adjust(struct script_reader *r, struct statement *s)
+{
+    if (script_read_name(r, "a name", &s->name) || script_read_place(r, &s->place, 1u << PLACE_FROM_END))
+        return r->err->status;
+    s->by_points = s->place.kind == PLACE_VIEW;
+    return ST_OK;
+}
 
 enum status apply_adjust(struct plan_context *c)
 {
@@ -61,6 +71,16 @@ static enum status move_footprint(struct plan_context *c, const char *what, doub
     return ST_OK;
 }
 
+enum status read_move(struct script_reader *r, struct statement *s)
+{
+    if (script_read_name(r, "a name", &s->name) || script_expect(r, "by") ||
+        script_read_number(r, "a distance", &s->values[s->value_count++]))
+        return r->err->status;
+    while (s->value_count < 3 && textfile_more(&r->t))
+        if (script_read_number(r, "a distance", &s->values[s->value_count++])) return r->err->status;
+    return ST_OK;
+}
+
 enum status apply_move(struct plan_context *c)
 {
     const struct statement *s = c->s;
@@ -100,6 +120,13 @@ enum status apply_move(struct plan_context *c)
 }
 
 /* ---------------------------------------------------------------------------------------------- sizes and heights */
+
+/* A statement that has nothing but options must have one. */
+enum status read_changes(struct script_reader *r, struct statement *s)
+{
+    if (script_read_name(r, "a name", &s->name)) return r->err->status;
+    return textfile_more(&r->t) ? ST_OK : script_usage_error(r, NULL);
+}
 
 /* ST_DATA: the statement has an option that is not in `known` (bits of enum option). */
 static enum status check_options(struct plan_context *c, unsigned known, const char *wanted)
@@ -219,46 +246,88 @@ struct filled { /* what an opening, or one in a room, is filled with */
     double *leaf;
 };
 
-/* What the statement fills the opening with. */
-static enum status wanted_filling(struct plan_context *c, const struct filled *o, enum filling *wanted)
+/* The opening that the statement names. *of: it, if it is in a wall, else NULL. */
+static enum status find_filled(struct plan_context *c, struct filled *f, struct plan_opening **of)
 {
-    const struct statement *s = c->s;
-    *wanted = s->verb == VERB_FILL ? s->filling : s->verb == VERB_CLOSE ? o->own : FILL_NOTHING;
-    if (s->verb != VERB_FILL && o->own == FILL_NOTHING)
-        return statement_error(c, "%s %s has no leaf that could be %s; declare a door, or fill it with a leaf.",
-                               o->kind, s->name, s->verb == VERB_CLOSE ? "closed" : "opened");
-    if (s->verb == VERB_FILL && *o->fill == s->filling)
-        return statement_error(c, "%s %s is filled with %s already.", o->kind, s->name, filling_name(s->filling));
-    if (s->verb != VERB_FILL && (*o->fill != FILL_NOTHING) == (s->verb == VERB_CLOSE))
-        return statement_error(c, "%s %s is %s already.", o->kind, s->name, s->verb == VERB_CLOSE ? "closed" : "open");
+    enum name_kind kind;
+    int at;
+    if (find_named(c, c->s->name, 1u << NAMED_OPENING | 1u << NAMED_SLOT, "a door or a window", &kind, &at))
+        return c->err->status;
+    struct plan_opening *o = *of = kind == NAMED_OPENING ? &c->plan->openings[at] : NULL;
+    struct plan_slot *slot = kind == NAMED_SLOT ? &c->plan->slots[at] : NULL;
+    const enum opening_kind is = o ? o->kind : slot->kind;
+    *f = (struct filled){opening_word(is), o ? &o->fill : &slot->fill,
+                         is == OPENING_WINDOW || is == OPENING_SKYLIGHT ? FILL_GLASS
+                         : is == OPENING_PASSAGE                        ? FILL_NOTHING
+                                                                        : FILL_LEAF,
+                         o ? &o->leaf : &slot->leaf};
+    return ST_OK;
+}
+
+/* Opens or closes what the opening has of its own. */
+static enum status open_or_close(struct plan_context *c, bool closing)
+{
+    const char *name = c->s->name;
+    struct plan_opening *o = NULL;
+    struct filled f = {0};
+    if (find_filled(c, &f, &o)) return c->err->status;
+    if (o && o->interior)
+        return statement_error(c, "window %s is interior and has no glass; fill it with glass or nothing.", name);
+    if (f.own == FILL_NOTHING)
+        return statement_error(c, "%s %s has no leaf that could be %s; declare a door, or fill it with a leaf.", f.kind,
+                               name, closing ? "closed" : "opened");
+    if ((*f.fill != FILL_NOTHING) == closing)
+        return statement_error(c, "%s %s is %s already.", f.kind, name, closing ? "closed" : "open");
+    const enum filling wanted = closing ? f.own : FILL_NOTHING;
+    if (fill_thickness(c, wanted, f.leaf)) return c->err->status;
+    *f.fill = wanted;
+    return ST_OK;
+}
+
+enum status read_named(struct script_reader *r, struct statement *s) { return script_read_name(r, "a name", &s->name); }
+
+enum status apply_open(struct plan_context *c) { return open_or_close(c, false); }
+
+enum status apply_close(struct plan_context *c) { return open_or_close(c, true); }
+
+enum status read_fill(struct script_reader *r, struct statement *s)
+{
+    char *word;
+    int f = 0;
+    if (script_read_name(r, "a name", &s->name) || script_expect(r, "with") ||
+        textfile_word(&r->t, "leaf, glass, wall or nothing", &word, r->err))
+        return r->err->status;
+    while (f < FILL_COUNT && strcmp(filling_name((enum filling)f), word)) f++;
+    if (f == FILL_COUNT) return script_usage_error(r, word);
+    s->filling = (enum filling)f;
     return ST_OK;
 }
 
 enum status apply_fill(struct plan_context *c)
 {
     const struct statement *s = c->s;
-    enum name_kind kind;
-    enum filling wanted;
-    int at;
-    if (find_named(c, s->name, 1u << NAMED_OPENING | 1u << NAMED_SLOT, "a door or a window", &kind, &at))
-        return c->err->status;
-    struct plan_opening *o = kind == NAMED_OPENING ? &c->plan->openings[at] : NULL;
-    struct plan_slot *slot = kind == NAMED_SLOT ? &c->plan->slots[at] : NULL;
-    const enum verb verb = o ? o->kind : slot->kind;
-    const struct filled f = {verb_name(verb), o ? &o->fill : &slot->fill,
-                             verb == VERB_WINDOW || verb == VERB_SKYLIGHT ? FILL_GLASS
-                             : verb == VERB_PASSAGE                       ? FILL_NOTHING
-                                                                          : FILL_LEAF,
-                             o ? &o->leaf : &slot->leaf};
-    if (o && o->interior && s->verb != VERB_FILL)
-        return statement_error(c, "window %s is interior and has no glass; fill it with glass or nothing.", s->name);
-    if (wanted_filling(c, &f, &wanted) || fill_thickness(c, wanted, f.leaf)) return c->err->status;
-    *f.fill = wanted;
-    if (o && s->verb == VERB_FILL) {
+    struct plan_opening *o = NULL;
+    struct filled f = {0};
+    if (find_filled(c, &f, &o)) return c->err->status;
+    if (*f.fill == s->filling)
+        return statement_error(c, "%s %s is filled with %s already.", f.kind, s->name, filling_name(s->filling));
+    if (fill_thickness(c, s->filling, f.leaf)) return c->err->status;
+    *f.fill = s->filling;
+    if (o) {
         o->refilled = true;
         o->interior = false;
     }
     return ST_OK;
+}
+
+/* --------------------------------------------------------------------------------------------- removing, and bases */
+
+enum status read_remove(struct script_reader *r, struct statement *s)
+{
+    if (script_read_name(r, "a name", &s->name)) return r->err->status;
+    if (strcmp(s->name, "object") || !textfile_more(&r->t)) return ST_OK;
+    s->of_object = true;
+    return script_read_name(r, "the name of an object", &s->name);
 }
 
 enum status apply_remove(struct plan_context *c)
@@ -266,6 +335,7 @@ enum status apply_remove(struct plan_context *c)
     struct plan *plan = c->plan;
     enum name_kind kind;
     int at;
+    if (c->s->of_object) return remove_object(c);
     if (find_named(c, c->s->name, ~0u, "anything", &kind, &at)) return c->err->status;
     switch (kind) {
     case NAMED_WALL:
@@ -287,5 +357,26 @@ enum status apply_remove(struct plan_context *c)
         for (int i = 0; i < plan->slot_count; i++)
             if (plan->slots[i].room == at) plan->slots[i].removed = true;
     }
+    return ST_OK;
+}
+
+enum status read_base(struct script_reader *r, struct statement *s)
+{
+    if (script_read_name(r, "a name", &s->name)) return r->err->status;
+    if (r->count > 1) return textfile_error(&r->t, r->err, "base", "\"base EDIT\" as the first statement, once");
+    if (!strcmp(s->name, "none"))
+        return textfile_error(&r->t, r->err, "none", "the name of another edit: \"none\" is the word for no edit");
+    r->base = s->name;
+    r->base_line = s->line;
+    return ST_OK;
+}
+
+/* The statements of that edit were applied before (edit_chain.c). */
+enum status apply_base(struct plan_context *c)
+{
+    char *base = strdup(c->s->name);
+    if (!base) return err_nomem(c->err, "a name", strlen(c->s->name) + 1);
+    free(c->plan->base);
+    c->plan->base = base;
     return ST_OK;
 }

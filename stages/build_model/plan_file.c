@@ -25,7 +25,7 @@ static void print_plan(const struct plan *plan, FILE *to)
     for (int i = 0; i < plan->opening_count; i++) {
         const struct plan_opening *o = &plan->openings[i];
         if (opening_is_there(plan, o))
-            fprintf(to, "%s %s on %s from %.17g %.17g to %.17g %.17g %s\n", verb_name(o->kind), o->name,
+            fprintf(to, "%s %s on %s from %.17g %.17g to %.17g %.17g %s\n", opening_word(o->kind), o->name,
                     plan->walls[o->wall].name, o->s[0], o->z[0], o->s[1], o->z[1], o->fill ? "closed" : "open");
     }
     for (int i = 0; i < plan->room_count; i++) {
@@ -47,7 +47,7 @@ static void print_plan(const struct plan *plan, FILE *to)
     for (int i = 0; i < plan->slot_count; i++) {
         const struct plan_slot *o = &plan->slots[i];
         if (slot_is_there(plan, o))
-            fprintf(to, "%s %s on %s from %.17g %.17g to %.17g %.17g %s\n", verb_name(o->kind), o->name,
+            fprintf(to, "%s %s on %s from %.17g %.17g to %.17g %.17g %s\n", opening_word(o->kind), o->name,
                     plan->rooms[o->room].name, o->low[0], o->low[1], o->high[0], o->high[1],
                     o->fill ? "closed" : "open");
     }

@@ -126,6 +126,12 @@ void room_span(const struct plan *plan, const struct plan_room *room, int edge, 
     span[1] = fmin(span[1], reach[1]);
 }
 
+const char *opening_word(enum opening_kind kind)
+{
+    static const char *const WORDS[] = {"door", "passage", "window", "skylight", "hatch"};
+    return WORDS[kind];
+}
+
 bool opening_is_there(const struct plan *plan, const struct plan_opening *o)
 {
     return !o->removed && o->fill != FILL_WALL && !plan->walls[o->wall].removed;

@@ -1,8 +1,10 @@
-/* plan_internal.h - what the files that make a plan share; everything else includes plan.h. */
+/* plan_internal.h - what the files that make a plan share; everything else includes plan.h. What each statement does is
+ * declared by its row (verbs.h). */
 #ifndef REMODEL_BUILD_MODEL_PLAN_INTERNAL_H
 #define REMODEL_BUILD_MODEL_PLAN_INTERNAL_H
 
 #include "stages/build_model/plan.h"
+#include "stages/build_model/verbs.h"
 
 #define LENGTH_EPS    1e-6   /* lengths are equal within this, model units */
 #define PARALLEL_SINE 0.0872 /* of 5 degrees: walls closer to parallel cannot be joined */
@@ -25,13 +27,17 @@ struct plan_context { /* of the statement that is being applied */
     const struct statement *s;
     const struct placer *placer;
     struct err *err;
-    unsigned used; /* bits of the defaults that the statement used */
+    bool edit;          /* the statement is one of an edit */
+    unsigned used, set; /* bits of the defaults that the statement used, and set */
 };
 
 /* plan_context.c */
 
 /* Sets ST_DATA with the statement's file and line before the text. */
 enum status statement_error(struct plan_context *c, const char *fmt, ...) PRINTF_LIKE(2, 3);
+
+/* ST_DATA: `what`, a statement, is for edits alone. */
+enum status statement_for_edits(struct plan_context *c, const char *what);
 
 /* plan_names.c */
 
@@ -58,55 +64,26 @@ double use_default(struct plan_context *c, enum plan_default which);
 /* The option's value, or the default's. */
 double option_or_default(struct plan_context *c, enum option option, enum plan_default which);
 enum status check_length(struct plan_context *c, const char *what, double value);
-enum status apply_set(struct plan_context *c);
-enum status apply_wall(struct plan_context *c);
-enum status apply_room(struct plan_context *c);
-enum status apply_slope(struct plan_context *c);
 
 /* plan_openings.c */
 
-enum status apply_opening(struct plan_context *c);
-enum status apply_slot(struct plan_context *c);
-enum status apply_box(struct plan_context *c);
 /* The statement's rectangle on a wall as S and z, ascending. */
 enum status place_on_wall(struct plan_context *c, int wall, double s[2], double z[2]);
 /* Doors and passages drawn in a photograph begin at the floor, whichever pixel was clicked. */
-void set_foot_on_floor(const struct plan_context *c, const struct plan_wall *w, enum verb kind, double z[2]);
+void set_foot_on_floor(const struct plan_context *c, const struct plan_wall *w, enum opening_kind kind, double z[2]);
 /* A box's footprint. at: height of the corners that a photograph shows. */
 enum status place_footprint(struct plan_context *c, double at, double low[2], double high[2]);
 /* The footprint of an opening in a room's ceiling or floor. */
-enum status place_in_room(struct plan_context *c, const struct plan_room *r, enum verb kind, double low[2],
+enum status place_in_room(struct plan_context *c, const struct plan_room *r, enum opening_kind kind, double low[2],
                           double high[2]);
 /* *thickness: the default one of a leaf or glass; 0 if nothing or a wall fills the opening. ST_DATA: it is unknown. */
 enum status fill_thickness(struct plan_context *c, enum filling fill, double *thickness);
 
-/* plan_joins.c */
-
-enum status apply_join(struct plan_context *c);
-enum status apply_extend(struct plan_context *c);
-enum status apply_split(struct plan_context *c);
-
-/* plan_edits.c */
-
-enum status apply_adjust(struct plan_context *c);
-enum status apply_move(struct plan_context *c);
-enum status apply_change(struct plan_context *c);
-enum status apply_resize(struct plan_context *c);
-enum status apply_fill(struct plan_context *c);
-enum status apply_remove(struct plan_context *c);
-
 /* plan_textures.c */
-enum status apply_texture(struct plan_context *c);
-enum status apply_copy(struct plan_context *c);
-enum status apply_colour(struct plan_context *c);
-enum status apply_zone(struct plan_context *c);
-enum status apply_material(struct plan_context *c);
 void plan_wishes_release(struct plan *plan);
 
 /* plan_lights.c */
 
-enum status apply_lamp(struct plan_context *c);
-enum status apply_object(struct plan_context *c);
 enum status remove_object(struct plan_context *c);
 void plan_lights_release(struct plan *plan);
 

@@ -7,7 +7,9 @@
 #include <string.h>
 
 #include "common/base/array.h"
+#include "common/base/scan.h"
 #include "stages/build_model/plan_internal.h"
+#include "stages/build_model/script_words.h"
 
 static double distance_from_end(const struct plan *plan, int wall, int end, const double p[2])
 {
@@ -47,6 +49,8 @@ static enum status check_crossing(struct plan_context *c, int a, int b, double p
     return statement_error(c, "walls %s and %s cannot be joined: they are parallel, or nearly so.", x->name, y->name);
 }
 
+enum status read_join(struct script_reader *r, struct statement *s) { return script_read_list(r, s, 2); }
+
 enum status apply_join(struct plan_context *c)
 {
     const struct statement *s = c->s;
@@ -60,6 +64,26 @@ enum status apply_join(struct plan_context *c)
             return c->err->status;
         for (int k = 0; k < 2; k++) plan->walls[walls[k]].ends[ends[k]] = (struct wall_end){CORNER_END, 0, walls[!k]};
     }
+    return ST_OK;
+}
+
+enum status read_extend(struct script_reader *r, struct statement *s)
+{
+    char *word;
+    if (script_read_name(r, "a wall", &s->name)) return r->err->status;
+    if (!textfile_more(&r->t)) return script_usage_error(r, NULL);
+    if (textfile_word(&r->t, "\"start\" or \"end\"", &word, r->err)) return r->err->status;
+    s->end = !strcmp(word, "start") ? END_START : !strcmp(word, "end") ? END_END : END_NONE;
+    if (s->end == END_NONE)
+        return textfile_error(&r->t, r->err, word, "\"start\" or \"end\", in a line \"%s\"", r->verb->usage);
+    if (script_expect(r, "to") || textfile_word(&r->t, "a wall or a coordinate", &word, r->err)) return r->err->status;
+    if (scan_double(word, &s->values[0])) {
+        s->value_count = 1;
+        if (fabs(s->values[0]) <= MAX_NUMBER) return ST_OK;
+        return textfile_error(&r->t, r->err, word, "a coordinate within 1e6");
+    }
+    if (!script_is_name(word)) return textfile_error(&r->t, r->err, word, "the name of a wall, or a coordinate");
+    s->other = script_keep_word(r, word);
     return ST_OK;
 }
 
@@ -108,6 +132,17 @@ static enum status add_to_rooms(struct plan_context *c, int wall, int part)
     return ST_OK;
 }
 
+enum status read_split(struct script_reader *r, struct statement *s)
+{
+    s->value_count = 2;
+    if (script_read_name(r, "a wall", &s->name) || script_expect(r, "from") ||
+        script_read_number(r, "where the gap begins", &s->values[0]) || script_expect(r, "to") ||
+        script_read_number(r, "where the gap ends", &s->values[1]) || script_expect(r, "into") ||
+        script_read_name(r, "a new name", &s->other))
+        return r->err->status;
+    return ST_OK;
+}
+
 enum status apply_split(struct plan_context *c)
 {
     const struct statement *s = c->s;
@@ -125,7 +160,7 @@ enum status apply_split(struct plan_context *c)
         const struct plan_opening *o = &plan->openings[i];
         if (o->wall == wall && !o->removed && o->s[0] < gap[1] && o->s[1] > gap[0])
             return statement_error(c, "the gap from %.9g to %.9g cuts %s %s, from %.9g to %.9g; remove that first.",
-                                   gap[0], gap[1], verb_name(o->kind), o->name, o->s[0], o->s[1]);
+                                   gap[0], gap[1], opening_word(o->kind), o->name, o->s[0], o->s[1]);
     }
     if (copy_new_name(c, s->other, &name)) return c->err->status;
     if (array_append(&plan->walls, (size_t)plan->wall_count, sizeof *plan->walls, "walls", c->err)) {

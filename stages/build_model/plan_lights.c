@@ -6,7 +6,9 @@
 
 #include "common/base/array.h"
 #include "common/base/scan.h"
+#include "common/light/object_list.h"
 #include "stages/build_model/plan_internal.h"
+#include "stages/build_model/script_words.h"
 
 void plan_lights_release(struct plan *plan)
 {
@@ -18,6 +20,27 @@ void plan_lights_release(struct plan *plan)
     }
     free(plan->lamps);
     free(plan->objects);
+}
+
+/* Lamps have the names of lights.txt: any word. */
+enum status read_lamp(struct script_reader *r, struct statement *s)
+{
+    enum { MAX_LAMP_NAME = 255 };
+    char *word;
+    if (textfile_word(&r->t, "the name of a lamp", &word, r->err)) return r->err->status;
+    if (!word[0] || strlen(word) > MAX_LAMP_NAME || strchr(word, '\r'))
+        return textfile_error(&r->t, r->err, word, "the name of a lamp of lights.txt");
+    s->name = script_keep_word(r, word);
+    s->value_count = 3;
+    if (!textfile_more(&r->t)) return script_usage_error(r, NULL);
+    if (textfile_word(&r->t, "off or scale", &word, r->err)) return r->err->status;
+    if (!strcmp(word, "off")) return ST_OK;
+    if (strcmp(word, "scale")) return script_usage_error(r, word);
+    for (int c = 0; c < 3; c++) {
+        if (script_read_number(r, "a factor of 0 or more", &s->values[c])) return r->err->status;
+        if (s->values[c] < 0) return textfile_wrong_number(&r->t, s->values[c], "a factor of 0 or more", r->err);
+    }
+    return ST_OK;
 }
 
 /* off, scale */
@@ -37,6 +60,58 @@ enum status apply_lamp(struct plan_context *c)
 }
 
 /* ---------------------------------------------------------------------------------------------------------- objects */
+
+/* One factor, or one for each axis. */
+static enum status read_scale(struct script_reader *r, double scale[3])
+{
+    for (int k = 0; k < 3; k++) {
+        const char *next = script_next_word(r);
+        if (k == 1 && (!*next || !strchr("+-.0123456789", *next))) {
+            scale[1] = scale[2] = scale[0];
+            return ST_OK;
+        }
+        if (script_read_number(r, "a scale", &scale[k])) return r->err->status;
+        if (!(scale[k] >= 1e-6)) return textfile_wrong_number(&r->t, scale[k], "a scale from 1e-6 to 1e6", r->err);
+    }
+    return ST_OK;
+}
+
+static enum status read_mesh_file(struct script_reader *r, const char **file)
+{
+    char *word;
+    if (textfile_word(&r->t, "a mesh, FILE.obj", &word, r->err)) return r->err->status;
+    if (!object_file_is_valid(word))
+        return textfile_error(&r->t, r->err, word,
+                              "a mesh in the scene's folder, FILE.obj or FOLDER/FILE.obj, of letters, digits, _, - and "
+                              ".");
+    *file = script_keep_word(r, word);
+    return ST_OK;
+}
+
+enum status read_object(struct script_reader *r, struct statement *s)
+{
+    struct script_object *o = &s->object;
+    bool turned = false, scaled = false;
+    for (int k = 0; k < 3; k++) o->scale[k] = 1;
+    if (script_read_name(r, "a name", &s->name) || read_mesh_file(r, &s->mesh) || script_expect(r, "at") ||
+        script_read_number(r, "X", &o->at[0]) || script_read_number(r, "Y", &o->at[1]) ||
+        script_read_number(r, "Z", &o->at[2]))
+        return r->err->status;
+    while (script_next_is(r, "turn") || script_next_is(r, "scale")) {
+        const bool turn = script_next_is(r, "turn");
+        bool *had = turn ? &turned : &scaled;
+        if (script_expect(r, turn ? "turn" : "scale")) return r->err->status;
+        if (*had) return textfile_error(&r->t, r->err, turn ? "turn" : "scale", "each option once");
+        *had = true;
+        if (turn ? script_read_number(r, "an angle in degrees", &o->turn) : read_scale(r, o->scale))
+            return r->err->status;
+    }
+    if (!textfile_more(&r->t)) return script_usage_error(r, NULL);
+    if (script_next_is(r, "matt") || script_next_is(r, "phong") || script_next_is(r, "ward"))
+        return brdf_read(&o->brdf, &r->t, r->err);
+    char *word;
+    return textfile_word(&r->t, "a material", &word, r->err) ? r->err->status : script_usage_error(r, word);
+}
 
 /* The object of a name, removed or not; NULL: there was never one. */
 static struct plan_object *find_object(const struct plan *p, const char *name)
@@ -70,11 +145,11 @@ enum status apply_object(struct plan_context *c)
     free(o->path);
     free(o->file);
     o->path = strdup(c->path);
-    o->file = strdup(s->other);
+    o->file = strdup(s->mesh);
     o->line = s->line;
     o->removed = false;
     o->placed = s->object;
-    return o->name && o->path && o->file ? ST_OK : err_nomem(c->err, "an object", strlen(c->path) + strlen(s->other));
+    return o->name && o->path && o->file ? ST_OK : err_nomem(c->err, "an object", strlen(c->path) + strlen(s->mesh));
 }
 
 static const char *nth_object(const void *ctx, int i)

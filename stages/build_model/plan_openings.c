@@ -8,6 +8,7 @@
 
 #include "common/base/array.h"
 #include "stages/build_model/plan_internal.h"
+#include "stages/build_model/script_words.h"
 
 enum status fill_thickness(struct plan_context *c, enum filling fill, double *thickness)
 {
@@ -75,21 +76,26 @@ enum status place_on_wall(struct plan_context *c, int wall, double s[2], double 
     return ST_OK;
 }
 
-void set_foot_on_floor(const struct plan_context *c, const struct plan_wall *w, enum verb kind, double z[2])
+void set_foot_on_floor(const struct plan_context *c, const struct plan_wall *w, enum opening_kind kind, double z[2])
 {
-    if (kind != VERB_WINDOW && c->s->place.kind == PLACE_VIEW) z[0] = w->foot;
+    if (kind != OPENING_WINDOW && c->s->place.kind == PLACE_VIEW) z[0] = w->foot;
 }
 
-enum status apply_opening(struct plan_context *c)
+enum status read_opening(struct script_reader *r, struct statement *s)
+{
+    return script_read_name(r, "a name", &s->name) || script_expect(r, "on") ||
+                   script_read_name(r, "a wall", &s->other) || script_read_place(r, &s->place, 1u << PLACE_FROM_END)
+               ? r->err->status
+               : ST_OK;
+}
+
+static enum status add_opening(struct plan_context *c, enum opening_kind kind, enum filling fill)
 {
     const struct statement *s = c->s;
     struct plan *p = c->plan;
-    struct plan_opening o = {.line = s->line, .kind = s->verb, .interior = s->interior};
-    if (find_wall(c, s->other, &o.wall)) return c->err->status;
-    if (s->verb == VERB_WINDOW && !s->open) o.fill = FILL_GLASS;
-    if (s->verb == VERB_DOOR && s->closed) o.fill = FILL_LEAF;
-    if (place_on_wall(c, o.wall, o.s, o.z)) return c->err->status;
-    set_foot_on_floor(c, &p->walls[o.wall], s->verb, o.z);
+    struct plan_opening o = {.line = s->line, .kind = kind, .interior = s->has_option[OPTION_INTERIOR], .fill = fill};
+    if (find_wall(c, s->other, &o.wall) || place_on_wall(c, o.wall, o.s, o.z)) return c->err->status;
+    set_foot_on_floor(c, &p->walls[o.wall], kind, o.z);
     if (fill_thickness(c, o.fill, &o.leaf) || copy_new_name(c, s->name, &o.name)) return c->err->status;
     if (array_append(&p->openings, (size_t)p->opening_count, sizeof o, "openings", c->err)) {
         free(o.name);
@@ -98,6 +104,20 @@ enum status apply_opening(struct plan_context *c)
     p->openings[p->opening_count++] = o;
     return add_name(p, o.name, NAMED_OPENING, p->opening_count - 1, c->err);
 }
+
+enum status apply_door(struct plan_context *c)
+{
+    return add_opening(c, OPENING_DOOR, c->s->has_option[OPTION_CLOSED] ? FILL_LEAF : FILL_NOTHING);
+}
+
+enum status apply_passage(struct plan_context *c) { return add_opening(c, OPENING_PASSAGE, FILL_NOTHING); }
+
+enum status apply_window(struct plan_context *c)
+{
+    return add_opening(c, OPENING_WINDOW, c->s->has_option[OPTION_OPEN] ? FILL_NOTHING : FILL_GLASS);
+}
+
+/* ---------------------------------------------------------------------------------------------- ceilings and floors */
 
 /* A footprint in the plane z = a[0] + a[1] x + a[2] y, where a photograph shows it. */
 static enum status place_in_plane(struct plan_context *c, const double plane[3], double low[2], double high[2])
@@ -133,10 +153,10 @@ enum status place_footprint(struct plan_context *c, double at, double low[2], do
     return place_in_plane(c, (const double[3]){at, 0, 0}, low, high);
 }
 
-enum status place_in_room(struct plan_context *c, const struct plan_room *r, enum verb kind, double low[2],
+enum status place_in_room(struct plan_context *c, const struct plan_room *r, enum opening_kind kind, double low[2],
                           double high[2])
 {
-    if (kind == VERB_HATCH) return place_footprint(c, r->floor, low, high);
+    if (kind == OPENING_HATCH) return place_footprint(c, r->floor, low, high);
     /* of a gable's planes, the one in which the footprint's middle is on the ceiling */
     enum status st = ST_OK;
     for (int i = 0; i < r->lower.count && !st; i++) {
@@ -148,15 +168,20 @@ enum status place_in_room(struct plan_context *c, const struct plan_room *r, enu
     return st;
 }
 
-enum status apply_slot(struct plan_context *c)
+enum status read_slot(struct script_reader *r, struct statement *s)
+{
+    return script_read_name(r, "a name", &s->name) || script_expect(r, "on") ||
+                   script_read_name(r, "a room", &s->other) || script_read_place(r, &s->place, 1u << PLACE_FROM_END)
+               ? r->err->status
+               : ST_OK;
+}
+
+static enum status add_slot(struct plan_context *c, enum opening_kind kind, enum filling fill)
 {
     const struct statement *s = c->s;
     struct plan *p = c->plan;
-    struct plan_slot slot = {.line = s->line, .kind = s->verb};
-    if (find_room(c, s->other, &slot.room)) return c->err->status;
-    if (s->verb == VERB_SKYLIGHT && !s->open) slot.fill = FILL_GLASS;
-    if (s->verb == VERB_HATCH && s->closed) slot.fill = FILL_LEAF;
-    if (place_in_room(c, &p->rooms[slot.room], s->verb, slot.low, slot.high) ||
+    struct plan_slot slot = {.line = s->line, .kind = kind, .fill = fill};
+    if (find_room(c, s->other, &slot.room) || place_in_room(c, &p->rooms[slot.room], kind, slot.low, slot.high) ||
         fill_thickness(c, slot.fill, &slot.leaf) || copy_new_name(c, s->name, &slot.name))
         return c->err->status;
     if (array_append(&p->slots, (size_t)p->slot_count, sizeof slot, "openings in rooms", c->err)) {
@@ -165,6 +190,23 @@ enum status apply_slot(struct plan_context *c)
     }
     p->slots[p->slot_count++] = slot;
     return add_name(p, slot.name, NAMED_SLOT, p->slot_count - 1, c->err);
+}
+
+enum status apply_skylight(struct plan_context *c)
+{
+    return add_slot(c, OPENING_SKYLIGHT, c->s->has_option[OPTION_OPEN] ? FILL_NOTHING : FILL_GLASS);
+}
+
+enum status apply_hatch(struct plan_context *c)
+{
+    return add_slot(c, OPENING_HATCH, c->s->has_option[OPTION_CLOSED] ? FILL_LEAF : FILL_NOTHING);
+}
+
+/* ------------------------------------------------------------------------------------------------------------ boxes */
+
+enum status read_box(struct script_reader *r, struct statement *s)
+{
+    return script_read_name(r, "a name", &s->name) || script_read_place(r, &s->place, 0) ? r->err->status : ST_OK;
 }
 
 enum status apply_box(struct plan_context *c)

@@ -80,6 +80,7 @@ enum status plan_state(char **state, const struct plan *plan, struct err *err)
         put(to, (const double[]){b->low[0], b->low[1], b->low[2], b->high[0], b->high[1], b->high[2], b->turn}, 7);
     }
     put(to, plan->colour, 3);
+    fprintf(to, "base %s\n", plan->base ? plan->base : "");
     put_lights(to, plan);
     fprintf(to, "wishes %d zones %d\n", plan->wish_count, plan->zone_count);
     const int failed = ferror(to);

@@ -6,6 +6,7 @@
 #include "common/base/array.h"
 #include "common/base/log.h"
 #include "stages/build_model/plan_internal.h"
+#include "stages/build_model/script_words.h"
 
 enum status check_length(struct plan_context *c, const char *what, double value)
 {
@@ -33,10 +34,27 @@ double option_or_default(struct plan_context *c, enum option option, enum plan_d
     return c->s->has_option[option] ? c->s->options[option] : use_default(c, which);
 }
 
+enum status read_set(struct script_reader *r, struct statement *s)
+{
+    static const char *const QUANTITIES[] = {"thickness", "slab", "glass", "leaf", "floor", "ceiling", "colour", NULL};
+    char *word;
+    int i = 0;
+    if (textfile_word(&r->t, "a quantity", &word, r->err)) return r->err->status;
+    while (QUANTITIES[i] && strcmp(QUANTITIES[i], word)) i++;
+    if (!QUANTITIES[i]) return script_usage_error(r, word);
+    s->name = QUANTITIES[i];
+    if (!strcmp(s->name, "colour")) return script_read_colour(r, s);
+    s->value_count = 1;
+    return script_read_number(r, s->name, &s->values[0]);
+}
+
 enum status apply_set(struct plan_context *c)
 {
     const struct statement *s = c->s;
-    if (!strcmp(s->name, "colour")) memcpy(c->plan->colour, s->values, sizeof c->plan->colour);
+    if (!strcmp(s->name, "colour")) {
+        if (!c->edit) return statement_for_edits(c, "set colour");
+        memcpy(c->plan->colour, s->values, sizeof c->plan->colour);
+    }
     for (int i = 0; i < DEFAULTS; i++) {
         const char *name;
         double *value = default_value(c->plan, (enum plan_default)i, &name);
@@ -45,6 +63,7 @@ enum status apply_set(struct plan_context *c)
         if (fabs(s->values[0]) > MAX_SIZE)
             return statement_error(c, "found %s %.9g, wanted at most %g.", s->name, s->values[0], MAX_SIZE);
         *value = s->values[0];
+        c->set |= 1u << i;
     }
     return ST_OK;
 }
@@ -131,11 +150,19 @@ static enum status place_new_wall(struct plan_context *c, struct plan_wall *w)
     return ST_OK;
 }
 
+enum status read_wall(struct script_reader *r, struct statement *s)
+{
+    if (script_read_name(r, "a name", &s->name) || script_read_place(r, &s->place, 1u << PLACE_PARALLEL))
+        return r->err->status;
+    s->by_points = s->place.kind == PLACE_VIEW;
+    return ST_OK;
+}
+
 enum status apply_wall(struct plan_context *c)
 {
     const struct statement *s = c->s;
     struct plan *p = c->plan;
-    struct plan_wall w = {.line = s->line, .angled = s->angled};
+    struct plan_wall w = {.line = s->line, .angled = s->has_option[OPTION_ANGLED]};
     if (copy_new_name(c, s->name, &w.name)) return c->err->status;
     w.thickness = option_or_default(c, OPTION_THICKNESS, DEFAULT_THICKNESS);
     w.foot = option_or_default(c, OPTION_FOOT, DEFAULT_FLOOR);
@@ -160,6 +187,13 @@ enum status apply_wall(struct plan_context *c)
     }
     p->walls[p->wall_count++] = w;
     return add_name(p, w.name, NAMED_WALL, p->wall_count - 1, c->err);
+}
+
+/* ------------------------------------------------------------------------------------------------------------ rooms */
+
+enum status read_room(struct script_reader *r, struct statement *s)
+{
+    return script_read_name(r, "a name", &s->name) || script_read_list(r, s, 3) ? r->err->status : ST_OK;
 }
 
 enum status apply_room(struct plan_context *c)
@@ -195,8 +229,28 @@ enum status apply_room(struct plan_context *c)
     return add_name(p, r.name, NAMED_ROOM, p->room_count - 1, c->err);
 }
 
+enum status read_slope(struct script_reader *r, struct statement *s)
+{
+    s->names = calloc(2, sizeof *s->names);
+    if (!s->names) return err_nomem(r->err, "names of walls", 2 * sizeof *s->names);
+    s->name_count = 2;
+    if (script_read_name(r, "a room", &s->name) || script_expect(r, "from") ||
+        script_read_name(r, "a wall", &s->names[0]) || script_read_number(r, "the height there", &s->values[0]) ||
+        script_expect(r, "to") || script_read_name(r, "a wall", &s->names[1]) ||
+        script_read_number(r, "the height there", &s->values[1]))
+        return r->err->status;
+    return ST_OK;
+}
+
+enum status read_gable(struct script_reader *r, struct statement *s)
+{
+    return read_slope(r, s) || script_expect(r, "ridge") || script_read_number(r, "the ridge's height", &s->values[2])
+               ? r->err->status
+               : ST_OK;
+}
+
 /* Slopes a ceiling in one plane, or in two that meet in a ridge. */
-enum status apply_slope(struct plan_context *c)
+static enum status slope_ceiling(struct plan_context *c, bool gable)
 {
     const struct statement *s = c->s;
     int at, walls[2];
@@ -215,15 +269,19 @@ enum status apply_slope(struct plan_context *c)
     if (walls[0] == walls[1] || !(fabs(a->d[0] * b->d[1] - a->d[1] * b->d[0]) < 1e-9))
         return statement_error(c, "a ceiling slopes between two parallel walls, but %s and %s are not parallel.",
                                s->names[0], s->names[1]);
-    if (s->verb == VERB_GABLE && !(s->values[2] - fmax(s->values[0], s->values[1]) >= MIN_SIZE))
+    if (gable && !(s->values[2] - fmax(s->values[0], s->values[1]) >= MIN_SIZE))
         return statement_error(c, "the ridge of %s would be at %.9g, wanted it above the ceiling at both walls.",
                                s->name, s->values[2]);
     if (s->has_option[OPTION_AT] && !(s->options[OPTION_AT] >= MIN_SIZE))
         return statement_error(c, "the ridge of %s would be %.9g from wall %s, wanted %g or more.", s->name,
                                s->options[OPTION_AT], s->names[0], MIN_SIZE);
-    r->shape = s->verb == VERB_GABLE ? GABLE_CEILING : SLOPED_CEILING;
+    r->shape = gable ? GABLE_CEILING : SLOPED_CEILING;
     memcpy(r->slope_walls, walls, sizeof walls);
     memcpy(r->slope_heights, s->values, sizeof r->slope_heights);
     r->ridge_at = s->has_option[OPTION_AT] ? s->options[OPTION_AT] : 0;
     return ST_OK;
 }
+
+enum status apply_slope(struct plan_context *c) { return slope_ceiling(c, false); }
+
+enum status apply_gable(struct plan_context *c) { return slope_ceiling(c, true); }

@@ -5,6 +5,7 @@
 
 #include "common/base/array.h"
 #include "stages/build_model/plan_internal.h"
+#include "stages/build_model/script_words.h"
 
 #define ABOVE_ALL 1e4 /* model units: heights without a limit */
 
@@ -33,6 +34,17 @@ static enum status add_wish(struct plan_context *c, struct plan_wish wish, const
     return err_nomem(c->err, "a texture", strlen(c->path) + strlen(face));
 }
 
+enum status read_texture(struct script_reader *r, struct statement *s)
+{
+    char *word;
+    if (script_read_name(r, "a wall, an opening, a box or a room", &s->name)) return r->err->status;
+    if (textfile_word(&r->t, "\"stretch\" or \"crop\"", &word, r->err)) return r->err->status;
+    if (strcmp(word, "stretch") && strcmp(word, "crop"))
+        return textfile_error(&r->t, r->err, word, "\"stretch\" or \"crop\"");
+    s->other = script_keep_word(r, word);
+    return ST_OK;
+}
+
 enum status apply_texture(struct plan_context *c)
 {
     enum name_kind kind;
@@ -40,6 +52,14 @@ enum status apply_texture(struct plan_context *c)
     if (find_named(c, c->s->name, ~0u, "a wall, an opening, a box or a room", &kind, &at)) return c->err->status;
     const bool stretch = !strcmp(c->s->other, "stretch");
     return add_wish(c, (struct plan_wish){.kind = stretch ? WISH_STRETCH : WISH_CROP}, c->s->name, NULL);
+}
+
+enum status read_material(struct script_reader *r, struct statement *s)
+{
+    return script_read_face(r, &s->name) || gloss_read(&s->gloss, &r->t, r->err) ||
+                   gloss_check(&s->gloss, 0, &r->t, r->err)
+               ? r->err->status
+               : ST_OK;
 }
 
 enum status apply_material(struct plan_context *c)
@@ -69,9 +89,9 @@ static bool has_places(const char *face)
 }
 
 /* The rectangle of a place on a face: S and Z on a wall, X and Y on a floor or ceiling. plan: the edited or the unedited
- * one. */
+ * one. copied: the place is for a copy, not for a colour. */
 static enum status place_on_face(struct plan_context *c, struct plan *plan, const char *face,
-                                 const struct script_place *place, double rect[4])
+                                 const struct script_place *place, bool copied, double rect[4])
 {
     struct statement moved = *c->s;
     struct plan_context at = *c;
@@ -87,16 +107,16 @@ static enum status place_on_face(struct plan_context *c, struct plan *plan, cons
             c,
             "a place on %s cannot be given: only wall/NAME/in and out (S and Z), floor/NAME and ceiling/NAME (X and Y) "
             "have places. Leave the %s out: the whole face gets the %s.",
-            face, c->s->verb == VERB_COPY ? "second place" : "place", c->s->verb == VERB_COPY ? "texture" : "colour");
+            face, copied ? "second place" : "place", copied ? "texture" : "colour");
     if (!strncmp(face, "wall/", 5)) {
         double s[2], z[2];
         if (find_wall(&at, item, &index) || place_on_wall(&at, index, s, z)) return c->err->status;
         memcpy(rect, (const double[]){s[0], z[0], s[1], z[1]}, 4 * sizeof *rect);
         return ST_OK;
     }
-    const enum verb verb = !strncmp(face, "floor/", 6) ? VERB_HATCH : VERB_SKYLIGHT;
+    const enum opening_kind kind = !strncmp(face, "floor/", 6) ? OPENING_HATCH : OPENING_SKYLIGHT;
     double low[2], high[2];
-    if (find_room(&at, item, &index) || place_in_room(&at, &plan->rooms[index], verb, low, high)) return c->err->status;
+    if (find_room(&at, item, &index) || place_in_room(&at, &plan->rooms[index], kind, low, high)) return c->err->status;
     memcpy(rect, (const double[]){low[0], low[1], high[0], high[1]}, 4 * sizeof *rect);
     return ST_OK;
 }
@@ -108,6 +128,20 @@ static enum status check_rectangle(struct plan_context *c, const char *face, con
                            rect[3] - rect[1], MIN_SIZE);
 }
 
+enum status read_colour(struct script_reader *r, struct statement *s)
+{
+    return script_read_face(r, &s->name) || script_read_colour(r, s) ? r->err->status : ST_OK;
+}
+
+enum status read_paint(struct script_reader *r, struct statement *s)
+{
+    if (script_read_face(r, &s->name)) return r->err->status;
+    if ((script_next_is(r, "from") || script_next_is(r, "in") || script_next_is(r, "at")) &&
+        script_read_place(r, &s->place, 1u << PLACE_FROM_END))
+        return r->err->status;
+    return script_read_colour(r, s);
+}
+
 /* colour, paint */
 enum status apply_colour(struct plan_context *c)
 {
@@ -115,7 +149,7 @@ enum status apply_colour(struct plan_context *c)
     struct plan_wish wish = {.kind = WISH_COLOUR, .whole = s->place.kind == PLACE_NONE};
     memcpy(wish.colour, s->values, sizeof wish.colour);
     if (!wish.whole &&
-        (place_on_face(c, c->plan, s->name, &s->place, wish.target) || check_rectangle(c, s->name, wish.target)))
+        (place_on_face(c, c->plan, s->name, &s->place, false, wish.target) || check_rectangle(c, s->name, wish.target)))
         return c->err->status;
     return add_wish(c, wish, s->name, NULL);
 }
@@ -137,27 +171,55 @@ static enum status check_source(struct plan_context *c, const char *face)
     return statement_error(c, "%s is not in the unedited model, whose texture is copied.", item);
 }
 
+enum status read_copy(struct script_reader *r, struct statement *s)
+{
+    if (script_expect(r, "texture") || script_read_face(r, &s->name) ||
+        script_read_place(r, &s->place, 1u << PLACE_FROM_END) || script_expect(r, "to") ||
+        script_read_face(r, &s->other))
+        return r->err->status;
+    return textfile_more(&r->t) ? script_read_place(r, &s->target, 1u << PLACE_FROM_END) : ST_OK;
+}
+
 /* The patch lies where the unedited model has it, also if the edit moved or removed that wall. */
 enum status apply_copy(struct plan_context *c)
 {
     const struct statement *s = c->s;
     struct plan_wish wish = {.kind = WISH_COPY, .whole = s->target.kind == PLACE_NONE};
-    if (check_source(c, s->name) || place_on_face(c, c->plan->unedited, s->name, &s->place, wish.patch) ||
+    if (check_source(c, s->name) || place_on_face(c, c->plan->unedited, s->name, &s->place, true, wish.patch) ||
         check_rectangle(c, s->name, wish.patch))
         return c->err->status;
-    if (!wish.whole &&
-        (place_on_face(c, c->plan, s->other, &s->target, wish.target) || check_rectangle(c, s->other, wish.target)))
+    if (!wish.whole && (place_on_face(c, c->plan, s->other, &s->target, true, wish.target) ||
+                        check_rectangle(c, s->other, wish.target)))
         return c->err->status;
     return add_wish(c, wish, s->other, s->name);
 }
 
 /* ------------------------------------------------------------------------------------------------------ clutter */
 
-enum status apply_zone(struct plan_context *c)
+/* A place, or the space before an opening; `named`: also a room, or all of them. */
+static enum status read_zone(struct script_reader *r, struct statement *s, bool named)
+{
+    const char *next = script_next_word(r);
+    if (!strncmp(next, "before ", 7)) {
+        s->value_count = 1;
+        return script_expect(r, "before") || script_read_name(r, "a door, passage or window", &s->other) ||
+                       script_expect(r, "by") || script_read_number(r, "a distance from the wall", &s->values[0])
+                   ? r->err->status
+                   : ST_OK;
+    }
+    if (!named || !strncmp(next, "in ", 3) || !strncmp(next, "from ", 5)) return script_read_place(r, &s->place, 0);
+    return script_read_name(r, "a room, \"all\", \"in VIEW\", \"from\" or \"before\"", &s->name);
+}
+
+enum status read_clear(struct script_reader *r, struct statement *s) { return read_zone(r, s, true); }
+
+enum status read_keep(struct script_reader *r, struct statement *s) { return read_zone(r, s, false); }
+
+static enum status add_zone(struct plan_context *c, bool keep)
 {
     const struct statement *s = c->s;
     struct plan *p = c->plan;
-    struct plan_zone zone = {.keep = s->verb == VERB_KEEP, .room = -1, .opening = -1};
+    struct plan_zone zone = {.keep = keep, .room = -1, .opening = -1};
     zone.low[2] = s->has_option[OPTION_FOOT] ? s->options[OPTION_FOOT] : -ABOVE_ALL;
     zone.high[2] = s->has_option[OPTION_TOP] ? s->options[OPTION_TOP] : ABOVE_ALL;
     if (!(zone.low[2] < zone.high[2]))
@@ -182,3 +244,7 @@ enum status apply_zone(struct plan_context *c)
     p->zones[p->zone_count++] = zone;
     return ST_OK;
 }
+
+enum status apply_clear(struct plan_context *c) { return add_zone(c, false); }
+
+enum status apply_keep(struct plan_context *c) { return add_zone(c, true); }

@@ -7,8 +7,8 @@
 #include "common/graph/scene_rules.h"
 #include "stages/build_model/script.h"
 
-static const enum product_id model_files[] = {PRODUCT_MODEL,  PRODUCT_MODEL_OBJ,    PRODUCT_PLAN,
-                                              PRODUCT_MERGED, PRODUCT_PLAN_PICTURE, PRODUCT_MODEL_PICTURE};
+static const enum product_id model_files[] = {PRODUCT_MODEL, PRODUCT_PLAN, PRODUCT_MERGED, PRODUCT_PLAN_PICTURE,
+                                              PRODUCT_MODEL_PICTURE};
 enum { MODEL_FILES = sizeof model_files / sizeof *model_files };
 
 static const char *model_file(struct graph *g, enum product_id id, const char *model)
@@ -30,8 +30,8 @@ static void read_script(struct graph *g, struct asked_for *asked, const char *pa
     if (script_read(&script, path, &unread)) return;
     for (int i = 0; i < script.count; i++) {
         const struct statement *s = &script.statements[i];
-        asked->points |= (s->verb == VERB_WALL || s->verb == VERB_ADJUST) && s->place.kind == PLACE_VIEW;
-        if (s->verb == VERB_OBJECT && s->other) name_list_add(&asked->meshes, s->other, strlen(s->other), graph_err(g));
+        asked->points |= s->by_points;
+        if (s->mesh) name_list_add(&asked->meshes, s->mesh, strlen(s->mesh), graph_err(g));
     }
     if (script.base && !name_list_has(&asked->edits, script.base))
         name_list_add(&asked->edits, script.base, strlen(script.base), graph_err(g));

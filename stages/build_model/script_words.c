@@ -1,16 +1,27 @@
-/* script_words.c - words, numbers, places, lists and options of a statement. */
+/* script_words.c - words, numbers, places, faces, lists and options of a statement. */
+#include "stages/build_model/script_words.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "common/base/array.h"
 #include "common/base/scan.h"
-#include "stages/build_model/script_internal.h"
 
-enum status script_usage_error(struct script_reader *r, const char *found, enum verb verb)
+static const char *const OPTIONS[OPTION_COUNT] = {"thickness", "foot",     "top",    "floor", "ceiling", "turn",
+                                                  "at",        "left",     "right",  "front", "back",    "bottom",
+                                                  "angled",    "interior", "closed", "open"};
+
+static const char *const FILLINGS[FILL_COUNT] = {"nothing", "leaf", "glass", "wall"};
+
+const char *option_name(enum option option) { return OPTIONS[option]; }
+
+const char *filling_name(enum filling filling) { return FILLINGS[filling]; }
+
+enum status script_usage_error(struct script_reader *r, const char *found)
 {
     return textfile_error(&r->t, r->err, found, "%s, in a line \"%s\"", found ? "something else" : "more words",
-                          script_grammar[verb].usage);
+                          r->verb->usage);
 }
 
 const char *script_keep_word(struct script_reader *r, const char *word)
@@ -20,6 +31,15 @@ const char *script_keep_word(struct script_reader *r, const char *word)
     memcpy(kept, word, size);
     r->used += size;
     return kept;
+}
+
+const char *script_next_word(const struct script_reader *r) { return r->t.cursor + strspn(r->t.cursor, " \t"); }
+
+bool script_next_is(const struct script_reader *r, const char *word)
+{
+    const char *next = script_next_word(r);
+    const size_t length = strlen(word);
+    return !strncmp(next, word, length) && (!next[length] || strchr(" \t\r", next[length]));
 }
 
 bool script_is_name(const char *word)
@@ -51,13 +71,13 @@ enum status script_read_number(struct script_reader *r, const char *what, double
     return textfile_error(&r->t, r->err, text, "%s within 1e6", what);
 }
 
-enum status script_expect(struct script_reader *r, const char *wanted, enum verb verb)
+enum status script_expect(struct script_reader *r, const char *wanted)
 {
     char *word;
-    if (!textfile_more(&r->t)) return script_usage_error(r, NULL, verb);
+    if (!textfile_more(&r->t)) return script_usage_error(r, NULL);
     if (textfile_word(&r->t, wanted, &word, r->err)) return r->err->status;
     if (!strcmp(word, wanted)) return ST_OK;
-    return textfile_error(&r->t, r->err, word, "\"%s\", in a line \"%s\"", wanted, script_grammar[verb].usage);
+    return textfile_error(&r->t, r->err, word, "\"%s\", in a line \"%s\"", wanted, r->verb->usage);
 }
 
 /* ------------------------------------------------------------------------------------------------------------ parts */
@@ -78,7 +98,7 @@ static enum status read_rectangle(struct script_reader *r, struct script_place *
                    r->t.path, r->t.line, p->a[0], p->a[1], p->a[2], p->a[3]);
 }
 
-static enum status read_from_end(struct script_reader *r, struct script_place *p, enum verb verb)
+static enum status read_from_end(struct script_reader *r, struct script_place *p)
 {
     char *side;
     p->kind = PLACE_FROM_END;
@@ -86,108 +106,123 @@ static enum status read_from_end(struct script_reader *r, struct script_place *p
     p->right = !strcmp(side, "right");
     if (!p->right && strcmp(side, "left"))
         return textfile_error(&r->t, r->err, side, "\"left\" or \"right\": the end of the wall to measure from");
-    if (script_read_number(r, "the distance from that end", &p->a[0]) || script_expect(r, "width", verb) ||
-        script_read_number(r, "the width", &p->a[1]) || script_expect(r, "from", verb) ||
-        script_read_number(r, "the height of the sill", &p->a[2]) || script_expect(r, "to", verb) ||
+    if (script_read_number(r, "the distance from that end", &p->a[0]) || script_expect(r, "width") ||
+        script_read_number(r, "the width", &p->a[1]) || script_expect(r, "from") ||
+        script_read_number(r, "the height of the sill", &p->a[2]) || script_expect(r, "to") ||
         script_read_number(r, "the height of the head", &p->a[3]))
         return r->err->status;
     return ST_OK;
 }
 
-static enum status read_parallel(struct script_reader *r, struct script_place *p, enum verb verb)
+static enum status read_parallel(struct script_reader *r, struct script_place *p)
 {
     p->kind = PLACE_PARALLEL;
-    if (script_expect(r, "to", verb) || script_read_name(r, "a wall", &p->wall) || script_expect(r, "by", verb) ||
-        script_read_number(r, "the distance from that wall", &p->a[0]) || script_expect(r, "between", verb) ||
+    if (script_expect(r, "to") || script_read_name(r, "a wall", &p->wall) || script_expect(r, "by") ||
+        script_read_number(r, "the distance from that wall", &p->a[0]) || script_expect(r, "between") ||
         script_read_name(r, "the wall at one end", &p->between[0]) ||
         script_read_name(r, "the wall at the other end", &p->between[1]))
         return r->err->status;
     return ST_OK;
 }
 
-enum status script_read_place(struct script_reader *r, struct script_place *p, enum verb verb)
+enum status script_read_place(struct script_reader *r, struct script_place *p, unsigned more)
 {
     char *word;
-    if (!textfile_more(&r->t)) return script_usage_error(r, NULL, verb);
+    if (!textfile_more(&r->t)) return script_usage_error(r, NULL);
     if (textfile_word(&r->t, "\"in\" or \"from\"", &word, r->err)) return r->err->status;
     if (!strcmp(word, "in")) return read_rectangle(r, p);
-    if (!strcmp(word, "at") && verb != VERB_WALL && verb != VERB_BOX && verb != VERB_CLEAR && verb != VERB_KEEP)
-        return read_from_end(r, p, verb);
-    if (!strcmp(word, "parallel") && verb == VERB_WALL) return read_parallel(r, p, verb);
+    if (!strcmp(word, "at") && more & 1u << PLACE_FROM_END) return read_from_end(r, p);
+    if (!strcmp(word, "parallel") && more & 1u << PLACE_PARALLEL) return read_parallel(r, p);
     if (strcmp(word, "from"))
-        return textfile_error(&r->t, r->err, word, "\"in VIEW\" or \"from\", in a line \"%s\"",
-                              script_grammar[verb].usage);
+        return textfile_error(&r->t, r->err, word, "\"in VIEW\" or \"from\", in a line \"%s\"", r->verb->usage);
     p->kind = PLACE_COORDINATES;
     if (script_read_number(r, "a coordinate", &p->a[0]) || script_read_number(r, "a coordinate", &p->a[1]) ||
-        script_expect(r, "to", verb) || script_read_number(r, "a coordinate", &p->a[2]) ||
+        script_expect(r, "to") || script_read_number(r, "a coordinate", &p->a[2]) ||
         script_read_number(r, "a coordinate", &p->a[3]))
         return r->err->status;
     return ST_OK;
 }
 
-enum status script_read_list(struct script_reader *r, struct statement *s, int min_count, unsigned options)
+/* The names of all options that the verb has. */
+static const char *verb_option(const void *ctx, int i)
 {
-    while (textfile_more(&r->t)) {
-        char *before = r->t.cursor;
-        for (int o = 0; o < OPTION_COUNT; o++) {
-            const size_t length = strlen(option_name((enum option)o));
-            const char *at = before + strspn(before, " \t");
-            if (options & (1u << o) && !strncmp(at, option_name((enum option)o), length) &&
-                (at[length] == ' ' || at[length] == '\t'))
-                goto done;
-        }
+    const struct verb *v = ctx;
+    for (int o = 0, n = 0; o < OPTION_COUNT; o++)
+        if (v->options & 1u << o && n++ == i) return OPTIONS[o];
+    return NULL;
+}
+
+/* An option and its number come next. */
+static bool option_is_next(const struct script_reader *r)
+{
+    const char *next = script_next_word(r);
+    for (int o = 0; o < OPTION_ANGLED; o++) {
+        const size_t length = strlen(OPTIONS[o]);
+        if (r->verb->options & 1u << o && !strncmp(next, OPTIONS[o], length) &&
+            (next[length] == ' ' || next[length] == '\t'))
+            return true;
+    }
+    return false;
+}
+
+enum status script_read_list(struct script_reader *r, struct statement *s, int min_count)
+{
+    while (textfile_more(&r->t) && !option_is_next(r)) {
         if (array_append(&s->names, (size_t)s->name_count, sizeof *s->names, "names of walls", r->err) ||
             script_read_name(r, "a wall", &s->names[s->name_count]))
             return r->err->status;
         s->name_count++;
     }
-done:
-    return s->name_count < min_count ? script_usage_error(r, NULL, s->verb) : ST_OK;
+    return s->name_count < min_count ? script_usage_error(r, NULL) : ST_OK;
 }
 
-static const char *known_flag_or_option(const void *ctx, int i)
+enum status script_read_face(struct script_reader *r, const char **name)
 {
-    static const char *const flags[] = {"angled", "interior", "closed", "open", NULL};
-    const struct script_grammar_row *g = ctx;
-    int n = 0;
-    for (int o = 0; o < OPTION_COUNT; o++)
-        if (g->options & (1u << o) && n++ == i) return option_name((enum option)o);
-    for (int f = 0; flags[f]; f++)
-        if (strstr(g->flags, flags[f]) && n++ == i) return flags[f];
-    return NULL;
+    static const char wanted[] = "a face, such as wall/south/in (docs/model-script.md lists their names)";
+    char *word;
+    if (textfile_word(&r->t, wanted, &word, r->err)) return r->err->status;
+    for (const char *c = word; *c; c++)
+        if ((unsigned char)*c <= ' ' || *c == '#' || *c == '"') return textfile_error(&r->t, r->err, word, wanted);
+    if (strlen(word) > 2 * MAX_NAME || !strchr(word, '/')) return textfile_error(&r->t, r->err, word, wanted);
+    *name = script_keep_word(r, word);
+    return ST_OK;
+}
+
+enum status script_read_colour(struct script_reader *r, struct statement *s)
+{
+    static const char *const what[] = {"a share of red light", "a share of green light", "a share of blue light"};
+    for (int i = 0; i < 3; i++) {
+        if (script_read_number(r, what[i], &s->values[i])) return r->err->status;
+        if (!(s->values[i] >= 0 && s->values[i] <= 1))
+            return textfile_wrong_number(&r->t, s->values[i], "a share of light, from 0 to 1", r->err);
+    }
+    s->value_count = 3;
+    return ST_OK;
+}
+
+/* ---------------------------------------------------------------------------------------------------------- options */
+
+static enum status unknown_option(struct script_reader *r, const char *word)
+{
+    const char *near = scan_nearest(word, verb_option, r->verb);
+    if (near)
+        return textfile_error(&r->t, r->err, word,
+                              "the end of the line or an option; did you mean %s? The line is \"%s\"", near,
+                              r->verb->usage);
+    return textfile_error(&r->t, r->err, word, "the end of the line or an option, in a line \"%s\"", r->verb->usage);
 }
 
 enum status script_read_options(struct script_reader *r, struct statement *s)
 {
-    const struct script_grammar_row *g = &script_grammar[s->verb];
     while (textfile_more(&r->t)) {
-        char *word, padded[32];
-        if (textfile_word(&r->t, "an option", &word, r->err)) return r->err->status;
+        char *word;
         int o = 0;
-        while (o < OPTION_COUNT && !(g->options & (1u << o) && !strcmp(word, option_name((enum option)o)))) o++;
-        if (o < OPTION_COUNT) {
-            if (s->has_option[o]) return textfile_error(&r->t, r->err, word, "each option once");
-            if (script_read_number(r, option_name((enum option)o), &s->options[o])) return r->err->status;
-            s->has_option[o] = true;
-            continue;
-        }
-        bool *flag = NULL;
-        snprintf(padded, sizeof padded, " %.20s ", word);
-        if (word[0] && strstr(g->flags, padded))
-            flag = !strcmp(word, "angled")     ? &s->angled
-                   : !strcmp(word, "interior") ? &s->interior
-                   : !strcmp(word, "closed")   ? &s->closed
-                                               : &s->open;
-        if (!flag) {
-            const char *near = scan_nearest(word, known_flag_or_option, g);
-            if (near)
-                return textfile_error(&r->t, r->err, word,
-                                      "the end of the line or an option; did you mean %s? The line is \"%s\"", near,
-                                      g->usage);
-            return textfile_error(&r->t, r->err, word, "the end of the line or an option, in a line \"%s\"", g->usage);
-        }
-        if (*flag) return textfile_error(&r->t, r->err, word, "each option once");
-        *flag = true;
+        if (textfile_word(&r->t, "an option", &word, r->err)) return r->err->status;
+        while (o < OPTION_COUNT && !(r->verb->options & 1u << o && !strcmp(word, OPTIONS[o]))) o++;
+        if (o == OPTION_COUNT) return unknown_option(r, word);
+        if (s->has_option[o]) return textfile_error(&r->t, r->err, word, "each option once");
+        if (o < OPTION_ANGLED && script_read_number(r, OPTIONS[o], &s->options[o])) return r->err->status;
+        s->has_option[o] = true;
     }
     return ST_OK;
 }

@@ -380,6 +380,7 @@ enum status texture_rules_make(struct texture_map *map, const struct solid_mesh 
 {
     struct rules_job job = {.models = {edited, base, plan->unedited, plan}, .err = err};
     enum status st = texture_wishes_check(&job.models, err);
+    if (!st && plan->base && !(map->base = strdup(plan->base))) st = err_nomem(err, "a name", strlen(plan->base) + 1);
     if (!st) st = solid_mesh_triangulate(&job.triangles[0], edited, err);
     if (!st) st = solid_mesh_triangulate(&job.triangles[1], base, err);
     for (int f = 0; !st && f < edited->face_count; f++) {

@@ -4,7 +4,7 @@
  *         AXES                                          whether its lengths are metres
  *         VITA/atlas.txt, page0.exr, ...                the view-independent texture atlas
  * writes  OUT/page0.png, ...                            its pages, sRGB
- *         OUT/model.obj, model.mtl, model.glb, model.ifc */
+ *         OUT/model.ifc, ...                            the model in each format (docs/formats.md) */
 #include "common/base/cli.h"
 #include "common/base/file_path.h"
 #include "common/model/model_axes.h"
@@ -36,6 +36,9 @@ static enum status read_inputs(struct job *j, struct model_axes *axes, struct pr
     return st;
 }
 
+#define WRITE(file, name, write) write,
+static enum status (*const writers[])(const struct export_scene *s, struct err *err) = {EXPORTS(WRITE)};
+
 static enum status export_all(struct job *j, struct provenance *prov, struct err *err)
 {
     struct model_axes axes = {0};
@@ -54,16 +57,15 @@ static enum status export_all(struct job *j, struct provenance *prov, struct err
                                        .metric = axes.metric,
                                        .out = j->out,
                                        .prov = prov};
-    if (!st) st = write_obj(&scene, err);
-    if (!st) st = write_gltf(&scene, err);
-    return st ? st : write_ifc(&scene, err);
+    for (int i = EXPORT_COUNT - 1; !st && i >= 0; i--) st = writers[i](&scene, err);
+    return st;
 }
 
 int main(int argc, char **argv)
 {
     struct job j = {0};
     const struct cli_opt opts[] = {
-        CLI_ABOUT("Writes a model with its photographic texture for other programs: OBJ, glTF, IFC4."),
+        CLI_ABOUT("Writes a model with its photographic texture for other programs."),
         CLI_STR("name", &j.name, CLI_REQUIRED, "name of the model, for titles"),
         CLI_STR("model", &j.model, CLI_REQUIRED, "folder of the model: model.txt and plan.txt"),
         CLI_STR("map", &j.map, CLI_OPTIONAL, "of an edited model: its texture.txt"),

@@ -1,4 +1,7 @@
-/* write_gltf.c - glTF 2.0 in its binary form: JSON, then vertices and pictures. */
+/* write_gltf.c - glTF 2.0 in its binary form: JSON, then vertices and pictures.
+ *
+ * y is up; a node for each body, a primitive for each page or colour. The pictures hold light, so materials are unlit;
+ * primitives name their faces in `extras`. */
 #include <jansson.h>
 #include <math.h>
 #include <stdlib.h>

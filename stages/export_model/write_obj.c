@@ -1,4 +1,4 @@
-/* write_obj.c - Wavefront OBJ. */
+/* write_obj.c - Wavefront OBJ, model.obj with model.mtl: an object for each body, a group for each face name; z is up. */
 #include <stdio.h>
 
 #include "common/base/file_path.h"

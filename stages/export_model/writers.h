@@ -2,6 +2,7 @@
 #ifndef REMODEL_EXPORT_WRITERS_H
 #define REMODEL_EXPORT_WRITERS_H
 
+#include "common/model/exports.h"
 #include "common/model/model_plan.h"
 #include "stages/export_model/export_faces.h"
 
@@ -18,16 +19,9 @@ struct export_scene {
     const struct provenance *prov;
 };
 
-/* OUT/model.obj and model.mtl: an object for each body, a group for each face name; z is up. */
-enum status write_obj(const struct export_scene *s, struct err *err);
-
-/* OUT/model.glb: glTF 2.0 with the pages inside, y up; a node for each body, a primitive for each page or colour. The
- * pictures hold light, so materials are unlit; primitives name their faces in `extras`. */
-enum status write_gltf(const struct export_scene *s, struct err *err);
-
-/* OUT/model.ifc: IFC4. Walls, openings, doors, windows, slabs and spaces as solids; the photographic texture on a covering
- * for each face, as IfcIndexedTriangleTextureMap of the pages. */
-enum status write_ifc(const struct export_scene *s, struct err *err);
+/* Each writes its file, and what that needs, to OUT. */
+#define EXPORT_WRITER(file, name, write) enum status write(const struct export_scene *s, struct err *err);
+EXPORTS(EXPORT_WRITER)
 
 /* The 22 characters of a GUID, the same for the same text in each run. */
 void ifc_guid(char guid[23], const char *text);

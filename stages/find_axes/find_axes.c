@@ -23,8 +23,7 @@
 #include "stages/find_axes/room.h"
 
 #define PARAM_STRUCT struct axes_params
-const struct param axes_param_table[] = {AXES_PARAMS(PARAM_ROW) PARAM_RENAMED(least_part, min_part) PARAM_RENAMED(
-    least_floor, min_floor) PARAM_RENAMED(least_ceiling, min_ceiling) PARAM_RENAMED(least_plane, min_plane) PARAM_END};
+const struct param axes_param_table[] = {AXES_PARAMS(PARAM_ROW) PARAM_END};
 #undef PARAM_STRUCT
 
 /* warnings beyond these */

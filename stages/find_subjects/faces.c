@@ -24,7 +24,7 @@
 #include "stages/find_subjects/region_depth.h"
 
 #define PARAM_STRUCT struct find_params
-const struct param find_param_table[] = {FIND_PARAMS(PARAM_ROW) FIND_RENAMED(PARAM_RENAMED) PARAM_END};
+const struct param find_param_table[] = {FIND_PARAMS(PARAM_ROW) PARAM_END};
 #undef PARAM_STRUCT
 
 #define SAME_OVERLAP 0.3  /* intersection over union from which on two detections are one face */

@@ -20,15 +20,6 @@
       "minimum score of a face: its overlapping detection windows, averaged over its view and the checking views") \
     X(min_lone_score, double, 50, 0, 1e6, "", "minimum score of a face that fewer than two other views can check")
 
-/* old name, new name */
-#define FIND_RENAMED(X)       \
-    X(views, max_views)       \
-    X(least_face, min_face)   \
-    X(asked, confirm_views)   \
-    X(confirm, min_confirmed) \
-    X(least_score, min_score) \
-    X(lone_score, min_lone_score)
-
 struct find_params {
     FIND_PARAMS(PARAM_FIELD)
 };

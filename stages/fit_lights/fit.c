@@ -13,101 +13,19 @@
  *
  * What differs from the source: points, colours and lamps are fitted together, by logarithms and robustly; neighbours
  * vary together; what views show of a lamp counts, too. */
-#include "stages/fit_lights/fit_problem.h"
+#include "stages/fit_lights/fit.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "common/math/ceres_least_squares.h"
-#include "common/math/cholesky.h"
-#include "common/math/numbers.h"
 #include "common/math/weighted.h"
+#include "stages/fit_lights/fit_errors.h"
 #include "stages/fit_lights/fit_texture.h"
 
 enum { ROUNDS = 8, ESTIMATES = 4 /* rounds that estimate how materials vary */, ITERATIONS = 100 };
 #define LEAST_SHARE 1e-3 /* difference in the lamp's share of the light by which lit points must differ from others */
-
-/* ------------------------------------------------------------------------------------------------------ the model */
-
-static void set_direct(struct problem *p, int lamp)
-{
-    const struct light_fit *f = p->f;
-    for (int i = 0; i < f->point_count; i++)
-        p->direct[lamp * f->point_count + i] = f->direct(f->ctx, lamp, i, f->lamps[lamp].exponent);
-}
-
-void fit_set_unknowns(struct problem *p, const double *x)
-{
-    for (int u = 0; u < p->unknown_count; u++) {
-        struct fit_lamp *l = &p->f->lamps[p->unknowns[u].lamp];
-        if (p->unknowns[u].colour < 3) {
-            l->radiance[p->unknowns[u].colour] = exp(clamp(x[u], -60, 60));
-        } else if (l->exponent != fmin(x[u] * x[u], 1000)) {
-            l->exponent = fmin(x[u] * x[u], 1000);
-            set_direct(p, p->unknowns[u].lamp);
-        }
-    }
-}
-
-void fit_get_unknowns(const struct problem *p, double *x)
-{
-    for (int u = 0; u < p->unknown_count; u++) {
-        const struct fit_lamp *l = &p->f->lamps[p->unknowns[u].lamp];
-        x[u] = p->unknowns[u].colour < 3 ? log(l->radiance[p->unknowns[u].colour]) : sqrt(l->exponent);
-    }
-}
-
-static double irradiance(const struct problem *p, int point, int colour)
-{
-    const struct light_fit *f = p->f;
-    double e = f->points[point].indirect[colour];
-    for (int l = 0; l < f->lamp_count; l++) e += f->lamps[l].radiance[colour] * p->direct[l * f->point_count + point];
-    return e;
-}
-
-void fit_set_residuals(struct problem *p)
-{
-    struct light_fit *f = p->f;
-    const int n = f->point_count;
-    for (int i = 0; i < n; i++)
-        for (int c = 0; c < 3; c++) p->logs[3 * i + c] = log(f->points[i].radiance[c] / irradiance(p, i, c));
-    for (int c = 0; c < 3; c++) {
-        double *whitened = p->whitened + (ptrdiff_t)c * n;
-        for (int i = 0; i < n; i++) whitened[i] = p->logs[3 * i + c];
-        cholesky_forward(p->factor, n, whitened);
-        for (int m = 0; m < f->material_count; m++) {
-            const double *ones = p->ones + (ptrdiff_t)m * n;
-            double sum = 0, weights = 0;
-            for (int i = 0; i < n; i++) {
-                sum += ones[i] * whitened[i];
-                weights += ones[i] * ones[i];
-            }
-            const double mean = weights > 0 ? sum / weights : 0;
-            for (int i = 0; i < n; i++) whitened[i] -= mean * ones[i];
-            f->materials[m].k_d[c] = weights > 0 ? exp(mean) : 0;
-        }
-    }
-}
-
-int fit_residual_count(const struct problem *p) { return 3 * (p->f->point_count + p->f->lamp_count); }
-
-void fit_evaluate(void *ctx, const double *x, double *residuals)
-{
-    struct problem *p = ctx;
-    const size_t points = 3 * (size_t)p->f->point_count;
-    fit_set_unknowns(p, x);
-    fit_set_residuals(p);
-    memcpy(residuals, p->whitened, points * sizeof *residuals);
-    for (int l = 0; l < p->f->lamp_count; l++) {
-        const struct fit_lamp *lamp = &p->f->lamps[l];
-        for (int c = 0; c < 3; c++) {
-            const bool counts = lamp->fit && lamp->seen_error[c] > 0 && lamp->seen[c] > 0;
-            residuals[points + 3 * (size_t)l + (size_t)c] =
-                counts ? log(lamp->radiance[c] / lamp->seen[c]) / lamp->seen_error[c] : 0;
-        }
-    }
-}
 
 /* ----------------------------------------------------------------------------------------- what cannot be solved */
 
@@ -143,7 +61,7 @@ static const char *place_of(const struct light_fit *f, int lamp, bool lit)
 /* The light at a point without that of one lamp. */
 static double other_light(const struct problem *p, int point, int colour, int lamp)
 {
-    return irradiance(p, point, colour) -
+    return fit_irradiance(p, point, colour) -
            p->f->lamps[lamp].radiance[colour] * p->direct[lamp * p->f->point_count + point];
 }
 
@@ -194,7 +112,7 @@ static double start_k_d(const struct problem *p, int lamp, int colour, struct we
     size_t n = 0;
     for (int i = 0; i < f->point_count; i++)
         if (concerns(f, i, lamp, false))
-            scratch[n++] = (struct weighted){f->points[i].radiance[colour] / irradiance(p, i, colour), 1};
+            scratch[n++] = (struct weighted){f->points[i].radiance[colour] / fit_irradiance(p, i, colour), 1};
     return weighted_percentile(scratch, n, 0.5);
 }
 
@@ -313,7 +231,7 @@ static enum status list_unknowns(struct problem *p, struct err *err)
 static enum status fit_all(struct problem *p, struct weighted *scratch, double *jacobian, struct err *err)
 {
     struct light_fit *f = p->f;
-    for (int l = 0; l < f->lamp_count; l++) set_direct(p, l);
+    for (int l = 0; l < f->lamp_count; l++) fit_set_direct(p, l);
     enum status st = check_points(f, err);
     for (int l = 0; !st && l < f->lamp_count; l++)
         if (f->lamps[l].fit) st = check_lamp(p, l, err);

@@ -4,10 +4,10 @@
  * products of the colours' summed rows it is H^-1 G H^-1, which differs for the exponent alone. If the residuals are larger
  * than their covariance says, so are the errors. An error of E by a factor that is the same at all points changes S by
  * that factor; its relative error is added. */
-#include <math.h>
-#include <string.h>
+#include "stages/fit_lights/fit_errors.h"
 
-#include "stages/fit_lights/fit_problem.h"
+#include <math.h>
+#include <stddef.h>
 
 #define STEP 1e-4 /* of an unknown, for derivatives */
 

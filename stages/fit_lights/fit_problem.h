@@ -1,8 +1,8 @@
-/* fit_problem.h - shared by fit.c, fit_texture.c and fit_errors.c: the unknowns, covariance and residuals of a fit. */
+/* fit_problem.h - the unknowns of a fit, and its residuals, whitened by their covariance. */
 #ifndef REMODEL_FIT_LIGHTS_FIT_PROBLEM_H
 #define REMODEL_FIT_LIGHTS_FIT_PROBLEM_H
 
-#include "stages/fit_lights/fit.h"
+#include "stages/fit_lights/light_fit.h"
 
 enum { MOST_UNKNOWNS = 64, MOST_FIT_POINTS = 1500 };
 
@@ -24,6 +24,10 @@ struct problem {
     double *next_excess; /* [point]: room for work */
 };
 
+/* Renews the light of a lamp at the points, after a change of its exponent. */
+void fit_set_direct(struct problem *p, int lamp);
+/* The irradiance of a point from everything. */
+double fit_irradiance(const struct problem *p, int point, int colour);
 /* The unknowns: logarithms of radiance, roots of exponents. */
 void fit_set_unknowns(struct problem *p, const double *x);
 void fit_get_unknowns(const struct problem *p, double *x);
@@ -33,8 +37,5 @@ void fit_set_residuals(struct problem *p);
 int fit_residual_count(const struct problem *p);
 /* Sets the unknowns, then the residuals, whitened. ctx: the problem. */
 void fit_evaluate(void *ctx, const double *x, double *residuals);
-
-/* Sets the standard errors of lamps and materials. jacobian: room for a number per unknown and residual. */
-void fit_set_errors(struct problem *p, double *jacobian);
 
 #endif

@@ -16,6 +16,7 @@
 #include "stages/fit_lights/fit_texture.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -2,6 +2,7 @@
 #ifndef REMODEL_FIT_LIGHTS_FIT_TEXTURE_H
 #define REMODEL_FIT_LIGHTS_FIT_TEXTURE_H
 
+#include "common/base/err.h"
 #include "stages/fit_lights/fit_problem.h"
 
 /* Estimates the variation of each material from the present logarithms and excess variances of its points. */

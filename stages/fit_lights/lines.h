@@ -2,7 +2,7 @@
 #ifndef REMODEL_FIT_LIGHTS_LINES_H
 #define REMODEL_FIT_LIGHTS_LINES_H
 
-#include "stages/fit_lights/solve.h"
+#include "stages/fit_lights/solve_inputs.h"
 
 int lines_of_lamp(const struct lit_scene *scene, int lamp); /* their number */
 

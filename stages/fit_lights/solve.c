@@ -17,6 +17,7 @@
 #include "common/base/textfile.h"
 #include "common/math/numbers.h"
 #include "common/math/weighted.h"
+#include "stages/fit_lights/fit.h"
 #include "stages/fit_lights/lines.h"
 
 enum { PLACE_SIZE = 512, LINE_STRIDE = 8 /* of a line's points, one in so many is fitted */ };

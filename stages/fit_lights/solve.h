@@ -2,10 +2,8 @@
 #ifndef REMODEL_FIT_LIGHTS_SOLVE_H
 #define REMODEL_FIT_LIGHTS_SOLVE_H
 
-#include "stages/fit_lights/direct.h"
-#include "stages/fit_lights/fit.h"
-#include "stages/fit_lights/fit_lights_params.h"
-#include "stages/fit_lights/observe.h"
+#include "stages/fit_lights/light_fit.h"
+#include "stages/fit_lights/solve_inputs.h"
 
 /* Where a lamp's radiance comes from. */
 enum lamp_source { LAMP_GIVEN, LAMP_FITTED, LAMP_MEASURED, LAMP_BOUND };
@@ -26,15 +24,6 @@ struct solved_lights {
     struct fit_point *points; /* those of the fit */
     int *point_notes;         /* the annotation of each */
     int lamp_count, material_count, point_count;
-};
-
-struct solve_inputs {
-    struct lit_scene *scene; /* its lamps get radiance, beta, exponent */
-    const struct annotation_list *notes;
-    const struct observations *seen;
-    const struct direct_light *direct;
-    const double (*indirect)[3]; /* of each point */
-    const struct fit_lights_params *params;
 };
 
 enum status lights_solve(struct solved_lights *s, const struct solve_inputs *in, struct err *err);

@@ -30,8 +30,7 @@
 #include "common/math/cholesky.h"
 
 #define PARAM_STRUCT struct fit_params
-const struct param fit_param_table[] = {FIT_PARAMS(PARAM_ROW) PARAM_RENAMED(places, max_patches)
-                                            PARAM_RENAMED(most_spread, max_spread) PARAM_END};
+const struct param fit_param_table[] = {FIT_PARAMS(PARAM_ROW) PARAM_END};
 #undef PARAM_STRUCT
 
 enum { N = RESPONSE_LEVELS, GREY = 128, TOE = 16, BINS = 12, MIN_BIN = 20, MIN_PAIRS = 200 };

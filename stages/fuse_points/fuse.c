@@ -29,7 +29,7 @@
 #include "stages/fuse_points/point_grid.h"
 
 #define PARAM_STRUCT struct fuse_params
-const struct param fuse_param_table[] = {FUSE_PARAMS(PARAM_ROW) FUSE_RENAMED(PARAM_RENAMED) PARAM_END};
+const struct param fuse_param_table[] = {FUSE_PARAMS(PARAM_ROW) PARAM_END};
 #undef PARAM_STRUCT
 
 #define OVERLAP_STEP 8    /* px between the points that decide whether two views overlap */

@@ -19,12 +19,6 @@
       "edge of the grid's cells that points are merged in, relative to the scene's median depth")                   \
     X(grid_size, double, 0, 0, 1e9, "scene units", "edge of the grid's cells as a length; 0: from grid")
 
-/* old name, new name */
-#define FUSE_RENAMED(X)          \
-    X(views, min_views)          \
-    X(confident, min_confidence) \
-    X(seen_through, max_seen_through)
-
 struct fuse_params {
     FUSE_PARAMS(PARAM_FIELD)
 };

@@ -43,11 +43,11 @@ static double diffuse_beside(const struct brdf *b, const struct irradiance *e)
 static void gather_pixel(const struct task *t, size_t i)
 {
     const struct model_field *f = &t->job->field;
-    const int material = field_material_at(f, t->faces[i], t->points[i].at);
+    const int material = model_field_material(f, t->faces[i], t->points[i].at);
     struct irradiance e;
     if (material < 0) return;
     t->gloss->material[i] = (uint32_t)material + 1;
-    struct brdf b = *field_material_brdf(f, material);
+    struct brdf b = f->materials.brdfs[material];
     if (!(b.gloss > 0)) return;
     const double beside = diffuse_beside(&b, &t->irradiance[i]);
     b.ks = 1;

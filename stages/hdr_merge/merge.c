@@ -31,8 +31,7 @@
 #include "common/base/parallel.h"
 
 #define PARAM_STRUCT struct merge_params
-const struct param merge_param_table[] = {MERGE_PARAMS(PARAM_ROW) PARAM_RENAMED(most_shift, max_shift)
-                                              PARAM_RENAMED(most_disagreement, max_disagreement) PARAM_END};
+const struct param merge_param_table[] = {MERGE_PARAMS(PARAM_ROW) PARAM_END};
 #undef PARAM_STRUCT
 
 enum { ROWS = 8, BLOCK = 64 };

@@ -68,7 +68,7 @@ static enum status list_surfaces(struct surfaces *s, int *surface_of_face, const
     for (int i = 0; !st && i < c->objects.list.count; i++)
         st = add_surface(s, SURFACE_OBJECT, c->objects.list.items[i].name, &c->objects.list.items[i].brdf, err);
     for (int i = 0; !st && i < materials->count; i++)
-        st = add_surface(s, SURFACE_MATERIAL, materials->items[i].name, field_material_brdf(&c->before, i), err);
+        st = add_surface(s, SURFACE_MATERIAL, materials->items[i].name, &c->before.materials.brdfs[i], err);
     for (int i = 0; !st && i < mesh->face_count; i++) {
         const struct texture_face *face = listed_face(c, i);
         const struct texture_rule *colour = face ? colour_of(face) : NULL;
@@ -92,7 +92,7 @@ static void number_pixels(uint32_t *numbers, const struct pixels *p, const struc
     for (size_t i = 0; i < (size_t)p->width * (size_t)p->height; i++) {
         if (p->face[i] < 0 || p->kind[i] == PIXEL_CLUTTER || p->kind[i] == PIXEL_LAMP) continue;
         const struct vec3 at = vec3_make((double)p->texel[i][0], (double)p->texel[i][1], (double)p->texel[i][2]);
-        const int material = p->kind[i] == PIXEL_TEXTURE ? field_material_at(&c->before, p->from[i], at) : -1;
+        const int material = p->kind[i] == PIXEL_TEXTURE ? model_field_material(&c->before, p->from[i], at) : -1;
         if (material >= 0) numbers[i] = (uint32_t)(1 + objects + material);
         if (surface_of_face[p->face[i]] >= 0) numbers[i] = (uint32_t)(1 + surface_of_face[p->face[i]]);
     }

@@ -136,10 +136,10 @@ static bool gloss_of(struct brdf *after, struct brdf *before, struct vec3 *viewp
     if (p->face[i] < 0 || p->kind[i] == PIXEL_CLUTTER || p->kind[i] == PIXEL_LAMP) return false;
     if (p->kind[i] == PIXEL_TEXTURE) {
         const struct vec3 at = vec3_make((double)p->texel[i][0], (double)p->texel[i][1], (double)p->texel[i][2]);
-        const int material = field_material_at(&j->c->before, p->from[i], at);
-        if (material >= 0) *before = *after = *field_material_brdf(&j->c->before, material);
+        const int material = model_field_material(&j->c->before, p->from[i], at);
+        if (material >= 0) *before = *after = j->c->before.materials.brdfs[material];
         if (material >= 0 && j->picture->made[i] != MADE_PHOTO && j->picture->made[i] != MADE_ORIGINAL)
-            field_material_viewpoint(&j->c->before, p->from[i], at, viewpoint);
+            model_field_viewpoint(&j->c->before, p->from[i], at, viewpoint);
     }
     if (j->has_gloss[p->face[i]]) *after = j->glosses[p->face[i]];
     return before->gloss > 0 || after->gloss > 0;

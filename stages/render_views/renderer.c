@@ -7,8 +7,7 @@
 #include "common/base/log.h"
 
 #define PARAM_STRUCT struct render_params
-const struct param render_param_table[] = {RENDER_PARAMS(PARAM_ROW) PARAM_RENAMED(fill_anchors, fill_anchor_spacing)
-                                               PARAM_END};
+const struct param render_param_table[] = {RENDER_PARAMS(PARAM_ROW) PARAM_END};
 #undef PARAM_STRUCT
 
 static enum status render_anchor(void *ctx, int frame, struct rendered_frame *out, struct err *err)

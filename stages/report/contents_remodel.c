@@ -185,6 +185,9 @@ static enum status read_relit(struct edit_card *card, struct reading *r, struct 
     return st;
 }
 
+#define EXPORT_FILE(file, name, write) "export/" file,
+static const char *const exports[] = {EXPORTS(EXPORT_FILE)};
+
 static enum status read_edit(struct reading *r, const char *name, struct err *err)
 {
     struct remodel_contents *c = r->c;
@@ -196,11 +199,8 @@ static enum status read_edit(struct reading *r, const char *name, struct err *er
     if (read_records(r, pictures, err)) return err->status;
     if (array_append(&c->edits, (size_t)c->edit_count, sizeof *c->edits, "edits", err)) return err->status;
     struct edit_card *card = &c->edits[c->edit_count++];
-    *card = (struct edit_card){.plan = file_if_there(folder, "plan.svg"),
-                               .film = has_file(folder, "tour/video.mp4"),
-                               .obj = has_file(folder, "export/model.obj"),
-                               .gltf = has_file(folder, "export/model.glb"),
-                               .ifc = has_file(folder, "export/model.ifc")};
+    *card = (struct edit_card){.plan = file_if_there(folder, "plan.svg"), .film = has_file(folder, "tour/video.mp4")};
+    for (int i = 0; i < EXPORT_COUNT; i++) card->exported |= card->exports[i] = has_file(folder, exports[i]);
     snprintf(card->name, sizeof card->name, "%s", name);
     st = read_about(&card->about, r->from->scripts, name, err);
     if (!st) st = read_sights(card, r, pictures, err);

@@ -2,6 +2,7 @@
 #ifndef REMODEL_CONTENTS_REMODEL_H
 #define REMODEL_CONTENTS_REMODEL_H
 
+#include "common/model/exports.h"
 #include "common/texture/model_picture.h"
 #include "stages/report/contents_relit.h"
 #include "stages/report/pictures.h"
@@ -20,7 +21,9 @@ struct edit_card {
     char name[256];
     char *about;                     /* the first comment of its script; "": none; owned */
     char *plan;                      /* file, owned; NULL: none */
-    bool film, obj, gltf, ifc;       /* the files exist: NAME/tour/video.mp4, NAME/export/model.* */
+    bool film;                       /* NAME/tour/video.mp4 exists */
+    bool exports[EXPORT_COUNT];      /* the file in NAME/export exists */
+    bool exported;                   /* any of them does */
     struct edit_sight *sights;       /* most changed and best seen first, each of another photo; owned */
     int sight_count, changed, views; /* shown; views that the edit changes; views with a record: 0: no pictures yet */
     struct relit_card relit;         /* under the light that the edit makes */

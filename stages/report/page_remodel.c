@@ -119,12 +119,19 @@ static enum status put_plan(FILE *to, const char *file, const char *caption, str
     return ST_OK;
 }
 
-static void put_link(FILE *to, bool exists, const char *edit, const char *file, const char *text)
+static void put_exports(FILE *to, const struct edit_card *card)
 {
-    if (!exists) return;
-    fputs("<li><a href=\"", to);
-    html_address(to, edit);
-    fprintf(to, "/%s\">%s</a></li>\n", file, text);
+#define EXPORT_LINK(file, name, write) "/export/" file "\">" name "</a></li>\n",
+    static const char *const links[] = {EXPORTS(EXPORT_LINK)};
+    if (!card->exported) return;
+    fputs("<p>For an architect, or another program:</p>\n<ul class=\"list\">\n", to);
+    for (int i = 0; i < EXPORT_COUNT; i++) {
+        if (!card->exports[i]) continue;
+        fputs("<li><a href=\"", to);
+        html_address(to, card->name);
+        fputs(links[i], to);
+    }
+    fputs("</ul>\n", to);
 }
 
 static void put_film(FILE *to, const char *folder, const char *caption)
@@ -167,17 +174,11 @@ static enum status put_edit(FILE *to, const char *scene, const struct remodel_co
     if (put_plan(to, c->plan, "before", err) || put_plan(to, card->plan, "after", err)) return err->status;
     if (card->film) put_film(to, card->name, "A walk through the rooms after the change");
     fputs("</div>\n", to);
-    if (card->obj || card->gltf || card->ifc) {
-        fputs("<p>For an architect, or another program:</p>\n<ul class=\"list\">\n", to);
-        put_link(to, card->ifc, card->name, "export/model.ifc", "building model (IFC4)");
-        put_link(to, card->gltf, card->name, "export/model.glb", "3D model (glTF)");
-        put_link(to, card->obj, card->name, "export/model.obj", "3D model (OBJ)");
-        fputs("</ul>\n", to);
-    }
+    put_exports(to, card);
     put_missing(to, !c->plan || !card->plan, c->plan ? "is no plan of it" : "is no plan of the rooms before", "model",
                 scene);
     put_missing(to, !card->film, "is no film of a walk through these rooms", "tour", scene);
-    put_missing(to, !card->obj && !card->gltf && !card->ifc, "is no model of it for other programs", "exports", scene);
+    put_missing(to, !card->exported, "is no model of it for other programs", "exports", scene);
     fputs("</section>\n", to);
     return ST_OK;
 }

@@ -132,12 +132,6 @@ enum status scene_read(struct scene *s, const char *folder, const char *file, st
     return st;
 }
 
-void scene_item_release(struct scene_item *it)
-{
-    free(it->name);
-    free(it->triangles);
-}
-
 void scene_release(struct scene *s)
 {
     if (!s) return;

@@ -166,6 +166,12 @@ static enum status read_lamp(struct reader *r, struct scene_item *it, struct err
     return st;
 }
 
+void scene_item_release(struct scene_item *it)
+{
+    free(it->name);
+    free(it->triangles);
+}
+
 typedef enum status item_reader(struct reader *r, struct scene_item *it, struct err *err);
 
 enum status read_item(struct reader *r, enum item_kind kind, struct err *err)

@@ -19,8 +19,7 @@
 #include "stages/suggest_model/windows.h"
 
 #define PARAM_STRUCT struct suggest_params
-const struct param suggest_param_table[] = {SUGGEST_PARAMS(PARAM_ROW) PARAM_RENAMED(least_wall, min_wall) PARAM_RENAMED(
-    thickest, max_thickness) PARAM_RENAMED(narrowest, min_opening) PARAM_END};
+const struct param suggest_param_table[] = {SUGGEST_PARAMS(PARAM_ROW) PARAM_END};
 #undef PARAM_STRUCT
 
 static const double SCENE_CELL = 0.05;       /* edge of the cubes in which mirror images are looked up, likewise */

@@ -36,6 +36,17 @@ folders_include_only_folders_below()
     [ -z "$bad" ] || { echo "$bad"; fail "includes against common/folders.txt: $(wc -l <<<"$bad")"; }
 }
 
+folders_are_permitted_only_what_they_include()
+{
+    local below to unused=
+    while IFS=' ' read -r own below; do
+        for to in $below; do
+            grep -qs "^#include \"common/$to/" "common/${own%:}"/* || unused+="${own%:} may include $to, "
+        done
+    done < <(grep -E '^[a-z]+:' common/folders.txt)
+    [ -z "$unused" ] || fail "common/folders.txt permits what nobody includes: ${unused%, }"
+}
+
 the_check_of_includes_finds_what_is_wrong()
 {
     mkdir -p "$scratch/tree/common/base" "$scratch/tree/common/film" "$scratch/tree/common/odd" "$scratch/tree/stages/a"
@@ -54,6 +65,32 @@ common/base/up.c:1: includes common/film/shot.h
 common/odd/unlisted.c: common/odd is not in folders.txt
 stages/a/other.c:1: includes stages/b/b.h
 TEXT
+}
+
+# calls FILE: "CALLER CALLED" of object files, a call a line, from what nm -A prints
+calls()
+{
+    awk '{ file = $1; sub(/:.*/, "", file); symbol = $NF; type = $(NF - 1) }
+        type ~ /^[TDRBC]$/ { at[symbol] = file }
+        type == "U" { from[++n] = file; to[n] = symbol }
+        END { for (i = 1; i <= n; i++) if ((to[i] in at) && at[to[i]] != from[i]) print from[i], at[to[i]] }' "$@"
+}
+
+no_files_call_each_other_in_a_circle()
+{
+    find "$B/obj/common" "$B/obj/stages" -name '*.o' | sed "s|^$B/obj/||; s|o\$|c|" | while read -r f; do
+        [ ! -e "$f" ] || echo "$B/obj/${f%c}o"
+    done | xargs nm -A >"$scratch/symbols"
+    calls "$scratch/symbols" | sort -u >"$scratch/calls"
+    [ -s "$scratch/calls" ] || fail "no file calls another one"
+    tsort "$scratch/calls" >"$scratch/order" 2>"$scratch/circles" || { cat "$scratch/circles"; fail "files call each other in a circle"; }
+}
+
+the_check_of_circles_finds_one()
+{
+    printf '%s\n' 'a.o:0000 T f' 'a.o: U g' 'b.o:0000 T g' 'b.o: U f' >"$scratch/ring"
+    calls "$scratch/ring" | diff - <(printf 'a.o b.o\nb.o a.o\n')
+    ! calls "$scratch/ring" | tsort >/dev/null 2>&1 || fail "a circle of two was not found"
 }
 
 formatted()
@@ -123,7 +160,10 @@ cited_sources_are_in_the_list()
 
 run every_header_compiles_alone
 run folders_include_only_folders_below
+run folders_are_permitted_only_what_they_include
 run the_check_of_includes_finds_what_is_wrong
+run no_files_call_each_other_in_a_circle
+run the_check_of_circles_finds_one
 run formatted
 run generated_files_are_current
 run no_pipe_ends_before_its_input_does

@@ -1,4 +1,5 @@
 /* plan.c - the script language, and the errors of invalid scripts and plans, with line and reason. */
+#include "stages/build_model/verbs.h"
 #include "tests/unit/build_model/scripted.h"
 
 #define BARE "remodel-script 1\nset thickness 0.2\nset ceiling 2.5\n"
@@ -57,15 +58,18 @@ static void the_whole_language_is_read(void **state)
                           &err),
               err);
     assert_int_equal(s.count, 9);
-    assert_true(s.statements[0].verb == VERB_SET && s.statements[0].line == 4 && s.statements[0].values[0] == 0.01);
+    assert_true(!strcmp(s.statements[0].verb->word, "set") && s.statements[0].line == 4 &&
+                s.statements[0].values[0] == 0.01);
     assert_string_equal(s.statements[1].place.view, "v 1");
-    assert_true(s.statements[1].angled && s.statements[1].options[OPTION_TOP] == 2.5 &&
+    assert_true(s.statements[1].by_points && !s.statements[8].by_points && !s.statements[1].mesh);
+    assert_true(s.statements[1].has_option[OPTION_ANGLED] && s.statements[1].options[OPTION_TOP] == 2.5 &&
                 s.statements[1].place.a[3] == 4);
     assert_int_equal(s.statements[2].name_count, 3);
     assert_true(s.statements[2].has_option[OPTION_CEILING] && s.statements[2].options[OPTION_FLOOR] == 0.1);
     assert_string_equal(s.statements[3].names[1], "b");
     assert_true(s.statements[3].values[1] == 3);
-    assert_true(s.statements[4].open && s.statements[4].interior && !strcmp(s.statements[4].other, "a"));
+    assert_true(s.statements[4].has_option[OPTION_OPEN] && s.statements[4].has_option[OPTION_INTERIOR] &&
+                !strcmp(s.statements[4].other, "a"));
     assert_true(s.statements[5].end == END_START && s.statements[5].values[0] == -2.5 && !s.statements[5].other);
     assert_true(s.statements[6].end == END_END && !strcmp(s.statements[6].other, "b"));
     assert_true(s.statements[7].value_count == 2 && s.statements[8].options[OPTION_TURN] == 45);

@@ -19,7 +19,7 @@ struct sweep_params {
         SWEEP_PARAMS(PARAM_DEFAULT) \
     }
 #define PARAM_STRUCT struct sweep_params
-static const struct param table[] = {SWEEP_PARAMS(PARAM_ROW) PARAM_RENAMED(sweeps, planes) PARAM_END};
+static const struct param table[] = {SWEEP_PARAMS(PARAM_ROW) PARAM_END};
 #undef PARAM_STRUCT
 
 static enum status read_text(struct sweep_params *p, const char *text, struct err *err)
@@ -222,21 +222,6 @@ static void help_lists_default_unit_and_range(void **state)
     free(text);
 }
 
-static void a_renamed_parameter_is_refused_with_its_new_name(void **state)
-{
-    struct sweep_params p = SWEEP_PARAMS_DEFAULT;
-    struct err in_file = ERR_INIT, in_set = ERR_INIT;
-
-    (void)state;
-    assert_int_equal(read_text(&p, "[sweep]\nsweeps = 3\n", &in_file), ST_USAGE);
-    assert_contains(in_file.text, "a.cfg:2: sweeps is now called planes; use that name.");
-    assert_int_equal(params_set(table, &p, "sweeps=3", &in_set), ST_USAGE);
-    assert_contains(in_set.text, "--set sweeps is now called planes");
-    char *text = printed(&p);
-    assert_null(strstr(text, "sweeps"));
-    free(text);
-}
-
 static void explained_parameters_read_back_as_the_defaults(void **state)
 {
     struct sweep_params p = SWEEP_PARAMS_DEFAULT;
@@ -270,7 +255,6 @@ int main(void)
         cmocka_unit_test(printed_parameters_read_back),
         cmocka_unit_test(numbers_ignore_the_locale),
         cmocka_unit_test(help_lists_default_unit_and_range),
-        cmocka_unit_test(a_renamed_parameter_is_refused_with_its_new_name),
         cmocka_unit_test(explained_parameters_read_back_as_the_defaults),
     };
 

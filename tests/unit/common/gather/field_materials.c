@@ -86,7 +86,7 @@ static void a_nested_gather_is_never_deeper_than_one(void **state)
     const struct model_field *f = read_with(&b, text);
     const struct vec3 viewer = {0, -0.3, -0.3}, at = {-0.5, -0.3, -2}, up_at = {-1.2, -0.3, 2};
     (void)state;
-    assert_int_equal(field_material_at(f, CEILING, up_at), 0);
+    assert_int_equal(model_field_material(f, CEILING, up_at), 0);
     /* the ceiling shows the wall -x; v0 sees the floor in it */
     const struct vec3 low = {0.5, -0.3, 1};
     const struct light_look ceiling = look_one(f, low, up, vec3_sub(up_at, low));
@@ -137,8 +137,8 @@ static void k_s_of_0_and_lambert_keep_the_texels(void **state)
         const struct light_look seen = see(f, vec3_make(-1.95, 0.25, -1.9), vec3_make(-1.5, 0.25, -2));
         assert_colour(seen.radiance, 3, 3, 3, 0);
         assert_int_equal(seen.source, LIGHT_TEXTURE);
-        assert_int_equal(field_material_at(f, FLOOR, vec3_make(-1.5, 0.25, -2)), 0);
-        assert_near(field_material_brdf(f, 0)->ks, 0, 0);
+        assert_int_equal(model_field_material(f, FLOOR, vec3_make(-1.5, 0.25, -2)), 0);
+        assert_near(f->materials.brdfs[0].ks, 0, 0);
         model_field_release(&b.field);
     }
 }
@@ -172,13 +172,13 @@ static void a_material_is_where_a_region_holds_what_its_view_sees(void **state)
     const struct model_field *f = read_with(&b, "material none lambert 1 1 1 0 0\nmaterial shiny phong 0 0 0 0.3 20\n"
                                                 "region shiny v0 200 0 400 0 400 400 200 400\n");
     (void)state;
-    assert_int_equal(field_material_at(f, FLOOR, vec3_make(-0.9, 0.3, -2)), 1);
-    assert_int_equal(field_material_at(f, FLOOR, vec3_make(-1.1, 0.3, -2)), -1);
-    assert_int_equal(field_material_at(f, FLOOR, vec3_make(0.3, -1.5, -2)), 1);
+    assert_int_equal(model_field_material(f, FLOOR, vec3_make(-0.9, 0.3, -2)), 1);
+    assert_int_equal(model_field_material(f, FLOOR, vec3_make(-1.1, 0.3, -2)), -1);
+    assert_int_equal(model_field_material(f, FLOOR, vec3_make(0.3, -1.5, -2)), 1);
     /* hidden from v0 until 2 x 1.6 - 1 = 2.2, behind a screen of 1 with its eye at 2 */
-    assert_int_equal(field_material_at(f, FLOOR, vec3_make(1.5, 0.3, -2)), -1);
-    assert_int_equal(field_material_at(f, CEILING, vec3_make(0, 0, 2)), -1);
-    assert_int_equal(field_material_at(f, 99, vec3_make(0, 0, 2)), -1);
+    assert_int_equal(model_field_material(f, FLOOR, vec3_make(1.5, 0.3, -2)), -1);
+    assert_int_equal(model_field_material(f, CEILING, vec3_make(0, 0, 2)), -1);
+    assert_int_equal(model_field_material(f, 99, vec3_make(0, 0, 2)), -1);
     assert_int_equal(see(f, vec3_make(0, 0, 1), vec3_make(-1.1, 0.3, -2)).source, LIGHT_TEXTURE);
     assert_int_equal(see(f, vec3_make(0, 0, 1), vec3_make(-0.9, 0.3, -2)).source, LIGHT_MATERIAL);
     assert_int_equal(f->materials.texels[0], 0);
@@ -193,8 +193,8 @@ static void of_two_materials_the_first_counts(void **state)
         read_with(&b, "material a lambert 1 1 1 0 0\nmaterial b phong 0 0 0 0.3 20\nregion b v0 " ALL
                       "region a v0 200 0 400 0 400 400 200 400\n");
     (void)state;
-    assert_int_equal(field_material_at(f, FLOOR, vec3_make(0.5, 0.3, -2)), 0);
-    assert_int_equal(field_material_at(f, FLOOR, vec3_make(-1.5, 0.3, -2)), 1);
+    assert_int_equal(model_field_material(f, FLOOR, vec3_make(0.5, 0.3, -2)), 0);
+    assert_int_equal(model_field_material(f, FLOOR, vec3_make(-1.5, 0.3, -2)), 1);
     model_field_release(&b.field);
 }
 

@@ -384,7 +384,6 @@ static void an_empty_mesh_is_valid(void **state)
     assert_ok(solid_mesh_write(&m, scratch_path("e.txt"), NULL, &err), err);
     assert_ok(solid_mesh_read(&m, scratch_path("e.txt"), &err), err);
     assert_ok(solid_mesh_check(&m, 0, NULL, &err), err);
-    assert_ok(solid_mesh_write_obj(&m, scratch_path("e.obj"), NULL, &err), err);
     solid_mesh_release(&m);
 }
 
@@ -430,41 +429,6 @@ static void errors_in_files_name_the_line(void **state)
     assert_int_equal(solid_mesh_read(&m, scratch_path("none.txt"), &err), ST_IO);
 }
 
-static void obj_has_an_object_per_body_and_a_group_per_name(void **state)
-{
-    (void)state;
-    struct solid_mesh m = {0};
-    struct box b;
-    struct err err;
-    unit_box(&b);
-    b.polygons[2].name = "wall/the south";
-    add_box(&b, "glass", vec3_make(4, 0, 0), vec3_make(5, 1, 1), false);
-    assert_ok(make(&m, &b, &err), err);
-    assert_ok(solid_mesh_write_obj(&m, scratch_path("m.obj"), NULL, &err), err);
-    char *text = scratch_read(scratch_path("m.obj"));
-    int lines[4] = {0}, bad = 0;
-    for (char *line = strtok(text, "\n"); line; line = strtok(NULL, "\n")) {
-        int v[3], n[3];
-        lines[0] += !strncmp(line, "v ", 2);
-        lines[1] += !strncmp(line, "o ", 2);
-        lines[2] += !strncmp(line, "g ", 2);
-        if (strncmp(line, "f ", 2)) continue;
-        lines[3]++;
-        bad += sscanf(line, "f %d//%d %d//%d %d//%d", &v[0], &n[0], &v[1], &n[1], &v[2], &n[2]) != 6;
-        for (int k = 0; k < 3; k++) bad += v[k] < 1 || v[k] > 16 || n[k] < 1 || n[k] > 12;
-    }
-    free(text);
-    assert_int_equal(bad, 0);
-    assert_int_equal(lines[0], 16);
-    assert_int_equal(lines[1], 2);
-    assert_int_equal(lines[2], 12);
-    assert_int_equal(lines[3], 24);
-    text = scratch_read(scratch_path("m.obj"));
-    assert_contains(text, "\ng wall/the_south\n");
-    free(text);
-    solid_mesh_release(&m);
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -478,7 +442,6 @@ int main(void)
         cmocka_unit_test(a_written_mesh_is_read_back_exactly),
         cmocka_unit_test(an_empty_mesh_is_valid),
         cmocka_unit_test(errors_in_files_name_the_line),
-        cmocka_unit_test(obj_has_an_object_per_body_and_a_group_per_name),
     };
     return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
 }

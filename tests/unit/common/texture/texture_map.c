@@ -7,8 +7,7 @@
 
 #include "tests/unit/scratch.h"
 
-#define HEAD "remodel-texture 1\nbase none\n"
-#define LIT  "remodel-texture 2\nbase none\n"
+#define HEAD "remodel-texture 2\nbase none\n"
 #define FACE "face 3 0 0 1 0 floor/hall\n"
 #define SAME " 1 0 0 0 0 1 0 0 0 0 1 0"
 
@@ -30,7 +29,7 @@ static void reads_back(const char *text, struct texture_map *map)
 static void what_is_written_is_read_back(void **state)
 {
     static const char text[] =
-        "remodel-texture 1\nbase \"open plan\"\n"
+        "remodel-texture 2\nbase \"open plan\"\n"
         "face 3 0 0 1 0.10000000000000001 floor/hall\n"
         "place 3" SAME "\nedge 7 1 0 0 0.5 0 1 0 0 0 0 1 0 within 0 0 0 1 0 0 1 1 0 0 1 0\n"
         "new 1\ntriangle 0 0 0 1 0 0 0 1 0\n"
@@ -107,6 +106,7 @@ static void what_is_wrong_is_named_with_its_line(void **state)
     static const struct {
         const char *text, *words;
     } cases[] = {
+        {"remodel-texture 1\n", "a.txt:1: found \"1\", wanted version 2"},
         {"remodel-texture 3\n", "a.txt:1"},
         {HEAD "place 3" SAME "\n", "a.txt:3: found \"place\", wanted a line \"face\" before it"},
         {HEAD FACE "place 0" SAME "\n", "a.txt:4"},
@@ -127,21 +127,21 @@ static void what_is_wrong_is_named_with_its_line(void **state)
         {HEAD "clear hall 2 0 3 0 0 1 1 1 0\n", "a height above the lowest"},
         {HEAD "keep a 0 1 3 0 0 1 1 1 0\n" FACE, "faces before the lines"},
         {HEAD FACE "place 3" SAME " within 1 1 0 1 1 0 1 1 0 1 1 0\n", "four corners around an area"},
-        {LIT "lamp l 1 1\n", "a.txt:3: found the end of the line, wanted a factor of 0 or more"},
-        {LIT "lamp l 1 1 -1\n", "found \"-1\", wanted a factor of 0 or more"},
-        {LIT "lamp l 1 1 inf\n", "found \"inf\""},
-        {LIT "lamp l 1 1 1 1\n", "a.txt:3: found \"1\""},
-        {LIT "lamp l 1 1 1\nlamp l 0 0 0\n", "a.txt:4: found \"l\", wanted a lamp that no line above has"},
-        {LIT FACE "lamp l 1 1 1\n", "lamps before the lines \"face\""},
-        {LIT "gloss matt\n", "a.txt:3: found \"gloss\", wanted a line \"face\" before it"},
-        {LIT FACE "gloss satin\n", "found \"satin\", wanted matt, phong or ward"},
-        {LIT FACE "gloss matt 1\n", "found \"1\", wanted the end of the line"},
-        {LIT FACE "gloss phong 0.1 0.5\n", "found \"0.5\", wanted N, an exponent, from 1 to 5000"},
-        {LIT FACE "gloss ward 0.1 2\n", "found \"2\", wanted ALPHA, a roughness, from 0.02 to 1"},
-        {LIT FACE "gloss ward -1 0.1\n", "wanted KS, the strength of the gloss, from 0"},
-        {LIT FACE "gloss matt\ngloss matt\n",
+        {HEAD "lamp l 1 1\n", "a.txt:3: found the end of the line, wanted a factor of 0 or more"},
+        {HEAD "lamp l 1 1 -1\n", "found \"-1\", wanted a factor of 0 or more"},
+        {HEAD "lamp l 1 1 inf\n", "found \"inf\""},
+        {HEAD "lamp l 1 1 1 1\n", "a.txt:3: found \"1\""},
+        {HEAD "lamp l 1 1 1\nlamp l 0 0 0\n", "a.txt:4: found \"l\", wanted a lamp that no line above has"},
+        {HEAD FACE "lamp l 1 1 1\n", "lamps before the lines \"face\""},
+        {HEAD "gloss matt\n", "a.txt:3: found \"gloss\", wanted a line \"face\" before it"},
+        {HEAD FACE "gloss satin\n", "found \"satin\", wanted matt, phong or ward"},
+        {HEAD FACE "gloss matt 1\n", "found \"1\", wanted the end of the line"},
+        {HEAD FACE "gloss phong 0.1 0.5\n", "found \"0.5\", wanted N, an exponent, from 1 to 5000"},
+        {HEAD FACE "gloss ward 0.1 2\n", "found \"2\", wanted ALPHA, a roughness, from 0.02 to 1"},
+        {HEAD FACE "gloss ward -1 0.1\n", "wanted KS, the strength of the gloss, from 0"},
+        {HEAD FACE "gloss matt\ngloss matt\n",
          "a.txt:5: found \"gloss\", wanted one line \"gloss\" right after the face"},
-        {LIT FACE "outdoors\ngloss matt\n", "right after the face's line"},
+        {HEAD FACE "outdoors\ngloss matt\n", "right after the face's line"},
         {HEAD "fcae 3\n", "lamp, face, gloss, place, edge"},
     };
     (void)state;

@@ -1,0 +1,88 @@
+/* fit_problem.c - the light at points, and the residuals of a fit; the mathematics stand in fit.c. */
+#include "stages/fit_lights/fit_problem.h"
+
+#include <math.h>
+#include <stddef.h>
+#include <string.h>
+
+#include "common/math/cholesky.h"
+#include "common/math/numbers.h"
+
+void fit_set_direct(struct problem *p, int lamp)
+{
+    const struct light_fit *f = p->f;
+    for (int i = 0; i < f->point_count; i++)
+        p->direct[lamp * f->point_count + i] = f->direct(f->ctx, lamp, i, f->lamps[lamp].exponent);
+}
+
+void fit_set_unknowns(struct problem *p, const double *x)
+{
+    for (int u = 0; u < p->unknown_count; u++) {
+        struct fit_lamp *l = &p->f->lamps[p->unknowns[u].lamp];
+        if (p->unknowns[u].colour < 3) {
+            l->radiance[p->unknowns[u].colour] = exp(clamp(x[u], -60, 60));
+        } else if (l->exponent != fmin(x[u] * x[u], 1000)) {
+            l->exponent = fmin(x[u] * x[u], 1000);
+            fit_set_direct(p, p->unknowns[u].lamp);
+        }
+    }
+}
+
+void fit_get_unknowns(const struct problem *p, double *x)
+{
+    for (int u = 0; u < p->unknown_count; u++) {
+        const struct fit_lamp *l = &p->f->lamps[p->unknowns[u].lamp];
+        x[u] = p->unknowns[u].colour < 3 ? log(l->radiance[p->unknowns[u].colour]) : sqrt(l->exponent);
+    }
+}
+
+double fit_irradiance(const struct problem *p, int point, int colour)
+{
+    const struct light_fit *f = p->f;
+    double e = f->points[point].indirect[colour];
+    for (int l = 0; l < f->lamp_count; l++) e += f->lamps[l].radiance[colour] * p->direct[l * f->point_count + point];
+    return e;
+}
+
+void fit_set_residuals(struct problem *p)
+{
+    struct light_fit *f = p->f;
+    const int n = f->point_count;
+    for (int i = 0; i < n; i++)
+        for (int c = 0; c < 3; c++) p->logs[3 * i + c] = log(f->points[i].radiance[c] / fit_irradiance(p, i, c));
+    for (int c = 0; c < 3; c++) {
+        double *whitened = p->whitened + (ptrdiff_t)c * n;
+        for (int i = 0; i < n; i++) whitened[i] = p->logs[3 * i + c];
+        cholesky_forward(p->factor, n, whitened);
+        for (int m = 0; m < f->material_count; m++) {
+            const double *ones = p->ones + (ptrdiff_t)m * n;
+            double sum = 0, weights = 0;
+            for (int i = 0; i < n; i++) {
+                sum += ones[i] * whitened[i];
+                weights += ones[i] * ones[i];
+            }
+            const double mean = weights > 0 ? sum / weights : 0;
+            for (int i = 0; i < n; i++) whitened[i] -= mean * ones[i];
+            f->materials[m].k_d[c] = weights > 0 ? exp(mean) : 0;
+        }
+    }
+}
+
+int fit_residual_count(const struct problem *p) { return 3 * (p->f->point_count + p->f->lamp_count); }
+
+void fit_evaluate(void *ctx, const double *x, double *residuals)
+{
+    struct problem *p = ctx;
+    const size_t points = 3 * (size_t)p->f->point_count;
+    fit_set_unknowns(p, x);
+    fit_set_residuals(p);
+    memcpy(residuals, p->whitened, points * sizeof *residuals);
+    for (int l = 0; l < p->f->lamp_count; l++) {
+        const struct fit_lamp *lamp = &p->f->lamps[l];
+        for (int c = 0; c < 3; c++) {
+            const bool counts = lamp->fit && lamp->seen_error[c] > 0 && lamp->seen[c] > 0;
+            residuals[points + 3 * (size_t)l + (size_t)c] =
+                counts ? log(lamp->radiance[c] / lamp->seen[c]) / lamp->seen_error[c] : 0;
+        }
+    }
+}
