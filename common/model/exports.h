@@ -3,14 +3,14 @@
 #ifndef REMODEL_MODEL_EXPORTS_H
 #define REMODEL_MODEL_EXPORTS_H
 
-/* X(file, name, write): its name on the page; the function of export_model that writes it (writers.h). In the order of the
- * page. The first is written last: Make takes it for the whole. */
-#define EXPORTS(X)                                     \
-    X("model.ifc", "building model (IFC4)", write_ifc) \
-    X("model.glb", "3D model (glTF)", write_gltf)      \
-    X("model.obj", "3D model (OBJ)", write_obj)
+/* X(format, file, name, write): its name on the page; the function of export_model that writes it (writers.h). In the order
+ * of the page. The first is written last: Make takes it for the whole. */
+#define EXPORTS(X)                                          \
+    X(IFC, "model.ifc", "building model (IFC4)", write_ifc) \
+    X(GLB, "model.glb", "3D model (glTF)", write_gltf)      \
+    X(OBJ, "model.obj", "3D model (OBJ)", write_obj)
 
-#define EXPORT_ONE(file, name, write) +1
-enum { EXPORT_COUNT = 0 EXPORTS(EXPORT_ONE) };
+#define EXPORT_ID(format, file, name, write) EXPORT_##format,
+enum export { EXPORTS(EXPORT_ID) EXPORT_COUNT };
 
 #endif

@@ -36,7 +36,7 @@ static enum status read_inputs(struct job *j, struct model_axes *axes, struct pr
     return st;
 }
 
-#define WRITE(file, name, write) write,
+#define WRITE(format, file, name, write) write,
 static enum status (*const writers[])(const struct export_scene *s, struct err *err) = {EXPORTS(WRITE)};
 
 static enum status export_all(struct job *j, struct provenance *prov, struct err *err)

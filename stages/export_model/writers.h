@@ -20,7 +20,7 @@ struct export_scene {
 };
 
 /* Each writes its file, and what that needs, to OUT. */
-#define EXPORT_WRITER(file, name, write) enum status write(const struct export_scene *s, struct err *err);
+#define EXPORT_WRITER(format, file, name, write) enum status write(const struct export_scene *s, struct err *err);
 EXPORTS(EXPORT_WRITER)
 
 /* The 22 characters of a GUID, the same for the same text in each run. */

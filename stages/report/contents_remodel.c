@@ -185,7 +185,7 @@ static enum status read_relit(struct edit_card *card, struct reading *r, struct 
     return st;
 }
 
-#define EXPORT_FILE(file, name, write) "export/" file,
+#define EXPORT_FILE(format, file, name, write) "export/" file,
 static const char *const exports[] = {EXPORTS(EXPORT_FILE)};
 
 static enum status read_edit(struct reading *r, const char *name, struct err *err)

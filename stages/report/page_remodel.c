@@ -121,7 +121,7 @@ static enum status put_plan(FILE *to, const char *file, const char *caption, str
 
 static void put_exports(FILE *to, const struct edit_card *card)
 {
-#define EXPORT_LINK(file, name, write) "/export/" file "\">" name "</a></li>\n",
+#define EXPORT_LINK(format, file, name, write) "/export/" file "\">" name "</a></li>\n",
     static const char *const links[] = {EXPORTS(EXPORT_LINK)};
     if (!card->exported) return;
     fputs("<p>For an architect, or another program:</p>\n<ul class=\"list\">\n", to);
