@@ -42,12 +42,6 @@ enum status photo_quality_of_merged(struct photo_quality *q, struct exr_image *m
                                     const struct image *linear, struct err *err);
 void photo_quality_release(struct photo_quality *q);
 
-/* Rec.709 luminance. */
-static inline float photo_luminance(const float rgb[3])
-{
-    return 0.2126f * rgb[0] + 0.7152f * rgb[1] + 0.0722f * rgb[2];
-}
-
 /* Standard deviation of the luminance, divided by it: above 0, at most 1. */
 float photo_relative_sigma(float variance, float luminance);
 

@@ -5,6 +5,7 @@
 
 #include "common/base/file_path.h"
 #include "common/image/exr.h"
+#include "common/image/luminance.h"
 
 static const char *const channel_names[4] = {"R", "G", "B", "A"};
 
@@ -54,7 +55,7 @@ static enum status add_quality(struct exr_image *exr, const struct image *im, co
     for (size_t i = 0; i < (size_t)im->width * (size_t)im->height; i++) {
         const float *p = im->data + 4 * i;
         if (!(p[3] > 0)) continue;
-        sigma->f[i] = rounded(photo_relative_sigma(quality->variance[i], photo_luminance(p)));
+        sigma->f[i] = rounded(photo_relative_sigma(quality->variance[i], luminance_of(p)));
         clipped->f[i] = quality->marks[i];
     }
     return ST_OK;

@@ -22,6 +22,7 @@
 #include "common/base/parallel.h"
 #include "common/base/scan.h"
 #include "common/base/textfile.h"
+#include "common/image/luminance.h"
 
 #define MAX_KEYS   100000
 #define MAX_NAME   64
@@ -475,7 +476,7 @@ static void strip_saturate(float *rgba, const float *weights, float change, int 
 {
     for (int i = 0; i < count; i++) {
         float *c = rgba + 4 * i;
-        const float y = 0.2126f * c[0] + 0.7152f * c[1] + 0.0722f * c[2];
+        const float y = luminance_of(c);
         const float dark = c[0] < c[1] ? (c[0] < c[2] ? c[0] : c[2]) : (c[1] < c[2] ? c[1] : c[2]);
         float by = weights[i] * change;
         if (by == 0) continue;

@@ -26,6 +26,7 @@
 #include <math.h>
 
 #include "common/base/rng.h"
+#include "common/image/luminance.h"
 #include "common/light/frame.h"
 #include "common/math/numbers.h"
 
@@ -154,8 +155,9 @@ static void finish(struct hemisphere *h)
     r->mean_inverse /= cells;
     r->rays = (int)cells;
     r->radius = r->mean_inverse > 0 ? 1 / r->mean_inverse : INFINITY;
-    const struct vec3 slope = vec3_add(vec3_scale(r->move[0], 0.2126),
-                                       vec3_add(vec3_scale(r->move[1], 0.7152), vec3_scale(r->move[2], 0.0722)));
+    const struct vec3 slope =
+        vec3_add(vec3_scale(r->move[0], LUMINANCE_R),
+                 vec3_add(vec3_scale(r->move[1], LUMINANCE_G), vec3_scale(r->move[2], LUMINANCE_B)));
     const double value = rgb_luminance(r->value), steep = vec3_length(slope);
     if (steep * r->radius > value) r->radius = value / steep;
 }

@@ -14,18 +14,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/light/colour.h"
+#include "common/image/luminance.h"
 #include "common/math/numbers.h"
 #include "common/math/weighted.h"
 
 enum { SHARE = 64 }; /* rows and columns of a picture that the median and means are taken from, at least */
 static const double BRIGHT = 20, WIDEST = 30 * DEGREE;
 
-static double luminance_at(const struct outdoors *o, size_t pixel)
-{
-    const float *p = o->rgb + 3 * pixel;
-    return rgb_luminance(rgb_make((double)p[0], (double)p[1], (double)p[2]));
-}
+static double luminance_at(const struct outdoors *o, size_t pixel) { return luminance_precise(o->rgb + 3 * pixel); }
 
 /* Solid angle of a pixel of a row. */
 static double solid_angle(const struct outdoors *o, int y)

@@ -21,6 +21,7 @@
 #include "common/base/textfile.h"
 #include "common/capture/photo_quality.h"
 #include "common/image/exr.h"
+#include "common/image/luminance.h"
 #include "common/light/model_clearance.h"
 #include "common/math/distance.h"
 #include "common/texture/view_ids.h"
@@ -140,7 +141,7 @@ static size_t trace(uint8_t *leaves, uint32_t *faces, const struct outdoors_pict
 static uint8_t judge(bool reference, const float rgb[3], unsigned marks, float fourth, float fifth)
 {
     if (!reference && !(fourth > 0.999f)) return SHOWS_NOTHING;
-    const float sigma = reference ? photo_relative_sigma(fourth, photo_luminance(rgb)) : fifth;
+    const float sigma = reference ? photo_relative_sigma(fourth, luminance_of(rgb)) : fifth;
     const bool dark = marks & PHOTO_DARK || sigma > MAX_SIGMA;
     if (reference && dark) return SHOWS_NOTHING;
     return dark || marks ? SHOWS_CLIPPED : SHOWS_OUTDOORS;

@@ -15,6 +15,7 @@
 #include <string.h>
 
 #include "common/base/parallel.h"
+#include "common/image/luminance.h"
 #include "common/math/cholesky.h"
 
 #define HALF_WINDOW  2     /* px around an observation: the mean of 5 x 5 */
@@ -64,7 +65,7 @@ static bool colour_around(const struct layer_view *lv, double u, double v, doubl
                 sum[c] += rgba[c] / (float)(side * side);
             }
         }
-    const float luminance = 0.2126f * sum[0] + 0.7152f * sum[1] + 0.0722f * sum[2];
+    const float luminance = luminance_of(sum);
     if (!(luminance >= DARKEST)) return false;
     for (int c = 0; c < 3; c++) log_of[c] = log((double)fmaxf(sum[c], 0.1f * DARKEST));
     log_of[LUMINANCE] = log((double)luminance);

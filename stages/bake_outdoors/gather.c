@@ -20,7 +20,7 @@
 
 #include "common/base/parallel.h"
 #include "common/base/progress.h"
-#include "common/capture/photo_quality.h"
+#include "common/image/luminance.h"
 #include "common/math/numbers.h"
 
 enum { ROWS = 8, SAMPLES = 2 };
@@ -93,7 +93,7 @@ static void ask_rows(void *ctx, size_t begin, size_t end, int thread)
             const struct vec3 d = outdoors_direction(g->out, (x + 0.5) * CELL, ((double)y + 0.5) * CELL);
             const enum outdoors_state state = outdoors_picture_sample(rgb, &facing, p, d);
             if (state == SHOWS_NOTHING) continue;
-            c.luminance = photo_luminance(rgb);
+            c.luminance = luminance_of(rgb);
             c.clipped = state == SHOWS_CLIPPED;
             c.score = facing * (float)sqrt(p->coverage);
             insert(g->cells.lists[y * (size_t)g->cells.width + (size_t)x], &c, g->pictures);

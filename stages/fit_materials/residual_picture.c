@@ -4,6 +4,7 @@
 
 #include "common/capture/view_image.h"
 #include "common/image/drawing.h"
+#include "common/image/luminance.h"
 #include "common/image/photo.h"
 #include "common/math/numbers.h"
 #include "stages/fit_materials/fit_region.h"
@@ -33,8 +34,6 @@ static void residual_colour(double residual, unsigned char colour[3])
     colour[2] = part >= 0 ? faded : 255;
 }
 
-static double luminance_of(const double *rgb) { return rgb_luminance(rgb_make(rgb[0], rgb[1], rgb[2])); }
-
 enum status region_fit_picture(const struct region_fit *f, const struct observations *o,
                                const struct observed_scene *scene, const char *path, struct err *err)
 {
@@ -50,7 +49,7 @@ enum status region_fit_picture(const struct region_fit *f, const struct observat
     const struct canvas canvas = {rgb, im.width, im.height};
     for (int i = 0; rgb && i < f->samples.count; i++) {
         const struct point_sight *s = &o->sights[f->first + i];
-        const double model = luminance_of(f->predicted + 3 * i), seen = luminance_of(s->radiance);
+        const double model = luminance_of_doubles(f->predicted + 3 * i), seen = luminance_of_doubles(s->radiance);
         unsigned char colour[3];
         if (s->view != view) continue;
         residual_colour(model > 0 ? seen / model - 1 : seen > 0 ? 1 : 0, colour);

@@ -9,6 +9,7 @@
 
 #include "common/base/array.h"
 #include "common/base/textfile.h"
+#include "common/image/luminance.h"
 #include "stages/report/contents_parts.h"
 
 enum { LAMP_HEIGHT = 480, VIEW_HEIGHT = 320, HEMICUBE_HEIGHT = 300, GATHERS_MOST = 24 };
@@ -109,8 +110,6 @@ static enum status read_seen(struct light_contents *l, struct textfile *t, struc
     return card->disagrees ? textfile_expect(t, "disagrees", err) : ST_OK;
 }
 
-static double luminance_of(const double v[3]) { return rgb_luminance(rgb_make(v[0], v[1], v[2])); }
-
 static enum status read_point(struct light_contents *l, struct textfile *t, struct err *err)
 {
     struct lamp_card *card;
@@ -127,7 +126,7 @@ static enum status read_point(struct light_contents *l, struct textfile *t, stru
         array_append(&card->points, (size_t)card->point_count, sizeof *card->points, "marked points", err))
         return err->status;
     card->points[card->point_count++] =
-        (struct light_point){!strcmp(lit, "lit"), luminance_of(seen), luminance_of(explained)};
+        (struct light_point){!strcmp(lit, "lit"), luminance_of_doubles(seen), luminance_of_doubles(explained)};
     return ST_OK;
 }
 
