@@ -111,17 +111,12 @@ static enum status read_disk(struct lamp *l, struct textfile *t, struct err *err
 static enum status read_emission(struct lamp *l, struct textfile *t, struct err *err)
 {
     double *const s[] = {&l->radiance.r, &l->radiance.g, &l->radiance.b}, degrees;
-    for (int i = 0; i < 3; i++) {
-        if (textfile_double(t, "a radiance", s[i], err)) return err->status;
-        if (!(*s[i] >= 0 && *s[i] <= 1e30)) return textfile_wrong_number(t, *s[i], "a radiance from 0 to 1e30", err);
-    }
-    if (textfile_double(t, "the angle of the cone", &degrees, err)) return err->status;
-    if (!(degrees >= 0 && degrees <= 90))
-        return textfile_wrong_number(t, degrees, "an angle of the cone from 0 to 90 degrees", err);
+    for (int i = 0; i < 3; i++)
+        if (textfile_number(t, "a radiance", 0, 1e30, s[i], err)) return err->status;
+    if (textfile_number(t, "the angle of the cone in degrees", 0, 90, &degrees, err) ||
+        textfile_number(t, "the exponent", 0, MOST_EXPONENT, &l->exponent, err))
+        return err->status;
     l->beta = degrees / 90 * (0.5 * PI);
-    if (textfile_double(t, "the exponent", &l->exponent, err)) return err->status;
-    if (!(l->exponent >= 0 && l->exponent <= MOST_EXPONENT))
-        return textfile_wrong_number(t, l->exponent, "an exponent from 0 to 10000", err);
     if (!textfile_more(t)) return ST_OK;
     l->bound = true;
     return textfile_expect(t, "bound", err) ? err->status : textfile_end(t, err);

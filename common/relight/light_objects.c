@@ -200,10 +200,8 @@ static enum status read_element(struct light_objects *o, int i, struct textfile 
     double e[3];
     if (i >= o->element_count) return textfile_error(t, err, "an element", "no more than the objects' %d", i);
     if (textfile_expect(t, "element", err)) return err->status;
-    for (int k = 0; k < 3; k++) {
-        if (textfile_double(t, "an irradiance", &e[k], err)) return err->status;
-        if (e[k] < 0) return textfile_wrong_number(t, e[k], "an irradiance of 0 or more", err);
-    }
+    for (int k = 0; k < 3; k++)
+        if (textfile_number(t, "an irradiance", 0, INFINITY, &e[k], err)) return err->status;
     o->elements[i].irradiance = rgb_make(e[0], e[1], e[2]);
     return textfile_end(t, err);
 }

@@ -291,8 +291,7 @@ static enum status read_colour(struct texture_rule *rule, struct textfile *t, st
     char *word = NULL;
     for (int c = 0; !st && c < 3; c++) {
         double value;
-        st = textfile_double(t, "a share of light, from 0 to 1", &value, err);
-        if (!st && (value < 0 || value > 1)) st = textfile_wrong_number(t, value, "a share of light, from 0 to 1", err);
+        st = textfile_number(t, "a share of light", 0, 1, &value, err);
         if (!st) rule->albedo[c] = (float)value;
     }
     if (!st) st = textfile_expect(t, "lit", err);
@@ -344,10 +343,8 @@ static enum status read_lamp(struct texture_map *map, struct textfile *t, struct
     const bool twice = texture_map_lamp(map, lamp->name) != NULL;
     map->lamp_count++;
     if (twice) return textfile_error(t, err, lamp->name, "a lamp that no line above has");
-    for (int c = 0; c < 3; c++) {
-        if (textfile_double(t, "a factor of 0 or more", &lamp->scale[c], err)) return err->status;
-        if (lamp->scale[c] < 0) return textfile_wrong_number(t, lamp->scale[c], "a factor of 0 or more", err);
-    }
+    for (int c = 0; c < 3; c++)
+        if (textfile_number(t, "a factor", 0, INFINITY, &lamp->scale[c], err)) return err->status;
     return textfile_end(t, err);
 }
 

@@ -245,12 +245,10 @@ static enum status read_names(struct changes *c, const struct exr_image *im, str
     return ST_OK;
 }
 
-static enum status read_rgb(double rgb[3], struct textfile *t, const char *what, struct err *err)
+static enum status read_rgb(double rgb[3], struct textfile *t, const char *what, double max, struct err *err)
 {
-    for (int k = 0; k < 3; k++) {
-        if (textfile_double(t, what, &rgb[k], err)) return err->status;
-        if (rgb[k] < 0 || rgb[k] > MOST_FACTOR) return textfile_wrong_number(t, rgb[k], "a number from 0 to 1e6", err);
-    }
+    for (int k = 0; k < 3; k++)
+        if (textfile_number(t, what, 0, max, &rgb[k], err)) return err->status;
     return ST_OK;
 }
 
@@ -276,7 +274,7 @@ static enum status read_lamp(struct changes *c, const struct exr_image *im, stru
                               "scale R G B; a lamp's cone (beta, exponent) needs a new gather: change "
                               "lights.txt and relight the picture again");
     c->any_lamp = true;
-    return read_rgb(c->lamps + 3 * i, t, "a factor", err);
+    return read_rgb(c->lamps + 3 * i, t, "a factor", MOST_FACTOR, err);
 }
 
 static enum status read_surface(struct changes *c, struct textfile *t, struct err *err)
@@ -291,11 +289,9 @@ static enum status read_surface(struct changes *c, struct textfile *t, struct er
         return textfile_error(t, err, word,
                               "k_d R G B or k_s KS; n and alpha are inside the integrals and need a new "
                               "gather: change the material and relight the picture again");
-    if (is_diffuse ? read_rgb(k_d, t, "a reflectance", err) : textfile_double(t, "a strength", &ks, err))
+    if (is_diffuse ? read_rgb(k_d, t, "a reflectance of at most 1 / pi", 1 / PI, err)
+                   : textfile_number(t, "a strength", 0, 1, &ks, err))
         return err->status;
-    if (ks < 0 || ks > 1) return textfile_wrong_number(t, ks, "a strength from 0 to 1", err);
-    for (int k = 0; k < 3; k++)
-        if (k_d[k] > 1 / PI) return textfile_wrong_number(t, k_d[k], "a reflectance up to 1 / pi = 0.3183", err);
     for (int i = 0; i < c->surfaces.count; i++) {
         const struct surface *s = &c->surfaces.list[i];
         const size_t used = strlen(known);
