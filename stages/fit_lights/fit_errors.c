@@ -7,27 +7,10 @@
 #include <math.h>
 #include <string.h>
 
+#include "common/math/inverse.h"
 #include "stages/fit_lights/fit_problem.h"
 
 #define STEP 1e-4 /* of an unknown, for derivatives */
-
-/* Inverts a symmetric positive matrix in place by Gauss-Jordan elimination; false: it is singular. */
-static bool invert(double *a, int n)
-{
-    for (int k = 0; k < n; k++) {
-        const double pivot = a[k * n + k];
-        if (!(fabs(pivot) > 1e-300)) return false;
-        a[k * n + k] = 1;
-        for (int j = 0; j < n; j++) a[k * n + j] /= pivot;
-        for (int i = 0; i < n; i++) {
-            const double factor = a[i * n + k];
-            if (i == k) continue;
-            a[i * n + k] = 0;
-            for (int j = 0; j < n; j++) a[i * n + j] -= factor * a[k * n + j];
-        }
-    }
-    return true;
-}
 
 /* Derivatives of the residuals, [unknown][residual]. low: room for residuals. */
 static void differentiate(struct problem *p, double *jacobian, double *low)
@@ -79,7 +62,7 @@ static void find_errors(struct problem *p, double *jacobian, double errors[MOST_
             for (int i = 0; i < rows; i++) h[a * n + b] += one[i] * other[i];
             for (int i = 0; i < places; i++) g[a * n + b] += summed(p, one, i) * summed(p, other, i);
         }
-    const bool known = invert(h, n);
+    const bool known = inverse_of_symmetric(h, n, 1e-300);
     for (int a = 0; a < n; a++) {
         double v = 0;
         for (int i = 0; i < n; i++)
