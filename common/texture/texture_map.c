@@ -10,6 +10,7 @@
 #include "common/base/array.h"
 #include "common/base/outfile.h"
 #include "common/base/scan.h"
+#include "common/base/sort.h"
 #include "common/base/textfile.h"
 
 #define HEADER  "remodel-texture"
@@ -43,19 +44,17 @@ void texture_map_release(struct texture_map *map)
 
 /* --------------------------------------------------------------------------------------------------------- look-ups */
 
+static bool face_is_below(const void *face, const void *id)
+{
+    return ((const struct texture_face *)face)->id < *(const int *)id;
+}
+
 const struct texture_face *texture_map_find(const struct texture_map *map, int id, struct vec3 p)
 {
     const struct texture_face *best = NULL;
     double least = INFINITY;
-    int low = 0, high = map->face_count;
-    while (low < high) {
-        const int middle = (low + high) / 2;
-        if (map->faces[middle].id < id)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    for (int i = low; i < map->face_count && map->faces[i].id == id; i++) {
+    const size_t first = sort_place(map->faces, (size_t)map->face_count, sizeof *map->faces, face_is_below, &id);
+    for (int i = (int)first; i < map->face_count && map->faces[i].id == id; i++) {
         const double off = fabs(vec3_dot(map->faces[i].normal, p) - map->faces[i].offset);
         if (off < least) {
             least = off;

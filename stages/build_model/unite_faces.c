@@ -7,6 +7,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "common/base/sort.h"
 #include "stages/build_model/unite_internal.h"
 
 /* Axes u, v of the projection in which a face seen from outside keeps its orientation. */
@@ -182,17 +183,14 @@ static int face_at(const struct body_union *j, const struct loop_order *loops, i
     return best < 0 ? -1 : j->loops[best].face;
 }
 
+static bool side_is_below(const void *loop, const void *key)
+{
+    return ((const struct loop_order *)loop)->key < *(const int *)key;
+}
+
 static int side_begin(const struct loop_order *order, int count, int key)
 {
-    int low = 0, high = count;
-    while (low < high) {
-        const int middle = (low + high) / 2;
-        if (order[middle].key < key)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low;
+    return (int)sort_place(order, (size_t)count, sizeof *order, side_is_below, &key);
 }
 
 /* Names each face after the lowest rank among its facets of its room, and records the names that it merged.
