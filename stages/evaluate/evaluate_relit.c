@@ -172,11 +172,11 @@ static enum status add_quotients(struct relit_sums *own, struct relit_job *job, 
 }
 
 static enum status add_metric(struct relit_job *job, const char *view, const char *name, int part, double value,
-                              const char *unit, const char *direction, struct err *err)
+                              struct err *err)
 {
     char text[64];
     snprintf(text, sizeof text, "%s%s", name, picture_part_suffixes[part]);
-    return evaluation_metric(job->e, view, job->set->prefix, text, value, unit, direction, err);
+    return evaluation_metric(job->e, view, job->set->prefix, text, value, err);
 }
 
 static enum status add_part(struct relit_job *job, const char *view, const struct relit_sums *s, int k, uint64_t least,
@@ -185,16 +185,14 @@ static enum status add_part(struct relit_job *job, const char *view, const struc
     double relit, unlit, revealed;
     enum status st = ST_OK;
     if (s->pixels[k] >= least && encoded_error_psnr(&s->relit[k], &relit) && encoded_error_psnr(&s->unlit[k], &unlit)) {
-        st = add_metric(job, view, "relit_psnr", k, relit, "dB", "higher", err) ||
-             add_metric(job, view, "unlit_psnr", k, unlit, "dB", "none", err) ||
-             add_metric(job, view, "relit_gain", k, relit - unlit, "dB", "higher", err) ||
-             add_metric(job, view, "relit_pixels", k, 100 * (double)s->pixels[k] / (double)s->all, "%", "none", err);
+        st = add_metric(job, view, "relit_psnr", k, relit, err) || add_metric(job, view, "unlit_psnr", k, unlit, err) ||
+             add_metric(job, view, "relit_gain", k, relit - unlit, err) ||
+             add_metric(job, view, "relit_pixels", k, 100 * (double)s->pixels[k] / (double)s->all, err);
         if (!st && s->ratios[k].count)
-            st = add_metric(job, view, "relit_ratio_error50", k, 100 * quantiles_get(&s->ratios[k], 0.5), "%", "lower",
-                            err);
+            st = add_metric(job, view, "relit_ratio_error50", k, 100 * quantiles_get(&s->ratios[k], 0.5), err);
     }
     if (!st && s->revealed[k].samples >= 3 * least && encoded_error_psnr(&s->revealed[k], &revealed))
-        st = add_metric(job, view, "relit_revealed_psnr", k, revealed, "dB", "higher", err);
+        st = add_metric(job, view, "relit_revealed_psnr", k, revealed, err);
     return st ? err->status : ST_OK;
 }
 

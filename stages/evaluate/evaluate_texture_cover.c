@@ -229,7 +229,7 @@ static enum status add_share(struct evaluation *e, const char *prefix, const str
     if (!(sum->all > 0))
         return metric_note(&e->table, err, "skipped %s.covered: the declared edits reveal nothing (no reveal/VIEW.exr)",
                            prefix);
-    return evaluation_metric(e, NULL, prefix, "covered", 100 * sum->filled / sum->all, "%", "higher", err);
+    return evaluation_metric(e, NULL, prefix, "covered", 100 * sum->filled / sum->all, err);
 }
 
 enum status evaluate_texture_cover(struct evaluation *e, struct err *err)
