@@ -30,12 +30,12 @@
 #include "common/light/frame.h"
 #include "common/math/numbers.h"
 
-enum { RINGS_MOST = 72, COLUMNS_MOST = 228 }; /* 16 k cells */
+enum { RINGS_MAX = 72, COLUMNS_MAX = 228 }; /* 16 k cells */
 
 /* One column of cells, before and after its edges. */
 struct column {
-    struct rgb light[RINGS_MOST];
-    double inverse[RINGS_MOST]; /* 1 / distance */
+    struct rgb light[RINGS_MAX];
+    double inverse[RINGS_MAX]; /* 1 / distance */
 };
 
 struct hemisphere {
@@ -90,7 +90,7 @@ static void trace_column(struct hemisphere *h, struct column *c, int k)
         struct light_look seen[RAY_PACKET];
         double turns[RAY_PACKET];
         for (int i = 0; i < count; i++) {
-            const uint64_t cell = (uint64_t)k * RINGS_MOST + (uint64_t)(j + i);
+            const uint64_t cell = (uint64_t)k * RINGS_MAX + (uint64_t)(j + i);
             uint32_t bits[4];
             rng_block(&h->rng, (uint64_t)h->rings, cell, bits);
             const double sine2 = (j + i + bits[0] * 0x1p-32) / h->rings;
@@ -167,9 +167,9 @@ static void gather(struct hemisphere *h, int rays)
     *h->record = (struct cache_record){.point = h->record->point, .nearest = INFINITY};
     h->sum = h->squares = rgb_grey(0);
     h->rings = (int)sqrt(rays / PI);
-    h->rings = h->rings < 4 ? 4 : h->rings > RINGS_MOST ? RINGS_MOST : h->rings;
+    h->rings = h->rings < 4 ? 4 : h->rings > RINGS_MAX ? RINGS_MAX : h->rings;
     h->columns = (int)(PI * h->rings);
-    if (h->columns > COLUMNS_MOST) h->columns = COLUMNS_MOST;
+    if (h->columns > COLUMNS_MAX) h->columns = COLUMNS_MAX;
     trace_columns(h);
     finish(h);
 }

@@ -391,14 +391,14 @@ static int visit(const struct field_atlas *a, const struct atlas_tile *t, const 
 enum status field_atlas_cover_lamp(struct field_atlas *a, int *covered, int face, struct face_plane plane,
                                    const struct lamp *lamp, double reach, struct err *err)
 {
-    enum { MOST = 1 << 16 };
+    enum { MAX_TEXELS = 1 << 16 };
     const double off = fabs(vec3_dot(plane.normal, lamp->centre) - plane.offset);
     int count = 0;
     if (face < 0 || face >= a->ids || !(vec3_dot(plane.normal, lamp->normal) > ALIKE) || off > reach) return ST_OK;
-    struct ring_texel *ring = malloc(MOST * sizeof *ring);
-    if (!ring) return err_nomem(err, "texels around a lamp", MOST * sizeof *ring);
+    struct ring_texel *ring = malloc(MAX_TEXELS * sizeof *ring);
+    if (!ring) return err_nomem(err, "texels around a lamp", MAX_TEXELS * sizeof *ring);
     for (int i = a->first[face]; i < a->first[face + 1]; i++)
-        count += visit(a, &a->atlas.tiles[i], lamp, off, ring + count, MOST - count, NULL);
+        count += visit(a, &a->atlas.tiles[i], lamp, off, ring + count, MAX_TEXELS - count, NULL);
     qsort(ring, (size_t)count, sizeof *ring, by_luminance);
     struct texel with = count ? unpack(ring[count / 2].bits) : (struct texel){{0, 0, 0}, LIGHT_SYNTHESISED};
     with.what = LIGHT_SYNTHESISED;

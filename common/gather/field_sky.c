@@ -135,10 +135,10 @@ static struct emitter make_sun(const struct flood *f, double *light)
     return e;
 }
 
-static void insert(struct field_sky *s, double lights[MOST_SUNS], struct emitter sun, double light)
+static void insert(struct field_sky *s, double lights[MAX_SUNS], struct emitter sun, double light)
 {
-    int at = s->sun_count < MOST_SUNS ? s->sun_count++ : MOST_SUNS;
-    if (at == MOST_SUNS && !(light > lights[--at])) return;
+    int at = s->sun_count < MAX_SUNS ? s->sun_count++ : MAX_SUNS;
+    if (at == MAX_SUNS && !(light > lights[--at])) return;
     for (; at > 0 && light > lights[at - 1]; at--) {
         s->suns[at] = s->suns[at - 1];
         lights[at] = lights[at - 1];
@@ -150,7 +150,7 @@ static void insert(struct field_sky *s, double lights[MOST_SUNS], struct emitter
 enum status field_sky_find(struct field_sky *s, const struct outdoors *o, struct err *err)
 {
     const size_t pixels = (size_t)o->width * (size_t)o->height;
-    double lights[MOST_SUNS] = {0};
+    double lights[MAX_SUNS] = {0};
     *s = (struct field_sky){0};
     if (!pixels || find_median(s, o, err)) return pixels ? err->status : ST_OK;
     struct flood f = {.o = o, .bright = s->bright, .seen = calloc(pixels, 1)};

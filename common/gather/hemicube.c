@@ -68,9 +68,9 @@ static enum status fill_factors(double *to, int half, double integral(double, do
 enum status hemicube_make(struct hemicube **h, int n, struct err *err)
 {
     *h = NULL;
-    if (n < 2 || n > HEMICUBE_MOST || n % 2)
+    if (n < 2 || n > HEMICUBE_MAX || n % 2)
         return err_set(err, ST_USAGE, "a hemicube cannot have %d pixels in a row, wanted an even number from 2 to %d.",
-                       n, HEMICUBE_MOST);
+                       n, HEMICUBE_MAX);
     const size_t half = (size_t)n / 2;
     struct hemicube *made = calloc(1, sizeof *made);
     if (made) {

@@ -343,7 +343,7 @@ static void count(struct irradiance_cache_stats *stats, const struct cache *c)
     for (size_t i = 0; i < points; i++) stats->direct_rays += c->sides[0].results[i].rays;
 }
 
-bool irradiance_cache_suits(const struct light_field *f) { return f->emitter_count < MIXTURE_MOST; }
+bool irradiance_cache_suits(const struct light_field *f) { return f->emitter_count < MIXTURE_MAX; }
 
 enum status irradiance_cache_fill(struct irradiance *results, const struct irradiance_cache_job *j,
                                   struct irradiance_cache_stats *stats, struct err *err)

@@ -67,7 +67,7 @@ static double quad_irradiance(const struct lamp *l, struct vec3 at, struct vec3 
 
 /* --- any lamp: one integral over the angle from its normal ------------------------------------------------------- */
 
-enum { MOST_LINES = 5, MOST_RADII = 32, MOST_CUTS = 2 * MOST_LINES + 4, DEEPEST = 12 };
+enum { MAX_LINES = 5, MAX_RADII = 32, MAX_CUTS = 2 * MAX_LINES + 4, DEEPEST = 12 };
 
 struct plane_line {
     double x, y, c; /* inside: x X + y Y <= c */
@@ -75,7 +75,7 @@ struct plane_line {
 
 /* The lamp seen from p: its plane in units of the height of p, p' the origin. */
 struct plane_lamp {
-    struct plane_line lines[MOST_LINES]; /* the edges of a quad; the horizon */
+    struct plane_line lines[MAX_LINES]; /* the edges of a quad; the horizon */
     int line_count;
     double cx, cy, radius; /* of a disk */
     bool disk;
@@ -104,7 +104,7 @@ static int cross_line(double *cuts, int count, double x, double y, double c, dou
 static double over_arcs(const struct plane_lamp *p, double t)
 {
     const double r = tan(t);
-    double cuts[MOST_CUTS], sum = 0;
+    double cuts[MAX_CUTS], sum = 0;
     int count = 0;
     for (int i = 0; i < p->line_count; i++)
         count = cross_line(cuts, count, p->lines[i].x, p->lines[i].y, p->lines[i].c, r);
@@ -162,7 +162,7 @@ static double halve(const struct plane_lamp *p, struct panel panel, double from,
 
 static int add_radius(double *radii, int count, double r)
 {
-    if (count < MOST_RADII && isfinite(r) && r > 0) radii[count++] = r;
+    if (count < MAX_RADII && isfinite(r) && r > 0) radii[count++] = r;
     return count;
 }
 
@@ -236,7 +236,7 @@ static bool view_lamp(struct plane_lamp *p, const struct lamp *l, struct vec3 at
 static double irradiance(const struct lamp *l, struct vec3 at, struct vec3 m)
 {
     struct plane_lamp p;
-    double ends[MOST_RADII + 4], panels[MOST_RADII + 4], total = 0, from = 0;
+    double ends[MAX_RADII + 4], panels[MAX_RADII + 4], total = 0, from = 0;
     if (!(l->beta > 0) || !view_lamp(&p, l, at, m)) return 0;
     int count = line_radii(ends, 0, &p);
     if (p.disk) count = disk_radii(ends, count, &p);

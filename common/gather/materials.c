@@ -12,7 +12,7 @@
 #include "common/base/scan.h"
 #include "common/math/numbers.h"
 
-enum { MOST_WORD = 255, QUOTED_SIZE = 2 * MOST_WORD + 3 };
+enum { MAX_WORD = 255, QUOTED_SIZE = 2 * MAX_WORD + 3 };
 
 static const char *const kinds[MATERIAL_MODELS] = {"lambert", "phong", "ward"};
 
@@ -87,7 +87,7 @@ static enum status read_pixels(struct material_region *r, struct textfile *t, st
 
 enum status material_read_region(struct material *m, struct textfile *t, struct err *err)
 {
-    char view[MOST_WORD + 1];
+    char view[MAX_WORD + 1];
     if (textfile_word_into(t, "a photo's id or a view's name", view, sizeof view, err) ||
         array_append(&m->regions, (size_t)m->region_count, sizeof *m->regions, "regions", err))
         return err->status;
@@ -132,7 +132,7 @@ enum status material_read_kind(enum brdf_kind *kind, struct textfile *t, struct 
 
 static enum status read_material(struct material_list *l, struct textfile *t, struct err *err)
 {
-    char name[MOST_WORD + 1];
+    char name[MAX_WORD + 1];
     struct material *m = NULL;
     double least, most;
     if (textfile_word_into(t, "a name", name, sizeof name, err) || material_list_add(&m, l, name, t, err) ||
@@ -187,7 +187,7 @@ static enum status read_evidence(struct material *m, struct textfile *t, struct 
 
 static enum status read_statement(struct material_list *l, struct textfile *t, struct err *err)
 {
-    char verb[16], name[MOST_WORD + 1];
+    char verb[16], name[MAX_WORD + 1];
     if (textfile_word_into(t, "a statement", verb, sizeof verb, err)) return err->status;
     if (!strcmp(verb, "material")) return read_material(l, t, err);
     const bool range = !strcmp(verb, "range"), evidence = !strcmp(verb, "evidence");

@@ -27,7 +27,7 @@
 #include "common/light/sobol.h"
 #include "common/math/numbers.h"
 
-static const double LEAST_SHARE = 1.0 / 32;
+static const double MIN_SHARE = 1.0 / 32;
 static const double RATE = 0.75; /* errors are expected to fall as n^-RATE */
 
 /* -------------------------------------------------------------------------------------------------------- strategies */
@@ -38,7 +38,7 @@ static void scale_shares(struct mixture *m)
     for (int i = 0; i < m->count; i++) sum += m->share[i];
     for (int i = 0; i < m->count; i++) {
         m->share[i] = sum > 0 ? m->share[i] / sum : 1.0 / m->count;
-        m->share[i] = fmax(m->share[i], fmin(LEAST_SHARE, 0.5 / m->count));
+        m->share[i] = fmax(m->share[i], fmin(MIN_SHARE, 0.5 / m->count));
         raised += m->share[i];
     }
     for (int i = 0; i < m->count; i++) m->share[i] /= raised;
@@ -58,7 +58,7 @@ static void add_emitter(struct mixture *m, const struct emitter *e)
 {
     struct strategy s;
     if (!strategy_emitter(&s, m->point, e)) return;
-    if (m->count < MIXTURE_MOST) {
+    if (m->count < MIXTURE_MAX) {
         m->strategies[m->count++] = s;
         return;
     }
@@ -82,7 +82,7 @@ static void start(struct mixture *m, const struct light_field *f, struct gather_
     m->lobe = (struct brdf){.kind = BRDF_LAMBERT};
     m->view = p.normal;
     m->count = 0;
-    m->least = MIXTURE_LEAST;
+    m->least = MIXTURE_MIN;
 }
 
 void mixture_init(struct mixture *m, const struct light_field *f, struct gather_point p, enum mixture_part part)
@@ -108,12 +108,12 @@ void mixture_lobe_init(struct mixture *m, const struct light_field *f, struct ga
 /* Rays that wait to be traced, and what all have added up. */
 struct tally {
     const struct mixture *mixture;
-    int rays[MIXTURE_MOST]; /* of a strategy in a replicate, a power of two */
+    int rays[MIXTURE_MAX]; /* of a strategy in a replicate, a power of two */
     struct vec3 direction[RAY_PACKET];
     double weight[RAY_PACKET]; /* k(w) times the weight among strategies, over the density */
     int strategy[RAY_PACKET], replicate[RAY_PACKET], waiting;
     struct rgb sums[MIXTURE_REPLICATES];
-    double luminance[MIXTURE_MOST][MIXTURE_REPLICATES];
+    double luminance[MIXTURE_MAX][MIXTURE_REPLICATES];
     double from[LIGHT_SOURCES], nearest, inverse, weights;
     int traced;
 };

@@ -25,7 +25,7 @@
 
 /* A photo reduced by less than sqrt(2) is looked up as it is: bilinear levels are blurred by themselves. */
 #define LEVEL_BIAS 0.5f
-#define BORDER     0.05f /* width of the band in which a view fades out towards its border, of the picture's long side */
+#define BORDER     0.05f /* width of the band in which a view fades out at its border, of the picture's long side */
 
 /* ------------------------------------------------------------------------------------------------------ drawing */
 

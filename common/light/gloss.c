@@ -9,7 +9,7 @@ static const char *const kinds[] = {[BRDF_LAMBERT] = "matt", [BRDF_PHONG] = "pho
 void gloss_shape_bounds(enum brdf_kind kind, double *least, double *most)
 {
     *least = kind == BRDF_PHONG ? 1 : kind == BRDF_WARD ? 0.02 : 0;
-    *most = kind == BRDF_PHONG ? GLOSS_PHONG_MOST : kind == BRDF_WARD ? 1 : 0;
+    *most = kind == BRDF_PHONG ? GLOSS_PHONG_MAX : kind == BRDF_WARD ? 1 : 0;
 }
 
 struct brdf gloss_brdf(const struct gloss *g, struct rgb albedo)

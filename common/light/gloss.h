@@ -1,7 +1,7 @@
 /* gloss.h - materials as the words of text files, in the models of brdf.h: gloss alone, on top of a face's texture
  * (`matt`, `phong KS N`, `ward KS ALPHA`), or with a colour (`matt R G B`, `phong R G B KS N`, `ward R G B KS ALPHA`).
  *
- * R G B is an albedo, 0 to 1. N is 1 to GLOSS_PHONG_MOST, ALPHA 0.02 to 1. */
+ * R G B is an albedo, 0 to 1. N is 1 to GLOSS_PHONG_MAX, ALPHA 0.02 to 1. */
 #ifndef REMODEL_GLOSS_H
 #define REMODEL_GLOSS_H
 
@@ -10,7 +10,7 @@
 #include "common/base/textfile.h"
 #include "common/light/brdf.h"
 
-#define GLOSS_PHONG_MOST 5000.0
+#define GLOSS_PHONG_MAX 5000.0
 
 /* The part of a material that is not diffuse; {0} is matt. */
 struct gloss {

@@ -26,8 +26,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define LEAST_QUALITY 0.25F
-#define DOMINANT      5.0F
+#define MIN_QUALITY 0.25F
+#define DOMINANT    5.0F
 
 /* The equations of a level while the next is made. Row i has links to smaller nodes at [begin[2 i], begin[2 i + 1]), to
  * larger ones up to begin[2 i + 2], each in ascending order. */
@@ -147,7 +147,7 @@ static void match_nodes(struct groups *g, const struct graph *l)
     }
     for (int i = 0; i < l->count; i++) {
         if (g->group[i] != UNMATCHED) continue;
-        float most = LEAST_QUALITY;
+        float most = MIN_QUALITY;
         int best = -1;
         for (int e = l->begin[2 * i + 1]; e < l->begin[2 * i + 2]; e++) {
             const int j = l->link[e].to;
@@ -171,7 +171,7 @@ static void match_nodes(struct groups *g, const struct graph *l)
 static int best_match(struct groups *g, const struct graph *l, int k)
 {
     int seen = 0, best = -1;
-    float most = LEAST_QUALITY;
+    float most = MIN_QUALITY;
     for (int i = g->first[k]; i >= 0; i = g->next[i])
         for (int e = l->begin[2 * i]; e < l->begin[2 * i + 2]; e++) {
             const int h = g->group[l->link[e].to];

@@ -35,8 +35,8 @@ struct gradient_levels {
     struct gradient_level level[GRADIENT_MAX_LEVELS];
     int count;
     float scale; /* of the weights, over those of the system: a power of two, so that they keep their digits */
-    /* If the last level has at most GRADIENT_DENSE nodes, else NULL. Row k of dense: weight / pivot of the links of node
-     * k to later nodes when it is eliminated. */
+    /* If the last level has at most GRADIENT_DENSE nodes, else NULL. Row k of dense: weight / pivot of the links of
+     * node k to later nodes when it is eliminated. */
     float *dense, *inverse_pivot;
 };
 

@@ -56,9 +56,9 @@ struct light_place {
     enum light_source source; /* of the texel */
     int face;                 /* id of the unedited face that has the texel */
     struct vec3 texel;        /* where the texel is, in the unedited model */
-    struct gather_point
-        before;  /* where the irradiance that lit the texel is gathered: there, or on the nearest area that
-                                   the unedited model has, if the edit made the place */
+    /* Where the irradiance that lit the texel is gathered: there, or, if the edit made the place, on the nearest area
+     * that the unedited model has. */
+    struct gather_point before;
     bool is_new; /* the unedited model has no surface there */
 };
 

@@ -14,15 +14,15 @@
 #include "common/base/textfile.h"
 #include "common/math/numbers.h"
 
-enum { MOST_TRIANGLES = 4000000 };
+enum { MAX_TRIANGLES = 4000000 };
 
 /* ----------------------------------------------------------------------------------------------------------- triangles */
 
 static enum status add_triangle(struct light_objects *o, const struct vec3 t[3], int object, struct err *err)
 {
-    if (o->count >= MOST_TRIANGLES)
+    if (o->count >= MAX_TRIANGLES)
         return err_set(err, ST_DATA, "the object %s makes more than %d triangles; give a coarser mesh.",
-                       o->list.items[object].name, MOST_TRIANGLES);
+                       o->list.items[object].name, MAX_TRIANGLES);
     if (array_append(&o->triangles, (size_t)o->count, sizeof *o->triangles, "triangles", err) ||
         array_append(&o->object, (size_t)o->count, sizeof *o->object, "triangles", err))
         return err->status;

@@ -13,15 +13,15 @@
 
 #include "common/math/numbers.h"
 
-static const double MOST = 1e30; /* a finite number, also as a float and times a radiance */
+static const double MAX_QUOTIENT = 1e30; /* a finite number, also as a float and times a radiance */
 
 static double quotient(double before, double after, double radiance, bool *is_bounded)
 {
     if (after == before) return 1;
     if (after < before) return fmax(after, 0) / before;
-    if (!(PI * radiance > LIGHT_ALBEDO_MOST * before)) return before > 0 ? fmin(after / before, MOST) : 1;
+    if (!(PI * radiance > LIGHT_ALBEDO_MAX * before)) return before > 0 ? fmin(after / before, MAX_QUOTIENT) : 1;
     if (is_bounded) *is_bounded = true;
-    return fmin(1 + LIGHT_ALBEDO_MOST * (after - before) / (PI * radiance), MOST);
+    return fmin(1 + LIGHT_ALBEDO_MAX * (after - before) / (PI * radiance), MAX_QUOTIENT);
 }
 
 struct rgb light_quotient(struct rgb before, struct rgb after, struct rgb radiance, bool *is_bounded)

@@ -6,7 +6,7 @@
 
 #include "common/light/colour.h"
 
-#define LIGHT_ALBEDO_MOST 0.95
+#define LIGHT_ALBEDO_MAX 0.95
 
 /* The quotient by channel for a surface of this radiance under the irradiance `before`, when it becomes `after`; exactly 1
  * where they are equal. Never negative or NaN. *is_bounded (NULL: not asked for) is set to true where the rule of

@@ -21,7 +21,7 @@
 static const float WEAK = 1e-5f;        /* weight of data, and of outlying differences */
 static const double DEFAULT_GREY = 0.5; /* of white */
 enum { REACH = 12 };                    /* texels: of the clean ones that an unseen one continues */
-enum { LEAST = 8 };                     /* of these */
+enum { MIN_SEEN = 8 };                  /* of these */
 enum { ALIKE = 8 };                     /* neighbours are alike: this many count as one */
 enum { RIM = 3 };                       /* texels beside unseen ones, which may hold the shadow of what hides them */
 
@@ -95,7 +95,7 @@ struct excess {
     double mean[3], variance[3]; /* variance: of the mean */
 };
 
-/* The excess of the seen texels around `at`, of clean ones or of others; false: there are fewer than LEAST. */
+/* The excess of the seen texels around `at`, of clean ones or of others; false: there are fewer than MIN_SEEN. */
 static bool excess_around(struct excess *e, const struct composite *c, size_t hole, size_t at, int reach, bool clean)
 {
     const int width = c->t->raster.width, height = c->t->raster.height;
@@ -115,11 +115,11 @@ static bool excess_around(struct excess *e, const struct composite *c, size_t ho
             }
             count++;
         }
-    for (int k = 0; k < 3 && count >= LEAST; k++) {
+    for (int k = 0; k < 3 && count >= MIN_SEEN; k++) {
         e->mean[k] = sum[k] / count;
         e->variance[k] = fmax(0, squares[k] / count - e->mean[k] * e->mean[k]) * ALIKE / count;
     }
-    return count >= LEAST;
+    return count >= MIN_SEEN;
 }
 
 /* Lets an unseen texel beside a seen one continue the clean texels behind that, if nothing stands before it: its hole is

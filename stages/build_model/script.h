@@ -97,8 +97,8 @@ struct statement {
     struct script_place place, target; /* target: of copy; PLACE_NONE of either: the whole face */
     int end;                           /* extend: END_START or END_END */
     enum filling filling;              /* fill */
-    /* set: the value, or a colour; colour, paint: R G B; lamp: factors; extend: where; split: from, to; move: by; slope: two heights; gable:
-     * also the ridge's */
+    /* set: the value, or a colour; colour, paint: R G B; lamp: factors; extend: where; split: from, to;
+     * move: by; slope: two heights; gable: also the ridge's */
     double values[3];
     int value_count;
     double options[OPTION_COUNT];

@@ -158,10 +158,10 @@ static enum status read_paint(struct script_reader *r, struct statement *s)
 /* Lamps have the names of lights.txt: any word. */
 static enum status read_lamp(struct script_reader *r, struct statement *s)
 {
-    enum { MOST_LAMP_NAME = 255 };
+    enum { MAX_LAMP_NAME = 255 };
     char *word;
     if (textfile_word(&r->t, "the name of a lamp", &word, r->err)) return r->err->status;
-    if (!word[0] || strlen(word) > MOST_LAMP_NAME || strchr(word, '\r'))
+    if (!word[0] || strlen(word) > MAX_LAMP_NAME || strchr(word, '\r'))
         return textfile_error(&r->t, r->err, word, "the name of a lamp of lights.txt");
     s->name = script_keep_word(r, word);
     s->value_count = 3;

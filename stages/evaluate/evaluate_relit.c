@@ -17,7 +17,7 @@
 #include "stages/evaluate/true_planes.h"
 
 enum { MIN_PIXELS = 200 }; /* of a picture, for values of its own */
-static const double MOST_HALF = 65504;
+static const double MAX_HALF = 65504;
 
 struct relit_sums { /* by part of the picture */
     struct encoded_error relit[PICTURE_PARTS], unlit[PICTURE_PARTS], revealed[PICTURE_PARTS];
@@ -222,7 +222,7 @@ static enum status write_truth(const struct relit_job *job, const struct render 
     for (int k = 0; !st && k < 3; k++) {
         st = exr_add_plane(&im, channels[k], EXR_HALF, NULL, err);
         for (size_t i = 0; !st && i < (size_t)truth->width * (size_t)truth->height; i++)
-            im.planes[k].f[i] = (float)fmin((double)truth->data[4 * i + (size_t)k] / job->e->radiance_scale, MOST_HALF);
+            im.planes[k].f[i] = (float)fmin((double)truth->data[4 * i + (size_t)k] / job->e->radiance_scale, MAX_HALF);
     }
     if (!st) st = exr_write(&im, path, &prov, err);
     exr_image_release(&im);

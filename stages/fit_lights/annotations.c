@@ -11,7 +11,7 @@
 #include "common/base/scan.h"
 #include "common/base/textfile.h"
 
-enum { MOST_NAME = 255 };
+enum { MAX_NAME = 255 };
 
 static const char *const words[NOTE_KINDS] = {"window", "shut", "disk", "area", "lit", "unlit", "line"};
 
@@ -35,7 +35,7 @@ void annotation_list_release(struct annotation_list *list)
 
 static enum status copy_word(struct textfile *t, const char *what, char **to, struct err *err)
 {
-    char word[MOST_NAME + 1];
+    char word[MAX_NAME + 1];
     if (textfile_word_into(t, what, word, sizeof word, err)) return err->status;
     if (strchr(word, '\r')) return textfile_error(t, err, word, "%s without a line break", what);
     *to = strdup(word);

@@ -23,8 +23,8 @@
 #include "common/math/numbers.h"
 
 enum { GRID = 96, GOLDEN_STEPS = 40, ROUNDS = 3 };
-#define CAUCHY     2.385
-#define LEAST_GAIN 0.02 /* part of the cost without any step that the step must explain */
+#define CAUCHY   2.385
+#define MIN_GAIN 0.02 /* part of the cost without any step that the step must explain */
 
 struct step {
     double e, d, l, variance; /* variance: of the residual */
@@ -146,7 +146,7 @@ static enum status bracket(const struct search *s, double *low, double *high, st
     }
     dark = whole_cost(s, 0);
     if (f->reach <= 0 && (best <= 1 || best >= GRID - 1)) return refuse_edge(f, *low, *high, best <= 1, err);
-    if (f->reach <= 0 && !(least < (1 - LEAST_GAIN) * dark))
+    if (f->reach <= 0 && !(least < (1 - MIN_GAIN) * dark))
         return err_set(
             err, ST_DATA,
             "%s: the lines of the lamp %s show no step in their radiance, so the edge of its cone is not on them.",

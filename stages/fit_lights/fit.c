@@ -26,7 +26,7 @@
 #include "stages/fit_lights/fit_texture.h"
 
 enum { ROUNDS = 8, ESTIMATES = 4 /* rounds that estimate how materials vary */, ITERATIONS = 100 };
-#define LEAST_SHARE 1e-3 /* difference in the lamp's share of the light by which lit points must differ from others */
+#define MIN_SHARE 1e-3 /* difference in the lamp's share of the light by which lit points must differ from others */
 
 /* ------------------------------------------------------------------------------------------------------ the model */
 
@@ -176,7 +176,7 @@ static enum status check_lamp(const struct problem *p, int lamp, struct err *err
             "%s: no light of the lamp %s reaches its lit points: they are outside its cone, turned away, or the "
             "model hides it from them.",
             place_of(f, lamp, true), name);
-    if (most - least < LEAST_SHARE * most)
+    if (most - least < MIN_SHARE * most)
         return err_set(
             err, ST_DATA,
             "%s: the lamp %s gives its lit and unlit points the same irradiance, so its radiance cannot be told "
@@ -241,7 +241,7 @@ static enum status start_lamps(struct problem *p, struct weighted *scratch, stru
 static enum status solve(struct problem *p, struct err *err)
 {
     const struct least_squares problem = {p->unknown_count, fit_residual_count(p), fit_evaluate, p, ITERATIONS};
-    double x[MOST_UNKNOWNS];
+    double x[MAX_UNKNOWNS];
     fit_get_unknowns(p, x);
     for (int m = 0; m < p->f->material_count; m++) {
         p->f->materials[m].deviation = p->f->texture;
@@ -301,10 +301,10 @@ static enum status list_unknowns(struct problem *p, struct err *err)
 {
     for (int l = 0; l < p->f->lamp_count; l++)
         for (int c = 0; p->f->lamps[l].fit && c < 3 + p->f->lamps[l].fit_exponent; c++) {
-            if (p->unknown_count == MOST_UNKNOWNS)
+            if (p->unknown_count == MAX_UNKNOWNS)
                 return err_set(err, ST_DATA,
                                "%d lamps are too many to be fitted together, at most %d; give the radiance of some.",
-                               p->f->lamp_count, MOST_UNKNOWNS / 4);
+                               p->f->lamp_count, MAX_UNKNOWNS / 4);
             p->unknowns[p->unknown_count++] = (struct unknown){l, c};
         }
     return ST_OK;
@@ -340,10 +340,10 @@ static void release(struct problem *p)
 static enum status reserve(struct problem *p, struct err *err)
 {
     const size_t n = (size_t)p->f->point_count, square = n * n;
-    if (n > MOST_FIT_POINTS)
+    if (n > MAX_FIT_POINTS)
         return err_set(err, ST_DATA,
                        "%s: %zu points are marked for lamps, at most %d can be fitted; lower [fit_lights] grid.",
-                       p->f->points[0].place, n, MOST_FIT_POINTS);
+                       p->f->points[0].place, n, MAX_FIT_POINTS);
     p->direct = calloc(n * (size_t)p->f->lamp_count + 1, sizeof *p->direct);
     p->logs = calloc(3 * n, sizeof *p->logs);
     p->excess = calloc(n, sizeof *p->excess);

@@ -16,7 +16,7 @@
 static void differentiate(struct problem *p, double *jacobian, double *low)
 {
     const int n = p->unknown_count, rows = fit_residual_count(p);
-    double x[MOST_UNKNOWNS] = {0};
+    double x[MAX_UNKNOWNS] = {0};
     fit_get_unknowns(p, x);
     for (int u = 0; u < n; u++) {
         const double at = x[u], step = p->unknowns[u].colour < 3 ? STEP : STEP * fmax(1, at);
@@ -50,10 +50,10 @@ static double excess(const struct problem *p, const double *residuals)
 }
 
 /* Standard errors of the unknowns; infinite if something is not determined. */
-static void find_errors(struct problem *p, double *jacobian, double errors[MOST_UNKNOWNS])
+static void find_errors(struct problem *p, double *jacobian, double errors[MAX_UNKNOWNS])
 {
     const int n = p->unknown_count, rows = fit_residual_count(p), places = p->f->point_count + p->f->lamp_count;
-    double h[MOST_UNKNOWNS * MOST_UNKNOWNS] = {0}, g[MOST_UNKNOWNS * MOST_UNKNOWNS] = {0};
+    double h[MAX_UNKNOWNS * MAX_UNKNOWNS] = {0}, g[MAX_UNKNOWNS * MAX_UNKNOWNS] = {0};
     double *residuals = jacobian + (ptrdiff_t)n * rows;
     differentiate(p, jacobian, residuals);
     for (int a = 0; a < n; a++)
@@ -73,7 +73,7 @@ static void find_errors(struct problem *p, double *jacobian, double errors[MOST_
 
 void fit_set_errors(struct problem *p, double *jacobian)
 {
-    double errors[MOST_UNKNOWNS];
+    double errors[MAX_UNKNOWNS];
     find_errors(p, jacobian, errors);
     struct light_fit *f = p->f;
     for (int u = 0; u < p->unknown_count; u++) {

@@ -21,7 +21,7 @@
 
 #include "common/math/cholesky.h"
 
-enum { MOST_SAMPLED = 256, LENGTHS = 7, GRAINS = 4, LEAST_POINTS = 8, PRIOR_POINTS = 4 };
+enum { MAX_SAMPLED = 256, LENGTHS = 7, GRAINS = 4, MIN_POINTS = 8, PRIOR_POINTS = 4 };
 static const double grains[GRAINS] = {0.02, 0.1, 0.3, 0.6};
 #define OUTLIER 2.5
 
@@ -38,7 +38,7 @@ static double correlation(const struct light_fit *f, int a, int b, double length
 /* ---------------------------------------------------------------------------------------------------- the variation */
 
 struct sampled {
-    int points[MOST_SAMPLED], count;
+    int points[MAX_SAMPLED], count;
     int unknowns; /* of one colour: lamps that are fitted to the material */
 };
 
@@ -48,7 +48,7 @@ static struct sampled sample(const struct problem *p, int material)
     struct sampled s = {.count = 0};
     int all = 0, at = 0;
     for (int i = 0; i < f->point_count; i++) all += f->points[i].material == material;
-    const int stride = (all + MOST_SAMPLED - 1) / MOST_SAMPLED;
+    const int stride = (all + MAX_SAMPLED - 1) / MAX_SAMPLED;
     for (int i = 0; i < f->point_count; i++)
         if (f->points[i].material == material && at++ % stride == 0) s.points[s.count++] = i;
     for (int l = 0; l < f->lamp_count; l++) s.unknowns += f->lamps[l].fit && f->lamps[l].material == material;
@@ -61,7 +61,7 @@ static double likelihood(double *variance, const struct problem *p, const struct
 {
     const int n = s->count, dof = n - 1 - s->unknowns;
     const double before = p->f->materials[p->f->points[s->points[0]].material].deviation;
-    double ones[MOST_SAMPLED], determinant = 0, weights = 0, squares = 0;
+    double ones[MAX_SAMPLED], determinant = 0, weights = 0, squares = 0;
     for (int i = 0; i < n; i++) {
         for (int k = 0; k < i; k++) matrix[i * n + k] = correlation(p->f, s->points[i], s->points[k], length, grain);
         matrix[i * n + i] = 1 + p->excess[s->points[i]] / (before * before);
@@ -90,7 +90,7 @@ static void estimate_material(struct problem *p, int material, double *matrix, d
     const struct sampled s = sample(p, material);
     struct fit_material *m = &p->f->materials[material];
     double longest = 0, variance = 0;
-    if (s.count < LEAST_POINTS || s.count <= 1 + s.unknowns) return;
+    if (s.count < MIN_POINTS || s.count <= 1 + s.unknowns) return;
     for (int i = 0; i < s.count; i++) longest = fmax(longest, distance(p->f, s.points[0], s.points[i]));
     double best = likelihood(&variance, p, &s, 0, 1, matrix, vector), deviation = sqrt(variance);
     m->length = 0;

@@ -17,8 +17,8 @@
 #include "common/math/weighted.h"
 #include "common/texture/view_ids.h"
 
-enum { SIGHT_GRID = 24, LEAST_SIGHT = 12 };
-#define LEAST_COSINE 0.05 /* between a surface's normal and the direction to the camera */
+enum { SIGHT_GRID = 24, MIN_SIGHT = 12 };
+#define MIN_COSINE 0.05 /* between a surface's normal and the direction to the camera */
 
 void observations_release(struct observations *o)
 {
@@ -45,7 +45,7 @@ static bool project(const struct viewer *v, struct vec3 at, struct vec3 normal, 
 {
     const struct vec3 to = vec3_sub(v->camera.center, at);
     const double distance = vec3_length(to);
-    if (!(vec3_dot(normal, to) > LEAST_COSINE * distance)) return false;
+    if (!(vec3_dot(normal, to) > MIN_COSINE * distance)) return false;
     if (!(view_project(&v->camera, at, x, y) > 0)) return false;
     return *x >= 1 && *y >= 1 && *x <= v->camera.width - 1 && *y <= v->camera.height - 1;
 }
@@ -148,7 +148,7 @@ static enum status observe_lamp(struct viewer *v, int lamp, struct err *err)
         for (int c = 0; c < 3; c++) values[c][count] = (struct weighted){v->picture.channel[c][pixel], 1};
         count++;
     }
-    if (pixels < LEAST_SIGHT) return ST_OK;
+    if (pixels < MIN_SIGHT) return ST_OK;
     if (array_append(&v->o->sights, (size_t)v->o->sight_count, sizeof *v->o->sights, "views of lamps", err))
         return err->status;
     struct lamp_sight *s = &v->o->sights[v->o->sight_count++];

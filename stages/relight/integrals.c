@@ -16,8 +16,8 @@
 #include "common/capture/view_image.h"
 #include "common/math/numbers.h"
 
-enum { NAME_SIZE = 128, MOST = 1000 };
-#define MOST_FACTOR 1e6
+enum { NAME_SIZE = 128, MAX_LAMPS = 1000 };
+#define MAX_FACTOR 1e6
 static const char channels[3] = {'R', 'G', 'B'};
 
 /* ------------------------------------------------------------------------------------------------------------ surfaces */
@@ -233,7 +233,7 @@ static enum status read_names(struct changes *c, const struct exr_image *im, str
         if (array_append(&c->surfaces.list, (size_t)c->surfaces.count, sizeof s, "surfaces", err)) return err->status;
         c->surfaces.list[c->surfaces.count++] = s;
     }
-    while (c->lamp_count < MOST && numbered(im, "lamp", c->lamp_count)) c->lamp_count++;
+    while (c->lamp_count < MAX_LAMPS && numbered(im, "lamp", c->lamp_count)) c->lamp_count++;
     const size_t n = (size_t)c->surfaces.count + 1;
     c->has_k_d = calloc(n, sizeof *c->has_k_d);
     c->has_ks = calloc(n, sizeof *c->has_ks);
@@ -274,7 +274,7 @@ static enum status read_lamp(struct changes *c, const struct exr_image *im, stru
                               "scale R G B; a lamp's cone (beta, exponent) needs a new gather: change "
                               "lights.txt and relight the picture again");
     c->any_lamp = true;
-    return read_rgb(c->lamps + 3 * i, t, "a factor", MOST_FACTOR, err);
+    return read_rgb(c->lamps + 3 * i, t, "a factor", MAX_FACTOR, err);
 }
 
 static enum status read_surface(struct changes *c, struct textfile *t, struct err *err)
@@ -364,7 +364,7 @@ static enum status apply(struct model_picture *picture, const struct exr_image *
                          struct err *err)
 {
     const size_t n = (size_t)picture->width * (size_t)picture->height;
-    const float *after[3], *specular[3], *lamp[MOST][3];
+    const float *after[3], *specular[3], *lamp[MAX_LAMPS][3];
     const struct exr_plane *surface = exr_find(im, "surface");
     if (!surface || !surface->u || im->width != picture->width || im->height != picture->height)
         return err_set(err, ST_DATA, "the integrals are not those of the picture; relight it again.");

@@ -175,8 +175,8 @@ static struct rgb relit_texture(struct apply_job *j, size_t i, struct rgb radian
     const struct rgb q = light_quotient(r->before[i].value, r->after[i].value, base, &is_bounded);
     const struct rgb albedo = light_albedo(r->before[i].value, base);
     set_quotient(r, i, q, is_bounded ? RELIT_BOUNDED : RELIT_SURE);
-    set(r->albedo[i], rgb_make(fmin(albedo.r, LIGHT_ALBEDO_MOST), fmin(albedo.g, LIGHT_ALBEDO_MOST),
-                               fmin(albedo.b, LIGHT_ALBEDO_MOST)));
+    set(r->albedo[i],
+        rgb_make(fmin(albedo.r, LIGHT_ALBEDO_MAX), fmin(albedo.g, LIGHT_ALBEDO_MAX), fmin(albedo.b, LIGHT_ALBEDO_MAX)));
     return rgb_multiply(base, q);
 }
 

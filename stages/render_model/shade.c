@@ -112,7 +112,7 @@ static const struct ready *make_ready(struct worker *w, const struct shade_pass 
     if (w->count < SLOTS) w->count++;
     struct ready *r = &w->slots[at];
     const struct shade_step *step = &pass->steps[face];
-    struct tile_lanes *room = w->tiles + (size_t)at * (size_t)pass->most_tiles;
+    struct tile_lanes *room = w->tiles + (size_t)at * (size_t)pass->max_tiles;
     r->face = face;
     r->step = step;
     r->a = room;
@@ -322,7 +322,7 @@ static size_t tile_count(const struct visible *v) { return (size_t)v->columns * 
 enum status shade_pixels(const struct shade_pass *pass, struct err *err)
 {
     const int threads = parallel_threads();
-    const size_t room = (size_t)SLOTS * (size_t)pass->most_tiles;
+    const size_t room = (size_t)SLOTS * (size_t)pass->max_tiles;
     struct worker *workers = aligned_alloc(_Alignof(struct worker), (size_t)threads * sizeof *workers);
     enum status st = workers ? ST_OK : err_nomem(err, "threads", (size_t)threads * sizeof *workers);
     for (int i = 0; workers && i < threads; i++) workers[i].tiles = NULL;

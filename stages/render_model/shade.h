@@ -57,7 +57,7 @@ struct shade_pass {
     bool first;                  /* sets z and id of all pixels, and MADE_NOTHING, before */
     const uint32_t *ids;         /* of faces: [1 + faces], [0] is 0 */
     float t;                     /* share of b where both a and b have a texel */
-    int most_tiles;              /* of a step */
+    int max_tiles;               /* of a step */
     _Atomic unsigned char *open; /* [1 + faces]: set to 1 for those with pixels that have no colour yet */
     unsigned char *done;         /* of each tile of `seen`: no pixel of it is left to be shaded */
     struct model_picture *out;

@@ -12,7 +12,7 @@
 #include "common/image/luminance.h"
 #include "stages/report/contents_parts.h"
 
-enum { LAMP_HEIGHT = 480, VIEW_HEIGHT = 320, HEMICUBE_HEIGHT = 300, GATHERS_MOST = 24 };
+enum { LAMP_HEIGHT = 480, VIEW_HEIGHT = 320, HEMICUBE_HEIGHT = 300, GATHERS_MAX = 24 };
 static const char SUFFIX[] = ".light.txt";
 
 bool light_contents_any(const struct light_contents *l)
@@ -31,7 +31,7 @@ void light_contents_release(struct light_contents *l)
         struct gather_card *g = &l->gathers[i];
         struct picture *all[] = {&g->photo, &g->white, &g->level, &g->unknown};
         for (size_t k = 0; k < sizeof all / sizeof *all; k++) picture_release(all[k]);
-        for (int k = 0; k < LIGHT_EXAMPLES_MOST; k++) picture_release(&g->hemicubes[k]);
+        for (int k = 0; k < LIGHT_EXAMPLES_MAX; k++) picture_release(&g->hemicubes[k]);
     }
     free(l->lamps);
     free(l->material_cards);
@@ -237,7 +237,7 @@ static enum status read_gather(struct contents *c, const char *folder, const cha
     snprintf(path, sizeof path, "%s%s", stem, SUFFIX);
     if (light_record_read(&record, path, &problem))
         return contents_note(c, err, "Irradiance is not shown. %s", problem.text);
-    if (l->gather_count == GATHERS_MOST) return ST_OK;
+    if (l->gather_count == GATHERS_MAX) return ST_OK;
     if (array_append(&l->gathers, (size_t)l->gather_count, sizeof *l->gathers, "irradiance", err)) return err->status;
     struct gather_card *g = &l->gathers[l->gather_count++];
     *g = (struct gather_card){.record = record, .is_view = record.level[1] > 0};

@@ -36,8 +36,8 @@
 #define MAX_PAIRWISE_SHARE 0.3f /* a data cost may rise by this part of max_pairwise; else the proposal is skipped */
 #define UNITS_PER_ENERGY   1e7  /* energies are rounded to multiples of 1 / UNITS_PER_ENERGY */
 #define SAME_GROUND        0.15 /* of the ground's inverse distance, and radians */
-#define LEAST_SHARE        0.03 /* of all votes: weight of a plane of the scene, in the first round */
-#define LEAST_SHARE_LATER  0.10 /* ... in later ones, where neighbours vote, too */
+#define MIN_SHARE          0.03 /* of all votes: weight of a plane of the scene, in the first round */
+#define MIN_SHARE_LATER    0.10 /* ... in later ones, where neighbours vote, too */
 #define REFITS             2
 #define APART              4 /* distance in cells between those that are moved in parallel */
 
@@ -231,8 +231,8 @@ static enum status find_scene_planes(const struct expander *x, struct err *err)
     }
     double total = 0;
     for (int i = 0; i < count; i++) total += votes[i].weight;
-    const enum status st = scene_planes_find(x->p->scene, votes, count, x->p->step,
-                                             (cross ? LEAST_SHARE_LATER : LEAST_SHARE) * total, err);
+    const enum status st =
+        scene_planes_find(x->p->scene, votes, count, x->p->step, (cross ? MIN_SHARE_LATER : MIN_SHARE) * total, err);
     free(votes);
     return st;
 }

@@ -18,7 +18,7 @@
 static const double INSET = 1.0 / 16; /* of the spacing: how far from an edge its row lies */
 static const double CLEAR = 0.25;     /* of the spacing: nearer to an edge the lattice has no sample */
 static const double CELL = 0.5;       /* of the spacing: a cell of hints */
-enum { MOST_CELLS = 1 << 22 };
+enum { MAX_CELLS = 1 << 22 };
 
 /* ------------------------------------------------------------------------------------------------------------- polygons */
 
@@ -277,8 +277,8 @@ static enum status make_hints(struct face_net *f, double spacing, struct err *er
             f->low[k] = fmin(f->low[k], f->at[i][k]);
             high[k] = fmax(high[k], f->at[i][k]);
         }
-    f->hint_width = 1 + (int)fmin((high[0] - f->low[0]) / cell, sqrt(MOST_CELLS) - 1);
-    f->hint_height = 1 + (int)fmin((high[1] - f->low[1]) / cell, sqrt(MOST_CELLS) - 1);
+    f->hint_width = 1 + (int)fmin((high[0] - f->low[0]) / cell, sqrt(MAX_CELLS) - 1);
+    f->hint_height = 1 + (int)fmin((high[1] - f->low[1]) / cell, sqrt(MAX_CELLS) - 1);
     f->hints = malloc((size_t)f->hint_width * (size_t)f->hint_height * sizeof *f->hints);
     if (!f->hints) return err_nomem(err, "cells", (size_t)f->hint_width * (size_t)f->hint_height * sizeof *f->hints);
     for (int y = 0, t = 0; y < f->hint_height; y++)

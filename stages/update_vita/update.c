@@ -103,7 +103,7 @@ static enum status refine_face(struct work *w, int face, const struct rgb *value
             if (f->beside[t][k] >= 0 && f->beside[t][k] < t) continue; /* the other triangle had it */
             if (vec3_length(vec3_sub(p, q)) < 2 * finest) continue;
             if (!(difference(w, values, a, b) > w->job->params.bend)) continue;
-            if (w->nets.sample_count >= w->job->params.most_samples) return ST_OK;
+            if (w->nets.sample_count >= w->job->params.max_samples) return ST_OK;
             if (face_nets_add(&w->nets, face, vec3_scale(vec3_add(p, q), 0.5), err)) return err->status;
         }
     return ST_OK;

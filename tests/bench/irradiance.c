@@ -28,7 +28,7 @@
 #include "tests/unit/common/gather/fields.h"
 
 enum { POINTS = 35, WIDTH = 7, HEIGHT = 5, CONVERGED = 1 << 21, KEY = 20 };
-static const double SECONDS_LEAST = 0.2;
+static const double SECONDS_MIN = 0.2;
 static const double LIFT = 0.02; /* of the model's size, as gather_irradiance does */
 
 struct bench {
@@ -235,7 +235,7 @@ static void measure(struct bench *b)
         parallel_for(POINTS, 1, gather, b);
         rounds++;
         seconds = clock_seconds() - begin;
-    } while (seconds < SECONDS_LEAST);
+    } while (seconds < SECONDS_MIN);
     core = (clock_cpu_seconds() - cpu) / rounds;
     for (int i = 0; i < POINTS; i++) {
         squares += pow(rgb_luminance(b->found[i].value) / b->truth[i] - 1, 2) / POINTS;

@@ -23,8 +23,8 @@
 #include "stages/fit_materials/incident.h"
 #include "tests/unit/glossy_room.h"
 
-#define SHARE_LEAST 0.1
-#define SHARE_MOST  0.9
+#define SHARE_MIN 0.1
+#define SHARE_MAX 0.9
 
 static const struct incident_effort effort = {1024, 128, 2048};
 
@@ -57,7 +57,7 @@ static struct brdf random_brdf(enum brdf_kind kind, uint64_t seed, double *share
     b.albedo.b = room_random(&rng, seed, &at, 0.1, 0.8);
     const double shape = room_random(&rng, seed, &at, 0, 1);
     if (kind != BRDF_LAMBERT) b.shape = kind == BRDF_WARD ? 0.05 * pow(10, shape) : 5 * pow(100, shape);
-    *share = room_random(&rng, seed, &at, SHARE_LEAST, SHARE_MOST);
+    *share = room_random(&rng, seed, &at, SHARE_MIN, SHARE_MAX);
     return b;
 }
 

@@ -28,12 +28,12 @@
 #include "common/model/model_axes.h"
 #include "common/texture/outdoors.h"
 
-enum { MOST_LAMPS = 64, SUN_SAMPLES = 16 }; /* along each side of a pixel at the sun; elsewhere one */
-static const double BEFORE = 0.01;          /* m */
+enum { MAX_LAMPS = 64, SUN_SAMPLES = 16 }; /* along each side of a pixel at the sun; elsewhere one */
+static const double BEFORE = 0.01;         /* m */
 
 struct truth {
-    struct lamp lamps[MOST_LAMPS];
-    char names[MOST_LAMPS][64];
+    struct lamp lamps[MAX_LAMPS];
+    char names[MAX_LAMPS][64];
     int lamp_count;
     struct sky_params sky;
 };
@@ -86,7 +86,7 @@ static void read_line(struct truth *t, const char *line)
 {
     struct sun *s = &t->sky.sun;
     struct panorama *p = &t->sky.panorama;
-    if (t->lamp_count < MOST_LAMPS) {
+    if (t->lamp_count < MAX_LAMPS) {
         struct lamp *l = &t->lamps[t->lamp_count];
         *l = (struct lamp){0};
         const int before = t->lamp_count;

@@ -29,7 +29,7 @@ static void shares_errors_and_examples_are_those_of_lit_points(void **state)
     struct irradiance e[POINTS];
     struct light_record r;
     struct err err = ERR_INIT;
-    size_t chosen[LIGHT_EXAMPLES_MOST];
+    size_t chosen[LIGHT_EXAMPLES_MAX];
     (void)state;
     make_points(points, e);
     assert_ok(light_summarize(&r, chosen, points, e, POINTS, 3, &err), err);

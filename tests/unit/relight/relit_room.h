@@ -61,7 +61,7 @@ static inline const char *update_room(struct edit *e)
     job.params.rays = 512;
     job.params.rounds = 1000;
     job.params.tolerance = 0.003;
-    job.params.most_samples = 2000;
+    job.params.max_samples = 2000;
     assert_ok(update_vita(&job, &err), err);
     provenance_release(&job.prov);
     return out;

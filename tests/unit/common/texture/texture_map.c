@@ -165,9 +165,9 @@ static void refused_to_write(const struct texture_map *map, const char *words)
 
 static void what_the_reader_refuses_is_not_written(void **state)
 {
-    enum { MOST = 100000 };
-    static struct vec3 added[MOST + 1][3];
-    static double corners[MOST + 1][2];
+    enum { MAX_COUNT = 100000 };
+    static struct vec3 added[MAX_COUNT + 1][3];
+    static double corners[MAX_COUNT + 1][2];
     char face_name[] = "wall/a/in", zone_name[] = "hall", base[] = "none";
     struct texture_rule rule = {.kind = TEXTURE_OUTDOORS};
     struct texture_face face = {
@@ -176,15 +176,15 @@ static void what_the_reader_refuses_is_not_written(void **state)
     struct texture_map map = {.faces = &face, .face_count = 1, .zones = &zone, .zone_count = 1}, read;
     struct err err = ERR_INIT;
     (void)state;
-    zone.corner_count = face.added_count = MOST; /* the most that can be read */
+    zone.corner_count = face.added_count = MAX_COUNT; /* the most that can be read */
     assert_ok(texture_map_write(&map, scratch_path("most.txt"), NULL, &err), err);
     assert_ok(texture_map_read(&read, scratch_path("most.txt"), &err), err);
-    assert_true(read.faces[0].added_count == MOST && read.zones[0].corner_count == MOST);
+    assert_true(read.faces[0].added_count == MAX_COUNT && read.zones[0].corner_count == MAX_COUNT);
     texture_map_release(&read);
-    face.added_count = MOST + 1;
+    face.added_count = MAX_COUNT + 1;
     refused_to_write(&map, "refused.txt: the face wall/a/in has 100001 triangles of new area, wanted at most 100000");
     face.added_count = 0;
-    zone.corner_count = MOST + 1;
+    zone.corner_count = MAX_COUNT + 1;
     refused_to_write(&map, "the footprint of hall has 100001 corners, wanted 3 to 100000");
     zone.corner_count = 2;
     refused_to_write(&map, "the footprint of hall has 2 corners");
