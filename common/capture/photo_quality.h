@@ -36,8 +36,8 @@ enum status photo_quality_init(struct photo_quality *q, int width, int height, s
 /* Of one exposure with the sRGB curve. linear: the photo's linear colour, R G B. */
 enum status photo_quality_of_exposure(struct photo_quality *q, const struct photo *photo, const struct image *linear,
                                       const struct single_exposure *assumed, struct err *err);
-/* From the channels `variance`, whose memory it takes, and `clipped` of a file of hdr_merge. linear: its colour. ST_DATA,
- * naming path: a channel is missing or has another type. */
+/* From the channels `variance`, whose memory it takes, and `clipped` of a file of hdr_merge. linear: its colour.
+ * ST_DATA, naming path: a channel is missing or has another type. */
 enum status photo_quality_of_merged(struct photo_quality *q, struct exr_image *merged, const char *path,
                                     const struct image *linear, struct err *err);
 void photo_quality_release(struct photo_quality *q);

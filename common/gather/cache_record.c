@@ -1,23 +1,23 @@
 /* cache_record.c - indirect irradiance at a point with its gradients.
  *
- * Overview. The hemisphere is divided into M rings of equal cosine-weighted area and each ring into N cells. One ray goes
- * through a random place of each cell. The radiance and the distance of neighbouring cells say how irradiance changes when
- * the point turns or moves.
+ * Overview. The hemisphere is divided into M rings of equal cosine-weighted area and each ring into N cells. One ray
+ * goes through a random place of each cell. The radiance and the distance of neighbouring cells say how irradiance
+ * changes when the point turns or moves.
  *
- * Mathematics. Ring j is between the angles with sin^2 = j / M and (j + 1) / M. With L the radiance of cell (j, k), r its
- * distance, u_k the tangent towards the middle of column k and v the tangent a quarter turn further [Ward 1992b]:
+ * Mathematics. Ring j is between the angles with sin^2 = j / M and (j + 1) / M. With L the radiance of cell (j, k), r
+ * its distance, u_k the tangent towards the middle of column k and v the tangent a quarter turn further [Ward 1992b]:
  *   E      = pi / (M N) sum L
  *   turn   = pi / (M N) sum L tan(t) v           so that dE = turn . (n x n') when the normal n becomes n'
  *   move   = sum_k u_k 2 pi / N sum_j sin t_j cos^2 t_j / min(r, r of ring j - 1) (L - L of ring j - 1)
  *          + sum_k v_k sum_j (sin t_j+1 - sin t_j) / min(r, r of column k - 1) (L - L of column k - 1)
- * where t_j is the angle below ring j and v_k belongs to the edge between the columns k - 1 and k. An edge at distance r
- * moves by 1 / r as the point moves, and what it sweeps over changes by the difference of radiance.
+ * where t_j is the angle below ring j and v_k belongs to the edge between the columns k - 1 and k. An edge at distance
+ * r moves by 1 / r as the point moves, and what it sweeps over changes by the difference of radiance.
  *
- * The radius is the harmonic mean of distances [Ward 1988], and at most E / |move|: beyond that the gradient alone would
- * change the irradiance by all of it.
+ * The radius is the harmonic mean of distances [Ward 1988], and at most E / |move|: beyond that the gradient alone
+ * would change the irradiance by all of it.
  *
- * The standard error comes from the differences of neighbouring cells in a ring: their mean square is twice the variance
- * within a cell, and a little more where light has a slope.
+ * The standard error comes from the differences of neighbouring cells in a ring: their mean square is twice the
+ * variance within a cell, and a little more where light has a slope.
  *
  * Source: [Ward 1992b]. Different here: lamps and openings are left out, because their light changes at the edges of
  * shadows, which no gradient foresees; the caller gathers it at each point. */

@@ -63,7 +63,7 @@ double field_sky_mean(const struct field_sky *s, const struct outdoors *o, struc
     return weights > 0 ? sum / weights : 0;
 }
 
-/* -------------------------------------------------------------------------------------------------------------- suns */
+/* ------------------------------------------------------------------------------------------------------------- suns */
 
 struct flood {
     const struct outdoors *o;

@@ -17,8 +17,8 @@ struct field_sky {
  * that the interpolation around them reaches. Of more than MAX_SUNS those that light most are kept. ST_NOMEM. */
 enum status field_sky_find(struct field_sky *s, const struct outdoors *o, struct err *err);
 
-/* The mean luminance of what lies outside of a plane with a unit normal that points indoors, weighted by the cosine, the
- * suns left out. */
+/* The mean luminance of what lies outside of a plane with a unit normal that points indoors, weighted by the cosine,
+ * the suns left out. */
 double field_sky_mean(const struct field_sky *s, const struct outdoors *o, struct vec3 normal);
 
 #endif

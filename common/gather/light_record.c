@@ -35,7 +35,7 @@ enum status light_record_write(const struct light_record *r, const char *path, c
     return st;
 }
 
-/* ----------------------------------------------------------------------------------------------------------- reading */
+/* ---------------------------------------------------------------------------------------------------------- reading */
 
 static enum status read_numbers(struct textfile *t, double *values, int count, double least, double most,
                                 struct err *err)

@@ -43,7 +43,7 @@ void lamp_file_name(char to[LAMP_FILE_NAME], const struct light_list *l, int lam
     to[n] = '\0';
 }
 
-/* ----------------------------------------------------------------------------------------------------------- reading */
+/* ---------------------------------------------------------------------------------------------------------- reading */
 
 static enum status read_vector(struct textfile *t, const char *what, struct vec3 *v, struct err *err)
 {
@@ -180,7 +180,7 @@ enum status light_list_read(struct light_list *l, const char *path, struct err *
     return st ? err->status : ST_OK;
 }
 
-/* ----------------------------------------------------------------------------------------------------------- writing */
+/* ---------------------------------------------------------------------------------------------------------- writing */
 
 static void write_vector(FILE *to, struct vec3 v) { fprintf(to, " %.17g %.17g %.17g", v.x, v.y, v.z); }
 

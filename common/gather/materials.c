@@ -55,7 +55,7 @@ enum status material_list_add(struct material **added, struct material_list *l, 
     return ST_OK;
 }
 
-/* ----------------------------------------------------------------------------------------------------------- regions */
+/* ---------------------------------------------------------------------------------------------------------- regions */
 
 /* Whether the next word is a number: the polygon goes on. */
 static bool number_follows(const struct textfile *t)
@@ -116,7 +116,7 @@ double material_region_area(const struct material_region *r)
     return fabs(sum) / 2;
 }
 
-/* ----------------------------------------------------------------------------------------------------------- reading */
+/* ---------------------------------------------------------------------------------------------------------- reading */
 
 enum status material_read_kind(enum brdf_kind *kind, struct textfile *t, struct err *err)
 {
@@ -225,7 +225,7 @@ struct brdf material_brdf(const struct material *m)
                          brdf_gloss_albedo(m->kind, m->ks, m->shape)};
 }
 
-/* ----------------------------------------------------------------------------------------------------------- writing */
+/* ---------------------------------------------------------------------------------------------------------- writing */
 
 static void write_range(FILE *to, struct material_range r)
 {

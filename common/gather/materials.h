@@ -1,6 +1,7 @@
 /* materials.h - materials.txt: the reflectance of the materials that a person marked in photographs.
  *
- * O/lights/materials.txt, written by fit_materials. The models are those of common/light/brdf.h, with k_d = albedo / pi. */
+ * O/lights/materials.txt, written by fit_materials. The models are those of common/light/brdf.h, with k_d = albedo /
+ * pi. */
 #ifndef REMODEL_GATHER_MATERIALS_H
 #define REMODEL_GATHER_MATERIALS_H
 

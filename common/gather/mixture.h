@@ -34,8 +34,8 @@ void mixture_init(struct mixture *m, const struct light_field *f, struct gather_
 void mixture_lobe_init(struct mixture *m, const struct light_field *f, struct gather_point p, const struct brdf *brdf,
                        struct vec3 view);
 
-/* Traces at most `rays` rays, or m->least, and at least MIXTURE_REPLICATES of each strategy. With `learn`, the shares of a next call go by the noise of each strategy.
- * Sets everything of *e. The same key gives the same bits. */
+/* Traces at most `rays` rays, or m->least, and at least MIXTURE_REPLICATES of each strategy. With `learn`, the shares
+ * of a next call go by the noise of each strategy. Sets everything of *e. The same key gives the same bits. */
 void mixture_gather(struct irradiance *e, struct mixture *m, int rays, uint64_t key, bool learn);
 /* The same until the standard error of the luminance is at most `target` of it, or `most` rays are spent. The luminance
  * `beside` is added to the integral's own: what else arrives there. */

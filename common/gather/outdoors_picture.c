@@ -28,7 +28,7 @@
 
 #define MAX_SIGMA 0.5f /* relative noise of a pixel from which it counts as dark */
 
-/* ------------------------------------------------------------------------------------------------------ lens and pose */
+/* ---------------------------------------------------------------------------------------------------- lens and pose */
 
 static void set_pose(struct outdoors_picture *p, const struct view *view)
 {
@@ -104,7 +104,7 @@ enum status outdoors_picture_of_reference(struct outdoors_picture *p, const char
     return st;
 }
 
-/* ---------------------------------------------------------------------------------------------- what the picture shows */
+/* ------------------------------------------------------------------------------------------- what the picture shows */
 
 struct rays {
     const struct outdoors_picture *picture;
@@ -310,7 +310,7 @@ void outdoors_picture_release(struct outdoors_picture *p)
     *p = (struct outdoors_picture){0};
 }
 
-/* ------------------------------------------------------------------------------------------------------------ look-up */
+/* ---------------------------------------------------------------------------------------------------------- look-up */
 
 enum outdoors_state outdoors_picture_sample(float rgb[3], float *facing, const struct outdoors_picture *p,
                                             struct vec3 direction)

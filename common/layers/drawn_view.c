@@ -1,8 +1,8 @@
 /* drawn_view.c - a view's segments in a novel camera, projected where and when a tile needs them.
  *
  * A view has tens of thousands of segments, but a tile few hundred, and most tiles few views. So a view is prepared in
- * two steps. Once per frame its groups of eight neighbouring segments (layer_view.h) are sorted into tiles by a bound of
- * their pixels. Then each tile that draws the view projects the segments of its groups, into
+ * two steps. Once per frame its groups of eight neighbouring segments (layer_view.h) are sorted into tiles by a bound
+ * of their pixels. Then each tile that draws the view projects the segments of its groups, into
  * memory that stays in the cache, and keeps those in the part of the tile that is still open. A segment that several
  * tiles show is projected for each of them, two to three times on average.
  *

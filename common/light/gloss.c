@@ -17,7 +17,7 @@ struct brdf gloss_brdf(const struct gloss *g, struct rgb albedo)
     return (struct brdf){g->kind, albedo, g->ks, g->shape, brdf_gloss_albedo(g->kind, g->ks, g->shape)};
 }
 
-/* ----------------------------------------------------------------------------------------------------------- reading */
+/* ---------------------------------------------------------------------------------------------------------- reading */
 
 static enum status read_kind(enum brdf_kind *kind, struct textfile *t, struct err *err)
 {
@@ -75,7 +75,7 @@ enum status brdf_read(struct brdf *b, struct textfile *t, struct err *err)
     return check_sum(rgb_max(albedo), b->gloss, t, err);
 }
 
-/* ---------------------------------------------------------------------------------------------------------- printing */
+/* --------------------------------------------------------------------------------------------------------- printing */
 
 void gloss_print(const struct gloss *g, FILE *to)
 {

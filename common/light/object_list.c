@@ -39,7 +39,7 @@ bool object_file_is_valid(const char *file)
     return true;
 }
 
-/* ----------------------------------------------------------------------------------------------------------- reading */
+/* ---------------------------------------------------------------------------------------------------------- reading */
 
 static enum status copy_word(char **to, struct textfile *t, const char *what, struct err *err)
 {
@@ -100,7 +100,7 @@ enum status object_list_read(struct object_list *l, const char *path, struct err
     return st;
 }
 
-/* ----------------------------------------------------------------------------------------------------------- writing */
+/* ---------------------------------------------------------------------------------------------------------- writing */
 
 static enum status print_object(const struct object *o, FILE *to, struct err *err)
 {
@@ -130,7 +130,7 @@ enum status object_list_write(const struct object_list *l, const char *path, con
     return st;
 }
 
-/* ------------------------------------------------------------------------------------------------------------ meshes */
+/* ----------------------------------------------------------------------------------------------------------- meshes */
 
 enum status object_mesh_read(struct obj_mesh *mesh, const struct object *o, const char *folder, struct err *err)
 {

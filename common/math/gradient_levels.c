@@ -8,18 +8,18 @@
  * Groups are made by matching in pairs, twice [Notay 2010; Napov 2012]. Each group k in turn, at first each node, is
  * joined with the unmatched one h of the largest
  *     q = weight (1 / D_k + 1 / D_h),    D: sum of the diagonals of the group's nodes,
- * if q is at least 1/4. 2 / q bounds how much of the pair's difference the smoother leaves at small energy. So a weight of
- * 1e-5 joins a single node only if all its weights are small, and two nodes that a weight of 1 joins are never part of a
- * group with others to which they have only weights of 1e-5. On a plain raster the groups are squares of 2 x 2. A third
- * matching follows where two leave more groups than 2/5 of the nodes. Nodes that the smoother solves well alone have no
- * group: those without links, and those with an excess of more than 5 times their weights. A link to one of them counts as
- * excess.
+ * if q is at least 1/4. 2 / q bounds how much of the pair's difference the smoother leaves at small energy. So a weight
+ * of 1e-5 joins a single node only if all its weights are small, and two nodes that a weight of 1 joins are never part
+ * of a group with others to which they have only weights of 1e-5. On a plain raster the groups are squares of 2 x 2. A
+ * third matching follows where two leave more groups than 2/5 of the nodes. Nodes that the smoother solves well alone
+ * have no group: those without links, and those with an excess of more than 5 times their weights. A link to one of
+ * them counts as excess.
  *
  * The last level is eliminated in the same form: of node k with pivot d = excess + weights, link (i, j) gets
  * weight(k, i) weight(k, j) / d and node i the excess weight(k, i) excess(k) / d [Grassmann 1985].
  *
- * Differs from the sources: the bound of pairs also judges groups of four and eight, with the sums of the diagonals, and
- * leaves the excess out; nodes are taken in order of rows. */
+ * Differs from the sources: the bound of pairs also judges groups of four and eight, with the sums of the diagonals,
+ * and leaves the excess out; nodes are taken in order of rows. */
 #include "common/math/gradient_levels.h"
 
 #include <math.h>

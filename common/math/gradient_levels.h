@@ -17,8 +17,8 @@ struct gradient_link {
 };
 
 /* Node i has `width` places for links to smaller nodes, then as many for links to larger ones, from 2 width i on. Both
- * are in ascending order, next to i without a gap; empty places have weight 0. Further links, to the smallest and to the
- * largest nodes, are in `more`: from more_begin[2 i] and from more_begin[2 i + 1] on; the finest level has none. */
+ * are in ascending order, next to i without a gap; empty places have weight 0. Further links, to the smallest and to
+ * the largest nodes, are in `more`: from more_begin[2 i] and from more_begin[2 i + 1] on; the finest level has none. */
 struct gradient_level {
     int count, width;
     int *to;

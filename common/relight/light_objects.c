@@ -1,8 +1,8 @@
 /* light_objects.c - see light_objects.h.
  *
- * Elements. Triangles of an object whose middles lie in one cell of a grid of `side`, and whose normals are nearest to one
- * of the six axes, are an element. Its point is the middle of its largest triangle, so that it lies on the surface. The
- * back of a triangle is an element of its own: an open mesh, a screen or a leaf, is lit from both sides. */
+ * Elements. Triangles of an object whose middles lie in one cell of a grid of `side`, and whose normals are nearest to
+ * one of the six axes, are an element. Its point is the middle of its largest triangle, so that it lies on the surface.
+ * The back of a triangle is an element of its own: an open mesh, a screen or a leaf, is lit from both sides. */
 #include "common/relight/light_objects.h"
 
 #include <math.h>
@@ -16,7 +16,7 @@
 
 enum { MAX_TRIANGLES = 4000000 };
 
-/* ----------------------------------------------------------------------------------------------------------- triangles */
+/* -------------------------------------------------------------------------------------------------------- triangles */
 
 static enum status add_triangle(struct light_objects *o, const struct vec3 t[3], int object, struct err *err)
 {
@@ -61,7 +61,7 @@ static enum status read_object(struct light_objects *o, int object, const char *
     return st;
 }
 
-/* ------------------------------------------------------------------------------------------------------------ elements */
+/* --------------------------------------------------------------------------------------------------------- elements */
 
 struct patch { /* one side of a triangle */
     int object, triangle, side, way;
@@ -175,7 +175,7 @@ void light_objects_set_radiance(struct light_objects *o)
         }
 }
 
-/* --------------------------------------------------------------------------------------------------------------- files */
+/* ------------------------------------------------------------------------------------------------------------ files */
 
 #define HEADER "remodel-object-light"
 

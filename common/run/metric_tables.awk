@@ -1,5 +1,6 @@
-# metric_tables.awk - awk -f metric_tables.awk metric_kinds.def docs/evaluation.md: the document with the tables of metrics made
-# anew. Metrics without a definition of their own share the row of those above that have the same unit and direction.
+# metric_tables.awk - awk -f metric_tables.awk metric_kinds.def docs/evaluation.md: the document with its tables of
+# metrics made anew. Metrics without a definition of their own share the row of those above that have the same unit and
+# direction.
 function flush_row()
 {
     if (names != "") table[group] = table[group] "| " names " | " unit " | " better " | " definition " |\n"

@@ -1,11 +1,11 @@
 /* atlas.c - see atlas.h: tiles on pages, and look-ups.
  *
- * Packing [Colburn 2014, 4.5.1] is first-fit decreasing: tiles in order of falling height go to the first page, and there
- * to the uppermost, then leftmost place in which they fit. The thesis asks for an empty block and leaves open how it is
- * found. Here a page keeps its maximal free rectangles: those that no larger free rectangle contains [Jylanki 2010]. A
- * place from which a tile can move neither up nor left is the upper left corner of one of them, so the first place is
- * found exactly without a search of the page's area. A tile replaces each rectangle that it overlaps by the up to four
- * rectangles beside it; those inside another one are dropped. */
+ * Packing [Colburn 2014, 4.5.1] is first-fit decreasing: tiles in order of falling height go to the first page, and
+ * there to the uppermost, then leftmost place in which they fit. The thesis asks for an empty block and leaves open how
+ * it is found. Here a page keeps its maximal free rectangles: those that no larger free rectangle contains [Jylanki
+ * 2010]. A place from which a tile can move neither up nor left is the upper left corner of one of them, so the first
+ * place is found exactly without a search of the page's area. A tile replaces each rectangle that it overlaps by the up
+ * to four rectangles beside it; those inside another one are dropped. */
 #include "common/texture/atlas.h"
 
 #include <math.h>

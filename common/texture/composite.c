@@ -122,9 +122,9 @@ static bool excess_around(struct excess *e, const struct composite *c, size_t ho
     return count >= MIN_SEEN;
 }
 
-/* Lets an unseen texel beside a seen one continue the clean texels behind that, if nothing stands before it: its hole is
- * one that an edit walls up, and the rim may hold the reveal of a window that the model puts a little elsewhere. Only
- * what the rim surely has above the clean texels is left out. */
+/* Lets an unseen texel beside a seen one continue the clean texels behind that, if nothing stands before it: its hole
+ * is one that an edit walls up, and the rim may hold the reveal of a window that the model puts a little elsewhere.
+ * Only what the rim surely has above the clean texels is left out. */
 static void leave_rim(struct composite *c, int side, size_t at, size_t next)
 {
     const size_t hole = c->unseen[at] ? at : next, rim = c->unseen[at] ? next : at;
@@ -200,7 +200,8 @@ static void set_seen(struct composite *c)
     }
 }
 
-/* Unseen texels are drawn to the nearest of the texels that are listed as such. seen: the role of seen ones from now. */
+/* Unseen texels are drawn to the nearest of the texels that are listed as such. seen: the role of seen ones from
+ * now. */
 static void set_unseen(struct composite *c, int seen)
 {
     const struct bake *b = c->b;

@@ -1,5 +1,5 @@
-/* source_view.c - see source_view.h. Colours are read at the level whose pixels are about as large as the texel, so that
- * a fine photograph does not alias in a coarse texture. */
+/* source_view.c - see source_view.h. Colours are read at the level whose pixels are about as large as the texel, so
+ * that a fine photograph does not alias in a coarse texture. */
 #include "common/texture/source_view.h"
 
 #include <math.h>
@@ -63,8 +63,8 @@ static uint8_t best_of_four(const struct source_level *from, const uint8_t *stat
     return best;
 }
 
-/* Half the size: each pixel is the sum of four over 4, a missing one counting as transparent. state: of the finer level's
- * pixels, NULL: all are used; poor ones only where there is nothing better. */
+/* Half the size: each pixel is the sum of four over 4, a missing one counting as transparent. state: of the finer
+ * level's pixels, NULL: all are used; poor ones only where there is nothing better. */
 static void halve(struct source_level *to, const struct source_level *from, const uint8_t *state)
 {
     for (int y = 0; y < to->height; y++)

@@ -1,9 +1,9 @@
 /* surfaces.c - see surfaces.h.
  *
- * Filling: seen through a plane, a line of the surface is a line of the raster. For an edge of a triangle with the plane
- * through it that is square to the surface, e . (X, Y, Z, W) >= 0 on the triangle's side; since (X, Y, Z, W) is linear in
- * the pixel, so is e. A row of pixels inside a triangle is therefore an interval, the intersection of three half lines
- * and of W > 0, and nothing needs clipping. */
+ * Filling: seen through a plane, a line of the surface is a line of the raster. For an edge of a triangle with the
+ * plane through it that is square to the surface, e . (X, Y, Z, W) >= 0 on the triangle's side; since (X, Y, Z, W) is
+ * linear in the pixel, so is e. A row of pixels inside a triangle is therefore an interval, the intersection of three
+ * half lines and of W > 0, and nothing needs clipping. */
 #include "common/texture/surfaces.h"
 
 #include <stdlib.h>

@@ -7,8 +7,8 @@
  *         POINTS                                        with --points: for walls given by rectangles
  *         BASE                                          with --edit: the unedited model, whose face ids are kept
  *         SCENE/objects.txt, meshes                     with --edit: synthetic objects
- * writes  OUT/plan.svg, view.png, plan.txt, merged.txt, model.obj, then model.txt; with --base before them texture.txt and
- *         objects.txt
+ * writes  OUT/plan.svg, view.png, plan.txt, merged.txt, model.obj, then model.txt; with --base before them texture.txt
+ *         and objects.txt
  * With --overlay PHOTO instead:
  * reads   MODEL, AXES, VIEWS, RECORDS/PHOTO.txt, PHOTOS/FILE
  * writes  OUT                                           JPEG: the photograph with the model's edges */

@@ -1,5 +1,5 @@
-/* plan_textures.c - statements about textures, colours, gloss and clutter. What they mean for faces is found when the model has
- * been built (texture_rules.c). */
+/* plan_textures.c - statements about textures, colours, gloss and clutter. What they mean for faces is found when the
+ * model has been built (texture_rules.c). */
 #include <stdlib.h>
 #include <string.h>
 
@@ -68,8 +68,8 @@ static bool has_places(const char *face)
     return !part && (!strncmp(face, "floor/", 6) || !strncmp(face, "ceiling/", 8));
 }
 
-/* The rectangle of a place on a face: S and Z on a wall, X and Y on a floor or ceiling. plan: the edited or the unedited
- * one. */
+/* The rectangle of a place on a face: S and Z on a wall, X and Y on a floor or ceiling. plan: the edited or the
+ * unedited one. */
 static enum status place_on_face(struct plan_context *c, struct plan *plan, const char *face,
                                  const struct script_place *place, double rect[4])
 {

@@ -1,9 +1,9 @@
 /* unite_faces.c - loops of a body as faces with holes, and their names.
  *
  * Loops are projected along the axis of their normal's largest component. The corner of a loop with the least
- * coordinates tells, exactly, whether the face is inside of the loop: then it is an outer loop, otherwise a hole. A hole
- * belongs to the outer loop of least area that contains it, by the winding numbers of its corners. A face has the name of
- * lowest rank among those of the solids' facets that it is made of; the others are merged into it. */
+ * coordinates tells, exactly, whether the face is inside of the loop: then it is an outer loop, otherwise a hole. A
+ * hole belongs to the outer loop of least area that contains it, by the winding numbers of its corners. A face has the
+ * name of lowest rank among those of the solids' facets that it is made of; the others are merged into it. */
 #include <math.h>
 #include <stdlib.h>
 

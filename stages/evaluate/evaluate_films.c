@@ -1,7 +1,7 @@
 /* evaluate_films.c - how steady the light of relit films is: edited.E.flicker*. It needs no truth.
  *
- * Films are FOLDER/relight/E/tour: unlit/NNNN.exr, frames/NNNN.exr. A place on a surface has one quotient of light, whatever
- * the frame; what differs between a frame and the next is seen as flicker. */
+ * Films are FOLDER/relight/E/tour: unlit/NNNN.exr, frames/NNNN.exr. A place on a surface has one quotient of light,
+ * whatever the frame; what differs between a frame and the next is seen as flicker. */
 #include <dirent.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -160,7 +160,7 @@ static enum status add_picture(struct heldout_job *job, struct evaluation *e, co
     return st;
 }
 
-/* ----------------------------------------------------------------------------------------------------------- the scene */
+/* -------------------------------------------------------------------------------------------------------- the scene */
 
 static enum status prepare(struct heldout_job *job, struct evaluation *e, struct err *err)
 {

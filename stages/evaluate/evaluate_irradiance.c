@@ -1,8 +1,8 @@
 /* evaluate_irradiance.c - irradiance at points against the truth: irradiance.*
  *
  * FOLDER/relight/irradiance.txt is in the frame of O/views and in the radiance unit of the views, and holds the points
- * of TRUTH/irradiance.txt, which FOLDER/evaluate/irradiance_points.txt has in that frame. irradiance_pictures.c measures
- * pictures of irradiance. */
+ * of TRUTH/irradiance.txt, which FOLDER/evaluate/irradiance_points.txt has in that frame. irradiance_pictures.c
+ * measures pictures of irradiance. */
 #include <stdlib.h>
 
 #include "common/base/outfile.h"

@@ -1,9 +1,10 @@
-/* evaluate_relit.c - pictures of edited scenes under the light that the edit makes: edited.E.relit_*, edited.E.unlit_psnr.
+/* evaluate_relit.c - pictures of edited scenes under the light that the edit makes: edited.E.relit_*,
+ * edited.E.unlit_psnr.
  *
  * Relit pictures are RENDERED/relit-E/NAME, and RENDERED/edited-E/NAME are those before they were relit; if there is no
  * RENDERED/relit-E, they are FOLDER/relight/E/VIEW.exr and FOLDER/relight/E/unlit/VIEW.exr. Both are compared with
- * TRUTH/edited-E/hdr over the pixels that show the same surface before and after the edit, and whose true light changes.
- * What the edit reveals is measured apart. */
+ * TRUTH/edited-E/hdr over the pixels that show the same surface before and after the edit, and whose true light
+ * changes. What the edit reveals is measured apart. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -65,9 +66,10 @@ static void truth_release_all(struct relit_truth *t)
     for (int k = 0; k < PICTURE_PARTS; k++) free(t->part[k]);
 }
 
-/* ------------------------------------------------------------------------------------------------------------ the truth */
+/* -------------------------------------------------------------------------------------------------------- the truth */
 
-/* The true light before and after the edit. Without pictures of irradiance the radiance decides. *found: there is either. */
+/* The true light before and after the edit. Without pictures of irradiance the radiance decides. *found: there is
+ * either. */
 static enum status read_light(struct relit_truth *t, bool *found, struct relit_job *job, const struct render *r,
                               struct err *err)
 {
@@ -124,7 +126,7 @@ static enum status read_truth(struct relit_truth *t, bool *found, struct relit_j
     return st;
 }
 
-/* -------------------------------------------------------------------------------------------------------------- pictures */
+/* --------------------------------------------------------------------------------------------------------- pictures */
 
 static void choose(struct relit_truth *t, const uint8_t *from, int part)
 {
@@ -270,9 +272,10 @@ static enum status measure(struct relit_job *job, struct render *r, struct err *
     return st;
 }
 
-/* ----------------------------------------------------------------------------------------------------------------- edits */
+/* ------------------------------------------------------------------------------------------------------------ edits */
 
-/* The folders of relit pictures and of those before, as the inputs call them, and their paths; false: there are none. */
+/* The folders of relit pictures and of those before, as the inputs call them, and their paths; false: there are
+ * none. */
 static bool find_folders(char names[2][80], char paths[2][FILE_PATH], const struct evaluation *e, const char *edit)
 {
     struct err none = ERR_INIT;

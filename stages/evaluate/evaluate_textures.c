@@ -198,7 +198,7 @@ static enum status add_atlas(struct texture_result *r, const struct texture_job 
     return st;
 }
 
-/* --------------------------------------------------------------------------------------------------------- the table */
+/* -------------------------------------------------------------------------------------------------------- the table */
 
 static const char *const part_names[TEXTURE_PARTS] = {"psnr_original", "psnr_warped", "psnr_seen", "psnr_synthesised"};
 

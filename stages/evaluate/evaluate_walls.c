@@ -1,4 +1,5 @@
-/* evaluate_walls.c - walls, openings and heights of the model and of its edits against the truth: model.*, edited.E.* */
+/* evaluate_walls.c - walls, openings and heights of the model and of its edits against the truth: model.*,
+ * edited.E.* */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -25,8 +25,8 @@ enum status write_obj(const struct export_scene *s, struct err *err);
  * pictures hold light, so materials are unlit; primitives name their faces in `extras`. */
 enum status write_gltf(const struct export_scene *s, struct err *err);
 
-/* OUT/model.ifc: IFC4. Walls, openings, doors, windows, slabs and spaces as solids; the photographic texture on a covering
- * for each face, as IfcIndexedTriangleTextureMap of the pages. */
+/* OUT/model.ifc: IFC4. Walls, openings, doors, windows, slabs and spaces as solids; the photographic texture on a
+ * covering for each face, as IfcIndexedTriangleTextureMap of the pages. */
 enum status write_ifc(const struct export_scene *s, struct err *err);
 
 /* The 22 characters of a GUID, the same for the same text in each run. */

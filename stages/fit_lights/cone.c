@@ -1,18 +1,19 @@
 /* cone.c - a cone's half angle, bracketed on a grid and refined [Colburn 2014, 5.6a].
  *
- * Overview. Along a line across the edge of a cone, the radiance is k_d (E + S D(beta)), where D falls to 0 at the edge. The
- * half angle beta is that for which the residuals are least. The objective is a step: where no place changes sides it is
- * flat, so a descent finds nothing. A grid over the angles of the lines brackets the least value; golden section refines it
- * there. Below the spacing of the grid the objective is smooth, because the lamp has a size: between the places that see all
- * of it and none of it through the cone lies a penumbra, in which the pixels of several views lie.
+ * Overview. Along a line across the edge of a cone, the radiance is k_d (E + S D(beta)), where D falls to 0 at the
+ * edge. The half angle beta is that for which the residuals are least. The objective is a step: where no place changes
+ * sides it is flat, so a descent finds nothing. A grid over the angles of the lines brackets the least value; golden
+ * section refines it there. Below the spacing of the grid the objective is smooth, because the lamp has a size: between
+ * the places that see all of it and none of it through the cone lies a penumbra, in which the pixels of several views
+ * lie.
  *
- * Mathematics. For each photo of a line, and each colour, L ~ a E + b D(beta) with free a, b >= 0 while S is unknown, and
- * L ~ a (E + S D(beta)) when it is known: k_d is that of the line and of the photo, so that neither a gradient of the
- * material nor the exposure shifts the edge. Residuals are relative to the radiance and to noise and texture. The cost is that
- * of the Cauchy function, so that the border of a poster that crosses the line counts little.
+ * Mathematics. For each photo of a line, and each colour, L ~ a E + b D(beta) with free a, b >= 0 while S is unknown,
+ * and L ~ a (E + S D(beta)) when it is known: k_d is that of the line and of the photo, so that neither a gradient of
+ * the material nor the exposure shifts the edge. Residuals are relative to the radiance and to noise and texture. The
+ * cost is that of the Cauchy function, so that the border of a poster that crosses the line counts little.
  *
- * The standard error is that of clusters: sum over lines of the squared slope of their cost, over the square of the curvature
- * of the whole. With one line the photos are the clusters.
+ * The standard error is that of clusters: sum over lines of the squared slope of their cost, over the square of the
+ * curvature of the whole. With one line the photos are the clusters.
  *
  * What differs from the source: it compares k_d with a fixed value along one line by a plain search. */
 #include "stages/fit_lights/cone.h"

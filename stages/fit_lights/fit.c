@@ -1,15 +1,15 @@
 /* fit.c - lamps and materials by robust least squares [Colburn 2014, 5.3.3].
  *
- * Overview. A point of a Lambertian material has the radiance L = k_d (E + sum over lamps of S_j D_j): E is its indirect
- * irradiance, D_j that of lamp j with radiance 1. E and D_j are known; k_d of each material and S_j of each lamp are not.
- * One lit and one unlit point determine them (5.5); more points make an overdetermined system.
+ * Overview. A point of a Lambertian material has the radiance L = k_d (E + sum over lamps of S_j D_j): E is its
+ * indirect irradiance, D_j that of lamp j with radiance 1. E and D_j are known; k_d of each material and S_j of each
+ * lamp are not. One lit and one unlit point determine them (5.5); more points make an overdetermined system.
  *
- * Mathematics. Reflectance varies from point to point by factors, and so does the error of E. So the residuals are those
- * of logarithms, r = log L - log k_d - log(E + sum S_j D_j). Their covariance (fit_texture.c) is that of the material's
- * variation, and of noise. Then log k_d is a weighted mean of a material's points and drops out [Golub 1973]. Left are
- * log S_j per colour, which keeps S positive, and the square root of an exponent. Levenberg-Marquardt (Ceres) solves for
- * these; the covariance is renewed in rounds. A lamp whose picture is not saturated adds log S - log of
- * the radiance that it shows.
+ * Mathematics. Reflectance varies from point to point by factors, and so does the error of E. So the residuals are
+ * those of logarithms, r = log L - log k_d - log(E + sum S_j D_j). Their covariance (fit_texture.c) is that of the
+ * material's variation, and of noise. Then log k_d is a weighted mean of a material's points and drops out [Golub
+ * 1973]. Left are log S_j per colour, which keeps S positive, and the square root of an exponent. Levenberg-Marquardt
+ * (Ceres) solves for these; the covariance is renewed in rounds. A lamp whose picture is not saturated adds log S - log
+ * of the radiance that it shows.
  *
  * What differs from the source: points, colours and lamps are fitted together, by logarithms and robustly; neighbours
  * vary together; what views show of a lamp counts, too. */
@@ -236,7 +236,7 @@ static enum status start_lamps(struct problem *p, struct weighted *scratch, stru
     return ST_OK;
 }
 
-/* ------------------------------------------------------------------------------------------------------ the solution */
+/* ----------------------------------------------------------------------------------------------------- the solution */
 
 static enum status solve(struct problem *p, struct err *err)
 {
@@ -295,7 +295,7 @@ static enum status check_spread(struct problem *p, struct weighted *scratch, str
     return ST_OK;
 }
 
-/* ---------------------------------------------------------------------------------------------------------------- all */
+/* -------------------------------------------------------------------------------------------------------------- all */
 
 static enum status list_unknowns(struct problem *p, struct err *err)
 {

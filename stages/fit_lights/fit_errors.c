@@ -1,9 +1,9 @@
 /* fit_errors.c - how sure the radiance of lamps is.
  *
  * With whitened residuals the covariance of the unknowns is H^-1, H = J^T J. Colours vary together: with G the sum of
- * products of the colours' summed rows it is H^-1 G H^-1, which differs for the exponent alone. If the residuals are larger
- * than their covariance says, so are the errors. An error of E by a factor that is the same at all points changes S by
- * that factor; its relative error is added. */
+ * products of the colours' summed rows it is H^-1 G H^-1, which differs for the exponent alone. If the residuals are
+ * larger than their covariance says, so are the errors. An error of E by a factor that is the same at all points
+ * changes S by that factor; its relative error is added. */
 #include <math.h>
 #include <string.h>
 

@@ -1,18 +1,18 @@
 /* fit_texture.c - see fit_texture.h.
  *
- * Overview. The reflectance of plaster or brick varies, but less between neighbours than across a wall. Points just inside
- * and just outside of a cone tell more of a lamp than points far apart, and a hundred points on one patch tell less of the
- * wall than ten in ten places. The covariance of the points' deviations says both; a generalised least-squares fit then
- * weights all pairs as they deserve.
+ * Overview. The reflectance of plaster or brick varies, but less between neighbours than across a wall. Points just
+ * inside and just outside of a cone tell more of a lamp than points far apart, and a hundred points on one patch tell
+ * less of the wall than ten in ten places. The covariance of the points' deviations says both; a generalised
+ * least-squares fit then weights all pairs as they deserve.
  *
- * Mathematics. Logarithms of reflectance are a Gaussian process: deviation^2 ((1 - grain) exp(-d / length) + grain [d = 0])
- * is the covariance of two points of a material at a distance d [Cressie 1993]. The three are those of the greatest
+ * Mathematics. Logarithms of reflectance are a Gaussian process: deviation^2 ((1 - grain) exp(-d / length) + grain [d =
+ * 0]) is the covariance of two points of a material at a distance d [Cressie 1993]. The three are those of the greatest
  * restricted likelihood [Patterson 1971], which allows for the mean that is taken from the same points, on a grid of
  * lengths and grains; deviation has a closed form, with a few points' worth of the assumed deviation. Colours vary
  * together: they count as one sample.
  *
- * A point that the others do not predict (a poster) has its variance enlarged, so that its error, which the inverse of the
- * covariance gives, is OUTLIER standard deviations: it counts less, the farther off it is. */
+ * A point that the others do not predict (a poster) has its variance enlarged, so that its error, which the inverse of
+ * the covariance gives, is OUTLIER standard deviations: it counts less, the farther off it is. */
 #include "stages/fit_lights/fit_texture.h"
 
 #include <math.h>

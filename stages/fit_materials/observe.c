@@ -1,13 +1,13 @@
 /* observe.c - points of marked regions, and their radiance in all views that show them [Colburn 2014, 5.4].
  *
- * A region is a polygon in one photo. Points are where the rays of a square grid of its pixels hit the model; the grid is
- * as wide as the wished number of points needs. A view shows a point if its ids have the same face there, without clutter,
- * jump or clipped pixel near, and the surface is not seen at a grazing angle. The radiance is the mean of a small square of
- * pixels. Its variance is that of the mean of their noise, of their deviation from each other, and of a fraction of the
- * radiance for what no pixel tells (the model's place, gains).
+ * A region is a polygon in one photo. Points are where the rays of a square grid of its pixels hit the model; the grid
+ * is as wide as the wished number of points needs. A view shows a point if its ids have the same face there, without
+ * clutter, jump or clipped pixel near, and the surface is not seen at a grazing angle. The radiance is the mean of a
+ * small square of pixels. Its variance is that of the mean of their noise, of their deviation from each other, and of a
+ * fraction of the radiance for what no pixel tells (the model's place, gains).
  *
- * Of several views of one photo the one counts in which the point is nearest the centre. If more photos show a point than
- * wanted, every k-th is used: they are in order of name, which often is the order of the walk. */
+ * Of several views of one photo the one counts in which the point is nearest the centre. If more photos show a point
+ * than wanted, every k-th is used: they are in order of name, which often is the order of the walk. */
 #include "stages/fit_materials/observe.h"
 
 #include <math.h>
@@ -29,7 +29,7 @@ void observations_release(struct observations *o)
     *o = (struct observations){0};
 }
 
-/* ------------------------------------------------------------------------------------------------------------ points */
+/* ----------------------------------------------------------------------------------------------------------- points */
 
 static enum status add_point(struct observations *o, const struct observed_scene *s, const struct photo_camera *camera,
                              double x, double y, int material, struct err *err)
@@ -98,7 +98,7 @@ enum status observe_points(struct observations *o, const struct observed_scene *
     return ST_OK;
 }
 
-/* ------------------------------------------------------------------------------------------------------------- views */
+/* ------------------------------------------------------------------------------------------------------------ views */
 
 struct viewer {
     struct observations *o;

@@ -13,7 +13,7 @@
 
 enum { MAX_POINTS = 10000000 };
 
-/* ----------------------------------------------------------------------------------------------------------- writing */
+/* ---------------------------------------------------------------------------------------------------------- writing */
 
 static enum status open_list(struct outfile *f, const struct gather_job *j, const char *name, const char *suffix,
                              const char *head, struct err *err)
@@ -92,7 +92,7 @@ enum status gather_points_of_file(struct gather_job *j, const char *path, struct
     return st;
 }
 
-/* ------------------------------------------------------------------------------------------------------------ a face */
+/* ----------------------------------------------------------------------------------------------------------- a face */
 
 enum status gather_read_step(double *step, const char *text, struct err *err)
 {

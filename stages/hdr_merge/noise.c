@@ -8,8 +8,8 @@
  * may be negative.
  *
  * The noise of the luminance is not the sum of that of independent colours: JPEG stores chroma coarsely, so that the
- * colours of a pixel share most of what noise is left. The difference of the luminances of two exposures, divided by the
- * standard deviation that independent colours would have, is therefore measured as well, in the same bins: after
+ * colours of a pixel share most of what noise is left. The difference of the luminances of two exposures, divided by
+ * the standard deviation that independent colours would have, is therefore measured as well, in the same bins: after
  * subtraction of the bin's median, 68.27 % of its absolute values are below a value q, and luminance is the mean of
  * q^2. */
 #include "stages/hdr_merge/noise.h"

@@ -6,11 +6,11 @@
  * nearly as well are returned, too: the corners of one window lie in a plane, and a plane that is small, far or seen
  * nearly from the front has a second pose, mirrored in effect [Schweighofer 2006]; three marks have several.
  *
- * Mathematics. The residual of a mark is the angle from its ray to the point, along two directions across the ray, times
- * the pixels per radian that the lens has there along these directions: a distance in pixels to first order. Unlike
- * the point's pixel, it is finite for any pose, so that a fisheye of 180 degrees and points behind a camera need no
- * care. With J, the derivatives of the residuals by rotation and centre at the solution, the covariance of the pose is
- * sigma^2 (J^T J)^-1. The 95 % interval is t sigma, where sigma^2 is the sum of squares over the 2 N - 6 degrees of
+ * Mathematics. The residual of a mark is the angle from its ray to the point, along two directions across the ray,
+ * times the pixels per radian that the lens has there along these directions: a distance in pixels to first order.
+ * Unlike the point's pixel, it is finite for any pose, so that a fisheye of 180 degrees and points behind a camera need
+ * no care. With J, the derivatives of the residuals by rotation and centre at the solution, the covariance of the pose
+ * is sigma^2 (J^T J)^-1. The 95 % interval is t sigma, where sigma^2 is the sum of squares over the 2 N - 6 degrees of
  * freedom and t the quantile of Student's distribution, which is larger the fewer marks there are [Student 1908]; it is
  * at least that of the stated standard error of a mark. A pose fits nearly as well if its sum of squares exceeds the
  * least one by less than 9 sigma^2, three standard errors of a single residual.

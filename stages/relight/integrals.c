@@ -1,10 +1,10 @@
 /* integrals.c - see integrals.h.
  *
- * A pixel's radiance is L = a E / pi + k_s I_s, with the albedo a that picture and light imply. E, I_s and the direct light
- * E_l of each lamp are kept. With factors s_l of the lamps' radiance, and new reflectances,
+ * A pixel's radiance is L = a E / pi + k_s I_s, with the albedo a that picture and light imply. E, I_s and the direct
+ * light E_l of each lamp are kept. With factors s_l of the lamps' radiance, and new reflectances,
  *   L' = a' (E + sum_l (s_l - 1) E_l) / pi + k_s' I_s,
- * which needs no ray. What the changed light does after it was reflected once, and lamps in reflections, is left out; n and
- * alpha are inside the integral I_s, beta inside E_l. */
+ * which needs no ray. What the changed light does after it was reflected once, and lamps in reflections, is left out; n
+ * and alpha are inside the integral I_s, beta inside E_l. */
 #include "stages/relight/integrals.h"
 
 #include <math.h>
@@ -20,7 +20,7 @@ enum { NAME_SIZE = 128, MAX_LAMPS = 1000 };
 #define MAX_FACTOR 1e6
 static const char channels[3] = {'R', 'G', 'B'};
 
-/* ------------------------------------------------------------------------------------------------------------ surfaces */
+/* --------------------------------------------------------------------------------------------------------- surfaces */
 
 struct surface {
     enum surface_kind kind;
@@ -57,8 +57,8 @@ static const struct texture_face *listed_face(const struct light_change *c, int 
     return texture_map_find(&c->map, solid_face_id(&c->after.model.mesh, face), vec3_scale(f->normal, f->offset));
 }
 
-/* Objects, then materials, then faces to which the edit gives a gloss or a colour; surface_of_face[f] is the surface of face
- * f, or -1. */
+/* Objects, then materials, then faces to which the edit gives a gloss or a colour; surface_of_face[f] is the surface of
+ * face f, or -1. */
 static enum status list_surfaces(struct surfaces *s, int *surface_of_face, const struct light_change *c,
                                  struct err *err)
 {
@@ -100,7 +100,7 @@ static void number_pixels(uint32_t *numbers, const struct pixels *p, const struc
         if (p->objects[k].cover >= 0.5f) numbers[p->objects[k].pixel] = (uint32_t)(1 + p->objects[k].object);
 }
 
-/* ------------------------------------------------------------------------------------------------------------- writing */
+/* ---------------------------------------------------------------------------------------------------------- writing */
 
 static enum status add_rgb(struct exr_image *im, const char *name, int *first, struct err *err)
 {
@@ -189,7 +189,7 @@ enum status integrals_write(const struct relit *r, const struct pixels *p, const
     return st;
 }
 
-/* ------------------------------------------------------------------------------------------------------------- changes */
+/* ---------------------------------------------------------------------------------------------------------- changes */
 
 struct changes {
     struct surfaces surfaces;

@@ -25,8 +25,8 @@ struct shade_tile {
 
 /* (A d + (A c + b) / z) of a row (A | b), as a function of the pixel: row (p, 1) / z of the point p that it shows. */
 struct linear shade_linear(const double row[4], const struct linear *inverse_z, const struct view *camera);
-/* The place of a tile in a picture. place: takes a point of the picture's frame to the frame of the atlas (3 x 4), NULL:
- * they are one. inverse_z: of the face in the picture. The texels are not set. */
+/* The place of a tile in a picture. place: takes a point of the picture's frame to the frame of the atlas (3 x 4),
+ * NULL: they are one. inverse_z: of the face in the picture. The texels are not set. */
 void shade_tile_place(struct shade_tile *s, const struct atlas_tile *t, const double place[3][4],
                       const struct linear *inverse_z, const struct view *camera);
 /* Whether no pixel with x0 <= x <= x1 and y0 <= y <= y1 looks into the tile. */

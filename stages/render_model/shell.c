@@ -1,8 +1,8 @@
 /* shell.c - see shell.h: scenes, and pictures of them.
  *
- * A picture is drawn in two parts: which face each pixel shows (visible.c), then the faces' colours in passes (shade.c).
- * The first pass looks into the atlases of the two viewpoints; pixels that these do not show wait for the next one, and
- * only the pages that the remaining faces need are read for it. */
+ * A picture is drawn in two parts: which face each pixel shows (visible.c), then the faces' colours in passes
+ * (shade.c). The first pass looks into the atlases of the two viewpoints; pixels that these do not show wait for the
+ * next one, and only the pages that the remaining faces need are read for it. */
 #include "stages/render_model/shell.h"
 
 #include <math.h>

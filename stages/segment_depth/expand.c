@@ -244,8 +244,8 @@ static void start_with_ground(struct scene_planes *scene, const struct plane *gr
     if (ground) scene_planes_set(scene, 0, *ground);
 }
 
-/* Adds the ground to the planes of votes, in place of the last one if there are too many, unless one of them is about the
- * ground: then votes know it better, or what looks like the ground is a table. */
+/* Adds the ground to the planes of votes, in place of the last one if there are too many, unless one of them is about
+ * the ground: then votes know it better, or what looks like the ground is a table. */
 static void add_ground(struct scene_planes *scene, const struct view *view, struct plane ground)
 {
     const struct vec3 n = plane_normal(view, ground);
@@ -259,8 +259,8 @@ static void add_ground(struct scene_planes *scene, const struct view *view, stru
     scene->has_ground = true;
 }
 
-/* Fits the scene's plane k to the segments that lie on it, which move with it; those whose depth is given stay. members:
- * room for all segments. */
+/* Fits the scene's plane k to the segments that lie on it, which move with it; those whose depth is given stay.
+ * members: room for all segments. */
 static void refit_scene_plane(struct expander *x, int k, int *members)
 {
     struct scene_planes *scene = x->p->scene;

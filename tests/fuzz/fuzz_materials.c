@@ -1,5 +1,5 @@
-/* fuzz_materials.c - readers of materials.txt, written by hand and by fit_materials: any bytes give usable materials, or an
- * error that names the file; what was read is written and read back. */
+/* fuzz_materials.c - readers of materials.txt, written by hand and by fit_materials: any bytes give usable materials,
+ * or an error that names the file; what was read is written and read back. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -199,7 +199,7 @@ static void objects_of_missing_or_damaged_meshes_are_refused(void **state)
     }
 }
 
-/* ----------------------------------------------------------------------------------------------- objects of all edits */
+/* --------------------------------------------------------------------------------------------- objects of all edits */
 
 /* The plan of ROOM with objects.txt and upper.txt. */
 static enum status chained(struct plan *plan, const char *objects, const char *lower, const char *upper,
@@ -260,7 +260,7 @@ static void objects_of_all_edits_are_objects_alone(void **state)
     }
 }
 
-/* ---------------------------------------------------------------------------------------------------------- refusals */
+/* --------------------------------------------------------------------------------------------------------- refusals */
 
 static void statements_without_meaning_are_refused(void **state)
 {

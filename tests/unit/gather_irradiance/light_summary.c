@@ -1,4 +1,5 @@
-/* light_summary.c - shares and errors of known points, the examples, the record read back, the picture of a hemicube. */
+/* light_summary.c - shares and errors of known points, the examples, the record read back, the picture of a
+ * hemicube. */
 #include "stages/gather_irradiance/light_summary.h"
 
 #include <math.h>

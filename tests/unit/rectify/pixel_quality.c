@@ -1,4 +1,5 @@
-/* pixel_quality.c - the noise that a view states covers its errors, and marks reach the pixels that a kernel reaches. */
+/* pixel_quality.c - the noise that a view states covers its errors, and marks reach the pixels that a kernel
+ * reaches. */
 #include "common/image/luminance.h"
 #include "tests/unit/scratch.h"
 

@@ -102,8 +102,8 @@ static inline int by_value(const void *a, const void *b)
     return x < y ? -1 : x > y;
 }
 
-/* All pixels are finite, and none is more than ten times as bright as the median of the 24 around it; `cause` (NULL: none
- * is) says which pixels may be. */
+/* All pixels are finite, and none is more than ten times as bright as the median of the 24 around it; `cause` (NULL:
+ * none is) says which pixels may be. */
 static inline void assert_no_fireflies(const struct relit_room *r, bool (*cause)(const struct relit_room *r, int i))
 {
     for (int i = 0; i < PIXELS; i++) {

@@ -45,7 +45,7 @@ static void a_resolution_that_is_odd_or_out_of_range_is_refused(void **state)
     }
 }
 
-/* ------------------------------------------------------------------------------------------------ fields of closed form */
+/* -------------------------------------------------------------------------------------------- fields of closed form */
 
 /* Radiance by direction and place, for a single ray. */
 typedef struct light_look one_look(const void *ctx, struct vec3 from, struct vec3 direction);

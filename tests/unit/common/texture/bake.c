@@ -4,8 +4,8 @@
 #include "common/base/parallel.h"
 #include "tests/unit/scratch.h"
 
-/* The floor is a square of 4 x 4 at z = 0, with id 5. All cameras are at a height of 4 and look straight down, so a pixel
- * is 1/16 wide on the floor. */
+/* The floor is a square of 4 x 4 at z = 0, with id 5. All cameras are at a height of 4 and look straight down, so a
+ * pixel is 1/16 wide on the floor. */
 enum { SIZE = 64, ID = 5 };
 static const double FOCAL = 64, HEIGHT = 4;
 
@@ -175,8 +175,8 @@ static void a_view_with_another_exposure_is_brought_to_the_viewpoints(void **sta
     end(&f);
 }
 
-/* Half of the hole is best in a view whose light differs by a factor that no gain may remove, as it is not everywhere in
- * the view: the differences across the border are those of the neighbourhood. */
+/* Half of the hole is best in a view whose light differs by a factor that no gain may remove, as it is not everywhere
+ * in the view: the differences across the border are those of the neighbourhood. */
 static void no_seam_shows_where_two_sources_meet(void **state)
 {
     (void)state;
@@ -322,7 +322,8 @@ static void a_source_is_refused_where_it_may_not_be_used(void **state)
     }
 }
 
-/* begin() has three sources besides the viewpoint; a lamp needs four photos, so the viewpoint's own view is one here. */
+/* begin() has three sources besides the viewpoint; a lamp needs four photos, so the viewpoint's own view is one
+ * here. */
 static void pixels_clipped_in_four_photos_are_shown_and_in_three_are_not(void **state)
 {
     (void)state;
