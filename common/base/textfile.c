@@ -2,6 +2,7 @@
 #include "common/base/textfile.h"
 
 #include <inttypes.h>
+#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -179,6 +180,22 @@ enum status textfile_double(struct textfile *t, const char *what, double *value,
     if (st) return st;
     if (!scan_double(word, value)) return textfile_error(t, err, word, "%s, a finite number", what);
     return ST_OK;
+}
+
+enum status textfile_number_of(const struct textfile *t, const char *word, const char *what, double min, double max,
+                               double *value, struct err *err)
+{
+    if (scan_double(word, value) && *value >= min && *value <= max) return ST_OK;
+    if (isinf(max)) return textfile_error(t, err, word, "%s, a number of at least %.9g", what, min);
+    return textfile_error(t, err, word, "%s, a number from %.9g to %.9g", what, min, max);
+}
+
+enum status textfile_number(struct textfile *t, const char *what, double min, double max, double *value,
+                            struct err *err)
+{
+    char *word;
+    if (textfile_word(t, what, &word, err)) return err->status;
+    return textfile_number_of(t, word, what, min, max, value, err);
 }
 
 enum status textfile_rest(struct textfile *t, const char *what, char **rest, struct err *err)

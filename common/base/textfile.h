@@ -43,6 +43,12 @@ enum status textfile_expect_line(struct textfile *t, const char *word, struct er
 enum status textfile_int(struct textfile *t, const char *what, int64_t min, int64_t max, int64_t *value,
                          struct err *err);
 enum status textfile_double(struct textfile *t, const char *what, double *value, struct err *err);
+/* A number from min to max; of at least min if max is INFINITY. */
+enum status textfile_number(struct textfile *t, const char *what, double min, double max, double *value,
+                            struct err *err);
+/* The same of a word of the line that was read before. */
+enum status textfile_number_of(const struct textfile *t, const char *word, const char *what, double min, double max,
+                               double *value, struct err *err);
 /* The rest of the line, without blanks at its ends (COLMAP's image names may contain blanks). ST_DATA: empty. */
 enum status textfile_rest(struct textfile *t, const char *what, char **rest, struct err *err);
 bool textfile_more(struct textfile *t); /* the line has another word */

@@ -19,7 +19,8 @@ struct work_estimate {
 /* Adds a piece. Its numbers must be finite and not negative. */
 void work_estimate_add(struct work_estimate *w, double seconds, double mib, double bytes);
 
-/* "estimate ITEMS SECONDS MIB BYTES LONGEST", with a newline; numbers are rounded up: whole MiB and bytes, milliseconds.
+/* "estimate ITEMS SECONDS MIB BYTES LONGEST", with a newline; numbers are rounded up: whole MiB and bytes,
+ * milliseconds.
  */
 void work_estimate_print(FILE *to, const struct work_estimate *w);
 

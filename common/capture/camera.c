@@ -312,8 +312,8 @@ bool camera_project(const struct camera *c, struct vec3 p, double *u, double *v)
     return true;
 }
 
-/* Derivatives of the distorted point (xd, yd) by the distortion's parameters: those after the principal point. x, y: the
- * point on the plane z = 1; for a fisheye the direction from the axis times the angle t, so that s = t^2. */
+/* Derivatives of the distorted point (xd, yd) by the distortion's parameters: those after the principal point. x, y:
+ * the point on the plane z = 1; for a fisheye the direction from the axis times the angle t, so that s = t^2. */
 static void distortion_derivatives(const struct camera *c, const struct distortion *q, double x, double y,
                                    double (*dx)[CAMERA_MAX_PARAMS], const double focal[2])
 {

@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/base/sort.h"
+
 static const char suffix[] = ".exr";
 
 static enum status make_view(struct view *v, const struct sfm_model *m, const struct sfm_image *im, const char *folder,
@@ -152,18 +154,15 @@ enum status camera_set_add_camera_inputs(struct provenance *prov, const char *fo
     return st ? st : provenance_add_in(prov, "views", folder, "images.txt", "", NULL, err);
 }
 
+static bool is_before(const void *view, const void *name)
+{
+    return strcmp(((const struct view *)view)->name, name) < 0;
+}
+
 int camera_set_find(const struct camera_set *set, const char *name)
 {
-    int low = 0, high = set->view_count;
-    while (low < high) {
-        int mid = low + (high - low) / 2, order = strcmp(set->views[mid].name, name);
-        if (order == 0) return mid;
-        if (order < 0)
-            low = mid + 1;
-        else
-            high = mid;
-    }
-    return -1;
+    const int at = (int)sort_place(set->views, (size_t)set->view_count, sizeof *set->views, is_before, name);
+    return at < set->view_count && !strcmp(set->views[at].name, name) ? at : -1;
 }
 
 void camera_set_release(struct camera_set *set)

@@ -10,6 +10,7 @@
 #include "common/base/array.h"
 #include "common/base/file_path.h"
 #include "common/base/outfile.h"
+#include "common/base/sort.h"
 #include "common/base/textfile.h"
 #include "common/capture/sfm_model_parts.h"
 
@@ -51,18 +52,16 @@ static enum status id_list_sort(struct id_list *l, const char *path, const char 
     return ST_OK;
 }
 
+static bool row_is_below(const void *row, const void *id)
+{
+    return ((const struct id_row *)row)->id < *(const int64_t *)id;
+}
+
 /* The row with this id, or NULL. The list is sorted. */
 static struct id_row *id_list_row(const struct id_list *l, int64_t id)
 {
-    int low = 0, high = l->count;
-    while (low < high) {
-        int mid = low + (high - low) / 2;
-        if (l->rows[mid].id < id)
-            low = mid + 1;
-        else
-            high = mid;
-    }
-    return low < l->count && l->rows[low].id == id ? &l->rows[low] : NULL;
+    const int at = (int)sort_place(l->rows, (size_t)l->count, sizeof *l->rows, row_is_below, &id);
+    return at < l->count && l->rows[at].id == id ? &l->rows[at] : NULL;
 }
 
 /* Index of the record with this id, or -1. */
@@ -78,17 +77,15 @@ static void id_list_release(struct id_list *l)
     *l = (struct id_list){0};
 }
 
+static bool point_is_below(const void *point, const void *id)
+{
+    return ((const struct sfm_point *)point)->id < *(const int64_t *)id;
+}
+
 static int find_point(const struct sfm_model *m, int64_t id)
 {
-    int low = 0, high = m->point_count;
-    while (low < high) {
-        int mid = low + (high - low) / 2;
-        if (m->points[mid].id < id)
-            low = mid + 1;
-        else
-            high = mid;
-    }
-    return low < m->point_count && m->points[low].id == id ? low : -1;
+    const int at = (int)sort_place(m->points, (size_t)m->point_count, sizeof *m->points, point_is_below, &id);
+    return at < m->point_count && m->points[at].id == id ? at : -1;
 }
 
 /* --------------------------------------------------------------------------------------------------------- reading */

@@ -7,6 +7,7 @@
 
 #include "common/base/array.h"
 #include "common/base/outfile.h"
+#include "common/base/sort.h"
 
 enum { NAME_SIZE = 1024 };
 
@@ -99,18 +100,15 @@ enum status lens_list_write(const struct lens_list *list, const char *path, cons
     return st;
 }
 
+static bool is_before(const void *lens, const void *view)
+{
+    return strcmp(((const struct lens *)lens)->view, view) < 0;
+}
+
 int lens_list_find(const struct lens_list *list, const char *view)
 {
-    int low = 0, high = list->count;
-    while (low < high) {
-        int mid = low + (high - low) / 2, order = strcmp(list->lenses[mid].view, view);
-        if (order == 0) return mid;
-        if (order < 0)
-            low = mid + 1;
-        else
-            high = mid;
-    }
-    return -1;
+    const int at = (int)sort_place(list->lenses, (size_t)list->count, sizeof *list->lenses, is_before, view);
+    return at < list->count && !strcmp(list->lenses[at].view, view) ? at : -1;
 }
 
 void lens_list_release(struct lens_list *list)

@@ -1,7 +1,7 @@
 /* photo_alignment.c - finds the frame of another model by the scene's photographs in it.
  *
- * SfM gives every model a frame and a unit of its own. If a model has photographs of the scene, the similarity that maps
- * their places in the scene to those in the model,
+ * SfM gives every model a frame and a unit of its own. If a model has photographs of the scene, the similarity that
+ * maps their places in the scene to those in the model,
  *   p_model = s R p_scene + t,
  * is the least-squares one of their centres (camera_alignment.c). With x_cam = Q p_model + u, a camera of the model is
  *   x_cam / s = Q R p_scene + (Q t + u) / s

@@ -10,6 +10,7 @@
 #include <stdlib.h>
 
 #include "common/base/parallel.h"
+#include "common/image/luminance.h"
 #include "common/image/noise_model.h"
 #include "common/image/samples.h"
 
@@ -47,11 +48,12 @@ static void judge_pixels(void *ctx, size_t begin, size_t end, int thread)
     const struct exposure_job *job = ctx;
     const float photon = job->photon, read2 = job->read2, saturated = job->saturated, dark = job->dark;
     const float shared_photon = job->shared_photon, shared_read2 = job->shared_read2;
-    const float r2 = 0.2126f * 0.2126f, g2 = 0.7152f * 0.7152f, b2 = 0.0722f * 0.0722f;
+    static const float luma[3] = LUMINANCE_WEIGHTS;
+    const float r2 = luma[0] * luma[0], g2 = luma[1] * luma[1], b2 = luma[2] * luma[2];
     (void)thread;
     for (size_t i = begin; i < end; i++) {
         const float *v = job->rgb + 3 * i;
-        const float light = photo_luminance(v), limit = light * light;
+        const float light = luminance_of(v), limit = light * light;
         const float noise = photon * (r2 * v[0] + g2 * v[1] + b2 * v[2]) + read2 * (r2 + g2 + b2) +
                             shared_photon * light + shared_read2;
         const bool bright = (v[0] >= saturated) | (v[1] >= saturated) | (v[2] >= saturated);
@@ -95,7 +97,7 @@ static void scale_pixels(void *ctx, size_t begin, size_t end, int thread)
     uint8_t *marks = job->q->marks;
     (void)thread;
     for (size_t i = begin; i < end; i++) {
-        const float light = photo_luminance(job->rgb + 3 * i), relative = variance[i];
+        const float light = luminance_of(job->rgb + 3 * i), relative = variance[i];
         variance[i] = (relative > 0 && relative < 1 ? relative : 1) * (light * light);
         marks[i] = (uint8_t)(job->clipped[i] & (PHOTO_BRIGHT | PHOTO_DARK));
     }

@@ -36,17 +36,11 @@ enum status photo_quality_init(struct photo_quality *q, int width, int height, s
 /* Of one exposure with the sRGB curve. linear: the photo's linear colour, R G B. */
 enum status photo_quality_of_exposure(struct photo_quality *q, const struct photo *photo, const struct image *linear,
                                       const struct single_exposure *assumed, struct err *err);
-/* From the channels `variance`, whose memory it takes, and `clipped` of a file of hdr_merge. linear: its colour. ST_DATA,
- * naming path: a channel is missing or has another type. */
+/* From the channels `variance`, whose memory it takes, and `clipped` of a file of hdr_merge. linear: its colour.
+ * ST_DATA, naming path: a channel is missing or has another type. */
 enum status photo_quality_of_merged(struct photo_quality *q, struct exr_image *merged, const char *path,
                                     const struct image *linear, struct err *err);
 void photo_quality_release(struct photo_quality *q);
-
-/* Rec.709 luminance. */
-static inline float photo_luminance(const float rgb[3])
-{
-    return 0.2126f * rgb[0] + 0.7152f * rgb[1] + 0.0722f * rgb[2];
-}
 
 /* Standard deviation of the luminance, divided by it: above 0, at most 1. */
 float photo_relative_sigma(float variance, float luminance);

@@ -4,32 +4,47 @@
 #include <string.h>
 
 #include "common/base/file_path.h"
-#include "common/image/exr.h"
+#include "common/image/luminance.h"
 
-static const char *const channel_names[4] = {"R", "G", "B", "A"};
+static const char *const channel_names[VIEW_CHANNELS] = {"R", "G", "B", "A", "sigma", "clipped"};
+
+enum status view_planes_read(struct view_planes *p, const char *path, const struct view *view, int count,
+                             struct err *err)
+{
+    struct exr_image *exr = &p->exr;
+    if (exr_read(exr, path, channel_names, count, err)) return err->status;
+    if (exr->width != view->width || exr->height != view->height)
+        return err_set(err, ST_DATA, "%s has %d x %d pixels, but its camera %d x %d; make the views again.", path,
+                       exr->width, exr->height, view->width, view->height);
+    for (int c = 0; c < count; c++) {
+        p->channel[c] = exr_find(exr, channel_names[c])->f;
+        if (!p->channel[c])
+            return err_set(err, ST_DATA,
+                           "%s: channel %s contains integers, wanted half or float; make the views again.", path,
+                           channel_names[c]);
+    }
+    return ST_OK;
+}
+
+void view_planes_release(struct view_planes *p)
+{
+    exr_image_release(&p->exr);
+    *p = (struct view_planes){0};
+}
 
 enum status view_image_read(struct image *im, const char *folder, const struct view *view, struct err *err)
 {
-    struct exr_image exr = {0};
+    struct view_planes planes = {0};
     char path[FILE_PATH];
+    const size_t pixels = (size_t)view->width * (size_t)view->height;
 
     *im = (struct image){0};
     enum status st = file_path(path, folder, view->name, ".exr", err);
-    if (!st) st = exr_read(&exr, path, channel_names, 4, err);
-    if (!st && (exr.width != view->width || exr.height != view->height))
-        st = err_set(err, ST_DATA, "%s has %d x %d pixels, but its camera %d x %d; make the views again.", path,
-                     exr.width, exr.height, view->width, view->height);
-    for (int c = 0; !st && c < 4; c++)
-        if (!exr_find(&exr, channel_names[c])->f)
-            st = err_set(err, ST_DATA, "%s: channel %s contains integers, wanted half or float; make the views again.",
-                         path, channel_names[c]);
-    if (!st) st = image_init(im, exr.width, exr.height, 4, err);
-    for (int c = 0; !st && c < 4; c++) {
-        const float *from = exr_find(&exr, channel_names[c])->f;
-        size_t pixels = (size_t)exr.width * (size_t)exr.height;
-        for (size_t i = 0; i < pixels; i++) im->data[4 * i + (size_t)c] = from[i];
-    }
-    exr_image_release(&exr);
+    if (!st) st = view_planes_read(&planes, path, view, 4, err);
+    if (!st) st = image_init(im, view->width, view->height, 4, err);
+    for (size_t c = 0; !st && c < 4; c++)
+        for (size_t i = 0; i < pixels; i++) im->data[4 * i + c] = planes.channel[c][i];
+    view_planes_release(&planes);
     return st;
 }
 
@@ -54,7 +69,7 @@ static enum status add_quality(struct exr_image *exr, const struct image *im, co
     for (size_t i = 0; i < (size_t)im->width * (size_t)im->height; i++) {
         const float *p = im->data + 4 * i;
         if (!(p[3] > 0)) continue;
-        sigma->f[i] = rounded(photo_relative_sigma(quality->variance[i], photo_luminance(p)));
+        sigma->f[i] = rounded(photo_relative_sigma(quality->variance[i], luminance_of(p)));
         clipped->f[i] = quality->marks[i];
     }
     return ST_OK;

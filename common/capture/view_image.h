@@ -7,7 +7,21 @@
 #include "common/base/provenance.h"
 #include "common/capture/camera_set.h"
 #include "common/capture/photo_quality.h"
+#include "common/image/exr.h"
 #include "common/image/image.h"
+
+/* The channels of the file, in the order of enum view_channel. */
+enum view_channel { VIEW_R, VIEW_G, VIEW_B, VIEW_A, VIEW_SIGMA, VIEW_CLIPPED, VIEW_CHANNELS };
+struct view_planes {
+    struct exr_image exr;
+    const float *channel[VIEW_CHANNELS]; /* of exr */
+};
+
+/* Reads the first `count` channels of a file. p is {0} on entry; the caller releases it in each case. ST_DATA: the size
+ * differs from the camera's; a channel is missing, or has integers. */
+enum status view_planes_read(struct view_planes *p, const char *path, const struct view *view, int count,
+                             struct err *err);
+void view_planes_release(struct view_planes *p);
 
 /* 4 channels R G B A. ST_DATA: the size differs from the camera's. */
 enum status view_image_read(struct image *im, const char *folder, const struct view *view, struct err *err);
@@ -17,7 +31,6 @@ enum status view_image_write(const struct image *im, const struct photo_quality 
                              struct err *err);
 
 /* Sets the EXR's worldToCamera from the view. */
-struct exr_image;
 void exr_set_camera(struct exr_image *im, const struct view *view);
 
 #endif

@@ -22,6 +22,7 @@
 #include "common/base/parallel.h"
 #include "common/base/scan.h"
 #include "common/base/textfile.h"
+#include "common/image/luminance.h"
 
 #define MAX_KEYS   100000
 #define MAX_NAME   64
@@ -81,17 +82,6 @@ static enum status read_word(struct textfile *t, const char *what, const char *c
     return textfile_error(t, err, word, "%s: %s, %s or %s", what, names[0], names[1], names[2]);
 }
 
-static enum status read_number(struct textfile *t, const char *what, double min, double max, double *value,
-                               struct err *err)
-{
-    char *word;
-    enum status st = textfile_word(t, what, &word, err);
-    if (st) return st;
-    if (!scan_double(word, value) || !(*value >= min && *value <= max))
-        return textfile_error(t, err, word, "%s, a number from %.9g to %.9g", what, min, max);
-    return ST_OK;
-}
-
 /* The line that the last layer still needs; NULL if it is complete. */
 static const char *missing_line(const struct effects *e, bool has_region)
 {
@@ -130,7 +120,7 @@ static enum status read_axes(struct textfile *t, struct quat *q, struct err *err
     double *const to[] = {&q->w, &q->x, &q->y, &q->z};
 
     for (int i = 0; i < 4; i++)
-        if (read_number(t, names[i], -MAX_EFFECT_COORDINATE, MAX_EFFECT_COORDINATE, to[i], err)) return err->status;
+        if (textfile_number(t, names[i], -MAX_EFFECT_COORDINATE, MAX_EFFECT_COORDINATE, to[i], err)) return err->status;
     if (quat_length(*q) > MIN_LENGTH) return ST_OK;
     return textfile_error(t, err, "a quaternion of length 0", "one of length 1: qw qx qy qz");
 }
@@ -149,7 +139,7 @@ static enum status read_box_options(struct textfile *t, struct effect_box *box, 
             st = read_axes(t, &box->box_from_world, err);
             has_axes = true;
         } else if (!has_time && !strcmp(word, "at")) {
-            st = read_number(t, "a time", 0, MAX_TIME, &box->time, err);
+            st = textfile_number(t, "a time", 0, MAX_TIME, &box->time, err);
             has_time = true;
         } else {
             st = textfile_error(t, err, word, "axes QW QX QY QZ, at TIME (each once) or the end of the line");
@@ -177,8 +167,9 @@ static enum status read_region(struct textfile *t, struct effect_layer *l, struc
     l->region = (enum effect_region)region;
     if (l->region == EFFECT_ALL) return ST_OK;
     for (int i = 0; !st && i < 6; i++)
-        st = read_number(t, corners[i], i < 3 ? -MAX_EFFECT_COORDINATE : *to[i - 3], MAX_EFFECT_COORDINATE, to[i], err);
-    if (!st) st = read_number(t, "the fall-off", 0, MAX_EFFECT_COORDINATE, &box.falloff, err);
+        st = textfile_number(t, corners[i], i < 3 ? -MAX_EFFECT_COORDINATE : *to[i - 3], MAX_EFFECT_COORDINATE, to[i],
+                             err);
+    if (!st) st = textfile_number(t, "the fall-off", 0, MAX_EFFECT_COORDINATE, &box.falloff, err);
     if (!st) st = read_box_options(t, &box, l->box_count ? &l->boxes[l->box_count - 1] : NULL, err);
     if (st) return st;
     if (l->box_count == MAX_KEYS) return textfile_error(t, err, "region", "at most %d regions in a layer", MAX_KEYS);
@@ -207,13 +198,12 @@ static enum status read_key(struct textfile *t, struct effect_layer *l, struct e
     enum status st = textfile_word(t, "a time in seconds", &word, err);
 
     if (st) return st;
-    const bool valid = scan_double(word, &key.time) && key.time >= 0 && key.time <= MAX_TIME;
-    if (!valid) return textfile_error(t, err, word, "a time, a number from 0 to %.9g", MAX_TIME);
+    if (textfile_number_of(t, word, "a time", 0, MAX_TIME, &key.time, err)) return err->status;
     if (l->key_count && !(key.time > l->keys[l->key_count - 1].time))
         return textfile_error(t, err, word, "a time after %.9g, that of the previous key",
                               l->keys[l->key_count - 1].time);
     for (int i = 0; !st && i < values; i++)
-        st = read_number(t, values == 1 ? kind_names[l->kind] : colors[i], 0, MAX_VALUE, &key.value[i], err);
+        st = textfile_number(t, values == 1 ? kind_names[l->kind] : colors[i], 0, MAX_VALUE, &key.value[i], err);
     if (st) return st;
     if (l->key_count == MAX_KEYS) return textfile_error(t, err, word, "at most %d keys in a layer", MAX_KEYS);
     if (array_append(&l->keys, (size_t)l->key_count, sizeof *l->keys, "keys of a layer", err)) return err->status;
@@ -475,7 +465,7 @@ static void strip_saturate(float *rgba, const float *weights, float change, int 
 {
     for (int i = 0; i < count; i++) {
         float *c = rgba + 4 * i;
-        const float y = 0.2126f * c[0] + 0.7152f * c[1] + 0.0722f * c[2];
+        const float y = luminance_of(c);
         const float dark = c[0] < c[1] ? (c[0] < c[2] ? c[0] : c[2]) : (c[1] < c[2] ? c[1] : c[2]);
         float by = weights[i] * change;
         if (by == 0) continue;

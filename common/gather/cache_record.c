@@ -1,23 +1,23 @@
 /* cache_record.c - indirect irradiance at a point with its gradients.
  *
- * Overview. The hemisphere is divided into M rings of equal cosine-weighted area and each ring into N cells. One ray goes
- * through a random place of each cell. The radiance and the distance of neighbouring cells say how irradiance changes when
- * the point turns or moves.
+ * Overview. The hemisphere is divided into M rings of equal cosine-weighted area and each ring into N cells. One ray
+ * goes through a random place of each cell. The radiance and the distance of neighbouring cells say how irradiance
+ * changes when the point turns or moves.
  *
- * Mathematics. Ring j is between the angles with sin^2 = j / M and (j + 1) / M. With L the radiance of cell (j, k), r its
- * distance, u_k the tangent towards the middle of column k and v the tangent a quarter turn further [Ward 1992b]:
+ * Mathematics. Ring j is between the angles with sin^2 = j / M and (j + 1) / M. With L the radiance of cell (j, k), r
+ * its distance, u_k the tangent towards the middle of column k and v the tangent a quarter turn further [Ward 1992b]:
  *   E      = pi / (M N) sum L
  *   turn   = pi / (M N) sum L tan(t) v           so that dE = turn . (n x n') when the normal n becomes n'
  *   move   = sum_k u_k 2 pi / N sum_j sin t_j cos^2 t_j / min(r, r of ring j - 1) (L - L of ring j - 1)
  *          + sum_k v_k sum_j (sin t_j+1 - sin t_j) / min(r, r of column k - 1) (L - L of column k - 1)
- * where t_j is the angle below ring j and v_k belongs to the edge between the columns k - 1 and k. An edge at distance r
- * moves by 1 / r as the point moves, and what it sweeps over changes by the difference of radiance.
+ * where t_j is the angle below ring j and v_k belongs to the edge between the columns k - 1 and k. An edge at distance
+ * r moves by 1 / r as the point moves, and what it sweeps over changes by the difference of radiance.
  *
- * The radius is the harmonic mean of distances [Ward 1988], and at most E / |move|: beyond that the gradient alone would
- * change the irradiance by all of it.
+ * The radius is the harmonic mean of distances [Ward 1988], and at most E / |move|: beyond that the gradient alone
+ * would change the irradiance by all of it.
  *
- * The standard error comes from the differences of neighbouring cells in a ring: their mean square is twice the variance
- * within a cell, and a little more where light has a slope.
+ * The standard error comes from the differences of neighbouring cells in a ring: their mean square is twice the
+ * variance within a cell, and a little more where light has a slope.
  *
  * Source: [Ward 1992b]. Different here: lamps and openings are left out, because their light changes at the edges of
  * shadows, which no gradient foresees; the caller gathers it at each point. */
@@ -26,15 +26,16 @@
 #include <math.h>
 
 #include "common/base/rng.h"
+#include "common/image/luminance.h"
 #include "common/light/frame.h"
 #include "common/math/numbers.h"
 
-enum { RINGS_MOST = 72, COLUMNS_MOST = 228 }; /* 16 k cells */
+enum { RINGS_MAX = 72, COLUMNS_MAX = 228 }; /* 16 k cells */
 
 /* One column of cells, before and after its edges. */
 struct column {
-    struct rgb light[RINGS_MOST];
-    double inverse[RINGS_MOST]; /* 1 / distance */
+    struct rgb light[RINGS_MAX];
+    double inverse[RINGS_MAX]; /* 1 / distance */
 };
 
 struct hemisphere {
@@ -89,7 +90,7 @@ static void trace_column(struct hemisphere *h, struct column *c, int k)
         struct light_look seen[RAY_PACKET];
         double turns[RAY_PACKET];
         for (int i = 0; i < count; i++) {
-            const uint64_t cell = (uint64_t)k * RINGS_MOST + (uint64_t)(j + i);
+            const uint64_t cell = (uint64_t)k * RINGS_MAX + (uint64_t)(j + i);
             uint32_t bits[4];
             rng_block(&h->rng, (uint64_t)h->rings, cell, bits);
             const double sine2 = (j + i + bits[0] * 0x1p-32) / h->rings;
@@ -154,8 +155,9 @@ static void finish(struct hemisphere *h)
     r->mean_inverse /= cells;
     r->rays = (int)cells;
     r->radius = r->mean_inverse > 0 ? 1 / r->mean_inverse : INFINITY;
-    const struct vec3 slope = vec3_add(vec3_scale(r->move[0], 0.2126),
-                                       vec3_add(vec3_scale(r->move[1], 0.7152), vec3_scale(r->move[2], 0.0722)));
+    const struct vec3 slope =
+        vec3_add(vec3_scale(r->move[0], LUMINANCE_R),
+                 vec3_add(vec3_scale(r->move[1], LUMINANCE_G), vec3_scale(r->move[2], LUMINANCE_B)));
     const double value = rgb_luminance(r->value), steep = vec3_length(slope);
     if (steep * r->radius > value) r->radius = value / steep;
 }
@@ -165,9 +167,9 @@ static void gather(struct hemisphere *h, int rays)
     *h->record = (struct cache_record){.point = h->record->point, .nearest = INFINITY};
     h->sum = h->squares = rgb_grey(0);
     h->rings = (int)sqrt(rays / PI);
-    h->rings = h->rings < 4 ? 4 : h->rings > RINGS_MOST ? RINGS_MOST : h->rings;
+    h->rings = h->rings < 4 ? 4 : h->rings > RINGS_MAX ? RINGS_MAX : h->rings;
     h->columns = (int)(PI * h->rings);
-    if (h->columns > COLUMNS_MOST) h->columns = COLUMNS_MOST;
+    if (h->columns > COLUMNS_MAX) h->columns = COLUMNS_MAX;
     trace_columns(h);
     finish(h);
 }

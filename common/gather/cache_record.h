@@ -15,12 +15,13 @@ struct cache_record {
     int rays;
 };
 
-/* Gathers once with about `rays` rays, at most 16 k. The same key, point and number give the same directions in any field. */
+/* Gathers once with about `rays` rays, at most 16 k. The same key, point and number give the same directions in any
+ * field. */
 void cache_record_gather_once(struct cache_record *r, const struct light_field *f, struct gather_point p, int rays,
                               uint64_t key);
 
-/* Gathers with at least `least` rays, up to 16 times that, until the standard error is at most `target` of the luminance
- * with `beside`, the luminance of direct light, added. */
+/* Gathers with at least `least` rays, up to 16 times that, until the standard error is at most `target` of the
+ * luminance with `beside`, the luminance of direct light, added. */
 void cache_record_gather(struct cache_record *r, const struct light_field *f, struct gather_point p, double target,
                          double beside, int least, uint64_t key);
 

@@ -1,7 +1,7 @@
 /* cache_tree.c - an octree of balls.
  *
- * A ball is an entry of the nodes that it overlaps, at the level where a node is between two and four times as wide as its
- * radius: at most eight nodes. A point is in one node of each level, hence a search follows one path from the root.
+ * A ball is an entry of the nodes that it overlaps, at the level where a node is between two and four times as wide as
+ * its radius: at most eight nodes. A point is in one node of each level, hence a search follows one path from the root.
  *
  * Source: [Ward 1988]. */
 #include "common/gather/cache_tree.h"

@@ -1,19 +1,19 @@
 /* field_atlas.c - see field_atlas.h.
  *
  * Memory. A gather meets texels in no order, so that most look-ups miss the caches; a texel is one 8-byte load, that is
- * one line of 64 bytes, where three floats and a source would be two loads from two arrays. All pages are kept: 8 MiB for
- * a page of 1024 x 1024. The nearest texel stands for its square. A gather integrates, and the integral of texels is that
- * of their bilinear interpolation but for the border of a face. The fourth 16-bit number of a texel has its enum
- * light_source in 3 bits, one bit that says that it is marked, and 12 bits for the mark or, without one, for 1 + the index
- * of the view that the texel comes from, 0 where that is unknown.
+ * one line of 64 bytes, where three floats and a source would be two loads from two arrays. All pages are kept: 8 MiB
+ * for a page of 1024 x 1024. The nearest texel stands for its square. A gather integrates, and the integral of texels
+ * is that of their bilinear interpolation but for the border of a face. The fourth 16-bit number of a texel has its
+ * enum light_source in 3 bits, one bit that says that it is marked, and 12 bits for the mark or, without one, for 1 +
+ * the index of the view that the texel comes from, 0 where that is unknown.
  *
- * Lamps. A photograph shows a lamp as a bright spot on the ceiling. Where lights.txt declares it, a gather sees the lamp's
- * radiance, and the spot must not light the room once more. Photographs place the spot to a few texels only, and optics
- * blur it, so that a bright rim remains around the lamp. A lamp of 10 cm is a thousand times as bright as the ceiling: a
- * rim of one texel would add a tenth of its light. So texels up to GUARD times the lamp's radius, and at least
- * GUARD_TEXELS, around it take the colour of those in a ring around that, in which the median leaves out other lamps.
- * A lamp that hangs below the ceiling appears there shifted, a view at an angle t from the normal by tan(t) of the
- * distance: the guard grows by PARALLAX times that distance. */
+ * Lamps. A photograph shows a lamp as a bright spot on the ceiling. Where lights.txt declares it, a gather sees the
+ * lamp's radiance, and the spot must not light the room once more. Photographs place the spot to a few texels only, and
+ * optics blur it, so that a bright rim remains around the lamp. A lamp of 10 cm is a thousand times as bright as the
+ * ceiling: a rim of one texel would add a tenth of its light. So texels up to GUARD times the lamp's radius, and at
+ * least GUARD_TEXELS, around it take the colour of those in a ring around that, in which the median leaves out other
+ * lamps. A lamp that hangs below the ceiling appears there shifted, a view at an angle t from the normal by tan(t) of
+ * the distance: the guard grows by PARALLAX times that distance. */
 #include "common/gather/field_atlas.h"
 
 #include <immintrin.h>
@@ -59,7 +59,7 @@ static struct rgb radiance_of(uint64_t bits)
     return rgb_make((double)v[0], (double)v[1], (double)v[2]);
 }
 
-/* ----------------------------------------------------------------------------------------------------------- reading */
+/* ---------------------------------------------------------------------------------------------------------- reading */
 
 static uint64_t pack_texel(const float rgb[3], uint32_t source)
 {
@@ -144,7 +144,7 @@ void field_atlas_release(struct field_atlas *a)
     *a = (struct field_atlas){0};
 }
 
-/* --------------------------------------------------------------------------------------------------------- replacing */
+/* -------------------------------------------------------------------------------------------------------- replacing */
 
 static int by_face(const void *a, const void *b)
 {
@@ -194,7 +194,7 @@ enum status field_atlas_replace(struct field_atlas *a, const bool *dropped, cons
     return st ? st : index_faces(a, a->ids, err);
 }
 
-/* ------------------------------------------------------------------------------------------------------------ look-up */
+/* ---------------------------------------------------------------------------------------------------------- look-up */
 
 static double along(const double row[4], struct vec3 p) { return row[0] * p.x + row[1] * p.y + row[2] * p.z + row[3]; }
 
@@ -238,8 +238,8 @@ void field_atlas_prefetch(const struct field_atlas *a, int face, struct vec3 p)
         __builtin_prefetch(texel_at(a, t, t->x + (int)x, t->y + (int)y));
 }
 
-/* The existing texel of a tile nearest to (x, y), pixels of the tile; the square of the distance, INFINITY: there is none.
- * Rings of growing size about the nearest pixel of the tile are searched until none can hold a nearer one. */
+/* The existing texel of a tile nearest to (x, y), pixels of the tile; the square of the distance, INFINITY: there is
+ * none. Rings of growing size about the nearest pixel of the tile are searched until none can hold a nearer one. */
 static double nearest_texel(const struct field_atlas *a, const struct atlas_tile *t, double x, double y, int found[2])
 {
     const int cx = clamp_int((int)floor(x), 0, t->width - 1), cy = clamp_int((int)floor(y), 0, t->height - 1);
@@ -281,7 +281,7 @@ bool field_atlas_nearest(const struct field_atlas *a, int face, struct vec3 p, s
     return isfinite(least);
 }
 
-/* ------------------------------------------------------------------------------------------------------------- marks */
+/* ------------------------------------------------------------------------------------------------------------ marks */
 
 bool field_atlas_has(const struct field_atlas *a, const struct atlas_tile *t, int x, int y)
 {
@@ -311,7 +311,7 @@ void field_atlas_mark(struct field_atlas *a, const struct atlas_tile *t, int x, 
     *bits = pack(texel);
 }
 
-/* ------------------------------------------------------------------------------------------------------------- lamps */
+/* ------------------------------------------------------------------------------------------------------------ lamps */
 
 /* A lamp seen in a tile: a texel (x, y) of the page lies q = right (x - left) + down (y - top) from its centre. */
 struct lamp_place {
@@ -391,14 +391,14 @@ static int visit(const struct field_atlas *a, const struct atlas_tile *t, const 
 enum status field_atlas_cover_lamp(struct field_atlas *a, int *covered, int face, struct face_plane plane,
                                    const struct lamp *lamp, double reach, struct err *err)
 {
-    enum { MOST = 1 << 16 };
+    enum { MAX_TEXELS = 1 << 16 };
     const double off = fabs(vec3_dot(plane.normal, lamp->centre) - plane.offset);
     int count = 0;
     if (face < 0 || face >= a->ids || !(vec3_dot(plane.normal, lamp->normal) > ALIKE) || off > reach) return ST_OK;
-    struct ring_texel *ring = malloc(MOST * sizeof *ring);
-    if (!ring) return err_nomem(err, "texels around a lamp", MOST * sizeof *ring);
+    struct ring_texel *ring = malloc(MAX_TEXELS * sizeof *ring);
+    if (!ring) return err_nomem(err, "texels around a lamp", MAX_TEXELS * sizeof *ring);
     for (int i = a->first[face]; i < a->first[face + 1]; i++)
-        count += visit(a, &a->atlas.tiles[i], lamp, off, ring + count, MOST - count, NULL);
+        count += visit(a, &a->atlas.tiles[i], lamp, off, ring + count, MAX_TEXELS - count, NULL);
     qsort(ring, (size_t)count, sizeof *ring, by_luminance);
     struct texel with = count ? unpack(ring[count / 2].bits) : (struct texel){{0, 0, 0}, LIGHT_SYNTHESISED};
     with.what = LIGHT_SYNTHESISED;

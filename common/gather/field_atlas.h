@@ -1,4 +1,5 @@
-/* field_atlas.h - the VITA of a model in memory, for gathers of light: the texel that a ray meets, at 8 bytes a texel. */
+/* field_atlas.h - the VITA of a model in memory, for gathers of light: the texel that a ray meets, at 8 bytes a
+ * texel. */
 #ifndef REMODEL_GATHER_FIELD_ATLAS_H
 #define REMODEL_GATHER_FIELD_ATLAS_H
 
@@ -14,14 +15,14 @@ struct field_atlas {
     int ids;
 };
 
-/* Reads atlas.txt and all pages. ids: faces of the model have ids below. ST_DATA also: a tile that is not orthogonal, as
- * in a VDTA. The caller releases it, also after a failure. */
+/* Reads atlas.txt and all pages. ids: faces of the model have ids below. ST_DATA also: a tile that is not orthogonal,
+ * as in a VDTA. The caller releases it, also after a failure. */
 enum status field_atlas_read(struct field_atlas *a, const char *folder, int ids, struct provenance *prov,
                              struct err *err);
 void field_atlas_release(struct field_atlas *a);
 
-/* Leaves out the tiles of the faces for which dropped[id] is set, and adds tiles, packed on pages of their own, whose faces
- * have ids below a->ids. Pages keep their places; the new ones follow. ST_NOMEM. */
+/* Leaves out the tiles of the faces for which dropped[id] is set, and adds tiles, packed on pages of their own, whose
+ * faces have ids below a->ids. Pages keep their places; the new ones follow. ST_NOMEM. */
 enum status field_atlas_replace(struct field_atlas *a, const bool *dropped, const struct atlas *extra,
                                 const struct atlas_page *pages, struct err *err);
 
@@ -38,8 +39,8 @@ struct field_texel {
 /* The texel at a point of a face, model frame. */
 struct field_texel field_atlas_look(const struct field_atlas *a, int face, struct vec3 p);
 
-/* The same in two steps: where the texel is likely to be, which the processor begins to load; then the look-up. In between
- * there is time for other rays. Asking for the place is no duty. */
+/* The same in two steps: where the texel is likely to be, which the processor begins to load; then the look-up. In
+ * between there is time for other rays. Asking for the place is no duty. */
 void field_atlas_prefetch(const struct field_atlas *a, int face, struct vec3 p);
 
 /* The middle of the texel of a face that is nearest to a point, in the plane of its tile; false: the face has none. */
@@ -61,7 +62,8 @@ enum status field_atlas_cover_lamp(struct field_atlas *a, int *covered, int face
 bool field_atlas_has(const struct field_atlas *a, const struct atlas_tile *t, int x, int y);
 /* The middle of it on the face's plane. */
 struct vec3 field_atlas_place(const struct atlas_tile *t, struct face_plane plane, int x, int y);
-/* The view that it comes from, an index into atlas.sources; -1: unknown, or no view. A texel with a mark no longer has it. */
+/* The view that it comes from, an index into atlas.sources; -1: unknown, or no view. A texel with a mark no longer has
+ * it. */
 int field_atlas_view(const struct field_atlas *a, const struct atlas_tile *t, int x, int y);
 
 /* Gives it a number that field_atlas_look() returns, 0 .. FIELD_ATLAS_MARKS - 1. */

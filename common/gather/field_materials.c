@@ -32,7 +32,7 @@
 #include "common/gather/specular.h"
 #include "common/math/numbers.h"
 
-enum { NESTED_RAYS = 16, MOST_REGIONS = UINT16_MAX };
+enum { NESTED_RAYS = 16, MAX_REGIONS = UINT16_MAX };
 static const double GRAZING = 0.02;
 static const double EDGE_STEP = 8; /* px between the points of a region's border whose rays make its cone */
 
@@ -189,9 +189,9 @@ static enum status add_regions(struct finder *d, const struct material_list *l, 
 {
     size_t count = 0;
     for (int m = 0; m < l->count; m++) count += (size_t)l->items[m].region_count;
-    if (count > MOST_REGIONS)
+    if (count > MAX_REGIONS)
         return err_set(err, ST_DATA, "%s has %zu regions, wanted at most %d; mark fewer and larger ones.", path, count,
-                       MOST_REGIONS);
+                       MAX_REGIONS);
     d->regions = calloc(count + 1, sizeof *d->regions);
     d->by_region = calloc(count + 1, sizeof *d->by_region);
     if (!d->regions || !d->by_region) return err_nomem(err, "regions", count * sizeof *d->regions);

@@ -1,10 +1,11 @@
 /* field_openings.c - see field_openings.h.
  *
- * A ray that leaves the model passes the opening whose quad it cuts, from the inside; of several the nearest. The frames
- * of the model and lights.txt agree to some centimetres, so a quad counts with a margin of MARGIN of its size. What lies
- * outside is far away: the reference image is looked up by direction alone [Colburn 2014, 5.3.2]. An image does not count
- * where it is clipped, or where its own ray meets the model: there it shows the reveal in which its camera stood, or dark
- * corners beyond a fisheye's circle (outdoors_picture.c). The next image of the opening comes after it. */
+ * A ray that leaves the model passes the opening whose quad it cuts, from the inside; of several the nearest. The
+ * frames of the model and lights.txt agree to some centimetres, so a quad counts with a margin of MARGIN of its size.
+ * What lies outside is far away: the reference image is looked up by direction alone [Colburn 2014, 5.3.2]. An image
+ * does not count where it is clipped, or where its own ray meets the model: there it shows the reveal in which its
+ * camera stood, or dark corners beyond a fisheye's circle (outdoors_picture.c). The next image of the opening comes
+ * after it. */
 #include "common/gather/field_openings.h"
 
 #include <math.h>
@@ -24,7 +25,7 @@ void field_dual(struct vec3 dual[2], struct vec3 x, struct vec3 y)
     dual[1] = vec3_scale(vec3_cross(n, x), 1 / nn);
 }
 
-/* ------------------------------------------------------------------------------------------------------------ look-up */
+/* ---------------------------------------------------------------------------------------------------------- look-up */
 
 static const struct field_opening *passed(const struct field_openings *all, struct vec3 from, struct vec3 direction)
 {
@@ -53,7 +54,7 @@ bool field_openings_look(float rgb[3], const struct field_openings *o, struct ve
     return false;
 }
 
-/* ----------------------------------------------------------------------------------------------------------- reading */
+/* ---------------------------------------------------------------------------------------------------------- reading */
 
 void field_openings_release(struct field_openings *o)
 {

@@ -14,18 +14,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/light/colour.h"
+#include "common/image/luminance.h"
 #include "common/math/numbers.h"
 #include "common/math/weighted.h"
 
 enum { SHARE = 64 }; /* rows and columns of a picture that the median and means are taken from, at least */
 static const double BRIGHT = 20, WIDEST = 30 * DEGREE;
 
-static double luminance_at(const struct outdoors *o, size_t pixel)
-{
-    const float *p = o->rgb + 3 * pixel;
-    return rgb_luminance(rgb_make((double)p[0], (double)p[1], (double)p[2]));
-}
+static double luminance_at(const struct outdoors *o, size_t pixel) { return luminance_precise(o->rgb + 3 * pixel); }
 
 /* Solid angle of a pixel of a row. */
 static double solid_angle(const struct outdoors *o, int y)
@@ -67,7 +63,7 @@ double field_sky_mean(const struct field_sky *s, const struct outdoors *o, struc
     return weights > 0 ? sum / weights : 0;
 }
 
-/* -------------------------------------------------------------------------------------------------------------- suns */
+/* ------------------------------------------------------------------------------------------------------------- suns */
 
 struct flood {
     const struct outdoors *o;
@@ -139,10 +135,10 @@ static struct emitter make_sun(const struct flood *f, double *light)
     return e;
 }
 
-static void insert(struct field_sky *s, double lights[MOST_SUNS], struct emitter sun, double light)
+static void insert(struct field_sky *s, double lights[MAX_SUNS], struct emitter sun, double light)
 {
-    int at = s->sun_count < MOST_SUNS ? s->sun_count++ : MOST_SUNS;
-    if (at == MOST_SUNS && !(light > lights[--at])) return;
+    int at = s->sun_count < MAX_SUNS ? s->sun_count++ : MAX_SUNS;
+    if (at == MAX_SUNS && !(light > lights[--at])) return;
     for (; at > 0 && light > lights[at - 1]; at--) {
         s->suns[at] = s->suns[at - 1];
         lights[at] = lights[at - 1];
@@ -154,7 +150,7 @@ static void insert(struct field_sky *s, double lights[MOST_SUNS], struct emitter
 enum status field_sky_find(struct field_sky *s, const struct outdoors *o, struct err *err)
 {
     const size_t pixels = (size_t)o->width * (size_t)o->height;
-    double lights[MOST_SUNS] = {0};
+    double lights[MAX_SUNS] = {0};
     *s = (struct field_sky){0};
     if (!pixels || find_median(s, o, err)) return pixels ? err->status : ST_OK;
     struct flood f = {.o = o, .bright = s->bright, .seen = calloc(pixels, 1)};

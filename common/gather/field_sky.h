@@ -5,20 +5,20 @@
 #include "common/gather/light_field.h"
 #include "common/texture/outdoors.h"
 
-enum { MOST_SUNS = 8 };
+enum { MAX_SUNS = 8 };
 
 struct field_sky {
-    double median, bright;          /* luminance: the median over the sphere; what counts as bright is above this */
-    struct emitter suns[MOST_SUNS]; /* the brightest first */
+    double median, bright;         /* luminance: the median over the sphere; what counts as bright is above this */
+    struct emitter suns[MAX_SUNS]; /* the brightest first */
     int sun_count;
 };
 
 /* Finds the suns: connected pixels more than 20 times as bright as the median. A sun's cone holds them and the pixels
- * that the interpolation around them reaches. Of more than MOST_SUNS those that light most are kept. ST_NOMEM. */
+ * that the interpolation around them reaches. Of more than MAX_SUNS those that light most are kept. ST_NOMEM. */
 enum status field_sky_find(struct field_sky *s, const struct outdoors *o, struct err *err);
 
-/* The mean luminance of what lies outside of a plane with a unit normal that points indoors, weighted by the cosine, the
- * suns left out. */
+/* The mean luminance of what lies outside of a plane with a unit normal that points indoors, weighted by the cosine,
+ * the suns left out. */
 double field_sky_mean(const struct field_sky *s, const struct outdoors *o, struct vec3 normal);
 
 #endif

@@ -13,11 +13,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { COARSEST = 128, MOST_CUBES = 16 };
+enum { COARSEST = 128, MAX_CUBES = 16 };
 
 struct gatherer {
     struct gather_params params;
-    struct hemicube *cubes[MOST_CUBES]; /* each twice as fine as the one before; the last one has params.hemicube px */
+    struct hemicube *cubes[MAX_CUBES]; /* each twice as fine as the one before; the last one has params.hemicube px */
     int cube_count;
 };
 

@@ -11,7 +11,7 @@
       "how irradiance is computed; auto: rays at single points, the cache over a view")                       \
     X(target_error, double, 0.01, 0, 1, "",                                                                   \
       "relative error of irradiance at which a gather ends; 0: it always spends all that the next two allow") \
-    X(hemicube, int, 512, 2, HEMICUBE_MOST, "px", "most pixels in a row of a hemicube; even")                 \
+    X(hemicube, int, 512, 2, HEMICUBE_MAX, "px", "most pixels in a row of a hemicube; even")                  \
     X(rays, int, 65536, 64, 1 << 24, "", "most rays of a point, with rays")
 
 struct gather_params {

@@ -10,12 +10,12 @@
  *   top   T(x, y) = (a atan(b') + b atan(a')) / (2 pi),   a = x / sqrt(1 + x^2), b' = y / sqrt(1 + x^2), and so on
  *   side  S(y, z) = (atan(y) - atan(y / sqrt(1 + z^2)) / sqrt(1 + z^2)) / (2 pi)
  * and a pixel's form factor is the sum over its four corners with the signs + - - +. The sum over all pixels therefore
- * telescopes to 4 T(1, 1) + 8 S(1, 1) = 1, whatever n is. The factors of one quarter of the top and of one half of a side
- * stand for the others by symmetry.
+ * telescopes to 4 T(1, 1) + 8 S(1, 1) = 1, whatever n is. The factors of one quarter of the top and of one half of a
+ * side stand for the others by symmetry.
  *
- * Error. The pixels of each of the five pictures are coloured like a chess board. If A and B are the picture's irradiance
- * from its white and from its black pixels alone, (A - B) / 2 says what the sampling missed there; the five are added as
- * independent errors. Light that varies linearly across a picture gives A = B, as it leaves the sum exact.
+ * Error. The pixels of each of the five pictures are coloured like a chess board. If A and B are the picture's
+ * irradiance from its white and from its black pixels alone, (A - B) / 2 says what the sampling missed there; the five
+ * are added as independent errors. Light that varies linearly across a picture gives A = B, as it leaves the sum exact.
  *
  * Source: [Cohen 1985], in the thesis [Colburn 2014, 5.3.1]. Different here: factors are integrals over the pixels, not
  * values at their centres; pictures are traced and not rasterised; the result says how far off it may be. */
@@ -68,9 +68,9 @@ static enum status fill_factors(double *to, int half, double integral(double, do
 enum status hemicube_make(struct hemicube **h, int n, struct err *err)
 {
     *h = NULL;
-    if (n < 2 || n > HEMICUBE_MOST || n % 2)
+    if (n < 2 || n > HEMICUBE_MAX || n % 2)
         return err_set(err, ST_USAGE, "a hemicube cannot have %d pixels in a row, wanted an even number from 2 to %d.",
-                       n, HEMICUBE_MOST);
+                       n, HEMICUBE_MAX);
     const size_t half = (size_t)n / 2;
     struct hemicube *made = calloc(1, sizeof *made);
     if (made) {
@@ -106,7 +106,7 @@ double hemicube_sum(const struct hemicube *h)
     return sum;
 }
 
-/* -------------------------------------------------------------------------------------------------------------- sums */
+/* ------------------------------------------------------------------------------------------------------------- sums */
 
 /* What one picture adds up, lane by lane of its packets. Lanes are added at its end, in order. */
 struct sums {

@@ -14,14 +14,14 @@ struct irradiance {
     struct rgb value;
     struct rgb error;           /* its standard error, as far as the estimator can tell; 0: it cannot */
     double from[LIGHT_SOURCES]; /* the share of its luminance from each source; they sum to 1, or are 0 in the dark */
-    double nearest,
-        mean_inverse; /* distance of the nearest surface; harmonic mean's inverse over the hemisphere, cosine-weighted */
+    double nearest;             /* distance of the nearest surface */
+    double mean_inverse;        /* inverse of the distances' harmonic mean over the hemisphere, cosine-weighted */
     int rays;
 };
 
 /* A plain hemicube with n x n pixels on its top [Cohen 1985], n even. Form factors are integrals over the pixels in
  * closed form: they sum to 1 to rounding. Owned by the caller. hemicube.c */
-#define HEMICUBE_MOST 1024 /* pixels in a row */
+#define HEMICUBE_MAX 1024 /* pixels in a row */
 struct hemicube;
 /* ST_USAGE: n is odd or out of range; ST_NOMEM. */
 enum status hemicube_make(struct hemicube **h, int n, struct err *err);

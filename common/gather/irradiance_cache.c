@@ -1,27 +1,27 @@
 /* irradiance_cache.c - irradiance at many points: indirect light from few records, direct light at each point.
  *
  * Overview. Light that surfaces reflect changes slowly along a surface. It is gathered at records (cache_record.c) and
- * extrapolated from those nearby. Light of lamps and of the sky through openings is gathered at each point by rays towards
- * them, since shadows have edges. The two are told apart by what a ray sees and in which direction, so that together
- * they are all light.
+ * extrapolated from those nearby. Light of lamps and of the sky through openings is gathered at each point by rays
+ * towards them, since shadows have edges. The two are told apart by what a ray sees and in which direction, so that
+ * together they are all light.
  *
- * Placing. Points of every 32nd column and row come first, then of every 16th, and so on to all. On each level, the points
- * that no record covers yet become records, all at once. Records therefore depend on the points alone, not on threads or
- * on their order; about twice as many are made as one after another would take.
+ * Placing. Points of every 32nd column and row come first, then of every 16th, and so on to all. On each level, the
+ * points that no record covers yet become records, all at once. Records therefore depend on the points alone, not on
+ * threads or on their order; about twice as many are made as one after another would take.
  *
- * Mathematics. A record at p_i with normal n_i and radius R_i is off by e_i = |p - p_i| / R_i + sqrt(1 - n . n_i) at (p, n)
- * [Ward 1988]. It covers the point if e_i < a; the irradiance is the mean of the records' extrapolations with the weights
- * 1 - e_i / a, which fade to 0 at the border. With gradients, errors grow with the square of e_i: a = 1.6 sqrt(target),
- * found on a room of patches and confirmed on photographed rooms (docs/benchmarks.md). A record that lies in front of the
- * point is not used: things between them may hide what it sees. Radii are limited to a few points' spacing below, so that
- * corners do not get a record at each point, and to a tenth of the scene above.
+ * Mathematics. A record at p_i with normal n_i and radius R_i is off by e_i = |p - p_i| / R_i + sqrt(1 - n . n_i) at
+ * (p, n) [Ward 1988]. It covers the point if e_i < a; the irradiance is the mean of the records' extrapolations with
+ * the weights 1 - e_i / a, which fade to 0 at the border. With gradients, errors grow with the square of e_i: a = 1.6
+ * sqrt(target), found on a room of patches and confirmed on photographed rooms (docs/benchmarks.md). A record that lies
+ * in front of the point is not used: things between them may hide what it sees. Radii are limited to a few points'
+ * spacing below, so that corners do not get a record at each point, and to a tenth of the scene above.
  *
- * Two fields. For the quotient of irradiance in two fields, each record holds both, from the same rays; its radius is the
- * smaller one. Direct light is gathered in both by the same rays until the quotient is known well enough, so that noise
- * which both share does not count, and none is spent where nothing has changed.
+ * Two fields. For the quotient of irradiance in two fields, each record holds both, from the same rays; its radius is
+ * the smaller one. Direct light is gathered in both by the same rays until the quotient is known well enough, so that
+ * noise which both share does not count, and none is spent where nothing has changed.
  *
- * Source: [Ward 1988] for records, [Ward 1992b] for gradients. Different here: direct light at each point; weights that fade;
- * placing by levels. */
+ * Source: [Ward 1988] for records, [Ward 1992b] for gradients. Different here: direct light at each point; weights that
+ * fade; placing by levels. */
 #include "common/gather/irradiance_cache.h"
 
 #include <math.h>
@@ -68,7 +68,7 @@ struct cache {
 
 static bool is_point(const struct gather_point *p) { return vec3_length(p->normal) > 0; }
 
-/* -------------------------------------------------------------------------------------------------------------- lookup */
+/* ----------------------------------------------------------------------------------------------------------- lookup */
 
 struct lookup_side {
     struct gather_point point;
@@ -122,7 +122,7 @@ static void look_up(struct lookup *l, const struct cache *c, size_t i)
     cache_tree_find(&c->tree, l->side[0].point.at, add_record, l);
 }
 
-/* ------------------------------------------------------------------------------------------------------------- placing */
+/* ---------------------------------------------------------------------------------------------------------- placing */
 
 static void mark_row(void *ctx, size_t begin, size_t end, int thread)
 {
@@ -227,10 +227,10 @@ static enum status add_level(struct cache *c, struct err *err)
     return ST_OK;
 }
 
-/* ---------------------------------------------------------------------------------------------------------- evaluation */
+/* ------------------------------------------------------------------------------------------------------- evaluation */
 
-/* Relative standard error of the quotient of light in both fields, replicate by replicate: a - q b has the noise that they
- * do not share. beside: further light in each field. */
+/* Relative standard error of the quotient of light in both fields, replicate by replicate: a - q b has the noise that
+ * they do not share. beside: further light in each field. */
 static double quotient_error(const struct mixture m[SIDES], const struct irradiance e[SIDES],
                              const double beside[SIDES])
 {
@@ -343,7 +343,7 @@ static void count(struct irradiance_cache_stats *stats, const struct cache *c)
     for (size_t i = 0; i < points; i++) stats->direct_rays += c->sides[0].results[i].rays;
 }
 
-bool irradiance_cache_suits(const struct light_field *f) { return f->emitter_count < MIXTURE_MOST; }
+bool irradiance_cache_suits(const struct light_field *f) { return f->emitter_count < MIXTURE_MAX; }
 
 enum status irradiance_cache_fill(struct irradiance *results, const struct irradiance_cache_job *j,
                                   struct irradiance_cache_stats *stats, struct err *err)

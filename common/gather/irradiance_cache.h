@@ -7,8 +7,8 @@
 #include "common/base/err.h"
 #include "common/gather/irradiance.h"
 
-/* The same grid in a second field, for the change of light from one to the other. Both fields have equal emitters: then the
- * same rays are sent in both, and points whose surroundings are equal get equal bits. */
+/* The same grid in a second field, for the change of light from one to the other. Both fields have equal emitters: then
+ * the same rays are sent in both, and points whose surroundings are equal get equal bits. */
 struct irradiance_cache_other {
     const struct light_field *field;   /* NULL: one field only */
     const struct gather_point *points; /* a normal of 0 0 0 where those of the first field have none, and only there */

@@ -1,18 +1,18 @@
 /* lamp.c - radiance and irradiance of a lamp that nothing hides; see lights.h.
  *
- * Overview. The irradiance at a point p with normal m is E = integral of S cos(t)^e (m . w) over the directions w to the
- * lamp that lie above the horizon of m and within the cone t <= beta, where t is the angle at the lamp between its normal
- * and the direction to p. It does not change over a circle about p', the foot of p on the lamp's plane. So polar
+ * Overview. The irradiance at a point p with normal m is E = integral of S cos(t)^e (m . w) over the directions w to
+ * the lamp that lie above the horizon of m and within the cone t <= beta, where t is the angle at the lamp between its
+ * normal and the direction to p. It does not change over a circle about p', the foot of p on the lamp's plane. So polar
  * coordinates about p' leave one integral to do numerically:
  *
  *   E = S integral over t of sin(t) cos(t)^e F(t) dt,   F(t) = integral over arcs of (m . w) d(phi)
  *
  * Mathematics. In the lamp's plane, in units of the height of p above it, a direction is the point tan(t) (cos(phi),
- * sin(phi)), and m . w = cos(t) (a + b . point) with a = -(m . normal) and b the part of m in the plane. The lamp's edge
- * and the horizon a + b . point = 0 cut the circle of radius tan(t) into arcs, over which F has a closed form. F is smooth
- * between the radii where a line or the lamp's rim touches the circle, and where two of them cross on it. These radii
- * split the range of t into panels. F behaves like a square root at the ends of a panel, so t = middle - half cos(u), and
- * Gauss-Legendre quadrature with 12 points in u, halved until two halves agree with the whole.
+ * sin(phi)), and m . w = cos(t) (a + b . point) with a = -(m . normal) and b the part of m in the plane. The lamp's
+ * edge and the horizon a + b . point = 0 cut the circle of radius tan(t) into arcs, over which F has a closed form. F
+ * is smooth between the radii where a line or the lamp's rim touches the circle, and where two of them cross on it.
+ * These radii split the range of t into panels. F behaves like a square root at the ends of a panel, so t = middle -
+ * half cos(u), and Gauss-Legendre quadrature with 12 points in u, halved until two halves agree with the whole.
  *
  * A quad without a cone and with exponent 0 has a closed form: half the sum over the edges of the angle that an edge
  * spans at p times the cosine of m and the normal of the plane through p and the edge [Lambert 1760], after the quad is
@@ -33,7 +33,8 @@ struct rgb lamp_radiance(const struct lamp *l, struct vec3 direction)
     return l->exponent > 0 ? rgb_scale(l->radiance, pow(fmin(cosine, 1), l->exponent)) : l->radiance;
 }
 
-/* --- a quad without a cone ------------------------------------------------------------------------------------------ */
+/* --- a quad without a cone
+ * ------------------------------------------------------------------------------------------ */
 
 /* Keeps what lies above the horizon of m. to: at most count + 1 corners. */
 static int clip(struct vec3 *to, const struct vec3 *corners, int count, struct vec3 m)
@@ -67,7 +68,7 @@ static double quad_irradiance(const struct lamp *l, struct vec3 at, struct vec3 
 
 /* --- any lamp: one integral over the angle from its normal ------------------------------------------------------- */
 
-enum { MOST_LINES = 5, MOST_RADII = 32, MOST_CUTS = 2 * MOST_LINES + 4, DEEPEST = 12 };
+enum { MAX_LINES = 5, MAX_RADII = 32, MAX_CUTS = 2 * MAX_LINES + 4, DEEPEST = 12 };
 
 struct plane_line {
     double x, y, c; /* inside: x X + y Y <= c */
@@ -75,7 +76,7 @@ struct plane_line {
 
 /* The lamp seen from p: its plane in units of the height of p, p' the origin. */
 struct plane_lamp {
-    struct plane_line lines[MOST_LINES]; /* the edges of a quad; the horizon */
+    struct plane_line lines[MAX_LINES]; /* the edges of a quad; the horizon */
     int line_count;
     double cx, cy, radius; /* of a disk */
     bool disk;
@@ -104,7 +105,7 @@ static int cross_line(double *cuts, int count, double x, double y, double c, dou
 static double over_arcs(const struct plane_lamp *p, double t)
 {
     const double r = tan(t);
-    double cuts[MOST_CUTS], sum = 0;
+    double cuts[MAX_CUTS], sum = 0;
     int count = 0;
     for (int i = 0; i < p->line_count; i++)
         count = cross_line(cuts, count, p->lines[i].x, p->lines[i].y, p->lines[i].c, r);
@@ -158,11 +159,12 @@ static double halve(const struct plane_lamp *p, struct panel panel, double from,
            halve(p, panel, middle, to, high, 0.5 * tolerance, depth + 1);
 }
 
-/* --- the radii where the arcs change ------------------------------------------------------------------------------- */
+/* --- the radii where the arcs change
+ * ------------------------------------------------------------------------------- */
 
 static int add_radius(double *radii, int count, double r)
 {
-    if (count < MOST_RADII && isfinite(r) && r > 0) radii[count++] = r;
+    if (count < MAX_RADII && isfinite(r) && r > 0) radii[count++] = r;
     return count;
 }
 
@@ -236,7 +238,7 @@ static bool view_lamp(struct plane_lamp *p, const struct lamp *l, struct vec3 at
 static double irradiance(const struct lamp *l, struct vec3 at, struct vec3 m)
 {
     struct plane_lamp p;
-    double ends[MOST_RADII + 4], panels[MOST_RADII + 4], total = 0, from = 0;
+    double ends[MAX_RADII + 4], panels[MAX_RADII + 4], total = 0, from = 0;
     if (!(l->beta > 0) || !view_lamp(&p, l, at, m)) return 0;
     int count = line_radii(ends, 0, &p);
     if (p.disk) count = disk_radii(ends, count, &p);

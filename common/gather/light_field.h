@@ -26,8 +26,8 @@ struct light_look {
     struct rgb radiance; /* towards the point that asks; never negative, never NaN */
     double distance;     /* of what is seen, in scene units; INFINITY outdoors */
     enum light_source source;
-    int face; /* of a textured model: index of the face that is seen, or the number of faces + 2 k for the front of further
-                 surface k, + 2 k + 1 for its back; -1: none, or the field does not say */
+    int face; /* of a textured model: index of the face that is seen, or the number of faces + 2 k for the front of
+                 further surface k, + 2 k + 1 for its back; -1: none, or the field does not say */
 };
 
 enum emitter_kind {
@@ -48,8 +48,8 @@ struct emitter {
 struct light_field {
     const void *ctx;
     /* What is seen from `from` in unit directions, for the rays whose bit in `active` is 1; elements of the others are
-     * neither read nor written. Called by several threads at once. The origin may lie on a surface: the field sees to it
-     * that the surface does not hide itself, given the unit normal of its side. */
+     * neither read nor written. Called by several threads at once. The origin may lie on a surface: the field sees to
+     * it that the surface does not hide itself, given the unit normal of its side. */
     void (*look)(const void *ctx, const struct vec3 from[RAY_PACKET], struct vec3 normal,
                  const struct vec3 direction[RAY_PACKET], unsigned active, struct light_look seen[RAY_PACKET]);
     const struct emitter *emitters;

@@ -35,7 +35,7 @@ enum status light_record_write(const struct light_record *r, const char *path, c
     return st;
 }
 
-/* ----------------------------------------------------------------------------------------------------------- reading */
+/* ---------------------------------------------------------------------------------------------------------- reading */
 
 static enum status read_numbers(struct textfile *t, double *values, int count, double least, double most,
                                 struct err *err)
@@ -69,8 +69,8 @@ static enum status read_example(struct light_record *r, struct textfile *t, stru
 {
     double place[6], light[4];
     int number;
-    if (r->example_count == LIGHT_EXAMPLES_MOST)
-        return textfile_error(t, err, "another hemicube", "at most %d", LIGHT_EXAMPLES_MOST);
+    if (r->example_count == LIGHT_EXAMPLES_MAX)
+        return textfile_error(t, err, "another hemicube", "at most %d", LIGHT_EXAMPLES_MAX);
     if (read_count(t, "the number of a hemicube", r->example_count + 1, r->example_count + 1, &number, err) ||
         read_numbers(t, place, 6, -1e9, 1e9, err) || read_numbers(t, light, 4, 0, 1e12, err))
         return err->status;

@@ -6,7 +6,7 @@
 #include "common/base/provenance.h"
 #include "common/gather/irradiance.h"
 
-enum { LIGHT_EXAMPLES_MOST = 9 };
+enum { LIGHT_EXAMPLES_MAX = 9 };
 
 /* A point with a picture of what it sees, NAME.hemicubeN.jpg. */
 struct light_example {
@@ -20,7 +20,7 @@ struct light_record {
     double error[3];            /* relative error of the luminance by the gather's own estimate: median, 95 %, most */
     double from[LIGHT_SOURCES]; /* mean share of the light from each source; they sum to 1, or are 0 in the dark */
     double level[2];            /* of a picture: luminance of irradiance at the ends of its colours; 0 0: no picture */
-    struct light_example examples[LIGHT_EXAMPLES_MOST];
+    struct light_example examples[LIGHT_EXAMPLES_MAX];
     int example_count;
 };
 

@@ -12,8 +12,8 @@
 #include "common/base/textfile.h"
 #include "common/math/numbers.h"
 
-enum { MOST_NAME = 255, QUOTED_SIZE = 2 * MOST_NAME + 3, MOST_EXPONENT = 10000 };
-static const double least_axis = 1e-9; /* of a half edge or radius, in units of the model */
+enum { MAX_NAME = 255, QUOTED_SIZE = 2 * MAX_NAME + 3, MAX_EXPONENT = 10000 };
+static const double min_axis = 1e-9; /* of a half edge or radius, in units of the model */
 
 void light_list_release(struct light_list *l)
 {
@@ -43,7 +43,7 @@ void lamp_file_name(char to[LAMP_FILE_NAME], const struct light_list *l, int lam
     to[n] = '\0';
 }
 
-/* ----------------------------------------------------------------------------------------------------------- reading */
+/* ---------------------------------------------------------------------------------------------------------- reading */
 
 static enum status read_vector(struct textfile *t, const char *what, struct vec3 *v, struct err *err)
 {
@@ -56,7 +56,7 @@ static enum status read_vector(struct textfile *t, const char *what, struct vec3
 
 static enum status copy_name(struct textfile *t, const char *what, char **name, struct err *err)
 {
-    char word[MOST_NAME + 1];
+    char word[MAX_NAME + 1];
     if (textfile_word_into(t, what, word, sizeof word, err)) return err->status;
     if (strchr(word, '\r')) return textfile_error(t, err, word, "%s without a line break", what);
     *name = strdup(word);
@@ -81,7 +81,7 @@ static enum status read_edges(struct textfile *t, struct vec3 *x, struct vec3 *y
         return err->status;
     const struct vec3 cross = vec3_cross(*x, *y);
     const double area = vec3_length(cross), most = vec3_length(*x) * vec3_length(*y);
-    if (!(area > least_axis * most) || !(fmin(vec3_length(*x), vec3_length(*y)) > least_axis))
+    if (!(area > min_axis * most) || !(fmin(vec3_length(*x), vec3_length(*y)) > min_axis))
         return textfile_error(t, err, "half edges that span no area", "half edges in two directions");
     *normal = vec3_scale(cross, 1 / area);
     return ST_OK;
@@ -102,7 +102,7 @@ static enum status read_disk(struct lamp *l, struct textfile *t, struct err *err
     const double length = vec3_length(l->normal);
     if (!(fabs(length - 1) < 1e-6)) return textfile_wrong_number(t, length, "a normal of length 1", err);
     if (textfile_double(t, "the radius", &l->radius, err)) return err->status;
-    if (!(l->radius > least_axis && l->radius <= 1e9))
+    if (!(l->radius > min_axis && l->radius <= 1e9))
         return textfile_wrong_number(t, l->radius, "a radius above 0 and at most 1e9", err);
     span_disk(l);
     return ST_OK;
@@ -111,17 +111,12 @@ static enum status read_disk(struct lamp *l, struct textfile *t, struct err *err
 static enum status read_emission(struct lamp *l, struct textfile *t, struct err *err)
 {
     double *const s[] = {&l->radiance.r, &l->radiance.g, &l->radiance.b}, degrees;
-    for (int i = 0; i < 3; i++) {
-        if (textfile_double(t, "a radiance", s[i], err)) return err->status;
-        if (!(*s[i] >= 0 && *s[i] <= 1e30)) return textfile_wrong_number(t, *s[i], "a radiance from 0 to 1e30", err);
-    }
-    if (textfile_double(t, "the angle of the cone", &degrees, err)) return err->status;
-    if (!(degrees >= 0 && degrees <= 90))
-        return textfile_wrong_number(t, degrees, "an angle of the cone from 0 to 90 degrees", err);
+    for (int i = 0; i < 3; i++)
+        if (textfile_number(t, "a radiance", 0, 1e30, s[i], err)) return err->status;
+    if (textfile_number(t, "the angle of the cone in degrees", 0, 90, &degrees, err) ||
+        textfile_number(t, "the exponent", 0, MAX_EXPONENT, &l->exponent, err))
+        return err->status;
     l->beta = degrees / 90 * (0.5 * PI);
-    if (textfile_double(t, "the exponent", &l->exponent, err)) return err->status;
-    if (!(l->exponent >= 0 && l->exponent <= MOST_EXPONENT))
-        return textfile_wrong_number(t, l->exponent, "an exponent from 0 to 10000", err);
     if (!textfile_more(t)) return ST_OK;
     l->bound = true;
     return textfile_expect(t, "bound", err) ? err->status : textfile_end(t, err);
@@ -185,7 +180,7 @@ enum status light_list_read(struct light_list *l, const char *path, struct err *
     return st ? err->status : ST_OK;
 }
 
-/* ----------------------------------------------------------------------------------------------------------- writing */
+/* ---------------------------------------------------------------------------------------------------------- writing */
 
 static void write_vector(FILE *to, struct vec3 v) { fprintf(to, " %.17g %.17g %.17g", v.x, v.y, v.z); }
 

@@ -1,7 +1,7 @@
 /* lights.h - lights.txt: the lamps of a scene, and the openings that let daylight in.
  *
- * O/lights/lights.txt, written by fit_lights, holds what scenes/NAME/lights.txt declares with everything resolved: in the
- * model's frame, scene-linear radiance. */
+ * O/lights/lights.txt, written by fit_lights, holds what scenes/NAME/lights.txt declares with everything resolved: in
+ * the model's frame, scene-linear radiance. */
 #ifndef REMODEL_GATHER_LIGHTS_H
 #define REMODEL_GATHER_LIGHTS_H
 
@@ -11,8 +11,8 @@
 #include "common/light/colour.h"
 #include "common/math/vec.h"
 
-/* Of the model's size, 5 cm of 10 m: a lamp that is at most this far behind a surface is still in front of it. A lamp is a
- * place of a ceiling or hangs under it, and photographs and the model agree on that to some centimetres only. */
+/* Of the model's size, 5 cm of 10 m: a lamp that is at most this far behind a surface is still in front of it. A lamp
+ * is a place of a ceiling or hangs under it, and photographs and the model agree on that to some centimetres only. */
 #define LAMP_REACH 0.005
 
 enum lamp_shape { LAMP_DISK, LAMP_QUAD };
@@ -45,15 +45,15 @@ struct light_list {
     int lamp_count, opening_count;
 };
 
-/* ST_DATA with file and line: a damaged line, a name twice, a normal that is not of unit length, a beta beyond 90 degrees,
- * a negative radiance. */
+/* ST_DATA with file and line: a damaged line, a name twice, a normal that is not of unit length, a beta beyond 90
+ * degrees, a negative radiance. */
 enum status light_list_read(struct light_list *l, const char *path, struct err *err);
 enum status light_list_write(const struct light_list *l, const char *path, const struct provenance *prov,
                              struct err *err);
 void light_list_release(struct light_list *l);
 
-/* The name of a lamp as that of a file, without an extension: bytes other than letters, digits, - and _ become %XX; a name
- * that is too long for a file becomes lampN, N its number in the list from 1. */
+/* The name of a lamp as that of a file, without an extension: bytes other than letters, digits, - and _ become %XX; a
+ * name that is too long for a file becomes lampN, N its number in the list from 1. */
 enum { LAMP_FILE_NAME = 208 };
 void lamp_file_name(char to[LAMP_FILE_NAME], const struct light_list *l, int lamp);
 

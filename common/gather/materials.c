@@ -12,7 +12,7 @@
 #include "common/base/scan.h"
 #include "common/math/numbers.h"
 
-enum { MOST_WORD = 255, QUOTED_SIZE = 2 * MOST_WORD + 3 };
+enum { MAX_WORD = 255, QUOTED_SIZE = 2 * MAX_WORD + 3 };
 
 static const char *const kinds[MATERIAL_MODELS] = {"lambert", "phong", "ward"};
 
@@ -55,7 +55,7 @@ enum status material_list_add(struct material **added, struct material_list *l, 
     return ST_OK;
 }
 
-/* ----------------------------------------------------------------------------------------------------------- regions */
+/* ---------------------------------------------------------------------------------------------------------- regions */
 
 /* Whether the next word is a number: the polygon goes on. */
 static bool number_follows(const struct textfile *t)
@@ -68,10 +68,10 @@ static enum status read_pixels(struct material_region *r, struct textfile *t, st
 {
     while (number_follows(t)) {
         double pixel[2];
-        if (textfile_double(t, "x of a pixel", &pixel[0], err) || textfile_double(t, "y of a pixel", &pixel[1], err))
+        if (textfile_number(t, "x of a pixel", -1e6, 1e6, &pixel[0], err) ||
+            textfile_number(t, "y of a pixel", -1e6, 1e6, &pixel[1], err))
             return err->status;
         for (int k = 0; k < 2; k++) {
-            if (!(fabs(pixel[k]) <= 1e6)) return textfile_wrong_number(t, pixel[k], "a pixel of at most 1e6", err);
             if (array_append(&r->pixel, 2 * (size_t)r->corners + (size_t)k, sizeof *r->pixel, "pixels", err))
                 return err->status;
             r->pixel[2 * r->corners + k] = pixel[k];
@@ -87,7 +87,7 @@ static enum status read_pixels(struct material_region *r, struct textfile *t, st
 
 enum status material_read_region(struct material *m, struct textfile *t, struct err *err)
 {
-    char view[MOST_WORD + 1];
+    char view[MAX_WORD + 1];
     if (textfile_word_into(t, "a photo's id or a view's name", view, sizeof view, err) ||
         array_append(&m->regions, (size_t)m->region_count, sizeof *m->regions, "regions", err))
         return err->status;
@@ -116,16 +116,7 @@ double material_region_area(const struct material_region *r)
     return fabs(sum) / 2;
 }
 
-/* ----------------------------------------------------------------------------------------------------------- reading */
-
-static enum status read_bounded(struct textfile *t, const char *what, double least, double most, double *value,
-                                struct err *err)
-{
-    if (textfile_double(t, what, value, err)) return err->status;
-    char wanted[128];
-    snprintf(wanted, sizeof wanted, "%s from %g to %g", what, least, most);
-    return *value >= least && *value <= most ? ST_OK : textfile_wrong_number(t, *value, wanted, err);
-}
+/* ---------------------------------------------------------------------------------------------------------- reading */
 
 enum status material_read_kind(enum brdf_kind *kind, struct textfile *t, struct err *err)
 {
@@ -141,34 +132,31 @@ enum status material_read_kind(enum brdf_kind *kind, struct textfile *t, struct 
 
 static enum status read_material(struct material_list *l, struct textfile *t, struct err *err)
 {
-    char name[MOST_WORD + 1];
+    char name[MAX_WORD + 1];
     struct material *m = NULL;
     double least, most;
     if (textfile_word_into(t, "a name", name, sizeof name, err) || material_list_add(&m, l, name, t, err) ||
         material_read_kind(&m->kind, t, err))
         return err->status;
     for (int c = 0; c < 3; c++)
-        if (read_bounded(t, "k_d", 0, 1e9, &m->k_d[c], err)) return err->status;
+        if (textfile_number(t, "k_d", 0, 1e9, &m->k_d[c], err)) return err->status;
     gloss_shape_bounds(m->kind, &least, &most);
-    if (read_bounded(t, "k_s", 0, m->kind == BRDF_LAMBERT ? 0 : 1e9, &m->ks, err) ||
-        read_bounded(t, m->kind == BRDF_WARD ? "alpha" : "n", least, most, &m->shape, err))
+    if (textfile_number(t, "k_s", 0, m->kind == BRDF_LAMBERT ? 0 : 1e9, &m->ks, err) ||
+        textfile_number(t, m->kind == BRDF_WARD ? "alpha" : "n", least, most, &m->shape, err))
         return err->status;
     return textfile_end(t, err);
 }
 
 static enum status read_range(struct material_range *r, struct textfile *t, struct err *err)
 {
-    if (read_bounded(t, "the lower end", 0, 1e9, &r->low, err)) return err->status;
+    if (textfile_number(t, "the lower end", 0, 1e9, &r->low, err)) return err->status;
     const char *at = t->cursor + strspn(t->cursor, " \t\r");
     if (*at == '-' && (!at[1] || strchr(" \t\r", at[1]))) {
         char *word;
         r->high = INFINITY;
         return textfile_word(t, "the upper end", &word, err);
     }
-    if (textfile_double(t, "the upper end", &r->high, err)) return err->status;
-    return r->high >= r->low && r->high <= 1e12
-               ? ST_OK
-               : textfile_wrong_number(t, r->high, "an upper end from the lower one to 1e12", err);
+    return textfile_number(t, "the upper end", r->low, 1e12, &r->high, err);
 }
 
 static enum status read_ranges(struct material *m, struct textfile *t, struct err *err)
@@ -188,9 +176,9 @@ static enum status read_evidence(struct material *m, struct textfile *t, struct 
         if (textfile_int(t, "a count", 0, INT_MAX, &count, err)) return err->status;
         *counts[k] = (int)count;
     }
-    if (read_bounded(t, "a scale", 0, 1e12, &m->scale, err)) return err->status;
+    if (textfile_number(t, "a scale", 0, 1e12, &m->scale, err)) return err->status;
     for (int k = 0; k < MATERIAL_MODELS; k++)
-        if (read_bounded(t, "an error", -1, 1e12, &m->error[k], err)) return err->status;
+        if (textfile_number(t, "an error", -1, 1e12, &m->error[k], err)) return err->status;
     if (textfile_rest(t, "a reason", &why, err)) return err->status;
     free(m->why);
     m->why = strdup(why);
@@ -199,7 +187,7 @@ static enum status read_evidence(struct material *m, struct textfile *t, struct 
 
 static enum status read_statement(struct material_list *l, struct textfile *t, struct err *err)
 {
-    char verb[16], name[MOST_WORD + 1];
+    char verb[16], name[MAX_WORD + 1];
     if (textfile_word_into(t, "a statement", verb, sizeof verb, err)) return err->status;
     if (!strcmp(verb, "material")) return read_material(l, t, err);
     const bool range = !strcmp(verb, "range"), evidence = !strcmp(verb, "evidence");
@@ -237,7 +225,7 @@ struct brdf material_brdf(const struct material *m)
                          brdf_gloss_albedo(m->kind, m->ks, m->shape)};
 }
 
-/* ----------------------------------------------------------------------------------------------------------- writing */
+/* ---------------------------------------------------------------------------------------------------------- writing */
 
 static void write_range(FILE *to, struct material_range r)
 {

@@ -1,6 +1,7 @@
 /* materials.h - materials.txt: the reflectance of the materials that a person marked in photographs.
  *
- * O/lights/materials.txt, written by fit_materials. The models are those of common/light/brdf.h, with k_d = albedo / pi. */
+ * O/lights/materials.txt, written by fit_materials. The models are those of common/light/brdf.h, with k_d = albedo /
+ * pi. */
 #ifndef REMODEL_GATHER_MATERIALS_H
 #define REMODEL_GATHER_MATERIALS_H
 
@@ -8,8 +9,8 @@
 #include "common/base/textfile.h"
 #include "common/light/gloss.h"
 
-#define MATERIAL_PHONG_MOST GLOSS_PHONG_MOST /* the exponent is 1 to this, Ward's roughness 0.02 to 1 */
-enum { MATERIAL_MODELS = 3 };                /* values of enum brdf_kind */
+#define MATERIAL_PHONG_MAX GLOSS_PHONG_MAX /* the exponent is 1 to this, Ward's roughness 0.02 to 1 */
+enum { MATERIAL_MODELS = 3 };              /* values of enum brdf_kind */
 
 /* A polygon of pixels of a photograph, as it is stored; VIEW is a photo's id or a view's name. */
 struct material_region {

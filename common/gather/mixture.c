@@ -1,24 +1,25 @@
 /* mixture.c - rays of several strategies, weighted together.
  *
- * Overview. Each strategy (the cosine or a lobe, and every emitter that can light the point) sends its share of the rays.
- * A ray's weight depends on its direction and on the densities of all strategies there, so that light is counted once
- * whatever the rays see, an emitter that is hidden or misnamed included.
+ * Overview. Each strategy (the cosine or a lobe, and every emitter that can light the point) sends its share of the
+ * rays. A ray's weight depends on its direction and on the densities of all strategies there, so that light is counted
+ * once whatever the rays see, an emitter that is hidden or misnamed included.
  *
- * Mathematics. A direction w that strategy s chose adds L(w) k(w) n_s p_s / sum_t (n_t p_t)^2, where k is the cosine or the
- * lobe times the cosine, n_t the number of rays of a strategy and p_t its density: the power heuristic with exponent 2
- * [Veach 1995]. Its weights sum to 1 over the strategies, hence the mean is exact. The balance heuristic, exponent 1, lets
- * rays of the cosine that happen to hit a lamp keep a weight of about n_cosine F / n_lamp, with F the lamp's form factor:
- * their count varies like that of a lottery, and the error of a small lamp is several times larger.
+ * Mathematics. A direction w that strategy s chose adds L(w) k(w) n_s p_s / sum_t (n_t p_t)^2, where k is the cosine or
+ * the lobe times the cosine, n_t the number of rays of a strategy and p_t its density: the power heuristic with
+ * exponent 2 [Veach 1995]. Its weights sum to 1 over the strategies, hence the mean is exact. The balance heuristic,
+ * exponent 1, lets rays of the cosine that happen to hit a lamp keep a weight of about n_cosine F / n_lamp, with F the
+ * lamp's form factor: their count varies like that of a lottery, and the error of a small lamp is several times larger.
  *
- * Directions come from Owen-scrambled Sobol' points [Burley 2020], a set for each strategy, whose size is a power of two: on
- * smooth light the error falls nearly as fast as n^-1.5, and across edges about as n^-0.75. Eight independent scramblings
- * make up an integral; their scatter gives the standard error.
+ * Directions come from Owen-scrambled Sobol' points [Burley 2020], a set for each strategy, whose size is a power of
+ * two: on smooth light the error falls nearly as fast as n^-1.5, and across edges about as n^-0.75. Eight independent
+ * scramblings make up an integral; their scatter gives the standard error.
  *
- * Shares. At first the cosine gets half of the rays, and emitters the other half by their unhidden light, each at least a
- * sixteenth of that. Where an integral is repeated with more rays, shares are proportional to the square root of
+ * Shares. At first the cosine gets half of the rays, and emitters the other half by their unhidden light, each at least
+ * a sixteenth of that. Where an integral is repeated with more rays, shares are proportional to the square root of
  * (variance times rays) of each strategy in the last one, the best shares for independent rays, again with a floor.
  *
- * Source: [Veach 1995] for weights, [Burley 2020] for points. Different here: the power heuristic; shares that learn. */
+ * Source: [Veach 1995] for weights, [Burley 2020] for points. Different here: the power heuristic; shares that
+ * learn. */
 #include "common/gather/mixture.h"
 
 #include <math.h>
@@ -27,10 +28,10 @@
 #include "common/light/sobol.h"
 #include "common/math/numbers.h"
 
-static const double LEAST_SHARE = 1.0 / 32;
+static const double MIN_SHARE = 1.0 / 32;
 static const double RATE = 0.75; /* errors are expected to fall as n^-RATE */
 
-/* -------------------------------------------------------------------------------------------------------- strategies */
+/* ------------------------------------------------------------------------------------------------------- strategies */
 
 static void scale_shares(struct mixture *m)
 {
@@ -38,7 +39,7 @@ static void scale_shares(struct mixture *m)
     for (int i = 0; i < m->count; i++) sum += m->share[i];
     for (int i = 0; i < m->count; i++) {
         m->share[i] = sum > 0 ? m->share[i] / sum : 1.0 / m->count;
-        m->share[i] = fmax(m->share[i], fmin(LEAST_SHARE, 0.5 / m->count));
+        m->share[i] = fmax(m->share[i], fmin(MIN_SHARE, 0.5 / m->count));
         raised += m->share[i];
     }
     for (int i = 0; i < m->count; i++) m->share[i] /= raised;
@@ -58,7 +59,7 @@ static void add_emitter(struct mixture *m, const struct emitter *e)
 {
     struct strategy s;
     if (!strategy_emitter(&s, m->point, e)) return;
-    if (m->count < MIXTURE_MOST) {
+    if (m->count < MIXTURE_MAX) {
         m->strategies[m->count++] = s;
         return;
     }
@@ -82,7 +83,7 @@ static void start(struct mixture *m, const struct light_field *f, struct gather_
     m->lobe = (struct brdf){.kind = BRDF_LAMBERT};
     m->view = p.normal;
     m->count = 0;
-    m->least = MIXTURE_LEAST;
+    m->least = MIXTURE_MIN;
 }
 
 void mixture_init(struct mixture *m, const struct light_field *f, struct gather_point p, enum mixture_part part)
@@ -103,17 +104,17 @@ void mixture_lobe_init(struct mixture *m, const struct light_field *f, struct ga
     add_emitters(m);
 }
 
-/* --------------------------------------------------------------------------------------------------------------- rays */
+/* ------------------------------------------------------------------------------------------------------------- rays */
 
 /* Rays that wait to be traced, and what all have added up. */
 struct tally {
     const struct mixture *mixture;
-    int rays[MIXTURE_MOST]; /* of a strategy in a replicate, a power of two */
+    int rays[MIXTURE_MAX]; /* of a strategy in a replicate, a power of two */
     struct vec3 direction[RAY_PACKET];
     double weight[RAY_PACKET]; /* k(w) times the weight among strategies, over the density */
     int strategy[RAY_PACKET], replicate[RAY_PACKET], waiting;
     struct rgb sums[MIXTURE_REPLICATES];
-    double luminance[MIXTURE_MOST][MIXTURE_REPLICATES];
+    double luminance[MIXTURE_MAX][MIXTURE_REPLICATES];
     double from[LIGHT_SOURCES], nearest, inverse, weights;
     int traced;
 };

@@ -288,7 +288,7 @@ void model_field_scale_lamp(struct model_field *f, const char *name, const doubl
 static enum status find_emitters(struct model_field *f, struct err *err)
 {
     const size_t most =
-        (size_t)f->lights.lamp_count + (size_t)f->lights.opening_count + (size_t)f->model.mesh.body_count + MOST_SUNS;
+        (size_t)f->lights.lamp_count + (size_t)f->lights.opening_count + (size_t)f->model.mesh.body_count + MAX_SUNS;
     f->lamps = calloc((size_t)f->lights.lamp_count + 1, sizeof *f->lamps);
     f->emitters = calloc(most, sizeof *f->emitters);
     if (!f->lamps || !f->emitters) return err_nomem(err, "emitters", most * sizeof *f->emitters);

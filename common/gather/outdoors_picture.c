@@ -21,13 +21,14 @@
 #include "common/base/textfile.h"
 #include "common/capture/photo_quality.h"
 #include "common/image/exr.h"
+#include "common/image/luminance.h"
 #include "common/light/model_clearance.h"
 #include "common/math/distance.h"
 #include "common/texture/view_ids.h"
 
 #define MAX_SIGMA 0.5f /* relative noise of a pixel from which it counts as dark */
 
-/* ------------------------------------------------------------------------------------------------------ lens and pose */
+/* ---------------------------------------------------------------------------------------------------- lens and pose */
 
 static void set_pose(struct outdoors_picture *p, const struct view *view)
 {
@@ -103,7 +104,7 @@ enum status outdoors_picture_of_reference(struct outdoors_picture *p, const char
     return st;
 }
 
-/* ---------------------------------------------------------------------------------------------- what the picture shows */
+/* ------------------------------------------------------------------------------------------- what the picture shows */
 
 struct rays {
     const struct outdoors_picture *picture;
@@ -140,7 +141,7 @@ static size_t trace(uint8_t *leaves, uint32_t *faces, const struct outdoors_pict
 static uint8_t judge(bool reference, const float rgb[3], unsigned marks, float fourth, float fifth)
 {
     if (!reference && !(fourth > 0.999f)) return SHOWS_NOTHING;
-    const float sigma = reference ? photo_relative_sigma(fourth, photo_luminance(rgb)) : fifth;
+    const float sigma = reference ? photo_relative_sigma(fourth, luminance_of(rgb)) : fifth;
     const bool dark = marks & PHOTO_DARK || sigma > MAX_SIGMA;
     if (reference && dark) return SHOWS_NOTHING;
     return dark || marks ? SHOWS_CLIPPED : SHOWS_OUTDOORS;
@@ -309,7 +310,7 @@ void outdoors_picture_release(struct outdoors_picture *p)
     *p = (struct outdoors_picture){0};
 }
 
-/* ------------------------------------------------------------------------------------------------------------ look-up */
+/* ---------------------------------------------------------------------------------------------------------- look-up */
 
 enum outdoors_state outdoors_picture_sample(float rgb[3], float *facing, const struct outdoors_picture *p,
                                             struct vec3 direction)

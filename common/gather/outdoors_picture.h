@@ -1,4 +1,5 @@
-/* outdoors_picture.h - a picture that may show the outdoors: a view or a lighting reference image, and where it does. */
+/* outdoors_picture.h - a picture that may show the outdoors: a view or a lighting reference image, and where it
+ * does. */
 #ifndef REMODEL_OUTDOORS_PICTURE_H
 #define REMODEL_OUTDOORS_PICTURE_H
 
@@ -42,15 +43,15 @@ enum status outdoors_picture_of_reference(struct outdoors_picture *p, const char
                                           bool *placed, struct err *err);
 void outdoors_picture_release(struct outdoors_picture *p);
 
-/* Traces the picture's rays against the model without panes and, if some leave it, reads the picture. *shows: whether some
- * pixel shows the outdoors; if not, nothing is kept. normals: of the faces, by id of their names; reference images need
- * none. Same bits for any number of threads. */
+/* Traces the picture's rays against the model without panes and, if some leave it, reads the picture. *shows: whether
+ * some pixel shows the outdoors; if not, nothing is kept. normals: of the faces, by id of their names; reference images
+ * need none. Same bits for any number of threads. */
 enum status outdoors_picture_load(struct outdoors_picture *p, bool *shows, const struct model_rays *model,
                                   const struct vec3 *normals, const struct outdoors_limits *limits, struct err *err);
 void outdoors_picture_unload(struct outdoors_picture *p);
 
-/* The colour in a direction (model frame, unit length), bilinear. *facing (may be NULL): how squarely the ray passes the
- * opening, 0 to 1. */
+/* The colour in a direction (model frame, unit length), bilinear. *facing (may be NULL): how squarely the ray passes
+ * the opening, 0 to 1. */
 enum outdoors_state outdoors_picture_sample(float rgb[3], float *facing, const struct outdoors_picture *p,
                                             struct vec3 direction);
 

@@ -1,7 +1,7 @@
 /* ray_gather.c - irradiance by low-discrepancy rays: the cosine and all emitters, weighted together (mixture.c).
  *
- * For a target, an integral is repeated with so many rays as the last error asks for, if errors fall as n^-0.75. The last
- * integral alone is the result. */
+ * For a target, an integral is repeated with so many rays as the last error asks for, if errors fall as n^-0.75. The
+ * last integral alone is the result. */
 #include "common/gather/mixture.h"
 
 enum { FIRST = 512 };

@@ -1,12 +1,13 @@
 /* specular.c - light that a glossy surface reflects to a viewer.
  *
  * Overview. A pixel of a glossy surface has the radiance albedo E / pi + k_s I_s. E is its irradiance, and I_s what is
- * computed here with k_s = 1: the lobe's own directions are one more strategy beside those towards emitters (mixture.c). A
- * narrow lobe is best sampled by itself, a wide one under a small lamp by the lamp; the weights see to both.
+ * computed here with k_s = 1: the lobe's own directions are one more strategy beside those towards emitters
+ * (mixture.c). A narrow lobe is best sampled by itself, a wide one under a small lamp by the lamp; the weights see to
+ * both.
  *
- * Mathematics. I = integral of L(w) f(w, view) cos(w): for Phong L k_s (R.V)^n, in which the cosine cancels [Colburn 2014,
- * A.1.10]; for Ward L k_s exp(-tan^2(N,H) / alpha^2) / (4 pi alpha^2) sqrt(cos_light / cos_view) [Ward 1992]. In uniform
- * light of radiance 1 with the viewer overhead, Phong's is 2 pi k_s / (n + 1).
+ * Mathematics. I = integral of L(w) f(w, view) cos(w): for Phong L k_s (R.V)^n, in which the cosine cancels [Colburn
+ * 2014, A.1.10]; for Ward L k_s exp(-tan^2(N,H) / alpha^2) / (4 pi alpha^2) sqrt(cos_light / cos_view) [Ward 1992]. In
+ * uniform light of radiance 1 with the viewer overhead, Phong's is 2 pi k_s / (n + 1).
  *
  * Source: [Colburn 2014, 5.4] for the integrals, [Veach 1995] for the mixture. */
 #include "common/gather/specular.h"

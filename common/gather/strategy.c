@@ -15,8 +15,8 @@
  * The estimate of an emitter's irradiance is the mean over a lattice of 4 x 4 points of its area, each with the lamp's
  * fall-off and cut and without what hides it. An emitter that does not rise above the horizon, that the point is behind
  * or whose cone misses the point cannot light it. Cones are kept unless all 16 points are two cells' width outside, so
- * that a cone's edge is not lost between points. A cone that is narrower than the emitter is sampled itself: the disk that
- * it cuts out of the emitter's plane.
+ * that a cone's edge is not lost between points. A cone that is narrower than the emitter is sampled itself: the disk
+ * that it cuts out of the emitter's plane.
  *
  * Source: [Veach 1995], [Urena 2013]. */
 #include "common/gather/strategy.h"
@@ -44,7 +44,7 @@ void strategy_lobe(struct strategy *s, struct gather_point p, const struct brdf 
     s->view = view;
 }
 
-/* ----------------------------------------------------------------------------------------------------------- emitters */
+/* --------------------------------------------------------------------------------------------------------- emitters */
 
 static bool see_sun(struct strategy *s, const struct emitter *e)
 {
@@ -135,8 +135,8 @@ static bool set_area(struct strategy *s, struct vec3 to, struct vec3 x, struct v
     return true;
 }
 
-/* What a narrow cone leaves of the emitter lies in a disk about the foot of the point's perpendicular. Takes that disk if
- * it is the smaller one. False: nothing is left. */
+/* What a narrow cone leaves of the emitter lies in a disk about the foot of the point's perpendicular. Takes that disk
+ * if it is the smaller one. False: nothing is left. */
 static bool narrow_to_cone(struct strategy *s, double height)
 {
     const struct emitter *e = s->emitter;
@@ -171,7 +171,7 @@ bool strategy_emitter(struct strategy *s, struct gather_point p, const struct em
     return e->kind == EMITTER_SUN ? see_sun(s, e) : see_area(s, e);
 }
 
-/* ------------------------------------------------------------------------------------------------------------ samples */
+/* ---------------------------------------------------------------------------------------------------------- samples */
 
 static struct vec3 sample_cosine(const struct strategy *s, const double u[2])
 {
@@ -237,7 +237,7 @@ bool strategy_sample(const struct strategy *s, const double u[2], struct vec3 *d
     return vec3_dot(*direction, s->point.normal) > 0;
 }
 
-/* ---------------------------------------------------------------------------------------------------------- densities */
+/* -------------------------------------------------------------------------------------------------------- densities */
 
 static double area_density(const struct strategy *s, struct vec3 direction)
 {

@@ -39,7 +39,8 @@ struct strategy {
 };
 
 void strategy_cosine(struct strategy *s, struct gather_point p);
-/* By the lobe of a brdf (its albedo counts as 0) towards a viewer in the unit direction `view`. Keeps a pointer to it. */
+/* By the lobe of a brdf (its albedo counts as 0) towards a viewer in the unit direction `view`. Keeps a pointer to
+ * it. */
 void strategy_lobe(struct strategy *s, struct gather_point p, const struct brdf *lobe, struct vec3 view);
 /* Towards an emitter; keeps a pointer to it. False: it cannot light the point. */
 bool strategy_emitter(struct strategy *s, struct gather_point p, const struct emitter *emitter);

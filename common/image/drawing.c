@@ -6,6 +6,7 @@
 #include <stdlib.h>
 
 #include "common/base/sort.h"
+#include "common/image/luminance.h"
 
 static void blend(unsigned char *to, const unsigned char colour[3], double part)
 {
@@ -84,7 +85,7 @@ enum status image_expose(struct image *im, double share, double level, struct er
     if (!sorted) return err_nomem(err, "a picture", pixels * sizeof *sorted);
     for (size_t i = 0; i < pixels; i++) {
         const float *p = im->data + 4 * i;
-        if (p[3] > 0.5f) sorted[count++] = 0.2126f * p[0] + 0.7152f * p[1] + 0.0722f * p[2];
+        if (p[3] > 0.5f) sorted[count++] = luminance_of(p);
     }
     sort_floats(sorted, count);
     const float limit = count ? sorted[(size_t)(share * (double)(count - 1))] : 0;

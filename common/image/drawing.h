@@ -1,6 +1,7 @@
 /* drawing.h - lines and dots on 8-bit pictures, and the exposure of a linear picture to draw on.
  *
- * Places are in pixels; the centre of pixel (x, y) is at (x + 0.5, y + 0.5). What lies outside of the picture is cut. */
+ * Places are in pixels; the centre of pixel (x, y) is at (x + 0.5, y + 0.5). What lies outside of the picture is
+ * cut. */
 #ifndef REMODEL_DRAWING_H
 #define REMODEL_DRAWING_H
 

@@ -1,8 +1,8 @@
 /* photo_jpeg.c - JPEG files, by libjpeg-turbo.
  *
- * JPEG rounds the coefficients of an orthonormal transform of blocks of 8 x 8 pixels to multiples of the steps q_k in the
- * file. If the errors are spread evenly, their variance is q_k^2 / 12 each, so that of a pixel is the mean over k. Where
- * coefficients are smaller than half a step, it is less. */
+ * JPEG rounds the coefficients of an orthonormal transform of blocks of 8 x 8 pixels to multiples of the steps q_k in
+ * the file. If the errors are spread evenly, their variance is q_k^2 / 12 each, so that of a pixel is the mean over k.
+ * Where coefficients are smaller than half a step, it is less. */
 #include <stdlib.h>
 #include <string.h>
 

@@ -3,11 +3,11 @@
  * The estimator states a sigma that grows as the confidence falls; stages use it as a tolerance, and about 97 % of the
  * pixels of confident segments are within two of it. The errors are those of a mixture: most depths of any class are
  * right to about half a step of the plane sweep, and the others are far off. A factor per class makes sigma the
- * deviation of the former: 68 % of the pixels are within one. How many are far off follows from the confidence, not from
- * sigma (docs/evaluation.md).
+ * deviation of the former: 68 % of the pixels are within one. How many are far off follows from the confidence, not
+ * from sigma (docs/evaluation.md).
  *
- * The factors are the geometric means of those of two simulated scenes, loft (draft) and still-life: sure 0.29 and 0.53,
- * unsure 0.17 and 0.24, inherited 1.05 and 0.24. The third scene, apartment, took no part. */
+ * The factors are the geometric means of those of two simulated scenes, loft (draft) and still-life: sure 0.29 and
+ * 0.53, unsure 0.17 and 0.24, inherited 1.05 and 0.24. The third scene, apartment, took no part. */
 #include "common/layers/depth_sigma.h"
 
 static const struct {

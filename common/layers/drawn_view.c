@@ -1,8 +1,8 @@
 /* drawn_view.c - a view's segments in a novel camera, projected where and when a tile needs them.
  *
  * A view has tens of thousands of segments, but a tile few hundred, and most tiles few views. So a view is prepared in
- * two steps. Once per frame its groups of eight neighbouring segments (layer_view.h) are sorted into tiles by a bound of
- * their pixels. Then each tile that draws the view projects the segments of its groups, into
+ * two steps. Once per frame its groups of eight neighbouring segments (layer_view.h) are sorted into tiles by a bound
+ * of their pixels. Then each tile that draws the view projects the segments of its groups, into
  * memory that stays in the cache, and keeps those in the part of the tile that is still open. A segment that several
  * tiles show is projected for each of them, two to three times on average.
  *
@@ -71,9 +71,9 @@ static int bound_pixels(struct pixel_box boxes[LANES], const struct view_relatio
             by_v[i][k] = _mm256_add_pd(_mm256_mul_pd(all4(r->inverse_m[i][1]), v[k]), all4(r->inverse_m[i][2]));
             by_q[i][k] = _mm256_mul_pd(all4(r->inverse_k[i]), q[k]);
         }
-    const __m256d least_w = low_sum(by_u[2], by_v[2], by_q[2]), most_w = high_sum(by_u[2], by_v[2], by_q[2]);
-    const __m256d safe = _mm256_and_pd(exact, _mm256_cmp_pd(least_w, all4(SAFE_RATIO), _CMP_GE_OQ));
-    const __m256d hidden = _mm256_and_pd(exact, _mm256_cmp_pd(most_w, all4(HIDDEN_RATIO), _CMP_LE_OQ));
+    const __m256d min_w = low_sum(by_u[2], by_v[2], by_q[2]), max_w = high_sum(by_u[2], by_v[2], by_q[2]);
+    const __m256d safe = _mm256_and_pd(exact, _mm256_cmp_pd(min_w, all4(SAFE_RATIO), _CMP_GE_OQ));
+    const __m256d hidden = _mm256_and_pd(exact, _mm256_cmp_pd(max_w, all4(HIDDEN_RATIO), _CMP_LE_OQ));
     const __m256d seen = _mm256_andnot_pd(hidden, _mm256_cmp_pd(q[1], zero, _CMP_GT_OQ));
     int lanes = _mm256_movemask_pd(seen);
     if (!lanes) return 0;

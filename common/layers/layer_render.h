@@ -9,8 +9,8 @@
 #include "common/layers/rendered_frame.h"
 
 #define SOFT_Z_WIDTHS 32 /* default width of the soft z */
-#define SOFT_Z_FILL_WIDTHS \
-    3 /* width of the reversed soft z of hole filling: narrow, so that only the far side counts */
+/* Width of the reversed soft z of hole filling: narrow, so that only the far side counts. */
+#define SOFT_Z_FILL_WIDTHS 3
 
 #define LAYER_MORE_VIEWS 12
 

@@ -58,7 +58,8 @@ struct segment_group {
     uint32_t index[GROUP_SEGMENTS];    /* in the depth map's list */
 };
 
-/* What four groups fill: rectangles of the view and ranges of 1/z. high_inverse 0: nobody sees a segment of the group. */
+/* What four groups fill: rectangles of the view and ranges of 1/z. high_inverse 0: nobody sees a segment of the
+ * group. */
 #define BOUNDS_GROUPS 4
 
 struct group_bounds {

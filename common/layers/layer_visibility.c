@@ -25,7 +25,7 @@
 
 /* A photo reduced by less than sqrt(2) is looked up as it is: bilinear levels are blurred by themselves. */
 #define LEVEL_BIAS 0.5f
-#define BORDER     0.05f /* width of the band in which a view fades out towards its border, of the picture's long side */
+#define BORDER     0.05f /* width of the band in which a view fades out at its border, of the picture's long side */
 
 /* ------------------------------------------------------------------------------------------------------ drawing */
 
@@ -355,22 +355,41 @@ static int same_surface(const struct layer_view *lv, size_t at, uint32_t id, uin
     return count;
 }
 
-/* Coverage and premultiplied colour of segment `id`'s surface in a split cell. */
-static __m128 surface_at(const struct layer_view *lv, uint32_t id, float u, float v)
+/* A cell of four texels with their bilinear weights, and the segments that are one surface in it. */
+struct split_cell {
+    const struct texel *texel[4];
+    float weight[4];
+    uint32_t ids[CELL_IDS];
+    int count;
+};
+
+static inline void split_cell_at(struct split_cell *c, const struct layer_view *lv, uint32_t id, float u, float v)
 {
     const int i = (int)u, j = (int)v;
     const float fu = u - (float)i, fv = v - (float)j;
     const size_t at = (size_t)j * (size_t)lv->stride + (size_t)i;
     const struct texel *t = lv->texels + at;
-    const struct texel *cell[4] = {t, t + 1, t + lv->stride, t + lv->stride + 1};
-    const float weights[4] = {(1 - fu) * (1 - fv), fu * (1 - fv), (1 - fu) * fv, fu * fv};
-    uint32_t ids[CELL_IDS];
-    const int count = same_surface(lv, at, id, ids);
+    c->texel[0] = t;
+    c->texel[1] = t + 1;
+    c->texel[2] = t + lv->stride;
+    c->texel[3] = t + lv->stride + 1;
+    c->weight[0] = (1 - fu) * (1 - fv);
+    c->weight[1] = fu * (1 - fv);
+    c->weight[2] = (1 - fu) * fv;
+    c->weight[3] = fu * fv;
+    c->count = same_surface(lv, at, id, c->ids);
+}
+
+/* Coverage and premultiplied colour of segment `id`'s surface in a split cell. */
+static __m128 surface_at(const struct layer_view *lv, uint32_t id, float u, float v)
+{
+    struct split_cell c;
     __m256 sum = _mm256_setzero_ps();
 
+    split_cell_at(&c, lv, id, u, v);
     for (int k = 0; k < 4; k++) {
-        const __m256 w = _mm256_and_ps(layers_of(cell[k], ids, count), _mm256_set1_ps(weights[k]));
-        const __m256 color = _mm256_cvtph_ps(_mm_loadu_si128((const __m128i *)(const void *)cell[k]->rgba));
+        const __m256 w = _mm256_and_ps(layers_of(c.texel[k], c.ids, c.count), _mm256_set1_ps(c.weight[k]));
+        const __m256 color = _mm256_cvtph_ps(_mm_loadu_si128((const __m128i *)(const void *)c.texel[k]->rgba));
         sum = _mm256_add_ps(sum, _mm256_mul_ps(w, color));
     }
     return _mm_add_ps(_mm256_castps256_ps128(sum), _mm256_extractf128_ps(sum, 1));
@@ -379,22 +398,16 @@ static __m128 surface_at(const struct layer_view *lv, uint32_t id, float u, floa
 /* Coverage by segment `id`'s surface in a split cell: the alpha of surface_at(), bit by bit. */
 static float surface_alpha(const struct layer_view *lv, uint32_t id, float u, float v)
 {
-    const int i = (int)u, j = (int)v;
-    const float fu = u - (float)i, fv = v - (float)j;
-    const size_t at = (size_t)j * (size_t)lv->stride + (size_t)i;
-    const struct texel *t = lv->texels + at;
-    const struct texel *cell[4] = {t, t + 1, t + lv->stride, t + lv->stride + 1};
-    const float weights[4] = {(1 - fu) * (1 - fv), fu * (1 - fv), (1 - fu) * fv, fu * fv};
-    uint32_t ids[CELL_IDS];
-    const int count = same_surface(lv, at, id, ids);
+    struct split_cell c;
     float sum[2] = {0, 0};
 
+    split_cell_at(&c, lv, id, u, v);
     for (int k = 0; k < 4; k++)
         for (int l = 0; l < 2; l++) {
-            const uint32_t own = cell[k]->id[l] & ~TEXEL_JOINED;
+            const uint32_t own = c.texel[k]->id[l] & ~TEXEL_JOINED;
             bool found = false;
-            for (int n = 0; n < count; n++) found |= own == ids[n];
-            if (found) sum[l] += weights[k] * _cvtsh_ss(cell[k]->rgba[l][3]);
+            for (int n = 0; n < c.count; n++) found |= own == c.ids[n];
+            if (found) sum[l] += c.weight[k] * _cvtsh_ss(c.texel[k]->rgba[l][3]);
         }
     return sum[0] + sum[1];
 }

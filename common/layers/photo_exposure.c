@@ -15,19 +15,20 @@
 #include <string.h>
 
 #include "common/base/parallel.h"
+#include "common/image/luminance.h"
 #include "common/math/cholesky.h"
 
-#define HALF_WINDOW  2     /* px around an observation: the mean of 5 x 5 */
-#define BRIGHTEST    0.95f /* of a colour that is not clipped */
-#define DARKEST      0.005f
-#define WHITE        0.8f /* from here to 1, white counts as clipped */
-#define ROBUST       0.1  /* residual, in log luminance, at which a weight is halved */
-#define ITERATIONS   10   /* of weights */
-#define PRIOR        1e-3 /* weight of equal exposures, in observations: decides what no point does */
-#define LEAST        0.01 /* differences below are noise */
-#define LEAST_SIGMAS 3.0  /* of vignetting */
-#define MAX_VIEWS    1000 /* more are blended as they were taken: the system is dense */
-#define OWN          0.01 /* of the views' spacing: a camera this near to a view has its exposure */
+#define HALF_WINDOW 2     /* px around an observation: the mean of 5 x 5 */
+#define BRIGHTEST   0.95f /* of a colour that is not clipped */
+#define DARKEST     0.005f
+#define WHITE       0.8f /* from here to 1, white counts as clipped */
+#define ROBUST      0.1  /* residual, in log luminance, at which a weight is halved */
+#define ITERATIONS  10   /* of weights */
+#define PRIOR       1e-3 /* weight of equal exposures, in observations: decides what no point does */
+#define MIN_CHANGE  0.01 /* differences below are noise */
+#define MIN_SIGMAS  3.0  /* of vignetting */
+#define MAX_VIEWS   1000 /* more are blended as they were taken: the system is dense */
+#define OWN         0.01 /* of the views' spacing: a camera this near to a view has its exposure */
 
 enum { LUMINANCE = 3, CHANNELS = 4 };
 
@@ -64,7 +65,7 @@ static bool colour_around(const struct layer_view *lv, double u, double v, doubl
                 sum[c] += rgba[c] / (float)(side * side);
             }
         }
-    const float luminance = 0.2126f * sum[0] + 0.7152f * sum[1] + 0.0722f * sum[2];
+    const float luminance = luminance_of(sum);
     if (!(luminance >= DARKEST)) return false;
     for (int c = 0; c < 3; c++) log_of[c] = log((double)fmaxf(sum[c], 0.1f * DARKEST));
     log_of[LUMINANCE] = log((double)luminance);
@@ -201,7 +202,7 @@ static bool fit_luminance(struct system *y, struct samples *s, double *x, double
     }
     const double information = y->a[(size_t)y->n * (size_t)y->n - 1]; /* square root of that of vignetting alone */
     const double sigma = sqrt(variance) / information, v = x[y->views];
-    *vignetting = fabs(v) > LEAST_SIGMAS * sigma && fabs(v) * s->max_r2 > LEAST ? v : 0;
+    *vignetting = fabs(v) > MIN_SIGMAS * sigma && fabs(v) * s->max_r2 > MIN_CHANGE ? v : 0;
     return true;
 }
 
@@ -217,7 +218,7 @@ static bool fit(struct photo_exposures *e, struct system *y, struct samples *s, 
             largest = fmax(largest, fabs(x[i]));
         }
     }
-    return largest >= LEAST || e->vignetting != 0;
+    return largest >= MIN_CHANGE || e->vignetting != 0;
 }
 
 enum status photo_exposures_fit(struct photo_exposures *e, const struct camera_set *set, const struct layer_view *views,

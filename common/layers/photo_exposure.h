@@ -1,8 +1,8 @@
 /* photo_exposure.h - how much brighter some photos of a scene are than others: exposure, white balance, vignetting.
  *
- * A camera that chooses its exposure for each photo makes the same wall brighter in one photo than in the next; blended,
- * such photos show patches and borders. Photos are brought to one exposure before they are blended (layer_scene.h), and
- * a frame gets the exposure of the photos around its camera afterwards. */
+ * A camera that chooses its exposure for each photo makes the same wall brighter in one photo than in the next;
+ * blended, such photos show patches and borders. Photos are brought to one exposure before they are blended
+ * (layer_scene.h), and a frame gets the exposure of the photos around its camera afterwards. */
 #ifndef REMODEL_PHOTO_EXPOSURE_H
 #define REMODEL_PHOTO_EXPOSURE_H
 

@@ -7,10 +7,10 @@
  *           1/2 (1 + cos(pi (dz - gamma) / (rho - 2 gamma)))  gamma < dz <= rho - gamma
  *           0                                               beyond;     gamma = rho / 10
  *
- * In the thesis rho is the scene's depth range. Here, with a width of k > 0 uncertainties, inverse depths take the place
- * of depths, because a match is as precise in 1/z everywhere: dz = 1/z_closest - 1/z. Two depths z_a, z_b of relative
- * uncertainties s_a, s_b have u = sqrt((s_a / z_a)^2 + (s_b / z_b)^2) and rho = 2 k u: the weight is 1/2 at dz = k u and
- * 0 from 1.8 k u on. In z, a far and unsure surface would show through all that is in front of it.
+ * In the thesis rho is the scene's depth range. Here, with a width of k > 0 uncertainties, inverse depths take the
+ * place of depths, because a match is as precise in 1/z everywhere: dz = 1/z_closest - 1/z. Two depths z_a, z_b of
+ * relative uncertainties s_a, s_b have u = sqrt((s_a / z_a)^2 + (s_b / z_b)^2) and rho = 2 k u: the weight is 1/2 at dz
+ * = k u and 0 from 1.8 k u on. In z, a far and unsure surface would show through all that is in front of it.
  *
  * soft_z_blend8 (fast renderer, one sample per view). Colour is weighted by blend x w x alpha and normalised; depth is
  * sum(w p z) / sum(w p), without blending weights. A view that enters or leaves must not make a jump, so a sample of
@@ -19,13 +19,13 @@
  * This is the formula above wherever every p is 1.
  *
  * soft_z_merge (offline renderer, all fragments of all views in one buffer [Colburn 2014, 3.6.2]). Beyond the thesis,
- * views vote, with a width of VOTE_WIDTHS. The support of a fragment is (for / (for + against))^2. For: the votes of all
- * fragments at its depth, its own included. Against: fragments behind it, by the alpha that they have in excess of what
- * it leaves free (their views look through it); and, by AGAINST_IN_FRONT, fragments in front of it, by the alpha that
- * they have in excess of what its own view has there. A fragment hides others and counts by its support; of several in
- * front of one, the one that hides most counts. A fragment that has only a part of the pixel lies at a silhouette, whose
- * place is unsure by about a pixel in each view: it neither hides nor is hidden, so that silhouettes of several views
- * are averaged.
+ * views vote, with a width of VOTE_WIDTHS. The support of a fragment is (for / (for + against))^2. For: the votes of
+ * all fragments at its depth, its own included. Against: fragments behind it, by the alpha that they have in excess of
+ * what it leaves free (their views look through it); and, by AGAINST_IN_FRONT, fragments in front of it, by the alpha
+ * that they have in excess of what its own view has there. A fragment hides others and counts by its support; of
+ * several in front of one, the one that hides most counts. A fragment that has only a part of the pixel lies at a
+ * silhouette, whose place is unsure by about a pixel in each view: it neither hides nor is hidden, so that silhouettes
+ * of several views are averaged.
  *
  * The fragments of one view are averaged linearly: they share the pixel's area. Colours of different views are averaged
  * as square roots: where views disagree, this mean is close to the perceived one, and a mean of radiances is too

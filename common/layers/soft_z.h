@@ -22,7 +22,8 @@ float soft_z_weight(float dz, float gamma, float rho);
 /* rho of two depths with relative uncertainties sigma. */
 float soft_z_rho(const struct soft_z *s, float z_a, float sigma_a, float z_b, float sigma_b);
 
-/* What depths are compared by: with a width, -1/z, whose uncertainty is sigma / z; else z, whose uncertainty is sigma z.
+/* What depths are compared by: with a width, -1/z, whose uncertainty is sigma / z; else z, whose uncertainty is sigma
+ * z.
  */
 static inline float soft_z_order(const struct soft_z *s, float z) { return s->widths > 0 ? -1 / z : z; }
 

@@ -3,6 +3,8 @@
 #ifndef REMODEL_COLOUR_H
 #define REMODEL_COLOUR_H
 
+#include "common/image/luminance.h"
+
 struct rgb {
     double r, g, b;
 };
@@ -22,6 +24,6 @@ static inline double rgb_max(struct rgb a)
     double m = a.r > a.g ? a.r : a.g;
     return m > a.b ? m : a.b;
 }
-static inline double rgb_luminance(struct rgb a) { return 0.2126 * a.r + 0.7152 * a.g + 0.0722 * a.b; }
+static inline double rgb_luminance(struct rgb a) { return LUMINANCE_R * a.r + LUMINANCE_G * a.g + LUMINANCE_B * a.b; }
 
 #endif

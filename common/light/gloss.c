@@ -9,7 +9,7 @@ static const char *const kinds[] = {[BRDF_LAMBERT] = "matt", [BRDF_PHONG] = "pho
 void gloss_shape_bounds(enum brdf_kind kind, double *least, double *most)
 {
     *least = kind == BRDF_PHONG ? 1 : kind == BRDF_WARD ? 0.02 : 0;
-    *most = kind == BRDF_PHONG ? GLOSS_PHONG_MOST : kind == BRDF_WARD ? 1 : 0;
+    *most = kind == BRDF_PHONG ? GLOSS_PHONG_MAX : kind == BRDF_WARD ? 1 : 0;
 }
 
 struct brdf gloss_brdf(const struct gloss *g, struct rgb albedo)
@@ -17,7 +17,7 @@ struct brdf gloss_brdf(const struct gloss *g, struct rgb albedo)
     return (struct brdf){g->kind, albedo, g->ks, g->shape, brdf_gloss_albedo(g->kind, g->ks, g->shape)};
 }
 
-/* ----------------------------------------------------------------------------------------------------------- reading */
+/* ---------------------------------------------------------------------------------------------------------- reading */
 
 static enum status read_kind(enum brdf_kind *kind, struct textfile *t, struct err *err)
 {
@@ -31,24 +31,14 @@ static enum status read_kind(enum brdf_kind *kind, struct textfile *t, struct er
     return textfile_error(t, err, word, "matt, phong or ward");
 }
 
-static enum status read_number(struct textfile *t, const char *what, double least, double most, double *value,
-                               struct err *err)
-{
-    char wanted[96];
-    if (textfile_double(t, what, value, err)) return err->status;
-    if (*value >= least && *value <= most) return ST_OK;
-    snprintf(wanted, sizeof wanted, "%s from %g to %g", what, least, most);
-    return textfile_wrong_number(t, *value, wanted, err);
-}
-
 /* KS and N or ALPHA, unless it is matt. */
 static enum status read_lobe(struct gloss *g, struct textfile *t, struct err *err)
 {
     double least, most;
     if (g->kind == BRDF_LAMBERT) return ST_OK;
     gloss_shape_bounds(g->kind, &least, &most);
-    if (read_number(t, "KS, the strength of the gloss,", 0, 1e6, &g->ks, err) ||
-        read_number(t, g->kind == BRDF_WARD ? "ALPHA, a roughness," : "N, an exponent,", least, most, &g->shape, err))
+    if (textfile_number(t, "KS, the strength of the gloss", 0, 1e6, &g->ks, err) ||
+        textfile_number(t, g->kind == BRDF_WARD ? "ALPHA, a roughness" : "N, an exponent", least, most, &g->shape, err))
         return err->status;
     return ST_OK;
 }
@@ -77,15 +67,15 @@ enum status brdf_read(struct brdf *b, struct textfile *t, struct err *err)
     struct gloss g = {0};
     struct rgb albedo = {0, 0, 0};
     *b = (struct brdf){0};
-    if (read_kind(&g.kind, t, err) || read_number(t, "a share of red light", 0, 1, &albedo.r, err) ||
-        read_number(t, "a share of green light", 0, 1, &albedo.g, err) ||
-        read_number(t, "a share of blue light", 0, 1, &albedo.b, err) || read_lobe(&g, t, err))
+    if (read_kind(&g.kind, t, err) || textfile_number(t, "a share of red light", 0, 1, &albedo.r, err) ||
+        textfile_number(t, "a share of green light", 0, 1, &albedo.g, err) ||
+        textfile_number(t, "a share of blue light", 0, 1, &albedo.b, err) || read_lobe(&g, t, err))
         return err->status;
     *b = gloss_brdf(&g, albedo);
     return check_sum(rgb_max(albedo), b->gloss, t, err);
 }
 
-/* ---------------------------------------------------------------------------------------------------------- printing */
+/* --------------------------------------------------------------------------------------------------------- printing */
 
 void gloss_print(const struct gloss *g, FILE *to)
 {

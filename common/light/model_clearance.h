@@ -1,5 +1,5 @@
-/* model_clearance.h - how far points and straight ways are from the surfaces of a solid model. Panes of glass are solids
- * like others, if the model was read with them. */
+/* model_clearance.h - how far points and straight ways are from the surfaces of a solid model. Panes of glass are
+ * solids like others, if the model was read with them. */
 #ifndef REMODEL_MODEL_CLEARANCE_H
 #define REMODEL_MODEL_CLEARANCE_H
 

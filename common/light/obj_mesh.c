@@ -31,9 +31,9 @@ static enum status read_vertex(struct obj_reader *r)
     double v[3] = {0, 0, 0};
     for (int i = 0; i < 3; i++) {
         if (textfile_double(&r->t, "a vertex's coordinate", &v[i], r->err)) return r->err->status;
-        if (fabs(v[i]) > OBJ_MOST_COORDINATE)
+        if (fabs(v[i]) > OBJ_MAX_COORDINATE)
             return textfile_error(&r->t, r->err, "a larger number", "a vertex's coordinate, at most %g",
-                                  OBJ_MOST_COORDINATE);
+                                  OBJ_MAX_COORDINATE);
     }
     if (array_append(&r->vertices, (size_t)r->vertex_count, sizeof *r->vertices, "vertices", r->err))
         return r->err->status;

@@ -5,7 +5,7 @@
 #include "common/base/err.h"
 #include "common/math/vec.h"
 
-#define OBJ_MOST_COORDINATE 1e5 /* either sign, in the file's unit */
+#define OBJ_MAX_COORDINATE 1e5 /* either sign, in the file's unit */
 
 /* {0} is the empty state. */
 struct obj_mesh {
@@ -17,8 +17,8 @@ struct obj_mesh {
 /* Reads lines v and f. Polygons become fans of triangles; indices may be negative and may carry /texture/normal; all
  * other lines (normals, groups, materials) are ignored. Triangles without area are left out, with a note in the log.
  * The caller releases the mesh; it is empty after a failure. ST_IO: the file cannot be read. ST_DATA with file and
- * line: an index without its vertex, a number that is not finite or beyond OBJ_MOST_COORDINATE, fewer than three corners;
- * no face has an area. */
+ * line: an index without its vertex, a number that is not finite or beyond OBJ_MAX_COORDINATE, fewer than three
+ * corners; no face has an area. */
 enum status obj_mesh_read(struct obj_mesh *mesh, const char *path, struct err *err);
 void obj_mesh_release(struct obj_mesh *mesh);
 

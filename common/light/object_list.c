@@ -13,7 +13,7 @@
 
 #define HEADER "remodel-objects"
 
-enum { MOST_WORD = 255, QUOTED_SIZE = 2 * MOST_WORD + 3 };
+enum { MAX_WORD = 255, QUOTED_SIZE = 2 * MAX_WORD + 3 };
 
 void object_list_release(struct object_list *l)
 {
@@ -30,7 +30,7 @@ bool object_file_is_valid(const char *file)
 {
     static const char letters[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./";
     const size_t length = strlen(file);
-    if (length < 5 || length > MOST_WORD || strspn(file, letters) != length || strcmp(file + length - 4, ".obj"))
+    if (length < 5 || length > MAX_WORD || strspn(file, letters) != length || strcmp(file + length - 4, ".obj"))
         return false;
     for (const char *part = file; part; part = strchr(part, '/')) {
         if (part != file) part++;
@@ -39,11 +39,11 @@ bool object_file_is_valid(const char *file)
     return true;
 }
 
-/* ----------------------------------------------------------------------------------------------------------- reading */
+/* ---------------------------------------------------------------------------------------------------------- reading */
 
 static enum status copy_word(char **to, struct textfile *t, const char *what, struct err *err)
 {
-    char word[MOST_WORD + 1];
+    char word[MAX_WORD + 1];
     if (textfile_word_into(t, what, word, sizeof word, err)) return err->status;
     if (strchr(word, '\r')) return textfile_error(t, err, word, "%s without a line break", what);
     *to = strdup(word);
@@ -100,7 +100,7 @@ enum status object_list_read(struct object_list *l, const char *path, struct err
     return st;
 }
 
-/* ----------------------------------------------------------------------------------------------------------- writing */
+/* ---------------------------------------------------------------------------------------------------------- writing */
 
 static enum status print_object(const struct object *o, FILE *to, struct err *err)
 {
@@ -130,7 +130,7 @@ enum status object_list_write(const struct object_list *l, const char *path, con
     return st;
 }
 
-/* ------------------------------------------------------------------------------------------------------------ meshes */
+/* ----------------------------------------------------------------------------------------------------------- meshes */
 
 enum status object_mesh_read(struct obj_mesh *mesh, const struct object *o, const char *folder, struct err *err)
 {

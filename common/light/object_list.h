@@ -28,8 +28,8 @@ struct object_list {
     int count;
 };
 
-/* Whether a path may name an object's mesh: relative, of letters, digits, `_`, `-`, `.` and `/`, no part of it beginning
- * with a dot, its end ".obj", at most 255 characters. */
+/* Whether a path may name an object's mesh: relative, of letters, digits, `_`, `-`, `.` and `/`, no part of it
+ * beginning with a dot, its end ".obj", at most 255 characters. */
 bool object_file_is_valid(const char *file);
 
 /* ST_DATA with file and line: a damaged line, a name twice, a path that object_file_is_valid() refuses, a matrix that
@@ -39,8 +39,8 @@ enum status object_list_write(const struct object_list *l, const char *path, con
                               struct err *err);
 void object_list_release(struct object_list *l);
 
-/* The triangles of an object in the model's frame, from FOLDER/FILE; folder: scenes/SCENE. The caller releases the mesh,
- * which is empty after a failure. ST_DATA also if the mesh has changed since the list was written. */
+/* The triangles of an object in the model's frame, from FOLDER/FILE; folder: scenes/SCENE. The caller releases the
+ * mesh, which is empty after a failure. ST_DATA also if the mesh has changed since the list was written. */
 enum status object_mesh_read(struct obj_mesh *mesh, const struct object *o, const char *folder, struct err *err);
 
 #endif

@@ -6,7 +6,7 @@
 #include "common/base/array.h"
 #include "common/base/textfile.h"
 
-enum { MOST = 10000000 };
+enum { MAX_POINTS = 10000000 };
 
 static enum status read_vector(struct textfile *t, const char *what, struct vec3 *v, struct err *err)
 {
@@ -20,7 +20,7 @@ static enum status read_vector(struct textfile *t, const char *what, struct vec3
 static enum status read_point(struct surface_points *points, struct textfile *t, struct err *err)
 {
     struct surface_point p;
-    if (points->count == MOST) return textfile_error(t, err, "one more", "at most %d points", MOST);
+    if (points->count == MAX_POINTS) return textfile_error(t, err, "one more", "at most %d points", MAX_POINTS);
     if (read_vector(t, "a point", &p.at, err) || read_vector(t, "a normal", &p.normal, err)) return err->status;
     if (!(vec3_length(p.normal) > 1e-9)) return textfile_error(t, err, "0 0 0", "a normal");
     p.normal = vec3_normalize(p.normal);

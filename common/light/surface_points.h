@@ -16,8 +16,8 @@ struct surface_points {
     int count;
 };
 
-/* The list is overwritten, and empty after a failure. ST_DATA with file and line: another number of numbers, a normal of
- * length 0; or no point at all. */
+/* The list is overwritten, and empty after a failure. ST_DATA with file and line: another number of numbers, a normal
+ * of length 0; or no point at all. */
 enum status surface_points_read(struct surface_points *points, const char *path, struct err *err);
 void surface_points_release(struct surface_points *points);
 

@@ -29,8 +29,8 @@ struct curve_fit_outcome {
     int iterations;
 };
 
-/* x: the start on entry, within the bounds; the solution on return. Runs in one thread, so that the same input gives the
- * same bits. ST_DATA: Ceres found no usable solution. */
+/* x: the start on entry, within the bounds; the solution on return. Runs in one thread, so that the same input gives
+ * the same bits. ST_DATA: Ceres found no usable solution. */
 enum status ceres_curve_fit(struct curve_fit_outcome *outcome, const struct curve_fit *problem, double *x,
                             struct err *err);
 

@@ -1,9 +1,9 @@
 /* gradient_direct.c - a gradient problem by sparse Cholesky factors.
  *
  * A = L D L' in a fill-reducing order, by CHOLMOD [Chen 2008], then one step of iterative refinement, whose residual is
- * evaluated from differences (gradient_system.h). In each part that nothing determines, weight is added to the excess of
- * its first unknown: A becomes regular, and since the right-hand side of such a part sums to 0, this unknown becomes 0
- * and all equations hold.
+ * evaluated from differences (gradient_system.h). In each part that nothing determines, weight is added to the excess
+ * of its first unknown: A becomes regular, and since the right-hand side of such a part sums to 0, this unknown becomes
+ * 0 and all equations hold.
  *
  * The factors are simplicial: CHOLMOD's supernodal ones call the BLAS that is installed, whose sums depend on its
  * version and on its threads. */

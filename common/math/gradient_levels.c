@@ -8,26 +8,26 @@
  * Groups are made by matching in pairs, twice [Notay 2010; Napov 2012]. Each group k in turn, at first each node, is
  * joined with the unmatched one h of the largest
  *     q = weight (1 / D_k + 1 / D_h),    D: sum of the diagonals of the group's nodes,
- * if q is at least 1/4. 2 / q bounds how much of the pair's difference the smoother leaves at small energy. So a weight of
- * 1e-5 joins a single node only if all its weights are small, and two nodes that a weight of 1 joins are never part of a
- * group with others to which they have only weights of 1e-5. On a plain raster the groups are squares of 2 x 2. A third
- * matching follows where two leave more groups than 2/5 of the nodes. Nodes that the smoother solves well alone have no
- * group: those without links, and those with an excess of more than 5 times their weights. A link to one of them counts as
- * excess.
+ * if q is at least 1/4. 2 / q bounds how much of the pair's difference the smoother leaves at small energy. So a weight
+ * of 1e-5 joins a single node only if all its weights are small, and two nodes that a weight of 1 joins are never part
+ * of a group with others to which they have only weights of 1e-5. On a plain raster the groups are squares of 2 x 2. A
+ * third matching follows where two leave more groups than 2/5 of the nodes. Nodes that the smoother solves well alone
+ * have no group: those without links, and those with an excess of more than 5 times their weights. A link to one of
+ * them counts as excess.
  *
  * The last level is eliminated in the same form: of node k with pivot d = excess + weights, link (i, j) gets
  * weight(k, i) weight(k, j) / d and node i the excess weight(k, i) excess(k) / d [Grassmann 1985].
  *
- * Differs from the sources: the bound of pairs also judges groups of four and eight, with the sums of the diagonals, and
- * leaves the excess out; nodes are taken in order of rows. */
+ * Differs from the sources: the bound of pairs also judges groups of four and eight, with the sums of the diagonals,
+ * and leaves the excess out; nodes are taken in order of rows. */
 #include "common/math/gradient_levels.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define LEAST_QUALITY 0.25F
-#define DOMINANT      5.0F
+#define MIN_QUALITY 0.25F
+#define DOMINANT    5.0F
 
 /* The equations of a level while the next is made. Row i has links to smaller nodes at [begin[2 i], begin[2 i + 1]), to
  * larger ones up to begin[2 i + 2], each in ascending order. */
@@ -147,7 +147,7 @@ static void match_nodes(struct groups *g, const struct graph *l)
     }
     for (int i = 0; i < l->count; i++) {
         if (g->group[i] != UNMATCHED) continue;
-        float most = LEAST_QUALITY;
+        float most = MIN_QUALITY;
         int best = -1;
         for (int e = l->begin[2 * i + 1]; e < l->begin[2 * i + 2]; e++) {
             const int j = l->link[e].to;
@@ -171,7 +171,7 @@ static void match_nodes(struct groups *g, const struct graph *l)
 static int best_match(struct groups *g, const struct graph *l, int k)
 {
     int seen = 0, best = -1;
-    float most = LEAST_QUALITY;
+    float most = MIN_QUALITY;
     for (int i = g->first[k]; i >= 0; i = g->next[i])
         for (int e = l->begin[2 * i]; e < l->begin[2 * i + 2]; e++) {
             const int h = g->group[l->link[e].to];

@@ -17,8 +17,8 @@ struct gradient_link {
 };
 
 /* Node i has `width` places for links to smaller nodes, then as many for links to larger ones, from 2 width i on. Both
- * are in ascending order, next to i without a gap; empty places have weight 0. Further links, to the smallest and to the
- * largest nodes, are in `more`: from more_begin[2 i] and from more_begin[2 i + 1] on; the finest level has none. */
+ * are in ascending order, next to i without a gap; empty places have weight 0. Further links, to the smallest and to
+ * the largest nodes, are in `more`: from more_begin[2 i] and from more_begin[2 i + 1] on; the finest level has none. */
 struct gradient_level {
     int count, width;
     int *to;
@@ -35,8 +35,8 @@ struct gradient_levels {
     struct gradient_level level[GRADIENT_MAX_LEVELS];
     int count;
     float scale; /* of the weights, over those of the system: a power of two, so that they keep their digits */
-    /* If the last level has at most GRADIENT_DENSE nodes, else NULL. Row k of dense: weight / pivot of the links of node
-     * k to later nodes when it is eliminated. */
+    /* If the last level has at most GRADIENT_DENSE nodes, else NULL. Row k of dense: weight / pivot of the links of
+     * node k to later nodes when it is eliminated. */
     float *dense, *inverse_pivot;
 };
 

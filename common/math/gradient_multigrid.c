@@ -4,8 +4,9 @@
  * 1e-5 and 1, conjugate gradients alone need thousands of steps. Multigrid removes each error where it is not smooth: a
  * Gauss-Seidel sweep makes it smooth, the residual goes to groups of nodes (gradient_levels.h), which solve for one
  * correction per group, and a sweep in reverse order follows. The groups' own equations are solved by two steps of
- * conjugate gradients, each with a visit of the level below as preconditioner: the K-cycle [Notay 2008]. They make up for
- * corrections that are constant per group. Around it, flexible conjugate gradients [Notay 2000] run on the finest level.
+ * conjugate gradients, each with a visit of the level below as preconditioner: the K-cycle [Notay 2008]. They make up
+ * for corrections that are constant per group. Around it, flexible conjugate gradients [Notay 2000] run on the finest
+ * level.
  *
  * From the visit of a level, with A = D - L - U (diagonal, links to smaller nodes, links to larger ones):
  *     x = (D - L)^-1 b                   first sweep, from 0
@@ -16,15 +17,16 @@
  * so that the visit and A x take together two and a half times the work of one product with A.
  *
  * Cycles run in single precision, which carries weights of 1e-7 to 1; others are not solved here. The finest level
- * evaluates A x from differences of x, so that a small excess does not drown in the rounding of the diagonal. Values are
- * summed in double precision: after every few steps the correction found so far is added to them, and the residual is
- * evaluated anew from them. As a cycle's result z approximates the error itself, its largest value says when to stop.
+ * evaluates A x from differences of x, so that a small excess does not drown in the rounding of the diagonal. Values
+ * are summed in double precision: after every few steps the correction found so far is added to them, and the residual
+ * is evaluated anew from them. As a cycle's result z approximates the error itself, its largest value says when to
+ * stop.
  *
  * Each channel has its own step lengths; all are in one vector register. Everything is summed in a fixed order, by one
  * thread: callers have many pictures to solve at a time.
  *
- * Differs from the sources: no guaranteed rate; a level takes one step only where its nodes are not far fewer than those of
- * the level above. */
+ * Differs from the sources: no guaranteed rate; a level takes one step only where its nodes are not far fewer than
+ * those of the level above. */
 #include <immintrin.h>
 #include <math.h>
 #include <stdbool.h>

@@ -5,8 +5,8 @@
  *     sum over free pixels p     data_weight[p] (v[p] - data[p])^2
  *   + sum over right neighbours  weight_x[p] (v[p + 1] - v[p] - gradient_x[p])^2
  *   + sum over lower neighbours  weight_y[p] (v[p + width] - v[p] - gradient_y[p])^2
- * Weights multiply squared residuals and are shared by the channels. A pair counts if both pixels take part and at least
- * one is free. */
+ * Weights multiply squared residuals and are shared by the channels. A pair counts if both pixels take part and at
+ * least one is free. */
 #ifndef REMODEL_GRADIENT_SOLVE_H
 #define REMODEL_GRADIENT_SOLVE_H
 

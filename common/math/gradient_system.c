@@ -2,12 +2,13 @@
  *
  * The derivative of the sum in gradient_solve.h by v[p], halved, is
  *     data_weight (v[p] - data) + sum over pairs (p, q) of weight (v[p] - v[q] - g(q, p)) = 0,
- * where g(q, p) is the wanted v[p] - v[q]: plus the gradient if q is left of or above p, minus it if q is right or below.
- * A fixed q adds weight to the excess of p and weight (value[q] + g) to b; an unknown q is a link, and adds weight g.
+ * where g(q, p) is the wanted v[p] - v[q]: plus the gradient if q is left of or above p, minus it if q is right or
+ * below. A fixed q adds weight to the excess of p and weight (value[q] + g) to b; an unknown q is a link, and adds
+ * weight g.
  *
- * Connected parts are found by union-find, the smaller index as root, so that parts are numbered in order of their first
- * unknown. A part without any excess has a singular block of A: a constant can be added to its values. The mean of its
- * start is added last. */
+ * Connected parts are found by union-find, the smaller index as root, so that parts are numbered in order of their
+ * first unknown. A part without any excess has a singular block of A: a constant can be added to its values. The mean
+ * of its start is added last. */
 #include "common/math/gradient_system.h"
 
 #include <assert.h>

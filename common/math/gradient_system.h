@@ -2,8 +2,8 @@
  *
  * Unknowns are the free pixels in row-major order. Matrix A has links, -weight between unknown neighbours, and
  *     A[i][i] = excess[i] + the weights of its links,
- * so excess[i] >= 0 is what data and fixed neighbours add. Sums of positive numbers only: the matrix in this form has no
- * cancellation, and A v is evaluated from differences. 3 right-hand sides, padded to 4. */
+ * so excess[i] >= 0 is what data and fixed neighbours add. Sums of positive numbers only: the matrix in this form has
+ * no cancellation, and A v is evaluated from differences. 3 right-hand sides, padded to 4. */
 #ifndef REMODEL_GRADIENT_SYSTEM_H
 #define REMODEL_GRADIENT_SYSTEM_H
 

@@ -37,8 +37,8 @@ struct quat quat_from_mat3(struct mat3 r)
     return (struct quat){q[0] * s, q[1] * s, q[2] * s, q[3] * s};
 }
 
-/* Half the angle between two rotations, as an angle between quaternions: 0 to pi / 2, precise at both ends. *sign gets -1
- * if the shorter way leads to -b, which is the same rotation as b. */
+/* Half the angle between two rotations, as an angle between quaternions: 0 to pi / 2, precise at both ends. *sign gets
+ * -1 if the shorter way leads to -b, which is the same rotation as b. */
 static double half_angle(struct quat a, struct quat b, double *sign)
 {
     *sign = a.w * b.w + a.x * b.x + a.y * b.y + a.z * b.z < 0 ? -1 : 1;

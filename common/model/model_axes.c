@@ -1,6 +1,7 @@
 /* model_axes.c - the frame of a room's model: transforms and its file. */
 #include "common/model/model_axes.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "common/base/outfile.h"
@@ -81,9 +82,9 @@ enum status model_axes_write(const struct model_axes *axes, const char *path, co
 static enum status read_error(struct textfile *t, const char *which, double *value, struct err *err)
 {
     if (textfile_expect_line(t, "error", err) || textfile_expect(t, which, err) ||
-        textfile_double(t, "an error", value, err) || textfile_end(t, err))
+        textfile_number(t, "an error", 0, INFINITY, value, err))
         return err->status;
-    return *value >= 0 ? ST_OK : textfile_wrong_number(t, *value, "an error of 0 or more", err);
+    return textfile_end(t, err);
 }
 
 /* Reads a number, or "none", which leaves *value unchanged and clears *known. */

@@ -17,8 +17,8 @@ struct face_areas {
 enum status face_areas_make(struct face_areas *a, const struct solid_mesh *mesh, struct err *err);
 void face_areas_release(struct face_areas *a);
 
-/* The point nearest to p on the faces of an id, among those whose plane is nearest to p. Sets *face to its index. Returns
- * false if no face has the id. *on is whether p lies on the face; then *nearest is p, bit for bit. */
+/* The point nearest to p on the faces of an id, among those whose plane is nearest to p. Sets *face to its index.
+ * Returns false if no face has the id. *on is whether p lies on the face; then *nearest is p, bit for bit. */
 bool face_areas_nearest(const struct face_areas *a, int id, struct vec3 p, struct vec3 *nearest, int *face, bool *on);
 
 /* The distance of a point of a face's plane from the face itself; 0 within. */

@@ -1,11 +1,12 @@
 /* light_change.c - see light_change.h.
  *
- * New areas. Where an edit removes a wall, floor appears that no photograph shows; the bake filled it from the floor around
- * it, hence under the light of that floor. So its light before the edit is that of the nearest old floor, a little away
- * from the rim, where the wall's own shadow was. In the unedited model the place itself is inside the wall, and dark.
+ * New areas. Where an edit removes a wall, floor appears that no photograph shows; the bake filled it from the floor
+ * around it, hence under the light of that floor. So its light before the edit is that of the nearest old floor, a
+ * little away from the rim, where the wall's own shadow was. In the unedited model the place itself is inside the wall,
+ * and dark.
  *
- * Emitters. Those of the edited model that the unedited one lacks are added to both, and the other way round. An emitter
- * adds no light: it says where rays go. */
+ * Emitters. Those of the edited model that the unedited one lacks are added to both, and the other way round. An
+ * emitter adds no light: it says where rays go. */
 #include "common/relight/light_change.h"
 
 #include <math.h>
@@ -16,7 +17,7 @@
 static const double INSET = 0.005; /* of the model's size: 5 cm of 10 m */
 static const double ELEMENT = 0.1; /* model units: width of the objects' elements */
 
-/* ---------------------------------------------------------------------------------------------------------- emitters */
+/* --------------------------------------------------------------------------------------------------------- emitters */
 
 static bool same_emitter(const struct emitter *a, const struct emitter *b)
 {
@@ -54,7 +55,7 @@ static enum status unite_emitters(struct light_change *c, struct err *err)
     return ST_OK;
 }
 
-/* ------------------------------------------------------------------------------------------------------------ reading */
+/* ---------------------------------------------------------------------------------------------------------- reading */
 
 /* What the edited field reads; under the names of the unedited one it would count as read already. */
 static enum status add_edited(const struct light_change *c, const struct light_change_files *files,
@@ -133,7 +134,7 @@ void light_change_release(struct light_change *c)
     *c = (struct light_change){0};
 }
 
-/* -------------------------------------------------------------------------------------------------------------- places */
+/* ----------------------------------------------------------------------------------------------------------- places */
 
 /* Sets where the light on a texel comes from: at the texel, or on the nearest old area, `inset` inside. */
 static bool set_before(struct light_place *place, const struct light_change *c)

@@ -1,8 +1,8 @@
-/* light_change.h - light before and after an edit: the fields of both models, and what each point of the edited model is
- * in the unedited one [Colburn 2014, 5.5].
+/* light_change.h - light before and after an edit: the fields of both models, and what each point of the edited model
+ * is in the unedited one [Colburn 2014, 5.5].
  *
- * Both fields have the same emitters, so that gathers with one key send the same rays in both, and what the edit does not
- * change has equal bits before and after. */
+ * Both fields have the same emitters, so that gathers with one key send the same rays in both, and what the edit does
+ * not change has equal bits before and after. */
 #ifndef REMODEL_LIGHT_CHANGE_H
 #define REMODEL_LIGHT_CHANGE_H
 
@@ -37,8 +37,8 @@ struct light_change {
     double inset; /* how far from the rim of an old area the light on a new one is taken, model units */
 };
 
-/* Reads both fields. The files are added to prov, which may be NULL. The caller releases the change in each case. ST_DATA:
- * a damaged file. */
+/* Reads both fields. The files are added to prov, which may be NULL. The caller releases the change in each case.
+ * ST_DATA: a damaged file. */
 enum status light_change_read(struct light_change *c, const struct light_change_files *files, struct provenance *prov,
                               struct err *err);
 void light_change_release(struct light_change *c);
@@ -56,9 +56,9 @@ struct light_place {
     enum light_source source; /* of the texel */
     int face;                 /* id of the unedited face that has the texel */
     struct vec3 texel;        /* where the texel is, in the unedited model */
-    struct gather_point
-        before;  /* where the irradiance that lit the texel is gathered: there, or on the nearest area that
-                                   the unedited model has, if the edit made the place */
+    /* Where the irradiance that lit the texel is gathered: there, or, if the edit made the place, on the nearest area
+     * that the unedited model has. */
+    struct gather_point before;
     bool is_new; /* the unedited model has no surface there */
 };
 

@@ -1,8 +1,8 @@
 /* light_objects.c - see light_objects.h.
  *
- * Elements. Triangles of an object whose middles lie in one cell of a grid of `side`, and whose normals are nearest to one
- * of the six axes, are an element. Its point is the middle of its largest triangle, so that it lies on the surface. The
- * back of a triangle is an element of its own: an open mesh, a screen or a leaf, is lit from both sides. */
+ * Elements. Triangles of an object whose middles lie in one cell of a grid of `side`, and whose normals are nearest to
+ * one of the six axes, are an element. Its point is the middle of its largest triangle, so that it lies on the surface.
+ * The back of a triangle is an element of its own: an open mesh, a screen or a leaf, is lit from both sides. */
 #include "common/relight/light_objects.h"
 
 #include <math.h>
@@ -14,15 +14,15 @@
 #include "common/base/textfile.h"
 #include "common/math/numbers.h"
 
-enum { MOST_TRIANGLES = 4000000 };
+enum { MAX_TRIANGLES = 4000000 };
 
-/* ----------------------------------------------------------------------------------------------------------- triangles */
+/* -------------------------------------------------------------------------------------------------------- triangles */
 
 static enum status add_triangle(struct light_objects *o, const struct vec3 t[3], int object, struct err *err)
 {
-    if (o->count >= MOST_TRIANGLES)
+    if (o->count >= MAX_TRIANGLES)
         return err_set(err, ST_DATA, "the object %s makes more than %d triangles; give a coarser mesh.",
-                       o->list.items[object].name, MOST_TRIANGLES);
+                       o->list.items[object].name, MAX_TRIANGLES);
     if (array_append(&o->triangles, (size_t)o->count, sizeof *o->triangles, "triangles", err) ||
         array_append(&o->object, (size_t)o->count, sizeof *o->object, "triangles", err))
         return err->status;
@@ -61,7 +61,7 @@ static enum status read_object(struct light_objects *o, int object, const char *
     return st;
 }
 
-/* ------------------------------------------------------------------------------------------------------------ elements */
+/* --------------------------------------------------------------------------------------------------------- elements */
 
 struct patch { /* one side of a triangle */
     int object, triangle, side, way;
@@ -175,7 +175,7 @@ void light_objects_set_radiance(struct light_objects *o)
         }
 }
 
-/* --------------------------------------------------------------------------------------------------------------- files */
+/* ------------------------------------------------------------------------------------------------------------ files */
 
 #define HEADER "remodel-object-light"
 
@@ -200,10 +200,8 @@ static enum status read_element(struct light_objects *o, int i, struct textfile 
     double e[3];
     if (i >= o->element_count) return textfile_error(t, err, "an element", "no more than the objects' %d", i);
     if (textfile_expect(t, "element", err)) return err->status;
-    for (int k = 0; k < 3; k++) {
-        if (textfile_double(t, "an irradiance", &e[k], err)) return err->status;
-        if (e[k] < 0) return textfile_wrong_number(t, e[k], "an irradiance of 0 or more", err);
-    }
+    for (int k = 0; k < 3; k++)
+        if (textfile_number(t, "an irradiance", 0, INFINITY, &e[k], err)) return err->status;
     o->elements[i].irradiance = rgb_make(e[0], e[1], e[2]);
     return textfile_end(t, err);
 }

@@ -25,8 +25,9 @@ struct light_objects {
     struct rgb (*radiance)[2]; /* of each triangle: of its front, its back; what a field of light shows */
 };
 
-/* Reads objects.txt and the meshes in FOLDER, scenes/SCENE; triangles longer than `side` are cut. path NULL: no objects.
- * The caller releases the objects in each case. ST_DATA: a damaged file, a mesh that has changed, too many triangles. */
+/* Reads objects.txt and the meshes in FOLDER, scenes/SCENE; triangles longer than `side` are cut. path NULL: no
+ * objects. The caller releases the objects in each case. ST_DATA: a damaged file, a mesh that has changed, too many
+ * triangles. */
 enum status light_objects_read(struct light_objects *o, const char *path, const char *folder, double side,
                                struct provenance *prov, struct err *err);
 void light_objects_release(struct light_objects *o);

@@ -6,11 +6,11 @@
 
 #include "common/light/colour.h"
 
-#define LIGHT_ALBEDO_MOST 0.95
+#define LIGHT_ALBEDO_MAX 0.95
 
-/* The quotient by channel for a surface of this radiance under the irradiance `before`, when it becomes `after`; exactly 1
- * where they are equal. Never negative or NaN. *is_bounded (NULL: not asked for) is set to true where the rule of
- * light_quotient.c applied, and left alone elsewhere. */
+/* The quotient by channel for a surface of this radiance under the irradiance `before`, when it becomes `after`;
+ * exactly 1 where they are equal. Never negative or NaN. *is_bounded (NULL: not asked for) is set to true where the
+ * rule of light_quotient.c applied, and left alone elsewhere. */
 struct rgb light_quotient(struct rgb before, struct rgb after, struct rgb radiance, bool *is_bounded);
 
 /* pi L / E by channel; INFINITY where there is radiance without irradiance, 0 where there is neither. */

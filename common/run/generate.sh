@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# generate.sh BIN 'STAGE...' FOLDER - the files that come from the stages: FOLDER/docs/man/STAGE.1, FOLDER/configs/default.cfg and
-# the table of stages in FOLDER/docs/architecture.md. A test compares the committed files with them (tests/lint/generated.sh).
+# generate.sh BIN 'STAGE...' FOLDER - the files that come from the stages: FOLDER/docs/man/STAGE.1, FOLDER/configs/default.cfg,
+# the table of stages in FOLDER/docs/architecture.md and the tables of metrics in FOLDER/docs/evaluation.md. A test compares the
+# committed files with them (tests/lint/tree.sh).
 set -euo pipefail
 bin=$1 stages=$2 folder=$3
 
@@ -31,3 +32,5 @@ awk -v table="$folder/.stages.tmp" '
     /^<!-- end of stages -->/ { skip = 0 }
     !skip' docs/architecture.md | put "$folder/docs/architecture.md"
 rm "$folder/.stages.tmp"
+
+awk -f common/run/metric_tables.awk common/base/metric_kinds.def docs/evaluation.md | put "$folder/docs/evaluation.md"

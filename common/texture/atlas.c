@@ -1,11 +1,11 @@
 /* atlas.c - see atlas.h: tiles on pages, and look-ups.
  *
- * Packing [Colburn 2014, 4.5.1] is first-fit decreasing: tiles in order of falling height go to the first page, and there
- * to the uppermost, then leftmost place in which they fit. The thesis asks for an empty block and leaves open how it is
- * found. Here a page keeps its maximal free rectangles: those that no larger free rectangle contains [Jylanki 2010]. A
- * place from which a tile can move neither up nor left is the upper left corner of one of them, so the first place is
- * found exactly without a search of the page's area. A tile replaces each rectangle that it overlaps by the up to four
- * rectangles beside it; those inside another one are dropped. */
+ * Packing [Colburn 2014, 4.5.1] is first-fit decreasing: tiles in order of falling height go to the first page, and
+ * there to the uppermost, then leftmost place in which they fit. The thesis asks for an empty block and leaves open how
+ * it is found. Here a page keeps its maximal free rectangles: those that no larger free rectangle contains [Jylanki
+ * 2010]. A place from which a tile can move neither up nor left is the upper left corner of one of them, so the first
+ * place is found exactly without a search of the page's area. A tile replaces each rectangle that it overlaps by the up
+ * to four rectangles beside it; those inside another one are dropped. */
 #include "common/texture/atlas.h"
 
 #include <math.h>
@@ -13,6 +13,7 @@
 #include <string.h>
 
 #include "common/base/array.h"
+#include "common/base/sort.h"
 
 void atlas_release(struct atlas *a)
 {
@@ -200,17 +201,14 @@ bool atlas_tile_project(const struct atlas_tile *t, struct vec3 p, double *x, do
     return *x >= t->x && *y >= t->y && *x <= t->x + t->width && *y <= t->y + t->height;
 }
 
+static bool tile_is_below(const void *tile, const void *face)
+{
+    return ((const struct atlas_tile *)tile)->face < *(const int *)face;
+}
+
 int atlas_first_tile(const struct atlas *a, int face)
 {
-    int low = 0, high = a->tile_count;
-    while (low < high) {
-        const int middle = low + (high - low) / 2;
-        if (a->tiles[middle].face < face)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low;
+    return (int)sort_place(a->tiles, (size_t)a->tile_count, sizeof *a->tiles, tile_is_below, &face);
 }
 
 const struct atlas_tile *atlas_find(const struct atlas *a, int face, struct vec3 p, double *x, double *y)

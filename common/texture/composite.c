@@ -21,7 +21,7 @@
 static const float WEAK = 1e-5f;        /* weight of data, and of outlying differences */
 static const double DEFAULT_GREY = 0.5; /* of white */
 enum { REACH = 12 };                    /* texels: of the clean ones that an unseen one continues */
-enum { LEAST = 8 };                     /* of these */
+enum { MIN_SEEN = 8 };                  /* of these */
 enum { ALIKE = 8 };                     /* neighbours are alike: this many count as one */
 enum { RIM = 3 };                       /* texels beside unseen ones, which may hold the shadow of what hides them */
 
@@ -95,7 +95,7 @@ struct excess {
     double mean[3], variance[3]; /* variance: of the mean */
 };
 
-/* The excess of the seen texels around `at`, of clean ones or of others; false: there are fewer than LEAST. */
+/* The excess of the seen texels around `at`, of clean ones or of others; false: there are fewer than MIN_SEEN. */
 static bool excess_around(struct excess *e, const struct composite *c, size_t hole, size_t at, int reach, bool clean)
 {
     const int width = c->t->raster.width, height = c->t->raster.height;
@@ -115,16 +115,16 @@ static bool excess_around(struct excess *e, const struct composite *c, size_t ho
             }
             count++;
         }
-    for (int k = 0; k < 3 && count >= LEAST; k++) {
+    for (int k = 0; k < 3 && count >= MIN_SEEN; k++) {
         e->mean[k] = sum[k] / count;
         e->variance[k] = fmax(0, squares[k] / count - e->mean[k] * e->mean[k]) * ALIKE / count;
     }
-    return count >= LEAST;
+    return count >= MIN_SEEN;
 }
 
-/* Lets an unseen texel beside a seen one continue the clean texels behind that, if nothing stands before it: its hole is
- * one that an edit walls up, and the rim may hold the reveal of a window that the model puts a little elsewhere. Only
- * what the rim surely has above the clean texels is left out. */
+/* Lets an unseen texel beside a seen one continue the clean texels behind that, if nothing stands before it: its hole
+ * is one that an edit walls up, and the rim may hold the reveal of a window that the model puts a little elsewhere.
+ * Only what the rim surely has above the clean texels is left out. */
 static void leave_rim(struct composite *c, int side, size_t at, size_t next)
 {
     const size_t hole = c->unseen[at] ? at : next, rim = c->unseen[at] ? next : at;
@@ -200,7 +200,8 @@ static void set_seen(struct composite *c)
     }
 }
 
-/* Unseen texels are drawn to the nearest of the texels that are listed as such. seen: the role of seen ones from now. */
+/* Unseen texels are drawn to the nearest of the texels that are listed as such. seen: the role of seen ones from
+ * now. */
 static void set_unseen(struct composite *c, int seen)
 {
     const struct bake *b = c->b;

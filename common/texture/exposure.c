@@ -1,14 +1,14 @@
 /* exposure.c - see exposure.h.
  *
  * Overview. A photographer exposes so that a small part of the picture saturates, and so does a camera's automatic. A
- * pixel saturates as soon as one of its colours does, so its level is the largest of the three. The exposure is one over
- * the level that the wanted share of pixels reaches: with n pixels, the k-th largest, k = ceil(saturated n), at least 1,
- * so that the brightest pixel is at white if nothing is to saturate.
+ * pixel saturates as soon as one of its colours does, so its level is the largest of the three. The exposure is one
+ * over the level that the wanted share of pixels reaches: with n pixels, the k-th largest, k = ceil(saturated n), at
+ * least 1, so that the brightest pixel is at white if nothing is to saturate.
  *
  * Mathematics. The k-th largest of n numbers is found by counting, not by sorting: bits of a number >= 0 in IEEE 754,
  * read as an integer, are in the order of the numbers. A histogram of the upper 11 bits says in which of 2048 intervals
- * the k-th number is; two more, of 10 bits each, over the numbers in the interval found before, say which it is. Time is
- * linear for any input, and the result is exact.
+ * the k-th number is; two more, of 10 bits each, over the numbers in the interval found before, say which it is. Time
+ * is linear for any input, and the result is exact.
  *
  * Source: the exposure of views between photographs is [Colburn 2014, 4.6]. Different here: it is chosen from the
  * picture itself, so that pictures of edited rooms, which no camera saw, have one too. */

@@ -11,8 +11,8 @@ double exposure_choose(const struct model_picture *p, double saturated);
 /* Writes the picture as an 8-bit sRGB JPEG or PNG, by the ending of `path`. Pixels of MADE_NOTHING are black. */
 enum status exposure_write(const struct model_picture *p, double exposure, const char *path, struct err *err);
 
-/* Writes a film's frame: R G B A half, radiance times exposure, A 0 where MADE_NOTHING; attribute remodel:exposure. camera:
- * scene frame. */
+/* Writes a film's frame: R G B A half, radiance times exposure, A 0 where MADE_NOTHING; attribute remodel:exposure.
+ * camera: scene frame. */
 enum status exposure_write_frame(const struct model_picture *p, double exposure, const struct view *camera,
                                  const char *path, const struct provenance *prov, struct err *err);
 

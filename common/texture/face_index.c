@@ -136,10 +136,9 @@ static enum status read_view(struct face_view *v, struct textfile *t, struct err
     if (textfile_expect_line(t, "view", err) || textfile_word(t, "name of a view", &name, err) ||
         textfile_int(t, "pixels", 1, INT_MAX, &pixels, err) ||
         textfile_int(t, "clean pixels", 0, pixels, &clean, err) || textfile_double(t, "distance", &v->distance, err) ||
-        textfile_double(t, "cosine", &v->cosine, err) || textfile_end(t, err))
+        textfile_number(t, "cosine", 0, 1, &v->cosine, err) || textfile_end(t, err))
         return err->status;
     if (!(v->distance > 0)) return textfile_wrong_number(t, v->distance, "a distance above 0", err);
-    if (!(v->cosine >= 0 && v->cosine <= 1)) return textfile_wrong_number(t, v->cosine, "a cosine from 0 to 1", err);
     v->pixels = (int)pixels;
     v->clean = (int)clean;
     v->name = strdup(name);

@@ -1,9 +1,10 @@
 /* gains.c - bake_find_gains(): one gain a view and colour.
  *
- * Photographs of one room differ in exposure, white balance and daylight. Where two views show the same texel, the median
- * of the logarithms of their ratios says by how much. The gains are the least-squares solution of all these differences,
- * each weighted by its number of texels up to a limit, with a weak pull towards 1 that also holds a view which overlaps
- * with none. The viewpoint's own views keep the gain 1; without a viewpoint the pull alone fixes the level.
+ * Photographs of one room differ in exposure, white balance and daylight. Where two views show the same texel, the
+ * median of the logarithms of their ratios says by how much. The gains are the least-squares solution of all these
+ * differences, each weighted by its number of texels up to a limit, with a weak pull towards 1 that also holds a view
+ * which overlaps with none. The viewpoint's own views keep the gain 1; without a viewpoint the pull alone fixes the
+ * level.
  *
  * Medians come from histograms, so that memory is the same for any number of texels. The system is solved by
  * Gauss-Seidel sweeps: it is small, and each row is dominated by its diagonal. */

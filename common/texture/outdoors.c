@@ -43,7 +43,7 @@ struct vec3 outdoors_direction(const struct outdoors *o, double x, double y)
     return vec3_make(cos(elevation) * cos(azimuth), cos(elevation) * sin(azimuth), sin(elevation));
 }
 
-/* ----------------------------------------------------------------------------------------------------------- the file */
+/* --------------------------------------------------------------------------------------------------------- the file */
 
 static enum status check_pixel(const struct exr_plane *const planes[PLANES], size_t i, int width, const char *path,
                                struct err *err)
@@ -110,7 +110,7 @@ enum status outdoors_write(const struct outdoors *o, const char *path, const str
     return st;
 }
 
-/* ------------------------------------------------------------------------------------------------------------ look-up */
+/* ---------------------------------------------------------------------------------------------------------- look-up */
 
 /* The pixel at column x, any integer from -1 to width, and row y from -1 to height. */
 static size_t pixel_at(const struct outdoors *o, int x, int y)

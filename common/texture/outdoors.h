@@ -1,10 +1,10 @@
 /* outdoors.h - what lies outside of a model, by direction: out/SCENE/outdoors/outdoors.exr, made by bake_outdoors.
  *
  * An equirectangular picture in the model's frame: column x + 0.5 of W is the azimuth 2 pi (x + 0.5) / W - pi, counted
- * from +x towards +y; row y + 0.5 of H the elevation pi / 2 - pi (y + 0.5) / H, z up. R G B half, radiance, scene-linear;
- * A half: 1 where some picture shows the direction, 0 where it is guessed from those that are; source uint: 0 guessed,
- * 1 a lighting reference image, 2 a photograph. How far things outside are is unknown: whatever is looked up here moves
- * with the camera as if it were infinitely far away. */
+ * from +x towards +y; row y + 0.5 of H the elevation pi / 2 - pi (y + 0.5) / H, z up. R G B half, radiance,
+ * scene-linear; A half: 1 where some picture shows the direction, 0 where it is guessed from those that are; source
+ * uint: 0 guessed, 1 a lighting reference image, 2 a photograph. How far things outside are is unknown: whatever is
+ * looked up here moves with the camera as if it were infinitely far away. */
 #ifndef REMODEL_OUTDOORS_H
 #define REMODEL_OUTDOORS_H
 

@@ -1,4 +1,5 @@
-/* picture_list.h - pictures.txt: the pictures of a folder that were drawn from given cameras, written when all are there.
+/* picture_list.h - pictures.txt: the pictures of a folder that were drawn from given cameras, written when all are
+ * there.
  *
  *   remodel-pictures 1
  *   picture NAME           for each */

@@ -27,10 +27,7 @@ enum status picture_record_write(const struct picture_record *record, const char
 
 static enum status read_share(struct textfile *t, double *share, struct err *err)
 {
-    static const char wanted[] = "a share, from 0 to 100";
-    if (textfile_double(t, wanted, share, err)) return err->status;
-    if (!(*share >= 0 && *share <= 100)) return textfile_wrong_number(t, *share, wanted, err);
-    return textfile_end(t, err);
+    return textfile_number(t, "a share in percent", 0, 100, share, err) ? err->status : textfile_end(t, err);
 }
 
 /* seen: a bit for each kind that was read before. */

@@ -1,5 +1,5 @@
-/* source_view.c - see source_view.h. Colours are read at the level whose pixels are about as large as the texel, so that
- * a fine photograph does not alias in a coarse texture. */
+/* source_view.c - see source_view.h. Colours are read at the level whose pixels are about as large as the texel, so
+ * that a fine photograph does not alias in a coarse texture. */
 #include "common/texture/source_view.h"
 
 #include <math.h>
@@ -8,10 +8,7 @@
 #include <sys/stat.h>
 
 #include "common/base/file_path.h"
-#include "common/image/exr.h"
-
-enum { R, G, B, A, SIGMA, CLIPPED, CHANNELS };
-static const char *const channels[CHANNELS] = {"R", "G", "B", "A", "sigma", "clipped"};
+#include "common/capture/view_image.h"
 
 static void add_size(uint64_t *bytes, const char *path)
 {
@@ -19,19 +16,12 @@ static void add_size(uint64_t *bytes, const char *path)
     if (!stat(path, &file)) *bytes += (uint64_t)file.st_size;
 }
 
-static enum status read_picture(struct exr_image *exr, const char *folder, const struct view *camera, uint64_t *bytes,
-                                struct err *err)
+static enum status read_picture(struct view_planes *picture, const char *folder, const struct view *camera,
+                                uint64_t *bytes, struct err *err)
 {
     char path[FILE_PATH];
     enum status st = file_path(path, folder, camera->name, ".exr", err);
-    if (!st) st = exr_read(exr, path, channels, CHANNELS, err);
-    if (!st && (exr->width != camera->width || exr->height != camera->height))
-        st = err_set(err, ST_DATA, "%s has %d x %d pixels, but its camera %d x %d; make the views again.", path,
-                     exr->width, exr->height, camera->width, camera->height);
-    for (int k = 0; !st && k < CHANNELS; k++)
-        if (!exr_find(exr, channels[k])->f)
-            st = err_set(err, ST_DATA, "%s: channel %s contains integers, wanted half or float; make the views again.",
-                         path, channels[k]);
+    if (!st) st = view_planes_read(picture, path, camera, VIEW_CHANNELS, err);
     if (!st) add_size(bytes, path);
     return st;
 }
@@ -73,8 +63,8 @@ static uint8_t best_of_four(const struct source_level *from, const uint8_t *stat
     return best;
 }
 
-/* Half the size: each pixel is the sum of four over 4, a missing one counting as transparent. state: of the finer level's
- * pixels, NULL: all are used; poor ones only where there is nothing better. */
+/* Half the size: each pixel is the sum of four over 4, a missing one counting as transparent. state: of the finer
+ * level's pixels, NULL: all are used; poor ones only where there is nothing better. */
 static void halve(struct source_level *to, const struct source_level *from, const uint8_t *state)
 {
     for (int y = 0; y < to->height; y++)
@@ -117,17 +107,15 @@ static void set_projection(struct source_view *v)
     }
 }
 
-static void take_pixels(struct source_view *v, const struct exr_image *picture, const struct view_ids *ids,
+static void take_pixels(struct source_view *v, const float *const channel[VIEW_CHANNELS], const struct view_ids *ids,
                         const struct texture_params *params)
 {
     const size_t pixels = (size_t)v->camera.width * (size_t)v->camera.height;
-    const float *channel[CHANNELS];
-    for (int k = 0; k < CHANNELS; k++) channel[k] = exr_find(picture, channels[k])->f;
     for (size_t i = 0; i < pixels; i++) {
-        v->own[i] = state_of(channel[A][i], ids->jump[i], ids->clutter[i], params);
-        const bool poor = channel[CLIPPED][i] > 0 || channel[SIGMA][i] > (float)params->max_noise;
+        v->own[i] = state_of(channel[VIEW_A][i], ids->jump[i], ids->clutter[i], params);
+        const bool poor = channel[VIEW_CLIPPED][i] > 0 || channel[VIEW_SIGMA][i] > (float)params->max_noise;
         v->state[i] = !poor ? v->own[i] : v->own[i] == SOURCE_CLEAN ? SOURCE_POOR : SOURCE_NONE;
-        const float alpha = channel[A][i] > 0.999f;
+        const float alpha = channel[VIEW_A][i] > 0.999f;
         for (int c = 0; c < 3; c++) v->levels[0].rgba[4 * i + (size_t)c] = alpha * channel[c][i];
         v->levels[0].rgba[4 * i + 3] = alpha;
     }
@@ -149,7 +137,7 @@ enum status source_view_read(struct source_view *v, struct view_ids *ids, const 
                              const struct view *camera, const struct texture_params *params, struct err *err)
 {
     const size_t pixels = (size_t)camera->width * (size_t)camera->height;
-    struct exr_image picture = {0};
+    struct view_planes picture = {0};
     struct view_ids faces = {0};
     *v = (struct source_view){.camera = *camera, .level_count = 1};
     set_projection(v);
@@ -160,7 +148,7 @@ enum status source_view_read(struct source_view *v, struct view_ids *ids, const 
     if (!st && (!v->state || !v->own)) st = err_nomem(err, "a view's surfaces", pixels);
     if (!st) st = level_init(&v->levels[0], camera->width, camera->height, err);
     if (!st) {
-        take_pixels(v, &picture, &faces, params);
+        take_pixels(v, picture.channel, &faces, params);
         v->id = faces.id;
         faces.id = NULL;
         st = make_levels(v, err);
@@ -170,7 +158,7 @@ enum status source_view_read(struct source_view *v, struct view_ids *ids, const 
         *ids = faces;
         faces = (struct view_ids){0};
     }
-    exr_image_release(&picture);
+    view_planes_release(&picture);
     view_ids_release(&faces);
     return st;
 }

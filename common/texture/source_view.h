@@ -40,8 +40,8 @@ struct source_view {
 };
 
 /* Reads VIEWS/VIEW.exr and IDS/VIEW.exr. camera: in the model's frame. ids, if not NULL, gets the rest of the second
- * file (without id, which v has), in scene units; the caller releases it. v is overwritten; the caller releases it in each
- * case. ST_DATA: a missing channel, sizes that differ. */
+ * file (without id, which v has), in scene units; the caller releases it. v is overwritten; the caller releases it in
+ * each case. ST_DATA: a missing channel, sizes that differ. */
 enum status source_view_read(struct source_view *v, struct view_ids *ids, const char *views, const char *folder,
                              const struct view *camera, const struct texture_params *params, struct err *err);
 /* Whether a usable pixel shows a face. */

@@ -1,15 +1,16 @@
 /* surfaces.c - see surfaces.h.
  *
- * Filling: seen through a plane, a line of the surface is a line of the raster. For an edge of a triangle with the plane
- * through it that is square to the surface, e . (X, Y, Z, W) >= 0 on the triangle's side; since (X, Y, Z, W) is linear in
- * the pixel, so is e. A row of pixels inside a triangle is therefore an interval, the intersection of three half lines
- * and of W > 0, and nothing needs clipping. */
+ * Filling: seen through a plane, a line of the surface is a line of the raster. For an edge of a triangle with the
+ * plane through it that is square to the surface, e . (X, Y, Z, W) >= 0 on the triangle's side; since (X, Y, Z, W) is
+ * linear in the pixel, so is e. A row of pixels inside a triangle is therefore an interval, the intersection of three
+ * half lines and of W > 0, and nothing needs clipping. */
 #include "common/texture/surfaces.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 #include "common/base/array.h"
+#include "common/base/sort.h"
 
 #define SAME_PLANE   1e-6 /* of the model's size */
 #define SAME_NORMALS 1e-6 /* 1 - cosine */
@@ -58,18 +59,15 @@ static enum status sort_model(struct sorted_model *s, const struct solid_mesh *m
     return solid_mesh_triangulate(&s->triangles, m, err);
 }
 
+static bool face_is_below(const void *face, const void *id)
+{
+    return ((const struct face_of_id *)face)->id < *(const int *)id;
+}
+
 /* The place of the first face of an id, or of the next id. */
 static int first_face(const struct sorted_model *s, int id)
 {
-    int low = 0, high = s->mesh->face_count;
-    while (low < high) {
-        const int middle = low + (high - low) / 2;
-        if (s->faces[middle].id < id)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low;
+    return (int)sort_place(s->faces, (size_t)s->mesh->face_count, sizeof *s->faces, face_is_below, &id);
 }
 
 /* The surfaces of the unedited model, in order of id, then of the first face. */
@@ -136,17 +134,15 @@ void surfaces_release(struct surfaces *s)
     *s = (struct surfaces){0};
 }
 
+static bool surface_is_below(const void *surface, const void *id)
+{
+    return ((const struct surface *)surface)->id < *(const int *)id;
+}
+
 int surfaces_find(const struct surfaces *s, int id)
 {
-    int low = 0, high = s->count;
-    while (low < high) {
-        const int middle = (low + high) / 2;
-        if (s->list[middle].id < id)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low < s->count && s->list[low].id == id ? low : -1;
+    const int at = (int)sort_place(s->list, (size_t)s->count, sizeof *s->list, surface_is_below, &id);
+    return at < s->count && s->list[at].id == id ? at : -1;
 }
 
 int surfaces_find_at(const struct surfaces *s, int id, struct vec3 p, double tolerance)

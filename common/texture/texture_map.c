@@ -10,6 +10,7 @@
 #include "common/base/array.h"
 #include "common/base/outfile.h"
 #include "common/base/scan.h"
+#include "common/base/sort.h"
 #include "common/base/textfile.h"
 
 #define HEADER  "remodel-texture"
@@ -43,19 +44,17 @@ void texture_map_release(struct texture_map *map)
 
 /* --------------------------------------------------------------------------------------------------------- look-ups */
 
+static bool face_is_below(const void *face, const void *id)
+{
+    return ((const struct texture_face *)face)->id < *(const int *)id;
+}
+
 const struct texture_face *texture_map_find(const struct texture_map *map, int id, struct vec3 p)
 {
     const struct texture_face *best = NULL;
     double least = INFINITY;
-    int low = 0, high = map->face_count;
-    while (low < high) {
-        const int middle = (low + high) / 2;
-        if (map->faces[middle].id < id)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    for (int i = low; i < map->face_count && map->faces[i].id == id; i++) {
+    const size_t first = sort_place(map->faces, (size_t)map->face_count, sizeof *map->faces, face_is_below, &id);
+    for (int i = (int)first; i < map->face_count && map->faces[i].id == id; i++) {
         const double off = fabs(vec3_dot(map->faces[i].normal, p) - map->faces[i].offset);
         if (off < least) {
             least = off;
@@ -283,8 +282,7 @@ static enum status read_colour(struct texture_rule *rule, struct textfile *t, st
     char *word = NULL;
     for (int c = 0; !st && c < 3; c++) {
         double value;
-        st = textfile_double(t, "a share of light, from 0 to 1", &value, err);
-        if (!st && (value < 0 || value > 1)) st = textfile_wrong_number(t, value, "a share of light, from 0 to 1", err);
+        st = textfile_number(t, "a share of light", 0, 1, &value, err);
         if (!st) rule->albedo[c] = (float)value;
     }
     if (!st) st = textfile_expect(t, "lit", err);
@@ -336,10 +334,8 @@ static enum status read_lamp(struct texture_map *map, struct textfile *t, struct
     const bool twice = texture_map_lamp(map, lamp->name) != NULL;
     map->lamp_count++;
     if (twice) return textfile_error(t, err, lamp->name, "a lamp that no line above has");
-    for (int c = 0; c < 3; c++) {
-        if (textfile_double(t, "a factor of 0 or more", &lamp->scale[c], err)) return err->status;
-        if (lamp->scale[c] < 0) return textfile_wrong_number(t, lamp->scale[c], "a factor of 0 or more", err);
-    }
+    for (int c = 0; c < 3; c++)
+        if (textfile_number(t, "a factor", 0, INFINITY, &lamp->scale[c], err)) return err->status;
     return textfile_end(t, err);
 }
 

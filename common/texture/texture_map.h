@@ -7,7 +7,8 @@
  *
  *   remodel-texture 2
  *   base E|none                                        the edit that this one stands on
- *   lamp NAME R G B                                    the radiance of this lamp of lights.txt is multiplied; 0 0 0: off
+ *   lamp NAME R G B                                    the radiance of this lamp of lights.txt is multiplied; 0 0 0:
+ *                                                      off
  *   face ID NX NY NZ OFFSET NAME                       a plane of the edited model; its gloss and its rules follow
  *   gloss matt|phong KS N|ward KS ALPHA                the gloss of the face (gloss.h); without this line the edit does
  *                                                      not say it
@@ -20,10 +21,10 @@
  *   clear ROOM LOW HIGH COUNT X Y ...                  clutter is left out in this footprint, from LOW to HIGH
  *   keep NAME LOW HIGH COUNT X Y ...                   but not in this one
  *
- * Points are of the edited model's frame, which is the unedited one's. M is twelve numbers, a 3 x 4 matrix by rows, that
- * takes a point of the edited model to one of the unedited model: the identity for texture that stays in place (crop),
- * a shift for a wall that carries its texture along, a scale for a pane that is stretched. `within` limits a rule to a
- * quadrilateral of the face. */
+ * Points are of the edited model's frame, which is the unedited one's. M is twelve numbers, a 3 x 4 matrix by rows,
+ * that takes a point of the edited model to one of the unedited model: the identity for texture that stays in place
+ * (crop), a shift for a wall that carries its texture along, a scale for a pane that is stretched. `within` limits a
+ * rule to a quadrilateral of the face. */
 #ifndef REMODEL_TEXTURE_MAP_H
 #define REMODEL_TEXTURE_MAP_H
 
@@ -96,8 +97,8 @@ const double *texture_map_lamp(const struct texture_map *map, const char *name);
 /* Whether clutter at p is left out: p is in a zone to clear and in none to keep. */
 bool texture_map_clears(const struct texture_map *map, struct vec3 p);
 
-/* ST_DATA: the base is named "none", a lamp's factor is below 0 or not finite, a face has more than 100 000 added triangles, a zone as many corners or fewer than
- * 3: texture_map_read() would refuse it. */
+/* ST_DATA: the base is named "none", a lamp's factor is below 0 or not finite, a face has more than 100 000 added
+ * triangles, a zone as many corners or fewer than 3: texture_map_read() would refuse it. */
 enum status texture_map_write(const struct texture_map *map, const char *path, const struct provenance *prov,
                               struct err *err);
 /* ST_DATA with file and line. A failure leaves map empty. */

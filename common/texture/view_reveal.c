@@ -1,4 +1,5 @@
-/* view_reveal.c - reading and writing reveal/VIEW.exr (docs/formats.md): channels layer0.id, layer0.Z, layer1.id, ... */
+/* view_reveal.c - reading and writing reveal/VIEW.exr (docs/formats.md): channels layer0.id, layer0.Z, layer1.id,
+ * ... */
 #include <errno.h>
 #include <limits.h>
 #include <stdio.h>

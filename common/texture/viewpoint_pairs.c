@@ -60,9 +60,8 @@ static enum status read_frame(struct viewpoint_pairs *pairs, struct textfile *t,
     double share;
     if (textfile_expect(t, "frame", err) || textfile_word(t, "a frame", &frame, err) ||
         textfile_word(t, "a photo", &from, err) || textfile_word(t, "a photo", &to, err) ||
-        textfile_double(t, "a share", &share, err) || textfile_end(t, err))
+        textfile_number(t, "a share", 0, 1, &share, err) || textfile_end(t, err))
         return err->status;
-    if (share < 0 || share > 1) return textfile_wrong_number(t, share, "a share from 0 to 1", err);
     if (viewpoint_pairs_find(pairs, frame)) return textfile_error(t, err, frame, "each frame once");
     return viewpoint_pairs_add(pairs, frame, from, to, share, err);
 }

@@ -4,10 +4,10 @@
  * others see past them, because the cameras stand in different places. So the median of the luminances, over all photos
  * that show a cell, is the outdoors as long as most of them see past what stands there. Photos that differ from it by
  * more than `agree` are outvoted there. The photo is taken that is outvoted least often in the cell and its neighbours,
- * so that the blurred edge of a frame is left out with it. Among those the one with the best score is taken whole, not an average: things
- * outside are at finite distances, so pictures from different places do not lie exactly on each other, and an average
- * is blurred. The score favours rays that pass the opening squarely and photos that show much of the outdoors, so that
- * neighbouring cells mostly come from the same photo.
+ * so that the blurred edge of a frame is left out with it. Among those the one with the best score is taken whole, not
+ * an average: things outside are at finite distances, so pictures from different places do not lie exactly on each
+ * other, and an average is blurred. The score favours rays that pass the opening squarely and photos that show much of
+ * the outdoors, so that neighbouring cells mostly come from the same photo.
  *
  * Reference images are taken in the opening or outside, where nothing stands in the way: they are all believed, and by
  * default come before photos. With `prefer = photos` they only show what no photo does. */

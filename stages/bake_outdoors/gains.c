@@ -3,9 +3,9 @@
  * Photos of different times show a street under different light. With l the logarithm of the luminance that a photo
  * shows in a cell and g that of the photo's gain, all photos of a cell should have the same g + l. The cell's level is
  * the median of theirs, or of the reference images where there are any; a photo's g is the median of level - l over its
- * cells. Both are found in turn, from g = 0, which converges in a few rounds because most photos share most of what they
- * show. Medians ignore the cells in which a frame or a curtain hides the outdoors. A photo that shares few cells is pulled
- * towards the gain 1. Without reference images the mean of all g, weighted by cells, is 0. */
+ * cells. Both are found in turn, from g = 0, which converges in a few rounds because most photos share most of what
+ * they show. Medians ignore the cells in which a frame or a curtain hides the outdoors. A photo that shares few cells
+ * is pulled towards the gain 1. Without reference images the mean of all g, weighted by cells, is 0. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

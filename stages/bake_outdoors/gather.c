@@ -3,10 +3,11 @@
  * Overview. Everything outside counts as infinitely far away, so a direction is all that a pixel needs. The picture is
  * made in two passes over the pictures that show some of the outdoors; one of them is in memory at a time.
  *   1. At the centre of each cell of CELL x CELL px, each picture is asked what it shows. A cell keeps the best
- *      MAX_CANDIDATES. From these come one gain for each photo (gains.c) and the picture that shows the cell (choose.c).
- *   2. The chosen pictures are resampled. The weight of a picture at a pixel is the share of the four nearest cells that
- *      chose it, interpolated bilinearly: 1 inside an area of one picture, with a transition of a cell's width to the
- *      next, so that no edge shows where two pictures meet. Pictures that are not chosen there have a very small
+ *      MAX_CANDIDATES. From these come one gain for each photo (gains.c) and the picture that shows the cell
+ *      (choose.c).
+ *   2. The chosen pictures are resampled. The weight of a picture at a pixel is the share of the four nearest cells
+ *      that chose it, interpolated bilinearly: 1 inside an area of one picture, with a transition of a cell's width to
+ *      the next, so that no edge shows where two pictures meet. Pictures that are not chosen there have a very small
  *      weight, which only counts where the chosen ones show nothing. A pixel is the mean of 2 x 2 samples.
  * What remains is guessed (guess.c).
  *
@@ -20,7 +21,7 @@
 
 #include "common/base/parallel.h"
 #include "common/base/progress.h"
-#include "common/capture/photo_quality.h"
+#include "common/image/luminance.h"
 #include "common/math/numbers.h"
 
 enum { ROWS = 8, SAMPLES = 2 };
@@ -40,7 +41,7 @@ struct gather {
     double (*azimuths)[2]; /* cosine and sine, of each column of samples */
 };
 
-/* --------------------------------------------------------------------------------------------------------- the model */
+/* -------------------------------------------------------------------------------------------------------- the model */
 
 enum status outdoors_model_read(struct outdoors_model *m, const char *path, struct err *err)
 {
@@ -61,7 +62,7 @@ void outdoors_model_release(struct outdoors_model *m)
     *m = (struct outdoors_model){0};
 }
 
-/* -------------------------------------------------------------------------------------------------------- candidates */
+/* ------------------------------------------------------------------------------------------------------- candidates */
 
 /* Whether a goes before b in a cell's list. */
 static bool precedes(const struct outdoors_candidate *a, const struct outdoors_candidate *b,
@@ -93,14 +94,14 @@ static void ask_rows(void *ctx, size_t begin, size_t end, int thread)
             const struct vec3 d = outdoors_direction(g->out, (x + 0.5) * CELL, ((double)y + 0.5) * CELL);
             const enum outdoors_state state = outdoors_picture_sample(rgb, &facing, p, d);
             if (state == SHOWS_NOTHING) continue;
-            c.luminance = photo_luminance(rgb);
+            c.luminance = luminance_of(rgb);
             c.clipped = state == SHOWS_CLIPPED;
             c.score = facing * (float)sqrt(p->coverage);
             insert(g->cells.lists[y * (size_t)g->cells.width + (size_t)x], &c, g->pictures);
         }
 }
 
-/* -------------------------------------------------------------------------------------------------------- resampling */
+/* ------------------------------------------------------------------------------------------------------- resampling */
 
 /* The share of the four cells around a pixel that chose the current picture. */
 static float chosen_here(const struct gather *g, int x, int y)
@@ -198,7 +199,7 @@ static void divide_by_weights(struct gather *g)
         for (size_t c = 0; c < 3 && g->weights[i] > 0; c++) g->out->rgb[3 * i + c] /= g->weights[i];
 }
 
-/* ---------------------------------------------------------------------------------------------------------- the passes */
+/* ------------------------------------------------------------------------------------------------------- the passes */
 
 static enum status init(struct gather *g, int count, int photos, struct err *err)
 {

@@ -27,8 +27,8 @@ struct outdoors_cells {
 /* 0: the candidate is clipped; otherwise 1 plus the order of its picture. */
 int outdoors_rank(const struct outdoors_candidate *c, const struct outdoors_picture *pictures);
 
-/* gains.c. Sets gain[photo] for the photos of the pictures; photos are numbered from 0. Those that reference images have
- * in common with photos decide the level, and reference images keep the gain 1. */
+/* gains.c. Sets gain[photo] for the photos of the pictures; photos are numbered from 0. Those that reference images
+ * have in common with photos decide the level, and reference images keep the gain 1. */
 enum status outdoors_find_gains(double *gain, int photos, const struct outdoors_cells *cells,
                                 const struct outdoors_picture *pictures, struct err *err);
 

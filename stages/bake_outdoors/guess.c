@@ -1,10 +1,10 @@
 /* guess.c - what lies in directions that no picture shows.
  *
- * Overview. The outdoors depend on elevation more than on anything else: the sky is above the horizon, the ground below.
- * So the known pixels are split into a profile, the median colour of each row, and the residual, by which a pixel differs
- * from its row. The profile is carried on to rows of which little or nothing is known, without crossing the horizon; the
- * residual is carried on in all directions, so that a guess joins what is known without an edge. Both are logarithms: a
- * guess is never negative, and the sun, which is 10^5 times brighter than the sky, does not spread.
+ * Overview. The outdoors depend on elevation more than on anything else: the sky is above the horizon, the ground
+ * below. So the known pixels are split into a profile, the median colour of each row, and the residual, by which a
+ * pixel differs from its row. The profile is carried on to rows of which little or nothing is known, without crossing
+ * the horizon; the residual is carried on in all directions, so that a guess joins what is known without an edge. Both
+ * are logarithms: a guess is never negative, and the sun, which is 10^5 times brighter than the sky, does not spread.
  *
  * Mathematics. Both are pull-push [Gortler 1996, 5.1]. Pull: a coarser level holds the weighted means of pairs of rows
  * (of 2 x 2 pixels), its weight the sum of theirs, at most 1. Push: from the coarsest level down, a value v of weight w

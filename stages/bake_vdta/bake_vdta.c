@@ -1,4 +1,5 @@
-/* bake_vdta.c - view-dependent texture atlases: the faces of the model as one viewpoint sees them, without what hides them.
+/* bake_vdta.c - view-dependent texture atlases: the faces of the model as one viewpoint sees them, without what hides
+ * them.
  *
  * reads   MODEL                                         the unedited model
  *         AXES                                          its frame in the scene

@@ -1,7 +1,8 @@
-/* estimate.c - see estimate.h. The time is linear in the pixels of the viewpoint's own views, whose texels are composed,
- * and in those of its sources, which are read and projected; memory and bytes are linear in the former. Measured on three
- * viewpoints of loft (draft): own views of 2.2 million pixels and 35 views in all took 4.7 to 5.5 core-seconds and 450 to
- * 560 MiB, with one source in place of 32 1.8 to 2.5, and wrote 8 MB. With `reveal = all` they took 1.05 times as long. */
+/* estimate.c - see estimate.h. The time is linear in the pixels of the viewpoint's own views, whose texels are
+ * composed, and in those of its sources, which are read and projected; memory and bytes are linear in the former.
+ * Measured on three viewpoints of loft (draft): own views of 2.2 million pixels and 35 views in all took 4.7 to 5.5
+ * core-seconds and 450 to 560 MiB, with one source in place of 32 1.8 to 2.5, and wrote 8 MB. With `reveal = all` they
+ * took 1.05 times as long. */
 #include "stages/bake_vdta/estimate.h"
 
 #include <string.h>

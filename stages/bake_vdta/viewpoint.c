@@ -10,7 +10,7 @@
 #include "common/base/log.h"
 #include "common/base/make_deps.h"
 #include "common/base/progress.h"
-#include "common/capture/photo_quality.h"
+#include "common/image/luminance.h"
 #include "stages/bake_vdta/sources.h"
 #include "stages/bake_vdta/view_tiles.h"
 
@@ -71,7 +71,7 @@ static enum status add_levels(float **levels, size_t *count, size_t *room, const
     if (array_reserve(levels, room, *count + pixels / SAMPLE + 1, sizeof **levels, "pixels", err)) return err->status;
     for (size_t i = 0; i < pixels; i += SAMPLE) {
         const float *p = v->levels[0].rgba + 4 * i;
-        if (p[3] > 0) (*levels)[(*count)++] = photo_luminance(p);
+        if (p[3] > 0) (*levels)[(*count)++] = luminance_of(p);
     }
     return ST_OK;
 }

@@ -4,7 +4,8 @@
 
 #include "common/texture/bake.h"
 
-/* Texels of the surface's bounding rectangle, whose sides lie along the axes of ortho_axes() (common/texture/ortho.h). */
+/* Texels of the surface's bounding rectangle, whose sides lie along the axes of ortho_axes()
+ * (common/texture/ortho.h). */
 size_t ortho_texels(const struct surfaces *s, int surface, double side);
 
 /* Adds the surface's tiles to the bake, every texel of its area wanted, with a margin of one texel for look-ups at its

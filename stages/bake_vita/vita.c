@@ -9,7 +9,7 @@
 #include "common/base/array.h"
 #include "common/base/log.h"
 #include "common/base/progress.h"
-#include "common/capture/photo_quality.h"
+#include "common/image/luminance.h"
 #include "common/math/weighted.h"
 #include "stages/bake_vita/ortho_tiles.h"
 
@@ -135,7 +135,7 @@ static enum status find_white(struct bake *b, struct err *err)
     size_t count = 0;
     if (!levels) return err_nomem(err, "levels", b->list_count / SAMPLE * sizeof *levels);
     for (size_t i = 0; i < b->list_count; i += SAMPLE)
-        if (b->counts[i]) levels[count++] = (struct weighted){photo_luminance(b->lists[i][0].rgb), 1};
+        if (b->counts[i]) levels[count++] = (struct weighted){luminance_of(b->lists[i][0].rgb), 1};
     b->white = weighted_percentile(levels, count, WHITE_SHARE);
     if (!(b->white > 0)) b->white = 1;
     free(levels);

@@ -30,9 +30,9 @@ struct border_set {
     int inner_capacity;
 };
 
-/* borders is empty on entry; the caller releases it, also after a failure. Adds sections, lines and points to set. rooms:
- * of each name's rank the room that its faces belong to, or -1. Where faces of several rooms coincide, the surface
- * belongs to the lowest. */
+/* borders is empty on entry; the caller releases it, also after a failure. Adds sections, lines and points to set.
+ * rooms: of each name's rank the room that its faces belong to, or -1. Where faces of several rooms coincide, the
+ * surface belongs to the lowest. */
 enum status borders_find(struct border_set *borders, struct convex_set *set, const int *rooms, struct err *err);
 
 void border_set_release(struct border_set *borders);

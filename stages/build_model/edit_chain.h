@@ -10,7 +10,8 @@
 enum status plan_apply_model(struct plan *plan, const char *path, const struct placer *placer, struct provenance *prov,
                              struct err *err);
 
-/* Applies the file of objects that all edits have, which holds statements `object` alone. ST_DATA: another statement. */
+/* Applies the file of objects that all edits have, which holds statements `object` alone. ST_DATA: another
+ * statement. */
 enum status plan_apply_objects(struct plan *plan, const char *path, struct provenance *prov, struct err *err);
 
 /* Applies an edit after the one that its statement `base` names, in the same folder, and so on. ST_DATA: that

@@ -128,8 +128,7 @@ struct plan_wish {
     enum wish_kind kind;
     char *path; /* of the script, for messages; owned */
     int line;
-    char *
-        face; /* the item (STRETCH, CROP), the face or faces (COLOUR, GLOSS), the face that gets texture (COPY); owned */
+    char *face;         /* STRETCH, CROP: the item; COLOUR, GLOSS: face or faces; COPY: what gets texture; owned */
     char *from;         /* COPY: the face that has it; owned */
     double patch[4];    /* COPY: S and Z, or X and Y, of the patch's corners */
     double target[4];   /* COPY, COLOUR: the same of the place that gets it */

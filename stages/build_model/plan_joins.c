@@ -1,7 +1,7 @@
 /* plan_joins.c - statements that join, extend and split walls.
  *
- * An end stores what it is joined to, so a wall that moves takes its neighbours' ends along. A split moves the openings,
- * joined walls and rooms of the wall to the part that they belong to. */
+ * An end stores what it is joined to, so a wall that moves takes its neighbours' ends along. A split moves the
+ * openings, joined walls and rooms of the wall to the part that they belong to. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 /* plan_openings.c - statements that make openings in walls, ceilings and floors, and boxes; their places.
  *
- * A rectangle in a photograph is the intersection of the rays through its corners with the face of the wall, the ceiling
- * or the floor that the camera sees. */
+ * A rectangle in a photograph is the intersection of the rays through its corners with the face of the wall, the
+ * ceiling or the floor that the camera sees. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -98,8 +98,8 @@ static enum status set_wall_line(struct plan_context *c, struct plan_wall *w, co
     return ST_OK;
 }
 
-/* A wall parallel to another one, in front of it by the statement's distance, facing the same way, which meets the walls
- * at its two ends. */
+/* A wall parallel to another one, in front of it by the statement's distance, facing the same way, which meets the
+ * walls at its two ends. */
 static enum status place_parallel_wall(struct plan_context *c, struct plan_wall *w)
 {
     const struct script_place *place = &c->s->place;

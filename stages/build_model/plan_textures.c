@@ -1,5 +1,5 @@
-/* plan_textures.c - statements about textures, colours, gloss and clutter. What they mean for faces is found when the model has
- * been built (texture_rules.c). */
+/* plan_textures.c - statements about textures, colours, gloss and clutter. What they mean for faces is found when the
+ * model has been built (texture_rules.c). */
 #include <stdlib.h>
 #include <string.h>
 

@@ -1,4 +1,5 @@
-/* texture_planes.h - axes in the planes of faces, and rectangles in them; used by texture_rules.c and texture_wishes.c. */
+/* texture_planes.h - axes in the planes of faces, and rectangles in them; used by texture_rules.c and
+ * texture_wishes.c. */
 #ifndef REMODEL_BUILD_MODEL_TEXTURE_PLANES_H
 #define REMODEL_BUILD_MODEL_TEXTURE_PLANES_H
 

@@ -6,8 +6,8 @@
  *
  * A face with a new id that lies in the plane of faces of the unedited model (a wall that was split, a pier left of a
  * wall that was removed) shows those at the same place, else the nearest texels of the closest of them, if it is near.
- * Other new faces get the default colour, under the light of the faces next to them. Panes show what lies outdoors. What
- * a script's statements say of textures comes before all this (texture_wishes.c).
+ * Other new faces get the default colour, under the light of the faces next to them. Panes show what lies outdoors.
+ * What a script's statements say of textures comes before all this (texture_wishes.c).
  *
  * The new area of a face is what its polygon has beyond the polygons of its id in the unedited model, moved like it. */
 #include "stages/build_model/texture_rules.h"
@@ -97,8 +97,8 @@ static struct texture_rule shifted(enum texture_rule_kind kind, int from, struct
         .matrix = {{1, 0, 0, by.x + 0.0}, {0, 1, 0, by.y + 0.0}, {0, 0, 1, by.z + 0.0}}}; /* -0 is 0 */
 }
 
-/* The face's own place: the face of the base with its id whose plane, moved along with the item, is nearest; -1: the base
- * has no face of the id in a parallel plane. *by: from the edited model to the base. */
+/* The face's own place: the face of the base with its id whose plane, moved along with the item, is nearest; -1: the
+ * base has no face of the id in a parallel plane. *by: from the edited model to the base. */
 static int own_place(const struct rules_job *job, int face, struct vec3 *by)
 {
     const struct solid_face *f = &job->models.edited->faces[face];

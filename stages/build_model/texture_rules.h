@@ -7,8 +7,8 @@
 #include "common/texture/texture_map.h"
 #include "stages/build_model/plan.h"
 
-/* Rules of each face of the edited model, whose ids are those of the base. plan: of the edited model; an edit was applied
- * to it. map is empty on entry; the caller releases it in each case. */
+/* Rules of each face of the edited model, whose ids are those of the base. plan: of the edited model; an edit was
+ * applied to it. map is empty on entry; the caller releases it in each case. */
 enum status texture_rules_make(struct texture_map *map, const struct solid_mesh *edited, const struct solid_mesh *base,
                                const struct plan *plan, struct err *err);
 

@@ -1,8 +1,8 @@
 /* texture_wishes.c - statements about textures as rules; see texture_wishes.h.
  *
  * A patch that is copied keeps its scale and is repeated over the place that gets it, from the lower left corner: one
- * limited rule for each copy. Stretched texture goes from the bounding rectangle of the face to that of its own place in
- * the base, in the axes of its plane. */
+ * limited rule for each copy. Stretched texture goes from the bounding rectangle of the face to that of its own place
+ * in the base, in the axes of its plane. */
 #include "stages/build_model/texture_wishes.h"
 
 #include <math.h>
@@ -119,7 +119,8 @@ static struct plane_rect place_rect(const double place[4], const struct solid_me
     return plane_rect_of(axes, place_corner(wall, place[0], place[1], f), place_corner(wall, place[2], place[3], f));
 }
 
-/* The face of the base from which a patch is copied: of a ceiling with several planes, the lowest in the patch's middle.
+/* The face of the base from which a patch is copied: of a ceiling with several planes, the lowest in the patch's
+ * middle.
  */
 static int copy_source(const struct texture_models *m, const struct plan_wish *w)
 {

@@ -1,9 +1,9 @@
 /* unite.c - the union of convex solids as closed half-edge meshes.
  *
  * borders_find() returns the borders of the surface in each plane: segments of lines with the surface on their left.
- * They are cut where they meet, paired to edges and linked to loops (unite_edges.c); the loops become faces with holes and
- * names (unite_faces.c); a few edges are split, so that a mesh can have them (unite_split.c). The faces of all bodies are
- * then one list of polygons.
+ * They are cut where they meet, paired to edges and linked to loops (unite_edges.c); the loops become faces with holes
+ * and names (unite_faces.c); a few edges are split, so that a mesh can have them (unite_split.c). The faces of all
+ * bodies are then one list of polygons.
  *
  * docs/decisions/0015 explains why each step is exact. */
 #include "stages/build_model/unite.h"

@@ -2,7 +2,8 @@
  *
  * Each body is united separately. Inner faces vanish; coplanar faces that meet along an edge become one face, with
  * holes as loops, except that floors and ceilings, floor/R... and ceiling/R..., are merged only with faces of the same
- * room R: two rooms' floors may be of two materials. Solids that touch in an edge or a point stay separate there. The same input gives the same bytes. */
+ * room R: two rooms' floors may be of two materials. Solids that touch in an edge or a point stay separate there. The
+ * same input gives the same bytes. */
 #ifndef REMODEL_BUILD_MODEL_UNITE_H
 #define REMODEL_BUILD_MODEL_UNITE_H
 

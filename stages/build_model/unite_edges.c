@@ -4,8 +4,8 @@
  * - The faces around an edge are sorted by angle, exactly. Each face is where solid begins or where it ends; faces with
  *   solid between them become neighbours (twins). So solids that touch in an edge stay separate there.
  * - The next half-edge in a face is the one that bounds the same corner of the face: the first one clockwise.
- * - Half-edges around a corner of the solid, one fan of faces, share a vertex; another fan gets another vertex. A vertex
- *   with two faces only, in the middle of an edge, is removed. */
+ * - Half-edges around a corner of the solid, one fan of faces, share a vertex; another fan gets another vertex. A
+ *   vertex with two faces only, in the middle of an edge, is removed. */
 #include <stdlib.h>
 #include <string.h>
 

@@ -1,12 +1,13 @@
 /* unite_faces.c - loops of a body as faces with holes, and their names.
  *
  * Loops are projected along the axis of their normal's largest component. The corner of a loop with the least
- * coordinates tells, exactly, whether the face is inside of the loop: then it is an outer loop, otherwise a hole. A hole
- * belongs to the outer loop of least area that contains it, by the winding numbers of its corners. A face has the name of
- * lowest rank among those of the solids' facets that it is made of; the others are merged into it. */
+ * coordinates tells, exactly, whether the face is inside of the loop: then it is an outer loop, otherwise a hole. A
+ * hole belongs to the outer loop of least area that contains it, by the winding numbers of its corners. A face has the
+ * name of lowest rank among those of the solids' facets that it is made of; the others are merged into it. */
 #include <math.h>
 #include <stdlib.h>
 
+#include "common/base/sort.h"
 #include "stages/build_model/unite_internal.h"
 
 /* Axes u, v of the projection in which a face seen from outside keeps its orientation. */
@@ -182,17 +183,14 @@ static int face_at(const struct body_union *j, const struct loop_order *loops, i
     return best < 0 ? -1 : j->loops[best].face;
 }
 
+static bool side_is_below(const void *loop, const void *key)
+{
+    return ((const struct loop_order *)loop)->key < *(const int *)key;
+}
+
 static int side_begin(const struct loop_order *order, int count, int key)
 {
-    int low = 0, high = count;
-    while (low < high) {
-        const int middle = (low + high) / 2;
-        if (order[middle].key < key)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low;
+    return (int)sort_place(order, (size_t)count, sizeof *order, side_is_below, &key);
 }
 
 /* Names each face after the lowest rank among its facets of its room, and records the names that it merged.

@@ -3,10 +3,11 @@
  * reads   FOLDER/views, depth, holdout   cameras, views, depth maps, held-out photographs and their rendered frames
  *         FOLDER/model, remodel/E        axes, plans and solids of the model and of its edits
  *         FOLDER/vdta, vita, reveal      texture atlases, and what edits reveal to the views
- *         FOLDER/relight                 irradiance.txt: irradiance at points; pictures of it like those in RENDERED; E, E/unlit:
- *                                        pictures under the light that edits make, and before
+ *         FOLDER/relight                 irradiance.txt: irradiance at points; pictures of it like those in RENDERED;
+ *                                        E, E/unlit: pictures under the light that edits make, and before
  *         SHARED/photos, hdr             the photos' records, merged exposures
- *         RENDERED/novel, edited-E, relit-E, shell, irradiance, edited-E/irradiance   rendered pictures, and their cameras
+ *         RENDERED/novel, edited-E, relit-E, shell, irradiance, edited-E/irradiance   rendered pictures, and their
+ *                                                                                     cameras
  *         TRUTH                          what is true of the scene; docs/formats.md lists it
  * writes  FOLDER/evaluate/truth/VIEW.exr the true depth resampled to the view
  *         FOLDER/evaluate/cameras        cameras of the truth in the frame of the views, for programs that render them

@@ -54,13 +54,11 @@ static enum status add_axes(struct evaluation *e, const struct model_axes *axes,
 {
     struct metric_table *t = &e->table;
     const struct axes_errors errors = nearest_errors(e, axes, room);
-    if (metric_add(t, NULL, "axes.angle", errors.all, "degrees", "lower", err) ||
-        metric_add(t, NULL, "axes.up", errors.up, "degrees", "lower", err) ||
-        metric_add(t, NULL, "axes.floor", errors.floor, "m", "lower", err))
+    if (metric_add(t, NULL, "axes.angle", errors.all, err) || metric_add(t, NULL, "axes.up", errors.up, err) ||
+        metric_add(t, NULL, "axes.floor", errors.floor, err))
         return err->status;
-    if (axes->ceiling > 0 && metric_add(t, NULL, "axes.ceiling", errors.ceiling, "m", "lower", err)) return err->status;
-    if (axes->metric &&
-        metric_add(t, NULL, "axes.scale", 100 * fabs(axes->scale / e->truth_from_scene.scale - 1), "%", "lower", err))
+    if (axes->ceiling > 0 && metric_add(t, NULL, "axes.ceiling", errors.ceiling, err)) return err->status;
+    if (axes->metric && metric_add(t, NULL, "axes.scale", 100 * fabs(axes->scale / e->truth_from_scene.scale - 1), err))
         return err->status;
     if (room->count > 1 &&
         metric_note(t, err,

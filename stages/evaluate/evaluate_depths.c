@@ -120,15 +120,15 @@ static enum status add_tally(struct metric_table *t, const char *view, const str
     static const double PARTS[3] = {0.50, 0.90, 0.95};
     char name[64];
     snprintf(name, sizeof name, "depth.bad1%s", suffix);
-    if (disparity && metric_add(t, view, name, percent(d->bad1, d->pixels), "%", "lower", err)) return err->status;
+    if (disparity && metric_add(t, view, name, percent(d->bad1, d->pixels), err)) return err->status;
     snprintf(name, sizeof name, "depth.bad2%s", suffix);
-    if (disparity && metric_add(t, view, name, percent(d->bad2, d->pixels), "%", "lower", err)) return err->status;
+    if (disparity && metric_add(t, view, name, percent(d->bad2, d->pixels), err)) return err->status;
     for (int k = 0; k < 3 && d->known; k++) {
         snprintf(name, sizeof name, "depth.error%.0f%s", 100 * PARTS[k], suffix);
-        if (metric_add(t, view, name, 100 * quantiles_get(&d->errors, PARTS[k]), "%", "lower", err)) return err->status;
+        if (metric_add(t, view, name, 100 * quantiles_get(&d->errors, PARTS[k]), err)) return err->status;
     }
     snprintf(name, sizeof name, "depth.within2%s", suffix);
-    if (d->known && metric_add(t, view, name, percent(d->within2, d->known), "%", "higher", err)) return err->status;
+    if (d->known && metric_add(t, view, name, percent(d->within2, d->known), err)) return err->status;
     return ST_OK;
 }
 
@@ -138,8 +138,7 @@ static enum status add_depth_errors(struct evaluation *e, const char *view, cons
     struct metric_table *t = &e->table;
     if (!d->all.pixels) return ST_OK;
     if (add_tally(t, view, &d->all, "", e->baseline > 0, err) ||
-        metric_add(t, view, "depth.occluded", percent(d->all.pixels - d->visible.pixels, d->all.pixels), "%", "none",
-                   err))
+        metric_add(t, view, "depth.occluded", percent(d->all.pixels - d->visible.pixels, d->all.pixels), err))
         return err->status;
     return d->visible.pixels ? add_tally(t, view, &d->visible, "_visible", e->baseline > 0, err) : ST_OK;
 }
@@ -254,8 +253,7 @@ static enum status evaluate_view(struct evaluation *e, int i, const bool *kept, 
         scene->known += known_here;
     }
     layered_depth_release(&d);
-    if (!st && here)
-        st = metric_add(&e->table, view->name, "depth.known", percent(known_here, here), "%", "higher", err);
+    if (!st && here) st = metric_add(&e->table, view->name, "depth.known", percent(known_here, here), err);
     if (!st && e->aligned && e->truth.photos[photo].depth) {
         st = photo_truth_make(tv, e, photo, kept, err);
         if (!st) st = compare_depth(e, i, tv, &stated, scene, err);
@@ -274,10 +272,10 @@ static enum status add_sigma_tally(struct metric_table *t, const struct sigma_ta
     if (!pixels) return ST_OK;
     for (int k = 0; k < 3; k++) {
         snprintf(name, sizeof name, "depth.sigma%d%s", k + 1, suffix);
-        if (metric_add(t, NULL, name, percent(s->within[k], pixels), "%", "none", err)) return err->status;
+        if (metric_add(t, NULL, name, percent(s->within[k], pixels), err)) return err->status;
     }
     snprintf(name, sizeof name, "depth.sigma_factor%s", suffix);
-    return metric_add(t, NULL, name, quantiles_get(&s->errors, 0.6827), "1", "none", err);
+    return metric_add(t, NULL, name, quantiles_get(&s->errors, 0.6827), err);
 }
 
 /* Overwrites the tally of the first class by that of all. */
@@ -289,7 +287,7 @@ static enum status add_sigma_errors(struct metric_table *t, struct sigma_errors 
         char suffix[32], name[64];
         snprintf(suffix, sizeof suffix, "_%s", depth_class_name((enum depth_class)c));
         snprintf(name, sizeof name, "depth.share%s", suffix);
-        if (metric_add(t, NULL, name, percent(s->classes[c].errors.count, pixels), "%", "none", err) ||
+        if (metric_add(t, NULL, name, percent(s->classes[c].errors.count, pixels), err) ||
             add_sigma_tally(t, &s->classes[c], suffix, err))
             return err->status;
     }
@@ -324,13 +322,12 @@ enum status evaluate_depths(struct evaluation *e, struct err *err)
     progress_end(&progress);
     if (!st && missing)
         st = metric_note(&e->table, err, "skipped %d of %d views: they have no depth map", missing, views->view_count);
-    if (!st && scene.pixels)
-        st = metric_add(&e->table, NULL, "depth.known", percent(scene.known, scene.pixels), "%", "higher", err);
+    if (!st && scene.pixels) st = metric_add(&e->table, NULL, "depth.known", percent(scene.known, scene.pixels), err);
     if (!st && scene.depths.all.pixels) {
         st = add_depth_errors(e, NULL, &scene.depths, err);
         if (!st) st = add_sigma_errors(&e->table, &scene.sigmas, err);
         if (!st && e->baseline > 0)
-            st = metric_add(&e->table, NULL, "depth.baseline", e->baseline, "m", "none", err);
+            st = metric_add(&e->table, NULL, "depth.baseline", e->baseline, err);
         else if (!st)
             st = metric_note(&e->table, err,
                              "skipped depth.bad1 and bad2: the truth places fewer than two of the kept photos apart; "

@@ -110,12 +110,10 @@ static enum status add_shares(struct evaluation *e, const struct faces_job *job,
         const struct face_shares s = face_shares_of(a, i);
         const char *view = i < 0 ? NULL : job->names[i];
         if (!s.counted) continue;
-        if (evaluation_metric(e, view, job->prefix, "faces", 100 * (double)s.agreeing / (double)s.counted, "%",
-                              "higher", err))
+        if (evaluation_metric(e, view, job->prefix, "faces", 100 * (double)s.agreeing / (double)s.counted, err))
             return err->status;
         if (i >= 0) continue;
-        if (evaluation_metric(e, NULL, job->prefix, "faces_measured", 100 * (double)s.counted / (double)s.all, "%",
-                              "none", err))
+        if (evaluation_metric(e, NULL, job->prefix, "faces_measured", 100 * (double)s.counted / (double)s.all, err))
             return err->status;
         if (s.worst >= 0 && metric_note(&e->table, err, "note: most pixels that %s.faces misses are on %s", job->prefix,
                                         s.worst ? job->truth.faces[s.worst - 1].name : "the outdoors"))

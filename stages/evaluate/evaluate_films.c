@@ -1,7 +1,7 @@
 /* evaluate_films.c - how steady the light of relit films is: edited.E.flicker*. It needs no truth.
  *
- * Films are FOLDER/relight/E/tour: unlit/NNNN.exr, frames/NNNN.exr. A place on a surface has one quotient of light, whatever
- * the frame; what differs between a frame and the next is seen as flicker. */
+ * Films are FOLDER/relight/E/tour: unlit/NNNN.exr, frames/NNNN.exr. A place on a surface has one quotient of light,
+ * whatever the frame; what differs between a frame and the next is seen as flicker. */
 #include <dirent.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -71,8 +71,8 @@ static enum status measure_film(struct evaluation *e, const char *edit, const ch
     if (!st) st = compare_frames(&q, &places, e, film, err);
     snprintf(prefix, sizeof prefix, "edited.%.255s", edit);
     if (!st && places)
-        st = evaluation_metric(e, NULL, prefix, "flicker50", 100 * quantiles_get(&q, 0.5), "%", "lower", err) ||
-             evaluation_metric(e, NULL, prefix, "flicker95", 100 * quantiles_get(&q, 0.95), "%", "lower", err);
+        st = evaluation_metric(e, NULL, prefix, "flicker50", 100 * quantiles_get(&q, 0.5), err) ||
+             evaluation_metric(e, NULL, prefix, "flicker95", 100 * quantiles_get(&q, 0.95), err);
     quantiles_release(&q);
     return st ? err->status : ST_OK;
 }

@@ -138,7 +138,7 @@ static enum status add_predictions(struct heldout_job *job, struct evaluation *e
         if (st || !found) break;
         job->psnr[k] += psnr;
         job->filled[k] += filled;
-        st = evaluation_metric(e, view->name, prefixes[k], "heldout_psnr", psnr, "dB", "higher", err);
+        st = evaluation_metric(e, view->name, prefixes[k], "heldout_psnr", psnr, err);
     }
     job->pictures += !st && found;
     if (!st && !found)
@@ -160,7 +160,7 @@ static enum status add_picture(struct heldout_job *job, struct evaluation *e, co
     return st;
 }
 
-/* ----------------------------------------------------------------------------------------------------------- the scene */
+/* -------------------------------------------------------------------------------------------------------- the scene */
 
 static enum status prepare(struct heldout_job *job, struct evaluation *e, struct err *err)
 {
@@ -186,8 +186,8 @@ static enum status add_means(struct evaluation *e, const struct heldout_job *job
     const int n = job->pictures;
     if (!n) return metric_note(&e->table, err, "skipped textures of held-out photos: none sees the model");
     for (int k = first_kind(job); k < kinds(job); k++)
-        if (evaluation_metric(e, NULL, prefixes[k], "heldout_psnr", job->psnr[k] / n, "dB", "higher", err) ||
-            evaluation_metric(e, NULL, prefixes[k], "heldout_filled", job->filled[k] / n, "%", "higher", err))
+        if (evaluation_metric(e, NULL, prefixes[k], "heldout_psnr", job->psnr[k] / n, err) ||
+            evaluation_metric(e, NULL, prefixes[k], "heldout_filled", job->filled[k] / n, err))
             return err->status;
     return ST_OK;
 }

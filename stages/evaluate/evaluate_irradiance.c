@@ -1,8 +1,8 @@
 /* evaluate_irradiance.c - irradiance at points against the truth: irradiance.*
  *
  * FOLDER/relight/irradiance.txt is in the frame of O/views and in the radiance unit of the views, and holds the points
- * of TRUTH/irradiance.txt, which FOLDER/evaluate/irradiance_points.txt has in that frame. irradiance_pictures.c measures
- * pictures of irradiance. */
+ * of TRUTH/irradiance.txt, which FOLDER/evaluate/irradiance_points.txt has in that frame. irradiance_pictures.c
+ * measures pictures of irradiance. */
 #include <stdlib.h>
 
 #include "common/base/outfile.h"
@@ -87,14 +87,14 @@ static enum status add_errors(struct evaluation *e, const char *prefix, const ch
 {
     char name[64];
     snprintf(name, sizeof name, "points%s", suffix);
-    if (evaluation_metric(e, NULL, prefix, name, r->points, "1", "none", err)) return err->status;
+    if (evaluation_metric(e, NULL, prefix, name, r->points, err)) return err->status;
     if (!r->points) return ST_OK;
     snprintf(name, sizeof name, "rms%s", suffix);
-    if (evaluation_metric(e, NULL, prefix, name, 100 * r->rms, "%", "lower", err)) return err->status;
+    if (evaluation_metric(e, NULL, prefix, name, 100 * r->rms, err)) return err->status;
     snprintf(name, sizeof name, "error50%s", suffix);
-    if (evaluation_metric(e, NULL, prefix, name, 100 * r->error50, "%", "lower", err)) return err->status;
+    if (evaluation_metric(e, NULL, prefix, name, 100 * r->error50, err)) return err->status;
     snprintf(name, sizeof name, "error90%s", suffix);
-    return evaluation_metric(e, NULL, prefix, name, 100 * r->error90, "%", "lower", err);
+    return evaluation_metric(e, NULL, prefix, name, 100 * r->error90, err);
 }
 
 /* What is compared: the lists, each true point's partner, and whether it lies on the model. */
@@ -138,8 +138,7 @@ static enum status compare(struct evaluation *e, struct irradiance_job *job, str
     if (irradiance_errors(&all, &job->truth, &job->found, job->partner, job->all, scale, err) ||
         irradiance_errors(&on, &job->truth, &job->found, job->partner, job->on, scale, err) ||
         irradiance_errors(&off, &job->truth, &job->found, job->partner, job->off, scale, err) ||
-        add_errors(e, "irradiance", "", &all, err) ||
-        evaluation_metric(e, NULL, "irradiance", "missing", missing, "1", "lower", err))
+        add_errors(e, "irradiance", "", &all, err) || evaluation_metric(e, NULL, "irradiance", "missing", missing, err))
         return err->status;
     if (known && (add_errors(e, "irradiance", "_model", &on, err) || add_errors(e, "irradiance", "_other", &off, err)))
         return err->status;

@@ -19,22 +19,22 @@ static enum status add_picture(struct evaluation *e, const struct view *view, co
     s->psnr += p->psnr;
     s->holes += p->holes;
     s->pictures++;
-    enum status st = metric_add(t, view->name, "holdout.psnr", p->psnr, "dB", "higher", err) ||
-                     metric_add(t, view->name, "holdout.holes", 100 * p->holes, "%", "lower", err);
+    enum status st = metric_add(t, view->name, "holdout.psnr", p->psnr, err) ||
+                     metric_add(t, view->name, "holdout.holes", 100 * p->holes, err);
     if (!st && p->has_ssim) {
         s->ssim += p->ssim;
         s->with_ssim++;
-        st = metric_add(t, view->name, "holdout.ssim", p->ssim, "1", "higher", err);
+        st = metric_add(t, view->name, "holdout.ssim", p->ssim, err);
     }
     if (!st && p->has_covered) {
         s->psnr_covered += p->psnr_covered;
         s->covered++;
-        st = metric_add(t, view->name, "holdout.psnr_covered", p->psnr_covered, "dB", "higher", err);
+        st = metric_add(t, view->name, "holdout.psnr_covered", p->psnr_covered, err);
     }
     if (!st && p->has_ssim_covered) {
         s->ssim_covered += p->ssim_covered;
         s->with_ssim_covered++;
-        st = metric_add(t, view->name, "holdout.ssim_covered", p->ssim_covered, "1", "higher", err);
+        st = metric_add(t, view->name, "holdout.ssim_covered", p->ssim_covered, err);
     }
     return st ? err->status : ST_OK;
 }
@@ -139,12 +139,12 @@ enum status evaluate_pictures(struct evaluation *e, struct err *err)
     else
         st = metric_note(t, err, "note: held-out pictures are compared at their own sizes, %d x %d to %d x %d px",
                          s.min_size[0], s.min_size[1], s.max_size[0], s.max_size[1]);
-    st = st || metric_add(t, NULL, "holdout.pictures", s.pictures, "1", "none", err) ||
-         metric_add(t, NULL, "holdout.psnr", s.psnr / s.pictures, "dB", "higher", err) ||
-         metric_add(t, NULL, "holdout.holes", 100 * s.holes / s.pictures, "%", "lower", err) ||
-         (s.with_ssim && metric_add(t, NULL, "holdout.ssim", s.ssim / s.with_ssim, "1", "higher", err)) ||
-         (s.covered && metric_add(t, NULL, "holdout.psnr_covered", s.psnr_covered / s.covered, "dB", "higher", err)) ||
-         (s.with_ssim_covered &&
-          metric_add(t, NULL, "holdout.ssim_covered", s.ssim_covered / s.with_ssim_covered, "1", "higher", err));
+    st =
+        st || metric_add(t, NULL, "holdout.pictures", s.pictures, err) ||
+        metric_add(t, NULL, "holdout.psnr", s.psnr / s.pictures, err) ||
+        metric_add(t, NULL, "holdout.holes", 100 * s.holes / s.pictures, err) ||
+        (s.with_ssim && metric_add(t, NULL, "holdout.ssim", s.ssim / s.with_ssim, err)) ||
+        (s.covered && metric_add(t, NULL, "holdout.psnr_covered", s.psnr_covered / s.covered, err)) ||
+        (s.with_ssim_covered && metric_add(t, NULL, "holdout.ssim_covered", s.ssim_covered / s.with_ssim_covered, err));
     return st ? err->status : ST_OK;
 }

@@ -72,11 +72,10 @@ static enum status add_case(struct evaluation *e, struct radiance_cases *cases, 
             radiance_error_add(round->errors, &p);
         }
         const char *view = c->name, *of = cases->prefix;
-        if (!st && c->scale > 0) st = evaluation_metric(e, view, of, "scale", c->scale, "1", "none", err);
+        if (!st && c->scale > 0) st = evaluation_metric(e, view, of, "scale", c->scale, err);
         if (!st && errors.errors.count)
-            st = evaluation_metric(e, view, of, "error50", 100 * quantiles_get(&errors.errors, 0.5), "%", "lower", err);
-        if (!st && radiance_error_rms(&errors, &rms))
-            st = evaluation_metric(e, view, of, "rms", 100 * rms, "%", "lower", err);
+            st = evaluation_metric(e, view, of, "error50", 100 * quantiles_get(&errors.errors, 0.5), err);
+        if (!st && radiance_error_rms(&errors, &rms)) st = evaluation_metric(e, view, of, "rms", 100 * rms, err);
     }
     radiance_error_release(&errors);
     quantiles_release(&own);
@@ -106,13 +105,12 @@ static enum status measure(struct evaluation *e, struct radiance_cases *cases, d
             from = from > 0 ? fmin(from, s) : s;
             to = fmax(to, s);
         }
-        st = st || evaluation_metric(e, NULL, of, "scale", *scale, "1", "none", err) ||
-             evaluation_metric(e, NULL, of, "scale_spread", 100 * (to / from - 1), "%", "lower", err) ||
-             evaluation_metric(e, NULL, of, "error50", 100 * quantiles_get(&errors.errors, 0.5), "%", "lower", err) ||
-             evaluation_metric(e, NULL, of, "error90", 100 * quantiles_get(&errors.errors, 0.9), "%", "lower", err) ||
-             evaluation_metric(e, NULL, of, "pictures", cases->count, "1", "none", err);
-        if (!st && radiance_error_rms(&errors, &rms))
-            st = evaluation_metric(e, NULL, of, "rms", 100 * rms, "%", "lower", err);
+        st = st || evaluation_metric(e, NULL, of, "scale", *scale, err) ||
+             evaluation_metric(e, NULL, of, "scale_spread", 100 * (to / from - 1), err) ||
+             evaluation_metric(e, NULL, of, "error50", 100 * quantiles_get(&errors.errors, 0.5), err) ||
+             evaluation_metric(e, NULL, of, "error90", 100 * quantiles_get(&errors.errors, 0.9), err) ||
+             evaluation_metric(e, NULL, of, "pictures", cases->count, err);
+        if (!st && radiance_error_rms(&errors, &rms)) st = evaluation_metric(e, NULL, of, "rms", 100 * rms, err);
     } else if (!st) {
         st = metric_note(&e->table, err, "skipped %s: no pixel has light both in a picture and in the truth", of);
     }

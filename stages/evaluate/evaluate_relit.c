@@ -1,9 +1,10 @@
-/* evaluate_relit.c - pictures of edited scenes under the light that the edit makes: edited.E.relit_*, edited.E.unlit_psnr.
+/* evaluate_relit.c - pictures of edited scenes under the light that the edit makes: edited.E.relit_*,
+ * edited.E.unlit_psnr.
  *
  * Relit pictures are RENDERED/relit-E/NAME, and RENDERED/edited-E/NAME are those before they were relit; if there is no
  * RENDERED/relit-E, they are FOLDER/relight/E/VIEW.exr and FOLDER/relight/E/unlit/VIEW.exr. Both are compared with
- * TRUTH/edited-E/hdr over the pixels that show the same surface before and after the edit, and whose true light changes.
- * What the edit reveals is measured apart. */
+ * TRUTH/edited-E/hdr over the pixels that show the same surface before and after the edit, and whose true light
+ * changes. What the edit reveals is measured apart. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -17,7 +18,7 @@
 #include "stages/evaluate/true_planes.h"
 
 enum { MIN_PIXELS = 200 }; /* of a picture, for values of its own */
-static const double MOST_HALF = 65504;
+static const double MAX_HALF = 65504;
 
 struct relit_sums { /* by part of the picture */
     struct encoded_error relit[PICTURE_PARTS], unlit[PICTURE_PARTS], revealed[PICTURE_PARTS];
@@ -65,9 +66,10 @@ static void truth_release_all(struct relit_truth *t)
     for (int k = 0; k < PICTURE_PARTS; k++) free(t->part[k]);
 }
 
-/* ------------------------------------------------------------------------------------------------------------ the truth */
+/* -------------------------------------------------------------------------------------------------------- the truth */
 
-/* The true light before and after the edit. Without pictures of irradiance the radiance decides. *found: there is either. */
+/* The true light before and after the edit. Without pictures of irradiance the radiance decides. *found: there is
+ * either. */
 static enum status read_light(struct relit_truth *t, bool *found, struct relit_job *job, const struct render *r,
                               struct err *err)
 {
@@ -124,7 +126,7 @@ static enum status read_truth(struct relit_truth *t, bool *found, struct relit_j
     return st;
 }
 
-/* -------------------------------------------------------------------------------------------------------------- pictures */
+/* --------------------------------------------------------------------------------------------------------- pictures */
 
 static void choose(struct relit_truth *t, const uint8_t *from, int part)
 {
@@ -172,11 +174,11 @@ static enum status add_quotients(struct relit_sums *own, struct relit_job *job, 
 }
 
 static enum status add_metric(struct relit_job *job, const char *view, const char *name, int part, double value,
-                              const char *unit, const char *direction, struct err *err)
+                              struct err *err)
 {
     char text[64];
     snprintf(text, sizeof text, "%s%s", name, picture_part_suffixes[part]);
-    return evaluation_metric(job->e, view, job->set->prefix, text, value, unit, direction, err);
+    return evaluation_metric(job->e, view, job->set->prefix, text, value, err);
 }
 
 static enum status add_part(struct relit_job *job, const char *view, const struct relit_sums *s, int k, uint64_t least,
@@ -185,16 +187,14 @@ static enum status add_part(struct relit_job *job, const char *view, const struc
     double relit, unlit, revealed;
     enum status st = ST_OK;
     if (s->pixels[k] >= least && encoded_error_psnr(&s->relit[k], &relit) && encoded_error_psnr(&s->unlit[k], &unlit)) {
-        st = add_metric(job, view, "relit_psnr", k, relit, "dB", "higher", err) ||
-             add_metric(job, view, "unlit_psnr", k, unlit, "dB", "none", err) ||
-             add_metric(job, view, "relit_gain", k, relit - unlit, "dB", "higher", err) ||
-             add_metric(job, view, "relit_pixels", k, 100 * (double)s->pixels[k] / (double)s->all, "%", "none", err);
+        st = add_metric(job, view, "relit_psnr", k, relit, err) || add_metric(job, view, "unlit_psnr", k, unlit, err) ||
+             add_metric(job, view, "relit_gain", k, relit - unlit, err) ||
+             add_metric(job, view, "relit_pixels", k, 100 * (double)s->pixels[k] / (double)s->all, err);
         if (!st && s->ratios[k].count)
-            st = add_metric(job, view, "relit_ratio_error50", k, 100 * quantiles_get(&s->ratios[k], 0.5), "%", "lower",
-                            err);
+            st = add_metric(job, view, "relit_ratio_error50", k, 100 * quantiles_get(&s->ratios[k], 0.5), err);
     }
     if (!st && s->revealed[k].samples >= 3 * least && encoded_error_psnr(&s->revealed[k], &revealed))
-        st = add_metric(job, view, "relit_revealed_psnr", k, revealed, "dB", "higher", err);
+        st = add_metric(job, view, "relit_revealed_psnr", k, revealed, err);
     return st ? err->status : ST_OK;
 }
 
@@ -224,7 +224,7 @@ static enum status write_truth(const struct relit_job *job, const struct render 
     for (int k = 0; !st && k < 3; k++) {
         st = exr_add_plane(&im, channels[k], EXR_HALF, NULL, err);
         for (size_t i = 0; !st && i < (size_t)truth->width * (size_t)truth->height; i++)
-            im.planes[k].f[i] = (float)fmin((double)truth->data[4 * i + (size_t)k] / job->e->radiance_scale, MOST_HALF);
+            im.planes[k].f[i] = (float)fmin((double)truth->data[4 * i + (size_t)k] / job->e->radiance_scale, MAX_HALF);
     }
     if (!st) st = exr_write(&im, path, &prov, err);
     exr_image_release(&im);
@@ -272,9 +272,10 @@ static enum status measure(struct relit_job *job, struct render *r, struct err *
     return st;
 }
 
-/* ----------------------------------------------------------------------------------------------------------------- edits */
+/* ------------------------------------------------------------------------------------------------------------ edits */
 
-/* The folders of relit pictures and of those before, as the inputs call them, and their paths; false: there are none. */
+/* The folders of relit pictures and of those before, as the inputs call them, and their paths; false: there are
+ * none. */
 static bool find_folders(char names[2][80], char paths[2][FILE_PATH], const struct evaluation *e, const char *edit)
 {
     struct err none = ERR_INIT;

@@ -55,17 +55,17 @@ static enum status add_encoded(struct evaluation *e, const char *of, const char 
     s->pictures++;
     s->psnr += p->psnr;
     s->holes += p->holes;
-    enum status st = evaluation_metric(e, name, of, "psnr", p->psnr, "dB", "higher", err) ||
-                     evaluation_metric(e, name, of, "holes", 100 * p->holes, "%", "lower", err);
+    enum status st = evaluation_metric(e, name, of, "psnr", p->psnr, err) ||
+                     evaluation_metric(e, name, of, "holes", 100 * p->holes, err);
     if (!st && p->has_ssim) {
         s->ssim += p->ssim;
         s->with_ssim++;
-        st = evaluation_metric(e, name, of, "ssim", p->ssim, "1", "higher", err);
+        st = evaluation_metric(e, name, of, "ssim", p->ssim, err);
     }
     if (!st && p->has_covered) {
         s->psnr_covered += p->psnr_covered;
         s->covered++;
-        st = evaluation_metric(e, name, of, "psnr_covered", p->psnr_covered, "dB", "higher", err);
+        st = evaluation_metric(e, name, of, "psnr_covered", p->psnr_covered, err);
     }
     return st ? err->status : ST_OK;
 }
@@ -80,19 +80,19 @@ static enum status add_linear(struct evaluation *e, const char *of, const char *
     if (whole && radiance_error_rms(whole, &rms)) {
         s->rms += rms;
         s->with_rms++;
-        st = evaluation_metric(e, name, of, "rms", 100 * rms, "%", "lower", err);
+        st = evaluation_metric(e, name, of, "rms", 100 * rms, err);
     }
     if (!st && radiance_error_rms(clipped, &rms)) {
         s->rms_clipped += rms;
         s->with_clipped++;
-        st = evaluation_metric(e, name, of, "rms_clipped", 100 * rms, "%", "lower", err);
+        st = evaluation_metric(e, name, of, "rms_clipped", 100 * rms, err);
     }
     const struct radiance_error *all = whole ? whole : clipped;
     if (!st && all->errors.count) {
         const double middle = quantiles_get(&all->errors, 0.5);
         s->error50 += middle;
         s->with_error++;
-        st = evaluation_metric(e, name, of, "error50", 100 * middle, "%", "lower", err);
+        st = evaluation_metric(e, name, of, "error50", 100 * middle, err);
     }
     return st;
 }
@@ -140,19 +140,16 @@ static enum status add_means(struct evaluation *e, const char *of, const struct 
 {
     const int n = s->pictures;
     enum status st =
-        evaluation_metric(e, NULL, of, "pictures", n, "1", "none", err) ||
-        evaluation_metric(e, NULL, of, "white", e->white, "1", "none", err) ||
-        evaluation_metric(e, NULL, of, "psnr", s->psnr / n, "dB", "higher", err) ||
-        evaluation_metric(e, NULL, of, "holes", 100 * s->holes / n, "%", "lower", err) ||
-        (own && evaluation_metric(e, NULL, of, "offset", s->offset, "m", "lower", err)) ||
-        (s->with_ssim && evaluation_metric(e, NULL, of, "ssim", s->ssim / s->with_ssim, "1", "higher", err)) ||
-        (s->covered &&
-         evaluation_metric(e, NULL, of, "psnr_covered", s->psnr_covered / s->covered, "dB", "higher", err)) ||
-        (s->with_rms && evaluation_metric(e, NULL, of, "rms", 100 * s->rms / s->with_rms, "%", "lower", err)) ||
+        evaluation_metric(e, NULL, of, "pictures", n, err) || evaluation_metric(e, NULL, of, "white", e->white, err) ||
+        evaluation_metric(e, NULL, of, "psnr", s->psnr / n, err) ||
+        evaluation_metric(e, NULL, of, "holes", 100 * s->holes / n, err) ||
+        (own && evaluation_metric(e, NULL, of, "offset", s->offset, err)) ||
+        (s->with_ssim && evaluation_metric(e, NULL, of, "ssim", s->ssim / s->with_ssim, err)) ||
+        (s->covered && evaluation_metric(e, NULL, of, "psnr_covered", s->psnr_covered / s->covered, err)) ||
+        (s->with_rms && evaluation_metric(e, NULL, of, "rms", 100 * s->rms / s->with_rms, err)) ||
         (s->with_clipped &&
-         evaluation_metric(e, NULL, of, "rms_clipped", 100 * s->rms_clipped / s->with_clipped, "%", "lower", err)) ||
-        (s->with_error &&
-         evaluation_metric(e, NULL, of, "error50", 100 * s->error50 / s->with_error, "%", "lower", err));
+         evaluation_metric(e, NULL, of, "rms_clipped", 100 * s->rms_clipped / s->with_clipped, err)) ||
+        (s->with_error && evaluation_metric(e, NULL, of, "error50", 100 * s->error50 / s->with_error, err));
     return st ? err->status : ST_OK;
 }
 

@@ -38,7 +38,7 @@ static enum status measure(struct evaluation *e, const struct renders *list, str
             s->square += (double)revealed * pow(10, -psnr / 10);
             s->pixels += (double)revealed;
             if (revealed >= MIN_REVEALED)
-                st = evaluation_metric(e, r->name, list->set->prefix, "revealed_psnr", psnr, "dB", "higher", err);
+                st = evaluation_metric(e, r->name, list->set->prefix, "revealed_psnr", psnr, err);
         }
     }
     free(mask);
@@ -57,11 +57,9 @@ static enum status measure_edit(struct evaluation *e, const char *where, struct 
     if (!st && set.count) st = renders_find(&list, e, &set, err);
     if (!st && list.count) st = renders_scale(e, &list, err);
     for (int i = 0; !st && e->white > 0 && i < list.count; i++) st = measure(e, &list, &list.list[i], &s, err);
-    if (!st && s.all)
-        st = evaluation_metric(e, NULL, set.prefix, "revealed", 100 * s.pixels / (double)s.all, "%", "none", err);
+    if (!st && s.all) st = evaluation_metric(e, NULL, set.prefix, "revealed", 100 * s.pixels / (double)s.all, err);
     if (!st && s.pixels > 0)
-        st = evaluation_metric(e, NULL, set.prefix, "revealed_psnr", -10 * log10(s.square / s.pixels), "dB", "higher",
-                               err);
+        st = evaluation_metric(e, NULL, set.prefix, "revealed_psnr", -10 * log10(s.square / s.pixels), err);
     renders_release(&list);
     true_set_release(&set);
     return st;

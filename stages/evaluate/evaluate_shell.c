@@ -56,15 +56,15 @@ static enum status add_faces(struct evaluation *e, struct shell_error *errors, c
             snprintf(view, sizeof view, "face/%.250s", faces->faces[i - 1].name);
         else
             snprintf(view, sizeof view, "face/%d", i);
-        st = evaluation_metric(e, view, "shell", name, 100 * middle, "%", "lower", err);
+        st = evaluation_metric(e, view, "shell", name, 100 * middle, err);
         if (!(middle > most)) continue;
         most = middle;
         snprintf(worst, sizeof worst, "%.250s", view + 5);
     }
     snprintf(name, sizeof name, "faces%s", suffixes[part]);
-    if (!st && count) st = evaluation_metric(e, NULL, "shell", name, 100 * median(medians, count), "%", "lower", err);
+    if (!st && count) st = evaluation_metric(e, NULL, "shell", name, 100 * median(medians, count), err);
     snprintf(name, sizeof name, "faces_max%s", suffixes[part]);
-    if (!st && count) st = evaluation_metric(e, NULL, "shell", name, 100 * most, "%", "lower", err);
+    if (!st && count) st = evaluation_metric(e, NULL, "shell", name, 100 * most, err);
     if (!st && count) st = metric_note(&e->table, err, "note: shell.%s is that of %s", name, worst);
     free(medians);
     return st;
@@ -78,18 +78,18 @@ static enum status add_all(struct evaluation *e, struct shell_error *errors, int
     double rms;
     enum status st = file_path(path, e->truth_folder, "faces.txt", "", err);
     if (!st && path_is_file(path)) st = true_faces_read(&faces, path, err);
-    if (!st) st = evaluation_metric(e, NULL, "shell", "pictures", pictures, "1", "none", err);
+    if (!st) st = evaluation_metric(e, NULL, "shell", "pictures", pictures, err);
     for (int k = 0; k < SHELL_PARTS; k++) pixels += errors->all[k].pixels;
     if (!st && pixels)
         st = evaluation_metric(e, NULL, "shell", "hidden",
-                               100 * (double)errors->all[SHELL_HIDDEN].pixels / (double)pixels, "%", "none", err);
+                               100 * (double)errors->all[SHELL_HIDDEN].pixels / (double)pixels, err);
     for (int k = 0; !st && k < SHELL_PARTS; k++) {
         struct radiance_error *r = &errors->all[k];
         snprintf(name, sizeof name, "rms%s", suffixes[k]);
-        if (radiance_error_rms(r, &rms)) st = evaluation_metric(e, NULL, "shell", name, 100 * rms, "%", "lower", err);
+        if (radiance_error_rms(r, &rms)) st = evaluation_metric(e, NULL, "shell", name, 100 * rms, err);
         snprintf(name, sizeof name, "error50%s", suffixes[k]);
         if (!st && r->errors.count)
-            st = evaluation_metric(e, NULL, "shell", name, 100 * quantiles_get(&r->errors, 0.5), "%", "lower", err);
+            st = evaluation_metric(e, NULL, "shell", name, 100 * quantiles_get(&r->errors, 0.5), err);
         if (!st) st = add_faces(e, errors, &faces, k, err);
     }
     true_faces_release(&faces);

@@ -2,8 +2,8 @@
  * all of the model and of its edits: texture.vita.covered.
  *
  * What edits reveal to a view is O/reveal/VIEW.exr, a point for each pixel and layer; it must have a colour in an atlas
- * of the view's viewpoint. Every face of the model, and every face of an edit that lies in the plane of the model's face
- * of that id, must have one in the VITA; it is sampled at the centres of equal parts of its triangles. */
+ * of the view's viewpoint. Every face of the model, and every face of an edit that lies in the plane of the model's
+ * face of that id, must have one in the VITA; it is sampled at the centres of equal parts of its triangles. */
 #include <dirent.h>
 #include <stdlib.h>
 #include <string.h>
@@ -66,7 +66,7 @@ static void add_sum(struct cover_sum *sum, struct cover_points *points, const st
     }
 }
 
-/* -------------------------------------------------------------------------------------------------- what is revealed */
+/* ------------------------------------------------------------------------------------------------- what is revealed */
 
 static enum status add_layer(struct cover_points *c, const struct view_reveal *r, int k, const struct view *view,
                              const struct model_axes *axes, struct err *err)
@@ -118,7 +118,7 @@ static enum status cover_viewpoint(struct cover_sum *sum, struct evaluation *e, 
     return st;
 }
 
-/* ------------------------------------------------------------------------------------------------------ whole models */
+/* ----------------------------------------------------------------------------------------------------- whole models */
 
 static double mesh_size(const struct solid_mesh *mesh)
 {
@@ -222,14 +222,14 @@ static enum status cover_vita(struct cover_sum *sum, struct evaluation *e, const
     return st;
 }
 
-/* --------------------------------------------------------------------------------------------------------- the table */
+/* -------------------------------------------------------------------------------------------------------- the table */
 
 static enum status add_share(struct evaluation *e, const char *prefix, const struct cover_sum *sum, struct err *err)
 {
     if (!(sum->all > 0))
         return metric_note(&e->table, err, "skipped %s.covered: the declared edits reveal nothing (no reveal/VIEW.exr)",
                            prefix);
-    return evaluation_metric(e, NULL, prefix, "covered", 100 * sum->filled / sum->all, "%", "higher", err);
+    return evaluation_metric(e, NULL, prefix, "covered", 100 * sum->filled / sum->all, err);
 }
 
 enum status evaluate_texture_cover(struct evaluation *e, struct err *err)

@@ -198,7 +198,7 @@ static enum status add_atlas(struct texture_result *r, const struct texture_job 
     return st;
 }
 
-/* --------------------------------------------------------------------------------------------------------- the table */
+/* -------------------------------------------------------------------------------------------------------- the table */
 
 static const char *const part_names[TEXTURE_PARTS] = {"psnr_original", "psnr_warped", "psnr_seen", "psnr_synthesised"};
 
@@ -212,16 +212,16 @@ static enum status add_faces(struct evaluation *e, const struct texture_result *
             if (!texture_face_psnr(&r->error, id, (enum texture_part)k, &db)) continue;
             snprintf(view, sizeof view, "face/%.250s",
                      solid_face_name(&job->textures.mesh, textures_face(&job->textures, id)));
-            if (evaluation_metric(e, view, r->prefix, part_names[k], db, "dB", "higher", err)) return err->status;
+            if (evaluation_metric(e, view, r->prefix, part_names[k], db, err)) return err->status;
         }
     return ST_OK;
 }
 
 static enum status add_share(struct evaluation *e, const struct texture_result *r, const char *name, uint64_t part,
-                             uint64_t of, const char *direction, const char *none, struct err *err)
+                             uint64_t of, const char *none, struct err *err)
 {
     if (!of) return metric_note(&e->table, err, "skipped %s.%s: %s", r->prefix, name, none);
-    return evaluation_metric(e, NULL, r->prefix, name, 100 * (double)part / (double)of, "%", direction, err);
+    return evaluation_metric(e, NULL, r->prefix, name, 100 * (double)part / (double)of, err);
 }
 
 /* No view is a VITA's own. */
@@ -236,20 +236,20 @@ static enum status add_errors(struct evaluation *e, const struct texture_result 
         double db = 0;
         bool found = false;
         st = texture_median_psnr(t, (enum texture_part)k, &db, &found, err);
-        if (!st && found) st = evaluation_metric(e, NULL, r->prefix, part_names[k], db, "dB", "higher", err);
+        if (!st && found) st = evaluation_metric(e, NULL, r->prefix, part_names[k], db, err);
         if (!st && !found)
             st = metric_note(&e->table, err, "skipped %s.%s: no face has %d of these texels with a true radiance",
                              r->prefix, part_names[k], MIN_FACE_TEXELS);
     }
-    if (!st) st = add_share(e, r, "compared", t->compared, t->texels, "none", "there is no texel of a known face", err);
+    if (!st) st = add_share(e, r, "compared", t->compared, t->texels, "there is no texel of a known face", err);
     if (!st && !is_vita(r))
-        st = add_share(e, r, "clutter_avoided", t->avoided, t->clutter, "higher",
+        st = add_share(e, r, "clutter_avoided", t->avoided, t->clutter,
                        "no texel's own photo is known to show clutter of another colour", err);
     if (!st)
-        st = add_share(e, r, "clutter_baked", t->baked, t->from_views, "lower",
+        st = add_share(e, r, "clutter_baked", t->baked, t->from_views,
                        "no texel has both a true radiance and a source whose clutter is known", err);
     if (!st)
-        st = add_share(e, r, "unknown_clean", t->clean_unknown, t->clean, "lower",
+        st = add_share(e, r, "unknown_clean", t->clean_unknown, t->clean,
                        "no photo is known to show any texel's surface", err);
     return st ? st : add_faces(e, r, job, err);
 }
@@ -258,10 +258,10 @@ static enum status add_result(struct evaluation *e, const struct texture_result 
                               struct err *err)
 {
     double ratio;
-    enum status st = evaluation_metric(e, NULL, r->prefix, "atlases", r->atlases, "1", "none", err);
-    if (!st) st = evaluation_metric(e, NULL, r->prefix, "megapixels", 1e-6 * (double)r->texels, "Mpx", "none", err);
+    enum status st = evaluation_metric(e, NULL, r->prefix, "atlases", r->atlases, err);
+    if (!st) st = evaluation_metric(e, NULL, r->prefix, "megapixels", 1e-6 * (double)r->texels, err);
     if (!st && texture_seams_ratio(&r->seams, &ratio))
-        st = evaluation_metric(e, NULL, r->prefix, "seam_energy", ratio, "1", "lower", err);
+        st = evaluation_metric(e, NULL, r->prefix, "seam_energy", ratio, err);
     else if (!st)
         st = metric_note(&e->table, err, "skipped %s.seam_energy: no two views meet in a tile", r->prefix);
     if (!st && r->unknown_tiles)

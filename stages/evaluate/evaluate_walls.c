@@ -1,4 +1,5 @@
-/* evaluate_walls.c - walls, openings and heights of the model and of its edits against the truth: model.*, edited.E.* */
+/* evaluate_walls.c - walls, openings and heights of the model and of its edits against the truth: model.*,
+ * edited.E.* */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -18,8 +19,8 @@ static enum status add_parts(struct evaluation *e, const char *prefix, const cha
     char middle[64];
     snprintf(middle, sizeof middle, "%s_median", name);
     if (!p->count) return ST_OK;
-    if (evaluation_metric(e, NULL, prefix, name, p->errors[p->count - 1], "m", "lower", err) ||
-        evaluation_metric(e, NULL, prefix, middle, median(p->errors, p->count), "m", "lower", err))
+    if (evaluation_metric(e, NULL, prefix, name, p->errors[p->count - 1], err) ||
+        evaluation_metric(e, NULL, prefix, middle, median(p->errors, p->count), err))
         return err->status;
     return metric_note(&e->table, err, "note: %s.%s is that of %s", prefix, name, p->worst);
 }
@@ -28,11 +29,11 @@ static enum status add_walls(struct evaluation *e, const char *prefix, const str
                              const struct room_height_errors *h, struct err *err)
 {
     if (add_parts(e, prefix, "walls", &w->faces, err) || add_parts(e, prefix, "openings", &w->openings, err) ||
-        evaluation_metric(e, NULL, prefix, "strange", w->extra, "1", "lower", err) ||
-        evaluation_metric(e, NULL, prefix, "missing", w->missing, "1", "lower", err))
+        evaluation_metric(e, NULL, prefix, "strange", w->extra, err) ||
+        evaluation_metric(e, NULL, prefix, "missing", w->missing, err))
         return err->status;
-    if (h->rooms && (evaluation_metric(e, NULL, prefix, "floors", h->floor, "m", "lower", err) ||
-                     evaluation_metric(e, NULL, prefix, "ceilings", h->ceiling, "m", "lower", err)))
+    if (h->rooms && (evaluation_metric(e, NULL, prefix, "floors", h->floor, err) ||
+                     evaluation_metric(e, NULL, prefix, "ceilings", h->ceiling, err)))
         return err->status;
     if (!h->outside) return ST_OK;
     return metric_note(&e->table, err, "skipped the heights of %d rooms of %s: no true room is there", h->outside,

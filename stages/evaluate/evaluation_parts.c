@@ -31,13 +31,13 @@ struct picture_map map_of_view(const struct view_set *set, int view)
 }
 
 enum status evaluation_metric(struct evaluation *e, const char *view, const char *prefix, const char *name,
-                              double value, const char *unit, const char *direction, struct err *err)
+                              double value, struct err *err)
 {
     char text[METRIC_NAME];
     const int length = snprintf(text, sizeof text, "%s.%s", prefix, name);
     if (length < 0 || length >= (int)sizeof text)
         return err_set(err, ST_INTERNAL, "the name of the metric %s.%s is too long.", prefix, name);
-    return metric_add(&e->table, view, text, value, unit, direction, err);
+    return metric_add(&e->table, view, text, value, err);
 }
 
 void evaluation_set_white(struct evaluation *e)

@@ -58,7 +58,7 @@ enum status evaluate_heldout_textures(struct evaluation *e, struct err *err); /*
 
 /* metric_add() of "PREFIX.NAME"; ST_INTERNAL: a longer name than a table holds. */
 enum status evaluation_metric(struct evaluation *e, const char *view, const char *prefix, const char *name,
-                              double value, const char *unit, const char *direction, struct err *err);
+                              double value, struct err *err);
 
 /* Sets e->white, the radiance that is white in 8 bits; 0: it is not given, and the scale of radiance is unknown. */
 void evaluation_set_white(struct evaluation *e);

@@ -7,7 +7,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "common/capture/photo_quality.h"
+#include "common/image/luminance.h"
 #include "stages/evaluate/relit_error.h"
 
 #define SAME_DEPTH 0.02 /* largest relative difference of depth of one surface */
@@ -25,8 +25,8 @@ static float quotient(const struct film_frame *f, const struct exr_plane *const 
     if (p->made[i] < MADE_ORIGINAL || p->made[i] > MADE_COLOUR || !p->id[i] || !(p->z[i] > 0)) return -1;
     if (relit[3]->u[i] != p->made[i]) return -1; /* an object */
     const float after[3] = {relit[0]->f[i], relit[1]->f[i], relit[2]->f[i]};
-    const double before = exposure * (double)photo_luminance(p->rgb + 3 * i);
-    return before > 1e-3 ? (float)((double)photo_luminance(after) / before) : -1;
+    const double before = exposure * (double)luminance_of(p->rgb + 3 * i);
+    return before > 1e-3 ? (float)((double)luminance_of(after) / before) : -1;
 }
 
 enum status film_frame_set_quotients(struct film_frame *f, const struct exr_image *relit, const char *path,

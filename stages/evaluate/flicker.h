@@ -12,8 +12,8 @@ struct film_frame {
     float *quotient; /* a pixel; below 0: furniture, the outdoors, an object, or dark */
 };
 
-/* Sets the quotients from the unlit picture, which is there, and the relit frame, as relight --frames writes it. ST_DATA:
- * the frame at PATH is another one, or damaged. */
+/* Sets the quotients from the unlit picture, which is there, and the relit frame, as relight --frames writes it.
+ * ST_DATA: the frame at PATH is another one, or damaged. */
 enum status film_frame_set_quotients(struct film_frame *f, const struct exr_image *relit, const char *path,
                                      struct err *err);
 void film_frame_release(struct film_frame *f);

@@ -9,11 +9,10 @@
 #include <stdlib.h>
 
 #include "common/base/sort.h"
+#include "common/image/luminance.h"
 #include "stages/evaluate/evaluation_parts.h"
 
 #define MIN_COSINE 0.98480775301220802 /* cos 10 degrees */
-
-static double luminance(const double c[3]) { return 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2]; }
 
 void irradiance_partners(int *partner, const struct irradiance_list *truth, const struct irradiance_list *found)
 {
@@ -40,13 +39,13 @@ enum status irradiance_errors(struct irradiance_errors *e, const struct irradian
     if (!errors) return err_nomem(err, "errors of irradiance", (size_t)truth->count * sizeof *errors);
     for (int i = 0; i < truth->count; i++) {
         const double *b = truth->points[i].rgb;
-        if (partner[i] < 0 || !wanted[i] || !(luminance(b) > 0)) continue;
+        if (partner[i] < 0 || !wanted[i] || !(luminance_of_doubles(b) > 0)) continue;
         const double *a = found->points[partner[i]].rgb;
         for (int c = 0; c < 3; c++) {
             square += (scale * a[c] - b[c]) * (scale * a[c] - b[c]);
             reference += b[c] * b[c];
         }
-        errors[e->points++] = fabs(scale * luminance(a) - luminance(b)) / luminance(b);
+        errors[e->points++] = fabs(scale * luminance_of_doubles(a) - luminance_of_doubles(b)) / luminance_of_doubles(b);
     }
     if (e->points) {
         e->rms = sqrt(square / reference);
@@ -65,8 +64,8 @@ enum status irradiance_scale(double *scale, const struct irradiance_list *truth,
     double *ratios = malloc(((size_t)truth->count + 1) * sizeof *ratios);
     if (!ratios) return err_nomem(err, "ratios of irradiance", (size_t)truth->count * sizeof *ratios);
     for (int i = 0; i < truth->count; i++) {
-        const double b = luminance(truth->points[i].rgb);
-        const double a = partner[i] < 0 ? 0 : luminance(found->points[partner[i]].rgb);
+        const double b = luminance_of_doubles(truth->points[i].rgb);
+        const double a = partner[i] < 0 ? 0 : luminance_of_doubles(found->points[partner[i]].rgb);
         if (a > 0 && b > 0) ratios[count++] = b / a;
     }
     *scale = count ? median(ratios, count) : 0;

@@ -19,14 +19,14 @@ static enum status read_point(struct irradiance_list *list, struct textfile *t, 
                                           "green irradiance",
                                           "blue irradiance"};
     double v[9];
-    for (int i = 0; i < 9; i++)
+    for (int i = 0; i < 6; i++)
         if (textfile_double(t, fields[i], &v[i], err)) return err->status;
+    for (int i = 6; i < 9; i++)
+        if (textfile_number(t, fields[i], 0, INFINITY, &v[i], err)) return err->status;
     if (textfile_end(t, err)) return err->status;
     struct irradiance_at p = {vec3_make(v[0], v[1], v[2]), vec3_make(v[3], v[4], v[5]), {v[6], v[7], v[8]}};
     const double length = vec3_length(p.normal);
     if (!(fabs(length - 1) <= 1e-3)) return textfile_wrong_number(t, length, "a normal of length 1", err);
-    for (int c = 0; c < 3; c++)
-        if (!(p.rgb[c] >= 0)) return textfile_wrong_number(t, p.rgb[c], "an irradiance of at least 0", err);
     p.normal = vec3_scale(p.normal, 1 / length);
     if (array_append(&list->points, (size_t)list->count, sizeof p, "irradiance points", err)) return err->status;
     list->points[list->count++] = p;

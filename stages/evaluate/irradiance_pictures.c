@@ -100,11 +100,11 @@ static enum status read_compared(struct compared *c, struct pictures_job *job, c
 /* ---------------------------------------------------------------------------------------------------------- metrics */
 
 static enum status add_metric(struct evaluation *e, const char *view, const char *name, int part, double value,
-                              const char *unit, const char *direction, struct err *err)
+                              struct err *err)
 {
     char text[64];
     snprintf(text, sizeof text, "%s%s", name, picture_part_suffixes[part]);
-    return evaluation_metric(e, view, "irradiance", text, value, unit, direction, err);
+    return evaluation_metric(e, view, "irradiance", text, value, err);
 }
 
 /* The errors of a picture, or of all pictures (view NULL). */
@@ -114,11 +114,9 @@ static enum status add_picture_errors(struct evaluation *e, const char *view,
     enum status st = ST_OK;
     for (int k = 0; !st && k < PICTURE_PARTS; k++) {
         double rms;
-        if (radiance_error_rms(&errors[k], &rms))
-            st = add_metric(e, view, "picture_rms", k, 100 * rms, "%", "lower", err);
+        if (radiance_error_rms(&errors[k], &rms)) st = add_metric(e, view, "picture_rms", k, 100 * rms, err);
         if (!st && errors[k].errors.count)
-            st = add_metric(e, view, "picture_error50", k, 100 * quantiles_get(&errors[k].errors, 0.5), "%", "lower",
-                            err);
+            st = add_metric(e, view, "picture_error50", k, 100 * quantiles_get(&errors[k].errors, 0.5), err);
     }
     return st;
 }
@@ -130,14 +128,13 @@ static enum status add_ratio_errors(struct evaluation *e, const char *view,
     for (int k = 0; !st && k < PICTURE_PARTS; k++) {
         const struct ratio_error *r = &ratios[k];
         if (!r->pixels || !(r->reference > 0)) continue;
-        st = add_metric(e, view, "ratio_rms", k, 100 * sqrt(r->square / r->reference), "%", "lower", err) ||
-             add_metric(e, view, "ratio_change", k, 100 * sqrt(r->change / r->reference), "%", "none", err) ||
-             add_metric(e, view, "ratio_error50", k, 100 * quantiles_get(&r->errors, 0.5), "%", "lower", err) ||
-             add_metric(e, view, "ratio_error90", k, 100 * quantiles_get(&r->errors, 0.9), "%", "lower", err);
+        st = add_metric(e, view, "ratio_rms", k, 100 * sqrt(r->square / r->reference), err) ||
+             add_metric(e, view, "ratio_change", k, 100 * sqrt(r->change / r->reference), err) ||
+             add_metric(e, view, "ratio_error50", k, 100 * quantiles_get(&r->errors, 0.5), err) ||
+             add_metric(e, view, "ratio_error90", k, 100 * quantiles_get(&r->errors, 0.9), err);
     }
     const uint64_t missing = ratios[PART_ALL].missing, all = missing + ratios[PART_ALL].pixels;
-    if (!st && all)
-        st = add_metric(e, view, "ratio_missing", PART_ALL, 100 * (double)missing / (double)all, "%", "lower", err);
+    if (!st && all) st = add_metric(e, view, "ratio_missing", PART_ALL, 100 * (double)missing / (double)all, err);
     return st ? err->status : ST_OK;
 }
 
@@ -288,8 +285,7 @@ static enum status measure_edits(struct pictures_job *job, const struct renders 
     }
     if (!st && !with_truth)
         st = metric_note(&e->table, err, "skipped ratios of irradiance: the truth has no edited-E/irradiance");
-    if (!st && job->pair_count)
-        st = evaluation_metric(e, NULL, "irradiance", "ratio_pictures", job->pair_count, "1", "none", err);
+    if (!st && job->pair_count) st = evaluation_metric(e, NULL, "irradiance", "ratio_pictures", job->pair_count, err);
     if (!st && job->pair_count) st = add_ratio_errors(e, NULL, job->ratios, err);
     name_list_release(&edits);
     return st;
@@ -331,10 +327,9 @@ static enum status measure_before(struct pictures_job *job, const struct renders
         job->before_count++;
     }
     if (st || !job->before_count) return st;
-    if (evaluation_metric(job->e, NULL, "irradiance", "pictures", job->before_count, "1", "none", err))
-        return err->status;
+    if (evaluation_metric(job->e, NULL, "irradiance", "pictures", job->before_count, err)) return err->status;
     const double all = (double)job->true_pixels, found = (double)job->errors[PART_ALL].pixels;
-    if (all > 0 && add_metric(job->e, NULL, "picture_missing", PART_ALL, 100 * (all - found) / all, "%", "lower", err))
+    if (all > 0 && add_metric(job->e, NULL, "picture_missing", PART_ALL, 100 * (all - found) / all, err))
         return err->status;
     return add_picture_errors(job->e, NULL, job->errors, err);
 }

@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-static double luminance(const float c[3]) { return 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2]; }
+#include "common/image/luminance.h"
 
 enum status ratio_error_init(struct ratio_error *e, struct err *err)
 {
@@ -16,12 +16,13 @@ void ratio_error_add(struct ratio_error *e, const struct ratio_pixels *p)
     for (size_t i = 0; i < p->count; i++) {
         const float *a = p->before + 3 * i, *b = p->after + 3 * i;
         const float *before = p->true_before + 3 * i, *after = p->true_after + 3 * i;
-        if ((p->mask && !p->mask[i]) || !(luminance(before) > 0) || !(luminance(after) > 0)) continue;
-        if (!p->known[i] || !(luminance(a) > 0)) {
+        if ((p->mask && !p->mask[i]) || !(luminance_precise(before) > 0) || !(luminance_precise(after) > 0)) continue;
+        if (!p->known[i] || !(luminance_precise(a) > 0)) {
             e->missing++;
             continue;
         }
-        const double ratio = luminance(b) / luminance(a), wanted = luminance(after) / luminance(before);
+        const double ratio = luminance_precise(b) / luminance_precise(a),
+                     wanted = luminance_precise(after) / luminance_precise(before);
         for (int c = 0; c < 3; c++) {
             const double lit = (a[c] > 0 ? (double)b[c] / a[c] : ratio) * before[c];
             e->square += (lit - after[c]) * (lit - after[c]);

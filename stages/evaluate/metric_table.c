@@ -9,14 +9,15 @@
 #include "common/base/array.h"
 #include "common/base/outfile.h"
 
-enum status metric_add(struct metric_table *t, const char *view, const char *name, double value, const char *unit,
-                       const char *direction, struct err *err)
+enum status metric_add(struct metric_table *t, const char *view, const char *name, double value, struct err *err)
 {
+    struct metric_kind kind;
     if (!isfinite(value)) return err_set(err, ST_INTERNAL, "the metric %s has no finite value.", name);
-    if (!*unit || !*direction) return err_set(err, ST_INTERNAL, "the metric %s lacks its unit or direction.", name);
+    if (!metric_kind_find(&kind, name))
+        return err_set(err, ST_INTERNAL, "the metric %s is not declared in metric_kinds.def.", name);
     if (array_append(&t->metrics, (size_t)t->count, sizeof *t->metrics, "metrics", err)) return err->status;
     struct metric *m = &t->metrics[t->count];
-    *m = (struct metric){.view = strdup(view ? view : ""), .value = value, .unit = unit, .direction = direction};
+    *m = (struct metric){.view = strdup(view ? view : ""), .value = value, .kind = kind};
     snprintf(m->name, sizeof m->name, "%s", name);
     if (!m->view) return err_nomem(err, "metrics", sizeof *m);
     t->count++;
@@ -59,7 +60,7 @@ enum status metric_table_write(struct metric_table *t, bool of_views, const char
             const struct metric *m = &t->metrics[i];
             if (of_views != (m->view[0] != 0)) continue;
             if (of_views) fprintf(f.fp, "%s\t", m->view);
-            fprintf(f.fp, "%s\t%.9g\t%s\t%s\n", m->name, m->value + 0.0, m->unit, m->direction);
+            fprintf(f.fp, "%s\t%.9g\t%s\t%s\n", m->name, m->value + 0.0, m->kind.unit, m->kind.direction);
         }
         st = outfile_commit(&f, err);
     }

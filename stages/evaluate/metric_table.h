@@ -8,6 +8,7 @@
 
 #include <stdbool.h>
 
+#include "common/base/metric_kinds.h"
 #include "common/base/provenance.h"
 
 enum { METRIC_NAME = 96 }; /* bytes of a name, with that of an edit */
@@ -16,7 +17,7 @@ struct metric {
     char *view; /* owned; "" for the scene */
     char name[METRIC_NAME];
     double value;
-    const char *unit, *direction; /* string literals */
+    struct metric_kind kind;
 };
 
 struct metric_table {
@@ -26,9 +27,9 @@ struct metric_table {
     int note_count;
 };
 
-/* view: NULL for the whole scene. ST_INTERNAL: a value that is not finite; the caller must write a note instead. */
-enum status metric_add(struct metric_table *t, const char *view, const char *name, double value, const char *unit,
-                       const char *direction, struct err *err);
+/* view: NULL for the whole scene. ST_INTERNAL: a value that is not finite (the caller must write a note instead), or a
+ * metric that metric_kinds.def does not have. */
+enum status metric_add(struct metric_table *t, const char *view, const char *name, double value, struct err *err);
 /* Adds a comment line; its line breaks become spaces. */
 enum status metric_note(struct metric_table *t, struct err *err, const char *fmt, ...) PRINTF_LIKE(3, 4);
 

@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-static double luminance(const double c[3]) { return 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2]; }
+#include "common/image/luminance.h"
 
 enum status radiance_error_init(struct radiance_error *e, struct err *err)
 {
@@ -25,8 +25,8 @@ void radiance_error_add(struct radiance_error *e, const struct radiance_pixels *
             e->reference += b[c] * b[c];
         }
         e->pixels++;
-        const double y = luminance(b);
-        if (y > 0) quantiles_add(&e->errors, (float)fmin(fabs(luminance(a) - y) / y, 1e30));
+        const double y = luminance_of_doubles(b);
+        if (y > 0) quantiles_add(&e->errors, (float)fmin(fabs(luminance_of_doubles(a) - y) / y, 1e30));
     }
 }
 
@@ -35,7 +35,8 @@ void radiance_ratios_add(struct quantiles *q, const struct radiance_pixels *p)
     for (size_t i = 0; i < p->count; i++) {
         const float *a = p->found + 3 * i, *b = p->truth + 4 * i;
         if (!(b[3] > 0) || (p->mask && !p->mask[i])) continue;
-        const double found = luminance((double[]){a[0], a[1], a[2]}), truth = luminance((double[]){b[0], b[1], b[2]});
+        const double found = luminance_of_doubles((double[]){a[0], a[1], a[2]}),
+                     truth = luminance_of_doubles((double[]){b[0], b[1], b[2]});
         if (found > 0 && truth > 0) quantiles_add(q, (float)fmin(truth / found, 1e30));
     }
 }

@@ -1,7 +1,7 @@
 /* radiance_error.h - errors of linear radiance: relative RMS, and relative errors of luminance.
  *
- * The relative RMS is sqrt(sum (found - true)^2 / sum true^2) over pixels and channels. The relative error of a pixel is
- * |Y - Y_true| / Y_true of Rec.709 luminance, over pixels with Y_true > 0. */
+ * The relative RMS is sqrt(sum (found - true)^2 / sum true^2) over pixels and channels. The relative error of a pixel
+ * is |Y - Y_true| / Y_true of Rec.709 luminance, over pixels with Y_true > 0. */
 #ifndef REMODEL_RADIANCE_ERROR_H
 #define REMODEL_RADIANCE_ERROR_H
 

@@ -4,13 +4,12 @@
 #include <math.h>
 
 #include "common/image/image.h"
-
-static double luminance(const float c[3]) { return 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2]; }
+#include "common/image/luminance.h"
 
 void light_changes_keep(uint8_t *mask, const float *before, const float *after, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
-        const double a = luminance(before + 3 * i), b = luminance(after + 3 * i);
+        const double a = luminance_precise(before + 3 * i), b = luminance_precise(after + 3 * i);
         if (!(a > 0) || !(b > 0) || !(fabs(b - a) > RELIT_CHANGE * a)) mask[i] = 0;
     }
 }
@@ -42,7 +41,7 @@ void quotient_errors_add(struct quantiles *errors, const float *quotient, const 
         if (!mask[i]) continue;
         const float *q = quotient + 3 * i, *a = before + 3 * i;
         const float lit[3] = {q[0] * a[0], q[1] * a[1], q[2] * a[2]};
-        const double wanted = luminance(after + 3 * i);
-        quantiles_add(errors, (float)fmin(fabs(luminance(lit) - wanted) / wanted, 1e30));
+        const double wanted = luminance_precise(after + 3 * i);
+        quantiles_add(errors, (float)fmin(fabs(luminance_precise(lit) - wanted) / wanted, 1e30));
     }
 }

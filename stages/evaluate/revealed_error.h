@@ -1,5 +1,5 @@
-/* revealed_error.h - errors of pictures of an edited scene where the edit reveals something: after one gain for each face,
- * because the light that an edit changes is another matter.
+/* revealed_error.h - errors of pictures of an edited scene where the edit reveals something: after one gain for each
+ * face, because the light that an edit changes is another matter.
  *
  * A pixel is revealed if the true id there differs between the edited and the unedited scene, or its true depth by more
  * than REVEALED_DEPTH. Pixels of the outdoors (id 0) and pixels whose id is unknown do not count. */
@@ -21,8 +21,9 @@ size_t revealed_find(uint8_t *mask, const struct true_surface *s, size_t count);
 /* Sets mask[i] to 1 where a pixel of neither the outdoors nor an unknown id shows the same surface before and after. */
 void kept_find(uint8_t *mask, const struct true_surface *s, size_t count);
 
-/* PSNR over the masked pixels of the picture, whose faces are ids: both clipped at `white` and encoded as sRGB, after the
- * gain of each face that brings its found radiance, clipped, nearest to the true one. clip of p: white. False: no pixel. */
+/* PSNR over the masked pixels of the picture, whose faces are ids: both clipped at `white` and encoded as sRGB, after
+ * the gain of each face that brings its found radiance, clipped, nearest to the true one. clip of p: white. False: no
+ * pixel. */
 bool revealed_psnr(double *psnr, const struct radiance_pixels *p, const uint32_t *ids);
 
 #endif

@@ -10,6 +10,7 @@
 
 #include "common/base/array.h"
 #include "common/base/sort.h"
+#include "common/image/luminance.h"
 
 enum status shell_error_init(struct shell_error *e, struct err *err)
 {
@@ -32,8 +33,6 @@ static enum status grow_faces(struct shell_error *e, uint32_t id, struct err *er
     return ST_OK;
 }
 
-static double luminance(const double c[3]) { return 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2]; }
-
 static enum status add_sample(struct shell_error *e, const struct shell_pixels *p, size_t i, int part, struct err *err)
 {
     const struct radiance_pixels *r = &p->radiance;
@@ -44,11 +43,12 @@ static enum status add_sample(struct shell_error *e, const struct shell_pixels *
         if (r->clip > 0) a[c] = fmin(a[c], r->clip);
         if (r->clip > 0) b[c] = fmin(b[c], r->clip);
     }
-    if (!(luminance(b) > 0)) return ST_OK;
+    if (!(luminance_of_doubles(b) > 0)) return ST_OK;
     if (grow_faces(e, p->shell[i], err)) return err->status;
     struct shell_samples *s = &e->faces[p->shell[i]][part];
     if (array_reserve(&s->errors, &s->capacity, s->count + 1, sizeof *s->errors, "errors", err)) return err->status;
-    s->errors[s->count++] = (float)fmin(fabs(luminance(a) - luminance(b)) / luminance(b), 1e30);
+    s->errors[s->count++] =
+        (float)fmin(fabs(luminance_of_doubles(a) - luminance_of_doubles(b)) / luminance_of_doubles(b), 1e30);
     return ST_OK;
 }
 

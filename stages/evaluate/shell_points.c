@@ -5,8 +5,8 @@
  * abs(n . (Q - P)) <= tolerance. Q may be far from P along a slanted surface, but not off its plane, so that no limit
  * depends on slant. Pixels beside a jump of depth fail when one of their neighbours is on the other side.
  *
- * How a photo sees P. The face of the model that a ray through the pixel meets must be that of P. Clutter stands in front
- * of it if furniture does, or if Q lies off that face's plane. */
+ * How a photo sees P. The face of the model that a ray through the pixel meets must be that of P. Clutter stands in
+ * front of it if furniture does, or if Q lies off that face's plane. */
 #include "stages/evaluate/shell_points.h"
 
 #include <stdlib.h>
@@ -76,7 +76,7 @@ void shell_view_release(struct shell_view *v)
     *v = (struct shell_view){0};
 }
 
-/* ----------------------------------------------------------------------------------------------------- single points */
+/* ---------------------------------------------------------------------------------------------------- single points */
 
 static bool same_surface(const struct shell_view *v, int x, int y, const struct surface_point *p, double tolerance)
 {
@@ -150,7 +150,7 @@ bool shell_radiance(float rgb[3], const struct shell_points *s, const struct sur
     return best > 0;
 }
 
-/* ----------------------------------------------------------------------------------------------------------- reading */
+/* ---------------------------------------------------------------------------------------------------------- reading */
 
 struct model_trace {
     const struct model_rays *model;

@@ -8,51 +8,20 @@
 #include <math.h>
 #include <string.h>
 
+#include "common/math/inverse.h"
+
 enum { N = 4 };
 #define SINGULAR 1e-12 /* a pivot this much smaller than its row: the plane contains the centre */
 
-/* Gauss-Jordan elimination with rows scaled to 1 and partial pivoting; false: singular. */
-static bool invert(double a[N][N], double inverse[N][N])
-{
-    for (int i = 0; i < N; i++) {
-        double most = 0;
-        for (int k = 0; k < N; k++) most = fmax(most, fabs(a[i][k]));
-        if (!(most > 0)) return false;
-        for (int k = 0; k < N; k++) {
-            a[i][k] /= most;
-            inverse[i][k] = i == k ? 1 / most : 0;
-        }
-    }
-    for (int c = 0; c < N; c++) {
-        int best = c;
-        for (int i = c + 1; i < N; i++)
-            if (fabs(a[i][c]) > fabs(a[best][c])) best = i;
-        if (!(fabs(a[best][c]) > SINGULAR)) return false;
-        for (int k = 0; k < N; k++) {
-            const double p = a[c][k], q = inverse[c][k];
-            a[c][k] = a[best][k], a[best][k] = p;
-            inverse[c][k] = inverse[best][k], inverse[best][k] = q;
-        }
-        const double pivot = a[c][c];
-        for (int k = 0; k < N; k++) a[c][k] /= pivot, inverse[c][k] /= pivot;
-        for (int i = 0; i < N; i++) {
-            const double f = a[i][c];
-            if (i == c) continue;
-            for (int k = 0; k < N; k++) a[i][k] -= f * a[c][k], inverse[i][k] -= f * inverse[c][k];
-        }
-    }
-    return true;
-}
-
 bool texel_places_init(struct texel_places *places, const struct atlas_tile *tile, struct vec3 normal, double offset)
 {
-    double q[N][N] = {{0}}, inverse[N][N];
+    double q[N][N] = {{0}};
     const double plane[N] = {normal.x, normal.y, normal.z, -offset};
     memcpy(q, tile->matrix, sizeof tile->matrix);
     memcpy(q[3], plane, sizeof plane);
-    if (!invert(q, inverse)) return false;
+    if (!inverse_of(&q[0][0], N, SINGULAR)) return false;
     for (int i = 0; i < N; i++)
-        for (int k = 0; k < 3; k++) places->inverse[i][k] = inverse[i][k];
+        for (int k = 0; k < 3; k++) places->inverse[i][k] = q[i][k];
     memcpy(places->w, tile->matrix[2], sizeof places->w);
     return true;
 }

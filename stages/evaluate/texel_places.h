@@ -1,4 +1,5 @@
-/* texel_places.h - where the texels of an atlas tile lie in the model: the inverse of its matrix on the face's plane. */
+/* texel_places.h - where the texels of an atlas tile lie in the model: the inverse of its matrix on the face's
+ * plane. */
 #ifndef REMODEL_TEXEL_PLACES_H
 #define REMODEL_TEXEL_PLACES_H
 

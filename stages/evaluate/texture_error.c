@@ -6,6 +6,7 @@
 
 #include "common/capture/camera_alignment.h"
 #include "common/image/image.h"
+#include "common/image/luminance.h"
 
 #define MAX_DB 99.0 /* the value of equal pictures */
 
@@ -81,12 +82,10 @@ float texel_square(const float found[3], const float truth[3], double white)
     return (float)sum;
 }
 
-static double luminance(const float c[3]) { return 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2]; }
-
 bool texel_differs(const float found[3], const float truth[3])
 {
-    const double y = luminance(truth);
-    return fabs(luminance(found) - y) > TEXTURE_DIFFERS * y;
+    const double y = luminance_precise(truth);
+    return fabs(luminance_precise(found) - y) > TEXTURE_DIFFERS * y;
 }
 
 bool texture_face_psnr(const struct texture_error *e, int face, enum texture_part part, double *db)

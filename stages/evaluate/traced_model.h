@@ -1,5 +1,5 @@
-/* traced_model.h - a solid model as rays from true cameras see it. The model is read without its panes of glass: what is
- * behind a window counts. */
+/* traced_model.h - a solid model as rays from true cameras see it. The model is read without its panes of glass: what
+ * is behind a window counts. */
 #ifndef REMODEL_TRACED_MODEL_H
 #define REMODEL_TRACED_MODEL_H
 

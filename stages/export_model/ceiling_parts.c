@@ -1,8 +1,8 @@
 /* ceiling_parts.c - cuts a room's outline at the ridge of its ceiling; see ceiling_parts.h.
  *
- * The difference of the two planes of a gable is linear in x and y, and 0 on the ridge. Each part is the outline clipped
- * by the sign of the difference [Sutherland 1974]; where an outline that is not convex falls into several pieces, these
- * are joined by edges along the ridge, which have no area. */
+ * The difference of the two planes of a gable is linear in x and y, and 0 on the ridge. Each part is the outline
+ * clipped by the sign of the difference [Sutherland 1974]; where an outline that is not convex falls into several
+ * pieces, these are joined by edges along the ridge, which have no area. */
 #include "stages/export_model/ceiling_parts.h"
 
 #include <math.h>

@@ -1,7 +1,7 @@
 /* export_faces.c - cuts faces by the tiles that texture them; see export_faces.h.
  *
- * A triangle of the model is a convex polygon that the rules of its face take pieces from, in order (texture_map.h). The
- * part of a piece that lies in a tile, half a texel from its rectangle's border, gets the tile's pixels as texture
+ * A triangle of the model is a convex polygon that the rules of its face take pieces from, in order (texture_map.h).
+ * The part of a piece that lies in a tile, half a texel from its rectangle's border, gets the tile's pixels as texture
  * coordinates; these are affine in a view-independent atlas. A piece beyond all tiles repeats the border of the nearest
  * one: it is cut along the four lines of the rectangle, so that in each part the clamped coordinates are affine, too.
  * What no rule covers is of one colour. */

@@ -52,7 +52,8 @@ struct ifc_outline {
 int ifc_extrusion(struct ifc *f, const struct ifc_outline *o);
 /* A box with edges along x and y of its own frame, x level. */
 int ifc_box(struct ifc *f, struct vec3 origin, struct vec3 x, double width, double depth, double height);
-/* An upright prism over a polygon of the ground; its lower end is in the plane z = plane[0] + plane[1] x + plane[2] y. */
+/* An upright prism over a polygon of the ground; its lower end is in the plane z = plane[0] + plane[1] x + plane[2]
+ * y. */
 int ifc_prism(struct ifc *f, const double (*corners)[2], int count, const double plane[3], double height);
 /* Plane polygons, counter-clockwise seen from outside, that close a volume. ends[i]: of polygon i in corners. */
 int ifc_polyhedron(struct ifc *f, const struct vec3 *corners, const int *ends, int count);

@@ -35,7 +35,7 @@ static double slab_thickness(const struct ifc *f, const struct model_room *r)
     return found && by > 0 ? by : default_slab;
 }
 
-/* --------------------------------------------------------------------------------------- openings in ceilings and floors */
+/* ---------------------------------------------------------------------------------- openings in ceilings and floors */
 
 /* Whether an opening is, at one of its corners or in its middle, under a plane of the ceiling. */
 static bool is_under(const struct model_slot *o, const struct model_room *r, int plane)
@@ -65,8 +65,8 @@ static int slot_shape(struct ifc *f, const struct model_slot *o, const struct mo
                    o->high[1] - o->low[1], high - low + 2 * beyond);
 }
 
-/* Openings of a slab; plane: of the ceiling, -1: the floor. The first slab of a gable that an opening is in has what fills
- * it. */
+/* Openings of a slab; plane: of the ceiling, -1: the floor. The first slab of a gable that an opening is in has what
+ * fills it. */
 static enum status put_slots(struct ifc *f, int room, int plane, int element, double slab)
 {
     const struct model_plan *plan = f->s->plan;

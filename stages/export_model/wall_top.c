@@ -3,15 +3,15 @@
  * Overview. build_model lets a wall go up to the ceilings of the rooms beside it; plan.txt has only the lowest height.
  * The edge is found again from the rooms: an edge of a room that lies on one of the wall's two faces carries the room's
  * ceiling over its length, and beyond its ends by as much as the walls there are thick, since slabs extend under walls.
- * Where both faces have a room the higher ceiling counts; on one face, the nearest edge; where there is none, the wall's
- * own top.
+ * Where both faces have a room the higher ceiling counts; on one face, the nearest edge; where there is none, the
+ * wall's own top.
  *
  * Mathematics. Over a wall along an axis each plane of a ceiling is a linear function of S, so the upper edge is
- * piecewise linear. Its corners are among the ends of edges, the middles between them, and the crossings of these linear
- * functions; between two neighbouring ones it is linear, and two points decide.
+ * piecewise linear. Its corners are among the ends of edges, the middles between them, and the crossings of these
+ * linear functions; between two neighbouring ones it is linear, and two points decide.
  *
- * plan.txt's `top` is the lowest of these functions at the wall's two ends, on both faces. A wall with another `top` has
- * one of its own, and keeps it. */
+ * plan.txt's `top` is the lowest of these functions at the wall's two ends, on both faces. A wall with another `top`
+ * has one of its own, and keeps it. */
 #include "stages/export_model/wall_top.h"
 
 #include <math.h>

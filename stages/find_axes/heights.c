@@ -77,17 +77,12 @@ static size_t densest(double *middle, const double *heights, size_t begin, size_
     return max_count;
 }
 
+static bool is_lower(const void *height, const void *value) { return *(const double *)height < *(const double *)value; }
+
+/* The first height that is at least `value`. */
 static size_t lower_bound(const double *heights, size_t count, double value)
 {
-    size_t low = 0, high = count;
-    while (low < high) {
-        const size_t middle = low + (high - low) / 2;
-        if (heights[middle] < value)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low;
+    return sort_place(heights, count, sizeof *heights, is_lower, &value);
 }
 
 static double weight(double distance, double spread)

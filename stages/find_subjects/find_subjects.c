@@ -21,6 +21,7 @@
 #include "common/capture/view_image.h"
 #include "common/film/film_views.h"
 #include "common/film/regions.h"
+#include "common/image/luminance.h"
 #include "stages/find_subjects/faces.h"
 #include "stages/find_subjects/region_depth.h"
 
@@ -64,9 +65,7 @@ static enum status read_picture(void *ctx, int view_idx, unsigned char **grey, s
     const size_t pixels = (size_t)im.width * (size_t)im.height;
     *grey = malloc(pixels);
     for (size_t i = 0; *grey && i < pixels; i++) {
-        const float *rgb = im.data + 4 * i;
-        (*grey)[i] =
-            (unsigned char)(255 * srgb_from_linear(0.2126F * rgb[0] + 0.7152F * rgb[1] + 0.0722F * rgb[2]) + 0.5F);
+        (*grey)[i] = (unsigned char)(255 * srgb_from_linear(luminance_of(im.data + 4 * i)) + 0.5F);
     }
     image_release(&im);
     return *grey ? ST_OK : err_nomem(err, "a grey picture", pixels);

@@ -11,7 +11,7 @@
 #include "common/base/scan.h"
 #include "common/base/textfile.h"
 
-enum { MOST_NAME = 255 };
+enum { MAX_NAME = 255 };
 
 static const char *const words[NOTE_KINDS] = {"window", "shut", "disk", "area", "lit", "unlit", "line"};
 
@@ -35,28 +35,19 @@ void annotation_list_release(struct annotation_list *list)
 
 static enum status copy_word(struct textfile *t, const char *what, char **to, struct err *err)
 {
-    char word[MOST_NAME + 1];
+    char word[MAX_NAME + 1];
     if (textfile_word_into(t, what, word, sizeof word, err)) return err->status;
     if (strchr(word, '\r')) return textfile_error(t, err, word, "%s without a line break", what);
     *to = strdup(word);
     return *to ? ST_OK : err_nomem(err, what, strlen(word) + 1);
 }
 
-static enum status read_number(struct textfile *t, const char *what, double min, double max, double *value,
-                               struct err *err)
-{
-    char wanted[128];
-    if (textfile_double(t, what, value, err)) return err->status;
-    if (*value >= min && *value <= max) return ST_OK;
-    snprintf(wanted, sizeof wanted, "%s from %g to %g", what, min, max);
-    return textfile_wrong_number(t, *value, wanted, err);
-}
-
 static enum status read_pixels(struct annotation *a, struct textfile *t, int count, struct err *err)
 {
     for (int i = 0; i < count; i++) {
         double *p = &a->pixel[2 * (a->pixels + i)];
-        if (read_number(t, "a pixel's x", 0, 1e6, &p[0], err) || read_number(t, "a pixel's y", 0, 1e6, &p[1], err))
+        if (textfile_number(t, "a pixel's x", 0, 1e6, &p[0], err) ||
+            textfile_number(t, "a pixel's y", 0, 1e6, &p[1], err))
             return err->status;
     }
     a->pixels += count;
@@ -114,7 +105,7 @@ static enum status read_normal(struct annotation *a, struct textfile *t, struct 
     if (a->has_normal) return textfile_error(t, err, "normal", "the normal only once");
     a->has_normal = true;
     for (int i = 0; i < 3; i++)
-        if (read_number(t, "a part of the normal", -1e6, 1e6, &n[i], err)) return err->status;
+        if (textfile_number(t, "a part of the normal", -1e6, 1e6, &n[i], err)) return err->status;
     const double length = vec3_length(vec3_make(n[0], n[1], n[2]));
     if (!(length > 1e-6)) return textfile_wrong_number(t, length, "a normal with a length above 0", err);
     a->normal = vec3_scale(vec3_make(n[0], n[1], n[2]), 1 / length);
@@ -126,7 +117,7 @@ static enum status read_radiance(struct annotation *a, struct textfile *t, struc
     if (a->has_radiance) return textfile_error(t, err, "radiance", "the radiance only once");
     a->has_radiance = QUANTITY_GIVEN;
     for (int i = 0; i < 3; i++)
-        if (read_number(t, "a radiance", 0, 1e30, &a->radiance[i], err)) return err->status;
+        if (textfile_number(t, "a radiance", 0, 1e30, &a->radiance[i], err)) return err->status;
     return ST_OK;
 }
 
@@ -140,7 +131,7 @@ static enum status read_options(struct annotation *a, struct textfile *t, struct
         if (!strcmp(word, "radiance"))
             st = read_radiance(a, t, err);
         else if (!strcmp(word, "off"))
-            st = read_number(t, "a distance", 0, 1000, &a->off, err);
+            st = textfile_number(t, "a distance", 0, 1000, &a->off, err);
         else if (disk && !strcmp(word, "normal"))
             st = read_normal(a, t, err);
         else if (disk && !strcmp(word, "beta"))
@@ -168,9 +159,9 @@ static enum status read_area(struct annotation *a, struct textfile *t, struct er
 /* The rest of a rectangle, whose lower right x is a word of the line. */
 static enum status read_corner(struct annotation *a, struct textfile *t, const char *x, struct err *err)
 {
-    if (!scan_double(x, &a->pixel[2]) || !(a->pixel[2] >= 0 && a->pixel[2] <= 1e6))
-        return textfile_error(t, err, x, "a pixel's x from 0 to 1e+06, or of");
-    if (read_number(t, "a pixel's y", 0, 1e6, &a->pixel[3], err)) return err->status;
+    if (textfile_number_of(t, x, "of, or a pixel's x", 0, 1e6, &a->pixel[2], err) ||
+        textfile_number(t, "a pixel's y", 0, 1e6, &a->pixel[3], err))
+        return err->status;
     a->pixels = 2;
     if (a->pixel[2] > a->pixel[0] && a->pixel[3] > a->pixel[1]) return ST_OK;
     return textfile_error(t, err, "an empty rectangle", "its upper left and its lower right pixel");

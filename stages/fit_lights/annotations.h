@@ -1,7 +1,7 @@
 /* annotations.h - scenes/NAME/lights.txt: lamps, windows and lit points that a person marks in photographs.
  *
- * The first line is `remodel-lamps 1`. VIEW is a photo's id or a view's name; pixels are those of the photograph as it is
- * stored, as in docs/model-script.md:
+ * The first line is `remodel-lamps 1`. VIEW is a photo's id or a view's name; pixels are those of the photograph as it
+ * is stored, as in docs/model-script.md:
  *   window NAME [reference ID ...]        an opening of the model that lets daylight in
  *   shut NAME                             a window that does not
  *   disk NAME in VIEW X Y rim X Y [OPTIONS] [normal NX NY NZ] [beta DEGREES|fit] [exponent E|fit]
@@ -48,8 +48,8 @@ struct annotation_list {
 
 const char *annotation_word(enum annotation_kind kind);
 
-/* The caller releases the list, which a failure leaves empty. ST_DATA with file and line: an unknown word, a name twice, a
- * point of a lamp that the file does not have, a cone of 0 degrees, a number out of range. */
+/* The caller releases the list, which a failure leaves empty. ST_DATA with file and line: an unknown word, a name
+ * twice, a point of a lamp that the file does not have, a cone of 0 degrees, a number out of range. */
 enum status annotation_list_read(struct annotation_list *list, const char *path, struct err *err);
 void annotation_list_release(struct annotation_list *list);
 

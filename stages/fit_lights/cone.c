@@ -1,18 +1,19 @@
 /* cone.c - a cone's half angle, bracketed on a grid and refined [Colburn 2014, 5.6a].
  *
- * Overview. Along a line across the edge of a cone, the radiance is k_d (E + S D(beta)), where D falls to 0 at the edge. The
- * half angle beta is that for which the residuals are least. The objective is a step: where no place changes sides it is
- * flat, so a descent finds nothing. A grid over the angles of the lines brackets the least value; golden section refines it
- * there. Below the spacing of the grid the objective is smooth, because the lamp has a size: between the places that see all
- * of it and none of it through the cone lies a penumbra, in which the pixels of several views lie.
+ * Overview. Along a line across the edge of a cone, the radiance is k_d (E + S D(beta)), where D falls to 0 at the
+ * edge. The half angle beta is that for which the residuals are least. The objective is a step: where no place changes
+ * sides it is flat, so a descent finds nothing. A grid over the angles of the lines brackets the least value; golden
+ * section refines it there. Below the spacing of the grid the objective is smooth, because the lamp has a size: between
+ * the places that see all of it and none of it through the cone lies a penumbra, in which the pixels of several views
+ * lie.
  *
- * Mathematics. For each photo of a line, and each colour, L ~ a E + b D(beta) with free a, b >= 0 while S is unknown, and
- * L ~ a (E + S D(beta)) when it is known: k_d is that of the line and of the photo, so that neither a gradient of the
- * material nor the exposure shifts the edge. Residuals are relative to the radiance and to noise and texture. The cost is that
- * of the Cauchy function, so that the border of a poster that crosses the line counts little.
+ * Mathematics. For each photo of a line, and each colour, L ~ a E + b D(beta) with free a, b >= 0 while S is unknown,
+ * and L ~ a (E + S D(beta)) when it is known: k_d is that of the line and of the photo, so that neither a gradient of
+ * the material nor the exposure shifts the edge. Residuals are relative to the radiance and to noise and texture. The
+ * cost is that of the Cauchy function, so that the border of a poster that crosses the line counts little.
  *
- * The standard error is that of clusters: sum over lines of the squared slope of their cost, over the square of the curvature
- * of the whole. With one line the photos are the clusters.
+ * The standard error is that of clusters: sum over lines of the squared slope of their cost, over the square of the
+ * curvature of the whole. With one line the photos are the clusters.
  *
  * What differs from the source: it compares k_d with a fixed value along one line by a plain search. */
 #include "stages/fit_lights/cone.h"
@@ -23,8 +24,8 @@
 #include "common/math/numbers.h"
 
 enum { GRID = 96, GOLDEN_STEPS = 40, ROUNDS = 3 };
-#define CAUCHY     2.385
-#define LEAST_GAIN 0.02 /* part of the cost without any step that the step must explain */
+#define CAUCHY   2.385
+#define MIN_GAIN 0.02 /* part of the cost without any step that the step must explain */
 
 struct step {
     double e, d, l, variance; /* variance: of the residual */
@@ -146,7 +147,7 @@ static enum status bracket(const struct search *s, double *low, double *high, st
     }
     dark = whole_cost(s, 0);
     if (f->reach <= 0 && (best <= 1 || best >= GRID - 1)) return refuse_edge(f, *low, *high, best <= 1, err);
-    if (f->reach <= 0 && !(least < (1 - LEAST_GAIN) * dark))
+    if (f->reach <= 0 && !(least < (1 - MIN_GAIN) * dark))
         return err_set(
             err, ST_DATA,
             "%s: the lines of the lamp %s show no step in their radiance, so the edge of its cone is not on them.",

@@ -1,8 +1,8 @@
 /* cone_edge.c - see cone_edge.h.
  *
  * Overview. Rays leave the lamp's centre on a cone of half angle beta about its normal, evenly in azimuth. On a plane
- * their hits lie on a conic: below a lamp that looks straight down from the height h, on a circle of radius h tan(beta).
- * The lamp has a size, so that its light ends in a penumbra about this curve.
+ * their hits lie on a conic: below a lamp that looks straight down from the height h, on a circle of radius h
+ * tan(beta). The lamp has a size, so that its light ends in a penumbra about this curve.
  *
  * Two neighbours are joined unless they are much further apart than the rays are there, which they are where the curve
  * passes from one surface to another behind it. */

@@ -1,7 +1,7 @@
 /* direct.c - see direct.h.
  *
- * The irradiance of an unhidden lamp is exact (lamp_irradiance()). Where the model hides a part of the lamp, it is scaled
- * by the share of the light of 64 parts, equal in area, whose middles the point sees. */
+ * The irradiance of an unhidden lamp is exact (lamp_irradiance()). Where the model hides a part of the lamp, it is
+ * scaled by the share of the light of 64 parts, equal in area, whose middles the point sees. */
 #include "stages/fit_lights/direct.h"
 
 #include <math.h>

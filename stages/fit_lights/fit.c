@@ -1,15 +1,15 @@
 /* fit.c - lamps and materials by robust least squares [Colburn 2014, 5.3.3].
  *
- * Overview. A point of a Lambertian material has the radiance L = k_d (E + sum over lamps of S_j D_j): E is its indirect
- * irradiance, D_j that of lamp j with radiance 1. E and D_j are known; k_d of each material and S_j of each lamp are not.
- * One lit and one unlit point determine them (5.5); more points make an overdetermined system.
+ * Overview. A point of a Lambertian material has the radiance L = k_d (E + sum over lamps of S_j D_j): E is its
+ * indirect irradiance, D_j that of lamp j with radiance 1. E and D_j are known; k_d of each material and S_j of each
+ * lamp are not. One lit and one unlit point determine them (5.5); more points make an overdetermined system.
  *
- * Mathematics. Reflectance varies from point to point by factors, and so does the error of E. So the residuals are those
- * of logarithms, r = log L - log k_d - log(E + sum S_j D_j). Their covariance (fit_texture.c) is that of the material's
- * variation, and of noise. Then log k_d is a weighted mean of a material's points and drops out [Golub 1973]. Left are
- * log S_j per colour, which keeps S positive, and the square root of an exponent. Levenberg-Marquardt (Ceres) solves for
- * these; the covariance is renewed in rounds. A lamp whose picture is not saturated adds log S - log of
- * the radiance that it shows.
+ * Mathematics. Reflectance varies from point to point by factors, and so does the error of E. So the residuals are
+ * those of logarithms, r = log L - log k_d - log(E + sum S_j D_j). Their covariance (fit_texture.c) is that of the
+ * material's variation, and of noise. Then log k_d is a weighted mean of a material's points and drops out [Golub
+ * 1973]. Left are log S_j per colour, which keeps S positive, and the square root of an exponent. Levenberg-Marquardt
+ * (Ceres) solves for these; the covariance is renewed in rounds. A lamp whose picture is not saturated adds log S - log
+ * of the radiance that it shows.
  *
  * What differs from the source: points, colours and lamps are fitted together, by logarithms and robustly; neighbours
  * vary together; what views show of a lamp counts, too. */
@@ -25,7 +25,7 @@
 #include "stages/fit_lights/fit_texture.h"
 
 enum { ROUNDS = 8, ESTIMATES = 4 /* rounds that estimate how materials vary */, ITERATIONS = 100 };
-#define LEAST_SHARE 1e-3 /* difference in the lamp's share of the light by which lit points must differ from others */
+#define MIN_SHARE 1e-3 /* difference in the lamp's share of the light by which lit points must differ from others */
 
 /* ----------------------------------------------------------------------------------------- what cannot be solved */
 
@@ -94,7 +94,7 @@ static enum status check_lamp(const struct problem *p, int lamp, struct err *err
             "%s: no light of the lamp %s reaches its lit points: they are outside its cone, turned away, or the "
             "model hides it from them.",
             place_of(f, lamp, true), name);
-    if (most - least < LEAST_SHARE * most)
+    if (most - least < MIN_SHARE * most)
         return err_set(
             err, ST_DATA,
             "%s: the lamp %s gives its lit and unlit points the same irradiance, so its radiance cannot be told "
@@ -154,12 +154,12 @@ static enum status start_lamps(struct problem *p, struct weighted *scratch, stru
     return ST_OK;
 }
 
-/* ------------------------------------------------------------------------------------------------------ the solution */
+/* ----------------------------------------------------------------------------------------------------- the solution */
 
 static enum status solve(struct problem *p, struct err *err)
 {
     const struct least_squares problem = {p->unknown_count, fit_residual_count(p), fit_evaluate, p, ITERATIONS};
-    double x[MOST_UNKNOWNS];
+    double x[MAX_UNKNOWNS];
     fit_get_unknowns(p, x);
     for (int m = 0; m < p->f->material_count; m++) {
         p->f->materials[m].deviation = p->f->texture;
@@ -213,16 +213,16 @@ static enum status check_spread(struct problem *p, struct weighted *scratch, str
     return ST_OK;
 }
 
-/* ---------------------------------------------------------------------------------------------------------------- all */
+/* -------------------------------------------------------------------------------------------------------------- all */
 
 static enum status list_unknowns(struct problem *p, struct err *err)
 {
     for (int l = 0; l < p->f->lamp_count; l++)
         for (int c = 0; p->f->lamps[l].fit && c < 3 + p->f->lamps[l].fit_exponent; c++) {
-            if (p->unknown_count == MOST_UNKNOWNS)
+            if (p->unknown_count == MAX_UNKNOWNS)
                 return err_set(err, ST_DATA,
                                "%d lamps are too many to be fitted together, at most %d; give the radiance of some.",
-                               p->f->lamp_count, MOST_UNKNOWNS / 4);
+                               p->f->lamp_count, MAX_UNKNOWNS / 4);
             p->unknowns[p->unknown_count++] = (struct unknown){l, c};
         }
     return ST_OK;
@@ -258,10 +258,10 @@ static void release(struct problem *p)
 static enum status reserve(struct problem *p, struct err *err)
 {
     const size_t n = (size_t)p->f->point_count, square = n * n;
-    if (n > MOST_FIT_POINTS)
+    if (n > MAX_FIT_POINTS)
         return err_set(err, ST_DATA,
                        "%s: %zu points are marked for lamps, at most %d can be fitted; lower [fit_lights] grid.",
-                       p->f->points[0].place, n, MOST_FIT_POINTS);
+                       p->f->points[0].place, n, MAX_FIT_POINTS);
     p->direct = calloc(n * (size_t)p->f->lamp_count + 1, sizeof *p->direct);
     p->logs = calloc(3 * n, sizeof *p->logs);
     p->excess = calloc(n, sizeof *p->excess);

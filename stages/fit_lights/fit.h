@@ -1,4 +1,5 @@
-/* fit.h - radiance of lamps and reflectance of materials, from the radiance of points that lamps light and do not light. */
+/* fit.h - radiance of lamps and reflectance of materials, from the radiance of points that lamps light and do not
+ * light. */
 #ifndef REMODEL_FIT_LIGHTS_FIT_H
 #define REMODEL_FIT_LIGHTS_FIT_H
 

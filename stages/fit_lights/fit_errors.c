@@ -1,39 +1,24 @@
 /* fit_errors.c - how sure the radiance of lamps is.
  *
  * With whitened residuals the covariance of the unknowns is H^-1, H = J^T J. Colours vary together: with G the sum of
- * products of the colours' summed rows it is H^-1 G H^-1, which differs for the exponent alone. If the residuals are larger
- * than their covariance says, so are the errors. An error of E by a factor that is the same at all points changes S by
- * that factor; its relative error is added. */
+ * products of the colours' summed rows it is H^-1 G H^-1, which differs for the exponent alone. If the residuals are
+ * larger than their covariance says, so are the errors. An error of E by a factor that is the same at all points
+ * changes S by that factor; its relative error is added. */
 #include "stages/fit_lights/fit_errors.h"
 
 #include <math.h>
 #include <stddef.h>
+#include <string.h>
+
+#include "common/math/inverse.h"
 
 #define STEP 1e-4 /* of an unknown, for derivatives */
-
-/* Inverts a symmetric positive matrix in place by Gauss-Jordan elimination; false: it is singular. */
-static bool invert(double *a, int n)
-{
-    for (int k = 0; k < n; k++) {
-        const double pivot = a[k * n + k];
-        if (!(fabs(pivot) > 1e-300)) return false;
-        a[k * n + k] = 1;
-        for (int j = 0; j < n; j++) a[k * n + j] /= pivot;
-        for (int i = 0; i < n; i++) {
-            const double factor = a[i * n + k];
-            if (i == k) continue;
-            a[i * n + k] = 0;
-            for (int j = 0; j < n; j++) a[i * n + j] -= factor * a[k * n + j];
-        }
-    }
-    return true;
-}
 
 /* Derivatives of the residuals, [unknown][residual]. low: room for residuals. */
 static void differentiate(struct problem *p, double *jacobian, double *low)
 {
     const int n = p->unknown_count, rows = fit_residual_count(p);
-    double x[MOST_UNKNOWNS] = {0};
+    double x[MAX_UNKNOWNS] = {0};
     fit_get_unknowns(p, x);
     for (int u = 0; u < n; u++) {
         const double at = x[u], step = p->unknowns[u].colour < 3 ? STEP : STEP * fmax(1, at);
@@ -67,10 +52,10 @@ static double excess(const struct problem *p, const double *residuals)
 }
 
 /* Standard errors of the unknowns; infinite if something is not determined. */
-static void find_errors(struct problem *p, double *jacobian, double errors[MOST_UNKNOWNS])
+static void find_errors(struct problem *p, double *jacobian, double errors[MAX_UNKNOWNS])
 {
     const int n = p->unknown_count, rows = fit_residual_count(p), places = p->f->point_count + p->f->lamp_count;
-    double h[MOST_UNKNOWNS * MOST_UNKNOWNS] = {0}, g[MOST_UNKNOWNS * MOST_UNKNOWNS] = {0};
+    double h[MAX_UNKNOWNS * MAX_UNKNOWNS] = {0}, g[MAX_UNKNOWNS * MAX_UNKNOWNS] = {0};
     double *residuals = jacobian + (ptrdiff_t)n * rows;
     differentiate(p, jacobian, residuals);
     for (int a = 0; a < n; a++)
@@ -79,7 +64,7 @@ static void find_errors(struct problem *p, double *jacobian, double errors[MOST_
             for (int i = 0; i < rows; i++) h[a * n + b] += one[i] * other[i];
             for (int i = 0; i < places; i++) g[a * n + b] += summed(p, one, i) * summed(p, other, i);
         }
-    const bool known = invert(h, n);
+    const bool known = inverse_of_symmetric(h, n, 1e-300);
     for (int a = 0; a < n; a++) {
         double v = 0;
         for (int i = 0; i < n; i++)
@@ -90,7 +75,7 @@ static void find_errors(struct problem *p, double *jacobian, double errors[MOST_
 
 void fit_set_errors(struct problem *p, double *jacobian)
 {
-    double errors[MOST_UNKNOWNS];
+    double errors[MAX_UNKNOWNS];
     find_errors(p, jacobian, errors);
     struct light_fit *f = p->f;
     for (int u = 0; u < p->unknown_count; u++) {

@@ -4,7 +4,7 @@
 
 #include "stages/fit_lights/light_fit.h"
 
-enum { MOST_UNKNOWNS = 64, MOST_FIT_POINTS = 1500 };
+enum { MAX_UNKNOWNS = 64, MAX_FIT_POINTS = 1500 };
 
 struct unknown {
     int lamp, colour; /* colour 3: the exponent */
@@ -12,7 +12,7 @@ struct unknown {
 
 struct problem {
     struct light_fit *f;
-    struct unknown unknowns[MOST_UNKNOWNS];
+    struct unknown unknowns[MAX_UNKNOWNS];
     int unknown_count;
     double *direct;      /* [lamp][point] at the lamps' present exponents */
     double *logs;        /* [point][colour] of radiance over irradiance */

@@ -1,18 +1,18 @@
 /* fit_texture.c - see fit_texture.h.
  *
- * Overview. The reflectance of plaster or brick varies, but less between neighbours than across a wall. Points just inside
- * and just outside of a cone tell more of a lamp than points far apart, and a hundred points on one patch tell less of the
- * wall than ten in ten places. The covariance of the points' deviations says both; a generalised least-squares fit then
- * weights all pairs as they deserve.
+ * Overview. The reflectance of plaster or brick varies, but less between neighbours than across a wall. Points just
+ * inside and just outside of a cone tell more of a lamp than points far apart, and a hundred points on one patch tell
+ * less of the wall than ten in ten places. The covariance of the points' deviations says both; a generalised
+ * least-squares fit then weights all pairs as they deserve.
  *
- * Mathematics. Logarithms of reflectance are a Gaussian process: deviation^2 ((1 - grain) exp(-d / length) + grain [d = 0])
- * is the covariance of two points of a material at a distance d [Cressie 1993]. The three are those of the greatest
+ * Mathematics. Logarithms of reflectance are a Gaussian process: deviation^2 ((1 - grain) exp(-d / length) + grain [d =
+ * 0]) is the covariance of two points of a material at a distance d [Cressie 1993]. The three are those of the greatest
  * restricted likelihood [Patterson 1971], which allows for the mean that is taken from the same points, on a grid of
  * lengths and grains; deviation has a closed form, with a few points' worth of the assumed deviation. Colours vary
  * together: they count as one sample.
  *
- * A point that the others do not predict (a poster) has its variance enlarged, so that its error, which the inverse of the
- * covariance gives, is OUTLIER standard deviations: it counts less, the farther off it is. */
+ * A point that the others do not predict (a poster) has its variance enlarged, so that its error, which the inverse of
+ * the covariance gives, is OUTLIER standard deviations: it counts less, the farther off it is. */
 #include "stages/fit_lights/fit_texture.h"
 
 #include <math.h>
@@ -22,7 +22,7 @@
 
 #include "common/math/cholesky.h"
 
-enum { MOST_SAMPLED = 256, LENGTHS = 7, GRAINS = 4, LEAST_POINTS = 8, PRIOR_POINTS = 4 };
+enum { MAX_SAMPLED = 256, LENGTHS = 7, GRAINS = 4, MIN_POINTS = 8, PRIOR_POINTS = 4 };
 static const double grains[GRAINS] = {0.02, 0.1, 0.3, 0.6};
 #define OUTLIER 2.5
 
@@ -39,7 +39,7 @@ static double correlation(const struct light_fit *f, int a, int b, double length
 /* ---------------------------------------------------------------------------------------------------- the variation */
 
 struct sampled {
-    int points[MOST_SAMPLED], count;
+    int points[MAX_SAMPLED], count;
     int unknowns; /* of one colour: lamps that are fitted to the material */
 };
 
@@ -49,7 +49,7 @@ static struct sampled sample(const struct problem *p, int material)
     struct sampled s = {.count = 0};
     int all = 0, at = 0;
     for (int i = 0; i < f->point_count; i++) all += f->points[i].material == material;
-    const int stride = (all + MOST_SAMPLED - 1) / MOST_SAMPLED;
+    const int stride = (all + MAX_SAMPLED - 1) / MAX_SAMPLED;
     for (int i = 0; i < f->point_count; i++)
         if (f->points[i].material == material && at++ % stride == 0) s.points[s.count++] = i;
     for (int l = 0; l < f->lamp_count; l++) s.unknowns += f->lamps[l].fit && f->lamps[l].material == material;
@@ -62,7 +62,7 @@ static double likelihood(double *variance, const struct problem *p, const struct
 {
     const int n = s->count, dof = n - 1 - s->unknowns;
     const double before = p->f->materials[p->f->points[s->points[0]].material].deviation;
-    double ones[MOST_SAMPLED], determinant = 0, weights = 0, squares = 0;
+    double ones[MAX_SAMPLED], determinant = 0, weights = 0, squares = 0;
     for (int i = 0; i < n; i++) {
         for (int k = 0; k < i; k++) matrix[i * n + k] = correlation(p->f, s->points[i], s->points[k], length, grain);
         matrix[i * n + i] = 1 + p->excess[s->points[i]] / (before * before);
@@ -91,7 +91,7 @@ static void estimate_material(struct problem *p, int material, double *matrix, d
     const struct sampled s = sample(p, material);
     struct fit_material *m = &p->f->materials[material];
     double longest = 0, variance = 0;
-    if (s.count < LEAST_POINTS || s.count <= 1 + s.unknowns) return;
+    if (s.count < MIN_POINTS || s.count <= 1 + s.unknowns) return;
     for (int i = 0; i < s.count; i++) longest = fmax(longest, distance(p->f, s.points[0], s.points[i]));
     double best = likelihood(&variance, p, &s, 0, 1, matrix, vector), deviation = sqrt(variance);
     m->length = 0;

@@ -62,11 +62,10 @@ static enum status read_node(struct indirect *in, int k, struct textfile *t, str
 {
     static const char *const names[] = {"x", "y", "z", "nx", "ny", "nz", "red", "green", "blue"};
     double v[9];
-    for (int i = 0; i < 9; i++) {
+    for (int i = 0; i < 6; i++)
         if (textfile_double(t, names[i], &v[i], err)) return err->status;
-        if (i >= 6 && !(v[i] >= 0 && v[i] <= 1e30))
-            return textfile_wrong_number(t, v[i], "an irradiance from 0 to 1e30", err);
-    }
+    for (int i = 6; i < 9; i++)
+        if (textfile_number(t, names[i], 0, 1e30, &v[i], err)) return err->status;
     const double off = vec3_length(vec3_sub(vec3_make(v[0], v[1], v[2]), wanted));
     if (!(off <= SAME_PLACE * fmax(1, vec3_length(wanted))))
         return textfile_error(t, err, "another point", "the point %.6g %.6g %.6g; list the points again", wanted.x,

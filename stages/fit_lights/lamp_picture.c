@@ -11,7 +11,7 @@
 #include "common/image/photo.h"
 
 enum { QUALITY = 90, GAP = 8 /* px between two views */ };
-static const double LEAST_OUTLINE = 0.01; /* of a view's width: less does not show a lamp */
+static const double MIN_OUTLINE = 0.01; /* of a view's width: less does not show a lamp */
 static const unsigned char DARK[3] = {0, 0, 0}, OUTLINE[3] = {90, 255, 120}, EDGE[3] = {255, 140, 0},
                            LIT[3] = {255, 235, 60}, UNLIT[3] = {70, 130, 255}, LINE[3] = {225, 90, 255};
 
@@ -147,7 +147,7 @@ static enum status write_views(const struct job *j, int lamp, const int views[2]
 static void choose_views(int views[2], const struct job *j, int lamp, const struct curve *outline,
                          const struct curve *edge)
 {
-    double best = 0, best_outline = LEAST_OUTLINE, outline_of_best = 0;
+    double best = 0, best_outline = MIN_OUTLINE, outline_of_best = 0;
     views[0] = views[1] = -1;
     for (int i = 0; i < j->model->set.view_count; i++) {
         const struct view *v = &j->views[i];
@@ -156,7 +156,7 @@ static void choose_views(int views[2], const struct job *j, int lamp, const stru
         if (score > best) best = score, views[0] = i, outline_of_best = around;
         if (around > best_outline) best_outline = around, views[1] = i;
     }
-    if (outline_of_best >= LEAST_OUTLINE) views[1] = -1;
+    if (outline_of_best >= MIN_OUTLINE) views[1] = -1;
 }
 
 static enum status write_lamp(const struct job *j, int lamp, struct curve *outline, struct curve *edge,

@@ -12,8 +12,8 @@
 double curve_draw(const struct canvas *k, const struct curve *c, const struct view *view,
                   const struct model_rays *model, double half, const unsigned char colour[3]);
 
-/* For each lamp of the scene FOLDER/NAME.jpg (lamp_file_name()): the view that shows most of the edge of its cone and of
- * its marks, and beside it, where that one does not show the lamp, the one that shows it best. The lamp's outline is
+/* For each lamp of the scene FOLDER/NAME.jpg (lamp_file_name()): the view that shows most of the edge of its cone and
+ * of its marks, and beside it, where that one does not show the lamp, the one that shows it best. The lamp's outline is
  * green, the edge of its cone orange; lit points are yellow, unlit ones blue, lines violet. A lamp that no view shows
  * has no picture. views: folder of VIEW.exr. */
 enum status lamp_pictures_write(const struct lit_scene *scene, const struct lit_model *model, const char *views,

@@ -9,7 +9,7 @@
 #include "stages/fit_lights/cone.h"
 
 #define REACH (3 * DEGREE) /* of the second search about the first */
-enum { LEAST_PLACES = 20 /* that a photo must show of a line */ };
+enum { MIN_PLACES = 20 /* that a photo must show of a line */ };
 
 static bool begins_line(const struct lit_scene *s, int i, int lamp)
 {
@@ -139,7 +139,7 @@ static enum status list_traces(struct line_set *s, struct err *err)
     }
     int kept = 0;
     for (int t = 0; !st && t < s->trace_count; t++)
-        if (shown[t] >= LEAST_PLACES) s->traces[kept++] = s->traces[t];
+        if (shown[t] >= MIN_PLACES) s->traces[kept++] = s->traces[t];
     s->trace_count = kept;
     free(photos);
     free(shown);

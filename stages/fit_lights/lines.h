@@ -6,8 +6,8 @@
 
 int lines_of_lamp(const struct lit_scene *scene, int lamp); /* their number */
 
-/* Sets beta of the lamp, and its standard error. known: the lamps' radiances are known, and beta is already near. ST_DATA as
- * cone_fit_solve(). */
+/* Sets beta of the lamp, and its standard error. known: the lamps' radiances are known, and beta is already near.
+ * ST_DATA as cone_fit_solve(). */
 enum status lines_fit_beta(double *error, const struct solve_inputs *in, int lamp, bool known, struct err *err);
 
 #endif

@@ -13,14 +13,12 @@
 #include "common/base/file_path.h"
 #include "common/capture/photo_quality.h"
 #include "common/capture/view_image.h"
-#include "common/image/exr.h"
 #include "common/math/numbers.h"
 #include "common/math/weighted.h"
 #include "common/texture/view_ids.h"
 
-enum { R, G, B, A, SIGMA, CLIPPED, CHANNELS, SIGHT_GRID = 24, LEAST_SIGHT = 12 };
-static const char *const channels[CHANNELS] = {"R", "G", "B", "A", "sigma", "clipped"};
-#define LEAST_COSINE 0.05 /* between a surface's normal and the direction to the camera */
+enum { SIGHT_GRID = 24, MIN_SIGHT = 12 };
+#define MIN_COSINE 0.05 /* between a surface's normal and the direction to the camera */
 
 void observations_release(struct observations *o)
 {
@@ -38,8 +36,7 @@ struct viewer {
     const struct fit_lights_params *params;
     int index, photo;
     struct view camera; /* model frame */
-    struct exr_image picture;
-    const float *channel[CHANNELS];
+    struct view_planes picture;
     struct view_ids ids;
 };
 
@@ -48,7 +45,7 @@ static bool project(const struct viewer *v, struct vec3 at, struct vec3 normal, 
 {
     const struct vec3 to = vec3_sub(v->camera.center, at);
     const double distance = vec3_length(to);
-    if (!(vec3_dot(normal, to) > LEAST_COSINE * distance)) return false;
+    if (!(vec3_dot(normal, to) > MIN_COSINE * distance)) return false;
     if (!(view_project(&v->camera, at, x, y) > 0)) return false;
     return *x >= 1 && *y >= 1 && *x <= v->camera.width - 1 && *y <= v->camera.height - 1;
 }
@@ -67,13 +64,13 @@ static int pixel_at(const struct viewer *v, int x, int y)
 /* Adds a pixel to a mean; false: it lies outside the photo, or is saturated or dark. */
 static bool add_pixel(const struct viewer *v, int i, double weight, double sum[3], double *variance, bool *clipped)
 {
-    if (!(v->channel[A][i] > 0.999f)) return false;
-    if (v->channel[CLIPPED][i] > 0) {
+    if (!(v->picture.channel[VIEW_A][i] > 0.999f)) return false;
+    if (v->picture.channel[VIEW_CLIPPED][i] > 0) {
         *clipped = true;
         return false;
     }
-    const double sigma = weight * v->channel[SIGMA][i];
-    for (int c = 0; c < 3; c++) sum[c] += weight * v->channel[c][i];
+    const double sigma = weight * v->picture.channel[VIEW_SIGMA][i];
+    for (int c = 0; c < 3; c++) sum[c] += weight * v->picture.channel[c][i];
     *variance += sigma * sigma;
     return true;
 }
@@ -144,14 +141,14 @@ static enum status observe_lamp(struct viewer *v, int lamp, struct err *err)
         if (l->shape == LAMP_DISK && a * a + b * b > 0.7) continue;
         if (!project(v, at, l->normal, &x, &y) || hidden_by_model(v, at, l->normal)) continue;
         const int pixel = pixel_at(v, (int)floor(x), (int)floor(y));
-        if (!(v->channel[A][pixel] > 0.999f)) continue;
+        if (!(v->picture.channel[VIEW_A][pixel] > 0.999f)) continue;
         pixels += pixel != last;
         last = pixel;
-        saturated += ((int)v->channel[CLIPPED][pixel] & PHOTO_BRIGHT) != 0;
-        for (int c = 0; c < 3; c++) values[c][count] = (struct weighted){v->channel[c][pixel], 1};
+        saturated += ((int)v->picture.channel[VIEW_CLIPPED][pixel] & PHOTO_BRIGHT) != 0;
+        for (int c = 0; c < 3; c++) values[c][count] = (struct weighted){v->picture.channel[c][pixel], 1};
         count++;
     }
-    if (pixels < LEAST_SIGHT) return ST_OK;
+    if (pixels < MIN_SIGHT) return ST_OK;
     if (array_append(&v->o->sights, (size_t)v->o->sight_count, sizeof *v->o->sights, "views of lamps", err))
         return err->status;
     struct lamp_sight *s = &v->o->sights[v->o->sight_count++];
@@ -177,22 +174,10 @@ static enum status read_view(struct viewer *v, const char *views, const char *id
 {
     char path[FILE_PATH];
     if (provenance_add_in(prov, "views", views, v->camera.name, ".exr", path, err) ||
-        exr_read(&v->picture, path, channels, CHANNELS, err))
+        view_planes_read(&v->picture, path, &v->camera, VIEW_CHANNELS, err) ||
+        provenance_add_in(prov, "ids", ids, v->camera.name, ".exr", path, err))
         return err->status;
-    if (v->picture.width != v->camera.width || v->picture.height != v->camera.height)
-        return err_set(err, ST_DATA, "%s has %d x %d pixels, but its camera %d x %d; make the views again.", path,
-                       v->picture.width, v->picture.height, v->camera.width, v->camera.height);
-    for (int k = 0; k < CHANNELS; k++) {
-        v->channel[k] = exr_find(&v->picture, channels[k])->f;
-        if (!v->channel[k])
-            return err_set(err, ST_DATA,
-                           "%s: channel %s contains integers, wanted half or float; make the views again.", path,
-                           channels[k]);
-    }
-    if (provenance_add_in(prov, "ids", ids, v->camera.name, ".exr", path, err) ||
-        view_ids_read(&v->ids, &v->camera, path, err))
-        return err->status;
-    return ST_OK;
+    return view_ids_read(&v->ids, &v->camera, path, err);
 }
 
 static enum status observe_view(struct viewer *v, const char *views, const char *ids, struct provenance *prov,
@@ -202,7 +187,7 @@ static enum status observe_view(struct viewer *v, const char *views, const char 
     enum status st = read_view(v, views, ids, prov, err);
     for (int i = 0; !st && i < v->scene->point_count; i++) st = observe_point(v, i, err);
     for (int i = 0; !st && i < v->scene->lights.lamp_count; i++) st = observe_lamp(v, i, err);
-    exr_image_release(&v->picture);
+    view_planes_release(&v->picture);
     view_ids_release(&v->ids);
     return st;
 }

@@ -37,8 +37,9 @@ struct lit_scene {
     int point_count;
 };
 
-/* notes may be NULL: then there are only the plan's windows. grid: points along a side of a rectangle. The caller releases
- * s. ST_DATA with file and line: an unknown view or opening, a pixel without a surface behind it, a lamp without area. */
+/* notes may be NULL: then there are only the plan's windows. grid: points along a side of a rectangle. The caller
+ * releases s. ST_DATA with file and line: an unknown view or opening, a pixel without a surface behind it, a lamp
+ * without area. */
 enum status lit_scene_resolve(struct lit_scene *s, const struct annotation_list *notes, const struct lit_model *model,
                               int grid, struct err *err);
 void lit_scene_release(struct lit_scene *s);

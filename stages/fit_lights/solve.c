@@ -1,10 +1,10 @@
 /* solve.c - see solve.h.
  *
- * Beta comes first, because a lit point counts only inside of the cone: from the steps along lines, with the lamp's radiance
- * unknown. Then all lamps' radiances, exponents and the materials are fitted together; then beta again, with the radiance
- * known and the other lamps' light added; then the radiances again. What unsaturated views show of a lamp itself is
- * compared with that and, if it agrees, counts in a last fit. A lamp without lit points is measured where views show it: where it
- * saturates, its radiance is only a lower bound. */
+ * Beta comes first, because a lit point counts only inside of the cone: from the steps along lines, with the lamp's
+ * radiance unknown. Then all lamps' radiances, exponents and the materials are fitted together; then beta again, with
+ * the radiance known and the other lamps' light added; then the radiances again. What unsaturated views show of a lamp
+ * itself is compared with that and, if it agrees, counts in a last fit. A lamp without lit points is measured where
+ * views show it: where it saturates, its radiance is only a lower bound. */
 #include "stages/fit_lights/solve.h"
 
 #include <math.h>
@@ -86,7 +86,7 @@ static void compare(struct lamp_result *r, const struct lamp *l)
     }
 }
 
-/* ------------------------------------------------------------------------------------------------ the points of a fit */
+/* ---------------------------------------------------------------------------------------------- the points of a fit */
 
 /* The median colour over the photos that show a point. False: none does. */
 static bool summarize(struct fit_point *p, const struct observations *o, int point, int *next)
@@ -193,7 +193,7 @@ static enum status list_points(struct solved_lights *s, const struct solve_input
     return refuse_saturated(in, err);
 }
 
-/* ------------------------------------------------------------------------------------------------------------ the fit */
+/* ---------------------------------------------------------------------------------------------------------- the fit */
 
 struct fit_ctx {
     const struct solve_inputs *in;
@@ -206,8 +206,8 @@ static double direct_at(const void *ctx, int lamp, int point, double exponent)
     return direct_light_at(c->in->direct, lamp, c->points[point], c->in->scene->lights.lamps[lamp].beta, exponent);
 }
 
-/* What unsaturated views show of a lamp itself, unless it disagrees: they may show something else there. The exponent of a
- * lamp, if that is fitted, would have to be known. */
+/* What unsaturated views show of a lamp itself, unless it disagrees: they may show something else there. The exponent
+ * of a lamp, if that is fitted, would have to be known. */
 static void add_seen(struct fit_lamp *l, const struct lamp_result *r, const struct solve_inputs *in)
 {
     for (int c = 0; r->unsaturated && !r->disagrees && !l->fit_exponent && c < 3; c++) {
@@ -339,7 +339,7 @@ enum status lights_solve(struct solved_lights *s, const struct solve_inputs *in,
     return seen ? fit_radiances(s, in, PASS_POINTS_AND_PICTURES, err) : ST_OK;
 }
 
-/* ----------------------------------------------------------------------------------------------------------- fit.txt */
+/* ---------------------------------------------------------------------------------------------------------- fit.txt */
 
 static void write_lamp(const struct solved_lights *s, const struct solve_inputs *in, int i, FILE *to)
 {

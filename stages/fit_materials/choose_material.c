@@ -1,8 +1,8 @@
 /* choose_material.c - model selection by cross-validation.
  *
  * A model with more unknowns always fits its own samples better. Whether it is nearer to the surface shows on samples
- * that it was not fitted to: the points of the surface are dealt to FOLDS groups, and each group is predicted by fits to
- * the others. All samples of a point are in one group, because they share its texture.
+ * that it was not fitted to: the points of the surface are dealt to FOLDS groups, and each group is predicted by fits
+ * to the others. All samples of a point are in one group, because they share its texture.
  *
  * d_p = sum over the samples of point p of the loss of Lambert less that of the glossy model; its mean over points, and
  * the standard error of the mean, tell whether the lobe is needed: the simpler model stays unless the gain exceeds

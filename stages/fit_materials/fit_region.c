@@ -18,7 +18,7 @@ void region_fit_release(struct region_fit *f)
     *f = (struct region_fit){0};
 }
 
-/* ------------------------------------------------------------------------------------------------------------- light */
+/* ------------------------------------------------------------------------------------------------------------ light */
 
 struct lighting {
     struct region_fit *f;
@@ -76,7 +76,7 @@ static enum status gather_light(struct region_fit *f, const struct observations 
     return ST_OK;
 }
 
-/* --------------------------------------------------------------------------------------------------------------- fit */
+/* -------------------------------------------------------------------------------------------------------------- fit */
 
 /* The sights of the material, which become samples. */
 static enum status find_samples(struct region_fit *f, const struct material *m, int index, const struct observations *o,

@@ -15,8 +15,9 @@ struct region_fit {
     double *predicted;            /* [3 samples.count] by the chosen model */
 };
 
-/* Fits material m (of o->points[].material). Its points are moved to the surface of the field where the two disagree by at
- * most `lift`. declared: m->kind is the model. Fills what m says of the fit. ST_DATA with the material's name and the reason. */
+/* Fits material m (of o->points[].material). Its points are moved to the surface of the field where the two disagree by
+ * at most `lift`. declared: m->kind is the model. Fills what m says of the fit. ST_DATA with the material's name and
+ * the reason. */
 enum status region_fit_make(struct region_fit *f, struct material *m, int index, bool declared,
                             const struct observations *o, const struct observed_scene *scene,
                             const struct light_field *field, struct err *err);
@@ -26,8 +27,8 @@ void region_fit_release(struct region_fit *f);
 void region_fit_print(FILE *to, const struct region_fit *f, const struct material *m, const struct observations *o,
                       const struct observed_scene *scene);
 
-/* The view that shows most samples, with a dot for each: red where the view is brighter than the model says, blue where it
- * is darker, by a quarter at full colour. */
+/* The view that shows most samples, with a dot for each: red where the view is brighter than the model says, blue where
+ * it is darker, by a quarter at full colour. */
 enum status region_fit_picture(const struct region_fit *f, const struct observations *o,
                                const struct observed_scene *scene, const char *path, struct err *err);
 

@@ -1,7 +1,7 @@
 /* incident.c - samples of the light about a point, weighted for lobes of any width.
  *
- * The width of the lobe is unknown while light is gathered, so that rays must serve wide and narrow lobes alike. About a
- * sample's mirror direction R they have the density, with c = 1 - cos of the angle to R,
+ * The width of the lobe is unknown while light is gathered, so that rays must serve wide and narrow lobes alike. About
+ * a sample's mirror direction R they have the density, with c = 1 - cos of the angle to R,
  *   p(L) = 1 / (2 pi (c + a) ln((2 + a) / a)),    c = a (((2 + a) / a)^u - 1),   u uniform in [0, 1)
  * which gives every octave of width the same number of rays, down to a, the width of the narrowest lobe. Small bright
  * lamps would still be noise in the wide lobes. Rays to points of the emitters are added, and the weights of all follow
@@ -27,7 +27,7 @@ struct gather {
     struct sobol sobol;
 };
 
-/* ---------------------------------------------------------------------------------------------------------- emitters */
+/* --------------------------------------------------------------------------------------------------------- emitters */
 
 /* A direction to a point of the emitter, uniform over its area (of a sun: over its solid angle). */
 static bool emitter_direction(struct vec3 *direction, const struct emitter *e, struct vec3 at, double u, double v)
@@ -77,7 +77,7 @@ static double emitters_density(const struct gather *g, struct vec3 direction)
     return sum;
 }
 
-/* ------------------------------------------------------------------------------------------------------------- lobes */
+/* ------------------------------------------------------------------------------------------------------------ lobes */
 
 static double ring_density(double c) { return 1 / (2 * PI * (c + NARROWEST) * log((2 + NARROWEST) / NARROWEST)); }
 
@@ -148,7 +148,7 @@ static bool draw_cosine(const void *strategy, struct vec3 at, double u, double v
     return true;
 }
 
-/* ------------------------------------------------------------------------------------------------------- the samples */
+/* ------------------------------------------------------------------------------------------------------ the samples */
 
 struct lobe_sample {
     struct material_samples *s;

@@ -1,24 +1,24 @@
 /* material_fit.c - the parameters of a reflectance model by robust least squares.
  *
  * A sample's radiance is L_c = k_d,c E_c + g I_c(s), with the irradiance E and the lobe's integral I of
- * material_samples.c; five unknowns [Colburn 2014, 5.4]: k_d of red, green and blue, the lobe's reflectance g (from which
- * k_s follows) and ln s, its width. Only s is nonlinear. The minimum in s may not be the only one: a wide lobe can explain
- * the slope of the light, a narrow one a few highlights.
+ * material_samples.c; five unknowns [Colburn 2014, 5.4]: k_d of red, green and blue, the lobe's reflectance g (from
+ * which k_s follows) and ln s, its width. Only s is nonlinear. The minimum in s may not be the only one: a wide lobe
+ * can explain the slope of the light, a narrow one a few highlights.
  *
  *   1. For each of STARTS widths, the other four unknowns by linear least squares, reweighted for outliers (variable
  *      projection [Golub 1973]); the three best starts are kept.
- *   2. From each of them Levenberg-Marquardt (Ceres) in all five, with k_d, g >= 0 and s in its range; the smallest cost
- *      wins.
+ *   2. From each of them Levenberg-Marquardt (Ceres) in all five, with k_d, g >= 0 and s in its range; the smallest
+ *      cost wins.
  *   3. The scale of the residuals, from their median, may have changed: once more from the solution.
  *
- * The loss of a sample is Cauchy's, of all channels together. Variances are at least (1e-4 of the brightest radiance)^2.
- * Where the residuals are larger than the variances say (texture, an imprecise model of the light), their scale takes
- * part in the loss and in the intervals.
+ * The loss of a sample is Cauchy's, of all channels together. Variances are at least (1e-4 of the brightest
+ * radiance)^2. Where the residuals are larger than the variances say (texture, an imprecise model of the light), their
+ * scale takes part in the loss and in the intervals.
  *
  * Intervals are 1.96 standard deviations by the inverse of the weighted normal matrix, or by the sum over points of the
  * outer products of their gradients, whichever is larger: samples of one point share its texture. The matrix has the
- * mean curvature of the loss [Huber 1964]. Intervals end at the bounds, and hold what the noise of the radiance does: not
- * an error of the light.
+ * mean curvature of the loss [Huber 1964]. Intervals end at the bounds, and hold what the noise of the radiance does:
+ * not an error of the light.
  * An unknown without curvature (the width of a lobe with g = 0) has the interval of its bounds. */
 #include "stages/fit_materials/material_fit.h"
 
@@ -54,7 +54,7 @@ static void bounds(enum brdf_kind kind, double lower[FIT_UNKNOWNS], double upper
     upper[FIT_LOG_S] = lobe_log_s(kind, kind == BRDF_WARD ? WARD_MIN : PHONG_MAX);
 }
 
-/* ------------------------------------------------------------------------------------------------------- the problem */
+/* ------------------------------------------------------------------------------------------------------ the problem */
 
 static void problem_release(struct fit_problem *p)
 {
@@ -166,7 +166,7 @@ static double robust_loss(double square, double scale)
     return FIT_CAUCHY * FIT_CAUCHY * log1p(square / (scale * scale * FIT_CAUCHY * FIT_CAUCHY));
 }
 
-/* -------------------------------------------------------------------------------------------------------- the starts */
+/* ------------------------------------------------------------------------------------------------------- the starts */
 
 /* Sums of weighted products of irradiance E, lobe I and radiance L, per channel. */
 struct sums {
@@ -263,7 +263,7 @@ static int find_starts(struct fit_problem *p, double starts[KEPT_STARTS][FIT_UNK
     return kept;
 }
 
-/* ----------------------------------------------------------------------------------------------------------- the fit */
+/* ---------------------------------------------------------------------------------------------------------- the fit */
 
 struct scaled_problem {
     struct fit_problem *p;

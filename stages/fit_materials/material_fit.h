@@ -29,7 +29,8 @@ struct material_fit {
 
 int fit_unknowns(enum brdf_kind kind);
 
-/* The radiance of each row, and unless it is NULL its derivatives [row][fit_unknowns(kind)]. scratch: 6 count numbers. */
+/* The radiance of each row, and unless it is NULL its derivatives [row][fit_unknowns(kind)]. scratch: 6 count
+ * numbers. */
 void fit_predict(const struct material_samples *s, enum brdf_kind kind, const double *x, double *scratch,
                  double *predicted, double *jacobian);
 

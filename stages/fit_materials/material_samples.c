@@ -1,13 +1,14 @@
 /* material_samples.c - lobes of any width from light that was gathered once.
  *
- * A fit tries many lobes on the same light. Integrating each of them over directions costs a power or an exponential per
- * direction. But both lobes are exp(-s t), with t(direction) free of unknowns (material_samples.h), so that their
+ * A fit tries many lobes on the same light. Integrating each of them over directions costs a power or an exponential
+ * per direction. But both lobes are exp(-s t), with t(direction) free of unknowns (material_samples.h), so that their
  * integral is a Laplace transform of the light's distribution over t:
  *   I(s) = sum w_k exp(-s t_k),   dI / d ln s = -s sum w_k t_k exp(-s t_k)
- * The distribution is kept at nodes t_j = a (e^(h j) - 1), which are as fine as the narrowest lobe needs near 0 and have
- * a constant ratio beyond. A weight is shared by the two nodes about its t so that the sums of w and of w t are kept. The
- * exponential is then replaced by its chord: too large by at most (h (s t + s a))^2 / 8 exp(-s t), 1e-4 of the lobe's peak.
- * All rows share the nodes: an evaluation takes one exponential per node, and sums that run over contiguous rows.
+ * The distribution is kept at nodes t_j = a (e^(h j) - 1), which are as fine as the narrowest lobe needs near 0 and
+ * have a constant ratio beyond. A weight is shared by the two nodes about its t so that the sums of w and of w t are
+ * kept. The exponential is then replaced by its chord: too large by at most (h (s t + s a))^2 / 8 exp(-s t), 1e-4 of
+ * the lobe's peak. All rows share the nodes: an evaluation takes one exponential per node, and sums that run over
+ * contiguous rows.
  *
  * Phong is the form of [Colburn 2014, A.1.10] with the cosine cancelled, Ward the isotropic model of [Ward 1992]. */
 #include "stages/fit_materials/material_samples.h"

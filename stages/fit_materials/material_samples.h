@@ -4,8 +4,8 @@
  * weight * exp(-s t): t says how far a direction is from the mirror direction, s how narrow the lobe is
  *   Phong  t = -ln(R.L),       s = n,           weight = flux
  *   Ward   t = tan^2(N,H),     s = 1 / alpha^2, weight = flux sqrt((N.L) / (N.V))
- * where flux is radiance times solid angle. So the light of a sample is kept by t alone, for each model, and any lobe is
- * computed from that. The vectors are those of common/light/brdf.h. */
+ * where flux is radiance times solid angle. So the light of a sample is kept by t alone, for each model, and any lobe
+ * is computed from that. The vectors are those of common/light/brdf.h. */
 #ifndef REMODEL_MATERIAL_SAMPLES_H
 #define REMODEL_MATERIAL_SAMPLES_H
 
@@ -31,8 +31,8 @@ struct material_samples {
 enum status material_samples_init(struct material_samples *s, int count, struct err *err);
 void material_samples_release(struct material_samples *s);
 
-/* Adds the light from a direction to what the lobes of sample i see. Nothing is added if the light or the viewer is below
- * the horizon. All vectors are unit. */
+/* Adds the light from a direction to what the lobes of sample i see. Nothing is added if the light or the viewer is
+ * below the horizon. All vectors are unit. */
 void material_samples_add(struct material_samples *s, int i, struct vec3 normal, struct vec3 view,
                           struct vec3 direction, struct rgb flux);
 

@@ -1,13 +1,13 @@
 /* observe.c - points of marked regions, and their radiance in all views that show them [Colburn 2014, 5.4].
  *
- * A region is a polygon in one photo. Points are where the rays of a square grid of its pixels hit the model; the grid is
- * as wide as the wished number of points needs. A view shows a point if its ids have the same face there, without clutter,
- * jump or clipped pixel near, and the surface is not seen at a grazing angle. The radiance is the mean of a small square of
- * pixels. Its variance is that of the mean of their noise, of their deviation from each other, and of a fraction of the
- * radiance for what no pixel tells (the model's place, gains).
+ * A region is a polygon in one photo. Points are where the rays of a square grid of its pixels hit the model; the grid
+ * is as wide as the wished number of points needs. A view shows a point if its ids have the same face there, without
+ * clutter, jump or clipped pixel near, and the surface is not seen at a grazing angle. The radiance is the mean of a
+ * small square of pixels. Its variance is that of the mean of their noise, of their deviation from each other, and of a
+ * fraction of the radiance for what no pixel tells (the model's place, gains).
  *
- * Of several views of one photo the one counts in which the point is nearest the centre. If more photos show a point than
- * wanted, every k-th is used: they are in order of name, which often is the order of the walk. */
+ * Of several views of one photo the one counts in which the point is nearest the centre. If more photos show a point
+ * than wanted, every k-th is used: they are in order of name, which often is the order of the walk. */
 #include "stages/fit_materials/observe.h"
 
 #include <math.h>
@@ -17,12 +17,9 @@
 #include "common/base/array.h"
 #include "common/base/file_path.h"
 #include "common/capture/photo_camera.h"
-#include "common/image/exr.h"
+#include "common/capture/view_image.h"
 #include "common/math/numbers.h"
 #include "common/texture/view_ids.h"
-
-enum { R, G, B, A, SIGMA, CLIPPED, CHANNELS };
-static const char *const channels[CHANNELS] = {"R", "G", "B", "A", "sigma", "clipped"};
 
 void observations_release(struct observations *o)
 {
@@ -32,7 +29,7 @@ void observations_release(struct observations *o)
     *o = (struct observations){0};
 }
 
-/* ------------------------------------------------------------------------------------------------------------ points */
+/* ----------------------------------------------------------------------------------------------------------- points */
 
 static enum status add_point(struct observations *o, const struct observed_scene *s, const struct photo_camera *camera,
                              double x, double y, int material, struct err *err)
@@ -101,15 +98,14 @@ enum status observe_points(struct observations *o, const struct observed_scene *
     return ST_OK;
 }
 
-/* ------------------------------------------------------------------------------------------------------------- views */
+/* ------------------------------------------------------------------------------------------------------------ views */
 
 struct viewer {
     struct observations *o;
     const struct observed_scene *scene;
     int index, photo;
     struct view camera; /* model frame */
-    struct exr_image picture;
-    const float *channel[CHANNELS];
+    struct view_planes picture;
     struct view_ids ids;
 };
 
@@ -138,11 +134,11 @@ static bool average(struct point_sight *sight, const struct viewer *v, int cx, i
     for (int k = 0; k < n; k++) {
         const size_t i =
             (size_t)(cy - r + k / (2 * r + 1)) * (size_t)v->camera.width + (size_t)(cx - r + k % (2 * r + 1));
-        if (!(v->channel[A][i] > 0.999f) || v->channel[CLIPPED][i] > 0) return false;
-        noise += v->channel[SIGMA][i] * v->channel[SIGMA][i];
+        if (!(v->picture.channel[VIEW_A][i] > 0.999f) || v->picture.channel[VIEW_CLIPPED][i] > 0) return false;
+        noise += v->picture.channel[VIEW_SIGMA][i] * v->picture.channel[VIEW_SIGMA][i];
         for (int c = 0; c < 3; c++) {
-            sight->radiance[c] += v->channel[c][i] / n;
-            squares[c] += v->channel[c][i] * v->channel[c][i] / n;
+            sight->radiance[c] += v->picture.channel[c][i] / n;
+            squares[c] += v->picture.channel[c][i] * v->picture.channel[c][i] / n;
         }
     }
     for (int c = 0; c < 3; c++) {
@@ -171,22 +167,10 @@ static enum status read_view(struct viewer *v, struct provenance *prov, struct e
 {
     char path[FILE_PATH];
     if (provenance_add_in(prov, "views", v->scene->views, v->camera.name, ".exr", path, err) ||
-        exr_read(&v->picture, path, channels, CHANNELS, err))
+        view_planes_read(&v->picture, path, &v->camera, VIEW_CHANNELS, err) ||
+        provenance_add_in(prov, "ids", v->scene->ids, v->camera.name, ".exr", path, err))
         return err->status;
-    if (v->picture.width != v->camera.width || v->picture.height != v->camera.height)
-        return err_set(err, ST_DATA, "%s has %d x %d pixels, but its camera %d x %d; make the views again.", path,
-                       v->picture.width, v->picture.height, v->camera.width, v->camera.height);
-    for (int k = 0; k < CHANNELS; k++) {
-        v->channel[k] = exr_find(&v->picture, channels[k])->f;
-        if (!v->channel[k])
-            return err_set(err, ST_DATA,
-                           "%s: channel %s contains integers, wanted half or float; make the views again.", path,
-                           channels[k]);
-    }
-    return provenance_add_in(prov, "ids", v->scene->ids, v->camera.name, ".exr", path, err) ||
-                   view_ids_read(&v->ids, &v->camera, path, err)
-               ? err->status
-               : ST_OK;
+    return view_ids_read(&v->ids, &v->camera, path, err);
 }
 
 static enum status observe_view(struct viewer *v, struct provenance *prov, struct err *err)
@@ -197,7 +181,7 @@ static enum status observe_view(struct viewer *v, struct provenance *prov, struc
     if (!any) return ST_OK;
     enum status st = read_view(v, prov, err);
     for (int i = 0; !st && i < v->o->point_count; i++) st = observe_point(v, i, err);
-    exr_image_release(&v->picture);
+    view_planes_release(&v->picture);
     view_ids_release(&v->ids);
     return st;
 }

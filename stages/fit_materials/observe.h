@@ -38,12 +38,12 @@ struct observations {
     int point_count, sight_count;
 };
 
-/* Points of all materials, on a grid of pixels of each region. ST_DATA with file and line: an unknown view, a region outside
- * the photo, a region that shows no surface of the model. */
+/* Points of all materials, on a grid of pixels of each region. ST_DATA with file and line: an unknown view, a region
+ * outside the photo, a region that shows no surface of the model. */
 enum status observe_points(struct observations *o, const struct observed_scene *scene,
                            const struct material_list *marked, struct err *err);
-/* What the views show of them: at most params->views photos of each, spread evenly over those that show it. Adds what was
- * read to prov. */
+/* What the views show of them: at most params->views photos of each, spread evenly over those that show it. Adds what
+ * was read to prov. */
 enum status observe_views(struct observations *o, const struct observed_scene *scene, struct provenance *prov,
                           struct err *err);
 void observations_release(struct observations *o);

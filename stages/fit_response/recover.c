@@ -9,8 +9,8 @@
  *
  * Differs from the source:
  * - The smoothness term is not g'' but z^2 g'' + z g', the second derivative of g over ln z. It is 0 for a power law,
- *   which tone curves resemble, so lambda can be large. It must be: exposures in equal steps cannot detect a ripple with
- *   the period of the step.
+ *   which tone curves resemble, so lambda can be large. It must be: exposures in equal steps cannot detect a ripple
+ *   with the period of the step.
  * - Samples are means of uniform patches, usually between two levels, where g is interpolated linearly.
  * - Thousands of patches are used, not about fifty.
  * - The scale: level 128 has the light of the sRGB curve, in each colour.

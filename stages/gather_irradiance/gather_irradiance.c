@@ -45,9 +45,9 @@ static enum status check_options(const struct gather_job *j, const struct option
     if (o->face > 0 && !o->step)
         return err_set(err, ST_USAGE, "--face %d needs --step, the distance of its points in units of the model.",
                        o->face);
-    if (j->hemicubes < 0 || j->hemicubes > LIGHT_EXAMPLES_MOST)
+    if (j->hemicubes < 0 || j->hemicubes > LIGHT_EXAMPLES_MAX)
         return err_set(err, ST_USAGE, "--hemicubes %d: wanted a number from 0 to %d.", j->hemicubes,
-                       LIGHT_EXAMPLES_MOST);
+                       LIGHT_EXAMPLES_MAX);
     if (o->materials && !o->views)
         return err_set(err, ST_USAGE, "--materials needs --views, the folder of the cameras in which they are marked.");
     if (o->specular && !(o->view && o->materials))

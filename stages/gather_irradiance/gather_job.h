@@ -19,14 +19,14 @@ struct gather_job {
 
 void gather_job_release(struct gather_job *j);
 
-/* Sets results[i] for the points with a normal; the others, whose normal is 0 0 0, get 0. Points that lie in a solid just
- * below its surface are moved to it. Shows progress, in `unit`; says at the end what the light came from, and how well it
- * is known. Same bits for any number of threads. ST_NOMEM. */
+/* Sets results[i] for the points with a normal; the others, whose normal is 0 0 0, get 0. Points that lie in a solid
+ * just below its surface are moved to it. Shows progress, in `unit`; says at the end what the light came from, and how
+ * well it is known. Same bits for any number of threads. ST_NOMEM. */
 enum status gather_all(struct irradiance *results, struct gather_point *points, size_t count,
                        const struct gather_job *j, const char *what, struct err *err);
 
-/* The same for a picture or another grid of width x height points, neighbours of which are mostly close to each other: by
- * the cache of irradiance, if the estimator is that or `auto`. */
+/* The same for a picture or another grid of width x height points, neighbours of which are mostly close to each other:
+ * by the cache of irradiance, if the estimator is that or `auto`. */
 enum status gather_grid(struct irradiance *results, struct gather_point *points, int width, int height,
                         const struct gather_job *j, const char *what, struct err *err);
 

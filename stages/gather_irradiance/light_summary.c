@@ -54,7 +54,7 @@ static size_t rank(struct ranked *to, const struct gather_point *points, const s
 static void choose(struct light_record *r, size_t *chosen, const struct ranked *ranked, size_t n,
                    const struct gather_point *points, const struct irradiance *e, int examples)
 {
-    const size_t most = examples < LIGHT_EXAMPLES_MOST ? (size_t)examples : LIGHT_EXAMPLES_MOST;
+    const size_t most = examples < LIGHT_EXAMPLES_MAX ? (size_t)examples : LIGHT_EXAMPLES_MAX;
     const size_t count = most < n ? most : n;
     for (size_t i = 0; i < count; i++) {
         const struct ranked *at = &ranked[count > 1 ? i * (n - 1) / (count - 1) : 0];
@@ -64,7 +64,7 @@ static void choose(struct light_record *r, size_t *chosen, const struct ranked *
     r->example_count = (int)count;
 }
 
-enum status light_summarize(struct light_record *r, size_t chosen[LIGHT_EXAMPLES_MOST],
+enum status light_summarize(struct light_record *r, size_t chosen[LIGHT_EXAMPLES_MAX],
                             const struct gather_point *points, const struct irradiance *e, size_t count, int examples,
                             struct err *err)
 {
@@ -205,7 +205,7 @@ enum status light_summary_of_view(const struct gather_job *j, const struct view 
                                   const struct gather_point *points, const struct irradiance *e, struct err *err)
 {
     struct light_record r;
-    size_t chosen[LIGHT_EXAMPLES_MOST];
+    size_t chosen[LIGHT_EXAMPLES_MAX];
     struct sketch s = {j, view, points, e, (size_t)view->width * (size_t)view->height, "", NULL};
     enum status st = light_summarize(&r, chosen, points, e, s.pixels, j->hemicubes, err);
     s.rgb = malloc(3 * s.pixels);

@@ -7,9 +7,9 @@
 #include "common/gather/light_record.h"
 #include "stages/gather_irradiance/gather_job.h"
 
-/* Sums up the points that have a normal. `examples` of them are chosen, by rank of their relative error, evenly from the
- * most to the least; chosen[i] is the index of the i-th, and may be NULL. ST_NOMEM. */
-enum status light_summarize(struct light_record *r, size_t chosen[LIGHT_EXAMPLES_MOST],
+/* Sums up the points that have a normal. `examples` of them are chosen, by rank of their relative error, evenly from
+ * the most to the least; chosen[i] is the index of the i-th, and may be NULL. ST_NOMEM. */
+enum status light_summarize(struct light_record *r, size_t chosen[LIGHT_EXAMPLES_MAX],
                             const struct gather_point *points, const struct irradiance *e, size_t count, int examples,
                             struct err *err);
 

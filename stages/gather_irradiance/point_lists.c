@@ -11,9 +11,9 @@
 #include "common/light/surface_points.h"
 #include "stages/gather_irradiance/light_summary.h"
 
-enum { MOST_POINTS = 10000000 };
+enum { MAX_POINTS = 10000000 };
 
-/* ----------------------------------------------------------------------------------------------------------- writing */
+/* ---------------------------------------------------------------------------------------------------------- writing */
 
 static enum status open_list(struct outfile *f, const struct gather_job *j, const char *name, const char *suffix,
                              const char *head, struct err *err)
@@ -92,7 +92,7 @@ enum status gather_points_of_file(struct gather_job *j, const char *path, struct
     return st;
 }
 
-/* ------------------------------------------------------------------------------------------------------------ a face */
+/* ----------------------------------------------------------------------------------------------------------- a face */
 
 enum status gather_read_step(double *step, const char *text, struct err *err)
 {
@@ -120,9 +120,9 @@ static enum status make_lattice(struct lattice *l, const struct solid_mesh *mesh
     /* points on whole multiples of the step, so that faces of one plane share a lattice */
     const double left = ceil(low[0] / step), top = ceil(low[1] / step);
     const double width = floor(high[0] / step) - left + 1, height = floor(high[1] / step) - top + 1;
-    if (width * height > MOST_POINTS)
+    if (width * height > MAX_POINTS)
         return err_set(err, ST_DATA, "face %d has %.0f points at a step of %g, wanted at most %d; give a larger step.",
-                       solid_face_id(mesh, face), width * height, step, MOST_POINTS);
+                       solid_face_id(mesh, face), width * height, step, MAX_POINTS);
     l->width = width > 0 ? (int)width : 0;
     l->height = height > 0 ? (int)height : 0;
     l->right = vec3_scale(u, step);

@@ -1,7 +1,7 @@
 /* unfold.c - see unfold.h.
  *
- * A cube of side 2 about the point. The top is at z = 1; the side at x = 1 lies to the right of it, and so on, its upper
- * edge, z = 1, at the top's edge and its lower, z = 0, at the picture's. */
+ * A cube of side 2 about the point. The top is at z = 1; the side at x = 1 lies to the right of it, and so on, its
+ * upper edge, z = 1, at the top's edge and its lower, z = 0, at the picture's. */
 #include "stages/gather_irradiance/unfold.h"
 
 #include <math.h>

@@ -1,8 +1,8 @@
 /* view_gloss.c - see view_gloss.h.
  *
- * A pixel of a material shows k_d E + k_s I_s. I_s is stored without k_s, so that k_s can change without a gather. The rays
- * of a pixel go on until the error of k_s I_s is at most the target of all that it shows: a dull lobe on a bright surface
- * needs few. What it reflects includes other glossy surfaces by one nested gather (field_materials.c). */
+ * A pixel of a material shows k_d E + k_s I_s. I_s is stored without k_s, so that k_s can change without a gather. The
+ * rays of a pixel go on until the error of k_s I_s is at most the target of all that it shows: a dull lobe on a bright
+ * surface needs few. What it reflects includes other glossy surfaces by one nested gather (field_materials.c). */
 #include "stages/gather_irradiance/view_gloss.h"
 
 #include <stdlib.h>

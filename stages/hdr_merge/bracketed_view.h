@@ -30,12 +30,13 @@ struct bracketed_view {
 };
 
 /* Reads RECORDS/ID.txt, the photos in PHOTOS that it names, and the response curve (NULL: sRGB). v is {0} on entry;
- * release it also after a failure. ST_DATA: the record of a single photo, or more than MERGE_MAX_EXPOSURES exposures. */
+ * release it also after a failure. ST_DATA: the record of a single photo, or more than MERGE_MAX_EXPOSURES
+ * exposures. */
 enum status bracketed_view_read(struct bracketed_view *v, const char *id, const char *photos, const char *records,
                                 const char *response, struct provenance *prov, struct err *err);
-/* Finds the view's lens and pose, to be written with the radiance, in the scene's frame: from a COLMAP text model, by its
- * photos' names, or from frame->marks; then model may be NULL. *known: the model or the marks have the view. ST_DATA:
- * the camera has another size; the frame or the pose cannot be found. */
+/* Finds the view's lens and pose, to be written with the radiance, in the scene's frame: from a COLMAP text model, by
+ * its photos' names, or from frame->marks; then model may be NULL. *known: the model or the marks have the view.
+ * ST_DATA: the camera has another size; the frame or the pose cannot be found. */
 enum status bracketed_view_place(struct bracketed_view *v, bool *known, const char *model,
                                  const struct reference_frame *frame, const struct merge_params *params,
                                  struct provenance *prov, struct err *err);

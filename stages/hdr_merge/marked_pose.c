@@ -20,7 +20,7 @@ struct marked_image {
     const struct model_wall *wall;            /* of the first corner; NULL: none */
 };
 
-/* ---------------------------------------------------------------------------------------------------------- the marks */
+/* -------------------------------------------------------------------------------------------------------- the marks */
 
 static enum status add_mark(struct marked_image *m, const struct reference_mark *mark, const struct model_plan *plan,
                             struct err *err)
@@ -62,7 +62,7 @@ static enum status collect(struct marked_image *m, const struct model_plan *plan
     return st;
 }
 
-/* ----------------------------------------------------------------------------------------------------------- the lens */
+/* --------------------------------------------------------------------------------------------------------- the lens */
 
 static bool has_size(const struct camera *c, const struct photo_info *info)
 {
@@ -109,7 +109,7 @@ static enum status find_lens(struct camera *lens, const struct marked_image *m, 
                    m->image->info.height);
 }
 
-/* ----------------------------------------------------------------------------------------------------------- the pose */
+/* --------------------------------------------------------------------------------------------------------- the pose */
 
 static struct vec3 place_of(const struct resection *r, int i) { return pose_center(&r->poses[i].cam_from_world); }
 

@@ -29,6 +29,7 @@
 #include <stdlib.h>
 
 #include "common/base/parallel.h"
+#include "common/image/luminance.h"
 
 #define PARAM_STRUCT struct merge_params
 const struct param merge_param_table[] = {MERGE_PARAMS(PARAM_ROW) PARAM_END};
@@ -39,7 +40,7 @@ enum { ROWS = 8, BLOCK = 64 };
 static const float SATURATED_FROM = 0.8f; /* of `saturated`: the weight falls from here */
 static const float DARK_UNTIL = 3;        /* of `dark`: the weight rises to here */
 static const float ABSENT = -1;           /* the shifted exposure does not cover this pixel */
-static const float luma[3] = {0.2126f, 0.7152f, 0.0722f};
+static const float luma[3] = LUMINANCE_WEIGHTS;
 
 struct exposure_job {
     const uint16_t *samples;

@@ -8,8 +8,8 @@
  * may be negative.
  *
  * The noise of the luminance is not the sum of that of independent colours: JPEG stores chroma coarsely, so that the
- * colours of a pixel share most of what noise is left. The difference of the luminances of two exposures, divided by the
- * standard deviation that independent colours would have, is therefore measured as well, in the same bins: after
+ * colours of a pixel share most of what noise is left. The difference of the luminances of two exposures, divided by
+ * the standard deviation that independent colours would have, is therefore measured as well, in the same bins: after
  * subtraction of the bin's median, 68.27 % of its absolute values are below a value q, and luminance is the mean of
  * q^2. */
 #include "stages/hdr_merge/noise.h"
@@ -18,6 +18,7 @@
 #include <stdlib.h>
 
 #include "common/base/sort.h"
+#include "common/image/luminance.h"
 #include "stages/hdr_merge/merge.h"
 
 enum { BINS = 24, SAMPLES = 1 << 17, MIN_BIN = 200, MIN_BINS = 3 }; /* samples of a pair; of a bin that counts */
@@ -146,7 +147,7 @@ static size_t gather(struct pair_sample *to, const struct brackets *b, int k, co
 static size_t gather_luminance(struct pair_sample *to, const struct brackets *b, int k, const float *const tables[2],
                                const struct noise *n)
 {
-    static const double luma[3] = {0.2126, 0.7152, 0.0722};
+    static const double luma[3] = LUMINANCE_WEIGHTS;
     const struct pair p = pair_of(b, k, tables);
     const size_t step = (p.pixels / (SAMPLES / 3) + 1) | 1; /* odd: all places of JPEG's blocks */
     size_t count = 0;

@@ -5,8 +5,8 @@
  *   point IMAGE X Y MX MY MZ                                 a point at MX, MY, MZ in the model's frame
  *   lens IMAGE|* MODEL WIDTH HEIGHT PARAMS...                the image's lens, or that of all images, as in lenses.txt
  *   lens IMAGE|* EQUISOLID WIDTH HEIGHT F [CX CY]            an equisolid fisheye; default: centred
- *   near IMAGE MX MY MZ                                      where the camera is, roughly: of several poses that explain
- *                                                            the marks, the nearest is taken
+ *   near IMAGE MX MY MZ                                      where the camera is, roughly: of several poses that
+ *                                                            explain the marks, the nearest is taken
  *
  * IMAGE is the image's id or the file name of one of its exposures. X, Y are pixels of the image as it is stored, x to
  * the right and y down, (0, 0) its upper left corner. */
@@ -35,8 +35,8 @@ struct reference_marks {
     char *path; /* owned; for errors */
 };
 
-/* The caller releases the list, which a failure leaves empty. ST_DATA with file and line: an unknown or damaged line, or
- * what was stated before. */
+/* The caller releases the list, which a failure leaves empty. ST_DATA with file and line: an unknown or damaged line,
+ * or what was stated before. */
 enum status reference_marks_read(struct reference_marks *list, const char *path, struct err *err);
 void reference_marks_release(struct reference_marks *list);
 

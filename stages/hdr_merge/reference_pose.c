@@ -1,6 +1,6 @@
-/* reference_pose.c - moves the pose of a lighting reference image to the scene's frame: by the photographs that its model
- * and the scene have in common (common/capture/photo_alignment.c), or by axes.txt for a pose in the frame of the room's
- * model. */
+/* reference_pose.c - moves the pose of a lighting reference image to the scene's frame: by the photographs that its
+ * model and the scene have in common (common/capture/photo_alignment.c), or by axes.txt for a pose in the frame of the
+ * room's model. */
 #include "stages/hdr_merge/reference_pose.h"
 
 #include "common/base/file_path.h"

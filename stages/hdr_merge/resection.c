@@ -6,11 +6,11 @@
  * nearly as well are returned, too: the corners of one window lie in a plane, and a plane that is small, far or seen
  * nearly from the front has a second pose, mirrored in effect [Schweighofer 2006]; three marks have several.
  *
- * Mathematics. The residual of a mark is the angle from its ray to the point, along two directions across the ray, times
- * the pixels per radian that the lens has there along these directions: a distance in pixels to first order. Unlike
- * the point's pixel, it is finite for any pose, so that a fisheye of 180 degrees and points behind a camera need no
- * care. With J, the derivatives of the residuals by rotation and centre at the solution, the covariance of the pose is
- * sigma^2 (J^T J)^-1. The 95 % interval is t sigma, where sigma^2 is the sum of squares over the 2 N - 6 degrees of
+ * Mathematics. The residual of a mark is the angle from its ray to the point, along two directions across the ray,
+ * times the pixels per radian that the lens has there along these directions: a distance in pixels to first order.
+ * Unlike the point's pixel, it is finite for any pose, so that a fisheye of 180 degrees and points behind a camera need
+ * no care. With J, the derivatives of the residuals by rotation and centre at the solution, the covariance of the pose
+ * is sigma^2 (J^T J)^-1. The 95 % interval is t sigma, where sigma^2 is the sum of squares over the 2 N - 6 degrees of
  * freedom and t the quantile of Student's distribution, which is larger the fewer marks there are [Student 1908]; it is
  * at least that of the stated standard error of a mark. A pose fits nearly as well if its sum of squares exceeds the
  * least one by less than 9 sigma^2, three standard errors of a single residual.
@@ -25,6 +25,7 @@
 #include <string.h>
 
 #include "common/math/ceres_least_squares.h"
+#include "common/math/inverse.h"
 #include "stages/hdr_merge/three_points.h"
 
 enum {
@@ -223,37 +224,12 @@ static double student(int n)
     return z + by * (2.372 + by * (2.823 + by * (2.556 + by * 1.59)));
 }
 
-/* The inverse of a symmetric positive definite matrix, by Gauss-Jordan elimination. False: it is singular. */
-static bool invert(double inverse[UNKNOWNS][UNKNOWNS], double m[UNKNOWNS][UNKNOWNS])
-{
-    double largest = 0;
-    for (int i = 0; i < UNKNOWNS; i++) largest = fmax(largest, m[i][i]);
-    for (int i = 0; i < UNKNOWNS; i++)
-        for (int j = 0; j < UNKNOWNS; j++) inverse[i][j] = i == j;
-    for (int k = 0; k < UNKNOWNS; k++) {
-        const double pivot = m[k][k];
-        if (!(pivot > MIN_PIVOT * largest)) return false;
-        for (int j = 0; j < UNKNOWNS; j++) {
-            m[k][j] /= pivot;
-            inverse[k][j] /= pivot;
-        }
-        for (int i = 0; i < UNKNOWNS; i++) {
-            const double factor = m[i][k];
-            for (int j = 0; i != k && j < UNKNOWNS; j++) {
-                m[i][j] -= factor * m[k][j];
-                inverse[i][j] -= factor * inverse[k][j];
-            }
-        }
-    }
-    return true;
-}
-
 /* The covariance of r->start for residuals of standard error 1, in the unknowns' units. False: the marks leave a
  * change of the pose open. */
 static bool find_covariance(double covariance[UNKNOWNS][UNKNOWNS], const struct rays *r)
 {
     const double step = 1e-6;
-    double columns[UNKNOWNS][2 * RESECTION_MAX], behind[2 * RESECTION_MAX], normal[UNKNOWNS][UNKNOWNS];
+    double columns[UNKNOWNS][2 * RESECTION_MAX], behind[2 * RESECTION_MAX], largest = 0;
     for (int k = 0; k < UNKNOWNS; k++) {
         double x[UNKNOWNS] = {0};
         x[k] = step;
@@ -264,10 +240,11 @@ static bool find_covariance(double covariance[UNKNOWNS][UNKNOWNS], const struct 
     }
     for (int i = 0; i < UNKNOWNS; i++)
         for (int j = 0; j < UNKNOWNS; j++) {
-            normal[i][j] = 0;
-            for (int k = 0; k < 2 * r->count; k++) normal[i][j] += columns[i][k] * columns[j][k];
+            covariance[i][j] = 0;
+            for (int k = 0; k < 2 * r->count; k++) covariance[i][j] += columns[i][k] * columns[j][k];
         }
-    return invert(covariance, normal);
+    for (int i = 0; i < UNKNOWNS; i++) largest = fmax(largest, covariance[i][i]);
+    return inverse_of_symmetric(&covariance[0][0], UNKNOWNS, MIN_PIVOT * largest);
 }
 
 /* Measures how a pose fits. False: a point is where the lens has no pixel, or its error is unknown. */

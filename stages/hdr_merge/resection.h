@@ -27,8 +27,8 @@ struct resection {
 };
 
 /* count: RESECTION_MIN..RESECTION_MAX. click: standard error of a mark, px; larger distances of the marks from the
- * points raise the intervals, too, which needs more than three marks. name: the image, for errors. ST_DATA: a pixel that
- * the lens does not have, marks on a line, marks that no camera has. */
+ * points raise the intervals, too, which needs more than three marks. name: the image, for errors. ST_DATA: a pixel
+ * that the lens does not have, marks on a line, marks that no camera has. */
 enum status resection_find(struct resection *r, const struct camera *lens, const struct resection_mark *marks,
                            int count, double click, const char *name, struct err *err);
 

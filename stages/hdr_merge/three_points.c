@@ -40,7 +40,8 @@ static double root_between(const double *c, int degree, double low, double high)
     }
 }
 
-/* Roots between 0 and MAX_RATIO where the sign changes, in ascending order: one at most between neighbouring extrema. */
+/* Roots between 0 and MAX_RATIO where the sign changes, in ascending order: one at most between neighbouring
+ * extrema. */
 static int find_roots(double roots[DEGREE], const double *c, int degree, const double *extrema, int extrema_count)
 {
     int count = 0;

@@ -16,6 +16,7 @@
 #include <stdlib.h>
 
 #include "common/base/parallel.h"
+#include "common/image/luminance.h"
 
 enum { REDUCE = 4, CURVE = 4096 };
 
@@ -34,8 +35,6 @@ static enum status init_reduced(struct reduced *s, int width, int height, struct
     return s->v ? ST_OK : err_nomem(err, "a reduced picture", (size_t)width * (size_t)height * sizeof(float));
 }
 
-static float luminance(const float *rgb) { return 0.2126f * rgb[0] + 0.7152f * rgb[1] + 0.0722f * rgb[2]; }
-
 struct reduce_job {
     struct reduced *to;
     const struct image *from;
@@ -52,7 +51,7 @@ static void reduce_rows(void *ctx, size_t begin, size_t end, int thread)
             int n = 0;
             for (int dy = 0; dy < REDUCE && (int)y * REDUCE + dy < im->height; dy++)
                 for (int dx = 0; dx < REDUCE && x * REDUCE + dx < im->width; dx++, n++)
-                    sum += luminance(image_at(im, x * REDUCE + dx, (int)y * REDUCE + dy));
+                    sum += luminance_of(image_at(im, x * REDUCE + dx, (int)y * REDUCE + dy));
             job->to->v[y * (size_t)job->to->width + (size_t)x] = logf(sum / (float)n + FLOOR);
         }
 }
@@ -129,7 +128,7 @@ static void tone_rows(void *ctx, size_t begin, size_t end, int thread)
     (void)thread;
     for (size_t y = begin; y < end; y++)
         for (int x = 0; x < im->width; x++) {
-            const float *rgb = image_at(im, x, (int)y), light = luminance(rgb), level = logf(light + FLOOR);
+            const float *rgb = image_at(im, x, (int)y), light = luminance_of(rgb), level = logf(light + FLOOR);
             const float base =
                 upsampled(job->slope, (float)x, (float)y) * level + upsampled(job->offset, (float)x, (float)y);
             const float sample = 1 / (1 + expf(ADAPTATION * base + (1 - ADAPTATION) * grey - level));

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "common/base/array.h"
+#include "common/base/scan.h"
 #include "common/base/textfile.h"
 
 double exposure_value(const struct exposure *e)
@@ -20,11 +21,10 @@ double exposure_value(const struct exposure *e)
 /* allow_zero: 0 means that the value is taken from EXIF. */
 static enum status read_number(struct textfile *t, const char *what, bool allow_zero, double *value, struct err *err)
 {
-    enum status st = textfile_double(t, what, value, err);
-    char found[32];
-    if (st || (*value >= 1e-9 && *value <= 1e9) || (allow_zero && *value == 0)) return st;
-    snprintf(found, sizeof found, "%.9g", *value);
-    return textfile_error(t, err, found, "%s from 1e-9 to 1e9%s", what, allow_zero ? ", or 0 to use EXIF" : "");
+    char *word;
+    if (textfile_word(t, what, &word, err)) return err->status;
+    if (allow_zero && scan_double(word, value) && *value == 0) return ST_OK;
+    return textfile_number_of(t, word, what, 1e-9, 1e9, value, err);
 }
 
 static enum status read_line(struct exposure_list *list, struct textfile *t, struct err *err)
@@ -37,8 +37,8 @@ static enum status read_line(struct exposure_list *list, struct textfile *t, str
             st = textfile_error(t, err, file, "each photo once (it is also in line %d)", list->lines[i].line);
     if (!st) st = read_number(t, "an exposure time in seconds", false, &e.seconds, err);
     if (!st && textfile_more(t)) {
-        st = read_number(t, "an f-number", true, &e.f_number, err);
-        if (!st) st = read_number(t, "an ISO value", true, &e.iso, err);
+        st = read_number(t, "an f-number (0: from EXIF)", true, &e.f_number, err);
+        if (!st) st = read_number(t, "an ISO value (0: from EXIF)", true, &e.iso, err);
         if (!st && textfile_more(t)) st = read_number(t, "a neutral density factor", false, &e.filter, err);
     }
     if (!st) st = textfile_end(t, err);

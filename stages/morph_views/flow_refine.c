@@ -13,6 +13,7 @@
 #include <string.h>
 
 #include "common/base/parallel.h"
+#include "common/image/luminance.h"
 #include "common/math/numbers.h"
 #include "stages/morph_views/match.h"
 
@@ -47,7 +48,7 @@ static enum status gradients(struct image *out, const struct image *in, struct e
     for (int y = 0; y < in->height; y++)
         for (int x = 0; x < in->width; x++) {
             const float *rgb = image_at(in, x, y);
-            image_at(out, x, y)[0] = 0.2126f * rgb[0] + 0.7152f * rgb[1] + 0.0722f * rgb[2];
+            image_at(out, x, y)[0] = luminance_of(rgb);
         }
     for (int y = 0; y < in->height; y++)
         for (int x = 0; x < in->width; x++) {

@@ -22,6 +22,7 @@
 #include <string.h>
 
 #include "common/base/parallel.h"
+#include "common/image/luminance.h"
 #include "common/math/numbers.h"
 
 #define PARAM_STRUCT struct morph_params
@@ -80,15 +81,13 @@ void flow_release(struct flow *f)
 
 /* ------------------------------------------------------------------------------------------------------ pictures */
 
-static float grey_of(const float *rgb) { return 0.2126f * rgb[0] + 0.7152f * rgb[1] + 0.0722f * rgb[2]; }
-
 /* Median by a histogram of log2 of the grey. */
 static float median_grey(const struct image *linear)
 {
     enum { BINS = 1024, PER_STOP = 16 };
     size_t bins[BINS] = {0}, n = (size_t)linear->width * (size_t)linear->height, below = 0;
     for (size_t i = 0; i < n; i++) {
-        float at = (log2f(fmaxf(grey_of(linear->data + 3 * i), 1e-9f)) + 32) * PER_STOP;
+        float at = (log2f(fmaxf(luminance_of(linear->data + 3 * i), 1e-9f)) + 32) * PER_STOP;
         bins[at < 0 ? 0 : at > BINS - 1 ? BINS - 1 : (int)at]++;
     }
     int b = 0;
@@ -146,7 +145,7 @@ static enum status census_image_make(struct census_image *l, const struct image 
         return err_nomem(err, "a picture to match", n * 16);
     }
     for (size_t i = 0; i < n; i++) {
-        grey[i] = grey_of(im->data + 3 * i);
+        grey[i] = luminance_of(im->data + 3 * i);
         for (size_t c = 0; c < 3; c++)
             l->rgb[4 * i + c] = (uint8_t)lrintf(fminf(fmaxf(255 * im->data[3 * i + c], 0), 255));
     }

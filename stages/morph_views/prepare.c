@@ -13,6 +13,7 @@
 #include "common/capture/camera_path.h"
 #include "common/capture/lens_list.h"
 #include "common/capture/linear_photo.h"
+#include "common/image/luminance.h"
 #include "stages/morph_views/morph.h"
 
 #define DEFAULT_FOCAL  1.2 /* of the longer side, without EXIF */
@@ -174,7 +175,7 @@ static enum status find_features(struct two_view *found, const struct image imag
     for (size_t i = 0; i < 2; i++)
         for (size_t p = 0; p < n; p++) {
             const float *rgb = images[i].data + 3 * p;
-            float v = 255 * (0.2126f * rgb[0] + 0.7152f * rgb[1] + 0.0722f * rgb[2]);
+            float v = 255 * luminance_of(rgb);
             grey[i * n + p] = (unsigned char)lrintf(fminf(fmaxf(v, 0), 255));
         }
     enum status st = two_view_find(found, grey, grey + n, images[0].width, images[0].height, focal, TOLERANCE, err);

@@ -81,7 +81,7 @@ static enum status score_steps(struct move_ends step[STEPS], struct ends_search 
     return st;
 }
 
-static int most_parallax(const struct move_ends step[STEPS])
+static int max_parallax(const struct move_ends step[STEPS])
 {
     int best = 0;
     for (int i = 1; i < STEPS; i++)
@@ -101,7 +101,7 @@ static enum status climb(struct ascent *a, struct ends_search *s, struct err *er
         list_steps(step, s->v, from, length);
         if (score_steps(step, s, from, err)) return err->status;
         for (int n = 0; !moved && n < PATHS_PER_ROUND; n++) {
-            const int best = most_parallax(step);
+            const int best = max_parallax(step);
             if (!(step[best].parallax > from->parallax)) break;
             if (ends_test_path(&moved, s, step[best].at, err)) return err->status;
             if (moved) a->up[++a->height] = step[best];

@@ -48,20 +48,11 @@ struct keyframe_reader {
     double join;      /* duration of that join, s; 0: a cut */
 };
 
-static enum status read_number(struct textfile *t, const char *what, double min, double max, double *value,
-                               struct err *err)
-{
-    char *word;
-    if (textfile_word(t, what, &word, err)) return err->status;
-    if (scan_double(word, value) && *value >= min && *value <= max) return ST_OK;
-    return textfile_error(t, err, word, "%s, a number from %.9g to %.9g", what, min, max);
-}
-
 static enum status read_point(struct textfile *t, const char *const what[3], struct vec3 *p, struct err *err)
 {
-    return read_number(t, what[0], -MAX_COORDINATE, MAX_COORDINATE, &p->x, err) ||
-                   read_number(t, what[1], -MAX_COORDINATE, MAX_COORDINATE, &p->y, err) ||
-                   read_number(t, what[2], -MAX_COORDINATE, MAX_COORDINATE, &p->z, err)
+    return textfile_number(t, what[0], -MAX_COORDINATE, MAX_COORDINATE, &p->x, err) ||
+                   textfile_number(t, what[1], -MAX_COORDINATE, MAX_COORDINATE, &p->y, err) ||
+                   textfile_number(t, what[2], -MAX_COORDINATE, MAX_COORDINATE, &p->z, err)
                ? err->status
                : ST_OK;
 }
@@ -111,7 +102,7 @@ static enum status read_camera_pose(struct keyframe_reader *r, struct film_key *
     static const char *const names[] = {"qw", "qx", "qy", "qz", "tx", "ty", "tz"};
     double n[7];
     for (int i = 0; i < 7; i++)
-        if (read_number(&r->t, names[i], -MAX_COORDINATE, MAX_COORDINATE, &n[i], err)) return err->status;
+        if (textfile_number(&r->t, names[i], -MAX_COORDINATE, MAX_COORDINATE, &n[i], err)) return err->status;
     const double length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2] + n[3] * n[3]);
     if (!(length > 1e-6)) return textfile_error(&r->t, err, "a quaternion of length 0", "one of length 1: qw qx qy qz");
     const struct pose pose = {{n[0] / length, n[1] / length, n[2] / length, n[3] / length},
@@ -216,8 +207,8 @@ static enum status read_options(struct keyframe_reader *r, struct key_line *l, s
         seen[which] = true;
         if ((which == FOCAL && read_focal(r, &l->key, err)) || (which == FOCUS && read_focus(r, l, err)) ||
             (which == UP && read_point(&r->t, up_names, &l->up, err)) ||
-            (which == APERTURE &&
-             read_number(&r->t, "the diameter of the aperture", 0, MAX_COORDINATE, &l->key.lens[LENS_APERTURE], err)))
+            (which == APERTURE && textfile_number(&r->t, "the diameter of the aperture", 0, MAX_COORDINATE,
+                                                  &l->key.lens[LENS_APERTURE], err)))
             return err->status;
     }
     l->has_up = seen[UP];
@@ -269,8 +260,7 @@ static enum status read_time(struct textfile *t, const struct film_shot *shot, d
 {
     char *word;
     if (textfile_word(t, "a time in seconds", &word, err)) return err->status;
-    if (!scan_double(word, time) || !(*time >= 0 && *time <= MAX_SECONDS))
-        return textfile_error(t, err, word, "a time in seconds, from 0 to %.9g", MAX_SECONDS);
+    if (textfile_number_of(t, word, "a time in seconds", 0, MAX_SECONDS, time, err)) return err->status;
     if (!shot && *time != 0) return textfile_error(t, err, word, "0, the time of a shot's first key");
     if (!shot || *time >= shot->keys[shot->key_count - 1].time + MIN_TIME_STEP) return ST_OK;
     return textfile_error(
@@ -323,7 +313,7 @@ static enum status read_planned_move(struct keyframe_reader *r, struct err *err)
             reversed = true;
         else if (strcmp(word, "seconds") || seconds > 0)
             return textfile_error(&r->t, err, word, "reversed or seconds, each once, or the end of the line");
-        else if (read_number(&r->t, "the move's duration in seconds", MIN_TIME_STEP, MAX_SECONDS, &seconds, err))
+        else if (textfile_number(&r->t, "the move's duration in seconds", MIN_TIME_STEP, MAX_SECONDS, &seconds, err))
             return err->status;
     }
     if (add_shot(r, &shot, err)) return err->status;
@@ -339,7 +329,7 @@ static enum status read_break(struct keyframe_reader *r, bool join, struct err *
     if (!r->script->shot_count || r->after_break)
         return textfile_error(&r->t, err, join ? "join" : "cut", "key or move: join and cut go between two shots");
     r->join = 0;
-    if (join && read_number(&r->t, "a transition's duration in seconds", MIN_TIME_STEP, MAX_SECONDS, &r->join, err))
+    if (join && textfile_number(&r->t, "a transition's duration in seconds", MIN_TIME_STEP, MAX_SECONDS, &r->join, err))
         return err->status;
     r->after_break = true;
     return textfile_end(&r->t, err);

@@ -1,8 +1,8 @@
 /* tour_frames.c - the frames of a tour; see tour_frames.h.
  *
- * On a leg from one stop to the next the camera walks from viewpoint to viewpoint at a constant speed. It begins with the
- * axis of the first photo and looks along the way one second later; each inner viewpoint looks towards the next one; half
- * a second before the end it begins to turn to the axis of the last photo. At each stop it rests a moment.
+ * On a leg from one stop to the next the camera walks from viewpoint to viewpoint at a constant speed. It begins with
+ * the axis of the first photo and looks along the way one second later; each inner viewpoint looks towards the next
+ * one; half a second before the end it begins to turn to the axis of the last photo. At each stop it rests a moment.
  *
  * [Colburn 2014, 4.7.1] interpolates axes linearly. Here their azimuth and elevation are, because vectors that point in
  * opposite directions have nothing between them. No turn is faster than `turn`: one second and half a second become
@@ -48,7 +48,8 @@ static enum status add_axis(const struct keys *k, double time, struct vec3 at, s
     return add_key(k, time, at, azimuth_of(axis), elevation_of(axis), node);
 }
 
-/* The axis that a node of a leg has: its photo's at the ends, else towards the next node, or its own if that is here. */
+/* The axis that a node of a leg has: its photo's at the ends, else towards the next node, or its own if that is
+ * here. */
 static struct vec3 node_axis(const struct tour_graph *g, const int *leg, int count, int i)
 {
     if (i == 0 || i == count - 1) return g->nodes[leg[i]].axis;

@@ -19,8 +19,8 @@ enum status tour_keys_make(struct tour_key **keys, int *count, const struct tour
                            const struct tour_stop *stops, int stop_count, const struct tour_params *params,
                            struct err *err);
 
-/* Cameras of the frames, in the frame of O/views, and the viewpoints that each blends. path and pairs are empty on entry;
- * the caller releases both in each case. ST_INTERNAL: a frame is nearer to the model than the clearance. */
+/* Cameras of the frames, in the frame of O/views, and the viewpoints that each blends. path and pairs are empty on
+ * entry; the caller releases both in each case. ST_INTERNAL: a frame is nearer to the model than the clearance. */
 enum status tour_frames_make(struct camera_path *path, struct viewpoint_pairs *pairs, const struct tour_key *keys,
                              int key_count, const struct tour_graph *g, const struct model_axes *axes,
                              const struct model_rays *model, const struct tour_params *params, struct err *err);

@@ -107,8 +107,7 @@ static enum status check_way(const struct textfile *t, const struct tour_graph *
 
 static enum status read_speed(double *speed, struct textfile *t, struct err *err)
 {
-    if (textfile_double(t, "a speed", speed, err) || textfile_end(t, err)) return err->status;
-    return *speed >= 0.01 && *speed <= 100 ? ST_OK : textfile_wrong_number(t, *speed, "a speed from 0.01 to 100", err);
+    return textfile_number(t, "a speed", 0.01, 100, speed, err) ? err->status : textfile_end(t, err);
 }
 
 static enum status read_statement(struct tour_stop **stops, int *count, double *speed, struct textfile *t,

@@ -2,8 +2,8 @@
  *
  * A filtered sample is s = sum_ij w_i w_j v_ij. If the noise of the v_ij is independent, its variance is
  * sum_ij w_i^2 w_j^2 var(v_ij). At the border a sample is repeated: then its weights are added before they are squared.
- * Noise that neighbouring pixels share, from demosaicing or JPEG, is not independent; a reduction then removes less of it
- * than stated. The filter's limit to the range of the nearest samples is not considered; it makes noise smaller.
+ * Noise that neighbouring pixels share, from demosaicing or JPEG, is not independent; a reduction then removes less of
+ * it than stated. The filter's limit to the range of the nearest samples is not considered; it makes noise smaller.
  *
  * Few pixels are marked. The union of the marks in each tile of 8 x 8 pixels tells in at most four reads (without
  * reduction) that a window has none. */

@@ -9,8 +9,8 @@
  * come from a table; photo_map.c finds the positions.
  *
  * Noise: the variance of a sum of independent samples is the sum of their variances by the squared weights
- * (pixel_quality.c). Marks of all samples under the kernel are united: the nearest ones alone would not do, since beside
- * a bright window the outer lobes carry its light, too. */
+ * (pixel_quality.c). Marks of all samples under the kernel are united: the nearest ones alone would not do, since
+ * beside a bright window the outer lobes carry its light, too. */
 #include "stages/rectify/resample.h"
 
 #include <immintrin.h>

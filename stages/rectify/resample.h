@@ -17,8 +17,8 @@ struct resample_source {
 
 /* out gets R G B A of the view's size; A is 1 inside the photo, and A and colour are 0 outside. It is empty on entry,
  * and the caller releases it. A pixel of the view is also outside if a masked photo pixel is among the nearest samples.
- * out_quality: noise and marks of the view's pixels, empty on entry; it stays so if it is unknown of the photo. NULL: not
- * wanted. A pixel has the marks of all samples under its kernel.
+ * out_quality: noise and marks of the view's pixels, empty on entry; it stays so if it is unknown of the photo. NULL:
+ * not wanted. A pixel has the marks of all samples under its kernel.
  *
  * A view with the photo's own pinhole camera gets its pixels unchanged. Other views are filtered by Lanczos-3, widened
  * where the view is smaller than the photo. Results are clamped to the range of the nearest samples: no halos, no

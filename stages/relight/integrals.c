@@ -1,10 +1,10 @@
 /* integrals.c - see integrals.h.
  *
- * A pixel's radiance is L = a E / pi + k_s I_s, with the albedo a that picture and light imply. E, I_s and the direct light
- * E_l of each lamp are kept. With factors s_l of the lamps' radiance, and new reflectances,
+ * A pixel's radiance is L = a E / pi + k_s I_s, with the albedo a that picture and light imply. E, I_s and the direct
+ * light E_l of each lamp are kept. With factors s_l of the lamps' radiance, and new reflectances,
  *   L' = a' (E + sum_l (s_l - 1) E_l) / pi + k_s' I_s,
- * which needs no ray. What the changed light does after it was reflected once, and lamps in reflections, is left out; n and
- * alpha are inside the integral I_s, beta inside E_l. */
+ * which needs no ray. What the changed light does after it was reflected once, and lamps in reflections, is left out; n
+ * and alpha are inside the integral I_s, beta inside E_l. */
 #include "stages/relight/integrals.h"
 
 #include <math.h>
@@ -16,11 +16,11 @@
 #include "common/capture/view_image.h"
 #include "common/math/numbers.h"
 
-enum { NAME_SIZE = 128, MOST = 1000 };
-#define MOST_FACTOR 1e6
+enum { NAME_SIZE = 128, MAX_LAMPS = 1000 };
+#define MAX_FACTOR 1e6
 static const char channels[3] = {'R', 'G', 'B'};
 
-/* ------------------------------------------------------------------------------------------------------------ surfaces */
+/* --------------------------------------------------------------------------------------------------------- surfaces */
 
 struct surface {
     enum surface_kind kind;
@@ -57,8 +57,8 @@ static const struct texture_face *listed_face(const struct light_change *c, int 
     return texture_map_find(&c->map, solid_face_id(&c->after.model.mesh, face), vec3_scale(f->normal, f->offset));
 }
 
-/* Objects, then materials, then faces to which the edit gives a gloss or a colour; surface_of_face[f] is the surface of face
- * f, or -1. */
+/* Objects, then materials, then faces to which the edit gives a gloss or a colour; surface_of_face[f] is the surface of
+ * face f, or -1. */
 static enum status list_surfaces(struct surfaces *s, int *surface_of_face, const struct light_change *c,
                                  struct err *err)
 {
@@ -100,7 +100,7 @@ static void number_pixels(uint32_t *numbers, const struct pixels *p, const struc
         if (p->objects[k].cover >= 0.5f) numbers[p->objects[k].pixel] = (uint32_t)(1 + p->objects[k].object);
 }
 
-/* ------------------------------------------------------------------------------------------------------------- writing */
+/* ---------------------------------------------------------------------------------------------------------- writing */
 
 static enum status add_rgb(struct exr_image *im, const char *name, int *first, struct err *err)
 {
@@ -189,7 +189,7 @@ enum status integrals_write(const struct relit *r, const struct pixels *p, const
     return st;
 }
 
-/* ------------------------------------------------------------------------------------------------------------- changes */
+/* ---------------------------------------------------------------------------------------------------------- changes */
 
 struct changes {
     struct surfaces surfaces;
@@ -233,7 +233,7 @@ static enum status read_names(struct changes *c, const struct exr_image *im, str
         if (array_append(&c->surfaces.list, (size_t)c->surfaces.count, sizeof s, "surfaces", err)) return err->status;
         c->surfaces.list[c->surfaces.count++] = s;
     }
-    while (c->lamp_count < MOST && numbered(im, "lamp", c->lamp_count)) c->lamp_count++;
+    while (c->lamp_count < MAX_LAMPS && numbered(im, "lamp", c->lamp_count)) c->lamp_count++;
     const size_t n = (size_t)c->surfaces.count + 1;
     c->has_k_d = calloc(n, sizeof *c->has_k_d);
     c->has_ks = calloc(n, sizeof *c->has_ks);
@@ -245,12 +245,10 @@ static enum status read_names(struct changes *c, const struct exr_image *im, str
     return ST_OK;
 }
 
-static enum status read_rgb(double rgb[3], struct textfile *t, const char *what, struct err *err)
+static enum status read_rgb(double rgb[3], struct textfile *t, const char *what, double max, struct err *err)
 {
-    for (int k = 0; k < 3; k++) {
-        if (textfile_double(t, what, &rgb[k], err)) return err->status;
-        if (rgb[k] < 0 || rgb[k] > MOST_FACTOR) return textfile_wrong_number(t, rgb[k], "a number from 0 to 1e6", err);
-    }
+    for (int k = 0; k < 3; k++)
+        if (textfile_number(t, what, 0, max, &rgb[k], err)) return err->status;
     return ST_OK;
 }
 
@@ -276,7 +274,7 @@ static enum status read_lamp(struct changes *c, const struct exr_image *im, stru
                               "scale R G B; a lamp's cone (beta, exponent) needs a new gather: change "
                               "lights.txt and relight the picture again");
     c->any_lamp = true;
-    return read_rgb(c->lamps + 3 * i, t, "a factor", err);
+    return read_rgb(c->lamps + 3 * i, t, "a factor", MAX_FACTOR, err);
 }
 
 static enum status read_surface(struct changes *c, struct textfile *t, struct err *err)
@@ -291,11 +289,9 @@ static enum status read_surface(struct changes *c, struct textfile *t, struct er
         return textfile_error(t, err, word,
                               "k_d R G B or k_s KS; n and alpha are inside the integrals and need a new "
                               "gather: change the material and relight the picture again");
-    if (is_diffuse ? read_rgb(k_d, t, "a reflectance", err) : textfile_double(t, "a strength", &ks, err))
+    if (is_diffuse ? read_rgb(k_d, t, "a reflectance of at most 1 / pi", 1 / PI, err)
+                   : textfile_number(t, "a strength", 0, 1, &ks, err))
         return err->status;
-    if (ks < 0 || ks > 1) return textfile_wrong_number(t, ks, "a strength from 0 to 1", err);
-    for (int k = 0; k < 3; k++)
-        if (k_d[k] > 1 / PI) return textfile_wrong_number(t, k_d[k], "a reflectance up to 1 / pi = 0.3183", err);
     for (int i = 0; i < c->surfaces.count; i++) {
         const struct surface *s = &c->surfaces.list[i];
         const size_t used = strlen(known);
@@ -368,7 +364,7 @@ static enum status apply(struct model_picture *picture, const struct exr_image *
                          struct err *err)
 {
     const size_t n = (size_t)picture->width * (size_t)picture->height;
-    const float *after[3], *specular[3], *lamp[MOST][3];
+    const float *after[3], *specular[3], *lamp[MAX_LAMPS][3];
     const struct exr_plane *surface = exr_find(im, "surface");
     if (!surface || !surface->u || im->width != picture->width || im->height != picture->height)
         return err_set(err, ST_DATA, "the integrals are not those of the picture; relight it again.");

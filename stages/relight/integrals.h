@@ -7,7 +7,8 @@
 #include "stages/relight/lamp_light.h"
 #include "stages/relight/relit.h"
 
-/* A surface whose reflectance may be changed: a synthetic object, a fitted material, a face with a gloss or a colour. */
+/* A surface whose reflectance may be changed: a synthetic object, a fitted material, a face with a gloss or a
+ * colour. */
 enum surface_kind { SURFACE_OBJECT, SURFACE_MATERIAL, SURFACE_FACE };
 
 /* Writes the file. camera: scene frame, for its attributes. */
@@ -17,12 +18,12 @@ enum status integrals_write(const struct relit *r, const struct pixels *p, const
 
 /* Changes a relit picture by a file of changes:
  *   lamp NAME scale R G B            the lamp's radiance, as the picture has it, is multiplied; direct light only
- *   material NAME k_d R G B          the diffuse reflectance (albedo / pi) of an object, a material or a face: absolute of
- *                                    objects and colours; of a material with texture its mean becomes that
+ *   material NAME k_d R G B          the diffuse reflectance (albedo / pi) of an object, a material or a face: absolute
+ *                                    of objects and colours; of a material with texture its mean becomes that
  *   material NAME k_s KS             the strength of its gloss
- * integrals: read from the file that integrals_write() wrote; picture: the relit one, which is changed. ST_DATA with file and
- * line: names that the picture does not have (the message lists those), n, alpha, beta and other words, which need a new
- * gather. */
+ * integrals: read from the file that integrals_write() wrote; picture: the relit one, which is changed. ST_DATA with
+ * file and line: names that the picture does not have (the message lists those), n, alpha, beta and other words, which
+ * need a new gather. */
 enum status integrals_change(struct model_picture *picture, const struct exr_image *integrals, const char *path,
                              struct err *err);
 

@@ -1,9 +1,9 @@
 /* pixels.c - see pixels.h.
  *
- * A pixel's ray is traced into the edited model. Synthetic objects on its way are noted with the part of the pixel that they
- * cover, by SUB x SUB rays; what lies behind them is relit as if they were not seen through, since it shows at their edges.
- * Where an original view's depth says that furniture stands before the model, the light is that at the furniture, whose
- * normal is that of its segment's plane. */
+ * A pixel's ray is traced into the edited model. Synthetic objects on its way are noted with the part of the pixel that
+ * they cover, by SUB x SUB rays; what lies behind them is relit as if they were not seen through, since it shows at
+ * their edges. Where an original view's depth says that furniture stands before the model, the light is that at the
+ * furniture, whose normal is that of its segment's plane. */
 #include "stages/relight/pixels.h"
 
 #include <math.h>
@@ -61,7 +61,7 @@ void pixels_release(struct pixels *p)
     *p = (struct pixels){0};
 }
 
-/* ---------------------------------------------------------------------------------------------------------------- rays */
+/* ------------------------------------------------------------------------------------------------------------- rays */
 
 /* What a ray meets: the first object and the first face behind it. */
 struct met {
@@ -99,7 +99,7 @@ static bool pixel_ray(const struct find_job *j, double x, double y, struct vec3 
     return true;
 }
 
-/* ------------------------------------------------------------------------------------------------------------- surfaces */
+/* --------------------------------------------------------------------------------------------------------- surfaces */
 
 static void set_texture(struct find_job *j, size_t i, const struct light_place *place, struct gather_point after)
 {
@@ -149,7 +149,7 @@ static void set_lamp(struct find_job *j, size_t i, const struct lamp *lamp, stru
     model_field_lift(&j->c->after, &j->p->after[i], 2 * j->c->before.reach);
 }
 
-/* ------------------------------------------------------------------------------------------------------------ furniture */
+/* -------------------------------------------------------------------------------------------------------- furniture */
 
 /* The normal of a segment's plane: 1 / z = a u + b v + c is n . X = 1 in the camera's frame. */
 static struct vec3 segment_normal(const struct find_job *j, const struct depth_segment *s)
@@ -179,7 +179,7 @@ static bool set_clutter(struct find_job *j, size_t i, int x, int y, bool through
     return true;
 }
 
-/* -------------------------------------------------------------------------------------------------------------- objects */
+/* ---------------------------------------------------------------------------------------------------------- objects */
 
 /* z: of furniture before the object; INFINITY: none. The first of the pixel's rays that meets an object says which. */
 static void set_object(struct find_job *j, size_t i, int x, int y, double nearest)
@@ -205,7 +205,7 @@ static void set_object(struct find_job *j, size_t i, int x, int y, double neares
     o->cover = (float)count / (SUB * SUB);
 }
 
-/* ------------------------------------------------------------------------------------------------------------- pictures */
+/* --------------------------------------------------------------------------------------------------------- pictures */
 
 static void find_row(struct find_job *j, int y)
 {

@@ -114,7 +114,7 @@ static enum status relight_one(struct session *s, const char *name, struct err *
     return st;
 }
 
-/* ------------------------------------------------------------------------------------------------------------- changes */
+/* ---------------------------------------------------------------------------------------------------------- changes */
 
 /* A picture with changed materials and lamps, from its integrals. */
 static enum status change_one(struct relight_job *j, const char *name, struct err *err)

@@ -1,20 +1,20 @@
 /* relit.c - see relit.h.
  *
- * Overview. Irradiance at all pixels before and after the edit comes from one cache of irradiance with the same rays in both
- * fields (irradiance_cache.c), or from rays at each pixel if there are more emitters than a cache can tell apart. A
- * texture's radiance is multiplied by the quotient (light_quotient.c); a colour of the edit gets albedo / pi times the
- * irradiance after it; a synthetic object is shaded with irradiance of its own.
+ * Overview. Irradiance at all pixels before and after the edit comes from one cache of irradiance with the same rays in
+ * both fields (irradiance_cache.c), or from rays at each pixel if there are more emitters than a cache can tell apart.
+ * A texture's radiance is multiplied by the quotient (light_quotient.c); a colour of the edit gets albedo / pi times
+ * the irradiance after it; a synthetic object is shaded with irradiance of its own.
  *
  * Gloss. A glossy surface of albedo a sends out L = a E / pi + k_s I_s. Its texture is what remains of the photograph
- * without k_s I_s, in the light before, towards the place that the texel was photographed from; the gloss after the edit is
- * that towards the picture's camera:
+ * without k_s I_s, in the light before, towards the place that the texel was photographed from; the gloss after the
+ * edit is that towards the picture's camera:
  *   L' = (L - k_s I_s) q + k_s I_s'.
  * Where neither the light nor the gloss has changed, L' is L bit for bit. The light itself is gathered in fields whose
- * texels look as they were photographed: the edited model's atlas has no marks of materials, and a difference between the
- * fields would be taken for the edit's.
+ * texels look as they were photographed: the edited model's atlas has no marks of materials, and a difference between
+ * the fields would be taken for the edit's.
  *
- * The light of the atlas. For films the quotient is that of the texels of both atlases (update_vita): no ray is traced, and
- * a place looks alike in all frames.
+ * The light of the atlas. For films the quotient is that of the texels of both atlases (update_vita): no ray is traced,
+ * and a place looks alike in all frames.
  *
  * Furniture that no depth tells (free cameras) gets the quotient of the shell behind it. */
 #include "stages/relight/relit.h"
@@ -70,7 +70,7 @@ static enum status init(struct relit *r, const struct pixels *p, struct err *err
     return err_nomem(err, "light of the pixels", 2 * n * sizeof *r->before);
 }
 
-/* --------------------------------------------------------------------------------------------------------------- gather */
+/* ----------------------------------------------------------------------------------------------------------- gather */
 
 static void cache_done(void *ctx, size_t points) { progress_add(ctx, (int64_t)points); }
 
@@ -124,7 +124,7 @@ static enum status gather(struct relit *r, const struct pixels *p, const struct 
     return st;
 }
 
-/* ---------------------------------------------------------------------------------------------------------------- gloss */
+/* ------------------------------------------------------------------------------------------------------------ gloss */
 
 /* The reflectance of a pixel's gloss; false: it is matt. *viewpoint: from where its texel was photographed. */
 static bool gloss_of(struct brdf *after, struct brdf *before, struct vec3 *viewpoint, const struct apply_job *j,
@@ -154,7 +154,7 @@ static struct rgb reflected(const struct light_field *f, struct gather_point p, 
     return e.value;
 }
 
-/* ---------------------------------------------------------------------------------------------------------------- apply */
+/* ------------------------------------------------------------------------------------------------------------ apply */
 
 static struct rgb get(const float *rgb) { return rgb_make((double)rgb[0], (double)rgb[1], (double)rgb[2]); }
 static void set(float *to, struct rgb rgb) { to[0] = (float)rgb.r, to[1] = (float)rgb.g, to[2] = (float)rgb.b; }
@@ -175,8 +175,8 @@ static struct rgb relit_texture(struct apply_job *j, size_t i, struct rgb radian
     const struct rgb q = light_quotient(r->before[i].value, r->after[i].value, base, &is_bounded);
     const struct rgb albedo = light_albedo(r->before[i].value, base);
     set_quotient(r, i, q, is_bounded ? RELIT_BOUNDED : RELIT_SURE);
-    set(r->albedo[i], rgb_make(fmin(albedo.r, LIGHT_ALBEDO_MOST), fmin(albedo.g, LIGHT_ALBEDO_MOST),
-                               fmin(albedo.b, LIGHT_ALBEDO_MOST)));
+    set(r->albedo[i],
+        rgb_make(fmin(albedo.r, LIGHT_ALBEDO_MAX), fmin(albedo.g, LIGHT_ALBEDO_MAX), fmin(albedo.b, LIGHT_ALBEDO_MAX)));
     return rgb_multiply(base, q);
 }
 
@@ -231,7 +231,7 @@ static void apply_some(void *ctx, size_t begin, size_t end, int thread)
     }
 }
 
-/* ------------------------------------------------------------------------------------------------------------ the atlas */
+/* -------------------------------------------------------------------------------------------------------- the atlas */
 
 static double texel_quotient(double before, double after) { return before > 0 ? after / before : 1; }
 
@@ -272,7 +272,7 @@ static void apply_atlas(void *ctx, size_t begin, size_t end, int thread)
     }
 }
 
-/* -------------------------------------------------------------------------------------------------------------- objects */
+/* ---------------------------------------------------------------------------------------------------------- objects */
 
 static void shade_some(void *ctx, size_t begin, size_t end, int thread)
 {

@@ -1,7 +1,7 @@
 /* relit_files.c - see relit_files.h.
  *
- * In the picture of quotients for people, grey means no change, brighter more light, and darker less; a quarter of the scale
- * is a factor of two. White stripes mark pixels whose quotient was bounded. */
+ * In the picture of quotients for people, grey means no change, brighter more light, and darker less; a quarter of the
+ * scale is a factor of two. White stripes mark pixels whose quotient was bounded. */
 #include "stages/relight/relit_files.h"
 
 #include <math.h>

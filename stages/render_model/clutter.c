@@ -185,7 +185,7 @@ static int find_own(const struct clutter_scene *s, const struct view *camera, co
 }
 
 /* As many views as fit into memory. */
-static int most_views(const struct clutter_scene *s)
+static int max_views(const struct clutter_scene *s)
 {
     size_t largest = 1;
     for (int i = 0; i < s->set->view_count; i++) {
@@ -245,7 +245,7 @@ enum status clutter_draw(struct model_picture *p, struct clutter_scene *s, const
     if (views)
         take_given(&choice, views, count);
     else
-        st = clutter_choose(&choice, s->set, &scene_camera, p->z, 1 / s->axes.scale, most_views(s), err);
+        st = clutter_choose(&choice, s->set, &scene_camera, p->z, 1 / s->axes.scale, max_views(s), err);
     if (!st) st = clutter_load(s, &choice, prov, err);
     return st ? st : clutter_blend(p, NULL, s, &choice, &scene_camera, map, err);
 }

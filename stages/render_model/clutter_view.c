@@ -24,14 +24,14 @@
 
 #include "common/layers/depth_sigma.h"
 
-#define TOLERANCE 0.02f /* of the depth: errors of the model and the cameras */
-#define SIGMAS    1.5f
-#define CONTACT   0.006f /* the same, in segments that are clutter */
-#define GRADE     0.6f   /* of a pixel of clutter, from trace_ids */
-#define DOUBT     0.4f   /* confidence in segments whose depth is inherited */
-#define MAX_SIGMA 0.04   /* relative uncertainty of a depth that deserves its full confidence */
-#define LEAST     0.02f  /* weights below are 0 */
-#define JUMP      0.03f  /* of inverse depth: where a part of the model ends before another */
+#define TOLERANCE  0.02f /* of the depth: errors of the model and the cameras */
+#define SIGMAS     1.5f
+#define CONTACT    0.006f /* the same, in segments that are clutter */
+#define GRADE      0.6f   /* of a pixel of clutter, from trace_ids */
+#define DOUBT      0.4f   /* confidence in segments whose depth is inherited */
+#define MAX_SIGMA  0.04   /* relative uncertainty of a depth that deserves its full confidence */
+#define MIN_WEIGHT 0.02f  /* weights below are 0 */
+#define JUMP       0.03f  /* of inverse depth: where a part of the model ends before another */
 
 enum { REACH = 32 }; /* px: that depth bleeds over a jump of the model */
 
@@ -161,8 +161,8 @@ static void keep_clutter(struct layer *l, const uint8_t *rim, uint8_t bit, const
         if (!l->id[p]) continue;
         const struct judged_segment *s = &list[l->id[p] - 1];
         const float w = rim[p] & bit ? 0 : texel_weight(s, l->z[p], ids->z[p], ids->clutter[p]);
-        for (size_t c = 0; c < 4; c++) l->rgba[4 * p + c] *= w < LEAST ? 0 : w;
-        if (w < LEAST) l->id[p] = 0;
+        for (size_t c = 0; c < 4; c++) l->rgba[4 * p + c] *= w < MIN_WEIGHT ? 0 : w;
+        if (w < MIN_WEIGHT) l->id[p] = 0;
     }
 }
 

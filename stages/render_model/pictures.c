@@ -59,7 +59,7 @@ static enum status write_picture(const struct model_picture *p, const struct roo
     return st ? st : picture_record_write(&record, path, prov, err);
 }
 
-/* ----------------------------------------------------------------------------------------------------- original views */
+/* --------------------------------------------------------------------------------------------------- original views */
 
 static enum status draw_view(struct model_picture *picture, double *changed, struct room *room, int view,
                              struct provenance *prov, struct err *err)
@@ -132,7 +132,7 @@ enum status pictures_of_views(struct room *room, const struct cli_list *views, c
     return st;
 }
 
-/* ------------------------------------------------------------------------------------------------------ given cameras */
+/* ---------------------------------------------------------------------------------------------------- given cameras */
 
 static const struct room_camera *find_camera(const struct room_cameras *cameras, const char *name)
 {
@@ -199,7 +199,7 @@ enum status pictures_of_cameras(struct room *room, const struct camera_source *s
     return st;
 }
 
-/* --------------------------------------------------------------------------------------------------- frames of a film */
+/* ------------------------------------------------------------------------------------------------- frames of a film */
 
 static enum status frame_pair(struct texture_pair *pair, const struct room *room, const struct view *camera,
                               const struct viewpoint_pairs *pairs, struct err *err)

@@ -58,8 +58,8 @@ int room_viewpoint_of(const struct room *room, int view); /* the viewpoint that 
 /* The viewpoint of a photo's id; -1: there is none. */
 int room_find_viewpoint(const struct room *room, const char *photo);
 
-/* The exposure that the camera of a viewpoint would have chosen: the geometric mean of those of its views' shells, which
- * are drawn small. */
+/* The exposure that the camera of a viewpoint would have chosen: the geometric mean of those of its views' shells,
+ * which are drawn small. */
 enum status room_exposure(double *exposure, struct room *room, int viewpoint, struct err *err);
 
 #endif

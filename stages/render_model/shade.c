@@ -1,13 +1,13 @@
 /* shade.c - see shade.h: projective look-ups of texels [Colburn 2014, 4.6].
  *
- * A pixel (u, v) of a camera at c shows the point p = c + z d of a face, d = R^T ((u - cx) / fx, (v - cy) / fy, 1). A tile
- * of an atlas, with the 3 x 4 matrix T, shows it at (X / W, Y / W), (X, Y, W) = T (M (p, 1)); M is the identity, or takes
- * the point to where the unedited model has it. The face's plane gives 1 / z as a linear function of the pixel
+ * A pixel (u, v) of a camera at c shows the point p = c + z d of a face, d = R^T ((u - cx) / fx, (v - cy) / fy, 1). A
+ * tile of an atlas, with the 3 x 4 matrix T, shows it at (X / W, Y / W), (X, Y, W) = T (M (p, 1)); M is the identity,
+ * or takes the point to where the unedited model has it. The face's plane gives 1 / z as a linear function of the pixel
  * (visible.c). So
  *   (X, Y, W) / z = A d + (A c + b) (1 / z),   T M = (A | b),
- * is linear in the pixel too: three linear functions are found per face and tile of an atlas, moved to the first pixel of
- * a tile of the picture in double precision, and evaluated in single precision for eight pixels at a time. That leaves
- * one division for each coordinate.
+ * is linear in the pixel too: three linear functions are found per face and tile of an atlas, moved to the first pixel
+ * of a tile of the picture in double precision, and evaluated in single precision for eight pixels at a time. That
+ * leaves one division for each coordinate.
  *
  * The thesis draws the scene three times, with the atlases of the source, the destination and the VITA, and blends the
  * pictures. Here a visible pixel is shaded once: pixels that both viewpoints show are blended, and the VITA is read for
@@ -112,7 +112,7 @@ static const struct ready *make_ready(struct worker *w, const struct shade_pass 
     if (w->count < SLOTS) w->count++;
     struct ready *r = &w->slots[at];
     const struct shade_step *step = &pass->steps[face];
-    struct tile_lanes *room = w->tiles + (size_t)at * (size_t)pass->most_tiles;
+    struct tile_lanes *room = w->tiles + (size_t)at * (size_t)pass->max_tiles;
     r->face = face;
     r->step = step;
     r->a = room;
@@ -322,7 +322,7 @@ static size_t tile_count(const struct visible *v) { return (size_t)v->columns * 
 enum status shade_pixels(const struct shade_pass *pass, struct err *err)
 {
     const int threads = parallel_threads();
-    const size_t room = (size_t)SLOTS * (size_t)pass->most_tiles;
+    const size_t room = (size_t)SLOTS * (size_t)pass->max_tiles;
     struct worker *workers = aligned_alloc(_Alignof(struct worker), (size_t)threads * sizeof *workers);
     enum status st = workers ? ST_OK : err_nomem(err, "threads", (size_t)threads * sizeof *workers);
     for (int i = 0; workers && i < threads; i++) workers[i].tiles = NULL;

@@ -25,8 +25,8 @@ struct shade_tile {
 
 /* (A d + (A c + b) / z) of a row (A | b), as a function of the pixel: row (p, 1) / z of the point p that it shows. */
 struct linear shade_linear(const double row[4], const struct linear *inverse_z, const struct view *camera);
-/* The place of a tile in a picture. place: takes a point of the picture's frame to the frame of the atlas (3 x 4), NULL:
- * they are one. inverse_z: of the face in the picture. The texels are not set. */
+/* The place of a tile in a picture. place: takes a point of the picture's frame to the frame of the atlas (3 x 4),
+ * NULL: they are one. inverse_z: of the face in the picture. The texels are not set. */
 void shade_tile_place(struct shade_tile *s, const struct atlas_tile *t, const double place[3][4],
                       const struct linear *inverse_z, const struct view *camera);
 /* Whether no pixel with x0 <= x <= x1 and y0 <= y <= y1 looks into the tile. */
@@ -57,7 +57,7 @@ struct shade_pass {
     bool first;                  /* sets z and id of all pixels, and MADE_NOTHING, before */
     const uint32_t *ids;         /* of faces: [1 + faces], [0] is 0 */
     float t;                     /* share of b where both a and b have a texel */
-    int most_tiles;              /* of a step */
+    int max_tiles;               /* of a step */
     _Atomic unsigned char *open; /* [1 + faces]: set to 1 for those with pixels that have no colour yet */
     unsigned char *done;         /* of each tile of `seen`: no pixel of it is left to be shaded */
     struct model_picture *out;

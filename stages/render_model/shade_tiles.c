@@ -5,8 +5,8 @@
  * The weights are multiples of 1/256. So a pixel that looks at a texel's centre gets that texel bit for bit, although
  * its place is known to about 1e-4 texels only; other places are moved by at most 1/512 texel.
  *
- * Of several tiles that a pixel looks into, it takes one whose texels are the picture's own pixels; else the one in which
- * it lies farthest from the tile's edges, as in atlas_find(). Where that has no texel it takes the next one. */
+ * Of several tiles that a pixel looks into, it takes one whose texels are the picture's own pixels; else the one in
+ * which it lies farthest from the tile's edges, as in atlas_find(). Where that has no texel it takes the next one. */
 #include "stages/render_model/shade_tiles.h"
 
 #include <limits.h>

@@ -21,8 +21,8 @@ struct texels {
     int x[LANES], y[LANES], tile[LANES]; /* places, from the frame's upper left texel; in which tile of the list */
 };
 
-/* The texels of the pixels whose bits are set in `lanes`; the first of the eight is `down` rows and `right` columns from
- * the pixel that the lists were made for. Returns those that have one. */
+/* The texels of the pixels whose bits are set in `lanes`; the first of the eight is `down` rows and `right` columns
+ * from the pixel that the lists were made for. Returns those that have one. */
 unsigned texels_find(struct texels *t, const struct tile_lanes *list, int count, unsigned lanes, float down,
                      float right);
 /* What the nearest of the four texels that exist comes from: its neighbours in the row and the column, then the one

@@ -1,8 +1,8 @@
 /* shell.c - see shell.h: scenes, and pictures of them.
  *
- * A picture is drawn in two parts: which face each pixel shows (visible.c), then the faces' colours in passes (shade.c).
- * The first pass looks into the atlases of the two viewpoints; pixels that these do not show wait for the next one, and
- * only the pages that the remaining faces need are read for it. */
+ * A picture is drawn in two parts: which face each pixel shows (visible.c), then the faces' colours in passes
+ * (shade.c). The first pass looks into the atlases of the two viewpoints; pixels that these do not show wait for the
+ * next one, and only the pages that the remaining faces need are read for it. */
 #include "stages/render_model/shell.h"
 
 #include <math.h>
@@ -13,7 +13,7 @@
 #include "stages/render_model/shell_scene.h"
 
 static const double PLANE = 1e-4; /* of the model's size, and of a normal: planes of the map and the model are equal */
-enum { MOST_SAMPLES = 16 };
+enum { MAX_SAMPLES = 16 };
 
 /* ---------------------------------------------------------------------------------------------------------- scenes */
 
@@ -153,7 +153,7 @@ void shell_set_provenance(struct shell_scene *scene, struct provenance *prov) { 
 
 void shell_set_samples(struct shell_scene *scene, int samples)
 {
-    scene->samples = samples < 1 ? 1 : samples > MOST_SAMPLES ? MOST_SAMPLES : samples;
+    scene->samples = samples < 1 ? 1 : samples > MAX_SAMPLES ? MAX_SAMPLES : samples;
 }
 
 /* -------------------------------------------------------------------------------------------------------- a picture */
@@ -191,7 +191,7 @@ static enum status check(const struct view *camera, double t, struct err *err)
     return ST_OK;
 }
 
-static int most_tiles(const struct shell_scene *s)
+static int max_tiles(const struct shell_scene *s)
 {
     int most = 1;
     for (int i = 0; i <= s->mesh.face_count; i++) {
@@ -226,7 +226,7 @@ static enum status draw_once(struct model_picture *out, struct shell_scene *s, c
         if (!any && i) return ST_OK;
         pass.first = !i;
         pass.tiles = s->tiles;
-        pass.most_tiles = most_tiles(s);
+        pass.max_tiles = max_tiles(s);
         memset((void *)s->open, 0, faces + 1);
         if (shade_pixels(&pass, err)) return err->status;
     }

@@ -1,12 +1,12 @@
 /* shell.h - draws the model under its texture atlases, without clutter [Colburn 2014, 4.6].
  *
- * A pixel's texture is that of the two viewpoints' atlases (VDTA), blended by t where both have a texel, else of the one
- * that has; the view-independent atlas (VITA) fills what remains. Which place of the unedited model an edited face shows
- * says the texture map; faces that it does not list, and all without one, show themselves. Panes of glass are looked
- * through, unless the map gives them a texture.
+ * A pixel's texture is that of the two viewpoints' atlases (VDTA), blended by t where both have a texel, else of the
+ * one that has; the view-independent atlas (VITA) fills what remains. Which place of the unedited model an edited face
+ * shows says the texture map; faces that it does not list, and all without one, show themselves. Panes of glass are
+ * looked through, unless the map gives them a texture.
  *
- * A colour of an edit is its albedo under the light that the map names: until irradiance is known, albedo / 0.6 times the
- * median radiance, channel by channel, of the texels of the VITA on those faces that some view shows. */
+ * A colour of an edit is its albedo under the light that the map names: until irradiance is known, albedo / 0.6 times
+ * the median radiance, channel by channel, of the texels of the VITA on those faces that some view shows. */
 #ifndef REMODEL_RENDER_SHELL_H
 #define REMODEL_RENDER_SHELL_H
 
@@ -24,8 +24,8 @@ struct shell_files {
     int memory;        /* MiB of pages that are kept; the ones that were not used longest are dropped first */
 };
 
-/* The files that are used are added to prov (may be NULL), the atlases' when a picture needs them. The caller closes the
- * scene. */
+/* The files that are used are added to prov (may be NULL), the atlases' when a picture needs them. The caller closes
+ * the scene. */
 enum status shell_open(struct shell_scene **scene, const struct shell_files *files, struct provenance *prov,
                        struct err *err);
 void shell_close(struct shell_scene *scene); /* NULL is allowed */

@@ -48,7 +48,8 @@ enum status shell_make(struct shell_scene **scene, struct solid_mesh *mesh, stru
 struct shell_atlases {
     struct texture_set *pair[2], *vita; /* NULL: none */
 };
-/* Sets the steps of all open faces in pass `pass`, from 0, and reads the pages that they need. *any: some face has one. */
+/* Sets the steps of all open faces in pass `pass`, from 0, and reads the pages that they need. *any: some face has
+ * one. */
 enum status shell_steps_make(struct shell_scene *s, int pass, const struct view *camera,
                              const struct shell_atlases *atlases, bool outdoors, bool *any, struct err *err);
 

@@ -4,10 +4,10 @@
  * A face takes its rules in order. A place in the unedited model is looked up in the atlases of the two viewpoints, and
  * in the next pass in the VITA. Only pages of tiles that the picture may show are read.
  *
- * The light on a new surface is not known before irradiance is. Diffuse light of irradiance E makes a surface of albedo a
- * send out a E / pi. The median radiance of the named faces stands for that of a wall of albedo 0.6, a usual paint, and so
- * gives E. The median is taken channel by channel, so that the colour of the light is kept, over texels that some view
- * shows; it is exact, as halves of 0 or more are in order as integers. */
+ * The light on a new surface is not known before irradiance is. Diffuse light of irradiance E makes a surface of albedo
+ * a send out a E / pi. The median radiance of the named faces stands for that of a wall of albedo 0.6, a usual paint,
+ * and so gives E. The median is taken channel by channel, so that the colour of the light is kept, over texels that
+ * some view shows; it is exact, as halves of 0 or more are in order as integers. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -19,7 +19,7 @@ static const double PARALLEL = 0.999; /* cosine between a face's normal and the 
 static const double SLACK = 1e-6;     /* of the model's size: how far beyond its limits a rule counts */
 static const float USUAL_ALBEDO = 0.6f;
 
-/* ------------------------------------------------------------------------------------------------- radiance of faces */
+/* ------------------------------------------------------------------------------------------------ radiance of faces */
 
 enum { HALVES = 0x7c00 }; /* finite ones of 0 or more */
 

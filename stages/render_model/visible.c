@@ -13,9 +13,9 @@
  * 1 / z is linear in the pixel as well. It comes from the plane of the face, not from the corners, so that it does not
  * depend on how the face is cut into triangles. The largest 1 / z wins; of equal ones, the first face in the model.
  *
- * All coefficients are in double precision, moved to the first pixel of a tile, and then rounded to single precision. In
- * a tile that an edge crosses, its values are at most a tile's side times its slope; hence it is off by less than 1e-5
- * px. Eight pixels are tested at a time.
+ * All coefficients are in double precision, moved to the first pixel of a tile, and then rounded to single precision.
+ * In a tile that an edge crosses, its values are at most a tile's side times its slope; hence it is off by less than
+ * 1e-5 px. Eight pixels are tested at a time.
  *
  * Against [Colburn 2014, 4.6], where a graphics card draws the faces of one texture buffer after the other, visibility
  * is found once, and textures are looked up in visible pixels alone. */

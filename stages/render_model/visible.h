@@ -1,7 +1,7 @@
 /* visible.h - which face of a solid model each pixel of a pinhole view shows, and how far away it is.
  *
- * Pixels are stored tile by tile, so that a tile is contiguous. Tiles at the right and the lower border reach beyond the
- * picture. */
+ * Pixels are stored tile by tile, so that a tile is contiguous. Tiles at the right and the lower border reach beyond
+ * the picture. */
 #ifndef REMODEL_RENDER_VISIBLE_H
 #define REMODEL_RENDER_VISIBLE_H
 

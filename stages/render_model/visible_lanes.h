@@ -13,8 +13,8 @@ struct linear {
 
 static inline double linear_at(const struct linear *l, double x, double y) { return l->x * x + l->y * y + l->origin; }
 
-/* The same in single precision, counted from some pixel. Equal functions of opposite signs have equal values of opposite
- * signs. */
+/* The same in single precision, counted from some pixel. Equal functions of opposite signs have equal values of
+ * opposite signs. */
 struct lanes {
     __m256 row; /* at the first eight pixels */
     __m256 down, right;

@@ -9,9 +9,10 @@
 
 #include "common/base/array.h"
 #include "common/base/textfile.h"
+#include "common/image/luminance.h"
 #include "stages/report/contents_parts.h"
 
-enum { LAMP_HEIGHT = 480, VIEW_HEIGHT = 320, HEMICUBE_HEIGHT = 300, GATHERS_MOST = 24 };
+enum { LAMP_HEIGHT = 480, VIEW_HEIGHT = 320, HEMICUBE_HEIGHT = 300, GATHERS_MAX = 24 };
 static const char SUFFIX[] = ".light.txt";
 
 bool light_contents_any(const struct light_contents *l)
@@ -30,7 +31,7 @@ void light_contents_release(struct light_contents *l)
         struct gather_card *g = &l->gathers[i];
         struct picture *all[] = {&g->photo, &g->white, &g->level, &g->unknown};
         for (size_t k = 0; k < sizeof all / sizeof *all; k++) picture_release(all[k]);
-        for (int k = 0; k < LIGHT_EXAMPLES_MOST; k++) picture_release(&g->hemicubes[k]);
+        for (int k = 0; k < LIGHT_EXAMPLES_MAX; k++) picture_release(&g->hemicubes[k]);
     }
     free(l->lamps);
     free(l->material_cards);
@@ -109,8 +110,6 @@ static enum status read_seen(struct light_contents *l, struct textfile *t, struc
     return card->disagrees ? textfile_expect(t, "disagrees", err) : ST_OK;
 }
 
-static double luminance_of(const double v[3]) { return rgb_luminance(rgb_make(v[0], v[1], v[2])); }
-
 static enum status read_point(struct light_contents *l, struct textfile *t, struct err *err)
 {
     struct lamp_card *card;
@@ -127,7 +126,7 @@ static enum status read_point(struct light_contents *l, struct textfile *t, stru
         array_append(&card->points, (size_t)card->point_count, sizeof *card->points, "marked points", err))
         return err->status;
     card->points[card->point_count++] =
-        (struct light_point){!strcmp(lit, "lit"), luminance_of(seen), luminance_of(explained)};
+        (struct light_point){!strcmp(lit, "lit"), luminance_of_doubles(seen), luminance_of_doubles(explained)};
     return ST_OK;
 }
 
@@ -238,7 +237,7 @@ static enum status read_gather(struct contents *c, const char *folder, const cha
     snprintf(path, sizeof path, "%s%s", stem, SUFFIX);
     if (light_record_read(&record, path, &problem))
         return contents_note(c, err, "Irradiance is not shown. %s", problem.text);
-    if (l->gather_count == GATHERS_MOST) return ST_OK;
+    if (l->gather_count == GATHERS_MAX) return ST_OK;
     if (array_append(&l->gathers, (size_t)l->gather_count, sizeof *l->gathers, "irradiance", err)) return err->status;
     struct gather_card *g = &l->gathers[l->gather_count++];
     *g = (struct gather_card){.record = record, .is_view = record.level[1] > 0};

@@ -37,7 +37,7 @@ struct gather_card {
     bool is_view;
     struct light_record record;
     struct picture photo, white, level, unknown; /* of a view; each may be empty */
-    struct picture hemicubes[LIGHT_EXAMPLES_MOST];
+    struct picture hemicubes[LIGHT_EXAMPLES_MAX];
 };
 
 /* {0} is the empty state; everything is owned. */

@@ -77,10 +77,9 @@ enum status sight_read_radiance(struct picture *p, const char *folder, const cha
 
 /* ---------------------------------------------------------------------------------------------------------- records */
 
-static enum status read_number(struct textfile *t, const char *word, double most, double *value, struct err *err)
+static enum status read_number(struct textfile *t, const char *word, double max, double *value, struct err *err)
 {
-    if (textfile_expect_line(t, word, err) || textfile_double(t, word, value, err)) return err->status;
-    if (!(*value >= 0 && *value <= most)) return textfile_wrong_number(t, *value, "a number within its range", err);
+    if (textfile_expect_line(t, word, err) || textfile_number(t, word, 0, max, value, err)) return err->status;
     return textfile_end(t, err);
 }
 

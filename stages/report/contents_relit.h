@@ -32,8 +32,8 @@ struct relit_sources {
     const struct lens_list *lenses;
 };
 
-/* At most `most` views of FOLDER/relight/EDIT. views is 0 if there are none. card is empty on entry; the caller releases it
- * in each case. What cannot be read becomes a note. ST_NOMEM. */
+/* At most `most` views of FOLDER/relight/EDIT. views is 0 if there are none. card is empty on entry; the caller
+ * releases it in each case. What cannot be read becomes a note. ST_NOMEM. */
 enum status relit_card_read(struct relit_card *card, const struct relit_sources *from, const char *edit, int most,
                             struct err *err);
 void relit_card_release(struct relit_card *card);

@@ -1,7 +1,7 @@
 /* page_evaluation.c - the metrics of the scene, and held-out photographs beside what was rendered in their place. */
 #include <string.h>
 
-#include "stages/report/metric_meaning.h"
+#include "common/base/metric_kinds.h"
 #include "stages/report/page_parts.h"
 
 static enum status put_held(FILE *to, const struct contents *c, const struct held_card *card, struct err *err)
@@ -37,13 +37,16 @@ static void put_metrics(FILE *to, const struct metric_rows *r)
           to);
     for (int i = 0; i < r->count; i++) {
         const struct metric_row *m = &r->rows[i];
+        struct metric_kind kind;
         fputs("<tr><th scope=\"row\"><code>", to);
         html_text(to, m->name);
         fprintf(to, "</code></th><td class=\"n\">%.5g</td><td>", m->value);
         html_text(to, strcmp(m->unit, "1") ? m->unit : "");
         fputs("</td><td>", to);
         html_text(to, strcmp(m->direction, "none") ? m->direction : "");
-        fprintf(to, "</td><td class=\"how\">%s</td></tr>\n", metric_meaning(m->name));
+        fputs("</td><td class=\"how\">", to);
+        html_text(to, metric_kind_find(&kind, m->name) ? kind.meaning : "");
+        fputs("</td></tr>\n", to);
     }
     fputs("</tbody>\n</table></div>\n", to);
 }

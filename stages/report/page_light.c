@@ -5,6 +5,7 @@
 
 #include "common/base/sort.h"
 #include "common/image/false_colour.h"
+#include "common/image/luminance.h"
 #include "common/math/numbers.h"
 #include "stages/report/page_parts.h"
 
@@ -67,8 +68,7 @@ static void put_lamp_facts(FILE *to, const struct lamp_card *card)
     if (card->unsaturated || card->saturated) {
         begin_entry(to, "the lamp in the photographs");
         fprintf(to, "%s", card->unsaturated ? "" : "at least ");
-        put_measured(to, rgb_luminance(rgb_make(card->seen[0], card->seen[1], card->seen[2])),
-                     rgb_luminance(rgb_make(card->seen_error[0], card->seen_error[1], card->seen_error[2])));
+        put_measured(to, luminance_of_doubles(card->seen), luminance_of_doubles(card->seen_error));
         fprintf(to, ", in ");
         put_plural(to, card->unsaturated + card->saturated, "view", "views");
         if (card->saturated) fprintf(to, ", %d overexposed", card->saturated);

@@ -47,8 +47,8 @@ void put_ramp(FILE *to, bool rising);
 /* ", VALUE UNIT LABEL" of a view's metric; nothing if it was not measured. */
 void put_view_metric(FILE *to, const struct contents *c, const char *view, const char *metric, const char *label);
 
-/* Closes a <div class="ba"> of pictures over each other: the slider that moves the line between them, and whose photograph
- * they are seen from. */
+/* Closes a <div class="ba"> of pictures over each other: the slider that moves the line between them, and whose
+ * photograph they are seen from. */
 void put_slider(FILE *to, const char *label, const char *photo);
 
 #endif

@@ -1,7 +1,7 @@
 /* page_relit.c - see page_relit.h.
  *
- * A view is one stack of pictures with a line: right of it the relit picture, left of it what the radio buttons before it
- * choose, which style sheets alone show and hide. */
+ * A view is one stack of pictures with a line: right of it the relit picture, left of it what the radio buttons before
+ * it choose, which style sheets alone show and hide. */
 #include "stages/report/page_relit.h"
 
 #include "stages/report/page_parts.h"

@@ -2,7 +2,7 @@
 #include "stages/report/page_parts.h"
 
 enum { QUALITY = 82, SOURCES_LISTED = 8 };
-static const double LEAST_SHARE = 0.005; /* of a source that is listed */
+static const double MIN_SHARE = 0.005; /* of a source that is listed */
 
 /* A relative link to a file below the page's folder. */
 static void put_link(FILE *to, const char *folder, const char *name, const char *file)
@@ -61,7 +61,7 @@ static void put_sources(FILE *to, const struct texture_card *card)
     for (int i = 0; i < card->source_count; i++) {
         const struct texture_source *s = &card->sources[i];
         if (s->original || !s->pixels) continue;
-        if (listed == SOURCES_LISTED || (double)s->pixels < LEAST_SHARE * (double)card->total) {
+        if (listed == SOURCES_LISTED || (double)s->pixels < MIN_SHARE * (double)card->total) {
             others++;
             continue;
         }

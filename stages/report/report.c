@@ -6,7 +6,8 @@
  *         FOLDER/{vdta,vita,ids}         texture atlases, and what the views show of the model
  *         FOLDER/{lights,relight}        lamps, materials, irradiance, with their pictures
  *         FOLDER/relight/E, evaluate/relit/E   edits in the light that they make, and their truth
- *         FOLDER/remodel/E/pictures      with --remodel: pictures of edits, and SCRIPTS/E.txt for what they say of themselves
+ *         FOLDER/remodel/E/pictures      with --remodel: pictures of edits, and SCRIPTS/E.txt for what they say of
+ *                                        themselves
  *         PHOTOS/FILE                    the photographs, for thumbnails
  *         DEFAULTS                       the default parameters; the page marks those that differ
  * writes  OUT                            self-contained HTML; it lists the products that are missing */

@@ -1,5 +1,5 @@
-/* texture_pictures.c - see texture_pictures.h. The view's ids and depths give the face and the point of each sample; the
- * tile that shows this point gives its texel, as a renderer would look it up at the photograph's own place. */
+/* texture_pictures.c - see texture_pictures.h. The view's ids and depths give the face and the point of each sample;
+ * the tile that shows this point gives its texel, as a renderer would look it up at the photograph's own place. */
 #include "stages/report/texture_pictures.h"
 
 #include <math.h>

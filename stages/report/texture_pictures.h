@@ -23,8 +23,8 @@ struct sight {
     struct sight_sample *samples; /* SIGHT_SIDE^2 a pixel; owned */
 };
 
-/* Finds the texels that a view shows. ids: the view's O/ids/VIEW.exr. height: of the upright picture at most, px. ST_IO,
- * ST_DATA: the ids cannot be read, or have another size than the view. */
+/* Finds the texels that a view shows. ids: the view's O/ids/VIEW.exr. height: of the upright picture at most, px.
+ * ST_IO, ST_DATA: the ids cannot be read, or have another size than the view. */
 enum status sight_make(struct sight *s, const struct atlas *a, const struct view *view, const struct model_axes *axes,
                        const char *ids, int orientation, int height, struct err *err);
 void sight_add_page(struct sight *s, const struct atlas *a, const struct atlas_page *page, int number);

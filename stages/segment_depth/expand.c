@@ -36,8 +36,8 @@
 #define MAX_PAIRWISE_SHARE 0.3f /* a data cost may rise by this part of max_pairwise; else the proposal is skipped */
 #define UNITS_PER_ENERGY   1e7  /* energies are rounded to multiples of 1 / UNITS_PER_ENERGY */
 #define SAME_GROUND        0.15 /* of the ground's inverse distance, and radians */
-#define LEAST_SHARE        0.03 /* of all votes: weight of a plane of the scene, in the first round */
-#define LEAST_SHARE_LATER  0.10 /* ... in later ones, where neighbours vote, too */
+#define MIN_SHARE          0.03 /* of all votes: weight of a plane of the scene, in the first round */
+#define MIN_SHARE_LATER    0.10 /* ... in later ones, where neighbours vote, too */
 #define REFITS             2
 #define APART              4 /* distance in cells between those that are moved in parallel */
 
@@ -231,8 +231,8 @@ static enum status find_scene_planes(const struct expander *x, struct err *err)
     }
     double total = 0;
     for (int i = 0; i < count; i++) total += votes[i].weight;
-    const enum status st = scene_planes_find(x->p->scene, votes, count, x->p->step,
-                                             (cross ? LEAST_SHARE_LATER : LEAST_SHARE) * total, err);
+    const enum status st =
+        scene_planes_find(x->p->scene, votes, count, x->p->step, (cross ? MIN_SHARE_LATER : MIN_SHARE) * total, err);
     free(votes);
     return st;
 }
@@ -244,8 +244,8 @@ static void start_with_ground(struct scene_planes *scene, const struct plane *gr
     if (ground) scene_planes_set(scene, 0, *ground);
 }
 
-/* Adds the ground to the planes of votes, in place of the last one if there are too many, unless one of them is about the
- * ground: then votes know it better, or what looks like the ground is a table. */
+/* Adds the ground to the planes of votes, in place of the last one if there are too many, unless one of them is about
+ * the ground: then votes know it better, or what looks like the ground is a table. */
 static void add_ground(struct scene_planes *scene, const struct view *view, struct plane ground)
 {
     const struct vec3 n = plane_normal(view, ground);
@@ -259,8 +259,8 @@ static void add_ground(struct scene_planes *scene, const struct view *view, stru
     scene->has_ground = true;
 }
 
-/* Fits the scene's plane k to the segments that lie on it, which move with it; those whose depth is given stay. members:
- * room for all segments. */
+/* Fits the scene's plane k to the segments that lie on it, which move with it; those whose depth is given stay.
+ * members: room for all segments. */
 static void refit_scene_plane(struct expander *x, int k, int *members)
 {
     struct scene_planes *scene = x->p->scene;

@@ -28,18 +28,14 @@ struct given_map { /* a file's samples as depths */
 enum status given_units_read(struct given_units *u, const char *path, struct err *err)
 {
     struct textfile t = {0};
-    char *word = NULL, found[32];
+    char *word = NULL;
     *u = (struct given_units){0};
     enum status st = textfile_open(&t, path, err);
     while (!st && textfile_next(&t)) {
         st = textfile_word(&t, "scale or pixels", &word, err);
         if (st) break;
         if (!strcmp(word, "scale") && !(u->scale > 0)) {
-            st = textfile_double(&t, "a scale: the depth of a sample of 1", &u->scale, err);
-            if (!st && !(u->scale >= 1e-12 && u->scale <= 1e12)) {
-                snprintf(found, sizeof found, "%.9g", u->scale);
-                st = textfile_error(&t, err, found, "a scale from 1e-12 to 1e12");
-            }
+            st = textfile_number(&t, "a scale, the depth of a sample of 1", 1e-12, 1e12, &u->scale, err);
         } else if (!strcmp(word, "pixels") && u->pixels == PIXELS_BY_SIZE) {
             st = textfile_word(&t, "view or photo", &word, err);
             if (!st && !strcmp(word, "view"))

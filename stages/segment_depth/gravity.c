@@ -16,11 +16,11 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define MOST_POINTS 4000 /* a scene with more points is represented by evenly spaced ones of its list */
+#define MAX_POINTS 4000 /* a scene with more points is represented by evenly spaced ones of its list */
 
 #define SQUARE      0.01  /* side of a square of the plan, of the points' median distance from the cameras' centre */
 #define FINE_SQUARE 0.004 /* the same, for the last degree */
-#define LEAST_RIGHT 0.5   /* length of the mean of the cameras' right axes: below, they look all around */
+#define MIN_RIGHT   0.5   /* length of the mean of the cameras' right axes: below, they look all around */
 #define PITCH       45    /* degrees: the largest that is tried */
 #define OFF         6     /* degrees off the best: there are clearly fewer pairs */
 #define PITCH_GAIN  2.0   /* least ratio of the pairs */
@@ -29,11 +29,11 @@
 #define BAND         0.006 /* of the median distance, as the following lengths */
 #define NARROW       0.5   /* of the band */
 #define BELOW_WEIGHT 3.0
-#define MOST_BELOW   0.02 /* share of all points: outliers */
-#define LEAST_SHARE  0.01 /* of all points, within BAND */
-#define LEAST_POINTS 30   /* the same, in points */
-#define LEAST_CAMERA 0.02 /* height of the lowest camera */
-#define LEAST_SPREAD 0.04 /* standard deviation of the points within BAND along the narrower direction */
+#define MAX_BELOW    0.02 /* share of all points: outliers */
+#define MIN_SHARE    0.01 /* of all points, within BAND */
+#define MIN_POINTS   30   /* the same, in points */
+#define MIN_CAMERA   0.02 /* height of the lowest camera */
+#define MIN_SPREAD   0.04 /* standard deviation of the points within BAND along the narrower direction */
 #define OPEN_BELOW   0.05 /* of a point's depth */
 #define TILT_WEIGHT  0.3
 #define TILT_STEP    0.5 /* degrees */
@@ -72,8 +72,8 @@ static void cloud_release(struct cloud *c)
 
 static enum status cloud_take(struct cloud *c, const struct camera_set *set, struct err *err)
 {
-    const int all = set->model.point_count, stride = (all + MOST_POINTS - 1) / MOST_POINTS;
-    const size_t most = (size_t)(all < MOST_POINTS ? all : MOST_POINTS) + 1;
+    const int all = set->model.point_count, stride = (all + MAX_POINTS - 1) / MAX_POINTS;
+    const size_t most = (size_t)(all < MAX_POINTS ? all : MAX_POINTS) + 1;
     *c = (struct cloud){.all = all};
     c->points = malloc(most * sizeof *c->points);
     c->value = malloc(most * sizeof *c->value);
@@ -160,7 +160,7 @@ enum status gravity_find(struct vec3 *down, bool *known, const struct camera_set
         right = vec3_add(right,
                          mat3_apply(mat3_transpose(set->views[i].cam_from_world), vec3_cross(vec3_make(0, 0, 1), up)));
     }
-    *known = vec3_length(right) < LEAST_RIGHT * set->view_count;
+    *known = vec3_length(right) < MIN_RIGHT * set->view_count;
     if (*known) return ST_OK;
     const enum status st = cloud_take(&c, set, err);
     set_axes(&c, *down, right);
@@ -216,7 +216,7 @@ static void try_depths(struct level *best, struct cloud *c, struct vec3 down, do
         while (first > 0 && feet[first - 1] >= feet[i] - band) first--;
         while (other > 0 && others[other - 1] > feet[i] + band) other--;
         const int below = last - end + count - other;
-        if (below > MOST_BELOW * c->count) break;
+        if (below > MAX_BELOW * c->count) break;
         const double score = (end - first + 1 - BELOW_WEIGHT * below) * weight;
         if (feet[i] <= most && score > best->score) *best = (struct level){down, feet[i], score};
     }
@@ -232,8 +232,7 @@ static void try_tilt(struct level *best, struct cloud *c, const struct camera_se
     if (tilt > GROUND_TILT) return;
     for (int i = 0; i < set->view_count; i++)
         camera = fmax(camera, vec3_dot(down, vec3_sub(set->views[i].center, c->centre)));
-    try_depths(best, c, down, BAND * c->distance, camera + LEAST_CAMERA * c->distance, INFINITY,
-               1 - TILT_WEIGHT * tilt);
+    try_depths(best, c, down, BAND * c->distance, camera + MIN_CAMERA * c->distance, INFINITY, 1 - TILT_WEIGHT * tilt);
 }
 
 /* The ground in its band, which also has the feet of walls: most points within NARROW of it. */
@@ -257,10 +256,10 @@ static bool is_ground(const struct cloud *c, const struct level *level)
         u += x, v += y, uu += x * x, uv += x * y, vv += y * y;
         n++;
     }
-    if (n < LEAST_SHARE * c->count || (double)n * c->all / c->count < LEAST_POINTS) return false;
+    if (n < MIN_SHARE * c->count || (double)n * c->all / c->count < MIN_POINTS) return false;
     uu = uu / n - u / n * (u / n), uv = uv / n - u / n * (v / n), vv = vv / n - v / n * (v / n);
     const double mean = (uu + vv) / 2, narrow = mean - sqrt(fmax(0, mean * mean - (uu * vv - uv * uv)));
-    return narrow >= LEAST_SPREAD * LEAST_SPREAD * c->distance * c->distance;
+    return narrow >= MIN_SPREAD * MIN_SPREAD * c->distance * c->distance;
 }
 
 enum status ground_find(struct ground *g, bool *found, const struct camera_set *set, struct vec3 down, struct err *err)

@@ -8,7 +8,8 @@
  * and those connected to it have a mean confidence of at least `held`, and if its surface, of connected segments with
  * that mean, is large enough: confidence times size, in mean segments, sums to MIN_HELD. So are segments on a dominant
  * plane of the scene (scene_planes.h), and slanted planes that continue a held one: at both centres they agree within
- * COPLANAR steps. So a blank ceiling or floor, which comes near towards the border, stays on its plane. The others take the inverse depths d that minimize
+ * COPLANAR steps. So a blank ceiling or floor, which comes near towards the border, stays on its plane. The others take
+ * the inverse depths d that minimize
  *   sum over adjacent i, j  w_ij |d_i - d_j|  +  far_bias sum_i size_i d_i,    d_i at most what it was,
  * given those of held segments. w_ij is the weight of the smoothness cost, so that contact with an object of another
  * colour hardly counts; contact with held foreground counts `keep` times that. Nothing is moved forwards. An area stays

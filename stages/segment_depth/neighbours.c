@@ -70,9 +70,9 @@ static double angle_weight(double degrees)
 }
 
 #define GRID 12 /* tiles of a view in each direction */
-#define COVERED_WEIGHT \
-    4.0                   /* each view of a point that is chosen already counts as so many further points of the tile */
-#define UNSEEN_WEIGHT 0.5 /* of a tile whose points only other views observed */
+/* Each view of a point that is chosen already counts as so many further points of the tile. */
+#define COVERED_WEIGHT 4.0
+#define UNSEEN_WEIGHT  0.5 /* of a tile whose points only other views observed */
 
 /* A point that represents a tile: one that the view observed; in tiles without, any that projects there. */
 struct tile_point {

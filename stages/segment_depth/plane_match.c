@@ -39,9 +39,10 @@ enum {
 #define OCCLUDED_COST    0.67f
 #define RANK_WEIGHT      0.6
 
-#define MIN_RELATIVE_CONTRAST \
-    0.25                  /* of the best neighbour's; with less, a neighbour shows something else, or nothing */
-#define MIN_CONTRAST 0.05 /* between good and chance matches; less in pictures without any texture */
+/* Contrast of good to chance matches that a neighbour must have: of the best neighbour's (with less, it shows something
+ * else, or nothing), and in any case, for pictures without any texture. */
+#define MIN_RELATIVE_CONTRAST 0.25
+#define MIN_CONTRAST          0.05
 
 /* Weighted truncated differences of two pixels, one per 128-bit lane, summed over pairs of channels. at: offsets of the
  * upper left corners, in halves of a texture element; corners: the corners' weights, which sum to FEATURE_UNIT, the
@@ -346,8 +347,8 @@ struct calibration {
     float *best, *mean; /* raw costs over depths, of each segment in each neighbour, or NOT_VISIBLE */
 };
 #define NOT_VISIBLE 2.0f
-#define ALL_NEIGHBOURS \
-    8 /* every so many segments are measured in all neighbours, the others in the first that see them */
+/* One of so many segments is measured in all neighbours, the others in the first that see them. */
+#define ALL_NEIGHBOURS 8
 
 static void calibrate_segments(void *ctx, size_t begin, size_t end, int thread)
 {

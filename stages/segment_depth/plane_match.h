@@ -116,8 +116,8 @@ enum status matcher_add(struct matcher *m, const struct camera_set *set, int vie
  * drawn to where it is visible. Neighbours of much less contrast than the best one are excluded. Call it once, after
  * the last matcher_add() and before the first cost. */
 enum status matcher_calibrate(struct matcher *m, double min_inverse_z, double max_inverse_z, struct err *err);
-/* Takes the calibration and the selection away from a matcher of the same segments and neighbours in half the size, which
- * has no costs any more. */
+/* Takes the calibration and the selection away from a matcher of the same segments and neighbours in half the size,
+ * which has no costs any more. */
 void matcher_take(struct matcher *m, struct matcher *half);
 /* Restricts each segment to the `ranks` neighbours that match its plane best. occluded: of each segment, as
  * match_cost(), or NULL; a neighbour that does not see it comes last. */

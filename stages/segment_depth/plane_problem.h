@@ -6,11 +6,12 @@
  *
  * A dominant plane of the scene (scene_planes.h) is paid for already: it counts as not slanted, its points' cost has no
  * bias to the far side, it costs SCENE_GAIN less in the first round, and it may leave the range of depths, which
- * comes from points, by a factor of SCENE_REACH. So a blank ceiling that no view can match continues on the plane of its matched part.
+ * comes from points, by a factor of SCENE_REACH. So a blank ceiling that no view can match continues on the plane of
+ * its matched part.
  *
- * Where no segments of the view vote for the scene's ground (gravity.h), it is one of the scene's planes all the same. A
- * segment that lies below it, by more than a tenth of the inverse depth, costs GROUND_COST more: the ground hides what is
- * there. The ground, voted for or not, may come nearer than other planes, by a factor of GROUND_REACH.
+ * Where no segments of the view vote for the scene's ground (gravity.h), it is one of the scene's planes all the same.
+ * A segment that lies below it, by more than a tenth of the inverse depth, costs GROUND_COST more: the ground hides
+ * what is there. The ground, voted for or not, may come nearer than other planes, by a factor of GROUND_REACH.
  *
  * A segment whose depth is given has one plane, of cost 0; any other costs PLANE_FORBIDDEN. size_i is in mean segments.
  * The gap is the mean difference of the two planes' inverse depths at the middle of the border and at both centroids:

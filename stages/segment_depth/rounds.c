@@ -37,9 +37,8 @@ enum status round_record_write(const struct round_record *r, const char *path, c
 
 static enum status read_changed(double *changed, struct textfile *t, struct err *err)
 {
-    if (textfile_expect_line(t, "changed", err) || textfile_double(t, "share of pixels", changed, err))
+    if (textfile_expect_line(t, "changed", err) || textfile_number(t, "share of pixels", 0, 1, changed, err))
         return err->status;
-    if (!(*changed >= 0 && *changed <= 1)) return textfile_wrong_number(t, *changed, "a share from 0 to 1", err);
     return textfile_end(t, err);
 }
 

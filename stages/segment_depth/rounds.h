@@ -16,13 +16,13 @@ enum status round_record_write(const struct round_record *r, const char *path, c
                                struct err *err);
 enum status round_record_read(struct round_record *r, const char *path, struct err *err);
 
-/* Of the pixels of `now` that have depth, the share whose depth differs by more than CHANGED_PART from that of `before`,
- * or that had none there. Both have the same size; their segments may differ. */
+/* Of the pixels of `now` that have depth, the share whose depth differs by more than CHANGED_PART from that of
+ * `before`, or that had none there. Both have the same size; their segments may differ. */
 #define CHANGED_PART 0.01
 double round_change(const struct layered_depth *now, const struct layered_depth *before);
 
-/* *settled: in the round whose records are in `folder`, views[0] changed by less than min_change, and so did, on average,
- * the other count - 1 views, its neighbours. The records that were read are added to prov. */
+/* *settled: in the round whose records are in `folder`, views[0] changed by less than min_change, and so did, on
+ * average, the other count - 1 views, its neighbours. The records that were read are added to prov. */
 enum status round_is_settled(bool *settled, const char *folder, const struct camera_set *set, const int *views,
                              int count, double min_change, struct provenance *prov, struct err *err);
 

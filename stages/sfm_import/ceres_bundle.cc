@@ -147,8 +147,8 @@ void add_lens(ceres::Problem *problem, struct bundle_lens *lens)
         problem->SetManifold(lens->camera.params, new ceres::SubsetManifold(params, fixed));
 }
 
-/* The scene may be moved, turned and scaled as a whole. Fixes that: the pose of the first image, and of the image farthest
- * from it the coordinate of its translation that the scale changes most. */
+/* The scene may be moved, turned and scaled as a whole. Fixes that: the pose of the first image, and of the image
+ * farthest from it the coordinate of its translation that the scale changes most. */
 void fix_frame(ceres::Problem *problem, struct bundle *b)
 {
     struct bundle_image *first = nullptr, *second = nullptr;

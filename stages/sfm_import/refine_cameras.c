@@ -1,10 +1,11 @@
 /* refine_cameras.c - which form of lens a model needs, and the adjustment with it.
  *
- * The forms are the lens models of COLMAP's perspective family, from none to two radial and two tangential coefficients,
- * each with three kinds of principal point (bundle.h). All are fitted to the same observations, from the same start, and
- * the one with the smallest BIC is chosen: a parameter must explain more than its price, log N / 2. So photos of one
- * lens keep one lens, and photos of a stabilised phone get a principal point each. Lenses of other models (fisheyes,
- * rational distortion) keep their model; whether its distortion is adjusted, and their principal point, are chosen.
+ * The forms are the lens models of COLMAP's perspective family, from none to two radial and two tangential
+ * coefficients, each with three kinds of principal point (bundle.h). All are fitted to the same observations, from the
+ * same start, and the one with the smallest BIC is chosen: a parameter must explain more than its price, log N / 2. So
+ * photos of one lens keep one lens, and photos of a stabilised phone get a principal point each. Lenses of other models
+ * (fisheyes, rational distortion) keep their model; whether its distortion is adjusted, and their principal point, are
+ * chosen.
  *
  * The forms are compared on CHOICE_OBSERVATIONS, or CHOICE_OF_IMAGE per photo if that is more, evenly from all photos;
  * then everything is adjusted with the chosen form, twice, since the scale of the residuals falls with the first

@@ -1,4 +1,5 @@
-/* residual_table.h - reprojection errors of the imported cameras, by photo and by distance from the picture's centre. */
+/* residual_table.h - reprojection errors of the imported cameras, by photo and by distance from the picture's
+ * centre. */
 #ifndef REMODEL_RESIDUAL_TABLE_H
 #define REMODEL_RESIDUAL_TABLE_H
 

@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "common/base/array.h"
-#include "common/base/scan.h"
 
 enum status description_header(struct textfile *t, const char *kind, int max_version, int *version, struct err *err)
 {
@@ -20,22 +19,11 @@ enum status description_header(struct textfile *t, const char *kind, int max_ver
     return st;
 }
 
-enum status description_number(struct textfile *t, const char *what, double min, double max, double *value,
-                               struct err *err)
-{
-    char *word = NULL;
-    enum status st = textfile_word(t, what, &word, err);
-    if (st) return st;
-    if (!scan_double(word, value) || *value < min || *value > max)
-        return textfile_error(t, err, word, "%s, a number from %g to %g", what, min, max);
-    return ST_OK;
-}
-
 enum status description_point(struct textfile *t, const char *what, struct vec3 *p, struct err *err)
 {
-    enum status st = description_number(t, what, -MAX_METRES, MAX_METRES, &p->x, err);
-    if (!st) st = description_number(t, what, -MAX_METRES, MAX_METRES, &p->y, err);
-    if (!st) st = description_number(t, what, -MAX_METRES, MAX_METRES, &p->z, err);
+    enum status st = textfile_number(t, what, -MAX_METRES, MAX_METRES, &p->x, err);
+    if (!st) st = textfile_number(t, what, -MAX_METRES, MAX_METRES, &p->y, err);
+    if (!st) st = textfile_number(t, what, -MAX_METRES, MAX_METRES, &p->z, err);
     return st;
 }
 

@@ -11,8 +11,6 @@
 /* The first line: KIND VERSION, from 1 to max_version. Rejects an empty file. */
 enum status description_header(struct textfile *t, const char *kind, int max_version, int *version, struct err *err);
 
-enum status description_number(struct textfile *t, const char *what, double min, double max, double *value,
-                               struct err *err);
 enum status description_point(struct textfile *t, const char *what, struct vec3 *p, struct err *err);
 
 /* A name of letters, digits, _ and -. The caller frees it. */

@@ -1,7 +1,8 @@
 /* estimate.c - how long the pictures of a described scene take on this machine.
  *
  * A small picture from each camera, with few samples, gives the seconds per light path there; pixels times samples of
- * the full picture give the rest. Paths of the shell and of irradiance are taken to be as long as those of the photo. */
+ * the full picture give the rest. Paths of the shell and of irradiance are taken to be as long as those of the
+ * photo. */
 #include "stages/simulate/estimate.h"
 
 #include <math.h>

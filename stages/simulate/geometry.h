@@ -2,8 +2,9 @@
  *
  * Each planar piece of an item is a face with a name ("wall.left", "box.top"; the item's own name if it has only one)
  * and an id, counted from 1 in file order; a mesh is one face. A face of an edited scene has the id of the base's
- * face of that name; the ids of names that the base does not have follow the base's last. Faces are visible from both sides. Normals point out of
- * solids, into rooms, along U x V for quads, and in the direction in which a lamp shines. */
+ * face of that name; the ids of names that the base does not have follow the base's last. Faces are visible from both
+ * sides. Normals point out of solids, into rooms, along U x V for quads, and in the direction in which a lamp
+ * shines. */
 #ifndef REMODEL_SIMULATE_GEOMETRY_H
 #define REMODEL_SIMULATE_GEOMETRY_H
 

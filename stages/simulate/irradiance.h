@@ -11,8 +11,8 @@
 enum status irradiance_picture(const struct picture_job *job, const struct world *w, const struct world *edited,
                                const struct shoot_photo *photo, const char *folder, struct err *err);
 
-/* Reads lines X Y Z NX NY NZ from `points` and writes OUT/FOLDER/irradiance-points.txt, with R G B behind each. ST_DATA:
- * a bad line, or none. */
+/* Reads lines X Y Z NX NY NZ from `points` and writes OUT/FOLDER/irradiance-points.txt, with R G B behind each.
+ * ST_DATA: a bad line, or none. */
 enum status irradiance_points(const struct picture_job *job, const struct world *w, const char *points,
                               const char *folder, struct err *err);
 

@@ -71,7 +71,7 @@ enum status read_drop(struct reader *r, struct err *err)
     return st;
 }
 
-/* --------------------------------------------------------------------------------------------------- the whole scene */
+/* -------------------------------------------------------------------------------------------------- the whole scene */
 
 static bool is_dropped(const struct scene *s, int line)
 {

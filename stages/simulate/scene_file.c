@@ -13,10 +13,9 @@ static enum status read_sun(struct reader *r, struct err *err)
 {
     struct sun *sun = &r->scene->sky.sun;
     if (r->scene->sky.has_sun) return textfile_error(&r->file, err, "a second sun", "at most one");
-    enum status st = description_number(&r->file, "the sun's azimuth in degrees", -360, 360, &sun->azimuth, err);
-    if (!st) st = description_number(&r->file, "the sun's elevation in degrees", -90, 90, &sun->elevation, err);
-    if (!st)
-        st = description_number(&r->file, "the sun's angular radius in degrees", 0.05, 30, &sun->angular_radius, err);
+    enum status st = textfile_number(&r->file, "the sun's azimuth in degrees", -360, 360, &sun->azimuth, err);
+    if (!st) st = textfile_number(&r->file, "the sun's elevation in degrees", -90, 90, &sun->elevation, err);
+    if (!st) st = textfile_number(&r->file, "the sun's angular radius in degrees", 0.05, 30, &sun->angular_radius, err);
     if (!st) st = read_colour(r, "a radiance", MAX_RADIANCE, &sun->radiance, err);
     if (!st) st = textfile_end(&r->file, err);
     r->scene->sky.has_sun = !st;

@@ -17,14 +17,14 @@ static enum status material_of(struct reader *r, int *material, struct err *err)
 
 static enum status read_wall(struct reader *r, struct scene_item *it, struct err *err)
 {
-    enum status st = description_number(&r->file, "x of the wall's start", -MAX_METRES, MAX_METRES, &it->x0, err);
-    if (!st) st = description_number(&r->file, "y of the wall's start", -MAX_METRES, MAX_METRES, &it->y0, err);
-    if (!st) st = description_number(&r->file, "x of the wall's end", -MAX_METRES, MAX_METRES, &it->x1, err);
-    if (!st) st = description_number(&r->file, "y of the wall's end", -MAX_METRES, MAX_METRES, &it->y1, err);
+    enum status st = textfile_number(&r->file, "x of the wall's start", -MAX_METRES, MAX_METRES, &it->x0, err);
+    if (!st) st = textfile_number(&r->file, "y of the wall's start", -MAX_METRES, MAX_METRES, &it->y0, err);
+    if (!st) st = textfile_number(&r->file, "x of the wall's end", -MAX_METRES, MAX_METRES, &it->x1, err);
+    if (!st) st = textfile_number(&r->file, "y of the wall's end", -MAX_METRES, MAX_METRES, &it->y1, err);
     if (!st && hypot(it->x1 - it->x0, it->y1 - it->y0) < MIN_METRES)
         st = textfile_error(&r->file, err, "equal start and end points", "a wall with a length");
     if (!st) st = read_range(r, "the wall's height: Z0, then a larger Z1", &it->z0, &it->z1, err);
-    if (!st) st = description_number(&r->file, "a thickness", MIN_METRES, 100, &it->thickness, err);
+    if (!st) st = textfile_number(&r->file, "a thickness", MIN_METRES, 100, &it->thickness, err);
     if (!st) st = material_of(r, &it->material, err);
     return st;
 }
@@ -60,7 +60,7 @@ static enum status read_opening(struct reader *r, struct scene_item *it, struct 
 
 static enum status read_turn(struct reader *r, struct scene_item *it, struct err *err)
 {
-    return description_number(&r->file, "an angle in degrees", -360, 360, &it->turn, err);
+    return textfile_number(&r->file, "an angle in degrees", -360, 360, &it->turn, err);
 }
 
 static enum status read_box(struct reader *r, struct scene_item *it, struct err *err)
@@ -69,9 +69,9 @@ static enum status read_box(struct reader *r, struct scene_item *it, struct err 
     struct vec3 a, b;
     int word = 0;
     enum status st = description_point(&r->file, "a corner of the box", &a, err);
-    if (!st) st = description_number(&r->file, "X1, larger than X0", a.x + MIN_METRES, MAX_METRES, &b.x, err);
-    if (!st) st = description_number(&r->file, "Y1, larger than Y0", a.y + MIN_METRES, MAX_METRES, &b.y, err);
-    if (!st) st = description_number(&r->file, "Z1, larger than Z0", a.z + MIN_METRES, MAX_METRES, &b.z, err);
+    if (!st) st = textfile_number(&r->file, "X1, larger than X0", a.x + MIN_METRES, MAX_METRES, &b.x, err);
+    if (!st) st = textfile_number(&r->file, "Y1, larger than Y0", a.y + MIN_METRES, MAX_METRES, &b.y, err);
+    if (!st) st = textfile_number(&r->file, "Z1, larger than Z0", a.z + MIN_METRES, MAX_METRES, &b.z, err);
     if (!st) st = material_of(r, &it->material, err);
     if (!st && textfile_more(&r->file)) {
         st = read_choice(r, words, 1, "an option of a box", &word, err);
@@ -102,10 +102,10 @@ static enum status read_quad(struct reader *r, struct scene_item *it, struct err
 
 static enum status read_room(struct reader *r, struct scene_item *it, struct err *err)
 {
-    enum status st = description_number(&r->file, "X0", -MAX_METRES, MAX_METRES, &it->x0, err);
-    if (!st) st = description_number(&r->file, "Y0", -MAX_METRES, MAX_METRES, &it->y0, err);
-    if (!st) st = description_number(&r->file, "X1, larger than X0", it->x0 + MIN_METRES, MAX_METRES, &it->x1, err);
-    if (!st) st = description_number(&r->file, "Y1, larger than Y0", it->y0 + MIN_METRES, MAX_METRES, &it->y1, err);
+    enum status st = textfile_number(&r->file, "X0", -MAX_METRES, MAX_METRES, &it->x0, err);
+    if (!st) st = textfile_number(&r->file, "Y0", -MAX_METRES, MAX_METRES, &it->y0, err);
+    if (!st) st = textfile_number(&r->file, "X1, larger than X0", it->x0 + MIN_METRES, MAX_METRES, &it->x1, err);
+    if (!st) st = textfile_number(&r->file, "Y1, larger than Y0", it->y0 + MIN_METRES, MAX_METRES, &it->y1, err);
     if (!st) st = read_range(r, "the room's height: Z0, then a larger Z1", &it->z0, &it->z1, err);
     if (!st) st = material_of(r, &it->material, err);
     if (!st) st = material_of(r, &it->ceiling, err);
@@ -134,7 +134,7 @@ static enum status read_mesh(struct reader *r, struct scene_item *it, struct err
         int word = 0;
         st = read_choice(r, words, 3, "an option of a mesh", &word, err);
         if (!st && word == 0) st = description_point(&r->file, "the mesh's position", &it->at, err);
-        if (!st && word == 1) st = description_number(&r->file, "a scale", 1e-6, 1e6, &it->scale, err);
+        if (!st && word == 1) st = textfile_number(&r->file, "a scale", 1e-6, 1e6, &it->scale, err);
         if (!st && word == 2) st = read_turn(r, it, err);
     }
     free(path);
@@ -159,10 +159,10 @@ static enum status read_lamp(struct reader *r, struct scene_item *it, struct err
     st = description_point(&r->file, "the centre", &it->at, err);
     if (!st) st = description_point(&r->file, "the direction", &it->u, err);
     if (!st && !(vec3_length(it->u) > 0)) st = textfile_error(&r->file, err, "0 0 0", "a direction");
-    if (!st) st = description_number(&r->file, "a radius", 1e-4, 1e3, &it->radius, err);
+    if (!st) st = textfile_number(&r->file, "a radius", 1e-4, 1e3, &it->radius, err);
     if (!st) st = read_colour(r, "a radiance", MAX_RADIANCE, &it->radiance, err);
-    if (!st) st = description_number(&r->file, "half the angle of the cone, in degrees", 0.5, 90, &it->half_angle, err);
-    if (!st && textfile_more(&r->file)) st = description_number(&r->file, "an exponent", 0, 1000, &it->exponent, err);
+    if (!st) st = textfile_number(&r->file, "half the angle of the cone, in degrees", 0.5, 90, &it->half_angle, err);
+    if (!st && textfile_more(&r->file)) st = textfile_number(&r->file, "an exponent", 0, 1000, &it->exponent, err);
     return st;
 }
 

@@ -10,7 +10,7 @@ static const char *const texture_words[TEXTURE_KINDS] = {"rgb",     "checker", "
 
 static enum status read_size(struct reader *r, const char *what, double *value, struct err *err)
 {
-    return description_number(&r->file, what, 1e-4, 1e4, value, err);
+    return textfile_number(&r->file, what, 1e-4, 1e4, value, err);
 }
 
 enum status read_texture(struct reader *r, struct err *err)
@@ -28,14 +28,13 @@ enum status read_texture(struct reader *r, struct err *err)
         const bool generated = t->kind == TEXTURE_PRINT || t->kind == TEXTURE_BOOKS;
         if (t->kind == TEXTURE_CHECKER) st = read_size(r, "the size of a square", &t->size[0], err);
         if (t->kind == TEXTURE_WOOD || t->kind == TEXTURE_PLASTER) st = read_size(r, "a scale", &t->size[0], err);
-        if (t->kind == TEXTURE_PLASTER)
-            st = st ? st : description_number(&r->file, "an amount", 0, 1, &t->size[1], err);
+        if (t->kind == TEXTURE_PLASTER) st = st ? st : textfile_number(&r->file, "an amount", 0, 1, &t->size[1], err);
         if (t->kind == TEXTURE_BRICK) {
             st = read_size(r, "the width of a brick", &t->size[0], err);
             if (!st) st = read_size(r, "the height of a brick", &t->size[1], err);
             if (!st)
-                st = description_number(&r->file, "the width of the mortar", 0, fmin(t->size[0], t->size[1]),
-                                        &t->size[2], err);
+                st = textfile_number(&r->file, "the width of the mortar", 0, fmin(t->size[0], t->size[1]), &t->size[2],
+                                     err);
         }
         if (!st && t->kind != TEXTURE_RGB && t->kind != TEXTURE_CHECKER) st = read_seed(r, &t->seed, err);
         if (generated) {
@@ -68,9 +67,9 @@ enum status read_material(struct reader *r, struct err *err)
     if (!st) st = read_known_name(r, "texture", next_texture, &made.texture, err);
     made.kind = (enum brdf_kind)kind;
     if (!st && made.kind != BRDF_LAMBERT) {
-        st = description_number(&r->file, "a strength of the gloss", 0, 1e6, &made.ks, err);
-        if (!st && made.kind == BRDF_PHONG) st = description_number(&r->file, "an exponent", 1, 1e6, &made.shape, err);
-        if (!st && made.kind == BRDF_WARD) st = description_number(&r->file, "a roughness", 0.01, 1, &made.shape, err);
+        st = textfile_number(&r->file, "a strength of the gloss", 0, 1e6, &made.ks, err);
+        if (!st && made.kind == BRDF_PHONG) st = textfile_number(&r->file, "an exponent", 1, 1e6, &made.shape, err);
+        if (!st && made.kind == BRDF_WARD) st = textfile_number(&r->file, "a roughness", 0.01, 1, &made.shape, err);
     }
     if (!st) {
         const double albedo = texture_bound(&s->textures[made.texture].texture);

@@ -9,16 +9,16 @@
 /* Two numbers, the second larger than the first. */
 enum status read_range(struct reader *r, const char *what, double *from, double *to, struct err *err)
 {
-    enum status st = description_number(&r->file, what, -MAX_METRES, MAX_METRES, from, err);
-    if (!st) st = description_number(&r->file, what, *from + MIN_METRES, MAX_METRES, to, err);
+    enum status st = textfile_number(&r->file, what, -MAX_METRES, MAX_METRES, from, err);
+    if (!st) st = textfile_number(&r->file, what, *from + MIN_METRES, MAX_METRES, to, err);
     return st;
 }
 
 enum status read_colour(struct reader *r, const char *what, double max, struct rgb *c, struct err *err)
 {
-    enum status st = description_number(&r->file, what, 0, max, &c->r, err);
-    if (!st) st = description_number(&r->file, what, 0, max, &c->g, err);
-    if (!st) st = description_number(&r->file, what, 0, max, &c->b, err);
+    enum status st = textfile_number(&r->file, what, 0, max, &c->r, err);
+    if (!st) st = textfile_number(&r->file, what, 0, max, &c->g, err);
+    if (!st) st = textfile_number(&r->file, what, 0, max, &c->b, err);
     return st;
 }
 

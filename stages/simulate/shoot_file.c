@@ -52,13 +52,13 @@ static enum status read_lens_numbers(struct reader *r, struct shoot_lens *l, str
     const bool pinhole = l->kind == SHOOT_PINHOLE;
     enum status st = textfile_int(&r->file, "a width in pixels", 1, MAX_SIDE, &width, err);
     if (!st) st = textfile_int(&r->file, "a height in pixels", 1, MAX_SIDE, &height, err);
-    if (!st) st = description_number(&r->file, "a focal length in pixels", 1, 1e6, &l->fx, err);
-    if (!st && pinhole) st = description_number(&r->file, "a focal length in pixels", 1, 1e6, &l->fy, err);
-    if (!st) st = description_number(&r->file, "the principal point's x in pixels", 0, (double)width, &l->cx, err);
-    if (!st) st = description_number(&r->file, "the principal point's y in pixels", 0, (double)height, &l->cy, err);
+    if (!st) st = textfile_number(&r->file, "a focal length in pixels", 1, 1e6, &l->fx, err);
+    if (!st && pinhole) st = textfile_number(&r->file, "a focal length in pixels", 1, 1e6, &l->fy, err);
+    if (!st) st = textfile_number(&r->file, "the principal point's x in pixels", 0, (double)width, &l->cx, err);
+    if (!st) st = textfile_number(&r->file, "the principal point's y in pixels", 0, (double)height, &l->cy, err);
     if (!st && !pinhole && textfile_more(&r->file)) {
         st = textfile_expect(&r->file, "circle", err);
-        if (!st) st = description_number(&r->file, "the degrees across the image circle", 1, 239, &l->circle, err);
+        if (!st) st = textfile_number(&r->file, "the degrees across the image circle", 1, 239, &l->circle, err);
     }
     if (st) return st;
     if (!pinhole) l->fy = l->fx;
@@ -106,13 +106,13 @@ static enum status read_lens(struct reader *r, struct err *err)
 static enum status read_exposure(struct reader *r, struct shoot_exposure_list *e, struct err *err)
 {
     struct shoot_exposure made = {0, 8, 100, 1};
-    enum status st = description_number(&r->file, "an exposure time in seconds", 1e-6, 1e4, &made.seconds, err);
+    enum status st = textfile_number(&r->file, "an exposure time in seconds", 1e-6, 1e4, &made.seconds, err);
     if (!st && textfile_more(&r->file)) {
-        st = description_number(&r->file, "an f-number", 0.5, 128, &made.f_number, err);
-        if (!st) st = description_number(&r->file, "an ISO speed", 1, 65535, &made.iso, err);
+        st = textfile_number(&r->file, "an f-number", 0.5, 128, &made.f_number, err);
+        if (!st) st = textfile_number(&r->file, "an ISO speed", 1, 65535, &made.iso, err);
     }
     if (!st && textfile_more(&r->file))
-        st = description_number(&r->file, "a filter's neutral-density factor", 1, 1e9, &made.filter, err);
+        st = textfile_number(&r->file, "a filter's neutral-density factor", 1, 1e9, &made.filter, err);
     if (!st) st = textfile_end(&r->file, err);
     if (!st) st = description_append(&r->file, &e->list, e->count, MAX_EXPOSURES, sizeof made, err);
     if (st) return st;
@@ -125,9 +125,9 @@ static enum status read_sensor(struct reader *r, struct err *err)
     struct shoot_sensor *sensor = &r->shoot->sensor;
     int64_t seed = 0;
     if (r->has_sensor) return textfile_error(&r->file, err, "a second sensor line", "one");
-    enum status st = description_number(&r->file, "a full well in electrons", 10, 1e9, &sensor->full_well, err);
-    if (!st) st = description_number(&r->file, "a read noise in electrons", 0, 1e6, &sensor->read_noise, err);
-    if (!st) st = description_number(&r->file, "a gain", 1e-9, 1e9, &sensor->gain, err);
+    enum status st = textfile_number(&r->file, "a full well in electrons", 10, 1e9, &sensor->full_well, err);
+    if (!st) st = textfile_number(&r->file, "a read noise in electrons", 0, 1e6, &sensor->read_noise, err);
+    if (!st) st = textfile_number(&r->file, "a gain", 1e-9, 1e9, &sensor->gain, err);
     if (!st) st = textfile_int(&r->file, "a seed", 0, INT64_MAX, &seed, err);
     if (!st) st = textfile_end(&r->file, err);
     sensor->seed = (uint64_t)seed;
@@ -179,13 +179,13 @@ static enum status read_photo_option(struct reader *r, struct shoot_photo *p, st
     char *word = NULL;
     enum status st = textfile_word(&r->file, "an option of a photo", &word, err);
     if (st) return st;
-    if (!strcmp(word, "roll")) return description_number(&r->file, "an angle in degrees", -360, 360, &p->roll, err);
+    if (!strcmp(word, "roll")) return textfile_number(&r->file, "an angle in degrees", -360, 360, &p->roll, err);
     if (!strcmp(word, "exposure") && !witness) return read_only_exposure(r, p, err);
     if (strcmp(word, "sun"))
         return textfile_error(&r->file, err, word, "roll, sun%s or the end of the line", witness ? "" : ", exposure");
     p->own_sun = true;
-    st = description_number(&r->file, "the sun's azimuth in degrees", -360, 360, &p->sun_azimuth, err);
-    return st ? st : description_number(&r->file, "the sun's elevation in degrees", -90, 90, &p->sun_elevation, err);
+    st = textfile_number(&r->file, "the sun's azimuth in degrees", -360, 360, &p->sun_azimuth, err);
+    return st ? st : textfile_number(&r->file, "the sun's elevation in degrees", -90, 90, &p->sun_elevation, err);
 }
 
 static enum status read_photo(struct reader *r, enum shoot_kind kind, struct err *err)

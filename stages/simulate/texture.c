@@ -24,8 +24,9 @@ static struct rgb varied(struct rgb c, double by)
     return rgb_make(clamp(c.r * (1 + by), 0, 1), clamp(c.g * (1 + by), 0, 1), clamp(c.b * (1 + by), 0, 1));
 }
 
-/* A colour for paper, cloth or a book cover, chosen by a hash: one of the dyes below, paler or darker. The dyes are those
- * of printed things, so that rooms look like rooms; light and dark ones alternate, which gives features contrast. */
+/* A colour for paper, cloth or a book cover, chosen by a hash: one of the dyes below, paler or darker. The dyes are
+ * those of printed things, so that rooms look like rooms; light and dark ones alternate, which gives features
+ * contrast. */
 static struct rgb dye(uint32_t hash)
 {
     static const struct rgb dyes[] = {

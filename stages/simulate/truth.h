@@ -10,8 +10,8 @@
 enum status truth_write(const struct world *w, const struct shoot *s, const char *folder, const char *out,
                         const struct simulate_params *params, const struct provenance *prov, struct err *err);
 
-/* Writes OUT/truth/edited-EDIT/{scene,faces}.txt, the scene in full, and {points3D,cameras,images}.txt of all photos and
- * witnesses. */
+/* Writes OUT/truth/edited-EDIT/{scene,faces}.txt, the scene in full, and {points3D,cameras,images}.txt of all photos
+ * and witnesses. */
 enum status truth_write_edited(const struct world *w, const struct shoot *s, const char *folder, const char *out,
                                const char *edit, const struct provenance *prov, struct err *err);
 

@@ -1,7 +1,7 @@
 /* openings.c - openings of a wall from points and lines of sight.
  *
- * In cells finer than those of faces, columns of a wall that are more seen through than solid form runs; the largest run
- * of such rows in them is an opening, which then grows over unseen cells to where the wall is solid. */
+ * In cells finer than those of faces, columns of a wall that are more seen through than solid form runs; the largest
+ * run of such rows in them is an opening, which then grows over unseen cells to where the wall is solid. */
 #include "stages/suggest_model/openings.h"
 
 #include <stdlib.h>

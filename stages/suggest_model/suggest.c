@@ -8,7 +8,8 @@
  * Rooms. The outermost prominent face on each side that is not only seen through another wall's windows bounds the
  * plan: a box. A box is cut in two by the pair of faces back to back (or the single face) with the largest solid
  * fraction across it, and its parts likewise; boxes that cannot be cut are rooms. The wall's other face is the nearest
- * one that is solid in enough of the same cells: furniture in front of it may hide the rest. Openings are found in openings.c. */
+ * one that is solid in enough of the same cells: furniture in front of it may hide the rest. Openings are found in
+ * openings.c. */
 #include "stages/suggest_model/suggest.h"
 
 #include <stdlib.h>
@@ -255,7 +256,8 @@ static enum status is_free(bool *found, const struct finder *f, const struct box
 
 /* The other face of a wall with the face a; NULL: none. Furniture may hide most of it, and points that fitted
  * badly may lie behind it, so that it is no wall by its own solid fraction. It must be solid in enough cells where the
- * first face is solid too. The thinnest wall is chosen, because what stands in front of a wall is nearer to the room. */
+ * first face is solid too. The thinnest wall is chosen, because what stands in front of a wall is nearer to the
+ * room. */
 static const struct wall_side *find_back(const struct finder *f, const struct wall_side *a, const struct box *box)
 {
     const struct wall_side *found = NULL;

@@ -12,6 +12,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "common/image/luminance.h"
 #include "common/math/numbers.h"
 
 static const double OFF = 0.03;           /* distance from the plane, of the height, at which depth is not on it */
@@ -104,8 +105,7 @@ static void add_sample(struct wall_cell *cell, const struct wall_raster *r, cons
         *(r->axis ? &p.y : &p.x) += 2 * r->inward * behind;
         if (is_occupied(scene, p)) cell->mirrored += weight;
     }
-    const double luminance = 0.2126 * (double)rgba[0] + 0.7152 * (double)rgba[1] + 0.0722 * (double)rgba[2];
-    cell->brightness += log(MIN_LUMINANCE + fmax(luminance, 0));
+    cell->brightness += log(MIN_LUMINANCE + fmax(luminance_precise(rgba), 0));
     cell->samples++;
 }
 

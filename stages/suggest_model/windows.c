@@ -10,8 +10,8 @@
  *   - few of its points are mirror images of the scene's points. Else it is a mirror;
  *   - it is bounded by solid wall;
  *   - its brightness exceeds that of the wall around it by a factor, and by a multiple of the spread there.
- * It takes the place of an opening found from points. Other openings from points stay, unless the views contradict them:
- * their cells are solid, or they are mirrors.
+ * It takes the place of an opening found from points. Other openings from points stay, unless the views contradict
+ * them: their cells are solid, or they are mirrors.
  *
  * Sides. Each side moves by a few cells to the largest step of brightness along it, because pictures have sharper edges
  * than depth. It moves farther outwards than inwards: the front of a reveal is near the plane, and its depth may be on

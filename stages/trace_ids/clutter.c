@@ -12,8 +12,8 @@
  *   0.25  not nearer, by a segment of little confidence
  *   0     not nearer, and the depth is sure enough to tell
  *
- * From afar a view cannot tell a bookcase from the wall behind it: the tolerance, which grows with the distance, hides it.
- * So a view shows that a surface is clean only where its depth lies within `furniture` of it; between that and the
+ * From afar a view cannot tell a bookcase from the wall behind it: the tolerance, which grows with the distance, hides
+ * it. So a view shows that a surface is clean only where its depth lies within `furniture` of it; between that and the
  * tolerance nothing is known.
  *
  * A segment of little confidence (below min_confidence) has inherited its depth from its neighbours. On plain walls,
@@ -21,8 +21,8 @@
  * sure depth (docs/decisions/0028-clutter.md), and without them a white room would have no texture.
  *
  * Clutter narrower than 2 min_clutter + 1 px is noise of the depth and becomes 0.5 (opening); what is left grows by
- * clutter_margin, because outlines of segments are off by a pixel or two, and blurred. Pixels that the view does not have are 1, with
- * the same rim. */
+ * clutter_margin, because outlines of segments are off by a pixel or two, and blurred. Pixels that the view does not
+ * have are 1, with the same rim. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -84,8 +84,8 @@ struct outline_scratch {
     float *squared, *grown;
 };
 
-/* Clutter of at least `level` is eroded by min_clutter, and what is left dilated by min_clutter and clutter_margin. Raises
- * `grown` to the level there. */
+/* Clutter of at least `level` is eroded by min_clutter, and what is left dilated by min_clutter and clutter_margin.
+ * Raises `grown` to the level there. */
 static enum status grow(struct outline_scratch *s, const struct clutter_job *job, float level, struct err *err)
 {
     const int width = job->ids->width, height = job->ids->height;

@@ -1,10 +1,10 @@
 /* reveal.c - surfaces of the unedited model that a view would see after an edit.
  *
  * An atlas must hold texture for what an edit can reveal: the street wall behind a partition that is removed, the floor
- * that a wider door shows. The view is traced in each edited model. A pixel's face there counts if the unedited model has
- * a face of the same id on the same plane (its normal and offset agree within 1e-6 of the model's size), and does not
- * show it in this pixel. Faces that only the edit has get their texture otherwise, and are left out. Its depth is that
- * of the unedited model's plane, so that two edits that reveal one surface add it once, with the same bits. */
+ * that a wider door shows. The view is traced in each edited model. A pixel's face there counts if the unedited model
+ * has a face of the same id on the same plane (its normal and offset agree within 1e-6 of the model's size), and does
+ * not show it in this pixel. Faces that only the edit has get their texture otherwise, and are left out. Its depth is
+ * that of the unedited model's plane, so that two edits that reveal one surface add it once, with the same bits. */
 #include "stages/trace_ids/reveal.h"
 
 #include <stdlib.h>

@@ -3,7 +3,8 @@
  * The lists of ten thousand views do not fit into memory side by side. Each face keeps at most max_views of those seen
  * so far, in a binary heap with the worst on top, which a better one replaces: memory is bounded for each face, and the
  * result does not depend on the order in which views come, as no two of them rank the same. Views rank by clean pixels
- * times cosine, that is by how many pixels of texture they would give, then by all pixels times cosine, then by name. */
+ * times cosine, that is by how many pixels of texture they would give, then by all pixels times cosine, then by
+ * name. */
 #include "stages/trace_ids/view_ranks.h"
 
 #include <stdlib.h>

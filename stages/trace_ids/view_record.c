@@ -114,10 +114,9 @@ static enum status read_face(struct seen_face *f, struct textfile *t, int last, 
         textfile_int(t, "id of a face, above the last", last + 1, INT_MAX, &id, err) ||
         textfile_int(t, "pixels", 1, INT_MAX, &pixels, err) ||
         textfile_int(t, "clean pixels", 0, pixels, &clean, err) || textfile_double(t, "distance", &f->distance, err) ||
-        textfile_double(t, "cosine", &f->cosine, err) || textfile_end(t, err))
+        textfile_number(t, "cosine", 0, 1, &f->cosine, err) || textfile_end(t, err))
         return err->status;
     if (!(f->distance > 0)) return textfile_wrong_number(t, f->distance, "a distance above 0", err);
-    if (!(f->cosine >= 0 && f->cosine <= 1)) return textfile_wrong_number(t, f->cosine, "a cosine from 0 to 1", err);
     f->id = (int)id;
     f->pixels = (int)pixels;
     f->clean = (int)clean;

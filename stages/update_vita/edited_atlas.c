@@ -1,9 +1,9 @@
 /* edited_atlas.c - see edited_atlas.h.
  *
- * Which tiles stay. Tiles are orthogonal, so a face that keeps its texels in place, or carries them along its normal, is
- * still shown by its old tile: then texels keep their bits. The other faces of the edited model get new tiles, with texels
- * of the atlas's usual size; faces of one colour get larger ones. A face that keeps its old tile, but reaches beyond what
- * was baked, has a new one behind it, in which only the texels beyond hold something. */
+ * Which tiles stay. Tiles are orthogonal, so a face that keeps its texels in place, or carries them along its normal,
+ * is still shown by its old tile: then texels keep their bits. The other faces of the edited model get new tiles, with
+ * texels of the atlas's usual size; faces of one colour get larger ones. A face that keeps its old tile, but reaches
+ * beyond what was baked, has a new one behind it, in which only the texels beyond hold something. */
 #include "stages/update_vita/edited_atlas.h"
 
 #include <math.h>
@@ -19,7 +19,7 @@
 enum { GUTTER = 1, PLAIN = 8 }; /* texels around a face; times the usual side, of texels of one colour */
 static const double SAME = 1e-9;
 
-/* ---------------------------------------------------------------------------------------------------------- which tiles */
+/* ------------------------------------------------------------------------------------------------------ which tiles */
 
 static double side_of(const struct atlas_tile *t)
 {
@@ -100,7 +100,7 @@ static bool wants_tile(double *side, const struct light_change *c, int face, con
     return dropped[id] || listed->rule_count > 1;
 }
 
-/* ------------------------------------------------------------------------------------------------------------- layout */
+/* ----------------------------------------------------------------------------------------------------------- layout */
 
 /* Adds the tiles of a face: several where a page is too small. Texel (x, y) of a tile has its middle at right (left +
  * side (x + 0.5)) + down (top + side (y + 0.5)). */
@@ -133,7 +133,7 @@ static void place_tiles(struct atlas *a)
     }
 }
 
-/* ------------------------------------------------------------------------------------------------------------- texels */
+/* ----------------------------------------------------------------------------------------------------------- texels */
 
 struct fill_job {
     const struct light_change *c;
@@ -296,7 +296,7 @@ void edited_atlas_release(struct edited_atlas *a)
     *a = (struct edited_atlas){0};
 }
 
-/* ------------------------------------------------------------------------------------------------------------- writing */
+/* ---------------------------------------------------------------------------------------------------------- writing */
 
 struct light_job {
     const struct edited_atlas *a;

@@ -1,5 +1,5 @@
-/* edited_atlas.h - the VITA of an edited model: tiles of the unedited one where faces keep their texels in place, new ones
- * where the texture map moves, copies or colours them. */
+/* edited_atlas.h - the VITA of an edited model: tiles of the unedited one where faces keep their texels in place, new
+ * ones where the texture map moves, copies or colours them. */
 #ifndef REMODEL_EDITED_ATLAS_H
 #define REMODEL_EDITED_ATLAS_H
 
@@ -14,8 +14,8 @@ struct edited_atlas {
     size_t *first;              /* of each new page, its first texel in `coloured` */
 };
 
-/* Lays out the new tiles, fills them by the texture map, and puts them into c->after.atlas: colours as albedos, all else as
- * radiance before the edit. folder: of the unedited VITA. The caller releases a in each case. */
+/* Lays out the new tiles, fills them by the texture map, and puts them into c->after.atlas: colours as albedos, all
+ * else as radiance before the edit. folder: of the unedited VITA. The caller releases a in each case. */
 enum status edited_atlas_make(struct edited_atlas *a, struct light_change *c, const char *folder, struct err *err);
 void edited_atlas_release(struct edited_atlas *a);
 

@@ -3,8 +3,9 @@
  * Places. Light changes fastest near corners, where faces meet, so each edge has a row of samples close to it; between
  * them lies a lattice, whose points are whole multiples of the spacing, so that an edit elsewhere does not move them.
  *
- * Look-up. A grid of cells knows a triangle near the middle of each cell. From there, one walks towards the point: across
- * the side that has it on the outer side, until no side has. Delaunay triangulations allow no circle on this way. */
+ * Look-up. A grid of cells knows a triangle near the middle of each cell. From there, one walks towards the point:
+ * across the side that has it on the outer side, until no side has. Delaunay triangulations allow no circle on this
+ * way. */
 #include "stages/update_vita/face_nets.h"
 
 #include <math.h>
@@ -18,9 +19,9 @@
 static const double INSET = 1.0 / 16; /* of the spacing: how far from an edge its row lies */
 static const double CLEAR = 0.25;     /* of the spacing: nearer to an edge the lattice has no sample */
 static const double CELL = 0.5;       /* of the spacing: a cell of hints */
-enum { MOST_CELLS = 1 << 22 };
+enum { MAX_CELLS = 1 << 22 };
 
-/* ------------------------------------------------------------------------------------------------------------- polygons */
+/* --------------------------------------------------------------------------------------------------------- polygons */
 
 static void coordinates(double at[2], const struct face_net *f, struct vec3 p)
 {
@@ -76,7 +77,7 @@ static bool is_inside(const struct face_nets *n, int face, double x, double y, d
     return s.in && s.nearest >= clear * clear;
 }
 
-/* -------------------------------------------------------------------------------------------------------------- samples */
+/* ---------------------------------------------------------------------------------------------------------- samples */
 
 enum status face_nets_add(struct face_nets *n, int face, struct vec3 at, struct err *err)
 {
@@ -204,7 +205,7 @@ void face_nets_release(struct face_nets *n)
     *n = (struct face_nets){0};
 }
 
-/* ---------------------------------------------------------------------------------------------------------- connections */
+/* ------------------------------------------------------------------------------------------------------ connections */
 
 struct side {
     int low, high, triangle, corner;
@@ -277,8 +278,8 @@ static enum status make_hints(struct face_net *f, double spacing, struct err *er
             f->low[k] = fmin(f->low[k], f->at[i][k]);
             high[k] = fmax(high[k], f->at[i][k]);
         }
-    f->hint_width = 1 + (int)fmin((high[0] - f->low[0]) / cell, sqrt(MOST_CELLS) - 1);
-    f->hint_height = 1 + (int)fmin((high[1] - f->low[1]) / cell, sqrt(MOST_CELLS) - 1);
+    f->hint_width = 1 + (int)fmin((high[0] - f->low[0]) / cell, sqrt(MAX_CELLS) - 1);
+    f->hint_height = 1 + (int)fmin((high[1] - f->low[1]) / cell, sqrt(MAX_CELLS) - 1);
     f->hints = malloc((size_t)f->hint_width * (size_t)f->hint_height * sizeof *f->hints);
     if (!f->hints) return err_nomem(err, "cells", (size_t)f->hint_width * (size_t)f->hint_height * sizeof *f->hints);
     for (int y = 0, t = 0; y < f->hint_height; y++)
@@ -301,7 +302,7 @@ enum status face_nets_connect(struct face_nets *n, struct err *err)
     return ST_OK;
 }
 
-/* -------------------------------------------------------------------------------------------------------------- look-up */
+/* ---------------------------------------------------------------------------------------------------------- look-up */
 
 /* Of few samples, or of some in a line, the nearest one counts. */
 static void nearest_sample(struct net_weights *w, const struct face_net *f, const double p[2])

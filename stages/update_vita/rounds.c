@@ -1,14 +1,14 @@
 /* rounds.c - see rounds.h.
  *
  * Mathematics. Round k computes the irradiance E_k of all samples from what they send out under E_(k-1): a texture its
- * texels times E_(k-1) / E_0, a colour albedo / pi times E_(k-1), beginning with the light as it was. E_0 is the irradiance
- * of the unedited model. Each round adds one more reflection of what the edit has changed. With c_k = |E_k - E_(k-1)| the
- * changes shrink by q = c_k / c_(k-1), and what later rounds would add is at most c_k q / (1 - q). Rounds end when that is
- * below the tolerance of max(E_k, 1e-4 E_0) at every sample; E_0 is at least the mean over all samples, since colours and
- * objects have none, and where lights go out their light would shrink for ever. That the quotient is within the tolerance of 1 would not do:
- * with q = 0.7 more than twice as much is still to come. Nor would one quotient: the first change is that of direct light,
- * largest near a lamp, and the next one, spread over the room, is much smaller whatever the room reflects. So q is the
- * larger one of the last two.
+ * texels times E_(k-1) / E_0, a colour albedo / pi times E_(k-1), beginning with the light as it was. E_0 is the
+ * irradiance of the unedited model. Each round adds one more reflection of what the edit has changed. With c_k = |E_k -
+ * E_(k-1)| the changes shrink by q = c_k / c_(k-1), and what later rounds would add is at most c_k q / (1 - q). Rounds
+ * end when that is below the tolerance of max(E_k, 1e-4 E_0) at every sample; E_0 is at least the mean over all
+ * samples, since colours and objects have none, and where lights go out their light would shrink for ever. That the
+ * quotient is within the tolerance of 1 would not do: with q = 0.7 more than twice as much is still to come. Nor would
+ * one quotient: the first change is that of direct light, largest near a lamp, and the next one, spread over the room,
+ * is much smaller whatever the room reflects. So q is the larger one of the last two.
  *
  * Source: [Colburn 2014, 5.5]. Different here: rays are traced once (transport.h); the rule of the end. */
 #include "stages/update_vita/rounds.h"

@@ -14,7 +14,7 @@ struct rounds {
     struct round *list; /* owned */
     int count;
     bool settled; /* before the most rounds were done */
-    int bounded;  /* samples whose albedo would be above LIGHT_ALBEDO_MOST */
+    int bounded;  /* samples whose albedo would be above LIGHT_ALBEDO_MAX */
 };
 
 /* The caller releases r in each case. */

@@ -1,10 +1,10 @@
 /* transport.c - see transport.h.
  *
- * Overview. From each sample, `rays` rays go by the cosine into the edited model. Where one meets a face, its colour there
- * is added to the entries of the samples that the place lies between; what it brings from elsewhere (the sky, a texel of a
- * face without samples) is fixed. Light of lamps and of the sky in the directions of emitters is gathered by rays towards
- * them. The unedited model is gathered with the same random numbers, so that a sample whose surroundings are unchanged gets
- * the same irradiance in both, and a quotient of 1 but for the order of sums. */
+ * Overview. From each sample, `rays` rays go by the cosine into the edited model. Where one meets a face, its colour
+ * there is added to the entries of the samples that the place lies between; what it brings from elsewhere (the sky, a
+ * texel of a face without samples) is fixed. Light of lamps and of the sky in the directions of emitters is gathered by
+ * rays towards them. The unedited model is gathered with the same random numbers, so that a sample whose surroundings
+ * are unchanged gets the same irradiance in both, and a quotient of 1 but for the order of sums. */
 #include "stages/update_vita/transport.h"
 
 #include <math.h>
@@ -21,7 +21,7 @@
 enum { DIRECT_SHARE = 4 };             /* rays / this go towards emitters */
 static const double AROUND = 1.0 / 16; /* of the spacing: how far around a sample colours are averaged */
 
-/* ------------------------------------------------------------------------------------------------------------- samples */
+/* ---------------------------------------------------------------------------------------------------------- samples */
 
 /* The mean colour of the places of one kind around a sample. */
 static void set_place(struct transport_sample *s, const struct light_change *c, int face, double spacing)
@@ -97,7 +97,7 @@ void transport_release(struct transport *t)
     *t = (struct transport){0};
 }
 
-/* --------------------------------------------------------------------------------------------------------------- rays */
+/* ------------------------------------------------------------------------------------------------------------- rays */
 
 /* What the rays of one sample add up to; one for each thread. */
 struct tally {
@@ -198,7 +198,7 @@ static struct rgb gather(const struct transport *t, struct tally *tally, const s
     return rgb_add(direct.value, rgb_scale(j.fixed, PI / rays));
 }
 
-/* ---------------------------------------------------------------------------------------------------------------- rows */
+/* ------------------------------------------------------------------------------------------------------------- rows */
 
 struct trace_job {
     struct transport *t;

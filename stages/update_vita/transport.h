@@ -1,8 +1,9 @@
 /* transport.h - light at samples of an edited model, as a linear function of what the samples send out.
  *
- * A sample j of a face sends out its texel times the quotient of irradiance after the edit to before it, or, where the edit
- * gives the face a colour, albedo / pi times its irradiance. Either way a ray that meets a face brings a fixed colour times
- * the values of three samples. Rays are traced once; rounds of light are then sums over numbers in memory. */
+ * A sample j of a face sends out its texel times the quotient of irradiance after the edit to before it, or, where the
+ * edit gives the face a colour, albedo / pi times its irradiance. Either way a ray that meets a face brings a fixed
+ * colour times the values of three samples. Rays are traced once; rounds of light are then sums over numbers in
+ * memory. */
 #ifndef REMODEL_TRANSPORT_H
 #define REMODEL_TRANSPORT_H
 
@@ -43,11 +44,13 @@ enum status transport_init(struct transport *t, const struct light_change *chang
                            struct err *err);
 void transport_release(struct transport *t);
 
-/* Computes rows first .. t->count - 1 with `rays` rays each. Same bits for any number of threads. done: told of samples. */
+/* Computes rows first .. t->count - 1 with `rays` rays each. Same bits for any number of threads. done: told of
+ * samples. */
 enum status transport_trace(struct transport *t, int first, int rays, void (*done)(void *ctx, int64_t samples),
                             void *done_ctx, struct err *err);
 
-/* Irradiance at a sample, from the values of all samples, rgb each: 2 j the quotient, 2 j + 1 the irradiance of sample j. */
+/* Irradiance at a sample, from the values of all samples, rgb each: 2 j the quotient, 2 j + 1 the irradiance of sample
+ * j. */
 struct rgb transport_gather(const struct transport_row *row, const struct rgb *values);
 
 #endif

@@ -1,9 +1,9 @@
 /* update.c - see update.h.
  *
- * Overview. Samples are spread over the faces of the edited model. Where the quotient of light differs between neighbouring
- * samples, more are put between them: at the edge of a new patch of sun, in a shadow. Then rays are traced once from each
- * (transport.h), light is passed between the samples until it settles (rounds.h), and the texels are multiplied by what the
- * samples around them say (edited_atlas.h).
+ * Overview. Samples are spread over the faces of the edited model. Where the quotient of light differs between
+ * neighbouring samples, more are put between them: at the edge of a new patch of sun, in a shadow. Then rays are traced
+ * once from each (transport.h), light is passed between the samples until it settles (rounds.h), and the texels are
+ * multiplied by what the samples around them say (edited_atlas.h).
  *
  * Faces from which almost nothing but the outdoors is seen, the outer sides of the walls, keep their texels. */
 #include "stages/update_vita/update.h"
@@ -33,7 +33,7 @@ struct work {
     struct progress progress;
 };
 
-/* --------------------------------------------------------------------------------------------------------------- faces */
+/* ------------------------------------------------------------------------------------------------------------ faces */
 
 /* Whether the middle of a face sees little but the outdoors. */
 static bool is_outside(const struct light_change *c, int face)
@@ -66,7 +66,7 @@ static enum status make_nets(struct work *w, struct err *err)
     return st;
 }
 
-/* ---------------------------------------------------------------------------------------------------------- refinement */
+/* ------------------------------------------------------------------------------------------------------- refinement */
 
 static void count_done(void *ctx, int64_t samples) { progress_add(ctx, samples); }
 
@@ -103,7 +103,7 @@ static enum status refine_face(struct work *w, int face, const struct rgb *value
             if (f->beside[t][k] >= 0 && f->beside[t][k] < t) continue; /* the other triangle had it */
             if (vec3_length(vec3_sub(p, q)) < 2 * finest) continue;
             if (!(difference(w, values, a, b) > w->job->params.bend)) continue;
-            if (w->nets.sample_count >= w->job->params.most_samples) return ST_OK;
+            if (w->nets.sample_count >= w->job->params.max_samples) return ST_OK;
             if (face_nets_add(&w->nets, face, vec3_scale(vec3_add(p, q), 0.5), err)) return err->status;
         }
     return ST_OK;
@@ -125,7 +125,7 @@ static enum status refine(struct work *w, struct err *err)
     return ST_OK;
 }
 
-/* --------------------------------------------------------------------------------------------------------------- light */
+/* ------------------------------------------------------------------------------------------------------------ light */
 
 static enum status trace(struct work *w, struct err *err)
 {

@@ -11,7 +11,7 @@
       "distance of samples where light bends most, as a part of the model's size")                                   \
     X(bend, double, 0.05, 0.001, 10, "",                                                                             \
       "relative error of interpolation above which a sample is added between two others")                            \
-    X(most_samples, int, 12000, 100, 1000000, "", "samples on all faces")                                            \
+    X(max_samples, int, 12000, 100, 1000000, "", "samples on all faces")                                             \
     X(rays, int, 2048, 64, 65536, "", "rays of a sample")                                                            \
     X(rounds, int, 400, 1, 10000, "", "most rounds of light from face to face")                                      \
     X(tolerance, double, 0.01, 1e-9, 1, "", "part of a sample's irradiance that may be missing when the rounds end")

@@ -21,7 +21,7 @@
 #include "common/image/exr.h"
 #include "tests/bench/exr_openexr.h"
 
-#define MOST_RUNS    64
+#define MAX_RUNS     64
 #define RUN_SECONDS  0.33
 #define LARGEST_HALF 65504.0F
 
@@ -126,9 +126,9 @@ static enum status go(const struct request *r, const struct exr_image *im, const
 static enum status time_it(const struct request *r, const struct exr_image *im, const char *path, double *seconds,
                            struct exr_image *back, struct err *err)
 {
-    double runs[MOST_RUNS], total = 0;
+    double runs[MAX_RUNS], total = 0;
     int count = 0;
-    for (int i = -1; i < MOST_RUNS && total < RUN_SECONDS; i++) {
+    for (int i = -1; i < MAX_RUNS && total < RUN_SECONDS; i++) {
         exr_image_release(back);
         const double begin = clock_seconds();
         enum status st = go(r, im, path, strcmp(r->direction, "write") ? back : NULL, err);

@@ -5,13 +5,14 @@
  *   irradiance --case model --folder PRODUCTS --converge FILE
  *   irradiance --case ... --estimator rays|blind|hemicube --effort N --truth FILE
  *
- * The first three write the true irradiance at the case's points: in closed form, or where there is none by rays, 2^21 at
- * each point, other random numbers than those of the measurement. MESHES has the OBJ files of the Cornell box. PRODUCTS is
- * out/SCENE of a textured model with outdoors, lights and evaluate/irradiance_points.txt, of which 35 points are used.
+ * The first three write the true irradiance at the case's points: in closed form, or where there is none by rays, 2^21
+ * at each point, other random numbers than those of the measurement. MESHES has the OBJ files of the Cornell box.
+ * PRODUCTS is out/SCENE of a textured model with outdoors, lights and evaluate/irradiance_points.txt, of which 35
+ * points are used.
  *
- * The last one gathers at all points with N rays each, or with hemicubes of N x N pixels, by as many threads as there are
- * cores; `blind` are rays that know of no emitter. It prints "seconds S" (wall time for all points, repeated for at least
- * 0.2 s), "core_s S", "error E" (root mean square over the points of the luminance's relative error), "unit 1",
+ * The last one gathers at all points with N rays each, or with hemicubes of N x N pixels, by as many threads as there
+ * are cores; `blind` are rays that know of no emitter. It prints "seconds S" (wall time for all points, repeated for at
+ * least 0.2 s), "core_s S", "error E" (root mean square over the points of the luminance's relative error), "unit 1",
  * "points N", "rays N" (each) and "rays_per_core_s R". */
 #include <math.h>
 #include <stdio.h>
@@ -28,7 +29,7 @@
 #include "tests/unit/common/gather/fields.h"
 
 enum { POINTS = 35, WIDTH = 7, HEIGHT = 5, CONVERGED = 1 << 21, KEY = 20 };
-static const double SECONDS_LEAST = 0.2;
+static const double SECONDS_MIN = 0.2;
 static const double LIFT = 0.02; /* of the model's size, as gather_irradiance does */
 
 struct bench {
@@ -235,7 +236,7 @@ static void measure(struct bench *b)
         parallel_for(POINTS, 1, gather, b);
         rounds++;
         seconds = clock_seconds() - begin;
-    } while (seconds < SECONDS_LEAST);
+    } while (seconds < SECONDS_MIN);
     core = (clock_cpu_seconds() - cpu) / rounds;
     for (int i = 0; i < POINTS; i++) {
         squares += pow(rgb_luminance(b->found[i].value) / b->truth[i] - 1, 2) / POINTS;

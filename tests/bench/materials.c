@@ -2,14 +2,14 @@
  *
  *   materials [--kind lambert|phong|ward] [--views N] [--truths N] [--samples N] [--noise F] [--threads N]
  *
- * Each truth is a random floor in a random box room (tests/unit/glossy_room.h), whose lamps, windows and walls have known
- * radiance: N samples on a grid of points, seen from random places, with noise. Truths have k_d of 0.1 to 0.8 / pi, n of 5
- * to 500 or alpha of 0.05 to 0.5, and a lobe that gives 10 to 90 % of the light of the brightest sample. The fit gets the
- * light from its own rays, knows neither model nor parameters, and chooses the model.
+ * Each truth is a random floor in a random box room (tests/unit/glossy_room.h), whose lamps, windows and walls have
+ * known radiance: N samples on a grid of points, seen from random places, with noise. Truths have k_d of 0.1 to 0.8 /
+ * pi, n of 5 to 500 or alpha of 0.05 to 0.5, and a lobe that gives 10 to 90 % of the light of the brightest sample. The
+ * fit gets the light from its own rays, knows neither model nor parameters, and chooses the model.
  *
  * A truth is met if the right model is chosen, k_d is within 2 % in each channel, k_s within 10 % and n or alpha within
- * 15 %. Prints "seconds S", "error F" (fraction of truths that are not met), "chosen F" (the right model), percentiles of
- * the relative errors where it was, and a histogram of the largest error of a truth over its target:
+ * 15 %. Prints "seconds S", "error F" (fraction of truths that are not met), "chosen F" (the right model), percentiles
+ * of the relative errors where it was, and a histogram of the largest error of a truth over its target:
  * "to_quarter", "to_half", "to_1" (met), "to_2", "beyond", "other_model". */
 #include <stdio.h>
 #include <stdlib.h>
@@ -23,8 +23,8 @@
 #include "stages/fit_materials/incident.h"
 #include "tests/unit/glossy_room.h"
 
-#define SHARE_LEAST 0.1
-#define SHARE_MOST  0.9
+#define SHARE_MIN 0.1
+#define SHARE_MAX 0.9
 
 static const struct incident_effort effort = {1024, 128, 2048};
 
@@ -57,7 +57,7 @@ static struct brdf random_brdf(enum brdf_kind kind, uint64_t seed, double *share
     b.albedo.b = room_random(&rng, seed, &at, 0.1, 0.8);
     const double shape = room_random(&rng, seed, &at, 0, 1);
     if (kind != BRDF_LAMBERT) b.shape = kind == BRDF_WARD ? 0.05 * pow(10, shape) : 5 * pow(100, shape);
-    *share = room_random(&rng, seed, &at, SHARE_LEAST, SHARE_MOST);
+    *share = room_random(&rng, seed, &at, SHARE_MIN, SHARE_MAX);
     return b;
 }
 
@@ -194,7 +194,7 @@ static void run_trials(void *ctx, size_t begin, size_t end, int thread)
     }
 }
 
-/* ------------------------------------------------------------------------------------------------------------ report */
+/* ----------------------------------------------------------------------------------------------------------- report */
 
 static void print_percentiles(const char *name, const struct work *w, size_t offset)
 {

@@ -21,7 +21,7 @@
 #include "common/model/model_axes.h"
 #include "stages/render_model/shell_scene.h"
 
-#define SECONDS_LEAST 2.0
+#define SECONDS_MIN 2.0
 
 struct job { /* the command line */
     const char *folder, *vdta, *vita, *model, *from, *to, *texture;
@@ -134,7 +134,7 @@ static enum status measure(struct rate *r, const struct bench *b, const struct j
     enum status st = round(b, j, &out, err);
     const double begin = clock_seconds(), core_begin = clock_cpu_seconds();
     int rounds = 0;
-    while (!st && clock_seconds() - begin < SECONDS_LEAST) {
+    while (!st && clock_seconds() - begin < SECONDS_MIN) {
         st = round(b, j, &out, err);
         rounds++;
     }

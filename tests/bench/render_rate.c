@@ -27,7 +27,7 @@
 #include "common/image/exr.h"
 #include "stages/render_views/frames.h"
 
-#define SECONDS_LEAST 0.5
+#define SECONDS_MIN 0.5
 
 struct job { /* the command line */
     const char *views, *depth, *path, *cameras, *scale, *out;
@@ -149,7 +149,7 @@ static enum status measure(struct bench *b, const struct job *job, struct err *e
     int done = 0;
     enum status st = ST_OK;
 
-    for (int round = 0; !st && (round == 0 || wall < SECONDS_LEAST); round++) {
+    for (int round = 0; !st && (round == 0 || wall < SECONDS_MIN); round++) {
         if (round == 1) wall = cpu = holes = megapixels = done = 0;
         for (int i = 0; !st && i < b->count; i++) {
             const struct view *camera = &b->reduced[i], *shown = job->path ? camera : b->cameras[i];

@@ -20,6 +20,7 @@
 #include "common/base/outfile.h"
 #include "common/capture/lens_list.h"
 #include "common/capture/view_image.h"
+#include "common/image/luminance.h"
 #include "common/layers/layered_depth.h"
 #include "common/light/model_rays.h"
 #include "common/model/model_axes.h"
@@ -278,7 +279,7 @@ static enum status write_view(const struct house *h, const struct model_rays *mo
     snprintf(path, sizeof path, "%s/views/%s.exr", h->out, name);
     if (!st) st = photo_quality_init(&quality, h->size, h->size, err);
     for (int i = 0; !st && i < h->size * h->size; i++) {
-        const float sigma = NOISE * photo_luminance(im.data + 4 * i);
+        const float sigma = NOISE * luminance_of(im.data + 4 * i);
         quality.variance[i] = sigma * sigma;
     }
     if (!st) st = view_image_write(&im, &quality, path, &view, h->prov, "relative", err);

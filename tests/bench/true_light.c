@@ -3,15 +3,16 @@
  *   true_light --scene FILE --truth-points FILE --points FILE --axes FILE --scale S --lights FILE [--lights-out FILE]
  *              [--outdoors FILE --outdoors-out FILE] [--list FILE --list-out FILE]
  *
- * --scene has lines `lamp NAME disk|quad ...`, `sun ...` and `panorama ...` of scene.txt (docs/scenes.md) in the frame of the
- * truth, others are ignored. Line for line, --truth-points and --points have the same points in that frame and in that of the
- * views; --axes is the model's axes.txt. True radiance is S times found radiance. --lights is what fit_lights found: its
- * lamps are compared with the nearest true ones, and replaced by them in --lights-out. --outdoors-out is --outdoors with
- * the true radiance in each direction. --list has lines X Y Z NX NY NZ in the frame of the views, --list-out has them in that
- * of the truth, a centimetre before their surfaces: the true surface may lie before that of the model.
+ * --scene has lines `lamp NAME disk|quad ...`, `sun ...` and `panorama ...` of scene.txt (docs/scenes.md) in the frame
+ * of the truth, others are ignored. Line for line, --truth-points and --points have the same points in that frame and
+ * in that of the views; --axes is the model's axes.txt. True radiance is S times found radiance. --lights is what
+ * fit_lights found: its lamps are compared with the nearest true ones, and replaced by them in --lights-out.
+ * --outdoors-out is --outdoors with the true radiance in each direction. --list has lines X Y Z NX NY NZ in the frame
+ * of the views, --list-out has them in that of the truth, a centimetre before their surfaces: the true surface may lie
+ * before that of the model.
  *
- * Prints for each found lamp "lamp NAME radiance P beta D centre M": the error of the luminance, a fraction; that of beta,
- * degrees; the distance of the centres, model units. */
+ * Prints for each found lamp "lamp NAME radiance P beta D centre M": the error of the luminance, a fraction; that of
+ * beta, degrees; the distance of the centres, model units. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -28,12 +29,12 @@
 #include "common/model/model_axes.h"
 #include "common/texture/outdoors.h"
 
-enum { MOST_LAMPS = 64, SUN_SAMPLES = 16 }; /* along each side of a pixel at the sun; elsewhere one */
-static const double BEFORE = 0.01;          /* m */
+enum { MAX_LAMPS = 64, SUN_SAMPLES = 16 }; /* along each side of a pixel at the sun; elsewhere one */
+static const double BEFORE = 0.01;         /* m */
 
 struct truth {
-    struct lamp lamps[MOST_LAMPS];
-    char names[MOST_LAMPS][64];
+    struct lamp lamps[MAX_LAMPS];
+    char names[MAX_LAMPS][64];
     int lamp_count;
     struct sky_params sky;
 };
@@ -49,7 +50,7 @@ struct job {
     struct provenance prov;
 };
 
-/* ----------------------------------------------------------------------------------------------------------- reading */
+/* ---------------------------------------------------------------------------------------------------------- reading */
 
 static void read_disk(struct truth *t, const char *line, struct lamp *l)
 {
@@ -86,7 +87,7 @@ static void read_line(struct truth *t, const char *line)
 {
     struct sun *s = &t->sky.sun;
     struct panorama *p = &t->sky.panorama;
-    if (t->lamp_count < MOST_LAMPS) {
+    if (t->lamp_count < MAX_LAMPS) {
         struct lamp *l = &t->lamps[t->lamp_count];
         *l = (struct lamp){0};
         const int before = t->lamp_count;
@@ -144,7 +145,7 @@ static enum status align(struct job *j, struct err *err)
     return st;
 }
 
-/* ------------------------------------------------------------------------------------------------------------- frames */
+/* ----------------------------------------------------------------------------------------------------------- frames */
 
 static struct vec3 direction_to_model(const struct job *j, struct vec3 d)
 {
@@ -178,7 +179,7 @@ static struct lamp lamp_to_model(const struct job *j, const struct lamp *truth)
     return l;
 }
 
-/* -------------------------------------------------------------------------------------------------------------- lamps */
+/* ------------------------------------------------------------------------------------------------------------ lamps */
 
 static void compare_lamp(const struct lamp *found, const struct lamp *truth)
 {
@@ -221,7 +222,7 @@ static enum status replace_lamps(struct job *j, struct err *err)
     return j->lights_out ? light_list_write(&j->found, j->lights_out, &j->prov, err) : ST_OK;
 }
 
-/* ----------------------------------------------------------------------------------------------------------- outdoors */
+/* --------------------------------------------------------------------------------------------------------- outdoors */
 
 /* The mean over a pixel. */
 static struct rgb true_pixel(const struct job *j, const struct sky *sky, const struct outdoors *o, int x, int y)
@@ -254,7 +255,7 @@ static enum status replace_outdoors(const struct job *j, struct err *err)
     return st;
 }
 
-/* -------------------------------------------------------------------------------------------------------------- points */
+/* ----------------------------------------------------------------------------------------------------------- points */
 
 static enum status bring_points(const struct job *j, struct err *err)
 {

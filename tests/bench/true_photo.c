@@ -2,8 +2,9 @@
  *
  *   true_photo --truth FILE --merged FILE --scale S --out FILE
  *
- * --merged is hdr/ID.exr of the products, --truth hdr/ID.exr of the truth, of the same size; true radiance is S times that of
- * the products. In --out nothing is clipped, and the noise is small everywhere; all else is that of --merged. */
+ * --merged is hdr/ID.exr of the products, --truth hdr/ID.exr of the truth, of the same size; true radiance is S times
+ * that of the products. In --out nothing is clipped, and the noise is small everywhere; all else is that of
+ * --merged. */
 #include <stdlib.h>
 
 #include "common/base/cli.h"

@@ -18,6 +18,7 @@
 #include "common/base/sort.h"
 #include "common/capture/lens_list.h"
 #include "common/capture/photo_quality.h"
+#include "common/image/luminance.h"
 #include "stages/rectify/rectify_params.h"
 #include "stages/rectify/resample.h"
 
@@ -68,7 +69,7 @@ static size_t list(float *to, const struct pictures *p, double unit)
     size_t count = 0;
     for (size_t i = 0; i < (size_t)p->measured.width * (size_t)p->measured.height; i++) {
         const float *v = p->measured.data + i * (size_t)p->channels, *t = p->truth.data + i * (size_t)p->channels;
-        const double light = (double)photo_luminance(v), truth = (double)photo_luminance(t);
+        const double light = (double)luminance_of(v), truth = (double)luminance_of(t);
         if (p->quality.marks[i] || !(light > 0) || !(truth > 0) || !(p->quality.variance[i] > 0)) continue;
         to[count++] =
             (float)(unit > 0 ? fabs(light - unit * truth) / sqrt((double)p->quality.variance[i]) : light / truth);

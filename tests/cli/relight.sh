@@ -113,7 +113,7 @@ what_is_wrong_is_named()
     sed -i 's/^v 5 0 0/v 4 0 0/' scenes/t/objects/crate.obj
     cp -r two/1 short; sed -i '$d' short/objects.txt
     try 1 'update the VITA again' relight "${dark[@]}" --relit short "${shown[@]}" --out made
-    try 2 'most_samples' update_vita "${dark[@]}" --set most_samples=0 --out made
+    try 2 'max_samples' update_vita "${dark[@]}" --set max_samples=0 --out made
 }
 
 for t in a_lamp_goes_off_and_bytes_do_not_depend_on_threads an_edit_that_says_nothing_of_light_leaves_the_picture_alone make_relights_the_views_and_a_second_make_does_nothing what_is_wrong_is_named; do run "$t"; done

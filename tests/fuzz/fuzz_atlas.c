@@ -1,8 +1,8 @@
 /* fuzz_atlas.c - reading of texture atlases: any list and page give an error message, or an atlas whose indices are in
  * range, which can be looked up anywhere, packed again, and written and read back.
  *
- * The input is atlas.txt, a line "%%", and page0.exr. Without this line, an input that begins like an OpenEXR file is the
- * page, and the list gets its size; otherwise it is the list. */
+ * The input is atlas.txt, a line "%%", and page0.exr. Without this line, an input that begins like an OpenEXR file is
+ * the page, and the list gets its size; otherwise it is the list. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,5 +1,5 @@
-/* fuzz_irradiance_points.c - files of points at which to compute irradiance: any bytes give points with finite positions
- * and unit normals, or an error message. */
+/* fuzz_irradiance_points.c - files of points at which to compute irradiance: any bytes give points with finite
+ * positions and unit normals, or an error message. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,4 +1,5 @@
-/* fuzz_lamp_indirect.c - reader of given indirect light: any bytes give finite irradiance at all points, or an error. */
+/* fuzz_lamp_indirect.c - reader of given indirect light: any bytes give finite irradiance at all points, or an
+ * error. */
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>

@@ -1,5 +1,5 @@
-/* fuzz_materials.c - readers of materials.txt, written by hand and by fit_materials: any bytes give usable materials, or an
- * error that names the file; what was read is written and read back. */
+/* fuzz_materials.c - readers of materials.txt, written by hand and by fit_materials: any bytes give usable materials,
+ * or an error that names the file; what was read is written and read back. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -34,7 +34,7 @@ static void check_fitted(const char *path)
         const struct material *m = &l.items[i];
         for (int c = 0; c < 3; c++)
             if (!(m->k_d[c] >= 0 && isfinite(m->k_d[c]))) abort();
-        if (!(m->ks >= 0 && isfinite(m->ks)) || !(m->shape >= 0 && m->shape <= MATERIAL_PHONG_MOST)) abort();
+        if (!(m->ks >= 0 && isfinite(m->ks)) || !(m->shape >= 0 && m->shape <= MATERIAL_PHONG_MAX)) abort();
     }
     if (material_list_write(&l, path, &prov, &err) || material_list_read(&again, path, &err)) abort();
     if (again.count != l.count) abort();

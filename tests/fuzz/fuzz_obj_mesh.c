@@ -15,7 +15,7 @@ static void check(const struct obj_mesh *mesh)
         const struct vec3 *t = mesh->triangles[i];
         if (!(vec3_length(vec3_cross(vec3_sub(t[1], t[0]), vec3_sub(t[2], t[0]))) > 0)) abort();
         for (int k = 0; k < 3; k++)
-            if (!(fmax(fabs(t[k].x), fmax(fabs(t[k].y), fabs(t[k].z))) <= OBJ_MOST_COORDINATE)) abort();
+            if (!(fmax(fabs(t[k].x), fmax(fabs(t[k].y), fabs(t[k].z))) <= OBJ_MAX_COORDINATE)) abort();
     }
 }
 

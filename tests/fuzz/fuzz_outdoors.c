@@ -1,5 +1,5 @@
-/* fuzz_outdoors.c - reader of the outdoors: any bytes give a picture of radiances of at least 0 that can be looked up and
- * written again, or an error that names the file. */
+/* fuzz_outdoors.c - reader of the outdoors: any bytes give a picture of radiances of at least 0 that can be looked up
+ * and written again, or an error that names the file. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

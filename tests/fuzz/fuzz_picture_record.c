@@ -1,5 +1,5 @@
-/* fuzz_picture_record.c - reader of records of pictures: any bytes give shares from 0 to 100 %, or an error with the file.
- * What was read is written, and read again. */
+/* fuzz_picture_record.c - reader of records of pictures: any bytes give shares from 0 to 100 %, or an error with the
+ * file. What was read is written, and read again. */
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>

@@ -1,5 +1,5 @@
-/* fuzz_reference_marks.c - marks in lighting reference images: any bytes give marks with finite positions and lenses that
- * can be used, or an error with the file. */
+/* fuzz_reference_marks.c - marks in lighting reference images: any bytes give marks with finite positions and lenses
+ * that can be used, or an error with the file. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,4 +1,5 @@
-/* fuzz_relit_changes.c - relight --materials: any bytes give a picture of finite radiance, or an error with the file. */
+/* fuzz_relit_changes.c - relight --materials: any bytes give a picture of finite radiance, or an error with the
+ * file. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,5 +1,5 @@
-/* fuzz_viewpoint_pairs.c - reader of pairs.txt: any bytes give shares from 0 to 1 of named photos, or an error. What was
- * read is written, and read again as it is. */
+/* fuzz_viewpoint_pairs.c - reader of pairs.txt: any bytes give shares from 0 to 1 of named photos, or an error. What
+ * was read is written, and read again as it is. */
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>

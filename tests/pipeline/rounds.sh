@@ -84,7 +84,7 @@ a_damaged_record_is_named()
     printf 'remodel-round 1\nchanged 2\n' >out/t/depth/round3/photo_2.round
     rm out/t/depth/photo_2.exr
     if run_scene depth >log; then fail "a damaged record was accepted"; fi
-    grep -q 'round3/photo_2.round:2: found "2", wanted a share from 0 to 1' log || { cat log; fail "the message does not name the record"; }
+    grep -q 'round3/photo_2.round:2: found "2", wanted share of pixels, a number from 0 to 1' log || { cat log; fail "the message does not name the record"; }
     rm out/t/depth/round3/photo_2.round
     run_scene depth >log || { cat log; fail "make after the record was deleted"; }
 }

@@ -76,7 +76,8 @@ static inline struct model_rays make_rays(const struct box *boxes, int count)
         "walls", "in", {-2, -2, -2}, {2, 2, 2}, true \
     }
 
-/* A camera at p that looks along +z, turned by `turn` radians about its y axis, and by `nod` about its x axis before. */
+/* A camera at p that looks along +z, turned by `turn` radians about its y axis, and by `nod` about its x axis
+ * before. */
 static inline struct view view_at(struct vec3 p, double turn, double nod, int width, int height, double focal)
 {
     const double c = cos(turn), s = sin(turn), d = cos(nod), e = sin(nod);

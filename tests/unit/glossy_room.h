@@ -1,8 +1,8 @@
 /* glossy_room.h - a box room of known radiance, and what its glossy floor shows: truth for fits of materials.
  *
- * The walls and the ceiling have one radiance each, but for panels: lamps, windows, a dark door. What the floor reflects is
- * integrated over their areas, by Lambert's formula for polygons and by Gauss' rule on cells that are small beside the
- * lobe. The fit integrates over directions instead, by rays through room_look(). */
+ * The walls and the ceiling have one radiance each, but for panels: lamps, windows, a dark door. What the floor
+ * reflects is integrated over their areas, by Lambert's formula for polygons and by Gauss' rule on cells that are small
+ * beside the lobe. The fit integrates over directions instead, by rays through room_look(). */
 #ifndef REMODEL_GLOSSY_ROOM_H
 #define REMODEL_GLOSSY_ROOM_H
 
@@ -125,7 +125,7 @@ static inline struct light_field room_field(const struct glossy_room *r)
     return (struct light_field){r, room_look, r->emitters, r->emitter_count};
 }
 
-/* ------------------------------------------------------------------------------------------------------------- truth */
+/* ------------------------------------------------------------------------------------------------------------ truth */
 
 /* Lambert's formula: the irradiance of a floor point from a parallelogram above the floor, of radiance 1. */
 static inline double room_form_factor(const struct room_panel *p, struct vec3 at)
@@ -214,7 +214,7 @@ static inline struct rgb room_reflection(const struct glossy_room *r, const stru
     return sum;
 }
 
-/* -------------------------------------------------------------------------------------------------------- the samples */
+/* ------------------------------------------------------------------------------------------------------ the samples */
 
 /* A standard normal number. */
 static inline double room_normal(const struct rng *rng, uint64_t pixel, uint64_t index)

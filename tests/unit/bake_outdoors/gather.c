@@ -229,7 +229,7 @@ static void the_same_bytes_for_any_number_of_threads(void **state)
     outdoors_release(&o[1]);
 }
 
-/* ---------------------------------------------------------------------------------------------------- reference images */
+/* ------------------------------------------------------------------------------------------------- reference images */
 
 enum { FISHEYE = 120 };
 
@@ -337,7 +337,7 @@ static void a_reference_image_comes_before_photos_and_sets_their_level(void **st
     outdoors_release(&o);
 }
 
-/* ------------------------------------------------------------------------------------------------------------ guesses */
+/* ---------------------------------------------------------------------------------------------------------- guesses */
 
 /* A sky of 3, ground of 0.5; known: columns from `first` to `last` of rows from `top` to `bottom`. */
 static void make_known(struct outdoors *o, int first, int last, int top, int bottom)

@@ -198,7 +198,7 @@ static void objects_of_missing_or_damaged_meshes_are_refused(void **state)
     }
 }
 
-/* ----------------------------------------------------------------------------------------------- objects of all edits */
+/* --------------------------------------------------------------------------------------------- objects of all edits */
 
 /* The plan of ROOM with objects.txt and upper.txt. */
 static enum status chained(struct plan *plan, const char *objects, const char *lower, const char *upper,
@@ -257,7 +257,7 @@ static void objects_of_all_edits_are_objects_alone(void **state)
     }
 }
 
-/* ---------------------------------------------------------------------------------------------------------- refusals */
+/* --------------------------------------------------------------------------------------------------------- refusals */
 
 static void statements_without_meaning_are_refused(void **state)
 {
@@ -287,10 +287,10 @@ static void statements_without_meaning_are_refused(void **state)
         {"material floor/hall lambert\n", "found \"lambert\", wanted matt, phong or ward"},
         {"material hall matt\n", "a face, such as wall/south/in"},
         {"material floor/hall phong 0.1\n", "N, an exponent"},
-        {"material floor/hall phong 0.1 0.5\n", "N, an exponent, from 1 to 5000"},
+        {"material floor/hall phong 0.1 0.5\n", "N, an exponent, a number from 1 to 5000"},
         {"material floor/hall phong 3 1\n", "wanted no more than 1 together"},
-        {"material floor/hall ward 0.1 0.01\n", "ALPHA, a roughness, from 0.02 to 1"},
-        {"material floor/hall ward -0.1 0.1\n", "KS, the strength of the gloss, from 0"},
+        {"material floor/hall ward 0.1 0.01\n", "ALPHA, a roughness, a number from 0.02 to 1"},
+        {"material floor/hall ward -0.1 0.1\n", "KS, the strength of the gloss, a number from 0"},
         {"material floor/hall matt 1\n", "the end of the line"},
         {"object a\n", "a mesh, FILE.obj"},
         {"object a /a.obj at 0 0 0 matt 0 0 0\n", "a mesh in the scene's folder"},
@@ -305,7 +305,7 @@ static void statements_without_meaning_are_refused(void **state)
         {"object a a.obj at 0 0 0 scale 0 matt 0 0 0\n", "a scale from 1e-6 to 1e6"},
         {"object a a.obj at 0 0 0 scale 1 2 matt 0 0 0\n", "found \"matt\", wanted a scale"},
         {"object a a.obj at 0 0 0 scale 1 -2 1 matt 0 0 0\n", "a scale from 1e-6 to 1e6"},
-        {"object a a.obj at 0 0 0 matt 0 0 2\n", "a share of blue light from 0 to 1"},
+        {"object a a.obj at 0 0 0 matt 0 0 2\n", "a share of blue light, a number from 0 to 1"},
         {"object a a.obj at 0 0 0 phong 0 0 0.9 0.5 5\n", "no more than 1 together"},
         {"object a a.obj at 0 0 0 matt 0 0 0\nobject a a.obj at 0 0 0 turn 0 matt 0 0 0\n", "edit.txt:3: "},
         {"remove object a\n", "edit.txt:2: no object is named a; objects.txt or the edit that this one stands on"},

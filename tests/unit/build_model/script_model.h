@@ -489,8 +489,8 @@ static inline void expected_remove(struct expected *t, const char *name)
     }
 }
 
-/* A place on a wall's face, a floor or a ceiling: S and Z, or X and Y. Returns the number of its words. *unsure: it is on
- * an angled wall, or measured from the end of a wall that may end at one. */
+/* A place on a wall's face, a floor or a ceiling: S and Z, or X and Y. Returns the number of its words. *unsure: it is
+ * on an angled wall, or measured from the end of a wall that may end at one. */
 static inline int expected_face_place(const struct expected *t, const char *face, char **w, double rect[4],
                                       bool *unsure)
 {

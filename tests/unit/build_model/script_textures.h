@@ -43,7 +43,7 @@ static inline bool expected_clears(const struct expected *t, const double p[3])
     return clear;
 }
 
-/* ------------------------------------------------------------------------------------------------------------ planes */
+/* ----------------------------------------------------------------------------------------------------------- planes */
 
 /* Seen from outside, u points to the right and v up; on floors and ceilings u is x. For planes along the axes. */
 struct expected_flat {

@@ -1,4 +1,5 @@
-/* sequence_identity.h - whether the faces of an edited model keep the names and ids of the unedited one; for sequences.c.
+/* sequence_identity.h - whether the faces of an edited model keep the names and ids of the unedited one; for
+ * sequences.c.
  */
 #ifndef REMODEL_TESTS_SEQUENCE_IDENTITY_H
 #define REMODEL_TESTS_SEQUENCE_IDENTITY_H

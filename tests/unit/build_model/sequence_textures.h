@@ -131,7 +131,7 @@ static inline void check_coverage(const struct model *m, const struct model *bas
     solid_triangles_release(&t);
 }
 
-/* ------------------------------------------------------------------------------------------------------------ points */
+/* ----------------------------------------------------------------------------------------------------------- points */
 
 static inline const struct texture_rule *rule_at(const struct texture_face *face, struct vec3 p)
 {

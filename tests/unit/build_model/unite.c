@@ -186,7 +186,8 @@ static void a_face_partly_shared_gets_a_hole(void **state)
     check_union(&l, (struct wanted){1, 0, 14, 9, 9, 28});
 }
 
-/* Surfaces of two rooms in one plane stay two faces with a common edge, also an island; parts of one room are merged. */
+/* Surfaces of two rooms in one plane stay two faces with a common edge, also an island; parts of one room are
+ * merged. */
 static void floors_of_two_rooms_are_two_faces(void **state)
 {
     static const char *const a[6] = {"s", "s", "s", "s", "floor/a/bottom", "floor/a"};

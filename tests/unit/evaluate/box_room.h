@@ -15,7 +15,7 @@ static inline float gray_of(int face) { return linear_from_srgb((float)(40 + 30 
 
 static inline double side(int axis) { return axis == 0 ? room.x : axis == 1 ? room.y : room.z; }
 
-/* ---------------------------------------------------------------------------------------------------------- the scene */
+/* -------------------------------------------------------------------------------------------------------- the scene */
 
 static inline void write_model(const char *path)
 {
@@ -118,7 +118,7 @@ static inline int make_files(void **state)
     return 0;
 }
 
-/* ------------------------------------------------------------------------------------------------------------ atlases */
+/* ---------------------------------------------------------------------------------------------------------- atlases */
 
 static uint32_t texel_source = ATLAS_VIEWS; /* of all texels: the view "far" */
 

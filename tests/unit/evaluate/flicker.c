@@ -9,8 +9,8 @@ enum { WIDTH = 80, HEIGHT = 60 };
 
 enum part { WALL, LEFT_IS_FURNITURE, LEFT_IS_AN_OBJECT };
 
-/* A camera before a wall at z = 2, moved by x; light of the wall is changed by `scale` times 1 + 0.3 of its x, or not at
- * all if `scale` is 0. */
+/* A camera before a wall at z = 2, moved by x; light of the wall is changed by `scale` times 1 + 0.3 of its x, or not
+ * at all if `scale` is 0. */
 static void make_frame(struct film_frame *f, double x, double scale, enum part part)
 {
     const double exposure = 0.7;

@@ -177,7 +177,7 @@ static int behind_box(const struct room *r, int texel)
     return shell_view_sight(&r->shell_views[0], &at) == SHELL_CLUTTER;
 }
 
-/* --------------------------------------------------------------------------------------------------------------- tests */
+/* ------------------------------------------------------------------------------------------------------------ tests */
 
 static void a_texel_is_where_its_ray_meets_the_face(void **state)
 {

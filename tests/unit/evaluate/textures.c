@@ -1,7 +1,7 @@
 /* textures.c - atlases of a box room in which each face has one colour: what they cover, and what they predict. */
 #include "tests/unit/evaluate/box_room.h"
 
-/* --------------------------------------------------------------------------------------------------------------- tests */
+/* ------------------------------------------------------------------------------------------------------------ tests */
 
 static void a_vita_predicts_what_it_shows(void **state)
 {

@@ -119,7 +119,7 @@ static double face_metric(const struct evaluation *e, const char *face, const ch
     return -1;
 }
 
-/* --------------------------------------------------------------------------------------------------------------- tests */
+/* ------------------------------------------------------------------------------------------------------------ tests */
 
 static void each_face_has_the_error_of_its_colour(void **state)
 {

@@ -166,13 +166,13 @@ static void a_ridge_may_cross_an_outline_with_a_notch(void **state)
 /* Each number of the file is given once, and those that are named are given; numbers are finite. */
 static void expect_whole_step_file(const char *text, int *lines)
 {
-    enum { MOST = 20000 };
-    static bool given[MOST];
+    enum { MAX_ID = 20000 };
+    static bool given[MAX_ID];
     memset(given, 0, sizeof given);
     *lines = 0;
     for (const char *at = strstr(text, "\n#"); at; at = strstr(at + 1, "\n#")) {
         const int id = atoi(at + 2);
-        assert_true(id > 0 && id < MOST && !given[id]);
+        assert_true(id > 0 && id < MAX_ID && !given[id]);
         given[id] = true;
         ++*lines;
     }

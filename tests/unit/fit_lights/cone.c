@@ -8,14 +8,14 @@
 #include "common/math/numbers.h"
 #include "tests/unit/scratch.h"
 
-enum { PLACES = 161, MOST_LINES = 6, PHOTOS = 4 };
+enum { PLACES = 161, MAX_LINES = 6, PHOTOS = 4 };
 
 struct floor_lines {
-    double angle[MOST_LINES][PLACES], indirect[MOST_LINES][PLACES][3];
-    double radiance[MOST_LINES * PHOTOS][PLACES][3], sigma[MOST_LINES * PHOTOS][PLACES];
-    struct vec3 at[MOST_LINES][PLACES];
-    struct cone_line lines[MOST_LINES];
-    struct cone_trace traces[MOST_LINES * PHOTOS];
+    double angle[MAX_LINES][PLACES], indirect[MAX_LINES][PLACES][3];
+    double radiance[MAX_LINES * PHOTOS][PLACES][3], sigma[MAX_LINES * PHOTOS][PLACES];
+    struct vec3 at[MAX_LINES][PLACES];
+    struct cone_line lines[MAX_LINES];
+    struct cone_trace traces[MAX_LINES * PHOTOS];
     struct cone_fit fit;
 };
 

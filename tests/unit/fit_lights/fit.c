@@ -8,15 +8,15 @@
 #include "common/math/numbers.h"
 #include "tests/unit/scratch.h"
 
-enum { MOST = 200 };
+enum { MAX_POINTS = 200 };
 
 static const double k_d[3] = {0.22, 0.2, 0.15};
 static const double true_s[2][3] = {{260, 235, 195}, {120, 130, 150}};
 static const struct vec3 centres[2] = {{0, 0, 2.6}, {1.6, 0.3, 2.4}};
 
 struct room {
-    struct vec3 at[MOST];
-    struct fit_point points[MOST];
+    struct vec3 at[MAX_POINTS];
+    struct fit_point points[MAX_POINTS];
     struct fit_lamp lamps[2];
     struct fit_material materials[2];
     double beta, exponent; /* true */

@@ -1,5 +1,5 @@
-/* lamp_picture.c, cone_edge.c - the edge of a cone on a floor is a circle or an ellipse known in closed form; where something
- * stands in its way it breaks; pictures show it where it is, from the views that see it. */
+/* lamp_picture.c, cone_edge.c - the edge of a cone on a floor is a circle or an ellipse known in closed form; where
+ * something stands in its way it breaks; pictures show it where it is, from the views that see it. */
 #include "stages/fit_lights/lamp_picture.h"
 
 #include <math.h>

@@ -1,5 +1,6 @@
-/* solve.c, resolve.c, observe.c - from marks on noisy pictures of a room to its lamp: a spot in the ceiling of a cube lights
- * the floor. Its light on the floor is a sum over its area, by distance from its axis. */
+/* solve.c, resolve.c, observe.c - from marks on noisy pictures of a room to its lamp: a spot in the ceiling of a cube
+ * lights the floor. Its light on the floor is a sum over its area, by distance from its axis. */
+#include "common/image/luminance.h"
 #include "stages/fit_lights/solve.h"
 
 #include <math.h>
@@ -82,7 +83,7 @@ static void write_view(const struct view *v, float clipped)
         assert_true(ray_scene_hit(&room.model.rays.rays, v->center, ray, &hit));
         paint(rgba, hit.point, v->name, (uint64_t)i);
         rgba[3] = 1;
-        const double sigma = noise * photo_luminance(rgba);
+        const double sigma = noise * luminance_of(rgba);
         quality.variance[i] = (float)(sigma * sigma);
         quality.marks[i] = (uint8_t)clipped;
         ids.id[i] = (uint32_t)solid_face_id(&room.model.rays.mesh, (int)hit.id);

@@ -98,7 +98,8 @@ static void dark_samples_are_lambertian_and_black(void **state)
     material_samples_release(&s);
 }
 
-/* All samples have the same direction, and light of the same distribution: the lobe is a constant times the irradiance. */
+/* All samples have the same direction, and light of the same distribution: the lobe is a constant times the
+ * irradiance. */
 static void equal_directions(struct material_samples *s)
 {
     struct err err = ERR_INIT;

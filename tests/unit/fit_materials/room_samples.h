@@ -1,4 +1,5 @@
-/* room_samples.h - samples of a floor in a glossy room, with the light of exact directions or of the stage's own rays. */
+/* room_samples.h - samples of a floor in a glossy room, with the light of exact directions or of the stage's own
+ * rays. */
 #ifndef REMODEL_ROOM_SAMPLES_H
 #define REMODEL_ROOM_SAMPLES_H
 

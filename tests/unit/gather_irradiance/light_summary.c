@@ -1,4 +1,5 @@
-/* light_summary.c - shares and errors of known points, the examples, the record read back, the picture of a hemicube. */
+/* light_summary.c - shares and errors of known points, the examples, the record read back, the picture of a
+ * hemicube. */
 #include "stages/gather_irradiance/light_summary.h"
 
 #include <math.h>
@@ -29,7 +30,7 @@ static void shares_errors_and_examples_are_those_of_lit_points(void **state)
     struct irradiance e[POINTS];
     struct light_record r;
     struct err err = ERR_INIT;
-    size_t chosen[LIGHT_EXAMPLES_MOST];
+    size_t chosen[LIGHT_EXAMPLES_MAX];
     (void)state;
     make_points(points, e);
     assert_ok(light_summarize(&r, chosen, points, e, POINTS, 3, &err), err);

@@ -1,4 +1,5 @@
-/* unfold.c - every direction above a surface has one pixel of the unfolded hemicube, and the pixels fill the hemisphere. */
+/* unfold.c - every direction above a surface has one pixel of the unfolded hemicube, and the pixels fill the
+ * hemisphere. */
 #include "stages/gather_irradiance/unfold.h"
 
 #include <math.h>

@@ -79,8 +79,8 @@ static void sensor_noise_is_measured(void **state)
         }
 }
 
-/* Where all colours have the same noise, the luminance's deviation is the sum of theirs, by their weights; where they are
- * independent, the root of the sum of squares. */
+/* Where all colours have the same noise, the luminance's deviation is the sum of theirs, by their weights; where they
+ * are independent, the root of the sum of squares. */
 static void noise_that_colours_share_is_measured(void **state)
 {
     const double squares = 0.2126 * 0.2126 + 0.7152 * 0.7152 + 0.0722 * 0.0722;

@@ -104,7 +104,7 @@ static void errors_name_the_file_and_the_line(void **state)
         {"remodel-tour 1\nview p1\n", "tour.txt:2: found \"view\""},
         {"remodel-tour 1\nroom west east\n", "tour.txt:2: found \"east\""},
         {"remodel-tour 1\nphoto\n", "tour.txt:2: "},
-        {"remodel-tour 1\nspeed 0\nroom west\n", "tour.txt:2: found \"0\", wanted a speed from 0.01 to 100"},
+        {"remodel-tour 1\nspeed 0\nroom west\n", "tour.txt:2: found \"0\", wanted a speed, a number from 0.01 to 100"},
         {"remodel-tour 1\nspeed fast\n", "tour.txt:2: found \"fast\""},
         {"remodel-tour 1\nspeed 1 2\n", "tour.txt:2: found \"2\""},
     };

@@ -1,4 +1,6 @@
-/* pixel_quality.c - the noise that a view states covers its errors, and marks reach the pixels that a kernel reaches. */
+/* pixel_quality.c - the noise that a view states covers its errors, and marks reach the pixels that a kernel
+ * reaches. */
+#include "common/image/luminance.h"
 #include "tests/unit/scratch.h"
 
 #include <math.h>
@@ -69,8 +71,8 @@ static struct coverage cover(const struct image *view, const struct image *truth
     for (size_t i = 0; i < (size_t)view->width * (size_t)view->height; i++) {
         const float *p = view->data + 4 * i, *t = truth->data + 4 * i;
         if (!(p[3] > 0)) continue;
-        const float light = photo_luminance(p), sigma = light * photo_relative_sigma(q->variance[i], light);
-        for (int k = 0; k < 3; k++) c.within[k] += fabsf(light - photo_luminance(t)) <= (float)(k + 1) * sigma;
+        const float light = luminance_of(p), sigma = light * photo_relative_sigma(q->variance[i], light);
+        for (int k = 0; k < 3; k++) c.within[k] += fabsf(light - luminance_of(t)) <= (float)(k + 1) * sigma;
         c.pixels++;
     }
     for (int k = 0; k < 3; k++) c.within[k] *= 100 / (double)c.pixels;

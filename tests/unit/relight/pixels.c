@@ -1,4 +1,5 @@
-/* What pixels show: textures of moved and new places, colours, lamps, objects by their share of a pixel; many emitters. */
+/* What pixels show: textures of moved and new places, colours, lamps, objects by their share of a pixel; many
+ * emitters. */
 #include "tests/unit/relight/relit_room.h"
 
 static void find(struct relit_room *r, struct edit *e, struct vec3 from, struct quat turn)
@@ -106,7 +107,8 @@ static void an_object_covers_as_many_pixels_as_its_area(void **state)
     relit_room_release(&r);
 }
 
-/* More emitters than rays are shared among: an unchanged room keeps its pixels, and twice the light is twice the light. */
+/* More emitters than rays are shared among: an unchanged room keeps its pixels, and twice the light is twice the
+ * light. */
 static void of_fifty_lamps_all_count(void **state)
 {
     static char lines[8192];

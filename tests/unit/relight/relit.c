@@ -5,7 +5,7 @@
 
 static const char ceiling_lamp[] = "quad lamp 0.5 0 1.99 0.5 0 0 0 -0.5 0 20 20 20 90 0\n";
 
-/* ---------------------------------------------------------------------------------------------------------- unchanged */
+/* -------------------------------------------------------------------------------------------------------- unchanged */
 
 static void an_edit_without_statements_gives_the_photo_back_bit_for_bit(void **state)
 {
@@ -39,7 +39,7 @@ static void an_edit_without_statements_leaves_a_room_with_a_window_alone(void **
     relit_room_release(&r);
 }
 
-/* ------------------------------------------------------------------------------------------------------------- energy */
+/* ----------------------------------------------------------------------------------------------------------- energy */
 
 static void with_windows_walled_up_and_lamps_off_a_room_becomes_black(void **state)
 {
@@ -87,9 +87,10 @@ static void twice_the_lamps_give_twice_the_radiance(void **state)
     }
 }
 
-/* ------------------------------------------------------------------------------------------------------- dark, ratios */
+/* ----------------------------------------------------------------------------------------------------- dark, ratios */
 
-/* A lamp of 1e4 times the light where it was all but dark: no quotient but a bounded one lights a wall that seems white. */
+/* A lamp of 1e4 times the light where it was all but dark: no quotient but a bounded one lights a wall that seems
+ * white. */
 static void a_lamp_that_becomes_ten_thousand_times_as_bright_gives_that_quotient(void **state)
 {
     static const float dim[6][3] = {{1e-6f, 1e-6f, 1e-6f}, {1e-6f, 1e-6f, 1e-6f}, {1e-6f, 1e-6f, 1e-6f},
@@ -143,7 +144,7 @@ static void without_light_before_pixels_are_bounded_and_marked(void **state)
     relit_room_release(&r);
 }
 
-/* ------------------------------------------------------------------------------------------------------------- objects */
+/* ---------------------------------------------------------------------------------------------------------- objects */
 
 /* It is all but black. */
 static void an_object_that_touches_the_walls_and_the_floor_casts_shadows_alone(void **state)
@@ -259,7 +260,7 @@ static void an_object_before_an_empty_pixel_is_drawn(void **state)
     relit_room_release(&r);
 }
 
-/* --------------------------------------------------------------------------------------------------------------- lamps */
+/* ------------------------------------------------------------------------------------------------------------ lamps */
 
 static void a_lamp_that_is_off_shows_the_light_that_falls_on_it(void **state)
 {
@@ -302,7 +303,7 @@ static void a_lamp_of_another_colour_is_that_many_times_as_bright(void **state)
     relit_room_release(&r);
 }
 
-/* -------------------------------------------------------------------------------------------------------------- threads */
+/* ---------------------------------------------------------------------------------------------------------- threads */
 
 static void threads_do_not_change_a_bit(void **state)
 {

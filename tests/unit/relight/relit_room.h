@@ -61,7 +61,7 @@ static inline const char *update_room(struct edit *e)
     job.params.rays = 512;
     job.params.rounds = 1000;
     job.params.tolerance = 0.003;
-    job.params.most_samples = 2000;
+    job.params.max_samples = 2000;
     assert_ok(update_vita(&job, &err), err);
     provenance_release(&job.prov);
     return out;
@@ -102,8 +102,8 @@ static inline int by_value(const void *a, const void *b)
     return x < y ? -1 : x > y;
 }
 
-/* All pixels are finite, and none is more than ten times as bright as the median of the 24 around it; `cause` (NULL: none
- * is) says which pixels may be. */
+/* All pixels are finite, and none is more than ten times as bright as the median of the 24 around it; `cause` (NULL:
+ * none is) says which pixels may be. */
 static inline void assert_no_fireflies(const struct relit_room *r, bool (*cause)(const struct relit_room *r, int i))
 {
     for (int i = 0; i < PIXELS; i++) {

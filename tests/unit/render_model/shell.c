@@ -1,11 +1,12 @@
-/* shell.c - pictures of a painted room: which viewpoint a pixel takes its colour from, and which colour; hard cameras. */
+/* shell.c - pictures of a painted room: which viewpoint a pixel takes its colour from, and which colour; hard
+ * cameras. */
 #include "stages/render_model/shell.h"
 
 #include "tests/unit/render_model/shell_pictures.h"
 
 #include "common/base/parallel.h"
 
-/* ------------------------------------------------------------------------------------------------- the two viewpoints */
+/* ----------------------------------------------------------------------------------------------- the two viewpoints */
 
 static void an_original_view_has_the_photos_own_bits(void **state)
 {
@@ -121,8 +122,8 @@ static void without_viewpoints_the_vita_alone_is_shown(void **state)
     shell_close(scene);
 }
 
-/* A viewpoint that looks the other way: the matrices of its tiles take the picture's points to w < 0, and to w = 0 in the
- * plane of its centre. */
+/* A viewpoint that looks the other way: the matrices of its tiles take the picture's points to w < 0, and to w = 0 in
+ * the plane of its centre. */
 static void what_is_behind_a_viewpoint_is_not_looked_up(void **state)
 {
     (void)state;
@@ -165,7 +166,7 @@ static void a_viewpoint_without_an_atlas_is_an_error(void **state)
     shell_close(scene);
 }
 
-/* ------------------------------------------------------------------------------------------------------ hard cameras */
+/* ----------------------------------------------------------------------------------------------------- hard cameras */
 
 static void a_camera_in_a_faces_plane_has_a_whole_picture(void **state)
 {
@@ -211,7 +212,7 @@ static void a_viewpoint_inside_what_an_edit_adds_sees_the_room(void **state)
     shell_close(without);
 }
 
-/* ---------------------------------------------------------------------------------------------------------- the rest */
+/* --------------------------------------------------------------------------------------------------------- the rest */
 
 static void threads_do_not_change_a_bit(void **state)
 {

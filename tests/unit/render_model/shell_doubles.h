@@ -1,5 +1,5 @@
-/* shell_doubles.h - what tests of the shell take in place of common/texture/{texture_map,outdoors}.c: maps are filled by
- * hand, and outdoors is a formula of the direction. */
+/* shell_doubles.h - what tests of the shell take in place of common/texture/{texture_map,outdoors}.c: maps are filled
+ * by hand, and outdoors is a formula of the direction. */
 #ifndef REMODEL_TESTS_SHELL_DOUBLES_H
 #define REMODEL_TESTS_SHELL_DOUBLES_H
 

@@ -3,7 +3,7 @@
 
 #include "tests/unit/render_model/shell_pictures.h"
 
-/* --------------------------------------------------------------------------------------------------- glass, outdoors */
+/* -------------------------------------------------------------------------------------------------- glass, outdoors */
 
 static const struct box with_pane[] = {
     ROOM_OUTSIDE, ROOM_INSIDE, {"glass/pane", "pane", {-1, -1, 0}, {1, 1, 0.1}, false}};
@@ -65,7 +65,7 @@ static void a_model_without_faces_shows_what_is_outdoors(void **state)
     shell_close(scene);
 }
 
-/* ------------------------------------------------------------------------------------------------------- texture maps */
+/* ----------------------------------------------------------------------------------------------------- texture maps */
 
 static const struct texture_rule in_place = {.matrix = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
 

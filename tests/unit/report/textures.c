@@ -91,7 +91,8 @@ static struct model_axes turned_axes(void)
                                .ceiling = 2.5};
 }
 
-/* A camera in the room's middle; its axis is along (1, 0.7, -0.05) in the model's frame. It shows faces 2, 4, 5 and 6. */
+/* A camera in the room's middle; its axis is along (1, 0.7, -0.05) in the model's frame. It shows faces 2, 4, 5 and
+ * 6. */
 static struct view room_view(const struct model_axes *axes)
 {
     struct view v = {.name = "a", .width = WIDTH, .height = HEIGHT, .fx = 20, .fy = 20, .cx = 30, .cy = 20};

@@ -338,7 +338,7 @@ static void errors_in_depth_txt_name_their_line(void **state)
         {"scale 0\n", "depth.txt:1: found \"0\""},
         {"scale -1\n", "depth.txt:1: found \"-1\""},
         {"scale nan\n", "depth.txt:1"},
-        {"scale 1e13\n", "from 1e-12 to 1e12"},
+        {"scale 1e13\n", "a number from 1e-12 to 1e+12"},
         {"scale\n", "depth.txt:1"},
         {"scale 1 2\n", "depth.txt:1: found \"2\""},
         {"\nscale 1\nscale 2\n", "depth.txt:3"},

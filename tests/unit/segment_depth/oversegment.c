@@ -181,8 +181,8 @@ static void every_valid_pixel_is_in_one_connected_segment(void **state)
         }
 }
 
-/* The upper rows begin one pixel farther to the right with every four columns, so that the first pixels of segments in half
- * the size are masked in the full one. */
+/* The upper rows begin one pixel farther to the right with every four columns, so that the first pixels of segments in
+ * half the size are masked in the full one. */
 static void sawtooth(int x, int y, float rgba[4])
 {
     noise(x, y, rgba);

@@ -1,6 +1,31 @@
 /* view_depth.c - the whole stage on photographs of synthetic scenes, easy and hard. */
 #include "tests/unit/segment_depth/whole.h"
 
+static struct result made; /* of a test with SCENE_TEST; the scene is empty before it */
+
+static int begin_scene(void **state)
+{
+    (void)state;
+    start();
+    return 0;
+}
+
+static int end_scene(void **state)
+{
+    (void)state;
+    layered_depth_release(&made.depth);
+    made = (struct result){0};
+    return 0;
+}
+#define SCENE_TEST(f) cmocka_unit_test_setup_teardown(f, begin_scene, end_scene)
+
+static void find_depth(int cameras, int points)
+{
+    place_cameras(cameras);
+    scene_points(&scene, points);
+    must_work(&made);
+}
+
 /* -------------------------------------------------------------------------------------- easy scenes */
 
 static void a_facing_wall_is_found(void **state)
@@ -23,39 +48,27 @@ static void a_facing_wall_is_found(void **state)
 static void a_slanted_wall_is_found(void **state)
 {
     (void)state;
-    struct result r = {0};
-    start();
     scene_wall(&scene, 0, 0, 5, 9, 9, 0.5);
-    place_cameras(3);
-    scene_points(&scene, 150);
-    must_work(&r);
-    assert_true(fraction_correct(&r.depth, -1, 0.02) > 0.97);
-    layered_depth_release(&r.depth);
+    find_depth(3, 150);
+    assert_true(fraction_correct(&made.depth, -1, 0.02) > 0.97);
 }
 
 static void a_floor_is_found(void **state)
 {
     (void)state;
-    struct result r = {0};
-    start();
     struct painted_surface *floor = scene_surface(&scene, vec3_make(0, 1, 7));
     floor->across = vec3_make(15, 0, 0);
     floor->down = vec3_make(0, 0, 7);
     scene_wall(&scene, 0, 0, 12, 20, 20, 0)->cell = 0.6;
-    place_cameras(5);
-    scene_points(&scene, 300);
-    must_work(&r);
-    assert_true(fraction_correct(&r.depth, 0, 0.02) > 0.95);
-    assert_true(fraction_correct(&r.depth, 1, 0.02) > 0.9);
-    layered_depth_release(&r.depth);
+    find_depth(5, 300);
+    assert_true(fraction_correct(&made.depth, 0, 0.02) > 0.95);
+    assert_true(fraction_correct(&made.depth, 1, 0.02) > 0.9);
 }
 
 /* Before a wall, with a few pebbles on it that show where it is. */
 static void a_blank_lawn_lies_on_the_ground(void **state)
 {
     (void)state;
-    struct result r = {0};
-    start();
     struct painted_surface *lawn = scene_surface(&scene, vec3_make(0, 1.2, 6));
     lawn->across = vec3_make(15, 0, 0);
     lawn->down = vec3_make(0, 0, 6);
@@ -65,52 +78,42 @@ static void a_blank_lawn_lies_on_the_ground(void **state)
     scene_points(&scene, 350);
     for (int i = 0; i < 40; i++)
         scene_point(&scene, vec3_make(4 * scene_hash(i, 1, 1) - 2, 1.2, 4 + 7 * scene_hash(i, 1, 2)), 31);
-    must_work(&r);
-    if (getenv("VERDICT")) print_message("  lawn %.3f\n", fraction_correct(&r.depth, 0, 0.03));
-    assert_true(fraction_correct(&r.depth, 0, 0.03) > 0.9);
-    layered_depth_release(&r.depth);
+    must_work(&made);
+    if (getenv("VERDICT")) print_message("  lawn %.3f\n", fraction_correct(&made.depth, 0, 0.03));
+    assert_true(fraction_correct(&made.depth, 0, 0.03) > 0.9);
 }
 
 static void a_ball_is_found(void **state)
 {
     (void)state;
-    struct result r = {0};
-    start();
     scene_wall(&scene, 0, 0, 7, 12, 12, 0)->cell = 0.35;
     scene_surface(&scene, vec3_make(0.1, 0, 5))->radius = 1;
     scene.surfaces[1].colour[0] = 0.15f;
     scene.surfaces[1].cell = 0.2;
-    place_cameras(5);
-    scene_points(&scene, 300);
-    must_work(&r);
-    assert_true(fraction_correct(&r.depth, 0, 0.01) > 0.95);
-    assert_true(fraction_correct(&r.depth, 1, 0.02) > 0.9);
-    layered_depth_release(&r.depth);
+    find_depth(5, 300);
+    assert_true(fraction_correct(&made.depth, 0, 0.01) > 0.95);
+    assert_true(fraction_correct(&made.depth, 1, 0.02) > 0.9);
 }
 
 /* A card in front of a wall: in each row the depth changes at the card's edge. */
 static void a_depth_edge_is_found_within_two_pixels(void **state)
 {
     (void)state;
-    struct result r = {0};
     int rows = 0, near = 0;
-    start();
     scene_wall(&scene, 0, 0, 7, 12, 12, 0)->cell = 0.35;
     struct painted_surface *card = scene_wall(&scene, 0.1, 0.1, 4, 0.8, 0.7, 0);
     card->colour[0] = 0.12f;
     card->cell = 0.2;
-    place_cameras(5);
-    scene_points(&scene, 300);
-    must_work(&r);
-    assert_true(fraction_correct(&r.depth, 0, 0.02) > 0.97 && fraction_correct(&r.depth, 1, 0.01) > 0.97);
+    find_depth(5, 300);
+    assert_true(fraction_correct(&made.depth, 0, 0.02) > 0.97 && fraction_correct(&made.depth, 1, 0.01) > 0.97);
     for (int y = 0; y < H; y++) {
         int surface, edges[2] = {-1, -1}, found[2] = {-1, -1};
         for (int x = 1; x < W; x++) {
             scene_depth(&scene, &scene.views[0], x + 0.5, y + 0.5, &surface);
             if (surface == 1 && edges[0] < 0) edges[0] = x;
             if (surface == 1) edges[1] = x;
-            if (r.depth.interior.z[y * W + x] < 5.5f && found[0] < 0) found[0] = x;
-            if (r.depth.interior.z[y * W + x] < 5.5f) found[1] = x;
+            if (made.depth.interior.z[y * W + x] < 5.5f && found[0] < 0) found[0] = x;
+            if (made.depth.interior.z[y * W + x] < 5.5f) found[1] = x;
         }
         for (int k = 0; k < 2 && edges[0] >= 0; k++) {
             near += abs(edges[k] - found[k]) <= 2;
@@ -118,7 +121,6 @@ static void a_depth_edge_is_found_within_two_pixels(void **state)
         }
     }
     assert_true(rows > 80 && near >= 0.95 * rows);
-    layered_depth_release(&r.depth);
 }
 
 /* --------------------------------------------------------------------------------------------------- hard cases */
@@ -144,13 +146,10 @@ static void a_blank_wall_gets_the_depth_of_its_frame(void **state)
 static void an_entirely_blank_wall_has_a_depth_without_confidence(void **state)
 {
     (void)state;
-    struct result r = {0};
-    start();
     scene_wall(&scene, 0, 0, 5, 30, 30, 0)->contrast = 0;
     place_cameras(3);
-    must_work(&r);
-    assert_true(mean_confidence(&r.depth) < 0.3);
-    layered_depth_release(&r.depth);
+    must_work(&made);
+    assert_true(mean_confidence(&made.depth) < 0.3);
 }
 
 /* Vertical stripes repeat every 0.31 in the world, 10 px: less than the disparity between the views. Points decide
@@ -158,8 +157,6 @@ static void an_entirely_blank_wall_has_a_depth_without_confidence(void **state)
 static void a_repeated_pattern_is_resolved_by_points(void **state)
 {
     (void)state;
-    struct result r = {0};
-    start();
     scene_wall(&scene, 0, 0, 5, 9, 9, 0);
     scene.surfaces[0].period = 0.31;
     place_cameras(3);
@@ -167,22 +164,18 @@ static void a_repeated_pattern_is_resolved_by_points(void **state)
         scene_point(&scene, vec3_make(5 * scene_hash(i, 0, 0) - 2.5, 3.5 * scene_hash(i, 0, 1) - 1.75, 5), 7);
     for (int i = 0; i < 12; i++) /* and some far and near ones, to widen the depth range */
         scene_point(&scene, vec3_make(scene_hash(i, 0, 0), -1.4, i % 2 ? 3 : 9), 7);
-    must_work(&r);
-    assert_true(fraction_correct(&r.depth, -1, 0.02) > 0.9);
-    layered_depth_release(&r.depth);
+    must_work(&made);
+    assert_true(fraction_correct(&made.depth, -1, 0.02) > 0.9);
 }
 
 static void a_repeated_pattern_without_points_has_low_confidence(void **state)
 {
     (void)state;
-    struct result r = {0};
-    start();
     scene_wall(&scene, 0, 0, 5, 9, 9, 0);
     scene.surfaces[0].period = 0.31;
     place_cameras(2);
-    must_work(&r);
-    assert_true(mean_confidence(&r.depth) < 0.5);
-    layered_depth_release(&r.depth);
+    must_work(&made);
+    assert_true(mean_confidence(&made.depth) < 0.5);
 }
 
 static void a_photo_twice_as_bright_matches(void **state)
@@ -205,55 +198,46 @@ static void a_tripod_gives_no_depth_but_an_error(void **state)
 {
     (void)state;
     const struct segment_params params = SEGMENT_PARAMS_DEFAULT;
-    struct result r = {0};
     struct err err = ERR_INIT;
-    start();
     scene_wall(&scene, 0, 0, 5, 9, 9, 0);
     for (int i = 0; i < 3; i++) scene_view(&scene, W, H, FOCAL, 0, 0, 0, 0.1 * i);
     scene_points(&scene, 100);
-    assert_int_equal(depth_of(&r, &params, &err), ST_DATA);
+    assert_int_equal(depth_of(&made, &params, &err), ST_DATA);
     assert_non_null(strstr(err.text, "taken from different positions"));
-    assert_null(r.depth.interior.z);
+    assert_null(made.depth.interior.z);
 
     start(); /* a tiny baseline, with points as structure from motion would then find them */
     scene_wall(&scene, 0, 0, 5, 9, 9, 0);
     for (int i = 0; i < 3; i++) scene_view(&scene, W, H, FOCAL, 1e-4 * i, 0, 0, 0.1 * i);
     scene_points(&scene, 100);
-    must_work(&r);
-    assert_true(mean_confidence(&r.depth) < 0.3);
-    layered_depth_release(&r.depth);
+    must_work(&made);
+    assert_true(mean_confidence(&made.depth) < 0.3);
 }
 
 static void a_neighbour_that_faces_elsewhere_is_left_out(void **state)
 {
     (void)state;
-    struct result r = {0};
-    start();
     scene_wall(&scene, 0, 0, 5, 9, 9, 0);
     scene_view(&scene, W, H, FOCAL, 0, 0, 0, 0);
     scene_view(&scene, W, H, FOCAL, 0.3, 0, 0, 2);
     scene_view(&scene, W, H, FOCAL, 0.4, 0, 0, 0);
     scene_points(&scene, 150);
-    must_work(&r);
-    assert_int_equal(r.neighbour_count, 1);
-    assert_int_equal(r.neighbours[0], 2);
-    layered_depth_release(&r.depth);
+    must_work(&made);
+    assert_int_equal(made.neighbour_count, 1);
+    assert_int_equal(made.neighbours[0], 2);
 }
 
 /* By its pose the neighbour sees the wall, but its photo shows another scene. */
 static void a_neighbour_with_a_wrong_picture_does_no_harm(void **state)
 {
     (void)state;
-    struct result r = {0};
-    start();
     scene_wall(&scene, 0, 0, 5, 9, 9, 0.2);
     place_cameras(4);
     scene.gain[2] = 0; /* black */
     scene_points(&scene, 150);
-    must_work(&r);
-    assert_int_equal(r.neighbour_count, 3);
-    assert_true(fraction_correct(&r.depth, -1, 0.01) > 0.93);
-    layered_depth_release(&r.depth);
+    must_work(&made);
+    assert_int_equal(made.neighbour_count, 3);
+    assert_true(fraction_correct(&made.depth, -1, 0.01) > 0.93);
 }
 
 static void two_views_are_enough(void **state)
@@ -312,18 +296,14 @@ static void tiny_and_narrow_photos_work(void **state)
 static void a_thin_pole_is_found(void **state)
 {
     (void)state;
-    struct result r = {0};
     int found = 0;
-    start();
     scene_wall(&scene, 0, 0, 7, 12, 12, 0)->cell = 0.35;
     struct painted_surface *pole = scene_wall(&scene, 0.05, 0, 4, 0.05, 3, 0);
     pole->colour[0] = pole->colour[1] = pole->colour[2] = 0.06f;
-    place_cameras(5);
-    scene_points(&scene, 300);
-    must_work(&r);
-    assert_true(fraction_correct(&r.depth, 0, 0.02) > 0.95);
+    find_depth(5, 300);
+    assert_true(fraction_correct(&made.depth, 0, 0.02) > 0.95);
     for (int y = 0; y < H; y++) {
-        const float *z = r.depth.interior.z + y * W;
+        const float *z = made.depth.interior.z + y * W;
         for (int x = 78; x < 86; x++)
             if (fabsf(z[x] - 4) < 0.2f) {
                 found++;
@@ -332,7 +312,6 @@ static void a_thin_pole_is_found(void **state)
     }
     if (getenv("VERDICT")) print_message("  pole in %d rows\n", found);
     assert_true(found >= 0.8 * H);
-    layered_depth_release(&r.depth);
 }
 
 static void white_and_black_photos_work(void **state)
@@ -356,41 +335,33 @@ static void white_and_black_photos_work(void **state)
 static void an_overexposed_patch_gets_the_depth_of_its_rim(void **state)
 {
     (void)state;
-    struct result r = {0};
-    start();
     scene_wall(&scene, 0, 0, 5, 9, 9, 0);
     struct painted_surface *lamp = scene_wall(&scene, 0.2, 0.1, 5 - 1e-4, 0.5, 0.5, 0);
     for (int c = 0; c < 3; c++) lamp->colour[c] = 30;
     lamp->contrast = 0;
-    place_cameras(5);
-    scene_points(&scene, 200);
-    must_work(&r);
-    assert_true(fraction_correct(&r.depth, 1, 0.02) > 0.9 && fraction_correct(&r.depth, 0, 0.02) > 0.95);
-    layered_depth_release(&r.depth);
+    find_depth(5, 200);
+    assert_true(fraction_correct(&made.depth, 1, 0.02) > 0.9 && fraction_correct(&made.depth, 0, 0.02) > 0.95);
 }
 
 static void invalid_pixels_have_no_depth(void **state)
 {
     (void)state;
-    struct result r = {0};
-    start();
     scene_wall(&scene, 0, 0, 5, 9, 9, 0.2);
     place_cameras(3);
     scene.holes = true;
     scene_points(&scene, 150);
-    must_work(&r);
-    assert_int_equal(r.depth.interior.id[H / 2 * W + W / 2], 0);
+    must_work(&made);
+    assert_int_equal(made.depth.interior.id[H / 2 * W + W / 2], 0);
     int good = 0, count = 0;
     for (int i = 0; i < W * H; i++) {
         int surface;
-        if (!r.depth.interior.id[i]) continue;
-        good +=
-            fabs((double)r.depth.interior.z[i] / scene_depth(&scene, scene.views, i % W + 0.5, i / W + 0.5, &surface) -
-                 1) < 0.02;
+        if (!made.depth.interior.id[i]) continue;
+        good += fabs((double)made.depth.interior.z[i] /
+                         scene_depth(&scene, scene.views, i % W + 0.5, i / W + 0.5, &surface) -
+                     1) < 0.02;
         count++;
     }
     assert_true(count > 0.8 * W * H && good > 0.95 * count);
-    layered_depth_release(&r.depth);
 }
 
 /* Without points the sweep starts almost at infinity, which a plane as steep as a floor crosses within a segment. */
@@ -635,26 +606,26 @@ int main(void)
         cmocka_unit_test(planes_found_at_half_the_size_hold_for_all_pixels),
         cmocka_unit_test(views_below_the_size_are_not_halved),
         cmocka_unit_test(rounds_continue_from_half_the_size),
-        cmocka_unit_test(a_slanted_wall_is_found),
-        cmocka_unit_test(a_floor_is_found),
-        cmocka_unit_test(a_blank_lawn_lies_on_the_ground),
-        cmocka_unit_test(a_ball_is_found),
-        cmocka_unit_test(a_depth_edge_is_found_within_two_pixels),
+        SCENE_TEST(a_slanted_wall_is_found),
+        SCENE_TEST(a_floor_is_found),
+        SCENE_TEST(a_blank_lawn_lies_on_the_ground),
+        SCENE_TEST(a_ball_is_found),
+        SCENE_TEST(a_depth_edge_is_found_within_two_pixels),
         cmocka_unit_test(a_blank_wall_gets_the_depth_of_its_frame),
-        cmocka_unit_test(an_entirely_blank_wall_has_a_depth_without_confidence),
-        cmocka_unit_test(a_repeated_pattern_is_resolved_by_points),
-        cmocka_unit_test(a_repeated_pattern_without_points_has_low_confidence),
+        SCENE_TEST(an_entirely_blank_wall_has_a_depth_without_confidence),
+        SCENE_TEST(a_repeated_pattern_is_resolved_by_points),
+        SCENE_TEST(a_repeated_pattern_without_points_has_low_confidence),
         cmocka_unit_test(a_photo_twice_as_bright_matches),
-        cmocka_unit_test(a_tripod_gives_no_depth_but_an_error),
-        cmocka_unit_test(a_neighbour_that_faces_elsewhere_is_left_out),
-        cmocka_unit_test(a_neighbour_with_a_wrong_picture_does_no_harm),
+        SCENE_TEST(a_tripod_gives_no_depth_but_an_error),
+        SCENE_TEST(a_neighbour_that_faces_elsewhere_is_left_out),
+        SCENE_TEST(a_neighbour_with_a_wrong_picture_does_no_harm),
         cmocka_unit_test(two_views_are_enough),
         cmocka_unit_test(one_view_is_an_error),
         cmocka_unit_test(tiny_and_narrow_photos_work),
-        cmocka_unit_test(a_thin_pole_is_found),
+        SCENE_TEST(a_thin_pole_is_found),
         cmocka_unit_test(white_and_black_photos_work),
-        cmocka_unit_test(an_overexposed_patch_gets_the_depth_of_its_rim),
-        cmocka_unit_test(invalid_pixels_have_no_depth),
+        SCENE_TEST(an_overexposed_patch_gets_the_depth_of_its_rim),
+        SCENE_TEST(invalid_pixels_have_no_depth),
         cmocka_unit_test(a_steep_floor_without_points_has_no_depth_behind_the_camera),
         cmocka_unit_test(unrelated_photos_give_valid_depths),
         cmocka_unit_test(extreme_parameters_work),

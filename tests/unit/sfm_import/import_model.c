@@ -100,29 +100,47 @@ static void check_pixels(const struct imported *in, double tolerance)
     }
 }
 
+struct fixture {
+    struct sfm_model model;
+    struct photo_list photos;
+    struct imported out;
+    struct err err;
+};
+
+static struct fixture made_of(const struct camera *lens)
+{
+    struct fixture f = {.err = ERR_INIT};
+    make_model(&f.model, lens);
+    make_photos(&f.photos, lens);
+    return f;
+}
+
+static void release(struct fixture *f)
+{
+    imported_release(&f->out);
+    sfm_model_release(&f->model);
+    photo_list_release(&f->photos);
+}
+
 static void an_exact_model_is_imported_without_loss(void **state)
 {
     (void)state;
-    struct sfm_model m;
-    struct photo_list photos;
-    struct imported out;
-    struct err err = ERR_INIT;
-    make_model(&m, &radial);
-    make_photos(&photos, &radial);
-    assert_ok(import_model(&out, &m, &photos, &defaults, &err), err);
-    assert_int_equal(out.stats.registered, PHOTOS);
-    assert_int_equal(out.stats.dropped, 0);
-    assert_true(out.stats.mean_error < 1e-9 && out.stats.median_error < 1e-9);
-    assert_near(out.stats.stated_error, 0.1, 1e-12);
-    assert_int_equal(out.model.image_count, PHOTOS);
-    assert_true(out.model.point_count > POINTS / 2);
-    check_pixels(&out, 1e-8);
+    struct fixture f = made_of(&radial);
+    assert_ok(import_model(&f.out, &f.model, &f.photos, &defaults, &f.err), f.err);
+    assert_int_equal(f.out.stats.registered, PHOTOS);
+    assert_int_equal(f.out.stats.dropped, 0);
+    assert_true(f.out.stats.mean_error < 1e-9 && f.out.stats.median_error < 1e-9);
+    assert_near(f.out.stats.stated_error, 0.1, 1e-12);
+    assert_int_equal(f.out.model.image_count, PHOTOS);
+    assert_true(f.out.model.point_count > POINTS / 2);
+    check_pixels(&f.out, 1e-8);
     for (int i = 0; i < PHOTOS; i++) {
-        assert_int_equal(out.model.images[i].id, i + 1);
-        assert_int_equal(out.model.cameras[i].id, i + 1);
-        assert_int_equal(out.model.cameras[i].camera.model, CAMERA_PINHOLE);
-        assert_memory_equal(out.lenses.lenses[i].camera.params, radial.params, sizeof radial.params);
-        assert_memory_equal(&out.model.images[i].cam_from_world, &m.images[i].cam_from_world, sizeof(struct pose));
+        assert_int_equal(f.out.model.images[i].id, i + 1);
+        assert_int_equal(f.out.model.cameras[i].id, i + 1);
+        assert_int_equal(f.out.model.cameras[i].camera.model, CAMERA_PINHOLE);
+        assert_memory_equal(f.out.lenses.lenses[i].camera.params, radial.params, sizeof radial.params);
+        assert_memory_equal(&f.out.model.images[i].cam_from_world, &f.model.images[i].cam_from_world,
+                            sizeof(struct pose));
     }
 
     /* a camera set reads what was written; writing again gives the same bytes */
@@ -130,24 +148,23 @@ static void an_exact_model_is_imported_without_loss(void **state)
     struct lens_list lenses;
     char folder[300];
     snprintf(folder, sizeof folder, "%s/views", scratch);
-    assert_ok(imported_write(&out, folder, NULL, &err), err);
+    assert_ok(imported_write(&f.out, folder, NULL, &f.err), f.err);
     char *first = scratch_read(scratch_path("views/images.txt"));
-    assert_ok(imported_write(&out, folder, NULL, &err), err);
+    assert_ok(imported_write(&f.out, folder, NULL, &f.err), f.err);
     assert_file_text(scratch_path("views/images.txt"), first);
     assert_file_text(scratch_path("views/views.mk"), "VIEWS := p0 p1 p2 p3\n");
-    assert_ok(camera_set_read(&set, folder, &err), err);
-    assert_ok(lens_list_read(&lenses, scratch_path("views/lenses.txt"), &err), err);
+    assert_ok(camera_set_read(&set, folder, &f.err), f.err);
+    assert_ok(lens_list_read(&lenses, scratch_path("views/lenses.txt"), &f.err), f.err);
     assert_int_equal(set.view_count, PHOTOS);
-    assert_int_equal(set.model.point_count, out.model.point_count);
+    assert_int_equal(set.model.point_count, f.out.model.point_count);
     assert_int_equal(lenses.count, PHOTOS);
     free(first);
     lens_list_release(&lenses);
     camera_set_release(&set);
-    imported_release(&out);
-    imported_release(&out);
+    imported_release(&f.out);
+    imported_release(&f.out);
     imported_release(NULL);
-    sfm_model_release(&m);
-    photo_list_release(&photos);
+    release(&f);
 }
 
 static void image_names_are_matched_to_photos(void **state)
@@ -169,65 +186,53 @@ static void image_names_are_matched_to_photos(void **state)
 static void images_that_are_not_photos_are_left_out(void **state)
 {
     (void)state;
-    struct sfm_model m;
-    struct photo_list photos;
-    struct imported out;
-    struct err err = ERR_INIT;
-    make_model(&m, &radial);
-    make_photos(&photos, &radial);
-    rename_image(&m, 0, "stranger.jpg");
-    assert_ok(import_model(&out, &m, &photos, &defaults, &err), err);
-    assert_int_equal(out.stats.registered, 3);
-    assert_int_equal(out.stats.unregistered, 1);
-    assert_int_equal(out.stats.unknown, 1);
-    assert_string_equal(out.model.images[0].name, "p1.exr");
-    check_pixels(&out, 1e-8);
-    imported_release(&out);
+    struct fixture f = made_of(&radial);
+    rename_image(&f.model, 0, "stranger.jpg");
+    assert_ok(import_model(&f.out, &f.model, &f.photos, &defaults, &f.err), f.err);
+    assert_int_equal(f.out.stats.registered, 3);
+    assert_int_equal(f.out.stats.unregistered, 1);
+    assert_int_equal(f.out.stats.unknown, 1);
+    assert_string_equal(f.out.model.images[0].name, "p1.exr");
+    check_pixels(&f.out, 1e-8);
+    imported_release(&f.out);
 
-    rename_image(&m, 1, "also a stranger.jpg");
-    rename_image(&m, 2, "and another.jpg");
-    assert_int_equal(import_model(&out, &m, &photos, &defaults, &err), ST_DATA);
-    assert_err(err, ST_DATA, "places only 1 of 4 photos, and depth needs at least 2");
-    err = (struct err)ERR_INIT;
-    rename_image(&m, 3, "the last.jpg");
-    assert_int_equal(import_model(&out, &m, &photos, &defaults, &err), ST_DATA);
-    assert_err(err, ST_DATA, "is named like a photo of the scene");
-    err = (struct err)ERR_INIT;
-    rename_image(&m, 0, "p0.jpg");
-    rename_image(&m, 1, "other/p0.jpg");
-    assert_int_equal(import_model(&out, &m, &photos, &defaults, &err), ST_DATA);
-    assert_err(err, ST_DATA,
+    rename_image(&f.model, 1, "also a stranger.jpg");
+    rename_image(&f.model, 2, "and another.jpg");
+    assert_int_equal(import_model(&f.out, &f.model, &f.photos, &defaults, &f.err), ST_DATA);
+    assert_err(f.err, ST_DATA, "places only 1 of 4 photos, and depth needs at least 2");
+    f.err = (struct err)ERR_INIT;
+    rename_image(&f.model, 3, "the last.jpg");
+    assert_int_equal(import_model(&f.out, &f.model, &f.photos, &defaults, &f.err), ST_DATA);
+    assert_err(f.err, ST_DATA, "is named like a photo of the scene");
+    f.err = (struct err)ERR_INIT;
+    rename_image(&f.model, 0, "p0.jpg");
+    rename_image(&f.model, 1, "other/p0.jpg");
+    assert_int_equal(import_model(&f.out, &f.model, &f.photos, &defaults, &f.err), ST_DATA);
+    assert_err(f.err, ST_DATA,
                "images \"p0.jpg\" and \"other/p0.jpg\" of the model are both named like photo \"p0.jpg\"");
-    sfm_model_release(&m);
-    photo_list_release(&photos);
+    release(&f);
 }
 
 static void a_model_of_smaller_pictures_is_scaled(void **state)
 {
     (void)state;
-    struct sfm_model m;
-    struct photo_list photos;
-    struct imported out;
-    struct err err = ERR_INIT;
-    make_model(&m, &radial);
-    make_photos(&photos, &radial);
+    struct fixture f = made_of(&radial);
     for (int i = 0; i < PHOTOS; i++) {
-        photos.photos[i].info.width = 1920;
-        photos.photos[i].info.height = 1440;
+        f.photos.photos[i].info.width = 1920;
+        f.photos.photos[i].info.height = 1440;
     }
-    assert_ok(import_model(&out, &m, &photos, &defaults, &err), err);
-    assert_true(out.stats.mean_error < 1e-9);
-    assert_true(out.lenses.lenses[0].camera.params[0] == 3 * 520 && out.lenses.lenses[0].camera.params[2] == 720);
-    check_pixels(&out, 1e-8);
-    imported_release(&out);
+    assert_ok(import_model(&f.out, &f.model, &f.photos, &defaults, &f.err), f.err);
+    assert_true(f.out.stats.mean_error < 1e-9);
+    assert_true(f.out.lenses.lenses[0].camera.params[0] == 3 * 520 && f.out.lenses.lenses[0].camera.params[2] == 720);
+    check_pixels(&f.out, 1e-8);
+    imported_release(&f.out);
 
     /* rotated or cropped photos are rejected */
-    photos.photos[2].info.width = 480;
-    photos.photos[2].info.height = 640;
-    assert_int_equal(import_model(&out, &m, &photos, &defaults, &err), ST_DATA);
-    assert_err(err, ST_DATA, "camera for photo \"p2.jpg\" is 640 x 480 px, but the photo is 480 x 640 px");
-    sfm_model_release(&m);
-    photo_list_release(&photos);
+    f.photos.photos[2].info.width = 480;
+    f.photos.photos[2].info.height = 640;
+    assert_int_equal(import_model(&f.out, &f.model, &f.photos, &defaults, &f.err), ST_DATA);
+    assert_err(f.err, ST_DATA, "camera for photo \"p2.jpg\" is 640 x 480 px, but the photo is 480 x 640 px");
+    release(&f);
 }
 
 static void sizes_may_differ_by_rounding(void **state)
@@ -235,24 +240,18 @@ static void sizes_may_differ_by_rounding(void **state)
     (void)state;
     /* 1600 x 1202 shrunk to 1000 is 751.25 high, stored as 751 */
     struct camera lens = {CAMERA_PINHOLE, 1000, 751, {900, 900, 500, 375.5}};
-    struct sfm_model m;
-    struct photo_list photos;
-    struct imported out;
-    struct err err = ERR_INIT;
-    make_model(&m, &lens);
-    make_photos(&photos, &lens);
+    struct fixture f = made_of(&lens);
     for (int i = 0; i < PHOTOS; i++) {
-        photos.photos[i].info.width = 1600;
-        photos.photos[i].info.height = 1202;
+        f.photos.photos[i].info.width = 1600;
+        f.photos.photos[i].info.height = 1202;
     }
-    assert_ok(import_model(&out, &m, &photos, &defaults, &err), err);
-    assert_true(out.stats.mean_error < 1e-9);
-    assert_near(out.lenses.lenses[0].camera.params[3], 601, 1e-9);
-    imported_release(&out);
-    photos.photos[0].info.height = 1204;
-    assert_int_equal(import_model(&out, &m, &photos, &defaults, &err), ST_DATA);
-    sfm_model_release(&m);
-    photo_list_release(&photos);
+    assert_ok(import_model(&f.out, &f.model, &f.photos, &defaults, &f.err), f.err);
+    assert_true(f.out.stats.mean_error < 1e-9);
+    assert_near(f.out.lenses.lenses[0].camera.params[3], 601, 1e-9);
+    imported_release(&f.out);
+    f.photos.photos[0].info.height = 1204;
+    assert_int_equal(import_model(&f.out, &f.model, &f.photos, &defaults, &f.err), ST_DATA);
+    release(&f);
 }
 
 static void outliers_are_dropped(void **state)
@@ -293,51 +292,37 @@ static void outliers_are_dropped(void **state)
 static void a_fisheye_photo_becomes_five_views(void **state)
 {
     (void)state;
-    struct sfm_model m;
-    struct photo_list photos;
-    struct imported out;
-    struct err err = ERR_INIT;
+    struct fixture f = made_of(&fisheye);
     int behind = 0;
-    make_model(&m, &fisheye);
-    make_photos(&photos, &fisheye);
-    assert_ok(import_model(&out, &m, &photos, &defaults, &err), err);
-    assert_true(out.stats.mean_error < 1e-9);
-    assert_int_equal(out.model.image_count, 5 * PHOTOS);
-    assert_string_equal(out.model.images[0].name, "p0@0.exr");
-    assert_string_equal(out.lenses.lenses[7].view, "p1@2");
-    assert_string_equal(out.lenses.lenses[7].photo, "p1");
-    check_pixels(&out, 1e-8);
-    for (int i = 0; i < out.model.image_count; i++) {
-        struct vec3 a = pose_center(&out.model.images[i].cam_from_world),
-                    b = pose_center(&m.images[i / 5].cam_from_world);
+    assert_ok(import_model(&f.out, &f.model, &f.photos, &defaults, &f.err), f.err);
+    assert_true(f.out.stats.mean_error < 1e-9);
+    assert_int_equal(f.out.model.image_count, 5 * PHOTOS);
+    assert_string_equal(f.out.model.images[0].name, "p0@0.exr");
+    assert_string_equal(f.out.lenses.lenses[7].view, "p1@2");
+    assert_string_equal(f.out.lenses.lenses[7].photo, "p1");
+    check_pixels(&f.out, 1e-8);
+    for (int i = 0; i < f.out.model.image_count; i++) {
+        struct vec3 a = pose_center(&f.out.model.images[i].cam_from_world),
+                    b = pose_center(&f.model.images[i / 5].cam_from_world);
         assert_near(vec3_length(vec3_sub(a, b)), 0, 1e-12); /* one centre */
-        if (i % 5) behind += out.model.images[i].observation_count;
+        if (i % 5) behind += f.out.model.images[i].observation_count;
     }
     assert_true(behind > 100);
-    imported_release(&out);
-    sfm_model_release(&m);
-    photo_list_release(&photos);
+    release(&f);
 }
 
 static void cameras_without_points_are_imported(void **state)
 {
     (void)state;
-    struct sfm_model m;
-    struct photo_list photos;
-    struct imported out;
-    struct err err = ERR_INIT;
-    make_model(&m, &radial);
-    make_photos(&photos, &radial);
-    for (int i = 0; i < m.point_count; i++) free(m.points[i].track);
-    m.point_count = 0;
-    for (int i = 0; i < PHOTOS; i++) m.images[i].observation_count = 0;
-    assert_ok(import_model(&out, &m, &photos, &defaults, &err), err);
-    assert_int_equal(out.model.image_count, PHOTOS);
-    assert_int_equal(out.model.point_count, 0);
-    assert_true(out.stats.mean_error == 0 && out.stats.stated_error == -1);
-    imported_release(&out);
-    sfm_model_release(&m);
-    photo_list_release(&photos);
+    struct fixture f = made_of(&radial);
+    for (int i = 0; i < f.model.point_count; i++) free(f.model.points[i].track);
+    f.model.point_count = 0;
+    for (int i = 0; i < PHOTOS; i++) f.model.images[i].observation_count = 0;
+    assert_ok(import_model(&f.out, &f.model, &f.photos, &defaults, &f.err), f.err);
+    assert_int_equal(f.out.model.image_count, PHOTOS);
+    assert_int_equal(f.out.model.point_count, 0);
+    assert_true(f.out.stats.mean_error == 0 && f.out.stats.stated_error == -1);
+    release(&f);
 }
 
 static void the_model_with_most_photos_is_chosen(void **state)
@@ -416,20 +401,13 @@ struct lens_case {
 static int import_lens(void *ctx)
 {
     const struct lens_case *c = ctx;
-    struct sfm_model m;
-    struct photo_list photos;
-    struct imported out;
-    struct err err = ERR_INIT;
-    make_model(&m, c->made);
-    make_photos(&photos, c->made);
-    m.cameras[0].camera = *c->stated;
-    for (int i = c->point_count; i < m.point_count; i++) free(m.points[i].track);
-    m.point_count = c->point_count;
-    for (int i = 0; i < PHOTOS; i++) photos.photos[i].info.focal35_mm = c->focal35;
-    const enum status st = import_model(&out, &m, &photos, &defaults, &err);
-    imported_release(&out);
-    sfm_model_release(&m);
-    photo_list_release(&photos);
+    struct fixture f = made_of(c->made);
+    f.model.cameras[0].camera = *c->stated;
+    for (int i = c->point_count; i < f.model.point_count; i++) free(f.model.points[i].track);
+    f.model.point_count = c->point_count;
+    for (int i = 0; i < PHOTOS; i++) f.photos.photos[i].info.focal35_mm = c->focal35;
+    const enum status st = import_model(&f.out, &f.model, &f.photos, &defaults, &f.err);
+    release(&f);
     return (int)st;
 }
 

@@ -25,7 +25,8 @@ static const struct scene_face *face(const struct world *w, const char *name)
     return NULL;
 }
 
-/* Every face of `w` that the base has is there with the base's id and texture; the others have new ids, each its own. */
+/* Every face of `w` that the base has is there with the base's id and texture; the others have new ids, each its
+ * own. */
 static void assert_ids_kept(const struct world *base, const struct world *w)
 {
     for (int i = 0; i < w->geometry.face_count; i++) {

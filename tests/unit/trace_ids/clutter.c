@@ -168,7 +168,8 @@ static void pixels_that_the_view_lacks_are_clutter(void **state)
     see_release(&s);
 }
 
-/* Depth 2 % in front of the wall is within the tolerance. It shows the wall clean only if furniture would be farther off. */
+/* Depth 2 % in front of the wall is within the tolerance. It shows the wall clean only if furniture would be farther
+ * off. */
 static void a_surface_is_clean_only_where_furniture_would_be_told_apart(void **state)
 {
     (void)state;

@@ -1,4 +1,5 @@
-/* Samples on faces and the interpolation between them: linear functions, holes, tiny and narrow faces, points beyond. */
+/* Samples on faces and the interpolation between them: linear functions, holes, tiny and narrow faces, points
+ * beyond. */
 #include "stages/update_vita/face_nets.h"
 #include "common/base/rng.h"
 #include "tests/unit/edit_room.h"

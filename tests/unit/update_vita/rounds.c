@@ -6,7 +6,8 @@
 
 enum { N = 64 };
 
-/* A room of N samples that all see each other alike, as on the inside of a sphere. Sample i gets fixed[i] from elsewhere. */
+/* A room of N samples that all see each other alike, as on the inside of a sphere. Sample i gets fixed[i] from
+ * elsewhere. */
 struct sphere {
     struct transport t;
     struct transport_sample samples[N];
@@ -60,7 +61,8 @@ static void a_white_room_converges_to_the_closed_form(void **state)
     }
 }
 
-/* The lamp lights one sample in 64. The first reflection changes far less than the lamp did, but 19 times as much follows. */
+/* The lamp lights one sample in 64. The first reflection changes far less than the lamp did, but 19 times as much
+ * follows. */
 static void a_white_room_that_a_spot_lights_converges_too(void **state)
 {
     static struct sphere s;

@@ -1,4 +1,5 @@
-/* Rays from samples: rows that sum to the irradiance, energy in a painted room, objects, the same bits for any threads. */
+/* Rays from samples: rows that sum to the irradiance, energy in a painted room, objects, the same bits for any
+ * threads. */
 #include "stages/update_vita/edited_atlas.h"
 #include "stages/update_vita/rounds.h"
 
@@ -133,8 +134,8 @@ static double mean_irradiance(const struct traced *t, const struct rgb *values)
     return sum / count;
 }
 
-/* What a lamp sends out is what the walls absorb, and the lamp's own front, which is black: with the same irradiance on all
- * of them, it is power / (area (1 - albedo) + front). */
+/* What a lamp sends out is what the walls absorb, and the lamp's own front, which is black: with the same irradiance on
+ * all of them, it is power / (area (1 - albedo) + front). */
 static void a_painted_room_absorbs_what_its_lamp_sends_out(void **state)
 {
     static const float albedos[] = {0, 0.5f, 0.95f};

@@ -1,6 +1,7 @@
 /* textfile.c - records, quotes, numbers, and errors with file and line. */
 #include "tests/unit/scratch.h"
 
+#include <math.h>
 #include <sys/resource.h>
 
 #include "common/base/textfile.h"
@@ -103,6 +104,34 @@ static void invalid_lines_are_located(void **state)
                             textfile_word(&t, "a name", &word, &err) || textfile_end(&t, &err);
         if (!failed) fail_msg("\"%s\" was read", cases[i].text);
         assert_err(err, ST_DATA, cases[i].words);
+        textfile_release(&t);
+    }
+}
+
+static void numbers_stay_within_their_range(void **state)
+{
+    static const struct {
+        const char *text, *words; /* NULL: it is read */
+    } cases[] = {
+        {"0 0", NULL},
+        {"1 1e300", NULL},
+        {"1.5 0", "t.txt:1: found \"1.5\", wanted a share, a number from 0 to 1."},
+        {"-0.5 0", "found \"-0.5\", wanted a share, a number from 0 to 1."},
+        {"nan 0", "found \"nan\", wanted a share, a number from 0 to 1."},
+        {"0 -2", "found \"-2\", wanted a length, a number of at least 0."},
+        {"0 inf", "found \"inf\", wanted a length, a number of at least 0."},
+        {"0", "found the end of the line, wanted a length."},
+    };
+    (void)state;
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        struct textfile t = opened(cases[i].text);
+        struct err err = ERR_INIT;
+        double x;
+        assert_true(textfile_next(&t));
+        const bool failed =
+            textfile_number(&t, "a share", 0, 1, &x, &err) || textfile_number(&t, "a length", 0, INFINITY, &x, &err);
+        assert_int_equal(failed, cases[i].words != NULL);
+        if (failed) assert_err(err, ST_DATA, cases[i].words);
         textfile_release(&t);
     }
 }
@@ -244,10 +273,15 @@ static void a_file_too_large_for_memory_is_an_error(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(records_are_read),          cmocka_unit_test(raw_lines_include_blanks_and_comments),
-        cmocka_unit_test(invalid_lines_are_located), cmocka_unit_test(expected_words_lines_and_ends_are_checked),
-        cmocka_unit_test(quoted_words_read_back),    cmocka_unit_test(unreadable_files_are_errors),
-        cmocka_unit_test(pipes_are_read_to_the_end), cmocka_unit_test(a_file_too_large_for_memory_is_an_error),
+        cmocka_unit_test(records_are_read),
+        cmocka_unit_test(raw_lines_include_blanks_and_comments),
+        cmocka_unit_test(invalid_lines_are_located),
+        cmocka_unit_test(numbers_stay_within_their_range),
+        cmocka_unit_test(expected_words_lines_and_ends_are_checked),
+        cmocka_unit_test(quoted_words_read_back),
+        cmocka_unit_test(unreadable_files_are_errors),
+        cmocka_unit_test(pipes_are_read_to_the_end),
+        cmocka_unit_test(a_file_too_large_for_memory_is_an_error),
     };
 
     return cmocka_run_group_tests_name("textfile", tests, scratch_make, scratch_remove);

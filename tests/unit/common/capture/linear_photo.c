@@ -100,8 +100,8 @@ static void noise_and_marks_of_one_exposure_are_assumed(void **state)
     image_release(&linear);
 }
 
-/* Errors of two sample values: the sRGB curve has the slope 2.275 v^0.583, and all colours share the error. The noise model
- * has the slope in proportion to v^0.5, which deviates from that by up to a tenth over this range. */
+/* Errors of two sample values: the sRGB curve has the slope 2.275 v^0.583, and all colours share the error. The noise
+ * model has the slope in proportion to v^0.5, which deviates from that by up to a tenth over this range. */
 static void errors_of_jpeg_are_shared_by_the_colours(void **state)
 {
     const struct single_exposure assumed = {1e9, 0, 0.9, 0};

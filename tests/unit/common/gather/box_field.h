@@ -17,8 +17,8 @@ struct built {
     struct model_field_files files;
 };
 
-/* A VITA of tiles of one colour each, for the faces FIRST .. FIRST + count - 1 of the room. A texel at the middle of the
- * ceiling, and its neighbours up to `spot` away, are 100 times as bright. */
+/* A VITA of tiles of one colour each, for the faces FIRST .. FIRST + count - 1 of the room. A texel at the middle of
+ * the ceiling, and its neighbours up to `spot` away, are 100 times as bright. */
 static inline const char *write_vita(const float colours[][3], int count, int spot)
 {
     static const struct vec3 right[6] = {{0, 1, 0}, {0, 1, 0}, {1, 0, 0}, {1, 0, 0}, {1, 0, 0}, {1, 0, 0}};

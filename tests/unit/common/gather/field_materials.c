@@ -23,7 +23,7 @@ static void assert_colour(struct rgb got, double r, double g, double b, double w
         fail_msg("%.9g %.9g %.9g, expected %.9g %.9g %.9g", got.r, got.g, got.b, r, g, b);
 }
 
-/* ------------------------------------------------------------------------------------------------------ what is seen */
+/* ----------------------------------------------------------------------------------------------------- what is seen */
 
 /* From v0 the point shows the wall -x (1 0 0), from the other viewer the wall +x (0 1 0). */
 static void a_mirror_shows_what_it_mirrors_in_place_of_what_the_photo_saw(void **state)
@@ -125,7 +125,7 @@ static void without_light_left_radiance_is_0_and_not_below(void **state)
     model_field_release(&b.field);
 }
 
-/* --------------------------------------------------------------------------------------------------------- hard cases */
+/* ------------------------------------------------------------------------------------------------------- hard cases */
 
 static void k_s_of_0_and_lambert_keep_the_texels(void **state)
 {
@@ -163,7 +163,7 @@ static void grazing_rays_give_finite_light_with_n_1_and_5000_and_ward(void **sta
     }
 }
 
-/* ------------------------------------------------------------------------------------------------------------- places */
+/* ----------------------------------------------------------------------------------------------------------- places */
 
 static void a_material_is_where_a_region_holds_what_its_view_sees(void **state)
 {
@@ -231,7 +231,7 @@ static void what_is_wrong_is_named_with_file_and_line(void **state)
     model_field_release(&b.field);
 }
 
-/* ------------------------------------------------------------------------------------------------------------ gathers */
+/* ---------------------------------------------------------------------------------------------------------- gathers */
 
 enum { POINTS = 24 };
 

@@ -11,8 +11,8 @@
 
 enum { PATCHES = 32, PATCH_EMITTERS = 8 };
 
-/* Seen from its front only; from behind it lets rays pass. Radiance times 1 + slope[0] a + slope[1] b at centre + a x + b
- * y, times cos^exponent within beta of the normal. */
+/* Seen from its front only; from behind it lets rays pass. Radiance times 1 + slope[0] a + slope[1] b at centre + a x +
+ * b y, times cos^exponent within beta of the normal. */
 struct patch {
     enum emitter_kind kind; /* EMITTER_DISK or EMITTER_QUAD */
     struct vec3 centre, x, y, normal;

@@ -1,7 +1,7 @@
 /* glossy_field.h - shared by tests: the room of box_field.h with materials.
  *
- * The room is 4 x 4 x 4 about the origin. View v0, from which all texels but those of the wall -x come, looks down on the
- * floor; v1 looks up at the ceiling. */
+ * The room is 4 x 4 x 4 about the origin. View v0, from which all texels but those of the wall -x come, looks down on
+ * the floor; v1 looks up at the ceiling. */
 #ifndef REMODEL_TESTS_GLOSSY_FIELD_H
 #define REMODEL_TESTS_GLOSSY_FIELD_H
 

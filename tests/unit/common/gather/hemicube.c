@@ -26,7 +26,7 @@ static struct irradiance gather(int n, const struct light_field *f, struct gathe
 static void form_factors_sum_to_one_at_every_n(void **state)
 {
     (void)state;
-    for (int n = 2; n <= HEMICUBE_MOST; n += 2) {
+    for (int n = 2; n <= HEMICUBE_MAX; n += 2) {
         struct hemicube *h = make(n);
         assert_near(hemicube_sum(h), 1, 1e-9);
         hemicube_free(h);
@@ -45,7 +45,7 @@ static void a_resolution_that_is_odd_or_out_of_range_is_refused(void **state)
     }
 }
 
-/* ------------------------------------------------------------------------------------------------ fields of closed form */
+/* -------------------------------------------------------------------------------------------- fields of closed form */
 
 /* Radiance by direction and place, for a single ray. */
 typedef struct light_look one_look(const void *ctx, struct vec3 from, struct vec3 direction);

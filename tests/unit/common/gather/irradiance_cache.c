@@ -1,4 +1,5 @@
-/* The cache of irradiance: gradients against closed forms, error of a picture, the same bits for any number of threads. */
+/* The cache of irradiance: gradients against closed forms, error of a picture, the same bits for any number of
+ * threads. */
 #include "tests/unit/common/light/near.h"
 
 #include <stdlib.h>

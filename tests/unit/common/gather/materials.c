@@ -76,10 +76,10 @@ static void damaged_lines_are_refused_with_file_and_line(void **state)
     (void)state;
     static const char *const lines[][2] = {
         {"material floor shiny 0 0 0 0 0", "lambert, phong or ward"},
-        {"material floor lambert 0.1 0.1 0.1 0.1 0", "k_s from 0 to 0"},
-        {"material floor phong 0.1 0.1 0.1 0.1 0.5", "n from 1 to 5000"},
-        {"material floor ward 0.1 0.1 0.1 0.1 2", "alpha from 0.02 to 1"},
-        {"material floor ward -0.1 0.1 0.1 0.1 0.2", "k_d from 0 to"},
+        {"material floor lambert 0.1 0.1 0.1 0.1 0", "k_s, a number from 0 to 0"},
+        {"material floor phong 0.1 0.1 0.1 0.1 0.5", "n, a number from 1 to 5000"},
+        {"material floor ward 0.1 0.1 0.1 0.1 2", "alpha, a number from 0.02 to 1"},
+        {"material floor ward -0.1 0.1 0.1 0.1 0.2", "k_d, a number from 0 to"},
         {"range wall 0 1 0 1 0 1 0 1 0 1", "the name of a material of a line above"},
         {"gloss floor 1", "material, range, evidence or region"},
     };

@@ -111,7 +111,7 @@ static void a_point_just_below_a_surface_is_moved_to_it(void **state)
     model_field_release(&b.field);
 }
 
-/* -------------------------------------------------------------------------------------------------------------- lamps */
+/* ------------------------------------------------------------------------------------------------------------ lamps */
 
 static void a_lamp_shines_within_its_cone_alone(void **state)
 {
@@ -201,7 +201,7 @@ static void a_gather_finds_a_lamps_irradiance(void **state)
     model_field_release(&b.field);
 }
 
-/* ----------------------------------------------------------------------------------------------------------- outdoors */
+/* --------------------------------------------------------------------------------------------------------- outdoors */
 
 static void an_open_sky_gives_pi_times_its_radiance(void **state)
 {

@@ -155,7 +155,7 @@ static void the_edge_of_a_sun_patch_is_lit_by_half(void **state)
     assert_exact_and_honest(&f.field, floor_point, sun + sky, 0.01);
 }
 
-/* --------------------------------------------------------------------------------------------------------- hard cases */
+/* ------------------------------------------------------------------------------------------------------- hard cases */
 
 static struct irradiance gather(const struct light_field *f, struct gather_point p)
 {
@@ -290,7 +290,7 @@ static void no_light_is_zero_and_never_nan(void **state)
     assert_true(e.rays < 1 << 12);
 }
 
-/* ---------------------------------------------------------------------------------------------------------- whole runs */
+/* ------------------------------------------------------------------------------------------------------- whole runs */
 
 static void a_key_gives_the_same_bits_and_another_key_others(void **state)
 {

@@ -282,7 +282,8 @@ static void a_written_part_keeps_the_samples(void **state)
     }
 }
 
-/* Quality 50 uses the luma table of the standard (ITU-T T.81, table K.1) as it is; twice the step, four times the variance. */
+/* Quality 50 uses the luma table of the standard (ITU-T T.81, table K.1) as it is; twice the step, four times the
+ * variance. */
 static void the_variance_of_quantization_is_that_of_the_table(void **state)
 {
     static const int luma[64] = {16, 11, 10, 16, 24,  40,  51,  61,  12, 12, 14, 19, 26,  58,  60,  55,

@@ -310,9 +310,9 @@ static void votes_are_narrower_than_the_z_buffer(void **state)
 static void what_covers_a_part_of_the_pixel_does_not_hide(void **state)
 {
     (void)state;
-    /* One view has a silhouette in the pixel, red in front of blue; the other has its own a pixel further, all blue. Red
-     * has 0.6 for, and against it the 0.6 that it leaves too little. Blue of the second view has 1.4 for, 0.3 times 0.6
-     * against. */
+    /* One view has a silhouette in the pixel, red in front of blue; the other has its own a pixel further, all blue.
+     * Red has 0.6 for, and against it the 0.6 that it leaves too little. Blue of the second view has 1.4 for, 0.3 times
+     * 0.6 against. */
     const double red = 0.6 * pow(0.5, 2), blue = 0.4, other = pow(1.4 / 1.58, 2), own = red + blue, sum = own + other;
     struct soft_z_fragment f[3] = {fragment(1, 0, 0, 0.6f, 3), fragment(0, 0, 1, 0.4f, 6), fragment(0, 0, 1, 1, 6)};
     float rgba[4], z;

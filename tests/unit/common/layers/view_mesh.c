@@ -13,10 +13,10 @@
 
 #include "common/base/rng.h"
 
-enum { W = 64, H = 48, MOST = 64 };
+enum { W = 64, H = 48, MAX_VIEWS = 64 };
 
 struct fixture {
-    struct view views[MOST];
+    struct view views[MAX_VIEWS];
     struct camera_set set;
     struct view_mesh mesh;
 };
@@ -48,12 +48,12 @@ static void build(struct fixture *f)
 
 /* Checks that every pixel's weights are finite, >= 0, sum to 1, and are sorted by view. mean: mean weight of each
  * view. */
-static void mean_weights(const struct fixture *f, const struct view *novel, double mean[MOST])
+static void mean_weights(const struct fixture *f, const struct view *novel, double mean[MAX_VIEWS])
 {
     struct view_mesh_camera mc;
     struct view_weights *row = calloc((size_t)novel->width, sizeof *row);
     assert_non_null(row);
-    memset(mean, 0, MOST * sizeof *mean);
+    memset(mean, 0, MAX_VIEWS * sizeof *mean);
     view_mesh_prepare(&mc, &f->mesh, novel);
     assert_true(mc.fade >= 0 && mc.fade <= 1 && isfinite(mc.height));
     for (int y = 0; y < novel->height; y++) {
@@ -94,7 +94,7 @@ static double pixel_weight(const struct fixture *f, const struct view *novel, in
 /* Moving the camera by a millionth of the spacing must not change the mean weights by more than `slope` times that. */
 static void check_continuous(const struct fixture *f, struct vec3 center, struct vec3 target, double slope)
 {
-    double a[MOST], b[MOST], eps = 1e-5;
+    double a[MAX_VIEWS], b[MAX_VIEWS], eps = 1e-5;
     double scale = f->mesh.spacing > 0 ? f->mesh.spacing : 1;
     const struct vec3 ways[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-0.6, 0.5, 0.7}};
     struct view novel = look(center, target);
@@ -114,7 +114,7 @@ static void check_continuous(const struct fixture *f, struct vec3 center, struct
 static void check_everywhere(const struct fixture *f, double slope)
 {
     struct rng rng = rng_make(7, "test", "view_mesh");
-    double size = 0, mean[MOST];
+    double size = 0, mean[MAX_VIEWS];
     for (int i = 0; i < f->set.view_count; i++)
         size = fmax(size, vec3_length(vec3_sub(f->views[i].center, f->mesh.centroid)));
     if (size == 0) size = 1;
@@ -140,7 +140,7 @@ static void check_everywhere(const struct fixture *f, double slope)
 static void check_vertices(const struct fixture *f)
 {
     for (int i = 0; i < f->set.view_count; i++) {
-        double mean[MOST];
+        double mean[MAX_VIEWS];
         mean_weights(f, &f->views[i], mean);
         assert_float_equal(mean[i], 1, 1e-4);
     }
@@ -177,7 +177,7 @@ static void weights_of_two_views_are_linear_between_them(void **state)
     assert_int_equal(f.mesh.rank, 1);
     assert_float_equal(f.mesh.spacing, 2, 1e-12);
     check_vertices(&f);
-    double mean[MOST];
+    double mean[MAX_VIEWS];
     struct view novel = look(vec3_make(0.5, 0, 0), vec3_make(0.5, 0, 1));
     mean_weights(&f, &novel, mean); /* on the line: linear in the position */
     assert_float_equal(mean[0], 0.75, 1e-5);
@@ -221,7 +221,7 @@ static void a_straight_move_into_the_scene_works(void **state)
     build(&f);
     assert_int_equal(f.mesh.rank, 1);
     check_vertices(&f);
-    double mean[MOST];
+    double mean[MAX_VIEWS];
     struct view novel = look(vec3_make(0, 0, 2.25), vec3_make(0, 0, 9));
     mean_weights(&f, &novel, mean);
     assert_float_equal(mean[2], 0.75, 1e-5);
@@ -247,7 +247,7 @@ static void coincident_centers_work(void **state)
         for (int j = 0; j < 9; j++)
             if (j != i) assert_true(best > 1.5 * pixel_weight(&f, &f.views[i], W / 2, H / 2, j));
     }
-    double mean[MOST];
+    double mean[MAX_VIEWS];
     mean_weights(&f, &f.views[0], mean);
     assert_true(mean[8] < 0.01); /* looks elsewhere */
     check_everywhere(&f, 20);
@@ -278,7 +278,7 @@ static void photos_split_into_several_views_work(void **state)
     build(&f);
     assert_int_equal(f.mesh.rank, 2);
     assert_true(f.mesh.shared);
-    double mean[MOST];
+    double mean[MAX_VIEWS];
     for (int i = 0; i < 12; i++) {
         mean_weights(&f, &f.views[i], mean); /* only that photo's views, mostly the one that looks there */
         int first = i / 3 * 3;
@@ -372,7 +372,7 @@ static void crossing_the_mesh_is_smooth(void **state)
     struct fixture f = {0};
     grid(&f, 4, 4, 0.1);
     build(&f);
-    double last[MOST], mean[MOST];
+    double last[MAX_VIEWS], mean[MAX_VIEWS];
     for (int i = 0; i <= 400; i++) {
         struct view novel = look(vec3_make(1.3, 1.7, -1 + i / 200.0), vec3_make(1.5, 1.5, 10));
         mean_weights(&f, &novel, mean);

@@ -1,4 +1,5 @@
-/* obj_mesh.c - OBJ meshes: faces in all forms become triangles; damaged files are refused with file, line and reason. */
+/* obj_mesh.c - OBJ meshes: faces in all forms become triangles; damaged files are refused with file, line and
+ * reason. */
 #include "common/light/obj_mesh.h"
 
 #include "tests/unit/scratch.h"

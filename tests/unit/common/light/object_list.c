@@ -61,7 +61,7 @@ static void what_is_wrong_is_named_with_its_line(void **state)
         {HEAD "object a a.obj" HASH " 1 0 0 0 0 1 0 0 0 0 -1 0 matt 0 0 0\n", "a matrix of determinant above 0"},
         {HEAD "object a a.obj" HASH " 1 0 0 0 0 1 0 0 0 0 0 0 matt 0 0 0\n", "found \"0\", wanted a matrix"},
         {HEAD "object a a.obj" HASH " 1 0 0 0 0 1 0 0 0 0 nan 0 matt 0 0 0\n", "found \"nan\""},
-        {HEAD "object a a.obj" HASH SAME " matt 0 0 1.5\n", "a share of blue light from 0 to 1"},
+        {HEAD "object a a.obj" HASH SAME " matt 0 0 1.5\n", "a share of blue light, a number from 0 to 1"},
         {HEAD "object a a.obj" HASH SAME " lambert 0 0 1\n", "found \"lambert\", wanted matt, phong or ward"},
         {HEAD "object a a.obj" HASH SAME " phong 0 0 0.5 0.5 5\n", "no more than 1 together"},
         {HEAD "object a a.obj" HASH SAME " matt 0 0 1 0\n", "wanted the end of the line"},

@@ -1,4 +1,5 @@
-/* The nearest point on the faces of an id: inside, beside an edge, beside a corner, of several faces, of a random triangle. */
+/* The nearest point on the faces of an id: inside, beside an edge, beside a corner, of several faces, of a random
+ * triangle. */
 #include "common/relight/face_areas.h"
 #include "common/base/rng.h"
 #include "tests/unit/edit_room.h"

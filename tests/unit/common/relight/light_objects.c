@@ -83,7 +83,7 @@ static void damaged_light_is_refused_with_its_line(void **state)
         const char *text, *says;
     } bad[] = {{"remodel-object-light 2\n", "bad.txt:1"},
                {"remodel-object-light 1\nelement 1 2\n", "bad.txt:2"},
-               {"remodel-object-light 1\nelement 1 -2 1\n", "irradiance of 0 or more"},
+               {"remodel-object-light 1\nelement 1 -2 1\n", "irradiance, a number of at least 0"},
                {"remodel-object-light 1\nelement 1 nan 1\n", "bad.txt:2"},
                {"remodel-object-light 1\nlamp 1 1 1\n", "element"}};
     struct light_objects o;

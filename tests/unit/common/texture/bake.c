@@ -4,8 +4,8 @@
 #include "common/base/parallel.h"
 #include "tests/unit/scratch.h"
 
-/* The floor is a square of 4 x 4 at z = 0, with id 5. All cameras are at a height of 4 and look straight down, so a pixel
- * is 1/16 wide on the floor. */
+/* The floor is a square of 4 x 4 at z = 0, with id 5. All cameras are at a height of 4 and look straight down, so a
+ * pixel is 1/16 wide on the floor. */
 enum { SIZE = 64, ID = 5 };
 static const double FOCAL = 64, HEIGHT = 4;
 
@@ -65,10 +65,14 @@ static struct bake_tile own_tile(void)
     return t;
 }
 
+enum { MAX_VIEWS = 4 };
+
 struct fixture {
     struct bake bake;
-    struct source_view own;
+    struct source_view own, views[MAX_VIEWS];
+    int view_count, sources;
     struct texture_params params;
+    struct bake_totals totals;
 };
 
 /* A bake of the view above (2, 2): original but for a disk of 12 texels in the middle, which is wanted. */
@@ -79,7 +83,7 @@ static void begin(struct fixture *f, int sources)
     static const bool own[] = {true, false, false, false};
     const struct texture_params defaults = TEXTURE_PARAMS_DEFAULT;
     struct err err = ERR_INIT;
-    *f = (struct fixture){.params = defaults};
+    *f = (struct fixture){.params = defaults, .sources = sources};
     f->bake = (struct bake){
         .surfaces = &floor_only, .params = &f->params, .has_centre = true, .centre = {2, 2, HEIGHT}, .white = 1};
     make_view(&f->own, 2, 2, 1);
@@ -93,19 +97,27 @@ static void begin(struct fixture *f, int sources)
     }
 }
 
-static void finish(struct fixture *f, struct source_view *views, int count, struct bake_totals *totals)
+/* A view as of make_view(): the next source after the viewpoint's, or, after the last, the viewpoint's once more. */
+static struct source_view *add_view(struct fixture *f, double x, double y, float gain)
+{
+    assert_true(f->view_count < MAX_VIEWS);
+    make_view(&f->views[f->view_count], x, y, gain);
+    return &f->views[f->view_count++];
+}
+
+static void finish(struct fixture *f)
 {
     struct err err = ERR_INIT;
     assert_ok(bake_list_texels(&f->bake, &err), err);
-    for (int i = 0; i < count; i++) bake_add_view(&f->bake, &views[i], 1 + i);
+    for (int i = 0; i < f->view_count; i++) bake_add_view(&f->bake, &f->views[i], (1 + i) % f->sources);
     assert_ok(bake_find_gains(&f->bake, &err), err);
     bake_choose(&f->bake);
-    assert_ok(bake_composite(&f->bake, totals, &err), err);
+    assert_ok(bake_composite(&f->bake, &f->totals, &err), err);
 }
 
-static void end(struct fixture *f, struct source_view *views, int count)
+static void end(struct fixture *f)
 {
-    for (int i = 0; i < count; i++) source_view_release(&views[i]);
+    for (int i = 0; i < f->view_count; i++) source_view_release(&f->views[i]);
     source_view_release(&f->own);
     bake_release(&f->bake);
 }
@@ -127,63 +139,55 @@ static void original_texels_keep_their_bits(void **state)
 {
     (void)state;
     struct fixture f;
-    struct source_view view;
-    struct bake_totals totals;
     begin(&f, 2);
-    make_view(&view, 2.4, 2.2, 1.5f);
-    finish(&f, &view, 1, &totals);
+    add_view(&f, 2.4, 2.2, 1.5f);
+    finish(&f);
     for (int i = 0; i < SIZE * SIZE; i++)
         if (f.bake.role[i] == TEXEL_ORIGINAL) {
             assert_memory_equal(f.bake.rgb + 3 * i, f.own.levels[0].rgba + 4 * i, 3 * sizeof(float));
             assert_int_equal(f.bake.made[i], ATLAS_VIEWS);
         }
-    assert_int_equal(totals.original + totals.warped, SIZE * SIZE);
-    end(&f, &view, 1);
+    assert_int_equal(f.totals.original + f.totals.warped, SIZE * SIZE);
+    end(&f);
 }
 
 static void a_hidden_texel_takes_the_colour_that_another_view_shows(void **state)
 {
     (void)state;
     struct fixture f;
-    struct source_view view;
-    struct bake_totals totals;
     begin(&f, 2);
-    make_view(&view, 2.4, 2.2, 1);
-    finish(&f, &view, 1, &totals);
+    add_view(&f, 2.4, 2.2, 1);
+    finish(&f);
     assert_true(worst_error(&f) < 0.01);
     assert_int_equal(f.bake.made[32 * SIZE + 32], ATLAS_VIEWS + 1);
-    end(&f, &view, 1);
+    end(&f);
 }
 
 static void a_view_with_another_exposure_is_brought_to_the_viewpoints(void **state)
 {
     (void)state;
     struct fixture f;
-    struct source_view view;
-    struct bake_totals totals;
     begin(&f, 2);
-    make_view(&view, 2.4, 2.2, 1.6f);
-    finish(&f, &view, 1, &totals);
+    add_view(&f, 2.4, 2.2, 1.6f);
+    finish(&f);
     for (int c = 0; c < 3; c++) assert_true(fabs(f.bake.sources[1].gain[c] * 1.6 - 1) < 0.02);
     assert_true(worst_error(&f) < 0.02);
-    end(&f, &view, 1);
+    end(&f);
 }
 
-/* Half of the hole is best in a view whose light differs by a factor that no gain may remove, as it is not everywhere in
- * the view: the differences across the border are those of the neighbourhood. */
+/* Half of the hole is best in a view whose light differs by a factor that no gain may remove, as it is not everywhere
+ * in the view: the differences across the border are those of the neighbourhood. */
 static void no_seam_shows_where_two_sources_meet(void **state)
 {
     (void)state;
     struct fixture f;
-    struct source_view views[2];
-    struct bake_totals totals;
     begin(&f, 3);
-    make_view(&views[0], 1.7, 2, 1);
-    make_view(&views[1], 2.3, 2, 1);
+    add_view(&f, 1.7, 2, 1);
+    add_view(&f, 2.3, 2, 1);
     for (int i = 0; i < SIZE * SIZE; i++)
         for (int c = 0; c < 3; c++)
-            if (abs(i % SIZE - 27) < 14 && abs(i / SIZE - 32) < 14) views[1].levels[0].rgba[4 * i + c] *= 1.3f;
-    finish(&f, views, 2, &totals);
+            if (abs(i % SIZE - 27) < 14 && abs(i / SIZE - 32) < 14) f.views[1].levels[0].rgba[4 * i + c] *= 1.3f;
+    finish(&f);
     double across = 0, along = 0;
     for (int y = 22; y < 42; y++)
         for (int x = 22; x < 42; x++) {
@@ -196,26 +200,21 @@ static void no_seam_shows_where_two_sources_meet(void **state)
                 along = fmax(along, step);
         }
     assert_true(across > 0 && across <= 1.2 * along);
-    end(&f, views, 2);
+    end(&f);
 }
 
 static void views_outvote_one_that_something_stands_in_front_of(void **state)
 {
     (void)state;
     struct fixture f;
-    struct source_view views[3];
-    struct bake_totals totals;
     begin(&f, 4);
     const double at[3][2] = {{2.1, 2.0}, {1.5, 2.4}, {2.6, 1.5}}; /* the first is preferred */
-    for (int k = 0; k < 3; k++) {
-        make_view(&views[k], at[k][0], at[k][1], 1);
-        memset(views[k].state, SOURCE_UNSURE, SIZE * SIZE);
-    }
+    for (int k = 0; k < 3; k++) memset(add_view(&f, at[k][0], at[k][1], 1)->state, SOURCE_UNSURE, SIZE * SIZE);
     for (int i = 0; i < SIZE * SIZE; i++)
-        if (abs(i % SIZE - 32) < 14 && abs(i / SIZE - 32) < 14) views[0].levels[0].rgba[4 * i] = 2;
-    finish(&f, views, 3, &totals);
+        if (abs(i % SIZE - 32) < 14 && abs(i / SIZE - 32) < 14) f.views[0].levels[0].rgba[4 * i] = 2;
+    finish(&f);
     assert_true(worst_error(&f) < 0.05);
-    end(&f, views, 3);
+    end(&f);
 }
 
 static void a_doubted_pixel_of_the_viewpoint_is_copied_unless_others_contradict_it(void **state)
@@ -223,21 +222,19 @@ static void a_doubted_pixel_of_the_viewpoint_is_copied_unless_others_contradict_
     (void)state;
     for (int wrong = 0; wrong < 2; wrong++) {
         struct fixture f;
-        struct source_view views[2];
-        struct bake_totals totals;
         begin(&f, 3);
-        make_view(&views[0], 1.7, 2, 1);
-        make_view(&views[1], 2.3, 2, 1);
+        add_view(&f, 1.7, 2, 1);
+        add_view(&f, 2.3, 2, 1);
         const size_t at = 32 * SIZE + 32;
         for (int i = 0; i < SIZE * SIZE; i++)
             if (f.bake.role[i] == TEXEL_WANTED) f.bake.role[i] = TEXEL_DOUBTED;
         if (wrong)
             for (int i = 0; i < SIZE * SIZE; i++)
                 if (f.bake.role[i] == TEXEL_DOUBTED) f.bake.rgb[3 * i + 1] = 3;
-        finish(&f, views, 2, &totals);
+        finish(&f);
         assert_int_equal(f.bake.role[at], wrong ? TEXEL_WANTED : TEXEL_ORIGINAL);
         assert_true(worst_error(&f) < 0.02);
-        end(&f, views, 2);
+        end(&f);
     }
 }
 
@@ -245,31 +242,29 @@ static void what_no_view_shows_is_filled_from_the_nearest_texels(void **state)
 {
     (void)state;
     struct fixture f;
-    struct bake_totals totals;
     begin(&f, 1);
     for (int i = 0; i < SIZE * SIZE; i++)
         for (int c = 0; c < 3; c++) f.bake.rgb[3 * i + c] = (i % SIZE < 32) == (c == 0) ? 0.8f : 0.1f;
-    finish(&f, NULL, 0, &totals);
+    finish(&f);
     const float *left = f.bake.rgb + 3 * (32 * SIZE + 22), *right = f.bake.rgb + 3 * (32 * SIZE + 41);
     assert_int_equal(f.bake.made[32 * SIZE + 32], ATLAS_SYNTHESISED);
     assert_true(left[0] > 0.6 && left[1] < 0.3 && right[0] < 0.3 && right[1] > 0.6);
     for (int i = 0; i < 3 * SIZE * SIZE; i++) assert_true(f.bake.rgb[i] >= 0.09f && f.bake.rgb[i] <= 0.81f);
-    end(&f, NULL, 0);
+    end(&f);
 }
 
 static void boards_continue_where_no_view_shows_them(void **state)
 {
     (void)state;
     struct fixture f;
-    struct bake_totals totals;
     begin(&f, 1);
     float board[SIZE];
     for (int x = 0; x < SIZE; x++) board[x] = 0.3f + 0.2f * sinf(0.785f * (float)x);
     for (int i = 0; i < 3 * SIZE * SIZE; i++) f.bake.rgb[i] = board[i / 3 % SIZE];
-    finish(&f, NULL, 0, &totals);
-    assert_true(totals.synthesised > 400);
+    finish(&f);
+    assert_true(f.totals.synthesised > 400);
     for (int i = 0; i < SIZE * SIZE; i++) assert_true(fabsf(f.bake.rgb[3 * i] - board[i % SIZE]) < 0.05f);
-    end(&f, NULL, 0);
+    end(&f);
 }
 
 /* The hole is that of a window which an edit walls up; the texels beside it are too light. */
@@ -277,7 +272,6 @@ static void what_is_walled_up_continues_the_wall_and_not_its_rim(void **state)
 {
     (void)state;
     struct fixture f;
-    struct bake_totals totals;
     float board[SIZE];
     double above = 0;
     begin(&f, 1);
@@ -287,29 +281,28 @@ static void what_is_walled_up_continues_the_wall_and_not_its_rim(void **state)
         const float light = dx * dx + dy * dy < 15 * 15 ? 1.2f : 1;
         for (int c = 0; c < 3; c++) f.bake.rgb[3 * i + c] = light * board[i % SIZE];
     }
-    finish(&f, NULL, 0, &totals);
+    finish(&f);
     for (int i = 0; i < SIZE * SIZE; i++)
         if (f.bake.made[i] == ATLAS_SYNTHESISED)
-            above += (double)(f.bake.rgb[3 * i] / board[i % SIZE] - 1) / (double)totals.synthesised;
-    assert_true(totals.synthesised > 400);
+            above += (double)(f.bake.rgb[3 * i] / board[i % SIZE] - 1) / (double)f.totals.synthesised;
+    assert_true(f.totals.synthesised > 400);
     assert_true(fabs(above) < 0.05);
-    end(&f, NULL, 0);
+    end(&f);
 }
 
 static void a_face_that_no_view_shows_gets_the_default_colour(void **state)
 {
     (void)state;
     struct fixture f;
-    struct bake_totals totals;
     begin(&f, 1);
     memset(f.bake.role, TEXEL_WANTED, SIZE * SIZE);
-    finish(&f, NULL, 0, &totals);
-    assert_int_equal(totals.by_default, SIZE * SIZE);
+    finish(&f);
+    assert_int_equal(f.totals.by_default, SIZE * SIZE);
     for (int i = 0; i < SIZE * SIZE; i++) {
         assert_int_equal(f.bake.made[i], ATLAS_DEFAULT);
         assert_true(fabsf(f.bake.rgb[3 * i] - 0.5f) < 1e-3f);
     }
-    end(&f, NULL, 0);
+    end(&f);
 }
 
 static void a_source_is_refused_where_it_may_not_be_used(void **state)
@@ -317,42 +310,31 @@ static void a_source_is_refused_where_it_may_not_be_used(void **state)
     (void)state;
     for (int kind = 0; kind < 3; kind++) {
         struct fixture f;
-        struct source_view view;
-        struct bake_totals totals;
         begin(&f, 2);
-        make_view(&view, 2.2, 2, 1);
-        if (kind == 0) memset(view.state, SOURCE_NONE, SIZE * SIZE);
-        if (kind == 1) memset(view.id, 0, SIZE * SIZE * sizeof *view.id);
+        add_view(&f, 2.2, 2, 1);
+        if (kind == 0) memset(f.views[0].state, SOURCE_NONE, SIZE * SIZE);
+        if (kind == 1) memset(f.views[0].id, 0, SIZE * SIZE * sizeof *f.views[0].id);
         if (kind == 2) f.params.max_slant = 1;
-        finish(&f, &view, 1, &totals);
-        assert_int_equal(totals.warped > 0, kind == 2); /* seen straight from above it is within a degree somewhere */
-        if (kind == 2) assert_true(totals.synthesised > totals.warped);
-        end(&f, &view, 1);
+        finish(&f);
+        assert_int_equal(f.totals.warped > 0, kind == 2); /* seen straight from above it is within a degree somewhere */
+        if (kind == 2) assert_true(f.totals.synthesised > f.totals.warped);
+        end(&f);
     }
 }
 
-/* begin() has three sources besides the viewpoint; a lamp needs four photos, so the viewpoint's own view is one here. */
+/* begin() has three sources besides the viewpoint; a lamp needs four photos, so the viewpoint's own view is one
+ * here. */
 static void pixels_clipped_in_four_photos_are_shown_and_in_three_are_not(void **state)
 {
     (void)state;
     for (int photos = 3; photos <= 4; photos++) {
         struct fixture f;
-        struct source_view views[4];
-        struct bake_totals totals;
-        struct err err = ERR_INIT;
         begin(&f, 4);
-        for (int k = 0; k < photos; k++) {
-            make_view(&views[k], 1.9 + 0.1 * k, 2, 1);
-            memset(views[k].state, SOURCE_POOR, SIZE * SIZE);
-        }
-        assert_ok(bake_list_texels(&f.bake, &err), err);
-        for (int i = 0; i < photos; i++) bake_add_view(&f.bake, &views[i], (1 + i) % 4);
-        assert_ok(bake_find_gains(&f.bake, &err), err);
-        bake_choose(&f.bake);
-        assert_ok(bake_composite(&f.bake, &totals, &err), err);
-        assert_int_equal(totals.warped > 0, photos == 4);
-        assert_int_equal(totals.synthesised > 0, photos == 3);
-        end(&f, views, photos);
+        for (int k = 0; k < photos; k++) memset(add_view(&f, 1.9 + 0.1 * k, 2, 1)->state, SOURCE_POOR, SIZE * SIZE);
+        finish(&f);
+        assert_int_equal(f.totals.warped > 0, photos == 4);
+        assert_int_equal(f.totals.synthesised > 0, photos == 3);
+        end(&f);
     }
 }
 
@@ -360,33 +342,29 @@ static void a_clipped_pixel_gives_way_to_a_clean_one(void **state)
 {
     (void)state;
     struct fixture f;
-    struct source_view views[3];
-    struct bake_totals totals;
     begin(&f, 4);
-    for (int k = 0; k < 3; k++) make_view(&views[k], 1.9 + 0.1 * k, 2, k ? 3 : 1);
-    for (int k = 1; k < 3; k++) memset(views[k].state, SOURCE_POOR, SIZE * SIZE);
-    finish(&f, views, 3, &totals);
+    for (int k = 0; k < 3; k++) add_view(&f, 1.9 + 0.1 * k, 2, k ? 3 : 1);
+    for (int k = 1; k < 3; k++) memset(f.views[k].state, SOURCE_POOR, SIZE * SIZE);
+    finish(&f);
     assert_true(worst_error(&f) < 0.02);
-    end(&f, views, 3);
+    end(&f);
 }
 
 static void a_range_of_1e8_stays_finite_and_not_negative(void **state)
 {
     (void)state;
     struct fixture f;
-    struct source_view view;
-    struct bake_totals totals;
     begin(&f, 2);
-    make_view(&view, 2.4, 2.2, 1);
+    add_view(&f, 2.4, 2.2, 1);
     for (int i = 0; i < SIZE * SIZE; i++)
         for (int c = 0; c < 3; c++) {
             const float light = i % SIZE % 7 == 0 ? 1e4f : i % SIZE % 7 == 3 ? 0 : 1e-4f;
             f.bake.rgb[3 * i + c] = light;
-            view.levels[0].rgba[4 * i + c] = light;
+            f.views[0].levels[0].rgba[4 * i + c] = light;
         }
-    finish(&f, &view, 1, &totals);
+    finish(&f);
     for (int i = 0; i < 3 * SIZE * SIZE; i++) assert_true(isfinite(f.bake.rgb[i]) && f.bake.rgb[i] >= 0);
-    end(&f, &view, 1);
+    end(&f);
 }
 
 static void threads_do_not_change_a_bit(void **state)
@@ -395,19 +373,17 @@ static void threads_do_not_change_a_bit(void **state)
     float *first = NULL;
     for (int threads = 1; threads <= 2; threads++) {
         struct fixture f;
-        struct source_view views[2];
-        struct bake_totals totals;
         parallel_set_threads(threads);
         begin(&f, 3);
-        make_view(&views[0], 1.7, 2.1, 1.2f);
-        make_view(&views[1], 2.3, 1.8, 0.9f);
-        finish(&f, views, 2, &totals);
+        add_view(&f, 1.7, 2.1, 1.2f);
+        add_view(&f, 2.3, 1.8, 0.9f);
+        finish(&f);
         if (threads == 1) {
             first = malloc(3 * SIZE * SIZE * sizeof *first);
             memcpy(first, f.bake.rgb, 3 * SIZE * SIZE * sizeof *first);
         } else
             assert_memory_equal(first, f.bake.rgb, 3 * SIZE * SIZE * sizeof *first);
-        end(&f, views, 2);
+        end(&f);
     }
     parallel_set_threads(0);
     free(first);

@@ -44,10 +44,10 @@ static void a_faulty_record_is_refused_with_its_line(void **state)
         {"remodel-picture 1\nsize 0 3\n", "view.txt:2: "},
         {"remodel-picture 1\nsize 4 3\nexposure 0\n", "view.txt:3: found \"0\", wanted an exposure above 0"},
         {"remodel-picture 1\nsize 4 3\nexposure nan\n", "view.txt:3: "},
-        {"remodel-picture 1\nsize 4 3\nexposure 1\nchanged 101\n", "wanted a share, from 0 to 100"},
+        {"remodel-picture 1\nsize 4 3\nexposure 1\nchanged 101\n", "wanted a share in percent, a number from 0 to 100"},
         {"remodel-picture 1\nsize 4 3\nexposure 1\nchanged 1 1\n", "view.txt:4: "},
         {"made foto 1\n", "view.txt:5: found \"foto\", wanted a kind of pixel"},
-        {"made photo -1\n", "wanted a share, from 0 to 100"},
+        {"made photo -1\n", "wanted a share in percent, a number from 0 to 100"},
         {"made photo 50\nmade photo 50\n", "view.txt:6: found \"photo\", wanted each kind once"},
         {"kind photo 50\n", "made"},
     };

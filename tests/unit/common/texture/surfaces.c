@@ -115,7 +115,8 @@ static void only_pixels_in_front_of_the_camera_are_filled(void **state)
     uint8_t filled[64 * 64] = {0};
     make_box(&m, 3, 3, "top");
     assert_ok(surfaces_make(&s, &m, 1, &err), err);
-    /* at (1.5, 1, 4), 1 above the top, looking along x: the ray of (x, y) is (64, 32 - x, 32 - y); W = y - 32 > 0 below */
+    /* at (1.5, 1, 4), 1 above the top, looking along x: the ray of (x, y) is (64, 32 - x, 32 - y); W = y - 32 > 0
+     * below */
     const struct surface_raster r = {
         64, 64, {{0, 1.5, -1.5 * 32 + 64}, {-1, 1, 32 - 32}, {0, 3, -3 * 32}, {0, 1, -32}}};
     surface_fill(filled, &s, 5, &r);

@@ -111,7 +111,7 @@ static void what_is_wrong_is_named_with_its_line(void **state)
         {HEAD "place 3" SAME "\n", "a.txt:3: found \"place\", wanted a line \"face\" before it"},
         {HEAD FACE "place 0" SAME "\n", "a.txt:4"},
         {HEAD FACE "place 3 1 0 0\n", "a.txt:4"},
-        {HEAD FACE "colour 0 0 1.5 lit\n", "a share of light, from 0 to 1"},
+        {HEAD FACE "colour 0 0 1.5 lit\n", "a share of light, a number from 0 to 1"},
         {HEAD FACE "colour 0 0 1 lit 0\n", "the id of a face"},
         {HEAD FACE "colour 0 0 1 lit 3.0\n", "found \"3.0\", wanted the id of a face, or \"within\""},
         {HEAD FACE "colour 0 0 1 lit 0x3\n", "found \"0x3\""},
@@ -127,8 +127,8 @@ static void what_is_wrong_is_named_with_its_line(void **state)
         {HEAD "clear hall 2 0 3 0 0 1 1 1 0\n", "a height above the lowest"},
         {HEAD "keep a 0 1 3 0 0 1 1 1 0\n" FACE, "faces before the lines"},
         {HEAD FACE "place 3" SAME " within 1 1 0 1 1 0 1 1 0 1 1 0\n", "four corners around an area"},
-        {HEAD "lamp l 1 1\n", "a.txt:3: found the end of the line, wanted a factor of 0 or more"},
-        {HEAD "lamp l 1 1 -1\n", "found \"-1\", wanted a factor of 0 or more"},
+        {HEAD "lamp l 1 1\n", "a.txt:3: found the end of the line, wanted a factor"},
+        {HEAD "lamp l 1 1 -1\n", "found \"-1\", wanted a factor, a number of at least 0"},
         {HEAD "lamp l 1 1 inf\n", "found \"inf\""},
         {HEAD "lamp l 1 1 1 1\n", "a.txt:3: found \"1\""},
         {HEAD "lamp l 1 1 1\nlamp l 0 0 0\n", "a.txt:4: found \"l\", wanted a lamp that no line above has"},
@@ -136,9 +136,9 @@ static void what_is_wrong_is_named_with_its_line(void **state)
         {HEAD "gloss matt\n", "a.txt:3: found \"gloss\", wanted a line \"face\" before it"},
         {HEAD FACE "gloss satin\n", "found \"satin\", wanted matt, phong or ward"},
         {HEAD FACE "gloss matt 1\n", "found \"1\", wanted the end of the line"},
-        {HEAD FACE "gloss phong 0.1 0.5\n", "found \"0.5\", wanted N, an exponent, from 1 to 5000"},
-        {HEAD FACE "gloss ward 0.1 2\n", "found \"2\", wanted ALPHA, a roughness, from 0.02 to 1"},
-        {HEAD FACE "gloss ward -1 0.1\n", "wanted KS, the strength of the gloss, from 0"},
+        {HEAD FACE "gloss phong 0.1 0.5\n", "found \"0.5\", wanted N, an exponent, a number from 1 to 5000"},
+        {HEAD FACE "gloss ward 0.1 2\n", "found \"2\", wanted ALPHA, a roughness, a number from 0.02 to 1"},
+        {HEAD FACE "gloss ward -1 0.1\n", "wanted KS, the strength of the gloss, a number from 0"},
         {HEAD FACE "gloss matt\ngloss matt\n",
          "a.txt:5: found \"gloss\", wanted one line \"gloss\" right after the face"},
         {HEAD FACE "outdoors\ngloss matt\n", "right after the face's line"},
@@ -165,9 +165,9 @@ static void refused_to_write(const struct texture_map *map, const char *words)
 
 static void what_the_reader_refuses_is_not_written(void **state)
 {
-    enum { MOST = 100000 };
-    static struct vec3 added[MOST + 1][3];
-    static double corners[MOST + 1][2];
+    enum { MAX_COUNT = 100000 };
+    static struct vec3 added[MAX_COUNT + 1][3];
+    static double corners[MAX_COUNT + 1][2];
     char face_name[] = "wall/a/in", zone_name[] = "hall", base[] = "none";
     struct texture_rule rule = {.kind = TEXTURE_OUTDOORS};
     struct texture_face face = {
@@ -176,15 +176,15 @@ static void what_the_reader_refuses_is_not_written(void **state)
     struct texture_map map = {.faces = &face, .face_count = 1, .zones = &zone, .zone_count = 1}, read;
     struct err err = ERR_INIT;
     (void)state;
-    zone.corner_count = face.added_count = MOST; /* the most that can be read */
+    zone.corner_count = face.added_count = MAX_COUNT; /* the most that can be read */
     assert_ok(texture_map_write(&map, scratch_path("most.txt"), NULL, &err), err);
     assert_ok(texture_map_read(&read, scratch_path("most.txt"), &err), err);
-    assert_true(read.faces[0].added_count == MOST && read.zones[0].corner_count == MOST);
+    assert_true(read.faces[0].added_count == MAX_COUNT && read.zones[0].corner_count == MAX_COUNT);
     texture_map_release(&read);
-    face.added_count = MOST + 1;
+    face.added_count = MAX_COUNT + 1;
     refused_to_write(&map, "refused.txt: the face wall/a/in has 100001 triangles of new area, wanted at most 100000");
     face.added_count = 0;
-    zone.corner_count = MOST + 1;
+    zone.corner_count = MAX_COUNT + 1;
     refused_to_write(&map, "the footprint of hall has 100001 corners, wanted 3 to 100000");
     zone.corner_count = 2;
     refused_to_write(&map, "the footprint of hall has 2 corners");

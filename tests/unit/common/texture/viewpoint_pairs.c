@@ -39,7 +39,7 @@ static void a_damaged_line_is_named(void **state)
         {"remodel-pairs 1\nframes 0001 a b 0\n", "pairs.txt:2: found \"frames\""},
         {"remodel-pairs 1\nframe 0001 a b\n", "pairs.txt:2: "},
         {"remodel-pairs 1\nframe 0001 a b 0 c\n", "pairs.txt:2: found \"c\""},
-        {"remodel-pairs 1\nframe 0001 a b 1.01\n", "pairs.txt:2: found \"1.01\", wanted a share from 0 to 1"},
+        {"remodel-pairs 1\nframe 0001 a b 1.01\n", "pairs.txt:2: found \"1.01\", wanted a share, a number from 0 to 1"},
         {"remodel-pairs 1\nframe 0001 a b -0.1\n", "pairs.txt:2: found \"-0.1\""},
         {"remodel-pairs 1\nframe 0001 a b nan\n", "pairs.txt:2: found \"nan\""},
         {"remodel-pairs 1\nframe 0001 a b 0\nframe 0001 a b 1\n",
