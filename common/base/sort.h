@@ -6,5 +6,7 @@
 
 void sort_doubles(double *values, size_t count);
 void sort_floats(float *values, size_t count);
+/* Sorts the values and returns their median, of an even number the mean of the middle two; count > 0. */
+double sort_median(double *values, size_t count);
 
 #endif

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "common/base/progress.h"
+#include "common/base/sort.h"
 #include "common/capture/view_image.h"
 #include "common/image/exr.h"
 #include "common/layers/layered_depth.h"
@@ -32,7 +33,7 @@ static enum status find_baseline(struct evaluation *e, const bool *kept, struct 
                                                              pose_center(&e->truth.photos[j].pose))));
         if (nearest > 0 && nearest < INFINITY) distances[count++] = nearest;
     }
-    e->baseline = e->params->baseline > 0 ? e->params->baseline : count ? median(distances, count) : 0;
+    e->baseline = e->params->baseline > 0 ? e->params->baseline : count ? sort_median(distances, (size_t)count) : 0;
     free(distances);
     return ST_OK;
 }
