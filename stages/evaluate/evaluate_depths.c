@@ -9,6 +9,7 @@
 #include "common/layers/layered_depth.h"
 #include "stages/evaluate/depth_error.h"
 #include "stages/evaluate/evaluation_parts.h"
+#include "stages/evaluate/sigma_error.h"
 
 /* kept[i]: photo i has a view and a true camera. */
 static void mark_kept(const struct evaluation *e, bool *kept)
