@@ -7,6 +7,7 @@
 #include "common/base/outfile.h"
 #include "common/base/scan.h"
 #include "common/math/numbers.h"
+#include "stages/build_model/layout.h"
 
 struct sheet {
     FILE *to;

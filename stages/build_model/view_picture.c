@@ -1,11 +1,13 @@
-/* view_picture.c - the model seen from above; see plan_picture.h. */
-#include "stages/build_model/plan_picture.h"
+/* view_picture.c - the model seen from above. */
+#include "stages/build_model/view_picture.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/image/photo.h"
 #include "common/math/numbers.h"
+#include "stages/build_model/plan_picture.h"
 #include "stages/build_model/raster.h"
 
 enum { VIEW_WIDTH = 1400, VIEW_HEIGHT = 1000, SUPERSAMPLING = 2 };
