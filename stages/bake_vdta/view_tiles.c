@@ -5,10 +5,10 @@
  * and nothing stands in front. It is doubted where something may stand in front; then other views are asked. Other
  * texels are wanted only.
  *
- * Which texels. A surface gets what the view shows of it and what edits would reveal behind, with a margin of 8,
- * because cameras are not exact; with [bake_vdta] reveal = all, all of it that lies in the view's frame. In both
- * cases only inside the surface and one texel around it, for look-ups at its edge (distance transform). Several
- * surfaces may share an id; a pixel's depth says which one it shows.
+ * Which texels. A surface gets what the view shows of it and what edits would reveal behind, with a margin of 8;
+ * with [bake_vdta] reveal = all, all of it that lies in the view's frame. In both cases only inside the surface and
+ * one texel around it, for look-ups at its edge (distance transform). Several surfaces may share an id; a pixel's
+ * depth says which one it shows.
  *
  * Geometry. The ray of texel (x, y) from the centre c is d = R' K^-1 (x, y, 1). It meets the plane n . p = o at c +
  * k / (n . d) d with k = o - n . c, so the point, times -(n . d), is linear in (x, y, 1): a 4 x 3 matrix per tile.

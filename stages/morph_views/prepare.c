@@ -10,7 +10,7 @@
  *      matrix explains, epipolar lines are not used
  *   4. the flow is found in both directions (match.h), and the pair is refused if fewer pixels than min_matched
  *      agree
- *   5. a gain makes the second photo as bright as the first
+ *   5. one gain for each colour, from matched pixels, says how the photos' exposures differ
  *
  * With cameras, the search along an epipolar line is limited to depths between the 2nd and 98th percentile of the
  * sparse points that lie in front, with a factor of 1.5 at either end; without points, to more than three baselines.
