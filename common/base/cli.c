@@ -1,4 +1,21 @@
-/* cli.c - parses a stage's command line. */
+/* cli.c - parses a stage's command line.
+ *
+ * A stage lists its options in a table; the options of every stage and the parameters of a config are added here, so
+ * all programs behave alike: --option VALUE or --option=VALUE, no short options, no positional arguments. An option
+ * that takes one value may be given once, since a second one is more likely an error than a correction; --threads
+ * may be repeated, so that scripts can override it.
+ *
+ * Order. Arguments are taken from left to right; --help and --version answer at once, whatever follows. Then
+ * parameters get their values: defaults, config files in their order, --set, the stage's own option of a parameter;
+ * the relations between them are checked at the end, when all are known. What is printed by --print-config is the
+ * text that goes into the provenance: the effective values, not where they came from. Missing required options are
+ * reported last, so that --print-config needs none.
+ *
+ * Verdicts. CLI_RUN: go on. CLI_DONE: something was printed, exit 0 (an error in writing it still fails).
+ * CLI_FAILED: err has a sentence; with ST_USAGE the exit status is 2.
+ *
+ * At its exit a stage logs its time and memory, which the report shows; cli_make_each() does so after each item of a
+ * list, and one that fails keeps no other from being made. A forked child does not report. */
 #include "common/base/cli.h"
 
 #include <assert.h>

@@ -24,3 +24,9 @@ void sort_floats(float *values, size_t count)
 {
     if (count) qsort(values, count, sizeof *values, compare_floats);
 }
+
+double sort_median(double *values, size_t count)
+{
+    sort_doubles(values, count);
+    return (values[(count - 1) / 2] + values[count / 2]) / 2;
+}

@@ -7,6 +7,8 @@
 
 void sort_doubles(double *values, size_t count);
 void sort_floats(float *values, size_t count);
+/* Sorts the values and returns their median, of an even number the mean of the middle two; count > 0. */
+double sort_median(double *values, size_t count);
 
 /* The first of `count` sorted items that is not below the key; count if all are. Inline, as is_below() should be. */
 static inline size_t sort_place(const void *items, size_t count, size_t item_size,

@@ -1,4 +1,15 @@
-/* textfile.c - reads line-based text records. */
+/* textfile.c - reads line-based text records.
+ *
+ * The whole file is read into one buffer, and words are cut out of it in place by writing NULs over the blanks: no
+ * copies, and a word lasts as long as the file. Words in quotes may hold blanks; \" and \\ are unescaped in place,
+ * which never makes them longer. Lines that are blank or begin with # are skipped; \r before the end of a line is
+ * dropped.
+ *
+ * Errors. Every function says what it wants (`what`), so a message has file, line, what was found and what was
+ * wanted. A NUL byte means that the file is damaged or no text, and is an error of its line.
+ *
+ * The buffer has one byte more than the file: the end is met by one read, and a file that grows meanwhile is read to
+ * its end. Memory is that of the file. */
 #include "common/base/textfile.h"
 
 #include <inttypes.h>

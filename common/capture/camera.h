@@ -11,7 +11,7 @@
 #include <stdbool.h>
 
 #include "common/base/err.h"
-#include "common/math/vec.h"
+#include "common/capture/pose.h"
 
 enum camera_model {
     CAMERA_SIMPLE_PINHOLE,
@@ -30,12 +30,6 @@ struct camera {
     enum camera_model model;
     int width, height;
     double params[CAMERA_MAX_PARAMS];
-};
-
-/* p_cam = R(rotation) p_world + translation. */
-struct pose {
-    struct quat rotation;
-    struct vec3 translation;
 };
 
 const char *camera_model_name(enum camera_model model);
@@ -61,8 +55,5 @@ bool camera_project_derivatives(const struct camera *c, struct vec3 p, double pi
 
 /* Pixel -> ray of length 1 in camera coordinates, accurate to 1e-10 focal lengths. False: no ray maps to this pixel. */
 bool camera_unproject(const struct camera *c, double u, double v, struct vec3 *ray);
-
-struct vec3 pose_apply(const struct pose *cam_from_world, struct vec3 world);
-struct vec3 pose_center(const struct pose *cam_from_world); /* the camera's centre in world coordinates */
 
 #endif

@@ -84,12 +84,6 @@ enum status align_cameras(struct similarity *a, const struct pose *found, const 
     return ST_OK;
 }
 
-double median(double *values, int count)
-{
-    sort_doubles(values, (size_t)count);
-    return (values[(count - 1) / 2] + values[count / 2]) / 2;
-}
-
 enum status measure_cameras(struct camera_errors *e, const struct similarity *a, const struct pose *found,
                             const struct pose *truth, int count, struct err *err)
 {
@@ -107,8 +101,8 @@ enum status measure_cameras(struct camera_errors *e, const struct similarity *a,
         e->rotation_max = fmax(e->rotation_max, turns[i]);
     }
     if (!st) {
-        e->center_median = median(centers, count);
-        e->rotation_median = median(turns, count);
+        e->center_median = sort_median(centers, (size_t)count);
+        e->rotation_median = sort_median(turns, (size_t)count);
     }
     free(centers);
     free(turns);

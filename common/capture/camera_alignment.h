@@ -28,7 +28,4 @@ struct camera_errors {
 enum status measure_cameras(struct camera_errors *e, const struct similarity *a, const struct pose *found,
                             const struct pose *truth, int count, struct err *err);
 
-/* Sorts the values; count > 0. The median of an even number is the mean of the middle two. */
-double median(double *values, int count);
-
 #endif

@@ -1,4 +1,14 @@
-/* camera_path.c - reading and writing camera moves. */
+/* camera_path.c - reading and writing camera moves.
+ *
+ * A path is two things on disk. path/ is COLMAP's text model with a camera a frame, which COLMAP and other viewers
+ * open; path.txt has what COLMAP's model cannot say: frames per second, scores, and time, aperture and focus of each
+ * frame. It is written last.
+ *
+ * Frames are named by their number, with as many digits as keep the order of names that of frames: 4, 5 or 7.
+ * Numbers have 17 digits, so that frames rendered from a file are those rendered from memory, to the bit; rotations
+ * go through quaternions, which is what COLMAP's format holds.
+ *
+ * The two parts are checked against each other: the same frames, in the same order. */
 #include "common/capture/camera_path.h"
 
 #include <stdio.h>

@@ -1,4 +1,13 @@
-/* photo_list.c - reading and writing the records of a scene's photographs. */
+/* photo_list.c - reading and writing the records of a scene's photographs.
+ *
+ * A record, photos/ID.txt, has what the pixels do not say: file name, hash, size, bits, EXIF orientation and
+ * exposure, camera. Of a view of several exposures it also lists these, in ascending order, with the middle one and
+ * the exposure that is white. photos/list.txt lists the ids.
+ *
+ * Records are rewritten only if their text changes (outfile_write_if_changed()), because products depend on their
+ * time: a photo that did not change redoes nothing. EXIF values are 0 where they are unknown.
+ *
+ * Photos are in order of id, so that a look-up is a binary search. */
 #include "common/capture/photo_list.h"
 
 #include <stdio.h>

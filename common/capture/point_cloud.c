@@ -1,4 +1,15 @@
-/* point_cloud.c - reading and writing oriented points. */
+/* point_cloud.c - reading and writing oriented points, as PLY.
+ *
+ * Binary little-endian PLY with fixed properties, in a fixed order: position as doubles, normal and confidence as
+ * floats, colour as bytes, the number of views as a short. Any viewer opens it, and a reader needs no general parser
+ * of PLY: what is not of exactly this form is refused, with the line of the header.
+ *
+ * The header's comments say units and axes, hold the provenance, and the cell size of the fusion. Records are packed
+ * byte by byte into a block, because a struct has padding. Machine and file are both little-endian.
+ *
+ * Every point is checked both when it is written and when it is read: finite numbers, a normal of length 1, at least
+ * one view, a confidence from 0 to 1. The number of points in the header is compared with the size of the file
+ * before memory is allocated by it. */
 #include "common/capture/point_cloud.h"
 
 #include <inttypes.h>

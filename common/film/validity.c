@@ -1,4 +1,13 @@
-/* validity.c - reading and writing of validity.txt. */
+/* validity.c - reading and writing of validity.txt: the setup of a move, and the viewpoints that are valid for its
+ * ends.
+ *
+ * The file has a line for each field, in a fixed order, then for each end of the move its target with its focal
+ * length or the size that it keeps, and a region: a grid of cells across the move, each with what was found there.
+ * Numbers have 17 digits: plan_path, which reads them, must see the viewpoints that sample_validity tried, to the
+ * bit.
+ *
+ * A reader of a later stage relies on what is checked here: a film of even size, positive lengths, boxes with an
+ * inside, cells in a number that fits into memory. */
 #include "common/film/validity.h"
 
 #include <stdlib.h>

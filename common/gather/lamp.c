@@ -1,4 +1,4 @@
-/* lamp.c - radiance and irradiance of a lamp that nothing hides; see lights.h.
+/* lamp.c - radiance and irradiance of a lamp that nothing hides.
  *
  * Overview. The irradiance at a point p with normal m is E = integral of S cos(t)^e (m . w) over the directions w to
  * the lamp that lie above the horizon of m and within the cone t <= beta, where t is the angle at the lamp between its
@@ -20,11 +20,12 @@
  *
  * Source: the lamp is a disk with a cone and an exponent [Colburn 2014, 5.3.3; Warn 1983]. The thesis leaves the
  * exponent out and samples the lamp with the pixels of a hemicube; here the integral has an error near 1e-9. */
+#include "common/gather/lamp.h"
+
 #include <math.h>
 #include <stdlib.h>
 
 #include "common/base/sort.h"
-#include "common/gather/lights.h"
 
 struct rgb lamp_radiance(const struct lamp *l, struct vec3 direction)
 {

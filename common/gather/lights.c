@@ -1,4 +1,15 @@
-/* lights.c - see lights.h. */
+/* lights.c - reads and writes lights.txt: the lamps of a scene, and the openings that let daylight in.
+ *
+ * People write scenes/NAME/lights.txt with pixels and the word `fit`; this file, written by fit_lights, has
+ * everything resolved, in the model's frame. Its reader trusts nothing all the same: normals of unit length, half
+ * edges that span an area, radiances and angles within bounds, no name twice, each error with file and line.
+ * References of an opening follow its place, nearest first.
+ *
+ * Half axes of a disk are not in the file: any two directions at right angles do, but they must be the same for the
+ * same normal, because samples are placed along them and results are compared bit by bit.
+ *
+ * A lamp's name may hold any character; as part of a file's name all but letters, digits, - and _ become %XX, and a
+ * name that would be too long becomes lampN. */
 #include "common/gather/lights.h"
 
 #include <limits.h>

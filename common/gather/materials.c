@@ -1,4 +1,18 @@
-/* materials.c - see materials.h. */
+/* materials.c - reads and writes materials.txt: reflectances that were fitted or given, and the regions that show
+ * them.
+ *
+ * A material is a diffuse k_d for each channel, a specular strength k_s and a shape, the exponent of Phong's model
+ * or the roughness of Ward's model [Ward 1992]. Beside the values stand the ranges in which the photographs leave
+ * them, the numbers of samples and views, the error of each model, and the reason for the choice: a reader can see
+ * how well a value is known.
+ *
+ * A region is a polygon of pixels in a photo. A pixel is inside if a ray to the right crosses the outline an odd
+ * number of times; its area is half the absolute sum of the cross products of consecutive corners, and must not be
+ * 0.
+ *
+ * The file says k_d as radiance per irradiance, the reflectance over pi; struct brdf has the reflectance.
+ *
+ * Lines refer to a material above them by its name; all bounds are checked as they are read, with file and line. */
 #include "common/gather/materials.h"
 
 #include <limits.h>

@@ -37,7 +37,7 @@ GRAPH_MAIN := $(B)/obj/common/graph/print_graph.o
 COMMON_OBJS := $(filter-out $(GRAPH_MAIN),$(call objs,common/*/*.c common/*/*.cc))
 BINS := $(STAGES:%=$(B)/bin/%)
 STAGE_LIBS := $(STAGES:%=$(B)/lib/%.a)
-UNIT_TESTS := $(patsubst %.c,$(B)/%,$(wildcard tests/unit/*/*.c tests/unit/common/*/*.c))
+UNIT_TESTS := $(patsubst %.c,$(B)/%,$(wildcard tests/unit/*/*.c tests/unit/*/*/*.c))
 BENCHES := $(patsubst %.c,$(B)/%,$(wildcard tests/bench/*.c))
 FUZZ_TESTS := $(patsubst %.c,$(B)/%,$(wildcard tests/fuzz/fuzz_*.c))
 TOOLS := $(B)/tests/pipeline/make_photos
@@ -57,12 +57,12 @@ $(B)/obj/%.o: %.c $(B)/flags
 $(B)/obj/%.o: %.cc $(B)/flags
 	$(call say,CXX $<)mkdir -p $(@D); $(CXX) $(CXXFLAGS) $(STRICT) -MMD -MP -c -o $@ $<
 
-# libraries: common/, each stage without its main, and what benches share
+# libraries: common/, each stage with its folders but without its main, and what benches share
 archive = $(call say,AR $@)mkdir -p $(@D); rm -f $@; ar rcsD $@ $^
 $(B)/libremodel.a: $(COMMON_OBJS)
 	$(archive)
 # the objects of a stage without its main
-stage_objs = $(filter-out $(B)/obj/stages/$(1)/$(1).o,$(call objs,stages/$(1)/*.c stages/$(1)/*.cc))
+stage_objs = $(filter-out $(B)/obj/stages/$(1)/$(1).o,$(call objs,$(foreach f,stages/$(1) stages/$(1)/*,$(f)/*.c $(f)/*.cc)))
 .SECONDEXPANSION:
 $(STAGE_LIBS): $(B)/lib/%.a: $$(call stage_objs,$$*)
 	$(archive)
@@ -92,7 +92,7 @@ $(TESTS): $(B)/tests/%: $(B)/obj/tests/%.o $(B)/libremodel.a
 $(FUZZ_TESTS): $(B)/obj/tests/fuzz/run_corpus.o
 $(BENCHES): $(B)/lib/bench.a
 $(BENCHES): private MORE_LIBS += -lopencv_calib3d -lopencv_imgproc -lopencv_core $(shell pkg-config --libs OpenEXR 2>/dev/null)
-# a test of stage NAME, tests/unit/NAME/*.c, has the stage's library; so has every program that includes a header of the stage
+# a test of stage NAME, below tests/unit/NAME/, has the stage's library; so has every program that includes a header of the stage
 ifneq ($(filter tests-build bench-build $(B)/tests/%,$(MAKECMDGOALS)),)
 USES := $(sort $(shell grep -roE --include='*.[ch]' '^\#include "stages/[a-z_0-9]+/' tests | sed -E 's|(.*):.*/(.*)/|\1:\2|'))
 uses = $(patsubst $(1).c:%,$(B)/lib/%.a,$(filter $(1).c:%,$(USES)))

@@ -1,4 +1,14 @@
-/* model_plan.c - see model_plan.h. */
+/* model_plan.c - reads plan.txt: walls, openings and rooms by name, with their positions.
+ *
+ * model.txt has the solids, and plan.txt what they were made from; stages that need to know what a wall or a window
+ * is read it here. The order of the file is walls, openings, rooms, slots: a line may name only what stands above
+ * it, so names become indices as they are read.
+ *
+ * A wall is the set of points p with n p = offset in plan, n its normal into the room, and spans an interval along
+ * itself; an opening is an interval of that and one of z. A ceiling is the lowest of one or two planes z = a + b x +
+ * c y, which covers level ceilings, slopes and gables.
+ *
+ * Corners of openings are given only for walls along an axis, where the position along the wall is a coordinate. */
 #include "common/model/model_plan.h"
 
 #include <limits.h>

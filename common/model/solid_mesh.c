@@ -1,4 +1,24 @@
-/* solid_mesh.c - makes meshes from polygons; names and ids, volume and area. */
+/* solid_mesh.c - makes meshes from polygons; names and ids, volume and area.
+ *
+ * A mesh of half-edges: a loop is a ring of half-edges around a face or one of its holes, a half-edge knows its
+ * origin, its successor and predecessor in the loop, and its twin, the same edge in the neighbouring face.
+ * Everything is an index into an array, in the order of the polygons.
+ *
+ * solid_mesh_make() accepts exactly the closed, oriented 2-manifolds:
+ *   - each directed edge occurs once (a hash table of edges finds a second one)
+ *   - each has a twin in the opposite direction, so no edge is open and no two faces disagree on the inside
+ *   - the half-edges that leave a vertex form one fan. Where two fans touch at a point, walking from twin to twin
+ *     reaches only a part of them, which the count shows; the caller must give each fan its own vertex
+ *   - vertices belong to one body
+ * solid_check.c adds what needs coordinates: planarity, self-intersection. All is O(n) on average, with hash tables
+ * of twice the size.
+ *
+ * Ids. A name keeps its id over edits: solid_mesh_carry_ids() gives names of the base their ids there, and new names
+ * ids beyond all that the base used, in order of appearance. Names are sorted by id.
+ *
+ * Area and volume are sums of cross products. Twice the vector area of a loop is the sum of a x b over its edges,
+ * taken from a point of the loop, because products of coordinates far from the origin would cancel; holes have the
+ * opposite sign. The volume of a body is the sum over its faces of area times distance from an origin, over 3. */
 #include "common/model/solid_mesh.h"
 #include "common/base/hash.h"
 

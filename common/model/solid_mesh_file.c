@@ -1,4 +1,14 @@
-/* solid_mesh_file.c - reads and writes model.txt, writes OBJ. */
+/* solid_mesh_file.c - reads and writes model.txt, writes OBJ.
+ *
+ * model.txt (docs/formats.md) has vertices, then bodies with their faces, each with its loops of vertex numbers.
+ * Numbers have 17 digits, so that a model that was read is the model that was written, to the bit. Names are quoted.
+ *
+ * Counts come first, but nothing is allocated by them: arrays grow with the records that are really there, so a
+ * damaged count costs an error and not the memory. Polygons hold offsets until the end, because growing arrays move.
+ *
+ * The reader builds the mesh by solid_mesh_make(), whose checks thus hold for every file; an error is brought back
+ * to the line of the face. Faces of one name must have one id, and no two names may share one: ids are sorted to
+ * find that, O(n log n). */
 #include <inttypes.h>
 #include <limits.h>
 #include <stdbool.h>

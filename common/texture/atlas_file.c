@@ -1,4 +1,17 @@
-/* atlas_file.c - atlases on disk: atlas.txt and its pages (docs/formats.md). */
+/* atlas_file.c - atlases on disk: atlas.txt and its pages (docs/formats.md).
+ *
+ * A page is an EXR with R G B A as half floats and `source`, which says where a texel comes from: none, synthesised,
+ * the default colour, or the number of a view. atlas.txt lists viewpoint, views, sources, pages, and tiles with the
+ * matrix that leads from the model to the page.
+ *
+ * Pages are written first and the list last: a list stands for a complete atlas. Then pages beyond the last number
+ * are removed, so that a smaller atlas leaves nothing of a larger one before it.
+ *
+ * Order. Tiles are written by face, then view, so that a look-up of a face is a binary search, and so that the file
+ * does not depend on the order of the work. The reader refuses another order, names that are not sorted, and tiles
+ * that do not lie in their page.
+ *
+ * Pages are read one at a time by atlas_page_read(): an atlas of many pages is never in memory as a whole. */
 #include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>

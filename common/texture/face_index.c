@@ -1,4 +1,15 @@
-/* face_index.c - reading and writing ids/index.txt, see face_index.h. */
+/* face_index.c - reading and writing ids/index.txt: the views of each face, best first.
+ *
+ * A scene of 10 000 views has an index of hundreds of megabytes, and a process wants the lists of a few faces. So
+ * the text begins with a table, one row of fixed length a face: id, offset and length of its list, number of views,
+ * number of the first line. A face is found by binary search in the file, O(log faces) reads of a row, then its list
+ * is read by one pread(). Memory is that of one list.
+ *
+ * Each piece is read as a text file of its own whose first line has the number that it has in the whole file, so
+ * that errors name the right line. The provenance is in front of the table, whose beginning is found in the first 8
+ * KiB.
+ *
+ * Writing: the lists are formatted twice, first for their lengths alone, so that the table can precede them. */
 #include "common/texture/face_index.h"
 
 #include <errno.h>

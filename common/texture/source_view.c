@@ -1,5 +1,24 @@
-/* source_view.c - see source_view.h. Colours are read at the level whose pixels are about as large as the texel, so
- * that a fine photograph does not alias in a coarse texture. */
+/* source_view.c - a rectified view as a source of texels: its colours at several sizes, and what each pixel may be
+ * used for.
+ *
+ * Overview. A pixel is a source if the view has one there (alpha), if it is some pixels away from depth jumps, where
+ * a small error of the camera would take the colour of another surface, and if nothing that the model does not hold
+ * stands in front of the surface. The last is a matter of degree (view_ids.h, clutter): clean, unsure, or hidden.
+ * Clipped and noisy pixels are poor: they are used only where there is nothing better.
+ *
+ * Pyramid [Williams 1983]. A texel that covers many pixels needs their mean, or a fine photograph aliases in a
+ * coarse texture. Level k has pixels of 2^k; each is the mean of four of the level below, with premultiplied alpha.
+ * A pixel that may not be used counts as transparent in the first halving, so that it does not leak into its
+ * neighbours; a poor one counts only where none of the four is better. A sample uses the level whose pixels are
+ * nearest in size to the texel's footprint, on a scale of logarithms, and is bilinear within it: aliasing and blur
+ * stay within a factor of sqrt(2).
+ *
+ * Differs from the source: no blend between two levels. Textures are baked once, so there is no motion in which a
+ * change of levels would show.
+ *
+ * project[] holds the camera as a 3x4 matrix, pixel = project (point, 1), for the loops over texels.
+ *
+ * Memory: 16 bytes a pixel and a third more for the levels, and 6 bytes a pixel of ids and states. */
 #include "common/texture/source_view.h"
 
 #include <math.h>

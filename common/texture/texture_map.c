@@ -1,4 +1,16 @@
-/* texture_map.c - reads and writes texture.txt; see texture_map.h. */
+/* texture_map.c - reads and writes texture.txt: where the faces of an edited model take their texture from.
+ *
+ * Look-ups. Faces in different planes may share an id, so a look-up by id is a binary search over the faces, sorted
+ * by id, and among those of the id the plane nearest to the point. A rule holds at a point if the point is within
+ * its quadrilateral: on one side of all four edges. Then an affine map, 3 x 4, leads from the point of the edited
+ * model to that of the unedited one whose texture it shows.
+ *
+ * Clutter. A point is cleared if a `clear` zone holds it and no `keep` zone does, in whatever order they stand. A
+ * zone is a prism: a polygon in plan, tested by the parity of crossings, and a range of heights.
+ *
+ * Numbers that make places have 17 digits, so that the map is the same to the bit after reading; colours have 9, the
+ * precision of a float. Everything is checked as it is read: faces in order of id, corners of a zone, triangles of
+ * new surfaces. */
 #include "common/texture/texture_map.h"
 
 #include <limits.h>

@@ -1,8 +1,20 @@
-/* view_tiles.c - see view_tiles.h.
+/* view_tiles.c - the texels of a viewpoint's own views, as tiles.
  *
  * A tile is a rectangle of the view's own pixels, so that an original texel is a pixel and is copied bit for bit. A
- * texel is original if the view shows the face there: the id buffer says so, the model's depth has no jump nearby, and
- * nothing stands in front. Faces larger than a page are cut into tiles that share a row or a column of texels. */
+ * texel is original if the view shows the face there: the id buffer says so, the model's depth has no jump nearby,
+ * and nothing stands in front. It is doubted where something may stand in front; then other views are asked. Other
+ * texels are wanted only.
+ *
+ * Which texels. A surface gets what the view shows of it and what edits would reveal behind, with a margin of 8;
+ * with [bake_vdta] reveal = all, all of it that lies in the view's frame. In both cases only inside the surface and
+ * one texel around it, for look-ups at its edge (distance transform). Several surfaces may share an id; a pixel's
+ * depth says which one it shows.
+ *
+ * Geometry. The ray of texel (x, y) from the centre c is d = R' K^-1 (x, y, 1). It meets the plane n . p = o at c +
+ * k / (n . d) d with k = o - n . c, so the point, times -(n . d), is linear in (x, y, 1): a 4 x 3 matrix per tile.
+ * The way back is the camera's own matrix, shifted to the tile's corner. Surfaces seen from behind get no tile.
+ *
+ * What is larger than a page is cut into tiles that share a row or a column of texels. */
 #include "stages/bake_vdta/view_tiles.h"
 
 #include <math.h>

@@ -1,5 +1,24 @@
-/* viewpoint.c - see viewpoint.h. The viewpoint's own views say which texels are wanted; then the other views that show
- * these faces are read one after the other, so that memory does not grow with their number. */
+/* viewpoint.c - the atlas of textures as they look from the place of one photo [Colburn 2014, 4.5].
+ *
+ * Overview.
+ *   1. The viewpoint's own views say which faces it sees, and how large: tiles and their texels follow
+ *      (view_tiles.c), those that an edit would reveal among them
+ *   2. sources_choose() picks the other views that show these faces
+ *   3. each source is read, its pixels become candidates of the texels that it shows, and it is released again
+ *   4. gains bring the sources to one exposure, each texel gets its best candidate, and a composite in the gradient
+ *      domain removes seams (bake_atlas.h)
+ *   5. pages are written, then the list of make dependencies, and atlas.txt last
+ *
+ * A texel that an own view shows keeps that view's colour. With [bake_vdta] own_photo = withheld, own views are
+ * treated as if they showed nothing: the atlas then predicts the photo from the others, which `evaluate` compares
+ * with it.
+ *
+ * `white`, the radiance at which errors of colour are measured, is the 90th percentile of every seventh own pixel.
+ *
+ * Views of one photo share an exposure, so they form one group, named by its first view.
+ *
+ * Memory: the texels of one viewpoint with their candidates, and one source at a time: it does not grow with the
+ * number of views. Time is linear in the pixels of the sources; estimate.c has measured constants. */
 #include "stages/bake_vdta/viewpoint.h"
 
 #include <math.h>

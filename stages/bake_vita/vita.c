@@ -1,5 +1,22 @@
-/* vita.c - see vita.h. Faces are baked in batches, whose size bounds the memory; a batch reads the views that show its
- * faces best. A face that no view shows gets large texels of the default colour. */
+/* vita.c - the atlas of textures without a viewpoint: every face once, from the views that show it best.
+ *
+ * Overview. Tiles are orthographic (ortho_tiles.c). The side of a texel is the height of the model over [bake_vita]
+ * texels. Faces are baked in batches of consecutive surfaces, cut where their texels would exceed `batch` millions:
+ * that bounds the memory, whatever the size of the model. A face that no view shows gets texels 16 times as wide, in
+ * the default colour.
+ *
+ * Views of a batch. The index of faces lists the views of each, best first. The best view of every face is taken,
+ * then the second best of every face, and so on, until a batch has 250 views: so no face of a large batch is left
+ * without its best ones. A view that several batches need is read by each.
+ *
+ * A batch goes through the same steps as a viewpoint of bake_vdta: candidates, gains, the choice, the composite
+ * (bake_atlas.h). There is no own photo here, so no texel is original.
+ *
+ * Sources are listed before the first batch is baked, because pages name them by their number in the list of the
+ * whole atlas.
+ *
+ * `white`, the radiance at which errors of colour are measured, is the 90th percentile of the first candidates of
+ * every 17th texel of the batch. */
 #include "stages/bake_vita/vita.h"
 
 #include <math.h>

@@ -24,10 +24,12 @@
 #include "stages/build_model/edit_chain.h"
 #include "stages/build_model/layout.h"
 #include "stages/build_model/objects.h"
+#include "stages/build_model/overlay_picture.h"
 #include "stages/build_model/plan_file.h"
 #include "stages/build_model/plan_picture.h"
 #include "stages/build_model/texture_rules.h"
 #include "stages/build_model/unite.h"
+#include "stages/build_model/view_picture.h"
 
 struct job {
     const char *script, *edit, *scene, *axes, *views, *held, *points, *base, *out;

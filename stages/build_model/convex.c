@@ -1,7 +1,19 @@
-/* convex.c - convex solids on the lattice.
+/* convex.c - convex solids on the lattice: their facets, and their sections with planes.
  *
- * A facet's polygon begins as a square in its plane with corners beyond the reach of solids, and is cut by one
- * half-space after the other. Corners are intersections of three planes, so rounding errors do not accumulate. */
+ * Rounding. A solid is an intersection of half-spaces with real coefficients; exact.h wants integers. Normals along
+ * an axis and offsets are rounded to steps of the lattice. An oblique normal becomes exact where the ratios of its
+ * components are those of small integers, which continued fractions find (walls between typed corners), otherwise it
+ * is rounded to 2^-22. Two walls in one plane may differ in the last bits after that, and would leave slivers: so
+ * planes are sorted, and each is replaced by the first that differs by at most two steps in normal and offset.
+ *
+ * Facets. Each facet begins as a square in its plane with corners just out of reach, and is cut by every other
+ * half-space [Sutherland 1974]. A corner is the exact meeting point of three planes, so a cut never moves an
+ * existing corner, and signs cannot contradict each other. A facet with a corner on the far planes left means that
+ * the solid is unbounded; fewer than four facets mean that it is empty or flat.
+ *
+ * A section of a solid with a plane is a square in that plane, cut by all facets' planes.
+ *
+ * A solid of k half-spaces takes O(k^2) cuts of polygons of O(k) corners. */
 #include "stages/build_model/convex.h"
 
 #include <math.h>

@@ -1,7 +1,21 @@
 /* exact.c - exact predicates on planes, points and lines.
  *
- * Items are stored once, in hash tables, in reduced form, so that equal items have equal indices. Predicates are
- * filtered: the double result decides if it exceeds its error bound, 128-bit integers otherwise. */
+ * Overview. Planes have integer coefficients; everything else is made from them. The point of three planes has the
+ * homogeneous coordinates of Cramer's rule, h = d_a (n_b x n_c) + d_b (n_c x n_a) + d_c (n_a x n_b) and w = n_a .
+ * (n_b x n_c), as 128-bit integers divided by their greatest common divisor; a line has Pluecker's six numbers. In
+ * reduced form, with a fixed sign, equal things have equal numbers. They are stored once, in hash tables, so
+ * equality is a comparison of indices.
+ *
+ * Predicates are filtered: the result in doubles decides if it exceeds its error bound, integers otherwise. Bounds
+ * on the coefficients (exact.h) keep every sum within 127 bits; where two such numbers must be compared as products,
+ * they are multiplied to 256 bits. Most calls end in the filter.
+ *
+ *   exact_side     sign of n . p - d
+ *   exact_compare  order of two points along an axis
+ *   exact_turn     sign of (a x b) . n
+ *   exact_before   order of directions around n, by quadrant, then by turn
+ *
+ * The greatest common divisor is the binary one: shifts and subtractions instead of 128-bit divisions. */
 #include "stages/build_model/exact.h"
 
 #include <assert.h>

@@ -2,7 +2,7 @@
  *
  * Whether an edge is visible in a photograph is decided by a cube map of depth about the camera: six square perspective
  * pictures of the model's triangles. So any lens can ask in any direction. */
-#include "stages/build_model/plan_picture.h"
+#include "stages/build_model/overlay_picture.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,4 +1,14 @@
-/* plan_picture.c - the plan as SVG; see plan_picture.h. */
+/* plan_picture.c - the plan as SVG.
+ *
+ * Drawn from the plan, not from the solids. Order is from bottom to top: the floor under removed walls, rooms,
+ * boxes, walls, openings with their leaves or panes, slots, names of walls, photographs. x and y of the model become
+ * right and up; SVG's y points down, so sheet_y() turns it over.
+ *
+ * A room's label is at the centroid of its outline, with its area and its height there: with the cross products c_i
+ * = a_i x a_(i+1) of consecutive corners, area = sum c_i / 2 and centroid = sum (a_i + a_(i+1)) c_i / (6 area).
+ *
+ * Texts along walls are turned to be read from below or from the right. A photograph is a triangle: the left and
+ * right edge of its field of view in its middle row, at most 60 degrees to either side, projected onto the floor. */
 #include "stages/build_model/plan_picture.h"
 
 #include <math.h>
@@ -7,6 +17,7 @@
 #include "common/base/outfile.h"
 #include "common/base/scan.h"
 #include "common/math/numbers.h"
+#include "stages/build_model/layout.h"
 
 struct sheet {
     FILE *to;

@@ -1,9 +1,21 @@
 /* unite_faces.c - loops of a body as faces with holes, and their names.
  *
- * Loops are projected along the axis of their normal's largest component. The corner of a loop with the least
- * coordinates tells, exactly, whether the face is inside of the loop: then it is an outer loop, otherwise a hole. A
- * hole belongs to the outer loop of least area that contains it, by the winding numbers of its corners. A face has the
- * name of lowest rank among those of the solids' facets that it is made of; the others are merged into it. */
+ * Input are closed loops of half-edges, each on one side of one plane; output are faces, each with one outer loop
+ * and its holes. Everything that decides is exact (exact.h).
+ *
+ * Outer or hole. Loops are projected along the axis of their normal's largest component. At the corner with the
+ * least coordinates (u, then v) the loop is convex; if the face continues there towards lower u, the face is outside
+ * the loop, which is a hole.
+ *
+ * Whose hole. It belongs to the outer loop of least area that contains it, by the winding numbers of its corners: of
+ * edges that cross the horizontal line through a corner, those that go up to its right count 1, those that go down
+ * -1. A corner on the other loop says nothing, and the next one is asked; if all are on it, the middle of an edge
+ * decides, in floating point, because it lies well inside or outside. Loops are sorted by plane, side and room
+ * first, so only those that can belong together are compared: O(k^2) for k loops of a side.
+ *
+ * Names. A face has the name of lowest rank among those of the solids' facets that it is made of and that belong to
+ * its room. Facets that lie inside a face without touching its borders are found by their middle. The other names
+ * are merged into it, and logged. */
 #include <math.h>
 #include <stdlib.h>
 

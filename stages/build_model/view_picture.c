@@ -1,11 +1,26 @@
-/* view_picture.c - the model seen from above; see plan_picture.h. */
-#include "stages/build_model/plan_picture.h"
+/* view_picture.c - the model seen from above.
+ *
+ * An orthographic picture from the south-west, 55 degrees above the horizon, twice as large as it is written, so
+ * that the mean over 2 x 2 pixels smooths edges.
+ *
+ * To look into the rooms, ceilings are left out, and everything above the highest ceiling or wall is cut. Faces that
+ * look away from the viewer are not drawn: a wall that stands between the viewer and its room is seen through. What
+ * shows walls, then, are their cut tops, drawn dark at the height at which each is cut.
+ *
+ * Triangles go through a depth buffer (raster.c). Edges are sampled at 1.5 points a pixel and drawn where they are
+ * not behind the buffer by more than a few pixels, so that an edge is not hidden by its own faces. Frusta of the
+ * photographs are drawn through everything, because they are what a person checks against the walls.
+ *
+ * Shading is a fixed function of the normal: one light from above and the side, tints by the kind of face's name. */
+#include "stages/build_model/view_picture.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/image/photo.h"
 #include "common/math/numbers.h"
+#include "stages/build_model/plan_picture.h"
 #include "stages/build_model/raster.h"
 
 enum { VIEW_WIDTH = 1400, VIEW_HEIGHT = 1000, SUPERSAMPLING = 2 };

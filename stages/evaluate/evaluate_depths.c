@@ -1,13 +1,35 @@
-/* evaluate_depths.c - depth maps against true depths: depth.*; the definitions are in docs/evaluation.md. */
+/* evaluate_depths.c - depth maps against true depths: depth.*; the definitions are in docs/evaluation.md.
+ *
+ * Overview. A depth map states one depth a pixel here: that of the layer with more alpha. It is brought into the
+ * unit of the truth by the scale of the similarity of the cameras, and compared with the true depth at the same
+ * pixel. The errors of a view go into the table under its name, and into the totals of the scene.
+ *
+ * True depths belong to photographs, depth maps to rectified views. The points of a photo are computed once and used
+ * for all its views: true_depth_in_view() projects them through the photo's lens into each.
+ *
+ * A point is occluded if no other kept photo sees it (true_depth.h). Stereo can only guess its depth, so the metrics
+ * with the ending _visible leave it out. The other photos are tried from the nearest one on, because a neighbour
+ * most likely sees the point.
+ *
+ * Disparity. bad1 and bad2 count pixels whose disparity f B / z is wrong by more than 1 or 2 px. A set of photos has
+ * no one baseline, so B is the median over the photos of the true distance to the nearest other one, and f is that
+ * of a picture with a long side of [evaluate] disparity_side: results do not depend on the size of the pictures.
+ *
+ * Stated uncertainties are judged by the share of pixels within 1, 2 and 3 standard deviations, and by the factor
+ * that would bring 68.27 % within one (sigma_error.h).
+ *
+ * Memory: the points of one photo and the planes of one view. Quantiles come from histograms (quantiles.h). */
 #include <math.h>
 #include <stdlib.h>
 
 #include "common/base/progress.h"
+#include "common/base/sort.h"
 #include "common/capture/view_image.h"
 #include "common/image/exr.h"
 #include "common/layers/layered_depth.h"
 #include "stages/evaluate/depth_error.h"
 #include "stages/evaluate/evaluation_parts.h"
+#include "stages/evaluate/sigma_error.h"
 
 /* kept[i]: photo i has a view and a true camera. */
 static void mark_kept(const struct evaluation *e, bool *kept)
@@ -32,7 +54,7 @@ static enum status find_baseline(struct evaluation *e, const bool *kept, struct 
                                                              pose_center(&e->truth.photos[j].pose))));
         if (nearest > 0 && nearest < INFINITY) distances[count++] = nearest;
     }
-    e->baseline = e->params->baseline > 0 ? e->params->baseline : count ? median(distances, count) : 0;
+    e->baseline = e->params->baseline > 0 ? e->params->baseline : count ? sort_median(distances, (size_t)count) : 0;
     free(distances);
     return ST_OK;
 }

@@ -1,5 +1,19 @@
 /* evaluate_radiance.c - radiance of the views and of the merged exposures against the true radiance of their
- * photographs: radiance.*, and the scale that rendered pictures are compared with. */
+ * photographs: radiance.*, radiance.merged.*, and the scale that rendered pictures are compared with.
+ *
+ * Overview. Radiance of products has an unknown unit: exposures fix ratios only. So there are two rounds over all
+ * pictures. The first finds the scale, the median over all pixels of true luminance over found luminance; the
+ * median, because clipped lamps and wrong pixels would move a mean. The second multiplies by it and measures the
+ * errors (radiance_error.h). Reading everything twice keeps one picture in memory.
+ *
+ * Each picture also gets the scale that it alone would give. Their spread, the largest over the smallest minus 1,
+ * says how well exposures were brought to one scale, whatever that scale is.
+ *
+ * Views are compared through the lenses of their photographs: the truth is resampled to the view. A merged exposure
+ * is the photograph itself, so its pixels are compared by their place in the picture, without a lens; a truth of
+ * another size is allowed, one of another shape is skipped with a note.
+ *
+ * The scale of the views becomes e->radiance_scale, with which all rendered pictures are compared (renders.c). */
 #include <stdlib.h>
 #include <string.h>
 

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/base/sort.h"
 #include "stages/evaluate/evaluation_parts.h"
 #include "stages/evaluate/renders.h"
 #include "stages/evaluate/shell_error.h"
@@ -62,7 +63,8 @@ static enum status add_faces(struct evaluation *e, struct shell_error *errors, c
         snprintf(worst, sizeof worst, "%.250s", view + 5);
     }
     snprintf(name, sizeof name, "faces%s", suffixes[part]);
-    if (!st && count) st = evaluation_metric(e, NULL, "shell", name, 100 * median(medians, count), err);
+    if (!st && count)
+        st = evaluation_metric(e, NULL, "shell", name, 100 * sort_median(medians, (size_t)count), err);
     snprintf(name, sizeof name, "faces_max%s", suffixes[part]);
     if (!st && count) st = evaluation_metric(e, NULL, "shell", name, 100 * most, err);
     if (!st && count) st = metric_note(&e->table, err, "note: shell.%s is that of %s", name, worst);

@@ -1,5 +1,23 @@
 /* evaluate_textures.c - texture atlases against what is true of the scene without its furniture: texture.* (those of
- * all viewpoints together) and texture.vita.*. */
+ * all viewpoints together) and texture.vita.*.
+ *
+ * Overview. An atlas should show the room's surfaces as they look without furniture, while the photographs show them
+ * with it. The truth has both: pictures and depths of the photographed room, and of its empty shell
+ * (shell_points.h). Atlases are read page by page; for each texel of a tile
+ *   1. its place on the face is found from the tile's matrix (texel_places.h) and brought into the truth
+ *      (model_frame.h)
+ *   2. the truth says what radiance the shell has there, and for each photo whether it shows the shell or furniture
+ *      in front of it (texel_facts.h)
+ *   3. the texel's error goes into its face's sum, by origin (texture_error.h)
+ *
+ * The metrics of an origin are the median over the faces of their PSNR, so that one large wall does not decide.
+ * clutter_avoided: of the texels whose own photo shows clutter of another colour, the share that does not show it.
+ * clutter_baked: of the compared texels of known sources, the share that shows clutter. unknown_clean: of the texels
+ * that some photo shows clean, the share that was filled all the same.
+ *
+ * Seams need no truth: gradients across the boundaries of sources against those beside them (texture_seams.h).
+ *
+ * Without a truth, or where the scale of radiance or the place of the model in the truth is unknown, a note says so. */
 #include <stdlib.h>
 #include <string.h>
 

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/base/sort.h"
 #include "stages/evaluate/evaluation_parts.h"
 #include "stages/evaluate/model_frame.h"
 #include "stages/evaluate/room_heights.h"
@@ -20,7 +21,7 @@ static enum status add_parts(struct evaluation *e, const char *prefix, const cha
     snprintf(middle, sizeof middle, "%s_median", name);
     if (!p->count) return ST_OK;
     if (evaluation_metric(e, NULL, prefix, name, p->errors[p->count - 1], err) ||
-        evaluation_metric(e, NULL, prefix, middle, median(p->errors, p->count), err))
+        evaluation_metric(e, NULL, prefix, middle, sort_median(p->errors, (size_t)p->count), err))
         return err->status;
     return metric_note(&e->table, err, "note: %s.%s is that of %s", prefix, name, p->worst);
 }

@@ -1,9 +1,7 @@
 /* evaluation.c - see evaluation.h; evaluate_*.c compute the metrics. */
-#include "stages/evaluate/evaluation_parts.h"
+#include "stages/evaluate/evaluation.h"
 
-#define PARAM_STRUCT struct evaluate_params
-const struct param evaluate_param_table[] = {EVALUATE_PARAMS(PARAM_ROW) PARAM_END};
-#undef PARAM_STRUCT
+#include "stages/evaluate/evaluation_parts.h"
 
 static enum status read_views(struct evaluation *e, struct view_set *set, const char *where, struct err *err)
 {

@@ -5,8 +5,9 @@
 #include <stdbool.h>
 
 #include "common/base/file_path.h"
+#include "common/base/provenance.h"
 #include "common/capture/camera_alignment.h"
-#include "stages/evaluate/evaluation.h"
+#include "stages/evaluate/evaluate_params.h"
 #include "stages/evaluate/linear_picture.h"
 #include "stages/evaluate/metric_table.h"
 #include "stages/evaluate/true_set.h"

@@ -4,7 +4,7 @@
 
 #include "common/image/exr.h"
 #include "common/texture/model_picture.h"
-#include "stages/evaluate/depth_error.h"
+#include "stages/evaluate/quantiles.h"
 
 /* A frame before it was relit, and the quotient of its luminance after to before. {0} is the empty state; owned. */
 struct film_frame {

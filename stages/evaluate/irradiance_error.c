@@ -49,7 +49,7 @@ enum status irradiance_errors(struct irradiance_errors *e, const struct irradian
     }
     if (e->points) {
         e->rms = sqrt(square / reference);
-        e->error50 = median(errors, e->points);
+        e->error50 = sort_median(errors, (size_t)e->points);
         sort_doubles(errors, (size_t)e->points);
         e->error90 = errors[(9 * (e->points - 1) + 5) / 10];
     }
@@ -68,7 +68,7 @@ enum status irradiance_scale(double *scale, const struct irradiance_list *truth,
         const double a = partner[i] < 0 ? 0 : luminance_of_doubles(found->points[partner[i]].rgb);
         if (a > 0 && b > 0) ratios[count++] = b / a;
     }
-    *scale = count ? median(ratios, count) : 0;
+    *scale = count ? sort_median(ratios, (size_t)count) : 0;
     free(ratios);
     return ST_OK;
 }

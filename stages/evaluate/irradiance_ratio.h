@@ -10,7 +10,7 @@
 #ifndef REMODEL_IRRADIANCE_RATIO_H
 #define REMODEL_IRRADIANCE_RATIO_H
 
-#include "stages/evaluate/depth_error.h"
+#include "stages/evaluate/quantiles.h"
 
 struct ratio_error {
     double square, change, reference; /* sums of (q before - after)^2, (before - after)^2, after^2 */

@@ -5,7 +5,7 @@
 #ifndef REMODEL_RADIANCE_ERROR_H
 #define REMODEL_RADIANCE_ERROR_H
 
-#include "stages/evaluate/depth_error.h"
+#include "stages/evaluate/quantiles.h"
 
 struct radiance_error {
     double square, reference; /* sums of (found - true)^2 and true^2 */

@@ -1,4 +1,25 @@
-/* renders.c - see renders.h. */
+/* renders.c - rendered pictures and the true pictures that they belong to.
+ *
+ * Overview. Before pictures can be compared pixel by pixel, each needs the map from its pixels to those of the true
+ * picture. Both were taken from one place, but with different lenses and in different worlds.
+ *
+ * Own cameras. A picture's camera is in the frame of the scene; the similarity of the cameras (evaluate_cameras.c)
+ * gives its centre and axes in the world of the truth:  true_from_picture = R_true R_similarity R_picture'.  The two
+ * centres are never equal, because cameras are estimated. Parallax between them is no error of the picture, so
+ * pictures that are farther than [evaluate] max_offset are left out, with a note.
+ *
+ * Views. A picture that is named like a view was rendered with that view's camera, and is compared with the true
+ * picture of the view's photograph through the photograph's lens. No similarity is needed.
+ *
+ * In both cases the true picture is resampled to the rendered one, never the other way: what is measured are the
+ * pixels that were made.
+ *
+ * Scale. Radiance in products has an unknown unit. It is known from the views of photos with a true radiance
+ * (evaluate_radiance.c); without those it is the median of the ratios of luminance over the pictures themselves, and
+ * a note says so. 8-bit pictures need the radiance that is white in them.
+ *
+ * renders_write_cameras() goes the opposite way: the true cameras in the frame of the scene, for programs that
+ * render. */
 #include "stages/evaluate/renders.h"
 
 #include <math.h>

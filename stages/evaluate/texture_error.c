@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "common/capture/camera_alignment.h"
+#include "common/base/sort.h"
 #include "common/image/image.h"
 #include "common/image/luminance.h"
 
@@ -105,7 +105,7 @@ enum status texture_median_psnr(const struct texture_error *e, enum texture_part
     if (!values) return err_nomem(err, "errors of faces", (size_t)e->face_count * sizeof *values);
     for (int i = 0; i < e->face_count; i++) count += texture_face_psnr(e, i, part, &values[count]);
     *found = count > 0;
-    if (count) *db = median(values, count);
+    if (count) *db = sort_median(values, (size_t)count);
     free(values);
     return ST_OK;
 }

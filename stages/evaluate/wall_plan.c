@@ -1,9 +1,23 @@
-/* wall_plan.c - see wall_plan.h.
+/* wall_plan.c - the walls of a model and of a truth, read from their files and compared.
  *
- * A face's error is the larger of the distances of its two ends from the line of a true face, in plan. Candidates run
- * the same way within 10 degrees, overlap the face along the line, and are within max_distance; the nearest one counts.
- * An opening's error is the largest difference of its two sides along the wall, its sill and its head; a candidate's
- * corners must be within max_distance across the wall too, because farther ones are in another wall. */
+ * Three kinds of file become one list of faces, openings and rooms, in plan with heights: model/plan.txt, a scene in
+ * the language of described scenes (with its bases and what it drops), and the simpler scene-truth.txt of boxes with
+ * partitions. A face has a direction, which says which side of its wall it is.
+ *
+ * Errors. A face's error is the larger of the distances of its two ends from the line of a true face, in plan.
+ * Candidates run the same way within 10 degrees, overlap the face along the line, and are within max_distance; the
+ * nearest one counts. An opening's error is the largest difference of its two sides along the wall, its sill and its
+ * head; a candidate's corners must be within max_distance across the wall too, because farther ones are in another
+ * wall.
+ *
+ * A model may split a wall into several faces or leave one out, so faces are not paired one to one: each face of the
+ * model is measured alone. Parts of the model without a true one are counted; of the truth only the openings that
+ * the model lacks, since a photograph need not show every wall.
+ *
+ * A room's height is taken at the centroid of its outline, where a sloping ceiling has a height that can be
+ * compared.
+ *
+ * O(faces of the model x faces of the truth). */
 #include "stages/evaluate/wall_plan.h"
 
 #include <stdio.h>

@@ -1,7 +1,20 @@
 /* write_gltf.c - glTF 2.0 in its binary form: JSON, then vertices and pictures.
  *
- * y is up; a node for each body, a primitive for each page or colour. The pictures hold light, so materials are unlit;
- * primitives name their faces in `extras`. */
+ * Layout of a .glb file: a header of 12 bytes, a chunk "JSON", a chunk "BIN"; each chunk is padded to four bytes.
+ * The JSON describes the second chunk: a buffer view is a range of its bytes, an accessor says which vectors a view
+ * holds. Here every accessor has its own view, and every view begins at a multiple of four.
+ *
+ * A body becomes a node with a mesh, and the triangles of a body with one material become a primitive: pages come
+ * first, then glass, then the colours in order of the triangles. So the order of everything follows from the model,
+ * and the same model gives the same bytes. Vertices are not shared between triangles: faces are flat, each has its
+ * own normal, and the corners of two tiles have different texture coordinates.
+ *
+ * glTF's y points up and its z to the viewer, so a point (x, y, z) becomes (x, z, -y). Textures hold the light of
+ * the room, so materials are unlit (extension KHR_materials_unlit). `extras` of a primitive lists its faces with the
+ * number of the first triangle of each, so that a script finds a face by its name.
+ *
+ * Memory: the whole file. The loop over materials goes through all triangles for each pair of body and material,
+ * O(bodies x materials x triangles); rooms have a few hundred faces. */
 #include <jansson.h>
 #include <math.h>
 #include <stdlib.h>

@@ -1,9 +1,21 @@
 /* heights.c - heights of floor and ceiling.
  *
- * [Colburn 2014, 4.4.1]: the heights of points with normals within 25 degrees of up are grouped into three clusters by
- * k-means; the largest is the floor. Here k-means is solved exactly (stages/find_axes/kmeans1d.h). Furniture pulls the
- * mean of its cluster, so a cluster only gives a range of heights: the height is the densest window in that range,
- * about 2.5 cm of a room, refined to the robust mean around it (Tukey's biweight). The ceiling is not in the source. */
+ * [Colburn 2014, 4.4.1]: the heights of points with normals within 25 degrees of up are grouped into three clusters
+ * by k-means; the largest is the floor. Here k-means is solved exactly (stages/find_axes/kmeans1d.h). Furniture
+ * pulls the mean of its cluster, so a cluster only gives a range of heights: the height is the densest window in
+ * that range, about 2.5 cm of a room, refined to the robust mean around it (Tukey's biweight). The ceiling is not in
+ * the source.
+ *
+ * Which cluster. For the floor the one with the densest window, because tables and chairs may share a larger cluster
+ * than the floor's, but not a height. For the ceiling the highest one that is not small: beams and lamps below it
+ * may have more and sharper points, but nothing is above it.
+ *
+ * Error. The robust mean is an M-estimator: with weights w and distances d its standard error is that of the
+ * gradient sum w d over the slope sum (w d)'. Neighbouring points err alike, so gradients are summed over blocks of
+ * space, and the blocks count as independent (blocks.h). A tilt of the axes moves the height by the tilt times the
+ * distance of the points' middle from the origin, which is added in squares.
+ *
+ * O(n log n) for n points, by sorting; windows and ranges are then found in one pass or by binary search. */
 #include "stages/find_axes/heights.h"
 
 #include <stdlib.h>

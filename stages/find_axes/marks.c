@@ -1,4 +1,23 @@
-/* marks.c - reads the marks of users and finds their positions. */
+/* marks.c - reads the marks of users and finds their positions.
+ *
+ * A mark is a pixel of a photo with a name. A file of marks is checked as a whole before anything is located, so
+ * that a name without a partner is an error of its line.
+ *
+ * A point of the world is found in one of three ways:
+ *   - marked in several views: the point with the least sum of squared distances from the rays. With unit rays r
+ *     through centres c that is the solution of sum (I - r r') x = sum (I - r r') c. Rays less than a degree apart
+ *     leave the distance open, and a reprojection error above 2 % of the photo's longer side means that the marks
+ *     are of different points: both are errors
+ *   - on the floor: where the ray meets it, at least a degree below the horizon
+ *   - on a surface: the points of the cloud near the ray, within 0.3 % of their depth or 1.5 cells. Several surfaces
+ *     may lie on a ray, so only points at most 2 % behind the first one count; their mean depth is the point's
+ *
+ * The effect of a click. mark_error() moves every coordinate of every mark by `click` pixels, one at a time,
+ * measures the result again, and adds the squared changes: the standard error that clicks with that standard
+ * deviation give, to first order. A move that leaves the photo is made to the other side. It takes 2 n measurements
+ * for n marks.
+ *
+ * The cloud is searched from end to end for each mark on a surface, two passes of O(points); there are few marks. */
 #include "stages/find_axes/marks.h"
 
 #include <stdlib.h>

@@ -1,8 +1,22 @@
 /* room.c - a room's axes, floor, ceiling, scale and extent.
  *
- * Directions of most normals give the axes, planes refine them, marked edges correct them. Heights of upward and
- * downward normals give floor and ceiling; marked corners replace the floor where they contradict it. Marked lengths
- * give the scale. */
+ * Overview [Colburn 2014, 4.4.1].
+ *   1. the directions of most normals give three axes (directions.c). z is the one nearest to the mean up direction
+ *      of the cameras, x the one nearest to the right direction of the most central camera, y completes them
+ *   2. the planes across the axes with the most points turn the axes a little (planes.c), and so do marked edges
+ *      (correct.c); after these, the planes are found again
+ *   3. heights of points with upward and downward normals give floor and ceiling (heights.c). Corners of the floor
+ *      that are marked in several views replace the floor where there is none, or where the two differ by more than
+ *      twice their common standard error
+ *   4. marked lengths give metres: with distances d and lengths m the scale is sum d m / sum d^2, and its error
+ *      combines the effect of clicks (mark_error()) with what the lengths leave unexplained
+ *   5. marks on both sides of a wall give its thickness; the extent is that of the outermost walls that face
+ *      inwards, or else of all points
+ *
+ * The origin is on the floor under the most central camera. Up to step 4 lengths are in scene units from that
+ * camera; after it in metres, if there is a scale.
+ *
+ * Differs from the source: marks, standard errors, and the ceiling. */
 #include "stages/find_axes/room.h"
 
 #include <stdlib.h>

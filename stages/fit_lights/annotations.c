@@ -1,4 +1,15 @@
-/* annotations.c - see annotations.h. */
+/* annotations.c - reads lights.txt as people write it: which openings let daylight in, lamps, and marked points.
+ *
+ * A line is a statement with a name: window, shut, disk, area, lit, unlit, line. It is read into one form with the
+ * pixels in the order of the line; what they mean in the model is found later (resolve.c). An option may be given
+ * once, and a quantity is a number or the word `fit`.
+ *
+ * Names. A window or a lamp may be declared once. Points name their lamp, which may stand below them, so they are
+ * connected after the last line. The points of a lamp must be of one material, because their reflectance is one
+ * unknown of the fit; points without a material are of one named like the lamp.
+ *
+ * All bounds are checked here, with file and line, so that later stages only meet geometry that is wrong, not
+ * numbers. */
 #include "stages/fit_lights/annotations.h"
 
 #include <limits.h>

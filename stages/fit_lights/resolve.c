@@ -1,4 +1,22 @@
-/* resolve.c - see resolve.h. */
+/* resolve.c - from notes on photographs to lamps, openings and points in the model's frame.
+ *
+ * Overview. A person marks lamps and lit points by pixels [Colburn 2014, 5.3.3]. A pixel of a photo is a ray through
+ * the photo's lens; the first surface of the model on it, seen from the front, is what the person meant.
+ *
+ * Lamps. The ray through the middle of a lamp finds the surface that it hangs on; the lamp's plane is parallel to
+ * that surface at the stated distance. A disk has its centre there and one point of its rim, found on the plane
+ * across the disk's own normal, which may be inclined. An area light has four corners; they are never quite those of
+ * a parallelogram, so its half edges are the means of opposite sides, which is the least-squares parallelogram. x
+ * and y are ordered so that their cross product points into the room.
+ *
+ * Openings come from the plan. Windows and skylights let daylight in unless a note says `shut`; doors and passages
+ * do only if a note says so, and hatches never do. An opening in a wall along no axis is left out with a warning:
+ * light through it is then found by rays that happen to leave, with more noise.
+ *
+ * Points. A rectangle becomes grid x grid points, those on the surface at its middle. A line becomes 161 points
+ * between its two ends, which must lie on one surface, because a fit of a falloff needs one normal.
+ *
+ * Errors name the file, the line and the pixel. Units: the model's, angles in radians after this file. */
 #include "stages/fit_lights/resolve.h"
 
 #include <math.h>

@@ -1,4 +1,17 @@
-/* light_summary.c - see light_summary.h. */
+/* light_summary.c - what is known of the light at the points of a list or of a view: a record, and pictures.
+ *
+ * Overview. A person wants to know whether irradiance can be trusted, and why not. The record has
+ *   - shares: of the light by source (lamps, sky, textures, guesses, nothing), means over the lit points
+ *   - errors: the quantiles 50 and 95 % and the maximum of the relative standard errors that the estimators state
+ *   - examples: some points with their values, and a hemicube of what each receives (hemicube_picture.c). They are
+ *     spread evenly over the ranking by error, the worst first, so that they show the good, the usual and the bad
+ * Points without light have no relative error; they count as dark, and are ranked only if all are.
+ *
+ * Pictures of a view: white, the irradiance as if every surface were white, with dots at the examples; level, its
+ * luminance on a logarithmic ramp between the 2nd and 98th percentile (at most a factor of 1000); unknown, the share
+ * of light that was synthesised, guessed or missing. Pixels without a surface are hatched.
+ *
+ * Memory: the list of points, which the caller has, and one picture. */
 #include "stages/gather_irradiance/light_summary.h"
 
 #include <math.h>

@@ -1,4 +1,26 @@
-/* bracketed_view.c - reads, merges and writes a view of several exposures. */
+/* bracketed_view.c - reads, merges and writes a view of several exposures.
+ *
+ * Overview. The steps, with the file that has the algorithm of each:
+ *   1. read the record, the response and all exposures, these in parallel
+ *   2. align the exposures to the middle one by whole pixels (align.c); [hdr_merge] align decides whether the shifts
+ *      are used or only reported
+ *   3. compare stated exposures with the photos: the ratio of light that two neighbouring exposures show against the
+ *      ratio of their exposures. Off by more than 15 %: the radiometry is called approximate. Off by more than
+ *      max_disagreement: an error that names the pair, because all radiance would be wrong
+ *   4. find the noise: measured from the differences between exposures (noise.c), or given in electrons
+ *   5. merge (merge.c)
+ *
+ * A lighting reference image is also placed: by marks (marked_pose.c), or by its camera in a model.
+ *
+ * Exposures are divided by the `white` of the record, so that radiance 1 is white in the exposure that was meant to
+ * be looked at. JPEG, TIFF and EXR all arrive as struct photo.
+ *
+ * Two files leave here. VIEW.exr has half floats, the mask of clipped pixels, and the variance rounded to eight
+ * binary digits, because noise is not known better and the rest would not compress. VIEW.jpg is for structure from
+ * motion: the bytes of the middle exposure where it is a JPEG already, else an encoded copy, or on request a
+ * tone-mapped picture, which shows features in both lamps and shadows (tone.c).
+ *
+ * Memory: all exposures at once, and the result. */
 #include "stages/hdr_merge/bracketed_view.h"
 
 #include <math.h>

@@ -1,4 +1,18 @@
-/* reference_marks.c - reads marks in lighting reference images and finds their points in the model. */
+/* reference_marks.c - reads marks in lighting reference images and finds their points in the model.
+ *
+ * A lighting reference image, such as a mirror ball or a fisheye picture, often cannot be placed by structure from
+ * motion. A person then marks points of the model in it. Corners of doors, passages and windows are easiest to find
+ * in a picture, so they are named: opening, left or right, bottom or top, of the wall's inside or, with "outer", of
+ * its outside. Any other point is given by its coordinates.
+ *
+ * Left and right are those of a viewer who faces the wall from its inside. With the wall's normal n, which points at
+ * the viewer, right is (-n_y, n_x) in plan. The plan stores an opening's corners in ascending coordinate, and walls
+ * run along an axis, so the sign of one component of n says which of the two is the right one. Corners of openings
+ * in walls along no axis are not in the plan; the error says to give points.
+ *
+ * Lines are checked against each other as they are read, O(n^2) for at most 4096 lines: what was said twice would
+ * count twice in the fit of the pose (marked_pose.c). The lens "EQUISOLID" is approximated by OPENCV_FISHEYE
+ * (camera_equisolid()). */
 #include "stages/hdr_merge/reference_marks.h"
 
 #include <stdlib.h>

@@ -1,4 +1,20 @@
-/* photo_scan.c - the photographs of a folder: ids, exclusion, checks, records. */
+/* photo_scan.c - the photographs of a folder: ids, exclusion, checks, records.
+ *
+ * Ids. Everything after this stage names a photo by an id of letters, digits, _ and -, so that file names with
+ * spaces or other characters are safe in Make and in COLMAP's text files. The id is the name without its extension,
+ * each run of other characters replaced by one _, of limited length. Names that would get one id get the extension
+ * added, then a number; names whose id is unique keep it, so that adding a photo changes as few ids as possible.
+ * Only the order of the names matters, never that of the folder.
+ *
+ * Which files. The extension decides. Where a camera wrote a raw file and a JPEG of one name, the JPEG is taken,
+ * because its owner has seen it. Hidden files and other kinds are counted as ignored.
+ *
+ * Checks. Every photo is read to its end once, in parallel, because a truncated file should be found before hours of
+ * work. The record has the hash of the bytes: a photo with the same hash as in its old record is not read again.
+ *
+ * A record is rewritten only if its text changes, and removed when its photo is gone, so Make redoes what depends on
+ * the photos that changed. Unusable photos are collected and named in one message with the line that leaves them
+ * out. */
 #include "stages/import_photos/photo_scan.h"
 
 #include <dirent.h>

@@ -1,4 +1,19 @@
-/* split_photos.c - cuts photographs of a multi-lens camera into their pictures. */
+/* split_photos.c - cuts photographs of a multi-lens camera into their pictures.
+ *
+ * A multi-lens camera takes a grid of small pictures on one photo. Each becomes a photo of its own, PHOTO_cXrY.png,
+ * without loss. split_layout.h finds where the pictures lie; pixels beyond a multiple of the grid belong to none,
+ * and a note says how many.
+ *
+ * EXIF is passed on, with the focal length in 35 mm scaled by the ratio of the diagonals: the same lens covers only
+ * a part of the frame.
+ *
+ * Work is done once. split.txt holds the hash of each photo and of each of its pictures. A photo is cut again if its
+ * bytes changed, if the grid changed, or if one of its pictures is missing or was changed; otherwise hashes and
+ * positions are taken over. Pictures of photos that are gone are removed, and only files with a name like a
+ * picture's.
+ *
+ * One unusable photo does not stop the others: its error is kept with it, and all bad ones are named in one message
+ * at the end. Pictures of a photo are written in parallel; memory holds one photo. */
 #include "stages/import_photos/split_photos.h"
 
 #include <dirent.h>

@@ -1,4 +1,23 @@
-/* prepare.c - preparation of a morph: photos, cameras, geometry, matching, and the path; see prepare.h. */
+/* prepare.c - preparation of a morph: photos, cameras, geometry, matching, and the path.
+ *
+ * Overview. View morphing [Colburn 2014, 3.4.5] moves the pixels of two photos towards each other along a dense
+ * flow. The flow must be right where the photos overlap, so it is found under as much geometry as is known:
+ *   1. both photos are made linear, upright, and of the film's size, that of the first photo
+ *   2. features are matched in grey pictures, with a fundamental matrix by RANSAC (opencv_features.h)
+ *   3. epipolar lines come, best first, from: the cameras, if structure from motion found both and each photo is one
+ *      view; the fundamental matrix; nothing. Features on one plane, or a camera that only turned, fit any epipolar
+ *      geometry whose plane or rotation is right: if a homography explains nine tenths of what the fundamental
+ *      matrix explains, epipolar lines are not used
+ *   4. the flow is found in both directions (match.h), and the pair is refused if fewer pixels than min_matched
+ *      agree
+ *   5. one gain for each colour, from matched pixels, says how the photos' exposures differ
+ *
+ * With cameras, the search along an epipolar line is limited to depths between the 2nd and 98th percentile of the
+ * sparse points that lie in front, with a factor of 1.5 at either end; without points, to more than three baselines.
+ *
+ * The path. A film needs cameras: position, focal length and principal point are linear between the two, rotations
+ * are the normalized linear mix of the quaternions, by the shorter way. The rays of a mirrored photo fit no
+ * rotation, so such a pair and one without cameras get a camera that stands still. */
 #include "stages/morph_views/prepare.h"
 
 #include <math.h>

@@ -1,4 +1,20 @@
-/* tour_stops.c - see tour_stops.h. */
+/* tour_stops.c - the stops of a tour: those of tour.txt, or all rooms.
+ *
+ * A stop is a viewpoint, that is the place of a photograph, because textures are best there. Usable viewpoints are
+ * not inside the model's solids, and not too near to them (tour_graph.h). The stop of a room is the usable viewpoint
+ * in it that is nearest to the middle of its corners, in plan.
+ *
+ * Without a script: begin at the viewpoint that sees farthest, then always go to the room whose stop is nearest by
+ * way of the graph (Dijkstra, tour_shortest()) and was not visited. That is the nearest-neighbour rule for the
+ * travelling salesman: not the shortest tour, but a natural one, and O(rooms x graph). Rooms without a usable
+ * viewpoint or without a way to them are left out with a warning. A flat of one room gets the viewpoint farthest
+ * from the start as its second stop.
+ *
+ * With a script, every stop is checked against the one before as it is read: a pair without a way is an error of its
+ * line, because a camera must not go through walls.
+ *
+ * A point is inside a room if a ray to the right crosses its outline an odd number of times, and if it is between
+ * floor and ceiling. */
 #include "stages/plan_tour/tour_stops.h"
 
 #include <math.h>

@@ -1,8 +1,16 @@
-/* page_cache.c - see page_cache.h.
+/* page_cache.c - pages of atlases in memory, as many as the limit allows.
  *
- * Pages are stored on disk as EXR files. One is read when a picture first needs it, and its tiles are copied apart. The
- * colours on disk are halves, so nothing is rounded. Memory is bounded by dropping what was not used for the longest
- * time, in pictures; of equals, what was found first goes first. */
+ * The atlases of a scene are larger than memory, and a film goes from one to the next. A page is read when a picture
+ * first needs it, and its tiles are copied apart: each with a border of one empty texel, in rows of its own stride,
+ * so that a bilinear look-up needs no test at the tile's edge. Colours on disk are halves and stay halves, so
+ * nothing is rounded; with one byte for their origin that is 9 bytes a texel.
+ *
+ * What goes when memory is short: the page or the list of an atlas that was not used for the longest time, counted
+ * in pictures; of equals, what is found first. A list is used whenever one of its pages is, so pages go before their
+ * list. What the present picture uses never goes, so a picture that needs more than the limit gets it.
+ *
+ * A file goes into the provenance of every picture that uses it, whether it is read for it or was in memory: the
+ * record must not depend on what was drawn before. */
 #include "stages/render_model/page_cache.h"
 
 #include <immintrin.h>

@@ -1,4 +1,26 @@
-/* pictures.c - draws and writes pictures; see pictures.h. Formats: docs/formats.md, O/remodel/E/pictures. */
+/* pictures.c - draws and writes pictures of views, of given cameras, and of the frames of a film. Formats:
+ * docs/formats.md, O/remodel/E/pictures.
+ *
+ * Overview. room_draw() draws the model from any camera; this file decides with which textures, replaces what the
+ * edit did not change, and chooses the exposure.
+ *
+ * Original views. Where the edited model is what the photograph shows, the photograph is better than any texture of
+ * it. own_pixels_find() marks these pixels; they are copied, and the model is drawn only if some pixel is left. A
+ * view that the edit does not touch costs no rendering and gets only a record (and its radiance, if [render_model]
+ * radiance = all).
+ *
+ * Textures. A view uses the atlas of its own photo. A given camera uses one or two viewpoints that see what it sees
+ * (choose_pair()). A frame of a tour uses the pair in pairs.txt, which plan_tour chose so that textures change
+ * slowly.
+ *
+ * Exposure. A picture is exposed by its own content, unless [render_model] exposure is given. In a film that would
+ * flicker: a frame's exposure is the geometric mean of those of its pair's photos, weighted like their textures, so
+ * it changes as slowly as the film moves.
+ *
+ * The record VIEW.txt is written last, so it stands for a complete set of files. It holds the share of the pixels by
+ * origin (enum picture_made), which -sources.png shows in colours.
+ *
+ * Memory: one picture, and the atlases that the room keeps. */
 #include "stages/render_model/pictures.h"
 
 #include <math.h>

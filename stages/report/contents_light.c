@@ -1,4 +1,20 @@
-/* contents_light.c - lamps with the residuals of their fit, fitted materials, irradiance of views and at points. */
+/* contents_light.c - what the page shows of the light: lamps with the residuals of their fit, fitted materials,
+ * irradiance of views and at points.
+ *
+ * Everything here is optional: a scene may have lamps without a fit, irradiance without lamps, or neither. A file
+ * that does not exist adds nothing; one that cannot be read becomes a note on the page, so that one damaged product
+ * does not cost the rest. Only running out of memory is an error.
+ *
+ * lights/fit.txt is read for what the page shows of it: where a lamp's radiance comes from, standard errors, what
+ * the photographs show of the lamp itself, and for each marked point the luminance that the photographs show and the
+ * one that the fit explains, which the page plots against each other. Other lines are skipped.
+ *
+ * Irradiance is found by its records, NAME.light.txt (light_summary.c of gather_irradiance), in order of name, at
+ * most 24. Those of views come with thumbnails, turned upright by the photo's EXIF orientation, beside the view
+ * itself.
+ *
+ * Pictures are shrunk as they are read: the page needs a few hundred pixels, and memory holds one picture at full
+ * size. */
 #include "stages/report/contents_light.h"
 
 #include <dirent.h>

@@ -1,4 +1,14 @@
-/* contents_relit.c - reads the pictures of an edit under the light that it makes; see contents_relit.h. */
+/* contents_relit.c - reads the pictures of an edit under the light that it makes.
+ *
+ * Every relit view has a record, VIEW.txt: its exposure, and the shares of its pixels whose light changed, whose
+ * quotient was bounded, and that were kept. Views are ranked by the share that changed, then by name; the first ones
+ * are shown with the photograph, the edit under the old light, under the new light, and the ratio of the two. All
+ * are exposed alike, by the record's exposure, or the light could not be compared by eye. Where the scene has a
+ * truth, the true picture stands beside them.
+ *
+ * rounds.txt says how many rounds of light there were, whether they settled, and how much was still missing.
+ *
+ * A picture that cannot be read is left out with a note; the page is made all the same. */
 #include "stages/report/contents_relit.h"
 
 #include <dirent.h>

@@ -1,4 +1,16 @@
-/* contents_remodel.c - reads the pictures of edits (docs/formats.md, O/remodel/E/pictures); see contents_remodel.h. */
+/* contents_remodel.c - reads the pictures of edits (docs/formats.md, O/remodel/E/pictures).
+ *
+ * Which views are shown. An edit changes little in most views. Views are ranked by the share of the picture that
+ * changed times the share that is not empty, since a view that looks past the photo's border shows less; of each
+ * photograph the best view is taken. Views that the edit does not change are counted only.
+ *
+ * A sight has the photograph, the picture after the edit, and the origin of its pixels in colours, all of one size
+ * and exposure, so that the page can lay them over each other.
+ *
+ * The sentence about an edit is the comment at the beginning of its script. Plans, models and films are linked where
+ * they exist; for what does not, the page says which goal of make makes it.
+ *
+ * A picture that cannot be read becomes a note. */
 #include "stages/report/contents_remodel.h"
 
 #include <dirent.h>

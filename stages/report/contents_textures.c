@@ -1,4 +1,14 @@
-/* contents_textures.c - texture atlases: their pages, and the room seen from the views with their texture. */
+/* contents_textures.c - texture atlases: their pages, and the room seen from the views with their texture.
+ *
+ * Overview. A card is made for each of the first viewpoints, and for the view-independent atlas with two views. For
+ * each view of a card the samples are located in the atlas first (texture_pictures.c); then each page is read once,
+ * is shrunk to a picture of its own, and fills in the samples of all views that lie on it. So an atlas of many pages
+ * costs the memory of one.
+ *
+ * Sources are listed with the number of pixels that each gives to the views, most first. A view has one colour in
+ * all atlases, by its number in the scene, so that cards can be compared.
+ *
+ * A card that cannot be read is dropped as a whole, and becomes a note. */
 #include "stages/report/contents_parts.h"
 
 #include <dirent.h>

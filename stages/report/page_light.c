@@ -1,4 +1,14 @@
-/* page_light.c - the light of the room: its lamps, its materials, and what arrives where. */
+/* page_light.c - the light of the room: its lamps, its materials, and what arrives where.
+ *
+ * Numbers are shown with what is known of them: A ± B for what was measured, A alone for what was given. Shares
+ * below 0.05 % are left out.
+ *
+ * The plot of a lamp has a point for each marked place: to the right its luminance in the photographs, upwards as
+ * the fit explains it. A perfect fit lies on the diagonal. Both axes end at 1, 2 or 5 times a power of ten. Below it
+ * stands the median of |photograph / fit - 1|.
+ *
+ * Light by source is given in words with a bar, sources that can be trusted (lamps, what photographs show) apart
+ * from guesses. Legends of the pictures give the ends of their colours in numbers. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

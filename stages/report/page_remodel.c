@@ -1,4 +1,14 @@
-/* page_remodel.c - see page_remodel.h. */
+/* page_remodel.c - the page of a scene's edits: what each changes, before and after, its plans, models and films.
+ *
+ * For each edit, the picture before and after lie over each other with a slider, and a third layer shows where the
+ * pixels come from: the photograph, textures of other views, synthesised texels. The shares below are of what the
+ * photo's frame shows. Then come plans, links to models, and films.
+ *
+ * What does not exist yet is said with the goal of make that makes it, so the page tells what a scene could still
+ * have.
+ *
+ * Pictures are in the page itself, as JPEGs of a few hundred pixels: it is one file that can be moved or sent; only
+ * films and models are links. */
 #include "stages/report/page_remodel.h"
 
 #include <math.h>

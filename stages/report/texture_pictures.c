@@ -1,5 +1,17 @@
-/* texture_pictures.c - see texture_pictures.h. The view's ids and depths give the face and the point of each sample;
- * the tile that shows this point gives its texel, as a renderer would look it up at the photograph's own place. */
+/* texture_pictures.c - pictures of atlases: pages, and the room from a view with its textures or their sources.
+ *
+ * Overview. A page of an atlas shows pieces of walls in no order, so the report also shows what a photograph would
+ * see if the model with its textures stood in for the room. Nothing is rendered: the view's ids and depths
+ * (trace_ids) give the face and the point of each pixel, and the tile that shows this point gives its texel, as a
+ * renderer would look it up at the photograph's own place.
+ *
+ * A pixel of the thumbnail has SIGHT_SIDE x SIGHT_SIDE samples, which are looked up once, in parallel, before any
+ * page is read. Pages are then read one at a time and fill in the samples that lie on them, so memory holds one
+ * page.
+ *
+ * Colours. The picture is the mean of the samples in linear light, encoded as sRGB; hatched grey where most samples
+ * have no texel. In the picture of sources each source has its hue, darkened by the luminance of the texel, so that
+ * the room stays recognisable; originals are grey, synthesised texels hatched, default ones magenta. */
 #include "stages/report/texture_pictures.h"
 
 #include <math.h>

@@ -1,8 +1,26 @@
 /* matcher.c - preparation of a view and its neighbours for matching.
  *
- * The view's features are stored segment by segment, every fourth pixel first, padded to groups of eight. A neighbour's
- * texture interleaves the bytes of a pixel with those of the pixel below it, so that 32 bytes from one address hold the
- * four corners of a bilinear sample of all channels (plane_match.c). */
+ * A matcher holds what plane_match.c needs for every cost, in the order in which it needs it.
+ *
+ * The view. Features are stored segment by segment, every fourth pixel first, which are those of the rough cost,
+ * padded to groups of eight with pixels of weight 0. Within a group weights are in the order of the sums over lanes.
+ *
+ * Weights. Near an edge of its segment a pixel's gradients are those of the edge, which moves with the surface in
+ * front; the surface behind would match at that surface's depth. So a pixel with a colour difference D from a pixel
+ * of another segment within 2 px, less where that is farther, counts 1 / (1 + (D / 15)^2) of a full one. Weights by
+ * colour are those of [Yoon 2006], which compares with the middle of a window and has no segments.
+ *
+ * A neighbour is halved while its pixels are more than 1.6 times as fine as the view's at a typical depth, so that
+ * both pictures have the same detail. Its colours are multiplied by the median ratio over the sparse points that
+ * both see, if they are well exposed and at least twelve, else by the ratio of exposures. Its gradients are turned
+ * to the view's axes: they are covectors and transform by the transposed Jacobian of the map between the pictures.
+ *
+ * The map of a pixel at depth z is p' ~ K' (R K^-1 p + t / z): base and shift of struct match_neighbour.
+ *
+ * A neighbour's texture interleaves the bytes of a pixel with those of the pixel below it, so that 32 bytes from one
+ * address hold the four corners of a bilinear sample of all channels.
+ *
+ * Memory: about 45 bytes a pixel of the view, and 16 a pixel of each neighbour. */
 #include <math.h>
 #include <stdlib.h>
 

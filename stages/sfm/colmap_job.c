@@ -1,4 +1,23 @@
-/* colmap_job.c - COLMAP's commands on a work folder. */
+/* colmap_job.c - COLMAP's commands on a work folder.
+ *
+ * COLMAP runs as three programs, each with its own log: feature_extractor, a matcher, and mapper. This file makes
+ * their work folder, their arguments, and sentences from their failures; run_colmap.c decides when to run which.
+ *
+ * Names. COLMAP's text files cannot hold every file name, so the work folder has links PHOTO-ID.EXTENSION, and
+ * colmap_name_images() puts the users' names back where a text file can hold them. COLMAP tells formats by the
+ * extension; one with other characters than letters and digits becomes .img.
+ *
+ * Masks are black where something is to be ignored, as COLMAP's are, but have to be named like the image plus .png.
+ * They are written for photos that have one.
+ *
+ * Lenses. start_lens.c decides whether all photos share one lens, and where its parameters begin; otherwise each
+ * photo has its own. `refine_camera = no` holds focal lengths and distortion during mapping.
+ *
+ * Matching. All pairs up to 200 photos, then neighbours in order of name: pairs grow with the square of the photos.
+ * The mapper may be run again `relaxed`, with a smaller angle and fewer inliers for its first pair; exit status 1 of
+ * it means that it found no model, which the caller explains.
+ *
+ * COLMAP uses the processor only: its results depend neither on a GPU nor on a driver. */
 #include "stages/sfm/colmap_job.h"
 
 #include <ctype.h>

@@ -1,4 +1,19 @@
-/* user_model.c - models that the user already has: COLMAP text or binary, Bundler. */
+/* user_model.c - models that the user already has: COLMAP text or binary, Bundler.
+ *
+ * What is looked for, in this order: a COLMAP model in the folder; COLMAP models in its subfolders 0, 1, ... until
+ * one is missing; a Bundler file (any *.out that begins with "# Bundle file", bundle.out first) in the folder or in
+ * bundle/.
+ *
+ * COLMAP. Text is read; a binary model is converted by COLMAP itself, because its format belongs to it. A model
+ * without points is completed: points3D.txt may be missing, and points are triangulated from the photos with the
+ * given cameras (triangulate.c).
+ *
+ * Bundler [Snavely 2006] knows images by their position in list.txt, and has no principal points: they are in the
+ * middle of the photos, whose sizes come from the records. Images that are no photos of the scene keep their
+ * position with size 0 x 0 and are left out.
+ *
+ * All models end as COLMAP text in one form (sfm_folder.c), so that no later stage knows where a model came from.
+ * The hashes of the files that were read go into the provenance. */
 #include "stages/sfm/user_model.h"
 
 #include <dirent.h>

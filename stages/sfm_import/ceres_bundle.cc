@@ -1,4 +1,27 @@
-/* ceres_bundle.cc - C interface to Ceres for bundle adjustment. Derivatives are camera_project_derivatives(). */
+/* ceres_bundle.cc - C interface to Ceres for bundle adjustment [Triggs 2000].
+ *
+ * Minimised is the sum over the observations of a robust function of the squared reprojection error in units of the
+ * noise, plus priors. Unknown are poses (unit quaternions and translations), points, lens parameters, and a shift of
+ * the principal point of each image.
+ *
+ * Robustness. Errors follow Student's t distribution with n degrees of freedom [Liu 1995]: a squared error s costs
+ * (n + 2) log(1 + s / n), which is Ceres' Cauchy loss times (n + 2) / n. Wrong matches then pull with a bounded
+ * force.
+ *
+ * Priors keep what the pictures do not determine near what is usual: single lens parameters, the ratio of the two
+ * focal lengths, and shifts, whose expectation is 0.
+ *
+ * Gauge. The scene may be moved, turned and scaled as a whole. The pose of the first image is held, and of the image
+ * that is farthest from it the coordinate of the translation that the scale changes most.
+ *
+ * Derivatives are exact: camera_project_derivatives() gives those of the lens, rotate() those of R(q) p.
+ *
+ * Solver. Points are eliminated first (Schur complement). Up to 150 images the reduced camera system is dense;
+ * beyond, it is sparse and solved by Eigen. One thread, and no CHOLMOD with a threaded BLAS: sums keep their order,
+ * so the same input gives the same bits.
+ *
+ * ceres_bundle_shift_sigma() gives the standard errors of the shifts from the inverse of the information matrix, by
+ * a sparse QR of the Jacobian. */
 #include "stages/sfm_import/ceres_bundle.h"
 
 #include <ceres/ceres.h>

@@ -35,12 +35,6 @@ static const double MIN_BIAS = 0.2, MIN_BIAS_DIAGONAL = 1.0 / 6000;
 
 static int ring_of(double radius) { return radius < 1 ? (int)(radius * RINGS) : RINGS - 1; }
 
-static double median(double *values, size_t count)
-{
-    sort_doubles(values, count);
-    return (values[(count - 1) / 2] + values[count / 2]) / 2;
-}
-
 /* Outermost ring with enough observations; -1: none. */
 static int rim_ring(const size_t count[RINGS])
 {
@@ -64,7 +58,7 @@ enum status lens_fit_measure(struct lens_fit *fit, const struct lens_residual *r
     if (n >= MIN_OBSERVATIONS) {
         fit->measured = true;
         fit->rim_radius = rim_radius;
-        fit->middle = median(values, n);
+        fit->middle = sort_median(values, n);
     }
     for (int ring = 0; fit->measured && ring < RINGS; ring++) {
         const bool many = in_ring[ring] >= MIN_BIASED && in_ring[ring] * MIN_BIASED_SHARE >= count;
@@ -72,12 +66,12 @@ enum status lens_fit_measure(struct lens_fit *fit, const struct lens_residual *r
         n = 0;
         for (size_t i = 0; i < count; i++)
             if (ring_of(residuals[i].radius) == ring) values[n++] = residuals[i].error;
-        if (ring == rim) fit->rim = median(values, n);
+        if (ring == rim) fit->rim = sort_median(values, n);
         if (!many) continue;
         n = 0;
         for (size_t i = 0; i < count; i++)
             if (ring_of(residuals[i].radius) == ring) values[n++] = residuals[i].radial;
-        const double bias = median(values, n);
+        const double bias = sort_median(values, n);
         if (fabs(bias) <= fabs(fit->bias)) continue;
         fit->bias = bias;
         fit->bias_radius = (ring + 0.5) / RINGS;

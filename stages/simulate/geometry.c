@@ -1,7 +1,18 @@
 /* geometry.c - described items as faces, cut into triangles.
  *
- * A wall's side with openings is cut along the lines of all their edges into a grid of rectangles; those inside an
- * opening are left out. The grid has no T-junctions, so there are no cracks between its triangles. */
+ * Each item of a described scene (wall, opening, box, room, disk, mesh) becomes faces with names and ids, and each
+ * face triangles for the ray tracer. u and v of a face are lengths along its plane, u to the right for a viewer in
+ * front of it, for textures.
+ *
+ * A wall's side with openings is cut along the lines of all their edges into a grid of rectangles; those whose
+ * middle is inside an opening are left out. The grid has no T-junctions, so there are no cracks between its
+ * triangles. With n openings there are O(n^2) rectangles; walls have few. Openings add reveals, except where those
+ * would lie on the wall's own edge.
+ *
+ * Items are not united. Walls that overlap at corners stay as they are, since a ray meets the outer surface first.
+ *
+ * Ids. An edited scene keeps the ids of its base by name, and new faces get ids beyond those, so that pictures of
+ * ids can be compared before and after an edit. */
 #include "stages/simulate/geometry.h"
 
 #include <math.h>

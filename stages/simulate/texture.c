@@ -1,7 +1,17 @@
 /* texture.c - procedural textures from cells and noise.
  *
- * A surface is divided into cells (planks, bricks, books, posters); a hash of the cell's indices decides its look, and
- * value noise adds detail. Posters and books carry marks of many sizes that never repeat, for feature matching. */
+ * A texture is a pure function of a seed and a place (u, v) on a face, in metres. A surface is divided into cells
+ * (planks, bricks, books, posters); a hash of the cell's indices decides its look, and value noise adds detail
+ * (common/light/noise.h). So a picture can be rendered in any order, and from any camera, with the same bits.
+ *
+ * What they are for. Depth is estimated from such pictures, so they need what real rooms have: detail at all scales,
+ * marks that never repeat for feature matching (posters, book spines), and plain walls that are hard to match
+ * (plaster). Dyes are those of printed things, so that rooms look like rooms.
+ *
+ * Edges are softened over 3 mm by smooth_step(). The path tracer averages samples over a pixel, so no other filter
+ * is needed.
+ *
+ * PI_15 has 15 digits: the full PI would change the last bits of textures. */
 #include "stages/simulate/texture.h"
 
 #include <math.h>

@@ -1,4 +1,15 @@
-/* product.c - see product.h. */
+/* product.c - whether a product is whole.
+ *
+ * A job on a cluster may be killed while it writes, and a disk may be full. Products appear whole or not at all
+ * (outfile.h), so this is a second look: it reads a file to its end, in the way of its format.
+ *   - EXR: all channels are decoded; points, atlases, maps and lists: their own readers, which check each record
+ *   - PNG, JPEG: the signature, then all pixels are decoded
+ *   - MP4: the boxes of ISO/IEC 14496-12 are followed from the first to the last: each must fit into the file, ftyp
+ *     comes first, moov and mdat are there. A video that was cut off fails this without a decoder
+ *   - SVG, HTML, JSON: the text ends as it must; other text: it ends with a line break and has no NUL byte
+ * An atlas is read with the sizes of all its pages.
+ *
+ * The format follows from the name. Memory: one product. */
 #include "stages/verify/product.h"
 
 #include <ctype.h>

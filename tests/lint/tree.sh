@@ -11,20 +11,29 @@ every_header_compiles_alone()
     [ ! -e "$scratch/alone" ] || fail "these headers do not compile alone: $(tr '\n' ' ' <"$scratch/alone")"
 }
 
-# check_includes FILE...: those that break the order of common/folders.txt, one a line
+# check_includes FILE...: those that break the order of common/folders.txt, or of stages/NAME/folders.txt, one a line
 check_includes()
 {
-    awk -v folders="${FOLDERS:-common/folders.txt}" '
-        BEGIN {
-            while ((getline line <folders) > 0) {
+    awk -v common="${FOLDERS:-common/folders.txt}" '
+        # the folders that each folder may include, itself among them, into below[place, folder]
+        function read_order(place, file,    line, part) {
+            while ((getline line <file) > 0) {
                 if (line ~ /^#/ || line !~ /:/) continue
-                split(line, part, /: */); below[part[1]] = " " part[1] " " part[2] " "
-            } }
-        FNR == 1 { n = split(FILENAME, at, "/"); stage = at[1] == "stages"; own = at[2] }
-        FNR == 1 && !stage && !(own in below) { print FILENAME ": common/" own " is not in " folders; nextfile }
+                split(line, part, /: */); below[place, part[1]] = " " part[1] " " part[2] " "
+            }
+            close(file); known[place] = 1
+        }
+        BEGIN { read_order("common", common) }
+        FNR == 1 {
+            n = split(FILENAME, at, "/"); stage = at[1] == "stages"; place = stage ? at[1] "/" at[2] : "common"
+            own = stage ? (n > 3 ? at[3] : "") : at[2]; order = stage ? place "/folders.txt" : common
+            if (stage && n > 3 && !(place in known)) read_order(place, order)
+            if (own != "" && !((place, own) in below)) { print FILENAME ": " place "/" own " is not in " order; nextfile }
+        }
         match($0, /^[ \t]*#[ \t]*include[ \t]*"[^"]*"/) {
-            split(substr($0, RSTART, RLENGTH), quoted, "\""); split(quoted[2], to, "/")
-            ok = to[1] == "common" && (to[2] in below) && (stage || index(below[own], " " to[2] " ")) || stage && to[1] == "stages" && to[2] == own
+            split(substr($0, RSTART, RLENGTH), quoted, "\""); m = split(quoted[2], to, "/")
+            if (to[1] == "common") ok = (("common", to[2]) in below) && (stage || index(below["common", own], " " to[2] " "))
+            else ok = stage && to[1] "/" to[2] == place && (own == "" || m > 3 && index(below[place, own], " " to[3] " "))
             if (!ok) print FILENAME ":" FNR ": includes " quoted[2]
         }' "$@"
 }
@@ -33,7 +42,7 @@ folders_include_only_folders_below()
 {
     local bad
     bad=$(sources 'common/*.[ch]' 'common/*.cc' 'stages/*.[ch]' 'stages/*.cc' | xargs -d '\n' bash -c "$(declare -f check_includes)"'; check_includes "$@"' -)
-    [ -z "$bad" ] || { echo "$bad"; fail "includes against common/folders.txt: $(wc -l <<<"$bad")"; }
+    [ -z "$bad" ] || { echo "$bad"; fail "includes against common/folders.txt or the folders.txt of a stage: $(wc -l <<<"$bad")"; }
 }
 
 folders_are_permitted_only_what_they_include()
@@ -49,21 +58,29 @@ folders_are_permitted_only_what_they_include()
 
 the_check_of_includes_finds_what_is_wrong()
 {
-    mkdir -p "$scratch/tree/common/base" "$scratch/tree/common/film" "$scratch/tree/common/odd" "$scratch/tree/stages/a"
+    mkdir -p "$scratch/tree/common/base" "$scratch/tree/common/film" "$scratch/tree/common/odd" "$scratch/tree/stages/a/low" "$scratch/tree/stages/a/high" "$scratch/tree/stages/a/new"
     cd "$scratch/tree" || exit 1
     echo '#include "common/film/shot.h"' >common/base/up.c
     echo '#include "err.h"' >common/base/bare.cc
     echo '#include "common/base/err.h"' >common/odd/unlisted.c
     echo '#include "stages/b/b.h"' >stages/a/other.c
-    printf '#include "common/film/shot.h"\n#include "stages/a/own.h"\n#include <stdio.h>\n' >stages/a/good.c
+    printf '#include "common/film/shot.h"\n#include "stages/a/own.h"\n#include "stages/a/high/good.h"\n#include <stdio.h>\n' >stages/a/good.c
+    printf 'low:\nhigh: low\n' >stages/a/folders.txt
+    printf '#include "common/film/shot.h"\n#include "stages/a/low/low.h"\n#include "stages/a/high/own.h"\n' >stages/a/high/good.h
+    printf '#include "stages/a/high/good.h"\n#include "stages/a/own.h"\n#include "stages/b/low/b.h"\n' >stages/a/low/up.c
+    echo '#include "stages/a/low/low.h"' >stages/a/new/unlisted.c
     echo '#include "common/base/err.h"' >common/film/good.h
     cp "$root/common/folders.txt" .
-    FOLDERS=folders.txt check_includes common/*/* stages/*/* >found
+    FOLDERS=folders.txt check_includes common/*/* stages/*/*.c stages/*/*/* >found
     diff - found <<'TEXT'
 common/base/bare.cc:1: includes err.h
 common/base/up.c:1: includes common/film/shot.h
 common/odd/unlisted.c: common/odd is not in folders.txt
 stages/a/other.c:1: includes stages/b/b.h
+stages/a/low/up.c:1: includes stages/a/high/good.h
+stages/a/low/up.c:2: includes stages/a/own.h
+stages/a/low/up.c:3: includes stages/b/low/b.h
+stages/a/new/unlisted.c: stages/a/new is not in stages/a/folders.txt
 TEXT
 }
 

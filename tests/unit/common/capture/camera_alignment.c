@@ -109,15 +109,6 @@ static void coincident_cameras_have_no_scale(void **state)
     assert_int_equal(align_cameras(&a, truth, found, 2, &err), ST_DATA);
 }
 
-static void a_median_of_an_even_number_is_a_mean(void **state)
-{
-    double odd[] = {5, 1, 3}, even[] = {4, 1, 2, 9};
-    (void)state;
-    assert_true(median(odd, 3) == 3);
-    assert_true(median(even, 4) == 3);
-    assert_true(median(even, 1) == 1);
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -125,7 +116,6 @@ int main(void)
         cmocka_unit_test(a_sheared_square_has_known_errors),
         cmocka_unit_test(a_mirrored_scene_is_aligned_by_a_rotation),
         cmocka_unit_test(coincident_cameras_have_no_scale),
-        cmocka_unit_test(a_median_of_an_even_number_is_a_mean),
     };
     return cmocka_run_group_tests_name("camera_alignment", tests, NULL, NULL);
 }
