@@ -37,6 +37,8 @@ enum status provenance_open(struct provenance *prov, const char *name, struct te
 /* Records files that others read: of a hash, or hashed here. */
 enum status provenance_add_hash(struct provenance *prov, const char *name, const char *hash, struct err *err);
 enum status provenance_add_file(struct provenance *prov, const char *name, const char *path, struct err *err);
+/* Records all inputs of another list: of what was read for an earlier product and kept in memory. */
+enum status provenance_add_all(struct provenance *prov, const struct provenance *inputs, struct err *err);
 bool provenance_has(const struct provenance *prov, const char *name);
 
 /* Records FOLDER/FILESUFFIX as AS/FILESUFFIX. path, if not NULL, gets FOLDER/FILESUFFIX. */

@@ -21,8 +21,8 @@ enum status textfile_open(struct textfile *t, const char *path, struct err *err)
 {
     struct file_bytes file = {0};
     *t = (struct textfile){0};
-    if (file_bytes_read(&file, path, err)) return err->status;
-    return textfile_take(t, &file, path, err);
+    const enum status st = file_bytes_read(&file, path, err);
+    return st ? st : textfile_take(t, &file, path, err);
 }
 
 enum status textfile_take(struct textfile *t, struct file_bytes *file, const char *path, struct err *err)

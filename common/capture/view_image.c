@@ -3,19 +3,19 @@
 
 #include <string.h>
 
-#include "common/base/file_path.h"
 #include "common/image/exr.h"
 
 static const char *const channel_names[4] = {"R", "G", "B", "A"};
 
-enum status view_image_read(struct image *im, const char *folder, const struct view *view, struct err *err)
+enum status view_image_read(struct image *im, const char *folder, const struct view *view, struct provenance *prov,
+                            struct err *err)
 {
     struct exr_image exr = {0};
     char path[FILE_PATH];
 
     *im = (struct image){0};
-    enum status st = file_path(path, folder, view->name, ".exr", err);
-    if (!st) st = exr_read(&exr, path, channel_names, 4, err);
+    enum status st = product_path_in(path, folder, PRODUCT_VIEW, &(struct product_key){.view = view->name}, err);
+    if (!st) st = exr_read_product(&exr, PRODUCT_VIEW, path, channel_names, 4, prov, err);
     if (!st && (exr.width != view->width || exr.height != view->height))
         st = err_set(err, ST_DATA, "%s has %d x %d pixels, but its camera %d x %d; make the views again.", path,
                      exr.width, exr.height, view->width, view->height);

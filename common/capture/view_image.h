@@ -10,7 +10,8 @@
 #include "common/image/image.h"
 
 /* 4 channels R G B A. ST_DATA: the size differs from the camera's. */
-enum status view_image_read(struct image *im, const char *folder, const struct view *view, struct err *err);
+enum status view_image_read(struct image *im, const char *folder, const struct view *view, struct provenance *prov,
+                            struct err *err);
 /* quality: noise and marks of the pixels, for the channels sigma and clipped; NULL: without them. */
 enum status view_image_write(const struct image *im, const struct photo_quality *quality, const char *path,
                              const struct view *view, const struct provenance *prov, const char *radiometry,

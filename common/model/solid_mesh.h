@@ -168,6 +168,6 @@ enum status solid_mesh_write_obj(const struct solid_mesh *mesh, const char *path
  * checks; a failure leaves mesh empty. */
 enum status solid_mesh_write(const struct solid_mesh *mesh, const char *path, const struct provenance *prov,
                              struct err *err);
-enum status solid_mesh_read(struct solid_mesh *mesh, const char *path, struct err *err);
+enum status solid_mesh_read(struct solid_mesh *mesh, const char *path, struct provenance *prov, struct err *err);
 
 #endif

@@ -240,35 +240,36 @@ const char *product_name(enum product_id id, const char *path)
 
 /* --- reading and writing --- */
 
-static enum status read_head(struct textfile *t, int *version, const char *head, struct err *err)
+enum status product_read_head(struct textfile *t, int *version, enum product_id id, struct err *err)
 {
+    const char *head = products[id].head;
     char word[64];
     const size_t length = strcspn(head, " ");
     int64_t wanted = 0, found = 0;
 
     snprintf(word, sizeof word, "%.*s", (int)length, head);
     scan_int(head + length + 1, &wanted);
-    if (textfile_expect_line(t, word, err) || textfile_int(t, "the version", 1, wanted, &found, err) ||
-        textfile_end(t, err))
-        return err->status;
-    if (version) *version = (int)found;
-    return ST_OK;
+    enum status st = textfile_expect_line(t, word, err);
+    if (!st) st = textfile_int(t, "the version", 1, wanted, &found, err);
+    if (!st) st = textfile_end(t, err);
+    if (!st && version) *version = (int)found;
+    return st;
 }
 
 enum status product_open(struct textfile *t, int *version, enum product_id id, const char *path,
                          struct provenance *prov, struct err *err)
 {
-    const char *head = products[id].head;
-
-    if (provenance_open(prov, product_name(id, path), t, path, err)) return err->status;
-    if (head && read_head(t, version, head, err)) textfile_release(t);
-    return err->status;
+    enum status st = provenance_open(prov, product_name(id, path), t, path, err);
+    if (!st && products[id].head) st = product_read_head(t, version, id, err);
+    if (st) textfile_release(t);
+    return st;
 }
 
 enum status product_begin(struct outfile *f, enum product_id id, const char *path, const struct provenance *prov,
                           struct err *err)
 {
-    if (outfile_open(f, path, err)) return err->status;
+    const enum status st = outfile_open(f, path, err);
+    if (st) return st;
     if (prov) provenance_print(prov, f->fp);
     if (products[id].head) fprintf(f->fp, "%s\n", products[id].head);
     return ST_OK;

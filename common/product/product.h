@@ -85,6 +85,7 @@ const char *product_name(enum product_id id, const char *path);
  * product's word and a version up to the one that is written. *version (may be NULL) gets it. On failure t is empty. */
 enum status product_open(struct textfile *t, int *version, enum product_id id, const char *path,
                          struct provenance *prov, struct err *err);
+enum status product_read_head(struct textfile *t, int *version, enum product_id id, struct err *err);
 /* Opens a text product for writing, and writes its head: prov, which may be NULL, and the first line. */
 enum status product_begin(struct outfile *f, enum product_id id, const char *path, const struct provenance *prov,
                           struct err *err);

@@ -7,8 +7,8 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "common/base/file_path.h"
 #include "common/image/exr.h"
+#include "common/product/product.h"
 
 enum { R, G, B, A, SIGMA, CLIPPED, CHANNELS };
 static const char *const channels[CHANNELS] = {"R", "G", "B", "A", "sigma", "clipped"};
@@ -20,11 +20,11 @@ static void add_size(uint64_t *bytes, const char *path)
 }
 
 static enum status read_picture(struct exr_image *exr, const char *folder, const struct view *camera, uint64_t *bytes,
-                                struct err *err)
+                                struct provenance *prov, struct err *err)
 {
     char path[FILE_PATH];
-    enum status st = file_path(path, folder, camera->name, ".exr", err);
-    if (!st) st = exr_read(exr, path, channels, CHANNELS, err);
+    enum status st = product_path_in(path, folder, PRODUCT_VIEW, &(struct product_key){.view = camera->name}, err);
+    if (!st) st = exr_read_product(exr, PRODUCT_VIEW, path, channels, CHANNELS, prov, err);
     if (!st && (exr->width != camera->width || exr->height != camera->height))
         st = err_set(err, ST_DATA, "%s has %d x %d pixels, but its camera %d x %d; make the views again.", path,
                      exr->width, exr->height, camera->width, camera->height);
@@ -37,11 +37,11 @@ static enum status read_picture(struct exr_image *exr, const char *folder, const
 }
 
 static enum status read_ids(struct view_ids *ids, const char *folder, const struct view *camera, uint64_t *bytes,
-                            struct err *err)
+                            struct provenance *prov, struct err *err)
 {
     char path[FILE_PATH];
-    enum status st = file_path(path, folder, camera->name, ".exr", err);
-    if (!st) st = view_ids_read(ids, camera, path, err);
+    enum status st = product_path_in(path, folder, PRODUCT_IDS, &(struct product_key){.view = camera->name}, err);
+    if (!st) st = view_ids_read(ids, camera, path, prov, err);
     if (!st) add_size(bytes, path);
     return st;
 }
@@ -146,15 +146,16 @@ static enum status list_faces(struct source_view *v, struct err *err)
 }
 
 enum status source_view_read(struct source_view *v, struct view_ids *ids, const char *views, const char *folder,
-                             const struct view *camera, const struct texture_params *params, struct err *err)
+                             const struct view *camera, const struct texture_params *params, struct provenance *prov,
+                             struct err *err)
 {
     const size_t pixels = (size_t)camera->width * (size_t)camera->height;
     struct exr_image picture = {0};
     struct view_ids faces = {0};
     *v = (struct source_view){.camera = *camera, .level_count = 1};
     set_projection(v);
-    enum status st = read_picture(&picture, views, camera, &v->bytes, err);
-    if (!st) st = read_ids(&faces, folder, camera, &v->bytes, err);
+    enum status st = read_picture(&picture, views, camera, &v->bytes, prov, err);
+    if (!st) st = read_ids(&faces, folder, camera, &v->bytes, prov, err);
     v->state = malloc(pixels);
     v->own = malloc(pixels);
     if (!st && (!v->state || !v->own)) st = err_nomem(err, "a view's surfaces", pixels);

@@ -169,9 +169,10 @@ static enum status observe_point(struct viewer *v, int point, struct err *err)
 
 static enum status read_view(struct viewer *v, struct provenance *prov, struct err *err)
 {
+    const struct product_key key = {.view = v->camera.name};
     char path[FILE_PATH];
-    if (provenance_add_in(prov, "views", v->scene->views, v->camera.name, ".exr", path, err) ||
-        exr_read(&v->picture, path, channels, CHANNELS, err))
+    if (product_path_in(path, v->scene->views, PRODUCT_VIEW, &key, err) ||
+        exr_read_product(&v->picture, PRODUCT_VIEW, path, channels, CHANNELS, prov, err))
         return err->status;
     if (v->picture.width != v->camera.width || v->picture.height != v->camera.height)
         return err_set(err, ST_DATA, "%s has %d x %d pixels, but its camera %d x %d; make the views again.", path,
@@ -183,8 +184,8 @@ static enum status read_view(struct viewer *v, struct provenance *prov, struct e
                            "%s: channel %s contains integers, wanted half or float; make the views again.", path,
                            channels[k]);
     }
-    return provenance_add_in(prov, "ids", v->scene->ids, v->camera.name, ".exr", path, err) ||
-                   view_ids_read(&v->ids, &v->camera, path, err)
+    return product_path_in(path, v->scene->ids, PRODUCT_IDS, &key, err) ||
+                   view_ids_read(&v->ids, &v->camera, path, prov, err)
                ? err->status
                : ST_OK;
 }
@@ -200,15 +201,6 @@ static enum status observe_view(struct viewer *v, struct provenance *prov, struc
     exr_image_release(&v->picture);
     view_ids_release(&v->ids);
     return st;
-}
-
-/* The lens of the photo's first view. */
-static int photo_of(const struct observed_scene *s, int view)
-{
-    const int lens = lens_list_find(s->lenses, s->set->views[view].name);
-    for (int i = 0; lens >= 0 && i < lens; i++)
-        if (!strcmp(s->lenses->lenses[i].photo, s->lenses->lenses[lens].photo)) return i;
-    return lens;
 }
 
 static int compare_sights(const void *a, const void *b)
@@ -243,7 +235,7 @@ enum status observe_views(struct observations *o, const struct observed_scene *s
     struct viewer v = {.o = o, .scene = scene};
     for (int i = 0; i < scene->set->view_count; i++) {
         v.index = i;
-        v.photo = photo_of(scene, i);
+        v.photo = photo_of_view(scene->set, scene->lenses, i);
         v.camera = model_from_world_view(scene->axes, &scene->set->views[i]);
         if (observe_view(&v, prov, err)) return err->status;
     }
