@@ -1,7 +1,7 @@
 # stages.mk - what the stages say of themselves, in stages/NAME/stage.mk, and their order.
 #
 #   FOLLOWS.STAGE  the stages whose products it reads: the order of the stages, here and in everything that lists them
-#   READS.STAGE, WRITES.STAGE   its row in docs/architecture.md
+#   READS.STAGE    its row in docs/architecture.md, beside the products that common/product/products.def says it makes
 #   VARIABLES.STAGE  variables that a user sets, whose values its recipes find as REMODEL_NAME in the environment
 #   SHARED.STAGE   yes: all qualities of a scene share its products
 #   LIBS.STAGE     libraries that only it links

@@ -1,7 +1,6 @@
 # encode_video: videos from frames.
 FOLLOWS.encode_video := morph_views pan_scan render_views
 READS.encode_video := frames (runs ffmpeg)
-WRITES.encode_video := parallax/EFFECT/video.mp4
 STEPS.encode_video := video
 HELP.video := + the video
 NEEDS.video = $(if $(PAIR),morph,frames)

@@ -1,7 +1,6 @@
 # fuse_points: oriented points on which the depth maps of several views agree.
 FOLLOWS.fuse_points := segment_depth
 READS.fuse_points := cameras, all interior layers
-WRITES.fuse_points := points/points.ply
 STEPS.fuse_points := points
 HELP.points := + oriented points on which the depth maps agree (for any viewer, and for axes and model)
 NEEDS.points := depth

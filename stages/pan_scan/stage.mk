@@ -1,7 +1,6 @@
 # pan_scan: the same move in 2D, crops of one photograph.
 FOLLOWS.pan_scan := segment_depth plan_path
 READS.pan_scan := one view, its layers, the path; on request
-WRITES.pan_scan := parallax/EFFECT/pan_scan/frames/NNNN.exr
 STEPS.pan_scan := pan_scan
 HELP.pan_scan := the same move in 2D, crops of one photograph, to compare; from then on the page shows it too
 NEEDS.pan_scan := path

@@ -1,7 +1,6 @@
 # rectify: linear pinhole views, resampled from the photos.
 FOLLOWS.rectify := hdr_merge sfm_import
 READS.rectify := one photo or hdr/ID.exr, read once, its lens, its mask
-WRITES.rectify := views/VIEW.exr of all its views
 STEPS.rectify := views
 HELP.views := + rectified, linear views
 NEEDS.views := sfm

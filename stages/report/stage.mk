@@ -1,7 +1,6 @@
 # report: the page about a scene.
 FOLLOWS.report = $(filter-out report verify,$(STAGE_FOLDERS))
 READS.report := whatever is there
-WRITES.report := index.html, remodel/index.html
 STEPS.report := report
 HELP.report := + the page: the same as all
 NEEDS.report = $(if $(PAIR),morph,depth $(foreach p,$(filter-out parallax,$(PRODUCTS)),$(PRODUCT.$(p))) $(if $(EFFECTS)$(CHOOSE),video) \

@@ -1,7 +1,6 @@
 # sample_validity: the viewpoints from which a move can be shown.
 FOLLOWS.sample_validity := segment_depth choose_views find_subjects choose_effects
 READS.sample_validity := parallax/views.txt, cameras, all layers, subjects.txt
-WRITES.sample_validity := parallax/MOVE/validity.txt, validity.png
 
 ifdef GRAPH
 # of a planned effect: establishing moves show no subject; the image effects of a move share its valid viewpoints
