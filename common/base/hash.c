@@ -33,6 +33,8 @@ enum status hash_file(char hex[HASH_TEXT], const char *path, struct err *err)
     return st;
 }
 
+void hash_bytes(char hex[HASH_TEXT], const void *bytes, size_t size) { hex_from_hash(hex, XXH3_128bits(bytes, size)); }
+
 uint64_t hash_text(const char *text)
 {
     uint64_t h = 1469598103934665603u;

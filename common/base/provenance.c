@@ -9,20 +9,67 @@
 
 enum { QUOTED_SIZE = 2048 };
 
-enum status provenance_add_file(struct provenance *prov, const char *name, const char *path, struct err *err)
+bool provenance_has(const struct provenance *prov, const char *name)
+{
+    for (int i = 0; i < prov->count; i++)
+        if (!strcmp(prov->inputs[i].name, name)) return true;
+    return false;
+}
+
+enum status provenance_add_hash(struct provenance *prov, const char *name, const char *hash, struct err *err)
 {
     struct provenance_input input = {0};
     char quoted[QUOTED_SIZE];
-    enum status st;
 
-    for (int i = 0; i < prov->count; i++)
-        if (!strcmp(prov->inputs[i].name, name)) return ST_OK;
+    if (provenance_has(prov, name)) return ST_OK;
     /* refuse names that cannot be printed now, not when the product is written */
-    if ((st = textfile_quote(name, quoted, sizeof quoted, err)) || (st = hash_file(input.hash, path, err))) return st;
-    if ((st = array_append(&prov->inputs, (size_t)prov->count, sizeof input, "inputs", err))) return st;
+    enum status st = textfile_quote(name, quoted, sizeof quoted, err);
+    if (!st) st = array_append(&prov->inputs, (size_t)prov->count, sizeof input, "inputs", err);
+    if (st) return st;
+    memcpy(input.hash, hash, HASH_TEXT);
     if (!(input.name = strdup(name))) return err_nomem(err, "the name of an input", strlen(name) + 1);
     prov->inputs[prov->count++] = input;
     return ST_OK;
+}
+
+enum status provenance_add_file(struct provenance *prov, const char *name, const char *path, struct err *err)
+{
+    char hash[HASH_TEXT];
+
+    if (provenance_has(prov, name)) return ST_OK;
+    const enum status st = hash_file(hash, path, err);
+    return st ? st : provenance_add_hash(prov, name, hash, err);
+}
+
+enum status provenance_add_all(struct provenance *prov, const struct provenance *inputs, struct err *err)
+{
+    enum status st = ST_OK;
+    for (int i = 0; !st && i < inputs->count; i++)
+        st = provenance_add_hash(prov, inputs->inputs[i].name, inputs->inputs[i].hash, err);
+    return st;
+}
+
+enum status provenance_read(struct provenance *prov, const char *name, struct file_bytes *file, const char *path,
+                            struct err *err)
+{
+    char hash[HASH_TEXT];
+
+    enum status st = file_bytes_read(file, path, err);
+    if (st || !prov || provenance_has(prov, name)) return st;
+    hash_bytes(hash, file->bytes, file->size);
+    st = provenance_add_hash(prov, name, hash, err);
+    if (st) file_bytes_release(file);
+    return st;
+}
+
+enum status provenance_open(struct provenance *prov, const char *name, struct textfile *t, const char *path,
+                            struct err *err)
+{
+    struct file_bytes file = {0};
+
+    *t = (struct textfile){0};
+    const enum status st = provenance_read(prov, name, &file, path, err);
+    return st ? st : textfile_take(t, &file, path, err);
 }
 
 static void print_inputs(const struct provenance *prov, const char *prefix, FILE *to)

@@ -5,9 +5,11 @@
 #ifndef REMODEL_PROVENANCE_H
 #define REMODEL_PROVENANCE_H
 
+#include <stdbool.h>
 #include <stdio.h>
 
 #include "common/base/err.h"
+#include "common/base/file_bytes.h"
 #include "common/base/file_path.h"
 #include "common/base/hash.h"
 
@@ -23,8 +25,21 @@ struct provenance {
     int count;
 };
 
-/* Hashes the file at `path` and records it as `name`. A name that is already recorded is skipped. */
+struct textfile;
+
+/* Reads the file at `path` and records its hash as `name`; the second parses it as text. A name that is already recorded
+ * is not recorded again. prov may be NULL. */
+enum status provenance_read(struct provenance *prov, const char *name, struct file_bytes *file, const char *path,
+                            struct err *err);
+enum status provenance_open(struct provenance *prov, const char *name, struct textfile *t, const char *path,
+                            struct err *err);
+
+/* Records files that others read: of a hash, or hashed here. */
+enum status provenance_add_hash(struct provenance *prov, const char *name, const char *hash, struct err *err);
 enum status provenance_add_file(struct provenance *prov, const char *name, const char *path, struct err *err);
+/* Records all inputs of another list: of what was read for an earlier product and kept in memory. */
+enum status provenance_add_all(struct provenance *prov, const struct provenance *inputs, struct err *err);
+bool provenance_has(const struct provenance *prov, const char *name);
 
 /* Records FOLDER/FILESUFFIX as AS/FILESUFFIX. path, if not NULL, gets FOLDER/FILESUFFIX. */
 enum status provenance_add_in(struct provenance *prov, const char *as, const char *folder, const char *file,

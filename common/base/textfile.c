@@ -18,7 +18,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 #include "common/base/scan.h"
 
@@ -30,46 +29,28 @@ static char *skip_blanks(char *p)
     return p;
 }
 
-static enum status read_all(struct textfile *t, FILE *fp, struct err *err)
-{
-    struct stat info;
-    size_t room = 1 << 16, n;
-
-    /* one byte more than the file's size, so that fread() meets the end without growing the buffer */
-    if (!fstat(fileno(fp), &info) && S_ISREG(info.st_mode) && info.st_size > 0) room = (size_t)info.st_size + 1;
-    for (;;) {
-        char *grown = realloc(t->bytes, room + 1); /* one more for the final NUL */
-        if (!grown) {
-            err_nomem(err, "a text file", room + 1);
-            return err_context(err, "%s", t->path);
-        }
-        t->bytes = grown;
-        while (t->size < room && (n = fread(t->bytes + t->size, 1, room - t->size, fp)) > 0) t->size += n;
-        if (ferror(fp)) return err_errno(err, "read", t->path);
-        if (t->size < room) break;
-        room *= 2;
-    }
-    t->bytes[t->size] = '\0';
-    return ST_OK;
-}
-
 enum status textfile_open(struct textfile *t, const char *path, struct err *err)
 {
+    struct file_bytes file = {0};
+    *t = (struct textfile){0};
+    const enum status st = file_bytes_read(&file, path, err);
+    return st ? st : textfile_take(t, &file, path, err);
+}
+
+enum status textfile_take(struct textfile *t, struct file_bytes *file, const char *path, struct err *err)
+{
     enum status st = ST_OK;
-    FILE *fp = NULL;
     const char *nul;
 
-    *t = (struct textfile){0};
-    if (!(t->path = strdup(path)))
+    *t = (struct textfile){.path = strdup(path), .bytes = file->bytes, .size = file->size};
+    *file = (struct file_bytes){0};
+    if (!t->path) {
         st = err_nomem(err, "a file name", strlen(path) + 1);
-    else if (!(fp = fopen(path, "rbe")))
-        st = err_errno(err, "open", path);
-    else if (!(st = read_all(t, fp, err)) && (nul = memchr(t->bytes, '\0', t->size))) {
+    } else if ((nul = memchr(t->bytes, '\0', t->size))) {
         for (const char *p = t->bytes; p < nul; p++) t->line += *p == '\n';
         t->line++;
         st = textfile_error(t, err, "\\0", "text without NUL bytes; the file is damaged or not a text file");
     }
-    if (fp) fclose(fp);
     if (st) textfile_release(t);
     return st;
 }

@@ -18,6 +18,7 @@
 #include <stdint.h>
 
 #include "common/base/err.h"
+#include "common/base/file_bytes.h"
 
 struct textfile {
     char *path, *bytes; /* owned */
@@ -27,6 +28,8 @@ struct textfile {
 };
 
 enum status textfile_open(struct textfile *t, const char *path, struct err *err);
+/* The same of bytes that were read from the path. They are the textfile's from then on, also after a failure. */
+enum status textfile_take(struct textfile *t, struct file_bytes *file, const char *path, struct err *err);
 
 /* Moves to the next record; false at the end. */
 bool textfile_next(struct textfile *t);

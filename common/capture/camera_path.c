@@ -16,9 +16,7 @@
 #include <string.h>
 
 #include "common/base/array.h"
-#include "common/base/file_path.h"
-#include "common/base/outfile.h"
-#include "common/base/textfile.h"
+#include "common/product/product.h"
 
 enum { MAX_FRAMES = 1000000, LINE_SIZE = 256 };
 
@@ -74,6 +72,13 @@ void camera_path_release(struct camera_path *p)
     *p = (struct camera_path){0};
 }
 
+/* The folder of the poses, and path.txt. */
+static enum status find_files(char poses[FILE_PATH], char list[FILE_PATH], const char *folder, struct err *err)
+{
+    if (product_path_in(list, folder, PRODUCT_PATH, NULL, err)) return err->status;
+    return file_path(poses, folder, "path", "", err);
+}
+
 /* -------------------------------------------------------------------------------------------------------- writing */
 
 static enum status write_poses(const struct camera_path *p, const char *folder, const struct provenance *prov,
@@ -108,10 +113,9 @@ static enum status write_list(const struct camera_path *p, const char *path, con
 {
     struct outfile f = {0};
     char effect[LINE_SIZE], name[LINE_SIZE], unit[LINE_SIZE];
-    enum status st = outfile_open(&f, path, err);
-    if (!st && prov) provenance_print(prov, f.fp);
+    enum status st = product_begin(&f, PRODUCT_PATH, path, prov, err);
     if (!st) st = textfile_quote(p->effect, effect, sizeof effect, err);
-    if (!st) fprintf(f.fp, "remodel-path 1\neffect %s\nfps %.17g\n", effect, p->fps);
+    if (!st) fprintf(f.fp, "effect %s\nfps %.17g\n", effect, p->fps);
     for (int i = 0; !st && i < p->score_count; i++) {
         const struct path_score *s = &p->scores[i];
         st = textfile_quote(s->name, name, sizeof name, err);
@@ -132,8 +136,7 @@ enum status camera_path_write(const struct camera_path *p, const char *folder, c
                               struct err *err)
 {
     char poses[FILE_PATH], list[FILE_PATH];
-    if (file_path(poses, folder, "path", "", err) || file_path(list, folder, "path.txt", "", err) ||
-        write_poses(p, poses, prov, err) || write_list(p, list, prov, err))
+    if (find_files(poses, list, folder, err) || write_poses(p, poses, prov, err) || write_list(p, list, prov, err))
         return err->status;
     return ST_OK;
 }
@@ -169,9 +172,7 @@ static enum status read_score(struct textfile *t, struct camera_path *p, struct 
 /* Everything before the frames. */
 static enum status read_head(struct textfile *t, struct camera_path *p, int64_t *frames, struct err *err)
 {
-    int64_t version;
-    if (next_line(t, "remodel-path", err) || textfile_int(t, "version", 1, 1, &version, err) || textfile_end(t, err) ||
-        next_line(t, "effect", err) || textfile_word_into(t, "the effect's name", p->effect, sizeof p->effect, err) ||
+    if (next_line(t, "effect", err) || textfile_word_into(t, "the effect's name", p->effect, sizeof p->effect, err) ||
         textfile_end(t, err) || next_line(t, "fps", err) || read_amount(t, "frames per second", &p->fps, err) ||
         textfile_end(t, err))
         return err->status;
@@ -220,7 +221,7 @@ static enum status read_frame(struct textfile *t, struct path_frame *f, const st
     return check_camera(t, &f->camera, first, err);
 }
 
-enum status camera_path_read(struct camera_path *p, const char *folder, struct err *err)
+enum status camera_path_read(struct camera_path *p, const char *folder, struct provenance *prov, struct err *err)
 {
     struct camera_set set = {0};
     struct textfile t = {0};
@@ -228,9 +229,8 @@ enum status camera_path_read(struct camera_path *p, const char *folder, struct e
     char poses[FILE_PATH], list[FILE_PATH];
     int64_t frames = 0;
     *p = (struct camera_path){0};
-    enum status st = file_path(poses, folder, "path", "", err) || file_path(list, folder, "path.txt", "", err) ||
-                             camera_set_read(&set, poses, err) || textfile_open(&t, list, err) ||
-                             read_head(&t, &head, &frames, err)
+    enum status st = find_files(poses, list, folder, err) || camera_set_read(&set, poses, prov, err) ||
+                             product_open(&t, NULL, PRODUCT_PATH, list, prov, err) || read_head(&t, &head, &frames, err)
                          ? err->status
                          : ST_OK;
     if (!st && frames != set.view_count) {

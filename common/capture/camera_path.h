@@ -43,7 +43,7 @@ enum status camera_path_add_score(struct camera_path *p, const char *name, doubl
 enum status camera_path_write(const struct camera_path *p, const char *folder, const struct provenance *prov,
                               struct err *err);
 /* ST_DATA with file and line: missing frames, focal length <= 0, NaN, sizes that differ or are odd. */
-enum status camera_path_read(struct camera_path *p, const char *folder, struct err *err);
+enum status camera_path_read(struct camera_path *p, const char *folder, struct provenance *prov, struct err *err);
 void camera_path_release(struct camera_path *p);
 
 #endif

@@ -85,16 +85,17 @@ static enum status make_views(struct camera_set *set, const char *folder, enum s
     return st;
 }
 
-enum status camera_set_read(struct camera_set *set, const char *folder, struct err *err)
+enum status camera_set_read(struct camera_set *set, const char *folder, struct provenance *prov, struct err *err)
 {
     *set = (struct camera_set){0};
-    return make_views(set, folder, sfm_model_read_text(&set->model, folder, err), err);
+    return make_views(set, folder, sfm_model_read_text(&set->model, folder, prov, err), err);
 }
 
-enum status camera_set_read_cameras(struct camera_set *set, const char *folder, struct err *err)
+enum status camera_set_read_cameras(struct camera_set *set, const char *folder, struct provenance *prov,
+                                    struct err *err)
 {
     *set = (struct camera_set){0};
-    return make_views(set, folder, sfm_model_read_cameras(&set->model, folder, err), err);
+    return make_views(set, folder, sfm_model_read_cameras(&set->model, folder, prov, err), err);
 }
 
 /* Drops the views that go (-1 in new_idx) from a point's track; returns the number of those that stay. */
@@ -140,18 +141,6 @@ enum status camera_set_keep(struct camera_set *set, const bool *keep, struct err
     keep_points(m, new_idx);
     free(new_idx);
     return ST_OK;
-}
-
-enum status camera_set_add_inputs(struct provenance *prov, const char *folder, struct err *err)
-{
-    const enum status st = camera_set_add_camera_inputs(prov, folder, err);
-    return st ? st : provenance_add_in(prov, "views", folder, "points3D.txt", "", NULL, err);
-}
-
-enum status camera_set_add_camera_inputs(struct provenance *prov, const char *folder, struct err *err)
-{
-    const enum status st = provenance_add_in(prov, "views", folder, "cameras.txt", "", NULL, err);
-    return st ? st : provenance_add_in(prov, "views", folder, "images.txt", "", NULL, err);
 }
 
 static bool is_before(const void *view, const void *name)

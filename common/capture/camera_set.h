@@ -16,13 +16,10 @@ struct camera_set {
 };
 
 /* ST_DATA for camera models other than PINHOLE and SIMPLE_PINHOLE. */
-enum status camera_set_read(struct camera_set *set, const char *folder, struct err *err);
+enum status camera_set_read(struct camera_set *set, const char *folder, struct provenance *prov, struct err *err);
 /* The same without points and observations, of which there are many in a scene of many views. */
-enum status camera_set_read_cameras(struct camera_set *set, const char *folder, struct err *err);
-/* Adds the three files of the folder to the provenance as views/cameras.txt, images.txt, points3D.txt. */
-enum status camera_set_add_inputs(struct provenance *prov, const char *folder, struct err *err);
-enum status camera_set_add_camera_inputs(struct provenance *prov, const char *folder,
-                                         struct err *err); /* two of them */
+enum status camera_set_read_cameras(struct camera_set *set, const char *folder, struct provenance *prov,
+                                    struct err *err);
 /* Leaves only the views that are marked in keep[set->view_count], and the points that they see. Views keep their order.
  * The set is unchanged on failure. */
 enum status camera_set_keep(struct camera_set *set, const bool *keep, struct err *err);

@@ -13,6 +13,7 @@
 #include "common/base/sort.h"
 #include "common/base/textfile.h"
 #include "common/capture/sfm_model_parts.h"
+#include "common/product/product.h"
 
 /* The id of a record, the index of the record in its array, and its line in the file. */
 struct id_row {
@@ -90,10 +91,17 @@ static int find_point(const struct sfm_model *m, int64_t id)
 
 /* --------------------------------------------------------------------------------------------------------- reading */
 
-static enum status read_cameras(struct sfm_model *m, struct id_list *ids, const char *path, struct err *err)
+/* A file of a model, which may be of any product, or of none: a user's. */
+static enum status open_part(struct textfile *t, const char *path, struct provenance *prov, struct err *err)
+{
+    return provenance_open(prov, product_name(product_at(path), path), t, path, err);
+}
+
+static enum status read_cameras(struct sfm_model *m, struct id_list *ids, const char *path, struct provenance *prov,
+                                struct err *err)
 {
     struct textfile t = {0};
-    enum status st = textfile_open(&t, path, err);
+    enum status st = open_part(&t, path, prov, err);
     while (!st && textfile_next(&t)) {
         struct sfm_camera c = {0};
         struct err why = ERR_INIT;
@@ -191,10 +199,10 @@ static enum status sort_images(struct sfm_model *m, struct id_list *ids, int *li
 
 /* *lines: the line of each image in the file; the caller frees it. */
 static enum status read_images(struct sfm_model *m, const struct id_list *cameras, struct id_list *ids, int **lines,
-                               const char *path, struct err *err)
+                               const char *path, struct provenance *prov, struct err *err)
 {
     struct textfile t = {0};
-    enum status st = textfile_open(&t, path, err);
+    enum status st = open_part(&t, path, prov, err);
     while (!st && textfile_next(&t)) {
         struct sfm_image im = {0};
         const int line = t.line;
@@ -279,15 +287,15 @@ static enum status sort_points(struct sfm_model *m, const struct id_list *ids, s
 }
 
 static enum status read_points(struct sfm_model *m, const struct id_list *images, unsigned char **listed,
-                               const char *folder, struct err *err)
+                               const char *folder, struct provenance *prov, struct err *err)
 {
     struct textfile t = {0};
     struct id_list ids = {0};
     struct sfm_track *track = NULL;
     size_t capacity = 0;
     char path[FILE_PATH];
-    if (file_path(path, folder, "points3D.txt", "", err)) return err->status;
-    enum status st = textfile_open(&t, path, err);
+    if (product_path_in(path, folder, PRODUCT_POINTS3D, NULL, err)) return err->status;
+    enum status st = open_part(&t, path, prov, err);
     while (!st && textfile_next(&t)) {
         struct sfm_point p = {0};
         st = sfm_append(&m->points, m->point_count, sizeof p, "points", err) ||
@@ -321,16 +329,26 @@ static enum status check_observations(const struct sfm_model *m, unsigned char *
     return ST_OK;
 }
 
-enum status sfm_model_read_text(struct sfm_model *m, const char *folder, struct err *err)
+/* The files have the names of the views', whatever model they are of. */
+static enum status model_paths(char of_cameras[FILE_PATH], char of_images[FILE_PATH], const char *folder,
+                               struct err *err)
+{
+    return product_path_in(of_cameras, folder, PRODUCT_CAMERAS, NULL, err) ||
+                   product_path_in(of_images, folder, PRODUCT_IMAGES, NULL, err)
+               ? err->status
+               : ST_OK;
+}
+
+enum status sfm_model_read_text(struct sfm_model *m, const char *folder, struct provenance *prov, struct err *err)
 {
     struct id_list cameras = {0}, images = {0};
     unsigned char **listed = NULL;
     int *lines = NULL;
     char of_cameras[FILE_PATH], of_images[FILE_PATH];
     *m = (struct sfm_model){0};
-    enum status st =
-        file_path(of_cameras, folder, "cameras.txt", "", err) || file_path(of_images, folder, "images.txt", "", err) ||
-        read_cameras(m, &cameras, of_cameras, err) || read_images(m, &cameras, &images, &lines, of_images, err);
+    enum status st = model_paths(of_cameras, of_images, folder, err) ||
+                     read_cameras(m, &cameras, of_cameras, prov, err) ||
+                     read_images(m, &cameras, &images, &lines, of_images, prov, err);
     if (!st) {
         listed = calloc((size_t)m->image_count, sizeof *listed);
         if (!listed) st = err_nomem(err, "marks", (size_t)m->image_count * sizeof *listed);
@@ -339,7 +357,7 @@ enum status sfm_model_read_text(struct sfm_model *m, const char *folder, struct 
             if (!listed[i]) st = err_nomem(err, "marks", (size_t)m->images[i].observation_count);
         }
     }
-    st = st || read_points(m, &images, listed, folder, err) || check_observations(m, listed, lines, folder, err);
+    st = st || read_points(m, &images, listed, folder, prov, err) || check_observations(m, listed, lines, folder, err);
     for (int i = 0; listed && i < m->image_count; i++) free(listed[i]);
     free(listed);
     free(lines);
@@ -349,23 +367,22 @@ enum status sfm_model_read_text(struct sfm_model *m, const char *folder, struct 
     return st ? err->status : ST_OK;
 }
 
-enum status sfm_model_read_cameras(struct sfm_model *m, const char *folder, struct err *err)
+enum status sfm_model_read_cameras(struct sfm_model *m, const char *folder, struct provenance *prov, struct err *err)
 {
     char of_cameras[FILE_PATH], of_images[FILE_PATH];
     *m = (struct sfm_model){0};
-    if (file_path(of_cameras, folder, "cameras.txt", "", err) || file_path(of_images, folder, "images.txt", "", err))
-        return err->status;
-    return sfm_model_read_camera_files(m, of_cameras, of_images, err);
+    if (model_paths(of_cameras, of_images, folder, err)) return err->status;
+    return sfm_model_read_camera_files(m, of_cameras, of_images, prov, err);
 }
 
 enum status sfm_model_read_camera_files(struct sfm_model *m, const char *of_cameras, const char *of_images,
-                                        struct err *err)
+                                        struct provenance *prov, struct err *err)
 {
     struct id_list cameras = {0}, images = {0};
     int *lines = NULL;
     *m = (struct sfm_model){0};
-    enum status st = read_cameras(m, &cameras, of_cameras, err);
-    if (!st && of_images) st = read_images(m, &cameras, &images, &lines, of_images, err);
+    enum status st = read_cameras(m, &cameras, of_cameras, prov, err);
+    if (!st && of_images) st = read_images(m, &cameras, &images, &lines, of_images, prov, err);
     for (int i = 0; !st && i < m->image_count; i++) {
         free(m->images[i].observations);
         m->images[i].observations = NULL;
@@ -421,15 +438,15 @@ static void print_points(const struct sfm_model *m, FILE *to)
     }
 }
 
-static enum status write_part(const struct sfm_model *m, const char *folder, const char *file,
+static enum status write_part(const struct sfm_model *m, const char *folder, enum product_id id,
                               void (*print)(const struct sfm_model *m, FILE *to), const struct provenance *prov,
                               struct err *err)
 {
     struct outfile f = {0};
     char path[FILE_PATH];
-    enum status st = file_path(path, folder, file, "", err) || outfile_open(&f, path, err) ? err->status : ST_OK;
+    enum status st =
+        product_path_in(path, folder, id, NULL, err) || product_begin(&f, id, path, prov, err) ? err->status : ST_OK;
     if (!st) {
-        if (prov) provenance_print(prov, f.fp);
         print(m, f.fp);
         st = outfile_commit(&f, err);
     }
@@ -447,9 +464,9 @@ enum status sfm_model_write_text(const struct sfm_model *m, const char *folder, 
             return err_set(err, ST_DATA, "an image named \"%s\" cannot be written to %s/images.txt; rename it.", name,
                            folder);
     }
-    if (write_part(m, folder, "points3D.txt", print_points, prov, err) ||
-        write_part(m, folder, "cameras.txt", print_cameras, prov, err) ||
-        write_part(m, folder, "images.txt", print_images, prov, err))
+    if (write_part(m, folder, PRODUCT_POINTS3D, print_points, prov, err) ||
+        write_part(m, folder, PRODUCT_CAMERAS, print_cameras, prov, err) ||
+        write_part(m, folder, PRODUCT_IMAGES, print_images, prov, err))
         return err->status;
     return ST_OK;
 }

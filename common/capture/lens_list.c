@@ -8,6 +8,7 @@
 #include "common/base/array.h"
 #include "common/base/outfile.h"
 #include "common/base/sort.h"
+#include "common/product/product.h"
 
 enum { NAME_SIZE = 1024 };
 
@@ -48,18 +49,11 @@ static enum status read_lens(struct textfile *t, struct lens *l, struct err *err
     return l->view && l->photo ? ST_OK : err_nomem(err, "names", strlen(view) + strlen(photo));
 }
 
-enum status lens_list_read(struct lens_list *list, const char *path, struct err *err)
+enum status lens_list_read(struct lens_list *list, const char *path, struct provenance *prov, struct err *err)
 {
     struct textfile t = {0};
-    char *word = NULL;
-    int64_t version = 0;
     *list = (struct lens_list){0};
-    enum status st = textfile_open(&t, path, err);
-    if (!st && !textfile_next(&t)) st = textfile_error(&t, err, NULL, "\"remodel-lenses 1\"");
-    if (!st) st = textfile_word(&t, "\"remodel-lenses\"", &word, err);
-    if (!st && strcmp(word, "remodel-lenses")) st = textfile_error(&t, err, word, "\"remodel-lenses\"");
-    if (!st) st = textfile_int(&t, "version", 1, 1, &version, err);
-    if (!st) st = textfile_end(&t, err);
+    enum status st = product_open(&t, NULL, PRODUCT_LENSES, path, prov, err);
     while (!st && textfile_next(&t)) {
         st = array_append(&list->lenses, (size_t)list->count, sizeof *list->lenses, "lenses", err);
         if (st) break;
@@ -80,9 +74,7 @@ enum status lens_list_write(const struct lens_list *list, const char *path, cons
                             struct err *err)
 {
     struct outfile f = {0};
-    enum status st = outfile_open(&f, path, err);
-    if (!st && prov) provenance_print(prov, f.fp);
-    if (!st) fputs("remodel-lenses 1\n", f.fp);
+    enum status st = product_begin(&f, PRODUCT_LENSES, path, prov, err);
     for (int i = 0; !st && i < list->count; i++) {
         const struct lens *l = &list->lenses[i];
         struct quat q = l->view_from_photo;

@@ -26,7 +26,7 @@ struct lens_list {
 /* Reads WIDTH HEIGHT PARAMS... of a camera of this model from a line. ST_DATA with file and line. */
 enum status lens_read_camera(struct camera *c, const char *model, struct textfile *t, struct err *err);
 
-enum status lens_list_read(struct lens_list *list, const char *path, struct err *err);
+enum status lens_list_read(struct lens_list *list, const char *path, struct provenance *prov, struct err *err);
 enum status lens_list_write(const struct lens_list *list, const char *path, const struct provenance *prov,
                             struct err *err);
 int lens_list_find(const struct lens_list *list, const char *view); /* -1: not found */

@@ -8,23 +8,29 @@
 #include "common/image/exr.h"
 #include "common/image/photo.h"
 
-static enum status read_single(struct image *linear, struct photo_quality *quality, const char *path,
-                               const struct single_exposure *assumed, struct err *err)
+static enum status read_single(struct image *linear, struct photo_quality *quality, const char *photos,
+                               const char *file, const struct single_exposure *assumed, struct provenance *prov,
+                               struct err *err)
 {
     struct photo photo = {0};
-    enum status st = photo_read(&photo, path, err);
+    char path[FILE_PATH], name[FILE_PATH];
+    enum status st = file_path(path, photos, file, "", err);
+    if (!st) st = file_path(name, "photos", file, "", err);
+    if (!st) st = photo_read_input(&photo, path, name, prov, err);
     if (!st) st = photo_to_linear(linear, &photo, err);
     if (!st && quality) st = photo_quality_of_exposure(quality, &photo, linear, assumed, err);
     photo_release(&photo);
     return st;
 }
 
-static enum status read_merged(struct image *linear, struct photo_quality *quality, const char *path,
-                               char radiometry[RADIOMETRY_SIZE], struct err *err)
+static enum status read_merged(struct image *linear, struct photo_quality *quality, const char *folder, const char *id,
+                               char radiometry[RADIOMETRY_SIZE], struct provenance *prov, struct err *err)
 {
     static const char *const names[] = {"R", "G", "B", "clipped", "variance"};
     struct exr_image exr = {0};
-    enum status st = exr_read(&exr, path, names, quality ? 5 : 3, err);
+    char path[FILE_PATH];
+    enum status st = product_path_in(path, folder, PRODUCT_HDR, &(struct product_key){.photo = id}, err);
+    if (!st) st = exr_read_product(&exr, PRODUCT_HDR, path, names, quality ? 5 : 3, prov, err);
     for (int c = 0; !st && c < 3; c++)
         if (!exr_find(&exr, names[c])->f)
             st = err_set(err, ST_DATA, "%s: channel %s contains integers, wanted half or float; merge the view again.",
@@ -52,13 +58,7 @@ enum status linear_photo_read(struct image *linear, struct photo_quality *qualit
                               const char *photos, const struct photo_record *record,
                               const struct single_exposure *assumed, struct provenance *prov, struct err *err)
 {
-    const bool merged = record->bracket_count > 0;
-    const char *file = merged ? record->id : record->file, *suffix = merged ? ".exr" : "";
-    char path[FILE_PATH];
     strcpy(radiometry, "approximate");
-    enum status st = provenance_add_in(prov, merged ? "hdr" : "photos", photos, file, suffix, path, err);
-    if (!st)
-        st = merged ? read_merged(linear, quality, path, radiometry, err)
-                    : read_single(linear, quality, path, assumed, err);
-    return st;
+    if (record->bracket_count) return read_merged(linear, quality, photos, record->id, radiometry, prov, err);
+    return read_single(linear, quality, photos, record->file, assumed, prov, err);
 }

@@ -14,10 +14,10 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "common/base/file_path.h"
 #include "common/capture/photo_camera.h"
 #include "common/capture/photo_list.h"
 #include "common/capture/photo_match.h"
+#include "common/product/product.h"
 
 enum { MIN_PHOTOS = 3 };
 
@@ -44,9 +44,9 @@ static enum status find_common(struct common_photos *c, const struct sfm_model *
     struct lens_list lenses = {0};
     struct photo_list photos = {0};
     char path[FILE_PATH];
-    enum status st = file_path(path, scene->views, "lenses.txt", "", err);
-    if (!st) st = camera_set_read(&set, scene->views, err);
-    if (!st) st = lens_list_read(&lenses, path, err);
+    enum status st = product_path_in(path, scene->views, PRODUCT_LENSES, NULL, err);
+    if (!st) st = camera_set_read(&set, scene->views, scene->prov, err);
+    if (!st) st = lens_list_read(&lenses, path, scene->prov, err);
     if (!st) st = photo_list_read(&photos, scene->records, err);
     bool *taken = calloc((size_t)photos.count + 1, sizeof *taken);
     c->scene = calloc((size_t)model->image_count + 1, sizeof *c->scene);

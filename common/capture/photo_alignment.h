@@ -8,6 +8,7 @@
 /* The scene's photographs: the folder of its views, and that of the records of its photos. */
 struct scene_photos {
     const char *views, *records;
+    struct provenance *prov; /* gets the files of views; NULL: none is recorded */
 };
 
 struct alignment_rules {

@@ -5,6 +5,20 @@
 
 #include "common/base/scan.h"
 
+const struct lens *lens_of_view(const struct camera_set *set, const struct lens_list *lenses, int view)
+{
+    const int at = lens_list_find(lenses, set->views[view].name);
+    return at < 0 ? NULL : &lenses->lenses[at];
+}
+
+int photo_of_view(const struct camera_set *set, const struct lens_list *lenses, int view)
+{
+    const struct lens *lens = lens_of_view(set, lenses, view), *before;
+    while (lens && view > 0 && (before = lens_of_view(set, lenses, view - 1)) && !strcmp(before->photo, lens->photo))
+        view--;
+    return view;
+}
+
 /* All names of photos and views, to suggest a similar one. */
 static const char *known_name(const void *ctx, int i)
 {

@@ -15,8 +15,7 @@
 #include <string.h>
 
 #include "common/base/array.h"
-#include "common/base/outfile.h"
-#include "common/base/textfile.h"
+#include "common/product/product.h"
 
 enum { QUOTED_SIZE = 1024 /* a file name has at most 255 bytes */, MAX_BRACKETS = 1000 /* of one view */ };
 
@@ -98,13 +97,11 @@ static enum status read_fields(struct photo_record *r, struct textfile *t, struc
 {
     struct photo_info *info = &r->info;
     char *word = NULL;
-    int version = 0;
     enum status st =
-        textfile_expect_line(t, "remodel-photo", err) || read_int(t, "format version", 1, 1, &version, err) ||
-                textfile_end(t, err) || textfile_expect_line(t, "file", err) ||
-                textfile_word(t, "file name", &word, err) || keep_word(&r->file, word, err) || textfile_end(t, err) ||
-                textfile_expect_line(t, "hash", err) || read_hash(t, r->hash, err) || textfile_end(t, err) ||
-                textfile_expect_line(t, "size", err) || read_int(t, "width", 1, 1 << 28, &info->width, err) ||
+        textfile_expect_line(t, "file", err) || textfile_word(t, "file name", &word, err) ||
+                keep_word(&r->file, word, err) || textfile_end(t, err) || textfile_expect_line(t, "hash", err) ||
+                read_hash(t, r->hash, err) || textfile_end(t, err) || textfile_expect_line(t, "size", err) ||
+                read_int(t, "width", 1, 1 << 28, &info->width, err) ||
                 read_int(t, "height", 1, 1 << 28, &info->height, err) || textfile_end(t, err) ||
                 textfile_expect_line(t, "bits", err) || read_int(t, "bits", 8, 32, &info->bits, err) ||
                 textfile_end(t, err) || textfile_expect_line(t, "orientation", err) ||
@@ -123,25 +120,18 @@ static enum status read_fields(struct photo_record *r, struct textfile *t, struc
     return st;
 }
 
-static char *record_path(const char *folder, const char *id)
-{
-    char *path = NULL;
-    return asprintf(&path, "%s/%s.txt", folder, id) < 0 ? NULL : path;
-}
-
-enum status photo_record_read(struct photo_record *r, const char *folder, const char *id, struct err *err)
+enum status photo_record_read(struct photo_record *r, const char *folder, const char *id, struct provenance *prov,
+                              struct err *err)
 {
     struct textfile t = {0};
-    char *path = record_path(folder, id);
-    enum status st = ST_OK;
+    char path[FILE_PATH];
 
     *r = (struct photo_record){0};
-    if (!path) return err_nomem(err, "a path", 0);
-    st = keep_word(&r->id, id, err);
-    if (!st) st = textfile_open(&t, path, err);
+    enum status st = product_path_in(path, folder, PRODUCT_PHOTO, &(struct product_key){.photo = id}, err);
+    if (!st) st = keep_word(&r->id, id, err);
+    if (!st) st = product_open(&t, NULL, PRODUCT_PHOTO, path, prov, err);
     if (!st) st = read_fields(r, &t, err);
     textfile_release(&t);
-    free(path);
     if (st) photo_record_release(r);
     return err && err->status ? err->status : st;
 }
@@ -161,34 +151,28 @@ enum status photo_record_write(const struct photo_record *r, const char *folder,
 {
     const struct photo_info *info = &r->info;
     char file[QUOTED_SIZE], make[QUOTED_SIZE], model[QUOTED_SIZE];
-    char *path = NULL, *text = NULL;
+    char path[FILE_PATH], *text = NULL;
     size_t size = 0;
 
-    enum status st = textfile_quote(r->file, file, sizeof file, err);
+    enum status st = product_path_in(path, folder, PRODUCT_PHOTO, &(struct product_key){.photo = r->id}, err);
+    if (!st) st = textfile_quote(r->file, file, sizeof file, err);
     if (!st) st = textfile_quote(info->make, make, sizeof make, err);
     if (!st) st = textfile_quote(info->model, model, sizeof model, err);
     if (st) return st;
-    path = record_path(folder, r->id);
     FILE *to = open_memstream(&text, &size);
-    if (!path || !to) {
-        st = err_nomem(err, "a record", 0);
-        if (to) finish_text(to, &text, &size, path, st, err);
-    } else {
-        fprintf(to, "remodel-photo 1\nfile %s\nhash %s\nsize %d %d\nbits %d\norientation %d\n", file, r->hash,
-                info->width, info->height, info->bits, info->orientation);
-        fprintf(to, "exif %.17g %.17g %.17g %.17g %.17g\n", info->focal_mm, info->focal35_mm, info->seconds,
-                info->f_number, info->iso);
-        fprintf(to, "camera %s %s\n", make, model);
-        if (r->bracket_count) fprintf(to, "brackets %d %d %.17g\n", r->bracket_count, r->middle, r->white);
-        for (int i = 0; !st && i < r->bracket_count; i++) {
-            const struct bracket *b = &r->brackets[i];
-            st = textfile_quote(b->file, file, sizeof file, err);
-            if (!st) fprintf(to, "bracket %s %s %.17g\n", file, b->hash, b->exposure);
-        }
-        st = finish_text(to, &text, &size, path, st, err);
+    if (!to) return err_nomem(err, "a record", 0);
+    fprintf(to, "%s\nfile %s\nhash %s\nsize %d %d\nbits %d\norientation %d\n", products[PRODUCT_PHOTO].head, file,
+            r->hash, info->width, info->height, info->bits, info->orientation);
+    fprintf(to, "exif %.17g %.17g %.17g %.17g %.17g\n", info->focal_mm, info->focal35_mm, info->seconds, info->f_number,
+            info->iso);
+    fprintf(to, "camera %s %s\n", make, model);
+    if (r->bracket_count) fprintf(to, "brackets %d %d %.17g\n", r->bracket_count, r->middle, r->white);
+    for (int i = 0; !st && i < r->bracket_count; i++) {
+        const struct bracket *b = &r->brackets[i];
+        st = textfile_quote(b->file, file, sizeof file, err);
+        if (!st) fprintf(to, "bracket %s %s %.17g\n", file, b->hash, b->exposure);
     }
-    free(path);
-    return st;
+    return finish_text(to, &text, &size, path, st, err);
 }
 
 static enum status print_list(const struct photo_list *list, FILE *to, struct err *err)
@@ -230,23 +214,20 @@ static enum status print_brackets(const struct photo_list *list, FILE *to, struc
 enum status photo_list_write(const struct photo_list *list, const char *folder, struct err *err)
 {
     static const struct {
-        const char *name;
+        enum product_id id;
         enum status (*print)(const struct photo_list *list, FILE *to, struct err *err);
-    } texts[] = {{"brackets.txt", print_brackets}, {"list.txt", print_list}, {"photos.mk", print_make}};
+    } texts[] = {
+        {PRODUCT_PHOTO_BRACKETS, print_brackets}, {PRODUCT_PHOTO_LIST, print_list}, {PRODUCT_PHOTOS_MK, print_make}};
     bool bracketed = list->count && list->photos[0].bracket_count;
     enum status st = ST_OK;
     for (int i = bracketed ? 0 : 1; !st && i < 3; i++) {
-        char *path = NULL, *text = NULL;
+        char path[FILE_PATH], *text = NULL;
         size_t size = 0;
+        if (product_path_in(path, folder, texts[i].id, NULL, err)) return err->status;
         FILE *to = open_memstream(&text, &size);
         if (!to) return err_nomem(err, "a list of photos", 0);
-        if (asprintf(&path, "%s/%s", folder, texts[i].name) < 0) {
-            path = NULL;
-            st = err_nomem(err, "a path", 0);
-        }
-        if (!st) st = texts[i].print(list, to, err);
+        st = texts[i].print(list, to, err);
         st = finish_text(to, &text, &size, path, st, err);
-        free(path);
     }
     return st;
 }
@@ -265,7 +246,7 @@ static enum status read_list_line(struct photo_list *list, struct textfile *t, c
     if (st) return st;
 
     if (array_append(&list->photos, (size_t)list->count, sizeof *list->photos, "photos", err)) return err->status;
-    st = photo_record_read(&list->photos[list->count], folder, id, err);
+    st = photo_record_read(&list->photos[list->count], folder, id, NULL, err);
     if (st) return st;
     if (strcmp(list->photos[list->count++].file, file))
         st = textfile_error(t, err, file, "the file named in the record %s.txt; import the photos again", id);
@@ -275,14 +256,13 @@ static enum status read_list_line(struct photo_list *list, struct textfile *t, c
 enum status photo_list_read(struct photo_list *list, const char *folder, struct err *err)
 {
     struct textfile t = {0};
-    char *path = record_path(folder, "list");
+    char path[FILE_PATH];
     *list = (struct photo_list){0};
-    if (!path) return err_nomem(err, "a path", 0);
-    enum status st = textfile_open(&t, path, err);
+    enum status st = product_path_in(path, folder, PRODUCT_PHOTO_LIST, NULL, err);
+    if (!st) st = product_open(&t, NULL, PRODUCT_PHOTO_LIST, path, NULL, err);
     while (!st && textfile_next(&t)) st = read_list_line(list, &t, folder, err);
     if (!st && !list->count) st = err_set(err, ST_DATA, "%s contains no photo; import the photos again.", path);
     textfile_release(&t);
-    free(path);
     if (st) photo_list_release(list);
     return st;
 }

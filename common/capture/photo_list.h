@@ -19,7 +19,7 @@
 #ifndef REMODEL_PHOTO_LIST_H
 #define REMODEL_PHOTO_LIST_H
 
-#include "common/base/hash.h"
+#include "common/base/provenance.h"
 #include "common/image/photo.h"
 
 struct bracket {
@@ -45,7 +45,8 @@ struct photo_list {
 
 /* Reads list.txt and the records of its photos. folder: out/SCENE/photos. */
 enum status photo_list_read(struct photo_list *list, const char *folder, struct err *err);
-enum status photo_record_read(struct photo_record *r, const char *folder, const char *id, struct err *err);
+enum status photo_record_read(struct photo_record *r, const char *folder, const char *id, struct provenance *prov,
+                              struct err *err);
 /* Writes the record only if its text changes, so that Make sees when the photo changed. */
 enum status photo_record_write(const struct photo_record *r, const char *folder, struct err *err);
 /* Writes list.txt and photos.mk (PHOTO_IDS := the ids), each only if its text changes. For views of several exposures

@@ -37,7 +37,7 @@ static enum status add_mask(struct photo_mask *m, const char *folder, const char
     if (asprintf(&path, "%s/%s.png", folder, id) < 0 || asprintf(&input, "masks/%s.png", id) < 0) {
         st = err_nomem(err, "a file name", strlen(folder) + strlen(id));
     } else if (!access(path, F_OK)) {
-        st = photo_read(&p, path, err);
+        st = photo_read_input(&p, path, input, prov, err);
         if (!st && (p.info.width != m->width || p.info.height != m->height))
             st = err_set(
                 err, ST_DATA,
@@ -45,7 +45,6 @@ static enum status add_mask(struct photo_mask *m, const char *folder, const char
                 "photo as it is stored, at its full size.",
                 path, p.info.width, p.info.height, r->file, m->width, m->height);
         if (!st) st = add_samples(m, &p, err);
-        if (!st && prov) st = provenance_add_file(prov, input, path, err);
     }
     photo_release(&p);
     free(path);
@@ -61,7 +60,7 @@ static bool is_exposure(const struct photo_record *r, const char *records, const
     char *members = NULL;
     bool found = false;
     if (asprintf(&members, "%s/members", records) < 0) return false;
-    if (!photo_record_read(&member, members, id, &ignored))
+    if (!photo_record_read(&member, members, id, NULL, &ignored))
         for (int i = 0; i < r->bracket_count && !found; i++) found = !strcmp(r->brackets[i].file, member.file);
     photo_record_release(&member);
     free(members);

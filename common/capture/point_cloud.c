@@ -17,12 +17,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
-#include "common/base/outfile.h"
 #include "common/base/scan.h"
+#include "common/product/product.h"
 
-enum { RECORD_SIZE = 3 * 8 + 3 * 4 + 3 + 2 + 4, BLOCK = 4096 };
+enum { RECORD_SIZE = 3 * 8 + 3 * 4 + 3 + 2 + 4 };
 
 static const char *const properties[] = {
     "property double x",   "property double y",     "property double z",         "property float nx",
@@ -125,10 +124,9 @@ enum status point_cloud_write(const struct point_cloud *cloud, const char *path,
 }
 
 struct header {
-    FILE *fp;
+    char *at, *end; /* what is left of the file */
     const char *path;
-    char *text; /* of the current line, without its end */
-    size_t room;
+    const char *text; /* the current line, without its end; NULL: the file has ended */
     int line;
 };
 
@@ -142,17 +140,14 @@ static enum status header_error(const struct header *h, const char *what, struct
 
 static bool next_line(struct header *h)
 {
-    const ssize_t n = getline(&h->text, &h->room, h->fp);
+    char *newline = memchr(h->at, '\n', (size_t)(h->end - h->at)), *stop = newline ? newline : h->end;
+    const bool whole = newline && !memchr(h->at, '\0', (size_t)(stop - h->at));
+
     h->line++;
-    if (n < 1 || h->text[n - 1] != '\n' || memchr(h->text, '\0', (size_t)n)) {
-        if (n < 1) {
-            free(h->text);
-            h->text = NULL;
-        }
-        return false;
-    }
-    h->text[n - 1] = '\0';
-    return true;
+    h->text = h->at < h->end ? h->at : NULL;
+    *stop = '\0';
+    h->at = newline ? newline + 1 : h->end;
+    return whole;
 }
 
 static enum status expect_line(struct header *h, const char *text, struct err *err)
@@ -188,52 +183,37 @@ static enum status read_header(struct header *h, double *cell, int64_t *count, s
     return expect_line(h, "end_header", err);
 }
 
-static enum status read_points(struct point_cloud *cloud, FILE *fp, const char *path, struct err *err)
+static enum status read_points(struct point_cloud *cloud, const char *records, const char *path, struct err *err)
 {
-    uint8_t *block = malloc((size_t)BLOCK * RECORD_SIZE);
-    enum status st = block ? ST_OK : err_nomem(err, "a block of points", (size_t)BLOCK * RECORD_SIZE);
-    for (size_t at = 0; !st && at < cloud->count; at += BLOCK) {
-        const size_t n = cloud->count - at < BLOCK ? cloud->count - at : BLOCK;
-        if (fread(block, RECORD_SIZE, n, fp) != n) {
-            st = err_errno(err, "read", path);
-            break;
-        }
-        for (size_t i = 0; !st && i < n; i++) {
-            unpack(&cloud->points[at + i], block + i * RECORD_SIZE);
-            if (!is_valid(&cloud->points[at + i])) st = invalid_point(&cloud->points[at + i], at + i, path, err);
-        }
+    for (size_t i = 0; i < cloud->count; i++) {
+        unpack(&cloud->points[i], (const uint8_t *)records + i * RECORD_SIZE);
+        if (!is_valid(&cloud->points[i])) return invalid_point(&cloud->points[i], i, path, err);
     }
-    free(block);
-    return st;
+    return ST_OK;
 }
 
-enum status point_cloud_read(struct point_cloud *cloud, const char *path, struct err *err)
+enum status point_cloud_read(struct point_cloud *cloud, const char *path, struct provenance *prov, struct err *err)
 {
-    struct header h = {.path = path};
-    struct stat info;
+    struct file_bytes file = {0};
     int64_t count = 0;
     *cloud = (struct point_cloud){0};
-    h.fp = fopen(path, "rbe");
-    if (!h.fp) return err_errno(err, "open", path);
-    enum status st = fstat(fileno(h.fp), &info) ? err_errno(err, "get the size of", path) : ST_OK;
-    if (!st) st = read_header(&h, &cloud->cell, &count, err);
-    if (!st) {
-        /* memory is allocated only for as many points as the file contains */
-        const int64_t left = (int64_t)info.st_size - (int64_t)ftello(h.fp);
-        if (left % RECORD_SIZE || left / RECORD_SIZE != count)
-            st = err_set(err, ST_DATA,
-                         "%s: found %" PRId64 " bytes after the header, wanted %d for each of %" PRId64
-                         " points; make the points again.",
-                         path, left, RECORD_SIZE, count);
-    }
+    if (provenance_read(prov, product_name(PRODUCT_POINTS, path), &file, path, err)) return err->status;
+    struct header h = {.at = file.bytes, .end = file.bytes + file.size, .path = path};
+    enum status st = read_header(&h, &cloud->cell, &count, err);
+    /* memory is allocated only for as many points as the file contains */
+    const int64_t left = h.end - h.at;
+    if (!st && (left % RECORD_SIZE || left / RECORD_SIZE != count))
+        st = err_set(err, ST_DATA,
+                     "%s: found %" PRId64 " bytes after the header, wanted %d for each of %" PRId64
+                     " points; make the points again.",
+                     path, left, RECORD_SIZE, count);
     if (!st) {
         cloud->count = (size_t)count;
         cloud->points = malloc((cloud->count + 1) * sizeof *cloud->points);
-        st = cloud->points ? read_points(cloud, h.fp, path, err)
+        st = cloud->points ? read_points(cloud, h.at, path, err)
                            : err_nomem(err, "points", cloud->count * sizeof *cloud->points);
     }
-    fclose(h.fp);
-    free(h.text);
+    file_bytes_release(&file);
     if (st) point_cloud_release(cloud);
     return st;
 }

@@ -31,7 +31,7 @@ enum status point_cloud_write(const struct point_cloud *cloud, const char *path,
                               struct err *err);
 /* Reads only files of point_cloud_write(). ST_DATA, with the line of the header or the point: other headers, a wrong
  * file size, values that are not finite, normals of another length, confidence outside 0 .. 1, no view. */
-enum status point_cloud_read(struct point_cloud *cloud, const char *path, struct err *err);
+enum status point_cloud_read(struct point_cloud *cloud, const char *path, struct provenance *prov, struct err *err);
 void point_cloud_release(struct point_cloud *cloud);
 
 static inline struct vec3 cloud_normal(const struct cloud_point *p)

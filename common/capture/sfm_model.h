@@ -50,15 +50,16 @@ struct sfm_model {
 
 /* Reads cameras.txt, images.txt and points3D.txt of a folder; points3D.txt may be empty. ST_DATA with file and line:
  * unsupported camera model (the message lists the supported ones), NaN, duplicate or missing id, a track or observation
- * that refers to nothing, a quaternion of length 0 (other lengths are normalised). */
-enum status sfm_model_read_text(struct sfm_model *m, const char *folder, struct err *err);
+ * that refers to nothing, a quaternion of length 0 (other lengths are normalised). The files are recorded in prov, as are
+ * those that readers of other products read; it may be NULL. */
+enum status sfm_model_read_text(struct sfm_model *m, const char *folder, struct provenance *prov, struct err *err);
 
 /* Reads cameras.txt and images.txt only: poses and lenses, no points and no observations. */
-enum status sfm_model_read_cameras(struct sfm_model *m, const char *folder, struct err *err);
+enum status sfm_model_read_cameras(struct sfm_model *m, const char *folder, struct provenance *prov, struct err *err);
 
 /* The same from two files of any name. of_images may be NULL: the lenses only. */
 enum status sfm_model_read_camera_files(struct sfm_model *m, const char *of_cameras, const char *of_images,
-                                        struct err *err);
+                                        struct provenance *prov, struct err *err);
 
 /* Reads a Bundler v0.3 file. names[i], sizes[i]: file name and size in pixels of its camera i; count must be the number
  * of cameras in the file. Cameras that Bundler could not place (focal length 0) and those of size 0 x 0 are left out.

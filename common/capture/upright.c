@@ -1,9 +1,9 @@
 /* upright.c - the upright direction of photographs in the cameras of their views. */
 #include "common/capture/upright.h"
 
-#include "common/base/file_path.h"
 #include "common/capture/lens_list.h"
 #include "common/capture/photo_list.h"
+#include "common/product/product.h"
 
 struct vec3 upright_from_orientation(int orientation)
 {
@@ -27,8 +27,8 @@ enum status upright_read(struct vec3 *ups, const struct camera_set *set, const c
 {
     struct lens_list lenses = {0};
     char path[FILE_PATH];
-    enum status st = provenance_add_in(prov, "views", views, "lenses.txt", "", path, err);
-    if (!st) st = lens_list_read(&lenses, path, err);
+    enum status st = product_path_in(path, views, PRODUCT_LENSES, NULL, err);
+    if (!st) st = lens_list_read(&lenses, path, prov, err);
     for (int i = 0; !st && i < set->view_count; i++) {
         struct photo_record record = {0};
         int at = lens_list_find(&lenses, set->views[i].name);
@@ -38,8 +38,7 @@ enum status upright_read(struct vec3 *ups, const struct camera_set *set, const c
             break;
         }
         const struct lens *lens = &lenses.lenses[at];
-        st = photo_record_read(&record, records, lens->photo, err);
-        if (!st) st = provenance_add_in(prov, "photos", records, lens->photo, ".txt", NULL, err);
+        st = photo_record_read(&record, records, lens->photo, prov, err);
         if (!st)
             ups[i] =
                 mat3_apply(mat3_from_quat(lens->view_from_photo), upright_from_orientation(record.info.orientation));

@@ -3,16 +3,20 @@
 
 #include <string.h>
 
-#include "common/base/file_path.h"
+#include "common/image/exr.h"
 #include "common/image/luminance.h"
+#include "common/product/product.h"
 
 static const char *const channel_names[VIEW_CHANNELS] = {"R", "G", "B", "A", "sigma", "clipped"};
 
-enum status view_planes_read(struct view_planes *p, const char *path, const struct view *view, int count,
-                             struct err *err)
+enum status view_planes_read(struct view_planes *p, const char *folder, const struct view *view, int count,
+                             struct provenance *prov, struct err *err)
 {
     struct exr_image *exr = &p->exr;
-    if (exr_read(exr, path, channel_names, count, err)) return err->status;
+    char path[FILE_PATH];
+    if (product_path_in(path, folder, PRODUCT_VIEW, &(struct product_key){.view = view->name}, err) ||
+        exr_read_product(exr, PRODUCT_VIEW, path, channel_names, count, prov, err))
+        return err->status;
     if (exr->width != view->width || exr->height != view->height)
         return err_set(err, ST_DATA, "%s has %d x %d pixels, but its camera %d x %d; make the views again.", path,
                        exr->width, exr->height, view->width, view->height);
@@ -32,15 +36,14 @@ void view_planes_release(struct view_planes *p)
     *p = (struct view_planes){0};
 }
 
-enum status view_image_read(struct image *im, const char *folder, const struct view *view, struct err *err)
+enum status view_image_read(struct image *im, const char *folder, const struct view *view, struct provenance *prov,
+                            struct err *err)
 {
     struct view_planes planes = {0};
-    char path[FILE_PATH];
     const size_t pixels = (size_t)view->width * (size_t)view->height;
 
     *im = (struct image){0};
-    enum status st = file_path(path, folder, view->name, ".exr", err);
-    if (!st) st = view_planes_read(&planes, path, view, 4, err);
+    enum status st = view_planes_read(&planes, folder, view, 4, prov, err);
     if (!st) st = image_init(im, view->width, view->height, 4, err);
     for (size_t c = 0; !st && c < 4; c++)
         for (size_t i = 0; i < pixels; i++) im->data[4 * i + c] = planes.channel[c][i];

@@ -17,14 +17,15 @@ struct view_planes {
     const float *channel[VIEW_CHANNELS]; /* of exr */
 };
 
-/* Reads the first `count` channels of a file. p is {0} on entry; the caller releases it in each case. ST_DATA: the size
+/* Reads the first `count` channels of FOLDER/VIEW.exr. p is {0} on entry; the caller releases it in each case. ST_DATA: the size
  * differs from the camera's; a channel is missing, or has integers. */
-enum status view_planes_read(struct view_planes *p, const char *path, const struct view *view, int count,
-                             struct err *err);
+enum status view_planes_read(struct view_planes *p, const char *folder, const struct view *view, int count,
+                             struct provenance *prov, struct err *err);
 void view_planes_release(struct view_planes *p);
 
 /* 4 channels R G B A. ST_DATA: the size differs from the camera's. */
-enum status view_image_read(struct image *im, const char *folder, const struct view *view, struct err *err);
+enum status view_image_read(struct image *im, const char *folder, const struct view *view, struct provenance *prov,
+                            struct err *err);
 /* quality: noise and marks of the pixels, for the channels sigma and clipped; NULL: without them. */
 enum status view_image_write(const struct image *im, const struct photo_quality *quality, const char *path,
                              const struct view *view, const struct provenance *prov, const char *radiometry,

@@ -18,11 +18,11 @@
 #include <string.h>
 
 #include "common/base/array.h"
-#include "common/base/outfile.h"
 #include "common/base/parallel.h"
 #include "common/base/scan.h"
 #include "common/base/textfile.h"
 #include "common/image/luminance.h"
+#include "common/product/product.h"
 
 #define MAX_KEYS   100000
 #define MAX_NAME   64
@@ -211,19 +211,6 @@ static enum status read_key(struct textfile *t, struct effect_layer *l, struct e
     return ST_OK;
 }
 
-static enum status read_header(struct textfile *t, struct err *err)
-{
-    char *word;
-    int64_t version;
-
-    if (!textfile_next(t)) return textfile_error(t, err, NULL, "remodel-effects 1");
-    enum status st = textfile_word(t, "remodel-effects", &word, err);
-    if (st) return st;
-    if (strcmp(word, "remodel-effects")) return textfile_error(t, err, word, "remodel-effects 1, the first line");
-    if ((st = textfile_int(t, "the version", 1, 1, &version, err))) return st;
-    return textfile_end(t, err);
-}
-
 enum status effects_read_layers(struct effects *e, struct textfile *t, struct err *err)
 {
     bool has_region = false;
@@ -263,14 +250,12 @@ enum status effects_read_layers(struct effects *e, struct textfile *t, struct er
     return st;
 }
 
-enum status effects_read(struct effects *e, const char *path, struct err *err)
+enum status effects_read(struct effects *e, const char *path, struct provenance *prov, struct err *err)
 {
     struct textfile t = {0};
 
     *e = (struct effects){0};
-    enum status st = textfile_open(&t, path, err);
-    if (st) return st;
-    st = read_header(&t, err);
+    enum status st = product_open(&t, NULL, PRODUCT_EFFECTS, path, prov, err);
     if (!st) st = effects_read_layers(e, &t, err);
     textfile_release(&t);
     return st;
@@ -345,11 +330,9 @@ enum status effects_write(const struct effects *e, const char *path, const struc
                 err, ST_DATA,
                 "%s: cannot write layer %d of %d: its name is invalid or taken, or a number is out of range.", path,
                 i + 1, e->layer_count);
-    enum status st = outfile_open(&f, path, err);
+    enum status st = product_begin(&f, PRODUCT_EFFECTS, path, prov, err);
     if (st) return st;
     const locale_t before = uselocale(scan_c_locale());
-    if (prov) provenance_print(prov, f.fp);
-    fprintf(f.fp, "remodel-effects 1\n");
     for (int i = 0; !st && i < e->layer_count; i++) {
         char name[2 * MAX_NAME + 3];
         st = textfile_quote(e->layers[i].name, name, sizeof name, err);

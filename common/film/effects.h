@@ -24,7 +24,7 @@ struct effects { /* {0} is valid and changes nothing */
 };
 
 /* ST_DATA with file, line, what was found and what was expected; on failure e is left empty. */
-enum status effects_read(struct effects *e, const char *path, struct err *err);
+enum status effects_read(struct effects *e, const char *path, struct provenance *prov, struct err *err);
 /* Reads the layers from the next line of an open file to its end: an effects file without its first line. */
 enum status effects_read_layers(struct effects *e, struct textfile *t, struct err *err);
 /* The file reads back to the same bits. prov may be NULL. ST_DATA: layers that effects_read would reject. */

@@ -5,8 +5,7 @@
 #include <string.h>
 
 #include "common/base/array.h"
-#include "common/base/outfile.h"
-#include "common/base/textfile.h"
+#include "common/product/product.h"
 
 enum { MAX_FILM_VIEWS = 1000000, NAME_SIZE = 1024 };
 
@@ -36,11 +35,8 @@ static enum status read_name(struct film_views *v, struct textfile *t, struct er
 static enum status read_views(struct film_views *v, struct textfile *t, struct err *err)
 {
     static const char wanted[] = "\"all\" or \"views\" and their number";
-    int64_t version, count = 0;
+    int64_t count = 0;
     char *word;
-    if (textfile_expect_line(t, "remodel-film-views", err) || textfile_int(t, "version", 1, 1, &version, err) ||
-        textfile_end(t, err))
-        return err->status;
     if (!textfile_next(t)) return textfile_error(t, err, NULL, wanted);
     if (textfile_word(t, wanted, &word, err)) return err->status;
     v->all = !strcmp(word, "all");
@@ -57,11 +53,11 @@ static enum status read_views(struct film_views *v, struct textfile *t, struct e
     return ST_OK;
 }
 
-enum status film_views_read(struct film_views *v, const char *path, struct err *err)
+enum status film_views_read(struct film_views *v, const char *path, struct provenance *prov, struct err *err)
 {
     struct textfile t = {0};
     *v = (struct film_views){0};
-    enum status st = textfile_open(&t, path, err);
+    enum status st = product_open(&t, NULL, PRODUCT_FILM_VIEWS, path, prov, err);
     if (!st) st = read_views(v, &t, err);
     textfile_release(&t);
     if (st) film_views_release(v);
@@ -74,7 +70,7 @@ static enum status print_views(FILE *to, const struct camera_set *set, const boo
 {
     char name[NAME_SIZE];
     int count = 0;
-    fputs("remodel-film-views 1\n", to);
+    fprintf(to, "%s\n", products[PRODUCT_FILM_VIEWS].head);
     for (int i = 0; keep && i < set->view_count; i++) count += keep[i];
     if (keep)
         fprintf(to, "views %d\n", count);
@@ -110,7 +106,9 @@ enum status film_views_keep(struct camera_set *set, const char *path, struct pro
     struct film_views v = {0};
     bool *keep = NULL;
     if (!path) return ST_OK;
-    enum status st = film_views_read(&v, path, err);
+    const int inputs = prov->count;
+    enum status st = film_views_read(&v, path, prov, err);
+    if (!st && v.all) provenance_keep(prov, inputs);
     if (!st && !v.all) {
         keep = calloc((size_t)set->view_count + 1, sizeof *keep);
         if (!keep) st = err_nomem(err, "the views of a film", (size_t)set->view_count);
@@ -122,7 +120,6 @@ enum status film_views_keep(struct camera_set *set, const char *path, struct pro
             else
                 keep[at] = true;
         }
-        if (!st) st = provenance_add_file(prov, "parallax/views.txt", path, err);
         if (!st) st = camera_set_keep(set, keep, err);
     }
     free(keep);

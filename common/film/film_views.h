@@ -18,7 +18,7 @@ struct film_views {
 };
 
 /* ST_DATA with file and line: a malformed line, no view, a view named twice. On failure v is left empty. */
-enum status film_views_read(struct film_views *v, const char *path, struct err *err);
+enum status film_views_read(struct film_views *v, const char *path, struct provenance *prov, struct err *err);
 void film_views_release(struct film_views *v);
 
 /* Writes the views that are marked in keep[set->view_count], or "all" if keep is NULL. A file with the same text is

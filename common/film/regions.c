@@ -47,11 +47,11 @@ static enum status read_region(struct textfile *t, struct region *r, struct err 
     return r->view ? ST_OK : err_nomem(err, "a view's name", strlen(view));
 }
 
-enum status region_list_read(struct region_list *list, const char *path, struct err *err)
+enum status region_list_read(struct region_list *list, const char *path, struct provenance *prov, struct err *err)
 {
     struct textfile t = {0};
     *list = (struct region_list){0};
-    enum status st = textfile_open(&t, path, err);
+    enum status st = provenance_open(prov, "subjects.txt", &t, path, err);
     while (!st && textfile_next(&t)) {
         if (list->count == MAX_REGIONS) {
             st = err_set(err, ST_DATA, "%s:%d: found more than %d subjects.", path, t.line, MAX_REGIONS);

@@ -21,7 +21,7 @@ struct region_list {
 };
 
 /* An empty file is an empty list. ST_DATA with file and line: a malformed line, or a rectangle without area. */
-enum status region_list_read(struct region_list *list, const char *path, struct err *err);
+enum status region_list_read(struct region_list *list, const char *path, struct provenance *prov, struct err *err);
 void region_list_release(struct region_list *list);
 
 /* Maps a region to a view, that of the photo's views which shows most of it. s: empty on entry; receives the upright

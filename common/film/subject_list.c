@@ -6,8 +6,7 @@
 #include <string.h>
 
 #include "common/base/array.h"
-#include "common/base/outfile.h"
-#include "common/base/textfile.h"
+#include "common/product/product.h"
 
 enum { MAX_SUBJECTS = 100000, NAME_SIZE = 1024 };
 
@@ -84,9 +83,8 @@ enum status subject_list_write(const struct subject_list *list, const char *path
 {
     struct outfile f = {0};
     char view[NAME_SIZE];
-    enum status st = outfile_open(&f, path, err);
-    if (!st && prov) provenance_print(prov, f.fp);
-    if (!st) fprintf(f.fp, "remodel-subjects 1\nsubjects %d\n", list->count);
+    enum status st = product_begin(&f, PRODUCT_SUBJECTS, path, prov, err);
+    if (!st) fprintf(f.fp, "subjects %d\n", list->count);
     for (int i = 0; !st && i < list->count; i++) {
         const struct subject *s = &list->subjects[i];
         st = textfile_quote(s->view, view, sizeof view, err);
@@ -140,18 +138,16 @@ static enum status read_subject(struct textfile *t, struct subject *s, struct er
     return ST_OK;
 }
 
-enum status subject_list_read(struct subject_list *list, const char *path, struct err *err)
+enum status subject_list_read(struct subject_list *list, const char *path, struct provenance *prov, struct err *err)
 {
     struct textfile t = {0};
-    int64_t version, count = 0;
+    int64_t count = 0;
     *list = (struct subject_list){0};
-    enum status st = textfile_open(&t, path, err) || textfile_expect_line(&t, "remodel-subjects", err) ||
-                             textfile_int(&t, "version", 1, 1, &version, err) || textfile_end(&t, err) ||
-                             textfile_expect_line(&t, "subjects", err) ||
-                             textfile_int(&t, "number of subjects", 0, MAX_SUBJECTS, &count, err) ||
-                             textfile_end(&t, err)
-                         ? err->status
-                         : ST_OK;
+    enum status st =
+        product_open(&t, NULL, PRODUCT_SUBJECTS, path, prov, err) || textfile_expect_line(&t, "subjects", err) ||
+                textfile_int(&t, "number of subjects", 0, MAX_SUBJECTS, &count, err) || textfile_end(&t, err)
+            ? err->status
+            : ST_OK;
     for (int64_t i = 0; !st && i < count; i++) {
         struct subject s = {0};
         st = read_subject(&t, &s, err);

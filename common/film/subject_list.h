@@ -34,7 +34,7 @@ struct subject_list {
 };
 
 /* An empty list is valid. ST_DATA with file and line: a number out of the ranges above, corners that span no area. */
-enum status subject_list_read(struct subject_list *list, const char *path, struct err *err);
+enum status subject_list_read(struct subject_list *list, const char *path, struct provenance *prov, struct err *err);
 enum status subject_list_write(const struct subject_list *list, const char *path, const struct provenance *prov,
                                struct err *err);
 /* Takes ownership of s and empties it, on failure too. */

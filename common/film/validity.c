@@ -13,8 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/base/outfile.h"
-#include "common/base/textfile.h"
+#include "common/product/product.h"
 
 enum { MAX_CELLS = 4096 };
 
@@ -149,7 +148,7 @@ static enum status read_region(struct textfile *t, struct validity_region *r, st
     return ST_OK;
 }
 
-enum status validity_read(struct validity *v, const char *path, struct err *err)
+enum status validity_read(struct validity *v, const char *path, struct provenance *prov, struct err *err)
 {
     struct textfile t = {0};
     char *word;
@@ -157,10 +156,7 @@ enum status validity_read(struct validity *v, const char *path, struct err *err)
     struct err why = ERR_INIT;
 
     *v = (struct validity){0};
-    enum status st = textfile_open(&t, path, err);
-    if (!st) st = read_key(&t, "remodel-validity", err);
-    if (!st) st = textfile_int(&t, "version", 1, 1, &number, err);
-    if (!st) st = textfile_end(&t, err);
+    enum status st = product_open(&t, NULL, PRODUCT_VALIDITY, path, prov, err);
     if (!st) st = read_key(&t, "effect", err);
     if (!st) st = textfile_word(&t, "an effect", &word, err);
     if (!st && film_effect_parse(&v->effect, word, &why))
@@ -223,13 +219,12 @@ enum status validity_write(const struct validity *v, const char *path, const str
     const struct shot_setup *s = &v->shot;
     struct outfile f = {0};
     char effect[EFFECT_NAME_SIZE];
-    enum status st = outfile_open(&f, path, err);
+    enum status st = product_begin(&f, PRODUCT_VALIDITY, path, prov, err);
 
     if (st) return st;
-    if (prov) provenance_print(prov, f.fp);
     film_effect_name(&v->effect, effect);
-    fprintf(f.fp, "remodel-validity 1\neffect %s\nfilm %d %d %.17g %.17g %.17g\nzoom %.17g\n", effect, s->lens.width,
-            s->lens.height, s->lens.fx, s->lens.cx, s->lens.cy, v->zoom);
+    fprintf(f.fp, "effect %s\nfilm %d %d %.17g %.17g %.17g\nzoom %.17g\n", effect, s->lens.width, s->lens.height,
+            s->lens.fx, s->lens.cx, s->lens.cy, v->zoom);
     fprintf(f.fp, "near_limit %.17g\nmedian_depth %.17g\n", s->near_limit, s->median_depth);
     print_key_vector(f.fp, "up", s->up);
     print_key_vector(f.fp, "origin", s->origin);

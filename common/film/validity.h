@@ -49,7 +49,7 @@ enum status validity_region_init(struct validity_region *r, int columns, int row
 int validity_region_count(const struct validity_region *r); /* number of valid cells */
 
 /* ST_DATA with file, line, what was found and what was expected; on failure v is left empty. */
-enum status validity_read(struct validity *v, const char *path, struct err *err);
+enum status validity_read(struct validity *v, const char *path, struct provenance *prov, struct err *err);
 enum status validity_write(const struct validity *v, const char *path, const struct provenance *prov, struct err *err);
 void validity_release(struct validity *v);
 

@@ -82,10 +82,11 @@ static enum status pack_page(struct field_atlas *a, int page, const struct atlas
     return ST_OK;
 }
 
-static enum status read_page(struct field_atlas *a, int page, const char *folder, struct err *err)
+static enum status read_page(struct field_atlas *a, int page, const char *folder, struct provenance *prov,
+                             struct err *err)
 {
     struct atlas_page p = {0};
-    enum status st = atlas_page_read(&p, &a->atlas, page, folder, err);
+    enum status st = atlas_page_read(&p, &a->atlas, page, folder, prov, err);
     if (!st) st = pack_page(a, page, &p, err);
     atlas_page_release(&p);
     return st;
@@ -118,19 +119,13 @@ static enum status index_faces(struct field_atlas *a, int ids, struct err *err)
 enum status field_atlas_read(struct field_atlas *a, const char *folder, int ids, struct provenance *prov,
                              struct err *err)
 {
-    char path[FILE_PATH], name[32];
     *a = (struct field_atlas){0};
-    if (provenance_add_in(prov, "vita", folder, "atlas", ".txt", NULL, err) || atlas_read(&a->atlas, folder, err) ||
-        check_tiles(a, folder, err) || index_faces(a, ids, err))
+    if (atlas_read(&a->atlas, folder, prov, err) || check_tiles(a, folder, err) || index_faces(a, ids, err))
         return err->status;
     a->pages = calloc((size_t)a->atlas.page_count + 1, sizeof *a->pages);
     if (!a->pages) return err_nomem(err, "pages", (size_t)a->atlas.page_count * sizeof *a->pages);
-    for (int i = 0; i < a->atlas.page_count; i++) {
-        snprintf(name, sizeof name, "vita/page%d.exr", i);
-        if (atlas_page_path(path, folder, i, err) || provenance_add_file(prov, name, path, err) ||
-            read_page(a, i, folder, err))
-            return err->status;
-    }
+    for (int i = 0; i < a->atlas.page_count; i++)
+        if (read_page(a, i, folder, prov, err)) return err->status;
     return ST_OK;
 }
 

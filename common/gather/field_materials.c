@@ -26,11 +26,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/base/file_path.h"
 #include "common/base/parallel.h"
 #include "common/capture/photo_camera.h"
 #include "common/gather/specular.h"
 #include "common/math/numbers.h"
+#include "common/product/product.h"
 
 enum { NESTED_RAYS = 16, MAX_REGIONS = UINT16_MAX };
 static const double GRAZING = 0.02;
@@ -329,9 +329,9 @@ static enum status mark_texels(struct finder *d, struct err *err)
 
 /* ------------------------------------------------------------------------------------------------------------ reading */
 
-static enum status read_list(struct field_materials *m, const char *path, struct err *err)
+static enum status read_list(struct field_materials *m, const char *path, struct provenance *prov, struct err *err)
 {
-    if (material_list_read(&m->list, path, err)) return err->status;
+    if (material_list_read(&m->list, path, prov, err)) return err->status;
     m->brdfs = calloc((size_t)m->list.count + 1, sizeof *m->brdfs);
     m->texels = calloc((size_t)m->list.count + 1, sizeof *m->texels);
     if (!m->brdfs || !m->texels) return err_nomem(err, "materials", (size_t)m->list.count * sizeof *m->brdfs);
@@ -342,8 +342,8 @@ static enum status read_list(struct field_materials *m, const char *path, struct
 static enum status read_cameras(struct finder *d, const char *views, struct provenance *prov, struct err *err)
 {
     char path[FILE_PATH];
-    if (camera_set_add_camera_inputs(prov, views, err) || camera_set_read_cameras(&d->set, views, err) ||
-        provenance_add_in(prov, "views", views, "lenses", ".txt", path, err) || lens_list_read(&d->lenses, path, err))
+    if (camera_set_read_cameras(&d->set, views, prov, err) || product_path_in(path, views, PRODUCT_LENSES, NULL, err) ||
+        lens_list_read(&d->lenses, path, prov, err))
         return err->status;
     return ST_OK;
 }
@@ -352,16 +352,12 @@ enum status field_materials_read(struct field_materials *m, const struct field_s
                                  const char *views, const struct model_axes *axes, struct provenance *prov,
                                  struct err *err)
 {
-    struct provenance unused = {0};
     struct finder d = {.materials = m, .on = on, .axes = axes};
-    struct provenance *to = prov ? prov : &unused;
-    enum status st = provenance_add_file(to, "lights/materials.txt", path, err);
-    if (!st) st = read_list(m, path, err);
-    if (!st) st = read_cameras(&d, views, to, err);
+    enum status st = read_list(m, path, prov, err);
+    if (!st) st = read_cameras(&d, views, prov, err);
     if (!st) st = add_regions(&d, &m->list, path, err);
     if (!st) st = find_texels(&d, err);
     if (!st) st = mark_texels(&d, err);
     finder_release(&d);
-    provenance_release(&unused);
     return st;
 }

@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/base/file_path.h"
+#include "common/product/product.h"
 
 static const double MARGIN = 0.05;
 static const struct outdoors_limits limits = {.edge = 2, .max_clutter = 1};
@@ -78,7 +78,7 @@ static enum status read_picture(const struct reading *r, const char *id, struct 
     char path[FILE_PATH];
     bool placed, shows;
     struct outdoors_picture *p = &r->openings->pictures[r->openings->picture_count++];
-    if (provenance_add_in(r->prov, "lri", r->folder, id, ".exr", path, err) ||
+    if (product_path_in(path, r->folder, PRODUCT_LRI, &(struct product_key){.photo = id}, err) ||
         outdoors_picture_of_reference(p, path, r->axes, &placed, err))
         return err->status;
     if (!placed)
@@ -86,7 +86,7 @@ static enum status read_picture(const struct reading *r, const char *id, struct 
                        "%s has no pose in the scene, but an opening of lights.txt names it; give it one by LRI_SFM or "
                        "scenes/NAME/lri.txt, and run `make lri` again.",
                        path);
-    if (outdoors_picture_load(p, &shows, r->model, NULL, &limits, err)) return err->status;
+    if (outdoors_picture_load(p, &shows, r->model, NULL, &limits, r->prov, err)) return err->status;
     if (!shows)
         return err_set(err, ST_DATA,
                        "%s shows nothing outside of the model, but an opening of lights.txt names it; check its pose, "

@@ -5,8 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "common/base/outfile.h"
-#include "common/base/textfile.h"
+#include "common/product/product.h"
 
 static const char *const words[LIGHT_SOURCES] = {"none",        "texture", "synthesised", "sky",
                                                  "sky-guessed", "lamp",    "material"};
@@ -17,10 +16,9 @@ enum status light_record_write(const struct light_record *r, const char *path, c
                                struct err *err)
 {
     struct outfile f = {0};
-    if (outfile_open(&f, path, err)) return err->status;
-    if (prov) provenance_print(prov, f.fp);
-    fprintf(f.fp, "remodel-light-record 1\npoints %d dark %d\nerror %.4g %.4g %.4g\nshares", r->points, r->dark,
-            r->error[0], r->error[1], r->error[2]);
+    if (product_begin(&f, PRODUCT_LIGHT_RECORD, path, prov, err)) return err->status;
+    fprintf(f.fp, "points %d dark %d\nerror %.4g %.4g %.4g\nshares", r->points, r->dark, r->error[0], r->error[1],
+            r->error[2]);
     for (int s = 0; s < LIGHT_SOURCES; s++) fprintf(f.fp, " %s %.6f", words[s], r->from[s]);
     fputc('\n', f.fp);
     if (r->level[1] > 0) fprintf(f.fp, "level %.6g %.6g\n", r->level[0], r->level[1]);
@@ -99,12 +97,8 @@ static enum status read_statement(struct light_record *r, struct textfile *t, st
 enum status light_record_read(struct light_record *r, const char *path, struct err *err)
 {
     struct textfile t = {0};
-    int64_t version;
     *r = (struct light_record){0};
-    enum status st = textfile_open(&t, path, err);
-    if (!st) st = textfile_expect_line(&t, "remodel-light-record", err);
-    if (!st) st = textfile_int(&t, "the version", 1, 1, &version, err);
-    if (!st) st = textfile_end(&t, err);
+    enum status st = product_open(&t, NULL, PRODUCT_LIGHT_RECORD, path, NULL, err);
     while (!st && textfile_next(&t)) {
         st = read_statement(r, &t, err);
         if (!st) st = textfile_end(&t, err);

@@ -19,9 +19,8 @@
 #include <string.h>
 
 #include "common/base/array.h"
-#include "common/base/outfile.h"
-#include "common/base/textfile.h"
 #include "common/math/numbers.h"
+#include "common/product/product.h"
 
 enum { MAX_NAME = 255, QUOTED_SIZE = 2 * MAX_NAME + 3, MAX_EXPONENT = 10000 };
 static const double min_axis = 1e-9; /* of a half edge or radius, in units of the model */
@@ -178,13 +177,11 @@ static enum status read_statement(struct light_list *l, struct textfile *t, stru
     return textfile_error(t, err, verb, "disk, quad or opening");
 }
 
-enum status light_list_read(struct light_list *l, const char *path, struct err *err)
+enum status light_list_read(struct light_list *l, const char *path, struct provenance *prov, struct err *err)
 {
     struct textfile t = {0};
-    int64_t version;
     *l = (struct light_list){0};
-    enum status st = textfile_open(&t, path, err) || textfile_expect_line(&t, "remodel-lights", err) ||
-                     textfile_int(&t, "the version", 1, 1, &version, err) || textfile_end(&t, err);
+    enum status st = product_open(&t, NULL, PRODUCT_LIGHTS, path, prov, err);
     while (!st && textfile_next(&t)) st = read_statement(l, &t, err);
     textfile_release(&t);
     if (st) light_list_release(l);
@@ -235,9 +232,7 @@ enum status light_list_write(const struct light_list *l, const char *path, const
                              struct err *err)
 {
     struct outfile f = {0};
-    enum status st = outfile_open(&f, path, err);
-    if (!st && prov) provenance_print(prov, f.fp);
-    if (!st) fputs("remodel-lights 1\n", f.fp);
+    enum status st = product_begin(&f, PRODUCT_LIGHTS, path, prov, err);
     for (int i = 0; !st && i < l->lamp_count; i++) st = write_lamp(&l->lamps[i], f.fp, err);
     for (int i = 0; !st && i < l->opening_count; i++) st = write_opening(&l->openings[i], f.fp, err);
     if (!st) st = outfile_commit(&f, err);

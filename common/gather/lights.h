@@ -26,7 +26,7 @@ struct light_list {
 
 /* ST_DATA with file and line: a damaged line, a name twice, a normal that is not of unit length, a beta beyond 90
  * degrees, a negative radiance. */
-enum status light_list_read(struct light_list *l, const char *path, struct err *err);
+enum status light_list_read(struct light_list *l, const char *path, struct provenance *prov, struct err *err);
 enum status light_list_write(const struct light_list *l, const char *path, const struct provenance *prov,
                              struct err *err);
 void light_list_release(struct light_list *l);

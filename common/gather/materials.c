@@ -22,9 +22,9 @@
 #include <string.h>
 
 #include "common/base/array.h"
-#include "common/base/outfile.h"
 #include "common/base/scan.h"
 #include "common/math/numbers.h"
+#include "common/product/product.h"
 
 enum { MAX_WORD = 255, QUOTED_SIZE = 2 * MAX_WORD + 3 };
 
@@ -215,15 +215,11 @@ static enum status read_statement(struct material_list *l, struct textfile *t, s
     return material_read_region(m, t, err) || textfile_end(t, err) ? err->status : ST_OK;
 }
 
-enum status material_list_read(struct material_list *l, const char *path, struct err *err)
+enum status material_list_read(struct material_list *l, const char *path, struct provenance *prov, struct err *err)
 {
     struct textfile t = {0};
-    int64_t version;
     *l = (struct material_list){0};
-    enum status st = textfile_open(&t, path, err) || textfile_expect_line(&t, "remodel-materials", err) ||
-                             textfile_int(&t, "the version", 1, 1, &version, err) || textfile_end(&t, err)
-                         ? err->status
-                         : ST_OK;
+    enum status st = product_open(&t, NULL, PRODUCT_MATERIALS, path, prov, err);
     while (!st && textfile_next(&t)) st = read_statement(l, &t, err);
     textfile_release(&t);
     if (st) material_list_release(l);
@@ -276,11 +272,9 @@ enum status material_list_write(const struct material_list *l, const char *path,
                                 struct err *err)
 {
     struct outfile f = {0};
-    if (outfile_open(&f, path, err)) return err->status;
+    if (product_begin(&f, PRODUCT_MATERIALS, path, prov, err)) return err->status;
     const locale_t kept = uselocale(scan_c_locale());
     enum status st = ST_OK;
-    provenance_print(prov, f.fp);
-    fprintf(f.fp, "remodel-materials 1\n");
     fprintf(f.fp, "# material NAME MODEL k_d (R G B), k_s, n or alpha; range NAME: 95 %% intervals of these, low high\n"
                   "# evidence NAME samples points views, residuals in standard deviations, cross-validated errors\n");
     for (int i = 0; !st && i < l->count; i++) st = write_material(&l->items[i], f.fp, err);

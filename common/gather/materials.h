@@ -45,7 +45,7 @@ struct material_list {
 
 /* ST_DATA with file and line: a damaged line, a name twice, a line of a material that no line above has, numbers out of
  * range. */
-enum status material_list_read(struct material_list *l, const char *path, struct err *err);
+enum status material_list_read(struct material_list *l, const char *path, struct provenance *prov, struct err *err);
 enum status material_list_write(const struct material_list *l, const char *path, const struct provenance *prov,
                                 struct err *err);
 void material_list_release(struct material_list *l);

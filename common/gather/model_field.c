@@ -324,25 +324,20 @@ static enum status cover_lamps(struct model_field *f, struct err *err)
 static enum status read_files(struct model_field *f, const struct model_field_files *files, struct provenance *prov,
                               struct err *err)
 {
-    enum status st = provenance_add_file(prov, "model/model.txt", files->model, err);
     f->surfaces = files->surfaces;
     const struct model_extra *extra = files->surfaces ? &files->surfaces->triangles : NULL;
-    if (!st) st = model_rays_read_with(&f->model, files->model, MODEL_WITHOUT_GLASS, extra, err);
+    enum status st = model_rays_read_with(&f->model, files->model, MODEL_WITHOUT_GLASS, extra, prov, err);
     if (!st) st = field_atlas_read(&f->atlas, files->vita, f->model.ids, prov, err);
-    if (!st && files->outdoors) st = provenance_add_file(prov, "outdoors/outdoors.exr", files->outdoors, err);
-    if (!st && files->outdoors) st = outdoors_read(&f->outdoors, files->outdoors, err);
-    if (!st && files->lights) st = provenance_add_file(prov, "lights/lights.txt", files->lights, err);
-    if (!st && files->lights) st = light_list_read(&f->lights, files->lights, err);
+    if (!st && files->outdoors) st = outdoors_read(&f->outdoors, files->outdoors, prov, err);
+    if (!st && files->lights) st = light_list_read(&f->lights, files->lights, prov, err);
     return st;
 }
 
 enum status model_field_read(struct model_field *f, const struct model_field_files *files, struct provenance *prov,
                              struct err *err)
 {
-    struct provenance unused = {0};
     *f = (struct model_field){0};
-    enum status st = read_files(f, files, prov ? prov : &unused, err);
-    provenance_release(&unused);
+    enum status st = read_files(f, files, prov, err);
     f->reach = LAMP_REACH * model_rays_size(&f->model);
     if (!st) st = find_planes(f, err);
     if (!st) st = cover_lamps(f, err);

@@ -148,7 +148,7 @@ static uint8_t judge(bool reference, const float rgb[3], unsigned marks, float f
 }
 
 /* Reads the colours, and judges the pixels whose rays leave the model. */
-static enum status read_pixels(struct outdoors_picture *p, struct err *err)
+static enum status read_pixels(struct outdoors_picture *p, struct provenance *prov, struct err *err)
 {
     static const char *const of_view[] = {"R", "G", "B", "clipped", "A", "sigma"};
     static const char *const of_reference[] = {"R", "G", "B", "clipped", "variance"};
@@ -157,7 +157,7 @@ static enum status read_pixels(struct outdoors_picture *p, struct err *err)
     const size_t pixels = (size_t)p->lens.width * (size_t)p->lens.height;
     struct exr_image im = {0};
     const struct exr_plane *plane[6] = {0};
-    enum status st = exr_read(&im, p->path, names, count, err);
+    enum status st = exr_read_product(&im, p->reference ? PRODUCT_LRI : PRODUCT_VIEW, p->path, names, count, prov, err);
     if (!st && (im.width != p->lens.width || im.height != p->lens.height))
         st = err_set(err, ST_DATA, "%s has %d x %d pixels, but its camera %d x %d; make the views again.", p->path,
                      im.width, im.height, p->lens.width, p->lens.height);
@@ -178,12 +178,12 @@ static enum status read_pixels(struct outdoors_picture *p, struct err *err)
 
 /* Leaves out clutter, and finds the panes that the rays pass. */
 static enum status use_ids(struct outdoors_picture *p, const struct model_rays *m, const struct vec3 *normals,
-                           double max_clutter, struct err *err)
+                           double max_clutter, struct provenance *prov, struct err *err)
 {
     const struct rays rays = {p, mat3_transpose(p->cam_from_model)};
     const struct view size = {.width = p->lens.width, .height = p->lens.height};
     struct view_ids ids = {0};
-    enum status st = view_ids_read(&ids, &size, p->ids, err);
+    enum status st = view_ids_read(&ids, &size, p->ids, prov, err);
     for (size_t i = 0; !st && i < (size_t)size.width * (size_t)size.height; i++) {
         struct vec3 d;
         if (!p->state[i]) continue;
@@ -257,11 +257,12 @@ static size_t measure(struct outdoors_picture *p)
 }
 
 static enum status load(struct outdoors_picture *p, bool *shows, uint32_t *faces, const struct model_rays *model,
-                        const struct vec3 *normals, const struct outdoors_limits *limits, struct err *err)
+                        const struct vec3 *normals, const struct outdoors_limits *limits, struct provenance *prov,
+                        struct err *err)
 {
     if (!trace(p->state, faces, p, model)) return ST_OK;
-    if (read_pixels(p, err)) return err->status;
-    if (p->ids && use_ids(p, model, normals, limits->max_clutter, err)) return err->status;
+    if (read_pixels(p, prov, err)) return err->status;
+    if (p->ids && use_ids(p, model, normals, limits->max_clutter, prov, err)) return err->status;
     if (erode(p, limits->edge, err)) return err->status;
     if (!p->ids) face_lens(p);
     *shows = measure(p) > 0;
@@ -269,7 +270,8 @@ static enum status load(struct outdoors_picture *p, bool *shows, uint32_t *faces
 }
 
 enum status outdoors_picture_load(struct outdoors_picture *p, bool *shows, const struct model_rays *model,
-                                  const struct vec3 *normals, const struct outdoors_limits *limits, struct err *err)
+                                  const struct vec3 *normals, const struct outdoors_limits *limits,
+                                  struct provenance *prov, struct err *err)
 {
     const size_t pixels = (size_t)p->lens.width * (size_t)p->lens.height;
     uint32_t *faces = NULL;
@@ -284,7 +286,7 @@ enum status outdoors_picture_load(struct outdoors_picture *p, bool *shows, const
     p->facing = malloc(pixels * sizeof *p->facing);
     p->state = malloc(pixels);
     faces = malloc(pixels * sizeof *faces);
-    enum status st = p->rgb && p->facing && p->state && faces ? load(p, shows, faces, model, normals, limits, err)
+    enum status st = p->rgb && p->facing && p->state && faces ? load(p, shows, faces, model, normals, limits, prov, err)
                                                               : err_nomem(err, "a picture", pixels * 21);
     free(faces);
     if (st || !*shows) outdoors_picture_unload(p);

@@ -47,7 +47,8 @@ void outdoors_picture_release(struct outdoors_picture *p);
  * some pixel shows the outdoors; if not, nothing is kept. normals: of the faces, by id of their names; reference images
  * need none. Same bits for any number of threads. */
 enum status outdoors_picture_load(struct outdoors_picture *p, bool *shows, const struct model_rays *model,
-                                  const struct vec3 *normals, const struct outdoors_limits *limits, struct err *err);
+                                  const struct vec3 *normals, const struct outdoors_limits *limits,
+                                  struct provenance *prov, struct err *err);
 void outdoors_picture_unload(struct outdoors_picture *p);
 
 /* The colour in a direction (model frame, unit length), bilinear. *facing (may be NULL): how squarely the ray passes

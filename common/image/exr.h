@@ -11,6 +11,7 @@
 
 #include "common/base/err.h"
 #include "common/base/provenance.h"
+#include "common/product/product.h"
 
 enum exr_type { EXR_UINT, EXR_HALF, EXR_FLOAT }; /* in the file; half and float are float in memory */
 
@@ -63,6 +64,9 @@ enum status exr_write(const struct exr_image *im, const char *path, const struct
  * format's own. ST_DATA: a channel is missing (the error lists those of the file), NaN or infinity in a channel (named
  * with the pixel), missing chunks. On failure im is empty. */
 enum status exr_read(struct exr_image *im, const char *path, const char *const *names, int name_count, struct err *err);
+/* The same of a product, which is recorded in prov unless that is NULL: then the file is read whole, once. */
+enum status exr_read_product(struct exr_image *im, enum product_id id, const char *path, const char *const *names,
+                             int name_count, struct provenance *prov, struct err *err);
 /* Reads all channels and keeps NaN and infinity, with which other programs mark unknown values. */
 enum status exr_read_any(struct exr_image *im, const char *path, struct err *err);
 

@@ -256,8 +256,26 @@ static enum status read_header(struct exr_reader *r, const char *path, struct er
     return ST_OK;
 }
 
-static enum status read_file(struct exr_image *im, const char *path, const char *const *names, int name_count, bool any,
-                             struct err *err)
+static int64_t read_bytes(exr_const_context_t ctxt, void *user, void *to, uint64_t size, uint64_t offset,
+                          exr_stream_error_func_ptr_t error)
+{
+    const struct file_bytes *file = user;
+    (void)ctxt, (void)error;
+    if (offset >= file->size) return 0;
+    if (size > file->size - offset) size = file->size - offset;
+    memcpy(to, file->bytes + offset, size);
+    return (int64_t)size;
+}
+
+static int64_t count_bytes(exr_const_context_t ctxt, void *user)
+{
+    (void)ctxt;
+    return (int64_t)((const struct file_bytes *)user)->size;
+}
+
+/* file: the bytes, or NULL: they are read from the path as they are needed. */
+static enum status read_file(struct exr_image *im, const char *path, struct file_bytes *file, const char *const *names,
+                             int name_count, bool any, struct err *err)
 {
     struct exr_reader r = {.im = im, .any = any};
     exr_context_initializer_t init = exr_library_init();
@@ -267,7 +285,13 @@ static enum status read_file(struct exr_image *im, const char *path, const char 
 
     *im = (struct exr_image){0};
     init.flags = EXR_CONTEXT_FLAG_DISABLE_CHUNK_RECONSTRUCTION; /* a missing chunk is an error */
-    if (access(path, R_OK)) return err_errno(err, "open", path);
+    if (file) {
+        init.user_data = file;
+        init.read_fn = read_bytes;
+        init.size_fn = count_bytes;
+    } else if (access(path, R_OK)) {
+        return err_errno(err, "open", path);
+    }
     exr_result_t rv = exr_start_read(&r.ctxt, path, &init);
     if (rv) st = exr_library_error(err, ST_DATA, "read", path, rv);
     if (!st) st = read_header(&r, path, err);
@@ -299,10 +323,24 @@ static enum status read_file(struct exr_image *im, const char *path, const char 
 
 enum status exr_read(struct exr_image *im, const char *path, const char *const *names, int name_count, struct err *err)
 {
-    return read_file(im, path, names, name_count, false, err);
+    return read_file(im, path, NULL, names, name_count, false, err);
+}
+
+enum status exr_read_product(struct exr_image *im, enum product_id id, const char *path, const char *const *names,
+                             int name_count, struct provenance *prov, struct err *err)
+{
+    const char *name = product_name(id, path);
+    struct file_bytes file = {0};
+
+    if (!prov || provenance_has(prov, name)) return exr_read(im, path, names, name_count, err);
+    *im = (struct exr_image){0};
+    enum status st = provenance_read(prov, name, &file, path, err);
+    if (!st) st = read_file(im, path, &file, names, name_count, false, err);
+    file_bytes_release(&file);
+    return st;
 }
 
 enum status exr_read_any(struct exr_image *im, const char *path, struct err *err)
 {
-    return read_file(im, path, NULL, 0, true, err);
+    return read_file(im, path, NULL, NULL, 0, true, err);
 }

@@ -9,26 +9,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/base/array.h"
 #include "common/base/parallel.h"
 #include "common/image/exr.h"
 #include "common/image/photo_formats.h"
 
-static enum status read_bytes(struct photo_bytes *file, const char *path, struct err *err)
+/* name: in prov; NULL: the photo is not recorded. */
+static enum status read_bytes(struct photo_bytes *file, const char *path, const char *name, struct provenance *prov,
+                              struct err *err)
 {
-    *file = (struct photo_bytes){.path = path};
-    FILE *from = fopen(path, "rb");
-    if (!from) return err_errno(err, "open", path);
-    enum { BLOCK = 1 << 20 };
-    enum status st = ST_OK;
-    size_t capacity = 0;
-    while (!st && !feof(from)) {
-        if (file->size == capacity) st = array_reserve(&file->bytes, &capacity, capacity + BLOCK, 1, "a photo", err);
-        if (st) break;
-        file->size += fread(file->bytes + file->size, 1, capacity - file->size, from);
-        if (ferror(from)) st = err_errno(err, "read", path);
-    }
-    fclose(from);
+    struct file_bytes read = {0};
+    enum status st = name ? provenance_read(prov, name, &read, path, err) : file_bytes_read(&read, path, err);
+    *file = (struct photo_bytes){path, (unsigned char *)read.bytes, read.size};
     if (!st && !file->size) st = err_set(err, ST_DATA, "%s is empty; copy the photo again.", path);
     return st;
 }
@@ -88,7 +79,8 @@ static enum status read_exr(struct photo *p, const struct photo_bytes *file, boo
     return st;
 }
 
-static enum status read_photo(struct photo *p, const char *path, bool pixels, bool any_format, struct err *err)
+static enum status read_photo(struct photo *p, const char *path, bool pixels, bool any_format, const char *name,
+                              struct provenance *prov, struct err *err)
 {
     static enum status (*const read[])(struct photo *, const struct photo_bytes *, bool, struct err *) = {
         [FORMAT_JPEG] = photo_read_jpeg, [FORMAT_PNG] = photo_read_png, [FORMAT_TIFF] = photo_read_tiff,
@@ -97,7 +89,7 @@ static enum status read_photo(struct photo *p, const char *path, bool pixels, bo
     struct photo_bytes file = {0};
     enum format format = FORMAT_JPEG;
     *p = (struct photo){.info.orientation = 1};
-    enum status st = read_bytes(&file, path, err);
+    enum status st = read_bytes(&file, path, name, prov, err);
     if (!st) st = detect_format(&file, &format, err);
     if (!st && !any_format && (format == FORMAT_EXR || format == FORMAT_RAW))
         st = err_set(err, ST_DATA, "%s is %s; wanted JPEG, PNG or TIFF here.", path,
@@ -110,18 +102,24 @@ static enum status read_photo(struct photo *p, const char *path, bool pixels, bo
 
 enum status photo_read(struct photo *p, const char *path, struct err *err)
 {
-    return read_photo(p, path, true, false, err);
+    return read_photo(p, path, true, false, NULL, NULL, err);
+}
+
+enum status photo_read_input(struct photo *p, const char *path, const char *name, struct provenance *prov,
+                             struct err *err)
+{
+    return read_photo(p, path, true, false, name, prov, err);
 }
 
 enum status photo_read_any(struct photo *p, const char *path, struct err *err)
 {
-    return read_photo(p, path, true, true, err);
+    return read_photo(p, path, true, true, NULL, NULL, err);
 }
 
 enum status photo_read_info(struct photo_info *info, const char *path, struct err *err)
 {
     struct photo p = {0};
-    enum status st = read_photo(&p, path, false, true, err);
+    enum status st = read_photo(&p, path, false, true, NULL, NULL, err);
     *info = p.info;
     return st;
 }

@@ -4,6 +4,7 @@
 #ifndef REMODEL_PHOTO_H
 #define REMODEL_PHOTO_H
 
+#include "common/base/provenance.h"
 #include "common/image/image.h"
 #include "common/image/photo_data.h"
 
@@ -11,6 +12,9 @@
  * do: another format (by content, not by name), an empty or truncated file (a JPEG that ends early is an error, not a
  * grey lower half), CMYK or YCCK, no pixels or more than 2^28. On failure p is empty. */
 enum status photo_read(struct photo *p, const char *path, struct err *err);
+/* The same, recorded in prov as `name`. */
+enum status photo_read_input(struct photo *p, const char *path, const char *name, struct provenance *prov,
+                             struct err *err);
 /* Reads EXR and raw files too, which are linear (info.bits 32). An EXR with more than 1 in 10 000 samples at its
  * largest value counts as clipped there, otherwise as unclipped. Raw files are developed by libraw as described in
  * photo_raw.c. */

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "common/base/textfile.h"
+#include "common/product/product.h"
 
 float response_light(const struct response *r, int colour, float sample)
 {
@@ -58,16 +59,13 @@ static enum status read_levels(struct response *r, struct textfile *t, struct er
     return st;
 }
 
-enum status response_read(struct response *r, const char *path, struct err *err)
+enum status response_read(struct response *r, const char *path, struct provenance *prov, struct err *err)
 {
     struct textfile t = {0};
     char *curve = NULL;
     int64_t number = 0;
     *r = (struct response){0};
-    enum status st = textfile_open(&t, path, err);
-    if (!st) st = textfile_expect_line(&t, "remodel-response", err);
-    if (!st) st = textfile_int(&t, "format version", 1, 1, &number, err);
-    if (!st) st = textfile_end(&t, err);
+    enum status st = product_open(&t, NULL, PRODUCT_RESPONSE, path, prov, err);
     if (!st) st = textfile_expect_line(&t, "curve", err);
     if (!st) st = textfile_word(&t, "srgb or table", &curve, err);
     if (!st && strcmp(curve, "srgb") && strcmp(curve, "table")) st = textfile_error(&t, err, curve, "srgb or table");

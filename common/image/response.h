@@ -14,6 +14,7 @@
 #include <stdbool.h>
 
 #include "common/image/photo.h"
+#include "common/product/product.h"
 
 enum { RESPONSE_LEVELS = 256 };
 
@@ -29,6 +30,6 @@ float response_light(const struct response *r, int colour, float sample);
 float *response_tables(const struct response *r, int bits, struct err *err);
 
 /* ST_DATA with file and line: unknown version or curve, a negative number, a curve that falls or is constant. */
-enum status response_read(struct response *r, const char *path, struct err *err);
+enum status response_read(struct response *r, const char *path, struct provenance *prov, struct err *err);
 
 #endif

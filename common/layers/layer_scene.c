@@ -5,8 +5,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "common/base/file_path.h"
 #include "common/math/weighted.h"
+#include "common/product/product.h"
 
 #define NEAR_PERCENTILE 0.02
 #define FAR_PERCENTILE  0.98
@@ -67,9 +67,8 @@ enum status layer_scene_read(struct layer_scene *scene, const struct camera_set 
 
     for (int i = 0; !st && i < set->view_count; i++) {
         const char *view = set->views[i].name;
-        st = file_path(path, depth_folder, view, ".exr", err);
-        if (!st) st = layered_depth_read(&scene->depths[i], path, err);
-        if (!st && prov) st = provenance_add_in(prov, "depth", depth_folder, view, ".exr", NULL, err);
+        st = product_path_in(path, depth_folder, PRODUCT_DEPTH, &(struct product_key){.view = view}, err);
+        if (!st) st = layered_depth_read(&scene->depths[i], path, prov, err);
         if (!st) st = scene_add(scene, i, err);
     }
     if (!st) st = view_mesh_build(&scene->mesh, set, err);

@@ -110,10 +110,9 @@ static enum status write_segments(const struct layered_depth *d, const char *pat
                                   struct err *err)
 {
     struct outfile file = {0};
-    enum status st = outfile_open(&file, path, err);
+    enum status st = product_begin(&file, PRODUCT_SEGMENTS, path, prov, err);
     if (!st) {
-        if (prov) provenance_print(prov, file.fp);
-        fprintf(file.fp, "remodel-segments 1\nsize %d %d\nsegments %d\n", d->width, d->height, d->segment_count);
+        fprintf(file.fp, "size %d %d\nsegments %d\n", d->width, d->height, d->segment_count);
         for (int i = 0; i < d->segment_count; i++) {
             const struct depth_segment *s = &d->segments[i];
             fprintf(file.fp, "%u %d %.17g %.17g %.17g %.17g %.17g\n", s->id, s->pixels, s->plane[0], s->plane[1],
@@ -201,15 +200,13 @@ static enum status read_segment(struct depth_segment *s, struct textfile *t, int
     return ST_OK;
 }
 
-enum status layered_depth_read_segments(struct layered_depth *d, const char *path, struct err *err)
+enum status layered_depth_read_segments(struct layered_depth *d, const char *path, struct provenance *prov,
+                                        struct err *err)
 {
     struct textfile t = {0};
-    int64_t version, width = 0, height = 0, count = 0;
+    int64_t width = 0, height = 0, count = 0;
     *d = (struct layered_depth){0};
-    enum status st = textfile_open(&t, path, err);
-    if (!st) st = expect_word(&t, "remodel-segments", err);
-    if (!st) st = textfile_int(&t, "version", 1, 1, &version, err);
-    if (!st) st = textfile_end(&t, err);
+    enum status st = product_open(&t, NULL, PRODUCT_SEGMENTS, path, prov, err);
     if (!st) st = expect_word(&t, "size", err);
     if (!st) st = textfile_int(&t, "width", 1, 1 << 20, &width, err);
     if (!st) st = textfile_int(&t, "height", 1, INT_MAX / width, &height, err);
@@ -260,13 +257,14 @@ static enum status take_layer(struct layer *l, const struct exr_image *im, const
 }
 
 /* layers: 1 (interior only) or 2. */
-static enum status read_layers(struct layered_depth *d, const char *path, int layers, struct err *err)
+static enum status read_layers(struct layered_depth *d, const char *path, int layers, struct provenance *prov,
+                               struct err *err)
 {
     struct exr_image im = {0};
     char *text = NULL;
     enum status st = text_path(&text, path, err);
-    if (!st) st = layered_depth_read_segments(d, text, err);
-    if (!st) st = exr_read(&im, path, plane_names, layers * PLANES_A_LAYER, err);
+    if (!st) st = layered_depth_read_segments(d, text, prov, err);
+    if (!st) st = exr_read_product(&im, PRODUCT_DEPTH, path, plane_names, layers * PLANES_A_LAYER, prov, err);
     if (!st && (im.width != d->width || im.height != d->height))
         st = err_set(err, ST_DATA, "%s has %d x %d pixels, but %s says %d x %d; make the depth map again.", path,
                      im.width, im.height, text, d->width, d->height);
@@ -281,26 +279,27 @@ static enum status read_layers(struct layered_depth *d, const char *path, int la
     return st;
 }
 
-enum status layered_depth_read(struct layered_depth *d, const char *path, struct err *err)
+enum status layered_depth_read(struct layered_depth *d, const char *path, struct provenance *prov, struct err *err)
 {
     *d = (struct layered_depth){0};
-    return read_layers(d, path, 2, err);
+    return read_layers(d, path, 2, prov, err);
 }
 
-enum status layered_depth_read_interior(struct layered_depth *d, const char *path, struct err *err)
+enum status layered_depth_read_interior(struct layered_depth *d, const char *path, struct provenance *prov,
+                                        struct err *err)
 {
     *d = (struct layered_depth){0};
-    return read_layers(d, path, 1, err);
+    return read_layers(d, path, 1, prov, err);
 }
 
-enum status layered_depth_read_ids(struct layered_depth *d, const char *path, struct err *err)
+enum status layered_depth_read_ids(struct layered_depth *d, const char *path, struct provenance *prov, struct err *err)
 {
     static const char *const name[] = {"interior.id"};
     struct exr_image im = {0};
     char *text = NULL;
     enum status st = text_path(&text, path, err);
-    if (!st) st = layered_depth_read_segments(d, text, err);
-    if (!st) st = exr_read(&im, path, name, 1, err);
+    if (!st) st = layered_depth_read_segments(d, text, prov, err);
+    if (!st) st = exr_read_product(&im, PRODUCT_DEPTH, path, name, 1, prov, err);
     struct exr_plane *ids = st ? NULL : exr_find(&im, name[0]);
     if (!st && (im.width != d->width || im.height != d->height || !ids->u))
         st =

@@ -55,12 +55,14 @@ enum status layered_depth_write(const struct layered_depth *d, const struct view
                                 const struct provenance *prov, struct err *err);
 /* Reads both files. Afterwards ids index the list (or are 0), alphas are in [0, 1] and z >= 0; otherwise ST_DATA with
  * the pixel or the line. */
-enum status layered_depth_read(struct layered_depth *d, const char *path, struct err *err);
+enum status layered_depth_read(struct layered_depth *d, const char *path, struct provenance *prov, struct err *err);
 /* Only the list and the interior; the boundary stays empty. */
-enum status layered_depth_read_interior(struct layered_depth *d, const char *path, struct err *err);
+enum status layered_depth_read_interior(struct layered_depth *d, const char *path, struct provenance *prov,
+                                        struct err *err);
 /* Only the list and interior.id; the rest of the layers stays empty. */
-enum status layered_depth_read_ids(struct layered_depth *d, const char *path, struct err *err);
+enum status layered_depth_read_ids(struct layered_depth *d, const char *path, struct provenance *prov, struct err *err);
 /* Only the list (path: the .txt): size and segments; the layers stay empty. */
-enum status layered_depth_read_segments(struct layered_depth *d, const char *path, struct err *err);
+enum status layered_depth_read_segments(struct layered_depth *d, const char *path, struct provenance *prov,
+                                        struct err *err);
 
 #endif

@@ -44,18 +44,19 @@ enum status model_rays_build(struct model_rays *m, enum model_glass glass, struc
 }
 
 enum status model_rays_read_with(struct model_rays *m, const char *path, enum model_glass glass,
-                                 const struct model_extra *extra, struct err *err)
+                                 const struct model_extra *extra, struct provenance *prov, struct err *err)
 {
     *m = (struct model_rays){0};
-    enum status st = solid_mesh_read(&m->mesh, path, err);
+    enum status st = solid_mesh_read(&m->mesh, path, prov, err);
     if (!st) st = build(m, glass, extra, err);
     if (st) model_rays_release(m);
     return st;
 }
 
-enum status model_rays_read(struct model_rays *m, const char *path, enum model_glass glass, struct err *err)
+enum status model_rays_read(struct model_rays *m, const char *path, enum model_glass glass, struct provenance *prov,
+                            struct err *err)
 {
-    return model_rays_read_with(m, path, glass, NULL, err);
+    return model_rays_read_with(m, path, glass, NULL, prov, err);
 }
 
 void model_rays_release(struct model_rays *m)

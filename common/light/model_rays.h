@@ -16,7 +16,8 @@ struct model_rays {
 };
 
 /* Reads a model.txt and builds the search tree. The caller releases the model. */
-enum status model_rays_read(struct model_rays *m, const char *path, enum model_glass glass, struct err *err);
+enum status model_rays_read(struct model_rays *m, const char *path, enum model_glass glass, struct provenance *prov,
+                            struct err *err);
 /* Builds the search tree of m->mesh, which the caller has set. */
 enum status model_rays_build(struct model_rays *m, enum model_glass glass, struct err *err);
 /* Further triangles beside those of a model; their ids are m->mesh.face_count + index. */
@@ -26,7 +27,7 @@ struct model_extra {
 };
 /* Reads a model.txt and builds the search tree with them. */
 enum status model_rays_read_with(struct model_rays *m, const char *path, enum model_glass glass,
-                                 const struct model_extra *extra, struct err *err);
+                                 const struct model_extra *extra, struct provenance *prov, struct err *err);
 void model_rays_release(struct model_rays *m);
 
 /* The largest side of the model's bounding box; 0 without vertices. */

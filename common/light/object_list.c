@@ -6,12 +6,9 @@
 #include <string.h>
 
 #include "common/base/array.h"
-#include "common/base/outfile.h"
 #include "common/base/scan.h"
-#include "common/base/textfile.h"
 #include "common/light/gloss.h"
-
-#define HEADER "remodel-objects"
+#include "common/product/product.h"
 
 enum { MAX_WORD = 255, QUOTED_SIZE = 2 * MAX_WORD + 3 };
 
@@ -85,15 +82,11 @@ static enum status read_object(struct object_list *l, struct textfile *t, struct
     return textfile_end(t, err);
 }
 
-enum status object_list_read(struct object_list *l, const char *path, struct err *err)
+enum status object_list_read(struct object_list *l, const char *path, struct provenance *prov, struct err *err)
 {
     struct textfile t = {0};
-    int64_t version;
     *l = (struct object_list){0};
-    enum status st = textfile_open(&t, path, err) || textfile_expect_line(&t, HEADER, err) ||
-                             textfile_int(&t, "the version", 1, 1, &version, err) || textfile_end(&t, err)
-                         ? err->status
-                         : ST_OK;
+    enum status st = product_open(&t, NULL, PRODUCT_OBJECTS, path, prov, err);
     while (!st && textfile_next(&t)) st = read_object(l, &t, err);
     textfile_release(&t);
     if (st) object_list_release(l);
@@ -121,7 +114,7 @@ enum status object_list_write(const struct object_list *l, const char *path, con
     if (outfile_open(&f, path, err)) return err->status;
     const locale_t kept = uselocale(scan_c_locale());
     enum status st = ST_OK;
-    fprintf(f.fp, HEADER " 1\n");
+    fprintf(f.fp, "%s\n", products[PRODUCT_OBJECTS].head);
     if (prov) provenance_print(prov, f.fp);
     for (int i = 0; !st && i < l->count; i++) st = print_object(&l->items[i], f.fp, err);
     uselocale(kept);

@@ -34,7 +34,7 @@ bool object_file_is_valid(const char *file);
 
 /* ST_DATA with file and line: a damaged line, a name twice, a path that object_file_is_valid() refuses, a matrix that
  * mirrors or flattens, a material out of range. A failure leaves the list empty. */
-enum status object_list_read(struct object_list *l, const char *path, struct err *err);
+enum status object_list_read(struct object_list *l, const char *path, struct provenance *prov, struct err *err);
 enum status object_list_write(const struct object_list *l, const char *path, const struct provenance *prov,
                               struct err *err);
 void object_list_release(struct object_list *l);

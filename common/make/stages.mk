@@ -1,7 +1,7 @@
 # stages.mk - what the stages say of themselves, in stages/NAME/stage.mk, and their order.
 #
 #   FOLLOWS.STAGE    the stages whose products it reads: the order of the stages, here and in everything that lists them
-#   READS.STAGE, WRITES.STAGE   its row in docs/architecture.md
+#   READS.STAGE      its row in docs/architecture.md, beside the products that common/product/products.def says it makes
 #   VARIABLES.STAGE  variables that a user sets and a new scene keeps
 #   SETTINGS.STAGE   variables of one run, which a new scene does not keep. Rules and recipes find the values of both as
 #                    REMODEL_NAME in the environment

@@ -62,7 +62,7 @@ fuzz: deps-check ## look for new inputs that break a parser: FUZZ=NAME FUZZ_SECO
 	+@tests/fuzz/fuzz.sh '$(FUZZ)' '$(or $(FUZZ_SECONDS),60)'
 help: ## this text
 	@common/run/help.sh Makefile common/make/top.mk $(STAGES:%=stages/%/stage.mk)
-generated: ## the files that come from the stages: docs/man, configs/default.cfg, the table of stages in docs/architecture.md
+generated: ## the files that come from the stages: docs/man, configs/default.cfg, the tables of docs/architecture.md and docs/formats.md
 	+@$(BUILD) build
 	@common/run/generate.sh '$(B)/bin' '$(STAGES)' .
 list-stages:

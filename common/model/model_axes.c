@@ -4,9 +4,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "common/base/outfile.h"
 #include "common/base/scan.h"
-#include "common/base/textfile.h"
+#include "common/product/product.h"
 
 static const double UNIT = 1e-6; /* tolerance of a quaternion's length */
 
@@ -59,11 +58,10 @@ enum status model_axes_write(const struct model_axes *axes, const char *path, co
     struct outfile f = {0};
     const struct quat q = axes->rotation;
     const struct vec3 t = axes->translation;
-    enum status st = outfile_open(&f, path, err);
-    if (!st && prov) provenance_print(prov, f.fp);
+    enum status st = product_begin(&f, PRODUCT_AXES, path, prov, err);
     if (!st) {
-        fprintf(f.fp, "remodel-axes 1\nrotation %.17g %.17g %.17g %.17g\ntranslation %.17g %.17g %.17g\n", q.w, q.x,
-                q.y, q.z, t.x, t.y, t.z);
+        fprintf(f.fp, "rotation %.17g %.17g %.17g %.17g\ntranslation %.17g %.17g %.17g\n", q.w, q.x, q.y, q.z, t.x, t.y,
+                t.z);
         fprintf(f.fp, "scale %.17g %s\n", axes->scale, axes->metric ? "metres" : "unknown");
         print_or_none(f.fp, "ceiling", axes->ceiling > 0, axes->ceiling);
         print_or_none(f.fp, "thickness", axes->thickness > 0, axes->thickness);
@@ -139,17 +137,15 @@ static enum status read_similarity(struct textfile *t, struct model_axes *a, str
     return textfile_end(t, err);
 }
 
-enum status model_axes_read(struct model_axes *axes, const char *path, struct err *err)
+enum status model_axes_read(struct model_axes *axes, const char *path, struct provenance *prov, struct err *err)
 {
     struct textfile t = {0};
     struct model_axes a = {0};
-    int64_t version;
     enum status st =
-        textfile_open(&t, path, err) || textfile_expect_line(&t, "remodel-axes", err) ||
-                textfile_int(&t, "version", 1, 1, &version, err) || textfile_end(&t, err) ||
-                read_similarity(&t, &a, err) || read_length(&t, "ceiling", &a.ceiling, err) ||
-                read_length(&t, "thickness", &a.thickness, err) || read_error(&t, "tilt", &a.tilt_error, err) ||
-                read_error(&t, "heading", &a.heading_error, err) || read_error(&t, "floor", &a.floor_error, err) ||
+        product_open(&t, NULL, PRODUCT_AXES, path, prov, err) || read_similarity(&t, &a, err) ||
+                read_length(&t, "ceiling", &a.ceiling, err) || read_length(&t, "thickness", &a.thickness, err) ||
+                read_error(&t, "tilt", &a.tilt_error, err) || read_error(&t, "heading", &a.heading_error, err) ||
+                read_error(&t, "floor", &a.floor_error, err) ||
                 read_error_of(&t, "ceiling", a.ceiling > 0, &a.ceiling_error, err) ||
                 read_error_of(&t, "scale", a.metric, &a.scale_error, err) || textfile_end_of_file(&t, err)
             ? err->status

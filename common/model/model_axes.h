@@ -37,7 +37,7 @@ struct model_axes {
 
 /* A failure leaves axes zero. ST_DATA with file and line: a quaternion of another length than 1, numbers out of the
  * ranges above, missing lines. */
-enum status model_axes_read(struct model_axes *axes, const char *path, struct err *err);
+enum status model_axes_read(struct model_axes *axes, const char *path, struct provenance *prov, struct err *err);
 enum status model_axes_write(const struct model_axes *axes, const char *path, const struct provenance *prov,
                              struct err *err);
 

@@ -17,7 +17,7 @@
 #include <string.h>
 
 #include "common/base/array.h"
-#include "common/base/textfile.h"
+#include "common/product/product.h"
 
 static enum status numbers(struct textfile *t, const char *const fields[], double *v, int count, struct err *err)
 {
@@ -215,13 +215,11 @@ static enum status read_statement(struct model_plan *plan, struct textfile *t, s
     return ST_OK;
 }
 
-enum status model_plan_read(struct model_plan *plan, const char *path, struct err *err)
+enum status model_plan_read(struct model_plan *plan, const char *path, struct provenance *prov, struct err *err)
 {
     struct textfile t = {0};
-    int64_t version;
     *plan = (struct model_plan){0};
-    enum status st = textfile_open(&t, path, err) || textfile_expect_line(&t, "remodel-plan", err) ||
-                     textfile_int(&t, "the version", 1, INT_MAX, &version, err) || textfile_end(&t, err);
+    enum status st = product_open(&t, NULL, PRODUCT_PLAN, path, prov, err);
     while (!st && textfile_next(&t)) st = read_statement(plan, &t, err);
     textfile_release(&t);
     if (st) model_plan_release(plan);

@@ -8,7 +8,7 @@
 
 #include <stdbool.h>
 
-#include "common/base/err.h"
+#include "common/base/provenance.h"
 #include "common/math/vec.h"
 
 enum model_wall_end { MODEL_WALL_FREE, MODEL_WALL_CORNER, MODEL_WALL_MEETS };
@@ -73,7 +73,7 @@ struct model_plan {
 /* Versions only add statements, so statements of later versions are left out. plan is overwritten, and empty after an
  * error. ST_DATA with file and line: another file, a damaged line, a wall without a direction, an opening on a
  * wall, or a gable or slot of a room, that is on no line above. */
-enum status model_plan_read(struct model_plan *plan, const char *path, struct err *err);
+enum status model_plan_read(struct model_plan *plan, const char *path, struct provenance *prov, struct err *err);
 void model_plan_release(struct model_plan *plan);
 
 int model_plan_find_wall(const struct model_plan *plan, const char *name); /* -1: not found */

@@ -163,6 +163,6 @@ void solid_triangles_release(struct solid_triangles *triangles);
  * checks; a failure leaves mesh empty. */
 enum status solid_mesh_write(const struct solid_mesh *mesh, const char *path, const struct provenance *prov,
                              struct err *err);
-enum status solid_mesh_read(struct solid_mesh *mesh, const char *path, struct err *err);
+enum status solid_mesh_read(struct solid_mesh *mesh, const char *path, struct provenance *prov, struct err *err);
 
 #endif

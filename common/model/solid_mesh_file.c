@@ -15,10 +15,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/base/outfile.h"
 #include "common/base/scan.h"
-#include "common/base/textfile.h"
 #include "common/model/solid_mesh.h"
+#include "common/product/product.h"
 
 enum { MAX_COUNT = 100000000, NAME_SIZE = 1024 };
 
@@ -45,9 +44,8 @@ enum status solid_mesh_write(const struct solid_mesh *mesh, const char *path, co
 {
     struct outfile f = {0};
     char name[NAME_SIZE];
-    enum status st = outfile_open(&f, path, err);
-    if (!st && prov) provenance_print(prov, f.fp);
-    if (!st) fprintf(f.fp, "remodel-model 1\nvertices %d\n", mesh->vertex_count);
+    enum status st = product_begin(&f, PRODUCT_MODEL, path, prov, err);
+    if (!st) fprintf(f.fp, "vertices %d\n", mesh->vertex_count);
     for (int i = 0; !st && i < mesh->vertex_count; i++) {
         const struct vec3 p = mesh->vertices[i].p;
         fprintf(f.fp, "vertex %.17g %.17g %.17g\n", p.x, p.y, p.z);
@@ -150,10 +148,9 @@ static enum status read_face(struct textfile *t, struct mesh_reader *r, const ch
 
 static enum status read_records(struct textfile *t, struct mesh_reader *r, struct err *err)
 {
-    int64_t version, count, faces;
+    int64_t count, faces;
     char *body;
-    if (next_line(t, "remodel-model", err) || textfile_int(t, "version", 1, 1, &version, err) || textfile_end(t, err) ||
-        next_line(t, "vertices", err) || textfile_int(t, "number of vertices", 0, MAX_COUNT, &count, err) ||
+    if (next_line(t, "vertices", err) || textfile_int(t, "number of vertices", 0, MAX_COUNT, &count, err) ||
         textfile_end(t, err))
         return err->status;
     for (int64_t i = 0; i < count; i++) {
@@ -217,13 +214,13 @@ static enum status set_ids(struct solid_mesh *mesh, const struct mesh_reader *r,
     return st;
 }
 
-enum status solid_mesh_read(struct solid_mesh *mesh, const char *path, struct err *err)
+enum status solid_mesh_read(struct solid_mesh *mesh, const char *path, struct provenance *prov, struct err *err)
 {
     struct textfile t = {0};
     struct mesh_reader r = {0};
     int faulty = -1;
     *mesh = (struct solid_mesh){0};
-    enum status st = textfile_open(&t, path, err);
+    enum status st = product_open(&t, NULL, PRODUCT_MODEL, path, prov, err);
     if (!st) st = read_records(&t, &r, err);
     for (int i = 0; !st && i < r.polygon_count; i++) {
         r.polygons[i].corners = r.corners + r.at[2 * i];

@@ -194,20 +194,83 @@ static int match(const struct rest *rest, const char *path)
     return found < 0 ? -1 : found + 1;
 }
 
+/* How well a path fits a product's pattern; -1: not at all. */
+static int match_product(enum product_id id, const char *path)
+{
+    const struct product *p = &products[id];
+    const struct rest file = {p->file, strlen(p->file), NULL}, slash = {"/", *p->folder != '\0', &file};
+
+    return match(&(struct rest){p->folder, strlen(p->folder), &slash}, path);
+}
+
+/* The next folder or file of a path; NULL: there is none. */
+static const char *next_part(const char *path)
+{
+    const char *slash = strchr(path, '/');
+    return slash ? slash + 1 : NULL;
+}
+
 enum product_id product_at(const char *path)
 {
     enum product_id best = PRODUCT_COUNT;
     int most = -1;
 
-    for (const char *p = path; p; p = strchr(p, '/')) {
-        if (*p == '/') p++;
+    for (const char *p = path; p; p = next_part(p))
         for (enum product_id id = 0; id < PRODUCT_COUNT; id++) {
-            const struct product *product = &products[id];
-            const struct rest file = {product->file, strlen(product->file), NULL},
-                              slash = {"/", *product->folder != '\0', &file};
-            const int found = match(&(struct rest){product->folder, strlen(product->folder), &slash}, p);
+            const int found = match_product(id, p);
             if (found > most) most = found, best = id;
         }
-    }
     return best;
+}
+
+const char *product_name(enum product_id id, const char *path)
+{
+    const char *last = path;
+
+    for (const char *p = path; p; p = next_part(p)) {
+        last = p;
+        if (id != PRODUCT_COUNT && match_product(id, p) >= 0) return p;
+    }
+    if (id == PRODUCT_COUNT) return last;
+    for (const char *p = strchr(products[id].file, '/'); p && last > path; p = strchr(p + 1, '/'))
+        for (last--; last > path && last[-1] != '/'; last--)
+            ;
+    return last;
+}
+
+/* --- reading and writing --- */
+
+enum status product_read_head(struct textfile *t, int *version, enum product_id id, struct err *err)
+{
+    const char *head = products[id].head;
+    char word[64];
+    const size_t length = strcspn(head, " ");
+    int64_t wanted = 0, found = 0;
+
+    snprintf(word, sizeof word, "%.*s", (int)length, head);
+    scan_int(head + length + 1, &wanted);
+    enum status st = textfile_expect_line(t, word, err);
+    if (!st) st = textfile_int(t, "the version", 1, wanted, &found, err);
+    if (!st) st = textfile_end(t, err);
+    if (!st && version) *version = (int)found;
+    return st;
+}
+
+enum status product_open(struct textfile *t, int *version, enum product_id id, const char *path,
+                         struct provenance *prov, struct err *err)
+{
+    enum status st = provenance_open(prov, product_name(id, path), t, path, err);
+    if (!st && products[id].head) st = product_read_head(t, version, id, err);
+    if (st) textfile_release(t);
+    return st;
+}
+
+enum status product_begin(struct outfile *f, enum product_id id, const char *path, const struct provenance *prov,
+                          struct err *err)
+{
+    const enum status st = outfile_open(f, path, err);
+    if (st) return st;
+    if (prov) provenance_print(prov, f->fp);
+    if (products[id].head) fprintf(f->fp, "%s\n", products[id].head);
+    return ST_OK;
 }

@@ -12,6 +12,9 @@
 
 #include "common/base/err.h"
 #include "common/base/file_path.h"
+#include "common/base/outfile.h"
+#include "common/base/provenance.h"
+#include "common/base/textfile.h"
 
 enum product_id {
 #define PRODUCT(id, ...) PRODUCT_##id,
@@ -73,6 +76,19 @@ enum status product_path_in(char path[FILE_PATH], const char *folder, enum produ
 /* The product whose path ends `path`, which may begin with any folders; of several the one that has most of it in
  * letters of its own ("ids/index.txt" is no view's). PRODUCT_COUNT: none. */
 enum product_id product_at(const char *path);
+
+/* The part of a path that names the product in the provenance: "views/IMG_1.exr" where the path ends so, otherwise its file
+ * alone, without the folders that somebody gave. PRODUCT_COUNT: no product, the file's name. */
+const char *product_name(enum product_id id, const char *path);
+
+/* Opens a text product, records it in prov, which may be NULL, and reads its first line: ST_DATA unless that has the
+ * product's word and a version up to the one that is written. *version (may be NULL) gets it. On failure t is empty. */
+enum status product_open(struct textfile *t, int *version, enum product_id id, const char *path,
+                         struct provenance *prov, struct err *err);
+enum status product_read_head(struct textfile *t, int *version, enum product_id id, struct err *err);
+/* Opens a text product for writing, and writes its head: prov, which may be NULL, and the first line. */
+enum status product_begin(struct outfile *f, enum product_id id, const char *path, const struct provenance *prov,
+                          struct err *err);
 
 /* "views/VIEW.exr": the path as documents write it, with the names of its placeholders. */
 enum status product_pattern(char pattern[FILE_PATH], enum product_id id, struct err *err);

@@ -57,30 +57,13 @@ static enum status unite_emitters(struct light_change *c, struct err *err)
 
 /* ---------------------------------------------------------------------------------------------------------- reading */
 
-/* What the edited field reads; under the names of the unedited one it would count as read already. */
-static enum status add_edited(const struct light_change *c, const struct light_change_files *files,
-                              struct provenance *prov, struct err *err)
-{
-    char path[FILE_PATH], name[48];
-    enum status st = provenance_add_file(prov, "edit/model.txt", files->edited, err);
-    if (!st && files->edited_vita)
-        st = provenance_add_in(prov, "relight/vita", files->edited_vita, "atlas", ".txt", NULL, err);
-    for (int i = 0; !st && files->edited_vita && i < c->after.atlas.atlas.page_count; i++) {
-        snprintf(name, sizeof name, "relight/vita/page%d.exr", i);
-        st = atlas_page_path(path, files->edited_vita, i, err);
-        if (!st) st = provenance_add_file(prov, name, path, err);
-    }
-    return st;
-}
-
 static enum status read_fields(struct light_change *c, const struct light_change_files *files, struct provenance *prov,
                                struct err *err)
 {
     const struct model_field_files before = {files->base, files->vita, files->outdoors, files->lights, NULL};
     const struct model_field_files after = {files->edited, files->edited_vita ? files->edited_vita : files->vita,
                                             files->outdoors, files->lights, c->objects.count ? &c->surfaces : NULL};
-    if (model_field_read(&c->before, &before, prov, err) || model_field_read(&c->after, &after, NULL, err) ||
-        add_edited(c, files, prov, err))
+    if (model_field_read(&c->before, &before, prov, err) || model_field_read(&c->after, &after, prov, err))
         return err->status;
     for (int i = 0; i < c->map.lamp_count; i++)
         model_field_scale_lamp(&c->after, c->map.lamps[i].name, c->map.lamps[i].scale);
@@ -99,26 +82,20 @@ static enum status read_objects(struct light_change *c, const struct light_chang
     c->surfaces =
         (struct field_surfaces){{(const struct vec3(*)[3])o->triangles, o->count}, (const struct rgb(*)[2])o->radiance};
     if (!o->count || !files->object_light) return ST_OK;
-    if (provenance_add_file(prov, "relight/objects.txt", files->object_light, err)) return err->status;
-    return light_objects_read_light(o, files->object_light, err);
+    return light_objects_read_light(o, files->object_light, prov, err);
 }
 
 enum status light_change_read(struct light_change *c, const struct light_change_files *files, struct provenance *prov,
                               struct err *err)
 {
-    struct provenance unused = {0};
-    struct provenance *to = prov ? prov : &unused;
     *c = (struct light_change){0};
-    enum status st = provenance_add_file(to, "model/axes.txt", files->axes, err);
-    if (!st) st = model_axes_read(&c->axes, files->axes, err);
-    if (!st) st = provenance_add_file(to, "edit/texture.txt", files->map, err);
-    if (!st) st = texture_map_read(&c->map, files->map, err);
-    if (!st) st = read_objects(c, files, to, err);
-    if (!st) st = read_fields(c, files, to, err);
+    enum status st = model_axes_read(&c->axes, files->axes, prov, err);
+    if (!st) st = texture_map_read(&c->map, files->map, prov, err);
+    if (!st) st = read_objects(c, files, prov, err);
+    if (!st) st = read_fields(c, files, prov, err);
     if (!st) st = face_areas_make(&c->old, &c->before.model.mesh, err);
     if (!st) st = unite_emitters(c, err);
     c->inset = INSET * model_rays_size(&c->before.model);
-    provenance_release(&unused);
     return st;
 }
 

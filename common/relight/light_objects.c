@@ -10,9 +10,8 @@
 #include <string.h>
 
 #include "common/base/array.h"
-#include "common/base/outfile.h"
-#include "common/base/textfile.h"
 #include "common/math/numbers.h"
+#include "common/product/product.h"
 
 enum { MAX_TRIANGLES = 4000000 };
 
@@ -54,8 +53,11 @@ static enum status read_object(struct light_objects *o, int object, const char *
                                struct provenance *prov, struct err *err)
 {
     struct obj_mesh mesh = {0};
-    enum status st = provenance_add_in(prov, "objects", folder, o->list.items[object].file, "", NULL, err);
-    if (!st) st = object_mesh_read(&mesh, &o->list.items[object], folder, err);
+    char name[FILE_PATH];
+    const struct object *item = &o->list.items[object];
+    enum status st = object_mesh_read(&mesh, item, folder, err); /* which compares the hash */
+    if (!st) st = file_path(name, "objects", item->file, "", err);
+    if (!st && prov) st = provenance_add_hash(prov, name, item->hash, err);
     for (int i = 0; !st && i < mesh.count; i++) st = cut_triangle(o, mesh.triangles[i], object, side, 0, err);
     obj_mesh_release(&mesh);
     return st;
@@ -147,8 +149,7 @@ enum status light_objects_read(struct light_objects *o, const char *path, const 
 {
     *o = (struct light_objects){0};
     if (!path) return ST_OK;
-    if (provenance_add_file(prov, "edit/objects.txt", path, err) || object_list_read(&o->list, path, err))
-        return err->status;
+    if (object_list_read(&o->list, path, prov, err)) return err->status;
     for (int i = 0; i < o->list.count; i++)
         if (read_object(o, i, folder, side, prov, err)) return err->status;
     return find_elements(o, side, err);
@@ -177,14 +178,12 @@ void light_objects_set_radiance(struct light_objects *o)
 
 /* ------------------------------------------------------------------------------------------------------------ files */
 
-#define HEADER "remodel-object-light"
-
 enum status light_objects_write_light(const struct light_objects *o, const char *path, const struct provenance *prov,
                                       struct err *err)
 {
     struct outfile f = {0};
     if (outfile_open(&f, path, err)) return err->status;
-    fputs(HEADER " 1\n", f.fp);
+    fprintf(f.fp, "%s\n", products[PRODUCT_OBJECT_LIGHT].head);
     provenance_print(prov, f.fp);
     for (int i = 0; i < o->element_count; i++) {
         const struct rgb e = o->elements[i].irradiance;
@@ -206,15 +205,12 @@ static enum status read_element(struct light_objects *o, int i, struct textfile 
     return textfile_end(t, err);
 }
 
-enum status light_objects_read_light(struct light_objects *o, const char *path, struct err *err)
+enum status light_objects_read_light(struct light_objects *o, const char *path, struct provenance *prov,
+                                     struct err *err)
 {
     struct textfile t = {0};
-    int64_t version;
     int count = 0;
-    if (textfile_open(&t, path, err)) return err->status;
-    enum status st = textfile_expect_line(&t, HEADER, err);
-    if (!st) st = textfile_int(&t, "version", 1, 1, &version, err);
-    if (!st) st = textfile_end(&t, err);
+    enum status st = product_open(&t, NULL, PRODUCT_OBJECT_LIGHT, path, prov, err);
     while (!st && textfile_next(&t)) st = read_element(o, count++, &t, err);
     if (!st && count < o->element_count)
         st = textfile_error(&t, err, NULL, "%d elements, as many as the objects have; update the VITA again",

@@ -39,6 +39,7 @@ void light_objects_set_radiance(struct light_objects *o);
 enum status light_objects_write_light(const struct light_objects *o, const char *path, const struct provenance *prov,
                                       struct err *err);
 /* Reads it and sets the radiance. ST_DATA: another number of elements than the objects have. */
-enum status light_objects_read_light(struct light_objects *o, const char *path, struct err *err);
+enum status light_objects_read_light(struct light_objects *o, const char *path, struct provenance *prov,
+                                     struct err *err);
 
 #endif

@@ -81,10 +81,11 @@ enum status atlas_write(const struct atlas *a, const struct atlas_page *pages, c
                         const struct provenance *prov, struct err *err);
 /* Reads atlas.txt. Afterwards indices are in range, rectangles inside their pages, numbers finite, names and tiles in
  * order; otherwise ST_DATA with file and line. */
-enum status atlas_read(struct atlas *a, const char *folder, struct err *err);
+enum status atlas_read(struct atlas *a, const char *folder, struct provenance *prov, struct err *err);
 /* Reads a page. ST_DATA: another size than atlas.txt says, a source that it does not list, a negative colour, alpha
  * other than 1 where there is a source and 0 elsewhere. */
-enum status atlas_page_read(struct atlas_page *p, const struct atlas *a, int page, const char *folder, struct err *err);
+enum status atlas_page_read(struct atlas_page *p, const struct atlas *a, int page, const char *folder,
+                            struct provenance *prov, struct err *err);
 
 /* The first tile whose face is not below `face`; tile_count: none. The tiles of a face follow each other. */
 int atlas_first_tile(const struct atlas *a, int face);

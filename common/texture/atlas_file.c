@@ -19,13 +19,9 @@
 #include <unistd.h>
 
 #include "common/base/array.h"
-#include "common/base/file_path.h"
-#include "common/base/outfile.h"
-#include "common/base/textfile.h"
 #include "common/image/exr.h"
+#include "common/product/product.h"
 #include "common/texture/atlas.h"
-
-#define HEADER "remodel-atlas"
 
 enum { NAME_SIZE = 1024 }; /* of a quoted name */
 
@@ -35,9 +31,7 @@ static const char *const channels[] = {"R", "G", "B", "A", "source"};
 
 enum status atlas_page_path(char path[FILE_PATH], const char *folder, int page, struct err *err)
 {
-    char name[32];
-    snprintf(name, sizeof name, "page%d", page);
-    return file_path(path, folder, name, ".exr", err);
+    return product_path_in(path, folder, PRODUCT_ATLAS_PAGE, &(struct product_key){.page = page}, err);
 }
 
 enum status atlas_write_page(const struct atlas_page *p, const char *folder, int page, const struct provenance *prov,
@@ -105,7 +99,6 @@ static enum status print_names(FILE *to, const char *what, char *const *names, i
 static enum status print_list(FILE *to, const struct atlas *a, struct err *err)
 {
     char name[NAME_SIZE];
-    fprintf(to, HEADER " 1\n");
     if (a->viewpoint) {
         if (textfile_quote(a->viewpoint, name, sizeof name, err)) return err->status;
         fprintf(to, "viewpoint %s %.17g %.17g %.17g\n", name, a->centre.x, a->centre.y, a->centre.z);
@@ -120,8 +113,7 @@ static enum status print_list(FILE *to, const struct atlas *a, struct err *err)
 static enum status write_list(const struct atlas *a, const char *path, const struct provenance *prov, struct err *err)
 {
     struct outfile file = {0};
-    enum status st = outfile_open(&file, path, err);
-    if (!st && prov) provenance_print(prov, file.fp);
+    enum status st = product_begin(&file, PRODUCT_ATLAS, path, prov, err);
     if (!st) st = print_list(file.fp, a, err);
     if (!st) st = outfile_commit(&file, err);
     outfile_discard(&file);
@@ -131,7 +123,7 @@ static enum status write_list(const struct atlas *a, const char *path, const str
 enum status atlas_write_list(const struct atlas *a, const char *folder, const struct provenance *prov, struct err *err)
 {
     char path[FILE_PATH];
-    enum status st = file_path(path, folder, "atlas", ".txt", err);
+    enum status st = product_path_in(path, folder, PRODUCT_ATLAS, NULL, err);
     if (!st) st = write_list(a, path, prov, err);
     for (int i = a->page_count; !st; i++) {
         st = atlas_page_path(path, folder, i, err);
@@ -264,9 +256,7 @@ static enum status read_tiles(struct atlas *a, struct textfile *t, char **word, 
 static enum status read_list(struct atlas *a, struct textfile *t, struct err *err)
 {
     char *word = NULL;
-    int64_t version;
-    if (textfile_expect_line(t, HEADER, err) || textfile_int(t, "version", 1, 1, &version, err) ||
-        textfile_end(t, err) || next_word(t, &word, err) || read_viewpoint(a, t, &word, err) ||
+    if (next_word(t, &word, err) || read_viewpoint(a, t, &word, err) ||
         read_names(&a->views, &a->view_count, t, "view", &word, err))
         return err->status;
     if (!a->viewpoint != !a->view_count)
@@ -276,13 +266,13 @@ static enum status read_list(struct atlas *a, struct textfile *t, struct err *er
     return read_tiles(a, t, &word, err);
 }
 
-enum status atlas_read(struct atlas *a, const char *folder, struct err *err)
+enum status atlas_read(struct atlas *a, const char *folder, struct provenance *prov, struct err *err)
 {
     struct textfile t = {0};
     char path[FILE_PATH];
     *a = (struct atlas){0};
-    enum status st = file_path(path, folder, "atlas", ".txt", err);
-    if (!st) st = textfile_open(&t, path, err);
+    enum status st = product_path_in(path, folder, PRODUCT_ATLAS, NULL, err);
+    if (!st) st = product_open(&t, NULL, PRODUCT_ATLAS, path, prov, err);
     if (!st) st = read_list(a, &t, err);
     textfile_release(&t);
     if (st) atlas_release(a);
@@ -327,13 +317,14 @@ static enum status take_page(struct atlas_page *p, const struct exr_image *exr, 
     return ST_OK;
 }
 
-enum status atlas_page_read(struct atlas_page *p, const struct atlas *a, int page, const char *folder, struct err *err)
+enum status atlas_page_read(struct atlas_page *p, const struct atlas *a, int page, const char *folder,
+                            struct provenance *prov, struct err *err)
 {
     struct exr_image exr = {0};
     char path[FILE_PATH];
     *p = (struct atlas_page){0};
     enum status st = atlas_page_path(path, folder, page, err);
-    if (!st) st = exr_read(&exr, path, channels, 5, err);
+    if (!st) st = exr_read_product(&exr, PRODUCT_ATLAS_PAGE, path, channels, 5, prov, err);
     if (!st && (exr.width != a->page_sizes[page][0] || exr.height != a->page_sizes[page][1]))
         st = err_set(err, ST_DATA, "%s has %d x %d texels, but atlas.txt says %d x %d; bake it again.", path, exr.width,
                      exr.height, a->page_sizes[page][0], a->page_sizes[page][1]);

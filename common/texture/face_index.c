@@ -20,8 +20,7 @@
 #include <unistd.h>
 
 #include "common/base/array.h"
-#include "common/base/outfile.h"
-#include "common/base/textfile.h"
+#include "common/product/product.h"
 
 enum {
     HEAD = 8192,      /* bytes in which the table begins: the provenance is before it */
@@ -64,11 +63,9 @@ static enum status read_piece(struct textfile *t, struct face_index *index, int6
 static enum status read_head(struct face_index *index, struct err *err)
 {
     struct textfile t = {0};
-    int64_t version = 0, faces = 0;
+    int64_t faces = 0;
     enum status st = read_piece(&t, index, 0, index->size < HEAD ? index->size : HEAD, 1, err);
-    if (!st) st = textfile_expect_line(&t, "remodel-face-index", err);
-    if (!st) st = textfile_int(&t, "version", 1, 1, &version, err);
-    if (!st) st = textfile_end(&t, err);
+    if (!st) st = product_read_head(&t, NULL, PRODUCT_FACE_INDEX, err);
     if (!st) st = textfile_expect_line(&t, "faces", err);
     if (!st) st = textfile_int(&t, "number of faces", 0, index->size / FACE_INDEX_ROW, &faces, err);
     if (!st) st = textfile_end(&t, err);
@@ -81,9 +78,12 @@ static enum status read_head(struct face_index *index, struct err *err)
     return st;
 }
 
-enum status face_index_open(struct face_index *index, const char *path, struct err *err)
+enum status face_index_open(struct face_index *index, const char *path, struct provenance *prov, struct err *err)
 {
-    *index = (struct face_index){.file = open(path, O_RDONLY | O_CLOEXEC)};
+    *index = (struct face_index){.file = -1};
+    /* read in pieces, so that it is hashed by itself */
+    if (prov && provenance_add_file(prov, product_name(PRODUCT_FACE_INDEX, path), path, err)) return err->status;
+    index->file = open(path, O_RDONLY | O_CLOEXEC);
     if (index->file < 0) return err_errno(err, "open", path);
     index->path = strdup(path);
     if (!index->path) {
@@ -230,10 +230,9 @@ enum status face_index_write(const char *path, const int *ids, const struct face
 {
     struct outfile f = {0};
     char text[NAME_SIZE + 128];
-    enum status st = outfile_open(&f, path, err);
+    enum status st = product_begin(&f, PRODUCT_FACE_INDEX, path, prov, err);
     if (!st) {
-        if (prov) provenance_print(prov, f.fp);
-        fprintf(f.fp, "remodel-face-index 1\nfaces %d\n", count);
+        fprintf(f.fp, "faces %d\n", count);
         const int64_t table = ftell(f.fp);
         st = write_table(f.fp, ids, lists, count, table + (int64_t)count * FACE_INDEX_ROW,
                          count_lines(prov) + 3 + count, err);

@@ -41,7 +41,7 @@ struct face_index {
     int64_t bytes_read; /* so far */
 };
 
-enum status face_index_open(struct face_index *index, const char *path, struct err *err);
+enum status face_index_open(struct face_index *index, const char *path, struct provenance *prov, struct err *err);
 void face_index_close(struct face_index *index);
 /* The views that show a face, best first; none if no view does. list is empty on entry; the caller releases it.
  * ST_DATA: a damaged file. */

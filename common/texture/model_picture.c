@@ -165,10 +165,11 @@ static enum status take_planes(struct model_picture *p, const struct exr_image *
     return ST_OK;
 }
 
-enum status model_picture_read(struct model_picture *p, const char *path, struct err *err)
+enum status model_picture_read(struct model_picture *p, const char *path, struct provenance *prov, struct err *err)
 {
     struct exr_image im = {0};
-    enum status st = exr_read(&im, path, names, PLANES, err);
+    enum status st = exr_read_product(&im, product_at(path) == PRODUCT_RELIT ? PRODUCT_RELIT : PRODUCT_PICTURE, path,
+                                      names, PLANES, prov, err);
     if (!st) st = take_planes(p, &im, path, err);
     if (!st) read_camera(p, &im);
     exr_image_release(&im);

@@ -42,6 +42,6 @@ void model_picture_set_camera(struct model_picture *p, const struct camera *lens
  * in the model's frame, if they are set, become attributes remodel:lens, remodel:lens0, ..., remodel:pose. */
 enum status model_picture_write(const struct model_picture *p, const struct view *camera, const char *path,
                                 const struct provenance *prov, struct err *err);
-enum status model_picture_read(struct model_picture *p, const char *path, struct err *err);
+enum status model_picture_read(struct model_picture *p, const char *path, struct provenance *prov, struct err *err);
 
 #endif

@@ -79,11 +79,11 @@ static enum status take_planes(struct outdoors *o, const struct exr_image *im, c
     return st;
 }
 
-enum status outdoors_read(struct outdoors *o, const char *path, struct err *err)
+enum status outdoors_read(struct outdoors *o, const char *path, struct provenance *prov, struct err *err)
 {
     struct exr_image im = {0};
     *o = (struct outdoors){0};
-    enum status st = exr_read(&im, path, names, PLANES, err);
+    enum status st = exr_read_product(&im, PRODUCT_OUTDOORS, path, names, PLANES, prov, err);
     if (!st) st = take_planes(o, &im, path, err);
     if (st) outdoors_release(o);
     exr_image_release(&im);

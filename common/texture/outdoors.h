@@ -29,7 +29,7 @@ void outdoors_release(struct outdoors *o);
 /* The unit direction at a place of the picture; pixel (x, y) has its centre at (x + 0.5, y + 0.5). */
 struct vec3 outdoors_direction(const struct outdoors *o, double x, double y);
 /* ST_DATA: a width other than twice the height, a missing channel, a negative radiance, an unknown source. */
-enum status outdoors_read(struct outdoors *o, const char *path, struct err *err);
+enum status outdoors_read(struct outdoors *o, const char *path, struct provenance *prov, struct err *err);
 enum status outdoors_write(const struct outdoors *o, const char *path, const struct provenance *prov, struct err *err);
 /* The radiance from a direction of any length, bilinear; returns the source of the nearest pixel. An empty `outdoors`
  * gives 0 and OUTDOORS_GUESSED. */

@@ -5,11 +5,7 @@
 #include <string.h>
 
 #include "common/base/array.h"
-#include "common/base/file_path.h"
-#include "common/base/outfile.h"
-#include "common/base/textfile.h"
-
-#define HEADER "remodel-pictures"
+#include "common/product/product.h"
 
 void picture_list_release(struct picture_list *l)
 {
@@ -31,15 +27,12 @@ enum status picture_list_add(struct picture_list *l, const char *name, struct er
     return ST_OK;
 }
 
-enum status picture_list_read(struct picture_list *l, const char *folder, struct err *err)
+enum status picture_list_read(struct picture_list *l, const char *folder, struct provenance *prov, struct err *err)
 {
     char path[FILE_PATH], *name;
     struct textfile t = {0};
-    int64_t version;
-    if (file_path(path, folder, "pictures.txt", "", err) || textfile_open(&t, path, err)) return err->status;
-    enum status st = textfile_expect_line(&t, HEADER, err);
-    if (!st) st = textfile_int(&t, "version", 1, 1, &version, err);
-    if (!st) st = textfile_end(&t, err);
+    enum status st = product_path_in(path, folder, PRODUCT_PICTURE_LIST, NULL, err);
+    if (!st) st = product_open(&t, NULL, PRODUCT_PICTURE_LIST, path, prov, err);
     while (!st && textfile_next(&t)) {
         st = textfile_expect(&t, "picture", err);
         if (!st) st = textfile_word(&t, "a picture's name", &name, err);
@@ -55,9 +48,10 @@ enum status picture_list_write(const struct picture_list *l, const char *folder,
 {
     char path[FILE_PATH], quoted[2 * FILE_PATH];
     struct outfile f = {0};
-    if (file_path(path, folder, "pictures.txt", "", err) || outfile_open(&f, path, err)) return err->status;
+    if (product_path_in(path, folder, PRODUCT_PICTURE_LIST, NULL, err) || outfile_open(&f, path, err))
+        return err->status;
     enum status st = ST_OK;
-    fputs(HEADER " 1\n", f.fp);
+    fprintf(f.fp, "%s\n", products[PRODUCT_PICTURE_LIST].head);
     provenance_print(prov, f.fp);
     for (int i = 0; !st && i < l->count; i++) {
         st = textfile_quote(l->names[i], quoted, sizeof quoted, err);

@@ -17,7 +17,7 @@ struct picture_list {
 enum status picture_list_add(struct picture_list *l, const char *name, struct err *err);
 void picture_list_release(struct picture_list *l);
 /* FOLDER/pictures.txt. ST_DATA with file and line. */
-enum status picture_list_read(struct picture_list *l, const char *folder, struct err *err);
+enum status picture_list_read(struct picture_list *l, const char *folder, struct provenance *prov, struct err *err);
 /* ST_DATA: a name that textfile_quote() refuses. */
 enum status picture_list_write(const struct picture_list *l, const char *folder, const struct provenance *prov,
                                struct err *err);

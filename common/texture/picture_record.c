@@ -1,10 +1,7 @@
 /* picture_record.c - reads and writes VIEW.txt of a rendered picture; see picture_record.h. */
 #include "common/texture/picture_record.h"
 
-#include "common/base/outfile.h"
-#include "common/base/textfile.h"
-
-#define HEADER "remodel-picture"
+#include "common/product/product.h"
 
 enum { MAX_SIZE = 1 << 20 };
 
@@ -14,7 +11,7 @@ enum status picture_record_write(const struct picture_record *record, const char
     struct outfile out = {0};
     enum status st = outfile_open(&out, path, err);
     if (st) return st;
-    fputs(HEADER " 1\n", out.fp);
+    fprintf(out.fp, "%s\n", products[PRODUCT_PICTURE_RECORD].head);
     if (prov) provenance_print(prov, out.fp);
     fprintf(out.fp, "size %d %d\nexposure %.9g\nchanged %.6g\n", record->width, record->height, record->exposure,
             record->changed);
@@ -44,11 +41,8 @@ static enum status read_made(struct picture_record *record, unsigned *seen, stru
 
 static enum status read_head(struct picture_record *record, struct textfile *t, struct err *err)
 {
-    int64_t version, size[2] = {0, 0};
-    enum status st = textfile_expect_line(t, HEADER, err);
-    if (!st) st = textfile_int(t, "version", 1, 1, &version, err);
-    if (!st) st = textfile_end(t, err);
-    if (!st) st = textfile_expect_line(t, "size", err);
+    int64_t size[2] = {0, 0};
+    enum status st = textfile_expect_line(t, "size", err);
     if (!st) st = textfile_int(t, "a width", 1, MAX_SIZE, &size[0], err);
     if (!st) st = textfile_int(t, "a height", 1, MAX_SIZE, &size[1], err);
     if (!st) st = textfile_end(t, err);
@@ -62,12 +56,13 @@ static enum status read_head(struct picture_record *record, struct textfile *t, 
     return st ? st : read_share(t, &record->changed, err);
 }
 
-enum status picture_record_read(struct picture_record *record, const char *path, struct err *err)
+enum status picture_record_read(struct picture_record *record, const char *path, struct provenance *prov,
+                                struct err *err)
 {
     struct textfile t = {0};
     unsigned seen = 0;
     *record = (struct picture_record){0};
-    if (textfile_open(&t, path, err)) return err->status;
+    if (product_open(&t, NULL, PRODUCT_PICTURE_RECORD, path, prov, err)) return err->status;
     enum status st = read_head(record, &t, err);
     while (!st && textfile_next(&t)) {
         st = textfile_expect(&t, "made", err);

@@ -21,6 +21,7 @@ enum status picture_record_write(const struct picture_record *record, const char
                                  struct err *err);
 /* ST_DATA with file and line: an unknown kind, or one twice; a share that is not within 0 and 100; an exposure that is
  * not above 0. */
-enum status picture_record_read(struct picture_record *record, const char *path, struct err *err);
+enum status picture_record_read(struct picture_record *record, const char *path, struct provenance *prov,
+                                struct err *err);
 
 #endif

@@ -26,7 +26,6 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "common/base/file_path.h"
 #include "common/capture/view_image.h"
 
 static void add_size(uint64_t *bytes, const char *path)
@@ -36,21 +35,21 @@ static void add_size(uint64_t *bytes, const char *path)
 }
 
 static enum status read_picture(struct view_planes *picture, const char *folder, const struct view *camera,
-                                uint64_t *bytes, struct err *err)
+                                uint64_t *bytes, struct provenance *prov, struct err *err)
 {
     char path[FILE_PATH];
-    enum status st = file_path(path, folder, camera->name, ".exr", err);
-    if (!st) st = view_planes_read(picture, path, camera, VIEW_CHANNELS, err);
+    enum status st = product_path_in(path, folder, PRODUCT_VIEW, &(struct product_key){.view = camera->name}, err);
+    if (!st) st = view_planes_read(picture, folder, camera, VIEW_CHANNELS, prov, err);
     if (!st) add_size(bytes, path);
     return st;
 }
 
 static enum status read_ids(struct view_ids *ids, const char *folder, const struct view *camera, uint64_t *bytes,
-                            struct err *err)
+                            struct provenance *prov, struct err *err)
 {
     char path[FILE_PATH];
-    enum status st = file_path(path, folder, camera->name, ".exr", err);
-    if (!st) st = view_ids_read(ids, camera, path, err);
+    enum status st = product_path_in(path, folder, PRODUCT_IDS, &(struct product_key){.view = camera->name}, err);
+    if (!st) st = view_ids_read(ids, camera, path, prov, err);
     if (!st) add_size(bytes, path);
     return st;
 }
@@ -153,15 +152,16 @@ static enum status list_faces(struct source_view *v, struct err *err)
 }
 
 enum status source_view_read(struct source_view *v, struct view_ids *ids, const char *views, const char *folder,
-                             const struct view *camera, const struct texture_params *params, struct err *err)
+                             const struct view *camera, const struct texture_params *params, struct provenance *prov,
+                             struct err *err)
 {
     const size_t pixels = (size_t)camera->width * (size_t)camera->height;
     struct view_planes picture = {0};
     struct view_ids faces = {0};
     *v = (struct source_view){.camera = *camera, .level_count = 1};
     set_projection(v);
-    enum status st = read_picture(&picture, views, camera, &v->bytes, err);
-    if (!st) st = read_ids(&faces, folder, camera, &v->bytes, err);
+    enum status st = read_picture(&picture, views, camera, &v->bytes, prov, err);
+    if (!st) st = read_ids(&faces, folder, camera, &v->bytes, prov, err);
     v->state = malloc(pixels);
     v->own = malloc(pixels);
     if (!st && (!v->state || !v->own)) st = err_nomem(err, "a view's surfaces", pixels);

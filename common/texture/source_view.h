@@ -43,7 +43,8 @@ struct source_view {
  * file (without id, which v has), in scene units; the caller releases it. v is overwritten; the caller releases it in
  * each case. ST_DATA: a missing channel, sizes that differ. */
 enum status source_view_read(struct source_view *v, struct view_ids *ids, const char *views, const char *folder,
-                             const struct view *camera, const struct texture_params *params, struct err *err);
+                             const struct view *camera, const struct texture_params *params, struct provenance *prov,
+                             struct err *err);
 /* Whether a usable pixel shows a face. */
 static inline bool source_view_shows(const struct source_view *v, int id)
 {

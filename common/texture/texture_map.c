@@ -20,12 +20,11 @@
 #include <string.h>
 
 #include "common/base/array.h"
-#include "common/base/outfile.h"
 #include "common/base/scan.h"
 #include "common/base/sort.h"
 #include "common/base/textfile.h"
+#include "common/product/product.h"
 
-#define HEADER  "remodel-texture"
 #define NO_BASE "none"
 
 enum { NAME_SIZE = 1024, MAX_CORNERS = 100000 };
@@ -226,9 +225,7 @@ enum status texture_map_write(const struct texture_map *map, const char *path, c
     char base[NAME_SIZE];
     enum status st = check_map(map, path, err);
     if (!st) st = textfile_quote(map->base ? map->base : NO_BASE, base, sizeof base, err);
-    if (!st) st = outfile_open(&file, path, err);
-    if (!st) fputs(HEADER " 2\n", file.fp);
-    if (!st && prov) provenance_print(prov, file.fp);
+    if (!st) st = product_begin(&file, PRODUCT_TEXTURE_MAP, path, prov, err);
     if (!st) fprintf(file.fp, "base %s\n", base);
     for (int i = 0; !st && i < map->lamp_count; i++) st = print_lamp(file.fp, &map->lamps[i], err);
     for (int i = 0; !st && i < map->face_count; i++) st = print_face(file.fp, &map->faces[i], err);
@@ -424,16 +421,12 @@ static enum status read_line(struct texture_map *map, struct textfile *t, struct
     return rule ? read_rule(face, t, word, err) : read_added(face, t, err);
 }
 
-enum status texture_map_read(struct texture_map *map, const char *path, struct err *err)
+enum status texture_map_read(struct texture_map *map, const char *path, struct provenance *prov, struct err *err)
 {
     struct textfile t = {0};
     char *base = NULL;
-    int64_t version;
     *map = (struct texture_map){0};
-    if (textfile_open(&t, path, err)) return err->status;
-    enum status st = textfile_expect_line(&t, HEADER, err);
-    if (!st) st = textfile_int(&t, "version 2", 2, 2, &version, err);
-    if (!st) st = textfile_end(&t, err);
+    enum status st = product_open(&t, NULL, PRODUCT_TEXTURE_MAP, path, prov, err);
     if (!st) st = textfile_expect_line(&t, "base", err);
     if (!st) st = copy_word(&base, &t, "an edit or \"none\"", err);
     if (!st) st = textfile_end(&t, err);

@@ -102,6 +102,6 @@ bool texture_map_clears(const struct texture_map *map, struct vec3 p);
 enum status texture_map_write(const struct texture_map *map, const char *path, const struct provenance *prov,
                               struct err *err);
 /* ST_DATA with file and line. A failure leaves map empty. */
-enum status texture_map_read(struct texture_map *map, const char *path, struct err *err);
+enum status texture_map_read(struct texture_map *map, const char *path, struct provenance *prov, struct err *err);
 
 #endif

@@ -72,12 +72,13 @@ static enum status check_pixel(const struct view_ids *v, size_t i, const char *p
                    (double)v->clutter[i], VIEW_IDS_FAR);
 }
 
-enum status view_ids_read(struct view_ids *v, const struct view *view, const char *path, struct err *err)
+enum status view_ids_read(struct view_ids *v, const struct view *view, const char *path, struct provenance *prov,
+                          struct err *err)
 {
     struct exr_image im = {0};
     struct exr_plane *planes[PLANES] = {0};
     *v = (struct view_ids){0};
-    enum status st = exr_read(&im, path, names, PLANES, err);
+    enum status st = exr_read_product(&im, PRODUCT_IDS, path, names, PLANES, prov, err);
     for (int i = 0; !st && i < PLANES; i++) {
         planes[i] = exr_find(&im, names[i]);
         if (i == 0 ? !planes[i]->u : !planes[i]->f)

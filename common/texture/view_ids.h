@@ -29,7 +29,8 @@ enum status view_ids_write(const struct view_ids *v, const struct view *view, co
                            const struct provenance *prov, struct err *err);
 /* Afterwards z is >= 0 and is 0 exactly where id is 0, jump in [0, VIEW_IDS_FAR], clutter in [0, 1]; otherwise ST_DATA
  * with the pixel. view (may be NULL): whose size the file must have. */
-enum status view_ids_read(struct view_ids *v, const struct view *view, const char *path, struct err *err);
+enum status view_ids_read(struct view_ids *v, const struct view *view, const char *path, struct provenance *prov,
+                          struct err *err);
 
 /* Surfaces that some declared edit reveals and the unedited model does not show there, nearest first. A pixel has as
  * many as the first layer in which its id is 0. */
@@ -45,6 +46,7 @@ void view_reveal_release(struct view_reveal *v);
 enum status view_reveal_write(const struct view_reveal *v, const struct view *view, const char *path,
                               const struct provenance *prov, bool *changed, struct err *err);
 /* Afterwards, in each pixel, layers are filled from the first and z > 0 ascends where there is an id. */
-enum status view_reveal_read(struct view_reveal *v, const struct view *view, const char *path, struct err *err);
+enum status view_reveal_read(struct view_reveal *v, const struct view *view, const char *path, struct provenance *prov,
+                             struct err *err);
 
 #endif

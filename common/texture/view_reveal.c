@@ -140,11 +140,12 @@ static enum status take_layer(struct view_reveal *v, int k, const struct exr_ima
     return ST_OK;
 }
 
-enum status view_reveal_read(struct view_reveal *v, const struct view *view, const char *path, struct err *err)
+enum status view_reveal_read(struct view_reveal *v, const struct view *view, const char *path, struct provenance *prov,
+                             struct err *err)
 {
     struct exr_image im = {0};
     *v = (struct view_reveal){0};
-    enum status st = exr_read(&im, path, NULL, 0, err);
+    enum status st = exr_read_product(&im, PRODUCT_REVEAL, path, NULL, 0, prov, err);
     if (!st && (im.count % 2 || !im.count))
         st = err_set(err, ST_DATA,
                      "%s has %d channels, wanted layer0.id, layer0.Z, layer1.id, ...; run trace_ids again.", path,

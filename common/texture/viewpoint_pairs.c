@@ -5,10 +5,7 @@
 #include <string.h>
 
 #include "common/base/array.h"
-#include "common/base/outfile.h"
-#include "common/base/textfile.h"
-
-#define HEADER "remodel-pairs"
+#include "common/product/product.h"
 
 enum { NAME_SIZE = 1024 };
 
@@ -40,7 +37,7 @@ enum status viewpoint_pairs_write(const struct viewpoint_pairs *pairs, const cha
     struct outfile file = {0};
     char names[3][NAME_SIZE];
     enum status st = outfile_open(&file, path, err);
-    if (!st) fprintf(file.fp, HEADER " 1\n");
+    if (!st) fprintf(file.fp, "%s\n", products[PRODUCT_TOUR_PAIRS].head);
     if (!st && prov) provenance_print(prov, file.fp);
     for (int i = 0; !st && i < pairs->count; i++) {
         const struct viewpoint_pair *p = &pairs->list[i];
@@ -66,15 +63,12 @@ static enum status read_frame(struct viewpoint_pairs *pairs, struct textfile *t,
     return viewpoint_pairs_add(pairs, frame, from, to, share, err);
 }
 
-enum status viewpoint_pairs_read(struct viewpoint_pairs *pairs, const char *path, struct err *err)
+enum status viewpoint_pairs_read(struct viewpoint_pairs *pairs, const char *path, struct provenance *prov,
+                                 struct err *err)
 {
     struct textfile t = {0};
-    int64_t version;
     *pairs = (struct viewpoint_pairs){0};
-    if (textfile_open(&t, path, err)) return err->status;
-    enum status st = textfile_expect_line(&t, HEADER, err);
-    if (!st) st = textfile_int(&t, "version", 1, 1, &version, err);
-    if (!st) st = textfile_end(&t, err);
+    enum status st = product_open(&t, NULL, PRODUCT_TOUR_PAIRS, path, prov, err);
     while (!st && textfile_next(&t)) st = read_frame(pairs, &t, err);
     if (st) viewpoint_pairs_release(pairs);
     textfile_release(&t);

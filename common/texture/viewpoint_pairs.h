@@ -26,7 +26,8 @@ enum status viewpoint_pairs_add(struct viewpoint_pairs *pairs, const char *frame
 enum status viewpoint_pairs_write(const struct viewpoint_pairs *pairs, const char *path, const struct provenance *prov,
                                   struct err *err);
 /* ST_DATA with file and line. A failure leaves pairs empty. */
-enum status viewpoint_pairs_read(struct viewpoint_pairs *pairs, const char *path, struct err *err);
+enum status viewpoint_pairs_read(struct viewpoint_pairs *pairs, const char *path, struct provenance *prov,
+                                 struct err *err);
 /* The pair of a frame, by its name; NULL: none. */
 const struct viewpoint_pair *viewpoint_pairs_find(const struct viewpoint_pairs *pairs, const char *frame);
 

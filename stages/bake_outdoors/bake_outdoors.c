@@ -10,8 +10,10 @@
 #include <string.h>
 
 #include "common/base/cli.h"
-#include "common/base/file_path.h"
 #include "common/base/log.h"
+#include "common/capture/photo_camera.h"
+#include "common/model/scene_inputs.h"
+#include "common/product/product.h"
 #include "stages/bake_outdoors/gather.h"
 
 #define PARAM_STRUCT struct outdoors_params
@@ -32,36 +34,18 @@ struct job {
     struct outdoors_params params;
     struct provenance prov;
     struct outdoors_model model;
-    struct model_axes axes;
-    struct camera_set set;
-    struct lens_list lenses;
+    struct scene_inputs in;
     struct outdoors_picture *pictures;
     int count, photos;
 };
 
 static enum status read_inputs(struct job *j, struct err *err)
 {
-    char path[FILE_PATH];
-    if (provenance_add_file(&j->prov, "model/model.txt", j->model_path, err) ||
-        outdoors_model_read(&j->model, j->model_path, err) ||
-        provenance_add_file(&j->prov, "model/axes.txt", j->axes_path, err) ||
-        model_axes_read(&j->axes, j->axes_path, err) || camera_set_add_camera_inputs(&j->prov, j->views, err) ||
-        camera_set_read_cameras(&j->set, j->views, err) ||
-        provenance_add_in(&j->prov, "views", j->views, "lenses", ".txt", path, err) ||
-        lens_list_read(&j->lenses, path, err))
+    const struct scene_files files = {.views = j->views, .axes = j->axes_path};
+    if (outdoors_model_read(&j->model, j->model_path, &j->prov, err) ||
+        scene_inputs_read(&j->in, SCENE_CAMERAS | SCENE_LENSES | SCENE_AXES, &files, &j->prov, err))
         return err->status;
     return ST_OK;
-}
-
-/* The number of the photo of each view: that of the photo's first view. Views of one photo follow each other. */
-static int photo_of(const struct job *j, int view)
-{
-    int lens = lens_list_find(&j->lenses, j->set.views[view].name);
-    if (lens < 0) return view;
-    const char *photo = j->lenses.lenses[lens].photo;
-    while (lens > 0 && !strcmp(j->lenses.lenses[lens - 1].photo, photo)) lens--;
-    const int first = camera_set_find(&j->set, j->lenses.lenses[lens].view);
-    return first < 0 ? view : first;
 }
 
 static enum status add_references(struct job *j, struct err *err)
@@ -69,7 +53,7 @@ static enum status add_references(struct job *j, struct err *err)
     for (int i = 0; i < j->references.count; i++) {
         struct outdoors_picture *p = &j->pictures[j->count++];
         bool placed;
-        enum status st = outdoors_picture_of_reference(p, j->references.items[i], &j->axes, &placed, err);
+        enum status st = outdoors_picture_of_reference(p, j->references.items[i], &j->in.axes, &placed, err);
         if (st) return st;
         if (!placed) {
             log_warn(
@@ -88,19 +72,20 @@ static enum status add_references(struct job *j, struct err *err)
 
 static enum status list_pictures(struct job *j, struct err *err)
 {
-    const size_t most = (size_t)j->references.count + (size_t)j->set.view_count + 1;
+    const size_t most = (size_t)j->references.count + (size_t)j->in.set.view_count + 1;
     char picture[FILE_PATH], ids[FILE_PATH];
     j->pictures = calloc(most, sizeof *j->pictures);
     if (!j->pictures) return err_nomem(err, "pictures", most * sizeof *j->pictures);
-    j->photos = j->set.view_count;
+    j->photos = j->in.set.view_count;
     enum status st = add_references(j, err);
-    for (int i = 0; !st && i < j->set.view_count; i++) {
-        const struct view view = model_from_world_view(&j->axes, &j->set.views[i]);
-        st = file_path(picture, j->views, view.name, ".exr", err);
-        if (!st) st = file_path(ids, j->ids, view.name, ".exr", err);
+    for (int i = 0; !st && i < j->in.set.view_count; i++) {
+        const struct view view = model_from_world_view(&j->in.axes, &j->in.set.views[i]);
+        const struct product_key key = {.view = view.name};
+        st = product_path_in(picture, j->views, PRODUCT_VIEW, &key, err);
+        if (!st) st = product_path_in(ids, j->ids, PRODUCT_IDS, &key, err);
         if (!st) st = outdoors_picture_of_view(&j->pictures[j->count++], &view, picture, ids, err);
         if (st) break;
-        j->pictures[j->count - 1].photo = photo_of(j, i);
+        j->pictures[j->count - 1].photo = photo_of_view(&j->in.set, &j->in.lenses, i);
         j->pictures[j->count - 1].order = !strcmp(j->params.prefer, "photos");
     }
     return st;
@@ -138,8 +123,7 @@ static void release(struct job *j)
 {
     for (int i = 0; i < j->count; i++) outdoors_picture_release(&j->pictures[i]);
     free(j->pictures);
-    lens_list_release(&j->lenses);
-    camera_set_release(&j->set);
+    scene_inputs_release(&j->in);
     outdoors_model_release(&j->model);
     cli_list_release(&j->references);
     provenance_release(&j->prov);

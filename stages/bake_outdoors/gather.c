@@ -43,10 +43,10 @@ struct gather {
 
 /* -------------------------------------------------------------------------------------------------------- the model */
 
-enum status outdoors_model_read(struct outdoors_model *m, const char *path, struct err *err)
+enum status outdoors_model_read(struct outdoors_model *m, const char *path, struct provenance *prov, struct err *err)
 {
     *m = (struct outdoors_model){0};
-    if (model_rays_read(&m->rays, path, MODEL_WITHOUT_GLASS, err)) return err->status;
+    if (model_rays_read(&m->rays, path, MODEL_WITHOUT_GLASS, prov, err)) return err->status;
     const struct solid_mesh *mesh = &m->rays.mesh;
     m->normals = calloc((size_t)m->rays.ids, sizeof *m->normals);
     if (!m->normals) return err_nomem(err, "faces", (size_t)m->rays.ids * sizeof *m->normals);
@@ -222,20 +222,11 @@ static enum status init(struct gather *g, int count, int photos, struct err *err
     return ST_OK;
 }
 
-static enum status add_inputs(struct provenance *prov, const struct outdoors_picture *p, struct err *err)
-{
-    char name[FILE_PATH];
-    snprintf(name, sizeof name, "%s/%s.exr", p->reference ? "lri" : "views", p->name);
-    if (provenance_add_file(prov, name, p->path, err) || p->reference) return err->status;
-    snprintf(name, sizeof name, "ids/%s.exr", p->name);
-    return provenance_add_file(prov, name, p->ids, err);
-}
-
 static enum status load_picture(struct gather *g, int picture, bool *shows, const struct outdoors_model *model,
-                                struct err *err)
+                                struct provenance *prov, struct err *err)
 {
     const struct outdoors_limits limits = {g->params->edge, g->params->max_clutter};
-    return outdoors_picture_load(&g->pictures[picture], shows, &model->rays, model->normals, &limits, err);
+    return outdoors_picture_load(&g->pictures[picture], shows, &model->rays, model->normals, &limits, prov, err);
 }
 
 static enum status first_pass(struct gather *g, int count, const struct outdoors_model *model, struct provenance *prov,
@@ -243,10 +234,9 @@ static enum status first_pass(struct gather *g, int count, const struct outdoors
 {
     for (int i = 0; i < count; i++) {
         g->current = i;
-        if (load_picture(g, i, &g->shows[i], model, err)) return err->status;
+        if (load_picture(g, i, &g->shows[i], model, prov, err)) return err->status;
         progress_add(progress, 1);
         if (!g->shows[i]) continue;
-        if (add_inputs(prov, &g->pictures[i], err)) return err->status;
         parallel_for((size_t)g->cells.height, ROWS, ask_rows, g);
         outdoors_picture_unload(&g->pictures[i]);
     }
@@ -269,7 +259,7 @@ static enum status second_pass(struct gather *g, int count, struct outdoors_tota
         progress_add(progress, 1);
         if (!is_chosen(g, i)) continue;
         g->current = i;
-        if (load_picture(g, i, &shows, model, err)) return err->status;
+        if (load_picture(g, i, &shows, model, NULL, err)) return err->status;
         parallel_for((size_t)g->out->height, ROWS, add_rows, g);
         outdoors_picture_unload(&g->pictures[i]);
         *(g->pictures[i].reference ? &totals->references : &totals->photos) += 1;

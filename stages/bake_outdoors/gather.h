@@ -45,7 +45,7 @@ struct outdoors_model {
     struct vec3 *normals; /* by id of a face's name; owned */
 };
 
-enum status outdoors_model_read(struct outdoors_model *m, const char *path, struct err *err);
+enum status outdoors_model_read(struct outdoors_model *m, const char *path, struct provenance *prov, struct err *err);
 void outdoors_model_release(struct outdoors_model *m);
 
 /* What a run used, for its log. */

@@ -17,7 +17,6 @@
 #include <string.h>
 
 #include "common/base/cli.h"
-#include "common/texture/bake_inputs.h"
 #include "stages/bake_vdta/estimate.h"
 
 _Static_assert(offsetof(struct vdta_params, texture) == 0, "the table below has offsets into struct texture_params");
@@ -41,19 +40,17 @@ struct files {
 
 static enum status read_scene(struct bake_scene *s, const struct files *f, struct provenance *prov, struct err *err)
 {
-    enum status st = bake_inputs_read(&s->set, &s->lenses, &s->axes, s->views, f->axes, prov, err);
-    if (!st) st = solid_mesh_read(&s->model, f->model, err);
-    if (!st) st = provenance_add_file(prov, "model/model.txt", f->model, err);
-    if (!st) st = surfaces_make(&s->surfaces, &s->model, 1, err);
+    const struct scene_files files = {.views = s->views, .axes = f->axes, .mesh = f->model};
+    enum status st = scene_inputs_read(
+        &s->in, SCENE_CAMERAS | SCENE_LENSES | SCENE_AXES | SCENE_MODEL_VIEWS | SCENE_MESH, &files, prov, err);
+    if (!st) st = surfaces_make(&s->surfaces, &s->in.mesh, 1, err);
     return st;
 }
 
 static void release_scene(struct bake_scene *s)
 {
-    camera_set_release(&s->set);
-    lens_list_release(&s->lenses);
     surfaces_release(&s->surfaces);
-    solid_mesh_release(&s->model);
+    scene_inputs_release(&s->in);
 }
 
 struct job {

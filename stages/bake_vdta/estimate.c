@@ -18,7 +18,7 @@ static double megapixels(const struct view *v) { return 1e-6 * v->width * v->hei
 enum status estimate_viewpoint(struct work_estimate *w, const struct bake_scene *scene, const char *photo,
                                struct err *err)
 {
-    const struct camera_set *set = &scene->set;
+    const struct camera_set *set = &scene->in.set;
     double own = 0, all = 0;
     for (int i = 0; i < set->view_count; i++) all += megapixels(&set->views[i]);
     /* views of a photo are called PHOTO or PHOTO@k */

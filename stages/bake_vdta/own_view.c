@@ -1,7 +1,7 @@
 /* own_view.c - see own_view.h. */
 #include "stages/bake_vdta/own_view.h"
 
-#include "common/base/file_path.h"
+#include "common/product/product.h"
 
 static void scale_depth(float *z, size_t pixels, double scale)
 {
@@ -9,14 +9,15 @@ static void scale_depth(float *z, size_t pixels, double scale)
 }
 
 enum status own_view_read(struct own_view *v, const char *views, const char *ids, const char *reveal,
-                          const struct view *camera, double scale, const struct texture_params *params, struct err *err)
+                          const struct view *camera, double scale, const struct texture_params *params,
+                          struct provenance *prov, struct err *err)
 {
     const size_t pixels = (size_t)camera->width * (size_t)camera->height;
     char path[FILE_PATH];
     *v = (struct own_view){0};
-    enum status st = source_view_read(&v->view, &v->ids, views, ids, camera, params, err);
-    if (!st) st = file_path(path, reveal, camera->name, ".exr", err);
-    if (!st) st = view_reveal_read(&v->reveal, camera, path, err);
+    enum status st = source_view_read(&v->view, &v->ids, views, ids, camera, params, prov, err);
+    if (!st) st = product_path_in(path, reveal, PRODUCT_REVEAL, &(struct product_key){.view = camera->name}, err);
+    if (!st) st = view_reveal_read(&v->reveal, camera, path, prov, err);
     if (!st) scale_depth(v->ids.z, pixels, scale);
     for (int k = 0; !st && k < v->reveal.layers; k++) scale_depth(v->reveal.z[k], pixels, scale);
     return st;

@@ -14,7 +14,7 @@ struct own_view {
  * unit. v is overwritten; the caller releases it in each case. */
 enum status own_view_read(struct own_view *v, const char *views, const char *ids, const char *reveal,
                           const struct view *camera, double scale, const struct texture_params *params,
-                          struct err *err);
+                          struct provenance *prov, struct err *err);
 void own_view_release(struct own_view *v);
 
 #endif

@@ -12,6 +12,8 @@
 #include <string.h>
 
 #include "common/base/array.h"
+#include "common/capture/photo_camera.h"
+#include "common/product/product.h"
 #include "common/texture/face_index.h"
 
 enum { SAMPLES = 100 };             /* of a tile, about */
@@ -75,12 +77,11 @@ static enum status find_samples(struct samples *s, const struct bake *b, struct 
 /* Whether the photo of a view has a pixel where the view shows p. */
 static bool is_in_photo(const struct bake_scene *s, int view, struct vec3 p)
 {
-    const struct view *v = &s->set.views[view];
+    const struct view *v = &s->in.set.views[view];
     double u, w;
     if (!(view_project(v, p, &u, &w) > 0) || u < 0 || w < 0 || u >= v->width || w >= v->height) return false;
-    const int lens = lens_list_find(&s->lenses, v->name);
-    if (lens < 0) return true;
-    const struct lens *l = &s->lenses.lenses[lens];
+    const struct lens *l = lens_of_view(&s->in.set, &s->in.lenses, view);
+    if (!l) return true;
     const struct vec3 ray = {(u - v->cx) / v->fx, (w - v->cy) / v->fy, 1};
     const struct vec3 in_photo = mat3_apply(mat3_transpose(mat3_from_quat(l->view_from_photo)), ray);
     return camera_project(&l->camera, in_photo, &u, &w) && u >= 0 && w >= 0 && u < l->camera.width &&
@@ -90,7 +91,7 @@ static bool is_in_photo(const struct bake_scene *s, int view, struct vec3 p)
 static double worth_of(const struct sample *s, const struct face_view *f, const struct bake_scene *scene, int view,
                        const struct bake *b, double own_focal)
 {
-    const struct view *camera = &scene->set.views[view];
+    const struct view *camera = &scene->in.set.views[view];
     const struct vec3 to_view = vec3_sub(camera->center, s->p), to_own = vec3_sub(b->centre, s->p);
     const double far = vec3_length(to_view), own_far = vec3_length(to_own);
     const double min_cos = cos(scene->params->texture.max_slant * M_PI / 180);
@@ -106,7 +107,7 @@ static enum status add_offers(struct offers *o, const struct samples *samples, s
                               double own_focal, struct err *err)
 {
     for (int k = 0; k < f->count; k++) {
-        const int view = camera_set_find(&s->set, f->views[k].name);
+        const int view = camera_set_find(&s->in.set, f->views[k].name);
         for (size_t i = first; view >= 0 && i < last; i++) {
             const double worth = worth_of(&samples->list[i], &f->views[k], s, view, b, own_focal);
             if (!(worth > 0)) continue;
@@ -123,8 +124,8 @@ static enum status find_offers(struct offers *o, const struct samples *samples, 
 {
     struct face_index index = {0};
     char path[FILE_PATH];
-    enum status st = provenance_add_in(prov, "ids", s->ids, "index", ".txt", path, err);
-    if (!st) st = face_index_open(&index, path, err);
+    enum status st = product_path_in(path, s->ids, PRODUCT_FACE_INDEX, NULL, err);
+    if (!st) st = face_index_open(&index, path, prov, err);
     for (size_t first = 0, last; !st && first < samples->count; first = last) {
         struct face_views shown_by = {0};
         for (last = first; last < samples->count && samples->list[last].id == samples->list[first].id;) last++;
@@ -159,7 +160,7 @@ static void take_views(bool *taken, int view_count, const struct offers *o, stru
 enum status sources_choose(int **views, int *count, const struct bake_scene *scene, const int *own, int own_count,
                            const struct bake *b, struct provenance *prov, struct err *err)
 {
-    const int n = scene->set.view_count;
+    const int n = scene->in.set.view_count;
     struct samples samples = {0};
     struct offers offers = {0};
     bool *taken = calloc((size_t)n + 1, sizeof *taken);
@@ -169,7 +170,7 @@ enum status sources_choose(int **views, int *count, const struct bake_scene *sce
     enum status st = taken && worth && *views ? ST_OK : err_nomem(err, "views", (size_t)n * sizeof *worth);
     if (!st) st = find_samples(&samples, b, err);
     if (!st && samples.count) qsort(samples.list, samples.count, sizeof *samples.list, compare_samples);
-    if (!st) st = find_offers(&offers, &samples, scene, b, scene->set.views[own[0]].fx, prov, err);
+    if (!st) st = find_offers(&offers, &samples, scene, b, scene->in.set.views[own[0]].fx, prov, err);
     for (int i = 0; !st && i < own_count; i++) taken[own[i]] = true;
     if (!st) take_views(taken, n, &offers, &samples, scene->params->texture.max_sources, worth);
     for (int v = 0; !st && v < n; v++)

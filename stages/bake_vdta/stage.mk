@@ -1,5 +1,4 @@
 # bake_vdta: a texture atlas for each viewpoint.
 FOLLOWS.bake_vdta := rectify trace_ids
 READS.bake_vdta := the model, axes.txt, one photo's views and those that show what it does not, their ids, what the edits reveal
-WRITES.bake_vdta := vdta/PHOTO/atlas.txt, page0.exr, ...
 HELP.vdta := + texture atlases of the model as each photo sees it

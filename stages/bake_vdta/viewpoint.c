@@ -29,7 +29,10 @@
 #include "common/base/log.h"
 #include "common/base/make_deps.h"
 #include "common/base/progress.h"
+#include "common/capture/photo_camera.h"
+#include "common/capture/photo_quality.h"
 #include "common/image/luminance.h"
+#include "common/product/product.h"
 #include "stages/bake_vdta/sources.h"
 #include "stages/bake_vdta/view_tiles.h"
 
@@ -48,27 +51,14 @@ struct work {
     struct bake bake;
 };
 
-static const char *photo_of(const struct bake_scene *s, int view)
-{
-    const int lens = lens_list_find(&s->lenses, s->set.views[view].name);
-    return lens < 0 ? NULL : s->lenses.lenses[lens].photo;
-}
-
-/* The first view of the view's photo, which stands for all; they follow each other in order of name. */
-static int first_view(const struct bake_scene *s, int view)
-{
-    const char *photo = photo_of(s, view);
-    while (view > 0 && photo && photo_of(s, view - 1) && !strcmp(photo_of(s, view - 1), photo)) view--;
-    return view;
-}
-
 static enum status find_own_views(struct work *w, struct err *err)
 {
     const struct bake_scene *s = w->scene;
-    for (int i = 0; i < s->set.view_count; i++) {
-        const char *photo = photo_of(s, i);
-        if (!photo || strcmp(photo, w->photo)) continue;
-        if (w->own_count == MAX_OWN) return err_set(err, ST_DATA, "photo %s has more than %d views.", photo, MAX_OWN);
+    for (int i = 0; i < s->in.set.view_count; i++) {
+        const struct lens *lens = lens_of_view(&s->in.set, &s->in.lenses, i);
+        if (!lens || strcmp(lens->photo, w->photo)) continue;
+        if (w->own_count == MAX_OWN)
+            return err_set(err, ST_DATA, "photo %s has more than %d views.", w->photo, MAX_OWN);
         w->own[w->own_count++] = i;
     }
     if (w->own_count) return ST_OK;
@@ -104,16 +94,6 @@ static double white_of(float *levels, size_t count)
     return white > 0 ? white : 1;
 }
 
-static enum status add_inputs(struct work *w, int view, bool own, struct err *err)
-{
-    const struct bake_scene *s = w->scene;
-    const char *name = s->set.views[view].name;
-    enum status st = provenance_add_in(w->prov, "views", s->views, name, ".exr", NULL, err);
-    if (!st) st = provenance_add_in(w->prov, "ids", s->ids, name, ".exr", NULL, err);
-    if (!st && own) st = provenance_add_in(w->prov, "reveal", s->reveal, name, ".exr", NULL, err);
-    return st;
-}
-
 static bool is_withheld(const struct bake_scene *s) { return !strcmp(s->params->own_photo, "withheld"); }
 
 static bool is_own(const struct work *w, int view)
@@ -132,9 +112,9 @@ static enum status add_tiles(struct work *w, struct err *err)
     enum status st = ST_OK;
     for (int k = 0; !st && k < w->own_count; k++) {
         struct own_view own = {0};
-        const struct view *camera = &s->set.views[w->own[k]];
-        st = add_inputs(w, w->own[k], true, err);
-        if (!st) st = own_view_read(&own, s->views, s->ids, s->reveal, camera, s->axes.scale, &s->params->texture, err);
+        const struct view *camera = &s->in.set.views[w->own[k]];
+        st = own_view_read(&own, s->views, s->ids, s->reveal, camera, s->in.axes.scale, &s->params->texture, w->prov,
+                           err);
         if (!st) st = add_levels(&levels, &count, &room, &own.view, err);
         if (!st && is_withheld(s)) memset(own.view.own, SOURCE_NONE, (size_t)camera->width * (size_t)camera->height);
         if (!st) st = view_tiles_add(&w->bake, &own, k, !strcmp(s->params->reveal, "all"), err);
@@ -156,8 +136,8 @@ static enum status set_sources(struct work *w, struct err *err)
     uint32_t made[MAX_OWN] = {0};
     enum status st = names && groups && own ? ST_OK : err_nomem(err, "sources", n * sizeof *names);
     for (int i = 0; !st && i < w->view_count; i++) {
-        names[i] = s->set.views[w->views[i]].name;
-        groups[i] = first_view(s, w->views[i]);
+        names[i] = s->in.set.views[w->views[i]].name;
+        groups[i] = photo_of_view(&s->in.set, &s->in.lenses, w->views[i]);
         for (int k = 0; k < w->own_count; k++)
             if (w->own[k] == w->views[i]) own[i] = true, made[k] = (uint32_t)i, w->bake.own_group = groups[i];
     }
@@ -178,9 +158,8 @@ static enum status read_sources(struct work *w, uint64_t *bytes, struct err *err
     progress_start(&progress, w->photo, w->view_count, "views");
     for (int i = 0; !st && i < w->view_count; i++) {
         struct source_view view = {0};
-        st = add_inputs(w, w->views[i], false, err);
-        if (!st)
-            st = source_view_read(&view, NULL, s->views, s->ids, &s->set.views[w->views[i]], &s->params->texture, err);
+        st = source_view_read(&view, NULL, s->views, s->ids, &s->in.set.views[w->views[i]], &s->params->texture,
+                              w->prov, err);
         if (!st && !(is_withheld(s) && is_own(w, w->views[i]))) bake_add_view(&w->bake, &view, i);
         *bytes += view.bytes;
         source_view_release(&view);
@@ -200,10 +179,10 @@ static enum status describe(struct atlas *a, const struct work *w, struct err *e
     if (!a->views || !a->sources || !a->viewpoint) return err_nomem(err, "names", (size_t)w->view_count);
     a->centre = w->bake.centre;
     for (; a->view_count < w->own_count; a->view_count++)
-        if (!(a->views[a->view_count] = strdup(s->set.views[w->own[a->view_count]].name)))
+        if (!(a->views[a->view_count] = strdup(s->in.set.views[w->own[a->view_count]].name)))
             return err_nomem(err, "a name", 1);
     for (; a->source_count < w->view_count; a->source_count++)
-        if (!(a->sources[a->source_count] = strdup(s->set.views[w->views[a->source_count]].name)))
+        if (!(a->sources[a->source_count] = strdup(s->in.set.views[w->views[a->source_count]].name)))
             return err_nomem(err, "a name", 1);
     return ST_OK;
 }
@@ -215,12 +194,12 @@ static enum status write_deps(const struct work *w, const char *folder, struct e
     const size_t n = (size_t)w->view_count;
     char(*paths)[FILE_PATH] = malloc((2 * n + 1) * sizeof *paths);
     const char **files = malloc((2 * n + 1) * sizeof *files);
-    enum status st = paths && files ? file_path(paths[2 * n], folder, "atlas", ".txt", err)
+    enum status st = paths && files ? product_path_in(paths[2 * n], folder, PRODUCT_ATLAS, NULL, err)
                                     : err_nomem(err, "file names", 2 * n * sizeof *paths);
     for (size_t i = 0; !st && i < n; i++) {
-        const char *name = s->set.views[w->views[i]].name;
-        st = file_path(paths[2 * i], s->views, name, ".exr", err);
-        if (!st) st = file_path(paths[2 * i + 1], s->ids, name, ".exr", err);
+        const struct product_key key = {.view = s->in.set.views[w->views[i]].name};
+        st = product_path_in(paths[2 * i], s->views, PRODUCT_VIEW, &key, err);
+        if (!st) st = product_path_in(paths[2 * i + 1], s->ids, PRODUCT_IDS, &key, err);
         files[2 * i] = paths[2 * i];
         files[2 * i + 1] = paths[2 * i + 1];
     }
@@ -259,7 +238,7 @@ static enum status bake_work(struct work *w, struct err *err)
     uint64_t bytes = 0;
     w->bake = (struct bake){.surfaces = &w->scene->surfaces, .params = &w->scene->params->texture, .has_centre = true};
     enum status st = find_own_views(w, err);
-    if (!st) w->bake.centre = w->scene->set.views[w->own[0]].center;
+    if (!st) w->bake.centre = w->scene->in.set.views[w->own[0]].center;
     if (!st) st = add_tiles(w, err);
     if (!st) st = sources_choose(&w->views, &w->view_count, w->scene, w->own, w->own_count, &w->bake, w->prov, err);
     if (!st) st = set_sources(w, err);

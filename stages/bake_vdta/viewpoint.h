@@ -2,17 +2,13 @@
 #ifndef REMODEL_BAKE_VIEWPOINT_H
 #define REMODEL_BAKE_VIEWPOINT_H
 
-#include "common/capture/lens_list.h"
-#include "common/model/model_axes.h"
+#include "common/model/scene_inputs.h"
 #include "common/texture/bake_atlas.h"
 #include "stages/bake_vdta/vdta_params.h"
 
 /* What all viewpoints of a run share. */
 struct bake_scene {
-    struct camera_set set; /* cameras in the model's frame */
-    struct lens_list lenses;
-    struct model_axes axes;
-    struct solid_mesh model;
+    struct scene_inputs in; /* cameras in the model's frame; lenses; axes; the unedited model */
     struct surfaces surfaces;
     const char *views, *ids, *reveal, *out; /* folders */
     const struct vdta_params *params;

@@ -11,7 +11,7 @@
 
 #include "common/base/cli.h"
 #include "common/base/file_path.h"
-#include "common/texture/bake_inputs.h"
+#include "common/product/product.h"
 #include "stages/bake_vita/vita.h"
 
 _Static_assert(offsetof(struct vita_params, texture) == 0, "the table below has offsets into struct texture_params");
@@ -38,23 +38,20 @@ static enum status read_models(struct vita_scene *s, const struct files *f, stru
     s->models = calloc((size_t)f->edits.count + 1, sizeof *s->models);
     if (!s->models) return err_nomem(err, "models", (size_t)f->edits.count * sizeof *s->models);
     s->model_count = 1 + f->edits.count;
-    enum status st = solid_mesh_read(&s->models[0], f->model, err);
-    if (!st) st = provenance_add_file(prov, "model/model.txt", f->model, err);
-    for (int i = 0; !st && i < f->edits.count; i++) {
-        char name[64];
-        snprintf(name, sizeof name, "edit %d", i + 1);
-        st = solid_mesh_read(&s->models[1 + i], f->edits.items[i], err);
-        if (!st) st = provenance_add_file(prov, name, f->edits.items[i], err);
-    }
+    enum status st = solid_mesh_read(&s->models[0], f->model, prov, err);
+    for (int i = 0; !st && i < f->edits.count; i++)
+        st = solid_mesh_read(&s->models[1 + i], f->edits.items[i], prov, err);
     return st ? st : surfaces_make(&s->surfaces, s->models, s->model_count, err);
 }
 
-static enum status read_index(struct vita_scene *s, const char *path, struct err *err)
+static enum status read_index(struct vita_scene *s, struct provenance *prov, struct err *err)
 {
+    char path[FILE_PATH];
     struct face_index index = {0};
     s->shown_by = calloc((size_t)s->surfaces.count + 1, sizeof *s->shown_by);
     if (!s->shown_by) return err_nomem(err, "faces", (size_t)s->surfaces.count * sizeof *s->shown_by);
-    enum status st = face_index_open(&index, path, err);
+    enum status st = product_path_in(path, s->ids, PRODUCT_FACE_INDEX, NULL, err);
+    if (!st) st = face_index_open(&index, path, prov, err);
     for (int i = 0; !st && i < s->surfaces.count; i++)
         st = face_index_load(&s->shown_by[i], &index, s->surfaces.list[i].id, err);
     face_index_close(&index);
@@ -63,18 +60,17 @@ static enum status read_index(struct vita_scene *s, const char *path, struct err
 
 static enum status read_scene(struct vita_scene *s, const struct files *f, struct provenance *prov, struct err *err)
 {
-    char path[FILE_PATH];
-    enum status st = bake_inputs_read(&s->set, &s->lenses, &s->axes, s->views, f->axes, prov, err);
+    const struct scene_files files = {.views = s->views, .axes = f->axes};
+    enum status st =
+        scene_inputs_read(&s->in, SCENE_CAMERAS | SCENE_LENSES | SCENE_AXES | SCENE_MODEL_VIEWS, &files, prov, err);
     if (!st) st = read_models(s, f, prov, err);
-    if (!st) st = provenance_add_in(prov, "ids", s->ids, "index", ".txt", path, err);
-    if (!st) st = read_index(s, path, err);
+    if (!st) st = read_index(s, prov, err);
     return st;
 }
 
 static void release_scene(struct vita_scene *s)
 {
-    camera_set_release(&s->set);
-    lens_list_release(&s->lenses);
+    scene_inputs_release(&s->in);
     for (int i = 0; s->shown_by && i < s->surfaces.count; i++) face_views_release(&s->shown_by[i]);
     free(s->shown_by);
     surfaces_release(&s->surfaces);

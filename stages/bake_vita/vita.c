@@ -26,6 +26,8 @@
 #include "common/base/array.h"
 #include "common/base/log.h"
 #include "common/base/progress.h"
+#include "common/capture/photo_camera.h"
+#include "common/capture/photo_quality.h"
 #include "common/image/luminance.h"
 #include "common/math/weighted.h"
 #include "stages/bake_vita/ortho_tiles.h"
@@ -66,12 +68,12 @@ static bool is_seen(const struct vita_scene *s, int surface)
 static void choose_views(bool *taken, const struct vita_scene *s, int first, int last)
 {
     int count = 0;
-    memset(taken, 0, (size_t)s->set.view_count * sizeof *taken);
+    memset(taken, 0, (size_t)s->in.set.view_count * sizeof *taken);
     for (int rank = 0; rank < s->params->texture.max_sources; rank++)
         for (int i = first; i < last; i++) {
             const struct face_views *f;
             if (rank >= views_of(s, i, &f)) continue;
-            const int view = camera_set_find(&s->set, f->views[rank].name);
+            const int view = camera_set_find(&s->in.set, f->views[rank].name);
             if (view < 0 || taken[view] || count == MAX_BATCH_VIEWS) continue;
             taken[view] = true;
             count++;
@@ -82,17 +84,17 @@ static void choose_views(bool *taken, const struct vita_scene *s, int first, int
 static enum status list_sources(struct work *w, const int *batches, int batch_count, bool *taken, struct err *err)
 {
     const struct vita_scene *s = w->scene;
-    for (int v = 0; v < s->set.view_count; v++) w->source_of_view[v] = -1;
+    for (int v = 0; v < s->in.set.view_count; v++) w->source_of_view[v] = -1;
     for (int i = 0; i < batch_count; i++) {
         choose_views(taken, s, batches[i], batches[i + 1]);
-        for (int v = 0; v < s->set.view_count; v++)
+        for (int v = 0; v < s->in.set.view_count; v++)
             if (taken[v]) w->source_of_view[v] = 0;
     }
-    for (int v = 0; v < s->set.view_count; v++) {
+    for (int v = 0; v < s->in.set.view_count; v++) {
         if (w->source_of_view[v] < 0) continue;
         const int n = w->atlas.source_count;
         if (array_append(&w->atlas.sources, (size_t)n, sizeof *w->atlas.sources, "sources", err)) return err->status;
-        if (!(w->atlas.sources[n] = strdup(s->set.views[v].name))) return err_nomem(err, "a name", 1);
+        if (!(w->atlas.sources[n] = strdup(s->in.set.views[v].name))) return err_nomem(err, "a name", 1);
         w->source_of_view[v] = w->atlas.source_count++;
     }
     return ST_OK;
@@ -100,27 +102,16 @@ static enum status list_sources(struct work *w, const int *batches, int batch_co
 
 /* ------------------------------------------------------------------------------------------------------- one batch */
 
-static int photo_of(const struct vita_scene *s, int view)
-{
-    const int lens = lens_list_find(&s->lenses, s->set.views[view].name);
-    int first = 0;
-    if (lens < 0) return view;
-    /* the photo's first view stands for it; the list is in order of view, so it is near */
-    for (first = lens; first > 0 && !strcmp(s->lenses.lenses[first - 1].photo, s->lenses.lenses[lens].photo); first--) {
-    }
-    return first;
-}
-
 static enum status set_sources(struct bake *b, const struct vita_scene *s, const bool *taken, int *view_of,
                                struct err *err)
 {
     const char *names[MAX_BATCH_VIEWS];
     int groups[MAX_BATCH_VIEWS], count = 0;
     bool own[MAX_BATCH_VIEWS] = {false};
-    for (int v = 0; v < s->set.view_count; v++)
+    for (int v = 0; v < s->in.set.view_count; v++)
         if (taken[v]) {
-            names[count] = s->set.views[v].name;
-            groups[count] = photo_of(s, v);
+            names[count] = s->in.set.views[v].name;
+            groups[count] = photo_of_view(&s->in.set, &s->in.lenses, v);
             view_of[count++] = v;
         }
     b->own_group = -1;
@@ -132,11 +123,9 @@ static enum status read_views(struct work *w, struct bake *b, const int *view_of
     const struct vita_scene *s = w->scene;
     enum status st = ST_OK;
     for (int i = 0; !st && i < b->source_count; i++) {
-        const struct view *camera = &s->set.views[view_of[i]];
+        const struct view *camera = &s->in.set.views[view_of[i]];
         struct source_view view = {0};
-        st = provenance_add_in(w->prov, "views", s->views, camera->name, ".exr", NULL, err);
-        if (!st) st = provenance_add_in(w->prov, "ids", s->ids, camera->name, ".exr", NULL, err);
-        if (!st) st = source_view_read(&view, NULL, s->views, s->ids, camera, &s->params->texture, err);
+        st = source_view_read(&view, NULL, s->views, s->ids, camera, &s->params->texture, w->prov, err);
         if (!st) bake_add_view(b, &view, i);
         w->bytes += view.bytes;
         source_view_release(&view);
@@ -216,7 +205,7 @@ static int64_t count_views(const struct vita_scene *s, const int *batches, int c
     int64_t n = 0;
     for (int i = 0; i < count; i++) {
         choose_views(taken, s, batches[i], batches[i + 1]);
-        for (int v = 0; v < s->set.view_count; v++) n += taken[v];
+        for (int v = 0; v < s->in.set.view_count; v++) n += taken[v];
     }
     return n;
 }
@@ -234,7 +223,7 @@ static double texel_side(const struct vita_scene *s)
 
 enum status vita_bake(const struct vita_scene *scene, struct provenance *prov, struct err *err)
 {
-    const size_t views = (size_t)scene->set.view_count;
+    const size_t views = (size_t)scene->in.set.view_count;
     struct work w = {.scene = scene, .prov = prov, .side = texel_side(scene)};
     int *batches = malloc(((size_t)scene->surfaces.count + 2) * sizeof *batches);
     bool *taken = malloc((views + 1) * sizeof *taken);

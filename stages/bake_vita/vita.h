@@ -2,16 +2,13 @@
 #ifndef REMODEL_VITA_H
 #define REMODEL_VITA_H
 
-#include "common/capture/lens_list.h"
-#include "common/model/model_axes.h"
+#include "common/model/scene_inputs.h"
 #include "common/texture/bake_atlas.h"
 #include "common/texture/face_index.h"
 #include "stages/bake_vita/vita_params.h"
 
 struct vita_scene {
-    struct camera_set set; /* cameras in the model's frame */
-    struct lens_list lenses;
-    struct model_axes axes;
+    struct scene_inputs in;    /* cameras in the model's frame; lenses; axes */
     struct solid_mesh *models; /* the unedited one, then those of the edits */
     int model_count;
     struct surfaces surfaces;

@@ -21,6 +21,8 @@
 #include "common/base/log.h"
 #include "common/base/outfile.h"
 #include "common/capture/photo_list.h"
+#include "common/model/scene_inputs.h"
+#include "common/product/product.h"
 #include "stages/build_model/edit_chain.h"
 #include "stages/build_model/layout.h"
 #include "stages/build_model/objects.h"
@@ -37,30 +39,21 @@ struct job {
     struct model_params params;
     struct provenance prov;
 
-    struct model_axes frame;
-    struct camera_set set, held_set;
-    struct lens_list lenses, held_lenses;
+    struct scene_inputs in, held_in; /* axes, views and lenses; views and lenses that are held out */
     struct placer placer;
 };
 
 static enum status read_frame(struct job *j, struct err *err)
 {
+    const struct scene_files files = {.views = j->views, .axes = j->axes}, held = {.views = j->held};
+    const struct placer_views views[2] = {{&j->in.set, &j->in.lenses}, {&j->held_in.set, &j->held_in.lenses}};
     struct point_cloud cloud = {0};
-    char path[FILE_PATH];
-    enum status st = model_axes_read(&j->frame, j->axes, err);
-    if (!st) st = provenance_add_file(&j->prov, "model/axes.txt", j->axes, err);
+    enum status st =
+        scene_inputs_read(&j->in, SCENE_AXES | (j->views ? SCENE_POINTS | SCENE_LENSES : 0), &files, &j->prov, err);
     if (st || !j->views) return st;
-    st = camera_set_read(&j->set, j->views, err);
-    if (!st) st = camera_set_add_inputs(&j->prov, j->views, err);
-    if (!st) st = provenance_add_in(&j->prov, "views", j->views, "lenses.txt", "", path, err);
-    if (!st) st = lens_list_read(&j->lenses, path, err);
-    if (!st && j->held) st = camera_set_read_cameras(&j->held_set, j->held, err);
-    if (!st && j->held) st = provenance_add_in(&j->prov, "holdout/views", j->held, "lenses.txt", "", path, err);
-    if (!st && j->held) st = lens_list_read(&j->held_lenses, path, err);
-    const struct placer_views views[2] = {{&j->set, &j->lenses}, {&j->held_set, &j->held_lenses}};
-    if (!st && j->points) st = point_cloud_read(&cloud, j->points, err);
-    if (!st && j->points) st = provenance_add_file(&j->prov, "points/points.ply", j->points, err);
-    if (!st) st = placer_init(&j->placer, views, &j->frame, j->points ? &cloud : NULL, &j->params, err);
+    if (j->held) st = scene_inputs_read(&j->held_in, SCENE_CAMERAS | SCENE_LENSES, &held, &j->prov, err);
+    if (!st && j->points) st = point_cloud_read(&cloud, j->points, &j->prov, err);
+    if (!st) st = placer_init(&j->placer, views, &j->in.axes, j->points ? &cloud : NULL, &j->params, err);
     point_cloud_release(&cloud);
     return st;
 }
@@ -70,11 +63,13 @@ static enum status write_model(struct job *j, const struct plan *plan, const str
 {
     const struct placer *placer = j->views ? &j->placer : NULL;
     char path[FILE_PATH];
-    if (file_path(path, j->out, "plan.svg", "", err) || plan_picture_write(plan, placer, j->frame.metric, path, err) ||
-        file_path(path, j->out, "view.png", "", err) || view_picture_write(mesh, plan, placer, path, err) ||
-        file_path(path, j->out, "plan.txt", "", err) || plan_write(plan, path, &j->prov, err) ||
-        file_path(path, j->out, "merged.txt", "", err) || merged_write(log, path, &j->prov, err) ||
-        file_path(path, j->out, "model.txt", "", err) || solid_mesh_write(mesh, path, &j->prov, err))
+    if (product_path_in(path, j->out, PRODUCT_PLAN_PICTURE, NULL, err) ||
+        plan_picture_write(plan, placer, j->in.axes.metric, path, err) ||
+        product_path_in(path, j->out, PRODUCT_MODEL_PICTURE, NULL, err) ||
+        view_picture_write(mesh, plan, placer, path, err) || product_path_in(path, j->out, PRODUCT_PLAN, NULL, err) ||
+        plan_write(plan, path, &j->prov, err) || product_path_in(path, j->out, PRODUCT_MERGED, NULL, err) ||
+        merged_write(log, path, &j->prov, err) || product_path_in(path, j->out, PRODUCT_MODEL, NULL, err) ||
+        solid_mesh_write(mesh, path, &j->prov, err))
         return err->status;
     return ST_OK;
 }
@@ -88,9 +83,9 @@ static enum status write_edit(struct job *j, const struct solid_mesh *mesh, cons
     char path[FILE_PATH];
     enum status st = texture_rules_make(&map, mesh, base, plan, err);
     if (!st) st = objects_make(&objects, plan, j->scene, err);
-    if (!st) st = file_path(path, j->out, "objects.txt", "", err);
+    if (!st) st = product_path_in(path, j->out, PRODUCT_OBJECTS, NULL, err);
     if (!st) st = object_list_write(&objects, path, &j->prov, err);
-    if (!st) st = file_path(path, j->out, "texture.txt", "", err);
+    if (!st) st = product_path_in(path, j->out, PRODUCT_TEXTURE_MAP, NULL, err);
     if (!st) st = texture_map_write(&map, path, &j->prov, err);
     object_list_release(&objects);
     texture_map_release(&map);
@@ -130,7 +125,7 @@ static enum status build(struct job *j, struct err *err)
     struct solid_report report = {0};
     enum status st = read_frame(j, err);
     if (!st) {
-        plan_begin(&plan, &j->frame);
+        plan_begin(&plan, &j->in.axes);
         st = plan_apply_model(&plan, j->script, placer, &j->prov, err);
     }
     if (!st && j->edit) st = apply_edit(j, &plan, err);
@@ -139,7 +134,7 @@ static enum status build(struct job *j, struct err *err)
         st = err_set(err, ST_DATA, "%s: the script describes no solid; add walls, rooms or boxes.", j->script);
     if (!st) st = solids_unite(&mesh, &solids, &log, err);
     if (!st) st = solid_mesh_check(&mesh, 0, &report, err);
-    if (!st && j->base) st = solid_mesh_read(&base, j->base, err);
+    if (!st && j->base) st = solid_mesh_read(&base, j->base, NULL, err);
     if (!st && j->base) st = provenance_add_file(&j->prov, "model/model.txt", j->base, err);
     if (!st && j->base) st = solid_mesh_carry_ids(&mesh, &base, err);
     if (!st && j->base) st = write_edit(j, &mesh, &base, &plan, err);
@@ -162,13 +157,13 @@ static enum status overlay(struct job *j, struct err *err)
     char path[FILE_PATH];
     int at = 0;
     enum status st = read_frame(j, err);
-    if (!st) st = solid_mesh_read(&mesh, j->model, err);
+    if (!st) st = solid_mesh_read(&mesh, j->model, NULL, err);
     if (!st) {
         while (at < j->placer.photo_count && strcmp(j->placer.photos[at].id, j->overlay)) at++;
         if (at == j->placer.photo_count)
             st = err_set(err, ST_DATA, "%s/lenses.txt has no photo %s.", j->views, j->overlay);
     }
-    if (!st) st = photo_record_read(&record, j->records, j->overlay, err);
+    if (!st) st = photo_record_read(&record, j->records, j->overlay, NULL, err);
     if (!st) st = file_path(path, j->photos, record.file, "", err);
     if (!st) st = photo_read(&photo, path, err);
     if (!st && (photo.info.width != j->placer.photos[at].camera.lens.width ||
@@ -224,10 +219,8 @@ int main(int argc, char **argv)
         (j.overlay ? overlay(&j, &err) : build(&j, &err)))
         err_report(&err);
     placer_release(&j.placer);
-    lens_list_release(&j.held_lenses);
-    camera_set_release(&j.held_set);
-    lens_list_release(&j.lenses);
-    camera_set_release(&j.set);
+    scene_inputs_release(&j.held_in);
+    scene_inputs_release(&j.in);
     provenance_release(&j.prov);
     return err_exit_code(&err);
 }

@@ -1,8 +1,9 @@
 /* plan_file.c - writes plan.txt and merged.txt. */
 #include "stages/build_model/plan_file.h"
 
-#include "common/base/outfile.h"
 #include "common/base/scan.h"
+
+#include "common/product/product.h"
 
 static void print_plan(const struct plan *plan, FILE *to)
 {
@@ -62,10 +63,8 @@ static void print_plan(const struct plan *plan, FILE *to)
 enum status plan_write(const struct plan *plan, const char *path, const struct provenance *prov, struct err *err)
 {
     struct outfile f = {0};
-    if (outfile_open(&f, path, err)) return err->status;
+    if (product_begin(&f, PRODUCT_PLAN, path, prov, err)) return err->status;
     const locale_t before = uselocale(scan_c_locale());
-    if (prov) provenance_print(prov, f.fp);
-    fputs("remodel-plan 2\n", f.fp);
     print_plan(plan, f.fp);
     uselocale(before);
     const enum status st = outfile_commit(&f, err);
@@ -76,9 +75,7 @@ enum status plan_write(const struct plan *plan, const char *path, const struct p
 enum status merged_write(const struct unite_log *log, const char *path, const struct provenance *prov, struct err *err)
 {
     struct outfile f = {0};
-    if (outfile_open(&f, path, err)) return err->status;
-    if (prov) provenance_print(prov, f.fp);
-    fputs("remodel-merged 1\n", f.fp);
+    if (product_begin(&f, PRODUCT_MERGED, path, prov, err)) return err->status;
     for (int i = 0; i < log->count; i++) {
         const struct unite_note *n = &log->notes[i];
         if (n->event == UNITE_MERGED)

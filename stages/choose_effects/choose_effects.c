@@ -8,9 +8,9 @@
 
 #include "common/base/cli.h"
 #include "common/base/log.h"
-#include "common/base/outfile.h"
 #include "common/film/subject_list.h"
 #include "common/film/taxonomy.h"
+#include "common/product/product.h"
 
 /* name, type, default, min, max, unit, help */
 #define CHOICE_PARAMS(X) X(seed, int, 1, 0, 1000000, "", "seed of the random choice of an effect for EFFECT=auto")
@@ -30,9 +30,8 @@ static enum status write_choice(const struct film_effect *list, int count, const
                                 const struct provenance *prov, struct err *err)
 {
     struct outfile f = {0};
-    enum status st = outfile_open(&f, path, err);
+    enum status st = product_begin(&f, PRODUCT_EFFECT_CHOICE, path, prov, err);
     if (!st) {
-        provenance_print(prov, f.fp);
         fputs("EFFECTS :=", f.fp);
         for (int i = 0; i < count; i++) {
             char name[EFFECT_NAME_SIZE];
@@ -53,8 +52,7 @@ static enum status choose(const char *subjects, const char *which, const char *o
     struct subject_list found = {0};
     int count = 0;
 
-    enum status st = subject_list_read(&found, subjects, err);
-    if (!st) st = provenance_add_file(prov, "parallax/subjects.txt", subjects, err);
+    enum status st = subject_list_read(&found, subjects, prov, err);
     const struct scene_subjects scene = scene_subjects_of(&found);
     if (!st && !strcmp(which, "all")) {
         count = film_effects_list(list, &scene);

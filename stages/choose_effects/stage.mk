@@ -1,7 +1,6 @@
 # choose_effects: which effects suit a scene, for EFFECT=auto and EFFECT=all.
 FOLLOWS.choose_effects := find_subjects
 READS.choose_effects := subjects.txt; only for EFFECT=auto and all
-WRITES.choose_effects := parallax/auto-effects.mk, all-effects.mk
 VARIABLES.choose_effects := EFFECT
 
 ## EFFECT="NAMES": films to make, by name, like dolly_in or dolly_in+narrow_dof (docs/formats.md); establishing_dolly by default

@@ -14,6 +14,7 @@
 #include "common/base/scan.h"
 #include "common/film/film_views.h"
 #include "common/film/regions.h"
+#include "common/product/product.h"
 #include "stages/choose_views/view_cluster.h"
 
 struct job {
@@ -29,10 +30,9 @@ static enum status read_wanted(int **wanted, int *count, const struct job *job, 
     struct lens_list lenses = {0};
     char path[FILE_PATH];
     if (!job->subjects) return ST_OK;
-    enum status st = region_list_read(&regions, job->subjects, err);
-    if (!st) st = provenance_add_file(prov, "subjects.txt", job->subjects, err);
-    if (!st) st = provenance_add_in(prov, "views", job->views, "lenses.txt", "", path, err);
-    if (!st) st = lens_list_read(&lenses, path, err);
+    enum status st = region_list_read(&regions, job->subjects, prov, err);
+    if (!st) st = product_path_in(path, job->views, PRODUCT_LENSES, NULL, err);
+    if (!st) st = lens_list_read(&lenses, path, prov, err);
     if (!st && !(*wanted = malloc(((size_t)regions.count + 1) * sizeof **wanted)))
         st = err_nomem(err, "the views of subjects", (size_t)regions.count * sizeof **wanted);
     for (int i = 0; !st && i < regions.count; i++) {
@@ -94,8 +94,7 @@ static enum status choose(const struct job *job, struct provenance *prov, struct
     struct camera_set set = {0};
     struct view_cluster cluster = {0};
     const bool any = !strcmp(job->params.around, "auto"), all = !strcmp(job->params.around, "all");
-    enum status st = camera_set_read(&set, job->views, err);
-    if (!st) st = camera_set_add_inputs(prov, job->views, err);
+    enum status st = camera_set_read(&set, job->views, prov, err);
     if (!st && !all) {
         const double agreement = views_agreement(&set);
         const bool all_round = agreement < job->params.min_agreement;

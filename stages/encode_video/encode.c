@@ -16,6 +16,7 @@
 #include "common/base/progress.h"
 #include "common/image/exr.h"
 #include "common/image/image.h"
+#include "common/product/product.h"
 
 #define PARAM_STRUCT struct encode_params
 const struct param encode_param_table[] = {ENCODE_PARAMS(PARAM_ROW) PARAM_END};
@@ -53,15 +54,12 @@ static enum status read_frame(unsigned char *rgb, const struct camera_path *path
 {
     static const char *const names[] = {"R", "G", "B"};
     const struct view *camera = &path->frames[frame].camera;
-    const size_t size = strlen(folder) + 64;
     struct exr_image exr = {0};
     struct image linear = {0};
-    enum status st = ST_OK;
-    char *file = malloc(size);
+    char file[FILE_PATH];
 
-    if (!file) return err_nomem(err, "a file name", size);
-    snprintf(file, size, "%s/%.32s.exr", folder, camera->name);
-    if (access(file, F_OK))
+    enum status st = product_path_in(file, folder, PRODUCT_FRAME, &(struct product_key){.frame = camera->name}, err);
+    if (!st && access(file, F_OK))
         st = err_set(err, ST_DATA, "frame %d of %d is missing: there is no %s; render it, then encode again.",
                      frame + 1, path->frame_count, file);
     if (!st) st = exr_read(&exr, file, names, 3, err);
@@ -79,7 +77,6 @@ static enum status read_frame(unsigned char *rgb, const struct camera_path *path
     }
     image_release(&linear);
     exr_image_release(&exr);
-    free(file);
     return st;
 }
 

@@ -23,7 +23,7 @@ int main(int argc, char **argv)
     struct err err = ERR_INIT;
 
     if (cli_parse(argc, argv, "encode_video", opts, &prov, &err) != CLI_RUN ||
-        camera_path_read(&path, path_folder, &err) || encode_frames(&path, frames, out, &params, &err))
+        camera_path_read(&path, path_folder, NULL, &err) || encode_frames(&path, frames, out, &params, &err))
         err_report(&err);
     camera_path_release(&path);
     provenance_release(&prov);

@@ -74,15 +74,14 @@ enum status evaluate_axes(struct evaluation *e, struct err *err)
     struct model_axes axes;
     struct true_room room = {0};
     char path[FILE_PATH];
-    if (file_path(path, e->folder, "model/axes.txt", "", err)) return err->status;
+    if (evaluation_path(path, e, PRODUCT_AXES, NULL, err)) return err->status;
     if (!path_is_file(path)) return metric_note(t, err, "skipped axes and heights: there is no model/axes.txt");
     if (!e->truth_folder) return metric_note(t, err, "skipped axes and heights: no TRUTH is given");
     if (!e->aligned) return metric_note(t, err, "skipped axes and heights: the cameras do not tell where the truth is");
     if (true_room_read(&room, e->truth_folder, e->prov, err)) return err->status;
     if (!room.known)
         return metric_note(t, err, "skipped axes and heights: the truth holds neither scene.txt nor scene-truth.txt");
-    enum status st = evaluation_input(e, path, "model", "axes.txt", "", err) || model_axes_read(&axes, path, err) ||
-                     add_axes(e, &axes, &room, err);
+    enum status st = model_axes_read(&axes, path, e->prov, err) || add_axes(e, &axes, &room, err);
     true_room_release(&room);
     return st ? err->status : ST_OK;
 }

@@ -6,7 +6,8 @@
 /* The pose of the photo from that of one of its views. */
 static struct pose photo_pose(const struct view_set *set, int view)
 {
-    struct mat3 photo_from_view = mat3_transpose(mat3_from_quat(lens_of_view(set, view)->view_from_photo));
+    struct mat3 photo_from_view =
+        mat3_transpose(mat3_from_quat(lens_of_view(&set->cameras, &set->lenses, view)->view_from_photo));
     const struct view *v = &set->cameras.views[view];
     return (struct pose){quat_from_mat3(mat3_multiply(photo_from_view, v->cam_from_world)),
                          mat3_apply(photo_from_view, v->translation)};
@@ -21,7 +22,7 @@ static int common_poses(const struct evaluation *e, struct pose *found, struct p
         bool done = !e->truth.photos[p].lens.width;
         for (int k = 0; k < 2; k++)
             for (int i = 0; i < sets[k]->cameras.view_count && !done; i++) {
-                if (photo_of_view(e, sets[k], i) != p) continue;
+                if (evaluation_photo(e, sets[k], i) != p) continue;
                 found[count] = photo_pose(sets[k], i);
                 truth[count++] = e->truth.photos[p].pose;
                 done = true;

@@ -35,7 +35,7 @@
 static void mark_kept(const struct evaluation *e, bool *kept)
 {
     for (int i = 0; i < e->views.cameras.view_count; i++) {
-        int photo = photo_of_view(e, &e->views, i);
+        int photo = evaluation_photo(e, &e->views, i);
         kept[photo] = e->truth.photos[photo].lens.width > 0;
     }
 }
@@ -171,9 +171,9 @@ static enum status write_truth(const struct evaluation *e, const struct view *vi
 {
     struct exr_image im = {0};
     struct exr_plane *z = NULL, *o = NULL;
-    char folder[FILE_PATH], path[FILE_PATH];
+    char path[FILE_PATH];
     size_t pixels = (size_t)view->width * (size_t)view->height;
-    if (file_path(folder, e->folder, "evaluate/truth", "", err) || file_path(path, folder, view->name, ".exr", err) ||
+    if (evaluation_path(path, e, PRODUCT_TRUTH_DEPTH, &(struct product_key){.view = view->name}, err) ||
         exr_image_init(&im, view->width, view->height, err) || exr_add_plane(&im, "Z", EXR_FLOAT, &z, err) ||
         exr_add_plane(&im, "occluded", EXR_UINT, &o, err)) {
         exr_image_release(&im);
@@ -239,8 +239,8 @@ static enum status compare_depth(struct evaluation *e, int i, struct photo_truth
     if (!st) {
         int side = view->width > view->height ? view->width : view->height;
         double ratio = e->params->disparity_side ? (double)e->params->disparity_side / side : 1;
-        true_depth_in_view(truth, occluded, view, lens_of_view(&e->views, i), &e->truth.photos[tv->photo], tv->points,
-                           tv->occluded);
+        true_depth_in_view(truth, occluded, view, lens_of_view(&e->views.cameras, &e->views.lenses, i),
+                           &e->truth.photos[tv->photo], tv->points, tv->occluded);
         for (size_t k = 0; k < pixels; k++) s->z[k] = (float)(s->z[k] * e->truth_from_scene.scale);
         sigma_errors_add(&scene->sigmas, s->z, truth, s->sigma, s->classes, pixels);
         depth_errors_add(&errors, s->z, truth, occluded, pixels, view->fx * ratio * e->baseline);
@@ -258,14 +258,14 @@ static enum status evaluate_view(struct evaluation *e, int i, const bool *kept, 
                                  struct scene_errors *scene, struct err *err)
 {
     const struct view *view = &e->views.cameras.views[i];
-    int photo = photo_of_view(e, &e->views, i);
+    int photo = evaluation_photo(e, &e->views, i);
     struct layered_depth d = {0};
     uint64_t here = 0, known_here = 0;
     char path[FILE_PATH];
     struct stated_depth stated = {0};
     enum status st = stated_depth_init(&stated, (size_t)view->width * (size_t)view->height, err);
-    if (!st) st = evaluation_input(e, path, "depth", view->name, ".exr", err);
-    if (!st) st = layered_depth_read(&d, path, err);
+    if (!st) st = evaluation_path(path, e, PRODUCT_DEPTH, &(struct product_key){.view = view->name}, err);
+    if (!st) st = layered_depth_read(&d, path, e->prov, err);
     if (!st && (d.width != view->width || d.height != view->height))
         st = err_set(err, ST_DATA, "%s is %d x %d px, but its view is %d x %d px; make the depth map again.", path,
                      d.width, d.height, view->width, view->height);
@@ -334,10 +334,10 @@ enum status evaluate_depths(struct evaluation *e, struct err *err)
     progress_start(&progress, "depth maps", views->view_count, "views");
     for (int i = 0; !st && i < views->view_count; i++) {
         char path[FILE_PATH];
-        snprintf(path, sizeof path, "%s/depth/%s.exr", e->folder, views->views[i].name);
-        if (path_is_file(path))
+        st = evaluation_path(path, e, PRODUCT_DEPTH, &(struct product_key){.view = views->views[i].name}, err);
+        if (!st && path_is_file(path))
             st = evaluate_view(e, i, kept, &tv, &scene, err);
-        else
+        else if (!st)
             missing++;
         progress_add(&progress, 1);
     }

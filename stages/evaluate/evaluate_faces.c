@@ -129,8 +129,8 @@ static enum status run_job(struct evaluation *e, struct faces_job *job, const ch
 {
     static const struct mat3 same = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
     char path[FILE_PATH];
-    enum status st = evaluation_input(e, path, model, "model.txt", "", err);
-    if (!st) st = model_rays_read(&job->model, path, MODEL_WITHOUT_GLASS, err);
+    enum status st = evaluation_path(path, e, PRODUCT_MODEL, &(struct product_key){.model = model}, err);
+    if (!st) st = model_rays_read(&job->model, path, MODEL_WITHOUT_GLASS, e->prov, err);
     if (!st) st = model_frame_read(&job->frame, e, same, vec3_make(0, 0, 0), err);
     if (!st) st = add_input(e, faces, err);
     if (!st) st = true_faces_read(&job->truth, faces, err);
@@ -154,7 +154,7 @@ static enum status compare(struct evaluation *e, const char *prefix, const char 
     struct faces_job job = {.prefix = prefix};
     char path[FILE_PATH], folder[80], faces[FILE_PATH], scene[FILE_PATH], shell[80];
     snprintf(folder, sizeof folder, "%s%s", where, *where ? "/" : "");
-    if (file_path(path, e->folder, model, "/model.txt", err) ||
+    if (evaluation_path(path, e, PRODUCT_MODEL, &(struct product_key){.model = model}, err) ||
         file_path(faces, e->truth_folder, folder, "faces.txt", err) ||
         file_path(scene, e->truth_folder, folder, "scene.txt", err))
         return err->status;
@@ -178,7 +178,7 @@ enum status evaluate_faces(struct evaluation *e, struct err *err)
 {
     struct name_list edits = {0};
     char path[FILE_PATH];
-    if (file_path(path, e->folder, "model/model.txt", "", err)) return err->status;
+    if (evaluation_path(path, e, PRODUCT_MODEL, NULL, err)) return err->status;
     enum status st = path_is_file(path) ? compare(e, "model", "model", "", err) : ST_OK;
     if (!st) st = true_edits_find(&edits, e->truth_folder, err);
     for (int i = 0; !st && i < edits.count; i++) {

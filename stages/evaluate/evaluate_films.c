@@ -28,7 +28,7 @@ static enum status frame_read(struct film_frame *f, struct evaluation *e, const 
     struct exr_image relit = {0};
     char path[FILE_PATH];
     enum status st = add_picture(path, e, film, "unlit", name, err);
-    if (!st) st = model_picture_read(&f->unlit, path, err);
+    if (!st) st = model_picture_read(&f->unlit, path, NULL, err);
     if (!st) st = add_picture(path, e, film, "frames", name, err);
     if (!st) st = exr_read(&relit, path, channels, 4, err);
     if (!st) st = film_frame_set_quotients(f, &relit, path, err);

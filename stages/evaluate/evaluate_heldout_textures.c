@@ -109,7 +109,9 @@ static enum status read_photo(struct linear_picture *photo, struct evaluation *e
                               struct err *err)
 {
     char path[FILE_PATH];
-    enum status st = evaluation_input(e, path, "holdout/views", view->name, ".exr", err);
+    enum status st = evaluation_path(path, e, PRODUCT_VIEW,
+                                     &(struct product_key){.view = view->name, .views = "holdout/views"}, err);
+    if (!st) st = provenance_add_file(e->prov, product_name(PRODUCT_VIEW, path), path, err);
     if (!st) st = linear_picture_read(photo, path, err);
     if (!st && (photo->rgb.width != view->width || photo->rgb.height != view->height))
         st = err_set(err, ST_DATA, "%s is %d x %d px, but its camera %d x %d; make it again.", path, photo->rgb.width,
@@ -167,10 +169,10 @@ static enum status prepare(struct heldout_job *job, struct evaluation *e, struct
     char path[FILE_PATH];
     job->centres = malloc(((size_t)job->textures.viewpoint_count + 1) * sizeof *job->centres);
     if (!job->centres) return err_nomem(err, "viewpoints", (size_t)job->textures.viewpoint_count);
-    enum status st = evaluation_input(e, path, "model", "axes.txt", "", err);
-    if (!st) st = model_axes_read(&job->axes, path, err);
-    if (!st) st = evaluation_input(e, path, "model", "model.txt", "", err);
-    if (!st) st = model_rays_read(&job->model, path, MODEL_WITHOUT_GLASS, err);
+    enum status st = evaluation_path(path, e, PRODUCT_AXES, NULL, err);
+    if (!st) st = model_axes_read(&job->axes, path, e->prov, err);
+    if (!st) st = evaluation_path(path, e, PRODUCT_MODEL, NULL, err);
+    if (!st) st = model_rays_read(&job->model, path, MODEL_WITHOUT_GLASS, e->prov, err);
     if (!st && job->textures.vita) st = loaded_atlas_read(&job->vita, e, NULL, err);
     for (int i = 0; !st && i < job->textures.viewpoint_count; i++) {
         struct atlas a = {0};

@@ -21,7 +21,7 @@ static enum status write_points(const struct evaluation *e, const struct irradia
     const struct mat3 turn = mat3_transpose(s->rotation);
     struct outfile f = {0};
     char path[FILE_PATH];
-    enum status st = file_path(path, e->folder, "evaluate/irradiance_points.txt", "", err);
+    enum status st = evaluation_path(path, e, PRODUCT_TRUTH_POINTS, NULL, err);
     if (!st) st = outfile_open(&f, path, err);
     if (!st) {
         struct provenance prov = *e->prov; /* shares its arrays with e->prov */
@@ -69,12 +69,11 @@ static enum status mark_model(bool *on, bool *known, struct evaluation *e, const
     struct model_rays model = {0};
     struct model_frame frame;
     char path[FILE_PATH];
-    if (file_path(path, e->folder, "model/model.txt", "", err)) return err->status;
+    if (evaluation_path(path, e, PRODUCT_MODEL, NULL, err)) return err->status;
     *known = path_is_file(path);
     if (!*known)
         return metric_note(&e->table, err, "skipped irradiance on surfaces of the model: there is no model/model.txt");
-    enum status st = evaluation_input(e, path, "model", "model.txt", "", err);
-    if (!st) st = model_rays_read(&model, path, MODEL_WITHOUT_GLASS, err);
+    enum status st = model_rays_read(&model, path, MODEL_WITHOUT_GLASS, e->prov, err);
     if (!st) st = model_frame_read(&frame, e, same, vec3_make(0, 0, 0), err);
     for (int i = 0; !st && i < truth->count; i++)
         on[i] = on_model(&model, &frame, &truth->points[i], e->params->surface_distance);
@@ -152,7 +151,7 @@ static enum status evaluate_points(struct evaluation *e, struct err *err)
     struct irradiance_job job = {0};
     char path[FILE_PATH], found[FILE_PATH];
     if (file_path(path, e->truth_folder, "irradiance.txt", "", err) ||
-        file_path(found, e->folder, "relight/irradiance.txt", "", err))
+        evaluation_path(found, e, PRODUCT_IRRADIANCE, NULL, err))
         return err->status;
     if (!path_is_file(path)) return metric_note(&e->table, err, "skipped irradiance: the truth has no irradiance.txt");
     if (!e->aligned)
@@ -171,8 +170,8 @@ static enum status evaluate_points(struct evaluation *e, struct err *err)
         if (!st) {
             job.on = marks + capacity;
             job.off = marks + 2 * capacity;
-            st = evaluation_input(e, found, "relight", "irradiance.txt", "", err);
         }
+        if (!st) st = provenance_add_file(e->prov, product_name(PRODUCT_IRRADIANCE, found), found, err);
         if (!st) st = irradiance_list_read(&job.found, found, err);
         if (!st) {
             bring_to_truth(&job.found, &e->truth_from_scene);

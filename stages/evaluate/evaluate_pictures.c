@@ -57,10 +57,9 @@ static enum status read_pictures(struct evaluation *e, const struct view *view, 
     p->hole = malloc(pixels);
     enum status st = p->photo && p->frame && p->inside && p->hole ? ST_OK : err_nomem(err, "pictures", 8 * pixels);
     if (!st) st = file_path(folder, e->folder, "holdout/views", "", err);
-    if (!st) st = evaluation_input(e, path, "holdout/views", view->name, ".exr", err);
-    if (!st) st = view_image_read(&photo, folder, view, err);
-    if (!st) st = evaluation_input(e, path, "holdout/frames", view->name, ".exr", err);
-    if (!st) st = exr_read(&im, path, NAMES, 4, err);
+    if (!st) st = view_image_read(&photo, folder, view, e->prov, err);
+    if (!st) st = evaluation_path(path, e, PRODUCT_HELD_FRAME, &(struct product_key){.view = view->name}, err);
+    if (!st) st = exr_read_product(&im, PRODUCT_HELD_FRAME, path, NAMES, 4, e->prov, err);
     if (!st && (im.width != view->width || im.height != view->height))
         st = err_set(err, ST_DATA, "%s is %d x %d px, but its view is %d x %d px; render it again.", path, im.width,
                      im.height, view->width, view->height);
@@ -124,10 +123,10 @@ enum status evaluate_pictures(struct evaluation *e, struct err *err)
     enum status st = ST_OK;
     for (int i = 0; !st && i < held->view_count; i++) {
         char path[FILE_PATH];
-        snprintf(path, sizeof path, "%s/holdout/frames/%s.exr", e->folder, held->views[i].name);
-        if (path_is_file(path))
+        st = evaluation_path(path, e, PRODUCT_HELD_FRAME, &(struct product_key){.view = held->views[i].name}, err);
+        if (!st && path_is_file(path))
             st = evaluate_picture(e, &held->views[i], &s, err);
-        else
+        else if (!st)
             missing++;
     }
     if (!st && missing)

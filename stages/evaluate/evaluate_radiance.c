@@ -151,14 +151,13 @@ static enum status add_views(struct evaluation *e, struct radiance_cases *cases,
     for (int k = 0; k < 2; k++)
         for (int i = 0; i < sets[k]->cameras.view_count; i++) {
             const struct view *view = &sets[k]->cameras.views[i];
-            const char *where = k ? "holdout/views" : "views";
+            const struct product_key key = {.view = view->name, .views = k ? "holdout/views" : "views"};
             struct radiance_case *c = NULL;
-            char path[FILE_PATH], folder[FILE_PATH];
-            if (photo_of_view(e, sets[k], i) != photo) continue;
-            if (file_path(folder, e->folder, where, "", err) || file_path(path, folder, view->name, ".exr", err))
-                return err->status;
+            char path[FILE_PATH];
+            if (evaluation_photo(e, sets[k], i) != photo) continue;
+            if (evaluation_path(path, e, PRODUCT_VIEW, &key, err)) return err->status;
             if (!path_is_file(path)) continue;
-            if (new_case(cases, &c, truth, view->name, err) || file_path(c->input, where, view->name, ".exr", err))
+            if (new_case(cases, &c, truth, view->name, err) || product_path(c->input, PRODUCT_VIEW, &key, err))
                 return err->status;
             memcpy(c->path, path, sizeof path);
             c->map = map_of_view(sets[k], i);
@@ -170,16 +169,16 @@ static enum status add_merged(struct evaluation *e, struct radiance_cases *cases
                               int photo, const char *truth, struct err *err)
 {
     const struct photo_record *record = &e->photos.photos[photo];
+    const struct product_key key = {.photo = record->id};
     struct radiance_case *c = NULL;
-    char path[FILE_PATH], folder[FILE_PATH];
-    if (file_path(folder, e->shared, "hdr", "", err) || file_path(path, folder, record->id, ".exr", err))
-        return err->status;
+    char path[FILE_PATH];
+    if (evaluation_path(path, e, PRODUCT_HDR, &key, err)) return err->status;
     if (!path_is_file(path)) return ST_OK;
     if (record->info.width * true_photo->lens.height != record->info.height * true_photo->lens.width) {
         cases->wrong_size++;
         return ST_OK;
     }
-    if (new_case(cases, &c, truth, record->id, err) || file_path(c->input, "hdr", record->id, ".exr", err))
+    if (new_case(cases, &c, truth, record->id, err) || product_path(c->input, PRODUCT_HDR, &key, err))
         return err->status;
     memcpy(c->path, path, sizeof path);
     /* pixels belong together by their place in the picture, whatever the lens */

@@ -212,14 +212,13 @@ static enum status write_truth(const struct relit_job *job, const struct render 
 {
     static const char *const channels[3] = {"R", "G", "B"};
     const char *edit = job->set->where + strlen("edited-");
-    char folder[FILE_PATH], below[FILE_PATH], path[FILE_PATH];
+    const struct product_key key = {.edit = edit, .view = r->name};
+    char path[FILE_PATH];
     struct exr_image im = {0};
     struct provenance prov = *job->e->prov; /* shares its arrays with it */
     prov.count = job->e->shared_inputs;
     if (job->relit.own_cameras || !(job->e->radiance_scale > 0)) return ST_OK;
-    enum status st = file_path(folder, job->e->folder, "evaluate/relit", "", err);
-    if (!st) st = file_path(below, folder, edit, "", err);
-    if (!st) st = file_path(path, below, r->name, ".exr", err);
+    enum status st = evaluation_path(path, job->e, PRODUCT_TRUTH_RELIT, &key, err);
     if (!st) st = exr_image_init(&im, truth->width, truth->height, err);
     for (int k = 0; !st && k < 3; k++) {
         st = exr_add_plane(&im, channels[k], EXR_HALF, NULL, err);

@@ -87,12 +87,10 @@ static enum status read_revealed(struct cover_points *c, struct evaluation *e, c
                                  const struct model_axes *axes, struct err *err)
 {
     struct view_reveal revealed = {0};
-    char path[FILE_PATH], folder[FILE_PATH];
-    if (file_path(folder, e->folder, "reveal", "", err) || file_path(path, folder, view->name, ".exr", err))
-        return err->status;
+    char path[FILE_PATH];
+    if (evaluation_path(path, e, PRODUCT_REVEAL, &(struct product_key){.view = view->name}, err)) return err->status;
     if (!path_is_file(path)) return ST_OK;
-    enum status st = evaluation_input(e, path, "reveal", view->name, ".exr", err);
-    if (!st) st = view_reveal_read(&revealed, view, path, err);
+    enum status st = view_reveal_read(&revealed, view, path, e->prov, err);
     for (int k = 0; !st && k < revealed.layers; k++) st = add_layer(c, &revealed, k, view, axes, err);
     view_reveal_release(&revealed);
     return st;
@@ -181,8 +179,8 @@ static enum status sample_edit(struct cover_points *c, const struct textures *t,
     struct solid_mesh mesh = {0};
     char where[FILE_PATH], path[FILE_PATH];
     enum status st = file_path(where, "remodel", edit, "", err);
-    if (!st) st = evaluation_input(e, path, where, "model.txt", "", err);
-    if (!st) st = solid_mesh_read(&mesh, path, err);
+    if (!st) st = evaluation_path(path, e, PRODUCT_MODEL, &(struct product_key){.model = where}, err);
+    if (!st) st = solid_mesh_read(&mesh, path, e->prov, err);
     if (!st) st = sample_mesh(c, t, &mesh, err);
     solid_mesh_release(&mesh);
     return st;
@@ -240,8 +238,8 @@ enum status evaluate_texture_cover(struct evaluation *e, struct err *err)
     char path[FILE_PATH];
     enum status st = textures_find(&t, e, err);
     const bool some = !st && (t.viewpoint_count || t.vita);
-    if (some) st = evaluation_input(e, path, "model", "axes.txt", "", err);
-    if (some && !st) st = model_axes_read(&axes, path, err);
+    if (some) st = evaluation_path(path, e, PRODUCT_AXES, NULL, err);
+    if (some && !st) st = model_axes_read(&axes, path, e->prov, err);
     for (int i = 0; !st && i < t.viewpoint_count; i++) st = cover_viewpoint(&revealed, e, t.viewpoints[i], &axes, err);
     if (!st && t.viewpoint_count) st = add_share(e, "texture", &revealed, err);
     if (!st && t.vita) st = cover_vita(&whole, e, &t, err);

@@ -55,11 +55,10 @@ static int shell_of_photo(const struct shell_points *s, int photo)
 static enum status read_known(struct photo_view *v, struct evaluation *e, struct err *err)
 {
     struct linear_picture picture = {0};
-    char path[FILE_PATH], folder[FILE_PATH];
-    if (file_path(folder, e->folder, "views", "", err) || file_path(path, folder, v->view->name, ".exr", err))
-        return err->status;
+    char path[FILE_PATH];
+    if (evaluation_path(path, e, PRODUCT_VIEW, &(struct product_key){.view = v->view->name}, err)) return err->status;
     if (!path_is_file(path)) return ST_OK;
-    enum status st = evaluation_input(e, path, "views", v->view->name, ".exr", err);
+    enum status st = provenance_add_file(e->prov, product_name(PRODUCT_VIEW, path), path, err);
     if (!st) st = linear_picture_read(&picture, path, err);
     if (!st && (picture.rgb.width != v->view->width || picture.rgb.height != v->view->height))
         st = err_set(err, ST_DATA, "%s is %d x %d px, but its camera %d x %d; make it again.", path, picture.rgb.width,
@@ -78,7 +77,7 @@ static enum status read_views(struct texture_job *job, struct evaluation *e, str
     job->views = calloc((size_t)cameras->view_count + 1, sizeof *job->views);
     enum status st = job->views ? ST_OK : err_nomem(err, "views", (size_t)cameras->view_count * sizeof *job->views);
     for (int i = 0; !st && i < cameras->view_count; i++) {
-        const int shell = shell_of_photo(&job->shell, photo_of_view(e, &e->views, i));
+        const int shell = shell_of_photo(&job->shell, evaluation_photo(e, &e->views, i));
         if (shell < 0 || !job->shell.views[shell].clutter) continue;
         struct photo_view *v = &job->views[job->view_count++];
         *v = (struct photo_view){&cameras->views[i], shell, NULL};
@@ -157,7 +156,7 @@ static enum status find_sources(struct atlas_truth *t, const struct atlas *a, co
         if (view < 0)
             return err_set(err, ST_DATA, "%s: source %s is none of the scene's views; bake it again.",
                            a->viewpoint ? a->viewpoint : "vita", a->sources[i]);
-        t->source_shell[i] = shell_of_photo(&job->shell, photo_of_view(e, &e->views, view));
+        t->source_shell[i] = shell_of_photo(&job->shell, evaluation_photo(e, &e->views, view));
         t->source_own[i] = is_own(a, a->sources[i]);
     }
     return read_own_photo(t, job, e, err);
@@ -205,7 +204,7 @@ static enum status add_atlas(struct texture_result *r, const struct texture_job 
                                       &own.own_photo};
     for (int i = 0; !st && i < a.page_count; i++) {
         struct atlas_page page = {0};
-        st = atlas_page_read(&page, &a, i, folder, err);
+        st = atlas_page_read(&page, &a, i, folder, NULL, err);
         for (int k = 0; !st && k < a.tile_count; k++)
             if (a.tiles[k].page == i) st = add_tile(r, job, &truth, &page, &a.tiles[k], err);
         atlas_page_release(&page);
@@ -294,8 +293,8 @@ static enum status read_truth(struct texture_job *job, struct evaluation *e, str
     static const struct mat3 same = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
     char path[FILE_PATH];
     enum status st = model_frame_read(&job->frame, e, same, vec3_make(0, 0, 0), err);
-    if (!st) st = evaluation_input(e, path, "model", "model.txt", "", err);
-    if (!st) st = model_rays_read(&job->model, path, MODEL_WITHOUT_GLASS, err);
+    if (!st) st = evaluation_path(path, e, PRODUCT_MODEL, NULL, err);
+    if (!st) st = model_rays_read(&job->model, path, MODEL_WITHOUT_GLASS, e->prov, err);
     if (!st) st = shell_points_read(&job->shell, e, &job->model, &job->frame, err);
     return st ? st : read_views(job, e, err);
 }

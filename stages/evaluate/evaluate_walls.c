@@ -55,7 +55,8 @@ static enum status compare(struct evaluation *e, const char *prefix, const char 
     struct wall_errors errors = {0};
     struct room_height_errors heights = {0};
     char path[FILE_PATH];
-    enum status st = evaluation_input(e, path, where, "plan.txt", "", err);
+    enum status st = evaluation_path(path, e, PRODUCT_PLAN, &(struct product_key){.model = where}, err);
+    if (!st) st = provenance_add_file(e->prov, product_name(PRODUCT_PLAN, path), path, err);
     if (!st) st = measured_plan_read(&model, path, PLAN_FROM_MODEL, err);
     if (!st) st = measured_plan_read(&truth, truth_file, kind, err);
     if (!st) {
@@ -78,7 +79,7 @@ enum status evaluate_walls(struct evaluation *e, struct err *err)
     struct model_frame frame;
     struct true_room room = {0};
     char path[FILE_PATH];
-    if (file_path(path, e->folder, "model/plan.txt", "", err)) return err->status;
+    if (evaluation_path(path, e, PRODUCT_PLAN, NULL, err)) return err->status;
     if (!path_is_file(path)) return metric_note(t, err, "skipped walls: there is no model/plan.txt");
     if (!e->truth_folder) return metric_note(t, err, "skipped walls: no TRUTH is given");
     if (!e->aligned) return metric_note(t, err, "skipped walls: the cameras do not tell where the truth is");
@@ -104,7 +105,8 @@ static enum status evaluate_edit(struct evaluation *e, const char *edit, struct 
     snprintf(where, sizeof where, "remodel/%s", edit);
     snprintf(prefix, sizeof prefix, "edited.%s", edit);
     snprintf(name, sizeof name, "edited-%s/scene.txt", edit);
-    if (file_path(path, e->truth_folder, name, "", err) || file_path(plan, e->folder, where, "/plan.txt", err))
+    if (file_path(path, e->truth_folder, name, "", err) ||
+        evaluation_path(plan, e, PRODUCT_PLAN, &(struct product_key){.model = where}, err))
         return err->status;
     if (!path_is_file(plan))
         return metric_note(&e->table, err, "skipped walls of %s: there is no %s/plan.txt", prefix, where);

@@ -7,19 +7,17 @@ static enum status read_views(struct evaluation *e, struct view_set *set, const 
 {
     char path[FILE_PATH], folder[FILE_PATH];
     enum status st = file_path(folder, e->folder, where, "", err);
-    if (!st) st = camera_set_read(&set->cameras, folder, err);
-    if (!st) st = evaluation_input(e, path, where, "cameras.txt", "", err);
-    if (!st) st = evaluation_input(e, path, where, "images.txt", "", err);
-    if (!st) st = evaluation_input(e, path, where, "lenses.txt", "", err);
-    if (!st) st = lens_list_read(&set->lenses, path, err);
+    if (!st) st = camera_set_read(&set->cameras, folder, e->prov, err);
+    if (!st) st = product_path_in(path, folder, PRODUCT_LENSES, NULL, err);
+    if (!st) st = lens_list_read(&set->lenses, path, e->prov, err);
     for (int i = 0; !st && i < set->cameras.view_count; i++) {
         const char *view = set->cameras.views[i].name;
-        int lens = lens_list_find(&set->lenses, view);
-        if (lens < 0)
+        const struct lens *lens = lens_of_view(&set->cameras, &set->lenses, i);
+        if (!lens)
             st = err_set(err, ST_DATA, "%s has no line for view %s of images.txt; import the model again.", path, view);
-        else if (photo_list_find_id(&e->photos, set->lenses.lenses[lens].photo) < 0)
+        else if (photo_list_find_id(&e->photos, lens->photo) < 0)
             st = err_set(err, ST_DATA, "%s: there is no record of photo %s; import photos and model again.", path,
-                         set->lenses.lenses[lens].photo);
+                         lens->photo);
     }
     return st;
 }
@@ -58,7 +56,7 @@ enum status evaluate(const struct evaluate_inputs *from, const char *out, const 
     e.rendered = from->rendered ? from->rendered : rendered;
     if (!st) st = photo_list_read(&e.photos, path, err);
     if (!st) st = read_views(&e, &e.views, "views", err);
-    if (!st) st = file_path(path, folder, "holdout/views/images.txt", "", err);
+    if (!st) st = evaluation_path(path, &e, PRODUCT_IMAGES, &(struct product_key){.views = "holdout/views"}, err);
     e.has_held = !st && path_is_file(path);
     if (e.has_held) st = read_views(&e, &e.held, "holdout/views", err);
     if (!st && truth) st = truth_read(&e.truth, truth, &e.photos, params->far, prov, err);
@@ -81,7 +79,7 @@ enum status evaluate(const struct evaluate_inputs *from, const char *out, const 
     if (!st) st = evaluate_textures(&e, err);
     if (!st) st = evaluate_texture_cover(&e, err);
     if (!st && e.has_held) st = evaluate_heldout_textures(&e, err);
-    if (!st) st = file_path(path, folder, "evaluate/views.tsv", "", err);
+    if (!st) st = evaluation_path(path, &e, PRODUCT_VIEW_METRICS, NULL, err);
     if (!st) st = metric_table_write(&e.table, true, path, prov, err);
     if (!st) st = metric_table_write(&e.table, false, out, prov, err);
     evaluation_release(&e);

@@ -3,28 +3,23 @@
 
 #include <stdio.h>
 
-enum status evaluation_input(struct evaluation *e, char path[FILE_PATH], const char *where, const char *file,
-                             const char *suffix, struct err *err)
+enum status evaluation_path(char path[FILE_PATH], const struct evaluation *e, enum product_id id,
+                            const struct product_key *key, struct err *err)
 {
     char name[FILE_PATH];
-    if (file_path(name, where, file, suffix, err) || file_path(path, e->folder, name, "", err)) return err->status;
-    return provenance_add_file(e->prov, name, path, err);
+    if (product_path(name, id, key, err)) return err->status;
+    return file_path(path, products[id].root == PRODUCT_SHARED ? e->shared : e->folder, name, "", err);
 }
 
-const struct lens *lens_of_view(const struct view_set *set, int view)
+int evaluation_photo(const struct evaluation *e, const struct view_set *set, int view)
 {
-    return &set->lenses.lenses[lens_list_find(&set->lenses, set->cameras.views[view].name)];
-}
-
-int photo_of_view(const struct evaluation *e, const struct view_set *set, int view)
-{
-    return photo_list_find_id(&e->photos, lens_of_view(set, view)->photo);
+    return photo_list_find_id(&e->photos, lens_of_view(&set->cameras, &set->lenses, view)->photo);
 }
 
 struct picture_map map_of_view(const struct view_set *set, int view)
 {
     const struct view *v = &set->cameras.views[view];
-    const struct lens *lens = lens_of_view(set, view);
+    const struct lens *lens = lens_of_view(&set->cameras, &set->lenses, view);
     return (struct picture_map){{CAMERA_PINHOLE, v->width, v->height, {v->fx, v->fy, v->cx, v->cy}},
                                 lens->camera,
                                 mat3_transpose(mat3_from_quat(lens->view_from_photo))};

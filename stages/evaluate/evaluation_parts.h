@@ -7,7 +7,10 @@
 #include "common/base/file_path.h"
 #include "common/base/provenance.h"
 #include "common/capture/camera_alignment.h"
+#include "common/capture/photo_camera.h"
+#include "common/product/product.h"
 #include "stages/evaluate/evaluate_params.h"
+#include "stages/evaluate/evaluation.h"
 #include "stages/evaluate/linear_picture.h"
 #include "stages/evaluate/metric_table.h"
 #include "stages/evaluate/true_set.h"
@@ -64,13 +67,12 @@ enum status evaluation_metric(struct evaluation *e, const char *view, const char
 /* Sets e->white, the radiance that is white in 8 bits; 0: it is not given, and the scale of radiance is unknown. */
 void evaluation_set_white(struct evaluation *e);
 
-/* path: FOLDER/WHERE/FILESUFFIX, an input of the evaluation; its hash goes into the provenance as WHERE/FILESUFFIX. */
-enum status evaluation_input(struct evaluation *e, char path[FILE_PATH], const char *where, const char *file,
-                             const char *suffix, struct err *err);
+/* The path of a product of the scene. */
+enum status evaluation_path(char path[FILE_PATH], const struct evaluation *e, enum product_id id,
+                            const struct product_key *key, struct err *err);
 
-/* The lens and the index in e->photos of a view's photograph. */
-const struct lens *lens_of_view(const struct view_set *set, int view);
-int photo_of_view(const struct evaluation *e, const struct view_set *set, int view);
+/* The index in e->photos of a view's photograph. */
+int evaluation_photo(const struct evaluation *e, const struct view_set *set, int view);
 
 /* How a view sees the true picture of its photograph: through the lens with which it was rectified. */
 struct picture_map map_of_view(const struct view_set *set, int view);

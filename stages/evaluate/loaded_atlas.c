@@ -11,7 +11,8 @@ enum status loaded_atlas_read(struct loaded_atlas *a, struct evaluation *e, cons
     if (!st) st = textures_folder(folder, e, name, err);
     if (!st && !(a->pages = calloc((size_t)a->atlas.page_count + 1, sizeof *a->pages)))
         st = err_nomem(err, "pages", (size_t)a->atlas.page_count * sizeof *a->pages);
-    for (int i = 0; !st && i < a->atlas.page_count; i++) st = atlas_page_read(&a->pages[i], &a->atlas, i, folder, err);
+    for (int i = 0; !st && i < a->atlas.page_count; i++)
+        st = atlas_page_read(&a->pages[i], &a->atlas, i, folder, NULL, err);
     return st;
 }
 

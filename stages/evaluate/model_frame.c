@@ -7,7 +7,8 @@ enum status model_frame_read(struct model_frame *f, struct evaluation *e, struct
     char path[FILE_PATH];
     *f = (struct model_frame){
         .truth_from_scene = e->truth_from_scene, .room_from_world = room_from_world, .origin = origin};
-    return evaluation_input(e, path, "model", "axes.txt", "", err) ? err->status : model_axes_read(&f->axes, path, err);
+    return evaluation_path(path, e, PRODUCT_AXES, NULL, err) ? err->status
+                                                             : model_axes_read(&f->axes, path, e->prov, err);
 }
 
 struct vec3 truth_from_model_point(const struct model_frame *f, struct vec3 p)

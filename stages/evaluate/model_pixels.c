@@ -11,18 +11,16 @@ enum status model_pixels_read(struct model_pixels *m, struct evaluation *e, cons
                               struct err *err)
 {
     static const struct mat3 same = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-    char folder[FILE_PATH], path[FILE_PATH];
+    char path[FILE_PATH];
     *m = (struct model_pixels){.known = false};
-    if (file_path(folder, e->folder, where, "", err) || file_path(path, folder, "model.txt", "", err))
-        return err->status;
+    if (evaluation_path(path, e, PRODUCT_MODEL, &(struct product_key){.model = where}, err)) return err->status;
     if (!e->aligned)
         return metric_note(&e->table, err,
                            "skipped %s on surfaces of the model: the cameras do not tell where the truth is", what);
     if (!path_is_file(path))
         return metric_note(&e->table, err, "skipped %s on surfaces of the model: there is no %s/model.txt", what,
                            where);
-    enum status st = evaluation_input(e, path, where, "model.txt", "", err);
-    if (!st) st = model_rays_read(&m->model, path, MODEL_WITHOUT_GLASS, err);
+    enum status st = model_rays_read(&m->model, path, MODEL_WITHOUT_GLASS, e->prov, err);
     if (!st) st = model_frame_read(&m->frame, e, same, vec3_make(0, 0, 0), err);
     m->known = !st;
     return st;

@@ -73,7 +73,7 @@ static enum status find_own(struct renders *list, struct evaluation *e, const ch
     snprintf(as, sizeof as, "rendered/%.70s", list->where);
     enum status st = provenance_add_in(e->prov, as, folder, "cameras.txt", "", NULL, err);
     if (!st) st = provenance_add_in(e->prov, as, folder, "images.txt", "", NULL, err);
-    if (!st) st = sfm_model_read_cameras(&m, folder, err);
+    if (!st) st = sfm_model_read_cameras(&m, folder, NULL, err);
     for (int i = 0; !st && i < m.image_count; i++) {
         stem(name, m.images[i].name, false);
         stem(photo, m.images[i].name, true);
@@ -115,7 +115,8 @@ static enum status find_views(struct renders *list, struct evaluation *e, const 
     for (int k = 0; k < 2; k++)
         for (int i = 0; !st && i < sets[k]->cameras.view_count; i++) {
             const struct view *view = &sets[k]->cameras.views[i];
-            const struct true_picture *of = true_set_find(list->set, lens_of_view(sets[k], i)->photo);
+            const struct true_picture *of =
+                true_set_find(list->set, lens_of_view(&sets[k]->cameras, &sets[k]->lenses, i)->photo);
             char path[FILE_PATH];
             if (!of || !linear_picture_find(path, folder, view->name)) continue;
             const int before = list->count;

@@ -27,7 +27,7 @@ static enum status find_viewpoints(struct textures *t, struct evaluation *e, str
         char at[FILE_PATH], path[FILE_PATH];
         if (!st && *name != '.' && strlen(name) < sizeof *t->viewpoints) {
             st = textures_folder(at, e, name, err);
-            if (!st) st = file_path(path, at, "atlas.txt", "", err);
+            if (!st) st = product_path_in(path, at, PRODUCT_ATLAS, NULL, err);
             if (!st && path_is_file(path) &&
                 !(st = array_append(&t->viewpoints, (size_t)t->viewpoint_count, sizeof *t->viewpoints, "viewpoints",
                                     err)))
@@ -42,8 +42,8 @@ static enum status find_viewpoints(struct textures *t, struct evaluation *e, str
 static enum status read_model(struct textures *t, struct evaluation *e, struct err *err)
 {
     char path[FILE_PATH];
-    enum status st = evaluation_input(e, path, "model", "model.txt", "", err);
-    if (!st) st = solid_mesh_read(&t->mesh, path, err);
+    enum status st = evaluation_path(path, e, PRODUCT_MODEL, NULL, err);
+    if (!st) st = solid_mesh_read(&t->mesh, path, e->prov, err);
     for (int i = 0; !st && i < t->mesh.name_count; i++)
         if (t->mesh.names[i].id >= t->ids) t->ids = t->mesh.names[i].id + 1;
     if (!st && !(t->face_of_id = malloc(((size_t)t->ids + 1) * sizeof *t->face_of_id)))
@@ -59,7 +59,7 @@ enum status textures_find(struct textures *t, struct evaluation *e, struct err *
     *t = (struct textures){.ids = 1};
     enum status st = find_viewpoints(t, e, err);
     if (!st) st = textures_folder(folder, e, NULL, err);
-    if (!st) st = file_path(path, folder, "atlas.txt", "", err);
+    if (!st) st = product_path_in(path, folder, PRODUCT_ATLAS, NULL, err);
     t->vita = !st && path_is_file(path);
     if (!st && (t->vita || t->viewpoint_count)) st = read_model(t, e, err);
     return st;
@@ -75,12 +75,9 @@ void textures_release(struct textures *t)
 
 enum status textures_read(struct atlas *a, struct evaluation *e, const char *name, struct err *err)
 {
-    char folder[FILE_PATH], path[FILE_PATH], as[FILE_PATH];
-    enum status st = textures_folder(folder, e, name, err);
-    if (!st) st = file_path(path, folder, "atlas.txt", "", err);
-    if (!st) st = file_path(as, name ? "vdta" : "vita", name ? name : "atlas.txt", name ? "/atlas.txt" : "", err);
-    if (!st) st = provenance_add_file(e->prov, as, path, err);
-    return st ? st : atlas_read(a, folder, err);
+    char folder[FILE_PATH];
+    const enum status st = textures_folder(folder, e, name, err);
+    return st ? st : atlas_read(a, folder, e->prov, err);
 }
 
 int textures_face(const struct textures *t, int id) { return id > 0 && id < t->ids ? t->face_of_id[id] : -1; }

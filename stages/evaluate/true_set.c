@@ -19,7 +19,7 @@ static enum status add_cameras(struct true_set *set, const char *of_cameras, con
 {
     struct sfm_model m = {0};
     const int before = set->count;
-    enum status st = sfm_model_read_camera_files(&m, of_cameras, of_images, err);
+    enum status st = sfm_model_read_camera_files(&m, of_cameras, of_images, NULL, err);
     for (int i = 0; !st && i < m.image_count; i++) {
         const char *dot = strrchr(m.images[i].name, '.');
         struct true_picture p = {.lens = m.cameras[m.images[i].camera_idx].camera, .pose = m.images[i].cam_from_world};

@@ -61,7 +61,7 @@ enum status truth_read(struct truth *t, const char *folder, const struct photo_l
 {
     struct sfm_model m = {0};
     *t = (struct truth){.count = photos->count};
-    enum status st = sfm_model_read_cameras(&m, folder, err);
+    enum status st = sfm_model_read_cameras(&m, folder, NULL, err);
     if (!st) st = provenance_add_in(prov, "truth", folder, "cameras.txt", "", NULL, err);
     if (!st) st = provenance_add_in(prov, "truth", folder, "images.txt", "", NULL, err);
     if (!st && !(t->photos = calloc((size_t)photos->count + 1, sizeof *t->photos)))

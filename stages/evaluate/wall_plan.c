@@ -127,7 +127,7 @@ static enum status read_model(struct measured_plan *plan, const char *path, stru
 {
     struct model_plan model = {0};
     struct vec3 corners[2];
-    enum status st = model_plan_read(&model, path, err);
+    enum status st = model_plan_read(&model, path, NULL, err);
     for (int i = 0; !st && i < model.room_count; i++) st = add_model_room(plan, &model, i, err);
     for (int i = 0; !st && i < model.opening_count; i++)
         if (model_opening_corners(&model, i, corners))

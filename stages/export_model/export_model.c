@@ -6,34 +6,29 @@
  * writes  OUT/page0.png, ...                            its pages, sRGB
  *         OUT/model.ifc, ...                            the model in each format (docs/formats.md) */
 #include "common/base/cli.h"
-#include "common/base/file_path.h"
-#include "common/model/model_axes.h"
+#include "common/model/scene_inputs.h"
+#include "common/product/product.h"
 #include "stages/export_model/export_pages.h"
 #include "stages/export_model/writers.h"
 
 struct job {
     const char *name, *model, *map, *axes, *vita, *out;
-    struct solid_mesh mesh;
-    struct model_plan plan;
+    struct scene_inputs in;
     struct texture_map texture;
     struct atlas atlas;
     struct export_faces faces;
 };
 
-static enum status read_inputs(struct job *j, struct model_axes *axes, struct provenance *prov, struct err *err)
+static enum status read_inputs(struct job *j, struct provenance *prov, struct err *err)
 {
-    char path[FILE_PATH];
-    enum status st = provenance_add_in(prov, "model", j->model, "model.txt", "", path, err);
-    if (!st) st = solid_mesh_read(&j->mesh, path, err);
-    if (!st) st = provenance_add_in(prov, "model", j->model, "plan.txt", "", path, err);
-    if (!st) st = model_plan_read(&j->plan, path, err);
-    if (!st) st = model_axes_read(axes, j->axes, err);
-    if (!st) st = provenance_add_file(prov, "model/axes.txt", j->axes, err);
-    if (!st && j->map) st = texture_map_read(&j->texture, j->map, err);
-    if (!st && j->map) st = provenance_add_file(prov, "texture.txt", j->map, err);
-    if (!st) st = atlas_read(&j->atlas, j->vita, err);
-    if (!st) st = provenance_add_in(prov, "vita", j->vita, "atlas.txt", "", NULL, err);
-    return st;
+    char model[FILE_PATH], plan[FILE_PATH];
+    const struct scene_files files = {.axes = j->axes, .mesh = model, .plan = plan};
+    if (product_path_in(model, j->model, PRODUCT_MODEL, NULL, err) ||
+        product_path_in(plan, j->model, PRODUCT_PLAN, NULL, err) ||
+        scene_inputs_read(&j->in, SCENE_AXES | SCENE_MESH | SCENE_PLAN, &files, prov, err) ||
+        (j->map && texture_map_read(&j->texture, j->map, prov, err)))
+        return err->status;
+    return atlas_read(&j->atlas, j->vita, prov, err);
 }
 
 #define WRITE(format, file, name, write) write,
@@ -41,20 +36,19 @@ static enum status (*const writers[])(const struct export_scene *s, struct err *
 
 static enum status export_all(struct job *j, struct provenance *prov, struct err *err)
 {
-    struct model_axes axes = {0};
     double exposure = 1;
-    enum status st = read_inputs(j, &axes, prov, err);
-    if (!st) st = export_faces_make(&j->faces, &j->mesh, j->map ? &j->texture : NULL, &j->atlas, err);
+    enum status st = read_inputs(j, prov, err);
+    if (!st) st = export_faces_make(&j->faces, &j->in.mesh, j->map ? &j->texture : NULL, &j->atlas, err);
     if (!st) st = export_exposure(&exposure, &j->atlas, j->vita, err);
-    if (!st) st = export_pages_write(&j->atlas, j->vita, exposure, j->out, err);
+    if (!st) st = export_pages_write(&j->atlas, j->vita, exposure, j->out, prov, err);
     const struct export_scene scene = {.name = j->name,
-                                       .mesh = &j->mesh,
+                                       .mesh = &j->in.mesh,
                                        .faces = &j->faces,
-                                       .plan = &j->plan,
+                                       .plan = &j->in.plan,
                                        .page_sizes = (const int(*)[2])j->atlas.page_sizes,
                                        .page_count = j->atlas.page_count,
                                        .exposure = exposure,
-                                       .metric = axes.metric,
+                                       .metric = j->in.axes.metric,
                                        .out = j->out,
                                        .prov = prov};
     for (int i = EXPORT_COUNT - 1; !st && i >= 0; i--) st = writers[i](&scene, err);
@@ -81,8 +75,7 @@ int main(int argc, char **argv)
     export_faces_release(&j.faces);
     atlas_release(&j.atlas);
     texture_map_release(&j.texture);
-    model_plan_release(&j.plan);
-    solid_mesh_release(&j.mesh);
+    scene_inputs_release(&j.in);
     provenance_release(&prov);
     return err_exit_code(&err);
 }

@@ -9,10 +9,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/base/file_path.h"
 #include "common/base/sort.h"
 #include "common/image/image.h"
 #include "common/image/photo.h"
+#include "common/product/product.h"
 
 static const double saturated = 0.01;
 
@@ -25,7 +25,7 @@ enum status export_exposure(double *exposure, const struct atlas *a, const char 
     enum status st = values ? ST_OK : err_nomem(err, "texels", room * sizeof *values);
     for (int i = 0; !st && i < a->page_count; i++) {
         struct atlas_page page = {0};
-        st = atlas_page_read(&page, a, i, folder, err);
+        st = atlas_page_read(&page, a, i, folder, NULL, err);
         for (size_t k = 0; !st && k < (size_t)page.width * (size_t)page.height; k++) {
             const float *rgb = page.rgb + 3 * k, most = fmaxf(rgb[0], fmaxf(rgb[1], rgb[2]));
             if (page.source[k] != ATLAS_NONE && most > 0) values[count++] = most;
@@ -115,17 +115,16 @@ static enum status write_page(const struct atlas_page *page, double exposure, co
 }
 
 enum status export_pages_write(const struct atlas *a, const char *folder, double exposure, const char *out,
-                               struct err *err)
+                               struct provenance *prov, struct err *err)
 {
     enum status st = ST_OK;
     for (int i = 0; !st && i < a->page_count; i++) {
         struct atlas_page page = {0};
-        char path[FILE_PATH], name[32];
-        snprintf(name, sizeof name, "page%d", i);
-        st = atlas_page_read(&page, a, i, folder, err);
+        char path[FILE_PATH];
+        st = atlas_page_read(&page, a, i, folder, prov, err);
         for (int t = 0; !st && t < a->tile_count; t++)
             if (a->tiles[t].page == i) st = fill_tile(&page, &a->tiles[t], err);
-        if (!st) st = file_path(path, out, name, ".png", err);
+        if (!st) st = product_path_in(path, out, PRODUCT_EXPORT_PAGE, &(struct product_key){.page = i}, err);
         if (!st) st = write_page(&page, exposure, path, err);
         atlas_page_release(&page);
     }

@@ -10,6 +10,6 @@ enum status export_exposure(double *exposure, const struct atlas *a, const char 
 /* OUT/pageN.png, sRGB. In a tile's rectangle texels that are missing take the nearest one of the tile, so that reading
  * between texels shows no dark seams. */
 enum status export_pages_write(const struct atlas *a, const char *folder, double exposure, const char *out,
-                               struct err *err);
+                               struct provenance *prov, struct err *err);
 
 #endif

@@ -21,9 +21,9 @@
 #include <string.h>
 
 #include "common/base/array.h"
-#include "common/base/file_path.h"
 #include "common/base/outfile.h"
 #include "common/base/version.h"
+#include "common/product/product.h"
 #include "stages/export_model/writers.h"
 
 enum { FLOATS = 5126, ARRAY_BUFFER = 34962 }; /* numbers of the format */
@@ -205,8 +205,8 @@ static enum status add_picture(struct gltf *g, json_t *images, json_t *textures,
 {
     char path[FILE_PATH], name[32];
     json_int_t view;
-    snprintf(name, sizeof name, "page%d", page);
-    if (file_path(path, g->s->out, name, ".png", g->err)) return g->err->status;
+    if (product_path_in(path, g->s->out, PRODUCT_EXPORT_PAGE, &(struct product_key){.page = page}, g->err))
+        return g->err->status;
     FILE *file = fopen(path, "rb");
     unsigned char *data = NULL;
     long size = -1;
@@ -238,7 +238,7 @@ static enum status write_file(struct gltf *g, const char *json)
     const size_t length = strlen(json), padded = (length + 3) / 4 * 4;
     struct outfile out = {0};
     char path[FILE_PATH];
-    enum status st = file_path(path, g->s->out, "model.glb", "", g->err);
+    enum status st = product_path_in(path, g->s->out, PRODUCT_EXPORT_GLB, NULL, g->err);
     if (!st) st = outfile_open(&out, path, g->err);
     if (!st) {
         fputs("glTF", out.fp);

@@ -7,9 +7,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/base/file_path.h"
 #include "common/base/outfile.h"
 #include "common/base/version.h"
+#include "common/product/product.h"
 #include "stages/export_model/ifc.h"
 
 static int put_units(struct ifc *f)
@@ -125,7 +125,7 @@ enum status write_ifc(const struct export_scene *s, struct err *err)
     char path[FILE_PATH];
     f.styles = calloc((size_t)s->page_count + 1, sizeof *f.styles);
     f.maps = calloc((size_t)s->page_count + 1, sizeof *f.maps);
-    enum status st = f.styles && f.maps ? file_path(path, s->out, "model.ifc", "", err)
+    enum status st = f.styles && f.maps ? product_path_in(path, s->out, PRODUCT_EXPORT_IFC, NULL, err)
                                         : err_nomem(err, "pages", (size_t)s->page_count * sizeof *f.styles);
     if (!st) st = outfile_open(&out, path, err);
     if (!st) {

@@ -1,9 +1,9 @@
 /* write_obj.c - Wavefront OBJ, model.obj with model.mtl: an object for each body, a group for each face name; z is up. */
 #include <stdio.h>
 
-#include "common/base/file_path.h"
-#include "common/base/outfile.h"
 #include "stages/export_model/writers.h"
+
+#include "common/product/product.h"
 
 static void put_material(FILE *to, const struct export_triangle *t)
 {
@@ -56,15 +56,14 @@ static void put_materials(FILE *to, const struct export_scene *s)
     }
 }
 
-static enum status write_text(const struct export_scene *s, const char *file, const char *head,
+static enum status write_text(const struct export_scene *s, enum product_id id, const char *head,
                               void (*put)(FILE *, const struct export_scene *), struct err *err)
 {
     struct outfile out = {0};
     char path[FILE_PATH];
-    enum status st = file_path(path, s->out, file, "", err);
-    if (!st) st = outfile_open(&out, path, err);
+    enum status st = product_path_in(path, s->out, id, NULL, err);
+    if (!st) st = product_begin(&out, id, path, s->prov, err);
     if (!st) {
-        provenance_print(s->prov, out.fp);
         fputs(head, out.fp);
         put(out.fp, s);
         st = outfile_commit(&out, err);
@@ -75,6 +74,6 @@ static enum status write_text(const struct export_scene *s, const char *file, co
 
 enum status write_obj(const struct export_scene *s, struct err *err)
 {
-    const enum status st = write_text(s, "model.mtl", "", put_materials, err);
-    return st ? st : write_text(s, "model.obj", "# z is up\nmtllib model.mtl\n", put_faces, err);
+    const enum status st = write_text(s, PRODUCT_EXPORT_MTL, "", put_materials, err);
+    return st ? st : write_text(s, PRODUCT_EXPORT_OBJ, "# z is up\nmtllib model.mtl\n", put_faces, err);
 }

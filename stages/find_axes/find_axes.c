@@ -14,11 +14,12 @@
 #include <unistd.h>
 
 #include "common/base/cli.h"
-#include "common/base/file_path.h"
 #include "common/base/log.h"
 #include "common/capture/upright.h"
 #include "common/capture/view_image.h"
 #include "common/image/photo.h"
+#include "common/model/scene_inputs.h"
+#include "common/product/product.h"
 #include "stages/find_axes/pictures.h"
 #include "stages/find_axes/room.h"
 
@@ -80,9 +81,9 @@ static enum status picture_path(char path[FILE_PATH], const char *out, const cha
     char folder[FILE_PATH];
     const char *slash = strrchr(out, '/');
     const int stem = slash ? (int)(slash - out) : 1;
-    if ((size_t)snprintf(folder, sizeof folder, "%.*s/axes", stem, slash ? out : ".") >= sizeof folder)
+    if ((size_t)snprintf(folder, sizeof folder, "%.*s", stem, slash ? out : ".") >= sizeof folder)
         return err_set(err, ST_IO, "the name of the folder of %s is too long.", out);
-    return file_path(path, folder, view, ".png", err);
+    return product_path_in(path, folder, PRODUCT_AXES_PICTURE, &(struct product_key){.view = view}, err);
 }
 
 static enum status draw_view(const struct view *view, const struct room *room, const struct vec3 *corners, int count,
@@ -91,8 +92,7 @@ static enum status draw_view(const struct view *view, const struct room *room, c
     struct image im = {0};
     char path[FILE_PATH];
     unsigned char *pixels = NULL;
-    enum status st = provenance_add_in(f->prov, "views", f->views, view->name, ".exr", path, err);
-    if (!st) st = view_image_read(&im, f->views, view, err);
+    enum status st = view_image_read(&im, f->views, view, f->prov, err);
     if (!st && !(pixels = malloc(3 * (size_t)im.width * (size_t)im.height)))
         st = err_nomem(err, "a picture", 3 * (size_t)im.width * (size_t)im.height);
     if (!st) st = expose_picture(pixels, &im, err);
@@ -150,44 +150,33 @@ static enum status draw(const struct room *room, const struct room_inputs *in, c
     return st;
 }
 
-static enum status read_marks(struct mark_list *list, const char *path, const char *name, enum mark_file file,
-                              struct provenance *prov, struct err *err)
-{
-    return mark_list_read(list, path, file, err) ? err->status : provenance_add_file(prov, name, path, err);
-}
-
 static enum status find(const struct files *f, const struct axes_params *params, struct err *err)
 {
-    struct camera_set set = {0};
-    struct lens_list lenses = {0};
+    const struct scene_files files = {.views = f->views};
+    struct scene_inputs scene = {0};
     struct point_cloud cloud = {0};
     struct mark_list scale = {0}, fix = {0};
     struct vec3 *ups = NULL;
     struct room room;
-    char path[FILE_PATH];
-    enum status st = camera_set_read(&set, f->views, err);
-    if (!st) st = camera_set_add_inputs(f->prov, f->views, err);
-    if (!st && !set.view_count) st = err_set(err, ST_DATA, "%s contains no views; run sfm_import again.", f->views);
-    if (!st && !(ups = calloc((size_t)set.view_count, sizeof *ups)))
-        st = err_nomem(err, "up directions of views", (size_t)set.view_count * sizeof *ups);
-    if (!st) st = upright_read(ups, &set, f->views, f->records, f->prov, err);
-    if (!st) st = file_path(path, f->views, "lenses.txt", "", err);
-    if (!st) st = lens_list_read(&lenses, path, err);
-    if (!st) st = point_cloud_read(&cloud, f->points, err);
-    if (!st) st = provenance_add_file(f->prov, "points/points.ply", f->points, err);
-    if (!st && f->scale) st = read_marks(&scale, f->scale, "scale.txt", MARKS_SCALE, f->prov, err);
-    if (!st && f->fix) st = read_marks(&fix, f->fix, "axes_fix.txt", MARKS_FIX, f->prov, err);
-    const struct room_inputs in = {&set, &lenses, ups, &cloud, f->scale ? &scale : NULL, f->fix ? &fix : NULL};
+    enum status st = scene_inputs_read(&scene, SCENE_POINTS | SCENE_LENSES, &files, f->prov, err);
+    const struct camera_set *set = &scene.set;
+    if (!st && !set->view_count) st = err_set(err, ST_DATA, "%s contains no views; run sfm_import again.", f->views);
+    if (!st && !(ups = calloc((size_t)set->view_count, sizeof *ups)))
+        st = err_nomem(err, "up directions of views", (size_t)set->view_count * sizeof *ups);
+    if (!st) st = upright_read(ups, set, f->views, f->records, f->prov, err);
+    if (!st) st = point_cloud_read(&cloud, f->points, f->prov, err);
+    if (!st && f->scale) st = mark_list_read(&scale, f->scale, MARKS_SCALE, f->prov, err);
+    if (!st && f->fix) st = mark_list_read(&fix, f->fix, MARKS_FIX, f->prov, err);
+    const struct room_inputs in = {set, &scene.lenses, ups, &cloud, f->scale ? &scale : NULL, f->fix ? &fix : NULL};
     if (!st) st = find_room(&room, &in, params, err);
-    if (!st) log_summary(&room, f, &set);
+    if (!st) log_summary(&room, f, set);
     if (!st) st = draw(&room, &in, f, params->pictures, err);
     if (!st) st = model_axes_write(&room.axes, f->out, f->prov, err);
     mark_list_release(&fix);
     mark_list_release(&scale);
     point_cloud_release(&cloud);
-    lens_list_release(&lenses);
     free(ups);
-    camera_set_release(&set);
+    scene_inputs_release(&scene);
     return st;
 }
 

@@ -156,11 +156,14 @@ static enum status check_mark(const struct mark_list *list, const struct mark *m
     return ST_OK;
 }
 
-enum status mark_list_read(struct mark_list *list, const char *path, enum mark_file file, struct err *err)
+enum status mark_list_read(struct mark_list *list, const char *path, enum mark_file file, struct provenance *prov,
+                           struct err *err)
 {
     struct textfile t = {0};
     *list = (struct mark_list){.path = strdup(path)};
-    enum status st = list->path ? textfile_open(&t, path, err) : err_nomem(err, "a file name", strlen(path));
+    const char *name = file == MARKS_SCALE ? "scale.txt" : "axes_fix.txt";
+    enum status st =
+        list->path ? provenance_open(prov, name, &t, path, err) : err_nomem(err, "a file name", strlen(path));
     while (!st && textfile_next(&t)) {
         st = list->count < MAX_MARKS
                  ? array_append(&list->marks, (size_t)list->count, sizeof *list->marks, "marks", err)

@@ -43,7 +43,8 @@ enum mark_file { MARKS_SCALE, MARKS_FIX };
 /* The caller releases the list, which a failure leaves empty. ST_DATA with file and line: a line that this file does
  * not have, a name without a mark, a point in one view only that is not on the floor or a surface, a point marked twice
  * in a view or in several ways, a length of 0, an edge in a view without its corner. */
-enum status mark_list_read(struct mark_list *list, const char *path, enum mark_file file, struct err *err);
+enum status mark_list_read(struct mark_list *list, const char *path, enum mark_file file, struct provenance *prov,
+                           struct err *err);
 void mark_list_release(struct mark_list *list);
 
 struct mark_scene { /* what positions of marks depend on */

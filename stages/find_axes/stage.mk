@@ -1,5 +1,4 @@
 # find_axes: an interior's axes, floor, ceiling and scale.
 FOLLOWS.find_axes := rectify fuse_points
 READS.find_axes := cameras, points.ply, scenes/NAME/scale.txt and axes_fix.txt, a few views
-WRITES.find_axes := model/axes.txt, axes/VIEW.png
 HELP.axes := + an interior's axes, floor, ceiling and scale, drawn on a few photos

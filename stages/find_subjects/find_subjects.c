@@ -22,6 +22,7 @@
 #include "common/film/film_views.h"
 #include "common/film/regions.h"
 #include "common/image/luminance.h"
+#include "common/product/product.h"
 #include "stages/find_subjects/faces.h"
 #include "stages/find_subjects/region_depth.h"
 
@@ -43,8 +44,8 @@ static enum status read_depth(void *ctx, int view_idx, struct layered_depth *d, 
     struct inputs *in = ctx;
     const struct view *v = &in->set.views[view_idx];
     char path[FILE_PATH];
-    if (provenance_add_in(in->prov, "depth", in->depth, v->name, ".txt", path, err) ||
-        provenance_add_in(in->prov, "depth", in->depth, v->name, ".exr", path, err) || layered_depth_read(d, path, err))
+    if (product_path_in(path, in->depth, PRODUCT_DEPTH, &(struct product_key){.view = v->name}, err) ||
+        layered_depth_read(d, path, in->prov, err))
         return err->status;
     if (d->width == v->width && d->height == v->height) return ST_OK;
     err_set(err, ST_DATA, "%s has %d x %d pixels, but its camera has %d x %d; make the depth maps again.", path,
@@ -58,10 +59,7 @@ static enum status read_picture(void *ctx, int view_idx, unsigned char **grey, s
     struct inputs *in = ctx;
     const struct view *v = &in->set.views[view_idx];
     struct image im = {0};
-    char path[FILE_PATH];
-    if (provenance_add_in(in->prov, "views", in->views, v->name, ".exr", path, err) ||
-        view_image_read(&im, in->views, v, err))
-        return err->status;
+    if (view_image_read(&im, in->views, v, in->prov, err)) return err->status;
     const size_t pixels = (size_t)im.width * (size_t)im.height;
     *grey = malloc(pixels);
     for (size_t i = 0; *grey && i < pixels; i++) {
@@ -174,10 +172,9 @@ static enum status subjects_from_regions(struct subject_list *list, struct input
     struct region_list regions = {0};
     struct lens_list lenses = {0};
     char path[FILE_PATH];
-    enum status st = region_list_read(&regions, in->subjects, err);
-    if (!st) st = provenance_add_file(in->prov, "subjects.txt", in->subjects, err);
-    if (!st) st = provenance_add_in(in->prov, "views", in->views, "lenses.txt", "", path, err);
-    if (!st) st = lens_list_read(&lenses, path, err);
+    enum status st = region_list_read(&regions, in->subjects, in->prov, err);
+    if (!st) st = product_path_in(path, in->views, PRODUCT_LENSES, NULL, err);
+    if (!st) st = lens_list_read(&lenses, path, in->prov, err);
     if (!st && !regions.count) log_note("%s names no subject", in->subjects);
     for (int i = 0; !st && i < regions.count; i++)
         st = subject_from_region(list, in, &regions.regions[i], &lenses, err);
@@ -189,8 +186,7 @@ static enum status subjects_from_regions(struct subject_list *list, struct input
 static enum status find(struct inputs *in, const char *out, const struct find_params *params, struct err *err)
 {
     struct subject_list list = {0};
-    enum status st = camera_set_read(&in->set, in->views, err);
-    if (!st) st = camera_set_add_inputs(in->prov, in->views, err);
+    enum status st = camera_set_read(&in->set, in->views, in->prov, err);
     if (!st) st = film_views_keep(&in->set, in->film_views, in->prov, err);
     if (!st && in->records) {
         in->ups = calloc((size_t)in->set.view_count + 1, sizeof *in->ups);

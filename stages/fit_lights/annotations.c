@@ -280,14 +280,15 @@ static enum status find_lamps(struct annotation_list *list, struct err *err)
     return ST_OK;
 }
 
-enum status annotation_list_read(struct annotation_list *list, const char *path, struct err *err)
+enum status annotation_list_read(struct annotation_list *list, const char *path, struct provenance *prov,
+                                 struct err *err)
 {
     struct textfile t = {0};
     int64_t version;
     *list = (struct annotation_list){.path = strdup(path)};
     enum status st = list->path ? ST_OK : err_nomem(err, "a path", strlen(path) + 1);
     if (!st)
-        st = textfile_open(&t, path, err) || textfile_expect_line(&t, "remodel-lamps", err) ||
+        st = provenance_open(prov, "lights.txt", &t, path, err) || textfile_expect_line(&t, "remodel-lamps", err) ||
              textfile_int(&t, "the version", 1, 1, &version, err) || textfile_end(&t, err);
     while (!st && textfile_next(&t)) st = read_statement(list, &t, err);
     textfile_release(&t);

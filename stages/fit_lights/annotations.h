@@ -15,7 +15,7 @@
 
 #include <stdbool.h>
 
-#include "common/base/err.h"
+#include "common/base/provenance.h"
 #include "common/math/vec.h"
 
 enum annotation_kind { NOTE_WINDOW, NOTE_SHUT, NOTE_DISK, NOTE_AREA, NOTE_LIT, NOTE_UNLIT, NOTE_LINE, NOTE_KINDS };
@@ -50,7 +50,8 @@ const char *annotation_word(enum annotation_kind kind);
 
 /* The caller releases the list, which a failure leaves empty. ST_DATA with file and line: an unknown word, a name
  * twice, a point of a lamp that the file does not have, a cone of 0 degrees, a number out of range. */
-enum status annotation_list_read(struct annotation_list *list, const char *path, struct err *err);
+enum status annotation_list_read(struct annotation_list *list, const char *path, struct provenance *prov,
+                                 struct err *err);
 void annotation_list_release(struct annotation_list *list);
 
 #endif

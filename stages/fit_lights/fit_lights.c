@@ -14,10 +14,10 @@
 #include <string.h>
 
 #include "common/base/cli.h"
-#include "common/base/file_path.h"
 #include "common/base/log.h"
 #include "common/gather/model_field.h"
 #include "common/math/numbers.h"
+#include "common/product/product.h"
 #include "stages/fit_lights/indirect.h"
 #include "stages/fit_lights/lamp_picture.h"
 #include "stages/fit_lights/solve.h"
@@ -39,19 +39,11 @@ struct job {
 
 static enum status read_inputs(struct job *j, struct err *err)
 {
-    char path[FILE_PATH];
-    if (provenance_add_file(&j->prov, "model/model.txt", j->model_path, err) ||
-        model_rays_read(&j->model.rays, j->model_path, MODEL_WITHOUT_GLASS, err) ||
-        provenance_add_file(&j->prov, "model/plan.txt", j->plan_path, err) ||
-        model_plan_read(&j->model.plan, j->plan_path, err) ||
-        provenance_add_file(&j->prov, "model/axes.txt", j->axes_path, err) ||
-        model_axes_read(&j->model.axes, j->axes_path, err) || camera_set_add_camera_inputs(&j->prov, j->views, err) ||
-        camera_set_read_cameras(&j->model.set, j->views, err) ||
-        provenance_add_in(&j->prov, "views", j->views, "lenses", ".txt", path, err) ||
-        lens_list_read(&j->model.lenses, path, err))
-        return err->status;
-    if (j->lamps &&
-        (provenance_add_file(&j->prov, "lights.txt", j->lamps, err) || annotation_list_read(&j->notes, j->lamps, err)))
+    const struct scene_files files = {.views = j->views, .axes = j->axes_path, .plan = j->plan_path};
+    if (model_rays_read(&j->model.rays, j->model_path, MODEL_WITHOUT_GLASS, &j->prov, err) ||
+        scene_inputs_read(&j->model.in, SCENE_CAMERAS | SCENE_LENSES | SCENE_AXES | SCENE_PLAN, &files, &j->prov,
+                          err) ||
+        (j->lamps && annotation_list_read(&j->notes, j->lamps, &j->prov, err)))
         return err->status;
     return lit_scene_resolve(&j->scene, j->lamps ? &j->notes : NULL, &j->model, j->params.grid, err);
 }
@@ -79,10 +71,10 @@ static enum status gather_indirect(struct job *j, struct err *err)
     const struct gather_params params = gather_params_of(&j->params);
     const struct model_field_files files = {
         .model = j->model_path, .vita = j->vita, .outdoors = j->outdoors, .lights = declared};
-    enum status st = file_path(declared, j->out, "declared.txt", "", err);
+    enum status st = product_path_in(declared, j->out, PRODUCT_LIGHTS_DECLARED, NULL, err);
     if (!st) st = light_list_write(&j->scene.lights, declared, &j->prov, err);
     if (!st) st = model_field_read(&field, &files, &j->prov, err);
-    if (!st && j->references) st = model_field_read_references(&field, j->references, &j->model.axes, &j->prov, err);
+    if (!st && j->references) st = model_field_read_references(&field, j->references, &j->model.in.axes, &j->prov, err);
     if (!st) st = gatherer_make(&gatherer, &params, err);
     if (!st) {
         model_field_switch_lamp(&field, -1, false);
@@ -100,8 +92,7 @@ static enum status find_indirect(struct job *j, struct err *err)
         return err_set(err, ST_USAGE,
                        "%s marks points, so --vita is needed, for the indirect light there, or --indirect.", j->lamps);
     if (!j->indirect_path) return gather_indirect(j, err);
-    if (provenance_add_file(&j->prov, "lights/indirect.txt", j->indirect_path, err)) return err->status;
-    return indirect_read(&j->indirect, &j->scene, &j->model.axes, j->indirect_path, err);
+    return indirect_read(&j->indirect, &j->scene, &j->model.in.axes, j->indirect_path, &j->prov, err);
 }
 
 static void report(const struct light_list *lights, const struct solved_lights *s)
@@ -120,9 +111,11 @@ static enum status write_lights(struct job *j, const struct solved_lights *s, co
                                 struct err *err)
 {
     char path[FILE_PATH];
-    if (file_path(path, j->out, "fit.txt", "", err) || solved_lights_write(s, in, path, &j->prov, err) ||
+    if (product_path_in(path, j->out, PRODUCT_LIGHT_FIT, NULL, err) ||
+        solved_lights_write(s, in, path, &j->prov, err) ||
         lamp_pictures_write(&j->scene, &j->model, j->views, j->out, err) ||
-        file_path(path, j->out, "lights.txt", "", err) || light_list_write(&j->scene.lights, path, &j->prov, err))
+        product_path_in(path, j->out, PRODUCT_LIGHTS, NULL, err) ||
+        light_list_write(&j->scene.lights, path, &j->prov, err))
         return err->status;
     report(&j->scene.lights, s);
     return ST_OK;
@@ -151,7 +144,7 @@ static enum status run(struct job *j, struct err *err)
 {
     enum status st = read_inputs(j, err);
     if (!st) st = indirect_init(&j->indirect, &j->scene, err);
-    if (!st && j->list) return indirect_list(&j->indirect, &j->scene, &j->model.axes, j->out, &j->prov, err);
+    if (!st && j->list) return indirect_list(&j->indirect, &j->scene, &j->model.in.axes, j->out, &j->prov, err);
     return st ? st : fit(j, err);
 }
 

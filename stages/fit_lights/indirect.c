@@ -75,10 +75,10 @@ static enum status read_node(struct indirect *in, int k, struct textfile *t, str
 }
 
 enum status indirect_read(struct indirect *in, const struct lit_scene *scene, const struct model_axes *axes,
-                          const char *path, struct err *err)
+                          const char *path, struct provenance *prov, struct err *err)
 {
     struct textfile t = {0};
-    enum status st = textfile_open(&t, path, err);
+    enum status st = provenance_open(prov, "lights/indirect.txt", &t, path, err);
     for (int k = 0; !st && k < in->count; k++) {
         const struct vec3 at = world_from_model_point(axes, scene->points[in->nodes[k]].at);
         if (!textfile_next(&t))

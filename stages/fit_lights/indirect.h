@@ -23,7 +23,7 @@ enum status indirect_list(const struct indirect *in, const struct lit_scene *sce
 /* Reads `X Y Z NX NY NZ R G B` for the same nodes in the same order. ST_DATA with file and line: another point, a
  * negative irradiance, too few or too many lines. */
 enum status indirect_read(struct indirect *in, const struct lit_scene *scene, const struct model_axes *axes,
-                          const char *path, struct err *err);
+                          const char *path, struct provenance *prov, struct err *err);
 /* Gathers it from a field of light in which the lamps are off. Same bits for any number of threads. */
 void indirect_gather(struct indirect *in, const struct lit_scene *scene, const struct light_field *field,
                      const struct gatherer *gatherer);

@@ -6,9 +6,9 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "common/base/file_path.h"
 #include "common/capture/view_image.h"
 #include "common/image/photo.h"
+#include "common/product/product.h"
 
 enum { QUALITY = 90, GAP = 8 /* px between two views */ };
 static const double MIN_OUTLINE = 0.01; /* of a view's width: less does not show a lamp */
@@ -95,7 +95,7 @@ static enum status draw_view(unsigned char **rgb, const struct job *j, int lamp,
     const struct view *v = &j->views[view];
     const double half = fmax(1, hypot(v->width, v->height) / 900);
     struct image im = {0};
-    enum status st = view_image_read(&im, j->folder, v, err);
+    enum status st = view_image_read(&im, j->folder, v, NULL, err);
     if (!st) st = image_expose(&im, 0.9, 0.5, err);
     *rgb = st ? NULL : malloc(3 * (size_t)im.width * (size_t)im.height);
     if (!st && !*rgb) st = err_nomem(err, "a picture", 3 * (size_t)im.width * (size_t)im.height);
@@ -149,7 +149,7 @@ static void choose_views(int views[2], const struct job *j, int lamp, const stru
 {
     double best = 0, best_outline = MIN_OUTLINE, outline_of_best = 0;
     views[0] = views[1] = -1;
-    for (int i = 0; i < j->model->set.view_count; i++) {
+    for (int i = 0; i < j->model->in.set.view_count; i++) {
         const struct view *v = &j->views[i];
         const double around = curve_draw(NULL, outline, v, &j->model->rays, 0, DARK);
         const double score = around + curve_draw(NULL, edge, v, &j->model->rays, 0, DARK) + marks_seen(j, lamp, v);
@@ -166,7 +166,8 @@ static enum status write_lamp(const struct job *j, int lamp, struct curve *outli
     char name[LAMP_FILE_NAME], path[FILE_PATH];
     int views[2];
     lamp_file_name(name, &j->scene->lights, lamp);
-    if (file_path(path, folder, name, ".jpg", err)) return err->status;
+    if (product_path_in(path, folder, PRODUCT_LAMP_PICTURE, &(struct product_key){.name = name}, err))
+        return err->status;
     cone_edge_find(edge, l, &j->model->rays);
     lamp_outline(outline, l);
     choose_views(views, j, lamp, outline, edge);
@@ -178,11 +179,11 @@ static enum status write_lamp(const struct job *j, int lamp, struct curve *outli
 enum status lamp_pictures_write(const struct lit_scene *scene, const struct lit_model *model, const char *views,
                                 const char *folder, struct err *err)
 {
-    const int count = model->set.view_count;
+    const int count = model->in.set.view_count;
     struct job j = {scene, model, calloc((size_t)count + 1, sizeof *j.views), views};
     struct curve *curves = malloc(2 * sizeof *curves);
     enum status st = j.views && curves ? ST_OK : err_nomem(err, "views", (size_t)count * sizeof *j.views);
-    for (int i = 0; !st && i < count; i++) j.views[i] = model_from_world_view(&model->axes, &model->set.views[i]);
+    for (int i = 0; !st && i < count; i++) j.views[i] = model_from_world_view(&model->in.axes, &model->in.set.views[i]);
     for (int i = 0; !st && i < scene->lights.lamp_count; i++)
         st = write_lamp(&j, i, &curves[0], &curves[1], folder, err);
     free(j.views);

@@ -11,6 +11,7 @@
 
 #include "common/base/array.h"
 #include "common/base/file_path.h"
+#include "common/capture/photo_camera.h"
 #include "common/capture/photo_quality.h"
 #include "common/capture/view_image.h"
 #include "common/math/numbers.h"
@@ -102,9 +103,9 @@ static bool bilinear(const struct viewer *v, double x, double y, struct observat
 
 static bool marked_here(const struct viewer *v, const struct lit_point *p)
 {
-    const struct lens *lens = &v->model->lenses.lenses[lens_list_find(&v->model->lenses, v->camera.name)];
+    const struct lens *lens = lens_of_view(&v->model->in.set, &v->model->in.lenses, v->index);
     const char *marked = v->notes->items[p->note].view;
-    return !strcmp(marked, lens->photo) || !strcmp(marked, lens->view);
+    return !strcmp(marked, v->camera.name) || (lens && !strcmp(marked, lens->photo));
 }
 
 static enum status observe_point(struct viewer *v, int point, struct err *err)
@@ -172,12 +173,13 @@ static bool faces_any(const struct viewer *v)
 static enum status read_view(struct viewer *v, const char *views, const char *ids, struct provenance *prov,
                              struct err *err)
 {
+    const struct product_key key = {.view = v->camera.name};
     char path[FILE_PATH];
-    if (provenance_add_in(prov, "views", views, v->camera.name, ".exr", path, err) ||
-        view_planes_read(&v->picture, path, &v->camera, VIEW_CHANNELS, err) ||
-        provenance_add_in(prov, "ids", ids, v->camera.name, ".exr", path, err))
-        return err->status;
-    return view_ids_read(&v->ids, &v->camera, path, err);
+    return view_planes_read(&v->picture, views, &v->camera, VIEW_CHANNELS, prov, err) ||
+                   product_path_in(path, ids, PRODUCT_IDS, &key, err) ||
+                   view_ids_read(&v->ids, &v->camera, path, prov, err)
+               ? err->status
+               : ST_OK;
 }
 
 static enum status observe_view(struct viewer *v, const char *views, const char *ids, struct provenance *prov,
@@ -190,15 +192,6 @@ static enum status observe_view(struct viewer *v, const char *views, const char 
     view_planes_release(&v->picture);
     view_ids_release(&v->ids);
     return st;
-}
-
-/* The index of the photo's first view. */
-static int photo_of(const struct lit_model *m, int view)
-{
-    const int lens = lens_list_find(&m->lenses, m->set.views[view].name);
-    for (int i = 0; lens >= 0 && i < m->lenses.count; i++)
-        if (!strcmp(m->lenses.lenses[i].photo, m->lenses.lenses[lens].photo)) return i;
-    return view;
 }
 
 static int compare(const void *a, const void *b)
@@ -216,10 +209,10 @@ enum status observe(struct observations *o, const struct lit_scene *scene, const
     struct viewer v = {.o = o, .scene = scene, .notes = notes, .model = model, .params = params};
     *o = (struct observations){.clipped_points = calloc((size_t)scene->point_count + 1, sizeof(int))};
     enum status st = o->clipped_points ? ST_OK : err_nomem(err, "points", (size_t)scene->point_count);
-    for (int i = 0; !st && i < model->set.view_count; i++) {
+    for (int i = 0; !st && i < model->in.set.view_count; i++) {
         v.index = i;
-        v.photo = photo_of(model, i);
-        v.camera = model_from_world_view(&model->axes, &model->set.views[i]);
+        v.photo = photo_of_view(&model->in.set, &model->in.lenses, i);
+        v.camera = model_from_world_view(&model->in.axes, &model->in.set.views[i]);
         st = observe_view(&v, views, ids, prov, err);
     }
     if (st) return st;

@@ -34,9 +34,7 @@ enum { LINE_POINTS = 161 };
 void lit_model_release(struct lit_model *m)
 {
     model_rays_release(&m->rays);
-    model_plan_release(&m->plan);
-    lens_list_release(&m->lenses);
-    camera_set_release(&m->set);
+    scene_inputs_release(&m->in);
     *m = (struct lit_model){0};
 }
 
@@ -66,13 +64,13 @@ static enum status pixel_ray(struct ray *ray, const struct resolver *r, const st
 {
     struct photo_camera camera;
     struct vec3 world;
-    if (photo_camera_find(&camera, a->view, &r->model->set, &r->model->lenses, r->notes->path, a->line, err))
+    if (photo_camera_find(&camera, a->view, &r->model->in.set, &r->model->in.lenses, r->notes->path, a->line, err))
         return err->status;
     if (!photo_camera_ray(&camera, pixel[0], pixel[1], &world))
         return err_set(err, ST_DATA, "%s:%d: pixel %g %g is not inside the photo %s, which has %d x %d pixels.",
                        r->notes->path, a->line, pixel[0], pixel[1], a->view, camera.lens.width, camera.lens.height);
-    ray->from = model_from_world_point(&r->model->axes, camera.center);
-    ray->direction = model_from_world_direction(&r->model->axes, world);
+    ray->from = model_from_world_point(&r->model->in.axes, camera.center);
+    ray->direction = model_from_world_direction(&r->model->in.axes, world);
     return ST_OK;
 }
 
@@ -221,7 +219,7 @@ static enum status add_opening(struct resolver *r, const char *name, const struc
 
 static enum status add_openings(struct resolver *r, struct err *err)
 {
-    const struct model_plan *plan = &r->model->plan;
+    const struct model_plan *plan = &r->model->in.plan;
     for (int i = 0; i < plan->opening_count; i++) {
         const struct model_opening *o = &plan->openings[i];
         const struct annotation *note = note_of(r, o->name);
@@ -252,7 +250,7 @@ static enum status add_openings(struct resolver *r, struct err *err)
 
 static enum status check_openings(const struct resolver *r, struct err *err)
 {
-    const struct model_plan *plan = &r->model->plan;
+    const struct model_plan *plan = &r->model->in.plan;
     for (int i = 0; i < r->notes->count; i++) {
         const struct annotation *a = &r->notes->items[i];
         bool known = a->kind > NOTE_SHUT;

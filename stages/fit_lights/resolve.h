@@ -4,20 +4,15 @@
 #ifndef REMODEL_FIT_LIGHTS_RESOLVE_H
 #define REMODEL_FIT_LIGHTS_RESOLVE_H
 
-#include "common/capture/lens_list.h"
 #include "common/gather/lights.h"
 #include "common/light/model_rays.h"
-#include "common/model/model_axes.h"
-#include "common/model/model_plan.h"
+#include "common/model/scene_inputs.h"
 #include "stages/fit_lights/annotations.h"
 
 /* {0} is the empty state; everything is owned. */
 struct lit_model {
     struct model_rays rays; /* without glass */
-    struct model_axes axes;
-    struct model_plan plan;
-    struct camera_set set;
-    struct lens_list lenses;
+    struct scene_inputs in; /* cameras, lenses, axes, plan */
 };
 void lit_model_release(struct lit_model *m);
 

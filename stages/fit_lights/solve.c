@@ -13,10 +13,10 @@
 #include <string.h>
 
 #include "common/base/log.h"
-#include "common/base/outfile.h"
 #include "common/base/textfile.h"
 #include "common/math/numbers.h"
 #include "common/math/weighted.h"
+#include "common/product/product.h"
 #include "stages/fit_lights/fit.h"
 #include "stages/fit_lights/lines.h"
 
@@ -399,9 +399,7 @@ enum status solved_lights_write(const struct solved_lights *s, const struct solv
                                 const struct provenance *prov, struct err *err)
 {
     struct outfile f = {0};
-    enum status st = outfile_open(&f, path, err);
-    if (!st && prov) provenance_print(prov, f.fp);
-    if (!st) fputs("remodel-light-fit 1\n", f.fp);
+    enum status st = product_begin(&f, PRODUCT_LIGHT_FIT, path, prov, err);
     for (int i = 0; !st && i < s->lamp_count; i++) write_lamp(s, in, i, f.fp);
     for (int i = 0; !st && i < s->material_count; i++) write_material(&s->materials[i], f.fp);
     for (int i = 0; !st && i < s->point_count; i++)

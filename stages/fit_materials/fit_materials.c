@@ -12,10 +12,10 @@
 #include <string.h>
 
 #include "common/base/cli.h"
-#include "common/base/file_path.h"
 #include "common/base/log.h"
-#include "common/base/outfile.h"
 #include "common/gather/model_field.h"
+#include "common/model/scene_inputs.h"
+#include "common/product/product.h"
 #include "stages/fit_materials/fit_region.h"
 #include "stages/fit_materials/marked_materials.h"
 
@@ -29,9 +29,7 @@ struct job {
     struct materials_params params;
     struct provenance prov;
     struct marked_materials marks;
-    struct model_axes axes;
-    struct camera_set set;
-    struct lens_list lenses;
+    struct scene_inputs in;
     struct model_field field;
     struct observations seen;
 };
@@ -40,22 +38,16 @@ static void job_release(struct job *j)
 {
     observations_release(&j->seen);
     model_field_release(&j->field);
-    lens_list_release(&j->lenses);
-    camera_set_release(&j->set);
+    scene_inputs_release(&j->in);
     marked_materials_release(&j->marks);
     provenance_release(&j->prov);
 }
 
 static enum status read_inputs(struct job *j, struct err *err)
 {
-    char path[FILE_PATH];
-    if (provenance_add_file(&j->prov, "materials.txt", j->marks_path, err) ||
-        marked_materials_read(&j->marks, j->marks_path, err) ||
-        provenance_add_file(&j->prov, "model/axes.txt", j->axes_path, err) ||
-        model_axes_read(&j->axes, j->axes_path, err) || camera_set_add_camera_inputs(&j->prov, j->views, err) ||
-        camera_set_read_cameras(&j->set, j->views, err) ||
-        provenance_add_in(&j->prov, "views", j->views, "lenses", ".txt", path, err) ||
-        lens_list_read(&j->lenses, path, err))
+    const struct scene_files files = {.views = j->views, .axes = j->axes_path};
+    if (marked_materials_read(&j->marks, j->marks_path, &j->prov, err) ||
+        scene_inputs_read(&j->in, SCENE_CAMERAS | SCENE_LENSES | SCENE_AXES, &files, &j->prov, err))
         return err->status;
     return model_field_read(&j->field, &j->files, &j->prov, err);
 }
@@ -74,12 +66,12 @@ static enum status fit_one(struct job *j, const struct observed_scene *scene, in
 {
     struct material *m = &j->marks.list.items[index];
     struct region_fit f;
-    char folder[FILE_PATH], path[FILE_PATH];
+    char path[FILE_PATH];
     enum status st = region_fit_make(&f, m, index, j->marks.declared[index], &j->seen, scene, &j->field.field, err);
     if (!st) {
         report(m, &f);
         region_fit_print(samples, &f, m, &j->seen, scene);
-        st = file_path(folder, j->out, "materials", "", err) || file_path(path, folder, m->name, ".jpg", err)
+        st = product_path_in(path, j->out, PRODUCT_MATERIAL_PICTURE, &(struct product_key){.name = m->name}, err)
                  ? err->status
                  : region_fit_picture(&f, &j->seen, scene, path, err);
     }
@@ -91,15 +83,15 @@ static enum status fit_all(struct job *j, const struct observed_scene *scene, st
 {
     char path[FILE_PATH];
     struct outfile samples = {0};
-    if (file_path(path, j->out, "materials/samples", ".txt", err) || outfile_open(&samples, path, err))
+    if (product_path_in(path, j->out, PRODUCT_MATERIAL_SAMPLES, NULL, err) ||
+        product_begin(&samples, PRODUCT_MATERIAL_SAMPLES, path, &j->prov, err))
         return err->status;
-    provenance_print(&j->prov, samples.fp);
     fprintf(samples.fp, "# material view x y, radiance R G B in the view, and by the fitted model\n");
     enum status st = ST_OK;
     for (int i = 0; !st && i < j->marks.list.count; i++) st = fit_one(j, scene, i, samples.fp, err);
     if (!st) st = outfile_commit(&samples, err);
     outfile_discard(&samples);
-    if (st || file_path(path, j->out, "materials", ".txt", err)) return err->status;
+    if (st || product_path_in(path, j->out, PRODUCT_MATERIALS, NULL, err)) return err->status;
     return material_list_write(&j->marks.list, path, &j->prov, err);
 }
 
@@ -115,8 +107,8 @@ static void lift_points(struct job *j)
 static enum status run(struct job *j, struct err *err)
 {
     if (read_inputs(j, err)) return err->status;
-    const struct observed_scene scene = {&j->field.model, &j->axes, &j->set, &j->lenses,
-                                         j->marks_path,   j->views, j->ids,  &j->params};
+    const struct observed_scene scene = {&j->field.model, &j->in.axes, &j->in.set, &j->in.lenses,
+                                         j->marks_path,   j->views,    j->ids,     &j->params};
     if (observe_points(&j->seen, &scene, &j->marks.list, err) || observe_views(&j->seen, &scene, &j->prov, err))
         return err->status;
     lift_points(j);

@@ -47,12 +47,14 @@ static enum status read_material(struct marked_materials *m, struct textfile *t,
     return read_parts(material, &m->declared[m->list.count - 1], t, err);
 }
 
-enum status marked_materials_read(struct marked_materials *m, const char *path, struct err *err)
+enum status marked_materials_read(struct marked_materials *m, const char *path, struct provenance *prov,
+                                  struct err *err)
 {
     struct textfile t = {0};
     int64_t version;
     *m = (struct marked_materials){0};
-    enum status st = textfile_open(&t, path, err) || textfile_expect_line(&t, "remodel-marked-materials", err) ||
+    enum status st = provenance_open(prov, "materials.txt", &t, path, err) ||
+                             textfile_expect_line(&t, "remodel-marked-materials", err) ||
                              textfile_int(&t, "the version", 1, 1, &version, err) || textfile_end(&t, err)
                          ? err->status
                          : ST_OK;

@@ -18,7 +18,8 @@ struct marked_materials {
 };
 
 /* ST_DATA with file and line: no materials, a damaged line, a name twice. */
-enum status marked_materials_read(struct marked_materials *m, const char *path, struct err *err);
+enum status marked_materials_read(struct marked_materials *m, const char *path, struct provenance *prov,
+                                  struct err *err);
 void marked_materials_release(struct marked_materials *m);
 
 #endif

@@ -165,12 +165,13 @@ static enum status observe_point(struct viewer *v, int point, struct err *err)
 
 static enum status read_view(struct viewer *v, struct provenance *prov, struct err *err)
 {
+    const struct product_key key = {.view = v->camera.name};
     char path[FILE_PATH];
-    if (provenance_add_in(prov, "views", v->scene->views, v->camera.name, ".exr", path, err) ||
-        view_planes_read(&v->picture, path, &v->camera, VIEW_CHANNELS, err) ||
-        provenance_add_in(prov, "ids", v->scene->ids, v->camera.name, ".exr", path, err))
-        return err->status;
-    return view_ids_read(&v->ids, &v->camera, path, err);
+    return view_planes_read(&v->picture, v->scene->views, &v->camera, VIEW_CHANNELS, prov, err) ||
+                   product_path_in(path, v->scene->ids, PRODUCT_IDS, &key, err) ||
+                   view_ids_read(&v->ids, &v->camera, path, prov, err)
+               ? err->status
+               : ST_OK;
 }
 
 static enum status observe_view(struct viewer *v, struct provenance *prov, struct err *err)
@@ -184,15 +185,6 @@ static enum status observe_view(struct viewer *v, struct provenance *prov, struc
     view_planes_release(&v->picture);
     view_ids_release(&v->ids);
     return st;
-}
-
-/* The lens of the photo's first view. */
-static int photo_of(const struct observed_scene *s, int view)
-{
-    const int lens = lens_list_find(s->lenses, s->set->views[view].name);
-    for (int i = 0; lens >= 0 && i < lens; i++)
-        if (!strcmp(s->lenses->lenses[i].photo, s->lenses->lenses[lens].photo)) return i;
-    return lens;
 }
 
 static int compare_sights(const void *a, const void *b)
@@ -227,7 +219,7 @@ enum status observe_views(struct observations *o, const struct observed_scene *s
     struct viewer v = {.o = o, .scene = scene};
     for (int i = 0; i < scene->set->view_count; i++) {
         v.index = i;
-        v.photo = photo_of(scene, i);
+        v.photo = photo_of_view(scene->set, scene->lenses, i);
         v.camera = model_from_world_view(scene->axes, &scene->set->views[i]);
         if (observe_view(&v, prov, err)) return err->status;
     }

@@ -39,7 +39,7 @@ enum status region_fit_picture(const struct region_fit *f, const struct observat
 {
     const int view = max_seen(f, o, scene->set->view_count);
     struct image im = {0};
-    if (view_image_read(&im, scene->views, &scene->set->views[view], err) || image_expose(&im, WHITE, 0.5, err)) {
+    if (view_image_read(&im, scene->views, &scene->set->views[view], NULL, err) || image_expose(&im, WHITE, 0.5, err)) {
         image_release(&im);
         return err->status;
     }

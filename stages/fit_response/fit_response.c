@@ -15,6 +15,7 @@
 #include "common/base/outfile.h"
 #include "common/base/parallel.h"
 #include "common/capture/photo_list.h"
+#include "common/product/product.h"
 #include "stages/fit_response/recover.h"
 
 struct sample_job {
@@ -104,7 +105,7 @@ static enum status write_response(const struct response *r, const char *path, co
     FILE *to = open_memstream(&text, &size);
     if (!to) return err_nomem(err, "a text", 0);
     provenance_print(prov, to);
-    fprintf(to, "remodel-response 1\ncurve %s\n", r->table ? "table 256" : "srgb");
+    fprintf(to, "%s\ncurve %s\n", products[PRODUCT_RESPONSE].head, r->table ? "table 256" : "srgb");
     for (int i = 0; r->table && i < RESPONSE_LEVELS; i++)
         fprintf(to, "%.9g %.9g %.9g\n", (double)r->light[0][i], (double)r->light[1][i], (double)r->light[2][i]);
     const bool failed = fclose(to) != 0;

@@ -1,5 +1,4 @@
 # fit_response: the camera's response curve, from the exposures of some views.
 FOLLOWS.fit_response := import_photos
 READS.fit_response := the exposures of some views; only where photos are brackets
-WRITES.fit_response := hdr/response.txt
 SHARED.fit_response := yes

@@ -11,6 +11,7 @@
 #include "common/base/cli.h"
 #include "common/base/file_path.h"
 #include "common/base/log.h"
+#include "common/product/product.h"
 #include "stages/fuse_points/fuse.h"
 
 enum { DEFAULT_MIB = 1024 };
@@ -21,26 +22,24 @@ struct depth_folder {
     struct provenance *prov;
 };
 
-/* path: of the EXR. Records it and its list of segments as inputs. */
 static enum status find_depth(const struct depth_folder *f, int view_idx, char path[FILE_PATH], struct err *err)
 {
-    const char *name = f->set->views[view_idx].name;
-    if (provenance_add_in(f->prov, "depth", f->folder, name, ".txt", path, err) ||
-        provenance_add_in(f->prov, "depth", f->folder, name, ".exr", path, err))
-        return err->status;
-    return ST_OK;
+    const struct product_key key = {.view = f->set->views[view_idx].name};
+    return product_path_in(path, f->folder, PRODUCT_DEPTH, &key, err);
 }
 
 static enum status read_ids(void *ctx, int view_idx, struct layered_depth *d, struct err *err)
 {
+    const struct depth_folder *f = ctx;
     char path[FILE_PATH];
-    return find_depth(ctx, view_idx, path, err) ? err->status : layered_depth_read_ids(d, path, err);
+    return find_depth(f, view_idx, path, err) ? err->status : layered_depth_read_ids(d, path, f->prov, err);
 }
 
 static enum status read_interior(void *ctx, int view_idx, struct layered_depth *d, struct err *err)
 {
+    const struct depth_folder *f = ctx;
     char path[FILE_PATH];
-    return find_depth(ctx, view_idx, path, err) ? err->status : layered_depth_read_interior(d, path, err);
+    return find_depth(f, view_idx, path, err) ? err->status : layered_depth_read_interior(d, path, f->prov, err);
 }
 
 static void log_stats(const struct point_cloud *cloud, const struct fuse_stats *stats)
@@ -59,8 +58,7 @@ static enum status fuse(const char *views, const char *depth, const char *out, i
     struct point_cloud cloud = {0};
     struct fuse_stats stats;
     if (mib < 0) return err_set(err, ST_USAGE, "--memory %d: wanted a number of MiB, 0 or more.", mib);
-    enum status st = camera_set_read(&set, views, err);
-    if (!st) st = camera_set_add_inputs(prov, views, err);
+    enum status st = camera_set_read(&set, views, prov, err);
     if (!st) {
         struct depth_folder folder = {depth, &set, prov};
         const struct depth_reader source = {read_ids, read_interior, &folder};

@@ -6,6 +6,7 @@
 
 #include "common/base/file_path.h"
 #include "common/image/exr.h"
+#include "common/product/product.h"
 #include "stages/gather_irradiance/light_summary.h"
 #include "stages/gather_irradiance/view_gloss.h"
 
@@ -97,10 +98,10 @@ static enum status add_gloss(struct exr_image *im, const struct view_gloss *g, s
 static enum status write_picture(const struct gather_job *j, const struct view *v, const struct view_surface *s,
                                  struct err *err)
 {
-    char folder[FILE_PATH], path[FILE_PATH];
+    char name[FILE_PATH], path[FILE_PATH];
     struct exr_image im = {0};
-    enum status st = file_path(folder, j->out, "irradiance", "", err);
-    if (!st) st = file_path(path, folder, v->name, ".exr", err);
+    enum status st = file_path(name, "irradiance", v->name, "", err);
+    if (!st) st = product_path_in(path, j->out, PRODUCT_IRRADIANCE_VIEW, &(struct product_key){.gathered = name}, err);
     if (!st) st = exr_image_init(&im, v->width, v->height, err);
     if (!st) st = add_irradiance(&im, s, err);
     if (!st && s->gloss.material) st = add_gloss(&im, &s->gloss, err);
@@ -113,8 +114,7 @@ enum status gather_view(struct gather_job *j, const char *views, const char *nam
 {
     struct camera_set set = {0};
     struct view_surface s = {0};
-    enum status st = camera_set_add_camera_inputs(&j->prov, views, err);
-    if (!st) st = camera_set_read_cameras(&set, views, err);
+    enum status st = camera_set_read_cameras(&set, views, &j->prov, err);
     const int index = st ? -1 : camera_set_find(&set, name);
     if (!st && index < 0)
         st = err_set(err, ST_DATA, "%s has no view %s; see its images.txt for the names.", views, name);

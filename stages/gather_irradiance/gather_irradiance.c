@@ -71,8 +71,8 @@ static enum status gather(struct gather_job *j, const struct options *o, struct 
 {
     double step;
     if (check_options(j, o, err) || model_field_read(&j->field, &o->files, &j->prov, err) ||
-        provenance_add_file(&j->prov, "model/axes.txt", o->axes, err) || model_axes_read(&j->axes, o->axes, err) ||
-        gatherer_make(&j->gatherer, &j->params, err) || complete_field(j, o, err))
+        model_axes_read(&j->axes, o->axes, &j->prov, err) || gatherer_make(&j->gatherer, &j->params, err) ||
+        complete_field(j, o, err))
         return err->status;
     if (o->points) return gather_points_of_file(j, o->points, err);
     if (o->view) return gather_view(j, o->views, o->view, o->specular, err);

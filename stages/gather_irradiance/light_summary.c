@@ -24,6 +24,7 @@
 #include "common/image/drawing.h"
 #include "common/image/false_colour.h"
 #include "common/image/photo.h"
+#include "common/product/product.h"
 #include "stages/gather_irradiance/hemicube_picture.h"
 
 enum { QUALITY = 90, HEMICUBE = 256 /* pixels in a row of its top */ };
@@ -105,14 +106,15 @@ enum status light_summarize(struct light_record *r, size_t chosen[LIGHT_EXAMPLES
 static enum status write_record(const struct gather_job *j, const char *name, const struct light_record *r,
                                 struct err *err)
 {
-    char path[FILE_PATH], suffix[32];
+    char path[FILE_PATH], number[16];
+    const struct product_key key = {.gathered = name, .name = number};
     for (int i = 0; i < r->example_count; i++) {
-        snprintf(suffix, sizeof suffix, ".hemicube%d.jpg", i + 1);
-        if (file_path(path, j->out, name, suffix, err) ||
+        snprintf(number, sizeof number, "%d", i + 1);
+        if (product_path_in(path, j->out, PRODUCT_HEMICUBE, &key, err) ||
             hemicube_picture_write(&j->field.field, r->examples[i].point, HEMICUBE, path, err))
             return err->status;
     }
-    if (file_path(path, j->out, name, ".light.txt", err)) return err->status;
+    if (product_path_in(path, j->out, PRODUCT_LIGHT_RECORD, &key, err)) return err->status;
     return light_record_write(r, path, &j->prov, err);
 }
 
@@ -156,12 +158,12 @@ static void put_hatched(unsigned char rgb[3], size_t pixel, int width)
     memset(rgb, (pixel % (size_t)width + pixel / (size_t)width) % 8 < 3 ? 120 : 165, 3);
 }
 
-static enum status write_picture(const struct sketch *s, const char *suffix, struct err *err)
+static enum status write_picture(const struct sketch *s, enum product_id id, struct err *err)
 {
     char path[FILE_PATH];
     for (size_t i = 0; i < s->pixels; i++)
         if (!is_point(&s->points[i])) put_hatched(s->rgb + 3 * i, i, s->view->width);
-    if (file_path(path, s->job->out, s->name, suffix, err)) return err->status;
+    if (product_path_in(path, s->job->out, id, &(struct product_key){.gathered = s->name}, err)) return err->status;
     return jpeg_write(path, s->rgb, s->view->width, s->view->height, QUALITY, err);
 }
 
@@ -189,7 +191,7 @@ static enum status draw_white(const struct sketch *s, const size_t *chosen, int 
     if (!st) {
         image_to_srgb8(&im, s->rgb);
         draw_examples(s, chosen, count);
-        st = write_picture(s, ".white.jpg", err);
+        st = write_picture(s, PRODUCT_IRRADIANCE_WHITE, err);
     }
     image_release(&im);
     return st;
@@ -202,7 +204,7 @@ static enum status draw_levels(const struct sketch *s, const double level[2], st
         const double luminance = rgb_luminance(s->e[i].value);
         ramp_colour(luminance > 0 && span > 0 ? log(luminance / level[0]) / span : 0, s->rgb + 3 * i);
     }
-    return write_picture(s, ".level.jpg", err);
+    return write_picture(s, PRODUCT_IRRADIANCE_LEVEL, err);
 }
 
 static enum status draw_unknown(const struct sketch *s, struct err *err)
@@ -211,7 +213,7 @@ static enum status draw_unknown(const struct sketch *s, struct err *err)
         const double *from = s->e[i].from;
         ramp_colour(from[LIGHT_SYNTHESISED] + from[LIGHT_SKY_GUESSED] + from[LIGHT_NONE], s->rgb + 3 * i);
     }
-    return write_picture(s, ".unknown.jpg", err);
+    return write_picture(s, PRODUCT_IRRADIANCE_UNKNOWN, err);
 }
 
 enum status light_summary_of_view(const struct gather_job *j, const struct view *view,

@@ -6,21 +6,21 @@
 #include <string.h>
 
 #include "common/base/array.h"
-#include "common/base/file_path.h"
-#include "common/base/outfile.h"
 #include "common/light/surface_points.h"
+#include "common/product/product.h"
 #include "stages/gather_irradiance/light_summary.h"
 
 enum { MAX_POINTS = 10000000 };
 
 /* ---------------------------------------------------------------------------------------------------------- writing */
 
-static enum status open_list(struct outfile *f, const struct gather_job *j, const char *name, const char *suffix,
+static enum status open_list(struct outfile *f, const struct gather_job *j, const char *name, enum product_id id,
                              const char *head, struct err *err)
 {
     char path[FILE_PATH];
-    if (file_path(path, j->out, name, suffix, err) || outfile_open(f, path, err)) return err->status;
-    provenance_print(&j->prov, f->fp);
+    if (product_path_in(path, j->out, id, &(struct product_key){.gathered = name}, err) ||
+        product_begin(f, id, path, &j->prov, err))
+        return err->status;
     fputs(head, f->fp);
     return ST_OK;
 }
@@ -30,7 +30,7 @@ static enum status write_parts(const struct gather_job *j, const char *name, con
 {
     struct outfile f = {0};
     enum status st =
-        open_list(&f, j, name, "-parts.txt",
+        open_list(&f, j, name, PRODUCT_IRRADIANCE_PARTS,
                   "# standard error r g b, rays, nearest distance and 1 / (harmonic mean distance) in model "
                   "units, shares of the light: none texture synthesised sky sky-guessed lamp material\n",
                   err);
@@ -50,8 +50,8 @@ static enum status write_points(const struct gather_job *j, const char *name, co
                                 const struct irradiance *e, struct err *err)
 {
     struct outfile f = {0};
-    enum status st =
-        open_list(&f, j, name, ".txt", "# x y z, normal, irradiance r g b; in the frame of the views\n", err);
+    enum status st = open_list(&f, j, name, PRODUCT_IRRADIANCE,
+                               "# x y z, normal, irradiance r g b; in the frame of the views\n", err);
     for (int i = 0; !st && i < points->count; i++) {
         const struct surface_point *p = &points->list[i];
         fprintf(f.fp, "%.17g %.17g %.17g %.17g %.17g %.17g %.9g %.9g %.9g\n", p->at.x, p->at.y, p->at.z, p->normal.x,

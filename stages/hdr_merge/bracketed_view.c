@@ -35,6 +35,7 @@
 #include "common/capture/sfm_model.h"
 #include "common/capture/view_image.h"
 #include "common/image/exr.h"
+#include "common/product/product.h"
 #include "stages/hdr_merge/tone.h"
 
 #define MAX_HALF 65504.0f
@@ -89,8 +90,7 @@ static enum status read_photos(struct bracketed_view *v, const char *photos, str
 enum status bracketed_view_read(struct bracketed_view *v, const char *id, const char *photos, const char *records,
                                 const char *response, struct provenance *prov, struct err *err)
 {
-    char *path = NULL, *input = NULL;
-    enum status st = photo_record_read(&v->record, records, id, err);
+    enum status st = photo_record_read(&v->record, records, id, prov, err);
     if (!st && !v->record.bracket_count)
         st = err_set(err, ST_DATA,
                      "%s/%s.txt is the record of a single photo, wanted that of a view of several exposures; run "
@@ -99,15 +99,9 @@ enum status bracketed_view_read(struct bracketed_view *v, const char *id, const 
     if (!st && v->record.bracket_count > MERGE_MAX_EXPOSURES)
         st = err_set(err, ST_DATA, "view %s has %d exposures, wanted at most %d; exclude some of them (EXCLUDE).", id,
                      v->record.bracket_count, (int)MERGE_MAX_EXPOSURES);
-    if (!st)
-        st = join(&path, records, id, ".txt", err) || join(&input, "photos", id, ".txt", err) ? err->status : ST_OK;
-    if (!st) st = provenance_add_file(prov, input, path, err);
-    if (!st && response) st = response_read(&v->response, response, err);
-    if (!st && response) st = provenance_add_file(prov, "hdr/response.txt", response, err);
+    if (!st && response) st = response_read(&v->response, response, prov, err);
     if (!st) st = read_photos(v, photos, prov, err);
     v->brackets = (struct brackets){v->photos, v->exposures, v->record.bracket_count, &v->response, NULL};
-    free(path);
-    free(input);
     return st;
 }
 
@@ -118,7 +112,7 @@ static enum status place_by_model(struct bracketed_view *v, const char *model, c
     const struct photo_list self = {&v->record, 1};
     struct sfm_model m = {0};
     char path[FILE_PATH];
-    enum status st = sfm_model_read_cameras(&m, model, err);
+    enum status st = sfm_model_read_cameras(&m, model, NULL, err);
     for (int i = 0; !st && i < 2; i++) st = provenance_add_in(prov, "cameras", model, files[i], ".txt", path, err);
     for (int i = 0; !st && !v->placed && i < m.image_count; i++) {
         if (photo_list_match(&self, m.images[i].name) < 0) continue;
@@ -327,11 +321,11 @@ enum status bracketed_view_write_radiance(const struct bracketed_view *v, const 
     static const char *const names[] = {"R", "G", "B"};
     struct exr_image im = {0};
     struct exr_plane *plane = NULL;
-    char *path = NULL;
+    char path[FILE_PATH];
     const struct image *radiance = &v->merged.radiance;
     size_t pixels = (size_t)radiance->width * (size_t)radiance->height;
     *clamped = 0;
-    enum status st = join(&path, out, v->record.id, ".exr", err);
+    enum status st = product_path_in(path, out, PRODUCT_HDR, &(struct product_key){.photo = v->record.id}, err);
     if (!st) st = exr_image_init(&im, radiance->width, radiance->height, err);
     for (size_t c = 0; !st && c < 3; c++) {
         st = exr_add_plane(&im, names[c], EXR_HALF, &plane, err);
@@ -345,7 +339,6 @@ enum status bracketed_view_write_radiance(const struct bracketed_view *v, const 
     if (!st) st = set_camera(&im, v, err);
     if (!st) st = exr_write(&im, path, prov, err);
     exr_image_release(&im);
-    free(path);
     return st;
 }
 

@@ -78,7 +78,7 @@ static enum status read_lens(struct camera *lens, const struct marked_image *m, 
     char path[FILE_PATH];
     int found = 0;
     enum status st = provenance_add_in(prov, "cameras", folder, "cameras", ".txt", path, err);
-    if (!st) st = sfm_model_read_camera_files(&model, path, NULL, err);
+    if (!st) st = sfm_model_read_camera_files(&model, path, NULL, NULL, err);
     for (int i = 0; !st && i < model.camera_count; i++)
         if (has_size(&model.cameras[i].camera, info) && !found++) *lens = model.cameras[i].camera;
     if (!st && found != 1)
@@ -165,12 +165,6 @@ static enum status choose(struct marked_pose *to, const struct marked_image *m, 
         m->list->path, m->image->id, p->degrees, p->rms, params->max_mark_misfit, to->worst_line, p->max);
 }
 
-static enum status add_inputs(struct provenance *prov, const struct reference_frame *frame, struct err *err)
-{
-    enum status st = provenance_add_file(prov, "lri.txt", frame->marks, err);
-    return st ? st : provenance_add_file(prov, "model/plan.txt", frame->plan, err);
-}
-
 /* Moves a pose from the model's frame to the scene's. */
 static enum status to_scene(struct marked_pose *m, struct pose *cam_from_world, const struct reference_frame *frame,
                             const struct merge_params *params, struct provenance *prov, struct err *err)
@@ -178,7 +172,7 @@ static enum status to_scene(struct marked_pose *m, struct pose *cam_from_world, 
     const struct reference_frame in_model = {.axes = frame->axes};
     struct frame_agreement none;
     struct model_axes axes;
-    if (model_axes_read(&axes, frame->axes, err)) return err->status;
+    if (model_axes_read(&axes, frame->axes, prov, err)) return err->status;
     m->metric = axes.metric;
     *cam_from_world = m->found.poses[m->chosen].cam_from_world;
     return reference_pose_find(cam_from_world, &none, NULL, NULL, &in_model, params, prov, err);
@@ -192,9 +186,8 @@ enum status marked_pose_find(struct marked_pose *m, struct camera *lens, struct 
     struct model_plan plan = {0};
     struct marked_image marked = {.image = image, .list = &list};
     *m = (struct marked_pose){0};
-    enum status st = add_inputs(prov, frame, err);
-    if (!st) st = reference_marks_read(&list, frame->marks, err);
-    if (!st) st = model_plan_read(&plan, frame->plan, err);
+    enum status st = reference_marks_read(&list, frame->marks, prov, err);
+    if (!st) st = model_plan_read(&plan, frame->plan, prov, err);
     if (!st) st = collect(&marked, &plan, err);
     *known = !st && marked.count;
     if (*known) st = find_lens(lens, &marked, model, prov, err);

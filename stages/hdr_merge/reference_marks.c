@@ -150,11 +150,13 @@ static enum status check_repeated(const struct reference_marks *list, const stru
     return ST_OK;
 }
 
-enum status reference_marks_read(struct reference_marks *list, const char *path, struct err *err)
+enum status reference_marks_read(struct reference_marks *list, const char *path, struct provenance *prov,
+                                 struct err *err)
 {
     struct textfile t = {0};
     *list = (struct reference_marks){.path = strdup(path)};
-    enum status st = list->path ? textfile_open(&t, path, err) : err_nomem(err, "a file name", strlen(path));
+    enum status st =
+        list->path ? provenance_open(prov, "lri.txt", &t, path, err) : err_nomem(err, "a file name", strlen(path));
     while (!st && textfile_next(&t)) {
         if (list->count == MAX_LINES)
             st = err_set(err, ST_DATA, "%s has more than %d lines; delete some.", path, (int)MAX_LINES);

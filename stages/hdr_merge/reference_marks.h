@@ -37,7 +37,8 @@ struct reference_marks {
 
 /* The caller releases the list, which a failure leaves empty. ST_DATA with file and line: an unknown or damaged line,
  * or what was stated before. */
-enum status reference_marks_read(struct reference_marks *list, const char *path, struct err *err);
+enum status reference_marks_read(struct reference_marks *list, const char *path, struct provenance *prov,
+                                 struct err *err);
 void reference_marks_release(struct reference_marks *list);
 
 /* Whether the line is of this image; `*` is not. */

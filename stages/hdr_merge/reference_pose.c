@@ -3,19 +3,7 @@
  * room's model. */
 #include "stages/hdr_merge/reference_pose.h"
 
-#include "common/base/file_path.h"
 #include "common/model/model_axes.h"
-
-static enum status add_inputs(struct provenance *prov, const struct reference_frame *frame, struct err *err)
-{
-    static const char *const files[] = {"cameras", "images", "lenses"};
-    char path[FILE_PATH];
-    enum status st = ST_OK;
-    for (int i = 0; !st && frame->views && i < 3; i++)
-        st = provenance_add_in(prov, "views", frame->views, files[i], ".txt", path, err);
-    if (!st && frame->axes) st = provenance_add_file(prov, "model/axes.txt", frame->axes, err);
-    return st;
-}
 
 enum status reference_pose_find(struct pose *cam_from_world, struct frame_agreement *agreement,
                                 const struct sfm_model *model, const char *folder, const struct reference_frame *frame,
@@ -24,13 +12,13 @@ enum status reference_pose_find(struct pose *cam_from_world, struct frame_agreem
     struct similarity model_from_scene = {0};
     struct model_axes axes = {0};
     *agreement = (struct frame_agreement){0};
-    enum status st = add_inputs(prov, frame, err);
-    if (st || (!frame->views && !frame->axes)) return st;
+    enum status st = ST_OK;
+    if (!frame->views && !frame->axes) return st;
     if (frame->axes) {
-        st = model_axes_read(&axes, frame->axes, err);
+        st = model_axes_read(&axes, frame->axes, prov, err);
         model_from_scene = (struct similarity){axes.scale, mat3_from_quat(axes.rotation), axes.translation};
     } else {
-        const struct scene_photos scene = {frame->views, frame->records};
+        const struct scene_photos scene = {frame->views, frame->records, prov};
         const struct alignment_rules rules = {
             params->max_misfit,
             "Otherwise the pose of the lighting reference images in the scene is unknown. Give a model made from "

@@ -1,7 +1,6 @@
 # hdr_merge: linear radiance of each view, from its exposures; of lighting reference images too.
 FOLLOWS.hdr_merge := fit_response
 READS.hdr_merge := the exposures of one view, response.txt; only where photos are brackets, TIFF, EXR or raw files; on request of a lighting reference image, which scenes/NAME/lri.txt may place in the model
-WRITES.hdr_merge := hdr/ID.exr, ID.jpg; lri/ID.exr, ID.jpg
 SHARED.hdr_merge := yes
 VARIABLES.hdr_merge := LRI LRI_SFM LRI_FRAME
 HELP.hdr := bracketed photos merged; nothing where photos are no brackets

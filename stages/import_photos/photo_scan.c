@@ -241,8 +241,8 @@ static bool read_old_record(struct photo_record *old, const char *records, const
 {
     struct err ignored = ERR_INIT;
     char *members = join_path(records, "members", "");
-    bool found =
-        (members && !photo_record_read(old, members, id, &ignored)) || !photo_record_read(old, records, id, &ignored);
+    bool found = (members && !photo_record_read(old, members, id, NULL, &ignored)) ||
+                 !photo_record_read(old, records, id, NULL, &ignored);
     free(members);
     return found;
 }

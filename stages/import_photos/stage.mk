@@ -1,7 +1,6 @@
 # import_photos: what the folder of photos holds: a record of each photo, brackets, parts of multi-lens pictures.
 FOLLOWS.import_photos := simulate
 READS.import_photos := the folder of photos
-WRITES.import_photos := photos/ID.txt, list.txt, photos.mk; brackets.txt where there are brackets; with `SPLIT` split/ID_cXrY.png, split.txt
 SHARED.import_photos := yes
 VARIABLES.import_photos := PHOTOS SPLIT EXCLUDE
 

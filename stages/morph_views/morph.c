@@ -19,6 +19,7 @@
 #include "common/capture/view_image.h"
 #include "common/image/exr.h"
 #include "common/math/numbers.h"
+#include "common/product/product.h"
 
 #define MAX_STRETCH     1.0f  /* px, max flow difference inside a mesh cell; beyond, the mesh is cut */
 #define OVERLAP         0.02f /* px, between triangles and squares of the mesh */
@@ -26,7 +27,7 @@
 #define MAX_APART       2.0f  /* px between the points that both pictures show; beyond, they contradict each other */
 #define CONFIDENCE_RANK 0.5f  /* confidence 1 counts as this many px of nearness in the depth order */
 
-static const char *const FILES[2] = {"first.exr", "second.exr"};
+static const enum product_id FILES[2] = {PRODUCT_MORPH_FIRST, PRODUCT_MORPH_SECOND};
 static const char *const PLANES[7] = {"R", "G", "B", "flow.x", "flow.y", "sure", "near"};
 
 void morph_release(struct morph *m)
@@ -60,7 +61,7 @@ enum status morph_write(const struct morph *m, const struct view *cameras, const
         struct exr_image im = {0};
         char path[FILE_PATH], gain[128];
         const size_t n = (size_t)m->pictures[side].width * (size_t)m->pictures[side].height;
-        st = file_path(path, folder, FILES[side], "", err);
+        st = product_path_in(path, folder, FILES[side], NULL, err);
         if (!st) st = exr_image_init(&im, m->pictures[side].width, m->pictures[side].height, err);
         for (int k = 0; !st && k < 7; k++) {
             struct exr_plane *plane;
@@ -79,10 +80,10 @@ enum status morph_write(const struct morph *m, const struct view *cameras, const
     return st;
 }
 
-static enum status read_side(struct morph *m, int side, const char *path, struct err *err)
+static enum status read_side(struct morph *m, int side, const char *path, struct provenance *prov, struct err *err)
 {
     struct exr_image im = {0};
-    enum status st = exr_read(&im, path, PLANES, 7, err);
+    enum status st = exr_read_product(&im, FILES[side], path, PLANES, 7, prov, err);
     for (int k = 0; !st && k < 7; k++)
         if (!exr_find(&im, PLANES[k])->f)
             st = err_set(err, ST_DATA, "%s: channel %s holds integers, wanted half or float; make the morph again.",
@@ -90,7 +91,7 @@ static enum status read_side(struct morph *m, int side, const char *path, struct
     if (!st && (im.width < 4 || im.height < 4 ||
                 (side && (im.width != m->pictures[0].width || im.height != m->pictures[0].height))))
         st = err_set(err, ST_DATA, "%s has %d x %d pixels, but %s has %d x %d; make the morph again.", path, im.width,
-                     im.height, FILES[0], m->pictures[0].width, m->pictures[0].height);
+                     im.height, products[FILES[0]].file, m->pictures[0].width, m->pictures[0].height);
     if (!st) st = image_init(&m->pictures[side], im.width, im.height, 3, err);
     if (!st) st = flow_init(&m->flows[side], im.width, im.height, err);
     const float longest = (float)(im.width > im.height ? im.width : im.height);
@@ -110,6 +111,7 @@ static enum status read_side(struct morph *m, int side, const char *path, struct
     }
     const char *gain = exr_attribute(&im, "remodel:gain"), *radiometry = exr_attribute(&im, "remodel:radiometry");
     if (!st && side == 0) {
+        m->posed = im.has_world_to_camera;
         int count = gain ? sscanf(gain, "%lf %lf %lf", &m->gain[0], &m->gain[1], &m->gain[2]) : 0;
         bool valid = count == 3;
         for (int c = 0; valid && c < 3; c++) valid = m->gain[c] > 1e-6 && m->gain[c] < 1e6;
@@ -122,11 +124,12 @@ static enum status read_side(struct morph *m, int side, const char *path, struct
     return st;
 }
 
-enum status morph_read(struct morph *m, const char *folder, struct err *err)
+enum status morph_read(struct morph *m, const char *folder, struct provenance *prov, struct err *err)
 {
     char path[FILE_PATH];
     for (int side = 0; side < 2; side++)
-        if (file_path(path, folder, FILES[side], "", err) || read_side(m, side, path, err)) return err->status;
+        if (product_path_in(path, folder, FILES[side], NULL, err) || read_side(m, side, path, prov, err))
+            return err->status;
     return ST_OK;
 }
 

@@ -18,6 +18,7 @@ struct morph {
     struct flow flows[2];
     double gain[3]; /* colours of the second picture = gain x those of the first: exposure, white balance */
     char radiometry[RADIOMETRY_SIZE];
+    bool posed; /* read from files: the first picture has a camera */
 };
 
 /* Sets the gain of each channel: the median ratio over confident matches, or 1 if there are too few. */
@@ -27,7 +28,7 @@ void morph_find_gain(struct morph *m);
 enum status morph_write(const struct morph *m, const struct view *cameras, const char *folder,
                         const struct provenance *prov, struct err *err);
 /* ST_DATA: missing channels, different sizes, an invalid gain, or a flow longer than the picture. */
-enum status morph_read(struct morph *m, const char *folder, struct err *err);
+enum status morph_read(struct morph *m, const char *folder, struct provenance *prov, struct err *err);
 void morph_release(struct morph *m);
 
 /* The picture at t in [0, 1]: every point moves on a straight line to its match, and colours are blended; 0 and 1 give

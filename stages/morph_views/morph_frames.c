@@ -11,6 +11,7 @@
 #include "common/capture/camera_path.h"
 #include "common/capture/view_image.h"
 #include "common/image/exr.h"
+#include "common/product/product.h"
 #include "stages/morph_views/morph.h"
 #include "stages/morph_views/prepare.h"
 
@@ -31,7 +32,7 @@ static enum status write_frame(const struct morph_frames_job *job, const struct 
 {
     struct exr_image im = {0};
     char path[FILE_PATH];
-    enum status st = file_path(path, job->out, camera->name, ".exr", err);
+    enum status st = product_path_in(path, job->out, PRODUCT_FRAME, &(struct product_key){.frame = camera->name}, err);
     if (!st) st = exr_init_rgba(&im, f->rgba, f->width, f->height, err);
     if (job->posed) exr_set_camera(&im, camera);
     if (!st) st = exr_set_number(&im, "remodel:holes", f->hole_fraction, err);
@@ -58,19 +59,6 @@ static void make_frames(void *ctx, size_t begin, size_t end, int thread)
     rendered_frame_release(&frame);
 }
 
-static enum status add_inputs(const char *folder, bool *posed, struct provenance *prov, struct err *err)
-{
-    static const char *const files[] = {"first.exr", "second.exr", "path.txt", "path/cameras.txt", "path/images.txt"};
-    struct exr_image head = {0};
-    char path[FILE_PATH];
-    enum status st = ST_OK;
-    for (int i = 4; !st && i >= 0; i--) st = provenance_add_in(prov, "parallax/morph", folder, files[i], "", path, err);
-    if (!st) st = exr_read(&head, path, (const char *const[]){"R"}, 0, err);
-    *posed = head.has_world_to_camera;
-    exr_image_release(&head);
-    return st;
-}
-
 enum status morph_frames(const char *folder, const char *list, const char *out, const struct morph_params *params,
                          struct provenance *prov, struct err *err)
 {
@@ -79,7 +67,7 @@ enum status morph_frames(const char *folder, const char *list, const char *out, 
     struct morph_frames_job job = {.morph = &morph, .path = &path, .params = params, .prov = prov, .out = out};
     bool *wanted = NULL;
     int *frames = NULL, count = 0;
-    enum status st = camera_path_read(&path, folder, err);
+    enum status st = camera_path_read(&path, folder, prov, err);
     if (!st) {
         const size_t n = (size_t)path.frame_count;
         wanted = calloc(n, sizeof *wanted);
@@ -88,14 +76,14 @@ enum status morph_frames(const char *folder, const char *list, const char *out, 
         if (!wanted || !frames || !job.errors) st = err_nomem(err, "a list of frames", n * sizeof *job.errors);
     }
     if (!st) st = frame_list_read(wanted, path.frame_count, list, err);
-    if (!st) st = morph_read(&morph, folder, err);
+    if (!st) st = morph_read(&morph, folder, prov, err);
     if (!st && (morph.pictures[0].width != path.frames[0].camera.width ||
                 morph.pictures[0].height != path.frames[0].camera.height))
         st = err_set(err, ST_DATA,
                      "%s/first.exr has %d x %d pixels, but the frames of path.txt have %d x %d; make the morph again.",
                      folder, morph.pictures[0].width, morph.pictures[0].height, path.frames[0].camera.width,
                      path.frames[0].camera.height);
-    if (!st) st = add_inputs(folder, &job.posed, prov, err);
+    job.posed = morph.posed;
     if (!st) {
         for (int i = 0; i < path.frame_count; i++)
             if (wanted[i]) frames[count++] = i;

@@ -33,6 +33,7 @@
 #include "common/capture/lens_list.h"
 #include "common/capture/linear_photo.h"
 #include "common/image/luminance.h"
+#include "common/product/product.h"
 #include "stages/morph_views/morph.h"
 
 #define DEFAULT_FOCAL  1.2 /* of the longer side, without EXIF */
@@ -59,8 +60,7 @@ static enum status read_pair(struct photo_pair *pair, struct morph *m, const str
         const char *id = i ? job->second : job->first;
         struct photo_record *record = &pair->records[i];
         struct image linear = {0};
-        st = photo_record_read(record, job->records, id, err);
-        if (!st) st = provenance_add_in(prov, "photos", job->records, id, ".txt", NULL, err);
+        st = photo_record_read(record, job->records, id, prov, err);
         if (!st) st = linear_photo_read(&linear, NULL, m->radiometry, job->photos, record, NULL, prov, err);
         const int turned = record->info.orientation;
         if (!st && !i) {
@@ -119,15 +119,14 @@ static const struct view *find_view(const struct lens **lens, const struct camer
 static enum status read_cameras(struct pair_geometry *g, bool *known, const struct morph_job *job,
                                 const struct photo_pair *pair, struct provenance *prov, struct err *err)
 {
-    static const char *const files[] = {"cameras.txt", "images.txt", "points3D.txt", "lenses.txt"};
     struct camera_set set = {0};
     struct lens_list lenses = {0};
     char path[FILE_PATH];
     *known = false;
     if (!job->views) return ST_OK;
-    enum status st = camera_set_read(&set, job->views, err);
-    for (int i = 0; !st && i < 4; i++) st = provenance_add_in(prov, "views", job->views, files[i], "", path, err);
-    if (!st) st = lens_list_read(&lenses, path, err);
+    enum status st = camera_set_read(&set, job->views, prov, err);
+    if (!st) st = product_path_in(path, job->views, PRODUCT_LENSES, NULL, err);
+    if (!st) st = lens_list_read(&lenses, path, prov, err);
     bool all = !st;
     for (int i = 0; all && i < 2; i++) {
         const struct lens *lens = NULL;
@@ -267,7 +266,7 @@ static enum status write_path(const struct morph *m, const struct view ends[2], 
         camera_between(v, ends, morph_time(i, path.frame_count, params));
     }
     if (!st) st = camera_path_write(&path, out, prov, err);
-    if (!st) st = file_path(name, out, "frames.mk", "", err);
+    if (!st) st = product_path_in(name, out, PRODUCT_FRAMES_MK, NULL, err);
     if (!st) st = outfile_open(&f, name, err);
     if (!st) {
         fputs("MORPH_FRAMES :=", f.fp);

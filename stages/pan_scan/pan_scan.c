@@ -15,6 +15,7 @@
 #include "common/base/progress.h"
 #include "common/capture/view_image.h"
 #include "common/image/exr.h"
+#include "common/product/product.h"
 #include "stages/pan_scan/crop_move.h"
 #include "stages/pan_scan/crop_picture.h"
 #include "stages/pan_scan/pan_params.h"
@@ -29,18 +30,6 @@ struct job { /* the command line */
     const char *views, *depth, *path, *frames, *out;
     struct pan_params params;
 };
-
-static enum status add_inputs(struct provenance *prov, const struct job *job, const char *effect, const char *view,
-                              struct err *err)
-{
-    static const char *const path_files[] = {"path.txt", "path/cameras.txt", "path/images.txt"};
-    char prefix[128];
-    snprintf(prefix, sizeof prefix, "parallax/%s", effect);
-    enum status st = camera_set_add_inputs(prov, job->views, err);
-    if (!st) st = provenance_add_in(prov, "views", job->views, view, ".exr", NULL, err);
-    for (int i = 0; !st && i < 3; i++) st = provenance_add_in(prov, prefix, job->path, path_files[i], "", NULL, err);
-    return st;
-}
 
 static enum status find_view(int *view_idx, const struct job *job, const struct camera_set *set,
                              const struct camera_path *path, struct err *err)
@@ -59,9 +48,8 @@ static enum status read_depth(struct layered_depth *depth, const struct job *job
                               struct provenance *prov, struct err *err)
 {
     char path[FILE_PATH];
-    if (provenance_add_in(prov, "depth", job->depth, view, ".txt", path, err) ||
-        provenance_add_in(prov, "depth", job->depth, view, ".exr", path, err) ||
-        layered_depth_read_interior(depth, path, err))
+    if (product_path_in(path, job->depth, PRODUCT_DEPTH, &(struct product_key){.view = view}, err) ||
+        layered_depth_read_interior(depth, path, prov, err))
         return err->status;
     return ST_OK;
 }
@@ -126,7 +114,8 @@ static enum status make_frames(const struct crop_move *m, const bool *wanted, co
     for (int i = 0; !st && i < m->path->frame_count; i++) {
         if (!wanted[i]) continue;
         const struct crop crop = crop_move_crop(m, i);
-        st = file_path(file, folder, m->path->frames[i].camera.name, ".exr", err);
+        st = product_path_in(file, folder, PRODUCT_PAN_SCAN_FRAME,
+                             &(struct product_key){.frame = m->path->frames[i].camera.name}, err);
         if (!st) st = crop_picture(&frame, picture, &crop, err);
         if (!st) st = frame_write(&frame, m, i, file, prov, err);
         progress_add(&progress, 1);
@@ -145,19 +134,18 @@ static enum status pan_scan(const struct job *job, struct provenance *prov, stru
     struct image picture = {0};
     bool *wanted = NULL;
     int view_idx = 0;
-    enum status st = camera_set_read(&set, job->views, err);
+    enum status st = camera_set_read(&set, job->views, prov, err);
 
-    if (!st) st = camera_path_read(&path, job->path, err);
+    if (!st) st = camera_path_read(&path, job->path, prov, err);
     if (!st) {
         wanted = calloc((size_t)path.frame_count, sizeof *wanted);
         st = wanted ? frame_list_read(wanted, path.frame_count, job->frames, err)
                     : err_nomem(err, "the frames of a path", (size_t)path.frame_count);
     }
     if (!st) st = find_view(&view_idx, job, &set, &path, err);
-    if (!st) st = add_inputs(prov, job, path.effect, set.views[view_idx].name, err);
     if (!st && job->depth) st = read_depth(&depth, job, set.views[view_idx].name, prov, err);
     if (!st) st = crop_move_init(&move, &set, view_idx, job->depth ? &depth : NULL, &path, job->params.tolerance, err);
-    if (!st) st = view_image_read(&picture, job->views, &set.views[view_idx], err);
+    if (!st) st = view_image_read(&picture, job->views, &set.views[view_idx], prov, err);
     if (!st) st = crop_move_turn(&picture, &move, err);
     if (!st) log_summary(&move, wanted);
     if (!st) st = make_frames(&move, wanted, &picture, job->out, prov, err);

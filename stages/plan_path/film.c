@@ -15,6 +15,7 @@
 #include "common/base/array.h"
 #include "common/base/file_path.h"
 #include "common/math/monotone.h"
+#include "common/product/product.h"
 #include "stages/plan_path/keyframes.h"
 #include "stages/plan_path/spline.h"
 
@@ -132,20 +133,17 @@ struct planned_move {
 static enum status read_planned_move(struct planned_move *m, const struct film_shot *shot,
                                      const struct film_settings *film, struct provenance *prov, struct err *err)
 {
-    static const char *const files[] = {"path.txt", "path/cameras.txt", "path/images.txt", "effects.txt"};
-    char folder[FILE_PATH], effects[FILE_PATH], as[FILE_PATH];
+    char folder[FILE_PATH], effects[FILE_PATH];
     if (!film->moves)
         return err_set(err, ST_DATA,
                        "the move %s cannot be found: there is no folder of planned moves; give it with --moves.",
                        shot->effect);
-    if (file_path(folder, film->moves, shot->effect, "", err) || file_path(effects, folder, "effects.txt", "", err) ||
-        file_path(as, "parallax", shot->effect, "", err))
+    if (file_path(folder, film->moves, shot->effect, "", err) ||
+        product_path_in(effects, folder, PRODUCT_EFFECTS, NULL, err))
         return err->status;
     const bool has_effects = !access(effects, F_OK);
-    if (camera_path_read(&m->path, folder, err) || (has_effects && effects_read(&m->layers, effects, err)))
+    if (camera_path_read(&m->path, folder, prov, err) || (has_effects && effects_read(&m->layers, effects, prov, err)))
         return err->status;
-    for (int i = 0; prov && i < 3 + has_effects; i++)
-        if (provenance_add_in(prov, as, folder, files[i], "", NULL, err)) return err->status;
     const struct view *first = &m->path.frames[0].camera;
     if (first->width == film->lens.width && first->height == film->lens.height) return ST_OK;
     return err_set(
@@ -367,7 +365,8 @@ static enum status collect_layers(struct effects *layers, struct film_sources *s
 static enum status place_shots(struct film_sources *sources, const char *file, const struct film_settings *film,
                                struct provenance *prov, struct err *err)
 {
-    if (film_script_read(&sources->script, file, film->set, film->ups, &film->lens, film->up, err)) return err->status;
+    if (film_script_read(&sources->script, file, film->set, film->ups, &film->lens, film->up, prov, err))
+        return err->status;
     const size_t n = (size_t)sources->script.shot_count;
     sources->shots = calloc(n, sizeof *sources->shots);
     sources->moves = calloc(n, sizeof *sources->moves);
@@ -407,10 +406,7 @@ enum status keyframed_path(struct camera_path *path, struct effects *layers, con
                            const struct film_settings *film, struct provenance *prov, struct err *err)
 {
     struct film_sources sources = {0};
-    char name[FILE_PATH];
-    enum status st = file_path(name, "keyframes", film->name, ".txt", err);
-    if (!st && prov) st = provenance_add_file(prov, name, file, err);
-    if (!st) st = place_shots(&sources, file, film, prov, err);
+    enum status st = place_shots(&sources, file, film, prov, err);
     if (!st) st = camera_path_init(path, film->name, film->fps, sources.frame_count, err);
     if (!st) {
         fill_frames(path, &sources, film);

@@ -400,11 +400,15 @@ static enum status read_lines(struct keyframe_reader *r, struct err *err)
 }
 
 enum status film_script_read(struct film_script *script, const char *file, const struct camera_set *set,
-                             const struct vec3 *ups, const struct view *lens, struct vec3 up, struct err *err)
+                             const struct vec3 *ups, const struct view *lens, struct vec3 up, struct provenance *prov,
+                             struct err *err)
 {
     struct keyframe_reader r = {.script = script, .set = set, .ups = ups, .lens = lens, .up = up};
     *script = (struct film_script){0};
-    if (textfile_open(&r.t, file, err)) return err->status;
+    const char *slash = strrchr(file, '/');
+    char name[FILE_PATH];
+    if (file_path(name, "keyframes", slash ? slash + 1 : file, "", err) || provenance_open(prov, name, &r.t, file, err))
+        return err->status;
     const enum status st = read_lines(&r, err);
     textfile_release(&r.t);
     if (st) film_script_release(script);

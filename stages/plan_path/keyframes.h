@@ -42,7 +42,8 @@ struct film_script {
  * keys without their own. script is empty on entry and, on failure, on return. ST_DATA with file, line, what was found
  * and what was expected. */
 enum status film_script_read(struct film_script *script, const char *file, const struct camera_set *set,
-                             const struct vec3 *ups, const struct view *lens, struct vec3 up, struct err *err);
+                             const struct vec3 *ups, const struct view *lens, struct vec3 up, struct provenance *prov,
+                             struct err *err);
 void film_script_release(struct film_script *script);
 
 #endif

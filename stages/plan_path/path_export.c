@@ -12,8 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/base/file_path.h"
-#include "common/base/outfile.h"
+#include "common/product/product.h"
 
 enum { NUMBER = JSON_ENCODE_ANY | JSON_REAL_PRECISION(17) };
 
@@ -167,12 +166,12 @@ static bool put_script(FILE *to, const struct camera_path *p, const struct prove
 
 typedef bool put_fn(FILE *to, const struct camera_path *p, const struct provenance *prov);
 
-static enum status write_file(const struct camera_path *p, const char *folder, const char *file, put_fn *put,
+static enum status write_file(const struct camera_path *p, const char *folder, enum product_id id, put_fn *put,
                               const struct provenance *prov, struct err *err)
 {
     char path[FILE_PATH];
     struct outfile f = {0};
-    enum status st = file_path(path, folder, file, "", err);
+    enum status st = product_path_in(path, folder, id, NULL, err);
     if (!st) st = outfile_open(&f, path, err);
     if (!st && !put(f.fp, p, prov))
         st = ferror(f.fp) ? err_errno(err, "write", path) : err_nomem(err, "a path in JSON", 0);
@@ -204,8 +203,8 @@ static enum status check_path(const struct camera_path *p, struct err *err)
 enum status path_export_write(const struct camera_path *p, const char *folder, const struct provenance *prov,
                               struct err *err)
 {
-    if (check_path(p, err) || write_file(p, folder, "blender.py", put_script, prov, err) ||
-        write_file(p, folder, "transforms.json", put_transforms, prov, err))
+    if (check_path(p, err) || write_file(p, folder, PRODUCT_BLENDER, put_script, prov, err) ||
+        write_file(p, folder, PRODUCT_TRANSFORMS, put_transforms, prov, err))
         return err->status;
     return ST_OK;
 }

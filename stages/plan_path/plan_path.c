@@ -28,6 +28,7 @@
 #include "common/capture/upright.h"
 #include "common/film/film_lens.h"
 #include "common/film/film_views.h"
+#include "common/product/product.h"
 #include "stages/plan_path/film.h"
 #include "stages/plan_path/path_export.h"
 #include "stages/plan_path/plan_move.h"
@@ -36,7 +37,8 @@ static enum status write_frames(const struct camera_path *path, const char *out,
 {
     struct outfile f = {0};
     char name[FILE_PATH];
-    enum status st = file_path(name, out, "frames.mk", "", err) || outfile_open(&f, name, err) ? err->status : ST_OK;
+    enum status st =
+        product_path_in(name, out, PRODUCT_FRAMES_MK, NULL, err) || outfile_open(&f, name, err) ? err->status : ST_OK;
     if (!st) {
         fputs("FRAMES :=", f.fp);
         for (int i = 0; i < path->frame_count; i++) fprintf(f.fp, " %s", path->frames[i].camera.name);
@@ -52,7 +54,7 @@ static enum status write_film(const struct camera_path *path, const struct effec
                               const struct provenance *prov, struct err *err)
 {
     char name[FILE_PATH];
-    enum status st = file_path(name, out, "effects.txt", "", err);
+    enum status st = product_path_in(name, out, PRODUCT_EFFECTS, NULL, err);
     if (!st) st = effects_write(layers, name, prov, err);
     if (!st) st = camera_path_write(path, out, prov, err);
     if (!st) st = path_export_write(path, out, prov, err);
@@ -86,8 +88,7 @@ static void log_summary(const struct camera_path *path, const struct move_notes 
 static enum status read_views(struct camera_set *set, struct vec3 **ups, const char *views, const char *records,
                               struct provenance *prov, struct err *err)
 {
-    enum status st = camera_set_read(set, views, err);
-    if (!st) st = camera_set_add_inputs(prov, views, err);
+    enum status st = camera_set_read(set, views, prov, err);
     if (st || !records) return st;
     *ups = calloc((size_t)set->view_count + 1, sizeof **ups);
     return *ups ? upright_read(*ups, set, views, records, prov, err)
@@ -145,16 +146,12 @@ static enum status make_move(const struct job *job, struct provenance *prov, str
     enum status st = film_effect_parse(&effect, job->effect, err);
     if (!st) st = read_views(&set, NULL, job->views, NULL, prov, err);
     if (!st) st = film_views_keep(&set, job->film_views, prov, err);
-    if (!st) st = validity_read(&v, job->validity, err);
+    if (!st) st = validity_read(&v, job->validity, prov, err);
     if (!st && v.effect.move != effect.move)
         st = err_set(err, ST_USAGE, "--effect %s: %s is of another move; run sample_validity for this one.",
                      job->effect, job->validity);
     v.effect = effect;
-    if (!st) st = provenance_add_file(prov, "validity.txt", job->validity, err);
-    if (!st && job->subjects) {
-        st = subject_list_read(&subjects, job->subjects, err);
-        if (!st) st = provenance_add_file(prov, "parallax/subjects.txt", job->subjects, err);
-    }
+    if (!st && job->subjects) st = subject_list_read(&subjects, job->subjects, prov, err);
     if (!st) st = layer_scene_read(&scene, &set, job->depth, prov, err);
     if (!st) st = plan_move(&path, &layers, &notes, &scene, &v, &subjects, &job->params, err);
     if (!st) st = write_film(&path, &layers, job->out, prov, err);

@@ -10,8 +10,9 @@
 #include <stdlib.h>
 
 #include "common/base/cli.h"
-#include "common/base/file_path.h"
 #include "common/base/log.h"
+#include "common/model/scene_inputs.h"
+#include "common/product/product.h"
 #include "stages/plan_tour/tour_frames.h"
 #include "stages/plan_tour/tour_picture.h"
 #include "stages/plan_tour/tour_stops.h"
@@ -25,10 +26,7 @@ struct job {
     const char *model, *axes_file, *views, *script, *out;
     struct tour_params params;
     struct model_rays rays;
-    struct model_plan plan;
-    struct model_axes axes;
-    struct camera_set set;
-    struct lens_list lenses;
+    struct scene_inputs in;
 };
 
 static enum status check_params(const void *values, struct err *err)
@@ -42,26 +40,18 @@ static enum status check_params(const void *values, struct err *err)
 
 static enum status read_inputs(struct job *j, struct provenance *prov, struct err *err)
 {
-    char path[FILE_PATH];
-    enum status st = provenance_add_in(prov, "model", j->model, "model.txt", "", path, err);
-    if (!st) st = model_rays_read(&j->rays, path, MODEL_WITH_GLASS, err);
-    if (!st) st = provenance_add_in(prov, "model", j->model, "plan.txt", "", path, err);
-    if (!st) st = model_plan_read(&j->plan, path, err);
-    if (!st) st = model_axes_read(&j->axes, j->axes_file, err);
-    if (!st) st = provenance_add_file(prov, "model/axes.txt", j->axes_file, err);
-    if (!st) st = camera_set_read_cameras(&j->set, j->views, err);
-    if (!st) st = camera_set_add_camera_inputs(prov, j->views, err);
-    if (!st) st = provenance_add_in(prov, "views", j->views, "lenses", ".txt", path, err);
-    if (!st) st = lens_list_read(&j->lenses, path, err);
-    if (!st && j->script) st = provenance_add_file(prov, "tour.txt", j->script, err);
-    return st;
+    char model[FILE_PATH], plan[FILE_PATH];
+    const struct scene_files files = {.views = j->views, .axes = j->axes_file, .plan = plan};
+    if (product_path_in(model, j->model, PRODUCT_MODEL, NULL, err) ||
+        product_path_in(plan, j->model, PRODUCT_PLAN, NULL, err) ||
+        model_rays_read(&j->rays, model, MODEL_WITH_GLASS, prov, err))
+        return err->status;
+    return scene_inputs_read(&j->in, SCENE_CAMERAS | SCENE_LENSES | SCENE_AXES | SCENE_PLAN, &files, prov, err);
 }
 
 static void release_inputs(struct job *j)
 {
-    lens_list_release(&j->lenses);
-    camera_set_release(&j->set);
-    model_plan_release(&j->plan);
+    scene_inputs_release(&j->in);
     model_rays_release(&j->rays);
 }
 
@@ -70,7 +60,7 @@ static enum status write_tour(const struct camera_path *path, const struct viewp
                               const struct provenance *prov, struct err *err)
 {
     char file[FILE_PATH];
-    enum status st = file_path(file, out, "pairs.txt", "", err);
+    enum status st = product_path_in(file, out, PRODUCT_TOUR_PAIRS, NULL, err);
     if (!st) st = viewpoint_pairs_write(pairs, file, prov, err);
     return st ? st : camera_path_write(path, out, prov, err);
 }
@@ -85,12 +75,12 @@ static enum status plan_tour(struct job *j, struct provenance *prov, struct err 
     int stop_count = 0, key_count = 0;
     char file[FILE_PATH];
     enum status st = read_inputs(j, prov, err);
-    if (!st) st = tour_graph_make(&g, &j->set, &j->lenses, &j->axes, &j->rays, &j->params, err);
-    if (!st) st = tour_stops_find(&stops, &stop_count, &g, &j->plan, j->params.speed, j->script, err);
+    if (!st) st = tour_graph_make(&g, &j->in.set, &j->in.lenses, &j->in.axes, &j->rays, &j->params, err);
+    if (!st) st = tour_stops_find(&stops, &stop_count, &g, &j->in.plan, j->params.speed, j->script, prov, err);
     if (!st) st = tour_keys_make(&keys, &key_count, &g, stops, stop_count, &j->params, err);
-    if (!st) st = tour_frames_make(&path, &pairs, keys, key_count, &g, &j->axes, &j->rays, &j->params, err);
-    if (!st) st = file_path(file, j->out, "plan.svg", "", err);
-    if (!st) st = tour_picture_write(&path, &g, stops, stop_count, &j->plan, &j->axes, file, err);
+    if (!st) st = tour_frames_make(&path, &pairs, keys, key_count, &g, &j->in.axes, &j->rays, &j->params, err);
+    if (!st) st = product_path_in(file, j->out, PRODUCT_TOUR_PLAN, NULL, err);
+    if (!st) st = tour_picture_write(&path, &g, stops, stop_count, &j->in.plan, &j->in.axes, file, err);
     if (!st) st = write_tour(&path, &pairs, j->out, prov, err);
     if (!st)
         log_note("a tour of %d stop%s, %.1f s, %d frames", stop_count, stop_count == 1 ? "" : "s",

@@ -1,5 +1,4 @@
 # plan_tour: walks through the rooms of the model and of each edit.
 FOLLOWS.plan_tour := build_model
 READS.plan_tour := a model, its plan and axes, cameras, scenes/NAME/tour.txt
-WRITES.plan_tour := model/tour/, remodel/E/tour/: path.txt, path/, pairs.txt, plan.svg
 LIBS.plan_tour := -lembree3

@@ -11,6 +11,7 @@
 
 #include "common/base/log.h"
 #include "common/base/sort.h"
+#include "common/capture/photo_camera.h"
 #include "common/light/model_clearance.h"
 
 enum { RAYS = 128 };
@@ -58,9 +59,8 @@ static enum status find_nodes(struct tour_graph *g, const struct camera_set *set
     g->nodes = calloc((size_t)set->view_count + 1, sizeof *g->nodes);
     if (!g->nodes) return err_nomem(err, "viewpoints", (size_t)set->view_count * sizeof *g->nodes);
     for (int i = 0; i < set->view_count; i++) {
-        const int at = lens_list_find(lenses, set->views[i].name);
-        if (at < 0) return err_set(err, ST_DATA, "lenses.txt has no line of view %s.", set->views[i].name);
-        const struct lens *lens = &lenses->lenses[at];
+        const struct lens *lens = lens_of_view(set, lenses, i);
+        if (!lens) return err_set(err, ST_DATA, "lenses.txt has no line of view %s.", set->views[i].name);
         if (g->count && !strcmp(g->nodes[g->count - 1].photo, lens->photo)) continue;
         const struct view view = model_from_world_view(axes, &set->views[i]);
         struct tour_node *n = &g->nodes[g->count++];

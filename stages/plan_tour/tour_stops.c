@@ -141,11 +141,12 @@ static enum status read_statement(struct tour_stop **stops, int *count, double *
 }
 
 static enum status read_script(struct tour_stop **stops, int *count, const struct tour_graph *g,
-                               const struct model_plan *plan, double speed, const char *path, struct err *err)
+                               const struct model_plan *plan, double speed, const char *path, struct provenance *prov,
+                               struct err *err)
 {
     struct textfile t = {0};
     int64_t version;
-    if (textfile_open(&t, path, err)) return err->status;
+    if (provenance_open(prov, "tour.txt", &t, path, err)) return err->status;
     enum status st = textfile_expect_line(&t, "remodel-tour", err);
     if (!st) st = textfile_int(&t, "version", 1, 1, &version, err);
     if (!st) st = textfile_end(&t, err);
@@ -219,10 +220,11 @@ static enum status visit_rooms(struct tour_stop **stops, int *count, const struc
 }
 
 enum status tour_stops_find(struct tour_stop **stops, int *count, const struct tour_graph *g,
-                            const struct model_plan *plan, double speed, const char *script, struct err *err)
+                            const struct model_plan *plan, double speed, const char *script, struct provenance *prov,
+                            struct err *err)
 {
     *stops = NULL;
     *count = 0;
-    return script ? read_script(stops, count, g, plan, speed, script, err)
+    return script ? read_script(stops, count, g, plan, speed, script, prov, err)
                   : visit_rooms(stops, count, g, plan, speed, err);
 }

@@ -17,7 +17,8 @@
  * and line: an unknown room or photo, one without a usable viewpoint, one that no way leads to; a list without stops.
  * Without a script, rooms that no way leads to are left out, and a warning names them. */
 enum status tour_stops_find(struct tour_stop **stops, int *count, const struct tour_graph *g,
-                            const struct model_plan *plan, double speed, const char *script, struct err *err);
+                            const struct model_plan *plan, double speed, const char *script, struct provenance *prov,
+                            struct err *err);
 
 /* Whether a point lies in a room's outline. */
 bool tour_room_holds(const struct model_room *room, struct vec3 p);

@@ -16,6 +16,7 @@
 #include "common/capture/linear_photo.h"
 #include "common/capture/photo_mask.h"
 #include "common/capture/view_image.h"
+#include "common/product/product.h"
 #include "stages/rectify/rectify_params.h"
 #include "stages/rectify/resample.h"
 
@@ -42,7 +43,7 @@ static enum status read_source(struct photo_source *s, const struct rectify_requ
     struct photo_record record = {0};
     const struct single_exposure assumed = {r->params.electrons, r->params.read_noise, r->params.saturated,
                                             r->params.dark};
-    enum status st = photo_record_read(&record, r->records, r->photo, err);
+    enum status st = photo_record_read(&record, r->records, r->photo, NULL, err);
     if (!st) st = linear_photo_read(&s->linear, &s->quality, s->radiometry, r->photos, &record, &assumed, prov, err);
     if (!st) st = photo_mask_read(&s->mask, r->masks, r->records, &record, prov, err);
     photo_record_release(&record);
@@ -57,7 +58,7 @@ static enum status make_view(const struct photo_source *s, const struct rectify_
     const struct resample_source source = {&s->linear, s->mask.masked, &s->quality};
     char path[FILE_PATH];
     const struct mat3 photo_from_view = mat3_transpose(mat3_from_quat(lens->view_from_photo));
-    enum status st = file_path(path, r->out, view->name, ".exr", err);
+    enum status st = product_path_in(path, r->out, PRODUCT_VIEW, &(struct product_key){.view = view->name}, err);
     if (!st) {
         st = resample_photo(&rectified, &quality, &source, &lens->camera, &photo_from_view, view, err);
         if (st) err_context(err, "photo %s", r->photo);
@@ -97,9 +98,9 @@ static enum status rectify(const struct rectify_request *r, struct provenance *p
     struct lens_list lenses = {0};
     struct photo_source source = {0};
     char lens_path[FILE_PATH];
-    enum status st = file_path(lens_path, r->views, "lenses.txt", "", err);
-    if (!st) st = camera_set_read(&set, r->views, err);
-    if (!st) st = lens_list_read(&lenses, lens_path, err);
+    enum status st = product_path_in(lens_path, r->views, PRODUCT_LENSES, NULL, err);
+    if (!st) st = camera_set_read(&set, r->views, NULL, err);
+    if (!st) st = lens_list_read(&lenses, lens_path, NULL, err);
     if (!st) st = check_request(r, &lenses, err);
     if (!st) st = read_source(&source, r, prov, err);
     for (int l = 0; !st && l < lenses.count; l++) {

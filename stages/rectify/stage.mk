@@ -1,5 +1,4 @@
 # rectify: linear pinhole views, resampled from the photos.
 FOLLOWS.rectify := hdr_merge sfm_import
 READS.rectify := one photo or hdr/ID.exr, read once, its lens, its mask
-WRITES.rectify := views/VIEW.exr of all its views
 HELP.views := + rectified, linear views

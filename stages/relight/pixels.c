@@ -26,6 +26,7 @@
 #include "common/base/array.h"
 #include "common/base/parallel.h"
 #include "common/layers/layered_depth.h"
+#include "common/product/product.h"
 #include "common/texture/view_ids.h"
 
 enum { SUB = 3, THROUGH = 64 };  /* rays along a pixel's side; objects behind one another */
@@ -253,11 +254,12 @@ static void find_rows(void *ctx, size_t begin, size_t end, int thread)
 static enum status read_layers(struct layered_depth *depth, struct view_ids *ids, const struct pixel_layers *l,
                                const struct model_picture *picture, struct provenance *prov, struct err *err)
 {
+    const struct product_key key = {.view = l->view->name};
     char path[FILE_PATH];
-    enum status st = provenance_add_in(prov, "ids", l->ids, l->view->name, ".exr", path, err);
-    if (!st) st = view_ids_read(ids, l->view, path, err);
-    if (!st) st = provenance_add_in(prov, "depth", l->depth, l->view->name, ".exr", path, err);
-    if (!st) st = layered_depth_read_interior(depth, path, err);
+    enum status st = product_path_in(path, l->ids, PRODUCT_IDS, &key, err);
+    if (!st) st = view_ids_read(ids, l->view, path, prov, err);
+    if (!st) st = product_path_in(path, l->depth, PRODUCT_DEPTH, &key, err);
+    if (!st) st = layered_depth_read_interior(depth, path, prov, err);
     if (!st && (depth->width != picture->width || depth->height != picture->height))
         st = err_set(err, ST_DATA, "%s is %d x %d px, but the picture is %d x %d px. Run make depth again.", path,
                      depth->width, depth->height, picture->width, picture->height);

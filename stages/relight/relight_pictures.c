@@ -4,6 +4,7 @@
 
 #include "common/base/file_path.h"
 #include "common/base/log.h"
+#include "common/product/product.h"
 #include "common/texture/exposure.h"
 #include "common/texture/picture_list.h"
 #include "common/texture/picture_record.h"
@@ -24,12 +25,11 @@ static enum status open_session(struct session *s, struct err *err)
 {
     struct relight_job *j = s->job;
     enum status st = file_path(s->vita, j->relit, "vita", "", err);
-    if (!st) st = file_path(s->objects, j->relit, "objects.txt", "", err);
+    if (!st) st = product_path_in(s->objects, j->relit, PRODUCT_OBJECT_LIGHT, NULL, err);
     j->files.edited_vita = s->vita;
     j->files.object_light = s->objects;
     if (!st) st = light_change_read(&s->change, &j->files, &j->prov, err);
-    if (!st && j->views) st = camera_set_add_camera_inputs(&j->prov, j->views, err);
-    if (!st && j->views) st = camera_set_read_cameras(&s->set, j->views, err);
+    if (!st && j->views) st = camera_set_read_cameras(&s->set, j->views, &j->prov, err);
     if (!st && j->materials)
         st = model_field_read_materials(&s->change.before, j->materials, j->views, &s->change.axes, &j->prov, err);
     return st;
@@ -50,12 +50,13 @@ static struct view scene_view(const struct model_picture *p, const struct model_
 static enum status read_picture(struct model_picture *p, double *exposure, struct relight_job *j, const char *name,
                                 struct err *err)
 {
+    const struct product_key key = {.name = name};
     char path[FILE_PATH];
     struct picture_record record;
-    enum status st = provenance_add_in(&j->prov, "picture", j->pictures, name, ".txt", path, err);
-    if (!st) st = picture_record_read(&record, path, err);
-    if (!st) st = provenance_add_in(&j->prov, "picture", j->pictures, name, ".exr", path, err);
-    if (!st) st = model_picture_read(p, path, err);
+    enum status st = product_path_in(path, j->pictures, PRODUCT_PICTURE_RECORD, &key, err);
+    if (!st) st = picture_record_read(&record, path, &j->prov, err);
+    if (!st) st = product_path_in(path, j->pictures, PRODUCT_PICTURE, &key, err);
+    if (!st) st = model_picture_read(p, path, &j->prov, err);
     if (!st && !p->has_camera)
         st = err_set(err, ST_DATA, "%s does not say which camera drew it; draw it again with this version.", path);
     if (!st) *exposure = record.exposure;
@@ -72,7 +73,8 @@ static enum status write_integrals(struct session *s, const struct relit *r, str
     for (int k = 0; k < p->object_count; k++)
         if (p->objects[k].cover >= 0.5f) p->after[p->objects[k].pixel] = p->objects[k].point;
     enum status st = lamp_light_gather(&lamps, p, &s->change, LAMP_RAYS, err);
-    if (!st) st = file_path(path, j->out, camera->name, "-integrals.exr", err);
+    if (!st)
+        st = product_path_in(path, j->out, PRODUCT_RELIT_INTEGRALS, &(struct product_key){.name = camera->name}, err);
     if (!st) st = integrals_write(r, p, &s->change, &lamps, camera, path, &j->prov, err);
     lamp_light_release(&lamps);
     return st;
@@ -82,7 +84,8 @@ static enum status write_frame(struct relight_job *j, const struct model_picture
                                const struct view *camera, struct err *err)
 {
     char path[FILE_PATH];
-    if (file_path(path, j->out, camera->name, ".exr", err)) return err->status;
+    if (product_path_in(path, j->out, PRODUCT_RELIT, &(struct product_key){.name = camera->name}, err))
+        return err->status;
     return exposure_write_frame(picture, exposure, camera, path, &j->prov, err);
 }
 
@@ -123,12 +126,13 @@ static enum status change_one(struct relight_job *j, const char *name, struct er
     struct model_picture picture = {0};
     struct exr_image integrals = {0};
     double exposure = 1;
-    enum status st = provenance_add_in(&j->prov, "relit", j->from, name, ".txt", path, err);
-    if (!st) st = relit_read_exposure(&exposure, path, err);
-    if (!st) st = provenance_add_in(&j->prov, "relit", j->from, name, ".exr", path, err);
-    if (!st) st = model_picture_read(&picture, path, err);
-    if (!st) st = provenance_add_in(&j->prov, "relit", j->from, name, "-integrals.exr", path, err);
-    if (!st) st = exr_read_any(&integrals, path, err);
+    const struct product_key key = {.name = name};
+    enum status st = product_path_in(path, j->from, PRODUCT_RELIT_RECORD, &key, err);
+    if (!st) st = relit_read_exposure(&exposure, path, &j->prov, err);
+    if (!st) st = product_path_in(path, j->from, PRODUCT_RELIT, &key, err);
+    if (!st) st = model_picture_read(&picture, path, &j->prov, err);
+    if (!st) st = product_path_in(path, j->from, PRODUCT_RELIT_INTEGRALS, &key, err);
+    if (!st) st = exr_read_product(&integrals, PRODUCT_RELIT_INTEGRALS, path, NULL, 0, &j->prov, err);
     if (!st) st = integrals_change(&picture, &integrals, j->changes, err);
     if (!st)
         st = changed_write(&picture, j->params.exposure > 0 ? j->params.exposure : exposure, j->out, name, &j->prov,
@@ -154,7 +158,7 @@ enum status relight(struct relight_job *j, struct err *err)
     struct session s = {.job = j};
     struct picture_list names = {0};
     if (j->changes) return change_all(j, &j->names, err);
-    enum status st = j->list ? picture_list_read(&names, j->pictures, err) : ST_OK;
+    enum status st = j->list ? picture_list_read(&names, j->pictures, NULL, err) : ST_OK;
     for (int i = 0; !st && i < j->names.count; i++) st = picture_list_add(&names, j->names.items[i], err);
     if (!st) st = open_session(&s, err);
     const int inputs = j->prov.count;

@@ -8,19 +8,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/base/file_path.h"
-#include "common/base/outfile.h"
-#include "common/base/textfile.h"
 #include "common/capture/view_image.h"
 #include "common/image/exr.h"
 #include "common/image/image.h"
 #include "common/image/photo.h"
 #include "common/math/numbers.h"
+#include "common/product/product.h"
 #include "common/relight/light_quotient.h"
 #include "common/texture/exposure.h"
 #include "common/texture/picture_record.h"
-
-#define HEADER "remodel-relit"
 
 enum { HATCH = 6 };            /* px: distance of the lines of a hatching */
 static const double STOPS = 4; /* from black to white */
@@ -85,7 +81,7 @@ static enum status write_record(const struct relit *r, double exposure, const ch
     const struct shares s = count(r);
     struct outfile f = {0};
     if (outfile_open(&f, path, err)) return err->status;
-    fputs(HEADER " 1\n", f.fp);
+    fprintf(f.fp, "%s\n", products[PRODUCT_RELIT_RECORD].head);
     provenance_print(prov, f.fp);
     fprintf(f.fp, "size %d %d\nexposure %.9g\nchanged %.6g\nbounded %.6g\nkept %.6g\nrecords %zu\n", r->width,
             r->height, exposure, s.changed, s.bounded, s.none, r->records);
@@ -98,30 +94,27 @@ enum status relit_write(const struct relit *r, const struct model_picture *pictu
                         double unlit, const struct view *camera, const char *out, const char *name,
                         const struct provenance *prov, struct err *err)
 {
+    const struct product_key key = {.name = name};
     char path[FILE_PATH];
     const double exposure = params->exposure > 0 ? params->exposure : unlit;
-    enum status st = file_path(path, out, name, "-ratio.exr", err);
+    enum status st = product_path_in(path, out, PRODUCT_RELIT_RATIO, &key, err);
     if (!st) st = write_ratio(r, camera, path, prov, err);
-    if (!st) st = file_path(path, out, name, "-ratio.png", err);
+    if (!st) st = product_path_in(path, out, PRODUCT_RELIT_RATIO_PICTURE, &key, err);
     if (!st) st = draw_ratio(r, path, err);
-    if (!st) st = file_path(path, out, name, ".exr", err);
+    if (!st) st = product_path_in(path, out, PRODUCT_RELIT, &key, err);
     if (!st) st = model_picture_write(picture, camera, path, prov, err);
-    if (!st) st = file_path(path, out, name, ".jpg", err);
+    if (!st) st = product_path_in(path, out, PRODUCT_RELIT_JPEG, &key, err);
     if (!st) st = exposure_write(picture, exposure, path, err);
-    if (!st) st = file_path(path, out, name, ".txt", err);
+    if (!st) st = product_path_in(path, out, PRODUCT_RELIT_RECORD, &key, err);
     return st ? st : write_record(r, exposure, path, prov, err);
 }
 
-enum status relit_read_exposure(double *exposure, const char *path, struct err *err)
+enum status relit_read_exposure(double *exposure, const char *path, struct provenance *prov, struct err *err)
 {
     struct textfile t = {0};
-    int64_t version;
     char *word;
     bool found = false;
-    if (textfile_open(&t, path, err)) return err->status;
-    enum status st = textfile_expect_line(&t, HEADER, err);
-    if (!st) st = textfile_int(&t, "version", 1, 1, &version, err);
-    if (!st) st = textfile_end(&t, err);
+    enum status st = product_open(&t, NULL, PRODUCT_RELIT_RECORD, path, prov, err);
     while (!st && !found && textfile_next(&t)) {
         st = textfile_word(&t, "a word", &word, err);
         if (st || strcmp(word, "exposure") != 0) continue;
@@ -137,12 +130,13 @@ enum status relit_read_exposure(double *exposure, const char *path, struct err *
 enum status changed_write(const struct model_picture *picture, double exposure, const char *out, const char *name,
                           const struct provenance *prov, struct err *err)
 {
+    const struct product_key key = {.name = name};
     char path[FILE_PATH];
     struct view camera = {.name = name, .width = picture->width, .height = picture->height};
     camera.cam_from_world = mat3_from_quat(picture->pose.rotation);
     camera.translation = picture->pose.translation;
-    enum status st = file_path(path, out, name, ".exr", err);
+    enum status st = product_path_in(path, out, PRODUCT_RELIT, &key, err);
     if (!st) st = model_picture_write(picture, &camera, path, prov, err);
-    if (!st) st = file_path(path, out, name, ".jpg", err);
+    if (!st) st = product_path_in(path, out, PRODUCT_RELIT_JPEG, &key, err);
     return st ? st : exposure_write(picture, exposure, path, err);
 }

@@ -1,7 +1,6 @@
 # relight: pictures of edited models under the light that the edits make.
 FOLLOWS.relight := update_vita render_model fit_materials encode_video plan_tour
 READS.relight := what update_vita reads and writes, remodelled pictures, ids and depth of original views, lights/materials.txt
-WRITES.relight := relight/E/unlit/VIEW.exr; relight/E/VIEW.exr, VIEW.jpg, VIEW.txt, VIEW-ratio.exr, VIEW-ratio.png, VIEW-integrals.exr; relight/E/cameras/NAME.exr, ...; relight/E/tour/frames/NNNN.exr, tour/video.mp4
 SETTINGS.relight := RELIT_VIEWS
 LIBS.relight := -lembree3
 HELP.relit-tour := films through the rooms of each edit under the light that it makes

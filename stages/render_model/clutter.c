@@ -14,6 +14,7 @@
 
 #include "common/base/array.h"
 #include "common/capture/view_image.h"
+#include "common/product/product.h"
 #include "stages/render_model/clutter_scene.h"
 
 #define MIB ((size_t)1 << 20)
@@ -56,7 +57,7 @@ void clutter_close(struct clutter_scene *s)
     if (!s) return;
     for (int i = 0; s->sources && i < s->set->view_count; i++) {
         drop(s, &s->sources[i]);
-        for (int k = 0; k < 2; k++) free(s->sources[i].inputs[k].name);
+        provenance_release(&s->sources[i].inputs);
     }
     for (int k = 0; k < CLUTTER_VIEWS; k++) drawn_view_release(&s->drawn[k]);
     pane_fronts_release(&s->panes);
@@ -67,47 +68,18 @@ void clutter_close(struct clutter_scene *s)
     free(s);
 }
 
-/* Hashes a file of a source, once. */
-static enum status note_input(struct provenance_input *input, const char *as, const char *folder, const char *view,
-                              char path[FILE_PATH], struct err *err)
-{
-    struct provenance one = {0};
-    enum status st = file_path(path, folder, view, ".exr", err);
-    if (!st && !input->name) {
-        st = provenance_add_in(&one, as, folder, view, ".exr", NULL, err);
-        if (!st) {
-            *input = one.inputs[0];
-            one.count = 0;
-        }
-    }
-    provenance_release(&one);
-    return st;
-}
-
-static enum status add_input(struct provenance *prov, const struct provenance_input *input, struct err *err)
-{
-    struct provenance_input copy = *input;
-    for (int i = 0; i < prov->count; i++)
-        if (!strcmp(prov->inputs[i].name, input->name)) return ST_OK;
-    const enum status st = array_append(&prov->inputs, (size_t)prov->count, sizeof copy, "inputs", err);
-    if (st) return st;
-    copy.name = strdup(input->name);
-    if (!copy.name) return err_nomem(err, "the name of an input", strlen(input->name) + 1);
-    prov->inputs[prov->count++] = copy;
-    return ST_OK;
-}
-
 static enum status read_source(struct clutter_scene *s, int at, struct err *err)
 {
     const struct view *view = &s->set->views[at];
     struct clutter_source *source = &s->sources[at];
     struct layered_depth depth = {0};
     struct view_ids ids = {0};
+    const struct product_key key = {.view = view->name};
     char path[FILE_PATH];
-    enum status st = note_input(&source->inputs[0], "depth", s->depth, view->name, path, err);
-    if (!st) st = layered_depth_read(&depth, path, err);
-    if (!st) st = note_input(&source->inputs[1], "ids", s->ids, view->name, path, err);
-    if (!st) st = view_ids_read(&ids, view, path, err);
+    enum status st = product_path_in(path, s->depth, PRODUCT_DEPTH, &key, err);
+    if (!st) st = layered_depth_read(&depth, path, &source->inputs, err);
+    if (!st) st = product_path_in(path, s->ids, PRODUCT_IDS, &key, err);
+    if (!st) st = view_ids_read(&ids, view, path, &source->inputs, err);
     if (!st) {
         const struct view camera = model_from_world_view(&s->axes, view);
         pane_fronts_apply(&ids, &s->panes, &camera, s->axes.scale);
@@ -149,7 +121,7 @@ enum status clutter_load(struct clutter_scene *s, const struct clutter_choice *c
             make_room(s, clutter_view_bytes(&s->set->views[choice->view[k]]));
             st = read_source(s, choice->view[k], err);
         }
-        for (int i = 0; !st && prov && i < 2; i++) st = add_input(prov, &source->inputs[i], err);
+        if (!st && prov) st = provenance_add_all(prov, &source->inputs, err);
     }
     return st;
 }
@@ -217,8 +189,7 @@ static enum status draw_own(struct model_picture *p, struct clutter_scene *s, in
     enum status st = cover ? ST_OK : err_nomem(err, "the coverage of a picture", pixels * sizeof *cover);
     if (!st) st = clutter_load(s, &choice, prov, err);
     if (!st) st = clutter_blend(p, cover, s, &choice, camera, map, err);
-    if (!st) st = view_image_read(&photo, s->views, &s->set->views[view], err);
-    if (!st && prov) st = provenance_add_in(prov, "views", s->views, s->set->views[view].name, ".exr", NULL, err);
+    if (!st) st = view_image_read(&photo, s->views, &s->set->views[view], prov, err);
     for (size_t i = 0; !st && i < pixels; i++) {
         const float part = cover[i] < 0.5f ? 2 * cover[i] : 1;
         for (size_t c = 0; c < 3 && part > 0; c++)

@@ -12,8 +12,8 @@ enum { CLUTTER_VIEWS = 12 }; /* the most that a picture is drawn from */
 struct clutter_source { /* a view of the set */
     struct clutter_view view;
     bool loaded;
-    uint64_t used;                     /* number of the picture that needed it last */
-    struct provenance_input inputs[2]; /* its files, once they were read */
+    uint64_t used;            /* number of the picture that needed it last */
+    struct provenance inputs; /* its files, once they were read */
 };
 
 struct clutter_scene {

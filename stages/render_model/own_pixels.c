@@ -11,6 +11,7 @@
 #include "common/capture/view_image.h"
 #include "common/layers/layered_depth.h"
 #include "common/math/distance.h"
+#include "common/product/product.h"
 #include "common/texture/view_ids.h"
 
 static const double same_depth = 1e-5; /* relative: rounding of the models' corners */
@@ -76,16 +77,17 @@ static enum status grow(uint8_t *same, const struct view *camera, double margin,
 static enum status leave_cleared(uint8_t *same, const struct room *room, int view, struct provenance *prov,
                                  struct err *err)
 {
-    const struct view *camera = &room->cameras[view], *world = &room->set.views[view];
+    const struct view *camera = &room->cameras[view], *world = &room->in.set.views[view];
     const struct texture_map *map = shell_map(room->shell);
     const size_t pixels = (size_t)camera->width * (size_t)camera->height;
+    const struct product_key key = {.view = world->name};
     char path[FILE_PATH];
     struct view_ids ids = {0};
     struct layered_depth depth = {0};
-    enum status st = provenance_add_in(prov, "ids", room->files.ids, world->name, ".exr", path, err);
-    if (!st) st = view_ids_read(&ids, world, path, err);
-    if (!st) st = provenance_add_in(prov, "depth", room->files.depth, world->name, ".exr", path, err);
-    if (!st) st = layered_depth_read_interior(&depth, path, err);
+    enum status st = product_path_in(path, room->files.ids, PRODUCT_IDS, &key, err);
+    if (!st) st = view_ids_read(&ids, world, path, prov, err);
+    if (!st) st = product_path_in(path, room->files.depth, PRODUCT_DEPTH, &key, err);
+    if (!st) st = layered_depth_read_interior(&depth, path, prov, err);
     uint8_t *stays = malloc(pixels);
     if (!st && !stays) st = err_nomem(err, "cleared clutter", pixels);
     if (!st && (depth.width != camera->width || depth.height != camera->height))
@@ -94,7 +96,7 @@ static enum status leave_cleared(uint8_t *same, const struct room *room, int vie
     for (int y = 0; !st && y < camera->height; y++)
         for (int x = 0; x < camera->width; x++) {
             const size_t i = (size_t)y * (size_t)camera->width + (size_t)x;
-            const double z = depth.interior.z[i] * room->axes.scale;
+            const double z = depth.interior.z[i] * room->in.axes.scale;
             stays[i] = !(z > 0 && ids.clutter[i] > CLUTTER_UNSURE &&
                          texture_map_clears(map, view_unproject(camera, x + 0.5, y + 0.5, z)));
         }
@@ -125,11 +127,10 @@ enum status own_pixels_find(uint8_t *same, const struct room *room, int view, st
 enum status own_pixels_draw(struct model_picture *picture, const uint8_t *same, const struct room *room, int view,
                             struct provenance *prov, struct err *err)
 {
-    const struct view *world = &room->set.views[view];
+    const struct view *world = &room->in.set.views[view];
     const size_t pixels = (size_t)world->width * (size_t)world->height;
     struct image photo = {0};
-    enum status st = provenance_add_in(prov, "views", room->files.views, world->name, ".exr", NULL, err);
-    if (!st) st = view_image_read(&photo, room->files.views, world, err);
+    enum status st = view_image_read(&photo, room->files.views, world, prov, err);
     for (size_t i = 0; !st && i < pixels; i++) {
         const bool shown = photo.data[4 * i + 3] > 0; /* the view may look past the photo's border */
         if (!same[i] && shown) continue;

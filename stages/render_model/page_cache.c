@@ -18,6 +18,7 @@
 #include <string.h>
 
 #include "common/base/array.h"
+#include "common/product/product.h"
 #include "common/texture/model_picture.h"
 
 struct page_cache {
@@ -55,6 +56,8 @@ static size_t set_bytes(const struct texture_set *s)
 /* Releases a set without pages in memory, which need not be complete. */
 static void set_free(struct texture_set *s)
 {
+    for (int i = 0; s->pages && i < s->atlas.page_count; i++) provenance_release(&s->pages[i].inputs);
+    provenance_release(&s->inputs);
     free(s->photo);
     free(s->folder);
     free(s->first);
@@ -144,25 +147,15 @@ void page_cache_next(struct page_cache *c, struct provenance *prov)
 
 /* ---------------------------------------------------------------------------------------------------------- atlases */
 
-static enum status record(struct page_cache *c, const struct texture_set *s, const char *file, const char *suffix,
-                          struct err *err)
-{
-    char as[FILE_PATH];
-    if (!c->prov) return ST_OK;
-    if (!s->photo) return provenance_add_in(c->prov, "vita", s->folder, file, suffix, NULL, err);
-    if (file_path(as, "vdta", s->photo, "", err)) return err->status;
-    return provenance_add_in(c->prov, as, s->folder, file, suffix, NULL, err);
-}
-
 /* Sets the folder; ST_DATA if it has no atlas. */
 static enum status find_folder(struct texture_set *s, const struct page_cache *c, struct err *err)
 {
-    char folder[FILE_PATH], list[FILE_PATH];
+    char folder[FILE_PATH] = "", list[FILE_PATH];
     if (s->photo && !c->vdta)
         return err_set(err, ST_DATA, "viewpoint %s was asked for, but no folder of atlases was given.", s->photo);
-    if (s->photo ? file_path(folder, c->vdta, s->photo, "", err) : file_path(folder, c->vita, "", "", err))
-        return err->status;
-    if (file_path(list, folder, "atlas", ".txt", err)) return err->status;
+    if (s->photo && file_path(folder, c->vdta, s->photo, "", err)) return err->status;
+    if (!s->photo) snprintf(folder, sizeof folder, "%s", c->vita);
+    if (product_path_in(list, folder, PRODUCT_ATLAS, NULL, err)) return err->status;
     if (!path_is_file(list) && s->photo)
         return err_set(err, ST_DATA, "viewpoint %s has no atlas: there is no %s. Make it with 'make vdta'.", s->photo,
                        list);
@@ -192,7 +185,7 @@ static enum status read_set(struct page_cache *c, const char *photo, struct text
     struct texture_set *s = *set = calloc(1, sizeof *s);
     if (!s) return err_nomem(err, "an atlas", sizeof *s);
     if (photo && !(s->photo = strdup(photo))) return err_nomem(err, "a photo's id", strlen(photo) + 1);
-    if (find_folder(s, c, err) || atlas_read(&s->atlas, s->folder, err)) return err->status;
+    if (find_folder(s, c, err) || atlas_read(&s->atlas, s->folder, &s->inputs, err)) return err->status;
     if (photo ? !s->atlas.viewpoint || strcmp(s->atlas.viewpoint, photo) : s->atlas.viewpoint != NULL)
         return err_set(err, ST_DATA, "%s/atlas.txt is the atlas of %s, wanted that of %s.", s->folder,
                        s->atlas.viewpoint ? s->atlas.viewpoint : "no viewpoint", photo ? photo : "no viewpoint");
@@ -222,7 +215,7 @@ enum status page_cache_find(struct page_cache *c, const char *photo, struct text
         return err->status;
     }
     (*set)->used = c->picture;
-    return record(c, *set, "atlas", ".txt", err);
+    return c->prov ? provenance_add_all(c->prov, &(*set)->inputs, err) : ST_OK;
 }
 
 /* ------------------------------------------------------------------------------------------------------------ pages */
@@ -279,7 +272,7 @@ static enum status read_page(struct page_cache *c, struct texture_set *s, int pa
     struct texture_page *p = &s->pages[page];
     const struct atlas *a = &s->atlas;
     struct atlas_page from = {0};
-    enum status st = atlas_page_read(&from, a, page, s->folder, err);
+    enum status st = atlas_page_read(&from, a, page, s->folder, &p->inputs, err);
     if (st) return st;
     take_bytes(c, p->size * TEXEL);
     bool *original = find_original(a);
@@ -302,11 +295,9 @@ static enum status read_page(struct page_cache *c, struct texture_set *s, int pa
 enum status page_cache_load(struct page_cache *c, struct texture_set *s, int page, struct err *err)
 {
     struct texture_page *p = &s->pages[page];
-    char name[32];
     p->used = s->used = c->picture;
     if (!p->texels && read_page(c, s, page, err)) return err->status;
     if (p->recorded) return ST_OK;
     p->recorded = true;
-    snprintf(name, sizeof name, "page%d", page);
-    return record(c, s, name, ".exr", err);
+    return c->prov ? provenance_add_all(c->prov, &p->inputs, err) : ST_OK;
 }

@@ -9,11 +9,12 @@
 #include "common/texture/atlas.h"
 
 struct texture_page {
-    uint16_t *texels; /* 4 halves each; NULL: the page is not in memory */
-    uint8_t *made;    /* enum picture_made of each texel */
-    size_t size;      /* texels, frames included */
-    uint64_t used;    /* the picture that used it last */
-    bool recorded;    /* among the inputs of this picture */
+    uint16_t *texels;         /* 4 halves each; NULL: the page is not in memory */
+    uint8_t *made;            /* enum picture_made of each texel */
+    size_t size;              /* texels, frames included */
+    uint64_t used;            /* the picture that used it last */
+    bool recorded;            /* among the inputs of this picture */
+    struct provenance inputs; /* its file, once it was read */
 };
 
 /* The atlas of a viewpoint, or the VITA. */
@@ -23,6 +24,7 @@ struct texture_set {
     struct atlas atlas;
     size_t *first;              /* of each tile: its frame's upper left texel in the arrays of its page */
     struct texture_page *pages; /* of the atlas */
+    struct provenance inputs;   /* atlas.txt */
     uint64_t used;
 };
 

@@ -32,6 +32,7 @@
 #include "common/capture/view_image.h"
 #include "common/image/exr.h"
 #include "common/image/photo.h"
+#include "common/product/product.h"
 #include "common/texture/exposure.h"
 #include "common/texture/picture_list.h"
 #include "common/texture/picture_record.h"
@@ -66,17 +67,18 @@ static enum status write_picture(const struct model_picture *p, const struct roo
                                  double changed, bool radiance, const char *out, const char *name,
                                  const struct provenance *prov, struct err *err)
 {
+    const struct product_key key = {.name = name};
     char path[FILE_PATH];
     const double given = room->params->exposure;
     const double exposure = given > 0 ? given : exposure_choose(p, room->params->saturated);
     enum status st = ST_OK;
-    if (radiance) st = file_path(path, out, name, ".exr", err);
+    if (radiance) st = product_path_in(path, out, PRODUCT_PICTURE, &key, err);
     if (!st && radiance) st = model_picture_write(p, camera, path, prov, err);
-    if (!st && changed > 0) st = file_path(path, out, name, ".jpg", err);
+    if (!st && changed > 0) st = product_path_in(path, out, PRODUCT_PICTURE_JPEG, &key, err);
     if (!st && changed > 0) st = exposure_write(p, exposure, path, err);
-    if (!st && changed > 0) st = file_path(path, out, name, "-sources.png", err);
+    if (!st && changed > 0) st = product_path_in(path, out, PRODUCT_PICTURE_SOURCES, &key, err);
     if (!st && changed > 0) st = write_sources(p, path, err);
-    if (!st) st = file_path(path, out, name, ".txt", err);
+    if (!st) st = product_path_in(path, out, PRODUCT_PICTURE_RECORD, &key, err);
     const struct picture_record record = record_of(p, exposure, changed);
     return st ? st : picture_record_write(&record, path, prov, err);
 }
@@ -117,7 +119,7 @@ static void set_camera_of_view(struct model_picture *p, const struct view *camer
 static enum status find_views(bool *wanted, const struct room *room, const struct cli_list *names, struct err *err)
 {
     for (int i = 0; i < names->count; i++) {
-        const int at = camera_set_find(&room->set, names->items[i]);
+        const int at = camera_set_find(&room->in.set, names->items[i]);
         if (at < 0)
             return err_set(err, ST_USAGE, "there is no view %s in %s. Its images.txt lists the views.", names->items[i],
                            room->files.views);
@@ -132,19 +134,19 @@ enum status pictures_of_views(struct room *room, const struct cli_list *views, c
     struct model_picture picture = {0};
     struct progress progress;
     const bool radiance = strcmp(room->params->radiance, "no") != 0, all = !strcmp(room->params->radiance, "all");
-    bool *wanted = calloc((size_t)room->set.view_count + 1, sizeof *wanted);
+    bool *wanted = calloc((size_t)room->in.set.view_count + 1, sizeof *wanted);
     enum status st = wanted ? find_views(wanted, room, views, err)
-                            : err_nomem(err, "views", (size_t)room->set.view_count * sizeof *wanted);
+                            : err_nomem(err, "views", (size_t)room->in.set.view_count * sizeof *wanted);
     progress_start(&progress, "rendering", views->count, "views");
-    for (int i = 0; !st && i < room->set.view_count; i++) {
+    for (int i = 0; !st && i < room->in.set.view_count; i++) {
         if (!wanted[i]) continue;
         const int inputs = prov->count;
         double changed = 0;
         st = draw_view(&picture, &changed, room, i, prov, err);
         if (!st) set_camera_of_view(&picture, &room->cameras[i]);
         if (!st)
-            st = write_picture(&picture, room, &room->set.views[i], changed, radiance && (all || changed > 0), out,
-                               room->set.views[i].name, prov, err);
+            st = write_picture(&picture, room, &room->in.set.views[i], changed, radiance && (all || changed > 0), out,
+                               room->in.set.views[i].name, prov, err);
         provenance_keep(prov, inputs);
         progress_add(&progress, 1);
     }
@@ -264,11 +266,12 @@ static enum status frame_exposure(double *exposure, struct room *room, const str
 static enum status write_film_picture(const struct model_picture *p, double exposure, const struct view *camera,
                                       const char *out, const struct provenance *prov, struct err *err)
 {
+    const struct product_key key = {.name = camera->name};
     char path[FILE_PATH];
     const struct picture_record record = record_of(p, exposure, 100);
-    enum status st = file_path(path, out, camera->name, ".exr", err);
+    enum status st = product_path_in(path, out, PRODUCT_PICTURE, &key, err);
     if (!st) st = model_picture_write(p, camera, path, prov, err);
-    if (!st) st = file_path(path, out, camera->name, ".txt", err);
+    if (!st) st = product_path_in(path, out, PRODUCT_PICTURE_RECORD, &key, err);
     return st ? st : picture_record_write(&record, path, prov, err);
 }
 
@@ -283,7 +286,7 @@ enum status pictures_of_frames(struct room *room, const struct camera_path *path
     for (int i = 0; i < path->frame_count; i++) count += wanted[i];
     progress_start(&progress, "rendering", count, "frames");
     for (int i = 0; !st && i < path->frame_count; i++) {
-        const struct view *scene = &path->frames[i].camera, camera = model_from_world_view(&room->axes, scene);
+        const struct view *scene = &path->frames[i].camera, camera = model_from_world_view(&room->in.axes, scene);
         const int inputs = prov->count;
         struct texture_pair pair;
         char file[FILE_PATH];
@@ -292,7 +295,7 @@ enum status pictures_of_frames(struct room *room, const struct camera_path *path
         st = frame_pair(&pair, room, &camera, pairs, err);
         if (!st) st = frame_exposure(&exposure, room, &pair, err);
         if (!st) st = room_draw(&picture, room, &camera, &pair, -1, prov, err);
-        if (!st) st = file_path(file, out, scene->name, ".exr", err);
+        if (!st) st = product_path_in(file, out, PRODUCT_FRAME, &(struct product_key){.frame = scene->name}, err);
         if (!st) set_camera_of_view(&picture, &camera);
         if (!st && all)
             st = write_film_picture(&picture, exposure, scene, out, prov, err);

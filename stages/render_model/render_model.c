@@ -17,6 +17,7 @@
 #include "common/base/cli.h"
 #include "common/base/file_path.h"
 #include "common/base/frame_list.h"
+#include "common/product/product.h"
 #include "stages/render_model/pictures.h"
 
 static const struct param render_model_param_table[] = {
@@ -59,14 +60,10 @@ static enum status render_film(struct job *job, struct room *room, struct proven
     struct viewpoint_pairs pairs = {0};
     bool *wanted = NULL;
     char file[FILE_PATH];
-    enum status st = camera_path_read(&path, job->path, err);
-    if (!st) st = provenance_add_in(prov, "film", job->path, "path.txt", "", NULL, err);
-    if (!st) st = provenance_add_in(prov, "film", job->path, "path/images.txt", "", NULL, err);
-    if (!st) st = provenance_add_in(prov, "film", job->path, "path/cameras.txt", "", NULL, err);
-    if (!st) st = file_path(file, job->path, "pairs.txt", "", err);
+    enum status st = camera_path_read(&path, job->path, prov, err);
+    if (!st) st = product_path_in(file, job->path, PRODUCT_TOUR_PAIRS, NULL, err);
     const bool paired = !st && path_is_file(file);
-    if (!st && paired) st = viewpoint_pairs_read(&pairs, file, err);
-    if (!st && paired) st = provenance_add_file(prov, "film/pairs.txt", file, err);
+    if (!st && paired) st = viewpoint_pairs_read(&pairs, file, prov, err);
     if (!st) {
         wanted = calloc((size_t)path.frame_count + 1, sizeof *wanted);
         st = wanted ? frame_list_read(wanted, path.frame_count, job->frames, err)

@@ -5,48 +5,38 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/capture/photo_camera.h"
 #include "common/texture/exposure.h"
 
 enum { SMALL = 160 }; /* px: width of the pictures that exposures are chosen from */
 
-static const char *photo_of(const struct room *room, int view)
-{
-    const int lens = lens_list_find(&room->lenses, room->set.views[view].name);
-    return lens < 0 ? NULL : room->lenses.lenses[lens].photo;
-}
-
 /* Views are in order of name, so those of a photo follow each other. */
 static enum status find_viewpoints(struct room *room, struct err *err)
 {
-    const size_t views = (size_t)room->set.view_count + 1;
+    const size_t views = (size_t)room->in.set.view_count + 1;
     room->viewpoints = calloc(views, sizeof *room->viewpoints);
     room->cameras = calloc(views, sizeof *room->cameras);
     if (!room->viewpoints || !room->cameras) return err_nomem(err, "viewpoints", views * sizeof *room->viewpoints);
-    for (int i = 0; i < room->set.view_count; i++) {
-        const char *photo = photo_of(room, i);
-        if (!photo)
+    for (int i = 0; i < room->in.set.view_count; i++) {
+        const struct lens *lens = lens_of_view(&room->in.set, &room->in.lenses, i);
+        if (!lens)
             return err_set(err, ST_DATA, "%s/lenses.txt has no line of view %s. Run make views again.",
-                           room->files.views, room->set.views[i].name);
-        room->cameras[i] = model_from_world_view(&room->axes, &room->set.views[i]);
+                           room->files.views, room->in.set.views[i].name);
+        room->cameras[i] = model_from_world_view(&room->in.axes, &room->in.set.views[i]);
         struct viewpoint *last = room->viewpoints + room->viewpoint_count - 1;
-        if (room->viewpoint_count && !strcmp(last->photo, photo))
+        if (room->viewpoint_count && !strcmp(last->photo, lens->photo))
             last->count++;
         else
             room->viewpoints[room->viewpoint_count++] =
-                (struct viewpoint){.photo = photo, .centre = room->cameras[i].center, .first = i, .count = 1};
+                (struct viewpoint){.photo = lens->photo, .centre = room->cameras[i].center, .first = i, .count = 1};
     }
     return ST_OK;
 }
 
 static enum status read_cameras(struct room *room, struct provenance *prov, struct err *err)
 {
-    char path[FILE_PATH];
-    enum status st = camera_set_read_cameras(&room->set, room->files.views, err);
-    if (!st) st = camera_set_add_camera_inputs(prov, room->files.views, err);
-    if (!st) st = provenance_add_in(prov, "views", room->files.views, "lenses", ".txt", path, err);
-    if (!st) st = lens_list_read(&room->lenses, path, err);
-    if (!st) st = model_axes_read(&room->axes, room->files.axes, err);
-    if (!st) st = provenance_add_file(prov, "model/axes.txt", room->files.axes, err);
+    const struct scene_files files = {.views = room->files.views, .axes = room->files.axes};
+    const enum status st = scene_inputs_read(&room->in, SCENE_CAMERAS | SCENE_LENSES | SCENE_AXES, &files, prov, err);
     return st ? st : find_viewpoints(room, err);
 }
 
@@ -58,15 +48,13 @@ enum status room_open(struct room *room, const struct room_files *files, const s
     const struct clutter_files clutter = {files->views, files->depth, files->ids, unedited, params->memory};
     *room = (struct room){.files = *files, .params = params, .prov = prov};
     enum status st = read_cameras(room, prov, err);
-    if (!st) st = model_rays_read(&room->model, files->model, MODEL_WITH_GLASS, err);
-    if (!st && files->base) st = model_rays_read(&room->base, files->base, MODEL_WITH_GLASS, err);
-    if (!st && files->base) st = provenance_add_file(prov, "model/model.txt", files->base, err);
-    if (!st && files->outdoors) st = outdoors_read(&room->outdoors, files->outdoors, err);
-    if (!st && files->outdoors) st = provenance_add_file(prov, "outdoors/outdoors.exr", files->outdoors, err);
+    if (!st) st = model_rays_read(&room->model, files->model, MODEL_WITH_GLASS, NULL, err);
+    if (!st && files->base) st = model_rays_read(&room->base, files->base, MODEL_WITH_GLASS, prov, err);
+    if (!st && files->outdoors) st = outdoors_read(&room->outdoors, files->outdoors, prov, err);
     if (!st) st = shell_open(&room->shell, &shell, prov, err);
     if (!st) shell_set_samples(room->shell, params->samples);
     if (!st && files->depth && !strcmp(params->clutter, "drawn"))
-        st = clutter_open(&room->clutter, &clutter, &room->set, &room->axes, err);
+        st = clutter_open(&room->clutter, &clutter, &room->in.set, &room->in.axes, err);
     return st;
 }
 
@@ -79,8 +67,7 @@ void room_close(struct room *room)
     model_rays_release(&room->model);
     free(room->viewpoints);
     free(room->cameras);
-    lens_list_release(&room->lenses);
-    camera_set_release(&room->set);
+    scene_inputs_release(&room->in);
     *room = (struct room){0};
 }
 

@@ -2,8 +2,8 @@
 #ifndef REMODEL_RENDER_ROOM_H
 #define REMODEL_RENDER_ROOM_H
 
-#include "common/capture/lens_list.h"
 #include "common/light/model_rays.h"
+#include "common/model/scene_inputs.h"
 #include "stages/render_model/clutter.h"
 #include "stages/render_model/render_params.h"
 #include "stages/render_model/shell.h"
@@ -27,10 +27,8 @@ struct room {
     struct room_files files;
     const struct render_model_params *params;
     struct provenance *prov;
-    struct model_axes axes;
-    struct camera_set set; /* scene frame */
-    struct view *cameras;  /* the same in the model's frame; owned */
-    struct lens_list lenses;
+    struct scene_inputs in;       /* axes, lenses, views in the scene's frame */
+    struct view *cameras;         /* the views in the model's frame; owned */
     struct viewpoint *viewpoints; /* in order of photo; owned */
     int viewpoint_count;
     struct model_rays model, base; /* with panes; base is empty without an edit */

@@ -36,10 +36,10 @@ static enum status find_similarity(struct similarity *given_from_scene, const st
     static const struct alignment_rules rules = {
         max_misfit, "Otherwise it is unknown where the cameras are. Give a model of the scene's photographs.",
         "Give a model of the same photographs."};
-    const struct scene_photos scene = {room->files.views, source->records};
+    const struct scene_photos scene = {room->files.views, source->records, prov};
     struct sfm_model photos = {0};
     struct frame_agreement agreement;
-    enum status st = sfm_model_read_cameras(&photos, source->photos, err);
+    enum status st = sfm_model_read_cameras(&photos, source->photos, NULL, err);
     if (!st) st = provenance_add_in(prov, "photos", source->photos, "images.txt", "", NULL, err);
     if (!st) st = align_with_photos(given_from_scene, &agreement, &photos, source->photos, &scene, &rules, err);
     sfm_model_release(&photos);
@@ -57,7 +57,7 @@ enum status room_cameras_read(struct room_cameras *cameras, const struct camera_
 {
     struct sfm_model given = {0};
     struct similarity given_from_scene = {0};
-    enum status st = sfm_model_read_cameras(&given, source->folder, err);
+    enum status st = sfm_model_read_cameras(&given, source->folder, NULL, err);
     if (!st) st = provenance_add_in(prov, "cameras", source->folder, "cameras.txt", "", NULL, err);
     if (!st) st = provenance_add_in(prov, "cameras", source->folder, "images.txt", "", NULL, err);
     if (!st && !given.image_count)
@@ -70,7 +70,7 @@ enum status room_cameras_read(struct room_cameras *cameras, const struct camera_
         const struct sfm_image *image = &given.images[i];
         struct pose pose = image->cam_from_world;
         if (source->frame == FRAME_PHOTOS) pose = pose_in_scene(&pose, &given_from_scene);
-        if (source->frame != FRAME_MODEL) pose = pose_in_model(&pose, &room->axes);
+        if (source->frame != FRAME_MODEL) pose = pose_in_model(&pose, &room->in.axes);
         char *name = name_without_ending(image->name);
         if (!name)
             st = err_nomem(err, "cameras", strlen(image->name));

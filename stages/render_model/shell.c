@@ -108,23 +108,21 @@ enum status shell_open(struct shell_scene **scene, const struct shell_files *fil
 {
     struct solid_mesh mesh = {0};
     struct texture_map map = {0};
+    struct provenance inputs = {0};
     *scene = NULL;
-    enum status st = solid_mesh_read(&mesh, files->model, err);
-    if (!st && files->map) st = texture_map_read(&map, files->map, err);
-    if (st) {
+    enum status st = solid_mesh_read(&mesh, files->model, &inputs, err);
+    if (!st && files->map) st = texture_map_read(&map, files->map, &inputs, err);
+    if (st)
         solid_mesh_release(&mesh);
+    else
+        st = shell_make(scene, &mesh, &map, files->vdta, files->vita, files->memory, err);
+    if (st) {
+        provenance_release(&inputs);
         return st;
     }
-    st = shell_make(scene, &mesh, &map, files->vdta, files->vita, files->memory, err);
-    if (st) return st;
-    struct shell_scene *s = *scene;
-    s->prov = prov;
-    s->model_path = strdup(files->model);
-    if (files->map) s->map_path = strdup(files->map);
-    if (s->model_path && (s->map_path || !files->map)) return ST_OK;
-    shell_close(s);
-    *scene = NULL;
-    return err_nomem(err, "a path", FILE_PATH);
+    (*scene)->prov = prov;
+    (*scene)->inputs = inputs;
+    return ST_OK;
 }
 
 void shell_close(struct shell_scene *s)
@@ -136,8 +134,7 @@ void shell_close(struct shell_scene *s)
     model_picture_release(&s->sample);
     texture_map_release(&s->map);
     solid_mesh_release(&s->mesh);
-    free(s->model_path);
-    free(s->map_path);
+    provenance_release(&s->inputs);
     free(s->faces);
     free(s->rules);
     free(s->ids);
@@ -158,15 +155,6 @@ void shell_set_samples(struct shell_scene *scene, int samples)
 
 /* -------------------------------------------------------------------------------------------------------- a picture */
 
-/* Records a file by its path from the scene's folder, "model/model.txt" or "remodel/EDIT/texture.txt". */
-static enum status record(struct provenance *prov, const char *path, struct err *err)
-{
-    const char *name = strrchr(path, '/') ? strrchr(path, '/') + 1 : path;
-    for (const char *at = path; (at = strchr(at, '/')); at++)
-        if (!strncmp(at, "/model/", 7) || !strncmp(at, "/remodel/", 9)) name = at + 1;
-    return provenance_add_file(prov, name, path, err);
-}
-
 /* A new picture begins: its inputs are recorded, and the atlases found. Equal viewpoints are one. */
 static enum status begin_picture(struct shell_scene *s, struct shell_atlases *a, const char *const photos[2],
                                  struct err *err)
@@ -174,8 +162,7 @@ static enum status begin_picture(struct shell_scene *s, struct shell_atlases *a,
     const bool one = photos[0] && photos[1] && !strcmp(photos[0], photos[1]);
     *a = (struct shell_atlases){0};
     page_cache_next(s->pages, s->prov);
-    if (s->prov && s->model_path && record(s->prov, s->model_path, err)) return err->status;
-    if (s->prov && s->map_path && record(s->prov, s->map_path, err)) return err->status;
+    if (s->prov && provenance_add_all(s->prov, &s->inputs, err)) return err->status;
     for (int i = 0; i < 2; i++)
         if (photos[i] && !(one && i) && page_cache_find(s->pages, photos[i], &a->pair[i], err)) return err->status;
     return page_cache_find(s->pages, NULL, &a->vita, err);

@@ -20,8 +20,8 @@ struct shell_face {
 struct shell_scene {
     struct solid_mesh mesh;
     struct texture_map map;
-    char *model_path, *map_path; /* NULL: they were not read from files */
-    struct shell_face *faces;    /* of the mesh */
+    struct provenance inputs; /* the model and the map, if they were read from files */
+    struct shell_face *faces; /* of the mesh */
     struct shell_rule *rules;
     uint32_t *ids; /* [1 + faces], [0] is 0 */
     int rule_count;

@@ -11,6 +11,7 @@
 #include "common/capture/view_image.h"
 #include "common/image/exr.h"
 #include "common/layers/hole_measure.h"
+#include "common/product/product.h"
 
 enum status frame_part_read(struct frame_part *part, const char *crop, const char *scale, struct err *err)
 {
@@ -96,7 +97,7 @@ enum status frames_render(const struct camera_path *path, const bool *wanted, st
     for (int i = 0; !st && i < path->frame_count; i++) {
         const struct view *camera = &path->frames[i].camera;
         if (!wanted[i]) continue;
-        st = file_path(file, folder, camera->name, ".exr", err);
+        st = product_path_in(file, folder, PRODUCT_FRAME, &(struct product_key){.frame = camera->name}, err);
         if (!st) st = renderer_frame(renderer, i, &frame, err);
         if (!st && frame.hole_fraction >= 1)
             st = err_set(err, ST_DATA,
@@ -140,7 +141,7 @@ enum status cameras_render(const struct camera_set *cameras, const bool *wanted,
         struct rendered_frame frame = {0};
         char file[FILE_PATH];
         if (!wanted[i]) continue;
-        st = file_path(file, folder, camera->name, ".exr", err);
+        st = product_path_in(file, folder, PRODUCT_HELD_FRAME, &(struct product_key){.view = camera->name}, err);
         if (!st) st = renderer_camera(renderer, camera, &frame, err);
         if (!st && frame.hole_fraction >= 1)
             log_warn("camera %s sees nothing of the scene: its frame is empty", camera->name);

@@ -17,18 +17,6 @@
 #include "common/film/film_views.h"
 #include "stages/render_views/frames.h"
 
-static enum status add_inputs(struct provenance *prov, const char *views, const char *path_folder, const char *effect,
-                              struct err *err)
-{
-    static const char *const path_files[] = {"path.txt", "path/cameras.txt", "path/images.txt"};
-    char prefix[128];
-    enum status st = camera_set_add_inputs(prov, views, err);
-
-    snprintf(prefix, sizeof prefix, "parallax/%s", effect);
-    for (int i = 0; !st && i < 3; i++) st = provenance_add_in(prov, prefix, path_folder, path_files[i], "", NULL, err);
-    return st;
-}
-
 struct render_job { /* the command line */
     const char *views, *film_views, *depth, *path, *frames, *cameras, *crop, *scale, *out;
     struct cli_list names;
@@ -45,21 +33,19 @@ static enum status render_path(const struct render_job *job, struct provenance *
     struct effects effects = {0}, more = {0};
     struct renderer renderer = {0};
     bool *wanted = NULL;
-    enum status st = camera_set_read(&set, job->views, err);
+    enum status st = camera_set_read(&set, job->views, prov, err);
 
-    if (!st) st = camera_path_read(&path, job->path, err);
+    if (!st) st = camera_path_read(&path, job->path, prov, err);
     for (int i = 0; !st && i < path.frame_count; i++) st = frame_part_camera(&path.frames[i].camera, &job->part, err);
     if (!st) {
         wanted = calloc((size_t)path.frame_count + 1, sizeof *wanted);
         st = wanted ? frame_list_read(wanted, path.frame_count, job->frames, err)
                     : err_nomem(err, "the frames of a path", (size_t)path.frame_count);
     }
-    if (!st) st = add_inputs(prov, job->views, job->path, path.effect, err);
     for (int i = 0; !st && i < job->effects.count; i++) {
-        st = effects_read(&more, job->effects.items[i], err);
+        st = effects_read(&more, job->effects.items[i], prov, err);
         if (!st) st = effects_append(&effects, &more, err);
         effects_release(&more);
-        if (!st) st = provenance_add_file(prov, i ? "scene/effects.txt" : "effects.txt", job->effects.items[i], err);
     }
     if (!st) st = film_views_keep(&set, job->film_views, prov, err);
     if (!st) st = layer_scene_read(&scene, &set, job->depth, prov, err);
@@ -79,23 +65,20 @@ static enum status render_path(const struct render_job *job, struct provenance *
 
 static enum status render_cameras(const struct render_job *job, struct provenance *prov, struct err *err)
 {
-    static const char *const files[] = {"cameras.txt", "images.txt"};
     static const struct effects none = {0};
     struct camera_set set = {0}, cameras = {0};
     struct layer_scene scene = {0};
     struct renderer renderer = {0};
     bool *wanted = NULL;
-    enum status st = camera_set_read(&set, job->views, err);
+    enum status st = camera_set_read(&set, job->views, prov, err);
 
-    if (!st) st = camera_set_read(&cameras, job->cameras, err);
+    if (!st) st = camera_set_read(&cameras, job->cameras, prov, err);
     for (int i = 0; !st && i < cameras.view_count; i++) st = frame_part_camera(&cameras.views[i], &job->part, err);
     if (!st) {
         wanted = calloc((size_t)cameras.view_count + 1, sizeof *wanted);
         st = wanted ? cameras_select(wanted, &cameras, job->names.items, job->names.count, err)
                     : err_nomem(err, "cameras", (size_t)cameras.view_count);
     }
-    if (!st) st = camera_set_add_inputs(prov, job->views, err);
-    for (int i = 0; !st && i < 2; i++) st = provenance_add_in(prov, "cameras", job->cameras, files[i], "", NULL, err);
     if (!st) st = layer_scene_read(&scene, &set, job->depth, prov, err);
     if (!st) st = renderer_match_exposures(&scene, &job->params, err);
     if (!st) {

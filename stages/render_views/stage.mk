@@ -1,5 +1,4 @@
 # render_views: a film's frames, and the cameras of held-out photos.
 FOLLOWS.render_views := segment_depth plan_path
 READS.render_views := parallax/views.txt, all layers, the path, effects.txt
-WRITES.render_views := parallax/EFFECT/frames/NNNN.exr
 HELP.frames := + its frames

@@ -88,7 +88,7 @@ static enum status read_effect(struct contents *c, struct effect_card *e, const 
         e->video_bytes = s.st_size;
         if (!(e->video = strdup(path))) return err_nomem(err, "a file name", strlen(path));
     }
-    if (camera_path_read(&e->path, folder, &problem))
+    if (camera_path_read(&e->path, folder, NULL, &problem))
         return contents_note(c, err, "There is no camera path of %s. %s", e->name, problem.text);
     return read_frames(c, e, folder, err) || read_pan(c, e, folder, err) ? err->status : ST_OK;
 }

@@ -40,10 +40,10 @@ enum status read_held(struct contents *c, const char *folder, struct err *err)
     struct err problem = ERR_INIT;
     snprintf(path, sizeof path, "%s/holdout/views/lenses.txt", folder);
     if (!path_is_file(path)) return ST_OK;
-    if (lens_list_read(&c->held_lenses, path, &problem))
+    if (lens_list_read(&c->held_lenses, path, NULL, &problem))
         return contents_note(c, err, "The held-out photographs are unknown. %s", problem.text);
     snprintf(path, sizeof path, "%s/holdout/views", folder);
-    if (camera_set_read(&c->held, path, &problem))
+    if (camera_set_read(&c->held, path, NULL, &problem))
         return contents_note(c, err, "The held-out photographs are unknown. %s", problem.text);
     c->held_cards = calloc((size_t)c->held.view_count + 1, sizeof *c->held_cards);
     if (!c->held_cards) return err_nomem(err, "held-out views", (size_t)c->held.view_count * sizeof *c->held_cards);

@@ -177,7 +177,7 @@ static enum status read_lamps(struct contents *c, const char *folder, struct err
     char path[PATH_SIZE + LAMP_FILE_NAME], name[LAMP_FILE_NAME];
     snprintf(path, sizeof path, "%s/lights/lights.txt", folder);
     if (!path_is_file(path)) return ST_OK;
-    if (light_list_read(&l->lights, path, &problem)) {
+    if (light_list_read(&l->lights, path, NULL, &problem)) {
         light_list_release(&l->lights);
         return contents_note(c, err, "The lamps are not shown. %s", problem.text);
     }
@@ -201,7 +201,7 @@ static enum status read_materials(struct contents *c, const char *folder, struct
     char path[PATH_SIZE + 256];
     snprintf(path, sizeof path, "%s/lights/materials.txt", folder);
     if (!path_is_file(path)) return ST_OK;
-    if (material_list_read(&l->materials, path, &problem))
+    if (material_list_read(&l->materials, path, NULL, &problem))
         return contents_note(c, err, "The fitted materials are not shown. %s", problem.text);
     l->material_cards = calloc((size_t)l->materials.count + 1, sizeof *l->material_cards);
     if (!l->material_cards) return err_nomem(err, "materials", (size_t)l->materials.count * sizeof *l->material_cards);

@@ -51,7 +51,7 @@ int photo_orientation(const char *records, const char *photo)
 {
     struct photo_record record = {0};
     struct err unknown = ERR_INIT; /* then the picture is upright as it is */
-    const int orientation = photo_record_read(&record, records, photo, &unknown) ? 1 : record.info.orientation;
+    const int orientation = photo_record_read(&record, records, photo, NULL, &unknown) ? 1 : record.info.orientation;
     photo_record_release(&record);
     return orientation < 1 ? 1 : orientation;
 }
@@ -220,7 +220,7 @@ static enum status read_sight(struct relit_sight *s, const struct relit_reading 
     enum status st = file_path(views, r->from->folder, "views", "", err);
     if (!st) st = file_path(unlit, r->folder, "unlit", "", err);
     if (!st) st = file_path(path, unlit, s->view, ".txt", err);
-    if (!st) st = picture_record_read(&before, path, err);
+    if (!st) st = picture_record_read(&before, path, NULL, err);
     if (!st) st = sight_read_radiance(&s->before, views, s->view, before.exposure, orientation, RELIT_SIDE_HEIGHT, err);
     if (!st) st = sight_read_picture(&s->unlit, unlit, s->view, ".jpg", orientation, RELIT_SIDE_HEIGHT, err);
     if (!st) st = sight_read_picture(&s->relit, r->folder, s->view, ".jpg", orientation, RELIT_SIDE_HEIGHT, err);

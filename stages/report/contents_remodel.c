@@ -78,7 +78,7 @@ static enum status read_records(struct reading *r, const char *folder, struct er
         struct err problem = ERR_INIT;
         struct record record;
         if (!st) st = file_path(path, folder, name, "", err);
-        if (!st && picture_record_read(&record.file, path, &problem)) {
+        if (!st && picture_record_read(&record.file, path, NULL, &problem)) {
             st = note(r->c, "a picture is left out", &problem, err);
         } else if (!st) {
             snprintf(record.view, sizeof record.view, "%.*s", (int)(strlen(name) - strlen(".txt")), name);
@@ -225,7 +225,7 @@ enum status remodel_contents_read(struct remodel_contents *c, const struct remod
     struct dirent **names = NULL;
     char model[FILE_PATH], path[FILE_PATH];
     enum status st = file_path(path, from->folder, "views/lenses.txt", "", err);
-    if (!st) st = lens_list_read(&r.lenses, path, err);
+    if (!st) st = lens_list_read(&r.lenses, path, NULL, err);
     if (!st) st = file_path(model, from->folder, "model", "", err);
     if (!st) c->plan = file_if_there(model, "plan.svg");
     if (!st) c->film = has_file(model, "tour/video.mp4");

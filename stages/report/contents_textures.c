@@ -75,7 +75,7 @@ static enum status read_pages(struct texture_work *w, const char *folder, struct
     enum status st = ST_OK;
     for (int i = 0; !st && i < w->atlas.page_count; i++) {
         struct atlas_page page = {0};
-        st = atlas_page_read(&page, &w->atlas, i, folder, err);
+        st = atlas_page_read(&page, &w->atlas, i, folder, NULL, err);
         for (int k = 0; !st && k < card->view_count; k++) sight_add_page(&w->sights[k], &w->atlas, &page, i);
         if (!st && i < PAGES_SHOWN) {
             st = picture_from_atlas_page(&card->pages[i], &page, PAGE_HEIGHT, err);
@@ -176,7 +176,7 @@ static enum status add_card(struct contents *c, const char *folder, const struct
     else
         snprintf(path, sizeof path, "%s/vita", folder);
     snprintf(card->name, sizeof card->name, "%s", photo ? photo : "");
-    enum status st = atlas_read(&w.atlas, path, &problem);
+    enum status st = atlas_read(&w.atlas, path, NULL, &problem);
     if (!st && photo) views = w.atlas.views, view_count = w.atlas.view_count;
     if (!st) st = read_card(&w, views, view_count, path, &problem);
     for (int i = 0; w.sights && i < card->view_count; i++) sight_release(&w.sights[i]);
@@ -254,7 +254,7 @@ enum status read_textures(struct contents *c, const char *folder, struct err *er
     snprintf(vita, sizeof vita, "%s/vita/atlas.txt", folder);
     snprintf(path, sizeof path, "%s/model/axes.txt", folder);
     const bool any = !st && c->has_views && (shown || path_is_file(vita));
-    if (any && model_axes_read(&axes, path, &problem)) {
+    if (any && model_axes_read(&axes, path, NULL, &problem)) {
         st = contents_note(c, err, "The texture atlases are not shown. %s", problem.text);
     } else if (any) {
         c->textures = calloc((size_t)shown + 1, sizeof *c->textures);

@@ -144,11 +144,11 @@ enum status read_views(struct contents *c, const char *folder, struct err *err)
     char path[PATH_SIZE];
     struct err problem = ERR_INIT;
     snprintf(path, sizeof path, "%s/views", folder);
-    if (camera_set_read(&c->views, path, &problem))
+    if (camera_set_read(&c->views, path, NULL, &problem))
         return contents_note(c, err, "There are no views yet. %s", problem.text);
     c->has_views = true;
     snprintf(path, sizeof path, "%s/views/lenses.txt", folder);
-    if (lens_list_read(&c->lenses, path, &problem) &&
+    if (lens_list_read(&c->lenses, path, NULL, &problem) &&
         contents_note(c, err, "The photographs of the views are unknown. %s", problem.text))
         return err->status;
     c->view_cards = calloc((size_t)c->views.view_count + 1, sizeof *c->view_cards);

@@ -15,6 +15,7 @@
 #include "common/base/log.h"
 #include "common/capture/upright.h"
 #include "common/film/film_views.h"
+#include "common/product/product.h"
 #include "stages/sample_validity/picture.h"
 #include "stages/sample_validity/sample.h"
 
@@ -69,20 +70,16 @@ static enum status sample(const struct job *job, struct provenance *prov, struct
     char picture[FILE_PATH], text[FILE_PATH];
 
     enum status st = film_effect_parse(&effect, job->effect, err);
-    if (!st) st = file_path(picture, job->out, "validity.png", "", err);
-    if (!st) st = file_path(text, job->out, "validity.txt", "", err);
-    if (!st) st = camera_set_read(&set, job->views, err);
-    if (!st) st = camera_set_add_inputs(prov, job->views, err);
+    if (!st) st = product_path_in(picture, job->out, PRODUCT_VALIDITY_PICTURE, NULL, err);
+    if (!st) st = product_path_in(text, job->out, PRODUCT_VALIDITY, NULL, err);
+    if (!st) st = camera_set_read(&set, job->views, prov, err);
     if (!st) st = film_views_keep(&set, job->film_views, prov, err);
     if (!st && job->records) {
         ups = calloc((size_t)set.view_count + 1, sizeof *ups);
         st = ups ? upright_read(ups, &set, job->views, job->records, prov, err)
                  : err_nomem(err, "upright directions", (size_t)set.view_count * sizeof *ups);
     }
-    if (!st && job->subjects) {
-        st = subject_list_read(&subjects, job->subjects, err);
-        if (!st) st = provenance_add_file(prov, "parallax/subjects.txt", job->subjects, err);
-    }
+    if (!st && job->subjects) st = subject_list_read(&subjects, job->subjects, prov, err);
     const struct scene_subjects available = scene_subjects_of(&subjects);
     if (!st) st = film_effect_check(&effect, &available, err);
     if (!st) st = layer_scene_read(&scene, &set, job->depth, prov, err);

@@ -18,17 +18,15 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "common/base/outfile.h"
-#include "common/base/textfile.h"
+#include "common/product/product.h"
 
 enum status round_record_write(const struct round_record *r, const char *path, const struct provenance *prov,
                                struct err *err)
 {
     struct outfile file = {0};
-    enum status st = outfile_open(&file, path, err);
+    enum status st = product_begin(&file, PRODUCT_DEPTH_ROUND, path, prov, err);
     if (!st) {
-        if (prov) provenance_print(prov, file.fp);
-        fprintf(file.fp, "remodel-round 1\nchanged %.6g\nestimated %s\n", r->changed, r->estimated ? "yes" : "no");
+        fprintf(file.fp, "changed %.6g\nestimated %s\n", r->changed, r->estimated ? "yes" : "no");
         st = outfile_commit(&file, err);
     }
     outfile_discard(&file);
@@ -51,15 +49,11 @@ static enum status read_estimated(bool *estimated, struct textfile *t, struct er
     return textfile_end(t, err);
 }
 
-enum status round_record_read(struct round_record *r, const char *path, struct err *err)
+enum status round_record_read(struct round_record *r, const char *path, struct provenance *prov, struct err *err)
 {
     struct textfile t = {0};
-    int64_t version;
     *r = (struct round_record){0};
-    enum status st = textfile_open(&t, path, err);
-    if (!st) st = textfile_expect_line(&t, "remodel-round", err);
-    if (!st) st = textfile_int(&t, "version", 1, 1, &version, err);
-    if (!st) st = textfile_end(&t, err);
+    enum status st = product_open(&t, NULL, PRODUCT_DEPTH_ROUND, path, prov, err);
     if (!st) st = read_changed(&r->changed, &t, err);
     if (!st) st = read_estimated(&r->estimated, &t, err);
     if (!st) st = textfile_end_of_file(&t, err);
@@ -98,8 +92,8 @@ static enum status read_change(double *changed, const char *folder, const char *
 {
     struct round_record r = {0};
     char path[FILE_PATH];
-    enum status st = provenance_add_in(prov, "depth", folder, view, ".round", path, err);
-    if (!st) st = round_record_read(&r, path, err);
+    enum status st = product_path_in(path, folder, PRODUCT_DEPTH_ROUND, &(struct product_key){.view = view}, err);
+    if (!st) st = round_record_read(&r, path, prov, err);
     *changed = r.changed;
     return st;
 }
@@ -148,10 +142,11 @@ enum status round_file(char path[FILE_PATH], const char *exr, const char *suffix
 
 enum status round_carry_over(const char *folder, const char *view, const char *out, struct err *err)
 {
+    const struct product_key key = {.view = view};
     char from[FILE_PATH], to[FILE_PATH];
-    enum status st = file_path(from, folder, view, ".txt", err);
+    enum status st = product_path_in(from, folder, PRODUCT_SEGMENTS, &key, err);
     if (!st) st = round_file(to, out, ".txt", err);
     if (!st) st = copy_file(from, to, err);
-    if (!st) st = file_path(from, folder, view, ".exr", err);
+    if (!st) st = product_path_in(from, folder, PRODUCT_DEPTH, &key, err);
     return st ? st : copy_file(from, out, err);
 }

@@ -14,7 +14,7 @@ struct round_record {
 
 enum status round_record_write(const struct round_record *r, const char *path, const struct provenance *prov,
                                struct err *err);
-enum status round_record_read(struct round_record *r, const char *path, struct err *err);
+enum status round_record_read(struct round_record *r, const char *path, struct provenance *prov, struct err *err);
 
 /* Of the pixels of `now` that have depth, the share whose depth differs by more than CHANGED_PART from that of
  * `before`, or that had none there. Both have the same size; their segments may differ. */

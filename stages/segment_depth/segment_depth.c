@@ -24,6 +24,7 @@
 #include "common/base/make_deps.h"
 #include "common/capture/upright.h"
 #include "common/capture/view_image.h"
+#include "common/product/product.h"
 #include "stages/segment_depth/estimate.h"
 #include "stages/segment_depth/given_depth.h"
 #include "stages/segment_depth/given_read.h"
@@ -40,9 +41,7 @@ static enum status read_view(void *ctx, int view_idx, struct image *im, struct e
 {
     const struct views_folder *f = ctx;
     const struct view *view = &f->set->views[view_idx];
-    enum status st = view_image_read(im, f->folder, view, err);
-    if (!st) st = provenance_add_in(f->prov, "views", f->folder, view->name, ".exr", NULL, err);
-    return st;
+    return view_image_read(im, f->folder, view, f->prov, err);
 }
 
 static enum status read_depth(void *ctx, int view_idx, struct layered_depth *d, struct err *err)
@@ -50,9 +49,8 @@ static enum status read_depth(void *ctx, int view_idx, struct layered_depth *d, 
     const struct views_folder *f = ctx;
     const char *name = f->set->views[view_idx].name;
     char path[FILE_PATH];
-    enum status st = provenance_add_in(f->prov, "depth", f->before, name, ".exr", path, err);
-    if (!st) st = layered_depth_read_ids(d, path, err);
-    return st;
+    const enum status st = product_path_in(path, f->before, PRODUCT_DEPTH, &(struct product_key){.view = name}, err);
+    return st ? st : layered_depth_read_ids(d, path, f->prov, err);
 }
 
 /* *z: the view's given depth; NULL if there is none or all of it is unknown. */
@@ -61,9 +59,9 @@ static enum status read_given(void *ctx, int view_idx, float **z, struct err *er
     const struct views_folder *f = ctx;
     const struct view *view = &f->set->views[view_idx];
     struct lens_list lenses = {0};
-    char *path = NULL;
-    if (asprintf(&path, "%s/lenses.txt", f->folder) < 0) return err_nomem(err, "a file name", strlen(f->folder));
-    enum status st = access(path, F_OK) ? ST_OK : lens_list_read(&lenses, path, err);
+    char path[FILE_PATH];
+    if (product_path_in(path, f->folder, PRODUCT_LENSES, NULL, err)) return err->status;
+    enum status st = access(path, F_OK) ? ST_OK : lens_list_read(&lenses, path, NULL, err);
     const int lens = st ? -1 : lens_list_find(&lenses, view->name);
     if (!st) st = given_read(z, f->given, view, lens < 0 ? NULL : &lenses.lenses[lens], f->prov, err);
     double min_inverse_z = 0, max_inverse_z = 0;
@@ -77,7 +75,6 @@ static enum status read_given(void *ctx, int view_idx, float **z, struct err *er
         *z = NULL;
     }
     lens_list_release(&lenses);
-    free(path);
     return st;
 }
 
@@ -91,7 +88,8 @@ static enum status write_deps(const char *deps, const char *out, const char *con
     enum status st = ST_OK;
     for (int f = 0; f < 2 && folders[f]; f++)
         for (int i = 0; !st && i < count; i++, n++) {
-            st = file_path(paths[n], folders[f], set->views[read[i]].name, ".exr", err);
+            st = product_path_in(paths[n], folders[f], f ? PRODUCT_DEPTH : PRODUCT_VIEW,
+                                 &(struct product_key){.view = set->views[read[i]].name}, err);
             files[n] = paths[n];
         }
     return st ? st : make_deps_write(deps, out, files, n, err);
@@ -136,8 +134,8 @@ static enum status find_change(double *changed, const struct layered_depth *dept
     char path[FILE_PATH];
     *changed = 1;
     if (!r->before) return ST_OK;
-    enum status st = file_path(path, r->before, r->view, ".exr", err);
-    if (!st) st = layered_depth_read(&before, path, err);
+    enum status st = product_path_in(path, r->before, PRODUCT_DEPTH, &(struct product_key){.view = r->view}, err);
+    if (!st) st = layered_depth_read(&before, path, NULL, err);
     if (!st) *changed = round_change(depth, &before);
     layered_depth_release(&before);
     return st;
@@ -217,7 +215,7 @@ static enum status segment_depth(const struct request *r, struct provenance *pro
     struct camera_set set = {0};
     int read[1 + MAX_NEIGHBOURS];
     bool carried = false;
-    enum status st = camera_set_read(&set, r->views, err);
+    enum status st = camera_set_read(&set, r->views, NULL, err);
     if (!st && (read[0] = camera_set_find(&set, r->view)) < 0)
         st = err_set(err, ST_USAGE, "there is no view %s in %s/images.txt; the views are listed in %s/views.mk.",
                      r->view, r->views, r->views);
@@ -234,7 +232,7 @@ static enum status estimate(const char *folder, const char *list, int jobs, cons
     enum status st =
         jobs < 0
             ? err_set(err, ST_USAGE, "--jobs %d: wanted the number of views made at a time, or 0 on a cluster.", jobs)
-            : camera_set_read(&set, folder, err);
+            : camera_set_read(&set, folder, NULL, err);
     if (!st) st = estimate_print(stdout, list, &set, jobs, params, err);
     camera_set_release(&set);
     return st;

@@ -1,7 +1,6 @@
 # segment_depth: layered depth of each view, in rounds.
 FOLLOWS.segment_depth := rectify
 READS.segment_depth := one view and the neighbours it selects; its depth in DEPTH, if there is any; after the first round, what they had in the round before and how much it had changed
-WRITES.segment_depth := depth/round0/VIEW.exr, VIEW.txt, VIEW.round, ...; of the last round depth/VIEW.exr, VIEW.txt, VIEW.round
 VARIABLES.segment_depth := DEPTH
 HELP.depth := + layered depth maps
 

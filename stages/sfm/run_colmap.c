@@ -43,7 +43,7 @@ static enum status add_model(const struct colmap_job *job, struct sfm_folder *f,
     const char *args[] = {"model_converter", "--input_path", from, "--output_path", text, "--output_type", "TXT", NULL};
     enum status st = from && text ? make_folders(text, err) : err->status;
     if (!st) st = colmap_run(job, 4, args, 0, err);
-    if (!st) st = sfm_model_read_text(&m, text, err);
+    if (!st) st = sfm_model_read_text(&m, text, NULL, err);
     if (!st) log_note("model %d: %d of %d photos, %d points", k, m.image_count, job->photos->count, m.point_count);
     if (!st) st = colmap_name_images(&m, job->photos, err);
     if (!st) st = sfm_folder_add(f, &m, prov, err);

@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include "common/base/outfile.h"
+#include "common/product/product.h"
 
 char *text_format(struct err *err, const char *fmt, ...)
 {
@@ -41,10 +42,9 @@ enum status remove_tree(const char *path, struct err *err)
 /* `out` will be replaced as a whole, so it must be missing, an empty folder, or a product of this stage. */
 static enum status check_replaceable(const char *out, struct err *err)
 {
-    char *models = text_format(err, "%s/models.txt", out);
-    if (!models) return err->status;
+    char models[FILE_PATH];
+    if (product_path_in(models, out, PRODUCT_SFM_MODELS, NULL, err)) return err->status;
     bool ours = !access(models, F_OK);
-    free(models);
     if (ours || !rmdir(out) || errno == ENOENT) return ST_OK;
     return err_set(
         err, ST_USAGE,
@@ -82,26 +82,22 @@ static enum status write_lists(const struct sfm_folder *f, const struct photo_li
                                const struct provenance *prov, struct err *err)
 {
     struct outfile list = {0}, models = {0};
-    char *list_path = text_format(err, "%s/photos.txt", f->made);
-    char *models_path = text_format(err, "%s/models.txt", f->made);
-    enum status st = list_path && models_path ? outfile_open(&list, list_path, err) : err->status;
+    char list_path[FILE_PATH], models_path[FILE_PATH];
+    enum status st = product_path_in(list_path, f->made, PRODUCT_SFM_PHOTOS, NULL, err);
+    if (!st) st = product_path_in(models_path, f->made, PRODUCT_SFM_MODELS, NULL, err);
+    if (!st) st = product_begin(&list, PRODUCT_SFM_PHOTOS, list_path, prov, err);
     if (!st) {
-        provenance_print(prov, list.fp);
         for (int i = 0; i < photos->count; i++)
             fprintf(list.fp, "%s %s\n", photos->photos[i].id, photos->photos[i].hash);
         st = outfile_commit(&list, err);
     }
-    if (!st) st = outfile_open(&models, models_path, err);
+    if (!st) st = product_begin(&models, PRODUCT_SFM_MODELS, models_path, prov, err);
     if (!st) {
-        provenance_print(prov, models.fp);
-        fputs("remodel-sfm 2\n", models.fp);
         for (int i = 0; i < f->models; i++) fprintf(models.fp, "%d colmap %s\n", i, f->given);
         st = outfile_commit(&models, err);
     }
     outfile_discard(&list);
     outfile_discard(&models);
-    free(list_path);
-    free(models_path);
     return st;
 }
 

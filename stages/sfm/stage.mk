@@ -1,7 +1,6 @@
 # sfm: camera poses by COLMAP, or a model that is already there.
 FOLLOWS.sfm := import_photos hdr_merge
 READS.sfm := photos or hdr/*.jpg (runs COLMAP), or a model that is already there
-WRITES.sfm := sfm/0, 1, ..., models.txt
 SHARED.sfm := yes
 VARIABLES.sfm := SFM
 HELP.resfm := run COLMAP again, after photos were changed

@@ -152,7 +152,7 @@ enum status triangulate(struct sfm_model *m, const struct sfm_folder *f, const s
         st = find_points(&points, &job, known, made, err);
     }
     if (!st && points) st = colmap_run(&job, 4, converter, 0, err);
-    if (!st && points) st = sfm_model_read_text(&found, text, err);
+    if (!st && points) st = sfm_model_read_text(&found, text, NULL, err);
     if (!st && points) st = colmap_name_images(&found, in->list, err);
     if (!st) st = colmap_keep_logs(&job, err);
     if (!st && found.point_count) {

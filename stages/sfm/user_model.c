@@ -85,7 +85,7 @@ static enum status read_without_points(struct sfm_model *m, const struct sfm_fol
     if (!st) st = outfile_commit(&empty, err);
     if (!st) st = copy_file(folder, copy, "cameras.txt", err);
     if (!st) st = copy_file(folder, copy, "images.txt", err);
-    if (!st) st = sfm_model_read_text(m, copy, err);
+    if (!st) st = sfm_model_read_text(m, copy, NULL, err);
     outfile_discard(&empty);
     free(copy);
     free(points);
@@ -96,7 +96,7 @@ static enum status add_text(struct sfm_folder *f, const char *folder, const stru
                             const struct provenance *prov, struct err *err)
 {
     struct sfm_model m = {0};
-    enum status st = has_file(folder, "points3D.txt") ? sfm_model_read_text(&m, folder, err)
+    enum status st = has_file(folder, "points3D.txt") ? sfm_model_read_text(&m, folder, NULL, err)
                                                       : read_without_points(&m, f, folder, err);
     if (!st) log_note("model %d: %d images, %d points", f->models, m.image_count, m.point_count);
     if (!st && !m.point_count) st = triangulate(&m, f, in, err);

@@ -8,6 +8,7 @@
 #include "common/base/log.h"
 #include "common/base/textfile.h"
 #include "common/capture/photo_match.h"
+#include "common/product/product.h"
 #include "stages/sfm_import/name_lines.h"
 
 static int images_of_photos(const struct sfm_model *m, const struct photo_list *photos)
@@ -17,18 +18,8 @@ static int images_of_photos(const struct sfm_model *m, const struct photo_list *
     return n;
 }
 
-/* The first line of models.txt. */
-static enum status read_version(struct textfile *t, int64_t *version, struct err *err)
-{
-    char *word = NULL;
-    if (!textfile_next(t)) return textfile_error(t, err, NULL, "\"remodel-sfm 1\"");
-    if (textfile_word(t, "\"remodel-sfm\"", &word, err)) return err->status;
-    if (strcmp(word, "remodel-sfm")) return textfile_error(t, err, word, "\"remodel-sfm\"");
-    return textfile_int(t, "version", 1, 2, version, err) || textfile_end(t, err) ? err->status : ST_OK;
-}
-
 /* Version 1 does not say what was given; then nothing is taken for found. */
-static enum status read_given(enum given_cameras *given, struct textfile *t, int64_t version, struct err *err)
+static enum status read_given(enum given_cameras *given, struct textfile *t, int version, struct err *err)
 {
     static const char *const words[] = {[GIVEN_NOTHING] = "nothing", [GIVEN_LENS] = "lens", [GIVEN_MODEL] = "model"};
     char *word = NULL;
@@ -45,34 +36,38 @@ static enum status read_given(enum given_cameras *given, struct textfile *t, int
 
 /* A line "FOLDER FORMAT [GIVEN]" of models.txt, and the model. *folder points into the text file. */
 static enum status read_model(struct sfm_model *m, char **folder, enum given_cameras *given, struct textfile *t,
-                              int64_t version, const char *sfm, struct err *err)
+                              int version, const char *sfm, struct provenance *prov, struct err *err)
 {
     char path[FILE_PATH], *format = NULL;
     if (textfile_word(t, "folder of a model", folder, err) || textfile_word(t, "its format", &format, err) ||
         read_given(given, t, version, err) || textfile_end(t, err))
         return err->status;
     if (strcmp(format, "colmap")) return textfile_error(t, err, format, "\"colmap\"");
-    return file_path(path, sfm, *folder, "", err) || sfm_model_read_text(m, path, err) ? err->status : ST_OK;
+    return file_path(path, sfm, *folder, "", err) || sfm_model_read_text(m, path, prov, err) ? err->status : ST_OK;
 }
 
 enum status import_choose(struct sfm_model *model, char **name, enum given_cameras *given, const char *sfm,
-                          const struct photo_list *photos, struct err *err)
+                          const struct photo_list *photos, struct provenance *prov, struct err *err)
 {
     struct textfile t = {0};
-    int64_t version = 0;
+    struct provenance chosen = {0};
+    int version = 0;
     char path[FILE_PATH];
     int count = 0, best = -1;
     *model = (struct sfm_model){0};
     *name = NULL;
-    enum status st = file_path(path, sfm, "models.txt", "", err);
-    if (!st) st = textfile_open(&t, path, err);
-    if (!st) st = read_version(&t, &version, err);
+    enum status st = product_path_in(path, sfm, PRODUCT_SFM_MODELS, NULL, err);
+    if (!st) st = product_open(&t, &version, PRODUCT_SFM_MODELS, path, NULL, err);
     while (!st && textfile_next(&t)) {
         struct sfm_model m = {0};
+        struct provenance files = {0};
         char *folder = NULL;
         enum given_cameras what = GIVEN_MODEL;
-        st = read_model(&m, &folder, &what, &t, version, sfm, err);
-        if (st) break;
+        st = read_model(&m, &folder, &what, &t, version, sfm, &files, err);
+        if (st) {
+            provenance_release(&files);
+            break;
+        }
         int n = images_of_photos(&m, photos);
         log_note("model %s: %d images, %d of them photos of this scene, %d points", folder, m.image_count, n,
                  m.point_count);
@@ -80,17 +75,22 @@ enum status import_choose(struct sfm_model *model, char **name, enum given_camer
         if (n > best || (n == best && m.point_count > model->point_count)) {
             sfm_model_release(model);
             free(*name);
+            provenance_release(&chosen);
             *model = m;
+            chosen = files;
             *given = what;
             best = n;
             if (!(*name = strdup(folder))) st = err_nomem(err, "a name", strlen(folder) + 1);
         } else {
             sfm_model_release(&m);
+            provenance_release(&files);
         }
     }
     if (!st && !count) st = textfile_error(&t, err, NULL, "a line for each model");
     if (!st && count > 1) log_note("model %s is the largest of %d; only this one is used", *name, count);
     textfile_release(&t);
+    if (!st && prov) st = provenance_add_all(prov, &chosen, err);
+    provenance_release(&chosen);
     if (st) {
         sfm_model_release(model);
         free(*name);
@@ -106,9 +106,9 @@ enum status import_check_photos(const char *sfm, const struct photo_list *photos
     struct name_lines added = {.heading = "new since structure from motion ran"};
     bool any = false;
     char path[FILE_PATH], *seen = calloc((size_t)photos->count + 1, 1);
-    enum status st =
-        seen ? file_path(path, sfm, "photos.txt", "", err) : err_nomem(err, "marks", (size_t)photos->count);
-    if (!st) st = textfile_open(&t, path, err);
+    enum status st = seen ? product_path_in(path, sfm, PRODUCT_SFM_PHOTOS, NULL, err)
+                          : err_nomem(err, "marks", (size_t)photos->count);
+    if (!st) st = product_open(&t, NULL, PRODUCT_SFM_PHOTOS, path, NULL, err);
     while (!st && textfile_next(&t)) {
         char *id = NULL, *hash = NULL;
         st = textfile_word(&t, "id of a photo", &id, err);

@@ -12,7 +12,7 @@ enum given_cameras { GIVEN_NOTHING, GIVEN_LENS, GIVEN_MODEL };
  * most points. Logs all models. *name is its folder inside SFM; the caller frees it. *given: what the user gave of
  * it. */
 enum status import_choose(struct sfm_model *model, char **name, enum given_cameras *given, const char *sfm,
-                          const struct photo_list *photos, struct err *err);
+                          const struct photo_list *photos, struct provenance *prov, struct err *err);
 
 /* Warns about photos that have changed, or are new, since SFM/photos.txt was written. */
 enum status import_check_photos(const char *sfm, const struct photo_list *photos, struct err *err);

@@ -13,6 +13,7 @@
 #include "common/base/file_path.h"
 #include "common/base/log.h"
 #include "common/base/outfile.h"
+#include "common/product/product.h"
 #include "stages/sfm_import/importer.h"
 
 #define PARAM_STRUCT struct sfm_import_params
@@ -273,8 +274,8 @@ enum status imported_write(const struct imported *in, const char *folder, const 
                            struct err *err)
 {
     char lenses[FILE_PATH], views[FILE_PATH];
-    enum status st = file_path(lenses, folder, "lenses.txt", "", err);
-    if (!st) st = file_path(views, folder, "views.mk", "", err);
+    enum status st = product_path_in(lenses, folder, PRODUCT_LENSES, NULL, err);
+    if (!st) st = product_path_in(views, folder, PRODUCT_VIEWS_MK, NULL, err);
     if (!st) st = sfm_model_write_text(&in->model, folder, prov, err);
     if (!st) st = lens_list_write(&in->lenses, lenses, prov, err);
     if (!st) st = write_views_mk(in, views, err);

@@ -21,6 +21,7 @@
 #include "common/base/parallel.h"
 #include "common/base/progress.h"
 #include "common/capture/photo_match.h"
+#include "common/product/product.h"
 
 #define CHOICE_TOLERANCE 1e-5 /* of the fits that are compared */
 enum { CHOICE_OBSERVATIONS = 12000, CHOICE_OF_IMAGE = 300, COVARIANCE_OBSERVATIONS = 40000, MIN_OBSERVATIONS = 30 };
@@ -322,10 +323,8 @@ enum status refinement_write(const struct refinement *r, const struct sfm_model 
                              const char *path, const struct provenance *prov, struct err *err)
 {
     struct outfile f = {0};
-    enum status st = outfile_open(&f, path, err);
+    enum status st = product_begin(&f, PRODUCT_LENS_FORMS, path, prov, err);
     if (!st) {
-        provenance_print(prov, f.fp);
-        fputs("remodel-lens-forms 1\n", f.fp);
         print_forms(f.fp, r);
         if (r->shifts) print_shifts(f.fp, r, m, photos);
         st = outfile_commit(&f, err);

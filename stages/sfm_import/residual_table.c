@@ -6,6 +6,7 @@
 
 #include "common/base/outfile.h"
 #include "common/base/sort.h"
+#include "common/product/product.h"
 
 /* Statistics of the residuals of each key in [0, rows). */
 static enum status fill_rows(struct residual_row *row, int rows, const struct lens_residual *residuals, const int *key,
@@ -70,10 +71,9 @@ enum status residual_table_write(const struct residual_table *t, const struct ph
                                  const struct provenance *prov, struct err *err)
 {
     struct outfile f = {0};
-    enum status st = outfile_open(&f, path, err);
+    enum status st = product_begin(&f, PRODUCT_RESIDUALS, path, prov, err);
     if (!st) {
-        provenance_print(prov, f.fp);
-        fputs("remodel-residuals 1\n# photo ID observations median_px p90_px radial_px\n", f.fp);
+        fputs("# photo ID observations median_px p90_px radial_px\n", f.fp);
         for (int i = 0; i < t->photo_count; i++) {
             if (!t->photos[i].observations) continue;
             fprintf(f.fp, "photo %s", photos->photos[i].id);

@@ -13,23 +13,11 @@
 #include <string.h>
 
 #include "common/base/cli.h"
-#include "common/base/file_path.h"
 #include "common/base/outfile.h"
+#include "common/product/product.h"
 #include "stages/sfm_import/choose_model.h"
 #include "stages/sfm_import/holdout.h"
 #include "stages/sfm_import/refine_cameras.h"
-
-static enum status add_inputs(struct provenance *prov, const char *sfm, const char *model, struct err *err)
-{
-    static const char *const files[] = {"cameras.txt", "images.txt", "points3D.txt"};
-    char file[FILE_PATH];
-    enum status st = ST_OK;
-    for (int i = 0; !st && i < 3; i++) {
-        st = file_path(file, model, files[i], "", err);
-        if (!st) st = provenance_add_in(prov, "sfm", sfm, file, "", NULL, err);
-    }
-    return st;
-}
 
 struct holdout { /* views to hold out; every 0 and names NULL: none */
     int every;
@@ -64,8 +52,8 @@ static enum status write_reports(const struct imported *in, const struct refinem
 {
     char residuals[FILE_PATH], forms[FILE_PATH];
     enum status st = make_folders(out, err);
-    if (!st) st = file_path(residuals, out, "residuals.txt", "", err);
-    if (!st) st = file_path(forms, out, "lens_forms.txt", "", err);
+    if (!st) st = product_path_in(residuals, out, PRODUCT_RESIDUALS, NULL, err);
+    if (!st) st = product_path_in(forms, out, PRODUCT_LENS_FORMS, NULL, err);
     if (!st) st = residual_table_write(&in->residuals, photos, residuals, prov, err);
     if (!st) st = refinement_write(refinement, model, photos, forms, prov, err);
     return st;
@@ -81,9 +69,8 @@ static enum status run(const char *sfm, const char *records, const char *out, co
     enum given_cameras given = GIVEN_MODEL;
     char *name = NULL;
     enum status st = photo_list_read(&photos, records, err);
-    if (!st) st = import_choose(&model, &name, &given, sfm, &photos, err);
+    if (!st) st = import_choose(&model, &name, &given, sfm, &photos, prov, err);
     if (!st) st = import_check_photos(sfm, &photos, err);
-    if (!st) st = add_inputs(prov, sfm, name, err);
     if (!st) st = refine_cameras(&refinement, &model, given, params, err);
     if (!st && import_model(&imported, &model, &photos, params, err)) st = err_context(err, "%s/%s", sfm, name);
     if (!st) st = write_reports(&imported, &refinement, &model, &photos, out, prov, err);

@@ -1,7 +1,6 @@
 # sfm_import: the SfM model as rectified pinhole views.
 FOLLOWS.sfm_import := sfm
 READS.sfm_import := sfm/, photos/
-WRITES.sfm_import := views/cameras.txt, images.txt, points3D.txt, lenses.txt, residuals.txt, lens_forms.txt, views.mk
 SETTINGS.sfm_import := HOLDOUT HOLDOUT_VIEWS
 HELP.sfm := + camera poses: COLMAP, or the model in SFM
 

@@ -1,7 +1,6 @@
 # simulate: photographs of a described scene, and what is true of them.
 FOLLOWS.simulate :=
 READS.simulate := a described scene (scenes/NAME/scene.txt, cameras.txt; docs/scenes.md)
-WRITES.simulate := simulated/photos, lri, truth
 SETTINGS.simulate := EDITS EDIT_VIEWS IRRADIANCE_VIEWS
 SHARED.simulate := yes
 LIBS.simulate := -lembree3

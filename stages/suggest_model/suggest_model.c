@@ -10,12 +10,11 @@
 #include <string.h>
 
 #include "common/base/cli.h"
-#include "common/base/file_path.h"
 #include "common/base/log.h"
-#include "common/base/outfile.h"
 #include "common/base/parallel.h"
 #include "common/capture/view_image.h"
-#include "common/model/model_axes.h"
+#include "common/model/scene_inputs.h"
+#include "common/product/product.h"
 #include "stages/suggest_model/windows.h"
 
 #define PARAM_STRUCT struct suggest_params
@@ -97,7 +96,7 @@ static enum status write_suggestion(const struct suggestion *s, const struct mod
     struct outfile out = {0};
     enum status st = outfile_open(&out, path, err);
     if (!st) {
-        fputs("remodel-script 1\n", out.fp);
+        fprintf(out.fp, "%s\n", products[PRODUCT_SUGGESTED_MODEL].head);
         provenance_print(prov, out.fp);
         write_script(out.fp, s, axes);
         st = outfile_commit(&out, err);
@@ -138,11 +137,9 @@ static enum status add_view(struct walls *walls, const struct files *f, const st
     struct image picture = {0};
     struct layered_depth depth = {0};
     char path[FILE_PATH];
-    enum status st = provenance_add_in(prov, "views", f->views, view->name, ".exr", path, err);
-    if (!st) st = provenance_add_in(prov, "depth", f->depth, view->name, ".txt", path, err);
-    if (!st) st = provenance_add_in(prov, "depth", f->depth, view->name, ".exr", path, err);
-    if (!st) st = view_image_read(&picture, f->views, view, err);
-    if (!st) st = layered_depth_read_interior(&depth, path, err);
+    enum status st = product_path_in(path, f->depth, PRODUCT_DEPTH, &(struct product_key){.view = view->name}, err);
+    if (!st) st = view_image_read(&picture, f->views, view, prov, err);
+    if (!st) st = layered_depth_read_interior(&depth, path, prov, err);
     if (!st && (depth.width != view->width || depth.height != view->height))
         st = err_set(err, ST_DATA, "%s has %d x %d pixels, but its camera %d x %d; make the depth again.", path,
                      depth.width, depth.height, view->width, view->height);
@@ -185,27 +182,24 @@ static enum status add_windows(struct suggestion *s, const struct files *f, cons
 static enum status suggest(const struct files *f, const struct suggest_params *params, struct provenance *prov,
                            struct err *err)
 {
-    struct camera_set set = {0};
+    const struct scene_files files = {.views = f->views, .axes = f->axes};
+    struct scene_inputs in = {0};
     struct point_cloud cloud = {0};
-    struct model_axes axes = {0};
     struct suggestion s = {0};
-    enum status st = camera_set_read(&set, f->views, err);
-    if (!st) st = camera_set_add_inputs(prov, f->views, err);
-    if (!st && !set.view_count) st = err_set(err, ST_DATA, "%s contains no views; run sfm_import again.", f->views);
-    if (!st) st = model_axes_read(&axes, f->axes, err);
-    if (!st) st = provenance_add_file(prov, "model/axes.txt", f->axes, err);
-    if (!st) st = point_cloud_read(&cloud, f->points, err);
-    if (!st) st = provenance_add_file(prov, "points/points.ply", f->points, err);
-    for (int v = 0; !st && v < set.view_count; v++) set.views[v] = model_from_world_view(&axes, &set.views[v]);
+    enum status st = scene_inputs_read(&in, SCENE_POINTS | SCENE_AXES | SCENE_MODEL_VIEWS, &files, prov, err);
+    const struct camera_set *set = &in.set;
+    const struct model_axes *axes = &in.axes;
+    if (!st && !set->view_count) st = err_set(err, ST_DATA, "%s contains no views; run sfm_import again.", f->views);
+    if (!st) st = point_cloud_read(&cloud, f->points, prov, err);
     for (size_t i = 0; !st && i < cloud.count; i++) {
         struct cloud_point *p = &cloud.points[i];
-        p->position = model_from_world_point(&axes, p->position);
-        cloud_set_normal(p, model_from_world_direction(&axes, cloud_normal(p)));
+        p->position = model_from_world_point(axes, p->position);
+        cloud_set_normal(p, model_from_world_direction(axes, cloud_normal(p)));
     }
-    if (!st && suggest_plan(&s, &cloud, set.views, set.view_count, axes.ceiling, params, err))
+    if (!st && suggest_plan(&s, &cloud, set->views, set->view_count, axes->ceiling, params, err))
         st = err->status == ST_DATA ? err_context(err, "%s", f->points) : err->status;
-    if (!st) st = add_windows(&s, f, &axes, &set, &cloud, params, prov, err);
-    if (!st) st = write_suggestion(&s, &axes, f->out, prov, err);
+    if (!st) st = add_windows(&s, f, axes, set, &cloud, params, prov, err);
+    if (!st) st = write_suggestion(&s, axes, f->out, prov, err);
     if (!st) {
         int rooms = 0;
         for (int i = 0; i < s.room_count; i++) rooms += s.rooms[i].free;
@@ -216,7 +210,7 @@ static enum status suggest(const struct files *f, const struct suggest_params *p
     }
     suggestion_release(&s);
     point_cloud_release(&cloud);
-    camera_set_release(&set);
+    scene_inputs_release(&in);
     return st;
 }
 

@@ -1,6 +1,5 @@
 # trace_ids: the faces of the solid model in each view, where furniture hides them, and what edits reveal.
 FOLLOWS.trace_ids := build_model rectify segment_depth
 READS.trace_ids := the model, its axes and edits, cameras, one view's depth
-WRITES.trace_ids := ids/VIEW.exr, VIEW.txt; reveal/VIEW.exr, VIEW.txt; ids/index.txt
 LIBS.trace_ids := -lembree3
 HELP.ids := + faces of the solid model in each view, where furniture hides them, and what edits reveal

@@ -22,10 +22,9 @@
 #include <string.h>
 
 #include "common/base/cli.h"
-#include "common/base/file_path.h"
 #include "common/base/log.h"
-#include "common/base/outfile.h"
-#include "common/base/textfile.h"
+#include "common/model/scene_inputs.h"
+#include "common/product/product.h"
 #include "stages/trace_ids/estimate.h"
 #include "stages/trace_ids/reveal.h"
 #include "stages/trace_ids/view_ranks.h"
@@ -41,18 +40,14 @@ struct job {
     struct trace_params params;
     struct provenance prov;
     struct model_rays rays, *edited; /* edited: a model for each of edits; owned */
-    struct model_axes frame;
-    struct camera_set set;
+    struct scene_inputs in;
 };
 
 static enum status read_inputs(struct job *j, struct err *err)
 {
-    if (provenance_add_file(&j->prov, "model/model.txt", j->model, err) ||
-        model_rays_read(&j->rays, j->model, MODEL_WITH_GLASS, err) ||
-        provenance_add_file(&j->prov, "model/axes.txt", j->axes, err) || model_axes_read(&j->frame, j->axes, err) ||
-        camera_set_add_camera_inputs(&j->prov, j->views, err) || camera_set_read_cameras(&j->set, j->views, err))
-        return err->status;
-    return ST_OK;
+    const struct scene_files files = {.views = j->views, .axes = j->axes};
+    if (model_rays_read(&j->rays, j->model, MODEL_WITH_GLASS, &j->prov, err)) return err->status;
+    return scene_inputs_read(&j->in, SCENE_CAMERAS | SCENE_AXES, &files, &j->prov, err);
 }
 
 /* The name of an edit, from .../E/model.txt. */
@@ -68,12 +63,7 @@ static enum status read_edits(struct job *j, struct err *err)
     const size_t n = (size_t)j->edits.count;
     if (!(j->edited = calloc(n + 1, sizeof *j->edited))) return err_nomem(err, "models", n * sizeof *j->edited);
     for (size_t i = 0; i < n; i++) {
-        char name[FILE_PATH], input[FILE_PATH + 32];
-        edit_name(name, j->edits.items[i]);
-        snprintf(input, sizeof input, "remodel/%s/model.txt", name);
-        if (provenance_add_file(&j->prov, input, j->edits.items[i], err) ||
-            model_rays_read(&j->edited[i], j->edits.items[i], MODEL_WITH_GLASS, err))
-            return err->status;
+        if (model_rays_read(&j->edited[i], j->edits.items[i], MODEL_WITH_GLASS, &j->prov, err)) return err->status;
     }
     return ST_OK;
 }
@@ -82,24 +72,23 @@ static void release_inputs(struct job *j)
 {
     for (int i = 0; j->edited && i < j->edits.count; i++) model_rays_release(&j->edited[i]);
     free(j->edited);
-    camera_set_release(&j->set);
+    scene_inputs_release(&j->in);
     model_rays_release(&j->rays);
 }
 
 static enum status find_view(const struct view **view, const struct job *j, const char *name, struct err *err)
 {
-    const int at = camera_set_find(&j->set, name);
+    const int at = camera_set_find(&j->in.set, name);
     if (at < 0) return err_set(err, ST_DATA, "%s/images.txt has no view %s.", j->views, name);
-    *view = &j->set.views[at];
+    *view = &j->in.set.views[at];
     return ST_OK;
 }
 
 static enum status read_depth(struct layered_depth *depth, struct job *j, const struct view *view, struct err *err)
 {
     char path[FILE_PATH];
-    if (provenance_add_in(&j->prov, "depth", j->depth, view->name, ".txt", path, err) ||
-        provenance_add_in(&j->prov, "depth", j->depth, view->name, ".exr", path, err) ||
-        layered_depth_read(depth, path, err))
+    if (product_path_in(path, j->depth, PRODUCT_DEPTH, &(struct product_key){.view = view->name}, err) ||
+        layered_depth_read(depth, path, &j->prov, err))
         return err->status;
     if (depth->width == view->width && depth->height == view->height) return ST_OK;
     return err_set(err, ST_DATA, "%s is %d x %d px, but the view is %d x %d px; make the depth again.", path,
@@ -130,14 +119,14 @@ static enum status trace_view(void *ctx, int i, struct err *err)
     enum status st = record_path(text, out, err);
     if (!st) st = find_view(&view, j, j->view.items[i], err);
     if (!st) st = read_depth(&depth, j, view, err);
-    if (!st) st = view_trace(&trace, &j->rays, &j->frame, view, err);
+    if (!st) st = view_trace(&trace, &j->rays, &j->in.axes, view, err);
     if (!st && trace.in_solid)
         log_warn("the camera of view %s is inside a solid of the model, or on its surface: the view shows no face.",
                  view->name);
     if (!st) st = view_ids_init(&ids, view->width, view->height, err);
     if (!st) view_trace_ids(&ids, &trace);
     if (!st) st = find_jumps(&ids, &trace, &depth, &j->params, err);
-    if (!st) st = find_clutter(&ids, &trace, &depth, j->frame.scale, &j->params, err);
+    if (!st) st = find_clutter(&ids, &trace, &depth, j->in.axes.scale, &j->params, err);
     if (!st) st = view_record_make(&record, &ids, &trace, &j->params, err);
     if (!st) st = view_record_write(&record, text, &j->prov, err);
     if (!st) st = view_ids_write(&ids, view, out, &j->prov, err);
@@ -157,7 +146,7 @@ static enum status add_edit(struct reveal *r, FILE *record, const struct job *j,
     char name[FILE_PATH], quoted[FILE_PATH];
     int64_t pixels = 0;
     edit_name(name, j->edits.items[edit]);
-    enum status st = view_trace(&trace, &j->edited[edit], &j->frame, view, err);
+    enum status st = view_trace(&trace, &j->edited[edit], &j->in.axes, view, err);
     if (!st) st = reveal_add(r, &trace, &pixels, err);
     if (!st) st = textfile_quote(name, quoted, sizeof quoted, err);
     if (!st) fprintf(record, "edit %s %" PRId64 "\n", quoted, pixels);
@@ -182,10 +171,9 @@ static enum status write_reveal(const struct reveal *r, const struct job *j, con
 static enum status write_reveal_record(const struct job *j, const char *path, const char *lines, struct err *err)
 {
     struct outfile f = {0};
-    enum status st = outfile_open(&f, path, err);
+    enum status st = product_begin(&f, PRODUCT_REVEAL_LIST, path, &j->prov, err);
     if (!st) {
-        provenance_print(&j->prov, f.fp);
-        fprintf(f.fp, "remodel-reveal 1\n%s", lines);
+        fputs(lines, f.fp);
         st = outfile_commit(&f, err);
     }
     outfile_discard(&f);
@@ -203,7 +191,7 @@ static enum status reveal_view(void *ctx, int i, struct err *err)
     FILE *record = open_memstream(&lines, &size);
     enum status st = record ? record_path(text, j->out.items[i], err) : err_nomem(err, "a record", 1);
     if (!st) st = find_view(&view, j, j->view.items[i], err);
-    if (!st) st = view_trace(&trace, &j->rays, &j->frame, view, err);
+    if (!st) st = view_trace(&trace, &j->rays, &j->in.axes, view, err);
     for (int e = 0; !st && e < j->edits.count; e++) st = add_edit(&reveal, record, j, view, e, err);
     if (record) fclose(record);
     if (!st) st = write_reveal(&reveal, j, view, j->out.items[i], err);
@@ -218,12 +206,12 @@ static enum status reveal_view(void *ctx, int i, struct err *err)
 static void warn_if_outside(const struct job *j)
 {
     int within = 0;
-    for (int i = 0; i < j->set.view_count; i++)
-        within += model_rays_near(&j->rays, model_from_world_view(&j->frame, &j->set.views[i]).center);
-    if (!within && j->set.view_count)
+    for (int i = 0; i < j->in.set.view_count; i++)
+        within += model_rays_near(&j->rays, model_from_world_view(&j->in.axes, &j->in.set.views[i]).center);
+    if (!within && j->in.set.view_count)
         log_warn("all %d cameras are outside the model, so no view shows its rooms from within; check axes.txt, the "
                  "scale and the script of the model.",
-                 j->set.view_count);
+                 j->in.set.view_count);
 }
 
 static enum status index_faces(struct job *j, struct err *err)
@@ -232,17 +220,18 @@ static enum status index_faces(struct job *j, struct err *err)
     int empty = 0;
     enum status st = ST_OK;
     warn_if_outside(j);
-    for (int i = 0; !st && i < j->set.view_count; i++) {
+    for (int i = 0; !st && i < j->in.set.view_count; i++) {
         struct view_record record = {0};
         char path[FILE_PATH];
-        st = file_path(path, j->index, j->set.views[i].name, ".txt", err);
-        if (!st) st = view_record_read(&record, path, err);
-        if (!st) st = view_ranks_add(&ranks, j->set.views[i].name, &record, err);
+        const struct product_key key = {.view = j->in.set.views[i].name};
+        st = product_path_in(path, j->index, PRODUCT_VIEW_FACES, &key, err);
+        if (!st) st = view_record_read(&record, path, NULL, err);
+        if (!st) st = view_ranks_add(&ranks, j->in.set.views[i].name, &record, err);
         empty += !st && !record.count;
         view_record_release(&record);
     }
     if (!st) st = view_ranks_write(&ranks, j->out.items[0], &j->prov, err);
-    if (!st && empty) log_note("%d of %d views show no face of the model", empty, j->set.view_count);
+    if (!st && empty) log_note("%d of %d views show no face of the model", empty, j->in.set.view_count);
     view_ranks_release(&ranks);
     return st;
 }
@@ -264,8 +253,8 @@ static enum status check_usage(const struct job *j, struct err *err)
 
 static enum status estimate(struct job *j, struct err *err)
 {
-    enum status st = camera_set_read_cameras(&j->set, j->views, err);
-    return st ? st : estimate_print(stdout, j->estimate, &j->set, j->views, j->edits.count, err);
+    enum status st = camera_set_read_cameras(&j->in.set, j->views, NULL, err);
+    return st ? st : estimate_print(stdout, j->estimate, &j->in.set, j->views, j->edits.count, err);
 }
 
 static enum status run(struct job *j, struct err *err)

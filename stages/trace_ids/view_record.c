@@ -7,9 +7,8 @@
 #include <stdlib.h>
 
 #include "common/base/array.h"
-#include "common/base/outfile.h"
 #include "common/base/sort.h"
-#include "common/base/textfile.h"
+#include "common/product/product.h"
 
 /* The face that the photo shows at a pixel; 0: none. */
 static uint32_t shown(const struct view_ids *v, int pixel) { return v->jump[pixel] > 0 ? v->id[pixel] : 0; }
@@ -93,10 +92,8 @@ enum status view_record_write(const struct view_record *r, const char *path, con
                               struct err *err)
 {
     struct outfile f = {0};
-    enum status st = outfile_open(&f, path, err);
+    enum status st = product_begin(&f, PRODUCT_VIEW_FACES, path, prov, err);
     if (!st) {
-        if (prov) provenance_print(prov, f.fp);
-        fputs("remodel-view-faces 1\n", f.fp);
         for (int i = 0; i < r->count; i++) {
             const struct seen_face *s = &r->faces[i];
             fprintf(f.fp, "face %d %d %d %.9g %.9g\n", s->id, s->pixels, s->clean, s->distance, s->cosine);
@@ -123,15 +120,11 @@ static enum status read_face(struct seen_face *f, struct textfile *t, int last, 
     return ST_OK;
 }
 
-enum status view_record_read(struct view_record *r, const char *path, struct err *err)
+enum status view_record_read(struct view_record *r, const char *path, struct provenance *prov, struct err *err)
 {
     struct textfile t = {0};
-    int64_t version = 0;
     *r = (struct view_record){0};
-    enum status st = textfile_open(&t, path, err);
-    if (!st) st = textfile_expect_line(&t, "remodel-view-faces", err);
-    if (!st) st = textfile_int(&t, "version", 1, 1, &version, err);
-    if (!st) st = textfile_end(&t, err);
+    enum status st = product_open(&t, NULL, PRODUCT_VIEW_FACES, path, prov, err);
     while (!st && textfile_next(&t)) {
         st = array_append(&r->faces, (size_t)r->count, sizeof *r->faces, "faces", err);
         if (st) break;

@@ -26,6 +26,6 @@ void view_record_release(struct view_record *r);
 enum status view_record_write(const struct view_record *r, const char *path, const struct provenance *prov,
                               struct err *err);
 /* ST_DATA with file and line: ids that do not ascend, more clean pixels than pixels, numbers out of range. */
-enum status view_record_read(struct view_record *r, const char *path, struct err *err);
+enum status view_record_read(struct view_record *r, const char *path, struct provenance *prov, struct err *err);
 
 #endif

@@ -194,7 +194,7 @@ static enum status read_sources(uint32_t **sources, const struct atlas *a, const
     enum status st = ST_OK;
     for (int i = 0; !st && i < a->page_count; i++) {
         struct atlas_page page = {0};
-        st = atlas_page_read(&page, a, i, folder, err);
+        st = atlas_page_read(&page, a, i, folder, NULL, err);
         sources[i] = page.source;
         page.source = NULL;
         atlas_page_release(&page);
@@ -365,7 +365,7 @@ static void light_tiles(void *ctx, size_t begin, size_t end, int thread)
 static enum status base_page(struct atlas_page *page, const struct edited_atlas *a, const struct light_change *c,
                              int number, const char *folder, struct err *err)
 {
-    if (number < a->first_page) return atlas_page_read(page, &c->before.atlas.atlas, number, folder, err);
+    if (number < a->first_page) return atlas_page_read(page, &c->before.atlas.atlas, number, folder, NULL, err);
     const struct atlas_page *from = &a->pages[number - a->first_page];
     const size_t texels = (size_t)from->width * (size_t)from->height;
     if (atlas_page_init(page, from->width, from->height, err)) return err->status;

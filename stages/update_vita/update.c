@@ -12,10 +12,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/base/file_path.h"
 #include "common/base/log.h"
-#include "common/base/outfile.h"
 #include "common/base/progress.h"
+#include "common/product/product.h"
 #include "common/relight/light_quotient.h"
 #include "stages/update_vita/edited_atlas.h"
 #include "stages/update_vita/rounds.h"
@@ -142,8 +141,9 @@ static enum status write_rounds(const struct work *w, struct err *err)
     const struct rounds *r = &w->rounds;
     char path[FILE_PATH];
     struct outfile f = {0};
-    if (file_path(path, w->job->out, "rounds.txt", "", err) || outfile_open(&f, path, err)) return err->status;
-    fputs("remodel-light-rounds 1\n", f.fp);
+    if (product_path_in(path, w->job->out, PRODUCT_LIGHT_ROUNDS, NULL, err) || outfile_open(&f, path, err))
+        return err->status;
+    fprintf(f.fp, "%s\n", products[PRODUCT_LIGHT_ROUNDS].head);
     provenance_print(&w->job->prov, f.fp);
     fprintf(f.fp, "samples %d\nbounded %d\nsettled %s\n", w->transport.count, r->bounded, r->settled ? "yes" : "no");
     for (int i = 0; i < r->count; i++) {
@@ -161,7 +161,7 @@ static enum status write_objects(struct work *w, struct err *err)
     char path[FILE_PATH];
     for (int i = 0; i < o->element_count; i++)
         o->elements[i].irradiance = w->rounds.values[2 * (w->nets.sample_count + i) + 1];
-    if (file_path(path, w->job->out, "objects.txt", "", err)) return err->status;
+    if (product_path_in(path, w->job->out, PRODUCT_OBJECT_LIGHT, NULL, err)) return err->status;
     return light_objects_write_light(o, path, &w->job->prov, err);
 }
 

@@ -1,4 +1,3 @@
 # verify: whether products are whole, for a cluster's jobs.
 FOLLOWS.verify = $(filter-out verify,$(STAGE_FOLDERS))
 READS.verify := any products
-WRITES.verify := nothing; its exit status says whether they are whole

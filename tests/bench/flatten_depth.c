@@ -68,7 +68,7 @@ int main(int argc, char **argv)
     struct camera_set set = {0};
     struct err err = ERR_INIT;
     enum status st = cli_parse(argc, argv, "flatten_depth", opts, &prov, &err) == CLI_RUN
-                         ? camera_set_read(&set, views, &err)
+                         ? camera_set_read(&set, views, NULL, &err)
                          : ST_USAGE;
 
     for (int i = 0; !st && i < set.view_count; i++) {
@@ -77,7 +77,7 @@ int main(int argc, char **argv)
         if (snprintf(from, sizeof from, "%s/%s.exr", depth, set.views[i].name) >= (int)sizeof from ||
             snprintf(to, sizeof to, "%s/%s.exr", out, set.views[i].name) >= (int)sizeof to)
             st = err_set(&err, ST_IO, "a file name in %s or %s is too long.", depth, out);
-        if (!st) st = layered_depth_read(&d, from, &err);
+        if (!st) st = layered_depth_read(&d, from, NULL, &err);
         if (!st) st = flatten(&d, &err);
         if (!st) st = layered_depth_write(&d, &set.views[i], to, &prov, &err);
         layered_depth_release(&d);

@@ -111,7 +111,7 @@ static enum status run_phase(const struct bench *b, struct work *w, enum phase p
     case WRITE_RADIANCE:
         return bracketed_view_write_radiance(&w->merged, folder, &w->prov, &beyond, err);
     case RECTIFY:
-        st = photo_record_read(&record, folder, w->id, err);
+        st = photo_record_read(&record, folder, w->id, NULL, err);
         if (!st) st = linear_photo_read(&w->linear, &w->quality, radiometry, folder, &record, NULL, &w->prov, err);
         photo_record_release(&record);
         for (int k = 0; !st && k < b->view_count; k++) {

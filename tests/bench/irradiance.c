@@ -163,7 +163,7 @@ static enum status make_model(struct bench *b, struct err *err)
 {
     struct model_axes axes;
     char path[FILE_PATH];
-    if (file_path(path, b->folder, "model/axes.txt", "", err) || model_axes_read(&axes, path, err) ||
+    if (file_path(path, b->folder, "model/axes.txt", "", err) || model_axes_read(&axes, path, NULL, err) ||
         read_field(b, err) || read_points(b, &axes, err))
         return err->status;
     return ST_OK;

@@ -109,7 +109,7 @@ static enum status make(const struct made *m, const struct provenance *prov, str
     if (!st)
         st = write_cameras(m, "cameras", 1, (ACROSS - 1) / 2.0 + 0.4, (m->views - 1) / ACROSS / 2.0 + 0.4, folder, err);
     if (!st) st = write_cameras(m, "views", m->views, 0, 0, folder, err);
-    if (!st) st = camera_set_read(&set, folder, err);
+    if (!st) st = camera_set_read(&set, folder, NULL, err);
     snprintf(depth, sizeof depth, "%.4000s/depth", m->out);
     for (int i = 0; !st && i < set.view_count; i++) {
         struct layered_depth d = {0};

@@ -222,8 +222,8 @@ static enum status run(const struct job *job, struct err *err)
     struct found f = {.best = 0};
     double judged = 0;
 
-    enum status st = camera_set_read(&set, job->views, err);
-    if (!st) st = validity_read(&v, job->validity, err);
+    enum status st = camera_set_read(&set, job->views, NULL, err);
+    if (!st) st = validity_read(&v, job->validity, NULL, err);
     if (!st) st = layer_scene_read(&scene, &set, job->depth, NULL, err);
     const double wall = clock_seconds(), core = clock_cpu_seconds();
     if (!st && job->all) st = best_of_all(&f, &scene, &v, job->anew, &job->params, err);

@@ -77,8 +77,8 @@ static enum status set_cameras(struct bench *b, const struct job *j, struct err 
     char views[FILE_PATH], path[FILE_PATH];
     enum status st = file_path(views, j->folder, "views", "", err);
     if (!st) st = file_path(path, j->folder, "model/axes", ".txt", err);
-    if (!st) st = camera_set_read_cameras(&set, views, err);
-    if (!st) st = model_axes_read(&axes, path, err);
+    if (!st) st = camera_set_read_cameras(&set, views, NULL, err);
+    if (!st) st = model_axes_read(&axes, path, NULL, err);
     if (!st) st = find_view(&from, &set, j->from, &axes, err);
     if (!st) st = find_view(&to, &set, j->to, &axes, err);
     b->cameras = calloc((size_t)j->frames, sizeof *b->cameras);

@@ -189,7 +189,7 @@ static enum status measure_photos(struct bench *b, const struct job *job, struct
         const int nearest = nearest_view(&b->set, b->cameras[i]);
         struct image photo = {0}, copy = {0};
         float *hole = NULL;
-        st = view_image_read(&photo, job->views, &b->set.views[nearest], err);
+        st = view_image_read(&photo, job->views, &b->set.views[nearest], NULL, err);
         const size_t pixels = st ? 0 : (size_t)photo.width * (size_t)photo.height;
         if (!st) st = image_init(&copy, photo.width, photo.height, 4, err);
         if (!st && !(hole = malloc(pixels * sizeof *hole))) st = err_nomem(err, "holes", pixels * sizeof *hole);
@@ -220,8 +220,8 @@ static enum status choose_cameras(struct bench *b, const struct job *job, struct
     enum status st = frame_part_read(&part, NULL, job->scale, err);
 
     if (!st)
-        st = job->path ? camera_path_read(&b->path, job->path, err)
-                       : camera_set_read(&b->set_of_cameras, job->cameras, err);
+        st = job->path ? camera_path_read(&b->path, job->path, NULL, err)
+                       : camera_set_read(&b->set_of_cameras, job->cameras, NULL, err);
     if (st) return st;
     b->count = job->path ? job->frames : b->set_of_cameras.view_count;
     b->cameras = calloc((size_t)b->count + 1, sizeof *b->cameras);
@@ -252,7 +252,7 @@ static enum status run(struct bench *b, const struct job *job, struct err *err)
     if (job->frames < 1 || job->width < 1 || job->height < 1 || job->width > 65536 || job->height > 65536)
         return err_set(err, ST_USAGE, "--frames %d --width %d --height %d: wanted numbers from 1, sizes up to 65536.",
                        job->frames, job->width, job->height);
-    if (camera_set_read(&b->set, job->views, err) || choose_cameras(b, job, err)) return err->status;
+    if (camera_set_read(&b->set, job->views, NULL, err) || choose_cameras(b, job, err)) return err->status;
     if (job->photo) return measure_photos(b, job, err);
     if (layer_scene_read(&b->scene, &b->set, job->depth, NULL, err)) return err->status;
     if (renderer_match_exposures(&b->scene, &job->params, err)) return err->status;

@@ -96,7 +96,7 @@ static enum status read_result(struct result *r, struct camera_set *set, const c
                                struct err *err)
 {
     struct exr_image header = {0};
-    enum status st = camera_set_read(set, views, err);
+    enum status st = camera_set_read(set, views, NULL, err);
     const int left = st ? -1 : camera_set_find(set, "left");
     if (!st && left < 0) st = err_set(err, ST_DATA, "%s/images.txt has no view left.", views);
     if (!st) r->view = set->views[left];
@@ -105,7 +105,7 @@ static enum status read_result(struct result *r, struct camera_set *set, const c
         r->plain = header;
     else if (!st) {
         exr_image_release(&header);
-        st = layered_depth_read(&r->layers, depth, err);
+        st = layered_depth_read(&r->layers, depth, NULL, err);
     }
     const int width = r->plain.width ? r->plain.width : r->layers.width,
               height = r->plain.width ? r->plain.height : r->layers.height;

@@ -46,7 +46,7 @@ struct pair {
 
 static enum status read_pair(struct pair *p, struct camera_set *set, const char *views, struct err *err)
 {
-    enum status st = camera_set_read(set, views, err);
+    enum status st = camera_set_read(set, views, NULL, err);
     for (int side = 0; !st && side < 2; side++) {
         const char *const name = side ? "right" : "left";
         const int idx = camera_set_find(set, name);
@@ -63,7 +63,7 @@ static enum status read_pair(struct pair *p, struct camera_set *set, const char 
         p->rgb[side] = malloc(3 * pixels);
         p->disparity[side] = malloc(pixels * sizeof(float));
         if (!p->rgb[side] || !p->disparity[side]) return err_nomem(err, "a pair", 7 * pixels);
-        st = view_image_read(&im, views, view, err);
+        st = view_image_read(&im, views, view, NULL, err);
         if (!st) image_to_srgb8(&im, p->rgb[side]);
         image_release(&im);
     }

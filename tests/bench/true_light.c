@@ -203,7 +203,7 @@ static void replace_lamp(struct lamp *found, const struct lamp *truth)
 
 static enum status replace_lamps(struct job *j, struct err *err)
 {
-    if (light_list_read(&j->found, j->lights, err)) return err->status;
+    if (light_list_read(&j->found, j->lights, NULL, err)) return err->status;
     for (int i = 0; i < j->found.lamp_count; i++) {
         struct lamp nearest = {0};
         double distance = INFINITY;
@@ -244,7 +244,7 @@ static enum status replace_outdoors(const struct job *j, struct err *err)
     struct outdoors o = {0};
     struct sky sky;
     sky_init(&sky, &j->truth.sky);
-    enum status st = outdoors_read(&o, j->outdoors, err);
+    enum status st = outdoors_read(&o, j->outdoors, NULL, err);
     for (int i = 0; !st && i < o.width * o.height; i++) {
         const struct rgb c = true_pixel(j, &sky, &o, i % o.width, i / o.width);
         o.rgb[3 * i] = (float)c.r, o.rgb[3 * i + 1] = (float)c.g, o.rgb[3 * i + 2] = (float)c.b;
@@ -281,7 +281,7 @@ static enum status run(struct job *j, struct err *err)
 {
     j->unit = atof(j->scale);
     if (!(j->unit > 0)) return err_set(err, ST_USAGE, "--scale %s: must be a number above 0.", j->scale);
-    if (read_truth(&j->truth, j->scene, err) || align(j, err) || model_axes_read(&j->axes, j->axes_path, err) ||
+    if (read_truth(&j->truth, j->scene, err) || align(j, err) || model_axes_read(&j->axes, j->axes_path, NULL, err) ||
         replace_lamps(j, err))
         return err->status;
     if (j->outdoors_out && replace_outdoors(j, err)) return err->status;

@@ -103,8 +103,8 @@ static enum status report_views(const struct pictures *photo, const char *folder
     struct lens_list lenses = {0};
     char path[FILE_PATH];
     enum status st = file_path(path, folder, "lenses.txt", "", err);
-    if (!st) st = camera_set_read(&set, folder, err);
-    if (!st) st = lens_list_read(&lenses, path, err);
+    if (!st) st = camera_set_read(&set, folder, NULL, err);
+    if (!st) st = lens_list_read(&lenses, path, NULL, err);
     for (int l = 0; !st && l < lenses.count; l++) {
         const struct lens *lens = &lenses.lenses[l];
         const int v = camera_set_find(&set, lens->view);

@@ -100,7 +100,7 @@ static void write_again(struct atlas *a)
     struct atlas again;
     struct err err = ERR_INIT;
     if (atlas_write_list(a, folder, NULL, &err)) return; /* a name is too long once it is quoted */
-    if (atlas_read(&again, folder, &err)) abort();
+    if (atlas_read(&again, folder, NULL, &err)) abort();
     if (again.tile_count != a->tile_count || again.page_count != a->page_count || again.view_count != a->view_count ||
         again.source_count != a->source_count || !again.viewpoint != !a->viewpoint)
         abort();
@@ -115,7 +115,7 @@ static void write_page_again(const struct atlas *a, const struct atlas_page *p)
     const size_t texels = (size_t)p->width * (size_t)p->height;
     struct atlas_page again;
     struct err err = ERR_INIT;
-    if (atlas_write_page(p, folder, 0, NULL, &err) || atlas_page_read(&again, a, 0, folder, &err)) abort();
+    if (atlas_write_page(p, folder, 0, NULL, &err) || atlas_page_read(&again, a, 0, folder, NULL, &err)) abort();
     if (memcmp(again.source, p->source, texels * sizeof *p->source)) abort();
     atlas_page_release(&again);
 }
@@ -139,14 +139,14 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         if (separator) write_bytes(picture, separator + 3, size - length - 3);
     }
 
-    enum status st = atlas_read(&a, folder, &err);
+    enum status st = atlas_read(&a, folder, NULL, &err);
     if (st) {
         static const struct atlas empty;
         if (st != err.status || !strstr(err.text, folder) || memcmp(&a, &empty, sizeof empty)) abort();
         return 0;
     }
     check_atlas(&a);
-    st = a.page_count ? atlas_page_read(&page, &a, 0, folder, &err) : ST_DATA;
+    st = a.page_count ? atlas_page_read(&page, &a, 0, folder, NULL, &err) : ST_DATA;
     if (a.page_count && st && (!strstr(err.text, folder) || page.rgb)) abort();
     look_up(&a, st ? NULL : &page);
     if (!st) write_page_again(&a, &page);

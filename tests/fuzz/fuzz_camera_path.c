@@ -69,7 +69,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     }
     for (; part < 4; part++) write_part(part, valid[part], strlen(valid[part]));
 
-    if (camera_path_read(&p, folder, &err)) {
+    if (camera_path_read(&p, folder, NULL, &err)) {
         if (!err.text[0] || p.frames) abort();
         return 0;
     }

@@ -73,13 +73,13 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         write_part(part, data + at, length);
         at += length + (end ? 3 : 0);
     }
-    if (sfm_model_read_text(&m, folder, &err)) {
+    if (sfm_model_read_text(&m, folder, NULL, &err)) {
         if (!err.text[0] || m.images || m.cameras || m.points) abort();
         return 0;
     }
     check(&m);
     if (!sfm_model_write_text(&m, folder, NULL, &err)) {
-        if (sfm_model_read_text(&again, folder, &err)) abort();
+        if (sfm_model_read_text(&again, folder, NULL, &err)) abort();
         if (again.image_count != m.image_count || again.point_count != m.point_count ||
             again.camera_count != m.camera_count)
             abort();

@@ -45,11 +45,11 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     struct err err = ERR_INIT;
 
     fuzz_file(path, data, size);
-    if (effects_read(&e, path, &err)) {
+    if (effects_read(&e, path, NULL, &err)) {
         if (!strstr(err.text, path) || e.layers || e.layer_count) abort();
     } else {
         apply(&e);
-        if (effects_write(&e, path, NULL, &err) || effects_read(&again, path, &err)) abort();
+        if (effects_write(&e, path, NULL, &err) || effects_read(&again, path, NULL, &err)) abort();
         same(&e, &again);
         effects_release(&again);
     }

@@ -14,7 +14,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     struct err err = ERR_INIT;
 
     fuzz_file(path, data, size);
-    if (film_views_read(&v, path, &err)) {
+    if (film_views_read(&v, path, NULL, &err)) {
         if (!strstr(err.text, path) || v.names || v.count || v.all) abort();
     } else {
         if (v.all == (v.count > 0)) abort();

@@ -32,7 +32,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     make_points(points);
     fuzz_file(path, data, size);
     if (indirect_init(&in, &scene, &err) || in.count != 5) abort();
-    if (indirect_read(&in, &scene, &axes, path, &err)) {
+    if (indirect_read(&in, &scene, &axes, path, NULL, &err)) {
         if (!strstr(err.text, path)) abort();
     } else {
         for (int i = 0; i < POINTS; i++)

@@ -27,7 +27,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     struct err err = ERR_INIT;
 
     fuzz_file(path, data, size);
-    if (annotation_list_read(&list, path, &err)) {
+    if (annotation_list_read(&list, path, NULL, &err)) {
         if (!strstr(err.text, path) || list.items || list.path) abort();
         unlink(path);
         return 0;

@@ -93,7 +93,7 @@ static void write_again(const struct layered_depth *d)
     struct err err = ERR_INIT;
     const size_t pixels = (size_t)d->width * (size_t)d->height;
 
-    if (layered_depth_write(d, NULL, picture, NULL, &err) || layered_depth_read(&again, picture, &err)) abort();
+    if (layered_depth_write(d, NULL, picture, NULL, &err) || layered_depth_read(&again, picture, NULL, &err)) abort();
     if (again.width != d->width || again.height != d->height || again.segment_count != d->segment_count) abort();
     for (int i = 0; i < d->segment_count; i++)
         if (memcmp(again.segments[i].plane, d->segments[i].plane, sizeof d->segments[i].plane)) abort();
@@ -124,7 +124,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
             abort();
     }
 
-    enum status st = layered_depth_read_segments(&d, list, &err);
+    enum status st = layered_depth_read_segments(&d, list, NULL, &err);
     if (st) {
         check_empty(&d, st, &err);
     } else {
@@ -133,7 +133,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         layered_depth_release(&d);
     }
     err = (struct err)ERR_INIT;
-    st = layered_depth_read(&d, picture, &err);
+    st = layered_depth_read(&d, picture, NULL, &err);
     if (st) {
         check_empty(&d, st, &err);
         return 0;

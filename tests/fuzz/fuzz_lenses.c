@@ -29,7 +29,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     struct err err = ERR_INIT;
 
     fuzz_file(path, data, size);
-    if (lens_list_read(&list, path, &err)) {
+    if (lens_list_read(&list, path, NULL, &err)) {
         if (!err.text[0] || list.lenses) abort();
     } else {
         for (int i = 0; i < list.count; i++) {
@@ -37,7 +37,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
             if (lens_list_find(&list, list.lenses[i].view) != i) abort();
         }
         if (!lens_list_write(&list, path, NULL, &err)) {
-            if (lens_list_read(&again, path, &err) || again.count != list.count) abort();
+            if (lens_list_read(&again, path, NULL, &err) || again.count != list.count) abort();
             for (int i = 0; i < list.count; i++)
                 if (strcmp(list.lenses[i].photo, again.lenses[i].photo) ||
                     memcmp(list.lenses[i].camera.params, again.lenses[i].camera.params,

@@ -25,13 +25,13 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     struct err err = ERR_INIT;
 
     fuzz_file(path, data, size);
-    if (light_list_read(&list, path, &err)) {
+    if (light_list_read(&list, path, NULL, &err)) {
         if (!strstr(err.text, path) || list.lamps || list.openings) abort();
         unlink(path);
         return 0;
     }
     for (int i = 0; i < list.lamp_count; i++) check_lamp(&list.lamps[i]);
-    if (light_list_write(&list, path, NULL, &err) || light_list_read(&again, path, &err)) abort();
+    if (light_list_write(&list, path, NULL, &err) || light_list_read(&again, path, NULL, &err)) abort();
     if (again.lamp_count != list.lamp_count || again.opening_count != list.opening_count) abort();
     for (int i = 0; i < list.lamp_count; i++)
         if (again.lamps[i].centre.x != list.lamps[i].centre.x || again.lamps[i].bound != list.lamps[i].bound) abort();

@@ -43,7 +43,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     for (int file = MARKS_SCALE; file <= MARKS_FIX; file++) {
         struct mark_list list;
         struct err err = ERR_INIT;
-        if (mark_list_read(&list, path, (enum mark_file)file, &err)) {
+        if (mark_list_read(&list, path, (enum mark_file)file, NULL, &err)) {
             if (!strstr(err.text, path) || list.marks || list.count) abort();
             continue;
         }

@@ -25,7 +25,7 @@ static void check_fitted(const char *path)
     struct material_list l = {0}, again = {0};
     const struct provenance prov = {.stage = "fuzz", .version = "0"};
     struct err err = ERR_INIT;
-    if (material_list_read(&l, path, &err)) {
+    if (material_list_read(&l, path, NULL, &err)) {
         if (!strstr(err.text, path) || l.count) abort();
         return;
     }
@@ -36,7 +36,7 @@ static void check_fitted(const char *path)
             if (!(m->k_d[c] >= 0 && isfinite(m->k_d[c]))) abort();
         if (!(m->ks >= 0 && isfinite(m->ks)) || !(m->shape >= 0 && m->shape <= MATERIAL_PHONG_MAX)) abort();
     }
-    if (material_list_write(&l, path, &prov, &err) || material_list_read(&again, path, &err)) abort();
+    if (material_list_write(&l, path, &prov, &err) || material_list_read(&again, path, NULL, &err)) abort();
     if (again.count != l.count) abort();
     for (int i = 0; i < l.count; i++)
         if (strcmp(l.items[i].name, again.items[i].name) || l.items[i].ks != again.items[i].ks ||
@@ -50,7 +50,7 @@ static void check_marked(const char *path)
 {
     struct marked_materials m = {0};
     struct err err = ERR_INIT;
-    if (marked_materials_read(&m, path, &err)) {
+    if (marked_materials_read(&m, path, NULL, &err)) {
         if (!strstr(err.text, path) || m.list.count || m.declared) abort();
         return;
     }

@@ -16,7 +16,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     struct err err = ERR_INIT;
 
     fuzz_file(path, data, size);
-    if (model_plan_read(&plan, path, &err)) {
+    if (model_plan_read(&plan, path, NULL, &err)) {
         if (!strstr(err.text, path) || plan.walls || plan.rooms) abort();
         unlink(path);
         return 0;

@@ -26,10 +26,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     struct err err = ERR_INIT;
 
     fuzz_file(path, data, size);
-    if (object_list_read(&list, path, &err)) {
+    if (object_list_read(&list, path, NULL, &err)) {
         if (!strstr(err.text, path) || list.items || list.count) abort();
     } else {
-        if (object_list_write(&list, path, NULL, &err) || object_list_read(&again, path, &err)) abort();
+        if (object_list_write(&list, path, NULL, &err) || object_list_read(&again, path, NULL, &err)) abort();
         if (again.count != list.count) abort();
         for (int i = 0; i < list.count; i++) check_object(&list.items[i], &again.items[i]);
         object_list_release(&again);

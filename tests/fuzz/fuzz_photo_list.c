@@ -54,10 +54,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     fuzz_folder(folder);
     snprintf(path, sizeof path, "%s/a.txt", folder);
     write_file(path, data, size);
-    enum status st = photo_record_read(&record, folder, "a", &err);
+    enum status st = photo_record_read(&record, folder, "a", NULL, &err);
     if (st && (st != err.status || record.id || !strstr(err.text, path))) abort();
     if (!st && !photo_record_write(&record, folder, &err)) {
-        if (photo_record_read(&again, folder, "a", &err) || strcmp(record.file, again.file) ||
+        if (photo_record_read(&again, folder, "a", NULL, &err) || strcmp(record.file, again.file) ||
             strcmp(record.hash, again.hash) || memcmp(&record.info, &again.info, sizeof record.info))
             abort();
         photo_record_release(&again);

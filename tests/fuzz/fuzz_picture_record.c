@@ -22,11 +22,11 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     struct err err = ERR_INIT;
 
     fuzz_file(path, data, size);
-    if (picture_record_read(&record, path, &err)) {
+    if (picture_record_read(&record, path, NULL, &err)) {
         if (!strstr(err.text, path) || record.width || record.height) abort();
     } else {
         check(&record);
-        if (picture_record_write(&record, path, NULL, &err) || picture_record_read(&record, path, &err)) abort();
+        if (picture_record_write(&record, path, NULL, &err) || picture_record_read(&record, path, NULL, &err)) abort();
         check(&record);
     }
     unlink(path);

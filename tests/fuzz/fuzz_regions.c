@@ -40,7 +40,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     struct err err = ERR_INIT;
 
     fuzz_file(path, data, size);
-    if (region_list_read(&list, path, &err)) {
+    if (region_list_read(&list, path, NULL, &err)) {
         if (!strstr(err.text, path) || list.regions || list.count) abort();
     } else {
         for (int i = 0; i < list.count; i++) map_to_view(&list.regions[i], path);

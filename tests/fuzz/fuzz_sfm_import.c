@@ -80,8 +80,8 @@ static void check(const struct imported *in)
     struct err err = ERR_INIT;
     in_folder(out, sizeof out, "out");
     in_folder(lenses, sizeof lenses, "out/lenses.txt");
-    if (imported_write(in, out, NULL, &err) || camera_set_read(&set, out, &err) ||
-        lens_list_read(&list, lenses, &err)) {
+    if (imported_write(in, out, NULL, &err) || camera_set_read(&set, out, NULL, &err) ||
+        lens_list_read(&list, lenses, NULL, &err)) {
         fprintf(stderr, "%s\n", err.text);
         abort();
     }
@@ -128,7 +128,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 
     if (import_check_photos(folder, &photos, &err) && !err.text[0]) abort();
     err = (struct err)ERR_INIT;
-    if (import_choose(&model, &name, &given, folder, &photos, &err)) {
+    if (import_choose(&model, &name, &given, folder, &photos, NULL, &err)) {
         if (!err.text[0] || model.images || name) abort();
         return 0;
     }

@@ -37,7 +37,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     weights[1 * NODES + 2] = weights[2 * NODES + 1] = 2;
 
     fuzz_file(path, data, size);
-    if (tour_stops_find(&stops, &count, &g, &plan, 1, path, &err)) {
+    if (tour_stops_find(&stops, &count, &g, &plan, 1, path, NULL, &err)) {
         if (!strstr(err.text, path)) abort();
     } else if (count < 1)
         abort();

@@ -53,11 +53,12 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     struct err err = ERR_INIT;
 
     fuzz_file(path, data, size);
-    if (validity_read(&v, path, &err)) {
+    if (validity_read(&v, path, NULL, &err)) {
         if (!strstr(err.text, path) || v.region[0].cells || v.region[1].cells) abort();
     } else {
         use(&v);
-        if (validity_write(&v, path, NULL, &err) || validity_read(&again, path, &err) || !same(&v, &again)) abort();
+        if (validity_write(&v, path, NULL, &err) || validity_read(&again, path, NULL, &err) || !same(&v, &again))
+            abort();
         validity_release(&again);
         validity_release(&v);
     }

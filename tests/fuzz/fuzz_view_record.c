@@ -16,7 +16,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     char path[FUZZ_PATH];
 
     fuzz_file(path, data, size);
-    if (view_record_read(&r, path, &err)) {
+    if (view_record_read(&r, path, NULL, &err)) {
         if (r.faces || r.count || !strstr(err.text, path)) abort();
     }
     for (int i = 0; i < r.count; i++) {

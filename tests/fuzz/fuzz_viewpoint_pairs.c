@@ -15,7 +15,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     struct err err = ERR_INIT;
 
     fuzz_file(path, data, size);
-    if (viewpoint_pairs_read(&pairs, path, &err)) {
+    if (viewpoint_pairs_read(&pairs, path, NULL, &err)) {
         if (!strstr(err.text, path) || pairs.list || pairs.count) abort();
         unlink(path);
         return 0;
@@ -25,7 +25,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         if (!(p->t >= 0 && p->t <= 1) || viewpoint_pairs_find(&pairs, p->frame) != p) abort();
     }
     if (!viewpoint_pairs_write(&pairs, path, NULL, &err)) { /* refused: names that are too long to quote */
-        if (viewpoint_pairs_read(&again, path, &err) || again.count != pairs.count) abort();
+        if (viewpoint_pairs_read(&again, path, NULL, &err) || again.count != pairs.count) abort();
         for (int i = 0; i < again.count; i++) {
             const struct viewpoint_pair *a = &again.list[i], *p = &pairs.list[i];
             if (strcmp(a->frame, p->frame) || strcmp(a->photos[0], p->photos[0]) || strcmp(a->photos[1], p->photos[1]))

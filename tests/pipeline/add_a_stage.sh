@@ -17,7 +17,6 @@ add_the_stage()
 # mean_colour: the mean colour of each view.
 FOLLOWS.mean_colour := rectify
 READS.mean_colour := views
-WRITES.mean_colour := mean_colour.txt
 HELP.mean_colour := + the mean colour of each view
 MK
     cat >stages/mean_colour/rules.c <<'C'
@@ -59,13 +58,12 @@ static enum status write_means(const char *views, const struct mean_params *para
                                struct provenance *prov, struct err *err)
 {
     struct camera_set set = {0};
-    enum status st = camera_set_read(&set, views, err);
-    if (!st) st = camera_set_add_inputs(prov, views, err);
+    enum status st = camera_set_read(&set, views, prov, err);
     if (!st) provenance_print(prov, f->fp);
     for (int i = 0; !st && i < set.view_count; i++) {
         struct image im = {0};
         double sum[3] = {0};
-        st = view_image_read(&im, views, &set.views[i], err);
+        st = view_image_read(&im, views, &set.views[i], prov, err);
         const size_t count = st ? 0 : (size_t)im.width * (size_t)im.height;
         for (size_t k = 0; k < count; k++)
             for (int c = 0; c < 3; c++) sum[c] += (double)im.data[k * 4 + (size_t)c];

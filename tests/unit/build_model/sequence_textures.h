@@ -61,7 +61,8 @@ static inline void check_map_file(const struct texture_map *map, const char *tex
     struct texture_map read = {0};
     struct err err = ERR_INIT;
     const char *path = scratch_path("texture.txt");
-    if (texture_map_write(map, path, NULL, &err) || texture_map_read(&read, path, &err) || !same_map(map, &read)) {
+    if (texture_map_write(map, path, NULL, &err) || texture_map_read(&read, path, NULL, &err) ||
+        !same_map(map, &read)) {
         explain(text, edit);
         fail_msg("texture.txt does not read back: %s", err.text);
     }

@@ -21,7 +21,7 @@ static void make(struct scene *s, const char *text)
     struct err err = ERR_INIT;
     build(&s->plan, &s->solids, text, NULL);
     assert_ok(plan_write(&s->plan, scratch_path("plan.txt"), NULL, &err), err);
-    assert_ok(model_plan_read(&s->read, scratch_path("plan.txt"), &err), err);
+    assert_ok(model_plan_read(&s->read, scratch_path("plan.txt"), NULL, &err), err);
 }
 
 static void release(struct scene *s)

@@ -12,7 +12,7 @@ static void assert_refused(enum mark_file file, const char *text, const char *wo
     struct mark_list list;
     struct err err = ERR_INIT;
     const char *path = scratch_write("marks.txt", text);
-    assert_int_equal(mark_list_read(&list, path, file, &err), ST_DATA);
+    assert_int_equal(mark_list_read(&list, path, file, NULL, &err), ST_DATA);
     assert_err(err, ST_DATA, words);
     assert_contains(err.text, "marks.txt");
     assert_null(list.marks);
@@ -47,7 +47,7 @@ static void errors_in_files_name_the_line(void **state)
 static void read_marks(struct mark_list *list, const char *text, enum mark_file file)
 {
     struct err err = ERR_INIT;
-    assert_ok(mark_list_read(list, scratch_write("marks.txt", text), file, &err), err);
+    assert_ok(mark_list_read(list, scratch_write("marks.txt", text), file, NULL, &err), err);
 }
 
 static void an_empty_file_of_corrections_is_valid(void **state)

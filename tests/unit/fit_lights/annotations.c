@@ -19,7 +19,7 @@ static void lamps_windows_and_points_are_read(void **state)
                                                  "exponent 1.5\n"
                                                  "area panel in v01 1 2 3 4 5 6 7 8 radiance 3 2 1\n"
                                                  "unlit panel in v01 1 2 3 4 of plaster\nline spot in v03 1 2 30 40\n"),
-                                   &err),
+                                   NULL, &err),
               err);
     assert_int_equal(l.count, 7);
     assert_true(l.items[0].kind == NOTE_WINDOW && l.items[0].reference_count == 2);
@@ -74,7 +74,7 @@ static void mistakes_are_refused(void **state)
         struct annotation_list l;
         struct err err = ERR_INIT;
         const char *path = scratch_write("bad.txt", cases[i].text);
-        assert_int_equal(annotation_list_read(&l, path, &err), ST_DATA);
+        assert_int_equal(annotation_list_read(&l, path, NULL, &err), ST_DATA);
         assert_non_null(strstr(err.text, path));
         if (!strstr(err.text, cases[i].wanted)) fail_msg("case %zu says: %s", i, err.text);
         assert_null(l.items);

@@ -53,7 +53,7 @@ static void what_is_listed_is_read_back(void **state)
         sprintf(text + strlen(text), "%s %d 1 2\n", line, k);
     }
     fclose(f);
-    assert_ok(indirect_read(&in, &scene, &axes, scratch_write("given.txt", text), &err), err);
+    assert_ok(indirect_read(&in, &scene, &axes, scratch_write("given.txt", text), NULL, &err), err);
     assert_true(in.at[1][0] == 1 && in.at[22][0] == 3 && fabs(in.at[32][0] - 3.5) < 1e-12 && in.at[30][2] == 2);
     indirect_release(&in);
     free(text);
@@ -66,7 +66,7 @@ static void assert_refused(const char *text, const char *why)
     struct err err = ERR_INIT;
     const char *path = scratch_write("bad.txt", text);
     assert_ok(indirect_init(&in, &scene, &err), err);
-    assert_int_equal(indirect_read(&in, &scene, &same, path, &err), ST_DATA);
+    assert_int_equal(indirect_read(&in, &scene, &same, path, NULL, &err), ST_DATA);
     assert_non_null(strstr(err.text, path));
     if (!strstr(err.text, why)) fail_msg("the error says: %s", err.text);
     indirect_release(&in);

@@ -182,7 +182,8 @@ static void the_picture_shows_the_patch_and_beside_it_the_lamp(void **state)
     struct lit_point points[2] = {{{0.1, -0.2, -2}, {0, 0, 1}, 0, 0, NOTE_LIT, 0},
                                   {{1.8, -0.2, -2}, {0, 0, 1}, 0, 1, NOTE_UNLIT, 0}};
     const struct lit_scene scene = {.lights = {.lamps = &l, .lamp_count = 1}, .points = points, .point_count = 2};
-    struct lit_model model = {.axes = {.rotation = {1, 0, 0, 0}, .scale = 1}, .set = {.views = views, .view_count = 2}};
+    struct lit_model model = {
+        .in = {.axes = {.rotation = {1, 0, 0, 0}, .scale = 1}, .set = {.views = views, .view_count = 2}}};
     struct photo p = {0};
     struct err err = ERR_INIT;
     char floor[] = "floor", ceiling[] = "ceiling";
@@ -203,7 +204,7 @@ static void the_picture_shows_the_patch_and_beside_it_the_lamp(void **state)
     assert_true(is_near(&p, x + SIDE + 8, y, 90, 255, 120));
     photo_release(&p);
 
-    model.set.view_count = 0; /* nothing shows it any more: the old picture goes */
+    model.in.set.view_count = 0; /* nothing shows it any more: the old picture goes */
     assert_ok(lamp_pictures_write(&scene, &model, scratch, scratch, &err), err);
     assert_int_not_equal(access(scratch_path("spot%201%2F2.jpg"), F_OK), 0);
     model_rays_release(&model.rays);

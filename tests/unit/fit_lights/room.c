@@ -112,7 +112,7 @@ static int build(void **state)
     room.views[2] = view_at(vec3_make(0.2, 0.1, -1.5), 0, 0, SIDE, SIDE, 300);
     room.model.rays.mesh = make_boxes(boxes, 2);
     assert_ok(model_rays_build(&room.model.rays, MODEL_WITHOUT_GLASS, &err), err);
-    room.model.axes = (struct model_axes){.rotation = {1, 0, 0, 0}, .scale = 1};
+    room.model.in.axes = (struct model_axes){.rotation = {1, 0, 0, 0}, .scale = 1};
     for (int i = 0; i < VIEWS; i++) {
         struct view *v = &room.views[i];
         v->name = names[i];
@@ -120,8 +120,8 @@ static int build(void **state)
             (struct lens){names[i], names[i], {CAMERA_PINHOLE, SIDE, SIDE, {v->fx, v->fy, v->cx, v->cy}}, {1, 0, 0, 0}};
         write_view(v, 0);
     }
-    room.model.set = (struct camera_set){.views = room.views, .view_count = VIEWS};
-    room.model.lenses = (struct lens_list){room.lenses, VIEWS};
+    room.model.in.set = (struct camera_set){.views = room.views, .view_count = VIEWS};
+    room.model.in.lenses = (struct lens_list){room.lenses, VIEWS};
     return 0;
 }
 
@@ -162,7 +162,7 @@ static enum status solve(const char *lamp, const char *points, struct err *err)
     release();
     snprintf(text, sizeof text, "remodel-lamps 1\ndisk spot in c %s rim %s %s\n%s", pixel(2, 0, 0, 2),
              pixel(2, lamp_radius, 0, 2), lamp, points);
-    enum status st = annotation_list_read(&room.notes, scratch_write("lights.txt", text), err);
+    enum status st = annotation_list_read(&room.notes, scratch_write("lights.txt", text), NULL, err);
     if (!st) st = lit_scene_resolve(&room.scene, &room.notes, &room.model, 5, err);
     if (!st)
         st = observe(&room.seen, &room.scene, &room.notes, &room.model, scratch, scratch_path("ids"), &params, &prov,

@@ -22,7 +22,7 @@ static void regions_and_declared_models_are_read(void **state)
     const char *path = file("# a floor in two photos\n"
                             "material floor in v07 1 2 30 4 5 60 in v08@1 0 0 10 0 10 10 0 10 model ward\n"
                             "material wall in v07 0 0 9 0 0 9\n");
-    assert_int_equal(marked_materials_read(&m, path, &err), ST_OK);
+    assert_int_equal(marked_materials_read(&m, path, NULL, &err), ST_OK);
     assert_int_equal(m.list.count, 2);
     assert_true(m.declared[0] && !m.declared[1]);
     assert_int_equal(m.list.items[0].kind, BRDF_WARD);
@@ -52,7 +52,7 @@ static void damaged_marks_are_refused_with_file_and_line(void **state)
     for (size_t i = 0; i < sizeof lines / sizeof *lines; i++) {
         struct marked_materials m;
         struct err err = ERR_INIT;
-        assert_int_equal(marked_materials_read(&m, file(lines[i][0]), &err), ST_DATA);
+        assert_int_equal(marked_materials_read(&m, file(lines[i][0]), NULL, &err), ST_DATA);
         assert_non_null(strstr(err.text, "materials.txt:"));
         assert_non_null(strstr(err.text, lines[i][1]));
         assert_null(m.declared);

@@ -239,7 +239,7 @@ static void damaged_records_are_rewritten(void **state)
     assert_int_equal(truncate(path, 20), 0);
     assert_ok(import(&scan, NULL, &err), err);
     photo_scan_release(&scan);
-    assert_ok(photo_record_read(&in, records, "a", &err), err);
+    assert_ok(photo_record_read(&in, records, "a", NULL, &err), err);
     assert_int_equal(in.info.width, 16);
     photo_record_release(&in);
 }

@@ -240,7 +240,7 @@ static void boxes_of_moves_follow_their_shots(void **state)
     assert_int_equal(e.layers[1].box_count, 15);
     const char *path = scratch_path("written.txt");
     assert_ok(effects_write(&e, path, NULL, &err), err);
-    assert_ok(effects_read(&again, path, &err), err);
+    assert_ok(effects_read(&again, path, NULL, &err), err);
     for (int k = 0; k < 3; k++)
         assert_memory_equal(again.layers[k].boxes, e.layers[k].boxes, (size_t)e.layers[k].box_count * sizeof b);
     effects_release(&again);

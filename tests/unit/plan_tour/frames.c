@@ -149,7 +149,7 @@ static void one_viewpoint_alone_gives_a_film_that_rests(void **state)
         walk_make(&w, hall, 2, around, 1);
         w.params.hold = hold;
         assert_ok(walk_graph(&w, &err), err);
-        assert_ok(tour_stops_find(&w.stops, &w.stop_count, &w.g, &plan, w.params.speed, NULL, &err), err);
+        assert_ok(tour_stops_find(&w.stops, &w.stop_count, &w.g, &plan, w.params.speed, NULL, NULL, &err), err);
         assert_int_equal(w.stop_count, 1);
         walk_along(&w, &w.stops[0].node, 1);
         assert_int_equal(w.path.frame_count, hold ? 31 : 1);

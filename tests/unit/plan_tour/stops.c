@@ -29,7 +29,7 @@ static void run(struct trial *t, const struct box *flat, const char *script)
     walk_make(&t->w, flat, 3, places, 4);
     assert_ok(walk_graph(&t->w, &t->err), t->err);
     t->status = tour_stops_find(&t->w.stops, &t->w.stop_count, &t->w.g, &plan, t->w.params.speed,
-                                script ? scratch_write("tour.txt", script) : NULL, &t->err);
+                                script ? scratch_write("tour.txt", script) : NULL, NULL, &t->err);
 }
 
 static void a_tour_visits_each_room(void **state)

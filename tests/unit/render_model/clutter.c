@@ -397,7 +397,7 @@ static void from_an_original_view_it_is_the_photo(void **state)
     scene_make(&s, &sure, 100);
     draw(&p, &s, &s.views[own], NULL, &own, 1);
     draw_shell(&shell, &s.views[own]);
-    assert_ok(view_image_read(&photo, scratch_path("views"), &s.views[own], &err), err);
+    assert_ok(view_image_read(&photo, scratch_path("views"), &s.views[own], NULL, &err), err);
     for (size_t i = 0; i < (size_t)W * H; i++) {
         const struct hit h = trace(&s.views[own], (double)(i % W) + 0.5, (double)(i / W) + 0.5, true);
         if (p.made[i] == MADE_CLUTTER) {

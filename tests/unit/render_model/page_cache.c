@@ -47,7 +47,7 @@ static void texels_are_those_of_the_file_in_a_frame_of_nothing(void **state)
     for (int i = 0; i < set->atlas.tile_count; i++) {
         const struct atlas_tile *t = &set->atlas.tiles[i];
         const struct texture_page *got = &set->pages[t->page];
-        assert_ok(atlas_page_read(&page, &set->atlas, t->page, set->folder, &err), err);
+        assert_ok(atlas_page_read(&page, &set->atlas, t->page, set->folder, NULL, &err), err);
         for (int y = -1; y <= t->height; y++)
             for (int x = -1; x <= t->width; x++) {
                 const size_t at = set->first[i] + (size_t)((y + 1) * texture_stride(t) + x + 1);

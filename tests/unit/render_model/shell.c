@@ -41,9 +41,10 @@ static void look_ups_agree_with_those_of_the_atlas(void **state)
     char folder[512];
     int compared = 0;
     snprintf(folder, sizeof folder, "%s/a", scratch_path("vdta"));
-    assert_ok(atlas_read(&atlas, folder, &err), err);
+    assert_ok(atlas_read(&atlas, folder, NULL, &err), err);
     assert_true(atlas.page_count <= 8);
-    for (int i = 0; i < atlas.page_count; i++) assert_ok(atlas_page_read(&pages[i], &atlas, i, folder, &err), err);
+    for (int i = 0; i < atlas.page_count; i++)
+        assert_ok(atlas_page_read(&pages[i], &atlas, i, folder, NULL, &err), err);
     for (int i = 0; i < W * H; i++) {
         const struct vec3 at = view_unproject(&view, i % W + 0.5, i / W + 0.5, p.z[i]);
         double x, y;

@@ -33,8 +33,10 @@ __attribute__((weak)) void texture_map_release(struct texture_map *map)
     memset(map, 0, sizeof *map);
 }
 
-__attribute__((weak)) enum status texture_map_read(struct texture_map *map, const char *path, struct err *err)
+__attribute__((weak)) enum status texture_map_read(struct texture_map *map, const char *path, struct provenance *prov,
+                                                   struct err *err)
 {
+    (void)prov;
     memset(map, 0, sizeof *map);
     return err_set(err, ST_INTERNAL, "tests fill texture maps by hand, so that %s is not read.", path);
 }

@@ -172,14 +172,14 @@ static float vita_median(int face, int channel)
     struct atlas atlas;
     struct err err = ERR_INIT;
     size_t count = 0;
-    assert_ok(atlas_read(&atlas, scratch_path("vita"), &err), err);
+    assert_ok(atlas_read(&atlas, scratch_path("vita"), NULL, &err), err);
     float *values = calloc((size_t)atlas.page_count, ATLAS_PAGE * ATLAS_PAGE * sizeof *values);
     assert_non_null(values);
     for (int i = 0; i < atlas.tile_count; i++) {
         const struct atlas_tile *t = &atlas.tiles[i];
         struct atlas_page page;
         if (face && t->face != face) continue;
-        assert_ok(atlas_page_read(&page, &atlas, t->page, scratch_path("vita"), &err), err);
+        assert_ok(atlas_page_read(&page, &atlas, t->page, scratch_path("vita"), NULL, &err), err);
         for (int k = 0; k < t->width * t->height; k++) {
             const int at = (t->y + k / t->width) * page.width + t->x + k % t->width;
             values[count++] = page.rgb[3 * at + channel];

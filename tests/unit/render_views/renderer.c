@@ -45,7 +45,7 @@ static void film_make(struct film *film, const char *renderer, bool lens, bool l
                                "region outside -0.5 -0.5 2.5 0.5 0.5 3.5 0.2\n"
                                "key 0 1\n"
                                "key 0.2 0\n";
-    assert_ok(effects_read(&film->effects, scratch_write("effects.txt", text), &err), err);
+    assert_ok(effects_read(&film->effects, scratch_write("effects.txt", text), NULL, &err), err);
 }
 
 static void film_drop(struct film *film)

@@ -282,7 +282,7 @@ static void write_any_exr(const char *path, const struct image *im)
 static enum status photo_on_disk(void *ctx, int view_idx, struct image *im, struct err *err)
 {
     (void)ctx;
-    return view_image_read(im, scratch, &scene.views[view_idx], err);
+    return view_image_read(im, scratch, &scene.views[view_idx], NULL, err);
 }
 
 /* In the view itself or in a neighbour: an error with file, channel and pixel. */

@@ -80,7 +80,7 @@ static void a_record_round_trips(void **state)
         struct err err = ERR_INIT;
         const char *path = scratch_path("made/v.round");
         assert_ok(round_record_write(&records[i], path, i % 2 ? &prov : NULL, &err), err);
-        assert_ok(round_record_read(&back, path, &err), err);
+        assert_ok(round_record_read(&back, path, NULL, &err), err);
         assert_true(fabs(back.changed - records[i].changed) <= 0 && back.estimated == records[i].estimated);
     }
     char *text = scratch_read(scratch_path("made/v.round"));
@@ -112,13 +112,13 @@ static void errors_of_a_record_name_the_line(void **state)
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         struct round_record r = {0.5, true};
         struct err err = ERR_INIT;
-        assert_int_equal(round_record_read(&r, scratch_write("v.round", bad[i].text), &err), ST_DATA);
+        assert_int_equal(round_record_read(&r, scratch_write("v.round", bad[i].text), NULL, &err), ST_DATA);
         assert_err(err, ST_DATA, bad[i].words);
         assert_true(!r.estimated && fabs(r.changed) <= 0);
     }
     struct round_record r;
     struct err err = ERR_INIT;
-    assert_int_equal(round_record_read(&r, scratch_path("none.round"), &err), ST_IO);
+    assert_int_equal(round_record_read(&r, scratch_path("none.round"), NULL, &err), ST_IO);
     assert_err(err, ST_IO, "none.round");
 }
 
@@ -206,7 +206,7 @@ static void depth_that_is_carried_over_keeps_every_byte(void **state)
     assert_ok(round_carry_over(scratch_path("before"), "v", scratch_path("after/v.exr"), &err), err);
     assert_same_bytes("before/v.exr", "after/v.exr");
     assert_same_bytes("before/v.txt", "after/v.txt");
-    assert_ok(layered_depth_read(&back, scratch_path("after/v.exr"), &err), err);
+    assert_ok(layered_depth_read(&back, scratch_path("after/v.exr"), NULL, &err), err);
     layered_depth_release(&back);
     layered_depth_release(&d);
 

@@ -59,7 +59,7 @@ static void a_text_model_is_imported(void **state)
     assert_contains(list, "\na 00\nb 11\n");
     free(models);
     free(list);
-    assert_ok(sfm_model_read_text(&m, scratch_path("sfm/0"), &err), err);
+    assert_ok(sfm_model_read_text(&m, scratch_path("sfm/0"), NULL, &err), err);
     assert_int_equal(m.image_count, 2);
     assert_string_equal(m.images[1].name, "x/a.jpg");
     sfm_model_release(&m);
@@ -97,7 +97,7 @@ static void a_bundler_model_needs_its_list_of_images(void **state)
     err = (struct err)ERR_INIT;
     scratch_write("bundler/my-list.txt", "./b.jpg 0 660.8\n./stranger.jpg\n./a.jpg\n");
     assert_ok(import("bundler", "sfm-bundler", &err), err);
-    assert_ok(sfm_model_read_text(&m, scratch_path("sfm-bundler/0"), &err), err);
+    assert_ok(sfm_model_read_text(&m, scratch_path("sfm-bundler/0"), NULL, &err), err);
     assert_int_equal(m.image_count, 2); /* stranger.jpg is not a photo: its size is unknown */
     assert_string_equal(m.images[0].name, "./a.jpg");
     assert_int_equal(m.cameras[0].camera.width, 64);

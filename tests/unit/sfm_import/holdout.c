@@ -125,7 +125,7 @@ static void points_go_to_the_part_that_sees_them(void **state)
     assert_int_equal(out.model.point_count, 4);
     assert_int_equal(out.model.points[3].track_count, 1);
     assert_ok(imported_write(&out, scratch_path("held"), NULL, &err), err);
-    assert_ok(camera_set_read(&set, scratch_path("held"), &err), err);
+    assert_ok(camera_set_read(&set, scratch_path("held"), NULL, &err), err);
     assert_file_text(scratch_path("held/views.mk"), "VIEWS := a c\n");
     camera_set_release(&set);
     imported_release(&kept);

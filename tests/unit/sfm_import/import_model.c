@@ -153,8 +153,8 @@ static void an_exact_model_is_imported_without_loss(void **state)
     assert_ok(imported_write(&f.out, folder, NULL, &f.err), f.err);
     assert_file_text(scratch_path("views/images.txt"), first);
     assert_file_text(scratch_path("views/views.mk"), "VIEWS := p0 p1 p2 p3\n");
-    assert_ok(camera_set_read(&set, folder, &f.err), f.err);
-    assert_ok(lens_list_read(&lenses, scratch_path("views/lenses.txt"), &f.err), f.err);
+    assert_ok(camera_set_read(&set, folder, NULL, &f.err), f.err);
+    assert_ok(lens_list_read(&lenses, scratch_path("views/lenses.txt"), NULL, &f.err), f.err);
     assert_int_equal(set.view_count, PHOTOS);
     assert_int_equal(set.model.point_count, f.out.model.point_count);
     assert_int_equal(lenses.count, PHOTOS);
@@ -339,14 +339,14 @@ static void the_model_with_most_photos_is_chosen(void **state)
     assert_ok(sfm_model_write_text(&m, scratch_path("sfm/0"), NULL, &err), err);
     enum given_cameras given = GIVEN_MODEL;
     scratch_write("sfm/models.txt", "remodel-sfm 2\n0 colmap model\n1 colmap lens\n");
-    assert_ok(import_choose(&chosen, &name, &given, scratch_path("sfm"), &photos, &err), err);
+    assert_ok(import_choose(&chosen, &name, &given, scratch_path("sfm"), &photos, NULL, &err), err);
     assert_int_equal(given, GIVEN_LENS);
     assert_string_equal(name, "1");
     assert_string_equal(chosen.images[0].name, "p0.jpg");
     sfm_model_release(&chosen);
     free(name);
     scratch_write("sfm/models.txt", "remodel-sfm 1\n0 colmap\n1 colmap\n"); /* does not say what was given */
-    assert_ok(import_choose(&chosen, &name, &given, scratch_path("sfm"), &photos, &err), err);
+    assert_ok(import_choose(&chosen, &name, &given, scratch_path("sfm"), &photos, NULL, &err), err);
     assert_string_equal(name, "1");
     assert_int_equal(given, GIVEN_MODEL);
     sfm_model_release(&chosen);
@@ -361,7 +361,7 @@ static void the_model_with_most_photos_is_chosen(void **state)
     for (int i = 0; i < 6; i++) {
         err = (struct err)ERR_INIT;
         scratch_write("sfm/models.txt", bad[i][0]);
-        assert_int_not_equal(import_choose(&chosen, &name, &given, scratch_path("sfm"), &photos, &err), ST_OK);
+        assert_int_not_equal(import_choose(&chosen, &name, &given, scratch_path("sfm"), &photos, NULL, &err), ST_OK);
         assert_err(err, ST_DATA, bad[i][1]);
     }
     sfm_model_release(&m);

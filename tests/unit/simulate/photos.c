@@ -99,7 +99,7 @@ static void check_texts(const char *out)
     struct err err = ERR_INIT;
     char path[600];
     snprintf(path, sizeof path, "%s/truth", out);
-    assert_ok(sfm_model_read_text(&m, path, &err), err);
+    assert_ok(sfm_model_read_text(&m, path, NULL, &err), err);
     assert_true(m.image_count == 2 && m.camera_count == 2 && m.point_count == 0);
     assert_string_equal(m.images[1].name, "b.jpg");
     assert_int_equal(m.cameras[m.images[1].camera_idx].camera.model, CAMERA_OPENCV_FISHEYE);

@@ -94,12 +94,12 @@ static void a_witness_at_a_photos_camera_sees_its_radiance(void **state)
     snprintf(path, sizeof path, "%s/photos/w_e0.jpg", f.out);
     assert_int_not_equal(access(path, R_OK), 0); /* no photograph */
     snprintf(path, sizeof path, "%s/truth/novel", f.out);
-    assert_ok(sfm_model_read_text(&m, path, &err), err);
+    assert_ok(sfm_model_read_text(&m, path, NULL, &err), err);
     assert_true(m.image_count == 1 && m.camera_count == 1);
     assert_string_equal(m.images[0].name, "w.jpg");
     sfm_model_release(&m);
     snprintf(path, sizeof path, "%s/truth", f.out);
-    assert_ok(sfm_model_read_text(&m, path, &err), err);
+    assert_ok(sfm_model_read_text(&m, path, NULL, &err), err);
     assert_int_equal(m.image_count, 1);
     sfm_model_release(&m);
     exr_image_release(&a);

@@ -159,7 +159,7 @@ static void a_file_is_replaced_only_if_its_bytes_change(void **state)
     assert_int_equal(stat(path, &after), 0);
     assert_int_equal(before.st_ino, after.st_ino);
     assert_int_equal(count_entries(scratch), 1);
-    assert_ok(view_reveal_read(&back, &view, path, &err), err);
+    assert_ok(view_reveal_read(&back, &view, path, NULL, &err), err);
     assert_int_equal(back.layers, 2);
     for (int k = 0; k < 2; k++) {
         assert_memory_equal(v.id[k], back.id[k], W * H * sizeof **v.id);
@@ -168,7 +168,7 @@ static void a_file_is_replaced_only_if_its_bytes_change(void **state)
     assert_ok(view_reveal_write(&none, &view, path, NULL, &changed, &err), err);
     assert_true(changed);
     view_reveal_release(&back);
-    assert_ok(view_reveal_read(&back, &view, path, &err), err);
+    assert_ok(view_reveal_read(&back, &view, path, NULL, &err), err);
     for (int i = 0; i < W * H; i++) assert_int_equal(back.id[0][i], 0);
     view_reveal_release(&back);
     view_reveal_release(&v);

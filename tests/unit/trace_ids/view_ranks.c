@@ -40,7 +40,7 @@ static void best_views_come_first(void **state)
     struct face_views list;
     struct err err = ERR_INIT;
     write_index(path, 100, 1000, 0, 1);
-    assert_ok(face_index_open(&index, path, &err), err);
+    assert_ok(face_index_open(&index, path, NULL, &err), err);
     assert_int_equal(index.faces, FACES);
     for (int face = 1; face <= FACES; face += 997) {
         assert_ok(face_index_load(&list, &index, face, &err), err);
@@ -61,11 +61,11 @@ static void a_bounded_list_is_the_begin_of_the_whole(void **state)
     struct face_views whole, part;
     struct err err = ERR_INIT;
     write_index(path, 100, 1000, 0, 1);
-    assert_ok(face_index_open(&index, path, &err), err);
+    assert_ok(face_index_open(&index, path, NULL, &err), err);
     assert_ok(face_index_load(&whole, &index, 77, &err), err);
     face_index_close(&index);
     write_index(path, 100, 10, 0, 1);
-    assert_ok(face_index_open(&index, path, &err), err);
+    assert_ok(face_index_open(&index, path, NULL, &err), err);
     assert_ok(face_index_load(&part, &index, 77, &err), err);
     face_index_close(&index);
     assert_int_equal(part.count, 10);
@@ -95,7 +95,7 @@ static void thirty_faces_of_ten_thousand_take_kilobytes(void **state)
     struct face_views list;
     struct err err = ERR_INIT;
     write_index(path, VIEWS, 256, 0, 1);
-    assert_ok(face_index_open(&index, path, &err), err);
+    assert_ok(face_index_open(&index, path, NULL, &err), err);
     assert_true(index.size > 30000000);
     for (int i = 0; i < 30; i++) {
         assert_ok(face_index_load(&list, &index, 1 + 331 * i, &err), err);
@@ -120,7 +120,7 @@ static void a_face_that_no_view_shows_has_no_views(void **state)
     assert_ok(view_ranks_add(&ranks, "with space", &r, &err), err);
     assert_ok(view_ranks_write(&ranks, path, NULL, &err), err);
     view_ranks_release(&ranks);
-    assert_ok(face_index_open(&index, path, &err), err);
+    assert_ok(face_index_open(&index, path, NULL, &err), err);
     for (int face = 0; face < 12; face++) {
         assert_ok(face_index_load(&list, &index, face, &err), err);
         assert_int_equal(list.count, face == 5 || face == 9);
@@ -139,7 +139,7 @@ static void an_index_of_no_views_is_empty(void **state)
     struct err err = ERR_INIT;
     struct view_ranks ranks = {.max_views = 3};
     assert_ok(view_ranks_write(&ranks, path, NULL, &err), err);
-    assert_ok(face_index_open(&index, path, &err), err);
+    assert_ok(face_index_open(&index, path, NULL, &err), err);
     assert_int_equal(index.faces, 0);
     assert_ok(face_index_load(&list, &index, 1, &err), err);
     assert_int_equal(list.count, 0);
@@ -173,7 +173,7 @@ static void a_damaged_index_is_refused_with_its_line(void **state)
         struct face_index index;
         struct face_views list = {0};
         struct err err = ERR_INIT;
-        if (!face_index_open(&index, path, &err) && !face_index_load(&list, &index, 1, &err))
+        if (!face_index_open(&index, path, NULL, &err) && !face_index_load(&list, &index, 1, &err))
             fail_msg("case %zu was read", k);
         assert_err(err, ST_DATA, cases[k].error);
         assert_null(list.views);

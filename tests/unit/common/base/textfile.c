@@ -264,7 +264,7 @@ static void a_file_too_large_for_memory_is_an_error(void **state)
     char *output, *path = strdup(scratch_write("big", ""));
     assert_int_equal(truncate(path, (off_t)1 << 33), 0); /* sparse */
     assert_int_equal(child_run(without_memory, path, &output), 0);
-    assert_contains(output, "big: not enough memory for a text file (8589934594 bytes).");
+    assert_contains(output, "big: not enough memory for a file (8589934594 bytes).");
     free(output);
     free(path);
 #endif

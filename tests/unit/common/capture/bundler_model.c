@@ -56,7 +56,7 @@ static void bundler_axes_become_colmap_axes(void **state)
     /* it can be written and read in COLMAP's format */
     struct sfm_model back;
     assert_ok(sfm_model_write_text(&m, scratch, NULL, &err), err);
-    assert_ok(sfm_model_read_text(&back, scratch, &err), err);
+    assert_ok(sfm_model_read_text(&back, scratch, NULL, &err), err);
     assert_int_equal(back.point_count, 2);
     sfm_model_release(&m);
     sfm_model_release(&back);

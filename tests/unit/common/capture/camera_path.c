@@ -30,7 +30,7 @@ static void a_path_is_read_as_it_was_written(void **state)
     make_path(&p, 5);
     assert_string_equal(p.frames[4].camera.name, "0005");
     assert_ok(camera_path_write(&p, scratch_path("dolly"), NULL, &err), err);
-    assert_ok(camera_path_read(&q, scratch_path("dolly"), &err), err);
+    assert_ok(camera_path_read(&q, scratch_path("dolly"), NULL, &err), err);
     assert_string_equal(q.effect, "establishing_dolly");
     assert_true(q.fps == p.fps);
     assert_int_equal(q.score_count, 2);
@@ -88,7 +88,7 @@ static void assert_rejected(const char *text, const char *message)
     assert_ok(camera_path_write(&p, scratch_path("bad"), NULL, &err), err);
     camera_path_release(&p);
     if (text) scratch_write("bad/path.txt", text);
-    assert_int_equal(camera_path_read(&p, scratch_path("bad"), &err), ST_DATA);
+    assert_int_equal(camera_path_read(&p, scratch_path("bad"), NULL, &err), ST_DATA);
     assert_err(err, ST_DATA, message);
     assert_contains(err.text, "path.txt:");
     assert_null(p.frames);
@@ -128,7 +128,7 @@ static void assert_camera_rejected(const char *camera, const char *message)
     camera_path_release(&p);
     snprintf(text, sizeof text, "1 PINHOLE 320 200 300 300 160 100\n2 %s\n", camera);
     scratch_write("bad/path/cameras.txt", text);
-    assert_int_equal(camera_path_read(&p, scratch_path("bad"), &err), ST_DATA);
+    assert_int_equal(camera_path_read(&p, scratch_path("bad"), NULL, &err), ST_DATA);
     assert_err(err, ST_DATA, message);
     assert_null(p.frames);
 }
@@ -149,7 +149,7 @@ static void a_missing_file_is_named(void **state)
     struct camera_path p = {0};
     struct err err = ERR_INIT;
     (void)state;
-    assert_int_equal(camera_path_read(&p, scratch_path("nowhere"), &err), ST_IO);
+    assert_int_equal(camera_path_read(&p, scratch_path("nowhere"), NULL, &err), ST_IO);
     assert_contains(err.text, "nowhere/path");
 }
 

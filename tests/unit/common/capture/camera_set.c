@@ -28,7 +28,7 @@ static void views_are_in_order_of_name(void **state)
     struct camera_set set;
     struct err err = ERR_INIT;
     write_set("SIMPLE_PINHOLE 100 100 50 50 50", "a.exr");
-    assert_ok(camera_set_read(&set, scratch, &err), err);
+    assert_ok(camera_set_read(&set, scratch, NULL, &err), err);
     assert_int_equal(set.view_count, 3);
     assert_string_equal(set.views[0].name, "a");
     assert_string_equal(set.views[1].name, "a-1");
@@ -53,7 +53,7 @@ static void depth_is_along_the_axis(void **state)
     struct err err = ERR_INIT;
     double u = -1, v = -1;
     write_set("SIMPLE_PINHOLE 100 100 50 50 50", "a.exr");
-    assert_ok(camera_set_read(&set, scratch, &err), err);
+    assert_ok(camera_set_read(&set, scratch, NULL, &err), err);
     /* rotation by 90 degrees about y maps world (x, y, z) to (z, y, -x), then + (1, 2, 3) */
     assert_near(view_project(&set.views[0], vec3_make(-2, 0, 4), &u, &v), 5, 1e-12);
     assert_near(u, 50 + 50 * 5 / 5.0, 1e-12);
@@ -74,11 +74,11 @@ static void images_that_are_not_views_are_rejected(void **state)
     struct camera_set set;
     struct err err = ERR_INIT;
     write_set("SIMPLE_RADIAL 100 100 50 50 50 0.1", "a.exr");
-    assert_int_equal(camera_set_read(&set, scratch, &err), ST_DATA);
+    assert_int_equal(camera_set_read(&set, scratch, NULL, &err), ST_DATA);
     assert_err(err, ST_DATA, "found a SIMPLE_RADIAL camera for image \"a.exr\"");
     err = (struct err)ERR_INIT;
     write_set("SIMPLE_PINHOLE 100 100 50 50 50", "a.jpg");
-    assert_int_equal(camera_set_read(&set, scratch, &err), ST_DATA);
+    assert_int_equal(camera_set_read(&set, scratch, NULL, &err), ST_DATA);
     assert_err(err, ST_DATA, "found image \"a.jpg\", wanted a name like VIEW.exr");
     assert_null(set.views);
     assert_null(set.model.images);

@@ -50,7 +50,7 @@ static void images_are_read_in_order_of_name(void **state)
     struct sfm_model m;
     struct err err = ERR_INIT;
     write_model(cameras_ok, images_ok, points_ok);
-    assert_ok(sfm_model_read_text(&m, scratch, &err), err);
+    assert_ok(sfm_model_read_text(&m, scratch, NULL, &err), err);
     check_example(&m);
     sfm_model_release(&m);
     sfm_model_release(&m);
@@ -73,7 +73,7 @@ static void crlf_and_a_missing_last_line_are_accepted(void **state)
         }
         scratch_write_bytes(names[i], text, n);
     }
-    assert_ok(sfm_model_read_text(&m, scratch, &err), err);
+    assert_ok(sfm_model_read_text(&m, scratch, NULL, &err), err);
     check_example(&m);
     sfm_model_release(&m);
 }
@@ -132,9 +132,9 @@ static void writing_and_reading_keeps_every_bit(void **state)
     snprintf(a, sizeof a, "%s/a", scratch);
     snprintf(b, sizeof b, "%s/b", scratch);
     assert_ok(sfm_model_write_text(&m, a, NULL, &err), err);
-    assert_ok(sfm_model_read_text(&n, a, &err), err);
+    assert_ok(sfm_model_read_text(&n, a, NULL, &err), err);
     assert_ok(sfm_model_write_text(&n, b, NULL, &err), err);
-    assert_ok(sfm_model_read_text(&o, b, &err), err);
+    assert_ok(sfm_model_read_text(&o, b, NULL, &err), err);
     const char *names[] = {"cameras.txt", "images.txt", "points3D.txt"};
     for (int i = 0; i < 3; i++) {
         char path[400];
@@ -198,7 +198,7 @@ static void errors_name_the_file_and_line(void **state)
         struct sfm_model m;
         struct err err = ERR_INIT;
         write_model(bad[i].cameras, bad[i].images, bad[i].points);
-        assert_int_not_equal(sfm_model_read_text(&m, scratch, &err), ST_OK);
+        assert_int_not_equal(sfm_model_read_text(&m, scratch, NULL, &err), ST_OK);
         assert_err(err, ST_DATA, bad[i].message);
         assert_null(m.images);
         assert_null(m.points);
@@ -212,7 +212,7 @@ static void a_missing_file_is_named(void **state)
     struct err err = ERR_INIT;
     write_model(cameras_ok, images_ok, points_ok);
     unlink(scratch_path("points3D.txt"));
-    assert_int_equal(sfm_model_read_text(&m, scratch, &err), ST_IO);
+    assert_int_equal(sfm_model_read_text(&m, scratch, NULL, &err), ST_IO);
     assert_contains(err.text, "points3D.txt");
 }
 
@@ -235,7 +235,7 @@ static void cameras_are_read_without_points(void **state)
     scratch_write("cameras.txt", "1 PINHOLE 4 3 2 2 2 1.5\n");
     scratch_write("images.txt", "# a comment\n2 1 0 0 0 1 2 3 1 b.jpg\n0.5 0.5 7\n1 1 0 0 0 0 0 0 1 a.jpg\n\n");
     remove(scratch_path("points3D.txt"));
-    assert_ok(sfm_model_read_cameras(&m, scratch, &err), err);
+    assert_ok(sfm_model_read_cameras(&m, scratch, NULL, &err), err);
     assert_int_equal(m.image_count, 2);
     assert_string_equal(m.images[1].name, "b.jpg");
     assert_true(m.images[1].cam_from_world.translation.z == 3);
@@ -243,7 +243,7 @@ static void cameras_are_read_without_points(void **state)
     assert_int_equal(m.point_count, 0);
     sfm_model_release(&m);
     remove(scratch_path("images.txt"));
-    assert_int_equal(sfm_model_read_cameras(&m, scratch, &err), ST_IO);
+    assert_int_equal(sfm_model_read_cameras(&m, scratch, NULL, &err), ST_IO);
     assert_err(err, ST_IO, "images.txt");
 }
 

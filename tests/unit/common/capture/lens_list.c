@@ -19,7 +19,7 @@ static void a_list_round_trips(void **state)
     struct err err = ERR_INIT;
     const char *path = scratch_path("lenses.txt");
     assert_ok(lens_list_write(&list, path, NULL, &err), err);
-    assert_ok(lens_list_read(&back, path, &err), err);
+    assert_ok(lens_list_read(&back, path, NULL, &err), err);
     assert_int_equal(back.count, 3);
     for (int i = 0; i < 3; i++) {
         assert_string_equal(back.lenses[i].view, lenses[i].view);
@@ -44,7 +44,7 @@ static void errors_name_the_line(void **state)
     static const struct {
         const char *text, *message;
     } bad[] = {
-        {"", "\"remodel-lenses 1\""},
+        {"", "a line \"remodel-lenses ...\""},
         {"remodel-views 1\n", "found \"remodel-views\""},
         {"remodel-lenses 2\n", "found \"2\""},
         {HEAD, "a line for each view"},
@@ -59,7 +59,7 @@ static void errors_name_the_line(void **state)
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         struct lens_list list;
         struct err err = ERR_INIT;
-        assert_int_not_equal(lens_list_read(&list, scratch_write("lenses.txt", bad[i].text), &err), ST_OK);
+        assert_int_not_equal(lens_list_read(&list, scratch_write("lenses.txt", bad[i].text), NULL, &err), ST_OK);
         assert_err(err, ST_DATA, bad[i].message);
         assert_null(list.lenses);
     }

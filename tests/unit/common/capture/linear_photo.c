@@ -71,7 +71,7 @@ static void several_exposures_are_read_from_the_merged_file(void **state)
     assert_ok(exr_write(&exr, scratch_path("b.exr"), NULL, &err), err);
     exr_image_release(&exr);
     read_photo(&r, scratch, &record);
-    assert_read(&r, "exact", 2, 1, "hdr/b.exr");
+    assert_read(&r, "exact", 2, 1, "b.exr");
     for (int i = 0; i < 6; i++) assert_true(r.im.data[i] == expected[i]);
     release(&r);
 }

@@ -80,9 +80,27 @@ static void an_unknown_name_is_rejected_with_a_similar_one(void **state)
     assert_contains(err.text, "did you mean b");
 }
 
+/* Indices are of the set, also where lenses.txt lists other views, or lacks one. */
+static void the_first_view_of_a_photo_stands_for_it(void **state)
+{
+    char v[][4] = {"a", "b@0", "b@1", "b@2", "c", "d"}, photos[][4] = {"a", "b", "d", "0"};
+    struct view views[] = {{.name = v[0]}, {.name = v[2]}, {.name = v[3]}, {.name = v[4]}, {.name = v[5]}};
+    const struct camera_set set = {.views = views, .view_count = 5}; /* without b@0 */
+    struct lens own[] = {{.view = photos[3], .photo = photos[3]}, {.view = v[0], .photo = photos[0]},
+                         {.view = v[1], .photo = photos[1]},      {.view = v[2], .photo = photos[1]},
+                         {.view = v[3], .photo = photos[1]},      {.view = v[5], .photo = photos[2]}};
+    const struct lens_list known = {own, 6}; /* without c */
+    static const int wanted[] = {0, 1, 1, 3, 4};
+    (void)state;
+    for (int i = 0; i < 5; i++) assert_int_equal(photo_of_view(&set, &known, i), wanted[i]);
+    assert_string_equal(lens_of_view(&set, &known, 2)->photo, "b");
+    assert_null(lens_of_view(&set, &known, 3));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_first_view_of_a_photo_stands_for_it),
         cmocka_unit_test(every_view_gives_the_same_rays),
         cmocka_unit_test(an_unknown_name_is_rejected_with_a_similar_one),
     };

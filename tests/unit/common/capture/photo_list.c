@@ -32,7 +32,7 @@ static void a_record_round_trips(void **state)
     struct err err = ERR_INIT;
     (void)state;
     assert_ok(photo_record_write(&r, scratch, &err), err);
-    assert_ok(photo_record_read(&in, scratch, "IMG_1", &err), err);
+    assert_ok(photo_record_read(&in, scratch, "IMG_1", NULL, &err), err);
     assert_string_equal(in.id, id);
     assert_string_equal(in.file, file);
     assert_string_equal(in.hash, r.hash);
@@ -145,7 +145,7 @@ static void invalid_lists_are_rejected(void **state)
 static void invalid_records_are_rejected(void **state)
 {
     const char *const cases[][2] = {
-        {"version", ":1: found \"2\", wanted format version"},
+        {"version", ":1: found \"2\", wanted the version"},
         {"short-hash", ":3:"},
         {"size-zero", ":4: found \"0\", wanted width"},
         {"bits", ":5: found \"7\", wanted bits"},
@@ -174,14 +174,14 @@ static void invalid_records_are_rejected(void **state)
     struct err err = ERR_INIT;
     (void)state;
     for (int i = 0; i < 3; i++) {
-        assert_ok(photo_record_read(&in, CORPUS, valid[i], &err), err);
+        assert_ok(photo_record_read(&in, CORPUS, valid[i], NULL, &err), err);
         assert_string_equal(in.file, "IMG 1.jpg");
         assert_string_equal(in.info.model, "a \"quoted\" model");
         photo_record_release(&in);
     }
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         err = (struct err)ERR_INIT;
-        assert_int_not_equal(photo_record_read(&in, CORPUS, cases[i][0], &err), ST_OK);
+        assert_int_not_equal(photo_record_read(&in, CORPUS, cases[i][0], NULL, &err), ST_OK);
         assert_err(err, err.status, cases[i][1]);
         assert_null(in.id);
     }

@@ -68,7 +68,7 @@ static void points_round_trip(void **state)
     struct point_cloud cloud;
     struct err err = ERR_INIT;
     (void)state;
-    assert_ok(point_cloud_read(&cloud, write_two("two.ply"), &err), err);
+    assert_ok(point_cloud_read(&cloud, write_two("two.ply"), NULL, &err), err);
     assert_int_equal(cloud.count, 2);
     assert_true(cloud.cell == 0.25);
     for (int i = 0; i < 2; i++) {
@@ -91,12 +91,12 @@ static void empty_and_large_clouds_round_trip(void **state)
     (void)state;
     for (int i = 0; i < MANY; i++)
         cloud.points[i] = (struct cloud_point){{i, 0.1 * i, -i}, {0, 1, 0}, {1, 2, 3}, 1, 0.5f};
-    assert_ok(point_cloud_write(&cloud, path, NULL, &err) || point_cloud_read(&read, path, &err), err);
+    assert_ok(point_cloud_write(&cloud, path, NULL, &err) || point_cloud_read(&read, path, NULL, &err), err);
     assert_int_equal(read.count, MANY);
     for (int i = 0; i < MANY; i++) assert_true(read.points[i].position.y == 0.1 * i);
     point_cloud_release(&read);
     cloud.count = 0;
-    assert_ok(point_cloud_write(&cloud, path, NULL, &err) || point_cloud_read(&read, path, &err), err);
+    assert_ok(point_cloud_write(&cloud, path, NULL, &err) || point_cloud_read(&read, path, NULL, &err), err);
     assert_int_equal(read.count, 0);
     point_cloud_release(&read);
     cloud.count = MANY;
@@ -111,7 +111,7 @@ static void assert_rejected(const char *bytes, size_t size, const char *message)
 {
     struct point_cloud cloud = {(struct cloud_point *)two, 7, 1};
     struct err err = ERR_INIT;
-    assert_int_equal(point_cloud_read(&cloud, scratch_write_bytes("broken.ply", bytes, size), &err), ST_DATA);
+    assert_int_equal(point_cloud_read(&cloud, scratch_write_bytes("broken.ply", bytes, size), NULL, &err), ST_DATA);
     assert_err(err, ST_DATA, message);
     assert_contains(err.text, "broken.ply");
     assert_true(!cloud.points && !cloud.count);
@@ -184,10 +184,10 @@ static void a_missing_file_is_named(void **state)
     struct point_cloud cloud;
     struct err err = ERR_INIT;
     (void)state;
-    assert_int_equal(point_cloud_read(&cloud, scratch_path("nowhere.ply"), &err), ST_IO);
+    assert_int_equal(point_cloud_read(&cloud, scratch_path("nowhere.ply"), NULL, &err), ST_IO);
     assert_err(err, ST_IO, "nowhere.ply");
     err = (struct err)ERR_INIT;
-    assert_int_not_equal(point_cloud_read(&cloud, scratch, &err), ST_OK); /* a folder */
+    assert_int_not_equal(point_cloud_read(&cloud, scratch, NULL, &err), ST_OK); /* a folder */
 }
 
 int main(void)

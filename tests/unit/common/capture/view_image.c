@@ -32,7 +32,7 @@ static void assert_rejected(const struct view *view, enum status status, const c
 {
     struct image im;
     struct err err = ERR_INIT;
-    assert_int_equal(view_image_read(&im, scratch, view, &err), status);
+    assert_int_equal(view_image_read(&im, scratch, view, NULL, &err), status);
     assert_err(err, status, message);
     assert_contains(err.text, scratch_path("IMG_1.exr"));
     assert_true(!im.data && !im.width && !im.channels);
@@ -47,7 +47,7 @@ static void a_picture_round_trips(void **state)
         struct image im = make_image(view.width, view.height), back;
         struct err err = ERR_INIT;
         assert_ok(view_image_write(&im, NULL, scratch_path("IMG_1.exr"), &view, NULL, "approximate", &err), err);
-        assert_ok(view_image_read(&back, scratch, &view, &err), err);
+        assert_ok(view_image_read(&back, scratch, &view, NULL, &err), err);
         assert_true(back.width == view.width && back.height == view.height && back.channels == 4);
         assert_memory_equal(back.data, im.data, (size_t)view.width * (size_t)view.height * 4 * sizeof(float));
         image_release(&back);
@@ -84,7 +84,7 @@ static void noise_and_marks_are_channels_that_colour_readers_ignore(void **state
         assert_float_equal(exr_find(&exr, "sigma")->f[i], wanted, 0.016 * wanted);
         assert_float_equal(exr_find(&exr, "clipped")->f[i], i == PIXELS - 1 ? 0 : i % 4, 0);
     }
-    assert_ok(view_image_read(&back, scratch, &view, &err), err);
+    assert_ok(view_image_read(&back, scratch, &view, NULL, &err), err);
     assert_memory_equal(back.data, im.data, PIXELS * 4 * sizeof(float));
     exr_image_release(&exr);
     photo_quality_release(&q);
@@ -101,7 +101,7 @@ static void colours_have_half_precision(void **state)
     (void)state;
     memcpy(im.data, values, sizeof values);
     assert_ok(view_image_write(&im, NULL, scratch_path("IMG_1.exr"), &view, NULL, "approximate", &err), err);
-    assert_ok(view_image_read(&back, scratch, &view, &err), err);
+    assert_ok(view_image_read(&back, scratch, &view, NULL, &err), err);
     for (int i = 0; i < 7; i++) assert_true(fabsf(back.data[i] - values[i]) <= fmaxf(values[i] / 2048, 3e-8F));
     assert_true(back.data[7] == 65504); /* the largest half */
     image_release(&back);
@@ -207,7 +207,7 @@ static void a_failed_write_keeps_the_old_picture(void **state)
                      ST_DATA);
     assert_err(err, ST_DATA, "channel G holds NaN or infinity at pixel (3, 20)");
     err = (struct err)ERR_INIT;
-    assert_ok(view_image_read(&back, scratch_path("keep"), &view, &err), err);
+    assert_ok(view_image_read(&back, scratch_path("keep"), &view, NULL, &err), err);
     assert_int_equal(count_entries(scratch_path("keep")), 1);
     image_release(&back);
     image_release(&im);

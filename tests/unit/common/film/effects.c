@@ -33,7 +33,7 @@ static void make_frame(struct rendered_frame *f)
 static void read_text(struct effects *e, const char *text)
 {
     struct err err = ERR_INIT;
-    assert_ok(effects_read(e, scratch_write("effects.txt", text), &err), err);
+    assert_ok(effects_read(e, scratch_write("effects.txt", text), NULL, &err), err);
 }
 
 static double luminance(const float *c) { return 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2]; }
@@ -113,8 +113,8 @@ static void bad_files_are_refused_with_file_and_line(void **state)
     static const struct {
         const char *text, *line, *words;
     } bad[] = {
-        {"", "an empty file", "wanted remodel-effects 1"},
-        {"remodel-path 1\n", ":1:", "found \"remodel-path\", wanted remodel-effects 1"},
+        {"", "an empty file", "wanted a line \"remodel-effects ...\""},
+        {"remodel-path 1\n", ":1:", "found \"remodel-path\", wanted a line \"remodel-effects ...\""},
         {"remodel-effects 2\n", ":1:", "found \"2\""},
         {HEAD "region all\n", ":2:", "wanted layer"},
         {HEAD "layer\n", ":2:", "the layer's name"},
@@ -172,7 +172,7 @@ static void bad_files_are_refused_with_file_and_line(void **state)
         struct effects e;
         struct err err = ERR_INIT;
         const char *path = scratch_write("bad.txt", bad[i].text);
-        assert_int_equal(effects_read(&e, path, &err), ST_DATA);
+        assert_int_equal(effects_read(&e, path, NULL, &err), ST_DATA);
         assert_err(err, ST_DATA, bad[i].words);
         assert_contains(err.text, bad[i].line);
         assert_contains(err.text, path);
@@ -192,7 +192,7 @@ static void a_written_file_reads_back_the_same(void **state)
               "remodel-effects 1\nlayer \"a \\\"b\\\" #\" color\nregion inside 0.1 0.2 0.3 0.4 0.7 0.9 0.123456789\n"
               "key 0.1 0.3 0.7 1.1\nkey 0.30000000000000004 1 2 3\nlayer b saturation\nregion all\nkey 0 2\n");
     assert_ok(effects_write(&e, path, &prov, &err), err);
-    assert_ok(effects_read(&again, path, &err), err);
+    assert_ok(effects_read(&again, path, NULL, &err), err);
     assert_int_equal(again.layer_count, 2);
     assert_string_equal(again.layers[0].name, "a \"b\" #");
     assert_memory_equal(again.layers[0].keys, e.layers[0].keys, 2 * sizeof *e.layers[0].keys);
@@ -204,7 +204,7 @@ static void a_written_file_reads_back_the_same(void **state)
     assert_int_equal(effects_write(&e, path, &prov, &err), ST_DATA);
     assert_err(err, ST_DATA, "layer 2 of 2");
     struct err more = ERR_INIT; /* the old file is still there */
-    assert_ok(effects_read(&again, path, &more), more);
+    assert_ok(effects_read(&again, path, NULL, &more), more);
     effects_release(&again);
     effects_release(&e);
 }
@@ -262,7 +262,7 @@ static void a_cubic_is_smooth_and_stays_between_its_keys(void **state)
     read_text(&e, "remodel-effects 1\nlayer a brightness\nregion all\ncurve cubic\n"
                   "key 1 0.5\nkey 2 1.5\nkey 4 1\nkey 4.5 1\nkey 7 1\n");
     assert_ok(effects_write(&e, path, NULL, &err), err);
-    assert_ok(effects_read(&again, path, &err), err);
+    assert_ok(effects_read(&again, path, NULL, &err), err);
     assert_int_equal(again.layers[0].curve, EFFECT_CUBIC);
     for (int i = 0; i < 5; i++) {
         double step[2];

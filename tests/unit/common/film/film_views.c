@@ -17,7 +17,7 @@ static struct camera_set scene(void)
     struct camera_set set;
     struct err err = ERR_INIT;
     write_scene();
-    assert_ok(camera_set_read(&set, scratch, &err), err);
+    assert_ok(camera_set_read(&set, scratch, NULL, &err), err);
     return set;
 }
 
@@ -30,14 +30,14 @@ static void kept_views_are_read_back(void **state)
     struct err err = ERR_INIT;
     const char *path = scratch_path("views.txt");
     assert_ok(film_views_write(&set, keep, path, NULL, &err), err);
-    assert_ok(film_views_read(&v, path, &err), err);
+    assert_ok(film_views_read(&v, path, NULL, &err), err);
     assert_false(v.all);
     assert_int_equal(v.count, 2);
     assert_string_equal(v.names[0], "a");
     assert_string_equal(v.names[1], "b@0");
     film_views_release(&v);
     assert_ok(film_views_write(&set, NULL, path, NULL, &err), err);
-    assert_ok(film_views_read(&v, path, &err), err);
+    assert_ok(film_views_read(&v, path, NULL, &err), err);
     assert_true(v.all && !v.count);
     film_views_release(&v);
     camera_set_release(&set);
@@ -120,7 +120,7 @@ static void malformed_files_are_errors_with_their_line(void **state)
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         struct film_views v;
         struct err err = ERR_INIT;
-        assert_int_equal(film_views_read(&v, scratch_write("views.txt", cases[i][0]), &err), ST_DATA);
+        assert_int_equal(film_views_read(&v, scratch_write("views.txt", cases[i][0]), NULL, &err), ST_DATA);
         assert_err(err, ST_DATA, cases[i][1]);
         assert_null(v.names);
     }

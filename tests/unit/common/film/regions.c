@@ -96,7 +96,7 @@ static void a_rectangle_in_no_view_is_an_error_with_its_line(void **state)
 static enum status read_text(struct region_list *l, const char *text, struct err *err)
 {
     *err = (struct err)ERR_INIT;
-    return region_list_read(l, scratch_write("subjects.txt", text), err);
+    return region_list_read(l, scratch_write("subjects.txt", text), NULL, err);
 }
 
 static void lines_are_read_in_order(void **state)

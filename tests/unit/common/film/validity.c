@@ -74,7 +74,7 @@ static void a_written_file_reads_back_to_the_same_bits(void **state)
     const struct provenance prov = {.stage = "sample_validity", .version = "0"};
     for (int i = 0; i < 2; i++) {
         assert_ok(validity_write(&v, path, i ? &prov : NULL, &err), err);
-        assert_ok(validity_read(&again, path, &err), err);
+        assert_ok(validity_read(&again, path, NULL, &err), err);
         assert_same(&v, &again);
         assert_int_equal(validity_region_count(&again.region[0]), 4);
         assert_int_equal(validity_region_count(&again.region[1]), 1);
@@ -99,7 +99,7 @@ static void moves_on_the_axis_read_back_the_same(void **state)
     v.move.move = MOVE_DOLLY_ZOOM;
     v.move.on_axis = true;
     assert_ok(validity_write(&v, path, NULL, &err), err);
-    assert_ok(validity_read(&again, path, &err), err);
+    assert_ok(validity_read(&again, path, NULL, &err), err);
     assert_same(&v, &again);
     validity_release(&again);
     validity_release(&v);
@@ -142,7 +142,7 @@ static enum status read_changed(struct validity *v, int line, const char *text, 
         strcat(whole, i + 1 == line ? text : i < LINES ? valid_lines[i] : "cell 9 9 none");
         strcat(whole, "\n");
     }
-    return validity_read(v, scratch_write("broken.txt", whole), err);
+    return validity_read(v, scratch_write("broken.txt", whole), NULL, err);
 }
 
 static void bad_lines_are_refused_with_file_and_line(void **state)
@@ -152,8 +152,8 @@ static void bad_lines_are_refused_with_file_and_line(void **state)
         int line;
         const char *text, *words;
     } bad[] = {
-        {1, "remodel-path 1", "wanted \"remodel-validity\""},
-        {1, "remodel-validity 2", "found \"2\", wanted version"},
+        {1, "remodel-path 1", "wanted a line \"remodel-validity ...\""},
+        {1, "remodel-validity 2", "found \"2\", wanted the version"},
         {1, "remodel-validity 1 x", "found \"x\""},
         {2, "effect", "an effect"},
         {2, "effect dolly_inn", "did you mean dolly_in?"},
@@ -234,7 +234,7 @@ static void truncated_and_overlong_files_are_refused(void **state)
         assert_true(!v.region[0].cells && !v.region[1].cells);
     }
     struct err err = ERR_INIT;
-    assert_int_equal(validity_read(&v, scratch_path("nowhere.txt"), &err), ST_IO);
+    assert_int_equal(validity_read(&v, scratch_path("nowhere.txt"), NULL, &err), ST_IO);
     assert_contains(err.text, "nowhere.txt");
 }
 

@@ -19,7 +19,7 @@ static void lamps_and_openings_are_read(void **state)
                                       "# a comment\n" DISK "quad panel 0 0 2.5 0.5 0 0 0 -0.25 0 16 15 14 90 0 bound\n"
                                       "opening window-1 0 1 1.5 0 0.5 0 0 0 0.75 reference lri_1 \"a b\"\n"
                                       "opening bare 0 1 1.5 0 0.5 0 0 0 0.75\n"),
-                        &err),
+                        NULL, &err),
         err);
     assert_int_equal(l.lamp_count, 2);
     assert_string_equal(l.lamps[0].name, "spot");
@@ -61,7 +61,7 @@ static void what_is_written_is_read_back(void **state)
     struct light_list l;
     struct err err = ERR_INIT;
     assert_ok(light_list_write(&written, scratch_path("written.txt"), NULL, &err), err);
-    assert_ok(light_list_read(&l, scratch_path("written.txt"), &err), err);
+    assert_ok(light_list_read(&l, scratch_path("written.txt"), NULL, &err), err);
     assert_string_equal(l.lamps[0].name, "a b");
     assert_true(same_vector(l.lamps[0].centre, lamps[0].centre) && same_vector(l.lamps[0].normal, n));
     assert_true(l.lamps[0].radiance.r == 260.1 && l.lamps[0].exponent == 1.0 / 3 && l.lamps[0].bound);
@@ -106,7 +106,7 @@ static void damaged_lines_are_refused(void **state)
         struct light_list l;
         struct err err = ERR_INIT;
         const char *path = scratch_write("bad.txt", cases[i].text);
-        assert_int_equal(light_list_read(&l, path, &err), ST_DATA);
+        assert_int_equal(light_list_read(&l, path, NULL, &err), ST_DATA);
         assert_non_null(strstr(err.text, path));
         if (!strstr(err.text, cases[i].wanted)) fail_msg("case %zu says: %s", i, err.text);
         assert_null(l.lamps);

@@ -31,9 +31,9 @@ static void what_is_written_is_read_back(void **state)
                             "region floor v07 0 0 10 0 10 10\n"
                             "region floor v08@1 0.5 0 10 0 10 10 0 10\n"
                             "material wall lambert 0.2 0.2 0.2 0 0\n");
-    assert_int_equal(material_list_read(&l, path, &err), ST_OK);
+    assert_int_equal(material_list_read(&l, path, NULL, &err), ST_OK);
     assert_int_equal(material_list_write(&l, path, &prov, &err), ST_OK);
-    assert_int_equal(material_list_read(&again, path, &err), ST_OK);
+    assert_int_equal(material_list_read(&again, path, NULL, &err), ST_OK);
     assert_int_equal(again.count, 2);
     const struct material *m = material_list_find(&again, "floor");
     assert_non_null(m);
@@ -88,7 +88,7 @@ static void damaged_lines_are_refused_with_file_and_line(void **state)
         struct err err = ERR_INIT;
         char text[200];
         snprintf(text, sizeof text, "remodel-materials 1\n%s\n", lines[i][0]);
-        assert_int_equal(material_list_read(&l, file(text), &err), ST_DATA);
+        assert_int_equal(material_list_read(&l, file(text), NULL, &err), ST_DATA);
         assert_non_null(strstr(err.text, "materials.txt:2:"));
         assert_non_null(strstr(err.text, lines[i][1]));
         assert_int_equal(l.count, 0);
@@ -103,7 +103,7 @@ static void a_name_twice_is_refused(void **state)
     assert_int_equal(material_list_read(&l,
                                         file("remodel-materials 1\nmaterial a lambert 0 0 0 0 0\n"
                                              "material a lambert 0 0 0 0 0\n"),
-                                        &err),
+                                        NULL, &err),
                      ST_DATA);
     assert_non_null(strstr(err.text, "materials.txt:3:"));
 }

@@ -198,6 +198,46 @@ static void provenance_is_in_the_file(void **state)
     provenance_release(&prov);
 }
 
+static void a_product_is_read_once_and_recorded(void **state)
+{
+    static const char *const names[] = {"R", "Z"};
+    struct err err = ERR_INIT;
+    struct exr_image im = sample(65, 33), plain, in;
+    struct provenance prov = {0};
+    const char *path = scratch_path("views/a.exr");
+    char hash[HASH_TEXT];
+    (void)state;
+    assert_ok(exr_write(&im, path, NULL, &err), err);
+    assert_ok(exr_read(&plain, path, names, 2, &err), err);
+    for (int i = 0; i < 2; i++) { /* the second time from the file, as it is recorded */
+        assert_ok(exr_read_product(&in, PRODUCT_VIEW, path, names, 2, &prov, &err), err);
+        for (int k = 0; k < 2; k++) {
+            const struct exr_plane *a = exr_find(&plain, names[k]), *b = exr_find(&in, names[k]);
+            assert_memory_equal(a->f, b->f, 65 * 33 * sizeof *a->f);
+        }
+        exr_image_release(&in);
+        assert_int_equal(prov.count, 1);
+    }
+    assert_string_equal(prov.inputs[0].name, "views/a.exr");
+    assert_ok(hash_file(hash, path, &err), err);
+    assert_string_equal(prov.inputs[0].hash, hash);
+    provenance_keep(&prov, 0);
+    scratch_write("views/b.exr", "no picture");
+    assert_int_equal(exr_read_product(&in, PRODUCT_VIEW, scratch_path("views/b.exr"), names, 2, &prov, &err), ST_DATA);
+    assert_err(err, ST_DATA, "not OpenEXR");
+    size_t size;
+    char *bytes = file_bytes(path, &size);
+    scratch_write_bytes("views/c.exr", bytes, size / 2);
+    free(bytes);
+    err = (struct err)ERR_INIT;
+    assert_int_equal(exr_read_product(&in, PRODUCT_VIEW, scratch_path("views/c.exr"), names, 2, &prov, &err), ST_DATA);
+    assert_err(err, ST_DATA, "make it again");
+    assert_int_equal(in.count, 0);
+    exr_image_release(&plain);
+    exr_image_release(&im);
+    provenance_release(&prov);
+}
+
 static void rgba_images_and_numeric_attributes(void **state)
 {
     const float rgba[] = {0, 0.5f, 1, 0.25f, 2, 4, 8, 0.75f};
@@ -339,7 +379,7 @@ static void view_images_are_written(void **state)
     assert_ok(image_init(&im, 17, 33, 4, &err), err);
     for (int i = 0; i < 17 * 33 * 4; i++) im.data[i] = (float)(i % 1000) / 512;
     assert_ok(view_image_write(&im, NULL, scratch_path("IMG_1.exr"), &view, NULL, "approximate", &err), err);
-    assert_ok(view_image_read(&in, scratch, &view, &err), err);
+    assert_ok(view_image_read(&in, scratch, &view, NULL, &err), err);
     assert_int_equal(in.channels, 4);
     assert_memory_equal(in.data, im.data, 17 * 33 * 4 * sizeof(float));
     image_release(&in);
@@ -351,7 +391,7 @@ static void view_images_are_written(void **state)
     exr_image_release(&exr);
 
     view.width = 16;
-    assert_int_equal(view_image_read(&in, scratch, &view, &err), ST_DATA);
+    assert_int_equal(view_image_read(&in, scratch, &view, NULL, &err), ST_DATA);
     assert_err(err, ST_DATA, "17 x 33");
     image_release(&im);
 }
@@ -382,6 +422,7 @@ int main(void)
         cmocka_unit_test(bytes_do_not_depend_on_threads_or_channel_order),
         cmocka_unit_test(invalid_samples_keep_the_old_file),
         cmocka_unit_test(provenance_is_in_the_file),
+        cmocka_unit_test(a_product_is_read_once_and_recorded),
         cmocka_unit_test(rgba_images_and_numeric_attributes),
         cmocka_unit_test(names_and_sizes_have_limits),
         cmocka_unit_test(foreign_codecs_and_layouts_are_read),

@@ -32,7 +32,7 @@ static void srgb_is_the_default(void **state)
     free(eight);
     free(sixteen);
     struct response read;
-    assert_ok(response_read(&read, scratch_write("srgb.txt", "remodel-response 1\ncurve srgb\n"), &err), err);
+    assert_ok(response_read(&read, scratch_write("srgb.txt", "remodel-response 1\ncurve srgb\n"), NULL, &err), err);
     assert_false(read.table);
 }
 
@@ -41,7 +41,7 @@ static void a_table_is_interpolated(void **state)
     struct response r;
     struct err err = ERR_INIT;
     (void)state;
-    assert_ok(response_read(&r, write_table(256), &err), err);
+    assert_ok(response_read(&r, write_table(256), NULL, &err), err);
     assert_true(r.table);
     for (int i = 0; i <= 1000; i++) {
         const double s = i / 1000.0, light[3] = {(s + s * s * s) / 2, s * s, s * s * s};
@@ -57,7 +57,7 @@ static void refused(const char *text, const char *words)
 {
     struct response r;
     struct err err = ERR_INIT;
-    assert_int_equal(response_read(&r, scratch_write("bad.txt", text), &err), ST_DATA);
+    assert_int_equal(response_read(&r, scratch_write("bad.txt", text), NULL, &err), ST_DATA);
     assert_err(err, ST_DATA, words);
     assert_contains(err.text, "bad.txt:");
     assert_false(r.table);
@@ -76,7 +76,7 @@ static void invalid_curves_are_refused(void **state)
             "wanted a curve that does not fall (red)");
     refused("remodel-response 1\ncurve table 256\n0 0 -1\n", "wanted light");
     refused("remodel-response 1\ncurve srgb\nmore\n", "wanted the end of the file");
-    assert_int_equal(response_read(&r, write_table(200), &err), ST_DATA);
+    assert_int_equal(response_read(&r, write_table(200), NULL, &err), ST_DATA);
     assert_err(err, ST_DATA, "256 lines \"R G B\", not 200");
 }
 

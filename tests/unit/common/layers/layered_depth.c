@@ -87,13 +87,13 @@ static void a_depth_map_round_trips(void **state)
         struct err err = ERR_INIT;
         const char *path = scratch_path("made/deeper/IMG_1.exr");
         assert_ok(layered_depth_write(&d, &view, path, NULL, &err), err);
-        assert_ok(layered_depth_read(&back, path, &err), err);
+        assert_ok(layered_depth_read(&back, path, NULL, &err), err);
         assert_true(back.width == d.width && back.height == d.height);
         assert_same_layer(&back.interior, &d.interior, (size_t)d.width * (size_t)d.height);
         assert_same_layer(&back.boundary, &d.boundary, (size_t)d.width * (size_t)d.height);
         assert_same_segments(&d, &back);
 
-        assert_ok(layered_depth_read_segments(&listed, scratch_path("made/deeper/IMG_1.txt"), &err), err);
+        assert_ok(layered_depth_read_segments(&listed, scratch_path("made/deeper/IMG_1.txt"), NULL, &err), err);
         assert_true(listed.width == d.width && listed.height == d.height);
         assert_true(!listed.interior.z && !listed.boundary.rgba);
         assert_same_segments(&d, &listed);
@@ -111,7 +111,7 @@ static void a_view_without_segments_is_a_valid_depth_map(void **state)
     assert_ok(layered_depth_init(&d, 3, 2, &err), err);
     assert_ok(layered_depth_write(&d, NULL, scratch_path("none.exr"), NULL, &err), err);
     assert_file_text(scratch_path("none.txt"), "remodel-segments 1\nsize 3 2\nsegments 0\n");
-    assert_ok(layered_depth_read(&back, scratch_path("none.exr"), &err), err);
+    assert_ok(layered_depth_read(&back, scratch_path("none.exr"), NULL, &err), err);
     assert_int_equal(back.segment_count, 0);
     for (int i = 0; i < 6; i++) assert_true(back.interior.id[i] == 0 && back.boundary.z[i] == 0);
     layered_depth_release(&back);
@@ -213,7 +213,7 @@ static void provenance_and_camera_are_in_both_files(void **state)
     assert_non_null(memmem(bytes, size, "segment_depth", 13));
     assert_non_null(memmem(bytes, size, "views/IMG_1.exr", 15));
 
-    assert_ok(layered_depth_read(&back, scratch_path("p.exr"), &err), err); /* the reader skips comments */
+    assert_ok(layered_depth_read(&back, scratch_path("p.exr"), NULL, &err), err); /* the reader skips comments */
     layered_depth_release(&back);
     layered_depth_release(&d);
     provenance_release(&prov);
@@ -230,9 +230,9 @@ static void errors_of_a_list_name_the_line(void **state)
     static const struct {
         const char *text, *words;
     } bad[] = {
-        {"", "d.txt: found an empty file, wanted a line 'remodel-segments ...'"},
-        {"remodel-lenses 1\n", "d.txt:1: found \"remodel-lenses\", wanted 'remodel-segments'"},
-        {"remodel-segments 2\n", "d.txt:1: found \"2\", wanted version"},
+        {"", "d.txt: found an empty file, wanted a line \"remodel-segments ...\""},
+        {"remodel-lenses 1\n", "d.txt:1: found \"remodel-lenses\", wanted a line \"remodel-segments ...\""},
+        {"remodel-segments 2\n", "d.txt:1: found \"2\", wanted the version"},
         {"remodel-segments 1 x\n", "d.txt:1: found \"x\", wanted the end of the line"},
         {"remodel-segments 1\n", "d.txt:1: found the end of the file, wanted a line 'size ...'"},
         {"remodel-segments 1\nsegments 0\n", "d.txt:2: found \"segments\", wanted 'size'"},
@@ -274,21 +274,22 @@ static void errors_of_a_list_name_the_line(void **state)
         scratch_write("d.txt", bad[i].text);
         snprintf(words, sizeof words, "%s/%s", scratch, bad[i].words);
         err = (struct err)ERR_INIT;
-        assert_int_equal(layered_depth_read_segments(&d, path, &err), ST_DATA);
+        assert_int_equal(layered_depth_read_segments(&d, path, NULL, &err), ST_DATA);
         assert_err(err, ST_DATA, words);
         assert_true(is_empty(&d));
         err = (struct err)ERR_INIT;
-        assert_int_equal(layered_depth_read(&d, picture, &err), ST_DATA);
+        assert_int_equal(layered_depth_read(&d, picture, NULL, &err), ST_DATA);
         assert_err(err, ST_DATA, words);
         assert_true(is_empty(&d));
     }
     scratch_write_bytes("d.txt", HEAD "segments 1\n1 2 0.5\0 0 0.25 0.01 1\n", 60);
     err = (struct err)ERR_INIT;
-    assert_int_equal(layered_depth_read_segments(&d, path, &err), ST_DATA);
+    assert_int_equal(layered_depth_read_segments(&d, path, NULL, &err), ST_DATA);
     assert_err(err, ST_DATA, "d.txt:4: found");
     /* the last line may lack its line end, even if its numbers are short */
     err = (struct err)ERR_INIT;
-    assert_ok(layered_depth_read_segments(&d, scratch_write("d.txt", HEAD "segments 1\n1 0 0 0 0 0 0"), &err), err);
+    assert_ok(layered_depth_read_segments(&d, scratch_write("d.txt", HEAD "segments 1\n1 0 0 0 0 0 0"), NULL, &err),
+              err);
     assert_int_equal(d.segment_count, 1);
     layered_depth_release(&d);
 }
@@ -313,7 +314,7 @@ static void assert_refused(const char *path, enum status status, const char *wor
 {
     struct layered_depth d;
     struct err err = ERR_INIT;
-    assert_int_equal(layered_depth_read(&d, path, &err), status);
+    assert_int_equal(layered_depth_read(&d, path, NULL, &err), status);
     assert_err(err, status, words);
     assert_true(is_empty(&d));
 }
@@ -436,7 +437,7 @@ static void ids_can_be_read_without_the_other_channels(void **state)
         struct err err = ERR_INIT;
         const char *path = scratch_path("ids.exr");
         assert_ok(layered_depth_write(&d, &view, path, NULL, &err), err);
-        assert_ok(layered_depth_read_ids(&back, path, &err), err);
+        assert_ok(layered_depth_read_ids(&back, path, NULL, &err), err);
         assert_true(back.width == d.width && back.height == d.height);
         assert_memory_equal(back.interior.id, d.interior.id,
                             (size_t)d.width * (size_t)d.height * sizeof *d.interior.id);
@@ -453,7 +454,7 @@ static void assert_ids_refused(const char *path, enum status status, const char 
 {
     struct layered_depth d = {0};
     struct err err = ERR_INIT;
-    assert_int_equal(layered_depth_read_ids(&d, path, &err), status);
+    assert_int_equal(layered_depth_read_ids(&d, path, NULL, &err), status);
     assert_err(err, status, words);
     assert_true(is_empty(&d));
 }
@@ -488,7 +489,7 @@ static void invalid_ids_are_rejected(void **state)
     d.boundary.id[0] = 77; /* not read */
     assert_ok(layered_depth_write(&d, &view, scratch_path("ids.exr"), NULL, &err), err);
     struct layered_depth back = {0};
-    assert_ok(layered_depth_read_ids(&back, scratch_path("ids.exr"), &err), err);
+    assert_ok(layered_depth_read_ids(&back, scratch_path("ids.exr"), NULL, &err), err);
     layered_depth_release(&back);
 
     char *bytes = file_bytes(scratch_path("ids.exr"), &size);

@@ -18,7 +18,7 @@ static void what_is_written_is_read_back(void **state)
     char *again = NULL;
     size_t size = 0;
     (void)state;
-    assert_ok(object_list_read(&list, scratch_write("a.txt", text), &err), err);
+    assert_ok(object_list_read(&list, scratch_write("a.txt", text), NULL, &err), err);
     assert_int_equal(list.count, 3);
     assert_string_equal(list.items[0].file, "meshes/chair-2.obj");
     assert_true(list.items[0].matrix[1][3] == 3 && list.items[0].brdf.kind == BRDF_LAMBERT);
@@ -41,7 +41,7 @@ static void an_empty_list_is_read_back(void **state)
     struct err err = ERR_INIT;
     (void)state;
     assert_ok(object_list_write(&list, scratch_path("empty.txt"), NULL, &err), err);
-    assert_ok(object_list_read(&list, scratch_path("empty.txt"), &err), err);
+    assert_ok(object_list_read(&list, scratch_path("empty.txt"), NULL, &err), err);
     assert_int_equal(list.count, 0);
     object_list_release(&list);
 }
@@ -72,7 +72,7 @@ static void what_is_wrong_is_named_with_its_line(void **state)
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         struct object_list list;
         struct err err = ERR_INIT;
-        assert_int_not_equal(object_list_read(&list, scratch_write("a.txt", cases[i][0]), &err), ST_OK);
+        assert_int_not_equal(object_list_read(&list, scratch_write("a.txt", cases[i][0]), NULL, &err), ST_OK);
         assert_err(err, ST_DATA, cases[i][1]);
         assert_err(err, ST_DATA, "a.txt:");
         assert_true(!list.items && !list.count);

@@ -80,7 +80,7 @@ static void a_written_file_is_read_back_exactly(void **state)
             a.scale_error = a.ceiling = a.ceiling_error = 0;
         }
         assert_ok(model_axes_write(&a, path, NULL, &err), err);
-        assert_ok(model_axes_read(&b, path, &err), err);
+        assert_ok(model_axes_read(&b, path, NULL, &err), err);
         assert_memory_equal(&a.rotation, &b.rotation, sizeof a.rotation);
         assert_memory_equal(&a.translation, &b.translation, sizeof a.translation);
         assert_true(a.scale == b.scale && a.metric == b.metric && a.ceiling == b.ceiling &&
@@ -117,13 +117,13 @@ static void errors_in_files_name_the_line(void **state)
         struct model_axes a;
         struct err err = ERR_INIT;
         const char *path = scratch_write("axes.txt", cases[i].text);
-        assert_int_equal(model_axes_read(&a, path, &err), ST_DATA);
+        assert_int_equal(model_axes_read(&a, path, NULL, &err), ST_DATA);
         assert_err(err, ST_DATA, cases[i].words);
         assert_true(a.scale == 0);
     }
     struct model_axes a;
     struct err err = ERR_INIT;
-    assert_ok(model_axes_read(&a, scratch_write("axes.txt", WHOLE), &err), err);
+    assert_ok(model_axes_read(&a, scratch_write("axes.txt", WHOLE), NULL, &err), err);
 }
 
 int main(void)

@@ -27,7 +27,7 @@ static void a_plan_is_read_whole(void **state)
                                       "gable a ceiling 3.2 -0.1 0\n"
                                       "skylight sky on a from 1 2 to 2 3 closed\nhatch down on a from 3 1 to 4 2 open\n"
                                       "box b 0 0 0 1 2 3 turn 30\nlamp is of a later version\n"),
-                        &err),
+                        NULL, &err),
         err);
     assert_int_equal(plan.wall_count, 3);
     assert_int_equal(plan.walls[1].ends[0], MODEL_WALL_MEETS);
@@ -80,7 +80,7 @@ static void damaged_lines_are_refused(void **state)
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         struct model_plan plan;
         struct err err = ERR_INIT;
-        assert_int_equal(model_plan_read(&plan, scratch_write("plan.txt", cases[i].text), &err), ST_DATA);
+        assert_int_equal(model_plan_read(&plan, scratch_write("plan.txt", cases[i].text), NULL, &err), ST_DATA);
         assert_err(err, ST_DATA, cases[i].error);
         assert_int_equal(plan.wall_count + plan.room_count, 0);
     }

@@ -356,7 +356,7 @@ static void a_written_mesh_is_read_back_exactly(void **state)
     const int ids[4] = {7, 3, 20, 4};
     assert_ok(solid_mesh_set_ids(&m, ids, &err), err);
     assert_ok(solid_mesh_write(&m, scratch_path("a.txt"), NULL, &err), err);
-    assert_ok(solid_mesh_read(&again, scratch_path("a.txt"), &err), err);
+    assert_ok(solid_mesh_read(&again, scratch_path("a.txt"), NULL, &err), err);
     assert_int_equal(again.face_count, m.face_count);
     assert_int_equal(again.names[0].id, 3);
     assert_int_equal(again.names[3].id, 20);
@@ -382,7 +382,7 @@ static void an_empty_mesh_is_valid(void **state)
     struct solid_mesh m = {0};
     struct err err = ERR_INIT;
     assert_ok(solid_mesh_write(&m, scratch_path("e.txt"), NULL, &err), err);
-    assert_ok(solid_mesh_read(&m, scratch_path("e.txt"), &err), err);
+    assert_ok(solid_mesh_read(&m, scratch_path("e.txt"), NULL, &err), err);
     assert_ok(solid_mesh_check(&m, 0, NULL, &err), err);
     solid_mesh_release(&m);
 }
@@ -416,17 +416,18 @@ static void errors_in_files_name_the_line(void **state)
         struct solid_mesh m = {0};
         struct err err = ERR_INIT;
         const char *path = scratch_write("bad.txt", cases[i].text);
-        if (solid_mesh_read(&m, path, &err) == ST_OK) fail_msg("case %zu was read", i);
+        if (solid_mesh_read(&m, path, NULL, &err) == ST_OK) fail_msg("case %zu was read", i);
         assert_err(err, ST_DATA, cases[i].words);
         assert_contains(err.text, "bad.txt");
         assert_null(m.vertices);
     }
     struct solid_mesh m = {0};
     struct err err = ERR_INIT;
-    assert_ok(solid_mesh_read(&m, scratch_write("good.txt", TETRA "face 4 s 1 0 0 0 1\nloop 3 1 2 3\n"), &err), err);
+    assert_ok(solid_mesh_read(&m, scratch_write("good.txt", TETRA "face 4 s 1 0 0 0 1\nloop 3 1 2 3\n"), NULL, &err),
+              err);
     assert_int_equal(m.face_count, 4);
     solid_mesh_release(&m);
-    assert_int_equal(solid_mesh_read(&m, scratch_path("none.txt"), &err), ST_IO);
+    assert_int_equal(solid_mesh_read(&m, scratch_path("none.txt"), NULL, &err), ST_IO);
 }
 
 int main(void)

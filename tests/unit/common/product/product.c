@@ -138,6 +138,80 @@ static void test_keys_and_stages(void **state)
     assert_string_equal(pattern, "FILM/pan_scan/frames/NNNN.exr");
 }
 
+static void test_a_path_names_the_product_in_the_provenance(void **state)
+{
+    (void)state;
+    assert_string_equal(product_name(PRODUCT_VIEW, "/x/out/s+draft/views/a.exr"), "views/a.exr");
+    assert_string_equal(product_name(PRODUCT_MODEL, "out/s/remodel/e/model.txt"), "remodel/e/model.txt");
+    assert_string_equal(product_name(PRODUCT_MODEL, "model/model.txt"), "model/model.txt");
+    assert_string_equal(product_name(PRODUCT_MODEL, "/tmp/test/model.txt"), "model.txt");
+    assert_string_equal(product_name(PRODUCT_MODEL, "model.txt"), "model.txt");
+    assert_string_equal(product_name(PRODUCT_OVERLAY, "/tmp/test/overlay/a.jpg"), "overlay/a.jpg");
+    assert_string_equal(product_name(PRODUCT_OVERLAY, "a.jpg"), "a.jpg");
+    assert_string_equal(product_name(PRODUCT_COUNT, "/tmp/test/views/a.exr"), "a.exr");
+}
+
+static void test_a_text_product_is_written_and_read(void **state)
+{
+    (void)state;
+    struct provenance maker = {.stage = "s", .version = "1"}, prov = {0};
+    struct err err = ERR_INIT;
+    struct textfile t = {0};
+    struct outfile f = {0};
+    const char *path = scratch_path("model/axes.txt");
+    char hash[HASH_TEXT];
+    int version = 0;
+
+    assert_ok(product_begin(&f, PRODUCT_AXES, path, &maker, &err), err);
+    fputs("more\n", f.fp);
+    assert_ok(outfile_commit(&f, &err), err);
+    outfile_discard(&f);
+    assert_file_text(path, "# remodel s 1\nremodel-axes 1\nmore\n");
+
+    assert_ok(product_open(&t, &version, PRODUCT_AXES, path, &prov, &err), err);
+    assert_int_equal(version, 1);
+    assert_true(textfile_next(&t));
+    assert_ok(textfile_expect(&t, "more", &err), err);
+    textfile_release(&t);
+    assert_int_equal(prov.count, 1);
+    assert_string_equal(prov.inputs[0].name, "model/axes.txt");
+    assert_ok(hash_file(hash, path, &err), err);
+    assert_string_equal(prov.inputs[0].hash, hash);
+    assert_ok(product_open(&t, NULL, PRODUCT_AXES, path, &prov, &err), err);
+    textfile_release(&t);
+    assert_int_equal(prov.count, 1);
+    provenance_release(&prov);
+}
+
+static void test_another_first_line_is_refused(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text, *wanted;
+    } cases[] = {
+        {"remodel-axis 1\n", "found \"remodel-axis\", wanted a line \"remodel-axes ...\""},
+        {"remodel-axes 2\n", "found \"2\", wanted the version, an integer from 1 to 1"},
+        {"remodel-axes 1 1\n", "wanted the end of the line"},
+        {"", "empty file"},
+    };
+
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        struct err err = ERR_INIT;
+        struct textfile t = {0};
+        const char *path = scratch_write("axes.txt", cases[i].text);
+        assert_int_equal(product_open(&t, NULL, PRODUCT_AXES, path, NULL, &err), ST_DATA);
+        assert_err(err, ST_DATA, cases[i].wanted);
+        assert_null(t.bytes);
+    }
+    struct err err = ERR_INIT;
+    struct textfile t = {0};
+    int version = 0;
+    const char *path = scratch_write("plan.txt", "# of an earlier release\nremodel-plan 1\n");
+    assert_ok(product_open(&t, &version, PRODUCT_PLAN, path, NULL, &err), err);
+    assert_int_equal(version, 1);
+    textfile_release(&t);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -146,6 +220,9 @@ int main(void)
         cmocka_unit_test(test_a_path_says_which_product_it_is),
         cmocka_unit_test(test_each_row_is_found_by_its_own_path),
         cmocka_unit_test(test_keys_and_stages),
+        cmocka_unit_test(test_a_path_names_the_product_in_the_provenance),
+        cmocka_unit_test(test_a_text_product_is_written_and_read),
+        cmocka_unit_test(test_another_first_line_is_refused),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return cmocka_run_group_tests_name("product", tests, scratch_make, scratch_remove);
 }

@@ -159,8 +159,8 @@ static void the_files_of_both_models_are_inputs(void **state)
     edit_write(&e);
     e.files.edited_vita = e.files.vita;
     assert_ok(light_change_read(&c, &e.files, &prov, &err), err);
-    static const char *const names[] = {"model/model.txt",  "model/axes.txt",         "edit/model.txt",
-                                        "edit/texture.txt", "relight/vita/page0.exr", "vita/page0.exr"};
+    static const char *const names[] = {"base.txt",    "axes.txt",       "edited.txt",
+                                        "texture.txt", "vita/atlas.txt", "vita/page0.exr"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
         if (!is_input(&prov, names[i])) fail_msg("%s is not an input", names[i]);
     provenance_release(&prov);

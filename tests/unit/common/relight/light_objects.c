@@ -61,7 +61,7 @@ static void light_is_read_as_it_was_written_and_gives_radiance(void **state)
     for (int i = 0; i < o.element_count; i++) o.elements[i].irradiance = rgb_make(i, 0.1 * i, 3);
     assert_ok(light_objects_write_light(&o, path, &prov, &err), err);
     read_cube(&p, 1);
-    assert_ok(light_objects_read_light(&p, path, &err), err);
+    assert_ok(light_objects_read_light(&p, path, NULL, &err), err);
     for (int i = 0; i < p.count; i++)
         for (int side = 0; side < 2; side++) {
             const struct rgb e = o.elements[o.element[i][side]].irradiance, l = p.radiance[i][side];
@@ -71,7 +71,7 @@ static void light_is_read_as_it_was_written_and_gives_radiance(void **state)
         }
     light_objects_release(&p);
     read_cube(&p, 0.5);
-    assert_int_equal(light_objects_read_light(&p, path, &err), ST_DATA);
+    assert_int_equal(light_objects_read_light(&p, path, NULL, &err), ST_DATA);
     assert_contains(err.text, "update the VITA again");
     light_objects_release(&p);
     light_objects_release(&o);
@@ -91,7 +91,7 @@ static void damaged_light_is_refused_with_its_line(void **state)
     read_cube(&o, 1);
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         struct err err = ERR_INIT;
-        assert_int_equal(light_objects_read_light(&o, scratch_write("bad.txt", bad[i].text), &err), ST_DATA);
+        assert_int_equal(light_objects_read_light(&o, scratch_write("bad.txt", bad[i].text), NULL, &err), ST_DATA);
         assert_err(err, ST_DATA, bad[i].says);
     }
     light_objects_release(&o);

@@ -363,7 +363,7 @@ static void an_atlas_that_is_read_and_written_again_has_the_same_bytes(void **st
     make_atlas(&a, &pages);
     assert_true(a.page_count > 1);
     assert_ok(atlas_write(&a, pages, scratch_path("one"), &prov, &err), err);
-    assert_ok(atlas_read(&b, scratch_path("one"), &err), err);
+    assert_ok(atlas_read(&b, scratch_path("one"), NULL, &err), err);
     assert_int_equal(b.tile_count, a.tile_count);
     assert_memory_equal(b.tiles, a.tiles, (size_t)a.tile_count * sizeof *a.tiles);
     assert_memory_equal(&b.centre, &a.centre, sizeof a.centre);
@@ -371,7 +371,7 @@ static void an_atlas_that_is_read_and_written_again_has_the_same_bytes(void **st
     assert_int_equal(b.view_count, 2);
     for (int i = 0; i < a.page_count; i++) {
         struct atlas_page p;
-        assert_ok(atlas_page_read(&p, &b, i, scratch_path("one"), &err), err);
+        assert_ok(atlas_page_read(&p, &b, i, scratch_path("one"), NULL, &err), err);
         const size_t texels = (size_t)p.width * (size_t)p.height;
         assert_memory_equal(p.rgb, pages[i].rgb, 3 * texels * sizeof *p.rgb);
         assert_memory_equal(p.source, pages[i].source, texels * sizeof *p.source);
@@ -404,7 +404,7 @@ static void tiles_are_written_in_order(void **state)
     a.tiles[a.tile_count - 1] = a.tiles[0];
     a.tiles[0] = last;
     assert_ok(atlas_write_list(&a, scratch_path("order"), NULL, &err), err);
-    assert_ok(atlas_read(&b, scratch_path("order"), &err), err);
+    assert_ok(atlas_read(&b, scratch_path("order"), NULL, &err), err);
     for (int i = 1; i < b.tile_count; i++) assert_true(b.tiles[i - 1].face <= b.tiles[i].face);
     assert_memory_equal(&b.tiles[b.tile_count - 1], &last, sizeof last);
     atlas_release(&b);
@@ -439,7 +439,7 @@ static void assert_refused(const char *text, int line, const char *words)
     char where[64];
     if (mkdir(scratch_path("bad"), 0777) && errno != EEXIST) fail_msg("no folder");
     scratch_write("bad/atlas.txt", text);
-    assert_int_equal(atlas_read(&a, scratch_path("bad"), &err), ST_DATA);
+    assert_int_equal(atlas_read(&a, scratch_path("bad"), NULL, &err), ST_DATA);
     assert_null(a.tiles);
     snprintf(where, sizeof where, "bad/atlas.txt:%d:", line);
     assert_err(err, ST_DATA, where);
@@ -474,7 +474,7 @@ static void a_damaged_list_is_refused_with_its_line(void **state)
     assert_refused("remodel-atlas 1\nview P\nsource P\n", 3, "a viewpoint before its views");
     assert_refused("remodel-atlas 1\nviewpoint P 0 0 inf\nview P\n", 2, "Z");
     scratch_write("bad/atlas.txt", HEAD "tile 1 0 0 0 0 40 30 " MATRIX "tile 1 0 1 4 4 1 1 " MATRIX);
-    assert_ok(atlas_read(&a, scratch_path("bad"), &err), err);
+    assert_ok(atlas_read(&a, scratch_path("bad"), NULL, &err), err);
     assert_int_equal(a.tile_count, 2);
     atlas_release(&a);
 }
@@ -498,12 +498,12 @@ static void assert_page_refused(float red, float alpha, uint32_t source, const c
     if (mkdir(scratch_path("page"), 0777) && errno != EEXIST) fail_msg("no folder");
     assert_ok(exr_write(&im, scratch_path("page/page0.exr"), &prov, &err), err);
     exr_image_release(&im);
-    const enum status st = atlas_page_read(&p, &a, 0, scratch_path("page"), &err);
+    const enum status st = atlas_page_read(&p, &a, 0, scratch_path("page"), NULL, &err);
     if (!words) {
         assert_ok(st, err);
         size[0][1] = 2;
         atlas_page_release(&p);
-        assert_int_equal(atlas_page_read(&p, &a, 0, scratch_path("page"), &err), ST_DATA);
+        assert_int_equal(atlas_page_read(&p, &a, 0, scratch_path("page"), NULL, &err), ST_DATA);
         assert_err(err, ST_DATA, "atlas.txt says 2 x 2");
         return;
     }
@@ -534,7 +534,7 @@ static void negative_colours_are_written_as_0(void **state)
     set_texel(&p, 0, 0, ATLAS_SYNTHESISED, -0.001f);
     assert_ok(atlas_write_page(&p, scratch_path("negative"), 0, &prov, &err), err);
     atlas_page_release(&p);
-    assert_ok(atlas_page_read(&p, &a, 0, scratch_path("negative"), &err), err);
+    assert_ok(atlas_page_read(&p, &a, 0, scratch_path("negative"), NULL, &err), err);
     assert_float_equal(p.rgb[0], 0, 0);
     assert_float_equal(p.rgb[2], 0.5, 0);
     atlas_page_release(&p);

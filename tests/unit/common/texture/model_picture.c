@@ -40,7 +40,7 @@ static void a_picture_is_read_as_it_was_written(void **state)
     struct err err = ERR_INIT;
     const char *path = scratch_path("p.exr");
     assert_ok(model_picture_write(&p, &camera, path, &prov, &err), err);
-    assert_ok(model_picture_read(&q, path, &err), err);
+    assert_ok(model_picture_read(&q, path, NULL, &err), err);
     assert_int_equal(q.width, 5);
     assert_int_equal(q.height, 4);
     assert_memory_equal(p.rgb, q.rgb, 60 * sizeof *p.rgb);
@@ -79,7 +79,7 @@ static void refuse(void (*spoil)(struct model_picture *p))
     const char *path = scratch_path("bad.exr");
     spoil(&p);
     assert_ok(model_picture_write(&p, &camera, path, &prov, &err), err);
-    assert_int_not_equal(model_picture_read(&q, path, &err), ST_OK);
+    assert_int_not_equal(model_picture_read(&q, path, NULL, &err), ST_OK);
     assert_err(err, ST_DATA, "pixel (2, 1)");
     assert_null(q.rgb);
     model_picture_release(&p);

@@ -142,7 +142,7 @@ static void a_picture_is_read_back_as_it_was_written(void **state)
     for (int i = 0; i < 3 * 8 * 16; i++) o.rgb[i] = (float)i / 4; /* exact in half */
     for (int i = 0; i < 8 * 16; i++) o.source[i] = (uint8_t)(i % 3);
     assert_ok(outdoors_write(&o, scratch_path("o.exr"), NULL, &err), err);
-    assert_ok(outdoors_read(&again, scratch_path("o.exr"), &err), err);
+    assert_ok(outdoors_read(&again, scratch_path("o.exr"), NULL, &err), err);
     assert_int_equal(again.width, 16);
     assert_memory_equal(again.rgb, o.rgb, 3 * 8 * 16 * sizeof(float));
     assert_memory_equal(again.source, o.source, 8 * 16);
@@ -167,7 +167,7 @@ static void read_made(struct err *err, int width, int height, float red, uint32_
     }
     assert_ok(exr_write(&im, scratch_path("made.exr"), NULL, &made), made);
     *err = (struct err)ERR_INIT;
-    outdoors_read(&o, scratch_path("made.exr"), err);
+    outdoors_read(&o, scratch_path("made.exr"), NULL, err);
     assert_null(o.rgb);
     exr_image_release(&im);
 }
@@ -186,7 +186,7 @@ static void a_wrong_file_is_refused_with_a_sentence(void **state)
     read_made(&err, 4, 2, 0, 0, EXR_HALF);
     assert_err(err, ST_DATA, "channel source has the wrong type");
     err = (struct err)ERR_INIT;
-    outdoors_read(&o, scratch_path("none.exr"), &err);
+    outdoors_read(&o, scratch_path("none.exr"), NULL, &err);
     assert_err(err, ST_IO, "none.exr");
     err = (struct err)ERR_INIT;
     outdoors_init(&o, 0, &err);

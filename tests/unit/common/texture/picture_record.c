@@ -13,7 +13,7 @@ static void a_record_reads_back(void **state)
     (void)state;
     for (int k = 0; k < MADE_COUNT; k++) record.shares[k] = 100.0 / (k + 3);
     assert_ok(picture_record_write(&record, path, NULL, &err), err);
-    assert_ok(picture_record_read(&read, path, &err), err);
+    assert_ok(picture_record_read(&read, path, NULL, &err), err);
     assert_true(read.width == 640 && read.height == 480);
     assert_true(fabs(read.exposure - record.exposure) < 1e-9);
     assert_true(fabs(read.changed - 12.5) < 1e-12);
@@ -28,7 +28,7 @@ static void a_kind_that_is_not_listed_has_no_pixels(void **state)
     assert_ok(picture_record_read(&read,
                                   scratch_write("view.txt", "remodel-picture 1\n# made by hand\nsize 4 3\nexposure 2\n"
                                                             "changed 0\nmade photo 100\n"),
-                                  &err),
+                                  NULL, &err),
               err);
     assert_true(read.shares[MADE_PHOTO] > 99 && read.shares[MADE_COLOUR] < 1);
 }
@@ -58,7 +58,7 @@ static void a_faulty_record_is_refused_with_its_line(void **state)
         struct picture_record read;
         struct err err = ERR_INIT;
         snprintf(text, sizeof text, "%s%s", whole ? "" : head, cases[i].text);
-        assert_int_equal(picture_record_read(&read, scratch_write("view.txt", text), &err), ST_DATA);
+        assert_int_equal(picture_record_read(&read, scratch_write("view.txt", text), NULL, &err), ST_DATA);
         assert_err(err, ST_DATA, cases[i].words);
         assert_int_equal(read.width, 0);
     }

@@ -16,7 +16,7 @@ static void reads_back(const char *text, struct texture_map *map)
     struct err err = ERR_INIT;
     char *again = NULL;
     size_t size = 0;
-    assert_ok(texture_map_read(map, scratch_write("a.txt", text), &err), err);
+    assert_ok(texture_map_read(map, scratch_write("a.txt", text), NULL, &err), err);
     assert_ok(texture_map_write(map, scratch_path("b.txt"), NULL, &err), err);
     FILE *file = fopen(scratch_path("b.txt"), "r");
     assert_non_null(file);
@@ -75,10 +75,10 @@ static void a_face_is_found_by_its_plane(void **state)
     struct texture_map map;
     struct err err = ERR_INIT;
     (void)state;
-    assert_ok(
-        texture_map_read(
-            &map, scratch_write("a.txt", HEAD FACE "outdoors\nface 3 0 0 1 2 floor/hall\nface 9 0 0 1 5 x/y\n"), &err),
-        err);
+    assert_ok(texture_map_read(
+                  &map, scratch_write("a.txt", HEAD FACE "outdoors\nface 3 0 0 1 2 floor/hall\nface 9 0 0 1 5 x/y\n"),
+                  NULL, &err),
+              err);
     assert_ptr_equal(texture_map_find(&map, 3, vec3_make(7, 7, 0.1)), &map.faces[0]);
     assert_ptr_equal(texture_map_find(&map, 3, vec3_make(7, 7, 1.9)), &map.faces[1]);
     assert_null(texture_map_find(&map, 4, vec3_make(7, 7, 1.9)));
@@ -148,7 +148,7 @@ static void what_is_wrong_is_named_with_its_line(void **state)
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         struct texture_map map;
         struct err err = ERR_INIT;
-        assert_int_not_equal(texture_map_read(&map, scratch_write("a.txt", cases[i].text), &err), ST_OK);
+        assert_int_not_equal(texture_map_read(&map, scratch_write("a.txt", cases[i].text), NULL, &err), ST_OK);
         assert_err(err, ST_DATA, cases[i].words);
         assert_int_equal(map.face_count, 0);
     }
@@ -178,7 +178,7 @@ static void what_the_reader_refuses_is_not_written(void **state)
     (void)state;
     zone.corner_count = face.added_count = MAX_COUNT; /* the most that can be read */
     assert_ok(texture_map_write(&map, scratch_path("most.txt"), NULL, &err), err);
-    assert_ok(texture_map_read(&read, scratch_path("most.txt"), &err), err);
+    assert_ok(texture_map_read(&read, scratch_path("most.txt"), NULL, &err), err);
     assert_true(read.faces[0].added_count == MAX_COUNT && read.zones[0].corner_count == MAX_COUNT);
     texture_map_release(&read);
     face.added_count = MAX_COUNT + 1;

@@ -13,7 +13,7 @@ static void what_is_written_is_read_back(void **state)
     assert_ok(viewpoint_pairs_add(&made, "0002", "v01", "a \"quoted\" one", 1.0 / 3, &err), err);
     assert_ok(viewpoint_pairs_add(&made, "0003", "v02", "v02", 1, &err), err);
     assert_ok(viewpoint_pairs_write(&made, path, NULL, &err), err);
-    assert_ok(viewpoint_pairs_read(&read, path, &err), err);
+    assert_ok(viewpoint_pairs_read(&read, path, NULL, &err), err);
     assert_int_equal(read.count, 3);
     for (int i = 0; i < 3; i++) {
         assert_string_equal(read.list[i].frame, made.list[i].frame);
@@ -48,7 +48,7 @@ static void a_damaged_line_is_named(void **state)
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
         struct viewpoint_pairs pairs = {0};
         struct err err = ERR_INIT;
-        viewpoint_pairs_read(&pairs, scratch_write("pairs.txt", wrong[i].text), &err);
+        viewpoint_pairs_read(&pairs, scratch_write("pairs.txt", wrong[i].text), NULL, &err);
         assert_err(err, ST_DATA, wrong[i].part);
         assert_true(!pairs.list && !pairs.count);
     }

@@ -1,4 +1,4 @@
-/* product.c - whether a product is whole.
+/* whole_product.c - whether a product is whole.
  *
  * A job on a cluster may be killed while it writes, and a disk may be full. Products appear whole or not at all
  * (outfile.h), so this is a second look: it reads a file to its end, in the way of its format.
@@ -9,8 +9,8 @@
  *   - SVG, HTML, JSON: the text ends as it must; other text: it ends with a line break and has no NUL byte
  * An atlas is read with the sizes of all its pages.
  *
- * The format follows from the name. Memory: one product. */
-#include "stages/verify/product.h"
+ * The table of products says the format; of a file that is no product, the name does. Memory: one product. */
+#include "stages/verify/whole_product.h"
 
 #include <ctype.h>
 #include <inttypes.h>
@@ -25,6 +25,7 @@
 #include "common/image/exr.h"
 #include "common/image/photo.h"
 #include "common/light/object_list.h"
+#include "common/product/product.h"
 #include "common/texture/atlas.h"
 #include "common/texture/texture_map.h"
 
@@ -39,7 +40,7 @@ static enum status verify_exr(const char *path, struct err *err)
 static enum status verify_points(const char *path, struct err *err)
 {
     struct point_cloud cloud = {0};
-    enum status st = point_cloud_read(&cloud, path, err);
+    enum status st = point_cloud_read(&cloud, path, NULL, err);
     point_cloud_release(&cloud);
     return st;
 }
@@ -157,6 +158,15 @@ static enum status verify_text(const char *path, struct err *err)
     return verify_text_ends(path, &ends, err);
 }
 
+/* A text that must have the first line of its product. */
+static enum status verify_head(enum product_id id, const char *path, struct err *err)
+{
+    struct textfile t = {0};
+    const enum status st = product_open(&t, NULL, id, path, NULL, err);
+    textfile_release(&t);
+    return st;
+}
+
 static enum status verify_markup(const char *path, const char *closing, struct err *err)
 {
     struct text_ends ends;
@@ -189,7 +199,7 @@ static enum status verify_atlas(const char *path, struct err *err)
     char folder[FILE_PATH], name[FILE_PATH];
     const char *slash = strrchr(path, '/');
     snprintf(folder, sizeof folder, "%.*s", slash ? (int)(slash - path) : 1, slash ? path : ".");
-    enum status st = atlas_read(&atlas, folder, err);
+    enum status st = atlas_read(&atlas, folder, NULL, err);
     for (int i = 0; !st && i < atlas.page_count; i++) {
         const int *size = atlas.page_sizes[i];
         st = atlas_page_path(name, folder, i, err);
@@ -206,7 +216,7 @@ static enum status verify_atlas(const char *path, struct err *err)
 static enum status verify_texture_map(const char *path, struct err *err)
 {
     struct texture_map map = {0};
-    const enum status st = texture_map_read(&map, path, err);
+    const enum status st = texture_map_read(&map, path, NULL, err);
     texture_map_release(&map);
     return st;
 }
@@ -214,7 +224,7 @@ static enum status verify_texture_map(const char *path, struct err *err)
 static enum status verify_objects(const char *path, struct err *err)
 {
     struct object_list list = {0};
-    const enum status st = object_list_read(&list, path, err);
+    const enum status st = object_list_read(&list, path, NULL, err);
     object_list_release(&list);
     return st;
 }
@@ -227,23 +237,43 @@ static enum status verify_not_empty(const char *path, struct err *err)
     return info.st_size ? ST_OK : err_set(err, ST_DATA, "%s: found nothing, wanted a product; make it again.", path);
 }
 
+/* The product of a path; elsewhere than in a scene's folder that of the file's name. PRODUCT_COUNT: none. */
+static enum product_id find_product(const char *path, const char *name)
+{
+    enum product_id id = product_at(path);
+    for (enum product_id i = 0; id == PRODUCT_COUNT && i < PRODUCT_COUNT; i++)
+        if (!strcmp(products[i].file, name)) id = i;
+    return id;
+}
+
+/* The format of products with this extension; PRODUCT_FORMAT_COUNT: there are none. */
+static enum product_format format_of(const char *extension)
+{
+    for (enum product_id i = 0; i < PRODUCT_COUNT; i++) {
+        const char *dot = strrchr(products[i].file, '.');
+        if (dot && !strcasecmp(dot, extension)) return products[i].format;
+    }
+    return PRODUCT_FORMAT_COUNT;
+}
+
 enum status product_verify(const char *path, struct err *err)
 {
-    static const struct {
-        const char *extension;
-        enum status (*verify)(const char *path, struct err *err);
-    } kinds[] = {
-        {".exr", verify_exr},    {".png", verify_png},  {".jpg", verify_jpeg}, {".jpeg", verify_jpeg},
-        {".ply", verify_points}, {".mp4", verify_mp4},  {".svg", verify_svg},  {".html", verify_html},
-        {".json", verify_json},  {".txt", verify_text}, {".tsv", verify_text}, {".csv", verify_text},
-        {".mk", verify_text},    {".cfg", verify_text}, {".obj", verify_text}, {".mtl", verify_text},
-        {".py", verify_text},    {".log", verify_text}, {".md", verify_text},  {".round", verify_text},
+    static enum status (*const checks[PRODUCT_FORMAT_COUNT + 1])(const char *path, struct err *err) = {
+        [PRODUCT_IS_EXR] = verify_exr,       [PRODUCT_IS_PNG] = verify_png,
+        [PRODUCT_IS_JPEG] = verify_jpeg,     [PRODUCT_IS_SVG] = verify_svg,
+        [PRODUCT_IS_HTML] = verify_html,     [PRODUCT_IS_MP4] = verify_mp4,
+        [PRODUCT_IS_PLY] = verify_points,    [PRODUCT_IS_TEXT] = verify_text,
+        [PRODUCT_IS_COLMAP] = verify_text,   [PRODUCT_IS_MAKE] = verify_text,
+        [PRODUCT_IS_JSON] = verify_json,     [PRODUCT_IS_PYTHON] = verify_text,
+        [PRODUCT_IS_OBJ] = verify_text,      [PRODUCT_IS_GLB] = verify_not_empty,
+        [PRODUCT_IS_IFC] = verify_not_empty, [PRODUCT_FORMAT_COUNT] = verify_not_empty,
     };
     const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path, *dot = strrchr(name, '.');
-    if (!strcmp(name, "atlas.txt")) return verify_atlas(path, err);
-    if (!strcmp(name, "texture.txt")) return verify_texture_map(path, err);
-    if (!strcmp(name, "objects.txt")) return verify_objects(path, err);
-    for (size_t i = 0; dot && i < sizeof kinds / sizeof *kinds; i++)
-        if (!strcasecmp(dot, kinds[i].extension)) return kinds[i].verify(path, err);
-    return verify_not_empty(path, err);
+    const enum product_id id = find_product(path, name);
+    if (id == PRODUCT_COUNT) return checks[dot ? format_of(dot) : PRODUCT_FORMAT_COUNT](path, err);
+    if (id == PRODUCT_ATLAS) return verify_atlas(path, err);
+    if (id == PRODUCT_TEXTURE_MAP) return verify_texture_map(path, err);
+    if (id == PRODUCT_OBJECTS) return verify_objects(path, err);
+    const enum status st = checks[products[id].format](path, err);
+    return !st && products[id].head && products[id].format == PRODUCT_IS_TEXT ? verify_head(id, path, err) : st;
 }

@@ -1,5 +1,5 @@
-/* product.c - whole products of every kind pass; cut, empty and mislabelled ones are refused by name. */
-#include "stages/verify/product.h"
+/* whole_product.c - whole products of every kind pass; cut, empty and mislabelled ones are refused by name. */
+#include "stages/verify/whole_product.h"
 
 #include "tests/unit/scratch.h"
 
@@ -97,8 +97,8 @@ static void pictures_are_decoded(void **state)
         cut(whole, part, 0);
         assert_refused(part);
     }
-    cut("a.jpg", "a.JPEG", 1);
-    assert_refused("a.JPEG");
+    cut("a.jpg", "a.JPG", 1);
+    assert_refused("a.JPG");
     assert_ok(png_write(scratch_path("png_inside.jpg"), rgb, 64, 48, 3, &err), err);
     assert_refused("png_inside.jpg");
     assert_refused("missing.png");
@@ -165,6 +165,7 @@ static void texts_need_their_end(void **state)
         {"b.svg", "<svg>\n"},    {"c.svg", "</svg>"}, {"b.html", "<html>\n</body>\n"},
         {"c.json", "{\"a\":\n"}, {"d.json", "[1}\n"}, {"e.json", "\n"}};
     (void)state;
+    assert_int_equal(mkdir(scratch_path("views"), 0777), 0);
     for (size_t i = 0; i < sizeof WHOLE / sizeof *WHOLE; i++) {
         scratch_write(WHOLE[i][0], WHOLE[i][1]);
         assert_whole(WHOLE[i][0]);
@@ -173,6 +174,11 @@ static void texts_need_their_end(void **state)
         scratch_write(REFUSED[i][0], REFUSED[i][1]);
         assert_refused(REFUSED[i][0]);
     }
+    assert_whole("a.txt");
+    scratch_write("views/lenses.txt", "remodel-lenses 1\n");
+    assert_whole("views/lenses.txt");
+    scratch_write("views/lenses.txt", "remodel-lenses 2\n");
+    assert_refused("views/lenses.txt");
     scratch_write_bytes("zeros.txt", "a\0\n", 3);
     assert_refused("zeros.txt");
     assert_refused("missing.txt");
