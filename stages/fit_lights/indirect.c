@@ -60,7 +60,8 @@ enum status indirect_list(const struct indirect *in, const struct lit_scene *sce
 
 static enum status read_node(struct indirect *in, int k, struct textfile *t, struct vec3 wanted, struct err *err)
 {
-    static const char *const names[] = {"x", "y", "z", "nx", "ny", "nz", "red", "green", "blue"};
+    static const char *const names[] = {
+        "x", "y", "z", "nx", "ny", "nz", "red irradiance", "green irradiance", "blue irradiance"};
     double v[9];
     for (int i = 0; i < 6; i++)
         if (textfile_double(t, names[i], &v[i], err)) return err->status;

@@ -131,7 +131,7 @@ static void damaged_points_are_refused(void **state)
         {"0 0 0 0 0 1 1 1\n", ":1: "},
         {"\n0 0 0 0 0 1 1 1 1 1\n", ":2: found \"1\""},
         {"0 0 0 0 1 1 1 1 1\n", "wanted a normal of length 1"},
-        {"0 0 0 0 0 1 1 -1 1\n", "wanted an irradiance of at least 0"},
+        {"0 0 0 0 0 1 1 -1 1\n", "irradiance, a number of at least 0"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         struct irradiance_list list;

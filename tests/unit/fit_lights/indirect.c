@@ -77,7 +77,7 @@ static void other_points_are_refused(void **state)
     (void)state;
     assert_refused("0 1 0 0 0 1 1 1 1\n", "5 points");
     assert_refused("0 1.1 0 0 0 1 1 1 1\n", "list the points again");
-    assert_refused("0 1 0 0 0 1 1 -1 1\n", "an irradiance from 0");
+    assert_refused("0 1 0 0 0 1 1 -1 1\n", "green irradiance, a number from 0");
     assert_refused("0 1 0 0 0 1 1 1\n", "blue");
     assert_refused("0 1 0 0 0 1 1 1 1 1\n", "end of the line");
 }

@@ -86,7 +86,7 @@ static void errors_in_exposures_txt_name_the_line(void **state)
     static const char *const cases[][2] = {
         {"a.jpg\n", ":1: found the end of the line, wanted an exposure time in seconds"},
         {"a.jpg 1/60\n", ":1: found \"1/60\", wanted an exposure time in seconds"},
-        {"a.jpg 0\n", "wanted an exposure time in seconds from 1e-9"},
+        {"a.jpg 0\n", "wanted an exposure time in seconds, a number from 1e-09"},
         {"a.jpg -1\n", "wanted an exposure time"},
         {"a.jpg nan\n", "wanted an exposure time"},
         {"a.jpg 1 8\n", "wanted an ISO value"},
