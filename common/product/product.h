@@ -12,6 +12,7 @@
 
 #include "common/base/err.h"
 #include "common/base/file_path.h"
+#include "common/product/exports.h"
 #include "common/base/outfile.h"
 #include "common/base/provenance.h"
 #include "common/base/textfile.h"

@@ -134,8 +134,7 @@ static enum status build(struct job *j, struct err *err)
         st = err_set(err, ST_DATA, "%s: the script describes no solid; add walls, rooms or boxes.", j->script);
     if (!st) st = solids_unite(&mesh, &solids, &log, err);
     if (!st) st = solid_mesh_check(&mesh, 0, &report, err);
-    if (!st && j->base) st = solid_mesh_read(&base, j->base, NULL, err);
-    if (!st && j->base) st = provenance_add_file(&j->prov, "model/model.txt", j->base, err);
+    if (!st && j->base) st = solid_mesh_read(&base, j->base, &j->prov, err);
     if (!st && j->base) st = solid_mesh_carry_ids(&mesh, &base, err);
     if (!st && j->base) st = write_edit(j, &mesh, &base, &plan, err);
     if (!st) st = write_model(j, &plan, &mesh, &log, err);

@@ -2,7 +2,7 @@
 #ifndef REMODEL_EXPORT_WRITERS_H
 #define REMODEL_EXPORT_WRITERS_H
 
-#include "common/model/exports.h"
+#include "common/product/exports.h"
 #include "common/model/model_plan.h"
 #include "stages/export_model/export_faces.h"
 

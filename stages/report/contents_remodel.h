@@ -2,7 +2,7 @@
 #ifndef REMODEL_CONTENTS_REMODEL_H
 #define REMODEL_CONTENTS_REMODEL_H
 
-#include "common/model/exports.h"
+#include "common/product/exports.h"
 #include "common/texture/model_picture.h"
 #include "stages/report/contents_relit.h"
 #include "stages/report/pictures.h"

@@ -38,7 +38,7 @@ a_cluster_is_an_input_of_every_stage_of_the_move()
     for f in out/t/parallax/subjects.txt $film/validity.txt $film/path.txt; do
         grep -q '^# input parallax/views.txt' $f || fail "$f does not name the choice"
     done
-    [ "$(grep -c '^# input depth/photo_' $film/validity.txt)" = "$n" ] || fail "depth of other views was read"
+    [ "$(grep -c '^# input depth/photo_.*[.]exr ' $film/validity.txt)" = "$n" ] || fail "depth of other views was read"
     grep -aq 'parallax/views.txt' $film/frames/0003.exr || fail "the frames do not name the choice"
     snapshot out/t >a
     run_scene frames >log 2>&1

@@ -97,7 +97,7 @@ static void errors_of_a_record_name_the_line(void **state)
     } bad[] = {
         {"", "v.round: found an empty file, wanted a line \"remodel-round ...\""},
         {"remodel-segments 1\n", "v.round:1: found \"remodel-segments\", wanted"},
-        {"remodel-round 2\n", "v.round:1: found \"2\", wanted version"},
+        {"remodel-round 2\n", "v.round:1: found \"2\", wanted the version"},
         {HEAD, "v.round:1: found the end of the file, wanted a line \"changed ...\""},
         {HEAD "changed\n", "v.round:2: found the end of the line, wanted share of pixels"},
         {HEAD "changed nan\n", "v.round:2: found \"nan\", wanted share of pixels"},
@@ -130,7 +130,7 @@ static void write_records(const double changed[3], struct view views[3])
         struct err err = ERR_INIT;
         char name[32];
         views[i] = (struct view){.name = (const char *[]){"a", "b", "c"}[i]};
-        snprintf(name, sizeof name, "before/%s.round", views[i].name);
+        snprintf(name, sizeof name, "depth/round0/%s.round", views[i].name);
         assert_ok(round_record_write(&r, scratch_path(name), NULL, &err), err);
     }
 }
@@ -143,7 +143,8 @@ static bool is_settled(const double changed[3], const int *views, int count, dou
     struct err err = ERR_INIT;
     bool settled;
     write_records(changed, of);
-    assert_ok(round_is_settled(&settled, scratch_path("before"), &set, views, count, min_change, &prov, &err), err);
+    assert_ok(round_is_settled(&settled, scratch_path("depth/round0"), &set, views, count, min_change, &prov, &err),
+              err);
     assert_int_equal(prov.count, count);
     assert_int_equal(strncmp(prov.inputs[0].name, "depth/", 6), 0);
     provenance_release(&prov);
@@ -174,10 +175,10 @@ static void a_lost_record_is_an_error(void **state)
     bool settled;
     (void)state;
     write_records((double[3]){0, 0, 0}, of);
-    remove(scratch_path("before/b.round"));
-    assert_int_equal(round_is_settled(&settled, scratch_path("before"), &set, (int[]){0, 1}, 2, 0.05, &prov, &err),
-                     ST_IO);
-    assert_err(err, ST_IO, "before/b.round");
+    remove(scratch_path("depth/round0/b.round"));
+    assert_int_equal(
+        round_is_settled(&settled, scratch_path("depth/round0"), &set, (int[]){0, 1}, 2, 0.05, &prov, &err), ST_IO);
+    assert_err(err, ST_IO, "depth/round0/b.round");
     provenance_release(&prov);
 }
 

@@ -357,7 +357,7 @@ static void the_model_with_most_photos_is_chosen(void **state)
                                          {"remodel-sfm 2\n0 colmap\n", "wanted what was given"},
                                          {"remodel-sfm 1\n", "a line for each model"},
                                          {"remodel-sfm 1\n0 bundler\n", "found \"bundler\""},
-                                         {"", "\"remodel-sfm 1\""}};
+                                         {"", "a line \"remodel-sfm ...\""}};
     for (int i = 0; i < 6; i++) {
         err = (struct err)ERR_INIT;
         scratch_write("sfm/models.txt", bad[i][0]);

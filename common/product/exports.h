@@ -1,7 +1,7 @@
 /* exports.h - the models for other programs, a row each (docs/adding-an-export.md): files in out/SCENE/model/export and
  * remodel/E/export, which export_model writes and the page links. */
-#ifndef REMODEL_MODEL_EXPORTS_H
-#define REMODEL_MODEL_EXPORTS_H
+#ifndef REMODEL_PRODUCT_EXPORTS_H
+#define REMODEL_PRODUCT_EXPORTS_H
 
 /* X(format, file, name, write): its name on the page; the function of export_model that writes it (writers.h). In the order
  * of the page. The first is written last: Make takes it for the whole. */
