@@ -1,4 +1,17 @@
-/* plan_edits.c - statements that change what is there: its place, size, heights and filling. */
+/* plan_edits.c - statements that change what is there: its place, size, heights and filling.
+ *
+ * A statement finds its item by name and changes its numbers, no more: ends of walls are kept as the walls that they
+ * are joined to (plan.h), so neighbours follow a moved wall without being told, and openings, which are intervals
+ * along their wall, move with it. What depends on the whole plan is checked after the statement (plan_checks.c), so
+ * that an error names the statement that broke the building.
+ *
+ * adjust places a thing anew, by coordinates or in a photograph; a wall keeps its direction. move shifts it: a wall
+ * along its normal, an opening along its wall and up, what lies in plan by x and y. change sets heights and
+ * thicknesses, resize moves the sides of an opening outwards, fill, open and close set what is in it, remove hides
+ * it: a removed wall keeps its line, where rooms and neighbours still end.
+ *
+ * Thickness. A side of a room has one thickness, so a change goes on to the walls that continue it on its line
+ * around a room, and from those to theirs. */
 #include <stdlib.h>
 #include <string.h>
 

@@ -1,4 +1,16 @@
-/* plan_statements.c - statements that make walls and rooms, and the defaults that set gives them. */
+/* plan_statements.c - statements that make walls and rooms, and the defaults that set gives them.
+ *
+ * A wall is a line with a direction, from left to right for a viewer inside the room; its in face is on the line.
+ * Three ways to place it: two points, a rectangle on a photograph (place.c), or parallel to another wall at a
+ * distance between two walls. Walls run along an axis unless they are `angled`, because most do, and because a slip
+ * of the hand in a coordinate would otherwise tilt a wall by a little.
+ *
+ * S, the coordinate along a wall, is x or y of the model for a wall along an axis, whichever way it runs, and the
+ * distance from its first point for an angled one.
+ *
+ * Defaults are those of the last `set` before the statement. Which of them a statement used is noted (plan_context),
+ * so that a `set` that nothing uses can be refused. Without a scale lengths of homes mean nothing, so thickness and
+ * ceiling are unknown until they are set, and the error says so. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
