@@ -4,7 +4,7 @@
 #define REMODEL_GATHER_FIELD_ATLAS_H
 
 #include "common/gather/light_field.h"
-#include "common/gather/lights.h"
+#include "common/gather/light_list.h"
 #include "common/texture/atlas.h"
 
 /* {0} is the empty state; everything is owned. */

@@ -2,7 +2,7 @@
 #ifndef REMODEL_GATHER_FIELD_OPENINGS_H
 #define REMODEL_GATHER_FIELD_OPENINGS_H
 
-#include "common/gather/lights.h"
+#include "common/gather/light_list.h"
 #include "common/gather/outdoors_picture.h"
 #include "common/light/model_rays.h"
 

@@ -8,7 +8,7 @@
 #include <math.h>
 
 #include "common/light/fast.h"
-#include "common/light/noise.h"
+#include "common/light/value_noise.h"
 #include "common/math/numbers.h"
 
 #define BUILDINGS       54  /* cells around the horizon */

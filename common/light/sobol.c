@@ -8,7 +8,7 @@
  * register. */
 #include "common/light/sobol.h"
 
-#include "common/light/noise.h"
+#include "common/light/value_noise.h"
 
 /* Direction numbers of [Joe 2008], dimensions 1 to 4, first 16 bits, bits reversed. */
 #define BITS 16

@@ -14,7 +14,7 @@
 #include "common/capture/photo_camera.h"
 #include "common/model/scene_inputs.h"
 #include "common/product/product.h"
-#include "stages/bake_outdoors/gather.h"
+#include "stages/bake_outdoors/outdoors_gather.h"
 
 #define PARAM_STRUCT struct outdoors_params
 static const struct param outdoors_param_table[] = {OUTDOORS_PARAMS(PARAM_ROW) PARAM_END};

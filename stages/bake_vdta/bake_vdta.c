@@ -17,7 +17,7 @@
 #include <string.h>
 
 #include "common/base/cli.h"
-#include "stages/bake_vdta/estimate.h"
+#include "stages/bake_vdta/bake_estimate.h"
 
 _Static_assert(offsetof(struct vdta_params, texture) == 0, "the table below has offsets into struct texture_params");
 static const struct param vdta_param_table[] = {

@@ -1,10 +1,10 @@
 /* sources.c - see sources.h.
  *
- * The choice by texel comes later (common/texture/candidates.c) and sees each view's pixels; here only their number is
- * limited. Each face is represented by some of the texels that the viewpoint does not show. The index says which views
- * show the face; a view's worth to a sample inside its picture is the clean share of the face in it, times what
- * [Buehler 2001] prefers: a small angle between the rays of the two, and enough resolution. Views are taken one at a
- * time, and what a view offers a sample counts less and less where others were taken for it. */
+ * The choice by texel comes later (common/texture/bake_candidates.c) and sees each view's pixels; here only their
+ * number is limited. Each face is represented by some of the texels that the viewpoint does not show. The index says
+ * which views show the face; a view's worth to a sample inside its picture is the clean share of the face in it, times
+ * what [Buehler 2001] prefers: a small angle between the rays of the two, and enough resolution. Views are taken one at
+ * a time, and what a view offers a sample counts less and less where others were taken for it. */
 #include "stages/bake_vdta/sources.h"
 
 #include <math.h>

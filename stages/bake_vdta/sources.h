@@ -2,7 +2,7 @@
 #ifndef REMODEL_SOURCES_H
 #define REMODEL_SOURCES_H
 
-#include "stages/bake_vdta/viewpoint.h"
+#include "stages/bake_vdta/bake_viewpoint.h"
 
 /* The viewpoint's own views, and at most [bake_vdta] max_sources others that show the faces of its tiles well: from
  * near the viewpoint's direction, at a fine resolution, with little in front. Reads IDS/index.txt. *views: indices of

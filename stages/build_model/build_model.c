@@ -23,15 +23,15 @@
 #include "common/capture/photo_list.h"
 #include "common/model/scene_inputs.h"
 #include "common/product/product.h"
-#include "stages/build_model/edit_chain.h"
-#include "stages/build_model/layout.h"
+#include "stages/build_model/layout/layout.h"
 #include "stages/build_model/objects.h"
-#include "stages/build_model/overlay_picture.h"
+#include "stages/build_model/picture/overlay_picture.h"
+#include "stages/build_model/picture/plan_picture.h"
+#include "stages/build_model/picture/view_picture.h"
+#include "stages/build_model/plan/edit_chain.h"
 #include "stages/build_model/plan_file.h"
-#include "stages/build_model/plan_picture.h"
-#include "stages/build_model/texture_rules.h"
-#include "stages/build_model/unite.h"
-#include "stages/build_model/view_picture.h"
+#include "stages/build_model/solid/unite.h"
+#include "stages/build_model/texture/texture_rules.h"
 
 struct job {
     const char *script, *edit, *scene, *axes, *views, *held, *points, *base, *out;

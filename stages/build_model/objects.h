@@ -3,7 +3,7 @@
 #define REMODEL_BUILD_MODEL_OBJECTS_H
 
 #include "common/light/object_list.h"
-#include "stages/build_model/plan.h"
+#include "stages/build_model/plan/plan.h"
 
 /* The objects that the plan's statements place and do not remove, in the order in which they were placed first. Reads
  * each mesh below `scene`, the scene's folder (NULL: it is unknown), to check and hash it, and logs where the object

@@ -3,8 +3,8 @@
 #ifndef REMODEL_BUILD_MODEL_PLAN_FILE_H
 #define REMODEL_BUILD_MODEL_PLAN_FILE_H
 
-#include "stages/build_model/plan.h"
-#include "stages/build_model/unite.h"
+#include "stages/build_model/plan/plan.h"
+#include "stages/build_model/solid/unite.h"
 
 enum status plan_write(const struct plan *plan, const char *path, const struct provenance *prov, struct err *err);
 enum status merged_write(const struct unite_log *log, const char *path, const struct provenance *prov, struct err *err);

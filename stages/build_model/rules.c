@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "common/graph/scene_rules.h"
-#include "stages/build_model/script.h"
+#include "stages/build_model/script/script.h"
 
 static const enum product_id model_files[] = {PRODUCT_MODEL, PRODUCT_PLAN, PRODUCT_MERGED, PRODUCT_PLAN_PICTURE,
                                               PRODUCT_MODEL_PICTURE};

@@ -1,7 +1,11 @@
 /* evaluation.c - see evaluation.h; evaluate_*.c compute the metrics. */
 #include "stages/evaluate/evaluation.h"
 
-#include "stages/evaluate/evaluation_parts.h"
+#include "stages/evaluate/light/light_metrics.h"
+#include "stages/evaluate/model/model_metrics.h"
+#include "stages/evaluate/render/render_metrics.h"
+#include "stages/evaluate/texture/texture_metrics.h"
+#include "stages/evaluate/views/views_metrics.h"
 
 static enum status read_views(struct evaluation *e, struct view_set *set, const char *where, struct err *err)
 {

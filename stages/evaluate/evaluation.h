@@ -4,7 +4,7 @@
 #define REMODEL_EVALUATION_H
 
 #include "common/base/provenance.h"
-#include "stages/evaluate/evaluate_params.h"
+#include "stages/evaluate/scene/evaluate_params.h"
 
 struct evaluate_inputs {
     const char *folder;   /* out/SCENE of one quality or hold-out */

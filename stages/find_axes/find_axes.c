@@ -20,8 +20,8 @@
 #include "common/image/photo.h"
 #include "common/model/scene_inputs.h"
 #include "common/product/product.h"
-#include "stages/find_axes/pictures.h"
-#include "stages/find_axes/room.h"
+#include "stages/find_axes/axes_pictures.h"
+#include "stages/find_axes/room_axes.h"
 
 #define PARAM_STRUCT struct axes_params
 const struct param axes_param_table[] = {AXES_PARAMS(PARAM_ROW) PARAM_END};

@@ -1,7 +1,7 @@
 /* annotations.c - reads lights.txt as people write it: which openings let daylight in, lamps, and marked points.
  *
  * A line is a statement with a name: window, shut, disk, area, lit, unlit, line. It is read into one form with the
- * pixels in the order of the line; what they mean in the model is found later (resolve.c). An option may be given
+ * pixels in the order of the line; what they mean in the model is found later (lit_scene.c). An option may be given
  * once, and a quantity is a number or the word `fit`.
  *
  * Names. A window or a lamp may be declared once. Points name their lamp, which may stand below them, so they are

@@ -2,7 +2,7 @@
 #ifndef REMODEL_FIT_LIGHTS_CONE_EDGE_H
 #define REMODEL_FIT_LIGHTS_CONE_EDGE_H
 
-#include "common/gather/lights.h"
+#include "common/gather/light_list.h"
 #include "common/light/model_rays.h"
 
 enum { CURVE_POINTS = 720 };

@@ -2,7 +2,7 @@
 #ifndef REMODEL_FIT_LIGHTS_DIRECT_H
 #define REMODEL_FIT_LIGHTS_DIRECT_H
 
-#include "stages/fit_lights/resolve.h"
+#include "stages/fit_lights/lit_scene.h"
 
 /* Which parts of each lamp each point sees. {0} is the empty state. */
 struct direct_light {

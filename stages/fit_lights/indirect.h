@@ -5,7 +5,7 @@
 #define REMODEL_FIT_LIGHTS_INDIRECT_H
 
 #include "common/gather/gatherer.h"
-#include "stages/fit_lights/resolve.h"
+#include "stages/fit_lights/lit_scene.h"
 
 /* {0} is the empty state. */
 struct indirect {

@@ -2,9 +2,9 @@
 #ifndef REMODEL_FIT_LIGHTS_LAMP_PICTURE_H
 #define REMODEL_FIT_LIGHTS_LAMP_PICTURE_H
 
-#include "common/image/drawing.h"
+#include "common/image/draw.h"
 #include "stages/fit_lights/cone_edge.h"
-#include "stages/fit_lights/resolve.h"
+#include "stages/fit_lights/lit_scene.h"
 
 /* The length of the parts of a curve that a view (in the model's frame) shows, as a fraction of the view's width; draws
  * them on k unless that is NULL. A point is seen if it is in the picture, its surface faces the camera, and the model

@@ -4,7 +4,7 @@
 
 #include "stages/fit_lights/direct.h"
 #include "stages/fit_lights/fit_lights_params.h"
-#include "stages/fit_lights/observe.h"
+#include "stages/fit_lights/observe_lights.h"
 
 struct solve_inputs {
     struct lit_scene *scene; /* its lamps get radiance, beta, exponent */

@@ -4,7 +4,7 @@
 
 #include "stages/fit_materials/choose_material.h"
 #include "stages/fit_materials/incident.h"
-#include "stages/fit_materials/observe.h"
+#include "stages/fit_materials/observe_materials.h"
 
 /* {0} is the empty state; everything is owned. */
 struct region_fit {

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "common/base/parallel.h"
-#include "common/image/drawing.h"
+#include "common/image/draw.h"
 #include "common/image/photo.h"
 #include "stages/gather_irradiance/unfold.h"
 

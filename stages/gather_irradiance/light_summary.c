@@ -21,7 +21,7 @@
 
 #include "common/base/file_path.h"
 #include "common/base/sort.h"
-#include "common/image/drawing.h"
+#include "common/image/draw.h"
 #include "common/image/false_colour.h"
 #include "common/image/photo.h"
 #include "common/product/product.h"

@@ -7,7 +7,7 @@
  *   3. compare stated exposures with the photos: the ratio of light that two neighbouring exposures show against the
  *      ratio of their exposures. Off by more than 15 %: the radiometry is called approximate. Off by more than
  *      max_disagreement: an error that names the pair, because all radiance would be wrong
- *   4. find the noise: measured from the differences between exposures (noise.c), or given in electrons
+ *   4. find the noise: measured from the differences between exposures (bracket_noise.c), or given in electrons
  *   5. merge (merge.c)
  *
  * A lighting reference image is also placed: by marks (marked_pose.c), or by its camera in a model.

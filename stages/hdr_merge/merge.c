@@ -1,8 +1,8 @@
 /* merge.c - merges exposures into linear radiance by a weighted mean [Debevec 1997].
  *
- * A sample v (linear, 1 is white) at exposure t estimates the radiance x as v / t. Its noise (noise.h) has a part
- * proportional to the light and a constant part: var(v) = photon v + read^2. The optimal weight of v / t is the inverse
- * of its variance, 1 / var(v / t) = t^2 / (photon t x + read^2).
+ * A sample v (linear, 1 is white) at exposure t estimates the radiance x as v / t. Its noise (bracket_noise.h) has a
+ * part proportional to the light and a constant part: var(v) = photon v + read^2. The optimal weight of v / t is the
+ * inverse of its variance, 1 / var(v / t) = t^2 / (photon t x + read^2).
  *
  * Weights computed from the noisy samples themselves would bias the mean. So there are two rounds. The first has
  * weights t, for which the mean is sum(v) / sum(t), already nearly optimal. The second computes noise, saturation and
@@ -15,7 +15,7 @@
  * than the bound of the saturated ones. Both cases are marked.
  *
  * With weights w, the mean sum(w v) / sum(w t) has the variance sum(w^2 var(v)) / sum(w t)^2. That of the luminance is
- * the sum over independent colours, times a measured factor for colours that share their noise (noise.c).
+ * the sum over independent colours, times a measured factor for colours that share their noise (bracket_noise.c).
  *
  * Differs from the source, which has hat weights on the samples' own values and a logarithmic mean: weights follow
  * noise and prediction, and the mean is of radiance, which has no bias towards dark samples.

@@ -10,8 +10,8 @@
 #include "common/capture/photo_quality.h"
 #include "common/image/image.h"
 #include "common/image/response.h"
+#include "stages/hdr_merge/bracket_noise.h"
 #include "stages/hdr_merge/merge_params.h"
-#include "stages/hdr_merge/noise.h"
 
 enum { MERGE_MAX_EXPOSURES = 64 }; /* exposures of a view */
 

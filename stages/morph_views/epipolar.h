@@ -8,7 +8,7 @@
 #include <stdbool.h>
 
 #include "common/capture/camera.h"
-#include "stages/morph_views/film.h"
+#include "stages/morph_views/film_format.h"
 
 enum epipolar_kind { EPIPOLAR_NONE, EPIPOLAR_FUNDAMENTAL, EPIPOLAR_POSED };
 

@@ -15,7 +15,7 @@
 
 #include "common/base/parallel.h"
 #include "common/math/numbers.h"
-#include "stages/morph_views/match.h"
+#include "stages/morph_views/flow_match.h"
 
 enum { CHUNK = 8, DIRECTIONS = 8, MIN_ISLAND = 60, MEDIAN_ROUNDS = 3, SWEEPS = 150 };
 #define AGREE        0.75f /* px, max round-trip error of confidence 1 ... */

@@ -15,7 +15,7 @@
 #include "common/base/parallel.h"
 #include "common/image/luminance.h"
 #include "common/math/numbers.h"
-#include "stages/morph_views/match.h"
+#include "stages/morph_views/flow_match.h"
 
 enum { CHANNELS = 3, WARPS = 3, SWEEPS = 24, CHUNK = 8, SUMS = 5 };
 #define SMOOTH        0.02f /* weight of the smoothness term */

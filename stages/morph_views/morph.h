@@ -11,7 +11,7 @@
 #include "common/capture/linear_photo.h"
 #include "common/image/image.h"
 #include "common/layers/rendered_frame.h"
-#include "stages/morph_views/match.h"
+#include "stages/morph_views/flow_match.h"
 
 struct morph {
     struct image pictures[2]; /* R G B */

@@ -8,7 +8,7 @@
  *      view; the fundamental matrix; nothing. Features on one plane, or a camera that only turned, fit any epipolar
  *      geometry whose plane or rotation is right: if a homography explains nine tenths of what the fundamental
  *      matrix explains, epipolar lines are not used
- *   4. the flow is found in both directions (match.h), and the pair is refused if fewer pixels than min_matched
+ *   4. the flow is found in both directions (flow_match.h), and the pair is refused if fewer pixels than min_matched
  *      agree
  *   5. one gain for each colour, from matched pixels, says how the photos' exposures differ
  *

@@ -1,12 +1,12 @@
 /* ends_climb.c - improvement of a move's ends off the grid. Not in the thesis.
  *
- * First Levenberg-Marquardt on a smooth surrogate (refine.c), from which only as much is kept as the real validity and
- * parallax confirm; then hill climbing by small steps of one end along one axis, each of which must increase the
+ * First Levenberg-Marquardt on a smooth surrogate (refine_ends.c), from which only as much is kept as the real validity
+ * and parallax confirm; then hill climbing by small steps of one end along one axis, each of which must increase the
  * parallax. Intermediate results pass a coarse test of their path; at the end, the one with the most parallax whose
  * whole path is valid is taken. */
 #include "stages/plan_path/ends_climb.h"
 
-#include "stages/plan_path/refine.h"
+#include "stages/plan_path/refine_ends.h"
 
 #define BACK_STEPS      3 /* attempts between the refined ends and those on the grid */
 #define CLIMB_ROUNDS    8

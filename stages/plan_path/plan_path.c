@@ -29,7 +29,7 @@
 #include "common/film/film_lens.h"
 #include "common/film/film_views.h"
 #include "common/product/product.h"
-#include "stages/plan_path/film.h"
+#include "stages/plan_path/keyframed_film.h"
 #include "stages/plan_path/path_export.h"
 #include "stages/plan_path/plan_move.h"
 

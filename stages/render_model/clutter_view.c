@@ -1,9 +1,9 @@
 /* clutter_view.c - parts a view into the model's surfaces and what stands in front of them.
  *
- * trace_ids has compared the view's depth with the model's and graded each pixel (stages/trace_ids/clutter.c), with a
- * rim, so that no texture shows furniture. Here the rim must stay with the shell, and the two layers of a pixel are
- * judged one by one. With n = 1 - z / z_model, the part of the way to the model that is missing, a texel of a layer is
- * clutter by
+ * trace_ids has compared the view's depth with the model's and graded each pixel (stages/trace_ids/view_clutter.c),
+ * with a rim, so that no texture shows furniture. Here the rim must stay with the shell, and the two layers of a pixel
+ * are judged one by one. With n = 1 - z / z_model, the part of the way to the model that is missing, a texel of a layer
+ * is clutter by
  *
  *   w = smoothstep((n - t) / t),   t = TOLERANCE + SIGMAS sigma
  *

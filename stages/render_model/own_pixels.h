@@ -2,7 +2,7 @@
 #ifndef REMODEL_RENDER_OWN_PIXELS_H
 #define REMODEL_RENDER_OWN_PIXELS_H
 
-#include "stages/render_model/room.h"
+#include "stages/render_model/drawn_room.h"
 
 /* Sets same[y * width + x] to 1 where the view's photo shows what it would show after the edit: the unedited and the
  * edited model have the same face in the same plane, there and within `margin` px, and no clutter is cleared there.

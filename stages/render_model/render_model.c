@@ -18,7 +18,7 @@
 #include "common/base/file_path.h"
 #include "common/base/frame_list.h"
 #include "common/product/product.h"
-#include "stages/render_model/pictures.h"
+#include "stages/render_model/room_pictures.h"
 
 static const struct param render_model_param_table[] = {
 #define PARAM_STRUCT struct render_model_params

@@ -2,7 +2,7 @@
 #ifndef REMODEL_RENDER_ROOM_CAMERA_H
 #define REMODEL_RENDER_ROOM_CAMERA_H
 
-#include "stages/render_model/room.h"
+#include "stages/render_model/drawn_room.h"
 
 struct room_camera {
     char *name; /* owned by the list */

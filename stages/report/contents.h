@@ -11,7 +11,7 @@
 #include "stages/report/contents_light.h"
 #include "stages/report/contents_relit.h"
 #include "stages/report/metric_rows.h"
-#include "stages/report/pictures.h"
+#include "stages/report/page_pictures.h"
 #include "stages/report/settings.h"
 #include "stages/report/stage_list.h"
 #include "stages/report/usage.h"

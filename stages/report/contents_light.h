@@ -2,10 +2,10 @@
 #ifndef REMODEL_CONTENTS_LIGHT_H
 #define REMODEL_CONTENTS_LIGHT_H
 
+#include "common/gather/light_list.h"
 #include "common/gather/light_record.h"
-#include "common/gather/lights.h"
 #include "common/gather/materials.h"
-#include "stages/report/pictures.h"
+#include "stages/report/page_pictures.h"
 
 /* A marked point: luminance of its radiance in the photographs, and as the fit explains it. */
 struct light_point {

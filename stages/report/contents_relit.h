@@ -3,7 +3,7 @@
 #define REMODEL_CONTENTS_RELIT_H
 
 #include "common/capture/lens_list.h"
-#include "stages/report/pictures.h"
+#include "stages/report/page_pictures.h"
 
 enum { RELIT_SHOWN = 4, RELIT_SIDE_HEIGHT = 480 }; /* views of an edit; px */
 

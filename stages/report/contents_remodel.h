@@ -5,7 +5,7 @@
 #include "common/product/exports.h"
 #include "common/texture/model_picture.h"
 #include "stages/report/contents_relit.h"
-#include "stages/report/pictures.h"
+#include "stages/report/page_pictures.h"
 
 enum { SIGHTS_SHOWN = 4, SIGHT_SIDE_HEIGHT = 560 }; /* of an edit; px */
 

@@ -7,7 +7,7 @@
 #include "common/capture/camera_set.h"
 #include "common/model/model_axes.h"
 #include "common/texture/atlas.h"
-#include "stages/report/pictures.h"
+#include "stages/report/page_pictures.h"
 
 enum { SIGHT_SIDE = 3 }; /* samples of a pixel: SIGHT_SIDE x SIGHT_SIDE */
 

@@ -16,7 +16,7 @@
 
 #include "common/base/parallel.h"
 #include "common/base/progress.h"
-#include "stages/sample_validity/layout.h"
+#include "stages/sample_validity/move_layout.h"
 
 #define PARAM_STRUCT struct validity_params
 const struct param validity_param_table[] = {VALIDITY_PARAMS(PARAM_ROW) PARAM_END};

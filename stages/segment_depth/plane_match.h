@@ -1,7 +1,7 @@
 /* plane_match.h - how well a segment on a plane matches the neighbouring views.
  *
  * A plane is 1/z = a u + b v + c in the view's pixel coordinates. Costs are normalized by the view's own pictures: 0 is
- * a good match, 1 a chance one. matcher.c prepares the pictures, plane_match.c computes the costs. */
+ * a good match, 1 a chance one. plane_matcher.c prepares the pictures, plane_match.c computes the costs. */
 #ifndef REMODEL_PLANE_MATCH_H
 #define REMODEL_PLANE_MATCH_H
 

@@ -25,10 +25,10 @@
 #include "common/capture/upright.h"
 #include "common/capture/view_image.h"
 #include "common/product/product.h"
-#include "stages/segment_depth/estimate.h"
+#include "stages/segment_depth/depth_estimate.h"
+#include "stages/segment_depth/depth_rounds.h"
 #include "stages/segment_depth/given_depth.h"
 #include "stages/segment_depth/given_read.h"
-#include "stages/segment_depth/rounds.h"
 #include "stages/segment_depth/view_depth.h"
 
 struct views_folder {

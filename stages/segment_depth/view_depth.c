@@ -36,7 +36,7 @@
 #include "stages/segment_depth/level.h"
 #include "stages/segment_depth/pixel_planes.h"
 #include "stages/segment_depth/plane_sweep.h"
-#include "stages/segment_depth/refine.h"
+#include "stages/segment_depth/refine_planes.h"
 #include "stages/segment_depth/smooth.h"
 
 #define PARAM_STRUCT struct segment_params

@@ -1,9 +1,9 @@
 /* import_model.c - from a structure-from-motion model to rectified views.
  *
- * Images are matched to photos by name and cameras are scaled to the photos' sizes (match_photos.c); every
- * observation's reprojection error is recomputed and outliers are dropped (residuals.c); each photo's lens becomes one
- * pinhole view or several (view_cameras.h); the remaining observations are mapped through the lens into the views that
- * see them; points that are seen by two different photos are kept. */
+ * Images are matched to photos by name and cameras are scaled to the photos' sizes (importer_photos.c); every
+ * observation's reprojection error is recomputed and outliers are dropped (importer_residuals.c); each photo's lens
+ * becomes one pinhole view or several (view_cameras.h); the remaining observations are mapped through the lens into the
+ * views that see them; points that are seen by two different photos are kept. */
 #include "stages/sfm_import/import_model.h"
 
 #include <stdlib.h>

@@ -24,7 +24,7 @@
 #include "common/base/array.h"
 #include "common/base/sort.h"
 #include "common/light/frame.h"
-#include "common/light/noise.h"
+#include "common/light/value_noise.h"
 #include "common/math/numbers.h"
 
 struct builder {

@@ -8,7 +8,7 @@
 #define REMODEL_SIMULATE_PATH_TRACE_H
 
 #include "common/light/sobol.h"
-#include "stages/simulate/lights.h"
+#include "stages/simulate/light_sampling.h"
 
 /* A scene ready for tracing. */
 struct world {

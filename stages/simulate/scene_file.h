@@ -1,7 +1,7 @@
 /* scene_file.h - a described scene: scenes/NAME/scene.txt (docs/scenes.md).
  *
  * Metres, z up, degrees as in the file; radiance is scene-linear Rec.709. This is the description only: geometry.h
- * builds the faces, lights.h the lights. */
+ * builds the faces, light_sampling.h the lights. */
 #ifndef REMODEL_SIMULATE_SCENE_FILE_H
 #define REMODEL_SIMULATE_SCENE_FILE_H
 

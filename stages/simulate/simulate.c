@@ -18,9 +18,9 @@
 #include <string.h>
 
 #include "common/base/cli.h"
-#include "stages/simulate/estimate.h"
-#include "stages/simulate/irradiance.h"
-#include "stages/simulate/truth.h"
+#include "stages/simulate/render_estimate.h"
+#include "stages/simulate/scene_truth.h"
+#include "stages/simulate/true_irradiance.h"
 
 struct request {
     const char *scene, *out, *edit, *photo, *kind, *points;

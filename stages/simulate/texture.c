@@ -2,7 +2,7 @@
  *
  * A texture is a pure function of a seed and a place (u, v) on a face, in metres. A surface is divided into cells
  * (planks, bricks, books, posters); a hash of the cell's indices decides its look, and value noise adds detail
- * (common/light/noise.h). So a picture can be rendered in any order, and from any camera, with the same bits.
+ * (common/light/value_noise.h). So a picture can be rendered in any order, and from any camera, with the same bits.
  *
  * What they are for. Depth is estimated from such pictures, so they need what real rooms have: detail at all scales,
  * marks that never repeat for feature matching (posters, book spines), and plain walls that are hard to match
@@ -17,7 +17,7 @@
 #include <math.h>
 
 #include "common/light/fast.h"
-#include "common/light/noise.h"
+#include "common/light/value_noise.h"
 #include "common/math/numbers.h"
 
 #define PI_15 3.14159265358979 /* 15 digits: PI would change the last bits of textures */

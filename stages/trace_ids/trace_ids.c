@@ -25,8 +25,8 @@
 #include "common/base/log.h"
 #include "common/model/scene_inputs.h"
 #include "common/product/product.h"
-#include "stages/trace_ids/estimate.h"
 #include "stages/trace_ids/reveal.h"
+#include "stages/trace_ids/trace_estimate.h"
 #include "stages/trace_ids/view_ranks.h"
 
 #define PARAM_STRUCT struct trace_params

@@ -19,7 +19,7 @@ struct edited_atlas {
 enum status edited_atlas_make(struct edited_atlas *a, struct light_change *c, const char *folder, struct err *err);
 void edited_atlas_release(struct edited_atlas *a);
 
-/* Writes the atlas to OUT: texels times the values of the samples around them (rounds.h). */
+/* Writes the atlas to OUT: texels times the values of the samples around them (light_rounds.h). */
 enum status edited_atlas_write(const struct edited_atlas *a, const struct light_change *c, const struct face_nets *nets,
                                const struct rgb *values, const char *folder, const char *out,
                                const struct provenance *prov, struct err *err);

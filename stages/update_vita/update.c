@@ -2,8 +2,8 @@
  *
  * Overview. Samples are spread over the faces of the edited model. Where the quotient of light differs between
  * neighbouring samples, more are put between them: at the edge of a new patch of sun, in a shadow. Then rays are traced
- * once from each (transport.h), light is passed between the samples until it settles (rounds.h), and the texels are
- * multiplied by what the samples around them say (edited_atlas.h).
+ * once from each (transport.h), light is passed between the samples until it settles (light_rounds.h), and the texels
+ * are multiplied by what the samples around them say (edited_atlas.h).
  *
  * Faces from which almost nothing but the outdoors is seen, the outer sides of the walls, keep their texels. */
 #include "stages/update_vita/update.h"
@@ -17,7 +17,7 @@
 #include "common/product/product.h"
 #include "common/relight/light_quotient.h"
 #include "stages/update_vita/edited_atlas.h"
-#include "stages/update_vita/rounds.h"
+#include "stages/update_vita/light_rounds.h"
 
 enum { GLANCES = 64, FEW_RAYS = 4 }; /* rays that tell an outer face; rays / this choose where samples are needed */
 static const double OUTSIDE = 0.9;   /* of the rays see the outdoors */

@@ -22,8 +22,8 @@
 #include "common/image/exr.h"
 #include "common/math/numbers.h"
 #include "stages/hdr_merge/align.h"
+#include "stages/hdr_merge/bracket_noise.h"
 #include "stages/hdr_merge/merge.h"
-#include "stages/hdr_merge/noise.h"
 #include "stages/hdr_merge/tone.h"
 
 enum { MAX_RUNS = 64, QUALITY = 94 };

@@ -24,7 +24,7 @@
 #include "common/layers/layered_depth.h"
 #include "common/light/model_rays.h"
 #include "common/model/model_axes.h"
-#include "stages/build_model/unite.h"
+#include "stages/build_model/solid/unite.h"
 
 #define ROOM_X 5.0 /* between grid points, m */
 #define ROOM_Y 4.0

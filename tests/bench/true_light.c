@@ -22,7 +22,7 @@
 #include "common/base/cli.h"
 #include "common/base/outfile.h"
 #include "common/capture/camera_alignment.h"
-#include "common/gather/lights.h"
+#include "common/gather/light_list.h"
 #include "common/light/sky.h"
 #include "common/light/surface_points.h"
 #include "common/math/numbers.h"

@@ -13,7 +13,7 @@
 #include "common/base/cli.h"
 #include "common/base/clock.h"
 #include "common/base/scan.h"
-#include "stages/build_model/unite.h"
+#include "stages/build_model/solid/unite.h"
 
 #define ROOM      4.0
 #define THICKNESS 0.2

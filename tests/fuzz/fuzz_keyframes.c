@@ -8,9 +8,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "stages/plan_path/film.h"
+#include "stages/plan_path/keyframed_film.h"
 #include "stages/plan_path/keyframes.h"
-#include "stages/plan_path/spline.h"
+#include "stages/plan_path/motion_curves.h"
 #include "tests/fuzz/fuzz.h"
 #include "tests/fuzz/fuzz_scratch.h"
 

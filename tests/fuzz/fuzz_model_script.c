@@ -3,7 +3,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "stages/build_model/layout.h"
+#include "stages/build_model/layout/layout.h"
 #include "tests/fuzz/fuzz.h"
 #include "tests/fuzz/fuzz_scratch.h"
 

@@ -3,7 +3,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "stages/segment_depth/rounds.h"
+#include "stages/segment_depth/depth_rounds.h"
 #include "tests/fuzz/fuzz.h"
 #include "tests/fuzz/fuzz_scratch.h"
 

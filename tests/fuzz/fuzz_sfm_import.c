@@ -17,11 +17,11 @@
 /* files of a stage, which are not in the library */
 #include "stages/sfm_import/choose_model.c"
 #include "stages/sfm_import/import_model.c"
+#include "stages/sfm_import/importer_photos.c"
+#include "stages/sfm_import/importer_residuals.c"
 #include "stages/sfm_import/lens_fit.c"
-#include "stages/sfm_import/match_photos.c"
 #include "stages/sfm_import/name_lines.c"
 #include "stages/sfm_import/residual_table.c"
-#include "stages/sfm_import/residuals.c"
 #include "stages/sfm_import/view_cameras.c"
 
 static char folder[FUZZ_PATH];

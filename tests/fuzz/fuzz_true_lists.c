@@ -4,8 +4,8 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "stages/evaluate/irradiance_list.h"
-#include "stages/evaluate/true_faces.h"
+#include "stages/evaluate/light/irradiance_list.h"
+#include "stages/evaluate/truth/true_faces.h"
 #include "tests/fuzz/fuzz.h"
 #include "tests/fuzz/fuzz_scratch.h"
 

@@ -4,7 +4,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "stages/evaluate/true_room.h"
+#include "stages/evaluate/truth/true_room.h"
 #include "tests/fuzz/fuzz.h"
 #include "tests/fuzz/fuzz_scratch.h"
 

@@ -2,8 +2,8 @@
  * others. */
 #include <math.h>
 
-#include "stages/build_model/edit_chain.h"
 #include "stages/build_model/objects.h"
+#include "stages/build_model/plan/edit_chain.h"
 #include "tests/unit/build_model/textured.h"
 
 #define EDIT "remodel-script 1\n"

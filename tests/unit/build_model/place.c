@@ -2,7 +2,7 @@
 #include "tests/unit/build_model/scripted.h"
 
 #include "common/base/rng.h"
-#include "stages/build_model/place.h"
+#include "stages/build_model/place/place.h"
 
 /* A camera at (2, 2, 1.5) of the model that looks along +y, as a fisheye and as a pinhole; the world is the model
  * rotated by 30 degrees, translated, and half as large. */

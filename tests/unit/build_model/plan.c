@@ -1,5 +1,5 @@
 /* plan.c - the script language, and the errors of invalid scripts and plans, with line and reason. */
-#include "stages/build_model/verbs.h"
+#include "stages/build_model/script/verbs.h"
 #include "tests/unit/build_model/scripted.h"
 
 #define BARE "remodel-script 1\nset thickness 0.2\nset ceiling 2.5\n"

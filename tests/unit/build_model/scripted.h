@@ -2,7 +2,7 @@
 #ifndef REMODEL_TESTS_SCRIPTED_H
 #define REMODEL_TESTS_SCRIPTED_H
 
-#include "stages/build_model/layout.h"
+#include "stages/build_model/layout/layout.h"
 #include "tests/unit/scratch.h"
 
 /* A room of 4 x 3 whose faces are at x 0 and 4, y 0 and 3; walls 0.2 thick, 2.5 high. */

@@ -6,7 +6,7 @@
 #include "tests/unit/build_model/scripted.h"
 #include "tests/unit/build_model/unions.h"
 
-#include "stages/build_model/texture_rules.h"
+#include "stages/build_model/texture/texture_rules.h"
 
 enum { MAX_HITS = 1024 };
 

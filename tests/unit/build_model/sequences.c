@@ -14,8 +14,8 @@
 #include "tests/unit/build_model/random_textures.h"
 #include "tests/unit/build_model/sequence_textures.h"
 
-#include "stages/build_model/edit_chain.h"
-#include "stages/build_model/plan_internal.h"
+#include "stages/build_model/plan/edit_chain.h"
+#include "stages/build_model/plan/plan_internal.h"
 
 enum { DEFAULT_SEQUENCES = 300, FURNISHINGS = 6, EDITS = 8, LINES = 10 };
 /* In many sequences each of the statements that random_script.h makes is accepted in some edit. */

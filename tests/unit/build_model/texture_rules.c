@@ -1,5 +1,5 @@
 /* texture_rules.c - edited faces take the texture of their place in the unedited model. */
-#include "stages/build_model/texture_rules.h"
+#include "stages/build_model/texture/texture_rules.h"
 
 #include <math.h>
 

@@ -2,8 +2,8 @@
 #ifndef REMODEL_TESTS_TEXTURED_H
 #define REMODEL_TESTS_TEXTURED_H
 
-#include "stages/build_model/texture_rules.h"
-#include "stages/build_model/unite.h"
+#include "stages/build_model/solid/unite.h"
+#include "stages/build_model/texture/texture_rules.h"
 #include "tests/unit/build_model/scripted.h"
 
 struct made { /* an edit of a script, with its rules */

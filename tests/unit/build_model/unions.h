@@ -6,7 +6,7 @@
 
 #include <math.h>
 
-#include "stages/build_model/unite.h"
+#include "stages/build_model/solid/unite.h"
 
 /* A box; the faces names[0], [1] are at low and high x, [2], [3] y, [4], [5] z. */
 static inline enum status add_named_box(struct solid_list *list, const char *body, struct vec3 low, struct vec3 high,

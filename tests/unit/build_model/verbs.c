@@ -1,7 +1,7 @@
 /* verbs.c - the table of statements: its rows, and the places that list the same words. The documents are read from the
  * folder in which tests run, the root of the tree. */
-#include "stages/build_model/script.h"
-#include "stages/build_model/script_words.h"
+#include "stages/build_model/script/script.h"
+#include "stages/build_model/script/script_words.h"
 #include "tests/unit/scratch.h"
 
 static void every_row_is_complete(void **state)

@@ -1,5 +1,5 @@
 /* axes_error.c - errors of axes that are rotated by known angles. */
-#include "stages/evaluate/axes_error.h"
+#include "stages/evaluate/model/axes_error.h"
 
 #include "tests/unit/scratch.h"
 

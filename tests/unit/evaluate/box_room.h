@@ -4,7 +4,7 @@
 
 #include "common/image/exr.h"
 #include "common/image/image.h"
-#include "stages/evaluate/textures.h"
+#include "stages/evaluate/texture/textures.h"
 #include "tests/unit/scratch.h"
 
 enum { W = 60, H = 44, FACES = 6, TILE = 64 };

@@ -1,6 +1,6 @@
 /* depth_error.c - depth errors of a few pixels, counted by hand. */
-#include "stages/evaluate/depth_error.h"
-#include "stages/evaluate/sigma_error.h"
+#include "stages/evaluate/views/depth_error.h"
+#include "stages/evaluate/views/sigma_error.h"
 
 #include <math.h>
 

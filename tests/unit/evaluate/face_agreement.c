@@ -1,5 +1,5 @@
 /* face_agreement.c - ids of a model against true ids: pictures of known shares. */
-#include "stages/evaluate/face_agreement.h"
+#include "stages/evaluate/model/face_agreement.h"
 
 #include <math.h>
 

@@ -1,5 +1,5 @@
 /* flicker.c - the steadiness of relit films, on frames of a wall whose light is known. */
-#include "stages/evaluate/flicker.h"
+#include "stages/evaluate/light/flicker.h"
 
 #include <math.h>
 

@@ -1,5 +1,5 @@
 /* irradiance_ratio.c - errors of the ratio of irradiance after an edit to before: known ratios and factors. */
-#include "stages/evaluate/irradiance_ratio.h"
+#include "stages/evaluate/light/irradiance_ratio.h"
 
 #include <math.h>
 #include <string.h>

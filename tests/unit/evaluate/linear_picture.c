@@ -1,5 +1,5 @@
 /* linear_picture.c - true pictures seen through other cameras, and what a picture's file excludes. */
-#include "stages/evaluate/linear_picture.h"
+#include "stages/evaluate/truth/linear_picture.h"
 
 #include <math.h>
 

@@ -1,5 +1,5 @@
 /* metric_table.c - the text of the tables: sorted, with notes, never a NaN. */
-#include "stages/evaluate/metric_table.h"
+#include "stages/evaluate/measure/metric_table.h"
 
 #include <math.h>
 

@@ -4,7 +4,7 @@
 #include <math.h>
 
 #include "common/base/parallel.h"
-#include "stages/evaluate/metrics.h"
+#include "stages/evaluate/measure/metrics.h"
 
 #define W 37
 #define H 71 /* three chunks of rows */

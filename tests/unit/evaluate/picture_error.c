@@ -1,5 +1,5 @@
 /* picture_error.c - a rendered picture with holes and borders against a photograph, computed by hand. */
-#include "stages/evaluate/picture_error.h"
+#include "stages/evaluate/measure/picture_error.h"
 
 #include <math.h>
 

@@ -1,10 +1,10 @@
 /* radiance_error.c - errors of radiance, of irradiance at points and of hidden faces: known factors come back. */
-#include "stages/evaluate/radiance_error.h"
+#include "stages/evaluate/measure/radiance_error.h"
 
 #include <math.h>
 
-#include "stages/evaluate/irradiance_error.h"
-#include "stages/evaluate/shell_error.h"
+#include "stages/evaluate/light/irradiance_error.h"
+#include "stages/evaluate/render/shell_error.h"
 #include "tests/unit/scratch.h"
 
 enum { COUNT = 200 };

@@ -1,11 +1,11 @@
 /* relit_error.c - where light changes, PSNR of relit pictures, errors of quotients of light. */
-#include "stages/evaluate/relit_error.h"
+#include "stages/evaluate/light/relit_error.h"
 
 #include <math.h>
 #include <string.h>
 
 #include "common/image/image.h"
-#include "stages/evaluate/revealed_error.h"
+#include "stages/evaluate/render/revealed_error.h"
 #include "tests/unit/scratch.h"
 
 enum { N = 6 };

@@ -1,5 +1,5 @@
 /* revealed_error.c - what an edit reveals, and its error after one gain for each face. */
-#include "stages/evaluate/revealed_error.h"
+#include "stages/evaluate/render/revealed_error.h"
 
 #include <math.h>
 #include <string.h>

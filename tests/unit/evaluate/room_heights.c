@@ -1,5 +1,5 @@
 /* room_heights.c - rooms of different heights: each is compared with the true room that it lies in. */
-#include "stages/evaluate/room_heights.h"
+#include "stages/evaluate/model/room_heights.h"
 
 #include <math.h>
 

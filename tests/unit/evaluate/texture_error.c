@@ -1,12 +1,12 @@
 /* texture_error.c - texels of a wall against pictures of a room whose radiance is known at every point. */
-#include "stages/evaluate/texture_error.h"
+#include "stages/evaluate/texture/texture_error.h"
 
 #include <math.h>
 
 #include "common/base/parallel.h"
-#include "stages/evaluate/texel_facts.h"
-#include "stages/evaluate/texel_places.h"
-#include "stages/evaluate/texture_seams.h"
+#include "stages/evaluate/texture/texel_facts.h"
+#include "stages/evaluate/texture/texel_places.h"
+#include "stages/evaluate/texture/texture_seams.h"
 #include "tests/unit/scratch.h"
 
 /* The wall y = 3 of a room, seen from inside; the model's frame is the truth's world. A box of furniture stands in

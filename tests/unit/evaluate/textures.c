@@ -1,4 +1,5 @@
 /* textures.c - atlases of a box room in which each face has one colour: what they cover, and what they predict. */
+#include "stages/evaluate/texture/texture_metrics.h"
 #include "tests/unit/evaluate/box_room.h"
 
 /* ------------------------------------------------------------------------------------------------------------ tests */

@@ -1,6 +1,7 @@
 /* textures_truth.c - atlases of a box room against pictures of it without furniture, from files, face by face. */
 #include <math.h>
 
+#include "stages/evaluate/texture/texture_metrics.h"
 #include "tests/unit/evaluate/box_room.h"
 
 /* True radiance is SCALE times that of the products. The photo "near" shows furniture in a rectangle. */

@@ -1,5 +1,5 @@
 /* true_depth.c - true depths of planes: through lenses and rotations, at depth edges, and their occlusion. */
-#include "stages/evaluate/true_depth.h"
+#include "stages/evaluate/truth/true_depth.h"
 
 #include "tests/unit/scratch.h"
 

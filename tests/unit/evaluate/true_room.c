@@ -1,5 +1,5 @@
 /* true_room.c - floors and ceilings of true rooms, from either file. */
-#include "stages/evaluate/true_room.h"
+#include "stages/evaluate/truth/true_room.h"
 
 #include "tests/unit/scratch.h"
 

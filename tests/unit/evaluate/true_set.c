@@ -1,7 +1,7 @@
 /* true_set.c - folders of true pictures in both layouts, and lists of true faces. */
-#include "stages/evaluate/true_set.h"
+#include "stages/evaluate/truth/true_set.h"
 
-#include "stages/evaluate/true_faces.h"
+#include "stages/evaluate/truth/true_faces.h"
 #include "tests/unit/scratch.h"
 
 #define CAMERAS         "1 PINHOLE 40 30 20 20 20 15\n"

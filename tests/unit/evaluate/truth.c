@@ -1,5 +1,5 @@
 /* truth.c - folders with a truth: names, kinds of depth, damage. */
-#include "stages/evaluate/truth.h"
+#include "stages/evaluate/truth/truth.h"
 
 #include "common/base/outfile.h"
 #include "common/image/exr.h"

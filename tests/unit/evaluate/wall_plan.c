@@ -1,5 +1,5 @@
 /* wall_plan.c - walls and openings of a model against those of a truth: errors are the known shifts. */
-#include "stages/evaluate/wall_plan.h"
+#include "stages/evaluate/model/wall_plan.h"
 
 #include "tests/unit/scratch.h"
 

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "stages/build_model/unite.h"
+#include "stages/build_model/solid/unite.h"
 #include "stages/export_model/writers.h"
 #include "tests/unit/build_model/scripted.h"
 

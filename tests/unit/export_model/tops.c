@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "stages/build_model/plan_file.h"
-#include "stages/build_model/unite.h"
+#include "stages/build_model/solid/unite.h"
 #include "stages/export_model/ceiling_parts.h"
 #include "stages/export_model/wall_top.h"
 #include "stages/export_model/writers.h"

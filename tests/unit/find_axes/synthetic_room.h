@@ -14,7 +14,7 @@
 
 #include "common/base/rng.h"
 #include "stages/find_axes/directions.h"
-#include "stages/find_axes/room.h"
+#include "stages/find_axes/room_axes.h"
 
 enum { ROOM_VIEWS = 4 };
 

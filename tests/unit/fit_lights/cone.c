@@ -4,7 +4,7 @@
 #include <math.h>
 
 #include "common/base/rng.h"
-#include "common/gather/lights.h"
+#include "common/gather/light_list.h"
 #include "common/math/numbers.h"
 #include "tests/unit/scratch.h"
 

@@ -1,5 +1,5 @@
-/* solve.c, resolve.c, observe.c - from marks on noisy pictures of a room to its lamp: a spot in the ceiling of a cube
- * lights the floor. Its light on the floor is a sum over its area, by distance from its axis. */
+/* solve.c, lit_scene.c, observe_lights.c - from marks on noisy pictures of a room to its lamp: a spot in the ceiling of
+ * a cube lights the floor. Its light on the floor is a sum over its area, by distance from its axis. */
 #include "common/image/luminance.h"
 #include "stages/fit_lights/solve.h"
 

@@ -7,7 +7,7 @@
 #include <stdint.h>
 #include <string.h>
 
-#include "stages/morph_views/match.h"
+#include "stages/morph_views/flow_match.h"
 
 enum { MADE_WIDTH = 160, MADE_HEIGHT = 120 };
 

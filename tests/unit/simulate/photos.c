@@ -6,7 +6,7 @@
 #include "common/image/exr.h"
 #include "common/image/photo.h"
 #include "stages/simulate/photos.h"
-#include "stages/simulate/truth.h"
+#include "stages/simulate/scene_truth.h"
 
 #define SCENE                                                                                    \
     "texture t plaster 0.2 0.3 1 0.6 0.5 0.4\nmaterial m lambert t\nmaterial g phong t 0.2 10\n" \

@@ -4,9 +4,9 @@
 #include "common/base/parallel.h"
 #include "common/capture/sfm_model.h"
 #include "common/image/exr.h"
-#include "stages/simulate/estimate.h"
-#include "stages/simulate/irradiance.h"
-#include "stages/simulate/truth.h"
+#include "stages/simulate/render_estimate.h"
+#include "stages/simulate/scene_truth.h"
+#include "stages/simulate/true_irradiance.h"
 
 #define ROOM                                                                                                           \
     "texture t plaster 0.2 0.3 1 0.6 0.5 0.4\nmaterial m lambert t\nroom r 0 0 5 4 0 2.5 m m\n"                        \

@@ -1,7 +1,7 @@
 /* Rays from samples: rows that sum to the irradiance, energy in a painted room, objects, the same bits for any
  * threads. */
 #include "stages/update_vita/edited_atlas.h"
-#include "stages/update_vita/rounds.h"
+#include "stages/update_vita/light_rounds.h"
 
 #include "common/base/parallel.h"
 #include "common/math/numbers.h"

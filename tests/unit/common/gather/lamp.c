@@ -1,7 +1,7 @@
 /* lamp.c - radiance and irradiance of lamps against closed forms and plain sums. */
 #include <math.h>
 
-#include "common/gather/lights.h"
+#include "common/gather/light_list.h"
 #include "tests/unit/scratch.h"
 
 static const double quarter = 1.5707963267948966;

@@ -1,0 +1,472 @@
+/* sfm_model_colmap.c - COLMAP's text format (https://colmap.github.io/format.html).
+ *
+ * Images are read before points, so that every entry of a track can be checked, with its line, against the observation
+ * that it refers to. Observations that no track lists are found afterwards. */
+#include <inttypes.h>
+#include <limits.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/base/array.h"
+#include "common/base/file_path.h"
+#include "common/base/outfile.h"
+#include "common/base/sort.h"
+#include "common/base/textfile.h"
+#include "common/capture/sfm_model_parts.h"
+#include "common/product/product.h"
+
+/* The id of a record, the index of the record in its array, and its line in the file. */
+struct id_row {
+    int64_t id;
+    int idx, line;
+};
+
+struct id_list {
+    struct id_row *rows;
+    int count;
+    bool ascending; /* in the file */
+};
+
+static enum status id_list_add(struct id_list *l, int64_t id, int line, struct err *err)
+{
+    if (sfm_append(&l->rows, l->count, sizeof *l->rows, "ids", err)) return err->status;
+    l->ascending = l->count == 0 || (l->ascending && l->rows[l->count - 1].id < id);
+    l->rows[l->count] = (struct id_row){id, l->count, line};
+    l->count++;
+    return ST_OK;
+}
+
+static int compare_rows(const void *a, const void *b)
+{
+    const struct id_row *x = a, *y = b;
+    return x->id != y->id ? (x->id < y->id ? -1 : 1) : (x->line > y->line) - (x->line < y->line);
+}
+
+static enum status id_list_sort(struct id_list *l, const char *path, const char *what, struct err *err)
+{
+    if (l->count && !l->ascending) qsort(l->rows, (size_t)l->count, sizeof *l->rows, compare_rows);
+    for (int i = 1; i < l->count; i++)
+        if (l->rows[i - 1].id == l->rows[i].id)
+            return err_set(err, ST_DATA,
+                           "%s:%d: found %s %" PRId64 " a second time (first on line %d), wanted each id once.", path,
+                           l->rows[i].line, what, l->rows[i].id, l->rows[i - 1].line);
+    return ST_OK;
+}
+
+static bool row_is_below(const void *row, const void *id)
+{
+    return ((const struct id_row *)row)->id < *(const int64_t *)id;
+}
+
+/* The row with this id, or NULL. The list is sorted. */
+static struct id_row *id_list_row(const struct id_list *l, int64_t id)
+{
+    const int at = (int)sort_place(l->rows, (size_t)l->count, sizeof *l->rows, row_is_below, &id);
+    return at < l->count && l->rows[at].id == id ? &l->rows[at] : NULL;
+}
+
+/* Index of the record with this id, or -1. */
+static int id_list_find(const struct id_list *l, int64_t id)
+{
+    const struct id_row *row = id_list_row(l, id);
+    return row ? row->idx : -1;
+}
+
+static void id_list_release(struct id_list *l)
+{
+    free(l->rows);
+    *l = (struct id_list){0};
+}
+
+static bool point_is_below(const void *point, const void *id)
+{
+    return ((const struct sfm_point *)point)->id < *(const int64_t *)id;
+}
+
+static int find_point(const struct sfm_model *m, int64_t id)
+{
+    const int at = (int)sort_place(m->points, (size_t)m->point_count, sizeof *m->points, point_is_below, &id);
+    return at < m->point_count && m->points[at].id == id ? at : -1;
+}
+
+/* --------------------------------------------------------------------------------------------------------- reading */
+
+/* A file of a model, which may be of any product, or of none: a user's. */
+static enum status open_part(struct textfile *t, const char *path, struct provenance *prov, struct err *err)
+{
+    return provenance_open(prov, product_name(product_at(path), path), t, path, err);
+}
+
+static enum status read_cameras(struct sfm_model *m, struct id_list *ids, const char *path, struct provenance *prov,
+                                struct err *err)
+{
+    struct textfile t = {0};
+    enum status st = open_part(&t, path, prov, err);
+    while (!st && textfile_next(&t)) {
+        struct sfm_camera c = {0};
+        struct err why = ERR_INIT;
+        int64_t width = 0, height = 0;
+        char *model = NULL;
+        st = textfile_int(&t, "camera id", 0, INT64_MAX, &c.id, err) || textfile_word(&t, "camera model", &model, err);
+        if (!st && !camera_model_from_name(model, &c.camera.model)) {
+            char names[256] = "";
+            for (int i = 0; i < CAMERA_MODEL_COUNT; i++)
+                snprintf(names + strlen(names), sizeof names - strlen(names), " %s",
+                         camera_model_name((enum camera_model)i));
+            st = textfile_error(&t, err, model, "one of the supported camera models:%s", names);
+        }
+        st = st || textfile_int(&t, "width", 1, INT_MAX, &width, err) ||
+             textfile_int(&t, "height", 1, INT_MAX, &height, err);
+        for (int i = 0; !st && i < camera_model_params(c.camera.model); i++)
+            st = textfile_double(&t, "camera parameter", &c.camera.params[i], err);
+        st = st || textfile_end(&t, err);
+        c.camera.width = (int)width;
+        c.camera.height = (int)height;
+        if (!st && camera_check(&c.camera, &why))
+            st = err_set(err, ST_DATA, "%s:%d: camera %" PRId64 ": %s", path, t.line, c.id, why.text);
+        st = st || sfm_append(&m->cameras, m->camera_count, sizeof *m->cameras, "cameras", err) ||
+             id_list_add(ids, c.id, t.line, err);
+        if (!st) m->cameras[m->camera_count++] = c;
+    }
+    st = st || id_list_sort(ids, path, "camera", err);
+    textfile_release(&t);
+    return st ? err->status : ST_OK;
+}
+
+/* The second line of an image: U V POINT_ID for each feature. It may be blank. */
+static enum status read_observations(struct textfile *t, struct sfm_image *im, struct err *err)
+{
+    enum status st = ST_OK;
+    while (!st && textfile_more(t)) {
+        struct sfm_observation o = {0};
+        st = textfile_double(t, "x of an observation", &o.u, err) ||
+             textfile_double(t, "y of an observation", &o.v, err) ||
+             textfile_int(t, "point id (-1: none)", -1, INT64_MAX, &o.point_id, err) ||
+             sfm_append(&im->observations, im->observation_count, sizeof o, "observations", err);
+        if (!st) im->observations[im->observation_count++] = o;
+    }
+    im->observations = sfm_shrink(im->observations, im->observation_count, sizeof *im->observations);
+    return st ? err->status : ST_OK;
+}
+
+/* The two lines of an image. On failure the caller releases its name and observations. */
+static enum status read_image(struct sfm_image *im, struct textfile *t, const struct id_list *cameras, struct err *err)
+{
+    struct quat *q = &im->cam_from_world.rotation;
+    struct vec3 *p = &im->cam_from_world.translation;
+    int64_t camera_id = 0;
+    char *name = NULL, found[128];
+    if (textfile_int(t, "image id", 0, INT64_MAX, &im->id, err) || textfile_double(t, "QW", &q->w, err) ||
+        textfile_double(t, "QX", &q->x, err) || textfile_double(t, "QY", &q->y, err) ||
+        textfile_double(t, "QZ", &q->z, err) || textfile_double(t, "TX", &p->x, err) ||
+        textfile_double(t, "TY", &p->y, err) || textfile_double(t, "TZ", &p->z, err) ||
+        textfile_int(t, "camera id", 0, INT64_MAX, &camera_id, err) ||
+        textfile_rest(t, "name of the image", &name, err))
+        return err->status;
+    im->camera_idx = id_list_find(cameras, camera_id);
+    if (!sfm_normalize_rotation(q)) {
+        snprintf(found, sizeof found, "%.9g %.9g %.9g %.9g", q->w, q->x, q->y, q->z);
+        return textfile_error(t, err, found, "a quaternion QW QX QY QZ of length 1");
+    }
+    if (im->camera_idx < 0) {
+        snprintf(found, sizeof found, "camera %" PRId64, camera_id);
+        return textfile_error(t, err, found, "the id of a camera in cameras.txt");
+    }
+    im->name = strdup(name);
+    if (!im->name) return err_nomem(err, "a name", strlen(name) + 1);
+    return textfile_next_raw(t) ? read_observations(t, im, err) : ST_OK;
+}
+
+/* Sorts the images by name; lines and ids follow. lines: of each image in the file. */
+static enum status sort_images(struct sfm_model *m, struct id_list *ids, int *lines, const char *path, struct err *err)
+{
+    int *old_idx = NULL, *old_lines = malloc(((size_t)m->image_count + 1) * sizeof *old_lines);
+    if (!old_lines) return err_nomem(err, "images", (size_t)m->image_count * sizeof *old_lines);
+    memcpy(old_lines, lines, (size_t)m->image_count * sizeof *lines);
+    enum status st = sfm_sort_images(m, &old_idx, err);
+    for (int i = 0; !st && i < m->image_count; i++) {
+        lines[i] = old_lines[old_idx[i]];
+        id_list_row(ids, m->images[i].id)->idx = i;
+    }
+    for (int i = 1; !st && i < m->image_count; i++)
+        if (!strcmp(m->images[i - 1].name, m->images[i].name))
+            st = err_set(err, ST_DATA, "%s:%d: found image \"%s\" a second time (first on line %d), wanted each once.",
+                         path, lines[i], m->images[i].name, lines[i - 1]);
+    free(old_idx);
+    free(old_lines);
+    return st;
+}
+
+/* *lines: the line of each image in the file; the caller frees it. */
+static enum status read_images(struct sfm_model *m, const struct id_list *cameras, struct id_list *ids, int **lines,
+                               const char *path, struct provenance *prov, struct err *err)
+{
+    struct textfile t = {0};
+    enum status st = open_part(&t, path, prov, err);
+    while (!st && textfile_next(&t)) {
+        struct sfm_image im = {0};
+        const int line = t.line;
+        st = read_image(&im, &t, cameras, err) || id_list_add(ids, im.id, line, err) ||
+             sfm_append(&m->images, m->image_count, sizeof im, "images", err) ||
+             sfm_append(lines, m->image_count, sizeof **lines, "images", err);
+        if (!st) {
+            (*lines)[m->image_count] = line;
+            m->images[m->image_count++] = im;
+        } else {
+            free(im.name);
+            free(im.observations);
+        }
+    }
+    if (!st && !m->image_count)
+        st = err_set(err, ST_DATA, "%s contains no image; run structure from motion again.", path);
+    st = st || id_list_sort(ids, path, "image", err) || sort_images(m, ids, *lines, path, err);
+    textfile_release(&t);
+    return st ? err->status : ST_OK;
+}
+
+/* One entry of a track: an observation of this point that no track has listed yet. */
+static enum status read_track_entry(struct textfile *t, const struct sfm_model *m, const struct id_list *images,
+                                    unsigned char **listed, int64_t point_id, struct sfm_track *track, struct err *err)
+{
+    int64_t image_id = 0, observation = 0;
+    char found[96];
+    if (textfile_int(t, "image id of a track", 0, INT64_MAX, &image_id, err) ||
+        textfile_int(t, "observation of a track", 0, INT64_MAX, &observation, err))
+        return err->status;
+    int idx = id_list_find(images, image_id);
+    if (idx < 0) {
+        snprintf(found, sizeof found, "image %" PRId64, image_id);
+        return textfile_error(t, err, found, "the id of an image in images.txt");
+    }
+    snprintf(found, sizeof found, "observation %" PRId64 " of image %" PRId64, observation, image_id);
+    const struct sfm_image *im = &m->images[idx];
+    if (observation >= im->observation_count)
+        return textfile_error(t, err, found, "one of that image's %d observations", im->observation_count);
+    if (im->observations[observation].point_id != point_id)
+        return textfile_error(t, err, found, "an observation that images.txt assigns to point %" PRId64, point_id);
+    if (listed[idx][observation]) return textfile_error(t, err, found, "each observation once");
+    listed[idx][observation] = 1;
+    *track = (struct sfm_track){idx, (int)observation};
+    return ST_OK;
+}
+
+/* A line of points3D.txt. `track` is scratch memory. On failure the caller releases p->track. */
+static enum status read_point(struct sfm_point *p, struct textfile *t, const struct sfm_model *m,
+                              const struct id_list *images, unsigned char **listed, struct sfm_track **track,
+                              size_t *capacity, struct err *err)
+{
+    int64_t rgb[3] = {0};
+    int count = 0;
+    if (textfile_int(t, "point id", 0, INT64_MAX, &p->id, err) || textfile_double(t, "X", &p->position.x, err) ||
+        textfile_double(t, "Y", &p->position.y, err) || textfile_double(t, "Z", &p->position.z, err) ||
+        textfile_int(t, "R", 0, 255, &rgb[0], err) || textfile_int(t, "G", 0, 255, &rgb[1], err) ||
+        textfile_int(t, "B", 0, 255, &rgb[2], err) || textfile_double(t, "reprojection error", &p->error, err))
+        return err->status;
+    for (int i = 0; i < 3; i++) p->rgb[i] = (uint8_t)rgb[i];
+    for (; textfile_more(t); count++)
+        if (array_reserve(track, capacity, (size_t)count + 1, sizeof **track, "track entries", err) ||
+            read_track_entry(t, m, images, listed, p->id, &(*track)[count], err))
+            return err->status;
+    if (!count) return ST_OK;
+    p->track = malloc((size_t)count * sizeof *p->track);
+    if (!p->track) return err_nomem(err, "a track", (size_t)count * sizeof *p->track);
+    memcpy(p->track, *track, (size_t)count * sizeof *p->track);
+    p->track_count = count;
+    return ST_OK;
+}
+
+/* Puts the points into the order of the list, which is sorted by id. */
+static enum status sort_points(struct sfm_model *m, const struct id_list *ids, struct err *err)
+{
+    struct sfm_point *sorted = malloc((size_t)ids->count * sizeof *sorted);
+    if (!sorted) return err_nomem(err, "points", (size_t)ids->count * sizeof *sorted);
+    for (int i = 0; i < ids->count; i++) sorted[i] = m->points[ids->rows[i].idx];
+    free(m->points);
+    m->points = sorted;
+    return ST_OK;
+}
+
+static enum status read_points(struct sfm_model *m, const struct id_list *images, unsigned char **listed,
+                               const char *folder, struct provenance *prov, struct err *err)
+{
+    struct textfile t = {0};
+    struct id_list ids = {0};
+    struct sfm_track *track = NULL;
+    size_t capacity = 0;
+    char path[FILE_PATH];
+    if (product_path_in(path, folder, PRODUCT_POINTS3D, NULL, err)) return err->status;
+    enum status st = open_part(&t, path, prov, err);
+    while (!st && textfile_next(&t)) {
+        struct sfm_point p = {0};
+        st = sfm_append(&m->points, m->point_count, sizeof p, "points", err) ||
+             read_point(&p, &t, m, images, listed, &track, &capacity, err) || id_list_add(&ids, p.id, t.line, err);
+        if (st)
+            free(p.track);
+        else
+            m->points[m->point_count++] = p;
+    }
+    m->points = sfm_shrink(m->points, m->point_count, sizeof *m->points);
+    if (!st && !ids.ascending && ids.count) st = id_list_sort(&ids, path, "point", err) || sort_points(m, &ids, err);
+    free(track);
+    id_list_release(&ids);
+    textfile_release(&t);
+    return st ? err->status : ST_OK;
+}
+
+static enum status check_observations(const struct sfm_model *m, unsigned char **listed, const int *lines,
+                                      const char *folder, struct err *err)
+{
+    for (int i = 0; i < m->image_count; i++)
+        for (int k = 0; k < m->images[i].observation_count; k++) {
+            int64_t id = m->images[i].observations[k].point_id;
+            if (id == -1 || listed[i][k]) continue;
+            return err_set(err, ST_DATA,
+                           "%s/images.txt:%d: found that observation %d (from 0) of image \"%s\" is of point %" PRId64
+                           ", wanted %s in points3D.txt.",
+                           folder, lines[i] + 1, k, m->images[i].name, id,
+                           find_point(m, id) < 0 ? "that point" : "it in that point's track");
+        }
+    return ST_OK;
+}
+
+/* The files have the names of the views', whatever model they are of. */
+static enum status model_paths(char of_cameras[FILE_PATH], char of_images[FILE_PATH], const char *folder,
+                               struct err *err)
+{
+    return product_path_in(of_cameras, folder, PRODUCT_CAMERAS, NULL, err) ||
+                   product_path_in(of_images, folder, PRODUCT_IMAGES, NULL, err)
+               ? err->status
+               : ST_OK;
+}
+
+enum status sfm_model_read_text(struct sfm_model *m, const char *folder, struct provenance *prov, struct err *err)
+{
+    struct id_list cameras = {0}, images = {0};
+    unsigned char **listed = NULL;
+    int *lines = NULL;
+    char of_cameras[FILE_PATH], of_images[FILE_PATH];
+    *m = (struct sfm_model){0};
+    enum status st = model_paths(of_cameras, of_images, folder, err) ||
+                     read_cameras(m, &cameras, of_cameras, prov, err) ||
+                     read_images(m, &cameras, &images, &lines, of_images, prov, err);
+    if (!st) {
+        listed = calloc((size_t)m->image_count, sizeof *listed);
+        if (!listed) st = err_nomem(err, "marks", (size_t)m->image_count * sizeof *listed);
+        for (int i = 0; !st && i < m->image_count; i++) {
+            listed[i] = calloc((size_t)m->images[i].observation_count + 1, 1);
+            if (!listed[i]) st = err_nomem(err, "marks", (size_t)m->images[i].observation_count);
+        }
+    }
+    st = st || read_points(m, &images, listed, folder, prov, err) || check_observations(m, listed, lines, folder, err);
+    for (int i = 0; listed && i < m->image_count; i++) free(listed[i]);
+    free(listed);
+    free(lines);
+    id_list_release(&cameras);
+    id_list_release(&images);
+    if (st) sfm_model_release(m);
+    return st ? err->status : ST_OK;
+}
+
+enum status sfm_model_read_cameras(struct sfm_model *m, const char *folder, struct provenance *prov, struct err *err)
+{
+    char of_cameras[FILE_PATH], of_images[FILE_PATH];
+    *m = (struct sfm_model){0};
+    if (model_paths(of_cameras, of_images, folder, err)) return err->status;
+    return sfm_model_read_camera_files(m, of_cameras, of_images, prov, err);
+}
+
+enum status sfm_model_read_camera_files(struct sfm_model *m, const char *of_cameras, const char *of_images,
+                                        struct provenance *prov, struct err *err)
+{
+    struct id_list cameras = {0}, images = {0};
+    int *lines = NULL;
+    *m = (struct sfm_model){0};
+    enum status st = read_cameras(m, &cameras, of_cameras, prov, err);
+    if (!st && of_images) st = read_images(m, &cameras, &images, &lines, of_images, prov, err);
+    for (int i = 0; !st && i < m->image_count; i++) {
+        free(m->images[i].observations);
+        m->images[i].observations = NULL;
+        m->images[i].observation_count = 0;
+    }
+    free(lines);
+    id_list_release(&cameras);
+    id_list_release(&images);
+    if (st) sfm_model_release(m);
+    return st ? err->status : ST_OK;
+}
+
+/* --------------------------------------------------------------------------------------------------------- writing */
+
+static void print_cameras(const struct sfm_model *m, FILE *to)
+{
+    fputs("# CAMERA_ID MODEL WIDTH HEIGHT PARAMS...\n", to);
+    for (int i = 0; i < m->camera_count; i++) {
+        const struct camera *c = &m->cameras[i].camera;
+        fprintf(to, "%" PRId64 " %s %d %d", m->cameras[i].id, camera_model_name(c->model), c->width, c->height);
+        for (int k = 0; k < camera_model_params(c->model); k++) fprintf(to, " %.17g", c->params[k]);
+        fputc('\n', to);
+    }
+}
+
+static void print_images(const struct sfm_model *m, FILE *to)
+{
+    fputs("# two lines an image: IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME; then X Y POINT3D_ID...\n", to);
+    for (int i = 0; i < m->image_count; i++) {
+        const struct sfm_image *im = &m->images[i];
+        struct quat q = im->cam_from_world.rotation;
+        struct vec3 t = im->cam_from_world.translation;
+        fprintf(to, "%" PRId64 " %.17g %.17g %.17g %.17g %.17g %.17g %.17g %" PRId64 " %s\n", im->id, q.w, q.x, q.y,
+                q.z, t.x, t.y, t.z, m->cameras[im->camera_idx].id, im->name);
+        for (int k = 0; k < im->observation_count; k++) {
+            const struct sfm_observation *o = &im->observations[k];
+            fprintf(to, "%s%.17g %.17g %" PRId64, k ? " " : "", o->u, o->v, o->point_id);
+        }
+        fputc('\n', to);
+    }
+}
+
+static void print_points(const struct sfm_model *m, FILE *to)
+{
+    fputs("# POINT3D_ID X Y Z R G B ERROR, then IMAGE_ID POINT2D_IDX...\n", to);
+    for (int i = 0; i < m->point_count; i++) {
+        const struct sfm_point *p = &m->points[i];
+        fprintf(to, "%" PRId64 " %.17g %.17g %.17g %d %d %d %.17g", p->id, p->position.x, p->position.y, p->position.z,
+                p->rgb[0], p->rgb[1], p->rgb[2], p->error);
+        for (int k = 0; k < p->track_count; k++)
+            fprintf(to, " %" PRId64 " %d", m->images[p->track[k].image_idx].id, p->track[k].observation_idx);
+        fputc('\n', to);
+    }
+}
+
+static enum status write_part(const struct sfm_model *m, const char *folder, enum product_id id,
+                              void (*print)(const struct sfm_model *m, FILE *to), const struct provenance *prov,
+                              struct err *err)
+{
+    struct outfile f = {0};
+    char path[FILE_PATH];
+    enum status st =
+        product_path_in(path, folder, id, NULL, err) || product_begin(&f, id, path, prov, err) ? err->status : ST_OK;
+    if (!st) {
+        print(m, f.fp);
+        st = outfile_commit(&f, err);
+    }
+    outfile_discard(&f);
+    return st;
+}
+
+enum status sfm_model_write_text(const struct sfm_model *m, const char *folder, const struct provenance *prov,
+                                 struct err *err)
+{
+    for (int i = 0; i < m->image_count; i++) {
+        const char *name = m->images[i].name;
+        size_t n = strlen(name);
+        if (n == 0 || strpbrk(name, "\r\n") || strchr(" \t", name[0]) || strchr(" \t", name[n - 1]))
+            return err_set(err, ST_DATA, "an image named \"%s\" cannot be written to %s/images.txt; rename it.", name,
+                           folder);
+    }
+    if (write_part(m, folder, PRODUCT_POINTS3D, print_points, prov, err) ||
+        write_part(m, folder, PRODUCT_CAMERAS, print_cameras, prov, err) ||
+        write_part(m, folder, PRODUCT_IMAGES, print_images, prov, err))
+        return err->status;
+    return ST_OK;
+}

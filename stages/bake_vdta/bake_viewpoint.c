@@ -1,0 +1,265 @@
+/* bake_viewpoint.c - the atlas of textures as they look from the place of one photo [Colburn 2014, 4.5].
+ *
+ * Overview.
+ *   1. The viewpoint's own views say which faces it sees, and how large: tiles and their texels follow
+ *      (view_tiles.c), those that an edit would reveal among them
+ *   2. sources_choose() picks the other views that show these faces
+ *   3. each source is read, its pixels become candidates of the texels that it shows, and it is released again
+ *   4. gains bring the sources to one exposure, each texel gets its best candidate, and a composite in the gradient
+ *      domain removes seams (bake_atlas.h)
+ *   5. pages are written, then the list of make dependencies, and atlas.txt last
+ *
+ * A texel that an own view shows keeps that view's colour. With [bake_vdta] own_photo = withheld, own views are
+ * treated as if they showed nothing: the atlas then predicts the photo from the others, which `evaluate` compares
+ * with it.
+ *
+ * `white`, the radiance at which errors of colour are measured, is the 90th percentile of every seventh own pixel.
+ *
+ * Views of one photo share an exposure, so they form one group, named by its first view.
+ *
+ * Memory: the texels of one viewpoint with their candidates, and one source at a time: it does not grow with the
+ * number of views. Time is linear in the pixels of the sources; bake_estimate.c has measured constants. */
+#include "stages/bake_vdta/bake_viewpoint.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/base/array.h"
+#include "common/base/log.h"
+#include "common/base/make_deps.h"
+#include "common/base/progress.h"
+#include "common/capture/photo_camera.h"
+#include "common/capture/photo_quality.h"
+#include "common/image/luminance.h"
+#include "common/product/product.h"
+#include "stages/bake_vdta/sources.h"
+#include "stages/bake_vdta/view_tiles.h"
+
+enum { MAX_OWN = 16 };                 /* views of one photo */
+enum { SAMPLE = 7 };                   /* every SAMPLE-th pixel counts for the level of white */
+static const double WHITE_SHARE = 0.9; /* of the viewpoint's pixels are below white */
+
+struct work {
+    const struct bake_scene *scene;
+    const char *photo, *deps;
+    struct provenance *prov;
+    int own[MAX_OWN]; /* views of the photo, in order of name */
+    int own_count;
+    int *views; /* that are sources, own ones among them, in order of name */
+    int view_count;
+    struct bake bake;
+};
+
+static enum status find_own_views(struct work *w, struct err *err)
+{
+    const struct bake_scene *s = w->scene;
+    for (int i = 0; i < s->in.set.view_count; i++) {
+        const struct lens *lens = lens_of_view(&s->in.set, &s->in.lenses, i);
+        if (!lens || strcmp(lens->photo, w->photo)) continue;
+        if (w->own_count == MAX_OWN)
+            return err_set(err, ST_DATA, "photo %s has more than %d views.", w->photo, MAX_OWN);
+        w->own[w->own_count++] = i;
+    }
+    if (w->own_count) return ST_OK;
+    return err_set(err, ST_USAGE,
+                   "there is no photo %s in %s/lenses.txt, where the second word of each line is a photo.", w->photo,
+                   s->views);
+}
+
+static int compare_floats(const void *a, const void *b)
+{
+    const float p = *(const float *)a, q = *(const float *)b;
+    return p < q ? -1 : p > q;
+}
+
+/* Adds luminances of a view's pixels to a list. */
+static enum status add_levels(float **levels, size_t *count, size_t *room, const struct source_view *v, struct err *err)
+{
+    const size_t pixels = (size_t)v->camera.width * (size_t)v->camera.height;
+    if (array_reserve(levels, room, *count + pixels / SAMPLE + 1, sizeof **levels, "pixels", err)) return err->status;
+    for (size_t i = 0; i < pixels; i += SAMPLE) {
+        const float *p = v->levels[0].rgba + 4 * i;
+        if (p[3] > 0) (*levels)[(*count)++] = luminance_of(p);
+    }
+    return ST_OK;
+}
+
+/* The radiance below which WHITE_SHARE of the viewpoint's pixels lie; 1 if all are black. */
+static double white_of(float *levels, size_t count)
+{
+    if (!count) return 1;
+    qsort(levels, count, sizeof *levels, compare_floats);
+    const double white = levels[(size_t)(WHITE_SHARE * (double)(count - 1))];
+    return white > 0 ? white : 1;
+}
+
+static bool is_withheld(const struct bake_scene *s) { return !strcmp(s->params->own_photo, "withheld"); }
+
+static bool is_own(const struct work *w, int view)
+{
+    for (int k = 0; k < w->own_count; k++)
+        if (w->own[k] == view) return true;
+    return false;
+}
+
+/* The tiles of all own views, and the level of white. */
+static enum status add_tiles(struct work *w, struct err *err)
+{
+    const struct bake_scene *s = w->scene;
+    float *levels = NULL;
+    size_t count = 0, room = 0;
+    enum status st = ST_OK;
+    for (int k = 0; !st && k < w->own_count; k++) {
+        struct own_view own = {0};
+        const struct view *camera = &s->in.set.views[w->own[k]];
+        st = own_view_read(&own, s->views, s->ids, s->reveal, camera, s->in.axes.scale, &s->params->texture, w->prov,
+                           err);
+        if (!st) st = add_levels(&levels, &count, &room, &own.view, err);
+        if (!st && is_withheld(s)) memset(own.view.own, SOURCE_NONE, (size_t)camera->width * (size_t)camera->height);
+        if (!st) st = view_tiles_add(&w->bake, &own, k, !strcmp(s->params->reveal, "all"), err);
+        own_view_release(&own);
+    }
+    w->bake.white = white_of(levels, count);
+    free(levels);
+    return st;
+}
+
+/* Sources, and own texels made from them. */
+static enum status set_sources(struct work *w, struct err *err)
+{
+    const struct bake_scene *s = w->scene;
+    const size_t n = (size_t)w->view_count;
+    const char **names = malloc(n * sizeof *names);
+    int *groups = malloc(n * sizeof *groups);
+    bool *own = calloc(n, sizeof *own);
+    uint32_t made[MAX_OWN] = {0};
+    enum status st = names && groups && own ? ST_OK : err_nomem(err, "sources", n * sizeof *names);
+    for (int i = 0; !st && i < w->view_count; i++) {
+        names[i] = s->in.set.views[w->views[i]].name;
+        groups[i] = photo_of_view(&s->in.set, &s->in.lenses, w->views[i]);
+        for (int k = 0; k < w->own_count; k++)
+            if (w->own[k] == w->views[i]) own[i] = true, made[k] = (uint32_t)i, w->bake.own_group = groups[i];
+    }
+    if (!st) st = bake_set_sources(&w->bake, names, groups, own, w->view_count, err);
+    for (size_t i = 0; !st && i < w->bake.texel_count; i++)
+        if (w->bake.made[i] >= ATLAS_VIEWS) w->bake.made[i] = ATLAS_VIEWS + made[w->bake.made[i] - ATLAS_VIEWS];
+    free(names);
+    free(groups);
+    free(own);
+    return st;
+}
+
+static enum status read_sources(struct work *w, uint64_t *bytes, struct err *err)
+{
+    const struct bake_scene *s = w->scene;
+    struct progress progress;
+    enum status st = ST_OK;
+    progress_start(&progress, w->photo, w->view_count, "views");
+    for (int i = 0; !st && i < w->view_count; i++) {
+        struct source_view view = {0};
+        st = source_view_read(&view, NULL, s->views, s->ids, &s->in.set.views[w->views[i]], &s->params->texture,
+                              w->prov, err);
+        if (!st && !(is_withheld(s) && is_own(w, w->views[i]))) bake_add_view(&w->bake, &view, i);
+        *bytes += view.bytes;
+        source_view_release(&view);
+        progress_add(&progress, 1);
+    }
+    progress_end(&progress);
+    return st;
+}
+
+/* What atlas.txt says beside tiles and pages. */
+static enum status describe(struct atlas *a, const struct work *w, struct err *err)
+{
+    const struct bake_scene *s = w->scene;
+    a->views = calloc(MAX_OWN, sizeof *a->views);
+    a->sources = calloc((size_t)w->view_count, sizeof *a->sources);
+    a->viewpoint = strdup(w->photo);
+    if (!a->views || !a->sources || !a->viewpoint) return err_nomem(err, "names", (size_t)w->view_count);
+    a->centre = w->bake.centre;
+    for (; a->view_count < w->own_count; a->view_count++)
+        if (!(a->views[a->view_count] = strdup(s->in.set.views[w->own[a->view_count]].name)))
+            return err_nomem(err, "a name", 1);
+    for (; a->source_count < w->view_count; a->source_count++)
+        if (!(a->sources[a->source_count] = strdup(s->in.set.views[w->views[a->source_count]].name)))
+            return err_nomem(err, "a name", 1);
+    return ST_OK;
+}
+
+/* The views that were read, for make. */
+static enum status write_deps(const struct work *w, const char *folder, struct err *err)
+{
+    const struct bake_scene *s = w->scene;
+    const size_t n = (size_t)w->view_count;
+    char(*paths)[FILE_PATH] = malloc((2 * n + 1) * sizeof *paths);
+    const char **files = malloc((2 * n + 1) * sizeof *files);
+    enum status st = paths && files ? product_path_in(paths[2 * n], folder, PRODUCT_ATLAS, NULL, err)
+                                    : err_nomem(err, "file names", 2 * n * sizeof *paths);
+    for (size_t i = 0; !st && i < n; i++) {
+        const struct product_key key = {.view = s->in.set.views[w->views[i]].name};
+        st = product_path_in(paths[2 * i], s->views, PRODUCT_VIEW, &key, err);
+        if (!st) st = product_path_in(paths[2 * i + 1], s->ids, PRODUCT_IDS, &key, err);
+        files[2 * i] = paths[2 * i];
+        files[2 * i + 1] = paths[2 * i + 1];
+    }
+    if (!st) st = make_deps_write(w->deps, paths[2 * n], files, (int)(2 * n), err);
+    free(paths);
+    free(files);
+    return st;
+}
+
+static enum status write_all(struct work *w, uint64_t bytes, const struct bake_totals *t, struct err *err)
+{
+    char folder[FILE_PATH];
+    struct atlas a = {0};
+    size_t texels = 0;
+    enum status st = file_path(folder, w->scene->out, w->photo, "", err);
+    if (!st) st = describe(&a, w, err);
+    if (!st) st = bake_write_pages(&a, &w->bake, NULL, folder, w->prov, &texels, err);
+    if (!st && w->deps) st = write_deps(w, folder, err);
+    if (!st) st = atlas_write_list(&a, folder, w->prov, err);
+    atlas_release(&a);
+    if (!st)
+        log_note(
+            "%s: %.2f million texels, %.1f %% original, %.1f %% warped, %.1f %% synthesised, %.1f %% of faces that "
+            "no view shows; pages of %.2f million; %d views and %.1f MiB read; largest residual %.1e",
+            w->photo, 1e-6 * (double)t->texels, 100.0 * (double)t->original / (double)(t->texels ? t->texels : 1),
+            100.0 * (double)t->warped / (double)(t->texels ? t->texels : 1),
+            100.0 * (double)t->synthesised / (double)(t->texels ? t->texels : 1),
+            100.0 * (double)t->by_default / (double)(t->texels ? t->texels : 1), 1e-6 * (double)texels, w->view_count,
+            (double)bytes / (1 << 20), t->residual);
+    return st;
+}
+
+static enum status bake_work(struct work *w, struct err *err)
+{
+    struct bake_totals totals = {0};
+    uint64_t bytes = 0;
+    w->bake = (struct bake){.surfaces = &w->scene->surfaces, .params = &w->scene->params->texture, .has_centre = true};
+    enum status st = find_own_views(w, err);
+    if (!st) w->bake.centre = w->scene->in.set.views[w->own[0]].center;
+    if (!st) st = add_tiles(w, err);
+    if (!st) st = sources_choose(&w->views, &w->view_count, w->scene, w->own, w->own_count, &w->bake, w->prov, err);
+    if (!st) st = set_sources(w, err);
+    if (!st) st = bake_list_texels(&w->bake, err);
+    if (!st) st = read_sources(w, &bytes, err);
+    if (!st) st = bake_find_gains(&w->bake, err);
+    if (!st) bake_choose(&w->bake);
+    if (!st) st = bake_composite(&w->bake, &totals, err);
+    if (!st) st = write_all(w, bytes, &totals, err);
+    return st;
+}
+
+enum status viewpoint_bake(const struct bake_scene *scene, const char *photo, const char *deps, struct provenance *prov,
+                           struct err *err)
+{
+    struct work w = {.scene = scene, .photo = photo, .deps = deps, .prov = prov};
+    const int shared = prov->count;
+    enum status st = bake_work(&w, err);
+    /* the next viewpoint has other inputs */
+    provenance_keep(prov, shared);
+    free(w.views);
+    bake_release(&w.bake);
+    return st;
+}

@@ -1,0 +1,294 @@
+/* room_axes.c - a room's axes, floor, ceiling, scale and extent.
+ *
+ * Overview [Colburn 2014, 4.4.1].
+ *   1. the directions of most normals give three axes (directions.c). z is the one nearest to the mean up direction
+ *      of the cameras, x the one nearest to the right direction of the most central camera, y completes them
+ *   2. the planes across the axes with the most points turn the axes a little (planes.c), and so do marked edges
+ *      (correct.c); after these, the planes are found again
+ *   3. heights of points with upward and downward normals give floor and ceiling (heights.c). Corners of the floor
+ *      that are marked in several views replace the floor where there is none, or where the two differ by more than
+ *      twice their common standard error
+ *   4. marked lengths give metres: with distances d and lengths m the scale is sum d m / sum d^2, and its error
+ *      combines the effect of clicks (mark_error()) with what the lengths leave unexplained
+ *   5. marks on both sides of a wall give its thickness; the extent is that of the outermost walls that face
+ *      inwards, or else of all points
+ *
+ * The origin is on the floor under the most central camera. Up to step 4 lengths are in scene units from that
+ * camera; after it in metres, if there is a scale.
+ *
+ * Differs from the source: marks, standard errors, and the ceiling. */
+#include "stages/find_axes/room_axes.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/capture/central_views.h"
+#include "common/math/numbers.h"
+#include "stages/find_axes/directions.h"
+
+static const double CONTRADICTS = 2; /* min difference between the floor and its marked corners, in standard errors */
+
+static enum status central_view(int *central, const struct camera_set *set, struct err *err)
+{
+    int *order = malloc(((size_t)set->view_count + 1) * sizeof *order);
+    if (!order) return err_nomem(err, "an order of views", (size_t)set->view_count * sizeof *order);
+    const enum status st = central_views(order, set, err);
+    if (!st) *central = order[0];
+    free(order);
+    return st;
+}
+
+static struct vec3 mean_up(const struct room_inputs *in)
+{
+    struct vec3 sum = {0};
+    for (int i = 0; i < in->set->view_count; i++)
+        sum = vec3_add(sum, mat3_apply(mat3_transpose(in->set->views[i].cam_from_world), in->ups[i]));
+    return vec3_normalize(sum);
+}
+
+/* Orders the rows and sets their signs: z is nearest to up, x nearest to right. */
+static struct mat3 model_order(struct mat3 rows, double part[3], struct vec3 up, struct vec3 right)
+{
+    struct vec3 axis[3] = {mat3_row(rows, 0), mat3_row(rows, 1), mat3_row(rows, 2)};
+    const double before[3] = {part[0], part[1], part[2]};
+    int z = 0;
+    for (int k = 1; k < 3; k++)
+        if (fabs(vec3_dot(axis[k], up)) > fabs(vec3_dot(axis[z], up))) z = k;
+    const int a = (z + 1) % 3, b = (z + 2) % 3;
+    const int x = fabs(vec3_dot(axis[b], right)) > fabs(vec3_dot(axis[a], right)) ? b : a, y = a + b - x;
+    const struct vec3 k = vec3_scale(axis[z], vec3_dot(axis[z], up) < 0 ? -1 : 1);
+    const struct vec3 i = vec3_scale(axis[x], vec3_dot(axis[x], right) < 0 ? -1 : 1), j = vec3_cross(k, i);
+    part[0] = before[x];
+    part[1] = before[y];
+    part[2] = before[z];
+    return (struct mat3){{{i.x, i.y, i.z}, {j.x, j.y, j.z}, {k.x, k.y, k.z}}};
+}
+
+/* ------------------------------------------------------------------------------------------------------------ marks */
+
+struct mark_context {
+    const struct mark_list *list;
+    struct mark_scene scene;
+    struct mat3 axes;
+    struct vec3 origin;
+};
+
+/* Mean height, from the origin, of the floor's corners that are marked in several views; false: none, or err is set. */
+static bool corner_height(const struct mark_context *m, double *height, struct err *err)
+{
+    double sum = 0;
+    int count = 0;
+    for (int i = 0; i < m->list->count; i++) {
+        const struct mark *a = &m->list->marks[i];
+        int views = 0, first = 1;
+        struct vec3 p;
+        if (a->kind != MARK_CORNER) continue;
+        for (int j = 0; j < m->list->count; j++) {
+            const struct mark *b = &m->list->marks[j];
+            if (b->kind != MARK_CORNER || strcmp(a->name, b->name)) continue;
+            views++;
+            first &= j >= i;
+        }
+        if (views < 2 || !first) continue;
+        if (mark_locate(&p, MARK_CORNER, a->name, m->list, &m->scene, err)) return false;
+        sum += vec3_dot(vec3_sub(p, m->origin), mat3_row(m->axes, 2));
+        count++;
+    }
+    if (count) *height = sum / count;
+    return count > 0;
+}
+
+static bool measure_corners(void *ctx, double *value)
+{
+    struct err ignored = ERR_INIT;
+    return corner_height(ctx, value, &ignored);
+}
+
+/* Metres per scene unit, by least squares over the lengths; *misfit: its standard error from their residuals. */
+static bool lengths_scale(const struct mark_context *m, double *scale, double *misfit, struct err *err)
+{
+    double product = 0, square = 0, sum = 0;
+    int count = 0;
+    for (int pass = 0; pass < 2; pass++)
+        for (int i = 0; i < m->list->count; i++) {
+            const struct mark *a = &m->list->marks[i];
+            struct vec3 p, q;
+            if (a->kind != MARK_LENGTH) continue;
+            if (mark_locate(&p, MARK_POINT, a->name, m->list, &m->scene, err) ||
+                mark_locate(&q, MARK_POINT, a->view, m->list, &m->scene, err))
+                return false;
+            const double d = vec3_length(vec3_sub(q, p));
+            if (!pass) {
+                product += d * a->metres;
+                square += d * d;
+                count++;
+                if (!(d > 0)) {
+                    err_set(err, ST_DATA,
+                            "%s:%d: %s and %s are marked at the same position; mark two different points.",
+                            m->list->path, a->line, a->name, a->view);
+                    return false;
+                }
+            } else {
+                sum += (d * *scale - a->metres) * (d * *scale - a->metres);
+            }
+            if (!pass) *scale = product / square;
+        }
+    *misfit = count > 1 ? sqrt(sum / (count - 1) / square) : 0;
+    return true;
+}
+
+static bool measure_scale(void *ctx, double *value)
+{
+    struct err ignored = ERR_INIT;
+    double misfit;
+    return lengths_scale(ctx, value, &misfit, &ignored);
+}
+
+/* Distance of the marks on both sides of a wall's end, along the axis of the larger difference. */
+static enum status find_thickness(double *thickness, const struct mark_context *m, struct err *err)
+{
+    for (int i = 0; i < m->list->count; i++) {
+        const struct mark *a = &m->list->marks[i];
+        struct vec3 p, q;
+        if (a->kind != MARK_THICKNESS) continue;
+        if (mark_locate(&p, MARK_POINT, a->name, m->list, &m->scene, err) ||
+            mark_locate(&q, MARK_POINT, a->view, m->list, &m->scene, err))
+            return err->status;
+        const struct vec3 d = mat3_apply(m->axes, vec3_sub(q, p));
+        *thickness = fmax(fabs(d.x), fabs(d.y));
+        if (!(*thickness > 0))
+            return err_set(err, ST_DATA, "%s:%d: %s and %s are marked at the same position; mark two different points.",
+                           m->list->path, a->line, a->name, a->view);
+    }
+    return ST_OK;
+}
+
+/* --------------------------------------------------------------------------------------------------------- the room */
+
+/* The room's extent along x and y: between the outermost walls that face inwards, or else of all points. */
+static void find_extent(struct room *room, const struct room_planes *planes, const struct point_cloud *cloud)
+{
+    for (int k = 0; k < 2; k++) {
+        double low = HUGE_VAL, high = -HUGE_VAL, lowest = HUGE_VAL, highest = -HUGE_VAL;
+        for (int i = 0; i < planes->count; i++) {
+            const struct room_plane *p = &planes->planes[i];
+            if (p->axis != k) continue;
+            if (p->side > 0)
+                low = fmin(low, p->offset);
+            else
+                high = fmax(high, p->offset);
+        }
+        for (size_t i = 0; i < cloud->count; i++) {
+            const struct vec3 p = model_from_world_point(&room->axes, cloud->points[i].position);
+            lowest = fmin(lowest, k ? p.y : p.x);
+            highest = fmax(highest, k ? p.y : p.x);
+        }
+        room->low[k] = low < HUGE_VAL ? low * room->axes.scale : lowest;
+        room->high[k] = high > -HUGE_VAL ? high * room->axes.scale : highest;
+        if (room->high[k] > room->low[k]) continue;
+        room->low[k] = lowest;
+        room->high[k] = highest;
+    }
+}
+
+static enum status find_heights(struct room *room, struct mark_context *m, const struct room_inputs *in,
+                                struct vec3 errors, const struct axes_params *params, struct err *err)
+{
+    if (find_level(&room->floor, 1, &m->axes, m->origin, errors, in->cloud, params, err) ||
+        find_level(&room->ceiling, -1, &m->axes, m->origin, errors, in->cloud, params, err))
+        return err->status;
+    m->list = in->fix;
+    if (in->fix && corner_height(m, &room->corner_height, err)) {
+        const double error = mark_error(in->fix, params->click, measure_corners, m);
+        const double off = fabs(room->corner_height - room->floor.height);
+        room->floor_marked = !room->floor.count || off > CONTRADICTS * hypot(error, room->floor.error);
+        if (room->floor_marked) {
+            room->floor.height = room->corner_height;
+            room->floor.error = error;
+        }
+    }
+    if (err->status) return err->status;
+    if (!room->floor_marked && !room->floor.count)
+        return err_set(
+            err, ST_DATA,
+            "no floor was found: of %zu points only %zu lie below the central camera and have upward normals (within "
+            "%.3g "
+            "degrees). Photograph more of the floor, or mark one of its corners in two views in axes_fix.txt.",
+            in->cloud->count, room->floor.candidates, params->up_angle);
+    if (!(room->floor.height < 0))
+        return err_set(err, ST_DATA,
+                       "%s: the corners lie above the central camera, so they are not on its floor; mark a corner "
+                       "where two walls meet "
+                       "the floor.",
+                       in->fix->path);
+    return ST_OK;
+}
+
+static enum status find_scale(struct room *room, struct mark_context *m, const struct room_inputs *in, double click,
+                              struct err *err)
+{
+    struct model_axes *a = &room->axes;
+    double misfit = 0;
+    m->list = in->fix;
+    if (in->fix && find_thickness(&a->thickness, m, err)) return err->status;
+    m->list = in->scale;
+    if (!in->scale) return ST_OK;
+    if (!lengths_scale(m, &a->scale, &misfit, err)) return err->status;
+    a->metric = true;
+    a->scale_error = hypot(mark_error(in->scale, click, measure_scale, m), misfit) / a->scale;
+    return ST_OK;
+}
+
+static enum status find_all(struct room *room, const struct room_inputs *in, const struct axes_params *params,
+                            struct room_planes *planes, struct err *err)
+{
+    struct directions d;
+    struct vec3 errors;
+    struct model_axes *a = &room->axes;
+    if (central_view(&room->central, in->set, err) || find_directions(&d, in->cloud, params->min_part, err))
+        return err->status;
+    const struct view *central = &in->set->views[room->central];
+    struct mark_context m = {.scene = {.set = in->set, .lenses = in->lenses, .cloud = in->cloud},
+                             .origin = central->center};
+    const struct vec3 down = vec3_scale(in->ups[room->central], -1), right = vec3_cross(down, vec3_make(0, 0, 1));
+    const struct vec3 up = mean_up(in);
+    m.axes = model_order(d.axes, d.part, up, mat3_apply(mat3_transpose(central->cam_from_world), right));
+    for (int k = 0; k < 3; k++) room->part[k] = d.part[k];
+    if (direction_errors(&errors, &m.axes, m.origin, in->cloud, err) ||
+        find_planes(planes, &m.axes, true, &errors, m.origin, in->cloud, params, err))
+        return err->status;
+    if (in->fix && correct_axes(&m.axes, &errors, &room->fix, in->fix, &m.scene, params->click, err))
+        return err->status;
+    if (room->fix.turn > 0) {
+        room_planes_release(planes);
+        if (find_planes(planes, &m.axes, false, &errors, m.origin, in->cloud, params, err)) return err->status;
+    }
+    if (find_heights(room, &m, in, errors, params, err)) return err->status;
+    m.scene.up = mat3_row(m.axes, 2);
+    m.scene.floor = vec3_dot(m.origin, m.scene.up) + room->floor.height;
+    *a = (struct model_axes){.rotation = quat_from_mat3(m.axes), .scale = 1};
+    if (find_scale(room, &m, in, params->click, err)) return err->status;
+    const struct vec3 foot = vec3_add(m.origin, vec3_scale(m.scene.up, room->floor.height));
+    a->translation = vec3_scale(model_from_world_direction(a, foot), -a->scale);
+    a->tilt_error = hypot(errors.x, errors.y) / DEGREE;
+    a->heading_error = errors.z / DEGREE;
+    a->floor_error = room->floor.error * a->scale;
+    a->thickness *= a->scale;
+    if (room->ceiling.count) {
+        a->ceiling = (room->ceiling.height - room->floor.height) * a->scale;
+        a->ceiling_error = hypot(room->ceiling.error, room->floor.error) * a->scale;
+    }
+    room->leaning = atan2(vec3_length(vec3_cross(up, m.scene.up)), vec3_dot(up, m.scene.up)) / DEGREE;
+    find_extent(room, planes, in->cloud);
+    return ST_OK;
+}
+
+enum status find_room(struct room *room, const struct room_inputs *in, const struct axes_params *params,
+                      struct err *err)
+{
+    struct room_planes planes = {0};
+    *room = (struct room){0};
+    const enum status st = find_all(room, in, params, &planes, err);
+    room_planes_release(&planes);
+    return st;
+}

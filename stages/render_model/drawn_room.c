@@ -1,0 +1,127 @@
+/* drawn_room.c - opens what pictures are drawn from, and draws a picture; see drawn_room.h. */
+#include "stages/render_model/drawn_room.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/capture/photo_camera.h"
+#include "common/texture/exposure.h"
+
+enum { SMALL = 160 }; /* px: width of the pictures that exposures are chosen from */
+
+/* Views are in order of name, so those of a photo follow each other. */
+static enum status find_viewpoints(struct room *room, struct err *err)
+{
+    const size_t views = (size_t)room->in.set.view_count + 1;
+    room->viewpoints = calloc(views, sizeof *room->viewpoints);
+    room->cameras = calloc(views, sizeof *room->cameras);
+    if (!room->viewpoints || !room->cameras) return err_nomem(err, "viewpoints", views * sizeof *room->viewpoints);
+    for (int i = 0; i < room->in.set.view_count; i++) {
+        const struct lens *lens = lens_of_view(&room->in.set, &room->in.lenses, i);
+        if (!lens)
+            return err_set(err, ST_DATA, "%s/lenses.txt has no line of view %s. Run make views again.",
+                           room->files.views, room->in.set.views[i].name);
+        room->cameras[i] = model_from_world_view(&room->in.axes, &room->in.set.views[i]);
+        struct viewpoint *last = room->viewpoints + room->viewpoint_count - 1;
+        if (room->viewpoint_count && !strcmp(last->photo, lens->photo))
+            last->count++;
+        else
+            room->viewpoints[room->viewpoint_count++] =
+                (struct viewpoint){.photo = lens->photo, .centre = room->cameras[i].center, .first = i, .count = 1};
+    }
+    return ST_OK;
+}
+
+static enum status read_cameras(struct room *room, struct provenance *prov, struct err *err)
+{
+    const struct scene_files files = {.views = room->files.views, .axes = room->files.axes};
+    const enum status st = scene_inputs_read(&room->in, SCENE_CAMERAS | SCENE_LENSES | SCENE_AXES, &files, prov, err);
+    return st ? st : find_viewpoints(room, err);
+}
+
+enum status room_open(struct room *room, const struct room_files *files, const struct render_model_params *params,
+                      struct provenance *prov, struct err *err)
+{
+    const struct shell_files shell = {files->model, files->map, files->vdta, files->vita, params->memory};
+    const struct solid_mesh *unedited = files->base ? &room->base.mesh : &room->model.mesh;
+    const struct clutter_files clutter = {files->views, files->depth, files->ids, unedited, params->memory};
+    *room = (struct room){.files = *files, .params = params, .prov = prov};
+    enum status st = read_cameras(room, prov, err);
+    if (!st) st = model_rays_read(&room->model, files->model, MODEL_WITH_GLASS, NULL, err);
+    if (!st && files->base) st = model_rays_read(&room->base, files->base, MODEL_WITH_GLASS, prov, err);
+    if (!st && files->outdoors) st = outdoors_read(&room->outdoors, files->outdoors, prov, err);
+    if (!st) st = shell_open(&room->shell, &shell, prov, err);
+    if (!st) shell_set_samples(room->shell, params->samples);
+    if (!st && files->depth && !strcmp(params->clutter, "drawn"))
+        st = clutter_open(&room->clutter, &clutter, &room->in.set, &room->in.axes, err);
+    return st;
+}
+
+void room_close(struct room *room)
+{
+    clutter_close(room->clutter);
+    shell_close(room->shell);
+    outdoors_release(&room->outdoors);
+    model_rays_release(&room->base);
+    model_rays_release(&room->model);
+    free(room->viewpoints);
+    free(room->cameras);
+    scene_inputs_release(&room->in);
+    *room = (struct room){0};
+}
+
+int room_viewpoint_of(const struct room *room, int view)
+{
+    for (int i = 0; i < room->viewpoint_count; i++)
+        if (view < room->viewpoints[i].first + room->viewpoints[i].count) return i;
+    return -1;
+}
+
+int room_find_viewpoint(const struct room *room, const char *photo)
+{
+    for (int i = 0; i < room->viewpoint_count; i++)
+        if (!strcmp(room->viewpoints[i].photo, photo)) return i;
+    return -1;
+}
+
+static void photos_of(const char *photos[2], const struct room *room, const struct texture_pair *pair)
+{
+    for (int k = 0; k < 2; k++) photos[k] = pair->viewpoint[k] < 0 ? NULL : room->viewpoints[pair->viewpoint[k]].photo;
+}
+
+enum status room_draw(struct model_picture *picture, struct room *room, const struct view *camera,
+                      const struct texture_pair *pair, int own, struct provenance *prov, struct err *err)
+{
+    const char *photos[2];
+    photos_of(photos, room, pair);
+    const struct outdoors *outdoors = room->files.outdoors ? &room->outdoors : NULL;
+    enum status st = shell_draw(picture, room->shell, camera, photos, pair->t, outdoors, err);
+    if (!st && room->clutter)
+        st = clutter_draw(picture, room->clutter, camera, shell_map(room->shell), own < 0 ? NULL : &own, own >= 0, prov,
+                          err);
+    return st;
+}
+
+enum status room_exposure(double *exposure, struct room *room, int viewpoint, struct err *err)
+{
+    struct viewpoint *v = &room->viewpoints[viewpoint];
+    const char *const photos[2] = {v->photo, NULL};
+    struct model_picture small = {0};
+    enum status st = ST_OK;
+    double sum = 0;
+    /* what an exposure is chosen from is the same for every picture, whether it is known already or not */
+    shell_set_provenance(room->shell, NULL);
+    for (int i = v->first; !st && v->exposure <= 0 && i < v->first + v->count; i++) {
+        struct view camera = room->cameras[i];
+        if (camera.width > SMALL)
+            view_resize(&camera, SMALL, (int)fmax(1, lround((double)camera.height * SMALL / camera.width)));
+        st = shell_draw(&small, room->shell, &camera, photos, 0, room->files.outdoors ? &room->outdoors : NULL, err);
+        if (!st) sum += log(exposure_choose(&small, room->params->saturated));
+    }
+    shell_set_provenance(room->shell, room->prov);
+    if (!st && v->exposure <= 0) v->exposure = exp(sum / v->count);
+    *exposure = v->exposure;
+    model_picture_release(&small);
+    return st;
+}

@@ -1,0 +1,63 @@
+/* drawn_room.h - what pictures of a model are drawn from: the model, its textures, the views and their clutter. */
+#ifndef REMODEL_DRAWN_ROOM_H
+#define REMODEL_DRAWN_ROOM_H
+
+#include "common/light/model_rays.h"
+#include "common/model/scene_inputs.h"
+#include "stages/render_model/clutter.h"
+#include "stages/render_model/render_params.h"
+#include "stages/render_model/shell.h"
+
+/* A photograph; its views have one centre. */
+struct viewpoint {
+    const char *photo;  /* owned by the lens list */
+    struct vec3 centre; /* model frame */
+    int first, count;   /* its views */
+    double exposure;    /* that its camera would have chosen; 0: not known yet */
+};
+
+struct room_files {
+    const char *model, *base, *map; /* model.txt; the unedited one and texture.txt of an edited model, or NULL */
+    const char *axes, *views, *vdta, *vita;
+    const char *ids, *depth; /* folders; NULL: without clutter */
+    const char *outdoors;    /* file; NULL: none */
+};
+
+struct room {
+    struct room_files files;
+    const struct render_model_params *params;
+    struct provenance *prov;
+    struct scene_inputs in;       /* axes, lenses, views in the scene's frame */
+    struct view *cameras;         /* the views in the model's frame; owned */
+    struct viewpoint *viewpoints; /* in order of photo; owned */
+    int viewpoint_count;
+    struct model_rays model, base; /* with panes; base is empty without an edit */
+    struct shell_scene *shell;
+    struct clutter_scene *clutter; /* NULL: none is drawn */
+    struct outdoors outdoors;
+};
+
+/* The caller closes the room in each case. */
+enum status room_open(struct room *room, const struct room_files *files, const struct render_model_params *params,
+                      struct provenance *prov, struct err *err);
+void room_close(struct room *room);
+
+/* Viewpoints whose textures a picture takes, and the share of the second; -1: none. */
+struct texture_pair {
+    int viewpoint[2];
+    double t;
+};
+
+/* Draws the shell and the clutter over it. camera: model frame. own: the original view that it is; -1: none. */
+enum status room_draw(struct model_picture *picture, struct room *room, const struct view *camera,
+                      const struct texture_pair *pair, int own, struct provenance *prov, struct err *err);
+
+int room_viewpoint_of(const struct room *room, int view); /* the viewpoint that a view belongs to */
+/* The viewpoint of a photo's id; -1: there is none. */
+int room_find_viewpoint(const struct room *room, const char *photo);
+
+/* The exposure that the camera of a viewpoint would have chosen: the geometric mean of those of its views' shells,
+ * which are drawn small. */
+enum status room_exposure(double *exposure, struct room *room, int viewpoint, struct err *err);
+
+#endif

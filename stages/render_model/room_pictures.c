@@ -1,0 +1,310 @@
+/* room_pictures.c - draws and writes pictures of views, of given cameras, and of the frames of a film. Formats:
+ * docs/formats.md, O/remodel/E/pictures.
+ *
+ * Overview. room_draw() draws the model from any camera; this file decides with which textures, replaces what the
+ * edit did not change, and chooses the exposure.
+ *
+ * Original views. Where the edited model is what the photograph shows, the photograph is better than any texture of
+ * it. own_pixels_find() marks these pixels; they are copied, and the model is drawn only if some pixel is left. A
+ * view that the edit does not touch costs no rendering and gets only a record (and its radiance, if [render_model]
+ * radiance = all).
+ *
+ * Textures. A view uses the atlas of its own photo. A given camera uses one or two viewpoints that see what it sees
+ * (choose_pair()). A frame of a tour uses the pair in pairs.txt, which plan_tour chose so that textures change
+ * slowly.
+ *
+ * Exposure. A picture is exposed by its own content, unless [render_model] exposure is given. In a film that would
+ * flicker: a frame's exposure is the geometric mean of those of its pair's photos, weighted like their textures, so
+ * it changes as slowly as the film moves.
+ *
+ * The record VIEW.txt is written last, so it stands for a complete set of files. It holds the share of the pixels by
+ * origin (enum picture_made), which -sources.png shows in colours.
+ *
+ * Memory: one picture, and the atlases that the room keeps. */
+#include "stages/render_model/room_pictures.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/base/file_path.h"
+#include "common/base/progress.h"
+#include "common/capture/view_image.h"
+#include "common/image/exr.h"
+#include "common/image/photo.h"
+#include "common/product/product.h"
+#include "common/texture/exposure.h"
+#include "common/texture/picture_list.h"
+#include "common/texture/picture_record.h"
+#include "stages/render_model/choose_pair.h"
+#include "stages/render_model/own_pixels.h"
+
+/* What each pixel comes from, in colours. */
+static enum status write_sources(const struct model_picture *p, const char *path, struct err *err)
+{
+    const size_t pixels = (size_t)p->width * (size_t)p->height;
+    unsigned char *rgb = malloc(3 * pixels + 1);
+    if (!rgb) return err_nomem(err, "a picture of sources", 3 * pixels);
+    for (size_t i = 0; i < pixels; i++) memcpy(rgb + 3 * i, picture_made_kind(p->made[i])->rgb, 3);
+    const enum status st = png_write(path, rgb, p->width, p->height, 3, err);
+    free(rgb);
+    return st;
+}
+
+/* What the pixels come from, in percent. */
+static struct picture_record record_of(const struct model_picture *p, double exposure, double changed)
+{
+    struct picture_record record = {p->width, p->height, exposure, changed, {0}};
+    const size_t pixels = (size_t)p->width * (size_t)p->height;
+    size_t counts[MADE_COUNT] = {0};
+    for (size_t i = 0; i < pixels; i++) counts[p->made[i]]++;
+    for (int k = 0; k < MADE_COUNT; k++) record.shares[k] = 100.0 * (double)counts[k] / (double)pixels;
+    return record;
+}
+
+/* camera: for the EXR's attributes. The record is written last. */
+static enum status write_picture(const struct model_picture *p, const struct room *room, const struct view *camera,
+                                 double changed, bool radiance, const char *out, const char *name,
+                                 const struct provenance *prov, struct err *err)
+{
+    const struct product_key key = {.name = name};
+    char path[FILE_PATH];
+    const double given = room->params->exposure;
+    const double exposure = given > 0 ? given : exposure_choose(p, room->params->saturated);
+    enum status st = ST_OK;
+    if (radiance) st = product_path_in(path, out, PRODUCT_PICTURE, &key, err);
+    if (!st && radiance) st = model_picture_write(p, camera, path, prov, err);
+    if (!st && changed > 0) st = product_path_in(path, out, PRODUCT_PICTURE_JPEG, &key, err);
+    if (!st && changed > 0) st = exposure_write(p, exposure, path, err);
+    if (!st && changed > 0) st = product_path_in(path, out, PRODUCT_PICTURE_SOURCES, &key, err);
+    if (!st && changed > 0) st = write_sources(p, path, err);
+    if (!st) st = product_path_in(path, out, PRODUCT_PICTURE_RECORD, &key, err);
+    const struct picture_record record = record_of(p, exposure, changed);
+    return st ? st : picture_record_write(&record, path, prov, err);
+}
+
+/* --------------------------------------------------------------------------------------------------- original views */
+
+static enum status draw_view(struct model_picture *picture, double *changed, struct room *room, int view,
+                             struct provenance *prov, struct err *err)
+{
+    const struct view *camera = &room->cameras[view];
+    const struct texture_pair pair = {{room_viewpoint_of(room, view), -1}, 0};
+    const size_t pixels = (size_t)camera->width * (size_t)camera->height;
+    uint8_t *same = malloc(pixels);
+    enum status st = same ? ST_OK : err_nomem(err, "pixels of a view", pixels);
+    const bool own = !strcmp(room->params->photo, "where_unchanged");
+    size_t differ = 0;
+    if (!st) st = own_pixels_find(same, room, view, prov, err);
+    if (!st && (memchr(same, 0, pixels) || !own))
+        st = room_draw(picture, room, camera, &pair, view, prov, err);
+    else if (!st)
+        st = model_picture_resize(picture, camera->width, camera->height, err);
+    if (!st && own) st = own_pixels_draw(picture, same, room, view, prov, err);
+    for (size_t i = 0; !st && i < pixels; i++) differ += !same[i] && picture->made[i] != MADE_NOTHING;
+    *changed = own ? 100.0 * (double)differ / (double)pixels : 100;
+    free(same);
+    return st;
+}
+
+/* camera: in the model's frame. */
+static void set_camera_of_view(struct model_picture *p, const struct view *camera)
+{
+    const struct camera lens = {
+        CAMERA_PINHOLE, camera->width, camera->height, {camera->fx, camera->fy, camera->cx, camera->cy}};
+    const struct pose pose = {quat_from_mat3(camera->cam_from_world), camera->translation};
+    model_picture_set_camera(p, &lens, &pose);
+}
+
+static enum status find_views(bool *wanted, const struct room *room, const struct cli_list *names, struct err *err)
+{
+    for (int i = 0; i < names->count; i++) {
+        const int at = camera_set_find(&room->in.set, names->items[i]);
+        if (at < 0)
+            return err_set(err, ST_USAGE, "there is no view %s in %s. Its images.txt lists the views.", names->items[i],
+                           room->files.views);
+        wanted[at] = true;
+    }
+    return ST_OK;
+}
+
+enum status pictures_of_views(struct room *room, const struct cli_list *views, const char *out, struct provenance *prov,
+                              struct err *err)
+{
+    struct model_picture picture = {0};
+    struct progress progress;
+    const bool radiance = strcmp(room->params->radiance, "no") != 0, all = !strcmp(room->params->radiance, "all");
+    bool *wanted = calloc((size_t)room->in.set.view_count + 1, sizeof *wanted);
+    enum status st = wanted ? find_views(wanted, room, views, err)
+                            : err_nomem(err, "views", (size_t)room->in.set.view_count * sizeof *wanted);
+    progress_start(&progress, "rendering", views->count, "views");
+    for (int i = 0; !st && i < room->in.set.view_count; i++) {
+        if (!wanted[i]) continue;
+        const int inputs = prov->count;
+        double changed = 0;
+        st = draw_view(&picture, &changed, room, i, prov, err);
+        if (!st) set_camera_of_view(&picture, &room->cameras[i]);
+        if (!st)
+            st = write_picture(&picture, room, &room->in.set.views[i], changed, radiance && (all || changed > 0), out,
+                               room->in.set.views[i].name, prov, err);
+        provenance_keep(prov, inputs);
+        progress_add(&progress, 1);
+    }
+    progress_end(&progress);
+    model_picture_release(&picture);
+    free(wanted);
+    return st;
+}
+
+/* ---------------------------------------------------------------------------------------------------- given cameras */
+
+static const struct room_camera *find_camera(const struct room_cameras *cameras, const char *name)
+{
+    for (int i = 0; i < cameras->count; i++)
+        if (!strcmp(cameras->list[i].name, name)) return &cameras->list[i];
+    return NULL;
+}
+
+static enum status check_names(const struct room_cameras *cameras, const struct camera_source *source,
+                               const struct cli_list *names, struct err *err)
+{
+    for (int i = 0; i < names->count; i++)
+        if (!find_camera(cameras, names->items[i]))
+            return err_set(err, ST_USAGE, "there is no camera %s in %s/images.txt.", names->items[i], source->folder);
+    return ST_OK;
+}
+
+static bool is_wanted(const struct cli_list *names, const char *name)
+{
+    for (int i = 0; i < names->count; i++)
+        if (!strcmp(names->items[i], name)) return true;
+    return names->count == 0;
+}
+
+/* Lists the pictures, when all are there. */
+static enum status write_list(const struct room_cameras *cameras, const struct cli_list *names, const char *out,
+                              const struct provenance *prov, struct err *err)
+{
+    struct picture_list list = {0};
+    enum status st = ST_OK;
+    for (int i = 0; !st && i < cameras->count; i++)
+        if (is_wanted(names, cameras->list[i].name)) st = picture_list_add(&list, cameras->list[i].name, err);
+    if (!st) st = picture_list_write(&list, out, prov, err);
+    picture_list_release(&list);
+    return st;
+}
+
+enum status pictures_of_cameras(struct room *room, const struct camera_source *source, const struct cli_list *names,
+                                const char *out, struct provenance *prov, struct err *err)
+{
+    struct room_cameras cameras = {0};
+    struct model_picture picture = {0};
+    struct progress progress;
+    enum status st = room_cameras_read(&cameras, source, room, prov, err);
+    if (!st) st = check_names(&cameras, source, names, err);
+    progress_start(&progress, "rendering", names->count ? names->count : cameras.count, "pictures");
+    for (int i = 0; !st && i < cameras.count; i++) {
+        const struct room_camera *camera = &cameras.list[i];
+        if (!is_wanted(names, camera->name)) continue;
+        const struct texture_pair pair = choose_pair(room, camera);
+        const int inputs = prov->count;
+        struct view view;
+        st = room_camera_draw(&picture, room, camera, &pair, prov, err);
+        room_camera_view(&view, camera);
+        model_picture_set_camera(&picture, &camera->lens, &camera->pose);
+        if (!st) st = write_picture(&picture, room, &view, 100, true, out, camera->name, prov, err);
+        provenance_keep(prov, inputs);
+        progress_add(&progress, 1);
+    }
+    progress_end(&progress);
+    if (!st) st = write_list(&cameras, names, out, prov, err);
+    model_picture_release(&picture);
+    room_cameras_release(&cameras);
+    return st;
+}
+
+/* ------------------------------------------------------------------------------------------------- frames of a film */
+
+static enum status frame_pair(struct texture_pair *pair, const struct room *room, const struct view *camera,
+                              const struct viewpoint_pairs *pairs, struct err *err)
+{
+    const struct viewpoint_pair *given = pairs ? viewpoint_pairs_find(pairs, camera->name) : NULL;
+    if (!given) {
+        struct room_camera c = {.lens = {.model = CAMERA_PINHOLE, .width = camera->width, .height = camera->height},
+                                .pose = {quat_from_mat3(camera->cam_from_world), camera->translation}};
+        const double focal[4] = {camera->fx, camera->fy, camera->cx, camera->cy};
+        memcpy(c.lens.params, focal, sizeof focal);
+        *pair = choose_pair(room, &c);
+        return ST_OK;
+    }
+    for (int k = 0; k < 2; k++) {
+        pair->viewpoint[k] = room_find_viewpoint(room, given->photos[k]);
+        if (pair->viewpoint[k] < 0)
+            return err_set(err, ST_DATA, "pairs.txt names the photo %s for frame %s, which has no view in %s.",
+                           given->photos[k], given->frame, room->files.views);
+    }
+    pair->t = given->t;
+    return ST_OK;
+}
+
+/* Between those of the pair's cameras, so that it changes as slowly as the film moves. */
+static enum status frame_exposure(double *exposure, struct room *room, const struct texture_pair *pair, struct err *err)
+{
+    double of[2] = {1, 1};
+    *exposure = room->params->exposure;
+    if (*exposure > 0) return ST_OK;
+    enum status st = ST_OK;
+    for (int k = 0; !st && k < 2; k++)
+        if (pair->viewpoint[k] >= 0) st = room_exposure(&of[k], room, pair->viewpoint[k], err);
+    if (pair->viewpoint[0] < 0) of[0] = of[1];
+    if (pair->viewpoint[1] < 0) of[1] = of[0];
+    *exposure = exp((1 - pair->t) * log(of[0]) + pair->t * log(of[1]));
+    return st;
+}
+
+/* A frame as a picture whose light may be changed: its radiance, and its exposure in the record. */
+static enum status write_film_picture(const struct model_picture *p, double exposure, const struct view *camera,
+                                      const char *out, const struct provenance *prov, struct err *err)
+{
+    const struct product_key key = {.name = camera->name};
+    char path[FILE_PATH];
+    const struct picture_record record = record_of(p, exposure, 100);
+    enum status st = product_path_in(path, out, PRODUCT_PICTURE, &key, err);
+    if (!st) st = model_picture_write(p, camera, path, prov, err);
+    if (!st) st = product_path_in(path, out, PRODUCT_PICTURE_RECORD, &key, err);
+    return st ? st : picture_record_write(&record, path, prov, err);
+}
+
+enum status pictures_of_frames(struct room *room, const struct camera_path *path, const struct viewpoint_pairs *pairs,
+                               const bool *wanted, const char *out, struct provenance *prov, struct err *err)
+{
+    struct model_picture picture = {0};
+    struct progress progress;
+    enum status st = ST_OK;
+    const bool all = !strcmp(room->params->radiance, "all");
+    int count = 0;
+    for (int i = 0; i < path->frame_count; i++) count += wanted[i];
+    progress_start(&progress, "rendering", count, "frames");
+    for (int i = 0; !st && i < path->frame_count; i++) {
+        const struct view *scene = &path->frames[i].camera, camera = model_from_world_view(&room->in.axes, scene);
+        const int inputs = prov->count;
+        struct texture_pair pair;
+        char file[FILE_PATH];
+        double exposure = 1;
+        if (!wanted[i]) continue;
+        st = frame_pair(&pair, room, &camera, pairs, err);
+        if (!st) st = frame_exposure(&exposure, room, &pair, err);
+        if (!st) st = room_draw(&picture, room, &camera, &pair, -1, prov, err);
+        if (!st) st = product_path_in(file, out, PRODUCT_FRAME, &(struct product_key){.frame = scene->name}, err);
+        if (!st) set_camera_of_view(&picture, &camera);
+        if (!st && all)
+            st = write_film_picture(&picture, exposure, scene, out, prov, err);
+        else if (!st)
+            st = exposure_write_frame(&picture, exposure, scene, file, prov, err);
+        provenance_keep(prov, inputs);
+        progress_add(&progress, 1);
+    }
+    progress_end(&progress);
+    model_picture_release(&picture);
+    return st;
+}
