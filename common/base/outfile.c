@@ -86,7 +86,7 @@ static void live_drop(const char *path)
     pthread_mutex_unlock(&lock);
 }
 
-enum status make_folders(const char *path, struct err *err)
+enum status outfile_make_folders(const char *path, struct err *err)
 {
     char *folder = strdup(path);
     struct stat info;
@@ -134,7 +134,7 @@ static enum status make_parent(const char *path, struct err *err)
     if (!slash || slash == path) return ST_OK;
     char *folder = strndup(path, (size_t)(slash - path));
     if (!folder) return err_nomem(err, "a folder's name", strlen(path));
-    st = make_folders(folder, err);
+    st = outfile_make_folders(folder, err);
     free(folder);
     return st;
 }

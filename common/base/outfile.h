@@ -30,6 +30,6 @@ void outfile_discard(struct outfile *f); /* idempotent; does nothing after a com
 enum status outfile_write_if_changed(const char *path, const char *text, size_t size, struct err *err);
 
 /* Makes a folder and its missing parents, like mkdir -p. */
-enum status make_folders(const char *path, struct err *err);
+enum status outfile_make_folders(const char *path, struct err *err);
 
 #endif

@@ -43,8 +43,8 @@ static double nearest_rotation(struct mat3 m, struct mat3 *r, double *second)
     return vec3_length(m1) + vec3_length(m2) + vec3_dot(u3, mat3_apply(m, v3));
 }
 
-enum status align_cameras(struct similarity *a, const struct pose *found, const struct pose *truth, int count,
-                          struct err *err)
+enum status camera_alignment_find(struct similarity *a, const struct pose *found, const struct pose *truth, int count,
+                                  struct err *err)
 {
     struct vec3 mean_found = {0, 0, 0}, mean_truth = {0, 0, 0};
     struct mat3 covariance = {0}, turns = {0};
@@ -84,8 +84,8 @@ enum status align_cameras(struct similarity *a, const struct pose *found, const 
     return ST_OK;
 }
 
-enum status measure_cameras(struct camera_errors *e, const struct similarity *a, const struct pose *found,
-                            const struct pose *truth, int count, struct err *err)
+enum status camera_errors_measure(struct camera_errors *e, const struct similarity *a, const struct pose *found,
+                                  const struct pose *truth, int count, struct err *err)
 {
     double *centers = malloc((size_t)count * sizeof *centers), *turns = malloc((size_t)count * sizeof *turns);
     enum status st = centers && turns ? ST_OK : err_nomem(err, "errors of cameras", (size_t)count * sizeof *turns);

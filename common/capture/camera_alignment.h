@@ -16,8 +16,8 @@ struct similarity { /* true = scale * rotation * found + translation */
 
 /* ST_DATA: there is no scale, because there are fewer than two cameras, or all found or all true centres coincide, or
  * no positive scale fits. metrics.tsv quotes this error. */
-enum status align_cameras(struct similarity *a, const struct pose *found, const struct pose *truth, int count,
-                          struct err *err);
+enum status camera_alignment_find(struct similarity *a, const struct pose *found, const struct pose *truth, int count,
+                                  struct err *err);
 
 struct camera_errors {
     double center_median, center_max;     /* in the unit of the truth */
@@ -25,7 +25,7 @@ struct camera_errors {
 };
 
 /* count > 0. ST_NOMEM. */
-enum status measure_cameras(struct camera_errors *e, const struct similarity *a, const struct pose *found,
-                            const struct pose *truth, int count, struct err *err);
+enum status camera_errors_measure(struct camera_errors *e, const struct similarity *a, const struct pose *found,
+                                  const struct pose *truth, int count, struct err *err);
 
 #endif

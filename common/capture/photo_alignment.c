@@ -23,7 +23,7 @@ enum { MIN_PHOTOS = 3 };
 
 static const double max_turn = 2; /* degrees: median between the axes of common photographs; more is another place */
 
-struct pose pose_in_scene(const struct pose *p, const struct similarity *model_from_scene)
+struct pose photo_alignment_pose(const struct pose *p, const struct similarity *model_from_scene)
 {
     const struct mat3 turn = mat3_from_quat(p->rotation);
     const struct vec3 at = vec3_add(mat3_apply(turn, model_from_scene->translation), p->translation);
@@ -96,9 +96,9 @@ static enum status check_agreement(const struct frame_agreement *a, const char *
         rules->if_apart);
 }
 
-enum status align_with_photos(struct similarity *model_from_scene, struct frame_agreement *a,
-                              const struct sfm_model *model, const char *folder, const struct scene_photos *scene,
-                              const struct alignment_rules *rules, struct err *err)
+enum status photo_alignment_find(struct similarity *model_from_scene, struct frame_agreement *a,
+                                 const struct sfm_model *model, const char *folder, const struct scene_photos *scene,
+                                 const struct alignment_rules *rules, struct err *err)
 {
     struct common_photos c = {0};
     struct err apart = ERR_INIT; /* in words about found and true cameras */
@@ -106,13 +106,13 @@ enum status align_with_photos(struct similarity *model_from_scene, struct frame_
     if (!st && c.count < MIN_PHOTOS)
         st = err_set(err, ST_DATA, "%s has %d of the scene's photographs with a pose in %s, wanted at least %d. %s",
                      folder, c.count, scene->views, (int)MIN_PHOTOS, rules->if_few);
-    if (!st && align_cameras(model_from_scene, c.scene, c.model, c.count, &apart))
+    if (!st && camera_alignment_find(model_from_scene, c.scene, c.model, c.count, &apart))
         st =
             err_set(err, ST_DATA,
                     "the %d photographs that %s and %s have in common are all in one place in one of them, or no scale "
                     "fits; give a model of photographs from several places.",
                     c.count, folder, scene->views);
-    if (!st) st = measure_cameras(&a->errors, model_from_scene, c.scene, c.model, c.count, err);
+    if (!st) st = camera_errors_measure(&a->errors, model_from_scene, c.scene, c.model, c.count, err);
     if (!st) {
         a->photos = c.count;
         a->extent = extent_of(c.scene, c.count);

@@ -24,11 +24,11 @@ struct frame_agreement {
 };
 
 /* folder: of the model, for messages. ST_DATA: too few common photographs, all in one place, or they disagree. */
-enum status align_with_photos(struct similarity *model_from_scene, struct frame_agreement *agreement,
-                              const struct sfm_model *model, const char *folder, const struct scene_photos *scene,
-                              const struct alignment_rules *rules, struct err *err);
+enum status photo_alignment_find(struct similarity *model_from_scene, struct frame_agreement *agreement,
+                                 const struct sfm_model *model, const char *folder, const struct scene_photos *scene,
+                                 const struct alignment_rules *rules, struct err *err);
 
 /* A camera of the model in the scene: it has the same picture. */
-struct pose pose_in_scene(const struct pose *in_model, const struct similarity *model_from_scene);
+struct pose photo_alignment_pose(const struct pose *in_model, const struct similarity *model_from_scene);
 
 #endif

@@ -92,7 +92,7 @@ enum status view_image_write(const struct image *im, const struct photo_quality 
     if (!st && quality) st = add_quality(&exr, im, quality, err);
     if (!st) st = exr_set_attribute(&exr, "remodel:radiometry", radiometry, err);
     if (!st) {
-        exr_set_camera(&exr, view);
+        view_image_set_camera(&exr, view);
         st = exr_write(&exr, path, prov, err);
     }
     exr_image_release(&exr);
@@ -103,7 +103,7 @@ enum status view_image_write(const struct image *im, const struct photo_quality 
  * last row; its camera axes are x right, y UP, z forward, left-handed, whereas a view's y points down. Hence
  *   M = [ R^T F  0 ]    F = diag(1, -1, 1), R = cam_from_world, t = translation,
  *       [ t^T F  1 ]    stored row by row. */
-void exr_set_camera(struct exr_image *im, const struct view *view)
+void view_image_set_camera(struct exr_image *im, const struct view *view)
 {
     static const double flip[3] = {1, -1, 1};
     const double t[3] = {view->translation.x, view->translation.y, view->translation.z};

@@ -32,6 +32,6 @@ enum status view_image_write(const struct image *im, const struct photo_quality 
                              struct err *err);
 
 /* Sets the EXR's worldToCamera from the view. */
-void exr_set_camera(struct exr_image *im, const struct view *view);
+void view_image_set_camera(struct exr_image *im, const struct view *view);
 
 #endif

@@ -70,7 +70,7 @@ enum status region_list_read(struct region_list *list, const char *path, struct 
 
 /* ------------------------------------------------------------------------------------------------ through the lens */
 
-bool clip_to_picture(struct subject *s, int width, int height)
+bool region_clip(struct subject *s, int width, int height)
 {
     s->x0 = fmin(fmax(s->x0, 0), width);
     s->x1 = fmin(fmax(s->x1, 0), width);
@@ -104,7 +104,7 @@ static int project_region(struct subject *s, const struct region *r, const struc
         s->y1 = fmax(s->y1, v);
         shown += u >= 0 && u <= view->width && v >= 0 && v <= view->height;
     }
-    return clip_to_picture(s, view->width, view->height) ? shown : 0;
+    return region_clip(s, view->width, view->height) ? shown : 0;
 }
 
 /* Names of photos and views, for suggestions. */

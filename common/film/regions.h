@@ -33,6 +33,6 @@ enum status region_in_view(struct subject *s, int *view_idx, double *part, const
                            struct err *err);
 
 /* Clips the subject's rectangle to the picture; false if nothing is left. */
-bool clip_to_picture(struct subject *s, int width, int height);
+bool region_clip(struct subject *s, int width, int height);
 
 #endif

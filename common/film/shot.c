@@ -126,10 +126,10 @@ enum status shot_move_make(struct shot_move *m, const struct shot_setup *shot, e
     double size = 0;
 
     *m = (struct shot_move){.move = move};
-    if (move_subjects(move) > (first != NULL) + (second != NULL))
+    if (film_move_subjects(move) > (first != NULL) + (second != NULL))
         return err_set(err, ST_DATA,
                        "the move needs %d subjects, the list has %d; add regions of interest or choose another move.",
-                       move_subjects(move), (first != NULL) + (second != NULL));
+                       film_move_subjects(move), (first != NULL) + (second != NULL));
     switch (move) {
     case MOVE_ESTABLISHING_DOLLY:
         m->end[0] = m->end[1] = whole;

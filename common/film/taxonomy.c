@@ -22,7 +22,7 @@ static const struct {
 static const char *const focuses[FOCUS_COUNT] = {"", "narrow_dof", "widen_dof", "pull_focus"};
 static const char *const tones[TONE_COUNT] = {"", "saturate", "desaturate", "brighten", "dim"};
 
-struct scene_subjects scene_subjects_of(const struct subject_list *list)
+struct scene_subjects film_scene_subjects(const struct subject_list *list)
 {
     struct scene_subjects s = {list->count, 1};
     if (list->count < 2) return s;
@@ -37,7 +37,7 @@ struct scene_subjects scene_subjects_of(const struct subject_list *list)
     return s;
 }
 
-int move_subjects(enum camera_move move) { return moves[move].subjects; }
+int film_move_subjects(enum camera_move move) { return moves[move].subjects; }
 
 void film_effect_name(const struct film_effect *e, char name[EFFECT_NAME_SIZE])
 {
@@ -108,7 +108,7 @@ enum status film_effect_parse(struct film_effect *e, const char *name, struct er
 enum status film_effect_check(const struct film_effect *e, const struct scene_subjects *scene, struct err *err)
 {
     char name[EFFECT_NAME_SIZE];
-    const int subjects = move_subjects(e->move);
+    const int subjects = film_move_subjects(e->move);
     film_effect_name(e, name);
     if (scene->count < subjects)
         return err_set(err, ST_USAGE,
@@ -150,6 +150,6 @@ struct film_effect film_effect_draw(const struct scene_subjects *scene, uint64_t
     const int all = film_effects_list(list, scene), wanted = scene->count < 2 ? scene->count : 2;
     int count = 0;
     for (int i = 0; i < all; i++)
-        if (move_subjects(list[i].move) == wanted && !list[i].tone) row[count++] = list[i];
+        if (film_move_subjects(list[i].move) == wanted && !list[i].tone) row[count++] = list[i];
     return row[(int)(rng_uniform(&rng, 0, 0) * count)];
 }

@@ -52,9 +52,9 @@ struct scene_subjects {
     int count;          /* moves use at most two */
     double depth_ratio; /* farther to nearer of the first two; 1 if there are fewer */
 };
-struct scene_subjects scene_subjects_of(const struct subject_list *list);
+struct scene_subjects film_scene_subjects(const struct subject_list *list);
 
-int move_subjects(enum camera_move move); /* number of subjects that the move needs */
+int film_move_subjects(enum camera_move move); /* number of subjects that the move needs */
 void film_effect_name(const struct film_effect *e, char name[EFFECT_NAME_SIZE]);
 /* ST_USAGE with what is wrong in the name and the nearest known name. */
 enum status film_effect_parse(struct film_effect *e, const char *name, struct err *err);

@@ -39,7 +39,7 @@ void light_list_release(struct light_list *l)
     *l = (struct light_list){0};
 }
 
-void lamp_file_name(char to[LAMP_FILE_NAME], const struct light_list *l, int lamp)
+void light_list_lamp_file(char to[LAMP_FILE_NAME], const struct light_list *l, int lamp)
 {
     static const char kept[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_";
     size_t n = 0;

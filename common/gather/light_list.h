@@ -34,6 +34,6 @@ void light_list_release(struct light_list *l);
 /* The name of a lamp as that of a file, without an extension: bytes other than letters, digits, - and _ become %XX; a
  * name that is too long for a file becomes lampN, N its number in the list from 1. */
 enum { LAMP_FILE_NAME = 208 };
-void lamp_file_name(char to[LAMP_FILE_NAME], const struct light_list *l, int lamp);
+void light_list_lamp_file(char to[LAMP_FILE_NAME], const struct light_list *l, int lamp);
 
 #endif

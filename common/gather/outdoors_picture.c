@@ -69,7 +69,7 @@ static enum status read_lens(struct camera *lens, const struct exr_image *im, co
     return st;
 }
 
-/* The inverse of exr_set_camera(). */
+/* The inverse of view_image_set_camera(). */
 static struct view view_of_exr(const struct exr_image *im)
 {
     static const double flip[3] = {1, -1, 1};

@@ -35,7 +35,7 @@ struct exr_image {
     enum exr_codec codec;     /* for exr_write(); exr_read() reads any codec and sets EXR_ZIP */
     struct exr_plane *planes; /* owned, with their data */
     bool has_world_to_camera;
-    float world_to_camera[16];  /* in Imath's row-vector convention, as in the file; see exr_set_camera() */
+    float world_to_camera[16];  /* in Imath's row-vector convention, as in the file; see view_image_set_camera() */
     char (*attributes)[2][256]; /* other string attributes, name and value; owned; may be NULL */
     int attribute_count;
 };

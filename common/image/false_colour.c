@@ -20,7 +20,7 @@ static void colour_from_oklab(double light, double a, double b, unsigned char rg
     for (int c = 0; c < 3; c++) rgb[c] = (unsigned char)(255 * srgb_from_linear((float)linear[c]) + 0.5f);
 }
 
-void ramp_colour(double t, unsigned char rgb[3])
+void colour_of_ramp(double t, unsigned char rgb[3])
 {
     t = t > 0 ? t < 1 ? t : 1 : 0;
     double light = 0.20 + 0.72 * t, hue = (285 + 165 * t) * DEGREE;
@@ -29,7 +29,7 @@ void ramp_colour(double t, unsigned char rgb[3])
 }
 
 /* Steps of the golden ratio spread any number of hues evenly; magenta is at 328 degrees. */
-void category_colour(int n, unsigned char rgb[3])
+void colour_of_category(int n, unsigned char rgb[3])
 {
     static const double LIGHT[3] = {0.72, 0.60, 0.84};
     const double turn = 0.6180339887498949 * n, hue = (30 + 250 * (turn - floor(turn))) * DEGREE;

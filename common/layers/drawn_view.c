@@ -150,7 +150,7 @@ enum status drawn_view_prepare(struct drawn_view *dv, const struct layered_depth
     dv->tiles_x = tiles_x;
     dv->tile_count = tiles_x * tiles_y;
     for (int t = 0; t <= dv->tile_count + 1; t++) dv->tile_begin[t] = 0;
-    view_relation_make(&dv->relation, view, novel);
+    segment_relation_make(&dv->relation, view, novel);
     if (!(bound_pixels(all, &dv->relation, &lv->bounds[blocks]) & 1)) return ST_OK;
 
     if (reserve(&dv->boxes, &dv->box_capacity, (size_t)blocks * BOUNDS_GROUPS, sizeof *dv->boxes, err)) return ST_NOMEM;

@@ -162,7 +162,7 @@ enum status layered_depth_write(const struct layered_depth *d, const struct view
     if (!st) st = add_layer(&im, &d->boundary, plane_names + PLANES_A_LAYER, err);
     if (!st) st = add_shares(&im, d, err);
     if (!st) {
-        if (view) exr_set_camera(&im, view);
+        if (view) view_image_set_camera(&im, view);
         st = write_segments(d, text, prov, err);
     }
     if (!st) st = exr_write(&im, path, prov, err);

@@ -35,7 +35,7 @@ static void relate(double m[3][3], double k[3], const struct view *to, const str
     k[2] = shift.z;
 }
 
-void view_relation_make(struct view_relation *r, const struct view *view, const struct view *novel)
+void segment_relation_make(struct view_relation *r, const struct view *view, const struct view *novel)
 {
     relate(r->m, r->k, view, novel);
     relate(r->inverse_m, r->inverse_k, novel, view);

@@ -18,7 +18,7 @@ struct view_relation {                    /* pixels from pixels: M and k of segm
     int width, height;                    /* of the novel camera */
 };
 
-void view_relation_make(struct view_relation *r, const struct view *view, const struct view *novel);
+void segment_relation_make(struct view_relation *r, const struct view *view, const struct view *novel);
 
 struct projected_segment {
     double from_target[3][3]; /* homography: target position (x, y, 1) -> index into the padded texels */

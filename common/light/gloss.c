@@ -62,7 +62,7 @@ enum status gloss_read(struct gloss *g, struct textfile *t, struct err *err)
     return read_kind(&g->kind, t, err) || read_lobe(g, t, err) ? err->status : ST_OK;
 }
 
-enum status brdf_read(struct brdf *b, struct textfile *t, struct err *err)
+enum status gloss_read_brdf(struct brdf *b, struct textfile *t, struct err *err)
 {
     struct gloss g = {0};
     struct rgb albedo = {0, 0, 0};
@@ -83,7 +83,7 @@ void gloss_print(const struct gloss *g, FILE *to)
     if (g->kind != BRDF_LAMBERT) fprintf(to, " %.17g %.17g", g->ks, g->shape);
 }
 
-void brdf_print(const struct brdf *b, FILE *to)
+void gloss_print_brdf(const struct brdf *b, FILE *to)
 {
     fprintf(to, "%s %.17g %.17g %.17g", kinds[b->kind], b->albedo.r, b->albedo.g, b->albedo.b);
     if (b->kind != BRDF_LAMBERT) fprintf(to, " %.17g %.17g", b->ks, b->shape);

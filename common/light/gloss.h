@@ -25,10 +25,10 @@ void gloss_shape_bounds(enum brdf_kind kind, double *least, double *most);
  * for each point. */
 struct brdf gloss_brdf(const struct gloss *g, struct rgb albedo);
 
-/* Both read the next words of the line. ST_DATA with file and line: another word, a number out of range; brdf_read()
- * also refuses what gloss_check() does. */
+/* Both read the next words of the line. ST_DATA with file and line: another word, a number out of range;
+ * gloss_read_brdf() also refuses what gloss_check() does. */
 enum status gloss_read(struct gloss *g, struct textfile *t, struct err *err);
-enum status brdf_read(struct brdf *b, struct textfile *t, struct err *err);
+enum status gloss_read_brdf(struct brdf *b, struct textfile *t, struct err *err);
 
 /* ST_DATA with the file and line of t: a surface of this greatest albedo would reflect more light than it gets: that
  * and brdf_gloss_albedo() are more than 1 together. */
@@ -36,6 +36,6 @@ enum status gloss_check(const struct gloss *g, double albedo, const struct textf
 
 /* Print the words that the functions above read, bit for bit, without a blank before or after; in the C locale. */
 void gloss_print(const struct gloss *g, FILE *to);
-void brdf_print(const struct brdf *b, FILE *to);
+void gloss_print_brdf(const struct brdf *b, FILE *to);
 
 #endif

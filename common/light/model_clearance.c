@@ -40,7 +40,7 @@ static bool is_over(struct vec3 p, const struct vec3 corner[3], struct vec3 norm
     return true;
 }
 
-double segment_triangle_distance(struct vec3 from, struct vec3 to, const struct vec3 corner[3])
+double clearance_of_triangle(struct vec3 from, struct vec3 to, const struct vec3 corner[3])
 {
     const struct vec3 way = vec3_sub(to, from);
     const struct vec3 normal = vec3_cross(vec3_sub(corner[1], corner[0]), vec3_sub(corner[2], corner[0]));
@@ -71,7 +71,7 @@ static bool is_near(const struct model_rays *m, struct vec3 from, struct vec3 to
             boxes_are_apart(from.y, to.y, c[0].y, c[1].y, c[2].y, margin) ||
             boxes_are_apart(from.z, to.z, c[0].z, c[1].z, c[2].z, margin))
             continue;
-        if (segment_triangle_distance(from, to, c) < margin) return true;
+        if (clearance_of_triangle(from, to, c) < margin) return true;
     }
     return false;
 }

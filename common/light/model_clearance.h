@@ -6,7 +6,7 @@
 #include "common/light/model_rays.h"
 
 /* The least distance between a segment and a triangle; 0 if they meet. from = to: a point. */
-double segment_triangle_distance(struct vec3 from, struct vec3 to, const struct vec3 corner[3]);
+double clearance_of_triangle(struct vec3 from, struct vec3 to, const struct vec3 corner[3]);
 
 /* Whether a point is inside a solid, or nearer than `margin` to a surface. */
 bool model_rays_inside(const struct model_rays *m, struct vec3 p, double margin);

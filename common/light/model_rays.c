@@ -153,7 +153,7 @@ void model_rays_view(uint32_t *faces, const struct model_rays *m, const struct v
     model_rays_picture(faces, m, view->center, view->width, view->height, pinhole_ray, &p);
 }
 
-void solid_face_inverse_depth(double plane[3], const struct solid_face *face, const struct view *view)
+void model_face_inverse_depth(double plane[3], const struct solid_face *face, const struct view *view)
 {
     const struct vec3 n = mat3_apply(view->cam_from_world, face->normal);
     const double off = face->offset - vec3_dot(face->normal, view->center);

@@ -47,6 +47,6 @@ void model_rays_view(uint32_t *faces, const struct model_rays *m, const struct v
 
 /* The inverse depth of a face's plane in a view (model frame): 1 / z = plane[0] u + plane[1] v + plane[2]. All 0 if the
  * camera is on the plane. */
-void solid_face_inverse_depth(double plane[3], const struct solid_face *face, const struct view *view);
+void model_face_inverse_depth(double plane[3], const struct solid_face *face, const struct view *view);
 
 #endif

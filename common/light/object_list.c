@@ -78,7 +78,8 @@ static enum status read_object(struct object_list *l, struct textfile *t, struct
         return err->status;
     struct object *o = &l->items[l->count++];
     *o = (struct object){0};
-    if (read_names(l, o, t, err) || read_matrix(o->matrix, t, err) || brdf_read(&o->brdf, t, err)) return err->status;
+    if (read_names(l, o, t, err) || read_matrix(o->matrix, t, err) || gloss_read_brdf(&o->brdf, t, err))
+        return err->status;
     return textfile_end(t, err);
 }
 
@@ -102,7 +103,7 @@ static enum status print_object(const struct object *o, FILE *to, struct err *er
     fprintf(to, "object %s %s %s", name, o->file, o->hash);
     for (int i = 0; i < 12; i++) fprintf(to, " %.17g", o->matrix[i / 4][i % 4]);
     fputc(' ', to);
-    brdf_print(&o->brdf, to);
+    gloss_print_brdf(&o->brdf, to);
     fputc('\n', to);
     return ST_OK;
 }

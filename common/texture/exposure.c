@@ -126,7 +126,7 @@ enum status exposure_write_frame(const struct model_picture *p, double exposure,
     if (!st) st = exr_init_rgba(&im, rgba, p->width, p->height, err);
     if (!st) st = exr_add_plane(&im, "made", EXR_UINT, NULL, err);
     for (size_t i = 0; !st && i < pixels; i++) im.planes[4].u[i] = p->made[i];
-    if (!st) exr_set_camera(&im, camera);
+    if (!st) view_image_set_camera(&im, camera);
     if (!st) st = exr_set_number(&im, "remodel:exposure", exposure, err);
     if (!st) st = exr_write(&im, path, prov, err);
     exr_image_release(&im);

@@ -115,7 +115,7 @@ enum status model_picture_write(const struct model_picture *p, const struct view
         }
         memcpy(im.planes[3].f, p->z, pixels * sizeof *p->z);
         memcpy(im.planes[4].u, p->id, pixels * sizeof *p->id);
-        exr_set_camera(&im, camera);
+        view_image_set_camera(&im, camera);
         if (p->has_camera) st = write_camera(&im, p, err);
     }
     if (!st) {

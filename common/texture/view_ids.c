@@ -52,7 +52,7 @@ enum status view_ids_write(const struct view_ids *v, const struct view *view, co
         if (!st) memcpy(plane->u ? (void *)plane->u : (void *)plane->f, planes[i], pixels * 4);
     }
     if (!st) {
-        exr_set_camera(&im, view);
+        view_image_set_camera(&im, view);
         st = exr_write(&im, path, prov, err);
     }
     exr_image_release(&im);

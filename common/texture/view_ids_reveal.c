@@ -102,7 +102,7 @@ enum status view_reveal_write(const struct view_reveal *v, const struct view *vi
         if (!st && k < v->layers) memcpy(plane->f, v->z[k], pixels * sizeof *plane->f);
     }
     if (!st) {
-        exr_set_camera(&im, view);
+        view_image_set_camera(&im, view);
         st = exr_write(&im, made, prov, err);
     }
     if (!st) st = replace_if_changed(made, path, &differs, err);

@@ -53,7 +53,7 @@ static enum status read_frame(struct job *j, struct err *err)
     if (st || !j->views) return st;
     if (j->held) st = scene_inputs_read(&j->held_in, SCENE_CAMERAS | SCENE_LENSES, &held, &j->prov, err);
     if (!st && j->points) st = point_cloud_read(&cloud, j->points, &j->prov, err);
-    if (!st) st = placer_init(&j->placer, views, &j->in.axes, j->points ? &cloud : NULL, &j->params, err);
+    if (!st) st = place_init(&j->placer, views, &j->in.axes, j->points ? &cloud : NULL, &j->params, err);
     point_cloud_release(&cloud);
     return st;
 }
@@ -68,7 +68,7 @@ static enum status write_model(struct job *j, const struct plan *plan, const str
         product_path_in(path, j->out, PRODUCT_MODEL_PICTURE, NULL, err) ||
         view_picture_write(mesh, plan, placer, path, err) || product_path_in(path, j->out, PRODUCT_PLAN, NULL, err) ||
         plan_write(plan, path, &j->prov, err) || product_path_in(path, j->out, PRODUCT_MERGED, NULL, err) ||
-        merged_write(log, path, &j->prov, err) || product_path_in(path, j->out, PRODUCT_MODEL, NULL, err) ||
+        plan_merged_write(log, path, &j->prov, err) || product_path_in(path, j->out, PRODUCT_MODEL, NULL, err) ||
         solid_mesh_write(mesh, path, &j->prov, err))
         return err->status;
     return ST_OK;
@@ -97,8 +97,8 @@ static enum status apply_edit(struct job *j, struct plan *plan, struct err *err)
 {
     char path[FILE_PATH];
     if (j->scene && file_path(path, j->scene, "objects.txt", "", err)) return err->status;
-    if (j->scene && path_is_file(path) && plan_apply_objects(plan, path, &j->prov, err)) return err->status;
-    return plan_apply_edit(plan, j->edit, j->views ? &j->placer : NULL, &j->prov, err);
+    if (j->scene && path_is_file(path) && edit_chain_apply_objects(plan, path, &j->prov, err)) return err->status;
+    return edit_chain_apply_edit(plan, j->edit, j->views ? &j->placer : NULL, &j->prov, err);
 }
 
 static void log_summary(const struct plan *plan, const struct solid_mesh *mesh, const struct unite_log *log,
@@ -126,13 +126,13 @@ static enum status build(struct job *j, struct err *err)
     enum status st = read_frame(j, err);
     if (!st) {
         plan_begin(&plan, &j->in.axes);
-        st = plan_apply_model(&plan, j->script, placer, &j->prov, err);
+        st = edit_chain_apply_model(&plan, j->script, placer, &j->prov, err);
     }
     if (!st && j->edit) st = apply_edit(j, &plan, err);
     if (!st) st = layout_solids(&solids, &plan, err);
     if (!st && !solids.count)
         st = err_set(err, ST_DATA, "%s: the script describes no solid; add walls, rooms or boxes.", j->script);
-    if (!st) st = solids_unite(&mesh, &solids, &log, err);
+    if (!st) st = unite_solids(&mesh, &solids, &log, err);
     if (!st) st = solid_mesh_check(&mesh, 0, &report, err);
     if (!st && j->base) st = solid_mesh_read(&base, j->base, &j->prov, err);
     if (!st && j->base) st = solid_mesh_carry_ids(&mesh, &base, err);
@@ -217,7 +217,7 @@ int main(int argc, char **argv)
     if (cli_parse(argc, argv, "build_model", opts, &j.prov, &err) != CLI_RUN || check_usage(&j, &err) ||
         (j.overlay ? overlay(&j, &err) : build(&j, &err)))
         err_report(&err);
-    placer_release(&j.placer);
+    place_release(&j.placer);
     scene_inputs_release(&j.held_in);
     scene_inputs_release(&j.in);
     provenance_release(&j.prov);

@@ -10,10 +10,10 @@ static void print_plan(const struct plan *plan, FILE *to)
     static const char *const ends[] = {"free", "corner", "meets"};
     for (int i = 0; i < plan->wall_count; i++) {
         const struct plan_wall *w = &plan->walls[i];
-        const struct plan_line in = wall_face(w, SIDE_IN);
+        const struct plan_line in = plan_wall_face(w, SIDE_IN);
         double span[2];
         if (w->removed) continue;
-        wall_span(plan, i, span);
+        plan_wall_span(plan, i, span);
         fprintf(to, "wall %s normal %.17g %.17g at %.17g thickness %.17g from %.17g to %.17g foot %.17g top %.17g",
                 w->name, in.n[0], in.n[1], in.c, w->thickness, span[0], span[1], w->foot,
                 plan_wall_top(plan, i, span[0], span[1]));
@@ -25,7 +25,7 @@ static void print_plan(const struct plan *plan, FILE *to)
     }
     for (int i = 0; i < plan->opening_count; i++) {
         const struct plan_opening *o = &plan->openings[i];
-        if (opening_is_there(plan, o))
+        if (plan_opening_is_there(plan, o))
             fprintf(to, "%s %s on %s from %.17g %.17g to %.17g %.17g %s\n", opening_word(o->kind), o->name,
                     plan->walls[o->wall].name, o->s[0], o->z[0], o->s[1], o->z[1], o->fill ? "closed" : "open");
     }
@@ -47,7 +47,7 @@ static void print_plan(const struct plan *plan, FILE *to)
     }
     for (int i = 0; i < plan->slot_count; i++) {
         const struct plan_slot *o = &plan->slots[i];
-        if (slot_is_there(plan, o))
+        if (plan_slot_is_there(plan, o))
             fprintf(to, "%s %s on %s from %.17g %.17g to %.17g %.17g %s\n", opening_word(o->kind), o->name,
                     plan->rooms[o->room].name, o->low[0], o->low[1], o->high[0], o->high[1],
                     o->fill ? "closed" : "open");
@@ -72,7 +72,8 @@ enum status plan_write(const struct plan *plan, const char *path, const struct p
     return st;
 }
 
-enum status merged_write(const struct unite_log *log, const char *path, const struct provenance *prov, struct err *err)
+enum status plan_merged_write(const struct unite_log *log, const char *path, const struct provenance *prov,
+                              struct err *err)
 {
     struct outfile f = {0};
     if (product_begin(&f, PRODUCT_MERGED, path, prov, err)) return err->status;

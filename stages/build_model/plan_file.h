@@ -7,6 +7,7 @@
 #include "stages/build_model/solid/unite.h"
 
 enum status plan_write(const struct plan *plan, const char *path, const struct provenance *prov, struct err *err);
-enum status merged_write(const struct unite_log *log, const char *path, const struct provenance *prov, struct err *err);
+enum status plan_merged_write(const struct unite_log *log, const char *path, const struct provenance *prov,
+                              struct err *err);
 
 #endif

@@ -53,7 +53,7 @@ static enum status choose(const char *subjects, const char *which, const char *o
     int count = 0;
 
     enum status st = subject_list_read(&found, subjects, prov, err);
-    const struct scene_subjects scene = scene_subjects_of(&found);
+    const struct scene_subjects scene = film_scene_subjects(&found);
     if (!st && !strcmp(which, "all")) {
         count = film_effects_list(list, &scene);
         log_note("%d subject%s: %d effects", scene.count, scene.count == 1 ? "" : "s", count);

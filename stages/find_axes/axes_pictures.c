@@ -38,7 +38,7 @@ static int view_of_photo(const struct room_inputs *in, const char *photo)
     return best;
 }
 
-enum status choose_pictures(bool *chosen, int count, const struct room_inputs *in, struct err *err)
+enum status pictures_choose(bool *chosen, int count, const struct room_inputs *in, struct err *err)
 {
     int *photos = malloc(((size_t)in->lenses->count + 1) * sizeof *photos), known = 0; /* a lens each */
     if (!photos) return err_nomem(err, "photos", (size_t)in->lenses->count * sizeof *photos);
@@ -112,8 +112,8 @@ static struct vec3 floor_ahead(const struct view *view, const struct room *room)
                      fmin(fmax(c.y + t * d.y, room->low[1]), room->high[1]), 0);
 }
 
-void draw_room(unsigned char *pixels, const struct view *view, const struct room *room, const struct vec3 *corners,
-               int corner_count)
+void pictures_draw_room(unsigned char *pixels, const struct view *view, const struct room *room,
+                        const struct vec3 *corners, int corner_count)
 {
     struct sketch k = {pixels, view, &room->axes, fmax(0.75, hypot(view->width, view->height) / 900)};
     const double length = ARROW * fmin(room->high[0] - room->low[0], room->high[1] - room->low[1]);
@@ -134,7 +134,7 @@ void draw_room(unsigned char *pixels, const struct view *view, const struct room
     if (!corner_count) arrows(&k, floor_ahead(view, room), length);
 }
 
-enum status expose_picture(unsigned char *pixels, const struct image *im, struct err *err)
+enum status pictures_expose(unsigned char *pixels, const struct image *im, struct err *err)
 {
     const size_t count = (size_t)im->width * (size_t)im->height, channels = (size_t)im->channels;
     struct image exposed = {0};

@@ -11,13 +11,13 @@
 
 /* Chooses the views to draw on: of `count` photos, spread evenly by name, and of photos with a marked corner, the view
  * nearest to the photo's axis. chosen: an item per view, false on entry. ST_DATA: a corner's view is unknown. */
-enum status choose_pictures(bool *chosen, int count, const struct room_inputs *in, struct err *err);
+enum status pictures_choose(bool *chosen, int count, const struct room_inputs *in, struct err *err);
 
 /* pixels: 8-bit sRGB of the view, 3 * w * h, which is drawn on. corners: world points of marked corners. */
-void draw_room(unsigned char *pixels, const struct view *view, const struct room *room, const struct vec3 *corners,
-               int corner_count);
+void pictures_draw_room(unsigned char *pixels, const struct view *view, const struct room *room,
+                        const struct vec3 *corners, int corner_count);
 
 /* pixels: 8-bit sRGB of a view's linear picture, exposed so that all but its brightest 5 % is below white. */
-enum status expose_picture(unsigned char *pixels, const struct image *im, struct err *err);
+enum status pictures_expose(unsigned char *pixels, const struct image *im, struct err *err);
 
 #endif

@@ -7,7 +7,7 @@
 
 static const double EDGE = 0.33; /* of a block, in scene sizes: 12 blocks cover four scene sizes */
 
-enum status cloud_size(double *size, const struct point_cloud *cloud, struct vec3 origin, struct err *err)
+enum status block_cloud_size(double *size, const struct point_cloud *cloud, struct vec3 origin, struct err *err)
 {
     enum { MAX_SAMPLES = 20000 }; /* of evenly spaced points */
     const size_t step = cloud->count / MAX_SAMPLES + 1;

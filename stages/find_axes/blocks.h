@@ -11,7 +11,7 @@
 enum { BLOCKS_ACROSS = 12, BLOCKS = BLOCKS_ACROSS * BLOCKS_ACROSS * BLOCKS_ACROSS };
 
 /* The size of a scene: the median distance of its points from the origin. */
-enum status cloud_size(double *size, const struct point_cloud *cloud, struct vec3 origin, struct err *err);
+enum status block_cloud_size(double *size, const struct point_cloud *cloud, struct vec3 origin, struct err *err);
 /* Index of the block of p, which is relative to the origin, in any fixed axes. Points farther out belong to the
  * outermost blocks. */
 int block_of(struct vec3 p, double size);

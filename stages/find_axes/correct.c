@@ -113,9 +113,9 @@ enum status correct_axes(struct mat3 *axes, struct vec3 *errors, struct correcti
         if (!o.edges) return ST_OK;
         if (!round) before = o.chi2;
         for (int k = 0; k < 3; k++) o.information.m[k][k] += 1 / (PRIOR * PRIOR);
-        inverse = inverse_of_known(o.information, &unknown);
+        inverse = direction_inverse_of_known(o.information, &unknown);
         const struct vec3 w = mat3_apply(inverse, vec3_sub(o.right, vec3_scale(total, 1 / (PRIOR * PRIOR))));
-        turned = turned_by(turned, w);
+        turned = direction_turned_by(turned, w);
         total = vec3_add(total, w);
     }
     c->edges = o.edges;

@@ -32,7 +32,7 @@ struct bin {
     double count, mass; /* mass: points within CAP of the direction */
 };
 
-struct mat3 turned_by(struct mat3 a, struct vec3 w)
+struct mat3 direction_turned_by(struct mat3 a, struct vec3 w)
 {
     const double angle = vec3_length(w), half = angle > 0 ? sin(angle / 2) / angle : 0.5;
     const struct quat q = {cos(angle / 2), half * w.x, half * w.y, half * w.z};
@@ -43,7 +43,7 @@ struct mat3 turned_by(struct mat3 a, struct vec3 w)
     return (struct mat3){{{x.x, x.y, x.z}, {y.x, y.y, y.z}, {z.x, z.y, z.z}}};
 }
 
-struct mat3 inverse_of_known(struct mat3 a, struct mat3 *unknown)
+struct mat3 direction_inverse_of_known(struct mat3 a, struct mat3 *unknown)
 {
     struct mat3 vectors, inverse = {0};
     double values[3];
@@ -58,7 +58,7 @@ struct mat3 inverse_of_known(struct mat3 a, struct mat3 *unknown)
     return inverse;
 }
 
-struct vec3 sandwich(struct mat3 inverse, const struct vec3 *gradients, int count)
+struct vec3 direction_sandwich(struct mat3 inverse, const struct vec3 *gradients, int count)
 {
     struct mat3 middle = {0};
     for (int b = 0; b < count; b++) {
@@ -238,7 +238,8 @@ static void refine(struct mat3 *axes, const struct point_cloud *cloud)
             weights[k] += w;
             sum = vec3_add(sum, turn);
         }
-        *axes = turned_by(*axes, mat3_apply(inverse_of_known(information_of(weights), &unknown), sum));
+        *axes =
+            direction_turned_by(*axes, mat3_apply(direction_inverse_of_known(information_of(weights), &unknown), sum));
     }
 }
 
@@ -249,7 +250,8 @@ enum status direction_errors(struct vec3 *errors, const struct mat3 *axes, struc
     struct mat3 unknown;
     double size = 0, weights[3] = {0};
     const double cut = cut_of(cloud, *axes);
-    enum status st = sums ? cloud_size(&size, cloud, origin, err) : err_nomem(err, "blocks", BLOCKS * sizeof *sums);
+    enum status st =
+        sums ? block_cloud_size(&size, cloud, origin, err) : err_nomem(err, "blocks", BLOCKS * sizeof *sums);
     for (size_t i = 0; !st && i < cloud->count; i++) {
         int k;
         const struct cloud_point *p = &cloud->points[i];
@@ -259,12 +261,12 @@ enum status direction_errors(struct vec3 *errors, const struct mat3 *axes, struc
         struct vec3 *sum = &sums[block_of(vec3_sub(p->position, origin), size)];
         *sum = vec3_add(*sum, turn);
     }
-    if (!st) *errors = sandwich(inverse_of_known(information_of(weights), &unknown), sums, BLOCKS);
+    if (!st) *errors = direction_sandwich(direction_inverse_of_known(information_of(weights), &unknown), sums, BLOCKS);
     free(sums);
     return st;
 }
 
-enum status find_directions(struct directions *d, const struct point_cloud *cloud, double min_part, struct err *err)
+enum status directions_find(struct directions *d, const struct point_cloud *cloud, double min_part, struct err *err)
 {
     struct bin *bins = calloc(BINS, sizeof *bins);
     struct vec3 axes[3] = {{0}};

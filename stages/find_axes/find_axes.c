@@ -95,8 +95,8 @@ static enum status draw_view(const struct view *view, const struct room *room, c
     enum status st = view_image_read(&im, f->views, view, f->prov, err);
     if (!st && !(pixels = malloc(3 * (size_t)im.width * (size_t)im.height)))
         st = err_nomem(err, "a picture", 3 * (size_t)im.width * (size_t)im.height);
-    if (!st) st = expose_picture(pixels, &im, err);
-    if (!st) draw_room(pixels, view, room, corners, count);
+    if (!st) st = pictures_expose(pixels, &im, err);
+    if (!st) pictures_draw_room(pixels, view, room, corners, count);
     if (!st) st = picture_path(path, f->out, view->name, err);
     if (!st) st = png_write(path, pixels, im.width, im.height, 3, err);
     free(pixels);
@@ -139,7 +139,7 @@ static enum status draw(const struct room *room, const struct room_inputs *in, c
     bool *chosen = calloc((size_t)views + 1, sizeof *chosen);
     struct vec3 *corners = calloc((size_t)(in->fix ? in->fix->count : 0) + 1, sizeof *corners);
     int count = 0;
-    enum status st = chosen && corners ? choose_pictures(chosen, pictures, in, err)
+    enum status st = chosen && corners ? pictures_choose(chosen, pictures, in, err)
                                        : err_nomem(err, "views", (size_t)views * sizeof *chosen);
     if (!st) st = place_corners(corners, &count, room, in, err);
     for (int i = 0; !st && i < views; i++)
@@ -168,7 +168,7 @@ static enum status find(const struct files *f, const struct axes_params *params,
     if (!st && f->scale) st = mark_list_read(&scale, f->scale, MARKS_SCALE, f->prov, err);
     if (!st && f->fix) st = mark_list_read(&fix, f->fix, MARKS_FIX, f->prov, err);
     const struct room_inputs in = {set, &scene.lenses, ups, &cloud, f->scale ? &scale : NULL, f->fix ? &fix : NULL};
-    if (!st) st = find_room(&room, &in, params, err);
+    if (!st) st = room_find(&room, &in, params, err);
     if (!st) log_summary(&room, f, set);
     if (!st) st = draw(&room, &in, f, params->pictures, err);
     if (!st) st = model_axes_write(&room.axes, f->out, f->prov, err);

@@ -175,15 +175,15 @@ static double initial_height(const double *heights, const size_t *begin, int k, 
     return middle[side > 0 ? densest_one : highest];
 }
 
-enum status find_level(struct height_level *level, int side, const struct mat3 *axes, struct vec3 origin,
-                       struct vec3 tilt_error, const struct point_cloud *cloud, const struct axes_params *params,
-                       struct err *err)
+enum status height_find_level(struct height_level *level, int side, const struct mat3 *axes, struct vec3 origin,
+                              struct vec3 tilt_error, const struct point_cloud *cloud, const struct axes_params *params,
+                              struct err *err)
 {
     struct height_point *places = NULL;
     double *heights = NULL, *scratch = NULL, size = 0;
     size_t count = 0, begin[CLUSTERS + 1];
     *level = (struct height_level){0};
-    enum status st = cloud_size(&size, cloud, origin, err);
+    enum status st = block_cloud_size(&size, cloud, origin, err);
     if (!st) st = collect(&places, &heights, &count, side, axes, origin, cloud, params->up_angle, err);
     level->candidates = count;
     const double part = side > 0 ? params->min_floor : params->min_ceiling;

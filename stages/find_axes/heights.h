@@ -17,8 +17,8 @@ struct height_level {
 
 /* axes: rows in the world, z up; origin: a camera's centre, above the floor and below the ceiling. side: 1 floor, -1
  * ceiling. tilt_error: standard errors of the rotations about x and y, radians. */
-enum status find_level(struct height_level *level, int side, const struct mat3 *axes, struct vec3 origin,
-                       struct vec3 tilt_error, const struct point_cloud *cloud, const struct axes_params *params,
-                       struct err *err);
+enum status height_find_level(struct height_level *level, int side, const struct mat3 *axes, struct vec3 origin,
+                              struct vec3 tilt_error, const struct point_cloud *cloud, const struct axes_params *params,
+                              struct err *err);
 
 #endif

@@ -177,8 +177,8 @@ static void step(struct plane_search *s, const struct plane_sums *sums, bool tur
         for (int i = 0; i < 9; i++) information->m[i / 3][i % 3] += scale * q->lever_lever.m[i / 3][i % 3];
         add_outer(information, mean, -scale * q->w);
     }
-    if (turn) w = vec3_scale(mat3_apply(inverse_of_known(*information, &unknown), right), -1);
-    s->axes = turned_by(s->axes, w);
+    if (turn) w = vec3_scale(mat3_apply(direction_inverse_of_known(*information, &unknown), right), -1);
+    s->axes = direction_turned_by(s->axes, w);
     for (int j = 0; j < s->count; j++) {
         const struct plane_sums *q = &sums[j];
         struct room_plane *p = &s->planes[j];
@@ -209,8 +209,8 @@ static enum status find_errors(const struct plane_search *s, const struct plane_
         struct vec3 *g = &gradients[block_of(p, s->size) * CLASSES + s->classes[i]];
         *g = vec3_add(*g, vec3_scale(a, w * d));
     }
-    const struct mat3 inverse = inverse_of_known(*information, &unknown);
-    const struct vec3 errors = sandwich(inverse, gradients, BLOCKS * CLASSES);
+    const struct mat3 inverse = direction_inverse_of_known(*information, &unknown);
+    const struct vec3 errors = direction_sandwich(inverse, gradients, BLOCKS * CLASSES);
     tilt->x = hypot(errors.x, sqrt(fmax(unknown.m[0][0], 0)) * tilt->x);
     tilt->y = hypot(errors.y, sqrt(fmax(unknown.m[1][1], 0)) * tilt->y);
     tilt->z = hypot(errors.z, sqrt(fmax(unknown.m[2][2], 0)) * tilt->z);
@@ -218,7 +218,7 @@ static enum status find_errors(const struct plane_search *s, const struct plane_
     return ST_OK;
 }
 
-enum status find_planes(struct room_planes *planes, struct mat3 *axes, bool turn, struct vec3 *tilt_error,
+enum status planes_find(struct room_planes *planes, struct mat3 *axes, bool turn, struct vec3 *tilt_error,
                         struct vec3 origin, const struct point_cloud *cloud, const struct axes_params *params,
                         struct err *err)
 {
@@ -228,7 +228,7 @@ enum status find_planes(struct room_planes *planes, struct mat3 *axes, bool turn
     *planes = (struct room_planes){0};
     s.classes = malloc(cloud->count + 1);
     s.planes = calloc(MAX_PLANES, sizeof *s.planes);
-    enum status st = sums && s.classes && s.planes ? cloud_size(&s.size, cloud, origin, err)
+    enum status st = sums && s.classes && s.planes ? block_cloud_size(&s.size, cloud, origin, err)
                                                    : err_nomem(err, "planes", cloud->count + MAX_PLANES * sizeof *sums);
     for (int level = 0; !st && level < LEVELS && s.size > 0; level++) {
         const double width = WIDTHS[level] * s.size;
@@ -254,7 +254,7 @@ enum status find_planes(struct room_planes *planes, struct mat3 *axes, bool turn
     return st;
 }
 
-void room_planes_release(struct room_planes *planes)
+void planes_release(struct room_planes *planes)
 {
     if (!planes) return;
     free(planes->planes);

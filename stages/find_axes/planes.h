@@ -11,7 +11,7 @@
 
 struct room_plane {
     int axis, side; /* the plane's normal is axis (0 x, 1 y, 2 z) times side (1 or -1) */
-    double offset;  /* of the plane along the axis, from find_planes()' origin */
+    double offset;  /* of the plane along the axis, from planes_find()' origin */
     double spread;  /* standard deviation of its points across it, robust */
     size_t count;   /* number of its points */
 };
@@ -24,9 +24,9 @@ struct room_planes {
 /* axes: rows in the world. If turn: they are refined, and *tilt_error, standard errors of the rotations about them in
  * radians, is updated. origin: offsets are measured from there. planes is empty on entry; the caller releases it.
  * Finding no planes is not an error. */
-enum status find_planes(struct room_planes *planes, struct mat3 *axes, bool turn, struct vec3 *tilt_error,
+enum status planes_find(struct room_planes *planes, struct mat3 *axes, bool turn, struct vec3 *tilt_error,
                         struct vec3 origin, const struct point_cloud *cloud, const struct axes_params *params,
                         struct err *err);
-void room_planes_release(struct room_planes *planes);
+void planes_release(struct room_planes *planes);
 
 #endif

@@ -194,8 +194,8 @@ static void find_extent(struct room *room, const struct room_planes *planes, con
 static enum status find_heights(struct room *room, struct mark_context *m, const struct room_inputs *in,
                                 struct vec3 errors, const struct axes_params *params, struct err *err)
 {
-    if (find_level(&room->floor, 1, &m->axes, m->origin, errors, in->cloud, params, err) ||
-        find_level(&room->ceiling, -1, &m->axes, m->origin, errors, in->cloud, params, err))
+    if (height_find_level(&room->floor, 1, &m->axes, m->origin, errors, in->cloud, params, err) ||
+        height_find_level(&room->ceiling, -1, &m->axes, m->origin, errors, in->cloud, params, err))
         return err->status;
     m->list = in->fix;
     if (in->fix && corner_height(m, &room->corner_height, err)) {
@@ -245,7 +245,7 @@ static enum status find_all(struct room *room, const struct room_inputs *in, con
     struct directions d;
     struct vec3 errors;
     struct model_axes *a = &room->axes;
-    if (central_view(&room->central, in->set, err) || find_directions(&d, in->cloud, params->min_part, err))
+    if (central_view(&room->central, in->set, err) || directions_find(&d, in->cloud, params->min_part, err))
         return err->status;
     const struct view *central = &in->set->views[room->central];
     struct mark_context m = {.scene = {.set = in->set, .lenses = in->lenses, .cloud = in->cloud},
@@ -255,13 +255,13 @@ static enum status find_all(struct room *room, const struct room_inputs *in, con
     m.axes = model_order(d.axes, d.part, up, mat3_apply(mat3_transpose(central->cam_from_world), right));
     for (int k = 0; k < 3; k++) room->part[k] = d.part[k];
     if (direction_errors(&errors, &m.axes, m.origin, in->cloud, err) ||
-        find_planes(planes, &m.axes, true, &errors, m.origin, in->cloud, params, err))
+        planes_find(planes, &m.axes, true, &errors, m.origin, in->cloud, params, err))
         return err->status;
     if (in->fix && correct_axes(&m.axes, &errors, &room->fix, in->fix, &m.scene, params->click, err))
         return err->status;
     if (room->fix.turn > 0) {
-        room_planes_release(planes);
-        if (find_planes(planes, &m.axes, false, &errors, m.origin, in->cloud, params, err)) return err->status;
+        planes_release(planes);
+        if (planes_find(planes, &m.axes, false, &errors, m.origin, in->cloud, params, err)) return err->status;
     }
     if (find_heights(room, &m, in, errors, params, err)) return err->status;
     m.scene.up = mat3_row(m.axes, 2);
@@ -283,12 +283,12 @@ static enum status find_all(struct room *room, const struct room_inputs *in, con
     return ST_OK;
 }
 
-enum status find_room(struct room *room, const struct room_inputs *in, const struct axes_params *params,
+enum status room_find(struct room *room, const struct room_inputs *in, const struct axes_params *params,
                       struct err *err)
 {
     struct room_planes planes = {0};
     *room = (struct room){0};
     const enum status st = find_all(room, in, params, &planes, err);
-    room_planes_release(&planes);
+    planes_release(&planes);
     return st;
 }

@@ -31,7 +31,7 @@ struct room {
 
 /* Model frame: z up; x is the axis nearest to the right direction of the central camera's picture; the origin is on the
  * floor straight below that camera. ST_DATA: no axes, no floor, or unusable marks. */
-enum status find_room(struct room *room, const struct room_inputs *in, const struct axes_params *params,
+enum status room_find(struct room *room, const struct room_inputs *in, const struct axes_params *params,
                       struct err *err);
 
 #endif

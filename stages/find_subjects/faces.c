@@ -331,7 +331,7 @@ static enum status search_view(struct face_search *s, int view_idx, struct subje
         struct face_sighting sighting = {
             .subject = {.x0 = f->x0, .y0 = f->y0, .x1 = f->x1, .y1 = f->y1, .score = f->score}};
         if (f->score < MIN_PROMISE * s->params->min_score) continue;
-        if (!clip_to_picture(&sighting.subject, v->width, v->height)) continue;
+        if (!region_clip(&sighting.subject, v->width, v->height)) continue;
         sighting.subject.view = strdup(v->name);
         st = sighting.subject.view ? judge_face(s, view_idx, &depth, &sighting, err)
                                    : err_nomem(err, "a view's name", strlen(v->name));
@@ -349,7 +349,7 @@ static enum status search_view(struct face_search *s, int view_idx, struct subje
     return st;
 }
 
-enum status find_faces(struct subject_list *list, struct face_report *report, const struct camera_set *set,
+enum status faces_find(struct subject_list *list, struct face_report *report, const struct camera_set *set,
                        const struct vec3 *ups, const struct face_source *source, const struct find_params *params,
                        struct err *err)
 {

@@ -46,7 +46,7 @@ struct face_report {
 /* Adds at most MAX_FACES subjects to the list, the largest first. ups: each view's upright direction
  * (common/capture/upright.h); NULL: -y. report: the caller releases it; empty after a failure. Same subjects for any
  * number of threads. */
-enum status find_faces(struct subject_list *list, struct face_report *report, const struct camera_set *set,
+enum status faces_find(struct subject_list *list, struct face_report *report, const struct camera_set *set,
                        const struct vec3 *ups, const struct face_source *source, const struct find_params *params,
                        struct err *err);
 void face_report_release(struct face_report *report);

@@ -115,7 +115,7 @@ static enum status subjects_from_faces(struct subject_list *list, struct inputs 
     enum status st = face_detector_open(&in->detector, in->cascades, err);
     for (int i = 0; !st && face_cascades[i]; i++)
         st = provenance_add_in(in->prov, "opencv", in->cascades, face_cascades[i], "", path, err);
-    if (!st) st = find_faces(list, &report, &in->set, in->ups, &source, params, err);
+    if (!st) st = faces_find(list, &report, &in->set, in->ups, &source, params, err);
     int far_off = 0; /* chance detections, in windows and leaves, share one line of the log */
     for (int i = 0; !st && i < report.count; i++) {
         const struct face_sighting *f = &report.sightings[i];

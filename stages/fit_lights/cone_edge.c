@@ -49,7 +49,7 @@ void cone_edge_find(struct curve *c, const struct lamp *l, const struct model_ra
     }
 }
 
-void lamp_outline(struct curve *c, const struct lamp *l)
+void cone_outline(struct curve *c, const struct lamp *l)
 {
     c->count = OUTLINE_POINTS;
     for (int i = 0; i < c->count; i++) {

@@ -22,6 +22,6 @@ struct curve {
  * surfaces, one of which hides the other, are not joined. Empty if beta is 90 degrees: the cone has no edge. */
 void cone_edge_find(struct curve *c, const struct lamp *l, const struct model_rays *model);
 
-void lamp_outline(struct curve *c, const struct lamp *l);
+void cone_outline(struct curve *c, const struct lamp *l);
 
 #endif

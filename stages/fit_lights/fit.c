@@ -275,7 +275,7 @@ static enum status reserve(struct problem *p, struct err *err)
     return err_nomem(err, "points of lamps", square * sizeof *p->factor);
 }
 
-enum status light_fit_solve(struct light_fit *f, struct err *err)
+enum status fit_solve(struct light_fit *f, struct err *err)
 {
     struct problem p = {.f = f};
     for (int m = 0; m < f->material_count; m++) f->materials[m].lit = f->materials[m].unlit = 0;

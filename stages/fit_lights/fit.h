@@ -8,6 +8,6 @@
 
 /* Fills what is to be found. ST_DATA with the reason: no indirect light, points that are lit alike, points of different
  * materials, too few points. */
-enum status light_fit_solve(struct light_fit *f, struct err *err);
+enum status fit_solve(struct light_fit *f, struct err *err);
 
 #endif

@@ -111,8 +111,7 @@ static enum status write_lights(struct job *j, const struct solved_lights *s, co
                                 struct err *err)
 {
     char path[FILE_PATH];
-    if (product_path_in(path, j->out, PRODUCT_LIGHT_FIT, NULL, err) ||
-        solved_lights_write(s, in, path, &j->prov, err) ||
+    if (product_path_in(path, j->out, PRODUCT_LIGHT_FIT, NULL, err) || solve_write(s, in, path, &j->prov, err) ||
         lamp_pictures_write(&j->scene, &j->model, j->views, j->out, err) ||
         product_path_in(path, j->out, PRODUCT_LIGHTS, NULL, err) ||
         light_list_write(&j->scene.lights, path, &j->prov, err))
@@ -132,11 +131,11 @@ static enum status fit(struct job *j, struct err *err)
     if (!st) st = direct_light_make(&direct, &j->scene, &j->model, err);
     const struct solve_inputs in = {&j->scene, &j->notes, &seen, &direct, (const double(*)[3])j->indirect.at,
                                     &j->params};
-    if (!st) st = lights_solve(&solved, &in, err);
+    if (!st) st = solve_lights(&solved, &in, err);
     if (!st) st = write_lights(j, &solved, &in, err);
-    solved_lights_release(&solved);
+    solve_release(&solved);
     direct_light_release(&direct);
-    observations_release(&seen);
+    observe_release(&seen);
     return st;
 }
 

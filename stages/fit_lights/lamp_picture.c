@@ -34,8 +34,8 @@ static bool sees(const struct view *v, const struct model_rays *model, struct ve
     return !ray_scene_blocked(&model->rays, from, vec3_sub(v->center, from), 1);
 }
 
-double curve_draw(const struct canvas *k, const struct curve *c, const struct view *view,
-                  const struct model_rays *model, double half, const unsigned char colour[3])
+double lamp_curve_draw(const struct canvas *k, const struct curve *c, const struct view *view,
+                       const struct model_rays *model, double half, const unsigned char colour[3])
 {
     double length = 0, x0 = 0, y0 = 0, x1, y1;
     bool last = c->count && sees(view, model, c->points[0].at, c->points[0].normal, &x0, &y0);
@@ -70,8 +70,8 @@ static double marks_seen(const struct job *j, int lamp, const struct view *view)
 static void draw_curve(const struct canvas *k, const struct curve *c, const struct view *v,
                        const struct model_rays *model, double half, const unsigned char colour[3])
 {
-    curve_draw(k, c, v, model, half + 1, DARK);
-    curve_draw(k, c, v, model, half, colour);
+    lamp_curve_draw(k, c, v, model, half + 1, DARK);
+    lamp_curve_draw(k, c, v, model, half, colour);
 }
 
 static void draw_marks(const struct canvas *k, const struct job *j, int lamp, const struct view *v, double half)
@@ -151,8 +151,8 @@ static void choose_views(int views[2], const struct job *j, int lamp, const stru
     views[0] = views[1] = -1;
     for (int i = 0; i < j->model->in.set.view_count; i++) {
         const struct view *v = &j->views[i];
-        const double around = curve_draw(NULL, outline, v, &j->model->rays, 0, DARK);
-        const double score = around + curve_draw(NULL, edge, v, &j->model->rays, 0, DARK) + marks_seen(j, lamp, v);
+        const double around = lamp_curve_draw(NULL, outline, v, &j->model->rays, 0, DARK);
+        const double score = around + lamp_curve_draw(NULL, edge, v, &j->model->rays, 0, DARK) + marks_seen(j, lamp, v);
         if (score > best) best = score, views[0] = i, outline_of_best = around;
         if (around > best_outline) best_outline = around, views[1] = i;
     }
@@ -165,11 +165,11 @@ static enum status write_lamp(const struct job *j, int lamp, struct curve *outli
     const struct lamp *l = &j->scene->lights.lamps[lamp];
     char name[LAMP_FILE_NAME], path[FILE_PATH];
     int views[2];
-    lamp_file_name(name, &j->scene->lights, lamp);
+    light_list_lamp_file(name, &j->scene->lights, lamp);
     if (product_path_in(path, folder, PRODUCT_LAMP_PICTURE, &(struct product_key){.name = name}, err))
         return err->status;
     cone_edge_find(edge, l, &j->model->rays);
-    lamp_outline(outline, l);
+    cone_outline(outline, l);
     choose_views(views, j, lamp, outline, edge);
     if (views[0] >= 0) return write_views(j, lamp, views, outline, edge, path, err);
     unlink(path); /* of an earlier run */

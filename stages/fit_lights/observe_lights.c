@@ -21,7 +21,7 @@
 enum { SIGHT_GRID = 24, MIN_SIGHT = 12 };
 #define MIN_COSINE 0.05 /* between a surface's normal and the direction to the camera */
 
-void observations_release(struct observations *o)
+void observe_release(struct observations *o)
 {
     free(o->items);
     free(o->sights);

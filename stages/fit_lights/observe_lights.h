@@ -33,6 +33,6 @@ struct observations {
 enum status observe(struct observations *o, const struct lit_scene *scene, const struct annotation_list *notes,
                     const struct lit_model *model, const char *views, const char *ids,
                     const struct fit_lights_params *params, struct provenance *prov, struct err *err);
-void observations_release(struct observations *o);
+void observe_release(struct observations *o);
 
 #endif

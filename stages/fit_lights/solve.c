@@ -25,7 +25,7 @@ enum { PLACE_SIZE = 512, LINE_STRIDE = 8 /* of a line's points, one in so many i
 
 static const char *const source_words[] = {"given", "fitted", "measured", "bound"};
 
-void solved_lights_release(struct solved_lights *s)
+void solve_release(struct solved_lights *s)
 {
     for (int i = 0; i < s->point_count; i++) free((char *)s->points[i].place);
     free(s->lamps);
@@ -249,7 +249,7 @@ static enum status fit_radiances(struct solved_lights *s, const struct solve_inp
                           in->params->texture,
                           pass == PASS_PROVISIONAL ? INFINITY : in->params->max_spread,
                           in->params->irradiance_error};
-    enum status st = light_fit_solve(&f, err);
+    enum status st = fit_solve(&f, err);
     for (int i = 0; !st && i < list->lamp_count; i++) {
         struct lamp *l = &list->lamps[i];
         if (!lamps[i].fit) continue;
@@ -318,7 +318,7 @@ static enum status fit_cones(struct solved_lights *s, const struct solve_inputs 
     return ST_OK;
 }
 
-enum status lights_solve(struct solved_lights *s, const struct solve_inputs *in, struct err *err)
+enum status solve_lights(struct solved_lights *s, const struct solve_inputs *in, struct err *err)
 {
     const int lamps = in->scene->lights.lamp_count;
     *s = (struct solved_lights){.lamps = calloc((size_t)lamps + 1, sizeof *s->lamps),
@@ -395,8 +395,8 @@ static void write_point(const struct solved_lights *s, const struct solve_inputs
             p->indirect[1], p->indirect[2], name);
 }
 
-enum status solved_lights_write(const struct solved_lights *s, const struct solve_inputs *in, const char *path,
-                                const struct provenance *prov, struct err *err)
+enum status solve_write(const struct solved_lights *s, const struct solve_inputs *in, const char *path,
+                        const struct provenance *prov, struct err *err)
 {
     struct outfile f = {0};
     enum status st = product_begin(&f, PRODUCT_LIGHT_FIT, path, prov, err);

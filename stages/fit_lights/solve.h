@@ -26,11 +26,11 @@ struct solved_lights {
     int lamp_count, material_count, point_count;
 };
 
-enum status lights_solve(struct solved_lights *s, const struct solve_inputs *in, struct err *err);
-void solved_lights_release(struct solved_lights *s);
+enum status solve_lights(struct solved_lights *s, const struct solve_inputs *in, struct err *err);
+void solve_release(struct solved_lights *s);
 
 /* fit.txt (docs/formats.md). */
-enum status solved_lights_write(const struct solved_lights *s, const struct solve_inputs *in, const char *path,
-                                const struct provenance *prov, struct err *err);
+enum status solve_write(const struct solved_lights *s, const struct solve_inputs *in, const char *path,
+                        const struct provenance *prov, struct err *err);
 
 #endif

@@ -36,7 +36,7 @@ struct job {
 
 static void job_release(struct job *j)
 {
-    observations_release(&j->seen);
+    observe_release(&j->seen);
     model_field_release(&j->field);
     scene_inputs_release(&j->in);
     marked_materials_release(&j->marks);

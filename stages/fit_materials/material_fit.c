@@ -50,8 +50,8 @@ int fit_unknowns(enum brdf_kind kind) { return kind == BRDF_LAMBERT ? FIT_GLOSS 
 static void bounds(enum brdf_kind kind, double lower[FIT_UNKNOWNS], double upper[FIT_UNKNOWNS])
 {
     for (int k = 0; k < FIT_UNKNOWNS; k++) lower[k] = 0, upper[k] = INFINITY;
-    lower[FIT_LOG_S] = lobe_log_s(kind, kind == BRDF_WARD ? WARD_MAX : PHONG_MIN);
-    upper[FIT_LOG_S] = lobe_log_s(kind, kind == BRDF_WARD ? WARD_MIN : PHONG_MAX);
+    lower[FIT_LOG_S] = material_lobe_log_s(kind, kind == BRDF_WARD ? WARD_MAX : PHONG_MIN);
+    upper[FIT_LOG_S] = material_lobe_log_s(kind, kind == BRDF_WARD ? WARD_MIN : PHONG_MAX);
 }
 
 /* ------------------------------------------------------------------------------------------------------ the problem */
@@ -121,7 +121,7 @@ void fit_predict(const struct material_samples *s, enum brdf_kind kind, const do
     const int n = fit_unknowns(kind), rows = 3 * s->count;
     const bool glossy = kind != BRDF_LAMBERT;
     const double *lobe = scratch, *slope = scratch + rows;
-    if (glossy) lobe_integrals(s, kind, x[FIT_LOG_S], scratch, jacobian ? scratch + rows : NULL);
+    if (glossy) material_lobe_integrals(s, kind, x[FIT_LOG_S], scratch, jacobian ? scratch + rows : NULL);
     for (int r = 0; r < rows; r++) predicted[r] = x[r % 3] * s->irradiance[r] + (glossy ? x[FIT_GLOSS] * lobe[r] : 0);
     if (!jacobian) return;
     memset(jacobian, 0, (size_t)rows * (size_t)n * sizeof *jacobian);
@@ -216,7 +216,7 @@ static double start_at(struct fit_problem *p, double x[FIT_UNKNOWNS])
     double scale = 1;
     double *robust = p->jacobian; /* not in use yet */
     for (int i = 0; i < p->s->count; i++) robust[i] = 1;
-    if (p->kind != BRDF_LAMBERT) lobe_integrals(p->s, p->kind, x[FIT_LOG_S], p->lobe, NULL);
+    if (p->kind != BRDF_LAMBERT) material_lobe_integrals(p->s, p->kind, x[FIT_LOG_S], p->lobe, NULL);
     for (int round = 0; round < REWEIGHTINGS; round++) {
         linear_step(p, robust, x);
         for (int r = 0; r < p->rows; r++)
@@ -422,7 +422,7 @@ static void set_intervals(struct material_fit *f, struct fit_problem *p)
     }
     f->gloss_known = m.known[FIT_GLOSS];
     if (f->kind == BRDF_LAMBERT) return;
-    const double to_ks = lobe_ks(f->kind, f->x[FIT_LOG_S]), s = exp(f->x[FIT_LOG_S]);
+    const double to_ks = material_lobe_ks(f->kind, f->x[FIT_LOG_S]), s = exp(f->x[FIT_LOG_S]);
     /* d ks: by g, and for Phong by n, on which the scale of the lobe depends */
     const double ks_form[FIT_UNKNOWNS] = {
         [FIT_GLOSS] = to_ks, [FIT_LOG_S] = f->kind == BRDF_WARD ? 0 : f->ks * s / (s + 1)};
@@ -432,7 +432,7 @@ static void set_intervals(struct material_fit *f, struct fit_problem *p)
     struct interval log_s = {lower[FIT_LOG_S], upper[FIT_LOG_S]};
     if (m.known[FIT_LOG_S])
         log_s = about(f->x[FIT_LOG_S], sqrt(form_variance(&m, outer, s_form)), log_s.low, log_s.high);
-    const double ends[2] = {lobe_shape(f->kind, log_s.low), lobe_shape(f->kind, log_s.high)};
+    const double ends[2] = {material_lobe_shape(f->kind, log_s.low), material_lobe_shape(f->kind, log_s.high)};
     f->shape_range = (struct interval){fmin(ends[0], ends[1]), fmax(ends[0], ends[1])};
 }
 
@@ -440,8 +440,8 @@ static void set_meaning(struct material_fit *f)
 {
     for (int c = 0; c < 3; c++) f->k_d[c] = f->x[c];
     if (f->kind == BRDF_LAMBERT) return;
-    f->ks = f->x[FIT_GLOSS] * lobe_ks(f->kind, f->x[FIT_LOG_S]);
-    f->shape = lobe_shape(f->kind, f->x[FIT_LOG_S]);
+    f->ks = f->x[FIT_GLOSS] * material_lobe_ks(f->kind, f->x[FIT_LOG_S]);
+    f->shape = material_lobe_shape(f->kind, f->x[FIT_LOG_S]);
 }
 
 /* One solution from f->x at f->scale. */

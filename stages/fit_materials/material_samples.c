@@ -87,14 +87,20 @@ void material_samples_add(struct material_samples *s, int i, struct vec3 normal,
     add_at(s, 1, i, vec3_dot(across, across) / (along * along), ward);
 }
 
-double lobe_log_s(enum brdf_kind kind, double shape) { return kind == BRDF_WARD ? -2 * log(shape) : log(shape); }
+double material_lobe_log_s(enum brdf_kind kind, double shape)
+{
+    return kind == BRDF_WARD ? -2 * log(shape) : log(shape);
+}
 
-double lobe_shape(enum brdf_kind kind, double log_s)
+double material_lobe_shape(enum brdf_kind kind, double log_s)
 {
     return kind == BRDF_WARD ? clamp(exp(-0.5 * log_s), WARD_MIN, WARD_MAX) : clamp(exp(log_s), PHONG_MIN, PHONG_MAX);
 }
 
-double lobe_ks(enum brdf_kind kind, double log_s) { return kind == BRDF_WARD ? 1 : (exp(log_s) + 1) / (2 * PI); }
+double material_lobe_ks(enum brdf_kind kind, double log_s)
+{
+    return kind == BRDF_WARD ? 1 : (exp(log_s) + 1) / (2 * PI);
+}
 
 /* sums[0][r] += factor lobe[r], sums[1][r] += slope lobe[r] for the rows of a block. */
 static void add_node(double sums[2][BLOCK], const double *restrict lobe, int rows, double factor, double slope)
@@ -104,7 +110,8 @@ static void add_node(double sums[2][BLOCK], const double *restrict lobe, int row
         for (int r = 0; r < rows; r++) sums[1][r] += slope * lobe[r];
 }
 
-void lobe_integrals(const struct material_samples *s, enum brdf_kind kind, double log_s, double *value, double *slope)
+void material_lobe_integrals(const struct material_samples *s, enum brdf_kind kind, double log_s, double *value,
+                             double *slope)
 {
     const double width = exp(log_s);
     /* Ward: ks / (4 pi alpha^2) = s / (4 pi) */

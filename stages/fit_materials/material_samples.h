@@ -38,11 +38,12 @@ void material_samples_add(struct material_samples *s, int i, struct vec3 normal,
 
 /* What lobes are in the fit: ln s, and the lobe's scale ks per unit of reflectance (straight down, all light reflected
  * is 1): (n + 1) / (2 pi) for Phong; Ward's ks is that reflectance already. */
-double lobe_log_s(enum brdf_kind kind, double shape);
-double lobe_shape(enum brdf_kind kind, double log_s);
-double lobe_ks(enum brdf_kind kind, double log_s);
+double material_lobe_log_s(enum brdf_kind kind, double shape);
+double material_lobe_shape(enum brdf_kind kind, double log_s);
+double material_lobe_ks(enum brdf_kind kind, double log_s);
 
 /* value[row]: radiance of the lobe with reflectance 1; slope, unless it is NULL, its derivative by ln s. */
-void lobe_integrals(const struct material_samples *s, enum brdf_kind kind, double log_s, double *value, double *slope);
+void material_lobe_integrals(const struct material_samples *s, enum brdf_kind kind, double log_s, double *value,
+                             double *slope);
 
 #endif

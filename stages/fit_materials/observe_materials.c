@@ -21,7 +21,7 @@
 #include "common/math/numbers.h"
 #include "common/texture/view_ids.h"
 
-void observations_release(struct observations *o)
+void observe_release(struct observations *o)
 {
     if (!o) return;
     free(o->points);

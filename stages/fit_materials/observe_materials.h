@@ -46,6 +46,6 @@ enum status observe_points(struct observations *o, const struct observed_scene *
  * was read to prov. */
 enum status observe_views(struct observations *o, const struct observed_scene *scene, struct provenance *prov,
                           struct err *err);
-void observations_release(struct observations *o);
+void observe_release(struct observations *o);
 
 #endif

@@ -46,7 +46,7 @@ static enum status sample_view(struct sample_job *job)
         linear |= photos[k].values != NULL;
         exposures[k] = r->brackets[k].exposure;
     }
-    if (!st && !linear) st = patches_add(&job->patches, photos, exposures, count, job->max_patches, &job->err);
+    if (!st && !linear) st = recover_add_patches(&job->patches, photos, exposures, count, job->max_patches, &job->err);
     for (int k = 0; photos && k < count; k++) photo_release(&photos[k]);
     free(photos);
     return st;
@@ -91,7 +91,7 @@ static enum status gather(struct patches *all, const struct photo_list *list, co
     for (int i = 0; i < n; i++) {
         if (!st && jobs[i].err.status) st = err_set(err, jobs[i].err.status, "%s", jobs[i].err.text);
         if (!st) st = append(all, &jobs[i].patches, err);
-        patches_release(&jobs[i].patches);
+        recover_release_patches(&jobs[i].patches);
     }
     free(jobs);
     return st;
@@ -123,10 +123,10 @@ static enum status fit_response(const char *photos, const char *records, const c
     char summary[RESPONSE_SUMMARY];
     enum status st = photo_list_read(&list, records, err);
     if (!st) st = gather(&patches, &list, photos, params, err);
-    if (!st) st = response_decide(&response, summary, &patches, params, err);
+    if (!st) st = recover_decide(&response, summary, &patches, params, err);
     if (!st) st = write_response(&response, out, prov, err);
     if (!st) log_note("response curve: %s", summary);
-    patches_release(&patches);
+    recover_release_patches(&patches);
     photo_list_release(&list);
     return st;
 }

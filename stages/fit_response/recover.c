@@ -89,8 +89,8 @@ static void drop_constant(struct patch_sample *s, int count)
     }
 }
 
-enum status patches_add(struct patches *p, const struct photo *photos, const double *exposures, int count,
-                        int max_patches, struct err *err)
+enum status recover_add_patches(struct patches *p, const struct photo *photos, const double *exposures, int count,
+                                int max_patches, struct err *err)
 {
     const float max_range = 8.0f / 255, max_relative = 0.15f; /* of a uniform patch: constant, and by its mean */
     const int width = photos[0].info.width, height = photos[0].info.height;
@@ -128,7 +128,7 @@ enum status patches_add(struct patches *p, const struct photo *photos, const dou
     return ST_OK;
 }
 
-void patches_release(struct patches *p)
+void recover_release_patches(struct patches *p)
 {
     if (!p) return;
     free(p->samples);
@@ -347,8 +347,8 @@ static enum status recover(struct response *r, const struct patches *p, struct e
     return st;
 }
 
-enum status response_decide(struct response *r, char summary[RESPONSE_SUMMARY], const struct patches *p,
-                            const struct fit_params *params, struct err *err)
+enum status recover_decide(struct response *r, char summary[RESPONSE_SUMMARY], const struct patches *p,
+                           const struct fit_params *params, struct err *err)
 {
     const double improvement = 0.5; /* a recovered curve must halve the spread of the sRGB curve */
     const bool forced = !strcmp(params->response, "recover");

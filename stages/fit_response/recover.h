@@ -24,14 +24,14 @@ struct patches {
 
 /* Adds patches of a view: 3 x 3 pixels on a grid that are uniform in all exposures; samples are their means. photos: of
  * one size, with samples; exposures ascending. Fewer than two photos or 3 x 3 pixels add nothing. ST_NOMEM. */
-enum status patches_add(struct patches *p, const struct photo *photos, const double *exposures, int count,
-                        int max_patches, struct err *err);
-void patches_release(struct patches *p);
+enum status recover_add_patches(struct patches *p, const struct photo *photos, const double *exposures, int count,
+                                int max_patches, struct err *err);
+void recover_release_patches(struct patches *p);
 
 /* Chooses the response curve according to params. summary: the choice and the reason, for the log. ST_DATA: the patches
  * do not determine a curve. */
 enum { RESPONSE_SUMMARY = 320 };
-enum status response_decide(struct response *r, char summary[RESPONSE_SUMMARY], const struct patches *p,
-                            const struct fit_params *params, struct err *err);
+enum status recover_decide(struct response *r, char summary[RESPONSE_SUMMARY], const struct patches *p,
+                           const struct fit_params *params, struct err *err);
 
 #endif

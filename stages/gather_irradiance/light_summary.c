@@ -172,7 +172,7 @@ static void draw_examples(const struct sketch *s, const size_t *chosen, int coun
     const struct canvas k = {s->rgb, s->view->width, s->view->height};
     for (int i = 0; i < count; i++) {
         unsigned char colour[3];
-        category_colour(i, colour);
+        colour_of_category(i, colour);
         draw_dot(&k, (double)(chosen[i] % (size_t)k.width) + 0.5, (double)(chosen[i] / (size_t)k.width) + 0.5,
                  fmax(4, k.width / 70.0), colour);
     }
@@ -202,7 +202,7 @@ static enum status draw_levels(const struct sketch *s, const double level[2], st
     const double span = level[0] > 0 ? log(level[1] / level[0]) : 0;
     for (size_t i = 0; i < s->pixels; i++) {
         const double luminance = rgb_luminance(s->e[i].value);
-        ramp_colour(luminance > 0 && span > 0 ? log(luminance / level[0]) / span : 0, s->rgb + 3 * i);
+        colour_of_ramp(luminance > 0 && span > 0 ? log(luminance / level[0]) / span : 0, s->rgb + 3 * i);
     }
     return write_picture(s, PRODUCT_IRRADIANCE_LEVEL, err);
 }
@@ -211,7 +211,7 @@ static enum status draw_unknown(const struct sketch *s, struct err *err)
 {
     for (size_t i = 0; i < s->pixels; i++) {
         const double *from = s->e[i].from;
-        ramp_colour(from[LIGHT_SYNTHESISED] + from[LIGHT_SKY_GUESSED] + from[LIGHT_NONE], s->rgb + 3 * i);
+        colour_of_ramp(from[LIGHT_SYNTHESISED] + from[LIGHT_SKY_GUESSED] + from[LIGHT_NONE], s->rgb + 3 * i);
     }
     return write_picture(s, PRODUCT_IRRADIANCE_UNKNOWN, err);
 }

@@ -19,7 +19,7 @@ enum status light_summary_of_points(const struct gather_job *j, const char *name
 
 /* Of a picture: OUT/irradiance/VIEW.white.jpg, the view as if all surfaces were white; VIEW.level.jpg, the luminance in
  * false colours; VIEW.unknown.jpg, the share of light that no picture shows; and the above. The chosen points are dots
- * of category_colour(N - 1) on the first. */
+ * of colour_of_category(N - 1) on the first. */
 enum status light_summary_of_view(const struct gather_job *j, const struct view *view,
                                   const struct gather_point *points, const struct irradiance *e, struct err *err);
 

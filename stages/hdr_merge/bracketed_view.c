@@ -300,7 +300,7 @@ static enum status set_camera(struct exr_image *im, const struct bracketed_view 
     int used = snprintf(text, sizeof text, "%s %d %d", camera_model_name(c->model), c->width, c->height);
     for (int i = 0; i < camera_model_params(c->model); i++)
         used += snprintf(text + used, sizeof text - (size_t)used, " %.9g", c->params[i]);
-    exr_set_camera(im, &view);
+    view_image_set_camera(im, &view);
     enum status st = exr_set_attribute(im, "remodel:lens", text, err);
     return st ? st : set_frame(im, v, err);
 }
@@ -347,6 +347,6 @@ void bracketed_view_release(struct bracketed_view *v)
     if (!v) return;
     for (int i = 0; i < MERGE_MAX_EXPOSURES; i++) photo_release(&v->photos[i]);
     photo_record_release(&v->record);
-    merged_release(&v->merged);
+    merge_release(&v->merged);
     *v = (struct bracketed_view){0};
 }

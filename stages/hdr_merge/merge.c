@@ -364,7 +364,7 @@ enum status merge_brackets(struct merged *out, const struct brackets *b, const s
     return st;
 }
 
-void merged_release(struct merged *m)
+void merge_release(struct merged *m)
 {
     if (!m) return;
     image_release(&m->radiance);

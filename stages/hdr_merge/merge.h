@@ -40,7 +40,7 @@ struct merged {
  * fewer than 1 or more than MERGE_MAX_EXPOSURES exposures. */
 enum status merge_brackets(struct merged *m, const struct brackets *b, const struct noise *noise,
                            const struct merge_params *params, struct err *err);
-void merged_release(struct merged *m);
+void merge_release(struct merged *m);
 
 /* The ratio of two neighbouring exposures, as stated and as measured on samples that are well exposed in both. */
 struct exposure_agreement {

@@ -25,8 +25,8 @@ enum status reference_pose_find(struct pose *cam_from_world, struct frame_agreem
             "photographs of the scene and reference images together, or set LRI_FRAME = scene or model if the poses "
             "are in one of these frames.",
             "Give a model of the same photographs, or raise [hdr_merge] max_misfit."};
-        st = align_with_photos(&model_from_scene, agreement, model, folder, &scene, &rules, err);
+        st = photo_alignment_find(&model_from_scene, agreement, model, folder, &scene, &rules, err);
     }
-    if (!st) *cam_from_world = pose_in_scene(cam_from_world, &model_from_scene);
+    if (!st) *cam_from_world = photo_alignment_pose(cam_from_world, &model_from_scene);
     return st;
 }

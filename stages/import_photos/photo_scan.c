@@ -359,7 +359,8 @@ enum status photo_scan_write_records(const struct photo_scan *scan, const char *
 {
     int count = 0;
     const char **ids = calloc((size_t)scan->count + 1, sizeof *ids);
-    enum status st = ids ? make_folders(records, err) : err_nomem(err, "ids", (size_t)scan->count * sizeof *ids);
+    enum status st =
+        ids ? outfile_make_folders(records, err) : err_nomem(err, "ids", (size_t)scan->count * sizeof *ids);
 
     for (int i = 0; !st && i < scan->count; i++)
         if (usable(&scan->photos[i])) ids[count++] = scan->photos[i].id;

@@ -211,7 +211,7 @@ enum status split_photos(struct photo_scan *scan, const struct split_grid *grid,
                        scan->count ? " besides those left out" : "");
     char *path = join_path(out, "split.txt");
     list.photos = calloc((size_t)scan->count, sizeof *list.photos);
-    enum status st = path && list.photos ? make_folders(out, err) : err_nomem(err, "a list of photos", 0);
+    enum status st = path && list.photos ? outfile_make_folders(out, err) : err_nomem(err, "a list of photos", 0);
     if (!st) split_list_read(&old, path, &ignored); /* if it cannot be read, all photos are cut again */
     if (!st) st = split_all(&list, &kept, scan, &old, out, err);
     if (!st) st = photo_scan_refuse_bad(scan, err);

@@ -73,7 +73,7 @@ enum status morph_write(const struct morph *m, const struct view *cameras, const
         snprintf(gain, sizeof gain, "%.9g %.9g %.9g", m->gain[0], m->gain[1], m->gain[2]);
         if (!st) st = exr_set_attribute(&im, "remodel:radiometry", m->radiometry, err);
         if (!st) st = exr_set_attribute(&im, "remodel:gain", gain, err);
-        if (!st && cameras) exr_set_camera(&im, &cameras[side]);
+        if (!st && cameras) view_image_set_camera(&im, &cameras[side]);
         if (!st) st = exr_write(&im, path, prov, err);
         exr_image_release(&im);
     }

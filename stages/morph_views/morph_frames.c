@@ -34,7 +34,7 @@ static enum status write_frame(const struct morph_frames_job *job, const struct 
     char path[FILE_PATH];
     enum status st = product_path_in(path, job->out, PRODUCT_FRAME, &(struct product_key){.frame = camera->name}, err);
     if (!st) st = exr_init_rgba(&im, f->rgba, f->width, f->height, err);
-    if (job->posed) exr_set_camera(&im, camera);
+    if (job->posed) view_image_set_camera(&im, camera);
     if (!st) st = exr_set_number(&im, "remodel:holes", f->hole_fraction, err);
     if (!st) st = exr_set_number(&im, "remodel:unfilled", f->unfilled_fraction, err);
     if (!st) st = exr_set_number(&im, "remodel:t", t, err);

@@ -103,7 +103,7 @@ void find(two_view *out, const unsigned char *first, const unsigned char *second
 
 } // namespace
 
-extern "C" enum status two_view_find(struct two_view *out, const unsigned char *first, const unsigned char *second,
+extern "C" enum status features_find(struct two_view *out, const unsigned char *first, const unsigned char *second,
                                      int width, int height, double focal, double tolerance, struct err *err)
 {
     std::memset(out, 0, sizeof *out);
@@ -111,16 +111,16 @@ extern "C" enum status two_view_find(struct two_view *out, const unsigned char *
         find(out, first, second, width, height, focal, tolerance);
         return ST_OK;
     } catch (const std::bad_alloc &) {
-        two_view_release(out);
+        features_release(out);
         return err_nomem(err, "features of two pictures", size_t(width) * size_t(height));
     } catch (const std::exception &e) {
-        two_view_release(out);
+        features_release(out);
         return err_set(err, ST_INTERNAL, "OpenCV could not match two pictures of %d x %d pixels: %.300s.", width,
                        height, e.what());
     }
 }
 
-extern "C" void two_view_release(struct two_view *v)
+extern "C" void features_release(struct two_view *v)
 {
     if (!v) return;
     std::free(v->matches);

@@ -28,8 +28,8 @@ struct two_view {
 /* first, second: grey pictures, 8 bits, width * height. focal: of both pictures, px; may be a guess, because the pose
  * is used only to distinguish near from far. tolerance: max distance of inliers from the epipolar line, px. Too few
  * matches are not an error: inliers is 0. Deterministic. ST_NOMEM; ST_INTERNAL: OpenCV failed. */
-enum status two_view_find(struct two_view *out, const unsigned char *first, const unsigned char *second, int width,
+enum status features_find(struct two_view *out, const unsigned char *first, const unsigned char *second, int width,
                           int height, double focal, double tolerance, struct err *err);
-void two_view_release(struct two_view *v);
+void features_release(struct two_view *v);
 
 #endif

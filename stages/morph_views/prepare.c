@@ -196,7 +196,7 @@ static enum status find_features(struct two_view *found, const struct image imag
             float v = 255 * luminance_of(rgb);
             grey[i * n + p] = (unsigned char)lrintf(fminf(fmaxf(v, 0), 255));
         }
-    enum status st = two_view_find(found, grey, grey + n, images[0].width, images[0].height, focal, TOLERANCE, err);
+    enum status st = features_find(found, grey, grey + n, images[0].width, images[0].height, focal, TOLERANCE, err);
     free(grey);
     return st;
 }
@@ -340,7 +340,7 @@ enum status morph_prepare(const struct morph_job *job, const char *out, const st
         photo_record_release(&pair.records[i]);
         image_release(&images[i]);
     }
-    two_view_release(&found);
+    features_release(&found);
     morph_release(&m);
     return st;
 }

@@ -89,7 +89,7 @@ static enum status frame_write(const struct image *frame, const struct crop_move
     if (!st) st = crop_move_misfit(&misfit, m, i, err);
     const double holes = (double)empty / (double)pixels;
     snprintf(crop, sizeof crop, "%.9g %.9g %.9g %.9g", c.x, c.y, c.width, c.height);
-    exr_set_camera(&im, &m->view);
+    view_image_set_camera(&im, &m->view);
     if (!st) st = exr_set_number(&im, "remodel:holes", holes, err);
     if (!st) st = exr_set_number(&im, "remodel:unfilled", holes, err);
     if (!st) st = exr_set_attribute(&im, "remodel:view", m->view.name, err);

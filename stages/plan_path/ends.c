@@ -135,7 +135,7 @@ static enum status score_pairs(struct ends_search *s, struct end_pair *pairs, si
     const struct validity *v = s->v;
     const int starts = cell_count(&v->region[0]), cells = starts + cell_count(&v->region[1]);
     struct picture_batch b;
-    if (picture_batch_init(&b, s, cells, err)) return err->status;
+    if (ends_batch_init(&b, s, cells, err)) return err->status;
     for (int i = 0; i < cells; i++) {
         b.end[i] = i >= starts;
         b.at[i] = ends_candidate(v, b.end[i], i - b.end[i] * starts);
@@ -143,12 +143,12 @@ static enum status score_pairs(struct ends_search *s, struct end_pair *pairs, si
     const int second = ends_share_cameras(v, b.at) ? 0 : starts; /* first picture of the end's cells */
     for (size_t i = 0; i < count; i++)
         for (int k = 0; k < 2; k++) b.wanted[pairs[i].cell[k] + k * second] = true;
-    const enum status st = picture_batch_render(&b, err);
+    const enum status st = ends_batch_render(&b, err);
     if (!st) {
         struct pair_scoring scoring = {{b.pictures, b.pictures + second}, pairs, parallax_tolerance(s->scene)};
         parallel_for(count, 16, score_some, &scoring);
     }
-    picture_batch_release(&b);
+    ends_batch_release(&b);
     return st;
 }
 

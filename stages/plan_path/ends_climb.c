@@ -66,18 +66,18 @@ static enum status score_steps(struct move_ends step[STEPS], struct ends_search 
                                struct err *err)
 {
     struct picture_batch b; /* the end that each step moves, then the two ends where they were */
-    if (picture_batch_init(&b, s, STEPS + 2, err)) return err->status;
+    if (ends_batch_init(&b, s, STEPS + 2, err)) return err->status;
     for (int i = 0; i < STEPS + 2; i++) {
         b.end[i] = i < STEPS ? i / (2 * AXES) : i - STEPS;
         b.at[i] = i < STEPS ? step[i].at[b.end[i]] : from->at[b.end[i]];
         b.wanted[i] = i >= STEPS || ends_are_allowed(s, step[i].at);
     }
-    const enum status st = picture_batch_render(&b, err);
+    const enum status st = ends_batch_render(&b, err);
     for (int i = 0; !st && i < STEPS; i++)
         if (b.wanted[i])
             step[i].parallax = parallax_between(&b.pictures[b.end[i] ? STEPS : i],
                                                 &b.pictures[b.end[i] ? i : STEPS + 1], parallax_tolerance(s->scene));
-    picture_batch_release(&b);
+    ends_batch_release(&b);
     return st;
 }
 

@@ -29,12 +29,12 @@ static enum status render_end(struct depth_picture *d, const struct ends_search 
                               struct err *err)
 {
     const struct view camera = shot_end_camera(&s->v->shot, &s->v->move.end[end], at);
-    return depth_picture_make(d, s->scene, &camera, s->params->parallax_side, err);
+    return parallax_picture_make(d, s->scene, &camera, s->params->parallax_side, err);
 }
 
-void picture_batch_release(struct picture_batch *b)
+void ends_batch_release(struct picture_batch *b)
 {
-    for (int i = 0; b->pictures && i < b->count; i++) depth_picture_release(&b->pictures[i]);
+    for (int i = 0; b->pictures && i < b->count; i++) parallax_picture_release(&b->pictures[i]);
     free(b->pictures);
     free(b->at);
     free(b->end);
@@ -42,7 +42,7 @@ void picture_batch_release(struct picture_batch *b)
     free(b->errors);
 }
 
-enum status picture_batch_init(struct picture_batch *b, struct ends_search *s, int count, struct err *err)
+enum status ends_batch_init(struct picture_batch *b, struct ends_search *s, int count, struct err *err)
 {
     const size_t n = (size_t)count;
     *b = (struct picture_batch){.search = s, .count = count};
@@ -52,7 +52,7 @@ enum status picture_batch_init(struct picture_batch *b, struct ends_search *s, i
     b->pictures = calloc(n, sizeof *b->pictures);
     b->errors = calloc(n, sizeof *b->errors);
     if (b->at && b->end && b->wanted && b->pictures && b->errors) return ST_OK;
-    picture_batch_release(b);
+    ends_batch_release(b);
     *b = (struct picture_batch){0};
     return err_nomem(err, "depth pictures", n * sizeof *b->pictures);
 }
@@ -65,7 +65,7 @@ static void render_some(void *ctx, size_t begin, size_t end, int thread)
         if (b->wanted[i]) render_end(&b->pictures[i], b->search, b->end[i], b->at[i], &b->errors[i]);
 }
 
-enum status picture_batch_render(struct picture_batch *b, struct err *err)
+enum status ends_batch_render(struct picture_batch *b, struct err *err)
 {
     parallel_for((size_t)b->count, 1, render_some, b);
     for (int i = 0; i < b->count; i++) b->search->notes->renders += b->wanted[i];
@@ -83,7 +83,7 @@ enum status ends_measure_parallax(struct ends_search *s, struct move_ends *e, st
         s->notes->renders++;
     }
     if (!st) e->parallax = parallax_between(&pictures[0], &pictures[1], parallax_tolerance(s->scene));
-    for (int i = 0; i < 2; i++) depth_picture_release(&pictures[i]);
+    for (int i = 0; i < 2; i++) parallax_picture_release(&pictures[i]);
     return st;
 }
 

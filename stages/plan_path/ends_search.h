@@ -37,9 +37,9 @@ struct picture_batch {
     struct err *errors;
 };
 
-enum status picture_batch_init(struct picture_batch *b, struct ends_search *s, int count, struct err *err);
-enum status picture_batch_render(struct picture_batch *b, struct err *err);
-void picture_batch_release(struct picture_batch *b);
+enum status ends_batch_init(struct picture_batch *b, struct ends_search *s, int count, struct err *err);
+enum status ends_batch_render(struct picture_batch *b, struct err *err);
+void ends_batch_release(struct picture_batch *b);
 
 /* Sets e->parallax for the ends e->at. */
 enum status ends_measure_parallax(struct ends_search *s, struct move_ends *e, struct err *err);

@@ -73,9 +73,9 @@ static double focus_at(const struct view *camera, const struct validity *v, cons
     return v->effect.focus == FOCUS_NARROW ? second : (1 - fraction) * first + fraction * second;
 }
 
-enum status focus_frames(struct camera_path *path, double *widest, const double *fractions, struct viewpoint_test *test,
-                         const struct validity *v, const struct subject_list *subjects,
-                         const struct plan_params *params, struct err *err)
+enum status effects_focus(struct camera_path *path, double *widest, const double *fractions,
+                          struct viewpoint_test *test, const struct validity *v, const struct subject_list *subjects,
+                          const struct plan_params *params, struct err *err)
 {
     const enum focus_effect effect = v->effect.focus;
     const int last = path->frame_count - 1;
@@ -128,8 +128,8 @@ static struct effect_box subject_box(const struct subject *s)
                                .box_from_world = quat_from_mat3(box_from_world)};
 }
 
-enum status tone_layers(struct effects *layers, const struct validity *v, const struct subject_list *subjects,
-                        const struct camera_path *path, const struct plan_params *params, struct err *err)
+enum status effects_tone_layers(struct effects *layers, const struct validity *v, const struct subject_list *subjects,
+                                const struct camera_path *path, const struct plan_params *params, struct err *err)
 {
     const double final[TONE_COUNT] = {[TONE_SATURATE] = params->saturate,
                                       [TONE_DESATURATE] = params->desaturate,

@@ -93,8 +93,10 @@ static void join_at(const struct timed_shot *from, const struct timed_shot *to, 
     shot_at(to, 0, &b);
     motion_rates(&from->motion, true, &va, &wa);
     motion_rates(&to->motion, false, &vb, &wb);
-    out->position = position_between(a.position, b.position, vec3_scale(va, seconds), vec3_scale(vb, seconds), t);
-    out->rotation = rotation_between(a.rotation, b.rotation, vec3_scale(wa, seconds), vec3_scale(wb, seconds), t);
+    out->position =
+        motion_position_between(a.position, b.position, vec3_scale(va, seconds), vec3_scale(vb, seconds), t);
+    out->rotation =
+        motion_rotation_between(a.rotation, b.rotation, vec3_scale(wa, seconds), vec3_scale(wb, seconds), t);
     /* a pinhole has no focus: both ends use that of the other shot */
     if (!(a.lens[LENS_FOCUS] > 0)) a.lens[LENS_FOCUS] = b.lens[LENS_FOCUS];
     if (!(b.lens[LENS_FOCUS] > 0)) b.lens[LENS_FOCUS] = a.lens[LENS_FOCUS];
@@ -365,7 +367,7 @@ static enum status collect_layers(struct effects *layers, struct film_sources *s
 static enum status place_shots(struct film_sources *sources, const char *file, const struct film_settings *film,
                                struct provenance *prov, struct err *err)
 {
-    if (film_script_read(&sources->script, file, film->set, film->ups, &film->lens, film->up, prov, err))
+    if (keyframes_read(&sources->script, file, film->set, film->ups, &film->lens, film->up, prov, err))
         return err->status;
     const size_t n = (size_t)sources->script.shot_count;
     sources->shots = calloc(n, sizeof *sources->shots);
@@ -389,7 +391,7 @@ static void sources_release(struct film_sources *sources)
     }
     free(sources->shots);
     free(sources->moves);
-    film_script_release(&sources->script);
+    keyframes_release(&sources->script);
 }
 
 static enum status add_scores(struct camera_path *path, const struct film_sources *sources, double fps, struct err *err)

@@ -24,7 +24,7 @@
 #define MAX_ZOOM       1e3
 #define MIN_UP_SINE    1e-3 /* of the angle between the camera's axis and up */
 
-void film_script_release(struct film_script *s)
+void keyframes_release(struct film_script *s)
 {
     if (!s) return;
     for (int i = 0; i < s->shot_count; i++) {
@@ -399,9 +399,9 @@ static enum status read_lines(struct keyframe_reader *r, struct err *err)
     return layers ? effects_read_layers(&r->script->layers, &r->t, err) : ST_OK;
 }
 
-enum status film_script_read(struct film_script *script, const char *file, const struct camera_set *set,
-                             const struct vec3 *ups, const struct view *lens, struct vec3 up, struct provenance *prov,
-                             struct err *err)
+enum status keyframes_read(struct film_script *script, const char *file, const struct camera_set *set,
+                           const struct vec3 *ups, const struct view *lens, struct vec3 up, struct provenance *prov,
+                           struct err *err)
 {
     struct keyframe_reader r = {.script = script, .set = set, .ups = ups, .lens = lens, .up = up};
     *script = (struct film_script){0};
@@ -411,6 +411,6 @@ enum status film_script_read(struct film_script *script, const char *file, const
         return err->status;
     const enum status st = read_lines(&r, err);
     textfile_release(&r.t);
-    if (st) film_script_release(script);
+    if (st) keyframes_release(script);
     return st;
 }

@@ -41,9 +41,9 @@ struct film_script {
  * film's size and principal point, and the focal length until one is keyed. up: the upright direction in the world for
  * keys without their own. script is empty on entry and, on failure, on return. ST_DATA with file, line, what was found
  * and what was expected. */
-enum status film_script_read(struct film_script *script, const char *file, const struct camera_set *set,
-                             const struct vec3 *ups, const struct view *lens, struct vec3 up, struct provenance *prov,
-                             struct err *err);
-void film_script_release(struct film_script *script);
+enum status keyframes_read(struct film_script *script, const char *file, const struct camera_set *set,
+                           const struct vec3 *ups, const struct view *lens, struct vec3 up, struct provenance *prov,
+                           struct err *err);
+void keyframes_release(struct film_script *script);
 
 #endif

@@ -102,7 +102,7 @@ static struct vec3 quat_log(struct quat q)
     return vec3_scale(v, sine > 0 ? 2 * atan2(sine, fabs(q.w)) / sine : 2);
 }
 
-struct quat rotation_between(struct quat a, struct quat b, struct vec3 da, struct vec3 db, double t)
+struct quat motion_rotation_between(struct quat a, struct quat b, struct vec3 da, struct vec3 db, double t)
 {
     const struct vec3 first = vec3_scale(da, 1.0 / 3), last = vec3_scale(db, 1.0 / 3);
     const struct quat from = multiply(a, quat_exp(first)), to = multiply(b, quat_exp(vec3_scale(last, -1)));
@@ -114,7 +114,7 @@ struct quat rotation_between(struct quat a, struct quat b, struct vec3 da, struc
     return quat_normalize(q);
 }
 
-struct vec3 position_between(struct vec3 a, struct vec3 b, struct vec3 da, struct vec3 db, double t)
+struct vec3 motion_position_between(struct vec3 a, struct vec3 b, struct vec3 da, struct vec3 db, double t)
 {
     const double u = 1 - t;
     const struct vec3 bend = vec3_sub(vec3_scale(da, u), vec3_scale(db, t));
@@ -195,13 +195,14 @@ void motion_at(const struct motion *m, double time, struct vec3 *position, struc
     if (i == m->count - 1 || !(time > m->distance.time[i])) return;
     double h = length[i + 1] - length[i];
     if (h > 0)
-        *position = position_between(m->position[i], m->position[i + 1], vec3_scale(m->tangent[i], h),
-                                     vec3_scale(m->tangent[i + 1], h), (curve_at(&m->distance, time) - length[i]) / h);
+        *position =
+            motion_position_between(m->position[i], m->position[i + 1], vec3_scale(m->tangent[i], h),
+                                    vec3_scale(m->tangent[i + 1], h), (curve_at(&m->distance, time) - length[i]) / h);
     h = angle[i + 1] - angle[i];
     if (h > 0)
-        *rotation =
-            rotation_between(m->rotation[i], m->rotation[i + 1], vec3_scale(m->rotation_tangent[i], h),
-                             vec3_scale(m->rotation_tangent[i + 1], h), (curve_at(&m->angle, time) - angle[i]) / h);
+        *rotation = motion_rotation_between(m->rotation[i], m->rotation[i + 1], vec3_scale(m->rotation_tangent[i], h),
+                                            vec3_scale(m->rotation_tangent[i + 1], h),
+                                            (curve_at(&m->angle, time) - angle[i]) / h);
 }
 
 void motion_rates(const struct motion *m, bool last, struct vec3 *velocity, struct vec3 *angular_velocity)

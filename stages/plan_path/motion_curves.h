@@ -42,8 +42,8 @@ void motion_rates(const struct motion *m, bool last, struct vec3 *velocity, stru
 void motion_release(struct motion *m);
 
 /* A cubic from a (t = 0) to b (t = 1) with the derivatives da and db with respect to t at its ends. */
-struct vec3 position_between(struct vec3 a, struct vec3 b, struct vec3 da, struct vec3 db, double t);
+struct vec3 motion_position_between(struct vec3 a, struct vec3 b, struct vec3 da, struct vec3 db, double t);
 /* The same for unit quaternions, by the shorter way; da and db are angular velocities. */
-struct quat rotation_between(struct quat a, struct quat b, struct vec3 da, struct vec3 db, double t);
+struct quat motion_rotation_between(struct quat a, struct quat b, struct vec3 da, struct vec3 db, double t);
 
 #endif

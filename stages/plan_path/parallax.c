@@ -28,7 +28,7 @@ static void find_farthest(struct depth_picture *d)
         }
 }
 
-enum status depth_picture_init(struct depth_picture *d, const float *z, struct err *err)
+enum status parallax_picture_init(struct depth_picture *d, const float *z, struct err *err)
 {
     const size_t pixels = (size_t)d->camera.width * (size_t)d->camera.height;
     d->z = malloc(2 * pixels * sizeof *d->z);
@@ -39,8 +39,8 @@ enum status depth_picture_init(struct depth_picture *d, const float *z, struct e
     return ST_OK;
 }
 
-enum status depth_picture_make(struct depth_picture *d, const struct layer_scene *scene, const struct view *camera,
-                               int side, struct err *err)
+enum status parallax_picture_make(struct depth_picture *d, const struct layer_scene *scene, const struct view *camera,
+                                  int side, struct err *err)
 {
     static const struct layer_render_options options = {.soft_z = SOFT_Z_WIDTHS, .fill_diameter = 6};
     const int longer = camera->width > camera->height ? camera->width : camera->height;
@@ -51,12 +51,12 @@ enum status depth_picture_make(struct depth_picture *d, const struct layer_scene
         view_resize(&d->camera, (int)fmax(1, round((double)camera->width * side / longer)),
                     (int)fmax(1, round((double)camera->height * side / longer)));
     enum status st = layer_render(&frame, scene, &d->camera, &options, err);
-    if (!st) st = depth_picture_init(d, frame.z, err);
+    if (!st) st = parallax_picture_init(d, frame.z, err);
     rendered_frame_release(&frame);
     return st;
 }
 
-void depth_picture_release(struct depth_picture *d)
+void parallax_picture_release(struct depth_picture *d)
 {
     free(d->z);
     d->z = d->farthest = NULL;

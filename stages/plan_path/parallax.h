@@ -13,12 +13,12 @@ struct depth_picture {
 };
 
 /* Copies the depths z, of the size of d->camera, which is set on entry. */
-enum status depth_picture_init(struct depth_picture *d, const float *z, struct err *err);
+enum status parallax_picture_init(struct depth_picture *d, const float *z, struct err *err);
 
 /* Renders the scene with the longer side reduced to `side` px. */
-enum status depth_picture_make(struct depth_picture *d, const struct layer_scene *scene, const struct view *camera,
-                               int side, struct err *err);
-void depth_picture_release(struct depth_picture *d);
+enum status parallax_picture_make(struct depth_picture *d, const struct layer_scene *scene, const struct view *camera,
+                                  int side, struct err *err);
+void parallax_picture_release(struct depth_picture *d);
 
 /* tolerance: relative difference in depth from which a surface occludes another. */
 double parallax_between(const struct depth_picture *a, const struct depth_picture *b, double tolerance);

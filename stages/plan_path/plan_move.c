@@ -85,12 +85,12 @@ static enum status open_aperture(struct camera_path *path, double *fractions, st
         if (i && ends_measure(&e, test->scene, v, params, err)) return err->status;
         if (i && !e.valid) continue;
         fill_frames(path, fractions, v, &e, params->ease);
-        if (focus_frames(path, &n->aperture, fractions, test, v, subjects, params, err)) return err->status;
+        if (effects_focus(path, &n->aperture, fractions, test, v, subjects, params, err)) return err->status;
         if (widest_blur(path) > widest) widest = widest_blur(path), best = e;
     }
     n->ends = best;
     fill_frames(path, fractions, v, &best, params->ease);
-    if (focus_frames(path, &n->aperture, fractions, test, v, subjects, params, err)) return err->status;
+    if (effects_focus(path, &n->aperture, fractions, test, v, subjects, params, err)) return err->status;
     n->blur = widest_blur(path);
     return ST_OK;
 }
@@ -100,7 +100,7 @@ static void check_subjects(struct move_notes *n, const struct camera_path *path,
                            const struct subject_list *subjects)
 {
     const enum camera_move move = v->effect.move;
-    const int last = path->frame_count - 1, count = move_subjects(move);
+    const int last = path->frame_count - 1, count = film_move_subjects(move);
     const struct view *ends[2] = {&path->frames[0].camera, &path->frames[last].camera};
 
     if (!count) return;
@@ -170,7 +170,7 @@ enum status plan_move(struct camera_path *path, struct effects *layers, struct m
     *notes = (struct move_notes){.aperture = 0};
     film_effect_name(&v->effect, name);
     enum status st = plan_params_check(params, err);
-    const struct scene_subjects available = scene_subjects_of(subjects);
+    const struct scene_subjects available = film_scene_subjects(subjects);
     if (!st) st = film_effect_check(&v->effect, &available, err);
     if (!st) st = ends_choose(&notes->ends, &notes->chosen, scene, v, params, err);
     if (!st && !isfinite(notes->ends.worst_h))
@@ -188,7 +188,7 @@ enum status plan_move(struct camera_path *path, struct effects *layers, struct m
         st = scene_points_collect(&points, scene, err);
         if (!st) st = open_aperture(path, fractions, notes, &test, v, subjects, params, err);
     }
-    if (!st) st = tone_layers(layers, v, subjects, path, params, err);
+    if (!st) st = effects_tone_layers(layers, v, subjects, path, params, err);
     if (!st) {
         check_subjects(notes, path, v, subjects);
         st = add_scores(path, notes, v, err);

@@ -122,7 +122,7 @@ static enum status find_edges(struct surrogate *s, const struct layer_scene *sce
     const struct shot_setup *shot = &s->v->shot;
     const struct view camera = shot_aim(shot, shot->origin, shot->centroid, shot->lens.fx);
     struct depth_picture d;
-    enum status st = depth_picture_make(&d, scene, &camera, EDGE_SIDE, err);
+    enum status st = parallax_picture_make(&d, scene, &camera, EDGE_SIDE, err);
     const int w = d.camera.width, h = d.camera.height;
 
     if (!st && !(s->edges = malloc(2 * (size_t)w * (size_t)h * sizeof *s->edges)))
@@ -137,7 +137,7 @@ static enum status find_edges(struct surrogate *s, const struct layer_scene *sce
                 const struct vec3 b = view_unproject(&d.camera, x1 + 0.5, y1 + 0.5, z1);
                 s->edges[s->edge_count++] = (struct depth_edge){z0 < z1 ? a : b, z0 < z1 ? b : a, !down};
             }
-    depth_picture_release(&d);
+    parallax_picture_release(&d);
     return st;
 }
 

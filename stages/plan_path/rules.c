@@ -24,7 +24,7 @@ static const char *subjects_of(struct graph *g, const char *effect)
 {
     struct film_effect e;
     struct err unknown = ERR_INIT; /* the stage reports it */
-    return !film_effect_parse(&e, effect, &unknown) && !move_subjects(e.move) ? NULL : PATH(g, SUBJECTS);
+    return !film_effect_parse(&e, effect, &unknown) && !film_move_subjects(e.move) ? NULL : PATH(g, SUBJECTS);
 }
 
 /* Adds the planned moves that a film of keys chains: its lines "move EFFECT ...". */

@@ -181,7 +181,7 @@ enum status integrals_write(const struct relit *r, const struct pixels *p, const
     if (!st) st = add_surfaces(&im, &surfaces, err);
     if (!st) st = exr_add_plane(&im, "surface", EXR_UINT, NULL, err);
     if (!st) number_pixels(im.planes[im.count - 1].u, p, c, surface_of_face);
-    if (!st) exr_set_camera(&im, camera);
+    if (!st) view_image_set_camera(&im, camera);
     if (!st) st = exr_write(&im, path, prov, err);
     free(surface_of_face);
     free(surfaces.list);

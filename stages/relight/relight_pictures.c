@@ -135,8 +135,8 @@ static enum status change_one(struct relight_job *j, const char *name, struct er
     if (!st) st = exr_read_product(&integrals, PRODUCT_RELIT_INTEGRALS, path, NULL, 0, &j->prov, err);
     if (!st) st = integrals_change(&picture, &integrals, j->changes, err);
     if (!st)
-        st = changed_write(&picture, j->params.exposure > 0 ? j->params.exposure : exposure, j->out, name, &j->prov,
-                           err);
+        st = relit_changed_write(&picture, j->params.exposure > 0 ? j->params.exposure : exposure, j->out, name,
+                                 &j->prov, err);
     exr_image_release(&integrals);
     model_picture_release(&picture);
     return st;

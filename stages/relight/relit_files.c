@@ -31,7 +31,7 @@ static enum status write_ratio(const struct relit *r, const struct view *camera,
     for (int k = 0; !st && k < 4; k++) st = exr_add_plane(&im, names[k], k < 3 ? EXR_FLOAT : EXR_HALF, NULL, err);
     for (size_t i = 0; !st && i < n; i++)
         for (int k = 0; k < 4; k++) im.planes[k].f[i] = r->quotient[i][k];
-    if (!st) exr_set_camera(&im, camera);
+    if (!st) view_image_set_camera(&im, camera);
     if (!st) st = exr_write(&im, path, prov, err);
     exr_image_release(&im);
     return st;
@@ -127,8 +127,8 @@ enum status relit_read_exposure(double *exposure, const char *path, struct prove
     return st;
 }
 
-enum status changed_write(const struct model_picture *picture, double exposure, const char *out, const char *name,
-                          const struct provenance *prov, struct err *err)
+enum status relit_changed_write(const struct model_picture *picture, double exposure, const char *out, const char *name,
+                                const struct provenance *prov, struct err *err)
 {
     const struct product_key key = {.name = name};
     char path[FILE_PATH];

@@ -13,7 +13,7 @@ enum status relit_write(const struct relit *r, const struct model_picture *pictu
 /* The exposure that NAME.txt states. ST_DATA with file and line. */
 enum status relit_read_exposure(double *exposure, const char *path, struct provenance *prov, struct err *err);
 /* Writes a picture whose materials or lamps were changed: OUT/NAME.exr, NAME.jpg. */
-enum status changed_write(const struct model_picture *picture, double exposure, const char *out, const char *name,
-                          const struct provenance *prov, struct err *err);
+enum status relit_changed_write(const struct model_picture *picture, double exposure, const char *out, const char *name,
+                                const struct provenance *prov, struct err *err);
 
 #endif

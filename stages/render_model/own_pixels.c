@@ -35,7 +35,7 @@ static enum status trace(struct traced *t, const struct model_rays *model, const
     t->planes = malloc((faces + 1) * sizeof *t->planes);
     if (!t->faces || !t->planes) return err_nomem(err, "faces of a view", pixels * sizeof *t->faces);
     model_rays_view(t->faces, model, camera);
-    for (size_t f = 0; f < faces; f++) solid_face_inverse_depth(t->planes[f], &model->mesh.faces[f], camera);
+    for (size_t f = 0; f < faces; f++) model_face_inverse_depth(t->planes[f], &model->mesh.faces[f], camera);
     return ST_OK;
 }
 

@@ -85,7 +85,7 @@ void pane_fronts_release(struct pane_fronts *f)
 static void bring_forward(struct view_ids *ids, const struct pane_front *front, const struct view *view, double scale)
 {
     double plane[3];
-    solid_face_inverse_depth(plane, &front->plane, view);
+    model_face_inverse_depth(plane, &front->plane, view);
     for (int y = 0; y < ids->height; y++)
         for (int x = 0; x < ids->width; x++) {
             const size_t i = (size_t)y * (size_t)ids->width + (size_t)x;

@@ -41,7 +41,7 @@ static enum status find_similarity(struct similarity *given_from_scene, const st
     struct frame_agreement agreement;
     enum status st = sfm_model_read_cameras(&photos, source->photos, NULL, err);
     if (!st) st = provenance_add_in(prov, "photos", source->photos, "images.txt", "", NULL, err);
-    if (!st) st = align_with_photos(given_from_scene, &agreement, &photos, source->photos, &scene, &rules, err);
+    if (!st) st = photo_alignment_find(given_from_scene, &agreement, &photos, source->photos, &scene, &rules, err);
     sfm_model_release(&photos);
     return st;
 }
@@ -69,7 +69,7 @@ enum status room_cameras_read(struct room_cameras *cameras, const struct camera_
     for (int i = 0; !st && i < given.image_count; i++) {
         const struct sfm_image *image = &given.images[i];
         struct pose pose = image->cam_from_world;
-        if (source->frame == FRAME_PHOTOS) pose = pose_in_scene(&pose, &given_from_scene);
+        if (source->frame == FRAME_PHOTOS) pose = photo_alignment_pose(&pose, &given_from_scene);
         if (source->frame != FRAME_MODEL) pose = pose_in_model(&pose, &room->in.axes);
         char *name = name_without_ending(image->name);
         if (!name)

@@ -158,9 +158,9 @@ static void put_from(const struct octet *o, const struct texels *t, const struct
 static unsigned shade_tiles(const struct octet *o, const struct ready *r, float share, unsigned lanes)
 {
     struct texels a, b;
-    const unsigned in_a = texels_find(&a, r->a, r->a_count, lanes, o->down, o->right);
+    const unsigned in_a = tile_texels_find(&a, r->a, r->a_count, lanes, o->down, o->right);
     const unsigned wanted = share > 0 ? lanes : lanes & ~in_a;
-    const unsigned in_b = wanted ? texels_find(&b, r->b, r->b_count, wanted, o->down, o->right) : 0;
+    const unsigned in_b = wanted ? tile_texels_find(&b, r->b, r->b_count, wanted, o->down, o->right) : 0;
     const __m128 of_a = _mm_set1_ps(1 - share), of_b = _mm_set1_ps(share);
     for (unsigned both = in_a & in_b; both; both &= both - 1) {
         const int k = __builtin_ctz(both);
@@ -178,7 +178,7 @@ static unsigned shade_edge(const struct octet *o, const struct ready *r, unsigne
     for (unsigned rest = lanes; rest; rest &= rest - 1) {
         const int k = __builtin_ctz(rest);
         float rgb[3];
-        if (!texel_nearest(rgb, r->a, r->a_count, k, o->down, o->right)) continue;
+        if (!tile_texel_nearest(rgb, r->a, r->a_count, k, o->down, o->right)) continue;
         put(o, k, _mm_set_ps(1, rgb[2], rgb[1], rgb[0]), MADE_SYNTHESISED);
         found |= 1u << k;
     }

@@ -170,8 +170,8 @@ static unsigned look_further(struct texels *t, const struct tile_lanes *list, in
     return found;
 }
 
-unsigned texels_find(struct texels *t, const struct tile_lanes *list, int count, unsigned lanes, float down,
-                     float right)
+unsigned tile_texels_find(struct texels *t, const struct tile_lanes *list, int count, unsigned lanes, float down,
+                          float right)
 {
     const __m256 rows = _mm256_set1_ps(down), columns = _mm256_set1_ps(right);
     if (!count) return 0;
@@ -185,7 +185,7 @@ unsigned texels_find(struct texels *t, const struct tile_lanes *list, int count,
     return found == lanes ? found : found | look_further(t, list, count, p, lanes & ~found, rows, columns);
 }
 
-enum picture_made texels_made_near(const struct texels *t, const struct tile_lanes *list, int lane)
+enum picture_made tile_texels_made_near(const struct texels *t, const struct tile_lanes *list, int lane)
 {
     const struct shade_tile *s = list[t->tile[lane]].tile;
     const int x = t->x[lane], y = t->y[lane];
@@ -236,7 +236,7 @@ static const uint16_t *nearest_in_tile(const struct shade_tile *s, float px, flo
     return nearest;
 }
 
-bool texel_nearest(float rgb[3], const struct tile_lanes *list, int count, int lane, float down, float right)
+bool tile_texel_nearest(float rgb[3], const struct tile_lanes *list, int count, int lane, float down, float right)
 {
     const uint16_t *found = NULL;
     float least = INFINITY;

@@ -23,11 +23,11 @@ struct texels {
 
 /* The texels of the pixels whose bits are set in `lanes`; the first of the eight is `down` rows and `right` columns
  * from the pixel that the lists were made for. Returns those that have one. */
-unsigned texels_find(struct texels *t, const struct tile_lanes *list, int count, unsigned lanes, float down,
-                     float right);
+unsigned tile_texels_find(struct texels *t, const struct tile_lanes *list, int count, unsigned lanes, float down,
+                          float right);
 /* What the nearest of the four texels that exist comes from: its neighbours in the row and the column, then the one
  * across, follow the nearest place. */
-enum picture_made texels_made_near(const struct texels *t, const struct tile_lanes *list, int lane);
+enum picture_made tile_texels_made_near(const struct texels *t, const struct tile_lanes *list, int lane);
 /* What the nearest texel of a pixel that has one comes from. */
 static inline enum picture_made texels_made(const struct texels *t, const struct tile_lanes *list, int lane)
 {
@@ -35,10 +35,10 @@ static inline enum picture_made texels_made(const struct texels *t, const struct
     const int half = 1 << (TEXELS_SHIFT - 1);
     const int x = (t->x[lane] + half) >> TEXELS_SHIFT, y = (t->y[lane] + half) >> TEXELS_SHIFT;
     const uint8_t made = s->made[y * (ptrdiff_t)s->stride + x];
-    return made != MADE_NOTHING ? made : texels_made_near(t, list, lane);
+    return made != MADE_NOTHING ? made : tile_texels_made_near(t, list, lane);
 }
 
 /* The texel nearest to a pixel, wherever it looks; false: the tiles are empty. */
-bool texel_nearest(float rgb[3], const struct tile_lanes *list, int count, int lane, float down, float right);
+bool tile_texel_nearest(float rgb[3], const struct tile_lanes *list, int count, int lane, float down, float right);
 
 #endif

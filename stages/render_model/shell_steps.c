@@ -187,7 +187,7 @@ static enum status make_step(struct shell_scene *s, int face, int pass, const st
     const bool pair = atlases->pair[0] || atlases->pair[1];
     struct place p = {.face = &s->mesh.faces[face], .camera = camera};
     double plane[3];
-    solid_face_inverse_depth(plane, p.face, camera);
+    model_face_inverse_depth(plane, p.face, camera);
     p.inverse_z = (struct linear){plane[0], plane[1], plane[2] + 0.5 * (plane[0] + plane[1])};
     for (int i = s->faces[face].first; i < s->faces[face].first + s->faces[face].count; i++) {
         struct shell_rule *rule = &s->rules[i];

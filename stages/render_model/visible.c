@@ -126,7 +126,7 @@ static bool set_triangle(struct visible_triangle *t, const struct visible_model 
     const struct vec3 corner[3] = {corners[from->v[0]], corners[from->v[1]], corners[from->v[2]]};
     if (!find_rectangle(t, camera, corner, NEAR * m->size)) return false;
     for (int k = 0; k < 3; k++) t->edges[k] = edge_test(corner[k], corner[(k + 1) % 3], camera, &t->owns_edge[k]);
-    solid_face_inverse_depth(plane, face, camera);
+    model_face_inverse_depth(plane, face, camera);
     t->inverse_z = (struct linear){plane[0], plane[1], plane[2] + 0.5 * (plane[0] + plane[1])};
     t->face = (uint32_t)from->face + 1;
     return true;

@@ -74,7 +74,7 @@ static enum status frame_write(const struct rendered_frame *f, const struct view
     if (!st && !(st = exr_add_plane(&im, "Z", EXR_FLOAT, &plane, err))) memcpy(plane->f, f->z, pixels * sizeof *f->z);
     if (!st && with_holes && !(st = exr_add_plane(&im, "hole", EXR_HALF, &plane, err)))
         for (size_t p = 0; p < pixels; p++) plane->f[p] = f->hole[p];
-    exr_set_camera(&im, camera);
+    view_image_set_camera(&im, camera);
     if (!st) st = exr_set_number(&im, "remodel:holes", f->hole_fraction, err);
     if (!st) st = exr_set_number(&im, "remodel:unfilled", f->unfilled_fraction, err);
     if (!st && isfinite(h)) st = exr_set_number(&im, "remodel:h", h, err);
@@ -112,8 +112,8 @@ enum status frames_render(const struct camera_path *path, const bool *wanted, st
     return st;
 }
 
-enum status cameras_select(bool *wanted, const struct camera_set *cameras, const char *const *names, int count,
-                           struct err *err)
+enum status frame_select_cameras(bool *wanted, const struct camera_set *cameras, const char *const *names, int count,
+                                 struct err *err)
 {
     for (int i = 0; i < cameras->view_count; i++) wanted[i] = count == 0;
     for (int i = 0; i < count; i++) {
@@ -127,8 +127,8 @@ enum status cameras_select(bool *wanted, const struct camera_set *cameras, const
     return ST_OK;
 }
 
-enum status cameras_render(const struct camera_set *cameras, const bool *wanted, struct renderer *renderer,
-                           const char *folder, const struct provenance *prov, struct err *err)
+enum status frame_render_cameras(const struct camera_set *cameras, const bool *wanted, struct renderer *renderer,
+                                 const char *folder, const struct provenance *prov, struct err *err)
 {
     struct progress progress;
     int count = 0;

@@ -26,12 +26,12 @@ enum status frames_render(const struct camera_path *path, const bool *wanted, st
                           const char *folder, const struct provenance *prov, struct err *err);
 
 /* Sets wanted[i] of each camera i: all cameras if count is 0, else those named. ST_USAGE: unknown name. */
-enum status cameras_select(bool *wanted, const struct camera_set *cameras, const char *const *names, int count,
-                           struct err *err);
+enum status frame_select_cameras(bool *wanted, const struct camera_set *cameras, const char *const *names, int count,
+                                 struct err *err);
 
 /* Renders one frame per wanted camera, of the camera's size, into folder/NAME.exr. It also has the channel hole (half):
  * 1 where no view covers the pixel, before filling. A camera that sees nothing gets an empty frame and a warning. */
-enum status cameras_render(const struct camera_set *cameras, const bool *wanted, struct renderer *renderer,
-                           const char *folder, const struct provenance *prov, struct err *err);
+enum status frame_render_cameras(const struct camera_set *cameras, const bool *wanted, struct renderer *renderer,
+                                 const char *folder, const struct provenance *prov, struct err *err);
 
 #endif

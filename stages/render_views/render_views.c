@@ -76,14 +76,14 @@ static enum status render_cameras(const struct render_job *job, struct provenanc
     for (int i = 0; !st && i < cameras.view_count; i++) st = frame_part_camera(&cameras.views[i], &job->part, err);
     if (!st) {
         wanted = calloc((size_t)cameras.view_count + 1, sizeof *wanted);
-        st = wanted ? cameras_select(wanted, &cameras, job->names.items, job->names.count, err)
+        st = wanted ? frame_select_cameras(wanted, &cameras, job->names.items, job->names.count, err)
                     : err_nomem(err, "cameras", (size_t)cameras.view_count);
     }
     if (!st) st = layer_scene_read(&scene, &set, job->depth, prov, err);
     if (!st) st = renderer_match_exposures(&scene, &job->params, err);
     if (!st) {
         renderer_init(&renderer, &scene, NULL, &none, &job->params);
-        st = cameras_render(&cameras, wanted, &renderer, job->out, prov, err);
+        st = frame_render_cameras(&cameras, wanted, &renderer, job->out, prov, err);
     }
     free(wanted);
     renderer_release(&renderer);

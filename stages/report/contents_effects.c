@@ -111,7 +111,7 @@ static bool is_effect_folder(const char *folder)
     return path_is_folder(folder) && (path_is_file(path) || !path_is_file(validity));
 }
 
-enum status read_effects(struct contents *c, const char *folder, struct err *err)
+enum status contents_read_effects(struct contents *c, const char *folder, struct err *err)
 {
     struct dirent **names = NULL;
     char path[FILE_PATH];

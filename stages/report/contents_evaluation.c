@@ -34,7 +34,7 @@ static void make_held_cards(void *ctx, size_t begin, size_t end, int thread)
     }
 }
 
-enum status read_held(struct contents *c, const char *folder, struct err *err)
+enum status contents_read_held(struct contents *c, const char *folder, struct err *err)
 {
     char path[PATH_SIZE];
     struct err problem = ERR_INIT;
@@ -58,7 +58,7 @@ enum status read_held(struct contents *c, const char *folder, struct err *err)
     return ST_OK;
 }
 
-enum status read_metrics(struct contents *c, const char *folder, struct err *err)
+enum status contents_read_metrics(struct contents *c, const char *folder, struct err *err)
 {
     char path[PATH_SIZE];
     struct err problem = ERR_INIT;
@@ -74,7 +74,7 @@ enum status read_metrics(struct contents *c, const char *folder, struct err *err
 }
 
 /* Without a truth or a hold-out the metrics are not made with the page, and may be those of an older run. */
-enum status check_age(struct contents *c, const char *folder, struct err *err)
+enum status contents_check_age(struct contents *c, const char *folder, struct err *err)
 {
     struct stat table, map;
     char path[PATH_SIZE];

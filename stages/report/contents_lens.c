@@ -68,7 +68,7 @@ static enum status read_table(struct contents *c, const char *folder, const char
     return st ? contents_note(c, err, "The cameras' %s is not shown. %s", name, problem.text) : ST_OK;
 }
 
-enum status read_lens(struct contents *c, const char *folder, struct err *err)
+enum status contents_read_lens(struct contents *c, const char *folder, struct err *err)
 {
     if (read_table(c, folder, "lens_forms.txt", "remodel-lens-forms", read_form, err)) return err->status;
     return c->has_photos ? read_table(c, folder, "residuals.txt", "remodel-residuals", read_residual, err) : ST_OK;

@@ -185,7 +185,7 @@ static enum status read_lamps(struct contents *c, const char *folder, struct err
     if (!l->lamps) return err_nomem(err, "lamps", (size_t)l->lights.lamp_count * sizeof *l->lamps);
     for (int i = 0; i < l->lights.lamp_count; i++) {
         l->lamps[i].lamp = &l->lights.lamps[i];
-        lamp_file_name(name, &l->lights, i);
+        light_list_lamp_file(name, &l->lights, i);
         snprintf(path, sizeof path, "%s/lights/%s.jpg", folder, name);
         if (read_picture(&l->lamps[i].picture, c, path, 1, LAMP_HEIGHT, err)) return err->status;
     }
@@ -289,7 +289,7 @@ static enum status read_gathers(struct contents *c, const char *folder, const ch
     return st;
 }
 
-enum status read_light(struct contents *c, const char *folder, struct err *err)
+enum status contents_read_light(struct contents *c, const char *folder, struct err *err)
 {
     if (read_lamps(c, folder, err) || read_materials(c, folder, err) ||
         read_gathers(c, folder, "relight/irradiance", err))
@@ -316,7 +316,7 @@ static enum status read_relit_edit(struct contents *c, const struct relit_source
 
 static int is_plain(const struct dirent *e) { return e->d_name[0] != '.' && strcmp(e->d_name, "irradiance") != 0; }
 
-enum status read_relit(struct contents *c, const char *folder, const char *shared, struct err *err)
+enum status contents_read_relit(struct contents *c, const char *folder, const char *shared, struct err *err)
 {
     struct dirent **names = NULL;
     char path[PATH_SIZE], records[PATH_SIZE];

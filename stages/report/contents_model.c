@@ -27,7 +27,7 @@ static enum status read_axes_card(struct contents *c, const char *path, const ch
 }
 
 /* model/axes/VIEW.png, if the axes were found */
-enum status read_axes(struct contents *c, const char *folder, struct err *err)
+enum status contents_read_axes(struct contents *c, const char *folder, struct err *err)
 {
     struct dirent **names = NULL;
     char path[PATH_SIZE];
@@ -103,7 +103,7 @@ static enum status read_model(struct contents *c, const char *folder, const char
 }
 
 /* model/, and remodel/EDIT/ for every edit */
-enum status read_models(struct contents *c, const char *folder, struct err *err)
+enum status contents_read_models(struct contents *c, const char *folder, struct err *err)
 {
     struct dirent **names = NULL;
     char path[PATH_SIZE], below[PATH_SIZE + 256];

@@ -15,18 +15,18 @@ double share_from_text(const char *text);
 
 /* Products that are missing or cannot be read become notes; only ST_NOMEM is an error. Views come after photographs
  * and metrics, the age of the metrics, held-out views, axes, textures and light after views. */
-enum status read_photos(struct contents *c, const char *shared, const char *folder, struct err *err);
-enum status read_metrics(struct contents *c, const char *folder, struct err *err);
-enum status read_views(struct contents *c, const char *folder, struct err *err);
-enum status read_lens(struct contents *c, const char *folder, struct err *err);
-enum status read_held(struct contents *c, const char *folder, struct err *err);
-enum status check_age(struct contents *c, const char *folder, struct err *err);
-enum status read_effects(struct contents *c, const char *folder, struct err *err);
-enum status read_axes(struct contents *c, const char *folder, struct err *err);
-enum status read_models(struct contents *c, const char *folder, struct err *err);
-enum status read_textures(struct contents *c, const char *folder, struct err *err);
-enum status read_light(struct contents *c, const char *folder, struct err *err);
-enum status read_relit(struct contents *c, const char *folder, const char *shared, struct err *err);
+enum status contents_read_photos(struct contents *c, const char *shared, const char *folder, struct err *err);
+enum status contents_read_metrics(struct contents *c, const char *folder, struct err *err);
+enum status contents_read_views(struct contents *c, const char *folder, struct err *err);
+enum status contents_read_lens(struct contents *c, const char *folder, struct err *err);
+enum status contents_read_held(struct contents *c, const char *folder, struct err *err);
+enum status contents_check_age(struct contents *c, const char *folder, struct err *err);
+enum status contents_read_effects(struct contents *c, const char *folder, struct err *err);
+enum status contents_read_axes(struct contents *c, const char *folder, struct err *err);
+enum status contents_read_models(struct contents *c, const char *folder, struct err *err);
+enum status contents_read_textures(struct contents *c, const char *folder, struct err *err);
+enum status contents_read_light(struct contents *c, const char *folder, struct err *err);
+enum status contents_read_relit(struct contents *c, const char *folder, const char *shared, struct err *err);
 
 void effect_card_release(struct effect_card *e);
 void model_card_release(struct model_card *m);

@@ -59,7 +59,7 @@ static void make_photo_cards(void *ctx, size_t begin, size_t end, int thread)
     }
 }
 
-enum status read_photos(struct contents *c, const char *shared, const char *folder, struct err *err)
+enum status contents_read_photos(struct contents *c, const char *shared, const char *folder, struct err *err)
 {
     char path[PATH_SIZE];
     struct err problem = ERR_INIT;

@@ -48,10 +48,12 @@ enum status contents_read(struct contents *c, const struct contents_sources *fro
     if (!path_is_folder(folder))
         return err_set(err, ST_IO, "%s is not a folder, so there is no scene to report on; make the scene first.",
                        folder);
-    if (read_photos(c, from->shared, from->photos, err) || read_metrics(c, folder, err) || read_views(c, folder, err) ||
-        read_lens(c, folder, err) || read_held(c, folder, err) || check_age(c, folder, err) ||
-        read_effects(c, folder, err) || read_axes(c, folder, err) || read_models(c, folder, err) ||
-        read_textures(c, folder, err) || read_light(c, folder, err) || read_relit(c, folder, from->shared, err))
+    if (contents_read_photos(c, from->shared, from->photos, err) || contents_read_metrics(c, folder, err) ||
+        contents_read_views(c, folder, err) || contents_read_lens(c, folder, err) ||
+        contents_read_held(c, folder, err) || contents_check_age(c, folder, err) ||
+        contents_read_effects(c, folder, err) || contents_read_axes(c, folder, err) ||
+        contents_read_models(c, folder, err) || contents_read_textures(c, folder, err) ||
+        contents_read_light(c, folder, err) || contents_read_relit(c, folder, from->shared, err))
         return err->status;
     char page[PATH_SIZE];
     snprintf(page, sizeof page, "%s/remodel/index.html", folder);
@@ -66,8 +68,8 @@ void contents_release(struct contents *c)
         picture_release(&c->view_cards[i].picture);
         picture_release(&c->view_cards[i].depth_picture);
         picture_release(&c->view_cards[i].truth_picture);
-        depth_thumb_release(&c->view_cards[i].depth);
-        depth_thumb_release(&c->view_cards[i].truth);
+        page_depth_thumb_release(&c->view_cards[i].depth);
+        page_depth_thumb_release(&c->view_cards[i].truth);
     }
     for (int i = 0; c->held_cards && i < c->held.view_count; i++) {
         picture_release(&c->held_cards[i].picture);

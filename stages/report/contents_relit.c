@@ -47,7 +47,7 @@ static enum status note(struct relit_card *card, const struct err *problem, stru
     return ST_OK;
 }
 
-int photo_orientation(const char *records, const char *photo)
+int relit_photo_orientation(const char *records, const char *photo)
 {
     struct photo_record record = {0};
     struct err unknown = ERR_INIT; /* then the picture is upright as it is */
@@ -56,7 +56,7 @@ int photo_orientation(const char *records, const char *photo)
     return orientation < 1 ? 1 : orientation;
 }
 
-enum status sight_read_picture(struct picture *p, const char *folder, const char *view, const char *ending,
+enum status relit_read_picture(struct picture *p, const char *folder, const char *view, const char *ending,
                                int orientation, int height, struct err *err)
 {
     struct photo photo = {0};
@@ -69,7 +69,7 @@ enum status sight_read_picture(struct picture *p, const char *folder, const char
     return st;
 }
 
-enum status sight_read_radiance(struct picture *p, const char *folder, const char *view, double exposure,
+enum status relit_read_radiance(struct picture *p, const char *folder, const char *view, double exposure,
                                 int orientation, int height, struct err *err)
 {
     static const char *const names[] = {"R", "G", "B"};
@@ -205,13 +205,13 @@ static enum status read_truth(struct relit_sight *s, const struct relit_reading 
         file_path(folder, truth, r->card->name, "", err) || file_path(path, folder, record->view, ".exr", err))
         return err->status;
     if (!path_is_file(path)) return ST_OK;
-    return sight_read_radiance(&s->truth, folder, record->view, record->exposure, orientation, RELIT_SIDE_HEIGHT, err);
+    return relit_read_radiance(&s->truth, folder, record->view, record->exposure, orientation, RELIT_SIDE_HEIGHT, err);
 }
 
 static enum status read_sight(struct relit_sight *s, const struct relit_reading *r, const struct relit_record *record,
                               struct err *err)
 {
-    const int orientation = photo_orientation(r->from->records, record->photo);
+    const int orientation = relit_photo_orientation(r->from->records, record->photo);
     char views[FILE_PATH], unlit[FILE_PATH], path[FILE_PATH];
     struct picture_record before; /* the photo is shown as the picture before it was relit */
     *s = (struct relit_sight){.changed = record->changed, .bounded = record->bounded, .kept = record->kept};
@@ -221,10 +221,10 @@ static enum status read_sight(struct relit_sight *s, const struct relit_reading 
     if (!st) st = file_path(unlit, r->folder, "unlit", "", err);
     if (!st) st = file_path(path, unlit, s->view, ".txt", err);
     if (!st) st = picture_record_read(&before, path, NULL, err);
-    if (!st) st = sight_read_radiance(&s->before, views, s->view, before.exposure, orientation, RELIT_SIDE_HEIGHT, err);
-    if (!st) st = sight_read_picture(&s->unlit, unlit, s->view, ".jpg", orientation, RELIT_SIDE_HEIGHT, err);
-    if (!st) st = sight_read_picture(&s->relit, r->folder, s->view, ".jpg", orientation, RELIT_SIDE_HEIGHT, err);
-    if (!st) st = sight_read_picture(&s->ratio, r->folder, s->view, "-ratio.png", orientation, RELIT_SIDE_HEIGHT, err);
+    if (!st) st = relit_read_radiance(&s->before, views, s->view, before.exposure, orientation, RELIT_SIDE_HEIGHT, err);
+    if (!st) st = relit_read_picture(&s->unlit, unlit, s->view, ".jpg", orientation, RELIT_SIDE_HEIGHT, err);
+    if (!st) st = relit_read_picture(&s->relit, r->folder, s->view, ".jpg", orientation, RELIT_SIDE_HEIGHT, err);
+    if (!st) st = relit_read_picture(&s->ratio, r->folder, s->view, "-ratio.png", orientation, RELIT_SIDE_HEIGHT, err);
     if (!st) st = read_truth(s, r, record, orientation, err);
     if (st) sight_release(s);
     return st;

@@ -39,13 +39,13 @@ enum status relit_card_read(struct relit_card *card, const struct relit_sources 
 void relit_card_release(struct relit_card *card);
 
 /* EXIF's orientation of a photo, 1 if its record cannot be read. */
-int photo_orientation(const char *records, const char *photo);
+int relit_photo_orientation(const char *records, const char *photo);
 
 /* A JPEG or PNG, turned and shrunk. ST_IO, ST_DATA. */
-enum status sight_read_picture(struct picture *p, const char *folder, const char *view, const char *ending,
+enum status relit_read_picture(struct picture *p, const char *folder, const char *view, const char *ending,
                                int orientation, int height, struct err *err);
 /* FOLDER/VIEW.exr, radiance, times the exposure. */
-enum status sight_read_radiance(struct picture *p, const char *folder, const char *view, double exposure,
+enum status relit_read_radiance(struct picture *p, const char *folder, const char *view, double exposure,
                                 int orientation, int height, struct err *err);
 
 #endif

@@ -105,7 +105,7 @@ static void sight_release(struct edit_sight *s)
 static enum status read_sight(struct edit_sight *s, const struct reading *r, const struct record *record,
                               const char *folder, struct err *err)
 {
-    const int orientation = photo_orientation(r->from->records, record->photo);
+    const int orientation = relit_photo_orientation(r->from->records, record->photo);
     char views[FILE_PATH];
     *s = (struct edit_sight){.changed = record->file.changed};
     memcpy(s->view, record->view, sizeof s->view);
@@ -113,11 +113,11 @@ static enum status read_sight(struct edit_sight *s, const struct reading *r, con
     memcpy(s->shares, record->file.shares, sizeof s->shares);
     enum status st = file_path(views, r->from->folder, "views", "", err);
     if (!st)
-        st = sight_read_radiance(&s->before, views, record->view, record->file.exposure, orientation, SIGHT_SIDE_HEIGHT,
+        st = relit_read_radiance(&s->before, views, record->view, record->file.exposure, orientation, SIGHT_SIDE_HEIGHT,
                                  err);
-    if (!st) st = sight_read_picture(&s->after, folder, record->view, ".jpg", orientation, SIGHT_SIDE_HEIGHT, err);
+    if (!st) st = relit_read_picture(&s->after, folder, record->view, ".jpg", orientation, SIGHT_SIDE_HEIGHT, err);
     if (!st)
-        st = sight_read_picture(&s->sources, folder, record->view, "-sources.png", orientation, SIGHT_SIDE_HEIGHT, err);
+        st = relit_read_picture(&s->sources, folder, record->view, "-sources.png", orientation, SIGHT_SIDE_HEIGHT, err);
     if (st) sight_release(s);
     return st;
 }

@@ -62,8 +62,8 @@ static enum status read_sights(struct texture_work *w, char *const *names, struc
         snprintf(path, sizeof path, "%s/ids/%s.exr", w->folder, v->name);
         st = read_photo(w, v, view, err);
         if (!st)
-            st = sight_make(&w->sights[i], &w->atlas, &w->c->views.views[view], w->axes, path,
-                            photo ? photo->info.orientation : 1, SIGHT_HEIGHT, err);
+            st = texture_sight_make(&w->sights[i], &w->atlas, &w->c->views.views[view], w->axes, path,
+                                    photo ? photo->info.orientation : 1, SIGHT_HEIGHT, err);
     }
     return st;
 }
@@ -76,7 +76,7 @@ static enum status read_pages(struct texture_work *w, const char *folder, struct
     for (int i = 0; !st && i < w->atlas.page_count; i++) {
         struct atlas_page page = {0};
         st = atlas_page_read(&page, &w->atlas, i, folder, NULL, err);
-        for (int k = 0; !st && k < card->view_count; k++) sight_add_page(&w->sights[k], &w->atlas, &page, i);
+        for (int k = 0; !st && k < card->view_count; k++) texture_sight_add_page(&w->sights[k], &w->atlas, &page, i);
         if (!st && i < PAGES_SHOWN) {
             st = picture_from_atlas_page(&card->pages[i], &page, PAGE_HEIGHT, err);
             card->page_sizes[i][0] = page.width;
@@ -116,7 +116,7 @@ static enum status list_sources(const struct texture_work *w, struct source_colo
         if (!s->name) return err_nomem(err, "a name", strlen(a->sources[i]));
         card->source_count++;
         s->original = is_listed(a->views, a->view_count, s->name);
-        category_colour(view < 0 ? i : view, s->rgb);
+        colour_of_category(view < 0 ? i : view, s->rgb);
         colours[i].original = s->original;
         memcpy(colours[i].rgb, s->rgb, sizeof s->rgb);
     }
@@ -179,7 +179,7 @@ static enum status add_card(struct contents *c, const char *folder, const struct
     enum status st = atlas_read(&w.atlas, path, NULL, &problem);
     if (!st && photo) views = w.atlas.views, view_count = w.atlas.view_count;
     if (!st) st = read_card(&w, views, view_count, path, &problem);
-    for (int i = 0; w.sights && i < card->view_count; i++) sight_release(&w.sights[i]);
+    for (int i = 0; w.sights && i < card->view_count; i++) texture_sight_release(&w.sights[i]);
     free(w.sights);
     atlas_release(&w.atlas);
     c->texture_count += !st;
@@ -243,7 +243,7 @@ static enum status add_vita(struct contents *c, const char *folder, const struct
     return add_card(c, folder, axes, NULL, views, count, err);
 }
 
-enum status read_textures(struct contents *c, const char *folder, struct err *err)
+enum status contents_read_textures(struct contents *c, const char *folder, struct err *err)
 {
     struct model_axes axes;
     struct err problem = ERR_INIT;

@@ -52,7 +52,7 @@ static enum status read_depth(struct view_card *card, const char *path, int orie
                 if (id->u[i] > card->segments) card->segments = id->u[i];
         }
         if (z->f)
-            depth_thumb_make(&card->depth, z->f, im.width, im.height, orientation, PICTURE_HEIGHT, err);
+            page_depth_thumb_make(&card->depth, z->f, im.width, im.height, orientation, PICTURE_HEIGHT, err);
         else
             err_set(err, ST_DATA, "%s: interior.Z holds no floats.", path);
         card->inherited = share_from_text(exr_attribute(&im, "remodel:inherited"));
@@ -68,7 +68,7 @@ static void read_truth(struct view_card *card, const char *path, int orientation
     if (!exr_read(&im, path, NAMES, 1, err)) {
         const struct exr_plane *z = exr_find(&im, NAMES[0]);
         if (z->f)
-            depth_thumb_make(&card->truth, z->f, im.width, im.height, orientation, PICTURE_HEIGHT, err);
+            page_depth_thumb_make(&card->truth, z->f, im.width, im.height, orientation, PICTURE_HEIGHT, err);
         else
             err_set(err, ST_DATA, "%s: Z holds no floats.", path);
     }
@@ -126,8 +126,8 @@ static enum status colour_depths(struct contents *c, struct err *err)
         c->known += card->depth.known;
         c->inherited = c->inherited < 0 || card->inherited < 0 ? -1 : c->inherited + card->inherited;
         c->segments += card->segments;
-        bool known = (card->truth.z && depth_range(&card->truth, 0.02, &card->near, &card->far)) ||
-                     depth_range(&card->depth, 0.02, &card->near, &card->far);
+        bool known = (card->truth.z && page_depth_range(&card->truth, 0.02, &card->near, &card->far)) ||
+                     page_depth_range(&card->depth, 0.02, &card->near, &card->far);
         if (known && picture_from_depth(&card->depth_picture, &card->depth, card->near, card->far, err))
             return err->status;
         if (known && card->truth.z &&
@@ -139,7 +139,7 @@ static enum status colour_depths(struct contents *c, struct err *err)
     return ST_OK;
 }
 
-enum status read_views(struct contents *c, const char *folder, struct err *err)
+enum status contents_read_views(struct contents *c, const char *folder, struct err *err)
 {
     char path[PATH_SIZE];
     struct err problem = ERR_INIT;

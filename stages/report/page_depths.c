@@ -11,7 +11,7 @@ static enum status put_depth(FILE *to, const struct view_card *card, struct err 
         fputs("<div class=\"none\">no pixel has a depth</div>", to);
         return ST_OK;
     }
-    if (put_picture(to, &card->depth_picture, 90, "Depth of view", card->view->name, err)) return err->status;
+    if (page_put_picture(to, &card->depth_picture, 90, "Depth of view", card->view->name, err)) return err->status;
     fprintf(to,
             "<div class=\"ramp\"></div><div class=\"ticks\"><span>%.3g</span><span>%.3g</span><span>%.3g</span></div>",
             card->near, 2 / (1 / card->near + 1 / card->far), card->far);
@@ -23,13 +23,14 @@ static enum status put_view(FILE *to, const struct contents *c, const struct vie
     fprintf(to, "<figure>\n<div class=\"pair%s\"><div>", card->truth_picture.rgb ? " three" : "");
     if (!card->picture.rgb)
         fputs("<div class=\"none\">no picture yet</div>", to);
-    else if (put_picture(to, &card->picture, 80, "View", card->view->name, err))
+    else if (page_put_picture(to, &card->picture, 80, "View", card->view->name, err))
         return err->status;
     fputs("</div><div>", to);
     if (put_depth(to, card, err)) return err->status;
     if (card->truth_picture.rgb) {
         fputs("</div><div>", to);
-        if (put_picture(to, &card->truth_picture, 90, "True depth of view", card->view->name, err)) return err->status;
+        if (page_put_picture(to, &card->truth_picture, 90, "True depth of view", card->view->name, err))
+            return err->status;
         fputs("<p class=\"under\">truth</p>", to);
     }
     fputs("</div></div>\n<figcaption><b>", to);
@@ -38,9 +39,9 @@ static enum status put_view(FILE *to, const struct contents *c, const struct vie
     if (card->depth.z) fprintf(to, ", %.1f %% known", 100 * card->depth.known);
     if (card->depth.z && card->inherited >= 0) fprintf(to, ", %.1f %% inherited", 100 * card->inherited);
     if (card->depth.z) fprintf(to, ", %u segments", card->segments);
-    put_view_metric(to, c, card->view->name, "depth.bad1", "off by more than 1 px");
-    put_view_metric(to, c, card->view->name, "depth.error50", "median error");
-    put_tag(to, card->problem);
+    page_put_view_metric(to, c, card->view->name, "depth.bad1", "off by more than 1 px");
+    page_put_view_metric(to, c, card->view->name, "depth.error50", "median error");
+    page_put_tag(to, card->problem);
     fputs("</figcaption>\n</figure>\n", to);
     return ST_OK;
 }
@@ -62,7 +63,7 @@ enum status page_depths(FILE *to, const struct contents *c, struct err *err)
             "texture or repeats), so it is that of adjacent segments.</p>\n",
             to);
     fputs("<div class=\"pairs\" style=\"--ramp:", to);
-    put_ramp(to, false);
+    page_put_ramp(to, false);
     fputs("\">\n", to);
     for (int i = 0; i < c->views.view_count; i++)
         if (put_view(to, c, &c->view_cards[i], err)) return err->status;

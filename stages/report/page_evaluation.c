@@ -14,17 +14,17 @@ static enum status put_held(FILE *to, const struct contents *c, const struct hel
         fputs("<div>", to);
         if (!pictures[k]->rgb)
             fputs("<div class=\"none\">no picture yet</div>", to);
-        else if (put_picture(to, pictures[k], 85, ALT_TEXTS[k], card->view->name, err))
+        else if (page_put_picture(to, pictures[k], 85, ALT_TEXTS[k], card->view->name, err))
             return err->status;
         fprintf(to, "<p class=\"under\">%s</p></div>", LABELS[k]);
     }
     fputs("</div>\n<figcaption><b>", to);
     html_text(to, card->view->name);
     fprintf(to, "</b> <span class=\"size\">%d × %d</span>", card->view->width, card->view->height);
-    put_view_metric(to, c, card->view->name, "holdout.psnr", "PSNR");
-    put_view_metric(to, c, card->view->name, "holdout.ssim", "SSIM");
-    put_view_metric(to, c, card->view->name, "holdout.holes", "holes");
-    put_tag(to, card->problem);
+    page_put_view_metric(to, c, card->view->name, "holdout.psnr", "PSNR");
+    page_put_view_metric(to, c, card->view->name, "holdout.ssim", "SSIM");
+    page_put_view_metric(to, c, card->view->name, "holdout.holes", "holes");
+    page_put_tag(to, card->problem);
     fputs("</figcaption>\n</figure>\n", to);
     return ST_OK;
 }

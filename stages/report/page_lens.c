@@ -30,7 +30,7 @@ void page_lens(FILE *to, const struct contents *c)
         fputs(chosen ? "<tr class=\"changed\"><th scope=\"row\">" : "<tr><th scope=\"row\">", to);
         html_text(to, f->lens);
         fputs("</th><td>", to);
-        put_spaced(to, f->center);
+        page_put_spaced(to, f->center);
         fputs("</td>", to);
         put_known(to, "%.0f", f->parameters);
         put_known(to, "%.3f", f->median);

@@ -80,9 +80,9 @@ static void put_lamp_facts(FILE *to, const struct lamp_card *card)
         fprintf(to, "%s", card->unsaturated ? "" : "at least ");
         put_measured(to, luminance_of_doubles(card->seen), luminance_of_doubles(card->seen_error));
         fprintf(to, ", in ");
-        put_plural(to, card->unsaturated + card->saturated, "view", "views");
+        page_put_plural(to, card->unsaturated + card->saturated, "view", "views");
         if (card->saturated) fprintf(to, ", %d overexposed", card->saturated);
-        if (card->disagrees) put_tag(to, "disagrees with the fit");
+        if (card->disagrees) page_put_tag(to, "disagrees with the fit");
         end_entry(to);
     }
     fputs("</dl>\n", to);
@@ -143,9 +143,9 @@ static void put_fit_plot(FILE *to, const struct lamp_card *card)
           "<text transform=\"translate(10 164) rotate(-90)\" text-anchor=\"middle\">calculated</text>\n</svg>\n"
           "<ul class=\"key\"><li><i class=\"before\"></i>",
           to);
-    put_plural(to, lit, "lit place", "lit places");
+    page_put_plural(to, lit, "lit place", "lit places");
     fputs("</li><li><i class=\"after\"></i>", to);
-    put_plural(to, card->point_count - lit, "unlit place", "unlit places");
+    page_put_plural(to, card->point_count - lit, "unlit place", "unlit places");
     fputs("</li></ul>\n", to);
     if (misfit >= 0)
         fprintf(to,
@@ -161,7 +161,8 @@ static enum status put_lamp(FILE *to, const struct lamp_card *card, struct err *
     fputs("</h4>\n<div class=\"effect\"><div>", to);
     if (card->picture.rgb) {
         fputs("<figure>", to);
-        if (put_picture(to, &card->picture, QUALITY, "The light of lamp", card->lamp->name, err)) return err->status;
+        if (page_put_picture(to, &card->picture, QUALITY, "The light of lamp", card->lamp->name, err))
+            return err->status;
         fputs("<figcaption>", to);
         fputs(card->lamp->beta / DEGREE < 89.5 ? "Orange: where the lamp's cone of light ends on the surfaces of the "
                                                  "model; furniture that the model lacks does not stop it. "
@@ -187,9 +188,9 @@ static enum status put_lamps(FILE *to, const struct light_contents *l, struct er
     const struct light_list *list = &l->lights;
     if (!list->lamp_count && !list->opening_count) return ST_OK;
     fputs("<h3>Lamps and windows</h3>\n<p class=\"muted\">", to);
-    put_plural(to, list->lamp_count, "lamp", "lamps");
+    page_put_plural(to, list->lamp_count, "lamp", "lamps");
     fputs(" and ", to);
-    put_plural(to, list->opening_count, "window or opening", "windows or openings");
+    page_put_plural(to, list->opening_count, "window or opening", "windows or openings");
     fputs(" that daylight comes through", to);
     for (int i = 0; i < list->opening_count; i++) {
         fputs(i ? ", " : ": ", to);
@@ -268,7 +269,7 @@ static enum status put_materials(FILE *to, const struct light_contents *l, struc
         const struct material_card *card = &l->material_cards[i];
         if (!card->residuals.rgb) continue;
         fputs("<figure>", to);
-        if (put_picture(to, &card->residuals, QUALITY, "Residuals of material", card->material->name, err))
+        if (page_put_picture(to, &card->residuals, QUALITY, "Residuals of material", card->material->name, err))
             return err->status;
         fputs("<figcaption><b>", to);
         html_text(to, card->material->name);
@@ -307,7 +308,7 @@ static void put_shares(FILE *to, const struct light_record *r)
 static void put_error(FILE *to, const struct light_record *r)
 {
     fputs("<p class=\"muted\">", to);
-    put_plural(to, r->points, "place was", "places were");
+    page_put_plural(to, r->points, "place was", "places were");
     fputs(" calculated. ", to);
     if (r->error[2] > 0)
         fprintf(to,
@@ -315,7 +316,7 @@ static void put_error(FILE *to, const struct light_record *r)
                 "%.2g %%, all by less than %.2g %%; errors of the model and of the pictures come on top. ",
                 100 * r->error[0], 100 * r->error[1], 100 * r->error[2]);
     if (r->dark) {
-        put_plural(to, r->dark, "place gets", "places get");
+        page_put_plural(to, r->dark, "place gets", "places get");
         fputs(" no light. ", to);
     }
     fputs("</p>\n", to);
@@ -334,7 +335,7 @@ static enum status put_captioned(FILE *to, const struct picture *p, const char *
 {
     if (!p->rgb) return ST_OK;
     fputs("<figure>", to);
-    if (put_picture(to, p, QUALITY, alt, name, err)) return err->status;
+    if (page_put_picture(to, p, QUALITY, alt, name, err)) return err->status;
     if (range) put_ticks(to, range[0], range[1], range[2], range[3], range[3] > 1 ? " %" : "");
     fprintf(to, "<figcaption>%s</figcaption></figure>\n", caption);
     return ST_OK;
@@ -383,9 +384,9 @@ static enum status put_hemicubes(FILE *to, const struct gather_card *g, struct e
     for (int i = 0; i < r->example_count; i++) {
         unsigned char rgb[3];
         if (!g->hemicubes[i].rgb) continue;
-        category_colour(i, rgb);
+        colour_of_category(i, rgb);
         fputs("<li><figure>", to);
-        if (put_picture(to, &g->hemicubes[i], QUALITY, "View all round, unfolded, of a place of", g->name, err))
+        if (page_put_picture(to, &g->hemicubes[i], QUALITY, "View all round, unfolded, of a place of", g->name, err))
             return err->status;
         fprintf(to, "<figcaption><i class=\"swatch\" style=\"background:#%02x%02x%02x\"></i>", rgb[0], rgb[1], rgb[2]);
         put_place(to, &r->examples[i]);
@@ -430,7 +431,7 @@ enum status page_light(FILE *to, const struct contents *c, struct err *err)
 {
     if (!light_contents_any(&c->light)) return ST_OK;
     fputs("<section id=\"light\" aria-labelledby=\"light-title\" style=\"--ramp:", to);
-    put_ramp(to, true);
+    page_put_ramp(to, true);
     fputs("\">\n<h2 id=\"light-title\">Light</h2>\n", to);
     if (put_lamps(to, &c->light, err) || put_materials(to, &c->light, err) || put_gathers(to, &c->light, err))
         return err->status;

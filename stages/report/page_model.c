@@ -11,7 +11,8 @@ enum status page_axes(FILE *to, const struct contents *c, struct err *err)
           to);
     for (int i = 0; i < c->axes_count; i++) {
         fputs("<figure>", to);
-        if (put_picture(to, &c->axes[i].picture, 85, "Axes drawn on view", c->axes[i].view, err)) return err->status;
+        if (page_put_picture(to, &c->axes[i].picture, 85, "Axes drawn on view", c->axes[i].view, err))
+            return err->status;
         fputs("<figcaption><b>", to);
         html_text(to, c->axes[i].view);
         fputs("</b></figcaption></figure>\n", to);
@@ -57,7 +58,7 @@ enum status page_models(FILE *to, const struct contents *c, struct err *err)
         fputs("</div>\n", to);
         if (m->overlays_left_out) {
             fputs("<p class=\"muted\">", to);
-            put_plural(to, m->overlays_left_out, "more photograph is", "more photographs are");
+            page_put_plural(to, m->overlays_left_out, "more photograph is", "more photographs are");
             fputs(" in the folder remodel/", to);
             html_text(to, m->name);
             fputs("/overlay.</p>\n", to);

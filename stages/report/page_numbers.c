@@ -86,7 +86,7 @@ void page_numbers(FILE *to, const struct contents *c)
         const struct effect_card *e = &c->effects[i];
         if (!e->path.frame_count) continue;
         put_number_head(to, "Video");
-        put_seconds(to, e->path.frame_count / e->path.fps);
+        page_put_seconds(to, e->path.frame_count / e->path.fps);
         fputs("</td><td class=\"how\">", to);
         html_text(to, e->name);
         fprintf(to, ": %d of %d frames rendered, %d × %d, %.4g per second", e->frames_found, e->path.frame_count,

@@ -7,7 +7,7 @@
 
 #include "common/image/false_colour.h"
 
-void put_seconds(FILE *to, double seconds)
+void page_put_seconds(FILE *to, double seconds)
 {
     if (seconds < 60)
         fprintf(to, "%.*f s", seconds < 10 ? 2 : 1, seconds);
@@ -17,7 +17,7 @@ void put_seconds(FILE *to, double seconds)
         fprintf(to, "%.0f h %02d min", floor(seconds / 3600), (int)(fmod(seconds, 3600) / 60));
 }
 
-void put_mib(FILE *to, double mib)
+void page_put_mib(FILE *to, double mib)
 {
     if (mib < 1024)
         fprintf(to, "%.*f MiB", mib < 10 ? 1 : 0, mib);
@@ -25,12 +25,12 @@ void put_mib(FILE *to, double mib)
         fprintf(to, "%.1f GiB", mib / 1024);
 }
 
-void put_plural(FILE *to, long long n, const char *singular, const char *plural)
+void page_put_plural(FILE *to, long long n, const char *singular, const char *plural)
 {
     fprintf(to, "%lld %s", n, n == 1 ? singular : plural);
 }
 
-void put_spaced(FILE *to, const char *name)
+void page_put_spaced(FILE *to, const char *name)
 {
     char text[256];
     snprintf(text, sizeof text, "%s", name);
@@ -39,7 +39,7 @@ void put_spaced(FILE *to, const char *name)
     html_text(to, text);
 }
 
-void put_tag(FILE *to, const char *text)
+void page_put_tag(FILE *to, const char *text)
 {
     if (!text[0]) return;
     fputs(" <span class=\"tag\">", to);
@@ -47,8 +47,8 @@ void put_tag(FILE *to, const char *text)
     fputs("</span>", to);
 }
 
-enum status put_picture(FILE *to, const struct picture *p, int quality, const char *alt, const char *name,
-                        struct err *err)
+enum status page_put_picture(FILE *to, const struct picture *p, int quality, const char *alt, const char *name,
+                             struct err *err)
 {
     unsigned char *bytes = NULL;
     size_t size = 0;
@@ -64,18 +64,18 @@ enum status put_picture(FILE *to, const struct picture *p, int quality, const ch
     return st;
 }
 
-void put_ramp(FILE *to, bool rising)
+void page_put_ramp(FILE *to, bool rising)
 {
     fputs("linear-gradient(90deg", to);
     for (int k = 0; k <= 16; k++) {
         unsigned char rgb[3];
-        ramp_colour((rising ? k : 16 - k) / 16.0, rgb);
+        colour_of_ramp((rising ? k : 16 - k) / 16.0, rgb);
         fprintf(to, ",#%02x%02x%02x", rgb[0], rgb[1], rgb[2]);
     }
     fputs(")", to);
 }
 
-void put_view_metric(FILE *to, const struct contents *c, const char *view, const char *metric, const char *label)
+void page_put_view_metric(FILE *to, const struct contents *c, const char *view, const char *metric, const char *label)
 {
     const struct metric_row *m = metric_rows_find(&c->view_metrics, view, metric);
     if (!m) return;
@@ -85,7 +85,7 @@ void put_view_metric(FILE *to, const struct contents *c, const char *view, const
     fputs(label, to);
 }
 
-void put_slider(FILE *to, const char *label, const char *photo)
+void page_put_slider(FILE *to, const char *label, const char *photo)
 {
     fprintf(to,
             "<input type=\"range\" min=\"0\" max=\"100\" value=\"50\" step=\"0.5\" aria-label=\"%s\" "

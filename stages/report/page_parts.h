@@ -27,28 +27,28 @@ void page_left_out(FILE *to, const struct contents *c);
 bool page_has_videos(const struct contents *c);
 
 /* Numbers with their units. */
-void put_seconds(FILE *to, double seconds);
-void put_mib(FILE *to, double mib);
-void put_plural(FILE *to, long long n, const char *singular, const char *plural);
+void page_put_seconds(FILE *to, double seconds);
+void page_put_mib(FILE *to, double mib);
+void page_put_plural(FILE *to, long long n, const char *singular, const char *plural);
 
 /* A name with spaces for its underscores. */
-void put_spaced(FILE *to, const char *name);
+void page_put_spaced(FILE *to, const char *name);
 
 /* An inline label; nothing if the text is "". */
-void put_tag(FILE *to, const char *text);
+void page_put_tag(FILE *to, const char *text);
 
 /* An <img> with the picture as JPEG of a quality from 1 to 100; its alternative text is "ALT NAME". */
-enum status put_picture(FILE *to, const struct picture *p, int quality, const char *alt, const char *name,
-                        struct err *err);
+enum status page_put_picture(FILE *to, const struct picture *p, int quality, const char *alt, const char *name,
+                             struct err *err);
 
-/* A CSS gradient of the colours of ramp_colour(), from left to right; rising: from dark to light. */
-void put_ramp(FILE *to, bool rising);
+/* A CSS gradient of the colours of colour_of_ramp(), from left to right; rising: from dark to light. */
+void page_put_ramp(FILE *to, bool rising);
 
 /* ", VALUE UNIT LABEL" of a view's metric; nothing if it was not measured. */
-void put_view_metric(FILE *to, const struct contents *c, const char *view, const char *metric, const char *label);
+void page_put_view_metric(FILE *to, const struct contents *c, const char *view, const char *metric, const char *label);
 
 /* Closes a <div class="ba"> of pictures over each other: the slider that moves the line between them, and whose
  * photograph they are seen from. */
-void put_slider(FILE *to, const char *label, const char *photo);
+void page_put_slider(FILE *to, const char *label, const char *photo);
 
 #endif

@@ -13,7 +13,7 @@ enum status page_photos(FILE *to, const struct contents *c, struct err *err)
         bool off = c->has_views && !card->views && !card->held_out;
         fprintf(to, "<li%s><figure>", off ? " class=\"off\"" : "");
         if (card->picture.rgb) {
-            if (put_picture(to, &card->picture, 80, "Photograph", card->record->file, err)) return err->status;
+            if (page_put_picture(to, &card->picture, 80, "Photograph", card->record->file, err)) return err->status;
         } else {
             fprintf(to, "<div class=\"none\">no picture</div>");
         }
@@ -22,9 +22,9 @@ enum status page_photos(FILE *to, const struct contents *c, struct err *err)
         fprintf(to, "</b> <span class=\"size\">%d × %d</span>", card->record->info.width, card->record->info.height);
         if (card->views > 1) fprintf(to, ", %d views", card->views);
         if (card->residual > 0) fprintf(to, ", residual %.2f px", card->residual);
-        if (card->held_out) put_tag(to, "held out");
-        if (off) put_tag(to, "not placed by SfM");
-        put_tag(to, card->problem);
+        if (card->held_out) page_put_tag(to, "held out");
+        if (off) page_put_tag(to, "not placed by SfM");
+        page_put_tag(to, card->problem);
         fputs("</figcaption></figure></li>\n", to);
     }
     fputs(c->photos.count ? "</ul>\n</section>\n" : "</section>\n", to);

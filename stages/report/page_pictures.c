@@ -21,13 +21,13 @@ void picture_release(struct picture *p)
     *p = (struct picture){0};
 }
 
-void depth_thumb_release(struct depth_thumb *d)
+void page_depth_thumb_release(struct depth_thumb *d)
 {
     free(d->z);
     *d = (struct depth_thumb){0};
 }
 
-void upright_source(int orientation, int width, int height, int x, int y, int *source_x, int *source_y)
+void page_upright_source(int orientation, int width, int height, int x, int y, int *source_x, int *source_y)
 {
     int right = width - 1, bottom = height - 1;
     switch (orientation) {
@@ -57,7 +57,7 @@ void upright_source(int orientation, int width, int height, int x, int y, int *s
     }
 }
 
-void thumb_size(int width, int height, int orientation, int upright, int *thumb_width, int *thumb_height)
+void page_thumb_size(int width, int height, int orientation, int upright, int *thumb_width, int *thumb_height)
 {
     int side = orientation >= 5 ? width : height; /* the upright height */
     double scale = side > upright ? (double)upright / side : 1;
@@ -89,12 +89,12 @@ static void box_mean(const struct source *s, int x0, int x1, int y0, int y1, uns
 static enum status shrink(struct picture *p, const struct source *s, int upright, struct err *err)
 {
     int w, h;
-    thumb_size(s->width, s->height, s->orientation, upright, &w, &h);
+    page_thumb_size(s->width, s->height, s->orientation, upright, &w, &h);
     if (picture_init(p, s->orientation >= 5 ? h : w, s->orientation >= 5 ? w : h, err)) return err->status;
     for (int y = 0; y < p->height; y++)
         for (int x = 0; x < p->width; x++) {
             int tx, ty;
-            upright_source(s->orientation, w, h, x, y, &tx, &ty);
+            page_upright_source(s->orientation, w, h, x, y, &tx, &ty);
             int64_t x0 = (int64_t)tx * s->width / w, x1 = ((int64_t)tx + 1) * s->width / w;
             int64_t y0 = (int64_t)ty * s->height / h, y1 = ((int64_t)ty + 1) * s->height / h;
             box_mean(s, (int)x0, (int)x1, (int)y0, (int)y1, p->rgb + 3 * ((size_t)y * (size_t)p->width + (size_t)x));
@@ -127,19 +127,19 @@ enum status picture_from_exr(struct picture *p, const struct exr_image *im, int 
     return shrink(p, &s, height, err);
 }
 
-enum status depth_thumb_make(struct depth_thumb *d, const float *z, int width, int height, int orientation, int upright,
-                             struct err *err)
+enum status page_depth_thumb_make(struct depth_thumb *d, const float *z, int width, int height, int orientation,
+                                  int upright, struct err *err)
 {
     size_t known = 0, size = (size_t)width * (size_t)height;
     int w, h;
-    thumb_size(width, height, orientation, upright, &w, &h);
+    page_thumb_size(width, height, orientation, upright, &w, &h);
     *d = (struct depth_thumb){orientation >= 5 ? h : w, orientation >= 5 ? w : h,
                               malloc((size_t)w * (size_t)h * sizeof *z), 0};
     if (!d->z) return err_nomem(err, "a depth thumbnail", (size_t)w * (size_t)h * sizeof *z);
     for (int y = 0; y < d->height; y++)
         for (int x = 0; x < d->width; x++) {
             int tx, ty;
-            upright_source(orientation, w, h, x, y, &tx, &ty);
+            page_upright_source(orientation, w, h, x, y, &tx, &ty);
             int64_t sx = (2 * (int64_t)tx + 1) * width / (2 * w), sy = (2 * (int64_t)ty + 1) * height / (2 * h);
             d->z[(size_t)y * (size_t)d->width + (size_t)x] = z[(size_t)sy * (size_t)width + (size_t)sx];
         }
@@ -156,14 +156,14 @@ enum status picture_from_depth(struct picture *p, const struct depth_thumb *d, d
         for (int x = 0; x < d->width; x++) {
             size_t at = (size_t)y * (size_t)d->width + (size_t)x;
             if (d->z[at] > 0)
-                ramp_colour(span > 0 ? (1 / (double)d->z[at] - low) / span : 0.5, p->rgb + 3 * at);
+                colour_of_ramp(span > 0 ? (1 / (double)d->z[at] - low) / span : 0.5, p->rgb + 3 * at);
             else
                 memset(p->rgb + 3 * at, (x + y) % 8 < 3 ? 120 : 165, 3);
         }
     return ST_OK;
 }
 
-bool depth_range(const struct depth_thumb *d, double cut, double *near, double *far)
+bool page_depth_range(const struct depth_thumb *d, double cut, double *near, double *far)
 {
     size_t size = (size_t)d->width * (size_t)d->height, n = 0;
     float *known = malloc((size + 1) * sizeof *known);

@@ -24,7 +24,7 @@ struct depth_thumb {
 /* Black. */
 enum status picture_init(struct picture *p, int width, int height, struct err *err);
 void picture_release(struct picture *p);
-void depth_thumb_release(struct depth_thumb *d);
+void page_depth_thumb_release(struct depth_thumb *d);
 
 /* Turns the photo upright and shrinks it to `height` px by box means of linear light; never enlarges it. */
 enum status picture_from_photo(struct picture *p, const struct photo *photo, int height, struct err *err);
@@ -34,20 +34,20 @@ enum status picture_from_exr(struct picture *p, const struct exr_image *im, int 
                              struct err *err);
 
 /* Size of a thumbnail as stored: `upright` px high once it is turned, never larger than its source. */
-void thumb_size(int width, int height, int orientation, int upright, int *thumb_width, int *thumb_height);
+void page_thumb_size(int width, int height, int orientation, int upright, int *thumb_width, int *thumb_height);
 
 /* z: width x height in the stored orientation; upright: the maximum height once turned, px. */
-enum status depth_thumb_make(struct depth_thumb *d, const float *z, int width, int height, int orientation, int upright,
-                             struct err *err);
+enum status page_depth_thumb_make(struct depth_thumb *d, const float *z, int width, int height, int orientation,
+                                  int upright, struct err *err);
 
 /* The stored pixel of pixel (x, y) of the upright picture; width x height is the stored size. */
-void upright_source(int orientation, int width, int height, int x, int y, int *source_x, int *source_y);
+void page_upright_source(int orientation, int width, int height, int x, int y, int *source_x, int *source_y);
 
-/* In colours of ramp_colour((1/z - 1/far) / (1/near - 1/far)); unknown pixels are hatched in grey. */
+/* In colours of colour_of_ramp((1/z - 1/far) / (1/near - 1/far)); unknown pixels are hatched in grey. */
 enum status picture_from_depth(struct picture *p, const struct depth_thumb *d, double near, double far,
                                struct err *err);
 
 /* The range of the known depths, without a share of `cut` at either end. False: none is known, or no memory. */
-bool depth_range(const struct depth_thumb *d, double cut, double *near, double *far);
+bool page_depth_range(const struct depth_thumb *d, double cut, double *near, double *far);
 
 #endif

@@ -24,7 +24,7 @@ static enum status put_layer(FILE *to, const struct picture *p, const char *name
                              struct err *err)
 {
     fprintf(to, "<div class=\"%s\">", name);
-    const enum status st = put_picture(to, p, QUALITY, alt, view, err);
+    const enum status st = page_put_picture(to, p, QUALITY, alt, view, err);
     fputs("</div>\n", to);
     return st;
 }
@@ -72,7 +72,7 @@ static enum status put_sight(FILE *to, const struct relit_sight *s, int edit, in
     fputs("<i></i><b class=\"of k0\">photograph</b><b class=\"of k1\">old light</b>", to);
     if (s->truth.rgb) fputs("<b class=\"of k2\">truth</b>", to);
     fputs("<b>new light</b>", to);
-    put_slider(to, "Line before the picture in the new light", s->photo);
+    page_put_slider(to, "Line before the picture in the new light", s->photo);
     put_shares(to, s);
     fputs("</figure>\n", to);
     return ST_OK;
@@ -82,7 +82,7 @@ void relit_put_rounds(FILE *to, const struct relit_card *card)
 {
     if (!card->rounds) return;
     fputs("<p class=\"muted\">Light was followed from wall to wall ", to);
-    put_plural(to, card->rounds, "time", "times");
+    page_put_plural(to, card->rounds, "time", "times");
     if (card->missing < 0)
         fputs("; how much of it is still missing is unknown", to);
     else if (card->missing < 0.0005)
@@ -130,7 +130,7 @@ static enum status put_captioned(FILE *to, const struct picture *p, const char *
 {
     if (!p->rgb) return ST_OK;
     fputs("<figure>", to);
-    if (put_picture(to, p, QUALITY, caption, view, err)) return err->status;
+    if (page_put_picture(to, p, QUALITY, caption, view, err)) return err->status;
     fprintf(to, "<figcaption>%s</figcaption></figure>\n", caption);
     return ST_OK;
 }

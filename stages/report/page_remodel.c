@@ -83,7 +83,7 @@ static enum status put_layer(FILE *to, const struct picture *p, const char *name
                              struct err *err)
 {
     fprintf(to, "<div class=\"%s\">", name);
-    const enum status st = put_picture(to, p, QUALITY, alt, view, err);
+    const enum status st = page_put_picture(to, p, QUALITY, alt, view, err);
     fputs("</div>\n", to);
     return st;
 }
@@ -114,7 +114,7 @@ static enum status put_sight(FILE *to, const struct edit_sight *s, int edit, int
         put_layer(to, &s->before, "before", "Before the change, seen from", s->view, err))
         return err->status;
     fputs("<i></i><b>before</b><b>after</b>", to);
-    put_slider(to, "Line between before and after", s->photo);
+    page_put_slider(to, "Line between before and after", s->photo);
     put_shares(to, s);
     fputs("</figure>\n", to);
     return ST_OK;

@@ -25,13 +25,13 @@ static void put_usage_row(FILE *to, const struct stage_usage *s, const struct us
     if (s->unfinished) fprintf(to, " <span class=\"tag\">%d unfinished</span>", s->unfinished);
     fprintf(to, "</th><td class=\"n\">%d", s->runs);
     fputs("</td><td class=\"n\">", to);
-    put_seconds(to, s->sum.wall);
+    page_put_seconds(to, s->sum.wall);
     put_bar(to, s->sum.wall, max->wall);
     fputs("</td><td class=\"n\">", to);
-    put_seconds(to, s->sum.cpu);
+    page_put_seconds(to, s->sum.cpu);
     put_bar(to, s->sum.cpu, max->cpu);
     fputs("</td><td class=\"n peak\">", to);
-    put_mib(to, s->sum.mib);
+    page_put_mib(to, s->sum.mib);
     put_bar(to, s->sum.mib, max->mib);
     fputs("</td></tr>\n", to);
 }
@@ -65,11 +65,11 @@ void page_usage(FILE *to, const struct contents *c)
     for (int i = 0; i < t->stage_count; i++) /* logs of other programs */
         if (!stage_list_has(&c->stages, t->stages[i].sum.stage)) put_usage_row(to, &t->stages[i], &max);
     fputs("</tbody>\n<tfoot><tr><th scope=\"row\">Total</th><td></td><td class=\"n\">", to);
-    put_seconds(to, sum.wall);
+    page_put_seconds(to, sum.wall);
     fputs("</td><td class=\"n\">", to);
-    put_seconds(to, sum.cpu);
+    page_put_seconds(to, sum.cpu);
     fputs("</td><td class=\"n\">", to);
-    put_mib(to, sum.mib);
+    page_put_mib(to, sum.mib);
     fputs("</td></tr></tfoot>\n</table></div>\n</section>\n", to);
 }
 
@@ -81,7 +81,7 @@ static void put_section_settings(FILE *to, const struct contents *c, int from, i
     fputs(changed ? "<details open><summary><code>" : "<details><summary><code>", to);
     html_text(to, items[from].section[0] ? items[from].section : "no section");
     fputs("</code> <span class=\"muted\">", to);
-    put_plural(to, end - from, "parameter", "parameters");
+    page_put_plural(to, end - from, "parameter", "parameters");
     if (changed)
         fprintf(to, ", %d changed", changed);
     else if (known == end - from)

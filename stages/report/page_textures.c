@@ -43,14 +43,14 @@ static void put_shares(FILE *to, const struct texture_card *card)
     if (!card->total) fputs("These views show no face of the model", to);
     put_share(to, &between, original, card->total, "original");
     put_share(to, &between, warped, card->total, "warped from ");
-    if (warped) put_plural(to, views, "view", "views");
+    if (warped) page_put_plural(to, views, "view", "views");
     put_share(to, &between, card->synthesised, card->total, "synthesised");
     put_share(to, &between, card->by_default, card->total, "default");
     put_share(to, &between, card->empty, card->total, "without a texel");
     fputs("; ", to);
-    put_plural(to, card->tile_count, "tile", "tiles");
+    page_put_plural(to, card->tile_count, "tile", "tiles");
     fputs(" on ", to);
-    put_plural(to, card->page_count, "page", "pages");
+    page_put_plural(to, card->page_count, "page", "pages");
     fputs(".</p>\n", to);
 }
 
@@ -73,7 +73,7 @@ static void put_sources(FILE *to, const struct texture_card *card)
     if (!listed) return;
     if (others) {
         fputs("<li>and ", to);
-        put_plural(to, others, "other", "others");
+        page_put_plural(to, others, "other", "others");
         fputs("</li>", to);
     }
     fputs("</ul>\n", to);
@@ -90,7 +90,7 @@ static enum status put_views(FILE *to, const struct texture_card *card, struct e
         const int kind = row_per_kind ? i / card->view_count : i % 3;
         const struct texture_view *v = &card->views[row_per_kind ? i % card->view_count : i / 3];
         const struct picture *pictures[3] = {&v->photo, &v->texture, &v->sources};
-        if (put_picture(to, pictures[kind], QUALITY, ALT[kind], v->name, err)) return err->status;
+        if (page_put_picture(to, pictures[kind], QUALITY, ALT[kind], v->name, err)) return err->status;
     }
     fputs("</div>\n", to);
     return ST_OK;
@@ -106,7 +106,7 @@ static enum status put_pages(FILE *to, const struct texture_card *card, struct e
         snprintf(file, sizeof file, "page%d.exr", i);
         fputs("<li><figure>", to);
         put_link(to, card->name[0] ? "vdta/" : "vita", card->name, file);
-        if (put_picture(to, &card->pages[i], QUALITY, "Page of atlas", card->name[0] ? card->name : "VITA", err))
+        if (page_put_picture(to, &card->pages[i], QUALITY, "Page of atlas", card->name[0] ? card->name : "VITA", err))
             return err->status;
         fprintf(to, "</a><figcaption>%d × %d</figcaption></figure></li>\n", card->page_sizes[i][0],
                 card->page_sizes[i][1]);
@@ -144,8 +144,8 @@ enum status page_textures(FILE *to, const struct contents *c, struct err *err)
     for (int i = 0; i < c->texture_count; i++) shown += c->textures[i].name[0] != '\0';
     if (shown < c->viewpoint_count) {
         fputs("<p>", to);
-        put_plural(to, c->viewpoint_count - shown, "more viewpoint has an atlas that is",
-                   "more viewpoints have atlases that are");
+        page_put_plural(to, c->viewpoint_count - shown, "more viewpoint has an atlas that is",
+                        "more viewpoints have atlases that are");
         fputs(" not shown.</p>\n", to);
     }
     fputs("</section>\n", to);

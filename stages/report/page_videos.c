@@ -79,14 +79,14 @@ static void put_scores(FILE *to, const struct effect_card *e)
     const struct view *v = &e->path.frames[0].camera;
     fprintf(to, "<dl class=\"scores\">\n<div><dt>picture</dt><dd>%d × %d</dd></div>\n<div><dt>duration</dt><dd>",
             v->width, v->height);
-    put_seconds(to, e->path.frame_count / e->path.fps);
+    page_put_seconds(to, e->path.frame_count / e->path.fps);
     fputs(", ", to);
-    put_plural(to, e->path.frame_count, "frame", "frames");
+    page_put_plural(to, e->path.frame_count, "frame", "frames");
     fputs("</dd></div>\n", to);
     for (int i = 0; i < e->path.score_count; i++) {
         const struct path_score *score = &e->path.scores[i];
         fputs("<div><dt>", to);
-        put_spaced(to, score->name);
+        page_put_spaced(to, score->name);
         fprintf(to, "</dt><dd>%.4g ", score->value);
         html_text(to, score->unit);
         fputs("</dd></div>\n", to);
@@ -161,7 +161,7 @@ static enum status put_validity(FILE *to, const struct effect_card *e, struct er
 static enum status put_effect(FILE *to, const struct effect_card *e, struct err *err)
 {
     fprintf(to, "<article class=\"card effect%s\">\n<div>\n<h3>", e->pan.video ? " two" : "");
-    put_spaced(to, e->name);
+    page_put_spaced(to, e->name);
     fputs("</h3>\n", to);
     if (!e->video)
         fputs("<p>There is no video yet.</p>\n", to);

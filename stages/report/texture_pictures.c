@@ -56,7 +56,7 @@ static void look_up_rows(void *ctx, size_t begin, size_t end, int thread)
         for (int x = 0; x < l->sight->width; x++) {
             struct sight_sample *to = l->sight->samples + SAMPLES * ((size_t)y * (size_t)l->sight->width + (size_t)x);
             int tx, ty;
-            upright_source(l->orientation, l->width, l->height, x, y, &tx, &ty);
+            page_upright_source(l->orientation, l->width, l->height, x, y, &tx, &ty);
             for (int k = 0; k < SAMPLES; k++) {
                 const double u = (tx + (k % SIGHT_SIDE + 0.5) / SIGHT_SIDE) * l->view->width / l->width;
                 const double v = (ty + (k / SIGHT_SIDE + 0.5) / SIGHT_SIDE) * l->view->height / l->height;
@@ -65,8 +65,9 @@ static void look_up_rows(void *ctx, size_t begin, size_t end, int thread)
         }
 }
 
-enum status sight_make(struct sight *s, const struct atlas *a, const struct view *view, const struct model_axes *axes,
-                       const char *ids, int orientation, int height, struct err *err)
+enum status texture_sight_make(struct sight *s, const struct atlas *a, const struct view *view,
+                               const struct model_axes *axes, const char *ids, int orientation, int height,
+                               struct err *err)
 {
     static const char *const NAMES[] = {"id", "Z"};
     struct exr_image im = {0};
@@ -81,7 +82,7 @@ enum status sight_make(struct sight *s, const struct atlas *a, const struct view
     if (!st) {
         l.id = exr_find(&im, "id")->u;
         l.z = exr_find(&im, "Z")->f;
-        thumb_size(im.width, im.height, orientation, height, &l.width, &l.height);
+        page_thumb_size(im.width, im.height, orientation, height, &l.width, &l.height);
         s->width = orientation >= 5 ? l.height : l.width;
         s->height = orientation >= 5 ? l.width : l.height;
         const size_t pixels = (size_t)s->width * (size_t)s->height;
@@ -93,14 +94,14 @@ enum status sight_make(struct sight *s, const struct atlas *a, const struct view
     return st;
 }
 
-void sight_release(struct sight *s)
+void texture_sight_release(struct sight *s)
 {
     if (!s) return;
     free(s->samples);
     *s = (struct sight){0};
 }
 
-void sight_add_page(struct sight *s, const struct atlas *a, const struct atlas_page *page, int number)
+void texture_sight_add_page(struct sight *s, const struct atlas *a, const struct atlas_page *page, int number)
 {
     const size_t count = SAMPLES * (size_t)s->width * (size_t)s->height;
     for (size_t i = 0; i < count; i++) {
@@ -190,7 +191,7 @@ enum status picture_from_sources(struct picture *p, const struct sight *s, const
 enum status picture_from_atlas_page(struct picture *p, const struct atlas_page *page, int height, struct err *err)
 {
     int w, h;
-    thumb_size(page->width, page->height, 1, height, &w, &h);
+    page_thumb_size(page->width, page->height, 1, height, &w, &h);
     if (picture_init(p, w, h, err)) return err->status;
     for (int y = 0; y < h; y++)
         for (int x = 0; x < w; x++) {

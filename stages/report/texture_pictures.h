@@ -25,10 +25,11 @@ struct sight {
 
 /* Finds the texels that a view shows. ids: the view's O/ids/VIEW.exr. height: of the upright picture at most, px.
  * ST_IO, ST_DATA: the ids cannot be read, or have another size than the view. */
-enum status sight_make(struct sight *s, const struct atlas *a, const struct view *view, const struct model_axes *axes,
-                       const char *ids, int orientation, int height, struct err *err);
-void sight_add_page(struct sight *s, const struct atlas *a, const struct atlas_page *page, int number);
-void sight_release(struct sight *s);
+enum status texture_sight_make(struct sight *s, const struct atlas *a, const struct view *view,
+                               const struct model_axes *axes, const char *ids, int orientation, int height,
+                               struct err *err);
+void texture_sight_add_page(struct sight *s, const struct atlas *a, const struct atlas_page *page, int number);
+void texture_sight_release(struct sight *s);
 
 /* Scene-linear colours as sRGB, 1 is white; hatched where most samples of a pixel have no texel. */
 enum status picture_from_sight(struct picture *p, const struct sight *s, struct err *err);

@@ -80,7 +80,7 @@ static enum status sample(const struct job *job, struct provenance *prov, struct
                  : err_nomem(err, "upright directions", (size_t)set.view_count * sizeof *ups);
     }
     if (!st && job->subjects) st = subject_list_read(&subjects, job->subjects, prov, err);
-    const struct scene_subjects available = scene_subjects_of(&subjects);
+    const struct scene_subjects available = film_scene_subjects(&subjects);
     if (!st) st = film_effect_check(&effect, &available, err);
     if (!st) st = layer_scene_read(&scene, &set, job->depth, prov, err);
     if (!st) st = validity_sample(&v, &notes, &scene, ups, &subjects, &effect, &job->params, err);

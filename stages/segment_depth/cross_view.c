@@ -94,7 +94,7 @@ static enum status see_neighbour(struct cross_neighbour *n, const struct cross_v
     n->fronts = malloc(size);
     enum status st =
         nearest && confidence && n->fronts ? ST_OK : err_nomem(err, "surfaces of a neighbour", pixels * 5 + size);
-    match_homography(base, shift, other, view);
+    matcher_homography(base, shift, other, view);
     for (int i = 0; !st && i < width * height; i++) {
         const uint32_t id = n->depth.interior.id[i];
         if (!id) continue;
@@ -179,7 +179,7 @@ enum status cross_view_make(struct cross_view *x, const struct segmentation *s, 
         st = err_nomem(err, "proposals", (size_t)s->count * sizeof(int));
     for (int k = 0; !st && k < count; k++) {
         struct cross_neighbour *n = &x->neighbours[k];
-        match_homography(n->base, n->shift, view, &set->views[neighbours[k]]);
+        matcher_homography(n->base, n->shift, view, &set->views[neighbours[k]]);
         x->count = k + 1;
         st = source->read(source->ctx, neighbours[k], &n->depth, err);
         if (!st) st = segment_centroids(&centers[k], &n->depth, err);

@@ -61,12 +61,12 @@ enum status estimate_view(struct depth_work *work, int *neighbours, const struct
     int chosen[MAX_NEIGHBOURS];
     const struct view *view = &set->views[view_idx];
     *neighbours = 0;
-    enum status st = observed_points_find(&seen, set, view_idx, err);
+    enum status st = neighbours_find_points(&seen, set, view_idx, err);
     /* a view without neighbours is reported when its depth is made */
     if (!st && neighbours_choose(chosen, neighbours, set, view_idx, &seen, params->neighbours, &none) == ST_NOMEM)
         st = err_nomem(err, "scores of views", (size_t)set->view_count * 12);
     *work = depth_work((double)view->width * view->height, *neighbours, first, params);
-    observed_points_release(&seen);
+    neighbours_release_points(&seen);
     return st;
 }
 

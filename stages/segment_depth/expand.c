@@ -77,7 +77,7 @@ static bool converged(const struct expander *x, const struct worker *w, int i)
     double gain = (double)(x->unary[i] - x->min_unary[i]);
     for (int t = x->s->first_border[i]; t < x->s->first_border[i + 1] && gain < NEGLIGIBLE; t++) {
         const int j = x->s->borders[t].other;
-        gain += pairwise_cost(x->p, i, t, x->plane[i], w->local[j] < 0 ? x->before[j] : x->plane[j]);
+        gain += problem_pairwise_cost(x->p, i, t, x->plane[i], w->local[j] < 0 ? x->before[j] : x->plane[j]);
     }
     return gain < NEGLIGIBLE;
 }
@@ -106,7 +106,7 @@ static void unary_costs(void *ctx, size_t begin, size_t end, int thread)
         } else if (x->pass > 0 && x->scale == 0 && converged(x, m->w, i)) {
             m->w->unary[k] = PLANE_FORBIDDEN;
         } else {
-            m->w->unary[k] = unary_cost(x->p, i, p, x->unary[i] + MAX_PAIRWISE_SHARE * x->max_pairwise[i]);
+            m->w->unary[k] = problem_unary_cost(x->p, i, p, x->unary[i] + MAX_PAIRWISE_SHARE * x->max_pairwise[i]);
             x->min_unary[i] = fminf(x->min_unary[i], m->w->unary[k]);
         }
     }
@@ -134,14 +134,14 @@ static void expansion_move(struct expander *x, struct worker *w, int count, stru
             const int j = border->other, other = w->local[j];
             if (other >= 0 && j < i) continue;
             const struct plane pi = x->plane[i], pj = other < 0 ? x->before[j] : x->plane[j];
-            const double kept = pairwise_cost(x->p, i, t, pi, pj);
-            const double i_moves = pairwise_cost(x->p, i, t, proposal, pj);
+            const double kept = problem_pairwise_cost(x->p, i, t, pi, pj);
+            const double i_moves = problem_pairwise_cost(x->p, i, t, proposal, pj);
             if (other < 0) {
                 max_flow_terminal(&w->flow, k, capacity_from(i_moves - kept));
                 improvable = improvable || i_moves < kept;
                 continue;
             }
-            const double j_moves = pairwise_cost(x->p, i, t, pi, proposal);
+            const double j_moves = problem_pairwise_cost(x->p, i, t, pi, proposal);
             const int64_t a = capacity_from(kept), b = capacity_from(j_moves), c = capacity_from(i_moves);
             improvable = improvable || a > 0;
             max_flow_terminal(&w->flow, k, c - a);
@@ -193,23 +193,23 @@ static void move_cell(struct expander *x, struct worker *w, int cell, struct err
         expansion_move(x, w, count, x->plane[random_member(&random, members, own)], err);
     if (x->scale == 0 && p->cost && !err->status) {
         const int i = random_member(&random, members, own);
-        expansion_move(x, w, count, propose_from_sweep(p, x->plane, i, &random), err);
+        expansion_move(x, w, count, proposal_from_sweep(p, x->plane, i, &random), err);
     }
     const double change = p->step * 2 * pow(0.5, x->pass);
     const double size = sqrt(p->params->segment_pixels) * (x->scale ? cell_segments[x->scale] : 1);
     for (int k = 0; k < tries && !err->status; k++) {
         const int i = random_member(&random, members, own);
-        expansion_move(x, w, count, propose_perturbed(p, x->plane, i, change, size, &random), err);
+        expansion_move(x, w, count, proposal_perturbed(p, x->plane, i, change, size, &random), err);
     }
     for (int k = 0; k < tries && !err->status; k++)
-        if (propose_through_three(&proposal, p, x->plane, k ? w->region : members, k ? count : own, &random))
+        if (proposal_through_three(&proposal, p, x->plane, k ? w->region : members, k ? count : own, &random))
             expansion_move(x, w, count, proposal, err);
     for (int k = 0; k < tries && !err->status && x->scale > 0; k++) {
         const int *from = k ? w->region : members, n = k ? count : own;
-        if (propose_horizontal(&proposal, p, x->plane, random_member(&random, from, n)))
+        if (proposal_horizontal(&proposal, p, x->plane, random_member(&random, from, n)))
             expansion_move(x, w, count, proposal, err);
         const int j = random_member(&random, from, n), i = random_member(&random, from, n);
-        if (propose_vertical(&proposal, p, x->plane, i, j)) expansion_move(x, w, count, proposal, err);
+        if (proposal_vertical(&proposal, p, x->plane, i, j)) expansion_move(x, w, count, proposal, err);
     }
     for (int k = 0; k < count; k++) w->local[w->region[k]] = -1;
 }
@@ -272,7 +272,7 @@ static void refit_scene_plane(struct expander *x, int k, int *members)
     for (int n = 0; n < count; n++) {
         const int i = members[n];
         x->plane[i] = scene->planes[k];
-        x->unary[i] = unary_cost(x->p, i, x->plane[i], INFINITY);
+        x->unary[i] = problem_unary_cost(x->p, i, x->plane[i], INFINITY);
         x->min_unary[i] = fminf(x->min_unary[i], x->unary[i]);
     }
 }
@@ -286,7 +286,7 @@ static enum status move_to_scene_planes(struct expander *x, struct err *err)
                              : err_nomem(err, "segments on a plane", (size_t)x->s->count * sizeof *members);
     if (x->p->ground) {
         if (!st) add_ground(x->p->scene, x->p->view, *x->p->ground);
-        for (int i = 0; i < x->s->count; i++) x->unary[i] = unary_cost(x->p, i, x->plane[i], INFINITY);
+        for (int i = 0; i < x->s->count; i++) x->unary[i] = problem_unary_cost(x->p, i, x->plane[i], INFINITY);
     }
     const int fitted = x->p->scene->count - x->p->scene->has_ground;
     memcpy(x->before, x->plane, (size_t)x->s->count * sizeof *x->plane);
@@ -316,8 +316,8 @@ static void initial_costs(void *ctx, size_t begin, size_t end, int thread)
     for (size_t i = begin; i < end; i++) {
         x->max_pairwise[i] = 0;
         for (int t = x->s->first_border[i]; t < x->s->first_border[i + 1]; t++)
-            x->max_pairwise[i] += (float)pairwise_bound(x->p, t);
-        x->min_unary[i] = x->unary[i] = unary_cost(x->p, (int)i, x->plane[i], INFINITY);
+            x->max_pairwise[i] += (float)problem_pairwise_bound(x->p, t);
+        x->min_unary[i] = x->unary[i] = problem_unary_cost(x->p, (int)i, x->plane[i], INFINITY);
     }
 }
 

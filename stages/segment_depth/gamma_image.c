@@ -15,7 +15,7 @@
 #define MIN_POWER  0.2
 #define MIN_MEDIAN 0.35 /* of the value at the exposure's percentile */
 
-struct tone tone_of(const struct image *im)
+struct tone gamma_tone_of(const struct image *im)
 {
     enum { SAMPLES = 1 << 14 };
     size_t pixels = (size_t)im->width * (size_t)im->height, step = pixels / SAMPLES + 1;

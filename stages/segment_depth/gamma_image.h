@@ -19,7 +19,7 @@ struct gamma_image {
 };
 
 /* The exposure and power that suit a picture (gamma_image.c); exposure 1 if it is black. */
-struct tone tone_of(const struct image *linear_rgba);
+struct tone gamma_tone_of(const struct image *linear_rgba);
 /* g is empty after a failure (ST_NOMEM). */
 enum status gamma_image_make(struct gamma_image *g, const struct image *linear_rgba, struct tone tone, struct err *err);
 void gamma_image_release(struct gamma_image *g);

@@ -262,7 +262,8 @@ static bool is_ground(const struct cloud *c, const struct level *level)
     return narrow >= MIN_SPREAD * MIN_SPREAD * c->distance * c->distance;
 }
 
-enum status ground_find(struct ground *g, bool *found, const struct camera_set *set, struct vec3 down, struct err *err)
+enum status gravity_find_ground(struct ground *g, bool *found, const struct camera_set *set, struct vec3 down,
+                                struct err *err)
 {
     const int steps = (int)(GROUND_TILT / TILT_STEP);
     struct cloud c;

@@ -21,7 +21,8 @@ enum status gravity_find(struct vec3 *down, bool *known, const struct camera_set
 
 /* Finds the ground, at most GROUND_TILT degrees from level. *found is false if the points show none below all cameras.
  * ST_NOMEM. */
-enum status ground_find(struct ground *g, bool *found, const struct camera_set *set, struct vec3 down, struct err *err);
+enum status gravity_find_ground(struct ground *g, bool *found, const struct camera_set *set, struct vec3 down,
+                                struct err *err);
 
 #define GROUND_TILT 1
 

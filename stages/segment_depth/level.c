@@ -61,9 +61,9 @@ void level_release(struct level *l)
 {
     if (!l) return;
     matcher_release(&l->matcher);
-    segmentation_release(&l->segments);
+    oversegment_release(&l->segments);
     gamma_image_release(&l->gamma);
-    observed_points_release(&l->seen);
+    neighbours_release_points(&l->seen);
     if (l->halved) free(l->set.views);
     *l = (struct level){.halved = false};
 }

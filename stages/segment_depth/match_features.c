@@ -106,7 +106,7 @@ static void smooth_luma(float *to, const float *from, float *line, int w, int h)
     }
 }
 
-float image_noise(const struct gamma_image *g)
+float match_image_noise(const struct gamma_image *g)
 {
     enum { BINS = 512, BINS_PER_LEVEL = 16 };
     const int w = g->width;

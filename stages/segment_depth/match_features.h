@@ -10,7 +10,7 @@
 #define FEATURE_UNIT 127
 
 /* Standard deviation of the picture's noise, in grey levels. */
-float image_noise(const struct gamma_image *g);
+float match_image_noise(const struct gamma_image *g);
 
 /* The features of a picture, w * h * FEATURE_CHANNELS bytes; the caller frees them. NULL: no memory. gain: of each
  * colour. jacobian: a gradient in the reference's axes is jacobian (gx, gy). noise: of the reference, grey levels. */

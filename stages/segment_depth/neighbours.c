@@ -28,8 +28,8 @@ static int compare_points(const void *a, const void *b)
     return (p->id > q->id) - (p->id < q->id);
 }
 
-enum status observed_points_find(struct observed_points *seen, const struct camera_set *set, int view_idx,
-                                 struct err *err)
+enum status neighbours_find_points(struct observed_points *seen, const struct camera_set *set, int view_idx,
+                                   struct err *err)
 {
     const struct view *view = &set->views[view_idx];
     const struct sfm_model *m = &set->model;
@@ -50,7 +50,7 @@ enum status observed_points_find(struct observed_points *seen, const struct came
     return ST_OK;
 }
 
-void observed_points_release(struct observed_points *seen)
+void neighbours_release_points(struct observed_points *seen)
 {
     if (!seen) return;
     free(seen->points);
@@ -245,8 +245,9 @@ static enum status framed_points(double **inverse, int *count, const struct came
     return ST_OK;
 }
 
-enum status depth_range(double *min_inverse_z, double *max_inverse_z, bool *guessed, const struct camera_set *set,
-                        int view_idx, const int *neighbours, int count, struct err *err)
+enum status neighbours_depth_range(double *min_inverse_z, double *max_inverse_z, bool *guessed,
+                                   const struct camera_set *set, int view_idx, const int *neighbours, int count,
+                                   struct err *err)
 {
     const struct view *view = &set->views[view_idx];
     double *inverse = NULL;

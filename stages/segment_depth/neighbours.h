@@ -19,9 +19,9 @@ struct observed_points {
 };
 
 /* The points that the view observed with a reprojection error of at most 2 px. ST_NOMEM. */
-enum status observed_points_find(struct observed_points *seen, const struct camera_set *set, int view_idx,
-                                 struct err *err);
-void observed_points_release(struct observed_points *seen);
+enum status neighbours_find_points(struct observed_points *seen, const struct camera_set *set, int view_idx,
+                                   struct err *err);
+void neighbours_release_points(struct observed_points *seen);
 
 /* Chooses up to max_count neighbours by points, triangulation angles and scale (neighbours.c), best first. ST_DATA if
  * no other view can be matched; ST_NOMEM. */
@@ -31,7 +31,8 @@ enum status neighbours_choose(int neighbours[MAX_NEIGHBOURS], int *count, const 
 /* The range of inverse depths to sweep, 0 < min < max: robust percentiles, with margins, of all points of the scene
  * that project into the view. *guessed: there are too few points; the range is then what the neighbours' baselines
  * resolve, from far away to a disparity of a quarter of the picture. */
-enum status depth_range(double *min_inverse_z, double *max_inverse_z, bool *guessed, const struct camera_set *set,
-                        int view_idx, const int *neighbours, int count, struct err *err);
+enum status neighbours_depth_range(double *min_inverse_z, double *max_inverse_z, bool *guessed,
+                                   const struct camera_set *set, int view_idx, const int *neighbours, int count,
+                                   struct err *err);
 
 #endif

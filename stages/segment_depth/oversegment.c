@@ -286,12 +286,12 @@ enum status oversegment(struct segmentation *s, const struct gamma_image *g, int
     for (int c = 0; c < 3; c++) free(slic.lab[c]);
     free(slic.centres);
     free(line);
-    if (st) segmentation_release(s);
+    if (st) oversegment_release(s);
     return st;
 }
 
-enum status segmentation_double(struct segmentation *s, const struct segmentation *half, const struct gamma_image *g,
-                                struct err *err)
+enum status oversegment_double(struct segmentation *s, const struct segmentation *half, const struct gamma_image *g,
+                               struct err *err)
 {
     const int width = g->width, height = g->height;
     *s = (struct segmentation){.width = width, .height = height, .count = half->count};
@@ -301,11 +301,11 @@ enum status segmentation_double(struct segmentation *s, const struct segmentatio
         for (int x = 0; x < width; x++)
             s->label[y * width + x] = g->valid[y * width + x] ? half->label[y / 2 * half->width + x / 2] : -1;
     const enum status st = segment_graph_of_numbers(s, NULL, err);
-    if (st) segmentation_release(s);
+    if (st) oversegment_release(s);
     return st;
 }
 
-void segmentation_release(struct segmentation *s)
+void oversegment_release(struct segmentation *s)
 {
     if (!s) return;
     free(s->label);

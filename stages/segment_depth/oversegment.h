@@ -34,8 +34,8 @@ enum status oversegment(struct segmentation *s, const struct gamma_image *g, int
                         struct err *err);
 /* The same segments, by the same numbers, in the picture g, of which gamma_image_half_covering() made the one that
  * `half` divides. They have no colours, and their borders no contrast. s is {0} on entry. ST_NOMEM. */
-enum status segmentation_double(struct segmentation *s, const struct segmentation *half, const struct gamma_image *g,
-                                struct err *err);
-void segmentation_release(struct segmentation *s);
+enum status oversegment_double(struct segmentation *s, const struct segmentation *half, const struct gamma_image *g,
+                               struct err *err);
+void oversegment_release(struct segmentation *s);
 
 #endif

@@ -356,7 +356,7 @@ static enum status list_all(struct choice *c, struct err *err)
     return c->costs ? ST_OK : err_nomem(err, "the costs of pixels", costs * sizeof *c->costs);
 }
 
-enum status choose_pixel_planes(int *label, const struct plane *planes, const struct plane_problem *p, struct err *err)
+enum status pixel_planes_choose(int *label, const struct plane *planes, const struct plane_problem *p, struct err *err)
 {
     const struct segmentation *s = p->m->segments;
     const size_t size = (size_t)s->width * (size_t)s->height * sizeof *label;

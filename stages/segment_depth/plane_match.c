@@ -4,9 +4,9 @@
  * cost in a neighbour is the sum of weighted truncated differences
  *   sum over channels k of weight_k min(limit_k, |feature_k(pixel) - feature_k(H pixel)|)
  * of colours and gradients, as in [Bleyer 2011]; the segment's is the weighted mean over the pixels that the neighbour
- * sees. Costs are normalized so that 0 is a good match of this view and 1 a chance one (matcher_calibrate()), and
+ * sees. Costs are normalized so that 0 is a good match of this view and 1 a chance one (match_calibrate()), and
  * clamped to [MATCH_BEST, MATCH_WORST]. The neighbours' costs are sorted and averaged with weights that fall by
- * RANK_WEIGHT: the segment may be occluded in the worse ones. Only the best `ranks` count, and after matcher_select() a
+ * RANK_WEIGHT: the segment may be occluded in the worse ones. Only the best `ranks` count, and after match_select() a
  * segment is compared with no others.
  *
  * A texture element has 2 x FEATURE_CHANNELS bytes, those of a pixel and of the pixel below. 32 bytes from one address
@@ -329,7 +329,7 @@ static void select_neighbours(void *ctx, size_t begin, size_t end, int thread)
     }
 }
 
-enum status matcher_select(struct matcher *m, const struct plane *planes, const unsigned *occluded, struct err *err)
+enum status match_select(struct matcher *m, const struct plane *planes, const unsigned *occluded, struct err *err)
 {
     if (m->neighbour_count <= m->ranks) return ST_OK;
     unsigned *use = malloc(((size_t)m->segments->count + 1) * sizeof *use);
@@ -416,7 +416,7 @@ static bool enough_visible(const struct calibration *job)
     return 10 * visible >= job->m->segments->count;
 }
 
-enum status matcher_calibrate(struct matcher *m, double min_inverse_z, double max_inverse_z, struct err *err)
+enum status match_calibrate(struct matcher *m, double min_inverse_z, double max_inverse_z, struct err *err)
 {
     const int count = m->segments->count;
     const size_t costs = (size_t)count * MAX_NEIGHBOURS + 1;
@@ -464,7 +464,7 @@ enum status matcher_calibrate(struct matcher *m, double min_inverse_z, double ma
     return st;
 }
 
-double matcher_shift(const struct matcher *m, double min_inverse_z, double max_inverse_z)
+double match_shift(const struct matcher *m, double min_inverse_z, double max_inverse_z)
 {
     enum { GRID = 7, STEPS = 8 };
     double largest = 0;

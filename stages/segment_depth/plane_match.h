@@ -86,7 +86,7 @@ static inline struct view view_halved(struct view v, int width, int height)
 }
 
 /* The projection of the view's pixels into `other`: [u' v' 1] ~ base [u v 1] + shift / z. */
-void match_homography(double base[3][3], double shift[3], const struct view *view, const struct view *other);
+void matcher_homography(double base[3][3], double shift[3], const struct view *view, const struct view *other);
 
 /* Projects a pixel at an inverse depth into a neighbour; false if it is not in front of it. */
 static inline bool match_project(const struct match_neighbour *n, double u, double v, double inverse_z, double *nu,
@@ -115,13 +115,13 @@ enum status matcher_add(struct matcher *m, const struct camera_set *set, int vie
  * segment a part of the way from its best match to its mean one: a blank segment, which matches everywhere, is not
  * drawn to where it is visible. Neighbours of much less contrast than the best one are excluded. Call it once, after
  * the last matcher_add() and before the first cost. */
-enum status matcher_calibrate(struct matcher *m, double min_inverse_z, double max_inverse_z, struct err *err);
+enum status match_calibrate(struct matcher *m, double min_inverse_z, double max_inverse_z, struct err *err);
 /* Takes the calibration and the selection away from a matcher of the same segments and neighbours in half the size,
  * which has no costs any more. */
 void matcher_take(struct matcher *m, struct matcher *half);
 /* Restricts each segment to the `ranks` neighbours that match its plane best. occluded: of each segment, as
  * match_cost(), or NULL; a neighbour that does not see it comes last. */
-enum status matcher_select(struct matcher *m, const struct plane *planes, const unsigned *occluded, struct err *err);
+enum status match_select(struct matcher *m, const struct plane *planes, const unsigned *occluded, struct err *err);
 void matcher_release(struct matcher *m);
 
 /* The matching cost of a segment on a plane. occluded: bit k is set if the segment is occluded in neighbour k. */
@@ -145,6 +145,6 @@ void match_prefetch(const struct matcher *m, int segment, struct plane plane);
 
 /* The largest disparity, in pixels, over the range of inverse depths: the maximum over the neighbours of the upper
  * quartile over a grid of the view's pixels. */
-double matcher_shift(const struct matcher *m, double min_inverse_z, double max_inverse_z);
+double match_shift(const struct matcher *m, double min_inverse_z, double max_inverse_z);
 
 #endif

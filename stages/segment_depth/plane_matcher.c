@@ -74,8 +74,11 @@ enum status matcher_init(struct matcher *m, const struct segmentation *s, const 
     const double gain[3] = {1, 1, 1};
     double jacobian[2][2] = {{1, 0}, {0, 1}};
     size_t room = 0;
-    *m = (struct matcher){
-        .segments = s, .good_cost = 0, .chance_cost = 1, .ranks = MAX_NEIGHBOURS, .noise = image_noise(reference)};
+    *m = (struct matcher){.segments = s,
+                          .good_cost = 0,
+                          .chance_cost = 1,
+                          .ranks = MAX_NEIGHBOURS,
+                          .noise = match_image_noise(reference)};
     m->first = malloc(((size_t)s->count + 1) * sizeof *m->first);
     if (!m->first) return err_nomem(err, "a matcher", (size_t)s->count * sizeof *m->first);
     for (int k = 0; k < s->count; k++) {
@@ -113,7 +116,7 @@ enum status matcher_init(struct matcher *m, const struct segmentation *s, const 
     return ST_OK;
 }
 
-void match_homography(double base[3][3], double shift_out[3], const struct view *view, const struct view *other)
+void matcher_homography(double base[3][3], double shift_out[3], const struct view *view, const struct view *other)
 {
     /* p' = K' (R K^-1 [u v 1] + T / z) */
     struct mat3 r = mat3_multiply(other->cam_from_world, mat3_transpose(view->cam_from_world));
@@ -200,7 +203,7 @@ enum status matcher_add(struct matcher *m, const struct camera_set *set, int vie
     double u = view->width / 2.0, v = view->height / 2.0;
     if (estimate_gains(gain, set, &other, neighbour_idx, seen, reference, picture, err)) return err->status;
     for (;;) {
-        match_homography(n->base, n->shift, view, &other);
+        matcher_homography(n->base, n->shift, view, &other);
         if (!match_project(n, u, v, typical, &u0, &v0) || !match_project(n, u + 1, v, typical, &ux, &vx) ||
             !match_project(n, u, v + 1, typical, &uy, &vy))
             break;

@@ -28,7 +28,7 @@ static float match_lower_bound(const struct plane_problem *p, int segment, struc
     return lowest - SLACK;
 }
 
-float unary_cost(const struct plane_problem *p, int segment, struct plane plane, float max_cost)
+float problem_unary_cost(const struct plane_problem *p, int segment, struct plane plane, float max_cost)
 {
     const struct segment *g = &p->m->segments->segments[segment];
     if (given_depth_has(p->given, segment)) return given_depth_equals(p->given, segment, plane) ? 0 : PLANE_FORBIDDEN;
@@ -54,7 +54,7 @@ float unary_cost(const struct plane_problem *p, int segment, struct plane plane,
     return size * data;
 }
 
-double pairwise_bound(const struct plane_problem *p, int border)
+double problem_pairwise_bound(const struct plane_problem *p, int border)
 {
     return p->params->smoothness * (double)p->weights[border] + 2 * p->slant * p->m->segments->borders[border].length;
 }
@@ -65,7 +65,8 @@ static int slants(const struct plane_problem *p, struct plane plane)
     return (plane.a != 0 || plane.b != 0) && !scene_planes_have(p->scene, plane);
 }
 
-double pairwise_cost(const struct plane_problem *p, int segment, int border, struct plane own, struct plane other)
+double problem_pairwise_cost(const struct plane_problem *p, int segment, int border, struct plane own,
+                             struct plane other)
 {
     const struct border *t = &p->m->segments->borders[border];
     const struct segment *g = &p->m->segments->segments[segment], *h = &p->m->segments->segments[t->other];

@@ -44,7 +44,7 @@ struct plane_problem { /* borrows all that it points to */
     const struct given_depth *given; /* NULL if no depth is given */
     const struct plane *ground;      /* of the scene, as gravity.h finds it; NULL: unknown */
     struct scene_planes *scene;      /* filled by expand_planes(); NULL: none are looked for */
-    const float *weights;            /* of each border, as border_weights() */
+    const float *weights;            /* of each border, as smooth_border_weights() */
     const struct segment_params *params;
     double slant;                              /* problem_slant(), per pixel of a border */
     double min_inverse_z, max_inverse_z, step; /* range and step of the sweep */
@@ -72,12 +72,13 @@ static inline bool problem_allows(const struct plane_problem *p, const struct se
 
 /* Unary term. Also PLANE_FORBIDDEN if it exceeds max_cost, as far as the terms without matching and its lower bound
  * show. */
-float unary_cost(const struct plane_problem *p, int segment, struct plane plane, float max_cost);
+float problem_unary_cost(const struct plane_problem *p, int segment, struct plane plane, float max_cost);
 
 /* Pairwise term of the segment with plane `own` and its neighbour across `border` with plane `other`. */
-double pairwise_cost(const struct plane_problem *p, int segment, int border, struct plane own, struct plane other);
+double problem_pairwise_cost(const struct plane_problem *p, int segment, int border, struct plane own,
+                             struct plane other);
 
-/* The largest pairwise_cost() across `border`, whatever the planes. */
-double pairwise_bound(const struct plane_problem *p, int border);
+/* The largest problem_pairwise_cost() across `border`, whatever the planes. */
+double problem_pairwise_bound(const struct plane_problem *p, int border);
 
 #endif

@@ -7,8 +7,8 @@
 
 #include <math.h>
 
-bool propose_through_three(struct plane *out, const struct plane_problem *p, const struct plane *planes,
-                           const int *members, int count, struct cell_random *random)
+bool proposal_through_three(struct plane *out, const struct plane_problem *p, const struct plane *planes,
+                            const int *members, int count, struct cell_random *random)
 {
     const struct segment *g[3];
     double z[3];
@@ -43,12 +43,12 @@ static bool plane_from_normal(const struct view *v, struct vec3 normal, struct v
     return isfinite(out->a) && isfinite(out->b) && isfinite(out->c);
 }
 
-bool propose_horizontal(struct plane *out, const struct plane_problem *p, const struct plane *planes, int i)
+bool proposal_horizontal(struct plane *out, const struct plane_problem *p, const struct plane *planes, int i)
 {
     return plane_from_normal(p->view, p->down, centroid_point(p, planes, i), out);
 }
 
-bool propose_vertical(struct plane *out, const struct plane_problem *p, const struct plane *planes, int i, int j)
+bool proposal_vertical(struct plane *out, const struct plane_problem *p, const struct plane *planes, int i, int j)
 {
     const struct vec3 point = centroid_point(p, planes, i), along = vec3_sub(centroid_point(p, planes, j), point),
                       n = vec3_cross(p->down, along);
@@ -56,8 +56,8 @@ bool propose_vertical(struct plane *out, const struct plane_problem *p, const st
     return plane_from_normal(p->view, vec3_normalize(n), point, out);
 }
 
-struct plane propose_from_sweep(const struct plane_problem *p, const struct plane *planes, int i,
-                                struct cell_random *random)
+struct plane proposal_from_sweep(const struct plane_problem *p, const struct plane *planes, int i,
+                                 struct cell_random *random)
 {
     enum { MINIMA = 4 };
     const float *cost = p->cost + (size_t)i * (size_t)p->planes;
@@ -77,8 +77,8 @@ struct plane propose_from_sweep(const struct plane_problem *p, const struct plan
     return (struct plane){own.a, own.b, z - own.a * g->cx - own.b * g->cy};
 }
 
-struct plane propose_perturbed(const struct plane_problem *p, const struct plane *planes, int i, double change,
-                               double size, struct cell_random *random)
+struct plane proposal_perturbed(const struct plane_problem *p, const struct plane *planes, int i, double change,
+                                double size, struct cell_random *random)
 {
     const struct segment *g = &p->m->segments->segments[i];
     struct plane own = planes[i];

@@ -21,23 +21,23 @@ static inline int random_member(struct cell_random *r, const int *members, int c
  * plane. */
 
 /* The plane through the centroids of three random members at their current depths. */
-bool propose_through_three(struct plane *out, const struct plane_problem *p, const struct plane *planes,
-                           const int *members, int count, struct cell_random *random);
+bool proposal_through_three(struct plane *out, const struct plane_problem *p, const struct plane *planes,
+                            const int *members, int count, struct cell_random *random);
 
 /* The horizontal plane through segment i's centroid: floors and ceilings. */
-bool propose_horizontal(struct plane *out, const struct plane_problem *p, const struct plane *planes, int i);
+bool proposal_horizontal(struct plane *out, const struct plane_problem *p, const struct plane *planes, int i);
 
 /* The vertical plane through the centroids of segments i and j: walls. */
-bool propose_vertical(struct plane *out, const struct plane_problem *p, const struct plane *planes, int i, int j);
+bool proposal_vertical(struct plane *out, const struct plane_problem *p, const struct plane *planes, int i, int j);
 
 /* One of the best local minima of segment i's matching cost in the plane sweep, with the segment's current slant or
  * none. */
-struct plane propose_from_sweep(const struct plane_problem *p, const struct plane *planes, int i,
-                                struct cell_random *random);
+struct plane proposal_from_sweep(const struct plane_problem *p, const struct plane *planes, int i,
+                                 struct cell_random *random);
 
 /* Segment i's plane with its depth changed by up to `change` in 1/z, and its slant by up to `change` over `size`
  * pixels. Half of the planes of constant depth stay constant. */
-struct plane propose_perturbed(const struct plane_problem *p, const struct plane *planes, int i, double change,
-                               double size, struct cell_random *random);
+struct plane proposal_perturbed(const struct plane_problem *p, const struct plane *planes, int i, double change,
+                                double size, struct cell_random *random);
 
 #endif

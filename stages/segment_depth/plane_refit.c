@@ -44,7 +44,7 @@ static void sum_block(void *ctx, size_t begin, size_t end, int thread)
                       to = (int64_t)r->count * (int64_t)(b + 1) / BLOCKS;
         r->sums[b] = 0;
         for (int n = (int)from; n < (int)to; n++)
-            r->sums[b] += (double)unary_cost(r->p, member(r, n), r->scene->planes[r->k], INFINITY);
+            r->sums[b] += (double)problem_unary_cost(r->p, member(r, n), r->scene->planes[r->k], INFINITY);
     }
 }
 

@@ -101,7 +101,7 @@ static struct plane best_plane(const struct sweep_job *job, int segment, int lab
 void plane_sweep_steps(struct plane_sweep *w, const struct matcher *m, double min_inverse_z, double max_inverse_z,
                        const struct segment_params *params)
 {
-    w->planes = (int)fmin(fmax(ceil(matcher_shift(m, min_inverse_z, max_inverse_z)) + 1, 4), params->planes);
+    w->planes = (int)fmin(fmax(ceil(match_shift(m, min_inverse_z, max_inverse_z)) + 1, 4), params->planes);
     if (!m->neighbour_count) w->planes = params->planes;
     w->step = (max_inverse_z - min_inverse_z) / (w->planes - 1);
     w->min_inverse_z = min_inverse_z;

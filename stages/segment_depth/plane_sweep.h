@@ -19,7 +19,7 @@ struct plane_sweep {
 void plane_sweep_steps(struct plane_sweep *w, const struct matcher *m, double min_inverse_z, double max_inverse_z,
                        const struct segment_params *params);
 
-/* Fills plane[], one plane per segment. weights: of border_weights(); down: in the view's axes. w comes from
+/* Fills plane[], one plane per segment. weights: of smooth_border_weights(); down: in the view's axes. w comes from
  * plane_sweep_steps(); release it also after a failure. Same result for any number of threads. */
 enum status plane_sweep_run(struct plane_sweep *w, struct plane *plane, const struct matcher *m,
                             const struct point_evidence *points, const float *weights, const struct view *view,

@@ -32,7 +32,7 @@ static double pairwise_sum(const struct refine *r, int i, struct plane p)
 {
     double sum = 0;
     for (int t = r->s->first_border[i]; t < r->s->first_border[i + 1]; t++)
-        sum += pairwise_cost(r->p, i, t, p, r->plane[r->s->borders[t].other]);
+        sum += problem_pairwise_cost(r->p, i, t, p, r->plane[r->s->borders[t].other]);
     return sum;
 }
 
@@ -41,7 +41,7 @@ static void try_plane(struct refine *r, int i, struct plane p, double *best)
     const double pairwise = pairwise_sum(r, i, p),
                  size = (double)r->s->segments[i].pixels / r->p->params->segment_pixels;
     if (pairwise + size * (double)MATCH_BEST >= *best) return;
-    const float unary = unary_cost(r->p, i, p, (float)(*best - pairwise));
+    const float unary = problem_unary_cost(r->p, i, p, (float)(*best - pairwise));
     if (pairwise + (double)unary < *best) {
         *best = pairwise + (double)unary;
         r->plane[i] = p;
@@ -134,7 +134,7 @@ static void initial_costs(void *ctx, size_t begin, size_t end, int thread)
 {
     struct refine *r = ctx;
     (void)thread;
-    for (size_t i = begin; i < end; i++) r->unary[i] = unary_cost(r->p, (int)i, r->plane[i], INFINITY);
+    for (size_t i = begin; i < end; i++) r->unary[i] = problem_unary_cost(r->p, (int)i, r->plane[i], INFINITY);
 }
 
 /* Colours the segments greedily. members: the segments sorted by colour; those of colour c begin at first[c]. Returns

@@ -111,7 +111,8 @@ static enum status warn_guessed_range(const struct camera_set *set, const int *r
     double min_inverse_z = 0, max_inverse_z = 0;
     bool guessed = false;
     if (params->near > 0 && params->far > 0) return ST_OK;
-    enum status st = depth_range(&min_inverse_z, &max_inverse_z, &guessed, set, read[0], read + 1, count, err);
+    enum status st =
+        neighbours_depth_range(&min_inverse_z, &max_inverse_z, &guessed, set, read[0], read + 1, count, err);
     if (!st && guessed)
         log_warn("too few sparse points to find the depth range: searched from a depth of %.4g on, at which the "
                  "disparity is a quarter of the picture's width; if the nearest surface is nearer or much farther, set "
@@ -192,7 +193,7 @@ static enum status carry_over(bool *carried, const struct request *r, const stru
     struct err alone = ERR_INIT;
     int count = 0;
     *carried = false;
-    enum status st = observed_points_find(&seen, set, read[0], err);
+    enum status st = neighbours_find_points(&seen, set, read[0], err);
     /* without neighbours a view has given depth, or view_depth() says what is wrong */
     if (!st && neighbours_choose(read + 1, &count, set, read[0], &seen, r->params->neighbours, &alone) == ST_NOMEM)
         st = err_set(err, ST_NOMEM, "%s", alone.text);
@@ -206,7 +207,7 @@ static enum status carry_over(bool *carried, const struct request *r, const stru
                  r->view);
     records.params = NULL; /* is prov's */
     provenance_release(&records);
-    observed_points_release(&seen);
+    neighbours_release_points(&seen);
     return st;
 }
 

@@ -23,7 +23,7 @@
 #define SIMILAR    9.0f
 #define MIN_WEIGHT 0.06f
 
-float *border_weights(const struct segmentation *s, int segment_pixels)
+float *smooth_border_weights(const struct segmentation *s, int segment_pixels)
 {
     int borders = s->first_border[s->count];
     float *weights = malloc(((size_t)borders + 1) * sizeof *weights);

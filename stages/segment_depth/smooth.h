@@ -6,7 +6,7 @@
 
 /* Smoothness weight of each border (as in s->borders, the same in both directions): its length in segment widths, times
  * the similarity of the two sides. The caller frees it. NULL: no memory. */
-float *border_weights(const struct segmentation *s, int segment_pixels);
+float *smooth_border_weights(const struct segmentation *s, int segment_pixels);
 
 /* Labels that make
  *   sum_i cost[i * labels + label_i] + sum over adjacent i, j of weight_ij min(slope |label_i - label_j|, truncation)

@@ -186,7 +186,7 @@ static enum status find_ground(struct solution *x, const struct solver *v, struc
     struct vec3 down;
     bool found;
     enum status st = gravity_find(&down, &found, v->set, v->source->ups, err);
-    if (!st && found) st = ground_find(&ground, &found, v->set, down, err);
+    if (!st && found) st = gravity_find_ground(&ground, &found, v->set, down, err);
     if (st || !found) return st;
     const double height = ground.offset - vec3_dot(ground.down, view->center);
     x->ground = plane_of_normal(view, vec3_scale(mat3_apply(view->cam_from_world, ground.down), 1 / height));
@@ -200,7 +200,7 @@ static enum status start_first_round(struct solution *x, const struct solver *v,
     enum status st = plane_sweep_run(&x->sweep, x->planes, v->m, &x->points, x->weights, x->problem.view,
                                      x->problem.down, v->params, err);
     x->problem.cost = x->sweep.cost;
-    return st ? st : matcher_select(v->m, x->planes, NULL, err);
+    return st ? st : match_select(v->m, x->planes, NULL, err);
 }
 
 /* Initial planes of the previous round, with the neighbours' depths of that round as further evidence. */
@@ -215,7 +215,7 @@ static enum status start_later_round(struct solution *x, const struct solver *v,
     unsigned *occluded = calloc((size_t)s->count + 1, sizeof *occluded);
     if (!st && !occluded) st = err_nomem(err, "occlusions", (size_t)s->count * sizeof *occluded);
     for (int i = 0; !st && i < s->count; i++) cross_view_cost(&x->cross, i, x->planes[i], &occluded[i]);
-    if (!st) st = matcher_select(v->m, x->planes, occluded, err);
+    if (!st) st = match_select(v->m, x->planes, occluded, err);
     free(occluded);
     for (int i = 0; !st && i < s->count; i++) x->min_match[i] = match_cost_rough(v->m, i, x->planes[i], 0);
     x->problem.min_match = x->min_match;
@@ -232,7 +232,7 @@ static enum status start_solution(struct solution *x, const struct solver *v, st
     const size_t count = (size_t)s->count + 1;
     x->planes = malloc(count * sizeof *x->planes);
     x->distinct = calloc(count, sizeof *x->distinct);
-    x->weights = border_weights(s, v->params->segment_pixels);
+    x->weights = smooth_border_weights(s, v->params->segment_pixels);
     x->min_match = malloc(count * sizeof *x->min_match);
     if (!x->planes || !x->distinct || !x->weights || !x->min_match)
         return err_nomem(err, "planes", (size_t)s->count * 40);
@@ -323,7 +323,7 @@ static enum status make_layers(struct layered_depth *out, struct solution *x, co
         matcher_take(v->full, v->m);
         problem.m = v->full;
     }
-    enum status st = choose_pixel_planes(label, x->planes, &problem, err);
+    enum status st = pixel_planes_choose(label, x->planes, &problem, err);
     const bool matte = !strcmp(v->params->matte, "two_colour");
     if (!st) st = layers_make(out, label, x->planes, v->picture, x->sweep.step, matte, err);
     free(label);
@@ -359,7 +359,7 @@ static enum status add_neighbour(struct level *full, struct level *half, int vie
     enum status st = source->read(source->ctx, neighbour_idx, &picture, err);
     if (!st) {
         /* a brighter photo must not be clipped where it is not clipped itself */
-        const struct tone own = tone_of(&picture);
+        const struct tone own = gamma_tone_of(&picture);
         st = gamma_image_make(&gamma, &picture, (struct tone){fmin(tone.exposure, own.exposure), tone.power}, err);
     }
     image_release(&picture);
@@ -384,8 +384,8 @@ static enum status find_range(struct solver *v, int neighbour_count, size_t pixe
 {
     const struct segment_params *params = v->params;
     bool guessed = false;
-    if (neighbour_count && depth_range(&v->min_inverse_z, &v->max_inverse_z, &guessed, v->set, v->view_idx,
-                                       v->neighbours, neighbour_count, err))
+    if (neighbour_count && neighbours_depth_range(&v->min_inverse_z, &v->max_inverse_z, &guessed, v->set, v->view_idx,
+                                                  v->neighbours, neighbour_count, err))
         return err->status;
     if (v->given) given_depth_range(&v->min_inverse_z, &v->max_inverse_z, v->given, pixels);
     if (guessed && params->near > 0) v->min_inverse_z = fmin(v->min_inverse_z, 1 / params->near / 500);
@@ -402,7 +402,7 @@ static enum status prepare_half(struct level *half, struct level *full, struct s
     enum status st = level_halve(half, full, err);
     if (!st) st = oversegment(&half->segments, &half->gamma, v->params->segment_pixels, v->params->compactness, err);
     if (!st) st = matcher_init(&half->matcher, &half->segments, &half->gamma, err);
-    if (!st) st = segmentation_double(&full->segments, &half->segments, &full->gamma, err);
+    if (!st) st = oversegment_double(&full->segments, &half->segments, &full->gamma, err);
     v->set = &half->set;
     v->seen = &half->seen;
     v->m = &half->matcher;
@@ -427,13 +427,13 @@ enum status view_depth(struct layered_depth *out, int neighbours[MAX_NEIGHBOURS]
                        .params = &own};
     *out = (struct layered_depth){0};
     *neighbour_count = 0;
-    enum status st = observed_points_find(&full.seen, set, view_idx, err);
+    enum status st = neighbours_find_points(&full.seen, set, view_idx, err);
     if (!st && source->read_given) st = source->read_given(source->ctx, view_idx, &v.given, err);
     if (!st) st = find_neighbours(neighbours, neighbour_count, set, view_idx, &full.seen, params, v.given, err);
     if (!st) st = source->read(source->ctx, view_idx, &picture, err);
     if (!st) st = layered_depth_init(out, picture.width, picture.height, err);
     if (!st) st = find_range(&v, *neighbour_count, (size_t)picture.width * (size_t)picture.height, err);
-    if (!st) st = gamma_image_make(&full.gamma, &picture, tone_of(&picture), err);
+    if (!st) st = gamma_image_make(&full.gamma, &picture, gamma_tone_of(&picture), err);
     if (source->read_depth) own.segment_pixels = params->fine_pixels;
     if (!st && !source->read_depth && !v.given && depth_halves(params, (double)picture.width * picture.height)) {
         half = &other;
@@ -446,7 +446,7 @@ enum status view_depth(struct layered_depth *out, int neighbours[MAX_NEIGHBOURS]
         st =
             add_neighbour(&full, half, view_idx, neighbours[k], source, 0.5 * (v.min_inverse_z + v.max_inverse_z), err);
     v.m->ranks = params->best_neighbours;
-    if (!st) st = matcher_calibrate(v.m, v.min_inverse_z, v.max_inverse_z, err);
+    if (!st) st = match_calibrate(v.m, v.min_inverse_z, v.max_inverse_z, err);
     v.neighbour_count = *neighbour_count;
     if (!st) st = solve(out, &v, err);
     if (st) layered_depth_release(out);

@@ -70,10 +70,10 @@ static enum status write_mask(struct colmap_job *job, const struct sfm_input *in
         const size_t pixels = (size_t)mask.width * (size_t)mask.height;
         for (size_t i = 0; i < pixels; i++) mask.masked[i] = mask.masked[i] ? 0 : 255;
         if (!job->masks) {
-            job->masks = text_format(err, "%s.masks", job->images);
-            st = job->masks ? make_folders(job->masks, err) : err->status;
+            job->masks = sfm_text_format(err, "%s.masks", job->images);
+            st = job->masks ? outfile_make_folders(job->masks, err) : err->status;
         }
-        char *path = st ? NULL : text_format(err, "%s/%s%s.png", job->masks, p->id, colmap_extension(p->file));
+        char *path = st ? NULL : sfm_text_format(err, "%s/%s%s.png", job->masks, p->id, colmap_extension(p->file));
         if (!st) st = path ? png_write(path, mask.masked, mask.width, mask.height, 1, err) : err->status;
         free(path);
         ++*count;
@@ -87,11 +87,11 @@ static enum status link_photos(struct colmap_job *job, const struct sfm_input *i
     char *from = realpath(in->photos, NULL);
     enum status st = from ? ST_OK : err_errno(err, "open", in->photos);
     int mask_count = 0;
-    if (!st) st = make_folders(job->images, err);
+    if (!st) st = outfile_make_folders(job->images, err);
     for (int i = 0; !st && i < job->photos->count; i++) {
         const struct photo_record *p = &job->photos->photos[i];
-        char *target = text_format(err, "%s/%s", from, p->file);
-        char *link = text_format(err, "%s/%s%s", job->images, p->id, colmap_extension(p->file));
+        char *target = sfm_text_format(err, "%s/%s", from, p->file);
+        char *link = sfm_text_format(err, "%s/%s%s", job->images, p->id, colmap_extension(p->file));
         st = target && link ? link_file(target, link, err) : err->status;
         if (!st) st = write_mask(job, in, p, &mask_count, err);
         free(target);
@@ -113,13 +113,13 @@ enum status colmap_prepare(struct colmap_job *job, const struct sfm_folder *f, c
     snprintf(job->threads, sizeof job->threads, "%d", parallel_threads());
     snprintf(job->max_features, sizeof job->max_features, "%d", job->params->max_features);
     snprintf(job->max_image_size, sizeof job->max_image_size, "%d", job->params->max_image_size);
-    job->images = text_format(err, "%s/images", work);
-    job->database = text_format(err, "%s/database.db", work);
-    job->sparse = text_format(err, "%s/sparse", work);
+    job->images = sfm_text_format(err, "%s/images", work);
+    job->database = sfm_text_format(err, "%s/database.db", work);
+    job->sparse = sfm_text_format(err, "%s/sparse", work);
     if (!job->images || !job->database || !job->sparse) return err->status;
     for (int i = 0; i < COLMAP_STEPS; i++)
-        if (!(job->logs[i] = text_format(err, "%s/colmap-%d.log", work, i + 1))) return err->status;
-    st = make_folders(job->sparse, err);
+        if (!(job->logs[i] = sfm_text_format(err, "%s/colmap-%d.log", work, i + 1))) return err->status;
+    st = outfile_make_folders(job->sparse, err);
     if (!st) st = link_photos(job, in, err);
     return st;
 }
@@ -224,16 +224,16 @@ static enum status count_features(long long *found, const struct colmap_job *job
     struct feature_counts c = {0};
     char few[1024];
     long long total = 0;
-    enum status st = feature_counts_read(&c, job->logs[0], err);
+    enum status st = colmap_counts_read(&c, job->logs[0], err);
     if (st) return st;
     for (int i = 0; i < c.count; i++) total += c.list[i].features > 0 ? c.list[i].features : 0;
     log_note("%lld features in %d photos", total, job->photos->count);
-    feature_counts_list_poor(few, sizeof few, &c, job->photos, MIN_FEATURES);
+    colmap_counts_list_poor(few, sizeof few, &c, job->photos, MIN_FEATURES);
     if (*few)
         log_warn("few features (blurred, dark, little texture, or masked), so their poses may be poor or missing: %s",
                  few);
     *found = total;
-    feature_counts_release(&c);
+    colmap_counts_release(&c);
     return st;
 }
 
@@ -252,7 +252,7 @@ enum status colmap_keep_logs(const struct colmap_job *job, struct err *err)
 {
     enum status st = ST_OK;
     for (int i = 0; !st && i < COLMAP_STEPS; i++) {
-        char *kept = text_format(err, "%s/colmap-%d.log", job->folder->made, i + 1);
+        char *kept = sfm_text_format(err, "%s/colmap-%d.log", job->folder->made, i + 1);
         if (!kept) st = err->status;
         if (!st && rename(job->logs[i], kept) && errno != ENOENT) st = err_errno(err, "keep", job->logs[i]);
         free(kept);

@@ -18,7 +18,7 @@ static const char *value_of(const char *line, const char *key)
     return line + strspn(line, " \t");
 }
 
-enum status feature_counts_read(struct feature_counts *c, const char *log, struct err *err)
+enum status colmap_counts_read(struct feature_counts *c, const char *log, struct err *err)
 {
     struct textfile t = {0};
     *c = (struct feature_counts){0};
@@ -33,11 +33,11 @@ enum status feature_counts_read(struct feature_counts *c, const char *log, struc
         if (!c->list[c->count++].name) st = err_nomem(err, "a name", strlen(name) + 1);
     }
     textfile_release(&t);
-    if (st) feature_counts_release(c);
+    if (st) colmap_counts_release(c);
     return st;
 }
 
-void feature_counts_release(struct feature_counts *c)
+void colmap_counts_release(struct feature_counts *c)
 {
     if (!c) return;
     for (int i = 0; i < c->count; i++) free(c->list[i].name);
@@ -73,8 +73,8 @@ void colmap_log_last_line(char *text, size_t size, const char *log)
     textfile_release(&t);
 }
 
-void feature_counts_list_poor(char *text, size_t size, const struct feature_counts *c, const struct photo_list *photos,
-                              int min_features)
+void colmap_counts_list_poor(char *text, size_t size, const struct feature_counts *c, const struct photo_list *photos,
+                             int min_features)
 {
     size_t used = 0;
     int named = 0, omitted = 0;

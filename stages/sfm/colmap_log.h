@@ -13,13 +13,13 @@ struct feature_counts {
     struct feature_count *list; /* in the log's order; owned */
     int count;
 };
-enum status feature_counts_read(struct feature_counts *c, const char *log, struct err *err);
-void feature_counts_release(struct feature_counts *c);
+enum status colmap_counts_read(struct feature_counts *c, const char *log, struct err *err);
+void colmap_counts_release(struct feature_counts *c);
 
 /* Lists the photos with fewer than min_features, "a.jpg (12), b.jpg (unreadable) and 3 more", as far as `size` allows.
  * "" if there are none. */
-void feature_counts_list_poor(char *text, size_t size, const struct feature_counts *c, const struct photo_list *photos,
-                              int min_features);
+void colmap_counts_list_poor(char *text, size_t size, const struct feature_counts *c, const struct photo_list *photos,
+                             int min_features);
 
 /* Number of pictures that match another one, from the log of `colmap mapper`; -1 if the log does not state it. */
 int colmap_log_connected(const char *log);

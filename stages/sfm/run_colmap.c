@@ -16,9 +16,9 @@ static enum status explain_failure(const struct colmap_job *job, struct err *err
     struct feature_counts c = {0};
     char few[700];
     int connected = colmap_log_connected(job->logs[2]);
-    enum status st = feature_counts_read(&c, job->logs[0], err);
+    enum status st = colmap_counts_read(&c, job->logs[0], err);
     if (st) return st;
-    feature_counts_list_poor(few, sizeof few, &c, job->photos, MIN_FEATURES);
+    colmap_counts_list_poor(few, sizeof few, &c, job->photos, MIN_FEATURES);
     if (connected == 0)
         st = err_set(
             err, ST_DATA,
@@ -30,7 +30,7 @@ static enum status explain_failure(const struct colmap_job *job, struct err *err
                      "COLMAP placed none of the %d photos, though %d match another one. They may all be taken from one "
                      "spot (step aside between photos, do not just turn) or overlap too little%s%s. Its log is %s.",
                      job->photos->count, connected, *few ? "; few features: " : "", few, job->logs[2]);
-    feature_counts_release(&c);
+    colmap_counts_release(&c);
     return st;
 }
 
@@ -39,9 +39,9 @@ static enum status add_model(const struct colmap_job *job, struct sfm_folder *f,
                              struct err *err)
 {
     struct sfm_model m = {0};
-    char *from = text_format(err, "%s/%d", job->sparse, k), *text = text_format(err, "%s/text/%d", f->work, k);
+    char *from = sfm_text_format(err, "%s/%d", job->sparse, k), *text = sfm_text_format(err, "%s/text/%d", f->work, k);
     const char *args[] = {"model_converter", "--input_path", from, "--output_path", text, "--output_type", "TXT", NULL};
-    enum status st = from && text ? make_folders(text, err) : err->status;
+    enum status st = from && text ? outfile_make_folders(text, err) : err->status;
     if (!st) st = colmap_run(job, 4, args, 0, err);
     if (!st) st = sfm_model_read_text(&m, text, NULL, err);
     if (!st) log_note("model %d: %d of %d photos, %d points", k, m.image_count, job->photos->count, m.point_count);
@@ -56,7 +56,7 @@ static enum status add_model(const struct colmap_job *job, struct sfm_folder *f,
 static int count_models(const struct colmap_job *job, struct err *err)
 {
     for (int k = 0;; k++) {
-        char *path = text_format(err, "%s/%d", job->sparse, k);
+        char *path = sfm_text_format(err, "%s/%d", job->sparse, k);
         bool exists = path && path_is_folder(path);
         free(path);
         if (!exists) return k;

@@ -14,7 +14,7 @@
 #include "common/base/outfile.h"
 #include "common/product/product.h"
 
-char *text_format(struct err *err, const char *fmt, ...)
+char *sfm_text_format(struct err *err, const char *fmt, ...)
 {
     char *text = NULL;
     va_list args;
@@ -33,7 +33,7 @@ static int remove_one(const char *path, const struct stat *info, int kind, struc
     return remove(path);
 }
 
-enum status remove_tree(const char *path, struct err *err)
+enum status sfm_remove_tree(const char *path, struct err *err)
 {
     if (nftw(path, remove_one, 16, FTW_DEPTH | FTW_PHYS) && errno != ENOENT) return err_errno(err, "remove", path);
     return ST_OK;
@@ -58,20 +58,20 @@ enum status sfm_folder_open(struct sfm_folder *f, const char *out, struct err *e
     size_t length = strlen(out);
     *f = (struct sfm_folder){0};
     while (length > 1 && out[length - 1] == '/') length--;
-    f->out = text_format(err, "%.*s", (int)length, out);
-    f->work = text_format(err, "%.*s.work", (int)length, out);
-    f->made = text_format(err, "%.*s.work/sfm", (int)length, out);
+    f->out = sfm_text_format(err, "%.*s", (int)length, out);
+    f->work = sfm_text_format(err, "%.*s.work", (int)length, out);
+    f->made = sfm_text_format(err, "%.*s.work/sfm", (int)length, out);
     if (!f->out || !f->work || !f->made) return err->status;
     enum status st = check_replaceable(f->out, err);
-    if (!st) st = remove_tree(f->work, err);
-    if (!st) st = make_folders(f->made, err);
+    if (!st) st = sfm_remove_tree(f->work, err);
+    if (!st) st = outfile_make_folders(f->made, err);
     return st;
 }
 
 enum status sfm_folder_add(struct sfm_folder *f, const struct sfm_model *m, const struct provenance *prov,
                            struct err *err)
 {
-    char *folder = text_format(err, "%s/%d", f->made, f->models);
+    char *folder = sfm_text_format(err, "%s/%d", f->made, f->models);
     enum status st = folder ? sfm_model_write_text(m, folder, prov, err) : err->status;
     if (!st) f->models++;
     free(folder);
@@ -105,14 +105,14 @@ enum status sfm_folder_commit(struct sfm_folder *f, const struct photo_list *pho
                               struct err *err)
 {
     enum status st = write_lists(f, photos, prov, err);
-    char *old = text_format(err, "%s/old", f->work);
+    char *old = sfm_text_format(err, "%s/old", f->work);
     if (!old) st = err->status;
     /* if there is no old folder, or the file system cannot exchange two, an old one is moved away first */
     if (!st && renameat2(AT_FDCWD, f->made, AT_FDCWD, f->out, RENAME_EXCHANGE) &&
         ((rename(f->out, old) && errno != ENOENT) || rename(f->made, f->out)))
         st = err_errno(err, "replace", f->out);
     free(old);
-    if (!st) st = remove_tree(f->work, err);
+    if (!st) st = sfm_remove_tree(f->work, err);
     return st;
 }
 

@@ -6,10 +6,10 @@
 #include "common/capture/sfm_model.h"
 
 /* printf into memory that the caller frees; NULL: out of memory, err is set. */
-char *text_format(struct err *err, const char *fmt, ...) PRINTF_LIKE(2, 3);
+char *sfm_text_format(struct err *err, const char *fmt, ...) PRINTF_LIKE(2, 3);
 
 /* Removes a folder and its contents, but not the targets of links. It may be missing. */
-enum status remove_tree(const char *path, struct err *err);
+enum status sfm_remove_tree(const char *path, struct err *err);
 
 struct sfm_folder {
     char *out;         /* the product */

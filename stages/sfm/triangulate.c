@@ -50,14 +50,14 @@ static enum status write_known(const struct colmap_job *job, const struct sfm_mo
 {
     struct sfm_model known = {.cameras = m->cameras, .camera_count = m->camera_count};
     struct feature_counts c = {0};
-    enum status st = feature_counts_read(&c, job->logs[0], err);
+    enum status st = colmap_counts_read(&c, job->logs[0], err);
     known.images = calloc((size_t)m->image_count + 1, sizeof *known.images);
     if (!st && !known.images) st = err_nomem(err, "images", (size_t)m->image_count * sizeof *known.images);
     for (int i = 0; !st && i < m->image_count; i++) {
         int at = photo_list_match(job->photos, m->images[i].name);
         if (at < 0) continue;
         const struct photo_record *p = &job->photos->photos[at];
-        char *name = text_format(err, "%s%s", p->id, colmap_extension(p->file));
+        char *name = sfm_text_format(err, "%s%s", p->id, colmap_extension(p->file));
         int id = name ? id_in_database(&c, name) : 0;
         if (!id) {
             free(name);
@@ -76,7 +76,7 @@ static enum status write_known(const struct colmap_job *job, const struct sfm_mo
     if (!st) st = sfm_model_write_text(&known, folder, NULL, err);
     for (int i = 0; i < known.image_count; i++) free(known.images[i].name);
     free(known.images);
-    feature_counts_release(&c);
+    colmap_counts_release(&c);
     return st;
 }
 
@@ -138,13 +138,13 @@ enum status triangulate(struct sfm_model *m, const struct sfm_folder *f, const s
         return ST_OK;
     }
     params_of_model(&params, m);
-    char *known = text_format(err, "%s/known", f->work), *made = text_format(err, "%s/triangulated", f->work);
-    char *text = text_format(err, "%s/triangulated-text", f->work);
+    char *known = sfm_text_format(err, "%s/known", f->work), *made = sfm_text_format(err, "%s/triangulated", f->work);
+    char *text = sfm_text_format(err, "%s/triangulated-text", f->work);
     enum status st = known && made && text ? colmap_prepare(&job, f, in, &params, err) : err->status;
     const char *converter[] = {"model_converter", "--input_path", made, "--output_path", text,
                                "--output_type",   "TXT",          NULL};
-    if (!st) st = make_folders(made, err);
-    if (!st) st = make_folders(text, err);
+    if (!st) st = outfile_make_folders(made, err);
+    if (!st) st = outfile_make_folders(text, err);
     if (!st) st = colmap_extract_and_match(&features, &job, err);
     if (!st) st = write_known(&job, m, known, err);
     if (!st && features) {

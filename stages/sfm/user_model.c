@@ -33,7 +33,7 @@
 static bool has_file(const char *folder, const char *file)
 {
     struct err ignored = ERR_INIT;
-    char *path = text_format(&ignored, "%s/%s", folder, file);
+    char *path = sfm_text_format(&ignored, "%s/%s", folder, file);
     bool exists = path && !access(path, F_OK);
     free(path);
     return exists;
@@ -49,8 +49,8 @@ static enum status add_inputs(struct provenance *prov, const char *folder, const
     enum status st = ST_OK;
     for (int i = 0; !st && files[i]; i++) {
         if (!has_file(folder, files[i])) continue;
-        char *path = text_format(err, "%s/%s", folder, files[i]);
-        char *name = text_format(err, "model/%d/%s", model, files[i]);
+        char *path = sfm_text_format(err, "%s/%s", folder, files[i]);
+        char *name = sfm_text_format(err, "model/%d/%s", model, files[i]);
         st = path && name ? provenance_add_file(prov, name, path, err) : err->status;
         free(path);
         free(name);
@@ -62,7 +62,7 @@ static enum status copy_file(const char *from_folder, const char *to_folder, con
 {
     struct textfile t = {0};
     struct outfile out = {0};
-    char *from = text_format(err, "%s/%s", from_folder, file), *to = text_format(err, "%s/%s", to_folder, file);
+    char *from = sfm_text_format(err, "%s/%s", from_folder, file), *to = sfm_text_format(err, "%s/%s", to_folder, file);
     enum status st = from && to ? textfile_open(&t, from, err) : err->status;
     if (!st) st = outfile_open(&out, to, err);
     if (!st) fwrite(t.bytes, 1, t.size, out.fp);
@@ -79,8 +79,8 @@ static enum status read_without_points(struct sfm_model *m, const struct sfm_fol
                                        struct err *err)
 {
     struct outfile empty = {0};
-    char *copy = text_format(err, "%s/without-points", f->work);
-    char *points = text_format(err, "%s/without-points/points3D.txt", f->work);
+    char *copy = sfm_text_format(err, "%s/without-points", f->work);
+    char *points = sfm_text_format(err, "%s/without-points/points3D.txt", f->work);
     enum status st = copy && points ? outfile_open(&empty, points, err) : err->status;
     if (!st) st = outfile_commit(&empty, err);
     if (!st) st = copy_file(folder, copy, "cameras.txt", err);
@@ -109,11 +109,12 @@ static enum status add_binary(struct sfm_folder *f, const char *folder, const st
                               const struct provenance *prov, struct err *err)
 {
     static const char *const env[] = {"QT_QPA_PLATFORM=offscreen", NULL};
-    char *text = text_format(err, "%s/text/%d", f->work, f->models), *log = text_format(err, "%s/colmap.log", f->work);
+    char *text = sfm_text_format(err, "%s/text/%d", f->work, f->models),
+         *log = sfm_text_format(err, "%s/colmap.log", f->work);
     const char *argv[] = {"colmap", "model_converter", "--input_path", folder, "--output_path",
                           text,     "--output_type",   "TXT",          NULL};
     int code = 0;
-    enum status st = text && log ? make_folders(text, err) : err->status;
+    enum status st = text && log ? outfile_make_folders(text, err) : err->status;
     if (!st) st = process_run(argv, env, log, &code, err);
     if (!st && code)
         st = err_set(err, ST_DATA, "colmap could not read the binary model in %s (exit status %d); its log is %s.",
@@ -139,7 +140,7 @@ static enum status find_file(char **path, const char *folder, const char *first,
             const char *name = names[i]->d_name;
             size_t n = strlen(name), tail = strlen(suffix);
             if (n < tail || strcmp(name + n - tail, suffix) || (pass == 0) != !strcmp(name, first)) continue;
-            char *p = text_format(err, "%s/%s", folder, name);
+            char *p = sfm_text_format(err, "%s/%s", folder, name);
             if (!p)
                 st = err->status;
             else if (accept(p))
@@ -229,7 +230,7 @@ static enum status add_bundler(struct sfm_folder *f, const char *bundle, const c
 static enum status try_bundler(struct sfm_folder *f, const char *from, const struct photo_list *photos, bool *found,
                                struct provenance *prov, struct err *err)
 {
-    char *inner = text_format(err, "%s/bundle", from), *bundle = NULL, *list = NULL;
+    char *inner = sfm_text_format(err, "%s/bundle", from), *bundle = NULL, *list = NULL;
     enum status st = inner ? find_file(&bundle, from, "bundle.out", is_bundle, ".out", err) : err->status;
     if (!st && !bundle) st = find_file(&bundle, inner, "bundle.out", is_bundle, ".out", err);
     *found = bundle;
@@ -270,7 +271,7 @@ enum status user_model_add(struct sfm_folder *f, const char *from, const struct 
     f->given = "model";
     enum status st = try_colmap(f, from, in, &found, prov, err);
     for (int k = 0; !st && !found && next; k++) {
-        char *folder = text_format(err, "%s/%d", from, k);
+        char *folder = sfm_text_format(err, "%s/%d", from, k);
         st = folder ? try_colmap(f, folder, in, &next, prov, err) : err->status;
         free(folder);
     }

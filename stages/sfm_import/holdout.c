@@ -135,8 +135,8 @@ enum status holdout_split(struct imported *kept, struct imported *out, const str
     if (!st) st = copy_points(out, in, held, true, new_idx, err);
     free(new_idx);
     if (st) {
-        imported_release(kept);
-        imported_release(out);
+        import_release(kept);
+        import_release(out);
     }
     return st;
 }

@@ -39,7 +39,7 @@ static enum status make_views(struct importer *imp, struct err *err)
         int count = 0;
         if (im->photo < 0) continue;
         const struct photo_record *photo = &imp->photos->photos[im->photo];
-        if (photo_views(parts, &count, &im->lens, imp->params->max_megapixels, imp->params->max_field, err))
+        if (view_cameras_of_photo(parts, &count, &im->lens, imp->params->max_megapixels, imp->params->max_field, err))
             return err_context(err, "photo \"%s\"", photo->file);
         wide += parts[0].part >= 0;
         for (int k = 0; k < count; k++) {
@@ -250,7 +250,7 @@ enum status import_model(struct imported *out, const struct sfm_model *model, co
     free(imp.views);
     free(imp.images);
     free(imp.errors);
-    if (st) imported_release(out);
+    if (st) import_release(out);
     return st;
 }
 
@@ -270,8 +270,7 @@ static enum status write_views_mk(const struct imported *in, const char *path, s
     return st;
 }
 
-enum status imported_write(const struct imported *in, const char *folder, const struct provenance *prov,
-                           struct err *err)
+enum status import_write(const struct imported *in, const char *folder, const struct provenance *prov, struct err *err)
 {
     char lenses[FILE_PATH], views[FILE_PATH];
     enum status st = product_path_in(lenses, folder, PRODUCT_LENSES, NULL, err);
@@ -282,7 +281,7 @@ enum status imported_write(const struct imported *in, const char *folder, const 
     return st;
 }
 
-void imported_release(struct imported *in)
+void import_release(struct imported *in)
 {
     if (!in) return;
     sfm_model_release(&in->model);

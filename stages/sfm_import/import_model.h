@@ -56,9 +56,8 @@ enum status import_model(struct imported *out, const struct sfm_model *model, co
                          const struct sfm_import_params *params, struct err *err);
 
 /* Writes points3D, cameras, images.txt, lenses.txt and, last, views.mk. */
-enum status imported_write(const struct imported *in, const char *folder, const struct provenance *prov,
-                           struct err *err);
+enum status import_write(const struct imported *in, const char *folder, const struct provenance *prov, struct err *err);
 
-void imported_release(struct imported *in);
+void import_release(struct imported *in);
 
 #endif

@@ -26,14 +26,14 @@
 #define CHOICE_TOLERANCE 1e-5 /* of the fits that are compared */
 enum { CHOICE_OBSERVATIONS = 12000, CHOICE_OF_IMAGE = 300, COVARIANCE_OBSERVATIONS = 40000, MIN_OBSERVATIONS = 30 };
 
-const char *lens_form_model(const struct lens_form *form)
+const char *refine_form_model(const struct lens_form *form)
 {
     if (form->lens_kept) return "kept";
     if (form->model_kept) return form->focal_only ? "same_model_focal_only" : "same_model";
     return camera_model_name(form->model);
 }
 
-const char *lens_form_center(const struct lens_form *form)
+const char *refine_form_center(const struct lens_form *form)
 {
     if (form->lens_kept || form->center == CENTER_KEPT) return "kept";
     return form->center == CENTER_SHARED ? "shared" : "per_photo";
@@ -243,9 +243,9 @@ static void log_choice(const struct refinement *r)
     for (int i = 0; i < r->form_count; i++)
         if (i != r->chosen && r->forms[i].usable && (!next || r->forms[i].fit.bic < next->fit.bic)) next = &r->forms[i];
     if (next)
-        snprintf(rival, sizeof rival, "; the next form, %s %s, has a BIC higher by %.0f", lens_form_model(&next->form),
-                 lens_form_center(&next->form), next->fit.bic - f->fit.bic);
-    log_note("cameras refined: lens %s, %s; median reprojection error %.3f -> %.3f px%s", lens_form_model(&f->form),
+        snprintf(rival, sizeof rival, "; the next form, %s %s, has a BIC higher by %.0f",
+                 refine_form_model(&next->form), refine_form_center(&next->form), next->fit.bic - f->fit.bic);
+    log_note("cameras refined: lens %s, %s; median reprojection error %.3f -> %.3f px%s", refine_form_model(&f->form),
              center, r->before.median, r->after.median, rival);
 }
 
@@ -279,7 +279,7 @@ enum status refine_cameras(struct refinement *out, struct sfm_model *m, enum giv
     return st;
 }
 
-void refinement_release(struct refinement *r)
+void refine_cameras_release(struct refinement *r)
 {
     if (!r) return;
     free(r->shifts);
@@ -294,7 +294,7 @@ static void print_forms(FILE *to, const struct refinement *r)
     fputs("# form LENS PRINCIPAL_POINT parameters median_px noise_px BIC-lowest verdict\n", to);
     for (int i = 0; i < r->form_count; i++) {
         const struct form_result *form = &r->forms[i];
-        fprintf(to, "form %s %s ", lens_form_model(&form->form), lens_form_center(&form->form));
+        fprintf(to, "form %s %s ", refine_form_model(&form->form), refine_form_center(&form->form));
         if (form->usable)
             fprintf(to, "%d %.9g %.9g %.9g %s\n", form->fit.parameters, form->fit.median, form->fit.noise,
                     form->fit.bic - best, i == r->chosen ? "chosen" : "-");
@@ -319,8 +319,8 @@ static void print_shifts(FILE *to, const struct refinement *r, const struct sfm_
     }
 }
 
-enum status refinement_write(const struct refinement *r, const struct sfm_model *m, const struct photo_list *photos,
-                             const char *path, const struct provenance *prov, struct err *err)
+enum status refine_cameras_write(const struct refinement *r, const struct sfm_model *m, const struct photo_list *photos,
+                                 const char *path, const struct provenance *prov, struct err *err)
 {
     struct outfile f = {0};
     enum status st = product_begin(&f, PRODUCT_LENS_FORMS, path, prov, err);

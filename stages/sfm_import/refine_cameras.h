@@ -29,19 +29,19 @@ struct refinement {
 };
 
 /* The name of a form's lens, as SIMPLE_RADIAL or same_model; and of its principal point: kept, shared, per_photo. */
-const char *lens_form_model(const struct lens_form *form);
-const char *lens_form_center(const struct lens_form *form);
+const char *refine_form_model(const struct lens_form *form);
+const char *refine_form_center(const struct lens_form *form);
 
 /* Refines lenses, poses and points of the model as params->refine says, and logs the form chosen. What cannot be
  * improved is kept, with a note. The same model gives the same bits. ST_NOMEM. */
 enum status refine_cameras(struct refinement *out, struct sfm_model *m, enum given_cameras given,
                            const struct sfm_import_params *params, struct err *err);
 
-void refinement_release(struct refinement *r);
+void refine_cameras_release(struct refinement *r);
 
 /* Writes the forms compared, and the shifts of photos, "remodel-lens-forms 1" (docs/formats.md). m: the model that was
  * refined. */
-enum status refinement_write(const struct refinement *r, const struct sfm_model *m, const struct photo_list *photos,
-                             const char *path, const struct provenance *prov, struct err *err);
+enum status refine_cameras_write(const struct refinement *r, const struct sfm_model *m, const struct photo_list *photos,
+                                 const char *path, const struct provenance *prov, struct err *err);
 
 #endif

@@ -34,13 +34,13 @@ static enum status write_split(const struct imported *all, const struct holdout 
     char *folder = malloc(size);
     enum status st = marks && folder ? ST_OK : err_nomem(err, "views", size);
     if (!st) snprintf(folder, size, "%s/../holdout/views", out);
-    if (!st) st = make_folders(out, err);
+    if (!st) st = outfile_make_folders(out, err);
     if (!st) st = holdout_choose(marks, &all->lenses, which->every, which->names, err);
     if (!st) st = holdout_split(&kept, &held, all, marks, err);
-    if (!st) st = imported_write(&held, folder, prov, err);
-    if (!st) st = imported_write(&kept, out, prov, err);
-    imported_release(&kept);
-    imported_release(&held);
+    if (!st) st = import_write(&held, folder, prov, err);
+    if (!st) st = import_write(&kept, out, prov, err);
+    import_release(&kept);
+    import_release(&held);
     free(folder);
     free(marks);
     return st;
@@ -51,11 +51,11 @@ static enum status write_reports(const struct imported *in, const struct refinem
                                  const struct provenance *prov, struct err *err)
 {
     char residuals[FILE_PATH], forms[FILE_PATH];
-    enum status st = make_folders(out, err);
+    enum status st = outfile_make_folders(out, err);
     if (!st) st = product_path_in(residuals, out, PRODUCT_RESIDUALS, NULL, err);
     if (!st) st = product_path_in(forms, out, PRODUCT_LENS_FORMS, NULL, err);
     if (!st) st = residual_table_write(&in->residuals, photos, residuals, prov, err);
-    if (!st) st = refinement_write(refinement, model, photos, forms, prov, err);
+    if (!st) st = refine_cameras_write(refinement, model, photos, forms, prov, err);
     return st;
 }
 
@@ -77,9 +77,9 @@ static enum status run(const char *sfm, const char *records, const char *out, co
     if (!st && (held->every || (held->names && *held->names)))
         st = write_split(&imported, held, out, prov, err);
     else if (!st)
-        st = imported_write(&imported, out, prov, err);
-    imported_release(&imported);
-    refinement_release(&refinement);
+        st = import_write(&imported, out, prov, err);
+    import_release(&imported);
+    refine_cameras_release(&refinement);
     sfm_model_release(&model);
     photo_list_release(&photos);
     free(name);

@@ -37,7 +37,7 @@ static struct vec3 border_ray(const struct camera *lens, double u, double v, dou
 
 static double angle_to_axis(struct vec3 ray) { return atan2(hypot(ray.x, ray.y), ray.z); }
 
-void lens_field(const struct camera *lens, double *horizontal, double *vertical)
+void view_lens_field(const struct camera *lens, double *horizontal, double *vertical)
 {
     double w = lens->width, h = lens->height;
     *horizontal = angle_to_axis(border_ray(lens, 0, h / 2, PI)) + angle_to_axis(border_ray(lens, w, h / 2, PI));
@@ -114,12 +114,12 @@ static bool one_view(struct photo_view *view, const struct camera *lens, double 
     return true;
 }
 
-enum status photo_views(struct photo_view views[MAX_PHOTO_VIEWS], int *count, const struct camera *lens,
-                        double max_megapixels, double max_field, struct err *err)
+enum status view_cameras_of_photo(struct photo_view views[MAX_PHOTO_VIEWS], int *count, const struct camera *lens,
+                                  double max_megapixels, double max_field, struct err *err)
 {
     double horizontal, vertical, max_pixels = max_megapixels > 0 ? max_megapixels * 1e6 : DBL_MAX;
     bool pinhole = lens->model == CAMERA_SIMPLE_PINHOLE || lens->model == CAMERA_PINHOLE;
-    lens_field(lens, &horizontal, &vertical);
+    view_lens_field(lens, &horizontal, &vertical);
     if (fmax(horizontal, vertical) > max_field * PI / 180) {
         *count = wide_views(views, lens, max_pixels);
     } else if (pinhole && (double)lens->width * lens->height <= max_pixels) {

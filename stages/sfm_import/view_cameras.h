@@ -24,10 +24,10 @@ struct photo_view {
 };
 
 /* Angles in radians that the horizontal and the vertical midline span; pixels without a ray do not count. */
-void lens_field(const struct camera *lens, double *horizontal, double *vertical);
+void view_lens_field(const struct camera *lens, double *horizontal, double *vertical);
 
 /* max_field is in degrees. ST_DATA: the lens leaves no picture. */
-enum status photo_views(struct photo_view views[MAX_PHOTO_VIEWS], int *count, const struct camera *lens,
-                        double max_megapixels, double max_field, struct err *err);
+enum status view_cameras_of_photo(struct photo_view views[MAX_PHOTO_VIEWS], int *count, const struct camera *lens,
+                                  double max_megapixels, double max_field, struct err *err);
 
 #endif

@@ -92,7 +92,7 @@ static enum status add_quad(struct builder *b, const char *side, int material, s
     return st ? st : add_parallelogram(b, p, u, v, err);
 }
 
-void wall_axes(const struct scene_item *wall, struct vec3 *along, struct vec3 *left, double *length)
+void geometry_wall_axes(const struct scene_item *wall, struct vec3 *along, struct vec3 *left, double *length)
 {
     const struct vec3 line = {wall->x1 - wall->x0, wall->y1 - wall->y0, 0};
     *length = vec3_length(line);
@@ -128,7 +128,7 @@ static enum status add_wall_side(struct builder *b, int side, struct err *err)
     if (!cuts) return err_nomem(err, "a wall's openings", (size_t)openings * 4 * sizeof *cuts);
     double *s_cuts = cuts, *z_cuts = cuts + 2 * openings + 2;
 
-    wall_axes(w, &along, &left, &length);
+    geometry_wall_axes(w, &along, &left, &length);
     s_cuts[s_count++] = 0, s_cuts[s_count++] = length;
     z_cuts[z_count++] = w->z0, z_cuts[z_count++] = w->z1;
     for (int i = 0; i < s->item_count; i++) {
@@ -167,7 +167,7 @@ static enum status add_wall(struct builder *b, struct err *err)
     const struct scene_item *w = &b->scene->items[b->item];
     struct vec3 along, left;
     double length;
-    wall_axes(w, &along, &left, &length);
+    geometry_wall_axes(w, &along, &left, &length);
     const struct vec3 across = vec3_scale(left, w->thickness), up = {0, 0, w->z1 - w->z0},
                       line = vec3_scale(along, length);
     const struct vec3 right_foot = vec3_add(vec3_make(w->x0, w->y0, w->z0), vec3_scale(across, -0.5));
@@ -187,7 +187,7 @@ static enum status add_reveals(struct builder *b, struct err *err)
     const struct scene_item *o = &b->scene->items[b->item], *w = &b->scene->items[o->wall];
     struct vec3 along, left;
     double length;
-    wall_axes(w, &along, &left, &length);
+    geometry_wall_axes(w, &along, &left, &length);
     const struct vec3 across = vec3_scale(left, w->thickness), line = vec3_scale(along, o->s1 - o->s0);
     const struct vec3 up = {0, 0, o->z1 - o->z0};
     const struct vec3 p =

@@ -52,6 +52,6 @@ static inline const struct ray_scene *geometry_seen(const struct scene_geometry 
 void geometry_texture_coordinates(const struct scene_face *f, const struct ray_hit *hit, double *u, double *v);
 
 /* The centre line of a wall: unit direction, unit normal to its left, length. */
-void wall_axes(const struct scene_item *wall, struct vec3 *along, struct vec3 *left, double *length);
+void geometry_wall_axes(const struct scene_item *wall, struct vec3 *along, struct vec3 *left, double *length);
 
 #endif

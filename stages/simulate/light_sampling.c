@@ -120,7 +120,7 @@ static struct scene_light window(const struct scene_item *it, const struct scene
 {
     struct vec3 along, left;
     double length;
-    wall_axes(wall, &along, &left, &length);
+    geometry_wall_axes(wall, &along, &left, &length);
     const double depth = wall->thickness / 2;
     const struct vec3 u = vec3_scale(along, it->s1 - it->s0), v = {0, 0, it->z1 - it->z0};
     const struct vec3 corner = vec3_add(vec3_make(wall->x0, wall->y0, it->z0), vec3_scale(along, it->s0));

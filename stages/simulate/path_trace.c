@@ -20,7 +20,8 @@
 /* Bounces are counted from the camera: a vertex of path_vertex_make() is bounce 1. */
 enum { VERTEX_BOUNCE = 1 };
 
-enum status world_read(struct world *w, const char *folder, const char *file, struct provenance *prov, struct err *err)
+enum status path_world_read(struct world *w, const char *folder, const char *file, struct provenance *prov,
+                            struct err *err)
 {
     *w = (struct world){0};
     enum status st = scene_read(&w->scene, folder, file, prov, err);
@@ -28,11 +29,11 @@ enum status world_read(struct world *w, const char *folder, const char *file, st
     if (!st && w->scene.base) st = geometry_keep_ids(&w->geometry, folder, w->scene.base, err);
     if (!st) st = geometry_commit(&w->geometry, err);
     if (!st) st = lights_init(&w->lights, &w->scene, &w->geometry, err);
-    if (st) world_release(w);
+    if (st) path_world_release(w);
     return st;
 }
 
-enum status world_move_sun(struct world *w, double azimuth, double elevation, struct err *err)
+enum status path_world_move_sun(struct world *w, double azimuth, double elevation, struct err *err)
 {
     struct sun *sun = &w->scene.sky.sun;
     sun->azimuth = azimuth;
@@ -41,7 +42,7 @@ enum status world_move_sun(struct world *w, double azimuth, double elevation, st
     return lights_init(&w->lights, &w->scene, &w->geometry, err);
 }
 
-void world_release(struct world *w)
+void path_world_release(struct world *w)
 {
     if (!w) return;
     lights_release(&w->lights);

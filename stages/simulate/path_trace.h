@@ -21,10 +21,11 @@ struct world {
 };
 
 /* Reads FOLDER/FILE and prepares it for tracing. {0} is the empty state; on failure nothing has to be released. */
-enum status world_read(struct world *w, const char *folder, const char *file, struct provenance *prov, struct err *err);
+enum status path_world_read(struct world *w, const char *folder, const char *file, struct provenance *prov,
+                            struct err *err);
 /* Moves the sun of a scene that has one; degrees. */
-enum status world_move_sun(struct world *w, double azimuth, double elevation, struct err *err);
-void world_release(struct world *w);
+enum status path_world_move_sun(struct world *w, double azimuth, double elevation, struct err *err);
+void path_world_release(struct world *w);
 
 struct path_ray {
     struct vec3 from, direction; /* unit */

@@ -140,7 +140,7 @@ static enum status write_truth(const struct picture_job *job, const struct world
                                const char *folder, const struct image *radiance, struct err *err)
 {
     struct image made = {0};
-    const struct camera_view view = camera_view_make(job->shoot, photo);
+    const struct camera_view view = render_view_make(job->shoot, photo);
     char *depth = text_format(err, "%s/%s/depth/%s.exr", job->out, folder, photo->name);
     char *ids = text_format(err, "%s/%s/ids/%s.exr", job->out, folder, photo->name);
     char *hdr = text_format(err, "%s/%s/hdr/%s.exr", job->out, folder, photo->name);
@@ -164,7 +164,7 @@ enum status photo_make_truth(const struct picture_job *job, const struct world *
 enum status photo_make(const struct picture_job *job, const struct world *w, const struct shoot_photo *photo,
                        struct err *err)
 {
-    const struct camera_view view = camera_view_make(job->shoot, photo);
+    const struct camera_view view = render_view_make(job->shoot, photo);
     const bool truth = photo->kind == SHOOT_PHOTO && !strcmp(job->params->truth, "yes");
     struct image radiance = {0};
     if (photo->kind == SHOOT_WITNESS) return photo_make_truth(job, w, photo, "truth/novel", err);

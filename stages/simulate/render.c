@@ -24,13 +24,13 @@ _Static_assert(CELLS *CELLS == SHARED_RAYS, "a group has one pixel of each cell"
 const struct param simulate_param_table[] = {SIMULATE_PARAMS(PARAM_ROW) PARAM_END};
 #undef PARAM_STRUCT
 
-struct camera_view camera_view_make(const struct shoot *s, const struct shoot_photo *photo)
+struct camera_view render_view_make(const struct shoot *s, const struct shoot_photo *photo)
 {
     return (struct camera_view){&s->lenses[photo->lens], pose_center(&photo->cam_from_world),
                                 mat3_transpose(mat3_from_quat(photo->cam_from_world.rotation))};
 }
 
-bool camera_view_ray(const struct camera_view *v, double u, double w, struct path_ray *ray)
+bool render_view_ray(const struct camera_view *v, double u, double w, struct path_ray *ray)
 {
     struct vec3 in_camera;
     if (!shoot_lens_ray(v->lens, u, w, &in_camera)) return false;
@@ -93,7 +93,7 @@ static uint32_t camera_rays(struct path_ray ray[SHARED_RAYS], struct pixel pixel
         if (p->x >= job->radiance->width || p->y >= job->radiance->height) continue;
         p->where.sample = (uint32_t)sample;
         sobol_group(&p->where, 0, u);
-        if (camera_view_ray(job->view, p->x + u[0], p->y + u[1], &ray[i])) active |= 1u << i;
+        if (render_view_ray(job->view, p->x + u[0], p->y + u[1], &ray[i])) active |= 1u << i;
     }
     return active;
 }

@@ -13,10 +13,10 @@ struct camera_view {
     struct mat3 world_from_cam;
 };
 
-struct camera_view camera_view_make(const struct shoot *s, const struct shoot_photo *photo);
+struct camera_view render_view_make(const struct shoot *s, const struct shoot_photo *photo);
 
 /* The ray through the image point (u, w), in pixels; false outside the image circle of the lens. */
-bool camera_view_ray(const struct camera_view *v, double u, double w, struct path_ray *ray);
+bool render_view_ray(const struct camera_view *v, double u, double w, struct path_ray *ray);
 
 /* Radiance, 3 channels: the mean over each pixel's area. Random numbers are keyed by (seed, name, pixel or group of
  * pixels): the result is the same for any number of threads. Adds the number of rays traced to *rays (may be NULL).

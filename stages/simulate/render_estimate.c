@@ -17,7 +17,7 @@
 static enum status pilot(double *seconds, const struct picture_job *job, const struct world *w,
                          const struct shoot_photo *photo, struct err *err)
 {
-    struct camera_view view = camera_view_make(job->shoot, photo);
+    struct camera_view view = render_view_make(job->shoot, photo);
     struct shoot_lens small = *view.lens;
     struct simulate_params params = *job->params;
     struct image image = {0};

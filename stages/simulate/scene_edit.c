@@ -42,7 +42,7 @@ static enum status drop_item(struct reader *r, int item, struct err *err)
 static enum status drop_name(struct reader *r, const char *name, struct err *err)
 {
     struct sky_params *sky = &r->scene->sky;
-    const int item = find_name(r->scene, name, next_item);
+    const int item = scene_find_name(r->scene, name, scene_next_item);
     if (item >= 0 && item < r->base_items) return drop_item(r, item, err);
     if (!strcmp(name, "sun") && sky->has_sun && r->sun_line) {
         const int line = r->sun_line;
@@ -57,7 +57,7 @@ static enum status drop_name(struct reader *r, const char *name, struct err *err
     return textfile_error(&r->file, err, name, "the name of an item of the base, sun or panorama");
 }
 
-enum status read_drop(struct reader *r, struct err *err)
+enum status scene_read_drop(struct reader *r, struct err *err)
 {
     char *name = NULL;
     if (!r->scene->base)

@@ -16,7 +16,7 @@ static enum status read_sun(struct reader *r, struct err *err)
     enum status st = textfile_number(&r->file, "the sun's azimuth in degrees", -360, 360, &sun->azimuth, err);
     if (!st) st = textfile_number(&r->file, "the sun's elevation in degrees", -90, 90, &sun->elevation, err);
     if (!st) st = textfile_number(&r->file, "the sun's angular radius in degrees", 0.05, 30, &sun->angular_radius, err);
-    if (!st) st = read_colour(r, "a radiance", MAX_RADIANCE, &sun->radiance, err);
+    if (!st) st = scene_read_colour(r, "a radiance", MAX_RADIANCE, &sun->radiance, err);
     if (!st) st = textfile_end(&r->file, err);
     r->scene->sky.has_sun = !st;
     if (r->in_base) r->sun_line = r->file.line;
@@ -27,9 +27,9 @@ static enum status read_panorama(struct reader *r, struct err *err)
 {
     struct panorama *p = &r->scene->sky.panorama;
     if (r->scene->sky.has_panorama) return textfile_error(&r->file, err, "a second panorama", "at most one");
-    enum status st = read_seed(r, &p->seed, err);
-    if (!st) st = read_colour(r, "the sky's radiance", MAX_RADIANCE, &p->sky, err);
-    if (!st) st = read_colour(r, "the ground's radiance", MAX_RADIANCE, &p->ground, err);
+    enum status st = scene_read_seed(r, &p->seed, err);
+    if (!st) st = scene_read_colour(r, "the sky's radiance", MAX_RADIANCE, &p->sky, err);
+    if (!st) st = scene_read_colour(r, "the ground's radiance", MAX_RADIANCE, &p->ground, err);
     if (!st) st = textfile_end(&r->file, err);
     r->scene->sky.has_panorama = !st;
     if (r->in_base) r->panorama_line = r->file.line;
@@ -67,7 +67,7 @@ static enum status read_furniture(struct reader *r, struct err *err)
 {
     static const char *const words[] = {"off", "on"};
     int word = 0;
-    enum status st = read_choice(r, words, 2, "the state of furniture", &word, err);
+    enum status st = scene_read_choice(r, words, 2, "the state of furniture", &word, err);
     if (!st) st = textfile_end(&r->file, err);
     r->furniture = word;
     return st;
@@ -78,14 +78,15 @@ static enum status read_line(struct reader *r, struct err *err)
     static const char *const words[] = {"texture", "material", "glow",   "sun", "panorama", "base", "drop", "furniture",
                                         "wall",    "opening",  "window", "box", "quad",     "mesh", "room", "lamp"};
     static enum status (*const lines[])(struct reader *, struct err *) = {
-        read_texture, read_material, read_glow, read_sun, read_panorama, read_base, read_drop, read_furniture};
+        scene_read_texture, scene_read_material, scene_read_glow, read_sun,
+        read_panorama,      read_base,           scene_read_drop, read_furniture};
     enum { LINES = sizeof lines / sizeof *lines, WORDS = sizeof words / sizeof *words, FIRST_OF_2 = 5 };
     int word = 0;
-    enum status st = read_choice(r, words, WORDS, "a line of a scene", &word, err);
+    enum status st = scene_read_choice(r, words, WORDS, "a line of a scene", &word, err);
     if (!st && word >= FIRST_OF_2 && word < LINES && r->version < 2)
         st = textfile_error(&r->file, err, words[word], "the header `remodel-scene 2` above a line of this kind");
     if (st) return st;
-    return word < LINES ? lines[word](r, err) : read_item(r, (enum item_kind)(word - LINES), err);
+    return word < LINES ? lines[word](r, err) : scene_read_item(r, (enum item_kind)(word - LINES), err);
 }
 
 static enum status read_file(struct reader *r, const char *file, struct err *err)

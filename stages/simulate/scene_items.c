@@ -12,7 +12,7 @@
 
 static enum status material_of(struct reader *r, int *material, struct err *err)
 {
-    return read_known_name(r, "material", next_material, material, err);
+    return scene_read_known_name(r, "material", scene_next_material, material, err);
 }
 
 static enum status read_wall(struct reader *r, struct scene_item *it, struct err *err)
@@ -23,7 +23,7 @@ static enum status read_wall(struct reader *r, struct scene_item *it, struct err
     if (!st) st = textfile_number(&r->file, "y of the wall's end", -MAX_METRES, MAX_METRES, &it->y1, err);
     if (!st && hypot(it->x1 - it->x0, it->y1 - it->y0) < MIN_METRES)
         st = textfile_error(&r->file, err, "equal start and end points", "a wall with a length");
-    if (!st) st = read_range(r, "the wall's height: Z0, then a larger Z1", &it->z0, &it->z1, err);
+    if (!st) st = scene_read_range(r, "the wall's height: Z0, then a larger Z1", &it->z0, &it->z1, err);
     if (!st) st = textfile_number(&r->file, "a thickness", MIN_METRES, 100, &it->thickness, err);
     if (!st) st = material_of(r, &it->material, err);
     return st;
@@ -33,11 +33,11 @@ static enum status read_opening(struct reader *r, struct scene_item *it, struct 
 {
     const struct scene *s = r->scene;
     int wall = 0;
-    enum status st = read_known_name(r, "wall", next_item, &wall, err);
+    enum status st = scene_read_known_name(r, "wall", scene_next_item, &wall, err);
     if (!st && s->items[wall].kind != ITEM_WALL)
         st = textfile_error(&r->file, err, s->items[wall].name, "the name of a wall above");
-    if (!st) st = read_range(r, "the range along the wall: S0, then a larger S1", &it->s0, &it->s1, err);
-    if (!st) st = read_range(r, "the height: Z0, then a larger Z1", &it->z0, &it->z1, err);
+    if (!st) st = scene_read_range(r, "the range along the wall: S0, then a larger S1", &it->s0, &it->s1, err);
+    if (!st) st = scene_read_range(r, "the height: Z0, then a larger Z1", &it->z0, &it->z1, err);
     if (st) return st;
     const struct scene_item *w = &s->items[wall];
     const double length = hypot(w->x1 - w->x0, w->y1 - w->y0);
@@ -74,7 +74,7 @@ static enum status read_box(struct reader *r, struct scene_item *it, struct err 
     if (!st) st = textfile_number(&r->file, "Z1, larger than Z0", a.z + MIN_METRES, MAX_METRES, &b.z, err);
     if (!st) st = material_of(r, &it->material, err);
     if (!st && textfile_more(&r->file)) {
-        st = read_choice(r, words, 1, "an option of a box", &word, err);
+        st = scene_read_choice(r, words, 1, "an option of a box", &word, err);
         if (!st) st = read_turn(r, it, err);
     }
     if (st) return st;
@@ -106,7 +106,7 @@ static enum status read_room(struct reader *r, struct scene_item *it, struct err
     if (!st) st = textfile_number(&r->file, "Y0", -MAX_METRES, MAX_METRES, &it->y0, err);
     if (!st) st = textfile_number(&r->file, "X1, larger than X0", it->x0 + MIN_METRES, MAX_METRES, &it->x1, err);
     if (!st) st = textfile_number(&r->file, "Y1, larger than Y0", it->y0 + MIN_METRES, MAX_METRES, &it->y1, err);
-    if (!st) st = read_range(r, "the room's height: Z0, then a larger Z1", &it->z0, &it->z1, err);
+    if (!st) st = scene_read_range(r, "the room's height: Z0, then a larger Z1", &it->z0, &it->z1, err);
     if (!st) st = material_of(r, &it->material, err);
     if (!st) st = material_of(r, &it->ceiling, err);
     return st;
@@ -132,7 +132,7 @@ static enum status read_mesh(struct reader *r, struct scene_item *it, struct err
     if (!st) st = material_of(r, &it->material, err);
     while (!st && textfile_more(&r->file)) {
         int word = 0;
-        st = read_choice(r, words, 3, "an option of a mesh", &word, err);
+        st = scene_read_choice(r, words, 3, "an option of a mesh", &word, err);
         if (!st && word == 0) st = description_point(&r->file, "the mesh's position", &it->at, err);
         if (!st && word == 1) st = textfile_number(&r->file, "a scale", 1e-6, 1e6, &it->scale, err);
         if (!st && word == 2) st = read_turn(r, it, err);
@@ -146,21 +146,21 @@ static enum status read_lamp(struct reader *r, struct scene_item *it, struct err
     static const char *const words[] = {"quad", "disk"};
     int kind = 0;
     it->material = -1;
-    enum status st = read_choice(r, words, 2, "a kind of lamp", &kind, err);
+    enum status st = scene_read_choice(r, words, 2, "a kind of lamp", &kind, err);
     if (st) return st;
     it->kind = kind ? ITEM_LAMP_DISK : ITEM_LAMP_QUAD;
     if (it->kind == ITEM_LAMP_QUAD) {
         st = read_edges(r, it, err);
         if (!st && fabs(vec3_dot(vec3_normalize(it->u), vec3_normalize(it->v))) > PERPENDICULAR)
             st = textfile_error(&r->file, err, "slanted edges", "edges at a right angle");
-        if (!st) st = read_colour(r, "a radiance", MAX_RADIANCE, &it->radiance, err);
+        if (!st) st = scene_read_colour(r, "a radiance", MAX_RADIANCE, &it->radiance, err);
         return st;
     }
     st = description_point(&r->file, "the centre", &it->at, err);
     if (!st) st = description_point(&r->file, "the direction", &it->u, err);
     if (!st && !(vec3_length(it->u) > 0)) st = textfile_error(&r->file, err, "0 0 0", "a direction");
     if (!st) st = textfile_number(&r->file, "a radius", 1e-4, 1e3, &it->radius, err);
-    if (!st) st = read_colour(r, "a radiance", MAX_RADIANCE, &it->radiance, err);
+    if (!st) st = scene_read_colour(r, "a radiance", MAX_RADIANCE, &it->radiance, err);
     if (!st) st = textfile_number(&r->file, "half the angle of the cone, in degrees", 0.5, 90, &it->half_angle, err);
     if (!st && textfile_more(&r->file)) st = textfile_number(&r->file, "an exponent", 0, 1000, &it->exponent, err);
     return st;
@@ -174,7 +174,7 @@ void scene_item_release(struct scene_item *it)
 
 typedef enum status item_reader(struct reader *r, struct scene_item *it, struct err *err);
 
-enum status read_item(struct reader *r, enum item_kind kind, struct err *err)
+enum status scene_read_item(struct reader *r, enum item_kind kind, struct err *err)
 {
     static item_reader *const readers[] = {read_wall, read_opening, read_opening, read_box,
                                            read_quad, read_mesh,    read_room,    read_lamp};
@@ -182,8 +182,8 @@ enum status read_item(struct reader *r, enum item_kind kind, struct err *err)
     struct scene_item made = {.kind = kind, .wall = -1, .line = r->file.line};
     if (kind == ITEM_BOX || kind == ITEM_QUAD || kind == ITEM_MESH) made.furniture = r->furniture;
     enum status st = description_name(&r->file, &made.name, err);
-    if (!st && find_name(s, made.name, next_item) >= 0)
-        st = name_taken(r, made.name, "wall, opening, window, box, quad, mesh, room or lamp", err);
+    if (!st && scene_find_name(s, made.name, scene_next_item) >= 0)
+        st = scene_name_taken(r, made.name, "wall, opening, window, box, quad, mesh, room or lamp", err);
     if (!st) st = readers[kind](r, &made, err);
     if (!st) st = textfile_end(&r->file, err);
     if (!st) st = description_append(&r->file, &s->items, s->item_count, MAX_LINES, sizeof made, err);

@@ -13,15 +13,16 @@ static enum status read_size(struct reader *r, const char *what, double *value, 
     return textfile_number(&r->file, what, 1e-4, 1e4, value, err);
 }
 
-enum status read_texture(struct reader *r, struct err *err)
+enum status scene_read_texture(struct reader *r, struct err *err)
 {
     struct scene *s = r->scene;
     struct scene_texture made = {0};
     struct texture *t = &made.texture;
     int kind = 0;
     enum status st = description_name(&r->file, &made.name, err);
-    if (!st && find_name(s, made.name, next_texture) >= 0) st = name_taken(r, made.name, "texture", err);
-    if (!st) st = read_choice(r, texture_words, TEXTURE_KINDS, "a kind of texture", &kind, err);
+    if (!st && scene_find_name(s, made.name, scene_next_texture) >= 0)
+        st = scene_name_taken(r, made.name, "texture", err);
+    if (!st) st = scene_read_choice(r, texture_words, TEXTURE_KINDS, "a kind of texture", &kind, err);
     if (!st) {
         t->kind = (enum texture_kind)kind;
         const bool two = t->kind == TEXTURE_CHECKER || t->kind == TEXTURE_WOOD || t->kind == TEXTURE_BRICK;
@@ -36,13 +37,13 @@ enum status read_texture(struct reader *r, struct err *err)
                 st = textfile_number(&r->file, "the width of the mortar", 0, fmin(t->size[0], t->size[1]), &t->size[2],
                                      err);
         }
-        if (!st && t->kind != TEXTURE_RGB && t->kind != TEXTURE_CHECKER) st = read_seed(r, &t->seed, err);
+        if (!st && t->kind != TEXTURE_RGB && t->kind != TEXTURE_CHECKER) st = scene_read_seed(r, &t->seed, err);
         if (generated) {
             if (!st) st = read_size(r, "a width", &t->size[0], err);
             if (!st) st = read_size(r, "a height", &t->size[1], err);
         } else {
-            if (!st) st = read_colour(r, "a colour from 0 to 1", 1, &t->colour[0], err);
-            if (!st && two) st = read_colour(r, "the second colour, from 0 to 1", 1, &t->colour[1], err);
+            if (!st) st = scene_read_colour(r, "a colour from 0 to 1", 1, &t->colour[0], err);
+            if (!st && two) st = scene_read_colour(r, "the second colour, from 0 to 1", 1, &t->colour[1], err);
         }
     }
     if (!st) st = textfile_end(&r->file, err);
@@ -55,16 +56,17 @@ enum status read_texture(struct reader *r, struct err *err)
     return st;
 }
 
-enum status read_material(struct reader *r, struct err *err)
+enum status scene_read_material(struct reader *r, struct err *err)
 {
     static const char *const words[] = {"lambert", "phong", "ward"};
     struct scene *s = r->scene;
     struct scene_material made = {0};
     int kind = 0;
     enum status st = description_name(&r->file, &made.name, err);
-    if (!st && find_name(s, made.name, next_material) >= 0) st = name_taken(r, made.name, "material", err);
-    if (!st) st = read_choice(r, words, 3, "a kind of material", &kind, err);
-    if (!st) st = read_known_name(r, "texture", next_texture, &made.texture, err);
+    if (!st && scene_find_name(s, made.name, scene_next_material) >= 0)
+        st = scene_name_taken(r, made.name, "material", err);
+    if (!st) st = scene_read_choice(r, words, 3, "a kind of material", &kind, err);
+    if (!st) st = scene_read_known_name(r, "texture", scene_next_texture, &made.texture, err);
     made.kind = (enum brdf_kind)kind;
     if (!st && made.kind != BRDF_LAMBERT) {
         st = textfile_number(&r->file, "a strength of the gloss", 0, 1e6, &made.ks, err);
@@ -90,12 +92,12 @@ enum status read_material(struct reader *r, struct err *err)
     return st;
 }
 
-enum status read_glow(struct reader *r, struct err *err)
+enum status scene_read_glow(struct reader *r, struct err *err)
 {
     int material = 0;
     struct rgb glow;
-    enum status st = read_known_name(r, "material", next_material, &material, err);
-    if (!st) st = read_colour(r, "a radiance", MAX_RADIANCE, &glow, err);
+    enum status st = scene_read_known_name(r, "material", scene_next_material, &material, err);
+    if (!st) st = scene_read_colour(r, "a radiance", MAX_RADIANCE, &glow, err);
     if (!st) st = textfile_end(&r->file, err);
     if (!st) r->scene->materials[material].glow = glow;
     return st;

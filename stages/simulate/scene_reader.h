@@ -25,28 +25,29 @@ struct reader {
 };
 
 /* Words. The second number of a range must be larger than the first. */
-enum status read_range(struct reader *r, const char *what, double *from, double *to, struct err *err);
-enum status read_colour(struct reader *r, const char *what, double max, struct rgb *c, struct err *err);
-enum status read_seed(struct reader *r, uint32_t *value, struct err *err);
+enum status scene_read_range(struct reader *r, const char *what, double *from, double *to, struct err *err);
+enum status scene_read_colour(struct reader *r, const char *what, double max, struct rgb *c, struct err *err);
+enum status scene_read_seed(struct reader *r, uint32_t *value, struct err *err);
 /* One of `words`; *index is its position among them. */
-enum status read_choice(struct reader *r, const char *const *words, int count, const char *what, int *index,
-                        struct err *err);
+enum status scene_read_choice(struct reader *r, const char *const *words, int count, const char *what, int *index,
+                              struct err *err);
 
 /* Names of what was read so far, for scan_nearest(); ctx is the scene. */
-const char *next_texture(const void *ctx, int i);
-const char *next_material(const void *ctx, int i);
-const char *next_item(const void *ctx, int i);
-int find_name(const struct scene *s, const char *name, const char *(*next)(const void *ctx, int i)); /* -1: none */
-enum status read_known_name(struct reader *r, const char *what, const char *(*next)(const void *ctx, int i), int *index,
-                            struct err *err);
-enum status name_taken(struct reader *r, const char *name, const char *what, struct err *err);
+const char *scene_next_texture(const void *ctx, int i);
+const char *scene_next_material(const void *ctx, int i);
+const char *scene_next_item(const void *ctx, int i);
+int scene_find_name(const struct scene *s, const char *name,
+                    const char *(*next)(const void *ctx, int i)); /* -1: none */
+enum status scene_read_known_name(struct reader *r, const char *what, const char *(*next)(const void *ctx, int i),
+                                  int *index, struct err *err);
+enum status scene_name_taken(struct reader *r, const char *name, const char *what, struct err *err);
 
 /* Lines. */
-enum status read_texture(struct reader *r, struct err *err);
-enum status read_material(struct reader *r, struct err *err);
-enum status read_glow(struct reader *r, struct err *err);
-enum status read_item(struct reader *r, enum item_kind kind, struct err *err);
-enum status read_drop(struct reader *r, struct err *err);
+enum status scene_read_texture(struct reader *r, struct err *err);
+enum status scene_read_material(struct reader *r, struct err *err);
+enum status scene_read_glow(struct reader *r, struct err *err);
+enum status scene_read_item(struct reader *r, enum item_kind kind, struct err *err);
+enum status scene_read_drop(struct reader *r, struct err *err);
 
 /* Frees what an item owns. */
 void scene_item_release(struct scene_item *it);

@@ -86,12 +86,12 @@ static bool find_point(const struct irradiance_job *job, size_t index, struct ir
     const struct shoot *s = job->shoot;
     for (uint64_t k = 0; k < MAX_TRIES; k++) {
         const struct shoot_photo *photo = &s->photos[(int)(rng_uniform(&job->rng, index, 3 * k) * s->photo_count)];
-        const struct camera_view view = camera_view_make(s, photo);
+        const struct camera_view view = render_view_make(s, photo);
         const double u = rng_uniform(&job->rng, index, 3 * k + 1) * view.lens->width;
         const double v = rng_uniform(&job->rng, index, 3 * k + 2) * view.lens->height;
         struct path_ray ray;
         struct ray_hit hit;
-        if (photo->kind != SHOOT_PHOTO || !camera_view_ray(&view, u, v, &ray)) continue;
+        if (photo->kind != SHOOT_PHOTO || !render_view_ray(&view, u, v, &ray)) continue;
         if (!ray_scene_hit(&job->world->geometry.rays, ray.from, ray.direction, &hit)) continue;
         if (job->world->geometry.faces[hit.id].material < 0) continue;
         const struct vec3 off = vec3_add(hit.point, vec3_scale(hit.normal, job->world->geometry.rays.epsilon));

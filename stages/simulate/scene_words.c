@@ -7,14 +7,14 @@
 #include "common/base/scan.h"
 
 /* Two numbers, the second larger than the first. */
-enum status read_range(struct reader *r, const char *what, double *from, double *to, struct err *err)
+enum status scene_read_range(struct reader *r, const char *what, double *from, double *to, struct err *err)
 {
     enum status st = textfile_number(&r->file, what, -MAX_METRES, MAX_METRES, from, err);
     if (!st) st = textfile_number(&r->file, what, *from + MIN_METRES, MAX_METRES, to, err);
     return st;
 }
 
-enum status read_colour(struct reader *r, const char *what, double max, struct rgb *c, struct err *err)
+enum status scene_read_colour(struct reader *r, const char *what, double max, struct rgb *c, struct err *err)
 {
     enum status st = textfile_number(&r->file, what, 0, max, &c->r, err);
     if (!st) st = textfile_number(&r->file, what, 0, max, &c->g, err);
@@ -22,7 +22,7 @@ enum status read_colour(struct reader *r, const char *what, double max, struct r
     return st;
 }
 
-enum status read_seed(struct reader *r, uint32_t *value, struct err *err)
+enum status scene_read_seed(struct reader *r, uint32_t *value, struct err *err)
 {
     int64_t n = 0;
     enum status st = textfile_int(&r->file, "a seed", 0, UINT32_MAX, &n, err);
@@ -31,8 +31,8 @@ enum status read_seed(struct reader *r, uint32_t *value, struct err *err)
 }
 
 /* One of `words`; *index is its position among them. */
-enum status read_choice(struct reader *r, const char *const *words, int count, const char *what, int *index,
-                        struct err *err)
+enum status scene_read_choice(struct reader *r, const char *const *words, int count, const char *what, int *index,
+                              struct err *err)
 {
     char *word = NULL, choices[300] = "";
     enum status st = textfile_word(&r->file, what, &word, err);
@@ -48,7 +48,7 @@ enum status read_choice(struct reader *r, const char *const *words, int count, c
     return textfile_error(&r->file, err, word, "%s: one of %s", what, choices);
 }
 
-enum status name_taken(struct reader *r, const char *name, const char *what, struct err *err)
+enum status scene_name_taken(struct reader *r, const char *name, const char *what, struct err *err)
 {
     return textfile_error(&r->file, err, name, "a name that no other %s of the scene has", what);
 }
@@ -61,25 +61,25 @@ static enum status name_unknown(struct reader *r, const char *found, const char 
     return textfile_error(&r->file, err, found, "the name of a %s above", what);
 }
 
-const char *next_texture(const void *ctx, int i)
+const char *scene_next_texture(const void *ctx, int i)
 {
     const struct scene *s = ctx;
     return i < s->texture_count ? s->textures[i].name : NULL;
 }
 
-const char *next_material(const void *ctx, int i)
+const char *scene_next_material(const void *ctx, int i)
 {
     const struct scene *s = ctx;
     return i < s->material_count ? s->materials[i].name : NULL;
 }
 
-const char *next_item(const void *ctx, int i)
+const char *scene_next_item(const void *ctx, int i)
 {
     const struct scene *s = ctx;
     return i < s->item_count ? s->items[i].name : NULL;
 }
 
-int find_name(const struct scene *s, const char *name, const char *(*next)(const void *ctx, int i))
+int scene_find_name(const struct scene *s, const char *name, const char *(*next)(const void *ctx, int i))
 {
     const char *other;
     for (int i = 0; (other = next(s, i)); i++)
@@ -87,12 +87,12 @@ int find_name(const struct scene *s, const char *name, const char *(*next)(const
     return -1;
 }
 
-enum status read_known_name(struct reader *r, const char *what, const char *(*next)(const void *ctx, int i), int *index,
-                            struct err *err)
+enum status scene_read_known_name(struct reader *r, const char *what, const char *(*next)(const void *ctx, int i),
+                                  int *index, struct err *err)
 {
     char *word = NULL, wanted[80];
     snprintf(wanted, sizeof wanted, "the name of a %s", what);
     enum status st = textfile_word(&r->file, wanted, &word, err);
-    if (!st && (*index = find_name(r->scene, word, next)) < 0) st = name_unknown(r, word, what, next, err);
+    if (!st && (*index = scene_find_name(r->scene, word, next)) < 0) st = name_unknown(r, word, what, next, err);
     return st;
 }

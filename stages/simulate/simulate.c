@@ -57,8 +57,8 @@ static enum status move_sun(struct worlds *w, const struct shoot_photo *photo, c
             return err_set(err, ST_DATA, "photo %s moves the sun, but its scene has none; add a sun to the scene.",
                            photo->name);
         if (all[i]->scene.sky.has_sun)
-            st = world_move_sun(all[i], photo ? photo->sun_azimuth : sun[i].azimuth,
-                                photo ? photo->sun_elevation : sun[i].elevation, err);
+            st = path_world_move_sun(all[i], photo ? photo->sun_azimuth : sun[i].azimuth,
+                                     photo ? photo->sun_elevation : sun[i].elevation, err);
     }
     return st;
 }
@@ -111,8 +111,8 @@ static enum status read_worlds(struct worlds *w, const struct request *r, const 
     w->shown = r->edit ? &w->edited : &w->plain;
     snprintf(w->folder, sizeof w->folder, r->edit ? "truth/edited-%s" : "truth", r->edit);
     if (asprintf(&file, "scene-%s.txt", r->edit ? r->edit : "") < 0) return err_nomem(err, "a file name", 0);
-    if (r->edit) st = world_read(&w->edited, r->scene, file, prov, err);
-    if (!st && (!r->edit || both)) st = world_read(&w->plain, r->scene, "scene.txt", prov, err);
+    if (r->edit) st = path_world_read(&w->edited, r->scene, file, prov, err);
+    if (!st && (!r->edit || both)) st = path_world_read(&w->plain, r->scene, "scene.txt", prov, err);
     w->plain.max_bounces = w->edited.max_bounces = params->max_bounces;
     free(file);
     return st;
@@ -134,8 +134,8 @@ static enum status simulate(const struct request *r, const struct simulate_param
                      : truth_write(w.shown, &shoot, r->scene, r->out, params, prov, err);
     if (!st && r->photo) st = make_photos(r, &w, &job, err);
     shoot_release(&shoot);
-    world_release(&w.plain);
-    world_release(&w.edited);
+    path_world_release(&w.plain);
+    path_world_release(&w.edited);
     return st;
 }
 

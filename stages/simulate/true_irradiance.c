@@ -65,7 +65,7 @@ static void picture_rows(void *ctx, size_t begin, size_t end, int thread)
             const uint64_t pixel = y * (uint64_t)p->to->width + (uint64_t)x;
             struct path_ray ray;
             struct ray_hit hit;
-            if (!camera_view_ray(&p->view, x + 0.5, (double)y + 0.5, &ray)) continue;
+            if (!render_view_ray(&p->view, x + 0.5, (double)y + 0.5, &ray)) continue;
             if (!seen_surface(p->world, ray, &hit) || (p->edited && !same_surface(p, ray, &hit))) continue;
             const struct rgb e = mean_irradiance(p->edited ? p->edited : p->world, hit.point, hit.normal,
                                                  sobol_make(&p->rng, pixel, p->samples), p->samples);
@@ -82,7 +82,7 @@ enum status irradiance_picture(const struct picture_job *job, const struct world
     struct image image = {0};
     struct progress progress;
     char *path = NULL, *key = NULL;
-    const struct camera_view view = camera_view_make(job->shoot, photo);
+    const struct camera_view view = render_view_make(job->shoot, photo);
     if (asprintf(&path, "%s/%s/irradiance/%s.exr", job->out, folder, photo->name) < 0) path = NULL;
     if (asprintf(&key, "irradiance %s", photo->name) < 0) key = NULL;
     enum status st = path && key ? ST_OK : err_nomem(err, "a file name", strlen(job->out));

@@ -114,7 +114,7 @@ static void grow_opening(const struct wall_grid *t, int rect[4])
     }
 }
 
-enum status find_openings(struct suggestion *s, const struct finder *f, int wall, struct err *err)
+enum status openings_find(struct suggestion *s, const struct finder *f, int wall, struct err *err)
 {
     const struct suggested_wall *w = &s->walls[wall];
     const double c = f->params->window * f->height, narrow = f->params->min_opening * f->height;

@@ -48,6 +48,6 @@ static inline bool crosses(const struct finder *f, const struct ray *r, int axis
 }
 
 /* Adds the openings of a wall to the suggestion. */
-enum status find_openings(struct suggestion *s, const struct finder *f, int wall, struct err *err);
+enum status openings_find(struct suggestion *s, const struct finder *f, int wall, struct err *err);
 
 #endif

@@ -36,7 +36,7 @@ struct box {
     int walls[4];
 };
 
-void suggestion_release(struct suggestion *s)
+void suggest_release(struct suggestion *s)
 {
     if (!s) return;
     free(s->walls);
@@ -414,10 +414,10 @@ enum status suggest_plan(struct suggestion *s, const struct point_cloud *cloud, 
         s->ceiling = f.height;
         if (!st) st = cut_box(s, &f, &box, err);
     }
-    for (int w = 0; !st && w < s->wall_count; w++) st = find_openings(s, &f, w, err);
+    for (int w = 0; !st && w < s->wall_count; w++) st = openings_find(s, &f, w, err);
     for (int i = 0; i < f.face_count; i++) free(f.faces[i].cells);
     free(f.faces);
     ray_list_release(&f.rays);
-    if (st) suggestion_release(s);
+    if (st) suggest_release(s);
     return st;
 }

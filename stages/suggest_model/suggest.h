@@ -38,7 +38,7 @@ struct suggestion { /* walls 0..3 are the outer ones: south, west, north, east *
     int wall_count, opening_count, room_count;
 };
 
-void suggestion_release(struct suggestion *s);
+void suggest_release(struct suggestion *s);
 
 /* s is empty on entry, and again after a failure; the caller releases it. cloud and views are in the model's frame;
  * ceiling 0: unknown, estimated from the points of walls. ST_DATA: there is no wall on a side of the plan. */

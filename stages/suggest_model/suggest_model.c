@@ -161,7 +161,7 @@ static enum status add_windows(struct suggestion *s, const struct files *f, cons
     struct occupancy scene = {0};
     const double low[3] = {s->walls[1].face, s->walls[0].face, 0}, h = s->ceiling;
     const double high[3] = {s->walls[3].face, s->walls[2].face, h};
-    enum status st = rasters ? occupancy_make(&scene, cloud, low, high, SCENE_CELL * h, err)
+    enum status st = rasters ? raster_occupancy_make(&scene, cloud, low, high, SCENE_CELL * h, err)
                              : err_nomem(err, "walls", (size_t)s->wall_count * sizeof *rasters);
     for (int i = 0; !st && i < s->wall_count; i++) {
         const struct suggested_wall *w = &s->walls[i];
@@ -172,10 +172,10 @@ static enum status add_windows(struct suggestion *s, const struct files *f, cons
     struct walls walls = {.rasters = rasters, .count = s->wall_count, .scene = &scene, .scale = axes->scale};
     for (int v = 0; !st && v < set->view_count; v++) st = add_view(&walls, f, &set->views[v], prov, err);
     for (int i = 0; !st && i < s->wall_count; i++)
-        if (rasters[i].cells) st = suggest_windows(s, i, &rasters[i], params, err);
+        if (rasters[i].cells) st = windows_suggest(s, i, &rasters[i], params, err);
     for (int i = 0; rasters && i < s->wall_count; i++) wall_raster_release(&rasters[i]);
     free(rasters);
-    occupancy_release(&scene);
+    raster_occupancy_release(&scene);
     return st;
 }
 
@@ -208,7 +208,7 @@ static enum status suggest(const struct files *f, const struct suggest_params *p
                  "scenes/NAME/model.txt",
                  f->out);
     }
-    suggestion_release(&s);
+    suggest_release(&s);
     point_cloud_release(&cloud);
     scene_inputs_release(&in);
     return st;

@@ -19,8 +19,8 @@ static const double OFF = 0.03;           /* distance from the plane, of the hei
 static const double MIN_WEIGHT = 0.05;    /* of a vote without confidence */
 static const double MIN_LUMINANCE = 1e-4; /* added before the logarithm */
 
-enum status occupancy_make(struct occupancy *o, const struct point_cloud *cloud, const double low[3],
-                           const double high[3], double edge, struct err *err)
+enum status raster_occupancy_make(struct occupancy *o, const struct point_cloud *cloud, const double low[3],
+                                  const double high[3], double edge, struct err *err)
 {
     size_t count = 1;
     *o = (struct occupancy){.edge = edge};
@@ -45,7 +45,7 @@ enum status occupancy_make(struct occupancy *o, const struct point_cloud *cloud,
     return ST_OK;
 }
 
-void occupancy_release(struct occupancy *o)
+void raster_occupancy_release(struct occupancy *o)
 {
     if (!o) return;
     free(o->cells);

@@ -17,9 +17,9 @@ struct occupancy {
     int size[3];
     double low[3], edge;
 };
-enum status occupancy_make(struct occupancy *o, const struct point_cloud *cloud, const double low[3],
-                           const double high[3], double edge, struct err *err);
-void occupancy_release(struct occupancy *o);
+enum status raster_occupancy_make(struct occupancy *o, const struct point_cloud *cloud, const double low[3],
+                                  const double high[3], double edge, struct err *err);
+void raster_occupancy_release(struct occupancy *o);
 
 struct wall_cell {
     double on, beyond; /* votes of views whose depth is on the plane, or behind it; weighted by confidence */

@@ -293,7 +293,7 @@ static enum status try_region(struct suggestion *s, int wall, const struct wall_
     return replace(s, &o, err);
 }
 
-enum status suggest_windows(struct suggestion *s, int wall, const struct wall_raster *r,
+enum status windows_suggest(struct suggestion *s, int wall, const struct wall_raster *r,
                             const struct suggest_params *params, struct err *err)
 {
     const size_t cells = (size_t)r->across * (size_t)r->up;

@@ -7,7 +7,7 @@
 
 /* Replaces the openings of a wall: adds those that the views show, and removes those, found from points, that the views
  * contradict or show better. */
-enum status suggest_windows(struct suggestion *s, int wall, const struct wall_raster *raster,
+enum status windows_suggest(struct suggestion *s, int wall, const struct wall_raster *raster,
                             const struct suggest_params *params, struct err *err);
 
 #endif

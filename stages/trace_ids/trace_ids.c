@@ -125,8 +125,8 @@ static enum status trace_view(void *ctx, int i, struct err *err)
                  view->name);
     if (!st) st = view_ids_init(&ids, view->width, view->height, err);
     if (!st) view_trace_ids(&ids, &trace);
-    if (!st) st = find_jumps(&ids, &trace, &depth, &j->params, err);
-    if (!st) st = find_clutter(&ids, &trace, &depth, j->in.axes.scale, &j->params, err);
+    if (!st) st = view_jumps_find(&ids, &trace, &depth, &j->params, err);
+    if (!st) st = view_clutter_find(&ids, &trace, &depth, j->in.axes.scale, &j->params, err);
     if (!st) st = view_record_make(&record, &ids, &trace, &j->params, err);
     if (!st) st = view_record_write(&record, text, &j->prov, err);
     if (!st) st = view_ids_write(&ids, view, out, &j->prov, err);

@@ -127,8 +127,8 @@ static double height_of(const struct view_trace *t, double scale)
     return high > low ? (high - low) / scale : 0;
 }
 
-enum status find_clutter(struct view_ids *ids, const struct view_trace *t, const struct layered_depth *depth,
-                         double scale, const struct trace_params *params, struct err *err)
+enum status view_clutter_find(struct view_ids *ids, const struct view_trace *t, const struct layered_depth *depth,
+                              double scale, const struct trace_params *params, struct err *err)
 {
     struct clutter_job job = {ids->clutter, ids, depth, params, params->furniture * height_of(t, scale)};
     parallel_for((size_t)t->height, ROWS, judge_rows, &job);

@@ -74,8 +74,8 @@ static void mark_jumps(uint8_t *inside, const struct view_trace *t, const struct
         }
 }
 
-enum status find_jumps(struct view_ids *ids, const struct view_trace *t, const struct layered_depth *depth,
-                       const struct trace_params *params, struct err *err)
+enum status view_jumps_find(struct view_ids *ids, const struct view_trace *t, const struct layered_depth *depth,
+                            const struct trace_params *params, struct err *err)
 {
     const size_t pixels = (size_t)t->width * (size_t)t->height;
     uint8_t *inside = malloc(pixels);

@@ -29,7 +29,7 @@ enum status view_trace(struct view_trace *t, const struct model_rays *model, con
         return err_nomem(err, "a view of the model", pixels * sizeof *t->faces);
     }
     for (int i = 0; i < model->mesh.face_count; i++) {
-        solid_face_inverse_depth(t->planes[i], &model->mesh.faces[i], &t->view);
+        model_face_inverse_depth(t->planes[i], &model->mesh.faces[i], &t->view);
         for (int k = 0; k < 3; k++) t->planes[i][k] *= axes->scale;
     }
     t->in_solid = model_rays_enclose(model, t->view.center);

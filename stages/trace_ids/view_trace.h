@@ -33,11 +33,11 @@ static inline double view_trace_inverse_depth(const struct view_trace *t, uint32
 void view_trace_ids(struct view_ids *ids, const struct view_trace *t);
 
 /* Sets ids->jump. depth: of the view, for the pixels that the view does not have. */
-enum status find_jumps(struct view_ids *ids, const struct view_trace *t, const struct layered_depth *depth,
-                       const struct trace_params *params, struct err *err);
+enum status view_jumps_find(struct view_ids *ids, const struct view_trace *t, const struct layered_depth *depth,
+                            const struct trace_params *params, struct err *err);
 
 /* Sets ids->clutter. scale: model units per scene unit. */
-enum status find_clutter(struct view_ids *ids, const struct view_trace *t, const struct layered_depth *depth,
-                         double scale, const struct trace_params *params, struct err *err);
+enum status view_clutter_find(struct view_ids *ids, const struct view_trace *t, const struct layered_depth *depth,
+                              double scale, const struct trace_params *params, struct err *err);
 
 #endif

@@ -177,7 +177,8 @@ static enum status sample(const struct request *r, struct err *err)
     for (int i = 0; i < im.count; i++) /* colours are half in the file, as in all products */
         if (strlen(im.planes[i].name) == 1 && strchr("RGBA", im.planes[i].name[0])) im.planes[i].type = EXR_HALF;
     im.codec = codec;
-    if (!st) st = strcmp(r->direction, "write") ? exr_write(&im, path, NULL, err) : make_folders(r->folder, err);
+    if (!st)
+        st = strcmp(r->direction, "write") ? exr_write(&im, path, NULL, err) : outfile_make_folders(r->folder, err);
     if (!st) st = time_it(r, &im, path, &seconds, &back, err);
     if (!st && !back.count) st = exr_read(&back, path, NULL, 0, err);
     if (!st && stat(path, &file)) st = err_errno(err, "read", path);

@@ -124,7 +124,7 @@ struct times {
 static void release(struct view *v)
 {
     for (int k = 0; k < MERGE_MAX_EXPOSURES; k++) photo_release(&v->photos[k]);
-    merged_release(&v->merged);
+    merge_release(&v->merged);
 }
 
 static enum status merge_once(struct view *v, struct times *times, struct err *err)

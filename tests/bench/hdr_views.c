@@ -180,7 +180,7 @@ static enum status sample(const struct request *r, struct err *err)
             r->width,
             r->height,
             {focal, focal, r->width / 2.0, r->height / 2.0, -1 / 24.0, 1 / 1920.0, -1 / 322560.0, 1 / 92897280.0}};
-        st = photo_views(b->views, &b->view_count, &b->lens, r->max_megapixels, 110, err);
+        st = view_cameras_of_photo(b->views, &b->view_count, &b->lens, r->max_megapixels, 110, err);
     }
     for (int i = 0; !st && i < r->photos; i++) {
         snprintf(b->work[i].id, sizeof b->work[i].id, "p%d", i);

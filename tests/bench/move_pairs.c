@@ -67,7 +67,7 @@ static void draw_some(void *ctx, size_t begin, size_t end, int thread)
         if (!b->v->region[b->end].cells[i].valid) continue;
         const struct view camera =
             shot_end_camera(&b->v->shot, &b->v->move.end[b->end], ends_candidate(b->v, b->end, (int)i));
-        depth_picture_make(&b->pictures[b->end][i], b->scene, &camera, b->params->parallax_side, &b->errors[i]);
+        parallax_picture_make(&b->pictures[b->end][i], b->scene, &camera, b->params->parallax_side, &b->errors[i]);
     }
 }
 
@@ -78,10 +78,10 @@ static enum status measure_anew(struct pair *p, const struct brute *b, const str
     enum status st = ST_OK;
     for (int k = 0; !st && k < 2; k++) {
         const struct view camera = shot_end_camera(&b->v->shot, &b->v->move.end[k], at[k]);
-        st = depth_picture_make(&pictures[k], b->scene, &camera, b->params->parallax_side, err);
+        st = parallax_picture_make(&pictures[k], b->scene, &camera, b->params->parallax_side, err);
     }
     if (!st) p->parallax = parallax_between(&pictures[0], &pictures[1], parallax_tolerance(b->scene));
-    for (int k = 0; k < 2; k++) depth_picture_release(&pictures[k]);
+    for (int k = 0; k < 2; k++) parallax_picture_release(&pictures[k]);
     return st;
 }
 
@@ -189,7 +189,7 @@ static enum status best_of_all(struct found *f, const struct layer_scene *scene,
     }
     f->renders += test.renders;
     for (int k = 0; k < 2; k++) {
-        for (int i = 0; b.pictures[k] && i < b.cells[k]; i++) depth_picture_release(&b.pictures[k][i]);
+        for (int i = 0; b.pictures[k] && i < b.cells[k]; i++) parallax_picture_release(&b.pictures[k][i]);
         free(b.pictures[k]);
     }
     free(b.pairs);
@@ -206,10 +206,10 @@ static enum status judge(double *parallax, const struct found *f, const struct l
     enum status st = ST_OK;
     for (int k = 0; !st && k < 2; k++) {
         const struct view camera = shot_end_camera(&v->shot, &v->move.end[k], f->ends.at[k]);
-        st = depth_picture_make(&pictures[k], scene, &camera, JUDGE_SIDE, err);
+        st = parallax_picture_make(&pictures[k], scene, &camera, JUDGE_SIDE, err);
     }
     if (!st) *parallax = parallax_between(&pictures[0], &pictures[1], parallax_tolerance(scene));
-    for (int k = 0; k < 2; k++) depth_picture_release(&pictures[k]);
+    for (int k = 0; k < 2; k++) parallax_picture_release(&pictures[k]);
     return st;
 }
 

@@ -103,7 +103,7 @@ static enum status make_model(struct solid_mesh *mesh, struct house *h, struct e
     enum status st = ST_OK;
     for (int j = 0; !st && j <= h->rows; j++)
         for (int i = 0; !st && i <= h->columns; i++) st = add_cell(h, i, j, err);
-    return st ? st : solids_unite(mesh, &h->solids, NULL, err);
+    return st ? st : unite_solids(mesh, &h->solids, NULL, err);
 }
 
 /* Camera k of the house: in room k / VIEWS, on the ring, looking across the room. */
@@ -241,7 +241,7 @@ static enum status fill_view(struct image *im, struct layered_depth *d, const st
         struct depth_segment *s = &d->segments[d->segment_count];
         *s = (struct depth_segment){
             .id = (uint32_t)d->segment_count + 1, .pixels = segment[f], .sigma = 0.002, .confidence = 1};
-        solid_face_inverse_depth(s->plane, &model->mesh.faces[f - 1], view);
+        model_face_inverse_depth(s->plane, &model->mesh.faces[f - 1], view);
         segment[f] = d->segment_count++;
     }
     for (size_t i = 0; i < pixels; i++) {

@@ -139,7 +139,7 @@ static enum status align(struct job *j, struct err *err)
     if (!st && count != truth_count)
         st = err_set(err, ST_DATA, "%s has %d points and %s has %d, wanted the same.", j->points, count,
                      j->truth_points, truth_count);
-    if (!st) st = align_cameras(&j->truth_from_scene, found, truth, count, err);
+    if (!st) st = camera_alignment_find(&j->truth_from_scene, found, truth, count, err);
     free(truth);
     free(found);
     return st;

@@ -94,7 +94,7 @@ int main(int argc, char **argv)
     double seconds = 0, check = 0, triangulate = 0;
     if (!err.status) {
         double began = clock_seconds();
-        solids_unite(&mesh, &h.list, NULL, &err);
+        unite_solids(&mesh, &h.list, NULL, &err);
         seconds = clock_seconds() - began;
         began = clock_seconds();
         if (!err.status) solid_mesh_check(&mesh, 0, &report, &err);

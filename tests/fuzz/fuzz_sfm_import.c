@@ -80,7 +80,7 @@ static void check(const struct imported *in)
     struct err err = ERR_INIT;
     in_folder(out, sizeof out, "out");
     in_folder(lenses, sizeof lenses, "out/lenses.txt");
-    if (imported_write(in, out, NULL, &err) || camera_set_read(&set, out, NULL, &err) ||
+    if (import_write(in, out, NULL, &err) || camera_set_read(&set, out, NULL, &err) ||
         lens_list_read(&list, lenses, NULL, &err)) {
         fprintf(stderr, "%s\n", err.text);
         abort();
@@ -136,7 +136,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         check(&in);
     else if (!err.text[0] || in.model.images || in.lenses.lenses)
         abort();
-    imported_release(&in);
+    import_release(&in);
     sfm_model_release(&model);
     free(name);
     return 0;

@@ -44,14 +44,14 @@ static void check_log(const char *path)
     struct err err = ERR_INIT;
     char line[100];
 
-    enum status st = feature_counts_read(&counts, path, &err);
+    enum status st = colmap_counts_read(&counts, path, &err);
     if (st && (st != err.status || !strstr(err.text, path) || counts.list)) abort();
     for (int i = 0; i < counts.count; i++)
         if (!counts.list[i].name) abort();
     colmap_log_connected(path);
     colmap_log_last_line(line, sizeof line, path);
     if (strlen(line) >= sizeof line || strchr(line, '\n')) abort();
-    feature_counts_release(&counts);
+    colmap_counts_release(&counts);
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)

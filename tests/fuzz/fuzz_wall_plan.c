@@ -17,7 +17,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         struct measured_plan plan = {0};
         struct wall_errors errors = {0};
         struct err err = ERR_INIT;
-        if (measured_plan_read(&plan, path, (enum measured_plan_kind)kind, &err)) {
+        if (wall_plan_read(&plan, path, (enum measured_plan_kind)kind, &err)) {
             if (!strstr(err.text, path) || plan.faces.count || plan.openings.count) abort();
             continue;
         }
@@ -27,7 +27,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         for (int i = 0; i < errors.openings.count; i++)
             if (!isfinite(errors.openings.errors[i])) abort();
         wall_errors_release(&errors);
-        measured_plan_release(&plan);
+        wall_plan_release(&plan);
     }
     unlink(path);
     return 0;

@@ -263,7 +263,7 @@ static enum status write_view(const struct room_view *rv, int brackets, const ch
     struct render_job job = {rv, &picture, exr_find(&truth, "Z")->f, exr_find(&truth, "id")->u};
     parallel_for((size_t)rv->view.height, 8, render_rows, &job);
     image_to_srgb8(&picture, rgb);
-    exr_set_camera(&truth, &rv->view);
+    view_image_set_camera(&truth, &rv->view);
     snprintf(path, sizeof path, "%s/truth/%s.exr", folder, rv->name);
     if ((st = exr_write(&truth, path, prov, err))) goto done;
     for (int k = 0; k < brackets && !st; k++) st = write_bracket(rv, &picture, k, brackets, folder, err);

@@ -19,7 +19,7 @@ static bool between_rooms(const struct plan *plan, int wall, int *side)
     return sides == 3;
 }
 
-bool opening_filling(const struct plan *plan, const struct plan_opening *o, double off[2])
+bool layout_opening_filling(const struct plan *plan, const struct plan_opening *o, double off[2])
 {
     const double t = plan->walls[o->wall].thickness;
     int side;
@@ -37,38 +37,40 @@ static enum status add_filling(struct solid_list *list, const struct plan *p, co
                                const double off[2], struct err *err)
 {
     const struct plan_wall *w = &p->walls[o->wall];
-    const struct plan_line in = wall_face(w, SIDE_IN);
+    const struct plan_line in = plan_wall_face(w, SIDE_IN);
     const bool glass = o->fill == FILL_GLASS;
     const char *kind = glass ? "glass" : opening_word(o->kind), *leaf = glass ? "" : "leaf-";
     char body[NAME_SIZE];
     struct shape s = {0};
     snprintf(body, sizeof body, glass ? "glass/%s" : BODY "%.0s", o->name);
-    add_side(&s, in.n[0], in.n[1], 0, in.c - off[0], "%s/%s/%sin", kind, o->name, leaf);
-    add_side(&s, -in.n[0], -in.n[1], 0, off[1] - in.c, "%s/%s/%sout", kind, o->name, leaf);
+    shape_add_side(&s, in.n[0], in.n[1], 0, in.c - off[0], "%s/%s/%sin", kind, o->name, leaf);
+    shape_add_side(&s, -in.n[0], -in.n[1], 0, off[1] - in.c, "%s/%s/%sout", kind, o->name, leaf);
     for (int k = 0; k < 2; k++) {
         const double along = w->sign * (o->s[k] + w->origin), out = (k == 1) == (w->sign > 0) ? 1 : -1;
-        add_side(&s, out * w->d[0], out * w->d[1], 0, out * along, "%s/%s/%s", kind, o->name, reveal_side(w, k));
+        shape_add_side(&s, out * w->d[0], out * w->d[1], 0, out * along, "%s/%s/%s", kind, o->name,
+                       shape_reveal_side(w, k));
     }
-    add_side(&s, 0, 0, -1, -o->z[0], "%s/%s/sill", kind, o->name);
-    add_side(&s, 0, 0, 1, o->z[1], "%s/%s/head", kind, o->name);
-    return add_shape(list, body, &s, err);
+    shape_add_side(&s, 0, 0, -1, -o->z[0], "%s/%s/sill", kind, o->name);
+    shape_add_side(&s, 0, 0, 1, o->z[1], "%s/%s/head", kind, o->name);
+    return shape_add(list, body, &s, err);
 }
 
 enum status layout_solids(struct solid_list *list, const struct plan *plan, struct err *err)
 {
     *list = (struct solid_list){0};
-    enum status st = add_walls(list, plan, err);
+    enum status st = layout_add_walls(list, plan, err);
     for (int i = 0; i < plan->room_count && !st; i++)
-        if (!plan->rooms[i].removed) st = add_room(list, plan, &plan->rooms[i], err);
+        if (!plan->rooms[i].removed) st = layout_add_room(list, plan, &plan->rooms[i], err);
     for (int i = 0; i < plan->box_count && !st; i++)
-        if (!plan->boxes[i].removed) st = add_box(list, &plan->boxes[i], err);
+        if (!plan->boxes[i].removed) st = layout_add_box(list, &plan->boxes[i], err);
     for (int i = 0; i < plan->opening_count && !st; i++) {
         const struct plan_opening *o = &plan->openings[i];
         double off[2];
-        if (opening_is_there(plan, o) && opening_filling(plan, o, off)) st = add_filling(list, plan, o, off, err);
+        if (plan_opening_is_there(plan, o) && layout_opening_filling(plan, o, off))
+            st = add_filling(list, plan, o, off, err);
     }
     for (int i = 0; i < plan->slot_count && !st; i++)
-        if (slot_is_there(plan, &plan->slots[i])) st = add_slot(list, plan, &plan->slots[i], err);
+        if (plan_slot_is_there(plan, &plan->slots[i])) st = layout_add_slot(list, plan, &plan->slots[i], err);
     if (st) solid_list_release(list);
     return st;
 }

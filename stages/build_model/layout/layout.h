@@ -17,6 +17,6 @@ enum status layout_solids(struct solid_list *list, const struct plan *plan, stru
 
 /* Whether a leaf or glass is in the opening, and where: from off[0] to off[1] behind the wall's in face. A window's
  * glass is flush with the outer face; a window between rooms and an interior one have none, unless they were filled. */
-bool opening_filling(const struct plan *plan, const struct plan_opening *o, double off[2]);
+bool layout_opening_filling(const struct plan *plan, const struct plan_opening *o, double off[2]);
 
 #endif

@@ -12,7 +12,7 @@ void shape_release(struct shape *s)
     *s = (struct shape){0};
 }
 
-void add_side(struct shape *s, double x, double y, double z, double offset, const char *fmt, ...)
+void shape_add_side(struct shape *s, double x, double y, double z, double offset, const char *fmt, ...)
 {
     va_list args;
     if (s->count == s->capacity) {
@@ -31,7 +31,7 @@ void add_side(struct shape *s, double x, double y, double z, double offset, cons
     s->h[s->count++] = (struct half_space){{x, y, z}, offset, NULL};
 }
 
-enum status add_shape(struct solid_list *list, const char *body, struct shape *s, struct err *err)
+enum status shape_add(struct solid_list *list, const char *body, struct shape *s, struct err *err)
 {
     for (int i = 0; i < s->count; i++) s->h[i].name = s->names[i];
     const enum status st = s->no_memory ? err_nomem(err, "a solid", (size_t)s->capacity * sizeof *s->names)
@@ -40,7 +40,7 @@ enum status add_shape(struct solid_list *list, const char *body, struct shape *s
     return st;
 }
 
-const char *reveal_side(const struct plan_wall *w, int upper_bound_of_hole)
+const char *shape_reveal_side(const struct plan_wall *w, int upper_bound_of_hole)
 {
     return (w->sign > 0) == (upper_bound_of_hole == 1) ? "right" : "left";
 }

@@ -33,12 +33,13 @@ static void slab_sides(struct shape *s, const struct slab *b, const struct part_
         const struct plan_line l = c[i].line;
         const struct plan_slot *slot = c[i].wall <= SLOT_SIDE ? &p->slots[SLOT_SIDE - c[i].wall] : NULL;
         if (slot)
-            add_side(s, l.n[0], l.n[1], 0, l.c, "%s/%s/%s", opening_word(slot->kind), slot->name, SIDES[c[i].side]);
+            shape_add_side(s, l.n[0], l.n[1], 0, l.c, "%s/%s/%s", opening_word(slot->kind), slot->name,
+                           SIDES[c[i].side]);
         else if (c[i].wall >= 0 && !p->walls[c[i].wall].removed)
-            add_side(s, l.n[0], l.n[1], 0, l.c, "wall/%s/%s", p->walls[c[i].wall].name,
-                     c[i].side == SIDE_IN ? "in" : "out");
+            shape_add_side(s, l.n[0], l.n[1], 0, l.c, "wall/%s/%s", p->walls[c[i].wall].name,
+                           c[i].side == SIDE_IN ? "in" : "out");
         else
-            add_side(s, l.n[0], l.n[1], 0, l.c, "%s/%s/side", b->plane >= 0 ? "ceiling" : "floor", b->room->name);
+            shape_add_side(s, l.n[0], l.n[1], 0, l.c, "%s/%s/side", b->plane >= 0 ? "ceiling" : "floor", b->room->name);
     }
 }
 
@@ -58,7 +59,7 @@ static bool is_lower(const struct plan_top *top, int plane, const struct part_co
 static void add_plane(struct shape *s, const double plane[3], double by, bool down, const char *name)
 {
     const double sign = down ? 1 : -1;
-    add_side(s, -sign * plane[1], -sign * plane[2], sign, sign * (plane[0] + by), "%s", name);
+    shape_add_side(s, -sign * plane[1], -sign * plane[2], sign, sign * (plane[0] + by), "%s", name);
 }
 
 /* Adds a slab over a polygon. One of a gable's two planes begins at that plane and ends below the upper faces of both:
@@ -77,10 +78,10 @@ static enum status add_slab(void *ctx, const struct part_corner *c, int n)
         add_plane(&s, r->lower.a[b->plane], 0, false, lower);
         for (int i = 0; i < r->lower.count; i++) add_plane(&s, r->lower.a[i], r->slab, true, upper);
     } else {
-        add_side(&s, 0, 0, 1, r->floor, "floor/%s", r->name);
-        add_side(&s, 0, 0, -1, r->slab - r->floor, "floor/%s/bottom", r->name);
+        shape_add_side(&s, 0, 0, 1, r->floor, "floor/%s", r->name);
+        shape_add_side(&s, 0, 0, -1, r->slab - r->floor, "floor/%s/bottom", r->name);
     }
-    return add_shape(b->list, BODY, &s, b->err);
+    return shape_add(b->list, BODY, &s, b->err);
 }
 
 /* The footprint of a slot, counter-clockwise; sides are labelled as its reveals. */
@@ -107,7 +108,7 @@ static enum status add_around_slots(struct slab *b, const struct part_corner *c,
     enum status st = outlines && slots ? ST_OK : err_nomem(b->err, "openings of a room", (size_t)p->slot_count);
     for (int i = 0; i < p->slot_count && !st; i++) {
         const struct plan_slot *o = &p->slots[i];
-        if (&p->rooms[o->room] != b->room || o->kind != b->opening || !slot_is_there(p, o)) continue;
+        if (&p->rooms[o->room] != b->room || o->kind != b->opening || !plan_slot_is_there(p, o)) continue;
         slot_outline(p, o, outlines[count]);
         slots[count] = (struct room_part){outlines[count], 4};
         count++;
@@ -118,7 +119,7 @@ static enum status add_around_slots(struct slab *b, const struct part_corner *c,
     return st;
 }
 
-enum status add_room(struct solid_list *list, const struct plan *p, const struct plan_room *r, struct err *err)
+enum status layout_add_room(struct solid_list *list, const struct plan *p, const struct plan_room *r, struct err *err)
 {
     enum status st = ST_OK;
     for (int i = 0; i < r->part_count && !st; i++)
@@ -148,15 +149,15 @@ static enum status add_slot_part(struct solid_list *list, const struct plan *p, 
     add_plane(&s, top->a[plane], heights[0], false, faces[0]);
     for (int i = 0; i < top->count; i++) add_plane(&s, top->a[i], heights[1], true, faces[1]);
     for (int i = 0; i < 4; i++)
-        add_side(&s, c[i].line.n[0], c[i].line.n[1], 0, c[i].line.c, "%s/%s/%s", kind, o->name, SIDES[c[i].side]);
-    return add_shape(list, body, &s, err);
+        shape_add_side(&s, c[i].line.n[0], c[i].line.n[1], 0, c[i].line.c, "%s/%s/%s", kind, o->name, SIDES[c[i].side]);
+    return shape_add(list, body, &s, err);
 }
 
 /* A skylight's glass or leaf is flush with the ceiling's upper face, a hatch's with the floor. */
-enum status add_slot(struct solid_list *list, const struct plan *p, const struct plan_slot *o, struct err *err)
+enum status layout_add_slot(struct solid_list *list, const struct plan *p, const struct plan_slot *o, struct err *err)
 {
     const struct plan_room *r = &p->rooms[o->room];
-    const struct plan_top floor = level_top(r->floor), *top = o->kind == OPENING_HATCH ? &floor : &r->lower;
+    const struct plan_top floor = plan_level_top(r->floor), *top = o->kind == OPENING_HATCH ? &floor : &r->lower;
     const double upper = o->kind == OPENING_HATCH ? 0 : r->slab, heights[2] = {upper - o->leaf, upper};
     enum status st = ST_OK;
     if (o->fill != FILL_LEAF && o->fill != FILL_GLASS) return ST_OK;
@@ -166,7 +167,7 @@ enum status add_slot(struct solid_list *list, const struct plan *p, const struct
 
 /* ------------------------------------------------------------------------------------------------------------ boxes */
 
-enum status add_box(struct solid_list *list, const struct plan_box *b, struct err *err)
+enum status layout_add_box(struct solid_list *list, const struct plan_box *b, struct err *err)
 {
     static const char *const names[4] = {"left", "right", "front", "back"};
     const double turn = fmod(b->turn, 360) * DEGREE;
@@ -179,9 +180,9 @@ enum status add_box(struct solid_list *list, const struct plan_box *b, struct er
         const double n[2] = {axis ? -out * s : out * c, axis ? out * c : out * s};
         const double offset = b->turn == 0 ? (k % 2 ? b->high[axis] : -b->low[axis])
                                            : n[0] * middle[0] + n[1] * middle[1] + 0.5 * (b->high[axis] - b->low[axis]);
-        add_side(&sh, n[0], n[1], 0, offset, "box/%s/%s", b->name, names[k]);
+        shape_add_side(&sh, n[0], n[1], 0, offset, "box/%s/%s", b->name, names[k]);
     }
-    add_side(&sh, 0, 0, -1, -b->low[2], "box/%s/bottom", b->name);
-    add_side(&sh, 0, 0, 1, b->high[2], "box/%s/top", b->name);
-    return add_shape(list, BODY, &sh, err);
+    shape_add_side(&sh, 0, 0, -1, -b->low[2], "box/%s/bottom", b->name);
+    shape_add_side(&sh, 0, 0, 1, b->high[2], "box/%s/top", b->name);
+    return shape_add(list, BODY, &sh, err);
 }

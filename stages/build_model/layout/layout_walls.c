@@ -64,7 +64,7 @@ static enum status wall_parts_make(struct wall_parts *w, const struct plan *p, s
     }
     for (int i = 0; i < p->opening_count; i++) {
         const struct plan_opening *o = &p->openings[i];
-        if (!opening_is_there(p, o)) continue;
+        if (!plan_opening_is_there(p, o)) continue;
         w->openings[n++] = o;
         w->first[o->wall + 1]++;
     }
@@ -80,7 +80,7 @@ static enum status wall_parts_make(struct wall_parts *w, const struct plan *p, s
                     continue;
                 }
                 const int at = w->first_top[wall] + w->filled[w->first_top[wall]]++;
-                room_span(p, r, e, wall, w->tops[at].s);
+                plan_room_span(p, r, e, wall, w->tops[at].s);
                 w->tops[at].top = &r->lower;
             }
         }
@@ -150,7 +150,7 @@ static struct plan_line column_line(const struct column *c, int upper, int *face
 {
     const struct plan_wall *w = &c->parts->plan->walls[c->wall];
     const int end = (upper == 1) == (w->sign > 0) ? END_END : END_START;
-    if (upper ? c->last : c->first) return wall_cap(c->parts->plan, c->wall, end, face_wall, face_side);
+    if (upper ? c->last : c->first) return plan_wall_cap(c->parts->plan, c->wall, end, face_wall, face_side);
     const double along = w->sign * (c->s[upper] + w->origin), out = end == END_END ? 1 : -1;
     *face_wall = -1;
     return (struct plan_line){{out * w->d[0], out * w->d[1]}, out * along};
@@ -165,27 +165,28 @@ static void add_column_side(struct shape *sh, const struct column *c, int upper,
     const struct plan_line cap = column_line(c, upper, &face_wall, &face_side);
     if (upper ? c->last : c->first) {
         if (face_wall >= 0 && !p->walls[face_wall].removed)
-            add_side(sh, cap.n[0], cap.n[1], 0, cap.c, "wall/%s/%s", p->walls[face_wall].name,
-                     face_side == SIDE_IN ? "in" : "out");
+            shape_add_side(sh, cap.n[0], cap.n[1], 0, cap.c, "wall/%s/%s", p->walls[face_wall].name,
+                           face_side == SIDE_IN ? "in" : "out");
         else
-            add_side(sh, cap.n[0], cap.n[1], 0, cap.c, "wall/%s/%s", w->name, end == END_END ? "end" : "start");
+            shape_add_side(sh, cap.n[0], cap.n[1], 0, cap.c, "wall/%s/%s", w->name, end == END_END ? "end" : "start");
         return;
     }
     const struct plan_opening *o = beyond(c, upper, z0, z1, &count);
     if (o && c->corner) { /* the reveal may be the face of the wall at that corner */
         int other, far;
-        wall_cap(p, c->wall, !end, &other, &far);
+        plan_wall_cap(p, c->wall, !end, &other, &far);
         if (other >= 0 && !p->walls[other].removed && square(w, &p->walls[other])) {
-            const struct plan_line face = wall_face(&p->walls[other], !far);
-            add_side(sh, face.n[0], face.n[1], 0, face.c, "wall/%s/%s", p->walls[other].name,
-                     far == SIDE_OUT ? "in" : "out");
+            const struct plan_line face = plan_wall_face(&p->walls[other], !far);
+            shape_add_side(sh, face.n[0], face.n[1], 0, face.c, "wall/%s/%s", p->walls[other].name,
+                           far == SIDE_OUT ? "in" : "out");
             return;
         }
     }
     if (o)
-        add_side(sh, cap.n[0], cap.n[1], 0, cap.c, "%s/%s/%s", opening_word(o->kind), o->name, reveal_side(w, !upper));
+        shape_add_side(sh, cap.n[0], cap.n[1], 0, cap.c, "%s/%s/%s", opening_word(o->kind), o->name,
+                       shape_reveal_side(w, !upper));
     else
-        add_side(sh, cap.n[0], cap.n[1], 0, cap.c, "wall/%s/top", w->name); /* a step of the top, where visible */
+        shape_add_side(sh, cap.n[0], cap.n[1], 0, cap.c, "wall/%s/top", w->name); /* a step of the top, where visible */
 }
 
 /* A piece of a column, from z0 (the head of `below`, or the wall's foot) up to the sill of `above`, or to z1 or the
@@ -195,29 +196,30 @@ static enum status add_piece(struct solid_list *list, const struct column *c, do
                              struct err *err)
 {
     const struct plan_wall *w = &c->parts->plan->walls[c->wall];
-    const struct plan_line in = wall_face(w, SIDE_IN), out = wall_face(w, SIDE_OUT);
+    const struct plan_line in = plan_wall_face(w, SIDE_IN), out = plan_wall_face(w, SIDE_OUT);
     struct shape s = {0};
-    add_side(&s, in.n[0], in.n[1], 0, in.c, "wall/%s/in", w->name);
-    add_side(&s, out.n[0], out.n[1], 0, out.c, "wall/%s/out", w->name);
+    shape_add_side(&s, in.n[0], in.n[1], 0, in.c, "wall/%s/in", w->name);
+    shape_add_side(&s, out.n[0], out.n[1], 0, out.c, "wall/%s/out", w->name);
     add_column_side(&s, c, 0, z0, z1);
     add_column_side(&s, c, 1, z0, z1);
     for (int i = 0; i < c->corners; i++) { /* a cut along a room's outline is a step of the top, where visible */
         const struct part_corner *o = &c->outline[i];
-        if (o->wall != COLUMN_SIDE) add_side(&s, o->line.n[0], o->line.n[1], 0, o->line.c, "wall/%s/top", w->name);
+        if (o->wall != COLUMN_SIDE)
+            shape_add_side(&s, o->line.n[0], o->line.n[1], 0, o->line.c, "wall/%s/top", w->name);
     }
     if (below)
-        add_side(&s, 0, 0, -1, -z0, "%s/%s/head", opening_word(below->kind), below->name);
+        shape_add_side(&s, 0, 0, -1, -z0, "%s/%s/head", opening_word(below->kind), below->name);
     else
-        add_side(&s, 0, 0, -1, -z0, "wall/%s/%s", w->name, cut ? "cut" : "bottom");
+        shape_add_side(&s, 0, 0, -1, -z0, "wall/%s/%s", w->name, cut ? "cut" : "bottom");
     if (above)
-        add_side(&s, 0, 0, 1, z1, "%s/%s/sill", opening_word(above->kind), above->name);
+        shape_add_side(&s, 0, 0, 1, z1, "%s/%s/sill", opening_word(above->kind), above->name);
     else if (z1 < HUGE_VAL)
-        add_side(&s, 0, 0, 1, z1, "wall/%s/cut", w->name);
+        shape_add_side(&s, 0, 0, 1, z1, "wall/%s/cut", w->name);
     for (int i = 0; !above && i < c->top->count; i++) {
         const double *a = c->top->a[i];
-        add_side(&s, -a[1], -a[2], 1, a[0], "wall/%s/top", w->name);
+        shape_add_side(&s, -a[1], -a[2], 1, a[0], "wall/%s/top", w->name);
     }
-    return add_shape(list, BODY, &s, err);
+    return shape_add(list, BODY, &s, err);
 }
 
 static int compare_heights(const void *a, const void *b)
@@ -233,7 +235,7 @@ static bool reaches(const struct column *c, double z)
     for (int i = 0; i < c->top->count; i++) { /* of the lowest plane's highest corner */
         const struct plan_top one = {{{c->top->a[i][0], c->top->a[i][1], c->top->a[i][2]}}, 1};
         double most = -HUGE_VAL;
-        for (int k = 0; k < c->corners; k++) most = fmax(most, top_at(&one, c->outline[k].p));
+        for (int k = 0; k < c->corners; k++) most = fmax(most, plan_top_at(&one, c->outline[k].p));
         high = i ? fmin(high, most) : most;
     }
     return high > z + NEAR;
@@ -347,7 +349,7 @@ static enum status add_in_part(struct cutting *t, const struct part_corner quad[
 static enum status add_free_column(struct cutting *t, const struct part_corner quad[4])
 {
     const struct plan *p = t->column->parts->plan;
-    const struct plan_top own = level_top(p->walls[t->column->wall].top);
+    const struct plan_top own = plan_level_top(p->walls[t->column->wall].top);
     struct room_part *all = NULL;
     int count = 0;
     enum status st = ST_OK;
@@ -372,11 +374,11 @@ static void column_outline(const struct column *c, struct part_corner quad[4])
     const struct plan_wall *w = &c->parts->plan->walls[c->wall];
     int wall, side;
     const bool up = w->sign > 0; /* S grows from start to end, so the out face comes before the end's side */
-    const struct plan_line lines[4] = {column_line(c, !up, &wall, &side), wall_face(w, SIDE_IN),
-                                       column_line(c, up, &wall, &side), wall_face(w, SIDE_OUT)};
+    const struct plan_line lines[4] = {column_line(c, !up, &wall, &side), plan_wall_face(w, SIDE_IN),
+                                       column_line(c, up, &wall, &side), plan_wall_face(w, SIDE_OUT)};
     for (int i = 0; i < 4; i++) {
         quad[i] = (struct part_corner){.line = lines[i], .wall = COLUMN_SIDE};
-        line_cross(lines[i], lines[(i + 1) % 4], quad[i].p);
+        plan_line_cross(lines[i], lines[(i + 1) % 4], quad[i].p);
     }
 }
 
@@ -388,7 +390,7 @@ static enum status add_whole_column(struct cutting *t, const struct plan_top **t
     column_outline(c, quad);
     const int count = tops_above(c, tops);
     if (!count && !w->has_top) return add_free_column(t, quad);
-    const struct plan_top own = level_top(w->top);
+    const struct plan_top own = plan_level_top(w->top);
     enum status st = ST_OK;
     for (int k = 0; k < (count ? count : 1) && !st; k++) {
         c->top = count ? tops[k] : &own;
@@ -415,7 +417,7 @@ static int column_limits(const struct wall_parts *parts, int wall, const double 
     s[n++] = span[1];
     for (int i = parts->first[wall]; i < parts->first[wall + 1]; i++)
         for (int k = 0; k < 2; k++) s[n++] = parts->openings[i]->s[k];
-    const struct plan_top own = level_top(w->top);
+    const struct plan_top own = plan_level_top(w->top);
     bool level = true; /* the same height all along, also where it stands in other rooms */
     for (int i = 0; i < parts->plan->room_count; i++)
         level &= parts->plan->rooms[i].removed || same_top(&parts->plan->rooms[i].lower, &own);
@@ -437,8 +439,8 @@ static enum status add_wall(struct solid_list *list, const struct wall_parts *pa
     int kept = 0;
     enum status st = s && cuts && holes && tops ? ST_OK : err_nomem(err, "a wall's pieces", room * sizeof *s);
     if (!st) {
-        wall_span(parts->plan, wall, span);
-        wall_reach(parts->plan, wall, reach);
+        plan_wall_span(parts->plan, wall, span);
+        plan_wall_reach(parts->plan, wall, reach);
         kept = column_limits(parts, wall, span, s);
     }
     /* The first and the last column reach to the caps, unless an opening begins at the corner: then the corner is a
@@ -466,7 +468,7 @@ static enum status add_wall(struct solid_list *list, const struct wall_parts *pa
     return st;
 }
 
-enum status add_walls(struct solid_list *list, const struct plan *plan, struct err *err)
+enum status layout_add_walls(struct solid_list *list, const struct plan *plan, struct err *err)
 {
     struct wall_parts parts;
     enum status st = wall_parts_make(&parts, plan, err);

@@ -58,14 +58,14 @@ static void put_opening(const struct sheet *s, const struct plan *p, const struc
 {
     const struct plan_wall *w = &p->walls[o->wall];
     double c[4][2], line[2][2], off[2];
-    for (int k = 0; k < 4; k++) wall_point(w, o->s[k == 1 || k == 2], k >= 2 ? w->thickness : 0, c[k]);
+    for (int k = 0; k < 4; k++) plan_wall_point(w, o->s[k == 1 || k == 2], k >= 2 ? w->thickness : 0, c[k]);
     put_polygon(s, c, 4, o->z[0] > w->foot + 0.01 ? "window" : "hole");
-    if (opening_filling(p, o, off)) {
-        for (int k = 0; k < 2; k++) wall_point(w, o->s[k], 0.5 * (off[0] + off[1]), line[k]);
+    if (layout_opening_filling(p, o, off)) {
+        for (int k = 0; k < 2; k++) plan_wall_point(w, o->s[k], 0.5 * (off[0] + off[1]), line[k]);
         put_polygon(s, line, 2, o->fill == FILL_GLASS ? "glass" : "leaf");
     }
     double at[2];
-    wall_point(w, 0.5 * (o->s[0] + o->s[1]), w->thickness + 0.14, at);
+    plan_wall_point(w, 0.5 * (o->s[0] + o->s[1]), w->thickness + 0.14, at);
     put_name(s, at[0], at[1], "small", readable(w->d), o->name);
 }
 
@@ -116,7 +116,7 @@ static void put_rooms(const struct sheet *s, const struct plan *p, bool metric)
         put_name(s, middle[0], middle[1], "name", 0, r->name);
         fprintf(s->to, "<text class=\"small\" x=\"%.2f\" y=\"%.2f\">%.2f %s, %.3g %s high</text>\n",
                 sheet_x(s, middle[0]), sheet_y(s, middle[1]) + 16, area, metric ? "m²" : "square units",
-                top_at(&r->lower, middle) - r->floor, metric ? "m" : "units");
+                plan_top_at(&r->lower, middle) - r->floor, metric ? "m" : "units");
     }
 }
 
@@ -145,7 +145,7 @@ static void find_bounds(const struct plan *plan, const struct placer *placer, do
     for (int i = 0; i < plan->wall_count; i++) {
         double c[4][2];
         if (plan->walls[i].removed) continue;
-        wall_corners(plan, i, c);
+        plan_wall_corners(plan, i, c);
         for (int k = 0; k < 8; k++) {
             low[k % 2] = fmin(low[k % 2], c[k / 2][k % 2]);
             high[k % 2] = fmax(high[k % 2], c[k / 2][k % 2]);
@@ -174,7 +174,7 @@ static void put_plan(const struct sheet *s, const struct plan *plan, const struc
     for (int i = 0; i < plan->wall_count; i++) {
         double c[4][2];
         if (!plan->walls[i].removed) continue;
-        wall_corners(plan, i, c);
+        plan_wall_corners(plan, i, c);
         put_polygon(s, c, 4, "room");
     }
     put_rooms(s, plan, metric);
@@ -196,19 +196,19 @@ static void put_plan(const struct sheet *s, const struct plan *plan, const struc
     for (int i = 0; i < plan->wall_count; i++) {
         double c[4][2];
         if (plan->walls[i].removed) continue;
-        wall_corners(plan, i, c);
+        plan_wall_corners(plan, i, c);
         put_polygon(s, c, 4, "wall");
     }
     for (int i = 0; i < plan->opening_count; i++)
-        if (opening_is_there(plan, &plan->openings[i])) put_opening(s, plan, &plan->openings[i]);
+        if (plan_opening_is_there(plan, &plan->openings[i])) put_opening(s, plan, &plan->openings[i]);
     for (int i = 0; i < plan->slot_count; i++)
-        if (slot_is_there(plan, &plan->slots[i])) put_slot(s, &plan->slots[i]);
+        if (plan_slot_is_there(plan, &plan->slots[i])) put_slot(s, &plan->slots[i]);
     for (int i = 0; i < plan->wall_count; i++) {
         const struct plan_wall *w = &plan->walls[i];
         double span[2], at[2];
         if (w->removed) continue;
-        wall_span(plan, i, span);
-        wall_point(w, span[0] + 0.12 * (span[1] - span[0]), -0.08 * unit, at);
+        plan_wall_span(plan, i, span);
+        plan_wall_point(w, span[0] + 0.12 * (span[1] - span[0]), -0.08 * unit, at);
         put_name(s, at[0], at[1], "name", readable(w->d), w->name);
     }
     put_cameras(s, placer, PICTURE_FRUSTUM * unit);

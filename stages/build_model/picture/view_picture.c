@@ -74,8 +74,8 @@ static void draw_cuts(struct raster *r, const struct aerial *a, const struct pla
         const struct plan_wall *w = &plan->walls[i];
         double c[4][2], span[2];
         if (w->removed) continue;
-        wall_corners(plan, i, c);
-        wall_span(plan, i, span);
+        plan_wall_corners(plan, i, c);
+        plan_wall_span(plan, i, span);
         const double z = fmin(top, plan_wall_top(plan, i, span[0], span[1]));
         struct vec3 p[4];
         for (int k = 0; k < 4; k++) p[k] = vec3_make(c[k][0], c[k][1], z);
@@ -208,7 +208,7 @@ enum status view_picture_write(const struct solid_mesh *mesh, const struct plan 
     for (int i = 0; i < plan->wall_count; i++) high = fmax(high, plan->walls[i].removed ? 0 : plan->walls[i].top);
     for (int i = 0; i < plan->room_count; i++)
         for (int e = 0; !plan->rooms[i].removed && e < plan->rooms[i].edge_count; e++)
-            high = fmax(high, top_at(&plan->rooms[i].lower, plan->rooms[i].edges[e].corner));
+            high = fmax(high, plan_top_at(&plan->rooms[i].lower, plan->rooms[i].edges[e].corner));
     /* from the south-west, 55 degrees above the horizon */
     const struct vec3 back =
         vec3_make(-0.30 * cos(55 * DEGREE) / hypot(0.30, 1), -cos(55 * DEGREE) / hypot(0.30, 1), sin(55 * DEGREE));

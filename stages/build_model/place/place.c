@@ -24,7 +24,7 @@ enum { MAX_CELLS = 24, MIN_IN_CELL = 60 }; /* along each side; mean number of po
 #define FRONT_FRACTION 0.05                /* of a cell's points, taken as outliers, lie before its front */
 #define MIN_COSINE     0.02                /* between a ray and a plane's normal for an intersection */
 
-void placer_release(struct placer *placer)
+void place_release(struct placer *placer)
 {
     if (!placer) return;
     free(placer->photos);
@@ -56,8 +56,8 @@ static enum status add_photos(struct placer *placer, const struct placer_views *
     return ST_OK;
 }
 
-enum status placer_init(struct placer *placer, const struct placer_views views[2], const struct model_axes *axes,
-                        const struct point_cloud *points, const struct model_params *params, struct err *err)
+enum status place_init(struct placer *placer, const struct placer_views views[2], const struct model_axes *axes,
+                       const struct point_cloud *points, const struct model_params *params, struct err *err)
 {
     const size_t count = points ? points->count : 0;
     size_t photos = 1;
@@ -73,7 +73,7 @@ enum status placer_init(struct placer *placer, const struct placer_views views[2
         st = err_nomem(err, "the points of a model", count * sizeof *placer->points);
     for (int k = 0; !st && k < 2; k++) st = add_photos(placer, &views[k], axes, err);
     if (st) {
-        placer_release(placer);
+        place_release(placer);
         return st;
     }
     for (size_t i = 0; i < count; i++) {

@@ -41,9 +41,9 @@ struct placer {
 
 /* views[1]: those that were held out, in which places may be drawn too. points may be NULL: then walls cannot be placed
  * by rectangles. Keeps pointers to lenses and params. */
-enum status placer_init(struct placer *placer, const struct placer_views views[2], const struct model_axes *axes,
-                        const struct point_cloud *points, const struct model_params *params, struct err *err);
-void placer_release(struct placer *placer);
+enum status place_init(struct placer *placer, const struct placer_views views[2], const struct model_axes *axes,
+                       const struct point_cloud *points, const struct model_params *params, struct err *err);
+void place_release(struct placer *placer);
 
 struct placed_wall {
     double n[2], c;    /* in face: n p = c, n towards the camera */

@@ -19,8 +19,8 @@ static enum status read_script(struct script *script, const char *path, struct p
     return st ? st : provenance_add_file(prov, file_name(path), path, err);
 }
 
-enum status plan_apply_model(struct plan *plan, const char *path, const struct placer *placer, struct provenance *prov,
-                             struct err *err)
+enum status edit_chain_apply_model(struct plan *plan, const char *path, const struct placer *placer,
+                                   struct provenance *prov, struct err *err)
 {
     struct script script = {0};
     enum status st = read_script(&script, path, prov, err);
@@ -32,7 +32,7 @@ enum status plan_apply_model(struct plan *plan, const char *path, const struct p
     return st;
 }
 
-enum status plan_apply_objects(struct plan *plan, const char *path, struct provenance *prov, struct err *err)
+enum status edit_chain_apply_objects(struct plan *plan, const char *path, struct provenance *prov, struct err *err)
 {
     struct script script = {0};
     enum status st = script_read(&script, path, err);
@@ -85,8 +85,8 @@ static enum status apply_chain(struct plan *plan, const struct chain *edit, cons
     return st;
 }
 
-enum status plan_apply_edit(struct plan *plan, const char *path, const struct placer *placer, struct provenance *prov,
-                            struct err *err)
+enum status edit_chain_apply_edit(struct plan *plan, const char *path, const struct placer *placer,
+                                  struct provenance *prov, struct err *err)
 {
     const struct chain edit = {path, NULL};
     return apply_chain(plan, &edit, placer, prov, err);

@@ -7,16 +7,16 @@
 
 /* All add the scripts to prov by their file names. placer: NULL if no views are known. ST_DATA with file and line. */
 
-enum status plan_apply_model(struct plan *plan, const char *path, const struct placer *placer, struct provenance *prov,
-                             struct err *err);
+enum status edit_chain_apply_model(struct plan *plan, const char *path, const struct placer *placer,
+                                   struct provenance *prov, struct err *err);
 
 /* Applies the file of objects that all edits have, which holds statements `object` alone. ST_DATA: another
  * statement. */
-enum status plan_apply_objects(struct plan *plan, const char *path, struct provenance *prov, struct err *err);
+enum status edit_chain_apply_objects(struct plan *plan, const char *path, struct provenance *prov, struct err *err);
 
 /* Applies an edit after the one that its statement `base` names, in the same folder, and so on. ST_DATA: that
  * edit does not exist, or the edits go in a circle. */
-enum status plan_apply_edit(struct plan *plan, const char *path, const struct placer *placer, struct provenance *prov,
-                            struct err *err);
+enum status edit_chain_apply_edit(struct plan *plan, const char *path, const struct placer *placer,
+                                  struct provenance *prov, struct err *err);
 
 #endif

@@ -204,29 +204,29 @@ enum status plan_apply(struct plan *plan, const struct script *script, bool edit
 void plan_release(struct plan *plan);
 
 /* For the layout and the pictures. */
-struct plan_line wall_face(const struct plan_wall *w, int side); /* n points out of the wall */
+struct plan_line plan_wall_face(const struct plan_wall *w, int side); /* n points out of the wall */
 /* The line across a wall at one of its ends, n pointing out of the wall. *face_wall, *face_side: the face of another
  * wall that it lies on; *face_wall is -1 for none. */
-struct plan_line wall_cap(const struct plan *plan, int wall, int end, int *face_wall, int *face_side);
-void wall_point(const struct plan_wall *w, double s, double off, double p[2]); /* off: behind the in face */
-bool line_cross(struct plan_line a, struct plan_line b, double p[2]);          /* false: nearly parallel */
+struct plan_line plan_wall_cap(const struct plan *plan, int wall, int end, int *face_wall, int *face_side);
+void plan_wall_point(const struct plan_wall *w, double s, double off, double p[2]); /* off: behind the in face */
+bool plan_line_cross(struct plan_line a, struct plan_line b, double p[2]);          /* false: nearly parallel */
 /* The part where openings may lie: between the neighbours. */
-void wall_span(const struct plan *plan, int wall, double span[2]);
+void plan_wall_span(const struct plan *plan, int wall, double span[2]);
 /* From cap to cap: all that the wall's solid may cover, including its corners. */
-void wall_reach(const struct plan *plan, int wall, double span[2]);
+void plan_wall_reach(const struct plan *plan, int wall, double span[2]);
 /* The part of an edge's wall over which the room's ceiling lies. */
-void room_span(const struct plan *plan, const struct plan_room *room, int edge, int wall, double span[2]);
+void plan_room_span(const struct plan *plan, const struct plan_room *room, int edge, int wall, double span[2]);
 /* The edge of the room that contains the wall; -1 for none. */
-int room_edge_of(const struct plan_room *room, int wall);
+int plan_room_edge_of(const struct plan_room *room, int wall);
 double plan_wall_top(const struct plan *plan, int wall, double s0, double s1); /* the lowest over s0 .. s1 */
 const char *opening_word(enum opening_kind kind); /* "door", ...: as in scripts and in the names of faces */
 /* The opening is there: neither it nor its wall is removed, and it is not walled up. */
-bool opening_is_there(const struct plan *plan, const struct plan_opening *o);
+bool plan_opening_is_there(const struct plan *plan, const struct plan_opening *o);
 /* The slot is there: neither it nor its room is removed, and it is not walled up. */
-bool slot_is_there(const struct plan *plan, const struct plan_slot *slot);
+bool plan_slot_is_there(const struct plan *plan, const struct plan_slot *slot);
 /* The corners of a wall in plan, in order around it: in and out face at its start, out and in face at its end. */
-void wall_corners(const struct plan *plan, int wall, double corners[4][2]);
-double top_at(const struct plan_top *top, const double p[2]);
-struct plan_top level_top(double z);
+void plan_wall_corners(const struct plan *plan, int wall, double corners[4][2]);
+double plan_top_at(const struct plan_top *top, const double p[2]);
+struct plan_top plan_level_top(double z);
 
 #endif

@@ -66,7 +66,8 @@ static enum status needs_views(struct plan_context *c)
 {
     const struct script_place *place = c->s->place.kind == PLACE_VIEW ? &c->s->place : &c->s->target;
     if (place->kind != PLACE_VIEW || c->placer) return ST_OK;
-    return statement_error(c, "the statement names the view %s, but no views are known; give --views.", place->view);
+    return plan_statement_error(c, "the statement names the view %s, but no views are known; give --views.",
+                                place->view);
 }
 
 /* An edit's statement that changes nothing is a mistake. A default that is set must be used further down. */
@@ -78,7 +79,7 @@ struct edit_watch {
 static enum status unused_default(struct plan_context *c, enum plan_default which, int line)
 {
     const char *name;
-    default_value(c->plan, which, &name);
+    plan_default_value(c->plan, which, &name);
     return err_set(c->err, ST_DATA,
                    "%s:%d: \"set %s\" changes nothing: no statement further down uses it, and it does not change what "
                    "there is%s.",
@@ -93,11 +94,11 @@ static enum status watch_set(struct plan_context *c, struct edit_watch *w, const
 {
     for (int i = 0; i < DEFAULTS; i++) {
         const char *name;
-        const double value = *default_value(c->plan, (enum plan_default)i, &name);
+        const double value = *plan_default_value(c->plan, (enum plan_default)i, &name);
         if (!(c->set & 1u << i)) continue;
         if (w->set_line[i]) return unused_default(c, (enum plan_default)i, w->set_line[i]);
         if (value == before[i])
-            return statement_error(c, "the statement changes nothing: %s is %.9g already.", name, value);
+            return plan_statement_error(c, "the statement changes nothing: %s is %.9g already.", name, value);
         w->set_line[i] = c->s->line;
     }
     return ST_OK;
@@ -107,7 +108,7 @@ static enum status apply_watched(struct plan_context *c, struct edit_watch *w)
 {
     char *after = NULL;
     double before[DEFAULTS];
-    for (int i = 0; i < DEFAULTS; i++) before[i] = *default_value(c->plan, (enum plan_default)i, NULL);
+    for (int i = 0; i < DEFAULTS; i++) before[i] = *plan_default_value(c->plan, (enum plan_default)i, NULL);
     c->used = c->set = 0;
     if (c->s->verb->apply(c)) return c->err->status;
     if (c->set) return watch_set(c, w, before);
@@ -117,7 +118,7 @@ static enum status apply_watched(struct plan_context *c, struct edit_watch *w)
     const bool same = !strcmp(w->before, after);
     free(w->before);
     w->before = after;
-    return same ? statement_error(c, "the statement changes nothing: the plan is like that already.") : ST_OK;
+    return same ? plan_statement_error(c, "the statement changes nothing: the plan is like that already.") : ST_OK;
 }
 
 /* *to: a copy of the items, or NULL. */

@@ -17,7 +17,7 @@ static double wall_height(const struct plan *p, int wall)
     double top = w->top;
     for (int i = 0; i < p->room_count && !w->has_top; i++)
         for (int e = 0; !p->rooms[i].removed && e < p->rooms[i].edge_count; e++)
-            top = fmax(top, top_at(&p->rooms[i].lower, p->rooms[i].edges[e].outer));
+            top = fmax(top, plan_top_at(&p->rooms[i].lower, p->rooms[i].edges[e].outer));
     return top;
 }
 
@@ -33,13 +33,13 @@ static enum status check_meeting(struct plan_checker *c, int wall, int end)
     for (int k = 0; k < 2; k++) /* a corner of both fits by itself */
         if (o->ends[k].kind != FREE_END && o->ends[k].other == wall) return ST_OK;
     double reach[2], at[2] = {HUGE_VAL, -HUGE_VAL};
-    wall_reach(p, other, reach);
+    plan_wall_reach(p, other, reach);
     for (int side = 0; side < 2; side++) {
         int face;
         double corner[2];
-        if (!line_cross(wall_face(w, side), face_ahead(w, end, o, false, &face), corner)) continue;
-        at[0] = fmin(at[0], wall_s(o, corner));
-        at[1] = fmax(at[1], wall_s(o, corner));
+        if (!plan_line_cross(plan_wall_face(w, side), plan_face_ahead(w, end, o, false, &face), corner)) continue;
+        at[0] = fmin(at[0], plan_wall_s(o, corner));
+        at[1] = fmax(at[1], plan_wall_s(o, corner));
     }
     if (!(at[0] >= reach[0] - LENGTH_EPS && at[1] <= reach[1] + LENGTH_EPS))
         return plan_error(
@@ -49,7 +49,7 @@ static enum status check_meeting(struct plan_checker *c, int wall, int end)
             END_NAMES[end], w->name, o->name, reach[0], reach[1], at[0] < reach[0] ? at[0] : at[1]);
     for (int k = 0; k < p->opening_count; k++) {
         const struct plan_opening *q = &p->openings[k];
-        if (!opening_is_there(p, q) || q->wall != other || q->s[0] >= at[1] - LENGTH_EPS ||
+        if (!plan_opening_is_there(p, q) || q->wall != other || q->s[0] >= at[1] - LENGTH_EPS ||
             q->s[1] <= at[0] + LENGTH_EPS || q->z[0] >= wall_height(p, wall) || q->z[1] <= w->foot)
             continue;
         return plan_error(c, q->line,
@@ -66,7 +66,7 @@ static enum status check_walls(struct plan_checker *c)
         const struct plan_wall *w = &p->walls[i];
         double span[2];
         if (w->removed) continue;
-        wall_span(p, i, span);
+        plan_wall_span(p, i, span);
         if (!(span[1] - span[0] >= MIN_SIZE))
             return plan_error(c, w->line, "wall %s would be shorter than %g: from %.9g to %.9g.", w->name, MIN_SIZE,
                               span[0], span[1]);
@@ -84,7 +84,7 @@ static enum status check_openings(struct plan_checker *c)
         double span[2];
         if (o->removed) continue;
         const struct plan_wall *w = &p->walls[o->wall];
-        wall_span(p, o->wall, span);
+        plan_wall_span(p, o->wall, span);
         if (!(o->s[1] - o->s[0] >= MIN_SIZE && o->z[1] - o->z[0] >= MIN_SIZE))
             return plan_error(c, o->line, "%s %s would be %.3g wide and %.3g high.", opening_word(o->kind), o->name,
                               o->s[1] - o->s[0], o->z[1] - o->z[0]);
@@ -120,7 +120,7 @@ static bool in_room(const struct plan_room *r, const double low[2], const double
     for (int e = 0; e < r->edge_count; e++) {
         const double *a = r->edges[(e + r->edge_count - 1) % r->edge_count].corner, *b = r->edges[e].corner;
         for (int k = 0; k < 4; k++)
-            if (segments_meet(a, b, c[k], c[(k + 1) % 4])) return false;
+            if (plan_segments_meet(a, b, c[k], c[(k + 1) % 4])) return false;
         if ((a[1] > low[1]) != (b[1] > low[1]) && low[0] < a[0] + (low[1] - a[1]) / (b[1] - a[1]) * (b[0] - a[0]))
             inside = !inside;
         if (a[0] > low[0] && a[0] < high[0] && a[1] > low[1] && a[1] < high[1]) return false;
@@ -188,8 +188,8 @@ static enum status check_reach(struct plan_checker *c)
         const struct plan_wall *w = &p->walls[i];
         double at[10] = {w->foot, w->top}, reach[2];
         if (w->removed) continue;
-        wall_reach(p, i, reach);
-        for (int k = 0; k < 4; k++) wall_point(w, reach[k & 1], k & 2 ? w->thickness : 0, at + 2 + 2 * k);
+        plan_wall_reach(p, i, reach);
+        for (int k = 0; k < 4; k++) plan_wall_point(w, reach[k & 1], k & 2 ? w->thickness : 0, at + 2 + 2 * k);
         if (check_within(c, w->line, "wall", w->name, at, 10)) return c->err->status;
     }
     for (int i = 0; i < p->room_count; i++) {
@@ -198,7 +198,7 @@ static enum status check_reach(struct plan_checker *c)
         if (!r->removed && check_within(c, r->line, "the ridge of room", r->name, &ridge, 1)) return c->err->status;
         for (int e = 0; !r->removed && e < r->edge_count; e++) {
             const double *corner = r->edges[e].outer;
-            const double at[4] = {corner[0], corner[1], r->floor - r->slab, top_at(&r->lower, corner) + r->slab};
+            const double at[4] = {corner[0], corner[1], r->floor - r->slab, plan_top_at(&r->lower, corner) + r->slab};
             if (check_within(c, r->line, "room", r->name, at, 4)) return c->err->status;
         }
     }
@@ -215,7 +215,7 @@ static enum status check_reach(struct plan_checker *c)
 enum status plan_check(struct plan *plan, const char *path, int line, struct err *err)
 {
     struct plan_checker c = {plan, path, line, err};
-    if (check_rooms(&c) || check_walls(&c) || check_openings(&c) || check_slots(&c) || check_boxes(&c) ||
+    if (plan_check_rooms(&c) || check_walls(&c) || check_openings(&c) || check_slots(&c) || check_boxes(&c) ||
         check_reach(&c))
         return err->status;
     return ST_OK;

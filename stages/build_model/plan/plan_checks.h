@@ -15,9 +15,9 @@ struct plan_checker {
 enum status plan_error(struct plan_checker *c, int own, const char *fmt, ...) PRINTF_LIKE(3, 4);
 
 /* The segments from a to b and from x to y have a point in common. */
-bool segments_meet(const double a[2], const double b[2], const double x[2], const double y[2]);
+bool plan_segments_meet(const double a[2], const double b[2], const double x[2], const double y[2]);
 
 /* Derives all that plan_room holds as of the last check. */
-enum status check_rooms(struct plan_checker *c);
+enum status plan_check_rooms(struct plan_checker *c);
 
 #endif

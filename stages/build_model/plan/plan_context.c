@@ -4,7 +4,7 @@
 
 #include "stages/build_model/plan/plan_internal.h"
 
-enum status statement_error(struct plan_context *c, const char *fmt, ...)
+enum status plan_statement_error(struct plan_context *c, const char *fmt, ...)
 {
     char text[1500];
     va_list args;
@@ -16,8 +16,9 @@ enum status statement_error(struct plan_context *c, const char *fmt, ...)
 
 enum status statement_for_edits(struct plan_context *c, const char *what)
 {
-    return statement_error(c,
-                           "\"%s\" is for edits: the unedited model shows the photographs. Write it in a script in the "
-                           "folder edits.",
-                           what);
+    return plan_statement_error(
+        c,
+        "\"%s\" is for edits: the unedited model shows the photographs. Write it in a script in the "
+        "folder edits.",
+        what);
 }

@@ -19,7 +19,7 @@
 #include "stages/build_model/plan/plan_internal.h"
 #include "stages/build_model/script/script_words.h"
 
-enum status read_adjust(struct script_reader *r, struct statement *s)
+enum status plan_read_adjust(struct script_reader *r, struct statement *s)
 {
     if (script_read_name(r, "a name", &s->name) || script_read_place(r, &s->place, 1u << PLACE_FROM_END))
         return r->err->status;
@@ -27,40 +27,41 @@ enum status read_adjust(struct script_reader *r, struct statement *s)
     return ST_OK;
 }
 
-enum status apply_adjust(struct plan_context *c)
+enum status plan_apply_adjust(struct plan_context *c)
 {
     const struct statement *s = c->s;
     struct plan *plan = c->plan;
     enum name_kind kind;
     int at;
-    if (find_solid(c, s->name, &kind, &at)) return c->err->status;
+    if (plan_find_solid(c, s->name, &kind, &at)) return c->err->status;
     if (kind == NAMED_OPENING) {
         struct plan_opening *o = &plan->openings[at];
-        if (place_on_wall(c, o->wall, o->s, o->z)) return c->err->status;
-        set_foot_on_floor(c, &plan->walls[o->wall], o->kind, o->z);
+        if (plan_place_on_wall(c, o->wall, o->s, o->z)) return c->err->status;
+        plan_set_foot_on_floor(c, &plan->walls[o->wall], o->kind, o->z);
         return ST_OK;
     }
     if (kind == NAMED_SLOT) {
         struct plan_slot *slot = &plan->slots[at];
-        return place_in_room(c, &plan->rooms[slot->room], slot->kind, slot->low, slot->high);
+        return plan_place_in_room(c, &plan->rooms[slot->room], slot->kind, slot->low, slot->high);
     }
     if (kind == NAMED_BOX) {
         struct plan_box *b = &plan->boxes[at];
-        return place_footprint(c, b->low[2], b->low, b->high);
+        return plan_place_footprint(c, b->low[2], b->low, b->high);
     }
     if (s->place.kind == PLACE_FROM_END)
-        return statement_error(c, "%s is a wall; place it by coordinates or in a view.", s->name);
+        return plan_statement_error(c, "%s is a wall; place it by coordinates or in a view.", s->name);
     struct plan_wall *w = &plan->walls[at];
-    const struct plan_line in = wall_face(w, SIDE_IN);
+    const struct plan_line in = plan_wall_face(w, SIDE_IN);
     if (s->place.kind == PLACE_COORDINATES) {
         /* a line through two points, parallel to the wall */
         const double *a = s->place.a;
         const double c0 = in.n[0] * a[0] + in.n[1] * a[1], c1 = in.n[0] * a[2] + in.n[1] * a[3];
         if (!(fabs(c0 - c1) <= LENGTH_EPS))
-            return statement_error(c,
-                                   "the line from %.9g %.9g to %.9g %.9g is not parallel to wall %s; adjust keeps the "
-                                   "direction of a wall.",
-                                   a[0], a[1], a[2], a[3], s->name);
+            return plan_statement_error(
+                c,
+                "the line from %.9g %.9g to %.9g %.9g is not parallel to wall %s; adjust keeps the "
+                "direction of a wall.",
+                a[0], a[1], a[2], a[3], s->name);
         w->c = c0;
         return ST_OK;
     }
@@ -76,7 +77,7 @@ static enum status move_footprint(struct plan_context *c, const char *what, doub
 {
     const struct statement *s = c->s;
     if (s->value_count < 2)
-        return statement_error(c, "%s moves by two distances, in x and y: \"move %s by DX DY\".", what, s->name);
+        return plan_statement_error(c, "%s moves by two distances, in x and y: \"move %s by DX DY\".", what, s->name);
     for (int k = 0; k < 2; k++) {
         low[k] += s->values[k];
         high[k] += s->values[k];
@@ -84,7 +85,7 @@ static enum status move_footprint(struct plan_context *c, const char *what, doub
     return ST_OK;
 }
 
-enum status read_move(struct script_reader *r, struct statement *s)
+enum status plan_read_move(struct script_reader *r, struct statement *s)
 {
     if (script_read_name(r, "a name", &s->name) || script_expect(r, "by") ||
         script_read_number(r, "a distance", &s->values[s->value_count++]))
@@ -94,15 +95,15 @@ enum status read_move(struct script_reader *r, struct statement *s)
     return ST_OK;
 }
 
-enum status apply_move(struct plan_context *c)
+enum status plan_apply_move(struct plan_context *c)
 {
     const struct statement *s = c->s;
     struct plan *plan = c->plan;
     enum name_kind kind;
     int at;
-    if (find_solid(c, s->name, &kind, &at)) return c->err->status;
+    if (plan_find_solid(c, s->name, &kind, &at)) return c->err->status;
     if (kind == NAMED_SLOT && s->value_count > 2)
-        return statement_error(c, "%s stays in its ceiling or floor: \"move %s by DX DY\".", s->name, s->name);
+        return plan_statement_error(c, "%s stays in its ceiling or floor: \"move %s by DX DY\".", s->name, s->name);
     if (kind == NAMED_SLOT) return move_footprint(c, s->name, plan->slots[at].low, plan->slots[at].high);
     if (kind == NAMED_BOX) {
         struct plan_box *b = &plan->boxes[at];
@@ -113,18 +114,19 @@ enum status apply_move(struct plan_context *c)
     }
     if (kind == NAMED_WALL) {
         if (s->value_count != 1)
-            return statement_error(c,
-                                   "a wall moves along its normal, away from its inside, by one distance: \"move %s by "
-                                   "DISTANCE\"; extend moves its ends.",
-                                   s->name);
+            return plan_statement_error(
+                c,
+                "a wall moves along its normal, away from its inside, by one distance: \"move %s by "
+                "DISTANCE\"; extend moves its ends.",
+                s->name);
         plan->walls[at].c -= s->values[0];
         return ST_OK;
     }
     if (s->value_count > 2)
-        return statement_error(c,
-                               "an opening moves along its wall, and up: \"move %s by DISTANCE [UP]\"; adjust and "
-                               "resize change its size.",
-                               s->name);
+        return plan_statement_error(c,
+                                    "an opening moves along its wall, and up: \"move %s by DISTANCE [UP]\"; adjust and "
+                                    "resize change its size.",
+                                    s->name);
     for (int k = 0; k < 2; k++) {
         plan->openings[at].s[k] += s->values[0];
         plan->openings[at].z[k] += s->value_count > 1 ? s->values[1] : 0;
@@ -135,7 +137,7 @@ enum status apply_move(struct plan_context *c)
 /* ---------------------------------------------------------------------------------------------- sizes and heights */
 
 /* A statement that has nothing but options must have one. */
-enum status read_changes(struct script_reader *r, struct statement *s)
+enum status plan_read_changes(struct script_reader *r, struct statement *s)
 {
     if (script_read_name(r, "a name", &s->name)) return r->err->status;
     return textfile_more(&r->t) ? ST_OK : script_usage_error(r, NULL);
@@ -146,8 +148,8 @@ static enum status check_options(struct plan_context *c, unsigned known, const c
 {
     for (int i = 0; i < OPTION_COUNT; i++)
         if (c->s->has_option[i] && !(known & 1u << i))
-            return statement_error(c, "found %s, which %s does not have; wanted %s.", option_name((enum option)i),
-                                   c->s->name, wanted);
+            return plan_statement_error(c, "found %s, which %s does not have; wanted %s.",
+                                        script_option_name((enum option)i), c->s->name, wanted);
     return ST_OK;
 }
 
@@ -166,7 +168,7 @@ static void set_thickness(struct plan *plan, int wall, double thickness)
         for (int k = 0; k < r->wall_count; k++) listed |= r->walls[k] == wall;
         for (int k = 0; k < r->wall_count && listed; k++) {
             const struct plan_wall *o = &plan->walls[r->walls[k]];
-            if (o->thickness != thickness && walls_on_one_line(o, &plan->walls[wall]))
+            if (o->thickness != thickness && plan_walls_on_one_line(o, &plan->walls[wall]))
                 set_thickness(plan, r->walls[k], thickness);
         }
     }
@@ -179,15 +181,15 @@ static enum status change_wall(struct plan_context *c, int wall)
     if (check_options(c, 1u << OPTION_THICKNESS | 1u << OPTION_FOOT | 1u << OPTION_TOP, "thickness, foot or top"))
         return c->err->status;
     if (s->has_option[OPTION_THICKNESS]) {
-        if (check_length(c, "thickness", s->options[OPTION_THICKNESS])) return c->err->status;
+        if (plan_check_length(c, "thickness", s->options[OPTION_THICKNESS])) return c->err->status;
         set_thickness(c->plan, wall, s->options[OPTION_THICKNESS]);
     }
     set_if_given(s, OPTION_FOOT, &w->foot);
     set_if_given(s, OPTION_TOP, &w->top);
     w->has_top |= s->has_option[OPTION_TOP];
     if (w->top - w->foot >= MIN_SIZE) return ST_OK;
-    return statement_error(c, "wall %s would go from %.9g up to %.9g, wanted a top above its foot.", s->name, w->foot,
-                           w->top);
+    return plan_statement_error(c, "wall %s would go from %.9g up to %.9g, wanted a top above its foot.", s->name,
+                                w->foot, w->top);
 }
 
 static enum status change_room(struct plan_context *c, struct plan_room *r)
@@ -197,17 +199,17 @@ static enum status change_room(struct plan_context *c, struct plan_room *r)
     r->ceiling = s->options[OPTION_CEILING];
     r->shape = LEVEL_CEILING;
     if (r->ceiling - r->floor >= MIN_SIZE) return ST_OK;
-    return statement_error(c, "room %s would go from %.9g up to %.9g, wanted a ceiling above the floor.", s->name,
-                           r->floor, r->ceiling);
+    return plan_statement_error(c, "room %s would go from %.9g up to %.9g, wanted a ceiling above the floor.", s->name,
+                                r->floor, r->ceiling);
 }
 
-enum status apply_change(struct plan_context *c)
+enum status plan_apply_change(struct plan_context *c)
 {
     const struct statement *s = c->s;
     enum name_kind kind;
     int at;
-    if (find_named(c, s->name, 1u << NAMED_WALL | 1u << NAMED_BOX | 1u << NAMED_ROOM, "a wall, a box or a room", &kind,
-                   &at))
+    if (plan_find_named(c, s->name, 1u << NAMED_WALL | 1u << NAMED_BOX | 1u << NAMED_ROOM, "a wall, a box or a room",
+                        &kind, &at))
         return c->err->status;
     if (kind == NAMED_WALL) return change_wall(c, at);
     if (kind == NAMED_ROOM) return change_room(c, &c->plan->rooms[at]);
@@ -221,13 +223,14 @@ enum status apply_change(struct plan_context *c)
 }
 
 /* Moves the sides of an opening outwards by the given distances. */
-enum status apply_resize(struct plan_context *c)
+enum status plan_apply_resize(struct plan_context *c)
 {
     const struct statement *s = c->s;
     const double *by = s->options; /* 0 where no option is given */
     enum name_kind kind;
     int at;
-    if (find_named(c, s->name, 1u << NAMED_OPENING | 1u << NAMED_SLOT, "an opening", &kind, &at)) return c->err->status;
+    if (plan_find_named(c, s->name, 1u << NAMED_OPENING | 1u << NAMED_SLOT, "an opening", &kind, &at))
+        return c->err->status;
     if (kind == NAMED_SLOT) {
         struct plan_slot *slot = &c->plan->slots[at];
         if (check_options(c, 1u << OPTION_LEFT | 1u << OPTION_RIGHT | 1u << OPTION_FRONT | 1u << OPTION_BACK,
@@ -264,7 +267,7 @@ static enum status find_filled(struct plan_context *c, struct filled *f, struct 
 {
     enum name_kind kind;
     int at;
-    if (find_named(c, c->s->name, 1u << NAMED_OPENING | 1u << NAMED_SLOT, "a door or a window", &kind, &at))
+    if (plan_find_named(c, c->s->name, 1u << NAMED_OPENING | 1u << NAMED_SLOT, "a door or a window", &kind, &at))
         return c->err->status;
     struct plan_opening *o = *of = kind == NAMED_OPENING ? &c->plan->openings[at] : NULL;
     struct plan_slot *slot = kind == NAMED_SLOT ? &c->plan->slots[at] : NULL;
@@ -285,46 +288,50 @@ static enum status open_or_close(struct plan_context *c, bool closing)
     struct filled f = {0};
     if (find_filled(c, &f, &o)) return c->err->status;
     if (o && o->interior)
-        return statement_error(c, "window %s is interior and has no glass; fill it with glass or nothing.", name);
+        return plan_statement_error(c, "window %s is interior and has no glass; fill it with glass or nothing.", name);
     if (f.own == FILL_NOTHING)
-        return statement_error(c, "%s %s has no leaf that could be %s; declare a door, or fill it with a leaf.", f.kind,
-                               name, closing ? "closed" : "opened");
+        return plan_statement_error(c, "%s %s has no leaf that could be %s; declare a door, or fill it with a leaf.",
+                                    f.kind, name, closing ? "closed" : "opened");
     if ((*f.fill != FILL_NOTHING) == closing)
-        return statement_error(c, "%s %s is %s already.", f.kind, name, closing ? "closed" : "open");
+        return plan_statement_error(c, "%s %s is %s already.", f.kind, name, closing ? "closed" : "open");
     const enum filling wanted = closing ? f.own : FILL_NOTHING;
-    if (fill_thickness(c, wanted, f.leaf)) return c->err->status;
+    if (plan_fill_thickness(c, wanted, f.leaf)) return c->err->status;
     *f.fill = wanted;
     return ST_OK;
 }
 
-enum status read_named(struct script_reader *r, struct statement *s) { return script_read_name(r, "a name", &s->name); }
+enum status plan_read_named(struct script_reader *r, struct statement *s)
+{
+    return script_read_name(r, "a name", &s->name);
+}
 
-enum status apply_open(struct plan_context *c) { return open_or_close(c, false); }
+enum status plan_apply_open(struct plan_context *c) { return open_or_close(c, false); }
 
-enum status apply_close(struct plan_context *c) { return open_or_close(c, true); }
+enum status plan_apply_close(struct plan_context *c) { return open_or_close(c, true); }
 
-enum status read_fill(struct script_reader *r, struct statement *s)
+enum status plan_read_fill(struct script_reader *r, struct statement *s)
 {
     char *word;
     int f = 0;
     if (script_read_name(r, "a name", &s->name) || script_expect(r, "with") ||
         textfile_word(&r->t, "leaf, glass, wall or nothing", &word, r->err))
         return r->err->status;
-    while (f < FILL_COUNT && strcmp(filling_name((enum filling)f), word)) f++;
+    while (f < FILL_COUNT && strcmp(script_filling_name((enum filling)f), word)) f++;
     if (f == FILL_COUNT) return script_usage_error(r, word);
     s->filling = (enum filling)f;
     return ST_OK;
 }
 
-enum status apply_fill(struct plan_context *c)
+enum status plan_apply_fill(struct plan_context *c)
 {
     const struct statement *s = c->s;
     struct plan_opening *o = NULL;
     struct filled f = {0};
     if (find_filled(c, &f, &o)) return c->err->status;
     if (*f.fill == s->filling)
-        return statement_error(c, "%s %s is filled with %s already.", f.kind, s->name, filling_name(s->filling));
-    if (fill_thickness(c, s->filling, f.leaf)) return c->err->status;
+        return plan_statement_error(c, "%s %s is filled with %s already.", f.kind, s->name,
+                                    script_filling_name(s->filling));
+    if (plan_fill_thickness(c, s->filling, f.leaf)) return c->err->status;
     *f.fill = s->filling;
     if (o) {
         o->refilled = true;
@@ -335,7 +342,7 @@ enum status apply_fill(struct plan_context *c)
 
 /* --------------------------------------------------------------------------------------------- removing, and bases */
 
-enum status read_remove(struct script_reader *r, struct statement *s)
+enum status plan_read_remove(struct script_reader *r, struct statement *s)
 {
     if (script_read_name(r, "a name", &s->name)) return r->err->status;
     if (strcmp(s->name, "object") || !textfile_more(&r->t)) return ST_OK;
@@ -343,13 +350,13 @@ enum status read_remove(struct script_reader *r, struct statement *s)
     return script_read_name(r, "the name of an object", &s->name);
 }
 
-enum status apply_remove(struct plan_context *c)
+enum status plan_apply_remove(struct plan_context *c)
 {
     struct plan *plan = c->plan;
     enum name_kind kind;
     int at;
-    if (c->s->of_object) return remove_object(c);
-    if (find_named(c, c->s->name, ~0u, "anything", &kind, &at)) return c->err->status;
+    if (c->s->of_object) return plan_remove_object(c);
+    if (plan_find_named(c, c->s->name, ~0u, "anything", &kind, &at)) return c->err->status;
     switch (kind) {
     case NAMED_WALL:
         plan->walls[at].removed = true;
@@ -373,7 +380,7 @@ enum status apply_remove(struct plan_context *c)
     return ST_OK;
 }
 
-enum status read_base(struct script_reader *r, struct statement *s)
+enum status plan_read_base(struct script_reader *r, struct statement *s)
 {
     if (script_read_name(r, "a name", &s->name)) return r->err->status;
     if (r->count > 1) return textfile_error(&r->t, r->err, "base", "\"base EDIT\" as the first statement, once");
@@ -385,7 +392,7 @@ enum status read_base(struct script_reader *r, struct statement *s)
 }
 
 /* The statements of that edit were applied before (edit_chain.c). */
-enum status apply_base(struct plan_context *c)
+enum status plan_apply_base(struct plan_context *c)
 {
     char *base = strdup(c->s->name);
     if (!base) return err_nomem(c->err, "a name", strlen(c->s->name) + 1);

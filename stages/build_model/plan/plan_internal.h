@@ -34,7 +34,7 @@ struct plan_context { /* of the statement that is being applied */
 /* plan_context.c */
 
 /* Sets ST_DATA with the statement's file and line before the text. */
-enum status statement_error(struct plan_context *c, const char *fmt, ...) PRINTF_LIKE(2, 3);
+enum status plan_statement_error(struct plan_context *c, const char *fmt, ...) PRINTF_LIKE(2, 3);
 
 /* ST_DATA: `what`, a statement, is for edits alone. */
 enum status statement_for_edits(struct plan_context *c, const char *what);
@@ -43,48 +43,49 @@ enum status statement_for_edits(struct plan_context *c, const char *what);
 
 /* Looks up a name. ST_DATA: it is unknown, removed, or its kind is not in `kinds` (bits of enum name_kind); `wanted`
  * is the message's words for those kinds. */
-enum status find_named(struct plan_context *c, const char *name, unsigned kinds, const char *wanted,
-                       enum name_kind *kind, int *at);
-enum status find_solid(struct plan_context *c, const char *name, enum name_kind *kind, int *at);
-enum status find_wall(struct plan_context *c, const char *name, int *wall);
-enum status find_room(struct plan_context *c, const char *name, int *room);
+enum status plan_find_named(struct plan_context *c, const char *name, unsigned kinds, const char *wanted,
+                            enum name_kind *kind, int *at);
+enum status plan_find_solid(struct plan_context *c, const char *name, enum name_kind *kind, int *at);
+enum status plan_find_wall(struct plan_context *c, const char *name, int *wall);
+enum status plan_find_room(struct plan_context *c, const char *name, int *room);
 
 /* *copy: the name, for the caller to own. ST_DATA: it was used before. */
-enum status copy_new_name(struct plan_context *c, const char *name, char **copy);
+enum status plan_copy_new_name(struct plan_context *c, const char *name, char **copy);
 
 /* Enters the name, which the plan's item must keep alive, into the plan's hash table. */
-enum status add_name(struct plan *plan, const char *name, enum name_kind kind, int at, struct err *err);
+enum status plan_add_name(struct plan *plan, const char *name, enum name_kind kind, int at, struct err *err);
 
 /* plan_statements.c */
 
 /* Where set stores a default; *name: its word. */
-double *default_value(struct plan *plan, enum plan_default which, const char **name);
+double *plan_default_value(struct plan *plan, enum plan_default which, const char **name);
 /* The default value, which the statement uses. */
-double use_default(struct plan_context *c, enum plan_default which);
+double plan_use_default(struct plan_context *c, enum plan_default which);
 /* The option's value, or the default's. */
-double option_or_default(struct plan_context *c, enum option option, enum plan_default which);
-enum status check_length(struct plan_context *c, const char *what, double value);
+double plan_option_or_default(struct plan_context *c, enum option option, enum plan_default which);
+enum status plan_check_length(struct plan_context *c, const char *what, double value);
 
 /* plan_openings.c */
 
 /* The statement's rectangle on a wall as S and z, ascending. */
-enum status place_on_wall(struct plan_context *c, int wall, double s[2], double z[2]);
+enum status plan_place_on_wall(struct plan_context *c, int wall, double s[2], double z[2]);
 /* Doors and passages drawn in a photograph begin at the floor, whichever pixel was clicked. */
-void set_foot_on_floor(const struct plan_context *c, const struct plan_wall *w, enum opening_kind kind, double z[2]);
+void plan_set_foot_on_floor(const struct plan_context *c, const struct plan_wall *w, enum opening_kind kind,
+                            double z[2]);
 /* A box's footprint. at: height of the corners that a photograph shows. */
-enum status place_footprint(struct plan_context *c, double at, double low[2], double high[2]);
+enum status plan_place_footprint(struct plan_context *c, double at, double low[2], double high[2]);
 /* The footprint of an opening in a room's ceiling or floor. */
-enum status place_in_room(struct plan_context *c, const struct plan_room *r, enum opening_kind kind, double low[2],
-                          double high[2]);
+enum status plan_place_in_room(struct plan_context *c, const struct plan_room *r, enum opening_kind kind, double low[2],
+                               double high[2]);
 /* *thickness: the default one of a leaf or glass; 0 if nothing or a wall fills the opening. ST_DATA: it is unknown. */
-enum status fill_thickness(struct plan_context *c, enum filling fill, double *thickness);
+enum status plan_fill_thickness(struct plan_context *c, enum filling fill, double *thickness);
 
 /* plan_textures.c */
 void plan_wishes_release(struct plan *plan);
 
 /* plan_lights.c */
 
-enum status remove_object(struct plan_context *c);
+enum status plan_remove_object(struct plan_context *c);
 void plan_lights_release(struct plan *plan);
 
 /* plan_state.c */
@@ -96,16 +97,17 @@ enum status plan_state(char **state, const struct plan *plan, struct err *err);
 /* plan_geometry.c */
 
 /* S of the point's projection onto the wall's line. */
-double wall_s(const struct plan_wall *w, const double p[2]);
+double plan_wall_s(const struct plan_wall *w, const double p[2]);
 
 /* Both in faces lie on one line and face the same way. */
-bool walls_on_one_line(const struct plan_wall *a, const struct plan_wall *b);
+bool plan_walls_on_one_line(const struct plan_wall *a, const struct plan_wall *b);
 
 /* The near or far face of `other`, seen by wall w whose end `end` runs up to it; n points onwards, away from w. */
-struct plan_line face_ahead(const struct plan_wall *w, int end, const struct plan_wall *other, bool far, int *side);
+struct plan_line plan_face_ahead(const struct plan_wall *w, int end, const struct plan_wall *other, bool far,
+                                 int *side);
 
 /* The min and max S at which a line crosses the wall's two faces. */
-void cut_range(const struct plan_wall *w, struct plan_line across, double range[2]);
+void plan_cut_range(const struct plan_wall *w, struct plan_line across, double range[2]);
 
 /* plan_checks.c */
 

@@ -16,8 +16,8 @@ static double distance_from_end(const struct plan *plan, int wall, int end, cons
     double range[2];
     int face_wall, face_side;
     const struct plan_wall *w = &plan->walls[wall];
-    cut_range(w, wall_cap(plan, wall, end, &face_wall, &face_side), range);
-    return fabs(wall_s(w, p) - 0.5 * (range[0] + range[1]));
+    plan_cut_range(w, plan_wall_cap(plan, wall, end, &face_wall, &face_side), range);
+    return fabs(plan_wall_s(w, p) - 0.5 * (range[0] + range[1]));
 }
 
 /* The end of a that forms the corner with b: one already joined to b, else the nearer free one. */
@@ -32,9 +32,9 @@ static enum status corner_end(struct plan_context *c, int a, int b, const double
         }
     const bool free0 = w->ends[0].kind == FREE_END, free1 = w->ends[1].kind == FREE_END;
     if (!free0 && !free1)
-        return statement_error(c, "walls %s and %s cannot be joined: both ends of %s are joined already, to %s and %s.",
-                               w->name, plan->walls[b].name, w->name, plan->walls[w->ends[0].other].name,
-                               plan->walls[w->ends[1].other].name);
+        return plan_statement_error(
+            c, "walls %s and %s cannot be joined: both ends of %s are joined already, to %s and %s.", w->name,
+            plan->walls[b].name, w->name, plan->walls[w->ends[0].other].name, plan->walls[w->ends[1].other].name);
     *end = !free1 ? 0 : !free0 ? 1 : distance_from_end(plan, a, 0, p) <= distance_from_end(plan, a, 1, p) ? 0 : 1;
     return ST_OK;
 }
@@ -43,22 +43,23 @@ static enum status corner_end(struct plan_context *c, int a, int b, const double
 static enum status check_crossing(struct plan_context *c, int a, int b, double p[2])
 {
     const struct plan_wall *x = &c->plan->walls[a], *y = &c->plan->walls[b];
-    if (a == b) return statement_error(c, "wall %s cannot be joined to itself.", x->name);
+    if (a == b) return plan_statement_error(c, "wall %s cannot be joined to itself.", x->name);
     if (fabs(x->d[0] * y->d[1] - x->d[1] * y->d[0]) > PARALLEL_SINE)
-        return line_cross(wall_face(x, SIDE_IN), wall_face(y, SIDE_IN), p), ST_OK;
-    return statement_error(c, "walls %s and %s cannot be joined: they are parallel, or nearly so.", x->name, y->name);
+        return plan_line_cross(plan_wall_face(x, SIDE_IN), plan_wall_face(y, SIDE_IN), p), ST_OK;
+    return plan_statement_error(c, "walls %s and %s cannot be joined: they are parallel, or nearly so.", x->name,
+                                y->name);
 }
 
-enum status read_join(struct script_reader *r, struct statement *s) { return script_read_list(r, s, 2); }
+enum status plan_read_join(struct script_reader *r, struct statement *s) { return script_read_list(r, s, 2); }
 
-enum status apply_join(struct plan_context *c)
+enum status plan_apply_join(struct plan_context *c)
 {
     const struct statement *s = c->s;
     struct plan *plan = c->plan;
     for (int i = 0; i + 1 < s->name_count; i++) {
         int walls[2], ends[2];
         double p[2];
-        if (find_wall(c, s->names[i], &walls[0]) || find_wall(c, s->names[i + 1], &walls[1]) ||
+        if (plan_find_wall(c, s->names[i], &walls[0]) || plan_find_wall(c, s->names[i + 1], &walls[1]) ||
             check_crossing(c, walls[0], walls[1], p) || corner_end(c, walls[0], walls[1], p, &ends[0]) ||
             corner_end(c, walls[1], walls[0], p, &ends[1]))
             return c->err->status;
@@ -67,7 +68,7 @@ enum status apply_join(struct plan_context *c)
     return ST_OK;
 }
 
-enum status read_extend(struct script_reader *r, struct statement *s)
+enum status plan_read_extend(struct script_reader *r, struct statement *s)
 {
     char *word;
     if (script_read_name(r, "a wall", &s->name)) return r->err->status;
@@ -87,22 +88,22 @@ enum status read_extend(struct script_reader *r, struct statement *s)
     return ST_OK;
 }
 
-enum status apply_extend(struct plan_context *c)
+enum status plan_apply_extend(struct plan_context *c)
 {
     const struct statement *s = c->s;
     int wall, other;
     double p[2];
-    if (find_wall(c, s->name, &wall)) return c->err->status;
+    if (plan_find_wall(c, s->name, &wall)) return c->err->status;
     struct wall_end *e = &c->plan->walls[wall].ends[s->end];
     if (!s->other) {
         *e = (struct wall_end){FREE_END, s->values[0], -1};
         return ST_OK;
     }
-    if (find_wall(c, s->other, &other) || check_crossing(c, wall, other, p)) return c->err->status;
+    if (plan_find_wall(c, s->other, &other) || check_crossing(c, wall, other, p)) return c->err->status;
     const struct wall_end *opposite = &c->plan->walls[wall].ends[!s->end];
     if (opposite->kind != FREE_END && opposite->other == other)
-        return statement_error(c, "wall %s cannot be extended to %s: its other end is there already.", s->name,
-                               s->other);
+        return plan_statement_error(c, "wall %s cannot be extended to %s: its other end is there already.", s->name,
+                                    s->other);
     *e = (struct wall_end){MEET_END, 0, other};
     return ST_OK;
 }
@@ -132,7 +133,7 @@ static enum status add_to_rooms(struct plan_context *c, int wall, int part)
     return ST_OK;
 }
 
-enum status read_split(struct script_reader *r, struct statement *s)
+enum status plan_read_split(struct script_reader *r, struct statement *s)
 {
     s->value_count = 2;
     if (script_read_name(r, "a wall", &s->name) || script_expect(r, "from") ||
@@ -143,7 +144,7 @@ enum status read_split(struct script_reader *r, struct statement *s)
     return ST_OK;
 }
 
-enum status apply_split(struct plan_context *c)
+enum status plan_apply_split(struct plan_context *c)
 {
     const struct statement *s = c->s;
     struct plan *plan = c->plan;
@@ -151,18 +152,20 @@ enum status apply_split(struct plan_context *c)
     double span[2];
     char *name = NULL;
     const double gap[2] = {fmin(s->values[0], s->values[1]), fmax(s->values[0], s->values[1])};
-    if (find_wall(c, s->name, &wall)) return c->err->status;
-    wall_span(plan, wall, span);
+    if (plan_find_wall(c, s->name, &wall)) return c->err->status;
+    plan_wall_span(plan, wall, span);
     if (!(gap[0] > span[0] + LENGTH_EPS && gap[1] < span[1] - LENGTH_EPS && gap[1] > gap[0] + LENGTH_EPS))
-        return statement_error(c, "the gap from %.9g to %.9g does not lie in wall %s, which goes from %.9g to %.9g.",
-                               gap[0], gap[1], s->name, span[0], span[1]);
+        return plan_statement_error(c,
+                                    "the gap from %.9g to %.9g does not lie in wall %s, which goes from %.9g to %.9g.",
+                                    gap[0], gap[1], s->name, span[0], span[1]);
     for (int i = 0; i < plan->opening_count; i++) {
         const struct plan_opening *o = &plan->openings[i];
         if (o->wall == wall && !o->removed && o->s[0] < gap[1] && o->s[1] > gap[0])
-            return statement_error(c, "the gap from %.9g to %.9g cuts %s %s, from %.9g to %.9g; remove that first.",
-                                   gap[0], gap[1], opening_word(o->kind), o->name, o->s[0], o->s[1]);
+            return plan_statement_error(c,
+                                        "the gap from %.9g to %.9g cuts %s %s, from %.9g to %.9g; remove that first.",
+                                        gap[0], gap[1], opening_word(o->kind), o->name, o->s[0], o->s[1]);
     }
-    if (copy_new_name(c, s->other, &name)) return c->err->status;
+    if (plan_copy_new_name(c, s->other, &name)) return c->err->status;
     if (array_append(&plan->walls, (size_t)plan->wall_count, sizeof *plan->walls, "walls", c->err)) {
         free(name);
         return c->err->status;
@@ -185,9 +188,10 @@ enum status apply_split(struct plan_context *c)
             struct plan_wall *x = &plan->walls[i];
             double p[2];
             if (i == wall || i == new || x->ends[e].kind == FREE_END || x->ends[e].other != wall) continue;
-            if (line_cross(wall_face(x, SIDE_IN), wall_face(w, SIDE_IN), p) && (wall_s(w, p) > middle) == new_above)
+            if (plan_line_cross(plan_wall_face(x, SIDE_IN), plan_wall_face(w, SIDE_IN), p) &&
+                (plan_wall_s(w, p) > middle) == new_above)
                 x->ends[e].other = new;
         }
-    if (add_name(plan, part->name, NAMED_WALL, new, c->err)) return c->err->status;
+    if (plan_add_name(plan, part->name, NAMED_WALL, new, c->err)) return c->err->status;
     return add_to_rooms(c, wall, new);
 }

@@ -23,7 +23,7 @@ void plan_lights_release(struct plan *plan)
 }
 
 /* Lamps have the names of lights.txt: any word. */
-enum status read_lamp(struct script_reader *r, struct statement *s)
+enum status plan_read_lamp(struct script_reader *r, struct statement *s)
 {
     enum { MAX_LAMP_NAME = 255 };
     char *word;
@@ -44,7 +44,7 @@ enum status read_lamp(struct script_reader *r, struct statement *s)
 }
 
 /* off, scale */
-enum status apply_lamp(struct plan_context *c)
+enum status plan_apply_lamp(struct plan_context *c)
 {
     struct plan *p = c->plan;
     int i = 0;
@@ -88,7 +88,7 @@ static enum status read_mesh_file(struct script_reader *r, const char **file)
     return ST_OK;
 }
 
-enum status read_object(struct script_reader *r, struct statement *s)
+enum status plan_read_object(struct script_reader *r, struct statement *s)
 {
     struct script_object *o = &s->object;
     bool turned = false, scaled = false;
@@ -108,7 +108,7 @@ enum status read_object(struct script_reader *r, struct statement *s)
     }
     if (!textfile_more(&r->t)) return script_usage_error(r, NULL);
     if (script_next_is(r, "matt") || script_next_is(r, "phong") || script_next_is(r, "ward"))
-        return brdf_read(&o->brdf, &r->t, r->err);
+        return gloss_read_brdf(&o->brdf, &r->t, r->err);
     char *word;
     return textfile_word(&r->t, "a material", &word, r->err) ? r->err->status : script_usage_error(r, word);
 }
@@ -125,12 +125,13 @@ static enum status check_size(struct plan_context *c)
 {
     for (int k = 0; k < 3; k++)
         if (!(fabs(c->s->object.at[k]) <= MAX_SIZE))
-            return statement_error(c, "the object %s is at %.9g %.9g %.9g, wanted it within %g of the origin.",
-                                   c->s->name, c->s->object.at[0], c->s->object.at[1], c->s->object.at[2], MAX_SIZE);
+            return plan_statement_error(c, "the object %s is at %.9g %.9g %.9g, wanted it within %g of the origin.",
+                                        c->s->name, c->s->object.at[0], c->s->object.at[1], c->s->object.at[2],
+                                        MAX_SIZE);
     return ST_OK;
 }
 
-enum status apply_object(struct plan_context *c)
+enum status plan_apply_object(struct plan_context *c)
 {
     const struct statement *s = c->s;
     struct plan *p = c->plan;
@@ -158,16 +159,16 @@ static const char *nth_object(const void *ctx, int i)
     return i < p->object_count ? p->objects[i].name : NULL;
 }
 
-enum status remove_object(struct plan_context *c)
+enum status plan_remove_object(struct plan_context *c)
 {
     struct plan_object *o = find_object(c->plan, c->s->name);
     if (!o) {
         const char *near = scan_nearest(c->s->name, nth_object, c->plan);
-        if (near) return statement_error(c, "no object is named %s; did you mean %s?", c->s->name, near);
-        return statement_error(
+        if (near) return plan_statement_error(c, "no object is named %s; did you mean %s?", c->s->name, near);
+        return plan_statement_error(
             c, "no object is named %s; objects.txt or the edit that this one stands on must place it.", c->s->name);
     }
-    if (o->removed) return statement_error(c, "the object %s was removed already.", c->s->name);
+    if (o->removed) return plan_statement_error(c, "the object %s was removed already.", c->s->name);
     o->removed = true;
     return ST_OK;
 }

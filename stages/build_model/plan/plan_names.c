@@ -22,7 +22,7 @@ static enum name_kind find_name(const struct plan *plan, const char *name, int *
     return n->kind;
 }
 
-enum status add_name(struct plan *plan, const char *name, enum name_kind kind, int at, struct err *err)
+enum status plan_add_name(struct plan *plan, const char *name, enum name_kind kind, int at, struct err *err)
 {
     if (2 * (plan->name_count + 1) > plan->name_capacity) {
         const int capacity = plan->name_capacity ? 2 * plan->name_capacity : 64;
@@ -71,45 +71,46 @@ static const char *nth_name(const void *ctx, int i)
     return NULL;
 }
 
-enum status find_named(struct plan_context *c, const char *name, unsigned kinds, const char *wanted,
-                       enum name_kind *kind, int *at)
+enum status plan_find_named(struct plan_context *c, const char *name, unsigned kinds, const char *wanted,
+                            enum name_kind *kind, int *at)
 {
     *kind = find_name(c->plan, name, at);
     if (*kind == NAMED_NONE) {
         const char *near = c->plan->name_count < 2000 ? scan_nearest(name, nth_name, c->plan) : NULL;
-        if (near) return statement_error(c, "nothing is named %s yet; did you mean %s?", name, near);
-        return statement_error(c, "nothing is named %s yet; wanted %s.", name, wanted);
+        if (near) return plan_statement_error(c, "nothing is named %s yet; did you mean %s?", name, near);
+        return plan_statement_error(c, "nothing is named %s yet; wanted %s.", name, wanted);
     }
     if (is_removed(c->plan, *kind, *at))
-        return statement_error(c, "%s was removed and can no longer be changed.", name);
-    if (!(kinds & (1u << *kind))) return statement_error(c, "%s is %s; wanted %s.", name, kind_name(*kind), wanted);
+        return plan_statement_error(c, "%s was removed and can no longer be changed.", name);
+    if (!(kinds & (1u << *kind)))
+        return plan_statement_error(c, "%s is %s; wanted %s.", name, kind_name(*kind), wanted);
     return ST_OK;
 }
 
-enum status find_solid(struct plan_context *c, const char *name, enum name_kind *kind, int *at)
+enum status plan_find_solid(struct plan_context *c, const char *name, enum name_kind *kind, int *at)
 {
-    return find_named(c, name, 1u << NAMED_WALL | 1u << NAMED_OPENING | 1u << NAMED_SLOT | 1u << NAMED_BOX,
-                      "a wall, an opening or a box", kind, at);
+    return plan_find_named(c, name, 1u << NAMED_WALL | 1u << NAMED_OPENING | 1u << NAMED_SLOT | 1u << NAMED_BOX,
+                           "a wall, an opening or a box", kind, at);
 }
 
-enum status find_wall(struct plan_context *c, const char *name, int *wall)
-{
-    enum name_kind kind;
-    return find_named(c, name, 1u << NAMED_WALL, "a wall", &kind, wall);
-}
-
-enum status find_room(struct plan_context *c, const char *name, int *room)
+enum status plan_find_wall(struct plan_context *c, const char *name, int *wall)
 {
     enum name_kind kind;
-    return find_named(c, name, 1u << NAMED_ROOM, "a room", &kind, room);
+    return plan_find_named(c, name, 1u << NAMED_WALL, "a wall", &kind, wall);
 }
 
-enum status copy_new_name(struct plan_context *c, const char *name, char **copy)
+enum status plan_find_room(struct plan_context *c, const char *name, int *room)
+{
+    enum name_kind kind;
+    return plan_find_named(c, name, 1u << NAMED_ROOM, "a room", &kind, room);
+}
+
+enum status plan_copy_new_name(struct plan_context *c, const char *name, char **copy)
 {
     int at;
     const enum name_kind kind = find_name(c->plan, name, &at);
     if (kind != NAMED_NONE)
-        return statement_error(
+        return plan_statement_error(
             c,
             "the name %s is used already, for %s%s (line %d); faces are identified by name, so choose "
             "another one.",

@@ -10,14 +10,14 @@
 #include "stages/build_model/plan/plan_internal.h"
 #include "stages/build_model/script/script_words.h"
 
-enum status fill_thickness(struct plan_context *c, enum filling fill, double *thickness)
+enum status plan_fill_thickness(struct plan_context *c, enum filling fill, double *thickness)
 {
     *thickness = 0;
     if (fill != FILL_LEAF && fill != FILL_GLASS) return ST_OK;
-    *thickness = use_default(c, fill == FILL_GLASS ? DEFAULT_GLASS : DEFAULT_LEAF);
+    *thickness = plan_use_default(c, fill == FILL_GLASS ? DEFAULT_GLASS : DEFAULT_LEAF);
     if (*thickness > 0) return ST_OK;
-    return statement_error(c, "the thickness of %s is unknown without a scale; write \"set %s NUMBER\" before.",
-                           fill == FILL_GLASS ? "glass" : "a door's leaf", fill == FILL_GLASS ? "glass" : "leaf");
+    return plan_statement_error(c, "the thickness of %s is unknown without a scale; write \"set %s NUMBER\" before.",
+                                fill == FILL_GLASS ? "glass" : "a door's leaf", fill == FILL_GLASS ? "glass" : "leaf");
 }
 
 /* Measured from an end of the wall, where its neighbour's near face is; left and right as seen from its inside. */
@@ -26,8 +26,8 @@ static enum status place_from_end(struct plan_context *c, int wall, double s[2],
     const struct plan_wall *w = &c->plan->walls[wall];
     const double *a = c->s->place.a;
     double span[2];
-    if (!(a[1] >= MIN_SIZE)) return statement_error(c, "found the width %.9g, wanted %g or more.", a[1], MIN_SIZE);
-    wall_span(c->plan, wall, span);
+    if (!(a[1] >= MIN_SIZE)) return plan_statement_error(c, "found the width %.9g, wanted %g or more.", a[1], MIN_SIZE);
+    plan_wall_span(c->plan, wall, span);
     /* the start is at the left */
     const bool from_high = c->s->place.right == (w->sign > 0);
     s[0] = from_high ? span[1] - a[0] - a[1] : span[0] + a[0];
@@ -37,7 +37,7 @@ static enum status place_from_end(struct plan_context *c, int wall, double s[2],
     return ST_OK;
 }
 
-enum status place_on_wall(struct plan_context *c, int wall, double s[2], double z[2])
+enum status plan_place_on_wall(struct plan_context *c, int wall, double s[2], double z[2])
 {
     const struct script_place *p = &c->s->place;
     const struct plan_wall *w = &c->plan->walls[wall];
@@ -51,7 +51,7 @@ enum status place_on_wall(struct plan_context *c, int wall, double s[2], double 
     }
     /* the camera sees one of the faces: from behind, a ray meets the in face from the wrong side */
     struct vec3 corners[2];
-    const struct plan_line in = wall_face(w, SIDE_IN), out = wall_face(w, SIDE_OUT);
+    const struct plan_line in = plan_wall_face(w, SIDE_IN), out = plan_wall_face(w, SIDE_OUT);
     struct err first = ERR_INIT;
     if (place_corners(corners, c->placer, p, vec3_make(in.n[0], in.n[1], 0), in.c, c->path, c->s->line, &first)) {
         struct err second = ERR_INIT;
@@ -60,7 +60,7 @@ enum status place_on_wall(struct plan_context *c, int wall, double s[2], double 
     }
     for (int i = 0; i < 2; i++) {
         const double at[2] = {corners[i].x, corners[i].y};
-        s[i] = wall_s(w, at);
+        s[i] = plan_wall_s(w, at);
         z[i] = corners[i].z;
     }
     if (s[0] > s[1]) {
@@ -76,12 +76,13 @@ enum status place_on_wall(struct plan_context *c, int wall, double s[2], double 
     return ST_OK;
 }
 
-void set_foot_on_floor(const struct plan_context *c, const struct plan_wall *w, enum opening_kind kind, double z[2])
+void plan_set_foot_on_floor(const struct plan_context *c, const struct plan_wall *w, enum opening_kind kind,
+                            double z[2])
 {
     if (kind != OPENING_WINDOW && c->s->place.kind == PLACE_VIEW) z[0] = w->foot;
 }
 
-enum status read_opening(struct script_reader *r, struct statement *s)
+enum status plan_read_opening(struct script_reader *r, struct statement *s)
 {
     return script_read_name(r, "a name", &s->name) || script_expect(r, "on") ||
                    script_read_name(r, "a wall", &s->other) || script_read_place(r, &s->place, 1u << PLACE_FROM_END)
@@ -94,25 +95,25 @@ static enum status add_opening(struct plan_context *c, enum opening_kind kind, e
     const struct statement *s = c->s;
     struct plan *p = c->plan;
     struct plan_opening o = {.line = s->line, .kind = kind, .interior = s->has_option[OPTION_INTERIOR], .fill = fill};
-    if (find_wall(c, s->other, &o.wall) || place_on_wall(c, o.wall, o.s, o.z)) return c->err->status;
-    set_foot_on_floor(c, &p->walls[o.wall], kind, o.z);
-    if (fill_thickness(c, o.fill, &o.leaf) || copy_new_name(c, s->name, &o.name)) return c->err->status;
+    if (plan_find_wall(c, s->other, &o.wall) || plan_place_on_wall(c, o.wall, o.s, o.z)) return c->err->status;
+    plan_set_foot_on_floor(c, &p->walls[o.wall], kind, o.z);
+    if (plan_fill_thickness(c, o.fill, &o.leaf) || plan_copy_new_name(c, s->name, &o.name)) return c->err->status;
     if (array_append(&p->openings, (size_t)p->opening_count, sizeof o, "openings", c->err)) {
         free(o.name);
         return c->err->status;
     }
     p->openings[p->opening_count++] = o;
-    return add_name(p, o.name, NAMED_OPENING, p->opening_count - 1, c->err);
+    return plan_add_name(p, o.name, NAMED_OPENING, p->opening_count - 1, c->err);
 }
 
-enum status apply_door(struct plan_context *c)
+enum status plan_apply_door(struct plan_context *c)
 {
     return add_opening(c, OPENING_DOOR, c->s->has_option[OPTION_CLOSED] ? FILL_LEAF : FILL_NOTHING);
 }
 
-enum status apply_passage(struct plan_context *c) { return add_opening(c, OPENING_PASSAGE, FILL_NOTHING); }
+enum status plan_apply_passage(struct plan_context *c) { return add_opening(c, OPENING_PASSAGE, FILL_NOTHING); }
 
-enum status apply_window(struct plan_context *c)
+enum status plan_apply_window(struct plan_context *c)
 {
     return add_opening(c, OPENING_WINDOW, c->s->has_option[OPTION_OPEN] ? FILL_NOTHING : FILL_GLASS);
 }
@@ -125,7 +126,7 @@ static enum status place_in_plane(struct plan_context *c, const double plane[3],
     const struct script_place *p = &c->s->place;
     double a[4];
     if (p->kind == PLACE_FROM_END)
-        return statement_error(c, "%s is in no wall; give its place by coordinates or in a view.", c->s->name);
+        return plan_statement_error(c, "%s is in no wall; give its place by coordinates or in a view.", c->s->name);
     memcpy(a, p->a, sizeof a);
     if (p->kind == PLACE_VIEW) {
         struct vec3 corners[2];
@@ -148,27 +149,27 @@ static enum status place_in_plane(struct plan_context *c, const double plane[3],
     return ST_OK;
 }
 
-enum status place_footprint(struct plan_context *c, double at, double low[2], double high[2])
+enum status plan_place_footprint(struct plan_context *c, double at, double low[2], double high[2])
 {
     return place_in_plane(c, (const double[3]){at, 0, 0}, low, high);
 }
 
-enum status place_in_room(struct plan_context *c, const struct plan_room *r, enum opening_kind kind, double low[2],
-                          double high[2])
+enum status plan_place_in_room(struct plan_context *c, const struct plan_room *r, enum opening_kind kind, double low[2],
+                               double high[2])
 {
-    if (kind == OPENING_HATCH) return place_footprint(c, r->floor, low, high);
+    if (kind == OPENING_HATCH) return plan_place_footprint(c, r->floor, low, high);
     /* of a gable's planes, the one in which the footprint's middle is on the ceiling */
     enum status st = ST_OK;
     for (int i = 0; i < r->lower.count && !st; i++) {
         st = place_in_plane(c, r->lower.a[i], low, high);
         const double middle[2] = {0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1])};
         const struct plan_top one = {{{r->lower.a[i][0], r->lower.a[i][1], r->lower.a[i][2]}}, 1};
-        if (!st && top_at(&one, middle) <= top_at(&r->lower, middle) + LENGTH_EPS) break;
+        if (!st && plan_top_at(&one, middle) <= plan_top_at(&r->lower, middle) + LENGTH_EPS) break;
     }
     return st;
 }
 
-enum status read_slot(struct script_reader *r, struct statement *s)
+enum status plan_read_slot(struct script_reader *r, struct statement *s)
 {
     return script_read_name(r, "a name", &s->name) || script_expect(r, "on") ||
                    script_read_name(r, "a room", &s->other) || script_read_place(r, &s->place, 1u << PLACE_FROM_END)
@@ -181,50 +182,51 @@ static enum status add_slot(struct plan_context *c, enum opening_kind kind, enum
     const struct statement *s = c->s;
     struct plan *p = c->plan;
     struct plan_slot slot = {.line = s->line, .kind = kind, .fill = fill};
-    if (find_room(c, s->other, &slot.room) || place_in_room(c, &p->rooms[slot.room], kind, slot.low, slot.high) ||
-        fill_thickness(c, slot.fill, &slot.leaf) || copy_new_name(c, s->name, &slot.name))
+    if (plan_find_room(c, s->other, &slot.room) ||
+        plan_place_in_room(c, &p->rooms[slot.room], kind, slot.low, slot.high) ||
+        plan_fill_thickness(c, slot.fill, &slot.leaf) || plan_copy_new_name(c, s->name, &slot.name))
         return c->err->status;
     if (array_append(&p->slots, (size_t)p->slot_count, sizeof slot, "openings in rooms", c->err)) {
         free(slot.name);
         return c->err->status;
     }
     p->slots[p->slot_count++] = slot;
-    return add_name(p, slot.name, NAMED_SLOT, p->slot_count - 1, c->err);
+    return plan_add_name(p, slot.name, NAMED_SLOT, p->slot_count - 1, c->err);
 }
 
-enum status apply_skylight(struct plan_context *c)
+enum status plan_apply_skylight(struct plan_context *c)
 {
     return add_slot(c, OPENING_SKYLIGHT, c->s->has_option[OPTION_OPEN] ? FILL_NOTHING : FILL_GLASS);
 }
 
-enum status apply_hatch(struct plan_context *c)
+enum status plan_apply_hatch(struct plan_context *c)
 {
     return add_slot(c, OPENING_HATCH, c->s->has_option[OPTION_CLOSED] ? FILL_LEAF : FILL_NOTHING);
 }
 
 /* ------------------------------------------------------------------------------------------------------------ boxes */
 
-enum status read_box(struct script_reader *r, struct statement *s)
+enum status plan_read_box(struct script_reader *r, struct statement *s)
 {
     return script_read_name(r, "a name", &s->name) || script_read_place(r, &s->place, 0) ? r->err->status : ST_OK;
 }
 
-enum status apply_box(struct plan_context *c)
+enum status plan_apply_box(struct plan_context *c)
 {
     const struct statement *s = c->s;
     struct plan *p = c->plan;
     struct plan_box b = {.line = s->line, .turn = s->has_option[OPTION_TURN] ? s->options[OPTION_TURN] : 0};
-    b.low[2] = option_or_default(c, OPTION_FOOT, DEFAULT_FLOOR);
-    b.high[2] = option_or_default(c, OPTION_TOP, DEFAULT_CEILING);
+    b.low[2] = plan_option_or_default(c, OPTION_FOOT, DEFAULT_FLOOR);
+    b.high[2] = plan_option_or_default(c, OPTION_TOP, DEFAULT_CEILING);
     if (!s->has_option[OPTION_TOP] && p->ceiling == 0)
-        return statement_error(c, "box %s has no top, because no ceiling was found; add \"top NUMBER\" to the line.",
-                               s->name);
+        return plan_statement_error(
+            c, "box %s has no top, because no ceiling was found; add \"top NUMBER\" to the line.", s->name);
     const double at = s->has_option[OPTION_AT] ? s->options[OPTION_AT] : b.low[2];
-    if (place_footprint(c, at, b.low, b.high) || copy_new_name(c, s->name, &b.name)) return c->err->status;
+    if (plan_place_footprint(c, at, b.low, b.high) || plan_copy_new_name(c, s->name, &b.name)) return c->err->status;
     if (array_append(&p->boxes, (size_t)p->box_count, sizeof b, "boxes", c->err)) {
         free(b.name);
         return c->err->status;
     }
     p->boxes[p->box_count++] = b;
-    return add_name(p, b.name, NAMED_BOX, p->box_count - 1, c->err);
+    return plan_add_name(p, b.name, NAMED_BOX, p->box_count - 1, c->err);
 }

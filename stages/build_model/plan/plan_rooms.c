@@ -27,7 +27,7 @@ static double cross2(const double a[2], const double b[2], const double c[2])
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
 }
 
-bool segments_meet(const double a[2], const double b[2], const double x[2], const double y[2])
+bool plan_segments_meet(const double a[2], const double b[2], const double x[2], const double y[2])
 {
     for (int k = 0; k < 2; k++)
         if (fmax(a[k], b[k]) < fmin(x[k], y[k]) || fmin(a[k], b[k]) > fmax(x[k], y[k])) return false;
@@ -49,13 +49,14 @@ static enum status group_walls(struct plan_checker *c, struct plan_room *r)
     struct plan *p = c->plan;
     int *group = r->edge_of;
     int start = 0; /* a wall that is not on the line of the wall before it */
-    while (start < r->wall_count && walls_on_one_line(&p->walls[r->walls[(start + r->wall_count - 1) % r->wall_count]],
-                                                      &p->walls[r->walls[start]]))
+    while (start < r->wall_count &&
+           plan_walls_on_one_line(&p->walls[r->walls[(start + r->wall_count - 1) % r->wall_count]],
+                                  &p->walls[r->walls[start]]))
         start++;
     r->edge_count = 0;
     for (int k = 0; k < r->wall_count && start < r->wall_count; k++) {
         const int i = (start + k) % r->wall_count, before = (i + r->wall_count - 1) % r->wall_count;
-        if (k == 0 || !walls_on_one_line(&p->walls[r->walls[before]], &p->walls[r->walls[i]]))
+        if (k == 0 || !plan_walls_on_one_line(&p->walls[r->walls[before]], &p->walls[r->walls[i]]))
             r->edges[r->edge_count++] = (struct room_edge){.wall = r->walls[i]};
         group[i] = r->edge_count - 1;
     }
@@ -86,10 +87,10 @@ static void room_corners(const struct plan *p, struct plan_room *r, double off)
 {
     for (int e = 0; e < r->edge_count; e++) {
         const struct plan_wall *a = &p->walls[r->edges[e].wall], *b = &p->walls[r->edges[(e + 1) % r->edge_count].wall];
-        struct plan_line x = wall_face(a, SIDE_IN), y = wall_face(b, SIDE_IN);
+        struct plan_line x = plan_wall_face(a, SIDE_IN), y = plan_wall_face(b, SIDE_IN);
         x.c -= off * a->thickness;
         y.c -= off * b->thickness;
-        line_cross(x, y, r->edges[e].corner);
+        plan_line_cross(x, y, r->edges[e].corner);
     }
 }
 
@@ -125,23 +126,24 @@ static enum status shape_room(struct plan_checker *c, struct plan_room *r)
     for (int e = 0; e < r->edge_count; e++) {
         struct room_edge *edge = &r->edges[e];
         const double *a = r->edges[(e + r->edge_count - 1) % r->edge_count].corner, *b = edge->corner;
-        const struct plan_line in = wall_face(&p->walls[edge->wall], SIDE_IN);
+        const struct plan_line in = plan_wall_face(&p->walls[edge->wall], SIDE_IN);
         edge->side = in.n[0] * (a[1] - b[1]) + in.n[1] * (b[0] - a[0]) > 0 ? SIDE_IN : SIDE_OUT;
     }
     for (int e = 0; e < r->edge_count; e++)
-        line_cross(wall_face(&p->walls[r->edges[e].wall], r->edges[e].side),
-                   wall_face(&p->walls[r->edges[(e + 1) % r->edge_count].wall], r->edges[(e + 1) % r->edge_count].side),
-                   r->edges[e].corner);
+        plan_line_cross(
+            plan_wall_face(&p->walls[r->edges[e].wall], r->edges[e].side),
+            plan_wall_face(&p->walls[r->edges[(e + 1) % r->edge_count].wall], r->edges[(e + 1) % r->edge_count].side),
+            r->edges[e].corner);
     for (int e = 0; e < r->edge_count; e++) {
         const double *a = r->edges[(e + r->edge_count - 1) % r->edge_count].corner, *b = r->edges[e].corner;
-        const struct plan_line face = wall_face(&p->walls[r->edges[e].wall], r->edges[e].side);
+        const struct plan_line face = plan_wall_face(&p->walls[r->edges[e].wall], r->edges[e].side);
         if (!(face.n[0] * (a[1] - b[1]) + face.n[1] * (b[0] - a[0]) > LENGTH_EPS))
             return plan_error(c, r->line, "room %s has no space in front of wall %s.", r->name,
                               p->walls[r->edges[e].wall].name);
         for (int f = e + 2; f < r->edge_count; f++) { /* edges that are not neighbours may not touch */
             if (e == 0 && f == r->edge_count - 1) continue;
             const double *x = r->edges[f - 1].corner, *y = r->edges[f].corner;
-            if (segments_meet(a, b, x, y))
+            if (plan_segments_meet(a, b, x, y))
                 return plan_error(
                     c, r->line,
                     "walls %s and %s of room %s cross; list its walls in the order in which they go round it.",
@@ -164,14 +166,14 @@ static void set_plane(struct plan_top *top, int i, struct plan_line line, const 
 static enum status slope_room(struct plan_checker *c, struct plan_room *r)
 {
     const struct plan *p = c->plan;
-    r->lower = level_top(r->ceiling);
+    r->lower = plan_level_top(r->ceiling);
     if (r->shape == LEVEL_CEILING) return ST_OK;
     double at[2] = {0, 0}; /* of both walls along the normal of the first */
     struct plan_line first = {{0, 0}, 0};
     for (int i = 0; i < 2; i++)
         for (int e = 0; e < r->edge_count; e++) {
-            if (room_edge_of(r, r->slope_walls[i]) != e) continue;
-            const struct plan_line face = wall_face(&p->walls[r->edges[e].wall], r->edges[e].side);
+            if (plan_room_edge_of(r, r->slope_walls[i]) != e) continue;
+            const struct plan_line face = plan_wall_face(&p->walls[r->edges[e].wall], r->edges[e].side);
             if (i == 0) first = face;
             at[i] = face.n[0] * first.n[0] + face.n[1] * first.n[1] > 0 ? face.c : -face.c;
         }
@@ -201,19 +203,19 @@ static enum status check_border(struct plan_checker *c, const struct plan_room *
     const struct plan *p = c->plan;
     for (int e = 0; e < r->edge_count; e++) {
         const double *a = r->edges[(e + r->edge_count - 1) % r->edge_count].outer, *b = r->edges[e].outer;
-        const struct plan_line face = wall_face(&p->walls[r->edges[e].wall], r->edges[e].side);
+        const struct plan_line face = plan_wall_face(&p->walls[r->edges[e].wall], r->edges[e].side);
         if (!(face.n[0] * (a[1] - b[1]) + face.n[1] * (b[0] - a[0]) > LENGTH_EPS))
             return plan_error(c, r->line, "the walls at the two ends of wall %s, in room %s, overlap.",
                               p->walls[r->edges[e].wall].name, r->name);
         for (int f = e + 2; f < r->edge_count; f++)
-            if ((e || f < r->edge_count - 1) && segments_meet(a, b, r->edges[f - 1].outer, r->edges[f].outer))
+            if ((e || f < r->edge_count - 1) && plan_segments_meet(a, b, r->edges[f - 1].outer, r->edges[f].outer))
                 return plan_error(c, r->line, "walls %s and %s of room %s overlap.", p->walls[r->edges[e].wall].name,
                                   p->walls[r->edges[f].wall].name, r->name);
     }
     return ST_OK;
 }
 
-enum status check_rooms(struct plan_checker *c)
+enum status plan_check_rooms(struct plan_checker *c)
 {
     struct plan *p = c->plan;
     unsigned char *sides = calloc((size_t)p->wall_count + 1, 1); /* bits: of each wall, the sides that face rooms */
@@ -241,12 +243,12 @@ enum status check_rooms(struct plan_checker *c)
             edge->border = w->c - (edge->shared ? 0.5 : edge->side == SIDE_IN ? 1 : 0) * w->thickness;
         }
         for (int e = 0; !r->removed && !st && e < r->edge_count; e++) {
-            struct plan_line x = wall_face(&p->walls[r->edges[e].wall], SIDE_IN);
-            struct plan_line y = wall_face(&p->walls[r->edges[(e + 1) % r->edge_count].wall], SIDE_IN);
+            struct plan_line x = plan_wall_face(&p->walls[r->edges[e].wall], SIDE_IN);
+            struct plan_line y = plan_wall_face(&p->walls[r->edges[(e + 1) % r->edge_count].wall], SIDE_IN);
             x.c = r->edges[e].border;
             y.c = r->edges[(e + 1) % r->edge_count].border;
-            line_cross(x, y, r->edges[e].outer);
-            if (!(top_at(&r->lower, r->edges[e].outer) - r->floor >= MIN_SIZE))
+            plan_line_cross(x, y, r->edges[e].outer);
+            if (!(plan_top_at(&r->lower, r->edges[e].outer) - r->floor >= MIN_SIZE))
                 st = plan_error(c, r->line, "the ceiling of room %s comes down to its floor.", r->name);
         }
         if (!r->removed && !st) st = check_border(c, r);

@@ -20,13 +20,13 @@
 #include "stages/build_model/plan/plan_internal.h"
 #include "stages/build_model/script/script_words.h"
 
-enum status check_length(struct plan_context *c, const char *what, double value)
+enum status plan_check_length(struct plan_context *c, const char *what, double value)
 {
     if (value >= MIN_SIZE && value <= MAX_SIZE) return ST_OK;
-    return statement_error(c, "found %s %.9g, wanted %g to %g.", what, value, MIN_SIZE, MAX_SIZE);
+    return plan_statement_error(c, "found %s %.9g, wanted %g to %g.", what, value, MIN_SIZE, MAX_SIZE);
 }
 
-double *default_value(struct plan *plan, enum plan_default which, const char **name)
+double *plan_default_value(struct plan *plan, enum plan_default which, const char **name)
 {
     static const char *const names[DEFAULTS] = {"thickness", "slab", "glass", "leaf", "floor", "ceiling"};
     double *const values[DEFAULTS] = {&plan->thickness, &plan->slab,  &plan->glass,
@@ -35,18 +35,18 @@ double *default_value(struct plan *plan, enum plan_default which, const char **n
     return values[which];
 }
 
-double use_default(struct plan_context *c, enum plan_default which)
+double plan_use_default(struct plan_context *c, enum plan_default which)
 {
     c->used |= 1u << which;
-    return *default_value(c->plan, which, NULL);
+    return *plan_default_value(c->plan, which, NULL);
 }
 
-double option_or_default(struct plan_context *c, enum option option, enum plan_default which)
+double plan_option_or_default(struct plan_context *c, enum option option, enum plan_default which)
 {
-    return c->s->has_option[option] ? c->s->options[option] : use_default(c, which);
+    return c->s->has_option[option] ? c->s->options[option] : plan_use_default(c, which);
 }
 
-enum status read_set(struct script_reader *r, struct statement *s)
+enum status plan_read_set(struct script_reader *r, struct statement *s)
 {
     static const char *const QUANTITIES[] = {"thickness", "slab", "glass", "leaf", "floor", "ceiling", "colour", NULL};
     char *word;
@@ -60,7 +60,7 @@ enum status read_set(struct script_reader *r, struct statement *s)
     return script_read_number(r, s->name, &s->values[0]);
 }
 
-enum status apply_set(struct plan_context *c)
+enum status plan_apply_set(struct plan_context *c)
 {
     const struct statement *s = c->s;
     if (!strcmp(s->name, "colour")) {
@@ -69,11 +69,11 @@ enum status apply_set(struct plan_context *c)
     }
     for (int i = 0; i < DEFAULTS; i++) {
         const char *name;
-        double *value = default_value(c->plan, (enum plan_default)i, &name);
+        double *value = plan_default_value(c->plan, (enum plan_default)i, &name);
         if (strcmp(name, s->name)) continue;
-        if (i < DEFAULT_FLOOR && check_length(c, s->name, s->values[0])) return c->err->status;
+        if (i < DEFAULT_FLOOR && plan_check_length(c, s->name, s->values[0])) return c->err->status;
         if (fabs(s->values[0]) > MAX_SIZE)
-            return statement_error(c, "found %s %.9g, wanted at most %g.", s->name, s->values[0], MAX_SIZE);
+            return plan_statement_error(c, "found %s %.9g, wanted at most %g.", s->name, s->values[0], MAX_SIZE);
         *value = s->values[0];
         c->set |= 1u << i;
     }
@@ -85,13 +85,13 @@ enum status apply_set(struct plan_context *c)
 static enum status set_wall_line(struct plan_context *c, struct plan_wall *w, const double a[2], const double b[2])
 {
     const double length = hypot(b[0] - a[0], b[1] - a[1]);
-    if (!(length > LENGTH_EPS)) return statement_error(c, "wall %s would have no length.", c->s->name);
+    if (!(length > LENGTH_EPS)) return plan_statement_error(c, "wall %s would have no length.", c->s->name);
     w->d[0] = (b[0] - a[0]) / length;
     w->d[1] = (b[1] - a[1]) / length;
     if (!w->angled) {
         const int axis = fabs(w->d[1]) > fabs(w->d[0]);
         if (fabs(w->d[!axis]) * length > LENGTH_EPS)
-            return statement_error(
+            return plan_statement_error(
                 c,
                 "wall %s from %.9g %.9g to %.9g %.9g is not along an axis; add the word angled if that is "
                 "intended.",
@@ -105,8 +105,8 @@ static enum status set_wall_line(struct plan_context *c, struct plan_wall *w, co
         w->origin = w->d[0] * a[0] + w->d[1] * a[1];
     }
     w->c = w->d[1] * a[0] - w->d[0] * a[1];
-    w->ends[END_START] = (struct wall_end){FREE_END, wall_s(w, a), -1};
-    w->ends[END_END] = (struct wall_end){FREE_END, wall_s(w, b), -1};
+    w->ends[END_START] = (struct wall_end){FREE_END, plan_wall_s(w, a), -1};
+    w->ends[END_END] = (struct wall_end){FREE_END, plan_wall_s(w, b), -1};
     return ST_OK;
 }
 
@@ -117,7 +117,7 @@ static enum status place_parallel_wall(struct plan_context *c, struct plan_wall 
     const struct script_place *place = &c->s->place;
     int other, ends[2];
     double p[2][2];
-    if (find_wall(c, place->wall, &other)) return c->err->status;
+    if (plan_find_wall(c, place->wall, &other)) return c->err->status;
     const struct plan_wall *o = &c->plan->walls[other];
     memcpy(w->d, o->d, sizeof w->d);
     w->c = o->c + place->a[0];
@@ -125,16 +125,16 @@ static enum status place_parallel_wall(struct plan_context *c, struct plan_wall 
     w->origin = o->origin;
     w->angled = o->angled;
     for (int i = 0; i < 2; i++) {
-        if (find_wall(c, place->between[i], &ends[i])) return c->err->status;
+        if (plan_find_wall(c, place->between[i], &ends[i])) return c->err->status;
         const struct plan_wall *e = &c->plan->walls[ends[i]];
         if (!(fabs(w->d[0] * e->d[1] - w->d[1] * e->d[0]) > PARALLEL_SINE) ||
-            !line_cross(wall_face(w, SIDE_IN), wall_face(e, SIDE_IN), p[i]))
-            return statement_error(c, "wall %s cannot end at wall %s: it is parallel to that, or nearly so.",
-                                   c->s->name, place->between[i]);
+            !plan_line_cross(plan_wall_face(w, SIDE_IN), plan_wall_face(e, SIDE_IN), p[i]))
+            return plan_statement_error(c, "wall %s cannot end at wall %s: it is parallel to that, or nearly so.",
+                                        c->s->name, place->between[i]);
     }
     if (ends[0] == ends[1])
-        return statement_error(c, "wall %s lies between wall %s and itself; name a wall for each of its ends.",
-                               c->s->name, place->between[0]);
+        return plan_statement_error(c, "wall %s lies between wall %s and itself; name a wall for each of its ends.",
+                                    c->s->name, place->between[0]);
     const double along = w->d[0] * (p[1][0] - p[0][0]) + w->d[1] * (p[1][1] - p[0][1]);
     w->ends[END_START] = (struct wall_end){MEET_END, 0, ends[along < 0]};
     w->ends[END_END] = (struct wall_end){MEET_END, 0, ends[along >= 0]};
@@ -162,7 +162,7 @@ static enum status place_new_wall(struct plan_context *c, struct plan_wall *w)
     return ST_OK;
 }
 
-enum status read_wall(struct script_reader *r, struct statement *s)
+enum status plan_read_wall(struct script_reader *r, struct statement *s)
 {
     if (script_read_name(r, "a name", &s->name) || script_read_place(r, &s->place, 1u << PLACE_PARALLEL))
         return r->err->status;
@@ -170,27 +170,27 @@ enum status read_wall(struct script_reader *r, struct statement *s)
     return ST_OK;
 }
 
-enum status apply_wall(struct plan_context *c)
+enum status plan_apply_wall(struct plan_context *c)
 {
     const struct statement *s = c->s;
     struct plan *p = c->plan;
     struct plan_wall w = {.line = s->line, .angled = s->has_option[OPTION_ANGLED]};
-    if (copy_new_name(c, s->name, &w.name)) return c->err->status;
-    w.thickness = option_or_default(c, OPTION_THICKNESS, DEFAULT_THICKNESS);
-    w.foot = option_or_default(c, OPTION_FOOT, DEFAULT_FLOOR);
-    w.top = option_or_default(c, OPTION_TOP, DEFAULT_CEILING);
+    if (plan_copy_new_name(c, s->name, &w.name)) return c->err->status;
+    w.thickness = plan_option_or_default(c, OPTION_THICKNESS, DEFAULT_THICKNESS);
+    w.foot = plan_option_or_default(c, OPTION_FOOT, DEFAULT_FLOOR);
+    w.top = plan_option_or_default(c, OPTION_TOP, DEFAULT_CEILING);
     w.has_top = s->has_option[OPTION_TOP];
     enum status st = ST_OK;
     if (!s->has_option[OPTION_THICKNESS] && w.thickness == 0)
-        st = statement_error(
+        st = plan_statement_error(
             c, "the thickness of walls is unknown without a scale; write \"set thickness NUMBER\" before.");
     else if (!w.has_top && w.top == 0)
-        st = statement_error(c, "no ceiling was found; write \"set ceiling NUMBER\" before.");
+        st = plan_statement_error(c, "no ceiling was found; write \"set ceiling NUMBER\" before.");
     else
-        st = check_length(c, "thickness", w.thickness);
+        st = plan_check_length(c, "thickness", w.thickness);
     if (!st && !(w.top - w.foot >= MIN_SIZE))
-        st = statement_error(c, "wall %s goes from %.9g up to %.9g, wanted a top above its foot.", s->name, w.foot,
-                             w.top);
+        st = plan_statement_error(c, "wall %s goes from %.9g up to %.9g, wanted a top above its foot.", s->name, w.foot,
+                                  w.top);
     if (!st) st = place_new_wall(c, &w);
     if (!st) st = array_append(&p->walls, (size_t)p->wall_count, sizeof w, "walls", c->err);
     if (st) {
@@ -198,50 +198,50 @@ enum status apply_wall(struct plan_context *c)
         return st;
     }
     p->walls[p->wall_count++] = w;
-    return add_name(p, w.name, NAMED_WALL, p->wall_count - 1, c->err);
+    return plan_add_name(p, w.name, NAMED_WALL, p->wall_count - 1, c->err);
 }
 
 /* ------------------------------------------------------------------------------------------------------------ rooms */
 
-enum status read_room(struct script_reader *r, struct statement *s)
+enum status plan_read_room(struct script_reader *r, struct statement *s)
 {
     return script_read_name(r, "a name", &s->name) || script_read_list(r, s, 3) ? r->err->status : ST_OK;
 }
 
-enum status apply_room(struct plan_context *c)
+enum status plan_apply_room(struct plan_context *c)
 {
     const struct statement *s = c->s;
     struct plan *p = c->plan;
     struct plan_room r = {.line = s->line, .wall_count = s->name_count};
-    r.floor = option_or_default(c, OPTION_FLOOR, DEFAULT_FLOOR);
-    r.ceiling = option_or_default(c, OPTION_CEILING, DEFAULT_CEILING);
-    if (r.ceiling == 0) return statement_error(c, "no ceiling was found; add \"ceiling NUMBER\" to the line.");
+    r.floor = plan_option_or_default(c, OPTION_FLOOR, DEFAULT_FLOOR);
+    r.ceiling = plan_option_or_default(c, OPTION_CEILING, DEFAULT_CEILING);
+    if (r.ceiling == 0) return plan_statement_error(c, "no ceiling was found; add \"ceiling NUMBER\" to the line.");
     if (!(r.ceiling - r.floor >= MIN_SIZE))
-        return statement_error(c, "room %s goes from %.9g up to %.9g, wanted a ceiling above the floor.", s->name,
-                               r.floor, r.ceiling);
-    r.slab = use_default(c, p->slab > 0 ? DEFAULT_SLAB : DEFAULT_THICKNESS);
+        return plan_statement_error(c, "room %s goes from %.9g up to %.9g, wanted a ceiling above the floor.", s->name,
+                                    r.floor, r.ceiling);
+    r.slab = plan_use_default(c, p->slab > 0 ? DEFAULT_SLAB : DEFAULT_THICKNESS);
     if (r.slab == 0)
-        return statement_error(c,
-                               "the thickness of floors is unknown without a scale; write \"set slab NUMBER\" before.");
-    r.lower = level_top(r.ceiling);
+        return plan_statement_error(
+            c, "the thickness of floors is unknown without a scale; write \"set slab NUMBER\" before.");
+    r.lower = plan_level_top(r.ceiling);
     r.walls = calloc((size_t)s->name_count, sizeof *r.walls);
     if (!r.walls) return err_nomem(c->err, "a room", (size_t)s->name_count * sizeof *r.walls);
     for (int i = 0; i < s->name_count && !c->err->status; i++) {
-        find_wall(c, s->names[i], &r.walls[i]);
+        plan_find_wall(c, s->names[i], &r.walls[i]);
         for (int k = 0; k < i && !c->err->status; k++)
-            if (r.walls[k] == r.walls[i]) statement_error(c, "room %s names wall %s twice.", s->name, s->names[i]);
+            if (r.walls[k] == r.walls[i]) plan_statement_error(c, "room %s names wall %s twice.", s->name, s->names[i]);
     }
-    if (c->err->status || copy_new_name(c, s->name, &r.name) ||
+    if (c->err->status || plan_copy_new_name(c, s->name, &r.name) ||
         array_append(&p->rooms, (size_t)p->room_count, sizeof r, "rooms", c->err)) {
         free(r.walls);
         free(r.name);
         return c->err->status;
     }
     p->rooms[p->room_count++] = r;
-    return add_name(p, r.name, NAMED_ROOM, p->room_count - 1, c->err);
+    return plan_add_name(p, r.name, NAMED_ROOM, p->room_count - 1, c->err);
 }
 
-enum status read_slope(struct script_reader *r, struct statement *s)
+enum status plan_read_slope(struct script_reader *r, struct statement *s)
 {
     s->names = calloc(2, sizeof *s->names);
     if (!s->names) return err_nomem(r->err, "names of walls", 2 * sizeof *s->names);
@@ -254,9 +254,10 @@ enum status read_slope(struct script_reader *r, struct statement *s)
     return ST_OK;
 }
 
-enum status read_gable(struct script_reader *r, struct statement *s)
+enum status plan_read_gable(struct script_reader *r, struct statement *s)
 {
-    return read_slope(r, s) || script_expect(r, "ridge") || script_read_number(r, "the ridge's height", &s->values[2])
+    return plan_read_slope(r, s) || script_expect(r, "ridge") ||
+                   script_read_number(r, "the ridge's height", &s->values[2])
                ? r->err->status
                : ST_OK;
 }
@@ -266,27 +267,27 @@ static enum status slope_ceiling(struct plan_context *c, bool gable)
 {
     const struct statement *s = c->s;
     int at, walls[2];
-    if (find_room(c, s->name, &at)) return c->err->status;
+    if (plan_find_room(c, s->name, &at)) return c->err->status;
     struct plan_room *r = &c->plan->rooms[at];
     for (int i = 0; i < 2; i++) {
-        if (find_wall(c, s->names[i], &walls[i])) return c->err->status;
+        if (plan_find_wall(c, s->names[i], &walls[i])) return c->err->status;
         bool listed = false;
         for (int k = 0; k < r->wall_count; k++) listed |= r->walls[k] == walls[i];
-        if (!listed) return statement_error(c, "wall %s does not belong to room %s.", s->names[i], s->name);
+        if (!listed) return plan_statement_error(c, "wall %s does not belong to room %s.", s->names[i], s->name);
         if (!(s->values[i] - r->floor >= MIN_SIZE))
-            return statement_error(c, "the ceiling of %s would be at %.9g at wall %s, not above the floor (%.9g).",
-                                   s->name, s->values[i], s->names[i], r->floor);
+            return plan_statement_error(c, "the ceiling of %s would be at %.9g at wall %s, not above the floor (%.9g).",
+                                        s->name, s->values[i], s->names[i], r->floor);
     }
     const struct plan_wall *a = &c->plan->walls[walls[0]], *b = &c->plan->walls[walls[1]];
     if (walls[0] == walls[1] || !(fabs(a->d[0] * b->d[1] - a->d[1] * b->d[0]) < 1e-9))
-        return statement_error(c, "a ceiling slopes between two parallel walls, but %s and %s are not parallel.",
-                               s->names[0], s->names[1]);
+        return plan_statement_error(c, "a ceiling slopes between two parallel walls, but %s and %s are not parallel.",
+                                    s->names[0], s->names[1]);
     if (gable && !(s->values[2] - fmax(s->values[0], s->values[1]) >= MIN_SIZE))
-        return statement_error(c, "the ridge of %s would be at %.9g, wanted it above the ceiling at both walls.",
-                               s->name, s->values[2]);
+        return plan_statement_error(c, "the ridge of %s would be at %.9g, wanted it above the ceiling at both walls.",
+                                    s->name, s->values[2]);
     if (s->has_option[OPTION_AT] && !(s->options[OPTION_AT] >= MIN_SIZE))
-        return statement_error(c, "the ridge of %s would be %.9g from wall %s, wanted %g or more.", s->name,
-                               s->options[OPTION_AT], s->names[0], MIN_SIZE);
+        return plan_statement_error(c, "the ridge of %s would be %.9g from wall %s, wanted %g or more.", s->name,
+                                    s->options[OPTION_AT], s->names[0], MIN_SIZE);
     r->shape = gable ? GABLE_CEILING : SLOPED_CEILING;
     memcpy(r->slope_walls, walls, sizeof walls);
     memcpy(r->slope_heights, s->values, sizeof r->slope_heights);
@@ -294,6 +295,6 @@ static enum status slope_ceiling(struct plan_context *c, bool gable)
     return ST_OK;
 }
 
-enum status apply_slope(struct plan_context *c) { return slope_ceiling(c, false); }
+enum status plan_apply_slope(struct plan_context *c) { return slope_ceiling(c, false); }
 
-enum status apply_gable(struct plan_context *c) { return slope_ceiling(c, true); }
+enum status plan_apply_gable(struct plan_context *c) { return slope_ceiling(c, true); }

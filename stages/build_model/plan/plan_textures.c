@@ -34,7 +34,7 @@ static enum status add_wish(struct plan_context *c, struct plan_wish wish, const
     return err_nomem(c->err, "a texture", strlen(c->path) + strlen(face));
 }
 
-enum status read_texture(struct script_reader *r, struct statement *s)
+enum status plan_read_texture(struct script_reader *r, struct statement *s)
 {
     char *word;
     if (script_read_name(r, "a wall, an opening, a box or a room", &s->name)) return r->err->status;
@@ -45,16 +45,16 @@ enum status read_texture(struct script_reader *r, struct statement *s)
     return ST_OK;
 }
 
-enum status apply_texture(struct plan_context *c)
+enum status plan_apply_texture(struct plan_context *c)
 {
     enum name_kind kind;
     int at;
-    if (find_named(c, c->s->name, ~0u, "a wall, an opening, a box or a room", &kind, &at)) return c->err->status;
+    if (plan_find_named(c, c->s->name, ~0u, "a wall, an opening, a box or a room", &kind, &at)) return c->err->status;
     const bool stretch = !strcmp(c->s->other, "stretch");
     return add_wish(c, (struct plan_wish){.kind = stretch ? WISH_STRETCH : WISH_CROP}, c->s->name, NULL);
 }
 
-enum status read_material(struct script_reader *r, struct statement *s)
+enum status plan_read_material(struct script_reader *r, struct statement *s)
 {
     return script_read_face(r, &s->name) || gloss_read(&s->gloss, &r->t, r->err) ||
                    gloss_check(&s->gloss, 0, &r->t, r->err)
@@ -62,7 +62,7 @@ enum status read_material(struct script_reader *r, struct statement *s)
                : ST_OK;
 }
 
-enum status apply_material(struct plan_context *c)
+enum status plan_apply_material(struct plan_context *c)
 {
     return add_wish(c, (struct plan_wish){.kind = WISH_GLOSS, .gloss = c->s->gloss}, c->s->name, NULL);
 }
@@ -100,23 +100,24 @@ static enum status place_on_face(struct plan_context *c, struct plan *plan, cons
     moved.place = *place;
     at.s = &moved;
     at.plan = plan;
-    if (!item_of(item, face)) return statement_error(c, "%s is no face.", face);
+    if (!item_of(item, face)) return plan_statement_error(c, "%s is no face.", face);
     moved.name = item;
     if (!has_places(face))
-        return statement_error(
+        return plan_statement_error(
             c,
             "a place on %s cannot be given: only wall/NAME/in and out (S and Z), floor/NAME and ceiling/NAME (X and Y) "
             "have places. Leave the %s out: the whole face gets the %s.",
             face, copied ? "second place" : "place", copied ? "texture" : "colour");
     if (!strncmp(face, "wall/", 5)) {
         double s[2], z[2];
-        if (find_wall(&at, item, &index) || place_on_wall(&at, index, s, z)) return c->err->status;
+        if (plan_find_wall(&at, item, &index) || plan_place_on_wall(&at, index, s, z)) return c->err->status;
         memcpy(rect, (const double[]){s[0], z[0], s[1], z[1]}, 4 * sizeof *rect);
         return ST_OK;
     }
     const enum opening_kind kind = !strncmp(face, "floor/", 6) ? OPENING_HATCH : OPENING_SKYLIGHT;
     double low[2], high[2];
-    if (find_room(&at, item, &index) || place_in_room(&at, &plan->rooms[index], kind, low, high)) return c->err->status;
+    if (plan_find_room(&at, item, &index) || plan_place_in_room(&at, &plan->rooms[index], kind, low, high))
+        return c->err->status;
     memcpy(rect, (const double[]){low[0], low[1], high[0], high[1]}, 4 * sizeof *rect);
     return ST_OK;
 }
@@ -124,16 +125,16 @@ static enum status place_on_face(struct plan_context *c, struct plan *plan, cons
 static enum status check_rectangle(struct plan_context *c, const char *face, const double rect[4])
 {
     if (rect[2] - rect[0] >= MIN_SIZE && rect[3] - rect[1] >= MIN_SIZE) return ST_OK;
-    return statement_error(c, "the place on %s is %.9g wide and %.9g high, wanted %g or more.", face, rect[2] - rect[0],
-                           rect[3] - rect[1], MIN_SIZE);
+    return plan_statement_error(c, "the place on %s is %.9g wide and %.9g high, wanted %g or more.", face,
+                                rect[2] - rect[0], rect[3] - rect[1], MIN_SIZE);
 }
 
-enum status read_colour(struct script_reader *r, struct statement *s)
+enum status plan_read_colour(struct script_reader *r, struct statement *s)
 {
     return script_read_face(r, &s->name) || script_read_colour(r, s) ? r->err->status : ST_OK;
 }
 
-enum status read_paint(struct script_reader *r, struct statement *s)
+enum status plan_read_paint(struct script_reader *r, struct statement *s)
 {
     if (script_read_face(r, &s->name)) return r->err->status;
     if ((script_next_is(r, "from") || script_next_is(r, "in") || script_next_is(r, "at")) &&
@@ -143,7 +144,7 @@ enum status read_paint(struct script_reader *r, struct statement *s)
 }
 
 /* colour, paint */
-enum status apply_colour(struct plan_context *c)
+enum status plan_apply_colour(struct plan_context *c)
 {
     const struct statement *s = c->s;
     struct plan_wish wish = {.kind = WISH_COLOUR, .whole = s->place.kind == PLACE_NONE};
@@ -166,12 +167,12 @@ static enum status check_source(struct plan_context *c, const char *face)
     int at;
     unedited.plan = c->plan->unedited;
     unedited.err = edited.err = &none;
-    if (!item_of(item, face) || !find_named(&unedited, item, ~0u, "", &kind, &at)) return ST_OK;
-    if (find_named(&edited, item, ~0u, "", &kind, &at)) return ST_OK;
-    return statement_error(c, "%s is not in the unedited model, whose texture is copied.", item);
+    if (!item_of(item, face) || !plan_find_named(&unedited, item, ~0u, "", &kind, &at)) return ST_OK;
+    if (plan_find_named(&edited, item, ~0u, "", &kind, &at)) return ST_OK;
+    return plan_statement_error(c, "%s is not in the unedited model, whose texture is copied.", item);
 }
 
-enum status read_copy(struct script_reader *r, struct statement *s)
+enum status plan_read_copy(struct script_reader *r, struct statement *s)
 {
     if (script_expect(r, "texture") || script_read_face(r, &s->name) ||
         script_read_place(r, &s->place, 1u << PLACE_FROM_END) || script_expect(r, "to") ||
@@ -181,7 +182,7 @@ enum status read_copy(struct script_reader *r, struct statement *s)
 }
 
 /* The patch lies where the unedited model has it, also if the edit moved or removed that wall. */
-enum status apply_copy(struct plan_context *c)
+enum status plan_apply_copy(struct plan_context *c)
 {
     const struct statement *s = c->s;
     struct plan_wish wish = {.kind = WISH_COPY, .whole = s->target.kind == PLACE_NONE};
@@ -211,9 +212,9 @@ static enum status read_zone(struct script_reader *r, struct statement *s, bool 
     return script_read_name(r, "a room, \"all\", \"in VIEW\", \"from\" or \"before\"", &s->name);
 }
 
-enum status read_clear(struct script_reader *r, struct statement *s) { return read_zone(r, s, true); }
+enum status plan_read_clear(struct script_reader *r, struct statement *s) { return read_zone(r, s, true); }
 
-enum status read_keep(struct script_reader *r, struct statement *s) { return read_zone(r, s, false); }
+enum status plan_read_keep(struct script_reader *r, struct statement *s) { return read_zone(r, s, false); }
 
 static enum status add_zone(struct plan_context *c, bool keep)
 {
@@ -223,21 +224,21 @@ static enum status add_zone(struct plan_context *c, bool keep)
     zone.low[2] = s->has_option[OPTION_FOOT] ? s->options[OPTION_FOOT] : -ABOVE_ALL;
     zone.high[2] = s->has_option[OPTION_TOP] ? s->options[OPTION_TOP] : ABOVE_ALL;
     if (!(zone.low[2] < zone.high[2]))
-        return statement_error(c, "found foot %.9g and top %.9g, wanted a top above the foot.", zone.low[2],
-                               zone.high[2]);
+        return plan_statement_error(c, "found foot %.9g and top %.9g, wanted a top above the foot.", zone.low[2],
+                                    zone.high[2]);
     zone.all = s->name && !strcmp(s->name, "all");
-    if (s->name && !zone.all && find_room(c, s->name, &zone.room)) return c->err->status;
+    if (s->name && !zone.all && plan_find_room(c, s->name, &zone.room)) return c->err->status;
     if (s->other) {
         enum name_kind kind;
         zone.before = s->values[0];
-        if (find_named(c, s->other, 1u << NAMED_OPENING, "a door, passage or window", &kind, &zone.opening))
+        if (plan_find_named(c, s->other, 1u << NAMED_OPENING, "a door, passage or window", &kind, &zone.opening))
             return c->err->status;
         if (!(zone.before >= MIN_SIZE))
-            return statement_error(c, "found a distance of %.9g from the wall, wanted %g or more.", zone.before,
-                                   MIN_SIZE);
+            return plan_statement_error(c, "found a distance of %.9g from the wall, wanted %g or more.", zone.before,
+                                        MIN_SIZE);
     } else if (!s->name) {
         const double at = s->has_option[OPTION_FOOT] ? s->options[OPTION_FOOT] : 0;
-        if (place_footprint(c, at, zone.low, zone.high)) return c->err->status;
+        if (plan_place_footprint(c, at, zone.low, zone.high)) return c->err->status;
     }
     if (array_append(&p->zones, (size_t)p->zone_count, sizeof *p->zones, "places to clear", c->err))
         return c->err->status;
@@ -245,6 +246,6 @@ static enum status add_zone(struct plan_context *c, bool keep)
     return ST_OK;
 }
 
-enum status apply_clear(struct plan_context *c) { return add_zone(c, false); }
+enum status plan_apply_clear(struct plan_context *c) { return add_zone(c, false); }
 
-enum status apply_keep(struct plan_context *c) { return add_zone(c, true); }
+enum status plan_apply_keep(struct plan_context *c) { return add_zone(c, true); }

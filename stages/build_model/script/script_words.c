@@ -14,9 +14,9 @@ static const char *const OPTIONS[OPTION_COUNT] = {"thickness", "foot",     "top"
 
 static const char *const FILLINGS[FILL_COUNT] = {"nothing", "leaf", "glass", "wall"};
 
-const char *option_name(enum option option) { return OPTIONS[option]; }
+const char *script_option_name(enum option option) { return OPTIONS[option]; }
 
-const char *filling_name(enum filling filling) { return FILLINGS[filling]; }
+const char *script_filling_name(enum filling filling) { return FILLINGS[filling]; }
 
 enum status script_usage_error(struct script_reader *r, const char *found)
 {

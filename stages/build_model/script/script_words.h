@@ -20,8 +20,8 @@ struct script_reader {
     struct err *err;
 };
 
-const char *option_name(enum option option);
-const char *filling_name(enum filling filling); /* "nothing", "leaf", "glass", "wall" */
+const char *script_option_name(enum option option);
+const char *script_filling_name(enum filling filling); /* "nothing", "leaf", "glass", "wall" */
 
 /* ST_DATA: `found` (NULL: the end of the line) where the verb's usage wants something else. */
 enum status script_usage_error(struct script_reader *r, const char *found);

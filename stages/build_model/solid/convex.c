@@ -130,7 +130,7 @@ static void snap_oblique(const struct oblique *planes, size_t *first, size_t cou
     }
 }
 
-enum status lattice_half_spaces(struct lattice_half_space **half_spaces, const struct solid_list *list, struct err *err)
+enum status convex_half_spaces(struct lattice_half_space **half_spaces, const struct solid_list *list, struct err *err)
 {
     size_t all = 0, oblique = 0, at = 0;
     for (int i = 0; i < list->count; i++) all += (size_t)list->solids[i].count;

@@ -12,8 +12,7 @@ struct lattice_half_space {
 };
 
 /* The half-spaces of all solids, in order; the caller frees them. Oblique planes that nearly coincide become one. */
-enum status lattice_half_spaces(struct lattice_half_space **half_spaces, const struct solid_list *list,
-                                struct err *err);
+enum status convex_half_spaces(struct lattice_half_space **half_spaces, const struct solid_list *list, struct err *err);
 
 struct polygon_edge {
     int corner; /* point in which it begins */

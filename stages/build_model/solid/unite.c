@@ -45,7 +45,7 @@ static enum status add_loop(struct body_union *j, struct polygon_soup *r, int lo
             double p[3];
             if (exact_grow(&r->vertices, &r->vertex_capacity, r->vertex_count + 1, sizeof *r->vertices, err))
                 return err->status;
-            half_position(j, h, p);
+            unite_half_position(j, h, p);
             /* divided, so that 2700000 becomes the double 2.7; + 0 removes negative zeros */
             r->vertices[r->vertex_count] = vec3_make(p[0] / 1e6 + 0., p[1] / 1e6 + 0., p[2] / 1e6 + 0.);
             *v = r->vertex_count++;
@@ -156,7 +156,7 @@ void unite_log_release(struct unite_log *log)
     *log = (struct unite_log){0};
 }
 
-enum status solids_unite(struct solid_mesh *mesh, const struct solid_list *solids, struct unite_log *log,
+enum status unite_solids(struct solid_mesh *mesh, const struct solid_list *solids, struct unite_log *log,
                          struct err *err)
 {
     const size_t n = (size_t)solids->count;
@@ -169,7 +169,7 @@ enum status solids_unite(struct solid_mesh *mesh, const struct solid_list *solid
     size_t *half_space_of = malloc((n + 1) * sizeof *half_space_of), at = 0;
     enum status st = body && members && first && half_space_of ? ST_OK : err_nomem(err, "solids", n * sizeof *body);
 
-    if (!st) st = lattice_half_spaces(&half_spaces, solids, err);
+    if (!st) st = convex_half_spaces(&half_spaces, solids, err);
     if (!st) st = unite_rank_names(&names, body, &bodies, solids, err);
     if (!st) {
         for (int i = 0; i < solids->count; at += (size_t)solids->solids[i++].count) {

@@ -29,7 +29,7 @@ struct unite_log {
  * order of their first occurrence, faces of a body in the order of their names in the list; ids are 1, 2, ... in the
  * same order. ST_DATA: a solid is empty, flat after rounding to the lattice, unbounded, or beyond SOLID_REACH; the
  * message names its body and first face. No solids make an empty mesh. */
-enum status solids_unite(struct solid_mesh *mesh, const struct solid_list *solids, struct unite_log *log,
+enum status unite_solids(struct solid_mesh *mesh, const struct solid_list *solids, struct unite_log *log,
                          struct err *err);
 
 void unite_log_release(struct unite_log *log);

@@ -16,13 +16,13 @@ enum status unite_broken(const struct solid *s, const char *what, struct err *er
     return err_set(err, ST_INTERNAL, "the surface of body %s does not close: %s; this is a bug.", s->body, what);
 }
 
-void half_direction(const struct body_union *j, int half, int64_t d[3])
+void unite_half_direction(const struct body_union *j, int half, int64_t d[3])
 {
     const struct border *b = &j->borders.borders[j->halves[half].border];
     for (int i = 0; i < 3; i++) d[i] = j->set.space.lines[b->line].d[i] * (b->forward ? 1 : -1);
 }
 
-void half_outward(const struct body_union *j, int half, int64_t n[3])
+void unite_half_outward(const struct body_union *j, int half, int64_t n[3])
 {
     const struct border *b = &j->borders.borders[j->halves[half].border];
     for (int i = 0; i < 3; i++) n[i] = j->set.space.planes[b->plane].n[i] * b->side;
@@ -67,7 +67,7 @@ static enum status pair_around(struct body_union *j, int *of, int count, const s
     open = order + count;
     const int64_t *d = j->set.space.lines[borders[j->halves[of[0]].border].line].d;
     for (int i = 0; i < count; i++) {
-        half_outward(j, of[i], u[i]);
+        unite_half_outward(j, of[i], u[i]);
         if (!FORWARD(of[i])) unite_negated(u[i], u[i]);
     }
     for (int i = 0; i < count; i++) { /* by angle from the first */
@@ -210,13 +210,13 @@ static int following(const struct body_union *j, int h, const int *leaving, int 
             continue;
         }
         if (found == 2) {
-            half_direction(j, h, back);
+            unite_half_direction(j, h, back);
             unite_negated(back, back);
-            half_outward(j, h, down);
+            unite_half_outward(j, h, down);
             unite_negated(down, down);
-            half_direction(j, best, best_d);
+            unite_half_direction(j, best, best_d);
         }
-        half_direction(j, leaving[i], d);
+        unite_half_direction(j, leaving[i], d);
         if (!exact_before(back, d, best_d, down)) continue;
         best = leaving[i];
         memcpy(best_d, d, sizeof d);
@@ -283,7 +283,7 @@ void unite_make_vertices(struct body_union *j)
     }
 }
 
-void half_position(const struct body_union *j, int half, double p[3])
+void unite_half_position(const struct body_union *j, int half, double p[3])
 {
     const struct half *h = &j->halves[half];
     memcpy(p, h->from >= 0 ? j->set.space.points[h->from].p : h->middle, 3 * sizeof *p);

@@ -55,7 +55,7 @@ static void classify_loop(struct body_union *j, int loop)
     /* the direction in the plane towards lower u at the same v */
     int64_t n[3], down[3], west[3] = {0};
     const int k = 3 - u - v;
-    half_outward(j, first, n);
+    unite_half_outward(j, first, n);
     west[u] = n[k] > 0 ? -n[k] : n[k];
     west[k] = n[k] > 0 ? n[u] : -n[u];
     unite_negated(n, down);
@@ -63,9 +63,9 @@ static void classify_loop(struct body_union *j, int loop)
     do {
         if (h[i].from == lowest) {
             int64_t back[3], on[3];
-            half_direction(j, h[i].prev, back);
+            unite_half_direction(j, h[i].prev, back);
             unite_negated(back, back);
-            half_direction(j, i, on);
+            unite_half_direction(j, i, on);
             if (exact_before(back, west, on, down)) j->loops[loop].hole = true;
         }
         i = h[i].next;
@@ -90,8 +90,8 @@ static int point_in_loop(const struct body_union *j, int point, int loop)
             const struct exact_line *l = &s->lines[e->line];
             const int other = l->plane[l->plane[0] == b->plane];
             int64_t d[3], n[3];
-            half_direction(j, i, d);
-            half_outward(j, i, n);
+            unite_half_direction(j, i, d);
+            unite_half_outward(j, i, n);
             const int left = exact_turn(n, d, s->planes[other].n) * exact_side(s, point, other);
             if (!left) { /* on the edge's line: on the edge if between its ends */
                 const int ua = exact_compare(s, a, point, u), uc = exact_compare(s, c, point, u);

@@ -40,9 +40,10 @@ struct body_union { /* the body being united */
 
 /* ST_INTERNAL: the surface of the solid's body does not close. */
 enum status unite_broken(const struct solid *s, const char *what, struct err *err);
-void half_direction(const struct body_union *j, int half, int64_t d[3]);
-void half_outward(const struct body_union *j, int half, int64_t n[3]); /* the outward normal of its face */
-void half_position(const struct body_union *j, int half, double p[3]); /* where it begins, in steps of the lattice */
+void unite_half_direction(const struct body_union *j, int half, int64_t d[3]);
+void unite_half_outward(const struct body_union *j, int half, int64_t n[3]); /* the outward normal of its face */
+void unite_half_position(const struct body_union *j, int half,
+                         double p[3]); /* where it begins, in steps of the lattice */
 void unite_negated(const int64_t a[3], int64_t out[3]);
 enum status unite_add_half(struct body_union *j, int border, int from, struct err *err);
 /* Cuts the borders at each other's ends, and pairs the half-edges around each edge. */

@@ -27,8 +27,8 @@ static bool edge_along(const struct body_union *j, const double p[3], int h, int
     int i = j->loops[loop].half;
     do {
         double a[3], b[3];
-        half_position(j, i, a);
-        half_position(j, k[i].next, b);
+        unite_half_position(j, i, a);
+        unite_half_position(j, k[i].next, b);
         if (j->borders.borders[k[i].border].line == line && (a[axis] < p[axis]) != (b[axis] < p[axis])) return true;
         i = k[i].next;
     } while (i != j->loops[loop].half);
@@ -48,8 +48,8 @@ static bool crosses_a_face(const struct body_union *j, int h)
             both = j->loops[k[b].loop].face == face;
         if (!both) continue;
         double p[3], q[3];
-        half_position(j, h, p);
-        half_position(j, end, q);
+        unite_half_position(j, h, p);
+        unite_half_position(j, end, q);
         for (int i = 0; i < 3; i++) p[i] = 0.5 * (p[i] + q[i]);
         const int outer = j->faces[face].loop;
         bool in = !edge_along(j, p, h, outer) && unite_position_in_loop(j, p, outer);
@@ -83,7 +83,7 @@ enum status unite_split_edges(struct body_union *j, struct err *err)
     for (int i = 0; !st && i < kept; i++) {
         const int pair[2] = {ends[i].half, j->halves[ends[i].half].twin}, made = j->half_count;
         double p[2][3];
-        for (int k = 0; k < 2; k++) half_position(j, pair[k], p[k]);
+        for (int k = 0; k < 2; k++) unite_half_position(j, pair[k], p[k]);
         for (int k = 0; !st && k < 2; k++) {
             st = unite_add_half(j, j->halves[pair[k]].border, -1, err);
             if (st) break;

@@ -5,14 +5,14 @@
 
 static const double same_cosine = 1e-9; /* 1 - cosine of normals of one plane */
 
-bool faces_are_parallel(const struct solid_face *a, const struct solid_face *b)
+bool texture_faces_are_parallel(const struct solid_face *a, const struct solid_face *b)
 {
     return vec3_dot(a->normal, b->normal) > 1 - same_cosine;
 }
 
-bool faces_are_coplanar(const struct solid_face *a, const struct solid_face *b)
+bool texture_faces_are_coplanar(const struct solid_face *a, const struct solid_face *b)
 {
-    return faces_are_parallel(a, b) && fabs(a->offset - b->offset) <= SAME_PLANE;
+    return texture_faces_are_parallel(a, b) && fabs(a->offset - b->offset) <= SAME_PLANE;
 }
 
 struct plane_axes plane_axes_of(const struct solid_face *f)
@@ -52,6 +52,7 @@ struct plane_rect plane_rect_of_surface(const struct solid_mesh *mesh, int face,
     struct plane_rect r = {{INFINITY, -INFINITY}, {INFINITY, -INFINITY}};
     const struct solid_face *f = &mesh->faces[face];
     for (int i = 0; i < mesh->face_count; i++)
-        if (mesh->faces[i].name == f->name && faces_are_coplanar(f, &mesh->faces[i])) add_face(&r, mesh, i, axes);
+        if (mesh->faces[i].name == f->name && texture_faces_are_coplanar(f, &mesh->faces[i]))
+            add_face(&r, mesh, i, axes);
     return r;
 }

@@ -10,8 +10,8 @@
 #define SAME_PLANE 2e-5 /* model units; the solids' lattice is 1e-6 */
 
 /* Both normals are equal, but for rounding. */
-bool faces_are_parallel(const struct solid_face *a, const struct solid_face *b);
-bool faces_are_coplanar(const struct solid_face *a, const struct solid_face *b);
+bool texture_faces_are_parallel(const struct solid_face *a, const struct solid_face *b);
+bool texture_faces_are_coplanar(const struct solid_face *a, const struct solid_face *b);
 
 /* A plane with axes: u x v = n; seen from outside u points to the right, and v up if the plane is upright. */
 struct plane_axes {

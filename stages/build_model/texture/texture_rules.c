@@ -108,7 +108,8 @@ static int own_place(const struct rules_job *job, int face, struct vec3 *by)
     const double was = f->offset - vec3_dot(f->normal, moved);
     int best = -1;
     for (int i = 0; i < job->models.base->face_count; i++) {
-        if (solid_face_id(job->models.base, i) != id || !faces_are_parallel(f, &job->models.base->faces[i])) continue;
+        if (solid_face_id(job->models.base, i) != id || !texture_faces_are_parallel(f, &job->models.base->faces[i]))
+            continue;
         if (best < 0 ||
             fabs(job->models.base->faces[i].offset - was) < fabs(job->models.base->faces[best].offset - was))
             best = i;
@@ -159,7 +160,7 @@ static enum status add_coplanar(const struct rules_job *job, struct texture_face
     enum status st = ST_OK;
     *edge = 0;
     for (int i = 0; !st && i < job->models.base->face_count; i++) {
-        if (!faces_are_coplanar(&job->models.edited->faces[face], &job->models.base->faces[i]) ||
+        if (!texture_faces_are_coplanar(&job->models.edited->faces[face], &job->models.base->faces[i]) ||
             solid_face_is_pane(job->models.base, i))
             continue;
         const double gap = gap_between(own, face_bounds(job->models.base, &job->triangles[1], i));
@@ -303,7 +304,8 @@ static enum status base_parts(struct room_part **parts, struct part_corner **cor
     if (!*parts || !*corners) return err_nomem(job->err, "triangles", 3 * most * sizeof **corners);
     for (int i = 0; i < job->models.base->face_count; i++) {
         const struct solid_face *b = &job->models.base->faces[i];
-        if (solid_face_id(job->models.base, i) != solid_face_id(job->models.edited, face) || !faces_are_parallel(f, b))
+        if (solid_face_id(job->models.base, i) != solid_face_id(job->models.edited, face) ||
+            !texture_faces_are_parallel(f, b))
             continue;
         if (fabs(b->offset - f->offset - vec3_dot(f->normal, by)) > SAME_PLANE) continue;
         for (int k = t->first[i]; k < t->first[i + 1]; k++) {
@@ -359,7 +361,7 @@ static bool is_listed(const struct texture_map *map, const struct solid_mesh *me
     for (*at = map->face_count - 1; *at >= 0; --*at) {
         const struct texture_face *t = &map->faces[*at];
         const struct solid_face plane = {.normal = t->normal, .offset = t->offset};
-        if (t->id == solid_face_id(mesh, face) && faces_are_coplanar(&plane, f)) return true;
+        if (t->id == solid_face_id(mesh, face) && texture_faces_are_coplanar(&plane, f)) return true;
     }
     return false;
 }

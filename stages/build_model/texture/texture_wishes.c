@@ -97,7 +97,7 @@ static struct vec3 place_corner(const struct plan_wall *wall, double a, double b
 {
     double p[2];
     if (!wall) return vec3_make(a, b, (f->offset - f->normal.x * a - f->normal.y * b) / f->normal.z);
-    wall_point(wall, a, 0, p);
+    plan_wall_point(wall, a, 0, p);
     return vec3_make(p[0], p[1], b);
 }
 
@@ -306,10 +306,10 @@ static void corners_before(double corners[4][2], const struct plan *plan, const 
     const struct plan_opening *o = &plan->openings[zone->opening];
     const struct plan_wall *w = &plan->walls[o->wall];
     const double wider = zone->before / 10, from = o->s[0] - wider, to = o->s[1] + wider;
-    wall_point(w, from, -zone->before, corners[0]);
-    wall_point(w, to, -zone->before, corners[1]);
-    wall_point(w, to, w->thickness + zone->before, corners[2]);
-    wall_point(w, from, w->thickness + zone->before, corners[3]);
+    plan_wall_point(w, from, -zone->before, corners[0]);
+    plan_wall_point(w, to, -zone->before, corners[1]);
+    plan_wall_point(w, to, w->thickness + zone->before, corners[2]);
+    plan_wall_point(w, from, w->thickness + zone->before, corners[3]);
 }
 
 enum status texture_zones_add(struct texture_map *map, const struct plan *plan, struct err *err)

@@ -32,7 +32,7 @@ static enum status frame_read(struct film_frame *f, struct evaluation *e, const 
     if (!st) st = model_picture_read(&f->unlit, path, NULL, err);
     if (!st) st = add_picture(path, e, film, "frames", name, err);
     if (!st) st = exr_read(&relit, path, channels, 4, err);
-    if (!st) st = film_frame_set_quotients(f, &relit, path, err);
+    if (!st) st = flicker_frame_set_quotients(f, &relit, path, err);
     exr_image_release(&relit);
     return st;
 }
@@ -58,8 +58,8 @@ static enum status compare_frames(struct quantiles *differences, uint64_t *place
         free(entries[i]);
     }
     free(entries);
-    film_frame_release(&frames[0]);
-    film_frame_release(&frames[1]);
+    flicker_frame_release(&frames[0]);
+    flicker_frame_release(&frames[1]);
     return st;
 }
 

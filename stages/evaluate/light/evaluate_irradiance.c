@@ -54,7 +54,7 @@ static void bring_to_truth(struct irradiance_list *found, const struct similarit
 static bool on_model(const struct model_rays *m, const struct model_frame *frame, const struct irradiance_at *p,
                      double reach)
 {
-    const double unit = truth_per_model_unit(frame);
+    const double unit = model_frame_truth_per_unit(frame);
     const struct vec3 up = model_from_truth_direction(frame, p->normal);
     const struct vec3 from = vec3_add(model_from_truth_point(frame, p->point), vec3_scale(up, reach / unit));
     struct ray_hit hit;

@@ -92,7 +92,7 @@ static enum status read_parts(struct relit_truth *t, struct relit_job *job, cons
     if (!job->model.known || !true_set_file(depth, job->set, "depth", r->of->name)) return ST_OK;
     int32_t *index = malloc(t->count * sizeof *index);
     if (!index) return err_nomem(err, "pixels", t->count * sizeof *index);
-    true_pixels_seen(index, r->of->lens.width, r->of->lens.height, &r->map);
+    picture_true_pixels(index, r->of->lens.width, r->of->lens.height, &r->map);
     const enum status st = model_pixels_find(t->part, &job->model, job->e, r->of, depth, index, t->count, err);
     free(index);
     return st;
@@ -110,21 +110,21 @@ static enum status read_truth(struct relit_truth *t, bool *found, struct relit_j
     t->revealed = malloc(t->count);
     t->mask = malloc(t->count);
     t->part[PART_ALL] = malloc(t->count);
-    enum status st = surface_planes_read(&planes, found, job->e, job->set, r->of->name, &r->map, err);
+    enum status st = true_planes_read(&planes, found, job->e, job->set, r->of->name, &r->map, err);
     if (!st && !(t->before && t->after && t->kept && t->revealed && t->mask && t->part[PART_ALL]))
         st = err_nomem(err, "true light", 6 * t->count * sizeof *t->before);
     if (!st && *found) {
         const struct true_surface surface = {{planes.ids[0], planes.ids[1]}, {planes.depths[0], planes.depths[1]}};
         memset(t->part[PART_ALL], 1, t->count);
-        kept_find(t->kept, &surface, t->count);
+        revealed_kept_find(t->kept, &surface, t->count);
         revealed_find(t->revealed, &surface, t->count);
         st = read_light(t, found, job, r, err);
     }
     if (!st && *found) {
-        light_changes_keep(t->kept, t->before, t->after, t->count);
+        relit_changes_keep(t->kept, t->before, t->after, t->count);
         st = read_parts(t, job, r, err);
     }
-    surface_planes_release(&planes);
+    true_planes_release(&planes);
     return st;
 }
 
@@ -143,10 +143,10 @@ static void add_picture(struct relit_sums *s, struct relit_truth *t, const struc
     s->all += t->count;
     for (int k = 0; k < PICTURE_PARTS; k++) {
         choose(t, t->revealed, k);
-        encoded_error_add(&s->revealed[k], &r);
+        relit_encoded_error_add(&s->revealed[k], &r);
         choose(t, t->kept, k);
-        encoded_error_add(&s->relit[k], &r);
-        encoded_error_add(&s->unlit[k], &u);
+        relit_encoded_error_add(&s->relit[k], &r);
+        relit_encoded_error_add(&s->unlit[k], &u);
         for (size_t i = 0; i < t->count; i++) s->pixels[k] += t->mask[i] && truth->data[4 * i + 3] > 0;
     }
 }
@@ -168,8 +168,8 @@ static enum status add_quotients(struct relit_sums *own, struct relit_job *job, 
                      q.rgb.width, q.rgb.height, r->map.lens.width, r->map.lens.height);
     for (int k = 0; !st && k < PICTURE_PARTS; k++) {
         choose(t, t->kept, k);
-        quotient_errors_add(&own->ratios[k], q.rgb.data, t->before, t->after, t->mask, t->count);
-        quotient_errors_add(&job->sums.ratios[k], q.rgb.data, t->before, t->after, t->mask, t->count);
+        relit_quotient_errors_add(&own->ratios[k], q.rgb.data, t->before, t->after, t->mask, t->count);
+        relit_quotient_errors_add(&job->sums.ratios[k], q.rgb.data, t->before, t->after, t->mask, t->count);
     }
     linear_picture_release(&q);
     return st;
@@ -188,14 +188,15 @@ static enum status add_part(struct relit_job *job, const char *view, const struc
 {
     double relit, unlit, revealed;
     enum status st = ST_OK;
-    if (s->pixels[k] >= least && encoded_error_psnr(&s->relit[k], &relit) && encoded_error_psnr(&s->unlit[k], &unlit)) {
+    if (s->pixels[k] >= least && relit_encoded_error_psnr(&s->relit[k], &relit) &&
+        relit_encoded_error_psnr(&s->unlit[k], &unlit)) {
         st = add_metric(job, view, "relit_psnr", k, relit, err) || add_metric(job, view, "unlit_psnr", k, unlit, err) ||
              add_metric(job, view, "relit_gain", k, relit - unlit, err) ||
              add_metric(job, view, "relit_pixels", k, 100 * (double)s->pixels[k] / (double)s->all, err);
         if (!st && s->ratios[k].count)
             st = add_metric(job, view, "relit_ratio_error50", k, 100 * quantiles_get(&s->ratios[k], 0.5), err);
     }
-    if (!st && s->revealed[k].samples >= 3 * least && encoded_error_psnr(&s->revealed[k], &revealed))
+    if (!st && s->revealed[k].samples >= 3 * least && relit_encoded_error_psnr(&s->revealed[k], &revealed))
         st = add_metric(job, view, "relit_revealed_psnr", k, revealed, err);
     return st ? err->status : ST_OK;
 }
@@ -347,6 +348,6 @@ enum status evaluate_relit(struct evaluation *e, struct err *err)
     struct name_list edits = {0};
     enum status st = true_edits_find(&edits, e->truth_folder, err);
     for (int i = 0; !st && i < edits.count; i++) st = measure_edit(e, edits.names[i], err);
-    name_list_release(&edits);
+    true_edits_release(&edits);
     return st;
 }

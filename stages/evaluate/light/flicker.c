@@ -12,7 +12,7 @@
 
 #define SAME_DEPTH 0.02 /* largest relative difference of depth of one surface */
 
-void film_frame_release(struct film_frame *f)
+void flicker_frame_release(struct film_frame *f)
 {
     model_picture_release(&f->unlit);
     free(f->quotient);
@@ -29,8 +29,8 @@ static float quotient(const struct film_frame *f, const struct exr_plane *const 
     return before > 1e-3 ? (float)((double)luminance_of(after) / before) : -1;
 }
 
-enum status film_frame_set_quotients(struct film_frame *f, const struct exr_image *relit, const char *path,
-                                     struct err *err)
+enum status flicker_frame_set_quotients(struct film_frame *f, const struct exr_image *relit, const char *path,
+                                        struct err *err)
 {
     static const char *const names[4] = {"R", "G", "B", "made"};
     const struct exr_plane *planes[4];

@@ -14,9 +14,9 @@ struct film_frame {
 
 /* Sets the quotients from the unlit picture, which is there, and the relit frame, as relight --frames writes it.
  * ST_DATA: the frame at PATH is another one, or damaged. */
-enum status film_frame_set_quotients(struct film_frame *f, const struct exr_image *relit, const char *path,
-                                     struct err *err);
-void film_frame_release(struct film_frame *f);
+enum status flicker_frame_set_quotients(struct film_frame *f, const struct exr_image *relit, const char *path,
+                                        struct err *err);
+void flicker_frame_release(struct film_frame *f);
 
 /* Adds, for every pixel of a frame whose place the next one shows too, the relative difference of the place's quotients
  * in the two. Places whose light does not change by RELIT_CHANGE in either do not count. Returns the number added. */

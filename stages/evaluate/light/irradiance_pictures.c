@@ -61,7 +61,7 @@ static enum status read_truth(struct pictures_job *job, struct compared *c, cons
     if (!st && (truth.rgb.width != r->of->lens.width || truth.rgb.height != r->of->lens.height))
         st = err_set(err, ST_DATA, "%s is %d x %d px, but the truth's camera is %d x %d px.", r->truth, truth.rgb.width,
                      truth.rgb.height, r->of->lens.width, r->of->lens.height);
-    if (!st) true_pixels_seen(index, truth.rgb.width, truth.rgb.height, &r->map);
+    if (!st) picture_true_pixels(index, truth.rgb.width, truth.rgb.height, &r->map);
     for (size_t i = 0; !st && i < c->count; i++) {
         if (index[i] < 0) continue;
         const float *from = truth.rgb.data + 3 * (size_t)index[i];
@@ -287,7 +287,7 @@ static enum status measure_edits(struct pictures_job *job, const struct renders 
         st = metric_note(&e->table, err, "skipped ratios of irradiance: the truth has no edited-E/irradiance");
     if (!st && job->pair_count) st = evaluation_metric(e, NULL, "irradiance", "ratio_pictures", job->pair_count, err);
     if (!st && job->pair_count) st = add_ratio_errors(e, NULL, job->ratios, err);
-    name_list_release(&edits);
+    true_edits_release(&edits);
     return st;
 }
 

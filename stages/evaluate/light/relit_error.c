@@ -6,7 +6,7 @@
 #include "common/image/image.h"
 #include "common/image/luminance.h"
 
-void light_changes_keep(uint8_t *mask, const float *before, const float *after, size_t count)
+void relit_changes_keep(uint8_t *mask, const float *before, const float *after, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
         const double a = luminance_precise(before + 3 * i), b = luminance_precise(after + 3 * i);
@@ -14,7 +14,7 @@ void light_changes_keep(uint8_t *mask, const float *before, const float *after, 
     }
 }
 
-void encoded_error_add(struct encoded_error *e, const struct radiance_pixels *p)
+void relit_encoded_error_add(struct encoded_error *e, const struct radiance_pixels *p)
 {
     for (size_t i = 0; i < p->count; i++) {
         if ((p->mask && !p->mask[i]) || !(p->truth[4 * i + 3] > 0)) continue;
@@ -27,15 +27,15 @@ void encoded_error_add(struct encoded_error *e, const struct radiance_pixels *p)
     }
 }
 
-bool encoded_error_psnr(const struct encoded_error *e, double *psnr)
+bool relit_encoded_error_psnr(const struct encoded_error *e, double *psnr)
 {
     if (!e->samples) return false;
     *psnr = 10 * log10((double)e->samples / fmax(e->square, 1e-10 * (double)e->samples));
     return true;
 }
 
-void quotient_errors_add(struct quantiles *errors, const float *quotient, const float *before, const float *after,
-                         const uint8_t *mask, size_t count)
+void relit_quotient_errors_add(struct quantiles *errors, const float *quotient, const float *before, const float *after,
+                               const uint8_t *mask, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
         if (!mask[i]) continue;

@@ -8,7 +8,7 @@
 
 /* Sets mask[i] to 0 where either of two pictures of light (R G B, before and after) is black, or their luminances
  * differ by at most RELIT_CHANGE of that before. */
-void light_changes_keep(uint8_t *mask, const float *before, const float *after, size_t count);
+void relit_changes_keep(uint8_t *mask, const float *before, const float *after, size_t count);
 
 /* Squared errors of pictures clipped at white and encoded as sRGB. */
 struct encoded_error {
@@ -17,13 +17,13 @@ struct encoded_error {
 };
 
 /* clip of p: white. */
-void encoded_error_add(struct encoded_error *e, const struct radiance_pixels *p);
+void relit_encoded_error_add(struct encoded_error *e, const struct radiance_pixels *p);
 /* At most 100 dB. False: no sample. */
-bool encoded_error_psnr(const struct encoded_error *e, double *psnr);
+bool relit_encoded_error_psnr(const struct encoded_error *e, double *psnr);
 
 /* Adds |q - q_true| / q_true of the pixels whose mask is not 0: q = Y(quotient x before) / Y(before) for a quotient of
  * each channel, q_true = Y(after) / Y(before); before and after are true irradiance, R G B. */
-void quotient_errors_add(struct quantiles *errors, const float *quotient, const float *before, const float *after,
-                         const uint8_t *mask, size_t count);
+void relit_quotient_errors_add(struct quantiles *errors, const float *quotient, const float *before, const float *after,
+                               const uint8_t *mask, size_t count);
 
 #endif

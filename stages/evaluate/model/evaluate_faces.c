@@ -54,7 +54,7 @@ static enum status add_picture(struct evaluation *e, struct faces_job *job, cons
     if (!st) st = add_input(e, ids_path, err);
     if (!st) st = add_input(e, depth_path, err);
     if (!st) st = read_ids(&im, ids_path, &p->lens, err);
-    if (!st) st = true_photo_read_depth(&photo, depth_path, e->params->far, err);
+    if (!st) st = truth_photo_read_depth(&photo, depth_path, e->params->far, err);
     if (!st) {
         true_points(points, &photo);
         traced_model_faces(ids, distance, &job->model, &job->frame, p, points);
@@ -87,7 +87,7 @@ static enum status choose_faces(struct faces_job *job, bool shell, const char *s
 {
     struct face_agreement *a = &job->agreement;
     struct measured_plan plan = {0};
-    enum status st = shell ? ST_OK : measured_plan_read(&plan, scene, PLAN_FROM_SCENE, err);
+    enum status st = shell ? ST_OK : wall_plan_read(&plan, scene, PLAN_FROM_SCENE, err);
     a->counted[0] = true;
     for (int i = 0; !st && i < job->truth.count; i++) {
         const char *name = job->truth.faces[i].name;
@@ -96,7 +96,7 @@ static enum status choose_faces(struct faces_job *job, bool shell, const char *s
         a->counted[i + 1] =
             shell || part_of(&plan.faces, name) || part_of(&plan.openings, name) || part_of(&plan.rooms, name);
     }
-    measured_plan_release(&plan);
+    wall_plan_release(&plan);
     const struct mat3 world_from_scene = job->frame.truth_from_scene.rotation;
     for (int i = 0; !st && i < job->model.mesh.face_count; i++)
         a->model_normals[solid_face_id(&job->model.mesh, i)] =
@@ -189,6 +189,6 @@ enum status evaluate_faces(struct evaluation *e, struct err *err)
         snprintf(where, sizeof where, "edited-%s", edits.names[i]);
         st = compare(e, prefix, model, where, err);
     }
-    name_list_release(&edits);
+    true_edits_release(&edits);
     return st;
 }

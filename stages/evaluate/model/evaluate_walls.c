@@ -58,8 +58,8 @@ static enum status compare(struct evaluation *e, const char *prefix, const char 
     char path[FILE_PATH];
     enum status st = evaluation_path(path, e, PRODUCT_PLAN, &(struct product_key){.model = where}, err);
     if (!st) st = provenance_add_file(e->prov, product_name(PRODUCT_PLAN, path), path, err);
-    if (!st) st = measured_plan_read(&model, path, PLAN_FROM_MODEL, err);
-    if (!st) st = measured_plan_read(&truth, truth_file, kind, err);
+    if (!st) st = wall_plan_read(&model, path, PLAN_FROM_MODEL, err);
+    if (!st) st = wall_plan_read(&truth, truth_file, kind, err);
     if (!st) {
         parts_to_room(&model.faces, frame);
         parts_to_room(&model.openings, frame);
@@ -69,8 +69,8 @@ static enum status compare(struct evaluation *e, const char *prefix, const char 
     if (!st) heights = room_heights_compare(&model.rooms, &truth.rooms);
     if (!st) st = add_walls(e, prefix, &errors, &heights, err);
     wall_errors_release(&errors);
-    measured_plan_release(&truth);
-    measured_plan_release(&model);
+    wall_plan_release(&truth);
+    wall_plan_release(&model);
     return st;
 }
 
@@ -126,6 +126,6 @@ enum status evaluate_edited_walls(struct evaluation *e, struct err *err)
     struct name_list edits = {0};
     enum status st = true_edits_find(&edits, e->truth_folder, err);
     for (int i = 0; !st && i < edits.count; i++) st = evaluate_edit(e, edits.names[i], err);
-    name_list_release(&edits);
+    true_edits_release(&edits);
     return st;
 }

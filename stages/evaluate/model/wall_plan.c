@@ -34,7 +34,7 @@
 enum { MAX_BASES = 4 };
 #define MIN_COSINE 0.98480775301220802 /* cos 10 degrees */
 
-void measured_plan_release(struct measured_plan *plan)
+void wall_plan_release(struct measured_plan *plan)
 {
     if (!plan) return;
     free(plan->faces.parts);
@@ -333,8 +333,7 @@ static enum status read_framed(struct reader *r, const char *path, struct err *e
     return st;
 }
 
-enum status measured_plan_read(struct measured_plan *plan, const char *path, enum measured_plan_kind kind,
-                               struct err *err)
+enum status wall_plan_read(struct measured_plan *plan, const char *path, enum measured_plan_kind kind, struct err *err)
 {
     struct reader r = {.plan = plan, .partition = -1, .low = {INFINITY, INFINITY}, .high = {-INFINITY, -INFINITY}};
     enum status st = ST_OK;
@@ -345,7 +344,7 @@ enum status measured_plan_read(struct measured_plan *plan, const char *path, enu
         st = kind == PLAN_FROM_SCENE ? read_described(&r, path, 0, err) : read_framed(&r, path, err);
     textfile_release(&r.t);
     free(r.lines.parts);
-    if (st) measured_plan_release(plan);
+    if (st) wall_plan_release(plan);
     return st;
 }
 

@@ -37,9 +37,8 @@ struct measured_plan {
 enum measured_plan_kind { PLAN_FROM_MODEL, PLAN_FROM_SCENE, PLAN_FROM_SCENE_TRUTH };
 
 /* plan is overwritten, and empty after an error. ST_DATA with file and line. */
-enum status measured_plan_read(struct measured_plan *plan, const char *path, enum measured_plan_kind kind,
-                               struct err *err);
-void measured_plan_release(struct measured_plan *plan);
+enum status wall_plan_read(struct measured_plan *plan, const char *path, enum measured_plan_kind kind, struct err *err);
+void wall_plan_release(struct measured_plan *plan);
 
 struct part_errors {
     double *errors; /* sorted; owned */

@@ -191,6 +191,6 @@ enum status evaluate_renders(struct evaluation *e, struct err *err)
                          "skipped %d edited scenes of the truth: a name is at most 40 letters, digits, "
                          "_ and -",
                          edits.others);
-    name_list_release(&edits);
+    true_edits_release(&edits);
     return st;
 }

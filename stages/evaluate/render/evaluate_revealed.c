@@ -26,7 +26,7 @@ static enum status measure(struct evaluation *e, const struct renders *list, str
     bool found;
     const size_t pixels = (size_t)r->map.lens.width * (size_t)r->map.lens.height;
     uint8_t *mask = malloc(pixels);
-    enum status st = surface_planes_read(&planes, &found, e, list->set, r->of->name, &r->map, err);
+    enum status st = true_planes_read(&planes, &found, e, list->set, r->of->name, &r->map, err);
     if (!st && !mask) st = err_nomem(err, "a mask", pixels);
     if (!st && found) st = render_read(e, list, r, &truth, err);
     if (!st && found) {
@@ -43,7 +43,7 @@ static enum status measure(struct evaluation *e, const struct renders *list, str
         }
     }
     free(mask);
-    surface_planes_release(&planes);
+    true_planes_release(&planes);
     image_release(&truth);
     linear_picture_release(&r->picture);
     return st;
@@ -75,6 +75,6 @@ enum status evaluate_revealed(struct evaluation *e, struct err *err)
         snprintf(where, sizeof where, "edited-%s", edits.names[i]);
         st = measure_edit(e, where, err);
     }
-    name_list_release(&edits);
+    true_edits_release(&edits);
     return st;
 }

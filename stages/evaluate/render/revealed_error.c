@@ -19,7 +19,7 @@ size_t revealed_find(uint8_t *mask, const struct true_surface *s, size_t count)
     return found;
 }
 
-void kept_find(uint8_t *mask, const struct true_surface *s, size_t count)
+void revealed_kept_find(uint8_t *mask, const struct true_surface *s, size_t count)
 {
     revealed_find(mask, s, count);
     for (size_t i = 0; i < count; i++) mask[i] = s->ids[0][i] && s->ids[1][i] && !mask[i];

@@ -19,7 +19,7 @@ struct true_surface { /* true ids and depths of a picture, before and after the 
 size_t revealed_find(uint8_t *mask, const struct true_surface *s, size_t count);
 
 /* Sets mask[i] to 1 where a pixel of neither the outdoors nor an unknown id shows the same surface before and after. */
-void kept_find(uint8_t *mask, const struct true_surface *s, size_t count);
+void revealed_kept_find(uint8_t *mask, const struct true_surface *s, size_t count);
 
 /* PSNR over the masked pixels of the picture, whose faces are ids: both clipped at `white` and encoded as sRGB, after
  * the gain of each face that brings its found radiance, clipped, nearest to the true one. clip of p: white. False: no

@@ -16,7 +16,7 @@ int evaluation_photo(const struct evaluation *e, const struct view_set *set, int
     return photo_list_find_id(&e->photos, lens_of_view(&set->cameras, &set->lenses, view)->photo);
 }
 
-struct picture_map map_of_view(const struct view_set *set, int view)
+struct picture_map evaluation_map_of_view(const struct view_set *set, int view)
 {
     const struct view *v = &set->cameras.views[view];
     const struct lens *lens = lens_of_view(&set->cameras, &set->lenses, view);

@@ -54,6 +54,6 @@ enum status evaluation_path(char path[FILE_PATH], const struct evaluation *e, en
 int evaluation_photo(const struct evaluation *e, const struct view_set *set, int view);
 
 /* How a view sees the true picture of its photograph: through the lens with which it was rectified. */
-struct picture_map map_of_view(const struct view_set *set, int view);
+struct picture_map evaluation_map_of_view(const struct view_set *set, int view);
 
 #endif

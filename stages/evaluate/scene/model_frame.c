@@ -33,4 +33,4 @@ struct vec3 model_from_truth_direction(const struct model_frame *f, struct vec3 
     return model_from_world_direction(&f->axes, mat3_apply(mat3_transpose(f->truth_from_scene.rotation), world));
 }
 
-double truth_per_model_unit(const struct model_frame *f) { return f->truth_from_scene.scale / f->axes.scale; }
+double model_frame_truth_per_unit(const struct model_frame *f) { return f->truth_from_scene.scale / f->axes.scale; }

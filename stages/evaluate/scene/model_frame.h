@@ -20,6 +20,6 @@ struct vec3 truth_from_model_point(const struct model_frame *f, struct vec3 p);
 struct vec3 model_from_truth_point(const struct model_frame *f, struct vec3 p);
 /* Rotated, not scaled. */
 struct vec3 model_from_truth_direction(const struct model_frame *f, struct vec3 d);
-double truth_per_model_unit(const struct model_frame *f);
+double model_frame_truth_per_unit(const struct model_frame *f);
 
 #endif

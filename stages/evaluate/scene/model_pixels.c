@@ -53,7 +53,7 @@ enum status model_pixels_find(uint8_t *part[PICTURE_PARTS], const struct model_p
                          ? ST_OK
                          : err_nomem(err, "surfaces of the model", pixels * sizeof *points);
     if (!st) st = add_true_input(e, depth, err);
-    if (!st) st = true_photo_read_depth(&photo, depth, e->params->far, err);
+    if (!st) st = truth_photo_read_depth(&photo, depth, e->params->far, err);
     if (!st) {
         true_points(points, &photo);
         traced_model_faces(ids, distance, &m->model, &m->frame, of, points);

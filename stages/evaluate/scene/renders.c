@@ -121,7 +121,7 @@ static enum status find_views(struct renders *list, struct evaluation *e, const 
             if (!of || !linear_picture_find(path, folder, view->name)) continue;
             const int before = list->count;
             st = new_render(list, view->name, path, of, err);
-            if (!st && list->count > before) list->list[before].map = map_of_view(sets[k], i);
+            if (!st && list->count > before) list->list[before].map = evaluation_map_of_view(sets[k], i);
         }
     return st;
 }
@@ -202,7 +202,7 @@ enum status render_read(struct evaluation *e, const struct renders *list, struct
         st = err_set(err, ST_DATA, "%s is %d x %d px, but its camera %d x %d; render it again.", r->path,
                      r->picture.rgb.width, r->picture.rgb.height, r->map.lens.width, r->map.lens.height);
     if (!st) st = linear_picture_read(&whole, r->truth, err);
-    if (!st) st = true_picture_seen(truth, &whole.rgb, &r->map, err);
+    if (!st) st = picture_of_truth(truth, &whole.rgb, &r->map, err);
     if (!st) r->scale = r->picture.encoded ? e->white : e->radiance_scale;
     linear_picture_release(&whole);
     return st;

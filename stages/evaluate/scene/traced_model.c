@@ -23,7 +23,7 @@ static float plane_distance(const struct true_camera *c, const struct solid_face
 {
     const struct vec3 p = mat3_apply(c->world_from_camera, vec3_sub(point, c->camera->pose.translation));
     const double off = vec3_dot(f->normal, model_from_truth_point(c->frame, p)) - f->offset;
-    return (float)(fabs(off) * truth_per_model_unit(c->frame));
+    return (float)(fabs(off) * model_frame_truth_per_unit(c->frame));
 }
 
 void traced_model_faces(uint32_t *ids, float *distance, const struct model_rays *m, const struct model_frame *frame,

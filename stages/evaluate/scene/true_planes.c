@@ -32,7 +32,7 @@ static enum status seen_read(struct seen *s, struct evaluation *e, const char *p
     snprintf(name, sizeof name, "truth%s", path + strlen(e->truth_folder));
     if (provenance_add_file(e->prov, name, path, err) || exr_read(&s->picture, path, names, 1, err)) return err->status;
     s->plane = exr_find(&s->picture, channel);
-    true_pixels_seen(s->index, s->picture.width, s->picture.height, map);
+    picture_true_pixels(s->index, s->picture.width, s->picture.height, map);
     return ST_OK;
 }
 
@@ -71,7 +71,7 @@ enum status true_colours_seen(float *rgb, struct evaluation *e, const char *path
     enum status st = index ? ST_OK : err_nomem(err, "pixels", pixels * sizeof *index);
     if (!st) st = provenance_add_file(e->prov, name, path, err);
     if (!st) st = linear_picture_read(&p, path, err);
-    if (!st) true_pixels_seen(index, p.rgb.width, p.rgb.height, map);
+    if (!st) picture_true_pixels(index, p.rgb.width, p.rgb.height, map);
     for (size_t i = 0; !st && i < pixels; i++)
         for (size_t c = 0; c < 3; c++) rgb[3 * i + c] = index[i] < 0 ? 0 : p.rgb.data[3 * (size_t)index[i] + c];
     linear_picture_release(&p);
@@ -89,8 +89,8 @@ bool true_plain_file(char path[FILE_PATH], const struct evaluation *e, const cha
     return false;
 }
 
-enum status surface_planes_read(struct surface_planes *p, bool *found, struct evaluation *e, const struct true_set *set,
-                                const char *name, const struct picture_map *map, struct err *err)
+enum status true_planes_read(struct surface_planes *p, bool *found, struct evaluation *e, const struct true_set *set,
+                             const char *name, const struct picture_map *map, struct err *err)
 {
     const size_t pixels = (size_t)map->lens.width * (size_t)map->lens.height;
     char paths[4][FILE_PATH];
@@ -108,7 +108,7 @@ enum status surface_planes_read(struct surface_planes *p, bool *found, struct ev
     return st;
 }
 
-void surface_planes_release(struct surface_planes *p)
+void true_planes_release(struct surface_planes *p)
 {
     for (int k = 0; k < 2; k++) {
         free(p->ids[k]);

@@ -27,8 +27,8 @@ struct surface_planes {
 
 /* *found is false, and nothing is read, if the truth of the unedited scene or of the edited one (set) lacks ids or
  * depth of the picture of this name. The caller releases p in each case. */
-enum status surface_planes_read(struct surface_planes *p, bool *found, struct evaluation *e, const struct true_set *set,
-                                const char *name, const struct picture_map *map, struct err *err);
-void surface_planes_release(struct surface_planes *p);
+enum status true_planes_read(struct surface_planes *p, bool *found, struct evaluation *e, const struct true_set *set,
+                             const char *name, const struct picture_map *map, struct err *err);
+void true_planes_release(struct surface_planes *p);
 
 #endif

@@ -250,7 +250,7 @@ static enum status add_view(struct shell_points *s, struct evaluation *e, const 
     struct true_photo photo = {.lens = p->lens, .pose = p->pose};
     struct shell_view *v = &s->views[s->count];
     enum status st = add_input(e, depth_path, err);
-    if (!st) st = true_photo_read_depth(&photo, depth_path, e->params->far, err);
+    if (!st) st = truth_photo_read_depth(&photo, depth_path, e->params->far, err);
     if (!st) st = shell_view_make(v, &photo, err);
     if (!st) {
         s->count++;

@@ -44,7 +44,7 @@ enum status shell_points_read(struct shell_points *s, struct evaluation *e, cons
                               const struct model_frame *frame, struct err *err);
 void shell_points_release(struct shell_points *s);
 
-/* A view from the shell's depth, as true_photo_read_depth() reads it. The caller releases it. */
+/* A view from the shell's depth, as truth_photo_read_depth() reads it. The caller releases it. */
 enum status shell_view_make(struct shell_view *v, const struct true_photo *shell, struct err *err);
 void shell_view_release(struct shell_view *v);
 /* What is known of each pixel of a view. */

@@ -56,7 +56,7 @@ static bool own_clutter(const struct texel_truth *t, const struct surface_point 
     const struct shell_view *own = &t->shell->views[t->own];
     if (shell_view_sight(own, p) != SHELL_CLUTTER) return false;
     return shell_view_radiance(shown, own, t->own_photo, p, t->shell->tolerance, false) &&
-           texel_differs(shown, radiance);
+           texture_texel_differs(shown, radiance);
 }
 
 static struct texel_facts facts_of(const struct tile_job *job, int x, int y)
@@ -73,9 +73,9 @@ static struct texel_facts facts_of(const struct tile_job *job, int x, int y)
     if (clean_somewhere(t, world_from_model_point(&t->frame->axes, model), &p)) facts.flags |= TEXEL_CLEAN_SOMEWHERE;
     if (!shell_radiance(radiance, t->shell, &p, t->own)) return facts;
     for (size_t c = 0; c < 3; c++) found[c] = (float)(t->scale * job->page->rgb[3 * at + c]);
-    facts.square = texel_square(found, radiance, t->white);
+    facts.square = texture_texel_square(found, radiance, t->white);
     facts.flags |= TEXEL_COMPARED;
-    if (texel_differs(found, radiance)) facts.flags |= TEXEL_DIFFERS;
+    if (texture_texel_differs(found, radiance)) facts.flags |= TEXEL_DIFFERS;
     if (own_clutter(t, &p, radiance)) facts.flags |= TEXEL_OWN_CLUTTER;
     return facts;
 }

@@ -72,7 +72,7 @@ static double encoded(double radiance, double white)
     return nearbyint(255 * srgb_from_linear((float)(radiance / white)));
 }
 
-float texel_square(const float found[3], const float truth[3], double white)
+float texture_texel_square(const float found[3], const float truth[3], double white)
 {
     double sum = 0;
     for (int c = 0; c < 3; c++) {
@@ -82,7 +82,7 @@ float texel_square(const float found[3], const float truth[3], double white)
     return (float)sum;
 }
 
-bool texel_differs(const float found[3], const float truth[3])
+bool texture_texel_differs(const float found[3], const float truth[3])
 {
     const double y = luminance_precise(truth);
     return fabs(luminance_precise(found) - y) > TEXTURE_DIFFERS * y;

@@ -55,8 +55,8 @@ void texture_error_add(struct texture_error *e, int face, const struct texel_fac
 
 /* The error of two radiances with `white` as white, as texel_facts.square wants it, and whether their luminance differs
  * by more than TEXTURE_DIFFERS of the second's. */
-float texel_square(const float found[3], const float truth[3], double white);
-bool texel_differs(const float found[3], const float truth[3]);
+float texture_texel_square(const float found[3], const float truth[3], double white);
+bool texture_texel_differs(const float found[3], const float truth[3]);
 
 /* dB, at most 99, of a face with at least MIN_FACE_TEXELS texels in a part; false: it has fewer. */
 bool texture_face_psnr(const struct texture_error *e, int face, enum texture_part part, double *db);

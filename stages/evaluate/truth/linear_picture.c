@@ -138,8 +138,8 @@ static void seen_rows(void *ctx, size_t begin, size_t end, int thread)
         }
 }
 
-enum status true_picture_seen(struct image *out, const struct image *truth, const struct picture_map *map,
-                              struct err *err)
+enum status picture_of_truth(struct image *out, const struct image *truth, const struct picture_map *map,
+                             struct err *err)
 {
     struct seen_job job = {map, truth, out, NULL, truth->width, truth->height};
     if (image_init(out, map->lens.width, map->lens.height, 4, err)) return err->status;
@@ -147,7 +147,7 @@ enum status true_picture_seen(struct image *out, const struct image *truth, cons
     return ST_OK;
 }
 
-void true_pixels_seen(int32_t *index, int width, int height, const struct picture_map *map)
+void picture_true_pixels(int32_t *index, int width, int height, const struct picture_map *map)
 {
     struct seen_job job = {map, NULL, NULL, index, width, height};
     parallel_for((size_t)map->lens.height, ROWS, seen_rows, &job);

@@ -35,11 +35,11 @@ struct picture_map {
 
 /* out: the picture's size, 4 channels: R G B of the truth, interpolated linearly between its pixels, and A, 1 where the
  * truth has the point. out is empty on entry; the caller releases it. */
-enum status true_picture_seen(struct image *out, const struct image *truth, const struct picture_map *map,
-                              struct err *err);
+enum status picture_of_truth(struct image *out, const struct image *truth, const struct picture_map *map,
+                             struct err *err);
 
 /* The index of the true pixel (of width x height) that contains the centre of each pixel of the picture; -1: none.
  * index: as many as the picture's pixels. */
-void true_pixels_seen(int32_t *index, int width, int height, const struct picture_map *map);
+void picture_true_pixels(int32_t *index, int width, int height, const struct picture_map *map);
 
 #endif

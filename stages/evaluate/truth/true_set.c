@@ -133,11 +133,11 @@ enum status true_edits_find(struct name_list *list, const char *truth, struct er
         free(entries[i]);
     }
     free(entries);
-    if (st) name_list_release(list);
+    if (st) true_edits_release(list);
     return st;
 }
 
-void name_list_release(struct name_list *list)
+void true_edits_release(struct name_list *list)
 {
     free(list->names);
     *list = (struct name_list){0};

@@ -42,6 +42,6 @@ struct name_list {
     int count, others;
 };
 enum status true_edits_find(struct name_list *list, const char *truth, struct err *err);
-void name_list_release(struct name_list *list);
+void true_edits_release(struct name_list *list);
 
 #endif

@@ -8,7 +8,7 @@
 #include "common/capture/photo_match.h"
 #include "common/image/exr.h"
 
-enum status true_photo_read_depth(struct true_photo *p, const char *path, double far, struct err *err)
+enum status truth_photo_read_depth(struct true_photo *p, const char *path, double far, struct err *err)
 {
     static const char *const NAMES[] = {"Z"};
     struct exr_image im = {0};
@@ -46,7 +46,7 @@ static enum status find_depth(struct truth *t, struct true_photo *p, const char 
         snprintf(path, size, "%s/depth/%.*s.exr", folder, stem, image);
         snprintf(name, size, "truth/depth/%.*s.exr", stem, image);
         if (!stat(path, &info)) {
-            st = true_photo_read_depth(p, path, far, err);
+            st = truth_photo_read_depth(p, path, far, err);
             if (!st) st = provenance_add_file(prov, name, path, err);
             t->depths += !st;
         }

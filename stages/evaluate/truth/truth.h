@@ -23,6 +23,6 @@ void truth_release(struct truth *t);
 
 /* Reads a depth map into p->depth and p->along_ray; p->lens is known. The caller frees p->depth. ST_DATA: another size,
  * integers. */
-enum status true_photo_read_depth(struct true_photo *p, const char *path, double far, struct err *err);
+enum status truth_photo_read_depth(struct true_photo *p, const char *path, double far, struct err *err);
 
 #endif

@@ -44,11 +44,11 @@ enum status evaluate_cameras(struct evaluation *e, struct err *err)
         st = metric_note(t, err, "note: %d of %d images of the truth are none of the photos", e->truth.unknown_images,
                          e->truth.images);
     if (!st && known) st = metric_add(t, NULL, "camera.placed", 100.0 * count / known, err);
-    if (!st && align_cameras(&e->truth_from_scene, found, truth, count, &why)) {
+    if (!st && camera_alignment_find(&e->truth_from_scene, found, truth, count, &why)) {
         st = metric_note(t, err, "skipped camera errors and depth errors: %s", why.text);
     } else if (!st) {
         e->aligned = true;
-        st = measure_cameras(&errors, &e->truth_from_scene, found, truth, count, err) ||
+        st = camera_errors_measure(&errors, &e->truth_from_scene, found, truth, count, err) ||
              metric_add(t, NULL, "camera.center_median", errors.center_median, err) ||
              metric_add(t, NULL, "camera.center_max", errors.center_max, err) ||
              metric_add(t, NULL, "camera.rotation_median", errors.rotation_median, err) ||

@@ -185,7 +185,7 @@ static enum status write_truth(const struct evaluation *e, const struct view *vi
         z->f[i] = (float)(truth[i] / e->truth_from_scene.scale);
         o->u[i] = occluded[i];
     }
-    exr_set_camera(&im, view);
+    view_image_set_camera(&im, view);
     struct provenance prov = *e->prov; /* shares its arrays with e->prov */
     prov.count = e->shared_inputs;
     const enum status st = exr_write(&im, path, &prov, err);

@@ -48,7 +48,7 @@ static enum status read_case(struct evaluation *e, const struct radiance_case *c
         st = err_set(err, ST_DATA, "%s is %d x %d px, but its camera %d x %d; make it again.", c->path,
                      found->rgb.width, found->rgb.height, c->map.lens.width, c->map.lens.height);
     if (!st) st = linear_picture_read(&whole, c->truth, err);
-    if (!st) st = true_picture_seen(truth, &whole.rgb, &c->map, err);
+    if (!st) st = picture_of_truth(truth, &whole.rgb, &c->map, err);
     linear_picture_release(&whole);
     return st;
 }
@@ -161,7 +161,7 @@ static enum status add_views(struct evaluation *e, struct radiance_cases *cases,
             if (new_case(cases, &c, truth, view->name, err) || product_path(c->input, PRODUCT_VIEW, &key, err))
                 return err->status;
             memcpy(c->path, path, sizeof path);
-            c->map = map_of_view(sets[k], i);
+            c->map = evaluation_map_of_view(sets[k], i);
         }
     return ST_OK;
 }

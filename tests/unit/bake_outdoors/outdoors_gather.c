@@ -264,7 +264,7 @@ static enum status read_reference(struct outdoors_picture *p, double factor, con
     snprintf(text, sizeof text, "OPENCV_FISHEYE %d %d %.9g %.9g %.9g %.9g %.9g %.9g %.9g %.9g", FISHEYE, FISHEYE,
              camera.params[0], camera.params[1], camera.params[2], camera.params[3], camera.params[4], camera.params[5],
              camera.params[6], camera.params[7]);
-    exr_set_camera(&im, &v);
+    view_image_set_camera(&im, &v);
     assert_ok(exr_set_attribute(&im, "remodel:lens", lens ? lens : text, &made), made);
     assert_ok(exr_write(&im, scratch_path("sky.exr"), NULL, &made), made);
     exr_image_release(&im);

@@ -21,10 +21,10 @@ static void a_wall_added_in_a_room_reaches_its_ceiling(void **state)
             build(&plan, &list, text, edit);
             const struct plan_wall *w = &plan.walls[4];
             double span[2], p[2];
-            wall_span(&plan, 4, span);
+            plan_wall_span(&plan, 4, span);
             for (int k = 0; k < 400; k++) {
                 const double t = (k % 20 + 0.5) / 20, z = 0.1 + 4 * (k / 20) / 20.0;
-                wall_point(w, span[0] + t * (span[1] - span[0]), 0.13, p);
+                plan_wall_point(w, span[0] + t * (span[1] - span[0]), 0.13, p);
                 const bool hole = i == 3 && p[0] > 1.5 && p[0] < 2 && z > 1 && z < 2;
                 const double ceiling = sloped ? 2 + 0.5 * p[0] : 3.5;
                 if (fabs(z - ceiling) > 1e-3 && z < ceiling + 0.2)

@@ -207,9 +207,9 @@ static enum status chained(struct plan *plan, const char *objects, const char *l
     struct provenance prov = {0};
     plan_begin(plan, NULL);
     scratch_write("lower.txt", lower);
-    enum status st = plan_apply_model(plan, scratch_write("model.txt", ROOM), NULL, &prov, err);
-    if (!st) st = plan_apply_objects(plan, scratch_write("objects.txt", objects), &prov, err);
-    if (!st) st = plan_apply_edit(plan, scratch_write("upper.txt", upper), NULL, &prov, err);
+    enum status st = edit_chain_apply_model(plan, scratch_write("model.txt", ROOM), NULL, &prov, err);
+    if (!st) st = edit_chain_apply_objects(plan, scratch_write("objects.txt", objects), &prov, err);
+    if (!st) st = edit_chain_apply_edit(plan, scratch_write("upper.txt", upper), NULL, &prov, err);
     provenance_release(&prov);
     return st;
 }

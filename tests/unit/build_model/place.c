@@ -71,12 +71,12 @@ static int start(void **state)
     add_wall(0, -1, -6, 2, 6, 3, 20000, 0.02);
     add_wall(-0.8, -0.6, -(0.8 * 4.5 + 0.6 * 3.6), 4.5, 3.6, 0.7, 6000, 0.01);
     const struct placer_views known[2] = {{&set, &list}, {&no_views, &no_lenses}};
-    return scratch_make(state) || placer_init(&placer, known, &axes, &cloud, &params, &err);
+    return scratch_make(state) || place_init(&placer, known, &axes, &cloud, &params, &err);
 }
 
 static int stop(void **state)
 {
-    placer_release(&placer);
+    place_release(&placer);
     point_cloud_release(&cloud);
     return scratch_remove(state);
 }

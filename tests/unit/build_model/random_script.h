@@ -51,7 +51,7 @@ static inline void add_partition(char *text, const char *name, double x0, double
            turned ? "start" : "end", to);
 }
 
-static inline void add_room(char *text, const char *name, const char *walls)
+static inline void layout_add_room(char *text, const char *name, const char *walls)
 {
     append(text, "room %s %s", name, walls);
     if (one_of(6) == 0) append(text, " floor %.2f", uniform(-0.3, 0.3));
@@ -88,7 +88,7 @@ static inline void add_house(char *text, double x0, double y0, int columns, int 
             snprintf(name, sizeof name, "r%d%d%c", i, k, tag);
             snprintf(walls, sizeof walls, "%s %s %s %s", k ? between[i] : outer[0], across[i],
                      rows > 1 && !k ? between[i] : outer[2], across[i + 1]);
-            add_room(text, name, walls);
+            layout_add_room(text, name, walls);
         }
 }
 
@@ -102,7 +102,7 @@ static inline void add_corners(char *text, const double (*p)[2], int count)
         append(walls, "%s ", name);
     }
     append(text, "join %sw0\n", walls);
-    add_room(text, "hall", walls);
+    layout_add_room(text, "hall", walls);
 }
 
 static inline void add_base(char *text)

@@ -59,7 +59,7 @@ static inline bool make_model(struct model *m, const struct model *unedited, con
         plan_release(&m->plan);
         return false;
     }
-    if (layout_solids(&m->list, &m->plan, &err) || solids_unite(&m->mesh, &m->list, &m->log, &err) ||
+    if (layout_solids(&m->list, &m->plan, &err) || unite_solids(&m->mesh, &m->list, &m->log, &err) ||
         solid_mesh_check(&m->mesh, 0, &m->report, &err) ||
         (edit && solid_mesh_carry_ids(&m->mesh, &unedited->mesh, &err))) {
         explain(base, edit);

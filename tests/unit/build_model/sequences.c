@@ -155,8 +155,8 @@ static void check_chain(const struct model *base, const struct model *edited, co
     struct err err = ERR_INIT;
     char *states[2];
     plan_begin(&chained.plan, NULL);
-    if (plan_apply_model(&chained.plan, scratch_write("model.txt", text), NULL, &prov, &err) ||
-        plan_apply_edit(&chained.plan, scratch_write("upper.txt", upper), NULL, &prov, &err) ||
+    if (edit_chain_apply_model(&chained.plan, scratch_write("model.txt", text), NULL, &prov, &err) ||
+        edit_chain_apply_edit(&chained.plan, scratch_write("upper.txt", upper), NULL, &prov, &err) ||
         texture_rules_make(&chained.map, &edited->mesh, &base->mesh, &chained.plan, &err)) {
         explain(text, upper);
         fail_msg("an edit on an edit was refused: %s", err.text);

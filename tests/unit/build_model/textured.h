@@ -22,8 +22,8 @@ static inline enum status try_make(struct made *m, const char *text, const char 
     snprintf(whole, sizeof whole, "remodel-script 1\n%s", edit);
     build(&m->base_plan, &m->solids[0], text, NULL);
     build(&m->plan, &m->solids[1], text, whole);
-    assert_ok(solids_unite(&m->base, &m->solids[0], NULL, &err), err);
-    assert_ok(solids_unite(&m->edited, &m->solids[1], NULL, &err), err);
+    assert_ok(unite_solids(&m->base, &m->solids[0], NULL, &err), err);
+    assert_ok(unite_solids(&m->edited, &m->solids[1], NULL, &err), err);
     assert_ok(solid_mesh_carry_ids(&m->edited, &m->base, &err), err);
     return texture_rules_make(&m->map, &m->edited, &m->base, &m->plan, refusal);
 }

@@ -20,8 +20,8 @@ static inline enum status add_named_box(struct solid_list *list, const char *bod
 }
 
 /* A box with faces NAME/x0, NAME/x1, ... */
-static inline void add_box(struct solid_list *list, const char *name, double x0, double y0, double z0, double x1,
-                           double y1, double z1)
+static inline void layout_add_box(struct solid_list *list, const char *name, double x0, double y0, double z0, double x1,
+                                  double y1, double z1)
 {
     static const char *const sides[6] = {"x0", "x1", "y0", "y1", "z0", "z1"};
     char text[6][64];
@@ -118,7 +118,7 @@ static inline void unite(struct solid_mesh *mesh, struct solid_report *report, s
                          struct solid_list *list)
 {
     struct err err = ERR_INIT;
-    assert_ok(solids_unite(mesh, list, log, &err), err);
+    assert_ok(unite_solids(mesh, list, log, &err), err);
     assert_ok(solid_mesh_check(mesh, 0, report, &err), err);
     assert_true(report->planarity < 1e-9);
     assert_triangles_closed(mesh);

@@ -44,7 +44,7 @@ static void a_box_is_its_own_union(void **state)
 {
     (void)state;
     struct solid_list l = {0};
-    add_box(&l, "a", 0.1, 0.2, 0.3, 2.7, 3.1, 4.3);
+    layout_add_box(&l, "a", 0.1, 0.2, 0.3, 2.7, 3.1, 4.3);
     check_union(&l, (struct wanted){1, 0, 8, 6, 6, 2.6 * 2.9 * 4});
     assert_int_equal(mesh.half_edge_count, 24);
     assert_string_equal(solid_face_name(&mesh, 0), "a/x0");
@@ -69,8 +69,8 @@ static void adjacent_boxes_become_one(void **state)
     struct solid_list l = {0};
     struct solid_report r = {0};
     struct unite_log log = {0};
-    add_box(&l, "a", 0, 0, 0, 1, 1, 1);
-    add_box(&l, "b", 1, 0, 0, 3, 1, 1);
+    layout_add_box(&l, "a", 0, 0, 0, 1, 1, 1);
+    layout_add_box(&l, "b", 1, 0, 0, 3, 1, 1);
     solid_mesh_release(&mesh);
     unite(&mesh, &r, &log, &l);
     assert_union(&mesh, &r, (struct wanted){1, 0, 8, 6, 6, 3});
@@ -93,8 +93,8 @@ static void planes_that_differ_by_rounding_are_one(void **state)
 {
     (void)state;
     struct solid_list l = {0};
-    add_box(&l, "a", 0, 0, 0, 0.1 + 0.2, 1, 1);
-    add_box(&l, "b", 0.3, 0, 0, 1, 1, 1);
+    layout_add_box(&l, "a", 0, 0, 0, 0.1 + 0.2, 1, 1);
+    layout_add_box(&l, "b", 0.3, 0, 0, 1, 1, 1);
     check_union(&l, (struct wanted){1, 0, 8, 6, 6, 1});
 }
 
@@ -102,8 +102,8 @@ static void overlapping_boxes_are_united(void **state)
 {
     (void)state;
     struct solid_list l = {0};
-    add_box(&l, "a", 0, 0, 0, 2, 2, 2);
-    add_box(&l, "b", 1, 1, 1, 3, 3, 3);
+    layout_add_box(&l, "a", 0, 0, 0, 2, 2, 2);
+    layout_add_box(&l, "b", 1, 1, 1, 3, 3, 3);
     check_union(&l, (struct wanted){1, 0, 20, 12, 12, 15});
 }
 
@@ -113,9 +113,9 @@ static void solids_inside_others_vanish(void **state)
     struct solid_list l = {0};
     struct solid_report r = {0};
     struct unite_log log = {0};
-    add_box(&l, "in", 1, 1, 1, 2, 2, 2);
-    add_box(&l, "flush", 1, 1, 0, 2, 2, 1);
-    add_box(&l, "big", 0, 0, 0, 3, 3, 3);
+    layout_add_box(&l, "in", 1, 1, 1, 2, 2, 2);
+    layout_add_box(&l, "flush", 1, 1, 0, 2, 2, 1);
+    layout_add_box(&l, "big", 0, 0, 0, 3, 3, 3);
     solid_mesh_release(&mesh);
     unite(&mesh, &r, &log, &l);
     assert_union(&mesh, &r, (struct wanted){1, 0, 8, 6, 6, 27});
@@ -136,14 +136,14 @@ static void solids_that_touch_in_an_edge_or_a_point_stay_separate(void **state)
 {
     (void)state;
     struct solid_list l = {0};
-    add_box(&l, "a", 0, 0, 0, 1, 1, 1);
-    add_box(&l, "b", 1, 1, 0, 2, 2, 1);
+    layout_add_box(&l, "a", 0, 0, 0, 1, 1, 1);
+    layout_add_box(&l, "b", 1, 1, 0, 2, 2, 1);
     check_union(&l, (struct wanted){2, 0, 16, 12, 12, 2});
-    add_box(&l, "a", 0, 0, 0, 1, 1, 1);
-    add_box(&l, "b", 1, 1, 0.5, 2, 2, 1.5); /* in part of the edge */
+    layout_add_box(&l, "a", 0, 0, 0, 1, 1, 1);
+    layout_add_box(&l, "b", 1, 1, 0.5, 2, 2, 1.5); /* in part of the edge */
     check_union(&l, (struct wanted){2, 0, 16, 12, 12, 2});
-    add_box(&l, "a", 0, 0, 0, 1, 1, 1);
-    add_box(&l, "b", 1, 1, 1, 2, 2, 2);
+    layout_add_box(&l, "a", 0, 0, 0, 1, 1, 1);
+    layout_add_box(&l, "b", 1, 1, 1, 2, 2, 2);
     check_union(&l, (struct wanted){2, 0, 16, 12, 12, 2});
 }
 
@@ -153,10 +153,10 @@ static void one_of_two_edges_between_the_same_vertices_is_split(void **state)
 {
     (void)state;
     struct solid_list l = {0};
-    add_box(&l, "low", 0, 0, 0, 2, 2, 1);
-    add_box(&l, "a", 0, 0, 1, 1, 1, 2);
-    add_box(&l, "b", 1, 1, 1, 2, 2, 2);
-    add_box(&l, "high", 0, 0, 2, 2, 2, 3);
+    layout_add_box(&l, "low", 0, 0, 0, 2, 2, 1);
+    layout_add_box(&l, "a", 0, 0, 1, 1, 1, 2);
+    layout_add_box(&l, "b", 1, 1, 1, 2, 2, 2);
+    layout_add_box(&l, "high", 0, 0, 2, 2, 2, 3);
     struct solid_report r = {0};
     solid_mesh_release(&mesh);
     unite(&mesh, &r, NULL, &l);
@@ -176,13 +176,13 @@ static void a_face_partly_shared_gets_a_hole(void **state)
 {
     (void)state;
     struct solid_list l = {0};
-    add_box(&l, "slab", 0, 0, -1, 4, 4, 0);
-    add_box(&l, "column", 1, 1, 0, 2, 2, 3);
+    layout_add_box(&l, "slab", 0, 0, -1, 4, 4, 0);
+    layout_add_box(&l, "column", 1, 1, 0, 2, 2, 3);
     check_union(&l, (struct wanted){1, 0, 16, 11, 12, 19});
     for (int i = 0; i < mesh.face_count; i++)
         assert_int_equal(mesh.faces[i].loops, strcmp(solid_face_name(&mesh, i), "slab/z1") ? 1 : 2);
-    add_box(&l, "slab", 0, 0, -1, 4, 4, 0);
-    add_box(&l, "column", 0, 0, 0, 2, 2, 3); /* at its corner: two sides become flush */
+    layout_add_box(&l, "slab", 0, 0, -1, 4, 4, 0);
+    layout_add_box(&l, "column", 0, 0, 0, 2, 2, 3); /* at its corner: two sides become flush */
     check_union(&l, (struct wanted){1, 0, 14, 9, 9, 28});
 }
 
@@ -222,10 +222,10 @@ static void four_walls_are_a_ring(void **state)
 {
     (void)state;
     struct solid_list l = {0};
-    add_box(&l, "south", 0, 0, 0, 5, 0.2, 2.6);
-    add_box(&l, "north", 0, 3.8, 0, 5, 4, 2.6);
-    add_box(&l, "west", 0, 0, 0, 0.2, 4, 2.6);
-    add_box(&l, "east", 4.8, 0, 0, 5, 4, 2.6);
+    layout_add_box(&l, "south", 0, 0, 0, 5, 0.2, 2.6);
+    layout_add_box(&l, "north", 0, 3.8, 0, 5, 4, 2.6);
+    layout_add_box(&l, "west", 0, 0, 0, 0.2, 4, 2.6);
+    layout_add_box(&l, "east", 4.8, 0, 0, 5, 4, 2.6);
     check_union(&l, (struct wanted){1, 1, 16, 10, 12, (20 - 4.6 * 3.6) * 2.6});
     assert_int_equal(faces_called(&mesh, "south/z1"), 1);
     assert_int_equal(faces_called(&mesh, "east/z1"), 0);
@@ -235,8 +235,8 @@ static void glass_in_a_window_is_a_separate_body(void **state)
 {
     (void)state;
     struct solid_list l = {0};
-    add_box(&l, "wall", 0, 0, 0, 1, 0.2, 2.6);
-    add_box(&l, "wall", 2, 0, 0, 4, 0.2, 2.6);
+    layout_add_box(&l, "wall", 0, 0, 0, 1, 0.2, 2.6);
+    layout_add_box(&l, "wall", 2, 0, 0, 4, 0.2, 2.6);
     static const char *const below[6] = {"h", "h", "wall/y0", "wall/y1", "wall/z0", "sill"};
     static const char *const above[6] = {"h", "h", "wall/y0", "wall/y1", "lintel", "wall/z1"};
     static const char *const pane[6] = {"g/0", "g/1", "g/out", "g/in", "g/4", "g/5"};
@@ -261,19 +261,19 @@ static void walls_join_in_t_l_and_cross_junctions(void **state)
 {
     (void)state;
     struct solid_list l = {0};
-    add_box(&l, "a", 0, 0, 0, 6, 0.2, 2.5); /* T */
-    add_box(&l, "b", 3, 0.2, 0, 3.2, 4, 2.5);
+    layout_add_box(&l, "a", 0, 0, 0, 6, 0.2, 2.5); /* T */
+    layout_add_box(&l, "b", 3, 0.2, 0, 3.2, 4, 2.5);
     check_union(&l, (struct wanted){1, 0, 16, 10, 10, (1.2 + 0.76) * 2.5});
     assert_int_equal(faces_called(&mesh, "a/y1"), 2); /* on either side of the other wall */
     assert_int_equal(mesh.name_count, 9);
-    add_box(&l, "a", 0, 0, 0, 6, 0.2, 2.5); /* L, the corner shared */
-    add_box(&l, "b", 0, 0, 0, 0.2, 4, 2.5);
+    layout_add_box(&l, "a", 0, 0, 0, 6, 0.2, 2.5); /* L, the corner shared */
+    layout_add_box(&l, "b", 0, 0, 0, 0.2, 4, 2.5);
     check_union(&l, (struct wanted){1, 0, 12, 8, 8, (1.2 + 0.8 - 0.04) * 2.5});
-    add_box(&l, "a", -3, -0.1, 0, 3, 0.1, 2.5); /* a cross */
-    add_box(&l, "b", -0.1, -2, 0, 0.1, 2, 2.5);
+    layout_add_box(&l, "a", -3, -0.1, 0, 3, 0.1, 2.5); /* a cross */
+    layout_add_box(&l, "b", -0.1, -2, 0, 0.1, 2, 2.5);
     check_union(&l, (struct wanted){1, 0, 24, 14, 14, (1.2 + 0.8 - 0.04) * 2.5});
-    add_box(&l, "a", -3, -0.1, 0, 3, 0.1, 2.5); /* one lower than the other */
-    add_box(&l, "b", -0.1, -2, 0, 0.1, 2, 2);
+    layout_add_box(&l, "a", -3, -0.1, 0, 3, 0.1, 2.5); /* one lower than the other */
+    layout_add_box(&l, "b", -0.1, -2, 0, 0.1, 2, 2);
     check_union(&l, (struct wanted){1, 0, 24, 14, 14, 1.2 * 2.5 + (0.8 - 0.04) * 2});
 }
 
@@ -281,7 +281,7 @@ static void coincident_solids_count_once(void **state)
 {
     (void)state;
     struct solid_list l = {0};
-    for (int i = 0; i < 3; i++) add_box(&l, i ? "again" : "a", 0, 0, 0, 1, 2, 3);
+    for (int i = 0; i < 3; i++) layout_add_box(&l, i ? "again" : "a", 0, 0, 0, 1, 2, 3);
     check_union(&l, (struct wanted){1, 0, 8, 6, 6, 6});
     assert_int_equal(faces_called(&mesh, "a/x0"), 1);
 }
@@ -290,12 +290,12 @@ static void a_cavity_is_a_separate_shell(void **state)
 {
     (void)state;
     struct solid_list l = {0};
-    add_box(&l, "x0", 0, 0, 0, 1, 3, 3);
-    add_box(&l, "x1", 2, 0, 0, 3, 3, 3);
-    add_box(&l, "y0", 0, 0, 0, 3, 1, 3);
-    add_box(&l, "y1", 0, 2, 0, 3, 3, 3);
-    add_box(&l, "z0", 0, 0, 0, 3, 3, 1);
-    add_box(&l, "z1", 0, 0, 2, 3, 3, 3);
+    layout_add_box(&l, "x0", 0, 0, 0, 1, 3, 3);
+    layout_add_box(&l, "x1", 2, 0, 0, 3, 3, 3);
+    layout_add_box(&l, "y0", 0, 0, 0, 3, 1, 3);
+    layout_add_box(&l, "y1", 0, 2, 0, 3, 3, 3);
+    layout_add_box(&l, "z0", 0, 0, 0, 3, 3, 1);
+    layout_add_box(&l, "z1", 0, 0, 2, 3, 3, 3);
     struct solid_report r = {0};
     solid_mesh_release(&mesh);
     unite(&mesh, &r, NULL, &l);
@@ -340,7 +340,7 @@ static void angled_walls_have_the_right_volume(void **state)
     static const double angles[] = {45, 30.3, 90.0001, 0.5};
     for (int i = 0; i < 4; i++) {
         struct solid_list l = {0};
-        add_box(&l, "a", -10, -0.1, 0, 10, 0.1, 2.6);
+        layout_add_box(&l, "a", -10, -0.1, 0, 10, 0.1, 2.6);
         const double a = angles[i] * M_PI / 180, length = i == 3 ? 60 : 8, t = 0.2;
         add_turned_wall(&l, "b", -length / 2 * cos(a), -length / 2 * sin(a), angles[i], length, t, 0, 2.6);
         struct solid_report r = {0};
@@ -365,10 +365,10 @@ static void a_wall_at_45_degrees_may_pass_through_corners(void **state)
     /* its sides pass exactly through corners of the boxes it meets */
     struct solid_list l = {0};
     static const double strip[][2] = {{0, 0}, {1, 0}, {4, 3}, {4, 4}, {3, 4}, {0, 1}};
-    add_box(&l, "a", -1, -1, 0, 0, 0, 1);
-    add_box(&l, "b", 4, 4, 0, 5, 5, 1);
-    add_box(&l, "c", 1, -1, 0, 2, 0, 1);
-    add_box(&l, "d", 1, 1, 0, 2, 2, 1);
+    layout_add_box(&l, "a", -1, -1, 0, 0, 0, 1);
+    layout_add_box(&l, "b", 4, 4, 0, 5, 5, 1);
+    layout_add_box(&l, "c", 1, -1, 0, 2, 0, 1);
+    layout_add_box(&l, "d", 1, 1, 0, 2, 2, 1);
     add_prism(&l, "s", strip, 6, 0, 1);
     struct solid_report r = {0};
     solid_mesh_release(&mesh);
@@ -384,9 +384,9 @@ static void a_hole_may_touch_the_outer_edge_in_a_point(void **state)
     struct solid_list l = {0};
     static const double t[4][3][2] = {
         {{1, 0}, {2, 0}, {1, 1}}, {{2, 0}, {3, 0}, {3, 1}}, {{1, 1}, {2, 2}, {1, 2}}, {{3, 1}, {3, 2}, {2, 2}}};
-    add_box(&l, "l", 0, 0, 0, 1, 3, 1);
-    add_box(&l, "r", 3, 0, 0, 4, 3, 1);
-    add_box(&l, "t", 1, 2, 0, 3, 3, 1);
+    layout_add_box(&l, "l", 0, 0, 0, 1, 3, 1);
+    layout_add_box(&l, "r", 3, 0, 0, 4, 3, 1);
+    layout_add_box(&l, "t", 1, 2, 0, 3, 3, 1);
     for (int i = 0; i < 4; i++) add_prism(&l, "p", t[i], 3, 0, 1);
     struct solid_report r = {0};
     solid_mesh_release(&mesh);
@@ -395,12 +395,12 @@ static void a_hole_may_touch_the_outer_edge_in_a_point(void **state)
     assert_near(r.volume, 12 - 2, 1e-12);
     solid_report_release(&r);
     /* a column at a corner of a slab's opening: the slab's face passes that point twice */
-    add_box(&l, "l", 0, 0, 0, 1, 4, 1);
-    add_box(&l, "m", 0, 2, 0, 4, 4, 1);
-    add_box(&l, "n", 2, 0, 0, 4, 4, 1);
-    add_box(&l, "bridge", 0, -1, 0, 4, 0, 1);
-    add_box(&l, "column", 1, 2, 1, 2, 3, 2);
-    add_box(&l, "other", 0, 0, 1, 1, 2, 2);
+    layout_add_box(&l, "l", 0, 0, 0, 1, 4, 1);
+    layout_add_box(&l, "m", 0, 2, 0, 4, 4, 1);
+    layout_add_box(&l, "n", 2, 0, 0, 4, 4, 1);
+    layout_add_box(&l, "bridge", 0, -1, 0, 4, 0, 1);
+    layout_add_box(&l, "column", 1, 2, 1, 2, 3, 2);
+    layout_add_box(&l, "other", 0, 0, 1, 1, 2, 2);
     solid_mesh_release(&mesh);
     unite(&mesh, &r, NULL, &l);
     assert_near(r.volume, 20 - 2 + 1 + 2, 1e-12);
@@ -436,14 +436,14 @@ static void slivers_and_small_faces_are_kept(void **state)
 {
     (void)state;
     struct solid_list l = {0};
-    add_box(&l, "a", 0, 0, 0, 10, 0.2, 2.6);
-    add_box(&l, "b", 5, 0.000001, 0, 12, 0.200001, 2.6); /* a step of a millionth */
+    layout_add_box(&l, "a", 0, 0, 0, 10, 0.2, 2.6);
+    layout_add_box(&l, "b", 5, 0.000001, 0, 12, 0.200001, 2.6); /* a step of a millionth */
     check_union(&l, (struct wanted){1, 0, 16, 10, 10, (12 * 0.2 + 5e-6) * 2.6});
-    add_box(&l, "thin", 0, 0, 0, 10, 0.000001, 10);
-    add_box(&l, "speck", 100, 0, 0, 100.000001, 0.000001, 0.000001);
+    layout_add_box(&l, "thin", 0, 0, 0, 10, 0.000001, 10);
+    layout_add_box(&l, "speck", 100, 0, 0, 100.000001, 0.000001, 0.000001);
     check_union(&l, (struct wanted){2, 0, 16, 12, 12, 1e-4 + 1e-18});
-    add_box(&l, "floor", 0, 0, -1, 10, 10, 0);
-    add_box(&l, "post", 5, 5, 0, 5.001, 5.001, 1); /* a top of a millionth */
+    layout_add_box(&l, "floor", 0, 0, -1, 10, 10, 0);
+    layout_add_box(&l, "post", 5, 5, 0, 5.001, 5.001, 1); /* a top of a millionth */
     check_union(&l, (struct wanted){1, 0, 16, 11, 12, 100 + 1e-6});
     /* turned by four units of a normal: faces that are nearly parallel */
     const double tiny = ldexp(1, -20);
@@ -481,7 +481,7 @@ static void the_file_is_the_same_every_time(void **state)
         struct solid_report r = {0};
         parallel_set_threads(i + 1);
         for (int k = 0; k < 30; k++) {
-            add_box(&l, "box", k % 5, k / 5, 0, k % 5 + 1.5, k / 5 + 0.3, 1 + k % 3);
+            layout_add_box(&l, "box", k % 5, k / 5, 0, k % 5 + 1.5, k / 5 + 0.3, 1 + k % 3);
             add_turned_wall(&l, "wall", k % 7, k % 3, 17.7 * k, 3, 0.2, 0, 2);
         }
         solid_mesh_release(&mesh);
@@ -515,10 +515,10 @@ static void invalid_solids_are_refused(void **state)
         struct unite_log log = {0};
         struct err err = ERR_INIT;
         const double *b = cases[i].box;
-        add_box(&l, "good", 0, 0, 0, 1, 1, 1);
-        add_box(&l, "bad", b[0], b[1], b[2], b[3], b[4], b[5]);
+        layout_add_box(&l, "good", 0, 0, 0, 1, 1, 1);
+        layout_add_box(&l, "bad", b[0], b[1], b[2], b[3], b[4], b[5]);
         solid_mesh_release(&mesh);
-        assert_int_equal(solids_unite(&mesh, &l, &log, &err), ST_DATA);
+        assert_int_equal(unite_solids(&mesh, &l, &log, &err), ST_DATA);
         assert_err(err, ST_DATA, cases[i].words);
         assert_contains(err.text, "bad/x0");
         assert_null(mesh.faces);
@@ -530,7 +530,7 @@ static void invalid_solids_are_refused(void **state)
     const struct half_space open[4] = {
         {{1, 0, 0}, 1, "a"}, {{-1, 0, 0}, 1, "b"}, {{0, 1, 0}, 1, "c"}, {{0, -1, 0}, 1, "d"}};
     assert_ok(solid_list_add(&l, "walls", open, 4, &err), err);
-    solids_unite(&mesh, &l, NULL, &err);
+    unite_solids(&mesh, &l, NULL, &err);
     assert_err(err, ST_DATA, "is not bounded");
     const struct half_space wrong[] = {{{0, 0, 0}, 1, "a"}, {{NAN, 0, 0}, 1, "b"}, {{1, 0, 0}, INFINITY, "c"}};
     for (int i = 0; i < 3; i++) {

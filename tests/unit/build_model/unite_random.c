@@ -75,8 +75,8 @@ static void boxes_on_a_coarse_lattice_have_the_volume_of_their_cells(void **stat
         const double unit = i % 2 ? 0.1 : 1;
         for (int k = 0; k < count; k++) {
             const struct cells c = boxes[k] = random_cells(&s, side, longest);
-            add_box(&l, "b", unit * c.low[0], unit * c.low[1], unit * c.low[2], unit * c.high[0], unit * c.high[1],
-                    unit * c.high[2]);
+            layout_add_box(&l, "b", unit * c.low[0], unit * c.low[1], unit * c.low[2], unit * c.high[0],
+                           unit * c.high[1], unit * c.high[2]);
         }
         unite(&mesh, &r, NULL, &l);
         assert_near(r.volume / (unit * unit * unit), count_cells(boxes, count), 1e-9);
@@ -100,7 +100,7 @@ static void the_order_of_solids_changes_only_names(void **state)
             for (int k = 0; k < MAX_BOXES; k++) {
                 const int b = o ? MAX_BOXES - 1 - k : k;
                 const struct cells *c = &boxes[b];
-                add_box(&l, "b", c->low[0], c->low[1], c->low[2], c->high[0], c->high[1], c->high[2]);
+                layout_add_box(&l, "b", c->low[0], c->low[1], c->low[2], c->high[0], c->high[1], c->high[2]);
                 const double a = 25.0 * b;
                 add_turned_wall(&l, "w", c->low[0], c->low[1], a, 2, 0.5, c->low[2], c->high[2]);
             }
@@ -158,7 +158,7 @@ static double common_volume(const struct polyhedron *p, int count, unsigned memb
         if (members >> i & 1)
             for (int k = 0; k < p[i].count; k++) h[n++] = p[i].h[k];
     assert_ok(solid_list_add(&l, "walls", h, n, &err), err);
-    const enum status st = solids_unite(&mesh, &l, NULL, &err);
+    const enum status st = unite_solids(&mesh, &l, NULL, &err);
     if (st) assert_contains(err.text, "empty, or flat");
     const double v = st ? 0 : solid_mesh_volume(&mesh, -1);
     solid_mesh_release(&mesh);
@@ -294,8 +294,8 @@ static void unite_pieces(struct solid_mesh *mesh, const struct piece *pieces)
         if (!pieces[i].name) continue;
         const struct cells *c = &pieces[i].cells;
         snprintf(name, sizeof name, "box%d", pieces[i].name);
-        add_box(&l, name, 0.3 * c->low[0], 0.3 * c->low[1], 0.3 * c->low[2], 0.3 * c->high[0], 0.3 * c->high[1],
-                0.3 * c->high[2]);
+        layout_add_box(&l, name, 0.3 * c->low[0], 0.3 * c->low[1], 0.3 * c->low[2], 0.3 * c->high[0], 0.3 * c->high[1],
+                       0.3 * c->high[2]);
         boxes[count++] = *c;
     }
     unite(mesh, &r, NULL, &l);

@@ -27,9 +27,10 @@ static void usages_name_their_options(void **state)
     (void)state;
     for (int i = 0; i < verb_count; i++)
         for (int o = 0; o < OPTION_COUNT; o++)
-            if (verbs[i].options & 1u << o && !strstr(verbs[i].usage, option_name((enum option)o)) &&
+            if (verbs[i].options & 1u << o && !strstr(verbs[i].usage, script_option_name((enum option)o)) &&
                 !strstr(verbs[i].usage, "options"))
-                fail_msg("the usage of %s does not name its option %s", verbs[i].word, option_name((enum option)o));
+                fail_msg("the usage of %s does not name its option %s", verbs[i].word,
+                         script_option_name((enum option)o));
 }
 
 static void an_unknown_word_lists_the_table(void **state)

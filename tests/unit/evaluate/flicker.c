@@ -39,7 +39,7 @@ static void make_frame(struct film_frame *f, double x, double scale, enum part p
         f->unlit.made[i] = here == LEFT_IS_FURNITURE ? MADE_CLUTTER : MADE_WARPED;
         relit.planes[3].u[i] = here == LEFT_IS_AN_OBJECT ? MADE_COLOUR : f->unlit.made[i];
     }
-    assert_ok(film_frame_set_quotients(f, &relit, "frame.exr", &err), err);
+    assert_ok(flicker_frame_set_quotients(f, &relit, "frame.exr", &err), err);
     exr_image_release(&relit);
 }
 
@@ -61,8 +61,8 @@ static int setup(void **state)
 static int teardown(void **state)
 {
     (void)state;
-    film_frame_release(&film.first);
-    film_frame_release(&film.second);
+    flicker_frame_release(&film.first);
+    flicker_frame_release(&film.second);
     quantiles_release(&film.differences);
     return 0;
 }
@@ -108,7 +108,7 @@ static void a_frame_of_another_size_is_refused(void **state)
     struct exr_image small = {0};
     struct err err = ERR_INIT;
     assert_ok(exr_image_init(&small, 2, 2, &err), err);
-    assert_int_equal(film_frame_set_quotients(&film.first, &small, "small.exr", &err), ST_DATA);
+    assert_int_equal(flicker_frame_set_quotients(&film.first, &small, "small.exr", &err), ST_DATA);
     assert_non_null(strstr(err.text, "small.exr has no channel R"));
     exr_image_release(&small);
 }

@@ -34,8 +34,8 @@ static void the_same_camera_sees_the_same_values(void **state)
     struct image truth = tangents(&c), seen = {0};
     struct err err = ERR_INIT;
     int32_t index[600];
-    assert_ok(true_picture_seen(&seen, &truth, &map, &err), err);
-    true_pixels_seen(index, 30, 20, &map);
+    assert_ok(picture_of_truth(&seen, &truth, &map, &err), err);
+    picture_true_pixels(index, 30, 20, &map);
     for (int i = 0; i < 600; i++) {
         assert_true(seen.data[4 * i + 3] == 1 && index[i] == i);
         for (int k = 0; k < 3; k++) assert_true(fabsf(seen.data[4 * i + k] - truth.data[3 * i + k]) < 1e-5f);
@@ -55,7 +55,7 @@ static void another_lens_and_a_turned_camera_see_the_same_rays(void **state)
     struct image truth = tangents(&wide), seen = {0};
     struct err err = ERR_INIT;
     int outside = 0;
-    assert_ok(true_picture_seen(&seen, &truth, &map, &err), err);
+    assert_ok(picture_of_truth(&seen, &truth, &map, &err), err);
     for (int y = 0; y < 15; y++)
         for (int x = 0; x < 20; x++) {
             struct vec3 ray;
@@ -80,8 +80,8 @@ static void a_truth_of_another_size_is_the_same_picture(void **state)
     struct image truth = tangents(&half), seen = {0};
     struct err err = ERR_INIT;
     int32_t index[600];
-    assert_ok(true_picture_seen(&seen, &truth, &map, &err), err);
-    true_pixels_seen(index, 15, 10, &map);
+    assert_ok(picture_of_truth(&seen, &truth, &map, &err), err);
+    picture_true_pixels(index, 15, 10, &map);
     assert_int_equal(index[0], 0);
     assert_int_equal(index[599], 149);
     assert_int_equal(index[30 * 11 + 7], 15 * 5 + 3);

@@ -23,7 +23,7 @@ static void surfaces_that_stay_are_kept(void **state)
     const struct true_surface s = {{before, after}, {near, far}};
     uint8_t mask[N];
     (void)state;
-    kept_find(mask, &s, N);
+    revealed_kept_find(mask, &s, N);
     assert_memory_equal(mask, ((uint8_t[]){1, 0, 0, 0, 0, 1}), N); /* moved, another face, the outdoors twice */
 }
 
@@ -34,7 +34,7 @@ static void light_changes_by_more_than_a_twentieth(void **state)
     (void)state;
     fill(before, (const double[]){1, 1, 1, 0, 1, 1});
     fill(after, (const double[]){1.04, 1.06, 0.94, 1, 0, 2});
-    light_changes_keep(mask, before, after, N);
+    relit_changes_keep(mask, before, after, N);
     assert_memory_equal(mask, ((uint8_t[]){0, 1, 1, 0, 0, 0}), N);
 }
 
@@ -51,12 +51,12 @@ static void psnr_is_that_of_srgb_over_all_that_was_added(void **state)
         truth[4 * i + 3] = i < 5;
     }
     const struct radiance_pixels p = {found, truth, mask, N, 2, 2}; /* found is 0.25, white; truth 0.2, white, 0.1 */
-    assert_false(encoded_error_psnr(&e, &psnr));
-    encoded_error_add(&e, &p);
-    encoded_error_add(&e, &p);
+    assert_false(relit_encoded_error_psnr(&e, &psnr));
+    relit_encoded_error_add(&e, &p);
+    relit_encoded_error_add(&e, &p);
     assert_int_equal(e.samples, 2 * 4 * 3);
     const double d = (double)srgb_from_linear(0.25F) - (double)srgb_from_linear(0.2F);
-    assert_true(encoded_error_psnr(&e, &psnr));
+    assert_true(relit_encoded_error_psnr(&e, &psnr));
     assert_true(fabs(psnr + 10 * log10(d * d / 2)) < 1e-4);
 }
 
@@ -69,8 +69,8 @@ static void equal_pictures_have_100_db(void **state)
     for (int i = 0; i < 3 * N; i++) found[i] = 0.5F;
     for (int i = 0; i < 4 * N; i++) truth[i] = i % 4 < 3 ? 0.5F : 1;
     const struct radiance_pixels p = {found, truth, NULL, N, 1, 1};
-    encoded_error_add(&e, &p);
-    assert_true(encoded_error_psnr(&e, &psnr));
+    relit_encoded_error_add(&e, &p);
+    assert_true(relit_encoded_error_psnr(&e, &psnr));
     assert_true(fabs(psnr - 100) < 1e-9);
 }
 
@@ -86,7 +86,7 @@ static void a_quotient_is_judged_by_the_luminance_that_it_makes(void **state)
     fill(after, (const double[]){3, 3, 3, 3, 3, 3});
     fill(quotient, (const double[]){1.5, 1.5, 9, 9, 9, 9});
     quotient[3] = 2.5F; /* red too high by 1, of 0.2126 of the luminance: 0.2126 x 2 / 3 */
-    quotient_errors_add(&errors, quotient, before, after, mask, N);
+    relit_quotient_errors_add(&errors, quotient, before, after, mask, N);
     assert_int_equal(errors.count, 2);
     assert_true(quantiles_get(&errors, 0) < 1e-6);
     assert_true(fabs(quantiles_get(&errors, 1) - 0.2126 * 2 / 3) < 2e-4);

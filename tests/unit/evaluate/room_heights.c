@@ -25,19 +25,19 @@ static void the_middle_of_a_model_room_is_that_of_its_area(void **state)
     struct measured_plan plan;
     struct err err = ERR_INIT;
     /* a sloping ceiling: 2 + x / 2, and corners that are not spread evenly */
-    assert_ok(measured_plan_read(
-                  &plan,
-                  scratch_write("plan.txt",
-                                "remodel-plan 1\n"
-                                "wall s normal 0 1 at 0 thickness 1 from 0 to 1 foot 0 top 2 start free end free\n"
-                                "room r floor 0.5 ceiling 2 0.5 0 s 0 0 s 1 0 s 4 0 s 4 2 s 0 2\n"),
-                  PLAN_FROM_MODEL, &err),
-              err);
+    assert_ok(
+        wall_plan_read(&plan,
+                       scratch_write("plan.txt",
+                                     "remodel-plan 1\n"
+                                     "wall s normal 0 1 at 0 thickness 1 from 0 to 1 foot 0 top 2 start free end free\n"
+                                     "room r floor 0.5 ceiling 2 0.5 0 s 0 0 s 1 0 s 4 0 s 4 2 s 0 2\n"),
+                       PLAN_FROM_MODEL, &err),
+        err);
     assert_int_equal(plan.rooms.count, 1);
     const struct vec3 *at = plan.rooms.parts[0].at;
     assert_true(fabs(at[0].x - 2) < 1e-12 && fabs(at[0].y - 1) < 1e-12 && at[0].z == 0.5);
     assert_true(fabs(at[1].z - 3) < 1e-12);
-    measured_plan_release(&plan);
+    wall_plan_release(&plan);
 }
 
 int main(void)

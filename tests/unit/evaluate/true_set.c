@@ -88,7 +88,7 @@ static void edits_are_listed_by_name(void **state)
     assert_int_equal(list.others, 1);
     assert_string_equal(list.names[0], "a");
     assert_string_equal(list.names[1], "b");
-    name_list_release(&list);
+    true_edits_release(&list);
     assert_int_not_equal(true_edits_find(&list, scratch_path("nowhere"), &err), ST_OK);
 }
 

@@ -41,7 +41,7 @@ static void write_cameras(void)
                   "# a fisheye and a pinhole\n1 OPENCV_FISHEYE 4 3 2 2 2 1.5 0 0 0 0\n2 PINHOLE 4 3 2 2 2 1.5\n");
     scratch_write("images.txt",
                   "7 1 0 0 0 1 2 3 1 b.png\n\n8 1 0 0 0 0 0 0 2 a.jpg\n\n9 1 0 0 0 0 0 0 2 elsewhere.jpg\n\n");
-    assert_ok(make_folders(scratch_path("depth"), &err), err);
+    assert_ok(outfile_make_folders(scratch_path("depth"), &err), err);
 }
 
 static void photos_and_depths_are_read(void **state)

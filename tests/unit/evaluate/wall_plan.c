@@ -24,7 +24,7 @@ static struct measured_plan model(double off, struct err *err)
         "room study floor 0 ceiling 2.6 0 0 south 8.65 %.17g east 8.65 4 north 5.15 4 partition 5.15 %.17g\n"
         "box b 0 0 0 1 1 1 turn 0\n",
         -off, 1.6 + off, 2.5 + off, -off, -off, -off, -off);
-    assert_ok(measured_plan_read(&plan, scratch_write("plan.txt", text), PLAN_FROM_MODEL, err), *err);
+    assert_ok(wall_plan_read(&plan, scratch_write("plan.txt", text), PLAN_FROM_MODEL, err), *err);
     assert_int_equal(plan.faces.count, 8);
     assert_int_equal(plan.openings.count, 2); /* the window in the angled wall is left out */
     assert_int_equal(plan.rooms.count, 2);
@@ -55,8 +55,7 @@ static void errors_are_the_known_shifts(void **state)
             struct err err = ERR_INIT;
             struct measured_plan found = model(off, &err), truth = {0};
             struct wall_errors e = {0};
-            assert_ok(measured_plan_read(&truth, scratch_write("truth.txt", truths[i].text), truths[i].kind, &err),
-                      err);
+            assert_ok(wall_plan_read(&truth, scratch_write("truth.txt", truths[i].text), truths[i].kind, &err), err);
             assert_ok(wall_errors_find(&e, &found, &truth, 0.5, &err), err);
             assert_int_equal(e.faces.count, 8);
             assert_int_equal(e.openings.count, 2);
@@ -69,8 +68,8 @@ static void errors_are_the_known_shifts(void **state)
                 assert_string_equal(e.openings.worst, "door");
             }
             wall_errors_release(&e);
-            measured_plan_release(&truth);
-            measured_plan_release(&found);
+            wall_plan_release(&truth);
+            wall_plan_release(&found);
         }
 }
 
@@ -79,17 +78,17 @@ static void an_edge_of_a_removed_wall_is_no_face(void **state)
     (void)state;
     struct measured_plan plan;
     struct err err = ERR_INIT;
-    assert_ok(measured_plan_read(
-                  &plan,
-                  scratch_write("plan.txt",
-                                "remodel-plan 2\n"
-                                "wall s normal 0 1 at 0 thickness 1 from 0 to 1 foot 0 top 2 start free end free\n"
-                                "room r floor 0 ceiling 2 0 0 s 4 0 gone 4 2 s 0 2\n"),
-                  PLAN_FROM_MODEL, &err),
-              err);
+    assert_ok(
+        wall_plan_read(&plan,
+                       scratch_write("plan.txt",
+                                     "remodel-plan 2\n"
+                                     "wall s normal 0 1 at 0 thickness 1 from 0 to 1 foot 0 top 2 start free end free\n"
+                                     "room r floor 0 ceiling 2 0 0 s 4 0 gone 4 2 s 0 2\n"),
+                       PLAN_FROM_MODEL, &err),
+        err);
     assert_int_equal(plan.faces.count, 2);
     assert_true(plan.faces.parts[1].at[0].x == 4 && plan.faces.parts[1].at[0].y == 2);
-    measured_plan_release(&plan);
+    wall_plan_release(&plan);
 }
 
 static void extra_and_missing_parts_are_counted(void **state)
@@ -98,14 +97,14 @@ static void extra_and_missing_parts_are_counted(void **state)
     struct err err = ERR_INIT;
     struct measured_plan found = model(0.6, &err), truth = {0};
     struct wall_errors e = {0};
-    assert_ok(measured_plan_read(&truth, scratch_write("truth.txt", FRAMED), PLAN_FROM_SCENE_TRUTH, &err), err);
+    assert_ok(wall_plan_read(&truth, scratch_write("truth.txt", FRAMED), PLAN_FROM_SCENE_TRUTH, &err), err);
     assert_ok(wall_errors_find(&e, &found, &truth, 0.5, &err), err);
     assert_int_equal(e.extra, 4); /* the south walls of both rooms, the door, the window */
     assert_int_equal(e.missing, 3);
     assert_int_equal(e.faces.count, 6);
     wall_errors_release(&e);
-    measured_plan_release(&truth);
-    measured_plan_release(&found);
+    wall_plan_release(&truth);
+    wall_plan_release(&found);
 }
 
 static void an_edit_changes_its_base(void **state)
@@ -118,21 +117,21 @@ static void an_edit_changes_its_base(void **state)
         scratch_write("scene-e.txt", "remodel-scene 2\nbase scene.txt\ndrop partition chair\ndrop light\n"
                                      "wall across 6 0 6 4 0 2.6 0.12 white\nopening new across 1 2 0 2\n"
                                      "room loft 0 0 4 4 0 3 f c\n");
-    assert_ok(measured_plan_read(&plan, path, PLAN_FROM_SCENE, &err), err);
+    assert_ok(wall_plan_read(&plan, path, PLAN_FROM_SCENE, &err), err);
     assert_int_equal(plan.faces.count, 10); /* both sides of south, east, north, west, across */
     assert_string_equal(plan.faces.parts[9].name, "across");
     assert_int_equal(plan.openings.count, 2); /* the partition's door went with it, the window by its name */
     assert_string_equal(plan.openings.parts[0].name, "sunny");
     assert_string_equal(plan.openings.parts[1].name, "new");
     assert_int_equal(plan.rooms.count, 2);
-    measured_plan_release(&plan);
+    wall_plan_release(&plan);
     /* the base may lie in the folder above, as beside an edited truth */
     assert_int_equal(mkdir(scratch_path("edited-e"), 0777), 0);
     path = scratch_write("edited-e/scene.txt", "remodel-scene 2\nbase scene.txt\ndrop south\n");
-    assert_ok(measured_plan_read(&plan, path, PLAN_FROM_SCENE, &err), err);
+    assert_ok(wall_plan_read(&plan, path, PLAN_FROM_SCENE, &err), err);
     assert_int_equal(plan.faces.count, 8);
     assert_int_equal(plan.openings.count, 2); /* the door and the east window */
-    measured_plan_release(&plan);
+    wall_plan_release(&plan);
 }
 
 static void broken_lines_are_refused(void **state)
@@ -157,8 +156,7 @@ static void broken_lines_are_refused(void **state)
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         struct measured_plan plan = {0};
         struct err err = ERR_INIT;
-        assert_int_equal(measured_plan_read(&plan, scratch_write("plan.txt", cases[i].text), cases[i].kind, &err),
-                         ST_DATA);
+        assert_int_equal(wall_plan_read(&plan, scratch_write("plan.txt", cases[i].text), cases[i].kind, &err), ST_DATA);
         assert_err(err, ST_DATA, cases[i].error);
         assert_int_equal(plan.faces.count + plan.openings.count, 0);
     }

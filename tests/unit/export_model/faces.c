@@ -25,7 +25,7 @@ static void make(struct room *r, const char *text)
     struct err err = ERR_INIT;
     *r = (struct room){0};
     build(&r->plan, &r->solids, text, NULL);
-    assert_ok(solids_unite(&r->mesh, &r->solids, NULL, &err), err);
+    assert_ok(unite_solids(&r->mesh, &r->solids, NULL, &err), err);
     r->atlas.tiles = calloc(2 * (size_t)r->mesh.name_count, sizeof *r->atlas.tiles);
     r->atlas.page_sizes = calloc(1, sizeof *r->atlas.page_sizes);
     assert_true(r->atlas.tiles && r->atlas.page_sizes);

@@ -207,7 +207,7 @@ static void sloping_slabs_leaves_and_panes_are_in_the_ifc_file(void **state)
                   "hatch trap on hall from 3 1 to 3.5 1.5 closed\ndoor shut on east from 1 0 to 2 2 closed\n"
                   "door ajar on south from 1 0 to 2 2\npassage way on south from 2.5 0 to 3 2\n"
                   "window pane on north from 1 1 to 2 2\nwindow hole on north from 2.5 1 to 3 2 open\n");
-    assert_ok(solids_unite(&mesh, &s.solids, NULL, &err), err);
+    assert_ok(unite_solids(&mesh, &s.solids, NULL, &err), err);
     assert_ok(export_faces_make(&faces, &mesh, NULL, &atlas, &err), err);
     const struct export_scene scene = {
         .name = "room", .mesh = &mesh, .faces = &faces, .plan = &s.read, .metric = true, .out = scratch};

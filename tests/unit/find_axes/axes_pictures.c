@@ -24,7 +24,7 @@ static void set_up(struct drawing *d)
     struct err err = ERR_INIT;
     synthetic_room_make(&d->r, &m);
     const struct room_inputs in = room_inputs(&d->r);
-    assert_ok(find_room(&d->room, &in, &PARAMS, &err), err);
+    assert_ok(room_find(&d->room, &in, &PARAMS, &err), err);
     d->pixels = calloc(3, 800 * 600);
     assert_non_null(d->pixels);
 }
@@ -50,7 +50,7 @@ static void outlines_and_arrows_are_in_the_right_pixels(void **state)
     struct drawing d;
     set_up(&d);
     const struct vec3 corner = {4, 2.5, 0};
-    draw_room(d.pixels, &d.r.views[0], &d.room, &corner, 1);
+    pictures_draw_room(d.pixels, &d.r.views[0], &d.room, &corner, 1);
     const unsigned char *p = at(&d, 5, 2.8, 0); /* between wall and floor */
     assert_true(p[0] > 200 && p[1] > 150 && p[2] < 100);
     p = at(&d, 5, 2.5, 2.6); /* between wall and ceiling */
@@ -75,7 +75,7 @@ static void cameras_at_any_position_draw_inside_the_picture(void **state)
             struct view v = d.r.views[k];
             v.center = vec3_make(places[i][0], places[i][1], places[i][2]);
             v.translation = vec3_scale(mat3_apply(v.cam_from_world, v.center), -1);
-            draw_room(d.pixels, &v, &d.room, NULL, 0);
+            pictures_draw_room(d.pixels, &v, &d.room, NULL, 0);
         }
     tear_down(&d);
 }
@@ -91,7 +91,7 @@ static void views_are_chosen_evenly(void **state)
         bool chosen[ROOM_VIEWS] = {false};
         struct err err = ERR_INIT;
         int sum = 0;
-        assert_ok(choose_pictures(chosen, count, &in, &err), err);
+        assert_ok(pictures_choose(chosen, count, &in, &err), err);
         for (int i = 0; i < ROOM_VIEWS; i++) sum += chosen[i];
         assert_int_equal(sum, count < ROOM_VIEWS ? count : ROOM_VIEWS);
         if (count == 2) assert_true(chosen[0] && chosen[2]);
@@ -106,10 +106,10 @@ static void a_black_picture_stays_black(void **state)
     struct err err = ERR_INIT;
     unsigned char pixels[12];
     assert_ok(image_init(&im, 2, 2, 4, &err), err);
-    assert_ok(expose_picture(pixels, &im, &err), err);
+    assert_ok(pictures_expose(pixels, &im, &err), err);
     for (int i = 0; i < 12; i++) assert_int_equal(pixels[i], 0);
     for (int i = 0; i < 16; i++) im.data[i] = i % 4 == 3 ? 1 : 1e6F; /* however bright */
-    assert_ok(expose_picture(pixels, &im, &err), err);
+    assert_ok(pictures_expose(pixels, &im, &err), err);
     for (int i = 0; i < 12; i++) assert_int_equal(pixels[i], 255);
     image_release(&im);
 }

@@ -74,8 +74,10 @@ static void put(char *text, size_t size, const struct synthetic_room *r, const c
 static struct room_spec turned_room(void)
 {
     const struct vec3 w = vec3_scale(vec3_normalize(vec3_make(1, 2, -1)), 0.7);
-    return (struct room_spec){
-        .ceiling = 1, .world_from_room = turned_by(ROOM_IDENTITY, w), .scale = 0.37, .origin = vec3_make(1, 2, 3)};
+    return (struct room_spec){.ceiling = 1,
+                              .world_from_room = direction_turned_by(ROOM_IDENTITY, w),
+                              .scale = 0.37,
+                              .origin = vec3_make(1, 2, 3)};
 }
 
 static struct mark_scene make_turned_room(struct synthetic_room *r)
@@ -198,7 +200,7 @@ static void corners_and_edges_correct_axes_and_floor(void **state)
     put(text, sizeof text, &r, "edge c", 0, vec3_make(5, 4, 1.5), "");
     read_marks(&fix, text, MARKS_FIX);
     const struct mat3 room_from_world = mat3_transpose(r.spec.world_from_room);
-    struct mat3 axes = turned_by(room_from_world, vec3_make(0.03, -0.02, 0.04));
+    struct mat3 axes = direction_turned_by(room_from_world, vec3_make(0.03, -0.02, 0.04));
     struct vec3 errors = {1, 1, 1};
     struct correction c;
     assert_ok(correct_axes(&axes, &errors, &c, &fix, &scene, 1, &err), err);
@@ -207,7 +209,7 @@ static void corners_and_edges_correct_axes_and_floor(void **state)
     assert_true(fabs(c.turn - sqrt(0.03 * 0.03 + 0.02 * 0.02 + 0.04 * 0.04)) < 1e-3);
     assert_true(errors.x < 0.02 && errors.y < 0.02 && errors.z < 0.02 && errors.x > 1e-4);
 
-    /* find_room(): points 5 cm too high agree with these marks within their errors, points 25 cm too high do not */
+    /* room_find(): points 5 cm too high agree with these marks within their errors, points 25 cm too high do not */
     for (int k = 0; k < 2; k++) {
         const double up = k ? 0.25 : 0.05, moved = k ? 0.2 : 0.05;
         for (size_t i = 0; i < r.cloud.count; i++) {
@@ -217,7 +219,7 @@ static void corners_and_edges_correct_axes_and_floor(void **state)
         struct room_inputs in = room_inputs(&r);
         struct room room;
         in.fix = &fix;
-        assert_ok(find_room(&room, &in, &PARAMS, &err), err);
+        assert_ok(room_find(&room, &in, &PARAMS, &err), err);
         assert_true(room.fix.edges == 3 && room.fix.turn == 0); /* the axes are right */
         assert_true(room.corner_height < 0);
         assert_true(room.floor_marked == (k == 1));
@@ -318,7 +320,7 @@ static void lengths_give_the_scale_and_marks_the_thickness(void **state)
     struct room room;
     in.scale = &scale;
     in.fix = &fix;
-    assert_ok(find_room(&room, &in, &PARAMS, &err), err);
+    assert_ok(room_find(&room, &in, &PARAMS, &err), err);
     assert_true(room.axes.metric);
     /* by least squares: the second length is 0.5 % too long */
     const double wanted = (1 + sqrt(3.86) * 1.9748417658131499) / (1 + 3.86);

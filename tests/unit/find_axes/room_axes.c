@@ -15,14 +15,14 @@ static struct room_spec plain(void)
 static struct mat3 turned(double degrees)
 {
     const struct vec3 axis = vec3_normalize(vec3_make(0.3, -0.5, 0.8));
-    return turned_by(ROOM_IDENTITY, vec3_scale(axis, degrees * M_PI / 180));
+    return direction_turned_by(ROOM_IDENTITY, vec3_scale(axis, degrees * M_PI / 180));
 }
 
 static void find(struct room *room, const struct synthetic_room *r)
 {
     const struct room_inputs in = room_inputs(r);
     struct err err = ERR_INIT;
-    assert_ok(find_room(room, &in, &PARAMS, &err), err);
+    assert_ok(room_find(room, &in, &PARAMS, &err), err);
 }
 
 static void make_and_find(struct room *room, struct synthetic_room *r, const struct room_spec *m)
@@ -36,7 +36,7 @@ static void assert_refused(const struct synthetic_room *r, const char *words)
     const struct room_inputs in = room_inputs(r);
     struct room room;
     struct err err = ERR_INIT;
-    assert_int_equal(find_room(&room, &in, &PARAMS, &err), ST_DATA);
+    assert_int_equal(room_find(&room, &in, &PARAMS, &err), ST_DATA);
     assert_err(err, ST_DATA, words);
 }
 

@@ -145,7 +145,7 @@ static void search(struct world *w, struct subject_list *list, struct face_repor
     *list = (struct subject_list){0};
     w->set.views = w->views; /* the world may be a copy */
     w->pictures_read = 0;
-    if (find_faces(list, report, &w->set, w->ups, &source, &params, &err)) fail_msg("%s", err.text);
+    if (faces_find(list, report, &w->set, w->ups, &source, &params, &err)) fail_msg("%s", err.text);
 }
 
 static void release(struct subject_list *list, struct face_report *report)

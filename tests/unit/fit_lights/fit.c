@@ -122,7 +122,7 @@ static void one_lit_and_one_unlit_point_give_the_lamp(void **state)
     struct room room;
     struct err err = ERR_INIT;
     furnish(&room, 1, 1, 1, 0);
-    assert_ok(light_fit_solve(&room.fit, &err), err);
+    assert_ok(fit_solve(&room.fit, &err), err);
     assert_radiance(&room, 0, 2e-3); /* of the sum over the lamp's area */
     for (int c = 0; c < 3; c++) assert_true(fabs(room.materials[0].k_d[c] / k_d[c] - 1) < 2e-3);
 }
@@ -133,7 +133,7 @@ static void noise_of_photographs_leaves_the_lamp_within_three_percent(void **sta
     struct room room;
     struct err err = ERR_INIT;
     furnish(&room, 1, 20, 1, 0.02 / 3); /* pixels with 2 %, nine for each point */
-    assert_ok(light_fit_solve(&room.fit, &err), err);
+    assert_ok(fit_solve(&room.fit, &err), err);
     assert_radiance(&room, 0, 0.03);
 }
 
@@ -143,7 +143,7 @@ static void lamps_that_light_each_others_points_are_fitted_together(void **state
     struct room room;
     struct err err = ERR_INIT;
     furnish(&room, 2, 20, 0, 0.01);
-    assert_ok(light_fit_solve(&room.fit, &err), err);
+    assert_ok(fit_solve(&room.fit, &err), err);
     assert_radiance(&room, 0, 0.03);
     assert_radiance(&room, 1, 0.03);
 }
@@ -157,7 +157,7 @@ static void lamps_over_the_same_material_share_its_reflectance(void **state)
     room.lamps[1].material = 0;
     room.fit.material_count = 1;
     for (int i = 0; i < room.fit.point_count; i++) room.points[i].material = 0;
-    assert_ok(light_fit_solve(&room.fit, &err), err);
+    assert_ok(fit_solve(&room.fit, &err), err);
     assert_radiance(&room, 0, 0.03);
     assert_radiance(&room, 1, 0.03);
     assert_int_equal(room.materials[0].unlit, 40);
@@ -171,7 +171,7 @@ static void the_exponent_is_fitted(void **state)
     furnish(&room, 1, 25, 2.5, 0.005);
     room.lamps[0].fit_exponent = true;
     room.lamps[0].exponent = 1;
-    assert_ok(light_fit_solve(&room.fit, &err), err);
+    assert_ok(fit_solve(&room.fit, &err), err);
     assert_true(fabs(room.lamps[0].exponent - 2.5) < 0.25);
     assert_true(fabs(room.lamps[0].exponent - 2.5) < 4 * room.lamps[0].exponent_error);
     assert_radiance(&room, 0, 0.03);
@@ -184,7 +184,7 @@ static void a_lit_point_on_another_material_counts_little(void **state)
     struct err err = ERR_INIT;
     furnish(&room, 1, 20, 1, 0.01);
     for (int c = 0; c < 3; c++) room.points[3].radiance[c] *= 0.2;
-    assert_ok(light_fit_solve(&room.fit, &err), err);
+    assert_ok(fit_solve(&room.fit, &err), err);
     assert_radiance(&room, 0, 0.03);
 }
 
@@ -225,7 +225,7 @@ static void points_on_both_sides_of_an_edge_tell_the_lamp_from_the_plaster(void 
                 room.points[k].radiance[c] *= plaster(seed, room.at[k].x, room.at[k].y);
             }
         }
-        assert_ok(light_fit_solve(&room.fit, &err), err);
+        assert_ok(fit_solve(&room.fit, &err), err);
         const double off = room.lamps[0].radiance[1] - true_s[0][1];
         inside += fabs(off) < 1.96 * room.lamps[0].radiance_error[1];
         squares += off * off / (true_s[0][1] * true_s[0][1]);
@@ -241,13 +241,13 @@ static void the_picture_of_a_lamp_counts_beside_its_points(void **state)
     struct room room;
     struct err err = ERR_INIT;
     furnish(&room, 1, 20, 1, 0.05);
-    assert_ok(light_fit_solve(&room.fit, &err), err);
+    assert_ok(fit_solve(&room.fit, &err), err);
     const double points_alone = room.lamps[0].radiance_error[1];
     for (int c = 0; c < 3; c++) {
         room.lamps[0].seen[c] = 1.005 * true_s[0][c];
         room.lamps[0].seen_error[c] = 0.01;
     }
-    assert_ok(light_fit_solve(&room.fit, &err), err);
+    assert_ok(fit_solve(&room.fit, &err), err);
     assert_radiance(&room, 0, 0.012);
     assert_true(room.lamps[0].radiance_error[1] < fmin(points_alone, 0.011 * true_s[0][1]));
 }
@@ -261,7 +261,7 @@ static void an_error_of_indirect_light_widens_the_interval(void **state)
     room.fit.irradiance_error = 0.1;
     for (int i = 0; i < room.fit.point_count; i++)
         for (int c = 0; c < 3; c++) room.points[i].indirect[c] *= 1.1;
-    assert_ok(light_fit_solve(&room.fit, &err), err);
+    assert_ok(fit_solve(&room.fit, &err), err);
     assert_true(fabs(room.lamps[0].radiance[1] / (1.1 * true_s[0][1]) - 1) < 0.03); /* S scales with it */
     assert_true(room.lamps[0].radiance_error[1] > 0.1 * true_s[0][1]);
 }
@@ -269,7 +269,7 @@ static void an_error_of_indirect_light_widens_the_interval(void **state)
 static void assert_refused(struct room *room, const char *why)
 {
     struct err err = ERR_INIT;
-    assert_int_equal(light_fit_solve(&room->fit, &err), ST_DATA);
+    assert_int_equal(fit_solve(&room->fit, &err), ST_DATA);
     if (!strstr(err.text, why)) fail_msg("the error says: %s", err.text);
 }
 

@@ -114,10 +114,10 @@ static void an_outline_goes_around_its_lamp(void **state)
     struct lamp l = spot(1);
     double length = 0;
     (void)state;
-    lamp_outline(&c, &l);
+    cone_outline(&c, &l);
     for (int i = 0; i < c.count; i++) assert_float_equal(vec3_length(vec3_sub(c.points[i].at, l.centre)), 0.15, 1e-12);
     l.shape = LAMP_QUAD;
-    lamp_outline(&c, &l);
+    cone_outline(&c, &l);
     for (int i = 0; i < c.count; i++) length += vec3_length(vec3_sub(c.points[(i + 1) % c.count].at, c.points[i].at));
     assert_float_equal(length, 8 * 0.15, 0.02);
 }
@@ -133,8 +133,8 @@ static void a_view_shows_the_projected_circle(void **state)
     const struct view down = view_at(vec3_make(0, 0, 1), PI, 0, SIDE, SIDE, 150);
     const struct view up = view_at(vec3_make(0, 0, 1), 0, 0, SIDE, SIDE, 150);
     const double radius = 150 * 4 * tan(20 * DEGREE) / 3;
-    assert_float_equal(curve_draw(NULL, &c, &down, &m, 0, NULL), 2 * PI * radius / SIDE, 1e-3);
-    assert_float_equal(curve_draw(NULL, &c, &up, &m, 0, NULL), 0, 0);
+    assert_float_equal(lamp_curve_draw(NULL, &c, &down, &m, 0, NULL), 2 * PI * radius / SIDE, 1e-3);
+    assert_float_equal(lamp_curve_draw(NULL, &c, &up, &m, 0, NULL), 0, 0);
     model_rays_release(&m);
 }
 
@@ -148,7 +148,8 @@ static void what_the_model_hides_is_not_drawn(void **state)
     (void)state;
     cone_edge_find(&c, &l, &bare);
     const struct view down = view_at(vec3_make(0.1, 0, 1), PI, 0, SIDE, SIDE, 150);
-    const double whole = curve_draw(NULL, &c, &down, &bare, 0, NULL), half = curve_draw(NULL, &c, &down, &m, 0, NULL);
+    const double whole = lamp_curve_draw(NULL, &c, &down, &bare, 0, NULL),
+                 half = lamp_curve_draw(NULL, &c, &down, &m, 0, NULL);
     assert_float_equal(half / whole, 0.5, 0.01); /* the board covers one side of the camera's axis */
     model_rays_release(&bare);
     model_rays_release(&m);
@@ -219,9 +220,9 @@ static void long_names_of_lamps_become_numbers(void **state)
     memset(text, 'a', sizeof text);
     text[255] = '\0';
     lamps[1].name = text;
-    lamp_file_name(name, &list, 0);
+    light_list_lamp_file(name, &list, 0);
     assert_string_equal(name, "spot%201%2F2");
-    lamp_file_name(name, &list, 1);
+    light_list_lamp_file(name, &list, 1);
     assert_string_equal(name, "lamp2");
 }
 

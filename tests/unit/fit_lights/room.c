@@ -127,9 +127,9 @@ static int build(void **state)
 
 static void release(void)
 {
-    solved_lights_release(&room.solved);
+    solve_release(&room.solved);
     direct_light_release(&room.direct_light);
-    observations_release(&room.seen);
+    observe_release(&room.seen);
     lit_scene_release(&room.scene);
     annotation_list_release(&room.notes);
     free(room.indirect);
@@ -173,7 +173,7 @@ static enum status solve(const char *lamp, const char *points, struct err *err)
         for (int c = 0; c < 3; c++) room.indirect[i][c] = indirect_at(room.scene.points[i].at);
     const struct solve_inputs in = {
         &room.scene, &room.notes, &room.seen, &room.direct_light, (const double(*)[3])room.indirect, &params};
-    if (!st) st = lights_solve(&room.solved, &in, err);
+    if (!st) st = solve_lights(&room.solved, &in, err);
     provenance_release(&prov);
     return st;
 }

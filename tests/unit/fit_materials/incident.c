@@ -52,7 +52,7 @@ static void uniform_light_fills_the_whole_lobe(void **state)
     gather(&s, &f, view, 2, NULL);
     assert_true(fabs(s.irradiance[0] / PI - 1) < 1e-3);
     for (double n = 20; n < 5000; n *= 2) {
-        lobe_integrals(&s, BRDF_PHONG, lobe_log_s(BRDF_PHONG, n), value, NULL);
+        material_lobe_integrals(&s, BRDF_PHONG, material_lobe_log_s(BRDF_PHONG, n), value, NULL);
         assert_true(fabs(value[0] - 1) < 0.01); /* a lobe of reflectance 1, all of it above the horizon */
         if (n > 100) assert_true(fabs(value[3] - 1) < 0.01);
     }
@@ -69,7 +69,7 @@ static void expect_cone(const struct light_field *f, double angle, double inside
     assert_true(fabs(s.irradiance[0] / (PI * inside * pow(sin(angle), 2)) - 1) < fraction);
     assert_true(fabs(shares[LIGHT_LAMP] - 1) < 1e-9);
     for (double n = 1; n < 5000; n *= 3) {
-        lobe_integrals(&s, BRDF_PHONG, log(n), value, NULL);
+        material_lobe_integrals(&s, BRDF_PHONG, log(n), value, NULL);
         assert_true(fabs(value[0] / (inside * (1 - pow(cos(angle), n + 1))) - 1) < 3 * fraction);
     }
     material_samples_release(&s);
@@ -115,7 +115,7 @@ static void darkness_is_zero(void **state)
     struct material_samples s;
     double value[3], shares[LIGHT_SOURCES];
     gather(&s, &f, view, 1, shares);
-    lobe_integrals(&s, BRDF_WARD, lobe_log_s(BRDF_WARD, 0.1), value, NULL);
+    material_lobe_integrals(&s, BRDF_WARD, material_lobe_log_s(BRDF_WARD, 0.1), value, NULL);
     assert_true(s.irradiance[0] == 0 && value[0] == 0 && shares[LIGHT_LAMP] == 0);
     material_samples_release(&s);
 }
@@ -141,11 +141,11 @@ static void a_room_is_gathered_as_quadrature_says(void **state)
         bias[0] += s.irradiance[1] - e;
         for (int k = 0; k < 2; k++) {
             double value[3];
-            const double log_s = lobe_log_s(lobes[k].kind, lobes[k].shape);
+            const double log_s = material_lobe_log_s(lobes[k].kind, lobes[k].shape);
             const double truth = room_reflection(&room, &lobes[k], at, view[0]).g;
-            lobe_integrals(&s, lobes[k].kind, log_s, value, NULL);
+            material_lobe_integrals(&s, lobes[k].kind, log_s, value, NULL);
             sum[1 + k] += truth;
-            const double error = value[1] * lobes[k].ks / lobe_ks(lobes[k].kind, log_s) - truth;
+            const double error = value[1] * lobes[k].ks / material_lobe_ks(lobes[k].kind, log_s) - truth;
             off[1 + k] += fabs(error);
             bias[1 + k] += error;
         }
@@ -167,8 +167,8 @@ static void the_same_key_gives_the_same_bits(void **state)
     double va[6], vb[6];
     gather(&a, &f, view, 2, NULL);
     gather(&b, &f, view, 2, NULL);
-    lobe_integrals(&a, BRDF_WARD, 4, va, NULL);
-    lobe_integrals(&b, BRDF_WARD, 4, vb, NULL);
+    material_lobe_integrals(&a, BRDF_WARD, 4, va, NULL);
+    material_lobe_integrals(&b, BRDF_WARD, 4, vb, NULL);
     assert_memory_equal(va, vb, sizeof va);
     material_samples_release(&a);
     material_samples_release(&b);

@@ -39,11 +39,12 @@ static void lobes_agree_with_the_reflectance_models(void **state)
     for (int k = 0; k <= 12; k++)
         for (int ward = 0; ward < 2; ward++) {
             const enum brdf_kind kind = ward ? BRDF_WARD : BRDF_PHONG;
-            const double shape = ward ? 0.02 * pow(50, k / 12.0) : pow(5000, k / 12.0), log_s = lobe_log_s(kind, shape);
-            const struct brdf b = {kind, {0, 0, 0}, lobe_ks(kind, log_s), shape, 1};
+            const double shape = ward ? 0.02 * pow(50, k / 12.0) : pow(5000, k / 12.0),
+                         log_s = material_lobe_log_s(kind, shape);
+            const struct brdf b = {kind, {0, 0, 0}, material_lobe_ks(kind, log_s), shape, 1};
             double value[3], expected = 0, pdf;
             for (int i = 0; i < 4; i++) expected += 2 * brdf_eval(&b, up, view, light[i], &pdf).r;
-            lobe_integrals(&s, kind, log_s, value, NULL);
+            material_lobe_integrals(&s, kind, log_s, value, NULL);
             /* chords are too large by 1e-4 of the lobe's peak at most */
             const double peak = ward ? 8 / (4 * PI * shape * shape) : 8 * b.ks;
             assert_true(value[1] > expected - 1e-12 * peak && value[1] < expected + 2e-4 * peak);

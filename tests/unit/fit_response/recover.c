@@ -51,10 +51,10 @@ static void decide(struct response *r, char summary[RESPONSE_SUMMARY], const str
     struct fit_params params = FIT_PARAMS_DEFAULT;
     struct err err = ERR_INIT;
     strcpy(params.response, how);
-    assert_ok(patches_add(&patches, s->photos, s->exposures, EXPOSURES, params.max_patches, &err), err);
-    assert_ok(response_decide(r, summary, &patches, &params, &err), err);
+    assert_ok(recover_add_patches(&patches, s->photos, s->exposures, EXPOSURES, params.max_patches, &err), err);
+    assert_ok(recover_decide(r, summary, &patches, &params, &err), err);
     print_message("%s\n", summary);
-    patches_release(&patches);
+    recover_release_patches(&patches);
 }
 
 /* The largest relative error of light for samples `from` to `to` of 255, after scaling both to agree at 128. */
@@ -143,11 +143,11 @@ static void too_few_patches_are_reported(void **state)
     struct err err = ERR_INIT;
     char summary[RESPONSE_SUMMARY];
     (void)state;
-    assert_ok(response_decide(&r, summary, &none, &params, &err), err);
+    assert_ok(recover_decide(&r, summary, &none, &params, &err), err);
     assert_false(r.table);
     assert_contains(summary, "too few patches");
     strcpy(params.response, "recover");
-    assert_int_equal(response_decide(&r, summary, &none, &params, &err), ST_DATA);
+    assert_int_equal(recover_decide(&r, summary, &none, &params, &err), ST_DATA);
     assert_err(err, ST_DATA, "too few patches are well exposed in two photos");
 }
 

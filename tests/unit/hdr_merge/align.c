@@ -153,9 +153,9 @@ static void merging_applies_the_shifts(void **state)
         }
     assert_int_equal(differ, 0);
     assert_true(differ_wrong > WIDTH * HEIGHT / 2);
-    merged_release(&wanted);
-    merged_release(&found);
-    merged_release(&wrong);
+    merge_release(&wanted);
+    merge_release(&found);
+    merge_release(&wrong);
     release(&still);
     release(&shaken);
 }

@@ -131,7 +131,7 @@ static void merged_variance_matches_the_error(void **state)
         print_message("level %d: errors^2 over variance %.3f\n", l, sums[l] / counts[l]);
         assert_float_equal(sums[l] / counts[l], 1, 0.15);
     }
-    merged_release(&m);
+    merge_release(&m);
     release(&s);
 }
 
@@ -195,7 +195,7 @@ static void noise_is_measured_over_six_decades(void **state)
     for (int x = 0; x < WIDTH; x++) worst = fmax(worst, fabs(sums[x] / ramp(x, 1e-3, 1e3) - 1));
     print_message("1e6:1: the mean of a column is off by at most %.4f\n", worst);
     assert_true(worst < 0.02);
-    merged_release(&m);
+    merge_release(&m);
     for (int k = 0; k < SHOTS; k++) photo_release(&photos[k]);
 }
 

@@ -79,8 +79,8 @@ static double predict(const struct stack *s, int odd)
         exposures[count] = s->exposures[k] / scale;
     }
     const struct brackets b = {fitted, exposures, count, &response, NULL};
-    assert_ok(patches_add(&patches, fitted, exposures, count, fit.max_patches, &err), err);
-    assert_ok(response_decide(&response, summary, &patches, &fit, &err), err);
+    assert_ok(recover_add_patches(&patches, fitted, exposures, count, fit.max_patches, &err), err);
+    assert_ok(recover_decide(&response, summary, &patches, &fit, &err), err);
     print_message("response curve: %s\n", summary);
     assert_true(response.table);
     assert_ok(noise_measure(&measured, &known, &b, &err), err);
@@ -105,8 +105,8 @@ static double predict(const struct stack *s, int odd)
     const double median = errors[all / 2];
     print_message("  median error %.4f of %zu pixels\n", median, all);
     free(errors);
-    merged_release(&merged);
-    patches_release(&patches);
+    merge_release(&merged);
+    recover_release_patches(&patches);
     return median;
 }
 

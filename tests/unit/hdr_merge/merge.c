@@ -113,7 +113,7 @@ static void a_ramp_of_1e5_is_recovered(void **state)
         print_message("noise of %g electrons: median error %.4f, largest %.4f, bias %.5f\n", noise[n], median, worst,
                       bias);
         assert_true(median < max_median[n] && worst < max_error[n] && fabs(bias) < max_bias[n]);
-        merged_release(&out);
+        merge_release(&out);
         release(&b);
     }
 }
@@ -143,7 +143,7 @@ static void saturated_and_dark_pixels_are_bounded_and_marked(void **state)
             for (int c = 0; c < 3; c++) assert_true(fabs(rgb[c] / truth[c] - 1) < 0.08);
         }
     }
-    merged_release(&out);
+    merge_release(&out);
     release(&b);
 }
 
@@ -161,7 +161,7 @@ static void a_gap_between_exposures_is_bounded_from_below(void **state)
                 assert_true((out.marks[i] & PHOTO_DARK) != 0);
                 assert_float_equal(out.radiance.data[3 * i + c], 1, 1e-6);
             }
-    merged_release(&out);
+    merge_release(&out);
     release(&b);
 }
 
@@ -179,7 +179,7 @@ static void a_saturated_colour_does_not_spoil_the_others(void **state)
         assert_float_equal(out.radiance.data[3 * i], 4, 1e-6);
         for (int c = 1; c < 3; c++) assert_true(fabs(out.radiance.data[3 * i + c] / ramp(i, c, 0.05, 0.06) - 1) < 0.02);
     }
-    merged_release(&out);
+    merge_release(&out);
     release(&b);
 }
 
@@ -197,7 +197,7 @@ static void a_single_exposure_is_the_linear_photo(void **state)
     assert_int_equal(out.marks[0], PHOTO_DARK);
     assert_int_equal(out.marks[WIDTH - 1], PHOTO_BRIGHT);
     image_release(&linear);
-    merged_release(&out);
+    merge_release(&out);
     release(&b);
 }
 
@@ -212,12 +212,12 @@ static void bit_depths_may_differ_and_black_stays_black(void **state)
     struct merged out = merge(&b);
     for (int i = 0; i < 3 * PIXELS; i++)
         assert_true(fabs(out.radiance.data[i] / ramp(i / 3, i % 3, 0.01, 0.4) - 1) < 0.05);
-    merged_release(&out);
+    merge_release(&out);
     for (int k = 0; k < 2; k++) memset(b.photos[k].samples, 0, sizeof(uint16_t) * 3 * PIXELS);
     out = merge(&b);
     for (int i = 0; i < 3 * PIXELS; i++) assert_true(out.radiance.data[i] == 0);
     assert_int_equal(out.marks[0], PHOTO_DARK);
-    merged_release(&out);
+    merge_release(&out);
     release(&b);
 }
 
@@ -235,7 +235,7 @@ static void the_result_does_not_depend_on_threads(void **state)
     assert_memory_equal(out[0].radiance.data, out[1].radiance.data, 3 * PIXELS * sizeof(float));
     assert_memory_equal(out[0].marks, out[1].marks, PIXELS);
     assert_memory_equal(out[0].variance, out[1].variance, PIXELS * sizeof(float));
-    for (int i = 0; i < 2; i++) merged_release(&out[i]);
+    for (int i = 0; i < 2; i++) merge_release(&out[i]);
     release(&b);
 }
 
@@ -396,7 +396,7 @@ static void compare_with_truth(const char *folder, const char *const *views, int
         free(e.colour);
         free(e.luma);
         free(e.block);
-        merged_release(&out);
+        merge_release(&out);
         exr_image_release(&truth);
         release(&b);
     }

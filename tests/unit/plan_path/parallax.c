@@ -29,7 +29,7 @@ static void picture(struct depth_picture *d, double at, double half, int rows)
         z[p] = fabs(x) <= half ? (float)NEAR : (float)FAR;
         if (p / W >= rows) z[p] = 0;
     }
-    assert_int_equal(depth_picture_init(d, z, &err), ST_OK);
+    assert_int_equal(parallax_picture_init(d, z, &err), ST_OK);
 }
 
 static double parallax_of(double baseline, double half, int rows, double tolerance)
@@ -39,8 +39,8 @@ static double parallax_of(double baseline, double half, int rows, double toleran
     picture(&b, baseline / 2, half, rows);
     const double parallax = parallax_between(&a, &b, tolerance);
     assert_true(parallax == parallax_between(&b, &a, tolerance));
-    depth_picture_release(&a);
-    depth_picture_release(&b);
+    parallax_picture_release(&a);
+    parallax_picture_release(&b);
     return parallax;
 }
 

@@ -80,7 +80,7 @@ static void plan(struct planned_film *film, const struct wall_scene *f, const st
                                          "h_limit", "outside_limit",    "zoom"};
     struct err err = ERR_INIT;
     char name[EFFECT_NAME_SIZE];
-    const struct subject_list *of = move_subjects(film->v.effect.move) ? &subjects : &nobody;
+    const struct subject_list *of = film_move_subjects(film->v.effect.move) ? &subjects : &nobody;
     if (plan_move(&film->path, &film->layers, &film->notes, &f->scene, &film->v, of, params, &err))
         fail_msg("%s", err.text);
     const struct camera_path *p = &film->path;
@@ -298,7 +298,7 @@ static void end_picture(struct depth_picture *d, const struct wall_scene *f, con
 {
     struct err err = ERR_INIT;
     const struct view c = shot_end_camera(&v->shot, &v->move.end[end], at);
-    assert_ok(depth_picture_make(d, &f->scene, &c, side, &err), err);
+    assert_ok(parallax_picture_make(d, &f->scene, &c, side, &err), err);
 }
 
 static double parallax_of(const struct wall_scene *f, const struct validity *v, const struct vec3 at[2], int side)
@@ -306,7 +306,7 @@ static double parallax_of(const struct wall_scene *f, const struct validity *v, 
     struct depth_picture pictures[2];
     for (int k = 0; k < 2; k++) end_picture(&pictures[k], f, v, k, at[k], side);
     const double parallax = parallax_between(&pictures[0], &pictures[1], parallax_tolerance(&f->scene));
-    for (int k = 0; k < 2; k++) depth_picture_release(&pictures[k]);
+    for (int k = 0; k < 2; k++) parallax_picture_release(&pictures[k]);
     return parallax;
 }
 
@@ -370,7 +370,7 @@ static void all_pairs_agree_with_brute_force(void **state)
             }
             camera_path_release(&film.path);
         }
-        for (int i = 0; i < 2 * CELLS; i++) depth_picture_release(&pictures[i / CELLS][i % CELLS]);
+        for (int i = 0; i < 2 * CELLS; i++) parallax_picture_release(&pictures[i / CELLS][i % CELLS]);
         release(&film);
     }
     layer_scene_release(&f.scene);
@@ -531,12 +531,12 @@ static void a_turned_subject_has_a_tight_box(void **state)
         struct subject turned = s;
         struct effects layers;
         for (int k = 0; k < 4; k++) turned.corner[k] = mat3_apply(turn, s.corner[k]);
-        assert_ok(tone_layers(&layers, &v, &(struct subject_list){&turned, 1}, &path, &params, &err), err);
+        assert_ok(effects_tone_layers(&layers, &v, &(struct subject_list){&turned, 1}, &path, &params, &err), err);
         assert_tight_box(&layers.layers[0].boxes[0], &turned);
         effects_release(&layers);
     }
     struct effects layers;
-    assert_ok(tone_layers(&layers, &v, &list, &path, &params, &err), err);
+    assert_ok(effects_tone_layers(&layers, &v, &list, &path, &params, &err), err);
     assert_float_equal(layers.layers[0].boxes[0].box_from_world.w, 1, 1e-15); /* along the world's axes */
     effects_release(&layers);
 }

@@ -36,7 +36,7 @@ static unsigned find(struct texels *t, struct tile_lanes *list, int *count, cons
                      int column, int row)
 {
     *count = tile_lanes_make(list, tiles, given, 0, 0, 64);
-    return texels_find(t, list, *count, 0xff, (float)row, (float)(8 * column));
+    return tile_texels_find(t, list, *count, 0xff, (float)row, (float)(8 * column));
 }
 
 /* The bilinear sum over texels that exist; false: there is none. */
@@ -240,12 +240,12 @@ static void the_nearest_texel_is_that_of_a_search_of_all(void **state)
             } else if (away < second)
                 second = away;
         }
-        assert_true(texel_nearest(rgb, list, 1, p % 8, (float)(p / 64), (float)(p % 64 / 8 * 8)));
+        assert_true(tile_texel_nearest(rgb, list, 1, p % 8, (float)(p / 64), (float)(p % 64 / 8 * 8)));
         if (second - least > 1e-4) assert_true(rgb[0] == wanted);
     }
     make_tile(&m, NULL, 0, MADE_NOTHING);
     float rgb[3];
-    assert_false(texel_nearest(rgb, list, 1, 0, 0, 0));
+    assert_false(tile_texel_nearest(rgb, list, 1, 0, 0, 0));
 }
 
 int main(void)

@@ -159,9 +159,9 @@ static void each_camera_has_a_frame_of_its_own_size(void **state)
     cameras[0].center.z = 8;
     cameras[1].name = "odd";
     cameras[1].width = W + 11; /* 11 columns that no view covers, on the right */
-    assert_ok(cameras_select(wanted, &set, NULL, 0, &err), err);
+    assert_ok(frame_select_cameras(wanted, &set, NULL, 0, &err), err);
     assert_true(wanted[0] && wanted[1]);
-    assert_ok(cameras_render(&set, wanted, &s.renderer, scratch_path("cameras"), &prov, &err), err);
+    assert_ok(frame_render_cameras(&set, wanted, &s.renderer, scratch_path("cameras"), &prov, &err), err);
     assert_ok(exr_read(&im, scratch_path("cameras/odd.exr"), NULL, 0, &err), err);
     assert_int_equal(im.width, W + 11);
     for (int i = 0; i < (W + 11) * H; i++) {
@@ -174,9 +174,9 @@ static void each_camera_has_a_frame_of_its_own_size(void **state)
     for (int i = 0; i < W * H; i++) assert_true(exr_find(&im, "hole")->f[i] == 1 && exr_find(&im, "A")->f[i] == 0);
     exr_image_release(&im);
 
-    assert_ok(cameras_select(wanted, &set, one, 1, &err), err);
+    assert_ok(frame_select_cameras(wanted, &set, one, 1, &err), err);
     assert_true(!wanted[0] && wanted[1]);
-    assert_int_equal(cameras_select(wanted, &set, none, 1, &err), ST_USAGE);
+    assert_int_equal(frame_select_cameras(wanted, &set, none, 1, &err), ST_USAGE);
     assert_err(err, ST_USAGE, "--camera other");
     scene_drop(&s);
 }

@@ -37,7 +37,7 @@ static void page_lacks(const char *page, const char *text)
 static void make_folder(const char *name)
 {
     struct err err = ERR_INIT;
-    assert_ok(make_folders(scratch_path(name), &err), err);
+    assert_ok(outfile_make_folders(scratch_path(name), &err), err);
 }
 
 static void write_jpeg(const char *name)

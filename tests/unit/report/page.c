@@ -46,7 +46,7 @@ static void the_page_of_remodelled_rooms_is_linked_if_there_is_one(void **state)
     (void)state;
     assert_null(strstr(page, link));
     free(page);
-    assert_ok(make_folders(scratch_path("remodel"), &err), err);
+    assert_ok(outfile_make_folders(scratch_path("remodel"), &err), err);
     scratch_write("remodel/index.html", "");
     page = page_of("scene", NULL);
     assert_non_null(strstr(page, link));
@@ -71,8 +71,8 @@ static void photographs_are_shown_and_unlisted_ones_named(void **state)
     struct photo_record r = {.id = id, .file = file, .info = {.width = 6, .height = 4, .bits = 8, .orientation = 1}};
     struct err err = ERR_INIT;
     (void)state;
-    assert_int_equal(make_folders(scratch_path("photos"), &err), ST_OK);
-    assert_int_equal(make_folders(scratch_path("originals"), &err), ST_OK);
+    assert_int_equal(outfile_make_folders(scratch_path("photos"), &err), ST_OK);
+    assert_int_equal(outfile_make_folders(scratch_path("originals"), &err), ST_OK);
     assert_int_equal(jpeg_write(scratch_path("originals/a <b>.jpg"), GREY, 6, 4, 90, &err), ST_OK);
     assert_int_equal(jpeg_write(scratch_path("originals/unused.JPG"), GREY, 6, 4, 90, &err), ST_OK);
     assert_int_equal(hash_file(r.hash, scratch_path("originals/a <b>.jpg"), &err), ST_OK);
@@ -90,7 +90,7 @@ static void forms_of_lens_show_the_chosen_one_and_those_refused(void **state)
 {
     struct err err = ERR_INIT;
     (void)state;
-    assert_int_equal(make_folders(scratch_path("views"), &err), ST_OK);
+    assert_int_equal(outfile_make_folders(scratch_path("views"), &err), ST_OK);
     scratch_write("views/lens_forms.txt", "remodel-lens-forms 1\nform SIMPLE_RADIAL shared 4 0.455 0.407 0 chosen\n"
                                           "form OPENCV per_photo - - - - refused\nshift a 1 2 - -\n");
     char *page = page_of("scene", NULL);
@@ -110,7 +110,7 @@ static void changed_parameters_are_marked(void **state)
 {
     struct err err = ERR_INIT;
     (void)state;
-    assert_int_equal(make_folders(scratch_path("slice"), &err), ST_OK);
+    assert_int_equal(outfile_make_folders(scratch_path("slice"), &err), ST_OK);
     scratch_write("slice/rectify.cfg", "[rectify]\nwidth = 5\nheight = 2\nwidth = 7\n");
     const char *defaults = scratch_write("default.cfg", "[rectify]\nwidth = 5\nheight = 2.0\n[other]\nheight = 9\n");
     char *page = page_of("scene", defaults);
@@ -136,8 +136,8 @@ static void stages_are_listed_in_the_given_order(void **state)
     static const char USED[] = "x: used 1 s wall, 1 s cpu, 1 MiB peak\n";
     struct err err = ERR_INIT;
     (void)state;
-    assert_int_equal(make_folders(scratch_path("log"), &err), ST_OK);
-    assert_int_equal(make_folders(scratch_path("slice"), &err), ST_OK);
+    assert_int_equal(outfile_make_folders(scratch_path("log"), &err), ST_OK);
+    assert_int_equal(outfile_make_folders(scratch_path("slice"), &err), ST_OK);
     scratch_write("log/a_program.x.log", USED);
     scratch_write("log/other.x.log", USED);
     scratch_write("log/rectify.x.log", USED);

@@ -104,12 +104,12 @@ static void ramp_colours_grow_lighter(void **state)
     double last = 0;
     (void)state;
     for (int i = 0; i <= 100; i++) {
-        ramp_colour(i / 100.0, rgb);
+        colour_of_ramp(i / 100.0, rgb);
         double l = lightness(rgb);
         assert_true(l > last + 0.1 && l < last + (i ? 2 : 20));
         last = l;
     }
-    ramp_colour(NAN, rgb);
+    colour_of_ramp(NAN, rgb);
     assert_true(lightness(rgb) < 20);
 }
 
@@ -122,29 +122,29 @@ static void depth_is_coloured_and_the_unknown_hatched(void **state)
     unsigned char rgb[3];
     double near, far;
     (void)state;
-    assert_int_equal(depth_thumb_make(&d, z, 6, 1, 1, 240, &err), ST_OK);
+    assert_int_equal(page_depth_thumb_make(&d, z, 6, 1, 1, 240, &err), ST_OK);
     assert_float_equal(d.known, 4.0 / 6, 1e-12);
-    assert_true(depth_range(&d, 0, &near, &far));
+    assert_true(page_depth_range(&d, 0, &near, &far));
     assert_float_equal(near, 1, 0);
     assert_float_equal(far, 8, 0);
     assert_int_equal(picture_from_depth(&p, &d, near, far, &err), ST_OK);
-    ramp_colour(1, rgb);
+    colour_of_ramp(1, rgb);
     assert_memory_equal(p.rgb, rgb, 3);
-    ramp_colour((0.5 - 0.125) / (1 - 0.125), rgb);
+    colour_of_ramp((0.5 - 0.125) / (1 - 0.125), rgb);
     assert_memory_equal(p.rgb + 3, rgb, 3);
-    ramp_colour(0, rgb);
+    colour_of_ramp(0, rgb);
     assert_memory_equal(p.rgb + 9, rgb, 3);
     assert_int_equal(p.rgb[12], p.rgb[13]); /* grey */
     picture_release(&p);
     assert_int_equal(picture_from_depth(&p, &d, 2, 2, &err), ST_OK); /* near equals far: no division by zero */
     picture_release(&p);
-    depth_thumb_release(&d);
+    page_depth_thumb_release(&d);
 
     memset(z, 0, sizeof z);
-    assert_int_equal(depth_thumb_make(&d, z, 3, 2, 8, 240, &err), ST_OK);
+    assert_int_equal(page_depth_thumb_make(&d, z, 3, 2, 8, 240, &err), ST_OK);
     assert_int_equal(d.width, 2);
-    assert_false(depth_range(&d, 0.02, &near, &far));
-    depth_thumb_release(&d);
+    assert_false(page_depth_range(&d, 0.02, &near, &far));
+    page_depth_thumb_release(&d);
 }
 
 int main(void)

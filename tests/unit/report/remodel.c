@@ -19,7 +19,7 @@ static void put(const char *name, const char *text)
     struct err err = ERR_INIT;
     snprintf(folder, sizeof folder, "%s", scratch_path(name));
     *strrchr(folder, '/') = '\0';
-    assert_ok(make_folders(folder, &err), err);
+    assert_ok(outfile_make_folders(folder, &err), err);
     scratch_write(name, text);
 }
 

@@ -144,8 +144,8 @@ static void make_sight(struct sight *s, const struct atlas *a, const struct atla
     const struct view view = room_view(&axes);
     struct err err = ERR_INIT;
     write_ids("a.exr", &view, &axes);
-    assert_ok(sight_make(s, a, &view, &axes, scratch_path("a.exr"), orientation, 1000, &err), err);
-    sight_add_page(s, a, p, 0);
+    assert_ok(texture_sight_make(s, a, &view, &axes, scratch_path("a.exr"), orientation, 1000, &err), err);
+    texture_sight_add_page(s, a, p, 0);
 }
 
 static const unsigned char *pixel_of(const struct picture *p, int x, int y)
@@ -186,7 +186,7 @@ static void each_pixel_shows_the_texel_of_its_point(void **state)
         }
     assert_true(seen[2] > 50 && seen[4] > 50 && seen[5] > 50 && seen[6] > 50);
     for (int x = 0; x < WIDTH; x++) assert_true(pixel_of(&p, x, 0)[0] == 120 || pixel_of(&p, x, 0)[0] == 165);
-    sight_release(&s);
+    texture_sight_release(&s);
 
     make_sight(&s, &a, &page, 6); /* stored lying on its side */
     assert_ok(picture_from_sight(&turned, &s, &err), err);
@@ -195,8 +195,8 @@ static void each_pixel_shows_the_texel_of_its_point(void **state)
     for (int y = 0; y < WIDTH; y++)
         for (int x = 0; x < HEIGHT - 1; x++) /* its last column shows no face */
             assert_memory_equal(pixel_of(&turned, x, y), pixel_of(&p, y, HEIGHT - 1 - x), 3);
-    sight_release(&s);
-    sight_release(NULL);
+    texture_sight_release(&s);
+    texture_sight_release(NULL);
     picture_release(&p);
     picture_release(&turned);
     atlas_page_release(&page);
@@ -238,7 +238,7 @@ static void sources_have_their_colours_and_are_counted(void **state)
     assert_int_equal(counts[ATLAS_DEFAULT], seen[6]);
     assert_int_equal(counts[ATLAS_VIEWS], seen[5]);
     assert_int_equal(counts[ATLAS_VIEWS + 1], seen[2]);
-    sight_release(&s);
+    texture_sight_release(&s);
     picture_release(&p);
     atlas_page_release(&page);
     atlas_release(&a);
@@ -274,7 +274,7 @@ static void faces_without_texels_or_tiles_are_hatched_and_counted(void **state)
     picture_release(&p);
     assert_ok(picture_from_sources(&p, &s, COLOURS, counts, &err), err);
     assert_int_equal(counts[ATLAS_NONE], without);
-    sight_release(&s);
+    texture_sight_release(&s);
     picture_release(&p);
     atlas_page_release(&page);
     atlas_release(&a);
@@ -291,7 +291,7 @@ static void ids_of_another_view_are_refused(void **state)
     make_room(&a);
     write_ids("a.exr", &view, &axes);
     view.width++;
-    assert_int_equal(sight_make(&s, &a, &view, &axes, scratch_path("a.exr"), 1, 100, &err), ST_DATA);
+    assert_int_equal(texture_sight_make(&s, &a, &view, &axes, scratch_path("a.exr"), 1, 100, &err), ST_DATA);
     assert_err(err, ST_DATA, "a.exr has 60 x 40 pixels, but its view 61 x 40");
     assert_null(s.samples);
     atlas_release(&a);
@@ -324,7 +324,7 @@ static void category_colours_differ(void **state)
     (void)state;
     unsigned char rgb[24][3];
     for (int i = 0; i < 24; i++) {
-        category_colour(i, rgb[i]);
+        colour_of_category(i, rgb[i]);
         const int most = rgb[i][0] > rgb[i][1] ? rgb[i][0] : rgb[i][1], all = most > rgb[i][2] ? most : rgb[i][2];
         const int few = rgb[i][0] < rgb[i][1] ? rgb[i][0] : rgb[i][1], least = few < rgb[i][2] ? few : rgb[i][2];
         if (all - least < 60) fail_msg("colour %d is grey: %d %d %d", i, rgb[i][0], rgb[i][1], rgb[i][2]);
@@ -356,8 +356,8 @@ static void write_views(int count)
     const struct view view = room_view(&axes);
     const struct quat q = quat_from_mat3(view.cam_from_world);
     struct err err = ERR_INIT;
-    assert_ok(make_folders(scratch_path("views"), &err), err);
-    assert_ok(make_folders(scratch_path("ids"), &err), err);
+    assert_ok(outfile_make_folders(scratch_path("views"), &err), err);
+    assert_ok(outfile_make_folders(scratch_path("ids"), &err), err);
     assert_ok(model_axes_write(&axes, scratch_path("model/axes.txt"), NULL, &err), err);
     scratch_write("views/cameras.txt", "1 PINHOLE 60 40 20 20 30 20\n");
     scratch_write("views/points3D.txt", "");
@@ -463,7 +463,7 @@ static void an_atlas_that_cannot_be_read_is_named(void **state)
     write_views(1);
     write_room("good", one, 1);
     write_room("no-view", other, 1);
-    assert_ok(make_folders(scratch_path("vdta/bad"), &err), err);
+    assert_ok(outfile_make_folders(scratch_path("vdta/bad"), &err), err);
     scratch_write("vdta/bad/atlas.txt", "remodel-atlas 1\ntile 1\n");
     char *page = page_of();
     assert_int_equal(count_of(page, "alt=\"Texture in view p00\""), 1);
@@ -486,7 +486,7 @@ static void an_edit_has_pictures_of_six_photographs(void **state)
     for (int i = 0; i < 2; i++) {
         char path[64];
         snprintf(path, sizeof path, "%s/overlay", FOLDERS[i]);
-        assert_ok(make_folders(scratch_path(path), &err), err);
+        assert_ok(outfile_make_folders(scratch_path(path), &err), err);
         snprintf(path, sizeof path, "%s/model.txt", FOLDERS[i]);
         scratch_write(path, "remodel-model 1\n");
         for (int k = 0; k < 13; k++) {

@@ -105,7 +105,7 @@ static void must_make(void)
 static void finish(void)
 {
     cross_view_release(&b.x);
-    segmentation_release(&b.s);
+    oversegment_release(&b.s);
 }
 
 /* Whether the segment, if it lies on the plane, is inside the frames of all neighbours. */

@@ -127,7 +127,7 @@ static void select_at_truth(int ranks, unsigned occluded)
     struct err err = ERR_INIT;
     for (int i = 0; i < b.segments.count; i++) planes[i] = truth, all[i] = occluded;
     b.matcher.ranks = ranks;
-    if (matcher_select(&b.matcher, planes, occluded ? all : NULL, &err)) fail_msg("%s", err.text);
+    if (match_select(&b.matcher, planes, occluded ? all : NULL, &err)) fail_msg("%s", err.text);
 }
 
 static void few_neighbours_are_all_kept(void **state)

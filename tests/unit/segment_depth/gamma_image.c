@@ -85,7 +85,7 @@ static struct tone tone_with(double bright, double dark)
     assert_int_equal(image_init(&im, 16, 100, 4, &err), ST_OK);
     for (int i = 0; i < 6400; i++)
         im.data[i] = i % 4 == 3 ? 1 : i < 64 ? 2000 * (float)bright : i / 4 % 16 < 7 ? (float)bright : (float)dark;
-    const struct tone tone = tone_of(&im);
+    const struct tone tone = gamma_tone_of(&im);
     image_release(&im);
     return tone;
 }
@@ -112,8 +112,8 @@ static void a_black_photo_has_exposure_1(void **state)
     struct err err = ERR_INIT;
     assert_int_equal(image_init(&im, 16, 100, 4, &err), ST_OK); /* no valid pixel */
     for (int k = 0; k < 2; k++) {
-        assert_near(tone_of(&im).exposure, 1, 0);
-        assert_near(tone_of(&im).power, 0.5, 0);
+        assert_near(gamma_tone_of(&im).exposure, 1, 0);
+        assert_near(gamma_tone_of(&im).power, 0.5, 0);
         for (int i = 3; i < 6400; i += 4) im.data[i] = 1; /* black */
     }
     image_release(&im);

@@ -56,7 +56,7 @@ static bool find(struct ground *g)
 {
     bool found;
     struct err err = ERR_INIT;
-    assert_int_equal(ground_find(g, &found, &scene.set, vec3_make(0, 1, 0), &err), ST_OK);
+    assert_int_equal(gravity_find_ground(g, &found, &scene.set, vec3_make(0, 1, 0), &err), ST_OK);
     return found;
 }
 

@@ -61,7 +61,7 @@ static void make(struct bench *b, bool matte)
 static void finish(struct bench *b)
 {
     image_release(&b->photo);
-    segmentation_release(&b->s);
+    oversegment_release(&b->s);
     free(b->planes);
     layered_depth_release(&b->out);
 }

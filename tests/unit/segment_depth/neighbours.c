@@ -34,14 +34,14 @@ static int choose(int neighbours[MAX_NEIGHBOURS], int max_count, struct err *err
     struct observed_points seen;
     int count = -1;
     *err = (struct err)ERR_INIT;
-    assert_int_equal(observed_points_find(&seen, &scene.set, 0, err), ST_OK);
+    assert_int_equal(neighbours_find_points(&seen, &scene.set, 0, err), ST_OK);
     const enum status st = neighbours_choose(neighbours, &count, &scene.set, 0, &seen, max_count, err);
     assert_int_equal(st, count ? ST_OK : ST_DATA);
     for (int i = 0; i < count; i++) {
         assert_in_range(neighbours[i], 1, scene.set.view_count - 1);
         for (int k = 0; k < i; k++) assert_int_not_equal(neighbours[i], neighbours[k]);
     }
-    observed_points_release(&seen);
+    neighbours_release_points(&seen);
     return count;
 }
 
@@ -181,7 +181,7 @@ static void observed_points_are_in_front_with_small_reprojection_error(void **st
     scene.observations[0][3].point_id = 5;  /* not in the list */
     scene.points[4].position.z = -7;        /* behind */
     scene.observations[0][5].v += 1.5;      /* a small error is accepted */
-    assert_int_equal(observed_points_find(&seen, &scene.set, 0, &err), ST_OK);
+    assert_int_equal(neighbours_find_points(&seen, &scene.set, 0, &err), ST_OK);
     assert_int_equal(seen.count, 2);
     for (int i = 0; i < 2; i++) {
         const struct observed_point *p = &seen.points[i];
@@ -191,13 +191,13 @@ static void observed_points_are_in_front_with_small_reprojection_error(void **st
         assert_near(p->u, 80 + 160 * x.x / x.z, 1e-9);
         assert_near(p->v, 60 + 160 * x.y / x.z, 1e-9);
     }
-    observed_points_release(&seen);
-    observed_points_release(&seen);
-    observed_points_release(NULL);
+    neighbours_release_points(&seen);
+    neighbours_release_points(&seen);
+    neighbours_release_points(NULL);
     scene.set.model.image_count = 0; /* no points */
-    assert_int_equal(observed_points_find(&seen, &scene.set, 0, &err), ST_OK);
+    assert_int_equal(neighbours_find_points(&seen, &scene.set, 0, &err), ST_OK);
     assert_int_equal(seen.count, 0);
-    observed_points_release(&seen);
+    neighbours_release_points(&seen);
 }
 
 static bool range_of(double *min_inverse_z, double *max_inverse_z)
@@ -206,9 +206,10 @@ static bool range_of(double *min_inverse_z, double *max_inverse_z)
     struct observed_points seen;
     struct err err = ERR_INIT;
     const int neighbour = 1;
-    assert_int_equal(observed_points_find(&seen, &scene.set, 0, &err), ST_OK);
-    assert_int_equal(depth_range(min_inverse_z, max_inverse_z, &guessed, &scene.set, 0, &neighbour, 1, &err), ST_OK);
-    observed_points_release(&seen);
+    assert_int_equal(neighbours_find_points(&seen, &scene.set, 0, &err), ST_OK);
+    assert_int_equal(neighbours_depth_range(min_inverse_z, max_inverse_z, &guessed, &scene.set, 0, &neighbour, 1, &err),
+                     ST_OK);
+    neighbours_release_points(&seen);
     assert_true(*min_inverse_z > 0 && *min_inverse_z < *max_inverse_z && isfinite(*max_inverse_z));
     return guessed;
 }

@@ -67,7 +67,7 @@ static void cut(struct segmentation *s, struct gamma_image *g, int width, int he
 
 static void release(struct segmentation *s, struct gamma_image *g)
 {
-    segmentation_release(s);
+    oversegment_release(s);
     gamma_image_release(g);
 }
 
@@ -202,7 +202,7 @@ static void segments_of_half_the_size_keep_their_numbers(void **state)
             assert_int_equal(gamma_image_half_covering(&half, &g, &err), ST_OK);
             assert_true(half.width == 48 + odd && half.height == 30 + odd);
             assert_int_equal(oversegment(&s, &half, 40, 8, &err), ST_OK);
-            assert_int_equal(segmentation_double(&doubled, &s, &g, &err), ST_OK);
+            assert_int_equal(oversegment_double(&doubled, &s, &g, &err), ST_OK);
             assert_int_equal(doubled.count, s.count);
             for (int y = 0; y < g.height; y++)
                 for (int x = 0; x < g.width; x++) {
@@ -216,7 +216,7 @@ static void segments_of_half_the_size_keep_their_numbers(void **state)
                 assert_near(doubled.segments[i].cx, 2 * s.segments[i].cx, 1e-9);
                 assert_near(doubled.segments[i].cy, 2 * s.segments[i].cy, 1e-9);
             }
-            segmentation_release(&doubled);
+            oversegment_release(&doubled);
             release(&s, &half);
             release(&fine, &g);
         }
@@ -356,9 +356,9 @@ static void release_may_be_repeated(void **state)
 {
     (void)state;
     struct segmentation s = {0};
-    segmentation_release(NULL);
-    segmentation_release(&s);
-    segmentation_release(&s);
+    oversegment_release(NULL);
+    oversegment_release(&s);
+    oversegment_release(&s);
 }
 
 int main(void)

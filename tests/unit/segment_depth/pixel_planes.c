@@ -27,7 +27,7 @@ static void start(double contrast)
 static void choose(void)
 {
     struct err err = ERR_INIT;
-    if (choose_pixel_planes(label, planes, &b.problem, &err)) fail_msg("%s", err.text);
+    if (pixel_planes_choose(label, planes, &b.problem, &err)) fail_msg("%s", err.text);
 }
 
 /* The share of pixels that lie on a plane more than a step from the truth. */

@@ -39,16 +39,16 @@ static void match_all(void)
     struct err err = ERR_INIT;
     scene_points(&b.scene, 60);
     assert_int_equal(scene_photo(&b.scene, 0, &photo, &err), ST_OK);
-    const struct tone tone = tone_of(&photo);
+    const struct tone tone = gamma_tone_of(&photo);
     assert_int_equal(gamma_image_make(&b.reference, &photo, tone, &err), ST_OK);
     image_release(&photo);
     assert_int_equal(oversegment(&b.segments, &b.reference, 64, 8, &err), ST_OK);
-    assert_int_equal(observed_points_find(&b.seen, &b.scene.set, 0, &err), ST_OK);
+    assert_int_equal(neighbours_find_points(&b.seen, &b.scene.set, 0, &err), ST_OK);
     assert_int_equal(matcher_init(&b.matcher, &b.segments, &b.reference, &err), ST_OK);
     for (int k = 1; k < b.scene.set.view_count; k++) {
         struct gamma_image other = {0};
         assert_int_equal(scene_photo(&b.scene, k, &photo, &err), ST_OK);
-        const struct tone own = {fmin(tone.exposure, tone_of(&photo).exposure), tone.power};
+        const struct tone own = {fmin(tone.exposure, gamma_tone_of(&photo).exposure), tone.power};
         assert_int_equal(gamma_image_make(&other, &photo, own, &err), ST_OK);
         assert_int_equal(matcher_add(&b.matcher, &b.scene.set, 0, k, &b.seen, 0.25, &b.reference, &other, &err), ST_OK);
         image_release(&photo);
@@ -63,8 +63,8 @@ static void match_all(void)
 static void finish(void)
 {
     matcher_release(&b.matcher);
-    observed_points_release(&b.seen);
-    segmentation_release(&b.segments);
+    neighbours_release_points(&b.seen);
+    oversegment_release(&b.segments);
     gamma_image_release(&b.reference);
 }
 
@@ -278,7 +278,7 @@ static void neighbours_that_do_not_see_the_segment_cost_the_same_for_any_plane(v
         }
     const struct plane behind = {0, 0, -1};
     assert_near(match_cost(&b.matcher, 5, behind, 0), unseen, 1e-7);
-    assert_near(matcher_shift(&b.matcher, 0.1, 0.5), 0, 0);
+    assert_near(match_shift(&b.matcher, 0.1, 0.5), 0, 0);
     finish();
 }
 
@@ -309,7 +309,7 @@ static void any_plane_has_a_cost_between_0_and_1(void **state)
             const float cost = match_cost(&b.matcher, i, p, 0), half = match_cost_rough(&b.matcher, i, p, 0);
             assert_true(cost >= 0 && cost <= 1 && half >= 0 && half <= 1);
         }
-    assert_true(isfinite(matcher_shift(&b.matcher, 1e-9, 1e9)));
+    assert_true(isfinite(match_shift(&b.matcher, 1e-9, 1e9)));
     finish();
 }
 
@@ -331,7 +331,7 @@ static void calibration_maps_good_matches_to_0_and_chance_to_1(void **state)
         assert_true(b.segments.count < 1000);
         for (int i = 0; i < b.segments.count; i++)
             for (int k = 0; k < 2; k++) raw[k][i] = match_cost(&b.matcher, i, off_by(5 * k), 0);
-        assert_int_equal(matcher_calibrate(&b.matcher, 0.15, 0.4, &err), ST_OK);
+        assert_int_equal(match_calibrate(&b.matcher, 0.15, 0.4, &err), ST_OK);
         assert_true(b.matcher.good_cost >= 0 && b.matcher.chance_cost > b.matcher.good_cost &&
                     b.matcher.chance_cost <= 1);
         for (int i = 0; i < b.segments.count; i++) {
@@ -361,7 +361,7 @@ static void views_that_neighbours_see_at_few_depths_are_calibrated(void **state)
     start();
     scene_view(&b.scene, W, H, FOCAL, 1, 0, 0, 0);
     match_all();
-    assert_int_equal(matcher_calibrate(&b.matcher, 0.1, 3, &err), ST_OK);
+    assert_int_equal(match_calibrate(&b.matcher, 0.1, 3, &err), ST_OK);
     assert_true(b.matcher.good_cost > 0 && b.matcher.chance_cost < 1);
     for (int i = 0; i < b.segments.count; i++) {
         if (b.segments.segments[i].cx < 0.6 * W || !well_inside(i)) continue;
@@ -386,7 +386,7 @@ static void calibration_without_texture_stays_finite(void **state)
         scene_view(&b.scene, W, H, FOCAL, 0.5, 0, 0, which == 1 ? M_PI : 0); /* faces backwards */
         if (which == 2) b.scene.gain[1] = 0;                                 /* black */
         match_all();
-        assert_int_equal(matcher_calibrate(&b.matcher, 0.15, 0.4, &err), ST_OK);
+        assert_int_equal(match_calibrate(&b.matcher, 0.15, 0.4, &err), ST_OK);
         assert_true(b.matcher.chance_cost - b.matcher.good_cost > 0.01f);
         for (int i = 0; i < b.segments.count; i += 3)
             for (int k = -6; k <= 6; k += 3) {
@@ -430,8 +430,8 @@ static void the_disparity_of_a_sideways_step_is_focal_length_times_baseline(void
     scene_view(&b.scene, W, H, FOCAL, 0.5, 0, 0, 0);
     scene_view(&b.scene, W, H, FOCAL, -0.2, 0, 0, 0);
     match_all();
-    assert_near(matcher_shift(&b.matcher, 0.2, 0.35), FOCAL * 0.5 * 0.15, 1e-9);
-    assert_near(matcher_shift(&b.matcher, 0.2, 0.2), 0, 1e-9);
+    assert_near(match_shift(&b.matcher, 0.2, 0.35), FOCAL * 0.5 * 0.15, 1e-9);
+    assert_near(match_shift(&b.matcher, 0.2, 0.2), 0, 1e-9);
     finish();
 }
 

@@ -41,15 +41,17 @@ static void the_pairwise_term_is_a_metric(void **state)
         for (int t = b.segments.first_border[i]; t < b.segments.first_border[i + 1]; t++, count++) {
             const int j = b.segments.borders[t].other, back = twin(i, t);
             const struct plane p = draw(count, 0), q = draw(count, 1), r = draw(count, 2);
-            const double pq = pairwise_cost(&b.problem, i, t, p, q), qr = pairwise_cost(&b.problem, i, t, q, r);
+            const double pq = problem_pairwise_cost(&b.problem, i, t, p, q),
+                         qr = problem_pairwise_cost(&b.problem, i, t, q, r);
             const double slant = 2 * b.params.slant * b.segments.borders[t].length / (2 * sqrt(64));
             const double max_cost = b.params.smoothness * (double)b.weights[t] + slant;
-            assert_near(pairwise_cost(&b.problem, i, t, p, p), 0, 0);
-            assert_true(pq <= pairwise_bound(&b.problem, t));
+            assert_near(problem_pairwise_cost(&b.problem, i, t, p, p), 0, 0);
+            assert_true(pq <= problem_pairwise_bound(&b.problem, t));
             assert_true(pq >= 0 && pq <= max_cost);
-            assert_near(pairwise_cost(&b.problem, i, t, q, p), pq, 1e-15);
-            assert_near(pairwise_cost(&b.problem, j, back, q, p), pq, 1e-12); /* from the other side of the border */
-            assert_true(pairwise_cost(&b.problem, i, t, p, r) <= pq + qr + 1e-12);
+            assert_near(problem_pairwise_cost(&b.problem, i, t, q, p), pq, 1e-15);
+            assert_near(problem_pairwise_cost(&b.problem, j, back, q, p), pq,
+                        1e-12); /* from the other side of the border */
+            assert_true(problem_pairwise_cost(&b.problem, i, t, p, r) <= pq + qr + 1e-12);
             truncated += pq >= max_cost - slant - 1e-12;
         }
     assert_true(count > 500 && truncated > 20 && truncated < count / 2);
@@ -65,7 +67,7 @@ static void the_pairwise_term_is_linear_up_to_the_jump(void **state)
     for (int t = 0; t < b.segments.first_border[1]; t++)
         for (int n = -20; n <= 20; n++) {
             const struct plane p = {0, 0, 0.3}, q = {0, 0, 0.3 + n * b.problem.step};
-            assert_near(pairwise_cost(&b.problem, 0, t, p, q),
+            assert_near(problem_pairwise_cost(&b.problem, 0, t, p, q),
                         b.params.smoothness * (double)b.weights[t] * fmin(abs(n) / 8.0, 1), 1e-9);
         }
     bench_release();
@@ -83,9 +85,9 @@ static void a_slanted_plane_pays_along_its_outline_only(void **state)
         const double share = border->length / (2 * sqrt(64));
         int i = 0;
         while (b.segments.first_border[i + 1] <= t) i++;
-        assert_near(pairwise_cost(&b.problem, i, t, up, up), 0, 0);
-        assert_near(pairwise_cost(&b.problem, i, t, up, flat), share * b.params.slant, 1e-5);
-        assert_near(pairwise_cost(&b.problem, i, t, down, up), share * 2 * b.params.slant, 1e-5);
+        assert_near(problem_pairwise_cost(&b.problem, i, t, up, up), 0, 0);
+        assert_near(problem_pairwise_cost(&b.problem, i, t, up, flat), share * b.params.slant, 1e-5);
+        assert_near(problem_pairwise_cost(&b.problem, i, t, down, up), share * 2 * b.params.slant, 1e-5);
     }
     bench_release();
 }
@@ -102,11 +104,11 @@ static void a_slanted_surface_is_free_but_a_fold_costs(void **state)
             const double a = b.problem.step / 4 * (g->cx > h->cx ? 1 : -1), across = fabs(g->cx - h->cx);
             const struct plane slanted = {a, 0, 0.3 - a * u},
                                folded = {-a, 0, 0.3 + a * u}; /* they meet at the border */
-            assert_near(pairwise_cost(&b.problem, i, t, slanted, slanted), 0, 0);
+            assert_near(problem_pairwise_cost(&b.problem, i, t, slanted, slanted), 0, 0);
             if (across < 3) continue;
-            assert_true(pairwise_cost(&b.problem, i, t, slanted, folded) > 0);
-            assert_true(pairwise_cost(&b.problem, i, t, (struct plane){0, 0, plane_at(slanted, g->cx, g->cy)},
-                                      (struct plane){0, 0, plane_at(slanted, h->cx, h->cy)}) > 0);
+            assert_true(problem_pairwise_cost(&b.problem, i, t, slanted, folded) > 0);
+            assert_true(problem_pairwise_cost(&b.problem, i, t, (struct plane){0, 0, plane_at(slanted, g->cx, g->cy)},
+                                              (struct plane){0, 0, plane_at(slanted, h->cx, h->cy)}) > 0);
             assert_near(plane_at(slanted, u, v), plane_at(folded, u, v), 1e-12);
         }
     bench_release();
@@ -129,13 +131,13 @@ static void a_plane_outside_the_depth_range_is_forbidden(void **state)
             for (int y = g->y0 - 3; y <= g->y1 + 4; y++)
                 for (int x = g->x0 - 3; x <= g->x1 + 4; x++)
                     leaves = leaves || !(plane_at(p, x, y) >= low && plane_at(p, x, y) <= high);
-            const float cost = unary_cost(&b.problem, i, p, INFINITY);
+            const float cost = problem_unary_cost(&b.problem, i, p, INFINITY);
             assert_true(leaves ? cost >= PLANE_FORBIDDEN : cost < PLANE_FORBIDDEN / 100);
             never += leaves;
         }
     assert_true(never > count / 5 && never < 4 * count / 5);
     const struct plane no[] = {{NAN, 0, 0.3}, {0, INFINITY, 0.3}, {0, 0, NAN}, {0, 0, -INFINITY}, {1e300, -1e300, 0.3}};
-    for (int k = 0; k < 5; k++) assert_true(unary_cost(&b.problem, 7, no[k], INFINITY) >= PLANE_FORBIDDEN);
+    for (int k = 0; k < 5; k++) assert_true(problem_unary_cost(&b.problem, 7, no[k], INFINITY) >= PLANE_FORBIDDEN);
     bench_release();
 }
 
@@ -155,7 +157,8 @@ static void the_unary_term_is_the_sum_of_its_parts(void **state)
                 const float match = rough ? match_cost_rough(&b.matcher, i, p, 0) : match_cost(&b.matcher, i, p, 0);
                 const double points = point_evidence_cost(&b.points, i, p, g->cx, g->cy);
                 b.problem.rough = rough;
-                assert_near(unary_cost(&b.problem, i, p, INFINITY), g->pixels / 64.0 * ((double)match + points), 1e-5);
+                assert_near(problem_unary_cost(&b.problem, i, p, INFINITY), g->pixels / 64.0 * ((double)match + points),
+                            1e-5);
             }
     }
     bench_release();
@@ -176,17 +179,20 @@ static void what_lies_below_the_ground_costs_more(void **state)
         for (int k = 0; k < 5; k++, count++) {
             const struct plane p = {0, 0, 0.18 + 0.06 * k};
             b.problem.scene = NULL;
-            const float alone = unary_cost(&b.problem, i, p, INFINITY);
+            const float alone = problem_unary_cost(&b.problem, i, p, INFINITY);
             b.problem.scene = &scene;
             const bool is_below = p.c < 0.9 * at;
-            assert_near(unary_cost(&b.problem, i, p, INFINITY), alone + (is_below ? 0.3 * g->pixels / 64 : 0), 1e-4);
+            assert_near(problem_unary_cost(&b.problem, i, p, INFINITY), alone + (is_below ? 0.3 * g->pixels / 64 : 0),
+                        1e-4);
             below += is_below;
         }
-        if (at > 0.6 && at < 3) assert_true(unary_cost(&b.problem, i, ground, INFINITY) < PLANE_FORBIDDEN / 100);
+        if (at > 0.6 && at < 3)
+            assert_true(problem_unary_cost(&b.problem, i, ground, INFINITY) < PLANE_FORBIDDEN / 100);
         scene.has_ground = false;
-        if (at > 2) assert_true(unary_cost(&b.problem, i, ground, INFINITY) >= PLANE_FORBIDDEN);
+        if (at > 2) assert_true(problem_unary_cost(&b.problem, i, ground, INFINITY) >= PLANE_FORBIDDEN);
         scene.voted_ground = 1; /* votes found the same plane: it reaches as near */
-        if (at > 0.6 && at < 3) assert_true(unary_cost(&b.problem, i, ground, INFINITY) < PLANE_FORBIDDEN / 100);
+        if (at > 0.6 && at < 3)
+            assert_true(problem_unary_cost(&b.problem, i, ground, INFINITY) < PLANE_FORBIDDEN / 100);
         scene.voted_ground = 0;
         scene.has_ground = true;
     }
@@ -217,9 +223,9 @@ static void planes_above_the_limit_are_not_matched(void **state)
                 const struct segment *g = &b.segments.segments[i];
                 const double slope = 2e-3 * (2 * scene_hash(i, k, 1) - 1);
                 const struct plane plane = {slope, 0, 0.16 + 0.28 * scene_hash(i, k, 0) - slope * g->cx};
-                const float full = unary_cost(&p, i, plane, INFINITY);
+                const float full = problem_unary_cost(&p, i, plane, INFINITY);
                 const float max_cost = (float)(2 * scene_hash(i, k, 2) - 0.5);
-                const float screened = unary_cost(&p, i, plane, max_cost);
+                const float screened = problem_unary_cost(&p, i, plane, max_cost);
                 assert_true(screened >= PLANE_FORBIDDEN || screened == full);
                 if (!swept) assert_true(screened == full || full > max_cost); /* an exact bound */
                 given_up += swept && screened > full;

@@ -74,7 +74,7 @@ static void points_inside_a_segment_fix_its_depth(void **state)
     assert_true(point_evidence_cost(&e, segment, slanted, s.segments[segment].cx, s.segments[segment].cy) <
                 cost_of(&e, &s, segment, 0.3) - 0.02);
     point_evidence_release(&e);
-    segmentation_release(&s);
+    oversegment_release(&s);
 }
 
 static void a_segment_without_points_uses_points_nearby_in_place_and_colour(void **state)
@@ -92,7 +92,7 @@ static void a_segment_without_points_uses_points_nearby_in_place_and_colour(void
     assert_near(cheapest(&e, &s, s.label[20 * W + 60]), 0.4, 0.02); /* points of the dark half are closer */
     assert_near(cheapest(&e, &s, s.label[44 * W + 20]), 0.15, 0.02);
     point_evidence_release(&e);
-    segmentation_release(&s);
+    oversegment_release(&s);
 }
 
 static void the_farthest_of_several_nearby_depths_is_preferred(void **state)
@@ -106,7 +106,7 @@ static void the_farthest_of_several_nearby_depths_is_preferred(void **state)
     make(&e, &s, points, 8);
     assert_near(cheapest(&e, &s, s.label[30 * W + 30]), 0.2, 0.002);
     point_evidence_release(&e);
-    segmentation_release(&s);
+    oversegment_release(&s);
 }
 
 static void without_points_far_depths_are_slightly_preferred(void **state)
@@ -127,7 +127,7 @@ static void without_points_far_depths_are_slightly_preferred(void **state)
         point_evidence_release(&e);
     }
     point_evidence_release(NULL);
-    segmentation_release(&s);
+    oversegment_release(&s);
 }
 
 int main(void)

@@ -54,10 +54,10 @@ static inline void bench_make(double min_inverse_z, double max_inverse_z)
         assert_int_equal(oversegment(&b.segments, &b.reference, 64, 8, &err), ST_OK);
         assert_int_equal(matcher_init(&b.matcher, &b.segments, &b.reference, &err), ST_OK);
     }
-    assert_int_equal(matcher_calibrate(&b.matcher, min_inverse_z, max_inverse_z, &err), ST_OK);
+    assert_int_equal(match_calibrate(&b.matcher, min_inverse_z, max_inverse_z, &err), ST_OK);
     assert_int_equal(
         point_evidence_make(&b.points, &b.segments, &none, min_inverse_z, max_inverse_z, step, &b.params, &err), ST_OK);
-    b.weights = border_weights(&b.segments, 64);
+    b.weights = smooth_border_weights(&b.segments, 64);
     assert_non_null(b.weights);
     assert_true(b.segments.count < MAX_SEGMENTS);
     b.problem = (struct plane_problem){.view = &b.scene.views[0],
@@ -77,7 +77,7 @@ static inline void bench_release(void)
     free(b.weights);
     point_evidence_release(&b.points);
     matcher_release(&b.matcher);
-    segmentation_release(&b.segments);
+    oversegment_release(&b.segments);
     gamma_image_release(&b.reference);
 }
 
@@ -95,10 +95,10 @@ static inline double bench_energy(const struct plane *planes, bool rough)
     double sum = 0;
     p.rough = rough;
     for (int i = 0; i < b.segments.count; i++) {
-        sum += (double)unary_cost(&p, i, planes[i], INFINITY);
+        sum += (double)problem_unary_cost(&p, i, planes[i], INFINITY);
         for (int t = b.segments.first_border[i]; t < b.segments.first_border[i + 1]; t++) {
             const int j = b.segments.borders[t].other;
-            if (j > i) sum += pairwise_cost(&p, i, t, planes[i], planes[j]);
+            if (j > i) sum += problem_pairwise_cost(&p, i, t, planes[i], planes[j]);
         }
     }
     return sum;

@@ -223,7 +223,7 @@ static void borders_between_unlike_colours_have_low_weight(void **state)
             g.borders[t].length = i + g.borders[t].other == 2 ? 16 : 8;
             g.borders[t].contrast = i == 2 || g.borders[t].other == 2 ? 60 : 0;
         }
-    float *w = border_weights(&g.s, 64);
+    float *w = smooth_border_weights(&g.s, 64);
     assert_non_null(w);
     for (int i = 0; i < 3; i++)
         for (int t = g.first_border[i]; t < g.first_border[i + 1]; t++) {

@@ -13,15 +13,15 @@ static void feature_counts_come_from_the_log(void **state)
         "  Features:        2113\nElapsed time: 0.007 [minutes]\n";
     struct feature_counts c;
     struct err err = ERR_INIT;
-    assert_ok(feature_counts_read(&c, scratch_write("log", log), &err), err);
+    assert_ok(colmap_counts_read(&c, scratch_write("log", log), &err), err);
     assert_int_equal(c.count, 3);
     assert_string_equal(c.list[0].name, "b.jpg");
     assert_int_equal(c.list[0].features, -1);
     assert_int_equal(c.list[1].features, 0);
     assert_int_equal(c.list[2].features, 2113);
-    feature_counts_release(&c);
-    feature_counts_release(&c);
-    feature_counts_release(NULL);
+    colmap_counts_release(&c);
+    colmap_counts_release(&c);
+    colmap_counts_release(NULL);
 }
 
 static void the_mapper_log_counts_connected_pictures(void **state)
@@ -41,9 +41,9 @@ static void photos_with_few_features_are_listed(void **state)
     char a[] = "a.jpg", c[] = "c.jpg";
     struct feature_count counts[] = {{a, 12}, {c, 500}};
     const struct feature_counts found = {counts, 2};
-    feature_counts_list_poor(text, sizeof text, &found, &list, 200);
+    colmap_counts_list_poor(text, sizeof text, &found, &list, 200);
     assert_string_equal(text, "a.jpg (12), b.jpg (unreadable)");
-    feature_counts_list_poor(text, 50, &found, &list, 600);
+    colmap_counts_list_poor(text, 50, &found, &list, 600);
     assert_string_equal(text, "a.jpg (12) and 2 more");
 }
 

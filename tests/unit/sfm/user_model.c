@@ -157,10 +157,10 @@ static void removing_a_folder_keeps_the_targets_of_links(void **state)
     folder("work");
     assert_int_equal(symlink(scratch_path("user"), scratch_path("work/folder")), 0);
     assert_int_equal(symlink(scratch_path("user/photo.jpg"), scratch_path("work/photo")), 0);
-    assert_ok(remove_tree(scratch_path("work"), &err), err);
+    assert_ok(sfm_remove_tree(scratch_path("work"), &err), err);
     assert_int_equal(access(scratch_path("work"), F_OK), -1);
     assert_file_text(scratch_path("user/photo.jpg"), "x");
-    assert_ok(remove_tree(scratch_path("work"), &err), err);
+    assert_ok(sfm_remove_tree(scratch_path("work"), &err), err);
 }
 
 int main(void)

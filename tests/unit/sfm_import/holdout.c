@@ -61,7 +61,7 @@ static void views_are_chosen_by_number_and_by_name(void **state)
     choose(&in, 8, "", "10000");
     choose(&in, 0, "b", "01100"); /* a photo: all its views */
     choose(&in, 0, " b@1  d ", "00101");
-    imported_release(&in);
+    import_release(&in);
 }
 
 static void invalid_choices_are_rejected(void **state)
@@ -80,7 +80,7 @@ static void invalid_choices_are_rejected(void **state)
         assert_int_equal(holdout_choose(held, &in.lenses, bad[i].every, bad[i].names, &err), ST_USAGE);
         assert_err(err, ST_USAGE, bad[i].message);
     }
-    imported_release(&in);
+    import_release(&in);
 }
 
 /* Tracks and observations refer to each other, ids count from 1, names and lenses belong to the views. */
@@ -124,20 +124,20 @@ static void points_go_to_the_part_that_sees_them(void **state)
     assert_int_equal(kept.model.point_count, 0); /* 4 is seen by b only, the others by one kept view */
     assert_int_equal(out.model.point_count, 4);
     assert_int_equal(out.model.points[3].track_count, 1);
-    assert_ok(imported_write(&out, scratch_path("held"), NULL, &err), err);
+    assert_ok(import_write(&out, scratch_path("held"), NULL, &err), err);
     assert_ok(camera_set_read(&set, scratch_path("held"), NULL, &err), err);
     assert_file_text(scratch_path("held/views.mk"), "VIEWS := a c\n");
     camera_set_release(&set);
-    imported_release(&kept);
-    imported_release(&out);
+    import_release(&kept);
+    import_release(&out);
 
     assert_ok(holdout_split(&kept, &out, &in, (bool[VIEWS]){true}, &err), err);
     check(&kept, VIEW + 1, 4);
     assert_int_equal(kept.model.point_count, 3); /* 1, 2 and 4; 3 is seen by d only */
     assert_int_equal(kept.model.points[2].track_count, 3);
-    imported_release(&kept);
-    imported_release(&out);
-    imported_release(&in);
+    import_release(&kept);
+    import_release(&out);
+    import_release(&in);
 }
 
 int main(void)

@@ -117,7 +117,7 @@ static struct fixture made_of(const struct camera *lens)
 
 static void release(struct fixture *f)
 {
-    imported_release(&f->out);
+    import_release(&f->out);
     sfm_model_release(&f->model);
     photo_list_release(&f->photos);
 }
@@ -148,9 +148,9 @@ static void an_exact_model_is_imported_without_loss(void **state)
     struct lens_list lenses;
     char folder[300];
     snprintf(folder, sizeof folder, "%s/views", scratch);
-    assert_ok(imported_write(&f.out, folder, NULL, &f.err), f.err);
+    assert_ok(import_write(&f.out, folder, NULL, &f.err), f.err);
     char *first = scratch_read(scratch_path("views/images.txt"));
-    assert_ok(imported_write(&f.out, folder, NULL, &f.err), f.err);
+    assert_ok(import_write(&f.out, folder, NULL, &f.err), f.err);
     assert_file_text(scratch_path("views/images.txt"), first);
     assert_file_text(scratch_path("views/views.mk"), "VIEWS := p0 p1 p2 p3\n");
     assert_ok(camera_set_read(&set, folder, NULL, &f.err), f.err);
@@ -161,9 +161,9 @@ static void an_exact_model_is_imported_without_loss(void **state)
     free(first);
     lens_list_release(&lenses);
     camera_set_release(&set);
-    imported_release(&f.out);
-    imported_release(&f.out);
-    imported_release(NULL);
+    import_release(&f.out);
+    import_release(&f.out);
+    import_release(NULL);
     release(&f);
 }
 
@@ -194,7 +194,7 @@ static void images_that_are_not_photos_are_left_out(void **state)
     assert_int_equal(f.out.stats.unknown, 1);
     assert_string_equal(f.out.model.images[0].name, "p1.exr");
     check_pixels(&f.out, 1e-8);
-    imported_release(&f.out);
+    import_release(&f.out);
 
     rename_image(&f.model, 1, "also a stranger.jpg");
     rename_image(&f.model, 2, "and another.jpg");
@@ -225,7 +225,7 @@ static void a_model_of_smaller_pictures_is_scaled(void **state)
     assert_true(f.out.stats.mean_error < 1e-9);
     assert_true(f.out.lenses.lenses[0].camera.params[0] == 3 * 520 && f.out.lenses.lenses[0].camera.params[2] == 720);
     check_pixels(&f.out, 1e-8);
-    imported_release(&f.out);
+    import_release(&f.out);
 
     /* rotated or cropped photos are rejected */
     f.photos.photos[2].info.width = 480;
@@ -248,7 +248,7 @@ static void sizes_may_differ_by_rounding(void **state)
     assert_ok(import_model(&f.out, &f.model, &f.photos, &defaults, &f.err), f.err);
     assert_true(f.out.stats.mean_error < 1e-9);
     assert_near(f.out.lenses.lenses[0].camera.params[3], 601, 1e-9);
-    imported_release(&f.out);
+    import_release(&f.out);
     f.photos.photos[0].info.height = 1204;
     assert_int_equal(import_model(&f.out, &f.model, &f.photos, &defaults, &f.err), ST_DATA);
     release(&f);
@@ -278,8 +278,8 @@ static void outliers_are_dropped(void **state)
     assert_int_equal(out.model.point_count, clean.model.point_count - 1);
     check_pixels(&out, 1e-8);
     assert_near(out.stats.mean_error, 5.0 / (double)(out.stats.observations - PHOTOS), 1e-6);
-    imported_release(&out);
-    imported_release(&clean);
+    import_release(&out);
+    import_release(&clean);
 
     /* nothing fits */
     for (int i = 0; i < POINTS; i++) m.points[i].position.z = -6;

@@ -140,7 +140,7 @@ static void release(struct outcome *o)
 {
     sfm_model_release(&o->truth.model);
     sfm_model_release(&o->model);
-    refinement_release(&o->r);
+    refine_cameras_release(&o->r);
 }
 
 static const struct lens_form *chosen(const struct outcome *o)

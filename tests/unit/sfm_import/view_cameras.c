@@ -46,7 +46,7 @@ static void a_small_pinhole_photo_keeps_its_camera(void **state)
         struct photo_view views[MAX_PHOTO_VIEWS];
         struct err err = ERR_INIT;
         int count = 0;
-        assert_ok(photo_views(views, &count, &lenses[i], 2, 110, &err), err);
+        assert_ok(view_cameras_of_photo(views, &count, &lenses[i], 2, 110, &err), err);
         assert_int_equal(count, 1);
         assert_int_equal(views[0].part, -1);
         const struct camera *c = &views[0].camera;
@@ -64,17 +64,17 @@ static void large_photos_are_scaled_down_with_their_aspect_ratio(void **state)
     struct err err = ERR_INIT;
     double slack[4];
     int count = 0;
-    assert_ok(photo_views(views, &count, &lens, 2, 110, &err), err);
+    assert_ok(view_cameras_of_photo(views, &count, &lens, 2, 110, &err), err);
     const struct camera *c = &views[0].camera;
     assert_true((double)c->width * c->height <= 2e6 && (double)c->width * c->height > 1.99e6);
     assert_near((double)c->width / c->height, 1.5, 0.002);
     assert_near(c->params[0] / c->width, 5.0 / 6, 1e-3);
     check_inside(&lens, &views[0], slack);
     for (int i = 0; i < 4; i++) assert_true(slack[i] < 3.5); /* less than a view's pixel is cut off */
-    assert_ok(photo_views(views, &count, &lens, 0, 110, &err), err);
+    assert_ok(view_cameras_of_photo(views, &count, &lens, 0, 110, &err), err);
     assert_int_equal(views[0].camera.width, 6000); /* no limit */
     lens.model = CAMERA_OPENCV;                    /* without distortion the picture is the same */
-    assert_ok(photo_views(views, &count, &lens, 0, 110, &err), err);
+    assert_ok(view_cameras_of_photo(views, &count, &lens, 0, 110, &err), err);
     assert_int_equal(views[0].camera.width, 6000);
     assert_int_equal(views[0].camera.height, 4000);
     assert_near(views[0].camera.params[2], 3000, 1e-6);
@@ -98,7 +98,7 @@ static void a_view_is_the_largest_rectangle_without_blank_borders(void **state)
             struct err err = ERR_INIT;
             double slack[4], fx, fy, cx, cy;
             int count = 0;
-            assert_ok(photo_views(views, &count, &lenses[i], limit ? 0.1 : 0, 125, &err), err);
+            assert_ok(view_cameras_of_photo(views, &count, &lenses[i], limit ? 0.1 : 0, 125, &err), err);
             assert_int_equal(count, 1);
             check_inside(&lenses[i], &views[0], slack);
             const struct camera *c = &views[0].camera;
@@ -120,14 +120,14 @@ static void the_field_of_view_is_measured_along_the_midlines(void **state)
     struct camera pinhole = {CAMERA_PINHOLE, 200, 100, {100, 100, 100, 50}};
     struct camera fisheye = {CAMERA_OPENCV_FISHEYE, 1000, 800, {250, 250, 500, 400}};
     double h, v;
-    lens_field(&pinhole, &h, &v);
+    view_lens_field(&pinhole, &h, &v);
     assert_near(h, M_PI / 2, 1e-12);
     assert_near(v, 2 * atan(0.5), 1e-12);
-    lens_field(&fisheye, &h, &v);
+    view_lens_field(&fisheye, &h, &v);
     assert_near(h, 4, 1e-12); /* 229 degrees */
     assert_near(v, 3.2, 1e-12);
     fisheye.params[0] = 100; /* the picture is wider than the sphere: 180 degrees each side */
-    lens_field(&fisheye, &h, &v);
+    view_lens_field(&fisheye, &h, &v);
     assert_near(h, 2 * M_PI, 1e-6);
 }
 
@@ -141,7 +141,7 @@ static void a_fisheye_becomes_five_views(void **state)
     struct photo_view views[MAX_PHOTO_VIEWS];
     struct err err = ERR_INIT;
     int count = 0;
-    assert_ok(photo_views(views, &count, &lens, 0, 110, &err), err);
+    assert_ok(view_cameras_of_photo(views, &count, &lens, 0, 110, &err), err);
     assert_int_equal(count, 5);
     static const double forward[5][3] = {{0, 0, 1}, {-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}};
     for (int k = 0; k < 5; k++) {
@@ -164,10 +164,10 @@ static void a_fisheye_becomes_five_views(void **state)
     assert_near(hypot(u - u2, v - v2), 0, 1e-6);
 
     /* the limit holds for each view; a strip has no views up and down */
-    assert_ok(photo_views(views, &count, &lens, 0.5, 110, &err), err);
+    assert_ok(view_cameras_of_photo(views, &count, &lens, 0.5, 110, &err), err);
     assert_int_equal(views[0].camera.width, 707);
     struct camera wide = {CAMERA_OPENCV_FISHEYE, 1600, 200, {700, 700, 800, 100}};
-    assert_ok(photo_views(views, &count, &wide, 0, 110, &err), err);
+    assert_ok(view_cameras_of_photo(views, &count, &wide, 0, 110, &err), err);
     for (int k = 0; k < count; k++) assert_true(views[k].part < 3);
 }
 
@@ -181,10 +181,10 @@ static void a_lens_that_leaves_no_picture_is_rejected(void **state)
     int count = 0;
     lens.model = CAMERA_SIMPLE_RADIAL;
     lens.params[3] = -0.9; /* and no pixel has a ray */
-    assert_int_equal(photo_views(views, &count, &lens, 2, 110, &err), ST_DATA);
+    assert_int_equal(view_cameras_of_photo(views, &count, &lens, 2, 110, &err), ST_DATA);
     assert_err(err, ST_DATA, "SIMPLE_RADIAL lens of 100 x 100 px leaves no picture");
     err = (struct err)ERR_INIT;
-    assert_int_equal(photo_views(views, &count, &tiny, 2, 110, &err), ST_DATA);
+    assert_int_equal(view_cameras_of_photo(views, &count, &tiny, 2, 110, &err), ST_DATA);
 }
 
 int main(void)

@@ -68,7 +68,7 @@ static void few_samples_agree_with_many(void **state)
                   "remodel-shoot 1\nlens p pinhole 48 48 67.2 67.2 24 24\nexposure 1\nsensor 30000 6 1 1\n"
                   "photo a p 278 273 -800  278 273 -799\n");
     assert_ok(shoot_read(&s, scratch, 1, NULL, &err), err);
-    const struct camera_view view = camera_view_make(&s, &s.photos[0]);
+    const struct camera_view view = render_view_make(&s, &s.photos[0]);
     struct image im[2] = {{0}, {0}};
     for (int i = 0; i < 2; i++) {
         const struct simulate_params params = {.samples = i ? 1024 : 64, .scale = 1, .seed = 1 + i};
@@ -97,7 +97,7 @@ static void few_samples_agree_with_many(void **state)
     image_release(&im[0]);
     image_release(&im[1]);
     shoot_release(&s);
-    world_release(&w);
+    path_world_release(&w);
 }
 
 int main(void)

@@ -20,7 +20,7 @@ static void a_closed_room_that_reflects_and_emits_half_has_radiance_one(void **s
     assert_near(mean_irradiance(&w, vec3_make(2, 1, 0.02), up, 60000, 1).g, PI, 0.005);
     w.max_bounces = 3; /* 1/2 + 1/4 + 1/8 + 1/16 */
     assert_near(mean_radiance(&w, vec3_make(1, 1, 1), directions[0], 60000, 5).r, 0.9375, 0.005);
-    world_release(&w);
+    path_world_release(&w);
 }
 
 /* The same with glossy walls. The lobe loses what falls below the horizon, so the radiance has only bounds: above
@@ -37,7 +37,7 @@ static void glossy_walls_keep_the_furnace_within_its_bound(void **state)
         const double bound = 0.5 / (1 - 0.5 - w.scene.materials[0].gloss);
         const struct rgb l = mean_radiance(&w, vec3_make(1, 1, 1), vec3_make(1, 0.3, 0.2), 100000, i);
         assert_true(l.r > 1.05 && l.r < bound * 1.005);
-        world_release(&w);
+        path_world_release(&w);
     }
 }
 
@@ -83,7 +83,7 @@ static void a_square_lamp_gives_the_irradiance_of_its_form_factor(void **state)
     assert_true(mean_irradiance(&w, vec3_make(0.5, 0.3, 2.5), vec3_make(0, 0, -1), 4096, 1).r < 10);
     assert_near(mean_radiance(&w, vec3_make(0.5, 0.3, 1), up, 4096, 1).g, 20, 1e-12);
     assert_true(mean_radiance(&w, vec3_make(0.5, 0.3, 3), vec3_make(0, 0, -1), 4096, 1).g == 0);
-    world_release(&w);
+    path_world_release(&w);
 }
 
 static void a_round_lamp_gives_the_irradiance_of_its_form_factor(void **state)
@@ -101,7 +101,7 @@ static void a_round_lamp_gives_the_irradiance_of_its_form_factor(void **state)
             assert_near(e.r, PI * 10 * factor, way ? 0.007 : 0.005);
         }
     }
-    world_release(&w);
+    path_world_release(&w);
 }
 
 static void a_spot_lights_its_cone_only(void **state)
@@ -119,7 +119,7 @@ static void a_spot_lights_its_cone_only(void **state)
     const double inside = mean_irradiance(&w, vec3_make(reach - 0.11, 0, 0), up, 20000, 1).r;
     const double border = mean_irradiance(&w, vec3_make(reach, 0, 0), up, 20000, 1).r;
     assert_true(border > 0.4 * inside && border < 0.6 * inside);
-    world_release(&w);
+    path_world_release(&w);
 }
 
 #define ROOM                                                                             \
@@ -138,7 +138,7 @@ static void the_sun_through_a_window_gives_its_irradiance(void **state)
     assert_near(e.b, wanted * 0.6, 0.005);
     assert_true(mean_irradiance(&w, vec3_make(2.5, 3.5, 0), up, 4096, 1).r == 0);
     assert_true(mean_irradiance(&w, vec3_make(0.8, 1.3, 0), up, 4096, 1).r == 0);
-    world_release(&w);
+    path_world_release(&w);
 }
 
 #define LAMP_FOR_A_CEILING "lamp l quad 0 0 1.9999  0 2 0  2 0 0  3 3 3\n"
@@ -155,13 +155,13 @@ static void a_box_that_absorbs_nothing_keeps_its_light(void **state)
         assert_near(mean_radiance(&w, vec3_make(0.2, 0.2, 0.2), vec3_make(0.2, 1, 0.1), 300000, 1).r, 3, 0.005);
         assert_near(mean_radiance(&w, vec3_make(0.2, 0.2, 1.9), vec3_make(-0.2, 0.3, -0.1), 300000, 2).g, 3, 0.005);
     }
-    world_release(&w);
+    path_world_release(&w);
     /* half of the reflectance is gloss: the lobe loses what falls below the horizon, and must not gain */
     w = world_from(
         "texture part rgb 0.5 0.5 0.5\nmaterial m phong part 0.8 9.3\nbox room 0 0 0 2 2 2 m\n" LAMP_FOR_A_CEILING);
     const double l = mean_radiance(&w, vec3_make(0.2, 0.2, 0.2), vec3_make(0.2, 1, 0.1), 300000, 1).r;
     assert_true(l > 1 && l < 3 * 1.005);
-    world_release(&w);
+    path_world_release(&w);
 }
 
 /* A room with all kinds of lights and materials. */
@@ -183,7 +183,7 @@ static void next_event_estimation_agrees_with_brdf_sampling(void **state)
         }
         assert_near(l[0], l[1], 0.015);
     }
-    world_release(&w);
+    path_world_release(&w);
 }
 
 /* Rays from one eye in a narrow fan; ray 0 goes through `at`. */
@@ -217,7 +217,7 @@ static void all_rays_of_a_group_see_the_furnace(void **state)
         w.max_bounces = 1;
         mean_radiances(mean, &w, ray, 0xffff, 4096, 2);
         for (int i = 0; i < SHARED_RAYS; i++) assert_near(mean[i].g, 0.75, 0.005);
-        world_release(&w);
+        path_world_release(&w);
     }
 }
 
@@ -267,7 +267,7 @@ static void compare_groups_with_single_rays(const char *lights, int seed)
             assert_true(fabs(off) < 4 * error);
         }
     }
-    world_release(&w);
+    path_world_release(&w);
 }
 
 static void sharing_paths_does_not_change_the_radiance(void **state)
@@ -302,7 +302,7 @@ static void sharing_paths_lowers_the_noise(void **state)
     }
     print_message("variance of one estimate: %.4g alone, %.4g in a group\n", variance[0], variance[1]);
     assert_true(variance[1] < 0.25 * variance[0]);
-    world_release(&w);
+    path_world_release(&w);
 }
 
 int main(void)

@@ -72,7 +72,7 @@ static void check_surfaces(const char *out, const struct world *w)
     /* a fisheye ray of the written length ends on the face with the written id */
     struct shoot s;
     assert_ok(shoot_read(&s, scratch, 1, NULL, &err), err);
-    const struct camera_view view = camera_view_make(&s, &s.photos[1]);
+    const struct camera_view view = render_view_make(&s, &s.photos[1]);
     int sky = 0;
     for (int i = 0; i < 60 * 40; i++) {
         const uint32_t id = exr_find(&ids, "id")->u[i];
@@ -83,7 +83,7 @@ static void check_surfaces(const char *out, const struct world *w)
             continue;
         }
         const struct scene_face *f = &w->geometry.faces[id - 1];
-        assert_true(camera_view_ray(&view, i % 60 + 0.5, i / 60 + 0.5, &ray));
+        assert_true(render_view_ray(&view, i % 60 + 0.5, i / 60 + 0.5, &ray));
         const struct vec3 p = vec3_add(ray.from, vec3_scale(ray.direction, exr_find(&depth, "Z")->f[i]));
         assert_true(fabs(vec3_dot(vec3_sub(p, f->origin), f->normal)) < 1e-5);
     }
@@ -149,7 +149,7 @@ static void photos_and_truth_do_not_depend_on_threads(void **state)
     check_surfaces(one, &w);
     check_texts(one);
     shoot_release(&s);
-    world_release(&w);
+    path_world_release(&w);
 }
 
 /* An edited scene with the same cameras. */
@@ -177,8 +177,8 @@ static void unedited_faces_keep_their_textures(void **state)
     }
     assert_int_equal(before.geometry.faces[0].seed, w.geometry.faces[6].seed); /* r.floor */
     shoot_release(&s);
-    world_release(&w);
-    world_release(&before);
+    path_world_release(&w);
+    path_world_release(&before);
 }
 
 static void a_photo_without_light_is_an_error(void **state)
@@ -196,7 +196,7 @@ static void a_photo_without_light_is_an_error(void **state)
     assert_err(err, ST_DATA, "no light reaches photo a");
     assert_int_not_equal(access(scratch_path("photos/a.jpg"), R_OK), 0);
     shoot_release(&s);
-    world_release(&w);
+    path_world_release(&w);
 }
 
 /* One small lamp over a black floor: the irradiance has a closed form. */
@@ -221,7 +221,7 @@ static void irradiance_points_have_the_irradiance_of_a_small_lamp(void **state)
         assert_near(points[i].irradiance.b, points[i].irradiance.r / 4, 1e-9);
     }
     shoot_release(&s);
-    world_release(&w);
+    path_world_release(&w);
 }
 
 int main(void)

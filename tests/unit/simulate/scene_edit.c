@@ -14,7 +14,7 @@ static struct world edited_world(const char *text)
     struct err err = ERR_INIT;
     scratch_write("scene.txt", BASE);
     scratch_write("scene-e.txt", text);
-    assert_ok(world_read(&w, scratch, "scene-e.txt", NULL, &err), err);
+    assert_ok(path_world_read(&w, scratch, "scene-e.txt", NULL, &err), err);
     return w;
 }
 
@@ -44,7 +44,7 @@ static void an_edit_without_changes_is_its_base(void **state)
     struct err err = ERR_INIT;
     (void)state;
     struct world w = edited_world(EDIT), base = {0};
-    assert_ok(world_read(&base, scratch, "scene.txt", NULL, &err), err);
+    assert_ok(path_world_read(&base, scratch, "scene.txt", NULL, &err), err);
     assert_int_equal(w.geometry.face_count, base.geometry.face_count);
     for (int i = 0; i < w.geometry.face_count; i++) {
         assert_string_equal(w.geometry.faces[i].name, base.geometry.faces[i].name);
@@ -53,8 +53,8 @@ static void an_edit_without_changes_is_its_base(void **state)
     const struct rgb a = mean_radiance(&base, vec3_make(2, 2, 1), vec3_make(1, -2, 0), 4096, 3),
                      b = mean_radiance(&w, vec3_make(2, 2, 1), vec3_make(1, -2, 0), 4096, 3);
     assert_true(a.r > 0 && a.r == b.r && a.g == b.g && a.b == b.b);
-    world_release(&w);
-    world_release(&base);
+    path_world_release(&w);
+    path_world_release(&base);
 }
 
 static void dropped_items_are_gone_and_the_others_keep_their_ids(void **state)
@@ -64,22 +64,22 @@ static void dropped_items_are_gone_and_the_others_keep_their_ids(void **state)
     (void)state;
     struct world w = edited_world(EDIT "drop b door sun panorama\nopening door w 0.5 2.2 0 1.8\n"
                                        "box c 3 2 0 3.5 2.5 0.5 m\n");
-    assert_ok(world_read(&base, scratch, "scene.txt", NULL, &err), err);
+    assert_ok(path_world_read(&base, scratch, "scene.txt", NULL, &err), err);
     assert_ids_kept(&base, &w);
     assert_null(face(&w, "b.top"));
     assert_non_null(face(&w, "c.top"));
     assert_near(face(&w, "w.left")->area, 8 - 1.7 * 1.8 - 1, 1e-9);
     assert_int_equal(face(&w, "door.head")->id, face(&base, "door.head")->id);
     assert_false(w.scene.sky.has_sun || w.scene.sky.has_panorama);
-    world_release(&w);
+    path_world_release(&w);
 
     /* a wall takes its openings with it; the openings of the wall behind it stay in theirs */
     w = edited_world(EDIT "drop w\n");
     assert_ids_kept(&base, &w);
     assert_true(!face(&w, "w.left") && !face(&w, "door.head") && !face(&w, "win.sill"));
     assert_near(face(&w, "v.left")->area, 6 - 1.5, 1e-9);
-    world_release(&w);
-    world_release(&base);
+    path_world_release(&w);
+    path_world_release(&base);
 }
 
 static void an_edit_is_written_as_a_whole_scene(void **state)
@@ -89,7 +89,7 @@ static void an_edit_is_written_as_a_whole_scene(void **state)
     (void)state;
     struct world w = edited_world(EDIT "drop w sun\nfurniture on\nbox c 3 2 0 3.5 2.5 0.5 m\n");
     assert_ok(scene_write(&w.scene, scratch, "scene-e.txt", scratch_path("whole.txt"), &err), err);
-    assert_ok(world_read(&whole, scratch, "whole.txt", NULL, &err), err);
+    assert_ok(path_world_read(&whole, scratch, "whole.txt", NULL, &err), err);
     assert_null(whole.scene.base);
     assert_int_equal(whole.geometry.face_count, w.geometry.face_count);
     for (int i = 0; i < w.geometry.face_count; i++) {
@@ -98,8 +98,8 @@ static void an_edit_is_written_as_a_whole_scene(void **state)
     }
     assert_false(whole.scene.sky.has_sun);
     assert_true(whole.scene.sky.has_panorama && whole.geometry.has_furniture);
-    world_release(&whole);
-    world_release(&w);
+    path_world_release(&whole);
+    path_world_release(&w);
 }
 
 static void assert_invalid(const char *text, const char *words)

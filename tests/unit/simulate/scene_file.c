@@ -147,8 +147,8 @@ static void faces_have_their_areas_normals_and_ids(void **state)
         assert_false(ray_scene_blocked(&g->rays, rays[i].from, rays[i].direction, 0.99 * rays[i].t));
     }
     assert_int_equal(w.lights.count, 2); /* a window is a light only if there is a sky or a sun */
-    world_release(&w);
-    world_release(&w);
+    path_world_release(&w);
+    path_world_release(&w);
 }
 
 static void textures_stay_below_their_bounds(void **state)
@@ -176,7 +176,7 @@ static void textures_stay_below_their_bounds(void **state)
     const struct texture *t = &w.scene.textures[0].texture;
     assert_near(texture_at(t, 5, 0.1, 0.1).r + texture_at(t, 5, 0.3, 0.1).r, 0.9, 1e-9);
     assert_near(texture_at(t, 5, 0.2, 0.1).r, 0.45, 1e-6);
-    world_release(&w);
+    path_world_release(&w);
 }
 
 int main(void)

@@ -40,7 +40,7 @@ static void setup(struct fixture *f, const char *scene, const char *shoot, const
 static void drop(struct fixture *f)
 {
     shoot_release(&f->shoot);
-    world_release(&f->world);
+    path_world_release(&f->world);
 }
 
 static struct exr_image picture(const struct fixture *f, const char *file)
@@ -170,8 +170,8 @@ static void irradiance_does_not_change_where_nothing_changes(void **state)
     setup(&f, ROOM "box b 2.0 1.4 0 3.0 2.4 0.9 m\n", SHOOT, "irradiance");
     scratch_write("scene-same.txt", "remodel-scene 2\nbase scene.txt\n");
     scratch_write("scene-gone.txt", "remodel-scene 2\nbase scene.txt\ndrop b\nbox b 2.0 1.4 0 3.0 2.4 0.4 m\n");
-    assert_ok(world_read(&same, scratch, "scene-same.txt", NULL, &err), err);
-    assert_ok(world_read(&edited, scratch, "scene-gone.txt", NULL, &err), err);
+    assert_ok(path_world_read(&same, scratch, "scene-same.txt", NULL, &err), err);
+    assert_ok(path_world_read(&edited, scratch, "scene-gone.txt", NULL, &err), err);
     const struct shoot_photo *a = &f.shoot.photos[0];
     assert_ok(irradiance_picture(&f.job, &f.world, NULL, a, "truth", &err), err);
     assert_ok(irradiance_picture(&f.job, &f.world, &same, a, "truth/edited-same", &err), err);
@@ -191,8 +191,8 @@ static void irradiance_does_not_change_where_nothing_changes(void **state)
     assert_true(other > 50); /* where the taller box was seen, the edited room has another surface */
     exr_image_release(&before);
     exr_image_release(&after);
-    world_release(&same);
-    world_release(&edited);
+    path_world_release(&same);
+    path_world_release(&edited);
     drop(&f);
 }
 
@@ -247,11 +247,11 @@ static void a_moved_sun_lights_with_the_sine_of_its_elevation(void **state)
                                 "sun 0 90 1 1000 1000 1000\n");
     const struct vec3 p = {0, 0, 0.01}, up = {0, 0, 1};
     const double overhead = mean_irradiance(&w, p, up, 4096, 1).r;
-    assert_ok(world_move_sun(&w, 120, 30, &err), err);
+    assert_ok(path_world_move_sun(&w, 120, 30, &err), err);
     assert_near(mean_irradiance(&w, p, up, 4096, 1).r, 0.5 * overhead, 0.002 * overhead);
-    assert_ok(world_move_sun(&w, 0, -30, &err), err);
+    assert_ok(path_world_move_sun(&w, 0, -30, &err), err);
     assert_true(mean_irradiance(&w, p, up, 4096, 1).r == 0);
-    world_release(&w);
+    path_world_release(&w);
 }
 
 /* truth_samples changes the truth and no photo. */

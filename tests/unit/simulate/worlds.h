@@ -16,7 +16,7 @@ static inline struct world world_from(const char *text)
     assert_true(asprintf(&all, "remodel-scene 2\n%s", text) > 0);
     scratch_write("scene.txt", all);
     free(all);
-    assert_ok(world_read(&w, scratch, "scene.txt", NULL, &err), err);
+    assert_ok(path_world_read(&w, scratch, "scene.txt", NULL, &err), err);
     return w;
 }
 

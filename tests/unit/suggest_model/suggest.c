@@ -139,7 +139,7 @@ static void two_rooms_and_their_openings_are_found(void **state)
         assert_float_equal(window->end, WINDOW[2], 0.1);
         assert_float_equal(window->foot, WINDOW[1], 0.1);
         assert_float_equal(window->top, WINDOW[3], 0.1);
-        suggestion_release(&s);
+        suggest_release(&s);
     }
 }
 
@@ -169,7 +169,7 @@ static void a_wall_behind_furniture_has_its_thickness(void **state)
         assert_float_equal(s.walls[4].thickness, X[2] - X[1], 0.02);
         assert_false(s.walls[4].guessed);
         point_cloud_release(&m.cloud);
-        suggestion_release(&s);
+        suggest_release(&s);
     }
 }
 
@@ -181,7 +181,7 @@ static void a_closed_wall_has_no_doorway(void **state)
     outer_walls_are_right(&s);
     assert_int_equal(s.wall_count, 5);
     for (int i = 0; i < s.opening_count; i++) assert_int_equal(s.openings[i].wall, 0);
-    suggestion_release(&s);
+    suggest_release(&s);
 }
 
 static void the_ceiling_may_be_unknown(void **state)
@@ -191,7 +191,7 @@ static void the_ceiling_may_be_unknown(void **state)
     suggest_made(&s, true, 5, 0);
     outer_walls_are_right(&s);
     assert_int_equal(s.room_count, 2);
-    suggestion_release(&s);
+    suggest_release(&s);
 }
 
 enum { ROOMS = 70, VIEWS_PER_ROOM = 4 };
@@ -232,8 +232,8 @@ static void the_number_of_rooms_is_not_limited(void **state)
     assert_int_equal(s.wall_count, 4 + ROOMS - 1);
     assert_int_equal(s.room_count, ROOMS);
     for (int i = 0; i < s.room_count; i++) assert_true(s.rooms[i].free);
-    suggestion_release(&s);
-    suggestion_release(&s);
+    suggest_release(&s);
+    suggest_release(&s);
     free(views);
     free(cloud.points);
 }

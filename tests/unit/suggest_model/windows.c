@@ -113,7 +113,7 @@ static void make_scene(struct occupancy *o)
                 if (edge) cloud.points[cloud.count++].position = vec3_make(x, y, z);
             }
     assert_true(cloud.count < 60000);
-    assert_ok(occupancy_make(o, &cloud, low, high, 0.13, &err), err);
+    assert_ok(raster_occupancy_make(o, &cloud, low, high, 0.13, &err), err);
     point_cloud_release(&cloud);
 }
 
@@ -143,9 +143,9 @@ static void suggest_made(struct suggestion *s, const struct room *room, const st
         image_release(&picture);
         layered_depth_release(&depth);
     }
-    assert_ok(suggest_windows(s, 0, &raster, &params, &err), err);
+    assert_ok(windows_suggest(s, 0, &raster, &params, &err), err);
     wall_raster_release(&raster);
-    occupancy_release(&scene);
+    raster_occupancy_release(&scene);
 }
 
 static void assert_window(const struct suggestion *s, double begin, double foot, double end, double top)
@@ -166,7 +166,7 @@ static void a_window_is_found(void **state)
         struct suggestion s;
         suggest_made(&s, &(struct room){.thing = WINDOW}, NULL, seed);
         assert_window(&s, RECT[0], RECT[1], RECT[2], RECT[3]);
-        suggestion_release(&s);
+        suggest_release(&s);
     }
 }
 
@@ -176,7 +176,7 @@ static void a_window_with_a_bar_is_one_window(void **state)
     struct suggestion s;
     suggest_made(&s, &(struct room){.thing = WINDOW, .bar = true}, NULL, 13);
     assert_window(&s, RECT[0], RECT[1], RECT[2], RECT[3]);
-    suggestion_release(&s);
+    suggest_release(&s);
 }
 
 static void a_dark_picture_beside_a_window_does_not_widen_it(void **state)
@@ -185,7 +185,7 @@ static void a_dark_picture_beside_a_window_does_not_widen_it(void **state)
     struct suggestion s;
     suggest_made(&s, &(struct room){.thing = WINDOW, .picture = {3.3, 0.7, 4, 2.4}}, NULL, 14);
     assert_window(&s, RECT[0], RECT[1], RECT[2], RECT[3]);
-    suggestion_release(&s);
+    suggest_release(&s);
 }
 
 /* An opening found from points is replaced, not doubled. */
@@ -196,7 +196,7 @@ static void a_window_found_from_points_is_corrected(void **state)
     struct suggestion s;
     suggest_made(&s, &(struct room){.thing = WINDOW}, &rough, 4);
     assert_window(&s, RECT[0], RECT[1], RECT[2], RECT[3]);
-    suggestion_release(&s);
+    suggest_release(&s);
 }
 
 static void assert_no_window(enum thing thing, uint64_t seed)
@@ -204,7 +204,7 @@ static void assert_no_window(enum thing thing, uint64_t seed)
     struct suggestion s;
     suggest_made(&s, &(struct room){.thing = thing}, NULL, seed);
     assert_int_equal(s.opening_count, 0);
-    suggestion_release(&s);
+    suggest_release(&s);
 }
 
 static void a_bare_wall_has_no_window(void **state)
@@ -234,7 +234,7 @@ static void a_mirror_is_no_window(void **state)
     struct suggestion s;
     suggest_made(&s, &(struct room){.thing = MIRROR}, &found, 8);
     assert_int_equal(s.opening_count, 0);
-    suggestion_release(&s);
+    suggest_release(&s);
 }
 
 /* Views alone do not decide on a dark opening; one that points show stays where it was. */
@@ -247,7 +247,7 @@ static void a_dark_opening_is_left_to_the_points(void **state)
     suggest_made(&s, &(struct room){.thing = DARK_WINDOW}, &found, 9);
     assert_int_equal(s.opening_count, 1);
     assert_float_equal(s.openings[0].begin, 1.55, 0);
-    suggestion_release(&s);
+    suggest_release(&s);
 }
 
 static void an_opening_where_the_wall_is_solid_is_removed(void **state)
@@ -257,7 +257,7 @@ static void an_opening_where_the_wall_is_solid_is_removed(void **state)
     struct suggestion s;
     suggest_made(&s, &(struct room){.thing = WINDOW}, &found, 10);
     assert_window(&s, RECT[0], RECT[1], RECT[2], RECT[3]);
-    suggestion_release(&s);
+    suggest_release(&s);
 }
 
 /* A cupboard hides the lower left of the window: the visible parts of all sides still determine it. */
@@ -267,7 +267,7 @@ static void a_window_behind_furniture_has_all_its_sides(void **state)
     struct suggestion s;
     suggest_made(&s, &(struct room){.thing = WINDOW, .sofa = {0, 0, 2.2, 1.3}}, NULL, 11);
     assert_window(&s, RECT[0], RECT[1], RECT[2], RECT[3]);
-    suggestion_release(&s);
+    suggest_release(&s);
 }
 
 /* A high sofa hides the whole lower half: the visible sides are right, and the window ends above the sofa's back. */
@@ -281,7 +281,7 @@ static void a_window_ends_where_furniture_hides_it(void **state)
     assert_float_equal(s.openings[0].begin, RECT[0], 0.06);
     assert_float_equal(s.openings[0].end, RECT[2], 0.06);
     assert_float_equal(s.openings[0].top, RECT[3], 0.06);
-    suggestion_release(&s);
+    suggest_release(&s);
 }
 
 int main(void)

@@ -32,8 +32,8 @@ static inline struct seen see(const struct model_rays *m, const struct view *vie
         s.depth.interior.id[i] = 1;
         s.depth.interior.z[i] = z > 0 ? (float)z : s.ids.z[i];
     }
-    assert_ok(find_jumps(&s.ids, &s.trace, &s.depth, &params, &err), err);
-    assert_ok(find_clutter(&s.ids, &s.trace, &s.depth, 1, &params, &err), err);
+    assert_ok(view_jumps_find(&s.ids, &s.trace, &s.depth, &params, &err), err);
+    assert_ok(view_clutter_find(&s.ids, &s.trace, &s.depth, 1, &params, &err), err);
     return s;
 }
 

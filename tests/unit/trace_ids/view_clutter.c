@@ -31,7 +31,7 @@ static void judge_at_scale(struct seen *s, double scale)
 {
     const struct trace_params params = TRACE_PARAMS_DEFAULT;
     struct err err = ERR_INIT;
-    assert_ok(find_clutter(&s->ids, &s->trace, &s->depth, scale, &params, &err), err);
+    assert_ok(view_clutter_find(&s->ids, &s->trace, &s->depth, scale, &params, &err), err);
 }
 
 static void judge_again(struct seen *s) { judge_at_scale(s, 1); }
@@ -158,7 +158,7 @@ static void pixels_that_the_view_lacks_are_clutter(void **state)
     struct err err = ERR_INIT;
     put(&s, 0, 0, 10, H, 0, 0);
     judge_again(&s);
-    assert_ok(find_jumps(&s.ids, &s.trace, &s.depth, &params, &err), err);
+    assert_ok(view_jumps_find(&s.ids, &s.trace, &s.depth, &params, &err), err);
     assert_float_equal(s.ids.clutter[20 * W + 9], 1, 0);
     assert_float_equal(s.ids.clutter[20 * W + 9 + params.clutter_margin], 1, 0); /* and their rim */
     assert_float_equal(s.ids.clutter[20 * W + 10 + params.clutter_margin], 0, 0);

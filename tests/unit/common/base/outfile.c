@@ -60,7 +60,7 @@ static void discard_keeps_the_older_file(void **state)
     const char *path = scratch_path("keep/old");
 
     (void)state;
-    assert_ok(make_folders(scratch_path("keep"), &err), err);
+    assert_ok(outfile_make_folders(scratch_path("keep"), &err), err);
     scratch_write("keep/old", "old");
     assert_ok(outfile_open(&f, path, &err), err);
     fputs("new", f.fp);
@@ -101,13 +101,13 @@ static void missing_folders_are_made(void **state)
     struct err err = ERR_INIT, blocked = ERR_INIT;
 
     (void)state;
-    assert_ok(make_folders(scratch_path("m/n//o/"), &err), err);
-    assert_ok(make_folders(scratch_path("m/n/o"), &err), err);
+    assert_ok(outfile_make_folders(scratch_path("m/n//o/"), &err), err);
+    assert_ok(outfile_make_folders(scratch_path("m/n/o"), &err), err);
     assert_int_equal(access(scratch_path("m/n/o"), X_OK), 0);
-    assert_ok(make_folders("/", &err), err);
-    assert_ok(make_folders(".", &err), err);
+    assert_ok(outfile_make_folders("/", &err), err);
+    assert_ok(outfile_make_folders(".", &err), err);
     scratch_write("m/file", "");
-    assert_int_equal(make_folders(scratch_path("m/file"), &blocked), ST_IO);
+    assert_int_equal(outfile_make_folders(scratch_path("m/file"), &blocked), ST_IO);
     assert_err(blocked, ST_IO, "cannot make the folder");
 }
 
@@ -144,7 +144,7 @@ static void a_file_size_limit_is_an_error(void **state)
     char *output;
 
     (void)state;
-    assert_ok(make_folders(scratch_path("limit"), &err), err);
+    assert_ok(outfile_make_folders(scratch_path("limit"), &err), err);
     char *path = strdup(scratch_write("limit/old", "old"));
     const int code = child_run(over_the_file_limit, path, &output);
     if (code) fail_msg("exit %d: %s", code, output);
@@ -179,7 +179,7 @@ static void a_full_disk_is_an_error(void **state)
     char *output;
 
     (void)state;
-    assert_ok(make_folders(scratch_path("disk"), &err), err);
+    assert_ok(outfile_make_folders(scratch_path("disk"), &err), err);
     char *folder = strdup(scratch_path("disk"));
     const int code = child_run(on_a_full_disk, folder, &output);
     free(folder);
@@ -227,7 +227,7 @@ static int left_behind(const char *folder, int sig, int *code)
     struct err err = ERR_INIT;
     char path[PATH_MAX], byte;
 
-    assert_ok(make_folders(scratch_path(folder), &err), err);
+    assert_ok(outfile_make_folders(scratch_path(folder), &err), err);
     snprintf(path, sizeof path, "%s/%s/product", scratch, folder);
     w.path = path;
     assert_int_equal(pipe(w.tell), 0);

@@ -40,11 +40,11 @@ static void a_known_similarity_is_found(void **state)
         truth[i] = moved(&found[i], 2.5, r, vec3_make(7, -3, 1));
     }
     for (int count = 2; count <= COUNT; count++) { /* two are on a line: their rotations decide */
-        assert_ok(align_cameras(&a, found, truth, count, &err), err);
+        assert_ok(camera_alignment_find(&a, found, truth, count, &err), err);
         assert_near(a.scale, 2.5, 1e-9);
         for (int i = 0; i < 9; i++) assert_near(a.rotation.m[i / 3][i % 3], r.m[i / 3][i % 3], 1e-9);
         assert_near(a.translation.x, 7, 1e-9);
-        assert_ok(measure_cameras(&e, &a, found, truth, count, &err), err);
+        assert_ok(camera_errors_measure(&e, &a, found, truth, count, &err), err);
         assert_near(e.center_max, 0, 1e-9);
         assert_near(e.rotation_max, 0, 1e-6);
     }
@@ -65,9 +65,9 @@ static void a_sheared_square_has_known_errors(void **state)
         found[i] = pose_at(from[i], turn(i == 2 ? 3 : i == 1 ? 1 : 0, 1, 0, 0));
         truth[i] = pose_at(to[i], turn(0, 1, 0, 0));
     }
-    assert_ok(align_cameras(&a, found, truth, COUNT, &err), err);
+    assert_ok(camera_alignment_find(&a, found, truth, COUNT, &err), err);
     assert_near(a.scale, 1, 1e-12);
-    assert_ok(measure_cameras(&e, &a, found, truth, COUNT, &err), err);
+    assert_ok(camera_errors_measure(&e, &a, found, truth, COUNT, &err), err);
     assert_near(e.center_median, 0.1, 1e-9);
     assert_near(e.center_max, 0.1, 1e-9);
     assert_near(e.rotation_max, 3, 1e-9);
@@ -87,7 +87,7 @@ static void a_mirrored_scene_is_aligned_by_a_rotation(void **state)
         found[i] = pose_at(from[i], turn(0, 1, 0, 0));
         truth[i] = pose_at(vec3_make(from[i].x, from[i].y, -from[i].z), turn(0, 1, 0, 0));
     }
-    assert_ok(align_cameras(&a, found, truth, COUNT, &err), err);
+    assert_ok(camera_alignment_find(&a, found, truth, COUNT, &err), err);
     for (int i = 0; i < 3; i++)
         det += a.rotation.m[0][i] * (a.rotation.m[1][(i + 1) % 3] * a.rotation.m[2][(i + 2) % 3] -
                                      a.rotation.m[1][(i + 2) % 3] * a.rotation.m[2][(i + 1) % 3]);
@@ -103,10 +103,10 @@ static void coincident_cameras_have_no_scale(void **state)
     struct similarity a;
     struct err err = ERR_INIT;
     (void)state;
-    assert_int_equal(align_cameras(&a, found, truth, 1, &err), ST_DATA);
+    assert_int_equal(camera_alignment_find(&a, found, truth, 1, &err), ST_DATA);
     assert_err(err, ST_DATA, "there is no scale");
-    assert_int_equal(align_cameras(&a, found, truth, 2, &err), ST_DATA);
-    assert_int_equal(align_cameras(&a, truth, found, 2, &err), ST_DATA);
+    assert_int_equal(camera_alignment_find(&a, found, truth, 2, &err), ST_DATA);
+    assert_int_equal(camera_alignment_find(&a, truth, found, 2, &err), ST_DATA);
 }
 
 int main(void)

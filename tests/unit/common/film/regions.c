@@ -142,12 +142,12 @@ static void a_rectangle_at_the_border_is_clipped(void **state)
 {
     (void)state;
     struct subject s = {.x0 = -5, .y0 = 10, .x1 = 12, .y1 = 300};
-    assert_true(clip_to_picture(&s, 40, 30));
+    assert_true(region_clip(&s, 40, 30));
     assert_true(s.x0 == 0 && s.y0 == 10 && s.x1 == 12 && s.y1 == 30);
     s = (struct subject){.x0 = -5, .y0 = 10, .x1 = 0, .y1 = 20};
-    assert_false(clip_to_picture(&s, 40, 30));
+    assert_false(region_clip(&s, 40, 30));
     s = (struct subject){.x0 = 3, .y0 = 31, .x1 = 9, .y1 = 40};
-    assert_false(clip_to_picture(&s, 40, 30));
+    assert_false(region_clip(&s, 40, 30));
 }
 
 int main(void)

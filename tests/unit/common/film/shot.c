@@ -206,11 +206,11 @@ static void missing_subjects_and_subjects_behind_the_camera_are_errors(void **st
     struct subject one[2] = {upright_subject(1, 2, -9, 0.5, 1), upright_subject(1, 2, 9, 0.5, 1)};
     struct shot_move m;
     for (int move = 0; move < MOVE_COUNT; move++)
-        for (int count = 0; count < move_subjects((enum camera_move)move); count++) {
+        for (int count = 0; count < film_move_subjects((enum camera_move)move); count++) {
             const struct subject_list few = subjects_of(one + 1, count);
             struct err err = ERR_INIT;
             char words[32];
-            snprintf(words, sizeof words, "needs %d subjects", move_subjects((enum camera_move)move));
+            snprintf(words, sizeof words, "needs %d subjects", film_move_subjects((enum camera_move)move));
             assert_int_equal(shot_move_make(&m, &s, (enum camera_move)move, count ? &few : NULL, &err), ST_DATA);
             assert_err(err, ST_DATA, words);
         }

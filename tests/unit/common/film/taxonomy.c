@@ -112,7 +112,7 @@ static void random_choice_covers_the_row_without_tones(void **state)
         for (uint64_t seed = 0; seed < 400; seed++) {
             const struct film_effect e = film_effect_draw(rows[r].scene, seed),
                                      again = film_effect_draw(rows[r].scene, seed);
-            assert_true(e.tone == TONE_NONE && move_subjects(e.move) == rows[r].subjects);
+            assert_true(e.tone == TONE_NONE && film_move_subjects(e.move) == rows[r].subjects);
             assert_true(again.move == e.move && again.focus == e.focus);
             kinds += !seen[e.move][e.focus];
             seen[e.move][e.focus] = true;

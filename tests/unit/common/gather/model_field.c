@@ -284,7 +284,7 @@ static const char *write_reference(bool with_pose)
         assert_ok(exr_add_plane(&im, names[k], k == 3 ? EXR_UINT : EXR_FLOAT, &plane, &err), err);
         for (int i = 0; i < 64 * 64 && k != 3; i++) plane->f[i] = k < 3 ? 7.5f : 1e-6f;
     }
-    if (with_pose) exr_set_camera(&im, &v);
+    if (with_pose) view_image_set_camera(&im, &v);
     assert_ok(exr_set_attribute(&im, "remodel:lens", "PINHOLE 64 64 32 32 32 32", &err), err);
     assert_ok(exr_write(&im, scratch_path("sky.exr"), NULL, &err), err);
     exr_image_release(&im);

@@ -403,7 +403,7 @@ static void world_to_camera_follows_openexr(void **state)
     struct view view = sample_view(16, 14);
     const struct vec3 world = vec3_make(0.25, -4, 7);
     (void)state;
-    exr_set_camera(&im, &view);
+    view_image_set_camera(&im, &view);
     const float *m = im.world_to_camera, p[4] = {0.25F, -4, 7, 1};
     float out[4] = {0};
     for (int c = 0; c < 4; c++)

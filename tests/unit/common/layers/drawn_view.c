@@ -185,7 +185,7 @@ static int check(struct sheet *s, const struct view *view, const struct view *no
     struct err err = ERR_INIT;
     int sum = 0;
 
-    view_relation_make(&relation, view, novel);
+    segment_relation_make(&relation, view, novel);
     assert_int_equal(drawn_view_prepare(&s->drawn, &s->depth, &s->packed, view, novel, &err), ST_OK);
     assert_int_equal(s->drawn.tile_count, TILES);
     for (int tile = 0; tile < TILES; tile++) {

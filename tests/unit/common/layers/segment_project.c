@@ -53,7 +53,7 @@ static int check(const struct view *view, const struct view *novel, const struct
     struct projected_segment s;
     int count = 0;
 
-    view_relation_make(&relation, view, novel);
+    segment_relation_make(&relation, view, novel);
     const bool seen = segment_project(&s, &relation, segment, shape);
     const double center = segment->plane[0] * shape->u + segment->plane[1] * shape->v + segment->plane[2];
     for (int y = 0; y < H; y++)
@@ -110,7 +110,7 @@ static bool projects(const struct view *view, const struct view *novel, struct d
 {
     struct view_relation relation;
     struct projected_segment p;
-    view_relation_make(&relation, view, novel);
+    segment_relation_make(&relation, view, novel);
     return segment_project(&p, &relation, &s, &part);
 }
 
@@ -174,7 +174,7 @@ static void a_segment_without_texels_is_not_visible(void **state)
     const struct segment_shape none = {0, 0, -1, 0, 0, 0, 0};
     struct view_relation relation;
     struct projected_segment p;
-    view_relation_make(&relation, &view, &view);
+    segment_relation_make(&relation, &view, &view);
     assert_false(segment_project(&p, &relation, &s, &none));
 }
 

@@ -16,15 +16,15 @@ static void distances_of_a_segment_from_a_triangle_are_exact(void **state)
     (void)state;
     const struct vec3 c[3] = {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}};
     const struct vec3 over = {0.5, 0.5, 1}, under = {0.5, 0.5, -1}, beside = {-3, 0.5, 0}, high = {0.7, 0.4, 3};
-    assert_float_equal(segment_triangle_distance(over, over, c), 1, 1e-12);
-    assert_float_equal(segment_triangle_distance(over, high, c), 1, 1e-12);
-    assert_float_equal(segment_triangle_distance(over, under, c), 0, 0);
-    assert_float_equal(segment_triangle_distance(beside, beside, c), 3, 1e-12);
+    assert_float_equal(clearance_of_triangle(over, over, c), 1, 1e-12);
+    assert_float_equal(clearance_of_triangle(over, high, c), 1, 1e-12);
+    assert_float_equal(clearance_of_triangle(over, under, c), 0, 0);
+    assert_float_equal(clearance_of_triangle(beside, beside, c), 3, 1e-12);
     /* past an edge, above the plane: parallel to the edge, and across its line */
-    assert_float_equal(segment_triangle_distance(vec3_make(-1, -3, 4), vec3_make(5, -3, 4), c), 5, 1e-12);
-    assert_float_equal(segment_triangle_distance(vec3_make(1, -3, -9), vec3_make(1, -3, 9), c), 3, 1e-12);
+    assert_float_equal(clearance_of_triangle(vec3_make(-1, -3, 4), vec3_make(5, -3, 4), c), 5, 1e-12);
+    assert_float_equal(clearance_of_triangle(vec3_make(1, -3, -9), vec3_make(1, -3, 9), c), 3, 1e-12);
     /* beyond the corner (2, 0) */
-    assert_float_equal(segment_triangle_distance(vec3_make(5, -4, 0), vec3_make(9, -4, 0), c), 5, 1e-12);
+    assert_float_equal(clearance_of_triangle(vec3_make(5, -4, 0), vec3_make(9, -4, 0), c), 5, 1e-12);
 }
 
 static void distances_agree_with_points_all_over_both(void **state)
@@ -47,7 +47,7 @@ static void distances_agree_with_points_all_over_both(void **state)
                                                     vec3_scale(vec3_sub(p[4], p[2]), (double)v / STEPS));
                     least = fmin(least, vec3_length(vec3_sub(on, vec3_add(p[2], at))));
                 }
-        const double d = segment_triangle_distance(p[0], p[1], p + 2);
+        const double d = clearance_of_triangle(p[0], p[1], p + 2);
         assert_true(d <= least + 1e-12);
         assert_true(d > least - 0.12); /* the points are up to 0.06 apart on the segment and on the triangle */
     }
