@@ -27,8 +27,8 @@ struct provenance {
 
 struct textfile;
 
-/* Reads the file at `path` and records its hash as `name`; the second parses it as text. A name that is already recorded
- * is not recorded again. prov may be NULL. */
+/* Reads the file at `path` and records its hash as `name`; the second parses it as text. A name that is already
+ * recorded is not recorded again. prov may be NULL. */
 enum status provenance_read(struct provenance *prov, const char *name, struct file_bytes *file, const char *path,
                             struct err *err);
 enum status provenance_open(struct provenance *prov, const char *name, struct textfile *t, const char *path,

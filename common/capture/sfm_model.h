@@ -50,8 +50,8 @@ struct sfm_model {
 
 /* Reads cameras.txt, images.txt and points3D.txt of a folder; points3D.txt may be empty. ST_DATA with file and line:
  * unsupported camera model (the message lists the supported ones), NaN, duplicate or missing id, a track or observation
- * that refers to nothing, a quaternion of length 0 (other lengths are normalised). The files are recorded in prov, as are
- * those that readers of other products read; it may be NULL. */
+ * that refers to nothing, a quaternion of length 0 (other lengths are normalised). The files are recorded in prov, as
+ * are those that readers of other products read; it may be NULL. */
 enum status sfm_model_read_text(struct sfm_model *m, const char *folder, struct provenance *prov, struct err *err);
 
 /* Reads cameras.txt and images.txt only: poses and lenses, no points and no observations. */

@@ -17,8 +17,8 @@ struct view_planes {
     const float *channel[VIEW_CHANNELS]; /* of exr */
 };
 
-/* Reads the first `count` channels of FOLDER/VIEW.exr. p is {0} on entry; the caller releases it in each case. ST_DATA: the size
- * differs from the camera's; a channel is missing, or has integers. */
+/* Reads the first `count` channels of FOLDER/VIEW.exr. p is {0} on entry; the caller releases it in each case. ST_DATA:
+ * the size differs from the camera's; a channel is missing, or has integers. */
 enum status view_planes_read(struct view_planes *p, const char *folder, const struct view *view, int count,
                              struct provenance *prov, struct err *err);
 void view_planes_release(struct view_planes *p);

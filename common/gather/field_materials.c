@@ -6,20 +6,21 @@
  * light over the lobe (specular.c). What the surface is without gloss, texture included, is in the texel and cancels.
  * Where the view of a texel is unknown, or behind its surface, S is the camera of the region.
  *
- * Depth. I_s is gathered in `plain`, the same field without materials, in which all texels are as they were photographed:
- * one nested gather, never deeper. Its rays are few, since the noise of one look is one of many in a gather. Both
- * integrals use the same random numbers, so that their difference is 0 for a viewer at S, and small near it. The numbers
- * depend on the ray alone: a gather has the same bits whatever thread traces the ray.
+ * Depth. I_s is gathered in `plain`, the same field without materials, in which all texels are as they were
+ * photographed: one nested gather, never deeper. Its rays are few, since the noise of one look is one of many in a
+ * gather. Both integrals use the same random numbers, so that their difference is 0 for a viewer at S, and small near
+ * it. The numbers depend on the ray alone: a gather has the same bits whatever thread traces the ray.
  *
- * Grazing. Ward's lobe has no bound as the viewer approaches the surface's plane. A viewer less than GRAZING (the sine of
- * the angle) above it counts as that high; fits use no such angles.
+ * Grazing. Ward's lobe has no bound as the viewer approaches the surface's plane. A viewer less than GRAZING (the sine
+ * of the angle) above it counts as that high; fits use no such angles.
  *
- * Places. What a ray costs must not depend on regions. When the materials are read, each texel of a face that a region's
- * camera can see is projected to the photograph; a cone around the region's rays rejects most of them at once. The texel
- * gets a mark, an index of pairs of material and viewpoint. Of several materials that hold a texel the first counts.
+ * Places. What a ray costs must not depend on regions. When the materials are read, each texel of a face that a
+ * region's camera can see is projected to the photograph; a cone around the region's rays rejects most of them at once.
+ * The texel gets a mark, an index of pairs of material and viewpoint. Of several materials that hold a texel the first
+ * counts.
  *
- * Source: [Colburn 2014, 5.3.1, 5.4]. Different here: the difference of two integrals in place of a diffuse part, so that
- * texture stays. */
+ * Source: [Colburn 2014, 5.3.1, 5.4]. Different here: the difference of two integrals in place of a diffuse part, so
+ * that texture stays. */
 #include "common/gather/field_materials.h"
 
 #include <math.h>
@@ -45,7 +46,7 @@ void field_materials_release(struct field_materials *m)
     *m = (struct field_materials){0};
 }
 
-/* --------------------------------------------------------------------------------------------------------- reflection */
+/* ------------------------------------------------------------------------------------------------------- reflection */
 
 /* splitmix64's finalizer */
 static uint64_t mix(uint64_t h, double value)
@@ -89,7 +90,7 @@ bool field_materials_reflect(struct rgb *radiance, const struct field_materials 
     return true;
 }
 
-/* ------------------------------------------------------------------------------------------------------------ regions */
+/* ---------------------------------------------------------------------------------------------------------- regions */
 
 /* A region, ready for points of the model. */
 struct seen_region {
@@ -138,8 +139,8 @@ static int edge_steps(const struct material_region *r, int i)
     return 1 + (int)fmin(hypot(a[0] - b[0], a[1] - b[1]) / EDGE_STEP, 4096);
 }
 
-/* The least cosine between the axis and rays through the region's border, and the sum of these rays. False: a point of the
- * border has no ray. */
+/* The least cosine between the axis and rays through the region's border, and the sum of these rays. False: a point of
+ * the border has no ray. */
 static bool follow_border(const struct seen_region *s, const struct model_axes *axes, double *cosine, struct vec3 *sum)
 {
     *cosine = 1;
@@ -201,7 +202,7 @@ static enum status add_regions(struct finder *d, const struct material_list *l, 
     return ST_OK;
 }
 
-/* ------------------------------------------------------------------------------------------------- texels of regions */
+/* ------------------------------------------------------------------------------------------------ texels of regions */
 
 /* Whether the region's camera sees a point of a face, and the region holds it. */
 static bool region_shows(const struct seen_region *s, const struct finder *d, struct vec3 p, struct vec3 normal)
@@ -261,7 +262,7 @@ static enum status find_texels(struct finder *d, struct err *err)
     return ST_OK;
 }
 
-/* --------------------------------------------------------------------------------------------------------------- marks */
+/* ------------------------------------------------------------------------------------------------------------ marks */
 
 /* The viewpoint of a view of the atlas. False: it is unknown or behind the face, and *viewpoint is unchanged. */
 static bool find_viewpoint(struct vec3 *viewpoint, const struct finder *d, int view, const struct face_plane *plane)
@@ -327,7 +328,7 @@ static enum status mark_texels(struct finder *d, struct err *err)
     return ST_OK;
 }
 
-/* ------------------------------------------------------------------------------------------------------------ reading */
+/* ---------------------------------------------------------------------------------------------------------- reading */
 
 static enum status read_list(struct field_materials *m, const char *path, struct provenance *prov, struct err *err)
 {

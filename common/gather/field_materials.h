@@ -1,7 +1,7 @@
 /* field_materials.h - fitted materials on the surfaces of a field of light: where they are, and what they reflect.
  *
- * A texel of the VITA has a material if a region of materials.txt holds its middle and the model hides it from the region's
- * camera nowhere. Materials are on the unedited model. */
+ * A texel of the VITA has a material if a region of materials.txt holds its middle and the model hides it from the
+ * region's camera nowhere. Materials are on the unedited model. */
 #ifndef REMODEL_GATHER_FIELD_MATERIALS_H
 #define REMODEL_GATHER_FIELD_MATERIALS_H
 
@@ -34,9 +34,10 @@ struct field_surface {
     const struct face_plane *planes; /* of each face id */
 };
 
-/* Reads materials.txt and finds its regions on the model, once for an atlas; VIEWS has cameras.txt, images.txt, lenses.txt.
- * Same bits for any number of threads. The caller releases m, also after a failure. ST_DATA also: a region in a view that
- * lenses.txt does not have, more than FIELD_ATLAS_MARKS pairs of a material and a view that its texels come from. */
+/* Reads materials.txt and finds its regions on the model, once for an atlas; VIEWS has cameras.txt, images.txt,
+ * lenses.txt. Same bits for any number of threads. The caller releases m, also after a failure. ST_DATA also: a region
+ * in a view that lenses.txt does not have, more than FIELD_ATLAS_MARKS pairs of a material and a view that its texels
+ * come from. */
 enum status field_materials_read(struct field_materials *m, const struct field_surface *on, const char *path,
                                  const char *views, const struct model_axes *axes, struct provenance *prov,
                                  struct err *err);

@@ -26,9 +26,9 @@ struct field_openings {
 /* Vectors of the plane of x and y with which q = a x + b y has a = dual[0].q and b = dual[1].q. */
 void field_dual(struct vec3 dual[2], struct vec3 x, struct vec3 y);
 
-/* Reads the reference images that the openings of the list name, FOLDER/ID.exr, in place of those that o has. The list must
- * outlive o. model: whose faces hide the outdoors. The caller releases o, also after a failure. ST_DATA also: an image
- * without a pose, or that shows nothing of the outdoors. */
+/* Reads the reference images that the openings of the list name, FOLDER/ID.exr, in place of those that o has. The list
+ * must outlive o. model: whose faces hide the outdoors. The caller releases o, also after a failure. ST_DATA also: an
+ * image without a pose, or that shows nothing of the outdoors. */
 enum status field_openings_read(struct field_openings *o, const struct light_list *lights,
                                 const struct model_rays *model, const char *folder, const struct model_axes *axes,
                                 struct provenance *prov, struct err *err);

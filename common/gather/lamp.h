@@ -7,8 +7,8 @@
 #include "common/light/colour.h"
 #include "common/math/vec.h"
 
-/* Of the model's size, 5 cm of 10 m: a lamp that is at most this far behind a surface is still in front of it. A lamp is a
- * place of a ceiling or hangs under it, and photographs and the model agree on that to some centimetres only. */
+/* Of the model's size, 5 cm of 10 m: a lamp that is at most this far behind a surface is still in front of it. A lamp
+ * is a place of a ceiling or hangs under it, and photographs and the model agree on that to some centimetres only. */
 #define LAMP_REACH 0.005
 
 enum lamp_shape { LAMP_DISK, LAMP_QUAD };

@@ -2,18 +2,19 @@
  *
  * Overview. A ray is traced against the model without its panes. What it sees is the first of:
  *   - a declared lamp on its way, seen from the side that shines: S cos(t)^exponent, and 0 beyond the cone's angle;
- *   - the outside of a face: its texel in the VITA, photographed or synthesised; nothing where there is none; of a glossy
- *     material, what the ray's origin sees of it (field_materials.c);
+ *   - the outside of a face: its texel in the VITA, photographed or synthesised; nothing where there is none; of a
+ * glossy material, what the ray's origin sees of it (field_materials.c);
  *   - the inside of a face, from a point in a solid: nothing;
  *   - the outdoors, by direction, where it leaves the model: the reference images of the opening that it passes
- *     (field_openings.c), or outdoors.exr. Panes are clear: photographs through them have the light that they let through.
+ *     (field_openings.c), or outdoors.exr. Panes are clear: photographs through them have the light that they let
+ * through.
  *
- * Lamps. A lamp is a place of a ceiling, and the two agree to some millimetres only; a lamp that is up to `reach` behind
- * the surface that a ray meets is still in front of it. Texels under a lamp and around it are replaced when the field is
- * read (field_atlas.c), so that no light counts twice.
+ * Lamps. A lamp is a place of a ceiling, and the two agree to some millimetres only; a lamp that is up to `reach`
+ * behind the surface that a ray meets is still in front of it. Texels under a lamp and around it are replaced when the
+ * field is read (field_atlas.c), so that no light counts twice.
  *
- * Emitters say where bright light is: every lamp; the openings of lights.txt; panes of the model that lights.txt does not
- * name, since the sky lights through those too; the suns of the outdoors (field_sky.c).
+ * Emitters say where bright light is: every lamp; the openings of lights.txt; panes of the model that lights.txt does
+ * not name, since the sky lights through those too; the suns of the outdoors (field_sky.c).
  *
  * Source: the light function L(x -> direction) of [Colburn 2014, 5.3.1 to 5.3.3]. Different here: beyond the
  * images that an opening names, the outdoors are one picture of all lighting reference images and photographs. */
@@ -28,7 +29,7 @@
 static const double HANGING = 0.1;     /* of the model's size: lamps further from a face leave its texels alone */
 static const double PANE_REACH = 0.01; /* of the model's size: beyond that, a pane's surroundings are looked at */
 
-/* --------------------------------------------------------------------------------------------------------------- look */
+/* ------------------------------------------------------------------------------------------------------------- look */
 
 const struct lamp *model_field_lamp(const struct model_field *f, struct vec3 from, struct vec3 direction, double t,
                                     double *at)
@@ -151,7 +152,7 @@ void model_field_viewpoint(const struct model_field *f, int face_id, struct vec3
     if (mark >= 0) *viewpoint = f->materials.marks[mark].viewpoint;
 }
 
-/* ----------------------------------------------------------------------------------------------------------- emitters */
+/* --------------------------------------------------------------------------------------------------------- emitters */
 
 static void prepare_lamps(struct model_field *f)
 {
@@ -297,7 +298,7 @@ static enum status find_emitters(struct model_field *f, struct err *err)
     return ST_OK;
 }
 
-/* ----------------------------------------------------------------------------------------------------------- reading */
+/* ---------------------------------------------------------------------------------------------------------- reading */
 
 static enum status find_planes(struct model_field *f, struct err *err)
 {

@@ -18,8 +18,8 @@ struct model_field_files {
     const struct field_surfaces *surfaces; /* NULL: none */
 };
 
-/* Further surfaces in the model, synthetic objects: triangles and what each sends out, on its front and on its back. Both
- * arrays are the caller's, must outlive the field, and may change between gathers. */
+/* Further surfaces in the model, synthetic objects: triangles and what each sends out, on its front and on its back.
+ * Both arrays are the caller's, must outlive the field, and may change between gathers. */
 struct field_surfaces {
     struct model_extra triangles;
     const struct rgb (*radiance)[2];
@@ -57,32 +57,33 @@ enum status model_field_read(struct model_field *f, const struct model_field_fil
                              struct err *err);
 void model_field_release(struct model_field *f);
 
-/* Reads the lighting reference images that the openings of lights.txt name, FOLDER/ID.exr, with their places in the scene:
- * a ray through such an opening sees the first of them that shows its direction, and outdoors.exr where none does. ST_DATA
- * also: an image without a pose, or that shows nothing of the outdoors, because it lies in a solid or looks at one. */
+/* Reads the lighting reference images that the openings of lights.txt name, FOLDER/ID.exr, with their places in the
+ * scene: a ray through such an opening sees the first of them that shows its direction, and outdoors.exr where none
+ * does. ST_DATA also: an image without a pose, or that shows nothing of the outdoors, because it lies in a solid or
+ * looks at one. */
 enum status model_field_read_references(struct model_field *f, const char *folder, const struct model_axes *axes,
                                         struct provenance *prov, struct err *err);
 
-/* Reads materials.txt (field_materials.h), once for a field, after model_field_read(). From then on a ray that meets a texel
- * of a glossy material sees it as its own origin would, with the source LIGHT_MATERIAL. */
+/* Reads materials.txt (field_materials.h), once for a field, after model_field_read(). From then on a ray that meets a
+ * texel of a glossy material sees it as its own origin would, with the source LIGHT_MATERIAL. */
 enum status model_field_read_materials(struct model_field *f, const char *path, const char *views,
                                        const struct model_axes *axes, struct provenance *prov, struct err *err);
 
 /* The material at a point of a face, an index into materials.list; -1: none, or no texel. Model frame. */
 int model_field_material(const struct model_field *f, int face_id, struct vec3 p);
-/* From where the texel at a point of a face was photographed, as far as its mark knows; *viewpoint is unchanged where it has
- * none. */
+/* From where the texel at a point of a face was photographed, as far as its mark knows; *viewpoint is unchanged where
+ * it has none. */
 void model_field_viewpoint(const struct model_field *f, int face_id, struct vec3 p, struct vec3 *viewpoint);
 
-/* Switches a lamp (an index into `lights`; -1: all) off or on. In the place of a lamp that is off there is the ceiling, in
- * the colour of its surroundings: what is left is the light from elsewhere. Not while others gather. */
+/* Switches a lamp (an index into `lights`; -1: all) off or on. In the place of a lamp that is off there is the ceiling,
+ * in the colour of its surroundings: what is left is the light from elsewhere. Not while others gather. */
 void model_field_switch_lamp(struct model_field *f, int lamp, bool on);
 
 /* Multiplies the radiance of the lamp of this name; 0 0 0 switches it off. Unknown names are left alone. */
 void model_field_scale_lamp(struct model_field *f, const char *name, const double scale[3]);
 
-/* The nearest lamp that is on and seen from its bright side, on a ray from `from` in a unit direction up to the distance t
- * of a surface (INFINITY allowed), or a little behind that; sets *at to its distance. NULL: none. */
+/* The nearest lamp that is on and seen from its bright side, on a ray from `from` in a unit direction up to the
+ * distance t of a surface (INFINITY allowed), or a little behind that; sets *at to its distance. NULL: none. */
 const struct lamp *model_field_lamp(const struct model_field *f, struct vec3 from, struct vec3 direction, double t,
                                     double *at);
 

@@ -304,7 +304,8 @@ const char *graph_parameter(struct graph *g, const char *name)
 
 /* --- rules --- */
 
-/* stale=$(common/run/stale.sh KIND FOLDER NAME... -- PREREQUISITES): the targets, FOLDER/NAME.exr, are in one folder. */
+/* stale=$(common/run/stale.sh KIND FOLDER NAME... -- PREREQUISITES): the targets, FOLDER/NAME.exr, are in one folder.
+ */
 static void print_stale(struct graph *g)
 {
     const struct rule *r = &g->rule;

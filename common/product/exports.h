@@ -3,8 +3,8 @@
 #ifndef REMODEL_PRODUCT_EXPORTS_H
 #define REMODEL_PRODUCT_EXPORTS_H
 
-/* X(format, file, name, write): its name on the page; the function of export_model that writes it (writers.h). In the order
- * of the page. The first is written last: Make takes it for the whole. */
+/* X(format, file, name, write): its name on the page; the function of export_model that writes it (writers.h). In the
+ * order of the page. The first is written last: Make takes it for the whole. */
 #define EXPORTS(X)                                          \
     X(IFC, "model.ifc", "building model (IFC4)", write_ifc) \
     X(GLB, "model.glb", "3D model (glTF)", write_gltf)      \

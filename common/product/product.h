@@ -12,10 +12,10 @@
 
 #include "common/base/err.h"
 #include "common/base/file_path.h"
-#include "common/product/exports.h"
 #include "common/base/outfile.h"
 #include "common/base/provenance.h"
 #include "common/base/textfile.h"
+#include "common/product/exports.h"
 
 enum product_id {
 #define PRODUCT(id, ...) PRODUCT_##id,
@@ -78,8 +78,8 @@ enum status product_path_in(char path[FILE_PATH], const char *folder, enum produ
  * letters of its own ("ids/index.txt" is no view's). PRODUCT_COUNT: none. */
 enum product_id product_at(const char *path);
 
-/* The part of a path that names the product in the provenance: "views/IMG_1.exr" where the path ends so, otherwise its file
- * alone, without the folders that somebody gave. PRODUCT_COUNT: no product, the file's name. */
+/* The part of a path that names the product in the provenance: "views/IMG_1.exr" where the path ends so, otherwise its
+ * file alone, without the folders that somebody gave. PRODUCT_COUNT: no product, the file's name. */
 const char *product_name(enum product_id id, const char *path);
 
 /* Opens a text product, records it in prov, which may be NULL, and reads its first line: ST_DATA unless that has the

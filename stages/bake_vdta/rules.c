@@ -1,4 +1,5 @@
-/* rules.c - an atlas for each photo. Which other views it reads is known when it has been made, and listed in PHOTO.d. */
+/* rules.c - an atlas for each photo. Which other views it reads is known when it has been made, and listed in PHOTO.d.
+ */
 #include "common/graph/scene_rules.h"
 
 static void photo_rule(struct graph *g, const struct scene_facts *f, const struct photo_views *p)

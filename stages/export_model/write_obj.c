@@ -1,4 +1,5 @@
-/* write_obj.c - Wavefront OBJ, model.obj with model.mtl: an object for each body, a group for each face name; z is up. */
+/* write_obj.c - Wavefront OBJ, model.obj with model.mtl: an object for each body, a group for each face name; z is up.
+ */
 #include <stdio.h>
 
 #include "stages/export_model/writers.h"

@@ -2,8 +2,8 @@
 #ifndef REMODEL_EXPORT_WRITERS_H
 #define REMODEL_EXPORT_WRITERS_H
 
-#include "common/product/exports.h"
 #include "common/model/model_plan.h"
+#include "common/product/exports.h"
 #include "stages/export_model/export_faces.h"
 
 struct export_scene {

@@ -1,5 +1,5 @@
-/* rules.c - the film from one photo to another. Two photos have a morph and nothing else, unless a move was named; camera
- * poses are used where there are any. */
+/* rules.c - the film from one photo to another. Two photos have a morph and nothing else, unless a move was named;
+ * camera poses are used where there are any. */
 #include <string.h>
 
 #include "common/graph/scene_rules.h"

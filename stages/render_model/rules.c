@@ -1,7 +1,7 @@
 /* rules.c - the model and its edits under photographic texture: from the photos' views, from given cameras, as films.
  *
- * The frames of a tour are known when it has been planned; which views and atlases given cameras use, when they have been
- * drawn: so these need all of them. */
+ * The frames of a tour are known when it has been planned; which views and atlases given cameras use, when they have
+ * been drawn: so these need all of them. */
 #include <string.h>
 
 #include "common/graph/scene_rules.h"

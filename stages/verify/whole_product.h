@@ -1,5 +1,5 @@
-/* whole_product.h - whether a file is a whole product. Its kind follows from the table of products, by its path, its name
- * or its extension:
+/* whole_product.h - whether a file is a whole product. Its kind follows from the table of products, by its path, its
+ * name or its extension:
  *
  *   EXR                     decoded to the last pixel
  *   PNG, JPEG               decoded to the last pixel; the format must be the one that the extension names

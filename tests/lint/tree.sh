@@ -110,6 +110,55 @@ the_check_of_circles_finds_one()
     ! calls "$scratch/ring" | tsort >/dev/null 2>&1 || fail "a circle of two was not found"
 }
 
+# check_names: of lines "FILE FUNCTION", those whose function does not begin with a word of the file's path, in the singular or the
+# plural. Apart: vec.h has mat3_ and quat_ too, and a transform is called a_from_b.
+check_names()
+{
+    awk '
+        $2 ~ /_from_/ || $2 == "main" || $2 ~ /^_Z/ { next }
+        {
+            split($2, name, "_"); first = name[1]; path = $1; sub(/\.[a-z]*$/, "", path)
+            n = split(path, word, /[\/_]/); ok = path == "common/math/vec" && first ~ /^(mat3|quat)$/
+            for (i = 2; i <= n; i++) if (first == word[i] || first == word[i] "s" || first "s" == word[i]) ok = 1
+            if (!ok) print $1 ": " $2 "() begins with no word of its path"
+        }'
+}
+
+functions_begin_with_a_word_of_their_file()
+{
+    local bad
+    sources 'common/*.c' 'common/*.cc' 'stages/*.c' 'stages/*.cc' | while read -r f; do [ ! -e "$B/obj/${f%.*}.o" ] || echo "$B/obj/${f%.*}.o"; done >"$scratch/objects"
+    [ -s "$scratch/objects" ] || fail "$B/obj has no objects; build first"
+    bad=$(xargs nm -A -g --defined-only <"$scratch/objects" | sed -nE "s|^$B/obj/(.*)\.o:[0-9a-f]+ T (.*)|\1.c \2|p" | check_names)
+    [ -z "$bad" ] || { echo "$bad"; fail "external functions that their names do not lead to: $(wc -l <<<"$bad"); rename them, or move them to a file of that name"; }
+}
+
+the_check_of_names_finds_what_is_wrong()
+{
+    check_names >"$scratch/names" <<'TEXT'
+common/layers/view_mesh.c mesh_make
+common/film/moves.c move_name
+common/film/shot.c film_length
+common/math/vec.c quat_slerp
+common/film/shot.c world_from_shot
+stages/relight/light/lamp.c light_sum
+common/math/vec.c pose_apply
+stages/relight/light/lamp.c lamplight_sum
+TEXT
+    diff - "$scratch/names" <<'TEXT'
+common/math/vec.c: pose_apply() begins with no word of its path
+stages/relight/light/lamp.c: lamplight_sum() begins with no word of its path
+TEXT
+}
+
+# a file is called by its name alone, in messages of compilers and between people
+files_have_names_of_their_own()
+{
+    local twice
+    twice=$(sources 'common/*.c' 'stages/*.c' 'common/*.h' 'stages/*.h' | sed 's|.*/||' | sort | uniq -d | tr '\n' ' ')
+    [ -z "$twice" ] || fail "several files are called ${twice}; each needs a name that says what it has"
+}
+
 formatted()
 {
     command -v clang-format >/dev/null || skip "clang-format is not installed"
@@ -190,6 +239,9 @@ run folders_are_permitted_only_what_they_include
 run the_check_of_includes_finds_what_is_wrong
 run no_files_call_each_other_in_a_circle
 run the_check_of_circles_finds_one
+run functions_begin_with_a_word_of_their_file
+run the_check_of_names_finds_what_is_wrong
+run files_have_names_of_their_own
 run formatted
 run generated_files_are_current
 run no_pipe_ends_before_its_input_does

@@ -1,9 +1,9 @@
 /* plan_apply.c - applies the statements of a script to a plan.
  *
- * Each statement has a function in the table of verbs, which changes the plan at once. What depends on the whole plan (whether an opening lies in its wall, whether a
- * room's walls close) is checked once the script is read, and in an edit after each statement, so that the statement
- * which breaks the building is named. An edit's statement must also change something: the plan as a text is compared
- * with what it was before. */
+ * Each statement has a function in the table of verbs, which changes the plan at once. What depends on the whole plan
+ * (whether an opening lies in its wall, whether a room's walls close) is checked once the script is read, and in an
+ * edit after each statement, so that the statement which breaks the building is named. An edit's statement must also
+ * change something: the plan as a text is compared with what it was before. */
 #include <stdlib.h>
 #include <string.h>
 

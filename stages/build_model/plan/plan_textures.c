@@ -88,8 +88,8 @@ static bool has_places(const char *face)
     return !part && (!strncmp(face, "floor/", 6) || !strncmp(face, "ceiling/", 8));
 }
 
-/* The rectangle of a place on a face: S and Z on a wall, X and Y on a floor or ceiling. plan: the edited or the unedited
- * one. copied: the place is for a copy, not for a colour. */
+/* The rectangle of a place on a face: S and Z on a wall, X and Y on a floor or ceiling. plan: the edited or the
+ * unedited one. copied: the place is for a copy, not for a colour. */
 static enum status place_on_face(struct plan_context *c, struct plan *plan, const char *face,
                                  const struct script_place *place, bool copied, double rect[4])
 {

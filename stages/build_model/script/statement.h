@@ -1,8 +1,8 @@
 /* statement.h - a statement of a model script, as it is written; plan.h has its meaning.
  *
- * A PLACE is a position: two opposite corners, by coordinates (`from A B to C D`) or as two pixels of a photograph as it is
- * stored (`in VIEW X0 Y0 X1 Y1`); relative to walls, `at left|right D width W from Z to Z` for an opening and `parallel to
- * WALL by D between WALL WALL` for a wall. */
+ * A PLACE is a position: two opposite corners, by coordinates (`from A B to C D`) or as two pixels of a photograph as
+ * it is stored (`in VIEW X0 Y0 X1 Y1`); relative to walls, `at left|right D width W from Z to Z` for an opening and
+ * `parallel to WALL by D between WALL WALL` for a wall. */
 #ifndef REMODEL_BUILD_MODEL_STATEMENT_H
 #define REMODEL_BUILD_MODEL_STATEMENT_H
 

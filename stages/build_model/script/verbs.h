@@ -1,7 +1,8 @@
 /* verbs.h - the table of the model script's statements: how each is read, and what it does to a plan.
  *
- * The rows are in verbs.def. The files plan_*.c have the functions, by subject: what reads a statement stands beside what
- * applies it. They call script_words.c and nothing above it; script.c and plan_apply.c call them by the table alone. */
+ * The rows are in verbs.def. The files plan_*.c have the functions, by subject: what reads a statement stands beside
+ * what applies it. They call script_words.c and nothing above it; script.c and plan_apply.c call them by the table
+ * alone. */
 #ifndef REMODEL_BUILD_MODEL_VERBS_H
 #define REMODEL_BUILD_MODEL_VERBS_H
 

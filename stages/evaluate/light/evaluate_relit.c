@@ -345,7 +345,7 @@ static enum status measure_edit(struct evaluation *e, const char *edit, struct e
 
 enum status evaluate_relit(struct evaluation *e, struct err *err)
 {
-    struct name_list edits = {0};
+    struct true_edits edits = {0};
     enum status st = true_edits_find(&edits, e->truth_folder, err);
     for (int i = 0; !st && i < edits.count; i++) st = measure_edit(e, edits.names[i], err);
     true_edits_release(&edits);

@@ -272,7 +272,7 @@ static enum status measure_edit(struct pictures_job *job, const char *where, con
 static enum status measure_edits(struct pictures_job *job, const struct renders *before, struct err *err)
 {
     struct evaluation *e = job->e;
-    struct name_list edits = {0};
+    struct true_edits edits = {0};
     char where[64], folder[FILE_PATH];
     int with_truth = 0;
     enum status st = true_edits_find(&edits, e->truth_folder, err);

@@ -177,7 +177,7 @@ static enum status compare(struct evaluation *e, const char *prefix, const char 
 
 enum status evaluate_faces(struct evaluation *e, struct err *err)
 {
-    struct name_list edits = {0};
+    struct true_edits edits = {0};
     char path[FILE_PATH];
     if (evaluation_path(path, e, PRODUCT_MODEL, NULL, err)) return err->status;
     enum status st = path_is_file(path) ? compare(e, "model", "model", "", err) : ST_OK;

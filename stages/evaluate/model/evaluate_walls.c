@@ -123,7 +123,7 @@ static enum status evaluate_edit(struct evaluation *e, const char *edit, struct 
 
 enum status evaluate_edited_walls(struct evaluation *e, struct err *err)
 {
-    struct name_list edits = {0};
+    struct true_edits edits = {0};
     enum status st = true_edits_find(&edits, e->truth_folder, err);
     for (int i = 0; !st && i < edits.count; i++) st = evaluate_edit(e, edits.names[i], err);
     true_edits_release(&edits);

@@ -178,7 +178,7 @@ static enum status evaluate_set(struct evaluation *e, const char *where, struct 
 
 enum status evaluate_renders(struct evaluation *e, struct err *err)
 {
-    struct name_list edits = {0};
+    struct true_edits edits = {0};
     enum status st = evaluate_set(e, "novel", err);
     if (!st) st = true_edits_find(&edits, e->truth_folder, err);
     for (int i = 0; !st && i < edits.count; i++) {

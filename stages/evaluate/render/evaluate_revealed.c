@@ -68,7 +68,7 @@ static enum status measure_edit(struct evaluation *e, const char *where, struct 
 
 enum status evaluate_revealed(struct evaluation *e, struct err *err)
 {
-    struct name_list edits = {0};
+    struct true_edits edits = {0};
     enum status st = true_edits_find(&edits, e->truth_folder, err);
     for (int i = 0; !st && i < edits.count; i++) {
         char where[64];

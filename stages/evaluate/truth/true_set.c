@@ -113,11 +113,11 @@ static bool plain_name(const char *name)
     return length && !name[length] && length <= 40;
 }
 
-enum status true_edits_find(struct name_list *list, const char *truth, struct err *err)
+enum status true_edits_find(struct true_edits *list, const char *truth, struct err *err)
 {
     struct dirent **entries = NULL;
     enum status st = ST_OK;
-    *list = (struct name_list){0};
+    *list = (struct true_edits){0};
     const int count = scandir(truth, &entries, NULL, alphasort);
     if (count < 0) return err_errno(err, "list", truth);
     for (int i = 0; i < count; i++) {
@@ -137,8 +137,8 @@ enum status true_edits_find(struct name_list *list, const char *truth, struct er
     return st;
 }
 
-void true_edits_release(struct name_list *list)
+void true_edits_release(struct true_edits *list)
 {
     free(list->names);
-    *list = (struct name_list){0};
+    *list = (struct true_edits){0};
 }

@@ -37,11 +37,11 @@ bool true_set_file(char path[FILE_PATH], const struct true_set *set, const char 
 
 /* The names of the edits E with a folder TRUTH/edited-E, in order; at most 40 letters, digits, "_" and "-" each.
  * `others` counts folders with other names. The caller releases the list. */
-struct name_list {
+struct true_edits {
     char (*names)[41];
     int count, others;
 };
-enum status true_edits_find(struct name_list *list, const char *truth, struct err *err);
-void true_edits_release(struct name_list *list);
+enum status true_edits_find(struct true_edits *list, const char *truth, struct err *err);
+void true_edits_release(struct true_edits *list);
 
 #endif

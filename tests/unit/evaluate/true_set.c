@@ -81,7 +81,7 @@ static void a_folder_without_cameras_has_those_of_the_photos_and_of_new_views(vo
 static void edits_are_listed_by_name(void **state)
 {
     (void)state;
-    struct name_list list;
+    struct true_edits list;
     struct err err = ERR_INIT;
     assert_ok(true_edits_find(&list, scratch_path("t"), &err), err);
     assert_int_equal(list.count, 2);
