@@ -11,6 +11,6 @@
     X(OBJ, "model.obj", "3D model (OBJ)", write_obj)
 
 #define EXPORT_ID(format, file, name, write) EXPORT_##format,
-enum export { EXPORTS(EXPORT_ID) EXPORT_COUNT };
+enum export_format { EXPORTS(EXPORT_ID) EXPORT_COUNT };
 
 #endif

@@ -205,6 +205,7 @@ static enum status add_picture(struct gltf *g, json_t *images, json_t *textures,
 {
     char path[FILE_PATH], name[32];
     json_int_t view;
+    snprintf(name, sizeof name, "page%d", page);
     if (product_path_in(path, g->s->out, PRODUCT_EXPORT_PAGE, &(struct product_key){.page = page}, g->err))
         return g->err->status;
     FILE *file = fopen(path, "rb");

@@ -59,11 +59,11 @@ a_viewpoint_that_fails_is_named_and_the_others_are_baked()
 {
     local p others=()
     for p in "$O"/vdta/*/; do p=${p%/}; others+=("${p##*/}"); done
-    mkdir -p few; cp $O/reveal/*.exr few/; rm few/"${others[1]}".exr
+    mkdir -p few/reveal; cp $O/reveal/*.exr few/reveal/; rm few/reveal/"${others[1]}".exr
     rm -rf two/some
-    bake 1 '1 of 3 failed' bake_vdta "${inputs[@]}" --reveal few --out two/some --photo "${others[0]}" --photo "${others[1]}" --photo "${others[2]}"
+    bake 1 '1 of 3 failed' bake_vdta "${inputs[@]}" --reveal few/reveal --out two/some --photo "${others[0]}" --photo "${others[1]}" --photo "${others[2]}"
     grep -q "failed 2 of 3: ${others[1]}\$" err.txt || { cat err.txt; fail "it is not named"; }
-    grep -q "error: .*few/${others[1]}.exr" err.txt || { cat err.txt; fail "nothing says why"; }
+    grep -q "error: .*few/reveal/${others[1]}.exr" err.txt || { cat err.txt; fail "nothing says why"; }
     [ ! -e two/some/"${others[1]}"/atlas.txt ] || fail "half a product was left"
     for p in 0 2; do diff -r two/some/"${others[p]}" $O/vdta/"${others[p]}"; done
 }
