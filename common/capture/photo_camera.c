@@ -5,7 +5,7 @@
 
 #include "common/base/scan.h"
 
-const struct lens *lens_of_view(const struct camera_set *set, const struct lens_list *lenses, int view)
+const struct lens *photo_lens_of_view(const struct camera_set *set, const struct lens_list *lenses, int view)
 {
     const int at = lens_list_find(lenses, set->views[view].name);
     return at < 0 ? NULL : &lenses->lenses[at];
@@ -13,8 +13,9 @@ const struct lens *lens_of_view(const struct camera_set *set, const struct lens_
 
 int photo_of_view(const struct camera_set *set, const struct lens_list *lenses, int view)
 {
-    const struct lens *lens = lens_of_view(set, lenses, view), *before;
-    while (lens && view > 0 && (before = lens_of_view(set, lenses, view - 1)) && !strcmp(before->photo, lens->photo))
+    const struct lens *lens = photo_lens_of_view(set, lenses, view), *before;
+    while (lens && view > 0 && (before = photo_lens_of_view(set, lenses, view - 1)) &&
+           !strcmp(before->photo, lens->photo))
         view--;
     return view;
 }

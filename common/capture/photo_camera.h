@@ -16,7 +16,7 @@ struct photo_camera {
 };
 
 /* Photo and lens of a view of the set, by index; NULL: lenses.txt does not list it. */
-const struct lens *lens_of_view(const struct camera_set *set, const struct lens_list *lenses, int view);
+const struct lens *photo_lens_of_view(const struct camera_set *set, const struct lens_list *lenses, int view);
 /* The first view of the photo that a view is of, by index into the set, which stands for the photo: the views of one
  * photo follow each other. A view without a lens stands for itself. */
 int photo_of_view(const struct camera_set *set, const struct lens_list *lenses, int view);

@@ -9,7 +9,7 @@
 #include "common/base/scan.h"
 #include "common/product/product.h"
 
-const char *setting(const char *variable)
+const char *scene_setting(const char *variable)
 {
     char name[64];
     snprintf(name, sizeof name, "REMODEL_%s", variable);
@@ -17,7 +17,7 @@ const char *setting(const char *variable)
     return value ? value : "";
 }
 
-bool setting_is(const char *variable, const char *value) { return !strcmp(setting(variable), value); }
+bool scene_setting_is(const char *variable, const char *value) { return !strcmp(scene_setting(variable), value); }
 
 bool scene_asks_for(const struct scene_facts *f, const char *product) { return name_list_has(&f->products, product); }
 
@@ -92,7 +92,8 @@ static enum status read_edits(struct scene_facts *f, struct err *err)
     if (!f->has_model) return ST_OK;
     enum status st = file_path(path, f->folder, "edits", "", err);
     if (!st) st = name_list_add_files(&f->edits, path, "", ".txt", err);
-    if (!st) st = name_list_add_words(&wanted, *setting("EDIT") ? setting("EDIT") : setting("DRAW"), err);
+    if (!st)
+        st = name_list_add_words(&wanted, *scene_setting("EDIT") ? scene_setting("EDIT") : scene_setting("DRAW"), err);
     for (int i = 0; !st && i < f->edits.count; i++)
         if (!wanted.count || name_list_has(&wanted, f->edits.names[i]))
             st = name_list_add(&f->drawn_edits, f->edits.names[i], strlen(f->edits.names[i]), err);
@@ -109,10 +110,10 @@ enum status scene_facts_read(struct scene_facts *f, const char *scene_folder, co
     *f = (struct scene_facts){.scene = slash ? slash + 1 : scene_folder, .folder = scene_folder, .shared = shared};
     f->own = own;
     f->bin = bin;
-    f->choose = setting("CHOOSE");
-    f->holds_out = *setting("HOLDOUT") || *setting("HOLDOUT_VIEWS");
+    f->choose = scene_setting("CHOOSE");
+    f->holds_out = *scene_setting("HOLDOUT") || *scene_setting("HOLDOUT_VIEWS");
     f->frames_per_job =
-        scan_int(setting("FRAMES_PER_JOB"), &frames) && frames > 0 && frames < 1000000 ? (int)frames : 30;
+        scan_int(scene_setting("FRAMES_PER_JOB"), &frames) && frames > 0 && frames < 1000000 ? (int)frames : 30;
     /* BUILD/bin has BUILD/code beside it */
     slash = strrchr(bin, '/');
     if (asprintf(&f->code, "%.*scode", slash ? (int)(slash + 1 - bin) : 0, bin) < 0) {
@@ -120,8 +121,8 @@ enum status scene_facts_read(struct scene_facts *f, const char *scene_folder, co
         return err_nomem(err, "a path", strlen(bin));
     }
     const struct product_key none = {0}, held = {.views = "holdout/views"}, references = {.records = "lri/photos"};
-    (void)(name_list_add_words(&f->products, setting("PRODUCTS"), err) ||
-           name_list_add_words(&f->films, setting("FILMS"), err) ||
+    (void)(name_list_add_words(&f->products, scene_setting("PRODUCTS"), err) ||
+           name_list_add_words(&f->films, scene_setting("FILMS"), err) ||
            read_list(&f->photos, shared, PRODUCT_PHOTOS_MK, &none, "PHOTO_IDS", err) ||
            read_list(&bracketed, shared, PRODUCT_PHOTOS_MK, &none, "BRACKETED", err) ||
            read_list(&f->references, shared, PRODUCT_PHOTOS_MK, &references, "PHOTO_IDS", err) ||
@@ -130,7 +131,7 @@ enum status scene_facts_read(struct scene_facts *f, const char *scene_folder, co
            group_views(&f->viewpoints, &f->views, err) || group_views(&f->held_viewpoints, &f->held, err) ||
            read_edits(f, err));
     f->bracketed = bracketed.count > 0;
-    f->is_pair = f->photos.count == 2 && !*setting("EFFECT_NAMED");
+    f->is_pair = f->photos.count == 2 && !*scene_setting("EFFECT_NAMED");
     name_list_release(&bracketed);
     return err->status;
 }

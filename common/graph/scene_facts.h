@@ -47,8 +47,8 @@ struct scene_facts {
 };
 
 /* The value of a variable that people set (REMODEL_VARIABLE in the environment); "" without one. */
-const char *setting(const char *variable);
-bool setting_is(const char *variable, const char *value);
+const char *scene_setting(const char *variable);
+bool scene_setting_is(const char *variable, const char *value);
 
 bool scene_asks_for(const struct scene_facts *f, const char *product); /* PRODUCTS has the word */
 

@@ -7,7 +7,7 @@
 
 void rule_originals(struct graph *g, const char *option)
 {
-    if (*setting("SPLIT"))
+    if (*scene_setting("SPLIT"))
         rule_option(g, option, FOLDER(g, SPLIT_LIST));
     else
         rule_variable(g, option, "PHOTOS");
@@ -21,7 +21,7 @@ void rule_photos(struct graph *g, const struct scene_facts *f, const char *optio
         rule_originals(g, option);
 }
 
-const char *photo_source(struct graph *g, const struct scene_facts *f, const char *photo)
+const char *scene_photo_source(struct graph *g, const struct scene_facts *f, const char *photo)
 {
     return f->bracketed ? PATH(g, HDR, .photo = photo) : PATH(g, PHOTO, .photo = photo);
 }
@@ -32,7 +32,7 @@ void rule_masks(struct graph *g, const struct scene_facts *f)
     if (path_is_folder(masks)) rule_option(g, "--masks", masks);
 }
 
-const char *response_path(struct graph *g)
+const char *scene_response(struct graph *g)
 {
     const char *given = graph_scene_file(g, "response.txt");
     return given ? given : PATH(g, RESPONSE);
@@ -40,18 +40,18 @@ const char *response_path(struct graph *g)
 
 void rule_needs_response(struct graph *g)
 {
-    rule_needs(g, response_path(g));
+    rule_needs(g, scene_response(g));
     if (!graph_scene_file(g, "response.txt")) rule_after(g, graph_shared(g, "stamp/response.txt"));
 }
 
-const char *model_folder(struct graph *g, const struct name_list *edits, int i)
+const char *scene_model_folder(struct graph *g, const struct name_list *edits, int i)
 {
     return i < 0 ? "model" : graph_text(g, "remodel/%s", edits->names[i]);
 }
 
-bool model_is_edited(const char *model) { return strchr(model, '/') != NULL; }
+bool scene_model_is_edited(const char *model) { return strchr(model, '/') != NULL; }
 
-const char *model_name(const char *model)
+const char *scene_model_name(const char *model)
 {
     const char *slash = strrchr(model, '/');
     return slash ? slash + 1 : model;
@@ -76,12 +76,12 @@ bool scene_has_references(struct graph *g, const struct scene_facts *f)
     return false;
 }
 
-const char *fitted_lights(struct graph *g, const struct scene_facts *f)
+const char *scene_lights(struct graph *g, const struct scene_facts *f)
 {
     return f->has_model && graph_scene_file(g, "lights.txt") ? PATH(g, LIGHTS) : NULL;
 }
 
-const char *fitted_materials(struct graph *g, const struct scene_facts *f)
+const char *scene_materials(struct graph *g, const struct scene_facts *f)
 {
     return f->has_model && graph_scene_file(g, "materials.txt") ? PATH(g, MATERIALS) : NULL;
 }
@@ -96,8 +96,8 @@ void rule_needs_light_change(struct graph *g, const struct scene_facts *f, const
     rule_needs(g, PATH(g, AXES));
     rule_needs(g, PATH(g, ATLAS));
     rule_needs(g, PATH(g, OUTDOORS));
-    if (!fitted_lights(g, f)) return;
-    rule_needs(g, fitted_lights(g, f));
+    if (!scene_lights(g, f)) return;
+    rule_needs(g, scene_lights(g, f));
     rule_needs_references(g, f);
 }
 
@@ -110,8 +110,8 @@ void rule_light_change(struct graph *g, const struct scene_facts *f, const char 
     rule_option(g, "--axes", PATH(g, AXES));
     rule_option(g, "--vita", FOLDER(g, ATLAS));
     rule_option(g, "--outdoors", PATH(g, OUTDOORS));
-    rule_option(g, "--lights", fitted_lights(g, f));
-    if (fitted_lights(g, f) && scene_has_references(g, f)) rule_option(g, "--references", FOLDER(g, LRI, .photo = ""));
+    rule_option(g, "--lights", scene_lights(g, f));
+    if (scene_lights(g, f) && scene_has_references(g, f)) rule_option(g, "--references", FOLDER(g, LRI, .photo = ""));
     rule_option(g, "--objects", PATH(g, OBJECTS, .model = edited));
     rule_option(g, "--scene", f->folder);
 }
@@ -147,7 +147,7 @@ void rule_needs_tour(struct graph *g, const char *tour)
     rule_needs(g, PATH(g, PATH_IMAGES, .film = tour));
 }
 
-void tour_frames_read(struct graph *g, struct name_list *frames, const char *tour)
+void scene_tour_frames_read(struct graph *g, struct name_list *frames, const char *tour)
 {
     struct textfile t = {0};
     struct err unread = ERR_INIT; /* it has not been planned, or the program that reads it says what is wrong */
@@ -164,7 +164,7 @@ void tour_frames_read(struct graph *g, struct name_list *frames, const char *tou
 void rule_draws_model(struct graph *g, const char *model)
 {
     const char *file = PATH(g, MODEL, .model = model);
-    const char *map = model_is_edited(model) ? PATH(g, TEXTURE_MAP, .model = model) : NULL;
+    const char *map = scene_model_is_edited(model) ? PATH(g, TEXTURE_MAP, .model = model) : NULL;
     rule_needs(g, file);
     rule_needs(g, map);
     rule_needs(g, map ? PATH(g, MODEL) : NULL);
@@ -202,7 +202,7 @@ void rule_draws_photo(struct graph *g, const char *edit, const char *pictures, c
     rule_option(g, "--out", graph_own(g, pictures));
 }
 
-int chunk_size(const struct scene_facts *f, const struct name_list *frames, int first)
+int scene_chunk_size(const struct scene_facts *f, const struct name_list *frames, int first)
 {
     const int left = frames->count - first;
     return left < f->frames_per_job ? left : f->frames_per_job;

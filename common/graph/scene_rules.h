@@ -10,28 +10,28 @@ void rule_originals(struct graph *g, const char *option);
 /* The same of what later stages take for the photos: where photos are brackets, the merged ones. */
 void rule_photos(struct graph *g, const struct scene_facts *f, const char *option);
 /* What the views of a photo are made from: its merged exposures, or its record, which changes with it. */
-const char *photo_source(struct graph *g, const struct scene_facts *f, const char *photo);
+const char *scene_photo_source(struct graph *g, const struct scene_facts *f, const char *photo);
 /* --masks FOLDER where the scene has masks. */
 void rule_masks(struct graph *g, const struct scene_facts *f);
 
 /* The response curve of bracketed photos: the scene's own, else the fitted one, which is written only if it is new, so
  * that rules need its text and wait for the stamp. */
 void rule_needs_response(struct graph *g);
-const char *response_path(struct graph *g);
+const char *scene_response(struct graph *g);
 
 /* The folder of a model below the scene's: "model", "remodel/EDIT"; i: -1 for the unedited one, else one of `edits`. */
-const char *model_folder(struct graph *g, const struct name_list *edits, int i);
-bool model_is_edited(const char *model);
+const char *scene_model_folder(struct graph *g, const struct name_list *edits, int i);
+bool scene_model_is_edited(const char *model);
 /* Its own name: "model", "EDIT". */
-const char *model_name(const char *model);
+const char *scene_model_name(const char *model);
 
 /* The lighting reference images that `make lri` has made, one rule_needs() each. False: there are none. */
 bool rule_needs_references(struct graph *g, const struct scene_facts *f);
 bool scene_has_references(struct graph *g, const struct scene_facts *f);
 
 /* Lamps and materials that somebody marked in a scene with a model; NULL: nobody did. */
-const char *fitted_lights(struct graph *g, const struct scene_facts *f);
-const char *fitted_materials(struct graph *g, const struct scene_facts *f);
+const char *scene_lights(struct graph *g, const struct scene_facts *f);
+const char *scene_materials(struct graph *g, const struct scene_facts *f);
 
 /* What a change of light is computed from, by the edit's name: needs, and options of the programs. */
 void rule_needs_light_change(struct graph *g, const struct scene_facts *f, const char *edit);
@@ -41,10 +41,10 @@ void rule_light_change(struct graph *g, const struct scene_facts *f, const char 
 void rule_needs_path(struct graph *g, const char *film);
 void rule_needs_tour(struct graph *g, const char *tour);
 /* The numbers of the frames of a planned tour. */
-void tour_frames_read(struct graph *g, struct name_list *frames, const char *tour);
+void scene_tour_frames_read(struct graph *g, struct name_list *frames, const char *tour);
 
 /* Frames come in chunks of FRAMES_PER_JOB: how many the one that begins with `first` has. */
-int chunk_size(const struct scene_facts *f, const struct name_list *frames, int first);
+int scene_chunk_size(const struct scene_facts *f, const struct name_list *frames, int first);
 
 /* What render_model draws a model from, by its folder below O: needs, and options. */
 void rule_draws_model(struct graph *g, const char *model);

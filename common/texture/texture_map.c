@@ -425,8 +425,10 @@ enum status texture_map_read(struct texture_map *map, const char *path, struct p
 {
     struct textfile t = {0};
     char *base = NULL;
+    int version = 0;
     *map = (struct texture_map){0};
-    enum status st = product_open(&t, NULL, PRODUCT_TEXTURE_MAP, path, prov, err);
+    enum status st = product_open(&t, &version, PRODUCT_TEXTURE_MAP, path, prov, err);
+    if (!st && version != 2) st = textfile_wrong_number(&t, version, "version 2", err);
     if (!st) st = textfile_expect_line(&t, "base", err);
     if (!st) st = copy_word(&base, &t, "an edit or \"none\"", err);
     if (!st) st = textfile_end(&t, err);

@@ -55,7 +55,7 @@ static enum status find_own_views(struct work *w, struct err *err)
 {
     const struct bake_scene *s = w->scene;
     for (int i = 0; i < s->in.set.view_count; i++) {
-        const struct lens *lens = lens_of_view(&s->in.set, &s->in.lenses, i);
+        const struct lens *lens = photo_lens_of_view(&s->in.set, &s->in.lenses, i);
         if (!lens || strcmp(lens->photo, w->photo)) continue;
         if (w->own_count == MAX_OWN)
             return err_set(err, ST_DATA, "photo %s has more than %d views.", w->photo, MAX_OWN);

@@ -80,7 +80,7 @@ static bool is_in_photo(const struct bake_scene *s, int view, struct vec3 p)
     const struct view *v = &s->in.set.views[view];
     double u, w;
     if (!(view_project(v, p, &u, &w) > 0) || u < 0 || w < 0 || u >= v->width || w >= v->height) return false;
-    const struct lens *l = lens_of_view(&s->in.set, &s->in.lenses, view);
+    const struct lens *l = photo_lens_of_view(&s->in.set, &s->in.lenses, view);
     if (!l) return true;
     const struct vec3 ray = {(u - v->cx) / v->fx, (w - v->cy) / v->fy, 1};
     const struct vec3 in_photo = mat3_apply(mat3_transpose(mat3_from_quat(l->view_from_photo)), ray);

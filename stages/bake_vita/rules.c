@@ -15,7 +15,7 @@ RULES(bake_vita)
     rule_needs(g, PATH(g, MODEL));
     rule_option(g, "--model", PATH(g, MODEL));
     for (int i = 0; i < f->edits.count; i++) {
-        const char *edited = PATH(g, MODEL, .model = model_folder(g, &f->edits, i));
+        const char *edited = PATH(g, MODEL, .model = scene_model_folder(g, &f->edits, i));
         rule_needs(g, edited);
         rule_option(g, "--edit", edited);
     }

@@ -26,7 +26,7 @@ static void print_plan(const struct plan *plan, FILE *to)
     for (int i = 0; i < plan->opening_count; i++) {
         const struct plan_opening *o = &plan->openings[i];
         if (plan_opening_is_there(plan, o))
-            fprintf(to, "%s %s on %s from %.17g %.17g to %.17g %.17g %s\n", opening_word(o->kind), o->name,
+            fprintf(to, "%s %s on %s from %.17g %.17g to %.17g %.17g %s\n", plan_opening_word(o->kind), o->name,
                     plan->walls[o->wall].name, o->s[0], o->z[0], o->s[1], o->z[1], o->fill ? "closed" : "open");
     }
     for (int i = 0; i < plan->room_count; i++) {
@@ -48,7 +48,7 @@ static void print_plan(const struct plan *plan, FILE *to)
     for (int i = 0; i < plan->slot_count; i++) {
         const struct plan_slot *o = &plan->slots[i];
         if (plan_slot_is_there(plan, o))
-            fprintf(to, "%s %s on %s from %.17g %.17g to %.17g %.17g %s\n", opening_word(o->kind), o->name,
+            fprintf(to, "%s %s on %s from %.17g %.17g to %.17g %.17g %s\n", plan_opening_word(o->kind), o->name,
                     plan->rooms[o->room].name, o->low[0], o->low[1], o->high[0], o->high[1],
                     o->fill ? "closed" : "open");
     }

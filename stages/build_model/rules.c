@@ -110,7 +110,7 @@ static void needs_edit(struct graph *g, const struct scene_facts *f, const char 
 /* edit: -1 for the model itself */
 static void model_rule(struct graph *g, const struct scene_facts *f, int edit, bool points)
 {
-    const char *model = model_folder(g, &f->edits, edit), *name = model_name(model);
+    const char *model = scene_model_folder(g, &f->edits, edit), *name = scene_model_name(model);
     graph_rule(g, "%s", name);
     for (int i = 0; i < MODEL_FILES; i++) {
         const char *path = model_file(g, model_files[i], model);
@@ -135,14 +135,15 @@ static void model_rule(struct graph *g, const struct scene_facts *f, int edit, b
 
 static void overlay_rule(struct graph *g, const struct scene_facts *f, int edit, const char *photo)
 {
-    const char *model = model_folder(g, &f->edits, edit), *path = PATH(g, OVERLAY, .model = model, .photo = photo);
-    graph_piece(g, "%s-%s", model_name(model), photo);
+    const char *model = scene_model_folder(g, &f->edits, edit),
+               *path = PATH(g, OVERLAY, .model = model, .photo = photo);
+    graph_piece(g, "%s-%s", scene_model_name(model), photo);
     rule_makes(g, path);
     rule_needs(g, PATH(g, MODEL, .model = model));
     rule_needs(g, PATH(g, AXES));
     rule_needs_cameras(g);
     rule_needs(g, PATH(g, LENSES));
-    rule_needs(g, photo_source(g, f, photo));
+    rule_needs(g, scene_photo_source(g, f, photo));
     rule_option(g, "--overlay", photo);
     rule_option(g, "--model", PATH(g, MODEL, .model = model));
     rule_option(g, "--axes", PATH(g, AXES));
@@ -150,7 +151,7 @@ static void overlay_rule(struct graph *g, const struct scene_facts *f, int edit,
     rule_photos(g, f, "--photos");
     rule_option(g, "--records", FOLDER(g, PHOTO_LIST));
     rule_option(g, "--out", path);
-    if (edit >= 0 && !name_list_has(&f->drawn_edits, model_name(model))) return;
+    if (edit >= 0 && !name_list_has(&f->drawn_edits, scene_model_name(model))) return;
     graph_goal(g, "overlays", path);
     graph_list_if(g, GRAPH_ALWAYS_SHOWN, path, scene_asks_for_any(f, "model textures remodel"));
 }
@@ -168,7 +169,7 @@ RULES(build_model)
     const bool points = needs_points(g, f);
     for (int edit = -1; edit < f->edits.count; edit++) model_rule(g, f, edit, points);
     for (int i = 0; i < f->edits.count; i++) {
-        const char *model = model_folder(g, &f->edits, i);
+        const char *model = scene_model_folder(g, &f->edits, i);
         graph_goal(g, "model", PATH(g, TEXTURE_MAP, .model = model));
         graph_goal(g, "model", PATH(g, OBJECTS, .model = model));
     }

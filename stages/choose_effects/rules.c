@@ -5,7 +5,7 @@
 
 RULES(choose_effects)
 {
-    const char *effect = setting("EFFECT");
+    const char *effect = scene_setting("EFFECT");
     if (effect[strspn(effect, "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_+ -")])
         graph_refuse(g, "EFFECT=%s: effects are named with letters, digits, _, - and +.", effect);
     graph_step(g, "choice", STEP_ONE, "depth film_views");

@@ -16,7 +16,7 @@ static enum status read_views(struct evaluation *e, struct view_set *set, const 
     if (!st) st = lens_list_read(&set->lenses, path, e->prov, err);
     for (int i = 0; !st && i < set->cameras.view_count; i++) {
         const char *view = set->cameras.views[i].name;
-        const struct lens *lens = lens_of_view(&set->cameras, &set->lenses, i);
+        const struct lens *lens = photo_lens_of_view(&set->cameras, &set->lenses, i);
         if (!lens)
             st = err_set(err, ST_DATA, "%s has no line for view %s of images.txt; import the model again.", path, view);
         else if (photo_list_find_id(&e->photos, lens->photo) < 0)

@@ -19,7 +19,7 @@ static void needs_edited(struct graph *g, const struct scene_facts *f)
     const bool made = scene_asks_for_any(f, "model textures remodel");
     struct name_list edited = {0};
     for (int edit = -1; f->has_model && edit < f->edits.count; edit++) {
-        const char *model = PATH(g, MODEL, .model = model_folder(g, &f->edits, edit));
+        const char *model = PATH(g, MODEL, .model = scene_model_folder(g, &f->edits, edit));
         if (made || path_is_file(model)) rule_needs(g, model);
     }
     if (path_is_file(PATH(g, IRRADIANCE))) rule_needs(g, PATH(g, IRRADIANCE));
@@ -49,16 +49,16 @@ RULES(evaluate)
         rule_needs_set(g, "held_views");
     }
     rule_needs(g, PATH(g, PHOTO_LIST));
-    if (*setting("TRUTH")) needs_edited(g, f);
+    if (*scene_setting("TRUTH")) needs_edited(g, f);
     rule_needs(g, graph_own(g, "stamp/truth.txt"));
     rule_needs(g, graph_own(g, "stamp/rendered.txt"));
     rule_option(g, "--folder", f->own);
     rule_option(g, "--shared", f->shared);
     rule_variable(g, "--truth", "TRUTH");
-    if (*setting("RENDERED"))
+    if (*scene_setting("RENDERED"))
         rule_variable(g, "--rendered", "RENDERED");
     else
         rule_option(g, "--rendered", graph_own(g, "rendered"));
     rule_option(g, "--out", PATH(g, METRICS));
-    if (f->holds_out || *setting("TRUTH")) graph_list(g, GRAPH_SHOWN, PATH(g, METRICS));
+    if (f->holds_out || *scene_setting("TRUTH")) graph_list(g, GRAPH_SHOWN, PATH(g, METRICS));
 }

@@ -6,8 +6,8 @@ RULES(export_model)
     graph_step(g, "exports", STEP_ONE, "vita");
     graph_goal(g, "exports", NULL);
     for (int edit = -1; f->has_model && edit < f->edits.count; edit++) {
-        const char *model = model_folder(g, &f->edits, edit), *name = model_name(model);
-        const char *map = model_is_edited(model) ? PATH(g, TEXTURE_MAP, .model = model) : NULL;
+        const char *model = scene_model_folder(g, &f->edits, edit), *name = scene_model_name(model);
+        const char *map = scene_model_is_edited(model) ? PATH(g, TEXTURE_MAP, .model = model) : NULL;
         graph_goal(g, "exports", PATH(g, EXPORT_IFC, .model = model));
         graph_rule(g, "%s", name);
         rule_makes(g, PATH(g, EXPORT_IFC, .model = model));

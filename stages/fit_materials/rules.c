@@ -3,7 +3,7 @@
 
 RULES(fit_materials)
 {
-    const char *materials = fitted_materials(g, f);
+    const char *materials = scene_materials(g, f);
     graph_step(g, "materials", STEP_ONE, "vita outdoors");
     graph_goal(g, "materials", materials);
     if (!materials) return;
@@ -19,7 +19,7 @@ RULES(fit_materials)
     rule_needs_set(g, "ids");
     rule_needs(g, PATH(g, ATLAS));
     rule_needs(g, PATH(g, OUTDOORS));
-    rule_needs(g, fitted_lights(g, f));
+    rule_needs(g, scene_lights(g, f));
     rule_option(g, "--marks", graph_scene_file(g, "materials.txt"));
     rule_option(g, "--model", PATH(g, MODEL));
     rule_option(g, "--axes", PATH(g, AXES));
@@ -27,7 +27,7 @@ RULES(fit_materials)
     rule_option(g, "--ids", FOLDER(g, FACE_INDEX));
     rule_option(g, "--vita", FOLDER(g, ATLAS));
     rule_option(g, "--outdoors", PATH(g, OUTDOORS));
-    rule_option(g, "--lights", fitted_lights(g, f));
+    rule_option(g, "--lights", scene_lights(g, f));
     rule_option(g, "--out", FOLDER(g, MATERIALS));
     graph_list_if(g, GRAPH_ALWAYS_SHOWN, materials, false);
 }

@@ -5,7 +5,7 @@
 
 static void say_light(struct graph *g, const struct scene_facts *f)
 {
-    const char *lights = fitted_lights(g, f), *materials = fitted_materials(g, f);
+    const char *lights = scene_lights(g, f), *materials = scene_materials(g, f);
     rule_needs(g, PATH(g, MODEL));
     rule_needs(g, PATH(g, AXES));
     rule_needs(g, PATH(g, ATLAS));
@@ -39,7 +39,7 @@ RULES(gather_irradiance)
         rule_option(g, "--points", points);
         rule_option(g, "--out", FOLDER(g, IRRADIANCE));
     }
-    name_list_add_words(&views, setting("GATHER_VIEWS"), graph_err(g));
+    name_list_add_words(&views, scene_setting("GATHER_VIEWS"), graph_err(g));
     for (int i = 0; f->has_model && i < views.count; i++) {
         const char *path = PATH(g, IRRADIANCE_VIEW, .gathered = graph_text(g, "irradiance/%s", views.names[i]));
         graph_goal(g, "irradiance", path);
@@ -48,7 +48,7 @@ RULES(gather_irradiance)
         rule_needs_cameras(g);
         say_light(g, f);
         rule_option(g, "--view", views.names[i]);
-        if (fitted_materials(g, f)) rule_option(g, "--specular", "");
+        if (scene_materials(g, f)) rule_option(g, "--specular", "");
         rule_option(g, "--out", FOLDER(g, IRRADIANCE));
     }
     /* shown as they are: the page never gathers what a run did not ask for */

@@ -8,11 +8,11 @@ enum place { PLACE_NONE, PLACE_PHOTOS, PLACE_SCENE, PLACE_MODEL, PLACE_CORNERS }
 
 static enum place place_of_references(void)
 {
-    if (setting_is("LRI_FRAME", "corners")) return PLACE_CORNERS;
-    if (!*setting("LRI_SFM")) return PLACE_NONE;
-    return setting_is("LRI_FRAME", "scene")   ? PLACE_SCENE
-           : setting_is("LRI_FRAME", "model") ? PLACE_MODEL
-                                              : PLACE_PHOTOS;
+    if (scene_setting_is("LRI_FRAME", "corners")) return PLACE_CORNERS;
+    if (!*scene_setting("LRI_SFM")) return PLACE_NONE;
+    return scene_setting_is("LRI_FRAME", "scene")   ? PLACE_SCENE
+           : scene_setting_is("LRI_FRAME", "model") ? PLACE_MODEL
+                                                    : PLACE_PHOTOS;
 }
 
 static const char *step_before(enum place place)
@@ -61,7 +61,7 @@ static void merge_rule(struct graph *g, const char *photo)
     rule_option(g, "--id", photo);
     rule_originals(g, "--photos");
     rule_option(g, "--records", FOLDER(g, PHOTO_LIST));
-    rule_option(g, "--response", response_path(g));
+    rule_option(g, "--response", scene_response(g));
     rule_option(g, "--out", FOLDER(g, RESPONSE));
     graph_goal(g, "hdr", PATH(g, HDR, .photo = photo));
     graph_goal(g, "hdr", PATH(g, HDR_PICTURE, .photo = photo));
@@ -83,7 +83,7 @@ static void reference_rule(struct graph *g, const struct scene_facts *f, const c
     rule_option(g, "--id", image);
     rule_variable(g, "--photos", "LRI");
     rule_option(g, "--records", FOLDER(g, PHOTO_LIST, .records = "lri/photos"));
-    rule_option(g, "--response", f->bracketed ? response_path(g) : given);
+    rule_option(g, "--response", f->bracketed ? scene_response(g) : given);
     rule_variable(g, "--model", "LRI_SFM");
     say_place(g, f, place_of_references());
     rule_option(g, "--out", graph_shared(g, "lri"));

@@ -15,7 +15,7 @@ static bool is_grid(const char *split)
 RULES(import_photos)
 {
     (void)f;
-    const char *split = setting("SPLIT");
+    const char *split = scene_setting("SPLIT");
     if (!*split) return;
     if (!is_grid(split))
         graph_refuse(g, "SPLIT=%s: wanted COLUMNSxROWS, such as 3x2: how many pictures a photo holds.", split);

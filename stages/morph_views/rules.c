@@ -9,7 +9,7 @@ static const char film[] = "parallax/morph";
 /* The two photos of MORPH, or those of a scene of two. */
 static void find_photos(struct graph *g, struct name_list *photos, const struct scene_facts *f)
 {
-    const char *morph = setting("MORPH");
+    const char *morph = scene_setting("MORPH");
     name_list_add_words(photos, morph, graph_err(g));
     const bool is_plain = !morph[strspn(morph, "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_- ")];
     if (*morph && (photos->count != 2 || !is_plain))
@@ -35,7 +35,7 @@ static void path_rule(struct graph *g, const struct scene_facts *f, const struct
     graph_rule(g, "path");
     for (int i = 0; i < FILES; i++) rule_makes(g, file_of(g, i));
     rule_makes(g, PATH(g, FRAMES_MK, .film = film));
-    for (int i = 0; i < 2; i++) rule_needs(g, photo_source(g, f, photos->names[i]));
+    for (int i = 0; i < 2; i++) rule_needs(g, scene_photo_source(g, f, photos->names[i]));
     if (posed) rule_needs_cameras(g);
     if (posed) rule_needs(g, PATH(g, LENSES));
     rule_needs(g, stamp);
@@ -66,7 +66,7 @@ RULES(morph_views)
     struct name_list photos = {0}, frames = {0};
     const char *video = PATH(g, VIDEO, .film = film);
     find_photos(g, &photos, f);
-    graph_step(g, "morph", STEP_ONE, f->is_pair && *setting("SFM") ? "hdr sfm" : "hdr");
+    graph_step(g, "morph", STEP_ONE, f->is_pair && *scene_setting("SFM") ? "hdr sfm" : "hdr");
     graph_goal(g, "morph-path", PATH(g, FRAMES_MK, .film = film));
     graph_goal(g, "morph-frames", NULL);
     graph_goal(g, "morph", video);
@@ -75,7 +75,8 @@ RULES(morph_views)
     if (photos.count == 2) {
         path_rule(g, f, &photos, stamp);
         name_list_read(&frames, PATH(g, FRAMES_MK, .film = film), "MORPH_FRAMES", graph_err(g));
-        for (int i = 0; i < frames.count; i += f->frames_per_job) frames_rule(g, &frames, i, chunk_size(f, &frames, i));
+        for (int i = 0; i < frames.count; i += f->frames_per_job)
+            frames_rule(g, &frames, i, scene_chunk_size(f, &frames, i));
         graph_rule(g, "morph");
         rule_by(g, "encode_video");
         rule_makes(g, video);

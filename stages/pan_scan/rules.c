@@ -32,7 +32,7 @@ RULES(pan_scan)
         struct name_list frames = {0};
         name_list_read(&frames, PATH(g, FRAMES_MK, .film = film), "FRAMES", graph_err(g));
         for (int i = 0; i < frames.count; i += f->frames_per_job)
-            frames_rule(g, f->films.names[e], &frames, i, chunk_size(f, &frames, i));
+            frames_rule(g, f->films.names[e], &frames, i, scene_chunk_size(f, &frames, i));
         graph_goal(g, "pan_scan", video);
         graph_list_if(g, GRAPH_SHOWN, video, false);
         name_list_release(&frames);

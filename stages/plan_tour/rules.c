@@ -9,8 +9,8 @@ RULES(plan_tour)
     graph_step(g, "tour-path", STEP_ONE, "model");
     graph_goal(g, "tour-path", NULL);
     for (int edit = -1; f->has_model && edit < f->edits.count; edit++) {
-        const char *model = model_folder(g, &f->edits, edit), *tour = graph_text(g, "%s/tour", model);
-        graph_rule(g, "%s", model_name(model));
+        const char *model = scene_model_folder(g, &f->edits, edit), *tour = graph_text(g, "%s/tour", model);
+        graph_rule(g, "%s", scene_model_name(model));
         for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
             const char *path = graph_path(g, files[i], &(struct product_key){.film = tour});
             rule_makes(g, path);

@@ -59,7 +59,7 @@ static enum status find_nodes(struct tour_graph *g, const struct camera_set *set
     g->nodes = calloc((size_t)set->view_count + 1, sizeof *g->nodes);
     if (!g->nodes) return err_nomem(err, "viewpoints", (size_t)set->view_count * sizeof *g->nodes);
     for (int i = 0; i < set->view_count; i++) {
-        const struct lens *lens = lens_of_view(set, lenses, i);
+        const struct lens *lens = photo_lens_of_view(set, lenses, i);
         if (!lens) return err_set(err, ST_DATA, "lenses.txt has no line of view %s.", set->views[i].name);
         if (g->count && !strcmp(g->nodes[g->count - 1].photo, lens->photo)) continue;
         const struct view view = model_from_world_view(axes, &set->views[i]);

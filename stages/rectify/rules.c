@@ -6,14 +6,14 @@ static void photo_rule(struct graph *g, const struct scene_facts *f, const struc
                        const char *set)
 {
     const char *mask = graph_text(g, "%s/stamp/mask/%s.txt", f->shared, p->photo);
-    graph_piece(g, "%s%s", model_is_edited(cameras) ? "heldout-" : "", p->photo);
+    graph_piece(g, "%s%s", scene_model_is_edited(cameras) ? "heldout-" : "", p->photo);
     for (int i = 0; i < p->count; i++) {
         const char *view = PATH(g, VIEW, .views = cameras, .view = p->views[i]);
         rule_makes(g, view);
         graph_set(g, set, view);
         graph_goal(g, "views", view);
     }
-    rule_needs(g, photo_source(g, f, p->photo));
+    rule_needs(g, scene_photo_source(g, f, p->photo));
     rule_needs(g, PATH(g, CAMERAS, .views = cameras));
     rule_needs(g, PATH(g, IMAGES, .views = cameras));
     rule_needs(g, PATH(g, POINTS3D, .views = cameras));

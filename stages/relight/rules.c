@@ -17,7 +17,7 @@ static bool is_wanted(const struct name_list *wanted, const char *photo, const c
 static void find_wanted(struct graph *g, struct name_list *wanted, const struct scene_facts *f)
 {
     const struct view_groups *all = &f->viewpoints;
-    const char *views = setting("RELIT_VIEWS");
+    const char *views = scene_setting("RELIT_VIEWS");
     struct name_list named = {0};
     name_list_add_words(&named, views, graph_err(g));
     if (!named.count) {
@@ -42,7 +42,7 @@ static void say_light(struct graph *g, const struct scene_facts *f, const char *
     rule_needs_light_change(g, f, edit);
     rule_light_change(g, f, edit);
     rule_option(g, "--relit", graph_text(g, "%s/relight/%s", f->own, edit));
-    rule_option(g, "--materials", fitted_materials(g, f));
+    rule_option(g, "--materials", scene_materials(g, f));
     rule_option(g, "--views", FOLDER(g, CAMERAS));
 }
 
@@ -65,11 +65,11 @@ static void relit_rule(struct graph *g, const struct scene_facts *f, const char 
         graph_goal(g, "relight", record);
         /* measured where they are shown: plain make shows what there is, and with the product makes it */
         graph_list_if(g, GRAPH_ALWAYS_SHOWN, record, scene_asks_for(f, "relight"));
-        if (*setting("TRUTH")) graph_list_if(g, GRAPH_MEASURED, record, scene_asks_for(f, "relight"));
+        if (*scene_setting("TRUTH")) graph_list_if(g, GRAPH_MEASURED, record, scene_asks_for(f, "relight"));
         graph_list_if(g, GRAPH_REMODEL_SHOWN, record, false);
     }
     say_light(g, f, edit);
-    rule_needs(g, fitted_materials(g, f));
+    rule_needs(g, scene_materials(g, f));
     rule_option(g, "--ids", FOLDER(g, FACE_INDEX));
     rule_option(g, "--depth", FOLDER(g, DEPTH, .view = ""));
     rule_option(g, "--pictures", graph_own(g, unlit));
@@ -85,7 +85,7 @@ static void cameras_rule(struct graph *g, const struct scene_facts *f, const cha
     rule_makes(g, PATH(g, RELIT_LIST, .relit = relit));
     rule_needs(g, PATH(g, PICTURE_LIST, .pictures = drawn));
     say_light(g, f, edit);
-    rule_needs(g, fitted_materials(g, f));
+    rule_needs(g, scene_materials(g, f));
     rule_option(g, "--pictures", graph_own(g, drawn));
     rule_option(g, "--list", "");
     rule_option(g, "--out", graph_own(g, relit));
@@ -154,14 +154,14 @@ static void tour_rules(struct graph *g, const struct scene_facts *f, const char 
     const char *walk = graph_text(g, "remodel/%s/tour", edit), *film = graph_text(g, "relight/%s/tour", edit);
     const char *video = PATH(g, VIDEO, .film = film);
     struct name_list frames = {0};
-    tour_frames_read(g, &frames, walk);
+    scene_tour_frames_read(g, &frames, walk);
     for (int i = 0; i < frames.count; i += f->frames_per_job) {
-        const int count = chunk_size(f, &frames, i);
+        const int count = scene_chunk_size(f, &frames, i);
         unlit_frames_rule(g, edit, &frames, i, count);
         relit_frames_rule(g, f, edit, &frames, i, count);
     }
     graph_list_if(g, GRAPH_ALWAYS_SHOWN, video, false);
-    if (*setting("TRUTH")) graph_list_if(g, GRAPH_MEASURED, video, false);
+    if (*scene_setting("TRUTH")) graph_list_if(g, GRAPH_MEASURED, video, false);
     if (frames.count) {
         graph_goal(g, "relit-tour", video);
         graph_rule(g, "relit-%s", edit);
@@ -190,7 +190,7 @@ RULES(relight)
     if (f->has_model) find_wanted(g, &wanted, f);
     for (int e = 0; f->has_model && e < f->drawn_edits.count; e++) {
         const char *edit = f->drawn_edits.names[e];
-        if (*setting("CAMERAS"))
+        if (*scene_setting("CAMERAS"))
             cameras_rule(g, f, edit);
         else
             picture_rules(g, f, edit, &wanted);

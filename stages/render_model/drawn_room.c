@@ -18,7 +18,7 @@ static enum status find_viewpoints(struct room *room, struct err *err)
     room->cameras = calloc(views, sizeof *room->cameras);
     if (!room->viewpoints || !room->cameras) return err_nomem(err, "viewpoints", views * sizeof *room->viewpoints);
     for (int i = 0; i < room->in.set.view_count; i++) {
-        const struct lens *lens = lens_of_view(&room->in.set, &room->in.lenses, i);
+        const struct lens *lens = photo_lens_of_view(&room->in.set, &room->in.lenses, i);
         if (!lens)
             return err_set(err, ST_DATA, "%s/lenses.txt has no line of view %s. Run make views again.",
                            room->files.views, room->in.set.views[i].name);

@@ -21,7 +21,7 @@ static void picture_rule(struct graph *g, const struct scene_facts *f, const cha
 static void cameras_rule(struct graph *g, const char *model)
 {
     const char *pictures = graph_text(g, "%s/cameras", model), *list = PATH(g, PICTURE_LIST, .pictures = pictures);
-    graph_piece(g, "cameras-%s", model_name(model));
+    graph_piece(g, "cameras-%s", scene_model_name(model));
     rule_makes(g, list);
     rule_draws_model(g, model);
     rule_needs_set(g, "vdta");
@@ -31,11 +31,11 @@ static void cameras_rule(struct graph *g, const char *model)
     rule_needs(g, PATH(g, PHOTO_LIST));
     rule_needs(g, graph_own(g, "stamp/cameras.txt"));
     rule_variable(g, "--cameras", "CAMERAS");
-    if (setting_is("CAMERAS_FRAME", "truth")) {
+    if (scene_setting_is("CAMERAS_FRAME", "truth")) {
         rule_variable(g, "--frame-of", "TRUTH");
         rule_option(g, "--records", FOLDER(g, PHOTO_LIST));
-    } else if (*setting("CAMERAS_FRAME")) {
-        rule_option(g, "--frame", setting("CAMERAS_FRAME"));
+    } else if (*scene_setting("CAMERAS_FRAME")) {
+        rule_option(g, "--frame", scene_setting("CAMERAS_FRAME"));
     }
     rule_option(g, "--out", graph_own(g, pictures));
     graph_goal(g, "remodel-cameras", list);
@@ -44,7 +44,7 @@ static void cameras_rule(struct graph *g, const char *model)
 static void tour_rule(struct graph *g, const char *model, const struct name_list *frames, int first, int count)
 {
     const char *tour = graph_text(g, "%s/tour", model);
-    graph_piece(g, "tour-%s-%s", model_name(model), frames->names[first]);
+    graph_piece(g, "tour-%s-%s", scene_model_name(model), frames->names[first]);
     for (int i = first; i < first + count; i++) {
         const char *frame = PATH(g, FRAME, .film = tour, .frame = frames->names[i]);
         rule_makes(g, frame);
@@ -64,10 +64,10 @@ static void tour_rules(struct graph *g, const struct scene_facts *f, const char 
 {
     const char *tour = graph_text(g, "%s/tour", model), *video = PATH(g, VIDEO, .film = tour);
     struct name_list frames = {0};
-    tour_frames_read(g, &frames, tour);
+    scene_tour_frames_read(g, &frames, tour);
     for (int i = 0; i < frames.count; i += f->frames_per_job)
-        tour_rule(g, model, &frames, i, chunk_size(f, &frames, i));
-    graph_rule(g, "tour-%s", model_name(model));
+        tour_rule(g, model, &frames, i, scene_chunk_size(f, &frames, i));
+    graph_rule(g, "tour-%s", scene_model_name(model));
     rule_by(g, "encode_video");
     rule_makes(g, video);
     for (int i = 0; i < frames.count; i++) rule_needs(g, PATH(g, FRAME, .film = tour, .frame = frames.names[i]));
@@ -87,7 +87,7 @@ RULES(render_model)
     graph_step(g, "tour", STEP_WIDE, "textures outdoors tour-path");
     graph_asked(g, "remodel", "remodel");
     graph_asked(g, "tour", "tour");
-    graph_goal(g, "remodel", *setting("CAMERAS") ? "remodel-cameras" : "remodel-views");
+    graph_goal(g, "remodel", *scene_setting("CAMERAS") ? "remodel-cameras" : "remodel-views");
     for (size_t i = 0; i < sizeof goals / sizeof *goals; i++) graph_goal(g, goals[i], NULL);
     if (!f->has_model) return;
     for (int e = 0; e < f->drawn_edits.count; e++)
@@ -96,8 +96,8 @@ RULES(render_model)
     if (scene_asks_for(f, "remodel") && f->drawn_edits.count && f->views.count)
         graph_list(g, GRAPH_ALWAYS_SHOWN, graph_set_path(g, "pictures"));
     /* the unedited model, unless only some edits are asked for */
-    for (int e = *setting("EDIT") || *setting("DRAW") ? 0 : -1; e < f->drawn_edits.count; e++) {
-        const char *model = model_folder(g, &f->drawn_edits, e);
+    for (int e = *scene_setting("EDIT") || *scene_setting("DRAW") ? 0 : -1; e < f->drawn_edits.count; e++) {
+        const char *model = scene_model_folder(g, &f->drawn_edits, e);
         cameras_rule(g, model);
         tour_rules(g, f, model);
     }

@@ -65,8 +65,9 @@ RULES(render_views)
         const char *film = graph_text(g, "parallax/%s", f->films.names[e]);
         name_list_read(&frames, PATH(g, FRAMES_MK, .film = film), "FRAMES", graph_err(g));
         for (int i = 0; i < frames.count; i += f->frames_per_job)
-            frames_rule(g, f->films.names[e], &frames, i, chunk_size(f, &frames, i));
+            frames_rule(g, f->films.names[e], &frames, i, scene_chunk_size(f, &frames, i));
         name_list_release(&frames);
     }
-    for (int i = 0; i < f->held.count; i += f->frames_per_job) heldout_rule(g, &f->held, i, chunk_size(f, &f->held, i));
+    for (int i = 0; i < f->held.count; i += f->frames_per_job)
+        heldout_rule(g, &f->held, i, scene_chunk_size(f, &f->held, i));
 }

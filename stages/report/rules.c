@@ -14,14 +14,14 @@ static const char *steps_before(struct graph *g, const struct scene_facts *f)
         if (step && strcmp(f->products.names[i], "parallax")) steps = graph_text(g, "%s %s", steps, step);
     }
     if (f->films.count || *f->choose) steps = graph_text(g, "%s video", steps);
-    if (f->holds_out || *setting("TRUTH")) steps = graph_text(g, "%s evaluate", steps);
+    if (f->holds_out || *scene_setting("TRUTH")) steps = graph_text(g, "%s evaluate", steps);
     return graph_text(g, "%s pan_scan", steps);
 }
 
 static void scene_page_rule(struct graph *g, const struct scene_facts *f)
 {
     struct name_list stages = {0};
-    name_list_add_words(&stages, setting("STAGES"), graph_err(g));
+    name_list_add_words(&stages, scene_setting("STAGES"), graph_err(g));
     graph_rule(g, "page");
     rule_makes(g, PATH(g, PAGE));
     if (f->is_pair) {
@@ -39,7 +39,7 @@ static void scene_page_rule(struct graph *g, const struct scene_facts *f)
     rule_option(g, "--shared", f->shared);
     rule_photos(g, f, "--photos");
     rule_option(g, "--defaults", "configs/default.cfg");
-    rule_option(g, "--stages", graph_text(g, "'%s'", setting("STAGES")));
+    rule_option(g, "--stages", graph_text(g, "'%s'", scene_setting("STAGES")));
     rule_option(g, "--out", PATH(g, PAGE));
     name_list_release(&stages);
 }

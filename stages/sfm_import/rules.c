@@ -6,7 +6,7 @@
 
 static void check_holdout(struct graph *g)
 {
-    const char *every = setting("HOLDOUT"), *views = setting("HOLDOUT_VIEWS");
+    const char *every = scene_setting("HOLDOUT"), *views = scene_setting("HOLDOUT_VIEWS");
     const size_t digits = strspn(every, "0123456789");
     if (*every && (every[digits] || digits > 9 || *every == '0'))
         graph_refuse(g, "HOLDOUT=%s: wanted a number: every how many photos one is held out.", every);
@@ -21,7 +21,8 @@ RULES(sfm_import)
     check_holdout(g);
     const char *stamp = graph_stamp(
         g, "holdout.txt",
-        f->holds_out ? graph_text(g, "every %s\nviews %s", setting("HOLDOUT"), setting("HOLDOUT_VIEWS")) : NULL);
+        f->holds_out ? graph_text(g, "every %s\nviews %s", scene_setting("HOLDOUT"), scene_setting("HOLDOUT_VIEWS"))
+                     : NULL);
     graph_step(g, "sfm", STEP_ONE, "hdr");
     graph_goal(g, "sfm", PATH(g, VIEWS_MK));
     graph_rule(g, "all");
@@ -46,6 +47,7 @@ RULES(sfm_import)
     rule_option(g, "--sfm", FOLDER(g, SFM_MODELS));
     rule_option(g, "--records", FOLDER(g, PHOTO_LIST));
     rule_option(g, "--out", FOLDER(g, CAMERAS));
-    if (*setting("HOLDOUT")) rule_option(g, "--holdout", setting("HOLDOUT"));
-    if (*setting("HOLDOUT_VIEWS")) rule_option(g, "--holdout-views", graph_text(g, "'%s'", setting("HOLDOUT_VIEWS")));
+    if (*scene_setting("HOLDOUT")) rule_option(g, "--holdout", scene_setting("HOLDOUT"));
+    if (*scene_setting("HOLDOUT_VIEWS"))
+        rule_option(g, "--holdout-views", graph_text(g, "'%s'", scene_setting("HOLDOUT_VIEWS")));
 }

@@ -19,11 +19,11 @@ static void read_described(struct graph *g, struct described *d, const struct sc
     (void)(name_list_read(&d->shots, list, "SHOTS", err) || name_list_read(&d->witnesses, list, "WITNESSES", err) ||
            name_list_read(&d->true_views, list, "TRUE_VIEWS", err) ||
            name_list_add_files(&d->objects, f->folder, "", ".obj", err) ||
-           name_list_add_words(&d->irradiance_views, setting("IRRADIANCE_VIEWS"), err) ||
-           name_list_add_words(&d->edit_views, setting("EDIT_VIEWS"), err) ||
-           name_list_add_words(&d->edits, setting("EDIT"), err) ||
-           (setting_is("EDITS", "all") ? name_list_add_files(&d->edits, f->folder, "scene-", ".txt", err)
-                                       : name_list_add_words(&d->edits, setting("EDITS"), err)));
+           name_list_add_words(&d->irradiance_views, scene_setting("IRRADIANCE_VIEWS"), err) ||
+           name_list_add_words(&d->edit_views, scene_setting("EDIT_VIEWS"), err) ||
+           name_list_add_words(&d->edits, scene_setting("EDIT"), err) ||
+           (scene_setting_is("EDITS", "all") ? name_list_add_files(&d->edits, f->folder, "scene-", ".txt", err)
+                                             : name_list_add_words(&d->edits, scene_setting("EDITS"), err)));
     name_list_sort(&d->edits);
     const struct name_list *asked[] = {&d->edit_views, &d->irradiance_views};
     for (int k = 0; k < 2; k++)

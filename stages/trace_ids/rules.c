@@ -40,7 +40,7 @@ static void reveal_rule(struct graph *g, const struct scene_facts *f, const char
     say_model(g);
     rule_option(g, "--reveal", "");
     for (int i = 0; i < f->edits.count; i++) {
-        const char *edited = PATH(g, MODEL, .model = model_folder(g, &f->edits, i));
+        const char *edited = PATH(g, MODEL, .model = scene_model_folder(g, &f->edits, i));
         rule_needs(g, edited);
         rule_option(g, "--edit", edited);
     }

@@ -39,7 +39,7 @@ static enum status add_filling(struct solid_list *list, const struct plan *p, co
     const struct plan_wall *w = &p->walls[o->wall];
     const struct plan_line in = plan_wall_face(w, SIDE_IN);
     const bool glass = o->fill == FILL_GLASS;
-    const char *kind = glass ? "glass" : opening_word(o->kind), *leaf = glass ? "" : "leaf-";
+    const char *kind = glass ? "glass" : plan_opening_word(o->kind), *leaf = glass ? "" : "leaf-";
     char body[NAME_SIZE];
     struct shape s = {0};
     snprintf(body, sizeof body, glass ? "glass/%s" : BODY "%.0s", o->name);

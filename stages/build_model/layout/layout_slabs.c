@@ -33,7 +33,7 @@ static void slab_sides(struct shape *s, const struct slab *b, const struct part_
         const struct plan_line l = c[i].line;
         const struct plan_slot *slot = c[i].wall <= SLOT_SIDE ? &p->slots[SLOT_SIDE - c[i].wall] : NULL;
         if (slot)
-            shape_add_side(s, l.n[0], l.n[1], 0, l.c, "%s/%s/%s", opening_word(slot->kind), slot->name,
+            shape_add_side(s, l.n[0], l.n[1], 0, l.c, "%s/%s/%s", plan_opening_word(slot->kind), slot->name,
                            SIDES[c[i].side]);
         else if (c[i].wall >= 0 && !p->walls[c[i].wall].removed)
             shape_add_side(s, l.n[0], l.n[1], 0, l.c, "wall/%s/%s", p->walls[c[i].wall].name,
@@ -136,7 +136,7 @@ static enum status add_slot_part(struct solid_list *list, const struct plan *p, 
                                  const struct plan_top *top, int plane, const double heights[2], struct err *err)
 {
     const bool glass = o->fill == FILL_GLASS;
-    const char *kind = glass ? "glass" : opening_word(o->kind), *leaf = glass ? "" : "leaf-";
+    const char *kind = glass ? "glass" : plan_opening_word(o->kind), *leaf = glass ? "" : "leaf-";
     const bool above = o->kind == OPENING_SKYLIGHT; /* the room is below a skylight, above a hatch */
     char body[NAME_SIZE], faces[2][NAME_SIZE];
     struct part_corner c[4];

@@ -183,7 +183,7 @@ static void add_column_side(struct shape *sh, const struct column *c, int upper,
         }
     }
     if (o)
-        shape_add_side(sh, cap.n[0], cap.n[1], 0, cap.c, "%s/%s/%s", opening_word(o->kind), o->name,
+        shape_add_side(sh, cap.n[0], cap.n[1], 0, cap.c, "%s/%s/%s", plan_opening_word(o->kind), o->name,
                        shape_reveal_side(w, !upper));
     else
         shape_add_side(sh, cap.n[0], cap.n[1], 0, cap.c, "wall/%s/top", w->name); /* a step of the top, where visible */
@@ -208,11 +208,11 @@ static enum status add_piece(struct solid_list *list, const struct column *c, do
             shape_add_side(&s, o->line.n[0], o->line.n[1], 0, o->line.c, "wall/%s/top", w->name);
     }
     if (below)
-        shape_add_side(&s, 0, 0, -1, -z0, "%s/%s/head", opening_word(below->kind), below->name);
+        shape_add_side(&s, 0, 0, -1, -z0, "%s/%s/head", plan_opening_word(below->kind), below->name);
     else
         shape_add_side(&s, 0, 0, -1, -z0, "wall/%s/%s", w->name, cut ? "cut" : "bottom");
     if (above)
-        shape_add_side(&s, 0, 0, 1, z1, "%s/%s/sill", opening_word(above->kind), above->name);
+        shape_add_side(&s, 0, 0, 1, z1, "%s/%s/sill", plan_opening_word(above->kind), above->name);
     else if (z1 < HUGE_VAL)
         shape_add_side(&s, 0, 0, 1, z1, "wall/%s/cut", w->name);
     for (int i = 0; !above && i < c->top->count; i++) {

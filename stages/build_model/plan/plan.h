@@ -219,7 +219,7 @@ void plan_room_span(const struct plan *plan, const struct plan_room *room, int e
 /* The edge of the room that contains the wall; -1 for none. */
 int plan_room_edge_of(const struct plan_room *room, int wall);
 double plan_wall_top(const struct plan *plan, int wall, double s0, double s1); /* the lowest over s0 .. s1 */
-const char *opening_word(enum opening_kind kind); /* "door", ...: as in scripts and in the names of faces */
+const char *plan_opening_word(enum opening_kind kind); /* "door", ...: as in scripts and in the names of faces */
 /* The opening is there: neither it nor its wall is removed, and it is not walled up. */
 bool plan_opening_is_there(const struct plan *plan, const struct plan_opening *o);
 /* The slot is there: neither it nor its room is removed, and it is not walled up. */

@@ -187,7 +187,7 @@ enum status plan_apply(struct plan *plan, const struct script *script, bool edit
     if (edit) return apply_edit(&c, script);
     for (int i = 0; i < script->count; i++) {
         c.s = &script->statements[i];
-        if (!(c.s->verb->where & IN_MODEL)) return statement_for_edits(&c, c.s->verb->word);
+        if (!(c.s->verb->where & IN_MODEL)) return plan_statement_for_edits(&c, c.s->verb->word);
         if (needs_views(&c) || c.s->verb->apply(&c)) return err->status;
     }
     return plan_check(plan, script->path, 0, err);

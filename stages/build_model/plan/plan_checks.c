@@ -54,7 +54,7 @@ static enum status check_meeting(struct plan_checker *c, int wall, int end)
             continue;
         return plan_error(c, q->line,
                           "%s %s, from %.9g to %.9g on wall %s, overlaps wall %s, which meets it at %.9g to %.9g.",
-                          opening_word(q->kind), q->name, q->s[0], q->s[1], o->name, w->name, at[0], at[1]);
+                          plan_opening_word(q->kind), q->name, q->s[0], q->s[1], o->name, w->name, at[0], at[1]);
     }
     return ST_OK;
 }
@@ -86,27 +86,27 @@ static enum status check_openings(struct plan_checker *c)
         const struct plan_wall *w = &p->walls[o->wall];
         plan_wall_span(p, o->wall, span);
         if (!(o->s[1] - o->s[0] >= MIN_SIZE && o->z[1] - o->z[0] >= MIN_SIZE))
-            return plan_error(c, o->line, "%s %s would be %.3g wide and %.3g high.", opening_word(o->kind), o->name,
-                              o->s[1] - o->s[0], o->z[1] - o->z[0]);
+            return plan_error(c, o->line, "%s %s would be %.3g wide and %.3g high.", plan_opening_word(o->kind),
+                              o->name, o->s[1] - o->s[0], o->z[1] - o->z[0]);
         if (o->s[0] < span[0] - LENGTH_EPS || o->s[1] > span[1] + LENGTH_EPS)
             return plan_error(c, o->line,
                               "%s %s, from %.9g to %.9g, is outside its wall %s, which goes from %.9g to %.9g.",
-                              opening_word(o->kind), o->name, o->s[0], o->s[1], w->name, span[0], span[1]);
+                              plan_opening_word(o->kind), o->name, o->s[0], o->s[1], w->name, span[0], span[1]);
         const double top = plan_wall_top(p, o->wall, o->s[0], o->s[1]);
         if (o->z[0] < w->foot - LENGTH_EPS || o->z[1] > top + LENGTH_EPS)
             return plan_error(
                 c, o->line,
                 "%s %s, from %.9g up to %.9g, is outside its wall %s, which goes from %.9g up to %.9g there.",
-                opening_word(o->kind), o->name, o->z[0], o->z[1], w->name, w->foot, top);
+                plan_opening_word(o->kind), o->name, o->z[0], o->z[1], w->name, w->foot, top);
         for (int k = 0; k < i; k++) {
             const struct plan_opening *q = &p->openings[k];
             if (q->wall == o->wall && !q->removed && q->s[0] < o->s[1] && q->s[1] > o->s[0] && q->z[0] < o->z[1] &&
                 q->z[1] > o->z[0])
-                return plan_error(c, o->line, "%s %s and %s %s, on wall %s, overlap.", opening_word(q->kind), q->name,
-                                  opening_word(o->kind), o->name, w->name);
+                return plan_error(c, o->line, "%s %s and %s %s, on wall %s, overlap.", plan_opening_word(q->kind),
+                                  q->name, plan_opening_word(o->kind), o->name, w->name);
         }
         if (o->leaf > w->thickness)
-            return plan_error(c, o->line, "%s %s is thicker than its wall %s.", opening_word(o->kind), o->name,
+            return plan_error(c, o->line, "%s %s is thicker than its wall %s.", plan_opening_word(o->kind), o->name,
                               w->name);
     }
     return ST_OK;
@@ -134,7 +134,7 @@ static enum status check_slots(struct plan_checker *c)
     for (int i = 0; i < p->slot_count; i++) {
         const struct plan_slot *o = &p->slots[i];
         const struct plan_room *r = &p->rooms[o->room];
-        const char *kind = opening_word(o->kind);
+        const char *kind = plan_opening_word(o->kind);
         if (o->removed || r->removed) continue;
         if (!(o->high[0] - o->low[0] >= MIN_SIZE && o->high[1] - o->low[1] >= MIN_SIZE))
             return plan_error(c, o->line, "%s %s would be %.3g x %.3g large.", kind, o->name, o->high[0] - o->low[0],

@@ -14,7 +14,7 @@ enum status plan_statement_error(struct plan_context *c, const char *fmt, ...)
     return err_set(c->err, ST_DATA, "%s:%d: %s", c->path, c->s->line, text);
 }
 
-enum status statement_for_edits(struct plan_context *c, const char *what)
+enum status plan_statement_for_edits(struct plan_context *c, const char *what)
 {
     return plan_statement_error(
         c,

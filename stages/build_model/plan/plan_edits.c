@@ -272,7 +272,7 @@ static enum status find_filled(struct plan_context *c, struct filled *f, struct 
     struct plan_opening *o = *of = kind == NAMED_OPENING ? &c->plan->openings[at] : NULL;
     struct plan_slot *slot = kind == NAMED_SLOT ? &c->plan->slots[at] : NULL;
     const enum opening_kind is = o ? o->kind : slot->kind;
-    *f = (struct filled){opening_word(is), o ? &o->fill : &slot->fill,
+    *f = (struct filled){plan_opening_word(is), o ? &o->fill : &slot->fill,
                          is == OPENING_WINDOW || is == OPENING_SKYLIGHT ? FILL_GLASS
                          : is == OPENING_PASSAGE                        ? FILL_NOTHING
                                                                         : FILL_LEAF,

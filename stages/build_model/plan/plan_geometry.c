@@ -126,7 +126,7 @@ void plan_room_span(const struct plan *plan, const struct plan_room *room, int e
     span[1] = fmin(span[1], reach[1]);
 }
 
-const char *opening_word(enum opening_kind kind)
+const char *plan_opening_word(enum opening_kind kind)
 {
     static const char *const WORDS[] = {"door", "passage", "window", "skylight", "hatch"};
     return WORDS[kind];

@@ -37,7 +37,7 @@ struct plan_context { /* of the statement that is being applied */
 enum status plan_statement_error(struct plan_context *c, const char *fmt, ...) PRINTF_LIKE(2, 3);
 
 /* ST_DATA: `what`, a statement, is for edits alone. */
-enum status statement_for_edits(struct plan_context *c, const char *what);
+enum status plan_statement_for_edits(struct plan_context *c, const char *what);
 
 /* plan_names.c */
 

@@ -163,7 +163,7 @@ enum status plan_apply_split(struct plan_context *c)
         if (o->wall == wall && !o->removed && o->s[0] < gap[1] && o->s[1] > gap[0])
             return plan_statement_error(c,
                                         "the gap from %.9g to %.9g cuts %s %s, from %.9g to %.9g; remove that first.",
-                                        gap[0], gap[1], opening_word(o->kind), o->name, o->s[0], o->s[1]);
+                                        gap[0], gap[1], plan_opening_word(o->kind), o->name, o->s[0], o->s[1]);
     }
     if (plan_copy_new_name(c, s->other, &name)) return c->err->status;
     if (array_append(&plan->walls, (size_t)plan->wall_count, sizeof *plan->walls, "walls", c->err)) {

@@ -64,7 +64,7 @@ enum status plan_apply_set(struct plan_context *c)
 {
     const struct statement *s = c->s;
     if (!strcmp(s->name, "colour")) {
-        if (!c->edit) return statement_for_edits(c, "set colour");
+        if (!c->edit) return plan_statement_for_edits(c, "set colour");
         memcpy(c->plan->colour, s->values, sizeof c->plan->colour);
     }
     for (int i = 0; i < DEFAULTS; i++) {

@@ -13,13 +13,13 @@ enum status evaluation_path(char path[FILE_PATH], const struct evaluation *e, en
 
 int evaluation_photo(const struct evaluation *e, const struct view_set *set, int view)
 {
-    return photo_list_find_id(&e->photos, lens_of_view(&set->cameras, &set->lenses, view)->photo);
+    return photo_list_find_id(&e->photos, photo_lens_of_view(&set->cameras, &set->lenses, view)->photo);
 }
 
 struct picture_map evaluation_map_of_view(const struct view_set *set, int view)
 {
     const struct view *v = &set->cameras.views[view];
-    const struct lens *lens = lens_of_view(&set->cameras, &set->lenses, view);
+    const struct lens *lens = photo_lens_of_view(&set->cameras, &set->lenses, view);
     return (struct picture_map){{CAMERA_PINHOLE, v->width, v->height, {v->fx, v->fy, v->cx, v->cy}},
                                 lens->camera,
                                 mat3_transpose(mat3_from_quat(lens->view_from_photo))};

@@ -9,7 +9,6 @@
 #include "common/capture/camera_alignment.h"
 #include "common/capture/photo_camera.h"
 #include "common/product/product.h"
-#include "stages/evaluate/evaluation.h"
 #include "stages/evaluate/measure/metric_table.h"
 #include "stages/evaluate/scene/evaluate_params.h"
 #include "stages/evaluate/truth/linear_picture.h"

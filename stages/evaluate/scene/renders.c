@@ -116,7 +116,7 @@ static enum status find_views(struct renders *list, struct evaluation *e, const 
         for (int i = 0; !st && i < sets[k]->cameras.view_count; i++) {
             const struct view *view = &sets[k]->cameras.views[i];
             const struct true_picture *of =
-                true_set_find(list->set, lens_of_view(&sets[k]->cameras, &sets[k]->lenses, i)->photo);
+                true_set_find(list->set, photo_lens_of_view(&sets[k]->cameras, &sets[k]->lenses, i)->photo);
             char path[FILE_PATH];
             if (!of || !linear_picture_find(path, folder, view->name)) continue;
             const int before = list->count;

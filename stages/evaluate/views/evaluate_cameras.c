@@ -7,7 +7,7 @@
 static struct pose photo_pose(const struct view_set *set, int view)
 {
     struct mat3 photo_from_view =
-        mat3_transpose(mat3_from_quat(lens_of_view(&set->cameras, &set->lenses, view)->view_from_photo));
+        mat3_transpose(mat3_from_quat(photo_lens_of_view(&set->cameras, &set->lenses, view)->view_from_photo));
     const struct view *v = &set->cameras.views[view];
     return (struct pose){quat_from_mat3(mat3_multiply(photo_from_view, v->cam_from_world)),
                          mat3_apply(photo_from_view, v->translation)};

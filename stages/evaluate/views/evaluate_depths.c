@@ -240,7 +240,7 @@ static enum status compare_depth(struct evaluation *e, int i, struct photo_truth
     if (!st) {
         int side = view->width > view->height ? view->width : view->height;
         double ratio = e->params->disparity_side ? (double)e->params->disparity_side / side : 1;
-        true_depth_in_view(truth, occluded, view, lens_of_view(&e->views.cameras, &e->views.lenses, i),
+        true_depth_in_view(truth, occluded, view, photo_lens_of_view(&e->views.cameras, &e->views.lenses, i),
                            &e->truth.photos[tv->photo], tv->points, tv->occluded);
         for (size_t k = 0; k < pixels; k++) s->z[k] = (float)(s->z[k] * e->truth_from_scene.scale);
         sigma_errors_add(&scene->sigmas, s->z, truth, s->sigma, s->classes, pixels);

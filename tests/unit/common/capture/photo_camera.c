@@ -93,8 +93,8 @@ static void the_first_view_of_a_photo_stands_for_it(void **state)
     static const int wanted[] = {0, 1, 1, 3, 4};
     (void)state;
     for (int i = 0; i < 5; i++) assert_int_equal(photo_of_view(&set, &known, i), wanted[i]);
-    assert_string_equal(lens_of_view(&set, &known, 2)->photo, "b");
-    assert_null(lens_of_view(&set, &known, 3));
+    assert_string_equal(photo_lens_of_view(&set, &known, 2)->photo, "b");
+    assert_null(photo_lens_of_view(&set, &known, 3));
 }
 
 int main(void)
