@@ -225,7 +225,9 @@ enum status texture_map_write(const struct texture_map *map, const char *path, c
     char base[NAME_SIZE];
     enum status st = check_map(map, path, err);
     if (!st) st = textfile_quote(map->base ? map->base : NO_BASE, base, sizeof base, err);
-    if (!st) st = product_begin(&file, PRODUCT_TEXTURE_MAP, path, prov, err);
+    if (!st) st = outfile_open(&file, path, err);
+    if (!st) fprintf(file.fp, "%s\n", products[PRODUCT_TEXTURE_MAP].head);
+    if (!st && prov) provenance_print(prov, file.fp);
     if (!st) fprintf(file.fp, "base %s\n", base);
     for (int i = 0; !st && i < map->lamp_count; i++) st = print_lamp(file.fp, &map->lamps[i], err);
     for (int i = 0; !st && i < map->face_count; i++) st = print_face(file.fp, &map->faces[i], err);

@@ -112,7 +112,7 @@ glossy_materials_reflect_and_bytes_do_not_depend_on_threads()
         "$B/bin/verify" --file two/gloss1/irradiance/"$view".exr || fail "$e: the picture is not whole"
         grep -qa 'specular.R' two/gloss1/irradiance/"$view".exr || fail "$e: no channel specular.R"
     done
-    grep -q '^# input lights/materials.txt ' two/gloss1/irradiance.txt || fail "the materials are not among the inputs"
+    grep -q '^# input materials.txt ' two/gloss1/irradiance.txt || fail "the materials are not among the inputs"
 }
 
 materials_without_gloss_change_no_number()
