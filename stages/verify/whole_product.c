@@ -272,6 +272,8 @@ enum status product_verify(const char *path, struct err *err)
     const enum product_id id = find_product(path, name);
     if (id == PRODUCT_COUNT) return checks[dot ? format_of(dot) : PRODUCT_FORMAT_COUNT](path, err);
     if (id == PRODUCT_ATLAS) return verify_atlas(path, err);
+    /* the reader of points knows no other PLY */
+    if (id != PRODUCT_POINTS && products[id].format == PRODUCT_IS_PLY) return verify_not_empty(path, err);
     if (id == PRODUCT_TEXTURE_MAP) return verify_texture_map(path, err);
     if (id == PRODUCT_OBJECTS) return verify_objects(path, err);
     const enum status st = checks[products[id].format](path, err);
