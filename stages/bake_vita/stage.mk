@@ -1,5 +1,5 @@
 # bake_vita: one texture atlas of all faces.
 FOLLOWS.bake_vita := rectify trace_ids
-READS.bake_vita := the model, those of the edits, axes.txt, the views that show faces best, their ids
+READS.bake_vita := the model and the edited models, axes.txt, the views that show faces best, their ids
 HELP.vita := + one texture atlas of the model, each face seen orthogonally
 HELP.textures := both kinds of atlases

@@ -1,6 +1,6 @@
 # evaluate: the products, compared with a truth and with photos held out.
 FOLLOWS.evaluate = $(filter-out evaluate report verify,$(STAGE_FOLDERS))
-READS.evaluate := cameras, views, depth maps, models, texture atlases, held-out photos and their frames, rendered pictures, a truth
+READS.evaluate := cameras, views, depth maps, models, texture atlases, held-out photos and their frames, rendered pictures, the truth
 VARIABLES.evaluate := TRUTH RENDERED
 LIBS.evaluate := -lembree3
 HELP.evaluate := the products, compared with TRUTH or with photos held out, into metrics.tsv

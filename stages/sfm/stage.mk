@@ -1,6 +1,6 @@
-# sfm: camera poses by COLMAP, or a model that is already there.
+# sfm: camera poses by COLMAP, or a given model.
 FOLLOWS.sfm := import_photos hdr_merge
-READS.sfm := photos or hdr/*.jpg (runs COLMAP), or a model that is already there
+READS.sfm := photos or hdr/*.jpg (runs COLMAP), or a given model
 SHARED.sfm := yes
 VARIABLES.sfm := SFM
 HELP.resfm := run COLMAP again, after photos were changed
