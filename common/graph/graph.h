@@ -2,8 +2,9 @@
  *
  * Each stage says its rules in stages/NAME/rules.c, with the functions below; common/graph/print_graph.c calls them in
  * the order of the stages and writes what they said to O/graph/NAME.mk: a line of targets and prerequisites, and a line
- * that makes them. Nothing in these files is expanded later but $(T), the threads of a process, and $(hide), so that a
- * person can read them, and `make -n` and `make why` say what is there.
+ * that makes them. Nothing in these files is expanded later but $(T), the threads of a process, $(hide), and Make's own
+ * names for targets and prerequisites ($@, $^), so that a person can read them, and `make -n` and `make why` say what
+ * is there.
  *
  *   RULES(fuse_points)                                            // stages/fuse_points/rules.c
  *   {
@@ -15,7 +16,7 @@
  *       rule_needs_cameras(g);
  *       rule_needs_set(g, "depth");                               // every depth map
  *       rule_option(g, "--views", FOLDER(g, CAMERAS));
- *       rule_option(g, "--depth", FOLDER(g, DEPTH));
+ *       rule_option(g, "--depth", FOLDER(g, DEPTH, .view = ""));
  *       rule_option(g, "--out", PATH(g, POINTS));
  *   }
  *

@@ -8,7 +8,7 @@ echo
 echo "targets"
 {
     sed -nE 's/^([a-z_%-]+):[^#]*## (.*)/\1\t\2/p' "$@" | sed -n '1p'
-    sed -nE 's/^HELP\.([a-z_]+) *:?= *(.*)/\1\t\2/p' "$@"
+    sed -nE 's/^HELP\.([a-z_-]+) *:?= *(.*)/\1\t\2/p' "$@"
     sed -nE 's/^([a-z_%-]+):[^#]*## (.*)/\1\t\2/p' "$@" | sed '1d'
 } | awk -F'\t' '{ sub(/%/, "NAME", $1); printf "  %-14s %s\n", $1, $2 }'
 echo "variables"

@@ -276,6 +276,7 @@ enum status product_verify(const char *path, struct err *err)
     if (id != PRODUCT_POINTS && products[id].format == PRODUCT_IS_PLY) return verify_not_empty(path, err);
     if (id == PRODUCT_TEXTURE_MAP) return verify_texture_map(path, err);
     if (id == PRODUCT_OBJECTS) return verify_objects(path, err);
-    const enum status st = checks[products[id].format](path, err);
+    const enum product_format format = checks[products[id].format] ? products[id].format : PRODUCT_FORMAT_COUNT;
+    const enum status st = checks[format](path, err);
     return !st && products[id].head && products[id].format == PRODUCT_IS_TEXT ? verify_head(id, path, err) : st;
 }
