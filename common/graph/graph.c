@@ -48,20 +48,9 @@ const char *graph_step_of(const struct graph *g, const char *product)
     return NULL;
 }
 
-static struct named_text *find_named(struct graph *g, struct named_texts *list, const char *name)
-{
-    for (size_t i = list->count; i-- > 0;)
-        if (!strcmp(list->items[i].name, name)) return &list->items[i];
-    if (g->err.status || array_append(&list->items, list->count, sizeof *list->items, "goals", &g->err)) return NULL;
-    struct named_text *t = &list->items[list->count++];
-    *t = (struct named_text){0};
-    snprintf(t->name, sizeof t->name, "%s", name);
-    return t;
-}
-
 void graph_goal(struct graph *g, const char *goal, const char *path)
 {
-    struct named_text *t = find_named(g, &g->goals, goal);
+    struct named_text *t = graph_find_named(g, &g->goals, goal);
     if (t && path) graph_add_word(g, &t->text, path);
 }
 
@@ -74,7 +63,7 @@ static bool is_newer(struct timespec a, struct timespec b)
 
 void graph_set(struct graph *g, const char *set, const char *path)
 {
-    struct named_text *t = find_named(g, &g->sets, set);
+    struct named_text *t = graph_find_named(g, &g->sets, set);
     struct stat info;
     if (!t) return;
     graph_add_word(g, &t->text, path);

@@ -108,7 +108,19 @@ const char *graph_scene_file(struct graph *g, const char *file)
     return path_is_file(path) ? path : NULL;
 }
 
+struct named_text *graph_find_named(struct graph *g, struct named_texts *list, const char *name)
+{
+    for (size_t i = list->count; i-- > 0;)
+        if (!strcmp(list->items[i].name, name)) return &list->items[i];
+    if (g->err.status || array_append(&list->items, list->count, sizeof *list->items, "goals", &g->err)) return NULL;
+    struct named_text *t = &list->items[list->count++];
+    *t = (struct named_text){0};
+    snprintf(t->name, sizeof t->name, "%s", name);
+    return t;
+}
+
 const char *graph_set_path(struct graph *g, const char *set)
 {
+    graph_find_named(g, &g->sets, set); /* a set has a rule as soon as somebody needs it */
     return graph_text(g, "%s/stamp/set/%s", g->facts->own, set);
 }

@@ -68,6 +68,9 @@ void graph_add_text(struct graph *g, struct text *t, const struct text *more);
 void graph_add_word(struct graph *g, struct text *t, const char *word); /* with a blank before it */
 void graph_empty(struct text *t);
 
+/* The goal or set of that name, which is added if it is new. NULL after an error. */
+struct named_text *graph_find_named(struct graph *g, struct named_texts *list, const char *name);
+
 /* Prints the rule at hand, if there is one. */
 void rule_close(struct graph *g);
 

@@ -22,7 +22,7 @@ RULES(bake_vita)
     rule_needs(g, PATH(g, AXES));
     rule_needs_cameras(g);
     rule_needs(g, PATH(g, LENSES));
-    rule_needs(g, PATH(g, FACE_INDEX));
+    if (f->views.count) rule_needs(g, PATH(g, FACE_INDEX));
     rule_needs_set(g, "views");
     rule_needs_set(g, "ids");
     rule_option(g, "--axes", PATH(g, AXES));

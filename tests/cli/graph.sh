@@ -64,6 +64,21 @@ nothing_is_stale_when_all_is_made()
     wants ''
 }
 
+every_goal_is_known_before_the_views_are()
+{
+    scene a b c
+    mkdir -p scenes/t/edits
+    printf 'remodel-script 1\n' | tee scenes/t/model.txt scenes/t/edits/one.txt >/dev/null
+    rm -r out/t/views out/t/slice/segment_depth.cfg
+    touch out/t/slice/segment_depth.cfg
+    local goal
+    for goal in report depth points axes suggest model ids vdta vita outdoors exports lights irradiance path frames video \
+        pan_scan subjects remodel tour relight relit-tour evaluate; do
+        graph write
+        make -s --no-print-directory PHASE=graph O=out/t -n -s "$goal" >log 2>&1 || { cat log; fail "make -n $goal"; }
+    done
+}
+
 a_changed_photo_redoes_its_view_and_the_depth_that_reads_it()
 {
     scene a b c
@@ -253,7 +268,8 @@ wrong_settings_are_refused()
     [ ! -e out/t/graph ] || fail "a check wrote the graph"
 }
 
-for t in nothing_is_stale_when_all_is_made a_deleted_product_is_remade_with_what_follows a_changed_photo_redoes_its_view_and_the_depth_that_reads_it \
+for t in nothing_is_stale_when_all_is_made every_goal_is_known_before_the_views_are \
+    a_deleted_product_is_remade_with_what_follows a_changed_photo_redoes_its_view_and_the_depth_that_reads_it \
     a_neighbour_that_is_a_view_no_more_redoes_the_depth_that_read_it a_parameter_redoes_its_stage_and_what_follows \
     a_changed_program_redoes_its_products_but_not_sfm a_photo_is_read_once_for_its_views frames_come_in_chunks_and_wait_for_all_depth \
     what_is_held_out_is_rectified_and_not_matched an_edit_needs_the_scripts_and_meshes_that_it_stands_on \
