@@ -86,6 +86,7 @@ static void all_views_leave_set_and_provenance_alone(void **state)
     assert_int_equal(set.view_count, 3);
     assert_int_equal(set.model.points[1].track_count, 2);
     assert_int_equal(prov.count, 0);
+    provenance_release(&prov);
     camera_set_release(&set);
 }
 
@@ -135,6 +136,7 @@ static void a_view_that_the_scene_lacks_is_an_error(void **state)
     const char *path = scratch_write("views.txt", "remodel-film-views 1\nviews 1\nview d\n");
     assert_int_equal(film_views_keep(&set, path, &prov, &err), ST_DATA);
     assert_err(err, ST_DATA, "found view d, which the scene does not have");
+    provenance_release(&prov);
     camera_set_release(&set);
 }
 
