@@ -50,7 +50,7 @@ static enum status invalid_point(const struct cloud_point *p, size_t i, const ch
         (double)p->normal[2], p->views, (double)p->confidence);
 }
 
-/* Machine (the build requires AVX2) and file are both little-endian. */
+/* Machine (common/math/lanes.h) and file are both little-endian. */
 static void pack(uint8_t *to, const struct cloud_point *p)
 {
     const double position[3] = {p->position.x, p->position.y, p->position.z};

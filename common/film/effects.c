@@ -22,6 +22,7 @@
 #include "common/base/scan.h"
 #include "common/base/textfile.h"
 #include "common/image/luminance.h"
+#include "common/math/lanes.h"
 #include "common/product/product.h"
 
 #define MAX_KEYS   100000
@@ -346,10 +347,6 @@ enum status effects_write(const struct effects *e, const char *path, const struc
 
 /* --------------------------------------------------------------------------------------------------------- applying */
 
-typedef float v4 __attribute__((vector_size(16)));
-typedef float v8 __attribute__((vector_size(32)));
-typedef int32_t v8i __attribute__((vector_size(32)));
-
 #define STRIP        64   /* pixels of a row processed together */
 #define MAX_DEPTH    1e9f /* depths beyond this are outside every box */
 #define MAX_EXPONENT 16   /* exp(-x) beyond this counts as 0: about 1e-7, below the precision of half floats */
@@ -398,46 +395,48 @@ static struct active_layer prepare_layer(const struct effect_layer *l, const dou
 }
 
 /* 2^x for -30 < x <= 0, with an error below 2e-7. */
-static inline v8 exp2_of(v8 x)
+static inline f32x8 exp2_of(f32x8 x)
 {
-    const v8i whole = __builtin_convertvector(x - 0.5f, v8i); /* truncation towards 0, so this rounds to the nearest */
-    const v8 f = (x - __builtin_convertvector(whole, v8)) * (float)M_LN2;
-    const v8 series = 1 + f * (1 + f * (1 / 2.0f + f * (1 / 6.0f + f * (1 / 24.0f + f * (1 / 120.0f + f / 720.0f)))));
-    return series * (v8)((whole + 127) << 23);
+    const i32x8 whole = i32x8_truncate(x - 0.5f); /* truncation towards 0, so this rounds to the nearest */
+    const f32x8 f = (x - f32x8_from_i32(whole)) * (float)M_LN2;
+    const f32x8 series =
+        1 + f * (1 + f * (1 / 2.0f + f * (1 / 6.0f + f * (1 / 24.0f + f * (1 / 120.0f + f / 720.0f)))));
+    return series * (f32x8)((whole + 127) << 23);
 }
 
 /* Weights of a strip of a row from its depths. */
 static void strip_weights(float *weights, const struct active_layer *a, const float *z, int x, int y, int count)
 {
     const bool outside = a->layer->region == EFFECT_OUTSIDE;
-    const v8 step = {0, 1, 2, 3, 4, 5, 6, 7};
+    const f32x8 step = {0, 1, 2, 3, 4, 5, 6, 7};
     float start[3];
 
     for (int k = 0; k < 3; k++) start[k] = (float)(a->ray[2][k] + y * a->ray[1][k] + x * a->ray[0][k]);
     for (int i = 0; i < count; i += 8) {
-        v8 depth, square = {0};
+        f32x8 depth, square = {0};
         memcpy(&depth, z + i, sizeof depth);
-        const v8i known = (depth > 0) & (depth < MAX_DEPTH);
+        const i32x8 known = (depth > 0) & (depth < MAX_DEPTH);
         for (int k = 0; k < 3; k++) {
-            const v8 at = (float)a->center[k] + depth * (start[k] + ((float)i + step) * (float)a->ray[0][k]);
-            const v8 beyond = (v8)((v8i)at & 0x7fffffff) - (float)a->half[k];
-            const v8 d = (v8)((v8i)beyond & (beyond > 0));
+            const f32x8 at = (float)a->center[k] + depth * (start[k] + ((float)i + step) * (float)a->ray[0][k]);
+            const f32x8 beyond = f32x8_abs(at) - (float)a->half[k];
+            const f32x8 d = f32x8_where(beyond > 0, beyond);
             square += d * d;
         }
-        v8 exponent = square * a->per_square;
+        f32x8 exponent = square * a->per_square;
         /* a hard edge has exponent 0 everywhere: the distance alone decides */
-        const v8i affected = known & (a->per_square < 0 ? exponent > -(float)MAX_EXPONENT / (float)M_LN2 : square == 0);
-        exponent = (v8)((v8i)exponent & affected);
-        const v8 inside = (v8)((v8i)exp2_of(exponent) & affected), weight = outside ? 1 - inside : inside;
+        const i32x8 affected =
+            known & (a->per_square < 0 ? exponent > -(float)MAX_EXPONENT / (float)M_LN2 : square == 0);
+        exponent = f32x8_where(affected, exponent);
+        const f32x8 inside = f32x8_where(affected, exp2_of(exponent)), weight = outside ? 1 - inside : inside;
         memcpy(weights + i, &weight, sizeof weight);
     }
 }
 
 static void strip_scale(float *rgba, const float *weights, const float change[3], int count)
 {
-    const v4 by = {change[0], change[1], change[2], 0};
+    const f32x4 by = {change[0], change[1], change[2], 0};
     for (int i = 0; i < count; i++) {
-        v4 c;
+        f32x4 c;
         memcpy(&c, rgba + 4 * i, sizeof c);
         c *= 1 + weights[i] * by; /* change is not below -1 */
         memcpy(rgba + 4 * i, &c, sizeof c);

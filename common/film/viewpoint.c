@@ -11,12 +11,12 @@
  * viewpoint of several ends the test. */
 #include "common/film/viewpoint.h"
 
-#include <immintrin.h>
 #include <stdatomic.h>
 #include <stdlib.h>
 
 #include "common/base/parallel.h"
 #include "common/layers/hole_measure.h"
+#include "common/math/lanes.h"
 
 #define OUTSIDE_SIDE   64    /* longer side of the picture in which `outside` is measured, px */
 #define NEAR_TOLERANCE 0.005 /* largest fraction of points that may be too near */
@@ -79,13 +79,13 @@ static double near_fraction(const struct viewpoint_test *test, const struct view
     const size_t count = test->points->count;
     const double(*m)[3] = camera->cam_from_world.m;
     const double shift[3] = {camera->translation.x, camera->translation.y, camera->translation.z};
-    const __m256d zero = _mm256_setzero_pd(), limit = _mm256_set1_pd(test->shot->near_limit);
-    const __m256d width = _mm256_set1_pd(camera->width), height = _mm256_set1_pd(camera->height);
-    __m256d near = zero, total = zero;
+    const f64x4 zero = {0}, limit = f64x4_all(test->shot->near_limit);
+    const f64x4 width = f64x4_all(camera->width), height = f64x4_all(camera->height);
+    f64x4 near = zero, total = zero;
 
     for (size_t i = 0; i < count; i += 4) {
         double in[4][4]; /* x, y, z and weight; the padding weighs nothing */
-        __m256d c[3];
+        f64x4 c[3];
         for (size_t k = 0; k < 4; k++) {
             const struct scene_point *p = &points[i + k < count ? i + k : i];
             in[0][k] = p->position.x;
@@ -93,29 +93,23 @@ static double near_fraction(const struct viewpoint_test *test, const struct view
             in[2][k] = p->position.z;
             in[3][k] = i + k < count ? p->weight : 0;
         }
-        const __m256d x = _mm256_loadu_pd(in[0]), y = _mm256_loadu_pd(in[1]), z = _mm256_loadu_pd(in[2]);
+        const f64x4 x = f64x4_load(in[0]), y = f64x4_load(in[1]), z = f64x4_load(in[2]);
         for (int r = 0; r < 3; r++) {
-            const __m256d turned = _mm256_add_pd(
-                _mm256_add_pd(_mm256_mul_pd(_mm256_set1_pd(m[r][0]), x), _mm256_mul_pd(_mm256_set1_pd(m[r][1]), y)),
-                _mm256_mul_pd(_mm256_set1_pd(m[r][2]), z));
-            c[r] = _mm256_add_pd(turned, _mm256_set1_pd(shift[r]));
+            const f64x4 turned = m[r][0] * x + m[r][1] * y + m[r][2] * z;
+            c[r] = turned + shift[r];
         }
-        const __m256d u = _mm256_add_pd(_mm256_mul_pd(_mm256_set1_pd(camera->fx), _mm256_div_pd(c[0], c[2])),
-                                        _mm256_set1_pd(camera->cx));
-        const __m256d v = _mm256_add_pd(_mm256_mul_pd(_mm256_set1_pd(camera->fy), _mm256_div_pd(c[1], c[2])),
-                                        _mm256_set1_pd(camera->cy));
-        __m256d seen = _mm256_cmp_pd(c[2], zero, _CMP_GT_OQ);
-        seen = _mm256_and_pd(seen,
-                             _mm256_and_pd(_mm256_cmp_pd(u, zero, _CMP_NLT_UQ), _mm256_cmp_pd(u, width, _CMP_NGT_UQ)));
-        seen = _mm256_and_pd(seen,
-                             _mm256_and_pd(_mm256_cmp_pd(v, zero, _CMP_NLT_UQ), _mm256_cmp_pd(v, height, _CMP_NGT_UQ)));
-        const __m256d weight = _mm256_and_pd(seen, _mm256_loadu_pd(in[3]));
-        total = _mm256_add_pd(total, weight);
-        near = _mm256_add_pd(near, _mm256_and_pd(weight, _mm256_cmp_pd(c[2], limit, _CMP_LT_OQ)));
+        const f64x4 u = camera->fx * (c[0] / c[2]) + camera->cx;
+        const f64x4 v = camera->fy * (c[1] / c[2]) + camera->cy;
+        i64x4 seen = c[2] > zero;
+        seen &= ~(u < zero) & ~(u > width);
+        seen &= ~(v < zero) & ~(v > height);
+        const f64x4 weight = f64x4_where(seen, f64x4_load(in[3]));
+        total += weight;
+        near += f64x4_where(c[2] < limit, weight);
     }
     double sums[2][4];
-    _mm256_storeu_pd(sums[0], near);
-    _mm256_storeu_pd(sums[1], total);
+    f64x4_store(sums[0], near);
+    f64x4_store(sums[1], total);
     for (int k = 1; k < 4; k++) sums[0][0] += sums[0][k], sums[1][0] += sums[1][k];
     return sums[1][0] > 0 ? sums[0][0] / sums[1][0] : 1;
 }

@@ -16,12 +16,12 @@
  * the distance: the guard grows by PARALLAX times that distance. */
 #include "common/gather/field_atlas.h"
 
-#include <immintrin.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "common/base/parallel.h"
+#include "common/math/lanes.h"
 #include "common/math/numbers.h"
 
 enum { GUARD_TEXELS = 4 };
@@ -54,8 +54,9 @@ static enum light_source source_of(uint64_t bits) { return (enum light_source)(u
 
 static struct rgb radiance_of(uint64_t bits)
 {
-    float v[4];
-    _mm_storeu_ps(v, _mm_cvtph_ps(_mm_cvtsi64_si128((long long)bits)));
+    uint16_t half[4];
+    memcpy(half, &bits, sizeof half);
+    const f32x4 v = f32x4_from_half(half);
     return rgb_make((double)v[0], (double)v[1], (double)v[2]);
 }
 
@@ -65,8 +66,9 @@ static uint64_t pack_texel(const float rgb[3], uint32_t source)
 {
     struct texel t = {{0, 0, 0}, LIGHT_NONE};
     if (source == ATLAS_NONE) return pack(t);
-    const __m128i halves = _mm_cvtps_ph(_mm_setr_ps(rgb[0], rgb[1], rgb[2], 0), _MM_FROUND_TO_NEAREST_INT);
-    t = unpack((uint64_t)_mm_cvtsi128_si64(halves));
+    uint16_t half[4];
+    f32x4_to_half(half, (f32x4){rgb[0], rgb[1], rgb[2]});
+    memcpy(&t, half, sizeof t);
     t.what = source < ATLAS_VIEWS ? LIGHT_SYNTHESISED : LIGHT_TEXTURE;
     const uint32_t number = source < ATLAS_VIEWS ? 0 : 1 + source - ATLAS_VIEWS;
     if (number < FIELD_ATLAS_MARKS) t.what = (uint16_t)(t.what | number << NUMBER);

@@ -5,7 +5,6 @@
  * parallel. The layout of a chunk's bytes is described in exr_write.c. */
 #include "common/image/exr.h"
 
-#include <immintrin.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,6 +15,7 @@
 #include "common/base/parallel.h"
 #include "common/image/exr_file.h"
 #include "common/image/exr_zip.h"
+#include "common/math/lanes.h"
 
 struct exr_reader {
     struct exr_image *im;
@@ -40,18 +40,19 @@ struct unpack_job {
 
 static int unpack_half(float *to, const uint8_t *from, int width, bool any)
 {
-    const __m128i exponent = _mm_set1_epi16(0x7c00);
     int x = 0;
     for (; x + 8 <= width; x += 8) {
-        const __m128i bits = _mm_loadu_si128((const __m128i *)(from + 2 * x));
-        if (_mm_movemask_epi8(_mm_cmpeq_epi16(_mm_and_si128(bits, exponent), exponent))) break;
-        _mm256_storeu_ps(to + x, _mm256_cvtph_ps(bits));
+        const i16x8 bits = i16x8_load(from + 2 * x);
+        if (i16x8_any((bits & 0x7c00) == 0x7c00)) break;
+        uint16_t halves[8];
+        memcpy(halves, from + 2 * x, sizeof halves);
+        f32x8_store(to + x, f32x8_from_half(halves));
     }
     for (; x < width; x++) {
         uint16_t bits;
         memcpy(&bits, from + 2 * x, 2);
         if ((bits & 0x7c00) == 0x7c00 && !any) return x;
-        to[x] = imath_half_to_float(bits);
+        to[x] = float_from_half(bits);
     }
     return -1;
 }

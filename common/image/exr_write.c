@@ -8,7 +8,6 @@
  * samples, little-endian like the machines that this program is built for. */
 #include "common/image/exr.h"
 
-#include <immintrin.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -19,6 +18,7 @@
 #include "common/base/parallel.h"
 #include "common/image/exr_file.h"
 #include "common/image/exr_zip.h"
+#include "common/math/lanes.h"
 
 #define ZIP_ROWS   16
 #define MAX_HALF   65504.0F
@@ -51,18 +51,18 @@ struct pack_job {
 /* Pack a row as half or float. Return the column of the first sample that cannot be written, or -1. */
 static int pack_half(uint8_t *to, const float *from, int width)
 {
-    const __m256 max = _mm256_set1_ps(MAX_HALF), min = _mm256_set1_ps(-MAX_HALF);
     int x = 0;
     for (; x + 8 <= width; x += 8) {
-        const __m256 v = _mm256_loadu_ps(from + x);
-        if (_mm256_movemask_ps(_mm256_cmp_ps(v, v, _CMP_UNORD_Q))) break; /* the loop below finds the NaN */
-        const __m256 clamped = _mm256_min_ps(_mm256_max_ps(v, min), max);
-        _mm_storeu_si128((__m128i *)(to + 2 * x), _mm256_cvtps_ph(clamped, _MM_FROUND_TO_NEAREST_INT));
+        const f32x8 v = f32x8_load(from + x);
+        if (i32x8_signs(v <= INFINITY) != 0xFF) break; /* the loop below finds the NaN */
+        uint16_t halves[8];
+        f32x8_to_half(halves, f32x8_min(f32x8_max(v, f32x8_all(-MAX_HALF)), f32x8_all(MAX_HALF)));
+        memcpy(to + 2 * x, halves, sizeof halves);
     }
     for (; x < width; x++) {
         if (isnan(from[x])) return x;
         const float clamped = from[x] > MAX_HALF ? MAX_HALF : from[x] < -MAX_HALF ? -MAX_HALF : from[x];
-        const uint16_t bits = imath_float_to_half(clamped);
+        const uint16_t bits = half_from_float(clamped);
         memcpy(to + 2 * x, &bits, 2);
     }
     return -1;

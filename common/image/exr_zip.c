@@ -5,9 +5,10 @@
  * zlib's format. */
 #include "common/image/exr_zip.h"
 
-#include <immintrin.h>
 #include <libdeflate.h>
 #include <stdlib.h>
+
+#include "common/math/lanes.h"
 
 #define LEVEL 4 /* libdeflate's compression level; determines the bytes */
 
@@ -39,17 +40,10 @@ static void join(uint8_t *restrict to, uint8_t *restrict halves, size_t size)
     uint8_t last = 0;
     size_t i = 0;
     if (size) last = halves[i++];
-    const __m128i middle = _mm_set1_epi8((char)128);
-    __m128i carry = _mm_set1_epi8((char)last);
-    for (; i + 16 <= size; i += 16) { /* prefix sums of 16 bytes, by doubling */
-        __m128i v = _mm_add_epi8(_mm_loadu_si128((const __m128i *)(halves + i)), middle);
-        v = _mm_add_epi8(v, _mm_slli_si128(v, 1));
-        v = _mm_add_epi8(v, _mm_slli_si128(v, 2));
-        v = _mm_add_epi8(v, _mm_slli_si128(v, 4));
-        v = _mm_add_epi8(v, _mm_slli_si128(v, 8));
-        v = _mm_add_epi8(v, carry);
-        _mm_storeu_si128((__m128i *)(halves + i), v);
-        carry = _mm_shuffle_epi8(v, _mm_set1_epi8(15));
+    for (u8x16 carry = (u8x16){0} + last; i + 16 <= size; i += 16) {
+        const u8x16 sums = u8x16_running_sums(u8x16_load(halves + i) + 128) + carry;
+        u8x16_store(halves + i, sums);
+        carry = __builtin_shufflevector(sums, sums, 15, 15, 15, 15, 15, 15, 15, 15, 15, 15, 15, 15, 15, 15, 15, 15);
     }
     if (i > 1) last = halves[i - 1];
     for (; i < size; i++) halves[i] = last = (uint8_t)(last + halves[i] - 128);

@@ -16,10 +16,11 @@
  * are the same; a segment that must be clipped is projected by that function. */
 #include "common/layers/drawn_view.h"
 
-#include <immintrin.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "common/math/lanes.h"
 
 #define SAFE_RATIO   1e-3 /* min w in all corners of a box that is bounded by its corners */
 #define HIDDEN_RATIO 5e-7 /* max w in all corners of a box that is not visible; below PROJECT_MIN_RATIO */
@@ -39,71 +40,65 @@ static enum status reserve(void *buffer, size_t *capacity, size_t count, size_t 
 
 /* ---------------------------------------------------------------------------------------------- bounds of groups */
 
-static inline __m256d all4(double x) { return _mm256_set1_pd(x); }
-
 /* min and max over the sums of one term of each pair */
-static inline __m256d low_sum(const __m256d a[2], const __m256d b[2], const __m256d c[2])
+static inline f64x4 low_sum(const f64x4 a[2], const f64x4 b[2], const f64x4 c[2])
 {
-    return _mm256_add_pd(_mm256_add_pd(_mm256_min_pd(a[0], a[1]), _mm256_min_pd(b[0], b[1])),
-                         _mm256_min_pd(c[0], c[1]));
+    return f64x4_min(a[0], a[1]) + f64x4_min(b[0], b[1]) + f64x4_min(c[0], c[1]);
 }
 
-static inline __m256d high_sum(const __m256d a[2], const __m256d b[2], const __m256d c[2])
+static inline f64x4 high_sum(const f64x4 a[2], const f64x4 b[2], const f64x4 c[2])
 {
-    return _mm256_add_pd(_mm256_add_pd(_mm256_max_pd(a[0], a[1]), _mm256_max_pd(b[0], b[1])),
-                         _mm256_max_pd(c[0], c[1]));
+    return f64x4_max(a[0], a[1]) + f64x4_max(b[0], b[1]) + f64x4_max(c[0], c[1]);
 }
 
 /* Boxes that hold the pixels of four groups. Returns the lanes of those that may have pixels. */
 static int bound_pixels(struct pixel_box boxes[LANES], const struct view_relation *r, const struct group_bounds *b)
 {
-    const __m256d zero = _mm256_setzero_pd(), one = all4(1);
-    const __m256d u[2] = {_mm256_loadu_pd(b->u0), _mm256_loadu_pd(b->u1)};
-    const __m256d v[2] = {_mm256_loadu_pd(b->v0), _mm256_loadu_pd(b->v1)};
-    const __m256d q[2] = {_mm256_loadu_pd(b->low_inverse), _mm256_loadu_pd(b->high_inverse)};
+    const f64x4 zero = {0}, one = f64x4_all(1);
+    const f64x4 u[2] = {f64x4_load(b->u0), f64x4_load(b->u1)};
+    const f64x4 v[2] = {f64x4_load(b->v0), f64x4_load(b->v1)};
+    const f64x4 q[2] = {f64x4_load(b->low_inverse), f64x4_load(b->high_inverse)};
     const double shift = fmax(fmax(fabs(r->inverse_k[0]), fabs(r->inverse_k[1])), fabs(r->inverse_k[2]));
-    const __m256d exact = _mm256_cmp_pd(q[1], all4(fmin(MAX_SHIFT / shift, 1e300)), _CMP_LE_OQ);
-    __m256d by_u[3][2], by_v[3][2], by_q[3][2];
+    const i64x4 exact = q[1] <= f64x4_all(fmin(MAX_SHIFT / shift, 1e300));
+    f64x4 by_u[3][2], by_v[3][2], by_q[3][2];
 
     for (int i = 0; i < 3; i++)
         for (int k = 0; k < 2; k++) {
-            by_u[i][k] = _mm256_mul_pd(all4(r->inverse_m[i][0]), u[k]);
-            by_v[i][k] = _mm256_add_pd(_mm256_mul_pd(all4(r->inverse_m[i][1]), v[k]), all4(r->inverse_m[i][2]));
-            by_q[i][k] = _mm256_mul_pd(all4(r->inverse_k[i]), q[k]);
+            by_u[i][k] = r->inverse_m[i][0] * u[k];
+            by_v[i][k] = r->inverse_m[i][1] * v[k] + r->inverse_m[i][2];
+            by_q[i][k] = r->inverse_k[i] * q[k];
         }
-    const __m256d min_w = low_sum(by_u[2], by_v[2], by_q[2]), max_w = high_sum(by_u[2], by_v[2], by_q[2]);
-    const __m256d safe = _mm256_and_pd(exact, _mm256_cmp_pd(min_w, all4(SAFE_RATIO), _CMP_GE_OQ));
-    const __m256d hidden = _mm256_and_pd(exact, _mm256_cmp_pd(max_w, all4(HIDDEN_RATIO), _CMP_LE_OQ));
-    const __m256d seen = _mm256_andnot_pd(hidden, _mm256_cmp_pd(q[1], zero, _CMP_GT_OQ));
-    int lanes = _mm256_movemask_pd(seen);
+    const f64x4 min_w = low_sum(by_u[2], by_v[2], by_q[2]), max_w = high_sum(by_u[2], by_v[2], by_q[2]);
+    const i64x4 safe = exact & (min_w >= SAFE_RATIO);
+    const i64x4 hidden = exact & (max_w <= HIDDEN_RATIO);
+    const i64x4 seen = ~hidden & (q[1] > zero);
+    int lanes = i64x4_signs(seen);
     if (!lanes) return 0;
 
-    __m256d x0 = all4(INFINITY), y0 = x0, x1 = all4(-INFINITY), y1 = x1;
+    f64x4 x0 = f64x4_all(INFINITY), y0 = x0, x1 = f64x4_all(-INFINITY), y1 = x1;
     for (int corner = 0; corner < 8; corner++) {
         const int i = corner & 1, j = corner >> 1 & 1, k = corner >> 2;
-        const __m256d w = _mm256_div_pd(one, _mm256_add_pd(_mm256_add_pd(by_u[2][i], by_v[2][j]), by_q[2][k]));
-        const __m256d x = _mm256_mul_pd(_mm256_add_pd(_mm256_add_pd(by_u[0][i], by_v[0][j]), by_q[0][k]), w);
-        const __m256d y = _mm256_mul_pd(_mm256_add_pd(_mm256_add_pd(by_u[1][i], by_v[1][j]), by_q[1][k]), w);
-        x0 = _mm256_min_pd(x, x0);
-        x1 = _mm256_max_pd(x, x1);
-        y0 = _mm256_min_pd(y, y0);
-        y1 = _mm256_max_pd(y, y1);
+        const f64x4 w = one / (by_u[2][i] + by_v[2][j] + by_q[2][k]);
+        const f64x4 x = (by_u[0][i] + by_v[0][j] + by_q[0][k]) * w;
+        const f64x4 y = (by_u[1][i] + by_v[1][j] + by_q[1][k]) * w;
+        x0 = f64x4_min(x, x0);
+        x1 = f64x4_max(x, x1);
+        y0 = f64x4_min(y, y0);
+        y1 = f64x4_max(y, y1);
     }
     /* a pixel more on each side: for rounding, and PROJECT_SLACK */
-    const __m256d right = all4(r->width - 1), bottom = all4(r->height - 1);
-    x0 = _mm256_and_pd(safe, _mm256_max_pd(_mm256_sub_pd(_mm256_floor_pd(x0), one), zero));
-    y0 = _mm256_and_pd(safe, _mm256_max_pd(_mm256_sub_pd(_mm256_floor_pd(y0), one), zero));
-    x1 = _mm256_blendv_pd(right, _mm256_min_pd(_mm256_ceil_pd(x1), right), safe);
-    y1 = _mm256_blendv_pd(bottom, _mm256_min_pd(_mm256_ceil_pd(y1), bottom), safe);
-    const __m256d within =
-        _mm256_and_pd(_mm256_and_pd(_mm256_cmp_pd(x0, right, _CMP_LE_OQ), _mm256_cmp_pd(y0, bottom, _CMP_LE_OQ)),
-                      _mm256_and_pd(_mm256_cmp_pd(x1, zero, _CMP_GE_OQ), _mm256_cmp_pd(y1, zero, _CMP_GE_OQ)));
-    lanes &= _mm256_movemask_pd(within);
+    const f64x4 right = f64x4_all(r->width - 1), bottom = f64x4_all(r->height - 1);
+    x0 = f64x4_where(safe, f64x4_max(f64x4_floor(x0) - one, zero));
+    y0 = f64x4_where(safe, f64x4_max(f64x4_floor(y0) - one, zero));
+    x1 = f64x4_if(safe, f64x4_min(f64x4_ceil(x1), right), right);
+    y1 = f64x4_if(safe, f64x4_min(f64x4_ceil(y1), bottom), bottom);
+    const i64x4 within = (x0 <= right) & (y0 <= bottom) & (x1 >= 0) & (y1 >= 0);
+    lanes &= i64x4_signs(within);
     int box[4][LANES];
-    _mm_storeu_si128((__m128i *)(void *)box[0], _mm256_cvttpd_epi32(x0));
-    _mm_storeu_si128((__m128i *)(void *)box[1], _mm256_cvttpd_epi32(y0));
-    _mm_storeu_si128((__m128i *)(void *)box[2], _mm256_cvttpd_epi32(x1));
-    _mm_storeu_si128((__m128i *)(void *)box[3], _mm256_cvttpd_epi32(y1));
+    i32x4_store(box[0], i32x4_truncate_f64(x0));
+    i32x4_store(box[1], i32x4_truncate_f64(y0));
+    i32x4_store(box[2], i32x4_truncate_f64(x1));
+    i32x4_store(box[3], i32x4_truncate_f64(y1));
     for (int k = 0; k < LANES; k++) {
         boxes[k] = (struct pixel_box){box[0][k], box[1][k], box[2][k], box[3][k]};
         if (!(lanes >> k & 1)) boxes[k] = (struct pixel_box){0, 0, -1, -1};
@@ -214,88 +209,75 @@ static void drawn_segment_make(struct drawn_segment *s, const struct projected_s
 }
 
 struct four_segments { /* half of a group, seen by the novel camera */
-    __m256d plane[3], to_target[3][3], facing;
-    __m128i x0, y0, x1, y1;
+    f64x4 plane[3], to_target[3][3], facing;
+    i32x4 x0, y0, x1, y1;
     int visible, clipped; /* lanes: with open pixels; to be projected alone */
 };
 
-static inline __m256d row_at(const __m256d row[3], __m256d x, __m256d y)
-{
-    return _mm256_add_pd(_mm256_add_pd(_mm256_mul_pd(row[0], x), _mm256_mul_pd(row[1], y)), row[2]);
-}
+static inline f64x4 row_at(const f64x4 row[3], f64x4 x, f64x4 y) { return row[0] * x + row[1] * y + row[2]; }
 
 /* First pixel whose centre is at or beyond `x`; 0 at least. */
-static inline __m128i first_pixel(__m256d x)
+static inline i32x4 first_pixel(f64x4 x)
 {
-    const __m256d half = all4(0.5), slack = all4(PROJECT_SLACK);
-    const __m256d is = _mm256_cmp_pd(x, all4(0.5 + PROJECT_SLACK), _CMP_GT_OQ);
-    return _mm256_cvttpd_epi32(_mm256_and_pd(is, _mm256_ceil_pd(_mm256_sub_pd(_mm256_sub_pd(x, half), slack))));
+    const i64x4 is = x > 0.5 + PROJECT_SLACK;
+    return i32x4_truncate_f64(f64x4_where(is, f64x4_ceil(x - 0.5 - PROJECT_SLACK)));
 }
 
 /* Last pixel whose centre is at or before `x`; `last` at most. */
-static inline __m128i last_pixel(__m256d x, int last)
+static inline i32x4 last_pixel(f64x4 x, int last)
 {
-    const __m256d end = _mm256_add_pd(_mm256_sub_pd(x, all4(0.5)), all4(PROJECT_SLACK));
-    const __m256d is = _mm256_cmp_pd(end, all4(last), _CMP_LT_OQ);
-    return _mm256_cvttpd_epi32(_mm256_blendv_pd(all4(last), _mm256_floor_pd(end), is));
+    const f64x4 end = x - 0.5 + PROJECT_SLACK;
+    const i64x4 is = end < f64x4_all(last);
+    return i32x4_truncate_f64(f64x4_if(is, f64x4_floor(end), f64x4_all(last)));
 }
 
-static inline __m256d corner_of(const float *values) { return _mm256_cvtps_pd(_mm_loadu_ps(values)); }
+static inline f64x4 corner_of(const float *values) { return f64x4_from_f32(f32x4_load(values)); }
 
 /* Bounds the pixels of segments first .. first + 3 of a group, as target_rectangle() of segment_project.c does. */
 static void bound_segments(struct four_segments *f, const struct view_relation *r, const struct segment_group *g,
                            int first, const struct open_pixels *open)
 {
-    const __m256d zero = _mm256_setzero_pd(), one = all4(1), min_ratio = all4(PROJECT_MIN_RATIO);
-    const __m256d u0 = corner_of(g->u0 + first), v0 = corner_of(g->v0 + first);
-    const __m256d u1 = corner_of(g->u1 + first), v1 = corner_of(g->v1 + first);
-    const __m256d us[4] = {u0, u1, u1, u0}, vs[4] = {v0, v0, v1, v1};
-    const __m256d inverse = _mm256_loadu_pd(g->inverse_z + first), least = _mm256_mul_pd(min_ratio, inverse);
-    __m256d x0 = all4(INFINITY), y0 = x0, x1 = all4(-INFINITY), y1 = x1;
-    const __m256d *p = f->plane;
+    const f64x4 zero = {0}, one = f64x4_all(1), min_ratio = f64x4_all(PROJECT_MIN_RATIO);
+    const f64x4 u0 = corner_of(g->u0 + first), v0 = corner_of(g->v0 + first);
+    const f64x4 u1 = corner_of(g->u1 + first), v1 = corner_of(g->v1 + first);
+    const f64x4 us[4] = {u0, u1, u1, u0}, vs[4] = {v0, v0, v1, v1};
+    const f64x4 inverse = f64x4_load(g->inverse_z + first), least = min_ratio * inverse;
+    f64x4 x0 = f64x4_all(INFINITY), y0 = x0, x1 = f64x4_all(-INFINITY), y1 = x1;
+    const f64x4 *p = f->plane;
 
-    for (int i = 0; i < 3; i++) f->plane[i] = _mm256_loadu_pd(g->plane[i] + first);
-    f->facing = _mm256_sub_pd(
-        one, _mm256_add_pd(_mm256_add_pd(_mm256_mul_pd(p[0], all4(r->k[0])), _mm256_mul_pd(p[1], all4(r->k[1]))),
-                           _mm256_mul_pd(p[2], all4(r->k[2]))));
-    __m256d seen = _mm256_and_pd(_mm256_cmp_pd(f->facing, all4(PROJECT_MIN_FACING), _CMP_GT_OQ),
-                                 _mm256_cmp_pd(inverse, zero, _CMP_GT_OQ));
+    for (int i = 0; i < 3; i++) f->plane[i] = f64x4_load(g->plane[i] + first);
+    f->facing = one - (p[0] * r->k[0] + p[1] * r->k[1] + p[2] * r->k[2]);
+    i64x4 seen = (f->facing > PROJECT_MIN_FACING) & (inverse > zero);
     for (int i = 0; i < 3; i++)
-        for (int c = 0; c < 3; c++)
-            f->to_target[i][c] = _mm256_add_pd(all4(r->inverse_m[i][c]), _mm256_mul_pd(all4(r->inverse_k[i]), p[c]));
-    __m256d inside = seen;
+        for (int c = 0; c < 3; c++) f->to_target[i][c] = r->inverse_m[i][c] + r->inverse_k[i] * p[c];
+    i64x4 inside = seen;
     for (int i = 0; i < 4; i++) {
-        const __m256d ratio = row_at(f->to_target[2], us[i], vs[i]), w = _mm256_div_pd(one, ratio);
-        const __m256d x = _mm256_mul_pd(row_at(f->to_target[0], us[i], vs[i]), w);
-        const __m256d y = _mm256_mul_pd(row_at(f->to_target[1], us[i], vs[i]), w);
-        inside = _mm256_and_pd(inside, _mm256_and_pd(_mm256_cmp_pd(row_at(p, us[i], vs[i]), least, _CMP_GE_OQ),
-                                                     _mm256_cmp_pd(ratio, min_ratio, _CMP_GE_OQ)));
-        x0 = _mm256_min_pd(x, x0);
-        x1 = _mm256_max_pd(x, x1);
-        y0 = _mm256_min_pd(y, y0);
-        y1 = _mm256_max_pd(y, y1);
+        const f64x4 ratio = row_at(f->to_target[2], us[i], vs[i]), w = one / ratio;
+        const f64x4 x = row_at(f->to_target[0], us[i], vs[i]) * w;
+        const f64x4 y = row_at(f->to_target[1], us[i], vs[i]) * w;
+        inside &= (row_at(p, us[i], vs[i]) >= least) & (ratio >= min_ratio);
+        x0 = f64x4_min(x, x0);
+        x1 = f64x4_max(x, x1);
+        y0 = f64x4_min(y, y0);
+        y1 = f64x4_max(y, y1);
     }
-    f->clipped = _mm256_movemask_pd(_mm256_andnot_pd(inside, seen));
-    const __m256d within = _mm256_and_pd(
-        _mm256_and_pd(_mm256_cmp_pd(x1, zero, _CMP_GT_OQ), _mm256_cmp_pd(y1, zero, _CMP_GT_OQ)),
-        _mm256_and_pd(_mm256_cmp_pd(x0, all4(r->width), _CMP_LT_OQ), _mm256_cmp_pd(y0, all4(r->height), _CMP_LT_OQ)));
+    f->clipped = i64x4_signs(seen & ~inside);
+    const i64x4 within = (x1 > 0) & (y1 > 0) & (x0 < (double)r->width) & (y0 < (double)r->height);
     f->x0 = first_pixel(x0);
     f->y0 = first_pixel(y0);
     f->x1 = last_pixel(x1, r->width - 1);
     f->y1 = last_pixel(y1, r->height - 1);
-    const __m128i left = _mm_max_epi32(f->x0, _mm_set1_epi32(open->box.x0)),
-                  right = _mm_min_epi32(f->x1, _mm_set1_epi32(open->box.x1)),
-                  top = _mm_max_epi32(f->y0, _mm_set1_epi32(open->box.y0)),
-                  bottom = _mm_min_epi32(f->y1, _mm_set1_epi32(open->box.y1));
-    const __m128i empty = _mm_or_si128(_mm_cmpgt_epi32(left, right), _mm_cmpgt_epi32(top, bottom));
-    int lanes = _mm256_movemask_pd(_mm256_and_pd(inside, within)) & ~_mm_movemask_ps(_mm_castsi128_ps(empty));
+    const i32x4 left = i32x4_max(f->x0, i32x4_all(open->box.x0)), right = i32x4_min(f->x1, i32x4_all(open->box.x1)),
+                top = i32x4_max(f->y0, i32x4_all(open->box.y0)), bottom = i32x4_min(f->y1, i32x4_all(open->box.y1));
+    const i32x4 empty = (left > right) | (top > bottom);
+    int lanes = i64x4_signs(inside & within) & ~i32x4_signs(empty);
     f->visible = 0;
     if (!lanes) return;
     int box[4][LANES];
-    _mm_storeu_si128((__m128i *)(void *)box[0], left);
-    _mm_storeu_si128((__m128i *)(void *)box[1], top);
-    _mm_storeu_si128((__m128i *)(void *)box[2], right);
-    _mm_storeu_si128((__m128i *)(void *)box[3], bottom);
+    i32x4_store(box[0], left);
+    i32x4_store(box[1], top);
+    i32x4_store(box[2], right);
+    i32x4_store(box[3], bottom);
     for (; lanes; lanes &= lanes - 1) {
         const int k = __builtin_ctz((unsigned)lanes);
         f->visible |= open_pixels_any(open, box[0][k], box[1][k], box[2][k], box[3][k]) << k;
@@ -304,57 +286,45 @@ static void bound_segments(struct four_segments *f, const struct view_relation *
 
 /* The forms of four segments at the centres of their first pixels: `forms` has their values and slopes, in the order of
  * struct drawn_segment. */
-static void make_forms(__m128 forms[12], const struct four_segments *f, const struct view_relation *r)
+static void make_forms(f32x4 forms[12], const struct four_segments *f, const struct view_relation *r)
 {
-    const __m256d half = all4(0.5);
-    const __m256d x = _mm256_add_pd(_mm256_cvtepi32_pd(f->x0), half),
-                  y = _mm256_add_pd(_mm256_cvtepi32_pd(f->y0), half);
-    __m256d rows[4][3]; /* of u, v, w and 1/z */
+    const f64x4 x = f64x4_from_i32(f->x0) + 0.5, y = f64x4_from_i32(f->y0) + 0.5;
+    f64x4 rows[4][3]; /* of u, v, w and 1/z */
 
     for (int i = 0; i < 3; i++)
-        rows[3][i] = _mm256_div_pd(_mm256_add_pd(_mm256_add_pd(_mm256_mul_pd(all4(r->m[0][i]), f->plane[0]),
-                                                               _mm256_mul_pd(all4(r->m[1][i]), f->plane[1])),
-                                                 _mm256_mul_pd(all4(r->m[2][i]), f->plane[2])),
-                                   f->facing);
+        rows[3][i] = (r->m[0][i] * f->plane[0] + r->m[1][i] * f->plane[1] + r->m[2][i] * f->plane[2]) / f->facing;
     for (int i = 0; i < 3; i++)
-        for (int c = 0; c < 3; c++)
-            rows[i][c] = _mm256_add_pd(all4(r->m[i][c]), _mm256_mul_pd(all4(r->k[i]), rows[3][c]));
+        for (int c = 0; c < 3; c++) rows[i][c] = r->m[i][c] + r->k[i] * rows[3][c];
     for (int i = 0; i < 2; i++)
-        for (int c = 0; c < 3; c++) rows[i][c] = _mm256_add_pd(rows[i][c], _mm256_mul_pd(half, rows[2][c]));
+        for (int c = 0; c < 3; c++) rows[i][c] += 0.5 * rows[2][c];
     for (int i = 0; i < 4; i++) {
-        forms[3 * i] = _mm256_cvtpd_ps(row_at(rows[i], x, y));
-        forms[3 * i + 1] = _mm256_cvtpd_ps(rows[i][0]);
-        forms[3 * i + 2] = _mm256_cvtpd_ps(rows[i][1]);
+        forms[3 * i] = f32x4_from_f64(row_at(rows[i], x, y));
+        forms[3 * i + 1] = f32x4_from_f64(rows[i][0]);
+        forms[3 * i + 2] = f32x4_from_f64(rows[i][1]);
     }
 }
 
 /* Writes four vectors of four segments as four values of each segment, at `to`, `stride` bytes apart. */
-static inline void store_transposed(void *to, size_t stride, __m128 a, __m128 b, __m128 c, __m128 d)
+static inline void store_transposed(void *to, size_t stride, f32x4 a, f32x4 b, f32x4 c, f32x4 d)
 {
-    char *at = to;
-    _MM_TRANSPOSE4_PS(a, b, c, d);
-    _mm_storeu_ps((float *)(void *)at, a);
-    _mm_storeu_ps((float *)(void *)(at + stride), b);
-    _mm_storeu_ps((float *)(void *)(at + 2 * stride), c);
-    _mm_storeu_ps((float *)(void *)(at + 3 * stride), d);
+    f32x4 v[4] = {a, b, c, d};
+    f32x4_transpose(v);
+    for (int k = 0; k < 4; k++) memcpy((char *)to + (size_t)k * stride, &v[k], sizeof v[k]);
 }
 
 /* Makes segments first .. first + 3 of a group; those that are not visible too. */
 static void make_segments(struct drawn_segment s[LANES], const struct four_segments *f, const struct view_relation *r,
                           const struct segment_group *g, int first)
 {
-    const __m128 half = _mm_set1_ps(0.5f);
-    __m128 forms[12];
+    f32x4 forms[12];
 
     make_forms(forms, f, r);
     store_transposed(&s->u[0], sizeof *s, forms[0], forms[1], forms[2], forms[3]);
     store_transposed(&s->v[1], sizeof *s, forms[4], forms[5], forms[6], forms[7]);
     store_transposed(&s->w[2], sizeof *s, forms[8], forms[9], forms[10], forms[11]);
-    store_transposed(&s->u0, sizeof *s, _mm_add_ps(_mm_loadu_ps(g->u0 + first), half),
-                     _mm_add_ps(_mm_loadu_ps(g->v0 + first), half), _mm_add_ps(_mm_loadu_ps(g->u1 + first), half),
-                     _mm_add_ps(_mm_loadu_ps(g->v1 + first), half));
-    store_transposed(&s->x0, sizeof *s, _mm_castsi128_ps(f->x0), _mm_castsi128_ps(f->y0), _mm_castsi128_ps(f->x1),
-                     _mm_castsi128_ps(f->y1));
+    store_transposed(&s->u0, sizeof *s, f32x4_load(g->u0 + first) + 0.5f, f32x4_load(g->v0 + first) + 0.5f,
+                     f32x4_load(g->u1 + first) + 0.5f, f32x4_load(g->v1 + first) + 0.5f);
+    store_transposed(&s->x0, sizeof *s, (f32x4)f->x0, (f32x4)f->y0, (f32x4)f->x1, (f32x4)f->y1);
     for (int k = 0; k < LANES; k++) {
         s[k].surface_gap = g->surface_gap[first + k];
         s[k].id = g->index[first + k] + 1;

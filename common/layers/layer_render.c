@@ -27,7 +27,6 @@
  * open, and looks up no colour. */
 #include "common/layers/layer_render.h"
 
-#include <immintrin.h>
 #include <math.h>
 #include <pthread.h>
 #include <stdatomic.h>
@@ -37,6 +36,7 @@
 #include "common/base/parallel.h"
 #include "common/layers/layer_visibility.h"
 #include "common/layers/soft_z.h"
+#include "common/math/lanes.h"
 
 #define LATTICE      16 /* px */
 #define PATCHES      (TILE_WIDTH / LATTICE)
@@ -353,15 +353,14 @@ static void patch_init(struct patch *p, const struct frame_job *job, int x, int 
 }
 
 /* A view's blending weights at the eight pixels of a patch from (x, y) on, relative to its upper left corner. */
-static inline __m256 patch_weights(const float weight[4], int x, int y)
+static inline f32x8 patch_weights(const float weight[4], int x, int y)
 {
     const float v = ((float)y + 0.5f) / LATTICE;
     const float left = weight[0] + v * (weight[2] - weight[0]), right = weight[1] + v * (weight[3] - weight[1]);
-    const __m256 lanes = _mm256_setr_ps(0, 1, 2, 3, 4, 5, 6, 7);
-    const __m256 u =
-        _mm256_mul_ps(_mm256_add_ps(lanes, _mm256_set1_ps((float)x + 0.5f)), _mm256_set1_ps(1.0f / LATTICE));
-    const __m256 w = _mm256_add_ps(_mm256_set1_ps(left), _mm256_mul_ps(u, _mm256_set1_ps(right - left)));
-    return _mm256_max_ps(w, _mm256_set1_ps(MIN_WEIGHT));
+    const f32x8 lanes = {0, 1, 2, 3, 4, 5, 6, 7};
+    const f32x8 u = (lanes + ((float)x + 0.5f)) * (1.0f / LATTICE);
+    const f32x8 w = left + u * (right - left);
+    return f32x8_max(w, f32x8_all(MIN_WEIGHT));
 }
 
 /* Marks those of eight pixels that the samples cover. */
@@ -372,8 +371,8 @@ static inline void mark_covered(uint8_t *covered, const float *alpha, const floa
 
 static bool any_visible(const struct tile_visibility *v, size_t i)
 {
-    const __m256i indices = _mm256_loadu_si256((const __m256i *)(const void *)(v->front + i));
-    return _mm256_movemask_epi8(_mm256_cmpeq_epi32(indices, _mm256_set1_epi32(-1))) != -1;
+    const i32x8 indices = i32x8_load(v->front + i);
+    return i32x8_signs(indices == -1) != 0xFF;
 }
 
 static void clear_tile(struct tile_visibility *v, size_t begin, size_t end, float inverse)
@@ -419,7 +418,7 @@ static void draw_view(struct frame_job *job, struct tile_scratch *s, const struc
 {
     const struct drawn_view *drawn;
     const struct layer_view *lv = &job->scene->views[view];
-    const __m256 min_inside = _mm256_set1_ps(MIN_INSIDE);
+    const f32x8 min_inside = f32x8_all(MIN_INSIDE);
     int first, last;
 
     if (!clear_patches_of(s, at, view, &first, &last)) return;
@@ -434,12 +433,12 @@ static void draw_view(struct frame_job *job, struct tile_scratch *s, const struc
                 visibility_sample8(&slot->front, job->offline ? &slot->behind : NULL, &s->visibility, &s->segments, lv,
                                    i, at->x, at->y);
                 mark_covered(s->covered + i, slot->front.alpha + i, job->offline ? slot->behind.alpha + i : NULL);
-                __m256 alpha = _mm256_loadu_ps(slot->front.alpha + i);
-                if (job->offline) alpha = _mm256_add_ps(alpha, _mm256_loadu_ps(slot->behind.alpha + i));
-                const __m256 present = _mm256_cmp_ps(alpha, _mm256_setzero_ps(), _CMP_GT_OQ);
-                const __m256 weight = _mm256_mul_ps(patch_weights(s->patches[k].weight[n], x, y),
-                                                    _mm256_max_ps(min_inside, _mm256_loadu_ps(slot->front.inside + i)));
-                _mm256_storeu_ps(slot->blend + i, _mm256_and_ps(present, weight));
+                f32x8 alpha = f32x8_load(slot->front.alpha + i);
+                if (job->offline) alpha += f32x8_load(slot->behind.alpha + i);
+                const i32x8 present = alpha > 0;
+                const f32x8 weight = patch_weights(s->patches[k].weight[n], x, y) *
+                                     f32x8_max(min_inside, f32x8_load(slot->front.inside + i));
+                f32x8_store(slot->blend + i, f32x8_where(present, weight));
             }
     }
 }
@@ -481,8 +480,7 @@ static bool is_consistent(const struct frame_job *job, const struct patch *patch
     const struct vec3 point = view_unproject(&job->novel, at->x + x + 0.5, at->y + y + 0.5, z);
     float sum[3] = {0};
     for (int k = 0; k < patch->count; k++)
-        sum[sight_of(job, patch->view[k], point, sigma)] +=
-            _mm256_cvtss_f32(patch_weights(patch->weight[k], x % LATTICE, y));
+        sum[sight_of(job, patch->view[k], point, sigma)] += patch_weights(patch->weight[k], x % LATTICE, y)[0];
     return !(sum[SIGHT_THROUGH] > MAX_THROUGH * (sum[SIGHT_THROUGH] + sum[SIGHT_BLOCKED]));
 }
 
@@ -497,8 +495,8 @@ static bool any_hole(const struct tile_scratch *s, const struct tile *at)
  * range of columns. False: there are none. */
 static bool clear_uncovered(struct tile_scratch *s, const struct tile *at, int view, bool mesh_view)
 {
-    const __m256 shut = _mm256_set1_ps(INFINITY);
-    const __m256i none = _mm256_set1_epi32(-1), lanes = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
+    const f32x8 shut = f32x8_all(INFINITY);
+    const i32x8 none = i32x8_all(-1), lanes = {0, 1, 2, 3, 4, 5, 6, 7};
     bool open[PATCHES], any = false;
 
     for (int y = 0; y < TILE_HEIGHT; y++) {
@@ -510,16 +508,15 @@ static bool clear_uncovered(struct tile_scratch *s, const struct tile *at, int v
     for (int y = 0; y < at->height; y++)
         for (int x = 0; x < at->width; x += 8) {
             const size_t i = (size_t)y * TILE_STRIDE + (size_t)x;
-            const __m256i covered =
-                _mm256_cvtepu8_epi32(_mm_loadl_epi64((const __m128i *)(const void *)(s->covered + i)));
-            const __m256i within = _mm256_cmpgt_epi32(_mm256_set1_epi32(open[x / LATTICE] ? at->width - x : 0), lanes);
-            const __m256i is_open = _mm256_andnot_si256(_mm256_cmpgt_epi32(covered, _mm256_setzero_si256()), within);
-            const __m256 inverse = _mm256_andnot_ps(_mm256_castsi256_ps(is_open), shut);
-            const unsigned bits = (unsigned)_mm256_movemask_ps(_mm256_castsi256_ps(is_open));
-            _mm256_storeu_ps(s->visibility.inverse_front + i, inverse);
-            _mm256_storeu_ps(s->visibility.inverse_behind + i, inverse);
-            _mm256_storeu_si256((__m256i *)(void *)(s->visibility.front + i), none);
-            _mm256_storeu_si256((__m256i *)(void *)(s->visibility.behind + i), none);
+            const i32x8 covered = i32x8_from_u8(s->covered + i);
+            const i32x8 within = lanes < (open[x / LATTICE] ? at->width - x : 0);
+            const i32x8 is_open = (covered == 0) & within;
+            const f32x8 inverse = f32x8_unless(is_open, shut);
+            const unsigned bits = i32x8_signs(is_open);
+            f32x8_store(s->visibility.inverse_front + i, inverse);
+            f32x8_store(s->visibility.inverse_behind + i, inverse);
+            i32x8_store(s->visibility.front + i, none);
+            i32x8_store(s->visibility.behind + i, none);
             if (!bits) continue;
             any = true;
             if (s->visibility.last[y] < 0) s->visibility.first[y] = x;
@@ -744,10 +741,10 @@ static void cover_view(struct frame_job *job, struct tile_scratch *s, const stru
     for (int y = 0; y < at->height; y++)
         for (int x = s->visibility.first[y]; x <= s->visibility.last[y]; x += 8) {
             const size_t i = (size_t)y * TILE_STRIDE + (size_t)x;
-            const __m256i indices = _mm256_loadu_si256((const __m256i *)(const void *)(s->visibility.front + i));
-            const __m256i none = _mm256_cmpeq_epi32(indices, _mm256_set1_epi32(-1));
-            const int present = ~_mm256_movemask_ps(_mm256_castsi256_ps(none)) & 0xFF;
-            const int full = _mm256_movemask_ps(_mm256_castsi256_ps(indices)) & present;
+            const i32x8 indices = i32x8_load(s->visibility.front + i);
+            const i32x8 none = indices == -1;
+            const int present = ~i32x8_signs(none) & 0xFF;
+            const int full = i32x8_signs(indices) & present;
             for (int k = 0; k < 8; k++) s->covered[i + (size_t)k] |= full >> k & 1;
             if (full == present) continue;
             visibility_cover8(&s->spare, &s->visibility, &s->segments, lv, i, at->x, at->y);

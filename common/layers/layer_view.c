@@ -9,40 +9,37 @@
  * their centroids, are grouped from left to right. Those that nobody can see are in no group. */
 #include "common/layers/layer_view.h"
 
-#include <immintrin.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "common/layers/soft_z.h"
+#include "common/math/lanes.h"
 
 #define HALF_MAX     65504.0f
 #define BOUNDS_SLACK 1e-9 /* of a bound of 1/z, relative to its terms */
 
 /* Both layers and their sum, the photo, as half floats. NaN becomes 0. */
-__attribute__((target("f16c"))) static void pack_rgba(uint16_t half[2][4], uint16_t photo[4], const float *interior,
-                                                      const float *boundary)
+static void pack_rgba(uint16_t half[2][4], uint16_t photo[4], const float *interior, const float *boundary)
 {
-    const __m256 max = _mm256_set1_ps(HALF_MAX), min = _mm256_set1_ps(-HALF_MAX);
-    __m256 v = _mm256_set_m128(_mm_loadu_ps(boundary), _mm_loadu_ps(interior));
-    v = _mm256_and_ps(v, _mm256_cmp_ps(v, v, _CMP_ORD_Q));
-    v = _mm256_max_ps(_mm256_min_ps(v, max), min);
-    _mm_storeu_si128((__m128i *)half, _mm256_cvtps_ph(v, _MM_FROUND_TO_NEAREST_INT));
-    __m128 sum = _mm_add_ps(_mm256_castps256_ps128(v), _mm256_extractf128_ps(v, 1));
-    sum = _mm_max_ps(_mm_min_ps(sum, _mm256_castps256_ps128(max)), _mm256_castps256_ps128(min));
-    _mm_storel_epi64((__m128i *)(void *)photo, _mm_cvtps_ph(sum, _MM_FROUND_TO_NEAREST_INT));
+    const f32x8 max = f32x8_all(HALF_MAX), min = f32x8_all(-HALF_MAX);
+    f32x8 v = f32x8_join(f32x4_load(interior), f32x4_load(boundary));
+    v = f32x8_where(v <= INFINITY, v);
+    v = f32x8_max(f32x8_min(v, max), min);
+    f32x8_to_half(half[0], v);
+    f32x4 sum = f32x8_low(v) + f32x8_high(v);
+    sum = f32x4_max(f32x4_min(sum, f32x8_low(max)), f32x8_low(min));
+    f32x4_to_half(photo, sum);
 }
 
 /* One row of a level from two of the level before, of `width` texels each. */
 static void reduce_row(uint16_t (*to)[4], const uint16_t (*top)[4], const uint16_t (*bottom)[4], int width)
 {
     for (int x = 0; x < width; x += 2) { /* the padding to the right is empty */
-        const __m256 sum = _mm256_add_ps(_mm256_cvtph_ps(_mm_loadu_si128((const __m128i *)(const void *)(top + x))),
-                                         _mm256_cvtph_ps(_mm_loadu_si128((const __m128i *)(const void *)(bottom + x))));
-        const __m128 mean =
-            _mm_mul_ps(_mm_add_ps(_mm256_castps256_ps128(sum), _mm256_extractf128_ps(sum, 1)), _mm_set1_ps(0.25f));
-        _mm_storel_epi64((__m128i *)(void *)to[x / 2], _mm_cvtps_ph(mean, _MM_FROUND_TO_NEAREST_INT));
+        const f32x8 sum = f32x8_from_half(top[x]) + f32x8_from_half(bottom[x]);
+        const f32x4 mean = (f32x8_low(sum) + f32x8_high(sum)) * 0.25f;
+        f32x4_to_half(to[x / 2], mean);
     }
 }
 
@@ -71,11 +68,11 @@ enum status layer_view_reduce(struct layer_view *lv, struct err *err)
     return ST_OK;
 }
 
-__attribute__((target("f16c"))) static void scale_texel(uint16_t rgba[4], __m128 factor)
+static void scale_texel(uint16_t rgba[4], f32x4 factor)
 {
-    const __m128 before = _mm_cvtph_ps(_mm_loadl_epi64((const __m128i *)(const void *)rgba));
-    const __m128 after = _mm_min_ps(_mm_mul_ps(before, factor), _mm_set1_ps(HALF_MAX));
-    _mm_storel_epi64((__m128i *)(void *)rgba, _mm_cvtps_ph(after, _MM_FROUND_TO_NEAREST_INT));
+    const f32x4 before = f32x4_from_half(rgba);
+    const f32x4 after = f32x4_min(before * factor, f32x4_all(HALF_MAX));
+    f32x4_to_half(rgba, after);
 }
 
 static size_t texel_index(const struct layer_view *lv, int x, int y)
@@ -83,16 +80,16 @@ static size_t texel_index(const struct layer_view *lv, int x, int y)
     return (size_t)(y + 1) * (size_t)lv->stride + (size_t)(x + 1);
 }
 
-__attribute__((target("f16c"))) void layer_view_photo(const struct layer_view *lv, int x, int y, float rgba[4])
+void layer_view_photo(const struct layer_view *lv, int x, int y, float rgba[4])
 {
     const uint16_t *texel = lv->photo[texel_index(lv, x, y)];
-    _mm_storeu_ps(rgba, _mm_cvtph_ps(_mm_loadl_epi64((const __m128i *)(const void *)texel)));
+    f32x4_store(rgba, f32x4_from_half(texel));
 }
 
 void layer_view_scale(struct layer_view *lv, int x, int y, const float factor[3])
 {
     const size_t at = texel_index(lv, x, y);
-    const __m128 by = _mm_setr_ps(factor[0], factor[1], factor[2], 1);
+    const f32x4 by = {factor[0], factor[1], factor[2], 1};
     for (int l = 0; l < 2; l++) scale_texel(lv->texels[at].rgba[l], by);
     scale_texel(lv->photo[at], by);
 }

@@ -20,8 +20,9 @@
  */
 #include "common/layers/layer_visibility.h"
 
-#include <immintrin.h>
 #include <math.h>
+
+#include "common/math/lanes.h"
 
 /* A photo reduced by less than sqrt(2) is looked up as it is: bilinear levels are blurred by themselves. */
 #define LEVEL_BIAS 0.5f
@@ -30,53 +31,49 @@
 /* ------------------------------------------------------------------------------------------------------ drawing */
 
 /* Of the given lanes, all in cells of many segments, those whose cell has a texel of segment `id`. */
-static inline int many_hits(int lanes, __m256i first, const struct layer_view *lv, __m256i id)
+static inline int many_hits(int lanes, i32x8 first, const struct layer_view *lv, i32x8 id)
 {
     uint32_t word[8];
     int hits = 0;
 
-    _mm256_storeu_si256((__m256i *)word, first);
+    i32x8_store(word, first);
     for (; lanes; lanes &= lanes - 1) {
         const int k = __builtin_ctz((unsigned)lanes);
-        const __m256i ids =
-            _mm256_load_si256((const __m256i *)(const void *)lv->many[word[k] & ~(CELL_MANY | CELL_SPLIT)].id);
-        const __m256i equal = _mm256_cmpeq_epi32(ids, id);
-        hits |= (_mm256_testz_si256(equal, equal) ? 0 : 1) << k;
+        const i32x8 ids = i32x8_load(lv->many[word[k] & ~(CELL_MANY | CELL_SPLIT)].id);
+        hits |= (i32x8_any(ids == id)) << k;
     }
     return hits;
 }
 
 /* Eight lanes from eight bits. */
-static inline __m256i mask_of(int lanes)
+static inline i32x8 mask_of(int lanes)
 {
-    const __m256i bits = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
-    return _mm256_cmpeq_epi32(_mm256_and_si256(_mm256_set1_epi32(lanes), bits), bits);
+    const i32x8 bits = {1, 2, 4, 8, 16, 32, 64, 128};
+    return (lanes & bits) == bits;
 }
 
 /* words[base + near], near from 0 to 15. */
-static inline __m256i words_near(const uint32_t *words, int base, __m256i near)
+static inline i32x8 words_near(const uint32_t *words, int base, i32x8 near)
 {
-    const __m256i low = _mm256_loadu_si256((const __m256i *)(const void *)(words + base));
-    const __m256i high = _mm256_loadu_si256((const __m256i *)(const void *)(words + base + 8));
-    return _mm256_blendv_epi8(_mm256_permutevar8x32_epi32(low, near), _mm256_permutevar8x32_epi32(high, near),
-                              _mm256_cmpgt_epi32(near, _mm256_set1_epi32(7)));
+    const i32x8 low = i32x8_load(words + base);
+    const i32x8 high = i32x8_load(words + base + 8);
+    return i32x8_if(near > 7, i32x8_pick(high, near), i32x8_pick(low, near));
 }
 
 /* Both words of the cells at the eight indices `at`; lane `first` is the leftmost that matters. */
-static inline void cell_words(uint32_t *const cells[2], __m256i at, int first, __m256i *word, __m256i *second)
+static inline void cell_words(uint32_t *const cells[2], i32x8 at, int first, i32x8 *word, i32x8 *second)
 {
-    const __m256i base = _mm256_permutevar8x32_epi32(at, _mm256_set1_epi32(first));
-    const __m256i near = _mm256_sub_epi32(at, base);
-    const __m256i is_near =
-        _mm256_cmpeq_epi32(_mm256_andnot_si256(_mm256_set1_epi32(15), near), _mm256_setzero_si256());
+    const i32x8 base = i32x8_pick(at, i32x8_all(first));
+    const i32x8 near = at - base;
+    const i32x8 is_near = (near & ~15) == 0;
 
-    if (_mm256_movemask_epi8(is_near) == -1) { /* three times as fast as a gather */
-        const int begin = _mm_cvtsi128_si32(_mm256_castsi256_si128(base));
+    if (i32x8_signs(is_near) == 0xFF) { /* three times as fast as a gather */
+        const int begin = base[0];
         *word = words_near(cells[0], begin, near);
         *second = words_near(cells[1], begin, near);
     } else {
-        *word = _mm256_i32gather_epi32((const int *)(const void *)cells[0], at, 4);
-        *second = _mm256_i32gather_epi32((const int *)(const void *)cells[1], at, 4);
+        *word = i32x8_gather((const int32_t *)cells[0], at);
+        *second = i32x8_gather((const int32_t *)cells[1], at);
     }
 }
 
@@ -84,83 +81,75 @@ static inline void cell_words(uint32_t *const cells[2], __m256i at, int first, _
 static void draw_row(struct tile_visibility *tv, size_t row, int first, int last, const struct drawn_segment *s,
                      uint32_t index, const struct layer_view *lv, float y, int tile_x)
 {
-    const __m256 lanes = _mm256_setr_ps(0, 1, 2, 3, 4, 5, 6, 7), zero = _mm256_setzero_ps();
-    const __m256 one = _mm256_set1_ps(1);
-    const __m256 u_step = _mm256_set1_ps(s->u[1]), v_step = _mm256_set1_ps(s->v[1]), w_step = _mm256_set1_ps(s->w[1]);
-    const __m256 z_step = _mm256_set1_ps(s->inverse_z[1]);
-    const __m256 u_row = _mm256_set1_ps(s->u[0] + y * s->u[2]), v_row = _mm256_set1_ps(s->v[0] + y * s->v[2]);
-    const __m256 w_row = _mm256_set1_ps(s->w[0] + y * s->w[2]);
-    const __m256 z_row = _mm256_set1_ps(s->inverse_z[0] + y * s->inverse_z[2]);
-    const __m256 u0 = _mm256_set1_ps(s->u0), u1 = _mm256_set1_ps(s->u1), v0 = _mm256_set1_ps(s->v0),
-                 v1 = _mm256_set1_ps(s->v1);
-    const __m256i id = _mm256_set1_epi32((int)s->id), me = _mm256_set1_epi32((int)index);
-    const __m256 gap = _mm256_set1_ps(s->surface_gap);
-    const __m256i full_bit = _mm256_set1_epi32((int)VISIBLE_FULL);
+    const f32x8 lanes = {0, 1, 2, 3, 4, 5, 6, 7}, zero = {0};
+    const f32x8 one = f32x8_all(1);
+    const f32x8 u_step = f32x8_all(s->u[1]), v_step = f32x8_all(s->v[1]), w_step = f32x8_all(s->w[1]);
+    const f32x8 z_step = f32x8_all(s->inverse_z[1]);
+    const f32x8 u_row = f32x8_all(s->u[0] + y * s->u[2]), v_row = f32x8_all(s->v[0] + y * s->v[2]);
+    const f32x8 w_row = f32x8_all(s->w[0] + y * s->w[2]);
+    const f32x8 z_row = f32x8_all(s->inverse_z[0] + y * s->inverse_z[2]);
+    const f32x8 u0 = f32x8_all(s->u0), u1 = f32x8_all(s->u1), v0 = f32x8_all(s->v0), v1 = f32x8_all(s->v1);
+    const i32x8 id = i32x8_all((int)s->id), me = i32x8_all((int)index);
+    const f32x8 gap = f32x8_all(s->surface_gap);
+    const i32x8 full_bit = i32x8_all((int)VISIBLE_FULL);
 
     for (int x = first; x <= last; x += 8) {
         const size_t at = row + (size_t)(x - tile_x);
-        const __m256 dx = _mm256_add_ps(_mm256_set1_ps((float)(x - s->x0)), lanes);
-        const __m256 inverse = _mm256_add_ps(z_row, _mm256_mul_ps(dx, z_step));
-        const __m256 front = _mm256_loadu_ps(tv->inverse_front + at);
-        const __m256 behind = _mm256_loadu_ps(tv->inverse_behind + at);
-        const __m256i front_index = _mm256_loadu_si256((const __m256i *)(const void *)(tv->front + at));
+        const f32x8 dx = (float)(x - s->x0) + lanes;
+        const f32x8 inverse = z_row + dx * z_step;
+        const f32x8 front = f32x8_load(tv->inverse_front + at);
+        const f32x8 behind = f32x8_load(tv->inverse_behind + at);
+        const i32x8 front_index = i32x8_load(tv->front + at);
         /* nearest: in front of the front; second: behind a front that is not full, another surface, the nearest such */
-        const __m256 nearest = _mm256_cmp_ps(inverse, front, _CMP_GT_OQ);
-        const __m256 beyond = _mm256_cmp_ps(_mm256_sub_ps(front, inverse), _mm256_mul_ps(front, gap), _CMP_GT_OQ);
-        const __m256 second = _mm256_andnot_ps(_mm256_castsi256_ps(front_index),
-                                               _mm256_and_ps(beyond, _mm256_cmp_ps(inverse, behind, _CMP_GT_OQ)));
-        int wanted = _mm256_movemask_ps(_mm256_or_ps(nearest, second));
+        const i32x8 nearest = inverse > front;
+        const i32x8 beyond = front - inverse > front * gap;
+        const i32x8 second = ~front_index & beyond & (inverse > behind);
+        int wanted = i32x8_signs(nearest | second);
         if (last - x < 7) wanted &= (2 << (last - x)) - 1;
         if (!wanted) continue;
 
-        const __m256 w = _mm256_add_ps(w_row, _mm256_mul_ps(dx, w_step));
-        const __m256 scale = _mm256_div_ps(one, w);
-        const __m256 u = _mm256_mul_ps(_mm256_add_ps(u_row, _mm256_mul_ps(dx, u_step)), scale);
-        const __m256 v = _mm256_mul_ps(_mm256_add_ps(v_row, _mm256_mul_ps(dx, v_step)), scale);
-        const __m256 inside =
-            _mm256_and_ps(_mm256_and_ps(_mm256_cmp_ps(u, u0, _CMP_GE_OQ), _mm256_cmp_ps(u, u1, _CMP_LT_OQ)),
-                          _mm256_and_ps(_mm256_cmp_ps(v, v0, _CMP_GE_OQ), _mm256_cmp_ps(v, v1, _CMP_LT_OQ)));
-        wanted &= _mm256_movemask_ps(_mm256_and_ps(inside, _mm256_cmp_ps(w, zero, _CMP_GT_OQ)));
+        const f32x8 w = w_row + dx * w_step;
+        const f32x8 scale = one / w;
+        const f32x8 u = (u_row + dx * u_step) * scale;
+        const f32x8 v = (v_row + dx * v_step) * scale;
+        const i32x8 inside = (u >= u0) & (u < u1) & ((v >= v0) & (v < v1));
+        wanted &= i32x8_signs(inside & (w > zero));
         if (!wanted) continue;
 
         /* lanes outside of the segment read the cell of the leftmost lane inside */
         const int leftmost = __builtin_ctz((unsigned)wanted);
-        const __m256i column = _mm256_cvttps_epi32(u), line = _mm256_cvttps_epi32(v);
-        const __m256i cell_of = _mm256_add_epi32(column, _mm256_mullo_epi32(line, _mm256_set1_epi32(lv->stride)));
-        const __m256i first_cell = _mm256_permutevar8x32_epi32(cell_of, _mm256_set1_epi32(leftmost));
-        const __m256i cell = _mm256_blendv_epi8(first_cell, cell_of, _mm256_castps_si256(inside));
-        __m256i split, other; /* the cells' words; CELL_SPLIT is the sign of the first */
+        const i32x8 column = i32x8_truncate(u), line = i32x8_truncate(v);
+        const i32x8 cell_of = i32x8_index(line, lv->stride, column);
+        const i32x8 first_cell = i32x8_pick(cell_of, i32x8_all(leftmost));
+        const i32x8 cell = i32x8_if(inside, cell_of, first_cell);
+        i32x8 split, other; /* the cells' words; CELL_SPLIT is the sign of the first */
         cell_words(lv->cells, cell, leftmost, &split, &other);
-        const __m256i owner = _mm256_andnot_si256(_mm256_set1_epi32((int)CELL_SPLIT), split);
-        const __m256i own = _mm256_or_si256(_mm256_cmpeq_epi32(owner, id), _mm256_cmpeq_epi32(other, id));
-        int hits = wanted & _mm256_movemask_ps(_mm256_castsi256_ps(own));
-        const int many = wanted & _mm256_movemask_ps(_mm256_castsi256_ps(_mm256_slli_epi32(split, 1)));
+        const i32x8 owner = split & (int)~CELL_SPLIT;
+        const i32x8 own = (owner == id) | (other == id);
+        int hits = wanted & i32x8_signs(own);
+        const int many = wanted & i32x8_signs(split << 1);
         if (many) hits |= many_hits(many, split, lv, id);
         if (!hits) continue;
 
-        const __m256i hit = mask_of(hits);
-        const __m256 as_front = _mm256_and_ps(_mm256_castsi256_ps(hit), nearest);
-        const __m256 as_second = _mm256_andnot_ps(nearest, _mm256_and_ps(_mm256_castsi256_ps(hit), second));
-        const __m256i full = _mm256_andnot_si256(_mm256_srai_epi32(split, 31), full_bit);
-        const __m256i behind_index = _mm256_loadu_si256((const __m256i *)(const void *)(tv->behind + at));
+        const i32x8 hit = mask_of(hits);
+        const i32x8 as_front = hit & nearest;
+        const i32x8 as_second = ~nearest & (hit & second);
+        const i32x8 full = ~(split >> 31) & full_bit;
+        const i32x8 behind_index = i32x8_load(tv->behind + at);
         /* the old front becomes the surface behind if it is another surface than the new one */
-        const __m256 before = _mm256_cmp_ps(_mm256_sub_ps(inverse, front), _mm256_mul_ps(inverse, gap), _CMP_GT_OQ);
-        const __m256 back = _mm256_and_ps(as_front, before);
-        __m256 new_behind = _mm256_blendv_ps(behind, front, back);
-        __m256 new_behind_index =
-            _mm256_blendv_ps(_mm256_castsi256_ps(behind_index), _mm256_castsi256_ps(front_index), back);
-        new_behind = _mm256_blendv_ps(new_behind, inverse, as_second);
-        new_behind_index =
-            _mm256_blendv_ps(new_behind_index, _mm256_castsi256_ps(_mm256_or_si256(me, full)), as_second);
-        _mm256_storeu_ps(tv->inverse_behind + at, new_behind);
-        _mm256_storeu_ps((float *)(void *)(tv->behind + at), new_behind_index);
-        if (!_mm256_movemask_ps(as_front)) continue;
-        _mm256_storeu_ps(tv->inverse_front + at, _mm256_blendv_ps(front, inverse, as_front));
-        _mm256_storeu_ps((float *)(void *)(tv->front + at),
-                         _mm256_blendv_ps(_mm256_castsi256_ps(front_index),
-                                          _mm256_castsi256_ps(_mm256_or_si256(me, full)), as_front));
-        _mm256_storeu_ps(tv->u + at, _mm256_blendv_ps(_mm256_loadu_ps(tv->u + at), u, as_front));
-        _mm256_storeu_ps(tv->v + at, _mm256_blendv_ps(_mm256_loadu_ps(tv->v + at), v, as_front));
+        const i32x8 before = inverse - front > inverse * gap;
+        const i32x8 back = as_front & before;
+        f32x8 new_behind = f32x8_if(back, front, behind);
+        i32x8 new_behind_index = i32x8_if(back, front_index, behind_index);
+        new_behind = f32x8_if(as_second, inverse, new_behind);
+        new_behind_index = i32x8_if(as_second, me | full, new_behind_index);
+        f32x8_store(tv->inverse_behind + at, new_behind);
+        i32x8_store(tv->behind + at, new_behind_index);
+        if (!i32x8_any(as_front)) continue;
+        f32x8_store(tv->inverse_front + at, f32x8_if(as_front, inverse, front));
+        i32x8_store(tv->front + at, i32x8_if(as_front, me | full, front_index));
+        f32x8_store(tv->u + at, f32x8_if(as_front, u, f32x8_load(tv->u + at)));
+        f32x8_store(tv->v + at, f32x8_if(as_front, v, f32x8_load(tv->v + at)));
     }
 }
 
@@ -174,8 +163,8 @@ static void find_open(struct open_pixels *open, const struct tile_visibility *tv
         const int first = tv->first[y], last = tv->last[y];
         open->row[y][0] = open->row[y][1] = 0;
         for (int x = first & ~7; x <= last; x += 8) {
-            const __m256 is = _mm256_cmp_ps(_mm256_loadu_ps(inverse + x), _mm256_setzero_ps(), _CMP_EQ_OQ);
-            unsigned bits = (unsigned)_mm256_movemask_ps(is);
+            const i32x8 is = f32x8_load(inverse + x) == (f32x8){0};
+            unsigned bits = i32x8_signs(is);
             if (x < first) bits &= 0xFFu << (first - x);
             if (last - x < 7) bits &= (2u << (last - x)) - 1;
             open->row[y][x / 64] |= (uint64_t)bits << x % 64;
@@ -219,17 +208,17 @@ enum status visibility_draw(struct tile_visibility *tv, struct drawn_tile *segme
 
 /* ------------------------------------------------------------------------------------------------------ sampling */
 
-static inline float alpha_of(__m128 rgba) { return _mm_cvtss_f32(_mm_shuffle_ps(rgba, rgba, 0xFF)); }
+static inline float alpha_of(f32x4 rgba) { return rgba[3]; }
 
 /* Bilinear look-up of the photo in the cell that begins at texel `at`. */
-static inline __m128 photo_texel(const struct layer_view *lv, int at, float fu, float fv)
+static inline f32x4 photo_texel(const struct layer_view *lv, int at, float fu, float fv)
 {
     const uint16_t(*t)[4] = (const uint16_t(*)[4])lv->photo + at;
-    const __m256 top = _mm256_cvtph_ps(_mm_loadu_si128((const __m128i *)(const void *)t));
-    const __m256 bottom = _mm256_cvtph_ps(_mm_loadu_si128((const __m128i *)(const void *)(t + lv->stride)));
-    const __m256 mean = _mm256_add_ps(top, _mm256_mul_ps(_mm256_sub_ps(bottom, top), _mm256_set1_ps(fv)));
-    const __m128 left = _mm256_castps256_ps128(mean), right = _mm256_extractf128_ps(mean, 1);
-    return _mm_add_ps(left, _mm_mul_ps(_mm_sub_ps(right, left), _mm_set1_ps(fu)));
+    const f32x8 top = f32x8_from_half(t[0]);
+    const f32x8 bottom = f32x8_from_half(t[lv->stride]);
+    const f32x8 mean = top + (bottom - top) * fv;
+    const f32x4 left = f32x8_low(mean), right = f32x8_high(mean);
+    return left + (right - left) * fu;
 }
 
 static void cubic_weights(float w[4], float t)
@@ -242,10 +231,10 @@ static void cubic_weights(float w[4], float t)
 }
 
 /* Catmull-Rom look-up [Catmull 1974] in 4 x 4 texels; falls back to photo_texel where one of their cells is split. */
-static __m128 photo_cubic(const struct layer_view *lv, int at, float fu, float fv)
+static f32x4 photo_cubic(const struct layer_view *lv, int at, float fu, float fv)
 {
     float wu[4], wv[4];
-    __m128 sum = _mm_setzero_ps();
+    f32x4 sum = {0};
 
     if (at < lv->stride + 1) return photo_texel(lv, at, fu, fv);
     for (int y = -1; y <= 1; y++)
@@ -257,40 +246,40 @@ static __m128 photo_cubic(const struct layer_view *lv, int at, float fu, float f
     cubic_weights(wv, fv);
     for (int y = 0; y < 4; y++) {
         const uint16_t(*t)[4] = (const uint16_t(*)[4])lv->photo + at + (y - 1) * lv->stride - 1;
-        __m128 row = _mm_setzero_ps();
+        f32x4 row = {0};
         for (int x = 0; x < 4; x++) {
-            const __m128 texel = _mm_cvtph_ps(_mm_loadl_epi64((const __m128i *)(const void *)t[x]));
-            row = _mm_add_ps(row, _mm_mul_ps(_mm_set1_ps(wu[x]), texel));
+            const f32x4 texel = f32x4_from_half(t[x]);
+            row += wu[x] * texel;
         }
-        sum = _mm_add_ps(sum, _mm_mul_ps(_mm_set1_ps(wv[y]), row));
+        sum += wv[y] * row;
     }
-    return _mm_max_ps(sum, _mm_setzero_ps());
+    return f32x4_max(sum, (f32x4){0});
 }
 
 /* Bilinear look-up in a reduced photo, at (u, v) of the padded texels of the photo itself. Texels without depth and
  * beyond the border do not count. */
-static __m128 reduced_texel(const struct layer_view *lv, int level, float u, float v)
+static f32x4 reduced_texel(const struct layer_view *lv, int level, float u, float v)
 {
     const struct photo_level *from = &lv->reduced[level - 1];
     const float part = 1 / (float)(1 << level), x = (u - 0.5f) * part + 0.5f, y = (v - 0.5f) * part + 0.5f;
     const int i = (int)x, j = (int)y;
     const float fx = x - (float)i, fy = y - (float)j;
     const uint16_t(*t)[4] = (const uint16_t(*)[4])from->texels + (size_t)j * (size_t)from->stride + i;
-    const __m256 top = _mm256_cvtph_ps(_mm_loadu_si128((const __m128i *)(const void *)t));
-    const __m256 bottom = _mm256_cvtph_ps(_mm_loadu_si128((const __m128i *)(const void *)(t + from->stride)));
-    const __m256 mean = _mm256_add_ps(top, _mm256_mul_ps(_mm256_sub_ps(bottom, top), _mm256_set1_ps(fy)));
-    const __m128 left = _mm256_castps256_ps128(mean), right = _mm256_extractf128_ps(mean, 1);
-    const __m128 sum = _mm_add_ps(left, _mm_mul_ps(_mm_sub_ps(right, left), _mm_set1_ps(fx)));
+    const f32x8 top = f32x8_from_half(t[0]);
+    const f32x8 bottom = f32x8_from_half(t[from->stride]);
+    const f32x8 mean = top + (bottom - top) * fy;
+    const f32x4 left = f32x8_low(mean), right = f32x8_high(mean);
+    const f32x4 sum = left + (right - left) * fx;
     const float alpha = alpha_of(sum);
-    return alpha > 0 ? _mm_div_ps(sum, _mm_set1_ps(alpha)) : sum;
+    return alpha > 0 ? sum / alpha : sum;
 }
 
 /* The photo between two levels; `sharp` is the photo itself there. */
-static __m128 photo_between(const struct layer_view *lv, float level, float u, float v, __m128 sharp)
+static f32x4 photo_between(const struct layer_view *lv, float level, float u, float v, f32x4 sharp)
 {
     const int below = (int)level < lv->reduced_count ? (int)level : lv->reduced_count - 1;
-    const __m128 fine = below ? reduced_texel(lv, below, u, v) : sharp, coarse = reduced_texel(lv, below + 1, u, v);
-    return _mm_add_ps(fine, _mm_mul_ps(_mm_sub_ps(coarse, fine), _mm_set1_ps(level - (float)below)));
+    const f32x4 fine = below ? reduced_texel(lv, below, u, v) : sharp, coarse = reduced_texel(lv, below + 1, u, v);
+    return fine + (coarse - fine) * (level - (float)below);
 }
 
 /* MIP level of a segment's photo: the homography's determinant over w^3 is the area in texels of a target pixel. */
@@ -308,36 +297,34 @@ static float photo_level(const struct drawn_segment *s, int levels)
 
 /* Replaces the colours of those of the eight pixels from i on whose segments the frame shows reduced. */
 static void sample_reduced(struct view_samples *s, const struct drawn_tile *dt, const struct layer_view *lv, size_t i,
-                           int pixels, __m256i segment, const float *u, const float *v)
+                           int pixels, i32x8 segment, const float *u, const float *v)
 {
     int index[8], known = -1;
     float level = 0;
 
-    _mm256_storeu_si256((__m256i *)(void *)index, segment);
+    i32x8_store(index, segment);
     for (; pixels; pixels &= pixels - 1) {
         const int k = __builtin_ctz((unsigned)pixels);
         if (index[k] != known) level = photo_level(&dt->segments[known = index[k]], lv->reduced_count);
         if (!(level > 0)) continue;
-        _mm_storeu_ps(s->rgba[i + (size_t)k],
-                      photo_between(lv, level, u[k], v[k], _mm_loadu_ps(s->rgba[i + (size_t)k])));
+        f32x4_store(s->rgba[i + (size_t)k], photo_between(lv, level, u[k], v[k], f32x4_load(s->rgba[i + (size_t)k])));
     }
 }
 
-static __m128 photo_at(const struct layer_view *lv, float u, float v)
+static f32x4 photo_at(const struct layer_view *lv, float u, float v)
 {
     const int i = (int)u, j = (int)v;
     return photo_texel(lv, j * lv->stride + i, u - (float)i, v - (float)j);
 }
 
 /* Mask of the layers of a texel whose id is one of `ids`; eight lanes: 0..3 interior, 4..7 boundary. */
-static inline __m256 layers_of(const struct texel *t, const uint32_t *ids, int count)
+static inline i32x8 layers_of(const struct texel *t, const uint32_t *ids, int count)
 {
-    const __m256i spread = _mm256_set_epi32(1, 1, 1, 1, 0, 0, 0, 0);
-    const __m128i id_bits = _mm_set1_epi32((int)~TEXEL_JOINED);
-    const __m128i own = _mm_and_si128(_mm_loadl_epi64((const __m128i *)(const void *)t->id), id_bits);
-    __m128i found = _mm_setzero_si128();
-    for (int i = 0; i < count; i++) found = _mm_or_si128(found, _mm_cmpeq_epi32(own, _mm_set1_epi32((int)ids[i])));
-    return _mm256_castsi256_ps(_mm256_permutevar8x32_epi32(_mm256_castsi128_si256(found), spread));
+    const int32_t interior = (int32_t)(t->id[0] & ~TEXEL_JOINED), boundary = (int32_t)(t->id[1] & ~TEXEL_JOINED);
+    const i32x8 own = {interior, interior, interior, interior, boundary, boundary, boundary, boundary};
+    i32x8 found = {0};
+    for (int i = 0; i < count; i++) found |= own == (int32_t)ids[i];
+    return found;
 }
 
 /* Segments of the cell that are one surface with segment `id`, itself included. Returns their number. */
@@ -381,18 +368,18 @@ static inline void split_cell_at(struct split_cell *c, const struct layer_view *
 }
 
 /* Coverage and premultiplied colour of segment `id`'s surface in a split cell. */
-static __m128 surface_at(const struct layer_view *lv, uint32_t id, float u, float v)
+static f32x4 surface_at(const struct layer_view *lv, uint32_t id, float u, float v)
 {
     struct split_cell c;
-    __m256 sum = _mm256_setzero_ps();
+    f32x8 sum = {0};
 
     split_cell_at(&c, lv, id, u, v);
     for (int k = 0; k < 4; k++) {
-        const __m256 w = _mm256_and_ps(layers_of(c.texel[k], c.ids, c.count), _mm256_set1_ps(c.weight[k]));
-        const __m256 color = _mm256_cvtph_ps(_mm_loadu_si128((const __m128i *)(const void *)c.texel[k]->rgba));
-        sum = _mm256_add_ps(sum, _mm256_mul_ps(w, color));
+        const f32x8 w = f32x8_where(layers_of(c.texel[k], c.ids, c.count), f32x8_all(c.weight[k]));
+        const f32x8 color = f32x8_from_half(c.texel[k]->rgba[0]);
+        sum += w * color;
     }
-    return _mm_add_ps(_mm256_castps256_ps128(sum), _mm256_extractf128_ps(sum, 1));
+    return f32x8_low(sum) + f32x8_high(sum);
 }
 
 /* Coverage by segment `id`'s surface in a split cell: the alpha of surface_at(), bit by bit. */
@@ -407,21 +394,20 @@ static float surface_alpha(const struct layer_view *lv, uint32_t id, float u, fl
             const uint32_t own = c.texel[k]->id[l] & ~TEXEL_JOINED;
             bool found = false;
             for (int n = 0; n < c.count; n++) found |= own == c.ids[n];
-            if (found) sum[l] += c.weight[k] * _cvtsh_ss(c.texel[k]->rgba[l][3]);
+            if (found) sum[l] += c.weight[k] * float_from_half(c.texel[k]->rgba[l][3]);
         }
     return sum[0] + sum[1];
 }
 
 /* Fade towards the picture's border at texel positions (u, v): 0 at the border, 1 from BORDER on. */
-static inline __m256 inside8(const struct layer_view *lv, __m256 u, __m256 v)
+static inline f32x8 inside8(const struct layer_view *lv, f32x8 u, f32x8 v)
 {
     const float across = (float)(lv->width > lv->height ? lv->width : lv->height) * BORDER;
-    const __m256 half = _mm256_set1_ps(0.5f);
-    const __m256 x = _mm256_min_ps(_mm256_sub_ps(u, half), _mm256_sub_ps(_mm256_set1_ps((float)lv->width + 0.5f), u));
-    const __m256 y = _mm256_min_ps(_mm256_sub_ps(v, half), _mm256_sub_ps(_mm256_set1_ps((float)lv->height + 0.5f), v));
-    const __m256 part =
-        _mm256_mul_ps(_mm256_max_ps(_mm256_setzero_ps(), _mm256_min_ps(x, y)), _mm256_set1_ps(1 / across));
-    return _mm256_min_ps(_mm256_set1_ps(1), part);
+    const f32x8 half = f32x8_all(0.5f);
+    const f32x8 x = f32x8_min(u - half, (float)lv->width + 0.5f - u);
+    const f32x8 y = f32x8_min(v - half, (float)lv->height + 0.5f - v);
+    const f32x8 part = f32x8_max((f32x8){0}, f32x8_min(x, y)) * (1 / across);
+    return f32x8_min(f32x8_all(1), part);
 }
 
 /* Position of target pixel (x, y) on segment b, in the padded texels. */
@@ -434,7 +420,7 @@ static void position_on(const struct drawn_segment *b, int x, int y, float *u, f
 }
 
 /* Coverage and premultiplied colour of segment b at target pixel (x, y). */
-static __m128 behind_at(const struct drawn_segment *b, bool full, const struct layer_view *lv, int x, int y)
+static f32x4 behind_at(const struct drawn_segment *b, bool full, const struct layer_view *lv, int x, int y)
 {
     float u, v;
     position_on(b, x, y, &u, &v);
@@ -453,68 +439,65 @@ static void sample_split(struct view_samples *s, struct view_samples *behind, co
                          const struct drawn_tile *dt, const struct layer_view *lv, size_t i, int x, int y)
 {
     const uint32_t index = tv->behind[i];
-    __m128 sum = surface_at(lv, dt->segments[tv->front[i]].id, tv->u[i], tv->v[i]);
+    f32x4 sum = surface_at(lv, dt->segments[tv->front[i]].id, tv->u[i], tv->v[i]);
     const float alpha = alpha_of(sum);
 
     if (index != VISIBLE_NONE && alpha < 1) {
         const uint32_t at = index & ~VISIBLE_FULL;
-        const __m128 back = behind_at(&dt->segments[at], index & VISIBLE_FULL, lv, x, y);
+        const f32x4 back = behind_at(&dt->segments[at], index & VISIBLE_FULL, lv, x, y);
         const float back_alpha = alpha_of(back), weight = back_alpha < 1 - alpha ? back_alpha : 1 - alpha;
-        const __m128 rest = weight > 0 ? _mm_mul_ps(back, _mm_set1_ps(weight / back_alpha)) : _mm_setzero_ps();
+        const f32x4 rest = weight > 0 ? back * (weight / back_alpha) : (f32x4){0};
         struct view_samples *to = behind ? behind : s;
         if (behind) {
-            _mm_storeu_ps(behind->rgba[i], rest);
+            f32x4_store(behind->rgba[i], rest);
             behind->alpha[i] = weight > 0 ? weight : 0;
         } else
-            sum = _mm_add_ps(sum, rest);
+            sum += rest;
         if (behind || weight > alpha) { /* depth of the dominant surface, never a mean across a depth jump */
             to->z[i] = 1 / tv->inverse_behind[i];
             to->sigma[i] = dt->sigmas[at];
         }
     }
-    _mm_storeu_ps(s->rgba[i], sum);
+    f32x4_store(s->rgba[i], sum);
     s->alpha[i] = alpha_of(sum);
 }
 
 static void sample_nothing(struct view_samples *s, size_t i)
 {
-    _mm_storeu_ps(s->rgba[i], _mm_setzero_ps());
+    f32x4_store(s->rgba[i], (f32x4){0});
     s->alpha[i] = s->z[i] = s->sigma[i] = s->inside[i] = 0;
 }
 
 void visibility_sample8(struct view_samples *s, struct view_samples *behind, const struct tile_visibility *tv,
                         const struct drawn_tile *dt, const struct layer_view *lv, size_t i, int tile_x, int tile_y)
 {
-    const __m256i index = _mm256_loadu_si256((const __m256i *)(const void *)(tv->front + i));
-    const __m256i none = _mm256_cmpeq_epi32(index, _mm256_set1_epi32(-1));
-    const int empty = _mm256_movemask_ps(_mm256_castsi256_ps(none));
-    const int full = _mm256_movemask_ps(_mm256_castsi256_ps(index)) & ~empty;
-    const __m256 present = _mm256_castsi256_ps(_mm256_xor_si256(none, _mm256_set1_epi32(-1)));
-    const __m256 u = _mm256_and_ps(present, _mm256_loadu_ps(tv->u + i)),
-                 v = _mm256_and_ps(present, _mm256_loadu_ps(tv->v + i));
-    const __m256i segment = _mm256_andnot_si256(none, _mm256_and_si256(index, _mm256_set1_epi32((int)~VISIBLE_FULL)));
+    const i32x8 index = i32x8_load(tv->front + i);
+    const i32x8 none = index == -1;
+    const int empty = i32x8_signs(none);
+    const int full = i32x8_signs(index) & ~empty;
+    const f32x8 u = f32x8_unless(none, f32x8_load(tv->u + i)), v = f32x8_unless(none, f32x8_load(tv->v + i));
+    const i32x8 segment = ~none & index & (int)~VISIBLE_FULL;
 
-    if (behind) _mm256_storeu_ps(behind->alpha + i, _mm256_setzero_ps());
+    if (behind) f32x8_store(behind->alpha + i, (f32x8){0});
     if (empty == 0xFF) {
         for (size_t k = i; k < i + 8; k++) sample_nothing(s, k);
         return;
     }
-    _mm256_storeu_ps(s->z + i, _mm256_div_ps(_mm256_set1_ps(1), _mm256_loadu_ps(tv->inverse_front + i)));
-    _mm256_storeu_ps(s->sigma + i, _mm256_i32gather_ps(dt->sigmas, segment, 4));
-    _mm256_storeu_ps(s->inside + i, inside8(lv, u, v));
-    _mm256_storeu_ps(s->alpha + i, _mm256_set1_ps(1));
+    f32x8_store(s->z + i, 1 / f32x8_load(tv->inverse_front + i));
+    f32x8_store(s->sigma + i, f32x8_gather(dt->sigmas, segment));
+    f32x8_store(s->inside + i, inside8(lv, u, v));
+    f32x8_store(s->alpha + i, f32x8_all(1));
 
-    const __m256i column = _mm256_cvttps_epi32(u), line = _mm256_cvttps_epi32(v);
+    const i32x8 column = i32x8_truncate(u), line = i32x8_truncate(v);
     float fu[8], fv[8];
     int at[8];
-    _mm256_storeu_ps(fu, _mm256_sub_ps(u, _mm256_cvtepi32_ps(column)));
-    _mm256_storeu_ps(fv, _mm256_sub_ps(v, _mm256_cvtepi32_ps(line)));
-    _mm256_storeu_si256((__m256i *)at,
-                        _mm256_add_epi32(column, _mm256_mullo_epi32(line, _mm256_set1_epi32(lv->stride))));
+    f32x8_store(fu, u - f32x8_from_i32(column));
+    f32x8_store(fv, v - f32x8_from_i32(line));
+    i32x8_store(at, i32x8_index(line, lv->stride, column));
     if (behind)
-        for (int k = 0; k < 8; k++) _mm_storeu_ps(s->rgba[i + (size_t)k], photo_cubic(lv, at[k], fu[k], fv[k]));
+        for (int k = 0; k < 8; k++) f32x4_store(s->rgba[i + (size_t)k], photo_cubic(lv, at[k], fu[k], fv[k]));
     else
-        for (int k = 0; k < 8; k++) _mm_storeu_ps(s->rgba[i + (size_t)k], photo_texel(lv, at[k], fu[k], fv[k]));
+        for (int k = 0; k < 8; k++) f32x4_store(s->rgba[i + (size_t)k], photo_texel(lv, at[k], fu[k], fv[k]));
     sample_reduced(s, dt, lv, i, full, segment, tv->u + i, tv->v + i);
     if (full == 0xFF) return;
     for (int k = 0; k < 8; k++) {
@@ -549,23 +532,22 @@ static void cover_split(struct view_samples *s, const struct tile_visibility *tv
 void visibility_cover8(struct view_samples *s, const struct tile_visibility *tv, const struct drawn_tile *dt,
                        const struct layer_view *lv, size_t i, int tile_x, int tile_y)
 {
-    const __m256i index = _mm256_loadu_si256((const __m256i *)(const void *)(tv->front + i));
-    const __m256i none = _mm256_cmpeq_epi32(index, _mm256_set1_epi32(-1));
-    const int empty = _mm256_movemask_ps(_mm256_castsi256_ps(none));
-    const int full = _mm256_movemask_ps(_mm256_castsi256_ps(index)) & ~empty;
-    const __m256i segment = _mm256_andnot_si256(none, _mm256_and_si256(index, _mm256_set1_epi32((int)~VISIBLE_FULL)));
-    const __m256 clear = _mm256_castsi256_ps(none);
+    const i32x8 index = i32x8_load(tv->front + i);
+    const i32x8 none = index == -1;
+    const int empty = i32x8_signs(none);
+    const int full = i32x8_signs(index) & ~empty;
+    const i32x8 segment = ~none & index & (int)~VISIBLE_FULL;
 
     if (empty == 0xFF) {
-        _mm256_storeu_ps(s->z + i, _mm256_setzero_ps());
-        _mm256_storeu_ps(s->sigma + i, _mm256_setzero_ps());
-        _mm256_storeu_ps(s->alpha + i, _mm256_setzero_ps());
+        f32x8_store(s->z + i, (f32x8){0});
+        f32x8_store(s->sigma + i, (f32x8){0});
+        f32x8_store(s->alpha + i, (f32x8){0});
         return;
     }
-    const __m256 one = _mm256_set1_ps(1);
-    _mm256_storeu_ps(s->z + i, _mm256_andnot_ps(clear, _mm256_div_ps(one, _mm256_loadu_ps(tv->inverse_front + i))));
-    _mm256_storeu_ps(s->sigma + i, _mm256_andnot_ps(clear, _mm256_i32gather_ps(dt->sigmas, segment, 4)));
-    _mm256_storeu_ps(s->alpha + i, _mm256_andnot_ps(clear, one));
+    const f32x8 one = f32x8_all(1);
+    f32x8_store(s->z + i, f32x8_unless(none, one / f32x8_load(tv->inverse_front + i)));
+    f32x8_store(s->sigma + i, f32x8_unless(none, f32x8_gather(dt->sigmas, segment)));
+    f32x8_store(s->alpha + i, f32x8_unless(none, one));
     for (int lanes = ~(full | empty) & 0xFF; lanes; lanes &= lanes - 1) {
         const size_t p = i + (size_t)__builtin_ctz((unsigned)lanes);
         cover_split(s, tv, dt, lv, p, tile_x + (int)(p % TILE_STRIDE), tile_y + (int)(p / TILE_STRIDE));

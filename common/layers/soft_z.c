@@ -65,19 +65,12 @@ struct fragment_merge {
     float square[SOFT_Z_MAX_FRAGMENTS];                         /* of the order's uncertainty */
     float vote[SOFT_Z_MAX_FRAGMENTS], alpha[SOFT_Z_MAX_FRAGMENTS], front_alpha[SOFT_Z_MAX_FRAGMENTS];
     float support[SOFT_Z_MAX_FRAGMENTS], presence[SOFT_Z_MAX_FRAGMENTS], weight[SOFT_Z_MAX_FRAGMENTS];
-    __m256 separation[SOFT_Z_MAX_FRAGMENTS][BLOCKS]; /* 1 - w of whole fragments and others */
-    __m256 apart[SOFT_Z_MAX_FRAGMENTS][BLOCKS];      /* 1 - w of each pair by the width of votes */
+    f32x8 separation[SOFT_Z_MAX_FRAGMENTS][BLOCKS]; /* 1 - w of whole fragments and others */
+    f32x8 apart[SOFT_Z_MAX_FRAGMENTS][BLOCKS];      /* 1 - w of each pair by the width of votes */
     int count, blocks;
 };
 
 static float clamp_one(float x) { return x < 1 ? x : 1; }
-
-static float max8(__m256 v)
-{
-    const __m128 four = _mm_max_ps(_mm256_castps256_ps128(v), _mm256_extractf128_ps(v, 1));
-    const __m128 two = _mm_max_ps(four, _mm_movehl_ps(four, four));
-    return _mm_cvtss_f32(_mm_max_ss(two, _mm_shuffle_ps(two, two, 1)));
-}
 
 /* Uncertainty of a fragment's soft_z_order(). */
 static float order_uncertainty(const struct soft_z *s, const struct soft_z_fragment *f)
@@ -105,37 +98,36 @@ static bool one_surface(const struct soft_z *s, const struct soft_z_fragment *f,
 }
 
 /* 1 - w of fragment i and eight others. */
-static __m256 separation8(const struct fragment_merge *m, const struct soft_z *s, int i, int block, __m256 dz)
+static f32x8 separation8(const struct fragment_merge *m, const struct soft_z *s, int i, int block, f32x8 dz)
 {
-    const __m256 one = _mm256_set1_ps(1), zero = _mm256_setzero_ps(), sign = _mm256_set1_ps(-0.0f);
-    const __m256 rho =
-        soft_z_rho8(s, _mm256_add_ps(_mm256_loadu_ps(m->square + 8 * block), _mm256_set1_ps(m->square[i])));
-    const __m256 w = soft_z_weight8(soft_z_over8(_mm256_andnot_ps(sign, dz), rho), rho);
-    return _mm256_sub_ps(one, _mm256_max_ps(zero, _mm256_min_ps(one, w)));
+    const f32x8 one = f32x8_all(1), zero = {0};
+    const f32x8 rho = soft_z_rho8(s, f32x8_load(m->square + 8 * block) + m->square[i]);
+    const f32x8 w = soft_z_weight8(soft_z_over8(f32x8_abs(dz), rho), rho);
+    return one - f32x8_max(zero, f32x8_min(one, w));
 }
 
 /* The separation of all pairs, and the support of each fragment. */
 static void find_support(struct fragment_merge *m, const struct soft_z *s)
 {
-    const __m256 one = _mm256_set1_ps(1), zero = _mm256_setzero_ps();
+    const f32x8 one = f32x8_all(1), zero = {0};
     const struct soft_z votes = vote_width(s);
 
     for (int i = 0; i < m->count; i++) {
-        const __m256 leaves = _mm256_set1_ps(1 - m->front_alpha[i] - m->alpha[i]);
-        const __m256 front = _mm256_set1_ps(m->front_alpha[i]);
-        __m256 pro = zero, contra = zero;
+        const f32x8 leaves = f32x8_all(1 - m->front_alpha[i] - m->alpha[i]);
+        const f32x8 front = f32x8_all(m->front_alpha[i]);
+        f32x8 pro = zero, contra = zero;
         for (int b = 0; b < m->blocks; b++) {
-            const __m256 dz = _mm256_sub_ps(_mm256_loadu_ps(m->order + 8 * b), _mm256_set1_ps(m->order[i]));
-            const __m256 farther = _mm256_cmp_ps(dz, zero, _CMP_GT_OQ);
-            const __m256 alpha = _mm256_loadu_ps(m->alpha + 8 * b), vote = _mm256_loadu_ps(m->vote + 8 * b);
-            const __m256 more = _mm256_max_ps(zero, _mm256_sub_ps(alpha, _mm256_blendv_ps(front, leaves, farther)));
-            const __m256 part = _mm256_blendv_ps(_mm256_set1_ps(AGAINST_IN_FRONT), one, farther);
-            const __m256 apart = m->apart[i][b] = separation8(m, &votes, i, b, dz);
+            const f32x8 dz = f32x8_load(m->order + 8 * b) - m->order[i];
+            const i32x8 farther = dz > zero;
+            const f32x8 alpha = f32x8_load(m->alpha + 8 * b), vote = f32x8_load(m->vote + 8 * b);
+            const f32x8 more = f32x8_max(zero, alpha - f32x8_if(farther, leaves, front));
+            const f32x8 part = f32x8_if(farther, one, f32x8_all(AGAINST_IN_FRONT));
+            const f32x8 apart = m->apart[i][b] = separation8(m, &votes, i, b, dz);
             if (m->alpha[i] >= WHOLE) m->separation[i][b] = separation8(m, s, i, b, dz);
-            pro = _mm256_add_ps(pro, _mm256_mul_ps(_mm256_mul_ps(vote, alpha), _mm256_sub_ps(one, apart)));
-            contra = _mm256_add_ps(contra, _mm256_mul_ps(_mm256_mul_ps(part, vote), _mm256_mul_ps(more, apart)));
+            pro += vote * alpha * (one - apart);
+            contra += part * vote * (more * apart);
         }
-        const float sum = lanes_sum(pro), part = sum / (sum + lanes_sum(contra) + 1e-30f);
+        const float sum = f32x8_sum(pro), part = sum / (sum + f32x8_sum(contra) + 1e-30f);
         m->support[i] = part * part;
     }
 }
@@ -144,13 +136,13 @@ static void find_support(struct fragment_merge *m, const struct soft_z *s)
 static float hidden_part(const struct fragment_merge *m, int i)
 {
     if (!(m->alpha[i] >= WHOLE)) return 0;
-    __m256 max = _mm256_setzero_ps();
+    f32x8 max = {0};
     for (int b = 0; b < m->blocks; b++) {
-        const __m256 in_front = _mm256_cmp_ps(_mm256_loadu_ps(m->z + 8 * b), _mm256_set1_ps(m->z[i]), _CMP_LT_OQ);
-        const __m256 hides = _mm256_mul_ps(_mm256_loadu_ps(m->presence + 8 * b), m->separation[i][b]);
-        max = _mm256_max_ps(max, _mm256_and_ps(in_front, hides));
+        const i32x8 in_front = f32x8_load(m->z + 8 * b) < m->z[i];
+        const f32x8 hides = f32x8_load(m->presence + 8 * b) * m->separation[i][b];
+        max = f32x8_max(max, f32x8_where(in_front, hides));
     }
-    return max8(max);
+    return f32x8_largest(max);
 }
 
 static void merge_prepare(struct fragment_merge *m, const struct soft_z *s, const struct soft_z_fragment *f, int count)
@@ -179,17 +171,17 @@ static float merged_depth(const struct fragment_merge *m)
 {
     float max = 0, z = 0;
     for (int i = 0; i < m->count; i++) {
-        __m256 sum = _mm256_setzero_ps(), z_sum = sum;
+        f32x8 sum = {0}, z_sum = sum;
         for (int b = 0; b < m->blocks; b++) {
-            const __m256 w = _mm256_sub_ps(_mm256_set1_ps(1), m->apart[i][b]);
-            const __m256 part = _mm256_mul_ps(_mm256_loadu_ps(m->weight + 8 * b), w);
-            sum = _mm256_add_ps(sum, part);
-            z_sum = _mm256_add_ps(z_sum, _mm256_mul_ps(part, _mm256_loadu_ps(m->z + 8 * b)));
+            const f32x8 w = 1 - m->apart[i][b];
+            const f32x8 part = f32x8_load(m->weight + 8 * b) * w;
+            sum += part;
+            z_sum += part * f32x8_load(m->z + 8 * b);
         }
-        const float weight = lanes_sum(sum);
+        const float weight = f32x8_sum(sum);
         if (!(weight > max)) continue;
         max = weight;
-        z = lanes_sum(z_sum) / weight;
+        z = f32x8_sum(z_sum) / weight;
     }
     return z;
 }
@@ -199,7 +191,7 @@ void soft_z_merge(const struct soft_z *s, const struct soft_z_fragment *f, int c
     const struct soft_z votes = vote_width(s);
     const bool agree = one_surface(&votes, f, count);
     float sum = 0, own_sum = 0, z_sum = 0, z_weight = 0;
-    __m128 color = _mm_setzero_ps(), own = color; /* own: of the fragment's view */
+    f32x4 color = {0}, own = color; /* own: of the fragment's view */
     struct fragment_merge m;
 
     if (!agree) merge_prepare(&m, s, f, count);
@@ -208,22 +200,22 @@ void soft_z_merge(const struct soft_z *s, const struct soft_z_fragment *f, int c
         const float seen = left <= 0 ? 0 : alpha < left ? alpha : left;
         const float visible = seen * (agree ? 1 : m.support[i]), weight = f[i].blend * visible;
         const float present = visible * clamp_one(f[i].blend / SOFT_Z_FULL_BLEND);
-        const __m128 straight = _mm_div_ps(_mm_max_ps(_mm_setzero_ps(), _mm_loadu_ps(f[i].rgba)), _mm_set1_ps(alpha));
-        own = _mm_add_ps(own, _mm_mul_ps(_mm_set1_ps(weight), straight));
+        const f32x4 straight = f32x4_max((f32x4){0}, f32x4_load(f[i].rgba)) / alpha;
+        own += weight * straight;
         own_sum += weight;
         if (i + 1 == count || !(f[i + 1].front_alpha > 0)) {
-            const __m128 mean = _mm_mul_ps(own, _mm_set1_ps(own_sum > 0 ? 1 / own_sum : 0));
-            color = _mm_add_ps(color, _mm_mul_ps(_mm_set1_ps(own_sum), _mm_sqrt_ps(mean)));
+            const f32x4 mean = own * (own_sum > 0 ? 1 / own_sum : 0);
+            color += own_sum * f32x4_sqrt(mean);
             sum += own_sum;
-            own = _mm_setzero_ps();
+            own = (f32x4){0};
             own_sum = 0;
         }
         z_sum += present * f[i].z;
         z_weight += present;
         if (!agree) m.weight[i] = present;
     }
-    const __m128 mean = _mm_mul_ps(color, _mm_set1_ps(sum > 0 ? 1 / sum : 0));
-    _mm_storeu_ps(rgba, _mm_mul_ps(mean, mean));
+    const f32x4 mean = color * (sum > 0 ? 1 / sum : 0);
+    f32x4_store(rgba, mean * mean);
     rgba[3] = sum > 0;
     *z = !agree ? merged_depth(&m) : z_weight > 0 ? z_sum / z_weight : 0;
 }

@@ -4,7 +4,7 @@
 #ifndef REMODEL_SOFT_Z_H
 #define REMODEL_SOFT_Z_H
 
-#include <immintrin.h>
+#include "common/math/lanes.h"
 
 struct soft_z {
     float widths; /* k; 0: rho is `range` everywhere, as in the thesis */
@@ -30,54 +30,49 @@ static inline float soft_z_order(const struct soft_z *s, float z) { return s->wi
 /* The functions below handle eight pixels at a time, with depths in that order. */
 
 /* Presence p of samples with these blending weights and alphas. */
-static inline __m256 soft_z_presence8(__m256 blend, __m256 alpha)
+static inline f32x8 soft_z_presence8(f32x8 blend, f32x8 alpha)
 {
-    const __m256 one = _mm256_set1_ps(1);
-    return _mm256_mul_ps(_mm256_min_ps(one, _mm256_mul_ps(blend, _mm256_set1_ps(1 / SOFT_Z_FULL_BLEND))),
-                         _mm256_min_ps(one, _mm256_mul_ps(alpha, _mm256_set1_ps(1 / SOFT_Z_FULL_ALPHA))));
+    const f32x8 one = f32x8_all(1);
+    return f32x8_min(one, blend * (1 / SOFT_Z_FULL_BLEND)) * f32x8_min(one, alpha * (1 / SOFT_Z_FULL_ALPHA));
 }
 
 /* 1/2 (1 + cos(pi t)) for t in [0, 1], as 1/2 - 1/2 sin(pi (t - 1/2)): five terms of the series give 1e-6. */
-static inline __m256 soft_z_fall8(__m256 t)
+static inline f32x8 soft_z_fall8(f32x8 t)
 {
     static const float terms[] = {0.0821458866f, -0.599264529f, 2.55016404f, -5.16771278f, 3.14159265f};
-    const __m256 s = _mm256_sub_ps(t, _mm256_set1_ps(0.5f)), s2 = _mm256_mul_ps(s, s);
-    __m256 sum = _mm256_set1_ps(terms[0]);
-    for (int i = 1; i < 5; i++) sum = _mm256_add_ps(_mm256_mul_ps(sum, s2), _mm256_set1_ps(terms[i]));
-    return _mm256_sub_ps(_mm256_set1_ps(0.5f), _mm256_mul_ps(_mm256_set1_ps(0.5f), _mm256_mul_ps(sum, s)));
+    const f32x8 s = t - 0.5f, s2 = s * s;
+    f32x8 sum = f32x8_all(terms[0]);
+    for (int i = 1; i < 5; i++) sum = sum * s2 + terms[i];
+    return 0.5f - 0.5f * (sum * s);
 }
 
 /* rho of pairs of depths; squares: the sums of the squares of their uncertainties. */
-static inline __m256 soft_z_rho8(const struct soft_z *s, __m256 squares)
+static inline f32x8 soft_z_rho8(const struct soft_z *s, f32x8 squares)
 {
-    if (!(s->widths > 0)) return _mm256_set1_ps(s->range);
-    return _mm256_mul_ps(_mm256_set1_ps(2 * s->widths), _mm256_sqrt_ps(squares));
+    if (!(s->widths > 0)) return f32x8_all(s->range);
+    return 2 * s->widths * f32x8_sqrt(squares);
 }
 
 /* dz - gamma; and w of it, which may leave [0, 1] by the error of the series. */
-static inline __m256 soft_z_over8(__m256 dz, __m256 rho)
-{
-    return _mm256_sub_ps(dz, _mm256_mul_ps(rho, _mm256_set1_ps(0.1f)));
-}
+static inline f32x8 soft_z_over8(f32x8 dz, f32x8 rho) { return dz - rho * 0.1f; }
 
-static inline __m256 soft_z_weight8(__m256 over, __m256 rho)
+static inline f32x8 soft_z_weight8(f32x8 over, f32x8 rho)
 {
-    const __m256 length = _mm256_max_ps(_mm256_mul_ps(rho, _mm256_set1_ps(0.8f)), _mm256_set1_ps(1e-30f));
-    const __m256 t = _mm256_min_ps(_mm256_set1_ps(1), _mm256_div_ps(over, length));
-    return soft_z_fall8(_mm256_max_ps(_mm256_setzero_ps(), t));
+    const f32x8 length = f32x8_max(rho * 0.8f, f32x8_all(1e-30f));
+    const f32x8 t = f32x8_min(f32x8_all(1), over / length);
+    return soft_z_fall8(f32x8_max((f32x8){0}, t));
 }
 
 /* min(w, weight of samples at z behind samples c of presence p_c); z and z_c are in soft_z_order(). */
-static inline __m256 soft_z_behind8(const struct soft_z *s, __m256 w, __m256 z, __m256 uncertainty, __m256 z_c,
-                                    __m256 uncertainty_c, __m256 p_c)
+static inline f32x8 soft_z_behind8(const struct soft_z *s, f32x8 w, f32x8 z, f32x8 uncertainty, f32x8 z_c,
+                                   f32x8 uncertainty_c, f32x8 p_c)
 {
-    const __m256 one = _mm256_set1_ps(1), zero = _mm256_setzero_ps();
-    const __m256 rho = soft_z_rho8(
-        s, _mm256_add_ps(_mm256_mul_ps(uncertainty, uncertainty), _mm256_mul_ps(uncertainty_c, uncertainty_c)));
-    const __m256 over = soft_z_over8(_mm256_sub_ps(z, z_c), rho);
-    if (!_mm256_movemask_ps(_mm256_cmp_ps(over, zero, _CMP_GT_OQ))) return w;
-    const __m256 hidden = _mm256_mul_ps(p_c, _mm256_sub_ps(one, soft_z_weight8(over, rho)));
-    return _mm256_max_ps(zero, _mm256_min_ps(w, _mm256_sub_ps(one, hidden)));
+    const f32x8 one = f32x8_all(1), zero = {0};
+    const f32x8 rho = soft_z_rho8(s, uncertainty * uncertainty + uncertainty_c * uncertainty_c);
+    const f32x8 over = soft_z_over8(z - z_c, rho);
+    if (!i32x8_any(over > zero)) return w;
+    const f32x8 hidden = p_c * (one - soft_z_weight8(over, rho));
+    return f32x8_max(zero, f32x8_min(w, one - hidden));
 }
 
 /* Samples of one view in eight adjacent pixels: pointers to the first. */
@@ -95,19 +90,19 @@ struct soft_z_samples8 {
 static inline __attribute__((always_inline)) void
 soft_z_blend8(const struct soft_z *s, const struct soft_z_samples8 *views, int count, float (*rgba)[4], float *z)
 {
-    __m256 weight[SOFT_Z_MAX_VIEWS], presence[SOFT_Z_MAX_VIEWS], order[SOFT_Z_MAX_VIEWS];
-    __m256 uncertainty[SOFT_Z_MAX_VIEWS], visible[SOFT_Z_MAX_VIEWS];
-    const __m256 least = _mm256_set1_ps(1e-12f); /* z is 0 where there is no sample */
-    __m256 z_sum = _mm256_setzero_ps(), presence_sum = z_sum;
+    f32x8 weight[SOFT_Z_MAX_VIEWS], presence[SOFT_Z_MAX_VIEWS], order[SOFT_Z_MAX_VIEWS];
+    f32x8 uncertainty[SOFT_Z_MAX_VIEWS], visible[SOFT_Z_MAX_VIEWS];
+    const f32x8 least = f32x8_all(1e-12f); /* z is 0 where there is no sample */
+    f32x8 z_sum = {0}, presence_sum = z_sum;
     float w[SOFT_Z_MAX_VIEWS][8];
 
     for (int k = 0; k < count; k++) {
-        const __m256 z_k = _mm256_max_ps(least, _mm256_loadu_ps(views[k].z)), sigma = _mm256_loadu_ps(views[k].sigma);
-        order[k] = s->widths > 0 ? _mm256_div_ps(_mm256_set1_ps(-1), z_k) : z_k;
-        uncertainty[k] = _mm256_mul_ps(sigma, _mm256_andnot_ps(_mm256_set1_ps(-0.0f), order[k]));
-        weight[k] = _mm256_loadu_ps(views[k].blend);
-        presence[k] = soft_z_presence8(weight[k], _mm256_loadu_ps(views[k].alpha));
-        visible[k] = _mm256_set1_ps(1);
+        const f32x8 z_k = f32x8_max(least, f32x8_load(views[k].z)), sigma = f32x8_load(views[k].sigma);
+        order[k] = s->widths > 0 ? -1 / z_k : z_k;
+        uncertainty[k] = sigma * f32x8_abs(order[k]);
+        weight[k] = f32x8_load(views[k].blend);
+        presence[k] = soft_z_presence8(weight[k], f32x8_load(views[k].alpha));
+        visible[k] = f32x8_all(1);
     }
     for (int k = 0; k < count; k++)
         for (int c = 0; c < count; c++)
@@ -115,18 +110,17 @@ soft_z_blend8(const struct soft_z *s, const struct soft_z_samples8 *views, int c
                 visible[k] =
                     soft_z_behind8(s, visible[k], order[k], uncertainty[k], order[c], uncertainty[c], presence[c]);
     for (int k = 0; k < count; k++) {
-        const __m256 part = _mm256_mul_ps(visible[k], presence[k]);
-        z_sum = _mm256_add_ps(z_sum, _mm256_mul_ps(part, _mm256_loadu_ps(views[k].z)));
-        presence_sum = _mm256_add_ps(presence_sum, part);
-        _mm256_storeu_ps(w[k], _mm256_mul_ps(visible[k], weight[k]));
+        const f32x8 part = visible[k] * presence[k];
+        z_sum += part * f32x8_load(views[k].z);
+        presence_sum += part;
+        f32x8_store(w[k], visible[k] * weight[k]);
     }
-    _mm256_storeu_ps(z, _mm256_div_ps(z_sum, _mm256_max_ps(presence_sum, _mm256_set1_ps(1e-30f))));
+    f32x8_store(z, z_sum / f32x8_max(presence_sum, f32x8_all(1e-30f)));
     for (int n = 0; n < 8; n++) {
-        __m128 sum = _mm_setzero_ps();
-        for (int k = 0; k < count; k++)
-            sum = _mm_add_ps(sum, _mm_mul_ps(_mm_set1_ps(w[k][n]), _mm_loadu_ps(views[k].rgba[n])));
-        const __m128 alpha = _mm_shuffle_ps(sum, sum, 0xFF);
-        _mm_storeu_ps(rgba[n], _mm_div_ps(sum, _mm_max_ps(alpha, _mm_set1_ps(1e-30f))));
+        f32x4 sum = {0};
+        for (int k = 0; k < count; k++) sum += w[k][n] * f32x4_load(views[k].rgba[n]);
+        const f32x4 alpha = __builtin_shufflevector(sum, sum, 3, 3, 3, 3);
+        f32x4_store(rgba[n], sum / f32x4_max(alpha, f32x4_all(1e-30f)));
     }
 }
 

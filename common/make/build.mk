@@ -11,21 +11,25 @@ FLAGS.release := -O3 -g
 FLAGS.asan := -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer
 FLAGS.debug := -O0 -g
 FLAGS.clang := -O2 -g
+# no instruction that only newer processors have, on any processor: slower, the same products (common/math/lanes.h)
+FLAGS.portable := -O3 -g
 ifeq ($(FLAGS.$(FLAVOR)),)
-  $(error FLAVOR=$(FLAVOR) is not one of: release asan debug clang)
+  $(error FLAVOR=$(FLAVOR) is not one of: release asan debug clang portable)
 endif
 ifeq ($(FLAVOR),clang)
   CC := clang
   CXX := clang++
 endif
-# -ffp-contract=off: the same bits from every compiler version; AVX2 and F16C (every processor with
-# the one has the other) are what the hot loops are written for
-CFLAGS := -std=c11 -D_GNU_SOURCE -mavx2 -mf16c -mno-fma -ffp-contract=off -fopenmp $(WARN) $(FLAGS.$(FLAVOR)) \
+# -ffp-contract=off: the same bits from every compiler version; on x86-64, AVX2 and F16C (every processor with the one
+# has the other) are what the hot loops are fast with. C++ is the same in all flavours: Eigen sums in the order of its vectors
+X86 := $(filter x86_64-%,$(shell $(CC) -dumpmachine))
+LANES := $(if $(filter portable,$(FLAVOR)),-Wno-psabi,$(if $(X86),-mavx2 -mf16c -mno-fma))
+CFLAGS := -std=c11 -D_GNU_SOURCE $(LANES) -ffp-contract=off -fopenmp $(WARN) $(FLAGS.$(FLAVOR)) \
   -I. $(shell pkg-config --cflags $(PKGS) 2>/dev/null)
 # apart from the flags that decide what is compiled anew: tests unset CI
 STRICT := $(if $(CI),-Werror)
 # C++ only where a library has no C interface: OpenCV, Ceres, OpenEXR's C++ library
-CXXFLAGS := -std=c++17 -mavx2 -mno-fma -ffp-contract=off -Wall -Wextra -Wshadow $(FLAGS.$(FLAVOR)) \
+CXXFLAGS := -std=c++17 $(if $(X86),-mavx2 -mno-fma) -ffp-contract=off -Wall -Wextra -Wshadow $(FLAGS.$(FLAVOR)) \
   -I. -isystem /usr/include/eigen3 -isystem /usr/include/opencv4 $(shell pkg-config --cflags OpenEXR 2>/dev/null)
 LDLIBS := -lOpenEXRCore $(shell pkg-config --libs $(PKGS) 2>/dev/null) -lm
 # what a stage alone needs, and common/math and common/light; a program gets those libraries that its objects use

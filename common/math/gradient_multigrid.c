@@ -27,13 +27,13 @@
  *
  * Differs from the sources: no guaranteed rate; a level takes one step only where its nodes are not far fewer than
  * those of the level above. */
-#include <immintrin.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "common/math/gradient_levels.h"
+#include "common/math/lanes.h"
 
 enum {
     MAX_ITERATIONS = 150,
@@ -45,14 +45,12 @@ enum {
 #define PRECISION  1e-7 /* the same, of the largest value */
 #define MAX_SPAN   1e-7 /* the smallest weight above 0, over the largest, that single precision can tell from 0 */
 
-typedef float v4 __attribute__((vector_size(16)));
-typedef double d4 __attribute__((vector_size(32)));
 typedef double loose_d4 __attribute__((vector_size(32), aligned(8), may_alias)); /* double[4] anywhere */
 
 /* Vectors of a level: 3 channels and a spare one. */
 struct vectors {
-    v4 *b, *x;         /* right-hand side and solution; one more node for those without a group */
-    v4 *c, *v, *d, *w; /* two steps towards it, and A times each */
+    f32x4 *b, *x;         /* right-hand side and solution; one more node for those without a group */
+    f32x4 *c, *v, *d, *w; /* two steps towards it, and A times each */
 };
 
 struct cycle {
@@ -64,8 +62,8 @@ static enum status cycle_init(struct cycle *cy, const struct gradient_levels *le
 {
     cy->levels = levels;
     for (int k = 0; k < levels->count; k++) {
-        const size_t n = (size_t)levels->level[k].count + 1, bytes = 6 * n * sizeof(v4);
-        v4 *all = calloc(6 * n, sizeof *all);
+        const size_t n = (size_t)levels->level[k].count + 1, bytes = 6 * n * sizeof(f32x4);
+        f32x4 *all = calloc(6 * n, sizeof *all);
         if (!all) return err_nomem(err, "vectors of a gradient problem", bytes);
         cy->at[k] = (struct vectors){all, all + n, all + 2 * n, all + 3 * n, all + 4 * n, all + 5 * n};
     }
@@ -77,21 +75,21 @@ static void cycle_release(struct cycle *cy)
     for (int k = 0; k < GRADIENT_MAX_LEVELS; k++) free(cy->at[k].b);
 }
 
-static inline v4 larger_size(v4 most, v4 a) { return _mm_max_ps(most, _mm_andnot_ps(_mm_set1_ps(-0.0F), a)); }
+static inline f32x4 larger_size(f32x4 most, f32x4 a) { return f32x4_max(most, f32x4_abs(a)); }
 
-static inline d4 widen(v4 a) { return __builtin_convertvector(a, d4); }
+static inline f64x4 widen(f32x4 a) { return __builtin_convertvector(a, f64x4); }
 
 /* a / b per channel; 0 where b is not above 0. */
-static v4 quotient(d4 a, d4 b)
+static f32x4 quotient(f64x4 a, f64x4 b)
 {
-    v4 q = {0};
+    f32x4 q = {0};
     for (int c = 0; c < 4; c++) q[c] = b[c] > 0 ? (float)(a[c] / b[c]) : 0;
     return q;
 }
 
-static v4 more_links(const struct gradient_link *more, int begin, int end, const v4 *x)
+static f32x4 more_links(const struct gradient_link *more, int begin, int end, const f32x4 *x)
 {
-    v4 sum = {0};
+    f32x4 sum = {0};
     for (int e = begin; e < end; e++) sum += more[e].weight * x[more[e].to];
     return sum;
 }
@@ -99,40 +97,40 @@ static v4 more_links(const struct gradient_link *more, int begin, int end, const
 #define INLINE static inline __attribute__((always_inline))
 
 /* The sum over n places. */
-INLINE v4 placed_links(const int *to, const float *weight, int n, const v4 *x)
+INLINE f32x4 placed_links(const int *to, const float *weight, int n, const f32x4 *x)
 {
-    v4 sum = weight[0] * x[to[0]];
+    f32x4 sum = weight[0] * x[to[0]];
     for (int e = 1; e < n; e++) sum += weight[e] * x[to[e]];
     return sum;
 }
 
 /* L x of node i without its last place, which is the link to the nearest node. */
-INLINE v4 far_smaller(const struct gradient_level *l, int width, int i, const v4 *x)
+INLINE f32x4 far_smaller(const struct gradient_level *l, int width, int i, const f32x4 *x)
 {
     const size_t at = 2 * (size_t)width * (size_t)i;
-    v4 sum = placed_links(l->to + at, l->weight + at, width - 1, x);
+    f32x4 sum = placed_links(l->to + at, l->weight + at, width - 1, x);
     if (width > GRADIENT_FINE_WIDTH && l->more)
         sum += more_links(l->more, l->more_begin[2 * i], l->more_begin[2 * i + 1], x);
     return sum;
 }
 
 /* U x of node i without its first place. */
-INLINE v4 far_larger(const struct gradient_level *l, int width, int i, const v4 *x)
+INLINE f32x4 far_larger(const struct gradient_level *l, int width, int i, const f32x4 *x)
 {
     const size_t at = 2 * (size_t)width * (size_t)i + (size_t)width + 1;
-    v4 sum = placed_links(l->to + at, l->weight + at, width - 1, x);
+    f32x4 sum = placed_links(l->to + at, l->weight + at, width - 1, x);
     if (width > GRADIENT_FINE_WIDTH && l->more)
         sum += more_links(l->more, l->more_begin[2 * i + 1], l->more_begin[2 * i + 2], x);
     return sum;
 }
 
-INLINE v4 near_smaller(const struct gradient_level *l, int width, int i, const v4 *x)
+INLINE f32x4 near_smaller(const struct gradient_level *l, int width, int i, const f32x4 *x)
 {
     const size_t at = 2 * (size_t)width * (size_t)i + (size_t)width - 1;
     return l->weight[at] * x[l->to[at]];
 }
 
-INLINE v4 near_larger(const struct gradient_level *l, int width, int i, const v4 *x)
+INLINE f32x4 near_larger(const struct gradient_level *l, int width, int i, const f32x4 *x)
 {
     const size_t at = 2 * (size_t)width * (size_t)i + (size_t)width;
     return l->weight[at] * x[l->to[at]];
@@ -140,55 +138,56 @@ INLINE v4 near_larger(const struct gradient_level *l, int width, int i, const v4
 
 /* x = (D - L)^-1 b. The nearest node's value comes last, and is multiplied by one number only: it has just been found,
  * and the next waits for it. So in the second sweep. */
-INLINE void first_sweep(const struct gradient_level *l, int width, v4 *x, const v4 *b)
+INLINE void first_sweep(const struct gradient_level *l, int width, f32x4 *x, const f32x4 *b)
 {
     for (int i = 0; i < l->count; i++) {
         const size_t near = 2 * (size_t)width * (size_t)i + (size_t)width - 1;
-        const v4 far = (b[i] + far_smaller(l, width, i, x)) * l->inverse[i];
+        const f32x4 far = (b[i] + far_smaller(l, width, i, x)) * l->inverse[i];
         x[i] = far + l->weight[near] * l->inverse[i] * x[l->to[near]];
     }
 }
 
 /* Adds U x of each node to its group. */
-INLINE void restrict_residual(const struct gradient_level *l, int width, v4 *b, const v4 *x)
+INLINE void restrict_residual(const struct gradient_level *l, int width, f32x4 *b, const f32x4 *x)
 {
     for (int i = 0; i < l->count; i++) b[l->group[i]] += near_larger(l, width, i, x) + far_larger(l, width, i, x);
 }
 
 /* t = b + L x, x = (D - U)^-1 t */
-INLINE void second_sweep(const struct gradient_level *l, int width, v4 *x, v4 *t, const v4 *b)
+INLINE void second_sweep(const struct gradient_level *l, int width, f32x4 *x, f32x4 *t, const f32x4 *b)
 {
     for (int i = l->count - 1; i >= 0; i--) {
         const size_t near = 2 * (size_t)width * (size_t)i + (size_t)width;
         t[i] = b[i] + far_smaller(l, width, i, x) + near_smaller(l, width, i, x);
-        const v4 far = (t[i] + far_larger(l, width, i, x)) * l->inverse[i];
+        const f32x4 far = (t[i] + far_larger(l, width, i, x)) * l->inverse[i];
         x[i] = far + l->weight[near] * l->inverse[i] * x[l->to[near]];
     }
 }
 
 /* A x of node i from differences. */
-INLINE v4 product_of(const struct gradient_level *l, int i, const v4 *x)
+INLINE f32x4 product_of(const struct gradient_level *l, int i, const f32x4 *x)
 {
     const int *to = l->to + 2 * GRADIENT_FINE_WIDTH * (size_t)i;
     const float *weight = l->weight + 2 * GRADIENT_FINE_WIDTH * (size_t)i;
-    v4 sum = l->excess[i] * x[i];
+    f32x4 sum = l->excess[i] * x[i];
     for (int e = 0; e < 2 * GRADIENT_FINE_WIDTH; e++) sum += weight[e] * (x[i] - x[to[e]]);
     return sum;
 }
 
 /* Sums over all nodes. */
 struct sums {
-    d4 xy, xb, xq;
-    v4 largest; /* |x| */
+    f64x4 xy, xb, xq;
+    f32x4 largest; /* |x| */
 };
 
 /* y = A x, where y is t of the second sweep; and sums. */
-INLINE struct sums product(const struct gradient_level *l, int width, const v4 *x, v4 *y, const v4 *b, const v4 *q)
+INLINE struct sums product(const struct gradient_level *l, int width, const f32x4 *x, f32x4 *y, const f32x4 *b,
+                           const f32x4 *q)
 {
     struct sums s = {0};
     for (int begin = 0; begin < l->count; begin += BLOCK) {
         const int end = begin + BLOCK < l->count ? begin + BLOCK : l->count;
-        v4 xy = {0}, xb = {0}, xq = {0};
+        f32x4 xy = {0}, xb = {0}, xq = {0};
         for (int i = begin; i < end; i++) {
             if (width == GRADIENT_FINE_WIDTH)
                 y[i] = product_of(l, i, x);
@@ -206,14 +205,14 @@ INLINE struct sums product(const struct gradient_level *l, int width, const v4 *
     return s;
 }
 
-static void solve_dense(const struct gradient_levels *levels, v4 *x, const v4 *b)
+static void solve_dense(const struct gradient_levels *levels, f32x4 *x, const f32x4 *b)
 {
     const int n = levels->level[levels->count - 1].count;
     for (int k = 0; k < n; k++) x[k] = b[k];
     for (int k = 0; k < n; k++)
         for (int i = k + 1; i < n; i++) x[i] += levels->dense[k * GRADIENT_DENSE + i] * x[k];
     for (int k = n - 1; k >= 0; k--) {
-        v4 sum = x[k] * levels->inverse_pivot[k];
+        f32x4 sum = x[k] * levels->inverse_pivot[k];
         for (int i = k + 1; i < n; i++) sum += levels->dense[k * GRADIENT_DENSE + i] * x[i];
         x[k] = sum;
     }
@@ -222,7 +221,7 @@ static void solve_dense(const struct gradient_levels *levels, v4 *x, const v4 *b
 static void solve_level(struct cycle *cy, int k);
 
 /* x: the cycle's result for b, y = A x; q: for the sums. They are of level k, and all differ. */
-INLINE struct sums visit_width(struct cycle *cy, int k, int width, v4 *x, v4 *y, const v4 *b, const v4 *q)
+INLINE struct sums visit_width(struct cycle *cy, int k, int width, f32x4 *x, f32x4 *y, const f32x4 *b, const f32x4 *q)
 {
     const struct gradient_level *l = &cy->levels->level[k];
     first_sweep(l, width, x, b);
@@ -237,7 +236,7 @@ INLINE struct sums visit_width(struct cycle *cy, int k, int width, v4 *x, v4 *y,
     return product(l, width, x, y, b, q);
 }
 
-static struct sums visit_finest(struct cycle *cy, v4 *x, v4 *y, const v4 *b, const v4 *q)
+static struct sums visit_finest(struct cycle *cy, f32x4 *x, f32x4 *y, const f32x4 *b, const f32x4 *q)
 {
     const struct gradient_level *l = &cy->levels->level[0];
     if (l->group || !cy->levels->dense) return visit_width(cy, 0, GRADIENT_FINE_WIDTH, x, y, b, q);
@@ -245,18 +244,18 @@ static struct sums visit_finest(struct cycle *cy, v4 *x, v4 *y, const v4 *b, con
     return product(l, GRADIENT_FINE_WIDTH, x, y, b, q);
 }
 
-static struct sums visit(struct cycle *cy, int k, v4 *x, v4 *y, const v4 *b, const v4 *q)
+static struct sums visit(struct cycle *cy, int k, f32x4 *x, f32x4 *y, const f32x4 *b, const f32x4 *q)
 {
     return visit_width(cy, k, GRADIENT_COARSE_WIDTH, x, y, b, q);
 }
 
 /* b -= step v; returns whether that makes b four times smaller in all channels. */
-static bool reduce(v4 *b, v4 step, const v4 *v, int count)
+static bool reduce(f32x4 *b, f32x4 step, const f32x4 *v, int count)
 {
-    d4 before = {0}, after = {0};
+    f64x4 before = {0}, after = {0};
     for (int begin = 0; begin < count; begin += BLOCK) {
         const int end = begin + BLOCK < count ? begin + BLOCK : count;
-        v4 old = {0}, new = {0};
+        f32x4 old = {0}, new = {0};
         for (int i = begin; i < end; i++) {
             old += b[i] * b[i];
             b[i] -= step * v[i];
@@ -280,10 +279,10 @@ static void solve_level(struct cycle *cy, int k)
         return;
     }
     const struct sums one = visit(cy, k, at->c, at->v, at->b, at->b);
-    v4 step = quotient(one.xb, one.xy), second = {0};
+    f32x4 step = quotient(one.xb, one.xy), second = {0};
     if (cy->levels->level[k].twice && !reduce(at->b, step, at->v, n)) {
         const struct sums two = visit(cy, k, at->d, at->w, at->b, at->v);
-        const v4 back = quotient(two.xq, one.xy);
+        const f32x4 back = quotient(two.xq, one.xy);
         second = quotient(two.xb, two.xy - widen(back) * two.xq);
         step -= second * back;
     }
@@ -294,11 +293,11 @@ static void solve_level(struct cycle *cy, int k)
 struct outer {
     const struct gradient_system *s;
     const struct gradient_level *l;
-    double (*v)[4];            /* values */
-    double weight_scale;       /* of the level, over that of the system */
-    d4 scale;                  /* of r and e per channel, over the true ones */
-    v4 *r, *e, *z, *y, *p, *q; /* residual, correction of v, cycle's result, A times it, direction, A times it */
-    double tolerance;          /* of corrections of v */
+    double (*v)[4];               /* values */
+    double weight_scale;          /* of the level, over that of the system */
+    f64x4 scale;                  /* of r and e per channel, over the true ones */
+    f32x4 *r, *e, *z, *y, *p, *q; /* residual, correction of v, cycle's result, A times it, direction, A times it */
+    double tolerance;             /* of corrections of v */
 };
 
 /* Adds e to v, and makes the tolerance from the range of v. */
@@ -308,7 +307,7 @@ static void add_correction(struct outer *o)
     for (int i = 0; i < o->s->count; i++) {
         loose_d4 *v = (loose_d4 *)o->v[i];
         *v += widen(o->e[i]) / o->scale;
-        o->e[i] = (v4){0};
+        o->e[i] = (f32x4){0};
         for (int c = 0; c < 3; c++) {
             low = o->v[i][c] < low ? o->v[i][c] : low;
             high = o->v[i][c] > high ? o->v[i][c] : high;
@@ -318,28 +317,28 @@ static void add_correction(struct outer *o)
 }
 
 /* r from v; returns its largest per channel. */
-static v4 renew(struct outer *o)
+static f32x4 renew(struct outer *o)
 {
     const struct gradient_level *l = o->l;
-    const d4 scale = o->scale;
-    v4 largest = {0};
+    const f64x4 scale = o->scale;
+    f32x4 largest = {0};
     for (int i = 0; i < l->count; i++) {
-        const d4 here = *(const loose_d4 *)o->v[i];
-        d4 sum = (*(const loose_d4 *)o->s->rhs[i] - o->s->excess[i] * here) * o->weight_scale;
+        const f64x4 here = *(const loose_d4 *)o->v[i];
+        f64x4 sum = (*(const loose_d4 *)o->s->rhs[i] - o->s->excess[i] * here) * o->weight_scale;
         for (int e = 0; e < 2 * GRADIENT_FINE_WIDTH; e++) {
             const size_t at = 2 * GRADIENT_FINE_WIDTH * (size_t)i + (size_t)e;
             sum += (double)l->weight[at] * (*(const loose_d4 *)o->v[l->to[at]] - here);
         }
-        o->r[i] = __builtin_convertvector(sum * scale, v4);
+        o->r[i] = __builtin_convertvector(sum * scale, f32x4);
         largest = larger_size(largest, o->r[i]);
     }
     return largest;
 }
 
 /* One step along z + beta p; returns the largest |r| per channel. */
-static v4 take_step(struct outer *o, v4 beta, v4 alpha)
+static f32x4 take_step(struct outer *o, f32x4 beta, f32x4 alpha)
 {
-    v4 largest = {0};
+    f32x4 largest = {0};
     for (int i = 0; i < o->l->count; i++) {
         o->p[i] = o->z[i] - beta * o->p[i];
         o->q[i] = o->y[i] - beta * o->q[i];
@@ -350,7 +349,7 @@ static v4 take_step(struct outer *o, v4 beta, v4 alpha)
     return largest;
 }
 
-static bool below(v4 a, d4 limit)
+static bool below(f32x4 a, f64x4 limit)
 {
     bool below = true;
     for (int c = 0; c < 3; c++) below = below && (double)a[c] <= limit[c];
@@ -360,10 +359,10 @@ static bool below(v4 a, d4 limit)
 /* Returns the number of iterations; -1: no convergence. */
 static int iterate(struct cycle *cy, struct outer *o)
 {
-    d4 pq = {0};
-    o->scale = (d4){1, 1, 1, 1};
+    f64x4 pq = {0};
+    o->scale = (f64x4){1, 1, 1, 1};
     add_correction(o);
-    v4 left = renew(o), bound = left;
+    f32x4 left = renew(o), bound = left;
     for (int c = 0; c < 4; c++) o->scale[c] = left[c] > 0 ? 1 / (double)left[c] : 1;
     renew(o);
     for (int iteration = 1, since = 0; iteration <= MAX_ITERATIONS; iteration++) {
@@ -373,7 +372,7 @@ static int iterate(struct cycle *cy, struct outer *o)
             add_correction(o);
             return iteration;
         }
-        const v4 beta = quotient(s.xq, pq);
+        const f32x4 beta = quotient(s.xq, pq);
         pq = s.xy - widen(beta) * s.xq;
         left = take_step(o, beta, quotient(s.xb, pq));
         if (++since < RENEW && !below(left, RENEW_DROP * widen(bound))) continue;
@@ -420,14 +419,13 @@ static bool weights_fit(const struct gradient_system *s)
 enum status gradient_multigrid(const struct gradient_system *s, double (*v)[4], int *iterations, struct err *err)
 {
     struct gradient_levels levels = {0};
-    const unsigned rounding = _mm_getcsr();
     *iterations = s->count && !weights_fit(s) ? -1 : 0;
     if (!s->count || *iterations < 0) return ST_OK;
     /* parts that have converged are full of denormal numbers, which are slow */
-    _mm_setcsr(rounding | _MM_FLUSH_ZERO_ON | _MM_DENORMALS_ZERO_ON);
+    const uint64_t before = denormals_flush();
     enum status status = gradient_levels_init(&levels, s, err);
     if (!status) status = run(s, &levels, v, iterations, err);
     gradient_levels_release(&levels);
-    _mm_setcsr(rounding);
+    denormals_restore(before);
     return status;
 }

@@ -15,7 +15,6 @@
  * once per pixel. */
 #include "stages/morph_views/flow_match.h"
 
-#include <immintrin.h>
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -23,6 +22,7 @@
 
 #include "common/base/parallel.h"
 #include "common/image/luminance.h"
+#include "common/math/lanes.h"
 #include "common/math/numbers.h"
 
 #define PARAM_STRUCT struct morph_params
@@ -363,42 +363,40 @@ static void search_candidate_rows(void *ctx, size_t begin, size_t end, int threa
 static void pass_line(const struct flow_search *s, int x, int y)
 {
     float message[LABELS], fx[LABELS], fy[LABELS];
-    const __m256 abs_mask = _mm256_castsi256_ps(_mm256_set1_epi32(0x7fffffff));
-    const __m256 small = _mm256_set1_ps(SMALL_STEP * (float)s->scale);
+    const f32x8 small = f32x8_all(SMALL_STEP * (float)s->scale);
     float min = 0;
     const uint8_t *previous = NULL;
     for (; x >= 0 && y >= 0 && x < s->width && y < s->height; x += s->step_x, y += s->step_y) {
         size_t p = (size_t)y * (size_t)s->width + (size_t)x;
         struct pixel_labels *l = &s->labels[p];
         const uint8_t *rgb = s->from->rgb + 4 * p;
-        __m256 lx[2], ly[2], m[2];
+        f32x8 lx[2], ly[2], m[2];
         for (int b = 0; b < 2; b++) {
-            lx[b] = _mm256_cvtepi32_ps(_mm256_cvtepi16_epi32(_mm_loadu_si128((const __m128i *)(l->x + 8 * b))));
-            ly[b] = _mm256_cvtepi32_ps(_mm256_cvtepi16_epi32(_mm_loadu_si128((const __m128i *)(l->y + 8 * b))));
-            m[b] = _mm256_set1_ps(0);
+            lx[b] = f32x8_from_i32(i32x8_from_i16(l->x + 8 * b));
+            ly[b] = f32x8_from_i32(i32x8_from_i16(l->y + 8 * b));
+            m[b] = (f32x8){0};
         }
         if (previous) {
             float edge = (float)(abs(rgb[0] - previous[0]) + abs(rgb[1] - previous[1]) + abs(rgb[2] - previous[2])) / 3;
             float step = EDGE_STEP + (LARGE_STEP - EDGE_STEP) * expf(-edge / EDGE_SCALE);
-            const __m256 large = _mm256_set1_ps(step);
-            m[0] = m[1] = _mm256_set1_ps(min + step);
+            const f32x8 large = f32x8_all(step);
+            m[0] = m[1] = f32x8_all(min + step);
             for (int j = 0; j < LABELS; j++) {
                 if (message[j] > min + step) continue;
-                const __m256 jx = _mm256_set1_ps(fx[j]), jy = _mm256_set1_ps(fy[j]), jm = _mm256_set1_ps(message[j]);
+                const f32x8 jx = f32x8_all(fx[j]), jy = f32x8_all(fy[j]), jm = f32x8_all(message[j]);
                 for (int b = 0; b < 2; b++) {
-                    __m256 d = _mm256_add_ps(_mm256_and_ps(abs_mask, _mm256_sub_ps(lx[b], jx)),
-                                             _mm256_and_ps(abs_mask, _mm256_sub_ps(ly[b], jy)));
-                    m[b] = _mm256_min_ps(m[b], _mm256_add_ps(jm, _mm256_min_ps(_mm256_mul_ps(d, small), large)));
+                    f32x8 d = f32x8_abs(lx[b] - jx) + f32x8_abs(ly[b] - jy);
+                    m[b] = f32x8_min(m[b], jm + f32x8_min(d * small, large));
                 }
             }
         }
-        const __m256 base = _mm256_set1_ps(min);
+        const f32x8 base = f32x8_all(min);
         for (int b = 0; b < 2; b++) {
-            __m256 v = _mm256_add_ps(_mm256_loadu_ps(l->cost + 8 * b), _mm256_sub_ps(m[b], base));
-            _mm256_storeu_ps(message + 8 * b, v);
-            _mm256_storeu_ps(l->sum + 8 * b, _mm256_add_ps(_mm256_loadu_ps(l->sum + 8 * b), v));
-            _mm256_storeu_ps(fx + 8 * b, lx[b]);
-            _mm256_storeu_ps(fy + 8 * b, ly[b]);
+            f32x8 v = f32x8_load(l->cost + 8 * b) + (m[b] - base);
+            f32x8_store(message + 8 * b, v);
+            f32x8_store(l->sum + 8 * b, f32x8_load(l->sum + 8 * b) + v);
+            f32x8_store(fx + 8 * b, lx[b]);
+            f32x8_store(fy + 8 * b, ly[b]);
         }
         min = message[0];
         for (int k = 1; k < LABELS; k++) min = fminf(min, message[k]);

@@ -6,9 +6,10 @@
  * rotation and zoom, not from parallax. A pixel of unknown depth neither hides nor is hidden. */
 #include "stages/plan_path/parallax.h"
 
-#include <immintrin.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "common/math/lanes.h"
 
 #define SIGMAS 4 /* depths this far apart belong to different surfaces */
 
@@ -76,45 +77,36 @@ static double hidden_fraction(const struct depth_picture *a, const struct depth_
     const struct vec3 shift = vec3_add(mat3_apply(to->cam_from_world, from->center), to->translation);
     const double cx = to->cx - 0.5, cy = to->cy - 0.5;
     const struct vec3 step = mat3_apply(turn, vec3_make(1 / from->fx, 0, 0));
-    const __m256 lanes = _mm256_setr_ps(0, 1, 2, 3, 4, 5, 6, 7), none = _mm256_setzero_ps();
-    const __m256 u_step = _mm256_set1_ps((float)(to->fx * step.x + cx * step.z)),
-                 v_step = _mm256_set1_ps((float)(to->fy * step.y + cy * step.z)),
-                 w_step = _mm256_set1_ps((float)step.z);
-    const __m256 u_shift = _mm256_set1_ps((float)(to->fx * shift.x + cx * shift.z)),
-                 v_shift = _mm256_set1_ps((float)(to->fy * shift.y + cy * shift.z)),
-                 w_shift = _mm256_set1_ps((float)shift.z);
-    const __m256 right = _mm256_set1_ps((float)(to->width - 1)), lower = _mm256_set1_ps((float)(to->height - 1));
-    const __m256 nearer = _mm256_set1_ps((float)(1 / (1 + tolerance)));
-    const __m256i stride = _mm256_set1_epi32(to->width);
+    const f32x8 lanes = {0, 1, 2, 3, 4, 5, 6, 7}, none = {0};
+    const f32x8 u_step = f32x8_all((float)(to->fx * step.x + cx * step.z)),
+                v_step = f32x8_all((float)(to->fy * step.y + cy * step.z)), w_step = f32x8_all((float)step.z);
+    const f32x8 u_shift = f32x8_all((float)(to->fx * shift.x + cx * shift.z)),
+                v_shift = f32x8_all((float)(to->fy * shift.y + cy * shift.z)), w_shift = f32x8_all((float)shift.z);
+    const f32x8 right = f32x8_all((float)(to->width - 1)), lower = f32x8_all((float)(to->height - 1));
+    const f32x8 nearer = f32x8_all((float)(1 / (1 + tolerance)));
     long hidden = 0;
 
     for (int y = 0; y < from->height; y++) {
         const struct vec3 d =
             mat3_apply(turn, vec3_make((0.5 - from->cx) / from->fx, (y + 0.5 - from->cy) / from->fy, 1));
-        const __m256 u_first = _mm256_set1_ps((float)(to->fx * d.x + cx * d.z)),
-                     v_first = _mm256_set1_ps((float)(to->fy * d.y + cy * d.z)), w_first = _mm256_set1_ps((float)d.z);
+        const f32x8 u_first = f32x8_all((float)(to->fx * d.x + cx * d.z)),
+                    v_first = f32x8_all((float)(to->fy * d.y + cy * d.z)), w_first = f32x8_all((float)d.z);
         const float *row = b->z + (size_t)y * (size_t)from->width;
         for (int x = 0; x < from->width; x += 8) {
-            const __m256 along = _mm256_add_ps(_mm256_set1_ps((float)x), lanes);
-            const __m256 within = _mm256_cmp_ps(along, _mm256_set1_ps((float)from->width), _CMP_LT_OQ);
-            const __m256 z = _mm256_maskload_ps(row + x, _mm256_castps_si256(within));
-            const __m256 w =
-                _mm256_add_ps(_mm256_mul_ps(z, _mm256_add_ps(w_first, _mm256_mul_ps(along, w_step))), w_shift);
-            const __m256 u = _mm256_div_ps(
-                _mm256_add_ps(_mm256_mul_ps(z, _mm256_add_ps(u_first, _mm256_mul_ps(along, u_step))), u_shift), w);
-            const __m256 v = _mm256_div_ps(
-                _mm256_add_ps(_mm256_mul_ps(z, _mm256_add_ps(v_first, _mm256_mul_ps(along, v_step))), v_shift), w);
-            __m256 seen = _mm256_and_ps(_mm256_cmp_ps(z, none, _CMP_GT_OQ), _mm256_cmp_ps(w, none, _CMP_GT_OQ));
-            seen = _mm256_and_ps(
-                seen, _mm256_and_ps(_mm256_cmp_ps(u, none, _CMP_GE_OQ), _mm256_cmp_ps(u, right, _CMP_LT_OQ)));
-            seen = _mm256_and_ps(
-                seen, _mm256_and_ps(_mm256_cmp_ps(v, none, _CMP_GE_OQ), _mm256_cmp_ps(v, lower, _CMP_LT_OQ)));
-            if (!_mm256_movemask_ps(seen)) continue;
-            const __m256i at =
-                _mm256_add_epi32(_mm256_mullo_epi32(_mm256_cvttps_epi32(v), stride), _mm256_cvttps_epi32(u));
-            const __m256 before = _mm256_mask_i32gather_ps(_mm256_set1_ps(INFINITY), a->farthest, at, seen, 4);
-            const __m256 behind = _mm256_cmp_ps(before, _mm256_mul_ps(w, nearer), _CMP_LT_OQ);
-            hidden += __builtin_popcount((unsigned)_mm256_movemask_ps(behind));
+            const f32x8 along = (float)x + lanes;
+            const i32x8 within = along < (float)from->width;
+            const f32x8 z = f32x8_load_if(within, row + x);
+            const f32x8 w = z * (w_first + along * w_step) + w_shift;
+            const f32x8 u = (z * (u_first + along * u_step) + u_shift) / w;
+            const f32x8 v = (z * (v_first + along * v_step) + v_shift) / w;
+            i32x8 seen = (z > none) & (w > none);
+            seen &= (u >= none) & (u < right);
+            seen &= (v >= none) & (v < lower);
+            if (!i32x8_any(seen)) continue;
+            const i32x8 at = i32x8_index(i32x8_truncate(v), to->width, i32x8_truncate(u));
+            const f32x8 before = f32x8_gather_if(seen, a->farthest, at, f32x8_all(INFINITY));
+            const i32x8 behind = before < w * nearer;
+            hidden += __builtin_popcount(i32x8_signs(behind));
         }
     }
     return (double)hidden / ((double)from->width * from->height);

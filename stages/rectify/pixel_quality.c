@@ -12,6 +12,7 @@
 #include <stdlib.h>
 
 #include "common/image/samples.h"
+#include "common/math/lanes.h"
 #include "common/math/numbers.h"
 
 enum { TILE_SHIFT = 3 };
@@ -69,13 +70,6 @@ static void square_taps(struct squares *s, const struct kernel_taps *t, int leng
     for (int i = 0; i < s->count; i++) s->weight[i] *= s->weight[i];
 }
 
-static float add_lanes(__m256 v)
-{
-    __m128 half = _mm_add_ps(_mm256_castps256_ps128(v), _mm256_extractf128_ps(v, 1));
-    half = _mm_add_ps(half, _mm_movehl_ps(half, half));
-    return _mm_cvtss_f32(_mm_add_ss(half, _mm_shuffle_ps(half, half, 1)));
-}
-
 static float border_variance(const struct pixel_quality *q, const struct kernel_taps *tx, const struct kernel_taps *ty)
 {
     struct squares across, down;
@@ -96,25 +90,22 @@ float pixel_quality_variance(const struct pixel_quality *q, const struct kernel_
     if (tx->first < 0 || ty->first < 0 || tx->first + tx->count > q->width || ty->first + ty->count > q->height)
         return border_variance(q, tx, ty);
     const float *rows = q->of->variance + (size_t)ty->first * (size_t)q->width + (size_t)tx->first;
-    __m256 sum = _mm256_setzero_ps();
+    f32x8 sum = {0};
     for (int i = 0; i < tx->count; i += LANES) {
-        const __m256 across = _mm256_loadu_ps(tx->weight + i);
-        __m256 column = _mm256_setzero_ps();
+        const f32x8 across = f32x8_load(tx->weight + i);
+        f32x8 column = {0};
         const float *row = rows + i;
-        for (int j = 0; j < ty->count; j++, row += q->width)
-            column = _mm256_add_ps(column,
-                                   _mm256_mul_ps(_mm256_set1_ps(ty->weight[j] * ty->weight[j]), _mm256_loadu_ps(row)));
-        sum = _mm256_add_ps(sum, _mm256_mul_ps(_mm256_mul_ps(across, across), column));
+        for (int j = 0; j < ty->count; j++, row += q->width) column += ty->weight[j] * ty->weight[j] * f32x8_load(row);
+        sum += across * across * column;
     }
-    return add_lanes(sum);
+    return f32x8_sum(sum);
 }
 
-float pixel_quality_sharp_variance(const struct pixel_quality *q, int x, int y, __m256 across, const float *down, int n)
+float pixel_quality_sharp_variance(const struct pixel_quality *q, int x, int y, f32x8 across, const float *down, int n)
 {
     const float *row = q->of->variance + (size_t)y * (size_t)q->width + (size_t)x;
-    __m256 sum = _mm256_setzero_ps();
-    for (int j = 0; j < n; j++, row += q->width)
-        sum = _mm256_add_ps(sum, _mm256_mul_ps(_mm256_set1_ps(down[j] * down[j]), _mm256_loadu_ps(row)));
-    sum = _mm256_mul_ps(sum, _mm256_mul_ps(across, across));
-    return add_lanes(sum);
+    f32x8 sum = {0};
+    for (int j = 0; j < n; j++, row += q->width) sum += down[j] * down[j] * f32x8_load(row);
+    sum *= across * across;
+    return f32x8_sum(sum);
 }

@@ -2,9 +2,8 @@
 #ifndef REMODEL_PIXEL_QUALITY_H
 #define REMODEL_PIXEL_QUALITY_H
 
-#include <immintrin.h>
-
 #include "common/capture/photo_quality.h"
+#include "common/math/lanes.h"
 #include "stages/rectify/kernel_taps.h"
 
 struct pixel_quality {
@@ -22,7 +21,6 @@ uint8_t pixel_quality_marks(const struct pixel_quality *q, int x0, int y0, int x
 /* Variance of the filtered luminance; taps beyond the border repeat the sample there. */
 float pixel_quality_variance(const struct pixel_quality *q, const struct kernel_taps *tx, const struct kernel_taps *ty);
 /* The same for n by n taps from (x, y) on, all inside the photo, n at most LANES. across: weights, 0 from n on. */
-float pixel_quality_sharp_variance(const struct pixel_quality *q, int x, int y, __m256 across, const float *down,
-                                   int n);
+float pixel_quality_sharp_variance(const struct pixel_quality *q, int x, int y, f32x8 across, const float *down, int n);
 
 #endif

@@ -13,12 +13,12 @@
  * beside a bright window the outer lobes carry its light, too. */
 #include "stages/rectify/resample.h"
 
-#include <immintrin.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "common/base/parallel.h"
+#include "common/math/lanes.h"
 #include "common/math/numbers.h"
 #include "stages/rectify/photo_map.h"
 #include "stages/rectify/pixel_quality.h"
@@ -62,14 +62,13 @@ static void make_sharp(float sharp[][LANES], const float *kernel)
 }
 
 /* The kernel at eight positions, in units of table entries. */
-static __m256 kernel_at(const float *kernel, __m256 steps)
+static f32x8 kernel_at(const float *kernel, f32x8 steps)
 {
-    const __m256 end = _mm256_set1_ps(LOBES * STEPS), away = _mm256_andnot_ps(_mm256_set1_ps(-0.0f), steps);
-    const __m256i i = _mm256_cvttps_epi32(_mm256_min_ps(away, end));
-    const __m256 here = _mm256_i32gather_ps(kernel, i, 4), next = _mm256_i32gather_ps(kernel + 1, i, 4);
-    const __m256 part = _mm256_sub_ps(away, _mm256_cvtepi32_ps(i));
-    return _mm256_and_ps(_mm256_cmp_ps(away, end, _CMP_LT_OQ),
-                         _mm256_add_ps(here, _mm256_mul_ps(part, _mm256_sub_ps(next, here))));
+    const f32x8 end = f32x8_all(LOBES * STEPS), away = f32x8_abs(steps);
+    const i32x8 i = i32x8_truncate(f32x8_min(away, end));
+    const f32x8 here = f32x8_gather(kernel, i), next = f32x8_gather(kernel + 1, i);
+    const f32x8 part = away - f32x8_from_i32(i);
+    return f32x8_where(away < end, here + part * (next - here));
 }
 
 static void make_taps(struct kernel_taps *t, const float *kernel, double at, double scale)
@@ -80,22 +79,20 @@ static void make_taps(struct kernel_taps *t, const float *kernel, double at, dou
     t->count = last - t->first + 1 < MAX_TAPS ? last - t->first + 1 : MAX_TAPS;
     t->near_begin = (int)ceil(at - 0.5 - scale) - t->first;
     t->near_end = (int)floor(at - 0.5 + scale) - t->first + 1;
-    const __m256d centre = _mm256_set1_pd(at), spread = _mm256_set1_pd(steps), half = _mm256_set1_pd(0.5);
     for (int i = 0; i < t->count; i += LANES) {
-        __m128 away[2];
+        f32x4 away[2];
         for (int k = 0; k < 2; k++) {
             const int x = t->first + i + 4 * k;
-            const __m256d from = _mm256_sub_pd(_mm256_add_pd(_mm256_setr_pd(x, x + 1, x + 2, x + 3), half), centre);
-            away[k] = _mm256_cvtpd_ps(_mm256_mul_pd(from, spread));
+            const f64x4 from = (f64x4){x, x + 1, x + 2, x + 3} + 0.5 - at;
+            away[k] = f32x4_from_f64(from * steps);
         }
-        _mm256_storeu_ps(t->weight + i, kernel_at(kernel, _mm256_set_m128(away[1], away[0])));
+        f32x8_store(t->weight + i, kernel_at(kernel, f32x8_join(away[0], away[1])));
     }
     float sum = 0;
     for (int i = 0; i < t->count; i++) sum += t->weight[i];
     for (int i = t->count; i % LANES; i++) t->weight[i] = 0;
-    const __m256 share = _mm256_set1_ps(1 / sum);
-    for (int i = 0; i < t->count; i += LANES)
-        _mm256_storeu_ps(t->weight + i, _mm256_mul_ps(_mm256_loadu_ps(t->weight + i), share));
+    const f32x8 share = f32x8_all(1 / sum);
+    for (int i = 0; i < t->count; i += LANES) f32x8_store(t->weight + i, f32x8_load(t->weight + i) * share);
 }
 
 /* The samples of a photo's row under the taps. If they cross the border, copies them to `buffer` and repeats the border
@@ -144,31 +141,30 @@ static void filter_inside(float rgba[4], const struct image *photo, const struct
     const size_t stride = 3 * (size_t)photo->width;
     const float *rows = image_at(photo, tx->first, ty->first), *near = rows + (size_t)ty->near_begin * stride;
     for (int k = 0; k < 3 * tx->count; k += LANES) {
-        __m256 sum = _mm256_setzero_ps();
+        f32x8 sum = {0};
         const float *at = rows + k;
-        for (int j = 0; j < ty->count; j++, at += stride)
-            sum = _mm256_add_ps(sum, _mm256_mul_ps(_mm256_set1_ps(ty->weight[j]), _mm256_loadu_ps(at)));
-        _mm256_storeu_ps(columns + k, sum);
+        for (int j = 0; j < ty->count; j++, at += stride) sum += ty->weight[j] * f32x8_load(at);
+        f32x8_store(columns + k, sum);
     }
     for (int k = 3 * tx->near_begin; k < 3 * tx->near_end; k += LANES) {
         const float *at = near + k;
-        __m256 min = _mm256_loadu_ps(at), max = min;
+        f32x8 min = f32x8_load(at), max = min;
         for (int j = ty->near_begin + 1; j < ty->near_end; j++) {
-            const __m256 sample = _mm256_loadu_ps(at += stride);
-            min = _mm256_min_ps(min, sample);
-            max = _mm256_max_ps(max, sample);
+            const f32x8 sample = f32x8_load(at += stride);
+            min = f32x8_min(min, sample);
+            max = f32x8_max(max, sample);
         }
-        _mm256_storeu_ps(low + k, min);
-        _mm256_storeu_ps(high + k, max);
+        f32x8_store(low + k, min);
+        f32x8_store(high + k, max);
     }
-    __m128 sum = _mm_setzero_ps(), min = _mm_set1_ps(INFINITY), max = sum;
-    for (int i = 0; i < tx->count; i++)
-        sum = _mm_add_ps(sum, _mm_mul_ps(_mm_set1_ps(tx->weight[i]), _mm_loadu_ps(columns + 3 * i)));
+    f32x4 sum = {0}, min = f32x4_all(INFINITY), max = sum;
+    for (int i = 0; i < tx->count; i++) sum += tx->weight[i] * f32x4_load(columns + 3 * i);
     for (int i = tx->near_begin; i < tx->near_end; i++) {
-        min = _mm_min_ps(min, _mm_loadu_ps(low + 3 * i));
-        max = _mm_max_ps(max, _mm_loadu_ps(high + 3 * i));
+        min = f32x4_min(min, f32x4_load(low + 3 * i));
+        max = f32x4_max(max, f32x4_load(high + 3 * i));
     }
-    _mm_storeu_ps(rgba, _mm_blend_ps(_mm_min_ps(max, _mm_max_ps(min, sum)), _mm_set1_ps(1), 8));
+    f32x4_store(rgba, f32x4_min(max, f32x4_max(min, sum)));
+    rgba[3] = 1;
 }
 
 /* Are the taps, and the lanes after the last one, inside the photo? */
@@ -191,46 +187,43 @@ static bool is_masked(const struct resample *r, double u, double v, double wide,
     return false;
 }
 
-static __m256 sharp_weights(const struct resample *r, double offset)
+static f32x8 sharp_weights(const struct resample *r, double offset)
 {
     const float at = (float)(offset * STEPS);
     const int j = (int)at < STEPS ? (int)at : STEPS - 1;
-    const __m256 here = _mm256_loadu_ps(r->sharp[j]), next = _mm256_loadu_ps(r->sharp[j + 1]);
-    return _mm256_add_ps(here, _mm256_mul_ps(_mm256_set1_ps(at - (float)j), _mm256_sub_ps(next, here)));
+    const f32x8 here = f32x8_load(r->sharp[j]), next = f32x8_load(r->sharp[j + 1]);
+    return here + (at - (float)j) * (next - here);
 }
 
 /* Filters six by six samples from (x, y) on. The 18 values of a row are loaded as pixels 0 and 1, 2 and 3, and 4 and 5
  * after two values of weight 0. */
-static void filter_sharp(const struct resample *r, float rgba[4], int x, int y, __m256 across, const float *down)
+static void filter_sharp(const struct resample *r, float rgba[4], int x, int y, f32x8 across, const float *down)
 {
     const size_t stride = 3 * (size_t)r->photo->width;
     const float *row = image_at(r->photo, x, y);
-    const __m256i second = _mm256_setr_epi32(3, 4, 5, 5, 5, 5, 5, 5);
-    __m256 first = _mm256_setzero_ps(), middle = first, last = first, near[2];
+    const i32x8 second = {3, 4, 5, 5, 5, 5, 5, 5};
+    f32x8 first = {0}, middle = first, last = first, near[2];
     for (int j = 0; j < SHARP; j++, row += stride) {
-        const __m256 weight = _mm256_set1_ps(down[j]), inner = _mm256_loadu_ps(row + 6);
-        first = _mm256_add_ps(first, _mm256_mul_ps(weight, _mm256_loadu_ps(row)));
-        middle = _mm256_add_ps(middle, _mm256_mul_ps(weight, inner));
-        last = _mm256_add_ps(last, _mm256_mul_ps(weight, _mm256_loadu_ps(row + 10)));
+        const f32x8 weight = f32x8_all(down[j]), inner = f32x8_load(row + 6);
+        first += weight * f32x8_load(row);
+        middle += weight * inner;
+        last += weight * f32x8_load(row + 10);
         if (j == LOBES - 1 || j == LOBES) near[j - LOBES + 1] = inner;
     }
-    first = _mm256_mul_ps(first, _mm256_permutevar8x32_ps(across, _mm256_setr_epi32(0, 0, 0, 1, 1, 1, 6, 6)));
-    middle = _mm256_mul_ps(middle, _mm256_permutevar8x32_ps(across, _mm256_setr_epi32(2, 2, 2, 3, 3, 3, 6, 6)));
-    last = _mm256_mul_ps(last, _mm256_permutevar8x32_ps(across, _mm256_setr_epi32(6, 6, 4, 4, 4, 5, 5, 5)));
-    __m128 sum = _mm_add_ps(_mm_setzero_ps(), _mm256_castps256_ps128(first));
-    sum = _mm_add_ps(sum, _mm256_castps256_ps128(_mm256_permutevar8x32_ps(first, second)));
-    sum = _mm_add_ps(sum, _mm256_castps256_ps128(middle));
-    sum = _mm_add_ps(sum, _mm256_castps256_ps128(_mm256_permutevar8x32_ps(middle, second)));
-    sum = _mm_add_ps(sum,
-                     _mm256_castps256_ps128(_mm256_permutevar8x32_ps(last, _mm256_setr_epi32(2, 3, 4, 4, 4, 4, 4, 4))));
-    sum = _mm_add_ps(sum,
-                     _mm256_castps256_ps128(_mm256_permutevar8x32_ps(last, _mm256_setr_epi32(5, 6, 7, 7, 7, 7, 7, 7))));
-    const __m256 low = _mm256_min_ps(near[0], near[1]), high = _mm256_max_ps(near[0], near[1]);
-    const __m128 min =
-        _mm_min_ps(_mm256_castps256_ps128(low), _mm256_castps256_ps128(_mm256_permutevar8x32_ps(low, second)));
-    const __m128 max =
-        _mm_max_ps(_mm256_castps256_ps128(high), _mm256_castps256_ps128(_mm256_permutevar8x32_ps(high, second)));
-    _mm_storeu_ps(rgba, _mm_blend_ps(_mm_min_ps(max, _mm_max_ps(min, sum)), _mm_set1_ps(1), 8));
+    first *= f32x8_pick(across, (i32x8){0, 0, 0, 1, 1, 1, 6, 6});
+    middle *= f32x8_pick(across, (i32x8){2, 2, 2, 3, 3, 3, 6, 6});
+    last *= f32x8_pick(across, (i32x8){6, 6, 4, 4, 4, 5, 5, 5});
+    f32x4 sum = (f32x4){0} + f32x8_low(first);
+    sum += f32x8_low(f32x8_pick(first, second));
+    sum += f32x8_low(middle);
+    sum += f32x8_low(f32x8_pick(middle, second));
+    sum += f32x8_low(f32x8_pick(last, (i32x8){2, 3, 4, 4, 4, 4, 4, 4}));
+    sum += f32x8_low(f32x8_pick(last, (i32x8){5, 6, 7, 7, 7, 7, 7, 7}));
+    const f32x8 low = f32x8_min(near[0], near[1]), high = f32x8_max(near[0], near[1]);
+    const f32x4 min = f32x4_min(f32x8_low(low), f32x8_low(f32x8_pick(low, second)));
+    const f32x4 max = f32x4_max(f32x8_low(high), f32x8_low(f32x8_pick(high, second)));
+    f32x4_store(rgba, f32x4_min(max, f32x4_max(min, sum)));
+    rgba[3] = 1;
 }
 
 /* Not inlined, so that the usual case has a small stack frame. */
@@ -274,9 +267,9 @@ static void resample_pixel(const struct resample *r, int x, int y, const struct 
     const size_t to = (size_t)y * (size_t)r->out->width + (size_t)x;
     if (r->masked && is_masked(r, at.u, at.v, su, sv)) return;
     if (su == 1 && sv == 1 && u >= 0 && v >= 0 && u + SHARP <= photo->width && v + SHARP <= photo->height) {
-        const __m256 weights_x = sharp_weights(r, at.u - 0.5 - left);
+        const f32x8 weights_x = sharp_weights(r, at.u - 0.5 - left);
         float weights_y[LANES];
-        _mm256_storeu_ps(weights_y, sharp_weights(r, at.v - 0.5 - top));
+        f32x8_store(weights_y, sharp_weights(r, at.v - 0.5 - top));
         filter_sharp(r, r->out->data + 4 * to, u, v, weights_x, weights_y);
         if (!r->out_quality) return;
         r->out_quality->variance[to] = pixel_quality_sharp_variance(&r->quality, u, v, weights_x, weights_y, SHARP);

@@ -32,13 +32,13 @@
  *
  * Pixels are independent of each other and the order of sums is that of the views: the same bits for any number of
  * threads. */
-#include <immintrin.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "common/base/parallel.h"
 #include "common/layers/soft_z.h"
+#include "common/math/lanes.h"
 #include "stages/render_model/clutter_scene.h"
 
 #define MIN_ALPHA  0.02f
@@ -148,9 +148,7 @@ static float cover_at(const struct layer_view *layers, double u, double v)
     const float fx = (float)(x - i), fy = (float)(y - j);
     const uint16_t(*t)[4] = (const uint16_t(*)[4])layers->photo + (size_t)j * (size_t)layers->stride + (size_t)i;
     const uint16_t(*b)[4] = t + layers->stride;
-    float a[4];
-    _mm_storeu_ps(
-        a, _mm_cvtph_ps(_mm_setr_epi16((short)t[0][3], (short)t[1][3], (short)b[0][3], (short)b[1][3], 0, 0, 0, 0)));
+    const f32x4 a = f32x4_from_half((const uint16_t[4]){t[0][3], t[1][3], b[0][3], b[1][3]});
     const float top = a[0] + fx * (a[1] - a[0]), bottom = a[2] + fx * (a[3] - a[2]);
     return top + fy * (bottom - top);
 }

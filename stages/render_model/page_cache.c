@@ -13,11 +13,11 @@
  * record must not depend on what was drawn before. */
 #include "stages/render_model/page_cache.h"
 
-#include <immintrin.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "common/base/array.h"
+#include "common/math/lanes.h"
 #include "common/product/product.h"
 #include "common/texture/model_picture.h"
 
@@ -234,11 +234,7 @@ static enum picture_made made_of(uint32_t source, const bool *original)
     }
 }
 
-static void copy_texel(uint16_t *to, const float *rgb)
-{
-    const __m128 texel = _mm_set_ps(1, rgb[2], rgb[1], rgb[0]);
-    _mm_storel_epi64((__m128i *)to, _mm_cvtps_ph(texel, _MM_FROUND_TO_NEAREST_INT));
-}
+static void copy_texel(uint16_t *to, const float *rgb) { f32x4_to_half(to, (f32x4){rgb[0], rgb[1], rgb[2], 1}); }
 
 static void copy_tile(struct texture_page *to, size_t first, const struct atlas_tile *t, const struct atlas_page *from,
                       const bool *original)

@@ -19,6 +19,7 @@
 #include <string.h>
 
 #include "common/base/parallel.h"
+#include "common/math/lanes.h"
 #include "stages/render_model/shade_tiles.h"
 
 enum { SLOTS = 32 }; /* faces of a tile of the picture that are kept ready */
@@ -139,10 +140,9 @@ struct octet {
     float down, right;
 };
 
-static inline void put(const struct octet *o, int k, __m128 rgb, enum picture_made made)
+static inline void put(const struct octet *o, int k, f32x4 rgb, enum picture_made made)
 {
-    _mm_storel_pi((__m64 *)(void *)(o->rgb + 3 * k), rgb);
-    _mm_store_ss(o->rgb + 3 * k + 2, _mm_movehl_ps(rgb, rgb));
+    memcpy(o->rgb + 3 * k, &rgb, 3 * sizeof *o->rgb);
     o->made[k] = (uint8_t)made;
 }
 
@@ -161,11 +161,11 @@ static unsigned shade_tiles(const struct octet *o, const struct ready *r, float 
     const unsigned in_a = tile_texels_find(&a, r->a, r->a_count, lanes, o->down, o->right);
     const unsigned wanted = share > 0 ? lanes : lanes & ~in_a;
     const unsigned in_b = wanted ? tile_texels_find(&b, r->b, r->b_count, wanted, o->down, o->right) : 0;
-    const __m128 of_a = _mm_set1_ps(1 - share), of_b = _mm_set1_ps(share);
+    const f32x4 of_a = f32x4_all(1 - share), of_b = f32x4_all(share);
     for (unsigned both = in_a & in_b; both; both &= both - 1) {
         const int k = __builtin_ctz(both);
         const enum picture_made made = share > 0.5f ? texels_made(&b, r->b, k) : texels_made(&a, r->a, k);
-        put(o, k, _mm_add_ps(_mm_mul_ps(of_a, a.rgba[k]), _mm_mul_ps(of_b, b.rgba[k])), made);
+        put(o, k, of_a * a.rgba[k] + of_b * b.rgba[k], made);
     }
     put_from(o, &a, r->a, in_a & ~in_b);
     put_from(o, &b, r->b, in_b & ~in_a);
@@ -179,7 +179,7 @@ static unsigned shade_edge(const struct octet *o, const struct ready *r, unsigne
         const int k = __builtin_ctz(rest);
         float rgb[3];
         if (!tile_texel_nearest(rgb, r->a, r->a_count, k, o->down, o->right)) continue;
-        put(o, k, _mm_set_ps(1, rgb[2], rgb[1], rgb[0]), MADE_SYNTHESISED);
+        put(o, k, (f32x4){rgb[0], rgb[1], rgb[2], 1}, MADE_SYNTHESISED);
         found |= 1u << k;
     }
     return found;
@@ -187,7 +187,7 @@ static unsigned shade_edge(const struct octet *o, const struct ready *r, unsigne
 
 static void shade_colour(const struct octet *o, const float rgb[3], unsigned lanes)
 {
-    for (; lanes; lanes &= lanes - 1) put(o, __builtin_ctz(lanes), _mm_set_ps(1, rgb[2], rgb[1], rgb[0]), MADE_COLOUR);
+    for (; lanes; lanes &= lanes - 1) put(o, __builtin_ctz(lanes), (f32x4){rgb[0], rgb[1], rgb[2], 1}, MADE_COLOUR);
 }
 
 static void shade_outdoors(const struct octet *o, const struct shade_pass *pass, unsigned lanes)
@@ -199,17 +199,16 @@ static void shade_outdoors(const struct octet *o, const struct shade_pass *pass,
         const struct vec3 d = {(o->x + k + 0.5 - v->cx) / v->fx, (o->y + 0.5 - v->cy) / v->fy, 1};
         float rgb[3] = {0};
         outdoors_sample(rgb, pass->outdoors, mat3_apply(world_from_cam, d));
-        put(o, k, _mm_set_ps(1, rgb[2], rgb[1], rgb[0]), MADE_OUTDOORS);
+        put(o, k, (f32x4){rgb[0], rgb[1], rgb[2], 1}, MADE_OUTDOORS);
     }
 }
 
 static unsigned limit(const struct ready *r, const struct octet *o, unsigned lanes)
 {
-    __m256 in = _mm256_castsi256_ps(_mm256_set1_epi32(-1));
-    const __m256 down = _mm256_set1_ps(o->down), right = _mm256_set1_ps(o->right);
-    for (int k = 0; k < 4; k++)
-        in = _mm256_and_ps(in, _mm256_cmp_ps(lanes_value(&r->limits[k], down, right), _mm256_setzero_ps(), _CMP_GE_OQ));
-    return lanes & (unsigned)_mm256_movemask_ps(in);
+    i32x8 in = i32x8_all(-1);
+    const f32x8 down = f32x8_all(o->down), right = f32x8_all(o->right);
+    for (int k = 0; k < 4; k++) in &= lanes_value(&r->limits[k], down, right) >= (f32x8){0};
+    return lanes & i32x8_signs(in);
 }
 
 /* Shades pixels of one face. Returns the lanes that got a colour. */
@@ -235,8 +234,8 @@ static inline unsigned shade_face(const struct octet *o, const struct shade_pass
 
 static unsigned lanes_of_face(const uint32_t *faces, uint32_t face)
 {
-    const __m256i equal = _mm256_cmpeq_epi32(_mm256_loadu_si256((const __m256i *)faces), _mm256_set1_epi32((int)face));
-    return (unsigned)_mm256_movemask_ps(_mm256_castsi256_ps(equal));
+    const i32x8 equal = i32x8_load(faces) == (int)face;
+    return i32x8_signs(equal);
 }
 
 /* Lanes without a colour, of the first `count`. */
@@ -272,11 +271,11 @@ static bool shade_row(struct worker *w, const struct shade_pass *pass, const uin
 /* z and id of eight pixels. Where there is no face, 1 / z is 0. */
 static void begin_eight(float *z, uint32_t *id, const struct shade_pass *pass, size_t from)
 {
-    const __m256 inverse = _mm256_loadu_ps(pass->seen->inverse_z + from);
-    const __m256 there = _mm256_cmp_ps(inverse, _mm256_setzero_ps(), _CMP_GT_OQ);
-    const __m256i face = _mm256_loadu_si256((const __m256i *)(pass->seen->face + from));
-    _mm256_storeu_ps(z, _mm256_and_ps(there, _mm256_div_ps(_mm256_set1_ps(1), inverse)));
-    _mm256_storeu_si256((__m256i *)id, _mm256_i32gather_epi32((const int *)pass->ids, face, sizeof *pass->ids));
+    const f32x8 inverse = f32x8_load(pass->seen->inverse_z + from);
+    const i32x8 there = inverse > (f32x8){0};
+    const i32x8 face = i32x8_load(pass->seen->face + from);
+    f32x8_store(z, f32x8_where(there, 1 / inverse));
+    i32x8_store(id, i32x8_gather((const int *)pass->ids, face));
 }
 
 static void begin_row(const struct shade_pass *pass, size_t from, struct area area, int row)

@@ -12,6 +12,8 @@
 #include <limits.h>
 #include <math.h>
 
+#include "common/math/lanes.h"
+
 enum { STEPS = 1 << TEXELS_SHIFT };
 static const float OWN = 1e6f;      /* added to the distance from a tile's edges */
 static const double INSIDE = 0.01;  /* texels: a tile in whose inside, less this, all pixels look needs no test */
@@ -73,65 +75,62 @@ int tile_lanes_make(struct tile_lanes *to, const struct shade_tile *tiles, int c
 
 /* Where eight pixels look, in 1/256 texels from the frame's upper left texel, and in which tile. */
 struct places {
-    __m256i x, y, tile;
-    __m256 depth; /* the distance from the tile's edges; below 0: no tile */
+    i32x8 x, y, tile;
+    f32x8 depth; /* the distance from the tile's edges; below 0: no tile */
 };
 
-static inline __m256i in_steps(__m256 texels)
+static inline i32x8 in_steps(f32x8 texels)
 {
     /* a texel's centre is at +0.5, and the frame is one texel wide */
-    const __m256 steps = _mm256_set1_ps(STEPS), half = _mm256_set1_ps(STEPS / 2);
-    return _mm256_cvtps_epi32(_mm256_add_ps(_mm256_mul_ps(texels, steps), half));
+    const f32x8 steps = f32x8_all(STEPS), half = f32x8_all(STEPS / 2);
+    return i32x8_round(texels * steps + half);
 }
 
 /* Takes tile i where a pixel lies deeper in it than in those before, but not as deep as `most`. */
-static inline void choose(struct places *p, const struct tile_lanes *l, int i, __m256 most, __m256 down, __m256 right)
+static inline void choose(struct places *p, const struct tile_lanes *l, int i, f32x8 most, f32x8 down, f32x8 right)
 {
     const struct shade_tile *s = l->tile;
-    const __m256 w = lanes_value(&l->w, down, right), zero = _mm256_setzero_ps();
-    const __m256 x = _mm256_div_ps(lanes_value(&l->x, down, right), w);
-    const __m256 y = _mm256_div_ps(lanes_value(&l->y, down, right), w);
-    const __m256 beside = _mm256_min_ps(x, _mm256_sub_ps(_mm256_set1_ps((float)s->width), x));
-    const __m256 above = _mm256_min_ps(y, _mm256_sub_ps(_mm256_set1_ps((float)s->height), y));
-    const __m256 edge = _mm256_min_ps(beside, above);
-    const __m256 depth = _mm256_add_ps(edge, _mm256_set1_ps(s->own ? OWN : 0));
-    __m256 take = _mm256_and_ps(_mm256_cmp_ps(w, zero, _CMP_GT_OQ), _mm256_cmp_ps(edge, zero, _CMP_GE_OQ));
-    take = _mm256_and_ps(take, _mm256_cmp_ps(depth, p->depth, _CMP_GT_OQ));
-    take = _mm256_and_ps(take, _mm256_cmp_ps(depth, most, _CMP_LT_OQ));
-    const __m256i taken = _mm256_castps_si256(take);
-    p->x = _mm256_blendv_epi8(p->x, in_steps(x), taken);
-    p->y = _mm256_blendv_epi8(p->y, in_steps(y), taken);
-    p->tile = _mm256_blendv_epi8(p->tile, _mm256_set1_epi32(i), taken);
-    p->depth = _mm256_blendv_ps(p->depth, depth, take);
+    const f32x8 w = lanes_value(&l->w, down, right), zero = {0};
+    const f32x8 x = lanes_value(&l->x, down, right) / w;
+    const f32x8 y = lanes_value(&l->y, down, right) / w;
+    const f32x8 beside = f32x8_min(x, (float)s->width - x);
+    const f32x8 above = f32x8_min(y, (float)s->height - y);
+    const f32x8 edge = f32x8_min(beside, above);
+    const f32x8 depth = edge + (s->own ? OWN : 0);
+    i32x8 take = (w > zero) & (edge >= zero);
+    take &= depth > p->depth;
+    take &= depth < most;
+    p->x = i32x8_if(take, in_steps(x), p->x);
+    p->y = i32x8_if(take, in_steps(y), p->y);
+    p->tile = i32x8_if(take, i32x8_all(i), p->tile);
+    p->depth = f32x8_if(take, depth, p->depth);
 }
 
-static inline struct places find_places(const struct tile_lanes *list, int count, __m256 most, __m256 down,
-                                        __m256 right)
+static inline struct places find_places(const struct tile_lanes *list, int count, f32x8 most, f32x8 down, f32x8 right)
 {
-    struct places p = {_mm256_setzero_si256(), _mm256_setzero_si256(), _mm256_setzero_si256(), _mm256_set1_ps(-1)};
+    struct places p = {.depth = f32x8_all(-1)};
     for (int i = 0; i < count; i++) choose(&p, &list[i], i, most, down, right);
     return p;
 }
 
-static inline struct places place_in_whole(const struct tile_lanes *l, __m256 down, __m256 right)
+static inline struct places place_in_whole(const struct tile_lanes *l, f32x8 down, f32x8 right)
 {
-    const __m256 w = lanes_value(&l->w, down, right);
-    return (struct places){in_steps(_mm256_div_ps(lanes_value(&l->x, down, right), w)),
-                           in_steps(_mm256_div_ps(lanes_value(&l->y, down, right), w)), _mm256_setzero_si256(),
-                           _mm256_setzero_ps()};
+    const f32x8 w = lanes_value(&l->w, down, right);
+    return (struct places){in_steps(lanes_value(&l->x, down, right) / w), in_steps(lanes_value(&l->y, down, right) / w),
+                           (i32x8){0}, (f32x8){0}};
 }
 
 /* Weighted sum of the four texels around a place. */
-static inline __m128 blend_texels(const struct shade_tile *s, int x, int y)
+static inline f32x4 blend_texels(const struct shade_tile *s, int x, int y)
 {
     const uint16_t *at = s->texels + 4 * ((y >> TEXELS_SHIFT) * (ptrdiff_t)s->stride + (x >> TEXELS_SHIFT));
-    const __m256 upper = _mm256_cvtph_ps(_mm_loadu_si128((const __m128i *)at));
-    const __m256 lower = _mm256_cvtph_ps(_mm_loadu_si128((const __m128i *)(at + 4 * (ptrdiff_t)s->stride)));
-    const __m256 down = _mm256_set1_ps((float)(y & (STEPS - 1)) * (1.0f / STEPS));
-    const __m128 right = _mm_set1_ps((float)(x & (STEPS - 1)) * (1.0f / STEPS));
-    const __m256 both = _mm256_add_ps(upper, _mm256_mul_ps(down, _mm256_sub_ps(lower, upper)));
-    const __m128 left = _mm256_castps256_ps128(both);
-    return _mm_add_ps(left, _mm_mul_ps(right, _mm_sub_ps(_mm256_extractf128_ps(both, 1), left)));
+    const f32x8 upper = f32x8_from_half(at);
+    const f32x8 lower = f32x8_from_half(at + 4 * (ptrdiff_t)s->stride);
+    const f32x8 down = f32x8_all((float)(y & (STEPS - 1)) * (1.0f / STEPS));
+    const f32x4 right = f32x4_all((float)(x & (STEPS - 1)) * (1.0f / STEPS));
+    const f32x8 both = upper + down * (lower - upper);
+    const f32x4 left = f32x8_low(both);
+    return left + right * (f32x8_high(both) - left);
 }
 
 /* Looks up the texels at `places`. Returns the lanes that have one. */
@@ -139,16 +138,15 @@ static inline unsigned look_up(struct texels *t, const struct tile_lanes *list, 
 {
     unsigned found = lanes;
     int x[LANES], y[LANES], tile[LANES];
-    _mm256_storeu_si256((__m256i *)x, p->x);
-    _mm256_storeu_si256((__m256i *)y, p->y);
-    _mm256_storeu_si256((__m256i *)tile, p->tile);
+    i32x8_store(x, p->x);
+    i32x8_store(y, p->y);
+    i32x8_store(tile, p->tile);
     for (unsigned rest = lanes; rest; rest &= rest - 1) {
         const int k = __builtin_ctz(rest);
-        const __m128 sum = blend_texels(list[tile[k]].tile, x[k], y[k]);
-        const __m128 all = _mm_shuffle_ps(sum, sum, 0xff);
-        const float there = _mm_cvtss_f32(all);
+        const f32x4 sum = blend_texels(list[tile[k]].tile, x[k], y[k]);
+        const float there = sum[3];
         t->x[k] = x[k], t->y[k] = y[k], t->tile[k] = tile[k];
-        t->rgba[k] = there == 1 ? sum : _mm_div_ps(sum, all);
+        t->rgba[k] = there == 1 ? sum : sum / there;
         if (!(there > 0)) found &= ~(1u << k);
     }
     return found;
@@ -156,12 +154,12 @@ static inline unsigned look_up(struct texels *t, const struct tile_lanes *list, 
 
 /* Other tiles for pixels whose first one has no texel. */
 static unsigned look_further(struct texels *t, const struct tile_lanes *list, int count, struct places p,
-                             unsigned lanes, __m256 down, __m256 right)
+                             unsigned lanes, f32x8 down, f32x8 right)
 {
     unsigned found = 0;
     for (int i = 1; i < count && lanes; i++) {
         p = find_places(list, count, p.depth, down, right);
-        const unsigned inside = (unsigned)_mm256_movemask_ps(_mm256_cmp_ps(p.depth, _mm256_setzero_ps(), _CMP_GE_OQ));
+        const unsigned inside = i32x8_signs(p.depth >= (f32x8){0});
         lanes &= inside;
         const unsigned now = look_up(t, list, &p, lanes);
         found |= now;
@@ -173,14 +171,14 @@ static unsigned look_further(struct texels *t, const struct tile_lanes *list, in
 unsigned tile_texels_find(struct texels *t, const struct tile_lanes *list, int count, unsigned lanes, float down,
                           float right)
 {
-    const __m256 rows = _mm256_set1_ps(down), columns = _mm256_set1_ps(right);
+    const f32x8 rows = f32x8_all(down), columns = f32x8_all(right);
     if (!count) return 0;
     if (count == 1 && list->whole) {
         const struct places p = place_in_whole(list, rows, columns);
         return look_up(t, list, &p, lanes);
     }
-    const struct places p = find_places(list, count, _mm256_set1_ps(INFINITY), rows, columns);
-    lanes &= (unsigned)_mm256_movemask_ps(_mm256_cmp_ps(p.depth, _mm256_setzero_ps(), _CMP_GE_OQ));
+    const struct places p = find_places(list, count, f32x8_all(INFINITY), rows, columns);
+    lanes &= i32x8_signs(p.depth >= (f32x8){0});
     const unsigned found = look_up(t, list, &p, lanes);
     return found == lanes ? found : found | look_further(t, list, count, p, lanes & ~found, rows, columns);
 }
@@ -203,7 +201,7 @@ enum picture_made tile_texels_made_near(const struct texels *t, const struct til
 static float lane_value(const struct lanes *l, int lane, float down, float right)
 {
     float values[LANES];
-    _mm256_storeu_ps(values, lanes_value(l, _mm256_set1_ps(down), _mm256_set1_ps(right)));
+    f32x8_store(values, lanes_value(l, f32x8_all(down), f32x8_all(right)));
     return values[lane];
 }
 
@@ -254,6 +252,6 @@ bool tile_texel_nearest(float rgb[3], const struct tile_lanes *list, int count, 
         found = texel;
         least = away;
     }
-    for (int c = 0; found && c < 3; c++) rgb[c] = _cvtsh_ss(found[c]);
+    for (int c = 0; found && c < 3; c++) rgb[c] = float_from_half(found[c]);
     return found;
 }

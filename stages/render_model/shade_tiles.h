@@ -2,6 +2,7 @@
 #ifndef REMODEL_RENDER_SHADE_TILES_H
 #define REMODEL_RENDER_SHADE_TILES_H
 
+#include "common/math/lanes.h"
 #include "stages/render_model/shade.h"
 
 /* A tile of an atlas in a tile of the picture. */
@@ -17,7 +18,7 @@ int tile_lanes_make(struct tile_lanes *to, const struct shade_tile *tiles, int c
 #define TEXELS_SHIFT 8 /* places are multiples of 1/256 texel */
 
 struct texels {
-    __m128 rgba[LANES];                  /* A is 1 where there is a texel */
+    f32x4 rgba[LANES];                   /* A is 1 where there is a texel */
     int x[LANES], y[LANES], tile[LANES]; /* places, from the frame's upper left texel; in which tile of the list */
 };
 

@@ -13,6 +13,7 @@
 
 #include "common/base/array.h"
 #include "common/light/model_rays.h"
+#include "common/math/lanes.h"
 #include "stages/render_model/shell_scene.h"
 
 static const double PARALLEL = 0.999; /* cosine between a face's normal and the direction in which a tile sees it */
@@ -64,7 +65,7 @@ static float median(const uint32_t *counts, uint64_t total)
     uint64_t below = 0;
     int half = 0;
     while (half + 1 < HALVES && (below += counts[half]) <= (total - 1) / 2) half++;
-    return _cvtsh_ss((unsigned short)half);
+    return float_from_half((uint16_t)half);
 }
 
 /* Sets the colour of a rule, unless there is no texel to take the light from. */

@@ -21,13 +21,13 @@
  * is found once, and textures are looked up in visible pixels alone. */
 #include "stages/render_model/visible.h"
 
-#include <immintrin.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "common/base/array.h"
 #include "common/base/parallel.h"
 #include "common/light/model_rays.h"
+#include "common/math/lanes.h"
 #include "stages/render_model/visible_lanes.h"
 
 static const double NEAR = 1e-6;     /* of the model's size: nothing nearer to the camera is seen */
@@ -228,25 +228,25 @@ static void draw_triangle(uint32_t *face, float *inverse_z, const struct visible
     const struct lanes e0 = lanes_from(&t->edges[0], x, y), e1 = lanes_from(&t->edges[1], x, y);
     const struct lanes e2 = lanes_from(&t->edges[2], x, y), depth = lanes_from(&t->inverse_z, x, y);
     /* a value of 0 passes if the triangle owns the edge */
-    const __m256 zero0 = _mm256_set1_ps(t->owns_edge[0] ? -1e-45f : 0);
-    const __m256 zero1 = _mm256_set1_ps(t->owns_edge[1] ? -1e-45f : 0);
-    const __m256 zero2 = _mm256_set1_ps(t->owns_edge[2] ? -1e-45f : 0);
-    const __m256 most = _mm256_set1_ps(largest);
-    const __m256i name = _mm256_set1_epi32((int)t->face);
+    const f32x8 zero0 = f32x8_all(t->owns_edge[0] ? -1e-45f : 0);
+    const f32x8 zero1 = f32x8_all(t->owns_edge[1] ? -1e-45f : 0);
+    const f32x8 zero2 = f32x8_all(t->owns_edge[2] ? -1e-45f : 0);
+    const f32x8 most = f32x8_all(largest);
+    const i32x8 name = i32x8_all((int)t->face);
     for (int j = part.top; j <= part.bottom; j++) {
-        const __m256 down = _mm256_set1_ps((float)j);
+        const f32x8 down = f32x8_all((float)j);
         for (int i = part.left; i <= part.right; i++) {
-            const __m256 right = _mm256_set1_ps((float)(LANES * i));
+            const f32x8 right = f32x8_all((float)(LANES * i));
             const int at = j * VISIBLE_TILE + LANES * i;
-            const __m256 z = lanes_value(&depth, down, right), before = _mm256_loadu_ps(inverse_z + at);
-            __m256 shown = _mm256_and_ps(_mm256_cmp_ps(z, before, _CMP_GT_OQ), _mm256_cmp_ps(z, most, _CMP_LE_OQ));
-            shown = _mm256_and_ps(shown, _mm256_cmp_ps(lanes_value(&e0, down, right), zero0, _CMP_GT_OQ));
-            shown = _mm256_and_ps(shown, _mm256_cmp_ps(lanes_value(&e1, down, right), zero1, _CMP_GT_OQ));
-            shown = _mm256_and_ps(shown, _mm256_cmp_ps(lanes_value(&e2, down, right), zero2, _CMP_GT_OQ));
-            if (!_mm256_movemask_ps(shown)) continue;
-            const __m256i old = _mm256_loadu_si256((const __m256i *)(face + at));
-            _mm256_storeu_ps(inverse_z + at, _mm256_blendv_ps(before, z, shown));
-            _mm256_storeu_si256((__m256i *)(face + at), _mm256_blendv_epi8(old, name, _mm256_castps_si256(shown)));
+            const f32x8 z = lanes_value(&depth, down, right), before = f32x8_load(inverse_z + at);
+            i32x8 shown = (z > before) & (z <= most);
+            shown &= lanes_value(&e0, down, right) > zero0;
+            shown &= lanes_value(&e1, down, right) > zero1;
+            shown &= lanes_value(&e2, down, right) > zero2;
+            if (!i32x8_any(shown)) continue;
+            const i32x8 old = i32x8_load(face + at);
+            f32x8_store(inverse_z + at, f32x8_if(shown, z, before));
+            i32x8_store(face + at, i32x8_if(shown, name, old));
         }
     }
 }

@@ -2,7 +2,7 @@
 #ifndef REMODEL_RENDER_VISIBLE_LANES_H
 #define REMODEL_RENDER_VISIBLE_LANES_H
 
-#include <immintrin.h>
+#include "common/math/lanes.h"
 
 #define LANES 8
 
@@ -16,21 +16,21 @@ static inline double linear_at(const struct linear *l, double x, double y) { ret
 /* The same in single precision, counted from some pixel. Equal functions of opposite signs have equal values of
  * opposite signs. */
 struct lanes {
-    __m256 row; /* at the first eight pixels */
-    __m256 down, right;
+    f32x8 row; /* at the first eight pixels */
+    f32x8 down, right;
 };
 
 static inline struct lanes lanes_from(const struct linear *l, int x, int y)
 {
-    const __m256 slope = _mm256_set1_ps((float)l->x), start = _mm256_set1_ps((float)linear_at(l, x, y));
-    const __m256 steps = _mm256_set_ps(7, 6, 5, 4, 3, 2, 1, 0);
-    return (struct lanes){_mm256_add_ps(start, _mm256_mul_ps(slope, steps)), _mm256_set1_ps((float)l->y), slope};
+    const f32x8 slope = f32x8_all((float)l->x), start = f32x8_all((float)linear_at(l, x, y));
+    const f32x8 steps = {0, 1, 2, 3, 4, 5, 6, 7};
+    return (struct lanes){start + slope * steps, f32x8_all((float)l->y), slope};
 }
 
 /* The values of eight pixels, `down` rows and `right` columns further. */
-static inline __m256 lanes_value(const struct lanes *l, __m256 down, __m256 right)
+static inline f32x8 lanes_value(const struct lanes *l, f32x8 down, f32x8 right)
 {
-    return _mm256_add_ps(_mm256_add_ps(l->row, _mm256_mul_ps(l->down, down)), _mm256_mul_ps(l->right, right));
+    return l->row + l->down * down + l->right * right;
 }
 
 #endif

@@ -31,13 +31,13 @@
  * are never used. */
 #include "stages/render_views/defocus.h"
 
-#include <immintrin.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "common/base/parallel.h"
+#include "common/math/lanes.h"
 
 enum { BACK, BACK_WEIGHT = 3, NEAR, NEAR_COVER = 7, OPEN, BACK_M, NEAR_M, CHANNELS };
 #define UP_CHANNELS BACK_M /* results of BACK .. OPEN, stored behind the channels */
@@ -53,30 +53,26 @@ enum { BACK, BACK_WEIGHT = 3, NEAR, NEAR_COVER = 7, OPEN, BACK_M, NEAR_M, CHANNE
 #define FADED      1e-9f       /* counts where there is nothing else */
 #define SPREAD     4           /* max ratio of the m that a pixel of the back contributes to and its own */
 
-typedef float v8 __attribute__((vector_size(32)));
-
-static inline v8 get(const float *p) { return _mm256_loadu_ps(p); }
-static inline void put(float *p, v8 a) { _mm256_storeu_ps(p, a); }
-static inline v8 all(float a) { return _mm256_set1_ps(a); }
-static inline v8 min8(v8 a, v8 b) { return _mm256_min_ps(a, b); }
-static inline v8 max8(v8 a, v8 b) { return _mm256_max_ps(a, b); }
 /* a < 0 (sign bit set) ? b : c */
-static inline v8 if_below(v8 a, v8 b, v8 c) { return _mm256_blendv_ps(c, b, a); }
+static inline f32x8 if_below(f32x8 a, f32x8 b, f32x8 c) { return f32x8_if((i32x8)a, b, c); }
 
 /* 0 at `from`, 1 at `to`, linear between. */
-static inline v8 ramp(v8 m, float from, float to) { return min8(max8((m - from) * (1 / (to - from)), all(0)), all(1)); }
+static inline f32x8 ramp(f32x8 m, float from, float to)
+{
+    return f32x8_min(f32x8_max((m - from) * (1 / (to - from)), f32x8_all(0)), f32x8_all(1));
+}
 
 /* The part of a blur m that goes on to levels coarser than the one of blur `here` = 4^level. The rest stays, as it is
  * or, except on level 0, smoothed by (1 2 1) / 4, which has the blur 2 `here`: so the mixed kernels differ by half
  * an octave only, and no sharp core shows inside a wide blur. */
-static inline v8 coarser_part(v8 m, float here) { return here > 1 ? ramp(m, 2 * here, 4 * here) : ramp(m, 1, 4); }
-static inline v8 smoothed_part(v8 m, float here) { return ramp(m, here, 2 * here) - coarser_part(m, here); }
+static inline f32x8 coarser_part(f32x8 m, float here) { return here > 1 ? ramp(m, 2 * here, 4 * here) : ramp(m, 1, 4); }
+static inline f32x8 smoothed_part(f32x8 m, float here) { return ramp(m, here, 2 * here) - coarser_part(m, here); }
 
 /* As coarser_part, for the weight of a texel in other pixels' look-ups: blurred texels contribute up to one level more,
  * so that edges between blurs have no step; sharp texels do not. */
-static inline v8 source_part(v8 m, float here)
+static inline f32x8 source_part(f32x8 m, float here)
 {
-    return max8(coarser_part(m * min8(m, all(SPREAD)), here), all(MIN_WEIGHT));
+    return f32x8_max(coarser_part(m * f32x8_min(m, f32x8_all(SPREAD)), here), f32x8_all(MIN_WEIGHT));
 }
 
 struct defocus_pass { /* between two adjacent levels */
@@ -105,16 +101,11 @@ static bool used(const struct defocus_pass *p, int channel)
 static void row_split(float *const *lines, const float *rgba, int width)
 {
     int x = 0;
-    for (; x + 8 <= width; x += 8, rgba += 32) {
-        /* 4x4 transposes of pixels 0 .. 3 in the low halves and 4 .. 7 in the high ones */
-        const __m256 a = _mm256_loadu2_m128(rgba + 16, rgba), b = _mm256_loadu2_m128(rgba + 20, rgba + 4);
-        const __m256 c = _mm256_loadu2_m128(rgba + 24, rgba + 8), d = _mm256_loadu2_m128(rgba + 28, rgba + 12);
-        const __m256 ab = _mm256_unpacklo_ps(a, b), cd = _mm256_unpacklo_ps(c, d);
-        const __m256 ab2 = _mm256_unpackhi_ps(a, b), cd2 = _mm256_unpackhi_ps(c, d);
-        _mm256_storeu_ps(lines[0] + x, _mm256_shuffle_ps(ab, cd, 0x44));
-        _mm256_storeu_ps(lines[1] + x, _mm256_shuffle_ps(ab, cd, 0xee));
-        _mm256_storeu_ps(lines[2] + x, _mm256_shuffle_ps(ab2, cd2, 0x44));
-        _mm256_storeu_ps(lines[3] + x, _mm256_shuffle_ps(ab2, cd2, 0xee));
+    for (; x + 8 <= width; x += 8, rgba += 32) { /* pixels 0 .. 3 in the low halves, 4 .. 7 in the high ones */
+        f32x8 v[4];
+        for (int k = 0; k < 4; k++) v[k] = f32x8_join(f32x4_load(rgba + 4 * k), f32x4_load(rgba + 4 * k + 16));
+        f32x8_transpose(v);
+        for (int k = 0; k < 4; k++) f32x8_store(lines[k] + x, v[k]);
     }
     for (; x < width; x++, rgba += 4)
         for (int k = 0; k < 4; k++) lines[k][x] = rgba[k];
@@ -124,27 +115,26 @@ static void row_join(float *rgba, float *const *lines, int width)
 {
     int x = 0;
     for (; x + 8 <= width; x += 8, rgba += 32) {
-        const __m256 r = _mm256_loadu_ps(lines[0] + x), g = _mm256_loadu_ps(lines[1] + x);
-        const __m256 b = _mm256_loadu_ps(lines[2] + x), a = _mm256_loadu_ps(lines[3] + x);
-        const __m256 rg = _mm256_unpacklo_ps(r, g), ba = _mm256_unpacklo_ps(b, a);
-        const __m256 rg2 = _mm256_unpackhi_ps(r, g), ba2 = _mm256_unpackhi_ps(b, a);
-        _mm256_storeu2_m128(rgba + 16, rgba, _mm256_shuffle_ps(rg, ba, 0x44));
-        _mm256_storeu2_m128(rgba + 20, rgba + 4, _mm256_shuffle_ps(rg, ba, 0xee));
-        _mm256_storeu2_m128(rgba + 24, rgba + 8, _mm256_shuffle_ps(rg2, ba2, 0x44));
-        _mm256_storeu2_m128(rgba + 28, rgba + 12, _mm256_shuffle_ps(rg2, ba2, 0xee));
+        f32x8 v[4];
+        for (int k = 0; k < 4; k++) v[k] = f32x8_load(lines[k] + x);
+        f32x8_transpose(v);
+        for (int k = 0; k < 4; k++) {
+            f32x4_store(rgba + 4 * k, f32x8_low(v[k]));
+            f32x4_store(rgba + 4 * k + 16, f32x8_high(v[k]));
+        }
     }
     for (; x < width; x++, rgba += 4)
         for (int k = 0; k < 4; k++) rgba[k] = lines[k][x];
 }
 
 /* The blur m of a depth, negative in front of the focus. */
-static inline v8 blur_of(const struct defocus_pass *p, v8 z)
+static inline f32x8 blur_of(const struct defocus_pass *p, f32x8 z)
 {
-    const v8 c = p->blur * (1 - p->focus / z), size = min8(1 + c * c * 0.125f, all(p->max_m));
+    const f32x8 c = p->blur * (1 - p->focus / z), size = f32x8_min(1 + c * c * 0.125f, f32x8_all(p->max_m));
     return if_below(c, -size, size);
 }
 
-static inline v8 known(v8 z) { return if_below(0 - z, z, all(FARTHEST)); }
+static inline f32x8 known(f32x8 z) { return if_below(0 - z, z, f32x8_all(FARTHEST)); }
 
 /* The blur of each pixel of a row. Pixels beside a blurred near pixel count as near, too: silhouette pixels are mixed,
  * and their share of the near surface would show sharp under its blur. `nearest` is a scratch line. */
@@ -157,11 +147,12 @@ static void row_blur(float *m, const struct defocus_pass *p, int y, float *neare
 
     memcpy(m, row, (size_t)w * sizeof *m);
     if (!p->any_near) {
-        for (; x < w; x += 8) put(m + x, blur_of(p, known(get(m + x))));
+        for (; x < w; x += 8) f32x8_store(m + x, blur_of(p, known(f32x8_load(m + x))));
         return;
     }
     for (; x + 8 <= w; x += 8)
-        put(nearest + x, min8(known(get(row + x)), min8(known(get(above + x)), known(get(below + x)))));
+        f32x8_store(nearest + x, f32x8_min(known(f32x8_load(row + x)),
+                                           f32x8_min(known(f32x8_load(above + x)), known(f32x8_load(below + x)))));
     for (; x < w; x++) {
         nearest[x] = FARTHEST;
         for (int i = 0; i < 3; i++) {
@@ -171,9 +162,10 @@ static void row_blur(float *m, const struct defocus_pass *p, int y, float *neare
     }
     nearest[-1] = nearest[w] = FARTHEST;
     for (x = 0; x < w; x += 8) {
-        const v8 own = blur_of(p, known(get(m + x)));
-        const v8 beside = blur_of(p, min8(get(nearest + x - 1), min8(get(nearest + x), get(nearest + x + 1))));
-        put(m + x, if_below(beside + BLURRED, beside, own));
+        const f32x8 own = blur_of(p, known(f32x8_load(m + x)));
+        const f32x8 beside = blur_of(
+            p, f32x8_min(f32x8_load(nearest + x - 1), f32x8_min(f32x8_load(nearest + x), f32x8_load(nearest + x + 1))));
+        f32x8_store(m + x, if_below(beside + BLURRED, beside, own));
     }
 }
 
@@ -187,19 +179,20 @@ static void downsample_frame(const struct defocus_pass *p, int y, float *const *
     row_blur(m, p, y, rgba[5]);
     for (int x = 0; x < w; x += 8) {
         /* near but slightly blurred surfaces may show behind more blurred ones */
-        const v8 m_signed = get(m + x), size = if_below(m_signed, -m_signed, m_signed);
-        const v8 part = source_part(size, 1) * max8(1 - ramp(-m_signed, FADE_BEGIN, FADE_END), all(FADED)),
-                 weight = get(rgba[3] + x) * part;
-        for (int k = 0; k < 3; k++) put(lines[BACK + k] + x, get(rgba[k] + x) * part);
-        put(lines[BACK_WEIGHT] + x, weight);
-        put(lines[BACK_M] + x, weight * size);
+        const f32x8 m_signed = f32x8_load(m + x), size = if_below(m_signed, -m_signed, m_signed);
+        const f32x8 part =
+                        source_part(size, 1) * f32x8_max(1 - ramp(-m_signed, FADE_BEGIN, FADE_END), f32x8_all(FADED)),
+                    weight = f32x8_load(rgba[3] + x) * part;
+        for (int k = 0; k < 3; k++) f32x8_store(lines[BACK + k] + x, f32x8_load(rgba[k] + x) * part);
+        f32x8_store(lines[BACK_WEIGHT] + x, weight);
+        f32x8_store(lines[BACK_M] + x, weight * size);
     }
     for (int x = 0; p->any_near && x < w; x += 8) {
-        const v8 size = -get(m + x), part = coarser_part(size, 1), cover = get(rgba[3] + x) * part;
-        for (int k = 0; k < 3; k++) put(lines[NEAR + k] + x, get(rgba[k] + x) * part);
-        put(lines[NEAR_COVER] + x, cover);
-        put(lines[NEAR_M] + x, cover * size);
-        put(lines[OPEN] + x, if_below(size, all(1), all(0)));
+        const f32x8 size = -f32x8_load(m + x), part = coarser_part(size, 1), cover = f32x8_load(rgba[3] + x) * part;
+        for (int k = 0; k < 3; k++) f32x8_store(lines[NEAR + k] + x, f32x8_load(rgba[k] + x) * part);
+        f32x8_store(lines[NEAR_COVER] + x, cover);
+        f32x8_store(lines[NEAR_M] + x, cover * size);
+        f32x8_store(lines[OPEN] + x, if_below(size, f32x8_all(1), f32x8_all(0)));
     }
 }
 
@@ -212,20 +205,21 @@ static void downsample_level(const struct defocus_pass *p, int y, float *const *
 
     for (int x = 0; x < l->width; x += 8) {
         const float *at = row + x;
-        const v8 weight = get(at + BACK_WEIGHT * stride), m = get(at + BACK_M * stride);
-        const v8 part = source_part(m / (weight + TINY), here);
-        for (size_t k = BACK; k < BACK_WEIGHT; k++) put(lines[k] + x, get(at + k * stride) * part);
-        put(lines[BACK_WEIGHT] + x, weight * part);
-        put(lines[BACK_M] + x, m * part);
+        const f32x8 weight = f32x8_load(at + BACK_WEIGHT * stride), m = f32x8_load(at + BACK_M * stride);
+        const f32x8 part = source_part(m / (weight + TINY), here);
+        for (size_t k = BACK; k < BACK_WEIGHT; k++) f32x8_store(lines[k] + x, f32x8_load(at + k * stride) * part);
+        f32x8_store(lines[BACK_WEIGHT] + x, weight * part);
+        f32x8_store(lines[BACK_M] + x, m * part);
     }
     for (int x = 0; p->any_near && x < l->width; x += 8) {
         const float *at = row + x;
-        const v8 cover = get(at + NEAR_COVER * stride), m = get(at + NEAR_M * stride);
-        const v8 wanted = m / (cover + TINY), part = coarser_part(wanted, here), open = get(at + OPEN * stride);
-        for (size_t k = NEAR; k < NEAR_COVER; k++) put(lines[k] + x, get(at + k * stride) * part);
-        put(lines[NEAR_COVER] + x, cover * part);
-        put(lines[NEAR_M] + x, m * part);
-        put(lines[OPEN] + x, 1 - (1 - open) * ramp(wanted, here / 4, here));
+        const f32x8 cover = f32x8_load(at + NEAR_COVER * stride), m = f32x8_load(at + NEAR_M * stride);
+        const f32x8 wanted = m / (cover + TINY), part = coarser_part(wanted, here),
+                    open = f32x8_load(at + OPEN * stride);
+        for (size_t k = NEAR; k < NEAR_COVER; k++) f32x8_store(lines[k] + x, f32x8_load(at + k * stride) * part);
+        f32x8_store(lines[NEAR_COVER] + x, cover * part);
+        f32x8_store(lines[NEAR_M] + x, m * part);
+        f32x8_store(lines[OPEN] + x, 1 - (1 - open) * ramp(wanted, here / 4, here));
     }
 }
 
@@ -309,17 +303,18 @@ static void smooth_rows(const struct defocus_pass *p, int y, float *const *lines
     }
     for (size_t k = BACK; k <= BACK_WEIGHT; k++) {
         const float *a = rows[0] + k * l->stride, *b = rows[1] + k * l->stride, *c = rows[2] + k * l->stride;
-        for (int x = 0; x < l->width; x += 8) put(lines[k] + x, 0.25f * (get(a + x) + get(c + x)) + 0.5f * get(b + x));
+        for (int x = 0; x < l->width; x += 8)
+            f32x8_store(lines[k] + x, 0.25f * (f32x8_load(a + x) + f32x8_load(c + x)) + 0.5f * f32x8_load(b + x));
     }
     for (int x = 0; p->any_near && x < l->width; x += 8) {
-        v8 sum[NEAR_COVER + 1] = {{0}};
+        f32x8 sum[NEAR_COVER + 1] = {{0}};
         for (int i = 0; i < 3; i++) {
             const float *at = rows[i] + x;
-            const v8 m = get(at + NEAR_M * l->stride) / (get(at + NEAR_COVER * l->stride) + TINY);
-            const v8 part = (i == 1 ? 0.5f : 0.25f) * smoothed_part(m, here);
-            for (size_t k = NEAR; k <= NEAR_COVER; k++) sum[k] += part * get(at + k * l->stride);
+            const f32x8 m = f32x8_load(at + NEAR_M * l->stride) / (f32x8_load(at + NEAR_COVER * l->stride) + TINY);
+            const f32x8 part = (i == 1 ? 0.5f : 0.25f) * smoothed_part(m, here);
+            for (size_t k = NEAR; k <= NEAR_COVER; k++) sum[k] += part * f32x8_load(at + k * l->stride);
         }
-        for (size_t k = NEAR; k <= NEAR_COVER; k++) put(lines[k] + x, sum[k]);
+        for (size_t k = NEAR; k <= NEAR_COVER; k++) f32x8_store(lines[k] + x, sum[k]);
     }
     for (int k = BACK; k <= NEAR_COVER; k++) {
         lines[k][-1] = lines[k][0];
@@ -327,10 +322,16 @@ static void smooth_rows(const struct defocus_pass *p, int y, float *const *lines
     }
 }
 
-static inline v8 smooth(const float *at) { return 0.25f * (get(at - 1) + get(at + 1)) + 0.5f * get(at); }
+static inline f32x8 smooth(const float *at)
+{
+    return 0.25f * (f32x8_load(at - 1) + f32x8_load(at + 1)) + 0.5f * f32x8_load(at);
+}
 
 /* The part of a coverage that fits beside nearer coverage. */
-static inline v8 room_for(v8 cover, v8 nearer) { return min8(max8(1 - nearer, all(0)) / (cover + TINY), all(1)); }
+static inline f32x8 room_for(f32x8 cover, f32x8 nearer)
+{
+    return f32x8_min(f32x8_max(1 - nearer, f32x8_all(0)) / (cover + TINY), f32x8_all(1));
+}
 
 /* Result of row y of a level: its own part composited with the coarser levels' result `up`. */
 static void composite_level(const struct defocus_pass *p, int y, float *const *up, float *const *lines)
@@ -343,27 +344,28 @@ static void composite_level(const struct defocus_pass *p, int y, float *const *u
     smooth_rows(p, y, lines);
     for (int x = 0; x < l->width; x += 8) {
         float *at = row + x;
-        const v8 weight = get(at + BACK_WEIGHT * stride), above = get(up[BACK_WEIGHT] + x);
-        const v8 m = get(at + BACK_M * stride) / (weight + TINY), blurred = smoothed_part(m, here);
-        const v8 sum = weight + MIN_WEIGHT * above, sharp = 1 - coarser_part(m, here) - blurred;
-        const v8 around = blurred * weight / (smooth(lines[BACK_WEIGHT] + x) + TINY);
-        const v8 coarser = (sum - (sharp + blurred) * weight) / (above + TINY);
+        const f32x8 weight = f32x8_load(at + BACK_WEIGHT * stride), above = f32x8_load(up[BACK_WEIGHT] + x);
+        const f32x8 m = f32x8_load(at + BACK_M * stride) / (weight + TINY), blurred = smoothed_part(m, here);
+        const f32x8 sum = weight + MIN_WEIGHT * above, sharp = 1 - coarser_part(m, here) - blurred;
+        const f32x8 around = blurred * weight / (smooth(lines[BACK_WEIGHT] + x) + TINY);
+        const f32x8 coarser = (sum - (sharp + blurred) * weight) / (above + TINY);
         for (size_t k = BACK; k < BACK_WEIGHT; k++)
-            put(at + k * stride + result,
-                get(at + k * stride) * sharp + smooth(lines[k] + x) * around + get(up[k] + x) * coarser);
-        put(at + BACK_WEIGHT * stride + result, sum);
+            f32x8_store(at + k * stride + result, f32x8_load(at + k * stride) * sharp + smooth(lines[k] + x) * around +
+                                                      f32x8_load(up[k] + x) * coarser);
+        f32x8_store(at + BACK_WEIGHT * stride + result, sum);
     }
     for (int x = 0; p->any_near && x < l->width; x += 8) {
         float *at = row + x;
-        const v8 cover = get(at + NEAR_COVER * stride), nearer = get(up[NEAR_COVER] + x);
-        const v8 m = get(at + NEAR_M * stride) / (cover + TINY), on = coarser_part(m, here),
-                 sharp = 1 - on - smoothed_part(m, here);
-        const v8 left = cover * sharp + smooth(lines[NEAR_COVER] + x), room = room_for(left, nearer);
+        const f32x8 cover = f32x8_load(at + NEAR_COVER * stride), nearer = f32x8_load(up[NEAR_COVER] + x);
+        const f32x8 m = f32x8_load(at + NEAR_M * stride) / (cover + TINY), on = coarser_part(m, here),
+                    sharp = 1 - on - smoothed_part(m, here);
+        const f32x8 left = cover * sharp + smooth(lines[NEAR_COVER] + x), room = room_for(left, nearer);
         for (size_t k = NEAR; k < NEAR_COVER; k++)
-            put(at + k * stride + result,
-                (get(at + k * stride) * sharp + smooth(lines[k] + x)) * room + get(up[k] + x));
-        put(at + NEAR_COVER * stride + result, left * room + nearer);
-        put(at + OPEN * stride + result, get(at + OPEN * stride) * (1 - on) + get(up[OPEN] + x) * on);
+            f32x8_store(at + k * stride + result,
+                        (f32x8_load(at + k * stride) * sharp + smooth(lines[k] + x)) * room + f32x8_load(up[k] + x));
+        f32x8_store(at + NEAR_COVER * stride + result, left * room + nearer);
+        f32x8_store(at + OPEN * stride + result,
+                    f32x8_load(at + OPEN * stride) * (1 - on) + f32x8_load(up[OPEN] + x) * on);
     }
 }
 
@@ -376,25 +378,27 @@ static void composite_frame(const struct defocus_pass *p, int y, float *const *u
     row_split(rgba, row, w);
     row_blur(m, p, y, rgba[5]);
     for (int x = 0; !p->any_near && x < w; x += 8) {
-        const v8 on = coarser_part(get(m + x), 1), own = 1 - on;
-        const v8 coarser = on * get(rgba[3] + x) / (get(up[BACK_WEIGHT] + x) + TINY);
-        for (int k = 0; k < 3; k++) put(rgba[k] + x, get(rgba[k] + x) * own + get(up[BACK + k] + x) * coarser);
+        const f32x8 on = coarser_part(f32x8_load(m + x), 1), own = 1 - on;
+        const f32x8 coarser = on * f32x8_load(rgba[3] + x) / (f32x8_load(up[BACK_WEIGHT] + x) + TINY);
+        for (int k = 0; k < 3; k++)
+            f32x8_store(rgba[k] + x, f32x8_load(rgba[k] + x) * own + f32x8_load(up[BACK + k] + x) * coarser);
     }
     for (int x = 0; p->any_near && x < w; x += 8) {
         /* A pixel of the back is under the near layer. A near pixel is part of the layer; where the layer does not
          * cover it, the back shows through as far as there is any within the pixel's own blur. */
-        const v8 m_signed = get(m + x), alpha = get(rgba[3] + x);
-        const v8 on = coarser_part(if_below(m_signed, -m_signed, m_signed), 1), own = 1 - on;
-        const v8 nearer = get(up[NEAR_COVER] + x), room = room_for(alpha * own, nearer);
-        const v8 cover = nearer + if_below(m_signed, alpha * own * room, all(0));
-        const v8 left = max8(1 - cover, all(0)), seen = on * get(up[OPEN] + x);
-        const v8 layer = 1 / if_below(m_signed, cover + seen + TINY, max8(cover, all(1)));
-        const v8 mine = own * if_below(m_signed, layer * room, left);
-        const v8 coarser = if_below(m_signed, layer * seen, left * on * alpha) / (get(up[BACK_WEIGHT] + x) + TINY);
+        const f32x8 m_signed = f32x8_load(m + x), alpha = f32x8_load(rgba[3] + x);
+        const f32x8 on = coarser_part(if_below(m_signed, -m_signed, m_signed), 1), own = 1 - on;
+        const f32x8 nearer = f32x8_load(up[NEAR_COVER] + x), room = room_for(alpha * own, nearer);
+        const f32x8 cover = nearer + if_below(m_signed, alpha * own * room, f32x8_all(0));
+        const f32x8 left = f32x8_max(1 - cover, f32x8_all(0)), seen = on * f32x8_load(up[OPEN] + x);
+        const f32x8 layer = 1 / if_below(m_signed, cover + seen + TINY, f32x8_max(cover, f32x8_all(1)));
+        const f32x8 mine = own * if_below(m_signed, layer * room, left);
+        const f32x8 coarser =
+            if_below(m_signed, layer * seen, left * on * alpha) / (f32x8_load(up[BACK_WEIGHT] + x) + TINY);
         for (int k = 0; k < 3; k++)
-            put(rgba[k] + x,
-                get(rgba[k] + x) * mine + (get(up[NEAR + k] + x) * layer + get(up[BACK + k] + x) * coarser));
-        put(rgba[3] + x, if_below(m_signed, all(1), cover * layer + left * alpha));
+            f32x8_store(rgba[k] + x, f32x8_load(rgba[k] + x) * mine + (f32x8_load(up[NEAR + k] + x) * layer +
+                                                                       f32x8_load(up[BACK + k] + x) * coarser));
+        f32x8_store(rgba[3] + x, if_below(m_signed, f32x8_all(1), cover * layer + left * alpha));
     }
     row_join(row, rgba, w);
 }

@@ -31,7 +31,6 @@
  *   copied from, then doubled until it covers the frame; without any source patch, colour is blended like depth. */
 #include "stages/render_views/exemplar_fill.h"
 
-#include <immintrin.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
@@ -40,6 +39,7 @@
 #include "common/base/array.h"
 #include "common/base/parallel.h"
 #include "common/base/sort.h"
+#include "common/math/lanes.h"
 
 #define MAX_RADIUS    7
 #define MAX_PATCH     ((2 * MAX_RADIUS + 1) * (2 * MAX_RADIUS + 1))
@@ -355,7 +355,7 @@ static bool search(const struct hole_job *f, const struct target_patch *t, int x
     const int x0 = max_int(max_int(f->bx, r), x - half), x1 = min_int(min_int(f->bx + f->bw, j->w - r), x + half);
     const int y0 = max_int(max_int(f->by, r), y - half), y1 = min_int(min_int(f->by + f->bh, j->h - r), y + half);
     const float *const red = j->planes[0], *const green = j->planes[1], *const blue = j->planes[2];
-    const __m256 penalty = _mm256_set1_ps(COPY_PENALTY * 3 * (float)t->count * f->noise);
+    const f32x8 penalty = f32x8_all(COPY_PENALTY * 3 * (float)t->count * f->noise);
     float best = INFINITY;
     bool any = false;
 
@@ -367,28 +367,25 @@ static bool search(const struct hole_job *f, const struct target_patch *t, int x
             memcpy(&lanes, valid + (u - f->bx), sizeof lanes);
             if (x1 - u < LANES) lanes &= ((uint64_t)1 << (8 * (x1 - u))) - 1;
             if (!lanes) continue;
-            const __m256 allowed = _mm256_castsi256_ps(_mm256_cvtepi8_epi32(_mm_cvtsi64_si128((long long)lanes)));
-            const __m256 limit = _mm256_set1_ps(best);
+            const i32x8 allowed = i32x8_from_u8((const uint8_t *)&lanes) > 0;
+            const f32x8 limit = f32x8_all(best);
             const size_t at = (size_t)v * j->stride + (size_t)u;
-            const __m128i copied = _mm_loadl_epi64((const __m128i *)(copies + (u - f->bx)));
-            __m256 sum = _mm256_mul_ps(penalty, _mm256_cvtepi32_ps(_mm256_cvtepu8_epi32(copied)));
+            f32x8 sum = penalty * f32x8_from_i32(i32x8_from_u8(copies + (u - f->bx)));
             int left = 0;
             for (int i = 0; i < t->count;) {
                 for (const int end = min_int(t->count, i + 5); i < end; i++) {
                     const size_t q = at + (size_t)t->offset[i];
-                    const __m256 dr = _mm256_sub_ps(_mm256_loadu_ps(red + q), _mm256_set1_ps(t->v[i][0]));
-                    const __m256 dg = _mm256_sub_ps(_mm256_loadu_ps(green + q), _mm256_set1_ps(t->v[i][1]));
-                    const __m256 db = _mm256_sub_ps(_mm256_loadu_ps(blue + q), _mm256_set1_ps(t->v[i][2]));
-                    sum =
-                        _mm256_add_ps(sum, _mm256_add_ps(_mm256_mul_ps(dr, dr),
-                                                         _mm256_add_ps(_mm256_mul_ps(dg, dg), _mm256_mul_ps(db, db))));
+                    const f32x8 dr = f32x8_load(red + q) - t->v[i][0];
+                    const f32x8 dg = f32x8_load(green + q) - t->v[i][1];
+                    const f32x8 db = f32x8_load(blue + q) - t->v[i][2];
+                    sum += dr * dr + (dg * dg + db * db);
                 }
-                left = _mm256_movemask_ps(_mm256_and_ps(allowed, _mm256_cmp_ps(sum, limit, _CMP_LT_OQ)));
+                left = i32x8_signs(allowed & (sum < limit));
                 if (!left) break;
             }
             if (!left) continue;
             float sums[LANES];
-            _mm256_storeu_ps(sums, sum);
+            f32x8_store(sums, sum);
             for (int k = 0; k < LANES; k++)
                 if ((left >> k & 1) && sums[k] < best) {
                     best = sums[k];

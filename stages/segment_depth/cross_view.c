@@ -17,7 +17,6 @@
  * the expansion moves. */
 #include "stages/segment_depth/cross_view.h"
 
-#include <immintrin.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -216,66 +215,59 @@ void cross_view_release(struct cross_view *x)
 
 /* For each sample of a segment at inverse depth `inverse`: the steps by which the neighbour's surface is nearer, and
  * that surface's confidence. Returns the mask of lanes where the neighbour has a depth. */
-static inline __m256 surface_gap(const struct cross_neighbour *n, int segment, __m256 inverse, float step,
-                                 __m256 *steps, __m256 *confidence)
+static inline i32x8 surface_gap(const struct cross_neighbour *n, int segment, f32x8 inverse, float step, f32x8 *steps,
+                                f32x8 *confidence)
 {
     const struct cross_warp *at = &n->warps[segment];
-    __m256 p[3];
-    for (int j = 0; j < 3; j++)
-        p[j] =
-            _mm256_add_ps(_mm256_load_ps(at->rotated[j]), _mm256_mul_ps(_mm256_set1_ps((float)n->shift[j]), inverse));
-    const __m256 zero = _mm256_setzero_ps(), r = _mm256_div_ps(_mm256_set1_ps(1), p[2]);
-    const __m256 u = _mm256_mul_ps(p[0], r), v = _mm256_mul_ps(p[1], r);
-    __m256 known = _mm256_cmp_ps(p[2], _mm256_set1_ps(1e-9f), _CMP_GT_OQ);
-    known = _mm256_and_ps(known, _mm256_and_ps(_mm256_cmp_ps(u, zero, _CMP_GE_OQ), _mm256_cmp_ps(v, zero, _CMP_GE_OQ)));
-    known = _mm256_and_ps(known, _mm256_cmp_ps(u, _mm256_set1_ps((float)n->depth.width), _CMP_LT_OQ));
-    known = _mm256_and_ps(known, _mm256_cmp_ps(v, _mm256_set1_ps((float)n->depth.height), _CMP_LT_OQ));
+    f32x8 p[3];
+    for (int j = 0; j < 3; j++) p[j] = f32x8_load(at->rotated[j]) + (float)n->shift[j] * inverse;
+    const f32x8 zero = {0}, r = 1 / p[2];
+    const f32x8 u = p[0] * r, v = p[1] * r;
+    i32x8 known = p[2] > 1e-9f;
+    known &= (u >= zero) & (v >= zero);
+    known &= u < (float)n->depth.width;
+    known &= v < (float)n->depth.height;
     *steps = *confidence = zero;
-    if (_mm256_testz_ps(known, known)) return known;
-    const __m256i pixel = _mm256_add_epi32(
-        _mm256_mullo_epi32(_mm256_cvttps_epi32(v), _mm256_set1_epi32(n->depth.width)), _mm256_cvttps_epi32(u));
-    const __m256i none = _mm256_setzero_si256(); /* plane 0, of no segment, is all zeros */
-    const __m256i id = _mm256_slli_epi32(
-        _mm256_mask_i32gather_epi32(none, (const int *)n->depth.interior.id, pixel, _mm256_castps_si256(known), 4), 2);
+    if (!i32x8_any(known)) return known;
+    const i32x8 pixel = i32x8_index(i32x8_truncate(v), n->depth.width, i32x8_truncate(u));
+    const i32x8 none = {0}; /* plane 0, of no segment, is all zeros */
+    const i32x8 id = i32x8_gather_if(known, (const int *)n->depth.interior.id, pixel, none) << 2;
     const float *planes = &n->planes->a;
-    __m256 there = _mm256_mul_ps(_mm256_i32gather_ps(planes, id, 4), u);
-    there = _mm256_add_ps(there, _mm256_mul_ps(_mm256_i32gather_ps(planes + 1, id, 4), v));
-    there = _mm256_add_ps(there, _mm256_i32gather_ps(planes + 2, id, 4));
-    *confidence = _mm256_i32gather_ps(planes + 3, id, 4);
+    f32x8 there = f32x8_gather(planes, id) * u;
+    there += f32x8_gather(planes + 1, id) * v;
+    there += f32x8_gather(planes + 2, id);
+    *confidence = f32x8_gather(planes + 3, id);
     /* steps of the view in a unit of the neighbour's inverse depth, at equal distance */
-    const __m256 scale = _mm256_max_ps(_mm256_load_ps(at->rotated[2]), _mm256_set1_ps(0.1f));
-    const __m256 per_step = _mm256_div_ps(_mm256_set1_ps(1), _mm256_mul_ps(scale, _mm256_set1_ps(step)));
-    *steps = _mm256_mul_ps(_mm256_sub_ps(_mm256_mul_ps(there, p[2]), inverse), _mm256_mul_ps(p[2], per_step));
-    return _mm256_and_ps(known, _mm256_cmp_ps(there, zero, _CMP_GT_OQ));
+    const f32x8 scale = f32x8_max(f32x8_load(at->rotated[2]), f32x8_all(0.1f));
+    const f32x8 per_step = 1 / (scale * step);
+    *steps = (there * p[2] - inverse) * (p[2] * per_step);
+    return known & (there > zero);
 }
 
 /* Inverse depths of a segment's samples on a plane. */
-static __m256 inverse_depths(const struct cross_view *x, int segment, struct plane plane)
+static f32x8 inverse_depths(const struct cross_view *x, int segment, struct plane plane)
 {
     const float(*at)[CROSS_SAMPLES] = x->samples[segment];
-    const __m256 a = _mm256_set1_ps((float)plane.a), b = _mm256_set1_ps((float)plane.b);
-    return _mm256_add_ps(
-        _mm256_add_ps(_mm256_mul_ps(a, _mm256_loadu_ps(at[0])), _mm256_mul_ps(b, _mm256_loadu_ps(at[1]))),
-        _mm256_set1_ps((float)plane.c));
+    const f32x8 a = f32x8_all((float)plane.a), b = f32x8_all((float)plane.b);
+    return a * f32x8_load(at[0]) + b * f32x8_load(at[1]) + (float)plane.c;
 }
 
 /* What it costs, at each sample, to see through the neighbours' surfaces. */
-static inline __m256 cost_behind(const struct cross_view *x, int segment, __m256 inverse)
+static inline f32x8 cost_behind(const struct cross_view *x, int segment, f32x8 inverse)
 {
-    const __m256 zero = _mm256_setzero_ps(), one = _mm256_set1_ps(1);
-    const __m256 per_agree = _mm256_set1_ps(1 / (AGREE_STEPS * (float)x->step));
-    __m256 sum = zero, highest = zero, second = zero;
+    const f32x8 zero = {0}, one = f32x8_all(1);
+    const f32x8 per_agree = f32x8_all(1 / (AGREE_STEPS * (float)x->step));
+    f32x8 sum = zero, highest = zero, second = zero;
     for (int k = 0; k < x->count; k++) {
         const struct cross_front *f = &x->neighbours[k].fronts[segment];
-        const __m256 gap = _mm256_mul_ps(_mm256_sub_ps(_mm256_loadu_ps(f->inverse), inverse), per_agree);
-        const __m256 through = _mm256_min_ps(_mm256_max_ps(_mm256_sub_ps(gap, one), zero), one);
-        const __m128i confidence = _mm_loadl_epi64((const __m128i *)f->confidence);
-        const __m256 cost = _mm256_mul_ps(through, _mm256_cvtepi32_ps(_mm256_cvtepu8_epi32(confidence)));
-        sum = _mm256_add_ps(sum, cost);
-        second = _mm256_max_ps(second, _mm256_min_ps(highest, cost));
-        highest = _mm256_max_ps(highest, cost);
+        const f32x8 gap = (f32x8_load(f->inverse) - inverse) * per_agree;
+        const f32x8 through = f32x8_min(f32x8_max(gap - one, zero), one);
+        const f32x8 cost = through * f32x8_from_i32(i32x8_from_u8(f->confidence));
+        sum += cost;
+        second = f32x8_max(second, f32x8_min(highest, cost));
+        highest = f32x8_max(highest, cost);
     }
-    return _mm256_mul_ps(_mm256_add_ps(_mm256_sub_ps(sum, highest), second), _mm256_set1_ps(FRONT_WEIGHT / 255));
+    return (sum - highest + second) * (FRONT_WEIGHT / 255);
 }
 
 float cross_view_cost(const struct cross_view *x, int segment, struct plane plane, unsigned *occluded)
@@ -287,43 +279,38 @@ float cross_view_bounded(const struct cross_view *x, int segment, struct plane p
                          unsigned *occluded)
 {
     const float count = (float)(x->count * CROSS_SAMPLES), limit = max_cost * count;
-    const __m256 agree = _mm256_set1_ps(AGREE_STEPS), zero = _mm256_setzero_ps();
-    const __m256 inverse = inverse_depths(x, segment, plane);
-    __m256 sum = cost_behind(x, segment, inverse);
-    float all = lanes_sum(sum);
+    const f32x8 agree = f32x8_all(AGREE_STEPS), zero = {0};
+    const f32x8 inverse = inverse_depths(x, segment, plane);
+    f32x8 sum = cost_behind(x, segment, inverse);
+    float all = f32x8_sum(sum);
     *occluded = 0;
     if (!x->count) return 0;
     for (int k = 0; k < x->count && !(all > limit); k++) {
-        __m256 steps, confidence;
-        const __m256 known = surface_gap(&x->neighbours[k], segment, inverse, (float)x->step, &steps, &confidence);
-        const __m256 off = _mm256_max_ps(steps, _mm256_sub_ps(zero, steps));
-        const __m256 near = _mm256_mul_ps(_mm256_min_ps(off, agree), _mm256_set1_ps(OCCLUDED_COST / AGREE_STEPS));
-        const __m256 seen_through =
-            _mm256_mul_ps(_mm256_sub_ps(_mm256_sub_ps(zero, steps), agree), _mm256_set1_ps(1 / AGREE_STEPS));
-        const __m256 sure = _mm256_max_ps(confidence, _mm256_set1_ps(MIN_CONFIDENCE));
-        const __m256 violation =
-            _mm256_mul_ps(sure, _mm256_min_ps(_mm256_max_ps(seen_through, zero), _mm256_set1_ps(1)));
-        sum = _mm256_add_ps(sum, _mm256_blendv_ps(_mm256_set1_ps(UNKNOWN_COST), _mm256_add_ps(near, violation), known));
-        const __m256 behind = _mm256_and_ps(_mm256_cmp_ps(steps, agree, _CMP_GT_OQ),
-                                            _mm256_cmp_ps(confidence, _mm256_set1_ps(MIN_OCCLUDER), _CMP_GT_OQ));
-        if (__builtin_popcount((unsigned)_mm256_movemask_ps(_mm256_and_ps(known, behind))) > CROSS_SAMPLES / 2)
-            *occluded |= 1u << k;
-        all = lanes_sum(sum);
+        f32x8 steps, confidence;
+        const i32x8 known = surface_gap(&x->neighbours[k], segment, inverse, (float)x->step, &steps, &confidence);
+        const f32x8 off = f32x8_max(steps, zero - steps);
+        const f32x8 near = f32x8_min(off, agree) * (OCCLUDED_COST / AGREE_STEPS);
+        const f32x8 seen_through = (zero - steps - agree) * (1 / AGREE_STEPS);
+        const f32x8 sure = f32x8_max(confidence, f32x8_all(MIN_CONFIDENCE));
+        const f32x8 violation = sure * f32x8_min(f32x8_max(seen_through, zero), f32x8_all(1));
+        sum += f32x8_if(known, near + violation, f32x8_all(UNKNOWN_COST));
+        const i32x8 behind = (steps > agree) & (confidence > MIN_OCCLUDER);
+        if (__builtin_popcount(i32x8_signs(known & behind)) > CROSS_SAMPLES / 2) *occluded |= 1u << k;
+        all = f32x8_sum(sum);
     }
     return all / count;
 }
 
 double cross_view_support(const struct cross_view *x, int segment, struct plane plane)
 {
-    const __m256 inverse = inverse_depths(x, segment, plane);
+    const f32x8 inverse = inverse_depths(x, segment, plane);
     double sum = 0;
     for (int k = 0; k < x->count; k++) {
         _Alignas(32) float steps[CROSS_SAMPLES], confidence[CROSS_SAMPLES];
-        __m256 s, c;
-        const unsigned known =
-            (unsigned)_mm256_movemask_ps(surface_gap(&x->neighbours[k], segment, inverse, (float)x->step, &s, &c));
-        _mm256_store_ps(steps, s);
-        _mm256_store_ps(confidence, c);
+        f32x8 s, c;
+        const unsigned known = i32x8_signs(surface_gap(&x->neighbours[k], segment, inverse, (float)x->step, &s, &c));
+        f32x8_store(steps, s);
+        f32x8_store(confidence, c);
         if (known >> CROSS_SAMPLES / 2 & 1 && fabsf(steps[CROSS_SAMPLES / 2]) <= AGREE_STEPS)
             sum += (double)confidence[CROSS_SAMPLES / 2];
     }

@@ -14,7 +14,6 @@
  * neighbours' rank are those of matching segments. */
 #include "stages/segment_depth/pixel_planes.h"
 
-#include <immintrin.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -121,18 +120,17 @@ static float window_weights(const struct choice *c, int pixel, float weights[WIN
 /* Mean of a window's costs; false if less than half of its weight is seen. costs: of its upper left pixel. */
 static inline bool window_mean(float *mean, const float *costs, size_t stride, const float *weights, float all)
 {
-    const __m256 unseen = _mm256_set1_ps(MATCH_UNSEEN);
-    __m256 sum = _mm256_setzero_ps(), total = sum;
+    const f32x8 unseen = f32x8_all(MATCH_UNSEEN);
+    f32x8 sum = {0}, total = sum;
     for (int j = 0; j < WINDOW; j++) {
-        const __m256 cost = _mm256_loadu_ps(costs + (size_t)j * stride);
-        const __m256 weight =
-            _mm256_and_ps(_mm256_load_ps(weights + 8 * (size_t)j), _mm256_cmp_ps(cost, unseen, _CMP_LT_OQ));
-        sum = _mm256_add_ps(sum, _mm256_mul_ps(weight, cost));
-        total = _mm256_add_ps(total, weight);
+        const f32x8 cost = f32x8_load(costs + (size_t)j * stride);
+        const f32x8 weight = f32x8_where(cost < unseen, f32x8_load(weights + 8 * (size_t)j));
+        sum += weight * cost;
+        total += weight;
     }
-    const float seen = lanes_sum(total);
+    const float seen = f32x8_sum(total);
     if (!(2 * seen > all)) return false;
-    *mean = fminf(fmaxf(lanes_sum(sum) / seen, MATCH_BEST), MATCH_WORST);
+    *mean = fminf(fmaxf(f32x8_sum(sum) / seen, MATCH_BEST), MATCH_WORST);
     return true;
 }
 
@@ -274,13 +272,13 @@ static void look_around(struct nearby *n, const struct choice *c, int px, int py
 /* Mean difference in depth from the pixels around, 0 .. 1. */
 static float roughness(const struct nearby *n, float jumps)
 {
-    const __m256 own = _mm256_set1_ps(jumps), one = _mm256_set1_ps(1), sign = _mm256_set1_ps(-0.0f);
-    __m256 sum = _mm256_setzero_ps();
+    const f32x8 own = f32x8_all(jumps), one = f32x8_all(1);
+    f32x8 sum = {0};
     for (int k = 0; k < NEAR; k += 8) {
-        const __m256 apart = _mm256_andnot_ps(sign, _mm256_sub_ps(_mm256_load_ps(n->jumps + k), own));
-        sum = _mm256_add_ps(sum, _mm256_mul_ps(_mm256_load_ps(n->weight + k), _mm256_min_ps(one, apart)));
+        const f32x8 apart = f32x8_abs(f32x8_load(n->jumps + k) - own);
+        sum += f32x8_load(n->weight + k) * f32x8_min(one, apart);
     }
-    return lanes_sum(sum) / n->sum;
+    return f32x8_sum(sum) / n->sum;
 }
 
 static int choose_pixel(const struct choice *c, int i, int q)

@@ -10,16 +10,16 @@
  * segment is compared with no others.
  *
  * A texture element has 2 x FEATURE_CHANNELS bytes, those of a pixel and of the pixel below. 32 bytes from one address
- * hold the four corners of a bilinear sample: _mm256_maddubs_epi16 weighs them in vertical pairs, and the two columns
+ * hold the four corners of a bilinear sample: i16x16_weigh_u8() weighs them in vertical pairs, and the two columns
  * are added. Sums are integers; the weight of the validity channel lifts an invalid pixel over every other cost. */
 #include "stages/segment_depth/plane_match.h"
 
-#include <immintrin.h>
 #include <math.h>
 #include <stdlib.h>
 
 #include "common/base/parallel.h"
 #include "common/base/sort.h"
+#include "common/math/lanes.h"
 #include "common/math/numbers.h"
 #include "stages/segment_depth/match_features.h"
 
@@ -44,106 +44,96 @@ enum {
 #define MIN_RELATIVE_CONTRAST 0.25
 #define MIN_CONTRAST          0.05
 
-/* Weighted truncated differences of two pixels, one per 128-bit lane, summed over pairs of channels. at: offsets of the
- * upper left corners, in halves of a texture element; corners: the corners' weights, which sum to FEATURE_UNIT, the
- * left column's in bytes 0 and 1. */
-static inline __m256i pair_differences(const uint8_t *texture, const int *at, const int *corners,
-                                       const int16_t *reference)
+/* The two columns of a bilinear sample, left and right in the halves, each summed over the vertical pairs. at: offset of
+ * the upper left corner, in halves of a texture element; corners: their weights, which sum to FEATURE_UNIT, the left
+ * column's in the lower bytes. */
+static inline i16x16 weighted_columns(const uint8_t *texture, int at, int corners)
 {
-    const __m256i columns = _mm256_set_m128i(_mm_set1_epi16(0x0302), _mm_set1_epi16(0x0100));
-    const __m256i limit =
-        _mm256_setr_epi16(FEATURE_UNIT * COLOUR_LIMIT, FEATURE_UNIT * COLOUR_LIMIT, FEATURE_UNIT * COLOUR_LIMIT,
-                          FEATURE_UNIT * FINE_LIMIT, FEATURE_UNIT * FINE_LIMIT, FEATURE_UNIT * COARSE_LIMIT,
-                          FEATURE_UNIT * COARSE_LIMIT, 32767, FEATURE_UNIT * COLOUR_LIMIT, FEATURE_UNIT * COLOUR_LIMIT,
-                          FEATURE_UNIT * COLOUR_LIMIT, FEATURE_UNIT * FINE_LIMIT, FEATURE_UNIT * FINE_LIMIT,
-                          FEATURE_UNIT * COARSE_LIMIT, FEATURE_UNIT * COARSE_LIMIT, 32767);
-    const __m256i weight =
-        _mm256_setr_epi16(COLOUR_WEIGHT, COLOUR_WEIGHT, COLOUR_WEIGHT, FINE_WEIGHT, FINE_WEIGHT, COARSE_WEIGHT,
-                          COARSE_WEIGHT, VALID_WEIGHT, COLOUR_WEIGHT, COLOUR_WEIGHT, COLOUR_WEIGHT, FINE_WEIGHT,
-                          FINE_WEIGHT, COARSE_WEIGHT, COARSE_WEIGHT, VALID_WEIGHT);
-    __m256i p = _mm256_maddubs_epi16(
-        _mm256_loadu_si256((const __m256i *)(texture + (size_t)(unsigned)at[0] * FEATURE_CHANNELS)),
-        _mm256_shuffle_epi8(_mm256_set1_epi32(corners[0]), columns));
-    __m256i q = _mm256_maddubs_epi16(
-        _mm256_loadu_si256((const __m256i *)(texture + (size_t)(unsigned)at[1] * FEATURE_CHANNELS)),
-        _mm256_shuffle_epi8(_mm256_set1_epi32(corners[1]), columns));
-    __m256i sample = _mm256_add_epi16(_mm256_permute2x128_si256(p, q, 0x20), _mm256_permute2x128_si256(p, q, 0x31));
+    const i16x16 pairs = (i16x16)i32x8_all(corners);
+    const i16x16 weights = __builtin_shufflevector(pairs, pairs, 0, 0, 0, 0, 0, 0, 0, 0, 9, 9, 9, 9, 9, 9, 9, 9);
+    return i16x16_weigh_u8(u8x32_load(texture + (size_t)(unsigned)at * FEATURE_CHANNELS), (u8x32)weights);
+}
+
+#define TWICE(...)               \
+    {                            \
+        __VA_ARGS__, __VA_ARGS__ \
+    }
+
+/* Weighted truncated differences of two pixels, one in each half, summed over pairs of channels. */
+static inline i32x8 pair_differences(const uint8_t *texture, const int *at, const int *corners,
+                                     const int16_t *reference)
+{
+    const i16x16 limit = TWICE(FEATURE_UNIT * COLOUR_LIMIT, FEATURE_UNIT * COLOUR_LIMIT, FEATURE_UNIT * COLOUR_LIMIT,
+                               FEATURE_UNIT * FINE_LIMIT, FEATURE_UNIT * FINE_LIMIT, FEATURE_UNIT * COARSE_LIMIT,
+                               FEATURE_UNIT * COARSE_LIMIT, 32767);
+    const i16x16 weight = TWICE(COLOUR_WEIGHT, COLOUR_WEIGHT, COLOUR_WEIGHT, FINE_WEIGHT, FINE_WEIGHT, COARSE_WEIGHT,
+                                COARSE_WEIGHT, VALID_WEIGHT);
+    const i16x16 p = weighted_columns(texture, at[0], corners[0]), q = weighted_columns(texture, at[1], corners[1]);
+    const i16x16 sample = i16x16_lows(p, q) + i16x16_highs(p, q);
     /* saturating: the padding's validity is far below any sample's */
-    __m256i difference = _mm256_abs_epi16(_mm256_subs_epi16(sample, _mm256_loadu_si256((const __m256i *)reference)));
-    return _mm256_madd_epi16(_mm256_min_epi16(difference, limit), weight);
+    const i16x16 difference = i16x16_abs(i16x16_subtract(sample, i16x16_load(reference)));
+    return i32x8_weigh_i16(i16x16_min(difference, limit), weight);
 }
 
 /* A plane's homography into a neighbour, and the neighbour's size, in vectors. */
 struct warp8 {
-    __m256 h[3][3];
-    __m256 right, bottom, max_u, max_v;
-    __m256i stride;
+    f32x8 h[3][3];
+    f32x8 right, bottom, max_u, max_v;
+    int stride;
     const uint8_t *texture;
 };
 
 static inline struct warp8 warp_make(const struct match_neighbour *n, struct plane plane)
 {
     const double slope[3] = {plane.a, plane.b, plane.c};
-    const __m256 half = _mm256_set1_ps(0.5f);
-    struct warp8 w = {.right = _mm256_set1_ps((float)(n->width - 1)),
-                      .bottom = _mm256_set1_ps((float)(n->height - 1)),
-                      .stride = _mm256_set1_epi32(n->width + 1),
+    struct warp8 w = {.right = f32x8_all((float)(n->width - 1)),
+                      .bottom = f32x8_all((float)(n->height - 1)),
+                      .stride = n->width + 1,
                       .texture = n->texture};
     for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++) w.h[i][j] = _mm256_set1_ps((float)(n->base[i][j] + n->shift[i] * slope[j]));
-    w.max_u = _mm256_add_ps(w.right, half);
-    w.max_v = _mm256_add_ps(w.bottom, half);
+        for (int j = 0; j < 3; j++) w.h[i][j] = f32x8_all((float)(n->base[i][j] + n->shift[i] * slope[j]));
+    w.max_u = w.right + 0.5f;
+    w.max_v = w.bottom + 0.5f;
     return w;
 }
 
 /* Costs of eight pixels, times WORST, and the mask of those that the neighbour sees; lanes in the order of pixels
  * 0 2 4 6 | 1 3 5 7. False: it sees none. reference: the pixels' features. */
-static inline __attribute__((always_inline)) bool costs8(const struct warp8 *w, __m256 x, __m256 y,
-                                                         const int16_t *reference, __m256i *cost, __m256i *mask)
+static inline __attribute__((always_inline)) bool costs8(const struct warp8 *w, f32x8 x, f32x8 y,
+                                                         const int16_t *reference, i32x8 *cost, i32x8 *mask)
 {
-    const __m256 half = _mm256_set1_ps(0.5f), zero = _mm256_setzero_ps(), small = _mm256_set1_ps(1e-9f);
-    const __m256 low = _mm256_set1_ps(-0.5f);
-    __m256 p[3];
-    for (int k = 0; k < 3; k++)
-        p[k] = _mm256_add_ps(_mm256_add_ps(_mm256_mul_ps(w->h[k][0], x), _mm256_mul_ps(w->h[k][1], y)), w->h[k][2]);
-    __m256 inverse = _mm256_div_ps(_mm256_set1_ps(1), p[2]);
-    __m256 u = _mm256_sub_ps(_mm256_mul_ps(p[0], inverse), half);
-    __m256 v = _mm256_sub_ps(_mm256_mul_ps(p[1], inverse), half);
-    __m256 visible = _mm256_and_ps(
-        _mm256_cmp_ps(p[2], small, _CMP_GT_OQ),
-        _mm256_and_ps(_mm256_and_ps(_mm256_cmp_ps(u, low, _CMP_GE_OQ), _mm256_cmp_ps(u, w->max_u, _CMP_LE_OQ)),
-                      _mm256_and_ps(_mm256_cmp_ps(v, low, _CMP_GE_OQ), _mm256_cmp_ps(v, w->max_v, _CMP_LE_OQ))));
-    if (_mm256_testz_ps(visible, visible)) return false;
-    u = _mm256_min_ps(_mm256_max_ps(u, zero), w->right); /* NaN becomes 0: max returns its second operand */
-    v = _mm256_min_ps(_mm256_max_ps(v, zero), w->bottom);
-    __m256i column = _mm256_cvttps_epi32(u), row = _mm256_cvttps_epi32(v);
-    const __m256 unit = _mm256_set1_ps(FEATURE_UNIT), fv = _mm256_sub_ps(v, _mm256_cvtepi32_ps(row));
-    const __m256 fu = _mm256_mul_ps(_mm256_sub_ps(u, _mm256_cvtepi32_ps(column)), unit);
+    const f32x8 zero = {0};
+    f32x8 p[3];
+    for (int k = 0; k < 3; k++) p[k] = w->h[k][0] * x + w->h[k][1] * y + w->h[k][2];
+    f32x8 inverse = 1 / p[2];
+    f32x8 u = p[0] * inverse - 0.5f;
+    f32x8 v = p[1] * inverse - 0.5f;
+    i32x8 visible = (p[2] > 1e-9f) & (u >= -0.5f) & (u <= w->max_u) & (v >= -0.5f) & (v <= w->max_v);
+    if (!i32x8_any(visible)) return false;
+    u = f32x8_min(f32x8_max(u, zero), w->right); /* NaN becomes 0: max returns its second operand */
+    v = f32x8_min(f32x8_max(v, zero), w->bottom);
+    i32x8 column = i32x8_truncate(u), row = i32x8_truncate(v);
+    const f32x8 fv = v - f32x8_from_i32(row);
+    const f32x8 fu = (u - f32x8_from_i32(column)) * FEATURE_UNIT;
     /* rounded so that the corners' weights sum to FEATURE_UNIT; the upper left one may be -1 */
-    const __m256i lower_right = _mm256_cvtps_epi32(_mm256_mul_ps(fu, fv));
-    const __m256i upper_right = _mm256_sub_epi32(_mm256_cvtps_epi32(fu), lower_right);
-    const __m256i lower_left = _mm256_sub_epi32(_mm256_cvtps_epi32(_mm256_mul_ps(fv, unit)), lower_right);
-    const __m256i upper_left = _mm256_sub_epi32(
-        _mm256_set1_epi32(FEATURE_UNIT), _mm256_add_epi32(_mm256_add_epi32(lower_right, upper_right), lower_left));
-    const __m256i low_byte = _mm256_set1_epi32(255);
+    const i32x8 lower_right = i32x8_round(fu * fv);
+    const i32x8 upper_right = i32x8_round(fu) - lower_right;
+    const i32x8 lower_left = i32x8_round(fv * FEATURE_UNIT) - lower_right;
+    const i32x8 upper_left = FEATURE_UNIT - (lower_right + upper_right + lower_left);
     _Alignas(32) int at[8], corners[8];
-    _mm256_store_si256((__m256i *)at,
-                       _mm256_slli_epi32(_mm256_add_epi32(_mm256_mullo_epi32(row, w->stride), column), 1));
-    _mm256_store_si256(
-        (__m256i *)corners,
-        _mm256_or_si256(_mm256_or_si256(_mm256_and_si256(upper_left, low_byte), _mm256_slli_epi32(lower_left, 8)),
-                        _mm256_or_si256(_mm256_slli_epi32(upper_right, 16), _mm256_slli_epi32(lower_right, 24))));
+    i32x8_store(at, i32x8_index(row, w->stride, column) << 1);
+    i32x8_store(corners, (upper_left & 255) | (lower_left << 8) | (upper_right << 16) | (lower_right << 24));
     __asm__(""
             : "+m"(at), "+m"(corners)); /* keeps them in memory: loading them one by one is faster than extracting
                                            lanes */
-    __m256i q[4];
+    i32x8 q[4];
     for (int k = 0; k < 4; k++)
         q[k] = pair_differences(w->texture, at + 2 * k, corners + 2 * k,
                                 reference + (ptrdiff_t)(2 * k) * FEATURE_CHANNELS);
     /* the order of lanes does not matter to integer sums, but it does to mask and weight */
-    *cost = _mm256_hadd_epi32(_mm256_hadd_epi32(q[0], q[1]), _mm256_hadd_epi32(q[2], q[3]));
-    *mask = _mm256_permutevar8x32_epi32(_mm256_castps_si256(visible), _mm256_setr_epi32(0, 2, 4, 6, 1, 3, 5, 7));
-    *mask = _mm256_and_si256(*mask, _mm256_cmpgt_epi32(_mm256_set1_epi32(INVISIBLE_COST), *cost));
+    *cost = i32x8_add_pairs(i32x8_add_pairs(q[0], q[1]), i32x8_add_pairs(q[2], q[3]));
+    *mask = i32x8_pick(visible, (i32x8){0, 2, 4, 6, 1, 3, 5, 7});
+    *mask &= *cost < INVISIBLE_COST;
     return true;
 }
 
@@ -152,28 +142,24 @@ static float neighbour_cost(const struct matcher *m, const struct match_neighbou
                             struct plane plane, int *seen)
 {
     const struct warp8 warp = warp_make(n, plane);
-    __m256i sum = _mm256_setzero_si256(), count = sum, weight_sum = sum;
+    i32x8 count = {0}, weight_sum = {0};
+    u32x8 sum = {0};
     for (int i = begin; i < end; i += 8) {
-        __m256i cost, mask;
-        if (!costs8(&warp, _mm256_load_ps(m->x + i), _mm256_load_ps(m->y + i),
-                    m->features + (size_t)i * FEATURE_CHANNELS, &cost, &mask))
+        i32x8 cost, mask;
+        if (!costs8(&warp, f32x8_load(m->x + i), f32x8_load(m->y + i), m->features + (size_t)i * FEATURE_CHANNELS,
+                    &cost, &mask))
             continue;
-        const __m256i weight = _mm256_load_si256((const __m256i *)(m->weight + i));
-        sum = _mm256_add_epi32(sum, _mm256_mullo_epi32(_mm256_srli_epi32(_mm256_and_si256(mask, cost), 8), weight));
-        weight_sum = _mm256_add_epi32(weight_sum, _mm256_and_si256(mask, weight));
-        count = _mm256_sub_epi32(count, mask);
+        const i32x8 weight = i32x8_load(m->weight + i);
+        sum += (u32x8)((mask & cost) >> 8) * (u32x8)weight;
+        weight_sum += mask & weight;
+        count -= mask;
     }
-    _Alignas(32) uint32_t sums[8];
-    _Alignas(32) int counts[8], weights[8];
-    _mm256_store_si256((__m256i *)weights, weight_sum);
-    _mm256_store_si256((__m256i *)sums, sum);
-    _mm256_store_si256((__m256i *)counts, count);
     int64_t total = 0, all = 0;
     *seen = 0;
     for (int k = 0; k < 8; k++) {
-        total += sums[k];
-        *seen += counts[k];
-        all += weights[k];
+        total += sum[k];
+        *seen += count[k];
+        all += weight_sum[k];
     }
     return all > 0 ? (float)((double)total * 256 / ((double)WORST * (double)all))
                    : 1; /* a pixel's weight is at least 1 */
@@ -183,19 +169,19 @@ void match_row(const struct matcher *m, int neighbour, struct plane plane, int x
 {
     const struct warp8 warp = warp_make(&m->neighbours[neighbour], plane);
     const int16_t *reference = m->raster + ((size_t)y * (size_t)m->segments->width + (size_t)x) * FEATURE_CHANNELS;
-    const __m256 lanes = _mm256_setr_ps(0.5f, 1.5f, 2.5f, 3.5f, 4.5f, 5.5f, 6.5f, 7.5f);
-    const __m256 scale = _mm256_set1_ps(1 / ((float)WORST * (m->chance_cost - m->good_cost)));
-    const __m256 offset = _mm256_set1_ps(-m->good_cost / (m->chance_cost - m->good_cost));
-    const __m256i order = _mm256_setr_epi32(0, 4, 1, 5, 2, 6, 3, 7);
+    const f32x8 lanes = {0.5f, 1.5f, 2.5f, 3.5f, 4.5f, 5.5f, 6.5f, 7.5f};
+    const f32x8 scale = f32x8_all(1 / ((float)WORST * (m->chance_cost - m->good_cost)));
+    const f32x8 offset = f32x8_all(-m->good_cost / (m->chance_cost - m->good_cost));
+    const i32x8 order = {0, 4, 1, 5, 2, 6, 3, 7};
     for (int i = 0; i < count; i += 8) {
-        __m256i cost, mask;
-        __m256 out = _mm256_set1_ps(MATCH_UNSEEN);
-        if (costs8(&warp, _mm256_add_ps(_mm256_set1_ps((float)(x + i)), lanes), _mm256_set1_ps((float)y + 0.5f),
-                   reference + (size_t)i * FEATURE_CHANNELS, &cost, &mask)) {
-            const __m256 own = _mm256_add_ps(_mm256_mul_ps(_mm256_cvtepi32_ps(cost), scale), offset);
-            out = _mm256_permutevar8x32_ps(_mm256_blendv_ps(out, own, _mm256_castsi256_ps(mask)), order);
+        i32x8 cost, mask;
+        f32x8 out = f32x8_all(MATCH_UNSEEN);
+        if (costs8(&warp, (float)(x + i) + lanes, f32x8_all((float)y + 0.5f), reference + (size_t)i * FEATURE_CHANNELS,
+                   &cost, &mask)) {
+            const f32x8 own = f32x8_from_i32(cost) * scale + offset;
+            out = f32x8_pick(f32x8_if(mask, own, out), order);
         }
-        _mm256_storeu_ps(costs + i, out);
+        f32x8_store(costs + i, out);
     }
 }
 
@@ -518,8 +504,7 @@ void match_prefetch(const struct matcher *m, int segment, struct plane plane)
                   x1 = clamp_int((int)u + half_w + 1, 0, n->width - 1);
         for (int y = y0; y <= y1; y++) {
             const uint8_t *row = n->texture + ((size_t)y * (size_t)(n->width + 1)) * 2 * FEATURE_CHANNELS;
-            for (int x = x0; x <= x1 + 3; x += 4)
-                _mm_prefetch((const char *)(row + (size_t)x * 2 * FEATURE_CHANNELS), _MM_HINT_T0);
+            for (int x = x0; x <= x1 + 3; x += 4) __builtin_prefetch(row + (size_t)x * 2 * FEATURE_CHANNELS);
         }
     }
 }

@@ -11,7 +11,7 @@ command -v clang >/dev/null && [ -n "$(find "$(clang -print-resource-dir)" -name
 mkdir -p "out/fuzz/$name/found"
 packages="OpenEXR libturbojpeg libpng libtiff-4 libraw_r libexif inih libxxhash qhull_r libdeflate"
 # shellcheck disable=SC2086 # a list of packages
-read -ra flags <<<"-std=c11 -D_GNU_SOURCE -O1 -g -mavx2 -mf16c -fopenmp -fsanitize=fuzzer,address,undefined -I. $(pkg-config --cflags $packages)"
+read -ra flags <<<"-std=c11 -D_GNU_SOURCE -O1 -g -fopenmp -fsanitize=fuzzer,address,undefined -I. $(pkg-config --cflags $packages)"
 # the stages whose headers it includes, without their main: an archive, of which the linker takes what is needed
 rm -rf "out/fuzz/$name/obj" "out/fuzz/$name/stages.a"; mkdir "out/fuzz/$name/obj"
 for stage in $(sed -nE 's|^#include "stages/([a-z_0-9]+)/.*"$|\1|p' "tests/fuzz/fuzz_$name.c" | sort -u); do

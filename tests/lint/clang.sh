@@ -4,7 +4,7 @@
 packages="OpenEXR libturbojpeg libpng libtiff-4 libraw_r libexif inih libxxhash qhull_r libdeflate"
 warnings="-Wall -Wextra -Wshadow -Wstrict-prototypes -Wmissing-prototypes -Wvla -Wpointer-arith -Wwrite-strings"
 # shellcheck disable=SC2086 # a list of packages
-CLANG_FLAGS="-std=c11 -D_GNU_SOURCE -mavx2 -mf16c -mno-fma -ffp-contract=off -fopenmp $warnings -I. -I$B $(pkg-config --cflags $packages)"
+CLANG_FLAGS="-std=c11 -D_GNU_SOURCE -ffp-contract=off -fopenmp $warnings -I. -I$B $(pkg-config --cflags $packages)"
 export CLANG_FLAGS
 
 clang_has_no_warnings()

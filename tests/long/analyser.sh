@@ -3,7 +3,7 @@
 
 packages="OpenEXR libturbojpeg libpng libtiff-4 libraw_r libexif inih libxxhash qhull_r libdeflate"
 # shellcheck disable=SC2086 # a list of packages
-CLANG_FLAGS="-std=c11 -D_GNU_SOURCE -mavx2 -mf16c -mno-fma -ffp-contract=off -I. $(pkg-config --cflags $packages)"
+CLANG_FLAGS="-std=c11 -D_GNU_SOURCE -ffp-contract=off -I. $(pkg-config --cflags $packages)"
 export CLANG_FLAGS
 # insecureAPI asks for memcpy_s and the like, which no C library here has
 export CHECKS='-*,clang-analyzer-*,-clang-analyzer-security.insecureAPI.*'

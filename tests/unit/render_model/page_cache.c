@@ -56,9 +56,9 @@ static void texels_are_those_of_the_file_in_a_frame_of_nothing(void **state)
                 const bool there = inside && page.source[from];
                 texels += there;
                 assert_int_equal(got->made[at], there ? MADE_ORIGINAL : MADE_NOTHING);
-                assert_true(_cvtsh_ss(got->texels[4 * at + 3]) == (there ? 1 : 0));
+                assert_true(float_from_half(got->texels[4 * at + 3]) == (there ? 1 : 0));
                 for (int k = 0; k < 3; k++)
-                    assert_true(_cvtsh_ss(got->texels[4 * at + (size_t)k]) ==
+                    assert_true(float_from_half(got->texels[4 * at + (size_t)k]) ==
                                 (there ? page.rgb[3 * from + (size_t)k] : 0));
             }
         atlas_page_release(&page);

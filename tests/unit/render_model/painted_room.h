@@ -4,9 +4,8 @@
 
 #include "tests/unit/box_solids.h"
 
-#include <immintrin.h>
-
 #include "common/base/rng.h"
+#include "common/math/lanes.h"
 #include "common/texture/atlas.h"
 #include "common/texture/outdoors.h"
 #include "common/texture/texture_map.h"
@@ -19,7 +18,7 @@ enum paint {
     NOISE,  /* of the texel, as a photo's pixels */
 };
 
-static inline float half_of(double value) { return _cvtsh_ss(_cvtss_sh((float)value, 0)); }
+static inline float half_of(double value) { return float_from_half(half_from_float((float)value)); }
 
 static inline double smooth_value(struct vec3 p, int channel)
 {

@@ -27,7 +27,7 @@ static void make_tile(struct made_tile *m, bool (*exists)(int x, int y), float m
             const int at = (y + 1) * STRIDE + x + 1;
             if (exists && !exists(x, y)) continue;
             m->made[at] = (uint8_t)made;
-            for (int c = 0; c < 4; c++) m->texels[4 * at + c] = _cvtss_sh(c < 3 ? value_at(x, y, c) + more : 1, 0);
+            for (int c = 0; c < 4; c++) m->texels[4 * at + c] = half_from_float(c < 3 ? value_at(x, y, c) + more : 1);
         }
 }
 
@@ -107,7 +107,8 @@ static void a_look_up_at_a_texels_centre_is_that_texel(void **state)
         assert_int_equal(find(&t, list, &count, &m.tile, 1, column, 7), 0xff);
         for (int k = 0; k < 8; k++)
             for (int c = 0; c < 3; c++)
-                assert_true(((float *)&t.rgba[k])[c] == _cvtsh_ss(_cvtss_sh(value_at(8 * column + k, 7, c), 0)));
+                assert_true(((float *)&t.rgba[k])[c] ==
+                            float_from_half(half_from_float(value_at(8 * column + k, 7, c))));
     }
 }
 
@@ -175,7 +176,7 @@ static void tiles_that_share_a_border_texel_meet_without_a_step(void **state)
     make_tile(&right, NULL, 0, MADE_ORIGINAL);
     for (int y = 0; y < SIDE; y++) /* its column x is column x + SIDE - 1 of the picture */
         for (int x = 0; x < SIDE; x++)
-            right.texels[4 * ((y + 1) * STRIDE + x + 1)] = _cvtss_sh(value_at(x + SIDE - 1, y, 0), 0);
+            right.texels[4 * ((y + 1) * STRIDE + x + 1)] = half_from_float(value_at(x + SIDE - 1, y, 0));
     struct shade_tile tiles[2] = {left.tile, right.tile};
     for (int i = 0; i < 2; i++) tiles[i].x = (struct linear){0.11, 0, i ? 36.3 - (SIDE - 1) : 36.3};
     float before = 0;
@@ -236,7 +237,7 @@ static void the_nearest_texel_is_that_of_a_search_of_all(void **state)
             const double away = hypot(i % SIDE + 0.5 - px, i / SIDE + 0.5 - py);
             if (away < least) {
                 second = least, least = away;
-                wanted = _cvtsh_ss(_cvtss_sh(value_at(i % SIDE, i / SIDE, 0), 0));
+                wanted = float_from_half(half_from_float(value_at(i % SIDE, i / SIDE, 0)));
             } else if (away < second)
                 second = away;
         }

@@ -171,7 +171,7 @@ static void vector_presences_equal_scalar_ones(void **state)
             blend[k] = (float)(0.12 * rng_uniform(&rng, i, 2 * k));
             alpha[k] = k ? (float)(1.2 * rng_uniform(&rng, i, 2 * k + 1)) : 0;
         }
-        _mm256_storeu_ps(p, soft_z_presence8(_mm256_loadu_ps(blend), _mm256_loadu_ps(alpha)));
+        f32x8_store(p, soft_z_presence8(f32x8_load(blend), f32x8_load(alpha)));
         for (int k = 0; k < 8; k++)
             assert_near(p[k], fminf(1, blend[k] / SOFT_Z_FULL_BLEND) * fminf(1, alpha[k] / SOFT_Z_FULL_ALPHA), 1e-5);
     }
@@ -183,7 +183,7 @@ static void vector_cosines_equal_scalar_ones(void **state)
     for (int i = 0; i <= 10000; i++) {
         float fall[8];
         const float t = (float)i / 10000;
-        _mm256_storeu_ps(fall, soft_z_fall8(_mm256_set1_ps(t)));
+        f32x8_store(fall, soft_z_fall8(f32x8_all(t)));
         assert_near(fall[i % 8], 0.5 * (1 + cos(M_PI * (double)t)), 2e-6);
     }
 }
@@ -209,8 +209,8 @@ static void vector_weights_equal_scalar_ones(void **state)
             p_c[k] = (float)rng_uniform(&rng, i, 8 * k + 5);
             w[k] = (float)rng_uniform(&rng, i, 8 * k + 6);
         }
-        _mm256_storeu_ps(weight, soft_z_behind8(soft, _mm256_loadu_ps(w), _mm256_loadu_ps(z), _mm256_loadu_ps(unsure),
-                                                _mm256_loadu_ps(z_c), _mm256_loadu_ps(unsure_c), _mm256_loadu_ps(p_c)));
+        f32x8_store(weight, soft_z_behind8(soft, f32x8_load(w), f32x8_load(z), f32x8_load(unsure), f32x8_load(z_c),
+                                           f32x8_load(unsure_c), f32x8_load(p_c)));
         for (int k = 0; k < 8; k++) {
             const float rho = soft_z_rho(soft, z[k], sigma[k], z_c[k], sigma_c[k]);
             const float hidden = p_c[k] * (1 - soft_z_weight(z[k] - z_c[k], 0.1f * rho, rho));
