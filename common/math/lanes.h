@@ -5,10 +5,10 @@
  * do it where there are, loops over lanes where there are not (on any processor with FLAVOR=portable). No other file
  * contains instructions of a processor.
  *
- * The rules that make both agree: min(a, b) is a < b ? a : b, and max(a, b) is a > b ? a : b, so that the second operand
- * wins for NaN and for zeros. Conversions to integers give INT32_MIN for NaN and beyond the range. Half floats round to
- * the nearest, ties to even, also denormal ones, and a NaN becomes quiet. Divisions and roots are exactly rounded; there
- * are no approximations of reciprocals. Bits of a NaN that an operator makes are the processor's own. */
+ * The rules that make both agree: min(a, b) is a < b ? a : b, and max(a, b) is a > b ? a : b, so that the second
+ * operand wins for NaN and for zeros. Conversions to integers give INT32_MIN for NaN and beyond the range. Half floats
+ * round to the nearest, ties to even, also denormal ones, and a NaN becomes quiet. Divisions and roots are exactly
+ * rounded; there are no approximations of reciprocals. Bits of a NaN that an operator makes are the processor's own. */
 #ifndef REMODEL_LANES_H
 #define REMODEL_LANES_H
 
@@ -39,7 +39,7 @@ typedef int16_t i16x16 __attribute__((vector_size(32)));
 typedef uint8_t u8x16 __attribute__((vector_size(16)));
 typedef uint8_t u8x32 __attribute__((vector_size(32)));
 
-/* ----------------------------------------------------------------------- in memory; `at` may be any address of a lane */
+/* --------------------------------------------------------------------- in memory; `at` may be any address of a lane */
 
 static inline f32x4 f32x4_all(float x) { return (f32x4){x, x, x, x}; }
 static inline f32x8 f32x8_all(float x) { return (f32x8){x, x, x, x, x, x, x, x}; }
@@ -65,7 +65,7 @@ LANES_LOAD_STORE(i16x16, void)
 LANES_LOAD_STORE(u8x16, void)
 LANES_LOAD_STORE(u8x32, void)
 
-/* ------------------------------------------------------------------------------------------------ with AVX2, and without
+/* ---------------------------------------------------------------------------------------------- with AVX2, and without
  *
  * if(m, a, b): a where m is negative (the sign alone counts), else b. where(m, a), unless(m, a): a where m is -1 or 0,
  * else 0. signs(m): bit k is the sign of lane k. pick(a, i): lane i[k] & 7 of a. gather(p, i): p[i[k]].
@@ -353,7 +353,7 @@ static inline i32x8 i32x8_add_pairs(i32x8 a, i32x8 b)
 
 #endif
 
-/* --------------------------------------------------------------------------------------------------- made of the above */
+/* ------------------------------------------------------------------------------------------------ made of the above */
 
 static inline f32x4 f32x4_abs(f32x4 a) { return (f32x4)((i32x4)a & INT32_MAX); }
 static inline f32x8 f32x8_abs(f32x8 a) { return (f32x8)((i32x8)a & INT32_MAX); }

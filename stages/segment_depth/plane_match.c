@@ -44,8 +44,8 @@ enum {
 #define MIN_RELATIVE_CONTRAST 0.25
 #define MIN_CONTRAST          0.05
 
-/* The two columns of a bilinear sample, left and right in the halves, each summed over the vertical pairs. at: offset of
- * the upper left corner, in halves of a texture element; corners: their weights, which sum to FEATURE_UNIT, the left
+/* The two columns of a bilinear sample, left and right in the halves, each summed over the vertical pairs. at: offset
+ * of the upper left corner, in halves of a texture element; corners: their weights, which sum to FEATURE_UNIT, the left
  * column's in the lower bytes. */
 static inline i16x16 weighted_columns(const uint8_t *texture, int at, int corners)
 {

@@ -1,4 +1,5 @@
-/* lanes.c - each operation of lanes.h by its rule, lane by lane: tests/pipeline/portable.sh runs this without AVX2, too. */
+/* lanes.c - each operation of lanes.h by its rule, lane by lane: tests/pipeline/portable.sh runs this without AVX2,
+ * too. */
 #include "common/math/lanes.h"
 
 #include <setjmp.h>
@@ -14,7 +15,8 @@
 
 #define ROUNDS 4000
 
-/* Bits of floats: zeros, denormal numbers, infinities, NaN, whole and half numbers, limits of integers and of halves. */
+/* Bits of floats: zeros, denormal numbers, infinities, NaN, whole and half numbers, limits of integers and of halves.
+ */
 static const uint32_t special[] = {0x00000000, 0x80000000, 0x00000001, 0x80000001, 0x007fffff, 0x00800000, 0x7f7fffff,
                                    0xff7fffff, 0x7f800000, 0xff800000, 0x7fc00000, 0xffc12345, 0x7f800001, 0xff812345,
                                    0x3f000000, 0xbf000000, 0x3f800000, 0xbf800000, 0x3fc00000, 0x40200000, 0xc0200000,
