@@ -1,4 +1,4 @@
-/* lanes.c - each operation of lanes.h by its rule, lane by lane: tests/pipeline/portable.sh runs this without AVX2,
+/* lanes.c - each operation of lanes.h by its rule, lane by lane: tests/long/portable_views.sh runs this without AVX2,
  * too. */
 #include "common/math/lanes.h"
 
