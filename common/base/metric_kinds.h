@@ -10,7 +10,7 @@ struct metric_kind {
     const char *meaning;          /* a few words for the page */
 };
 
-/* False: there is no metric of this name. */
+/* Fills kind with the unit, direction and meaning of a metric. False: no metric has this name. */
 bool metric_kind_find(struct metric_kind *kind, const char *name);
 
 #endif

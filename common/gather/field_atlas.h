@@ -39,8 +39,8 @@ struct field_texel {
 /* The texel at a point of a face, model frame. */
 struct field_texel field_atlas_look(const struct field_atlas *a, int face, struct vec3 p);
 
-/* The same in two steps: where the texel is likely to be, which the processor begins to load; then the look-up. In
- * between there is time for other rays. Asking for the place is no duty. */
+/* Lets the processor begin to load the texel that field_atlas_look() will probably need, while the caller works on
+ * other rays. Optional: it changes no result. */
 void field_atlas_prefetch(const struct field_atlas *a, int face, struct vec3 p);
 
 /* The middle of the texel of a face that is nearest to a point, in the plane of its tile; false: the face has none. */

@@ -2,8 +2,8 @@
  *
  * Overview. Light that surfaces reflect changes slowly along a surface. It is gathered at records (cache_record.c) and
  * extrapolated from those nearby. Light of lamps and of the sky through openings is gathered at each point by rays
- * towards them, since shadows have edges. The two are told apart by what a ray sees and in which direction, so that
- * together they are all light.
+ * towards them, since shadows have edges. What a ray sees, and its direction, decide which of the two it
+ * belongs to, so all light is counted exactly once.
  *
  * Placing. Points of every 32nd column and row come first, then of every 16th, and so on to all. On each level, the
  * points that no record covers yet become records, all at once. Records therefore depend on the points alone, not on

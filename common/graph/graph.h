@@ -51,7 +51,7 @@ struct scene_facts;
 const char *graph_path(struct graph *g, enum product_id id, const struct product_key *key);
 const char *graph_folder(struct graph *g, enum product_id id, const struct product_key *key);
 const char *graph_text(struct graph *g, const char *fmt, ...) PRINTF_LIKE(2, 3);
-const char *graph_own(struct graph *g, const char *file);    /* O/FILE, of what is no product */
+const char *graph_own(struct graph *g, const char *file);    /* O/FILE, for a file that is not a product */
 const char *graph_shared(struct graph *g, const char *file); /* S/FILE */
 /* FOLDER/FILE of the scene, or NULL if it does not exist. */
 const char *graph_scene_file(struct graph *g, const char *file);
@@ -83,14 +83,13 @@ void graph_goal(struct graph *g, const char *goal, const char *path);
 void graph_set(struct graph *g, const char *set, const char *path);
 const char *graph_set_path(struct graph *g, const char *set);
 
-/* What evaluate and report read. shown: not by the page of two photos; remodel_shown: by
+/* Products that evaluate (measured) and report (shown) wait for. SHOWN: not on the page of two photos; REMODEL_SHOWN: on
  * the page of edits. */
 enum graph_list { GRAPH_MEASURED, GRAPH_SHOWN, GRAPH_ALWAYS_SHOWN, GRAPH_REMODEL_SHOWN, GRAPH_LISTS };
 void graph_list(struct graph *g, enum graph_list list, const char *path);
 
-/* O/stamp/FILE holds a text; NULL: there is no such file. It is rewritten when the text
- * changes: for facts that no file's time
- * tells, such as a file that went. Returns its path. */
+/* Keeps O/stamp/FILE, whose content is `text`; NULL removes it. The file is rewritten only when the text changes. Rules
+ * need stamps for facts that no file's time shows, for example that a file was deleted. Returns the stamp's path. */
 const char *graph_stamp(struct graph *g, const char *file, const char *text);
 const char *graph_stamp_list(struct graph *g, const char *file, const struct name_list *names);
 /* A file that is as new as another, which a rule makes with it, or older: Make looks at it again in its next call. */
@@ -124,7 +123,8 @@ void rule_needs_list(struct graph *g, enum graph_list list);
 void rule_needs_set(struct graph *g, const char *set);
 void rule_needs_cameras(struct graph *g); /* of the views: cameras, images, points3D.txt */
 void rule_needs_force(struct graph *g);   /* it is stale whatever the times are */
-/* What a Make dependency file of an earlier run lists; a file that is no more makes the rule stale. */
+/* Adds the prerequisites that a Make dependency file of an earlier run lists. If one of them was deleted since, the
+ * rule is stale. */
 void rule_needs_listed(struct graph *g, const char *deps);
 /* Must exist before, but its time does not matter; also a goal. */
 void rule_after(struct graph *g, const char *path);
