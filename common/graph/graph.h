@@ -13,10 +13,8 @@
  *       graph_goal(g, "points", PATH(g, POINTS));
  *       graph_rule(g, "all");                                     // its log: O/log/fuse_points.all.log
  *       rule_makes(g, PATH(g, POINTS));
- *       rule_needs_cameras(g);
- *       rule_needs_set(g, "depth");                               // every depth map
- *       rule_option(g, "--views", FOLDER(g, CAMERAS));
- *       rule_option(g, "--depth", FOLDER(g, DEPTH, .view = ""));
+ *       rule_takes_cameras(g);                                    // they are needed, and --views names their folder
+ *       rule_takes_depth(g);                                      // every depth map, and --depth
  *       rule_option(g, "--out", PATH(g, POINTS));
  *   }
  *
@@ -133,6 +131,8 @@ void rule_after_set(struct graph *g, const char *set);
 /* Words of the command. value NULL: neither is added. value "": the option alone. Values are not quoted: they are plain
  * names and paths. */
 void rule_option(struct graph *g, const char *option, const char *value);
+/* A file that the rule needs and the option names. */
+void rule_takes(struct graph *g, const char *option, const char *path);
 /* An option whose value is a variable that people set, which may have any characters. */
 void rule_variable(struct graph *g, const char *option, const char *variable);
 /* What follows are a piece's own options, which a process may be given several times, for pieces that differ in

@@ -196,3 +196,9 @@ void rule_then(struct graph *g, const char *line)
 }
 
 void rule_needs_list(struct graph *g, enum graph_list list) { graph_add_text(g, &g->rule.needs, &g->lists[list]); }
+
+void rule_takes(struct graph *g, const char *option, const char *path)
+{
+    rule_needs(g, path);
+    rule_option(g, option, path);
+}

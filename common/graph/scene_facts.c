@@ -120,7 +120,7 @@ enum status scene_facts_read(struct scene_facts *f, const char *scene_folder, co
         f->code = NULL;
         return err_nomem(err, "a path", strlen(bin));
     }
-    const struct product_key none = {0}, held = {.views = "holdout/views"}, references = {.records = "lri/photos"};
+    const struct product_key none = {0}, held = {.views = HELD_VIEWS}, references = {.records = "lri/photos"};
     (void)(name_list_add_words(&f->products, scene_setting("PRODUCTS"), err) ||
            name_list_add_words(&f->films, scene_setting("FILMS"), err) ||
            read_list(&f->photos, shared, PRODUCT_PHOTOS_MK, &none, "PHOTO_IDS", err) ||

@@ -7,6 +7,9 @@
 
 #include "common/graph/name_list.h"
 
+/* The folder of held-out views below O; that of the others is "views". */
+#define HELD_VIEWS "holdout/views"
+
 /* The rectified views of a photo, in the order of the list of views. */
 struct photo_views {
     const char *photo;

@@ -165,24 +165,17 @@ void rule_draws_model(struct graph *g, const char *model)
 {
     const char *file = PATH(g, MODEL, .model = model);
     const char *map = scene_model_is_edited(model) ? PATH(g, TEXTURE_MAP, .model = model) : NULL;
-    rule_needs(g, file);
-    rule_needs(g, map);
-    rule_needs(g, map ? PATH(g, MODEL) : NULL);
-    rule_needs(g, PATH(g, AXES));
-    rule_needs_cameras(g);
+    rule_takes(g, "--model", file);
+    rule_takes(g, "--map", map);
+    rule_takes(g, "--base", map ? PATH(g, MODEL) : NULL);
+    rule_takes(g, "--axes", PATH(g, AXES));
+    rule_takes_cameras(g);
     rule_needs(g, PATH(g, LENSES));
-    rule_needs(g, PATH(g, ATLAS));
-    rule_needs(g, PATH(g, OUTDOORS));
-    rule_option(g, "--model", file);
-    rule_option(g, "--base", map ? PATH(g, MODEL) : NULL);
-    rule_option(g, "--map", map);
-    rule_option(g, "--axes", PATH(g, AXES));
-    rule_option(g, "--views", FOLDER(g, CAMERAS));
+    rule_takes_vita(g);
+    rule_takes(g, "--outdoors", PATH(g, OUTDOORS));
     rule_option(g, "--vdta", graph_own(g, "vdta"));
-    rule_option(g, "--vita", FOLDER(g, ATLAS));
     rule_option(g, "--ids", FOLDER(g, FACE_INDEX));
     rule_option(g, "--depth", FOLDER(g, DEPTH, .view = ""));
-    rule_option(g, "--outdoors", PATH(g, OUTDOORS));
 }
 
 void rule_draws_photo(struct graph *g, const char *edit, const char *pictures, const struct photo_views *p,
@@ -206,4 +199,36 @@ int scene_chunk_size(const struct scene_facts *f, const struct name_list *frames
 {
     const int left = frames->count - first;
     return left < f->frames_per_job ? left : f->frames_per_job;
+}
+
+void rule_takes_cameras(struct graph *g)
+{
+    rule_needs_cameras(g);
+    rule_option(g, "--views", FOLDER(g, CAMERAS));
+}
+
+void rule_takes_depth(struct graph *g)
+{
+    rule_needs_set(g, "depth");
+    rule_option(g, "--depth", FOLDER(g, DEPTH, .view = ""));
+}
+
+void rule_takes_ids(struct graph *g)
+{
+    rule_needs_set(g, "ids");
+    rule_option(g, "--ids", FOLDER(g, FACE_INDEX));
+}
+
+void rule_takes_vita(struct graph *g)
+{
+    rule_needs(g, PATH(g, ATLAS));
+    rule_option(g, "--vita", FOLDER(g, ATLAS));
+}
+
+void rule_needs_held_cameras(struct graph *g)
+{
+    static const enum product_id files[] = {PRODUCT_CAMERAS, PRODUCT_IMAGES, PRODUCT_POINTS3D, PRODUCT_LENSES,
+                                            PRODUCT_VIEWS_MK};
+    for (size_t i = 0; i < sizeof files / sizeof *files; i++)
+        rule_needs(g, graph_path(g, files[i], &(struct product_key){.views = HELD_VIEWS}));
 }

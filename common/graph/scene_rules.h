@@ -14,6 +14,15 @@ const char *scene_photo_source(struct graph *g, const struct scene_facts *f, con
 /* --masks FOLDER where the scene has masks. */
 void rule_masks(struct graph *g, const struct scene_facts *f);
 
+/* What many stages read: they need the files, and an option names the folder. Cameras: --views; depth maps of all views:
+ * --depth; faces that the views see: --ids; the atlas of all faces: --vita. */
+void rule_takes_cameras(struct graph *g);
+void rule_takes_depth(struct graph *g);
+void rule_takes_ids(struct graph *g);
+void rule_takes_vita(struct graph *g);
+/* The cameras of the views that are held out, and their list. */
+void rule_needs_held_cameras(struct graph *g);
+
 /* The response curve of bracketed photos: the scene's own, else the fitted one, which is written only if it is new, so
  * that rules need its text and wait for the stamp. */
 void rule_needs_response(struct graph *g);

@@ -10,17 +10,13 @@ RULES(bake_outdoors)
     graph_goal(g, "outdoors", PATH(g, OUTDOORS));
     graph_rule(g, "all");
     rule_makes(g, PATH(g, OUTDOORS));
-    rule_needs(g, PATH(g, MODEL));
-    rule_needs(g, PATH(g, AXES));
-    rule_needs_cameras(g);
+    rule_takes(g, "--model", PATH(g, MODEL));
+    rule_takes(g, "--axes", PATH(g, AXES));
+    rule_takes_cameras(g);
     rule_needs(g, PATH(g, LENSES));
     rule_needs_set(g, "views");
-    rule_needs_set(g, "ids");
+    rule_takes_ids(g);
     rule_needs_references(g, f);
-    rule_option(g, "--model", PATH(g, MODEL));
-    rule_option(g, "--axes", PATH(g, AXES));
-    rule_option(g, "--views", FOLDER(g, CAMERAS));
-    rule_option(g, "--ids", FOLDER(g, FACE_INDEX));
     for (int i = 0; i < f->references.count; i++) {
         const char *image = PATH(g, LRI, .photo = f->references.names[i]);
         if (!path_is_file(image)) continue;

@@ -8,9 +8,9 @@ static void photo_rule(struct graph *g, const struct scene_facts *f, const struc
     const char *deps = graph_text(g, "%s/vdta/%s.d", f->own, p->photo);
     graph_piece(g, "%s", p->photo);
     rule_makes(g, atlas);
-    rule_needs(g, PATH(g, MODEL));
-    rule_needs(g, PATH(g, AXES));
-    rule_needs_cameras(g);
+    rule_takes(g, "--model", PATH(g, MODEL));
+    rule_takes(g, "--axes", PATH(g, AXES));
+    rule_takes_cameras(g);
     rule_needs(g, PATH(g, LENSES));
     rule_needs(g, PATH(g, FACE_INDEX));
     for (int i = 0; i < p->count; i++) {
@@ -21,9 +21,6 @@ static void photo_rule(struct graph *g, const struct scene_facts *f, const struc
     rule_needs_listed(g, deps);
     rule_after_set(g, "views");
     rule_after_set(g, "ids");
-    rule_option(g, "--model", PATH(g, MODEL));
-    rule_option(g, "--axes", PATH(g, AXES));
-    rule_option(g, "--views", FOLDER(g, CAMERAS));
     rule_option(g, "--ids", FOLDER(g, FACE_INDEX));
     rule_option(g, "--reveal", FOLDER(g, REVEAL, .view = ""));
     rule_option(g, "--out", graph_own(g, "vdta"));

@@ -61,23 +61,15 @@ static bool needs_points(struct graph *g, const struct scene_facts *f)
 
 static void say_inputs(struct graph *g, const struct scene_facts *f, bool points)
 {
-    const char *held = "holdout/views";
-    rule_needs(g, graph_scene_file(g, "model.txt"));
-    rule_needs(g, PATH(g, AXES));
-    rule_needs_cameras(g);
+    rule_takes(g, "--script", graph_scene_file(g, "model.txt"));
+    rule_takes(g, "--axes", PATH(g, AXES));
+    rule_takes_cameras(g);
     rule_needs(g, PATH(g, LENSES));
     if (f->holds_out) {
-        rule_needs(g, PATH(g, CAMERAS, .views = held));
-        rule_needs(g, PATH(g, IMAGES, .views = held));
-        rule_needs(g, PATH(g, POINTS3D, .views = held));
-        rule_needs(g, PATH(g, LENSES, .views = held));
-        rule_needs(g, PATH(g, VIEWS_MK, .views = held));
+        rule_needs_held_cameras(g);
     }
     if (points) rule_needs(g, PATH(g, POINTS));
-    rule_option(g, "--script", graph_scene_file(g, "model.txt"));
-    rule_option(g, "--axes", PATH(g, AXES));
-    rule_option(g, "--views", FOLDER(g, CAMERAS));
-    if (f->holds_out) rule_option(g, "--held", FOLDER(g, CAMERAS, .views = held));
+    if (f->holds_out) rule_option(g, "--held", FOLDER(g, CAMERAS, .views = HELD_VIEWS));
     if (points) rule_option(g, "--points", PATH(g, POINTS));
 }
 
@@ -122,13 +114,12 @@ static void model_rule(struct graph *g, const struct scene_facts *f, int edit, b
         rule_makes(g, PATH(g, TEXTURE_MAP, .model = model));
         rule_makes(g, PATH(g, OBJECTS, .model = model));
         needs_edit(g, f, name);
-        rule_needs(g, PATH(g, MODEL));
+        rule_takes(g, "--base", PATH(g, MODEL));
     }
     say_inputs(g, f, points);
     if (edit >= 0) {
         rule_option(g, "--edit", edit_script(g, f, name));
         rule_option(g, "--scene", f->folder);
-        rule_option(g, "--base", PATH(g, MODEL));
     }
     rule_option(g, "--out", graph_own(g, model));
 }
@@ -139,15 +130,12 @@ static void overlay_rule(struct graph *g, const struct scene_facts *f, int edit,
                *path = PATH(g, OVERLAY, .model = model, .photo = photo);
     graph_piece(g, "%s-%s", scene_model_name(model), photo);
     rule_makes(g, path);
-    rule_needs(g, PATH(g, MODEL, .model = model));
-    rule_needs(g, PATH(g, AXES));
-    rule_needs_cameras(g);
+    rule_takes(g, "--model", PATH(g, MODEL, .model = model));
+    rule_takes(g, "--axes", PATH(g, AXES));
+    rule_takes_cameras(g);
     rule_needs(g, PATH(g, LENSES));
     rule_needs(g, scene_photo_source(g, f, photo));
     rule_option(g, "--overlay", photo);
-    rule_option(g, "--model", PATH(g, MODEL, .model = model));
-    rule_option(g, "--axes", PATH(g, AXES));
-    rule_option(g, "--views", FOLDER(g, CAMERAS));
     rule_photos(g, f, "--photos");
     rule_option(g, "--records", FOLDER(g, PHOTO_LIST));
     rule_option(g, "--out", path);

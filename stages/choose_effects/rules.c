@@ -15,8 +15,7 @@ RULES(choose_effects)
     graph_goal(g, "choice", choice);
     graph_rule(g, "%s", f->choose);
     rule_makes(g, choice);
-    rule_needs(g, PATH(g, SUBJECTS));
-    rule_option(g, "--subjects", PATH(g, SUBJECTS));
+    rule_takes(g, "--subjects", PATH(g, SUBJECTS));
     rule_option(g, "--effect", f->choose);
     rule_option(g, "--out", choice);
 }

@@ -11,14 +11,12 @@ RULES(choose_views)
     graph_goal(g, "film_views", done);
     graph_rule(g, "all");
     rule_makes(g, done);
-    rule_needs_cameras(g);
+    rule_takes_cameras(g);
     rule_needs(g, PATH(g, LENSES));
-    rule_needs(g, drawn);
+    rule_takes(g, "--subjects", drawn);
     /* rectangles that came or went are a change whatever the file's time */
     rule_needs(g, graph_stamp(g, "drawn.txt", drawn ? drawn : "none"));
     if (!path_is_file(PATH(g, FILM_VIEWS))) rule_needs_force(g);
-    rule_option(g, "--views", FOLDER(g, CAMERAS));
-    rule_option(g, "--subjects", drawn);
     rule_option(g, "--out", PATH(g, FILM_VIEWS));
     rule_then(g, graph_text(g, "mkdir -p %s && echo done >%s", graph_own(g, "stamp"), done));
     graph_source(g, PATH(g, FILM_VIEWS));

@@ -32,7 +32,6 @@ static void needs_edited(struct graph *g, const struct scene_facts *f)
 
 RULES(evaluate)
 {
-    const char *held = "holdout/views";
     graph_step(g, "evaluate", STEP_ONE, "depth");
     graph_goal(g, "evaluate", PATH(g, METRICS));
     graph_rule(g, "all");
@@ -41,11 +40,7 @@ RULES(evaluate)
     rule_needs(g, PATH(g, LENSES));
     rule_needs_list(g, GRAPH_MEASURED);
     if (f->holds_out) {
-        rule_needs(g, PATH(g, CAMERAS, .views = held));
-        rule_needs(g, PATH(g, IMAGES, .views = held));
-        rule_needs(g, PATH(g, POINTS3D, .views = held));
-        rule_needs(g, PATH(g, LENSES, .views = held));
-        rule_needs(g, PATH(g, VIEWS_MK, .views = held));
+        rule_needs_held_cameras(g);
         rule_needs_set(g, "held_views");
     }
     rule_needs(g, PATH(g, PHOTO_LIST));

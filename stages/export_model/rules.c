@@ -13,14 +13,11 @@ RULES(export_model)
         rule_makes(g, PATH(g, EXPORT_IFC, .model = model));
         rule_needs(g, PATH(g, MODEL, .model = model));
         rule_needs(g, PATH(g, PLAN, .model = model));
-        rule_needs(g, map);
-        rule_needs(g, PATH(g, AXES));
-        rule_needs(g, PATH(g, ATLAS));
+        rule_takes(g, "--map", map);
+        rule_takes(g, "--axes", PATH(g, AXES));
+        rule_takes_vita(g);
         rule_option(g, "--name", map ? graph_text(g, "%s-%s", f->scene, name) : f->scene);
         rule_option(g, "--model", FOLDER(g, MODEL, .model = model));
-        rule_option(g, "--map", map);
-        rule_option(g, "--axes", PATH(g, AXES));
-        rule_option(g, "--vita", FOLDER(g, ATLAS));
         rule_option(g, "--out", FOLDER(g, EXPORT_IFC, .model = model));
     }
 }

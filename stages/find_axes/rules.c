@@ -9,21 +9,17 @@ RULES(find_axes)
     graph_goal(g, "axes", PATH(g, AXES));
     graph_rule(g, "all");
     rule_makes(g, PATH(g, AXES));
-    rule_needs_cameras(g);
+    rule_takes_cameras(g);
     rule_needs(g, PATH(g, LENSES));
     rule_needs_set(g, "views");
-    rule_needs(g, PATH(g, POINTS));
-    rule_needs(g, scale);
-    rule_needs(g, fix);
+    rule_takes(g, "--points", PATH(g, POINTS));
+    rule_takes(g, "--scale", scale);
+    rule_takes(g, "--fix", fix);
     /* marks that came or went are a change whatever the files' times */
     rule_needs(g, graph_stamp(g, "axes_marks.txt",
                               graph_text(g, "scale %s fix %s", scale ? "yes" : "no", fix ? "yes" : "no")));
     rule_needs(g, PATH(g, PHOTO_LIST));
-    rule_option(g, "--views", FOLDER(g, CAMERAS));
     rule_option(g, "--records", FOLDER(g, PHOTO_LIST));
-    rule_option(g, "--points", PATH(g, POINTS));
-    rule_option(g, "--scale", scale);
-    rule_option(g, "--fix", fix);
     rule_option(g, "--out", PATH(g, AXES));
     graph_list_if(g, GRAPH_SHOWN, PATH(g, AXES), false);
 }

@@ -8,9 +8,7 @@ RULES(fuse_points)
     graph_goal(g, "points", PATH(g, POINTS));
     graph_rule(g, "all");
     rule_makes(g, PATH(g, POINTS));
-    rule_needs_cameras(g);
-    rule_needs_set(g, "depth");
-    rule_option(g, "--views", FOLDER(g, CAMERAS));
-    rule_option(g, "--depth", FOLDER(g, DEPTH, .view = ""));
+    rule_takes_cameras(g);
+    rule_takes_depth(g);
     rule_option(g, "--out", PATH(g, POINTS));
 }

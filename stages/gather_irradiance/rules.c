@@ -6,20 +6,14 @@
 static void say_light(struct graph *g, const struct scene_facts *f)
 {
     const char *lights = scene_lights(g, f), *materials = scene_materials(g, f);
-    rule_needs(g, PATH(g, MODEL));
-    rule_needs(g, PATH(g, AXES));
-    rule_needs(g, PATH(g, ATLAS));
-    rule_needs(g, PATH(g, OUTDOORS));
-    rule_needs(g, lights);
-    rule_needs(g, materials);
+    rule_takes(g, "--model", PATH(g, MODEL));
+    rule_takes(g, "--axes", PATH(g, AXES));
+    rule_takes_vita(g);
+    rule_takes(g, "--outdoors", PATH(g, OUTDOORS));
+    rule_takes(g, "--lights", lights);
+    rule_takes(g, "--materials", materials);
     if (materials) rule_needs_cameras(g);
     if (materials) rule_needs(g, PATH(g, LENSES));
-    rule_option(g, "--model", PATH(g, MODEL));
-    rule_option(g, "--axes", PATH(g, AXES));
-    rule_option(g, "--vita", FOLDER(g, ATLAS));
-    rule_option(g, "--outdoors", PATH(g, OUTDOORS));
-    rule_option(g, "--lights", lights);
-    rule_option(g, "--materials", materials);
     rule_option(g, "--views", FOLDER(g, CAMERAS));
     if (lights && rule_needs_references(g, f)) rule_option(g, "--references", FOLDER(g, LRI, .photo = ""));
 }
@@ -34,9 +28,8 @@ RULES(gather_irradiance)
         graph_goal(g, "irradiance", PATH(g, IRRADIANCE));
         graph_rule(g, "points");
         rule_makes(g, PATH(g, IRRADIANCE));
-        rule_needs(g, points);
+        rule_takes(g, "--points", points);
         say_light(g, f);
-        rule_option(g, "--points", points);
         rule_option(g, "--out", FOLDER(g, IRRADIANCE));
     }
     name_list_add_words(&views, scene_setting("GATHER_VIEWS"), graph_err(g));

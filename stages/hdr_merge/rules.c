@@ -35,19 +35,15 @@ static void say_place(struct graph *g, const struct scene_facts *f, enum place p
 {
     const char *marks = graph_text(g, "%s/lri.txt", f->folder);
     if (place == PLACE_PHOTOS) {
-        rule_needs_cameras(g);
+        rule_takes_cameras(g);
         rule_needs(g, PATH(g, LENSES));
-        rule_option(g, "--views", FOLDER(g, CAMERAS));
         rule_option(g, "--scene-records", FOLDER(g, PHOTO_LIST));
     } else if (place == PLACE_CORNERS) {
-        rule_needs(g, marks);
-        rule_needs(g, PATH(g, PLAN));
-        rule_option(g, "--marks", marks);
-        rule_option(g, "--plan", PATH(g, PLAN));
+        rule_takes(g, "--marks", marks);
+        rule_takes(g, "--plan", PATH(g, PLAN));
     }
     if (place != PLACE_MODEL && place != PLACE_CORNERS) return;
-    rule_needs(g, PATH(g, AXES));
-    rule_option(g, "--axes", PATH(g, AXES));
+    rule_takes(g, "--axes", PATH(g, AXES));
 }
 
 static void merge_rule(struct graph *g, const char *photo)

@@ -11,11 +11,9 @@ static void frames_rule(struct graph *g, const char *effect, const struct name_l
         graph_goal(g, "pan_frames", frame);
     }
     rule_needs_path(g, film);
-    rule_needs_cameras(g);
+    rule_takes_cameras(g);
     rule_needs_set(g, "views");
-    rule_needs_set(g, "depth");
-    rule_option(g, "--views", FOLDER(g, CAMERAS));
-    rule_option(g, "--depth", FOLDER(g, DEPTH, .view = ""));
+    rule_takes_depth(g);
     rule_option(g, "--path", graph_own(g, film));
     rule_option(g, "--out", FOLDER(g, PAN_SCAN_FRAME, .film = film, .frame = ""));
     rule_stale(g, STALE_FRAMES);

@@ -50,18 +50,14 @@ static void validity_rule(struct graph *g, const char *move)
     rule_by(g, "sample_validity");
     rule_makes(g, PATH(g, VALIDITY, .move = move));
     rule_makes(g, PATH(g, VALIDITY_PICTURE, .move = move));
-    rule_needs_cameras(g);
+    rule_takes_cameras(g);
     rule_needs(g, PATH(g, LENSES));
-    rule_needs_set(g, "depth");
-    rule_needs(g, subjects);
-    rule_needs(g, PATH(g, FILM_VIEWS));
+    rule_takes_depth(g);
+    rule_takes(g, "--subjects", subjects);
+    rule_takes(g, "--film-views", PATH(g, FILM_VIEWS));
     rule_after(g, graph_own(g, "stamp/film_views.txt"));
-    rule_option(g, "--views", FOLDER(g, CAMERAS));
-    rule_option(g, "--film-views", PATH(g, FILM_VIEWS));
-    rule_option(g, "--depth", FOLDER(g, DEPTH, .view = ""));
     rule_option(g, "--records", FOLDER(g, PHOTO_LIST));
     rule_option(g, "--effect", move);
-    rule_option(g, "--subjects", subjects);
     rule_option(g, "--out", FOLDER(g, VALIDITY, .move = move));
 }
 
@@ -83,19 +79,14 @@ static void move_rule(struct graph *g, const struct scene_facts *f, const char *
                *validity = PATH(g, VALIDITY, .move = move);
     graph_rule(g, "%s", effect);
     makes_film(g, effect, name_list_has(&f->films, effect));
-    rule_needs_cameras(g);
-    rule_needs(g, validity);
+    rule_takes_cameras(g);
+    rule_takes(g, "--validity", validity);
     rule_needs(g, PATH(g, VALIDITY_PICTURE, .move = move));
-    rule_needs_set(g, "depth");
-    rule_needs(g, subjects);
-    rule_needs(g, PATH(g, FILM_VIEWS));
+    rule_takes_depth(g);
+    rule_takes(g, "--subjects", subjects);
+    rule_takes(g, "--film-views", PATH(g, FILM_VIEWS));
     rule_after(g, graph_own(g, "stamp/film_views.txt"));
-    rule_option(g, "--views", FOLDER(g, CAMERAS));
-    rule_option(g, "--film-views", PATH(g, FILM_VIEWS));
-    rule_option(g, "--depth", FOLDER(g, DEPTH, .view = ""));
-    rule_option(g, "--validity", validity);
     rule_option(g, "--effect", effect);
-    rule_option(g, "--subjects", subjects);
     rule_option(g, "--out", graph_own(g, film_folder(g, effect)));
 }
 
@@ -104,7 +95,7 @@ static void keyed_film_rule(struct graph *g, const char *film, const struct name
     const char *keyframes = keyframes_of(g, film);
     graph_rule(g, "%s", film);
     makes_film(g, film, true);
-    rule_needs(g, keyframes);
+    rule_takes(g, "--keyframes", keyframes);
     for (int i = 0; i < chained->count; i++) {
         if (keyframes_of(g, chained->names[i]))
             graph_refuse(g, "%s chains %s, a film of keys: only planned moves can be chained.", keyframes,
@@ -112,11 +103,9 @@ static void keyed_film_rule(struct graph *g, const char *film, const struct name
         rule_needs(g, PATH(g, PATH, .film = film_folder(g, chained->names[i])));
         rule_needs(g, PATH(g, EFFECTS, .film = film_folder(g, chained->names[i])));
     }
-    rule_needs_cameras(g);
+    rule_takes_cameras(g);
     rule_needs(g, PATH(g, LENSES));
-    rule_option(g, "--views", FOLDER(g, CAMERAS));
     rule_option(g, "--records", FOLDER(g, PHOTO_LIST));
-    rule_option(g, "--keyframes", keyframes);
     rule_option(g, "--moves", graph_own(g, "parallax"));
     rule_option(g, "--effect", film);
     rule_option(g, "--out", graph_own(g, film_folder(g, film)));

@@ -18,14 +18,11 @@ RULES(plan_tour)
         }
         rule_needs(g, PATH(g, MODEL, .model = model));
         rule_needs(g, PATH(g, PLAN, .model = model));
-        rule_needs(g, PATH(g, AXES));
-        rule_needs_cameras(g);
+        rule_takes(g, "--axes", PATH(g, AXES));
+        rule_takes_cameras(g);
         rule_needs(g, PATH(g, LENSES));
-        rule_needs(g, script);
+        rule_takes(g, "--script", script);
         rule_option(g, "--model", FOLDER(g, MODEL, .model = model));
-        rule_option(g, "--axes", PATH(g, AXES));
-        rule_option(g, "--views", FOLDER(g, CAMERAS));
-        rule_option(g, "--script", script);
         rule_option(g, "--out", graph_own(g, tour));
     }
 }

@@ -34,5 +34,5 @@ RULES(rectify)
     graph_goal(g, "views", NULL);
     for (int i = 0; i < f->viewpoints.count; i++) photo_rule(g, f, &f->viewpoints.photos[i], "views", "views");
     for (int i = 0; i < f->held_viewpoints.count; i++)
-        photo_rule(g, f, &f->held_viewpoints.photos[i], "holdout/views", "held_views");
+        photo_rule(g, f, &f->held_viewpoints.photos[i], HELD_VIEWS, "held_views");
 }

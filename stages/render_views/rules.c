@@ -14,18 +14,14 @@ static void frames_rule(struct graph *g, const char *effect, const struct name_l
         graph_goal(g, "frames", frame);
     }
     rule_needs_path(g, film);
-    rule_needs(g, effects);
-    rule_needs(g, layers);
-    rule_needs_cameras(g);
-    rule_needs_set(g, "depth");
+    rule_takes(g, "--effects", effects);
+    rule_takes(g, "--effects", layers);
+    rule_takes_cameras(g);
+    rule_takes_depth(g);
     if (!keyed) rule_needs(g, PATH(g, FILM_VIEWS));
     if (!keyed) rule_after(g, graph_own(g, "stamp/film_views.txt"));
-    rule_option(g, "--views", FOLDER(g, CAMERAS));
-    rule_option(g, "--depth", FOLDER(g, DEPTH, .view = ""));
     rule_option(g, "--path", graph_own(g, film));
     if (!keyed) rule_option(g, "--film-views", PATH(g, FILM_VIEWS));
-    rule_option(g, "--effects", effects);
-    rule_option(g, "--effects", layers);
     rule_option(g, "--out", FOLDER(g, FRAME, .film = film, .frame = ""));
     rule_stale(g, STALE_FRAMES);
 }
@@ -33,7 +29,6 @@ static void frames_rule(struct graph *g, const char *effect, const struct name_l
 /* The cameras of held-out photos, rendered from the other views. */
 static void heldout_rule(struct graph *g, const struct name_list *held, int first, int count)
 {
-    const char *cameras = "holdout/views";
     graph_piece(g, "heldout-%s", held->names[first]);
     for (int i = first; i < first + count; i++) {
         const char *frame = PATH(g, HELD_FRAME, .view = held->names[i]);
@@ -41,16 +36,10 @@ static void heldout_rule(struct graph *g, const struct name_list *held, int firs
         graph_goal(g, "heldout", frame);
         graph_list(g, GRAPH_MEASURED, frame);
     }
-    rule_needs(g, PATH(g, CAMERAS, .views = cameras));
-    rule_needs(g, PATH(g, IMAGES, .views = cameras));
-    rule_needs(g, PATH(g, POINTS3D, .views = cameras));
-    rule_needs(g, PATH(g, LENSES, .views = cameras));
-    rule_needs(g, PATH(g, VIEWS_MK, .views = cameras));
-    rule_needs_cameras(g);
-    rule_needs_set(g, "depth");
-    rule_option(g, "--views", FOLDER(g, CAMERAS));
-    rule_option(g, "--depth", FOLDER(g, DEPTH, .view = ""));
-    rule_option(g, "--cameras", FOLDER(g, CAMERAS, .views = cameras));
+    rule_needs_held_cameras(g);
+    rule_takes_cameras(g);
+    rule_takes_depth(g);
+    rule_option(g, "--cameras", FOLDER(g, CAMERAS, .views = HELD_VIEWS));
     rule_option(g, "--out", FOLDER(g, HELD_FRAME, .view = ""));
     for (int i = first; i < first + count; i++) rule_option(g, "--camera", held->names[i]);
 }

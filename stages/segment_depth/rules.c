@@ -26,12 +26,11 @@ static void view_rule(struct graph *g, const struct scene_facts *f, const char *
     rule_needs(g, PATH(g, VIEW, .view = view));
     if (before) rule_needs(g, PATH(g, DEPTH, .depth = before, .view = view));
     rule_needs(g, path_is_file(given) ? given : NULL);
-    rule_needs_cameras(g);
+    rule_takes_cameras(g);
     rule_needs_listed(g, deps);
     rule_after_set(g, "views");
     if (before) rule_after(g, graph_text(g, "depth-round%d", round - 1));
     rule_option(g, "--view", view);
-    rule_option(g, "--views", FOLDER(g, CAMERAS));
     rule_option(g, "--records", FOLDER(g, PHOTO_LIST));
     if (before) rule_option(g, "--before", FOLDER(g, DEPTH, .depth = before, .view = view));
     rule_variable(g, "--given", "DEPTH");

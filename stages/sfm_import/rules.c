@@ -17,7 +17,6 @@ static void check_holdout(struct graph *g)
 
 RULES(sfm_import)
 {
-    const char *held = "holdout/views";
     check_holdout(g);
     const char *stamp = graph_stamp(
         g, "holdout.txt",
@@ -34,11 +33,11 @@ RULES(sfm_import)
     rule_makes(g, PATH(g, LENS_FORMS));
     rule_makes(g, PATH(g, VIEWS_MK));
     if (f->holds_out) {
-        rule_makes(g, PATH(g, CAMERAS, .views = held));
-        rule_makes(g, PATH(g, IMAGES, .views = held));
-        rule_makes(g, PATH(g, POINTS3D, .views = held));
-        rule_makes(g, PATH(g, LENSES, .views = held));
-        rule_makes(g, PATH(g, VIEWS_MK, .views = held));
+        rule_makes(g, PATH(g, CAMERAS, .views = HELD_VIEWS));
+        rule_makes(g, PATH(g, IMAGES, .views = HELD_VIEWS));
+        rule_makes(g, PATH(g, POINTS3D, .views = HELD_VIEWS));
+        rule_makes(g, PATH(g, LENSES, .views = HELD_VIEWS));
+        rule_makes(g, PATH(g, VIEWS_MK, .views = HELD_VIEWS));
     }
     rule_needs(g, PATH(g, SFM_MODELS));
     rule_needs(g, PATH(g, PHOTO_LIST));

@@ -8,14 +8,10 @@ RULES(suggest_model)
     graph_goal(g, "suggest", PATH(g, SUGGESTED_MODEL));
     graph_rule(g, "all");
     rule_makes(g, PATH(g, SUGGESTED_MODEL));
-    rule_needs(g, PATH(g, AXES));
-    rule_needs_cameras(g);
+    rule_takes(g, "--axes", PATH(g, AXES));
+    rule_takes_cameras(g);
     rule_needs_set(g, "views");
-    rule_needs_set(g, "depth");
-    rule_needs(g, PATH(g, POINTS));
-    rule_option(g, "--views", FOLDER(g, CAMERAS));
-    rule_option(g, "--depth", FOLDER(g, DEPTH, .view = ""));
-    rule_option(g, "--points", PATH(g, POINTS));
-    rule_option(g, "--axes", PATH(g, AXES));
+    rule_takes_depth(g);
+    rule_takes(g, "--points", PATH(g, POINTS));
     rule_option(g, "--out", PATH(g, SUGGESTED_MODEL));
 }

@@ -6,12 +6,9 @@
 
 static void say_model(struct graph *g)
 {
-    rule_needs(g, PATH(g, MODEL));
-    rule_needs(g, PATH(g, AXES));
-    rule_needs_cameras(g);
-    rule_option(g, "--model", PATH(g, MODEL));
-    rule_option(g, "--axes", PATH(g, AXES));
-    rule_option(g, "--views", FOLDER(g, CAMERAS));
+    rule_takes(g, "--model", PATH(g, MODEL));
+    rule_takes(g, "--axes", PATH(g, AXES));
+    rule_takes_cameras(g);
 }
 
 static void ids_rule(struct graph *g, const char *view)
@@ -41,8 +38,7 @@ static void reveal_rule(struct graph *g, const struct scene_facts *f, const char
     rule_option(g, "--reveal", "");
     for (int i = 0; i < f->edits.count; i++) {
         const char *edited = PATH(g, MODEL, .model = scene_model_folder(g, &f->edits, i));
-        rule_needs(g, edited);
-        rule_option(g, "--edit", edited);
+        rule_takes(g, "--edit", edited);
     }
     rule_needs(g, edits);
     if (!path_is_file(reveal)) rule_needs_force(g);
