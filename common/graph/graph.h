@@ -81,8 +81,8 @@ void graph_goal(struct graph *g, const char *goal, const char *path);
 void graph_set(struct graph *g, const char *set, const char *path);
 const char *graph_set_path(struct graph *g, const char *set);
 
-/* Products that evaluate (measured) and report (shown) wait for. SHOWN: not on the page of two photos; REMODEL_SHOWN: on
- * the page of edits. */
+/* Products that evaluate (measured) and report (shown) wait for. SHOWN: not on the page of two photos; REMODEL_SHOWN:
+ * on the page of edits. */
 enum graph_list { GRAPH_MEASURED, GRAPH_SHOWN, GRAPH_ALWAYS_SHOWN, GRAPH_REMODEL_SHOWN, GRAPH_LISTS };
 void graph_list(struct graph *g, enum graph_list list, const char *path);
 

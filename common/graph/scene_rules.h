@@ -14,7 +14,8 @@ const char *scene_photo_source(struct graph *g, const struct scene_facts *f, con
 /* --masks FOLDER where the scene has masks. */
 void rule_masks(struct graph *g, const struct scene_facts *f);
 
-/* What many stages read: they need the files, and an option names the folder. Cameras: --views; depth maps of all views:
+/* What many stages read: they need the files, and an option names the folder. Cameras: --views; depth maps of all
+ * views:
  * --depth; faces that the views see: --ids; the atlas of all faces: --vita. */
 void rule_takes_cameras(struct graph *g);
 void rule_takes_depth(struct graph *g);
