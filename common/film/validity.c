@@ -13,6 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/math/vec3_read.h"
 #include "common/product/product.h"
 
 enum { MAX_CELLS = 4096 };
@@ -39,14 +40,6 @@ void validity_release(struct validity *v)
 }
 
 /* ---------------------------------------------------------------------------------------------------------- reading */
-
-static enum status read_vector(struct textfile *t, const char *what, struct vec3 *v, struct err *err)
-{
-    return textfile_double(t, what, &v->x, err) || textfile_double(t, what, &v->y, err) ||
-                   textfile_double(t, what, &v->z, err)
-               ? err->status
-               : ST_OK;
-}
 
 /* Goes to the next line, which must begin with `key`. */
 static enum status read_key(struct textfile *t, const char *key, struct err *err)
@@ -89,7 +82,7 @@ static enum status read_shot(struct textfile *t, struct validity *v, struct err 
     s->near_limit = near[0];
     if (!(s->median_depth > 0)) return textfile_error(t, err, "a median depth of 0 or less", "one above 0");
     for (int i = 0; i < 6; i++)
-        if (read_key(t, keys[i], err) || read_vector(t, keys[i], vectors[i], err) || textfile_end(t, err))
+        if (read_key(t, keys[i], err) || vec3_read(t, keys[i], vectors[i], err) || textfile_end(t, err))
             return err->status;
     if (read_numbers(t, "box", box, 4, err)) return err->status;
     for (int i = 0; i < 2; i++) {
@@ -107,7 +100,7 @@ static enum status read_shot(struct textfile *t, struct validity *v, struct err 
 static enum status read_end(struct textfile *t, struct shot_end *e, struct err *err)
 {
     char *word;
-    if (read_key(t, "end", err) || textfile_expect(t, "target", err) || read_vector(t, "the target", &e->target, err) ||
+    if (read_key(t, "end", err) || textfile_expect(t, "target", err) || vec3_read(t, "the target", &e->target, err) ||
         textfile_word(t, "\"focal\" or \"size\"", &word, err))
         return err->status;
     if (!strcmp(word, "focal")) {
@@ -120,7 +113,7 @@ static enum status read_end(struct textfile *t, struct shot_end *e, struct err *
     if (textfile_double(t, "the size", &e->size, err)) return err->status;
     if (!(e->size > 0)) return textfile_error(t, err, "a size of 0 or less", "one above 0");
     for (int i = 0; i < 4; i++)
-        if (read_vector(t, "a corner", &e->corner[i], err)) return err->status;
+        if (vec3_read(t, "a corner", &e->corner[i], err)) return err->status;
     return textfile_end(t, err);
 }
 

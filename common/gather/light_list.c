@@ -20,6 +20,7 @@
 
 #include "common/base/array.h"
 #include "common/math/numbers.h"
+#include "common/math/vec3_read.h"
 #include "common/product/product.h"
 
 enum { MAX_NAME = 255, QUOTED_SIZE = 2 * MAX_NAME + 3, MAX_EXPONENT = 10000 };
@@ -55,15 +56,6 @@ void light_list_lamp_file(char to[LAMP_FILE_NAME], const struct light_list *l, i
 
 /* ---------------------------------------------------------------------------------------------------------- reading */
 
-static enum status read_vector(struct textfile *t, const char *what, struct vec3 *v, struct err *err)
-{
-    if (textfile_double(t, what, &v->x, err) || textfile_double(t, what, &v->y, err) ||
-        textfile_double(t, what, &v->z, err))
-        return err->status;
-    const double length = vec3_length(*v);
-    return length <= 1e9 ? ST_OK : textfile_wrong_number(t, length, "numbers of at most 1e9", err);
-}
-
 static enum status copy_name(struct textfile *t, const char *what, char **name, struct err *err)
 {
     char word[MAX_NAME + 1];
@@ -87,7 +79,7 @@ static enum status read_name(const struct light_list *l, struct textfile *t, cha
 /* The half edges of a parallelogram, and its unit normal. */
 static enum status read_edges(struct textfile *t, struct vec3 *x, struct vec3 *y, struct vec3 *normal, struct err *err)
 {
-    if (read_vector(t, "the first half edge", x, err) || read_vector(t, "the second half edge", y, err))
+    if (vec3_read_bounded(t, "the first half edge", x, err) || vec3_read_bounded(t, "the second half edge", y, err))
         return err->status;
     const struct vec3 cross = vec3_cross(*x, *y);
     const double area = vec3_length(cross), most = vec3_length(*x) * vec3_length(*y);
@@ -108,7 +100,7 @@ static void span_disk(struct lamp *l)
 
 static enum status read_disk(struct lamp *l, struct textfile *t, struct err *err)
 {
-    if (read_vector(t, "the normal", &l->normal, err)) return err->status;
+    if (vec3_read_bounded(t, "the normal", &l->normal, err)) return err->status;
     const double length = vec3_length(l->normal);
     if (!(fabs(length - 1) < 1e-6)) return textfile_wrong_number(t, length, "a normal of length 1", err);
     if (textfile_double(t, "the radius", &l->radius, err)) return err->status;
@@ -137,7 +129,7 @@ static enum status read_lamp(struct light_list *list, struct textfile *t, enum l
     if (array_append(&list->lamps, (size_t)list->lamp_count, sizeof *list->lamps, "lamps", err)) return err->status;
     struct lamp *l = &list->lamps[list->lamp_count++];
     *l = (struct lamp){.shape = shape};
-    if (read_name(list, t, &l->name, err) || read_vector(t, "the centre", &l->centre, err)) return err->status;
+    if (read_name(list, t, &l->name, err) || vec3_read_bounded(t, "the centre", &l->centre, err)) return err->status;
     if (shape == LAMP_DISK ? read_disk(l, t, err) : read_edges(t, &l->x, &l->y, &l->normal, err)) return err->status;
     return read_emission(l, t, err);
 }
@@ -161,7 +153,7 @@ static enum status read_opening(struct light_list *list, struct textfile *t, str
         return err->status;
     struct daylight *o = &list->openings[list->opening_count++];
     *o = (struct daylight){0};
-    if (read_name(list, t, &o->name, err) || read_vector(t, "the centre", &o->centre, err) ||
+    if (read_name(list, t, &o->name, err) || vec3_read_bounded(t, "the centre", &o->centre, err) ||
         read_edges(t, &o->x, &o->y, &o->normal, err))
         return err->status;
     return read_references(o, t, err);

@@ -147,6 +147,17 @@ void rule_needs_tour(struct graph *g, const char *tour)
     rule_needs(g, PATH(g, PATH_IMAGES, .film = tour));
 }
 
+void rule_encodes(struct graph *g, const char *film, const struct name_list *frames, const char *planned)
+{
+    const char *video = PATH(g, VIDEO, .film = film);
+    rule_by(g, "encode_video");
+    rule_makes(g, video);
+    for (int i = 0; i < frames->count; i++) rule_needs(g, PATH(g, FRAME, .film = film, .frame = frames->names[i]));
+    rule_option(g, "--path", graph_own(g, planned));
+    rule_option(g, "--frames", FOLDER(g, FRAME, .film = film, .frame = ""));
+    rule_option(g, "--out", video);
+}
+
 void scene_tour_frames_read(struct graph *g, struct name_list *frames, const char *tour)
 {
     struct textfile t = {0};
@@ -223,6 +234,16 @@ void rule_takes_vita(struct graph *g)
 {
     rule_needs(g, PATH(g, ATLAS));
     rule_option(g, "--vita", FOLDER(g, ATLAS));
+}
+
+void rule_takes_seen_model(struct graph *g)
+{
+    rule_takes(g, "--model", PATH(g, MODEL));
+    rule_takes(g, "--axes", PATH(g, AXES));
+    rule_takes_cameras(g);
+    rule_needs(g, PATH(g, LENSES));
+    rule_needs_set(g, "views");
+    rule_takes_ids(g);
 }
 
 void rule_needs_held_cameras(struct graph *g)

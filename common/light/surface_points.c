@@ -5,23 +5,16 @@
 
 #include "common/base/array.h"
 #include "common/base/textfile.h"
+#include "common/math/vec3_read.h"
 
 enum { MAX_POINTS = 10000000 };
-
-static enum status read_vector(struct textfile *t, const char *what, struct vec3 *v, struct err *err)
-{
-    if (textfile_double(t, what, &v->x, err) || textfile_double(t, what, &v->y, err) ||
-        textfile_double(t, what, &v->z, err))
-        return err->status;
-    const double length = vec3_length(*v);
-    return length <= 1e9 ? ST_OK : textfile_wrong_number(t, length, "numbers of at most 1e9", err);
-}
 
 static enum status read_point(struct surface_points *points, struct textfile *t, struct err *err)
 {
     struct surface_point p;
     if (points->count == MAX_POINTS) return textfile_error(t, err, "one more", "at most %d points", MAX_POINTS);
-    if (read_vector(t, "a point", &p.at, err) || read_vector(t, "a normal", &p.normal, err)) return err->status;
+    if (vec3_read_bounded(t, "a point", &p.at, err) || vec3_read_bounded(t, "a normal", &p.normal, err))
+        return err->status;
     if (!(vec3_length(p.normal) > 1e-9)) return textfile_error(t, err, "0 0 0", "a normal");
     p.normal = vec3_normalize(p.normal);
     if (textfile_end(t, err) || array_append(&points->list, (size_t)points->count, sizeof p, "points", err))

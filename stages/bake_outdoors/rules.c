@@ -10,12 +10,7 @@ RULES(bake_outdoors)
     graph_goal(g, "outdoors", PATH(g, OUTDOORS));
     graph_rule(g, "all");
     rule_makes(g, PATH(g, OUTDOORS));
-    rule_takes(g, "--model", PATH(g, MODEL));
-    rule_takes(g, "--axes", PATH(g, AXES));
-    rule_takes_cameras(g);
-    rule_needs(g, PATH(g, LENSES));
-    rule_needs_set(g, "views");
-    rule_takes_ids(g);
+    rule_takes_seen_model(g);
     rule_needs_references(g, f);
     for (int i = 0; i < f->references.count; i++) {
         const char *image = PATH(g, LRI, .photo = f->references.names[i]);

@@ -12,17 +12,12 @@ RULES(bake_vita)
     graph_goal(g, "vita", PATH(g, ATLAS));
     graph_rule(g, "all");
     rule_makes(g, PATH(g, ATLAS));
-    rule_takes(g, "--model", PATH(g, MODEL));
+    rule_takes_seen_model(g);
     for (int i = 0; i < f->edits.count; i++) {
         const char *edited = PATH(g, MODEL, .model = scene_model_folder(g, &f->edits, i));
         rule_takes(g, "--edit", edited);
     }
-    rule_takes(g, "--axes", PATH(g, AXES));
-    rule_takes_cameras(g);
-    rule_needs(g, PATH(g, LENSES));
     if (f->views.count) rule_needs(g, PATH(g, FACE_INDEX));
-    rule_needs_set(g, "views");
-    rule_takes_ids(g);
     rule_option(g, "--out", FOLDER(g, ATLAS));
     graph_list_if(g, GRAPH_MEASURED, PATH(g, ATLAS), scene_asks_for_any(f, "textures remodel"));
     graph_list_if(g, GRAPH_ALWAYS_SHOWN, PATH(g, ATLAS), scene_asks_for_any(f, "textures remodel"));

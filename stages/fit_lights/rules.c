@@ -11,13 +11,8 @@ RULES(fit_lights)
     graph_rule(g, "all");
     rule_makes(g, PATH(g, LIGHT_FIT));
     rule_makes(g, PATH(g, LIGHTS));
-    rule_takes(g, "--model", PATH(g, MODEL));
+    rule_takes_seen_model(g);
     rule_takes(g, "--plan", PATH(g, PLAN));
-    rule_takes(g, "--axes", PATH(g, AXES));
-    rule_takes_cameras(g);
-    rule_needs(g, PATH(g, LENSES));
-    rule_needs_set(g, "views");
-    rule_takes_ids(g);
     rule_takes_vita(g);
     rule_takes(g, "--outdoors", PATH(g, OUTDOORS));
     if (lamps) rule_needs_references(g, f);

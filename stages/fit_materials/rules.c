@@ -11,12 +11,7 @@ RULES(fit_materials)
     rule_makes(g, materials);
     rule_makes(g, PATH(g, MATERIAL_SAMPLES));
     rule_takes(g, "--marks", graph_scene_file(g, "materials.txt"));
-    rule_takes(g, "--model", PATH(g, MODEL));
-    rule_takes(g, "--axes", PATH(g, AXES));
-    rule_takes_cameras(g);
-    rule_needs(g, PATH(g, LENSES));
-    rule_needs_set(g, "views");
-    rule_takes_ids(g);
+    rule_takes_seen_model(g);
     rule_takes_vita(g);
     rule_takes(g, "--outdoors", PATH(g, OUTDOORS));
     rule_takes(g, "--lights", scene_lights(g, f));

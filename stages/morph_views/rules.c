@@ -78,13 +78,8 @@ RULES(morph_views)
         for (int i = 0; i < frames.count; i += f->frames_per_job)
             frames_rule(g, &frames, i, scene_chunk_size(f, &frames, i));
         graph_rule(g, "morph");
-        rule_by(g, "encode_video");
-        rule_makes(g, video);
-        for (int i = 0; i < frames.count; i++) rule_needs(g, PATH(g, FRAME, .film = film, .frame = frames.names[i]));
+        rule_encodes(g, film, &frames, film);
         for (int i = 0; i < FILES; i++) rule_needs(g, file_of(g, i));
-        rule_option(g, "--path", graph_own(g, film));
-        rule_option(g, "--frames", FOLDER(g, FRAME, .film = film, .frame = ""));
-        rule_option(g, "--out", video);
     }
     name_list_release(&photos);
     name_list_release(&frames);

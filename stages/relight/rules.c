@@ -165,13 +165,8 @@ static void tour_rules(struct graph *g, const struct scene_facts *f, const char 
     if (frames.count) {
         graph_goal(g, "relit-tour", video);
         graph_rule(g, "relit-%s", edit);
-        rule_by(g, "encode_video");
-        rule_makes(g, video);
-        for (int i = 0; i < frames.count; i++) rule_needs(g, PATH(g, FRAME, .film = film, .frame = frames.names[i]));
+        rule_encodes(g, film, &frames, walk);
         rule_needs_tour(g, walk);
-        rule_option(g, "--path", graph_own(g, walk));
-        rule_option(g, "--frames", FOLDER(g, FRAME, .film = film, .frame = ""));
-        rule_option(g, "--out", video);
     }
     name_list_release(&frames);
 }

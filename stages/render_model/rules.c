@@ -68,13 +68,8 @@ static void tour_rules(struct graph *g, const struct scene_facts *f, const char 
     for (int i = 0; i < frames.count; i += f->frames_per_job)
         tour_rule(g, model, &frames, i, scene_chunk_size(f, &frames, i));
     graph_rule(g, "tour-%s", scene_model_name(model));
-    rule_by(g, "encode_video");
-    rule_makes(g, video);
-    for (int i = 0; i < frames.count; i++) rule_needs(g, PATH(g, FRAME, .film = tour, .frame = frames.names[i]));
+    rule_encodes(g, tour, &frames, tour);
     rule_needs_tour(g, tour);
-    rule_option(g, "--path", graph_own(g, tour));
-    rule_option(g, "--frames", FOLDER(g, FRAME, .film = tour, .frame = ""));
-    rule_option(g, "--out", video);
     graph_goal(g, "tour", video);
     graph_list_if(g, GRAPH_ALWAYS_SHOWN, video, false);
     name_list_release(&frames);

@@ -82,13 +82,16 @@ void plan_set_foot_on_floor(const struct plan_context *c, const struct plan_wall
     if (kind != OPENING_WINDOW && c->s->place.kind == PLACE_VIEW) z[0] = w->foot;
 }
 
-enum status plan_read_opening(struct script_reader *r, struct statement *s)
+/* NAME on WHAT PLACE */
+static enum status read_on(struct script_reader *r, struct statement *s, const char *what)
 {
-    return script_read_name(r, "a name", &s->name) || script_expect(r, "on") ||
-                   script_read_name(r, "a wall", &s->other) || script_read_place(r, &s->place, 1u << PLACE_FROM_END)
+    return script_read_name(r, "a name", &s->name) || script_expect(r, "on") || script_read_name(r, what, &s->other) ||
+                   script_read_place(r, &s->place, 1u << PLACE_FROM_END)
                ? r->err->status
                : ST_OK;
 }
+
+enum status plan_read_opening(struct script_reader *r, struct statement *s) { return read_on(r, s, "a wall"); }
 
 static enum status add_opening(struct plan_context *c, enum opening_kind kind, enum filling fill)
 {
@@ -169,13 +172,7 @@ enum status plan_place_in_room(struct plan_context *c, const struct plan_room *r
     return st;
 }
 
-enum status plan_read_slot(struct script_reader *r, struct statement *s)
-{
-    return script_read_name(r, "a name", &s->name) || script_expect(r, "on") ||
-                   script_read_name(r, "a room", &s->other) || script_read_place(r, &s->place, 1u << PLACE_FROM_END)
-               ? r->err->status
-               : ST_OK;
-}
+enum status plan_read_slot(struct script_reader *r, struct statement *s) { return read_on(r, s, "a room"); }
 
 static enum status add_slot(struct plan_context *c, enum opening_kind kind, enum filling fill)
 {
