@@ -20,8 +20,8 @@ void rule_takes_cameras(struct graph *g);
 void rule_takes_depth(struct graph *g);
 void rule_takes_ids(struct graph *g);
 void rule_takes_vita(struct graph *g);
-/* What programs read that look at the model in the photos: --model, --axes, cameras with their lenses and views, and the
- * faces that the views see. */
+/* What programs read that look at the model in the photos: --model, --axes, cameras with their lenses and views, and
+ * the faces that the views see. */
 void rule_takes_seen_model(struct graph *g);
 /* The cameras of the views that are held out, and their list. */
 void rule_needs_held_cameras(struct graph *g);
@@ -52,8 +52,8 @@ void rule_light_change(struct graph *g, const struct scene_facts *f, const char 
 /* The path of a film, as frames and videos need it; of a tour, whose pairs say what each frame blends. */
 void rule_needs_path(struct graph *g, const char *film);
 void rule_needs_tour(struct graph *g, const char *tour);
-/* encode_video makes the video of a film from these frames; `planned` is the film whose path they follow. The caller adds
- * the files of that path. */
+/* encode_video makes the video of a film from these frames; `planned` is the film whose path they follow. The caller
+ * adds the files of that path. */
 void rule_encodes(struct graph *g, const char *film, const struct name_list *frames, const char *planned);
 /* The numbers of the frames of a planned tour. */
 void scene_tour_frames_read(struct graph *g, struct name_list *frames, const char *tour);
