@@ -29,7 +29,7 @@ enum status array_reserve(void *array, size_t *capacity, size_t needed, size_t i
     if (needed <= *capacity) return ST_OK;
     const size_t doubled = *capacity > SIZE_MAX / 2 ? needed : 2 * *capacity,
                  count = doubled > needed ? doubled : needed;
-    const enum status st = resize(array, count, item_size, what, err);
-    if (!st) *capacity = count;
-    return st;
+    if (resize(array, count, item_size, what, err)) return err->status;
+    *capacity = count;
+    return ST_OK;
 }

@@ -90,10 +90,9 @@ struct common_opts {
 
 static enum status list_add(struct cli_list *list, const char *item, struct err *err)
 {
-    const enum status st = array_append(&list->items, (size_t)list->count, sizeof *list->items, "options", err);
-
-    if (!st) list->items[list->count++] = item;
-    return st;
+    if (!array_append(&list->items, (size_t)list->count, sizeof *list->items, "options", err))
+        list->items[list->count++] = item;
+    return err->status;
 }
 
 void cli_list_release(struct cli_list *list)
@@ -247,16 +246,15 @@ static enum status effective_params(const struct cli_opt *opts, const struct cli
                                     struct err *err)
 {
     size_t size = 0;
-    enum status st = ST_OK;
 
-    for (int i = 0; !st && i < common->configs.count; i++)
-        st = params_read_file(params->table, params->value, stage, common->configs.items[i], err);
-    for (int i = 0; !st && i < common->sets.count; i++)
-        st = params_set(params->table, params->value, common->sets.items[i], err);
-    for (const struct cli_opt *o = opts; !st && o->kind != CLI_KIND_END; o++)
-        if (o->kind == CLI_KIND_PARAM) st = set_param(params, o, err);
-    if (!st && params->check) st = params->check(params->value, err);
-    if (st) return st;
+    for (int i = 0; !err->status && i < common->configs.count; i++)
+        params_read_file(params->table, params->value, stage, common->configs.items[i], err);
+    for (int i = 0; !err->status && i < common->sets.count; i++)
+        params_set(params->table, params->value, common->sets.items[i], err);
+    for (const struct cli_opt *o = opts; !err->status && o->kind != CLI_KIND_END; o++)
+        if (o->kind == CLI_KIND_PARAM) set_param(params, o, err);
+    if (!err->status && params->check) params->check(params->value, err);
+    if (err->status) return err->status;
 
     FILE *to = open_memstream(&prov->params, &size);
     if (!to) return err_nomem(err, "the parameters", 0);
@@ -275,37 +273,36 @@ static enum status parse(int argc, char **argv, const char *stage, const struct 
     const struct known known = {opts, common_opts};
     const struct cli_opt *params = &none;
     bool seen[MAX_OPTIONS] = {false};
-    enum status st = ST_OK;
 
     for (const struct cli_opt *o = opts; o->kind != CLI_KIND_END; o++) {
         assert(o - opts < MAX_OPTIONS);
         if (o->kind == CLI_KIND_PARAMS) params = o;
     }
-    for (int i = 1; !st && i < argc; i++) {
-        st = take_arg(argc, argv, &i, &known, seen, err);
-        if (!st && common->help) {
+    for (int i = 1; !err->status && i < argc; i++) {
+        take_arg(argc, argv, &i, &known, seen, err);
+        if (!err->status && common->help) {
             print_help(stage, opts, common_opts, params);
             return ST_OK;
         }
-        if (!st && common->version) {
+        if (!err->status && common->version) {
             printf("remodel %s %s\n", stage, REMODEL_VERSION);
             return ST_OK;
         }
     }
-    if (!st && (common->threads < 0 || common->threads > MAX_THREADS))
-        st = err_set(err, ST_USAGE, "--threads %d: wanted 0 (one per core) to %d.", common->threads, MAX_THREADS);
-    if (!st && common->explain_config) {
+    if (!err->status && (common->threads < 0 || common->threads > MAX_THREADS))
+        err_set(err, ST_USAGE, "--threads %d: wanted 0 (one per core) to %d.", common->threads, MAX_THREADS);
+    if (!err->status && common->explain_config) {
         params_explain(params->table, params->value, stage, stdout);
         return ST_OK;
     }
-    if (!st) st = effective_params(opts, params, common, stage, prov, err);
-    if (st || common->print_config) {
-        if (!st) fputs(prov->params, stdout);
-        return st;
+    if (!err->status) effective_params(opts, params, common, stage, prov, err);
+    if (err->status || common->print_config) {
+        if (!err->status) fputs(prov->params, stdout);
+        return err->status;
     }
-    for (const struct cli_opt *o = opts; !st && o->kind != CLI_KIND_END; o++)
-        if (o->required && !seen[o - opts]) st = err_set(err, ST_USAGE, "--%s is missing: %s.", o->name, o->help);
-    return st;
+    for (const struct cli_opt *o = opts; !err->status && o->kind != CLI_KIND_END; o++)
+        if (o->required && !seen[o - opts]) err_set(err, ST_USAGE, "--%s is missing: %s.", o->name, o->help);
+    return err->status;
 }
 
 enum cli_verdict cli_parse(int argc, char **argv, const char *stage, const struct cli_opt *opts,
@@ -329,11 +326,11 @@ enum cli_verdict cli_parse(int argc, char **argv, const char *stage, const struc
     started = clock_seconds();
     owner = getpid();
     *prov = (struct provenance){.stage = stage, .version = REMODEL_VERSION};
-    enum status st = parse(argc, argv, stage, opts, common_opts, &common, prov, err);
+    parse(argc, argv, stage, opts, common_opts, &common, prov, err);
     if (common.help || common.version || common.print_config || common.explain_config) verdict = CLI_DONE;
-    if (!st && verdict == CLI_DONE && (fflush(stdout) || ferror(stdout)))
-        st = err_errno(err, "write", "standard output");
-    if (st) verdict = CLI_FAILED;
+    if (!err->status && verdict == CLI_DONE && (fflush(stdout) || ferror(stdout)))
+        err_errno(err, "write", "standard output");
+    if (err->status) verdict = CLI_FAILED;
     if (verdict == CLI_RUN) {
         parallel_set_threads(common.threads);
         atexit(report_use);

@@ -1,8 +1,18 @@
 /* err.h - status codes, and errors as complete sentences.
  *
- * A function that can fail returns `enum status` (0: success) and takes `struct err *` last; callers chain with ||.
- * Library code never prints or exits: it sets the error, and the stage's main reports it once. The first error wins:
- * later ones are ignored. err_context() puts text in front of it. */
+ * A function that can fail takes `struct err *` last and returns its status (0: success). Library code never prints or
+ * exits: it sets the error, and the stage's main reports it once. The first error wins: later ones are ignored.
+ * err_context() puts text in front of it.
+ *
+ * The error itself says whether a function goes on; there is no second variable for it:
+ *
+ *     if (!a_read(&a, path, err) && !b_make(&b, &a, err)) b_write(&b, out, err);
+ *     for (int i = 0; !err->status && i < n; i++) c_add(&c, i, err);
+ *     a_release(&a);
+ *     return err->status;
+ *
+ * So a caller passes an error that is not set yet, and never NULL where the function reads `err->status`. Whoever goes
+ * on after a failure, as a reader of optional files, uses a struct err of its own. */
 #ifndef REMODEL_ERR_H
 #define REMODEL_ERR_H
 

@@ -34,10 +34,10 @@ enum status file_bytes_read(struct file_bytes *f, const char *path, struct err *
 
     *f = (struct file_bytes){0};
     if (!fp) return err_errno(err, "open", path);
-    const enum status st = read_all(f, fp, path, err);
+    read_all(f, fp, path, err);
     fclose(fp);
-    if (st) file_bytes_release(f);
-    return st;
+    if (err->status) file_bytes_release(f);
+    return err->status;
 }
 
 void file_bytes_release(struct file_bytes *f)

@@ -13,24 +13,23 @@ static void hex_from_hash(char hex[HASH_TEXT], XXH128_hash_t hash)
 enum status hash_file(char hex[HASH_TEXT], const char *path, struct err *err)
 {
     enum { BLOCK = 1 << 20 };
-    enum status st = ST_OK;
     FILE *fp = fopen(path, "rbe");
     XXH3_state_t *state = XXH3_createState();
     unsigned char *block = malloc(BLOCK);
     size_t n = 0;
 
     if (!fp)
-        st = err_errno(err, "open", path);
+        err_errno(err, "open", path);
     else if (!state || !block || XXH3_128bits_reset(state) == XXH_ERROR)
-        st = err_nomem(err, "hashing a file", BLOCK);
-    while (!st && (n = fread(block, 1, BLOCK, fp)) > 0) XXH3_128bits_update(state, block, n);
-    if (!st && ferror(fp)) st = err_errno(err, "read", path);
-    if (!st) hex_from_hash(hex, XXH3_128bits_digest(state));
+        err_nomem(err, "hashing a file", BLOCK);
+    while (!err->status && (n = fread(block, 1, BLOCK, fp)) > 0) XXH3_128bits_update(state, block, n);
+    if (!err->status && ferror(fp)) err_errno(err, "read", path);
+    if (!err->status) hex_from_hash(hex, XXH3_128bits_digest(state));
 
     free(block);
     XXH3_freeState(state);
     if (fp) fclose(fp);
-    return st;
+    return err->status;
 }
 
 void hash_bytes(char hex[HASH_TEXT], const void *bytes, size_t size) { hex_from_hash(hex, XXH3_128bits(bytes, size)); }

@@ -15,8 +15,7 @@ static void print_escaped(FILE *to, const char *path)
 enum status make_deps_write(const char *path, const char *target, const char *const *files, int count, struct err *err)
 {
     struct outfile file = {0};
-    enum status st = outfile_open(&file, path, err);
-    if (!st) {
+    if (!outfile_open(&file, path, err)) {
         print_escaped(file.fp, target);
         fputc(':', file.fp);
         for (int i = 0; i < count; i++) {
@@ -28,8 +27,8 @@ enum status make_deps_write(const char *path, const char *target, const char *co
             print_escaped(file.fp, files[i]);
             fputs(":\n", file.fp);
         }
-        st = outfile_commit(&file, err);
+        outfile_commit(&file, err);
     }
     outfile_discard(&file);
-    return st;
+    return err->status;
 }

@@ -90,10 +90,9 @@ enum status outfile_make_folders(const char *path, struct err *err)
 {
     char *folder = strdup(path);
     struct stat info;
-    enum status st = ST_OK;
 
     if (!folder) return err_nomem(err, "a folder's name", strlen(path) + 1);
-    for (char *p = folder; !st && *p; p++) {
+    for (char *p = folder; !err->status && *p; p++) {
         const char *slash = strchr(p + 1, '/');
         p = slash ? folder + (slash - folder) : p + strlen(p);
         const char kept = *p;
@@ -101,13 +100,13 @@ enum status outfile_make_folders(const char *path, struct err *err)
         /* stat() first: mkdir() may fail with EACCES or EROFS in an existing parent folder */
         if (stat(folder, &info) || !S_ISDIR(info.st_mode)) {
             if (mkdir(folder, 0777) && (errno != EEXIST || stat(folder, &info) || !S_ISDIR(info.st_mode)))
-                st = err_errno(err, "make the folder", folder);
+                err_errno(err, "make the folder", folder);
         }
         if (!kept) break;
         *p = kept;
     }
     free(folder);
-    return st;
+    return err->status;
 }
 
 /* Sets temp to ".NAME.XXXXXX.tmp" in the folder of `path`. NAME is cut to 200 bytes, to fit a file name. */
@@ -129,30 +128,28 @@ static enum status temp_name(char temp[PATH_MAX], const char *path, struct err *
 static enum status make_parent(const char *path, struct err *err)
 {
     const char *slash = strrchr(path, '/');
-    enum status st;
 
     if (!slash || slash == path) return ST_OK;
     char *folder = strndup(path, (size_t)(slash - path));
     if (!folder) return err_nomem(err, "a folder's name", strlen(path));
-    st = outfile_make_folders(folder, err);
+    outfile_make_folders(folder, err);
     free(folder);
-    return st;
+    return err->status;
 }
 
 enum status outfile_open(struct outfile *f, const char *path, struct err *err)
 {
     char temp[PATH_MAX];
     struct stat info;
-    enum status st;
     int fd = -1;
 
     *f = (struct outfile){0};
     /* renaming would replace a device such as /dev/null by a file */
     if (!stat(path, &info) && !S_ISREG(info.st_mode))
         return err_set(err, ST_IO, "cannot write %s: it exists and is not a regular file; give another name.", path);
-    if ((st = make_parent(path, err))) return st;
+    if (make_parent(path, err)) return err->status;
     for (int tries = 0; fd < 0; tries++) {
-        if ((st = temp_name(temp, path, err)) || (st = live_add(temp, err))) return st;
+        if (temp_name(temp, path, err) || live_add(temp, err)) return err->status;
         /* not mkstemp(), which makes mode 0600: open() applies the umask, which threads share and must not change */
         fd = open(temp, O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
         if (fd >= 0) break;
@@ -199,18 +196,16 @@ static void sync_parent(const char *path)
 
 enum status outfile_commit(struct outfile *f, struct err *err)
 {
-    enum status st = ST_OK;
-
     if (!f->fp) return err_set(err, ST_INTERNAL, "outfile_commit() was called for a file that is not open.");
     if (fflush(f->fp))
-        st = err_errno(err, "write", f->path);
+        err_errno(err, "write", f->path);
     else if (ferror(f->fp))
-        st = err_set(err, ST_IO, "cannot write %s: a write failed; the disk may be full.", f->path);
-    if (fclose(f->fp) && !st) st = err_errno(err, "write", f->path);
+        err_set(err, ST_IO, "cannot write %s: a write failed; the disk may be full.", f->path);
+    if (fclose(f->fp) && !err->status) err_errno(err, "write", f->path);
     f->fp = NULL;
-    if (!st && sync_path(f->temp, 0)) st = err_errno(err, "write", f->path);
-    if (!st && rename(f->temp, f->path)) st = err_errno(err, "write", f->path);
-    if (!st) {
+    if (!err->status && sync_path(f->temp, 0)) err_errno(err, "write", f->path);
+    if (!err->status && rename(f->temp, f->path)) err_errno(err, "write", f->path);
+    if (!err->status) {
         live_drop(f->temp);
         sync_parent(f->path);
         free(f->path);
@@ -219,7 +214,7 @@ enum status outfile_commit(struct outfile *f, struct err *err)
         return ST_OK;
     }
     outfile_discard(f);
-    return st;
+    return err->status;
 }
 
 void outfile_discard(struct outfile *f)
@@ -245,9 +240,9 @@ enum status outfile_write_if_changed(const char *path, const char *text, size_t 
     if (same) return ST_OK;
 
     struct outfile f = {0};
-    enum status st = outfile_open(&f, path, err);
-    if (!st && fwrite(text, 1, size, f.fp) != size) st = err_errno(err, "write", path);
-    if (!st) st = outfile_commit(&f, err);
+    outfile_open(&f, path, err);
+    if (!err->status && fwrite(text, 1, size, f.fp) != size) err_errno(err, "write", path);
+    if (!err->status) outfile_commit(&f, err);
     outfile_discard(&f);
-    return st;
+    return err->status;
 }

@@ -197,7 +197,7 @@ enum status params_read_file(const struct param *table, void *values, const char
 done:
     if (r.status == ST_IO || r.status == ST_DATA) { /* an unreadable config file is a usage error */
         r.status = ST_USAGE;
-        if (err) err->status = ST_USAGE;
+        err->status = ST_USAGE;
     }
     free(r.given);
     textfile_release(&file);

@@ -111,28 +111,27 @@ static enum status start(long *pid, const char *const argv[], const char *const 
     char path[PATH_MAX];
     int error_pipe[2] = {-1, -1}, out = -1, reason = 0;
     char **envp = NULL;
-    enum status st;
     ssize_t n;
 
-    if ((st = find_program(path, argv[0], err))) return st;
+    if (find_program(path, argv[0], err)) return err->status;
     if (!(envp = merge_environment(env))) {
-        st = err_nomem(err, "the environment of a program", 0);
+        err_nomem(err, "the environment of a program", 0);
     } else if (log && (out = open(log, O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, 0666)) < 0) {
-        st = err_errno(err, "write", log);
+        err_errno(err, "write", log);
     } else if (pipe2(error_pipe, O_CLOEXEC)) {
-        st = err_errno(err, "start", argv[0]);
+        err_errno(err, "start", argv[0]);
     } else {
         const pid_t parent = getpid(), child = fork();
         if (!child) run_child(path, (char *const *)argv, envp, in, out, error_pipe[1], parent);
         close(error_pipe[1]);
         if (child < 0) {
-            st = err_errno(err, "start", argv[0]);
+            err_errno(err, "start", argv[0]);
         } else {
             while ((n = read(error_pipe[0], &reason, sizeof reason)) < 0 && errno == EINTR) continue;
             if (n == (ssize_t)sizeof reason) {
                 while (waitpid(child, NULL, 0) < 0 && errno == EINTR) continue;
                 errno = reason;
-                st = err_errno(err, "start", path);
+                err_errno(err, "start", path);
             } else {
                 *pid = child;
             }
@@ -141,7 +140,7 @@ static enum status start(long *pid, const char *const argv[], const char *const 
     }
     if (out >= 0) close(out);
     free(envp);
-    return st;
+    return err->status;
 }
 
 static enum status wait_for(long pid, int *code, struct err *err)
@@ -158,13 +157,13 @@ static enum status wait_for(long pid, int *code, struct err *err)
 enum status process_run(const char *const argv[], const char *const env[], const char *log, int *code, struct err *err)
 {
     const int in = open("/dev/null", O_RDONLY | O_CLOEXEC);
-    enum status st;
     long pid = 0;
 
     if (in < 0) return err_errno(err, "open", "/dev/null");
-    st = start(&pid, argv, env, in, log, err);
+    start(&pid, argv, env, in, log, err);
     close(in);
-    return st ? st : wait_for(pid, code, err);
+    if (!err->status) wait_for(pid, code, err);
+    return err->status;
 }
 
 /* SIGPIPE is ignored while a pipe to a program is open. */
@@ -191,20 +190,19 @@ static void pipe_closed(void)
 enum status process_start(struct process *p, const char *const argv[], const char *log, struct err *err)
 {
     int ends[2];
-    enum status st;
 
     *p = (struct process){0};
     if (pipe2(ends, O_CLOEXEC)) return err_errno(err, "make a pipe to", argv[0]);
-    st = start(&p->pid, argv, NULL, ends[0], log, err);
+    start(&p->pid, argv, NULL, ends[0], log, err);
     close(ends[0]);
-    if (!st && !(p->input = fdopen(ends[1], "wb"))) {
-        st = err_nomem(err, "a pipe", BUFSIZ);
+    if (!err->status && !(p->input = fdopen(ends[1], "wb"))) {
+        err_nomem(err, "a pipe", BUFSIZ);
         process_kill(p);
     }
-    if (st) {
+    if (err->status) {
         close(ends[1]);
         *p = (struct process){0};
-        return st;
+        return err->status;
     }
     pipe_opened();
     return ST_OK;
@@ -212,14 +210,12 @@ enum status process_start(struct process *p, const char *const argv[], const cha
 
 enum status process_finish(struct process *p, int *code, struct err *err)
 {
-    enum status st;
-
     *code = 0;
     if (!p || !p->pid) return ST_OK;
     bool failed = ferror(p->input);
     if (fclose(p->input)) failed = true;
     pipe_closed();
-    st = wait_for(p->pid, code, err);
+    const enum status st = wait_for(p->pid, code, err);
     /* exit code 0 without reading all of the input is a failure too */
     if (!st && failed && !*code) *code = 128 + SIGPIPE;
     *p = (struct process){0};

@@ -23,9 +23,9 @@ enum status provenance_add_hash(struct provenance *prov, const char *name, const
 
     if (provenance_has(prov, name)) return ST_OK;
     /* refuse names that cannot be printed now, not when the product is written */
-    enum status st = textfile_quote(name, quoted, sizeof quoted, err);
-    if (!st) st = array_append(&prov->inputs, (size_t)prov->count, sizeof input, "inputs", err);
-    if (st) return st;
+    if (textfile_quote(name, quoted, sizeof quoted, err) ||
+        array_append(&prov->inputs, (size_t)prov->count, sizeof input, "inputs", err))
+        return err->status;
     memcpy(input.hash, hash, HASH_TEXT);
     if (!(input.name = strdup(name))) return err_nomem(err, "the name of an input", strlen(name) + 1);
     prov->inputs[prov->count++] = input;
@@ -37,16 +37,14 @@ enum status provenance_add_file(struct provenance *prov, const char *name, const
     char hash[HASH_TEXT];
 
     if (provenance_has(prov, name)) return ST_OK;
-    const enum status st = hash_file(hash, path, err);
-    return st ? st : provenance_add_hash(prov, name, hash, err);
+    return hash_file(hash, path, err) || provenance_add_hash(prov, name, hash, err) ? err->status : ST_OK;
 }
 
 enum status provenance_add_all(struct provenance *prov, const struct provenance *inputs, struct err *err)
 {
-    enum status st = ST_OK;
-    for (int i = 0; !st && i < inputs->count; i++)
-        st = provenance_add_hash(prov, inputs->inputs[i].name, inputs->inputs[i].hash, err);
-    return st;
+    for (int i = 0; !err->status && i < inputs->count; i++)
+        provenance_add_hash(prov, inputs->inputs[i].name, inputs->inputs[i].hash, err);
+    return err->status;
 }
 
 enum status provenance_read(struct provenance *prov, const char *name, struct file_bytes *file, const char *path,
@@ -54,12 +52,10 @@ enum status provenance_read(struct provenance *prov, const char *name, struct fi
 {
     char hash[HASH_TEXT];
 
-    enum status st = file_bytes_read(file, path, err);
-    if (st || !prov || provenance_has(prov, name)) return st;
+    if (file_bytes_read(file, path, err) || !prov || provenance_has(prov, name)) return err->status;
     hash_bytes(hash, file->bytes, file->size);
-    st = provenance_add_hash(prov, name, hash, err);
-    if (st) file_bytes_release(file);
-    return st;
+    if (provenance_add_hash(prov, name, hash, err)) file_bytes_release(file);
+    return err->status;
 }
 
 enum status provenance_open(struct provenance *prov, const char *name, struct textfile *t, const char *path,
@@ -68,8 +64,7 @@ enum status provenance_open(struct provenance *prov, const char *name, struct te
     struct file_bytes file = {0};
 
     *t = (struct textfile){0};
-    const enum status st = provenance_read(prov, name, &file, path, err);
-    return st ? st : textfile_take(t, &file, path, err);
+    return provenance_read(prov, name, &file, path, err) || textfile_take(t, &file, path, err) ? err->status : ST_OK;
 }
 
 static void print_inputs(const struct provenance *prov, const char *prefix, FILE *to)

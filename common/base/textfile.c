@@ -33,26 +33,24 @@ enum status textfile_open(struct textfile *t, const char *path, struct err *err)
 {
     struct file_bytes file = {0};
     *t = (struct textfile){0};
-    const enum status st = file_bytes_read(&file, path, err);
-    return st ? st : textfile_take(t, &file, path, err);
+    return file_bytes_read(&file, path, err) || textfile_take(t, &file, path, err) ? err->status : ST_OK;
 }
 
 enum status textfile_take(struct textfile *t, struct file_bytes *file, const char *path, struct err *err)
 {
-    enum status st = ST_OK;
     const char *nul;
 
     *t = (struct textfile){.path = strdup(path), .bytes = file->bytes, .size = file->size};
     *file = (struct file_bytes){0};
     if (!t->path) {
-        st = err_nomem(err, "a file name", strlen(path) + 1);
+        err_nomem(err, "a file name", strlen(path) + 1);
     } else if ((nul = memchr(t->bytes, '\0', t->size))) {
         for (const char *p = t->bytes; p < nul; p++) t->line += *p == '\n';
         t->line++;
-        st = textfile_error(t, err, "\\0", "text without NUL bytes; the file is damaged or not a text file");
+        textfile_error(t, err, "\\0", "text without NUL bytes; the file is damaged or not a text file");
     }
-    if (st) textfile_release(t);
-    return st;
+    if (err->status) textfile_release(t);
+    return err->status;
 }
 
 bool textfile_next_raw(struct textfile *t)
@@ -104,9 +102,8 @@ enum status textfile_word(struct textfile *t, const char *what, char **word, str
 
     if (!p || !*p) return textfile_error(t, err, NULL, "%s", what);
     if (*p == '"') {
-        const enum status st = quoted_word(t, what, p + 1, err);
-        if (!st) *word = p + 1;
-        return st;
+        if (!quoted_word(t, what, p + 1, err)) *word = p + 1;
+        return err->status;
     }
     *word = p;
     while (*p && !blank(*p)) p++;
@@ -119,9 +116,8 @@ static enum status expect(struct textfile *t, const char *word, const char *want
 {
     char *found = NULL;
 
-    const enum status st = textfile_word(t, wanted, &found, err);
-
-    return !st && strcmp(found, word) ? textfile_error(t, err, found, "%s", wanted) : st;
+    if (!textfile_word(t, wanted, &found, err) && strcmp(found, word)) textfile_error(t, err, found, "%s", wanted);
+    return err->status;
 }
 
 enum status textfile_expect(struct textfile *t, const char *word, struct err *err)
@@ -155,9 +151,7 @@ enum status textfile_int(struct textfile *t, const char *what, int64_t min, int6
 {
     char *word;
     int64_t v;
-    const enum status st = textfile_word(t, what, &word, err);
-
-    if (st) return st;
+    if (textfile_word(t, what, &word, err)) return err->status;
     if (!scan_int(word, &v) || v < min || v > max)
         return textfile_error(t, err, word, "%s, an integer from %" PRId64 " to %" PRId64, what, min, max);
     *value = v;
@@ -167,9 +161,7 @@ enum status textfile_int(struct textfile *t, const char *what, int64_t min, int6
 enum status textfile_double(struct textfile *t, const char *what, double *value, struct err *err)
 {
     char *word;
-    const enum status st = textfile_word(t, what, &word, err);
-
-    if (st) return st;
+    if (textfile_word(t, what, &word, err)) return err->status;
     if (!scan_double(word, value)) return textfile_error(t, err, word, "%s, a finite number", what);
     return ST_OK;
 }
@@ -216,8 +208,8 @@ enum status textfile_end_of_file(struct textfile *t, struct err *err)
     char *rest = NULL;
 
     if (!textfile_next(t)) return ST_OK;
-    const enum status st = textfile_rest(t, "a line", &rest, err);
-    return st ? st : textfile_error(t, err, rest, "the end of the file");
+    if (!textfile_rest(t, "a line", &rest, err)) textfile_error(t, err, rest, "the end of the file");
+    return err->status;
 }
 
 enum status textfile_wrong_number(const struct textfile *t, double found, const char *wanted, struct err *err)

@@ -88,9 +88,9 @@ enum status camera_errors_measure(struct camera_errors *e, const struct similari
                                   const struct pose *truth, int count, struct err *err)
 {
     double *centers = malloc((size_t)count * sizeof *centers), *turns = malloc((size_t)count * sizeof *turns);
-    enum status st = centers && turns ? ST_OK : err_nomem(err, "errors of cameras", (size_t)count * sizeof *turns);
+    if (!centers || !turns) err_nomem(err, "errors of cameras", (size_t)count * sizeof *turns);
     *e = (struct camera_errors){0};
-    for (int i = 0; !st && i < count; i++) {
+    for (int i = 0; !err->status && i < count; i++) {
         struct vec3 at =
             vec3_add(vec3_scale(mat3_apply(a->rotation, pose_center(&found[i])), a->scale), a->translation);
         struct mat3 aligned = mat3_multiply(mat3_from_quat(found[i].rotation), mat3_transpose(a->rotation));
@@ -100,11 +100,11 @@ enum status camera_errors_measure(struct camera_errors *e, const struct similari
         e->center_max = fmax(e->center_max, centers[i]);
         e->rotation_max = fmax(e->rotation_max, turns[i]);
     }
-    if (!st) {
+    if (!err->status) {
         e->center_median = sort_median(centers, (size_t)count);
         e->rotation_median = sort_median(turns, (size_t)count);
     }
     free(centers);
     free(turns);
-    return st;
+    return err->status;
 }

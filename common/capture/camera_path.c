@@ -86,11 +86,10 @@ static enum status write_poses(const struct camera_path *p, const char *folder, 
 {
     struct sfm_model m = {0};
     size_t n = (size_t)p->frame_count;
-    enum status st = ST_OK;
     m.cameras = calloc(n, sizeof *m.cameras);
     m.images = calloc(n, sizeof *m.images);
-    if (!m.cameras || !m.images) st = err_nomem(err, "a path's cameras", n * sizeof *m.images);
-    for (int i = 0; !st && i < p->frame_count; i++) {
+    if (!m.cameras || !m.images) err_nomem(err, "a path's cameras", n * sizeof *m.images);
+    for (int i = 0; !err->status && i < p->frame_count; i++) {
         const struct view *v = &p->frames[i].camera;
         char name[32];
         snprintf(name, sizeof name, "%s.exr", v->name);
@@ -101,11 +100,11 @@ static enum status write_poses(const struct camera_path *p, const char *folder, 
         m.images[i].cam_from_world = (struct pose){quat_from_mat3(v->cam_from_world), v->translation};
         m.images[i].name = strdup(name);
         m.camera_count = m.image_count = i + 1;
-        if (!m.images[i].name) st = err_nomem(err, "a path's cameras", sizeof name);
+        if (!m.images[i].name) err_nomem(err, "a path's cameras", sizeof name);
     }
-    if (!st) st = sfm_model_write_text(&m, folder, prov, err);
+    if (!err->status) sfm_model_write_text(&m, folder, prov, err);
     sfm_model_release(&m);
-    return st;
+    return err->status;
 }
 
 static enum status write_list(const struct camera_path *p, const char *path, const struct provenance *prov,
@@ -113,23 +112,21 @@ static enum status write_list(const struct camera_path *p, const char *path, con
 {
     struct outfile f = {0};
     char effect[LINE_SIZE], name[LINE_SIZE], unit[LINE_SIZE];
-    enum status st = product_begin(&f, PRODUCT_PATH, path, prov, err);
-    if (!st) st = textfile_quote(p->effect, effect, sizeof effect, err);
-    if (!st) fprintf(f.fp, "effect %s\nfps %.17g\n", effect, p->fps);
-    for (int i = 0; !st && i < p->score_count; i++) {
+    if (!product_begin(&f, PRODUCT_PATH, path, prov, err) && !textfile_quote(p->effect, effect, sizeof effect, err))
+        fprintf(f.fp, "effect %s\nfps %.17g\n", effect, p->fps);
+    for (int i = 0; !err->status && i < p->score_count; i++) {
         const struct path_score *s = &p->scores[i];
-        st = textfile_quote(s->name, name, sizeof name, err);
-        if (!st) st = textfile_quote(s->unit, unit, sizeof unit, err);
-        if (!st) fprintf(f.fp, "score %s %.17g %s\n", name, s->value, unit);
+        if (!textfile_quote(s->name, name, sizeof name, err) && !textfile_quote(s->unit, unit, sizeof unit, err))
+            fprintf(f.fp, "score %s %.17g %s\n", name, s->value, unit);
     }
-    if (!st) fprintf(f.fp, "frames %d\n", p->frame_count);
-    for (int i = 0; !st && i < p->frame_count; i++) {
+    if (!err->status) fprintf(f.fp, "frames %d\n", p->frame_count);
+    for (int i = 0; !err->status && i < p->frame_count; i++) {
         const struct path_frame *fr = &p->frames[i];
         fprintf(f.fp, "frame %s %.17g %.17g %.17g\n", fr->camera.name, fr->time, fr->aperture, fr->focus);
     }
-    if (!st) st = outfile_commit(&f, err);
+    if (!err->status) outfile_commit(&f, err);
     outfile_discard(&f);
-    return st;
+    return err->status;
 }
 
 enum status camera_path_write(const struct camera_path *p, const char *folder, const struct provenance *prov,
@@ -229,26 +226,25 @@ enum status camera_path_read(struct camera_path *p, const char *folder, struct p
     char poses[FILE_PATH], list[FILE_PATH];
     int64_t frames = 0;
     *p = (struct camera_path){0};
-    enum status st = find_files(poses, list, folder, err) || camera_set_read(&set, poses, prov, err) ||
-                             product_open(&t, NULL, PRODUCT_PATH, list, prov, err) || read_head(&t, &head, &frames, err)
-                         ? err->status
-                         : ST_OK;
-    if (!st && frames != set.view_count) {
+    if (!find_files(poses, list, folder, err) && !camera_set_read(&set, poses, prov, err) &&
+        !product_open(&t, NULL, PRODUCT_PATH, list, prov, err))
+        read_head(&t, &head, &frames, err);
+    if (!err->status && frames != set.view_count) {
         char found[32];
         snprintf(found, sizeof found, "%d", (int)frames);
-        st = textfile_error(&t, err, found, "%d frames as in %s/images.txt", set.view_count, poses);
+        textfile_error(&t, err, found, "%d frames as in %s/images.txt", set.view_count, poses);
     }
-    if (!st) st = camera_path_init(p, head.effect, head.fps, (int)frames, err);
-    if (!st) {
+    if (!err->status && !camera_path_init(p, head.effect, head.fps, (int)frames, err)) {
         p->scores = head.scores;
         p->score_count = head.score_count;
         head.scores = NULL;
     }
-    for (int i = 0; !st && i < p->frame_count; i++) st = read_frame(&t, &p->frames[i], &set, &p->frames[0].camera, err);
-    if (!st) st = textfile_end_of_file(&t, err);
+    for (int i = 0; !err->status && i < p->frame_count; i++)
+        read_frame(&t, &p->frames[i], &set, &p->frames[0].camera, err);
+    if (!err->status) textfile_end_of_file(&t, err);
     free(head.scores);
     textfile_release(&t);
     camera_set_release(&set);
-    if (st) camera_path_release(p);
-    return st;
+    if (err->status) camera_path_release(p);
+    return err->status;
 }

@@ -51,8 +51,9 @@ static enum status sort_views(struct camera_set *set, struct err *err)
     size_t n = (size_t)set->view_count;
     struct view_entry *entries = calloc(n, sizeof *entries);
     int *new_idx = calloc(n, sizeof *new_idx);
-    enum status st = entries && new_idx ? ST_OK : err_nomem(err, "views", n * sizeof *entries);
-    if (!st) {
+    if (!entries || !new_idx) {
+        err_nomem(err, "views", n * sizeof *entries);
+    } else {
         for (size_t i = 0; i < n; i++) entries[i] = (struct view_entry){set->views[i], m->images[i], (int)i};
         qsort(entries, n, sizeof *entries, compare_entries);
         for (size_t i = 0; i < n; i++) {
@@ -66,36 +67,34 @@ static enum status sort_views(struct camera_set *set, struct err *err)
     }
     free(entries);
     free(new_idx);
-    return st;
+    return err->status;
 }
 
-/* The views of set->model, unless reading it failed. */
-static enum status make_views(struct camera_set *set, const char *folder, enum status st, struct err *err)
+/* The views of set->model; the set is released if that fails. */
+static enum status make_views(struct camera_set *set, const char *folder, struct err *err)
 {
-    if (!st) {
-        set->views = calloc((size_t)set->model.image_count, sizeof *set->views);
-        if (!set->views) st = err_nomem(err, "views", (size_t)set->model.image_count * sizeof *set->views);
-    }
-    for (int i = 0; !st && i < set->model.image_count; i++) {
-        st = make_view(&set->views[i], &set->model, &set->model.images[i], folder, err);
-        if (!st) set->view_count++;
-    }
-    if (!st) st = sort_views(set, err);
-    if (st) camera_set_release(set);
-    return st;
+    set->views = calloc((size_t)set->model.image_count, sizeof *set->views);
+    if (!set->views) err_nomem(err, "views", (size_t)set->model.image_count * sizeof *set->views);
+    for (int i = 0; !err->status && i < set->model.image_count; i++)
+        if (!make_view(&set->views[i], &set->model, &set->model.images[i], folder, err)) set->view_count++;
+    if (!err->status) sort_views(set, err);
+    if (err->status) camera_set_release(set);
+    return err->status;
 }
 
 enum status camera_set_read(struct camera_set *set, const char *folder, struct provenance *prov, struct err *err)
 {
     *set = (struct camera_set){0};
-    return make_views(set, folder, sfm_model_read_text(&set->model, folder, prov, err), err);
+    if (sfm_model_read_text(&set->model, folder, prov, err)) return err->status;
+    return make_views(set, folder, err);
 }
 
 enum status camera_set_read_cameras(struct camera_set *set, const char *folder, struct provenance *prov,
                                     struct err *err)
 {
     *set = (struct camera_set){0};
-    return make_views(set, folder, sfm_model_read_cameras(&set->model, folder, prov, err), err);
+    if (sfm_model_read_cameras(&set->model, folder, prov, err)) return err->status;
+    return make_views(set, folder, err);
 }
 
 /* Drops the views that go (-1 in new_idx) from a point's track; returns the number of those that stay. */

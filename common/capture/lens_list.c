@@ -53,43 +53,41 @@ enum status lens_list_read(struct lens_list *list, const char *path, struct prov
 {
     struct textfile t = {0};
     *list = (struct lens_list){0};
-    enum status st = product_open(&t, NULL, PRODUCT_LENSES, path, prov, err);
-    while (!st && textfile_next(&t)) {
-        st = array_append(&list->lenses, (size_t)list->count, sizeof *list->lenses, "lenses", err);
-        if (st) break;
+    product_open(&t, NULL, PRODUCT_LENSES, path, prov, err);
+    while (!err->status && textfile_next(&t)) {
+        if (array_append(&list->lenses, (size_t)list->count, sizeof *list->lenses, "lenses", err)) break;
         struct lens *l = &list->lenses[list->count++];
         *l = (struct lens){0};
-        st = read_lens(&t, l, err);
-        if (!st && list->count > 1 && strcmp(l[-1].view, l->view) >= 0)
-            st = err_set(err, ST_DATA, "%s:%d: found view %s after %s, wanted each view once, in order of name.", path,
-                         t.line, l->view, l[-1].view);
+        read_lens(&t, l, err);
+        if (!err->status && list->count > 1 && strcmp(l[-1].view, l->view) >= 0)
+            err_set(err, ST_DATA, "%s:%d: found view %s after %s, wanted each view once, in order of name.", path,
+                    t.line, l->view, l[-1].view);
     }
-    if (!st && !list->count) st = textfile_error(&t, err, NULL, "a line for each view");
+    if (!err->status && !list->count) textfile_error(&t, err, NULL, "a line for each view");
     textfile_release(&t);
-    if (st) lens_list_release(list);
-    return st;
+    if (err->status) lens_list_release(list);
+    return err->status;
 }
 
 enum status lens_list_write(const struct lens_list *list, const char *path, const struct provenance *prov,
                             struct err *err)
 {
     struct outfile f = {0};
-    enum status st = product_begin(&f, PRODUCT_LENSES, path, prov, err);
-    for (int i = 0; !st && i < list->count; i++) {
+    product_begin(&f, PRODUCT_LENSES, path, prov, err);
+    for (int i = 0; !err->status && i < list->count; i++) {
         const struct lens *l = &list->lenses[i];
         struct quat q = l->view_from_photo;
         char view[NAME_SIZE], photo[NAME_SIZE];
-        st = textfile_quote(l->view, view, sizeof view, err);
-        if (!st) st = textfile_quote(l->photo, photo, sizeof photo, err);
-        if (st) break;
+        if (textfile_quote(l->view, view, sizeof view, err) || textfile_quote(l->photo, photo, sizeof photo, err))
+            break;
         fprintf(f.fp, "%s %s %s %d %d", view, photo, camera_model_name(l->camera.model), l->camera.width,
                 l->camera.height);
         for (int k = 0; k < camera_model_params(l->camera.model); k++) fprintf(f.fp, " %.17g", l->camera.params[k]);
         fprintf(f.fp, " turn %.17g %.17g %.17g %.17g\n", q.w, q.x, q.y, q.z);
     }
-    if (!st) st = outfile_commit(&f, err);
+    if (!err->status) outfile_commit(&f, err);
     outfile_discard(&f);
-    return st;
+    return err->status;
 }
 
 static bool is_before(const void *lens, const void *view)

@@ -14,13 +14,12 @@ static enum status read_single(struct image *linear, struct photo_quality *quali
 {
     struct photo photo = {0};
     char path[FILE_PATH], name[FILE_PATH];
-    enum status st = file_path(path, photos, file, "", err);
-    if (!st) st = file_path(name, "photos", file, "", err);
-    if (!st) st = photo_read_input(&photo, path, name, prov, err);
-    if (!st) st = photo_to_linear(linear, &photo, err);
-    if (!st && quality) st = photo_quality_of_exposure(quality, &photo, linear, assumed, err);
+    if (!file_path(path, photos, file, "", err) && !file_path(name, "photos", file, "", err) &&
+        !photo_read_input(&photo, path, name, prov, err))
+        photo_to_linear(linear, &photo, err);
+    if (!err->status && quality) photo_quality_of_exposure(quality, &photo, linear, assumed, err);
     photo_release(&photo);
-    return st;
+    return err->status;
 }
 
 static enum status read_merged(struct image *linear, struct photo_quality *quality, const char *folder, const char *id,
@@ -29,14 +28,13 @@ static enum status read_merged(struct image *linear, struct photo_quality *quali
     static const char *const names[] = {"R", "G", "B", "clipped", "variance"};
     struct exr_image exr = {0};
     char path[FILE_PATH];
-    enum status st = product_path_in(path, folder, PRODUCT_HDR, &(struct product_key){.photo = id}, err);
-    if (!st) st = exr_read_product(&exr, PRODUCT_HDR, path, names, quality ? 5 : 3, prov, err);
-    for (int c = 0; !st && c < 3; c++)
+    if (!product_path_in(path, folder, PRODUCT_HDR, &(struct product_key){.photo = id}, err))
+        exr_read_product(&exr, PRODUCT_HDR, path, names, quality ? 5 : 3, prov, err);
+    for (int c = 0; !err->status && c < 3; c++)
         if (!exr_find(&exr, names[c])->f)
-            st = err_set(err, ST_DATA, "%s: channel %s contains integers, wanted half or float; merge the view again.",
-                         path, names[c]);
-    if (!st) st = image_init(linear, exr.width, exr.height, 3, err);
-    if (!st) {
+            err_set(err, ST_DATA, "%s: channel %s contains integers, wanted half or float; merge the view again.", path,
+                    names[c]);
+    if (!err->status && !image_init(linear, exr.width, exr.height, 3, err)) {
         const float *const r = exr_find(&exr, "R")->f, *const g = exr_find(&exr, "G")->f,
                            *const b = exr_find(&exr, "B")->f;
         const size_t pixels = (size_t)exr.width * (size_t)exr.height;
@@ -47,11 +45,11 @@ static enum status read_merged(struct image *linear, struct photo_quality *quali
             to[2] = b[i] > 0 ? b[i] : 0;
         }
     }
-    if (!st && quality) st = photo_quality_of_merged(quality, &exr, path, linear, err);
+    if (!err->status && quality) photo_quality_of_merged(quality, &exr, path, linear, err);
     const char *stored = exr_attribute(&exr, "remodel:radiometry");
-    if (!st && stored) snprintf(radiometry, RADIOMETRY_SIZE, "%s", stored);
+    if (!err->status && stored) snprintf(radiometry, RADIOMETRY_SIZE, "%s", stored);
     exr_image_release(&exr);
-    return st;
+    return err->status;
 }
 
 enum status linear_photo_read(struct image *linear, struct photo_quality *quality, char radiometry[RADIOMETRY_SIZE],

@@ -44,16 +44,15 @@ static enum status find_common(struct common_photos *c, const struct sfm_model *
     struct lens_list lenses = {0};
     struct photo_list photos = {0};
     char path[FILE_PATH];
-    enum status st = product_path_in(path, scene->views, PRODUCT_LENSES, NULL, err);
-    if (!st) st = camera_set_read(&set, scene->views, scene->prov, err);
-    if (!st) st = lens_list_read(&lenses, path, scene->prov, err);
-    if (!st) st = photo_list_read(&photos, scene->records, err);
+    if (!product_path_in(path, scene->views, PRODUCT_LENSES, NULL, err) &&
+        !camera_set_read(&set, scene->views, scene->prov, err) && !lens_list_read(&lenses, path, scene->prov, err))
+        photo_list_read(&photos, scene->records, err);
     bool *taken = calloc((size_t)photos.count + 1, sizeof *taken);
     c->scene = calloc((size_t)model->image_count + 1, sizeof *c->scene);
     c->model = calloc((size_t)model->image_count + 1, sizeof *c->model);
-    if (!st && (!taken || !c->scene || !c->model))
-        st = err_nomem(err, "poses", (size_t)model->image_count * sizeof *c->scene);
-    for (int i = 0; !st && i < model->image_count; i++) {
+    if (!err->status && (!taken || !c->scene || !c->model))
+        err_nomem(err, "poses", (size_t)model->image_count * sizeof *c->scene);
+    for (int i = 0; !err->status && i < model->image_count; i++) {
         const int photo = photo_list_match(&photos, model->images[i].name);
         struct photo_camera camera;
         struct err absent = ERR_INIT; /* a photo without a pose is no error */
@@ -68,7 +67,7 @@ static enum status find_common(struct common_photos *c, const struct sfm_model *
     photo_list_release(&photos);
     lens_list_release(&lenses);
     camera_set_release(&set);
-    return st;
+    return err->status;
 }
 
 /* The largest distance of a centre from their mean. */
@@ -102,26 +101,24 @@ enum status photo_alignment_find(struct similarity *model_from_scene, struct fra
 {
     struct common_photos c = {0};
     struct err apart = ERR_INIT; /* in words about found and true cameras */
-    enum status st = find_common(&c, model, scene, err);
-    if (!st && c.count < MIN_PHOTOS)
-        st = err_set(err, ST_DATA, "%s has %d of the scene's photographs with a pose in %s, wanted at least %d. %s",
-                     folder, c.count, scene->views, (int)MIN_PHOTOS, rules->if_few);
-    if (!st && camera_alignment_find(model_from_scene, c.scene, c.model, c.count, &apart))
-        st =
-            err_set(err, ST_DATA,
-                    "the %d photographs that %s and %s have in common are all in one place in one of them, or no scale "
-                    "fits; give a model of photographs from several places.",
-                    c.count, folder, scene->views);
-    if (!st) st = camera_errors_measure(&a->errors, model_from_scene, c.scene, c.model, c.count, err);
-    if (!st) {
+    find_common(&c, model, scene, err);
+    if (!err->status && c.count < MIN_PHOTOS)
+        err_set(err, ST_DATA, "%s has %d of the scene's photographs with a pose in %s, wanted at least %d. %s", folder,
+                c.count, scene->views, (int)MIN_PHOTOS, rules->if_few);
+    if (!err->status && camera_alignment_find(model_from_scene, c.scene, c.model, c.count, &apart))
+        err_set(err, ST_DATA,
+                "the %d photographs that %s and %s have in common are all in one place in one of them, or no scale "
+                "fits; give a model of photographs from several places.",
+                c.count, folder, scene->views);
+    if (!err->status && !camera_errors_measure(&a->errors, model_from_scene, c.scene, c.model, c.count, err)) {
         a->photos = c.count;
         a->extent = extent_of(c.scene, c.count);
         const double unit = 1 / (model_from_scene->scale * a->extent);
         a->errors.center_median *= unit;
         a->errors.center_max *= unit;
-        st = check_agreement(a, folder, scene, rules, err);
+        check_agreement(a, folder, scene, rules, err);
     }
     free(c.scene);
     free(c.model);
-    return st;
+    return err->status;
 }

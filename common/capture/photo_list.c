@@ -28,34 +28,33 @@ static enum status keep_word(char **kept, const char *word, struct err *err)
 static enum status read_int(struct textfile *t, const char *what, int min, int max, int *value, struct err *err)
 {
     int64_t wide = 0;
-    enum status st = textfile_int(t, what, min, max, &wide, err);
-    if (!st) *value = (int)wide;
-    return st;
+    if (!textfile_int(t, what, min, max, &wide, err)) *value = (int)wide;
+    return err->status;
 }
 
 /* A number from EXIF; 0: unknown. */
 static enum status read_exif(struct textfile *t, const char *what, double *value, struct err *err)
 {
-    enum status st = textfile_double(t, what, value, err);
-    if (!st && *value < 0) st = textfile_error(t, err, "a negative number", "%s, 0 or more", what);
-    return st;
+    if (!textfile_double(t, what, value, err) && *value < 0)
+        textfile_error(t, err, "a negative number", "%s, 0 or more", what);
+    return err->status;
 }
 
 static enum status read_hash(struct textfile *t, char hash[HASH_TEXT], struct err *err)
 {
     char *word = NULL;
-    enum status st = textfile_word(t, "hash", &word, err);
-    if (!st && (strlen(word) != HASH_TEXT - 1 || strspn(word, "0123456789abcdef") != HASH_TEXT - 1))
-        st = textfile_error(t, err, word, "a hash of %d hexadecimal digits", HASH_TEXT - 1);
-    if (!st) strcpy(hash, word);
-    return st;
+    if (!textfile_word(t, "hash", &word, err) &&
+        (strlen(word) != HASH_TEXT - 1 || strspn(word, "0123456789abcdef") != HASH_TEXT - 1))
+        textfile_error(t, err, word, "a hash of %d hexadecimal digits", HASH_TEXT - 1);
+    if (!err->status) strcpy(hash, word);
+    return err->status;
 }
 
 static enum status read_exposure(struct textfile *t, const char *what, double *value, struct err *err)
 {
-    enum status st = textfile_double(t, what, value, err);
+    textfile_double(t, what, value, err);
     char found[32];
-    if (st || *value > 0) return st;
+    if (err->status || *value > 0) return err->status;
     snprintf(found, sizeof found, "%.9g", *value);
     return textfile_error(t, err, found, "%s above 0", what);
 }
@@ -64,60 +63,60 @@ static enum status read_bracket(struct photo_record *r, struct textfile *t, stru
 {
     struct bracket *b = &r->brackets[r->bracket_count], *before = r->bracket_count ? b - 1 : NULL;
     char *word = NULL;
-    enum status st = textfile_expect_line(t, "bracket", err) || textfile_word(t, "file name", &word, err) ||
-                             keep_word(&b->file, word, err)
-                         ? ST_DATA
-                         : ST_OK;
-    if (st) return st;
+    if (textfile_expect_line(t, "bracket", err) || textfile_word(t, "file name", &word, err) ||
+        keep_word(&b->file, word, err))
+        return err->status;
     r->bracket_count++; /* from here on it is released with the record */
-    st = read_hash(t, b->hash, err);
-    if (!st) st = read_exposure(t, "exposure", &b->exposure, err);
-    if (!st && before && before->exposure >= b->exposure)
-        st = textfile_error(t, err, b->file, "exposures in ascending order");
-    return st ? st : textfile_end(t, err);
+    if (!read_hash(t, b->hash, err)) read_exposure(t, "exposure", &b->exposure, err);
+    if (!err->status && before && before->exposure >= b->exposure)
+        textfile_error(t, err, b->file, "exposures in ascending order");
+    if (!err->status) textfile_end(t, err);
+    return err->status;
 }
 
 static enum status read_brackets(struct photo_record *r, struct textfile *t, struct err *err)
 {
     int count = 0;
     char *word = NULL;
-    enum status st = textfile_word(t, "brackets", &word, err);
-    if (!st && strcmp(word, "brackets")) st = textfile_error(t, err, word, "a line \"brackets ...\", or the end");
-    if (!st) st = read_int(t, "number of exposures", 1, MAX_BRACKETS, &count, err);
-    if (!st) st = read_int(t, "index of the middle exposure", 0, count - 1, &r->middle, err);
-    if (!st) st = read_exposure(t, "exposure of white", &r->white, err);
-    if (!st) st = textfile_end(t, err);
-    if (!st && !(r->brackets = calloc((size_t)count, sizeof *r->brackets)))
-        st = err_nomem(err, "a list of exposures", (size_t)count * sizeof *r->brackets);
-    while (!st && r->bracket_count < count) st = read_bracket(r, t, err);
-    return st;
+    if (!textfile_word(t, "brackets", &word, err) && strcmp(word, "brackets"))
+        textfile_error(t, err, word, "a line \"brackets ...\", or the end");
+    if (!err->status && !read_int(t, "number of exposures", 1, MAX_BRACKETS, &count, err) &&
+        !read_int(t, "index of the middle exposure", 0, count - 1, &r->middle, err) &&
+        !read_exposure(t, "exposure of white", &r->white, err))
+        textfile_end(t, err);
+    if (!err->status && !(r->brackets = calloc((size_t)count, sizeof *r->brackets)))
+        err_nomem(err, "a list of exposures", (size_t)count * sizeof *r->brackets);
+    while (!err->status && r->bracket_count < count) read_bracket(r, t, err);
+    return err->status;
 }
 
 static enum status read_fields(struct photo_record *r, struct textfile *t, struct err *err)
 {
     struct photo_info *info = &r->info;
     char *word = NULL;
-    enum status st =
-        textfile_expect_line(t, "file", err) || textfile_word(t, "file name", &word, err) ||
-                keep_word(&r->file, word, err) || textfile_end(t, err) || textfile_expect_line(t, "hash", err) ||
-                read_hash(t, r->hash, err) || textfile_end(t, err) || textfile_expect_line(t, "size", err) ||
-                read_int(t, "width", 1, 1 << 28, &info->width, err) ||
-                read_int(t, "height", 1, 1 << 28, &info->height, err) || textfile_end(t, err) ||
-                textfile_expect_line(t, "bits", err) || read_int(t, "bits", 8, 32, &info->bits, err) ||
-                textfile_end(t, err) || textfile_expect_line(t, "orientation", err) ||
-                read_int(t, "orientation", 1, 8, &info->orientation, err) || textfile_end(t, err) ||
-                textfile_expect_line(t, "exif", err) || read_exif(t, "focal length", &info->focal_mm, err) ||
-                read_exif(t, "35 mm focal length", &info->focal35_mm, err) ||
-                read_exif(t, "exposure time", &info->seconds, err) || read_exif(t, "f-number", &info->f_number, err) ||
-                read_exif(t, "ISO", &info->iso, err) || textfile_end(t, err) ||
-                textfile_expect_line(t, "camera", err) ||
-                textfile_word_into(t, "make", info->make, sizeof info->make, err) ||
-                textfile_word_into(t, "model", info->model, sizeof info->model, err) || textfile_end(t, err)
-            ? ST_DATA
-            : ST_OK;
-    if (!st && textfile_next(t)) st = read_brackets(r, t, err);
-    if (!st) st = textfile_end_of_file(t, err);
-    return st;
+    if (textfile_expect_line(t, "file", err) || textfile_word(t, "file name", &word, err) ||
+        keep_word(&r->file, word, err) || textfile_end(t, err))
+        return err->status;
+    if (textfile_expect_line(t, "hash", err) || read_hash(t, r->hash, err) || textfile_end(t, err)) return err->status;
+    if (textfile_expect_line(t, "size", err) || read_int(t, "width", 1, 1 << 28, &info->width, err) ||
+        read_int(t, "height", 1, 1 << 28, &info->height, err) || textfile_end(t, err))
+        return err->status;
+    if (textfile_expect_line(t, "bits", err) || read_int(t, "bits", 8, 32, &info->bits, err) || textfile_end(t, err))
+        return err->status;
+    if (textfile_expect_line(t, "orientation", err) || read_int(t, "orientation", 1, 8, &info->orientation, err) ||
+        textfile_end(t, err))
+        return err->status;
+    if (textfile_expect_line(t, "exif", err) || read_exif(t, "focal length", &info->focal_mm, err) ||
+        read_exif(t, "35 mm focal length", &info->focal35_mm, err) ||
+        read_exif(t, "exposure time", &info->seconds, err) || read_exif(t, "f-number", &info->f_number, err) ||
+        read_exif(t, "ISO", &info->iso, err) || textfile_end(t, err))
+        return err->status;
+    if (textfile_expect_line(t, "camera", err) || textfile_word_into(t, "make", info->make, sizeof info->make, err) ||
+        textfile_word_into(t, "model", info->model, sizeof info->model, err) || textfile_end(t, err))
+        return err->status;
+    if (textfile_next(t)) read_brackets(r, t, err);
+    if (!err->status) textfile_end_of_file(t, err);
+    return err->status;
 }
 
 enum status photo_record_read(struct photo_record *r, const char *folder, const char *id, struct provenance *prov,
@@ -127,24 +126,23 @@ enum status photo_record_read(struct photo_record *r, const char *folder, const 
     char path[FILE_PATH];
 
     *r = (struct photo_record){0};
-    enum status st = product_path_in(path, folder, PRODUCT_PHOTO, &(struct product_key){.photo = id}, err);
-    if (!st) st = keep_word(&r->id, id, err);
-    if (!st) st = product_open(&t, NULL, PRODUCT_PHOTO, path, prov, err);
-    if (!st) st = read_fields(r, &t, err);
+    if (!product_path_in(path, folder, PRODUCT_PHOTO, &(struct product_key){.photo = id}, err) &&
+        !keep_word(&r->id, id, err) && !product_open(&t, NULL, PRODUCT_PHOTO, path, prov, err))
+        read_fields(r, &t, err);
     textfile_release(&t);
-    if (st) photo_record_release(r);
-    return err && err->status ? err->status : st;
+    if (err->status) photo_record_release(r);
+    return err->status;
 }
 
 /* Closes a text begun with open_memstream and writes it if it differs from the file. */
-static enum status finish_text(FILE *to, char **text, size_t *size, const char *path, enum status st, struct err *err)
+static enum status finish_text(FILE *to, char **text, size_t *size, const char *path, struct err *err)
 {
     bool failed = ferror(to) != 0;
     failed |= fclose(to) != 0;
-    if (!st && failed) st = err_nomem(err, "a text", *size);
-    if (!st) st = outfile_write_if_changed(path, *text, *size, err);
+    if (!err->status && failed) err_nomem(err, "a text", *size);
+    if (!err->status) outfile_write_if_changed(path, *text, *size, err);
     free(*text);
-    return st;
+    return err->status;
 }
 
 enum status photo_record_write(const struct photo_record *r, const char *folder, struct err *err)
@@ -154,11 +152,10 @@ enum status photo_record_write(const struct photo_record *r, const char *folder,
     char path[FILE_PATH], *text = NULL;
     size_t size = 0;
 
-    enum status st = product_path_in(path, folder, PRODUCT_PHOTO, &(struct product_key){.photo = r->id}, err);
-    if (!st) st = textfile_quote(r->file, file, sizeof file, err);
-    if (!st) st = textfile_quote(info->make, make, sizeof make, err);
-    if (!st) st = textfile_quote(info->model, model, sizeof model, err);
-    if (st) return st;
+    if (product_path_in(path, folder, PRODUCT_PHOTO, &(struct product_key){.photo = r->id}, err) ||
+        textfile_quote(r->file, file, sizeof file, err) || textfile_quote(info->make, make, sizeof make, err) ||
+        textfile_quote(info->model, model, sizeof model, err))
+        return err->status;
     FILE *to = open_memstream(&text, &size);
     if (!to) return err_nomem(err, "a record", 0);
     fprintf(to, "%s\nfile %s\nhash %s\nsize %d %d\nbits %d\norientation %d\n", products[PRODUCT_PHOTO].head, file,
@@ -167,23 +164,21 @@ enum status photo_record_write(const struct photo_record *r, const char *folder,
             info->iso);
     fprintf(to, "camera %s %s\n", make, model);
     if (r->bracket_count) fprintf(to, "brackets %d %d %.17g\n", r->bracket_count, r->middle, r->white);
-    for (int i = 0; !st && i < r->bracket_count; i++) {
+    for (int i = 0; !err->status && i < r->bracket_count; i++) {
         const struct bracket *b = &r->brackets[i];
-        st = textfile_quote(b->file, file, sizeof file, err);
-        if (!st) fprintf(to, "bracket %s %s %.17g\n", file, b->hash, b->exposure);
+        if (!textfile_quote(b->file, file, sizeof file, err))
+            fprintf(to, "bracket %s %s %.17g\n", file, b->hash, b->exposure);
     }
-    return finish_text(to, &text, &size, path, st, err);
+    return finish_text(to, &text, &size, path, err);
 }
 
 static enum status print_list(const struct photo_list *list, FILE *to, struct err *err)
 {
     char file[QUOTED_SIZE];
-    enum status st = ST_OK;
-    for (int i = 0; !st && i < list->count; i++) {
-        st = textfile_quote(list->photos[i].file, file, sizeof file, err);
-        if (!st) fprintf(to, "%s %s\n", list->photos[i].id, file);
-    }
-    return st;
+    for (int i = 0; !err->status && i < list->count; i++)
+        if (!textfile_quote(list->photos[i].file, file, sizeof file, err))
+            fprintf(to, "%s %s\n", list->photos[i].id, file);
+    return err->status;
 }
 
 static enum status print_make(const struct photo_list *list, FILE *to, struct err *err)
@@ -198,17 +193,14 @@ static enum status print_make(const struct photo_list *list, FILE *to, struct er
 static enum status print_brackets(const struct photo_list *list, FILE *to, struct err *err)
 {
     char file[QUOTED_SIZE];
-    enum status st = ST_OK;
     fputs("# VIEW FILE FILE ... from the shortest exposure on\n", to);
-    for (int i = 0; !st && i < list->count; i++) {
+    for (int i = 0; !err->status && i < list->count; i++) {
         fputs(list->photos[i].id, to);
-        for (int k = 0; !st && k < list->photos[i].bracket_count; k++) {
-            st = textfile_quote(list->photos[i].brackets[k].file, file, sizeof file, err);
-            if (!st) fprintf(to, " %s", file);
-        }
+        for (int k = 0; !err->status && k < list->photos[i].bracket_count; k++)
+            if (!textfile_quote(list->photos[i].brackets[k].file, file, sizeof file, err)) fprintf(to, " %s", file);
         fputc('\n', to);
     }
-    return st;
+    return err->status;
 }
 
 enum status photo_list_write(const struct photo_list *list, const char *folder, struct err *err)
@@ -219,38 +211,35 @@ enum status photo_list_write(const struct photo_list *list, const char *folder, 
     } texts[] = {
         {PRODUCT_PHOTO_BRACKETS, print_brackets}, {PRODUCT_PHOTO_LIST, print_list}, {PRODUCT_PHOTOS_MK, print_make}};
     bool bracketed = list->count && list->photos[0].bracket_count;
-    enum status st = ST_OK;
-    for (int i = bracketed ? 0 : 1; !st && i < 3; i++) {
+    for (int i = bracketed ? 0 : 1; !err->status && i < 3; i++) {
         char path[FILE_PATH], *text = NULL;
         size_t size = 0;
         if (product_path_in(path, folder, texts[i].id, NULL, err)) return err->status;
         FILE *to = open_memstream(&text, &size);
         if (!to) return err_nomem(err, "a list of photos", 0);
-        st = texts[i].print(list, to, err);
-        st = finish_text(to, &text, &size, path, st, err);
+        texts[i].print(list, to, err);
+        finish_text(to, &text, &size, path, err);
     }
-    return st;
+    return err->status;
 }
 
 static enum status read_list_line(struct photo_list *list, struct textfile *t, const char *folder, struct err *err)
 {
     char *id = NULL, *file = NULL;
-    enum status st = textfile_word(t, "photo id", &id, err);
-    if (!st && (strspn(id, "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-") != strlen(id) ||
-                *id == '-' || !*id))
-        st = textfile_error(t, err, id, "a photo id of letters, digits, _ and -");
-    if (!st && list->count && strcmp(list->photos[list->count - 1].id, id) >= 0)
-        st = textfile_error(t, err, id, "ids in order, each once");
-    if (!st) st = textfile_word(t, "file name", &file, err);
-    if (!st) st = textfile_end(t, err);
-    if (st) return st;
+    if (!textfile_word(t, "photo id", &id, err) &&
+        (strspn(id, "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-") != strlen(id) || *id == '-' ||
+         !*id))
+        textfile_error(t, err, id, "a photo id of letters, digits, _ and -");
+    if (!err->status && list->count && strcmp(list->photos[list->count - 1].id, id) >= 0)
+        textfile_error(t, err, id, "ids in order, each once");
+    if (!err->status && !textfile_word(t, "file name", &file, err)) textfile_end(t, err);
+    if (err->status) return err->status;
 
     if (array_append(&list->photos, (size_t)list->count, sizeof *list->photos, "photos", err)) return err->status;
-    st = photo_record_read(&list->photos[list->count], folder, id, NULL, err);
-    if (st) return st;
+    if (photo_record_read(&list->photos[list->count], folder, id, NULL, err)) return err->status;
     if (strcmp(list->photos[list->count++].file, file))
-        st = textfile_error(t, err, file, "the file named in the record %s.txt; import the photos again", id);
-    return st;
+        textfile_error(t, err, file, "the file named in the record %s.txt; import the photos again", id);
+    return err->status;
 }
 
 enum status photo_list_read(struct photo_list *list, const char *folder, struct err *err)
@@ -258,13 +247,13 @@ enum status photo_list_read(struct photo_list *list, const char *folder, struct 
     struct textfile t = {0};
     char path[FILE_PATH];
     *list = (struct photo_list){0};
-    enum status st = product_path_in(path, folder, PRODUCT_PHOTO_LIST, NULL, err);
-    if (!st) st = product_open(&t, NULL, PRODUCT_PHOTO_LIST, path, NULL, err);
-    while (!st && textfile_next(&t)) st = read_list_line(list, &t, folder, err);
-    if (!st && !list->count) st = err_set(err, ST_DATA, "%s contains no photo; import the photos again.", path);
+    if (!product_path_in(path, folder, PRODUCT_PHOTO_LIST, NULL, err))
+        product_open(&t, NULL, PRODUCT_PHOTO_LIST, path, NULL, err);
+    while (!err->status && textfile_next(&t)) read_list_line(list, &t, folder, err);
+    if (!err->status && !list->count) err_set(err, ST_DATA, "%s contains no photo; import the photos again.", path);
     textfile_release(&t);
-    if (st) photo_list_release(list);
-    return st;
+    if (err->status) photo_list_release(list);
+    return err->status;
 }
 
 int photo_list_find_id(const struct photo_list *list, const char *id)

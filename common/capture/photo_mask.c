@@ -33,23 +33,21 @@ static enum status add_mask(struct photo_mask *m, const char *folder, const char
 {
     struct photo p = {0};
     char *path = NULL, *input = NULL;
-    enum status st = ST_OK;
     if (asprintf(&path, "%s/%s.png", folder, id) < 0 || asprintf(&input, "masks/%s.png", id) < 0) {
-        st = err_nomem(err, "a file name", strlen(folder) + strlen(id));
+        err_nomem(err, "a file name", strlen(folder) + strlen(id));
     } else if (!access(path, F_OK)) {
-        st = photo_read_input(&p, path, input, prov, err);
-        if (!st && (p.info.width != m->width || p.info.height != m->height))
-            st = err_set(
-                err, ST_DATA,
-                "%s has %d x %d pixels, but the photo \"%s\" that it masks has %d x %d; paint the mask over the "
-                "photo as it is stored, at its full size.",
-                path, p.info.width, p.info.height, r->file, m->width, m->height);
-        if (!st) st = add_samples(m, &p, err);
+        photo_read_input(&p, path, input, prov, err);
+        if (!err->status && (p.info.width != m->width || p.info.height != m->height))
+            err_set(err, ST_DATA,
+                    "%s has %d x %d pixels, but the photo \"%s\" that it masks has %d x %d; paint the mask over the "
+                    "photo as it is stored, at its full size.",
+                    path, p.info.width, p.info.height, r->file, m->width, m->height);
+        if (!err->status) add_samples(m, &p, err);
     }
     photo_release(&p);
     free(path);
     free(input);
-    return st;
+    return err->status;
 }
 
 /* Whether `id` is one of the exposures of the view. */
@@ -72,34 +70,33 @@ static enum status add_exposures(struct photo_mask *m, const char *folder, const
 {
     struct dirent **entries = NULL;
     const int count = scandir(folder, &entries, NULL, alphasort);
-    enum status st = count < 0 ? err_errno(err, "open", folder) : ST_OK;
+    if (count < 0) err_errno(err, "open", folder);
     for (int i = 0; i < count; i++) {
         char *name = entries[i]->d_name;
         const size_t length = strlen(name);
-        if (!st && length > 4 && !strcmp(name + length - 4, ".png")) {
+        if (!err->status && length > 4 && !strcmp(name + length - 4, ".png")) {
             name[length - 4] = 0;
-            if (strcmp(name, r->id) && is_exposure(r, records, name)) st = add_mask(m, folder, name, r, prov, err);
+            if (strcmp(name, r->id) && is_exposure(r, records, name)) add_mask(m, folder, name, r, prov, err);
         }
         free(entries[i]);
     }
     free(entries);
-    return st;
+    return err->status;
 }
 
 enum status photo_mask_read(struct photo_mask *m, const char *folder, const char *records, const struct photo_record *r,
                             struct provenance *prov, struct err *err)
 {
-    enum status st = ST_OK;
     *m = (struct photo_mask){.width = r->info.width, .height = r->info.height};
-    if (folder) st = add_mask(m, folder, r->id, r, prov, err);
-    if (!st && folder && r->bracket_count) st = add_exposures(m, folder, records, r, prov, err);
+    if (folder) add_mask(m, folder, r->id, r, prov, err);
+    if (!err->status && folder && r->bracket_count) add_exposures(m, folder, records, r, prov, err);
     const size_t pixels = (size_t)m->width * (size_t)m->height;
-    if (!st && m->masked && !memchr(m->masked, 0, pixels))
-        st = err_set(
+    if (!err->status && m->masked && !memchr(m->masked, 0, pixels))
+        err_set(
             err, ST_DATA,
             "the mask of photo %s in %s hides all of it: no sample is brighter than half of white. Regions to use must "
             "be white (255), not 1; to do without the photo, leave it out (EXCLUDE).",
             r->id, folder);
-    if (st || !m->masked) photo_mask_release(m);
-    return st;
+    if (err->status || !m->masked) photo_mask_release(m);
+    return err->status;
 }

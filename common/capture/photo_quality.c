@@ -70,8 +70,7 @@ enum status photo_quality_of_exposure(struct photo_quality *q, const struct phot
     const struct noise n = noise_given(assumed->electrons, assumed->read_noise, &srgb, photo->info.bits);
     const struct noise jpeg = noise_of_samples(photo->jpeg_variance, &srgb, 8);
     const size_t pixels = (size_t)linear->width * (size_t)linear->height;
-    const enum status st = photo_quality_init(q, linear->width, linear->height, err);
-    if (st) return st;
+    if (photo_quality_init(q, linear->width, linear->height, err)) return err->status;
     struct exposure_job job = {.q = q,
                                .rgb = linear->data,
                                .photon = (float)n.photon,

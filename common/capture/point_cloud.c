@@ -101,14 +101,13 @@ enum status point_cloud_write(const struct point_cloud *cloud, const char *path,
         if (!is_valid(&cloud->points[i])) return invalid_point(&cloud->points[i], i, path, err);
 
     struct outfile file = {0};
-    enum status st = outfile_open(&file, path, err);
-    if (!st) {
+    if (!outfile_open(&file, path, err)) {
         fprintf(file.fp, "ply\nformat binary_little_endian 1.0\n%s\n", kind);
         fprintf(file.fp, "comment x y z: scene units, in the world's axes, those of views/images.txt\n"
                          "comment nx ny nz: of length 1, towards the cameras that saw the surface\n"
                          "comment red green blue: sRGB, white is 255; views: how many agree; confidence: 0 to 1\n");
         fprintf(file.fp, "%s%.17g\n", cell_word, cloud->cell);
-        if (prov) st = print_provenance(file.fp, prov, err);
+        if (prov) print_provenance(file.fp, prov, err);
         fprintf(file.fp, "element vertex %zu\n", cloud->count);
         for (int i = 0; i < PROPERTIES; i++) fprintf(file.fp, "%s\n", properties[i]);
         fputs("end_header\n", file.fp);
@@ -117,10 +116,10 @@ enum status point_cloud_write(const struct point_cloud *cloud, const char *path,
             pack(record, &cloud->points[i]);
             fwrite(record, sizeof record, 1, file.fp);
         }
-        if (!st) st = outfile_commit(&file, err);
+        if (!err->status) outfile_commit(&file, err);
     }
     outfile_discard(&file);
-    return st;
+    return err->status;
 }
 
 struct header {
@@ -199,23 +198,25 @@ enum status point_cloud_read(struct point_cloud *cloud, const char *path, struct
     *cloud = (struct point_cloud){0};
     if (provenance_read(prov, product_name(PRODUCT_POINTS, path), &file, path, err)) return err->status;
     struct header h = {.at = file.bytes, .end = file.bytes + file.size, .path = path};
-    enum status st = read_header(&h, &cloud->cell, &count, err);
+    read_header(&h, &cloud->cell, &count, err);
     /* memory is allocated only for as many points as the file contains */
     const int64_t left = h.end - h.at;
-    if (!st && (left % RECORD_SIZE || left / RECORD_SIZE != count))
-        st = err_set(err, ST_DATA,
-                     "%s: found %" PRId64 " bytes after the header, wanted %d for each of %" PRId64
-                     " points; make the points again.",
-                     path, left, RECORD_SIZE, count);
-    if (!st) {
+    if (!err->status && (left % RECORD_SIZE || left / RECORD_SIZE != count))
+        err_set(err, ST_DATA,
+                "%s: found %" PRId64 " bytes after the header, wanted %d for each of %" PRId64
+                " points; make the points again.",
+                path, left, RECORD_SIZE, count);
+    if (!err->status) {
         cloud->count = (size_t)count;
         cloud->points = malloc((cloud->count + 1) * sizeof *cloud->points);
-        st = cloud->points ? read_points(cloud, h.at, path, err)
-                           : err_nomem(err, "points", cloud->count * sizeof *cloud->points);
+        if (cloud->points)
+            read_points(cloud, h.at, path, err);
+        else
+            err_nomem(err, "points", cloud->count * sizeof *cloud->points);
     }
     file_bytes_release(&file);
-    if (st) point_cloud_release(cloud);
-    return st;
+    if (err->status) point_cloud_release(cloud);
+    return err->status;
 }
 
 void point_cloud_release(struct point_cloud *cloud)

@@ -53,8 +53,9 @@ enum status sfm_sort_images(struct sfm_model *m, int **old_idx, struct err *err)
     struct image_entry *sorted = calloc(n + 1, sizeof *sorted);
     int *new_idx = calloc(n + 1, sizeof *new_idx);
     *old_idx = calloc(n + 1, sizeof **old_idx);
-    enum status st = sorted && new_idx && *old_idx ? ST_OK : err_nomem(err, "images", n * sizeof *sorted);
-    if (!st) {
+    if (!sorted || !new_idx || !*old_idx) {
+        err_nomem(err, "images", n * sizeof *sorted);
+    } else {
         for (size_t i = 0; i < n; i++) sorted[i] = (struct image_entry){m->images[i], (int)i};
         qsort(sorted, n, sizeof *sorted, compare_names);
         for (size_t i = 0; i < n; i++) {
@@ -68,7 +69,7 @@ enum status sfm_sort_images(struct sfm_model *m, int **old_idx, struct err *err)
     }
     free(sorted);
     free(new_idx);
-    return st;
+    return err->status;
 }
 
 void sfm_model_release(struct sfm_model *m)

@@ -174,13 +174,13 @@ static enum status read_points(struct bundler_reader *r, int64_t points, struct 
 static enum status sort_images(struct sfm_model *m, const char *path, struct err *err)
 {
     int *old_idx = NULL;
-    enum status st = sfm_sort_images(m, &old_idx, err);
-    for (int i = 1; !st && i < m->image_count; i++)
+    sfm_sort_images(m, &old_idx, err);
+    for (int i = 1; !err->status && i < m->image_count; i++)
         if (!strcmp(m->images[i - 1].name, m->images[i].name))
-            st = err_set(err, ST_DATA, "%s: image \"%s\" is twice in the list of images, wanted each once.", path,
-                         m->images[i].name);
+            err_set(err, ST_DATA, "%s: image \"%s\" is twice in the list of images, wanted each once.", path,
+                    m->images[i].name);
     free(old_idx);
-    return st;
+    return err->status;
 }
 
 enum status sfm_model_read_bundler(struct sfm_model *m, const char *path, const char *const *names,
@@ -190,22 +190,23 @@ enum status sfm_model_read_bundler(struct sfm_model *m, const char *path, const 
     struct textfile *t = &r.file;
     int64_t cameras = 0, points = 0;
     *m = (struct sfm_model){0};
-    enum status st = textfile_open(t, path, err);
-    if (!st && (!textfile_next_raw(t) || !t->cursor || strncmp(t->cursor, "# Bundle file v0.3", 18)))
-        st = err_set(err, ST_DATA, "%s:1: found another first line, wanted \"# Bundle file v0.3\".", path);
-    if (!st && !textfile_next(t)) st = textfile_error(t, err, NULL, "the numbers of cameras and points");
-    st = st || textfile_int(t, "number of cameras", 0, INT_MAX, &cameras, err) ||
-         textfile_int(t, "number of points", 0, INT_MAX, &points, err) || textfile_end(t, err);
-    if (!st && cameras != count)
-        st = err_set(err, ST_DATA,
-                     "%s:%d: found %" PRId64 " cameras, wanted %d, the number of images in the model's list.", path,
-                     t->line, cameras, count);
-    st = st || read_cameras(&r, names, sizes, err) || read_points(&r, points, err) || textfile_end_of_file(t, err);
-    if (!st && !m->image_count) st = err_set(err, ST_DATA, "%s contains no camera that Bundler could place.", path);
-    st = st || sort_images(m, path, err);
+    textfile_open(t, path, err);
+    if (!err->status && (!textfile_next_raw(t) || !t->cursor || strncmp(t->cursor, "# Bundle file v0.3", 18)))
+        err_set(err, ST_DATA, "%s:1: found another first line, wanted \"# Bundle file v0.3\".", path);
+    if (!err->status && !textfile_next(t)) textfile_error(t, err, NULL, "the numbers of cameras and points");
+    if (!err->status && !textfile_int(t, "number of cameras", 0, INT_MAX, &cameras, err) &&
+        !textfile_int(t, "number of points", 0, INT_MAX, &points, err))
+        textfile_end(t, err);
+    if (!err->status && cameras != count)
+        err_set(err, ST_DATA, "%s:%d: found %" PRId64 " cameras, wanted %d, the number of images in the model's list.",
+                path, t->line, cameras, count);
+    if (!err->status && !read_cameras(&r, names, sizes, err) && !read_points(&r, points, err))
+        textfile_end_of_file(t, err);
+    if (!err->status && !m->image_count) err_set(err, ST_DATA, "%s contains no camera that Bundler could place.", path);
+    if (!err->status) sort_images(m, path, err);
     free(r.image_of);
     free(r.track);
     textfile_release(t);
-    if (st) sfm_model_release(m);
-    return st ? err->status : ST_OK;
+    if (err->status) sfm_model_release(m);
+    return err->status;
 }

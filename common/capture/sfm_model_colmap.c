@@ -101,52 +101,51 @@ static enum status read_cameras(struct sfm_model *m, struct id_list *ids, const 
                                 struct err *err)
 {
     struct textfile t = {0};
-    enum status st = open_part(&t, path, prov, err);
-    while (!st && textfile_next(&t)) {
+    open_part(&t, path, prov, err);
+    while (!err->status && textfile_next(&t)) {
         struct sfm_camera c = {0};
         struct err why = ERR_INIT;
         int64_t width = 0, height = 0;
         char *model = NULL;
-        st = textfile_int(&t, "camera id", 0, INT64_MAX, &c.id, err) || textfile_word(&t, "camera model", &model, err);
-        if (!st && !camera_model_from_name(model, &c.camera.model)) {
+        if (!textfile_int(&t, "camera id", 0, INT64_MAX, &c.id, err)) textfile_word(&t, "camera model", &model, err);
+        if (!err->status && !camera_model_from_name(model, &c.camera.model)) {
             char names[256] = "";
             for (int i = 0; i < CAMERA_MODEL_COUNT; i++)
                 snprintf(names + strlen(names), sizeof names - strlen(names), " %s",
                          camera_model_name((enum camera_model)i));
-            st = textfile_error(&t, err, model, "one of the supported camera models:%s", names);
+            textfile_error(&t, err, model, "one of the supported camera models:%s", names);
         }
-        st = st || textfile_int(&t, "width", 1, INT_MAX, &width, err) ||
-             textfile_int(&t, "height", 1, INT_MAX, &height, err);
-        for (int i = 0; !st && i < camera_model_params(c.camera.model); i++)
-            st = textfile_double(&t, "camera parameter", &c.camera.params[i], err);
-        st = st || textfile_end(&t, err);
+        if (!err->status && !textfile_int(&t, "width", 1, INT_MAX, &width, err))
+            textfile_int(&t, "height", 1, INT_MAX, &height, err);
+        for (int i = 0; !err->status && i < camera_model_params(c.camera.model); i++)
+            textfile_double(&t, "camera parameter", &c.camera.params[i], err);
+        if (!err->status) textfile_end(&t, err);
         c.camera.width = (int)width;
         c.camera.height = (int)height;
-        if (!st && camera_check(&c.camera, &why))
-            st = err_set(err, ST_DATA, "%s:%d: camera %" PRId64 ": %s", path, t.line, c.id, why.text);
-        st = st || sfm_append(&m->cameras, m->camera_count, sizeof *m->cameras, "cameras", err) ||
-             id_list_add(ids, c.id, t.line, err);
-        if (!st) m->cameras[m->camera_count++] = c;
+        if (!err->status && camera_check(&c.camera, &why))
+            err_set(err, ST_DATA, "%s:%d: camera %" PRId64 ": %s", path, t.line, c.id, why.text);
+        if (!err->status && !sfm_append(&m->cameras, m->camera_count, sizeof *m->cameras, "cameras", err) &&
+            !id_list_add(ids, c.id, t.line, err))
+            m->cameras[m->camera_count++] = c;
     }
-    st = st || id_list_sort(ids, path, "camera", err);
+    if (!err->status) id_list_sort(ids, path, "camera", err);
     textfile_release(&t);
-    return st ? err->status : ST_OK;
+    return err->status;
 }
 
 /* The second line of an image: U V POINT_ID for each feature. It may be blank. */
 static enum status read_observations(struct textfile *t, struct sfm_image *im, struct err *err)
 {
-    enum status st = ST_OK;
-    while (!st && textfile_more(t)) {
+    while (!err->status && textfile_more(t)) {
         struct sfm_observation o = {0};
-        st = textfile_double(t, "x of an observation", &o.u, err) ||
-             textfile_double(t, "y of an observation", &o.v, err) ||
-             textfile_int(t, "point id (-1: none)", -1, INT64_MAX, &o.point_id, err) ||
-             sfm_append(&im->observations, im->observation_count, sizeof o, "observations", err);
-        if (!st) im->observations[im->observation_count++] = o;
+        if (!textfile_double(t, "x of an observation", &o.u, err) &&
+            !textfile_double(t, "y of an observation", &o.v, err) &&
+            !textfile_int(t, "point id (-1: none)", -1, INT64_MAX, &o.point_id, err) &&
+            !sfm_append(&im->observations, im->observation_count, sizeof o, "observations", err))
+            im->observations[im->observation_count++] = o;
     }
     im->observations = sfm_shrink(im->observations, im->observation_count, sizeof *im->observations);
-    return st ? err->status : ST_OK;
+    return err->status;
 }
 
 /* The two lines of an image. On failure the caller releases its name and observations. */
@@ -183,18 +182,18 @@ static enum status sort_images(struct sfm_model *m, struct id_list *ids, int *li
     int *old_idx = NULL, *old_lines = malloc(((size_t)m->image_count + 1) * sizeof *old_lines);
     if (!old_lines) return err_nomem(err, "images", (size_t)m->image_count * sizeof *old_lines);
     memcpy(old_lines, lines, (size_t)m->image_count * sizeof *lines);
-    enum status st = sfm_sort_images(m, &old_idx, err);
-    for (int i = 0; !st && i < m->image_count; i++) {
+    sfm_sort_images(m, &old_idx, err);
+    for (int i = 0; !err->status && i < m->image_count; i++) {
         lines[i] = old_lines[old_idx[i]];
         id_list_row(ids, m->images[i].id)->idx = i;
     }
-    for (int i = 1; !st && i < m->image_count; i++)
+    for (int i = 1; !err->status && i < m->image_count; i++)
         if (!strcmp(m->images[i - 1].name, m->images[i].name))
-            st = err_set(err, ST_DATA, "%s:%d: found image \"%s\" a second time (first on line %d), wanted each once.",
-                         path, lines[i], m->images[i].name, lines[i - 1]);
+            err_set(err, ST_DATA, "%s:%d: found image \"%s\" a second time (first on line %d), wanted each once.", path,
+                    lines[i], m->images[i].name, lines[i - 1]);
     free(old_idx);
     free(old_lines);
-    return st;
+    return err->status;
 }
 
 /* *lines: the line of each image in the file; the caller frees it. */
@@ -202,14 +201,13 @@ static enum status read_images(struct sfm_model *m, const struct id_list *camera
                                const char *path, struct provenance *prov, struct err *err)
 {
     struct textfile t = {0};
-    enum status st = open_part(&t, path, prov, err);
-    while (!st && textfile_next(&t)) {
+    open_part(&t, path, prov, err);
+    while (!err->status && textfile_next(&t)) {
         struct sfm_image im = {0};
         const int line = t.line;
-        st = read_image(&im, &t, cameras, err) || id_list_add(ids, im.id, line, err) ||
-             sfm_append(&m->images, m->image_count, sizeof im, "images", err) ||
-             sfm_append(lines, m->image_count, sizeof **lines, "images", err);
-        if (!st) {
+        if (!read_image(&im, &t, cameras, err) && !id_list_add(ids, im.id, line, err) &&
+            !sfm_append(&m->images, m->image_count, sizeof im, "images", err) &&
+            !sfm_append(lines, m->image_count, sizeof **lines, "images", err)) {
             (*lines)[m->image_count] = line;
             m->images[m->image_count++] = im;
         } else {
@@ -217,11 +215,11 @@ static enum status read_images(struct sfm_model *m, const struct id_list *camera
             free(im.observations);
         }
     }
-    if (!st && !m->image_count)
-        st = err_set(err, ST_DATA, "%s contains no image; run structure from motion again.", path);
-    st = st || id_list_sort(ids, path, "image", err) || sort_images(m, ids, *lines, path, err);
+    if (!err->status && !m->image_count)
+        err_set(err, ST_DATA, "%s contains no image; run structure from motion again.", path);
+    if (!err->status && !id_list_sort(ids, path, "image", err)) sort_images(m, ids, *lines, path, err);
     textfile_release(&t);
-    return st ? err->status : ST_OK;
+    return err->status;
 }
 
 /* One entry of a track: an observation of this point that no track has listed yet. */
@@ -295,22 +293,22 @@ static enum status read_points(struct sfm_model *m, const struct id_list *images
     size_t capacity = 0;
     char path[FILE_PATH];
     if (product_path_in(path, folder, PRODUCT_POINTS3D, NULL, err)) return err->status;
-    enum status st = open_part(&t, path, prov, err);
-    while (!st && textfile_next(&t)) {
+    open_part(&t, path, prov, err);
+    while (!err->status && textfile_next(&t)) {
         struct sfm_point p = {0};
-        st = sfm_append(&m->points, m->point_count, sizeof p, "points", err) ||
-             read_point(&p, &t, m, images, listed, &track, &capacity, err) || id_list_add(&ids, p.id, t.line, err);
-        if (st)
+        if (sfm_append(&m->points, m->point_count, sizeof p, "points", err) ||
+            read_point(&p, &t, m, images, listed, &track, &capacity, err) || id_list_add(&ids, p.id, t.line, err))
             free(p.track);
         else
             m->points[m->point_count++] = p;
     }
     m->points = sfm_shrink(m->points, m->point_count, sizeof *m->points);
-    if (!st && !ids.ascending && ids.count) st = id_list_sort(&ids, path, "point", err) || sort_points(m, &ids, err);
+    if (!err->status && !ids.ascending && ids.count && !id_list_sort(&ids, path, "point", err))
+        sort_points(m, &ids, err);
     free(track);
     id_list_release(&ids);
     textfile_release(&t);
-    return st ? err->status : ST_OK;
+    return err->status;
 }
 
 static enum status check_observations(const struct sfm_model *m, unsigned char **listed, const int *lines,
@@ -346,25 +344,24 @@ enum status sfm_model_read_text(struct sfm_model *m, const char *folder, struct 
     int *lines = NULL;
     char of_cameras[FILE_PATH], of_images[FILE_PATH];
     *m = (struct sfm_model){0};
-    enum status st = model_paths(of_cameras, of_images, folder, err) ||
-                     read_cameras(m, &cameras, of_cameras, prov, err) ||
-                     read_images(m, &cameras, &images, &lines, of_images, prov, err);
-    if (!st) {
+    if (!model_paths(of_cameras, of_images, folder, err) && !read_cameras(m, &cameras, of_cameras, prov, err) &&
+        !read_images(m, &cameras, &images, &lines, of_images, prov, err)) {
         listed = calloc((size_t)m->image_count, sizeof *listed);
-        if (!listed) st = err_nomem(err, "marks", (size_t)m->image_count * sizeof *listed);
-        for (int i = 0; !st && i < m->image_count; i++) {
+        if (!listed) err_nomem(err, "marks", (size_t)m->image_count * sizeof *listed);
+        for (int i = 0; !err->status && i < m->image_count; i++) {
             listed[i] = calloc((size_t)m->images[i].observation_count + 1, 1);
-            if (!listed[i]) st = err_nomem(err, "marks", (size_t)m->images[i].observation_count);
+            if (!listed[i]) err_nomem(err, "marks", (size_t)m->images[i].observation_count);
         }
     }
-    st = st || read_points(m, &images, listed, folder, prov, err) || check_observations(m, listed, lines, folder, err);
+    if (!err->status && !read_points(m, &images, listed, folder, prov, err))
+        check_observations(m, listed, lines, folder, err);
     for (int i = 0; listed && i < m->image_count; i++) free(listed[i]);
     free(listed);
     free(lines);
     id_list_release(&cameras);
     id_list_release(&images);
-    if (st) sfm_model_release(m);
-    return st ? err->status : ST_OK;
+    if (err->status) sfm_model_release(m);
+    return err->status;
 }
 
 enum status sfm_model_read_cameras(struct sfm_model *m, const char *folder, struct provenance *prov, struct err *err)
@@ -381,9 +378,9 @@ enum status sfm_model_read_camera_files(struct sfm_model *m, const char *of_came
     struct id_list cameras = {0}, images = {0};
     int *lines = NULL;
     *m = (struct sfm_model){0};
-    enum status st = read_cameras(m, &cameras, of_cameras, prov, err);
-    if (!st && of_images) st = read_images(m, &cameras, &images, &lines, of_images, prov, err);
-    for (int i = 0; !st && i < m->image_count; i++) {
+    read_cameras(m, &cameras, of_cameras, prov, err);
+    if (!err->status && of_images) read_images(m, &cameras, &images, &lines, of_images, prov, err);
+    for (int i = 0; !err->status && i < m->image_count; i++) {
         free(m->images[i].observations);
         m->images[i].observations = NULL;
         m->images[i].observation_count = 0;
@@ -391,8 +388,8 @@ enum status sfm_model_read_camera_files(struct sfm_model *m, const char *of_came
     free(lines);
     id_list_release(&cameras);
     id_list_release(&images);
-    if (st) sfm_model_release(m);
-    return st ? err->status : ST_OK;
+    if (err->status) sfm_model_release(m);
+    return err->status;
 }
 
 /* --------------------------------------------------------------------------------------------------------- writing */
@@ -444,14 +441,13 @@ static enum status write_part(const struct sfm_model *m, const char *folder, enu
 {
     struct outfile f = {0};
     char path[FILE_PATH];
-    enum status st =
-        product_path_in(path, folder, id, NULL, err) || product_begin(&f, id, path, prov, err) ? err->status : ST_OK;
-    if (!st) {
+    if (!product_path_in(path, folder, id, NULL, err)) product_begin(&f, id, path, prov, err);
+    if (!err->status) {
         print(m, f.fp);
-        st = outfile_commit(&f, err);
+        outfile_commit(&f, err);
     }
     outfile_discard(&f);
-    return st;
+    return err->status;
 }
 
 enum status sfm_model_write_text(const struct sfm_model *m, const char *folder, const struct provenance *prov,

@@ -27,23 +27,22 @@ enum status upright_read(struct vec3 *ups, const struct camera_set *set, const c
 {
     struct lens_list lenses = {0};
     char path[FILE_PATH];
-    enum status st = product_path_in(path, views, PRODUCT_LENSES, NULL, err);
-    if (!st) st = lens_list_read(&lenses, path, prov, err);
-    for (int i = 0; !st && i < set->view_count; i++) {
+    if (!product_path_in(path, views, PRODUCT_LENSES, NULL, err)) lens_list_read(&lenses, path, prov, err);
+    for (int i = 0; !err->status && i < set->view_count; i++) {
         struct photo_record record = {0};
         int at = lens_list_find(&lenses, set->views[i].name);
         if (at < 0) {
-            st = err_set(err, ST_DATA, "%s has no view %s, which is in images.txt; import the views again.", path,
-                         set->views[i].name);
+            err_set(err, ST_DATA, "%s has no view %s, which is in images.txt; import the views again.", path,
+                    set->views[i].name);
             break;
         }
         const struct lens *lens = &lenses.lenses[at];
-        st = photo_record_read(&record, records, lens->photo, prov, err);
-        if (!st)
+        photo_record_read(&record, records, lens->photo, prov, err);
+        if (!err->status)
             ups[i] =
                 mat3_apply(mat3_from_quat(lens->view_from_photo), upright_from_orientation(record.info.orientation));
         photo_record_release(&record);
     }
     lens_list_release(&lenses);
-    return st;
+    return err->status;
 }

@@ -43,12 +43,11 @@ enum status view_image_read(struct image *im, const char *folder, const struct v
     const size_t pixels = (size_t)view->width * (size_t)view->height;
 
     *im = (struct image){0};
-    enum status st = view_planes_read(&planes, folder, view, 4, prov, err);
-    if (!st) st = image_init(im, view->width, view->height, 4, err);
-    for (size_t c = 0; !st && c < 4; c++)
+    if (!view_planes_read(&planes, folder, view, 4, prov, err)) image_init(im, view->width, view->height, 4, err);
+    for (size_t c = 0; !err->status && c < 4; c++)
         for (size_t i = 0; i < pixels; i++) im->data[4 * i + c] = planes.channel[c][i];
     view_planes_release(&planes);
-    return st;
+    return err->status;
 }
 
 /* Rounds to six binary digits: noise is not known more precisely, and the rest would not compress. */
@@ -65,9 +64,8 @@ static enum status add_quality(struct exr_image *exr, const struct image *im, co
                                struct err *err)
 {
     struct exr_plane *sigma = NULL, *clipped = NULL;
-    enum status st = exr_add_plane(exr, "sigma", EXR_HALF, &sigma, err);
-    if (!st) st = exr_add_plane(exr, "clipped", EXR_HALF, &clipped, err);
-    if (st) return st;
+    if (exr_add_plane(exr, "sigma", EXR_HALF, &sigma, err) || exr_add_plane(exr, "clipped", EXR_HALF, &clipped, err))
+        return err->status;
     sigma = exr_find(exr, "sigma");
     for (size_t i = 0; i < (size_t)im->width * (size_t)im->height; i++) {
         const float *p = im->data + 4 * i;
@@ -83,20 +81,18 @@ enum status view_image_write(const struct image *im, const struct photo_quality 
                              struct err *err)
 {
     struct exr_image exr = {0};
-    enum status st = ST_OK;
 
     if (im->channels != 4 || im->width != view->width || im->height != view->height)
-        st = err_set(err, ST_INTERNAL, "cannot write %s: a picture of %d x %d with %d channels is not view %s.", path,
-                     im->width, im->height, im->channels, view->name);
-    if (!st) st = exr_init_rgba(&exr, im->data, im->width, im->height, err);
-    if (!st && quality) st = add_quality(&exr, im, quality, err);
-    if (!st) st = exr_set_attribute(&exr, "remodel:radiometry", radiometry, err);
-    if (!st) {
+        err_set(err, ST_INTERNAL, "cannot write %s: a picture of %d x %d with %d channels is not view %s.", path,
+                im->width, im->height, im->channels, view->name);
+    if (!err->status) exr_init_rgba(&exr, im->data, im->width, im->height, err);
+    if (!err->status && quality) add_quality(&exr, im, quality, err);
+    if (!err->status && !exr_set_attribute(&exr, "remodel:radiometry", radiometry, err)) {
         view_image_set_camera(&exr, view);
-        st = exr_write(&exr, path, prov, err);
+        exr_write(&exr, path, prov, err);
     }
     exr_image_release(&exr);
-    return st;
+    return err->status;
 }
 
 /* OpenEXR's standard attribute worldToCamera: p_cam = p_world M for row vectors (x y z 1), so the translation is the

@@ -76,8 +76,7 @@ static enum status read_word(struct textfile *t, const char *what, const char *c
                              struct err *err)
 {
     char *word;
-    enum status st = textfile_word(t, what, &word, err);
-    if (st) return st;
+    if (textfile_word(t, what, &word, err)) return err->status;
     for (*which = 0; *which < 3; ++*which)
         if (!strcmp(word, names[*which])) return ST_OK;
     return textfile_error(t, err, word, "%s: %s, %s or %s", what, names[0], names[1], names[2]);
@@ -99,14 +98,13 @@ static enum status read_layer(struct textfile *t, struct effects *e, bool has_re
 
     if (missing)
         return textfile_error(t, err, "layer", "a %s of the layer %s", missing, e->layers[e->layer_count - 1].name);
-    enum status st = textfile_word(t, "the layer's name", &name, err);
-    if (st) return st;
+    if (textfile_word(t, "the layer's name", &name, err)) return err->status;
     if (!name_is_valid(name)) return textfile_error(t, err, name, "a name of 1 to %d printable characters", MAX_NAME);
     for (int i = 0; i < e->layer_count; i++)
         if (!strcmp(e->layers[i].name, name)) return textfile_error(t, err, name, "a name that no other layer has");
     if (e->layer_count == MAX_EFFECT_LAYERS)
         return textfile_error(t, err, name, "the end of the file, after %d layers", MAX_EFFECT_LAYERS);
-    if ((st = read_word(t, "what the layer changes", kind_names, &kind, err)) || (st = textfile_end(t, err))) return st;
+    if (read_word(t, "what the layer changes", kind_names, &kind, err) || textfile_end(t, err)) return err->status;
 
     if (array_append(&e->layers, (size_t)e->layer_count, sizeof *e->layers, "effect layers", err)) return err->status;
     char *copy = strdup(name);
@@ -132,21 +130,20 @@ static enum status read_box_options(struct textfile *t, struct effect_box *box, 
 {
     bool has_axes = false, has_time = false;
     char *word;
-    enum status st = ST_OK;
 
-    while (!st && textfile_more(t)) {
-        if ((st = textfile_word(t, "axes or at", &word, err))) break;
+    while (!err->status && textfile_more(t)) {
+        if (textfile_word(t, "axes or at", &word, err)) break;
         if (!has_axes && !strcmp(word, "axes")) {
-            st = read_axes(t, &box->box_from_world, err);
+            read_axes(t, &box->box_from_world, err);
             has_axes = true;
         } else if (!has_time && !strcmp(word, "at")) {
-            st = textfile_number(t, "a time", 0, MAX_TIME, &box->time, err);
+            textfile_number(t, "a time", 0, MAX_TIME, &box->time, err);
             has_time = true;
         } else {
-            st = textfile_error(t, err, word, "axes QW QX QY QZ, at TIME (each once) or the end of the line");
+            textfile_error(t, err, word, "axes QW QX QY QZ, at TIME (each once) or the end of the line");
         }
     }
-    if (st || !previous || box->time > previous->time) return st;
+    if (err->status || !previous || box->time > previous->time) return err->status;
     if (!has_time)
         return textfile_error(t, err, NULL, "at TIME, after %.9g, that of the previous region", previous->time);
     char found[32];
@@ -160,19 +157,16 @@ static enum status read_region(struct textfile *t, struct effect_layer *l, struc
     struct effect_box box = {0};
     double *const to[] = {&box.low.x, &box.low.y, &box.low.z, &box.high.x, &box.high.y, &box.high.z};
     int region = 0;
-    enum status st = read_word(t, "a region", region_names, &region, err);
-
-    if (st) return st;
+    if (read_word(t, "a region", region_names, &region, err)) return err->status;
     if (l->box_count && l->region != (enum effect_region)region)
         return textfile_error(t, err, region_names[region], "%s, as the layer's first region", region_names[l->region]);
     l->region = (enum effect_region)region;
     if (l->region == EFFECT_ALL) return ST_OK;
-    for (int i = 0; !st && i < 6; i++)
-        st = textfile_number(t, corners[i], i < 3 ? -MAX_EFFECT_COORDINATE : *to[i - 3], MAX_EFFECT_COORDINATE, to[i],
-                             err);
-    if (!st) st = textfile_number(t, "the fall-off", 0, MAX_EFFECT_COORDINATE, &box.falloff, err);
-    if (!st) st = read_box_options(t, &box, l->box_count ? &l->boxes[l->box_count - 1] : NULL, err);
-    if (st) return st;
+    for (int i = 0; !err->status && i < 6; i++)
+        textfile_number(t, corners[i], i < 3 ? -MAX_EFFECT_COORDINATE : *to[i - 3], MAX_EFFECT_COORDINATE, to[i], err);
+    if (!err->status && !textfile_number(t, "the fall-off", 0, MAX_EFFECT_COORDINATE, &box.falloff, err))
+        read_box_options(t, &box, l->box_count ? &l->boxes[l->box_count - 1] : NULL, err);
+    if (err->status) return err->status;
     if (l->box_count == MAX_KEYS) return textfile_error(t, err, "region", "at most %d regions in a layer", MAX_KEYS);
     if (array_append(&l->boxes, (size_t)l->box_count, sizeof *l->boxes, "regions of a layer", err)) return err->status;
     box.time += 0.0; /* -0 becomes 0, which is written as no time */
@@ -183,8 +177,7 @@ static enum status read_region(struct textfile *t, struct effect_layer *l, struc
 static enum status read_curve(struct textfile *t, struct effect_layer *l, struct err *err)
 {
     char *word;
-    enum status st = textfile_word(t, "linear or cubic", &word, err);
-    if (st) return st;
+    if (textfile_word(t, "linear or cubic", &word, err)) return err->status;
     if (!strcmp(word, curve_names[EFFECT_LINEAR])) return ST_OK;
     l->curve = EFFECT_CUBIC;
     return strcmp(word, curve_names[EFFECT_CUBIC]) ? textfile_error(t, err, word, "linear or cubic") : ST_OK;
@@ -196,16 +189,14 @@ static enum status read_key(struct textfile *t, struct effect_layer *l, struct e
     const int values = value_count(l->kind);
     struct effect_key key = {0};
     char *word;
-    enum status st = textfile_word(t, "a time in seconds", &word, err);
-
-    if (st) return st;
+    if (textfile_word(t, "a time in seconds", &word, err)) return err->status;
     if (textfile_number_of(t, word, "a time", 0, MAX_TIME, &key.time, err)) return err->status;
     if (l->key_count && !(key.time > l->keys[l->key_count - 1].time))
         return textfile_error(t, err, word, "a time after %.9g, that of the previous key",
                               l->keys[l->key_count - 1].time);
-    for (int i = 0; !st && i < values; i++)
-        st = textfile_number(t, values == 1 ? kind_names[l->kind] : colors[i], 0, MAX_VALUE, &key.value[i], err);
-    if (st) return st;
+    for (int i = 0; !err->status && i < values; i++)
+        textfile_number(t, values == 1 ? kind_names[l->kind] : colors[i], 0, MAX_VALUE, &key.value[i], err);
+    if (err->status) return err->status;
     if (l->key_count == MAX_KEYS) return textfile_error(t, err, word, "at most %d keys in a layer", MAX_KEYS);
     if (array_append(&l->keys, (size_t)l->key_count, sizeof *l->keys, "keys of a layer", err)) return err->status;
     l->keys[l->key_count++] = key;
@@ -215,40 +206,39 @@ static enum status read_key(struct textfile *t, struct effect_layer *l, struct e
 enum status effects_read_layers(struct effects *e, struct textfile *t, struct err *err)
 {
     bool has_region = false;
-    enum status st = ST_OK;
 
     *e = (struct effects){0};
-    while (!st && textfile_next(t)) {
+    while (!err->status && textfile_next(t)) {
         struct effect_layer *l = e->layer_count ? &e->layers[e->layer_count - 1] : NULL;
         char *word;
         /* a box may be followed by more of them, up to the curve or the first key */
         const bool more = has_region && l->region != EFFECT_ALL && l->curve == EFFECT_LINEAR && !l->key_count;
-        if ((st = textfile_word(t, "layer, region, curve or key", &word, err))) break;
+        if (textfile_word(t, "layer, region, curve or key", &word, err)) break;
         if (!strcmp(word, "layer")) {
-            st = read_layer(t, e, has_region, err);
+            read_layer(t, e, has_region, err);
             has_region = false;
         } else if (l && (!has_region || more) && !strcmp(word, "region")) {
-            st = read_region(t, l, err);
+            read_region(t, l, err);
             has_region = true;
         } else if (l && has_region && !l->key_count && l->curve == EFFECT_LINEAR && !strcmp(word, "curve")) {
-            st = read_curve(t, l, err);
+            read_curve(t, l, err);
         } else if (l && has_region && !strcmp(word, "key")) {
-            st = read_key(t, l, err);
+            read_key(t, l, err);
         } else {
-            st = textfile_error(t, err, word,
-                                !l            ? "layer"
-                                : !has_region ? "region"
-                                : more        ? "region, curve, key or layer"
-                                              : "key or layer");
+            textfile_error(t, err, word,
+                           !l            ? "layer"
+                           : !has_region ? "region"
+                           : more        ? "region, curve, key or layer"
+                                         : "key or layer");
         }
-        if (!st) st = textfile_end(t, err);
+        if (!err->status) textfile_end(t, err);
     }
     const char *missing = missing_line(e, has_region);
-    if (!st && missing)
-        st = err_set(err, ST_DATA, "%s:%d: found the end of the file, wanted a %s of the layer %s.", t->path, t->line,
-                     missing, e->layers[e->layer_count - 1].name);
-    if (st) effects_release(e);
-    return st;
+    if (!err->status && missing)
+        err_set(err, ST_DATA, "%s:%d: found the end of the file, wanted a %s of the layer %s.", t->path, t->line,
+                missing, e->layers[e->layer_count - 1].name);
+    if (err->status) effects_release(e);
+    return err->status;
 }
 
 enum status effects_read(struct effects *e, const char *path, struct provenance *prov, struct err *err)
@@ -256,10 +246,9 @@ enum status effects_read(struct effects *e, const char *path, struct provenance 
     struct textfile t = {0};
 
     *e = (struct effects){0};
-    enum status st = product_open(&t, NULL, PRODUCT_EFFECTS, path, prov, err);
-    if (!st) st = effects_read_layers(e, &t, err);
+    if (!product_open(&t, NULL, PRODUCT_EFFECTS, path, prov, err)) effects_read_layers(e, &t, err);
     textfile_release(&t);
-    return st;
+    return err->status;
 }
 
 /* ---------------------------------------------------------------------------------------------------------- writing */
@@ -331,18 +320,16 @@ enum status effects_write(const struct effects *e, const char *path, const struc
                 err, ST_DATA,
                 "%s: cannot write layer %d of %d: its name is invalid or taken, or a number is out of range.", path,
                 i + 1, e->layer_count);
-    enum status st = product_begin(&f, PRODUCT_EFFECTS, path, prov, err);
-    if (st) return st;
+    if (product_begin(&f, PRODUCT_EFFECTS, path, prov, err)) return err->status;
     const locale_t before = uselocale(scan_c_locale());
-    for (int i = 0; !st && i < e->layer_count; i++) {
+    for (int i = 0; !err->status && i < e->layer_count; i++) {
         char name[2 * MAX_NAME + 3];
-        st = textfile_quote(e->layers[i].name, name, sizeof name, err);
-        if (!st) write_layer(&e->layers[i], name, f.fp);
+        if (!textfile_quote(e->layers[i].name, name, sizeof name, err)) write_layer(&e->layers[i], name, f.fp);
     }
     uselocale(before);
-    if (!st) return outfile_commit(&f, err);
+    if (!err->status) return outfile_commit(&f, err);
     outfile_discard(&f);
-    return st;
+    return err->status;
 }
 
 /* --------------------------------------------------------------------------------------------------------- applying */

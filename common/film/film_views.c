@@ -57,11 +57,10 @@ enum status film_views_read(struct film_views *v, const char *path, struct prove
 {
     struct textfile t = {0};
     *v = (struct film_views){0};
-    enum status st = product_open(&t, NULL, PRODUCT_FILM_VIEWS, path, prov, err);
-    if (!st) st = read_views(v, &t, err);
+    if (!product_open(&t, NULL, PRODUCT_FILM_VIEWS, path, prov, err)) read_views(v, &t, err);
     textfile_release(&t);
-    if (st) film_views_release(v);
-    return st;
+    if (err->status) film_views_release(v);
+    return err->status;
 }
 
 /* ---------------------------------------------------------------------------------------------------------- writing */
@@ -92,11 +91,11 @@ enum status film_views_write(const struct camera_set *set, const bool *keep, con
     FILE *to = open_memstream(&text, &size);
     if (!to) return err_nomem(err, "the views of a film", (size_t)set->view_count);
     if (prov) provenance_print(prov, to);
-    enum status st = print_views(to, set, keep, err);
-    if (fclose(to) && !st) st = err_nomem(err, "the views of a film", size);
-    if (!st) st = outfile_write_if_changed(path, text, size, err);
+    print_views(to, set, keep, err);
+    if (fclose(to) && !err->status) err_nomem(err, "the views of a film", size);
+    if (!err->status) outfile_write_if_changed(path, text, size, err);
     free(text);
-    return st;
+    return err->status;
 }
 
 /* --------------------------------------------------------------------------------------------------------- applying */
@@ -107,22 +106,21 @@ enum status film_views_keep(struct camera_set *set, const char *path, struct pro
     bool *keep = NULL;
     if (!path) return ST_OK;
     const int inputs = prov->count;
-    enum status st = film_views_read(&v, path, prov, err);
-    if (!st && v.all) provenance_keep(prov, inputs);
-    if (!st && !v.all) {
+    if (!film_views_read(&v, path, prov, err) && v.all) provenance_keep(prov, inputs);
+    if (!err->status && !v.all) {
         keep = calloc((size_t)set->view_count + 1, sizeof *keep);
-        if (!keep) st = err_nomem(err, "the views of a film", (size_t)set->view_count);
-        for (int i = 0; !st && i < v.count; i++) {
+        if (!keep) err_nomem(err, "the views of a film", (size_t)set->view_count);
+        for (int i = 0; !err->status && i < v.count; i++) {
             const int at = camera_set_find(set, v.names[i]);
             if (at < 0)
-                st = err_set(err, ST_DATA, "%s: found view %s, which the scene does not have; choose the views again.",
-                             path, v.names[i]);
+                err_set(err, ST_DATA, "%s: found view %s, which the scene does not have; choose the views again.", path,
+                        v.names[i]);
             else
                 keep[at] = true;
         }
-        if (!st) st = camera_set_keep(set, keep, err);
+        if (!err->status) camera_set_keep(set, keep, err);
     }
     free(keep);
     film_views_release(&v);
-    return st;
+    return err->status;
 }

@@ -51,21 +51,20 @@ enum status region_list_read(struct region_list *list, const char *path, struct 
 {
     struct textfile t = {0};
     *list = (struct region_list){0};
-    enum status st = provenance_open(prov, "subjects.txt", &t, path, err);
-    while (!st && textfile_next(&t)) {
+    provenance_open(prov, "subjects.txt", &t, path, err);
+    while (!err->status && textfile_next(&t)) {
         if (list->count == MAX_REGIONS) {
-            st = err_set(err, ST_DATA, "%s:%d: found more than %d subjects.", path, t.line, MAX_REGIONS);
+            err_set(err, ST_DATA, "%s:%d: found more than %d subjects.", path, t.line, MAX_REGIONS);
             break;
         }
-        st = array_append(&list->regions, (size_t)list->count, sizeof *list->regions, "subjects", err);
-        if (st) break;
+        if (array_append(&list->regions, (size_t)list->count, sizeof *list->regions, "subjects", err)) break;
         struct region *r = &list->regions[list->count++];
         *r = (struct region){0};
-        st = read_region(&t, r, err);
+        read_region(&t, r, err);
     }
     textfile_release(&t);
-    if (st) region_list_release(list);
-    return st;
+    if (err->status) region_list_release(list);
+    return err->status;
 }
 
 /* ------------------------------------------------------------------------------------------------ through the lens */

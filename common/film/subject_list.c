@@ -83,20 +83,18 @@ enum status subject_list_write(const struct subject_list *list, const char *path
 {
     struct outfile f = {0};
     char view[NAME_SIZE];
-    enum status st = product_begin(&f, PRODUCT_SUBJECTS, path, prov, err);
-    if (!st) fprintf(f.fp, "subjects %d\n", list->count);
-    for (int i = 0; !st && i < list->count; i++) {
+    if (!product_begin(&f, PRODUCT_SUBJECTS, path, prov, err)) fprintf(f.fp, "subjects %d\n", list->count);
+    for (int i = 0; !err->status && i < list->count; i++) {
         const struct subject *s = &list->subjects[i];
-        st = textfile_quote(s->view, view, sizeof view, err);
-        if (st) break;
+        if (textfile_quote(s->view, view, sizeof view, err)) break;
         fprintf(f.fp, "subject %s %s %.17g %.17g %.17g %.17g %.17g %.17g %d %d\n", view, source_names[s->source], s->x0,
                 s->y0, s->x1, s->y1, s->depth, s->score, s->confirmed, s->asked);
         for (int k = 0; k < 4; k++)
             fprintf(f.fp, "corner %.17g %.17g %.17g\n", s->corner[k].x, s->corner[k].y, s->corner[k].z);
     }
-    if (!st) st = outfile_commit(&f, err);
+    if (!err->status) outfile_commit(&f, err);
     outfile_discard(&f);
-    return st;
+    return err->status;
 }
 
 /* ---------------------------------------------------------------------------------------------------------- reading */
@@ -143,19 +141,16 @@ enum status subject_list_read(struct subject_list *list, const char *path, struc
     struct textfile t = {0};
     int64_t count = 0;
     *list = (struct subject_list){0};
-    enum status st =
-        product_open(&t, NULL, PRODUCT_SUBJECTS, path, prov, err) || textfile_expect_line(&t, "subjects", err) ||
-                textfile_int(&t, "number of subjects", 0, MAX_SUBJECTS, &count, err) || textfile_end(&t, err)
-            ? err->status
-            : ST_OK;
-    for (int64_t i = 0; !st && i < count; i++) {
+    if (!product_open(&t, NULL, PRODUCT_SUBJECTS, path, prov, err) && !textfile_expect_line(&t, "subjects", err) &&
+        !textfile_int(&t, "number of subjects", 0, MAX_SUBJECTS, &count, err))
+        textfile_end(&t, err);
+    for (int64_t i = 0; !err->status && i < count; i++) {
         struct subject s = {0};
-        st = read_subject(&t, &s, err);
-        if (!st) st = subject_list_add(list, &s, err);
+        if (!read_subject(&t, &s, err)) subject_list_add(list, &s, err);
         subject_release(&s);
     }
-    if (!st) st = textfile_end_of_file(&t, err);
+    if (!err->status) textfile_end_of_file(&t, err);
     textfile_release(&t);
-    if (st) subject_list_release(list);
-    return st;
+    if (err->status) subject_list_release(list);
+    return err->status;
 }

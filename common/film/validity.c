@@ -50,9 +50,10 @@ static enum status read_key(struct textfile *t, const char *key, struct err *err
 
 static enum status read_numbers(struct textfile *t, const char *key, double *values, int count, struct err *err)
 {
-    enum status st = read_key(t, key, err);
-    for (int i = 0; !st && i < count; i++) st = textfile_double(t, key, &values[i], err);
-    return st ? st : textfile_end(t, err);
+    read_key(t, key, err);
+    for (int i = 0; !err->status && i < count; i++) textfile_double(t, key, &values[i], err);
+    if (!err->status) textfile_end(t, err);
+    return err->status;
 }
 
 static enum status read_shot(struct textfile *t, struct validity *v, struct err *err)
@@ -149,26 +150,21 @@ enum status validity_read(struct validity *v, const char *path, struct provenanc
     struct err why = ERR_INIT;
 
     *v = (struct validity){0};
-    enum status st = product_open(&t, NULL, PRODUCT_VALIDITY, path, prov, err);
-    if (!st) st = read_key(&t, "effect", err);
-    if (!st) st = textfile_word(&t, "an effect", &word, err);
-    if (!st && film_effect_parse(&v->effect, word, &why))
-        st = err_set(err, ST_DATA, "%s:%d: %s", path, t.line, why.text);
-    if (!st) st = textfile_end(&t, err);
+    if (!product_open(&t, NULL, PRODUCT_VALIDITY, path, prov, err) && !read_key(&t, "effect", err))
+        textfile_word(&t, "an effect", &word, err);
+    if (!err->status && film_effect_parse(&v->effect, word, &why))
+        err_set(err, ST_DATA, "%s:%d: %s", path, t.line, why.text);
+    if (!err->status) textfile_end(&t, err);
     v->move.move = v->effect.move;
-    if (!st) st = read_shot(&t, v, err);
-    if (!st) st = read_key(&t, "on_axis", err);
-    if (!st) st = textfile_int(&t, "on_axis", 0, 1, &number, err);
-    if (!st) st = textfile_end(&t, err);
-    if (!st) v->move.on_axis = number;
-    for (int i = 0; !st && i < 2; i++) {
-        st = read_end(&t, &v->move.end[i], err);
-        if (!st) st = read_region(&t, &v->region[i], err);
-    }
-    if (!st && textfile_next(&t)) st = textfile_error(&t, err, "another line", "the end of the file");
+    if (!err->status && !read_shot(&t, v, err) && !read_key(&t, "on_axis", err) &&
+        !textfile_int(&t, "on_axis", 0, 1, &number, err) && !textfile_end(&t, err))
+        v->move.on_axis = number;
+    for (int i = 0; !err->status && i < 2; i++)
+        if (!read_end(&t, &v->move.end[i], err)) read_region(&t, &v->region[i], err);
+    if (!err->status && textfile_next(&t)) textfile_error(&t, err, "another line", "the end of the file");
     textfile_release(&t);
-    if (st) validity_release(v);
-    return st;
+    if (err->status) validity_release(v);
+    return err->status;
 }
 
 /* ---------------------------------------------------------------------------------------------------------- writing */
@@ -212,9 +208,7 @@ enum status validity_write(const struct validity *v, const char *path, const str
     const struct shot_setup *s = &v->shot;
     struct outfile f = {0};
     char effect[EFFECT_NAME_SIZE];
-    enum status st = product_begin(&f, PRODUCT_VALIDITY, path, prov, err);
-
-    if (st) return st;
+    if (product_begin(&f, PRODUCT_VALIDITY, path, prov, err)) return err->status;
     film_effect_name(&v->effect, effect);
     fprintf(f.fp, "effect %s\nfilm %d %d %.17g %.17g %.17g\nzoom %.17g\n", effect, s->lens.width, s->lens.height,
             s->lens.fx, s->lens.cx, s->lens.cy, v->zoom);
@@ -232,7 +226,7 @@ enum status validity_write(const struct validity *v, const char *path, const str
         print_end(f.fp, &v->move.end[i]);
         print_region(f.fp, &v->region[i]);
     }
-    st = outfile_commit(&f, err);
+    outfile_commit(&f, err);
     outfile_discard(&f);
-    return st;
+    return err->status;
 }

@@ -182,19 +182,19 @@ static enum status run_batch(struct viewpoint_batch *m, int count, struct viewpo
     const int threads = parallel_threads();
     m->tests = calloc((size_t)threads, sizeof *m->tests);
     m->errors = calloc((size_t)count + 1, sizeof *m->errors);
-    enum status st = m->tests && m->errors ? ST_OK : err_nomem(err, "viewpoints", (size_t)count * sizeof *m->errors);
+    if (!m->tests || !m->errors) err_nomem(err, "viewpoints", (size_t)count * sizeof *m->errors);
 
-    for (int t = 0; !st && t < threads; t++) viewpoint_test_copy(&m->tests[t], test);
-    if (!st) parallel_for((size_t)count, 1, m->out ? measure_some : test_some, m);
-    for (int i = 0; !st && i < count; i++)
-        if (m->errors[i].status) st = err_set(err, m->errors[i].status, "%s", m->errors[i].text);
+    for (int t = 0; !err->status && t < threads; t++) viewpoint_test_copy(&m->tests[t], test);
+    if (!err->status) parallel_for((size_t)count, 1, m->out ? measure_some : test_some, m);
+    for (int i = 0; !err->status && i < count; i++)
+        if (m->errors[i].status) err_set(err, m->errors[i].status, "%s", m->errors[i].text);
     for (int t = 0; m->tests && t < threads; t++) {
         test->renders += m->tests[t].renders;
         viewpoint_test_release(&m->tests[t]);
     }
     free(m->tests);
     free(m->errors);
-    return st;
+    return err->status;
 }
 
 enum status viewpoints_measure(struct viewpoint *out, const struct view *cameras, int count,
@@ -208,7 +208,7 @@ enum status viewpoints_are_valid(bool *valid, const struct view *cameras, int co
                                  struct err *err)
 {
     struct viewpoint_batch m = {.cameras = cameras};
-    const enum status st = run_batch(&m, count, test, err);
-    *valid = !st && !atomic_load(&m.invalid);
-    return st;
+    run_batch(&m, count, test, err);
+    *valid = !err->status && !atomic_load(&m.invalid);
+    return err->status;
 }

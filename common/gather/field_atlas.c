@@ -88,10 +88,9 @@ static enum status read_page(struct field_atlas *a, int page, const char *folder
                              struct err *err)
 {
     struct atlas_page p = {0};
-    enum status st = atlas_page_read(&p, &a->atlas, page, folder, prov, err);
-    if (!st) st = pack_page(a, page, &p, err);
+    if (!atlas_page_read(&p, &a->atlas, page, folder, prov, err)) pack_page(a, page, &p, err);
     atlas_page_release(&p);
-    return st;
+    return err->status;
 }
 
 /* VITA tiles only scale: the third row of their matrices is 0 0 0 1. */
@@ -161,23 +160,23 @@ enum status field_atlas_replace(struct field_atlas *a, const bool *dropped, cons
     struct atlas_tile *list = malloc(tiles * sizeof *list);
     int(*sizes)[2] = calloc((size_t)page_count + 1, sizeof *sizes), count = 0;
     uint64_t **all = calloc((size_t)page_count + 1, sizeof *all);
-    enum status st = list && sizes && all ? ST_OK : err_nomem(err, "tiles", tiles * sizeof *list);
-    for (int i = 0; !st && i < to->tile_count; i++)
+    if (!list || !sizes || !all) err_nomem(err, "tiles", tiles * sizeof *list);
+    for (int i = 0; !err->status && i < to->tile_count; i++)
         if (!dropped[to->tiles[i].face]) list[count++] = to->tiles[i];
-    for (int i = 0; !st && i < extra->tile_count; i++) {
+    for (int i = 0; !err->status && i < extra->tile_count; i++) {
         list[count] = extra->tiles[i];
         list[count++].page += to->page_count;
     }
-    for (int i = 0; !st && i < page_count; i++) {
+    for (int i = 0; !err->status && i < page_count; i++) {
         const int *size = i < to->page_count ? to->page_sizes[i] : extra->page_sizes[i - to->page_count];
         sizes[i][0] = size[0], sizes[i][1] = size[1];
         if (i < to->page_count) all[i] = a->pages[i];
     }
-    if (st) {
+    if (err->status) {
         free(list);
         free(sizes);
         free(all);
-        return st;
+        return err->status;
     }
     const int first = to->page_count;
     free(to->tiles);
@@ -187,8 +186,9 @@ enum status field_atlas_replace(struct field_atlas *a, const bool *dropped, cons
     to->tiles = list, to->tile_count = count;
     to->page_sizes = sizes, to->page_count = page_count;
     a->pages = all;
-    for (int i = 0; !st && i < extra->page_count; i++) st = pack_page(a, first + i, &pages[i], err);
-    return st ? st : index_faces(a, a->ids, err);
+    for (int i = 0; !err->status && i < extra->page_count; i++) pack_page(a, first + i, &pages[i], err);
+    if (!err->status) index_faces(a, a->ids, err);
+    return err->status;
 }
 
 /* ---------------------------------------------------------------------------------------------------------- look-up */

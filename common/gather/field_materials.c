@@ -354,11 +354,9 @@ enum status field_materials_read(struct field_materials *m, const struct field_s
                                  struct err *err)
 {
     struct finder d = {.materials = m, .on = on, .axes = axes};
-    enum status st = read_list(m, path, prov, err);
-    if (!st) st = read_cameras(&d, views, prov, err);
-    if (!st) st = add_regions(&d, &m->list, path, err);
-    if (!st) st = find_texels(&d, err);
-    if (!st) st = mark_texels(&d, err);
+    if (!read_list(m, path, prov, err) && !read_cameras(&d, views, prov, err) &&
+        !add_regions(&d, &m->list, path, err) && !find_texels(&d, err))
+        mark_texels(&d, err);
     finder_release(&d);
-    return st;
+    return err->status;
 }

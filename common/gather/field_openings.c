@@ -129,8 +129,8 @@ enum status field_openings_read(struct field_openings *o, const struct light_lis
     for (int i = 0; i < lights->opening_count; i++) most += (size_t)lights->openings[i].reference_count;
     o->items = calloc((size_t)lights->opening_count + 1, sizeof *o->items);
     o->pictures = calloc(most, sizeof *o->pictures);
-    enum status st = o->items && o->pictures ? ST_OK : err_nomem(err, "reference images", most * sizeof *o->pictures);
-    for (int i = 0; !st && i < lights->opening_count; i++) st = add_opening(&r, &lights->openings[i], err);
+    if (!o->items || !o->pictures) err_nomem(err, "reference images", most * sizeof *o->pictures);
+    for (int i = 0; !err->status && i < lights->opening_count; i++) add_opening(&r, &lights->openings[i], err);
     provenance_release(&unused);
-    return st;
+    return err->status;
 }

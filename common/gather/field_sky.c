@@ -96,12 +96,12 @@ static enum status flood(struct flood *f, size_t from, struct err *err)
 {
     const size_t width = (size_t)f->o->width;
     f->count = 0;
-    enum status st = push(f, (int)(from % width), (int)(from / width), err);
-    for (size_t i = 0; !st && i < f->count; i++) {
+    push(f, (int)(from % width), (int)(from / width), err);
+    for (size_t i = 0; !err->status && i < f->count; i++) {
         const int x = (int)(f->stack[i] % width), y = (int)(f->stack[i] / width);
-        for (int k = 0; !st && k < 9; k++) st = push(f, x + k % 3 - 1, y + k / 3 - 1, err);
+        for (int k = 0; !err->status && k < 9; k++) push(f, x + k % 3 - 1, y + k / 3 - 1, err);
     }
-    return st;
+    return err->status;
 }
 
 static struct vec3 direction_of(const struct outdoors *o, size_t pixel)
@@ -154,16 +154,15 @@ enum status field_sky_find(struct field_sky *s, const struct outdoors *o, struct
     *s = (struct field_sky){0};
     if (!pixels || find_median(s, o, err)) return pixels ? err->status : ST_OK;
     struct flood f = {.o = o, .bright = s->bright, .seen = calloc(pixels, 1)};
-    enum status st = f.seen ? ST_OK : err_nomem(err, "a picture of the outdoors", pixels);
-    for (size_t i = 0; !st && i < pixels; i++) {
+    if (!f.seen) err_nomem(err, "a picture of the outdoors", pixels);
+    for (size_t i = 0; !err->status && i < pixels; i++) {
         double light;
         if (f.seen[i] || !(luminance_at(o, i) > s->bright)) continue;
-        st = flood(&f, i, err);
-        if (st) break;
+        if (flood(&f, i, err)) break;
         const struct emitter sun = make_sun(&f, &light);
         insert(s, lights, sun, light);
     }
     free(f.seen);
     free(f.stack);
-    return st;
+    return err->status;
 }

@@ -50,16 +50,13 @@ enum status gatherer_make(struct gatherer **g, const struct gather_params *p, st
         n /= 2;
         steps++;
     }
-    enum status st = ST_OK;
-    for (int i = 0; !st && i < steps; i++, n *= 2) {
-        st = hemicube_make(&made->cubes[i], n, err);
-        if (!st) made->cube_count++;
-    }
-    if (st)
+    for (int i = 0; !err->status && i < steps; i++, n *= 2)
+        if (!hemicube_make(&made->cubes[i], n, err)) made->cube_count++;
+    if (err->status)
         gatherer_free(made);
     else
         *g = made;
-    return st;
+    return err->status;
 }
 
 void gatherer_free(struct gatherer *g)

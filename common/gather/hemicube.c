@@ -78,12 +78,12 @@ enum status hemicube_make(struct hemicube **h, int n, struct err *err)
         made->top = malloc(half * half * sizeof *made->top);
         made->side = malloc(half * half * sizeof *made->side);
     }
-    enum status st = made && made->top && made->side ? ST_OK : err_nomem(err, "a hemicube", half * half * 16);
-    if (!st) st = fill_factors(made->top, n / 2, top_integral, err);
-    if (!st) st = fill_factors(made->side, n / 2, side_integral, err);
-    if (!st) *h = made;
-    if (st) hemicube_free(made);
-    return st;
+    if (!made || !made->top || !made->side) err_nomem(err, "a hemicube", half * half * 16);
+    if (!err->status && !fill_factors(made->top, n / 2, top_integral, err) &&
+        !fill_factors(made->side, n / 2, side_integral, err))
+        *h = made;
+    if (err->status) hemicube_free(made);
+    return err->status;
 }
 
 void hemicube_free(struct hemicube *h)

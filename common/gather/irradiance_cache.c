@@ -350,13 +350,13 @@ enum status irradiance_cache_fill(struct irradiance *results, const struct irrad
 {
     struct cache c = {.job = j, .sides = {{j->field, j->points, results}}, .side_count = j->other.field ? SIDES : 1};
     c.sides[1] = (struct side){j->other.field, j->other.points, j->other.results};
-    enum status st = start(&c, err);
-    for (c.step = COARSEST; !st && c.step >= 1; c.step /= 2) st = add_level(&c, err);
-    if (!st) parallel_for((size_t)j->width * (size_t)j->height, CHUNK, evaluate, &c);
-    if (!st && stats) count(stats, &c);
+    start(&c, err);
+    for (c.step = COARSEST; !err->status && c.step >= 1; c.step /= 2) add_level(&c, err);
+    if (!err->status) parallel_for((size_t)j->width * (size_t)j->height, CHUNK, evaluate, &c);
+    if (!err->status && stats) count(stats, &c);
     cache_tree_release(&c.tree);
     free(c.records);
     free(c.wanted);
     free(c.is_wanted);
-    return st;
+    return err->status;
 }

@@ -173,11 +173,11 @@ enum status light_list_read(struct light_list *l, const char *path, struct prove
 {
     struct textfile t = {0};
     *l = (struct light_list){0};
-    enum status st = product_open(&t, NULL, PRODUCT_LIGHTS, path, prov, err);
-    while (!st && textfile_next(&t)) st = read_statement(l, &t, err);
+    product_open(&t, NULL, PRODUCT_LIGHTS, path, prov, err);
+    while (!err->status && textfile_next(&t)) read_statement(l, &t, err);
     textfile_release(&t);
-    if (st) light_list_release(l);
-    return st ? err->status : ST_OK;
+    if (err->status) light_list_release(l);
+    return err->status;
 }
 
 /* ---------------------------------------------------------------------------------------------------------- writing */
@@ -224,10 +224,10 @@ enum status light_list_write(const struct light_list *l, const char *path, const
                              struct err *err)
 {
     struct outfile f = {0};
-    enum status st = product_begin(&f, PRODUCT_LIGHTS, path, prov, err);
-    for (int i = 0; !st && i < l->lamp_count; i++) st = write_lamp(&l->lamps[i], f.fp, err);
-    for (int i = 0; !st && i < l->opening_count; i++) st = write_opening(&l->openings[i], f.fp, err);
-    if (!st) st = outfile_commit(&f, err);
+    product_begin(&f, PRODUCT_LIGHTS, path, prov, err);
+    for (int i = 0; !err->status && i < l->lamp_count; i++) write_lamp(&l->lamps[i], f.fp, err);
+    for (int i = 0; !err->status && i < l->opening_count; i++) write_opening(&l->openings[i], f.fp, err);
+    if (!err->status) outfile_commit(&f, err);
     outfile_discard(&f);
-    return st ? err->status : ST_OK;
+    return err->status;
 }

@@ -28,9 +28,9 @@ enum status light_record_write(const struct light_record *r, const char *path, c
         fprintf(f.fp, "hemicube %d %.6g %.6g %.6g %.6g %.6g %.6g %.6g %.6g %.6g %.4g\n", i + 1, p.x, p.y, p.z, n.x, n.y,
                 n.z, e->value.r, e->value.g, e->value.b, e->error);
     }
-    const enum status st = outfile_commit(&f, err);
+    outfile_commit(&f, err);
     outfile_discard(&f);
-    return st;
+    return err->status;
 }
 
 /* ---------------------------------------------------------------------------------------------------------- reading */
@@ -98,11 +98,9 @@ enum status light_record_read(struct light_record *r, const char *path, struct e
 {
     struct textfile t = {0};
     *r = (struct light_record){0};
-    enum status st = product_open(&t, NULL, PRODUCT_LIGHT_RECORD, path, NULL, err);
-    while (!st && textfile_next(&t)) {
-        st = read_statement(r, &t, err);
-        if (!st) st = textfile_end(&t, err);
-    }
+    product_open(&t, NULL, PRODUCT_LIGHT_RECORD, path, NULL, err);
+    while (!err->status && textfile_next(&t))
+        if (!read_statement(r, &t, err)) textfile_end(&t, err);
     textfile_release(&t);
-    return st;
+    return err->status;
 }

@@ -219,11 +219,11 @@ enum status material_list_read(struct material_list *l, const char *path, struct
 {
     struct textfile t = {0};
     *l = (struct material_list){0};
-    enum status st = product_open(&t, NULL, PRODUCT_MATERIALS, path, prov, err);
-    while (!st && textfile_next(&t)) st = read_statement(l, &t, err);
+    product_open(&t, NULL, PRODUCT_MATERIALS, path, prov, err);
+    while (!err->status && textfile_next(&t)) read_statement(l, &t, err);
     textfile_release(&t);
-    if (st) material_list_release(l);
-    return st;
+    if (err->status) material_list_release(l);
+    return err->status;
 }
 
 struct brdf material_brdf(const struct material *m)
@@ -274,12 +274,11 @@ enum status material_list_write(const struct material_list *l, const char *path,
     struct outfile f = {0};
     if (product_begin(&f, PRODUCT_MATERIALS, path, prov, err)) return err->status;
     const locale_t kept = uselocale(scan_c_locale());
-    enum status st = ST_OK;
     fprintf(f.fp, "# material NAME MODEL k_d (R G B), k_s, n or alpha; range NAME: 95 %% intervals of these, low high\n"
                   "# evidence NAME samples points views, residuals in standard deviations, cross-validated errors\n");
-    for (int i = 0; !st && i < l->count; i++) st = write_material(&l->items[i], f.fp, err);
+    for (int i = 0; !err->status && i < l->count; i++) write_material(&l->items[i], f.fp, err);
     uselocale(kept);
-    if (!st) st = outfile_commit(&f, err);
+    if (!err->status) outfile_commit(&f, err);
     outfile_discard(&f);
-    return st;
+    return err->status;
 }

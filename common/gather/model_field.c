@@ -327,28 +327,26 @@ static enum status read_files(struct model_field *f, const struct model_field_fi
 {
     f->surfaces = files->surfaces;
     const struct model_extra *extra = files->surfaces ? &files->surfaces->triangles : NULL;
-    enum status st = model_rays_read_with(&f->model, files->model, MODEL_WITHOUT_GLASS, extra, prov, err);
-    if (!st) st = field_atlas_read(&f->atlas, files->vita, f->model.ids, prov, err);
-    if (!st && files->outdoors) st = outdoors_read(&f->outdoors, files->outdoors, prov, err);
-    if (!st && files->lights) st = light_list_read(&f->lights, files->lights, prov, err);
-    return st;
+    if (!model_rays_read_with(&f->model, files->model, MODEL_WITHOUT_GLASS, extra, prov, err))
+        field_atlas_read(&f->atlas, files->vita, f->model.ids, prov, err);
+    if (!err->status && files->outdoors) outdoors_read(&f->outdoors, files->outdoors, prov, err);
+    if (!err->status && files->lights) light_list_read(&f->lights, files->lights, prov, err);
+    return err->status;
 }
 
 enum status model_field_read(struct model_field *f, const struct model_field_files *files, struct provenance *prov,
                              struct err *err)
 {
     *f = (struct model_field){0};
-    enum status st = read_files(f, files, prov, err);
+    read_files(f, files, prov, err);
     f->reach = LAMP_REACH * model_rays_size(&f->model);
-    if (!st) st = find_planes(f, err);
-    if (!st) st = cover_lamps(f, err);
-    if (!st) st = field_sky_find(&f->sky, &f->outdoors, err);
-    if (!st) st = find_emitters(f, err);
+    if (!err->status && !find_planes(f, err) && !cover_lamps(f, err) && !field_sky_find(&f->sky, &f->outdoors, err))
+        find_emitters(f, err);
     f->field.ctx = f;
     f->field.look = look;
     f->field.emitters = f->emitters;
     set_plain(f);
-    return st;
+    return err->status;
 }
 
 enum status model_field_read_references(struct model_field *f, const char *folder, const struct model_axes *axes,

@@ -60,13 +60,12 @@ static enum status read_lens(struct camera *lens, const struct exr_image *im, co
     char *text = strdup(exr_attribute(im, "remodel:lens")), *model;
     if (!text) return err_nomem(err, "a lens", 256);
     line.cursor = text;
-    enum status st = textfile_word(&line, "camera model", &model, err);
-    if (!st) st = lens_read_camera(lens, model, &line, err);
-    if (!st && (lens->width != im->width || lens->height != im->height))
-        st = err_set(err, ST_DATA, "%s is %d x %d px, but remodel:lens says %d x %d; run `make lri` again.", path,
-                     im->width, im->height, lens->width, lens->height);
+    if (!textfile_word(&line, "camera model", &model, err)) lens_read_camera(lens, model, &line, err);
+    if (!err->status && (lens->width != im->width || lens->height != im->height))
+        err_set(err, ST_DATA, "%s is %d x %d px, but remodel:lens says %d x %d; run `make lri` again.", path, im->width,
+                im->height, lens->width, lens->height);
     free(text);
-    return st;
+    return err->status;
 }
 
 /* The inverse of view_image_set_camera(). */
@@ -93,15 +92,15 @@ enum status outdoors_picture_of_reference(struct outdoors_picture *p, const char
     *placed = false;
     *p = (struct outdoors_picture){.name = name_of(path), .path = strdup(path), .reference = true};
     if (!p->name || !p->path) return err_nomem(err, "names", strlen(path));
-    enum status st = exr_read(&im, path, none, 0, err); /* no channel, but all attributes */
-    *placed = !st && im.has_world_to_camera && exr_attribute(&im, "remodel:lens");
-    if (*placed) st = read_lens(&p->lens, &im, path, err);
-    if (!st && *placed) {
+    exr_read(&im, path, none, 0, err); /* no channel, but all attributes */
+    *placed = !err->status && im.has_world_to_camera && exr_attribute(&im, "remodel:lens");
+    if (*placed) read_lens(&p->lens, &im, path, err);
+    if (!err->status && *placed) {
         const struct view world = view_of_exr(&im), view = model_from_world_view(axes, &world);
         set_pose(p, &view);
     }
     exr_image_release(&im);
-    return st;
+    return err->status;
 }
 
 /* ------------------------------------------------------------------------------------------- what the picture shows */
@@ -157,23 +156,23 @@ static enum status read_pixels(struct outdoors_picture *p, struct provenance *pr
     const size_t pixels = (size_t)p->lens.width * (size_t)p->lens.height;
     struct exr_image im = {0};
     const struct exr_plane *plane[6] = {0};
-    enum status st = exr_read_product(&im, p->reference ? PRODUCT_LRI : PRODUCT_VIEW, p->path, names, count, prov, err);
-    if (!st && (im.width != p->lens.width || im.height != p->lens.height))
-        st = err_set(err, ST_DATA, "%s has %d x %d pixels, but its camera %d x %d; make the views again.", p->path,
-                     im.width, im.height, p->lens.width, p->lens.height);
-    for (int k = 0; !st && k < count; k++) {
+    exr_read_product(&im, p->reference ? PRODUCT_LRI : PRODUCT_VIEW, p->path, names, count, prov, err);
+    if (!err->status && (im.width != p->lens.width || im.height != p->lens.height))
+        err_set(err, ST_DATA, "%s has %d x %d pixels, but its camera %d x %d; make the views again.", p->path, im.width,
+                im.height, p->lens.width, p->lens.height);
+    for (int k = 0; !err->status && k < count; k++) {
         plane[k] = exr_find(&im, names[k]);
         if (!plane[k]->f && k != 3)
-            st = err_set(err, ST_DATA, "%s: channel %s contains integers, wanted half or float.", p->path, names[k]);
+            err_set(err, ST_DATA, "%s: channel %s contains integers, wanted half or float.", p->path, names[k]);
     }
-    for (size_t i = 0; !st && i < pixels; i++) {
+    for (size_t i = 0; !err->status && i < pixels; i++) {
         const unsigned marks = plane[3]->u ? plane[3]->u[i] : (unsigned)plane[3]->f[i];
         for (size_t c = 0; c < 3; c++) p->rgb[3 * i + c] = fmaxf(plane[c]->f[i], 0);
         if (p->state[i])
             p->state[i] = judge(p->reference, p->rgb + 3 * i, marks, plane[4]->f[i], p->reference ? 0 : plane[5]->f[i]);
     }
     exr_image_release(&im);
-    return st;
+    return err->status;
 }
 
 /* Leaves out clutter, and finds the panes that the rays pass. */
@@ -183,8 +182,8 @@ static enum status use_ids(struct outdoors_picture *p, const struct model_rays *
     const struct rays rays = {p, mat3_transpose(p->cam_from_model)};
     const struct view size = {.width = p->lens.width, .height = p->lens.height};
     struct view_ids ids = {0};
-    enum status st = view_ids_read(&ids, &size, p->ids, prov, err);
-    for (size_t i = 0; !st && i < (size_t)size.width * (size_t)size.height; i++) {
+    view_ids_read(&ids, &size, p->ids, prov, err);
+    for (size_t i = 0; !err->status && i < (size_t)size.width * (size_t)size.height; i++) {
         struct vec3 d;
         if (!p->state[i]) continue;
         if (ids.clutter[i] >= (float)max_clutter && max_clutter < 1) {
@@ -197,7 +196,7 @@ static enum status use_ids(struct outdoors_picture *p, const struct model_rays *
             (float)(pane ? fabs(vec3_dot(d, normals[ids.id[i]])) : fmax(fabs(d.x), fmax(fabs(d.y), fabs(d.z))));
     }
     view_ids_release(&ids);
-    return st;
+    return err->status;
 }
 
 static void face_lens(struct outdoors_picture *p)
@@ -218,16 +217,18 @@ static enum status erode(struct outdoors_picture *p, double edge, struct err *er
     const int width = p->lens.width, height = p->lens.height;
     const size_t pixels = (size_t)width * (size_t)height;
     float *squared = malloc(pixels * sizeof *squared);
-    enum status st = squared ? distance_squared(squared, p->state, width, height, err)
-                             : err_nomem(err, "distances", pixels * sizeof *squared);
-    for (int y = 0; !st && y < height; y++)
+    if (squared)
+        distance_squared(squared, p->state, width, height, err);
+    else
+        err_nomem(err, "distances", pixels * sizeof *squared);
+    for (int y = 0; !err->status && y < height; y++)
         for (int x = 0; x < width; x++) {
             const size_t i = (size_t)y * (size_t)width + (size_t)x;
             const double end = fmin(fmin(x + 1, width - x), fmin(y + 1, height - y));
             if ((double)squared[i] <= edge * edge || (p->reference && end <= edge)) p->state[i] = SHOWS_NOTHING;
         }
     free(squared);
-    return st;
+    return err->status;
 }
 
 /* The cone around all rays that show the outdoors, and their solid angle. Returns the number of pixels. */
@@ -286,11 +287,13 @@ enum status outdoors_picture_load(struct outdoors_picture *p, bool *shows, const
     p->facing = malloc(pixels * sizeof *p->facing);
     p->state = malloc(pixels);
     faces = malloc(pixels * sizeof *faces);
-    enum status st = p->rgb && p->facing && p->state && faces ? load(p, shows, faces, model, normals, limits, prov, err)
-                                                              : err_nomem(err, "a picture", pixels * 21);
+    if (p->rgb && p->facing && p->state && faces)
+        load(p, shows, faces, model, normals, limits, prov, err);
+    else
+        err_nomem(err, "a picture", pixels * 21);
     free(faces);
-    if (st || !*shows) outdoors_picture_unload(p);
-    return st;
+    if (err->status || !*shows) outdoors_picture_unload(p);
+    return err->status;
 }
 
 void outdoors_picture_unload(struct outdoors_picture *p)

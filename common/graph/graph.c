@@ -220,11 +220,11 @@ static enum status print_step(struct graph *g, const char *name, FILE *to, struc
     if (!s) return err_set(err, ST_INTERNAL, "no stage has the step %s.", name);
     if (s->visited) return ST_OK;
     s->visited = true;
-    enum status st = name_list_add_words(&before, s->before, err);
-    for (int i = 0; !st && i < before.count; i++) st = print_step(g, before.names[i], to, err);
+    name_list_add_words(&before, s->before, err);
+    for (int i = 0; !err->status && i < before.count; i++) print_step(g, before.names[i], to, err);
     name_list_release(&before);
-    if (!st) fprintf(to, "%s %s %s\n", s->stage, kinds[s->kind], s->name);
-    return st;
+    if (!err->status) fprintf(to, "%s %s %s\n", s->stage, kinds[s->kind], s->name);
+    return err->status;
 }
 
 enum status graph_print_steps(struct graph *g, const char *goal, FILE *to, struct err *err)

@@ -23,13 +23,12 @@ enum status name_list_add(struct name_list *list, const char *name, size_t lengt
 
 enum status name_list_add_words(struct name_list *list, const char *words, struct err *err)
 {
-    enum status st = ST_OK;
-    while (words && !st && *(words += strspn(words, BLANKS))) {
+    while (words && !err->status && *(words += strspn(words, BLANKS))) {
         const size_t n = strcspn(words, BLANKS);
-        st = name_list_add(list, words, n, err);
+        name_list_add(list, words, n, err);
         words += n;
     }
-    return st;
+    return err->status;
 }
 
 enum status name_list_read(struct name_list *list, const char *path, const char *variable, struct err *err)
@@ -39,14 +38,12 @@ enum status name_list_read(struct name_list *list, const char *path, const char 
     const size_t n = strlen(variable);
     char *line = NULL;
     size_t size = 0;
-    enum status st = ST_OK;
-    while (!st && getline(&line, &size, f) > 0)
-        if (!strncmp(line, variable, n) && !strncmp(line + n, " :=", 3))
-            st = name_list_add_words(list, line + n + 3, err);
-    if (!st && ferror(f)) st = err_errno(err, "read", path);
+    while (!err->status && getline(&line, &size, f) > 0)
+        if (!strncmp(line, variable, n) && !strncmp(line + n, " :=", 3)) name_list_add_words(list, line + n + 3, err);
+    if (!err->status && ferror(f)) err_errno(err, "read", path);
     free(line);
     fclose(f);
-    return st;
+    return err->status;
 }
 
 /* The rules name them without quotes. */
@@ -62,18 +59,18 @@ enum status name_list_add_files(struct name_list *list, const char *folder, cons
     if (!dir) return errno == ENOENT || errno == ENOTDIR ? ST_OK : err_errno(err, "open", folder);
     const size_t head = strlen(before), tail = strlen(after);
     struct name_list found = {0};
-    enum status st = ST_OK;
-    for (const struct dirent *entry; !st && (entry = readdir(dir));) {
+    for (const struct dirent *entry; !err->status && (entry = readdir(dir));) {
         const char *name = entry->d_name;
         const size_t n = strlen(name);
         if (*name == '.' || n <= head + tail || strncmp(name, before, head) || strcmp(name + n - tail, after)) continue;
-        if (is_plain(name + head, n - head - tail)) st = name_list_add(&found, name + head, n - head - tail, err);
+        if (is_plain(name + head, n - head - tail)) name_list_add(&found, name + head, n - head - tail, err);
     }
     closedir(dir);
     name_list_sort(&found);
-    for (int i = 0; !st && i < found.count; i++) st = name_list_add(list, found.names[i], strlen(found.names[i]), err);
+    for (int i = 0; !err->status && i < found.count; i++)
+        name_list_add(list, found.names[i], strlen(found.names[i]), err);
     name_list_release(&found);
-    return st;
+    return err->status;
 }
 
 bool name_list_has(const struct name_list *list, const char *name)

@@ -28,18 +28,18 @@ static enum status print(const char *what, char **argv, const char *goal, struct
 {
     struct scene_facts facts = {0};
     struct graph *g = NULL;
-    enum status st = scene_facts_read(&facts, argv[0], argv[1], argv[2], argv[3], err);
-    if (!st) st = graph_open(&g, &facts, strcmp(what, "check") != 0, err);
-    for (size_t i = 0; !st && i < sizeof stages / sizeof *stages; i++) {
+    if (!scene_facts_read(&facts, argv[0], argv[1], argv[2], argv[3], err))
+        graph_open(&g, &facts, strcmp(what, "check") != 0, err);
+    for (size_t i = 0; !err->status && i < sizeof stages / sizeof *stages; i++) {
         graph_begin_stage(g, stages[i].name);
         stages[i].say_rules(g, &facts);
         graph_end_stage(g);
     }
-    if (!st) st = graph_write(g, err);
-    if (!st && goal) st = graph_print_steps(g, goal, stdout, err);
+    if (!err->status) graph_write(g, err);
+    if (!err->status && goal) graph_print_steps(g, goal, stdout, err);
     graph_release(g);
     scene_facts_release(&facts);
-    return st;
+    return err->status;
 }
 
 int main(int argc, char **argv)

@@ -58,21 +58,21 @@ static enum status group_views(struct view_groups *groups, const struct name_lis
     struct view_of_photo *sorted = calloc(count + 1, sizeof *sorted);
     groups->views = calloc(count + 1, sizeof *groups->views);
     groups->photos = calloc(count + 1, sizeof *groups->photos);
-    enum status st = sorted && groups->views && groups->photos ? ST_OK : err_nomem(err, "views", count);
-    for (int i = 0; !st && i < views->count; i++)
+    if (!sorted || !groups->views || !groups->photos) err_nomem(err, "views", count);
+    for (int i = 0; !err->status && i < views->count; i++)
         sorted[i] = (struct view_of_photo){views->names[i], (int)strcspn(views->names[i], "@"), i};
-    if (!st && count) qsort(sorted, count, sizeof *sorted, by_photo);
-    for (size_t i = 0; !st && i < count; i++) {
+    if (!err->status && count) qsort(sorted, count, sizeof *sorted, by_photo);
+    for (size_t i = 0; !err->status && i < count; i++) {
         groups->views[i] = sorted[i].view;
         if (!i || !same_photo(&sorted[i - 1], &sorted[i])) {
-            st = name_list_add(&groups->names, sorted[i].view, (size_t)sorted[i].photo_length, err);
-            if (!st) groups->photos[groups->count++].views = groups->views + i;
+            if (!name_list_add(&groups->names, sorted[i].view, (size_t)sorted[i].photo_length, err))
+                groups->photos[groups->count++].views = groups->views + i;
         }
-        if (!st) groups->photos[groups->count - 1].count++;
+        if (!err->status) groups->photos[groups->count - 1].count++;
     }
-    for (int i = 0; !st && i < groups->count; i++) groups->photos[i].photo = groups->names.names[i];
+    for (int i = 0; !err->status && i < groups->count; i++) groups->photos[i].photo = groups->names.names[i];
     free(sorted);
-    return st;
+    return err->status;
 }
 
 static void release_groups(struct view_groups *groups)
@@ -90,15 +90,14 @@ static enum status read_edits(struct scene_facts *f, struct err *err)
     if (file_path(path, f->folder, "model.txt", "", err)) return err->status;
     f->has_model = path_is_file(path);
     if (!f->has_model) return ST_OK;
-    enum status st = file_path(path, f->folder, "edits", "", err);
-    if (!st) st = name_list_add_files(&f->edits, path, "", ".txt", err);
-    if (!st)
-        st = name_list_add_words(&wanted, *scene_setting("EDIT") ? scene_setting("EDIT") : scene_setting("DRAW"), err);
-    for (int i = 0; !st && i < f->edits.count; i++)
+    if (!file_path(path, f->folder, "edits", "", err)) name_list_add_files(&f->edits, path, "", ".txt", err);
+    if (!err->status)
+        name_list_add_words(&wanted, *scene_setting("EDIT") ? scene_setting("EDIT") : scene_setting("DRAW"), err);
+    for (int i = 0; !err->status && i < f->edits.count; i++)
         if (!wanted.count || name_list_has(&wanted, f->edits.names[i]))
-            st = name_list_add(&f->drawn_edits, f->edits.names[i], strlen(f->edits.names[i]), err);
+            name_list_add(&f->drawn_edits, f->edits.names[i], strlen(f->edits.names[i]), err);
     name_list_release(&wanted);
-    return st;
+    return err->status;
 }
 
 enum status scene_facts_read(struct scene_facts *f, const char *scene_folder, const char *shared, const char *own,

@@ -165,7 +165,7 @@ void scene_tour_frames_read(struct graph *g, struct name_list *frames, const cha
     const char *path = PATH(g, PATH, .film = tour);
     char *word;
     if (!path_is_file(path) || textfile_open(&t, path, &unread)) return;
-    while (textfile_next(&t))
+    while (!unread.status && textfile_next(&t))
         if (!textfile_word(&t, "a word", &word, &unread) && !strcmp(word, "frame") &&
             !textfile_word(&t, "a number", &word, &unread))
             name_list_add(frames, word, strlen(word), graph_err(g));

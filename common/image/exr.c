@@ -28,8 +28,7 @@ enum status exr_add_plane(struct exr_image *im, const char *name, enum exr_type 
     if (exr_find(im, name))
         return err_set(err, ST_DATA, "the channel %s exists already; give each channel its own name.", name);
 
-    const enum status st = array_append(&im->planes, (size_t)im->count, sizeof *im->planes, "channels", err);
-    if (st) return st;
+    if (array_append(&im->planes, (size_t)im->count, sizeof *im->planes, "channels", err)) return err->status;
     size_t samples = (size_t)im->width * (size_t)im->height;
     void *data = samples_alloc((samples + EXR_PADDING) * 4);
     if (!data) return err_nomem(err, "a channel", samples * 4);
@@ -48,13 +47,13 @@ enum status exr_add_plane(struct exr_image *im, const char *name, enum exr_type 
 enum status exr_init_rgba(struct exr_image *im, const float *rgba, int width, int height, struct err *err)
 {
     static const char *const names[] = {"R", "G", "B", "A"};
-    enum status st = exr_image_init(im, width, height, err);
-    for (size_t c = 0; !st && c < 4; c++) {
+    exr_image_init(im, width, height, err);
+    for (size_t c = 0; !err->status && c < 4; c++) {
         struct exr_plane *plane;
-        st = exr_add_plane(im, names[c], EXR_HALF, &plane, err);
-        for (size_t p = 0; !st && p < (size_t)width * (size_t)height; p++) plane->f[p] = rgba[4 * p + c];
+        exr_add_plane(im, names[c], EXR_HALF, &plane, err);
+        for (size_t p = 0; !err->status && p < (size_t)width * (size_t)height; p++) plane->f[p] = rgba[4 * p + c];
     }
-    return st;
+    return err->status;
 }
 
 struct exr_plane *exr_find(const struct exr_image *im, const char *name)
@@ -73,8 +72,7 @@ enum status exr_set_attribute(struct exr_image *im, const char *name, const char
     int at = 0;
     while (at < im->attribute_count && strcmp(im->attributes[at][0], name)) at++;
     if (at == im->attribute_count) {
-        const enum status st = array_append(&im->attributes, (size_t)at, sizeof *im->attributes, "attributes", err);
-        if (st) return st;
+        if (array_append(&im->attributes, (size_t)at, sizeof *im->attributes, "attributes", err)) return err->status;
         im->attribute_count++;
         strcpy(im->attributes[at][0], name);
     }

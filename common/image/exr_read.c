@@ -282,7 +282,6 @@ static enum status read_file(struct exr_image *im, const char *path, struct file
     exr_context_initializer_t init = exr_library_init();
     exr_chunk_info_t info;
     int threads = parallel_threads();
-    enum status st = ST_OK;
 
     *im = (struct exr_image){0};
     init.flags = EXR_CONTEXT_FLAG_DISABLE_CHUNK_RECONSTRUCTION; /* a missing chunk is an error */
@@ -294,21 +293,20 @@ static enum status read_file(struct exr_image *im, const char *path, struct file
         return err_errno(err, "open", path);
     }
     exr_result_t rv = exr_start_read(&r.ctxt, path, &init);
-    if (rv) st = exr_library_error(err, ST_DATA, "read", path, rv);
-    if (!st) st = read_header(&r, path, err);
+    if (rv) exr_library_error(err, ST_DATA, "read", path, rv);
+    if (!err->status) read_header(&r, path, err);
     /* this loads the table of chunks: the file is large enough for it before memory is allocated */
-    if (!st && (rv = chunk_info(&r, 0, &info))) st = exr_library_error(err, ST_DATA, "read", path, rv);
-    if (!st) st = choose_channels(&r, path, names, name_count, err);
-    if (!st) st = read_attributes(&r, err);
-    if (!st && im->count > 0) { /* without channels only the header is read */
+    if (!err->status && (rv = chunk_info(&r, 0, &info))) exr_library_error(err, ST_DATA, "read", path, rv);
+    if (!err->status && !choose_channels(&r, path, names, name_count, err)) read_attributes(&r, err);
+    if (!err->status && im->count > 0) { /* without channels only the header is read */
         r.pipes = calloc((size_t)threads, sizeof *r.pipes);
         r.zips = calloc((size_t)threads, sizeof *r.zips);
         r.faults = calloc(r.chunks, sizeof *r.faults);
-        if (!r.pipes || !r.zips || !r.faults) st = err_nomem(err, "a list of chunks", r.chunks * sizeof *r.faults);
+        if (!r.pipes || !r.zips || !r.faults) err_nomem(err, "a list of chunks", r.chunks * sizeof *r.faults);
     }
-    if (!st && im->count > 0) {
+    if (!err->status && im->count > 0) {
         parallel_for(r.chunks, 1, decode_chunks, &r);
-        st = exr_first_fault(err, "read", path, "; it is damaged or cut off: make it again", im, r.faults, r.chunks);
+        exr_first_fault(err, "read", path, "; it is damaged or cut off: make it again", im, r.faults, r.chunks);
     }
 
     for (int i = 0; r.pipes && i < threads; i++) exr_decoding_destroy(r.ctxt, &r.pipes[i]);
@@ -318,8 +316,8 @@ static enum status read_file(struct exr_image *im, const char *path, struct file
     free(r.faults);
     free(r.plane_from_channel);
     if (r.ctxt) exr_finish(&r.ctxt);
-    if (st) exr_image_release(im);
-    return st;
+    if (err->status) exr_image_release(im);
+    return err->status;
 }
 
 enum status exr_read(struct exr_image *im, const char *path, const char *const *names, int name_count, struct err *err)
@@ -335,10 +333,9 @@ enum status exr_read_product(struct exr_image *im, enum product_id id, const cha
 
     if (!prov || provenance_has(prov, name)) return exr_read(im, path, names, name_count, err);
     *im = (struct exr_image){0};
-    enum status st = provenance_read(prov, name, &file, path, err);
-    if (!st) st = read_file(im, path, &file, names, name_count, false, err);
+    if (!provenance_read(prov, name, &file, path, err)) read_file(im, path, &file, names, name_count, false, err);
     file_bytes_release(&file);
-    return st;
+    return err->status;
 }
 
 enum status exr_read_any(struct exr_image *im, const char *path, struct err *err)

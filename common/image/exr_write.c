@@ -214,12 +214,12 @@ static enum status write_chunks(struct exr_writer *w, const char *path, struct e
         exr_encoding_destroy(w->ctxt, &w->pipes[i]);
         exr_zip_release(&w->zips[i]);
     }
-    enum status st = exr_first_fault(err, "write", path, "", w->im, w->faults, w->chunks);
-    for (size_t i = 0; !st && i < w->chunks; i++) {
+    exr_first_fault(err, "write", path, "", w->im, w->faults, w->chunks);
+    for (size_t i = 0; !err->status && i < w->chunks; i++) {
         rv = exr_write_scanline_chunk(w->ctxt, w->part, (int)i * w->rows, w->packed[i].bytes, w->packed[i].size);
-        if (rv) st = exr_library_error(err, ST_IO, "write", path, rv);
+        if (rv) exr_library_error(err, ST_IO, "write", path, rv);
     }
-    return st;
+    return err->status;
 }
 
 enum status exr_write(const struct exr_image *im, const char *path, const struct provenance *prov, struct err *err)
@@ -228,24 +228,22 @@ enum status exr_write(const struct exr_image *im, const char *path, const struct
     struct outfile file = {0};
     exr_context_initializer_t init = exr_library_init();
     char *inputs = NULL;
-    enum status st = ST_OK;
     exr_result_t rv = EXR_ERR_SUCCESS;
 
     if (im->count < 1) return err_set(err, ST_INTERNAL, "cannot write %s: the image has no channels.", path);
     if (prov && prov->stage && !(inputs = provenance_inputs_text(prov)))
         return err_nomem(err, "a list of inputs", (size_t)prov->count * (HASH_TEXT + 1));
-    st = outfile_open(&file, path, err);
-    if (!st) {
+    if (!outfile_open(&file, path, err)) {
         rv = exr_start_write(&w.ctxt, file.temp, EXR_WRITE_FILE_DIRECTLY, &init);
         if (!rv) rv = write_header(&w, prov, inputs);
-        if (rv) st = exr_library_error(err, ST_IO, "write", path, rv);
+        if (rv) exr_library_error(err, ST_IO, "write", path, rv);
     }
-    if (!st) st = write_chunks(&w, path, err);
+    if (!err->status) write_chunks(&w, path, err);
     if (w.ctxt) { /* writes the table of chunks */
         rv = exr_finish(&w.ctxt);
-        if (!st && rv) st = exr_library_error(err, ST_IO, "write", path, rv);
+        if (!err->status && rv) exr_library_error(err, ST_IO, "write", path, rv);
     }
-    if (!st) st = outfile_commit(&file, err);
+    if (!err->status) outfile_commit(&file, err);
 
     outfile_discard(&file);
     free(w.pipes);
@@ -255,5 +253,5 @@ enum status exr_write(const struct exr_image *im, const char *path, const struct
     free(w.packed);
     free(w.faults);
     free(inputs);
-    return st;
+    return err->status;
 }

@@ -18,10 +18,13 @@ static enum status read_bytes(struct photo_bytes *file, const char *path, const 
                               struct err *err)
 {
     struct file_bytes read = {0};
-    enum status st = name ? provenance_read(prov, name, &read, path, err) : file_bytes_read(&read, path, err);
+    if (name)
+        provenance_read(prov, name, &read, path, err);
+    else
+        file_bytes_read(&read, path, err);
     *file = (struct photo_bytes){path, (unsigned char *)read.bytes, read.size};
-    if (!st && !file->size) st = err_set(err, ST_DATA, "%s is empty; copy the photo again.", path);
-    return st;
+    if (!err->status && !file->size) err_set(err, ST_DATA, "%s is empty; copy the photo again.", path);
+    return err->status;
 }
 
 enum format { FORMAT_JPEG, FORMAT_PNG, FORMAT_TIFF, FORMAT_EXR, FORMAT_RAW };
@@ -56,27 +59,26 @@ static enum status read_exr(struct photo *p, const struct photo_bytes *file, boo
 {
     static const char *const names[] = {"R", "G", "B"};
     struct exr_image exr = {0};
-    enum status st = exr_read(&exr, file->path, names, pixels ? 3 : 0, err);
-    for (int c = 0; !st && pixels && c < 3; c++)
+    exr_read(&exr, file->path, names, pixels ? 3 : 0, err);
+    for (int c = 0; !err->status && pixels && c < 3; c++)
         if (!exr_find(&exr, names[c])->f)
-            st = err_set(err, ST_DATA,
-                         "%s: channel %s holds integers, wanted half or float; export it as half or float.", file->path,
-                         names[c]);
+            err_set(err, ST_DATA, "%s: channel %s holds integers, wanted half or float; export it as half or float.",
+                    file->path, names[c]);
     p->info.bits = 32;
-    if (!st) {
+    if (!err->status) {
         p->info.width = exr.width;
         p->info.height = exr.height;
-        st = photo_check_size(file->path, (uint64_t)exr.width, (uint64_t)exr.height, err);
+        photo_check_size(file->path, (uint64_t)exr.width, (uint64_t)exr.height, err);
     }
-    if (!st && pixels) st = photo_init_values(p, err);
+    if (!err->status && pixels) photo_init_values(p, err);
     const size_t count = (size_t)p->info.width * (size_t)p->info.height;
-    for (size_t c = 0; !st && pixels && c < 3; c++) {
+    for (size_t c = 0; !err->status && pixels && c < 3; c++) {
         const float *from = exr_find(&exr, names[c])->f;
         for (size_t i = 0; i < count; i++) p->values[3 * i + c] = fmaxf(from[i], 0);
     }
-    if (!st && pixels) p->saturation = photo_find_saturation(p);
+    if (!err->status && pixels) p->saturation = photo_find_saturation(p);
     exr_image_release(&exr);
-    return st;
+    return err->status;
 }
 
 static enum status read_photo(struct photo *p, const char *path, bool pixels, bool any_format, const char *name,
@@ -89,15 +91,14 @@ static enum status read_photo(struct photo *p, const char *path, bool pixels, bo
     struct photo_bytes file = {0};
     enum format format = FORMAT_JPEG;
     *p = (struct photo){.info.orientation = 1};
-    enum status st = read_bytes(&file, path, name, prov, err);
-    if (!st) st = detect_format(&file, &format, err);
-    if (!st && !any_format && (format == FORMAT_EXR || format == FORMAT_RAW))
-        st = err_set(err, ST_DATA, "%s is %s; wanted JPEG, PNG or TIFF here.", path,
-                     format == FORMAT_EXR ? "an EXR file" : "a camera's raw file");
-    if (!st) st = read[format](p, &file, pixels, err);
+    if (!read_bytes(&file, path, name, prov, err)) detect_format(&file, &format, err);
+    if (!err->status && !any_format && (format == FORMAT_EXR || format == FORMAT_RAW))
+        err_set(err, ST_DATA, "%s is %s; wanted JPEG, PNG or TIFF here.", path,
+                format == FORMAT_EXR ? "an EXR file" : "a camera's raw file");
+    if (!err->status) read[format](p, &file, pixels, err);
     free(file.bytes);
-    if (st) photo_release(p);
-    return st;
+    if (err->status) photo_release(p);
+    return err->status;
 }
 
 enum status photo_read(struct photo *p, const char *path, struct err *err)
@@ -119,9 +120,9 @@ enum status photo_read_any(struct photo *p, const char *path, struct err *err)
 enum status photo_read_info(struct photo_info *info, const char *path, struct err *err)
 {
     struct photo p = {0};
-    enum status st = read_photo(&p, path, false, true, NULL, NULL, err);
+    read_photo(&p, path, false, true, NULL, NULL, err);
     *info = p.info;
-    return st;
+    return err->status;
 }
 
 struct linear_job {
@@ -144,11 +145,11 @@ enum status photo_to_linear(struct image *out, const struct photo *p, struct err
     float *curve = malloc(levels * sizeof *curve);
     if (!curve) return err_nomem(err, "a tone curve", levels * sizeof *curve);
     for (size_t i = 0; i < levels; i++) curve[i] = linear_from_srgb((float)i / (float)(levels - 1));
-    enum status st = image_init(out, p->info.width, p->info.height, 3, err);
-    if (!st) {
+    image_init(out, p->info.width, p->info.height, 3, err);
+    if (!err->status) {
         struct linear_job job = {p, curve, out->data};
         parallel_for((size_t)p->info.width * (size_t)p->info.height * 3, 1 << 16, linear_samples, &job);
     }
     free(curve);
-    return st;
+    return err->status;
 }

@@ -83,9 +83,8 @@ enum status photo_exif_read(struct photo_info *info, const struct photo_bytes *f
 
     unsigned char *marked = malloc(sizeof exif_mark + size);
     ExifData *data = exif_data_new();
-    enum status st = ST_OK;
     if (!marked || !data) {
-        st = err_nomem(err, "EXIF data", size);
+        err_nomem(err, "EXIF data", size);
     } else {
         memcpy(marked, exif_mark, sizeof exif_mark);
         memcpy(marked + sizeof exif_mark, block, size);
@@ -104,7 +103,7 @@ enum status photo_exif_read(struct photo_info *info, const struct photo_bytes *f
     }
     if (data) exif_data_unref(data);
     free(marked);
-    return st;
+    return err->status;
 }
 
 /* ---------------------------------------------------------------------------------------------------------- writing */

@@ -49,10 +49,13 @@ static enum status read_jpeg_pixels(struct photo *p, const struct photo_bytes *f
                            TJFLAG_LIMITSCANS);
         if (rv && tjGetErrorCode(handle) == TJERR_WARNING) rv = 0;
     }
-    enum status st = rv ? jpeg_damaged(file, handle, err) : photo_init_samples(p, err);
-    for (size_t i = 0; !st && i < samples; i++) p->samples[i] = rgb[i];
+    if (rv)
+        jpeg_damaged(file, handle, err);
+    else
+        photo_init_samples(p, err);
+    for (size_t i = 0; !err->status && i < samples; i++) p->samples[i] = rgb[i];
     free(rgb);
-    return st;
+    return err->status;
 }
 
 /* The mean of q^2 / 12 over the first quantization table, that of luma; 0: none is found before the pixels. */
@@ -81,12 +84,12 @@ enum status photo_read_jpeg(struct photo *p, const struct photo_bytes *file, boo
 {
     tjhandle handle = tjInitDecompress();
     if (!handle) return err_nomem(err, "a JPEG decoder", 0);
-    enum status st = read_jpeg_header(&p->info, file, handle, err);
-    if (!st && pixels) st = read_jpeg_pixels(p, file, handle, err);
+    read_jpeg_header(&p->info, file, handle, err);
+    if (!err->status && pixels) read_jpeg_pixels(p, file, handle, err);
     p->jpeg_variance = jpeg_variance(file);
-    if (!st) st = photo_exif_read(&p->info, file, false, err);
+    if (!err->status) photo_exif_read(&p->info, file, false, err);
     tjDestroy(handle);
-    return st;
+    return err->status;
 }
 
 /* ---------------------------------------------------------------------------------------------------------- writing */
@@ -97,21 +100,21 @@ enum status jpeg_encode(unsigned char **bytes, size_t *size, const unsigned char
     unsigned char *made = NULL; /* allocated by libjpeg-turbo */
     unsigned long length = 0;
     tjhandle handle = tjInitCompress();
-    enum status st = handle ? ST_OK : err_nomem(err, "a JPEG encoder", 0);
+    if (!handle) err_nomem(err, "a JPEG encoder", 0);
 
     *bytes = NULL;
     *size = 0;
-    if (!st && tjCompress2(handle, rgb, width, 0, height, TJPF_RGB, &made, &length, TJSAMP_420, quality, 0))
-        st = err_set(err, ST_INTERNAL, "cannot encode a JPEG of %d x %d pixels at quality %d: %s.", width, height,
-                     quality, tjGetErrorStr2(handle));
-    if (!st && !(*bytes = malloc(length))) st = err_nomem(err, "a JPEG", length);
-    if (!st) {
+    if (!err->status && tjCompress2(handle, rgb, width, 0, height, TJPF_RGB, &made, &length, TJSAMP_420, quality, 0))
+        err_set(err, ST_INTERNAL, "cannot encode a JPEG of %d x %d pixels at quality %d: %s.", width, height, quality,
+                tjGetErrorStr2(handle));
+    if (!err->status && !(*bytes = malloc(length))) err_nomem(err, "a JPEG", length);
+    if (!err->status) {
         memcpy(*bytes, made, length);
         *size = length;
     }
     tjFree(made);
     if (handle) tjDestroy(handle);
-    return st;
+    return err->status;
 }
 
 enum status jpeg_write(const char *path, const unsigned char *rgb, int width, int height, int quality, struct err *err)
@@ -119,13 +122,12 @@ enum status jpeg_write(const char *path, const unsigned char *rgb, int width, in
     struct outfile f = {0};
     unsigned char *bytes = NULL;
     size_t size = 0;
-    enum status st = jpeg_encode(&bytes, &size, rgb, width, height, quality, err);
-    if (!st) st = outfile_open(&f, path, err);
-    if (!st && fwrite(bytes, 1, size, f.fp) != size) st = err_errno(err, "write", path);
-    if (!st) st = outfile_commit(&f, err);
+    if (!jpeg_encode(&bytes, &size, rgb, width, height, quality, err)) outfile_open(&f, path, err);
+    if (!err->status && fwrite(bytes, 1, size, f.fp) != size) err_errno(err, "write", path);
+    if (!err->status) outfile_commit(&f, err);
     outfile_discard(&f);
     free(bytes);
-    return st;
+    return err->status;
 }
 
 enum status photo_write_jpeg(const char *path, const unsigned char *rgb, int width, int height, int quality,
@@ -135,19 +137,19 @@ enum status photo_write_jpeg(const char *path, const unsigned char *rgb, int wid
     unsigned char *bytes = NULL, *exif = NULL;
     size_t size = 0;
     unsigned exif_size = 0;
-    enum status st = jpeg_encode(&bytes, &size, rgb, width, height, quality, err);
-    if (!st) st = photo_exif_block(&exif, &exif_size, info, err);
-    if (!st) st = outfile_open(&f, path, err);
-    if (!st) { /* the APP1 segment follows the start marker */
+    if (!jpeg_encode(&bytes, &size, rgb, width, height, quality, err) &&
+        !photo_exif_block(&exif, &exif_size, info, err))
+        outfile_open(&f, path, err);
+    if (!err->status) { /* the APP1 segment follows the start marker */
         const unsigned char segment[4] = {0xff, 0xe1, (unsigned char)((exif_size + 2) >> 8),
                                           (unsigned char)(exif_size + 2)};
         if (fwrite(bytes, 1, 2, f.fp) != 2 || fwrite(segment, 1, 4, f.fp) != 4 ||
             fwrite(exif, 1, exif_size, f.fp) != exif_size || fwrite(bytes + 2, 1, size - 2, f.fp) != size - 2)
-            st = err_errno(err, "write", path);
+            err_errno(err, "write", path);
     }
-    if (!st) st = outfile_commit(&f, err);
+    if (!err->status) outfile_commit(&f, err);
     outfile_discard(&f);
     free(exif);
     free(bytes);
-    return st;
+    return err->status;
 }

@@ -54,7 +54,7 @@ static enum status read_png_header(struct png_reader *r, struct err *err)
     png_set_user_limits(r->png, 1 << 28, 1 << 28); /* photo_check_size() checks the area */
     png_read_info(r->png, r->info);
     png_uint_32 width = png_get_image_width(r->png, r->info), height = png_get_image_height(r->png, r->info);
-    if (photo_check_size(r->file->path, width, height, err)) return err ? err->status : ST_DATA;
+    if (photo_check_size(r->file->path, width, height, err)) return err->status;
     r->photo->info.width = (int)width;
     r->photo->info.height = (int)height;
     r->photo->info.bits = png_get_bit_depth(r->png, r->info) == 16 ? 16 : 8;
@@ -66,8 +66,7 @@ static enum status read_png_pixels(struct png_reader *r, struct err *err)
 {
     struct photo *p = r->photo;
     size_t row = (size_t)p->info.width * 3, height = (size_t)p->info.height;
-    enum status st = photo_init_samples(p, err);
-    if (st) return st;
+    if (photo_init_samples(p, err)) return err->status;
     r->rows = malloc(height * sizeof *r->rows);
     if (!r->rows) return err_nomem(err, "a photo's rows", height * sizeof *r->rows);
     for (size_t y = 0; y < height; y++) r->rows[y] = (png_bytep)(p->samples + y * row);
@@ -92,13 +91,13 @@ enum status photo_read_png(struct photo *p, const struct photo_bytes *file, bool
     struct png_reader r = {.file = file, .photo = p};
     r.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &r, png_keep_message, png_ignore_warning);
     if (r.png) r.info = png_create_info_struct(r.png);
-    enum status st = r.info ? ST_OK : err_nomem(err, "a PNG decoder", 0);
-    if (!st) st = read_png_header(&r, err);
-    if (!st && pixels) st = read_png_pixels(&r, err);
-    if (!st) st = photo_exif_read(&p->info, file, true, err);
+    if (!r.info) err_nomem(err, "a PNG decoder", 0);
+    if (!err->status) read_png_header(&r, err);
+    if (!err->status && pixels) read_png_pixels(&r, err);
+    if (!err->status) photo_exif_read(&p->info, file, true, err);
     png_destroy_read_struct(&r.png, &r.info, NULL);
     free(r.rows);
-    return st;
+    return err->status;
 }
 
 /* ---------------------------------------------------------------------------------------------------------- writing */
@@ -153,13 +152,12 @@ static enum status write_png(const char *path, const struct png_picture *p, stru
                        path, p->width, p->height, p->channels);
     w.png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &w, png_keep_write_message, png_ignore_warning);
     if (w.png) w.info = png_create_info_struct(w.png);
-    enum status st = w.info ? ST_OK : err_nomem(err, "a PNG encoder", 0);
-    if (!st) st = outfile_open(&f, path, err);
-    if (!st) st = write_png_rows(&w, f.fp, path, p, err);
-    if (!st) st = outfile_commit(&f, err);
+    if (!w.info) err_nomem(err, "a PNG encoder", 0);
+    if (!err->status && !outfile_open(&f, path, err) && !write_png_rows(&w, f.fp, path, p, err))
+        outfile_commit(&f, err);
     outfile_discard(&f);
     png_destroy_write_struct(&w.png, &w.info);
-    return st;
+    return err->status;
 }
 
 enum status png_write(const char *path, const unsigned char *pixels, int width, int height, int channels,
@@ -174,20 +172,20 @@ enum status photo_write_part(const char *path, const struct photo *p, int x, int
     const size_t row = (size_t)width * 3, size = p->info.bits == 16 ? 2 : 1;
     unsigned char *pixels = malloc(row * (size_t)height * size), *exif = NULL;
     unsigned exif_size = 0;
-    enum status st = pixels ? ST_OK : err_nomem(err, "a picture", row * (size_t)height * size);
-    for (int k = 0; !st && k < height; k++) {
+    if (!pixels) err_nomem(err, "a picture", row * (size_t)height * size);
+    for (int k = 0; !err->status && k < height; k++) {
         const uint16_t *from = p->samples + ((size_t)(y + k) * (size_t)p->info.width + (size_t)x) * 3;
         unsigned char *to = pixels + (size_t)k * row * size;
         if (size == 2) memcpy(to, from, row * size);
         for (size_t i = 0; size == 1 && i < row; i++) to[i] = (unsigned char)from[i];
     }
-    if (!st) st = photo_exif_block(&exif, &exif_size, info, err);
-    if (!st) {
+    if (!err->status) photo_exif_block(&exif, &exif_size, info, err);
+    if (!err->status) {
         const unsigned mark = PHOTO_EXIF_MARK; /* PNG stores the block without it */
-        st = write_png(
-            path, &(struct png_picture){pixels, width, height, 3, p->info.bits, exif + mark, exif_size - mark}, err);
+        write_png(path, &(struct png_picture){pixels, width, height, 3, p->info.bits, exif + mark, exif_size - mark},
+                  err);
     }
     free(exif);
     free(pixels);
-    return st;
+    return err->status;
 }

@@ -65,15 +65,14 @@ static enum status develop(struct photo *p, libraw_data_t *raw, const struct pho
     if (code) return failed(file, "developed", code, err);
     libraw_processed_image_t *picture = libraw_dcraw_make_mem_image(raw, &code);
     if (!picture) return failed(file, "developed", code, err);
-    enum status st = ST_OK;
     if (picture->type != LIBRAW_IMAGE_BITMAP || picture->bits != 16 || (picture->colors != 3 && picture->colors != 1))
-        st = err_set(err, ST_DATA, "%s: libraw developed it to %d colours, wanted 3; develop it to a TIFF yourself.",
-                     file->path, picture->colors);
+        err_set(err, ST_DATA, "%s: libraw developed it to %d colours, wanted 3; develop it to a TIFF yourself.",
+                file->path, picture->colors);
     p->info.width = picture->width;
     p->info.height = picture->height;
-    if (!st) st = photo_init_values(p, err);
+    if (!err->status) photo_init_values(p, err);
     const size_t pixels = (size_t)p->info.width * (size_t)p->info.height, colours = picture->colors;
-    for (size_t i = 0; !st && i < pixels; i++)
+    for (size_t i = 0; !err->status && i < pixels; i++)
         for (size_t c = 0; c < 3; c++) {
             uint16_t value;
             memcpy(&value, picture->data + 2 * (colours * i + (colours == 3 ? c : 0)), sizeof value);
@@ -81,7 +80,7 @@ static enum status develop(struct photo *p, libraw_data_t *raw, const struct pho
         }
     p->saturation = 1;
     libraw_dcraw_clear_mem(picture);
-    return st;
+    return err->status;
 }
 
 enum status photo_read_raw(struct photo *p, const struct photo_bytes *file, bool pixels, struct err *err)
@@ -101,12 +100,12 @@ enum status photo_read_raw(struct photo *p, const struct photo_bytes *file, bool
     o->user_qual = 3;
     o->user_flip = 0;
     int code = libraw_open_buffer(raw, file->bytes, file->size);
-    enum status st = code ? failed(file, "read", code, err) : ST_OK;
-    if (!st) {
+    if (code) failed(file, "read", code, err);
+    if (!err->status) {
         keep_info(&p->info, raw);
-        st = photo_check_size(file->path, (uint64_t)p->info.width, (uint64_t)p->info.height, err);
+        photo_check_size(file->path, (uint64_t)p->info.width, (uint64_t)p->info.height, err);
     }
-    if (!st && pixels) st = develop(p, raw, file, err);
+    if (!err->status && pixels) develop(p, raw, file, err);
     libraw_close(raw);
-    return st;
+    return err->status;
 }

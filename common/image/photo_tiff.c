@@ -175,8 +175,7 @@ static enum status read_layout(struct tiff_layout *l, struct photo_info *info, T
     TIFFGetFieldDefaulted(t, TIFFTAG_SAMPLEFORMAT, &l->format);
     TIFFGetFieldDefaulted(t, TIFFTAG_COMPRESSION, &l->compression);
     TIFFGetField(t, TIFFTAG_PHOTOMETRIC, &l->photometric);
-    enum status st = photo_check_size(path, width, height, err);
-    if (st) return st;
+    if (photo_check_size(path, width, height, err)) return err->status;
     info->width = (int)width;
     info->height = (int)height;
     info->bits = l->bits == 16 ? 16 : 8;
@@ -202,12 +201,15 @@ static enum status read_plain(struct photo *p, TIFF *t, const struct tiff_layout
     const size_t step = separate ? 1 : l->samples;
     if (row < width * step * (l->bits / 8)) return damaged(r, err);
     unsigned char *line = malloc(row);
-    enum status st = line ? photo_init_samples(p, err) : err_nomem(err, "a row of a photo", row);
-    for (uint16_t plane = 0; !st && plane < (separate && !grey ? 3 : 1); plane++)
-        for (int y = 0; !st && y < p->info.height; y++) {
+    if (line)
+        photo_init_samples(p, err);
+    else
+        err_nomem(err, "a row of a photo", row);
+    for (uint16_t plane = 0; !err->status && plane < (separate && !grey ? 3 : 1); plane++)
+        for (int y = 0; !err->status && y < p->info.height; y++) {
             uint16_t *to = p->samples + (size_t)y * width * 3;
             if (TIFFReadScanline(t, line, (uint32_t)y, plane) != 1) {
-                st = damaged(r, err);
+                damaged(r, err);
                 break;
             }
             for (size_t x = 0; x < width; x++)
@@ -217,7 +219,7 @@ static enum status read_plain(struct photo *p, TIFF *t, const struct tiff_layout
                 }
         }
     free(line);
-    return st;
+    return err->status;
 }
 
 /* Palettes, fewer bits, YCbCr, tiles: libtiff converts them to 8-bit RGB. */
@@ -225,19 +227,22 @@ static enum status read_converted(struct photo *p, TIFF *t, const struct tiff_re
 {
     const size_t pixels = (size_t)p->info.width * (size_t)p->info.height;
     uint32_t *rgba = malloc(pixels * sizeof *rgba);
-    enum status st = rgba ? photo_init_samples(p, err) : err_nomem(err, "a photo", pixels * sizeof *rgba);
+    if (rgba)
+        photo_init_samples(p, err);
+    else
+        err_nomem(err, "a photo", pixels * sizeof *rgba);
     /* rows from the top as stored, whatever the orientation */
     TIFFSetField(t, TIFFTAG_ORIENTATION, ORIENTATION_TOPLEFT);
-    if (!st &&
+    if (!err->status &&
         !TIFFReadRGBAImageOriented(t, (uint32_t)p->info.width, (uint32_t)p->info.height, rgba, ORIENTATION_TOPLEFT, 1))
-        st = damaged(r, err);
-    for (size_t i = 0; !st && i < pixels; i++) {
+        damaged(r, err);
+    for (size_t i = 0; !err->status && i < pixels; i++) {
         p->samples[3 * i] = (uint16_t)TIFFGetR(rgba[i]);
         p->samples[3 * i + 1] = (uint16_t)TIFFGetG(rgba[i]);
         p->samples[3 * i + 2] = (uint16_t)TIFFGetB(rgba[i]);
     }
     free(rgba);
-    return st;
+    return err->status;
 }
 
 enum status photo_read_tiff(struct photo *p, const struct photo_bytes *file, bool pixels, struct err *err)
@@ -246,12 +251,18 @@ enum status photo_read_tiff(struct photo *p, const struct photo_bytes *file, boo
     struct tiff_layout layout;
     TIFF *t = open_tiff(&r);
     if (!t) return damaged(&r, err);
-    enum status st = read_layout(&layout, &p->info, t, file->path, err);
+    read_layout(&layout, &p->info, t, file->path, err);
     /* refuse sizes that the file cannot hold, at a compression of at most 1000:1, before allocating memory */
-    if (!st && pixels && (double)p->info.width * p->info.height > 1000.0 * (double)file->size) st = damaged(&r, err);
-    if (!st && pixels) st = layout.plain ? read_plain(p, t, &layout, &r, err) : read_converted(p, t, &r, err);
+    if (!err->status && pixels && (double)p->info.width * p->info.height > 1000.0 * (double)file->size)
+        damaged(&r, err);
+    if (!err->status && pixels) {
+        if (layout.plain)
+            read_plain(p, t, &layout, &r, err);
+        else
+            read_converted(p, t, &r, err);
+    }
     TIFFClose(t);
-    if (st) return st;
+    if (err->status) return err->status;
     r = (struct tiff_reader){.file = file}; /* reading EXIF changes the current directory, so open again */
     t = open_tiff(&r);
     if (t) {

@@ -35,28 +35,26 @@ float *response_tables(const struct response *r, int bits, struct err *err)
 static enum status read_levels(struct response *r, struct textfile *t, struct err *err)
 {
     static const char *const colours[] = {"red", "green", "blue"};
-    enum status st = ST_OK;
-    for (int i = 0; !st && i < RESPONSE_LEVELS; i++) {
+    for (int i = 0; !err->status && i < RESPONSE_LEVELS; i++) {
         if (!textfile_next(t))
             return textfile_error(t, err, NULL, "%d lines \"R G B\", not %d", (int)RESPONSE_LEVELS, i);
-        for (int c = 0; !st && c < 3; c++) {
+        for (int c = 0; !err->status && c < 3; c++) {
             double light = 0;
             char found[32];
-            st = textfile_double(t, colours[c], &light, err);
-            if (st) break;
+            if (textfile_double(t, colours[c], &light, err)) break;
             snprintf(found, sizeof found, "%.9g", light);
             if (light < 0 || light > 1e6)
-                st = textfile_error(t, err, found, "light from 0 to 1e6");
+                textfile_error(t, err, found, "light from 0 to 1e6");
             else if (i && (float)light < r->light[c][i - 1])
-                st = textfile_error(t, err, found, "a curve that does not fall (%s)", colours[c]);
+                textfile_error(t, err, found, "a curve that does not fall (%s)", colours[c]);
             r->light[c][i] = (float)light;
         }
-        if (!st) st = textfile_end(t, err);
+        if (!err->status) textfile_end(t, err);
     }
-    for (int c = 0; !st && c < 3; c++)
+    for (int c = 0; !err->status && c < 3; c++)
         if (!(r->light[c][RESPONSE_LEVELS - 1] > r->light[c][0]))
-            st = textfile_error(t, err, "a constant curve", "a curve that rises (%s)", colours[c]);
-    return st;
+            textfile_error(t, err, "a constant curve", "a curve that rises (%s)", colours[c]);
+    return err->status;
 }
 
 enum status response_read(struct response *r, const char *path, struct provenance *prov, struct err *err)
@@ -65,18 +63,18 @@ enum status response_read(struct response *r, const char *path, struct provenanc
     char *curve = NULL;
     int64_t number = 0;
     *r = (struct response){0};
-    enum status st = product_open(&t, NULL, PRODUCT_RESPONSE, path, prov, err);
-    if (!st) st = textfile_expect_line(&t, "curve", err);
-    if (!st) st = textfile_word(&t, "srgb or table", &curve, err);
-    if (!st && strcmp(curve, "srgb") && strcmp(curve, "table")) st = textfile_error(&t, err, curve, "srgb or table");
-    if (!st && !strcmp(curve, "table")) {
+    if (!product_open(&t, NULL, PRODUCT_RESPONSE, path, prov, err) && !textfile_expect_line(&t, "curve", err))
+        textfile_word(&t, "srgb or table", &curve, err);
+    if (!err->status && strcmp(curve, "srgb") && strcmp(curve, "table"))
+        textfile_error(&t, err, curve, "srgb or table");
+    if (!err->status && !strcmp(curve, "table")) {
         r->table = true;
-        st = textfile_int(&t, "number of levels", RESPONSE_LEVELS, RESPONSE_LEVELS, &number, err);
+        textfile_int(&t, "number of levels", RESPONSE_LEVELS, RESPONSE_LEVELS, &number, err);
     }
-    if (!st) st = textfile_end(&t, err);
-    if (!st && r->table) st = read_levels(r, &t, err);
-    if (!st) st = textfile_end_of_file(&t, err);
+    if (!err->status) textfile_end(&t, err);
+    if (!err->status && r->table) read_levels(r, &t, err);
+    if (!err->status) textfile_end_of_file(&t, err);
     textfile_release(&t);
-    if (st) *r = (struct response){0};
-    return st;
+    if (err->status) *r = (struct response){0};
+    return err->status;
 }

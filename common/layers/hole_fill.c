@@ -267,19 +267,18 @@ enum status hole_narrow_pixels(uint32_t **list, size_t *count, size_t *empty, co
     const size_t w = (size_t)f->width, h = (size_t)f->height;
     struct hole_mask m = {f, malloc(w * h), malloc(w * h), malloc((h + 1) * sizeof *m.counts), diameter};
     size_t n = 0;
-    enum status st = ST_OK;
 
     *count = *empty = 0;
     *list = NULL;
     if (!m.flags || !m.spare || !m.counts) {
-        st = err_nomem(err, "the narrow holes of a frame", 2 * w * h);
+        err_nomem(err, "the narrow holes of a frame", 2 * w * h);
         goto done;
     }
     parallel_for(h, 64, mask_rows, &m);
     for (size_t y = 0; y < h; y++) *empty += m.counts[y];
     *list = malloc((*empty + 1) * sizeof **list);
     if (!*list) {
-        st = err_nomem(err, "the narrow holes of a frame", *empty * sizeof **list);
+        err_nomem(err, "the narrow holes of a frame", *empty * sizeof **list);
         goto done;
     }
     if (*empty) keep_wide(&m);
@@ -293,7 +292,7 @@ done:
     free(m.flags);
     free(m.spare);
     free(m.counts);
-    return st;
+    return err->status;
 }
 
 struct narrow_pass {
@@ -418,7 +417,6 @@ static enum status fill_wide(struct color_z *values, const struct rendered_frame
     const uint32_t w = (uint32_t)f->width;
     struct fill_pyramid p = {.frame = f, .levels = {{.w = f->width, .h = f->height}}, .count = 1, .far = far};
     struct color_z value;
-    enum status st = ST_OK;
 
     for (; p.levels[p.count - 1].w > 1 || p.levels[p.count - 1].h > 1; p.count++) {
         const struct fill_level *l = &p.levels[p.count - 1];
@@ -430,7 +428,7 @@ static enum status fill_wide(struct color_z *values, const struct rendered_frame
         l->texels = malloc(size * sizeof *l->texels);
         l->state = calloc(size, 1);
         if (!l->texels || !l->state) {
-            st = err_nomem(err, "a pyramid of a frame", size * sizeof *l->texels);
+            err_nomem(err, "a pyramid of a frame", size * sizeof *l->texels);
             goto done;
         }
     }
@@ -442,7 +440,7 @@ done:
         free(p.levels[i].texels);
         free(p.levels[i].state);
     }
-    return st;
+    return err->status;
 }
 
 /* Fills the listed pixels, overhangs by a pyramid of their own, both from the unfilled frame. *filled: how many got a
@@ -454,27 +452,27 @@ static enum status fill_wide_parts(struct rendered_frame *f, const uint32_t *lis
     uint32_t *sorted = malloc((count + 1) * sizeof *sorted); /* disocclusions, then overhangs */
     struct color_z *values = calloc(count + 1, sizeof *values);
     size_t sizes[2] = {0}, n = 0;
-    enum status st = sorted && values ? ST_OK : err_nomem(err, "the wide holes of a frame", count * sizeof *values);
+    if (!sorted || !values) err_nomem(err, "the wide holes of a frame", count * sizeof *values);
 
-    for (int k = 0; !st && k < 2; k++)
+    for (int k = 0; !err->status && k < 2; k++)
         for (size_t i = 0; i < count; i++) {
             if (overhang[list[i]] != k) continue;
             sorted[n++] = list[i];
             sizes[k]++;
         }
-    for (size_t k = 0, from = 0; !st && k < 2; from += sizes[k++]) {
+    for (size_t k = 0, from = 0; !err->status && k < 2; from += sizes[k++]) {
         const struct far_side far = {soft, sigma, k == 1};
-        if (sizes[k]) st = fill_wide(values + from, f, sorted + from, sizes[k], &far, err);
+        if (sizes[k]) fill_wide(values + from, f, sorted + from, sizes[k], &far, err);
     }
     *filled = 0;
-    for (size_t i = 0; !st && i < count; i++)
+    for (size_t i = 0; !err->status && i < count; i++)
         if (values[i].z > 0) {
             pixel_set(f, sorted[i], &values[i]);
             ++*filled;
         }
     free(sorted);
     free(values);
-    return st;
+    return err->status;
 }
 
 enum status hole_fill(struct rendered_frame *frame, const struct hole_photos *photos, const struct soft_z *soft,
@@ -484,24 +482,26 @@ enum status hole_fill(struct rendered_frame *frame, const struct hole_photos *ph
     uint8_t *overhang = NULL;
     uint32_t *list = NULL;
     size_t narrow = 0, empty = 0, filled = 0;
-    enum status st = hole_narrow_pixels(&list, &narrow, &empty, frame, diameter > 0 ? diameter : 1, err);
+    hole_narrow_pixels(&list, &narrow, &empty, frame, diameter > 0 ? diameter : 1, err);
 
-    if (!st && diameter > 0 && empty) {
+    if (!err->status && diameter > 0 && empty) {
         overhang = malloc(pixels);
-        st = overhang ? hole_find_overhang(overhang, frame, photos, err)
-                      : err_nomem(err, "the holes of a frame", pixels);
-        if (!st) st = hole_fill_pixels(frame, list, narrow, overhang, soft, sigma, diameter, err);
-        for (size_t i = 0; !st && i < narrow; i++) filled += frame->rgba[4 * (size_t)list[i] + 3] > 0;
+        if (overhang)
+            hole_find_overhang(overhang, frame, photos, err);
+        else
+            err_nomem(err, "the holes of a frame", pixels);
+        if (!err->status) hole_fill_pixels(frame, list, narrow, overhang, soft, sigma, diameter, err);
+        for (size_t i = 0; !err->status && i < narrow; i++) filled += frame->rgba[4 * (size_t)list[i] + 3] > 0;
     }
-    if (!st && diameter > 0 && filled < empty) {
+    if (!err->status && diameter > 0 && filled < empty) {
         size_t wide = 0, left = narrow; /* narrow pixels with nothing known near them go to the pyramid, too */
         for (size_t i = narrow; i-- > 0;)
             if (!(frame->rgba[4 * (size_t)list[i] + 3] > 0)) list[--left] = list[i];
-        st = fill_wide_parts(frame, list + left, empty - left, overhang, soft, sigma, &wide, err);
+        fill_wide_parts(frame, list + left, empty - left, overhang, soft, sigma, &wide, err);
         filled += wide;
     }
     frame->unfilled_fraction = (double)(empty - filled) / (double)pixels;
     free(overhang);
     free(list);
-    return st;
+    return err->status;
 }

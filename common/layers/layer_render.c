@@ -252,10 +252,9 @@ static enum status job_init(struct frame_job *job, struct rendered_frame *out, c
     job->soft = layer_scene_soft_z(scene, options->soft_z);
     job->tiles_x = (novel->width + TILE_WIDTH - 1) / TILE_WIDTH;
     job->tiles = job->tiles_x * ((novel->height + TILE_HEIGHT - 1) / TILE_HEIGHT);
-    enum status st = job_allocate(job, color, err);
-    if (!st) st = rendered_frame_resize(out, novel->width, novel->height, color, err);
-    if (!st) st = lattice_init(job, err);
-    if (st) return st;
+    if (job_allocate(job, color, err) || rendered_frame_resize(out, novel->width, novel->height, color, err) ||
+        lattice_init(job, err))
+        return err->status;
     for (int i = 0; i < views; i++) {
         job->by_distance[i].view = i;
         job->by_distance[i].distance = vec3_length(vec3_sub(scene->set->views[i].center, novel->center));
@@ -713,20 +712,20 @@ enum status layer_render(struct rendered_frame *out, const struct layer_scene *s
                          const struct layer_render_options *options, struct err *err)
 {
     struct frame_job job;
-    enum status st = job_init(&job, out, scene, novel, options, true, err);
+    job_init(&job, out, scene, novel, options, true, err);
 
-    if (!st) {
+    if (!err->status) {
         parallel_for((size_t)job.tiles, 1, render_tiles, &job);
-        st = job_check(&job, err);
+        job_check(&job, err);
     }
-    if (!st) {
+    if (!err->status) {
         out->hole_fraction = hole_fraction(out);
         const struct soft_z soft = layer_scene_soft_z(scene, SOFT_Z_FILL_WIDTHS);
         const struct hole_photos photos = layer_photos(scene, novel, options);
-        st = hole_fill(out, &photos, &soft, (float)scene->sigma, options->fill_diameter, err);
+        hole_fill(out, &photos, &soft, (float)scene->sigma, options->fill_diameter, err);
     }
     job_release(&job);
-    return st;
+    return err->status;
 }
 
 /* ------------------------------------------------------------------------------------------------------- coverage */
@@ -802,15 +801,15 @@ enum status layer_coverage(struct rendered_frame *out, const struct layer_scene 
 
     view_resize(&reduced, (int)fmax(1, lround(novel->width * scale)), (int)fmax(1, lround(novel->height * scale)));
     const struct layer_render_options options = {.soft_z = SOFT_Z_WIDTHS};
-    enum status st = job_init(&job, out, scene, &reduced, &options, false, err);
-    if (!st) {
+    job_init(&job, out, scene, &reduced, &options, false, err);
+    if (!err->status) {
         parallel_for((size_t)job.tiles, 1, cover_tiles, &job);
-        st = job_check(&job, err);
+        job_check(&job, err);
     }
-    if (!st) {
+    if (!err->status) {
         out->hole_fraction = hole_fraction(out);
         out->unfilled_fraction = out->hole_fraction;
     }
     job_release(&job);
-    return st;
+    return err->status;
 }

@@ -63,47 +63,45 @@ enum status layer_scene_read(struct layer_scene *scene, const struct camera_set 
                              struct provenance *prov, struct err *err)
 {
     char path[FILE_PATH];
-    enum status st = scene_open(scene, set, err);
+    scene_open(scene, set, err);
 
-    for (int i = 0; !st && i < set->view_count; i++) {
+    for (int i = 0; !err->status && i < set->view_count; i++) {
         const char *view = set->views[i].name;
-        st = product_path_in(path, depth_folder, PRODUCT_DEPTH, &(struct product_key){.view = view}, err);
-        if (!st) st = layered_depth_read(&scene->depths[i], path, prov, err);
-        if (!st) st = scene_add(scene, i, err);
+        if (!product_path_in(path, depth_folder, PRODUCT_DEPTH, &(struct product_key){.view = view}, err) &&
+            !layered_depth_read(&scene->depths[i], path, prov, err))
+            scene_add(scene, i, err);
     }
-    if (!st) st = view_mesh_build(&scene->mesh, set, err);
-    if (!st) st = measure_depths(scene, err);
-    if (st) layer_scene_release(scene);
-    return st;
+    if (!err->status && !view_mesh_build(&scene->mesh, set, err)) measure_depths(scene, err);
+    if (err->status) layer_scene_release(scene);
+    return err->status;
 }
 
 enum status layer_scene_init(struct layer_scene *scene, const struct camera_set *set, struct layered_depth *depths,
                              struct err *err)
 {
-    enum status st = scene_open(scene, set, err);
+    scene_open(scene, set, err);
 
     for (int i = 0; i < set->view_count; i++) {
         struct layered_depth taken = depths[i];
         depths[i] = (struct layered_depth){0};
-        if (st) {
+        if (err->status) {
             layered_depth_release(&taken);
             continue;
         }
         scene->depths[i] = taken;
-        st = scene_add(scene, i, err);
+        scene_add(scene, i, err);
     }
-    if (!st) st = view_mesh_build(&scene->mesh, set, err);
-    if (!st) st = measure_depths(scene, err);
-    if (st) layer_scene_release(scene);
-    return st;
+    if (!err->status && !view_mesh_build(&scene->mesh, set, err)) measure_depths(scene, err);
+    if (err->status) layer_scene_release(scene);
+    return err->status;
 }
 
 enum status layer_scene_match_exposures(struct layer_scene *scene, struct err *err)
 {
-    enum status st = photo_exposures_fit(&scene->exposures, scene->set, scene->views, err);
-    for (int i = 0; !st && i < scene->set->view_count; i++)
-        st = photo_exposures_remove(&scene->exposures, i, &scene->set->views[i], &scene->views[i], err);
-    return st;
+    photo_exposures_fit(&scene->exposures, scene->set, scene->views, err);
+    for (int i = 0; !err->status && i < scene->set->view_count; i++)
+        photo_exposures_remove(&scene->exposures, i, &scene->set->views[i], &scene->views[i], err);
+    return err->status;
 }
 
 struct soft_z layer_scene_soft_z(const struct layer_scene *scene, double widths)

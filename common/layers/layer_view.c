@@ -388,9 +388,7 @@ enum status layer_view_pack(struct layer_view *lv, struct layered_depth *depth, 
     }
     layer_drop(&depth->interior);
     layer_drop(&depth->boundary);
-    enum status st = index_cells(lv, depth, err);
-    if (!st) st = layer_view_reduce(lv, err);
-    if (!st) st = group_segments(lv, depth, err);
-    if (st) layer_view_release(lv);
-    return st;
+    if (!index_cells(lv, depth, err) && !layer_view_reduce(lv, err)) group_segments(lv, depth, err);
+    if (err->status) layer_view_release(lv);
+    return err->status;
 }

@@ -110,18 +110,17 @@ static enum status write_segments(const struct layered_depth *d, const char *pat
                                   struct err *err)
 {
     struct outfile file = {0};
-    enum status st = product_begin(&file, PRODUCT_SEGMENTS, path, prov, err);
-    if (!st) {
+    if (!product_begin(&file, PRODUCT_SEGMENTS, path, prov, err)) {
         fprintf(file.fp, "size %d %d\nsegments %d\n", d->width, d->height, d->segment_count);
         for (int i = 0; i < d->segment_count; i++) {
             const struct depth_segment *s = &d->segments[i];
             fprintf(file.fp, "%u %d %.17g %.17g %.17g %.17g %.17g\n", s->id, s->pixels, s->plane[0], s->plane[1],
                     s->plane[2], s->sigma, s->confidence);
         }
-        st = outfile_commit(&file, err);
+        outfile_commit(&file, err);
     }
     outfile_discard(&file);
-    return st;
+    return err->status;
 }
 
 static enum status add_layer(struct exr_image *im, const struct layer *l, const char *const *names, struct err *err)
@@ -155,20 +154,18 @@ enum status layered_depth_write(const struct layered_depth *d, const struct view
 {
     struct exr_image im = {0};
     char *text = NULL;
-    enum status st = text_path(&text, path, err);
-    if (!st) st = check_segments(d, path, err);
-    if (!st) st = exr_image_init(&im, d->width, d->height, err);
-    if (!st) st = add_layer(&im, &d->interior, plane_names, err);
-    if (!st) st = add_layer(&im, &d->boundary, plane_names + PLANES_A_LAYER, err);
-    if (!st) st = add_shares(&im, d, err);
-    if (!st) {
+    if (!text_path(&text, path, err) && !check_segments(d, path, err) &&
+        !exr_image_init(&im, d->width, d->height, err) && !add_layer(&im, &d->interior, plane_names, err) &&
+        !add_layer(&im, &d->boundary, plane_names + PLANES_A_LAYER, err))
+        add_shares(&im, d, err);
+    if (!err->status) {
         if (view) view_image_set_camera(&im, view);
-        st = write_segments(d, text, prov, err);
+        write_segments(d, text, prov, err);
     }
-    if (!st) st = exr_write(&im, path, prov, err);
+    if (!err->status) exr_write(&im, path, prov, err);
     exr_image_release(&im);
     free(text);
-    return st;
+    return err->status;
 }
 
 static enum status expect_word(struct textfile *t, const char *wanted, struct err *err)
@@ -206,29 +203,27 @@ enum status layered_depth_read_segments(struct layered_depth *d, const char *pat
     struct textfile t = {0};
     int64_t width = 0, height = 0, count = 0;
     *d = (struct layered_depth){0};
-    enum status st = product_open(&t, NULL, PRODUCT_SEGMENTS, path, prov, err);
-    if (!st) st = expect_word(&t, "size", err);
-    if (!st) st = textfile_int(&t, "width", 1, 1 << 20, &width, err);
-    if (!st) st = textfile_int(&t, "height", 1, INT_MAX / width, &height, err);
-    if (!st) st = textfile_end(&t, err);
-    if (!st) st = expect_word(&t, "segments", err);
+    if (!product_open(&t, NULL, PRODUCT_SEGMENTS, path, prov, err) && !expect_word(&t, "size", err) &&
+        !textfile_int(&t, "width", 1, 1 << 20, &width, err) &&
+        !textfile_int(&t, "height", 1, INT_MAX / width, &height, err) && !textfile_end(&t, err))
+        expect_word(&t, "segments", err);
     /* a line has at least 14 bytes: rejects counts that the file cannot hold, before memory is allocated */
-    if (!st) st = textfile_int(&t, "number of segments", 0, (int64_t)(t.size / 14 + 1), &count, err);
-    if (!st) st = textfile_end(&t, err);
-    if (!st) {
+    if (!err->status && !textfile_int(&t, "number of segments", 0, (int64_t)(t.size / 14 + 1), &count, err))
+        textfile_end(&t, err);
+    if (!err->status) {
         d->width = (int)width;
         d->height = (int)height;
         d->segments = calloc((size_t)count + 1, sizeof *d->segments);
-        if (!d->segments) st = err_nomem(err, "segments", (size_t)count * sizeof *d->segments);
+        if (!d->segments) err_nomem(err, "segments", (size_t)count * sizeof *d->segments);
     }
-    for (int i = 0; !st && i < count; i++) {
-        st = read_segment(&d->segments[i], &t, i + 1, width * height, err);
+    for (int i = 0; !err->status && i < count; i++) {
+        read_segment(&d->segments[i], &t, i + 1, width * height, err);
         d->segment_count = i + 1;
     }
-    if (!st) st = textfile_end_of_file(&t, err);
+    if (!err->status) textfile_end_of_file(&t, err);
     textfile_release(&t);
-    if (st) layered_depth_release(d);
-    return st;
+    if (err->status) layered_depth_release(d);
+    return err->status;
 }
 
 static enum status take_layer(struct layer *l, const struct exr_image *im, const char *const *names, int segments,
@@ -262,21 +257,20 @@ static enum status read_layers(struct layered_depth *d, const char *path, int la
 {
     struct exr_image im = {0};
     char *text = NULL;
-    enum status st = text_path(&text, path, err);
-    if (!st) st = layered_depth_read_segments(d, text, prov, err);
-    if (!st) st = exr_read_product(&im, PRODUCT_DEPTH, path, plane_names, layers * PLANES_A_LAYER, prov, err);
-    if (!st && (im.width != d->width || im.height != d->height))
-        st = err_set(err, ST_DATA, "%s has %d x %d pixels, but %s says %d x %d; make the depth map again.", path,
-                     im.width, im.height, text, d->width, d->height);
-    for (int i = 0; !st && i < layers; i++) {
+    if (!text_path(&text, path, err) && !layered_depth_read_segments(d, text, prov, err))
+        exr_read_product(&im, PRODUCT_DEPTH, path, plane_names, layers * PLANES_A_LAYER, prov, err);
+    if (!err->status && (im.width != d->width || im.height != d->height))
+        err_set(err, ST_DATA, "%s has %d x %d pixels, but %s says %d x %d; make the depth map again.", path, im.width,
+                im.height, text, d->width, d->height);
+    for (int i = 0; !err->status && i < layers; i++) {
         struct layer *l = i ? &d->boundary : &d->interior;
-        st = layer_init(l, (size_t)im.width * (size_t)im.height, err);
-        if (!st) st = take_layer(l, &im, plane_names + i * PLANES_A_LAYER, d->segment_count, path, err);
+        if (!layer_init(l, (size_t)im.width * (size_t)im.height, err))
+            take_layer(l, &im, plane_names + i * PLANES_A_LAYER, d->segment_count, path, err);
     }
-    if (st) layered_depth_release(d);
+    if (err->status) layered_depth_release(d);
     exr_image_release(&im);
     free(text);
-    return st;
+    return err->status;
 }
 
 enum status layered_depth_read(struct layered_depth *d, const char *path, struct provenance *prov, struct err *err)
@@ -297,21 +291,18 @@ enum status layered_depth_read_ids(struct layered_depth *d, const char *path, st
     static const char *const name[] = {"interior.id"};
     struct exr_image im = {0};
     char *text = NULL;
-    enum status st = text_path(&text, path, err);
-    if (!st) st = layered_depth_read_segments(d, text, prov, err);
-    if (!st) st = exr_read_product(&im, PRODUCT_DEPTH, path, name, 1, prov, err);
-    struct exr_plane *ids = st ? NULL : exr_find(&im, name[0]);
-    if (!st && (im.width != d->width || im.height != d->height || !ids->u))
-        st =
-            err_set(err, ST_DATA,
-                    "%s: interior.id is not the plane of %d x %d integers that %s announces; make the depth map again.",
-                    path, d->width, d->height, text);
-    for (size_t i = 0; !st && i < (size_t)im.width * (size_t)im.height; i++)
+    if (!text_path(&text, path, err) && !layered_depth_read_segments(d, text, prov, err))
+        exr_read_product(&im, PRODUCT_DEPTH, path, name, 1, prov, err);
+    struct exr_plane *ids = err->status ? NULL : exr_find(&im, name[0]);
+    if (!err->status && (im.width != d->width || im.height != d->height || !ids->u))
+        err_set(err, ST_DATA,
+                "%s: interior.id is not the plane of %d x %d integers that %s announces; make the depth map again.",
+                path, d->width, d->height, text);
+    for (size_t i = 0; !err->status && i < (size_t)im.width * (size_t)im.height; i++)
         if (ids->u[i] > (uint32_t)d->segment_count)
-            st = err_set(err, ST_DATA,
-                         "%s: pixel (%zu, %zu) has segment %u, wanted one up to %d; make the depth map again.", path,
-                         i % (size_t)im.width, i / (size_t)im.width, ids->u[i], d->segment_count);
-    if (!st) {
+            err_set(err, ST_DATA, "%s: pixel (%zu, %zu) has segment %u, wanted one up to %d; make the depth map again.",
+                    path, i % (size_t)im.width, i / (size_t)im.width, ids->u[i], d->segment_count);
+    if (!err->status) {
         d->interior.id = ids->u;
         ids->u = NULL;
     } else {
@@ -319,5 +310,5 @@ enum status layered_depth_read_ids(struct layered_depth *d, const char *path, st
     }
     exr_image_release(&im);
     free(text);
-    return st;
+    return err->status;
 }

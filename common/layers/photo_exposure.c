@@ -231,20 +231,20 @@ enum status photo_exposures_fit(struct photo_exposures *e, const struct camera_s
 
     *e = (struct photo_exposures){0};
     if (set->view_count > MAX_VIEWS) return ST_OK;
-    enum status st = samples_take(&s, set, views, err);
-    if (!st) {
+    samples_take(&s, set, views, err);
+    if (!err->status) {
         y.a = malloc(n * n * sizeof *y.a);
         y.b = malloc(n * sizeof *y.b);
         x = malloc(n * sizeof *x);
         e->gain = calloc(n, sizeof *e->gain);
-        if (!y.a || !y.b || !x || !e->gain) st = err_nomem(err, "exposures of photos", n * n * sizeof *y.a);
+        if (!y.a || !y.b || !x || !e->gain) err_nomem(err, "exposures of photos", n * n * sizeof *y.a);
     }
-    if (st || !s.points || !fit(e, &y, &s, x)) photo_exposures_release(e);
+    if (err->status || !s.points || !fit(e, &y, &s, x)) photo_exposures_release(e);
     samples_release(&s);
     free(y.a);
     free(y.b);
     free(x);
-    return st;
+    return err->status;
 }
 
 void photo_exposures_release(struct photo_exposures *e)

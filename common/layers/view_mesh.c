@@ -307,9 +307,9 @@ static enum status triangulate(struct view_mesh *mesh, struct err *err)
     }
     free(mesh->triangles);
     mesh->triangles = NULL;
-    enum status st = delaunay((const double(*)[2])flat, n, &mesh->triangles, &mesh->triangle_count, err);
+    delaunay((const double(*)[2])flat, n, &mesh->triangles, &mesh->triangle_count, err);
     free(flat);
-    if (st) return st;
+    if (err->status) return err->status;
     free(mesh->rim);
     mesh->rim = malloc(((size_t)mesh->triangle_count * 3 + 1) * sizeof *mesh->rim);
     if (!mesh->rim) return err_nomem(err, "the view mesh", (size_t)mesh->triangle_count * 3 * sizeof *mesh->rim);

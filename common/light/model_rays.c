@@ -19,23 +19,23 @@ static enum status build(struct model_rays *m, enum model_glass glass, const str
 {
     struct solid_triangles triangles = {0};
     m->ids = 1;
-    enum status st = solid_mesh_triangulate(&triangles, &m->mesh, err);
-    for (int i = 0; !st && i < triangles.count; i++) {
+    solid_mesh_triangulate(&triangles, &m->mesh, err);
+    for (int i = 0; !err->status && i < triangles.count; i++) {
         const struct solid_triangle *t = &triangles.triangles[i];
         struct vec3 corners[3];
         if (glass == MODEL_WITHOUT_GLASS && solid_face_is_pane(&m->mesh, t->face)) continue;
         for (int k = 0; k < 3; k++) corners[k] = m->mesh.vertices[t->v[k]].p;
         if (!(vec3_length(vec3_cross(vec3_sub(corners[1], corners[0]), vec3_sub(corners[2], corners[0]))) > 0))
             continue;
-        st = ray_scene_add_triangle(&m->rays, corners, (uint32_t)t->face, err);
+        ray_scene_add_triangle(&m->rays, corners, (uint32_t)t->face, err);
     }
-    for (int i = 0; !st && extra && i < extra->count; i++)
-        st = ray_scene_add_triangle(&m->rays, extra->triangles[i], (uint32_t)(m->mesh.face_count + i), err);
-    if (!st) st = ray_scene_commit(&m->rays, err);
-    for (int i = 0; !st && i < m->mesh.name_count; i++)
+    for (int i = 0; !err->status && extra && i < extra->count; i++)
+        ray_scene_add_triangle(&m->rays, extra->triangles[i], (uint32_t)(m->mesh.face_count + i), err);
+    if (!err->status) ray_scene_commit(&m->rays, err);
+    for (int i = 0; !err->status && i < m->mesh.name_count; i++)
         if (m->mesh.names[i].id >= m->ids) m->ids = m->mesh.names[i].id + 1;
     solid_triangles_release(&triangles);
-    return st;
+    return err->status;
 }
 
 enum status model_rays_build(struct model_rays *m, enum model_glass glass, struct err *err)
@@ -47,10 +47,9 @@ enum status model_rays_read_with(struct model_rays *m, const char *path, enum mo
                                  const struct model_extra *extra, struct provenance *prov, struct err *err)
 {
     *m = (struct model_rays){0};
-    enum status st = solid_mesh_read(&m->mesh, path, prov, err);
-    if (!st) st = build(m, glass, extra, err);
-    if (st) model_rays_release(m);
-    return st;
+    if (!solid_mesh_read(&m->mesh, path, prov, err)) build(m, glass, extra, err);
+    if (err->status) model_rays_release(m);
+    return err->status;
 }
 
 enum status model_rays_read(struct model_rays *m, const char *path, enum model_glass glass, struct provenance *prov,

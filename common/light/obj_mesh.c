@@ -98,18 +98,18 @@ enum status obj_mesh_read(struct obj_mesh *mesh, const char *path, struct err *e
 {
     struct obj_reader r = {.mesh = mesh, .err = err};
     *mesh = (struct obj_mesh){0};
-    enum status st = textfile_open(&r.t, path, err);
-    while (!st && textfile_next(&r.t)) st = read_line(&r);
-    if (!st && !mesh->count)
-        st = err_set(err, ST_DATA,
-                     "%s has no faces with an area (lines that begin with f); export it as Wavefront OBJ.", path);
-    if (!st && mesh->dropped)
+    textfile_open(&r.t, path, err);
+    while (!err->status && textfile_next(&r.t)) read_line(&r);
+    if (!err->status && !mesh->count)
+        err_set(err, ST_DATA, "%s has no faces with an area (lines that begin with f); export it as Wavefront OBJ.",
+                path);
+    if (!err->status && mesh->dropped)
         log_note("%s: %d of %d triangles have no area and are left out", path, mesh->dropped,
                  mesh->count + mesh->dropped);
-    if (st) obj_mesh_release(mesh);
+    if (err->status) obj_mesh_release(mesh);
     textfile_release(&r.t);
     free(r.vertices);
-    return st;
+    return err->status;
 }
 
 void obj_mesh_move(struct obj_mesh *mesh, const double m[3][4])

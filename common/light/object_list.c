@@ -87,11 +87,11 @@ enum status object_list_read(struct object_list *l, const char *path, struct pro
 {
     struct textfile t = {0};
     *l = (struct object_list){0};
-    enum status st = product_open(&t, NULL, PRODUCT_OBJECTS, path, prov, err);
-    while (!st && textfile_next(&t)) st = read_object(l, &t, err);
+    product_open(&t, NULL, PRODUCT_OBJECTS, path, prov, err);
+    while (!err->status && textfile_next(&t)) read_object(l, &t, err);
     textfile_release(&t);
-    if (st) object_list_release(l);
-    return st;
+    if (err->status) object_list_release(l);
+    return err->status;
 }
 
 /* ---------------------------------------------------------------------------------------------------------- writing */
@@ -114,14 +114,13 @@ enum status object_list_write(const struct object_list *l, const char *path, con
     struct outfile f = {0};
     if (outfile_open(&f, path, err)) return err->status;
     const locale_t kept = uselocale(scan_c_locale());
-    enum status st = ST_OK;
     fprintf(f.fp, "%s\n", products[PRODUCT_OBJECTS].head);
     if (prov) provenance_print(prov, f.fp);
-    for (int i = 0; !st && i < l->count; i++) st = print_object(&l->items[i], f.fp, err);
+    for (int i = 0; !err->status && i < l->count; i++) print_object(&l->items[i], f.fp, err);
     uselocale(kept);
-    if (!st) st = outfile_commit(&f, err);
+    if (!err->status) outfile_commit(&f, err);
     outfile_discard(&f);
-    return st;
+    return err->status;
 }
 
 /* ----------------------------------------------------------------------------------------------------------- meshes */

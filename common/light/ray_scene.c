@@ -34,8 +34,8 @@ static enum status too_many(const char *what, struct err *err)
 enum status ray_scene_add_triangle(struct ray_scene *s, const struct vec3 corner[3], uint32_t id, struct err *err)
 {
     if (s->triangle_count == MAX_PRIMITIVES) return too_many("triangles", err);
-    enum status st = array_append(&s->triangles, (size_t)s->triangle_count, sizeof *s->triangles, "triangles", err);
-    if (st) return st;
+    if (array_append(&s->triangles, (size_t)s->triangle_count, sizeof *s->triangles, "triangles", err))
+        return err->status;
     const struct vec3 n = vec3_cross(vec3_sub(corner[1], corner[0]), vec3_sub(corner[2], corner[0]));
     s->triangles[s->triangle_count++] = (struct ray_triangle){{corner[0], corner[1], corner[2]}, vec3_normalize(n), id};
     for (int i = 0; i < 3; i++) {
@@ -49,8 +49,7 @@ enum status ray_scene_add_disk(struct ray_scene *s, struct vec3 centre, struct v
                                struct err *err)
 {
     if (s->disk_count == MAX_PRIMITIVES) return too_many("disks", err);
-    enum status st = array_append(&s->disks, (size_t)s->disk_count, sizeof *s->disks, "disks", err);
-    if (st) return st;
+    if (array_append(&s->disks, (size_t)s->disk_count, sizeof *s->disks, "disks", err)) return err->status;
     struct vec3 x, y;
     frame_from_normal(vec3_normalize(normal), &x, &y);
     const struct vec3 n = vec3_normalize(vec3_cross(x, y));
@@ -133,14 +132,11 @@ enum status ray_scene_commit(struct ray_scene *s, struct err *err)
                        (int)rtcGetDeviceError(NULL));
     s->embree = rtcNewScene(s->device);
     rtcSetSceneFlags(s->embree, RTC_SCENE_FLAG_ROBUST);
-    enum status st = attach(s, GEOMETRY_TRIANGLES, err);
-    if (!st) st = attach(s, GEOMETRY_DISKS, err);
-    if (st) return st;
+    if (attach(s, GEOMETRY_TRIANGLES, err) || attach(s, GEOMETRY_DISKS, err)) return err->status;
     rtcCommitScene(s->embree);
     const enum RTCError error = rtcGetDeviceError(s->device);
-    if (error != RTC_ERROR_NONE)
-        st = err_set(err, ST_INTERNAL, "Embree could not build the scene (error %d).", (int)error);
-    return st;
+    if (error != RTC_ERROR_NONE) err_set(err, ST_INTERNAL, "Embree could not build the scene (error %d).", (int)error);
+    return err->status;
 }
 
 void ray_scene_release(struct ray_scene *s)

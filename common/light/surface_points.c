@@ -27,13 +27,13 @@ enum status surface_points_read(struct surface_points *points, const char *path,
 {
     struct textfile t = {0};
     *points = (struct surface_points){0};
-    enum status st = textfile_open(&t, path, err);
-    while (!st && textfile_next(&t)) st = read_point(points, &t, err);
-    if (!st && !points->count)
-        st = err_set(err, ST_DATA, "%s has no points; write one on each line: X Y Z NX NY NZ.", path);
+    textfile_open(&t, path, err);
+    while (!err->status && textfile_next(&t)) read_point(points, &t, err);
+    if (!err->status && !points->count)
+        err_set(err, ST_DATA, "%s has no points; write one on each line: X Y Z NX NY NZ.", path);
     textfile_release(&t);
-    if (st) surface_points_release(points);
-    return st;
+    if (err->status) surface_points_release(points);
+    return err->status;
 }
 
 void surface_points_release(struct surface_points *points)

@@ -99,7 +99,6 @@ enum status delaunay(const double (*points)[2], int point_count, int (**triangle
     *triangles = NULL;
     *count = 0;
     if (point_count < 3) return ST_OK;
-    enum status st = ST_OK;
     char *text = NULL;
     size_t text_size = 0;
     FILE *messages = NULL; /* qhull's output */
@@ -112,7 +111,7 @@ enum status delaunay(const double (*points)[2], int point_count, int (**triangle
     if (point_count == 3) { /* too few for qhull's initial simplex */
         *triangles = malloc(sizeof **triangles);
         if (!*triangles) {
-            st = err_nomem(err, "a triangulation", sizeof **triangles);
+            err_nomem(err, "a triangulation", sizeof **triangles);
             goto done;
         }
         memcpy(**triangles, (int[3]){0, 1, 2}, sizeof **triangles);
@@ -121,17 +120,17 @@ enum status delaunay(const double (*points)[2], int point_count, int (**triangle
     }
     messages = open_memstream(&text, &text_size);
     if (!messages) {
-        st = err_nomem(err, "qhull's messages", 1);
+        err_nomem(err, "qhull's messages", 1);
         goto done;
     }
     qh_zero(&qh, messages);
     opened = true;
     if (qh_new_qhull(&qh, 2, point_count, &unit[0][0], False, command, NULL, messages)) {
         fflush(messages);
-        st = err_set(err, ST_INTERNAL, "qhull cannot triangulate %d points: %.200s", point_count, text ? text : "");
+        err_set(err, ST_INTERNAL, "qhull cannot triangulate %d points: %.200s", point_count, text ? text : "");
         goto done;
     }
-    st = collect(&qh, unit, triangles, count, err);
+    collect(&qh, unit, triangles, count, err);
 done:
     if (opened) {
         int left, total;
@@ -141,5 +140,5 @@ done:
     if (messages) fclose(messages);
     free(text);
     free(unit);
-    return st;
+    return err->status;
 }

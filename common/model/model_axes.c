@@ -58,8 +58,7 @@ enum status model_axes_write(const struct model_axes *axes, const char *path, co
     struct outfile f = {0};
     const struct quat q = axes->rotation;
     const struct vec3 t = axes->translation;
-    enum status st = product_begin(&f, PRODUCT_AXES, path, prov, err);
-    if (!st) {
+    if (!product_begin(&f, PRODUCT_AXES, path, prov, err)) {
         fprintf(f.fp, "rotation %.17g %.17g %.17g %.17g\ntranslation %.17g %.17g %.17g\n", q.w, q.x, q.y, q.z, t.x, t.y,
                 t.z);
         fprintf(f.fp, "scale %.17g %s\n", axes->scale, axes->metric ? "metres" : "unknown");
@@ -69,10 +68,10 @@ enum status model_axes_write(const struct model_axes *axes, const char *path, co
                 axes->heading_error, axes->floor_error);
         print_or_none(f.fp, "error ceiling", axes->ceiling > 0, axes->ceiling_error);
         print_or_none(f.fp, "error scale", axes->metric, axes->scale_error);
-        st = outfile_commit(&f, err);
+        outfile_commit(&f, err);
     }
     outfile_discard(&f);
-    return st;
+    return err->status;
 }
 
 /* ---------------------------------------------------------------------------------------------------------- reading */
@@ -141,16 +140,15 @@ enum status model_axes_read(struct model_axes *axes, const char *path, struct pr
 {
     struct textfile t = {0};
     struct model_axes a = {0};
-    enum status st =
-        product_open(&t, NULL, PRODUCT_AXES, path, prov, err) || read_similarity(&t, &a, err) ||
-                read_length(&t, "ceiling", &a.ceiling, err) || read_length(&t, "thickness", &a.thickness, err) ||
-                read_error(&t, "tilt", &a.tilt_error, err) || read_error(&t, "heading", &a.heading_error, err) ||
-                read_error(&t, "floor", &a.floor_error, err) ||
-                read_error_of(&t, "ceiling", a.ceiling > 0, &a.ceiling_error, err) ||
-                read_error_of(&t, "scale", a.metric, &a.scale_error, err) || textfile_end_of_file(&t, err)
-            ? err->status
-            : ST_OK;
+    if (!product_open(&t, NULL, PRODUCT_AXES, path, prov, err) && !read_similarity(&t, &a, err) &&
+        !read_length(&t, "ceiling", &a.ceiling, err))
+        read_length(&t, "thickness", &a.thickness, err);
+    if (!err->status && !read_error(&t, "tilt", &a.tilt_error, err) &&
+        !read_error(&t, "heading", &a.heading_error, err) && !read_error(&t, "floor", &a.floor_error, err) &&
+        !read_error_of(&t, "ceiling", a.ceiling > 0, &a.ceiling_error, err) &&
+        !read_error_of(&t, "scale", a.metric, &a.scale_error, err))
+        textfile_end_of_file(&t, err);
     textfile_release(&t);
-    *axes = st ? (struct model_axes){0} : a;
-    return st;
+    *axes = err->status ? (struct model_axes){0} : a;
+    return err->status;
 }

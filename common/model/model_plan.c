@@ -219,11 +219,11 @@ enum status model_plan_read(struct model_plan *plan, const char *path, struct pr
 {
     struct textfile t = {0};
     *plan = (struct model_plan){0};
-    enum status st = product_open(&t, NULL, PRODUCT_PLAN, path, prov, err);
-    while (!st && textfile_next(&t)) st = read_statement(plan, &t, err);
+    product_open(&t, NULL, PRODUCT_PLAN, path, prov, err);
+    while (!err->status && textfile_next(&t)) read_statement(plan, &t, err);
     textfile_release(&t);
-    if (st) model_plan_release(plan);
-    return st ? err->status : ST_OK;
+    if (err->status) model_plan_release(plan);
+    return err->status;
 }
 
 void model_plan_release(struct model_plan *plan)

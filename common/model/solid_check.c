@@ -362,9 +362,9 @@ static enum status check_crossings(const struct solid_checker *c, int body, stru
     const size_t max_items = (size_t)b->faces + (size_t)edges + 1;
     struct sweep_item *items = malloc(max_items * sizeof *items);
     int *active[2] = {malloc(max_items * sizeof **active), malloc(max_items * sizeof **active)};
-    enum status st = items && active[0] && active[1] ? ST_OK : err_nomem(err, "a sweep", max_items * sizeof *items);
+    if (!items || !active[0] || !active[1]) err_nomem(err, "a sweep", max_items * sizeof *items);
     struct box3 whole = {{0}, {0}};
-    for (int f = b->face; !st && f < b->face + b->faces; f++) {
+    for (int f = b->face; !err->status && f < b->face + b->faces; f++) {
         struct sweep_item *face = &items[count++];
         *face = (struct sweep_item){.index = f};
         bool first = true;
@@ -388,10 +388,10 @@ static enum status check_crossings(const struct solid_checker *c, int body, stru
     int axis = 0;
     for (int i = 1; i < 3; i++)
         if (whole.high[i] - whole.low[i] > whole.high[axis] - whole.low[axis]) axis = i;
-    if (!st) qsort_r(items, (size_t)count, sizeof *items, compare_items, &axis);
+    if (!err->status) qsort_r(items, (size_t)count, sizeof *items, compare_items, &axis);
     int alive[2] = {0, 0};
-    for (int i = 0; !st && i < count; i++)
-        for (int kind = 0; !st && kind < 2; kind++) { /* all items against faces, faces against edges too */
+    for (int i = 0; !err->status && i < count; i++)
+        for (int kind = 0; !err->status && kind < 2; kind++) { /* all items against faces, faces against edges too */
             int kept = 0;
             if (kind && items[i].is_edge) {
                 active[1][alive[1]++] = i;
@@ -401,7 +401,7 @@ static enum status check_crossings(const struct solid_checker *c, int body, stru
                 const struct sweep_item *o = &items[active[kind][k]];
                 if (o->box.high[axis] < items[i].box.low[axis]) continue;
                 active[kind][kept++] = active[kind][k];
-                if (!st && boxes_overlap(&o->box, &items[i].box)) st = check_pair(c, o, &items[i], err);
+                if (!err->status && boxes_overlap(&o->box, &items[i].box)) check_pair(c, o, &items[i], err);
             }
             alive[kind] = kept;
             if (!kind && !items[i].is_edge) active[0][alive[0]++] = i;
@@ -409,7 +409,7 @@ static enum status check_crossings(const struct solid_checker *c, int body, stru
     free(items);
     free(active[0]);
     free(active[1]);
-    return st;
+    return err->status;
 }
 
 /* Solid angle of a triangle seen from p, as a fraction of the sphere; positive if its inner side is visible
@@ -429,13 +429,13 @@ static enum status check_shells(const struct solid_checker *c, struct err *err)
     const struct solid_report *r = c->report;
     struct box3 *boxes = malloc(((size_t)r->count + 1) * sizeof *boxes);
     char *begun = calloc((size_t)r->count + 1, 1), *done = calloc((size_t)r->count + 1, 1);
-    enum status st = boxes && begun && done ? ST_OK : err_nomem(err, "shells", (size_t)r->count * sizeof *boxes);
-    for (int h = 0; !st && h < m->half_edge_count; h++) {
+    if (!boxes || !begun || !done) err_nomem(err, "shells", (size_t)r->count * sizeof *boxes);
+    for (int h = 0; !err->status && h < m->half_edge_count; h++) {
         const int s = c->shell_of[FACE(c, h)];
         box_add(&boxes[s], AT(c, m->half_edges[h].origin), !begun[s]);
         begun[s] = 1;
     }
-    for (int f = 0; !st && f < m->face_count; f++) {
+    for (int f = 0; !err->status && f < m->face_count; f++) {
         const int s = c->shell_of[f];
         if (done[s]) continue;
         done[s] = 1;
@@ -454,14 +454,14 @@ static enum status check_shells(const struct solid_checker *c, struct err *err)
                 around += solid_angle(c, c->triangles.triangles[i].v, p);
         }
         if (fabs(around - (r->shells[s].volume < 0 ? 1 : 0)) > 0.25)
-            st = fault(c, f, err,
-                       r->shells[s].volume < 0 ? "its shell is inside out and not inside another one"
-                                               : "its shell is inside another one of the same body");
+            fault(c, f, err,
+                  r->shells[s].volume < 0 ? "its shell is inside out and not inside another one"
+                                          : "its shell is inside another one of the same body");
     }
     free(boxes);
     free(begun);
     free(done);
-    return st;
+    return err->status;
 }
 
 enum status solid_mesh_check(const struct solid_mesh *mesh, double tolerance, struct solid_report *report,
@@ -471,16 +471,13 @@ enum status solid_mesh_check(const struct solid_mesh *mesh, double tolerance, st
     struct solid_checker c = {
         .mesh = mesh, .tolerance = tolerance > 0 ? tolerance : 1e-6, .report = report ? report : &own};
     *c.report = (struct solid_report){0};
-    enum status st = check_indices(mesh, err);
-    if (!st) st = check_rings(mesh, err);
-    if (!st) st = find_shells(&c, err);
-    if (!st) st = check_faces(&c, err);
-    if (!st) st = solid_mesh_triangulate(&c.triangles, mesh, err);
-    for (int b = 0; !st && b < mesh->body_count; b++) st = check_crossings(&c, b, err);
-    if (!st) st = check_shells(&c, err);
+    if (!check_indices(mesh, err) && !check_rings(mesh, err) && !find_shells(&c, err) && !check_faces(&c, err))
+        solid_mesh_triangulate(&c.triangles, mesh, err);
+    for (int b = 0; !err->status && b < mesh->body_count; b++) check_crossings(&c, b, err);
+    if (!err->status) check_shells(&c, err);
     solid_triangles_release(&c.triangles);
     free(c.shell_of);
     free(c.shell_area);
     solid_report_release(&own);
-    return st;
+    return err->status;
 }

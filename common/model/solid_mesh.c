@@ -254,25 +254,23 @@ enum status solid_mesh_make(struct solid_mesh *mesh, const struct vec3 *vertices
     mesh->faces = calloc((size_t)count + 1, sizeof *mesh->faces);
     mesh->bodies = calloc((size_t)count + 1, sizeof *mesh->bodies);
     mesh->names = calloc((size_t)count + 1, sizeof *mesh->names);
-    enum status st = m.names && m.bodies && m.edges && of_vertex && mesh->vertices && mesh->half_edges && mesh->loops &&
-                             mesh->faces && mesh->bodies && mesh->names
-                         ? ST_OK
-                         : err_nomem(err, "a mesh", (size_t)corners * sizeof *mesh->half_edges);
-    if (!st) mesh->vertex_count = vertex_count;
-    for (int i = 0; !st && i < vertex_count; i++) {
+    if (!m.names || !m.bodies || !m.edges || !of_vertex || !mesh->vertices || !mesh->half_edges || !mesh->loops ||
+        !mesh->faces || !mesh->bodies || !mesh->names)
+        err_nomem(err, "a mesh", (size_t)corners * sizeof *mesh->half_edges);
+    if (!err->status) mesh->vertex_count = vertex_count;
+    for (int i = 0; !err->status && i < vertex_count; i++) {
         mesh->vertices[i] = (struct solid_vertex){vertices[i], -1};
         of_vertex[i] = -1;
-        if (!finite3(vertices[i])) st = err_set(err, ST_DATA, "vertex %d is not finite.", i);
+        if (!finite3(vertices[i])) err_set(err, ST_DATA, "vertex %d is not finite.", i);
     }
-    for (int i = 0; !st && i < count; i++) st = add_polygon(&m, i, &polygons[i], of_vertex, err);
-    if (!st) st = pair_edges(&m, polygons, err);
-    if (!st) st = one_fan_each(&m, polygons, of_vertex, err);
+    for (int i = 0; !err->status && i < count; i++) add_polygon(&m, i, &polygons[i], of_vertex, err);
+    if (!err->status && !pair_edges(&m, polygons, err)) one_fan_each(&m, polygons, of_vertex, err);
     free(m.names);
     free(m.bodies);
     free(m.edges);
     free(of_vertex);
-    if (st) solid_mesh_release(mesh);
-    return st;
+    if (err->status) solid_mesh_release(mesh);
+    return err->status;
 }
 
 /* ------------------------------------------------------------------------------------------------------------ ids */
@@ -293,8 +291,9 @@ enum status solid_mesh_set_ids(struct solid_mesh *mesh, const int *ids, struct e
     struct id_order *order = malloc((n + 1) * sizeof *order);
     struct solid_name *names = malloc((n + 1) * sizeof *names);
     int *now = malloc((n + 1) * sizeof *now);
-    enum status st = order && names && now ? ST_OK : err_nomem(err, "ids of faces", n * sizeof *order);
-    if (!st) {
+    if (!order || !names || !now) {
+        err_nomem(err, "ids of faces", n * sizeof *order);
+    } else {
         for (int i = 0; i < mesh->name_count; i++) order[i] = (struct id_order){ids[i], i};
         qsort(order, n, sizeof *order, compare_ids);
         for (int i = 0; i < mesh->name_count; i++) {
@@ -307,26 +306,26 @@ enum status solid_mesh_set_ids(struct solid_mesh *mesh, const int *ids, struct e
     free(order);
     free(names);
     free(now);
-    return st;
+    return err->status;
 }
 
 enum status solid_mesh_carry_ids(struct solid_mesh *mesh, const struct solid_mesh *base, struct err *err)
 {
     const unsigned size = table_size(base->name_count);
     int *slots = table_make(size), *ids = malloc(((size_t)mesh->name_count + 1) * sizeof *ids), next = 1;
-    enum status st = slots && ids ? ST_OK : err_nomem(err, "ids of faces", size * sizeof *slots);
-    for (int i = 0; !st && i < base->name_count; i++) {
+    if (!slots || !ids) err_nomem(err, "ids of faces", size * sizeof *slots);
+    for (int i = 0; !err->status && i < base->name_count; i++) {
         slots[name_slot(base, slots, size, base->names[i].name)] = i;
         if (base->names[i].id >= next) next = base->names[i].id + 1;
     }
-    for (int i = 0; !st && i < mesh->name_count; i++) {
+    for (int i = 0; !err->status && i < mesh->name_count; i++) {
         const int at = slots[name_slot(base, slots, size, mesh->names[i].name)];
         ids[i] = at >= 0 ? base->names[at].id : next++;
     }
-    if (!st) st = solid_mesh_set_ids(mesh, ids, err);
+    if (!err->status) solid_mesh_set_ids(mesh, ids, err);
     free(slots);
     free(ids);
-    return st;
+    return err->status;
 }
 
 /* ------------------------------------------------------------------------------------------------- volume and area */

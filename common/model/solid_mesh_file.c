@@ -44,28 +44,26 @@ enum status solid_mesh_write(const struct solid_mesh *mesh, const char *path, co
 {
     struct outfile f = {0};
     char name[NAME_SIZE];
-    enum status st = product_begin(&f, PRODUCT_MODEL, path, prov, err);
-    if (!st) fprintf(f.fp, "vertices %d\n", mesh->vertex_count);
-    for (int i = 0; !st && i < mesh->vertex_count; i++) {
+    if (!product_begin(&f, PRODUCT_MODEL, path, prov, err)) fprintf(f.fp, "vertices %d\n", mesh->vertex_count);
+    for (int i = 0; !err->status && i < mesh->vertex_count; i++) {
         const struct vec3 p = mesh->vertices[i].p;
         fprintf(f.fp, "vertex %.17g %.17g %.17g\n", p.x, p.y, p.z);
     }
-    if (!st) fprintf(f.fp, "bodies %d\n", mesh->body_count);
-    for (int b = 0; !st && b < mesh->body_count; b++) {
-        st = textfile_quote(mesh->bodies[b].name, name, sizeof name, err);
-        if (!st) fprintf(f.fp, "body %s %d\n", name, mesh->bodies[b].faces);
-        for (int i = mesh->bodies[b].face; !st && i < mesh->bodies[b].face + mesh->bodies[b].faces; i++) {
+    if (!err->status) fprintf(f.fp, "bodies %d\n", mesh->body_count);
+    for (int b = 0; !err->status && b < mesh->body_count; b++) {
+        if (!textfile_quote(mesh->bodies[b].name, name, sizeof name, err))
+            fprintf(f.fp, "body %s %d\n", name, mesh->bodies[b].faces);
+        for (int i = mesh->bodies[b].face; !err->status && i < mesh->bodies[b].face + mesh->bodies[b].faces; i++) {
             const struct solid_face *o = &mesh->faces[i];
-            st = textfile_quote(solid_face_name(mesh, i), name, sizeof name, err);
-            if (st) break;
+            if (textfile_quote(solid_face_name(mesh, i), name, sizeof name, err)) break;
             fprintf(f.fp, "face %d %s %.17g %.17g %.17g %.17g %d\n", solid_face_id(mesh, i), name, o->normal.x,
                     o->normal.y, o->normal.z, o->offset, o->loops);
             for (int l = o->loop; l < o->loop + o->loops; l++) write_loop(mesh, l, f.fp);
         }
     }
-    if (!st) st = outfile_commit(&f, err);
+    if (!err->status) outfile_commit(&f, err);
     outfile_discard(&f);
-    return st;
+    return err->status;
 }
 
 struct mesh_reader { /* the records so far; offsets replace pointers until the end */
@@ -194,24 +192,24 @@ static enum status set_ids(struct solid_mesh *mesh, const struct mesh_reader *r,
     int *ids = calloc((size_t)mesh->name_count + 1, sizeof *ids);
     struct id_line *all = malloc(((size_t)mesh->face_count + 1) * sizeof *all);
     char quoted[SCAN_QUOTED];
-    enum status st = ids && all ? ST_OK : err_nomem(err, "ids of faces", (size_t)mesh->face_count * sizeof *all);
-    for (int i = 0; !st && i < mesh->face_count; i++) {
+    if (!ids || !all) err_nomem(err, "ids of faces", (size_t)mesh->face_count * sizeof *all);
+    for (int i = 0; !err->status && i < mesh->face_count; i++) {
         int *id = &ids[mesh->faces[i].name];
         if (*id && *id != r->ids[i])
-            st = err_set(err, ST_DATA, "%s:%d: found id %d for %s, wanted %d, as before.", path, r->lines[i], r->ids[i],
-                         scan_quote(quoted, solid_face_name(mesh, i)), *id);
+            err_set(err, ST_DATA, "%s:%d: found id %d for %s, wanted %d, as before.", path, r->lines[i], r->ids[i],
+                    scan_quote(quoted, solid_face_name(mesh, i)), *id);
         *id = r->ids[i];
         all[i] = (struct id_line){r->ids[i], mesh->faces[i].name, r->lines[i]};
     }
-    if (!st && mesh->face_count) qsort(all, (size_t)mesh->face_count, sizeof *all, compare_ids);
-    for (int i = 1; !st && i < mesh->face_count; i++)
+    if (!err->status && mesh->face_count) qsort(all, (size_t)mesh->face_count, sizeof *all, compare_ids);
+    for (int i = 1; !err->status && i < mesh->face_count; i++)
         if (all[i].id == all[i - 1].id && all[i].name != all[i - 1].name)
-            st = err_set(err, ST_DATA, "%s:%d: found id %d for %s, wanted an id that no other name has.", path,
-                         all[i].line, all[i].id, scan_quote(quoted, mesh->names[all[i].name].name));
-    if (!st) st = solid_mesh_set_ids(mesh, ids, err);
+            err_set(err, ST_DATA, "%s:%d: found id %d for %s, wanted an id that no other name has.", path, all[i].line,
+                    all[i].id, scan_quote(quoted, mesh->names[all[i].name].name));
+    if (!err->status) solid_mesh_set_ids(mesh, ids, err);
     free(ids);
     free(all);
-    return st;
+    return err->status;
 }
 
 enum status solid_mesh_read(struct solid_mesh *mesh, const char *path, struct provenance *prov, struct err *err)
@@ -220,20 +218,19 @@ enum status solid_mesh_read(struct solid_mesh *mesh, const char *path, struct pr
     struct mesh_reader r = {0};
     int faulty = -1;
     *mesh = (struct solid_mesh){0};
-    enum status st = product_open(&t, NULL, PRODUCT_MODEL, path, prov, err);
-    if (!st) st = read_records(&t, &r, err);
-    for (int i = 0; !st && i < r.polygon_count; i++) {
+    if (!product_open(&t, NULL, PRODUCT_MODEL, path, prov, err)) read_records(&t, &r, err);
+    for (int i = 0; !err->status && i < r.polygon_count; i++) {
         r.polygons[i].corners = r.corners + r.at[2 * i];
         r.polygons[i].sizes = r.sizes + r.at[2 * i + 1];
     }
-    if (!st) {
-        st = solid_mesh_make(mesh, r.vertices, r.vertex_count, r.polygons, r.polygon_count, &faulty, err);
-        if (st == ST_DATA && faulty >= 0)
+    if (!err->status) {
+        solid_mesh_make(mesh, r.vertices, r.vertex_count, r.polygons, r.polygon_count, &faulty, err);
+        if (err->status == ST_DATA && faulty >= 0)
             err_context(err, "%s:%d", path, r.lines[faulty]);
-        else if (st)
+        else if (err->status)
             err_context(err, "%s", path);
     }
-    if (!st) st = set_ids(mesh, &r, path, err);
+    if (!err->status) set_ids(mesh, &r, path, err);
     free(r.vertices);
     free(r.polygons);
     free(r.ids);
@@ -242,6 +239,6 @@ enum status solid_mesh_read(struct solid_mesh *mesh, const char *path, struct pr
     free(r.sizes);
     free(r.at);
     textfile_release(&t);
-    if (st) solid_mesh_release(mesh);
-    return st;
+    if (err->status) solid_mesh_release(mesh);
+    return err->status;
 }

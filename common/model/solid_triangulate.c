@@ -366,23 +366,21 @@ enum status solid_mesh_triangulate(struct solid_triangles *t, const struct solid
     struct face_hole *holes = malloc(((size_t)mesh->loop_count + 1) * sizeof *holes);
     t->triangles = malloc(max_corners * sizeof *t->triangles);
     t->first = malloc(((size_t)mesh->face_count + 1) * sizeof *t->first);
-    enum status st = clipper.corners && holes && t->triangles && t->first
-                         ? ST_OK
-                         : err_nomem(err, "triangles", max_corners * sizeof *t->triangles);
-    for (int i = 0; !st && i < mesh->face_count; i++) {
+    if (!clipper.corners || !holes || !t->triangles || !t->first)
+        err_nomem(err, "triangles", max_corners * sizeof *t->triangles);
+    for (int i = 0; !err->status && i < mesh->face_count; i++) {
         t->first[i] = t->count;
         if (triangulate_face(&clipper, mesh, i, t->triangles + t->count, holes))
             t->count += clipper.count - 2;
         else
-            st = err_set(
-                err, ST_DATA,
-                "face %d, %s: its loops cross or have the wrong orientation, wanted a simple polygon with holes.",
-                i + 1, solid_face_name(mesh, i));
+            err_set(err, ST_DATA,
+                    "face %d, %s: its loops cross or have the wrong orientation, wanted a simple polygon with holes.",
+                    i + 1, solid_face_name(mesh, i));
     }
-    if (!st) t->first[mesh->face_count] = t->count;
+    if (!err->status) t->first[mesh->face_count] = t->count;
     free(clipper.corners);
     free(clipper.cells);
     free(holes);
-    if (st) solid_triangles_release(t);
-    return st;
+    if (err->status) solid_triangles_release(t);
+    return err->status;
 }

@@ -89,14 +89,12 @@ enum status light_change_read(struct light_change *c, const struct light_change_
                               struct err *err)
 {
     *c = (struct light_change){0};
-    enum status st = model_axes_read(&c->axes, files->axes, prov, err);
-    if (!st) st = texture_map_read(&c->map, files->map, prov, err);
-    if (!st) st = read_objects(c, files, prov, err);
-    if (!st) st = read_fields(c, files, prov, err);
-    if (!st) st = face_areas_make(&c->old, &c->before.model.mesh, err);
-    if (!st) st = unite_emitters(c, err);
+    if (!model_axes_read(&c->axes, files->axes, prov, err) && !texture_map_read(&c->map, files->map, prov, err) &&
+        !read_objects(c, files, prov, err) && !read_fields(c, files, prov, err) &&
+        !face_areas_make(&c->old, &c->before.model.mesh, err))
+        unite_emitters(c, err);
     c->inset = INSET * model_rays_size(&c->before.model);
-    return st;
+    return err->status;
 }
 
 void light_change_release(struct light_change *c)

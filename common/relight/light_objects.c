@@ -55,12 +55,12 @@ static enum status read_object(struct light_objects *o, int object, const char *
     struct obj_mesh mesh = {0};
     char name[FILE_PATH];
     const struct object *item = &o->list.items[object];
-    enum status st = object_mesh_read(&mesh, item, folder, err); /* which compares the hash */
-    if (!st) st = file_path(name, "objects", item->file, "", err);
-    if (!st && prov) st = provenance_add_hash(prov, name, item->hash, err);
-    for (int i = 0; !st && i < mesh.count; i++) st = cut_triangle(o, mesh.triangles[i], object, side, 0, err);
+    object_mesh_read(&mesh, item, folder, err); /* which compares the hash */
+    if (!err->status) file_path(name, "objects", item->file, "", err);
+    if (!err->status && prov) provenance_add_hash(prov, name, item->hash, err);
+    for (int i = 0; !err->status && i < mesh.count; i++) cut_triangle(o, mesh.triangles[i], object, side, 0, err);
     obj_mesh_release(&mesh);
-    return st;
+    return err->status;
 }
 
 /* --------------------------------------------------------------------------------------------------------- elements */
@@ -189,9 +189,9 @@ enum status light_objects_write_light(const struct light_objects *o, const char 
         const struct rgb e = o->elements[i].irradiance;
         fprintf(f.fp, "element %.9g %.9g %.9g\n", e.r, e.g, e.b);
     }
-    const enum status st = outfile_commit(&f, err);
+    outfile_commit(&f, err);
     outfile_discard(&f);
-    return st;
+    return err->status;
 }
 
 static enum status read_element(struct light_objects *o, int i, struct textfile *t, struct err *err)
@@ -210,12 +210,12 @@ enum status light_objects_read_light(struct light_objects *o, const char *path, 
 {
     struct textfile t = {0};
     int count = 0;
-    enum status st = product_open(&t, NULL, PRODUCT_OBJECT_LIGHT, path, prov, err);
-    while (!st && textfile_next(&t)) st = read_element(o, count++, &t, err);
-    if (!st && count < o->element_count)
-        st = textfile_error(&t, err, NULL, "%d elements, as many as the objects have; update the VITA again",
-                            o->element_count);
+    product_open(&t, NULL, PRODUCT_OBJECT_LIGHT, path, prov, err);
+    while (!err->status && textfile_next(&t)) read_element(o, count++, &t, err);
+    if (!err->status && count < o->element_count)
+        textfile_error(&t, err, NULL, "%d elements, as many as the objects have; update the VITA again",
+                       o->element_count);
     textfile_release(&t);
-    if (!st) light_objects_set_radiance(o);
-    return st;
+    if (!err->status) light_objects_set_radiance(o);
+    return err->status;
 }

@@ -89,22 +89,20 @@ static enum status take(struct blocks *s, struct block t, struct err *err)
 {
     const int before = s->count;
     int kept = 0;
-    enum status st = ST_OK;
     for (int i = 0; i < before; i++) {
         const struct block b = s->list[i];
         if (b.x0 < t.x1 && b.x1 > t.x0 && b.y0 < t.y1 && b.y1 > t.y0) continue;
         s->list[i] = s->list[kept];
         s->list[kept++] = b;
     }
-    for (int i = kept; !st && i < before; i++) { /* those that overlap */
+    for (int i = kept; i < before; i++) { /* those that overlap */
         const struct block b = s->list[i];
         if (add_block(s, (struct block){b.x0, b.y0, b.x1, t.y0}, err) ||
             add_block(s, (struct block){b.x0, b.y0, t.x0, b.y1}, err) ||
             add_block(s, (struct block){t.x1, b.y0, b.x1, b.y1}, err) ||
             add_block(s, (struct block){b.x0, t.y1, b.x1, b.y1}, err))
-            st = err->status;
+            return err->status;
     }
-    if (st) return st;
     memmove(&s->list[kept], &s->list[before], (size_t)(s->count - before) * sizeof *s->list);
     s->count -= before - kept;
     drop_held(s, kept);
@@ -169,23 +167,23 @@ enum status atlas_pack(struct atlas *a, struct err *err)
 {
     struct order *order = malloc(((size_t)a->tile_count + 1) * sizeof *order);
     struct blocks *pages = NULL;
-    enum status st = order ? ST_OK : err_nomem(err, "tiles", (size_t)a->tile_count * sizeof *order);
+    if (!order) err_nomem(err, "tiles", (size_t)a->tile_count * sizeof *order);
     free(a->page_sizes);
     a->page_sizes = NULL;
     a->page_count = 0;
-    for (int i = 0; !st && i < a->tile_count; i++) {
+    for (int i = 0; !err->status && i < a->tile_count; i++) {
         const struct atlas_tile *t = &a->tiles[i];
         if (t->width < 1 || t->height < 1 || t->width > ATLAS_PAGE || t->height > ATLAS_PAGE)
-            st = err_set(err, ST_DATA, "tile %d of face %d has %d x %d texels, wanted 1 to %d on each side.", i,
-                         t->face, t->width, t->height, ATLAS_PAGE);
+            err_set(err, ST_DATA, "tile %d of face %d has %d x %d texels, wanted 1 to %d on each side.", i, t->face,
+                    t->width, t->height, ATLAS_PAGE);
         order[i] = (struct order){t->height, t->width, i};
     }
-    if (!st && a->tile_count) qsort(order, (size_t)a->tile_count, sizeof *order, compare_order);
-    for (int i = 0; !st && i < a->tile_count; i++) st = place_tile(a, &pages, &a->tiles[order[i].tile], err);
+    if (!err->status && a->tile_count) qsort(order, (size_t)a->tile_count, sizeof *order, compare_order);
+    for (int i = 0; !err->status && i < a->tile_count; i++) place_tile(a, &pages, &a->tiles[order[i].tile], err);
     free(order);
     for (int i = 0; pages && i < a->page_count; i++) free(pages[i].list);
     free(pages);
-    return st;
+    return err->status;
 }
 
 /* --------------------------------------------------------------------------------------------------------- look-ups */

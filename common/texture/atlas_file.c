@@ -40,10 +40,10 @@ enum status atlas_write_page(const struct atlas_page *p, const char *folder, int
     const size_t texels = (size_t)p->width * (size_t)p->height;
     struct exr_image exr = {0};
     char path[FILE_PATH];
-    enum status st = atlas_page_path(path, folder, page, err);
-    if (!st) st = exr_image_init(&exr, p->width, p->height, err);
-    for (int k = 0; !st && k < 5; k++) st = exr_add_plane(&exr, channels[k], k < 4 ? EXR_HALF : EXR_UINT, NULL, err);
-    for (size_t i = 0; !st && i < texels; i++) {
+    if (!atlas_page_path(path, folder, page, err)) exr_image_init(&exr, p->width, p->height, err);
+    for (int k = 0; !err->status && k < 5; k++)
+        exr_add_plane(&exr, channels[k], k < 4 ? EXR_HALF : EXR_UINT, NULL, err);
+    for (size_t i = 0; !err->status && i < texels; i++) {
         if (p->source[i] == ATLAS_NONE) continue;
         for (int c = 0; c < 3; c++) {
             const float value = p->rgb[3 * i + (size_t)c];
@@ -52,9 +52,9 @@ enum status atlas_write_page(const struct atlas_page *p, const char *folder, int
         exr.planes[3].f[i] = 1;
         exr.planes[4].u[i] = p->source[i];
     }
-    if (!st) st = exr_write(&exr, path, prov, err);
+    if (!err->status) exr_write(&exr, path, prov, err);
     exr_image_release(&exr);
-    return st;
+    return err->status;
 }
 
 static void print_tile(FILE *to, const struct atlas_tile *t)
@@ -113,31 +113,27 @@ static enum status print_list(FILE *to, const struct atlas *a, struct err *err)
 static enum status write_list(const struct atlas *a, const char *path, const struct provenance *prov, struct err *err)
 {
     struct outfile file = {0};
-    enum status st = product_begin(&file, PRODUCT_ATLAS, path, prov, err);
-    if (!st) st = print_list(file.fp, a, err);
-    if (!st) st = outfile_commit(&file, err);
+    if (!product_begin(&file, PRODUCT_ATLAS, path, prov, err) && !print_list(file.fp, a, err))
+        outfile_commit(&file, err);
     outfile_discard(&file);
-    return st;
+    return err->status;
 }
 
 enum status atlas_write_list(const struct atlas *a, const char *folder, const struct provenance *prov, struct err *err)
 {
     char path[FILE_PATH];
-    enum status st = product_path_in(path, folder, PRODUCT_ATLAS, NULL, err);
-    if (!st) st = write_list(a, path, prov, err);
-    for (int i = a->page_count; !st; i++) {
-        st = atlas_page_path(path, folder, i, err);
-        if (!st && unlink(path)) break;
-    }
-    return st;
+    if (!product_path_in(path, folder, PRODUCT_ATLAS, NULL, err)) write_list(a, path, prov, err);
+    for (int i = a->page_count; !err->status; i++)
+        if (!atlas_page_path(path, folder, i, err) && unlink(path)) break;
+    return err->status;
 }
 
 enum status atlas_write(const struct atlas *a, const struct atlas_page *pages, const char *folder,
                         const struct provenance *prov, struct err *err)
 {
-    enum status st = ST_OK;
-    for (int i = 0; !st && i < a->page_count; i++) st = atlas_write_page(&pages[i], folder, i, prov, err);
-    return st ? st : atlas_write_list(a, folder, prov, err);
+    for (int i = 0; !err->status && i < a->page_count; i++) atlas_write_page(&pages[i], folder, i, prov, err);
+    if (!err->status) atlas_write_list(a, folder, prov, err);
+    return err->status;
 }
 
 /* ---------------------------------------------------------------------------------------------------------- reading */
@@ -271,12 +267,12 @@ enum status atlas_read(struct atlas *a, const char *folder, struct provenance *p
     struct textfile t = {0};
     char path[FILE_PATH];
     *a = (struct atlas){0};
-    enum status st = product_path_in(path, folder, PRODUCT_ATLAS, NULL, err);
-    if (!st) st = product_open(&t, NULL, PRODUCT_ATLAS, path, prov, err);
-    if (!st) st = read_list(a, &t, err);
+    if (!product_path_in(path, folder, PRODUCT_ATLAS, NULL, err) &&
+        !product_open(&t, NULL, PRODUCT_ATLAS, path, prov, err))
+        read_list(a, &t, err);
     textfile_release(&t);
-    if (st) atlas_release(a);
-    return st;
+    if (err->status) atlas_release(a);
+    return err->status;
 }
 
 static enum status wrong_texel(const struct exr_image *exr, size_t at, uint32_t source, int sources, const char *path,
@@ -323,13 +319,13 @@ enum status atlas_page_read(struct atlas_page *p, const struct atlas *a, int pag
     struct exr_image exr = {0};
     char path[FILE_PATH];
     *p = (struct atlas_page){0};
-    enum status st = atlas_page_path(path, folder, page, err);
-    if (!st) st = exr_read_product(&exr, PRODUCT_ATLAS_PAGE, path, channels, 5, prov, err);
-    if (!st && (exr.width != a->page_sizes[page][0] || exr.height != a->page_sizes[page][1]))
-        st = err_set(err, ST_DATA, "%s has %d x %d texels, but atlas.txt says %d x %d; bake it again.", path, exr.width,
-                     exr.height, a->page_sizes[page][0], a->page_sizes[page][1]);
-    if (!st) st = take_page(p, &exr, a, path, err);
+    if (!atlas_page_path(path, folder, page, err))
+        exr_read_product(&exr, PRODUCT_ATLAS_PAGE, path, channels, 5, prov, err);
+    if (!err->status && (exr.width != a->page_sizes[page][0] || exr.height != a->page_sizes[page][1]))
+        err_set(err, ST_DATA, "%s has %d x %d texels, but atlas.txt says %d x %d; bake it again.", path, exr.width,
+                exr.height, a->page_sizes[page][0], a->page_sizes[page][1]);
+    if (!err->status) take_page(p, &exr, a, path, err);
     exr_image_release(&exr);
-    if (st) atlas_page_release(p);
-    return st;
+    if (err->status) atlas_page_release(p);
+    return err->status;
 }

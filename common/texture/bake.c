@@ -50,20 +50,20 @@ static enum status make_room(struct bake *b, size_t texels, struct err *err)
 {
     size_t room[4];
     for (int k = 0; k < 4; k++) room[k] = b->texel_room;
-    enum status st = array_reserve(&b->role, &room[0], texels, sizeof *b->role, "texels", err);
-    if (!st) st = array_reserve(&b->rgb, &room[1], texels, 3 * sizeof *b->rgb, "texels", err);
-    if (!st) st = array_reserve(&b->made, &room[2], texels, sizeof *b->made, "texels", err);
-    if (!st) st = array_reserve(&b->list, &room[3], texels, sizeof *b->list, "texels", err);
-    if (!st) b->texel_room = room[0];
-    return st;
+    if (!array_reserve(&b->role, &room[0], texels, sizeof *b->role, "texels", err) &&
+        !array_reserve(&b->rgb, &room[1], texels, 3 * sizeof *b->rgb, "texels", err) &&
+        !array_reserve(&b->made, &room[2], texels, sizeof *b->made, "texels", err) &&
+        !array_reserve(&b->list, &room[3], texels, sizeof *b->list, "texels", err))
+        b->texel_room = room[0];
+    return err->status;
 }
 
 enum status bake_add_tile(struct bake *b, struct bake_tile tile, struct err *err)
 {
     const size_t texels = (size_t)tile.raster.width * (size_t)tile.raster.height, first = b->texel_count;
-    enum status st = array_append(&b->tiles, (size_t)b->tile_count, sizeof *b->tiles, "tiles", err);
-    if (!st) st = make_room(b, first + texels, err);
-    if (st) return st;
+    if (array_append(&b->tiles, (size_t)b->tile_count, sizeof *b->tiles, "tiles", err) ||
+        make_room(b, first + texels, err))
+        return err->status;
     memset(b->role + first, TEXEL_NONE, texels);
     memset(b->rgb + 3 * first, 0, 3 * texels * sizeof *b->rgb);
     memset(b->made + first, 0, texels * sizeof *b->made);

@@ -52,12 +52,12 @@ static enum status write_page(const struct atlas *part, int page, int number, co
                               const int *source_of, const char *folder, const struct provenance *prov, struct err *err)
 {
     struct atlas_page pixels = {0};
-    enum status st = atlas_page_init(&pixels, part->page_sizes[page][0], part->page_sizes[page][1], err);
-    for (int i = 0; !st && i < part->tile_count; i++)
+    atlas_page_init(&pixels, part->page_sizes[page][0], part->page_sizes[page][1], err);
+    for (int i = 0; !err->status && i < part->tile_count; i++)
         if (part->tiles[i].page == page) copy_tile(&pixels, b, &b->tiles[i], &part->tiles[i], source_of);
-    if (!st) st = atlas_write_page(&pixels, folder, number, prov, err);
+    if (!err->status) atlas_write_page(&pixels, folder, number, prov, err);
     atlas_page_release(&pixels);
-    return st;
+    return err->status;
 }
 
 /* Adds the part's tiles and pages to the atlas. */
@@ -83,12 +83,12 @@ enum status bake_write_pages(struct atlas *a, const struct bake *b, const int *s
                              const struct provenance *prov, size_t *texels, struct err *err)
 {
     struct atlas part = {0};
-    enum status st = pack(&part, b, err);
-    for (int i = 0; !st && i < part.page_count; i++) {
-        st = write_page(&part, i, a->page_count + i, b, source_of, folder, prov, err);
+    pack(&part, b, err);
+    for (int i = 0; !err->status && i < part.page_count; i++) {
+        write_page(&part, i, a->page_count + i, b, source_of, folder, prov, err);
         *texels += (size_t)part.page_sizes[i][0] * (size_t)part.page_sizes[i][1];
     }
-    if (!st) st = append(a, &part, b, err);
+    if (!err->status) append(a, &part, b, err);
     atlas_release(&part);
-    return st;
+    return err->status;
 }

@@ -278,9 +278,9 @@ static enum status solve(struct composite *c, struct bake_totals *totals, struct
     const size_t n = texels_of(c->t);
     memset(c->gradient[0], 0, 2 * 4 * n * sizeof(float)); /* and the weights behind them */
     set_pairs(c);
-    const enum status st = gradient_solve(&problem, &report, err);
+    gradient_solve(&problem, &report, err);
     totals->residual = fmax(totals->residual, report.residual);
-    return st;
+    return err->status;
 }
 
 static bool find_nearest_seen(struct composite *c)
@@ -295,13 +295,11 @@ static enum status solve_tile(struct composite *c, struct bake_totals *totals, s
     set_seen(c);
     find_nearest_seen(c);
     set_unseen(c, GRADIENT_FREE);
-    enum status st = solve(c, totals, err);
-    if (st || !memchr(c->unseen, 1, texels_of(c->t))) return st;
+    if (solve(c, totals, err) || !memchr(c->unseen, 1, texels_of(c->t))) return err->status;
     find_clean(c);
     if (!find_nearest(c, c->clean) && !find_nearest_seen(c)) return ST_OK;
     const struct vec3 normal = c->b->surfaces->list[c->t->surface].normal;
-    st = texture_fill_find(&c->fill, c->t, normal, c->unseen, c->clean, c->value, err);
-    if (st) return st;
+    if (texture_fill_find(&c->fill, c->t, normal, c->unseen, c->clean, c->value, err)) return err->status;
     set_unseen(c, GRADIENT_FIXED);
     return solve(c, totals, err);
 }
@@ -314,8 +312,9 @@ static enum status composite_tile(struct bake *b, const struct bake_tile *t, str
     float *memory = calloc(n, FLOATS * sizeof *memory);
     int32_t *indices = malloc(2 * n * sizeof *indices);
     uint8_t *flags = malloc(3 * n);
-    enum status st = memory && indices && flags ? ST_OK : err_nomem(err, "a tile", n * FLOATS * sizeof *memory);
-    if (!st) {
+    if (!memory || !indices || !flags) {
+        err_nomem(err, "a tile", n * FLOATS * sizeof *memory);
+    } else {
         struct composite c = {.b = b,
                               .t = t,
                               .role = flags,
@@ -328,20 +327,18 @@ static enum status composite_tile(struct bake *b, const struct bake_tile *t, str
                               .data_weight = memory + 6 * n,
                               .gradient = {memory + 7 * n, memory + 10 * n},
                               .weight = {memory + 13 * n, memory + 14 * n}};
-        st = solve_tile(&c, totals, err);
-        if (!st) take_texels(b, &c, totals);
+        if (!solve_tile(&c, totals, err)) take_texels(b, &c, totals);
         texture_fill_release(&c.fill);
     }
     free(memory);
     free(indices);
     free(flags);
-    return st;
+    return err->status;
 }
 
 enum status bake_composite(struct bake *b, struct bake_totals *totals, struct err *err)
 {
-    enum status st = ST_OK;
     *totals = (struct bake_totals){0};
-    for (int i = 0; !st && i < b->tile_count; i++) st = composite_tile(b, &b->tiles[i], totals, err);
-    return st;
+    for (int i = 0; !err->status && i < b->tile_count; i++) composite_tile(b, &b->tiles[i], totals, err);
+    return err->status;
 }

@@ -99,10 +99,10 @@ enum status bake_find_gains(struct bake *b, struct err *err)
     double *gain = malloc((size_t)r.nodes * sizeof *gain);
     r.bins = calloc(pairs, sizeof *r.bins);
     r.shared = calloc(pairs, sizeof *r.shared);
-    enum status st = gain && r.bins && r.shared ? ST_OK : err_nomem(err, "ratios of views", pairs * sizeof *r.bins);
-    for (size_t i = 0; !st && i < b->texel_count; i++)
+    if (!gain || !r.bins || !r.shared) err_nomem(err, "ratios of views", pairs * sizeof *r.bins);
+    for (size_t i = 0; !err->status && i < b->texel_count; i++)
         if (b->list[i] >= 0 && b->list[i] % STRIDE == 0) count_texel(&r, b, i);
-    for (int c = 0; !st && c < 3; c++) {
+    for (int c = 0; !err->status && c < 3; c++) {
         memset(gain, 0, (size_t)r.nodes * sizeof *gain);
         solve(gain, &r, c);
         for (int i = 0; i < b->source_count; i++)
@@ -111,5 +111,5 @@ enum status bake_find_gains(struct bake *b, struct err *err)
     free(gain);
     free(r.bins);
     free(r.shared);
-    return st;
+    return err->status;
 }

@@ -88,14 +88,14 @@ static enum status to_srgb(unsigned char **bytes, const struct model_picture *p,
 {
     const size_t pixels = (size_t)p->width * (size_t)p->height;
     struct image im = {0};
-    enum status st = image_init(&im, p->width, p->height, 3, err);
-    for (size_t i = 0; !st && i < pixels; i++)
+    image_init(&im, p->width, p->height, 3, err);
+    for (size_t i = 0; !err->status && i < pixels; i++)
         for (size_t c = 0; c < 3 && p->made[i] != MADE_NOTHING; c++)
             im.data[3 * i + c] = (float)(exposure * (double)p->rgb[3 * i + c]);
-    if (!st && !(*bytes = malloc(pixels * 3))) st = err_nomem(err, "a picture", pixels * 3);
-    if (!st) image_to_srgb8(&im, *bytes);
+    if (!err->status && !(*bytes = malloc(pixels * 3))) err_nomem(err, "a picture", pixels * 3);
+    if (!err->status) image_to_srgb8(&im, *bytes);
     image_release(&im);
-    return st;
+    return err->status;
 }
 
 enum status exposure_write(const struct model_picture *p, double exposure, const char *path, struct err *err)
@@ -104,12 +104,15 @@ enum status exposure_write(const struct model_picture *p, double exposure, const
     unsigned char *bytes = NULL;
     if (!png && !ends_in(path, ".jpg") && !ends_in(path, ".jpeg"))
         return err_set(err, ST_USAGE, "%s: wanted a name that ends in .jpg, .jpeg or .png.", path);
-    enum status st = to_srgb(&bytes, p, exposure, err);
-    if (!st)
-        st = png ? png_write(path, bytes, p->width, p->height, 3, err)
-                 : jpeg_write(path, bytes, p->width, p->height, JPEG_QUALITY, err);
+    to_srgb(&bytes, p, exposure, err);
+    if (!err->status) {
+        if (png)
+            png_write(path, bytes, p->width, p->height, 3, err);
+        else
+            jpeg_write(path, bytes, p->width, p->height, JPEG_QUALITY, err);
+    }
     free(bytes);
-    return st;
+    return err->status;
 }
 
 enum status exposure_write_frame(const struct model_picture *p, double exposure, const struct view *camera,
@@ -118,18 +121,18 @@ enum status exposure_write_frame(const struct model_picture *p, double exposure,
     const size_t pixels = (size_t)p->width * (size_t)p->height;
     struct exr_image im = {0};
     float *rgba = calloc(pixels, 4 * sizeof *rgba);
-    enum status st = rgba ? ST_OK : err_nomem(err, "a frame", 4 * pixels * sizeof *rgba);
-    for (size_t i = 0; !st && i < pixels; i++) {
+    if (!rgba) err_nomem(err, "a frame", 4 * pixels * sizeof *rgba);
+    for (size_t i = 0; !err->status && i < pixels; i++) {
         for (size_t c = 0; c < 3; c++) rgba[4 * i + c] = (float)(exposure * p->rgb[3 * i + c]);
         rgba[4 * i + 3] = p->made[i] != MADE_NOTHING;
     }
-    if (!st) st = exr_init_rgba(&im, rgba, p->width, p->height, err);
-    if (!st) st = exr_add_plane(&im, "made", EXR_UINT, NULL, err);
-    for (size_t i = 0; !st && i < pixels; i++) im.planes[4].u[i] = p->made[i];
-    if (!st) view_image_set_camera(&im, camera);
-    if (!st) st = exr_set_number(&im, "remodel:exposure", exposure, err);
-    if (!st) st = exr_write(&im, path, prov, err);
+    if (!err->status && !exr_init_rgba(&im, rgba, p->width, p->height, err) &&
+        !exr_add_plane(&im, "made", EXR_UINT, NULL, err)) {
+        for (size_t i = 0; i < pixels; i++) im.planes[4].u[i] = p->made[i];
+        view_image_set_camera(&im, camera);
+        if (!exr_set_number(&im, "remodel:exposure", exposure, err)) exr_write(&im, path, prov, err);
+    }
     exr_image_release(&im);
     free(rgba);
-    return st;
+    return err->status;
 }

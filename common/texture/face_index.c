@@ -64,18 +64,16 @@ static enum status read_head(struct face_index *index, struct err *err)
 {
     struct textfile t = {0};
     int64_t faces = 0;
-    enum status st = read_piece(&t, index, 0, index->size < HEAD ? index->size : HEAD, 1, err);
-    if (!st) st = product_read_head(&t, NULL, PRODUCT_FACE_INDEX, err);
-    if (!st) st = textfile_expect_line(&t, "faces", err);
-    if (!st) st = textfile_int(&t, "number of faces", 0, index->size / FACE_INDEX_ROW, &faces, err);
-    if (!st) st = textfile_end(&t, err);
+    if (!read_piece(&t, index, 0, index->size < HEAD ? index->size : HEAD, 1, err) &&
+        !product_read_head(&t, NULL, PRODUCT_FACE_INDEX, err) && !textfile_expect_line(&t, "faces", err) &&
+        !textfile_int(&t, "number of faces", 0, index->size / FACE_INDEX_ROW, &faces, err))
+        textfile_end(&t, err);
     index->faces = (int)faces;
     index->table = (int64_t)t.at;
-    if (!st && index->table + faces * FACE_INDEX_ROW > index->size)
-        st = err_set(err, ST_DATA, "%s ends within its table of %d faces; run trace_ids again.", index->path,
-                     index->faces);
+    if (!err->status && index->table + faces * FACE_INDEX_ROW > index->size)
+        err_set(err, ST_DATA, "%s ends within its table of %d faces; run trace_ids again.", index->path, index->faces);
     textfile_release(&t);
-    return st;
+    return err->status;
 }
 
 enum status face_index_open(struct face_index *index, const char *path, struct provenance *prov, struct err *err)
@@ -91,9 +89,12 @@ enum status face_index_open(struct face_index *index, const char *path, struct p
         return err_nomem(err, "a file name", strlen(path));
     }
     index->size = lseek(index->file, 0, SEEK_END);
-    enum status st = index->size < 0 ? err_errno(err, "read", path) : read_head(index, err);
-    if (st) face_index_close(index);
-    return st;
+    if (index->size < 0)
+        err_errno(err, "read", path);
+    else
+        read_head(index, err);
+    if (err->status) face_index_close(index);
+    return err->status;
 }
 
 void face_index_close(struct face_index *index)
@@ -108,19 +109,18 @@ static enum status read_row(struct row *r, struct face_index *index, int at, str
 {
     struct textfile t = {0};
     const int64_t end = index->table + (int64_t)index->faces * FACE_INDEX_ROW;
-    enum status st = read_piece(&t, index, index->table + (int64_t)at * FACE_INDEX_ROW, FACE_INDEX_ROW, 1, err);
-    if (!st && t.bytes[FACE_INDEX_ROW - 1] != '\n')
-        st = textfile_error(&t, err, NULL, "a row of %d bytes", FACE_INDEX_ROW);
-    if (!st) st = textfile_expect_line(&t, "at", err);
-    if (!st) st = textfile_int(&t, "face id", 1, INT_MAX, &r->id, err);
-    if (!st) st = textfile_int(&t, "offset behind the table", end, index->size, &r->offset, err);
-    if (!st) st = textfile_int(&t, "bytes within the file", 1, index->size - r->offset, &r->bytes, err);
-    if (!st) st = textfile_int(&t, "number of views", 1, r->bytes, &r->views, err);
-    if (!st) st = textfile_int(&t, "number of a line", 1, INT_MAX, &r->line, err);
-    if (!st) st = textfile_end(&t, err);
-    if (!st && r->bytes > LIST) st = textfile_wrong_number(&t, (double)r->bytes, "fewer bytes", err);
+    if (!read_piece(&t, index, index->table + (int64_t)at * FACE_INDEX_ROW, FACE_INDEX_ROW, 1, err) &&
+        t.bytes[FACE_INDEX_ROW - 1] != '\n')
+        textfile_error(&t, err, NULL, "a row of %d bytes", FACE_INDEX_ROW);
+    if (!err->status && !textfile_expect_line(&t, "at", err) && !textfile_int(&t, "face id", 1, INT_MAX, &r->id, err) &&
+        !textfile_int(&t, "offset behind the table", end, index->size, &r->offset, err))
+        textfile_int(&t, "bytes within the file", 1, index->size - r->offset, &r->bytes, err);
+    if (!err->status && !textfile_int(&t, "number of views", 1, r->bytes, &r->views, err) &&
+        !textfile_int(&t, "number of a line", 1, INT_MAX, &r->line, err))
+        textfile_end(&t, err);
+    if (!err->status && r->bytes > LIST) textfile_wrong_number(&t, (double)r->bytes, "fewer bytes", err);
     textfile_release(&t);
-    return st ? err_context(err, "row %d of the table of faces", at + 1) : ST_OK;
+    return err_context(err, "row %d of the table of faces", at + 1);
 }
 
 /* Sets row to the face's, or its id to 0. */
@@ -161,20 +161,18 @@ enum status face_index_load(struct face_views *list, struct face_index *index, i
     struct textfile t = {0};
     struct row row = {0};
     *list = (struct face_views){0};
-    enum status st = find_row(&row, index, face, err);
-    if (st || !row.id) return st;
-    st = read_piece(&t, index, row.offset, row.bytes, (int)row.line, err);
-    for (int64_t i = 0; !st && i < row.views; i++) {
-        st = array_append(&list->views, (size_t)list->count, sizeof *list->views, "views", err);
-        if (st) break;
+    if (find_row(&row, index, face, err) || !row.id) return err->status;
+    read_piece(&t, index, row.offset, row.bytes, (int)row.line, err);
+    for (int64_t i = 0; !err->status && i < row.views; i++) {
+        if (array_append(&list->views, (size_t)list->count, sizeof *list->views, "views", err)) break;
         struct face_view *v = &list->views[list->count++];
         *v = (struct face_view){0};
-        st = read_view(v, &t, err);
+        read_view(v, &t, err);
     }
-    if (!st) st = textfile_end_of_file(&t, err);
+    if (!err->status) textfile_end_of_file(&t, err);
     textfile_release(&t);
-    if (st) face_views_release(list);
-    return st;
+    if (err->status) face_views_release(list);
+    return err->status;
 }
 
 /* -------------------------------------------------------------------------------------------------------- writing */
@@ -230,20 +228,18 @@ enum status face_index_write(const char *path, const int *ids, const struct face
 {
     struct outfile f = {0};
     char text[NAME_SIZE + 128];
-    enum status st = product_begin(&f, PRODUCT_FACE_INDEX, path, prov, err);
-    if (!st) {
+    if (!product_begin(&f, PRODUCT_FACE_INDEX, path, prov, err)) {
         fprintf(f.fp, "faces %d\n", count);
         const int64_t table = ftell(f.fp);
-        st = write_table(f.fp, ids, lists, count, table + (int64_t)count * FACE_INDEX_ROW,
-                         count_lines(prov) + 3 + count, err);
+        write_table(f.fp, ids, lists, count, table + (int64_t)count * FACE_INDEX_ROW, count_lines(prov) + 3 + count,
+                    err);
     }
-    for (int i = 0; !st && i < count; i++)
-        for (int k = 0; !st && k < lists[i].count; k++) {
+    for (int i = 0; !err->status && i < count; i++)
+        for (int k = 0; !err->status && k < lists[i].count; k++) {
             int length = 0;
-            st = print_view(text, sizeof text, &lists[i].views[k], &length, err);
-            if (!st) fwrite(text, 1, (size_t)length, f.fp);
+            if (!print_view(text, sizeof text, &lists[i].views[k], &length, err)) fwrite(text, 1, (size_t)length, f.fp);
         }
-    if (!st) st = outfile_commit(&f, err);
+    if (!err->status) outfile_commit(&f, err);
     outfile_discard(&f);
-    return st;
+    return err->status;
 }

@@ -228,14 +228,14 @@ static enum status fill_hole(struct texture_fill *f, int index, const int32_t *l
     find_colours(&s);
     struct fill_hole *hole = &f->holes[index];
     const int wide = box[2] - box[0], high = box[3] - box[1];
-    const enum status st = search_shifts(&s, hole, (wide > high ? wide : high) + 2 * BAND, err);
+    search_shifts(&s, hole, (wide > high ? wide : high) + 2 * BAND, err);
     for (size_t i = 0; i < count; i++) {
         float value[3];
         int k = 0;
         while (k < hole->shifts && !fits(&s, value, (size_t)list[i], hole->shift[k])) k++;
         f->choice[list[i]] = (uint8_t)(k < hole->shifts ? k : FILL_SHIFTS);
     }
-    return st;
+    return err->status;
 }
 
 /* Lists the hole that holds `first`. */
@@ -268,18 +268,18 @@ enum status texture_fill_find(struct texture_fill *f, const struct bake_tile *ti
     f->choice = malloc(n);
     f->holes = calloc(n / MIN_TEXELS + 1, sizeof *f->holes);
     int32_t *list = malloc(2 * n * sizeof *list);
-    enum status st = f->hole && f->choice && f->holes && list ? ST_OK : err_nomem(err, "the holes of a tile", 8 * n);
-    for (size_t i = 0; !st && i < n; i++) f->hole[i] = -1, f->choice[i] = FILL_SHIFTS;
-    for (size_t i = 0; !st && i < n; i++) {
+    if (!f->hole || !f->choice || !f->holes || !list) err_nomem(err, "the holes of a tile", 8 * n);
+    for (size_t i = 0; !err->status && i < n; i++) f->hole[i] = -1, f->choice[i] = FILL_SHIFTS;
+    for (size_t i = 0; !err->status && i < n; i++) {
         if (!unseen[i] || f->hole[i] >= 0) continue;
         const size_t count = list_hole(f, unseen, (int32_t)i, f->hole_count, list);
         if (count >= MIN_TEXELS)
-            st = fill_hole(f, f->hole_count++, list, count, normal, list + n, err);
+            fill_hole(f, f->hole_count++, list, count, normal, list + n, err);
         else /* too small for texture */
             for (size_t k = 0; k < count; k++) f->hole[list[k]] = INT32_MAX;
     }
     free(list);
-    return st;
+    return err->status;
 }
 
 /* Whether the copy beside a seen texel is like it: otherwise an edge of the copy would show there. */

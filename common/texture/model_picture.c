@@ -63,14 +63,15 @@ static enum status write_camera(struct exr_image *im, const struct model_picture
     const struct quat q = p->pose.rotation;
     const struct vec3 t = p->pose.translation;
     snprintf(text, sizeof text, "%s %d %d", camera_model_name(p->lens.model), p->lens.width, p->lens.height);
-    enum status st = exr_set_attribute(im, "remodel:lens", text, err);
-    for (int k = 0; !st && k < camera_model_params(p->lens.model); k++) {
+    exr_set_attribute(im, "remodel:lens", text, err);
+    for (int k = 0; !err->status && k < camera_model_params(p->lens.model); k++) {
         snprintf(name, sizeof name, "remodel:lens%d", k);
         snprintf(text, sizeof text, "%.17g", p->lens.params[k]);
-        st = exr_set_attribute(im, name, text, err);
+        exr_set_attribute(im, name, text, err);
     }
     snprintf(text, sizeof text, "%.17g %.17g %.17g %.17g %.17g %.17g %.17g", q.w, q.x, q.y, q.z, t.x, t.y, t.z);
-    return st ? st : exr_set_attribute(im, "remodel:pose", text, err);
+    if (!err->status) exr_set_attribute(im, "remodel:pose", text, err);
+    return err->status;
 }
 
 /* Whether the attributes hold a camera; *p is unchanged otherwise. */
@@ -106,9 +107,9 @@ enum status model_picture_write(const struct model_picture *p, const struct view
 {
     const size_t pixels = (size_t)p->width * (size_t)p->height;
     struct exr_image im = {0};
-    enum status st = exr_image_init(&im, p->width, p->height, err);
-    for (int k = 0; !st && k < PLANES; k++) st = exr_add_plane(&im, names[k], types[k], NULL, err);
-    if (!st) {
+    exr_image_init(&im, p->width, p->height, err);
+    for (int k = 0; !err->status && k < PLANES; k++) exr_add_plane(&im, names[k], types[k], NULL, err);
+    if (!err->status) {
         for (size_t i = 0; i < pixels; i++) {
             for (size_t c = 0; c < RGB; c++) im.planes[c].f[i] = p->rgb[RGB * i + c];
             im.planes[5].u[i] = p->made[i];
@@ -116,13 +117,11 @@ enum status model_picture_write(const struct model_picture *p, const struct view
         memcpy(im.planes[3].f, p->z, pixels * sizeof *p->z);
         memcpy(im.planes[4].u, p->id, pixels * sizeof *p->id);
         view_image_set_camera(&im, camera);
-        if (p->has_camera) st = write_camera(&im, p, err);
+        if (p->has_camera) write_camera(&im, p, err);
     }
-    if (!st) {
-        st = exr_write(&im, path, prov, err);
-    }
+    if (!err->status) exr_write(&im, path, prov, err);
     exr_image_release(&im);
-    return st;
+    return err->status;
 }
 
 /* Whether pixel i of the planes is what model_picture_write() may write. */
@@ -168,11 +167,10 @@ static enum status take_planes(struct model_picture *p, const struct exr_image *
 enum status model_picture_read(struct model_picture *p, const char *path, struct provenance *prov, struct err *err)
 {
     struct exr_image im = {0};
-    enum status st = exr_read_product(&im, product_at(path) == PRODUCT_RELIT ? PRODUCT_RELIT : PRODUCT_PICTURE, path,
-                                      names, PLANES, prov, err);
-    if (!st) st = take_planes(p, &im, path, err);
-    if (!st) read_camera(p, &im);
+    const enum product_id id = product_at(path) == PRODUCT_RELIT ? PRODUCT_RELIT : PRODUCT_PICTURE;
+    if (!exr_read_product(&im, id, path, names, PLANES, prov, err) && !take_planes(p, &im, path, err))
+        read_camera(p, &im);
     exr_image_release(&im);
-    if (st) model_picture_release(p);
-    return st;
+    if (err->status) model_picture_release(p);
+    return err->status;
 }

@@ -69,45 +69,44 @@ static enum status take_planes(struct outdoors *o, const struct exr_image *im, c
         if (k == SOURCE ? !planes[k]->u : !planes[k]->f)
             return err_set(err, ST_DATA, "%s: channel %s has the wrong type; run bake_outdoors again.", path, names[k]);
     }
-    enum status st = outdoors_init(o, im->height, err);
+    outdoors_init(o, im->height, err);
     const size_t pixels = (size_t)im->width * (size_t)im->height;
-    for (size_t i = 0; !st && i < pixels; i++) {
-        st = check_pixel(planes, i, im->width, path, err);
+    for (size_t i = 0; !err->status && i < pixels; i++) {
+        check_pixel(planes, i, im->width, path, err);
         for (size_t c = 0; c < 3; c++) o->rgb[3 * i + c] = planes[c]->f[i];
         o->source[i] = (uint8_t)planes[SOURCE]->u[i];
     }
-    return st;
+    return err->status;
 }
 
 enum status outdoors_read(struct outdoors *o, const char *path, struct provenance *prov, struct err *err)
 {
     struct exr_image im = {0};
     *o = (struct outdoors){0};
-    enum status st = exr_read_product(&im, PRODUCT_OUTDOORS, path, names, PLANES, prov, err);
-    if (!st) st = take_planes(o, &im, path, err);
-    if (st) outdoors_release(o);
+    if (!exr_read_product(&im, PRODUCT_OUTDOORS, path, names, PLANES, prov, err)) take_planes(o, &im, path, err);
+    if (err->status) outdoors_release(o);
     exr_image_release(&im);
-    return st;
+    return err->status;
 }
 
 enum status outdoors_write(const struct outdoors *o, const char *path, const struct provenance *prov, struct err *err)
 {
     struct exr_image im = {0};
     const size_t pixels = (size_t)o->width * (size_t)o->height;
-    enum status st = exr_image_init(&im, o->width, o->height, err);
-    for (int k = 0; !st && k < PLANES; k++) {
+    exr_image_init(&im, o->width, o->height, err);
+    for (int k = 0; !err->status && k < PLANES; k++) {
         struct exr_plane *plane;
-        st = exr_add_plane(&im, names[k], k == SOURCE ? EXR_UINT : EXR_HALF, &plane, err);
-        for (size_t i = 0; !st && i < pixels; i++) {
+        exr_add_plane(&im, names[k], k == SOURCE ? EXR_UINT : EXR_HALF, &plane, err);
+        for (size_t i = 0; !err->status && i < pixels; i++) {
             if (k == SOURCE)
                 plane->u[i] = o->source[i];
             else
                 plane->f[i] = k == A ? o->source[i] != OUTDOORS_GUESSED : o->rgb[3 * i + (size_t)k];
         }
     }
-    if (!st) st = exr_write(&im, path, prov, err);
+    if (!err->status) exr_write(&im, path, prov, err);
     exr_image_release(&im);
-    return st;
+    return err->status;
 }
 
 /* ---------------------------------------------------------------------------------------------------------- look-up */

@@ -31,16 +31,14 @@ enum status picture_list_read(struct picture_list *l, const char *folder, struct
 {
     char path[FILE_PATH], *name;
     struct textfile t = {0};
-    enum status st = product_path_in(path, folder, PRODUCT_PICTURE_LIST, NULL, err);
-    if (!st) st = product_open(&t, NULL, PRODUCT_PICTURE_LIST, path, prov, err);
-    while (!st && textfile_next(&t)) {
-        st = textfile_expect(&t, "picture", err);
-        if (!st) st = textfile_word(&t, "a picture's name", &name, err);
-        if (!st) st = textfile_end(&t, err);
-        if (!st) st = picture_list_add(l, name, err);
-    }
+    if (!product_path_in(path, folder, PRODUCT_PICTURE_LIST, NULL, err))
+        product_open(&t, NULL, PRODUCT_PICTURE_LIST, path, prov, err);
+    while (!err->status && textfile_next(&t))
+        if (!textfile_expect(&t, "picture", err) && !textfile_word(&t, "a picture's name", &name, err) &&
+            !textfile_end(&t, err))
+            picture_list_add(l, name, err);
     textfile_release(&t);
-    return st;
+    return err->status;
 }
 
 enum status picture_list_write(const struct picture_list *l, const char *folder, const struct provenance *prov,
@@ -50,14 +48,11 @@ enum status picture_list_write(const struct picture_list *l, const char *folder,
     struct outfile f = {0};
     if (product_path_in(path, folder, PRODUCT_PICTURE_LIST, NULL, err) || outfile_open(&f, path, err))
         return err->status;
-    enum status st = ST_OK;
     fprintf(f.fp, "%s\n", products[PRODUCT_PICTURE_LIST].head);
     provenance_print(prov, f.fp);
-    for (int i = 0; !st && i < l->count; i++) {
-        st = textfile_quote(l->names[i], quoted, sizeof quoted, err);
-        if (!st) fprintf(f.fp, "picture %s\n", quoted);
-    }
-    if (!st) st = outfile_commit(&f, err);
+    for (int i = 0; !err->status && i < l->count; i++)
+        if (!textfile_quote(l->names[i], quoted, sizeof quoted, err)) fprintf(f.fp, "picture %s\n", quoted);
+    if (!err->status) outfile_commit(&f, err);
     outfile_discard(&f);
-    return st;
+    return err->status;
 }

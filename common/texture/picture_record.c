@@ -9,17 +9,16 @@ enum status picture_record_write(const struct picture_record *record, const char
                                  struct err *err)
 {
     struct outfile out = {0};
-    enum status st = outfile_open(&out, path, err);
-    if (st) return st;
+    if (outfile_open(&out, path, err)) return err->status;
     fprintf(out.fp, "%s\n", products[PRODUCT_PICTURE_RECORD].head);
     if (prov) provenance_print(prov, out.fp);
     fprintf(out.fp, "size %d %d\nexposure %.9g\nchanged %.6g\n", record->width, record->height, record->exposure,
             record->changed);
     for (int k = 0; k < MADE_COUNT; k++)
         fprintf(out.fp, "made %s %.6g\n", picture_made_kind((enum picture_made)k)->word, record->shares[k]);
-    st = outfile_commit(&out, err);
+    outfile_commit(&out, err);
     outfile_discard(&out);
-    return st;
+    return err->status;
 }
 
 static enum status read_share(struct textfile *t, double *share, struct err *err)
@@ -42,18 +41,17 @@ static enum status read_made(struct picture_record *record, unsigned *seen, stru
 static enum status read_head(struct picture_record *record, struct textfile *t, struct err *err)
 {
     int64_t size[2] = {0, 0};
-    enum status st = textfile_expect_line(t, "size", err);
-    if (!st) st = textfile_int(t, "a width", 1, MAX_SIZE, &size[0], err);
-    if (!st) st = textfile_int(t, "a height", 1, MAX_SIZE, &size[1], err);
-    if (!st) st = textfile_end(t, err);
+    if (!textfile_expect_line(t, "size", err) && !textfile_int(t, "a width", 1, MAX_SIZE, &size[0], err) &&
+        !textfile_int(t, "a height", 1, MAX_SIZE, &size[1], err))
+        textfile_end(t, err);
     record->width = (int)size[0];
     record->height = (int)size[1];
-    if (!st) st = textfile_expect_line(t, "exposure", err);
-    if (!st) st = textfile_double(t, "an exposure", &record->exposure, err);
-    if (!st && !(record->exposure > 0)) st = textfile_wrong_number(t, record->exposure, "an exposure above 0", err);
-    if (!st) st = textfile_end(t, err);
-    if (!st) st = textfile_expect_line(t, "changed", err);
-    return st ? st : read_share(t, &record->changed, err);
+    if (!err->status && !textfile_expect_line(t, "exposure", err))
+        textfile_double(t, "an exposure", &record->exposure, err);
+    if (!err->status && !(record->exposure > 0)) textfile_wrong_number(t, record->exposure, "an exposure above 0", err);
+    if (!err->status && !textfile_end(t, err) && !textfile_expect_line(t, "changed", err))
+        read_share(t, &record->changed, err);
+    return err->status;
 }
 
 enum status picture_record_read(struct picture_record *record, const char *path, struct provenance *prov,
@@ -63,12 +61,10 @@ enum status picture_record_read(struct picture_record *record, const char *path,
     unsigned seen = 0;
     *record = (struct picture_record){0};
     if (product_open(&t, NULL, PRODUCT_PICTURE_RECORD, path, prov, err)) return err->status;
-    enum status st = read_head(record, &t, err);
-    while (!st && textfile_next(&t)) {
-        st = textfile_expect(&t, "made", err);
-        if (!st) st = read_made(record, &seen, &t, err);
-    }
-    if (st) *record = (struct picture_record){0};
+    read_head(record, &t, err);
+    while (!err->status && textfile_next(&t))
+        if (!textfile_expect(&t, "made", err)) read_made(record, &seen, &t, err);
+    if (err->status) *record = (struct picture_record){0};
     textfile_release(&t);
-    return st;
+    return err->status;
 }

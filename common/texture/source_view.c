@@ -38,20 +38,20 @@ static enum status read_picture(struct view_planes *picture, const char *folder,
                                 uint64_t *bytes, struct provenance *prov, struct err *err)
 {
     char path[FILE_PATH];
-    enum status st = product_path_in(path, folder, PRODUCT_VIEW, &(struct product_key){.view = camera->name}, err);
-    if (!st) st = view_planes_read(picture, folder, camera, VIEW_CHANNELS, prov, err);
-    if (!st) add_size(bytes, path);
-    return st;
+    if (!product_path_in(path, folder, PRODUCT_VIEW, &(struct product_key){.view = camera->name}, err) &&
+        !view_planes_read(picture, folder, camera, VIEW_CHANNELS, prov, err))
+        add_size(bytes, path);
+    return err->status;
 }
 
 static enum status read_ids(struct view_ids *ids, const char *folder, const struct view *camera, uint64_t *bytes,
                             struct provenance *prov, struct err *err)
 {
     char path[FILE_PATH];
-    enum status st = product_path_in(path, folder, PRODUCT_IDS, &(struct product_key){.view = camera->name}, err);
-    if (!st) st = view_ids_read(ids, camera, path, prov, err);
-    if (!st) add_size(bytes, path);
-    return st;
+    if (!product_path_in(path, folder, PRODUCT_IDS, &(struct product_key){.view = camera->name}, err) &&
+        !view_ids_read(ids, camera, path, prov, err))
+        add_size(bytes, path);
+    return err->status;
 }
 
 /* Whether a pixel shows the surface that the model has there. */
@@ -101,15 +101,14 @@ static void halve(struct source_level *to, const struct source_level *from, cons
 
 static enum status make_levels(struct source_view *v, struct err *err)
 {
-    enum status st = ST_OK;
-    while (!st && v->level_count < SOURCE_LEVELS) {
+    while (!err->status && v->level_count < SOURCE_LEVELS) {
         const struct source_level *finer = &v->levels[v->level_count - 1];
         if (finer->width < 2 || finer->height < 2) break;
-        st = level_init(&v->levels[v->level_count], (finer->width + 1) / 2, (finer->height + 1) / 2, err);
-        if (!st) halve(&v->levels[v->level_count], finer, v->level_count == 1 ? v->state : NULL);
+        if (!level_init(&v->levels[v->level_count], (finer->width + 1) / 2, (finer->height + 1) / 2, err))
+            halve(&v->levels[v->level_count], finer, v->level_count == 1 ? v->state : NULL);
         v->level_count++;
     }
-    return st;
+    return err->status;
 }
 
 static void set_projection(struct source_view *v)
@@ -160,26 +159,25 @@ enum status source_view_read(struct source_view *v, struct view_ids *ids, const 
     struct view_ids faces = {0};
     *v = (struct source_view){.camera = *camera, .level_count = 1};
     set_projection(v);
-    enum status st = read_picture(&picture, views, camera, &v->bytes, prov, err);
-    if (!st) st = read_ids(&faces, folder, camera, &v->bytes, prov, err);
+    if (!read_picture(&picture, views, camera, &v->bytes, prov, err))
+        read_ids(&faces, folder, camera, &v->bytes, prov, err);
     v->state = malloc(pixels);
     v->own = malloc(pixels);
-    if (!st && (!v->state || !v->own)) st = err_nomem(err, "a view's surfaces", pixels);
-    if (!st) st = level_init(&v->levels[0], camera->width, camera->height, err);
-    if (!st) {
+    if (!err->status && (!v->state || !v->own)) err_nomem(err, "a view's surfaces", pixels);
+    if (!err->status && !level_init(&v->levels[0], camera->width, camera->height, err)) {
         take_pixels(v, picture.channel, &faces, params);
         v->id = faces.id;
         faces.id = NULL;
-        st = make_levels(v, err);
+        make_levels(v, err);
     }
-    if (!st) st = list_faces(v, err);
-    if (!st && ids) {
+    if (!err->status) list_faces(v, err);
+    if (!err->status && ids) {
         *ids = faces;
         faces = (struct view_ids){0};
     }
     view_planes_release(&picture);
     view_ids_release(&faces);
-    return st;
+    return err->status;
 }
 
 void source_view_release(struct source_view *v)

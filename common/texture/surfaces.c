@@ -118,19 +118,19 @@ enum status surfaces_make(struct surfaces *s, const struct solid_mesh *models, i
 {
     struct sorted_model *sorted = calloc((size_t)count, sizeof *sorted);
     *s = (struct surfaces){.size = size_of(models, count)};
-    enum status st = sorted ? ST_OK : err_nomem(err, "models", (size_t)count * sizeof *sorted);
-    for (int k = 0; !st && k < count; k++) st = sort_model(&sorted[k], &models[k], err);
-    if (!st) st = list_surfaces(s, &sorted[0], err);
-    for (int i = 0; !st && i < s->count; i++) {
+    if (!sorted) err_nomem(err, "models", (size_t)count * sizeof *sorted);
+    for (int k = 0; !err->status && k < count; k++) sort_model(&sorted[k], &models[k], err);
+    if (!err->status) list_surfaces(s, &sorted[0], err);
+    for (int i = 0; !err->status && i < s->count; i++) {
         s->list[i].first = s->triangle_count;
-        for (int k = 0; !st && k < count; k++) st = add_triangles(s, &s->list[i], &sorted[k], err);
+        for (int k = 0; !err->status && k < count; k++) add_triangles(s, &s->list[i], &sorted[k], err);
     }
     for (int k = 0; sorted && k < count; k++) {
         solid_triangles_release(&sorted[k].triangles);
         free(sorted[k].faces);
     }
     free(sorted);
-    return st;
+    return err->status;
 }
 
 void surfaces_release(struct surfaces *s)

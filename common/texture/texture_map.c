@@ -223,18 +223,18 @@ enum status texture_map_write(const struct texture_map *map, const char *path, c
 {
     struct outfile file = {0};
     char base[NAME_SIZE];
-    enum status st = check_map(map, path, err);
-    if (!st) st = textfile_quote(map->base ? map->base : NO_BASE, base, sizeof base, err);
-    if (!st) st = outfile_open(&file, path, err);
-    if (!st) fprintf(file.fp, "%s\n", products[PRODUCT_TEXTURE_MAP].head);
-    if (!st && prov) provenance_print(prov, file.fp);
-    if (!st) fprintf(file.fp, "base %s\n", base);
-    for (int i = 0; !st && i < map->lamp_count; i++) st = print_lamp(file.fp, &map->lamps[i], err);
-    for (int i = 0; !st && i < map->face_count; i++) st = print_face(file.fp, &map->faces[i], err);
-    for (int i = 0; !st && i < map->zone_count; i++) st = print_zone(file.fp, &map->zones[i], err);
-    if (!st) st = outfile_commit(&file, err);
+    if (!check_map(map, path, err) && !textfile_quote(map->base ? map->base : NO_BASE, base, sizeof base, err) &&
+        !outfile_open(&file, path, err)) {
+        fprintf(file.fp, "%s\n", products[PRODUCT_TEXTURE_MAP].head);
+        if (prov) provenance_print(prov, file.fp);
+        fprintf(file.fp, "base %s\n", base);
+    }
+    for (int i = 0; !err->status && i < map->lamp_count; i++) print_lamp(file.fp, &map->lamps[i], err);
+    for (int i = 0; !err->status && i < map->face_count; i++) print_face(file.fp, &map->faces[i], err);
+    for (int i = 0; !err->status && i < map->zone_count; i++) print_zone(file.fp, &map->zones[i], err);
+    if (!err->status) outfile_commit(&file, err);
     outfile_discard(&file);
-    return st;
+    return err->status;
 }
 
 /* ---------------------------------------------------------------------------------------------------------- reading */
@@ -268,46 +268,45 @@ static enum status read_limits(struct texture_rule *rule, struct textfile *t, co
 {
     if (word && strcmp(word, "within")) return textfile_error(t, err, word, "\"within\", or the end of the line");
     rule->limited = word != NULL;
-    enum status st = ST_OK;
-    for (int i = 0; !st && rule->limited && i < 4; i++) st = read_point(t, &rule->within[i], err);
+    for (int i = 0; !err->status && rule->limited && i < 4; i++) read_point(t, &rule->within[i], err);
     const struct vec3 *w = rule->within;
-    if (!st && rule->limited && !(vec3_length(vec3_cross(vec3_sub(w[2], w[0]), vec3_sub(w[3], w[1]))) > 0))
+    if (!err->status && rule->limited && !(vec3_length(vec3_cross(vec3_sub(w[2], w[0]), vec3_sub(w[3], w[1]))) > 0))
         return textfile_error(t, err, "within", "four corners around an area");
-    return st ? st : textfile_end(t, err);
+    if (!err->status) textfile_end(t, err);
+    return err->status;
 }
 
 static enum status read_place(struct texture_rule *rule, struct textfile *t, struct err *err)
 {
     int64_t from;
     char *word = NULL;
-    enum status st = textfile_int(t, "the id of a face", 1, INT_MAX, &from, err);
-    for (int i = 0; !st && i < 12; i++) st = textfile_double(t, "a number of M", &rule->matrix[i / 4][i % 4], err);
-    if (!st) rule->from = (int)from;
-    if (!st && textfile_more(t)) st = textfile_word(t, "within", &word, err);
-    return st ? st : read_limits(rule, t, word, err);
+    textfile_int(t, "the id of a face", 1, INT_MAX, &from, err);
+    for (int i = 0; !err->status && i < 12; i++) textfile_double(t, "a number of M", &rule->matrix[i / 4][i % 4], err);
+    if (!err->status) rule->from = (int)from;
+    if (!err->status && textfile_more(t)) textfile_word(t, "within", &word, err);
+    if (!err->status) read_limits(rule, t, word, err);
+    return err->status;
 }
 
 static enum status read_colour(struct texture_rule *rule, struct textfile *t, struct err *err)
 {
-    enum status st = ST_OK;
     char *word = NULL;
-    for (int c = 0; !st && c < 3; c++) {
+    for (int c = 0; !err->status && c < 3; c++) {
         double value;
-        st = textfile_number(t, "a share of light", 0, 1, &value, err);
-        if (!st) rule->albedo[c] = (float)value;
+        if (!textfile_number(t, "a share of light", 0, 1, &value, err)) rule->albedo[c] = (float)value;
     }
-    if (!st) st = textfile_expect(t, "lit", err);
-    while (!st && textfile_more(t)) {
+    if (!err->status) textfile_expect(t, "lit", err);
+    while (!err->status && textfile_more(t)) {
         int64_t id;
-        st = textfile_word(t, "the id of a face", &word, err);
-        if (st || !strcmp(word, "within")) break;
+        if (textfile_word(t, "the id of a face", &word, err) || !strcmp(word, "within")) break;
         if (!scan_int(word, &id) || id < 1 || id > INT_MAX)
             return textfile_error(t, err, word, "the id of a face, or \"within\"");
-        st = array_append(&rule->lit, (size_t)rule->lit_count, sizeof *rule->lit, "faces", err);
-        if (!st) rule->lit[rule->lit_count++] = (int)id;
+        if (!array_append(&rule->lit, (size_t)rule->lit_count, sizeof *rule->lit, "faces", err))
+            rule->lit[rule->lit_count++] = (int)id;
         word = NULL;
     }
-    return st ? st : read_limits(rule, t, word, err);
+    if (!err->status) read_limits(rule, t, word, err);
+    return err->status;
 }
 
 static enum status read_rule(struct texture_face *face, struct textfile *t, const char *word, struct err *err)
@@ -354,17 +353,18 @@ static enum status read_added(struct texture_face *face, struct textfile *t, str
 {
     int count = 0;
     if (face->added) return textfile_error(t, err, "new", "one line \"new\" in a face");
-    enum status st = read_count(t, "a number of triangles", 1, &count, err);
-    if (!st) st = textfile_end(t, err);
-    for (int i = 0; !st && i < count; i++) {
-        st = textfile_expect_line(t, "triangle", err);
-        if (!st) st = array_append(&face->added, (size_t)face->added_count, sizeof *face->added, "triangles", err);
-        if (st) break;
-        for (int k = 0; !st && k < 3; k++) st = read_point(t, &face->added[face->added_count][k], err);
-        if (!st) face->added_count++;
-        if (!st) st = textfile_end(t, err);
+    if (!read_count(t, "a number of triangles", 1, &count, err)) textfile_end(t, err);
+    for (int i = 0; !err->status && i < count; i++) {
+        if (textfile_expect_line(t, "triangle", err) ||
+            array_append(&face->added, (size_t)face->added_count, sizeof *face->added, "triangles", err))
+            break;
+        for (int k = 0; !err->status && k < 3; k++) read_point(t, &face->added[face->added_count][k], err);
+        if (!err->status) {
+            face->added_count++;
+            textfile_end(t, err);
+        }
     }
-    return st;
+    return err->status;
 }
 
 static enum status read_face(struct texture_map *map, struct textfile *t, struct err *err)
@@ -391,18 +391,16 @@ static enum status read_zone(struct texture_map *map, struct textfile *t, bool k
     if (array_append(&map->zones, (size_t)map->zone_count, sizeof *map->zones, "zones", err)) return err->status;
     struct texture_zone *zone = &map->zones[map->zone_count++];
     *zone = (struct texture_zone){.keep = keep};
-    enum status st = copy_word(&zone->name, t, "a name", err);
-    if (!st) st = textfile_double(t, "the lowest height", &zone->low, err);
-    if (!st) st = textfile_double(t, "the greatest height", &zone->high, err);
-    if (!st && zone->high < zone->low) st = textfile_wrong_number(t, zone->high, "a height above the lowest", err);
-    if (!st) st = read_count(t, "a number of corners", 3, &count, err);
-    for (int i = 0; !st && i < count; i++) {
-        st = array_append(&zone->corners, (size_t)i, sizeof *zone->corners, "corners", err);
-        if (!st) st = textfile_double(t, "X", &zone->corners[i][0], err);
-        if (!st) st = textfile_double(t, "Y", &zone->corners[i][1], err);
-        if (!st) zone->corner_count = i + 1;
-    }
-    return st ? st : textfile_end(t, err);
+    if (!copy_word(&zone->name, t, "a name", err) && !textfile_double(t, "the lowest height", &zone->low, err))
+        textfile_double(t, "the greatest height", &zone->high, err);
+    if (!err->status && zone->high < zone->low) textfile_wrong_number(t, zone->high, "a height above the lowest", err);
+    if (!err->status) read_count(t, "a number of corners", 3, &count, err);
+    for (int i = 0; !err->status && i < count; i++)
+        if (!array_append(&zone->corners, (size_t)i, sizeof *zone->corners, "corners", err) &&
+            !textfile_double(t, "X", &zone->corners[i][0], err) && !textfile_double(t, "Y", &zone->corners[i][1], err))
+            zone->corner_count = i + 1;
+    if (!err->status) textfile_end(t, err);
+    return err->status;
 }
 
 static enum status read_line(struct texture_map *map, struct textfile *t, struct err *err)
@@ -429,17 +427,16 @@ enum status texture_map_read(struct texture_map *map, const char *path, struct p
     char *base = NULL;
     int version = 0;
     *map = (struct texture_map){0};
-    enum status st = product_open(&t, &version, PRODUCT_TEXTURE_MAP, path, prov, err);
-    if (!st && version != 2) st = textfile_wrong_number(&t, version, "version 2", err);
-    if (!st) st = textfile_expect_line(&t, "base", err);
-    if (!st) st = copy_word(&base, &t, "an edit or \"none\"", err);
-    if (!st) st = textfile_end(&t, err);
-    if (!st && strcmp(base, NO_BASE))
+    product_open(&t, &version, PRODUCT_TEXTURE_MAP, path, prov, err);
+    if (!err->status && version != 2) textfile_wrong_number(&t, version, "version 2", err);
+    if (!err->status && !textfile_expect_line(&t, "base", err) && !copy_word(&base, &t, "an edit or \"none\"", err))
+        textfile_end(&t, err);
+    if (!err->status && strcmp(base, NO_BASE))
         map->base = base;
     else
         free(base);
-    while (!st && textfile_next(&t)) st = read_line(map, &t, err);
-    if (st) texture_map_release(map);
+    while (!err->status && textfile_next(&t)) read_line(map, &t, err);
+    if (err->status) texture_map_release(map);
     textfile_release(&t);
-    return st;
+    return err->status;
 }

@@ -45,18 +45,18 @@ enum status view_ids_write(const struct view_ids *v, const struct view *view, co
     const void *planes[PLANES] = {v->id, v->z, v->jump, v->clutter};
     const size_t pixels = (size_t)v->width * (size_t)v->height;
     struct exr_image im = {0};
-    enum status st = exr_image_init(&im, v->width, v->height, err);
-    for (int i = 0; !st && i < PLANES; i++) {
+    exr_image_init(&im, v->width, v->height, err);
+    for (int i = 0; !err->status && i < PLANES; i++) {
         struct exr_plane *plane;
-        st = exr_add_plane(&im, names[i], types[i], &plane, err);
-        if (!st) memcpy(plane->u ? (void *)plane->u : (void *)plane->f, planes[i], pixels * 4);
+        if (!exr_add_plane(&im, names[i], types[i], &plane, err))
+            memcpy(plane->u ? (void *)plane->u : (void *)plane->f, planes[i], pixels * 4);
     }
-    if (!st) {
+    if (!err->status) {
         view_image_set_camera(&im, view);
-        st = exr_write(&im, path, prov, err);
+        exr_write(&im, path, prov, err);
     }
     exr_image_release(&im);
-    return st;
+    return err->status;
 }
 
 static enum status check_pixel(const struct view_ids *v, size_t i, const char *path, struct err *err)
@@ -78,24 +78,24 @@ enum status view_ids_read(struct view_ids *v, const struct view *view, const cha
     struct exr_image im = {0};
     struct exr_plane *planes[PLANES] = {0};
     *v = (struct view_ids){0};
-    enum status st = exr_read_product(&im, PRODUCT_IDS, path, names, PLANES, prov, err);
-    for (int i = 0; !st && i < PLANES; i++) {
+    exr_read_product(&im, PRODUCT_IDS, path, names, PLANES, prov, err);
+    for (int i = 0; !err->status && i < PLANES; i++) {
         planes[i] = exr_find(&im, names[i]);
         if (i == 0 ? !planes[i]->u : !planes[i]->f)
-            st = err_set(err, ST_DATA, "%s: channel %s has the wrong type; run trace_ids again.", path, names[i]);
+            err_set(err, ST_DATA, "%s: channel %s has the wrong type; run trace_ids again.", path, names[i]);
     }
-    if (!st && view && (im.width != view->width || im.height != view->height))
-        st = err_set(err, ST_DATA, "%s is %d x %d px, but the view is %d x %d px; run trace_ids again.", path, im.width,
-                     im.height, view->width, view->height);
-    if (st) {
+    if (!err->status && view && (im.width != view->width || im.height != view->height))
+        err_set(err, ST_DATA, "%s is %d x %d px, but the view is %d x %d px; run trace_ids again.", path, im.width,
+                im.height, view->width, view->height);
+    if (err->status) {
         exr_image_release(&im);
-        return st;
+        return err->status;
     }
     *v = (struct view_ids){im.width, im.height, planes[0]->u, planes[1]->f, planes[2]->f, planes[3]->f};
     planes[0]->u = NULL;
     for (int i = 1; i < PLANES; i++) planes[i]->f = NULL;
     exr_image_release(&im);
-    for (size_t i = 0; !st && i < (size_t)v->width * (size_t)v->height; i++) st = check_pixel(v, i, path, err);
-    if (st) view_ids_release(v);
-    return st;
+    for (size_t i = 0; !err->status && i < (size_t)v->width * (size_t)v->height; i++) check_pixel(v, i, path, err);
+    if (err->status) view_ids_release(v);
+    return err->status;
 }

@@ -89,26 +89,26 @@ enum status view_reveal_write(const struct view_reveal *v, const struct view *vi
     bool differs = false;
     if (snprintf(made, sizeof made, "%.*s.%s.new", folder, path, path + folder) >= FILE_PATH)
         return err_set(err, ST_IO, "%s: the path is too long.", path);
-    enum status st = exr_image_init(&im, v->width, v->height, err);
+    exr_image_init(&im, v->width, v->height, err);
     /* a file has at least one channel: without anything revealed, layer 0 is empty */
-    for (int k = 0; !st && (k < v->layers || k == 0); k++) {
+    for (int k = 0; !err->status && (k < v->layers || k == 0); k++) {
         struct exr_plane *plane;
         char name[EXR_NAME_SIZE];
         channel_name(name, k, "id");
-        st = exr_add_plane(&im, name, EXR_UINT, &plane, err);
-        if (!st && k < v->layers) memcpy(plane->u, v->id[k], pixels * sizeof *plane->u);
+        if (!exr_add_plane(&im, name, EXR_UINT, &plane, err) && k < v->layers)
+            memcpy(plane->u, v->id[k], pixels * sizeof *plane->u);
         channel_name(name, k, "Z");
-        if (!st) st = exr_add_plane(&im, name, EXR_FLOAT, &plane, err);
-        if (!st && k < v->layers) memcpy(plane->f, v->z[k], pixels * sizeof *plane->f);
+        if (!err->status && !exr_add_plane(&im, name, EXR_FLOAT, &plane, err) && k < v->layers)
+            memcpy(plane->f, v->z[k], pixels * sizeof *plane->f);
     }
-    if (!st) {
+    if (!err->status) {
         view_image_set_camera(&im, view);
-        st = exr_write(&im, made, prov, err);
+        exr_write(&im, made, prov, err);
     }
-    if (!st) st = replace_if_changed(made, path, &differs, err);
+    if (!err->status) replace_if_changed(made, path, &differs, err);
     if (changed) *changed = differs;
     exr_image_release(&im);
-    return st;
+    return err->status;
 }
 
 static enum status take_layer(struct view_reveal *v, int k, const struct exr_image *im, const char *path,
@@ -145,17 +145,16 @@ enum status view_reveal_read(struct view_reveal *v, const struct view *view, con
 {
     struct exr_image im = {0};
     *v = (struct view_reveal){0};
-    enum status st = exr_read_product(&im, PRODUCT_REVEAL, path, NULL, 0, prov, err);
-    if (!st && (im.count % 2 || !im.count))
-        st = err_set(err, ST_DATA,
-                     "%s has %d channels, wanted layer0.id, layer0.Z, layer1.id, ...; run trace_ids again.", path,
-                     im.count);
-    if (!st && view && (im.width != view->width || im.height != view->height))
-        st = err_set(err, ST_DATA, "%s is %d x %d px, but the view is %d x %d px; run trace_ids again.", path, im.width,
-                     im.height, view->width, view->height);
-    if (!st) st = view_reveal_init(v, im.width, im.height, im.count / 2, err);
-    for (int k = 0; !st && k < im.count / 2; k++) st = take_layer(v, k, &im, path, err);
-    if (st) view_reveal_release(v);
+    exr_read_product(&im, PRODUCT_REVEAL, path, NULL, 0, prov, err);
+    if (!err->status && (im.count % 2 || !im.count))
+        err_set(err, ST_DATA, "%s has %d channels, wanted layer0.id, layer0.Z, layer1.id, ...; run trace_ids again.",
+                path, im.count);
+    if (!err->status && view && (im.width != view->width || im.height != view->height))
+        err_set(err, ST_DATA, "%s is %d x %d px, but the view is %d x %d px; run trace_ids again.", path, im.width,
+                im.height, view->width, view->height);
+    if (!err->status) view_reveal_init(v, im.width, im.height, im.count / 2, err);
+    for (int k = 0; !err->status && k < im.count / 2; k++) take_layer(v, k, &im, path, err);
+    if (err->status) view_reveal_release(v);
     exr_image_release(&im);
-    return st;
+    return err->status;
 }

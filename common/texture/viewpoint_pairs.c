@@ -36,19 +36,20 @@ enum status viewpoint_pairs_write(const struct viewpoint_pairs *pairs, const cha
 {
     struct outfile file = {0};
     char names[3][NAME_SIZE];
-    enum status st = outfile_open(&file, path, err);
-    if (!st) fprintf(file.fp, "%s\n", products[PRODUCT_TOUR_PAIRS].head);
-    if (!st && prov) provenance_print(prov, file.fp);
-    for (int i = 0; !st && i < pairs->count; i++) {
-        const struct viewpoint_pair *p = &pairs->list[i];
-        st = textfile_quote(p->frame, names[0], NAME_SIZE, err);
-        if (!st) st = textfile_quote(p->photos[0], names[1], NAME_SIZE, err);
-        if (!st) st = textfile_quote(p->photos[1], names[2], NAME_SIZE, err);
-        if (!st) fprintf(file.fp, "frame %s %s %s %.17g\n", names[0], names[1], names[2], p->t);
+    if (!outfile_open(&file, path, err)) {
+        fprintf(file.fp, "%s\n", products[PRODUCT_TOUR_PAIRS].head);
+        if (prov) provenance_print(prov, file.fp);
     }
-    if (!st) st = outfile_commit(&file, err);
+    for (int i = 0; !err->status && i < pairs->count; i++) {
+        const struct viewpoint_pair *p = &pairs->list[i];
+        if (!textfile_quote(p->frame, names[0], NAME_SIZE, err) &&
+            !textfile_quote(p->photos[0], names[1], NAME_SIZE, err) &&
+            !textfile_quote(p->photos[1], names[2], NAME_SIZE, err))
+            fprintf(file.fp, "frame %s %s %s %.17g\n", names[0], names[1], names[2], p->t);
+    }
+    if (!err->status) outfile_commit(&file, err);
     outfile_discard(&file);
-    return st;
+    return err->status;
 }
 
 static enum status read_frame(struct viewpoint_pairs *pairs, struct textfile *t, struct err *err)
@@ -68,11 +69,11 @@ enum status viewpoint_pairs_read(struct viewpoint_pairs *pairs, const char *path
 {
     struct textfile t = {0};
     *pairs = (struct viewpoint_pairs){0};
-    enum status st = product_open(&t, NULL, PRODUCT_TOUR_PAIRS, path, prov, err);
-    while (!st && textfile_next(&t)) st = read_frame(pairs, &t, err);
-    if (st) viewpoint_pairs_release(pairs);
+    product_open(&t, NULL, PRODUCT_TOUR_PAIRS, path, prov, err);
+    while (!err->status && textfile_next(&t)) read_frame(pairs, &t, err);
+    if (err->status) viewpoint_pairs_release(pairs);
     textfile_release(&t);
-    return st;
+    return err->status;
 }
 
 const struct viewpoint_pair *viewpoint_pairs_find(const struct viewpoint_pairs *pairs, const char *frame)

@@ -53,8 +53,7 @@ static enum status add_references(struct job *j, struct err *err)
     for (int i = 0; i < j->references.count; i++) {
         struct outdoors_picture *p = &j->pictures[j->count++];
         bool placed;
-        enum status st = outdoors_picture_of_reference(p, j->references.items[i], &j->in.axes, &placed, err);
-        if (st) return st;
+        if (outdoors_picture_of_reference(p, j->references.items[i], &j->in.axes, &placed, err)) return err->status;
         if (!placed) {
             log_warn(
                 "lighting reference image %s is left out, because its pose in the scene is unknown; give it one by "
@@ -77,18 +76,18 @@ static enum status list_pictures(struct job *j, struct err *err)
     j->pictures = calloc(most, sizeof *j->pictures);
     if (!j->pictures) return err_nomem(err, "pictures", most * sizeof *j->pictures);
     j->photos = j->in.set.view_count;
-    enum status st = add_references(j, err);
-    for (int i = 0; !st && i < j->in.set.view_count; i++) {
+    add_references(j, err);
+    for (int i = 0; !err->status && i < j->in.set.view_count; i++) {
         const struct view view = model_from_world_view(&j->in.axes, &j->in.set.views[i]);
         const struct product_key key = {.view = view.name};
-        st = product_path_in(picture, j->views, PRODUCT_VIEW, &key, err);
-        if (!st) st = product_path_in(ids, j->ids, PRODUCT_IDS, &key, err);
-        if (!st) st = outdoors_picture_of_view(&j->pictures[j->count++], &view, picture, ids, err);
-        if (st) break;
+        if (!product_path_in(picture, j->views, PRODUCT_VIEW, &key, err) &&
+            !product_path_in(ids, j->ids, PRODUCT_IDS, &key, err))
+            outdoors_picture_of_view(&j->pictures[j->count++], &view, picture, ids, err);
+        if (err->status) break;
         j->pictures[j->count - 1].photo = photo_of_view(&j->in.set, &j->in.lenses, i);
         j->pictures[j->count - 1].order = !strcmp(j->params.prefer, "photos");
     }
-    return st;
+    return err->status;
 }
 
 static void report(const struct outdoors_totals *t)
@@ -108,15 +107,13 @@ static enum status bake(struct job *j, struct err *err)
 {
     struct outdoors outdoors = {0};
     struct outdoors_totals totals;
-    enum status st = read_inputs(j, err);
-    if (!st) st = list_pictures(j, err);
-    if (!st)
-        st =
-            outdoors_gather(&outdoors, &totals, j->pictures, j->count, j->photos, &j->model, &j->params, &j->prov, err);
-    if (!st) report(&totals);
-    if (!st) st = outdoors_write(&outdoors, j->out, &j->prov, err);
+    if (!read_inputs(j, err) && !list_pictures(j, err) &&
+        !outdoors_gather(&outdoors, &totals, j->pictures, j->count, j->photos, &j->model, &j->params, &j->prov, err)) {
+        report(&totals);
+        outdoors_write(&outdoors, j->out, &j->prov, err);
+    }
     outdoors_release(&outdoors);
-    return st;
+    return err->status;
 }
 
 static void release(struct job *j)

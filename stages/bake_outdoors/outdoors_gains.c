@@ -127,9 +127,9 @@ enum status outdoors_find_gains(double *gain, int photos, const struct outdoors_
 {
     struct shares s = {.cells = cells, .pictures = pictures, .photos = photos};
     const size_t cell_count = (size_t)cells->width * (size_t)cells->height;
-    enum status st = list_shares(&s, err);
+    list_shares(&s, err);
     for (int p = 0; p < photos; p++) gain[p] = 0;
-    for (int round = 0; !st && round < ROUNDS; round++) {
+    for (int round = 0; !err->status && round < ROUNDS; round++) {
         for (size_t i = 0; i < cell_count; i++)
             if (list_length(cells->lists[i]) > 1) s.levels[i] = cell_level(&s, i, gain);
         for (int p = 0; p < photos; p++)
@@ -141,5 +141,5 @@ enum status outdoors_find_gains(double *gain, int photos, const struct outdoors_
     free(s.levels);
     free(s.list);
     free(s.scratch);
-    return st;
+    return err->status;
 }

@@ -298,17 +298,19 @@ enum status outdoors_gather(struct outdoors *o, struct outdoors_totals *totals, 
     struct gather g = {.out = o, .pictures = pictures, .params = params};
     struct progress progress;
     *totals = (struct outdoors_totals){0};
-    enum status st = init(&g, count, photos, err);
+    init(&g, count, photos, err);
     progress_start(&progress, "outdoors", 2 * (int64_t)count, "pictures");
-    if (!st) st = first_pass(&g, count, model, prov, &progress, err);
-    if (!st) st = outdoors_find_gains(g.gain, photos, &g.cells, pictures, err);
-    if (!st) {
+    if (!err->status && !first_pass(&g, count, model, prov, &progress, err))
+        outdoors_find_gains(g.gain, photos, &g.cells, pictures, err);
+    if (!err->status) {
         outdoors_choose(&g.cells, pictures, g.gain, params->agree);
-        st = second_pass(&g, count, totals, model, &progress, err);
+        second_pass(&g, count, totals, model, &progress, err);
     }
     progress_end(&progress);
-    if (!st) sum_up(totals, &g, count);
-    if (!st) st = outdoors_guess(o, err);
+    if (!err->status) {
+        sum_up(totals, &g, count);
+        outdoors_guess(o, err);
+    }
     free(g.cells.lists);
     free(g.cells.chosen);
     free(g.gain);
@@ -316,5 +318,5 @@ enum status outdoors_gather(struct outdoors *o, struct outdoors_totals *totals, 
     free(g.weights);
     free(g.strength);
     free(g.azimuths);
-    return st;
+    return err->status;
 }

@@ -87,14 +87,13 @@ static void push(struct level *to, const struct level *from)
 static enum status pull_push(struct level *base, float fade, const float fallback[3], struct err *err)
 {
     struct level levels[MAX_LEVELS] = {*base};
-    enum status st = ST_OK;
     int count = 1;
-    for (; !st && (levels[count - 1].width > 1 || levels[count - 1].height > 1); count++) {
+    for (; !err->status && (levels[count - 1].width > 1 || levels[count - 1].height > 1); count++) {
         const struct level *fine = &levels[count - 1];
-        st = level_init(&levels[count], (fine->width + 1) / 2, (fine->height + 1) / 2, err);
-        if (!st) pull(&levels[count], fine, count < FAR_LEVEL ? 1 : fade);
+        if (!level_init(&levels[count], (fine->width + 1) / 2, (fine->height + 1) / 2, err))
+            pull(&levels[count], fine, count < FAR_LEVEL ? 1 : fade);
     }
-    for (int k = count - 1; !st && k >= 0; k--) {
+    for (int k = count - 1; !err->status && k >= 0; k--) {
         if (k < count - 1) {
             push(&levels[k], &levels[k + 1]);
             continue;
@@ -104,7 +103,7 @@ static enum status pull_push(struct level *base, float fade, const float fallbac
         top[3] = 1;
     }
     for (int k = 1; k < count; k++) free(levels[k].v);
-    return st;
+    return err->status;
 }
 
 /* The mean of all known samples, times DARKEST; 0 if nothing is known or all is black. */
@@ -189,17 +188,16 @@ static enum status find_profile(float *profile, const struct level *known, struc
     const int half = known->height / 2;
     struct level sides[2] = {{0}};
     float means[2][3] = {{0}};
-    enum status st = sum_rows(&sides[0], known, 0, err);
-    if (!st) st = sum_rows(&sides[1], known, half, err);
-    for (int k = 0; !st && k < 2; k++)
+    if (!sum_rows(&sides[0], known, 0, err)) sum_rows(&sides[1], known, half, err);
+    for (int k = 0; !err->status && k < 2; k++)
         if (!mean_of(means[k], &sides[k])) mean_of(means[k], &sides[1 - k]);
-    for (int k = 0; !st && k < 2; k++) {
-        st = pull_push(&sides[k], 1, means[k], err);
-        if (!st) memcpy(profile + 4 * (size_t)(k * half), sides[k].v, (size_t)half * 4 * sizeof *profile);
+    for (int k = 0; !err->status && k < 2; k++) {
+        if (!pull_push(&sides[k], 1, means[k], err))
+            memcpy(profile + 4 * (size_t)(k * half), sides[k].v, (size_t)half * 4 * sizeof *profile);
     }
     free(sides[0].v);
     free(sides[1].v);
-    return st;
+    return err->status;
 }
 
 /* Leaves the residual in pixels that are known. */
@@ -229,18 +227,13 @@ enum status outdoors_guess(struct outdoors *o, struct err *err)
     const double darkest = darkest_of(o);
     struct level known = {0};
     float *profile = calloc((size_t)o->height, 4 * sizeof *profile);
-    enum status st = profile ? ST_OK : err_nomem(err, "a profile", (size_t)o->height * 16);
-    if (!st && darkest > 0) {
-        st = level_init(&known, o->width, o->height, err);
-        if (!st) take_logarithms(&known, o, darkest);
-        if (!st) st = find_profile(profile, &known, err);
-        if (!st) {
-            subtract_profile(&known, profile);
-            st = pull_push(&known, FADE, none, err);
-        }
-        if (!st) fill(o, &known, profile);
+    if (!profile) err_nomem(err, "a profile", (size_t)o->height * 16);
+    if (!err->status && darkest > 0 && !level_init(&known, o->width, o->height, err)) {
+        take_logarithms(&known, o, darkest);
+        if (!find_profile(profile, &known, err)) subtract_profile(&known, profile);
+        if (!err->status && !pull_push(&known, FADE, none, err)) fill(o, &known, profile);
     }
     free(known.v);
     free(profile);
-    return st;
+    return err->status;
 }

@@ -38,15 +38,14 @@ enum status estimate_print(FILE *to, const char *list, const struct bake_scene *
 {
     struct work_estimate work = {0};
     struct textfile t = {0};
-    enum status st = textfile_open(&t, list, err);
-    while (!st && textfile_next(&t)) {
+    textfile_open(&t, list, err);
+    while (!err->status && textfile_next(&t)) {
         char *photo = NULL;
-        st = textfile_word(&t, "photo", &photo, err);
-        if (!st) st = textfile_end(&t, err);
-        if (!st) st = estimate_viewpoint(&work, scene, photo, err);
+        if (!textfile_word(&t, "photo", &photo, err) && !textfile_end(&t, err))
+            estimate_viewpoint(&work, scene, photo, err);
     }
     textfile_release(&t);
-    if (st || !work.items) return st;
+    if (err->status || !work.items) return err->status;
     fprintf(to, "textures: %d viewpoint%s: about %.0f s of one core in all, up to %.0f MiB a viewpoint, %.0f MB\n",
             work.items, work.items == 1 ? "" : "s", work.seconds, work.mib, 1e-6 * work.bytes);
     work_estimate_print(to, &work);

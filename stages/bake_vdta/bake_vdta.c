@@ -41,10 +41,11 @@ struct files {
 static enum status read_scene(struct bake_scene *s, const struct files *f, struct provenance *prov, struct err *err)
 {
     const struct scene_files files = {.views = s->views, .axes = f->axes, .mesh = f->model};
-    enum status st = scene_inputs_read(
-        &s->in, SCENE_CAMERAS | SCENE_LENSES | SCENE_AXES | SCENE_MODEL_VIEWS | SCENE_MESH, &files, prov, err);
-    if (!st) st = surfaces_make(&s->surfaces, &s->in.mesh, 1, err);
-    return st;
+    return scene_inputs_read(&s->in, SCENE_CAMERAS | SCENE_LENSES | SCENE_AXES | SCENE_MODEL_VIEWS | SCENE_MESH, &files,
+                             prov, err) ||
+                   surfaces_make(&s->surfaces, &s->in.mesh, 1, err)
+               ? err->status
+               : ST_OK;
 }
 
 static void release_scene(struct bake_scene *s)
@@ -68,13 +69,13 @@ static enum status bake_one(void *ctx, int i, struct err *err)
 
 static enum status run(struct job *j, struct err *err)
 {
-    enum status st = read_scene(j->scene, j->files, j->prov, err);
-    if (!st && j->files->estimate)
-        st = estimate_print(stdout, j->files->estimate, j->scene, err);
-    else if (!st)
-        st = cli_make_each(&j->files->photos, bake_one, j, err);
+    read_scene(j->scene, j->files, j->prov, err);
+    if (!err->status && j->files->estimate)
+        estimate_print(stdout, j->files->estimate, j->scene, err);
+    else if (!err->status)
+        cli_make_each(&j->files->photos, bake_one, j, err);
     release_scene(j->scene);
-    return st;
+    return err->status;
 }
 
 int main(int argc, char **argv)

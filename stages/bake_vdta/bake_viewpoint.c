@@ -109,20 +109,20 @@ static enum status add_tiles(struct work *w, struct err *err)
     const struct bake_scene *s = w->scene;
     float *levels = NULL;
     size_t count = 0, room = 0;
-    enum status st = ST_OK;
-    for (int k = 0; !st && k < w->own_count; k++) {
+    for (int k = 0; !err->status && k < w->own_count; k++) {
         struct own_view own = {0};
         const struct view *camera = &s->in.set.views[w->own[k]];
-        st = own_view_read(&own, s->views, s->ids, s->reveal, camera, s->in.axes.scale, &s->params->texture, w->prov,
-                           err);
-        if (!st) st = add_levels(&levels, &count, &room, &own.view, err);
-        if (!st && is_withheld(s)) memset(own.view.own, SOURCE_NONE, (size_t)camera->width * (size_t)camera->height);
-        if (!st) st = view_tiles_add(&w->bake, &own, k, !strcmp(s->params->reveal, "all"), err);
+        if (!own_view_read(&own, s->views, s->ids, s->reveal, camera, s->in.axes.scale, &s->params->texture, w->prov,
+                           err))
+            add_levels(&levels, &count, &room, &own.view, err);
+        if (!err->status && is_withheld(s))
+            memset(own.view.own, SOURCE_NONE, (size_t)camera->width * (size_t)camera->height);
+        if (!err->status) view_tiles_add(&w->bake, &own, k, !strcmp(s->params->reveal, "all"), err);
         own_view_release(&own);
     }
     w->bake.white = white_of(levels, count);
     free(levels);
-    return st;
+    return err->status;
 }
 
 /* Sources, and own texels made from them. */
@@ -134,39 +134,38 @@ static enum status set_sources(struct work *w, struct err *err)
     int *groups = malloc(n * sizeof *groups);
     bool *own = calloc(n, sizeof *own);
     uint32_t made[MAX_OWN] = {0};
-    enum status st = names && groups && own ? ST_OK : err_nomem(err, "sources", n * sizeof *names);
-    for (int i = 0; !st && i < w->view_count; i++) {
+    if (!names || !groups || !own) err_nomem(err, "sources", n * sizeof *names);
+    for (int i = 0; !err->status && i < w->view_count; i++) {
         names[i] = s->in.set.views[w->views[i]].name;
         groups[i] = photo_of_view(&s->in.set, &s->in.lenses, w->views[i]);
         for (int k = 0; k < w->own_count; k++)
             if (w->own[k] == w->views[i]) own[i] = true, made[k] = (uint32_t)i, w->bake.own_group = groups[i];
     }
-    if (!st) st = bake_set_sources(&w->bake, names, groups, own, w->view_count, err);
-    for (size_t i = 0; !st && i < w->bake.texel_count; i++)
+    if (!err->status) bake_set_sources(&w->bake, names, groups, own, w->view_count, err);
+    for (size_t i = 0; !err->status && i < w->bake.texel_count; i++)
         if (w->bake.made[i] >= ATLAS_VIEWS) w->bake.made[i] = ATLAS_VIEWS + made[w->bake.made[i] - ATLAS_VIEWS];
     free(names);
     free(groups);
     free(own);
-    return st;
+    return err->status;
 }
 
 static enum status read_sources(struct work *w, uint64_t *bytes, struct err *err)
 {
     const struct bake_scene *s = w->scene;
     struct progress progress;
-    enum status st = ST_OK;
     progress_start(&progress, w->photo, w->view_count, "views");
-    for (int i = 0; !st && i < w->view_count; i++) {
+    for (int i = 0; !err->status && i < w->view_count; i++) {
         struct source_view view = {0};
-        st = source_view_read(&view, NULL, s->views, s->ids, &s->in.set.views[w->views[i]], &s->params->texture,
-                              w->prov, err);
-        if (!st && !(is_withheld(s) && is_own(w, w->views[i]))) bake_add_view(&w->bake, &view, i);
+        source_view_read(&view, NULL, s->views, s->ids, &s->in.set.views[w->views[i]], &s->params->texture, w->prov,
+                         err);
+        if (!err->status && !(is_withheld(s) && is_own(w, w->views[i]))) bake_add_view(&w->bake, &view, i);
         *bytes += view.bytes;
         source_view_release(&view);
         progress_add(&progress, 1);
     }
     progress_end(&progress);
-    return st;
+    return err->status;
 }
 
 /* What atlas.txt says beside tiles and pages. */
@@ -194,19 +193,21 @@ static enum status write_deps(const struct work *w, const char *folder, struct e
     const size_t n = (size_t)w->view_count;
     char(*paths)[FILE_PATH] = malloc((2 * n + 1) * sizeof *paths);
     const char **files = malloc((2 * n + 1) * sizeof *files);
-    enum status st = paths && files ? product_path_in(paths[2 * n], folder, PRODUCT_ATLAS, NULL, err)
-                                    : err_nomem(err, "file names", 2 * n * sizeof *paths);
-    for (size_t i = 0; !st && i < n; i++) {
+    if (paths && files)
+        product_path_in(paths[2 * n], folder, PRODUCT_ATLAS, NULL, err);
+    else
+        err_nomem(err, "file names", 2 * n * sizeof *paths);
+    for (size_t i = 0; !err->status && i < n; i++) {
         const struct product_key key = {.view = s->in.set.views[w->views[i]].name};
-        st = product_path_in(paths[2 * i], s->views, PRODUCT_VIEW, &key, err);
-        if (!st) st = product_path_in(paths[2 * i + 1], s->ids, PRODUCT_IDS, &key, err);
+        if (!product_path_in(paths[2 * i], s->views, PRODUCT_VIEW, &key, err))
+            product_path_in(paths[2 * i + 1], s->ids, PRODUCT_IDS, &key, err);
         files[2 * i] = paths[2 * i];
         files[2 * i + 1] = paths[2 * i + 1];
     }
-    if (!st) st = make_deps_write(w->deps, paths[2 * n], files, (int)(2 * n), err);
+    if (!err->status) make_deps_write(w->deps, paths[2 * n], files, (int)(2 * n), err);
     free(paths);
     free(files);
-    return st;
+    return err->status;
 }
 
 static enum status write_all(struct work *w, uint64_t bytes, const struct bake_totals *t, struct err *err)
@@ -214,13 +215,12 @@ static enum status write_all(struct work *w, uint64_t bytes, const struct bake_t
     char folder[FILE_PATH];
     struct atlas a = {0};
     size_t texels = 0;
-    enum status st = file_path(folder, w->scene->out, w->photo, "", err);
-    if (!st) st = describe(&a, w, err);
-    if (!st) st = bake_write_pages(&a, &w->bake, NULL, folder, w->prov, &texels, err);
-    if (!st && w->deps) st = write_deps(w, folder, err);
-    if (!st) st = atlas_write_list(&a, folder, w->prov, err);
+    if (!file_path(folder, w->scene->out, w->photo, "", err) && !describe(&a, w, err))
+        bake_write_pages(&a, &w->bake, NULL, folder, w->prov, &texels, err);
+    if (!err->status && w->deps) write_deps(w, folder, err);
+    if (!err->status) atlas_write_list(&a, folder, w->prov, err);
     atlas_release(&a);
-    if (!st)
+    if (!err->status)
         log_note(
             "%s: %.2f million texels, %.1f %% original, %.1f %% warped, %.1f %% synthesised, %.1f %% of faces that "
             "no view shows; pages of %.2f million; %d views and %.1f MiB read; largest residual %.1e",
@@ -229,7 +229,7 @@ static enum status write_all(struct work *w, uint64_t bytes, const struct bake_t
             100.0 * (double)t->synthesised / (double)(t->texels ? t->texels : 1),
             100.0 * (double)t->by_default / (double)(t->texels ? t->texels : 1), 1e-6 * (double)texels, w->view_count,
             (double)bytes / (1 << 20), t->residual);
-    return st;
+    return err->status;
 }
 
 static enum status bake_work(struct work *w, struct err *err)
@@ -237,18 +237,14 @@ static enum status bake_work(struct work *w, struct err *err)
     struct bake_totals totals = {0};
     uint64_t bytes = 0;
     w->bake = (struct bake){.surfaces = &w->scene->surfaces, .params = &w->scene->params->texture, .has_centre = true};
-    enum status st = find_own_views(w, err);
-    if (!st) w->bake.centre = w->scene->in.set.views[w->own[0]].center;
-    if (!st) st = add_tiles(w, err);
-    if (!st) st = sources_choose(&w->views, &w->view_count, w->scene, w->own, w->own_count, &w->bake, w->prov, err);
-    if (!st) st = set_sources(w, err);
-    if (!st) st = bake_list_texels(&w->bake, err);
-    if (!st) st = read_sources(w, &bytes, err);
-    if (!st) st = bake_find_gains(&w->bake, err);
-    if (!st) bake_choose(&w->bake);
-    if (!st) st = bake_composite(&w->bake, &totals, err);
-    if (!st) st = write_all(w, bytes, &totals, err);
-    return st;
+    if (!find_own_views(w, err)) w->bake.centre = w->scene->in.set.views[w->own[0]].center;
+    if (!err->status && !add_tiles(w, err) &&
+        !sources_choose(&w->views, &w->view_count, w->scene, w->own, w->own_count, &w->bake, w->prov, err) &&
+        !set_sources(w, err) && !bake_list_texels(&w->bake, err) && !read_sources(w, &bytes, err) &&
+        !bake_find_gains(&w->bake, err))
+        bake_choose(&w->bake);
+    if (!err->status && !bake_composite(&w->bake, &totals, err)) write_all(w, bytes, &totals, err);
+    return err->status;
 }
 
 enum status viewpoint_bake(const struct bake_scene *scene, const char *photo, const char *deps, struct provenance *prov,
@@ -256,10 +252,10 @@ enum status viewpoint_bake(const struct bake_scene *scene, const char *photo, co
 {
     struct work w = {.scene = scene, .photo = photo, .deps = deps, .prov = prov};
     const int shared = prov->count;
-    enum status st = bake_work(&w, err);
+    bake_work(&w, err);
     /* the next viewpoint has other inputs */
     provenance_keep(prov, shared);
     free(w.views);
     bake_release(&w.bake);
-    return st;
+    return err->status;
 }

@@ -15,12 +15,12 @@ enum status own_view_read(struct own_view *v, const char *views, const char *ids
     const size_t pixels = (size_t)camera->width * (size_t)camera->height;
     char path[FILE_PATH];
     *v = (struct own_view){0};
-    enum status st = source_view_read(&v->view, &v->ids, views, ids, camera, params, prov, err);
-    if (!st) st = product_path_in(path, reveal, PRODUCT_REVEAL, &(struct product_key){.view = camera->name}, err);
-    if (!st) st = view_reveal_read(&v->reveal, camera, path, prov, err);
-    if (!st) scale_depth(v->ids.z, pixels, scale);
-    for (int k = 0; !st && k < v->reveal.layers; k++) scale_depth(v->reveal.z[k], pixels, scale);
-    return st;
+    if (!source_view_read(&v->view, &v->ids, views, ids, camera, params, prov, err) &&
+        !product_path_in(path, reveal, PRODUCT_REVEAL, &(struct product_key){.view = camera->name}, err) &&
+        !view_reveal_read(&v->reveal, camera, path, prov, err))
+        scale_depth(v->ids.z, pixels, scale);
+    for (int k = 0; !err->status && k < v->reveal.layers; k++) scale_depth(v->reveal.z[k], pixels, scale);
+    return err->status;
 }
 
 void own_view_release(struct own_view *v)

@@ -69,9 +69,8 @@ static enum status add_samples(struct samples *s, const struct bake *b, const st
 
 static enum status find_samples(struct samples *s, const struct bake *b, struct err *err)
 {
-    enum status st = ST_OK;
-    for (int i = 0; !st && i < b->tile_count; i++) st = add_samples(s, b, &b->tiles[i], err);
-    return st;
+    for (int i = 0; !err->status && i < b->tile_count; i++) add_samples(s, b, &b->tiles[i], err);
+    return err->status;
 }
 
 /* Whether the photo of a view has a pixel where the view shows p. */
@@ -124,17 +123,16 @@ static enum status find_offers(struct offers *o, const struct samples *samples, 
 {
     struct face_index index = {0};
     char path[FILE_PATH];
-    enum status st = product_path_in(path, s->ids, PRODUCT_FACE_INDEX, NULL, err);
-    if (!st) st = face_index_open(&index, path, prov, err);
-    for (size_t first = 0, last; !st && first < samples->count; first = last) {
+    if (!product_path_in(path, s->ids, PRODUCT_FACE_INDEX, NULL, err)) face_index_open(&index, path, prov, err);
+    for (size_t first = 0, last; !err->status && first < samples->count; first = last) {
         struct face_views shown_by = {0};
         for (last = first; last < samples->count && samples->list[last].id == samples->list[first].id;) last++;
-        st = face_index_load(&shown_by, &index, samples->list[first].id, err);
-        if (!st) st = add_offers(o, samples, first, last, &shown_by, s, b, own_focal, err);
+        if (!face_index_load(&shown_by, &index, samples->list[first].id, err))
+            add_offers(o, samples, first, last, &shown_by, s, b, own_focal, err);
         face_views_release(&shown_by);
     }
     face_index_close(&index);
-    return st;
+    return err->status;
 }
 
 /* Takes the view that is worth most, again and again. */
@@ -167,17 +165,17 @@ enum status sources_choose(int **views, int *count, const struct bake_scene *sce
     double *worth = malloc(((size_t)n + 1) * sizeof *worth);
     *views = malloc(((size_t)n + 1) * sizeof **views);
     *count = 0;
-    enum status st = taken && worth && *views ? ST_OK : err_nomem(err, "views", (size_t)n * sizeof *worth);
-    if (!st) st = find_samples(&samples, b, err);
-    if (!st && samples.count) qsort(samples.list, samples.count, sizeof *samples.list, compare_samples);
-    if (!st) st = find_offers(&offers, &samples, scene, b, scene->in.set.views[own[0]].fx, prov, err);
-    for (int i = 0; !st && i < own_count; i++) taken[own[i]] = true;
-    if (!st) take_views(taken, n, &offers, &samples, scene->params->texture.max_sources, worth);
-    for (int v = 0; !st && v < n; v++)
+    if (!taken || !worth || !*views) err_nomem(err, "views", (size_t)n * sizeof *worth);
+    if (!err->status) find_samples(&samples, b, err);
+    if (!err->status && samples.count) qsort(samples.list, samples.count, sizeof *samples.list, compare_samples);
+    if (!err->status) find_offers(&offers, &samples, scene, b, scene->in.set.views[own[0]].fx, prov, err);
+    for (int i = 0; !err->status && i < own_count; i++) taken[own[i]] = true;
+    if (!err->status) take_views(taken, n, &offers, &samples, scene->params->texture.max_sources, worth);
+    for (int v = 0; !err->status && v < n; v++)
         if (taken[v]) (*views)[(*count)++] = v;
     free(samples.list);
     free(offers.list);
     free(taken);
     free(worth);
-    return st;
+    return err->status;
 }

@@ -94,10 +94,10 @@ static enum status dilate(uint8_t *inside, int width, int height, int margin, st
     float *squared = malloc(pixels * sizeof *squared);
     if (!squared) return err_nomem(err, "distances", pixels * sizeof *squared);
     for (size_t i = 0; i < pixels; i++) inside[i] = !inside[i];
-    enum status st = distance_squared(squared, inside, width, height, err);
-    for (size_t i = 0; !st && i < pixels; i++) inside[i] = squared[i] <= (float)(margin * margin);
+    distance_squared(squared, inside, width, height, err);
+    for (size_t i = 0; !err->status && i < pixels; i++) inside[i] = squared[i] <= (float)(margin * margin);
     free(squared);
-    return st;
+    return err->status;
 }
 
 /* A tile of the view's raster over a surface; false: the camera sees the surface from behind, or along it. */
@@ -148,8 +148,7 @@ static enum status add_part(const struct builder *w, int surface, struct rectang
     struct bake *b = w->b;
     struct bake_tile t;
     if (!make_tile(&t, w, surface, r)) return ST_OK;
-    enum status st = bake_add_tile(b, t, err);
-    if (st) return st;
+    if (bake_add_tile(b, t, err)) return err->status;
     const struct bake_tile *added = &b->tiles[b->tile_count - 1];
     const int id = b->surfaces->list[surface].id, width = w->v->view.camera.width;
     for (int y = 0; y < t.raster.height; y++)
@@ -181,16 +180,15 @@ static enum status add_parts(const struct builder *w, int surface, struct rectan
 {
     struct rectangle r = full;
     const int stride = full.x1 - full.x0, step = ATLAS_PAGE - 1;
-    enum status st = ST_OK;
     if (!shrink(&r, wanted)) return ST_OK;
-    for (int y = r.y0; !st && (y == r.y0 || y + 1 < r.y1); y += step)
-        for (int x = r.x0; !st && (x == r.x0 || x + 1 < r.x1); x += step) {
+    for (int y = r.y0; !err->status && (y == r.y0 || y + 1 < r.y1); y += step)
+        for (int x = r.x0; !err->status && (x == r.x0 || x + 1 < r.x1); x += step) {
             const struct rectangle part = {x, y, x + ATLAS_PAGE < r.x1 ? x + ATLAS_PAGE : r.x1,
                                            y + ATLAS_PAGE < r.y1 ? y + ATLAS_PAGE : r.y1};
-            st = add_part(w, surface, part, wanted + (size_t)(y - full.y0) * (size_t)stride + (size_t)(x - full.x0),
-                          stride, err);
+            add_part(w, surface, part, wanted + (size_t)(y - full.y0) * (size_t)stride + (size_t)(x - full.x0), stride,
+                     err);
         }
-    return st;
+    return err->status;
 }
 
 /* seen: the rectangle of what is seen or revealed. */
@@ -216,12 +214,12 @@ static enum status add_surface(const struct builder *w, int surface, struct rect
     surface_fill(area, w->b->surfaces, surface, &t.raster);
     /* an edit's part of the face is known by its seen texels alone */
     for (size_t i = 0; i < pixels; i++) area[i] |= m.inside[i];
-    enum status st = dilate(area, width, height, GUTTER, err);
-    if (!st && !w->all) st = dilate(wanted, width, height, MARGIN, err);
-    for (size_t i = 0; !st && i < pixels; i++) wanted[i] = area[i] && (w->all || wanted[i]);
-    if (!st) st = add_parts(w, surface, r, wanted, err);
+    dilate(area, width, height, GUTTER, err);
+    if (!err->status && !w->all) dilate(wanted, width, height, MARGIN, err);
+    for (size_t i = 0; !err->status && i < pixels; i++) wanted[i] = area[i] && (w->all || wanted[i]);
+    if (!err->status) add_parts(w, surface, r, wanted, err);
     free(m.inside);
-    return st;
+    return err->status;
 }
 
 enum status view_tiles_add(struct bake *b, const struct own_view *v, int view, bool all, struct err *err)
@@ -232,9 +230,8 @@ enum status view_tiles_add(struct bake *b, const struct own_view *v, int view, b
     if (!seen) return err_nomem(err, "faces", (size_t)b->surfaces->count * sizeof *seen);
     for (int i = 0; i < b->surfaces->count; i++) seen[i] = (struct rectangle){frame.x1, frame.y1, 0, 0};
     for_pixels(&w, frame, grow, seen);
-    enum status st = ST_OK;
-    for (int i = 0; !st && i < b->surfaces->count; i++)
-        if (all || seen[i].x0 < seen[i].x1) st = add_surface(&w, i, seen[i], err);
+    for (int i = 0; !err->status && i < b->surfaces->count; i++)
+        if (all || seen[i].x0 < seen[i].x1) add_surface(&w, i, seen[i], err);
     free(seen);
-    return st;
+    return err->status;
 }

@@ -38,10 +38,11 @@ static enum status read_models(struct vita_scene *s, const struct files *f, stru
     s->models = calloc((size_t)f->edits.count + 1, sizeof *s->models);
     if (!s->models) return err_nomem(err, "models", (size_t)f->edits.count * sizeof *s->models);
     s->model_count = 1 + f->edits.count;
-    enum status st = solid_mesh_read(&s->models[0], f->model, prov, err);
-    for (int i = 0; !st && i < f->edits.count; i++)
-        st = solid_mesh_read(&s->models[1 + i], f->edits.items[i], prov, err);
-    return st ? st : surfaces_make(&s->surfaces, s->models, s->model_count, err);
+    solid_mesh_read(&s->models[0], f->model, prov, err);
+    for (int i = 0; !err->status && i < f->edits.count; i++)
+        solid_mesh_read(&s->models[1 + i], f->edits.items[i], prov, err);
+    if (!err->status) surfaces_make(&s->surfaces, s->models, s->model_count, err);
+    return err->status;
 }
 
 static enum status read_index(struct vita_scene *s, struct provenance *prov, struct err *err)
@@ -50,22 +51,20 @@ static enum status read_index(struct vita_scene *s, struct provenance *prov, str
     struct face_index index = {0};
     s->shown_by = calloc((size_t)s->surfaces.count + 1, sizeof *s->shown_by);
     if (!s->shown_by) return err_nomem(err, "faces", (size_t)s->surfaces.count * sizeof *s->shown_by);
-    enum status st = product_path_in(path, s->ids, PRODUCT_FACE_INDEX, NULL, err);
-    if (!st) st = face_index_open(&index, path, prov, err);
-    for (int i = 0; !st && i < s->surfaces.count; i++)
-        st = face_index_load(&s->shown_by[i], &index, s->surfaces.list[i].id, err);
+    if (!product_path_in(path, s->ids, PRODUCT_FACE_INDEX, NULL, err)) face_index_open(&index, path, prov, err);
+    for (int i = 0; !err->status && i < s->surfaces.count; i++)
+        face_index_load(&s->shown_by[i], &index, s->surfaces.list[i].id, err);
     face_index_close(&index);
-    return st;
+    return err->status;
 }
 
 static enum status read_scene(struct vita_scene *s, const struct files *f, struct provenance *prov, struct err *err)
 {
     const struct scene_files files = {.views = s->views, .axes = f->axes};
-    enum status st =
-        scene_inputs_read(&s->in, SCENE_CAMERAS | SCENE_LENSES | SCENE_AXES | SCENE_MODEL_VIEWS, &files, prov, err);
-    if (!st) st = read_models(s, f, prov, err);
-    if (!st) st = read_index(s, prov, err);
-    return st;
+    if (!scene_inputs_read(&s->in, SCENE_CAMERAS | SCENE_LENSES | SCENE_AXES | SCENE_MODEL_VIEWS, &files, prov, err) &&
+        !read_models(s, f, prov, err))
+        read_index(s, prov, err);
+    return err->status;
 }
 
 static void release_scene(struct vita_scene *s)

@@ -81,13 +81,12 @@ enum status ortho_tiles_add(struct bake *b, int surface, double side, struct err
 {
     const struct ortho o = make_ortho(b->surfaces, surface, side);
     const int step = ATLAS_PAGE - 1;
-    enum status st = ST_OK;
-    for (int y = 0; !st && (y == 0 || y + 1 < o.height); y += step)
-        for (int x = 0; !st && (x == 0 || x + 1 < o.width); x += step) {
+    for (int y = 0; !err->status && (y == 0 || y + 1 < o.height); y += step)
+        for (int x = 0; !err->status && (x == 0 || x + 1 < o.width); x += step) {
             const int width = o.width - x < ATLAS_PAGE ? o.width - x : ATLAS_PAGE;
             const int height = o.height - y < ATLAS_PAGE ? o.height - y : ATLAS_PAGE;
-            st = bake_add_tile(b, make_tile(&o, &b->surfaces->list[surface], surface, side, x, y, width, height), err);
-            if (!st) st = want_area(b, &b->tiles[b->tile_count - 1], err);
+            if (!bake_add_tile(b, make_tile(&o, &b->surfaces->list[surface], surface, side, x, y, width, height), err))
+                want_area(b, &b->tiles[b->tile_count - 1], err);
         }
-    return st;
+    return err->status;
 }

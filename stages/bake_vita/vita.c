@@ -121,17 +121,16 @@ static enum status set_sources(struct bake *b, const struct vita_scene *s, const
 static enum status read_views(struct work *w, struct bake *b, const int *view_of, struct err *err)
 {
     const struct vita_scene *s = w->scene;
-    enum status st = ST_OK;
-    for (int i = 0; !st && i < b->source_count; i++) {
+    for (int i = 0; !err->status && i < b->source_count; i++) {
         const struct view *camera = &s->in.set.views[view_of[i]];
         struct source_view view = {0};
-        st = source_view_read(&view, NULL, s->views, s->ids, camera, &s->params->texture, w->prov, err);
-        if (!st) bake_add_view(b, &view, i);
+        if (!source_view_read(&view, NULL, s->views, s->ids, camera, &s->params->texture, w->prov, err))
+            bake_add_view(b, &view, i);
         w->bytes += view.bytes;
         source_view_release(&view);
         progress_add(&w->progress, 1);
     }
-    return st;
+    return err->status;
 }
 
 /* The radiance below which WHITE_SHARE of the texels lie. */
@@ -163,22 +162,18 @@ static enum status bake_batch(struct work *w, int first, int last, bool *taken, 
     struct bake b = {.surfaces = &s->surfaces, .params = &s->params->texture, .white = 1};
     struct bake_totals totals = {0};
     int view_of[MAX_BATCH_VIEWS], source_of[MAX_BATCH_VIEWS];
-    enum status st = ST_OK;
-    for (int i = first; !st && i < last; i++)
-        st = ortho_tiles_add(&b, i, is_seen(s, i) ? w->side : UNSEEN * w->side, err);
+    for (int i = first; !err->status && i < last; i++)
+        ortho_tiles_add(&b, i, is_seen(s, i) ? w->side : UNSEEN * w->side, err);
     choose_views(taken, s, first, last);
-    if (!st) st = set_sources(&b, s, taken, view_of, err);
-    if (!st) st = bake_list_texels(&b, err);
-    if (!st) st = read_views(w, &b, view_of, err);
-    if (!st) st = find_white(&b, err);
-    if (!st) st = bake_find_gains(&b, err);
-    if (!st) bake_choose(&b);
-    if (!st) st = bake_composite(&b, &totals, err);
+    if (!err->status && !set_sources(&b, s, taken, view_of, err) && !bake_list_texels(&b, err) &&
+        !read_views(w, &b, view_of, err) && !find_white(&b, err) && !bake_find_gains(&b, err))
+        bake_choose(&b);
+    if (!err->status) bake_composite(&b, &totals, err);
     for (int i = 0; i < b.source_count; i++) source_of[i] = w->source_of_view[view_of[i]];
-    if (!st) st = bake_write_pages(&w->atlas, &b, source_of, s->out, w->prov, &w->texels, err);
-    if (!st) add_totals(&w->totals, &totals);
+    if (!err->status && !bake_write_pages(&w->atlas, &b, source_of, s->out, w->prov, &w->texels, err))
+        add_totals(&w->totals, &totals);
     bake_release(&b);
-    return st;
+    return err->status;
 }
 
 /* ---------------------------------------------------------------------------------------------------- all batches */
@@ -228,14 +223,13 @@ enum status vita_bake(const struct vita_scene *scene, struct provenance *prov, s
     int *batches = malloc(((size_t)scene->surfaces.count + 2) * sizeof *batches);
     bool *taken = malloc((views + 1) * sizeof *taken);
     w.source_of_view = malloc((views + 1) * sizeof *w.source_of_view);
-    enum status st = batches && taken && w.source_of_view ? ST_OK : err_nomem(err, "views", views * sizeof(int));
-    const int count = st ? 0 : cut_batches(batches, &w);
-    if (!st) st = list_sources(&w, batches, count, taken, err);
-    if (!st) progress_start(&w.progress, "textures", count_views(scene, batches, count, taken), "views");
-    for (int i = 0; !st && i < count; i++) st = bake_batch(&w, batches[i], batches[i + 1], taken, err);
-    if (!st) progress_end(&w.progress);
-    if (!st) st = atlas_write_list(&w.atlas, scene->out, prov, err);
-    if (!st) {
+    if (!batches || !taken || !w.source_of_view) err_nomem(err, "views", views * sizeof(int));
+    const int count = err->status ? 0 : cut_batches(batches, &w);
+    if (!err->status && !list_sources(&w, batches, count, taken, err))
+        progress_start(&w.progress, "textures", count_views(scene, batches, count, taken), "views");
+    for (int i = 0; !err->status && i < count; i++) bake_batch(&w, batches[i], batches[i + 1], taken, err);
+    if (!err->status) progress_end(&w.progress);
+    if (!err->status && !atlas_write_list(&w.atlas, scene->out, prov, err)) {
         const double all = w.totals.texels ? (double)w.totals.texels : 1;
         log_note("%.2f million texels of %.3g, %.1f %% from views, %.1f %% synthesised, %.1f %% of faces that no view "
                  "shows; "
@@ -248,5 +242,5 @@ enum status vita_bake(const struct vita_scene *scene, struct provenance *prov, s
     free(w.source_of_view);
     free(batches);
     free(taken);
-    return st;
+    return err->status;
 }

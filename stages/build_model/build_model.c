@@ -48,14 +48,14 @@ static enum status read_frame(struct job *j, struct err *err)
     const struct scene_files files = {.views = j->views, .axes = j->axes}, held = {.views = j->held};
     const struct placer_views views[2] = {{&j->in.set, &j->in.lenses}, {&j->held_in.set, &j->held_in.lenses}};
     struct point_cloud cloud = {0};
-    enum status st =
-        scene_inputs_read(&j->in, SCENE_AXES | (j->views ? SCENE_POINTS | SCENE_LENSES : 0), &files, &j->prov, err);
-    if (st || !j->views) return st;
-    if (j->held) st = scene_inputs_read(&j->held_in, SCENE_CAMERAS | SCENE_LENSES, &held, &j->prov, err);
-    if (!st && j->points) st = point_cloud_read(&cloud, j->points, &j->prov, err);
-    if (!st) st = place_init(&j->placer, views, &j->in.axes, j->points ? &cloud : NULL, &j->params, err);
+    if (scene_inputs_read(&j->in, SCENE_AXES | (j->views ? SCENE_POINTS | SCENE_LENSES : 0), &files, &j->prov, err) ||
+        !j->views)
+        return err->status;
+    if (j->held) scene_inputs_read(&j->held_in, SCENE_CAMERAS | SCENE_LENSES, &held, &j->prov, err);
+    if (!err->status && j->points) point_cloud_read(&cloud, j->points, &j->prov, err);
+    if (!err->status) place_init(&j->placer, views, &j->in.axes, j->points ? &cloud : NULL, &j->params, err);
     point_cloud_release(&cloud);
-    return st;
+    return err->status;
 }
 
 static enum status write_model(struct job *j, const struct plan *plan, const struct solid_mesh *mesh,
@@ -81,15 +81,14 @@ static enum status write_edit(struct job *j, const struct solid_mesh *mesh, cons
     struct texture_map map = {0};
     struct object_list objects = {0};
     char path[FILE_PATH];
-    enum status st = texture_rules_make(&map, mesh, base, plan, err);
-    if (!st) st = objects_make(&objects, plan, j->scene, err);
-    if (!st) st = product_path_in(path, j->out, PRODUCT_OBJECTS, NULL, err);
-    if (!st) st = object_list_write(&objects, path, &j->prov, err);
-    if (!st) st = product_path_in(path, j->out, PRODUCT_TEXTURE_MAP, NULL, err);
-    if (!st) st = texture_map_write(&map, path, &j->prov, err);
+    if (!texture_rules_make(&map, mesh, base, plan, err) && !objects_make(&objects, plan, j->scene, err) &&
+        !product_path_in(path, j->out, PRODUCT_OBJECTS, NULL, err) &&
+        !object_list_write(&objects, path, &j->prov, err) &&
+        !product_path_in(path, j->out, PRODUCT_TEXTURE_MAP, NULL, err))
+        texture_map_write(&map, path, &j->prov, err);
     object_list_release(&objects);
     texture_map_release(&map);
-    return st;
+    return err->status;
 }
 
 /* The objects of all edits, if the scene has such a file, then the edit. */
@@ -123,29 +122,25 @@ static enum status build(struct job *j, struct err *err)
     struct solid_mesh mesh = {0}, base = {0};
     struct unite_log log = {0};
     struct solid_report report = {0};
-    enum status st = read_frame(j, err);
-    if (!st) {
+    if (!read_frame(j, err)) {
         plan_begin(&plan, &j->in.axes);
-        st = edit_chain_apply_model(&plan, j->script, placer, &j->prov, err);
+        edit_chain_apply_model(&plan, j->script, placer, &j->prov, err);
     }
-    if (!st && j->edit) st = apply_edit(j, &plan, err);
-    if (!st) st = layout_solids(&solids, &plan, err);
-    if (!st && !solids.count)
-        st = err_set(err, ST_DATA, "%s: the script describes no solid; add walls, rooms or boxes.", j->script);
-    if (!st) st = unite_solids(&mesh, &solids, &log, err);
-    if (!st) st = solid_mesh_check(&mesh, 0, &report, err);
-    if (!st && j->base) st = solid_mesh_read(&base, j->base, &j->prov, err);
-    if (!st && j->base) st = solid_mesh_carry_ids(&mesh, &base, err);
-    if (!st && j->base) st = write_edit(j, &mesh, &base, &plan, err);
-    if (!st) st = write_model(j, &plan, &mesh, &log, err);
-    if (!st) log_summary(&plan, &mesh, &log, &report);
+    if (!err->status && j->edit) apply_edit(j, &plan, err);
+    if (!err->status && !layout_solids(&solids, &plan, err) && !solids.count)
+        err_set(err, ST_DATA, "%s: the script describes no solid; add walls, rooms or boxes.", j->script);
+    if (!err->status && !unite_solids(&mesh, &solids, &log, err)) solid_mesh_check(&mesh, 0, &report, err);
+    if (!err->status && j->base && !solid_mesh_read(&base, j->base, &j->prov, err) &&
+        !solid_mesh_carry_ids(&mesh, &base, err))
+        write_edit(j, &mesh, &base, &plan, err);
+    if (!err->status && !write_model(j, &plan, &mesh, &log, err)) log_summary(&plan, &mesh, &log, &report);
     solid_report_release(&report);
     unite_log_release(&log);
     solid_mesh_release(&base);
     solid_mesh_release(&mesh);
     solid_list_release(&solids);
     plan_release(&plan);
-    return st;
+    return err->status;
 }
 
 static enum status overlay(struct job *j, struct err *err)
@@ -155,26 +150,24 @@ static enum status overlay(struct job *j, struct err *err)
     struct photo photo = {0};
     char path[FILE_PATH];
     int at = 0;
-    enum status st = read_frame(j, err);
-    if (!st) st = solid_mesh_read(&mesh, j->model, NULL, err);
-    if (!st) {
+    if (!read_frame(j, err)) solid_mesh_read(&mesh, j->model, NULL, err);
+    if (!err->status) {
         while (at < j->placer.photo_count && strcmp(j->placer.photos[at].id, j->overlay)) at++;
-        if (at == j->placer.photo_count)
-            st = err_set(err, ST_DATA, "%s/lenses.txt has no photo %s.", j->views, j->overlay);
+        if (at == j->placer.photo_count) err_set(err, ST_DATA, "%s/lenses.txt has no photo %s.", j->views, j->overlay);
     }
-    if (!st) st = photo_record_read(&record, j->records, j->overlay, NULL, err);
-    if (!st) st = file_path(path, j->photos, record.file, "", err);
-    if (!st) st = photo_read(&photo, path, err);
-    if (!st && (photo.info.width != j->placer.photos[at].camera.lens.width ||
-                photo.info.height != j->placer.photos[at].camera.lens.height))
-        st = err_set(err, ST_DATA, "%s has %d x %d pixels, but its lens is for %d x %d; make the views again.", path,
-                     photo.info.width, photo.info.height, j->placer.photos[at].camera.lens.width,
-                     j->placer.photos[at].camera.lens.height);
-    if (!st) st = overlay_write(&mesh, &j->placer.photos[at].camera, &photo, j->params.overlay_side, j->out, err);
+    if (!err->status && !photo_record_read(&record, j->records, j->overlay, NULL, err) &&
+        !file_path(path, j->photos, record.file, "", err))
+        photo_read(&photo, path, err);
+    if (!err->status && (photo.info.width != j->placer.photos[at].camera.lens.width ||
+                         photo.info.height != j->placer.photos[at].camera.lens.height))
+        err_set(err, ST_DATA, "%s has %d x %d pixels, but its lens is for %d x %d; make the views again.", path,
+                photo.info.width, photo.info.height, j->placer.photos[at].camera.lens.width,
+                j->placer.photos[at].camera.lens.height);
+    if (!err->status) overlay_write(&mesh, &j->placer.photos[at].camera, &photo, j->params.overlay_side, j->out, err);
     photo_release(&photo);
     photo_record_release(&record);
     solid_mesh_release(&mesh);
-    return st;
+    return err->status;
 }
 
 static enum status check_usage(const struct job *j, struct err *err)

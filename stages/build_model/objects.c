@@ -46,9 +46,8 @@ static enum status check_mesh(struct object *o, const struct plan_object *p, con
     if (!path_is_file(path))
         return err_set(err, ST_DATA, "%s:%d: found no file %s, wanted the mesh of the object %s; copy it there.",
                        p->path, p->line, path, p->name);
-    enum status st = hash_file(o->hash, path, err);
-    if (!st) st = obj_mesh_read(&mesh, path, err);
-    if (st) return err_context(err, "%s:%d", p->path, p->line);
+    if (!hash_file(o->hash, path, err)) obj_mesh_read(&mesh, path, err);
+    if (err->status) return err_context(err, "%s:%d", p->path, p->line);
     obj_mesh_move(&mesh, o->matrix);
     log_place(o, &mesh);
     obj_mesh_release(&mesh);

@@ -67,9 +67,9 @@ enum status plan_write(const struct plan *plan, const char *path, const struct p
     const locale_t before = uselocale(scan_c_locale());
     print_plan(plan, f.fp);
     uselocale(before);
-    const enum status st = outfile_commit(&f, err);
+    outfile_commit(&f, err);
     outfile_discard(&f);
-    return st;
+    return err->status;
 }
 
 enum status plan_merged_write(const struct unite_log *log, const char *path, const struct provenance *prov,
@@ -84,7 +84,7 @@ enum status plan_merged_write(const struct unite_log *log, const char *path, con
         else
             fprintf(f.fp, "hidden %s\n", n->name);
     }
-    const enum status st = outfile_commit(&f, err);
+    outfile_commit(&f, err);
     outfile_discard(&f);
-    return st;
+    return err->status;
 }

@@ -30,8 +30,7 @@ static enum status write_choice(const struct film_effect *list, int count, const
                                 const struct provenance *prov, struct err *err)
 {
     struct outfile f = {0};
-    enum status st = product_begin(&f, PRODUCT_EFFECT_CHOICE, path, prov, err);
-    if (!st) {
+    if (!product_begin(&f, PRODUCT_EFFECT_CHOICE, path, prov, err)) {
         fputs("EFFECTS :=", f.fp);
         for (int i = 0; i < count; i++) {
             char name[EFFECT_NAME_SIZE];
@@ -39,10 +38,10 @@ static enum status write_choice(const struct film_effect *list, int count, const
             fprintf(f.fp, " %s", name);
         }
         fputc('\n', f.fp);
-        st = outfile_commit(&f, err);
+        outfile_commit(&f, err);
     }
     outfile_discard(&f);
-    return st;
+    return err->status;
 }
 
 static enum status choose(const char *subjects, const char *which, const char *out, const struct choice_params *params,
@@ -52,21 +51,21 @@ static enum status choose(const char *subjects, const char *which, const char *o
     struct subject_list found = {0};
     int count = 0;
 
-    enum status st = subject_list_read(&found, subjects, prov, err);
+    subject_list_read(&found, subjects, prov, err);
     const struct scene_subjects scene = film_scene_subjects(&found);
-    if (!st && !strcmp(which, "all")) {
+    if (!err->status && !strcmp(which, "all")) {
         count = film_effects_list(list, &scene);
         log_note("%d subject%s: %d effects", scene.count, scene.count == 1 ? "" : "s", count);
-    } else if (!st) {
+    } else if (!err->status) {
         char name[EFFECT_NAME_SIZE];
         list[count++] = film_effect_draw(&scene, (uint64_t)params->seed);
         film_effect_name(&list[0], name);
         log_note("%d subject%s: %s, chosen at random (seed %d)", scene.count, scene.count == 1 ? "" : "s", name,
                  params->seed);
     }
-    if (!st) st = write_choice(list, count, out, prov, err);
+    if (!err->status) write_choice(list, count, out, prov, err);
     subject_list_release(&found);
-    return st;
+    return err->status;
 }
 
 /* Checks that the effect suits some scene; nothing is known yet about this one. */

@@ -30,20 +30,20 @@ static enum status read_wanted(int **wanted, int *count, const struct job *job, 
     struct lens_list lenses = {0};
     char path[FILE_PATH];
     if (!job->subjects) return ST_OK;
-    enum status st = region_list_read(&regions, job->subjects, prov, err);
-    if (!st) st = product_path_in(path, job->views, PRODUCT_LENSES, NULL, err);
-    if (!st) st = lens_list_read(&lenses, path, prov, err);
-    if (!st && !(*wanted = malloc(((size_t)regions.count + 1) * sizeof **wanted)))
-        st = err_nomem(err, "the views of subjects", (size_t)regions.count * sizeof **wanted);
-    for (int i = 0; !st && i < regions.count; i++) {
+    if (!region_list_read(&regions, job->subjects, prov, err) &&
+        !product_path_in(path, job->views, PRODUCT_LENSES, NULL, err))
+        lens_list_read(&lenses, path, prov, err);
+    if (!err->status && !(*wanted = malloc(((size_t)regions.count + 1) * sizeof **wanted)))
+        err_nomem(err, "the views of subjects", (size_t)regions.count * sizeof **wanted);
+    for (int i = 0; !err->status && i < regions.count; i++) {
         struct subject s = {0};
         double part;
-        st = region_in_view(&s, &(*wanted)[(*count)++], &part, &regions.regions[i], job->subjects, set, &lenses, err);
+        region_in_view(&s, &(*wanted)[(*count)++], &part, &regions.regions[i], job->subjects, set, &lenses, err);
         subject_release(&s);
     }
     lens_list_release(&lenses);
     region_list_release(&regions);
-    return st;
+    return err->status;
 }
 
 static const char *view_name(const void *ctx, int i)
@@ -76,17 +76,17 @@ static enum status choose_cluster(struct view_cluster *c, const struct job *job,
                                   struct provenance *prov, struct err *err)
 {
     int *wanted = NULL, count = 0, seed = -1;
-    enum status st = any ? ST_OK : find_seed(&seed, job->params.around, set, err);
-    if (!st) st = read_wanted(&wanted, &count, job, set, prov, err);
-    if (!st) st = view_cluster_find(c, set, seed, wanted, count, &job->params, err);
-    if (!st && c->member)
+    if (!any) find_seed(&seed, job->params.around, set, err);
+    if (!err->status && !read_wanted(&wanted, &count, job, set, prov, err))
+        view_cluster_find(c, set, seed, wanted, count, &job->params, err);
+    if (!err->status && c->member)
         log_cluster(c, set);
-    else if (!st)
+    else if (!err->status)
         log_warn("films use all views: no cluster of them %ssees points from different places%s",
                  count ? "contains those with the subjects and " : "",
                  count ? "; draw the subjects in photos that show each other's subjects" : "");
     free(wanted);
-    return st;
+    return err->status;
 }
 
 static enum status choose(const struct job *job, struct provenance *prov, struct err *err)
@@ -94,19 +94,19 @@ static enum status choose(const struct job *job, struct provenance *prov, struct
     struct camera_set set = {0};
     struct view_cluster cluster = {0};
     const bool any = !strcmp(job->params.around, "auto"), all = !strcmp(job->params.around, "all");
-    enum status st = camera_set_read(&set, job->views, prov, err);
-    if (!st && !all) {
+    camera_set_read(&set, job->views, prov, err);
+    if (!err->status && !all) {
         const double agreement = views_agreement(&set);
         const bool all_round = agreement < job->params.min_agreement;
         if (any && all_round)
             log_note("the %d views look all round: the mean of their directions has length %.2f", set.view_count,
                      agreement);
-        if (!any || all_round) st = choose_cluster(&cluster, job, &set, any, prov, err);
+        if (!any || all_round) choose_cluster(&cluster, job, &set, any, prov, err);
     }
-    if (!st) st = film_views_write(&set, cluster.member, job->out, prov, err);
+    if (!err->status) film_views_write(&set, cluster.member, job->out, prov, err);
     view_cluster_release(&cluster);
     camera_set_release(&set);
-    return st;
+    return err->status;
 }
 
 int main(int argc, char **argv)

@@ -243,27 +243,27 @@ enum status view_cluster_find(struct view_cluster *best, const struct camera_set
     struct cluster_search s;
     *best = (struct view_cluster){0};
     bool *member = malloc((size_t)set->view_count + 1);
-    enum status st = search_init(&s, set, params, err);
-    if (!st && !member) st = err_nomem(err, "views", (size_t)set->view_count);
-    for (int i = seed < 0 ? 0 : seed; !st && i < (seed < 0 ? set->view_count : seed + 1); i++) {
+    search_init(&s, set, params, err);
+    if (!err->status && !member) err_nomem(err, "views", (size_t)set->view_count);
+    for (int i = seed < 0 ? 0 : seed; !err->status && i < (seed < 0 ? set->view_count : seed + 1); i++) {
         struct view_cluster c = {.seed = i};
         bool has_wanted = true;
-        st = find_members(&c, &s, err);
-        for (int k = 0; !st && k < wanted_count; k++) has_wanted = has_wanted && s.member[wanted[k]];
-        if (st || !has_wanted) continue;
+        find_members(&c, &s, err);
+        for (int k = 0; !err->status && k < wanted_count; k++) has_wanted = has_wanted && s.member[wanted[k]];
+        if (err->status || !has_wanted) continue;
         measure(&c, &s);
         if (!(score_of(&c) > score_of(best))) continue;
         memcpy(member, s.member, (size_t)set->view_count);
         *best = c;
     }
-    if (!st && score_of(best) > 0) {
+    if (!err->status && score_of(best) > 0) {
         best->member = member;
     } else {
         *best = (struct view_cluster){0};
         free(member);
     }
     search_release(&s);
-    return st;
+    return err->status;
 }
 
 void view_cluster_release(struct view_cluster *c)

@@ -58,16 +58,15 @@ static enum status read_frame(unsigned char *rgb, const struct camera_path *path
     struct image linear = {0};
     char file[FILE_PATH];
 
-    enum status st = product_path_in(file, folder, PRODUCT_FRAME, &(struct product_key){.frame = camera->name}, err);
-    if (!st && access(file, F_OK))
-        st = err_set(err, ST_DATA, "frame %d of %d is missing: there is no %s; render it, then encode again.",
-                     frame + 1, path->frame_count, file);
-    if (!st) st = exr_read(&exr, file, names, 3, err);
-    if (!st && (exr.width != camera->width || exr.height != camera->height))
-        st = err_set(err, ST_DATA, "%s has %d x %d pixels, wanted %d x %d as in the path; render it again.", file,
-                     exr.width, exr.height, camera->width, camera->height);
-    if (!st) st = image_init(&linear, exr.width, exr.height, 3, err);
-    if (!st) {
+    product_path_in(file, folder, PRODUCT_FRAME, &(struct product_key){.frame = camera->name}, err);
+    if (!err->status && access(file, F_OK))
+        err_set(err, ST_DATA, "frame %d of %d is missing: there is no %s; render it, then encode again.", frame + 1,
+                path->frame_count, file);
+    if (!err->status) exr_read(&exr, file, names, 3, err);
+    if (!err->status && (exr.width != camera->width || exr.height != camera->height))
+        err_set(err, ST_DATA, "%s has %d x %d pixels, wanted %d x %d as in the path; render it again.", file, exr.width,
+                exr.height, camera->width, camera->height);
+    if (!err->status && !image_init(&linear, exr.width, exr.height, 3, err)) {
         for (size_t k = 0; k < 3; k++) {
             const struct exr_plane *plane = exr_find(&exr, names[k]);
             const size_t pixels = (size_t)exr.width * (size_t)exr.height;
@@ -77,7 +76,7 @@ static enum status read_frame(unsigned char *rgb, const struct camera_path *path
     }
     image_release(&linear);
     exr_image_release(&exr);
-    return st;
+    return err->status;
 }
 
 static enum status check_result(int code, int written, const struct camera_path *path, const char *file,
@@ -115,22 +114,20 @@ enum status encode_frames(const struct camera_path *path, const char *folder, co
     if (!(rgb = malloc(bytes))) return err_nomem(err, "a frame", bytes);
 
     progress_start(&progress, "encoding", path->frame_count, "frames");
-    enum status st = read_frame(rgb, path, 0, folder, err);
-    if (!st) st = outfile_open(&file, out, err);
-    if (!st) st = start_encoder(&ffmpeg, path, file.temp, params, err);
-    if (!st) {
+    if (!read_frame(rgb, path, 0, folder, err) && !outfile_open(&file, out, err) &&
+        !start_encoder(&ffmpeg, path, file.temp, params, err)) {
         while (fwrite(rgb, 1, bytes, ffmpeg.input) == bytes && ++written < path->frame_count) {
             progress_add(&progress, 1);
-            if ((st = read_frame(rgb, path, written, folder, err))) break;
+            if (read_frame(rgb, path, written, folder, err)) break;
         }
-        if (st)
+        if (err->status)
             process_kill(&ffmpeg);
-        else if (!(st = process_finish(&ffmpeg, &code, err)))
-            st = check_result(code, written, path, file.temp, err);
+        else if (!process_finish(&ffmpeg, &code, err))
+            check_result(code, written, path, file.temp, err);
     }
     progress_end(&progress);
-    if (!st) st = outfile_commit(&file, err);
+    if (!err->status) outfile_commit(&file, err);
     outfile_discard(&file);
     free(rgb);
-    return st;
+    return err->status;
 }

@@ -94,15 +94,14 @@ static void split(struct piece *in, struct piece *out, const struct piece *piece
 static enum status cut_out(struct piece *inside, struct pieces *rest, const struct piece *piece, const struct cut *cuts,
                            int count, struct err *err)
 {
-    enum status st = ST_OK;
     *inside = *piece;
-    for (int i = 0; !st && i < count && inside->count; i++) {
+    for (int i = 0; !err->status && i < count && inside->count; i++) {
         struct piece in, out;
         split(&in, &out, inside, &cuts[i]);
-        st = add_piece(rest, &out, err);
+        add_piece(rest, &out, err);
         *inside = in;
     }
-    return st;
+    return err->status;
 }
 
 static enum status add_triangles(const struct work *w, const struct piece *piece, int material, const double (*uv)[2],
@@ -193,23 +192,21 @@ static void tile_cuts(struct cut cuts[4], const struct atlas_tile *tile, const s
 /* The parts of the pieces that the rule's tiles hold; the others stay in `pieces`. */
 static enum status take_place(const struct work *w, struct pieces *pieces, const struct texture_rule *rule)
 {
-    enum status st = ST_OK;
-    for (int t = atlas_first_tile(w->vita, rule->from); !st && t < w->vita->tile_count; t++) {
+    for (int t = atlas_first_tile(w->vita, rule->from); !w->err->status && t < w->vita->tile_count; t++) {
         const struct atlas_tile *tile = &w->vita->tiles[t];
         if (tile->face != rule->from) break;
         const struct page_map m = page_map_of(tile, rule);
         struct pieces rest = {0};
         struct cut cuts[4];
         tile_cuts(cuts, tile, &m);
-        for (int i = 0; !st && i < pieces->count; i++) {
+        for (int i = 0; !w->err->status && i < pieces->count; i++) {
             struct piece inside;
-            st = cut_out(&inside, &rest, &pieces->list[i], cuts, 4, w->err);
-            if (!st) st = add_textured(w, &inside, tile, &m);
+            if (!cut_out(&inside, &rest, &pieces->list[i], cuts, 4, w->err)) add_textured(w, &inside, tile, &m);
         }
         free(pieces->list);
         *pieces = rest;
     }
-    return st;
+    return w->err->status;
 }
 
 /* How far a piece's middle lies outside of a tile, texels. */
@@ -232,31 +229,29 @@ static enum status add_clamped(const struct work *w, const struct piece *piece, 
 {
     struct pieces parts = {0};
     struct cut cuts[4];
-    enum status st = add_piece(&parts, piece, w->err);
+    add_piece(&parts, piece, w->err);
     tile_cuts(cuts, tile, m);
-    for (int c = 0; !st && c < 4; c++) {
+    for (int c = 0; !w->err->status && c < 4; c++) {
         struct pieces next = {0};
-        for (int i = 0; !st && i < parts.count; i++) {
+        for (int i = 0; !w->err->status && i < parts.count; i++) {
             struct piece in, out;
             split(&in, &out, &parts.list[i], &cuts[c]);
-            st = add_piece(&next, &in, w->err);
-            if (!st) st = add_piece(&next, &out, w->err);
+            if (!add_piece(&next, &in, w->err)) add_piece(&next, &out, w->err);
         }
         free(parts.list);
         parts = next;
     }
-    for (int i = 0; !st && i < parts.count; i++) st = add_textured(w, &parts.list[i], tile, m);
+    for (int i = 0; !w->err->status && i < parts.count; i++) add_textured(w, &parts.list[i], tile, m);
     free(parts.list);
-    return st;
+    return w->err->status;
 }
 
 /* All pieces, from the border of the nearest tile; they stay if the face has no tile. */
 static enum status take_edge(const struct work *w, struct pieces *pieces, const struct texture_rule *rule)
 {
     const int first = atlas_first_tile(w->vita, rule->from);
-    enum status st = ST_OK;
     if (first == w->vita->tile_count || w->vita->tiles[first].face != rule->from) return ST_OK;
-    for (int i = 0; !st && i < pieces->count; i++) {
+    for (int i = 0; !w->err->status && i < pieces->count; i++) {
         const struct atlas_tile *best = NULL;
         struct page_map best_map = {{{0}}};
         double least = INFINITY;
@@ -268,18 +263,18 @@ static enum status take_edge(const struct work *w, struct pieces *pieces, const 
             best = &w->vita->tiles[t];
             best_map = m;
         }
-        if (best) st = add_clamped(w, &pieces->list[i], best, &best_map);
+        if (best) add_clamped(w, &pieces->list[i], best, &best_map);
     }
     pieces->count = 0;
-    return st;
+    return w->err->status;
 }
 
 static enum status take_plain(const struct work *w, struct pieces *pieces, int material, const float *albedo)
 {
-    enum status st = ST_OK;
-    for (int i = 0; !st && i < pieces->count; i++) st = add_triangles(w, &pieces->list[i], material, NULL, albedo);
+    for (int i = 0; !w->err->status && i < pieces->count; i++)
+        add_triangles(w, &pieces->list[i], material, NULL, albedo);
     pieces->count = 0;
-    return st;
+    return w->err->status;
 }
 
 /* ---------------------------------------------------------------------------------------------------------- rules */
@@ -305,22 +300,20 @@ static enum status take_limited(const struct work *w, struct pieces *pieces, con
     const double turn = vec3_dot(vec3_cross(vec3_sub(q[1], q[0]), vec3_sub(q[2], q[0])), n) < 0 ? -1 : 1;
     struct pieces inside = {0}, rest = {0};
     struct cut cuts[4];
-    enum status st = ST_OK;
     for (int i = 0; i < 4; i++) {
         const struct vec3 side = vec3_scale(vec3_cross(n, vec3_sub(q[(i + 1) % 4], q[i])), turn);
         cuts[i] = (struct cut){side, vec3_dot(side, q[i])};
     }
-    for (int i = 0; !st && i < pieces->count; i++) {
+    for (int i = 0; !w->err->status && i < pieces->count; i++) {
         struct piece in;
-        st = cut_out(&in, &rest, &pieces->list[i], cuts, 4, w->err);
-        if (!st) st = add_piece(&inside, &in, w->err);
+        if (!cut_out(&in, &rest, &pieces->list[i], cuts, 4, w->err)) add_piece(&inside, &in, w->err);
     }
-    if (!st) st = take(w, &inside, rule);
-    for (int i = 0; !st && i < inside.count; i++) st = add_piece(&rest, &inside.list[i], w->err);
+    if (!w->err->status) take(w, &inside, rule);
+    for (int i = 0; !w->err->status && i < inside.count; i++) add_piece(&rest, &inside.list[i], w->err);
     free(inside.list);
     free(pieces->list);
     *pieces = rest;
-    return st;
+    return w->err->status;
 }
 
 static enum status add_face(const struct work *w, const struct solid_triangles *triangles,
@@ -337,17 +330,20 @@ static enum status add_face(const struct work *w, const struct solid_triangles *
     const struct texture_face *of = map ? texture_map_find(map, id, at) : NULL;
     const struct texture_rule *rules = of ? of->rules : self;
     struct pieces pieces = {0};
-    enum status st = ST_OK;
-    for (int i = triangles->first[w->face]; !st && i < triangles->first[w->face + 1]; i++) {
+    for (int i = triangles->first[w->face]; !w->err->status && i < triangles->first[w->face + 1]; i++) {
         struct piece piece = {.count = 3};
         for (int k = 0; k < 3; k++) piece.p[k] = w->mesh->vertices[triangles->triangles[i].v[k]].p;
-        st = add_piece(&pieces, &piece, w->err);
+        add_piece(&pieces, &piece, w->err);
     }
-    for (int r = 0; !st && pieces.count && r < (of ? of->rule_count : 2); r++)
-        st = rules[r].limited ? take_limited(w, &pieces, &rules[r]) : take(w, &pieces, &rules[r]);
-    if (!st) st = take_plain(w, &pieces, MATERIAL_COLOUR, no_texture);
+    for (int r = 0; !w->err->status && pieces.count && r < (of ? of->rule_count : 2); r++) {
+        if (rules[r].limited)
+            take_limited(w, &pieces, &rules[r]);
+        else
+            take(w, &pieces, &rules[r]);
+    }
+    if (!w->err->status) take_plain(w, &pieces, MATERIAL_COLOUR, no_texture);
     free(pieces.list);
-    return st;
+    return w->err->status;
 }
 
 enum status export_faces_make(struct export_faces *faces, const struct solid_mesh *mesh, const struct texture_map *map,
@@ -357,12 +353,14 @@ enum status export_faces_make(struct export_faces *faces, const struct solid_mes
     struct work w = {faces, mesh, vita, 0, err};
     *faces = (struct export_faces){0};
     faces->first = calloc((size_t)mesh->face_count + 1, sizeof *faces->first);
-    enum status st = faces->first ? solid_mesh_triangulate(&triangles, mesh, err)
-                                  : err_nomem(err, "faces", (size_t)mesh->face_count * sizeof *faces->first);
-    for (w.face = 0; !st && w.face < mesh->face_count; w.face++) {
-        st = add_face(&w, &triangles, map);
+    if (faces->first)
+        solid_mesh_triangulate(&triangles, mesh, err);
+    else
+        err_nomem(err, "faces", (size_t)mesh->face_count * sizeof *faces->first);
+    for (w.face = 0; !err->status && w.face < mesh->face_count; w.face++) {
+        add_face(&w, &triangles, map);
         faces->first[w.face + 1] = faces->count;
     }
     solid_triangles_release(&triangles);
-    return st;
+    return err->status;
 }

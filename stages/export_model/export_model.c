@@ -37,10 +37,10 @@ static enum status (*const writers[])(const struct export_scene *s, struct err *
 static enum status export_all(struct job *j, struct provenance *prov, struct err *err)
 {
     double exposure = 1;
-    enum status st = read_inputs(j, prov, err);
-    if (!st) st = export_faces_make(&j->faces, &j->in.mesh, j->map ? &j->texture : NULL, &j->atlas, err);
-    if (!st) st = export_exposure(&exposure, &j->atlas, j->vita, err);
-    if (!st) st = export_pages_write(&j->atlas, j->vita, exposure, j->out, prov, err);
+    if (!read_inputs(j, prov, err) &&
+        !export_faces_make(&j->faces, &j->in.mesh, j->map ? &j->texture : NULL, &j->atlas, err) &&
+        !export_exposure(&exposure, &j->atlas, j->vita, err))
+        export_pages_write(&j->atlas, j->vita, exposure, j->out, prov, err);
     const struct export_scene scene = {.name = j->name,
                                        .mesh = &j->in.mesh,
                                        .faces = &j->faces,
@@ -51,8 +51,8 @@ static enum status export_all(struct job *j, struct provenance *prov, struct err
                                        .metric = j->in.axes.metric,
                                        .out = j->out,
                                        .prov = prov};
-    for (int i = EXPORT_COUNT - 1; !st && i >= 0; i--) st = writers[i](&scene, err);
-    return st;
+    for (int i = EXPORT_COUNT - 1; !err->status && i >= 0; i--) writers[i](&scene, err);
+    return err->status;
 }
 
 int main(int argc, char **argv)

@@ -22,20 +22,20 @@ enum status export_exposure(double *exposure, const struct atlas *a, const char 
     size_t count = 0, room = 1;
     for (int i = 0; i < a->page_count; i++) room += (size_t)a->page_sizes[i][0] * (size_t)a->page_sizes[i][1];
     values = malloc(room * sizeof *values);
-    enum status st = values ? ST_OK : err_nomem(err, "texels", room * sizeof *values);
-    for (int i = 0; !st && i < a->page_count; i++) {
+    if (!values) err_nomem(err, "texels", room * sizeof *values);
+    for (int i = 0; !err->status && i < a->page_count; i++) {
         struct atlas_page page = {0};
-        st = atlas_page_read(&page, a, i, folder, NULL, err);
-        for (size_t k = 0; !st && k < (size_t)page.width * (size_t)page.height; k++) {
+        atlas_page_read(&page, a, i, folder, NULL, err);
+        for (size_t k = 0; !err->status && k < (size_t)page.width * (size_t)page.height; k++) {
             const float *rgb = page.rgb + 3 * k, most = fmaxf(rgb[0], fmaxf(rgb[1], rgb[2]));
             if (page.source[k] != ATLAS_NONE && most > 0) values[count++] = most;
         }
         atlas_page_release(&page);
     }
-    if (!st && count) sort_floats(values, count);
-    *exposure = !st && count ? 1 / (double)values[(size_t)((1 - saturated) * (double)(count - 1))] : 1;
+    if (!err->status && count) sort_floats(values, count);
+    *exposure = !err->status && count ? 1 / (double)values[(size_t)((1 - saturated) * (double)(count - 1))] : 1;
     free(values);
-    return st;
+    return err->status;
 }
 
 struct nearest { /* of each texel of a tile: where its nearest texel is; -1: not known yet */
@@ -77,8 +77,8 @@ static enum status fill_tile(struct atlas_page *page, const struct atlas_tile *t
 {
     const size_t texels = (size_t)t->width * (size_t)t->height;
     struct nearest n = {malloc(texels * sizeof *n.x), malloc(texels * sizeof *n.y), t->width, t->height};
-    enum status st = n.x && n.y ? ST_OK : err_nomem(err, "texels of a tile", texels * sizeof *n.x);
-    for (int y = 0; !st && y < t->height; y++)
+    if (!n.x || !n.y) err_nomem(err, "texels of a tile", texels * sizeof *n.x);
+    for (int y = 0; !err->status && y < t->height; y++)
         for (int x = 0; x < t->width; x++) {
             const size_t i = (size_t)y * (size_t)t->width + (size_t)x;
             const bool texel =
@@ -86,8 +86,8 @@ static enum status fill_tile(struct atlas_page *page, const struct atlas_tile *t
             n.x[i] = texel ? (int16_t)x : -1;
             n.y[i] = texel ? (int16_t)y : -1;
         }
-    if (!st) sweep(&n);
-    for (int y = 0; !st && y < t->height; y++)
+    if (!err->status) sweep(&n);
+    for (int y = 0; !err->status && y < t->height; y++)
         for (int x = 0; x < t->width; x++) {
             const size_t i = (size_t)y * (size_t)t->width + (size_t)x;
             if (n.x[i] < 0) continue;
@@ -97,7 +97,7 @@ static enum status fill_tile(struct atlas_page *page, const struct atlas_tile *t
         }
     free(n.x);
     free(n.y);
-    return st;
+    return err->status;
 }
 
 static enum status write_page(const struct atlas_page *page, double exposure, const char *path, struct err *err)
@@ -105,28 +105,32 @@ static enum status write_page(const struct atlas_page *page, double exposure, co
     const size_t texels = (size_t)page->width * (size_t)page->height;
     struct image im = {0};
     unsigned char *bytes = malloc(3 * texels);
-    enum status st = bytes ? image_init(&im, page->width, page->height, 3, err) : err_nomem(err, "a page", 3 * texels);
-    for (size_t i = 0; !st && i < 3 * texels; i++) im.data[i] = (float)(exposure * (double)page->rgb[i]);
-    if (!st) image_to_srgb8(&im, bytes);
-    if (!st) st = png_write(path, bytes, page->width, page->height, 3, err);
+    if (bytes)
+        image_init(&im, page->width, page->height, 3, err);
+    else
+        err_nomem(err, "a page", 3 * texels);
+    for (size_t i = 0; !err->status && i < 3 * texels; i++) im.data[i] = (float)(exposure * (double)page->rgb[i]);
+    if (!err->status) {
+        image_to_srgb8(&im, bytes);
+        png_write(path, bytes, page->width, page->height, 3, err);
+    }
     image_release(&im);
     free(bytes);
-    return st;
+    return err->status;
 }
 
 enum status export_pages_write(const struct atlas *a, const char *folder, double exposure, const char *out,
                                struct provenance *prov, struct err *err)
 {
-    enum status st = ST_OK;
-    for (int i = 0; !st && i < a->page_count; i++) {
+    for (int i = 0; !err->status && i < a->page_count; i++) {
         struct atlas_page page = {0};
         char path[FILE_PATH];
-        st = atlas_page_read(&page, a, i, folder, prov, err);
-        for (int t = 0; !st && t < a->tile_count; t++)
-            if (a->tiles[t].page == i) st = fill_tile(&page, &a->tiles[t], err);
-        if (!st) st = product_path_in(path, out, PRODUCT_EXPORT_PAGE, &(struct product_key){.page = i}, err);
-        if (!st) st = write_page(&page, exposure, path, err);
+        atlas_page_read(&page, a, i, folder, prov, err);
+        for (int t = 0; !err->status && t < a->tile_count; t++)
+            if (a->tiles[t].page == i) fill_tile(&page, &a->tiles[t], err);
+        if (!err->status && !product_path_in(path, out, PRODUCT_EXPORT_PAGE, &(struct product_key){.page = i}, err))
+            write_page(&page, exposure, path, err);
         atlas_page_release(&page);
     }
-    return st;
+    return err->status;
 }

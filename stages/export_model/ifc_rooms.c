@@ -71,8 +71,7 @@ static enum status put_slots(struct ifc *f, int room, int plane, int element, do
 {
     const struct model_plan *plan = f->s->plan;
     const struct model_room *r = &plan->rooms[room];
-    enum status st = ST_OK;
-    for (int i = 0; !st && i < plan->slot_count; i++) {
+    for (int i = 0; !f->err->status && i < plan->slot_count; i++) {
         const struct model_slot *o = &plan->slots[i];
         const bool second = plane == 1 && is_under(o, r, 0);
         char name[300];
@@ -82,10 +81,10 @@ static enum status put_slots(struct ifc *f, int room, int plane, int element, do
         if (second) continue;
         const double size[2] = {o->high[0] - o->low[0], o->high[1] - o->low[1]};
         const int shape = o->closed ? ifc_filling_shape(f, o->skylight ? "skylight" : "hatch", o->name) : 0;
-        st = ifc_filling(f, o->skylight ? "IFCWINDOW" : "IFCDOOR", o->name, opening, shape, size,
-                         o->skylight ? ".SKYLIGHT." : ".TRAPDOOR.");
+        ifc_filling(f, o->skylight ? "IFCWINDOW" : "IFCDOOR", o->name, opening, shape, size,
+                    o->skylight ? ".SKYLIGHT." : ".TRAPDOOR.");
     }
-    return st;
+    return f->err->status;
 }
 
 /* ------------------------------------------------------------------------------------------------------------ rooms */
@@ -101,16 +100,15 @@ static int put_slab(struct ifc *f, const char *name, const double (*corners)[2],
 static enum status put_ceiling(struct ifc *f, int room, const struct ceiling_parts *parts, double slab)
 {
     const struct model_room *r = &f->s->plan->rooms[room];
-    enum status st = ST_OK;
-    for (int k = 0; !st && k < r->ceilings; k++) {
+    for (int k = 0; !f->err->status && k < r->ceilings; k++) {
         char name[300];
         if (!parts->counts[k]) continue;
         snprintf(name, sizeof name, "%s ceiling%s", r->name, k ? " 2" : "");
         const int id =
             put_slab(f, name, (const double(*)[2])parts->corners[k], parts->counts[k], r->ceiling[k], slab, ",.ROOF.");
-        st = put_slots(f, room, k, id, slab);
+        put_slots(f, room, k, id, slab);
     }
-    return st;
+    return f->err->status;
 }
 
 struct faces { /* of a polyhedron */
@@ -187,34 +185,31 @@ static enum status put_room(struct ifc *f, int room, const struct ceiling_parts 
 enum status ifc_rooms(struct ifc *f)
 {
     const struct model_plan *plan = f->s->plan;
-    enum status st = ST_OK;
-    for (int i = 0; !st && i < plan->room_count; i++) {
+    for (int i = 0; !f->err->status && i < plan->room_count; i++) {
         const struct model_room *r = &plan->rooms[i];
         struct ceiling_parts parts = {0};
         double ceiling = INFINITY;
         for (int k = 0; k < r->corner_count; k++)
             ceiling = fmin(ceiling, model_room_ceiling(r, r->corners[k].x, r->corners[k].y));
         if (r->corner_count < 3 || !(ceiling > r->floor)) continue;
-        st = ceiling_parts_make(&parts, r, f->err);
-        if (!st) st = put_room(f, i, &parts);
+        if (!ceiling_parts_make(&parts, r, f->err)) put_room(f, i, &parts);
         ceiling_parts_release(&parts);
     }
-    return st;
+    return f->err->status;
 }
 
 /* ------------------------------------------------------------------------------------------------------------ boxes */
 
 enum status ifc_boxes(struct ifc *f)
 {
-    enum status st = ST_OK;
-    for (int i = 0; !st && i < f->s->plan->box_count; i++) {
+    for (int i = 0; !f->err->status && i < f->s->plan->box_count; i++) {
         const struct model_box *b = &f->s->plan->boxes[i];
         const double turn = b->turn * M_PI / 180, dx = b->high.x - b->low.x, dy = b->high.y - b->low.y;
         const struct vec3 x = vec3_make(cos(turn), sin(turn), 0), y = vec3_make(-x.y, x.x, 0);
         struct vec3 at = vec3_make((b->low.x + b->high.x) / 2, (b->low.y + b->high.y) / 2, b->low.z);
         at = vec3_sub(at, vec3_add(vec3_scale(x, dx / 2), vec3_scale(y, dy / 2)));
         const int shape = ifc_box(f, at, x, dx, dy, b->high.z - b->low.z);
-        st = ifc_keep(f, &f->contained, ifc_element(f, "IFCBUILDINGELEMENTPROXY", b->name, shape, ",.NOTDEFINED."));
+        ifc_keep(f, &f->contained, ifc_element(f, "IFCBUILDINGELEMENTPROXY", b->name, shape, ",.NOTDEFINED."));
     }
-    return st;
+    return f->err->status;
 }

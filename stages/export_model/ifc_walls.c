@@ -114,20 +114,22 @@ static int put_body(struct ifc *f, int wall)
 enum status ifc_walls(struct ifc *f)
 {
     const struct model_plan *plan = f->s->plan;
-    enum status st = ST_OK;
-    for (int i = 0; !st && i < plan->wall_count; i++) {
+    for (int i = 0; !f->err->status && i < plan->wall_count; i++) {
         const struct model_wall *w = &plan->walls[i];
         const bool along_axis = is_along_axis(w);
         const int shape = along_axis ? put_body(f, i) : ifc_faces_of(f, "wall", w->name);
         if (f->err->status) return f->err->status;
         if (!shape) continue;
         const int id = ifc_element(f, "IFCWALL", w->name, shape, ",.STANDARD.");
-        st = ifc_keep(f, &f->contained, id);
-        for (int o = 0; !st && o < plan->opening_count; o++) {
+        ifc_keep(f, &f->contained, id);
+        for (int o = 0; !f->err->status && o < plan->opening_count; o++) {
             if (plan->openings[o].wall != i) continue;
             /* the faces of a wall along no axis have its openings */
-            st = along_axis ? put_opening(f, &plan->openings[o], w, id) : put_filling(f, &plan->openings[o], w, 0);
+            if (along_axis)
+                put_opening(f, &plan->openings[o], w, id);
+            else
+                put_filling(f, &plan->openings[o], w, 0);
         }
     }
-    return st;
+    return f->err->status;
 }

@@ -124,21 +124,16 @@ static enum status add_crossings(struct search *s, const struct room_side *a, co
 
 static enum status find_breaks(struct search *s, const double reach[2])
 {
-    enum status st = ST_OK;
-    for (int i = 0; !st && i < s->side_count; i++) {
+    for (int i = 0; !s->err->status && i < s->side_count; i++) {
         const struct room_side *a = &s->sides[i];
-        for (int e = 0; !st && e < 2; e++) {
-            st = add_break(s, a->s[e], reach);
-            if (!st) st = add_break(s, a->s[e] + (e ? a->beyond[e] : -a->beyond[e]), reach);
-        }
-        for (int k = i; !st && k < s->side_count; k++) {
-            st = add_crossings(s, a, &s->sides[k], reach);
-            if (!st) st = add_break(s, (a->s[1] + s->sides[k].s[0]) / 2, reach);
-            if (!st) st = add_break(s, (a->s[0] + s->sides[k].s[1]) / 2, reach);
-        }
+        for (int e = 0; !s->err->status && e < 2; e++)
+            if (!add_break(s, a->s[e], reach)) add_break(s, a->s[e] + (e ? a->beyond[e] : -a->beyond[e]), reach);
+        for (int k = i; !s->err->status && k < s->side_count; k++)
+            if (!add_crossings(s, a, &s->sides[k], reach) && !add_break(s, (a->s[1] + s->sides[k].s[0]) / 2, reach))
+                add_break(s, (a->s[0] + s->sides[k].s[1]) / 2, reach);
     }
-    if (!st) sort_doubles(s->breaks, (size_t)s->break_count);
-    return st;
+    if (!s->err->status) sort_doubles(s->breaks, (size_t)s->break_count);
+    return s->err->status;
 }
 
 /* Adds a corner, unless it is where the last one is; a last one between two others on a line is dropped. */
@@ -197,20 +192,17 @@ enum status wall_top_find(double (**top)[2], int *count, const struct model_plan
     struct search s = {.plan = plan, .wall = w, .along_x = fabs(w->normal[1]) > fabs(w->normal[0]), .err = err};
     const double n = s.along_x ? w->normal[1] : w->normal[0];
     bool level = true;
-    enum status st = ST_OK;
     *top = NULL;
     *count = 0;
     s.faces[0] = n * w->offset;
     s.faces[1] = n * (w->offset - w->thickness);
-    for (int r = 0; !st && r < plan->room_count; r++)
-        for (int k = 0; !st && k < plan->rooms[r].corner_count; k++) st = add_side(&s, &plan->rooms[r], k);
-    if (!st && fabs(plan_top(&s) - w->top) <= on_face) {
-        st = find_breaks(&s, reach);
-        if (!st) st = find_corners(top, count, &s, reach);
-    }
+    for (int r = 0; !err->status && r < plan->room_count; r++)
+        for (int k = 0; !err->status && k < plan->rooms[r].corner_count; k++) add_side(&s, &plan->rooms[r], k);
+    if (!err->status && fabs(plan_top(&s) - w->top) <= on_face && !find_breaks(&s, reach))
+        find_corners(top, count, &s, reach);
     for (int i = 0; i < *count; i++) level = level && fabs((*top)[i][1] - w->top) <= on_face;
-    if (st || level) *count = 0;
+    if (err->status || level) *count = 0;
     free(s.sides);
     free(s.breaks);
-    return st;
+    return err->status;
 }

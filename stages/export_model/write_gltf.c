@@ -147,8 +147,8 @@ static enum status add_primitive(struct gltf *g, json_t *primitives, int body, i
     json_t *faces = json_array();
     size_t count = 0;
     int last = -1;
-    enum status st = at && n && uv ? ST_OK : err_nomem(g->err, "vertices", (size_t)f->count * 36);
-    for (int i = 0; !st && i < f->count; i++) {
+    if (!at || !n || !uv) err_nomem(g->err, "vertices", (size_t)f->count * 36);
+    for (int i = 0; !g->err->status && i < f->count; i++) {
         const struct export_triangle *t = &f->triangles[i];
         if (g->s->mesh->faces[t->face].body != body || material_of(g, t) != material) continue;
         if (t->face != last)
@@ -162,13 +162,12 @@ static enum status add_primitive(struct gltf *g, json_t *primitives, int body, i
             uv[2 * count + 1] = (float)t->uv[k][1];
         }
     }
-    if (!st && count) {
+    if (!g->err->status && count) {
         json_int_t a = 0, b = 0, c = 0;
-        st = add_vectors(g, at, count, 3, true, &a);
-        if (!st) st = add_vectors(g, n, count, 3, false, &b);
+        if (!add_vectors(g, at, count, 3, true, &a)) add_vectors(g, n, count, 3, false, &b);
         json_t *attributes = json_pack("{s:I, s:I}", "POSITION", a, "NORMAL", b);
-        if (!st && material < g->s->page_count) {
-            st = add_vectors(g, uv, count, 2, false, &c);
+        if (!g->err->status && material < g->s->page_count) {
+            add_vectors(g, uv, count, 2, false, &c);
             json_object_set_new(attributes, "TEXCOORD_0", json_integer(c));
         }
         json_array_append_new(primitives, json_pack("{s:o, s:i, s:{s:O}}", "attributes", attributes, "material",
@@ -178,16 +177,16 @@ static enum status add_primitive(struct gltf *g, json_t *primitives, int body, i
     free(at);
     free(n);
     free(uv);
-    return st;
+    return g->err->status;
 }
 
 static enum status add_bodies(struct gltf *g)
 {
-    enum status st = ST_OK;
     for (int i = 0; i < g->s->faces->count; i++) material_of(g, &g->s->faces->triangles[i]); /* in order of triangles */
-    for (int body = 0; !st && body < g->s->mesh->body_count; body++) {
+    for (int body = 0; !g->err->status && body < g->s->mesh->body_count; body++) {
         json_t *primitives = json_array();
-        for (int m = 0; !st && m < (int)json_array_size(g->materials); m++) st = add_primitive(g, primitives, body, m);
+        for (int m = 0; !g->err->status && m < (int)json_array_size(g->materials); m++)
+            add_primitive(g, primitives, body, m);
         if (!json_array_size(primitives)) {
             json_decref(primitives);
             continue;
@@ -198,7 +197,7 @@ static enum status add_bodies(struct gltf *g)
         json_array_append_new(g->children, json_integer((json_int_t)json_array_size(g->nodes)));
         json_array_append_new(g->nodes, json_pack("{s:s, s:I}", "name", name, "mesh", mesh));
     }
-    return st;
+    return g->err->status;
 }
 
 static enum status add_picture(struct gltf *g, json_t *images, json_t *textures, int page)
@@ -217,10 +216,12 @@ static enum status add_picture(struct gltf *g, json_t *images, json_t *textures,
     }
     const bool whole = data && fread(data, 1, (size_t)size, file) == (size_t)size;
     if (file) fclose(file);
-    enum status st = whole ? add_view(g, data, (size_t)size, false, &view)
-                           : err_set(g->err, ST_IO, "%s cannot be read again.", path);
+    if (whole)
+        add_view(g, data, (size_t)size, false, &view);
+    else
+        err_set(g->err, ST_IO, "%s cannot be read again.", path);
     free(data);
-    if (st) return st;
+    if (g->err->status) return g->err->status;
     json_array_append_new(images,
                           json_pack("{s:s, s:I, s:s}", "name", name, "bufferView", view, "mimeType", "image/png"));
     json_array_append_new(textures, json_pack("{s:i, s:i}", "source", page, "sampler", 0));
@@ -239,9 +240,7 @@ static enum status write_file(struct gltf *g, const char *json)
     const size_t length = strlen(json), padded = (length + 3) / 4 * 4;
     struct outfile out = {0};
     char path[FILE_PATH];
-    enum status st = product_path_in(path, g->s->out, PRODUCT_EXPORT_GLB, NULL, g->err);
-    if (!st) st = outfile_open(&out, path, g->err);
-    if (!st) {
+    if (!product_path_in(path, g->s->out, PRODUCT_EXPORT_GLB, NULL, g->err) && !outfile_open(&out, path, g->err)) {
         fputs("glTF", out.fp);
         put_u32(out.fp, 2);
         put_u32(out.fp, 12 + 8 + padded + 8 + g->bin.size);
@@ -252,10 +251,10 @@ static enum status write_file(struct gltf *g, const char *json)
         put_u32(out.fp, g->bin.size);
         fwrite("BIN", 1, 4, out.fp);
         fwrite(g->bin.data, 1, g->bin.size, out.fp);
-        st = outfile_commit(&out, g->err);
+        outfile_commit(&out, g->err);
     }
     outfile_discard(&out);
-    return st;
+    return g->err->status;
 }
 
 enum status write_gltf(const struct export_scene *s, struct err *err)
@@ -265,10 +264,9 @@ enum status write_gltf(const struct export_scene *s, struct err *err)
     g.materials = json_array();
     g.children = json_array();
     json_t *images = json_array(), *textures = json_array();
-    enum status st = ST_OK;
     add_materials(&g);
-    for (int i = 0; !st && i < s->page_count; i++) st = add_picture(&g, images, textures, i);
-    if (!st) st = add_bodies(&g);
+    for (int i = 0; !err->status && i < s->page_count; i++) add_picture(&g, images, textures, i);
+    if (!err->status) add_bodies(&g);
     json_t *root = json_pack("{s:{s:s, s:s}, s:[s], s:i, s:[{s:s, s:O}], s:O, s:O, s:O, s:O, s:O, s:[{s:I}]}", "asset",
                              "version", "2.0", "generator", "remodel " REMODEL_VERSION, "extensionsUsed",
                              "KHR_materials_unlit", "scene", 0, "scenes", "name", s->name, "nodes", g.children, "nodes",
@@ -283,8 +281,8 @@ enum status write_gltf(const struct export_scene *s, struct err *err)
             json_pack("[{s:i, s:i, s:i, s:i}]", "magFilter", 9729, "minFilter", 9987, "wrapS", 33071, "wrapT", 33071));
     }
     char *text = root ? json_dumps(root, JSON_COMPACT | JSON_REAL_PRECISION(9)) : NULL;
-    if (!st && !text) st = err_set(err, ST_DATA, "the model cannot be written as glTF: a name is not UTF-8.");
-    if (!st) st = write_file(&g, text);
+    if (!err->status && !text) err_set(err, ST_DATA, "the model cannot be written as glTF: a name is not UTF-8.");
+    if (!err->status) write_file(&g, text);
     free(text);
     free(g.bin.data);
     json_decref(root);
@@ -296,5 +294,5 @@ enum status write_gltf(const struct export_scene *s, struct err *err)
     json_decref(g.nodes);
     json_decref(g.materials);
     json_decref(g.children);
-    return st;
+    return err->status;
 }

@@ -81,41 +81,38 @@ static enum status put_covering(struct ifc *f, int face)
 {
     const struct export_faces *all = f->s->faces;
     struct ifc_ids sets = {0};
-    enum status st = ST_OK;
-    for (int i = all->first[face], end; !st && i < all->first[face + 1]; i = end) {
+    for (int i = all->first[face], end; !f->err->status && i < all->first[face + 1]; i = end) {
         const int page = all->triangles[i].material;
         end = i + 1;
         while (end < all->first[face + 1] && all->triangles[end].material == page) end++;
-        if (page >= 0) st = ifc_keep(f, &sets, ifc_triangles(f, i, end, page));
+        if (page >= 0) ifc_keep(f, &sets, ifc_triangles(f, i, end, page));
     }
-    if (!st && sets.count) {
+    if (!f->err->status && sets.count) {
         char name[1100];
         const int shape = ifc_tessellation(f, &sets);
         /* faces of one name are told apart by their number */
         snprintf(name, sizeof name, "%s %d", solid_face_name(f->s->mesh, face), face);
-        st = ifc_keep(f, &f->contained,
-                      ifc_element(f, "IFCCOVERING", name, shape, covering_type(solid_face_name(f->s->mesh, face))));
+        ifc_keep(f, &f->contained,
+                 ifc_element(f, "IFCCOVERING", name, shape, covering_type(solid_face_name(f->s->mesh, face))));
     }
     free(sets.list);
-    return st;
+    return f->err->status;
 }
 
 static enum status put_body(struct ifc *f)
 {
     put_head(f);
     put_pages(f);
-    enum status st = ifc_walls(f);
-    if (!st) st = ifc_rooms(f);
-    if (!st) st = ifc_boxes(f);
-    for (int i = 0; !st && i < f->s->mesh->face_count; i++) st = put_covering(f, i);
-    if (!st && f->contained.count) {
+    if (!ifc_walls(f) && !ifc_rooms(f)) ifc_boxes(f);
+    for (int i = 0; !f->err->status && i < f->s->mesh->face_count; i++) put_covering(f, i);
+    if (!f->err->status && f->contained.count) {
         ifc_begin(f, "IFCRELCONTAINEDINSPATIALSTRUCTURE", "elements");
         fputs(",$,", f->to);
         ifc_put_ids(f, &f->contained);
         fprintf(f->to, ",#%d);\n", f->storey);
     }
-    if (!st && f->spaces.count) put_aggregate(f, f->storey, "storey", &f->spaces);
-    return st;
+    if (!f->err->status && f->spaces.count) put_aggregate(f, f->storey, "storey", &f->spaces);
+    return f->err->status;
 }
 
 enum status write_ifc(const struct export_scene *s, struct err *err)
@@ -125,10 +122,9 @@ enum status write_ifc(const struct export_scene *s, struct err *err)
     char path[FILE_PATH];
     f.styles = calloc((size_t)s->page_count + 1, sizeof *f.styles);
     f.maps = calloc((size_t)s->page_count + 1, sizeof *f.maps);
-    enum status st = f.styles && f.maps ? product_path_in(path, s->out, PRODUCT_EXPORT_IFC, NULL, err)
-                                        : err_nomem(err, "pages", (size_t)s->page_count * sizeof *f.styles);
-    if (!st) st = outfile_open(&out, path, err);
-    if (!st) {
+    if (!f.styles || !f.maps) err_nomem(err, "pages", (size_t)s->page_count * sizeof *f.styles);
+    if (!err->status && !product_path_in(path, s->out, PRODUCT_EXPORT_IFC, NULL, err) &&
+        !outfile_open(&out, path, err)) {
         f.to = out.fp;
         fputs("ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION(('ViewDefinition [ReferenceView]'),'2;1');\nFILE_NAME(", f.to);
         ifc_text(f.to, s->name);
@@ -136,15 +132,14 @@ enum status write_ifc(const struct export_scene *s, struct err *err)
         fputs(",'1970-01-01T00:00:00',(''),(''),'remodel " REMODEL_VERSION "','remodel " REMODEL_VERSION
               "','');\nFILE_SCHEMA(('IFC4'));\nENDSEC;\nDATA;\n",
               f.to);
-        st = put_body(&f);
-        if (!st) st = err->status; /* of functions that return a number */
+        put_body(&f);
         fputs("ENDSEC;\nEND-ISO-10303-21;\n", f.to);
-        if (!st) st = outfile_commit(&out, err);
+        if (!err->status) outfile_commit(&out, err);
     }
     outfile_discard(&out);
     free(f.contained.list);
     free(f.spaces.list);
     free(f.styles);
     free(f.maps);
-    return st;
+    return err->status;
 }

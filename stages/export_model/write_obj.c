@@ -62,19 +62,20 @@ static enum status write_text(const struct export_scene *s, enum product_id id, 
 {
     struct outfile out = {0};
     char path[FILE_PATH];
-    enum status st = product_path_in(path, s->out, id, NULL, err);
-    if (!st) st = product_begin(&out, id, path, s->prov, err);
-    if (!st) {
+    if (!product_path_in(path, s->out, id, NULL, err)) product_begin(&out, id, path, s->prov, err);
+    if (!err->status) {
         fputs(head, out.fp);
         put(out.fp, s);
-        st = outfile_commit(&out, err);
+        outfile_commit(&out, err);
     }
     outfile_discard(&out);
-    return st;
+    return err->status;
 }
 
 enum status write_obj(const struct export_scene *s, struct err *err)
 {
-    const enum status st = write_text(s, PRODUCT_EXPORT_MTL, "", put_materials, err);
-    return st ? st : write_text(s, PRODUCT_EXPORT_OBJ, "# z is up\nmtllib model.mtl\n", put_faces, err);
+    return write_text(s, PRODUCT_EXPORT_MTL, "", put_materials, err) ||
+                   write_text(s, PRODUCT_EXPORT_OBJ, "# z is up\nmtllib model.mtl\n", put_faces, err)
+               ? err->status
+               : ST_OK;
 }

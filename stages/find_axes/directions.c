@@ -250,9 +250,11 @@ enum status direction_errors(struct vec3 *errors, const struct mat3 *axes, struc
     struct mat3 unknown;
     double size = 0, weights[3] = {0};
     const double cut = cut_of(cloud, *axes);
-    enum status st =
-        sums ? block_cloud_size(&size, cloud, origin, err) : err_nomem(err, "blocks", BLOCKS * sizeof *sums);
-    for (size_t i = 0; !st && i < cloud->count; i++) {
+    if (sums)
+        block_cloud_size(&size, cloud, origin, err);
+    else
+        err_nomem(err, "blocks", BLOCKS * sizeof *sums);
+    for (size_t i = 0; !err->status && i < cloud->count; i++) {
         int k;
         const struct cloud_point *p = &cloud->points[i];
         const double w = weighted_turn(mat3_apply(*axes, cloud_normal(p)), cut, &k, &turn);
@@ -261,9 +263,10 @@ enum status direction_errors(struct vec3 *errors, const struct mat3 *axes, struc
         struct vec3 *sum = &sums[block_of(vec3_sub(p->position, origin), size)];
         *sum = vec3_add(*sum, turn);
     }
-    if (!st) *errors = direction_sandwich(direction_inverse_of_known(information_of(weights), &unknown), sums, BLOCKS);
+    if (!err->status)
+        *errors = direction_sandwich(direction_inverse_of_known(information_of(weights), &unknown), sums, BLOCKS);
     free(sums);
-    return st;
+    return err->status;
 }
 
 enum status directions_find(struct directions *d, const struct point_cloud *cloud, double min_part, struct err *err)

@@ -92,16 +92,15 @@ static enum status draw_view(const struct view *view, const struct room *room, c
     struct image im = {0};
     char path[FILE_PATH];
     unsigned char *pixels = NULL;
-    enum status st = view_image_read(&im, f->views, view, f->prov, err);
-    if (!st && !(pixels = malloc(3 * (size_t)im.width * (size_t)im.height)))
-        st = err_nomem(err, "a picture", 3 * (size_t)im.width * (size_t)im.height);
-    if (!st) st = pictures_expose(pixels, &im, err);
-    if (!st) pictures_draw_room(pixels, view, room, corners, count);
-    if (!st) st = picture_path(path, f->out, view->name, err);
-    if (!st) st = png_write(path, pixels, im.width, im.height, 3, err);
+    view_image_read(&im, f->views, view, f->prov, err);
+    if (!err->status && !(pixels = malloc(3 * (size_t)im.width * (size_t)im.height)))
+        err_nomem(err, "a picture", 3 * (size_t)im.width * (size_t)im.height);
+    if (!err->status && !pictures_expose(pixels, &im, err)) pictures_draw_room(pixels, view, room, corners, count);
+    if (!err->status && !picture_path(path, f->out, view->name, err))
+        png_write(path, pixels, im.width, im.height, 3, err);
     free(pixels);
     image_release(&im);
-    return st;
+    return err->status;
 }
 
 /* The positions on the floor of the marked corners, one for each mark. */
@@ -139,15 +138,20 @@ static enum status draw(const struct room *room, const struct room_inputs *in, c
     bool *chosen = calloc((size_t)views + 1, sizeof *chosen);
     struct vec3 *corners = calloc((size_t)(in->fix ? in->fix->count : 0) + 1, sizeof *corners);
     int count = 0;
-    enum status st = chosen && corners ? pictures_choose(chosen, pictures, in, err)
-                                       : err_nomem(err, "views", (size_t)views * sizeof *chosen);
-    if (!st) st = place_corners(corners, &count, room, in, err);
-    for (int i = 0; !st && i < views; i++)
-        st = chosen[i] ? draw_view(&in->set->views[i], room, corners, count, f, err)
-                       : remove_picture(f->out, in->set->views[i].name, err);
+    if (chosen && corners)
+        pictures_choose(chosen, pictures, in, err);
+    else
+        err_nomem(err, "views", (size_t)views * sizeof *chosen);
+    if (!err->status) place_corners(corners, &count, room, in, err);
+    for (int i = 0; !err->status && i < views; i++) {
+        if (chosen[i])
+            draw_view(&in->set->views[i], room, corners, count, f, err);
+        else
+            remove_picture(f->out, in->set->views[i].name, err);
+    }
     free(chosen);
     free(corners);
-    return st;
+    return err->status;
 }
 
 static enum status find(const struct files *f, const struct axes_params *params, struct err *err)
@@ -158,26 +162,25 @@ static enum status find(const struct files *f, const struct axes_params *params,
     struct mark_list scale = {0}, fix = {0};
     struct vec3 *ups = NULL;
     struct room room;
-    enum status st = scene_inputs_read(&scene, SCENE_POINTS | SCENE_LENSES, &files, f->prov, err);
+    scene_inputs_read(&scene, SCENE_POINTS | SCENE_LENSES, &files, f->prov, err);
     const struct camera_set *set = &scene.set;
-    if (!st && !set->view_count) st = err_set(err, ST_DATA, "%s contains no views; run sfm_import again.", f->views);
-    if (!st && !(ups = calloc((size_t)set->view_count, sizeof *ups)))
-        st = err_nomem(err, "up directions of views", (size_t)set->view_count * sizeof *ups);
-    if (!st) st = upright_read(ups, set, f->views, f->records, f->prov, err);
-    if (!st) st = point_cloud_read(&cloud, f->points, f->prov, err);
-    if (!st && f->scale) st = mark_list_read(&scale, f->scale, MARKS_SCALE, f->prov, err);
-    if (!st && f->fix) st = mark_list_read(&fix, f->fix, MARKS_FIX, f->prov, err);
+    if (!err->status && !set->view_count)
+        err_set(err, ST_DATA, "%s contains no views; run sfm_import again.", f->views);
+    if (!err->status && !(ups = calloc((size_t)set->view_count, sizeof *ups)))
+        err_nomem(err, "up directions of views", (size_t)set->view_count * sizeof *ups);
+    if (!err->status && !upright_read(ups, set, f->views, f->records, f->prov, err))
+        point_cloud_read(&cloud, f->points, f->prov, err);
+    if (!err->status && f->scale) mark_list_read(&scale, f->scale, MARKS_SCALE, f->prov, err);
+    if (!err->status && f->fix) mark_list_read(&fix, f->fix, MARKS_FIX, f->prov, err);
     const struct room_inputs in = {set, &scene.lenses, ups, &cloud, f->scale ? &scale : NULL, f->fix ? &fix : NULL};
-    if (!st) st = room_find(&room, &in, params, err);
-    if (!st) log_summary(&room, f, set);
-    if (!st) st = draw(&room, &in, f, params->pictures, err);
-    if (!st) st = model_axes_write(&room.axes, f->out, f->prov, err);
+    if (!err->status && !room_find(&room, &in, params, err)) log_summary(&room, f, set);
+    if (!err->status && !draw(&room, &in, f, params->pictures, err)) model_axes_write(&room.axes, f->out, f->prov, err);
     mark_list_release(&fix);
     mark_list_release(&scale);
     point_cloud_release(&cloud);
     free(ups);
     scene_inputs_release(&scene);
-    return st;
+    return err->status;
 }
 
 int main(int argc, char **argv)

@@ -183,27 +183,27 @@ enum status height_find_level(struct height_level *level, int side, const struct
     double *heights = NULL, *scratch = NULL, size = 0;
     size_t count = 0, begin[CLUSTERS + 1];
     *level = (struct height_level){0};
-    enum status st = block_cloud_size(&size, cloud, origin, err);
-    if (!st) st = collect(&places, &heights, &count, side, axes, origin, cloud, params->up_angle, err);
+    if (!block_cloud_size(&size, cloud, origin, err))
+        collect(&places, &heights, &count, side, axes, origin, cloud, params->up_angle, err);
     level->candidates = count;
     const double part = side > 0 ? params->min_floor : params->min_ceiling;
     const double min_count = fmax(part * (double)cloud->count, 1);
     const int k = count < CLUSTERS ? (int)count : CLUSTERS;
-    if (!st && (double)count >= min_count) {
-        st = kmeans1d(begin, heights, count, k, err);
+    if (!err->status && (double)count >= min_count) {
+        kmeans1d(begin, heights, count, k, err);
         scratch = malloc(count * sizeof *scratch);
-        if (!st && !scratch) st = err_nomem(err, "heights", count * sizeof *scratch);
-        if (!st) {
+        if (!err->status && !scratch) err_nomem(err, "heights", count * sizeof *scratch);
+        if (!err->status) {
             level->height = initial_height(heights, begin, k, side, WINDOW * size);
             refine_level(level, heights, count, size, scratch);
             const double far = 2 * REACH * size;
             level->beyond = side > 0 ? lower_bound(heights, count, level->height - far)
                                      : count - lower_bound(heights, count, level->height + far);
-            st = find_error(level, places, heights, count, size, tilt_error, err);
+            find_error(level, places, heights, count, size, tilt_error, err);
         }
     }
     free(scratch);
     free(places);
     free(heights);
-    return st;
+    return err->status;
 }

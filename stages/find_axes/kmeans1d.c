@@ -50,25 +50,24 @@ enum status kmeans1d(size_t *begin, const double *values, size_t count, int k, s
     long double *sum = calloc(count + 1, sizeof *sum), *square = calloc(count + 1, sizeof *square), mean = 0;
     double *costs[2] = {malloc(count * sizeof **costs), malloc(count * sizeof **costs)};
     size_t *first = malloc(clusters * count * sizeof *first);
-    enum status st = sum && square && costs[0] && costs[1] && first
-                         ? ST_OK
-                         : err_nomem(err, "clusters of numbers", (clusters + 6) * count * sizeof *first);
+    if (!sum || !square || !costs[0] || !costs[1] || !first)
+        err_nomem(err, "clusters of numbers", (clusters + 6) * count * sizeof *first);
     for (size_t i = 0; i < count; i++) mean += values[i];
     mean /= (long double)count;
-    for (size_t i = 0; !st && i < count; i++) {
+    for (size_t i = 0; !err->status && i < count; i++) {
         const long double x = values[i] - mean;
         sum[i + 1] = sum[i] + x;
         square[i + 1] = square[i] + x * x;
     }
     struct rows r = {sum, square, NULL, costs[0], first};
-    for (size_t i = 0; !st && i < count; i++) r.now[i] = cost(&r, 0, i);
-    for (size_t j = 1; !st && j < clusters; j++) {
+    for (size_t i = 0; !err->status && i < count; i++) r.now[i] = cost(&r, 0, i);
+    for (size_t j = 1; !err->status && j < clusters; j++) {
         r.before = costs[(j + 1) % 2];
         r.now = costs[j % 2];
         r.first = first + j * count;
         fill(&r, j, count - 1, j, count - 1);
     }
-    if (!st) {
+    if (!err->status) {
         begin[clusters] = count;
         for (size_t j = clusters - 1; j > 0; j--) begin[j] = first[j * count + begin[j + 1] - 1];
         begin[0] = 0;
@@ -78,5 +77,5 @@ enum status kmeans1d(size_t *begin, const double *values, size_t count, int k, s
     free(costs[0]);
     free(costs[1]);
     free(first);
-    return st;
+    return err->status;
 }

@@ -162,31 +162,34 @@ enum status mark_list_read(struct mark_list *list, const char *path, enum mark_f
     struct textfile t = {0};
     *list = (struct mark_list){.path = strdup(path)};
     const char *name = file == MARKS_SCALE ? "scale.txt" : "axes_fix.txt";
-    enum status st =
-        list->path ? provenance_open(prov, name, &t, path, err) : err_nomem(err, "a file name", strlen(path));
-    while (!st && textfile_next(&t)) {
-        st = list->count < MAX_MARKS
-                 ? array_append(&list->marks, (size_t)list->count, sizeof *list->marks, "marks", err)
-                 : err_set(err, ST_DATA, "%s:%d: found more than %d lines.", path, t.line, MAX_MARKS);
-        if (st) break;
+    if (list->path)
+        provenance_open(prov, name, &t, path, err);
+    else
+        err_nomem(err, "a file name", strlen(path));
+    while (!err->status && textfile_next(&t)) {
+        if (list->count < MAX_MARKS)
+            array_append(&list->marks, (size_t)list->count, sizeof *list->marks, "marks", err);
+        else
+            err_set(err, ST_DATA, "%s:%d: found more than %d lines.", path, t.line, MAX_MARKS);
+        if (err->status) break;
         struct mark *m = &list->marks[list->count++];
         *m = (struct mark){0};
-        st = read_mark(&t, m, file, err);
+        read_mark(&t, m, file, err);
     }
     textfile_release(&t);
     int lengths = 0, thicknesses = 0;
-    for (int i = 0; !st && i < list->count; i++) {
+    for (int i = 0; !err->status && i < list->count; i++) {
         const struct mark *m = &list->marks[i];
-        st = check_mark(list, m, err);
+        check_mark(list, m, err);
         lengths += m->kind == MARK_LENGTH;
         thicknesses += m->kind == MARK_THICKNESS;
-        if (!st && thicknesses > 1)
-            st = err_set(err, ST_DATA, "%s:%d: found a second thickness, wanted one for all walls.", path, m->line);
+        if (!err->status && thicknesses > 1)
+            err_set(err, ST_DATA, "%s:%d: found a second thickness, wanted one for all walls.", path, m->line);
     }
-    if (!st && file == MARKS_SCALE && !lengths)
-        st = err_set(err, ST_DATA, "%s: no length is given; add a line \"length NAME NAME METRES\".", path);
-    if (st) mark_list_release(list);
-    return st;
+    if (!err->status && file == MARKS_SCALE && !lengths)
+        err_set(err, ST_DATA, "%s: no length is given; add a line \"length NAME NAME METRES\".", path);
+    if (err->status) mark_list_release(list);
+    return err->status;
 }
 
 /* ---------------------------------------------------------------------------------------------------------- placing */

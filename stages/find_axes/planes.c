@@ -228,21 +228,23 @@ enum status planes_find(struct room_planes *planes, struct mat3 *axes, bool turn
     *planes = (struct room_planes){0};
     s.classes = malloc(cloud->count + 1);
     s.planes = calloc(MAX_PLANES, sizeof *s.planes);
-    enum status st = sums && s.classes && s.planes ? block_cloud_size(&s.size, cloud, origin, err)
-                                                   : err_nomem(err, "planes", cloud->count + MAX_PLANES * sizeof *sums);
-    for (int level = 0; !st && level < LEVELS && s.size > 0; level++) {
+    if (sums && s.classes && s.planes)
+        block_cloud_size(&s.size, cloud, origin, err);
+    else
+        err_nomem(err, "planes", cloud->count + MAX_PLANES * sizeof *sums);
+    for (int level = 0; !err->status && level < LEVELS && s.size > 0; level++) {
         const double width = WIDTHS[level] * s.size;
         classify(&s, params->plane_angle);
-        st = find_peaks(&s, width, params->min_plane, err);
+        find_peaks(&s, width, params->min_plane, err);
         s.reach = 2 * width;
-        for (int i = 0; !st && i < ITERATIONS; i++) {
+        for (int i = 0; !err->status && i < ITERATIONS; i++) {
             for (int j = 0; j < s.count; j++) sums[j] = (struct plane_sums){0};
             sum_up(&s, sums);
             step(&s, sums, turn, &information);
         }
     }
-    if (!st && s.count && turn) st = find_errors(&s, sums, &information, tilt_error, err);
-    if (!st) {
+    if (!err->status && s.count && turn) find_errors(&s, sums, &information, tilt_error, err);
+    if (!err->status) {
         *axes = s.axes;
         planes->planes = s.planes;
         planes->count = s.count;
@@ -251,7 +253,7 @@ enum status planes_find(struct room_planes *planes, struct mat3 *axes, bool turn
     free(s.planes);
     free(s.classes);
     free(sums);
-    return st;
+    return err->status;
 }
 
 void planes_release(struct room_planes *planes)

@@ -32,10 +32,9 @@ static enum status central_view(int *central, const struct camera_set *set, stru
 {
     int *order = malloc(((size_t)set->view_count + 1) * sizeof *order);
     if (!order) return err_nomem(err, "an order of views", (size_t)set->view_count * sizeof *order);
-    const enum status st = central_views(order, set, err);
-    if (!st) *central = order[0];
+    if (!central_views(order, set, err)) *central = order[0];
     free(order);
-    return st;
+    return err->status;
 }
 
 static struct vec3 mean_up(const struct room_inputs *in)
@@ -288,7 +287,7 @@ enum status room_find(struct room *room, const struct room_inputs *in, const str
 {
     struct room_planes planes = {0};
     *room = (struct room){0};
-    const enum status st = find_all(room, in, params, &planes, err);
+    find_all(room, in, params, &planes, err);
     planes_release(&planes);
-    return st;
+    return err->status;
 }

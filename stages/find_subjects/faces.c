@@ -162,10 +162,9 @@ struct face_search {
 
 static enum status view_picture(struct face_search *s, int view_idx, const unsigned char **grey, struct err *err)
 {
-    enum status st = ST_OK;
-    if (!s->pictures[view_idx]) st = s->source->picture(s->source->ctx, view_idx, &s->pictures[view_idx], err);
+    if (!s->pictures[view_idx]) s->source->picture(s->source->ctx, view_idx, &s->pictures[view_idx], err);
     *grey = s->pictures[view_idx];
-    return st;
+    return err->status;
 }
 
 /* The faces in a view's pixels, merged. */
@@ -187,18 +186,18 @@ static enum status faces_of_view(struct face_search *s, int view_idx, struct fac
     const struct quad frame = quad_of(&whole, 0);
     resample(upright, width, height, &frame, grey, v, samples_for(side, fmax(width, height)));
     const double min_width = s->params->min_face * (width > height ? width : height);
-    enum status st = s->source->detect(s->source->ctx, upright, width, height, min_width,
-                                       width > height ? width : height, faces, count, err);
-    for (int i = 0; !st && i < *count; i++) {
+    s->source->detect(s->source->ctx, upright, width, height, min_width, width > height ? width : height, faces, count,
+                      err);
+    for (int i = 0; !err->status && i < *count; i++) {
         struct face_box *f = &(*faces)[i];
         double x[2], y[2];
         view_project(v, quad_at(&frame, f->x0 / width, f->y0 / height), &x[0], &y[0]);
         view_project(v, quad_at(&frame, f->x1 / width, f->y1 / height), &x[1], &y[1]);
         *f = (struct face_box){fmin(x[0], x[1]), fmin(y[0], y[1]), fmax(x[0], x[1]), fmax(y[0], y[1]), f->score};
     }
-    if (!st) merge_faces(*faces, count);
+    if (!err->status) merge_faces(*faces, count);
     free(upright);
-    return st;
+    return err->status;
 }
 
 /* Whether the view's picture contains the whole quadrilateral. */
@@ -238,14 +237,14 @@ static enum status score_in_view(struct face_search *s, int view_idx, const stru
     *score = 0;
     if (view_picture(s, view_idx, &grey, err)) return err->status;
     resample(s->patch, width, height, &frame, grey, v, samples_for(subject_size_in(face, v), aspect * PATCH_FACE));
-    enum status st = s->source->detect(s->source->ctx, s->patch, width, height, PATCH_FACE / SIZE_RATIO,
-                                       PATCH_FACE * SIZE_RATIO, &faces, &count, err);
-    for (int i = 0; !st && i < count; i++) {
+    s->source->detect(s->source->ctx, s->patch, width, height, PATCH_FACE / SIZE_RATIO, PATCH_FACE * SIZE_RATIO, &faces,
+                      &count, err);
+    for (int i = 0; !err->status && i < count; i++) {
         const double x = (faces[i].x0 + faces[i].x1 - width) / 2, y = (faces[i].y0 + faces[i].y1 - height) / 2;
         if (hypot(x, y) <= PLACE_ERROR * PATCH_FACE) *score += faces[i].score;
     }
     free(faces);
-    return st;
+    return err->status;
 }
 
 /* Checks the face in other views: sets `confirmed` and `asked`, and averages the score over all views. */
@@ -265,17 +264,15 @@ static enum status check_views(struct face_search *s, int view_idx, struct subje
     }
     qsort(views, (size_t)count, sizeof *views, compare_other_views);
     face->asked = count < s->params->confirm_views ? count : s->params->confirm_views;
-    enum status st = ST_OK;
     double sum = face->score, score;
-    for (int i = 0; !st && i < face->asked; i++) {
-        st = score_in_view(s, views[i].view, face, &score, err);
-        if (st) break;
+    for (int i = 0; !err->status && i < face->asked; i++) {
+        if (score_in_view(s, views[i].view, face, &score, err)) break;
         face->confirmed += score > 0;
         sum += score;
     }
     face->score = sum / (1 + face->asked);
     free(views);
-    return st;
+    return err->status;
 }
 
 static enum status add_sighting(struct face_report *report, struct face_sighting *sighting, struct err *err)
@@ -322,31 +319,33 @@ static enum status search_view(struct face_search *s, int view_idx, struct subje
     struct face_box *faces = NULL;
     int count = 0;
     bool promising = false;
-    enum status st = faces_of_view(s, view_idx, &faces, &count, err);
-    for (int i = 0; !st && i < count; i++)
+    faces_of_view(s, view_idx, &faces, &count, err);
+    for (int i = 0; !err->status && i < count; i++)
         promising = promising || faces[i].score >= MIN_PROMISE * s->params->min_score;
-    if (!st && promising) st = s->source->depth(s->source->ctx, view_idx, &depth, err);
-    for (int i = 0; !st && i < count; i++) {
+    if (!err->status && promising) s->source->depth(s->source->ctx, view_idx, &depth, err);
+    for (int i = 0; !err->status && i < count; i++) {
         const struct face_box *f = &faces[i];
         struct face_sighting sighting = {
             .subject = {.x0 = f->x0, .y0 = f->y0, .x1 = f->x1, .y1 = f->y1, .score = f->score}};
         if (f->score < MIN_PROMISE * s->params->min_score) continue;
         if (!region_clip(&sighting.subject, v->width, v->height)) continue;
         sighting.subject.view = strdup(v->name);
-        st = sighting.subject.view ? judge_face(s, view_idx, &depth, &sighting, err)
-                                   : err_nomem(err, "a view's name", strlen(v->name));
-        if (!st && sighting.verdict == FACE_KEPT) {
+        if (sighting.subject.view)
+            judge_face(s, view_idx, &depth, &sighting, err);
+        else
+            err_nomem(err, "a view's name", strlen(v->name));
+        if (!err->status && sighting.verdict == FACE_KEPT) {
             if (list->count == MAX_FACES)
                 sighting.verdict = FACE_SURPLUS;
             else
-                st = add_subject(list, &sighting.subject, err);
+                add_subject(list, &sighting.subject, err);
         }
-        if (!st) st = add_sighting(report, &sighting, err);
+        if (!err->status) add_sighting(report, &sighting, err);
         subject_release(&sighting.subject);
     }
     layered_depth_release(&depth);
     free(faces);
-    return st;
+    return err->status;
 }
 
 enum status faces_find(struct subject_list *list, struct face_report *report, const struct camera_set *set,
@@ -359,18 +358,20 @@ enum status faces_find(struct subject_list *list, struct face_report *report, co
     *report = (struct face_report){0};
     s.pictures = calloc(n + 1, sizeof *s.pictures);
     s.patch = malloc(patch);
-    enum status st =
-        order && s.pictures && s.patch ? central_views(order, set, err) : err_nomem(err, "a search for faces", patch);
-    for (int i = 0; !st && i < set->view_count && i < params->max_views && !list->count; i++) {
-        st = search_view(&s, order[i], list, report, err);
+    if (order && s.pictures && s.patch)
+        central_views(order, set, err);
+    else
+        err_nomem(err, "a search for faces", patch);
+    for (int i = 0; !err->status && i < set->view_count && i < params->max_views && !list->count; i++) {
+        search_view(&s, order[i], list, report, err);
         report->views = i + 1;
     }
     for (size_t i = 0; s.pictures && i < n; i++) free(s.pictures[i]);
     free(s.pictures);
     free(s.patch);
     free(order);
-    if (st) face_report_release(report);
-    return st;
+    if (err->status) face_report_release(report);
+    return err->status;
 }
 
 void face_report_release(struct face_report *report)

@@ -112,12 +112,12 @@ static enum status subjects_from_faces(struct subject_list *list, struct inputs 
     const struct face_source source = {in, read_picture, read_depth, detect};
     struct face_report report = {0};
     char path[FILE_PATH];
-    enum status st = face_detector_open(&in->detector, in->cascades, err);
-    for (int i = 0; !st && face_cascades[i]; i++)
-        st = provenance_add_in(in->prov, "opencv", in->cascades, face_cascades[i], "", path, err);
-    if (!st) st = faces_find(list, &report, &in->set, in->ups, &source, params, err);
+    face_detector_open(&in->detector, in->cascades, err);
+    for (int i = 0; !err->status && face_cascades[i]; i++)
+        provenance_add_in(in->prov, "opencv", in->cascades, face_cascades[i], "", path, err);
+    if (!err->status) faces_find(list, &report, &in->set, in->ups, &source, params, err);
     int far_off = 0; /* chance detections, in windows and leaves, share one line of the log */
-    for (int i = 0; !st && i < report.count; i++) {
+    for (int i = 0; !err->status && i < report.count; i++) {
         const struct face_sighting *f = &report.sightings[i];
         if ((f->verdict == FACE_LOW_SCORE || f->verdict == FACE_UNCONFIRMED) &&
             f->subject.score < params->min_score / 2)
@@ -128,10 +128,10 @@ static enum status subjects_from_faces(struct subject_list *list, struct inputs 
     if (far_off)
         log_note("%d detection%s in a single view, hardly confirmed by others; left out", far_off,
                  far_off == 1 ? "" : "s");
-    if (!st && !list->count) log_note("no face in the %d most central views", report.views);
+    if (!err->status && !list->count) log_note("no face in the %d most central views", report.views);
     face_report_release(&report);
     face_detector_release(in->detector);
-    return st;
+    return err->status;
 }
 
 static enum status subject_from_region(struct subject_list *list, struct inputs *in, const struct region *region,
@@ -141,16 +141,15 @@ static enum status subject_from_region(struct subject_list *list, struct inputs 
     struct layered_depth depth = {0};
     int view_idx = 0;
     double part = 1;
-    enum status st = region_in_view(&s, &view_idx, &part, region, in->subjects, &in->set, lenses, err);
-    if (!st) st = read_depth(in, view_idx, &depth, err);
-    if (!st) st = region_depth(&s.depth, &depth, &s, err);
-    if (!st && !(s.depth > 0))
-        st =
-            err_set(err, ST_DATA,
-                    "%s:%d: nothing in the rectangle from %.9g %.9g to %.9g %.9g of %s has a depth (masked, or outside "
-                    "the lens), so it has no place in space; draw it elsewhere or in another photo.",
-                    in->subjects, region->line, region->x0, region->y0, region->x1, region->y1, region->view);
-    if (!st) {
+    if (!region_in_view(&s, &view_idx, &part, region, in->subjects, &in->set, lenses, err) &&
+        !read_depth(in, view_idx, &depth, err))
+        region_depth(&s.depth, &depth, &s, err);
+    if (!err->status && !(s.depth > 0))
+        err_set(err, ST_DATA,
+                "%s:%d: nothing in the rectangle from %.9g %.9g to %.9g %.9g of %s has a depth (masked, or outside "
+                "the lens), so it has no place in space; draw it elsewhere or in another photo.",
+                in->subjects, region->line, region->x0, region->y0, region->x1, region->y1, region->view);
+    if (!err->status) {
         subject_set_corners(&s, &in->set.views[view_idx], in->ups ? &in->ups[view_idx] : NULL);
         log_note("subject %d: view %s, %.0f x %.0f px at %.0f %.0f, depth %.4g", list->count + 1, s.view, s.x1 - s.x0,
                  s.y1 - s.y0, s.x0, s.y0, s.depth);
@@ -160,11 +159,11 @@ static enum status subject_from_region(struct subject_list *list, struct inputs 
         if (fmin(s.x1 - s.x0, s.y1 - s.y0) < MIN_SIZE)
             log_warn("%s:%d: so small a subject has an uncertain size; draw it at least %d px wide and high",
                      in->subjects, region->line, MIN_SIZE);
-        st = subject_list_add(list, &s, err);
+        subject_list_add(list, &s, err);
     }
     layered_depth_release(&depth);
     subject_release(&s);
-    return st;
+    return err->status;
 }
 
 static enum status subjects_from_regions(struct subject_list *list, struct inputs *in, struct err *err)
@@ -172,33 +171,39 @@ static enum status subjects_from_regions(struct subject_list *list, struct input
     struct region_list regions = {0};
     struct lens_list lenses = {0};
     char path[FILE_PATH];
-    enum status st = region_list_read(&regions, in->subjects, in->prov, err);
-    if (!st) st = product_path_in(path, in->views, PRODUCT_LENSES, NULL, err);
-    if (!st) st = lens_list_read(&lenses, path, in->prov, err);
-    if (!st && !regions.count) log_note("%s names no subject", in->subjects);
-    for (int i = 0; !st && i < regions.count; i++)
-        st = subject_from_region(list, in, &regions.regions[i], &lenses, err);
+    if (!region_list_read(&regions, in->subjects, in->prov, err) &&
+        !product_path_in(path, in->views, PRODUCT_LENSES, NULL, err))
+        lens_list_read(&lenses, path, in->prov, err);
+    if (!err->status && !regions.count) log_note("%s names no subject", in->subjects);
+    for (int i = 0; !err->status && i < regions.count; i++)
+        subject_from_region(list, in, &regions.regions[i], &lenses, err);
     lens_list_release(&lenses);
     region_list_release(&regions);
-    return st;
+    return err->status;
 }
 
 static enum status find(struct inputs *in, const char *out, const struct find_params *params, struct err *err)
 {
     struct subject_list list = {0};
-    enum status st = camera_set_read(&in->set, in->views, in->prov, err);
-    if (!st) st = film_views_keep(&in->set, in->film_views, in->prov, err);
-    if (!st && in->records) {
+    if (!camera_set_read(&in->set, in->views, in->prov, err)) film_views_keep(&in->set, in->film_views, in->prov, err);
+    if (!err->status && in->records) {
         in->ups = calloc((size_t)in->set.view_count + 1, sizeof *in->ups);
-        st = in->ups ? upright_read(in->ups, &in->set, in->views, in->records, in->prov, err)
-                     : err_nomem(err, "the views' directions", (size_t)in->set.view_count * sizeof *in->ups);
+        if (in->ups)
+            upright_read(in->ups, &in->set, in->views, in->records, in->prov, err);
+        else
+            err_nomem(err, "the views' directions", (size_t)in->set.view_count * sizeof *in->ups);
     }
-    if (!st) st = in->subjects ? subjects_from_regions(&list, in, err) : subjects_from_faces(&list, in, params, err);
-    if (!st) st = subject_list_write(&list, out, in->prov, err);
+    if (!err->status) {
+        if (in->subjects)
+            subjects_from_regions(&list, in, err);
+        else
+            subjects_from_faces(&list, in, params, err);
+    }
+    if (!err->status) subject_list_write(&list, out, in->prov, err);
     subject_list_release(&list);
     camera_set_release(&in->set);
     free(in->ups);
-    return st;
+    return err->status;
 }
 
 int main(int argc, char **argv)

@@ -137,21 +137,20 @@ static enum status read_options(struct annotation *a, struct textfile *t, struct
     const bool disk = a->kind == NOTE_DISK;
     char *word;
     while (textfile_more(t)) {
-        enum status st;
         if (textfile_word(t, "an option", &word, err)) return err->status;
         if (!strcmp(word, "radiance"))
-            st = read_radiance(a, t, err);
+            read_radiance(a, t, err);
         else if (!strcmp(word, "off"))
-            st = textfile_number(t, "a distance", 0, 1000, &a->off, err);
+            textfile_number(t, "a distance", 0, 1000, &a->off, err);
         else if (disk && !strcmp(word, "normal"))
-            st = read_normal(a, t, err);
+            read_normal(a, t, err);
         else if (disk && !strcmp(word, "beta"))
-            st = read_beta(a, t, err);
+            read_beta(a, t, err);
         else if (disk && !strcmp(word, "exponent"))
-            st = read_quantity(t, "the exponent", 1000, &a->has_exponent, &a->exponent, err);
+            read_quantity(t, "the exponent", 1000, &a->has_exponent, &a->exponent, err);
         else
             return textfile_error(t, err, word, disk ? "off, normal, beta, exponent or radiance" : "off or radiance");
-        if (st) return err->status;
+        if (err->status) return err->status;
     }
     return ST_OK;
 }
@@ -286,14 +285,13 @@ enum status annotation_list_read(struct annotation_list *list, const char *path,
     struct textfile t = {0};
     int64_t version;
     *list = (struct annotation_list){.path = strdup(path)};
-    enum status st = list->path ? ST_OK : err_nomem(err, "a path", strlen(path) + 1);
-    if (!st)
-        st = provenance_open(prov, "lights.txt", &t, path, err) || textfile_expect_line(&t, "remodel-lamps", err) ||
-             textfile_int(&t, "the version", 1, 1, &version, err) || textfile_end(&t, err);
-    while (!st && textfile_next(&t)) st = read_statement(list, &t, err);
+    if (!list->path) err_nomem(err, "a path", strlen(path) + 1);
+    if (!err->status && !provenance_open(prov, "lights.txt", &t, path, err) &&
+        !textfile_expect_line(&t, "remodel-lamps", err) && !textfile_int(&t, "the version", 1, 1, &version, err))
+        textfile_end(&t, err);
+    while (!err->status && textfile_next(&t)) read_statement(list, &t, err);
     textfile_release(&t);
-    if (!st) st = find_lamps(list, err);
-    if (!st) st = check_materials(list, err);
-    if (st) annotation_list_release(list);
-    return st ? err->status : ST_OK;
+    if (!err->status && !find_lamps(list, err)) check_materials(list, err);
+    if (err->status) annotation_list_release(list);
+    return err->status;
 }

@@ -223,7 +223,6 @@ static enum status solve(struct search *s, struct err *err)
 enum status cone_fit_solve(struct cone_fit *f, struct err *err)
 {
     int most = 1;
-    enum status st = ST_OK;
     if (!f->line_count || !f->trace_count)
         return err_set(err, ST_DATA,
                        "the lamp %s has no line that a view shows unsaturated, so its beta cannot be fitted.", f->lamp);
@@ -231,15 +230,15 @@ enum status cone_fit_solve(struct cone_fit *f, struct err *err)
     for (int k = 0; s.direct && k < f->line_count; k++) {
         most = f->lines[k].places > most ? f->lines[k].places : most;
         s.direct[k] = calloc((size_t)f->lines[k].places + 1, sizeof **s.direct);
-        if (!s.direct[k]) st = err_nomem(err, "a line", (size_t)f->lines[k].places);
+        if (!s.direct[k]) err_nomem(err, "a line", (size_t)f->lines[k].places);
     }
     s.steps = calloc((size_t)most, sizeof *s.steps);
     s.weight = calloc((size_t)most, sizeof *s.weight);
-    if (!st && (!s.direct || !s.steps || !s.weight)) st = err_nomem(err, "lines", (size_t)most * sizeof *s.steps);
-    if (!st) st = solve(&s, err);
+    if (!err->status && (!s.direct || !s.steps || !s.weight)) err_nomem(err, "lines", (size_t)most * sizeof *s.steps);
+    if (!err->status) solve(&s, err);
     for (int k = 0; s.direct && k < f->line_count; k++) free(s.direct[k]);
     free(s.direct);
     free(s.steps);
     free(s.weight);
-    return st;
+    return err->status;
 }

@@ -232,13 +232,11 @@ static enum status fit_all(struct problem *p, struct weighted *scratch, double *
 {
     struct light_fit *f = p->f;
     for (int l = 0; l < f->lamp_count; l++) fit_set_direct(p, l);
-    enum status st = check_points(f, err);
-    for (int l = 0; !st && l < f->lamp_count; l++)
-        if (f->lamps[l].fit) st = check_lamp(p, l, err);
-    if (!st) st = start_lamps(p, scratch, err);
-    if (!st) st = solve(p, err);
-    if (!st) st = check_spread(p, scratch, err);
-    if (st) return st;
+    check_points(f, err);
+    for (int l = 0; !err->status && l < f->lamp_count; l++)
+        if (f->lamps[l].fit) check_lamp(p, l, err);
+    if (!err->status && !start_lamps(p, scratch, err) && !solve(p, err)) check_spread(p, scratch, err);
+    if (err->status) return err->status;
     fit_set_errors(p, jacobian);
     return ST_OK;
 }
@@ -284,15 +282,14 @@ enum status fit_solve(struct light_fit *f, struct err *err)
         m->lit += f->points[i].kind == POINT_LIT;
         m->unlit += f->points[i].kind == POINT_UNLIT;
     }
-    enum status st = list_unknowns(&p, err);
-    if (st || !f->point_count) return st;
-    st = reserve(&p, err);
+    if (list_unknowns(&p, err) || !f->point_count) return err->status;
+    reserve(&p, err);
     struct weighted *scratch = calloc(3 * (size_t)f->point_count, sizeof *scratch);
     double *jacobian = calloc((size_t)fit_residual_count(&p) * (size_t)(p.unknown_count + 1), sizeof *jacobian);
-    if (!st && !(scratch && jacobian)) st = err_nomem(err, "points of lamps", (size_t)f->point_count);
-    if (!st) st = fit_all(&p, scratch, jacobian, err);
+    if (!err->status && (!scratch || !jacobian)) err_nomem(err, "points of lamps", (size_t)f->point_count);
+    if (!err->status) fit_all(&p, scratch, jacobian, err);
     release(&p);
     free(scratch);
     free(jacobian);
-    return st;
+    return err->status;
 }

@@ -71,18 +71,18 @@ static enum status gather_indirect(struct job *j, struct err *err)
     const struct gather_params params = gather_params_of(&j->params);
     const struct model_field_files files = {
         .model = j->model_path, .vita = j->vita, .outdoors = j->outdoors, .lights = declared};
-    enum status st = product_path_in(declared, j->out, PRODUCT_LIGHTS_DECLARED, NULL, err);
-    if (!st) st = light_list_write(&j->scene.lights, declared, &j->prov, err);
-    if (!st) st = model_field_read(&field, &files, &j->prov, err);
-    if (!st && j->references) st = model_field_read_references(&field, j->references, &j->model.in.axes, &j->prov, err);
-    if (!st) st = gatherer_make(&gatherer, &params, err);
-    if (!st) {
+    if (!product_path_in(declared, j->out, PRODUCT_LIGHTS_DECLARED, NULL, err) &&
+        !light_list_write(&j->scene.lights, declared, &j->prov, err))
+        model_field_read(&field, &files, &j->prov, err);
+    if (!err->status && j->references)
+        model_field_read_references(&field, j->references, &j->model.in.axes, &j->prov, err);
+    if (!err->status && !gatherer_make(&gatherer, &params, err)) {
         model_field_switch_lamp(&field, -1, false);
         indirect_gather(&j->indirect, &j->scene, &field.field, gatherer);
     }
     gatherer_free(gatherer);
     model_field_release(&field);
-    return st;
+    return err->status;
 }
 
 static enum status find_indirect(struct job *j, struct err *err)
@@ -125,26 +125,24 @@ static enum status fit(struct job *j, struct err *err)
     struct observations seen = {0};
     struct direct_light direct = {0};
     struct solved_lights solved = {0};
-    enum status st = find_indirect(j, err);
-    if (!st && j->lamps)
-        st = observe(&seen, &j->scene, &j->notes, &j->model, j->views, j->ids, &j->params, &j->prov, err);
-    if (!st) st = direct_light_make(&direct, &j->scene, &j->model, err);
+    find_indirect(j, err);
+    if (!err->status && j->lamps)
+        observe(&seen, &j->scene, &j->notes, &j->model, j->views, j->ids, &j->params, &j->prov, err);
+    if (!err->status) direct_light_make(&direct, &j->scene, &j->model, err);
     const struct solve_inputs in = {&j->scene, &j->notes, &seen, &direct, (const double(*)[3])j->indirect.at,
                                     &j->params};
-    if (!st) st = solve_lights(&solved, &in, err);
-    if (!st) st = write_lights(j, &solved, &in, err);
+    if (!err->status && !solve_lights(&solved, &in, err)) write_lights(j, &solved, &in, err);
     solve_release(&solved);
     direct_light_release(&direct);
     observe_release(&seen);
-    return st;
+    return err->status;
 }
 
 static enum status run(struct job *j, struct err *err)
 {
-    enum status st = read_inputs(j, err);
-    if (!st) st = indirect_init(&j->indirect, &j->scene, err);
-    if (!st && j->list) return indirect_list(&j->indirect, &j->scene, &j->model.in.axes, j->out, &j->prov, err);
-    return st ? st : fit(j, err);
+    if (read_inputs(j, err) || indirect_init(&j->indirect, &j->scene, err)) return err->status;
+    if (j->list) return indirect_list(&j->indirect, &j->scene, &j->model.in.axes, j->out, &j->prov, err);
+    return fit(j, err);
 }
 
 int main(int argc, char **argv)

@@ -46,16 +46,16 @@ enum status indirect_list(const struct indirect *in, const struct lit_scene *sce
                           const char *path, const struct provenance *prov, struct err *err)
 {
     struct outfile f = {0};
-    enum status st = outfile_open(&f, path, err);
-    if (!st && prov) provenance_print(prov, f.fp);
-    for (int k = 0; !st && k < in->count; k++) {
+    outfile_open(&f, path, err);
+    if (!err->status && prov) provenance_print(prov, f.fp);
+    for (int k = 0; !err->status && k < in->count; k++) {
         const struct lit_point *p = &scene->points[in->nodes[k]];
         const struct vec3 at = world_from_model_point(axes, p->at), n = world_from_model_direction(axes, p->normal);
         fprintf(f.fp, "%.17g %.17g %.17g %.9g %.9g %.9g\n", at.x, at.y, at.z, n.x, n.y, n.z);
     }
-    if (!st) st = outfile_commit(&f, err);
+    if (!err->status) outfile_commit(&f, err);
     outfile_discard(&f);
-    return st;
+    return err->status;
 }
 
 static enum status read_node(struct indirect *in, int k, struct textfile *t, struct vec3 wanted, struct err *err)
@@ -79,18 +79,18 @@ enum status indirect_read(struct indirect *in, const struct lit_scene *scene, co
                           const char *path, struct provenance *prov, struct err *err)
 {
     struct textfile t = {0};
-    enum status st = provenance_open(prov, "lights/indirect.txt", &t, path, err);
-    for (int k = 0; !st && k < in->count; k++) {
+    provenance_open(prov, "lights/indirect.txt", &t, path, err);
+    for (int k = 0; !err->status && k < in->count; k++) {
         const struct vec3 at = world_from_model_point(axes, scene->points[in->nodes[k]].at);
         if (!textfile_next(&t))
-            st = textfile_error(&t, err, NULL, "%d points, one for each that was listed", in->count);
+            textfile_error(&t, err, NULL, "%d points, one for each that was listed", in->count);
         else
-            st = read_node(in, k, &t, at, err);
+            read_node(in, k, &t, at, err);
     }
-    if (!st) st = textfile_end_of_file(&t, err);
+    if (!err->status) textfile_end_of_file(&t, err);
     textfile_release(&t);
-    if (!st) indirect_spread(in, scene);
-    return st;
+    if (!err->status) indirect_spread(in, scene);
+    return err->status;
 }
 
 struct gather_job {

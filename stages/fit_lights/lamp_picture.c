@@ -95,11 +95,10 @@ static enum status draw_view(unsigned char **rgb, const struct job *j, int lamp,
     const struct view *v = &j->views[view];
     const double half = fmax(1, hypot(v->width, v->height) / 900);
     struct image im = {0};
-    enum status st = view_image_read(&im, j->folder, v, NULL, err);
-    if (!st) st = image_expose(&im, 0.9, 0.5, err);
-    *rgb = st ? NULL : malloc(3 * (size_t)im.width * (size_t)im.height);
-    if (!st && !*rgb) st = err_nomem(err, "a picture", 3 * (size_t)im.width * (size_t)im.height);
-    if (!st) {
+    if (!view_image_read(&im, j->folder, v, NULL, err)) image_expose(&im, 0.9, 0.5, err);
+    *rgb = err->status ? NULL : malloc(3 * (size_t)im.width * (size_t)im.height);
+    if (!err->status && !*rgb) err_nomem(err, "a picture", 3 * (size_t)im.width * (size_t)im.height);
+    if (!err->status) {
         const struct canvas k = {*rgb, im.width, im.height};
         image_to_srgb8(&im, *rgb);
         draw_marks(&k, j, lamp, v, half);
@@ -107,7 +106,7 @@ static enum status draw_view(unsigned char **rgb, const struct job *j, int lamp,
         draw_curve(&k, outline, v, &j->model->rays, half, OUTLINE);
     }
     image_release(&im);
-    return st;
+    return err->status;
 }
 
 /* Copies a picture into a wider one. */
@@ -126,18 +125,19 @@ static enum status write_views(const struct job *j, int lamp, const int views[2]
     const int width = a->width + (b ? GAP + b->width : 0);
     const int height = b && b->height > a->height ? b->height : a->height;
     unsigned char *rgb[2] = {NULL, NULL}, *both = malloc(3 * (size_t)width * (size_t)height);
-    enum status st = both ? ST_OK : err_nomem(err, "a picture", 3 * (size_t)width * (size_t)height);
-    for (int i = 0; !st && i < 2 && views[i] >= 0; i++) st = draw_view(&rgb[i], j, lamp, views[i], outline, edge, err);
-    if (!st) {
+    if (!both) err_nomem(err, "a picture", 3 * (size_t)width * (size_t)height);
+    for (int i = 0; !err->status && i < 2 && views[i] >= 0; i++)
+        draw_view(&rgb[i], j, lamp, views[i], outline, edge, err);
+    if (!err->status) {
         memset(both, 255, 3 * (size_t)width * (size_t)height);
         paste(both, width, 0, rgb[0], a);
         if (b) paste(both, width, a->width + GAP, rgb[1], b);
-        st = jpeg_write(path, both, width, height, QUALITY, err);
+        jpeg_write(path, both, width, height, QUALITY, err);
     }
     free(rgb[0]);
     free(rgb[1]);
     free(both);
-    return st;
+    return err->status;
 }
 
 /* -------------------------------------------------------------------------------------------------------- choosing */
@@ -182,11 +182,12 @@ enum status lamp_pictures_write(const struct lit_scene *scene, const struct lit_
     const int count = model->in.set.view_count;
     struct job j = {scene, model, calloc((size_t)count + 1, sizeof *j.views), views};
     struct curve *curves = malloc(2 * sizeof *curves);
-    enum status st = j.views && curves ? ST_OK : err_nomem(err, "views", (size_t)count * sizeof *j.views);
-    for (int i = 0; !st && i < count; i++) j.views[i] = model_from_world_view(&model->in.axes, &model->in.set.views[i]);
-    for (int i = 0; !st && i < scene->lights.lamp_count; i++)
-        st = write_lamp(&j, i, &curves[0], &curves[1], folder, err);
+    if (!j.views || !curves) err_nomem(err, "views", (size_t)count * sizeof *j.views);
+    for (int i = 0; !err->status && i < count; i++)
+        j.views[i] = model_from_world_view(&model->in.axes, &model->in.set.views[i]);
+    for (int i = 0; !err->status && i < scene->lights.lamp_count; i++)
+        write_lamp(&j, i, &curves[0], &curves[1], folder, err);
     free(j.views);
     free(curves);
-    return st;
+    return err->status;
 }

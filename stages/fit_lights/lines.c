@@ -125,10 +125,9 @@ static enum status list_traces(struct line_set *s, struct err *err)
     s->traces = calloc(pairs, sizeof *s->traces);
     s->radiance = calloc(pairs * places, sizeof *s->radiance);
     s->sigma = calloc(pairs * places, sizeof *s->sigma);
-    enum status st = ST_OK;
     if (!photos || !shown || !s->traces || !s->radiance || !s->sigma)
-        st = err_nomem(err, "lines in photos", pairs * places * sizeof *s->radiance);
-    for (int i = 0; !st && i < o->count; i++) {
+        err_nomem(err, "lines in photos", pairs * places * sizeof *s->radiance);
+    for (int i = 0; !err->status && i < o->count; i++) {
         const struct observation *q = &o->items[i];
         const int line = line_of(s, q->point);
         if (line < 0 || !(fmin(q->radiance[0], fmin(q->radiance[1], q->radiance[2])) > 0)) continue;
@@ -138,12 +137,12 @@ static enum status list_traces(struct line_set *s, struct err *err)
         shown[t]++;
     }
     int kept = 0;
-    for (int t = 0; !st && t < s->trace_count; t++)
+    for (int t = 0; !err->status && t < s->trace_count; t++)
         if (shown[t] >= MIN_PLACES) s->traces[kept++] = s->traces[t];
     s->trace_count = kept;
     free(photos);
     free(shown);
-    return st;
+    return err->status;
 }
 
 /* How much an error of the marked centre turns the edge, as seen from the lamp. */
@@ -167,10 +166,11 @@ enum status lines_fit_beta(double *error, const struct solve_inputs *in, int lam
     s.lines = calloc(lines + 1, sizeof *s.lines);
     s.angle = calloc(points, sizeof *s.angle);
     s.indirect = calloc(points, sizeof *s.indirect);
-    enum status st = ST_OK;
-    if (!s.first || !s.lines || !s.angle || !s.indirect) st = err_nomem(err, "lines", points * sizeof *s.indirect);
-    if (!st) list_lines(&s);
-    if (!st) st = list_traces(&s, err);
+    if (!s.first || !s.lines || !s.angle || !s.indirect) err_nomem(err, "lines", points * sizeof *s.indirect);
+    if (!err->status) {
+        list_lines(&s);
+        list_traces(&s, err);
+    }
     struct cone_fit f = {.lamp = l->name,
                          .lines = s.lines,
                          .traces = s.traces,
@@ -183,11 +183,10 @@ enum status lines_fit_beta(double *error, const struct solve_inputs *in, int lam
                          .radiance = {l->radiance.r, l->radiance.g, l->radiance.b},
                          .reach = known ? REACH : 0,
                          .beta = l->beta};
-    if (!st) st = cone_fit_solve(&f, err);
-    if (!st) {
+    if (!err->status && !cone_fit_solve(&f, err)) {
         l->beta = f.beta;
         *error = hypot(f.error, click_error(&s));
     }
     release(&s);
-    return st;
+    return err->status;
 }

@@ -329,11 +329,11 @@ enum status lit_scene_resolve(struct lit_scene *s, const struct annotation_list 
 {
     struct resolver r = {s, notes, model, grid};
     *s = (struct lit_scene){0};
-    enum status st = notes ? check_openings(&r, err) : ST_OK;
-    for (int i = 0; !st && notes && i < notes->count; i++)
-        if (notes->items[i].kind == NOTE_DISK || notes->items[i].kind == NOTE_AREA) st = add_lamp(&r, i, err);
-    for (int i = 0; !st && notes && i < notes->count; i++)
-        if (notes->items[i].kind >= NOTE_LIT) st = add_points(&r, i, err);
-    if (!st) st = add_openings(&r, err);
-    return st;
+    if (notes) check_openings(&r, err);
+    for (int i = 0; !err->status && notes && i < notes->count; i++)
+        if (notes->items[i].kind == NOTE_DISK || notes->items[i].kind == NOTE_AREA) add_lamp(&r, i, err);
+    for (int i = 0; !err->status && notes && i < notes->count; i++)
+        if (notes->items[i].kind >= NOTE_LIT) add_points(&r, i, err);
+    if (!err->status) add_openings(&r, err);
+    return err->status;
 }

@@ -186,12 +186,12 @@ static enum status observe_view(struct viewer *v, const char *views, const char 
                                 struct err *err)
 {
     if (!faces_any(v)) return ST_OK;
-    enum status st = read_view(v, views, ids, prov, err);
-    for (int i = 0; !st && i < v->scene->point_count; i++) st = observe_point(v, i, err);
-    for (int i = 0; !st && i < v->scene->lights.lamp_count; i++) st = observe_lamp(v, i, err);
+    read_view(v, views, ids, prov, err);
+    for (int i = 0; !err->status && i < v->scene->point_count; i++) observe_point(v, i, err);
+    for (int i = 0; !err->status && i < v->scene->lights.lamp_count; i++) observe_lamp(v, i, err);
     view_planes_release(&v->picture);
     view_ids_release(&v->ids);
-    return st;
+    return err->status;
 }
 
 static int compare(const void *a, const void *b)
@@ -208,14 +208,14 @@ enum status observe(struct observations *o, const struct lit_scene *scene, const
 {
     struct viewer v = {.o = o, .scene = scene, .notes = notes, .model = model, .params = params};
     *o = (struct observations){.clipped_points = calloc((size_t)scene->point_count + 1, sizeof(int))};
-    enum status st = o->clipped_points ? ST_OK : err_nomem(err, "points", (size_t)scene->point_count);
-    for (int i = 0; !st && i < model->in.set.view_count; i++) {
+    if (!o->clipped_points) err_nomem(err, "points", (size_t)scene->point_count);
+    for (int i = 0; !err->status && i < model->in.set.view_count; i++) {
         v.index = i;
         v.photo = photo_of_view(&model->in.set, &model->in.lenses, i);
         v.camera = model_from_world_view(&model->in.axes, &model->in.set.views[i]);
-        st = observe_view(&v, views, ids, prov, err);
+        observe_view(&v, views, ids, prov, err);
     }
-    if (st) return st;
+    if (err->status) return err->status;
     if (o->count) qsort(o->items, (size_t)o->count, sizeof *o->items, compare);
     int kept = 0;
     for (int i = 0; i < o->count; i++)

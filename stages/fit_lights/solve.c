@@ -249,8 +249,8 @@ static enum status fit_radiances(struct solved_lights *s, const struct solve_inp
                           in->params->texture,
                           pass == PASS_PROVISIONAL ? INFINITY : in->params->max_spread,
                           in->params->irradiance_error};
-    enum status st = fit_solve(&f, err);
-    for (int i = 0; !st && i < list->lamp_count; i++) {
+    fit_solve(&f, err);
+    for (int i = 0; !err->status && i < list->lamp_count; i++) {
         struct lamp *l = &list->lamps[i];
         if (!lamps[i].fit) continue;
         l->radiance = rgb_make(lamps[i].radiance[0], lamps[i].radiance[1], lamps[i].radiance[2]);
@@ -260,7 +260,7 @@ static enum status fit_radiances(struct solved_lights *s, const struct solve_inp
         s->lamps[i].source = LAMP_FITTED;
     }
     free(lamps);
-    return st;
+    return err->status;
 }
 
 /* What the annotations give, and where a fit begins. */
@@ -399,12 +399,12 @@ enum status solve_write(const struct solved_lights *s, const struct solve_inputs
                         const struct provenance *prov, struct err *err)
 {
     struct outfile f = {0};
-    enum status st = product_begin(&f, PRODUCT_LIGHT_FIT, path, prov, err);
-    for (int i = 0; !st && i < s->lamp_count; i++) write_lamp(s, in, i, f.fp);
-    for (int i = 0; !st && i < s->material_count; i++) write_material(&s->materials[i], f.fp);
-    for (int i = 0; !st && i < s->point_count; i++)
+    product_begin(&f, PRODUCT_LIGHT_FIT, path, prov, err);
+    for (int i = 0; !err->status && i < s->lamp_count; i++) write_lamp(s, in, i, f.fp);
+    for (int i = 0; !err->status && i < s->material_count; i++) write_material(&s->materials[i], f.fp);
+    for (int i = 0; !err->status && i < s->point_count; i++)
         if (s->points[i].kind != POINT_ACROSS) write_point(s, in, i, f.fp);
-    if (!st) st = outfile_commit(&f, err);
+    if (!err->status) outfile_commit(&f, err);
     outfile_discard(&f);
-    return st;
+    return err->status;
 }

@@ -159,9 +159,9 @@ static enum status fit_kinds(struct material_choice *c, const struct material_sa
     }
     if (count_points(s) < MIN_POINTS) return ST_OK;
     if (validation_init(&v, s, err)) return err->status;
-    const enum status st = validate(c, &v, err);
+    validate(c, &v, err);
     validation_release(&v);
-    return st;
+    return err->status;
 }
 
 enum status material_choose(struct material_choice *c, const struct material_samples *s, struct err *err)

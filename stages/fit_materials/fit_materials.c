@@ -67,16 +67,14 @@ static enum status fit_one(struct job *j, const struct observed_scene *scene, in
     struct material *m = &j->marks.list.items[index];
     struct region_fit f;
     char path[FILE_PATH];
-    enum status st = region_fit_make(&f, m, index, j->marks.declared[index], &j->seen, scene, &j->field.field, err);
-    if (!st) {
+    if (!region_fit_make(&f, m, index, j->marks.declared[index], &j->seen, scene, &j->field.field, err)) {
         report(m, &f);
         region_fit_print(samples, &f, m, &j->seen, scene);
-        st = product_path_in(path, j->out, PRODUCT_MATERIAL_PICTURE, &(struct product_key){.name = m->name}, err)
-                 ? err->status
-                 : region_fit_picture(&f, &j->seen, scene, path, err);
+        if (!product_path_in(path, j->out, PRODUCT_MATERIAL_PICTURE, &(struct product_key){.name = m->name}, err))
+            region_fit_picture(&f, &j->seen, scene, path, err);
     }
     region_fit_release(&f);
-    return st;
+    return err->status;
 }
 
 static enum status fit_all(struct job *j, const struct observed_scene *scene, struct err *err)
@@ -87,11 +85,10 @@ static enum status fit_all(struct job *j, const struct observed_scene *scene, st
         product_begin(&samples, PRODUCT_MATERIAL_SAMPLES, path, &j->prov, err))
         return err->status;
     fprintf(samples.fp, "# material view x y, radiance R G B in the view, and by the fitted model\n");
-    enum status st = ST_OK;
-    for (int i = 0; !st && i < j->marks.list.count; i++) st = fit_one(j, scene, i, samples.fp, err);
-    if (!st) st = outfile_commit(&samples, err);
+    for (int i = 0; !err->status && i < j->marks.list.count; i++) fit_one(j, scene, i, samples.fp, err);
+    if (!err->status) outfile_commit(&samples, err);
     outfile_discard(&samples);
-    if (st || product_path_in(path, j->out, PRODUCT_MATERIALS, NULL, err)) return err->status;
+    if (err->status || product_path_in(path, j->out, PRODUCT_MATERIALS, NULL, err)) return err->status;
     return material_list_write(&j->marks.list, path, &j->prov, err);
 }
 

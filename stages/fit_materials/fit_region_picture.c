@@ -55,9 +55,11 @@ enum status region_fit_picture(const struct region_fit *f, const struct observat
         residual_colour(model > 0 ? seen / model - 1 : seen > 0 ? 1 : 0, colour);
         draw_dot(&canvas, s->x, s->y, radius, colour);
     }
-    const enum status st = rgb ? jpeg_write(path, rgb, im.width, im.height, QUALITY, err)
-                               : err_nomem(err, "a picture", 3 * (size_t)im.width * (size_t)im.height);
+    if (rgb)
+        jpeg_write(path, rgb, im.width, im.height, QUALITY, err);
+    else
+        err_nomem(err, "a picture", 3 * (size_t)im.width * (size_t)im.height);
     free(rgb);
     image_release(&im);
-    return st;
+    return err->status;
 }

@@ -53,14 +53,13 @@ enum status marked_materials_read(struct marked_materials *m, const char *path, 
     struct textfile t = {0};
     int64_t version;
     *m = (struct marked_materials){0};
-    enum status st = provenance_open(prov, "materials.txt", &t, path, err) ||
-                             textfile_expect_line(&t, "remodel-marked-materials", err) ||
-                             textfile_int(&t, "the version", 1, 1, &version, err) || textfile_end(&t, err)
-                         ? err->status
-                         : ST_OK;
-    while (!st && textfile_next(&t)) st = read_material(m, &t, err);
-    if (!st && !m->list.count) st = textfile_error(&t, err, NULL, "a line `material NAME in VIEW X Y X Y X Y`");
+    if (!provenance_open(prov, "materials.txt", &t, path, err) &&
+        !textfile_expect_line(&t, "remodel-marked-materials", err) &&
+        !textfile_int(&t, "the version", 1, 1, &version, err))
+        textfile_end(&t, err);
+    while (!err->status && textfile_next(&t)) read_material(m, &t, err);
+    if (!err->status && !m->list.count) textfile_error(&t, err, NULL, "a line `material NAME in VIEW X Y X Y X Y`");
     textfile_release(&t);
-    if (st) marked_materials_release(m);
-    return st;
+    if (err->status) marked_materials_release(m);
+    return err->status;
 }

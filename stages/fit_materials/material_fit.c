@@ -477,13 +477,12 @@ enum status material_fit(struct material_fit *fit, const struct material_samples
     struct fit_problem p;
     *fit = (struct material_fit){.kind = kind};
     if (problem_init(&p, s, kind, used, err)) return err->status;
-    const enum status st = fit_from_starts(fit, &p, err);
-    if (!st) {
+    if (!fit_from_starts(fit, &p, err)) {
         set_meaning(fit);
         set_intervals(fit, &p);
     }
     problem_release(&p);
-    return st;
+    return err->status;
 }
 
 enum status material_fit_again(struct material_fit *fit, const struct material_fit *from,
@@ -492,10 +491,9 @@ enum status material_fit_again(struct material_fit *fit, const struct material_f
     struct fit_problem p;
     *fit = *from;
     if (problem_init(&p, s, from->kind, used, err)) return err->status;
-    const enum status st = refine(fit, &p, err);
-    if (!st) set_meaning(fit);
+    if (!refine(fit, &p, err)) set_meaning(fit);
     problem_release(&p);
-    return st;
+    return err->status;
 }
 
 enum status material_fit_losses(double *losses, const struct material_fit *fit, const struct material_samples *s,

@@ -180,11 +180,11 @@ static enum status observe_view(struct viewer *v, struct provenance *prov, struc
     double x, y;
     for (int i = 0; !any && i < v->o->point_count; i++) any = faces(v, &v->o->points[i], &x, &y);
     if (!any) return ST_OK;
-    enum status st = read_view(v, prov, err);
-    for (int i = 0; !st && i < v->o->point_count; i++) st = observe_point(v, i, err);
+    read_view(v, prov, err);
+    for (int i = 0; !err->status && i < v->o->point_count; i++) observe_point(v, i, err);
     view_planes_release(&v->picture);
     view_ids_release(&v->ids);
-    return st;
+    return err->status;
 }
 
 static int compare_sights(const void *a, const void *b)

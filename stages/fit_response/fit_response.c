@@ -34,22 +34,23 @@ static enum status sample_view(struct sample_job *job)
     struct photo *photos = calloc((size_t)count + 1, sizeof *photos);
     double exposures[RECOVER_MAX_EXPOSURES];
     bool linear = false;
-    enum status st = photos ? ST_OK : err_nomem(&job->err, "photos", (size_t)count * sizeof *photos);
-    for (int k = 0; !st && !linear && k < count; k++) {
+    if (!photos) err_nomem(&job->err, "photos", (size_t)count * sizeof *photos);
+    for (int k = 0; !job->err.status && !linear && k < count; k++) {
         char path[FILE_PATH];
-        st = file_path(path, job->photos, r->brackets[k].file, "", &job->err);
-        if (!st) st = photo_read_any(&photos[k], path, &job->err);
-        if (!st && (photos[k].info.width != photos[0].info.width || photos[k].info.height != photos[0].info.height))
-            st = err_set(&job->err, ST_DATA,
-                         "%s differs in size from the other exposures of view %s; import the photos again.", path,
-                         r->id);
+        if (!file_path(path, job->photos, r->brackets[k].file, "", &job->err))
+            photo_read_any(&photos[k], path, &job->err);
+        if (!job->err.status &&
+            (photos[k].info.width != photos[0].info.width || photos[k].info.height != photos[0].info.height))
+            err_set(&job->err, ST_DATA,
+                    "%s differs in size from the other exposures of view %s; import the photos again.", path, r->id);
         linear |= photos[k].values != NULL;
         exposures[k] = r->brackets[k].exposure;
     }
-    if (!st && !linear) st = recover_add_patches(&job->patches, photos, exposures, count, job->max_patches, &job->err);
+    if (!job->err.status && !linear)
+        recover_add_patches(&job->patches, photos, exposures, count, job->max_patches, &job->err);
     for (int k = 0; photos && k < count; k++) photo_release(&photos[k]);
     free(photos);
-    return st;
+    return job->err.status;
 }
 
 static void sample_views(void *ctx, size_t begin, size_t end, int thread)
@@ -81,20 +82,20 @@ static enum status gather(struct patches *all, const struct photo_list *list, co
     for (int i = 0; i < list->count; i++) bracketed += list->photos[i].bracket_count > 1;
     const int count = bracketed < params->views ? bracketed : params->views;
     struct sample_job *jobs = calloc((size_t)count + 1, sizeof *jobs);
-    enum status st = jobs ? ST_OK : err_nomem(err, "views", (size_t)count * sizeof *jobs);
-    for (int i = 0, seen = 0; !st && i < list->count; i++) {
+    if (!jobs) err_nomem(err, "views", (size_t)count * sizeof *jobs);
+    for (int i = 0, seen = 0; !err->status && i < list->count; i++) {
         if (list->photos[i].bracket_count < 2) continue;
         if (n < count && seen++ * count >= n * bracketed)
             jobs[n++] = (struct sample_job){&list->photos[i], photos, params->max_patches, {0}, ERR_INIT};
     }
-    if (!st) parallel_for((size_t)n, 1, sample_views, jobs);
+    if (!err->status) parallel_for((size_t)n, 1, sample_views, jobs);
     for (int i = 0; i < n; i++) {
-        if (!st && jobs[i].err.status) st = err_set(err, jobs[i].err.status, "%s", jobs[i].err.text);
-        if (!st) st = append(all, &jobs[i].patches, err);
+        if (!err->status && jobs[i].err.status) err_set(err, jobs[i].err.status, "%s", jobs[i].err.text);
+        if (!err->status) append(all, &jobs[i].patches, err);
         recover_release_patches(&jobs[i].patches);
     }
     free(jobs);
-    return st;
+    return err->status;
 }
 
 static enum status write_response(const struct response *r, const char *path, const struct provenance *prov,
@@ -109,9 +110,12 @@ static enum status write_response(const struct response *r, const char *path, co
     for (int i = 0; r->table && i < RESPONSE_LEVELS; i++)
         fprintf(to, "%.9g %.9g %.9g\n", (double)r->light[0][i], (double)r->light[1][i], (double)r->light[2][i]);
     const bool failed = fclose(to) != 0;
-    enum status st = failed ? err_nomem(err, "a text", size) : outfile_write_if_changed(path, text, size, err);
+    if (failed)
+        err_nomem(err, "a text", size);
+    else
+        outfile_write_if_changed(path, text, size, err);
     free(text);
-    return st;
+    return err->status;
 }
 
 static enum status fit_response(const char *photos, const char *records, const char *out,
@@ -121,14 +125,12 @@ static enum status fit_response(const char *photos, const char *records, const c
     struct patches patches = {0};
     struct response response;
     char summary[RESPONSE_SUMMARY];
-    enum status st = photo_list_read(&list, records, err);
-    if (!st) st = gather(&patches, &list, photos, params, err);
-    if (!st) st = recover_decide(&response, summary, &patches, params, err);
-    if (!st) st = write_response(&response, out, prov, err);
-    if (!st) log_note("response curve: %s", summary);
+    if (!photo_list_read(&list, records, err) && !gather(&patches, &list, photos, params, err) &&
+        !recover_decide(&response, summary, &patches, params, err) && !write_response(&response, out, prov, err))
+        log_note("response curve: %s", summary);
     recover_release_patches(&patches);
     photo_list_release(&list);
-    return st;
+    return err->status;
 }
 
 int main(int argc, char **argv)

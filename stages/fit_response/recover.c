@@ -325,26 +325,25 @@ static enum status recover(struct response *r, const struct patches *p, struct e
     bool rises[STEPS];
     struct normal_equations *s = malloc(4 * sizeof *s); /* one per colour, and one to solve */
     double weights[3], smallest = HUGE_VAL;
-    enum status st = s ? ST_OK : err_nomem(err, "a system of equations", 4 * sizeof *s);
+    if (!s) err_nomem(err, "a system of equations", 4 * sizeof *s);
     *r = (struct response){0};
-    for (int c = 0; !st && c < 3; c++) st = set_up(&s[c], &weights[c], p, c, err);
-    for (int i = 0; !st && i < STEPS; i++) {
+    for (int c = 0; !err->status && c < 3; c++) set_up(&s[c], &weights[c], p, c, err);
+    for (int i = 0; !err->status && i < STEPS; i++) {
         curves[i] = (struct response){.table = true};
         rises[i] = true;
         for (int c = 0; c < 3; c++) {
             s[3] = s[c];
             rises[i] &= solve_smooth(curves[i].light[c], &s[3], smoothness[i] * weights[c]);
         }
-        if (rises[i]) st = judge(&e[i], &curves[i], p, err);
-        if (!st && rises[i]) smallest = fmin(smallest, e[i].spread);
+        if (rises[i]) judge(&e[i], &curves[i], p, err);
+        if (!err->status && rises[i]) smallest = fmin(smallest, e[i].spread);
     }
-    for (int i = 0; !st && i < STEPS; i++)
+    for (int i = 0; !err->status && i < STEPS; i++)
         if (rises[i] && e[i].spread <= tolerance * smallest + min_spread) *r = curves[i];
-    if (!st && !r->table)
-        st = err_set(err, ST_DATA,
-                     "no rising response curve explains the photos; correct their exposures (exposures.txt).");
+    if (!err->status && !r->table)
+        err_set(err, ST_DATA, "no rising response curve explains the photos; correct their exposures (exposures.txt).");
     free(s);
-    return st;
+    return err->status;
 }
 
 enum status recover_decide(struct response *r, char summary[RESPONSE_SUMMARY], const struct patches *p,
@@ -355,8 +354,7 @@ enum status recover_decide(struct response *r, char summary[RESPONSE_SUMMARY], c
     struct evidence srgb, table;
     struct response curve;
     *r = (struct response){0};
-    enum status st = judge(&srgb, r, p, err);
-    if (st) return st;
+    if (judge(&srgb, r, p, err)) return err->status;
     if (!strcmp(params->response, "srgb")) {
         snprintf(summary, RESPONSE_SUMMARY, "sRGB, set by [fit_response] response = srgb");
         return ST_OK;
@@ -370,9 +368,8 @@ enum status recover_decide(struct response *r, char summary[RESPONSE_SUMMARY], c
                  100 * srgb.spread);
         return ST_OK;
     }
-    st = recover(&curve, p, err);
-    if (!st) st = judge(&table, &curve, p, err);
-    if (st) return st;
+    if (!recover(&curve, p, err)) judge(&table, &curve, p, err);
+    if (err->status) return err->status;
     if (forced || table.spread < improvement * srgb.spread) {
         *r = curve;
         snprintf(

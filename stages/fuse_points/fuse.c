@@ -226,29 +226,28 @@ static enum status fuse_view(struct point_grid *grid, int view_idx, struct surfa
     struct layered_depth depth = {0};
     struct surface surface = {0};
     struct reference r = {.surface = &surface, .interior = &depth.interior, .params = params};
-    enum status st = cache->source->read_interior(cache->source->ctx, view_idx, &depth, err);
-    if (!st) st = surface_make(&surface, view, &depth, err);
-    if (!st) {
+    if (!cache->source->read_interior(cache->source->ctx, view_idx, &depth, err) &&
+        !surface_make(&surface, view, &depth, err)) {
         r.votes = malloc(pixels * sizeof *r.votes);
         r.inverse_z = malloc(pixels * sizeof *r.inverse_z);
-        if (!r.votes || !r.inverse_z) st = err_nomem(err, "the views' votes", pixels * sizeof *r.votes);
+        if (!r.votes || !r.inverse_z) err_nomem(err, "the views' votes", pixels * sizeof *r.votes);
     }
-    if (!st) parallel_for((size_t)view->height, ROWS, init_votes, &r);
-    for (int i = 0; !st && i < set->view_count; i++) {
-        if (i != view_idx && overlaps(&r, &set->views[i]) && !(st = surface_cache_get(cache, i, &r.other, err)))
+    if (!err->status) parallel_for((size_t)view->height, ROWS, init_votes, &r);
+    for (int i = 0; !err->status && i < set->view_count; i++) {
+        if (i != view_idx && overlaps(&r, &set->views[i]) && !surface_cache_get(cache, i, &r.other, err))
             parallel_for((size_t)view->height, ROWS, compare_rows, &r);
         progress_add(progress, 1);
     }
-    if (!st) {
+    if (!err->status) {
         select_points(&r, stats);
         parallel_for((size_t)view->height, ROWS, normal_rows, &r);
-        st = add_points(grid, &r, err);
+        add_points(grid, &r, err);
     }
     free(r.votes);
     free(r.inverse_z);
     surface_release(&surface);
     layered_depth_release(&depth);
-    return st;
+    return err->status;
 }
 
 /* Median depth of the confident pixels; 0 if there are none. */
@@ -307,21 +306,21 @@ enum status fuse_points(struct point_cloud *cloud, struct fuse_stats *stats, con
     struct point_grid grid = {0};
     struct progress progress = {0};
     *stats = (struct fuse_stats){.views = params->min_views < set->view_count ? params->min_views : set->view_count};
-    enum status st = surface_cache_init(&cache, set, source, max_bytes, err);
-    if (!st) st = scene_depth(&stats->depth, &cache, params, err);
-    if (!st) st = point_grid_init(&grid, params->grid_size > 0 ? params->grid_size : params->grid * stats->depth, err);
-    if (!st) progress_start(&progress, "fusing", (int64_t)set->view_count * set->view_count, "pairs of views");
-    for (int i = 0; !st && i < set->view_count; i++) st = fuse_view(&grid, i, &cache, params, stats, &progress, err);
+    if (!surface_cache_init(&cache, set, source, max_bytes, err) && !scene_depth(&stats->depth, &cache, params, err) &&
+        !point_grid_init(&grid, params->grid_size > 0 ? params->grid_size : params->grid * stats->depth, err))
+        progress_start(&progress, "fusing", (int64_t)set->view_count * set->view_count, "pairs of views");
+    for (int i = 0; !err->status && i < set->view_count; i++)
+        fuse_view(&grid, i, &cache, params, stats, &progress, err);
     progress_end(&progress);
     stats->reads = cache.reads;
-    if (!st && !grid.count)
-        st = err_set(err, ST_DATA,
-                     "none of %lld confident pixels has a depth on which %d views agree; check the depth maps and the "
-                     "cameras, or "
-                     "lower [fuse_points] min_views.",
-                     (long long)stats->samples, stats->views);
+    if (!err->status && !grid.count)
+        err_set(err, ST_DATA,
+                "none of %lld confident pixels has a depth on which %d views agree; check the depth maps and the "
+                "cameras, or "
+                "lower [fuse_points] min_views.",
+                (long long)stats->samples, stats->views);
     surface_cache_release(&cache); /* frees its memory before the points are allocated */
-    if (!st) st = point_grid_points(cloud, &grid, err);
+    if (!err->status) point_grid_points(cloud, &grid, err);
     point_grid_release(&grid);
-    return st;
+    return err->status;
 }

@@ -58,17 +58,16 @@ static enum status fuse(const char *views, const char *depth, const char *out, i
     struct point_cloud cloud = {0};
     struct fuse_stats stats;
     if (mib < 0) return err_set(err, ST_USAGE, "--memory %d: wanted a number of MiB, 0 or more.", mib);
-    enum status st = camera_set_read(&set, views, prov, err);
-    if (!st) {
+    camera_set_read(&set, views, prov, err);
+    if (!err->status) {
         struct depth_folder folder = {depth, &set, prov};
         const struct depth_reader source = {read_ids, read_interior, &folder};
-        st = fuse_points(&cloud, &stats, &set, &source, params, (size_t)mib << 20, err);
+        fuse_points(&cloud, &stats, &set, &source, params, (size_t)mib << 20, err);
     }
-    if (!st) st = point_cloud_write(&cloud, out, prov, err);
-    if (!st) log_stats(&cloud, &stats);
+    if (!err->status && !point_cloud_write(&cloud, out, prov, err)) log_stats(&cloud, &stats);
     point_cloud_release(&cloud);
     camera_set_release(&set);
-    return st;
+    return err->status;
 }
 
 int main(int argc, char **argv)

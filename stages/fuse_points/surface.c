@@ -80,12 +80,12 @@ enum status surface_cache_get(struct surface_cache *c, int view_idx, const struc
     struct surface *at = &c->surfaces[view_idx];
     if (!c->last_use[view_idx]) {
         struct layered_depth d = {0};
-        enum status st = c->source->read_ids(c->source->ctx, view_idx, &d, err);
-        if (!st) st = surface_make(at, &c->set->views[view_idx], &d, err);
+        if (!c->source->read_ids(c->source->ctx, view_idx, &d, err))
+            surface_make(at, &c->set->views[view_idx], &d, err);
         layered_depth_release(&d);
-        if (st) {
+        if (err->status) {
             surface_release(at);
-            return st;
+            return err->status;
         }
         c->reads++;
         c->used_bytes += surface_bytes(at);

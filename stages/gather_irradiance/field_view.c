@@ -100,34 +100,33 @@ static enum status write_picture(const struct gather_job *j, const struct view *
 {
     char name[FILE_PATH], path[FILE_PATH];
     struct exr_image im = {0};
-    enum status st = file_path(name, "irradiance", v->name, "", err);
-    if (!st) st = product_path_in(path, j->out, PRODUCT_IRRADIANCE_VIEW, &(struct product_key){.gathered = name}, err);
-    if (!st) st = exr_image_init(&im, v->width, v->height, err);
-    if (!st) st = add_irradiance(&im, s, err);
-    if (!st && s->gloss.material) st = add_gloss(&im, &s->gloss, err);
-    if (!st) st = exr_write(&im, path, &j->prov, err);
+    if (!file_path(name, "irradiance", v->name, "", err) &&
+        !product_path_in(path, j->out, PRODUCT_IRRADIANCE_VIEW, &(struct product_key){.gathered = name}, err) &&
+        !exr_image_init(&im, v->width, v->height, err))
+        add_irradiance(&im, s, err);
+    if (!err->status && s->gloss.material) add_gloss(&im, &s->gloss, err);
+    if (!err->status) exr_write(&im, path, &j->prov, err);
     exr_image_release(&im);
-    return st;
+    return err->status;
 }
 
 enum status gather_view(struct gather_job *j, const char *views, const char *name, bool gloss, struct err *err)
 {
     struct camera_set set = {0};
     struct view_surface s = {0};
-    enum status st = camera_set_read_cameras(&set, views, &j->prov, err);
-    const int index = st ? -1 : camera_set_find(&set, name);
-    if (!st && index < 0)
-        st = err_set(err, ST_DATA, "%s has no view %s; see its images.txt for the names.", views, name);
-    if (!st) st = surface_init(&s, &set.views[index], err);
-    if (!st) {
+    camera_set_read_cameras(&set, views, &j->prov, err);
+    const int index = err->status ? -1 : camera_set_find(&set, name);
+    if (!err->status && index < 0)
+        err_set(err, ST_DATA, "%s has no view %s; see its images.txt for the names.", views, name);
+    if (!err->status && !surface_init(&s, &set.views[index], err)) {
         const struct view view = model_from_world_view(&j->axes, &set.views[index]);
         find_points(&s, j, &view);
-        st = gather_grid(s.irradiance, s.points, view.width, view.height, j, name, err);
-        if (!st) st = light_summary_of_view(j, &view, s.points, s.irradiance, err);
-        if (!st && gloss) st = view_gloss_gather(&s.gloss, j, &view, s.points, s.faces, s.irradiance, err);
-        if (!st) st = write_picture(j, &view, &s, err);
+        if (!gather_grid(s.irradiance, s.points, view.width, view.height, j, name, err))
+            light_summary_of_view(j, &view, s.points, s.irradiance, err);
+        if (!err->status && gloss) view_gloss_gather(&s.gloss, j, &view, s.points, s.faces, s.irradiance, err);
+        if (!err->status) write_picture(j, &view, &s, err);
     }
     surface_release(&s);
     camera_set_release(&set);
-    return st;
+    return err->status;
 }

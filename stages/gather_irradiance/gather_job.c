@@ -106,19 +106,18 @@ static enum status gather_with(struct irradiance *results, struct gather_point *
                                const struct gather_job *j, const char *what, struct err *err)
 {
     struct task t = {.results = results, .points = points, .job = j};
-    enum status st = ST_OK;
     double *errors = malloc((count + 1) * sizeof *errors);
     if (!errors) return err_nomem(err, "points", count * sizeof *errors);
     t.lift = LIFT * model_rays_size(&j->field.model);
     progress_start(&t.progress, what, (int64_t)count, "points");
     if (width)
-        st = fill_cache(&t, width, (int)(count / (size_t)width), err);
+        fill_cache(&t, width, (int)(count / (size_t)width), err);
     else
         parallel_for(count, 1, gather_some, &t);
     progress_end(&t.progress);
-    if (!st) report(results, points, count, errors);
+    if (!err->status) report(results, points, count, errors);
     free(errors);
-    return st;
+    return err->status;
 }
 
 enum status gather_all(struct irradiance *results, struct gather_point *points, size_t count,

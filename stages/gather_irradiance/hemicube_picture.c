@@ -90,19 +90,20 @@ enum status hemicube_picture_write(const struct light_field *f, struct gather_po
     const size_t pixels = (size_t)side * (size_t)side;
     struct sketch s = {.field = f, .at = p, .n = n, .is_known = calloc(pixels, 1)};
     unsigned char *rgb = malloc(3 * pixels);
-    enum status st = s.is_known && rgb ? image_init(&s.light, side, side, 4, err)
-                                       : err_nomem(err, "a picture of a hemicube", 4 * pixels);
+    if (s.is_known && rgb)
+        image_init(&s.light, side, side, 4, err);
+    else
+        err_nomem(err, "a picture of a hemicube", 4 * pixels);
     unfold_frame(&s.right, &s.down, p.normal);
-    if (!st) parallel_for((size_t)side, 8, look_at_rows, &s);
-    if (!st) st = image_expose(&s.light, 0.9, 0.5, err);
-    if (!st) {
+    if (!err->status) parallel_for((size_t)side, 8, look_at_rows, &s);
+    if (!err->status && !image_expose(&s.light, 0.9, 0.5, err)) {
         image_to_srgb8(&s.light, rgb);
         mark_unknown(rgb, &s);
         draw_folds(rgb, n);
-        st = jpeg_write(path, rgb, side, side, QUALITY, err);
+        jpeg_write(path, rgb, side, side, QUALITY, err);
     }
     image_release(&s.light);
     free(s.is_known);
     free(rgb);
-    return st;
+    return err->status;
 }

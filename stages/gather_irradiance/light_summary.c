@@ -181,20 +181,19 @@ static void draw_examples(const struct sketch *s, const size_t *chosen, int coun
 static enum status draw_white(const struct sketch *s, const size_t *chosen, int count, struct err *err)
 {
     struct image im = {0};
-    enum status st = image_init(&im, s->view->width, s->view->height, 4, err);
-    for (size_t i = 0; !st && i < s->pixels; i++) {
+    image_init(&im, s->view->width, s->view->height, 4, err);
+    for (size_t i = 0; !err->status && i < s->pixels; i++) {
         const struct rgb v = s->e[i].value;
         const float pixel[4] = {(float)v.r, (float)v.g, (float)v.b, is_point(&s->points[i])};
         memcpy(im.data + 4 * i, pixel, sizeof pixel);
     }
-    if (!st) st = image_expose(&im, 0.9, 0.6, err);
-    if (!st) {
+    if (!err->status && !image_expose(&im, 0.9, 0.6, err)) {
         image_to_srgb8(&im, s->rgb);
         draw_examples(s, chosen, count);
-        st = write_picture(s, PRODUCT_IRRADIANCE_WHITE, err);
+        write_picture(s, PRODUCT_IRRADIANCE_WHITE, err);
     }
     image_release(&im);
-    return st;
+    return err->status;
 }
 
 static enum status draw_levels(const struct sketch *s, const double level[2], struct err *err)
@@ -222,15 +221,12 @@ enum status light_summary_of_view(const struct gather_job *j, const struct view 
     struct light_record r;
     size_t chosen[LIGHT_EXAMPLES_MAX];
     struct sketch s = {j, view, points, e, (size_t)view->width * (size_t)view->height, "", NULL};
-    enum status st = light_summarize(&r, chosen, points, e, s.pixels, j->hemicubes, err);
+    light_summarize(&r, chosen, points, e, s.pixels, j->hemicubes, err);
     s.rgb = malloc(3 * s.pixels);
-    if (!st && !s.rgb) st = err_nomem(err, "a picture", 3 * s.pixels);
-    if (!st) st = file_path(s.name, "irradiance", view->name, "", err);
-    if (!st) st = find_levels(r.level, &s, err);
-    if (!st) st = draw_white(&s, chosen, r.example_count, err);
-    if (!st) st = draw_levels(&s, r.level, err);
-    if (!st) st = draw_unknown(&s, err);
-    if (!st) st = write_record(j, s.name, &r, err);
+    if (!err->status && !s.rgb) err_nomem(err, "a picture", 3 * s.pixels);
+    if (!err->status && !file_path(s.name, "irradiance", view->name, "", err) && !find_levels(r.level, &s, err) &&
+        !draw_white(&s, chosen, r.example_count, err) && !draw_levels(&s, r.level, err) && !draw_unknown(&s, err))
+        write_record(j, s.name, &r, err);
     free(s.rgb);
-    return st;
+    return err->status;
 }

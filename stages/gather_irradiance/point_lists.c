@@ -29,37 +29,35 @@ static enum status write_parts(const struct gather_job *j, const char *name, con
                                struct err *err)
 {
     struct outfile f = {0};
-    enum status st =
-        open_list(&f, j, name, PRODUCT_IRRADIANCE_PARTS,
-                  "# standard error r g b, rays, nearest distance and 1 / (harmonic mean distance) in model "
-                  "units, shares of the light: none texture synthesised sky sky-guessed lamp material\n",
-                  err);
-    for (int i = 0; !st && i < count; i++) {
+    open_list(&f, j, name, PRODUCT_IRRADIANCE_PARTS,
+              "# standard error r g b, rays, nearest distance and 1 / (harmonic mean distance) in model "
+              "units, shares of the light: none texture synthesised sky sky-guessed lamp material\n",
+              err);
+    for (int i = 0; !err->status && i < count; i++) {
         const double nearest = isfinite(e[i].nearest) ? e[i].nearest : 0;
         fprintf(f.fp, "%.6g %.6g %.6g %d %.6g %.6g", e[i].error.r, e[i].error.g, e[i].error.b, e[i].rays, nearest,
                 e[i].mean_inverse);
         for (int s = 0; s < LIGHT_SOURCES; s++) fprintf(f.fp, " %.6f", e[i].from[s]);
         fputc('\n', f.fp);
     }
-    if (!st) st = outfile_commit(&f, err);
+    if (!err->status) outfile_commit(&f, err);
     outfile_discard(&f);
-    return st;
+    return err->status;
 }
 
 static enum status write_points(const struct gather_job *j, const char *name, const struct surface_points *points,
                                 const struct irradiance *e, struct err *err)
 {
     struct outfile f = {0};
-    enum status st = open_list(&f, j, name, PRODUCT_IRRADIANCE,
-                               "# x y z, normal, irradiance r g b; in the frame of the views\n", err);
-    for (int i = 0; !st && i < points->count; i++) {
+    open_list(&f, j, name, PRODUCT_IRRADIANCE, "# x y z, normal, irradiance r g b; in the frame of the views\n", err);
+    for (int i = 0; !err->status && i < points->count; i++) {
         const struct surface_point *p = &points->list[i];
         fprintf(f.fp, "%.17g %.17g %.17g %.17g %.17g %.17g %.9g %.9g %.9g\n", p->at.x, p->at.y, p->at.z, p->normal.x,
                 p->normal.y, p->normal.z, e[i].value.r, e[i].value.g, e[i].value.b);
     }
-    if (!st) st = outfile_commit(&f, err);
+    if (!err->status) outfile_commit(&f, err);
     outfile_discard(&f);
-    return st;
+    return err->status;
 }
 
 /* Gathers at points in the scene's frame and writes both lists. */
@@ -69,27 +67,25 @@ static enum status gather_points(struct gather_job *j, const char *name, const s
     const size_t count = (size_t)points->count;
     struct gather_point *at = malloc((count + 1) * sizeof *at);
     struct irradiance *found = calloc(count + 1, sizeof *found);
-    enum status st = at && found ? ST_OK : err_nomem(err, "points", count * (sizeof *at + sizeof *found));
-    for (size_t i = 0; !st && i < count; i++)
+    if (!at || !found) err_nomem(err, "points", count * (sizeof *at + sizeof *found));
+    for (size_t i = 0; !err->status && i < count; i++)
         at[i] = (struct gather_point){model_from_world_point(&j->axes, points->list[i].at),
                                       model_from_world_direction(&j->axes, points->list[i].normal)};
-    if (!st) st = gather_all(found, at, count, j, "irradiance", err);
-    if (!st) st = light_summary_of_points(j, name, at, found, count, err);
-    if (!st) st = write_parts(j, name, found, points->count, err);
-    if (!st) st = write_points(j, name, points, found, err);
+    if (!err->status && !gather_all(found, at, count, j, "irradiance", err) &&
+        !light_summary_of_points(j, name, at, found, count, err) && !write_parts(j, name, found, points->count, err))
+        write_points(j, name, points, found, err);
     free(at);
     free(found);
-    return st;
+    return err->status;
 }
 
 enum status gather_points_of_file(struct gather_job *j, const char *path, struct err *err)
 {
     struct surface_points points = {0};
-    enum status st = provenance_add_file(&j->prov, "points", path, err);
-    if (!st) st = surface_points_read(&points, path, err);
-    if (!st) st = gather_points(j, "irradiance", &points, err);
+    if (!provenance_add_file(&j->prov, "points", path, err) && !surface_points_read(&points, path, err))
+        gather_points(j, "irradiance", &points, err);
     surface_points_release(&points);
-    return st;
+    return err->status;
 }
 
 /* ----------------------------------------------------------------------------------------------------------- a face */
@@ -165,19 +161,18 @@ enum status gather_points_of_face(struct gather_job *j, int face, double step, s
     struct surface_points points = {0};
     char name[64];
     bool found = false;
-    enum status st = ST_OK;
-    for (int i = 0; !st && i < mesh->face_count; i++) {
+    for (int i = 0; !err->status && i < mesh->face_count; i++) {
         if (solid_face_id(mesh, i) != face) continue;
         found = true;
-        st = add_face(&points, j, i, step, err);
+        add_face(&points, j, i, step, err);
     }
-    if (!st && !found)
-        st = err_set(err, ST_USAGE, "--face %d: the model has no such face; its ids go up to %d.", face,
-                     j->field.model.ids - 1);
-    if (!st && !points.count)
-        st = err_set(err, ST_DATA, "face %d has no point at a step of %g; give a smaller step.", face, step);
+    if (!err->status && !found)
+        err_set(err, ST_USAGE, "--face %d: the model has no such face; its ids go up to %d.", face,
+                j->field.model.ids - 1);
+    if (!err->status && !points.count)
+        err_set(err, ST_DATA, "face %d has no point at a step of %g; give a smaller step.", face, step);
     snprintf(name, sizeof name, "irradiance/face-%d", face);
-    if (!st) st = gather_points(j, name, &points, err);
+    if (!err->status) gather_points(j, name, &points, err);
     surface_points_release(&points);
-    return st;
+    return err->status;
 }

@@ -184,26 +184,26 @@ struct pair_job {
 static enum status compare_at(struct pair_job *p, int level, int quantile, double *min, double *unmoved)
 {
     struct bitmap a = {0}, b = {0};
-    enum status st = make_bitmap(&a, &p->fixed->levels[level], p->fixed->quantiles[quantile], &p->err);
-    if (!st) st = make_bitmap(&b, &p->moved->levels[level], p->moved->quantiles[quantile], &p->err);
+    if (!make_bitmap(&a, &p->fixed->levels[level], p->fixed->quantiles[quantile], &p->err))
+        make_bitmap(&b, &p->moved->levels[level], p->moved->quantiles[quantile], &p->err);
     /* all shifts at the smallest level, then the nine around twice the level above's; the centre first, so that it wins
      * ties */
     const int limit = p->max_shift >> level, reach = level == p->levels - 1 ? (limit > 1 ? limit : 1) : 1;
     const struct shift centre = {2 * p->shift.dx, 2 * p->shift.dy};
     struct shift best = centre;
-    if (!st) *min = difference(&a, &b, centre.dx, centre.dy);
-    for (int j = -reach; !st && j <= reach; j++)
+    if (!p->err.status) *min = difference(&a, &b, centre.dx, centre.dy);
+    for (int j = -reach; !p->err.status && j <= reach; j++)
         for (int i = -reach; i <= reach; i++) {
             const int dx = centre.dx + i, dy = centre.dy + j;
             if ((!i && !j) || abs(dx) > limit || abs(dy) > limit) continue;
             const double d = difference(&a, &b, dx, dy);
             if (d < *min) *min = d, best = (struct shift){dx, dy};
         }
-    if (!st) *unmoved = difference(&a, &b, 0, 0);
+    if (!p->err.status) *unmoved = difference(&a, &b, 0, 0);
     p->shift = best;
     release_bitmap(&a);
     release_bitmap(&b);
-    return st;
+    return p->err.status;
 }
 
 static void find_shift(struct pair_job *p)
@@ -247,10 +247,10 @@ enum status align_brackets(struct alignment *a, const struct brackets *b, int mi
     struct grey_pyramid *pyramids = calloc((size_t)b->count, sizeof *pyramids);
     struct pair_job *pairs = calloc((size_t)b->count, sizeof *pairs); /* pair k: exposure k and its neighbour */
     struct pyramid_job job = {b, pyramids, count_levels(&b->photos[0].info, max_shift)};
-    enum status st = pyramids && pairs ? ST_OK : err_nomem(err, "pyramids", (size_t)b->count * sizeof *pyramids);
-    if (!st) parallel_for((size_t)b->count, 1, make_pyramids, &job);
-    for (int k = 0; !st && k < b->count; k++) {
-        if (pyramids[k].out_of_memory) st = err_nomem(err, "pyramids", 0);
+    if (!pyramids || !pairs) err_nomem(err, "pyramids", (size_t)b->count * sizeof *pyramids);
+    if (!err->status) parallel_for((size_t)b->count, 1, make_pyramids, &job);
+    for (int k = 0; !err->status && k < b->count; k++) {
+        if (pyramids[k].out_of_memory) err_nomem(err, "pyramids", 0);
         pairs[k] = (struct pair_job){.fixed = &pyramids[k < middle   ? k + 1
                                                         : k > middle ? k - 1
                                                                      : k],
@@ -259,12 +259,12 @@ enum status align_brackets(struct alignment *a, const struct brackets *b, int mi
                                      .max_shift = max_shift,
                                      .err = ERR_INIT};
     }
-    if (!st) parallel_for((size_t)b->count, 1, find_shifts, pairs);
-    for (int step = 1; !st && step < b->count; step++)
+    if (!err->status) parallel_for((size_t)b->count, 1, find_shifts, pairs);
+    for (int step = 1; !err->status && step < b->count; step++)
         for (int side = -1; side <= 1; side += 2) {
             const int k = middle + side * step, before = k - side;
             if (k < 0 || k >= b->count) continue;
-            if (pairs[k].err.status) st = err_set(err, pairs[k].err.status, "%s", pairs[k].err.text);
+            if (pairs[k].err.status) err_set(err, pairs[k].err.status, "%s", pairs[k].err.text);
             a->found[k] = pairs[k].found;
             a->at_limit[k] = abs(pairs[k].shift.dx) == max_shift || abs(pairs[k].shift.dy) == max_shift;
             a->shifts[k] =
@@ -274,5 +274,5 @@ enum status align_brackets(struct alignment *a, const struct brackets *b, int mi
         for (int l = 0; l < MAX_LEVELS; l++) free(pyramids[k].levels[l].grey);
     free(pyramids);
     free(pairs);
-    return st;
+    return err->status;
 }

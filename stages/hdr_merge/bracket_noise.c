@@ -203,19 +203,19 @@ enum status noise_measure(struct noise *noise, bool *measured, const struct brac
     const size_t room = SAMPLES + 3;
     struct pair_sample *samples = malloc(room * sizeof *samples);
     float *values = malloc(room * sizeof *values), *tables[2] = {NULL, NULL}; /* of 8 and of 16 bits */
-    enum status st = samples && values ? ST_OK : err_nomem(err, "samples of noise", room * sizeof *samples);
+    if (!samples || !values) err_nomem(err, "samples of noise", room * sizeof *samples);
     *measured = false;
-    for (int k = 0; !st && k < b->count; k++) {
+    for (int k = 0; !err->status && k < b->count; k++) {
         const int bits = b->photos[k].info.bits;
         if (bits == 32 || tables[bits == 16]) continue;
-        if (!(tables[bits == 16] = response_tables(b->response, bits, err))) st = ST_NOMEM;
+        tables[bits == 16] = response_tables(b->response, bits, err);
     }
-    for (int k = 1; !st && k < b->count; k++) {
+    for (int k = 1; !err->status && k < b->count; k++) {
         const float *const pair[2] = {tables[b->photos[k - 1].info.bits == 16], tables[b->photos[k].info.bits == 16]};
         const size_t count = gather(samples, b, k, pair);
         add_pair(&fit, samples, count, b->exposures[k - 1] / b->exposures[k], values);
     }
-    *measured = !st && solve(noise, &fit);
+    *measured = !err->status && solve(noise, &fit);
     struct spread spread = {0};
     for (int k = 1; *measured && k < b->count; k++) {
         const float *const pair[2] = {tables[b->photos[k - 1].info.bits == 16], tables[b->photos[k].info.bits == 16]};
@@ -231,5 +231,5 @@ enum status noise_measure(struct noise *noise, bool *measured, const struct brac
     free(tables[1]);
     free(values);
     free(samples);
-    return st;
+    return err->status;
 }

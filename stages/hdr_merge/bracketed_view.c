@@ -67,42 +67,42 @@ static enum status read_photos(struct bracketed_view *v, const char *photos, str
 {
     const int count = v->record.bracket_count;
     struct photo_job *job = calloc(1, sizeof *job);
-    enum status st = job ? ST_OK : err_nomem(err, "photos", sizeof *job);
-    for (int i = 0; !st && i < count; i++) st = join(&job->paths[i], photos, v->record.brackets[i].file, "", err);
-    if (!st) {
+    if (!job) err_nomem(err, "photos", sizeof *job);
+    for (int i = 0; !err->status && i < count; i++) join(&job->paths[i], photos, v->record.brackets[i].file, "", err);
+    if (!err->status) {
         job->photos = v->photos;
         parallel_for((size_t)count, 1, read_some, job);
     }
-    for (int i = 0; !st && i < count; i++) {
+    for (int i = 0; !err->status && i < count; i++) {
         const struct bracket *b = &v->record.brackets[i];
         char *input = NULL;
-        if (job->errs[i].status) st = err_set(err, job->errs[i].status, "%s", job->errs[i].text);
-        if (!st) st = join(&input, "photos", b->file, "", err);
-        if (!st) st = provenance_add_file(prov, input, job->paths[i], err);
+        if (job->errs[i].status) err_set(err, job->errs[i].status, "%s", job->errs[i].text);
+        if (!err->status && !join(&input, "photos", b->file, "", err))
+            provenance_add_file(prov, input, job->paths[i], err);
         v->exposures[i] = b->exposure / v->record.white;
         free(input);
     }
     for (int i = 0; job && i < count; i++) free(job->paths[i]);
     free(job);
-    return st;
+    return err->status;
 }
 
 enum status bracketed_view_read(struct bracketed_view *v, const char *id, const char *photos, const char *records,
                                 const char *response, struct provenance *prov, struct err *err)
 {
-    enum status st = photo_record_read(&v->record, records, id, prov, err);
-    if (!st && !v->record.bracket_count)
-        st = err_set(err, ST_DATA,
-                     "%s/%s.txt is the record of a single photo, wanted that of a view of several exposures; run "
-                     "import_photos again.",
-                     records, id);
-    if (!st && v->record.bracket_count > MERGE_MAX_EXPOSURES)
-        st = err_set(err, ST_DATA, "view %s has %d exposures, wanted at most %d; exclude some of them (EXCLUDE).", id,
-                     v->record.bracket_count, (int)MERGE_MAX_EXPOSURES);
-    if (!st && response) st = response_read(&v->response, response, prov, err);
-    if (!st) st = read_photos(v, photos, prov, err);
+    photo_record_read(&v->record, records, id, prov, err);
+    if (!err->status && !v->record.bracket_count)
+        err_set(err, ST_DATA,
+                "%s/%s.txt is the record of a single photo, wanted that of a view of several exposures; run "
+                "import_photos again.",
+                records, id);
+    if (!err->status && v->record.bracket_count > MERGE_MAX_EXPOSURES)
+        err_set(err, ST_DATA, "view %s has %d exposures, wanted at most %d; exclude some of them (EXCLUDE).", id,
+                v->record.bracket_count, (int)MERGE_MAX_EXPOSURES);
+    if (!err->status && response) response_read(&v->response, response, prov, err);
+    if (!err->status) read_photos(v, photos, prov, err);
     v->brackets = (struct brackets){v->photos, v->exposures, v->record.bracket_count, &v->response, NULL};
-    return st;
+    return err->status;
 }
 
 static enum status place_by_model(struct bracketed_view *v, const char *model, const struct reference_frame *frame,
@@ -112,34 +112,37 @@ static enum status place_by_model(struct bracketed_view *v, const char *model, c
     const struct photo_list self = {&v->record, 1};
     struct sfm_model m = {0};
     char path[FILE_PATH];
-    enum status st = sfm_model_read_cameras(&m, model, NULL, err);
-    for (int i = 0; !st && i < 2; i++) st = provenance_add_in(prov, "cameras", model, files[i], ".txt", path, err);
-    for (int i = 0; !st && !v->placed && i < m.image_count; i++) {
+    sfm_model_read_cameras(&m, model, NULL, err);
+    for (int i = 0; !err->status && i < 2; i++) provenance_add_in(prov, "cameras", model, files[i], ".txt", path, err);
+    for (int i = 0; !err->status && !v->placed && i < m.image_count; i++) {
         if (photo_list_match(&self, m.images[i].name) < 0) continue;
         v->placed = true;
         v->lens = m.cameras[m.images[i].camera_idx].camera;
         v->cam_from_world = m.images[i].cam_from_world;
     }
     const struct photo_info *info = &v->record.info;
-    if (!st && v->placed && (v->lens.width != info->width || v->lens.height != info->height))
-        st = err_set(
+    if (!err->status && v->placed && (v->lens.width != info->width || v->lens.height != info->height))
+        err_set(
             err, ST_DATA,
             "view %s has %d x %d pixels, but its camera in %s/cameras.txt %d x %d; give the cameras of these photos.",
             v->record.id, info->width, info->height, model, v->lens.width, v->lens.height);
-    if (!st && v->placed) st = reference_pose_find(&v->cam_from_world, &v->frame, &m, model, frame, params, prov, err);
+    if (!err->status && v->placed)
+        reference_pose_find(&v->cam_from_world, &v->frame, &m, model, frame, params, prov, err);
     sfm_model_release(&m);
-    return st;
+    return err->status;
 }
 
 enum status bracketed_view_place(struct bracketed_view *v, bool *known, const char *model,
                                  const struct reference_frame *frame, const struct merge_params *params,
                                  struct provenance *prov, struct err *err)
 {
-    const enum status st = frame->marks ? marked_pose_find(&v->marked, &v->lens, &v->cam_from_world, &v->placed,
-                                                           &v->record, model, frame, params, prov, err)
-                                        : place_by_model(v, model, frame, params, prov, err);
+    if (frame->marks)
+        marked_pose_find(&v->marked, &v->lens, &v->cam_from_world, &v->placed, &v->record, model, frame, params, prov,
+                         err);
+    else
+        place_by_model(v, model, frame, params, prov, err);
     *known = v->placed;
-    return st;
+    return err->status;
 }
 
 /* Measured noise applies to all exposures; given noise includes the quantization of each photo's bits. */
@@ -176,14 +179,12 @@ static enum status check_agreement(struct bracketed_view *v, const struct merge_
 
 enum status bracketed_view_merge(struct bracketed_view *v, const struct merge_params *params, struct err *err)
 {
-    enum status st = ST_OK;
     if (strcmp(params->align, "no"))
-        st = align_brackets(&v->alignment, &v->brackets, v->record.middle, params->max_shift, err);
+        align_brackets(&v->alignment, &v->brackets, v->record.middle, params->max_shift, err);
     if (!strcmp(params->align, "correct")) v->brackets.shifts = v->alignment.shifts;
-    if (!st) st = check_agreement(v, params, err);
-    if (!st) st = find_noise(v, params, err);
-    if (!st) st = merge_brackets(&v->merged, &v->brackets, v->noise, params, err);
-    return st && err->status != ST_NOMEM ? err_context(err, "view %s", v->record.id) : st;
+    if (!err->status && !check_agreement(v, params, err) && !find_noise(v, params, err))
+        merge_brackets(&v->merged, &v->brackets, v->noise, params, err);
+    return err->status && err->status != ST_NOMEM ? err_context(err, "view %s", v->record.id) : err->status;
 }
 
 static bool is_jpeg(const char *path)
@@ -201,14 +202,17 @@ static enum status copy_file(const char *from, const char *to, struct err *err)
     char bytes[1 << 14];
     size_t n;
     FILE *in = fopen(from, "rb");
-    enum status st = in ? outfile_open(&out, to, err) : err_errno(err, "open", from);
-    while (!st && (n = fread(bytes, 1, sizeof bytes, in)) > 0)
-        if (fwrite(bytes, 1, n, out.fp) != n) st = err_errno(err, "write", to);
-    if (!st && ferror(in)) st = err_errno(err, "read", from);
-    if (!st) st = outfile_commit(&out, err);
+    if (in)
+        outfile_open(&out, to, err);
+    else
+        err_errno(err, "open", from);
+    while (!err->status && (n = fread(bytes, 1, sizeof bytes, in)) > 0)
+        if (fwrite(bytes, 1, n, out.fp) != n) err_errno(err, "write", to);
+    if (!err->status && ferror(in)) err_errno(err, "read", from);
+    if (!err->status) outfile_commit(&out, err);
     outfile_discard(&out);
     if (in) fclose(in);
-    return st;
+    return err->status;
 }
 
 static enum status encode_photo(const struct photo *p, const char *path, struct err *err)
@@ -218,9 +222,9 @@ static enum status encode_photo(const struct photo *p, const char *path, struct 
     if (!rgb) return err_nomem(err, "a photo", samples);
     for (size_t i = 0; i < samples; i++)
         rgb[i] = (unsigned char)(p->info.bits == 16 ? p->samples[i] >> 8 : p->samples[i]);
-    enum status st = photo_write_jpeg(path, rgb, p->info.width, p->info.height, QUALITY, &p->info, err);
+    photo_write_jpeg(path, rgb, p->info.width, p->info.height, QUALITY, &p->info, err);
     free(rgb);
-    return st;
+    return err->status;
 }
 
 static enum status write_toned(const struct bracketed_view *v, const char *path, struct err *err)
@@ -228,10 +232,13 @@ static enum status write_toned(const struct bracketed_view *v, const char *path,
     const struct image *im = &v->merged.radiance;
     const size_t samples = (size_t)im->width * (size_t)im->height * 3;
     unsigned char *rgb = malloc(samples);
-    enum status st = rgb ? tone_map(rgb, im, err) : err_nomem(err, "a picture", samples);
-    if (!st) st = photo_write_jpeg(path, rgb, im->width, im->height, QUALITY, &v->record.info, err);
+    if (rgb)
+        tone_map(rgb, im, err);
+    else
+        err_nomem(err, "a picture", samples);
+    if (!err->status) photo_write_jpeg(path, rgb, im->width, im->height, QUALITY, &v->record.info, err);
     free(rgb);
-    return st;
+    return err->status;
 }
 
 enum status bracketed_view_write_picture(const struct bracketed_view *v, const char *photos, const char *out,
@@ -240,16 +247,16 @@ enum status bracketed_view_write_picture(const struct bracketed_view *v, const c
     const struct photo_record *r = &v->record;
     const struct photo *middle = &v->photos[r->middle];
     char *from = NULL, *to = NULL;
-    enum status st = join(&from, photos, r->brackets[r->middle].file, "", err) || join(&to, out, r->id, ".jpg", err)
-                         ? err->status
-                         : ST_OK;
-    if (!st && (!strcmp(params->picture, "tone") || middle->values))
-        st = write_toned(v, to, err);
-    else if (!st)
-        st = is_jpeg(from) ? copy_file(from, to, err) : encode_photo(middle, to, err);
+    if (!join(&from, photos, r->brackets[r->middle].file, "", err)) join(&to, out, r->id, ".jpg", err);
+    if (!err->status && (!strcmp(params->picture, "tone") || middle->values))
+        write_toned(v, to, err);
+    else if (!err->status && is_jpeg(from))
+        copy_file(from, to, err);
+    else if (!err->status)
+        encode_photo(middle, to, err);
     free(from);
     free(to);
-    return st;
+    return err->status;
 }
 
 static enum status set_attributes(struct exr_image *im, const struct bracketed_view *v, struct err *err)
@@ -257,19 +264,19 @@ static enum status set_attributes(struct exr_image *im, const struct bracketed_v
     const struct photo_record *r = &v->record;
     char name[64], text[64];
     const char *radiometry = r->bracket_count < 2 ? "one exposure" : v->agree ? "exact" : "approximate";
-    enum status st = exr_set_attribute(im, "remodel:radiometry", radiometry, err);
-    if (!st) st = exr_set_attribute(im, "remodel:response", v->response.table ? "table" : "srgb", err);
-    if (!st) st = exr_set_number(im, "remodel:white", r->white, err);
-    for (int i = 0; !st && i < r->bracket_count; i++) {
+    if (!exr_set_attribute(im, "remodel:radiometry", radiometry, err) &&
+        !exr_set_attribute(im, "remodel:response", v->response.table ? "table" : "srgb", err))
+        exr_set_number(im, "remodel:white", r->white, err);
+    for (int i = 0; !err->status && i < r->bracket_count; i++) {
         snprintf(name, sizeof name, "remodel:exposure.%d", i + 1);
-        st = exr_set_number(im, name, r->brackets[i].exposure, err);
+        exr_set_number(im, name, r->brackets[i].exposure, err);
         const struct shift *s = &v->alignment.shifts[i];
         if (!v->brackets.shifts || (!s->dx && !s->dy)) continue;
         snprintf(name, sizeof name, "remodel:shift.%d", i + 1);
         snprintf(text, sizeof text, "%d %d", s->dx, s->dy);
-        if (!st) st = exr_set_attribute(im, name, text, err);
+        if (!err->status) exr_set_attribute(im, name, text, err);
     }
-    return st;
+    return err->status;
 }
 
 /* How the pose was found (docs/formats.md, S/lri). */
@@ -301,8 +308,7 @@ static enum status set_camera(struct exr_image *im, const struct bracketed_view 
     for (int i = 0; i < camera_model_params(c->model); i++)
         used += snprintf(text + used, sizeof text - (size_t)used, " %.9g", c->params[i]);
     view_image_set_camera(im, &view);
-    enum status st = exr_set_attribute(im, "remodel:lens", text, err);
-    return st ? st : set_frame(im, v, err);
+    return exr_set_attribute(im, "remodel:lens", text, err) || set_frame(im, v, err) ? err->status : ST_OK;
 }
 
 /* Rounds to eight binary digits: noise is not known more precisely, and the rest would not compress. */
@@ -325,21 +331,20 @@ enum status bracketed_view_write_radiance(const struct bracketed_view *v, const 
     const struct image *radiance = &v->merged.radiance;
     size_t pixels = (size_t)radiance->width * (size_t)radiance->height;
     *clamped = 0;
-    enum status st = product_path_in(path, out, PRODUCT_HDR, &(struct product_key){.photo = v->record.id}, err);
-    if (!st) st = exr_image_init(&im, radiance->width, radiance->height, err);
-    for (size_t c = 0; !st && c < 3; c++) {
-        st = exr_add_plane(&im, names[c], EXR_HALF, &plane, err);
-        for (size_t i = 0; !st && i < pixels; i++) *clamped += (plane->f[i] = radiance->data[3 * i + c]) > MAX_HALF;
+    if (!product_path_in(path, out, PRODUCT_HDR, &(struct product_key){.photo = v->record.id}, err))
+        exr_image_init(&im, radiance->width, radiance->height, err);
+    for (size_t c = 0; !err->status && c < 3; c++) {
+        exr_add_plane(&im, names[c], EXR_HALF, &plane, err);
+        for (size_t i = 0; !err->status && i < pixels; i++)
+            *clamped += (plane->f[i] = radiance->data[3 * i + c]) > MAX_HALF;
     }
-    if (!st) st = exr_add_plane(&im, "clipped", EXR_UINT, &plane, err);
-    for (size_t i = 0; !st && i < pixels; i++) plane->u[i] = v->merged.marks[i];
-    if (!st) st = exr_add_plane(&im, "variance", EXR_FLOAT, &plane, err);
-    for (size_t i = 0; !st && i < pixels; i++) plane->f[i] = rounded(v->merged.variance[i]);
-    if (!st) st = set_attributes(&im, v, err);
-    if (!st) st = set_camera(&im, v, err);
-    if (!st) st = exr_write(&im, path, prov, err);
+    if (!err->status) exr_add_plane(&im, "clipped", EXR_UINT, &plane, err);
+    for (size_t i = 0; !err->status && i < pixels; i++) plane->u[i] = v->merged.marks[i];
+    if (!err->status) exr_add_plane(&im, "variance", EXR_FLOAT, &plane, err);
+    for (size_t i = 0; !err->status && i < pixels; i++) plane->f[i] = rounded(v->merged.variance[i]);
+    if (!err->status && !set_attributes(&im, v, err) && !set_camera(&im, v, err)) exr_write(&im, path, prov, err);
     exr_image_release(&im);
-    return st;
+    return err->status;
 }
 
 void bracketed_view_release(struct bracketed_view *v)

@@ -143,19 +143,18 @@ static enum status hdr_merge(const struct request *r, const struct merge_params 
     size_t clamped = 0;
     bool placed = false;
     const bool wanted = r->model || r->frame.marks;
-    enum status st = check_request(r, err);
-    if (!st) st = bracketed_view_read(&v, r->id, r->photos, r->records, r->response, prov, err);
-    if (!st && wanted) st = bracketed_view_place(&v, &placed, r->model, &r->frame, params, prov, err);
-    if (!st && wanted && !placed) warn_without_pose(r);
-    if (!st) st = bracketed_view_merge(&v, params, err);
-    if (!st) st = bracketed_view_write_picture(&v, r->photos, r->out, params, err);
-    if (!st) st = bracketed_view_write_radiance(&v, r->out, prov, &clamped, err);
-    if (!st && clamped)
+    if (!check_request(r, err)) bracketed_view_read(&v, r->id, r->photos, r->records, r->response, prov, err);
+    if (!err->status && wanted) bracketed_view_place(&v, &placed, r->model, &r->frame, params, prov, err);
+    if (!err->status && wanted && !placed) warn_without_pose(r);
+    if (!err->status && !bracketed_view_merge(&v, params, err) &&
+        !bracketed_view_write_picture(&v, r->photos, r->out, params, err))
+        bracketed_view_write_radiance(&v, r->out, prov, &clamped, err);
+    if (!err->status && clamped)
         log_warn("view %s: %zu samples exceed 65504 times white, the largest half value, and are clamped to it.", r->id,
                  clamped);
-    if (!st) report(&v, params);
+    if (!err->status) report(&v, params);
     bracketed_view_release(&v);
-    return st;
+    return err->status;
 }
 
 int main(int argc, char **argv)

@@ -44,8 +44,7 @@ static enum status add_mark(struct marked_image *m, const struct reference_mark 
 
 static enum status collect(struct marked_image *m, const struct model_plan *plan, struct err *err)
 {
-    enum status st = ST_OK;
-    for (int i = 0; !st && i < m->list->count; i++) {
+    for (int i = 0; !err->status && i < m->list->count; i++) {
         const struct reference_mark *mark = &m->list->marks[i];
         if (mark->kind == REFERENCE_LENS && !m->lens && !strcmp(mark->image, "*")) m->lens = mark;
         if (!reference_mark_is_of(mark, m->image)) continue;
@@ -54,12 +53,12 @@ static enum status collect(struct marked_image *m, const struct model_plan *plan
         else if (mark->kind == REFERENCE_NEAR)
             m->near = mark;
         else
-            st = add_mark(m, mark, plan, err);
+            add_mark(m, mark, plan, err);
     }
-    if (!st && m->count && m->count < RESECTION_MIN)
-        st = err_set(err, ST_DATA, "%s has %d mark%s of image %s, wanted at least %d, better four or more.",
-                     m->list->path, m->count, m->count == 1 ? "" : "s", m->image->id, (int)RESECTION_MIN);
-    return st;
+    if (!err->status && m->count && m->count < RESECTION_MIN)
+        err_set(err, ST_DATA, "%s has %d mark%s of image %s, wanted at least %d, better four or more.", m->list->path,
+                m->count, m->count == 1 ? "" : "s", m->image->id, (int)RESECTION_MIN);
+    return err->status;
 }
 
 /* --------------------------------------------------------------------------------------------------------- the lens */
@@ -77,18 +76,17 @@ static enum status read_lens(struct camera *lens, const struct marked_image *m, 
     struct sfm_model model = {0};
     char path[FILE_PATH];
     int found = 0;
-    enum status st = provenance_add_in(prov, "cameras", folder, "cameras", ".txt", path, err);
-    if (!st) st = sfm_model_read_camera_files(&model, path, NULL, NULL, err);
-    for (int i = 0; !st && i < model.camera_count; i++)
+    if (!provenance_add_in(prov, "cameras", folder, "cameras", ".txt", path, err))
+        sfm_model_read_camera_files(&model, path, NULL, NULL, err);
+    for (int i = 0; !err->status && i < model.camera_count; i++)
         if (has_size(&model.cameras[i].camera, info) && !found++) *lens = model.cameras[i].camera;
-    if (!st && found != 1)
-        st =
-            err_set(err, ST_DATA,
-                    "%s has %d cameras of %d x %d pixels, the size of image %s, wanted one; add a line \"lens %s MODEL "
-                    "WIDTH HEIGHT PARAMS\" to %s.",
-                    path, found, info->width, info->height, m->image->id, m->image->id, m->list->path);
+    if (!err->status && found != 1)
+        err_set(err, ST_DATA,
+                "%s has %d cameras of %d x %d pixels, the size of image %s, wanted one; add a line \"lens %s MODEL "
+                "WIDTH HEIGHT PARAMS\" to %s.",
+                path, found, info->width, info->height, m->image->id, m->image->id, m->list->path);
     sfm_model_release(&model);
-    return st;
+    return err->status;
 }
 
 static enum status find_lens(struct camera *lens, const struct marked_image *m, const char *folder,
@@ -186,17 +184,16 @@ enum status marked_pose_find(struct marked_pose *m, struct camera *lens, struct 
     struct model_plan plan = {0};
     struct marked_image marked = {.image = image, .list = &list};
     *m = (struct marked_pose){0};
-    enum status st = reference_marks_read(&list, frame->marks, prov, err);
-    if (!st) st = model_plan_read(&plan, frame->plan, prov, err);
-    if (!st) st = collect(&marked, &plan, err);
-    *known = !st && marked.count;
-    if (*known) st = find_lens(lens, &marked, model, prov, err);
-    if (*known && !st &&
+    if (!reference_marks_read(&list, frame->marks, prov, err) && !model_plan_read(&plan, frame->plan, prov, err))
+        collect(&marked, &plan, err);
+    *known = !err->status && marked.count;
+    if (*known) find_lens(lens, &marked, model, prov, err);
+    if (*known && !err->status &&
         resection_find(&m->found, lens, marked.marks, marked.count, params->mark_error, image->id, err))
-        st = err_context(err, "%s", list.path);
-    if (*known && !st) st = choose(m, &marked, params, err);
-    if (*known && !st) st = to_scene(m, cam_from_world, frame, params, prov, err);
+        err_context(err, "%s", list.path);
+    if (*known && !err->status) choose(m, &marked, params, err);
+    if (*known && !err->status) to_scene(m, cam_from_world, frame, params, prov, err);
     model_plan_release(&plan);
     reference_marks_release(&list);
-    return st;
+    return err->status;
 }

@@ -334,13 +334,12 @@ enum status merge_brackets(struct merged *out, const struct brackets *b, const s
     struct merge_job m = {.out = out, .count = b->count};
     float *tables[2] = {NULL, NULL}; /* of 8 and of 16 bits */
     *out = (struct merged){0};
-    enum status st = check(b, err);
-    for (int k = 0; !st && k < b->count; k++) {
+    check(b, err);
+    for (int k = 0; !err->status && k < b->count; k++) {
         const struct photo *p = &b->photos[k];
         const int wide = p->info.bits == 16;
-        if (!p->values && !tables[wide] && !(tables[wide] = response_tables(b->response, p->info.bits, err)))
-            st = ST_NOMEM;
-        if (st) break;
+        if (!p->values && !tables[wide]) tables[wide] = response_tables(b->response, p->info.bits, err);
+        if (err->status) break;
         struct exposure_job *e = &m.exposures[k];
         *e = (struct exposure_job){.samples = p->samples,
                                    .values = p->values,
@@ -353,15 +352,15 @@ enum status merge_brackets(struct merged *out, const struct brackets *b, const s
         set_limits(e, p, b->response, params);
         m.luminance = larger(m.luminance, (float)noise[k].luminance);
     }
-    const int width = st ? 1 : b->photos[0].info.width, height = st ? 1 : b->photos[0].info.height;
+    const int width = err->status ? 1 : b->photos[0].info.width, height = err->status ? 1 : b->photos[0].info.height;
     const size_t pixels = (size_t)width * (size_t)height;
-    if (!st) st = image_init(&out->radiance, width, height, 3, err);
-    if (!st && (!(out->marks = malloc(pixels)) || !(out->variance = malloc(pixels * sizeof *out->variance))))
-        st = err_nomem(err, "a view's marks and variance", pixels * 5);
-    if (!st) parallel_for((size_t)height, ROWS, merge_rows, &m);
+    if (!err->status) image_init(&out->radiance, width, height, 3, err);
+    if (!err->status && (!(out->marks = malloc(pixels)) || !(out->variance = malloc(pixels * sizeof *out->variance))))
+        err_nomem(err, "a view's marks and variance", pixels * 5);
+    if (!err->status) parallel_for((size_t)height, ROWS, merge_rows, &m);
     free(tables[0]);
     free(tables[1]);
-    return st;
+    return err->status;
 }
 
 void merge_release(struct merged *m)
@@ -387,8 +386,8 @@ enum status merge_agreement(struct exposure_agreement *worst, const struct brack
     enum { SAMPLES = 1 << 16 };
     const double min = 0.02, max = 0.7; /* linear: neither dark nor near white */
     *worst = (struct exposure_agreement){0, 1, 1, 0};
-    enum status st = check(b, err);
-    for (int k = 1; !st && k < b->count; k++) {
+    check(b, err);
+    for (int k = 1; !err->status && k < b->count; k++) {
         const struct photo *p = &b->photos[k - 1], *q = &b->photos[k];
         const struct shift none = {0, 0}, sp = b->shifts ? b->shifts[k - 1] : none,
                            sq = b->shifts ? b->shifts[k] : none;
@@ -415,5 +414,5 @@ enum status merge_agreement(struct exposure_agreement *worst, const struct brack
         if (fabs(log(measured / stated)) > fabs(log(worst->measured / worst->stated)))
             *worst = (struct exposure_agreement){k, stated, measured, n};
     }
-    return st;
+    return err->status;
 }

@@ -123,12 +123,16 @@ static enum status read_line(struct reference_mark *m, struct textfile *t, struc
     if (read_name(&m->image, t, "an image", err)) return err->status;
     if (m->kind != REFERENCE_LENS && !strcmp(m->image, "*"))
         return textfile_error(t, err, m->image, "an image; * is allowed for lenses only");
-    enum status st = ST_OK;
-    if (m->kind == REFERENCE_CORNER) st = read_corner(m, t, err);
-    if (m->kind == REFERENCE_POINT) st = read_pixel(m, t, err) || read_place(&m->point, t, err) ? err->status : ST_OK;
-    if (m->kind == REFERENCE_LENS) st = read_lens(m, t, err);
-    if (m->kind == REFERENCE_NEAR) st = read_place(&m->point, t, err);
-    return st ? st : textfile_end(t, err);
+    if (m->kind == REFERENCE_CORNER)
+        read_corner(m, t, err);
+    else if (m->kind == REFERENCE_LENS)
+        read_lens(m, t, err);
+    else if (m->kind == REFERENCE_NEAR)
+        read_place(&m->point, t, err);
+    else if (!read_pixel(m, t, err))
+        read_place(&m->point, t, err);
+    if (!err->status) textfile_end(t, err);
+    return err->status;
 }
 
 static bool is_repeated(const struct reference_mark *a, const struct reference_mark *b)
@@ -155,21 +159,22 @@ enum status reference_marks_read(struct reference_marks *list, const char *path,
 {
     struct textfile t = {0};
     *list = (struct reference_marks){.path = strdup(path)};
-    enum status st =
-        list->path ? provenance_open(prov, "lri.txt", &t, path, err) : err_nomem(err, "a file name", strlen(path));
-    while (!st && textfile_next(&t)) {
+    if (list->path)
+        provenance_open(prov, "lri.txt", &t, path, err);
+    else
+        err_nomem(err, "a file name", strlen(path));
+    while (!err->status && textfile_next(&t)) {
         if (list->count == MAX_LINES)
-            st = err_set(err, ST_DATA, "%s has more than %d lines; delete some.", path, (int)MAX_LINES);
-        if (!st) st = array_append(&list->marks, (size_t)list->count, sizeof *list->marks, "marks", err);
-        if (st) break;
+            err_set(err, ST_DATA, "%s has more than %d lines; delete some.", path, (int)MAX_LINES);
+        if (!err->status) array_append(&list->marks, (size_t)list->count, sizeof *list->marks, "marks", err);
+        if (err->status) break;
         struct reference_mark *m = &list->marks[list->count++];
         *m = (struct reference_mark){0};
-        st = read_line(m, &t, err);
-        if (!st) st = check_repeated(list, m, err);
+        if (!read_line(m, &t, err)) check_repeated(list, m, err);
     }
     textfile_release(&t);
-    if (st) reference_marks_release(list);
-    return st;
+    if (err->status) reference_marks_release(list);
+    return err->status;
 }
 
 /* --------------------------------------------------------------------------------------------------------- locating */

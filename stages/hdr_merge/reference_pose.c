@@ -12,10 +12,9 @@ enum status reference_pose_find(struct pose *cam_from_world, struct frame_agreem
     struct similarity model_from_scene = {0};
     struct model_axes axes = {0};
     *agreement = (struct frame_agreement){0};
-    enum status st = ST_OK;
-    if (!frame->views && !frame->axes) return st;
+    if (!frame->views && !frame->axes) return ST_OK;
     if (frame->axes) {
-        st = model_axes_read(&axes, frame->axes, prov, err);
+        model_axes_read(&axes, frame->axes, prov, err);
         model_from_scene = (struct similarity){axes.scale, mat3_from_quat(axes.rotation), axes.translation};
     } else {
         const struct scene_photos scene = {frame->views, frame->records, prov};
@@ -25,8 +24,8 @@ enum status reference_pose_find(struct pose *cam_from_world, struct frame_agreem
             "photographs of the scene and reference images together, or set LRI_FRAME = scene or model if the poses "
             "are in one of these frames.",
             "Give a model of the same photographs, or raise [hdr_merge] max_misfit."};
-        st = photo_alignment_find(&model_from_scene, agreement, model, folder, &scene, &rules, err);
+        photo_alignment_find(&model_from_scene, agreement, model, folder, &scene, &rules, err);
     }
-    if (!st) *cam_from_world = photo_alignment_pose(cam_from_world, &model_from_scene);
-    return st;
+    if (!err->status) *cam_from_world = photo_alignment_pose(cam_from_world, &model_from_scene);
+    return err->status;
 }

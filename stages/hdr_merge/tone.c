@@ -148,15 +148,14 @@ enum status tone_map(unsigned char *rgb, const struct image *radiance, struct er
     const int side = width > height ? width : height, radius = side / SIDE_PER_RADIUS > 1 ? side / SIDE_PER_RADIUS : 1;
     struct reduced level = {0}, slope = {0}, offset = {0};
     struct tone_job *job = malloc(sizeof *job);
-    enum status st = job ? ST_OK : err_nomem(err, "a tone curve", sizeof *job);
-    if (!st) st = init_reduced(&level, width, height, err);
-    if (!st) st = init_reduced(&slope, width, height, err);
-    if (!st) st = init_reduced(&offset, width, height, err);
-    if (!st) {
+    if (!job) err_nomem(err, "a tone curve", sizeof *job);
+    if (!err->status && !init_reduced(&level, width, height, err) && !init_reduced(&slope, width, height, err))
+        init_reduced(&offset, width, height, err);
+    if (!err->status) {
         parallel_for((size_t)height, 8, reduce_rows, &(struct reduce_job){&level, radiance});
-        st = guided_filter(&slope, &offset, &level, radius, err);
+        guided_filter(&slope, &offset, &level, radius, err);
     }
-    if (!st) {
+    if (!err->status) {
         *job = (struct tone_job){.to = rgb, .from = radiance, .slope = &slope, .offset = &offset};
         for (int i = 0; i <= CURVE; i++) {
             job->code_from_light[i] = srgb_from_linear((float)i / CURVE);
@@ -168,5 +167,5 @@ enum status tone_map(unsigned char *rgb, const struct image *radiance, struct er
     free(slope.v);
     free(offset.v);
     free(job);
-    return st;
+    return err->status;
 }

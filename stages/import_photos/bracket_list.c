@@ -38,9 +38,8 @@ static enum status check_file(const struct bracket_list *list, const struct text
 static enum status read_file(struct bracket_list *list, struct bracket_line *line, struct textfile *t, struct err *err)
 {
     char *file = NULL;
-    enum status st = textfile_word(t, "the file name of a photo", &file, err);
-    if (!st) st = check_file(list, t, file, err);
-    if (st) return st;
+    if (!textfile_word(t, "the file name of a photo", &file, err)) check_file(list, t, file, err);
+    if (err->status) return err->status;
     if (array_append(&line->files, (size_t)line->count, sizeof *line->files, "photos", err)) return err->status;
     line->files[line->count] = strdup(file);
     return line->files[line->count++] ? ST_OK : err_nomem(err, "a file name", strlen(file) + 1);
@@ -49,30 +48,32 @@ static enum status read_file(struct bracket_list *list, struct bracket_line *lin
 static enum status read_line(struct bracket_list *list, struct textfile *t, struct err *err)
 {
     char *view = NULL;
-    enum status st = textfile_word(t, "a view's name", &view, err);
-    if (!st) st = check_view(list, t, view, err);
-    if (st) return st;
+    if (!textfile_word(t, "a view's name", &view, err)) check_view(list, t, view, err);
+    if (err->status) return err->status;
     if (array_append(&list->lines, (size_t)list->count, sizeof *list->lines, "views", err)) return err->status;
     struct bracket_line *line = &list->lines[list->count++];
     *line = (struct bracket_line){.view = strdup(view), .line = t->line};
     if (!line->view) return err_nomem(err, "a view's name", strlen(view) + 1);
-    do st = read_file(list, line, t, err);
-    while (!st && textfile_more(t));
-    return st;
+    do read_file(list, line, t, err);
+    while (!err->status && textfile_more(t));
+    return err->status;
 }
 
 enum status bracket_list_read(struct bracket_list *list, const char *path, struct err *err)
 {
     struct textfile t = {0};
     *list = (struct bracket_list){.path = strdup(path)};
-    enum status st = list->path ? textfile_open(&t, path, err) : err_nomem(err, "a path", strlen(path) + 1);
-    while (!st && textfile_next(&t)) st = read_line(list, &t, err);
-    if (!st && !list->count)
-        st = err_set(err, ST_DATA,
-                     "%s contains no view; write a line VIEW FILE FILE ... for each view, or remove the file.", path);
+    if (list->path)
+        textfile_open(&t, path, err);
+    else
+        err_nomem(err, "a path", strlen(path) + 1);
+    while (!err->status && textfile_next(&t)) read_line(list, &t, err);
+    if (!err->status && !list->count)
+        err_set(err, ST_DATA, "%s contains no view; write a line VIEW FILE FILE ... for each view, or remove the file.",
+                path);
     textfile_release(&t);
-    if (st) bracket_list_release(list);
-    return st;
+    if (err->status) bracket_list_release(list);
+    return err->status;
 }
 
 void bracket_list_release(struct bracket_list *list)

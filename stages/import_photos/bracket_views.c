@@ -56,15 +56,15 @@ static enum status apply_list(struct exposure *exposures, const struct photo_sca
     struct exposure_list list = {0};
     char *path = NULL, shown[TEXT_SIZE];
     if (asprintf(&path, "%s/exposures.txt", folder) < 0) return err_nomem(err, "a path", 0);
-    enum status st = access(path, F_OK) ? ST_OK : exposure_list_read(&list, path, err);
-    for (int i = 0; !st && i < list.count; i++) {
+    if (!access(path, F_OK)) exposure_list_read(&list, path, err);
+    for (int i = 0; !err->status && i < list.count; i++) {
         const struct exposure_line *line = &list.lines[i];
         int at = find_file(scan, line->file);
         snprintf(shown, sizeof shown, "%s", line->file);
         if (at < 0) {
-            st = err_set(err, ST_DATA,
-                         "%s:%d: found %s, wanted the name of a photo in %s; correct the name or remove the line.",
-                         path, line->line, shown, scan->folder);
+            err_set(err, ST_DATA,
+                    "%s:%d: found %s, wanted the name of a photo in %s; correct the name or remove the line.", path,
+                    line->line, shown, scan->folder);
             break;
         }
         struct exposure *e = &exposures[at];
@@ -75,7 +75,7 @@ static enum status apply_list(struct exposure *exposures, const struct photo_sca
     }
     exposure_list_release(&list);
     free(path);
-    return st;
+    return err->status;
 }
 
 static enum status find_exposures(struct bracket_views *v, const struct photo_scan *scan, const char *scene,
@@ -87,8 +87,8 @@ static enum status find_exposures(struct bracket_views *v, const struct photo_sc
         const struct photo_info *info = &scan->photos[i].record.info;
         v->exposures[i] = (struct exposure){info->seconds, info->f_number, info->iso, 1};
     }
-    enum status st = apply_list(v->exposures, scan, scan->folder, err);
-    return st || !scene ? st : apply_list(v->exposures, scan, scene, err);
+    if (!apply_list(v->exposures, scan, scan->folder, err) && scene) apply_list(v->exposures, scan, scene, err);
+    return err->status;
 }
 
 /* --------------------------------------------------------------------------------------------------------- grouping */
@@ -108,21 +108,21 @@ static enum status views_of_line(struct bracket_views *v, const struct photo_sca
                                  struct err *err)
 {
     int *photos = malloc((size_t)line->count * sizeof *photos), count = 0;
-    enum status st = photos ? ST_OK : err_nomem(err, "a view", (size_t)line->count * sizeof *photos);
-    for (int k = 0; !st && k < line->count; k++) {
+    if (!photos) err_nomem(err, "a view", (size_t)line->count * sizeof *photos);
+    for (int k = 0; !err->status && k < line->count; k++) {
         int at = find_file(scan, line->files[k]);
         if (at < 0) {
-            st = err_set(err, ST_DATA,
-                         "%s:%d: found %.100s, wanted the name of a photo in %s; correct the name or remove it.",
-                         list->path, line->line, line->files[k], scan->folder);
+            err_set(err, ST_DATA,
+                    "%s:%d: found %.100s, wanted the name of a photo in %s; correct the name or remove it.", list->path,
+                    line->line, line->files[k], scan->folder);
             break;
         }
         listed[at] = true;
         if (!scan->photos[at].excluded) photos[count++] = at;
     }
-    if (!st && count) st = add_view(v, line->view, photos, count, err);
+    if (!err->status && count) add_view(v, line->view, photos, count, err);
     free(photos);
-    return st;
+    return err->status;
 }
 
 static enum status group_by_list(struct bracket_views *v, const struct photo_scan *scan, const char *path,
@@ -132,19 +132,21 @@ static enum status group_by_list(struct bracket_views *v, const struct photo_sca
     char names[512] = "";
     int missing = 0;
     bool *listed = calloc((size_t)scan->count + 1, sizeof *listed);
-    enum status st = listed ? bracket_list_read(&list, path, err) : err_nomem(err, "photos", (size_t)scan->count);
-    for (int i = 0; !st && i < list.count; i++) st = views_of_line(v, scan, &list, &list.lines[i], listed, err);
-    for (int i = 0; !st && i < scan->count; i++)
+    if (listed)
+        bracket_list_read(&list, path, err);
+    else
+        err_nomem(err, "photos", (size_t)scan->count);
+    for (int i = 0; !err->status && i < list.count; i++) views_of_line(v, scan, &list, &list.lines[i], listed, err);
+    for (int i = 0; !err->status && i < scan->count; i++)
         if (!listed[i] && !scan->photos[i].excluded && missing++ < MAX_NAMED)
             append(names, sizeof names, ", ", scan->photos[i].file);
-    if (!st && missing)
-        st = err_set(
-            err, ST_DATA,
-            "%s has no view with %s%s (%d of the photos in %s); add them to a line, or leave them out (EXCLUDE).", path,
-            names, missing > MAX_NAMED ? ", ..." : "", missing, scan->folder);
+    if (!err->status && missing)
+        err_set(err, ST_DATA,
+                "%s has no view with %s%s (%d of the photos in %s); add them to a line, or leave them out (EXCLUDE).",
+                path, names, missing > MAX_NAMED ? ", ..." : "", missing, scan->folder);
     bracket_list_release(&list);
     free(listed);
-    return st;
+    return err->status;
 }
 
 struct ordered { /* the photos that are not excluded, in the order of the camera */
@@ -178,19 +180,19 @@ static enum status order_photos(struct ordered *o, const struct bracket_views *v
     struct photo_name *names = calloc(count + 1, sizeof *names);
     o->photos = calloc(count + 1, sizeof *o->photos);
     o->values = calloc(count + 1, sizeof *o->values);
-    enum status st = names && o->photos && o->values ? ST_OK : err_nomem(err, "photos", count * sizeof *names);
-    for (int i = 0; !st && i < scan->count; i++)
+    if (!names || !o->photos || !o->values) err_nomem(err, "photos", count * sizeof *names);
+    for (int i = 0; !err->status && i < scan->count; i++)
         if (!scan->photos[i].excluded) {
             const char *file = scan->photos[i].file, *end = scan->cut ? strrchr(file, '_') : NULL;
             names[o->count++] = (struct photo_name){end ? end : "", file, i};
         }
-    if (!st) qsort(names, (size_t)o->count, sizeof *names, by_name);
-    for (int i = 0; !st && i < o->count; i++) {
+    if (!err->status) qsort(names, (size_t)o->count, sizeof *names, by_name);
+    for (int i = 0; !err->status && i < o->count; i++) {
         o->photos[i] = names[i].photo;
         o->values[i] = exposure_value(&v->exposures[names[i].photo]);
     }
     free(names);
-    return st;
+    return err->status;
 }
 
 static bool distinct(const double *values, int count)
@@ -269,9 +271,8 @@ static enum status incomplete(const struct bracket_views *v, const struct photo_
 
 static enum status add_cycles(struct bracket_views *v, const struct ordered *o, const struct cycle *c, struct err *err)
 {
-    enum status st = ST_OK;
-    for (int at = 0; !st && at < o->count; at += c->length) st = add_view(v, "", o->photos + at, c->length, err);
-    return st;
+    for (int at = 0; !err->status && at < o->count; at += c->length) add_view(v, "", o->photos + at, c->length, err);
+    return err->status;
 }
 
 static enum status group_by_cycle(struct bracket_views *v, const struct photo_scan *scan, bool required,
@@ -279,26 +280,26 @@ static enum status group_by_cycle(struct bracket_views *v, const struct photo_sc
 {
     struct ordered o = {0};
     char text[400];
-    enum status st = order_photos(&o, v, scan, err);
+    order_photos(&o, v, scan, err);
     struct cycle c = {0};
-    if (!st) c = find_cycle(&o);
+    if (!err->status) c = find_cycle(&o);
     int covered = c.count * c.length;
     bool clear = covered >= MIN_CYCLED || ((required || scan->references) && covered);
-    if (!st && clear && covered == o.count) {
-        st = add_cycles(v, &o, &c, err);
+    if (!err->status && clear && covered == o.count) {
+        add_cycles(v, &o, &c, err);
         show_cycle(text, sizeof text, v, &o, &c);
-        if (!st) log_note("%d views of %d exposures each: %s", c.count, c.length, text);
-    } else if (!st && clear && (required || 4 * covered >= 3 * o.count)) {
-        st = incomplete(v, scan, &o, &c, err);
-    } else if (!st && required) {
-        st = err_set(err, ST_DATA,
-                     "[import_photos] brackets is yes, but the exposures of the %d photos in %s form no cycle that "
-                     "occurs at least twice; list the photos of each view in the scene's brackets.txt.",
-                     o.count, scan->folder);
+        if (!err->status) log_note("%d views of %d exposures each: %s", c.count, c.length, text);
+    } else if (!err->status && clear && (required || 4 * covered >= 3 * o.count)) {
+        incomplete(v, scan, &o, &c, err);
+    } else if (!err->status && required) {
+        err_set(err, ST_DATA,
+                "[import_photos] brackets is yes, but the exposures of the %d photos in %s form no cycle that "
+                "occurs at least twice; list the photos of each view in the scene's brackets.txt.",
+                o.count, scan->folder);
     }
     free(o.photos);
     free(o.values);
-    return st;
+    return err->status;
 }
 
 static bool any_linear(const struct photo_scan *scan, const char **file)
@@ -339,19 +340,18 @@ static enum status group_distinct(struct bracket_views *v, const struct photo_sc
 static enum status single_views(struct bracket_views *v, const struct photo_scan *scan, struct err *err)
 {
     int timed = 0, count = 0;
-    enum status st = ST_OK;
-    for (int i = 0; !st && i < scan->count; i++) {
+    for (int i = 0; !err->status && i < scan->count; i++) {
         if (scan->photos[i].excluded) continue;
         count++;
         timed += v->exposures[i].seconds > 0;
-        st = add_view(v, "", &i, 1, err);
+        add_view(v, "", &i, 1, err);
     }
     v->untimed = !timed;
-    for (int i = 0; !st && !timed && i < scan->count; i++) v->exposures[i] = (struct exposure){1, 0, 0, 1};
-    if (!st && count)
+    for (int i = 0; !err->status && !timed && i < scan->count; i++) v->exposures[i] = (struct exposure){1, 0, 0, 1};
+    if (!err->status && count)
         log_note("%d views of one exposure each%s", count,
                  timed ? "" : "; no exposure time is known, so all are assumed to be equal");
-    return st;
+    return err->status;
 }
 
 /* ------------------------------------------------------------------------------------------------- views and checks */
@@ -529,29 +529,29 @@ enum status bracket_views_find(struct bracket_views *v, const struct photo_scan 
             "brackets = auto, or leave it out (EXCLUDE).",
             scan->folder, linear);
     if (!strcmp(params->brackets, "no") && !scan->references) return ST_OK;
-    enum status st = find_exposures(v, scan, scene, err);
-    if (!st && scene && asprintf(&path, "%s/brackets.txt", scene) < 0) {
+    find_exposures(v, scan, scene, err);
+    if (!err->status && scene && asprintf(&path, "%s/brackets.txt", scene) < 0) {
         path = NULL;
-        st = err_nomem(err, "a path", 0);
+        err_nomem(err, "a path", 0);
     }
     bool listed = path && !access(path, F_OK);
-    if (!st && listed) st = group_by_list(v, scan, path, err);
-    if (!st && !listed && !single)
-        st = group_by_cycle(v, scan, !strcmp(params->brackets, "yes") && !scan->references, err);
-    if (!st && !listed && !v->count && !single && scan->references) st = group_distinct(v, scan, err);
-    if (!st && !listed && !v->count && (scan->references || single || has_linear || any_tiff(scan)))
-        st = single_views(v, scan, err);
-    if (!st && listed && v->count) qsort(v->views, (size_t)v->count, sizeof *v->views, by_view);
-    if (!st && !listed && v->count) st = name_views(v, scan, err);
-    for (int i = 0; !st && i < v->count; i++) st = sort_view(&v->views[i], v, scan, err);
+    if (!err->status && listed) group_by_list(v, scan, path, err);
+    if (!err->status && !listed && !single)
+        group_by_cycle(v, scan, !strcmp(params->brackets, "yes") && !scan->references, err);
+    if (!err->status && !listed && !v->count && !single && scan->references) group_distinct(v, scan, err);
+    if (!err->status && !listed && !v->count && (scan->references || single || has_linear || any_tiff(scan)))
+        single_views(v, scan, err);
+    if (!err->status && listed && v->count) qsort(v->views, (size_t)v->count, sizeof *v->views, by_view);
+    if (!err->status && !listed && v->count) name_views(v, scan, err);
+    for (int i = 0; !err->status && i < v->count; i++) sort_view(&v->views[i], v, scan, err);
     v->bracketed = v->count > 0;
-    if (!st) exclude_views(v, exclude, exclude_count, used);
-    for (int i = 0; !st && i < v->count; i++) st = check_view(&v->views[i], v, scan, err);
-    if (!st) st = check_comparable(v, scan, err);
-    if (!st && v->count) st = find_white(v, err);
+    if (!err->status) exclude_views(v, exclude, exclude_count, used);
+    for (int i = 0; !err->status && i < v->count; i++) check_view(&v->views[i], v, scan, err);
+    if (!err->status) check_comparable(v, scan, err);
+    if (!err->status && v->count) find_white(v, err);
     free(path);
-    if (st) bracket_views_release(v);
-    return st;
+    if (err->status) bracket_views_release(v);
+    return err->status;
 }
 
 /* ---------------------------------------------------------------------------------------------------------- writing */
@@ -583,23 +583,25 @@ enum status bracket_views_write(const struct bracket_views *v, const struct phot
     struct photo_list list = {0};
     const char **ids = calloc(count + 1, sizeof *ids);
     list.photos = calloc(count + 1, sizeof *list.photos);
-    enum status st = ids && list.photos ? ST_OK : err_nomem(err, "a list of views", count * sizeof *list.photos);
-    for (int i = 0; !st && i < v->count; i++) {
+    if (!ids || !list.photos) err_nomem(err, "a list of views", count * sizeof *list.photos);
+    for (int i = 0; !err->status && i < v->count; i++) {
         ids[i] = v->views[i].id;
-        st = make_record(&list.photos[list.count++], &v->views[i], v, scan, err);
+        make_record(&list.photos[list.count++], &v->views[i], v, scan, err);
     }
-    if (!st) ids[v->count] = "brackets";
-    if (!st) st = photo_scan_remove_others(records, ids, v->count + 1, err);
-    for (int i = 0; !st && i < v->count; i++) st = photo_record_write(&list.photos[i], records, err);
-    if (!st && v->count < (scan->references ? 1 : 2))
-        st = err_set(err, ST_DATA,
-                     "the photos in %s are exposures of %s; a parallax video needs at least 2 views, taken from "
-                     "different places.",
-                     scan->folder, v->count ? "one view" : "views that are all left out");
-    if (!st) st = photo_list_write(&list, records, err);
+    if (!err->status) {
+        ids[v->count] = "brackets";
+        photo_scan_remove_others(records, ids, v->count + 1, err);
+    }
+    for (int i = 0; !err->status && i < v->count; i++) photo_record_write(&list.photos[i], records, err);
+    if (!err->status && v->count < (scan->references ? 1 : 2))
+        err_set(err, ST_DATA,
+                "the photos in %s are exposures of %s; a parallax video needs at least 2 views, taken from "
+                "different places.",
+                scan->folder, v->count ? "one view" : "views that are all left out");
+    if (!err->status) photo_list_write(&list, records, err);
     photo_list_release(&list);
     free(ids);
-    return st;
+    return err->status;
 }
 
 void bracket_views_release(struct bracket_views *v)

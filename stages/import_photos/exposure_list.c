@@ -31,18 +31,18 @@ static enum status read_line(struct exposure_list *list, struct textfile *t, str
 {
     struct exposure e = {.filter = 1};
     char *file = NULL;
-    enum status st = textfile_word(t, "the file name of a photo", &file, err);
-    for (int i = 0; !st && i < list->count; i++)
+    textfile_word(t, "the file name of a photo", &file, err);
+    for (int i = 0; !err->status && i < list->count; i++)
         if (!strcmp(list->lines[i].file, file))
-            st = textfile_error(t, err, file, "each photo once (it is also in line %d)", list->lines[i].line);
-    if (!st) st = read_number(t, "an exposure time in seconds", false, &e.seconds, err);
-    if (!st && textfile_more(t)) {
-        st = read_number(t, "an f-number (0: from EXIF)", true, &e.f_number, err);
-        if (!st) st = read_number(t, "an ISO value (0: from EXIF)", true, &e.iso, err);
-        if (!st && textfile_more(t)) st = read_number(t, "a neutral density factor", false, &e.filter, err);
+            textfile_error(t, err, file, "each photo once (it is also in line %d)", list->lines[i].line);
+    if (!err->status) read_number(t, "an exposure time in seconds", false, &e.seconds, err);
+    if (!err->status && textfile_more(t)) {
+        if (!read_number(t, "an f-number (0: from EXIF)", true, &e.f_number, err))
+            read_number(t, "an ISO value (0: from EXIF)", true, &e.iso, err);
+        if (!err->status && textfile_more(t)) read_number(t, "a neutral density factor", false, &e.filter, err);
     }
-    if (!st) st = textfile_end(t, err);
-    if (st) return st;
+    if (!err->status) textfile_end(t, err);
+    if (err->status) return err->status;
 
     if (array_append(&list->lines, (size_t)list->count, sizeof *list->lines, "exposures", err)) return err->status;
     list->lines[list->count] = (struct exposure_line){strdup(file), e, t->line};
@@ -53,11 +53,14 @@ enum status exposure_list_read(struct exposure_list *list, const char *path, str
 {
     struct textfile t = {0};
     *list = (struct exposure_list){.path = strdup(path)};
-    enum status st = list->path ? textfile_open(&t, path, err) : err_nomem(err, "a path", strlen(path) + 1);
-    while (!st && textfile_next(&t)) st = read_line(list, &t, err);
+    if (list->path)
+        textfile_open(&t, path, err);
+    else
+        err_nomem(err, "a path", strlen(path) + 1);
+    while (!err->status && textfile_next(&t)) read_line(list, &t, err);
     textfile_release(&t);
-    if (st) exposure_list_release(list);
-    return st;
+    if (err->status) exposure_list_release(list);
+    return err->status;
 }
 
 void exposure_list_release(struct exposure_list *list)

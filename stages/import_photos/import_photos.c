@@ -72,39 +72,38 @@ static enum status cut(const char *photos, const char *split, const char *cuts, 
 {
     struct photo_scan scan = {0};
     struct split_grid grid;
-    enum status st = split_grid_parse(&grid, split, params, err);
-    if (!st) st = photo_scan_folder(&scan, photos, err);
-    if (!st) {
+    if (!split_grid_parse(&grid, split, params, err)) photo_scan_folder(&scan, photos, err);
+    if (!err->status) {
         exclude_photos(&scan, leave);
         if (exists(photos, "exposures.txt"))
             log_warn("%s/exposures.txt is not read because its photos are cut; write the pictures' exposures into the "
                      "scene's exposures.txt.",
                      photos);
-        st = split_photos(&scan, &grid, cuts, err);
+        split_photos(&scan, &grid, cuts, err);
         report_scan(&scan);
     }
     photo_scan_release(&scan);
-    return st;
+    return err->status;
 }
 
 /* Gives the views the white exposure of the scene whose records are in `folder`, so that both have one scale. */
 static enum status share_white(struct bracket_views *views, const char *folder, struct err *err)
 {
     struct photo_list scene = {0};
-    enum status st = photo_list_read(&scene, folder, err);
-    const double white = st || !scene.count ? 0 : scene.photos[0].white; /* all photos have the same */
-    if (!st && views->untimed)
-        st = err_set(
+    photo_list_read(&scene, folder, err);
+    const double white = err->status || !scene.count ? 0 : scene.photos[0].white; /* all photos have the same */
+    if (!err->status && views->untimed)
+        err_set(
             err, ST_DATA,
             "the exposures of the lighting reference images are unknown, so their light cannot be compared with the "
             "scene's; write lines \"FILE SECONDS F_NUMBER ISO\" into exposures.txt in their folder.");
-    if (!st && !(white > 0))
+    if (!err->status && !(white > 0))
         log_warn("the scene's photos are not bracketed and have no common scale; the lighting reference images get a "
                  "scale of "
                  "their own ([import_photos] brackets = single brings photos of known exposure to one scale).");
-    if (!st && white > 0) views->white = white;
+    if (!err->status && white > 0) views->white = white;
     photo_list_release(&scene);
-    return st;
+    return err->status;
 }
 
 /* The records of bracketed photos are in `members`, even if they cannot be grouped or one is unusable: the views'
@@ -115,23 +114,22 @@ static enum status import(struct photo_scan *scan, const char *scene, const char
     struct bracket_views views = {0};
     char *members = NULL;
     bool bad = photo_scan_bad(scan) > 0;
-    enum status st = ST_OK;
+    struct err failed = ERR_INIT; /* of the members, whose records are written whether they can be grouped or not */
     if (asprintf(&members, "%s/members", out) < 0) return err_nomem(err, "a path", 0);
     if (!bad)
-        st =
-            bracket_views_find(&views, scan, scene, params, leave->names->items, leave->names->count, leave->used, err);
-    if (!bad && !st && like) st = share_white(&views, like, err);
-    bool bracketed = st || views.bracketed || (bad && exists(out, "brackets.txt"));
+        bracket_views_find(&views, scan, scene, params, leave->names->items, leave->names->count, leave->used, err);
+    if (!bad && !err->status && like) share_white(&views, like, err);
+    bool bracketed = err->status || views.bracketed || (bad && exists(out, "brackets.txt"));
     report_unused(scan, leave);
     if (!bracketed)
-        st = photo_scan_write(scan, out, err);
-    else if (photo_scan_write_records(scan, members, err) || st)
-        st = err->status;
-    else
-        st = bracket_views_write(&views, scan, out, err);
+        photo_scan_write(scan, out, err);
+    else if (photo_scan_write_records(scan, members, &failed))
+        err_set(err, failed.status, "%s", failed.text);
+    else if (!err->status)
+        bracket_views_write(&views, scan, out, err);
     bracket_views_release(&views);
     free(members);
-    return st;
+    return err->status;
 }
 
 static enum status run(struct photo_scan *scan, const char *photos, const char *scene, const char *like,
@@ -139,22 +137,22 @@ static enum status run(struct photo_scan *scan, const char *photos, const char *
                        const struct photo_params *params, struct err *err)
 {
     struct exclusion left = {exclude, calloc((size_t)exclude->count + 1, sizeof(bool))};
-    enum status st = left.used ? ST_OK : err_nomem(err, "names", (size_t)exclude->count);
-    if (!st && !split != !cuts)
-        st = err_set(err, ST_USAGE,
-                     "--split and --cuts go together: the number of pictures in a photo, and the folder for them.");
-    if (!st) st = check_out(photos, "--out", out, err);
-    if (!st) st = check_out(photos, "--cuts", cuts, err);
-    if (!st && split) st = cut(photos, split, cuts, &left, params, err);
-    if (!st) st = photo_scan_folder(scan, split ? cuts : photos, err);
+    if (!left.used) err_nomem(err, "names", (size_t)exclude->count);
+    if (!err->status && !split != !cuts)
+        err_set(err, ST_USAGE,
+                "--split and --cuts go together: the number of pictures in a photo, and the folder for them.");
+    if (!err->status && !check_out(photos, "--out", out, err)) check_out(photos, "--cuts", cuts, err);
+    if (!err->status && split) cut(photos, split, cuts, &left, params, err);
+    if (!err->status) photo_scan_folder(scan, split ? cuts : photos, err);
     scan->cut = split;
     scan->references = like;
-    if (!st) exclude_photos(scan, &left);
-    if (!st) st = photo_scan_check(scan, out, err);
-    if (!st) st = import(scan, scene, like, &left, out, params, err);
+    if (!err->status) {
+        exclude_photos(scan, &left);
+        if (!photo_scan_check(scan, out, err)) import(scan, scene, like, &left, out, params, err);
+    }
     report_scan(scan);
     free(left.used);
-    return st;
+    return err->status;
 }
 
 int main(int argc, char **argv)

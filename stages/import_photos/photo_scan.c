@@ -137,20 +137,20 @@ static enum status assign_ids(struct photo_scan *scan, struct err *err)
     size_t count = (size_t)scan->count;
     struct base_id *bases = calloc(count + 1, sizeof *bases), *sorted = calloc(count + 1, sizeof *sorted);
     bool *shared = calloc(count + 1, sizeof *shared);
-    enum status st = bases && sorted && shared ? ST_OK : err_nomem(err, "the photos' ids", count * sizeof *bases);
+    if (!bases || !sorted || !shared) err_nomem(err, "the photos' ids", count * sizeof *bases);
 
-    for (size_t i = 0; !st && i < count; i++) {
+    for (size_t i = 0; !err->status && i < count; i++) {
         photo_id_from_stem(bases[i].text, scan->photos[i].file, photo_stem(scan->photos[i].file));
         bases[i].photo = (int)i;
         sorted[i] = bases[i];
     }
-    if (!st) qsort(sorted, count, sizeof *sorted, by_base);
-    for (size_t i = 0; !st && i < count; i++)
+    if (!err->status) qsort(sorted, count, sizeof *sorted, by_base);
+    for (size_t i = 0; !err->status && i < count; i++)
         shared[sorted[i].photo] = (i && !by_base(&sorted[i], &sorted[i - 1])) ||
                                   (i + 1 < count && !by_base(&sorted[i], &sorted[i + 1])) ||
                                   photo_id_reserved(sorted[i].text);
     for (int pass = 0; pass < 2; pass++) {
-        for (size_t i = 0; !st && i < count; i++) {
+        for (size_t i = 0; !err->status && i < count; i++) {
             struct scanned_photo *p = &scan->photos[i];
             char id[MAX_PHOTO_ID + 32];
             if (shared[i] != (pass == 1)) continue;
@@ -159,14 +159,14 @@ static enum status assign_ids(struct photo_scan *scan, struct err *err)
                 while (id_taken(scan, id)) snprintf(id + length, sizeof id - (size_t)length, "-%d", ++n);
             }
             p->id = strdup(shared[i] ? id : bases[i].text);
-            if (!p->id) st = err_nomem(err, "a photo's id", MAX_PHOTO_ID);
+            if (!p->id) err_nomem(err, "a photo's id", MAX_PHOTO_ID);
         }
     }
     free(bases);
     free(sorted);
     free(shared);
-    if (!st) qsort(scan->photos, count, sizeof *scan->photos, by_id);
-    return st;
+    if (!err->status) qsort(scan->photos, count, sizeof *scan->photos, by_id);
+    return err->status;
 }
 
 static char *join_path(const char *folder, const char *name, const char *suffix)
@@ -204,17 +204,16 @@ enum status photo_scan_folder(struct photo_scan *scan, const char *folder, struc
         return err_set(err, ST_DATA, "%s is not a folder; give the folder of the photos.", folder);
     if (!dir) return err_errno(err, "open the folder of photos", folder);
 
-    enum status st = ST_OK;
     errno = 0;
-    for (struct dirent *entry; !st && (entry = readdir(dir)); errno = 0) st = scan_entry(scan, entry->d_name, err);
-    if (!st && errno) st = err_errno(err, "list the folder of photos", folder);
+    for (struct dirent *entry; !err->status && (entry = readdir(dir)); errno = 0) scan_entry(scan, entry->d_name, err);
+    if (!err->status && errno) err_errno(err, "list the folder of photos", folder);
     closedir(dir);
     drop_raw_with_jpeg_twin(scan);
-    if (!st && scan->count) {
+    if (!err->status && scan->count) {
         qsort(scan->photos, (size_t)scan->count, sizeof *scan->photos, by_file);
-        st = assign_ids(scan, err);
+        assign_ids(scan, err);
     }
-    return st;
+    return err->status;
 }
 
 int photo_scan_exclude(struct photo_scan *scan, const char *name)
@@ -239,9 +238,9 @@ struct check_job {
 
 static bool read_old_record(struct photo_record *old, const char *records, const char *id)
 {
-    struct err ignored = ERR_INIT;
+    struct err absent = ERR_INIT, ignored = ERR_INIT;
     char *members = join_path(records, "members", "");
-    bool found = (members && !photo_record_read(old, members, id, NULL, &ignored)) ||
+    bool found = (members && !photo_record_read(old, members, id, NULL, &absent)) ||
                  !photo_record_read(old, records, id, NULL, &ignored);
     free(members);
     return found;
@@ -254,25 +253,25 @@ static enum status check_photo(struct scanned_photo *p, const char *folder, cons
     struct photo photo = {0};
     char quoted[1024];
     char *path = join_path(folder, p->file, "");
-    enum status st = path ? ST_OK : err_nomem(&p->err, "a path", 0);
 
-    if (!st) st = textfile_quote(p->file, quoted, sizeof quoted, &p->err);
-    if (!st) st = hash_file(p->record.hash, path, &p->err);
-    if (!st && read_old_record(&old, records, p->id) && !strcmp(old.hash, p->record.hash)) {
+    if (!path) err_nomem(&p->err, "a path", 0);
+    if (!p->err.status && !textfile_quote(p->file, quoted, sizeof quoted, &p->err))
+        hash_file(p->record.hash, path, &p->err);
+    if (!p->err.status && read_old_record(&old, records, p->id) && !strcmp(old.hash, p->record.hash)) {
         p->record.info = old.info;
-    } else if (!st) {
-        st = photo_read_any(&photo, path, &p->err);
+    } else if (!p->err.status) {
+        photo_read_any(&photo, path, &p->err);
         p->record.info = photo.info;
     }
-    if (!st) {
+    if (!p->err.status) {
         p->record.file = strdup(p->file);
         p->record.id = strdup(p->id);
-        if (!p->record.file || !p->record.id) st = err_nomem(&p->err, "a record", 0);
+        if (!p->record.file || !p->record.id) err_nomem(&p->err, "a record", 0);
     }
     photo_record_release(&old);
     photo_release(&photo);
     free(path);
-    return st;
+    return p->err.status;
 }
 
 static void check_photos(void *ctx, size_t begin, size_t end, int thread)
@@ -309,22 +308,21 @@ static bool has_id(const char *const *ids, int count, const char *id, size_t len
 enum status photo_scan_remove_others(const char *records, const char *const *ids, int count, struct err *err)
 {
     DIR *dir = opendir(records);
-    enum status st = ST_OK;
     if (!dir) return err_errno(err, "open", records);
-    for (struct dirent *entry; !st && (entry = readdir(dir));) {
+    for (struct dirent *entry; !err->status && (entry = readdir(dir));) {
         size_t length = strlen(entry->d_name);
         if (length < 5 || strcmp(entry->d_name + length - 4, ".txt") || entry->d_name[0] == '.' ||
             !strcmp(entry->d_name, "list.txt") || has_id(ids, count, entry->d_name, length - 4))
             continue;
         char *path = join_path(records, entry->d_name, "");
         if (!path)
-            st = err_nomem(err, "a path", 0);
+            err_nomem(err, "a path", 0);
         else if (unlink(path))
-            st = err_errno(err, "remove", path);
+            err_errno(err, "remove", path);
         free(path);
     }
     closedir(dir);
-    return st;
+    return err->status;
 }
 
 int photo_scan_bad(const struct photo_scan *scan)
@@ -359,36 +357,37 @@ enum status photo_scan_write_records(const struct photo_scan *scan, const char *
 {
     int count = 0;
     const char **ids = calloc((size_t)scan->count + 1, sizeof *ids);
-    enum status st =
-        ids ? outfile_make_folders(records, err) : err_nomem(err, "ids", (size_t)scan->count * sizeof *ids);
+    if (ids)
+        outfile_make_folders(records, err);
+    else
+        err_nomem(err, "ids", (size_t)scan->count * sizeof *ids);
 
-    for (int i = 0; !st && i < scan->count; i++)
+    for (int i = 0; !err->status && i < scan->count; i++)
         if (usable(&scan->photos[i])) ids[count++] = scan->photos[i].id;
-    if (!st) st = photo_scan_remove_others(records, ids, count, err);
-    for (int i = 0; !st && i < scan->count; i++)
-        if (usable(&scan->photos[i])) st = photo_record_write(&scan->photos[i].record, records, err);
-    if (!st) st = photo_scan_refuse_bad(scan, err);
+    if (!err->status) photo_scan_remove_others(records, ids, count, err);
+    for (int i = 0; !err->status && i < scan->count; i++)
+        if (usable(&scan->photos[i])) photo_record_write(&scan->photos[i].record, records, err);
+    if (!err->status) photo_scan_refuse_bad(scan, err);
     free(ids);
-    return st;
+    return err->status;
 }
 
 enum status photo_scan_write(const struct photo_scan *scan, const char *records, struct err *err)
 {
     struct photo_list list = {0};
     int used = photo_scan_used(scan);
-    enum status st = photo_scan_write_records(scan, records, err);
+    photo_scan_write_records(scan, records, err);
 
-    if (!st && used < 2)
-        st = err_set(err, ST_DATA,
-                     "%s contains %s photo%s; a parallax video needs at least 2, taken from different places.",
-                     scan->folder, used ? "one" : "no", used < scan->count ? " besides those left out" : "");
-    if (!st && !(list.photos = calloc((size_t)scan->count + 1, sizeof *list.photos)))
-        st = err_nomem(err, "a list of photos", (size_t)scan->count * sizeof *list.photos);
-    for (int i = 0; !st && i < scan->count; i++)
+    if (!err->status && used < 2)
+        err_set(err, ST_DATA, "%s contains %s photo%s; a parallax video needs at least 2, taken from different places.",
+                scan->folder, used ? "one" : "no", used < scan->count ? " besides those left out" : "");
+    if (!err->status && !(list.photos = calloc((size_t)scan->count + 1, sizeof *list.photos)))
+        err_nomem(err, "a list of photos", (size_t)scan->count * sizeof *list.photos);
+    for (int i = 0; !err->status && i < scan->count; i++)
         if (usable(&scan->photos[i])) list.photos[list.count++] = scan->photos[i].record; /* borrowed */
-    if (!st) st = photo_list_write(&list, records, err);
+    if (!err->status) photo_list_write(&list, records, err);
     free(list.photos);
-    return st;
+    return err->status;
 }
 
 void photo_scan_release(struct photo_scan *scan)

@@ -127,21 +127,23 @@ enum status split_layout_find(struct split_layout *l, const struct split_grid *g
     struct direction across = {"columns", name, p->info.width, g->columns, NULL};
     struct direction down = {"rows", name, p->info.height, g->rows, NULL};
     *l = (struct split_layout){0};
-    if (!g->dark) {
-        enum status st = divide_evenly(&l->width, l->x, &l->over_width, &across, g->border, g->gap, err);
-        return st ? st : divide_evenly(&l->height, l->y, &l->over_height, &down, g->border, g->gap, err);
-    }
+    if (!g->dark)
+        return divide_evenly(&l->width, l->x, &l->over_width, &across, g->border, g->gap, err) ||
+                       divide_evenly(&l->height, l->y, &l->over_height, &down, g->border, g->gap, err)
+                   ? err->status
+                   : ST_OK;
     int *bright = calloc((size_t)across.size, sizeof *bright);
     across.dark = calloc((size_t)across.size, sizeof *across.dark);
     down.dark = calloc((size_t)down.size, sizeof *down.dark);
-    enum status st = bright && across.dark && down.dark
-                         ? ST_OK
-                         : err_nomem(err, "a photo's lines", (size_t)across.size * sizeof *bright);
-    if (!st) find_dark(across.dark, down.dark, bright, p, g->dark);
-    if (!st) st = divide_by_lines(&l->width, l->x, &l->over_width, &across, err);
-    if (!st) st = divide_by_lines(&l->height, l->y, &l->over_height, &down, err);
+    if (bright && across.dark && down.dark) {
+        find_dark(across.dark, down.dark, bright, p, g->dark);
+        if (!divide_by_lines(&l->width, l->x, &l->over_width, &across, err))
+            divide_by_lines(&l->height, l->y, &l->over_height, &down, err);
+    } else {
+        err_nomem(err, "a photo's lines", (size_t)across.size * sizeof *bright);
+    }
     free(bright);
     free(across.dark);
     free(down.dark);
-    return st;
+    return err->status;
 }

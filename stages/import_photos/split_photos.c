@@ -92,11 +92,11 @@ static void cut_pictures(void *ctx, size_t begin, size_t end, int thread)
     for (size_t i = begin; i < end; i++) {
         struct split_cut *c = &job->to->cuts[i];
         char *path = join_path(job->out, c->file);
-        enum status st = path ? ST_OK : err_nomem(&job->errs[i], "a path", 0);
-        if (!st)
-            st = photo_write_part(path, job->from, c->x, c->y, job->to->width, job->to->height, job->info,
-                                  &job->errs[i]);
-        if (!st) hash_file(c->hash, path, &job->errs[i]);
+        struct err *err = &job->errs[i];
+        if (!path)
+            err_nomem(err, "a path", 0);
+        else if (!photo_write_part(path, job->from, c->x, c->y, job->to->width, job->to->height, job->info, err))
+            hash_file(c->hash, path, err);
         free(path);
     }
 }
@@ -108,11 +108,10 @@ static enum status write_cuts(struct split_photo *s, const struct photo *p, cons
     struct cut_job job = {s, p, &info, out, calloc((size_t)s->count, sizeof *job.errs)};
     if (!job.errs) return err_nomem(err, "errors", (size_t)s->count * sizeof *job.errs);
     parallel_for((size_t)s->count, 1, cut_pictures, &job);
-    enum status st = ST_OK;
-    for (int i = 0; !st && i < s->count; i++)
-        if (job.errs[i].status) st = err_set(err, job.errs[i].status, "%s", job.errs[i].text);
+    for (int i = 0; !err->status && i < s->count; i++)
+        if (job.errs[i].status) err_set(err, job.errs[i].status, "%s", job.errs[i].text);
     free(job.errs);
-    return st;
+    return err->status;
 }
 
 /* Errors in the photo itself go to its own `err`. */
@@ -121,9 +120,7 @@ static enum status cut_photo(struct split_photo *s, struct scanned_photo *p, con
 {
     struct photo photo = {0};
     struct split_layout layout = {0};
-    enum status st = photo_read(&photo, path, &p->err);
-    if (!st) st = split_layout_find(&layout, g, &photo, path, &p->err);
-    if (!st) {
+    if (!photo_read(&photo, path, &p->err) && !split_layout_find(&layout, g, &photo, path, &p->err)) {
         s->width = layout.width;
         s->height = layout.height;
         for (int i = 0; i < s->count; i++) {
@@ -139,10 +136,10 @@ static enum status cut_photo(struct split_photo *s, struct scanned_photo *p, con
             log_warn("%s is stored rotated by 90 degrees; its %d columns and %d rows of pictures count in the photo as "
                      "stored.",
                      p->file, g->columns, g->rows);
-        st = write_cuts(s, &photo, out, err);
+        write_cuts(s, &photo, out, err);
     }
     photo_release(&photo);
-    return st;
+    return err->status;
 }
 
 static bool is_listed(const struct split_list *list, const char *file)
@@ -164,41 +161,39 @@ static bool is_cut_name(const char *name)
 static enum status remove_others(const struct split_list *list, const char *out, struct err *err)
 {
     DIR *dir = opendir(out);
-    enum status st = dir ? ST_OK : err_errno(err, "open", out);
-    for (struct dirent *e; !st && (e = readdir(dir));) {
+    if (!dir) err_errno(err, "open", out);
+    for (struct dirent *e; !err->status && (e = readdir(dir));) {
         if (e->d_name[0] == '.' || !is_cut_name(e->d_name) || is_listed(list, e->d_name)) continue;
         char *path = join_path(out, e->d_name);
         if (!path)
-            st = err_nomem(err, "a path", 0);
+            err_nomem(err, "a path", 0);
         else if (unlink(path))
-            st = err_errno(err, "remove", path);
+            err_errno(err, "remove", path);
         free(path);
     }
     if (dir) closedir(dir);
-    return st;
+    return err->status;
 }
 
 static enum status split_all(struct split_list *list, int *kept, struct photo_scan *scan, const struct split_list *old,
                              const char *out, struct err *err)
 {
-    enum status st = ST_OK;
-    for (int i = 0; !st && i < scan->count; i++) {
+    for (int i = 0; !err->status && i < scan->count; i++) {
         struct scanned_photo *p = &scan->photos[i];
         struct split_photo *s = &list->photos[list->count];
         if (p->excluded) continue;
         char *path = join_path(scan->folder, p->file);
-        st = path ? ST_OK : err_nomem(err, "a path", 0);
+        if (!path) err_nomem(err, "a path", 0);
         list->count++;
-        if (!st) st = name_cuts(s, p, &list->grid, err);
-        if (!st && !hash_file(s->hash, path, &p->err)) {
+        if (!err->status && !name_cuts(s, p, &list->grid, err) && !hash_file(s->hash, path, &p->err)) {
             if (up_to_date(s, old, &list->grid, out))
                 ++*kept;
-            else if (cut_photo(s, p, &list->grid, path, out, err))
-                st = err->status; /* continue with the next photo if only this one is unusable */
+            else
+                cut_photo(s, p, &list->grid, path, out, err); /* goes on with the next one if only this is unusable */
         }
         free(path);
     }
-    return st;
+    return err->status;
 }
 
 enum status split_photos(struct photo_scan *scan, const struct split_grid *grid, const char *out, struct err *err)
@@ -211,17 +206,21 @@ enum status split_photos(struct photo_scan *scan, const struct split_grid *grid,
                        scan->count ? " besides those left out" : "");
     char *path = join_path(out, "split.txt");
     list.photos = calloc((size_t)scan->count, sizeof *list.photos);
-    enum status st = path && list.photos ? outfile_make_folders(out, err) : err_nomem(err, "a list of photos", 0);
-    if (!st) split_list_read(&old, path, &ignored); /* if it cannot be read, all photos are cut again */
-    if (!st) st = split_all(&list, &kept, scan, &old, out, err);
-    if (!st) st = photo_scan_refuse_bad(scan, err);
-    if (!st) st = remove_others(&list, out, err);
-    if (!st && (kept < list.count || list.count != old.count)) st = split_list_write(&list, path, err);
-    if (!st && kept < list.count)
+    if (path && list.photos)
+        outfile_make_folders(out, err);
+    else
+        err_nomem(err, "a list of photos", 0);
+    if (!err->status) {
+        split_list_read(&old, path, &ignored); /* if it cannot be read, all photos are cut again */
+        if (!split_all(&list, &kept, scan, &old, out, err) && !photo_scan_refuse_bad(scan, err))
+            remove_others(&list, out, err);
+    }
+    if (!err->status && (kept < list.count || list.count != old.count)) split_list_write(&list, path, err);
+    if (!err->status && kept < list.count)
         log_note("%d of %d photos cut into %d x %d pictures each", list.count - kept, list.count, grid->columns,
                  grid->rows);
     split_list_release(&old);
     split_list_release(&list);
     free(path);
-    return st;
+    return err->status;
 }

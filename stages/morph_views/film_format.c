@@ -143,9 +143,8 @@ enum status film_picture_make(struct film_picture *out, const struct image *stor
     size_t bytes = (size_t)(width + height) * (size_t)room * sizeof *r.weights;
     r.weights = malloc(bytes);
     r.columns = malloc((size_t)(width + height) * sizeof *r.columns);
-    enum status st = r.weights && r.columns ? ST_OK : err_nomem(err, "a film's filter", bytes);
-    if (!st) st = image_init(&out->rgb, width, height, 3, err);
-    if (!st) {
+    if (!r.weights || !r.columns) err_nomem(err, "a film's filter", bytes);
+    if (!err->status && !image_init(&out->rgb, width, height, 3, err)) {
         r.rows = r.columns + width;
         make_taps(r.columns, r.weights, room, width, scale, offset[0], w);
         make_taps(r.rows, r.weights + (size_t)width * (size_t)room, room, height, scale, offset[1], h);
@@ -153,7 +152,7 @@ enum status film_picture_make(struct film_picture *out, const struct image *stor
     }
     free(r.columns);
     free(r.weights);
-    return st;
+    return err->status;
 }
 
 void film_picture_release(struct film_picture *p)

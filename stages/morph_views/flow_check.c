@@ -260,14 +260,13 @@ enum status flow_check(struct flow flows[2], const struct image pictures[2], con
     float *uv = malloc(2 * n * sizeof *uv), *confidence = malloc(n * sizeof *confidence);
     uint32_t *stack = malloc(n * sizeof *stack);
     unsigned char *seen = malloc(n);
-    enum status st =
-        passed[0] && passed[1] && uv && confidence && stack && seen ? ST_OK : err_nomem(err, "a flow's check", n * 30);
+    if (!passed[0] || !passed[1] || !uv || !confidence || !stack || !seen) err_nomem(err, "a flow's check", n * 30);
     c.has_lines = epipolar_line_at(geometry, 0, flows[0].width / 2.0, flows[0].height / 2.0, NULL, &line);
-    for (c.from = 0; !st && c.from < 2; c.from++) {
+    for (c.from = 0; !err->status && c.from < 2; c.from++) {
         c.passed = passed[c.from];
         parallel_for(h, CHUNK, check_rows, &c);
     }
-    for (c.from = 0; !st && c.from < 2; c.from++) {
+    for (c.from = 0; !err->status && c.from < 2; c.from++) {
         struct flow *f = &flows[c.from];
         memcpy(f->confidence, passed[c.from], n * sizeof *f->confidence);
         reject_islands(f, stack, seen);
@@ -294,5 +293,5 @@ enum status flow_check(struct flow flows[2], const struct image pictures[2], con
     free(confidence);
     free(stack);
     free(seen);
-    return st;
+    return err->status;
 }

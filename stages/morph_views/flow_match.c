@@ -505,7 +505,6 @@ static enum status search_level(struct flow_search *s, struct flow_label **kept,
                                 const struct feature_match *matches, int match_count, struct err *err)
 {
     size_t n = (size_t)s->width * (size_t)s->height, bytes = n * sizeof *s->labels;
-    enum status st = ST_OK;
     s->coarse = *kept;
     s->coarse_width = coarse_width;
     s->coarse_height = coarse_height;
@@ -516,9 +515,8 @@ static enum status search_level(struct flow_search *s, struct flow_label **kept,
     s->lines = malloc(n * sizeof *s->lines);
     s->labels = malloc(bytes);
     s->kept = malloc(n * KEPT * sizeof *s->kept);
-    if (!s->lines || !s->labels || !s->kept) st = err_nomem(err, "candidates for the flow", bytes);
-    if (!st) st = sort_features(s, matches, match_count, err);
-    if (!st) {
+    if (!s->lines || !s->labels || !s->kept) err_nomem(err, "candidates for the flow", bytes);
+    if (!err->status && !sort_features(s, matches, match_count, err)) {
         parallel_for((size_t)s->height, CHUNK, line_rows, s);
         for (s->round = 0; s->round < (s->coarse ? ROUNDS : 2); s->round++) {
             parallel_for((size_t)s->height, CHUNK, s->round || s->coarse ? search_candidate_rows : search_all_rows, s);
@@ -534,7 +532,7 @@ static enum status search_level(struct flow_search *s, struct flow_label **kept,
     free(s->lines);
     free(s->features);
     free(s->feature_counts);
-    return st;
+    return err->status;
 }
 
 enum status match_whole_pixels(struct flow *flow, const struct image pictures[2], int from,
@@ -545,18 +543,17 @@ enum status match_whole_pixels(struct flow *flow, const struct image pictures[2]
     struct image pyramid[2][MAX_LEVELS] = {0};
     struct flow_label *kept = NULL;
     int levels = 1, coarse_width = 0, coarse_height = 0;
-    enum status st = ST_OK;
     for (int i = 0; i < 2; i++) pyramid[i][0] = pictures[i]; /* borrowed */
-    while (!st && levels < MAX_LEVELS) {
+    while (!err->status && levels < MAX_LEVELS) {
         const struct image *last = &pyramid[0][levels - 1];
         if (last->width <= COARSEST_SIDE && last->height <= COARSEST_SIDE) break;
         if (last->width < 16 || last->height < 16) break;
-        for (int i = 0; !st && i < 2; i++) st = halve(&pyramid[i][levels], &pyramid[i][levels - 1], err);
+        for (int i = 0; !err->status && i < 2; i++) halve(&pyramid[i][levels], &pyramid[i][levels - 1], err);
         levels++;
     }
-    for (int l = levels - 1; !st && l >= 0; l--) {
+    for (int l = levels - 1; !err->status && l >= 0; l--) {
         struct census_image images[2] = {0};
-        for (int i = 0; !st && i < 2; i++) st = census_image_make(&images[i], &pyramid[i][l], err);
+        for (int i = 0; !err->status && i < 2; i++) census_image_make(&images[i], &pyramid[i][l], err);
         struct flow_search s = {.from = &images[from],
                                 .to = &images[!from],
                                 .geometry = geometry,
@@ -565,13 +562,12 @@ enum status match_whole_pixels(struct flow *flow, const struct image pictures[2]
                                 .width = pyramid[0][l].width,
                                 .height = pyramid[0][l].height,
                                 .scale = 1 << l};
-        if (!st) st = search_level(&s, &kept, coarse_width, coarse_height, matches, match_count, err);
+        if (!err->status) search_level(&s, &kept, coarse_width, coarse_height, matches, match_count, err);
         coarse_width = s.width;
         coarse_height = s.height;
         for (int i = 0; i < 2; i++) census_image_release(&images[i]);
     }
-    if (!st) st = flow_init(flow, pictures[0].width, pictures[0].height, err);
-    if (!st) {
+    if (!err->status && !flow_init(flow, pictures[0].width, pictures[0].height, err)) {
         size_t n = (size_t)flow->width * (size_t)flow->height;
         for (size_t p = 0; p < n; p++) {
             flow->uv[2 * p] = kept[KEPT * p].x;
@@ -581,17 +577,16 @@ enum status match_whole_pixels(struct flow *flow, const struct image pictures[2]
     for (int i = 0; i < 2; i++)
         for (int l = 1; l < levels; l++) image_release(&pyramid[i][l]);
     free(kept);
-    return st;
+    return err->status;
 }
 
 enum status match_pictures(struct flow flows[2], const struct image pictures[2], const struct pair_geometry *geometry,
                            const struct feature_match *matches, int match_count, const struct morph_params *params,
                            struct err *err)
 {
-    enum status st = ST_OK;
-    for (int i = 0; !st && i < 2; i++) {
-        st = match_whole_pixels(&flows[i], pictures, i, geometry, matches, match_count, params, err);
-        if (!st) st = flow_refine(&flows[i], pictures, i, geometry, params, err);
-    }
-    return st ? st : flow_check(flows, pictures, geometry, err);
+    for (int i = 0; !err->status && i < 2; i++)
+        if (!match_whole_pixels(&flows[i], pictures, i, geometry, matches, match_count, params, err))
+            flow_refine(&flows[i], pictures, i, geometry, params, err);
+    if (!err->status) flow_check(flows, pictures, geometry, err);
+    return err->status;
 }

@@ -219,16 +219,15 @@ enum status flow_refine(struct flow *flow, const struct image pictures[2], int f
     struct refinement r = {
         .flow = flow, .geometry = geometry, .from_idx = from, .epipolar_width = (float)params->epipolar_width};
     float *whole = malloc(2 * n * sizeof *whole);
-    enum status st = ST_OK;
     r.sums = malloc(n * SUMS * sizeof *r.sums);
     r.single = malloc(n * SUMS * sizeof *r.single);
     r.weights = malloc(2 * n * sizeof *r.weights);
     r.change = malloc(2 * n * sizeof *r.change);
     r.lines = malloc(n * sizeof *r.lines);
     if (!whole || !r.sums || !r.single || !r.weights || !r.change || !r.lines)
-        st = err_nomem(err, "a flow's refinement", n * 80);
-    for (int i = 0; !st && i < 2; i++) st = gradients(&channels[i], &pictures[i], err);
-    if (!st) {
+        err_nomem(err, "a flow's refinement", n * 80);
+    for (int i = 0; !err->status && i < 2; i++) gradients(&channels[i], &pictures[i], err);
+    if (!err->status) {
         memcpy(whole, flow->uv, 2 * n * sizeof *whole);
         r.whole = whole;
         r.from = &channels[from];
@@ -252,5 +251,5 @@ enum status flow_refine(struct flow *flow, const struct image pictures[2], int f
     free(r.weights);
     free(r.change);
     free(r.lines);
-    return st;
+    return err->status;
 }

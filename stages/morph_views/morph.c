@@ -56,72 +56,71 @@ static float *plane_of(struct morph *m, int side, int plane, size_t *step)
 enum status morph_write(const struct morph *m, const struct view *cameras, const char *folder,
                         const struct provenance *prov, struct err *err)
 {
-    enum status st = ST_OK;
-    for (int side = 1; !st && side >= 0; side--) { /* first.exr last */
+    for (int side = 1; !err->status && side >= 0; side--) { /* first.exr last */
         struct exr_image im = {0};
         char path[FILE_PATH], gain[128];
         const size_t n = (size_t)m->pictures[side].width * (size_t)m->pictures[side].height;
-        st = product_path_in(path, folder, FILES[side], NULL, err);
-        if (!st) st = exr_image_init(&im, m->pictures[side].width, m->pictures[side].height, err);
-        for (int k = 0; !st && k < 7; k++) {
+        if (!product_path_in(path, folder, FILES[side], NULL, err))
+            exr_image_init(&im, m->pictures[side].width, m->pictures[side].height, err);
+        for (int k = 0; !err->status && k < 7; k++) {
             struct exr_plane *plane;
             size_t step;
             const float *from = plane_of((struct morph *)m, side, k, &step);
-            st = exr_add_plane(&im, PLANES[k], k < 3 || k == 5 ? EXR_HALF : EXR_FLOAT, &plane, err);
-            for (size_t p = 0; !st && p < n; p++) plane->f[p] = from[step * p];
+            exr_add_plane(&im, PLANES[k], k < 3 || k == 5 ? EXR_HALF : EXR_FLOAT, &plane, err);
+            for (size_t p = 0; !err->status && p < n; p++) plane->f[p] = from[step * p];
         }
         snprintf(gain, sizeof gain, "%.9g %.9g %.9g", m->gain[0], m->gain[1], m->gain[2]);
-        if (!st) st = exr_set_attribute(&im, "remodel:radiometry", m->radiometry, err);
-        if (!st) st = exr_set_attribute(&im, "remodel:gain", gain, err);
-        if (!st && cameras) view_image_set_camera(&im, &cameras[side]);
-        if (!st) st = exr_write(&im, path, prov, err);
+        if (!err->status && !exr_set_attribute(&im, "remodel:radiometry", m->radiometry, err))
+            exr_set_attribute(&im, "remodel:gain", gain, err);
+        if (!err->status && cameras) view_image_set_camera(&im, &cameras[side]);
+        if (!err->status) exr_write(&im, path, prov, err);
         exr_image_release(&im);
     }
-    return st;
+    return err->status;
 }
 
 static enum status read_side(struct morph *m, int side, const char *path, struct provenance *prov, struct err *err)
 {
     struct exr_image im = {0};
-    enum status st = exr_read_product(&im, FILES[side], path, PLANES, 7, prov, err);
-    for (int k = 0; !st && k < 7; k++)
+    exr_read_product(&im, FILES[side], path, PLANES, 7, prov, err);
+    for (int k = 0; !err->status && k < 7; k++)
         if (!exr_find(&im, PLANES[k])->f)
-            st = err_set(err, ST_DATA, "%s: channel %s holds integers, wanted half or float; make the morph again.",
-                         path, PLANES[k]);
-    if (!st && (im.width < 4 || im.height < 4 ||
-                (side && (im.width != m->pictures[0].width || im.height != m->pictures[0].height))))
-        st = err_set(err, ST_DATA, "%s has %d x %d pixels, but %s has %d x %d; make the morph again.", path, im.width,
-                     im.height, products[FILES[0]].file, m->pictures[0].width, m->pictures[0].height);
-    if (!st) st = image_init(&m->pictures[side], im.width, im.height, 3, err);
-    if (!st) st = flow_init(&m->flows[side], im.width, im.height, err);
+            err_set(err, ST_DATA, "%s: channel %s holds integers, wanted half or float; make the morph again.", path,
+                    PLANES[k]);
+    if (!err->status && (im.width < 4 || im.height < 4 ||
+                         (side && (im.width != m->pictures[0].width || im.height != m->pictures[0].height))))
+        err_set(err, ST_DATA, "%s has %d x %d pixels, but %s has %d x %d; make the morph again.", path, im.width,
+                im.height, products[FILES[0]].file, m->pictures[0].width, m->pictures[0].height);
+    if (!err->status && !image_init(&m->pictures[side], im.width, im.height, 3, err))
+        flow_init(&m->flows[side], im.width, im.height, err);
     const float longest = (float)(im.width > im.height ? im.width : im.height);
     const size_t n = (size_t)im.width * (size_t)im.height;
-    for (int k = 0; !st && k < 7; k++) {
+    for (int k = 0; !err->status && k < 7; k++) {
         size_t step;
         float *to = plane_of(m, side, k, &step);
         const float *from = exr_find(&im, PLANES[k])->f;
         for (size_t p = 0; p < n; p++) to[step * p] = from[p];
-        for (size_t p = 0; !st && (k == 3 || k == 4) && p < n; p++)
+        for (size_t p = 0; !err->status && (k == 3 || k == 4) && p < n; p++)
             if (fabsf(from[p]) > longest)
-                st = err_set(
+                err_set(
                     err, ST_DATA,
                     "%s: channel %s is %g at pixel (%zu, %zu), more than the picture's size (%d x %d); make the morph "
                     "again.",
                     path, PLANES[k], from[p], p % (size_t)im.width, p / (size_t)im.width, im.width, im.height);
     }
     const char *gain = exr_attribute(&im, "remodel:gain"), *radiometry = exr_attribute(&im, "remodel:radiometry");
-    if (!st && side == 0) {
+    if (!err->status && side == 0) {
         m->posed = im.has_world_to_camera;
         int count = gain ? sscanf(gain, "%lf %lf %lf", &m->gain[0], &m->gain[1], &m->gain[2]) : 0;
         bool valid = count == 3;
         for (int c = 0; valid && c < 3; c++) valid = m->gain[c] > 1e-6 && m->gain[c] < 1e6;
         if (!valid)
-            st = err_set(err, ST_DATA, "%s: the attribute remodel:gain is \"%s\", wanted three numbers above 0.", path,
-                         gain ? gain : "");
+            err_set(err, ST_DATA, "%s: the attribute remodel:gain is \"%s\", wanted three numbers above 0.", path,
+                    gain ? gain : "");
         snprintf(m->radiometry, sizeof m->radiometry, "%s", radiometry ? radiometry : "approximate");
     }
     exr_image_release(&im);
-    return st;
+    return err->status;
 }
 
 enum status morph_read(struct morph *m, const char *folder, struct provenance *prov, struct err *err)

@@ -32,16 +32,16 @@ static enum status write_frame(const struct morph_frames_job *job, const struct 
 {
     struct exr_image im = {0};
     char path[FILE_PATH];
-    enum status st = product_path_in(path, job->out, PRODUCT_FRAME, &(struct product_key){.frame = camera->name}, err);
-    if (!st) st = exr_init_rgba(&im, f->rgba, f->width, f->height, err);
+    if (!product_path_in(path, job->out, PRODUCT_FRAME, &(struct product_key){.frame = camera->name}, err))
+        exr_init_rgba(&im, f->rgba, f->width, f->height, err);
     if (job->posed) view_image_set_camera(&im, camera);
-    if (!st) st = exr_set_number(&im, "remodel:holes", f->hole_fraction, err);
-    if (!st) st = exr_set_number(&im, "remodel:unfilled", f->unfilled_fraction, err);
-    if (!st) st = exr_set_number(&im, "remodel:t", t, err);
-    if (!st) st = exr_set_attribute(&im, "remodel:radiometry", job->morph->radiometry, err);
-    if (!st) st = exr_write(&im, path, job->prov, err);
+    if (!err->status && !exr_set_number(&im, "remodel:holes", f->hole_fraction, err) &&
+        !exr_set_number(&im, "remodel:unfilled", f->unfilled_fraction, err) &&
+        !exr_set_number(&im, "remodel:t", t, err) &&
+        !exr_set_attribute(&im, "remodel:radiometry", job->morph->radiometry, err))
+        exr_write(&im, path, job->prov, err);
     exr_image_release(&im);
-    return st;
+    return err->status;
 }
 
 static void make_frames(void *ctx, size_t begin, size_t end, int thread)
@@ -67,37 +67,35 @@ enum status morph_frames(const char *folder, const char *list, const char *out, 
     struct morph_frames_job job = {.morph = &morph, .path = &path, .params = params, .prov = prov, .out = out};
     bool *wanted = NULL;
     int *frames = NULL, count = 0;
-    enum status st = camera_path_read(&path, folder, prov, err);
-    if (!st) {
+    if (!camera_path_read(&path, folder, prov, err)) {
         const size_t n = (size_t)path.frame_count;
         wanted = calloc(n, sizeof *wanted);
         frames = calloc(n, sizeof *frames);
         job.errors = calloc(n, sizeof *job.errors);
-        if (!wanted || !frames || !job.errors) st = err_nomem(err, "a list of frames", n * sizeof *job.errors);
+        if (!wanted || !frames || !job.errors) err_nomem(err, "a list of frames", n * sizeof *job.errors);
     }
-    if (!st) st = frame_list_read(wanted, path.frame_count, list, err);
-    if (!st) st = morph_read(&morph, folder, prov, err);
-    if (!st && (morph.pictures[0].width != path.frames[0].camera.width ||
-                morph.pictures[0].height != path.frames[0].camera.height))
-        st = err_set(err, ST_DATA,
-                     "%s/first.exr has %d x %d pixels, but the frames of path.txt have %d x %d; make the morph again.",
-                     folder, morph.pictures[0].width, morph.pictures[0].height, path.frames[0].camera.width,
-                     path.frames[0].camera.height);
+    if (!err->status && !frame_list_read(wanted, path.frame_count, list, err)) morph_read(&morph, folder, prov, err);
+    if (!err->status && (morph.pictures[0].width != path.frames[0].camera.width ||
+                         morph.pictures[0].height != path.frames[0].camera.height))
+        err_set(err, ST_DATA,
+                "%s/first.exr has %d x %d pixels, but the frames of path.txt have %d x %d; make the morph again.",
+                folder, morph.pictures[0].width, morph.pictures[0].height, path.frames[0].camera.width,
+                path.frames[0].camera.height);
     job.posed = morph.posed;
-    if (!st) {
+    if (!err->status) {
         for (int i = 0; i < path.frame_count; i++)
             if (wanted[i]) frames[count++] = i;
         job.frames = frames;
         progress_start(&job.progress, "morphing", count, "frames");
         parallel_for((size_t)count, 1, make_frames, &job);
         progress_end(&job.progress);
-        for (int i = 0; !st && i < count; i++)
-            if (job.errors[i].status) st = err_set(err, job.errors[i].status, "%s", job.errors[i].text);
+        for (int i = 0; !err->status && i < count; i++)
+            if (job.errors[i].status) err_set(err, job.errors[i].status, "%s", job.errors[i].text);
     }
     morph_release(&morph);
     camera_path_release(&path);
     free(job.errors);
     free(wanted);
     free(frames);
-    return st;
+    return err->status;
 }

@@ -55,25 +55,24 @@ static enum status read_pair(struct photo_pair *pair, struct morph *m, const str
                              const struct morph_params *params, struct provenance *prov, struct err *err)
 {
     int width = 0, height = 0;
-    enum status st = ST_OK;
-    for (int i = 0; !st && i < 2; i++) {
+    for (int i = 0; !err->status && i < 2; i++) {
         const char *id = i ? job->second : job->first;
         struct photo_record *record = &pair->records[i];
         struct image linear = {0};
-        st = photo_record_read(record, job->records, id, prov, err);
-        if (!st) st = linear_photo_read(&linear, NULL, m->radiometry, job->photos, record, NULL, prov, err);
+        if (!photo_record_read(record, job->records, id, prov, err))
+            linear_photo_read(&linear, NULL, m->radiometry, job->photos, record, NULL, prov, err);
         const int turned = record->info.orientation;
-        if (!st && !i) {
+        if (!err->status && !i) {
             int w, h;
             film_upright_size(&w, &h, linear.width, linear.height, turned);
-            st = film_size(&width, &height, w, h, params->max_side, err);
+            film_size(&width, &height, w, h, params->max_side, err);
         }
-        if (!st) st = film_picture_make(&pair->films[i], &linear, turned, width, height, err);
-        if (!st) m->pictures[i] = pair->films[i].rgb;
-        if (st == ST_DATA) err_context(err, "photo %s", id);
+        if (!err->status && !film_picture_make(&pair->films[i], &linear, turned, width, height, err))
+            m->pictures[i] = pair->films[i].rgb;
+        if (err->status == ST_DATA) err_context(err, "photo %s", id);
         image_release(&linear);
     }
-    if (st) return st;
+    if (err->status) return err->status;
     const struct photo_info *info = &pair->records[0].info;
     pair->focal = DEFAULT_FOCAL * (width > height ? width : height);
     if (info->focal35_mm > 0) pair->focal *= info->focal35_mm / 36 / DEFAULT_FOCAL;
@@ -124,10 +123,9 @@ static enum status read_cameras(struct pair_geometry *g, bool *known, const stru
     char path[FILE_PATH];
     *known = false;
     if (!job->views) return ST_OK;
-    enum status st = camera_set_read(&set, job->views, prov, err);
-    if (!st) st = product_path_in(path, job->views, PRODUCT_LENSES, NULL, err);
-    if (!st) st = lens_list_read(&lenses, path, prov, err);
-    bool all = !st;
+    if (!camera_set_read(&set, job->views, prov, err) && !product_path_in(path, job->views, PRODUCT_LENSES, NULL, err))
+        lens_list_read(&lenses, path, prov, err);
+    bool all = !err->status;
     for (int i = 0; all && i < 2; i++) {
         const struct lens *lens = NULL;
         const struct view *view = find_view(&lens, &set, &lenses, pair->records[i].id);
@@ -138,17 +136,17 @@ static enum status read_cameras(struct pair_geometry *g, bool *known, const stru
             break;
         }
         if (lens->camera.width != pair->films[i].stored_width || lens->camera.height != pair->films[i].stored_height)
-            st = err_set(err, ST_DATA,
-                         "photo %s has %d x %d pixels, but its camera has %d x %d: the photo was replaced after "
-                         "structure from motion. Redo that (make resfm), or restore the old photo.",
-                         pair->records[i].id, pair->films[i].stored_width, pair->films[i].stored_height,
-                         lens->camera.width, lens->camera.height);
+            err_set(err, ST_DATA,
+                    "photo %s has %d x %d pixels, but its camera has %d x %d: the photo was replaced after "
+                    "structure from motion. Redo that (make resfm), or restore the old photo.",
+                    pair->records[i].id, pair->films[i].stored_width, pair->films[i].stored_height, lens->camera.width,
+                    lens->camera.height);
         struct mat3 turn = mat3_transpose(mat3_from_quat(lens->view_from_photo));
         g->photos[i] = (struct posed_photo){.lens = lens->camera,
                                             .photo_from_world = mat3_multiply(turn, view->cam_from_world),
                                             .translation = mat3_apply(turn, view->translation)};
         g->films[i] = &pair->films[i];
-        all = !st;
+        all = !err->status;
     }
     if (all) {
         struct vec3 centers[2];
@@ -156,13 +154,13 @@ static enum status read_cameras(struct pair_geometry *g, bool *known, const stru
             centers[i] =
                 vec3_scale(mat3_apply(mat3_transpose(g->photos[i].photo_from_world), g->photos[i].translation), -1);
         double baseline = vec3_length(vec3_sub(centers[1], centers[0]));
-        for (int i = 0; !st && i < 2; i++) st = depth_range(&g->photos[i], &set.model, baseline, err);
+        for (int i = 0; !err->status && i < 2; i++) depth_range(&g->photos[i], &set.model, baseline, err);
         g->kind = EPIPOLAR_POSED;
         *known = true;
     }
     lens_list_release(&lenses);
     camera_set_release(&set);
-    return st;
+    return err->status;
 }
 
 static void geometry_from_features(struct pair_geometry *g, const struct two_view *found, const struct photo_pair *pair)
@@ -196,9 +194,9 @@ static enum status find_features(struct two_view *found, const struct image imag
             float v = 255 * luminance_of(rgb);
             grey[i * n + p] = (unsigned char)lrintf(fminf(fmaxf(v, 0), 255));
         }
-    enum status st = features_find(found, grey, grey + n, images[0].width, images[0].height, focal, TOLERANCE, err);
+    features_find(found, grey, grey + n, images[0].width, images[0].height, focal, TOLERANCE, err);
     free(grey);
-    return st;
+    return err->status;
 }
 
 /* ----------------------------------------------------------------------------------------------------------- path */
@@ -255,28 +253,27 @@ static enum status write_path(const struct morph *m, const struct view ends[2], 
     double length = 0;
     const size_t n = (size_t)m->flows[0].width * (size_t)m->flows[0].height;
     for (size_t p = 0; p < n; p++) length += hypot(m->flows[0].uv[2 * p], m->flows[0].uv[2 * p + 1]) / (double)n;
-    enum status st =
-        camera_path_init(&path, "morph", params->fps, (int)floor(params->seconds * params->fps + 0.5), err);
-    if (!st) st = camera_path_add_score(&path, "matched", matched, "", err);
-    if (!st) st = camera_path_add_score(&path, "way", length, "px", err);
-    for (int i = 0; !st && i < path.frame_count; i++) {
+    if (!camera_path_init(&path, "morph", params->fps, (int)floor(params->seconds * params->fps + 0.5), err) &&
+        !camera_path_add_score(&path, "matched", matched, "", err))
+        camera_path_add_score(&path, "way", length, "px", err);
+    for (int i = 0; !err->status && i < path.frame_count; i++) {
         struct view *v = &path.frames[i].camera;
         v->width = m->pictures[0].width;
         v->height = m->pictures[0].height;
         camera_between(v, ends, morph_time(i, path.frame_count, params));
     }
-    if (!st) st = camera_path_write(&path, out, prov, err);
-    if (!st) st = product_path_in(name, out, PRODUCT_FRAMES_MK, NULL, err);
-    if (!st) st = outfile_open(&f, name, err);
-    if (!st) {
+    if (!err->status && !camera_path_write(&path, out, prov, err) &&
+        !product_path_in(name, out, PRODUCT_FRAMES_MK, NULL, err))
+        outfile_open(&f, name, err);
+    if (!err->status) {
         fputs("MORPH_FRAMES :=", f.fp);
         for (int i = 0; i < path.frame_count; i++) fprintf(f.fp, " %s", path.frames[i].camera.name);
         fputc('\n', f.fp);
-        st = outfile_commit(&f, err);
+        outfile_commit(&f, err);
     }
     outfile_discard(&f);
     camera_path_release(&path);
-    return st;
+    return err->status;
 }
 
 /* ---------------------------------------------------------------------------------------------------------- whole */
@@ -301,26 +298,24 @@ enum status morph_prepare(const struct morph_job *job, const char *out, const st
     struct view ends[2] = {0};
     bool posed = false;
     double matched = 0;
-    enum status st = read_pair(&pair, &m, job, params, prov, err);
-    for (int i = 0; !st && i < 2; i++) st = match_image(&images[i], &m.pictures[i], err);
-    if (!st) st = find_features(&found, images, pair.focal, err);
-    if (!st) {
+    read_pair(&pair, &m, job, params, prov, err);
+    for (int i = 0; !err->status && i < 2; i++) match_image(&images[i], &m.pictures[i], err);
+    if (!err->status && !find_features(&found, images, pair.focal, err)) {
         geometry.width = images[0].width;
         geometry.height = images[0].height;
         geometry.focal = pair.focal;
-        st = read_cameras(&geometry, &posed, job, &pair, prov, err);
+        read_cameras(&geometry, &posed, job, &pair, prov, err);
     }
-    if (!st && !posed) geometry_from_features(&geometry, &found, &pair);
-    if (!st) st = match_pictures(m.flows, images, &geometry, found.matches, found.count, params, err);
-    if (!st) {
+    if (!err->status && !posed) geometry_from_features(&geometry, &found, &pair);
+    if (!err->status && !match_pictures(m.flows, images, &geometry, found.matches, found.count, params, err)) {
         matched = matched_fraction(&m);
         if (matched < params->min_matched)
-            st = err_set(err, ST_DATA,
-                         "only %.0f %% of the pixels of photos %s and %s match (wanted %.0f %%): they show different "
-                         "things, or their viewpoints are too far apart. Choose other photos, or lower min_matched.",
-                         100 * matched, pair.records[0].id, pair.records[1].id, 100 * params->min_matched);
+            err_set(err, ST_DATA,
+                    "only %.0f %% of the pixels of photos %s and %s match (wanted %.0f %%): they show different "
+                    "things, or their viewpoints are too far apart. Choose other photos, or lower min_matched.",
+                    100 * matched, pair.records[0].id, pair.records[1].id, 100 * params->min_matched);
     }
-    if (!st) {
+    if (!err->status) {
         morph_find_gain(&m);
         posed = posed && film_camera(&ends[0], &geometry.photos[0], &pair.films[0]) &&
                 film_camera(&ends[1], &geometry.photos[1], &pair.films[1]);
@@ -330,10 +325,10 @@ enum status morph_prepare(const struct morph_job *job, const char *out, const st
                                     .cx = geometry.width / 2.0,
                                     .cy = geometry.height / 2.0,
                                     .cam_from_world = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}};
-        st = morph_write(&m, posed ? ends : NULL, out, prov, err);
+        morph_write(&m, posed ? ends : NULL, out, prov, err);
     }
-    if (!st) st = write_path(&m, ends, matched, out, params, prov, err);
-    if (!st) log_note("%.0f %% of the pixels have consistent matches", 100 * matched);
+    if (!err->status && !write_path(&m, ends, matched, out, params, prov, err))
+        log_note("%.0f %% of the pixels have consistent matches", 100 * matched);
     m.pictures[0] = m.pictures[1] = (struct image){0}; /* owned by pair.films */
     for (int i = 0; i < 2; i++) {
         film_picture_release(&pair.films[i]);
@@ -342,5 +337,5 @@ enum status morph_prepare(const struct morph_job *job, const char *out, const st
     }
     features_release(&found);
     morph_release(&m);
-    return st;
+    return err->status;
 }

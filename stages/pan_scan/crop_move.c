@@ -172,23 +172,21 @@ static enum status fit_end(struct crop_move *m, int end, struct err *err)
 {
     struct crop_task task = {0};
     const int frame = end ? m->path->frame_count - 1 : 0;
-    enum status st = make_task(&task, m, frame, err);
-    if (!st && crop_fit(&m->ends[end], &task, err))
-        st = err_context(err, "frame %s of the path, seen from view %s", m->path->frames[frame].camera.name,
-                         m->view.name);
-    if (!st) st = crop_misfit(&m->misfits[end], &task, &m->ends[end].crop, err);
+    make_task(&task, m, frame, err);
+    if (!err->status && crop_fit(&m->ends[end], &task, err))
+        err_context(err, "frame %s of the path, seen from view %s", m->path->frames[frame].camera.name, m->view.name);
+    if (!err->status) crop_misfit(&m->misfits[end], &task, &m->ends[end].crop, err);
     free((void *)task.pairs);
-    return st;
+    return err->status;
 }
 
 enum status crop_move_misfit(double *misfit, const struct crop_move *m, int frame, struct err *err)
 {
     struct crop_task task = {0};
     const struct crop crop = crop_move_crop(m, frame);
-    enum status st = make_task(&task, m, frame, err);
-    if (!st) st = crop_misfit(misfit, &task, &crop, err);
+    if (!make_task(&task, m, frame, err)) crop_misfit(misfit, &task, &crop, err);
     free((void *)task.pairs);
-    return st;
+    return err->status;
 }
 
 /* ------------------------------------------------------------------------------------------------------------- time */
@@ -242,11 +240,14 @@ enum status crop_move_init(struct crop_move *m, const struct camera_set *set, in
     m->tolerance = tolerance * (first->width > first->height ? first->width : first->height);
     m->quarters = quarters_between(view, &path->frames[path->frame_count / 2].camera);
     for (int q = 0; q < m->quarters; q++) turn_view(&m->view);
-    enum status st = depth ? depth_points(m, view, depth, err) : sparse_points(m, set, view_idx, err);
-    if (!st) st = find_fractions(m, err);
-    for (int end = 0; !st && end < 2; end++) st = fit_end(m, end, err);
-    if (st) crop_move_release(m);
-    return st;
+    if (depth)
+        depth_points(m, view, depth, err);
+    else
+        sparse_points(m, set, view_idx, err);
+    if (!err->status) find_fractions(m, err);
+    for (int end = 0; !err->status && end < 2; end++) fit_end(m, end, err);
+    if (err->status) crop_move_release(m);
+    return err->status;
 }
 
 void crop_move_release(struct crop_move *m)

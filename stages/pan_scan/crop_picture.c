@@ -112,21 +112,21 @@ static void along_columns(void *ctx, size_t begin, size_t end, int thread)
 enum status crop_picture(struct image *out, const struct image *picture, const struct crop *crop, struct err *err)
 {
     struct crop_passes p = {.picture = picture, .out = out};
-    enum status st = taps_make(&p.across, out->width, crop->x, crop->width, err);
-    if (!st) st = taps_make(&p.down, out->height, crop->y, crop->height, err);
-    if (!st) {
+    if (!taps_make(&p.across, out->width, crop->x, crop->width, err))
+        taps_make(&p.down, out->height, crop->y, crop->height, err);
+    if (!err->status) {
         const int last = out->height - 1;
         p.top = clamp_int(p.down.first[0], 0, picture->height - 1);
         const int bottom = clamp_int(p.down.first[last] + p.down.count[last] - 1, 0, picture->height - 1);
         for (int i = 0; i <= last; i++) p.down.first[i] -= p.top; /* indices into the strip */
-        st = image_init(&p.strip, out->width, bottom - p.top + 1, picture->channels, err);
+        image_init(&p.strip, out->width, bottom - p.top + 1, picture->channels, err);
     }
-    if (!st) {
+    if (!err->status) {
         parallel_for((size_t)p.strip.height, CHUNK, along_rows, &p);
         parallel_for((size_t)out->height, CHUNK, along_columns, &p);
     }
     image_release(&p.strip);
     taps_release(&p.across);
     taps_release(&p.down);
-    return st;
+    return err->status;
 }

@@ -84,20 +84,19 @@ static enum status frame_write(const struct image *frame, const struct crop_move
     double misfit = 0;
     char crop[128];
 
-    enum status st = exr_init_rgba(&im, frame->data, frame->width, frame->height, err);
+    exr_init_rgba(&im, frame->data, frame->width, frame->height, err);
     for (size_t p = 0; p < pixels; p++) empty += frame->data[4 * p + 3] < 0.5f;
-    if (!st) st = crop_move_misfit(&misfit, m, i, err);
+    if (!err->status) crop_move_misfit(&misfit, m, i, err);
     const double holes = (double)empty / (double)pixels;
     snprintf(crop, sizeof crop, "%.9g %.9g %.9g %.9g", c.x, c.y, c.width, c.height);
     view_image_set_camera(&im, &m->view);
-    if (!st) st = exr_set_number(&im, "remodel:holes", holes, err);
-    if (!st) st = exr_set_number(&im, "remodel:unfilled", holes, err);
-    if (!st) st = exr_set_attribute(&im, "remodel:view", m->view.name, err);
-    if (!st) st = exr_set_attribute(&im, "remodel:crop", crop, err);
-    if (!st) st = exr_set_number(&im, "remodel:misfit", misfit, err);
-    if (!st) st = exr_write(&im, file, prov, err);
+    if (!err->status && !exr_set_number(&im, "remodel:holes", holes, err) &&
+        !exr_set_number(&im, "remodel:unfilled", holes, err) &&
+        !exr_set_attribute(&im, "remodel:view", m->view.name, err) &&
+        !exr_set_attribute(&im, "remodel:crop", crop, err) && !exr_set_number(&im, "remodel:misfit", misfit, err))
+        exr_write(&im, file, prov, err);
     exr_image_release(&im);
-    return st;
+    return err->status;
 }
 
 static enum status make_frames(const struct crop_move *m, const bool *wanted, const struct image *picture,
@@ -108,21 +107,21 @@ static enum status make_frames(const struct crop_move *m, const bool *wanted, co
     struct progress progress;
     char file[FILE_PATH];
     int count = 0;
-    enum status st = image_init(&frame, camera->width, camera->height, 4, err);
+    image_init(&frame, camera->width, camera->height, 4, err);
     for (int i = 0; i < m->path->frame_count; i++) count += wanted[i];
     progress_start(&progress, "cropping", count, "frames");
-    for (int i = 0; !st && i < m->path->frame_count; i++) {
+    for (int i = 0; !err->status && i < m->path->frame_count; i++) {
         if (!wanted[i]) continue;
         const struct crop crop = crop_move_crop(m, i);
-        st = product_path_in(file, folder, PRODUCT_PAN_SCAN_FRAME,
-                             &(struct product_key){.frame = m->path->frames[i].camera.name}, err);
-        if (!st) st = crop_picture(&frame, picture, &crop, err);
-        if (!st) st = frame_write(&frame, m, i, file, prov, err);
+        if (!product_path_in(file, folder, PRODUCT_PAN_SCAN_FRAME,
+                             &(struct product_key){.frame = m->path->frames[i].camera.name}, err) &&
+            !crop_picture(&frame, picture, &crop, err))
+            frame_write(&frame, m, i, file, prov, err);
         progress_add(&progress, 1);
     }
     progress_end(&progress);
     image_release(&frame);
-    return st;
+    return err->status;
 }
 
 static enum status pan_scan(const struct job *job, struct provenance *prov, struct err *err)
@@ -134,28 +133,31 @@ static enum status pan_scan(const struct job *job, struct provenance *prov, stru
     struct image picture = {0};
     bool *wanted = NULL;
     int view_idx = 0;
-    enum status st = camera_set_read(&set, job->views, prov, err);
+    camera_set_read(&set, job->views, prov, err);
 
-    if (!st) st = camera_path_read(&path, job->path, prov, err);
-    if (!st) {
+    if (!err->status) camera_path_read(&path, job->path, prov, err);
+    if (!err->status) {
         wanted = calloc((size_t)path.frame_count, sizeof *wanted);
-        st = wanted ? frame_list_read(wanted, path.frame_count, job->frames, err)
-                    : err_nomem(err, "the frames of a path", (size_t)path.frame_count);
+        if (wanted)
+            frame_list_read(wanted, path.frame_count, job->frames, err);
+        else
+            err_nomem(err, "the frames of a path", (size_t)path.frame_count);
     }
-    if (!st) st = find_view(&view_idx, job, &set, &path, err);
-    if (!st && job->depth) st = read_depth(&depth, job, set.views[view_idx].name, prov, err);
-    if (!st) st = crop_move_init(&move, &set, view_idx, job->depth ? &depth : NULL, &path, job->params.tolerance, err);
-    if (!st) st = view_image_read(&picture, job->views, &set.views[view_idx], prov, err);
-    if (!st) st = crop_move_turn(&picture, &move, err);
-    if (!st) log_summary(&move, wanted);
-    if (!st) st = make_frames(&move, wanted, &picture, job->out, prov, err);
+    if (!err->status) find_view(&view_idx, job, &set, &path, err);
+    if (!err->status && job->depth) read_depth(&depth, job, set.views[view_idx].name, prov, err);
+    if (!err->status &&
+        !crop_move_init(&move, &set, view_idx, job->depth ? &depth : NULL, &path, job->params.tolerance, err) &&
+        !view_image_read(&picture, job->views, &set.views[view_idx], prov, err) &&
+        !crop_move_turn(&picture, &move, err))
+        log_summary(&move, wanted);
+    if (!err->status) make_frames(&move, wanted, &picture, job->out, prov, err);
     free(wanted);
     image_release(&picture);
     crop_move_release(&move);
     layered_depth_release(&depth);
     camera_path_release(&path);
     camera_set_release(&set);
-    return st;
+    return err->status;
 }
 
 int main(int argc, char **argv)

@@ -143,13 +143,13 @@ static enum status score_pairs(struct ends_search *s, struct end_pair *pairs, si
     const int second = ends_share_cameras(v, b.at) ? 0 : starts; /* first picture of the end's cells */
     for (size_t i = 0; i < count; i++)
         for (int k = 0; k < 2; k++) b.wanted[pairs[i].cell[k] + k * second] = true;
-    const enum status st = ends_batch_render(&b, err);
-    if (!st) {
+    ends_batch_render(&b, err);
+    if (!err->status) {
         struct pair_scoring scoring = {{b.pictures, b.pictures + second}, pairs, parallax_tolerance(s->scene)};
         parallel_for(count, 16, score_some, &scoring);
     }
     ends_batch_release(&b);
-    return st;
+    return err->status;
 }
 
 /* Lists pairs by falling parallax: all of them, or without refinement the longest alone. discrete gets the thesis's
@@ -158,11 +158,11 @@ static enum status rank_pairs(struct ends_search *s, struct end_pair **pairs, in
                               struct err *err)
 {
     size_t n = 0;
-    enum status st = list_pairs(s, pairs, &n, err);
+    list_pairs(s, pairs, &n, err);
     const size_t longest = n < (size_t)s->params->pairs ? n : (size_t)s->params->pairs;
-    if (!st && strcmp(s->params->refine, "yes")) n = longest;
-    if (!st) st = score_pairs(s, *pairs, n, err);
-    if (st) return st;
+    if (!err->status && strcmp(s->params->refine, "yes")) n = longest;
+    if (!err->status) score_pairs(s, *pairs, n, err);
+    if (err->status) return err->status;
     *discrete = (*pairs)[0];
     for (size_t i = 1; i < longest; i++)
         if ((*pairs)[i].parallax > discrete->parallax) *discrete = (*pairs)[i];
@@ -219,20 +219,19 @@ static enum status choose_on_grid(struct ends_search *s, struct move_ends *best,
     struct move_ends *discrete = &s->notes->discrete;
     struct end_pair *pairs = NULL, longest;
     int count = 0;
-    enum status st = rank_pairs(s, &pairs, &count, &longest, err);
-    if (!st) {
+    rank_pairs(s, &pairs, &count, &longest, err);
+    if (!err->status) {
         discrete->parallax = longest.parallax;
         for (int k = 0; k < 2; k++) discrete->at[k] = ends_candidate(s->v, k, longest.cell[k]);
-        st = ends_measure_path(s, discrete, err);
+        ends_measure_path(s, discrete, err);
     }
-    if (!st) st = choose_valid_pair(s, pairs, count, best, err);
-    if (!st && s->notes->chosen < 0) {
+    if (!err->status) choose_valid_pair(s, pairs, count, best, err);
+    if (!err->status && s->notes->chosen < 0) {
         *best = *discrete;
-        st = draw_in(s, best, err);
-        if (!st) st = ends_measure_parallax(s, best, err);
+        if (!draw_in(s, best, err)) ends_measure_parallax(s, best, err);
     }
     free(pairs);
-    return st;
+    return err->status;
 }
 
 enum status ends_measure(struct move_ends *e, const struct layer_scene *scene, const struct validity *v,
@@ -240,11 +239,10 @@ enum status ends_measure(struct move_ends *e, const struct layer_scene *scene, c
 {
     struct ends_notes notes = {0};
     struct ends_search s;
-    enum status st = ends_search_init(&s, scene, v, params, &notes, err);
-    if (!st) st = ends_measure_path(&s, e, err);
-    if (!st) st = ends_measure_parallax(&s, e, err);
+    if (!ends_search_init(&s, scene, v, params, &notes, err) && !ends_measure_path(&s, e, err))
+        ends_measure_parallax(&s, e, err);
     ends_search_release(&s);
-    return st;
+    return err->status;
 }
 
 enum status ends_choose(struct move_ends *best, struct ends_notes *notes, const struct layer_scene *scene,
@@ -252,9 +250,8 @@ enum status ends_choose(struct move_ends *best, struct ends_notes *notes, const 
 {
     struct ends_search s;
     *notes = (struct ends_notes){.chosen = -1};
-    enum status st = ends_search_init(&s, scene, v, params, notes, err);
-    if (!st) st = choose_on_grid(&s, best, err);
-    if (!st && !strcmp(params->refine, "yes") && !v->move.on_axis) st = ends_improve(&s, best, err);
+    if (!ends_search_init(&s, scene, v, params, notes, err)) choose_on_grid(&s, best, err);
+    if (!err->status && !strcmp(params->refine, "yes") && !v->move.on_axis) ends_improve(&s, best, err);
     ends_search_release(&s);
-    return st;
+    return err->status;
 }

@@ -72,13 +72,13 @@ static enum status score_steps(struct move_ends step[STEPS], struct ends_search 
         b.at[i] = i < STEPS ? step[i].at[b.end[i]] : from->at[b.end[i]];
         b.wanted[i] = i >= STEPS || ends_are_allowed(s, step[i].at);
     }
-    const enum status st = ends_batch_render(&b, err);
-    for (int i = 0; !st && i < STEPS; i++)
+    ends_batch_render(&b, err);
+    for (int i = 0; !err->status && i < STEPS; i++)
         if (b.wanted[i])
             step[i].parallax = parallax_between(&b.pictures[b.end[i] ? STEPS : i],
                                                 &b.pictures[b.end[i] ? i : STEPS + 1], parallax_tolerance(s->scene));
     ends_batch_release(&b);
-    return st;
+    return err->status;
 }
 
 static int max_parallax(const struct move_ends step[STEPS])
@@ -115,15 +115,13 @@ static enum status climb(struct ascent *a, struct ends_search *s, struct err *er
 enum status ends_improve(struct ends_search *s, struct move_ends *best, struct err *err)
 {
     struct ascent a = {.up = {*best}};
-    enum status st = refine(&a, s, err);
-    if (!st) st = climb(&a, s, err);
-    for (; !st && a.height > 0; a.height--) {
+    if (!refine(&a, s, err)) climb(&a, s, err);
+    for (; !err->status && a.height > 0; a.height--) {
         struct move_ends *e = &a.up[a.height];
-        st = ends_measure_path(s, e, err);
-        if (st || !e->valid) continue;
+        if (ends_measure_path(s, e, err) || !e->valid) continue;
         *best = *e;
         s->notes->refined = true;
         break;
     }
-    return st;
+    return err->status;
 }

@@ -77,14 +77,13 @@ enum status ends_batch_render(struct picture_batch *b, struct err *err)
 enum status ends_measure_parallax(struct ends_search *s, struct move_ends *e, struct err *err)
 {
     struct depth_picture pictures[2] = {{.z = NULL}};
-    enum status st = ST_OK;
-    for (int i = 0; !st && i < 2; i++) {
-        st = render_end(&pictures[i], s, i, e->at[i], err);
+    for (int i = 0; !err->status && i < 2; i++) {
+        render_end(&pictures[i], s, i, e->at[i], err);
         s->notes->renders++;
     }
-    if (!st) e->parallax = parallax_between(&pictures[0], &pictures[1], parallax_tolerance(s->scene));
+    if (!err->status) e->parallax = parallax_between(&pictures[0], &pictures[1], parallax_tolerance(s->scene));
     for (int i = 0; i < 2; i++) parallax_picture_release(&pictures[i]);
-    return st;
+    return err->status;
 }
 
 double ends_angle(const struct shot_setup *shot, const struct vec3 at[2])
@@ -105,19 +104,19 @@ static enum status measure_path_samples(struct ends_search *s, struct move_ends 
 {
     struct view *cameras = calloc((size_t)count, sizeof *cameras);
     struct viewpoint *found = calloc((size_t)count, sizeof *found);
-    enum status st = cameras && found ? ST_OK : err_nomem(err, "cameras of a path", (size_t)count * sizeof *cameras);
+    if (!cameras || !found) err_nomem(err, "cameras of a path", (size_t)count * sizeof *cameras);
 
-    for (int i = 0; !st && i < count; i++)
+    for (int i = 0; !err->status && i < count; i++)
         cameras[i] = shot_camera(&s->v->shot, &s->v->move, e->at, path_fraction(i, count, ease));
-    if (!st) st = viewpoints_measure(found, cameras, count, &s->test, err);
-    for (int i = 0; !st && i < count; i++) {
+    if (!err->status) viewpoints_measure(found, cameras, count, &s->test, err);
+    for (int i = 0; !err->status && i < count; i++) {
         e->valid &= found[i].valid;
         e->worst_outside = fmax(e->worst_outside, found[i].outside);
         if (found[i].h > e->worst_h) e->worst_h = found[i].h, e->worst_at = path_fraction(i, count, ease);
     }
     free(cameras);
     free(found);
-    return st;
+    return err->status;
 }
 
 enum status ends_measure_path(struct ends_search *s, struct move_ends *e, struct err *err)
@@ -129,9 +128,9 @@ enum status ends_measure_path(struct ends_search *s, struct move_ends *e, struct
     e->valid = true;
     e->worst_h = -1;
     e->worst_outside = 0;
-    enum status st = measure_path_samples(s, e, PATH_SAMPLES, "none", err);
-    if (!st && e->valid) st = measure_path_samples(s, e, frames, s->params->ease, err);
-    return st;
+    measure_path_samples(s, e, PATH_SAMPLES, "none", err);
+    if (!err->status && e->valid) measure_path_samples(s, e, frames, s->params->ease, err);
+    return err->status;
 }
 
 enum status ends_test_path(bool *valid, struct ends_search *s, const struct vec3 at[2], struct err *err)

@@ -216,15 +216,15 @@ static enum status place_shot(struct film_sources *sources, int index, const cha
         frames = round(s->duration * film->fps) + 1;
     }
     const double first = index ? sources->frame_count - 1 + gap : 0;
-    enum status st = first + frames > MAX_FRAMES ? too_long(file, from->line, err) : ST_OK;
-    if (!st) {
+    if (first + frames > MAX_FRAMES) too_long(file, from->line, err);
+    if (!err->status) {
         s->first = (int)first;
         s->frames = (int)frames;
         sources->frame_count = s->first + s->frames;
-        st = fit_shot(s, keys, count, film, film->rest && !from->effect, err);
+        fit_shot(s, keys, count, film, film->rest && !from->effect, err);
     }
     free(made);
-    return st;
+    return err->status;
 }
 
 static void fill_frames(struct camera_path *path, const struct film_sources *sources, const struct film_settings *film)
@@ -328,17 +328,15 @@ static enum status add_move_layer(struct effects *to, const struct effect_layer 
     made.name = strdup(name);
     made.keys = calloc(keys, sizeof *made.keys);
     made.boxes = calloc(boxes, sizeof *made.boxes);
-    enum status st = made.name && made.keys && made.boxes
-                         ? ST_OK
-                         : err_nomem(err, "a layer", keys * sizeof *made.keys + boxes * sizeof *made.boxes);
-    if (!st) st = array_append(&to->layers, (size_t)to->layer_count, sizeof *to->layers, "effect layers", err);
-    if (!st) {
+    if (!made.name || !made.keys || !made.boxes)
+        err_nomem(err, "a layer", keys * sizeof *made.keys + boxes * sizeof *made.boxes);
+    if (!err->status && !array_append(&to->layers, (size_t)to->layer_count, sizeof *to->layers, "effect layers", err)) {
         retime_layer(&made, layer, sources, index, fps);
         to->layers[to->layer_count++] = made;
         return ST_OK;
     }
     effect_layer_release(&made);
-    return st;
+    return err->status;
 }
 
 static enum status collect_layers(struct effects *layers, struct film_sources *sources, const char *file, double fps,
@@ -408,16 +406,16 @@ enum status keyframed_path(struct camera_path *path, struct effects *layers, con
                            const struct film_settings *film, struct provenance *prov, struct err *err)
 {
     struct film_sources sources = {0};
-    enum status st = place_shots(&sources, file, film, prov, err);
-    if (!st) st = camera_path_init(path, film->name, film->fps, sources.frame_count, err);
-    if (!st) {
+    if (!place_shots(&sources, file, film, prov, err))
+        camera_path_init(path, film->name, film->fps, sources.frame_count, err);
+    if (!err->status) {
         fill_frames(path, &sources, film);
-        st = add_scores(path, &sources, film->fps, err);
+        add_scores(path, &sources, film->fps, err);
     }
-    if (!st) st = collect_layers(layers, &sources, file, film->fps, err);
+    if (!err->status) collect_layers(layers, &sources, file, film->fps, err);
     sources_release(&sources);
-    if (!st) return ST_OK;
+    if (!err->status) return ST_OK;
     camera_path_release(path);
     effects_release(layers);
-    return st;
+    return err->status;
 }

@@ -409,8 +409,8 @@ enum status keyframes_read(struct film_script *script, const char *file, const s
     char name[FILE_PATH];
     if (file_path(name, "keyframes", slash ? slash + 1 : file, "", err) || provenance_open(prov, name, &r.t, file, err))
         return err->status;
-    const enum status st = read_lines(&r, err);
+    read_lines(&r, err);
     textfile_release(&r.t);
-    if (st) keyframes_release(script);
-    return st;
+    if (err->status) keyframes_release(script);
+    return err->status;
 }

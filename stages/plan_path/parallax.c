@@ -51,10 +51,9 @@ enum status parallax_picture_make(struct depth_picture *d, const struct layer_sc
     if (side < longer)
         view_resize(&d->camera, (int)fmax(1, round((double)camera->width * side / longer)),
                     (int)fmax(1, round((double)camera->height * side / longer)));
-    enum status st = layer_render(&frame, scene, &d->camera, &options, err);
-    if (!st) st = parallax_picture_init(d, frame.z, err);
+    if (!layer_render(&frame, scene, &d->camera, &options, err)) parallax_picture_init(d, frame.z, err);
     rendered_frame_release(&frame);
-    return st;
+    return err->status;
 }
 
 void parallax_picture_release(struct depth_picture *d)

@@ -171,13 +171,16 @@ static enum status write_file(const struct camera_path *p, const char *folder, e
 {
     char path[FILE_PATH];
     struct outfile f = {0};
-    enum status st = product_path_in(path, folder, id, NULL, err);
-    if (!st) st = outfile_open(&f, path, err);
-    if (!st && !put(f.fp, p, prov))
-        st = ferror(f.fp) ? err_errno(err, "write", path) : err_nomem(err, "a path in JSON", 0);
-    if (!st) st = outfile_commit(&f, err);
+    if (!product_path_in(path, folder, id, NULL, err)) outfile_open(&f, path, err);
+    if (!err->status && !put(f.fp, p, prov)) {
+        if (ferror(f.fp))
+            err_errno(err, "write", path);
+        else
+            err_nomem(err, "a path in JSON", 0);
+    }
+    if (!err->status) outfile_commit(&f, err);
     outfile_discard(&f);
-    return st;
+    return err->status;
 }
 
 /* Rejects what JSON cannot express. */
@@ -195,9 +198,9 @@ static enum status check_path(const struct camera_path *p, struct err *err)
                            p->effect);
     }
     json_t *name = json_string(p->effect);
-    enum status st = name ? ST_OK : err_set(err, ST_DATA, "the effect's name \"%s\" is not UTF-8.", p->effect);
+    if (!name) err_set(err, ST_DATA, "the effect's name \"%s\" is not UTF-8.", p->effect);
     json_decref(name);
-    return st;
+    return err->status;
 }
 
 enum status path_export_write(const struct camera_path *p, const char *folder, const struct provenance *prov,

@@ -169,36 +169,34 @@ enum status plan_move(struct camera_path *path, struct effects *layers, struct m
 
     *notes = (struct move_notes){.aperture = 0};
     film_effect_name(&v->effect, name);
-    enum status st = plan_params_check(params, err);
+    plan_params_check(params, err);
     const struct scene_subjects available = film_scene_subjects(subjects);
-    if (!st) st = film_effect_check(&v->effect, &available, err);
-    if (!st) st = ends_choose(&notes->ends, &notes->chosen, scene, v, params, err);
-    if (!st && !isfinite(notes->ends.worst_h))
-        st = err_set(err, ST_DATA,
-                     "%s: some frames show nothing of the scene, even close to the origin; see the depth maps.", name);
-    if (!st) {
+    if (!err->status && !film_effect_check(&v->effect, &available, err))
+        ends_choose(&notes->ends, &notes->chosen, scene, v, params, err);
+    if (!err->status && !isfinite(notes->ends.worst_h))
+        err_set(err, ST_DATA,
+                "%s: some frames show nothing of the scene, even close to the origin; see the depth maps.", name);
+    if (!err->status) {
         orient_establishing_dolly(&notes->ends, v);
         notes->is_static = !(notes->ends.length > MIN_LENGTH * v->shot.median_depth);
-        st = camera_path_init(path, name, params->fps, (int)round(params->seconds * params->fps), err);
+        camera_path_init(path, name, params->fps, (int)round(params->seconds * params->fps), err);
     }
-    if (!st && !(fractions = malloc((size_t)path->frame_count * sizeof *fractions)))
-        st = err_nomem(err, "frames", (size_t)path->frame_count * sizeof *fractions);
-    if (!st) fill_frames(path, fractions, v, &notes->ends, params->ease);
-    if (!st && v->effect.focus) {
-        st = scene_points_collect(&points, scene, err);
-        if (!st) st = open_aperture(path, fractions, notes, &test, v, subjects, params, err);
-    }
-    if (!st) st = effects_tone_layers(layers, v, subjects, path, params, err);
-    if (!st) {
+    if (!err->status && !(fractions = malloc((size_t)path->frame_count * sizeof *fractions)))
+        err_nomem(err, "frames", (size_t)path->frame_count * sizeof *fractions);
+    if (!err->status) fill_frames(path, fractions, v, &notes->ends, params->ease);
+    if (!err->status && v->effect.focus && !scene_points_collect(&points, scene, err))
+        open_aperture(path, fractions, notes, &test, v, subjects, params, err);
+    if (!err->status) effects_tone_layers(layers, v, subjects, path, params, err);
+    if (!err->status) {
         check_subjects(notes, path, v, subjects);
-        st = add_scores(path, notes, v, err);
+        add_scores(path, notes, v, err);
     }
     free(fractions);
     scene_points_release(&points);
     viewpoint_test_release(&test);
-    if (st) {
+    if (err->status) {
         camera_path_release(path);
         effects_release(layers);
     }
-    return st;
+    return err->status;
 }

@@ -37,16 +37,15 @@ static enum status write_frames(const struct camera_path *path, const char *out,
 {
     struct outfile f = {0};
     char name[FILE_PATH];
-    enum status st =
-        product_path_in(name, out, PRODUCT_FRAMES_MK, NULL, err) || outfile_open(&f, name, err) ? err->status : ST_OK;
-    if (!st) {
+    if (!product_path_in(name, out, PRODUCT_FRAMES_MK, NULL, err)) outfile_open(&f, name, err);
+    if (!err->status) {
         fputs("FRAMES :=", f.fp);
         for (int i = 0; i < path->frame_count; i++) fprintf(f.fp, " %s", path->frames[i].camera.name);
         fputc('\n', f.fp);
-        st = outfile_commit(&f, err);
+        outfile_commit(&f, err);
     }
     outfile_discard(&f);
-    return st;
+    return err->status;
 }
 
 /* Writes the path and the effect layers, which may be none, for render_views and for other programs. */
@@ -54,12 +53,11 @@ static enum status write_film(const struct camera_path *path, const struct effec
                               const struct provenance *prov, struct err *err)
 {
     char name[FILE_PATH];
-    enum status st = product_path_in(name, out, PRODUCT_EFFECTS, NULL, err);
-    if (!st) st = effects_write(layers, name, prov, err);
-    if (!st) st = camera_path_write(path, out, prov, err);
-    if (!st) st = path_export_write(path, out, prov, err);
-    if (!st) st = write_frames(path, out, err);
-    return st;
+    return product_path_in(name, out, PRODUCT_EFFECTS, NULL, err) || effects_write(layers, name, prov, err) ||
+                   camera_path_write(path, out, prov, err) || path_export_write(path, out, prov, err) ||
+                   write_frames(path, out, err)
+               ? err->status
+               : ST_OK;
 }
 
 static void log_summary(const struct camera_path *path, const struct move_notes *n, const struct validity *v)
@@ -88,8 +86,7 @@ static void log_summary(const struct camera_path *path, const struct move_notes 
 static enum status read_views(struct camera_set *set, struct vec3 **ups, const char *views, const char *records,
                               struct provenance *prov, struct err *err)
 {
-    enum status st = camera_set_read(set, views, prov, err);
-    if (st || !records) return st;
+    if (camera_set_read(set, views, prov, err) || !records) return err->status;
     *ups = calloc((size_t)set->view_count + 1, sizeof **ups);
     return *ups ? upright_read(*ups, set, views, records, prov, err)
                 : err_nomem(err, "upright directions", (size_t)set->view_count * sizeof **ups);
@@ -108,21 +105,21 @@ static enum status make_film(const struct job *job, struct provenance *prov, str
     struct vec3 *ups = NULL;
     int *order = NULL;
     struct film_settings film = {.name = job->effect, .fps = job->params.fps, .moves = job->moves};
-    enum status st = read_views(&set, &ups, job->views, job->records, prov, err);
-    if (!st && !set.view_count) st = err_set(err, ST_DATA, "%s has no views: there is no scene to film.", job->views);
-    if (!st && !(order = malloc((size_t)set.view_count * sizeof *order)))
-        st = err_nomem(err, "views", (size_t)set.view_count * sizeof *order);
-    if (!st) st = central_views(order, &set, err);
-    if (!st) {
+    read_views(&set, &ups, job->views, job->records, prov, err);
+    if (!err->status && !set.view_count)
+        err_set(err, ST_DATA, "%s has no views: there is no scene to film.", job->views);
+    if (!err->status && !(order = malloc((size_t)set.view_count * sizeof *order)))
+        err_nomem(err, "views", (size_t)set.view_count * sizeof *order);
+    if (!err->status && !central_views(order, &set, err)) {
         film.set = &set;
         film.ups = ups;
         film.rest = !strcmp(job->params.ease, "smooth");
         const struct film_size size = {job->params.width, job->params.height, job->params.max_side};
         film_lens(&film.lens, &film.up, &set, order[0], ups, &size);
-        st = keyframed_path(&path, &layers, job->keyframes, &film, prov, err);
+        keyframed_path(&path, &layers, job->keyframes, &film, prov, err);
     }
-    if (!st) st = write_film(&path, &layers, job->out, prov, err);
-    if (!st)
+    if (!err->status) write_film(&path, &layers, job->out, prov, err);
+    if (!err->status)
         log_note("%d frames of %d x %d in %d shots, %d effect layers", path.frame_count, film.lens.width,
                  film.lens.height, path.score_count, layers.layer_count);
     camera_path_release(&path);
@@ -130,7 +127,7 @@ static enum status make_film(const struct job *job, struct provenance *prov, str
     camera_set_release(&set);
     free(order);
     free(ups);
-    return st;
+    return err->status;
 }
 
 static enum status make_move(const struct job *job, struct provenance *prov, struct err *err)
@@ -143,26 +140,25 @@ static enum status make_move(const struct job *job, struct provenance *prov, str
     struct effects layers = {0};
     struct move_notes notes = {0};
     struct film_effect effect;
-    enum status st = film_effect_parse(&effect, job->effect, err);
-    if (!st) st = read_views(&set, NULL, job->views, NULL, prov, err);
-    if (!st) st = film_views_keep(&set, job->film_views, prov, err);
-    if (!st) st = validity_read(&v, job->validity, prov, err);
-    if (!st && v.effect.move != effect.move)
-        st = err_set(err, ST_USAGE, "--effect %s: %s is of another move; run sample_validity for this one.",
-                     job->effect, job->validity);
+    if (!film_effect_parse(&effect, job->effect, err) && !read_views(&set, NULL, job->views, NULL, prov, err) &&
+        !film_views_keep(&set, job->film_views, prov, err))
+        validity_read(&v, job->validity, prov, err);
+    if (!err->status && v.effect.move != effect.move)
+        err_set(err, ST_USAGE, "--effect %s: %s is of another move; run sample_validity for this one.", job->effect,
+                job->validity);
     v.effect = effect;
-    if (!st && job->subjects) st = subject_list_read(&subjects, job->subjects, prov, err);
-    if (!st) st = layer_scene_read(&scene, &set, job->depth, prov, err);
-    if (!st) st = plan_move(&path, &layers, &notes, &scene, &v, &subjects, &job->params, err);
-    if (!st) st = write_film(&path, &layers, job->out, prov, err);
-    if (!st) log_summary(&path, &notes, &v);
+    if (!err->status && job->subjects) subject_list_read(&subjects, job->subjects, prov, err);
+    if (!err->status && !layer_scene_read(&scene, &set, job->depth, prov, err) &&
+        !plan_move(&path, &layers, &notes, &scene, &v, &subjects, &job->params, err) &&
+        !write_film(&path, &layers, job->out, prov, err))
+        log_summary(&path, &notes, &v);
     camera_path_release(&path);
     effects_release(&layers);
     subject_list_release(&subjects);
     validity_release(&v);
     layer_scene_release(&scene);
     camera_set_release(&set);
-    return st;
+    return err->status;
 }
 
 static enum status run(const struct job *job, struct provenance *prov, struct err *err)

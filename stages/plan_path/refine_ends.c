@@ -122,12 +122,12 @@ static enum status find_edges(struct surrogate *s, const struct layer_scene *sce
     const struct shot_setup *shot = &s->v->shot;
     const struct view camera = shot_aim(shot, shot->origin, shot->centroid, shot->lens.fx);
     struct depth_picture d;
-    enum status st = parallax_picture_make(&d, scene, &camera, EDGE_SIDE, err);
+    parallax_picture_make(&d, scene, &camera, EDGE_SIDE, err);
     const int w = d.camera.width, h = d.camera.height;
 
-    if (!st && !(s->edges = malloc(2 * (size_t)w * (size_t)h * sizeof *s->edges)))
-        st = err_nomem(err, "depth edges", 2 * (size_t)w * (size_t)h * sizeof *s->edges);
-    for (int y = 0; !st && y + 1 < h; y++)
+    if (!err->status && !(s->edges = malloc(2 * (size_t)w * (size_t)h * sizeof *s->edges)))
+        err_nomem(err, "depth edges", 2 * (size_t)w * (size_t)h * sizeof *s->edges);
+    for (int y = 0; !err->status && y + 1 < h; y++)
         for (int x = 0; x + 1 < w; x++)
             for (int down = 0; down < 2; down++) {
                 const int x1 = x + !down, y1 = y + down;
@@ -138,7 +138,7 @@ static enum status find_edges(struct surrogate *s, const struct layer_scene *sce
                 s->edges[s->edge_count++] = (struct depth_edge){z0 < z1 ? a : b, z0 < z1 ? b : a, !down};
             }
     parallax_picture_release(&d);
-    return st;
+    return err->status;
 }
 
 enum status refine_ends(struct vec3 at[2], const struct layer_scene *scene, const struct validity *v, double max_angle,
@@ -149,8 +149,7 @@ enum status refine_ends(struct vec3 at[2], const struct layer_scene *scene, cons
 
     for (int k = 0; k < 2; k++) s.unit[k] = 0.5 * (v->shot.high[k] - v->shot.low[k]);
     s.unit[2] = fmax(s.unit[0], s.unit[1]);
-    enum status st = find_edges(&s, scene, err);
-    if (!st) {
+    if (!find_edges(&s, scene, err)) {
         for (int k = 0; k < 2; k++) {
             const struct vec3 c = shot_from_world(&v->shot, at[k]);
             x[3 * k] = c.x / s.unit[0];
@@ -159,9 +158,9 @@ enum status refine_ends(struct vec3 at[2], const struct layer_scene *scene, cons
         }
         s.initial = edge_separation(&s, at);
         const struct least_squares problem = {UNKNOWNS, RESIDUALS, residuals, &s, ITERATIONS};
-        if (s.edge_count && s.initial > 0) st = ceres_least_squares(&problem, x, err);
+        if (s.edge_count && s.initial > 0) ceres_least_squares(&problem, x, err);
     }
-    if (!st) ends_of_unknowns(&s, x, at);
+    if (!err->status) ends_of_unknowns(&s, x, at);
     free(s.edges);
-    return st;
+    return err->status;
 }

@@ -34,7 +34,7 @@ static void read_chained(struct graph *g, struct name_list *moves, const char *k
     struct err unread = ERR_INIT; /* the stage reports it */
     char *word;
     if (textfile_open(&t, keyframes, &unread)) return;
-    while (textfile_next(&t))
+    while (!unread.status && textfile_next(&t))
         if (!textfile_word(&t, "a word", &word, &unread) && !strcmp(word, "move") &&
             !textfile_word(&t, "an effect", &word, &unread) &&
             !word[strspn(word, "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_+-")])

@@ -60,9 +60,10 @@ static enum status write_tour(const struct camera_path *path, const struct viewp
                               const struct provenance *prov, struct err *err)
 {
     char file[FILE_PATH];
-    enum status st = product_path_in(file, out, PRODUCT_TOUR_PAIRS, NULL, err);
-    if (!st) st = viewpoint_pairs_write(pairs, file, prov, err);
-    return st ? st : camera_path_write(path, out, prov, err);
+    return product_path_in(file, out, PRODUCT_TOUR_PAIRS, NULL, err) || viewpoint_pairs_write(pairs, file, prov, err) ||
+                   camera_path_write(path, out, prov, err)
+               ? err->status
+               : ST_OK;
 }
 
 static enum status plan_tour(struct job *j, struct provenance *prov, struct err *err)
@@ -74,15 +75,15 @@ static enum status plan_tour(struct job *j, struct provenance *prov, struct err 
     struct tour_stop *stops = NULL;
     int stop_count = 0, key_count = 0;
     char file[FILE_PATH];
-    enum status st = read_inputs(j, prov, err);
-    if (!st) st = tour_graph_make(&g, &j->in.set, &j->in.lenses, &j->in.axes, &j->rays, &j->params, err);
-    if (!st) st = tour_stops_find(&stops, &stop_count, &g, &j->in.plan, j->params.speed, j->script, prov, err);
-    if (!st) st = tour_keys_make(&keys, &key_count, &g, stops, stop_count, &j->params, err);
-    if (!st) st = tour_frames_make(&path, &pairs, keys, key_count, &g, &j->in.axes, &j->rays, &j->params, err);
-    if (!st) st = product_path_in(file, j->out, PRODUCT_TOUR_PLAN, NULL, err);
-    if (!st) st = tour_picture_write(&path, &g, stops, stop_count, &j->in.plan, &j->in.axes, file, err);
-    if (!st) st = write_tour(&path, &pairs, j->out, prov, err);
-    if (!st)
+    if (!read_inputs(j, prov, err) &&
+        !tour_graph_make(&g, &j->in.set, &j->in.lenses, &j->in.axes, &j->rays, &j->params, err) &&
+        !tour_stops_find(&stops, &stop_count, &g, &j->in.plan, j->params.speed, j->script, prov, err) &&
+        !tour_keys_make(&keys, &key_count, &g, stops, stop_count, &j->params, err))
+        tour_frames_make(&path, &pairs, keys, key_count, &g, &j->in.axes, &j->rays, &j->params, err);
+    if (!err->status && !product_path_in(file, j->out, PRODUCT_TOUR_PLAN, NULL, err) &&
+        !tour_picture_write(&path, &g, stops, stop_count, &j->in.plan, &j->in.axes, file, err))
+        write_tour(&path, &pairs, j->out, prov, err);
+    if (!err->status)
         log_note("a tour of %d stop%s, %.1f s, %d frames", stop_count, stop_count == 1 ? "" : "s",
                  keys[key_count - 1].time, path.frame_count);
     free(stops);
@@ -90,7 +91,7 @@ static enum status plan_tour(struct job *j, struct provenance *prov, struct err 
     viewpoint_pairs_release(&pairs);
     camera_path_release(&path);
     tour_graph_release(&g);
-    return st;
+    return err->status;
 }
 
 int main(int argc, char **argv)

@@ -98,16 +98,16 @@ static enum status add_ease(const struct keys *k, const int *leg, int i, double 
 /* Adds the keys of a leg after its first node. *time: at its first node, then at its last. */
 static enum status add_leg(const struct keys *k, const int *leg, int count, double *time)
 {
-    enum status st = ST_OK;
-    for (int i = 0; !st && i + 1 < count; i++) {
+    for (int i = 0; !k->err->status && i + 1 < count; i++) {
         const struct way_times t = way_times(k, leg, count, i);
-        if (t.out > 0) st = add_ease(k, leg, i, *time, t.out, t.whole);
-        if (!st && t.in > 0 && t.whole - t.in > t.out + 1e-9) st = add_ease(k, leg, i, *time, t.whole - t.in, t.whole);
+        if (t.out > 0) add_ease(k, leg, i, *time, t.out, t.whole);
+        if (!k->err->status && t.in > 0 && t.whole - t.in > t.out + 1e-9)
+            add_ease(k, leg, i, *time, t.whole - t.in, t.whole);
         *time += t.whole;
-        if (!st)
-            st = add_axis(k, *time, k->g->nodes[leg[i + 1]].centre, node_axis(k->g, leg, count, i + 1), leg[i + 1]);
+        if (!k->err->status)
+            add_axis(k, *time, k->g->nodes[leg[i + 1]].centre, node_axis(k->g, leg, count, i + 1), leg[i + 1]);
     }
-    return st;
+    return k->err->status;
 }
 
 /* The nodes of the shortest way; the caller frees them. */
@@ -118,9 +118,9 @@ static enum status find_leg(int **leg, int *count, const struct tour_graph *g, i
     int *before = malloc((n + 1) * sizeof *before);
     *leg = malloc((n + 1) * sizeof **leg);
     *count = 0;
-    enum status st = costs && before && *leg ? ST_OK : err_nomem(err, "ways", n * sizeof *costs);
-    if (!st) st = tour_shortest(costs, before, g, from, err);
-    for (int at = st ? -1 : to; at >= 0; at = before[at]) (*leg)[(*count)++] = at;
+    if (!costs || !before || !*leg) err_nomem(err, "ways", n * sizeof *costs);
+    if (!err->status) tour_shortest(costs, before, g, from, err);
+    for (int at = err->status ? -1 : to; at >= 0; at = before[at]) (*leg)[(*count)++] = at;
     for (int i = 0; i < *count / 2; i++) {
         const int swap = (*leg)[i];
         (*leg)[i] = (*leg)[*count - 1 - i];
@@ -128,7 +128,7 @@ static enum status find_leg(int **leg, int *count, const struct tour_graph *g, i
     }
     free(costs);
     free(before);
-    return st;
+    return err->status;
 }
 
 enum status tour_keys_make(struct tour_key **keys, int *count, const struct tour_graph *g,
@@ -140,19 +140,19 @@ enum status tour_keys_make(struct tour_key **keys, int *count, const struct tour
     double time = params->hold;
     *keys = NULL;
     *count = 0;
-    enum status st = add_axis(&k, 0, first->centre, first->axis, stops[0].node);
-    if (!st) st = add_axis(&k, time, first->centre, first->axis, stops[0].node);
-    for (int i = 0; !st && i + 1 < stop_count; i++) {
+    if (!add_axis(&k, 0, first->centre, first->axis, stops[0].node))
+        add_axis(&k, time, first->centre, first->axis, stops[0].node);
+    for (int i = 0; !err->status && i + 1 < stop_count; i++) {
         int *leg = NULL, nodes = 0;
-        st = find_leg(&leg, &nodes, g, stops[i].node, stops[i + 1].node, err);
+        find_leg(&leg, &nodes, g, stops[i].node, stops[i + 1].node, err);
         k.speed = stops[i + 1].speed;
-        if (!st) st = add_leg(&k, leg, nodes, &time);
+        if (!err->status) add_leg(&k, leg, nodes, &time);
         free(leg);
         time += params->hold;
         const struct tour_node *stop = &g->nodes[stops[i + 1].node];
-        if (!st) st = add_axis(&k, time, stop->centre, stop->axis, stops[i + 1].node);
+        if (!err->status) add_axis(&k, time, stop->centre, stop->axis, stops[i + 1].node);
     }
-    return st;
+    return err->status;
 }
 
 /* ---------------------------------------------------------------------------------------------------------- frames */
@@ -213,8 +213,8 @@ enum status tour_frames_make(struct camera_path *path, struct viewpoint_pairs *p
 {
     const double end = keys[key_count - 1].time;
     const int frames = 1 + (int)floor(end * params->fps + 1e-9);
-    enum status st = camera_path_init(path, "tour", params->fps, frames, err);
-    for (int f = 0; !st && f < frames; f++) {
+    camera_path_init(path, "tour", params->fps, frames, err);
+    for (int f = 0; !err->status && f < frames; f++) {
         const double time = f / params->fps;
         const int i = interval_of(keys, key_count, time);
         const double whole = keys[i + 1].time - keys[i].time;
@@ -228,7 +228,7 @@ enum status tour_frames_make(struct camera_path *path, struct viewpoint_pairs *p
         move_to_scene(&camera, axes);
         camera.name = path->frames[f].camera.name;
         path->frames[f].camera = camera;
-        st = add_pair(pairs, camera.name, g, keys, key_count, i, time, at, err);
+        add_pair(pairs, camera.name, g, keys, key_count, i, time, at, err);
     }
-    return st;
+    return err->status;
 }

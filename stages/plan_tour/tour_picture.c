@@ -189,7 +189,7 @@ enum status tour_picture_write(const struct camera_path *path, const struct tour
     put_viewpoints(&s, g, stops, stop_count);
     fputs("</svg>\n", f.fp);
     uselocale(before);
-    const enum status st = outfile_commit(&f, err);
+    outfile_commit(&f, err);
     outfile_discard(&f);
-    return st;
+    return err->status;
 }

@@ -108,17 +108,16 @@ static enum status check_way(const struct textfile *t, const struct tour_graph *
     const size_t n = (size_t)g->count;
     double *costs = malloc((n + 1) * sizeof *costs);
     int *before = malloc((n + 1) * sizeof *before);
-    enum status st = costs && before ? ST_OK : err_nomem(err, "ways", n * sizeof *costs);
-    if (!st) st = tour_shortest(costs, before, g, from, err);
-    if (!st && !isfinite(costs[to]))
-        st =
-            textfile_error(t, err, g->nodes[to].photo,
-                           "a stop that a way leads to from the stop before, at %s: walls are between them, or the gap "
-                           "is narrower than twice [plan_tour] clearance",
-                           g->nodes[from].photo);
+    if (!costs || !before) err_nomem(err, "ways", n * sizeof *costs);
+    if (!err->status) tour_shortest(costs, before, g, from, err);
+    if (!err->status && !isfinite(costs[to]))
+        textfile_error(t, err, g->nodes[to].photo,
+                       "a stop that a way leads to from the stop before, at %s: walls are between them, or the gap "
+                       "is narrower than twice [plan_tour] clearance",
+                       g->nodes[from].photo);
     free(costs);
     free(before);
-    return st;
+    return err->status;
 }
 
 static enum status read_speed(double *speed, struct textfile *t, struct err *err)
@@ -135,9 +134,10 @@ static enum status read_statement(struct tour_stop **stops, int *count, double *
     if (!strcmp(kind, "speed")) return read_speed(speed, t, err);
     if (strcmp(kind, "room") && strcmp(kind, "photo"))
         return textfile_error(t, err, kind, "\"room NAME\", \"photo ID\" or \"speed M\"");
-    enum status st = read_stop(&node, kind, t, g, plan, err);
-    if (!st && *count) st = check_way(t, g, (*stops)[*count - 1].node, node, err);
-    return st ? st : add_stop(stops, count, node, *speed, err);
+    read_stop(&node, kind, t, g, plan, err);
+    if (!err->status && *count) check_way(t, g, (*stops)[*count - 1].node, node, err);
+    if (!err->status) add_stop(stops, count, node, *speed, err);
+    return err->status;
 }
 
 static enum status read_script(struct tour_stop **stops, int *count, const struct tour_graph *g,
@@ -147,13 +147,12 @@ static enum status read_script(struct tour_stop **stops, int *count, const struc
     struct textfile t = {0};
     int64_t version;
     if (provenance_open(prov, "tour.txt", &t, path, err)) return err->status;
-    enum status st = textfile_expect_line(&t, "remodel-tour", err);
-    if (!st) st = textfile_int(&t, "version", 1, 1, &version, err);
-    if (!st) st = textfile_end(&t, err);
-    while (!st && textfile_next(&t)) st = read_statement(stops, count, &speed, &t, g, plan, err);
-    if (!st && !*count) st = textfile_error(&t, err, NULL, "\"room NAME\" or \"photo ID\"");
+    if (!textfile_expect_line(&t, "remodel-tour", err) && !textfile_int(&t, "version", 1, 1, &version, err))
+        textfile_end(&t, err);
+    while (!err->status && textfile_next(&t)) read_statement(stops, count, &speed, &t, g, plan, err);
+    if (!err->status && !*count) textfile_error(&t, err, NULL, "\"room NAME\" or \"photo ID\"");
     textfile_release(&t);
-    return st;
+    return err->status;
 }
 
 /* ---------------------------------------------------------------------------------------------------------- rooms */
@@ -195,28 +194,28 @@ static enum status visit_rooms(struct tour_stop **stops, int *count, const struc
     bool *visited = calloc((size_t)plan->room_count + 1, sizeof *visited);
     double *costs = malloc((n + 1) * sizeof *costs);
     int *before = malloc((n + 1) * sizeof *before);
-    enum status st = visited && costs && before ? ST_OK : err_nomem(err, "rooms", n * sizeof *costs);
-    if (!st) st = add_stop(stops, count, best_start(g), speed, err);
-    for (int r = 0; !st && r < plan->room_count; r++)
+    if (!visited || !costs || !before) err_nomem(err, "rooms", n * sizeof *costs);
+    if (!err->status) add_stop(stops, count, best_start(g), speed, err);
+    for (int r = 0; !err->status && r < plan->room_count; r++)
         visited[r] = tour_room_holds(&plan->rooms[r], g->nodes[(*stops)[0].node].centre);
-    for (int room = 0; !st && room >= 0;) {
-        st = tour_shortest(costs, before, g, (*stops)[*count - 1].node, err);
-        room = st ? -1 : next_room(g, plan, visited, costs);
+    for (int room = 0; !err->status && room >= 0;) {
+        tour_shortest(costs, before, g, (*stops)[*count - 1].node, err);
+        room = err->status ? -1 : next_room(g, plan, visited, costs);
         if (room < 0) break;
         visited[room] = true;
-        st = add_stop(stops, count, room_stop(g, &plan->rooms[room]), speed, err);
+        add_stop(stops, count, room_stop(g, &plan->rooms[room]), speed, err);
     }
-    for (int r = 0; !st && r < plan->room_count; r++)
+    for (int r = 0; !err->status && r < plan->room_count; r++)
         if (!visited[r])
             log_warn("room %s is left out of the tour: %s", plan->rooms[r].name,
                      room_stop(g, &plan->rooms[r]) < 0 ? "no photograph was taken in it, away from its walls"
                                                        : "no way between viewpoints leads there");
     /* a flat of one room */
-    if (!st && *count == 1) st = add_stop(stops, count, farthest(g, costs), speed, err);
+    if (!err->status && *count == 1) add_stop(stops, count, farthest(g, costs), speed, err);
     free(visited);
     free(costs);
     free(before);
-    return st;
+    return err->status;
 }
 
 enum status tour_stops_find(struct tour_stop **stops, int *count, const struct tour_graph *g,

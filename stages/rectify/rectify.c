@@ -43,11 +43,11 @@ static enum status read_source(struct photo_source *s, const struct rectify_requ
     struct photo_record record = {0};
     const struct single_exposure assumed = {r->params.electrons, r->params.read_noise, r->params.saturated,
                                             r->params.dark};
-    enum status st = photo_record_read(&record, r->records, r->photo, NULL, err);
-    if (!st) st = linear_photo_read(&s->linear, &s->quality, s->radiometry, r->photos, &record, &assumed, prov, err);
-    if (!st) st = photo_mask_read(&s->mask, r->masks, r->records, &record, prov, err);
+    if (!photo_record_read(&record, r->records, r->photo, NULL, err) &&
+        !linear_photo_read(&s->linear, &s->quality, s->radiometry, r->photos, &record, &assumed, prov, err))
+        photo_mask_read(&s->mask, r->masks, r->records, &record, prov, err);
     photo_record_release(&record);
-    return st;
+    return err->status;
 }
 
 static enum status make_view(const struct photo_source *s, const struct rectify_request *r, const struct lens *lens,
@@ -58,15 +58,13 @@ static enum status make_view(const struct photo_source *s, const struct rectify_
     const struct resample_source source = {&s->linear, s->mask.masked, &s->quality};
     char path[FILE_PATH];
     const struct mat3 photo_from_view = mat3_transpose(mat3_from_quat(lens->view_from_photo));
-    enum status st = product_path_in(path, r->out, PRODUCT_VIEW, &(struct product_key){.view = view->name}, err);
-    if (!st) {
-        st = resample_photo(&rectified, &quality, &source, &lens->camera, &photo_from_view, view, err);
-        if (st) err_context(err, "photo %s", r->photo);
-    }
-    if (!st) st = view_image_write(&rectified, &quality, path, view, prov, s->radiometry, err);
+    product_path_in(path, r->out, PRODUCT_VIEW, &(struct product_key){.view = view->name}, err);
+    if (!err->status && resample_photo(&rectified, &quality, &source, &lens->camera, &photo_from_view, view, err))
+        err_context(err, "photo %s", r->photo);
+    if (!err->status) view_image_write(&rectified, &quality, path, view, prov, s->radiometry, err);
     image_release(&rectified);
     photo_quality_release(&quality);
-    return st;
+    return err->status;
 }
 
 static bool is_wanted(const struct rectify_request *r, const char *view)
@@ -98,27 +96,26 @@ static enum status rectify(const struct rectify_request *r, struct provenance *p
     struct lens_list lenses = {0};
     struct photo_source source = {0};
     char lens_path[FILE_PATH];
-    enum status st = product_path_in(lens_path, r->views, PRODUCT_LENSES, NULL, err);
-    if (!st) st = camera_set_read(&set, r->views, NULL, err);
-    if (!st) st = lens_list_read(&lenses, lens_path, NULL, err);
-    if (!st) st = check_request(r, &lenses, err);
-    if (!st) st = read_source(&source, r, prov, err);
-    for (int l = 0; !st && l < lenses.count; l++) {
+    if (!product_path_in(lens_path, r->views, PRODUCT_LENSES, NULL, err) &&
+        !camera_set_read(&set, r->views, NULL, err) && !lens_list_read(&lenses, lens_path, NULL, err) &&
+        !check_request(r, &lenses, err))
+        read_source(&source, r, prov, err);
+    for (int l = 0; !err->status && l < lenses.count; l++) {
         const struct lens *lens = &lenses.lenses[l];
         if (strcmp(lens->photo, r->photo) || !is_wanted(r, lens->view)) continue;
         int v = camera_set_find(&set, lens->view);
         if (v < 0)
-            st = err_set(err, ST_DATA, "view %s is in %s/lenses.txt but not in images.txt; run sfm_import again.",
-                         lens->view, r->views);
+            err_set(err, ST_DATA, "view %s is in %s/lenses.txt but not in images.txt; run sfm_import again.",
+                    lens->view, r->views);
         else
-            st = make_view(&source, r, lens, &set.views[v], prov, err);
+            make_view(&source, r, lens, &set.views[v], prov, err);
     }
     image_release(&source.linear);
     photo_quality_release(&source.quality);
     photo_mask_release(&source.mask);
     lens_list_release(&lenses);
     camera_set_release(&set);
-    return st;
+    return err->status;
 }
 
 int main(int argc, char **argv)

@@ -349,16 +349,16 @@ enum status resample_photo(struct image *out, struct photo_quality *out_quality,
     photo_map_init(&r.map, lens, photo_from_view, view);
     r.points_per_thread = 4 * r.map.row + 2 * r.map.knots;
     r.quality = (struct pixel_quality){.of = source->quality, .width = photo->width, .height = photo->height};
-    enum status st = image_init(out, view->width, view->height, 4, err);
-    if (!st && r.out_quality) st = photo_quality_init(r.out_quality, view->width, view->height, err);
-    if (!st && same_camera(&r.map))
+    image_init(out, view->width, view->height, 4, err);
+    if (!err->status && r.out_quality) photo_quality_init(r.out_quality, view->width, view->height, err);
+    if (!err->status && same_camera(&r.map))
         copy_photo(&r);
-    else if (!st)
-        st = filter_photo(&r, err);
-    if (st) {
+    else if (!err->status)
+        filter_photo(&r, err);
+    if (err->status) {
         image_release(out);
         photo_quality_release(r.out_quality);
     }
     pixel_quality_release(&r.quality);
-    return st;
+    return err->status;
 }

@@ -64,12 +64,11 @@ static enum status list_surfaces(struct surfaces *s, int *surface_of_face, const
 {
     const struct material_list *materials = &c->before.materials.list;
     const struct solid_mesh *mesh = &c->after.model.mesh;
-    enum status st = ST_OK;
-    for (int i = 0; !st && i < c->objects.list.count; i++)
-        st = add_surface(s, SURFACE_OBJECT, c->objects.list.items[i].name, &c->objects.list.items[i].brdf, err);
-    for (int i = 0; !st && i < materials->count; i++)
-        st = add_surface(s, SURFACE_MATERIAL, materials->items[i].name, &c->before.materials.brdfs[i], err);
-    for (int i = 0; !st && i < mesh->face_count; i++) {
+    for (int i = 0; !err->status && i < c->objects.list.count; i++)
+        add_surface(s, SURFACE_OBJECT, c->objects.list.items[i].name, &c->objects.list.items[i].brdf, err);
+    for (int i = 0; !err->status && i < materials->count; i++)
+        add_surface(s, SURFACE_MATERIAL, materials->items[i].name, &c->before.materials.brdfs[i], err);
+    for (int i = 0; !err->status && i < mesh->face_count; i++) {
         const struct texture_face *face = listed_face(c, i);
         const struct texture_rule *colour = face ? colour_of(face) : NULL;
         struct brdf b = {.kind = BRDF_LAMBERT};
@@ -78,10 +77,10 @@ static enum status list_surfaces(struct surfaces *s, int *surface_of_face, const
         if (colour)
             b.albedo = rgb_make((double)colour->albedo[0], (double)colour->albedo[1], (double)colour->albedo[2]);
         b.ks = face->has_gloss ? face->gloss.ks : 0;
-        st = add_surface(s, SURFACE_FACE, face->name, &b, err);
+        add_surface(s, SURFACE_FACE, face->name, &b, err);
         surface_of_face[i] = s->count - 1;
     }
-    return st;
+    return err->status;
 }
 
 /* Sets numbers[i] to 1 + the surface of each pixel, 0 where it has none. */
@@ -173,20 +172,21 @@ enum status integrals_write(const struct relit *r, const struct pixels *p, const
     struct exr_image im = {0};
     struct surfaces surfaces = {0};
     int *surface_of_face = calloc((size_t)c->after.model.mesh.face_count + 1, sizeof *surface_of_face);
-    enum status st = surface_of_face ? exr_image_init(&im, r->width, r->height, err)
-                                     : err_nomem(err, "faces", (size_t)c->after.model.mesh.face_count);
-    if (!st) st = add_light(&im, r, err);
-    if (!st) st = add_lamps(&im, lamps, n, err);
-    if (!st) st = list_surfaces(&surfaces, surface_of_face, c, err);
-    if (!st) st = add_surfaces(&im, &surfaces, err);
-    if (!st) st = exr_add_plane(&im, "surface", EXR_UINT, NULL, err);
-    if (!st) number_pixels(im.planes[im.count - 1].u, p, c, surface_of_face);
-    if (!st) view_image_set_camera(&im, camera);
-    if (!st) st = exr_write(&im, path, prov, err);
+    if (surface_of_face)
+        exr_image_init(&im, r->width, r->height, err);
+    else
+        err_nomem(err, "faces", (size_t)c->after.model.mesh.face_count);
+    if (!err->status && !add_light(&im, r, err) && !add_lamps(&im, lamps, n, err) &&
+        !list_surfaces(&surfaces, surface_of_face, c, err) && !add_surfaces(&im, &surfaces, err) &&
+        !exr_add_plane(&im, "surface", EXR_UINT, NULL, err)) {
+        number_pixels(im.planes[im.count - 1].u, p, c, surface_of_face);
+        view_image_set_camera(&im, camera);
+        exr_write(&im, path, prov, err);
+    }
     free(surface_of_face);
     free(surfaces.list);
     exr_image_release(&im);
-    return st;
+    return err->status;
 }
 
 /* ---------------------------------------------------------------------------------------------------------- changes */
@@ -314,20 +314,19 @@ static enum status read_changes(struct changes *c, const struct exr_image *im, c
 {
     struct textfile t = {0};
     if (textfile_open(&t, path, err)) return err->status;
-    enum status st = ST_OK;
-    while (!st && textfile_next(&t)) {
+    while (!err->status && textfile_next(&t)) {
         char *word;
-        st = textfile_word(&t, "lamp or material", &word, err);
-        if (!st && !strcmp(word, "lamp"))
-            st = read_lamp(c, im, &t, err);
-        else if (!st && !strcmp(word, "material"))
-            st = read_surface(c, &t, err);
-        else if (!st)
-            st = textfile_error(&t, err, word, "lamp or material");
-        if (!st) st = textfile_end(&t, err);
+        textfile_word(&t, "lamp or material", &word, err);
+        if (!err->status && !strcmp(word, "lamp"))
+            read_lamp(c, im, &t, err);
+        else if (!err->status && !strcmp(word, "material"))
+            read_surface(c, &t, err);
+        else if (!err->status)
+            textfile_error(&t, err, word, "lamp or material");
+        if (!err->status) textfile_end(&t, err);
     }
     textfile_release(&t);
-    return st;
+    return err->status;
 }
 
 /* Planes by name: R of "after" and the two behind it. */
@@ -398,9 +397,7 @@ enum status integrals_change(struct model_picture *picture, const struct exr_ima
                              struct err *err)
 {
     struct changes c = {.any_lamp = false};
-    enum status st = read_names(&c, integrals, err);
-    if (!st) st = read_changes(&c, integrals, path, err);
-    if (!st) st = apply(picture, integrals, &c, err);
+    if (!read_names(&c, integrals, err) && !read_changes(&c, integrals, path, err)) apply(picture, integrals, &c, err);
     release_changes(&c);
-    return st;
+    return err->status;
 }

@@ -256,14 +256,13 @@ static enum status read_layers(struct layered_depth *depth, struct view_ids *ids
 {
     const struct product_key key = {.view = l->view->name};
     char path[FILE_PATH];
-    enum status st = product_path_in(path, l->ids, PRODUCT_IDS, &key, err);
-    if (!st) st = view_ids_read(ids, l->view, path, prov, err);
-    if (!st) st = product_path_in(path, l->depth, PRODUCT_DEPTH, &key, err);
-    if (!st) st = layered_depth_read_interior(depth, path, prov, err);
-    if (!st && (depth->width != picture->width || depth->height != picture->height))
-        st = err_set(err, ST_DATA, "%s is %d x %d px, but the picture is %d x %d px. Run make depth again.", path,
-                     depth->width, depth->height, picture->width, picture->height);
-    return st;
+    if (!product_path_in(path, l->ids, PRODUCT_IDS, &key, err) && !view_ids_read(ids, l->view, path, prov, err) &&
+        !product_path_in(path, l->depth, PRODUCT_DEPTH, &key, err))
+        layered_depth_read_interior(depth, path, prov, err);
+    if (!err->status && (depth->width != picture->width || depth->height != picture->height))
+        err_set(err, ST_DATA, "%s is %d x %d px, but the picture is %d x %d px. Run make depth again.", path,
+                depth->width, depth->height, picture->width, picture->height);
+    return err->status;
 }
 
 static enum status list_objects(struct pixels *p, const struct object_pixel *objects, struct err *err)
@@ -284,21 +283,21 @@ enum status pixels_find(struct pixels *p, const struct light_change *c, const st
     struct find_job j = {.p = p, .c = c, .picture = picture, .model_from_cam = mat3_transpose(cam_from_model)};
     struct layered_depth depth = {0};
     struct view_ids ids = {0};
-    enum status st = pixels_init(p, picture->width, picture->height, err);
+    pixels_init(p, picture->width, picture->height, err);
     j.centre = p->centre = pose_center(&picture->pose);
-    if (!st && layers) {
-        st = read_layers(&depth, &ids, layers, picture, prov, err);
+    if (!err->status && layers) {
+        read_layers(&depth, &ids, layers, picture, prov, err);
         j.depth = &depth;
         j.ids = &ids;
         j.camera = model_from_world_view(&c->axes, layers->view);
         j.scale = c->axes.scale;
     }
-    if (!st && c->objects.count && !(j.objects = calloc(n + 1, sizeof *j.objects)))
-        st = err_nomem(err, "pixels of objects", n * sizeof *j.objects);
-    if (!st) parallel_for((size_t)picture->height, 4, find_rows, &j);
-    if (!st && j.objects) st = list_objects(p, j.objects, err);
+    if (!err->status && c->objects.count && !(j.objects = calloc(n + 1, sizeof *j.objects)))
+        err_nomem(err, "pixels of objects", n * sizeof *j.objects);
+    if (!err->status) parallel_for((size_t)picture->height, 4, find_rows, &j);
+    if (!err->status && j.objects) list_objects(p, j.objects, err);
     free(j.objects);
     layered_depth_release(&depth);
     view_ids_release(&ids);
-    return st;
+    return err->status;
 }

@@ -24,15 +24,15 @@ struct session {
 static enum status open_session(struct session *s, struct err *err)
 {
     struct relight_job *j = s->job;
-    enum status st = file_path(s->vita, j->relit, "vita", "", err);
-    if (!st) st = product_path_in(s->objects, j->relit, PRODUCT_OBJECT_LIGHT, NULL, err);
+    if (!file_path(s->vita, j->relit, "vita", "", err))
+        product_path_in(s->objects, j->relit, PRODUCT_OBJECT_LIGHT, NULL, err);
     j->files.edited_vita = s->vita;
     j->files.object_light = s->objects;
-    if (!st) st = light_change_read(&s->change, &j->files, &j->prov, err);
-    if (!st && j->views) st = camera_set_read_cameras(&s->set, j->views, &j->prov, err);
-    if (!st && j->materials)
-        st = model_field_read_materials(&s->change.before, j->materials, j->views, &s->change.axes, &j->prov, err);
-    return st;
+    if (!err->status) light_change_read(&s->change, &j->files, &j->prov, err);
+    if (!err->status && j->views) camera_set_read_cameras(&s->set, j->views, &j->prov, err);
+    if (!err->status && j->materials)
+        model_field_read_materials(&s->change.before, j->materials, j->views, &s->change.axes, &j->prov, err);
+    return err->status;
 }
 
 /* The camera in the scene's frame, for the attributes of EXR files. */
@@ -53,14 +53,14 @@ static enum status read_picture(struct model_picture *p, double *exposure, struc
     const struct product_key key = {.name = name};
     char path[FILE_PATH];
     struct picture_record record;
-    enum status st = product_path_in(path, j->pictures, PRODUCT_PICTURE_RECORD, &key, err);
-    if (!st) st = picture_record_read(&record, path, &j->prov, err);
-    if (!st) st = product_path_in(path, j->pictures, PRODUCT_PICTURE, &key, err);
-    if (!st) st = model_picture_read(p, path, &j->prov, err);
-    if (!st && !p->has_camera)
-        st = err_set(err, ST_DATA, "%s does not say which camera drew it; draw it again with this version.", path);
-    if (!st) *exposure = record.exposure;
-    return st;
+    if (!product_path_in(path, j->pictures, PRODUCT_PICTURE_RECORD, &key, err) &&
+        !picture_record_read(&record, path, &j->prov, err) &&
+        !product_path_in(path, j->pictures, PRODUCT_PICTURE, &key, err))
+        model_picture_read(p, path, &j->prov, err);
+    if (!err->status && !p->has_camera)
+        err_set(err, ST_DATA, "%s does not say which camera drew it; draw it again with this version.", path);
+    if (!err->status) *exposure = record.exposure;
+    return err->status;
 }
 
 /* Where an object covers a pixel, the lamps light the object. */
@@ -72,12 +72,12 @@ static enum status write_integrals(struct session *s, const struct relit *r, str
     struct lamp_light lamps = {0};
     for (int k = 0; k < p->object_count; k++)
         if (p->objects[k].cover >= 0.5f) p->after[p->objects[k].pixel] = p->objects[k].point;
-    enum status st = lamp_light_gather(&lamps, p, &s->change, LAMP_RAYS, err);
-    if (!st)
-        st = product_path_in(path, j->out, PRODUCT_RELIT_INTEGRALS, &(struct product_key){.name = camera->name}, err);
-    if (!st) st = integrals_write(r, p, &s->change, &lamps, camera, path, &j->prov, err);
+    lamp_light_gather(&lamps, p, &s->change, LAMP_RAYS, err);
+    if (!err->status)
+        product_path_in(path, j->out, PRODUCT_RELIT_INTEGRALS, &(struct product_key){.name = camera->name}, err);
+    if (!err->status) integrals_write(r, p, &s->change, &lamps, camera, path, &j->prov, err);
     lamp_light_release(&lamps);
-    return st;
+    return err->status;
 }
 
 static enum status write_frame(struct relight_job *j, const struct model_picture *picture, double exposure,
@@ -96,25 +96,25 @@ static enum status relight_one(struct session *s, const char *name, struct err *
     struct pixels pixels = {0};
     struct relit relit = {0};
     double exposure = 1;
-    enum status st = read_picture(&picture, &exposure, j, name, err);
+    read_picture(&picture, &exposure, j, name, err);
     const int view = j->views ? camera_set_find(&s->set, name) : -1;
     const struct pixel_layers layers = {j->ids, j->depth, view < 0 ? NULL : &s->set.views[view]};
     const bool is_own = view >= 0 && j->ids && j->depth;
-    if (!st) st = pixels_find(&pixels, &s->change, &picture, is_own ? &layers : NULL, &j->prov, err);
-    if (!st) st = relit_make(&relit, &picture, &pixels, &s->change, &j->params, err);
-    if (!st) {
+    if (!err->status && !pixels_find(&pixels, &s->change, &picture, is_own ? &layers : NULL, &j->prov, err))
+        relit_make(&relit, &picture, &pixels, &s->change, &j->params, err);
+    if (!err->status) {
         const struct view camera = scene_view(&picture, &s->change.axes, name);
         if (j->frames)
-            st = write_frame(j, &picture, exposure, &camera, err);
+            write_frame(j, &picture, exposure, &camera, err);
         else if (!strcmp(j->params.integrals, "yes"))
-            st = write_integrals(s, &relit, &pixels, &camera, err);
-        if (!st && !j->frames)
-            st = relit_write(&relit, &picture, &j->params, exposure, &camera, j->out, name, &j->prov, err);
+            write_integrals(s, &relit, &pixels, &camera, err);
+        if (!err->status && !j->frames)
+            relit_write(&relit, &picture, &j->params, exposure, &camera, j->out, name, &j->prov, err);
     }
     relit_release(&relit);
     pixels_release(&pixels);
     model_picture_release(&picture);
-    return st;
+    return err->status;
 }
 
 /* ---------------------------------------------------------------------------------------------------------- changes */
@@ -127,30 +127,29 @@ static enum status change_one(struct relight_job *j, const char *name, struct er
     struct exr_image integrals = {0};
     double exposure = 1;
     const struct product_key key = {.name = name};
-    enum status st = product_path_in(path, j->from, PRODUCT_RELIT_RECORD, &key, err);
-    if (!st) st = relit_read_exposure(&exposure, path, &j->prov, err);
-    if (!st) st = product_path_in(path, j->from, PRODUCT_RELIT, &key, err);
-    if (!st) st = model_picture_read(&picture, path, &j->prov, err);
-    if (!st) st = product_path_in(path, j->from, PRODUCT_RELIT_INTEGRALS, &key, err);
-    if (!st) st = exr_read_product(&integrals, PRODUCT_RELIT_INTEGRALS, path, NULL, 0, &j->prov, err);
-    if (!st) st = integrals_change(&picture, &integrals, j->changes, err);
-    if (!st)
-        st = relit_changed_write(&picture, j->params.exposure > 0 ? j->params.exposure : exposure, j->out, name,
-                                 &j->prov, err);
+    if (!product_path_in(path, j->from, PRODUCT_RELIT_RECORD, &key, err) &&
+        !relit_read_exposure(&exposure, path, &j->prov, err) &&
+        !product_path_in(path, j->from, PRODUCT_RELIT, &key, err))
+        model_picture_read(&picture, path, &j->prov, err);
+    if (!err->status && !product_path_in(path, j->from, PRODUCT_RELIT_INTEGRALS, &key, err) &&
+        !exr_read_product(&integrals, PRODUCT_RELIT_INTEGRALS, path, NULL, 0, &j->prov, err) &&
+        !integrals_change(&picture, &integrals, j->changes, err))
+        relit_changed_write(&picture, j->params.exposure > 0 ? j->params.exposure : exposure, j->out, name, &j->prov,
+                            err);
     exr_image_release(&integrals);
     model_picture_release(&picture);
-    return st;
+    return err->status;
 }
 
 static enum status change_all(struct relight_job *j, const struct cli_list *names, struct err *err)
 {
-    enum status st = provenance_add_file(&j->prov, "changes", j->changes, err);
+    provenance_add_file(&j->prov, "changes", j->changes, err);
     const int inputs = j->prov.count;
-    for (int i = 0; !st && i < names->count; i++) {
-        st = change_one(j, names->items[i], err);
+    for (int i = 0; !err->status && i < names->count; i++) {
+        change_one(j, names->items[i], err);
         provenance_keep(&j->prov, inputs);
     }
-    return st;
+    return err->status;
 }
 
 enum status relight(struct relight_job *j, struct err *err)
@@ -158,18 +157,18 @@ enum status relight(struct relight_job *j, struct err *err)
     struct session s = {.job = j};
     struct picture_list names = {0};
     if (j->changes) return change_all(j, &j->names, err);
-    enum status st = j->list ? picture_list_read(&names, j->pictures, NULL, err) : ST_OK;
-    for (int i = 0; !st && i < j->names.count; i++) st = picture_list_add(&names, j->names.items[i], err);
-    if (!st) st = open_session(&s, err);
+    if (j->list) picture_list_read(&names, j->pictures, NULL, err);
+    for (int i = 0; !err->status && i < j->names.count; i++) picture_list_add(&names, j->names.items[i], err);
+    if (!err->status) open_session(&s, err);
     const int inputs = j->prov.count;
-    for (int i = 0; !st && i < names.count; i++) {
-        st = relight_one(&s, names.names[i], err);
+    for (int i = 0; !err->status && i < names.count; i++) {
+        relight_one(&s, names.names[i], err);
         provenance_keep(&j->prov, inputs);
-        if (!st) log_note("relit %d of %d: %s", i + 1, names.count, names.names[i]);
+        if (!err->status) log_note("relit %d of %d: %s", i + 1, names.count, names.names[i]);
     }
-    if (!st && j->list) st = picture_list_write(&names, j->out, &j->prov, err);
+    if (!err->status && j->list) picture_list_write(&names, j->out, &j->prov, err);
     picture_list_release(&names);
     camera_set_release(&s.set);
     light_change_release(&s.change);
-    return st;
+    return err->status;
 }

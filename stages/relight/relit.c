@@ -114,14 +114,13 @@ static enum status gather(struct relit *r, const struct pixels *p, const struct 
     progress_start(&progress, "light", (int64_t)p->width * p->height, "pixels");
     struct ray_job rays = {r, p, c, params, &progress};
     const bool is_cached = irradiance_cache_suits(job.field);
-    enum status st = ST_OK;
     if (is_cached)
-        st = irradiance_cache_fill(r->before, &job, &stats, err);
+        irradiance_cache_fill(r->before, &job, &stats, err);
     else
         parallel_for((size_t)p->width * (size_t)p->height, 64, gather_some, &rays);
     progress_end(&progress);
-    r->records = st || !is_cached ? 0 : stats.records;
-    return st;
+    r->records = err->status || !is_cached ? 0 : stats.records;
+    return err->status;
 }
 
 /* ------------------------------------------------------------------------------------------------------------ gloss */
@@ -351,18 +350,17 @@ enum status relit_make(struct relit *r, struct model_picture *picture, const str
     const size_t n = (size_t)p->width * (size_t)p->height;
     struct apply_job j = {.r = r, .picture = picture, .p = p, .c = c, .params = params, .objects = p->objects};
     bool is_glossy = false;
-    enum status st = init(r, p, err);
-    if (!st) st = find_glosses(&j, &is_glossy, err);
-    if (!st && is_glossy && !(r->specular = calloc(n + 1, sizeof *r->specular)))
-        st = err_nomem(err, "gloss", n * sizeof *r->specular);
+    if (!init(r, p, err)) find_glosses(&j, &is_glossy, err);
+    if (!err->status && is_glossy && !(r->specular = calloc(n + 1, sizeof *r->specular)))
+        err_nomem(err, "gloss", n * sizeof *r->specular);
     const bool is_gathered = strcmp(params->light, "atlas") != 0;
-    if (!st && is_gathered) st = gather(r, p, c, params, err);
-    if (!st) {
+    if (!err->status && is_gathered) gather(r, p, c, params, err);
+    if (!err->status) {
         j.dark = DARK * mean_light(r);
         parallel_for(n, 256, is_gathered ? apply_some : apply_atlas, &j);
-        st = shade_objects(&j, err);
+        shade_objects(&j, err);
     }
     free(j.glosses);
     free(j.has_gloss);
-    return st;
+    return err->status;
 }

@@ -27,14 +27,16 @@ static enum status write_ratio(const struct relit *r, const struct view *camera,
     static const char *const names[4] = {"R", "G", "B", "A"};
     const size_t n = (size_t)r->width * (size_t)r->height;
     struct exr_image im = {0};
-    enum status st = exr_image_init(&im, r->width, r->height, err);
-    for (int k = 0; !st && k < 4; k++) st = exr_add_plane(&im, names[k], k < 3 ? EXR_FLOAT : EXR_HALF, NULL, err);
-    for (size_t i = 0; !st && i < n; i++)
+    exr_image_init(&im, r->width, r->height, err);
+    for (int k = 0; !err->status && k < 4; k++) exr_add_plane(&im, names[k], k < 3 ? EXR_FLOAT : EXR_HALF, NULL, err);
+    for (size_t i = 0; !err->status && i < n; i++)
         for (int k = 0; k < 4; k++) im.planes[k].f[i] = r->quotient[i][k];
-    if (!st) view_image_set_camera(&im, camera);
-    if (!st) st = exr_write(&im, path, prov, err);
+    if (!err->status) {
+        view_image_set_camera(&im, camera);
+        exr_write(&im, path, prov, err);
+    }
     exr_image_release(&im);
-    return st;
+    return err->status;
 }
 
 static enum status draw_ratio(const struct relit *r, const char *path, struct err *err)
@@ -52,9 +54,9 @@ static enum status draw_ratio(const struct relit *r, const char *path, struct er
         }
         if (r->quotient[i][3] == RELIT_NONE) rgb[3 * i] = rgb[3 * i + 1] = rgb[3 * i + 2] = 40;
     }
-    const enum status st = png_write(path, rgb, r->width, r->height, 3, err);
+    png_write(path, rgb, r->width, r->height, 3, err);
     free(rgb);
-    return st;
+    return err->status;
 }
 
 struct shares {
@@ -85,9 +87,9 @@ static enum status write_record(const struct relit *r, double exposure, const ch
     provenance_print(prov, f.fp);
     fprintf(f.fp, "size %d %d\nexposure %.9g\nchanged %.6g\nbounded %.6g\nkept %.6g\nrecords %zu\n", r->width,
             r->height, exposure, s.changed, s.bounded, s.none, r->records);
-    const enum status st = outfile_commit(&f, err);
+    outfile_commit(&f, err);
     outfile_discard(&f);
-    return st;
+    return err->status;
 }
 
 enum status relit_write(const struct relit *r, const struct model_picture *picture, const struct relight_params *params,
@@ -97,16 +99,16 @@ enum status relit_write(const struct relit *r, const struct model_picture *pictu
     const struct product_key key = {.name = name};
     char path[FILE_PATH];
     const double exposure = params->exposure > 0 ? params->exposure : unlit;
-    enum status st = product_path_in(path, out, PRODUCT_RELIT_RATIO, &key, err);
-    if (!st) st = write_ratio(r, camera, path, prov, err);
-    if (!st) st = product_path_in(path, out, PRODUCT_RELIT_RATIO_PICTURE, &key, err);
-    if (!st) st = draw_ratio(r, path, err);
-    if (!st) st = product_path_in(path, out, PRODUCT_RELIT, &key, err);
-    if (!st) st = model_picture_write(picture, camera, path, prov, err);
-    if (!st) st = product_path_in(path, out, PRODUCT_RELIT_JPEG, &key, err);
-    if (!st) st = exposure_write(picture, exposure, path, err);
-    if (!st) st = product_path_in(path, out, PRODUCT_RELIT_RECORD, &key, err);
-    return st ? st : write_record(r, exposure, path, prov, err);
+    if (!product_path_in(path, out, PRODUCT_RELIT_RATIO, &key, err) && !write_ratio(r, camera, path, prov, err) &&
+        !product_path_in(path, out, PRODUCT_RELIT_RATIO_PICTURE, &key, err))
+        draw_ratio(r, path, err);
+    if (!err->status && !product_path_in(path, out, PRODUCT_RELIT, &key, err) &&
+        !model_picture_write(picture, camera, path, prov, err) &&
+        !product_path_in(path, out, PRODUCT_RELIT_JPEG, &key, err))
+        exposure_write(picture, exposure, path, err);
+    if (!err->status && !product_path_in(path, out, PRODUCT_RELIT_RECORD, &key, err))
+        write_record(r, exposure, path, prov, err);
+    return err->status;
 }
 
 enum status relit_read_exposure(double *exposure, const char *path, struct provenance *prov, struct err *err)
@@ -114,17 +116,16 @@ enum status relit_read_exposure(double *exposure, const char *path, struct prove
     struct textfile t = {0};
     char *word;
     bool found = false;
-    enum status st = product_open(&t, NULL, PRODUCT_RELIT_RECORD, path, prov, err);
-    while (!st && !found && textfile_next(&t)) {
-        st = textfile_word(&t, "a word", &word, err);
-        if (st || strcmp(word, "exposure") != 0) continue;
+    product_open(&t, NULL, PRODUCT_RELIT_RECORD, path, prov, err);
+    while (!err->status && !found && textfile_next(&t)) {
+        if (textfile_word(&t, "a word", &word, err) || strcmp(word, "exposure") != 0) continue;
         found = true;
-        st = textfile_double(&t, "an exposure", exposure, err);
-        if (!st && !(*exposure > 0)) st = textfile_wrong_number(&t, *exposure, "an exposure above 0", err);
+        textfile_double(&t, "an exposure", exposure, err);
+        if (!err->status && !(*exposure > 0)) textfile_wrong_number(&t, *exposure, "an exposure above 0", err);
     }
-    if (!st && !found) st = textfile_error(&t, err, NULL, "a line exposure");
+    if (!err->status && !found) textfile_error(&t, err, NULL, "a line exposure");
     textfile_release(&t);
-    return st;
+    return err->status;
 }
 
 enum status relit_changed_write(const struct model_picture *picture, double exposure, const char *out, const char *name,
@@ -135,8 +136,9 @@ enum status relit_changed_write(const struct model_picture *picture, double expo
     struct view camera = {.name = name, .width = picture->width, .height = picture->height};
     camera.cam_from_world = mat3_from_quat(picture->pose.rotation);
     camera.translation = picture->pose.translation;
-    enum status st = product_path_in(path, out, PRODUCT_RELIT, &key, err);
-    if (!st) st = model_picture_write(picture, &camera, path, prov, err);
-    if (!st) st = product_path_in(path, out, PRODUCT_RELIT_JPEG, &key, err);
-    return st ? st : exposure_write(picture, exposure, path, err);
+    if (!product_path_in(path, out, PRODUCT_RELIT, &key, err) &&
+        !model_picture_write(picture, &camera, path, prov, err) &&
+        !product_path_in(path, out, PRODUCT_RELIT_JPEG, &key, err))
+        exposure_write(picture, exposure, path, err);
+    return err->status;
 }

@@ -36,13 +36,13 @@ enum status clutter_open(struct clutter_scene **scene, const struct clutter_file
     s->depth = strdup(files->depth);
     s->ids = strdup(files->ids);
     s->sources = calloc((size_t)set->view_count + 1, sizeof *s->sources);
-    enum status st = pane_fronts_find(&s->panes, files->unedited, err);
-    if (!st && !(s->views && s->depth && s->ids && s->sources))
-        st = err_nomem(err, "the views of the clutter", (size_t)set->view_count * sizeof *s->sources);
-    if (!st) return ST_OK;
+    pane_fronts_find(&s->panes, files->unedited, err);
+    if (!err->status && !(s->views && s->depth && s->ids && s->sources))
+        err_nomem(err, "the views of the clutter", (size_t)set->view_count * sizeof *s->sources);
+    if (!err->status) return ST_OK;
     clutter_close(s);
     *scene = NULL;
-    return st;
+    return err->status;
 }
 
 static void drop(struct clutter_scene *s, struct clutter_source *source)
@@ -76,22 +76,21 @@ static enum status read_source(struct clutter_scene *s, int at, struct err *err)
     struct view_ids ids = {0};
     const struct product_key key = {.view = view->name};
     char path[FILE_PATH];
-    enum status st = product_path_in(path, s->depth, PRODUCT_DEPTH, &key, err);
-    if (!st) st = layered_depth_read(&depth, path, &source->inputs, err);
-    if (!st) st = product_path_in(path, s->ids, PRODUCT_IDS, &key, err);
-    if (!st) st = view_ids_read(&ids, view, path, &source->inputs, err);
-    if (!st) {
+    if (!product_path_in(path, s->depth, PRODUCT_DEPTH, &key, err) &&
+        !layered_depth_read(&depth, path, &source->inputs, err) &&
+        !product_path_in(path, s->ids, PRODUCT_IDS, &key, err))
+        view_ids_read(&ids, view, path, &source->inputs, err);
+    if (!err->status) {
         const struct view camera = model_from_world_view(&s->axes, view);
         pane_fronts_apply(&ids, &s->panes, &camera, s->axes.scale);
     }
-    if (!st) st = clutter_view_make(&source->view, &depth, &ids, view->name, err);
-    if (!st) {
+    if (!err->status && !clutter_view_make(&source->view, &depth, &ids, view->name, err)) {
         source->loaded = true;
         s->bytes += source->view.bytes;
     }
     view_ids_release(&ids);
     layered_depth_release(&depth);
-    return st;
+    return err->status;
 }
 
 /* Drops views that the present picture does not need, until `more` bytes fit into the budget. */
@@ -112,18 +111,17 @@ static void make_room(struct clutter_scene *s, size_t more)
 enum status clutter_load(struct clutter_scene *s, const struct clutter_choice *choice, struct provenance *prov,
                          struct err *err)
 {
-    enum status st = ST_OK;
     s->picture++;
     for (int k = 0; k < choice->count; k++) s->sources[choice->view[k]].used = s->picture;
-    for (int k = 0; !st && k < choice->count; k++) {
+    for (int k = 0; !err->status && k < choice->count; k++) {
         struct clutter_source *source = &s->sources[choice->view[k]];
         if (!source->loaded) {
             make_room(s, clutter_view_bytes(&s->set->views[choice->view[k]]));
-            st = read_source(s, choice->view[k], err);
+            read_source(s, choice->view[k], err);
         }
-        if (!st && prov) st = provenance_add_all(prov, &source->inputs, err);
+        if (!err->status && prov) provenance_add_all(prov, &source->inputs, err);
     }
-    return st;
+    return err->status;
 }
 
 /* ---------------------------------------------------------------------------------------------------------- picture */
@@ -186,11 +184,10 @@ static enum status draw_own(struct model_picture *p, struct clutter_scene *s, in
     const struct clutter_choice choice = {.view = {view}, .fade = {1}, .count = 1};
     float *cover = malloc(pixels * sizeof *cover);
     struct image photo = {0};
-    enum status st = cover ? ST_OK : err_nomem(err, "the coverage of a picture", pixels * sizeof *cover);
-    if (!st) st = clutter_load(s, &choice, prov, err);
-    if (!st) st = clutter_blend(p, cover, s, &choice, camera, map, err);
-    if (!st) st = view_image_read(&photo, s->views, &s->set->views[view], prov, err);
-    for (size_t i = 0; !st && i < pixels; i++) {
+    if (!cover) err_nomem(err, "the coverage of a picture", pixels * sizeof *cover);
+    if (!err->status && !clutter_load(s, &choice, prov, err) && !clutter_blend(p, cover, s, &choice, camera, map, err))
+        view_image_read(&photo, s->views, &s->set->views[view], prov, err);
+    for (size_t i = 0; !err->status && i < pixels; i++) {
         const float part = cover[i] < 0.5f ? 2 * cover[i] : 1;
         for (size_t c = 0; c < 3 && part > 0; c++)
             p->rgb[3 * i + c] = part < 1 ? p->rgb[3 * i + c] + part * (photo.data[4 * i + c] - p->rgb[3 * i + c])
@@ -198,7 +195,7 @@ static enum status draw_own(struct model_picture *p, struct clutter_scene *s, in
     }
     image_release(&photo);
     free(cover);
-    return st;
+    return err->status;
 }
 
 enum status clutter_draw(struct model_picture *p, struct clutter_scene *s, const struct view *camera,
@@ -212,11 +209,11 @@ enum status clutter_draw(struct model_picture *p, struct clutter_scene *s, const
         return err_set(err, ST_INTERNAL, "the picture has %d x %d pixels, but its camera %d x %d.", p->width, p->height,
                        camera->width, camera->height);
     if (own >= 0) return draw_own(p, s, own, &scene_camera, map, prov, err);
-    enum status st = ST_OK;
     if (views)
         take_given(&choice, views, count);
     else
-        st = clutter_choose(&choice, s->set, &scene_camera, p->z, 1 / s->axes.scale, max_views(s), err);
-    if (!st) st = clutter_load(s, &choice, prov, err);
-    return st ? st : clutter_blend(p, NULL, s, &choice, &scene_camera, map, err);
+        clutter_choose(&choice, s->set, &scene_camera, p->z, 1 / s->axes.scale, max_views(s), err);
+    if (!err->status && !clutter_load(s, &choice, prov, err))
+        clutter_blend(p, NULL, s, &choice, &scene_camera, map, err);
+    return err->status;
 }

@@ -369,7 +369,6 @@ enum status clutter_blend(struct model_picture *p, float *cover, struct clutter_
 {
     const size_t threads = (size_t)parallel_threads();
     struct blend_job job = {.p = p, .cover = cover, .scene = scene, .choice = choice, .camera = camera, .map = map};
-    enum status st = ST_OK;
     if (cover) memset(cover, 0, (size_t)p->width * (size_t)p->height * sizeof *cover);
     job.scale = 1 / scene->axes.scale;
     job.tiles_x = (p->width + TILE_WIDTH - 1) / TILE_WIDTH;
@@ -381,13 +380,13 @@ enum status clutter_blend(struct model_picture *p, float *cover, struct clutter_
         job.tile[t].status = ST_OK;
     }
     parallel_for((size_t)choice->count, 1, prepare_views, &job);
-    for (int k = 0; !st && k < choice->count; k++)
-        if (job.prepared[k]) st = err_nomem(err, "a view's segments", sizeof(struct drawn_segment));
-    if (!st) parallel_for((size_t)job.tiles, 1, blend_tiles, &job);
+    for (int k = 0; !err->status && k < choice->count; k++)
+        if (job.prepared[k]) err_nomem(err, "a view's segments", sizeof(struct drawn_segment));
+    if (!err->status) parallel_for((size_t)job.tiles, 1, blend_tiles, &job);
     for (size_t t = 0; t < threads; t++) {
-        if (!st && job.tile[t].status) st = err_nomem(err, "a view's segments", sizeof(struct drawn_segment));
+        if (!err->status && job.tile[t].status) err_nomem(err, "a view's segments", sizeof(struct drawn_segment));
         drawn_tile_release(&job.tile[t].segments);
     }
     free(job.tile);
-    return st;
+    return err->status;
 }

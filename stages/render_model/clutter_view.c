@@ -262,27 +262,25 @@ enum status clutter_view_make(struct clutter_view *v, struct layered_depth *dept
     uint8_t *rim = NULL;
     *v = (struct clutter_view){.depth = *depth};
     *depth = (struct layered_depth){0};
-    enum status st = check(&v->depth, ids, name, err);
-    if (!st) list = judge_segments(&v->depth, ids, err);
-    if (!st && !list) st = err->status;
-    if (!st) {
+    if (!check(&v->depth, ids, name, err)) list = judge_segments(&v->depth, ids, err);
+    if (!err->status) {
         v->sight = malloc(pixels * sizeof *v->sight);
         rim = calloc(pixels, 1);
-        if (!rim || !v->sight) st = err_nomem(err, "what a view sees", pixels * (sizeof *v->sight + 1));
+        if (!rim || !v->sight) err_nomem(err, "what a view sees", pixels * (sizeof *v->sight + 1));
     }
-    if (!st) {
+    if (!err->status) {
         find_nearest(v, &v->depth, list);
         find_rims(rim, &v->depth, list, ids);
         keep_clutter(&v->depth.interior, rim, INTERIOR, list, ids);
         keep_clutter(&v->depth.boundary, rim, BOUNDARY, list, ids);
         find_shows(v, &v->depth);
-        st = layer_view_pack(&v->layers, &v->depth, name, err);
+        layer_view_pack(&v->layers, &v->depth, name, err);
     }
     v->bytes = bytes_of(v->depth.width, v->depth.height);
     free(rim);
     free(list);
-    if (st) clutter_view_release(v);
-    return st;
+    if (err->status) clutter_view_release(v);
+    return err->status;
 }
 
 void clutter_view_release(struct clutter_view *v)

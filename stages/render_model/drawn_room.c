@@ -36,8 +36,10 @@ static enum status find_viewpoints(struct room *room, struct err *err)
 static enum status read_cameras(struct room *room, struct provenance *prov, struct err *err)
 {
     const struct scene_files files = {.views = room->files.views, .axes = room->files.axes};
-    const enum status st = scene_inputs_read(&room->in, SCENE_CAMERAS | SCENE_LENSES | SCENE_AXES, &files, prov, err);
-    return st ? st : find_viewpoints(room, err);
+    return scene_inputs_read(&room->in, SCENE_CAMERAS | SCENE_LENSES | SCENE_AXES, &files, prov, err) ||
+                   find_viewpoints(room, err)
+               ? err->status
+               : ST_OK;
 }
 
 enum status room_open(struct room *room, const struct room_files *files, const struct render_model_params *params,
@@ -47,15 +49,13 @@ enum status room_open(struct room *room, const struct room_files *files, const s
     const struct solid_mesh *unedited = files->base ? &room->base.mesh : &room->model.mesh;
     const struct clutter_files clutter = {files->views, files->depth, files->ids, unedited, params->memory};
     *room = (struct room){.files = *files, .params = params, .prov = prov};
-    enum status st = read_cameras(room, prov, err);
-    if (!st) st = model_rays_read(&room->model, files->model, MODEL_WITH_GLASS, NULL, err);
-    if (!st && files->base) st = model_rays_read(&room->base, files->base, MODEL_WITH_GLASS, prov, err);
-    if (!st && files->outdoors) st = outdoors_read(&room->outdoors, files->outdoors, prov, err);
-    if (!st) st = shell_open(&room->shell, &shell, prov, err);
-    if (!st) shell_set_samples(room->shell, params->samples);
-    if (!st && files->depth && !strcmp(params->clutter, "drawn"))
-        st = clutter_open(&room->clutter, &clutter, &room->in.set, &room->in.axes, err);
-    return st;
+    if (!read_cameras(room, prov, err)) model_rays_read(&room->model, files->model, MODEL_WITH_GLASS, NULL, err);
+    if (!err->status && files->base) model_rays_read(&room->base, files->base, MODEL_WITH_GLASS, prov, err);
+    if (!err->status && files->outdoors) outdoors_read(&room->outdoors, files->outdoors, prov, err);
+    if (!err->status && !shell_open(&room->shell, &shell, prov, err)) shell_set_samples(room->shell, params->samples);
+    if (!err->status && files->depth && !strcmp(params->clutter, "drawn"))
+        clutter_open(&room->clutter, &clutter, &room->in.set, &room->in.axes, err);
+    return err->status;
 }
 
 void room_close(struct room *room)
@@ -96,11 +96,11 @@ enum status room_draw(struct model_picture *picture, struct room *room, const st
     const char *photos[2];
     photos_of(photos, room, pair);
     const struct outdoors *outdoors = room->files.outdoors ? &room->outdoors : NULL;
-    enum status st = shell_draw(picture, room->shell, camera, photos, pair->t, outdoors, err);
-    if (!st && room->clutter)
-        st = clutter_draw(picture, room->clutter, camera, shell_map(room->shell), own < 0 ? NULL : &own, own >= 0, prov,
-                          err);
-    return st;
+    shell_draw(picture, room->shell, camera, photos, pair->t, outdoors, err);
+    if (!err->status && room->clutter)
+        clutter_draw(picture, room->clutter, camera, shell_map(room->shell), own < 0 ? NULL : &own, own >= 0, prov,
+                     err);
+    return err->status;
 }
 
 enum status room_exposure(double *exposure, struct room *room, int viewpoint, struct err *err)
@@ -108,20 +108,19 @@ enum status room_exposure(double *exposure, struct room *room, int viewpoint, st
     struct viewpoint *v = &room->viewpoints[viewpoint];
     const char *const photos[2] = {v->photo, NULL};
     struct model_picture small = {0};
-    enum status st = ST_OK;
     double sum = 0;
     /* what an exposure is chosen from is the same for every picture, whether it is known already or not */
     shell_set_provenance(room->shell, NULL);
-    for (int i = v->first; !st && v->exposure <= 0 && i < v->first + v->count; i++) {
+    for (int i = v->first; !err->status && v->exposure <= 0 && i < v->first + v->count; i++) {
         struct view camera = room->cameras[i];
         if (camera.width > SMALL)
             view_resize(&camera, SMALL, (int)fmax(1, lround((double)camera.height * SMALL / camera.width)));
-        st = shell_draw(&small, room->shell, &camera, photos, 0, room->files.outdoors ? &room->outdoors : NULL, err);
-        if (!st) sum += log(exposure_choose(&small, room->params->saturated));
+        if (!shell_draw(&small, room->shell, &camera, photos, 0, room->files.outdoors ? &room->outdoors : NULL, err))
+            sum += log(exposure_choose(&small, room->params->saturated));
     }
     shell_set_provenance(room->shell, room->prov);
-    if (!st && v->exposure <= 0) v->exposure = exp(sum / v->count);
+    if (!err->status && v->exposure <= 0) v->exposure = exp(sum / v->count);
     *exposure = v->exposure;
     model_picture_release(&small);
-    return st;
+    return err->status;
 }

@@ -66,11 +66,13 @@ static enum status grow(uint8_t *same, const struct view *camera, double margin,
 {
     const size_t pixels = (size_t)camera->width * (size_t)camera->height;
     float *squared = malloc(pixels * sizeof *squared);
-    enum status st = squared ? distance_squared(squared, same, camera->width, camera->height, err)
-                             : err_nomem(err, "distances", pixels * sizeof *squared);
-    for (size_t i = 0; !st && i < pixels; i++) same[i] = same[i] && squared[i] > margin * margin;
+    if (squared)
+        distance_squared(squared, same, camera->width, camera->height, err);
+    else
+        err_nomem(err, "distances", pixels * sizeof *squared);
+    for (size_t i = 0; !err->status && i < pixels; i++) same[i] = same[i] && squared[i] > margin * margin;
     free(squared);
-    return st;
+    return err->status;
 }
 
 /* Clears `same` where the photo shows clutter of a zone that is cleared, and a little around it. */
@@ -84,28 +86,28 @@ static enum status leave_cleared(uint8_t *same, const struct room *room, int vie
     char path[FILE_PATH];
     struct view_ids ids = {0};
     struct layered_depth depth = {0};
-    enum status st = product_path_in(path, room->files.ids, PRODUCT_IDS, &key, err);
-    if (!st) st = view_ids_read(&ids, world, path, prov, err);
-    if (!st) st = product_path_in(path, room->files.depth, PRODUCT_DEPTH, &key, err);
-    if (!st) st = layered_depth_read_interior(&depth, path, prov, err);
+    if (!product_path_in(path, room->files.ids, PRODUCT_IDS, &key, err) &&
+        !view_ids_read(&ids, world, path, prov, err) &&
+        !product_path_in(path, room->files.depth, PRODUCT_DEPTH, &key, err))
+        layered_depth_read_interior(&depth, path, prov, err);
     uint8_t *stays = malloc(pixels);
-    if (!st && !stays) st = err_nomem(err, "cleared clutter", pixels);
-    if (!st && (depth.width != camera->width || depth.height != camera->height))
-        st = err_set(err, ST_DATA, "%s is %d x %d px, but its camera is %d x %d px. Run make depth again.", path,
-                     depth.width, depth.height, camera->width, camera->height);
-    for (int y = 0; !st && y < camera->height; y++)
+    if (!err->status && !stays) err_nomem(err, "cleared clutter", pixels);
+    if (!err->status && (depth.width != camera->width || depth.height != camera->height))
+        err_set(err, ST_DATA, "%s is %d x %d px, but its camera is %d x %d px. Run make depth again.", path,
+                depth.width, depth.height, camera->width, camera->height);
+    for (int y = 0; !err->status && y < camera->height; y++)
         for (int x = 0; x < camera->width; x++) {
             const size_t i = (size_t)y * (size_t)camera->width + (size_t)x;
             const double z = depth.interior.z[i] * room->in.axes.scale;
             stays[i] = !(z > 0 && ids.clutter[i] > CLUTTER_UNSURE &&
                          texture_map_clears(map, view_unproject(camera, x + 0.5, y + 0.5, z)));
         }
-    if (!st) st = grow(stays, camera, CLEARED_MARGIN, err);
-    for (size_t i = 0; !st && i < pixels; i++) same[i] &= stays[i];
+    if (!err->status) grow(stays, camera, CLEARED_MARGIN, err);
+    for (size_t i = 0; !err->status && i < pixels; i++) same[i] &= stays[i];
     free(stays);
     layered_depth_release(&depth);
     view_ids_release(&ids);
-    return st;
+    return err->status;
 }
 
 enum status own_pixels_find(uint8_t *same, const struct room *room, int view, struct provenance *prov, struct err *err)
@@ -114,14 +116,15 @@ enum status own_pixels_find(uint8_t *same, const struct room *room, int view, st
     struct traced base = {0}, edited = {0};
     memset(same, 1, (size_t)camera->width * (size_t)camera->height);
     if (!room->files.base) return ST_OK;
-    enum status st = trace(&base, &room->base, camera, err) ? err->status : trace(&edited, &room->model, camera, err);
-    if (!st) compare(same, room, &base, &edited, camera);
-    if (!st) st = grow(same, camera, room->params->margin, err);
-    if (!st && shell_map(room->shell)->zone_count && room->files.depth && room->files.ids)
-        st = leave_cleared(same, room, view, prov, err);
+    if (!trace(&base, &room->base, camera, err) && !trace(&edited, &room->model, camera, err)) {
+        compare(same, room, &base, &edited, camera);
+        grow(same, camera, room->params->margin, err);
+    }
+    if (!err->status && shell_map(room->shell)->zone_count && room->files.depth && room->files.ids)
+        leave_cleared(same, room, view, prov, err);
     traced_release(&base);
     traced_release(&edited);
-    return st;
+    return err->status;
 }
 
 enum status own_pixels_draw(struct model_picture *picture, const uint8_t *same, const struct room *room, int view,
@@ -130,13 +133,13 @@ enum status own_pixels_draw(struct model_picture *picture, const uint8_t *same, 
     const struct view *world = &room->in.set.views[view];
     const size_t pixels = (size_t)world->width * (size_t)world->height;
     struct image photo = {0};
-    enum status st = view_image_read(&photo, room->files.views, world, prov, err);
-    for (size_t i = 0; !st && i < pixels; i++) {
+    view_image_read(&photo, room->files.views, world, prov, err);
+    for (size_t i = 0; !err->status && i < pixels; i++) {
         const bool shown = photo.data[4 * i + 3] > 0; /* the view may look past the photo's border */
         if (!same[i] && shown) continue;
         for (size_t c = 0; c < 3; c++) picture->rgb[3 * i + c] = shown ? photo.data[4 * i + c] : 0;
         picture->made[i] = shown ? MADE_PHOTO : MADE_NOTHING;
     }
     image_release(&photo);
-    return st;
+    return err->status;
 }

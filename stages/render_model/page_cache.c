@@ -268,8 +268,7 @@ static enum status read_page(struct page_cache *c, struct texture_set *s, int pa
     struct texture_page *p = &s->pages[page];
     const struct atlas *a = &s->atlas;
     struct atlas_page from = {0};
-    enum status st = atlas_page_read(&from, a, page, s->folder, &p->inputs, err);
-    if (st) return st;
+    if (atlas_page_read(&from, a, page, s->folder, &p->inputs, err)) return err->status;
     take_bytes(c, p->size * TEXEL);
     bool *original = find_original(a);
     p->texels = calloc(p->size + 1, 4 * sizeof *p->texels);
@@ -279,13 +278,13 @@ static enum status read_page(struct page_cache *c, struct texture_set *s, int pa
             if (a->tiles[i].page == page) copy_tile(p, s->first[i], &a->tiles[i], &from, original);
         c->stats.pages_read++;
     } else {
-        st = err_nomem(err, "a page of texels", p->size * TEXEL);
+        err_nomem(err, "a page of texels", p->size * TEXEL);
         if (!p->texels) c->stats.bytes -= p->size * TEXEL;
         drop_page(c, p);
     }
     free(original);
     atlas_page_release(&from);
-    return st;
+    return err->status;
 }
 
 enum status page_cache_load(struct page_cache *c, struct texture_set *s, int page, struct err *err)

@@ -60,35 +60,35 @@ static enum status render_film(struct job *job, struct room *room, struct proven
     struct viewpoint_pairs pairs = {0};
     bool *wanted = NULL;
     char file[FILE_PATH];
-    enum status st = camera_path_read(&path, job->path, prov, err);
-    if (!st) st = product_path_in(file, job->path, PRODUCT_TOUR_PAIRS, NULL, err);
-    const bool paired = !st && path_is_file(file);
-    if (!st && paired) st = viewpoint_pairs_read(&pairs, file, prov, err);
-    if (!st) {
+    if (!camera_path_read(&path, job->path, prov, err)) product_path_in(file, job->path, PRODUCT_TOUR_PAIRS, NULL, err);
+    const bool paired = !err->status && path_is_file(file);
+    if (!err->status && paired) viewpoint_pairs_read(&pairs, file, prov, err);
+    if (!err->status) {
         wanted = calloc((size_t)path.frame_count + 1, sizeof *wanted);
-        st = wanted ? frame_list_read(wanted, path.frame_count, job->frames, err)
-                    : err_nomem(err, "the frames of a film", (size_t)path.frame_count);
+        if (wanted)
+            frame_list_read(wanted, path.frame_count, job->frames, err);
+        else
+            err_nomem(err, "the frames of a film", (size_t)path.frame_count);
     }
-    if (!st) st = pictures_of_frames(room, &path, paired ? &pairs : NULL, wanted, job->out, prov, err);
+    if (!err->status) pictures_of_frames(room, &path, paired ? &pairs : NULL, wanted, job->out, prov, err);
     free(wanted);
     viewpoint_pairs_release(&pairs);
     camera_path_release(&path);
-    return st;
+    return err->status;
 }
 
 static enum status render(struct job *job, struct provenance *prov, struct err *err)
 {
     struct room room = {0};
-    enum status st = read_usage(job, err);
-    if (!st) st = room_open(&room, &job->files, &job->params, prov, err);
-    if (!st && job->views.count)
-        st = pictures_of_views(&room, &job->views, job->out, prov, err);
-    else if (!st && job->path)
-        st = render_film(job, &room, prov, err);
-    else if (!st)
-        st = pictures_of_cameras(&room, &job->cameras, &job->names, job->out, prov, err);
+    if (!read_usage(job, err)) room_open(&room, &job->files, &job->params, prov, err);
+    if (!err->status && job->views.count)
+        pictures_of_views(&room, &job->views, job->out, prov, err);
+    else if (!err->status && job->path)
+        render_film(job, &room, prov, err);
+    else if (!err->status)
+        pictures_of_cameras(&room, &job->cameras, &job->names, job->out, prov, err);
     room_close(&room);
-    return st;
+    return err->status;
 }
 
 int main(int argc, char **argv)

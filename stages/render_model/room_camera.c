@@ -39,11 +39,11 @@ static enum status find_similarity(struct similarity *given_from_scene, const st
     const struct scene_photos scene = {room->files.views, source->records, prov};
     struct sfm_model photos = {0};
     struct frame_agreement agreement;
-    enum status st = sfm_model_read_cameras(&photos, source->photos, NULL, err);
-    if (!st) st = provenance_add_in(prov, "photos", source->photos, "images.txt", "", NULL, err);
-    if (!st) st = photo_alignment_find(given_from_scene, &agreement, &photos, source->photos, &scene, &rules, err);
+    if (!sfm_model_read_cameras(&photos, source->photos, NULL, err) &&
+        !provenance_add_in(prov, "photos", source->photos, "images.txt", "", NULL, err))
+        photo_alignment_find(given_from_scene, &agreement, &photos, source->photos, &scene, &rules, err);
     sfm_model_release(&photos);
-    return st;
+    return err->status;
 }
 
 static char *name_without_ending(const char *image)
@@ -57,32 +57,31 @@ enum status room_cameras_read(struct room_cameras *cameras, const struct camera_
 {
     struct sfm_model given = {0};
     struct similarity given_from_scene = {0};
-    enum status st = sfm_model_read_cameras(&given, source->folder, NULL, err);
-    if (!st) st = provenance_add_in(prov, "cameras", source->folder, "cameras.txt", "", NULL, err);
-    if (!st) st = provenance_add_in(prov, "cameras", source->folder, "images.txt", "", NULL, err);
-    if (!st && !given.image_count)
-        st = err_set(err, ST_DATA, "%s/images.txt has no images: wanted one for each picture to render.",
-                     source->folder);
-    if (!st && source->frame == FRAME_PHOTOS) st = find_similarity(&given_from_scene, source, room, prov, err);
+    if (!sfm_model_read_cameras(&given, source->folder, NULL, err) &&
+        !provenance_add_in(prov, "cameras", source->folder, "cameras.txt", "", NULL, err))
+        provenance_add_in(prov, "cameras", source->folder, "images.txt", "", NULL, err);
+    if (!err->status && !given.image_count)
+        err_set(err, ST_DATA, "%s/images.txt has no images: wanted one for each picture to render.", source->folder);
+    if (!err->status && source->frame == FRAME_PHOTOS) find_similarity(&given_from_scene, source, room, prov, err);
     cameras->list = calloc((size_t)given.image_count + 1, sizeof *cameras->list);
-    if (!st && !cameras->list) st = err_nomem(err, "cameras", (size_t)given.image_count * sizeof *cameras->list);
-    for (int i = 0; !st && i < given.image_count; i++) {
+    if (!err->status && !cameras->list) err_nomem(err, "cameras", (size_t)given.image_count * sizeof *cameras->list);
+    for (int i = 0; !err->status && i < given.image_count; i++) {
         const struct sfm_image *image = &given.images[i];
         struct pose pose = image->cam_from_world;
         if (source->frame == FRAME_PHOTOS) pose = photo_alignment_pose(&pose, &given_from_scene);
         if (source->frame != FRAME_MODEL) pose = pose_in_model(&pose, &room->in.axes);
         char *name = name_without_ending(image->name);
         if (!name)
-            st = err_nomem(err, "cameras", strlen(image->name));
+            err_nomem(err, "cameras", strlen(image->name));
         else
             cameras->list[cameras->count++] = (struct room_camera){name, given.cameras[image->camera_idx].camera, pose};
-        for (int k = 0; !st && k + 1 < cameras->count; k++)
+        for (int k = 0; !err->status && k + 1 < cameras->count; k++)
             if (!strcmp(cameras->list[k].name, name))
-                st = err_set(err, ST_DATA, "%s/images.txt has two images named %s; pictures are named like them.",
-                             source->folder, name);
+                err_set(err, ST_DATA, "%s/images.txt has two images named %s; pictures are named like them.",
+                        source->folder, name);
     }
     sfm_model_release(&given);
-    return st;
+    return err->status;
 }
 
 static struct view view_of(const struct pose *pose, const char *name, int width, int height)
@@ -160,20 +159,20 @@ static enum status draw_from_cube(struct model_picture *picture, struct room *ro
 {
     const int width = camera->lens.width, height = camera->lens.height;
     struct model_picture face = {0};
-    enum status st = model_picture_resize(picture, width, height, err);
-    for (int f = 0; !st && f < FACES; f++) {
+    model_picture_resize(picture, width, height, err);
+    for (int f = 0; !err->status && f < FACES; f++) {
         const struct view view = face_view(camera, f);
         bool drawn = false;
-        for (int i = 0; !st && i < width * height; i++) {
+        for (int i = 0; !err->status && i < width * height; i++) {
             struct vec3 ray;
             if (!camera_unproject(&camera->lens, i % width + 0.5, i / width + 0.5, &ray) || face_of(ray) != f) continue;
-            if (!drawn) st = room_draw(&face, room, &view, pair, -1, prov, err);
+            if (!drawn) room_draw(&face, room, &view, pair, -1, prov, err);
             drawn = true;
-            if (!st) take(picture, (size_t)i, &face, &view, ray, mat3_apply(face_from_camera[f], ray));
+            if (!err->status) take(picture, (size_t)i, &face, &view, ray, mat3_apply(face_from_camera[f], ray));
         }
     }
     model_picture_release(&face);
-    return st;
+    return err->status;
 }
 
 enum status room_camera_draw(struct model_picture *picture, struct room *room, const struct room_camera *camera,

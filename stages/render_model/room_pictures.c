@@ -46,9 +46,9 @@ static enum status write_sources(const struct model_picture *p, const char *path
     unsigned char *rgb = malloc(3 * pixels + 1);
     if (!rgb) return err_nomem(err, "a picture of sources", 3 * pixels);
     for (size_t i = 0; i < pixels; i++) memcpy(rgb + 3 * i, picture_made_kind(p->made[i])->rgb, 3);
-    const enum status st = png_write(path, rgb, p->width, p->height, 3, err);
+    png_write(path, rgb, p->width, p->height, 3, err);
     free(rgb);
-    return st;
+    return err->status;
 }
 
 /* What the pixels come from, in percent. */
@@ -71,16 +71,15 @@ static enum status write_picture(const struct model_picture *p, const struct roo
     char path[FILE_PATH];
     const double given = room->params->exposure;
     const double exposure = given > 0 ? given : exposure_choose(p, room->params->saturated);
-    enum status st = ST_OK;
-    if (radiance) st = product_path_in(path, out, PRODUCT_PICTURE, &key, err);
-    if (!st && radiance) st = model_picture_write(p, camera, path, prov, err);
-    if (!st && changed > 0) st = product_path_in(path, out, PRODUCT_PICTURE_JPEG, &key, err);
-    if (!st && changed > 0) st = exposure_write(p, exposure, path, err);
-    if (!st && changed > 0) st = product_path_in(path, out, PRODUCT_PICTURE_SOURCES, &key, err);
-    if (!st && changed > 0) st = write_sources(p, path, err);
-    if (!st) st = product_path_in(path, out, PRODUCT_PICTURE_RECORD, &key, err);
+    if (radiance && !product_path_in(path, out, PRODUCT_PICTURE, &key, err))
+        model_picture_write(p, camera, path, prov, err);
+    if (!err->status && changed > 0 && !product_path_in(path, out, PRODUCT_PICTURE_JPEG, &key, err) &&
+        !exposure_write(p, exposure, path, err) && !product_path_in(path, out, PRODUCT_PICTURE_SOURCES, &key, err))
+        write_sources(p, path, err);
+    if (!err->status) product_path_in(path, out, PRODUCT_PICTURE_RECORD, &key, err);
     const struct picture_record record = record_of(p, exposure, changed);
-    return st ? st : picture_record_write(&record, path, prov, err);
+    if (!err->status) picture_record_write(&record, path, prov, err);
+    return err->status;
 }
 
 /* --------------------------------------------------------------------------------------------------- original views */
@@ -92,19 +91,19 @@ static enum status draw_view(struct model_picture *picture, double *changed, str
     const struct texture_pair pair = {{room_viewpoint_of(room, view), -1}, 0};
     const size_t pixels = (size_t)camera->width * (size_t)camera->height;
     uint8_t *same = malloc(pixels);
-    enum status st = same ? ST_OK : err_nomem(err, "pixels of a view", pixels);
+    if (!same) err_nomem(err, "pixels of a view", pixels);
     const bool own = !strcmp(room->params->photo, "where_unchanged");
     size_t differ = 0;
-    if (!st) st = own_pixels_find(same, room, view, prov, err);
-    if (!st && (memchr(same, 0, pixels) || !own))
-        st = room_draw(picture, room, camera, &pair, view, prov, err);
-    else if (!st)
-        st = model_picture_resize(picture, camera->width, camera->height, err);
-    if (!st && own) st = own_pixels_draw(picture, same, room, view, prov, err);
-    for (size_t i = 0; !st && i < pixels; i++) differ += !same[i] && picture->made[i] != MADE_NOTHING;
+    if (!err->status) own_pixels_find(same, room, view, prov, err);
+    if (!err->status && (memchr(same, 0, pixels) || !own))
+        room_draw(picture, room, camera, &pair, view, prov, err);
+    else if (!err->status)
+        model_picture_resize(picture, camera->width, camera->height, err);
+    if (!err->status && own) own_pixels_draw(picture, same, room, view, prov, err);
+    for (size_t i = 0; !err->status && i < pixels; i++) differ += !same[i] && picture->made[i] != MADE_NOTHING;
     *changed = own ? 100.0 * (double)differ / (double)pixels : 100;
     free(same);
-    return st;
+    return err->status;
 }
 
 /* camera: in the model's frame. */
@@ -135,25 +134,26 @@ enum status pictures_of_views(struct room *room, const struct cli_list *views, c
     struct progress progress;
     const bool radiance = strcmp(room->params->radiance, "no") != 0, all = !strcmp(room->params->radiance, "all");
     bool *wanted = calloc((size_t)room->in.set.view_count + 1, sizeof *wanted);
-    enum status st = wanted ? find_views(wanted, room, views, err)
-                            : err_nomem(err, "views", (size_t)room->in.set.view_count * sizeof *wanted);
+    if (wanted)
+        find_views(wanted, room, views, err);
+    else
+        err_nomem(err, "views", (size_t)room->in.set.view_count * sizeof *wanted);
     progress_start(&progress, "rendering", views->count, "views");
-    for (int i = 0; !st && i < room->in.set.view_count; i++) {
+    for (int i = 0; !err->status && i < room->in.set.view_count; i++) {
         if (!wanted[i]) continue;
         const int inputs = prov->count;
         double changed = 0;
-        st = draw_view(&picture, &changed, room, i, prov, err);
-        if (!st) set_camera_of_view(&picture, &room->cameras[i]);
-        if (!st)
-            st = write_picture(&picture, room, &room->in.set.views[i], changed, radiance && (all || changed > 0), out,
-                               room->in.set.views[i].name, prov, err);
+        if (!draw_view(&picture, &changed, room, i, prov, err)) set_camera_of_view(&picture, &room->cameras[i]);
+        if (!err->status)
+            write_picture(&picture, room, &room->in.set.views[i], changed, radiance && (all || changed > 0), out,
+                          room->in.set.views[i].name, prov, err);
         provenance_keep(prov, inputs);
         progress_add(&progress, 1);
     }
     progress_end(&progress);
     model_picture_release(&picture);
     free(wanted);
-    return st;
+    return err->status;
 }
 
 /* ---------------------------------------------------------------------------------------------------- given cameras */
@@ -186,12 +186,11 @@ static enum status write_list(const struct room_cameras *cameras, const struct c
                               const struct provenance *prov, struct err *err)
 {
     struct picture_list list = {0};
-    enum status st = ST_OK;
-    for (int i = 0; !st && i < cameras->count; i++)
-        if (is_wanted(names, cameras->list[i].name)) st = picture_list_add(&list, cameras->list[i].name, err);
-    if (!st) st = picture_list_write(&list, out, prov, err);
+    for (int i = 0; !err->status && i < cameras->count; i++)
+        if (is_wanted(names, cameras->list[i].name)) picture_list_add(&list, cameras->list[i].name, err);
+    if (!err->status) picture_list_write(&list, out, prov, err);
     picture_list_release(&list);
-    return st;
+    return err->status;
 }
 
 enum status pictures_of_cameras(struct room *room, const struct camera_source *source, const struct cli_list *names,
@@ -200,27 +199,26 @@ enum status pictures_of_cameras(struct room *room, const struct camera_source *s
     struct room_cameras cameras = {0};
     struct model_picture picture = {0};
     struct progress progress;
-    enum status st = room_cameras_read(&cameras, source, room, prov, err);
-    if (!st) st = check_names(&cameras, source, names, err);
+    if (!room_cameras_read(&cameras, source, room, prov, err)) check_names(&cameras, source, names, err);
     progress_start(&progress, "rendering", names->count ? names->count : cameras.count, "pictures");
-    for (int i = 0; !st && i < cameras.count; i++) {
+    for (int i = 0; !err->status && i < cameras.count; i++) {
         const struct room_camera *camera = &cameras.list[i];
         if (!is_wanted(names, camera->name)) continue;
         const struct texture_pair pair = choose_pair(room, camera);
         const int inputs = prov->count;
         struct view view;
-        st = room_camera_draw(&picture, room, camera, &pair, prov, err);
+        room_camera_draw(&picture, room, camera, &pair, prov, err);
         room_camera_view(&view, camera);
         model_picture_set_camera(&picture, &camera->lens, &camera->pose);
-        if (!st) st = write_picture(&picture, room, &view, 100, true, out, camera->name, prov, err);
+        if (!err->status) write_picture(&picture, room, &view, 100, true, out, camera->name, prov, err);
         provenance_keep(prov, inputs);
         progress_add(&progress, 1);
     }
     progress_end(&progress);
-    if (!st) st = write_list(&cameras, names, out, prov, err);
+    if (!err->status) write_list(&cameras, names, out, prov, err);
     model_picture_release(&picture);
     room_cameras_release(&cameras);
-    return st;
+    return err->status;
 }
 
 /* ------------------------------------------------------------------------------------------------- frames of a film */
@@ -253,13 +251,12 @@ static enum status frame_exposure(double *exposure, struct room *room, const str
     double of[2] = {1, 1};
     *exposure = room->params->exposure;
     if (*exposure > 0) return ST_OK;
-    enum status st = ST_OK;
-    for (int k = 0; !st && k < 2; k++)
-        if (pair->viewpoint[k] >= 0) st = room_exposure(&of[k], room, pair->viewpoint[k], err);
+    for (int k = 0; !err->status && k < 2; k++)
+        if (pair->viewpoint[k] >= 0) room_exposure(&of[k], room, pair->viewpoint[k], err);
     if (pair->viewpoint[0] < 0) of[0] = of[1];
     if (pair->viewpoint[1] < 0) of[1] = of[0];
     *exposure = exp((1 - pair->t) * log(of[0]) + pair->t * log(of[1]));
-    return st;
+    return err->status;
 }
 
 /* A frame as a picture whose light may be changed: its radiance, and its exposure in the record. */
@@ -269,10 +266,11 @@ static enum status write_film_picture(const struct model_picture *p, double expo
     const struct product_key key = {.name = camera->name};
     char path[FILE_PATH];
     const struct picture_record record = record_of(p, exposure, 100);
-    enum status st = product_path_in(path, out, PRODUCT_PICTURE, &key, err);
-    if (!st) st = model_picture_write(p, camera, path, prov, err);
-    if (!st) st = product_path_in(path, out, PRODUCT_PICTURE_RECORD, &key, err);
-    return st ? st : picture_record_write(&record, path, prov, err);
+    return product_path_in(path, out, PRODUCT_PICTURE, &key, err) || model_picture_write(p, camera, path, prov, err) ||
+                   product_path_in(path, out, PRODUCT_PICTURE_RECORD, &key, err) ||
+                   picture_record_write(&record, path, prov, err)
+               ? err->status
+               : ST_OK;
 }
 
 enum status pictures_of_frames(struct room *room, const struct camera_path *path, const struct viewpoint_pairs *pairs,
@@ -280,31 +278,29 @@ enum status pictures_of_frames(struct room *room, const struct camera_path *path
 {
     struct model_picture picture = {0};
     struct progress progress;
-    enum status st = ST_OK;
     const bool all = !strcmp(room->params->radiance, "all");
     int count = 0;
     for (int i = 0; i < path->frame_count; i++) count += wanted[i];
     progress_start(&progress, "rendering", count, "frames");
-    for (int i = 0; !st && i < path->frame_count; i++) {
+    for (int i = 0; !err->status && i < path->frame_count; i++) {
         const struct view *scene = &path->frames[i].camera, camera = model_from_world_view(&room->in.axes, scene);
         const int inputs = prov->count;
         struct texture_pair pair;
         char file[FILE_PATH];
         double exposure = 1;
         if (!wanted[i]) continue;
-        st = frame_pair(&pair, room, &camera, pairs, err);
-        if (!st) st = frame_exposure(&exposure, room, &pair, err);
-        if (!st) st = room_draw(&picture, room, &camera, &pair, -1, prov, err);
-        if (!st) st = product_path_in(file, out, PRODUCT_FRAME, &(struct product_key){.frame = scene->name}, err);
-        if (!st) set_camera_of_view(&picture, &camera);
-        if (!st && all)
-            st = write_film_picture(&picture, exposure, scene, out, prov, err);
-        else if (!st)
-            st = exposure_write_frame(&picture, exposure, scene, file, prov, err);
+        if (!frame_pair(&pair, room, &camera, pairs, err) && !frame_exposure(&exposure, room, &pair, err) &&
+            !room_draw(&picture, room, &camera, &pair, -1, prov, err) &&
+            !product_path_in(file, out, PRODUCT_FRAME, &(struct product_key){.frame = scene->name}, err))
+            set_camera_of_view(&picture, &camera);
+        if (!err->status && all)
+            write_film_picture(&picture, exposure, scene, out, prov, err);
+        else if (!err->status)
+            exposure_write_frame(&picture, exposure, scene, file, prov, err);
         provenance_keep(prov, inputs);
         progress_add(&progress, 1);
     }
     progress_end(&progress);
     model_picture_release(&picture);
-    return st;
+    return err->status;
 }

@@ -323,18 +323,18 @@ enum status shade_pixels(const struct shade_pass *pass, struct err *err)
     const int threads = parallel_threads();
     const size_t room = (size_t)SLOTS * (size_t)pass->max_tiles;
     struct worker *workers = aligned_alloc(_Alignof(struct worker), (size_t)threads * sizeof *workers);
-    enum status st = workers ? ST_OK : err_nomem(err, "threads", (size_t)threads * sizeof *workers);
+    if (!workers) err_nomem(err, "threads", (size_t)threads * sizeof *workers);
     for (int i = 0; workers && i < threads; i++) workers[i].tiles = NULL;
-    for (int i = 0; !st && i < threads; i++)
+    for (int i = 0; !err->status && i < threads; i++)
         if (posix_memalign((void **)&workers[i].tiles, 32, (room + 1) * sizeof *workers[i].tiles)) {
             workers[i].tiles = NULL;
-            st = err_nomem(err, "tiles", room * sizeof *workers[i].tiles);
+            err_nomem(err, "tiles", room * sizeof *workers[i].tiles);
         }
     struct shade_job job = {.pass = pass, .workers = workers};
-    if (!st) parallel_for(tile_count(pass->seen), 1, shade_some, &job);
+    if (!err->status) parallel_for(tile_count(pass->seen), 1, shade_some, &job);
     for (int i = 0; workers && i < threads; i++) free(workers[i].tiles);
     free(workers);
-    return st;
+    return err->status;
 }
 
 static void mark_some(void *ctx, size_t begin, size_t end, int thread)

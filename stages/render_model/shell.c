@@ -68,17 +68,16 @@ static enum status set_faces(struct shell_scene *s, struct err *err)
     s->ids = calloc(faces + 1, sizeof *s->ids);
     s->steps = calloc(faces + 1, sizeof *s->steps);
     s->open = calloc(faces + 1, sizeof *s->open);
-    enum status st = ST_OK;
-    if (!drawn || !s->faces || !s->ids || !s->steps || !s->open) st = err_nomem(err, "faces", faces * sizeof *s->steps);
+    if (!drawn || !s->faces || !s->ids || !s->steps || !s->open) err_nomem(err, "faces", faces * sizeof *s->steps);
     s->model.size = 1;
     for (int i = 0; i < s->mesh.vertex_count; i++) {
         const struct vec3 p = s->mesh.vertices[i].p;
         s->model.size = fmax(s->model.size, fmax(fabs(p.x), fmax(fabs(p.y), fabs(p.z))));
     }
-    for (int i = 0; !st && i < s->mesh.face_count; i++) st = set_face(s, i, &drawn[i], err);
-    if (!st) st = visible_model_make(&s->model, &s->mesh, drawn, err);
+    for (int i = 0; !err->status && i < s->mesh.face_count; i++) set_face(s, i, &drawn[i], err);
+    if (!err->status) visible_model_make(&s->model, &s->mesh, drawn, err);
     free(drawn);
-    return st;
+    return err->status;
 }
 
 enum status shell_make(struct shell_scene **scene, struct solid_mesh *mesh, struct texture_map *map, const char *vdta,
@@ -110,15 +109,15 @@ enum status shell_open(struct shell_scene **scene, const struct shell_files *fil
     struct texture_map map = {0};
     struct provenance inputs = {0};
     *scene = NULL;
-    enum status st = solid_mesh_read(&mesh, files->model, &inputs, err);
-    if (!st && files->map) st = texture_map_read(&map, files->map, &inputs, err);
-    if (st)
+    solid_mesh_read(&mesh, files->model, &inputs, err);
+    if (!err->status && files->map) texture_map_read(&map, files->map, &inputs, err);
+    if (err->status)
         solid_mesh_release(&mesh);
     else
-        st = shell_make(scene, &mesh, &map, files->vdta, files->vita, files->memory, err);
-    if (st) {
+        shell_make(scene, &mesh, &map, files->vdta, files->vita, files->memory, err);
+    if (err->status) {
         provenance_release(&inputs);
-        return st;
+        return err->status;
     }
     (*scene)->prov = prov;
     (*scene)->inputs = inputs;

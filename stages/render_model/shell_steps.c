@@ -74,14 +74,14 @@ static enum status find_colour(struct shell_rule *rule, struct shell_scene *s, s
 {
     struct radiances r = {calloc(3, sizeof *r.counts), 0};
     if (!r.counts) return err_nomem(err, "radiances", 3 * sizeof *r.counts);
-    enum status st = count_radiances(&r, s, vita, &rule->rule, true, err);
-    if (!st && !r.total) st = count_radiances(&r, s, vita, &rule->rule, false, err);
-    rule->tried = !st;
-    rule->known = !st && r.total;
+    count_radiances(&r, s, vita, &rule->rule, true, err);
+    if (!err->status && !r.total) count_radiances(&r, s, vita, &rule->rule, false, err);
+    rule->tried = !err->status;
+    rule->known = !err->status && r.total;
     for (int c = 0; rule->known && c < 3; c++)
         rule->colour[c] = rule->rule.albedo[c] / USUAL_ALBEDO * median(r.counts[c], r.total);
     free(r.counts);
-    return st;
+    return err->status;
 }
 
 /* ------------------------------------------------------------------------------------------------------------ tiles */

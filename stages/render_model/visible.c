@@ -48,8 +48,7 @@ enum status visible_model_make(struct visible_model *m, const struct solid_mesh 
 {
     struct solid_triangles all = {0};
     *m = (struct visible_model){.mesh = mesh};
-    const enum status st = solid_mesh_triangulate(&all, mesh, err);
-    if (st) return st;
+    if (solid_mesh_triangulate(&all, mesh, err)) return err->status;
     m->triangles = all.triangles; /* those that are drawn move to the front */
     for (int i = 0; i < all.count; i++)
         if (!drawn || drawn[all.triangles[i].face]) m->triangles[m->count++] = all.triangles[i];

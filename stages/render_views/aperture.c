@@ -161,8 +161,7 @@ enum status aperture_render(struct rendered_frame *out, const struct view *camer
         return err_set(err, ST_DATA,
                        "the focus of frame %s is %g: wanted a depth above 0, because its aperture is open.",
                        camera->name ? camera->name : "", focus);
-    enum status st = render(ctx, camera, out, err);
-    if (st || aperture == 0) goto done;
+    if (render(ctx, camera, out, err) || aperture == 0) goto done;
 
     done.error = 1;
     const size_t samples = 4 * (size_t)out->width * (size_t)out->height;
@@ -173,7 +172,7 @@ enum status aperture_render(struct rendered_frame *out, const struct view *camer
     sums.batch = calloc(samples, sizeof *sums.batch);
     tiles.error = malloc((size_t)tiles.across * (size_t)((out->height + TILE - 1) / TILE) * sizeof *tiles.error);
     if (!sums.before || !sums.batch || !tiles.error) {
-        st = err_nomem(err, "the mean of a lens's frames", 2 * samples * sizeof *sums.before);
+        err_nomem(err, "the mean of a lens's frames", 2 * samples * sizeof *sums.before);
         goto done;
     }
     int before = 0, count = 0; /* samples before this batch, and with it */
@@ -183,10 +182,10 @@ enum status aperture_render(struct rendered_frame *out, const struct view *camer
             double x, y;
             aperture_lens_point(count, &x, &y);
             const struct view at = view_from_lens_point(camera, x * aperture / 2, y * aperture / 2, focus);
-            st = render(ctx, &at, &frame, err);
-            if (!st && (frame.width != out->width || frame.height != out->height))
-                st = err_set(err, ST_INTERNAL, "frames of one lens have different sizes.");
-            if (st) goto done;
+            render(ctx, &at, &frame, err);
+            if (!err->status && (frame.width != out->width || frame.height != out->height))
+                err_set(err, ST_INTERNAL, "frames of one lens have different sizes.");
+            if (err->status) goto done;
             sums.from = frame.rgba;
             parallel_for(samples, CHUNK, add_chunk, &sums);
             count++;
@@ -201,10 +200,10 @@ enum status aperture_render(struct rendered_frame *out, const struct view *camer
     sums.mean = out->rgba;
     parallel_for(samples, CHUNK, mean_chunk, &sums);
 done:
-    if (!st && stats) *stats = done;
+    if (!err->status && stats) *stats = done;
     rendered_frame_release(&frame);
     free(sums.before);
     free(sums.batch);
     free(tiles.error);
-    return st;
+    return err->status;
 }

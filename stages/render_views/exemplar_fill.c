@@ -612,21 +612,19 @@ static enum status fill_narrow_holes(struct fill_job *j, int diameter, struct er
     const struct exemplar_depth *d = j->depth;
     uint32_t *narrow = NULL;
     size_t *narrow_count = NULL, count = 0, empty = 0, kept = 0;
-    enum status st = find_holes(j, err);
-
-    if (st || !j->hole_count) return st;
-    st = hole_narrow_pixels(&narrow, &count, &empty, j->frame, diameter, err);
+    if (find_holes(j, err) || !j->hole_count) return err->status;
+    hole_narrow_pixels(&narrow, &count, &empty, j->frame, diameter, err);
     narrow_count = calloc(j->hole_count, sizeof *narrow_count);
-    if (!st && !narrow_count) st = err_nomem(err, "the holes of a frame", j->hole_count * sizeof *narrow_count);
-    for (size_t i = 0; !st && i < count; i++) narrow_count[j->label[narrow[i]] - 1]++;
-    for (size_t i = 0; !st && i < count; i++) {
+    if (!err->status && !narrow_count) err_nomem(err, "the holes of a frame", j->hole_count * sizeof *narrow_count);
+    for (size_t i = 0; !err->status && i < count; i++) narrow_count[j->label[narrow[i]] - 1]++;
+    for (size_t i = 0; !err->status && i < count; i++) {
         const uint32_t hole = j->label[narrow[i]] - 1;
         if (narrow_count[hole] == j->holes[hole].count) narrow[kept++] = narrow[i];
     }
-    if (!st) st = hole_fill_pixels(j->frame, narrow, kept, j->overhang, &d->soft, d->sigma, diameter, err);
+    if (!err->status) hole_fill_pixels(j->frame, narrow, kept, j->overhang, &d->soft, d->sigma, diameter, err);
     free(narrow_count);
     free(narrow);
-    return st;
+    return err->status;
 }
 
 /* ------------------------------------------------------------------------------------------------------- a frame */
@@ -696,7 +694,6 @@ enum status exemplar_fill(struct rendered_frame *frame, const struct hole_photos
     struct fill_job j = {.frame = frame, .depth = depth, .w = frame->width, .h = frame->height};
     struct exemplar_stats total = {0};
     size_t empty = 0, left = 0;
-    enum status st = ST_OK;
 
     j.radius = min_int(MAX_RADIUS, params->fill_patch / 2);
     j.window = params->fill_window;
@@ -707,16 +704,17 @@ enum status exemplar_fill(struct rendered_frame *frame, const struct hole_photos
     j.label = malloc(pixels * sizeof *j.label);
     j.list = malloc(empty * sizeof *j.list);
     j.overhang = malloc(pixels);
-    st = j.label && j.list && j.overhang ? hole_find_overhang(j.overhang, frame, photos, err)
-                                         : err_nomem(err, "the holes of a frame", (pixels + empty) * sizeof *j.label);
-    if (!st) st = fill_narrow_holes(&j, diameter, err);
-    if (!st) st = find_holes(&j, err); /* the remaining ones */
-    if (!st && j.hole_count) st = prepare_patches(&j, err);
-    if (st) goto done;
+    if (j.label && j.list && j.overhang)
+        hole_find_overhang(j.overhang, frame, photos, err);
+    else
+        err_nomem(err, "the holes of a frame", (pixels + empty) * sizeof *j.label);
+    if (!err->status && !fill_narrow_holes(&j, diameter, err)) find_holes(&j, err); /* the remaining ones */
+    if (!err->status && j.hole_count) prepare_patches(&j, err);
+    if (err->status) goto done;
     parallel_for(j.hole_count, 1, fill_holes, &j);
     for (int i = 0; j.scratch && i < parallel_threads(); i++) {
         const struct exemplar_stats *s = &j.scratch[i].stats;
-        if (j.scratch[i].status) st = err_nomem(err, "the filling of a hole", pixels);
+        if (j.scratch[i].status) err_nomem(err, "the filling of a hole", pixels);
         total.holes += s->holes;
         total.classified += s->classified;
         total.overhangs += s->overhangs;
@@ -732,5 +730,5 @@ done:
     frame->unfilled_fraction = (double)left / (double)pixels;
     if (stats) *stats = total;
     job_release(&j);
-    return st;
+    return err->status;
 }

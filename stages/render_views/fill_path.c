@@ -132,14 +132,13 @@ static enum status splat_anchors(const struct fill_path *fill, const struct fill
     const size_t pixels = (size_t)f->width * (size_t)f->height;
     uint32_t *slots = malloc(pixels * sizeof *slots), count = 0;
     struct hole_pixel *holes = NULL;
-    enum status st = ST_OK;
 
     if (!slots) return err_nomem(err, "the holes of a frame", pixels * sizeof *slots);
     for (size_t p = 0; p < pixels; p++) slots[p] = f->rgba[4 * p + 3] > 0 ? NO_SLOT : count++;
     if (!count) goto done;
     holes = calloc(count, sizeof *holes);
     if (!holes) {
-        st = err_nomem(err, "the holes of a frame", count * sizeof *holes);
+        err_nomem(err, "the holes of a frame", count * sizeof *holes);
         goto done;
     }
     const struct splatting c = {camera, &fill->options.depth, f->width, f->height, slots, holes};
@@ -156,7 +155,7 @@ static enum status splat_anchors(const struct fill_path *fill, const struct fill
 done:
     free(holes);
     free(slots);
-    return st;
+    return err->status;
 }
 
 /* --------------------------------------------------------------------------------------------------- anchors */
@@ -192,23 +191,23 @@ static enum status anchor_make(struct fill_path *fill, struct fill_anchor *to, i
     size_t count = 0;
 
     anchor_drop(to);
-    enum status st = fill->render(fill->ctx, frame, &f, err);
+    fill->render(fill->ctx, frame, &f, err);
     fill->rendered++;
     const size_t pixels = (size_t)f.width * (size_t)f.height;
-    if (!st) {
+    if (!err->status) {
         for (size_t p = 0; p < pixels; p++) count += !(f.rgba[4 * p + 3] > 0);
         empty = malloc((count + 1) * sizeof *empty);
         to->points = malloc((count + 1) * sizeof *to->points);
-        if (!empty || !to->points) st = err_nomem(err, "the filled pixels of a frame", count * sizeof *to->points);
+        if (!empty || !to->points) err_nomem(err, "the filled pixels of a frame", count * sizeof *to->points);
     }
-    if (!st) {
+    if (!err->status) {
         count = 0;
         for (size_t p = 0; p < pixels; p++)
             if (!(f.rgba[4 * p + 3] > 0)) empty[count++] = (uint32_t)p;
-        if (a) st = splat_anchors(fill, a, b, b ? position_between(fill, a, b, frame) : 0, camera, &f, err);
+        if (a) splat_anchors(fill, a, b, b ? position_between(fill, a, b, frame) : 0, camera, &f, err);
     }
-    if (!st) st = inpaint(fill, &f, camera, NULL, err);
-    for (size_t i = 0; !st && i < count; i++) {
+    if (!err->status) inpaint(fill, &f, camera, NULL, err);
+    for (size_t i = 0; !err->status && i < count; i++) {
         const size_t p = empty[i];
         struct fill_point *point = &to->points[to->count];
         if (!(f.z[p] > 0)) continue;
@@ -217,13 +216,13 @@ static enum status anchor_make(struct fill_path *fill, struct fill_anchor *to, i
         memcpy(point->rgb, f.rgba + 4 * p, sizeof point->rgb);
         to->count++;
     }
-    if (!st)
+    if (!err->status)
         to->index = index;
     else
         anchor_drop(to);
     free(empty);
     rendered_frame_release(&f);
-    return st;
+    return err->status;
 }
 
 /* The anchors before and after a frame, made if needed; *b is NULL if the frame is anchor a itself. */
@@ -232,14 +231,13 @@ static enum status anchors_around(struct fill_path *fill, int frame, const struc
 {
     struct fill_anchor *kept = fill->anchors, *lo = &kept[0], *hi = &kept[1];
     const int last = last_anchor(fill);
-    enum status st = ST_OK;
 
-    if (lo->index < 0) st = anchor_make(fill, lo, 0, NULL, NULL, err);
+    if (lo->index < 0) anchor_make(fill, lo, 0, NULL, NULL, err);
     *a = lo;
     *b = NULL;
-    if (st || frame == 0) return st;
-    if (hi->index < 0) st = anchor_make(fill, hi, last, lo, NULL, err);
-    for (int level = 2; !st; level++) {
+    if (err->status || frame == 0) return err->status;
+    if (hi->index < 0) anchor_make(fill, hi, last, lo, NULL, err);
+    for (int level = 2; !err->status; level++) {
         *a = lo;
         *b = hi;
         if (frame == anchor_frame(fill, hi->index)) *a = hi;
@@ -248,13 +246,13 @@ static enum status anchors_around(struct fill_path *fill, int frame, const struc
         /* always the middle of these two, so that the result does not depend on earlier frames */
         const int index = lo->index + (hi->index - lo->index) / 2;
         struct fill_anchor *middle = &kept[level];
-        if (middle->index != index) st = anchor_make(fill, middle, index, lo, hi, err);
+        if (middle->index != index) anchor_make(fill, middle, index, lo, hi, err);
         if (frame < anchor_frame(fill, index))
             hi = middle;
         else
             lo = middle;
     }
-    return st;
+    return err->status;
 }
 
 enum status fill_path_frame(struct fill_path *fill, int frame, const struct view *camera, struct rendered_frame *f,
@@ -264,13 +262,12 @@ enum status fill_path_frame(struct fill_path *fill, int frame, const struct view
     const size_t pixels = (size_t)f->width * (size_t)f->height;
     const struct fill_anchor *a, *b;
     bool empty = false;
-    enum status st = ST_OK;
 
     for (size_t p = 0; p < pixels && !empty; p++) empty = !(f->rgba[4 * p + 3] > 0);
     if (empty && o->fill_diameter > 0 && o->fill_anchor_spacing > 0) {
-        st = anchors_around(fill, frame, &a, &b, err);
-        if (!st) st = splat_anchors(fill, a, b, b ? position_between(fill, a, b, frame) : 0, camera, f, err);
+        if (!anchors_around(fill, frame, &a, &b, err))
+            splat_anchors(fill, a, b, b ? position_between(fill, a, b, frame) : 0, camera, f, err);
     }
-    if (!st) st = inpaint(fill, f, camera, &fill->stats, err);
-    return st;
+    if (!err->status) inpaint(fill, f, camera, &fill->stats, err);
+    return err->status;
 }

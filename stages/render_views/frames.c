@@ -55,10 +55,12 @@ static enum status measure_holes(double *h, const struct rendered_frame *f, stru
 {
     const size_t pixels = (size_t)f->width * (size_t)f->height;
     float *scratch = malloc(pixels * sizeof *scratch);
-    const enum status st = scratch ? hole_measure(h, f->hole, f->width, f->height, scratch, err)
-                                   : err_nomem(err, "distances in holes", pixels * sizeof *scratch);
+    if (scratch)
+        hole_measure(h, f->hole, f->width, f->height, scratch, err);
+    else
+        err_nomem(err, "distances in holes", pixels * sizeof *scratch);
     free(scratch);
-    return st;
+    return err->status;
 }
 
 static enum status frame_write(const struct rendered_frame *f, const struct view *camera, bool with_holes,
@@ -69,18 +71,18 @@ static enum status frame_write(const struct rendered_frame *f, const struct view
     struct exr_plane *plane;
     double h = 0;
 
-    enum status st = measure_holes(&h, f, err);
-    if (!st) st = exr_init_rgba(&im, f->rgba, f->width, f->height, err);
-    if (!st && !(st = exr_add_plane(&im, "Z", EXR_FLOAT, &plane, err))) memcpy(plane->f, f->z, pixels * sizeof *f->z);
-    if (!st && with_holes && !(st = exr_add_plane(&im, "hole", EXR_HALF, &plane, err)))
+    if (!measure_holes(&h, f, err) && !exr_init_rgba(&im, f->rgba, f->width, f->height, err) &&
+        !exr_add_plane(&im, "Z", EXR_FLOAT, &plane, err))
+        memcpy(plane->f, f->z, pixels * sizeof *f->z);
+    if (!err->status && with_holes && !exr_add_plane(&im, "hole", EXR_HALF, &plane, err))
         for (size_t p = 0; p < pixels; p++) plane->f[p] = f->hole[p];
     view_image_set_camera(&im, camera);
-    if (!st) st = exr_set_number(&im, "remodel:holes", f->hole_fraction, err);
-    if (!st) st = exr_set_number(&im, "remodel:unfilled", f->unfilled_fraction, err);
-    if (!st && isfinite(h)) st = exr_set_number(&im, "remodel:h", h, err);
-    if (!st) st = exr_write(&im, file, prov, err);
+    if (!err->status && !exr_set_number(&im, "remodel:holes", f->hole_fraction, err))
+        exr_set_number(&im, "remodel:unfilled", f->unfilled_fraction, err);
+    if (!err->status && isfinite(h)) exr_set_number(&im, "remodel:h", h, err);
+    if (!err->status) exr_write(&im, file, prov, err);
     exr_image_release(&im);
-    return st;
+    return err->status;
 }
 
 enum status frames_render(const struct camera_path *path, const bool *wanted, struct renderer *renderer,
@@ -93,23 +95,22 @@ enum status frames_render(const struct camera_path *path, const bool *wanted, st
 
     for (int i = 0; i < path->frame_count; i++) count += wanted[i];
     progress_start(&progress, "rendering", count, "frames");
-    enum status st = ST_OK;
-    for (int i = 0; !st && i < path->frame_count; i++) {
+    for (int i = 0; !err->status && i < path->frame_count; i++) {
         const struct view *camera = &path->frames[i].camera;
         if (!wanted[i]) continue;
-        st = product_path_in(file, folder, PRODUCT_FRAME, &(struct product_key){.frame = camera->name}, err);
-        if (!st) st = renderer_frame(renderer, i, &frame, err);
-        if (!st && frame.hole_fraction >= 1)
-            st = err_set(err, ST_DATA,
-                         "frame %d of the path sees nothing of the scene: no view covers any of its pixels. "
-                         "Check its pose in the path, or plan the path again.",
-                         i + 1);
-        if (!st) st = frame_write(&frame, camera, false, file, prov, err);
+        if (!product_path_in(file, folder, PRODUCT_FRAME, &(struct product_key){.frame = camera->name}, err))
+            renderer_frame(renderer, i, &frame, err);
+        if (!err->status && frame.hole_fraction >= 1)
+            err_set(err, ST_DATA,
+                    "frame %d of the path sees nothing of the scene: no view covers any of its pixels. "
+                    "Check its pose in the path, or plan the path again.",
+                    i + 1);
+        if (!err->status) frame_write(&frame, camera, false, file, prov, err);
         progress_add(&progress, 1);
     }
     progress_end(&progress);
     rendered_frame_release(&frame);
-    return st;
+    return err->status;
 }
 
 enum status frame_select_cameras(bool *wanted, const struct camera_set *cameras, const char *const *names, int count,
@@ -132,23 +133,22 @@ enum status frame_render_cameras(const struct camera_set *cameras, const bool *w
 {
     struct progress progress;
     int count = 0;
-    enum status st = ST_OK;
 
     for (int i = 0; i < cameras->view_count; i++) count += wanted[i];
     progress_start(&progress, "rendering", count, "frames");
-    for (int i = 0; !st && i < cameras->view_count; i++) {
+    for (int i = 0; !err->status && i < cameras->view_count; i++) {
         const struct view *camera = &cameras->views[i];
         struct rendered_frame frame = {0};
         char file[FILE_PATH];
         if (!wanted[i]) continue;
-        st = product_path_in(file, folder, PRODUCT_HELD_FRAME, &(struct product_key){.view = camera->name}, err);
-        if (!st) st = renderer_camera(renderer, camera, &frame, err);
-        if (!st && frame.hole_fraction >= 1)
+        if (!product_path_in(file, folder, PRODUCT_HELD_FRAME, &(struct product_key){.view = camera->name}, err))
+            renderer_camera(renderer, camera, &frame, err);
+        if (!err->status && frame.hole_fraction >= 1)
             log_warn("camera %s sees nothing of the scene: its frame is empty", camera->name);
-        if (!st) st = frame_write(&frame, camera, true, file, prov, err);
+        if (!err->status) frame_write(&frame, camera, true, file, prov, err);
         rendered_frame_release(&frame);
         progress_add(&progress, 1);
     }
     progress_end(&progress);
-    return st;
+    return err->status;
 }

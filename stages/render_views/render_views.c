@@ -33,26 +33,28 @@ static enum status render_path(const struct render_job *job, struct provenance *
     struct effects effects = {0}, more = {0};
     struct renderer renderer = {0};
     bool *wanted = NULL;
-    enum status st = camera_set_read(&set, job->views, prov, err);
+    camera_set_read(&set, job->views, prov, err);
 
-    if (!st) st = camera_path_read(&path, job->path, prov, err);
-    for (int i = 0; !st && i < path.frame_count; i++) st = frame_part_camera(&path.frames[i].camera, &job->part, err);
-    if (!st) {
+    if (!err->status) camera_path_read(&path, job->path, prov, err);
+    for (int i = 0; !err->status && i < path.frame_count; i++)
+        frame_part_camera(&path.frames[i].camera, &job->part, err);
+    if (!err->status) {
         wanted = calloc((size_t)path.frame_count + 1, sizeof *wanted);
-        st = wanted ? frame_list_read(wanted, path.frame_count, job->frames, err)
-                    : err_nomem(err, "the frames of a path", (size_t)path.frame_count);
+        if (wanted)
+            frame_list_read(wanted, path.frame_count, job->frames, err);
+        else
+            err_nomem(err, "the frames of a path", (size_t)path.frame_count);
     }
-    for (int i = 0; !st && i < job->effects.count; i++) {
-        st = effects_read(&more, job->effects.items[i], prov, err);
-        if (!st) st = effects_append(&effects, &more, err);
+    for (int i = 0; !err->status && i < job->effects.count; i++) {
+        if (!effects_read(&more, job->effects.items[i], prov, err)) effects_append(&effects, &more, err);
         effects_release(&more);
     }
-    if (!st) st = film_views_keep(&set, job->film_views, prov, err);
-    if (!st) st = layer_scene_read(&scene, &set, job->depth, prov, err);
-    if (!st) st = renderer_match_exposures(&scene, &job->params, err);
-    if (!st) {
+    if (!err->status && !film_views_keep(&set, job->film_views, prov, err) &&
+        !layer_scene_read(&scene, &set, job->depth, prov, err))
+        renderer_match_exposures(&scene, &job->params, err);
+    if (!err->status) {
         renderer_init(&renderer, &scene, &path, &effects, &job->params);
-        st = frames_render(&path, wanted, &renderer, job->out, prov, err);
+        frames_render(&path, wanted, &renderer, job->out, prov, err);
     }
     free(wanted);
     renderer_release(&renderer);
@@ -60,7 +62,7 @@ static enum status render_path(const struct render_job *job, struct provenance *
     layer_scene_release(&scene);
     camera_path_release(&path);
     camera_set_release(&set);
-    return st;
+    return err->status;
 }
 
 static enum status render_cameras(const struct render_job *job, struct provenance *prov, struct err *err)
@@ -70,33 +72,34 @@ static enum status render_cameras(const struct render_job *job, struct provenanc
     struct layer_scene scene = {0};
     struct renderer renderer = {0};
     bool *wanted = NULL;
-    enum status st = camera_set_read(&set, job->views, prov, err);
+    camera_set_read(&set, job->views, prov, err);
 
-    if (!st) st = camera_set_read(&cameras, job->cameras, prov, err);
-    for (int i = 0; !st && i < cameras.view_count; i++) st = frame_part_camera(&cameras.views[i], &job->part, err);
-    if (!st) {
+    if (!err->status) camera_set_read(&cameras, job->cameras, prov, err);
+    for (int i = 0; !err->status && i < cameras.view_count; i++) frame_part_camera(&cameras.views[i], &job->part, err);
+    if (!err->status) {
         wanted = calloc((size_t)cameras.view_count + 1, sizeof *wanted);
-        st = wanted ? frame_select_cameras(wanted, &cameras, job->names.items, job->names.count, err)
-                    : err_nomem(err, "cameras", (size_t)cameras.view_count);
+        if (wanted)
+            frame_select_cameras(wanted, &cameras, job->names.items, job->names.count, err);
+        else
+            err_nomem(err, "cameras", (size_t)cameras.view_count);
     }
-    if (!st) st = layer_scene_read(&scene, &set, job->depth, prov, err);
-    if (!st) st = renderer_match_exposures(&scene, &job->params, err);
-    if (!st) {
+    if (!err->status && !layer_scene_read(&scene, &set, job->depth, prov, err))
+        renderer_match_exposures(&scene, &job->params, err);
+    if (!err->status) {
         renderer_init(&renderer, &scene, NULL, &none, &job->params);
-        st = frame_render_cameras(&cameras, wanted, &renderer, job->out, prov, err);
+        frame_render_cameras(&cameras, wanted, &renderer, job->out, prov, err);
     }
     free(wanted);
     renderer_release(&renderer);
     layer_scene_release(&scene);
     camera_set_release(&cameras);
     camera_set_release(&set);
-    return st;
+    return err->status;
 }
 
 static enum status render(struct render_job *job, struct provenance *prov, struct err *err)
 {
     const bool cameras = job->cameras;
-    enum status st = ST_OK;
 
     if (cameras ? job->path || job->frames : !job->path || !job->frames || job->names.count)
         return err_set(err, ST_USAGE, "wanted either --path and --frames, or --cameras; --camera goes with --cameras.");
@@ -105,7 +108,7 @@ static enum status render(struct render_job *job, struct provenance *prov, struc
                        "--effects goes with --path: single cameras have no time, which the effects' keys need.");
     if (cameras && job->film_views)
         return err_set(err, ST_USAGE, "--film-views goes with --path: single cameras are rendered from all views.");
-    if ((st = frame_part_read(&job->part, job->crop, job->scale, err))) return st;
+    if (frame_part_read(&job->part, job->crop, job->scale, err)) return err->status;
     return cameras ? render_cameras(job, prov, err) : render_path(job, prov, err);
 }
 

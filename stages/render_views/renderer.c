@@ -39,9 +39,8 @@ enum status renderer_match_exposures(struct layer_scene *scene, const struct ren
 {
     /* a single photo needs no match */
     if (strcmp(params->exposure, "matched") != 0 || strcmp(params->views, "nearest") == 0) return ST_OK;
-    const enum status st = layer_scene_match_exposures(scene, err);
-    if (!st) log_exposures(scene);
-    return st;
+    if (!layer_scene_match_exposures(scene, err)) log_exposures(scene);
+    return err->status;
 }
 
 void renderer_init(struct renderer *r, const struct layer_scene *scene, const struct camera_path *path,
@@ -66,33 +65,34 @@ void renderer_init(struct renderer *r, const struct layer_scene *scene, const st
 static enum status render_pinhole(void *ctx, const struct view *camera, struct rendered_frame *out, struct err *err)
 {
     struct renderer *r = ctx;
-    const enum status st = layer_render(out, r->scene, camera, &r->options, err);
-    return st || !r->options.offline ? st : fill_path_frame(&r->fill, r->frame, camera, out, err);
+    layer_render(out, r->scene, camera, &r->options, err);
+    return err->status || !r->options.offline ? err->status : fill_path_frame(&r->fill, r->frame, camera, out, err);
 }
 
 enum status renderer_frame(struct renderer *r, int frame, struct rendered_frame *out, struct err *err)
 {
     const struct path_frame *f = &r->path->frames[frame];
-    enum status st;
 
     r->frame = frame;
     if (r->options.offline)
-        st = aperture_render(out, &f->camera, f->aperture, f->focus, &r->aperture, render_pinhole, r, NULL, err);
-    else if (!(st = render_pinhole(r, &f->camera, out, err)))
-        st = defocus_apply(&r->defocus, out, &f->camera, f->aperture, f->focus, err);
-    if (!st) photo_exposures_apply(&r->scene->exposures, &r->scene->mesh, &f->camera, out);
-    if (!st) effects_apply(r->effects, f->time, &f->camera, out);
-    return st;
+        aperture_render(out, &f->camera, f->aperture, f->focus, &r->aperture, render_pinhole, r, NULL, err);
+    else if (!render_pinhole(r, &f->camera, out, err))
+        defocus_apply(&r->defocus, out, &f->camera, f->aperture, f->focus, err);
+    if (!err->status) {
+        photo_exposures_apply(&r->scene->exposures, &r->scene->mesh, &f->camera, out);
+        effects_apply(r->effects, f->time, &f->camera, out);
+    }
+    return err->status;
 }
 
 enum status renderer_camera(struct renderer *r, const struct view *camera, struct rendered_frame *out, struct err *err)
 {
     const struct hole_photos photos = photos_of(r, camera);
-    enum status st = layer_render(out, r->scene, camera, &r->options, err);
-    if (!st && r->options.offline)
-        st = exemplar_fill(out, &photos, &r->depth, r->fill_diameter, &r->exemplar, NULL, err);
-    if (!st) photo_exposures_apply(&r->scene->exposures, &r->scene->mesh, camera, out);
-    return st;
+    layer_render(out, r->scene, camera, &r->options, err);
+    if (!err->status && r->options.offline)
+        exemplar_fill(out, &photos, &r->depth, r->fill_diameter, &r->exemplar, NULL, err);
+    if (!err->status) photo_exposures_apply(&r->scene->exposures, &r->scene->mesh, camera, out);
+    return err->status;
 }
 
 void renderer_release(struct renderer *r)

@@ -97,10 +97,10 @@ enum status html_base64_file(FILE *to, const char *path, struct err *err)
     unsigned char part[3 * 16384]; /* a multiple of three, so that only the last part is padded */
     size_t size;
     FILE *from = fopen(path, "rb");
-    enum status st = from ? ST_OK : err_errno(err, "open", path);
+    if (!from) err_errno(err, "open", path);
 
-    while (!st && (size = fread(part, 1, sizeof part, from)) > 0) html_base64(to, part, size);
-    if (from && ferror(from)) st = err_errno(err, "read", path);
+    while (!err->status && (size = fread(part, 1, sizeof part, from)) > 0) html_base64(to, part, size);
+    if (from && ferror(from)) err_errno(err, "read", path);
     if (from) fclose(from);
-    return st;
+    return err->status;
 }

@@ -37,16 +37,16 @@ enum status metric_rows_read(struct metric_rows *r, const char *path, bool of_vi
 {
     struct textfile t = {0};
     *r = (struct metric_rows){0};
-    enum status st = textfile_open(&t, path, err);
-    while (!st && textfile_next_raw(&t)) {
+    textfile_open(&t, path, err);
+    while (!err->status && textfile_next_raw(&t)) {
         if (t.cursor[0] == '#')
-            st = read_note(r, t.cursor, err);
+            read_note(r, t.cursor, err);
         else if (textfile_more(&t))
-            st = read_row(r, &t, of_views, err);
+            read_row(r, &t, of_views, err);
     }
     textfile_release(&t);
-    if (st) metric_rows_release(r);
-    return st;
+    if (err->status) metric_rows_release(r);
+    return err->status;
 }
 
 const struct metric_row *metric_rows_find(const struct metric_rows *r, const char *view, const char *name)

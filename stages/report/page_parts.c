@@ -52,8 +52,8 @@ enum status page_put_picture(FILE *to, const struct picture *p, int quality, con
 {
     unsigned char *bytes = NULL;
     size_t size = 0;
-    enum status st = jpeg_encode(&bytes, &size, p->rgb, p->width, p->height, quality, err);
-    if (!st) {
+    jpeg_encode(&bytes, &size, p->rgb, p->width, p->height, quality, err);
+    if (!err->status) {
         fprintf(to, "<img width=\"%d\" height=\"%d\" alt=\"%s ", p->width, p->height, alt);
         html_text(to, name);
         fputs("\" src=\"data:image/jpeg;base64,", to);
@@ -61,7 +61,7 @@ enum status page_put_picture(FILE *to, const struct picture *p, int quality, con
         fputs("\">", to);
     }
     free(bytes);
-    return st;
+    return err->status;
 }
 
 void page_put_ramp(FILE *to, bool rising)

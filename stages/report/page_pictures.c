@@ -109,9 +109,9 @@ enum status picture_from_photo(struct picture *p, const struct photo *photo, int
     if (!linear) return err_nomem(err, "an sRGB table", (size_t)levels * sizeof *linear);
     for (int i = 0; i < levels; i++) linear[i] = linear_from_srgb((float)i / (float)(levels - 1));
     struct source s = {photo->info.width, photo->info.height, photo->info.orientation, photo->samples, linear, {NULL}};
-    enum status st = shrink(p, &s, height, err);
+    shrink(p, &s, height, err);
     free(linear);
-    return st;
+    return err->status;
 }
 
 enum status picture_from_exr(struct picture *p, const struct exr_image *im, int orientation, int height,

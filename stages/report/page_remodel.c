@@ -83,9 +83,9 @@ static enum status put_layer(FILE *to, const struct picture *p, const char *name
                              struct err *err)
 {
     fprintf(to, "<div class=\"%s\">", name);
-    const enum status st = page_put_picture(to, p, QUALITY, alt, view, err);
+    page_put_picture(to, p, QUALITY, alt, view, err);
     fputs("</div>\n", to);
-    return st;
+    return err->status;
 }
 
 /* How much of the picture is photograph, and how much is guessed; of what the photo's frame shows. */

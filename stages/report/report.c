@@ -20,20 +20,18 @@
 static enum status write_page(FILE *to, const char *scene, const struct contents_sources *from, struct err *err)
 {
     struct contents contents = {0};
-    enum status st = contents_read(&contents, from, err);
-    if (!st) st = page_write(to, scene, &contents, err);
+    if (!contents_read(&contents, from, err)) page_write(to, scene, &contents, err);
     contents_release(&contents);
-    return st;
+    return err->status;
 }
 
 static enum status write_remodel_page(FILE *to, const char *scene, const char *back, const struct remodel_sources *from,
                                       struct err *err)
 {
     struct remodel_contents contents = {0};
-    enum status st = remodel_contents_read(&contents, from, err);
-    if (!st) st = remodel_page_write(to, scene, back, &contents, err);
+    if (!remodel_contents_read(&contents, from, err)) remodel_page_write(to, scene, back, &contents, err);
     remodel_contents_release(&contents);
-    return st;
+    return err->status;
 }
 
 static enum status check_usage(bool remodel, const struct contents_sources *from, const char *scripts, const char *back,

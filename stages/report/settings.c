@@ -62,16 +62,16 @@ enum status settings_add_folder(struct settings *s, const char *folder, struct e
 {
     struct dirent **names = NULL;
     int count = scandir(folder, &names, is_config, alphasort);
-    enum status st = count < 0 && errno != ENOENT ? err_errno(err, "list", folder) : ST_OK;
+    if (count < 0 && errno != ENOENT) err_errno(err, "list", folder);
 
     for (int i = 0; i < count; i++) {
         char path[4096];
         snprintf(path, sizeof path, "%s/%s", folder, names[i]->d_name);
-        if (!st) st = settings_add_file(s, path, err);
+        if (!err->status) settings_add_file(s, path, err);
         free(names[i]);
     }
     free(names);
-    return st;
+    return err->status;
 }
 
 static bool same_value(const char *a, const char *b)

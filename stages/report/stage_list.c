@@ -24,15 +24,15 @@ static enum status add_name(struct stage_list *list, const char *name, size_t si
 
 enum status stage_list_parse(struct stage_list *list, const char *text, struct err *err)
 {
-    enum status st = ST_OK;
-    for (const char *at = text + strspn(text, " "); *at && !st; at += strspn(at, " ")) {
+    for (const char *at = text + strspn(text, " "); *at && !err->status; at += strspn(at, " ")) {
         const size_t size = strcspn(at, " ");
-        st = add_name(list, at, size, err);
+        add_name(list, at, size, err);
         at += size;
     }
-    if (!st && !list->count) st = err_set(err, ST_USAGE, "--stages: found no name, wanted the names of all stages.");
-    if (st) stage_list_release(list);
-    return st;
+    if (!err->status && !list->count)
+        err_set(err, ST_USAGE, "--stages: found no name, wanted the names of all stages.");
+    if (err->status) stage_list_release(list);
+    return err->status;
 }
 
 bool stage_list_has(const struct stage_list *list, const char *name)

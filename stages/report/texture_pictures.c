@@ -73,13 +73,13 @@ enum status texture_sight_make(struct sight *s, const struct atlas *a, const str
     struct exr_image im = {0};
     struct look_up l = {.sight = s, .atlas = a, .view = view, .axes = axes, .orientation = orientation};
     *s = (struct sight){0};
-    enum status st = exr_read(&im, ids, NAMES, 2, err);
-    if (!st && (im.width != view->width || im.height != view->height))
-        st = err_set(err, ST_DATA, "%s has %d x %d pixels, but its view %d x %d; trace it again.", ids, im.width,
-                     im.height, view->width, view->height);
-    if (!st && (!exr_find(&im, "id")->u || !exr_find(&im, "Z")->f))
-        st = err_set(err, ST_DATA, "%s: wanted a channel id of integers and Z of floats; trace it again.", ids);
-    if (!st) {
+    exr_read(&im, ids, NAMES, 2, err);
+    if (!err->status && (im.width != view->width || im.height != view->height))
+        err_set(err, ST_DATA, "%s has %d x %d pixels, but its view %d x %d; trace it again.", ids, im.width, im.height,
+                view->width, view->height);
+    if (!err->status && (!exr_find(&im, "id")->u || !exr_find(&im, "Z")->f))
+        err_set(err, ST_DATA, "%s: wanted a channel id of integers and Z of floats; trace it again.", ids);
+    if (!err->status) {
         l.id = exr_find(&im, "id")->u;
         l.z = exr_find(&im, "Z")->f;
         page_thumb_size(im.width, im.height, orientation, height, &l.width, &l.height);
@@ -87,11 +87,11 @@ enum status texture_sight_make(struct sight *s, const struct atlas *a, const str
         s->height = orientation >= 5 ? l.width : l.height;
         const size_t pixels = (size_t)s->width * (size_t)s->height;
         s->samples = malloc(SAMPLES * pixels * sizeof *s->samples);
-        if (!s->samples) st = err_nomem(err, "samples of a view", SAMPLES * pixels * sizeof *s->samples);
+        if (!s->samples) err_nomem(err, "samples of a view", SAMPLES * pixels * sizeof *s->samples);
     }
-    if (!st) parallel_for((size_t)s->height, 8, look_up_rows, &l);
+    if (!err->status) parallel_for((size_t)s->height, 8, look_up_rows, &l);
     exr_image_release(&im);
-    return st;
+    return err->status;
 }
 
 void texture_sight_release(struct sight *s)

@@ -106,10 +106,9 @@ enum status usage_add_log(struct usage_table *table, const char *name, const cha
     struct stage_usage *stage = NULL;
     char log_stage[64], line_stage[64];
     bool ended = false;
-    enum status st = ST_OK;
 
     if (!stage_name(log_stage, name, strcspn(name, "."))) return ST_OK; /* not the log of a stage */
-    for (size_t at = 0; at < size && !st;) {
+    for (size_t at = 0; at < size && !err->status;) {
         const char *line = bytes + at, *end = memchr(line, '\n', size - at);
         size_t length = end ? (size_t)(end - line) : size - at;
         at += length + 1;
@@ -121,9 +120,9 @@ enum status usage_add_log(struct usage_table *table, const char *name, const cha
         if (!stage_name(line_stage, line, length)) continue;
         size_t head = strlen(line_stage) + strlen(WARNING);
         if (length >= head && !memcmp(line + strlen(line_stage), WARNING, strlen(WARNING)) && !memchr(line, 0, length))
-            st = add_warning(table, line_stage, name, line + head, length - head, err);
+            add_warning(table, line_stage, name, line + head, length - head, err);
     }
-    if (st || (st = find_stage(table, log_stage, &stage, err))) return st;
+    if (err->status || find_stage(table, log_stage, &stage, err)) return err->status;
     stage->runs += ended;
     stage->unfinished += !ended;
     stage->sum.wall += last.wall;
@@ -150,10 +149,10 @@ static enum status read_all(const char *path, char **bytes, size_t *size, struct
         *bytes = grown;
         *size += got = fread(*bytes + *size, 1, capacity - *size, fp);
     } while (got && *size == capacity);
-    enum status st = ferror(fp) ? err_errno(err, "read", path) : ST_OK;
+    if (ferror(fp)) err_errno(err, "read", path);
     fclose(fp);
-    if (st) free(*bytes);
-    return st;
+    if (err->status) free(*bytes);
+    return err->status;
 }
 
 static int is_log(const struct dirent *e)
@@ -166,21 +165,20 @@ enum status usage_add_folder(struct usage_table *table, const char *folder, cons
 {
     struct dirent **names = NULL;
     int count = scandir(folder, &names, is_log, alphasort);
-    enum status st = count < 0 && errno != ENOENT ? err_errno(err, "list", folder) : ST_OK;
-
+    if (count < 0 && errno != ENOENT) err_errno(err, "list", folder);
     for (int i = 0; i < count; i++) {
         char path[4096], *bytes, *name = names[i]->d_name;
         size_t size, dot = strcspn(name, ".");
         bool skip = except && strlen(except) == dot && !memcmp(name, except, dot);
         snprintf(path, sizeof path, "%s/%s", folder, name);
-        if (!skip && !st && !(st = read_all(path, &bytes, &size, err))) {
-            st = usage_add_log(table, name, bytes, size, err);
+        if (!skip && !err->status && !read_all(path, &bytes, &size, err)) {
+            usage_add_log(table, name, bytes, size, err);
             free(bytes);
         }
         free(names[i]);
     }
     free(names);
-    return st;
+    return err->status;
 }
 
 void usage_table_release(struct usage_table *table)

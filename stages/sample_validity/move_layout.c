@@ -35,10 +35,9 @@ static enum status find_center_view(struct layout_search *l, struct err *err)
 {
     int *order = malloc(((size_t)l->scene->set->view_count + 1) * sizeof *order);
     if (!order) return err_nomem(err, "views", sizeof *order);
-    const enum status st = central_views(order, l->scene->set, err);
-    if (!st) l->center = order[0];
+    if (!central_views(order, l->scene->set, err)) l->center = order[0];
     free(order);
-    return st;
+    return err->status;
 }
 
 /* Median of a coordinate of the points of the views in use, in the centremost view's camera. central: only of points in
@@ -162,16 +161,14 @@ enum status layout_find(struct shot_setup *shot, int *view_idx, const struct lay
     *shot = (struct shot_setup){0};
     l.scratch = malloc((points->count + 1) * sizeof *l.scratch);
     if (!l.scratch) return err_nomem(err, "depths", points->count * sizeof *l.scratch);
-    enum status st = find_center_view(&l, err);
-    if (!st) {
+    if (!find_center_view(&l, err)) {
         const struct film_size size = {params->width, params->height, params->max_side};
         find_frame(&l);
         film_lens(&shot->lens, &shot->up, scene->set, l.center, ups, &size);
-        st = find_centroid(&l, err);
+        find_centroid(&l, err);
     }
-    if (!st) st = measure_depths(&l, err);
-    if (!st) find_box(&l);
+    if (!err->status && !measure_depths(&l, err)) find_box(&l);
     *view_idx = l.center;
     free(l.scratch);
-    return st;
+    return err->status;
 }

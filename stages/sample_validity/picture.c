@@ -106,7 +106,7 @@ enum status validity_picture_write(const struct validity *v, const struct view_m
             draw_cells(pixels, &m, &v->region[e], forward);
             draw_mesh(pixels, &m, &v->shot, mesh);
         }
-    const enum status st = png_write(path, pixels, SIDE, SIDE, 3, err);
+    png_write(path, pixels, SIDE, SIDE, 3, err);
     free(pixels);
-    return st;
+    return err->status;
 }

@@ -69,11 +69,11 @@ enum cell_task {
 static enum status sample_cell(struct cell_sampler *s, const struct shot_end *end, enum cell_task task,
                                struct validity_cell *c, struct err *err)
 {
-    enum status st = task == CELL_SEARCH ? ST_OK : is_valid(s, end, c->x, c->y, 0, &c->valid, err);
-    if (task == CELL_TEST) return st;
-    if (!st && c->valid) st = search_z(s, end, c->x, c->y, -1, &c->low, err);
-    if (!st && c->valid) st = search_z(s, end, c->x, c->y, 1, &c->high, err);
-    return st;
+    if (task != CELL_SEARCH) is_valid(s, end, c->x, c->y, 0, &c->valid, err);
+    if (task == CELL_TEST) return err->status;
+    if (!err->status && c->valid) search_z(s, end, c->x, c->y, -1, &c->low, err);
+    if (!err->status && c->valid) search_z(s, end, c->x, c->y, 1, &c->high, err);
+    return err->status;
 }
 
 /* extent: size of the grid in units of the bounding box of the centres. shrink: factor by which it is then scaled about
@@ -178,26 +178,26 @@ static enum status sample_cells(struct cell_sampler *s, const struct shot_end *e
     struct cell_job job = {.end = end, .cells = cells, .task = task};
     job.samplers = calloc((size_t)threads, sizeof *job.samplers);
     job.errors = calloc((size_t)count + 1, sizeof *job.errors);
-    enum status st = job.samplers && job.errors ? ST_OK : err_nomem(err, "cells", (size_t)count * sizeof *job.errors);
+    if (!job.samplers || !job.errors) err_nomem(err, "cells", (size_t)count * sizeof *job.errors);
 
-    for (int t = 0; !st && t < threads; t++) {
+    for (int t = 0; !err->status && t < threads; t++) {
         job.samplers[t].v = s->v;
         viewpoint_test_copy(&job.samplers[t].test, &s->test);
     }
-    if (!st) {
+    if (!err->status) {
         progress_start(&job.progress, what, count, "cells");
         parallel_for((size_t)count, 1, sample_some, &job);
         progress_end(&job.progress);
     }
-    for (int i = 0; !st && i < count; i++)
-        if (job.errors[i].status) st = err_set(err, job.errors[i].status, "%s", job.errors[i].text);
+    for (int i = 0; !err->status && i < count; i++)
+        if (job.errors[i].status) err_set(err, job.errors[i].status, "%s", job.errors[i].text);
     for (int t = 0; job.samplers && t < threads; t++) {
         s->test.renders += job.samplers[t].test.renders;
         viewpoint_test_release(&job.samplers[t].test);
     }
     free(job.samplers);
     free(job.errors);
-    return st;
+    return err->status;
 }
 
 /* Samples some of the valid cells, evenly spread, again in full pictures and compares their limits. */
@@ -209,17 +209,17 @@ static enum status measure_error(struct cell_sampler *s, const struct shot_end *
     const struct validity_cell **original = calloc((size_t)few + 1, sizeof *original);
     int seen = 0, taken = 0;
 
-    enum status st = again && original ? ST_OK : err_nomem(err, "cells", (size_t)few * sizeof *again);
-    for (int i = 0; !st && i < r->columns * r->rows && taken < few; i++) {
+    if (!again || !original) err_nomem(err, "cells", (size_t)few * sizeof *again);
+    for (int i = 0; !err->status && i < r->columns * r->rows && taken < few; i++) {
         const struct validity_cell *c = &r->cells[i];
         if (!c->valid || seen++ < (2 * taken + 1) * valid / (2 * few)) continue;
         again[taken] = (struct validity_cell){.x = c->x, .y = c->y};
         original[taken++] = c;
     }
     s->test.limits.side = H_REFERENCE_SIDE;
-    if (!st && taken) st = sample_cells(s, end, again, taken, CELL_ALL, "cells in full pictures", err);
+    if (!err->status && taken) sample_cells(s, end, again, taken, CELL_ALL, "cells in full pictures", err);
     s->test.limits.side = side;
-    for (int i = 0; !st && i < taken; i++) {
+    for (int i = 0; !err->status && i < taken; i++) {
         const double apart[2] = {fabs(again[i].low - original[i]->low) / s->v->step,
                                  fabs(again[i].high - original[i]->high) / s->v->step};
         for (int k = 0; k < 2; k++) {
@@ -230,7 +230,7 @@ static enum status measure_error(struct cell_sampler *s, const struct shot_end *
     }
     free(again);
     free(original);
-    return st;
+    return err->status;
 }
 
 static bool same_rule(const struct shot_end *a, const struct shot_end *b)
@@ -247,20 +247,19 @@ static enum status fit_grid(struct cell_sampler *s, const struct shot_end *end, 
     const int cells = r->columns * r->rows;
     double best = 1, tested = 0;
     int max_valid = -1;
-    enum status st = ST_OK;
 
-    for (int i = 0; !st && i < GRID_SIZES && cells > 1 && 4 * max_valid < cells; i++) {
+    for (int i = 0; !err->status && i < GRID_SIZES && cells > 1 && 4 * max_valid < cells; i++) {
         place_cells(r, &s->v->shot, false, extent, pow(0.5, i));
-        st = sample_cells(s, end, r->cells, cells, CELL_TEST, "cells of the grid", err);
+        sample_cells(s, end, r->cells, cells, CELL_TEST, "cells of the grid", err);
         const int valid = validity_region_count(r);
         if (valid > max_valid) max_valid = valid, best = pow(0.5, i);
         tested = pow(0.5, i);
     }
     *task = best == tested ? CELL_SEARCH : CELL_ALL;
-    if (*task == CELL_SEARCH) return st;
+    if (*task == CELL_SEARCH) return err->status;
     place_cells(r, &s->v->shot, cells == 1, extent, best);
     for (int i = 0; i < cells; i++) r->cells[i].valid = false;
-    return st;
+    return err->status;
 }
 
 /* at: 0 start, 1 end. If both ends have the same rule, the end's region is a copy of the start's. */
@@ -278,10 +277,11 @@ static enum status sample_end(struct cell_sampler *s, int at, const struct valid
         return ST_OK;
     }
     enum cell_task task;
-    enum status st = fit_grid(s, end, r, params->extent, &task, err);
-    if (!st)
-        st = sample_cells(s, end, r->cells, side * side, task, at ? "cells of the end" : "cells of the start", err);
-    return st ? st : measure_error(s, end, r, params->check_cells, &notes->error, err);
+    fit_grid(s, end, r, params->extent, &task, err);
+    if (!err->status)
+        sample_cells(s, end, r->cells, side * side, task, at ? "cells of the end" : "cells of the start", err);
+    if (!err->status) measure_error(s, end, r, params->check_cells, &notes->error, err);
+    return err->status;
 }
 
 /* Makes the cell nearest to the origin valid at the origin alone. */
@@ -308,16 +308,15 @@ enum status validity_sample(struct validity *v, struct sampling_notes *notes, co
     *v = (struct validity){.effect = *effect, .zoom = 1};
     v->limits = (struct viewpoint_limits){params->max_h, params->max_outside, params->check_side};
     s.test = (struct viewpoint_test){.scene = scene, .points = &points, .shot = &v->shot, .limits = v->limits};
-    enum status st = scene_points_collect(&points, scene, err);
-    if (!st) st = layout_find(&v->shot, &center, scene, &points, ups, params, err);
-    if (!st) {
+    if (!scene_points_collect(&points, scene, err)) layout_find(&v->shot, &center, scene, &points, ups, params, err);
+    if (!err->status) {
         notes->center_view = scene->set->views[center].name;
         v->step = params->tolerance * v->shot.median_depth;
-        st = find_zoom(&s, params->max_zoom, notes->center_view, err);
+        find_zoom(&s, params->max_zoom, notes->center_view, err);
     }
-    if (!st) st = shot_move_make(&v->move, &v->shot, effect->move, subjects, err);
-    for (int i = 0; !st && i < 2; i++) st = sample_end(&s, i, params, notes, err);
-    for (int i = 0; !st && i < 2; i++)
+    if (!err->status) shot_move_make(&v->move, &v->shot, effect->move, subjects, err);
+    for (int i = 0; !err->status && i < 2; i++) sample_end(&s, i, params, notes, err);
+    for (int i = 0; !err->status && i < 2; i++)
         if (!validity_region_count(&v->region[i])) {
             notes->no_valid[i] = true;
             allow_origin(&v->region[i]);
@@ -325,6 +324,6 @@ enum status validity_sample(struct validity *v, struct sampling_notes *notes, co
     notes->renders = s.test.renders;
     viewpoint_test_release(&s.test);
     scene_points_release(&points);
-    if (st) validity_release(v);
-    return st;
+    if (err->status) validity_release(v);
+    return err->status;
 }

@@ -69,30 +69,30 @@ static enum status sample(const struct job *job, struct provenance *prov, struct
     struct vec3 *ups = NULL;
     char picture[FILE_PATH], text[FILE_PATH];
 
-    enum status st = film_effect_parse(&effect, job->effect, err);
-    if (!st) st = product_path_in(picture, job->out, PRODUCT_VALIDITY_PICTURE, NULL, err);
-    if (!st) st = product_path_in(text, job->out, PRODUCT_VALIDITY, NULL, err);
-    if (!st) st = camera_set_read(&set, job->views, prov, err);
-    if (!st) st = film_views_keep(&set, job->film_views, prov, err);
-    if (!st && job->records) {
+    if (!film_effect_parse(&effect, job->effect, err) &&
+        !product_path_in(picture, job->out, PRODUCT_VALIDITY_PICTURE, NULL, err) &&
+        !product_path_in(text, job->out, PRODUCT_VALIDITY, NULL, err) && !camera_set_read(&set, job->views, prov, err))
+        film_views_keep(&set, job->film_views, prov, err);
+    if (!err->status && job->records) {
         ups = calloc((size_t)set.view_count + 1, sizeof *ups);
-        st = ups ? upright_read(ups, &set, job->views, job->records, prov, err)
-                 : err_nomem(err, "upright directions", (size_t)set.view_count * sizeof *ups);
+        if (ups)
+            upright_read(ups, &set, job->views, job->records, prov, err);
+        else
+            err_nomem(err, "upright directions", (size_t)set.view_count * sizeof *ups);
     }
-    if (!st && job->subjects) st = subject_list_read(&subjects, job->subjects, prov, err);
+    if (!err->status && job->subjects) subject_list_read(&subjects, job->subjects, prov, err);
     const struct scene_subjects available = film_scene_subjects(&subjects);
-    if (!st) st = film_effect_check(&effect, &available, err);
-    if (!st) st = layer_scene_read(&scene, &set, job->depth, prov, err);
-    if (!st) st = validity_sample(&v, &notes, &scene, ups, &subjects, &effect, &job->params, err);
-    if (!st) st = validity_picture_write(&v, &scene.mesh, picture, err);
-    if (!st) st = validity_write(&v, text, prov, err);
-    if (!st) log_summary(&v, &notes);
+    if (!err->status && !film_effect_check(&effect, &available, err) &&
+        !layer_scene_read(&scene, &set, job->depth, prov, err) &&
+        !validity_sample(&v, &notes, &scene, ups, &subjects, &effect, &job->params, err) &&
+        !validity_picture_write(&v, &scene.mesh, picture, err) && !validity_write(&v, text, prov, err))
+        log_summary(&v, &notes);
     validity_release(&v);
     layer_scene_release(&scene);
     subject_list_release(&subjects);
     camera_set_release(&set);
     free(ups);
-    return st;
+    return err->status;
 }
 
 int main(int argc, char **argv)

@@ -91,10 +91,9 @@ static enum status see_neighbour(struct cross_neighbour *n, const struct cross_v
     float *nearest = calloc(pixels, sizeof *nearest);
     uint8_t *confidence = calloc(pixels, 1);
     n->fronts = malloc(size);
-    enum status st =
-        nearest && confidence && n->fronts ? ST_OK : err_nomem(err, "surfaces of a neighbour", pixels * 5 + size);
+    if (!nearest || !confidence || !n->fronts) err_nomem(err, "surfaces of a neighbour", pixels * 5 + size);
     matcher_homography(base, shift, other, view);
-    for (int i = 0; !st && i < width * height; i++) {
+    for (int i = 0; !err->status && i < width * height; i++) {
         const uint32_t id = n->depth.interior.id[i];
         if (!id) continue;
         const struct cross_plane *plane = &n->planes[id];
@@ -111,7 +110,7 @@ static enum status see_neighbour(struct cross_neighbour *n, const struct cross_v
         nearest[at] = here;
         confidence[at] = (uint8_t)lrintf(255 * fminf(fmaxf(plane->confidence, MIN_FRONT), 1));
     }
-    for (int i = 0; !st && i < s->count; i++)
+    for (int i = 0; !err->status && i < s->count; i++)
         for (int k = 0; k < CROSS_SAMPLES; k++) {
             const size_t at = (size_t)x->samples[i][1][k] * (size_t)s->width + (size_t)x->samples[i][0][k];
             n->fronts[i].inverse[k] = nearest[at];
@@ -119,7 +118,7 @@ static enum status see_neighbour(struct cross_neighbour *n, const struct cross_v
         }
     free(nearest);
     free(confidence);
-    return st;
+    return err->status;
 }
 
 struct centroid {
@@ -173,29 +172,28 @@ enum status cross_view_make(struct cross_view *x, const struct segmentation *s, 
     const struct view *view = &set->views[view_idx];
     struct centroid *centers[MAX_NEIGHBOURS] = {NULL};
     x->step = step;
-    enum status st = sample_segments(x, s, err);
-    if (!st && !(x->first_proposal = calloc((size_t)s->count + 3, sizeof *x->first_proposal)))
-        st = err_nomem(err, "proposals", (size_t)s->count * sizeof(int));
-    for (int k = 0; !st && k < count; k++) {
+    sample_segments(x, s, err);
+    if (!err->status && !(x->first_proposal = calloc((size_t)s->count + 3, sizeof *x->first_proposal)))
+        err_nomem(err, "proposals", (size_t)s->count * sizeof(int));
+    for (int k = 0; !err->status && k < count; k++) {
         struct cross_neighbour *n = &x->neighbours[k];
         matcher_homography(n->base, n->shift, view, &set->views[neighbours[k]]);
         x->count = k + 1;
-        st = source->read(source->ctx, neighbours[k], &n->depth, err);
-        if (!st) st = segment_centroids(&centers[k], &n->depth, err);
-        if (!st) st = prepare_neighbour(n, x, s->count, err);
-        if (!st) st = see_neighbour(n, x, s, view, &set->views[neighbours[k]], err);
+        if (!source->read(source->ctx, neighbours[k], &n->depth, err) &&
+            !segment_centroids(&centers[k], &n->depth, err) && !prepare_neighbour(n, x, s->count, err))
+            see_neighbour(n, x, s, view, &set->views[neighbours[k]], err);
     }
-    for (int round = 0; !st && round < 2; round++) {
+    for (int round = 0; !err->status && round < 2; round++) {
         for (int k = 0; k < count; k++)
             collect_proposals(x, s, view, &set->views[neighbours[k]], &x->neighbours[k].depth, centers[k], round);
         if (round) break;
         for (int i = 1; i <= s->count + 1; i++) x->first_proposal[i] += x->first_proposal[i - 1];
         const size_t all = (size_t)x->first_proposal[s->count + 1];
         if (!(x->proposals = malloc((all + 1) * sizeof *x->proposals)))
-            st = err_nomem(err, "proposals", all * sizeof *x->proposals);
+            err_nomem(err, "proposals", all * sizeof *x->proposals);
     }
     for (int k = 0; k < count; k++) free(centers[k]);
-    return st;
+    return err->status;
 }
 
 void cross_view_release(struct cross_view *x)

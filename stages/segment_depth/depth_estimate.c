@@ -61,13 +61,13 @@ enum status estimate_view(struct depth_work *work, int *neighbours, const struct
     int chosen[MAX_NEIGHBOURS];
     const struct view *view = &set->views[view_idx];
     *neighbours = 0;
-    enum status st = neighbours_find_points(&seen, set, view_idx, err);
     /* a view without neighbours is reported when its depth is made */
-    if (!st && neighbours_choose(chosen, neighbours, set, view_idx, &seen, params->neighbours, &none) == ST_NOMEM)
-        st = err_nomem(err, "scores of views", (size_t)set->view_count * 12);
+    if (!neighbours_find_points(&seen, set, view_idx, err) &&
+        neighbours_choose(chosen, neighbours, set, view_idx, &seen, params->neighbours, &none) == ST_NOMEM)
+        err_nomem(err, "scores of views", (size_t)set->view_count * 12);
     *work = depth_work((double)view->width * view->height, *neighbours, first, params);
     neighbours_release_points(&seen);
-    return st;
+    return err->status;
 }
 
 /* Free memory in MiB; 0 if the system does not report it. */
@@ -141,22 +141,21 @@ static enum status read_list(struct tally *t, const char *list, const struct cam
                              const struct segment_params *params, struct err *err)
 {
     struct textfile file = {0};
-    enum status st = textfile_open(&file, list, err);
-    while (!st && textfile_next(&file)) {
+    textfile_open(&file, list, err);
+    while (!err->status && textfile_next(&file)) {
         struct depth_work work = {0, 0, 0};
         char *name;
         int64_t round = 0;
         int neighbours = 0, view_idx = -1;
-        st = textfile_word(&file, "view", &name, err);
-        if (!st) st = textfile_int(&file, "round", 0, MAX_ROUNDS - 1, &round, err);
-        if (!st) st = textfile_end(&file, err);
-        if (!st && (view_idx = camera_set_find(set, name)) < 0)
-            st = textfile_error(&file, err, name, "a view of the scene");
-        if (!st) st = estimate_view(&work, &neighbours, set, view_idx, round == 0, params, err);
-        if (!st) tally_add(t, &set->views[view_idx], (int)round, work, neighbours);
+        if (!textfile_word(&file, "view", &name, err) && !textfile_int(&file, "round", 0, MAX_ROUNDS - 1, &round, err))
+            textfile_end(&file, err);
+        if (!err->status && (view_idx = camera_set_find(set, name)) < 0)
+            textfile_error(&file, err, name, "a view of the scene");
+        if (!err->status && !estimate_view(&work, &neighbours, set, view_idx, round == 0, params, err))
+            tally_add(t, &set->views[view_idx], (int)round, work, neighbours);
     }
     textfile_release(&file);
-    return st;
+    return err->status;
 }
 
 static void memory_warning(char text[512], double needed)
@@ -178,12 +177,12 @@ enum status estimate_print(FILE *to, const char *list, const struct camera_set *
     struct tally t = {0};
     char neighbours[32], time[32], memory[32], warning[512];
     int views = 0, rounds = 0;
-    enum status st = read_list(&t, list, set, params, err);
+    read_list(&t, list, set, params, err);
     for (int k = 0; k < MAX_ROUNDS; k++) {
         rounds += t.views[k] > 0;
         if (t.views[k] > views) views = t.views[k];
     }
-    if (st || !views) return st;
+    if (err->status || !views) return err->status;
     const int cores = jobs * parallel_threads();
     format_range(neighbours, t.min_neighbours, t.max_neighbours);
     fprintf(to, "depth: %d view%s of %s%d x %d, %s neighbour%s, %d round%s: ", views, views == 1 ? "" : "s",
@@ -208,8 +207,7 @@ enum status estimate_log(const struct camera_set *set, int view_idx, bool first,
     struct depth_work work = {0, 0, 0};
     char time[32], memory[32], warning[512];
     int neighbours = 0;
-    enum status st = estimate_view(&work, &neighbours, set, view_idx, first, params, err);
-    if (st) return st;
+    if (estimate_view(&work, &neighbours, set, view_idx, first, params, err)) return err->status;
     const struct view *v = &set->views[view_idx];
     const double seconds = work.core_seconds / parallel_threads();
     format_time(time, seconds);

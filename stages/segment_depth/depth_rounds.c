@@ -24,13 +24,12 @@ enum status round_record_write(const struct round_record *r, const char *path, c
                                struct err *err)
 {
     struct outfile file = {0};
-    enum status st = product_begin(&file, PRODUCT_DEPTH_ROUND, path, prov, err);
-    if (!st) {
+    if (!product_begin(&file, PRODUCT_DEPTH_ROUND, path, prov, err)) {
         fprintf(file.fp, "changed %.6g\nestimated %s\n", r->changed, r->estimated ? "yes" : "no");
-        st = outfile_commit(&file, err);
+        outfile_commit(&file, err);
     }
     outfile_discard(&file);
-    return st;
+    return err->status;
 }
 
 static enum status read_changed(double *changed, struct textfile *t, struct err *err)
@@ -53,13 +52,12 @@ enum status round_record_read(struct round_record *r, const char *path, struct p
 {
     struct textfile t = {0};
     *r = (struct round_record){0};
-    enum status st = product_open(&t, NULL, PRODUCT_DEPTH_ROUND, path, prov, err);
-    if (!st) st = read_changed(&r->changed, &t, err);
-    if (!st) st = read_estimated(&r->estimated, &t, err);
-    if (!st) st = textfile_end_of_file(&t, err);
+    if (!product_open(&t, NULL, PRODUCT_DEPTH_ROUND, path, prov, err) && !read_changed(&r->changed, &t, err) &&
+        !read_estimated(&r->estimated, &t, err))
+        textfile_end_of_file(&t, err);
     textfile_release(&t);
-    if (st) *r = (struct round_record){0};
-    return st;
+    if (err->status) *r = (struct round_record){0};
+    return err->status;
 }
 
 static double inverse_at(const struct depth_segment *g, int x, int y)
@@ -92,24 +90,24 @@ static enum status read_change(double *changed, const char *folder, const char *
 {
     struct round_record r = {0};
     char path[FILE_PATH];
-    enum status st = product_path_in(path, folder, PRODUCT_DEPTH_ROUND, &(struct product_key){.view = view}, err);
-    if (!st) st = round_record_read(&r, path, prov, err);
+    if (!product_path_in(path, folder, PRODUCT_DEPTH_ROUND, &(struct product_key){.view = view}, err))
+        round_record_read(&r, path, prov, err);
     *changed = r.changed;
-    return st;
+    return err->status;
 }
 
 enum status round_is_settled(bool *settled, const char *folder, const struct camera_set *set, const int *views,
                              int count, double min_change, struct provenance *prov, struct err *err)
 {
     double own = 0, sum = 0;
-    enum status st = read_change(&own, folder, set->views[views[0]].name, prov, err);
-    for (int i = 1; !st && i < count; i++) {
+    read_change(&own, folder, set->views[views[0]].name, prov, err);
+    for (int i = 1; !err->status && i < count; i++) {
         double changed;
-        st = read_change(&changed, folder, set->views[views[i]].name, prov, err);
+        read_change(&changed, folder, set->views[views[i]].name, prov, err);
         sum += changed;
     }
-    *settled = !st && own < min_change && (count < 2 || sum / (count - 1) < min_change);
-    return st;
+    *settled = !err->status && own < min_change && (count < 2 || sum / (count - 1) < min_change);
+    return err->status;
 }
 
 static enum status copy_file(const char *from, const char *to, struct err *err)
@@ -119,14 +117,14 @@ static enum status copy_file(const char *from, const char *to, struct err *err)
     size_t got = 0;
     FILE *source = fopen(from, "rbe");
     if (!source) return err_errno(err, "open", from);
-    enum status st = outfile_open(&file, to, err);
+    outfile_open(&file, to, err);
     /* the commit reports a failed write */
-    while (!st && (got = fread(buffer, 1, sizeof buffer, source)) > 0) fwrite(buffer, 1, got, file.fp);
-    if (!st && ferror(source)) st = err_errno(err, "read", from);
-    if (!st) st = outfile_commit(&file, err);
+    while (!err->status && (got = fread(buffer, 1, sizeof buffer, source)) > 0) fwrite(buffer, 1, got, file.fp);
+    if (!err->status && ferror(source)) err_errno(err, "read", from);
+    if (!err->status) outfile_commit(&file, err);
     outfile_discard(&file);
     fclose(source);
-    return st;
+    return err->status;
 }
 
 enum status round_file(char path[FILE_PATH], const char *exr, const char *suffix, struct err *err)
@@ -144,9 +142,8 @@ enum status round_carry_over(const char *folder, const char *view, const char *o
 {
     const struct product_key key = {.view = view};
     char from[FILE_PATH], to[FILE_PATH];
-    enum status st = product_path_in(from, folder, PRODUCT_SEGMENTS, &key, err);
-    if (!st) st = round_file(to, out, ".txt", err);
-    if (!st) st = copy_file(from, to, err);
-    if (!st) st = product_path_in(from, folder, PRODUCT_DEPTH, &key, err);
-    return st ? st : copy_file(from, out, err);
+    if (!product_path_in(from, folder, PRODUCT_SEGMENTS, &key, err) && !round_file(to, out, ".txt", err) &&
+        !copy_file(from, to, err) && !product_path_in(from, folder, PRODUCT_DEPTH, &key, err))
+        copy_file(from, out, err);
+    return err->status;
 }

@@ -231,10 +231,9 @@ static enum status find_scene_planes(const struct expander *x, struct err *err)
     }
     double total = 0;
     for (int i = 0; i < count; i++) total += votes[i].weight;
-    const enum status st =
-        scene_planes_find(x->p->scene, votes, count, x->p->step, (cross ? MIN_SHARE_LATER : MIN_SHARE) * total, err);
+    scene_planes_find(x->p->scene, votes, count, x->p->step, (cross ? MIN_SHARE_LATER : MIN_SHARE) * total, err);
     free(votes);
-    return st;
+    return err->status;
 }
 
 /* Before there are votes, the ground is the only plane of the scene. */
@@ -282,24 +281,25 @@ static enum status move_to_scene_planes(struct expander *x, struct err *err)
 {
     struct worker *w = &x->workers[0];
     int *members = malloc(((size_t)x->s->count + 1) * sizeof *members);
-    enum status st = members ? find_scene_planes(x, err)
-                             : err_nomem(err, "segments on a plane", (size_t)x->s->count * sizeof *members);
+    if (members)
+        find_scene_planes(x, err);
+    else
+        err_nomem(err, "segments on a plane", (size_t)x->s->count * sizeof *members);
     if (x->p->ground) {
-        if (!st) add_ground(x->p->scene, x->p->view, *x->p->ground);
+        if (!err->status) add_ground(x->p->scene, x->p->view, *x->p->ground);
         for (int i = 0; i < x->s->count; i++) x->unary[i] = problem_unary_cost(x->p, i, x->plane[i], INFINITY);
     }
     const int fitted = x->p->scene->count - x->p->scene->has_ground;
     memcpy(x->before, x->plane, (size_t)x->s->count * sizeof *x->plane);
     for (int i = 0; i < x->s->count; i++) w->local[i] = w->region[i] = i;
-    for (int round = 0; !st && round <= REFITS; round++)
-        for (int k = 0; !st && k < x->p->scene->count; k++) {
+    for (int round = 0; !err->status && round <= REFITS; round++)
+        for (int k = 0; !err->status && k < x->p->scene->count; k++) {
             if (round && k < fitted) refit_scene_plane(x, k, members);
             expansion_move(x, w, x->s->count, x->p->scene->planes[k], err);
-            st = err->status;
         }
     for (int i = 0; i < x->s->count; i++) w->local[i] = -1;
     free(members);
-    return st;
+    return err->status;
 }
 
 static void move_cells(void *ctx, size_t begin, size_t end, int thread)
@@ -395,24 +395,24 @@ enum status expand_planes(struct plane *plane, const struct plane_problem *p, st
     x.max_pairwise = malloc(((size_t)x.s->count + 1) * sizeof *x.max_pairwise);
     x.min_unary = malloc(((size_t)x.s->count + 1) * sizeof *x.min_unary);
     x.before = malloc(((size_t)x.s->count + 1) * sizeof *x.before);
-    enum status st = group && x.unary && x.max_pairwise && x.min_unary && x.before
-                         ? ST_OK
-                         : err_nomem(err, "planes", (size_t)x.s->count * 32);
-    if (!st) st = init_workers(&x, threads, err);
+    if (group && x.unary && x.max_pairwise && x.min_unary && x.before)
+        init_workers(&x, threads, err);
+    else
+        err_nomem(err, "planes", (size_t)x.s->count * 32);
     int cells = 0;
-    for (int k = 0; !st && k < SCALES; k++) {
-        st = make_cells(&x.cells[k], x.s, cell_segments[k] * sqrt(p->params->segment_pixels), err);
+    for (int k = 0; !err->status && k < SCALES; k++) {
+        make_cells(&x.cells[k], x.s, cell_segments[k] * sqrt(p->params->segment_pixels), err);
         cells += x.cells[k].across * x.cells[k].down;
     }
-    if (!st) {
+    if (!err->status) {
         if (p->scene) start_with_ground(p->scene, p->ground);
         parallel_for((size_t)x.s->count, 64, initial_costs, &x);
         progress_start(&progress, "expansion", (int64_t)x.passes * cells, "cells");
     }
-    for (x.pass = 0; !st && x.pass < x.passes; x.pass++) {
-        for (x.scale = 0; !st && x.scale < scale_count(&x); x.scale++) {
+    for (x.pass = 0; !err->status && x.pass < x.passes; x.pass++) {
+        for (x.scale = 0; !err->status && x.scale < scale_count(&x); x.scale++) {
             const struct cells *c = &x.cells[x.scale];
-            for (int g = 0; !st && g < APART * APART; g++) {
+            for (int g = 0; !err->status && g < APART * APART; g++) {
                 int count = 0;
                 for (int y = g / APART; y < c->down; y += APART)
                     for (int cx = g % APART; cx < c->across; cx += APART) group[count++] = y * c->across + cx;
@@ -423,17 +423,14 @@ enum status expand_planes(struct plane *plane, const struct plane_problem *p, st
                 else /* few and large: in sequence, with the data costs of each in parallel */
                     move_cells(&x, 0, (size_t)count, 0);
                 progress_add(&progress, count);
-                for (int t = 0; !st && t < threads; t++)
-                    if (x.errs[t].status) {
-                        *err = x.errs[t];
-                        st = err->status;
-                    }
+                for (int t = 0; !err->status && t < threads; t++)
+                    if (x.errs[t].status) *err = x.errs[t];
             }
         }
-        if (!st && p->scene && x.pass == 0) st = move_to_scene_planes(&x, err);
+        if (!err->status && p->scene && x.pass == 0) move_to_scene_planes(&x, err);
     }
-    if (!st) progress_end(&progress);
+    if (!err->status) progress_end(&progress);
     release(&x, threads);
     free(group);
-    return st;
+    return err->status;
 }

@@ -250,17 +250,16 @@ enum status given_depth_make(struct given_depth *g, const struct segmentation *s
     g->planes = calloc(count, sizeof *g->planes);
     g->quality = calloc(count, sizeof *g->quality);
     g->residual = calloc(count, sizeof *g->residual);
-    enum status st = f.samples && g->known && g->planes && g->quality && g->residual
-                         ? ST_OK
-                         : err_nomem(err, "given planes", count * 40 + f.largest * sizeof *f.samples);
-    if (!st) parallel_for((size_t)s->count, 64, fit_segments, &f);
-    for (int i = 0; !st && i < s->count; i++) {
+    if (!f.samples || !g->known || !g->planes || !g->quality || !g->residual)
+        err_nomem(err, "given planes", count * 40 + f.largest * sizeof *f.samples);
+    if (!err->status) parallel_for((size_t)s->count, 64, fit_segments, &f);
+    for (int i = 0; !err->status && i < s->count; i++) {
         const struct segment *at = &s->segments[i];
         g->segments += g->known[i];
         for (int k = 0; k < at->pixels; k++) g->pixels += z[s->pixel[at->first + k]] > 0;
     }
     free(f.samples);
-    return st;
+    return err->status;
 }
 
 void given_depth_release(struct given_depth *g)

@@ -30,28 +30,27 @@ enum status given_units_read(struct given_units *u, const char *path, struct err
     struct textfile t = {0};
     char *word = NULL;
     *u = (struct given_units){0};
-    enum status st = textfile_open(&t, path, err);
-    while (!st && textfile_next(&t)) {
-        st = textfile_word(&t, "scale or pixels", &word, err);
-        if (st) break;
+    textfile_open(&t, path, err);
+    while (!err->status && textfile_next(&t)) {
+        if (textfile_word(&t, "scale or pixels", &word, err)) break;
         if (!strcmp(word, "scale") && !(u->scale > 0)) {
-            st = textfile_number(&t, "a scale, the depth of a sample of 1", 1e-12, 1e12, &u->scale, err);
+            textfile_number(&t, "a scale, the depth of a sample of 1", 1e-12, 1e12, &u->scale, err);
         } else if (!strcmp(word, "pixels") && u->pixels == PIXELS_BY_SIZE) {
-            st = textfile_word(&t, "view or photo", &word, err);
-            if (!st && !strcmp(word, "view"))
+            textfile_word(&t, "view or photo", &word, err);
+            if (!err->status && !strcmp(word, "view"))
                 u->pixels = PIXELS_OF_VIEW;
-            else if (!st && !strcmp(word, "photo"))
+            else if (!err->status && !strcmp(word, "photo"))
                 u->pixels = PIXELS_OF_PHOTO;
-            else if (!st)
-                st = textfile_error(&t, err, word, "view or photo");
+            else if (!err->status)
+                textfile_error(&t, err, word, "view or photo");
         } else {
-            st = textfile_error(&t, err, word, "a line \"scale NUMBER\" or \"pixels view|photo\", each at most once");
+            textfile_error(&t, err, word, "a line \"scale NUMBER\" or \"pixels view|photo\", each at most once");
         }
-        if (!st) st = textfile_end(&t, err);
+        if (!err->status) textfile_end(&t, err);
     }
     textfile_release(&t);
-    if (st) *u = (struct given_units){0};
-    return st;
+    if (err->status) *u = (struct given_units){0};
+    return err->status;
 }
 
 static enum status store_sample(struct given_map *m, size_t i, double sample, double scale, struct err *err)
@@ -79,25 +78,24 @@ static enum status init_map(struct given_map *m, int width, int height, struct e
 static enum status read_exr(struct given_map *m, const struct given_units *units, struct err *err)
 {
     struct exr_image exr = {0};
-    enum status st = exr_read_any(&exr, m->path, err);
-    const struct exr_plane *plane = st ? NULL : exr_find(&exr, "Z");
-    if (!st && !plane && exr.count == 1) plane = exr.planes;
-    if (!st && !plane) {
+    exr_read_any(&exr, m->path, err);
+    const struct exr_plane *plane = err->status ? NULL : exr_find(&exr, "Z");
+    if (!err->status && !plane && exr.count == 1) plane = exr.planes;
+    if (!err->status && !plane) {
         char channels[1024] = "";
         for (int c = 0; c < exr.count; c++) {
             const size_t length = strlen(channels);
             snprintf(channels + length, sizeof channels - length, " %s", exr.planes[c].name);
         }
-        st =
-            err_set(err, ST_DATA, "%s has the channels%s; wanted a channel Z, or a single channel.", m->path, channels);
+        err_set(err, ST_DATA, "%s has the channels%s; wanted a channel Z, or a single channel.", m->path, channels);
     }
-    if (!st) st = init_map(m, exr.width, exr.height, err);
+    if (!err->status) init_map(m, exr.width, exr.height, err);
     const double scale = units->scale > 0 ? units->scale : 1;
     const size_t pixels = (size_t)m->width * (size_t)m->height;
-    for (size_t i = 0; !st && i < pixels; i++)
-        st = store_sample(m, i, plane->f ? (double)plane->f[i] : (double)plane->u[i], scale, err);
+    for (size_t i = 0; !err->status && i < pixels; i++)
+        store_sample(m, i, plane->f ? (double)plane->f[i] : (double)plane->u[i], scale, err);
     exr_image_release(&exr);
-    return st;
+    return err->status;
 }
 
 static enum status read_png(struct given_map *m, const struct given_units *units, const char *folder, struct err *err)
@@ -108,18 +106,17 @@ static enum status read_png(struct given_map *m, const struct given_units *units
                        "%s holds whole numbers of unknown scale; write the line \"scale NUMBER\" into %s/depth.txt, "
                        "where NUMBER times a sample is its depth in scene units.",
                        m->path, folder);
-    enum status st = photo_read(&photo, m->path, err);
-    if (!st) st = init_map(m, photo.info.width, photo.info.height, err);
+    if (!photo_read(&photo, m->path, err)) init_map(m, photo.info.width, photo.info.height, err);
     const size_t pixels = (size_t)m->width * (size_t)m->height;
-    for (size_t i = 0; !st && i < pixels; i++) {
+    for (size_t i = 0; !err->status && i < pixels; i++) {
         const uint16_t *s = photo.samples + 3 * i;
         if (s[0] != s[1] || s[0] != s[2])
-            st = err_set(err, ST_DATA, "%s is a colour picture; wanted a grey PNG of 8 or 16 bits per pixel.", m->path);
+            err_set(err, ST_DATA, "%s is a colour picture; wanted a grey PNG of 8 or 16 bits per pixel.", m->path);
         else
-            st = store_sample(m, i, s[0], units->scale, err);
+            store_sample(m, i, s[0], units->scale, err);
     }
     photo_release(&photo);
-    return st;
+    return err->status;
 }
 
 /* Whether one size is the other, scaled and rounded. */
@@ -227,18 +224,17 @@ static enum status find_file(char **path, const char *folder, const char *name, 
                              struct provenance *prov, struct err *err)
 {
     char *input = NULL;
-    enum status st = ST_OK;
     if (asprintf(path, "%s/%s%s", folder, name, ending) < 0) *path = NULL;
     if (!*path || asprintf(&input, "given/%s%s", name, ending) < 0) {
-        st = err_nomem(err, "a file name", strlen(folder) + strlen(name));
+        err_nomem(err, "a file name", strlen(folder) + strlen(name));
     } else if (access(*path, F_OK)) {
         free(*path);
         *path = NULL;
     } else {
-        st = provenance_add_file(prov, input, *path, err);
+        provenance_add_file(prov, input, *path, err);
     }
     free(input);
-    return st;
+    return err->status;
 }
 
 enum status given_read(float **z, const char *folder, const struct view *view, const struct lens *lens,
@@ -250,21 +246,24 @@ enum status given_read(float **z, const char *folder, const struct view *view, c
     char *path = NULL, *units_path = NULL;
     bool png = false;
     *z = NULL;
-    enum status st = find_file(&path, folder, view->name, ".exr", prov, err);
-    if (!st && !path) {
+    find_file(&path, folder, view->name, ".exr", prov, err);
+    if (!err->status && !path) {
         png = true;
-        st = find_file(&path, folder, view->name, ".png", prov, err);
+        find_file(&path, folder, view->name, ".png", prov, err);
     }
-    if (!st && path) st = find_file(&units_path, folder, "depth", ".txt", prov, err);
-    if (!st && units_path) st = given_units_read(&units, units_path, err);
-    if (!st && path) {
+    if (!err->status && path) find_file(&units_path, folder, "depth", ".txt", prov, err);
+    if (!err->status && units_path) given_units_read(&units, units_path, err);
+    if (!err->status && path) {
         map.path = path;
-        st = png ? read_png(&map, &units, folder, err) : read_exr(&map, &units, err);
-        if (!st) st = choose_projection(&projection, &map, folder, &units, view, lens, err);
-        if (!st) st = map_to_view(z, &projection, err);
+        if (png)
+            read_png(&map, &units, folder, err);
+        else
+            read_exr(&map, &units, err);
+        if (!err->status && !choose_projection(&projection, &map, folder, &units, view, lens, err))
+            map_to_view(z, &projection, err);
     }
     free(map.z);
     free(units_path);
     free(path);
-    return st;
+    return err->status;
 }

@@ -162,13 +162,13 @@ enum status gravity_find(struct vec3 *down, bool *known, const struct camera_set
     }
     *known = vec3_length(right) < MIN_RIGHT * set->view_count;
     if (*known) return ST_OK;
-    const enum status st = cloud_take(&c, set, err);
+    cloud_take(&c, set, err);
     set_axes(&c, *down, right);
     double pitch;
-    *known = !st && c.distance > 0 && find_pitch(&pitch, &c);
+    *known = !err->status && c.distance > 0 && find_pitch(&pitch, &c);
     if (*known) *down = tilted(&c, 0, pitch);
     cloud_release(&c);
-    return st;
+    return err->status;
 }
 
 /* ----------------------------------------------------------------------------------------------------- ground */
@@ -269,8 +269,8 @@ enum status gravity_find_ground(struct ground *g, bool *found, const struct came
     struct cloud c;
     struct level best = {0};
     *found = false;
-    const enum status st = cloud_take(&c, set, err);
-    if (!st && c.distance > 0) {
+    cloud_take(&c, set, err);
+    if (!err->status && c.distance > 0) {
         set_axes(&c, down, fabs(down.x) < 0.9 ? vec3_make(1, 0, 0) : vec3_make(0, 1, 0));
         find_feet(&c, set);
         for (int a = -steps; a <= steps; a++)
@@ -279,5 +279,5 @@ enum status gravity_find_ground(struct ground *g, bool *found, const struct came
     }
     if (*found) *g = (struct ground){best.down, exact_depth(&c, &best) + vec3_dot(best.down, c.centre)};
     cloud_release(&c);
-    return st;
+    return err->status;
 }

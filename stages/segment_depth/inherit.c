@@ -217,15 +217,14 @@ static enum status cut_area(struct inherit *x, int count, int number, struct err
 
 static enum status cut_level(struct inherit *x, int number, struct err *err)
 {
-    enum status st = ST_OK;
     x->level = x->p->min_inverse_z + number * x->spacing;
     memset(x->listed, 0, (size_t)x->s->count * sizeof *x->listed);
-    for (int i = 0; !st && i < x->s->count; i++) {
+    for (int i = 0; !err->status && i < x->s->count; i++) {
         if (x->listed[i] || !is_unsure_above(x, i)) continue;
         const int count = gather(x, i, joins_unsure);
-        if (touches_picture_border(x, count)) st = cut_area(x, count, number, err);
+        if (touches_picture_border(x, count)) cut_area(x, count, number, err);
     }
-    return st;
+    return err->status;
 }
 
 /* Whether segment i, which is cut off, continues the plane of the other side of its border t. */
@@ -297,14 +296,13 @@ enum status inherit_planes(struct plane *planes, bool *inherited, const double *
     x.node = malloc(count * sizeof *x.node);
     x.cut_at = malloc(count * sizeof *x.cut_at);
     x.behind = malloc(count * sizeof *x.behind);
-    enum status st = x.held && x.listed && x.members && x.node && x.cut_at && x.behind
-                         ? ST_OK
-                         : err_nomem(err, "border areas", count * 38);
-    for (int round = 0; !st && round < ROUNDS; round++) {
+    if (!x.held || !x.listed || !x.members || !x.node || !x.cut_at || !x.behind)
+        err_nomem(err, "border areas", count * 38);
+    for (int round = 0; !err->status && round < ROUNDS; round++) {
         find_held(&x);
         memset(x.cut_at, 0, count * sizeof *x.cut_at);
-        for (int n = 1; !st && n * x.spacing < range; n++) st = cut_level(&x, n, err);
-        if (st || !take_over(&x, inherited)) break;
+        for (int n = 1; !err->status && n * x.spacing < range; n++) cut_level(&x, n, err);
+        if (err->status || !take_over(&x, inherited)) break;
     }
     max_flow_release(&x.flow);
     free(x.held);
@@ -313,5 +311,5 @@ enum status inherit_planes(struct plane *planes, bool *inherited, const double *
     free(x.node);
     free(x.cut_at);
     free(x.behind);
-    return st;
+    return err->status;
 }

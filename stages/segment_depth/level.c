@@ -37,24 +37,25 @@ static enum status halve_points(struct level *half, const struct level *full, st
 
 enum status level_halve(struct level *half, const struct level *full, struct err *err)
 {
-    enum status st = halve_views(half, full, err);
-    if (!st) st = halve_points(half, full, err);
-    return st ? st : gamma_image_half_covering(&half->gamma, &full->gamma, err);
+    return halve_views(half, full, err) || halve_points(half, full, err) ||
+                   gamma_image_half_covering(&half->gamma, &full->gamma, err)
+               ? err->status
+               : ST_OK;
 }
 
 enum status level_add(struct level *full, struct level *half, int view_idx, int neighbour_idx, double typical,
                       struct gamma_image *picture, struct err *err)
 {
     struct gamma_image halved = {0};
-    enum status st = half ? gamma_image_half(&halved, picture, err) : ST_OK;
-    if (!st && half)
-        st = matcher_add(&half->matcher, &half->set, view_idx, neighbour_idx, &half->seen, typical, &half->gamma,
-                         &halved, err);
+    if (half) gamma_image_half(&halved, picture, err);
+    if (!err->status && half)
+        matcher_add(&half->matcher, &half->set, view_idx, neighbour_idx, &half->seen, typical, &half->gamma, &halved,
+                    err);
     gamma_image_release(&halved);
-    if (!st)
-        st = matcher_add(&full->matcher, &full->set, view_idx, neighbour_idx, &full->seen, typical, &full->gamma,
-                         picture, err);
-    return st;
+    if (!err->status)
+        matcher_add(&full->matcher, &full->set, view_idx, neighbour_idx, &full->seen, typical, &full->gamma, picture,
+                    err);
+    return err->status;
 }
 
 void level_release(struct level *l)

@@ -127,7 +127,6 @@ static enum status augment(struct max_flow *f, int bridge, struct err *err)
     }
     f->arcs[bridge].residual -= bottleneck;
     f->arcs[bridge ^ 1].residual += bottleneck;
-    enum status st = ST_OK;
     for (int side = 0; side < 2; side++) {
         int i = ends[side];
         for (int a; (a = f->nodes[i].parent) != TERMINAL;) {
@@ -135,13 +134,13 @@ static enum status augment(struct max_flow *f, int bridge, struct err *err)
             f->arcs[down].residual -= bottleneck;
             f->arcs[down ^ 1].residual += bottleneck;
             const int up = f->arcs[a].to;
-            if (f->arcs[down].residual == 0 && !st) st = make_orphan(f, i, err);
+            if (f->arcs[down].residual == 0 && !err->status) make_orphan(f, i, err);
             i = up;
         }
         f->nodes[i].excess += side ? bottleneck : -bottleneck;
-        if (f->nodes[i].excess == 0 && !st) st = make_orphan(f, i, err);
+        if (f->nodes[i].excess == 0 && !err->status) make_orphan(f, i, err);
     }
-    return st;
+    return err->status;
 }
 
 /* Arcs from a node to its tree's root; -1 if the path ends at an orphan. Updates the nodes on the path. */
@@ -191,16 +190,15 @@ static enum status adopt(struct max_flow *f, int i, struct err *err)
         n->distance = nearest + 1;
         return ST_OK;
     }
-    enum status st = ST_OK;
     n->parent = NONE;
     for (int a = n->first; a != NONE; a = f->arcs[a].next) {
         const int j = f->arcs[a].to;
         struct flow_node *m = &f->nodes[j];
         if (m->sink != sink || m->parent == NONE) continue;
         if (tree_residual(f, a, sink) > 0) activate(f, j);
-        if (m->parent >= 0 && f->arcs[m->parent].to == i && !st) st = make_orphan(f, j, err);
+        if (m->parent >= 0 && f->arcs[m->parent].to == i && !err->status) make_orphan(f, j, err);
     }
-    return st;
+    return err->status;
 }
 
 /* Adds an active node's free neighbours to its tree. Returns an arc from the source's tree to the sink's, or NONE. */
@@ -252,9 +250,9 @@ enum status max_flow_solve(struct max_flow *f, struct err *err)
             continue;
         }
         /* the same node may find more paths */
-        enum status st = augment(f, bridge, err);
-        while (!st && f->orphan_count > 0) st = adopt(f, f->orphans[--f->orphan_count], err);
-        if (st) return st;
+        augment(f, bridge, err);
+        while (!err->status && f->orphan_count > 0) adopt(f, f->orphans[--f->orphan_count], err);
+        if (err->status) return err->status;
     }
 }
 

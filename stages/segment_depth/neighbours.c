@@ -191,14 +191,13 @@ enum status neighbours_choose(int neighbours[MAX_NEIGHBOURS], int *count, const 
     double *score = malloc((size_t)set->view_count * sizeof *score);
     struct tile_points points = {0};
     int *shared = malloc((size_t)set->view_count * sizeof *shared), best = 0;
-    enum status st = ST_OK;
     *count = 0;
     if (!score || !shared) {
-        st = err_nomem(err, "scores of views", (size_t)set->view_count * 12);
+        err_nomem(err, "scores of views", (size_t)set->view_count * 12);
         goto done;
     }
     double first_score = 0;
-    if ((st = find_tile_points(&points, set, view_idx, seen, err))) goto done;
+    if (find_tile_points(&points, set, view_idx, seen, err)) goto done;
     while (*count < max_count && *count < MAX_NEIGHBOURS && best >= 0) {
         score_views(score, shared, set, view_idx, &points, neighbours, *count);
         best = best_view(score, shared, set->view_count, view_idx, neighbours, *count);
@@ -216,16 +215,16 @@ enum status neighbours_choose(int neighbours[MAX_NEIGHBOURS], int *count, const 
             neighbours[(*count)++] = best;
     }
     if (*count == 0)
-        st = err_set(err, ST_DATA,
-                     "view %s has no neighbour to match with: none of the %d other view(s) shows the same scene from "
-                     "another position. Depth needs at least two views taken from different positions; add photos "
-                     "taken beside this one, or leave it out (EXCLUDE).",
-                     set->views[view_idx].name, set->view_count - 1);
+        err_set(err, ST_DATA,
+                "view %s has no neighbour to match with: none of the %d other view(s) shows the same scene from "
+                "another position. Depth needs at least two views taken from different positions; add photos "
+                "taken beside this one, or leave it out (EXCLUDE).",
+                set->views[view_idx].name, set->view_count - 1);
 done:
     free(score);
     free(shared);
     free(points.list);
-    return st;
+    return err->status;
 }
 
 /* Sorted inverse depths of all points that project into the view, observed by it or not: surfaces that only other views

@@ -213,7 +213,6 @@ static enum status connect_segments(struct slic *s, int segment_pixels, struct e
     int *component_of = malloc(pixels * sizeof *component_of), *queue = malloc(pixels * sizeof *queue);
     int *largest = malloc(centres * sizeof *largest), *visited = malloc(pixels * sizeof *visited);
     struct component *components = malloc(pixels * sizeof *components);
-    enum status st = ST_OK;
     if (component_of && queue && largest && visited && components) {
         int count = find_components(s, component_of, queue, components);
         for (size_t k = 0; k < centres; k++) largest[k] = -1;
@@ -224,14 +223,14 @@ static enum status connect_segments(struct slic *s, int segment_pixels, struct e
         merge_components(s, component_of, visited, queue, components, count, largest, segment_pixels / 6);
         memcpy(s->label, component_of, pixels * sizeof *component_of);
     } else {
-        st = err_nomem(err, "connected segments", pixels * (sizeof *components + 12));
+        err_nomem(err, "connected segments", pixels * (sizeof *components + 12));
     }
     free(component_of);
     free(queue);
     free(largest);
     free(visited);
     free(components);
-    return st;
+    return err->status;
 }
 
 static void seed(struct slic *s)
@@ -266,8 +265,8 @@ enum status oversegment(struct segmentation *s, const struct gamma_image *g, int
     slic.centres = malloc((size_t)slic.columns * (size_t)slic.rows * sizeof *slic.centres);
     bool ok = line && slic.label && slic.centres;
     for (int c = 0; c < 3; c++) ok = (slic.lab[c] = malloc(pixels * sizeof(float))) && ok;
-    enum status st = ok ? ST_OK : err_nomem(err, "the over-segmentation", pixels * 16);
-    if (!st) {
+    if (!ok) err_nomem(err, "the over-segmentation", pixels * 16);
+    if (!err->status) {
         lab_from_rgb(g, slic.lab);
         for (int c = 0; c < 3; c++) {
             for (size_t y = 0; y < (size_t)g->height; y++)
@@ -277,17 +276,16 @@ enum status oversegment(struct segmentation *s, const struct gamma_image *g, int
         }
         seed(&slic);
     }
-    for (int i = 0; !st && i < ITERATIONS; i++) {
+    for (int i = 0; !err->status && i < ITERATIONS; i++) {
         parallel_for((size_t)g->height, 16, assign_rows, &slic);
-        if (i + 1 < ITERATIONS) st = move_centres(&slic, err);
+        if (i + 1 < ITERATIONS) move_centres(&slic, err);
     }
-    if (!st) st = connect_segments(&slic, segment_pixels, err);
-    if (!st) st = segment_graph_make(s, slic.lab, err);
+    if (!err->status && !connect_segments(&slic, segment_pixels, err)) segment_graph_make(s, slic.lab, err);
     for (int c = 0; c < 3; c++) free(slic.lab[c]);
     free(slic.centres);
     free(line);
-    if (st) oversegment_release(s);
-    return st;
+    if (err->status) oversegment_release(s);
+    return err->status;
 }
 
 enum status oversegment_double(struct segmentation *s, const struct segmentation *half, const struct gamma_image *g,
@@ -300,9 +298,8 @@ enum status oversegment_double(struct segmentation *s, const struct segmentation
     for (int y = 0; y < height; y++)
         for (int x = 0; x < width; x++)
             s->label[y * width + x] = g->valid[y * width + x] ? half->label[y / 2 * half->width + x / 2] : -1;
-    const enum status st = segment_graph_of_numbers(s, NULL, err);
-    if (st) oversegment_release(s);
-    return st;
+    if (segment_graph_of_numbers(s, NULL, err)) oversegment_release(s);
+    return err->status;
 }
 
 void oversegment_release(struct segmentation *s)

@@ -361,29 +361,28 @@ enum status pixel_planes_choose(int *label, const struct plane *planes, const st
     const int threads = parallel_threads();
     struct choice c = {.s = s, .planes = planes, .p = p, .failed = calloc((size_t)threads, sizeof *c.failed)};
     int *other = malloc(size);
-    enum status st = c.failed && other ? ST_OK : err_nomem(err, "the segments of pixels", size);
-    if (!st) st = list_all(&c, err);
-    if (!st) {
+    if (!c.failed || !other) err_nomem(err, "the segments of pixels", size);
+    if (!err->status && !list_all(&c, err)) {
         make_tables(&c);
         parallel_for((size_t)s->count, 32, segment_costs, &c);
     }
-    for (int t = 0; !st && t < threads; t++)
-        if (c.failed[t]) st = err_nomem(err, "the surroundings of a segment", size);
-    if (!st) {
+    for (int t = 0; !err->status && t < threads; t++)
+        if (c.failed[t]) err_nomem(err, "the surroundings of a segment", size);
+    if (!err->status) {
         memcpy(label, s->label, size); /* pixels that the view does not have stay -1 */
         memcpy(other, s->label, size);
     }
-    for (int pass = 0; !st && pass < PASSES; pass++) {
+    for (int pass = 0; !err->status && pass < PASSES; pass++) {
         c.label = pass % 2 ? other : label;
         c.next = pass % 2 ? label : other;
         parallel_for((size_t)s->count, 32, choose_pixels, &c);
     }
-    if (!st && PASSES % 2) memcpy(label, other, size);
+    if (!err->status && PASSES % 2) memcpy(label, other, size);
     free(c.first_candidate);
     free(c.first_cost);
     free(c.candidates);
     free(c.costs);
     free(c.failed);
     free(other);
-    return st;
+    return err->status;
 }

@@ -416,27 +416,27 @@ enum status match_calibrate(struct matcher *m, double min_inverse_z, double max_
     double good, chance, contrast[MAX_NEIGHBOURS] = {0}, max_contrast = 0;
     m->out_of_view_cost = malloc(((size_t)count + 1) * sizeof *m->out_of_view_cost);
     m->occluded_cost = malloc(((size_t)count + 1) * sizeof *m->occluded_cost);
-    enum status st = job.best && job.mean && m->out_of_view_cost && m->occluded_cost
-                         ? ST_OK
-                         : err_nomem(err, "costs of segments", costs * 2 * sizeof(float));
-    if (!st) parallel_for((size_t)count, 32, calibrate_segments, &job);
-    if (!st && !enough_visible(&job)) { /* a strip of picture: most depths take it out of the neighbours' frames */
+    if (!job.best || !job.mean || !m->out_of_view_cost || !m->occluded_cost)
+        err_nomem(err, "costs of segments", costs * 2 * sizeof(float));
+    if (!err->status) parallel_for((size_t)count, 32, calibrate_segments, &job);
+    if (!err->status && !enough_visible(&job)) {
+        /* a strip of picture: most depths take it out of the neighbours' frames */
         job.depths = 192;
         job.least = 16;
         parallel_for((size_t)count, 32, calibrate_segments, &job);
     }
-    for (int k = 0; !st && k < m->neighbour_count; k++) {
+    for (int k = 0; !err->status && k < m->neighbour_count; k++) {
         if (mean_costs(&job, 0, count, 1u << k, &good, &chance)) contrast[k] = chance - good;
         max_contrast = fmax(max_contrast, contrast[k]);
     }
     m->excluded = 0;
     for (int k = 0; k < m->neighbour_count; k++)
         if (contrast[k] < MIN_RELATIVE_CONTRAST * max_contrast) m->excluded |= 1u << k;
-    if (!st && mean_costs(&job, 0, count, ~m->excluded, &good, &chance)) {
+    if (!err->status && mean_costs(&job, 0, count, ~m->excluded, &good, &chance)) {
         m->good_cost = (float)good;
         m->chance_cost = (float)fmax(chance, good + MIN_CONTRAST);
     }
-    for (int i = 0; !st && i < count; i++) {
+    for (int i = 0; !err->status && i < count; i++) {
         m->out_of_view_cost[i] = OUT_OF_VIEW_COST;
         m->occluded_cost[i] = OCCLUDED_COST;
         if (!mean_costs(&job, i, i + 1, ~m->excluded, &good, &chance)) continue;
@@ -447,7 +447,7 @@ enum status match_calibrate(struct matcher *m, double min_inverse_z, double max_
     }
     free(job.best);
     free(job.mean);
-    return st;
+    return err->status;
 }
 
 double match_shift(const struct matcher *m, double min_inverse_z, double max_inverse_z)

@@ -222,10 +222,10 @@ enum status matcher_add(struct matcher *m, const struct camera_set *set, int vie
         for (int j = 0; j < 2; j++) jacobian[i][j] = clamp(jacobian[i][j], -2, 2);
     uint8_t *packed = match_features(picture, gain, jacobian, m->noise);
     if (!packed) return err_nomem(err, "a picture to match with", (size_t)n->width * (size_t)n->height * 20);
-    enum status st = make_texture(n, packed, err);
+    make_texture(n, packed, err);
     free(packed);
-    if (!st) m->neighbour_count++;
-    return st;
+    if (!err->status) m->neighbour_count++;
+    return err->status;
 }
 
 void matcher_take(struct matcher *m, struct matcher *half)

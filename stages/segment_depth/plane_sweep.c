@@ -117,20 +117,19 @@ enum status plane_sweep_run(struct plane_sweep *w, struct plane *plane, const st
     int *labels = malloc(((size_t)s->count + 1) * sizeof *labels);
     w->cost = malloc(costs * sizeof *w->cost);
     job.energy = malloc(costs * sizeof *job.energy);
-    enum status st =
-        labels && w->cost && job.energy ? ST_OK : err_nomem(err, "matching costs", costs * 2 * sizeof(float));
-    if (!st) {
+    if (!labels || !w->cost || !job.energy) err_nomem(err, "matching costs", costs * 2 * sizeof(float));
+    if (!err->status) {
         progress_start(&job.progress, "plane sweep", s->count, "segments");
         parallel_for((size_t)s->count, 32, sweep_segments, &job);
         progress_end(&job.progress);
-        st = smooth_labels(labels, s, job.energy, w->planes, weights, (float)(params->smoothness / params->jump),
-                           (float)params->smoothness, err);
+        smooth_labels(labels, s, job.energy, w->planes, weights, (float)(params->smoothness / params->jump),
+                      (float)params->smoothness, err);
     }
-    for (int i = 0; !st && i < s->count; i++)
+    for (int i = 0; !err->status && i < s->count; i++)
         plane[i] = given_depth_has(w->given, i) ? w->given->planes[i] : best_plane(&job, i, labels[i]);
     free(labels);
     free(job.energy);
-    return st;
+    return err->status;
 }
 
 void plane_sweep_release(struct plane_sweep *w)

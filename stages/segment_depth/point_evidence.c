@@ -97,8 +97,7 @@ enum status point_evidence_make(struct point_evidence *e, const struct segmentat
                                  .inside_weight = params->points,
                                  .nearest_weight = params->nearest_points,
                                  .far_weight = params->far_bias};
-    enum status st = sort_into_segments(e, s, seen, err);
-    if (!st) {
+    if (!sort_into_segments(e, s, seen, err)) {
         int points = e->first[s->count];
         float place = (float)(1 / (PLACE_SCALE * hypot(s->width, s->height)));
         struct nearest_job job = {.e = e, .s = s, .place = place};
@@ -111,12 +110,12 @@ enum status point_evidence_make(struct point_evidence *e, const struct segmentat
                     fill_key(job.key[k], &s->segments[i], e->points[k].u, e->points[k].v, place);
             parallel_for((size_t)s->count, 64, find_nearest, &job);
         } else {
-            st = err_nomem(err, "points near segments", (size_t)s->count * NEAREST_POINTS * sizeof *e->nearest);
+            err_nomem(err, "points near segments", (size_t)s->count * NEAREST_POINTS * sizeof *e->nearest);
         }
         free(job.key);
     }
-    if (st) point_evidence_release(e);
-    return st;
+    if (err->status) point_evidence_release(e);
+    return err->status;
 }
 
 void point_evidence_release(struct point_evidence *e)

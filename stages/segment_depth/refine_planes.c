@@ -165,11 +165,10 @@ enum status refine_planes(struct plane *plane, const struct plane_problem *p, st
     int *colour = malloc(((size_t)s->count + 1) * sizeof *colour), first[MAX_COLOURS + 1];
     int *members = malloc(((size_t)s->count + 1) * sizeof *members);
     struct progress progress;
-    enum status st = ST_OK;
     r.before = malloc(((size_t)s->count + 1) * sizeof *r.before);
     r.unary = malloc(((size_t)s->count + 1) * sizeof *r.unary);
     if (!colour || !members || !r.before || !r.unary) {
-        st = err_nomem(err, "the refinement of planes", (size_t)s->count * 40);
+        err_nomem(err, "the refinement of planes", (size_t)s->count * 40);
         goto done;
     }
     r.members = members;
@@ -192,5 +191,5 @@ done:
     free(members);
     free(r.before);
     free(r.unary);
-    return st;
+    return err->status;
 }

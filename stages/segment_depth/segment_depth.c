@@ -49,8 +49,10 @@ static enum status read_depth(void *ctx, int view_idx, struct layered_depth *d, 
     const struct views_folder *f = ctx;
     const char *name = f->set->views[view_idx].name;
     char path[FILE_PATH];
-    const enum status st = product_path_in(path, f->before, PRODUCT_DEPTH, &(struct product_key){.view = name}, err);
-    return st ? st : layered_depth_read_ids(d, path, f->prov, err);
+    return product_path_in(path, f->before, PRODUCT_DEPTH, &(struct product_key){.view = name}, err) ||
+                   layered_depth_read_ids(d, path, f->prov, err)
+               ? err->status
+               : ST_OK;
 }
 
 /* *z: the view's given depth; NULL if there is none or all of it is unknown. */
@@ -61,11 +63,11 @@ static enum status read_given(void *ctx, int view_idx, float **z, struct err *er
     struct lens_list lenses = {0};
     char path[FILE_PATH];
     if (product_path_in(path, f->folder, PRODUCT_LENSES, NULL, err)) return err->status;
-    enum status st = access(path, F_OK) ? ST_OK : lens_list_read(&lenses, path, NULL, err);
-    const int lens = st ? -1 : lens_list_find(&lenses, view->name);
-    if (!st) st = given_read(z, f->given, view, lens < 0 ? NULL : &lenses.lenses[lens], f->prov, err);
+    if (!access(path, F_OK)) lens_list_read(&lenses, path, NULL, err);
+    const int lens = err->status ? -1 : lens_list_find(&lenses, view->name);
+    if (!err->status) given_read(z, f->given, view, lens < 0 ? NULL : &lenses.lenses[lens], f->prov, err);
     double min_inverse_z = 0, max_inverse_z = 0;
-    if (!st && *z &&
+    if (!err->status && *z &&
         !given_depth_range(&min_inverse_z, &max_inverse_z, *z, (size_t)view->width * (size_t)view->height)) {
         if (!f->before) /* warns in the first round only */
             log_warn("the given depth of view %s in %s is unknown everywhere (0, NaN or infinite); the view is matched "
@@ -75,7 +77,7 @@ static enum status read_given(void *ctx, int view_idx, float **z, struct err *er
         *z = NULL;
     }
     lens_list_release(&lenses);
-    return st;
+    return err->status;
 }
 
 /* Writes the views and the depth of the round before that were read. */
@@ -85,14 +87,14 @@ static enum status write_deps(const char *deps, const char *out, const char *con
     char paths[2 * (1 + MAX_NEIGHBOURS)][FILE_PATH];
     const char *files[2 * (1 + MAX_NEIGHBOURS)];
     int n = 0;
-    enum status st = ST_OK;
     for (int f = 0; f < 2 && folders[f]; f++)
-        for (int i = 0; !st && i < count; i++, n++) {
-            st = product_path_in(paths[n], folders[f], f ? PRODUCT_DEPTH : PRODUCT_VIEW,
-                                 &(struct product_key){.view = set->views[read[i]].name}, err);
+        for (int i = 0; !err->status && i < count; i++, n++) {
+            product_path_in(paths[n], folders[f], f ? PRODUCT_DEPTH : PRODUCT_VIEW,
+                            &(struct product_key){.view = set->views[read[i]].name}, err);
             files[n] = paths[n];
         }
-    return st ? st : make_deps_write(deps, out, files, n, err);
+    if (!err->status) make_deps_write(deps, out, files, n, err);
+    return err->status;
 }
 
 static void log_coverage(const char *view, const struct layered_depth *d)
@@ -111,14 +113,13 @@ static enum status warn_guessed_range(const struct camera_set *set, const int *r
     double min_inverse_z = 0, max_inverse_z = 0;
     bool guessed = false;
     if (params->near > 0 && params->far > 0) return ST_OK;
-    enum status st =
-        neighbours_depth_range(&min_inverse_z, &max_inverse_z, &guessed, set, read[0], read + 1, count, err);
-    if (!st && guessed)
+    neighbours_depth_range(&min_inverse_z, &max_inverse_z, &guessed, set, read[0], read + 1, count, err);
+    if (!err->status && guessed)
         log_warn("too few sparse points to find the depth range: searched from a depth of %.4g on, at which the "
                  "disparity is a quarter of the picture's width; if the nearest surface is nearer or much farther, set "
                  "[segment_depth] near and far",
                  1 / max_inverse_z);
-    return st;
+    return err->status;
 }
 
 /* What main was asked for. */
@@ -135,11 +136,11 @@ static enum status find_change(double *changed, const struct layered_depth *dept
     char path[FILE_PATH];
     *changed = 1;
     if (!r->before) return ST_OK;
-    enum status st = product_path_in(path, r->before, PRODUCT_DEPTH, &(struct product_key){.view = r->view}, err);
-    if (!st) st = layered_depth_read(&before, path, NULL, err);
-    if (!st) *changed = round_change(depth, &before);
+    if (!product_path_in(path, r->before, PRODUCT_DEPTH, &(struct product_key){.view = r->view}, err) &&
+        !layered_depth_read(&before, path, NULL, err))
+        *changed = round_change(depth, &before);
     layered_depth_release(&before);
-    return st;
+    return err->status;
 }
 
 static enum status write_record(double changed, bool estimated, const struct request *r, const struct provenance *prov,
@@ -147,8 +148,8 @@ static enum status write_record(double changed, bool estimated, const struct req
 {
     const struct round_record record = {changed, estimated};
     char path[FILE_PATH];
-    enum status st = round_file(path, r->out, ".round", err);
-    return st ? st : round_record_write(&record, path, prov, err);
+    return round_file(path, r->out, ".round", err) || round_record_write(&record, path, prov, err) ? err->status
+                                                                                                   : ST_OK;
 }
 
 /* read[0]: the view; the rest: the neighbours that were read. */
@@ -160,28 +161,30 @@ static enum status make_depth(const struct request *r, const struct camera_set *
     struct layered_depth depth = {0};
     double changed = 1;
     int count = 0;
-    enum status st = estimate_log(set, read[0], !r->before, r->params, err);
-    if (!st && r->records) {
+    estimate_log(set, read[0], !r->before, r->params, err);
+    if (!err->status && r->records) {
         ups = calloc((size_t)set->view_count + 1, sizeof *ups);
-        st = ups ? upright_read(ups, set, r->views, r->records, prov, err)
-                 : err_nomem(err, "upright directions", (size_t)set->view_count * sizeof *ups);
+        if (ups)
+            upright_read(ups, set, r->views, r->records, prov, err);
+        else
+            err_nomem(err, "upright directions", (size_t)set->view_count * sizeof *ups);
     }
     const struct view_source source = {read_view, r->before ? read_depth : NULL, &views, r->given ? read_given : NULL,
                                        ups};
-    if (!st) st = view_depth(&depth, read + 1, &count, set, read[0], &source, r->params, err);
-    if (!st) st = find_change(&changed, &depth, r, err);
-    if (!st && r->deps)
-        st = write_deps(r->deps, r->out, (const char *const[2]){r->views, r->before}, set, read, 1 + count, err);
-    if (!st) st = write_record(changed, true, r, prov, err);
-    if (!st) st = layered_depth_write(&depth, &set->views[read[0]], r->out, prov, err);
-    if (!st && count && !r->given) st = warn_guessed_range(set, read, count, r->params, err);
-    if (!st) log_coverage(r->view, &depth);
-    if (!st && r->before)
+    if (!err->status && !view_depth(&depth, read + 1, &count, set, read[0], &source, r->params, err))
+        find_change(&changed, &depth, r, err);
+    if (!err->status && r->deps)
+        write_deps(r->deps, r->out, (const char *const[2]){r->views, r->before}, set, read, 1 + count, err);
+    if (!err->status && !write_record(changed, true, r, prov, err))
+        layered_depth_write(&depth, &set->views[read[0]], r->out, prov, err);
+    if (!err->status && count && !r->given) warn_guessed_range(set, read, count, r->params, err);
+    if (!err->status) log_coverage(r->view, &depth);
+    if (!err->status && r->before)
         log_note("%s: the depth of %.2f %% of the pixels changed by more than %g %%", r->view, 100 * changed,
                  100 * CHANGED_PART);
     free(ups);
     layered_depth_release(&depth);
-    return st;
+    return err->status;
 }
 
 /* Copies the depth of the round before if neither the view nor a neighbour changed in it; *carried: they did not. */
@@ -193,22 +196,22 @@ static enum status carry_over(bool *carried, const struct request *r, const stru
     struct err alone = ERR_INIT;
     int count = 0;
     *carried = false;
-    enum status st = neighbours_find_points(&seen, set, read[0], err);
+    neighbours_find_points(&seen, set, read[0], err);
     /* without neighbours a view has given depth, or view_depth() says what is wrong */
-    if (!st && neighbours_choose(read + 1, &count, set, read[0], &seen, r->params->neighbours, &alone) == ST_NOMEM)
-        st = err_set(err, ST_NOMEM, "%s", alone.text);
-    if (!st) st = round_is_settled(carried, r->before, set, read, 1 + count, r->params->min_change, &records, err);
-    if (!st && *carried && r->deps)
-        st = write_deps(r->deps, r->out, (const char *const[2]){r->views, r->before}, set, read, 1 + count, err);
-    if (!st && *carried) st = write_record(0, false, r, &records, err);
-    if (!st && *carried) st = round_carry_over(r->before, r->view, r->out, err);
-    if (!st && *carried)
+    if (!err->status &&
+        neighbours_choose(read + 1, &count, set, read[0], &seen, r->params->neighbours, &alone) == ST_NOMEM)
+        err_set(err, ST_NOMEM, "%s", alone.text);
+    if (!err->status) round_is_settled(carried, r->before, set, read, 1 + count, r->params->min_change, &records, err);
+    if (!err->status && *carried && r->deps)
+        write_deps(r->deps, r->out, (const char *const[2]){r->views, r->before}, set, read, 1 + count, err);
+    if (!err->status && *carried && !write_record(0, false, r, &records, err) &&
+        !round_carry_over(r->before, r->view, r->out, err))
         log_note("%s: little changed here and in the neighbours in the round before, so its depth is carried over",
                  r->view);
     records.params = NULL; /* is prov's */
     provenance_release(&records);
     neighbours_release_points(&seen);
-    return st;
+    return err->status;
 }
 
 static enum status segment_depth(const struct request *r, struct provenance *prov, struct err *err)
@@ -216,27 +219,27 @@ static enum status segment_depth(const struct request *r, struct provenance *pro
     struct camera_set set = {0};
     int read[1 + MAX_NEIGHBOURS];
     bool carried = false;
-    enum status st = camera_set_read(&set, r->views, NULL, err);
-    if (!st && (read[0] = camera_set_find(&set, r->view)) < 0)
-        st = err_set(err, ST_USAGE, "there is no view %s in %s/images.txt; the views are listed in %s/views.mk.",
-                     r->view, r->views, r->views);
-    if (!st && r->before) st = carry_over(&carried, r, &set, read, prov, err);
-    if (!st && !carried) st = make_depth(r, &set, read, prov, err);
+    camera_set_read(&set, r->views, NULL, err);
+    if (!err->status && (read[0] = camera_set_find(&set, r->view)) < 0)
+        err_set(err, ST_USAGE, "there is no view %s in %s/images.txt; the views are listed in %s/views.mk.", r->view,
+                r->views, r->views);
+    if (!err->status && r->before) carry_over(&carried, r, &set, read, prov, err);
+    if (!err->status && !carried) make_depth(r, &set, read, prov, err);
     camera_set_release(&set);
-    return st;
+    return err->status;
 }
 
 static enum status estimate(const char *folder, const char *list, int jobs, const struct segment_params *params,
                             struct err *err)
 {
     struct camera_set set = {0};
-    enum status st =
-        jobs < 0
-            ? err_set(err, ST_USAGE, "--jobs %d: wanted the number of views made at a time, or 0 on a cluster.", jobs)
-            : camera_set_read(&set, folder, NULL, err);
-    if (!st) st = estimate_print(stdout, list, &set, jobs, params, err);
+    if (jobs < 0)
+        err_set(err, ST_USAGE, "--jobs %d: wanted the number of views made at a time, or 0 on a cluster.", jobs);
+    else
+        camera_set_read(&set, folder, NULL, err);
+    if (!err->status) estimate_print(stdout, list, &set, jobs, params, err);
     camera_set_release(&set);
-    return st;
+    return err->status;
 }
 
 int main(int argc, char **argv)

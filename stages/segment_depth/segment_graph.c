@@ -113,7 +113,6 @@ static enum status list_borders(struct segmentation *s, float *const lab[3], str
     struct border *edges = malloc(((size_t)sides_count + 1) * sizeof *edges);
     int(*ends)[2] = malloc(((size_t)sides_count + 1) * sizeof *ends);
     s->first_border = calloc((size_t)s->count + 2, sizeof *s->first_border);
-    enum status st = ST_OK;
     if (sides && edges && ends && s->first_border) {
         list_sides(s, lab, sides);
         qsort(sides, (size_t)sides_count, sizeof *sides, compare_sides);
@@ -150,22 +149,20 @@ static enum status list_borders(struct segmentation *s, float *const lab[3], str
             qsort(s->borders + s->first_border[k], (size_t)(s->first_border[k + 1] - s->first_border[k]),
                   sizeof *s->borders, compare_borders);
     } else {
-        st = err_nomem(err, "borders between segments", (size_t)sides_count * sizeof *sides);
+        err_nomem(err, "borders between segments", (size_t)sides_count * sizeof *sides);
     }
     free(sides);
     free(edges);
     free(ends);
-    return st;
+    return err->status;
 }
 
 enum status segment_graph_make(struct segmentation *s, float *const lab[3], struct err *err)
 {
-    enum status st = number_segments(s, err);
-    return st ? st : segment_graph_of_numbers(s, lab, err);
+    return number_segments(s, err) || segment_graph_of_numbers(s, lab, err) ? err->status : ST_OK;
 }
 
 enum status segment_graph_of_numbers(struct segmentation *s, float *const lab[3], struct err *err)
 {
-    enum status st = list_segments(s, lab, err);
-    return st ? st : list_borders(s, lab, err);
+    return list_segments(s, lab, err) || list_borders(s, lab, err) ? err->status : ST_OK;
 }

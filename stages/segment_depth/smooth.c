@@ -125,7 +125,6 @@ enum status smooth_labels(int *label, const struct segmentation *s, const float 
                           float slope, float truncation, struct err *err)
 {
     struct trws p = {.s = s, .weights = weights, .labels = labels, .slope = slope, .truncation = truncation};
-    enum status st = ST_OK;
     p.message = calloc((size_t)s->edge_count * (size_t)labels + 1, sizeof *p.message);
     p.belief = malloc(2 * (size_t)labels * sizeof *p.belief);
     if (p.message && p.belief) {
@@ -139,9 +138,9 @@ enum status smooth_labels(int *label, const struct segmentation *s, const float 
             for (int i = 0; i < s->count; i++)
                 label[i] = choose_label(&p, i, cost + (size_t)i * (size_t)labels, label, round == 0);
     } else {
-        st = err_nomem(err, "messages between segments", (size_t)s->edge_count * (size_t)labels * sizeof(float));
+        err_nomem(err, "messages between segments", (size_t)s->edge_count * (size_t)labels * sizeof(float));
     }
     free(p.message);
     free(p.belief);
-    return st;
+    return err->status;
 }

@@ -119,14 +119,14 @@ struct solver {
 static enum status read_previous_planes(struct plane *planes, double *distinct, const struct solver *v, struct err *err)
 {
     struct layered_depth before = {0};
-    enum status st = v->source->read_depth(v->source->ctx, v->view_idx, &before, err);
+    v->source->read_depth(v->source->ctx, v->view_idx, &before, err);
     const struct segmentation *s = v->m->segments;
-    if (!st && (before.width != s->width || before.height != s->height))
-        st = err_set(err, ST_DATA,
-                     "the previous round of view %s has %d x %d pixels, but its picture has %d x %d: the picture has "
-                     "changed since; make the previous round again.",
-                     v->set->views[v->view_idx].name, before.width, before.height, s->width, s->height);
-    for (int i = 0; !st && i < s->count; i++) {
+    if (!err->status && (before.width != s->width || before.height != s->height))
+        err_set(err, ST_DATA,
+                "the previous round of view %s has %d x %d pixels, but its picture has %d x %d: the picture has "
+                "changed since; make the previous round again.",
+                v->set->views[v->view_idx].name, before.width, before.height, s->width, s->height);
+    for (int i = 0; !err->status && i < s->count; i++) {
         const uint32_t id = before.interior.id[s->pixel[s->segments[i].first + s->segments[i].pixels / 2]];
         planes[i] = (struct plane){0, 0, 0.5 * (v->min_inverse_z + v->max_inverse_z)};
         if (!id) continue; /* the view had no pixel there */
@@ -135,7 +135,7 @@ static enum status read_previous_planes(struct plane *planes, double *distinct, 
         distinct[i] = g->confidence;
     }
     layered_depth_release(&before);
-    return st;
+    return err->status;
 }
 
 #define MAX_UNIT_RATIO 1.1 /* of given depth to the sparse points', either way, without a warning */
@@ -185,9 +185,9 @@ static enum status find_ground(struct solution *x, const struct solver *v, struc
     struct ground ground;
     struct vec3 down;
     bool found;
-    enum status st = gravity_find(&down, &found, v->set, v->source->ups, err);
-    if (!st && found) st = gravity_find_ground(&ground, &found, v->set, down, err);
-    if (st || !found) return st;
+    gravity_find(&down, &found, v->set, v->source->ups, err);
+    if (!err->status && found) gravity_find_ground(&ground, &found, v->set, down, err);
+    if (err->status || !found) return err->status;
     const double height = ground.offset - vec3_dot(ground.down, view->center);
     x->ground = plane_of_normal(view, vec3_scale(mat3_apply(view->cam_from_world, ground.down), 1 / height));
     x->problem.ground = &x->ground;
@@ -197,10 +197,11 @@ static enum status find_ground(struct solution *x, const struct solver *v, struc
 /* Initial planes by a plane sweep. */
 static enum status start_first_round(struct solution *x, const struct solver *v, struct err *err)
 {
-    enum status st = plane_sweep_run(&x->sweep, x->planes, v->m, &x->points, x->weights, x->problem.view,
-                                     x->problem.down, v->params, err);
+    plane_sweep_run(&x->sweep, x->planes, v->m, &x->points, x->weights, x->problem.view, x->problem.down, v->params,
+                    err);
     x->problem.cost = x->sweep.cost;
-    return st ? st : match_select(v->m, x->planes, NULL, err);
+    if (!err->status) match_select(v->m, x->planes, NULL, err);
+    return err->status;
 }
 
 /* Initial planes of the previous round, with the neighbours' depths of that round as further evidence. */
@@ -209,19 +210,19 @@ static enum status start_later_round(struct solution *x, const struct solver *v,
     const struct segmentation *s = v->m->segments;
     const struct previous_depth_source source = {v->source->read_depth, v->source->ctx};
     x->problem.cross = &x->cross;
-    enum status st = cross_view_make(&x->cross, s, v->set, v->view_idx, v->neighbours, v->neighbour_count,
-                                     x->sweep.step, &source, err);
-    if (!st) st = read_previous_planes(x->planes, x->distinct, v, err);
+    if (!cross_view_make(&x->cross, s, v->set, v->view_idx, v->neighbours, v->neighbour_count, x->sweep.step, &source,
+                         err))
+        read_previous_planes(x->planes, x->distinct, v, err);
     unsigned *occluded = calloc((size_t)s->count + 1, sizeof *occluded);
-    if (!st && !occluded) st = err_nomem(err, "occlusions", (size_t)s->count * sizeof *occluded);
-    for (int i = 0; !st && i < s->count; i++) cross_view_cost(&x->cross, i, x->planes[i], &occluded[i]);
-    if (!st) st = match_select(v->m, x->planes, occluded, err);
+    if (!err->status && !occluded) err_nomem(err, "occlusions", (size_t)s->count * sizeof *occluded);
+    for (int i = 0; !err->status && i < s->count; i++) cross_view_cost(&x->cross, i, x->planes[i], &occluded[i]);
+    if (!err->status) match_select(v->m, x->planes, occluded, err);
     free(occluded);
-    for (int i = 0; !st && i < s->count; i++) x->min_match[i] = match_cost_rough(v->m, i, x->planes[i], 0);
+    for (int i = 0; !err->status && i < s->count; i++) x->min_match[i] = match_cost_rough(v->m, i, x->planes[i], 0);
     x->problem.min_match = x->min_match;
-    for (int i = 0; !st && i < s->count; i++)
+    for (int i = 0; !err->status && i < s->count; i++)
         if (given_depth_has(x->sweep.given, i)) x->planes[i] = x->given.planes[i];
-    return st;
+    return err->status;
 }
 
 static enum status start_solution(struct solution *x, const struct solver *v, struct err *err)
@@ -251,12 +252,10 @@ static enum status start_solution(struct solution *x, const struct solver *v, st
                                         .max_inverse_z = v->max_inverse_z,
                                         .step = x->sweep.step,
                                         .planes = x->sweep.planes};
-    enum status st = v->given ? fit_given(&x->given, v, x->sweep.step, err) : ST_OK;
-    if (!st) st = find_ground(x, v, err);
-    if (!st)
-        st = point_evidence_make(&x->points, s, v->seen, v->min_inverse_z, v->max_inverse_z, x->sweep.step, v->params,
-                                 err);
-    if (st) return st;
+    if (v->given) fit_given(&x->given, v, x->sweep.step, err);
+    if (!err->status && !find_ground(x, v, err))
+        point_evidence_make(&x->points, s, v->seen, v->min_inverse_z, v->max_inverse_z, x->sweep.step, v->params, err);
+    if (err->status) return err->status;
     return v->source->read_depth ? start_later_round(x, v, err) : start_first_round(x, v, err);
 }
 
@@ -279,10 +278,10 @@ static enum status inherit(struct layered_depth *out, struct plane *planes, cons
     const size_t count = (size_t)out->segment_count + 1;
     double *confidence = malloc(count * sizeof *confidence);
     bool *inherited = calloc(count, sizeof *inherited);
-    enum status st = confidence && inherited ? ST_OK : err_nomem(err, "confidences", count * sizeof *confidence);
-    for (int i = 0; !st && i < out->segment_count; i++) confidence[i] = out->segments[i].confidence;
-    if (!st) st = inherit_planes(planes, inherited, confidence, p, cautious, err);
-    for (int i = 0; !st && i < out->segment_count; i++)
+    if (!confidence || !inherited) err_nomem(err, "confidences", count * sizeof *confidence);
+    for (int i = 0; !err->status && i < out->segment_count; i++) confidence[i] = out->segments[i].confidence;
+    if (!err->status) inherit_planes(planes, inherited, confidence, p, cautious, err);
+    for (int i = 0; !err->status && i < out->segment_count; i++)
         if (inherited[i]) {
             struct depth_segment *g = &out->segments[i];
             *g = (struct depth_segment){g->id, g->pixels, {planes[i].a, planes[i].b, planes[i].c}, 0, 0};
@@ -291,7 +290,7 @@ static enum status inherit(struct layered_depth *out, struct plane *planes, cons
         }
     free(confidence);
     free(inherited);
-    return st;
+    return err->status;
 }
 
 /* Whether a round follows for certain, which knows better which border areas are foreground. */
@@ -323,11 +322,11 @@ static enum status make_layers(struct layered_depth *out, struct solution *x, co
         matcher_take(v->full, v->m);
         problem.m = v->full;
     }
-    enum status st = pixel_planes_choose(label, x->planes, &problem, err);
+    pixel_planes_choose(label, x->planes, &problem, err);
     const bool matte = !strcmp(v->params->matte, "two_colour");
-    if (!st) st = layers_make(out, label, x->planes, v->picture, x->sweep.step, matte, err);
+    if (!err->status) layers_make(out, label, x->planes, v->picture, x->sweep.step, matte, err);
     free(label);
-    return st;
+    return err->status;
 }
 
 static enum status solve(struct layered_depth *out, const struct solver *v, struct err *err)
@@ -335,18 +334,17 @@ static enum status solve(struct layered_depth *out, const struct solver *v, stru
     const struct segmentation *s = v->m->segments;
     struct solution x = {0};
     const struct plane_sweep *sweep = &x.sweep;
-    enum status st = start_solution(&x, v, err);
-    if (!st) st = expand_planes(x.planes, &x.problem, err);
-    if (!st) st = refine_planes(x.planes, &x.problem, err);
-    for (int i = 0; !st && !v->source->read_depth && i < s->count; i++)
+    if (!start_solution(&x, v, err) && !expand_planes(x.planes, &x.problem, err))
+        refine_planes(x.planes, &x.problem, err);
+    for (int i = 0; !err->status && !v->source->read_depth && i < s->count; i++)
         x.distinct[i] = distinctness(
             sweep->cost + (size_t)i * (size_t)sweep->planes, sweep->planes,
             (plane_at(x.planes[i], s->segments[i].cx, s->segments[i].cy) - sweep->min_inverse_z) / sweep->step);
-    if (!st) st = fill_segments(out, &x.problem, x.planes, x.distinct, err);
-    if (!st) st = inherit(out, x.planes, &x.problem, another_round(v), err);
-    if (!st) st = make_layers(out, &x, v, err);
+    if (!err->status && !fill_segments(out, &x.problem, x.planes, x.distinct, err) &&
+        !inherit(out, x.planes, &x.problem, another_round(v), err))
+        make_layers(out, &x, v, err);
     solution_release(&x);
-    return st;
+    return err->status;
 }
 
 /* Adds a neighbour to both levels; half may be NULL. */
@@ -356,16 +354,16 @@ static enum status add_neighbour(struct level *full, struct level *half, int vie
     const struct tone tone = full->gamma.tone;
     struct image picture = {0};
     struct gamma_image gamma = {0};
-    enum status st = source->read(source->ctx, neighbour_idx, &picture, err);
-    if (!st) {
+    source->read(source->ctx, neighbour_idx, &picture, err);
+    if (!err->status) {
         /* a brighter photo must not be clipped where it is not clipped itself */
         const struct tone own = gamma_tone_of(&picture);
-        st = gamma_image_make(&gamma, &picture, (struct tone){fmin(tone.exposure, own.exposure), tone.power}, err);
+        gamma_image_make(&gamma, &picture, (struct tone){fmin(tone.exposure, own.exposure), tone.power}, err);
     }
     image_release(&picture);
-    if (!st) st = level_add(full, half, view_idx, neighbour_idx, typical, &gamma, err);
+    if (!err->status) level_add(full, half, view_idx, neighbour_idx, typical, &gamma, err);
     gamma_image_release(&gamma);
-    return st;
+    return err->status;
 }
 
 /* A view whose depth is given needs no neighbour. */
@@ -399,15 +397,15 @@ static enum status find_range(struct solver *v, int neighbour_count, size_t pixe
 /* Makes the level of half the size, where planes are found, and its segments in the full size, where pixels choose. */
 static enum status prepare_half(struct level *half, struct level *full, struct solver *v, struct err *err)
 {
-    enum status st = level_halve(half, full, err);
-    if (!st) st = oversegment(&half->segments, &half->gamma, v->params->segment_pixels, v->params->compactness, err);
-    if (!st) st = matcher_init(&half->matcher, &half->segments, &half->gamma, err);
-    if (!st) st = oversegment_double(&full->segments, &half->segments, &full->gamma, err);
+    if (!level_halve(half, full, err) &&
+        !oversegment(&half->segments, &half->gamma, v->params->segment_pixels, v->params->compactness, err) &&
+        !matcher_init(&half->matcher, &half->segments, &half->gamma, err))
+        oversegment_double(&full->segments, &half->segments, &full->gamma, err);
     v->set = &half->set;
     v->seen = &half->seen;
     v->m = &half->matcher;
     v->full = &full->matcher;
-    return st;
+    return err->status;
 }
 
 enum status view_depth(struct layered_depth *out, int neighbours[MAX_NEIGHBOURS], int *neighbour_count,
@@ -427,32 +425,32 @@ enum status view_depth(struct layered_depth *out, int neighbours[MAX_NEIGHBOURS]
                        .params = &own};
     *out = (struct layered_depth){0};
     *neighbour_count = 0;
-    enum status st = neighbours_find_points(&full.seen, set, view_idx, err);
-    if (!st && source->read_given) st = source->read_given(source->ctx, view_idx, &v.given, err);
-    if (!st) st = find_neighbours(neighbours, neighbour_count, set, view_idx, &full.seen, params, v.given, err);
-    if (!st) st = source->read(source->ctx, view_idx, &picture, err);
-    if (!st) st = layered_depth_init(out, picture.width, picture.height, err);
-    if (!st) st = find_range(&v, *neighbour_count, (size_t)picture.width * (size_t)picture.height, err);
-    if (!st) st = gamma_image_make(&full.gamma, &picture, gamma_tone_of(&picture), err);
+    neighbours_find_points(&full.seen, set, view_idx, err);
+    if (!err->status && source->read_given) source->read_given(source->ctx, view_idx, &v.given, err);
+    if (!err->status) find_neighbours(neighbours, neighbour_count, set, view_idx, &full.seen, params, v.given, err);
+    if (!err->status && !source->read(source->ctx, view_idx, &picture, err) &&
+        !layered_depth_init(out, picture.width, picture.height, err) &&
+        !find_range(&v, *neighbour_count, (size_t)picture.width * (size_t)picture.height, err))
+        gamma_image_make(&full.gamma, &picture, gamma_tone_of(&picture), err);
     if (source->read_depth) own.segment_pixels = params->fine_pixels;
-    if (!st && !source->read_depth && !v.given && depth_halves(params, (double)picture.width * picture.height)) {
+    if (!err->status && !source->read_depth && !v.given &&
+        depth_halves(params, (double)picture.width * picture.height)) {
         half = &other;
         own.segment_pixels = params->half_pixels;
     }
-    if (!st && half) st = prepare_half(half, &full, &v, err);
-    if (!st && !half) st = oversegment(&full.segments, &full.gamma, own.segment_pixels, own.compactness, err);
-    if (!st) st = matcher_init(&full.matcher, &full.segments, &full.gamma, err);
-    for (int k = 0; !st && k < *neighbour_count; k++)
-        st =
-            add_neighbour(&full, half, view_idx, neighbours[k], source, 0.5 * (v.min_inverse_z + v.max_inverse_z), err);
+    if (!err->status && half) prepare_half(half, &full, &v, err);
+    if (!err->status && !half) oversegment(&full.segments, &full.gamma, own.segment_pixels, own.compactness, err);
+    if (!err->status) matcher_init(&full.matcher, &full.segments, &full.gamma, err);
+    for (int k = 0; !err->status && k < *neighbour_count; k++)
+        add_neighbour(&full, half, view_idx, neighbours[k], source, 0.5 * (v.min_inverse_z + v.max_inverse_z), err);
     v.m->ranks = params->best_neighbours;
-    if (!st) st = match_calibrate(v.m, v.min_inverse_z, v.max_inverse_z, err);
+    if (!err->status) match_calibrate(v.m, v.min_inverse_z, v.max_inverse_z, err);
     v.neighbour_count = *neighbour_count;
-    if (!st) st = solve(out, &v, err);
-    if (st) layered_depth_release(out);
+    if (!err->status) solve(out, &v, err);
+    if (err->status) layered_depth_release(out);
     level_release(&full);
     level_release(&other);
     image_release(&picture);
     free(v.given);
-    return st;
+    return err->status;
 }

@@ -65,41 +65,42 @@ static enum status write_mask(struct colmap_job *job, const struct sfm_input *in
                               int *count, struct err *err)
 {
     struct photo_mask mask = {0};
-    enum status st = photo_mask_read(&mask, in->masks, in->records, p, NULL, err);
-    if (!st && mask.masked) {
+    if (!photo_mask_read(&mask, in->masks, in->records, p, NULL, err) && mask.masked) {
         const size_t pixels = (size_t)mask.width * (size_t)mask.height;
         for (size_t i = 0; i < pixels; i++) mask.masked[i] = mask.masked[i] ? 0 : 255;
         if (!job->masks) {
             job->masks = sfm_text_format(err, "%s.masks", job->images);
-            st = job->masks ? outfile_make_folders(job->masks, err) : err->status;
+            if (job->masks) outfile_make_folders(job->masks, err);
         }
-        char *path = st ? NULL : sfm_text_format(err, "%s/%s%s.png", job->masks, p->id, colmap_extension(p->file));
-        if (!st) st = path ? png_write(path, mask.masked, mask.width, mask.height, 1, err) : err->status;
+        char *path =
+            err->status ? NULL : sfm_text_format(err, "%s/%s%s.png", job->masks, p->id, colmap_extension(p->file));
+        if (path) png_write(path, mask.masked, mask.width, mask.height, 1, err);
         free(path);
         ++*count;
     }
     photo_mask_release(&mask);
-    return st;
+    return err->status;
 }
 
 static enum status link_photos(struct colmap_job *job, const struct sfm_input *in, struct err *err)
 {
     char *from = realpath(in->photos, NULL);
-    enum status st = from ? ST_OK : err_errno(err, "open", in->photos);
     int mask_count = 0;
-    if (!st) st = outfile_make_folders(job->images, err);
-    for (int i = 0; !st && i < job->photos->count; i++) {
+    if (from)
+        outfile_make_folders(job->images, err);
+    else
+        err_errno(err, "open", in->photos);
+    for (int i = 0; !err->status && i < job->photos->count; i++) {
         const struct photo_record *p = &job->photos->photos[i];
         char *target = sfm_text_format(err, "%s/%s", from, p->file);
         char *link = sfm_text_format(err, "%s/%s%s", job->images, p->id, colmap_extension(p->file));
-        st = target && link ? link_file(target, link, err) : err->status;
-        if (!st) st = write_mask(job, in, p, &mask_count, err);
+        if (target && link && !link_file(target, link, err)) write_mask(job, in, p, &mask_count, err);
         free(target);
         free(link);
     }
-    if (!st && mask_count) log_note("%d photos have a mask", mask_count);
+    if (!err->status && mask_count) log_note("%d photos have a mask", mask_count);
     free(from);
-    return st;
+    return err->status;
 }
 
 enum status colmap_prepare(struct colmap_job *job, const struct sfm_folder *f, const struct sfm_input *in,
@@ -107,9 +108,8 @@ enum status colmap_prepare(struct colmap_job *job, const struct sfm_folder *f, c
 {
     *job = (struct colmap_job){.folder = f, .started = clock_seconds(), .photos = in->list, .params = params};
     const char *work = job->folder->work;
-    enum status st = sfm_single_camera(&job->single, job->photos, params, err);
-    if (!st) st = sfm_start_lens(job->lens, job->photos, params, err);
-    if (st) return st;
+    if (!sfm_single_camera(&job->single, job->photos, params, err)) sfm_start_lens(job->lens, job->photos, params, err);
+    if (err->status) return err->status;
     snprintf(job->threads, sizeof job->threads, "%d", parallel_threads());
     snprintf(job->max_features, sizeof job->max_features, "%d", job->params->max_features);
     snprintf(job->max_image_size, sizeof job->max_image_size, "%d", job->params->max_image_size);
@@ -119,9 +119,7 @@ enum status colmap_prepare(struct colmap_job *job, const struct sfm_folder *f, c
     if (!job->images || !job->database || !job->sparse) return err->status;
     for (int i = 0; i < COLMAP_STEPS; i++)
         if (!(job->logs[i] = sfm_text_format(err, "%s/colmap-%d.log", work, i + 1))) return err->status;
-    st = outfile_make_folders(job->sparse, err);
-    if (!st) st = link_photos(job, in, err);
-    return st;
+    return outfile_make_folders(job->sparse, err) || link_photos(job, in, err) ? err->status : ST_OK;
 }
 
 enum status colmap_exit_status(int *status, const struct colmap_job *job, int step, const char *const args[],
@@ -145,8 +143,9 @@ enum status colmap_run(const struct colmap_job *job, int step, const char *const
                        struct err *err)
 {
     int status = 0;
-    enum status st = colmap_exit_status(&status, job, step, args, err);
-    return st || status <= max_status ? st : colmap_failed(job, step, args[0], status, err);
+    if (!colmap_exit_status(&status, job, step, args, err) && status > max_status)
+        colmap_failed(job, step, args[0], status, err);
+    return err->status;
 }
 
 static enum status extract(const struct colmap_job *job, struct err *err)
@@ -224,8 +223,7 @@ static enum status count_features(long long *found, const struct colmap_job *job
     struct feature_counts c = {0};
     char few[1024];
     long long total = 0;
-    enum status st = colmap_counts_read(&c, job->logs[0], err);
-    if (st) return st;
+    if (colmap_counts_read(&c, job->logs[0], err)) return err->status;
     for (int i = 0; i < c.count; i++) total += c.list[i].features > 0 ? c.list[i].features : 0;
     log_note("%lld features in %d photos", total, job->photos->count);
     colmap_counts_list_poor(few, sizeof few, &c, job->photos, MIN_FEATURES);
@@ -234,30 +232,27 @@ static enum status count_features(long long *found, const struct colmap_job *job
                  few);
     *found = total;
     colmap_counts_release(&c);
-    return st;
+    return err->status;
 }
 
 enum status colmap_extract_and_match(long long *features, const struct colmap_job *job, struct err *err)
 {
     log_note("step 1 of %d: features of %d photos, %s", COLMAP_STEPS, job->photos->count,
              job->single ? "one lens for all" : "a lens each");
-    enum status st = extract(job, err);
-    if (!st) st = count_features(features, job, err);
-    if (st || !*features) return st;
+    if (!extract(job, err)) count_features(features, job, err);
+    if (err->status || !*features) return err->status;
     log_note("step 2 of %d: matches (%.1f s so far)", COLMAP_STEPS, clock_seconds() - job->started);
     return match(job, err);
 }
 
 enum status colmap_keep_logs(const struct colmap_job *job, struct err *err)
 {
-    enum status st = ST_OK;
-    for (int i = 0; !st && i < COLMAP_STEPS; i++) {
+    for (int i = 0; !err->status && i < COLMAP_STEPS; i++) {
         char *kept = sfm_text_format(err, "%s/colmap-%d.log", job->folder->made, i + 1);
-        if (!kept) st = err->status;
-        if (!st && rename(job->logs[i], kept) && errno != ENOENT) st = err_errno(err, "keep", job->logs[i]);
+        if (kept && rename(job->logs[i], kept) && errno != ENOENT) err_errno(err, "keep", job->logs[i]);
         free(kept);
     }
-    return st;
+    return err->status;
 }
 
 enum status colmap_name_images(struct sfm_model *m, const struct photo_list *photos, struct err *err)

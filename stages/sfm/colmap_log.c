@@ -22,19 +22,18 @@ enum status colmap_counts_read(struct feature_counts *c, const char *log, struct
 {
     struct textfile t = {0};
     *c = (struct feature_counts){0};
-    enum status st = textfile_open(&t, log, err);
-    while (!st && textfile_next_raw(&t)) {
+    textfile_open(&t, log, err);
+    while (!err->status && textfile_next_raw(&t)) {
         const char *name = value_of(t.cursor, "Name:"), *features = value_of(t.cursor, "Features:");
         if (features && c->count) c->list[c->count - 1].features = (int)strtol(features, NULL, 10);
         if (!name) continue;
-        st = array_append(&c->list, (size_t)c->count, sizeof *c->list, "feature counts", err);
-        if (st) break;
+        if (array_append(&c->list, (size_t)c->count, sizeof *c->list, "feature counts", err)) break;
         c->list[c->count] = (struct feature_count){strdup(name), -1};
-        if (!c->list[c->count++].name) st = err_nomem(err, "a name", strlen(name) + 1);
+        if (!c->list[c->count++].name) err_nomem(err, "a name", strlen(name) + 1);
     }
     textfile_release(&t);
-    if (st) colmap_counts_release(c);
-    return st;
+    if (err->status) colmap_counts_release(c);
+    return err->status;
 }
 
 void colmap_counts_release(struct feature_counts *c)

@@ -16,22 +16,20 @@ static enum status explain_failure(const struct colmap_job *job, struct err *err
     struct feature_counts c = {0};
     char few[700];
     int connected = colmap_log_connected(job->logs[2]);
-    enum status st = colmap_counts_read(&c, job->logs[0], err);
-    if (st) return st;
+    if (colmap_counts_read(&c, job->logs[0], err)) return err->status;
     colmap_counts_list_poor(few, sizeof few, &c, job->photos, MIN_FEATURES);
     if (connected == 0)
-        st = err_set(
-            err, ST_DATA,
-            "COLMAP placed none of the %d photos: no two of them match. Take photos that overlap, from places a "
-            "step apart%s%s.",
-            job->photos->count, *few ? "; few features: " : "", few);
+        err_set(err, ST_DATA,
+                "COLMAP placed none of the %d photos: no two of them match. Take photos that overlap, from places a "
+                "step apart%s%s.",
+                job->photos->count, *few ? "; few features: " : "", few);
     else
-        st = err_set(err, ST_DATA,
-                     "COLMAP placed none of the %d photos, though %d match another one. They may all be taken from one "
-                     "spot (step aside between photos, do not just turn) or overlap too little%s%s. Its log is %s.",
-                     job->photos->count, connected, *few ? "; few features: " : "", few, job->logs[2]);
+        err_set(err, ST_DATA,
+                "COLMAP placed none of the %d photos, though %d match another one. They may all be taken from one "
+                "spot (step aside between photos, do not just turn) or overlap too little%s%s. Its log is %s.",
+                job->photos->count, connected, *few ? "; few features: " : "", few, job->logs[2]);
     colmap_counts_release(&c);
-    return st;
+    return err->status;
 }
 
 /* Converts COLMAP's model number k to text, checks it and adds it to the folder. */
@@ -41,16 +39,15 @@ static enum status add_model(const struct colmap_job *job, struct sfm_folder *f,
     struct sfm_model m = {0};
     char *from = sfm_text_format(err, "%s/%d", job->sparse, k), *text = sfm_text_format(err, "%s/text/%d", f->work, k);
     const char *args[] = {"model_converter", "--input_path", from, "--output_path", text, "--output_type", "TXT", NULL};
-    enum status st = from && text ? outfile_make_folders(text, err) : err->status;
-    if (!st) st = colmap_run(job, 4, args, 0, err);
-    if (!st) st = sfm_model_read_text(&m, text, NULL, err);
-    if (!st) log_note("model %d: %d of %d photos, %d points", k, m.image_count, job->photos->count, m.point_count);
-    if (!st) st = colmap_name_images(&m, job->photos, err);
-    if (!st) st = sfm_folder_add(f, &m, prov, err);
+    if (from && text && !outfile_make_folders(text, err) && !colmap_run(job, 4, args, 0, err) &&
+        !sfm_model_read_text(&m, text, NULL, err)) {
+        log_note("model %d: %d of %d photos, %d points", k, m.image_count, job->photos->count, m.point_count);
+        if (!colmap_name_images(&m, job->photos, err)) sfm_folder_add(f, &m, prov, err);
+    }
     sfm_model_release(&m);
     free(from);
     free(text);
-    return st;
+    return err->status;
 }
 
 static int count_models(const struct colmap_job *job, struct err *err)
@@ -73,27 +70,25 @@ enum status run_colmap(struct sfm_folder *f, const struct sfm_input *in, const s
                        "there %s; structure from motion needs at least 2, better 8 or more, taken a step apart.",
                        in->list->count ? "is only 1 photo" : "are no photos");
     f->given = strcmp(in->params->refine_camera, "no") ? "nothing" : "lens";
-    enum status st = colmap_prepare(&job, f, in, in->params, err);
-    if (!st) st = colmap_extract_and_match(&features, &job, err);
-    if (!st && !features)
-        st = err_set(
-            err, ST_DATA,
-            "COLMAP found no features in any of the %d photos: they are blank, masked or unreadable. Its log is "
-            "%s.",
-            in->list->count, job.logs[0]);
-    if (!st) log_note("step 3 of %d: poses and points (%.1f s so far)", COLMAP_STEPS, clock_seconds() - job.started);
-    if (!st) st = colmap_map(&job, false, err);
-    if (!st && !(models = count_models(&job, err))) {
+    if (!colmap_prepare(&job, f, in, in->params, err)) colmap_extract_and_match(&features, &job, err);
+    if (!err->status && !features)
+        err_set(err, ST_DATA,
+                "COLMAP found no features in any of the %d photos: they are blank, masked or unreadable. Its log is "
+                "%s.",
+                in->list->count, job.logs[0]);
+    if (!err->status)
+        log_note("step 3 of %d: poses and points (%.1f s so far)", COLMAP_STEPS, clock_seconds() - job.started);
+    if (!err->status) colmap_map(&job, false, err);
+    if (!err->status && !(models = count_models(&job, err))) {
         log_note("no pair of photos is good enough to start from; trying again with smaller angles and fewer matches");
-        st = colmap_map(&job, true, err);
-        if (!st) models = count_models(&job, err);
+        if (!colmap_map(&job, true, err)) models = count_models(&job, err);
     }
-    if (!st && !models) st = explain_failure(&job, err);
-    if (!st)
+    if (!err->status && !models) explain_failure(&job, err);
+    if (!err->status)
         log_note("step 4 of %d: text of %d models (%.1f s so far)", COLMAP_STEPS, models,
                  clock_seconds() - job.started);
-    for (int k = 0; !st && k < models; k++) st = add_model(&job, f, k, prov, err);
-    if (!st) st = colmap_keep_logs(&job, err);
+    for (int k = 0; !err->status && k < models; k++) add_model(&job, f, k, prov, err);
+    if (!err->status) colmap_keep_logs(&job, err);
     colmap_job_release(&job);
-    return st;
+    return err->status;
 }

@@ -20,16 +20,15 @@ static enum status run(const char *photos, const char *records, const char *mask
     struct photo_list list = {0};
     struct sfm_folder folder = {0};
     const struct sfm_input in = {photos, masks, records, &list, params};
-    enum status st = photo_list_read(&list, records, err);
-    if (!st) st = sfm_folder_open(&folder, out, err);
-    if (!st && model)
-        st = user_model_add(&folder, model, &in, prov, err);
-    else if (!st)
-        st = run_colmap(&folder, &in, prov, err);
-    if (!st) st = sfm_folder_commit(&folder, &list, prov, err);
+    if (!photo_list_read(&list, records, err)) sfm_folder_open(&folder, out, err);
+    if (!err->status && model)
+        user_model_add(&folder, model, &in, prov, err);
+    else if (!err->status)
+        run_colmap(&folder, &in, prov, err);
+    if (!err->status) sfm_folder_commit(&folder, &list, prov, err);
     sfm_folder_release(&folder);
     photo_list_release(&list);
-    return st;
+    return err->status;
 }
 
 int main(int argc, char **argv)

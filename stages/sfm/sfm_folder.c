@@ -62,20 +62,18 @@ enum status sfm_folder_open(struct sfm_folder *f, const char *out, struct err *e
     f->work = sfm_text_format(err, "%.*s.work", (int)length, out);
     f->made = sfm_text_format(err, "%.*s.work/sfm", (int)length, out);
     if (!f->out || !f->work || !f->made) return err->status;
-    enum status st = check_replaceable(f->out, err);
-    if (!st) st = sfm_remove_tree(f->work, err);
-    if (!st) st = outfile_make_folders(f->made, err);
-    return st;
+    return check_replaceable(f->out, err) || sfm_remove_tree(f->work, err) || outfile_make_folders(f->made, err)
+               ? err->status
+               : ST_OK;
 }
 
 enum status sfm_folder_add(struct sfm_folder *f, const struct sfm_model *m, const struct provenance *prov,
                            struct err *err)
 {
     char *folder = sfm_text_format(err, "%s/%d", f->made, f->models);
-    enum status st = folder ? sfm_model_write_text(m, folder, prov, err) : err->status;
-    if (!st) f->models++;
+    if (folder && !sfm_model_write_text(m, folder, prov, err)) f->models++;
     free(folder);
-    return st;
+    return err->status;
 }
 
 static enum status write_lists(const struct sfm_folder *f, const struct photo_list *photos,
@@ -83,37 +81,34 @@ static enum status write_lists(const struct sfm_folder *f, const struct photo_li
 {
     struct outfile list = {0}, models = {0};
     char list_path[FILE_PATH], models_path[FILE_PATH];
-    enum status st = product_path_in(list_path, f->made, PRODUCT_SFM_PHOTOS, NULL, err);
-    if (!st) st = product_path_in(models_path, f->made, PRODUCT_SFM_MODELS, NULL, err);
-    if (!st) st = product_begin(&list, PRODUCT_SFM_PHOTOS, list_path, prov, err);
-    if (!st) {
+    if (!product_path_in(list_path, f->made, PRODUCT_SFM_PHOTOS, NULL, err) &&
+        !product_path_in(models_path, f->made, PRODUCT_SFM_MODELS, NULL, err) &&
+        !product_begin(&list, PRODUCT_SFM_PHOTOS, list_path, prov, err)) {
         for (int i = 0; i < photos->count; i++)
             fprintf(list.fp, "%s %s\n", photos->photos[i].id, photos->photos[i].hash);
-        st = outfile_commit(&list, err);
+        outfile_commit(&list, err);
     }
-    if (!st) st = product_begin(&models, PRODUCT_SFM_MODELS, models_path, prov, err);
-    if (!st) {
+    if (!err->status && !product_begin(&models, PRODUCT_SFM_MODELS, models_path, prov, err)) {
         for (int i = 0; i < f->models; i++) fprintf(models.fp, "%d colmap %s\n", i, f->given);
-        st = outfile_commit(&models, err);
+        outfile_commit(&models, err);
     }
     outfile_discard(&list);
     outfile_discard(&models);
-    return st;
+    return err->status;
 }
 
 enum status sfm_folder_commit(struct sfm_folder *f, const struct photo_list *photos, const struct provenance *prov,
                               struct err *err)
 {
-    enum status st = write_lists(f, photos, prov, err);
+    write_lists(f, photos, prov, err);
     char *old = sfm_text_format(err, "%s/old", f->work);
-    if (!old) st = err->status;
     /* if there is no old folder, or the file system cannot exchange two, an old one is moved away first */
-    if (!st && renameat2(AT_FDCWD, f->made, AT_FDCWD, f->out, RENAME_EXCHANGE) &&
+    if (!err->status && renameat2(AT_FDCWD, f->made, AT_FDCWD, f->out, RENAME_EXCHANGE) &&
         ((rename(f->out, old) && errno != ENOENT) || rename(f->made, f->out)))
-        st = err_errno(err, "replace", f->out);
+        err_errno(err, "replace", f->out);
     free(old);
-    if (!st) st = sfm_remove_tree(f->work, err);
-    return st;
+    if (!err->status) sfm_remove_tree(f->work, err);
+    return err->status;
 }
 
 void sfm_folder_release(struct sfm_folder *f)

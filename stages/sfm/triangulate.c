@@ -50,10 +50,10 @@ static enum status write_known(const struct colmap_job *job, const struct sfm_mo
 {
     struct sfm_model known = {.cameras = m->cameras, .camera_count = m->camera_count};
     struct feature_counts c = {0};
-    enum status st = colmap_counts_read(&c, job->logs[0], err);
+    colmap_counts_read(&c, job->logs[0], err);
     known.images = calloc((size_t)m->image_count + 1, sizeof *known.images);
-    if (!st && !known.images) st = err_nomem(err, "images", (size_t)m->image_count * sizeof *known.images);
-    for (int i = 0; !st && i < m->image_count; i++) {
+    if (!err->status && !known.images) err_nomem(err, "images", (size_t)m->image_count * sizeof *known.images);
+    for (int i = 0; !err->status && i < m->image_count; i++) {
         int at = photo_list_match(job->photos, m->images[i].name);
         if (at < 0) continue;
         const struct photo_record *p = &job->photos->photos[at];
@@ -61,23 +61,21 @@ static enum status write_known(const struct colmap_job *job, const struct sfm_mo
         int id = name ? id_in_database(&c, name) : 0;
         if (!id) {
             free(name);
-            if (!name) st = err->status;
             continue;
         }
         known.images[known.image_count++] =
             (struct sfm_image){id, m->images[i].cam_from_world, m->images[i].camera_idx, name, NULL, 0};
     }
-    if (!st && known.image_count < 2)
-        st = err_set(
-            err, ST_DATA,
-            "the model has no points, and none can be triangulated: only %d of its %d images are readable photos "
-            "of the scene. Use the model of these photos.",
-            known.image_count, m->image_count);
-    if (!st) st = sfm_model_write_text(&known, folder, NULL, err);
+    if (!err->status && known.image_count < 2)
+        err_set(err, ST_DATA,
+                "the model has no points, and none can be triangulated: only %d of its %d images are readable photos "
+                "of the scene. Use the model of these photos.",
+                known.image_count, m->image_count);
+    if (!err->status) sfm_model_write_text(&known, folder, NULL, err);
     for (int i = 0; i < known.image_count; i++) free(known.images[i].name);
     free(known.images);
     colmap_counts_release(&c);
-    return st;
+    return err->status;
 }
 
 static bool sizes_match(const struct sfm_model *m, const struct photo_list *photos)
@@ -97,9 +95,8 @@ static bool sizes_match(const struct sfm_model *m, const struct photo_list *phot
 static enum status find_points(bool *points, const struct colmap_job *job, const char *known, const char *made,
                                struct err *err)
 {
-    enum status st = ST_OK;
     *points = false;
-    for (int pass = 0; !st && !*points && pass < 2; pass++) {
+    for (int pass = 0; !err->status && !*points && pass < 2; pass++) {
         const char *args[] = {"point_triangulator",
                               "--database_path",
                               job->database,
@@ -117,13 +114,13 @@ static enum status find_points(bool *points, const struct colmap_job *job, const
         const int aborted = 128 + SIGABRT;
         char line[512];
         int status = 0;
-        st = colmap_exit_status(&status, job, 3, args, err);
+        colmap_exit_status(&status, job, 3, args, err);
         colmap_log_last_line(line, sizeof line, job->logs[2]);
-        *points = !st && !status;
-        if (!st && status && !(status == aborted && strstr(line, "bundle_adjuster.Solve")))
-            st = colmap_failed(job, 3, args[0], status, err);
+        *points = !err->status && !status;
+        if (!err->status && status && !(status == aborted && strstr(line, "bundle_adjuster.Solve")))
+            colmap_failed(job, 3, args[0], status, err);
     }
-    return st;
+    return err->status;
 }
 
 enum status triangulate(struct sfm_model *m, const struct sfm_folder *f, const struct sfm_input *in, struct err *err)
@@ -140,27 +137,26 @@ enum status triangulate(struct sfm_model *m, const struct sfm_folder *f, const s
     params_of_model(&params, m);
     char *known = sfm_text_format(err, "%s/known", f->work), *made = sfm_text_format(err, "%s/triangulated", f->work);
     char *text = sfm_text_format(err, "%s/triangulated-text", f->work);
-    enum status st = known && made && text ? colmap_prepare(&job, f, in, &params, err) : err->status;
+    if (known && made && text) colmap_prepare(&job, f, in, &params, err);
     const char *converter[] = {"model_converter", "--input_path", made, "--output_path", text,
                                "--output_type",   "TXT",          NULL};
-    if (!st) st = outfile_make_folders(made, err);
-    if (!st) st = outfile_make_folders(text, err);
-    if (!st) st = colmap_extract_and_match(&features, &job, err);
-    if (!st) st = write_known(&job, m, known, err);
-    if (!st && features) {
+    if (!err->status && !outfile_make_folders(made, err) && !outfile_make_folders(text, err) &&
+        !colmap_extract_and_match(&features, &job, err))
+        write_known(&job, m, known, err);
+    if (!err->status && features) {
         log_note("step 3 of %d: points (%.1f s so far)", COLMAP_STEPS, clock_seconds() - job.started);
-        st = find_points(&points, &job, known, made, err);
+        find_points(&points, &job, known, made, err);
     }
-    if (!st && points) st = colmap_run(&job, 4, converter, 0, err);
-    if (!st && points) st = sfm_model_read_text(&found, text, NULL, err);
-    if (!st && points) st = colmap_name_images(&found, in->list, err);
-    if (!st) st = colmap_keep_logs(&job, err);
-    if (!st && found.point_count) {
+    if (!err->status && points && !colmap_run(&job, 4, converter, 0, err) &&
+        !sfm_model_read_text(&found, text, NULL, err))
+        colmap_name_images(&found, in->list, err);
+    if (!err->status) colmap_keep_logs(&job, err);
+    if (!err->status && found.point_count) {
         log_note("triangulated %d points from the model's cameras", found.point_count);
         sfm_model_release(m);
         *m = found;
         found = (struct sfm_model){0};
-    } else if (!st) {
+    } else if (!err->status) {
         log_warn(
             "the model has no points, and none can be found: %s. Its cameras are used as they are; depths are searched "
             "between [segment_depth] near and far or, if these are not set, where the baselines allow it",
@@ -172,5 +168,5 @@ enum status triangulate(struct sfm_model *m, const struct sfm_folder *f, const s
     free(known);
     free(made);
     free(text);
-    return st;
+    return err->status;
 }

@@ -46,16 +46,15 @@ static bool is_binary(const char *folder) { return has_file(folder, "cameras.bin
 static enum status add_inputs(struct provenance *prov, const char *folder, const char *const files[], int model,
                               struct err *err)
 {
-    enum status st = ST_OK;
-    for (int i = 0; !st && files[i]; i++) {
+    for (int i = 0; !err->status && files[i]; i++) {
         if (!has_file(folder, files[i])) continue;
         char *path = sfm_text_format(err, "%s/%s", folder, files[i]);
         char *name = sfm_text_format(err, "model/%d/%s", model, files[i]);
-        st = path && name ? provenance_add_file(prov, name, path, err) : err->status;
+        if (path && name) provenance_add_file(prov, name, path, err);
         free(path);
         free(name);
     }
-    return st;
+    return err->status;
 }
 
 static enum status copy_file(const char *from_folder, const char *to_folder, const char *file, struct err *err)
@@ -63,15 +62,15 @@ static enum status copy_file(const char *from_folder, const char *to_folder, con
     struct textfile t = {0};
     struct outfile out = {0};
     char *from = sfm_text_format(err, "%s/%s", from_folder, file), *to = sfm_text_format(err, "%s/%s", to_folder, file);
-    enum status st = from && to ? textfile_open(&t, from, err) : err->status;
-    if (!st) st = outfile_open(&out, to, err);
-    if (!st) fwrite(t.bytes, 1, t.size, out.fp);
-    if (!st) st = outfile_commit(&out, err);
+    if (from && to && !textfile_open(&t, from, err) && !outfile_open(&out, to, err)) {
+        fwrite(t.bytes, 1, t.size, out.fp);
+        outfile_commit(&out, err);
+    }
     outfile_discard(&out);
     textfile_release(&t);
     free(from);
     free(to);
-    return st;
+    return err->status;
 }
 
 /* A model without points may lack points3D.txt: copies the two other files beside an empty one and reads these. */
@@ -81,28 +80,28 @@ static enum status read_without_points(struct sfm_model *m, const struct sfm_fol
     struct outfile empty = {0};
     char *copy = sfm_text_format(err, "%s/without-points", f->work);
     char *points = sfm_text_format(err, "%s/without-points/points3D.txt", f->work);
-    enum status st = copy && points ? outfile_open(&empty, points, err) : err->status;
-    if (!st) st = outfile_commit(&empty, err);
-    if (!st) st = copy_file(folder, copy, "cameras.txt", err);
-    if (!st) st = copy_file(folder, copy, "images.txt", err);
-    if (!st) st = sfm_model_read_text(m, copy, NULL, err);
+    if (copy && points && !outfile_open(&empty, points, err) && !outfile_commit(&empty, err) &&
+        !copy_file(folder, copy, "cameras.txt", err) && !copy_file(folder, copy, "images.txt", err))
+        sfm_model_read_text(m, copy, NULL, err);
     outfile_discard(&empty);
     free(copy);
     free(points);
-    return st;
+    return err->status;
 }
 
 static enum status add_text(struct sfm_folder *f, const char *folder, const struct sfm_input *in,
                             const struct provenance *prov, struct err *err)
 {
     struct sfm_model m = {0};
-    enum status st = has_file(folder, "points3D.txt") ? sfm_model_read_text(&m, folder, NULL, err)
-                                                      : read_without_points(&m, f, folder, err);
-    if (!st) log_note("model %d: %d images, %d points", f->models, m.image_count, m.point_count);
-    if (!st && !m.point_count) st = triangulate(&m, f, in, err);
-    if (!st) st = sfm_folder_add(f, &m, prov, err);
+    if (has_file(folder, "points3D.txt"))
+        sfm_model_read_text(&m, folder, NULL, err);
+    else
+        read_without_points(&m, f, folder, err);
+    if (!err->status) log_note("model %d: %d images, %d points", f->models, m.image_count, m.point_count);
+    if (!err->status && !m.point_count) triangulate(&m, f, in, err);
+    if (!err->status) sfm_folder_add(f, &m, prov, err);
     sfm_model_release(&m);
-    return st;
+    return err->status;
 }
 
 static enum status add_binary(struct sfm_folder *f, const char *folder, const struct sfm_input *in,
@@ -114,15 +113,14 @@ static enum status add_binary(struct sfm_folder *f, const char *folder, const st
     const char *argv[] = {"colmap", "model_converter", "--input_path", folder, "--output_path",
                           text,     "--output_type",   "TXT",          NULL};
     int code = 0;
-    enum status st = text && log ? outfile_make_folders(text, err) : err->status;
-    if (!st) st = process_run(argv, env, log, &code, err);
-    if (!st && code)
-        st = err_set(err, ST_DATA, "colmap could not read the binary model in %s (exit status %d); its log is %s.",
-                     folder, code, log);
-    if (!st) st = add_text(f, text, in, prov, err);
+    if (text && log && !outfile_make_folders(text, err)) process_run(argv, env, log, &code, err);
+    if (!err->status && code)
+        err_set(err, ST_DATA, "colmap could not read the binary model in %s (exit status %d); its log is %s.", folder,
+                code, log);
+    if (!err->status) add_text(f, text, in, prov, err);
     free(text);
     free(log);
-    return st;
+    return err->status;
 }
 
 /* ------------------------------------------------------------------------------------------------------- Bundler */
@@ -134,23 +132,20 @@ static enum status find_file(char **path, const char *folder, const char *first,
 {
     struct dirent **names = NULL;
     int count = scandir(folder, &names, NULL, alphasort);
-    enum status st = ST_OK;
     for (int pass = 0; pass < 2; pass++)
-        for (int i = 0; i < count && !st && !*path; i++) {
+        for (int i = 0; i < count && !err->status && !*path; i++) {
             const char *name = names[i]->d_name;
             size_t n = strlen(name), tail = strlen(suffix);
             if (n < tail || strcmp(name + n - tail, suffix) || (pass == 0) != !strcmp(name, first)) continue;
             char *p = sfm_text_format(err, "%s/%s", folder, name);
-            if (!p)
-                st = err->status;
-            else if (accept(p))
+            if (p && accept(p))
                 *path = p;
             else
                 free(p);
         }
     for (int i = 0; i < count; i++) free(names[i]);
     free(names);
-    return st;
+    return err->status;
 }
 
 static bool is_bundle(const char *path)
@@ -187,28 +182,27 @@ static enum status read_list(struct image_names *n, const char *path, const stru
 {
     struct textfile t = {0};
     int unknown = 0;
-    enum status st = textfile_open(&t, path, err);
-    while (!st && textfile_next(&t)) {
+    textfile_open(&t, path, err);
+    while (!err->status && textfile_next(&t)) {
         char *name = NULL;
-        st = textfile_word(&t, "name of an image", &name, err);
-        if (st) break;
-        st = array_append(&n->names, (size_t)n->count, sizeof *n->names, "images", err) ||
-             array_append(&n->sizes, (size_t)n->count, sizeof *n->sizes, "images", err);
-        if (st) break;
+        if (textfile_word(&t, "name of an image", &name, err) ||
+            array_append(&n->names, (size_t)n->count, sizeof *n->names, "images", err) ||
+            array_append(&n->sizes, (size_t)n->count, sizeof *n->sizes, "images", err))
+            break;
         int at = photo_list_match(photos, name), *size = n->sizes[n->count];
         size[0] = at < 0 ? 0 : photos->photos[at].info.width;
         size[1] = at < 0 ? 0 : photos->photos[at].info.height;
         unknown += at < 0;
         n->names[n->count] = strdup(name);
-        if (!n->names[n->count++]) st = err_nomem(err, "a name", strlen(name) + 1);
+        if (!n->names[n->count++]) err_nomem(err, "a name", strlen(name) + 1);
     }
     textfile_release(&t);
-    if (!st && n->count == unknown)
-        st =
-            err_set(err, ST_DATA, "none of the %d images in %s is a photo of the scene; use the model of these photos.",
-                    n->count, path);
-    if (!st && unknown) log_note("%d images of the model are not photos of the scene and are left out", unknown);
-    return st;
+    if (!err->status && n->count == unknown)
+        err_set(err, ST_DATA, "none of the %d images in %s is a photo of the scene; use the model of these photos.",
+                n->count, path);
+    if (!err->status && unknown)
+        log_note("%d images of the model are not photos of the scene and are left out", unknown);
+    return err->status;
 }
 
 static enum status add_bundler(struct sfm_folder *f, const char *bundle, const char *list,
@@ -216,14 +210,14 @@ static enum status add_bundler(struct sfm_folder *f, const char *bundle, const c
 {
     struct image_names n = {0};
     struct sfm_model m = {0};
-    enum status st = read_list(&n, list, photos, err);
-    if (!st)
-        st = sfm_model_read_bundler(&m, bundle, (const char *const *)n.names, (const int(*)[2])n.sizes, n.count, err);
-    if (!st) log_note("Bundler model: %d images, %d points", m.image_count, m.point_count);
-    if (!st) st = sfm_folder_add(f, &m, prov, err);
+    if (!read_list(&n, list, photos, err) &&
+        !sfm_model_read_bundler(&m, bundle, (const char *const *)n.names, (const int(*)[2])n.sizes, n.count, err)) {
+        log_note("Bundler model: %d images, %d points", m.image_count, m.point_count);
+        sfm_folder_add(f, &m, prov, err);
+    }
     sfm_model_release(&m);
     image_names_release(&n);
-    return st;
+    return err->status;
 }
 
 /* *found: whether a Bundler file exists. */
@@ -231,19 +225,19 @@ static enum status try_bundler(struct sfm_folder *f, const char *from, const str
                                struct provenance *prov, struct err *err)
 {
     char *inner = sfm_text_format(err, "%s/bundle", from), *bundle = NULL, *list = NULL;
-    enum status st = inner ? find_file(&bundle, from, "bundle.out", is_bundle, ".out", err) : err->status;
-    if (!st && !bundle) st = find_file(&bundle, inner, "bundle.out", is_bundle, ".out", err);
+    if (inner) find_file(&bundle, from, "bundle.out", is_bundle, ".out", err);
+    if (!err->status && !bundle) find_file(&bundle, inner, "bundle.out", is_bundle, ".out", err);
     *found = bundle;
-    if (!st && bundle) st = find_file(&list, from, "list.txt", is_list, ".txt", err);
-    if (!st && bundle && !list)
-        st = err_set(err, ST_DATA, "%s has no list of its images; put Bundler's list.txt into %s.", bundle, from);
-    if (!st && bundle) st = provenance_add_file(prov, "model/bundle.out", bundle, err);
-    if (!st && bundle) st = provenance_add_file(prov, "model/list.txt", list, err);
-    if (!st && bundle) st = add_bundler(f, bundle, list, photos, prov, err);
+    if (!err->status && bundle) find_file(&list, from, "list.txt", is_list, ".txt", err);
+    if (!err->status && bundle && !list)
+        err_set(err, ST_DATA, "%s has no list of its images; put Bundler's list.txt into %s.", bundle, from);
+    if (!err->status && bundle && !provenance_add_file(prov, "model/bundle.out", bundle, err) &&
+        !provenance_add_file(prov, "model/list.txt", list, err))
+        add_bundler(f, bundle, list, photos, prov, err);
     free(inner);
     free(bundle);
     free(list);
-    return st;
+    return err->status;
 }
 
 /* -------------------------------------------------------------------------------------------------------------- all */
@@ -255,12 +249,11 @@ static enum status try_colmap(struct sfm_folder *f, const char *folder, const st
     static const char *const text[] = {"cameras.txt", "images.txt", "points3D.txt", NULL};
     static const char *const binary[] = {"cameras.bin", "images.bin", "points3D.bin", NULL};
     bool as_text = is_text(folder), as_binary = !as_text && is_binary(folder);
-    enum status st = ST_OK;
     *found = as_text || as_binary;
-    if (*found) st = add_inputs(prov, folder, as_text ? text : binary, f->models, err);
-    if (!st && as_text) st = add_text(f, folder, in, prov, err);
-    if (!st && as_binary) st = add_binary(f, folder, in, prov, err);
-    return st;
+    if (*found) add_inputs(prov, folder, as_text ? text : binary, f->models, err);
+    if (!err->status && as_text) add_text(f, folder, in, prov, err);
+    if (!err->status && as_binary) add_binary(f, folder, in, prov, err);
+    return err->status;
 }
 
 enum status user_model_add(struct sfm_folder *f, const char *from, const struct sfm_input *in, struct provenance *prov,
@@ -269,19 +262,18 @@ enum status user_model_add(struct sfm_folder *f, const char *from, const struct 
     bool found = false, next = true;
     if (access(from, R_OK | X_OK)) return err_errno(err, "open", from);
     f->given = "model";
-    enum status st = try_colmap(f, from, in, &found, prov, err);
-    for (int k = 0; !st && !found && next; k++) {
+    try_colmap(f, from, in, &found, prov, err);
+    for (int k = 0; !err->status && !found && next; k++) {
         char *folder = sfm_text_format(err, "%s/%d", from, k);
-        st = folder ? try_colmap(f, folder, in, &next, prov, err) : err->status;
+        if (folder) try_colmap(f, folder, in, &next, prov, err);
         free(folder);
     }
-    if (!st && !f->models) st = try_bundler(f, from, in->list, &found, prov, err);
-    if (!st && !f->models)
-        st =
-            err_set(err, ST_DATA,
-                    "%s contains no structure-from-motion model; wanted COLMAP's cameras, images and points3D (.txt or "
-                    ".bin), in it or in its subfolders 0, 1, ..., or a Bundler file (.out, beginning with \"# Bundle "
-                    "file\") with its list.txt.",
-                    from);
-    return st;
+    if (!err->status && !f->models) try_bundler(f, from, in->list, &found, prov, err);
+    if (!err->status && !f->models)
+        err_set(err, ST_DATA,
+                "%s contains no structure-from-motion model; wanted COLMAP's cameras, images and points3D (.txt or "
+                ".bin), in it or in its subfolders 0, 1, ..., or a Bundler file (.out, beginning with \"# Bundle "
+                "file\") with its list.txt.",
+                from);
+    return err->status;
 }

@@ -97,16 +97,17 @@ static enum status add_points(struct bundle *b, int *point_of, const struct sfm_
 {
     struct track_length *order = malloc(((size_t)m->point_count + 1) * sizeof *order);
     int *in_image = calloc((size_t)m->image_count + 1, sizeof *in_image);
-    enum status st = order && in_image ? ST_OK : err_nomem(err, "tracks", (size_t)m->point_count * sizeof *order);
+    if (!order || !in_image) err_nomem(err, "tracks", (size_t)m->point_count * sizeof *order);
     const bool all = !max_observations || total <= max_observations;
     const int quota = all ? 0 : (int)(max_observations / (size_t)m->image_count) + 1;
-    for (int i = 0; !st && i < m->point_count; i++) order[i] = (struct track_length){i, m->points[i].track_count};
-    if (!st && !all) qsort(order, (size_t)m->point_count, sizeof *order, compare_lengths);
-    for (int i = 0; !st && i < m->point_count; i++) add_point(b, point_of, in_image, m, order[i].point, quota);
-    for (int i = 0; !st && i < m->image_count; i++) b->images[i].fixed = in_image[i] < MIN_OBSERVATIONS;
+    for (int i = 0; !err->status && i < m->point_count; i++)
+        order[i] = (struct track_length){i, m->points[i].track_count};
+    if (!err->status && !all) qsort(order, (size_t)m->point_count, sizeof *order, compare_lengths);
+    for (int i = 0; !err->status && i < m->point_count; i++) add_point(b, point_of, in_image, m, order[i].point, quota);
+    for (int i = 0; !err->status && i < m->image_count; i++) b->images[i].fixed = in_image[i] < MIN_OBSERVATIONS;
     free(order);
     free(in_image);
-    return st;
+    return err->status;
 }
 
 /* The lenses, images and points are one allocation, see struct bundle. */
@@ -137,10 +138,10 @@ enum status bundle_make(struct bundle *b, int **point_of, const struct sfm_model
                          .iterations = ITERATIONS,
                          .tolerance = TOLERANCE};
     *point_of = calloc((size_t)m->point_count + 1, sizeof **point_of);
-    enum status st = *point_of ? ST_OK : err_nomem(err, "points", (size_t)m->point_count * sizeof **point_of);
-    if (!st) st = allocate(b, m->camera_count, m->image_count, m->point_count, total, err);
-    for (int i = 0; !st && i < m->camera_count; i++) b->lenses[i].camera = m->cameras[i].camera;
-    for (int i = 0; !st && i < m->image_count; i++) {
+    if (!*point_of) err_nomem(err, "points", (size_t)m->point_count * sizeof **point_of);
+    if (!err->status) allocate(b, m->camera_count, m->image_count, m->point_count, total, err);
+    for (int i = 0; !err->status && i < m->camera_count; i++) b->lenses[i].camera = m->cameras[i].camera;
+    for (int i = 0; !err->status && i < m->image_count; i++) {
         const struct pose *pose = &m->images[i].cam_from_world;
         b->images[i] = (struct bundle_image){
             .lens = m->images[i].camera_idx,
@@ -148,13 +149,13 @@ enum status bundle_make(struct bundle *b, int **point_of, const struct sfm_model
             .translation = {pose->translation.x, pose->translation.y, pose->translation.z},
         };
     }
-    if (!st) st = add_points(b, *point_of, m, max_observations, total, err);
-    if (st) {
+    if (!err->status) add_points(b, *point_of, m, max_observations, total, err);
+    if (err->status) {
         bundle_release(b);
         free(*point_of);
         *point_of = NULL;
     }
-    return st;
+    return err->status;
 }
 
 enum status bundle_copy(struct bundle *to, const struct bundle *from, struct err *err)
@@ -362,14 +363,13 @@ enum status bundle_adjust(struct bundle_fit *fit, struct bundle *b, const struct
     take_form(b, form);
     b->shift_sigma = form->center == CENTER_PER_PHOTO && !form->lens_kept ? shift_sigma : 0;
     *fit = (struct bundle_fit){.parameters = count_parameters(b, form)};
-    enum status st = ceres_bundle_adjust(b, err);
-    if (!st) st = bundle_measure(fit, b, err);
-    for (int i = 0; !st && i < b->lens_count; i++)
+    if (!ceres_bundle_adjust(b, err)) bundle_measure(fit, b, err);
+    for (int i = 0; !err->status && i < b->lens_count; i++)
         if (folds(&b->lenses[i].camera, &before[i]))
-            st = err_set(err, ST_DATA, "the adjusted lens folds inside the picture");
-    if (!st && !is_plausible(b)) st = err_set(err, ST_DATA, "the adjusted lens is implausible");
+            err_set(err, ST_DATA, "the adjusted lens folds inside the picture");
+    if (!err->status && !is_plausible(b)) err_set(err, ST_DATA, "the adjusted lens is implausible");
     free(before);
-    return st;
+    return err->status;
 }
 
 /* ------------------------------------------------------------------------------------------------------- the result */

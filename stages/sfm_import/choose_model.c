@@ -56,15 +56,14 @@ enum status import_choose(struct sfm_model *model, char **name, enum given_camer
     int count = 0, best = -1;
     *model = (struct sfm_model){0};
     *name = NULL;
-    enum status st = product_path_in(path, sfm, PRODUCT_SFM_MODELS, NULL, err);
-    if (!st) st = product_open(&t, &version, PRODUCT_SFM_MODELS, path, NULL, err);
-    while (!st && textfile_next(&t)) {
+    if (!product_path_in(path, sfm, PRODUCT_SFM_MODELS, NULL, err))
+        product_open(&t, &version, PRODUCT_SFM_MODELS, path, NULL, err);
+    while (!err->status && textfile_next(&t)) {
         struct sfm_model m = {0};
         struct provenance files = {0};
         char *folder = NULL;
         enum given_cameras what = GIVEN_MODEL;
-        st = read_model(&m, &folder, &what, &t, version, sfm, &files, err);
-        if (st) {
+        if (read_model(&m, &folder, &what, &t, version, sfm, &files, err)) {
             provenance_release(&files);
             break;
         }
@@ -80,23 +79,23 @@ enum status import_choose(struct sfm_model *model, char **name, enum given_camer
             chosen = files;
             *given = what;
             best = n;
-            if (!(*name = strdup(folder))) st = err_nomem(err, "a name", strlen(folder) + 1);
+            if (!(*name = strdup(folder))) err_nomem(err, "a name", strlen(folder) + 1);
         } else {
             sfm_model_release(&m);
             provenance_release(&files);
         }
     }
-    if (!st && !count) st = textfile_error(&t, err, NULL, "a line for each model");
-    if (!st && count > 1) log_note("model %s is the largest of %d; only this one is used", *name, count);
+    if (!err->status && !count) textfile_error(&t, err, NULL, "a line for each model");
+    if (!err->status && count > 1) log_note("model %s is the largest of %d; only this one is used", *name, count);
     textfile_release(&t);
-    if (!st && prov) st = provenance_add_all(prov, &chosen, err);
+    if (!err->status && prov) provenance_add_all(prov, &chosen, err);
     provenance_release(&chosen);
-    if (st) {
+    if (err->status) {
         sfm_model_release(model);
         free(*name);
         *name = NULL;
     }
-    return st;
+    return err->status;
 }
 
 enum status import_check_photos(const char *sfm, const struct photo_list *photos, struct err *err)
@@ -106,31 +105,33 @@ enum status import_check_photos(const char *sfm, const struct photo_list *photos
     struct name_lines added = {.heading = "new since structure from motion ran"};
     bool any = false;
     char path[FILE_PATH], *seen = calloc((size_t)photos->count + 1, 1);
-    enum status st = seen ? product_path_in(path, sfm, PRODUCT_SFM_PHOTOS, NULL, err)
-                          : err_nomem(err, "marks", (size_t)photos->count);
-    if (!st) st = product_open(&t, NULL, PRODUCT_SFM_PHOTOS, path, NULL, err);
-    while (!st && textfile_next(&t)) {
+    if (seen)
+        product_path_in(path, sfm, PRODUCT_SFM_PHOTOS, NULL, err);
+    else
+        err_nomem(err, "marks", (size_t)photos->count);
+    if (!err->status) product_open(&t, NULL, PRODUCT_SFM_PHOTOS, path, NULL, err);
+    while (!err->status && textfile_next(&t)) {
         char *id = NULL, *hash = NULL;
-        st = textfile_word(&t, "id of a photo", &id, err);
-        if (!st) st = textfile_word(&t, "hash of a photo", &hash, err);
-        if (!st) st = textfile_end(&t, err);
-        int at = st ? -1 : photo_list_find_id(photos, id);
+        if (!textfile_word(&t, "id of a photo", &id, err) && !textfile_word(&t, "hash of a photo", &hash, err))
+            textfile_end(&t, err);
+        int at = err->status ? -1 : photo_list_find_id(photos, id);
         if (at < 0) continue;
         seen[at] = 1;
         if (!strcmp(hash, photos->photos[at].hash)) continue;
         name_lines_add(&changed, photos->photos[at].file);
         any = true;
     }
-    for (int i = 0; !st && i < photos->count; i++)
+    for (int i = 0; !err->status && i < photos->count; i++)
         if (!seen[i]) {
             name_lines_add(&added, photos->photos[i].file);
             any = true;
         }
-    if (!st && any)
-        log_warn("the photos have changed since their cameras were found; make resfm finds the cameras again");
-    if (!st) name_lines_end(&changed);
-    if (!st) name_lines_end(&added);
+    if (!err->status) {
+        if (any) log_warn("the photos have changed since their cameras were found; make resfm finds the cameras again");
+        name_lines_end(&changed);
+        name_lines_end(&added);
+    }
     textfile_release(&t);
     free(seen);
-    return st;
+    return err->status;
 }

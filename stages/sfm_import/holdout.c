@@ -127,16 +127,15 @@ enum status holdout_split(struct imported *kept, struct imported *out, const str
 {
     int views = in->lenses.count, n[2] = {0};
     int *new_idx = calloc((size_t)views + 1, sizeof *new_idx);
-    enum status st = new_idx ? ST_OK : err_nomem(err, "views", (size_t)views * sizeof *new_idx);
-    for (int i = 0; !st && i < views; i++) new_idx[i] = n[held[i]]++;
-    if (!st) st = copy_views(kept, in, held, false, err);
-    if (!st) st = copy_views(out, in, held, true, err);
-    if (!st) st = copy_points(kept, in, held, false, new_idx, err);
-    if (!st) st = copy_points(out, in, held, true, new_idx, err);
+    if (!new_idx) err_nomem(err, "views", (size_t)views * sizeof *new_idx);
+    for (int i = 0; !err->status && i < views; i++) new_idx[i] = n[held[i]]++;
+    if (!err->status && !copy_views(kept, in, held, false, err) && !copy_views(out, in, held, true, err) &&
+        !copy_points(kept, in, held, false, new_idx, err))
+        copy_points(out, in, held, true, new_idx, err);
     free(new_idx);
-    if (st) {
+    if (err->status) {
         import_release(kept);
         import_release(out);
     }
-    return st;
+    return err->status;
 }

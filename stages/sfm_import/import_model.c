@@ -183,11 +183,9 @@ static enum status make_points(const struct importer *imp, struct imported *out,
     if (!longest) return ST_OK;
     sightings = malloc((size_t)longest * MAX_PHOTO_VIEWS * sizeof *sightings);
     out->model.points = malloc((size_t)in->point_count * sizeof *out->model.points);
-    enum status st = ST_OK;
-    if (!sightings || !out->model.points)
-        st = err_nomem(err, "points", (size_t)in->point_count * sizeof *out->model.points);
+    if (!sightings || !out->model.points) err_nomem(err, "points", (size_t)in->point_count * sizeof *out->model.points);
     const double *error = imp->errors;
-    for (int i = 0; !st && i < in->point_count; i++) {
+    for (int i = 0; !err->status && i < in->point_count; i++) {
         const struct sfm_point *p = &in->points[i];
         double sum = 0;
         int kept = 0, count = 0;
@@ -205,10 +203,10 @@ static enum status make_points(const struct importer *imp, struct imported *out,
         for (int k = 1; k < count; k++) two_photos |= sightings[k].image != sightings[0].image;
         if (!two_photos) continue;
         qsort(sightings, (size_t)count, sizeof *sightings, compare_sightings);
-        st = add_point(&out->model, p, sightings, count, sum / kept, err);
+        add_point(&out->model, p, sightings, count, sum / kept, err);
     }
     free(sightings);
-    return st;
+    return err->status;
 }
 
 static void warn_about_few_points(const struct importer *imp, const struct sfm_model *m)
@@ -229,17 +227,13 @@ enum status import_model(struct imported *out, const struct sfm_model *model, co
     struct importer imp = {.in = model, .photos = photos, .params = params};
     struct import_stats *stats = &out->stats;
     *out = (struct imported){0};
-    enum status st = ST_OK;
     imp.images = calloc((size_t)model->image_count + 1, sizeof *imp.images);
-    if (!imp.images) st = err_nomem(err, "images", (size_t)model->image_count * sizeof *imp.images);
-    if (!st) st = importer_match_photos(&imp, stats, err);
-    if (!st) st = importer_fit_lenses(&imp, err);
-    if (!st) st = importer_measure_errors(&imp, stats, &out->residuals, err);
-    if (!st) st = importer_judge_errors(&imp, stats, err);
-    if (!st) st = make_views(&imp, err);
-    if (!st) st = make_cameras(&imp, out, err);
-    if (!st) st = make_points(&imp, out, err);
-    if (!st) {
+    if (!imp.images) err_nomem(err, "images", (size_t)model->image_count * sizeof *imp.images);
+    if (!err->status && !importer_match_photos(&imp, stats, err) && !importer_fit_lenses(&imp, err) &&
+        !importer_measure_errors(&imp, stats, &out->residuals, err) && !importer_judge_errors(&imp, stats, err) &&
+        !make_views(&imp, err) && !make_cameras(&imp, out, err))
+        make_points(&imp, out, err);
+    if (!err->status) {
         stats->points = out->model.point_count;
         stats->points_dropped = model->point_count - out->model.point_count;
         warn_about_few_points(&imp, &out->model);
@@ -250,8 +244,8 @@ enum status import_model(struct imported *out, const struct sfm_model *model, co
     free(imp.views);
     free(imp.images);
     free(imp.errors);
-    if (st) import_release(out);
-    return st;
+    if (err->status) import_release(out);
+    return err->status;
 }
 
 /* -------------------------------------------------------------------------------------------------------- writing */
@@ -259,26 +253,24 @@ enum status import_model(struct imported *out, const struct sfm_model *model, co
 static enum status write_views_mk(const struct imported *in, const char *path, struct err *err)
 {
     struct outfile f = {0};
-    enum status st = outfile_open(&f, path, err);
-    if (!st) {
+    if (!outfile_open(&f, path, err)) {
         fputs("VIEWS :=", f.fp);
         for (int i = 0; i < in->lenses.count; i++) fprintf(f.fp, " %s", in->lenses.lenses[i].view);
         fputc('\n', f.fp);
-        st = outfile_commit(&f, err);
+        outfile_commit(&f, err);
     }
     outfile_discard(&f);
-    return st;
+    return err->status;
 }
 
 enum status import_write(const struct imported *in, const char *folder, const struct provenance *prov, struct err *err)
 {
     char lenses[FILE_PATH], views[FILE_PATH];
-    enum status st = product_path_in(lenses, folder, PRODUCT_LENSES, NULL, err);
-    if (!st) st = product_path_in(views, folder, PRODUCT_VIEWS_MK, NULL, err);
-    if (!st) st = sfm_model_write_text(&in->model, folder, prov, err);
-    if (!st) st = lens_list_write(&in->lenses, lenses, prov, err);
-    if (!st) st = write_views_mk(in, views, err);
-    return st;
+    if (!product_path_in(lenses, folder, PRODUCT_LENSES, NULL, err) &&
+        !product_path_in(views, folder, PRODUCT_VIEWS_MK, NULL, err) &&
+        !sfm_model_write_text(&in->model, folder, prov, err) && !lens_list_write(&in->lenses, lenses, prov, err))
+        write_views_mk(in, views, err);
+    return err->status;
 }
 
 void import_release(struct imported *in)

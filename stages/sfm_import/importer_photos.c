@@ -14,19 +14,18 @@ enum status importer_match_photos(struct importer *imp, struct import_stats *sta
     int *image_of = malloc(((size_t)photos->count + 1) * sizeof *image_of);
     struct name_lines unknown = {.heading = "left out, images of the model that are not photos of the scene"};
     struct name_lines missing = {.heading = "not placed"};
-    enum status st = ST_OK;
     if (!image_of) return err_nomem(err, "photos", (size_t)photos->count * sizeof *image_of);
     for (int i = 0; i < photos->count; i++) image_of[i] = -1;
-    for (int i = 0; !st && i < imp->in->image_count; i++) {
+    for (int i = 0; !err->status && i < imp->in->image_count; i++) {
         int photo = imp->images[i].photo = photo_list_match(photos, imp->in->images[i].name);
         if (photo < 0) {
             name_lines_add(&unknown, imp->in->images[i].name);
             stats->unknown++;
         } else if (image_of[photo] >= 0) {
-            st = err_set(err, ST_DATA,
-                         "images \"%s\" and \"%s\" of the model are both named like photo \"%s\"; give photos of "
-                         "different folders different names, in the model too.",
-                         imp->in->images[image_of[photo]].name, imp->in->images[i].name, photos->photos[photo].file);
+            err_set(err, ST_DATA,
+                    "images \"%s\" and \"%s\" of the model are both named like photo \"%s\"; give photos of "
+                    "different folders different names, in the model too.",
+                    imp->in->images[image_of[photo]].name, imp->in->images[i].name, photos->photos[photo].file);
         } else {
             image_of[photo] = i;
             stats->registered++;
@@ -35,7 +34,7 @@ enum status importer_match_photos(struct importer *imp, struct import_stats *sta
     for (int i = 0; i < photos->count; i++)
         if (image_of[i] < 0) name_lines_add(&missing, photos->photos[i].file);
     stats->unregistered = photos->count - stats->registered;
-    if (!st) {
+    if (!err->status) {
         name_lines_end(&unknown);
         log_note("%d of %d photos are placed", stats->registered, photos->count);
         if (stats->unregistered && stats->registered) {
@@ -45,20 +44,19 @@ enum status importer_match_photos(struct importer *imp, struct import_stats *sta
                 "photos taken in between help");
         }
     }
-    if (!st && stats->registered == 0)
-        st = err_set(
-            err, ST_DATA,
-            "none of the model's %d images (\"%s\", ...) is named like a photo of the scene (\"%s\", ...); use the "
-            "model of these photos.",
-            imp->in->image_count, imp->in->images[0].name, photos->count ? photos->photos[0].file : "");
-    if (!st && stats->registered < 2)
-        st = err_set(
+    if (!err->status && stats->registered == 0)
+        err_set(err, ST_DATA,
+                "none of the model's %d images (\"%s\", ...) is named like a photo of the scene (\"%s\", ...); use the "
+                "model of these photos.",
+                imp->in->image_count, imp->in->images[0].name, photos->count ? photos->photos[0].file : "");
+    if (!err->status && stats->registered < 2)
+        err_set(
             err, ST_DATA,
             "the model places only %d of %d photos, and depth needs at least 2; take more photos, a step apart, each "
             "overlapping most of its neighbours.",
             stats->registered, photos->count);
     free(image_of);
-    return st;
+    return err->status;
 }
 
 /* Whether both sides differ by the same ratio, up to the half pixel (of the smaller picture) that rounding explains. */

@@ -83,12 +83,11 @@ enum status importer_measure_errors(struct importer *imp, struct import_stats *s
     }
     stats->stated_error = stated_weight > 0 ? stated / stated_weight : -1;
     if (model_sum > 0 && stated_weight > 0) stats->stated_error *= sum / model_sum; /* to pixels of the photos */
-    enum status st = summarize(stats, residuals, finite, sum, err);
-    if (!st) st = lens_fit_measure(&stats->lens, residuals, finite, err);
-    if (!st) st = residual_table_make(table, residuals, photo, finite, imp->photos->count, err);
+    if (!summarize(stats, residuals, finite, sum, err) && !lens_fit_measure(&stats->lens, residuals, finite, err))
+        residual_table_make(table, residuals, photo, finite, imp->photos->count, err);
     free(residuals);
     free(photo);
-    return st;
+    return err->status;
 }
 
 /* -------------------------------------------------------------------------------------------------- the lens model */

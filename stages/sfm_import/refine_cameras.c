@@ -121,15 +121,14 @@ static void take_solution(struct bundle *all, const int *point_of, const struct 
 static enum status adjust_all(struct refinement *r, struct bundle *all, int form, double noise, double shift_sigma,
                               struct err *err)
 {
-    enum status st = ST_OK;
     all->noise = noise;
-    for (int round = 0; !st && round < 2; round++) {
-        st = bundle_adjust(&r->after, all, &r->forms[form].form, shift_sigma, err);
+    for (int round = 0; !err->status && round < 2; round++) {
+        bundle_adjust(&r->after, all, &r->forms[form].form, shift_sigma, err);
         all->noise = r->after.noise;
     }
-    if (!st && !(r->after.noise < r->before.noise))
-        st = err_set(err, ST_DATA, "it does not lower the reprojection error");
-    return st;
+    if (!err->status && !(r->after.noise < r->before.noise))
+        err_set(err, ST_DATA, "it does not lower the reprojection error");
+    return err->status;
 }
 
 /* Notes the shifts and their deviations. Thins the bundle: with fewer observations the deviations are larger, so they
@@ -168,26 +167,23 @@ struct refine_job {
 static enum status try_forms(struct refine_job *job, struct choice *c, struct err *err)
 {
     struct refinement *r = job->r;
-    enum status st = ST_OK;
-    for (int i = 0; !st && i < r->form_count; i++)
-        if (c->errs[i].status == ST_NOMEM) st = err_set(err, ST_NOMEM, "%s", c->errs[i].text);
-    for (int at; !st && r->chosen < 0 && (at = best_form(r)) >= 0;) {
+    for (int i = 0; !err->status && i < r->form_count; i++)
+        if (c->errs[i].status == ST_NOMEM) err_set(err, ST_NOMEM, "%s", c->errs[i].text);
+    for (int at; !err->status && r->chosen < 0 && (at = best_form(r)) >= 0;) {
         struct bundle b = {0};
         struct err why = ERR_INIT;
-        st = bundle_copy(&b, &job->all, err);
-        if (st) break;
+        if (bundle_copy(&b, &job->all, err)) break;
         take_solution(&b, job->point_of, &c->fitted[at], job->of_part, job->place, job->m->point_count);
         const enum status adjusted = adjust_all(r, &b, at, r->forms[at].fit.noise, job->shift_sigma, &why);
-        if (adjusted == ST_NOMEM) st = err_set(err, ST_NOMEM, "%s", why.text);
+        if (adjusted == ST_NOMEM) err_set(err, ST_NOMEM, "%s", why.text);
         r->forms[at].usable = !adjusted;
         if (!adjusted) {
             r->chosen = at;
-            st = bundle_store(job->m, &b, job->point_of, err);
-            if (!st && b.shift_sigma > 0) st = note_shifts(r, &b, err);
+            if (!bundle_store(job->m, &b, job->point_of, err) && b.shift_sigma > 0) note_shifts(r, &b, err);
         }
         bundle_release(&b);
     }
-    return st;
+    return err->status;
 }
 
 static enum status run_job(struct refine_job *job, bool lens_kept, struct err *err)
@@ -195,13 +191,11 @@ static enum status run_job(struct refine_job *job, bool lens_kept, struct err *e
     struct refinement *r = job->r;
     struct choice *c = calloc(1, sizeof *c);
     job->place = malloc(((size_t)job->m->point_count + 1) * sizeof *job->place);
-    enum status st = c && job->place ? ST_OK : err_nomem(err, "forms of lenses", sizeof *c);
-    if (!st) st = bundle_measure(&r->before, &job->all, err);
-    const int wanted = CHOICE_OF_IMAGE * job->m->image_count;
-    if (!st)
-        st = bundle_make(&job->part, &job->of_part, job->m,
-                         (size_t)(wanted > CHOICE_OBSERVATIONS ? wanted : CHOICE_OBSERVATIONS), err);
-    if (!st) {
+    if (!c || !job->place) err_nomem(err, "forms of lenses", sizeof *c);
+    if (!err->status) bundle_measure(&r->before, &job->all, err);
+    const int of_images = CHOICE_OF_IMAGE * job->m->image_count;
+    const int wanted = of_images > CHOICE_OBSERVATIONS ? of_images : CHOICE_OBSERVATIONS;
+    if (!err->status && !bundle_make(&job->part, &job->of_part, job->m, (size_t)wanted, err)) {
         job->part.noise = r->before.noise;
         job->part.tolerance = CHOICE_TOLERANCE;
         list_forms(r, &job->all, lens_kept, job->shift_sigma > 0);
@@ -211,11 +205,11 @@ static enum status run_job(struct refine_job *job, bool lens_kept, struct err *e
         progress_start(&c->progress, "lens forms", r->form_count, "forms");
         parallel_for((size_t)r->form_count, 1, fit_forms, c);
         progress_end(&c->progress);
-        st = try_forms(job, c, err);
+        try_forms(job, c, err);
     }
     for (int i = 0; c && i < MAX_FORMS; i++) bundle_release(&c->fitted[i]);
     free(c);
-    return st;
+    return err->status;
 }
 
 /* One line about what was chosen, and one about the next best form. */
@@ -264,11 +258,10 @@ enum status refine_cameras(struct refinement *out, struct sfm_model *m, enum giv
     for (int i = 0; i < m->camera_count; i++)
         side = fmax(side, fmax(m->cameras[i].camera.width, m->cameras[i].camera.height));
     job.shift_sigma = params->principal_shift * side;
-    enum status st = bundle_make(&job.all, &job.point_of, m, 0, err);
-    if (!st && job.all.observation_count >= MIN_OBSERVATIONS) {
-        st = run_job(&job, given == GIVEN_LENS && !asked, err);
-        if (!st) log_choice(out);
-    } else if (!st) {
+    bundle_make(&job.all, &job.point_of, m, 0, err);
+    if (!err->status && job.all.observation_count >= MIN_OBSERVATIONS) {
+        if (!run_job(&job, given == GIVEN_LENS && !asked, err)) log_choice(out);
+    } else if (!err->status) {
         log_note("the cameras are kept: they have only %zu observations of points", job.all.observation_count);
     }
     bundle_release(&job.all);
@@ -276,7 +269,7 @@ enum status refine_cameras(struct refinement *out, struct sfm_model *m, enum giv
     free(job.point_of);
     free(job.of_part);
     free(job.place);
-    return st;
+    return err->status;
 }
 
 void refine_cameras_release(struct refinement *r)
@@ -323,12 +316,12 @@ enum status refine_cameras_write(const struct refinement *r, const struct sfm_mo
                                  const char *path, const struct provenance *prov, struct err *err)
 {
     struct outfile f = {0};
-    enum status st = product_begin(&f, PRODUCT_LENS_FORMS, path, prov, err);
-    if (!st) {
+    product_begin(&f, PRODUCT_LENS_FORMS, path, prov, err);
+    if (!err->status) {
         print_forms(f.fp, r);
         if (r->shifts) print_shifts(f.fp, r, m, photos);
-        st = outfile_commit(&f, err);
+        outfile_commit(&f, err);
     }
     outfile_discard(&f);
-    return st;
+    return err->status;
 }

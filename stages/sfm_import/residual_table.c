@@ -14,15 +14,15 @@ static enum status fill_rows(struct residual_row *row, int rows, const struct le
 {
     size_t *first = calloc((size_t)rows + 2, sizeof *first);
     double *error = malloc((count + 1) * sizeof *error), *radial = malloc((count + 1) * sizeof *radial);
-    enum status st = first && error && radial ? ST_OK : err_nomem(err, "residuals", count * sizeof *error);
-    for (size_t i = 0; !st && i < count; i++) first[key[i] + 2]++;
-    for (int k = 0; !st && k < rows; k++) first[k + 2] += first[k + 1];
-    for (size_t i = 0; !st && i < count; i++) {
+    if (!first || !error || !radial) err_nomem(err, "residuals", count * sizeof *error);
+    for (size_t i = 0; !err->status && i < count; i++) first[key[i] + 2]++;
+    for (int k = 0; !err->status && k < rows; k++) first[k + 2] += first[k + 1];
+    for (size_t i = 0; !err->status && i < count; i++) {
         const size_t at = first[key[i] + 1]++;
         error[at] = residuals[i].error;
         radial[at] = residuals[i].radial;
     }
-    for (int k = 0; !st && k < rows; k++) {
+    for (int k = 0; !err->status && k < rows; k++) {
         const size_t n = first[k + 1] - first[k];
         double *e = error + first[k], *r = radial + first[k];
         row[k] = (struct residual_row){.observations = (int)n};
@@ -36,7 +36,7 @@ static enum status fill_rows(struct residual_row *row, int rows, const struct le
     free(first);
     free(error);
     free(radial);
-    return st;
+    return err->status;
 }
 
 enum status residual_table_make(struct residual_table *t, const struct lens_residual *residuals, const int *photo,
@@ -45,14 +45,14 @@ enum status residual_table_make(struct residual_table *t, const struct lens_resi
     int *ring = malloc((count + 1) * sizeof *ring);
     *t = (struct residual_table){.photo_count = photo_count};
     t->photos = calloc((size_t)photo_count + 1, sizeof *t->photos);
-    enum status st = ring && t->photos ? ST_OK : err_nomem(err, "residuals", count * sizeof *ring);
-    for (size_t i = 0; !st && i < count; i++)
+    if (!ring || !t->photos) err_nomem(err, "residuals", count * sizeof *ring);
+    for (size_t i = 0; !err->status && i < count; i++)
         ring[i] = residuals[i].radius < 1 ? (int)(residuals[i].radius * RESIDUAL_RINGS) : RESIDUAL_RINGS - 1;
-    if (!st) st = fill_rows(t->photos, photo_count, residuals, photo, count, err);
-    if (!st) st = fill_rows(t->rings, RESIDUAL_RINGS, residuals, ring, count, err);
+    if (!err->status && !fill_rows(t->photos, photo_count, residuals, photo, count, err))
+        fill_rows(t->rings, RESIDUAL_RINGS, residuals, ring, count, err);
     free(ring);
-    if (st) residual_table_release(t);
-    return st;
+    if (err->status) residual_table_release(t);
+    return err->status;
 }
 
 void residual_table_release(struct residual_table *t)
@@ -71,8 +71,7 @@ enum status residual_table_write(const struct residual_table *t, const struct ph
                                  const struct provenance *prov, struct err *err)
 {
     struct outfile f = {0};
-    enum status st = product_begin(&f, PRODUCT_RESIDUALS, path, prov, err);
-    if (!st) {
+    if (!product_begin(&f, PRODUCT_RESIDUALS, path, prov, err)) {
         fputs("# photo ID observations median_px p90_px radial_px\n", f.fp);
         for (int i = 0; i < t->photo_count; i++) {
             if (!t->photos[i].observations) continue;
@@ -85,8 +84,8 @@ enum status residual_table_write(const struct residual_table *t, const struct ph
             fprintf(f.fp, "radius %.1f %.1f", (double)i / RESIDUAL_RINGS, (i + 1.0) / RESIDUAL_RINGS);
             print_row(f.fp, &t->rings[i]);
         }
-        st = outfile_commit(&f, err);
+        outfile_commit(&f, err);
     }
     outfile_discard(&f);
-    return st;
+    return err->status;
 }

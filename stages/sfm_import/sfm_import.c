@@ -32,18 +32,17 @@ static enum status write_split(const struct imported *all, const struct holdout 
     size_t size = strlen(out) + 32;
     bool *marks = calloc((size_t)all->lenses.count + 1, sizeof *marks);
     char *folder = malloc(size);
-    enum status st = marks && folder ? ST_OK : err_nomem(err, "views", size);
-    if (!st) snprintf(folder, size, "%s/../holdout/views", out);
-    if (!st) st = outfile_make_folders(out, err);
-    if (!st) st = holdout_choose(marks, &all->lenses, which->every, which->names, err);
-    if (!st) st = holdout_split(&kept, &held, all, marks, err);
-    if (!st) st = import_write(&held, folder, prov, err);
-    if (!st) st = import_write(&kept, out, prov, err);
+    if (!marks || !folder) err_nomem(err, "views", size);
+    if (!err->status) snprintf(folder, size, "%s/../holdout/views", out);
+    if (!err->status && !outfile_make_folders(out, err) &&
+        !holdout_choose(marks, &all->lenses, which->every, which->names, err) &&
+        !holdout_split(&kept, &held, all, marks, err) && !import_write(&held, folder, prov, err))
+        import_write(&kept, out, prov, err);
     import_release(&kept);
     import_release(&held);
     free(folder);
     free(marks);
-    return st;
+    return err->status;
 }
 
 static enum status write_reports(const struct imported *in, const struct refinement *refinement,
@@ -51,12 +50,12 @@ static enum status write_reports(const struct imported *in, const struct refinem
                                  const struct provenance *prov, struct err *err)
 {
     char residuals[FILE_PATH], forms[FILE_PATH];
-    enum status st = outfile_make_folders(out, err);
-    if (!st) st = product_path_in(residuals, out, PRODUCT_RESIDUALS, NULL, err);
-    if (!st) st = product_path_in(forms, out, PRODUCT_LENS_FORMS, NULL, err);
-    if (!st) st = residual_table_write(&in->residuals, photos, residuals, prov, err);
-    if (!st) st = refine_cameras_write(refinement, model, photos, forms, prov, err);
-    return st;
+    return outfile_make_folders(out, err) || product_path_in(residuals, out, PRODUCT_RESIDUALS, NULL, err) ||
+                   product_path_in(forms, out, PRODUCT_LENS_FORMS, NULL, err) ||
+                   residual_table_write(&in->residuals, photos, residuals, prov, err) ||
+                   refine_cameras_write(refinement, model, photos, forms, prov, err)
+               ? err->status
+               : ST_OK;
 }
 
 static enum status run(const char *sfm, const char *records, const char *out, const struct holdout *held,
@@ -68,22 +67,21 @@ static enum status run(const char *sfm, const char *records, const char *out, co
     struct refinement refinement = {.chosen = -1};
     enum given_cameras given = GIVEN_MODEL;
     char *name = NULL;
-    enum status st = photo_list_read(&photos, records, err);
-    if (!st) st = import_choose(&model, &name, &given, sfm, &photos, prov, err);
-    if (!st) st = import_check_photos(sfm, &photos, err);
-    if (!st) st = refine_cameras(&refinement, &model, given, params, err);
-    if (!st && import_model(&imported, &model, &photos, params, err)) st = err_context(err, "%s/%s", sfm, name);
-    if (!st) st = write_reports(&imported, &refinement, &model, &photos, out, prov, err);
-    if (!st && (held->every || (held->names && *held->names)))
-        st = write_split(&imported, held, out, prov, err);
-    else if (!st)
-        st = import_write(&imported, out, prov, err);
+    if (!photo_list_read(&photos, records, err) && !import_choose(&model, &name, &given, sfm, &photos, prov, err) &&
+        !import_check_photos(sfm, &photos, err))
+        refine_cameras(&refinement, &model, given, params, err);
+    if (!err->status && import_model(&imported, &model, &photos, params, err)) err_context(err, "%s/%s", sfm, name);
+    if (!err->status) write_reports(&imported, &refinement, &model, &photos, out, prov, err);
+    if (!err->status && (held->every || (held->names && *held->names)))
+        write_split(&imported, held, out, prov, err);
+    else if (!err->status)
+        import_write(&imported, out, prov, err);
     import_release(&imported);
     refine_cameras_release(&refinement);
     sfm_model_release(&model);
     photo_list_release(&photos);
     free(name);
-    return st;
+    return err->status;
 }
 
 int main(int argc, char **argv)

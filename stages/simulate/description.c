@@ -11,27 +11,26 @@ enum status description_header(struct textfile *t, const char *kind, int max_ver
     char *word = NULL;
     int64_t found = 0;
     if (!textfile_next(t)) return err_set(err, ST_DATA, "%s is empty; its first line must be: %s 1.", t->path, kind);
-    enum status st = textfile_word(t, kind, &word, err);
-    if (!st && strcmp(word, kind)) st = textfile_error(t, err, word, "%s", kind);
-    if (!st) st = textfile_int(t, "the format's version", 1, max_version, &found, err);
+    textfile_word(t, kind, &word, err);
+    if (!err->status && strcmp(word, kind)) textfile_error(t, err, word, "%s", kind);
+    if (!err->status) textfile_int(t, "the format's version", 1, max_version, &found, err);
     *version = (int)found;
-    if (!st) st = textfile_end(t, err);
-    return st;
+    if (!err->status) textfile_end(t, err);
+    return err->status;
 }
 
 enum status description_point(struct textfile *t, const char *what, struct vec3 *p, struct err *err)
 {
-    enum status st = textfile_number(t, what, -MAX_METRES, MAX_METRES, &p->x, err);
-    if (!st) st = textfile_number(t, what, -MAX_METRES, MAX_METRES, &p->y, err);
-    if (!st) st = textfile_number(t, what, -MAX_METRES, MAX_METRES, &p->z, err);
-    return st;
+    if (!textfile_number(t, what, -MAX_METRES, MAX_METRES, &p->x, err) &&
+        !textfile_number(t, what, -MAX_METRES, MAX_METRES, &p->y, err))
+        textfile_number(t, what, -MAX_METRES, MAX_METRES, &p->z, err);
+    return err->status;
 }
 
 enum status description_name(struct textfile *t, char **name, struct err *err)
 {
     char *word = NULL;
-    enum status st = textfile_word(t, "a name", &word, err);
-    if (st) return st;
+    if (textfile_word(t, "a name", &word, err)) return err->status;
     bool valid = *word && strlen(word) <= 64;
     for (const char *p = word; *p; p++) valid = valid && (isalnum((unsigned char)*p) || *p == '_' || *p == '-');
     if (!valid) return textfile_error(t, err, word, "a name of at most 64 letters, digits, _ and -");

@@ -47,8 +47,7 @@ static enum status add_face(struct builder *b, const char *side, int material, s
     struct scene_geometry *g = b->g;
     const char *item = b->scene->items[b->item].name;
     char *name = NULL;
-    enum status st = array_append(&g->faces, (size_t)g->face_count, sizeof *g->faces, "faces", err);
-    if (st) return st;
+    if (array_append(&g->faces, (size_t)g->face_count, sizeof *g->faces, "faces", err)) return err->status;
     if (asprintf(&name, side ? "%s.%s" : "%s", item, side) < 0) return err_nomem(err, "a face's name", strlen(item));
     g->faces[g->face_count] = (struct scene_face){
         .name = name,
@@ -72,24 +71,22 @@ static enum status add_triangle(struct builder *b, struct vec3 p, struct vec3 q,
     const struct vec3 corner[3] = {p, q, r};
     const int face = g->face_count - 1;
     g->faces[face].area += vec3_length(vec3_cross(vec3_sub(q, p), vec3_sub(r, p))) / 2;
-    enum status st = ray_scene_add_triangle(&g->rays, corner, (uint32_t)face, err);
-    if (!st && g->has_furniture && !b->scene->items[b->item].furniture)
-        st = ray_scene_add_triangle(&g->bare, corner, (uint32_t)face, err);
-    return st;
+    ray_scene_add_triangle(&g->rays, corner, (uint32_t)face, err);
+    if (!err->status && g->has_furniture && !b->scene->items[b->item].furniture)
+        ray_scene_add_triangle(&g->bare, corner, (uint32_t)face, err);
+    return err->status;
 }
 
 static enum status add_parallelogram(struct builder *b, struct vec3 p, struct vec3 u, struct vec3 v, struct err *err)
 {
     const struct vec3 pu = vec3_add(p, u), pv = vec3_add(p, v), puv = vec3_add(pu, v);
-    enum status st = add_triangle(b, p, pu, puv, err);
-    return st ? st : add_triangle(b, p, puv, pv, err);
+    return add_triangle(b, p, pu, puv, err) || add_triangle(b, p, puv, pv, err) ? err->status : ST_OK;
 }
 
 static enum status add_quad(struct builder *b, const char *side, int material, struct vec3 p, struct vec3 u,
                             struct vec3 v, struct err *err)
 {
-    enum status st = add_face(b, side, material, p, u, v, err);
-    return st ? st : add_parallelogram(b, p, u, v, err);
+    return add_face(b, side, material, p, u, v, err) || add_parallelogram(b, p, u, v, err) ? err->status : ST_OK;
 }
 
 void geometry_wall_axes(const struct scene_item *wall, struct vec3 *along, struct vec3 *left, double *length)
@@ -144,9 +141,9 @@ static enum status add_wall_side(struct builder *b, int side, struct err *err)
     const struct vec3 foot = vec3_add(vec3_make(w->x0, w->y0, w->z0), vec3_scale(left, side * w->thickness / 2));
     const struct vec3 up = {0, 0, 1}, u = vec3_scale(along, -side);
     const struct vec3 origin = side > 0 ? vec3_add(foot, vec3_scale(along, length)) : foot;
-    enum status st = add_face(b, side > 0 ? "left" : "right", w->material, origin, u, up, err);
-    for (int i = 0; !st && i + 1 < s_count; i++)
-        for (int j = 0; !st && j + 1 < z_count; j++) {
+    add_face(b, side > 0 ? "left" : "right", w->material, origin, u, up, err);
+    for (int i = 0; !err->status && i + 1 < s_count; i++)
+        for (int j = 0; !err->status && j + 1 < z_count; j++) {
             const double sm = (s_cuts[i] + s_cuts[i + 1]) / 2, zm = (z_cuts[j] + z_cuts[j + 1]) / 2;
             bool hole = false;
             for (int k = 0; k < s->item_count && !hole; k++) {
@@ -155,11 +152,11 @@ static enum status add_wall_side(struct builder *b, int side, struct err *err)
             }
             if (hole) continue;
             const struct vec3 p = vec3_add(foot, vec3_scale(along, side > 0 ? s_cuts[i + 1] : s_cuts[i]));
-            st = add_parallelogram(b, vec3_make(p.x, p.y, z_cuts[j]), vec3_scale(u, s_cuts[i + 1] - s_cuts[i]),
-                                   vec3_make(0, 0, z_cuts[j + 1] - z_cuts[j]), err);
+            add_parallelogram(b, vec3_make(p.x, p.y, z_cuts[j]), vec3_scale(u, s_cuts[i + 1] - s_cuts[i]),
+                              vec3_make(0, 0, z_cuts[j + 1] - z_cuts[j]), err);
         }
     free(cuts);
-    return st;
+    return err->status;
 }
 
 static enum status add_wall(struct builder *b, struct err *err)
@@ -172,13 +169,12 @@ static enum status add_wall(struct builder *b, struct err *err)
                       line = vec3_scale(along, length);
     const struct vec3 right_foot = vec3_add(vec3_make(w->x0, w->y0, w->z0), vec3_scale(across, -0.5));
     const struct vec3 left_foot = vec3_add(right_foot, across);
-    enum status st = add_wall_side(b, 1, err);
-    if (!st) st = add_wall_side(b, -1, err);
-    if (!st) st = add_quad(b, "begin", w->material, left_foot, vec3_scale(across, -1), up, err);
-    if (!st) st = add_quad(b, "end", w->material, vec3_add(right_foot, line), across, up, err);
-    if (!st) st = add_quad(b, "top", w->material, vec3_add(right_foot, up), line, across, err);
-    if (!st) st = add_quad(b, "bottom", w->material, right_foot, across, line, err);
-    return st;
+    if (!add_wall_side(b, 1, err) && !add_wall_side(b, -1, err) &&
+        !add_quad(b, "begin", w->material, left_foot, vec3_scale(across, -1), up, err) &&
+        !add_quad(b, "end", w->material, vec3_add(right_foot, line), across, up, err) &&
+        !add_quad(b, "top", w->material, vec3_add(right_foot, up), line, across, err))
+        add_quad(b, "bottom", w->material, right_foot, across, line, err);
+    return err->status;
 }
 
 /* The reveals of an opening, except those that would lie on the wall's own edge. */
@@ -192,13 +188,12 @@ static enum status add_reveals(struct builder *b, struct err *err)
     const struct vec3 up = {0, 0, o->z1 - o->z0};
     const struct vec3 p =
         vec3_add(vec3_add(vec3_make(w->x0, w->y0, o->z0), vec3_scale(along, o->s0)), vec3_scale(across, -0.5));
-    enum status st = ST_OK;
-    if (o->s0 > 0) st = add_quad(b, "begin", w->material, p, across, up, err);
-    if (!st && o->s1 < length)
-        st = add_quad(b, "end", w->material, vec3_add(vec3_add(p, line), across), vec3_scale(across, -1), up, err);
-    if (!st && o->z1 < w->z1) st = add_quad(b, "head", w->material, vec3_add(p, up), across, line, err);
-    if (!st && o->z0 > w->z0) st = add_quad(b, "sill", w->material, p, line, across, err);
-    return st;
+    if (o->s0 > 0) add_quad(b, "begin", w->material, p, across, up, err);
+    if (!err->status && o->s1 < length)
+        add_quad(b, "end", w->material, vec3_add(vec3_add(p, line), across), vec3_scale(across, -1), up, err);
+    if (!err->status && o->z1 < w->z1) add_quad(b, "head", w->material, vec3_add(p, up), across, line, err);
+    if (!err->status && o->z0 > w->z0) add_quad(b, "sill", w->material, p, line, across, err);
+    return err->status;
 }
 
 static struct vec3 turned(struct vec3 p, double degrees)
@@ -223,41 +218,42 @@ static enum status add_box(struct builder *b, struct err *err)
         {vec3_add(low, y), x, minus_y},              /* -z */
         {vec3_add(low, z), x, y},                    /* +z */
     };
-    enum status st = ST_OK;
-    for (int i = 0; !st && i < 6; i++)
-        st = add_quad(b, sides[i], it->material, vec3_add(middle, turned(parts[i][0], it->turn)),
-                      turned(parts[i][1], it->turn), turned(parts[i][2], it->turn), err);
-    return st;
+    for (int i = 0; !err->status && i < 6; i++)
+        add_quad(b, sides[i], it->material, vec3_add(middle, turned(parts[i][0], it->turn)),
+                 turned(parts[i][1], it->turn), turned(parts[i][2], it->turn), err);
+    return err->status;
 }
 
 static enum status add_room(struct builder *b, struct err *err)
 {
     const struct scene_item *it = &b->scene->items[b->item];
     const struct vec3 x = {it->x1 - it->x0, 0, 0}, y = {0, it->y1 - it->y0, 0};
-    enum status st = add_quad(b, "floor", it->material, vec3_make(it->x0, it->y0, it->z0), x, y, err);
-    return st ? st : add_quad(b, "ceiling", it->ceiling, vec3_make(it->x0, it->y0, it->z1), y, x, err);
+    return add_quad(b, "floor", it->material, vec3_make(it->x0, it->y0, it->z0), x, y, err) ||
+                   add_quad(b, "ceiling", it->ceiling, vec3_make(it->x0, it->y0, it->z1), y, x, err)
+               ? err->status
+               : ST_OK;
 }
 
 static enum status add_mesh(struct builder *b, struct err *err)
 {
     const struct scene_item *it = &b->scene->items[b->item];
     struct vec3 sum = {0, 0, 0};
-    enum status st = add_face(b, NULL, it->material, it->at, vec3_make(1, 0, 0), vec3_make(0, 1, 0), err);
-    for (int i = 0; !st && i < it->triangle_count; i++) {
+    add_face(b, NULL, it->material, it->at, vec3_make(1, 0, 0), vec3_make(0, 1, 0), err);
+    for (int i = 0; !err->status && i < it->triangle_count; i++) {
         struct vec3 p[3];
         for (int k = 0; k < 3; k++)
             p[k] = vec3_add(it->at, turned(vec3_scale(it->triangles[i][k], it->scale), it->turn));
         const struct vec3 n = vec3_cross(vec3_sub(p[1], p[0]), vec3_sub(p[2], p[0]));
         if (!(vec3_length(n) > 0)) continue;
         sum = vec3_add(sum, n);
-        st = add_triangle(b, p[0], p[1], p[2], err);
+        add_triangle(b, p[0], p[1], p[2], err);
     }
-    if (!st) {
+    if (!err->status) {
         struct scene_face *f = &b->g->faces[b->g->face_count - 1];
         f->mesh = true;
         f->normal = vec3_normalize(sum);
     }
-    return st;
+    return err->status;
 }
 
 static enum status add_disk(struct builder *b, struct err *err)
@@ -266,13 +262,12 @@ static enum status add_disk(struct builder *b, struct err *err)
     struct scene_geometry *g = b->g;
     struct vec3 x, y;
     frame_from_normal(vec3_normalize(it->u), &x, &y);
-    enum status st = add_face(b, NULL, -1, it->at, x, y, err);
-    if (st) return st;
+    if (add_face(b, NULL, -1, it->at, x, y, err)) return err->status;
     const int face = g->face_count - 1;
     g->faces[face].area = PI * it->radius * it->radius;
-    st = ray_scene_add_disk(&g->rays, it->at, it->u, it->radius, (uint32_t)face, err);
-    if (!st && g->has_furniture) st = ray_scene_add_disk(&g->bare, it->at, it->u, it->radius, (uint32_t)face, err);
-    return st;
+    ray_scene_add_disk(&g->rays, it->at, it->u, it->radius, (uint32_t)face, err);
+    if (!err->status && g->has_furniture) ray_scene_add_disk(&g->bare, it->at, it->u, it->radius, (uint32_t)face, err);
+    return err->status;
 }
 
 static enum status add_item(struct builder *b, struct err *err)
@@ -300,20 +295,16 @@ static enum status add_item(struct builder *b, struct err *err)
 enum status geometry_init(struct scene_geometry *g, const struct scene *s, struct err *err)
 {
     struct builder b = {g, s, 0};
-    enum status st = ST_OK;
     *g = (struct scene_geometry){0};
     for (int i = 0; i < s->item_count; i++) g->has_furniture = g->has_furniture || s->items[i].furniture;
     if (!(g->lamp_faces = malloc((size_t)(s->item_count + 1) * sizeof *g->lamp_faces)))
-        st = err_nomem(err, "lamps", (size_t)s->item_count * sizeof *g->lamp_faces);
-    for (; !st && b.item < s->item_count; b.item++) {
+        err_nomem(err, "lamps", (size_t)s->item_count * sizeof *g->lamp_faces);
+    for (; !err->status && b.item < s->item_count; b.item++) {
         g->lamp_faces[b.item] = s->items[b.item].material < 0 ? g->face_count : -1;
-        st = add_item(&b, err);
+        add_item(&b, err);
     }
-    if (st) {
-        geometry_release(g);
-        return st;
-    }
-    return ST_OK;
+    if (err->status) geometry_release(g);
+    return err->status;
 }
 
 static int compare_names(const void *a, const void *b)
@@ -325,11 +316,10 @@ enum status geometry_keep_ids(struct scene_geometry *g, const char *folder, cons
 {
     struct scene s = {0};
     struct scene_geometry before = {0};
-    enum status st = scene_read(&s, folder, base, NULL, err);
-    if (!st) st = geometry_init(&before, &s, err);
+    if (!scene_read(&s, folder, base, NULL, err)) geometry_init(&before, &s, err);
     uint32_t next = (uint32_t)before.face_count + 1;
-    if (!st) qsort(before.faces, (size_t)before.face_count, sizeof *before.faces, compare_names);
-    for (int i = 0; !st && i < g->face_count; i++) {
+    if (!err->status) qsort(before.faces, (size_t)before.face_count, sizeof *before.faces, compare_names);
+    for (int i = 0; !err->status && i < g->face_count; i++) {
         const struct scene_face *same =
             before.face_count
                 ? bsearch(&g->faces[i], before.faces, (size_t)before.face_count, sizeof *g->faces, compare_names)
@@ -338,13 +328,13 @@ enum status geometry_keep_ids(struct scene_geometry *g, const char *folder, cons
     }
     geometry_release(&before);
     scene_release(&s);
-    return st;
+    return err->status;
 }
 
 enum status geometry_commit(struct scene_geometry *g, struct err *err)
 {
-    enum status st = ray_scene_commit(&g->rays, err);
-    return st || !g->has_furniture ? st : ray_scene_commit(&g->bare, err);
+    ray_scene_commit(&g->rays, err);
+    return err->status || !g->has_furniture ? err->status : ray_scene_commit(&g->bare, err);
 }
 
 void geometry_release(struct scene_geometry *g)

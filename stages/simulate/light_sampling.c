@@ -139,13 +139,12 @@ enum status lights_init(struct lights *l, const struct scene *s, const struct sc
     if (!(l->of_face = malloc((size_t)(g->face_count + 1) * sizeof *l->of_face)))
         return err_nomem(err, "lights", (size_t)g->face_count * sizeof *l->of_face);
     for (int i = 0; i < g->face_count; i++) l->of_face[i] = -1;
-    enum status st = ST_OK;
-    for (int i = 0; !st && i < s->item_count; i++) {
+    for (int i = 0; !err->status && i < s->item_count; i++) {
         const struct scene_item *it = &s->items[i];
         const bool lamp = it->kind == ITEM_LAMP_QUAD || it->kind == ITEM_LAMP_DISK;
         if (!lamp && (it->kind != ITEM_WINDOW || !(s->sky.has_panorama || s->sky.has_sun))) continue;
         if (l->count == MAX_LIGHTS - 1) { /* the last entry is for the sun */
-            st = err_set(err, ST_DATA, "the scene has more than %d lamps and windows; remove some.", l->count);
+            err_set(err, ST_DATA, "the scene has more than %d lamps and windows; remove some.", l->count);
             break;
         }
         if (lamp) l->of_face[g->lamp_faces[i]] = l->count;
@@ -153,7 +152,7 @@ enum status lights_init(struct lights *l, const struct scene *s, const struct sc
                               : it->kind == ITEM_LAMP_DISK ? disk(it)
                                                            : rectangle(LIGHT_QUAD, it->at, it->u, it->v, it->radiance);
     }
-    if (!st && s->sky.has_sun) {
+    if (!err->status && s->sky.has_sun) {
         struct scene_light sun = {
             .kind = LIGHT_SUN, .n = l->sky.to_sun, .cos_cone = l->sky.sun_cos, .radiance = s->sky.sun.radiance};
         sun.tan_cone = tan(s->sky.sun.angular_radius * PI / 180);
@@ -161,8 +160,8 @@ enum status lights_init(struct lights *l, const struct scene *s, const struct sc
         sun.luminance = rgb_luminance(sun.radiance);
         l->list[l->count++] = sun;
     }
-    if (st) lights_release(l);
-    return st;
+    if (err->status) lights_release(l);
+    return err->status;
 }
 
 void lights_release(struct lights *l)

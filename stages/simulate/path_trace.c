@@ -24,13 +24,11 @@ enum status path_world_read(struct world *w, const char *folder, const char *fil
                             struct err *err)
 {
     *w = (struct world){0};
-    enum status st = scene_read(&w->scene, folder, file, prov, err);
-    if (!st) st = geometry_init(&w->geometry, &w->scene, err);
-    if (!st && w->scene.base) st = geometry_keep_ids(&w->geometry, folder, w->scene.base, err);
-    if (!st) st = geometry_commit(&w->geometry, err);
-    if (!st) st = lights_init(&w->lights, &w->scene, &w->geometry, err);
-    if (st) path_world_release(w);
-    return st;
+    if (!scene_read(&w->scene, folder, file, prov, err)) geometry_init(&w->geometry, &w->scene, err);
+    if (!err->status && w->scene.base) geometry_keep_ids(&w->geometry, folder, w->scene.base, err);
+    if (!err->status && !geometry_commit(&w->geometry, err)) lights_init(&w->lights, &w->scene, &w->geometry, err);
+    if (err->status) path_world_release(w);
+    return err->status;
 }
 
 enum status path_world_move_sun(struct world *w, double azimuth, double elevation, struct err *err)

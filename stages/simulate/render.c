@@ -153,10 +153,10 @@ enum status render_radiance(struct image *radiance, const struct world *w, const
                       .across = across,
                       .radiance = radiance,
                       .progress = &progress};
-    enum status st = image_init(radiance, view->lens->width, view->lens->height, 3, err);
-    if (!st && !(job.rays = calloc(blocks, sizeof *job.rays)))
-        st = err_nomem(err, "blocks of pixels", blocks * sizeof *job.rays);
-    if (!st) {
+    image_init(radiance, view->lens->width, view->lens->height, 3, err);
+    if (!err->status && !(job.rays = calloc(blocks, sizeof *job.rays)))
+        err_nomem(err, "blocks of pixels", blocks * sizeof *job.rays);
+    if (!err->status) {
         job.rng = rng_make((uint64_t)params->seed, "simulate", name);
         progress_start(&progress, name, (int64_t)blocks, "blocks");
         parallel_for(blocks, 1, render_blocks, &job);
@@ -164,7 +164,7 @@ enum status render_radiance(struct image *radiance, const struct world *w, const
         for (size_t i = 0; rays && i < blocks; i++) *rays += job.rays[i];
     }
     free(job.rays);
-    return st;
+    return err->status;
 }
 
 static void surface_rows(void *ctx, size_t begin, size_t end, int thread)

@@ -28,10 +28,10 @@ static enum status pilot(double *seconds, const struct picture_job *job, const s
     view.lens = &small;
     params.samples = PILOT_SAMPLES;
     const double started = clock_seconds();
-    enum status st = render_radiance(&image, w, &view, photo->name, &params, NULL, err);
+    render_radiance(&image, w, &view, photo->name, &params, NULL, err);
     *seconds = (clock_seconds() - started) * pixels / ((double)small.width * small.height * PILOT_SAMPLES);
     image_release(&image);
-    return st;
+    return err->status;
 }
 
 static void print_kind(FILE *to, const char *kind, int pictures, int samples, double seconds)

@@ -11,9 +11,9 @@
 static enum status drop_line(struct reader *r, int line, struct err *err)
 {
     struct scene *s = r->scene;
-    enum status st = array_append(&s->dropped, (size_t)s->dropped_count, sizeof *s->dropped, "dropped lines", err);
-    if (!st) s->dropped[s->dropped_count++] = line;
-    return st;
+    if (!array_append(&s->dropped, (size_t)s->dropped_count, sizeof *s->dropped, "dropped lines", err))
+        s->dropped[s->dropped_count++] = line;
+    return err->status;
 }
 
 static bool in_wall(const struct scene_item *it, int wall)
@@ -25,12 +25,11 @@ static bool in_wall(const struct scene_item *it, int wall)
 static enum status drop_item(struct reader *r, int item, struct err *err)
 {
     struct scene *s = r->scene;
-    enum status st = ST_OK;
     const bool wall = s->items[item].kind == ITEM_WALL;
-    for (int i = r->base_items - 1; !st && wall && i > item; i--)
-        if (in_wall(&s->items[i], item)) st = drop_item(r, i, err);
-    if (!st) st = drop_line(r, s->items[item].line, err);
-    if (st) return st;
+    for (int i = r->base_items - 1; !err->status && wall && i > item; i--)
+        if (in_wall(&s->items[i], item)) drop_item(r, i, err);
+    if (!err->status) drop_line(r, s->items[item].line, err);
+    if (err->status) return err->status;
     scene_item_release(&s->items[item]);
     s->item_count--, r->base_items--;
     memmove(&s->items[item], &s->items[item + 1], (size_t)(s->item_count - item) * sizeof *s->items);
@@ -62,13 +61,10 @@ enum status scene_read_drop(struct reader *r, struct err *err)
     char *name = NULL;
     if (!r->scene->base)
         return textfile_error(&r->file, err, "drop", "a line `base FILE` at the beginning of the file");
-    enum status st = textfile_word(&r->file, "the name of an item of the base", &name, err);
-    if (!st) st = drop_name(r, name, err);
-    while (!st && textfile_more(&r->file)) {
-        st = textfile_word(&r->file, "the name of an item of the base", &name, err);
-        if (!st) st = drop_name(r, name, err);
-    }
-    return st;
+    if (!textfile_word(&r->file, "the name of an item of the base", &name, err)) drop_name(r, name, err);
+    while (!err->status && textfile_more(&r->file))
+        if (!textfile_word(&r->file, "the name of an item of the base", &name, err)) drop_name(r, name, err);
+    return err->status;
 }
 
 /* -------------------------------------------------------------------------------------------------- the whole scene */
@@ -95,32 +91,32 @@ static enum status copy_lines(const struct scene *s, FILE *to, const char *folde
     char *path = NULL, *text = NULL;
     size_t size = 0;
     FILE *from = NULL;
-    enum status st = asprintf(&path, "%s/%s", folder, file) < 0 ? err_nomem(err, "a file name", strlen(file)) : ST_OK;
-    if (st) path = NULL;
-    if (!st && !(from = fopen(path, "rbe"))) st = err_errno(err, "open", path);
-    for (int line = 1; !st && getline(&text, &size, from) >= 0; line++) {
+    if (asprintf(&path, "%s/%s", folder, file) < 0) {
+        path = NULL;
+        err_nomem(err, "a file name", strlen(file));
+    }
+    if (!err->status && !(from = fopen(path, "rbe"))) err_errno(err, "open", path);
+    for (int line = 1; !err->status && getline(&text, &size, from) >= 0; line++) {
         if (s->base && (about_file(text) || (base && is_dropped(s, line)))) continue;
         fputs(text, to);
         if (s->base && !strchr(text, '\n')) putc('\n', to);
     }
-    if (!st && ferror(from)) st = err_errno(err, "read", path);
+    if (!err->status && ferror(from)) err_errno(err, "read", path);
     if (from) fclose(from);
     free(text);
     free(path);
-    return st;
+    return err->status;
 }
 
 enum status scene_write(const struct scene *s, const char *folder, const char *file, const char *path, struct err *err)
 {
     struct outfile f = {0};
-    enum status st = outfile_open(&f, path, err);
-    if (!st && s->base) {
+    outfile_open(&f, path, err);
+    if (!err->status && s->base) {
         fprintf(f.fp, "remodel-scene 2\n# %s, with all that it keeps of %s\n", file, s->base);
-        st = copy_lines(s, f.fp, folder, s->base, true, err);
-        if (!st) fprintf(f.fp, "\nfurniture off\n");
+        if (!copy_lines(s, f.fp, folder, s->base, true, err)) fprintf(f.fp, "\nfurniture off\n");
     }
-    if (!st) st = copy_lines(s, f.fp, folder, file, false, err);
-    if (!st) st = outfile_commit(&f, err);
+    if (!err->status && !copy_lines(s, f.fp, folder, file, false, err)) outfile_commit(&f, err);
     outfile_discard(&f);
-    return st;
+    return err->status;
 }

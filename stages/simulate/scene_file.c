@@ -13,27 +13,26 @@ static enum status read_sun(struct reader *r, struct err *err)
 {
     struct sun *sun = &r->scene->sky.sun;
     if (r->scene->sky.has_sun) return textfile_error(&r->file, err, "a second sun", "at most one");
-    enum status st = textfile_number(&r->file, "the sun's azimuth in degrees", -360, 360, &sun->azimuth, err);
-    if (!st) st = textfile_number(&r->file, "the sun's elevation in degrees", -90, 90, &sun->elevation, err);
-    if (!st) st = textfile_number(&r->file, "the sun's angular radius in degrees", 0.05, 30, &sun->angular_radius, err);
-    if (!st) st = scene_read_colour(r, "a radiance", MAX_RADIANCE, &sun->radiance, err);
-    if (!st) st = textfile_end(&r->file, err);
-    r->scene->sky.has_sun = !st;
+    if (!textfile_number(&r->file, "the sun's azimuth in degrees", -360, 360, &sun->azimuth, err) &&
+        !textfile_number(&r->file, "the sun's elevation in degrees", -90, 90, &sun->elevation, err) &&
+        !textfile_number(&r->file, "the sun's angular radius in degrees", 0.05, 30, &sun->angular_radius, err) &&
+        !scene_read_colour(r, "a radiance", MAX_RADIANCE, &sun->radiance, err))
+        textfile_end(&r->file, err);
+    r->scene->sky.has_sun = !err->status;
     if (r->in_base) r->sun_line = r->file.line;
-    return st;
+    return err->status;
 }
 
 static enum status read_panorama(struct reader *r, struct err *err)
 {
     struct panorama *p = &r->scene->sky.panorama;
     if (r->scene->sky.has_panorama) return textfile_error(&r->file, err, "a second panorama", "at most one");
-    enum status st = scene_read_seed(r, &p->seed, err);
-    if (!st) st = scene_read_colour(r, "the sky's radiance", MAX_RADIANCE, &p->sky, err);
-    if (!st) st = scene_read_colour(r, "the ground's radiance", MAX_RADIANCE, &p->ground, err);
-    if (!st) st = textfile_end(&r->file, err);
-    r->scene->sky.has_panorama = !st;
+    if (!scene_read_seed(r, &p->seed, err) && !scene_read_colour(r, "the sky's radiance", MAX_RADIANCE, &p->sky, err) &&
+        !scene_read_colour(r, "the ground's radiance", MAX_RADIANCE, &p->ground, err))
+        textfile_end(&r->file, err);
+    r->scene->sky.has_panorama = !err->status;
     if (r->in_base) r->panorama_line = r->file.line;
-    return st;
+    return err->status;
 }
 
 /* ------------------------------------------------------------------------------------------------------------- file */
@@ -47,30 +46,29 @@ static enum status read_base(struct reader *r, struct err *err)
     char *file = NULL;
     if (r->in_base) return textfile_error(&r->file, err, "base", "a complete description, because it is a base itself");
     if (r->statements) return textfile_error(&r->file, err, "base", "it on the first line below the header");
-    enum status st = textfile_word(&r->file, "the base's file, such as scene.txt", &file, err);
-    if (!st && (strchr(file, '/') || *file == '.'))
-        st = textfile_error(&r->file, err, file, "the name of a file beside this one, without a folder");
-    if (!st) st = textfile_end(&r->file, err);
-    if (!st && !(s->base = strdup(file))) st = err_nomem(err, "a file name", strlen(file));
-    if (st) return st;
+    if (!textfile_word(&r->file, "the base's file, such as scene.txt", &file, err) &&
+        (strchr(file, '/') || *file == '.'))
+        textfile_error(&r->file, err, file, "the name of a file beside this one, without a folder");
+    if (!err->status && !textfile_end(&r->file, err) && !(s->base = strdup(file)))
+        err_nomem(err, "a file name", strlen(file));
+    if (err->status) return err->status;
     struct reader outer = *r;
     r->file = (struct textfile){0};
     r->in_base = true;
-    if ((st = read_file(r, s->base, err))) err_context(err, "%s:%d", outer.file.path, outer.file.line);
+    if (read_file(r, s->base, err)) err_context(err, "%s:%d", outer.file.path, outer.file.line);
     outer.base_items = s->item_count;
     outer.sun_line = r->sun_line, outer.panorama_line = r->panorama_line;
     *r = outer;
-    return st;
+    return err->status;
 }
 
 static enum status read_furniture(struct reader *r, struct err *err)
 {
     static const char *const words[] = {"off", "on"};
     int word = 0;
-    enum status st = scene_read_choice(r, words, 2, "the state of furniture", &word, err);
-    if (!st) st = textfile_end(&r->file, err);
+    if (!scene_read_choice(r, words, 2, "the state of furniture", &word, err)) textfile_end(&r->file, err);
     r->furniture = word;
-    return st;
+    return err->status;
 }
 
 static enum status read_line(struct reader *r, struct err *err)
@@ -82,10 +80,10 @@ static enum status read_line(struct reader *r, struct err *err)
         read_panorama,      read_base,           scene_read_drop, read_furniture};
     enum { LINES = sizeof lines / sizeof *lines, WORDS = sizeof words / sizeof *words, FIRST_OF_2 = 5 };
     int word = 0;
-    enum status st = scene_read_choice(r, words, WORDS, "a line of a scene", &word, err);
-    if (!st && word >= FIRST_OF_2 && word < LINES && r->version < 2)
-        st = textfile_error(&r->file, err, words[word], "the header `remodel-scene 2` above a line of this kind");
-    if (st) return st;
+    scene_read_choice(r, words, WORDS, "a line of a scene", &word, err);
+    if (!err->status && word >= FIRST_OF_2 && word < LINES && r->version < 2)
+        textfile_error(&r->file, err, words[word], "the header `remodel-scene 2` above a line of this kind");
+    if (err->status) return err->status;
     return word < LINES ? lines[word](r, err) : scene_read_item(r, (enum item_kind)(word - LINES), err);
 }
 
@@ -93,13 +91,12 @@ static enum status read_file(struct reader *r, const char *file, struct err *err
 {
     char *path = NULL;
     if (asprintf(&path, "%s/%s", r->folder, file) < 0) return err_nomem(err, "a file name", strlen(file));
-    enum status st = textfile_open(&r->file, path, err);
-    if (!st) st = description_header(&r->file, "remodel-scene", 2, &r->version, err);
-    for (r->statements = 0; !st && textfile_next(&r->file); r->statements++) st = read_line(r, err);
-    if (!st && r->prov) st = provenance_add_file(r->prov, file, path, err);
+    if (!textfile_open(&r->file, path, err)) description_header(&r->file, "remodel-scene", 2, &r->version, err);
+    for (r->statements = 0; !err->status && textfile_next(&r->file); r->statements++) read_line(r, err);
+    if (!err->status && r->prov) provenance_add_file(r->prov, file, path, err);
     textfile_release(&r->file);
     free(path);
-    return st;
+    return err->status;
 }
 
 static bool emits(struct rgb c) { return rgb_max(c) > 0; }
@@ -119,17 +116,17 @@ enum status scene_read(struct scene *s, const char *folder, const char *file, st
 {
     struct reader r = {.scene = s, .folder = folder, .prov = prov};
     *s = (struct scene){0};
-    enum status st = read_file(&r, file, err);
+    read_file(&r, file, err);
     textfile_release(&r.file);
-    if (!st && !s->item_count)
-        st = err_set(err, ST_DATA, "%s/%s has no surfaces; add a room, a box or a quad.", folder, file);
-    if (!st && !has_light(s))
-        st = err_set(err, ST_DATA,
-                     "%s/%s has no light: every photo would be black; add a lamp, a sun or a panorama with a positive "
-                     "radiance.",
-                     folder, file);
-    if (st) scene_release(s);
-    return st;
+    if (!err->status && !s->item_count)
+        err_set(err, ST_DATA, "%s/%s has no surfaces; add a room, a box or a quad.", folder, file);
+    if (!err->status && !has_light(s))
+        err_set(err, ST_DATA,
+                "%s/%s has no light: every photo would be black; add a lamp, a sun or a panorama with a positive "
+                "radiance.",
+                folder, file);
+    if (err->status) scene_release(s);
+    return err->status;
 }
 
 void scene_release(struct scene *s)

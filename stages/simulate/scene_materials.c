@@ -19,41 +19,30 @@ enum status scene_read_texture(struct reader *r, struct err *err)
     struct scene_texture made = {0};
     struct texture *t = &made.texture;
     int kind = 0;
-    enum status st = description_name(&r->file, &made.name, err);
-    if (!st && scene_find_name(s, made.name, scene_next_texture) >= 0)
-        st = scene_name_taken(r, made.name, "texture", err);
-    if (!st) st = scene_read_choice(r, texture_words, TEXTURE_KINDS, "a kind of texture", &kind, err);
-    if (!st) {
+    if (!description_name(&r->file, &made.name, err) && scene_find_name(s, made.name, scene_next_texture) >= 0)
+        scene_name_taken(r, made.name, "texture", err);
+    if (!err->status && !scene_read_choice(r, texture_words, TEXTURE_KINDS, "a kind of texture", &kind, err)) {
         t->kind = (enum texture_kind)kind;
         const bool two = t->kind == TEXTURE_CHECKER || t->kind == TEXTURE_WOOD || t->kind == TEXTURE_BRICK;
         const bool generated = t->kind == TEXTURE_PRINT || t->kind == TEXTURE_BOOKS;
-        if (t->kind == TEXTURE_CHECKER) st = read_size(r, "the size of a square", &t->size[0], err);
-        if (t->kind == TEXTURE_WOOD || t->kind == TEXTURE_PLASTER) st = read_size(r, "a scale", &t->size[0], err);
-        if (t->kind == TEXTURE_PLASTER) st = st ? st : textfile_number(&r->file, "an amount", 0, 1, &t->size[1], err);
-        if (t->kind == TEXTURE_BRICK) {
-            st = read_size(r, "the width of a brick", &t->size[0], err);
-            if (!st) st = read_size(r, "the height of a brick", &t->size[1], err);
-            if (!st)
-                st = textfile_number(&r->file, "the width of the mortar", 0, fmin(t->size[0], t->size[1]), &t->size[2],
-                                     err);
-        }
-        if (!st && t->kind != TEXTURE_RGB && t->kind != TEXTURE_CHECKER) st = scene_read_seed(r, &t->seed, err);
-        if (generated) {
-            if (!st) st = read_size(r, "a width", &t->size[0], err);
-            if (!st) st = read_size(r, "a height", &t->size[1], err);
-        } else {
-            if (!st) st = scene_read_colour(r, "a colour from 0 to 1", 1, &t->colour[0], err);
-            if (!st && two) st = scene_read_colour(r, "the second colour, from 0 to 1", 1, &t->colour[1], err);
-        }
+        if (t->kind == TEXTURE_CHECKER) read_size(r, "the size of a square", &t->size[0], err);
+        if (t->kind == TEXTURE_WOOD || t->kind == TEXTURE_PLASTER) read_size(r, "a scale", &t->size[0], err);
+        if (!err->status && t->kind == TEXTURE_PLASTER) textfile_number(&r->file, "an amount", 0, 1, &t->size[1], err);
+        if (t->kind == TEXTURE_BRICK && !read_size(r, "the width of a brick", &t->size[0], err) &&
+            !read_size(r, "the height of a brick", &t->size[1], err))
+            textfile_number(&r->file, "the width of the mortar", 0, fmin(t->size[0], t->size[1]), &t->size[2], err);
+        if (!err->status && t->kind != TEXTURE_RGB && t->kind != TEXTURE_CHECKER) scene_read_seed(r, &t->seed, err);
+        if (!err->status && generated && !read_size(r, "a width", &t->size[0], err))
+            read_size(r, "a height", &t->size[1], err);
+        if (!err->status && !generated && !scene_read_colour(r, "a colour from 0 to 1", 1, &t->colour[0], err) && two)
+            scene_read_colour(r, "the second colour, from 0 to 1", 1, &t->colour[1], err);
     }
-    if (!st) st = textfile_end(&r->file, err);
-    if (!st) st = description_append(&r->file, &s->textures, s->texture_count, MAX_LINES, sizeof made, err);
-    if (!st) {
+    if (!err->status && !textfile_end(&r->file, err) &&
+        !description_append(&r->file, &s->textures, s->texture_count, MAX_LINES, sizeof made, err))
         s->textures[s->texture_count++] = made;
-    } else {
+    else
         free(made.name);
-    }
-    return st;
+    return err->status;
 }
 
 enum status scene_read_material(struct reader *r, struct err *err)
@@ -62,43 +51,40 @@ enum status scene_read_material(struct reader *r, struct err *err)
     struct scene *s = r->scene;
     struct scene_material made = {0};
     int kind = 0;
-    enum status st = description_name(&r->file, &made.name, err);
-    if (!st && scene_find_name(s, made.name, scene_next_material) >= 0)
-        st = scene_name_taken(r, made.name, "material", err);
-    if (!st) st = scene_read_choice(r, words, 3, "a kind of material", &kind, err);
-    if (!st) st = scene_read_known_name(r, "texture", scene_next_texture, &made.texture, err);
+    description_name(&r->file, &made.name, err);
+    if (!err->status && scene_find_name(s, made.name, scene_next_material) >= 0)
+        scene_name_taken(r, made.name, "material", err);
+    if (!err->status && !scene_read_choice(r, words, 3, "a kind of material", &kind, err))
+        scene_read_known_name(r, "texture", scene_next_texture, &made.texture, err);
     made.kind = (enum brdf_kind)kind;
-    if (!st && made.kind != BRDF_LAMBERT) {
-        st = textfile_number(&r->file, "a strength of the gloss", 0, 1e6, &made.ks, err);
-        if (!st && made.kind == BRDF_PHONG) st = textfile_number(&r->file, "an exponent", 1, 1e6, &made.shape, err);
-        if (!st && made.kind == BRDF_WARD) st = textfile_number(&r->file, "a roughness", 0.01, 1, &made.shape, err);
+    if (!err->status && made.kind != BRDF_LAMBERT) {
+        textfile_number(&r->file, "a strength of the gloss", 0, 1e6, &made.ks, err);
+        if (!err->status && made.kind == BRDF_PHONG) textfile_number(&r->file, "an exponent", 1, 1e6, &made.shape, err);
+        if (!err->status && made.kind == BRDF_WARD) textfile_number(&r->file, "a roughness", 0.01, 1, &made.shape, err);
     }
-    if (!st) {
+    if (!err->status) {
         const double albedo = texture_bound(&s->textures[made.texture].texture);
         made.gloss = brdf_gloss_albedo(made.kind, made.ks, made.shape);
         if (albedo + made.gloss > 1 + 1e-9) {
             char found[100];
             snprintf(found, sizeof found, "albedo up to %.3g and gloss of %.3g", albedo, made.gloss);
-            st = textfile_error(&r->file, err, found, "no more than 1 together");
+            textfile_error(&r->file, err, found, "no more than 1 together");
         }
     }
-    if (!st) st = textfile_end(&r->file, err);
-    if (!st) st = description_append(&r->file, &s->materials, s->material_count, MAX_LINES, sizeof made, err);
-    if (!st) {
+    if (!err->status && !textfile_end(&r->file, err) &&
+        !description_append(&r->file, &s->materials, s->material_count, MAX_LINES, sizeof made, err))
         s->materials[s->material_count++] = made;
-    } else {
+    else
         free(made.name);
-    }
-    return st;
+    return err->status;
 }
 
 enum status scene_read_glow(struct reader *r, struct err *err)
 {
     int material = 0;
     struct rgb glow;
-    enum status st = scene_read_known_name(r, "material", scene_next_material, &material, err);
-    if (!st) st = scene_read_colour(r, "a radiance", MAX_RADIANCE, &glow, err);
-    if (!st) st = textfile_end(&r->file, err);
-    if (!st) r->scene->materials[material].glow = glow;
-    return st;
+    if (!scene_read_known_name(r, "material", scene_next_material, &material, err) &&
+        !scene_read_colour(r, "a radiance", MAX_RADIANCE, &glow, err) && !textfile_end(&r->file, err))
+        r->scene->materials[material].glow = glow;
+    return err->status;
 }

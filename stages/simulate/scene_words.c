@@ -9,25 +9,26 @@
 /* Two numbers, the second larger than the first. */
 enum status scene_read_range(struct reader *r, const char *what, double *from, double *to, struct err *err)
 {
-    enum status st = textfile_number(&r->file, what, -MAX_METRES, MAX_METRES, from, err);
-    if (!st) st = textfile_number(&r->file, what, *from + MIN_METRES, MAX_METRES, to, err);
-    return st;
+    return textfile_number(&r->file, what, -MAX_METRES, MAX_METRES, from, err) ||
+                   textfile_number(&r->file, what, *from + MIN_METRES, MAX_METRES, to, err)
+               ? err->status
+               : ST_OK;
 }
 
 enum status scene_read_colour(struct reader *r, const char *what, double max, struct rgb *c, struct err *err)
 {
-    enum status st = textfile_number(&r->file, what, 0, max, &c->r, err);
-    if (!st) st = textfile_number(&r->file, what, 0, max, &c->g, err);
-    if (!st) st = textfile_number(&r->file, what, 0, max, &c->b, err);
-    return st;
+    return textfile_number(&r->file, what, 0, max, &c->r, err) || textfile_number(&r->file, what, 0, max, &c->g, err) ||
+                   textfile_number(&r->file, what, 0, max, &c->b, err)
+               ? err->status
+               : ST_OK;
 }
 
 enum status scene_read_seed(struct reader *r, uint32_t *value, struct err *err)
 {
     int64_t n = 0;
-    enum status st = textfile_int(&r->file, "a seed", 0, UINT32_MAX, &n, err);
+    textfile_int(&r->file, "a seed", 0, UINT32_MAX, &n, err);
     *value = (uint32_t)n;
-    return st;
+    return err->status;
 }
 
 /* One of `words`; *index is its position among them. */
@@ -35,8 +36,7 @@ enum status scene_read_choice(struct reader *r, const char *const *words, int co
                               struct err *err)
 {
     char *word = NULL, choices[300] = "";
-    enum status st = textfile_word(&r->file, what, &word, err);
-    if (st) return st;
+    if (textfile_word(&r->file, what, &word, err)) return err->status;
     for (int i = 0; i < count; i++) {
         if (!strcmp(word, words[i])) {
             *index = i;
@@ -92,7 +92,7 @@ enum status scene_read_known_name(struct reader *r, const char *what, const char
 {
     char *word = NULL, wanted[80];
     snprintf(wanted, sizeof wanted, "the name of a %s", what);
-    enum status st = textfile_word(&r->file, wanted, &word, err);
-    if (!st && (*index = scene_find_name(r->scene, word, next)) < 0) st = name_unknown(r, word, what, next, err);
-    return st;
+    textfile_word(&r->file, wanted, &word, err);
+    if (!err->status && (*index = scene_find_name(r->scene, word, next)) < 0) name_unknown(r, word, what, next, err);
+    return err->status;
 }

@@ -29,10 +29,10 @@ struct reader {
 /* A name that can begin a file's name: not with _ or -. */
 static enum status new_name(struct reader *r, char **name, struct err *err)
 {
-    enum status st = description_name(&r->file, name, err);
-    if (!st && !isalnum((unsigned char)**name))
-        st = textfile_error(&r->file, err, *name, "a name of letters, digits, _ and - that does not begin with _ or -");
-    return st;
+    description_name(&r->file, name, err);
+    if (!err->status && !isalnum((unsigned char)**name))
+        textfile_error(&r->file, err, *name, "a name of letters, digits, _ and - that does not begin with _ or -");
+    return err->status;
 }
 
 static int find_lens(const struct shoot *s, const char *name)
@@ -50,17 +50,17 @@ static enum status read_lens_numbers(struct reader *r, struct shoot_lens *l, str
     int64_t width = 0, height = 0;
     double farthest = 0;
     const bool pinhole = l->kind == SHOOT_PINHOLE;
-    enum status st = textfile_int(&r->file, "a width in pixels", 1, MAX_SIDE, &width, err);
-    if (!st) st = textfile_int(&r->file, "a height in pixels", 1, MAX_SIDE, &height, err);
-    if (!st) st = textfile_number(&r->file, "a focal length in pixels", 1, 1e6, &l->fx, err);
-    if (!st && pinhole) st = textfile_number(&r->file, "a focal length in pixels", 1, 1e6, &l->fy, err);
-    if (!st) st = textfile_number(&r->file, "the principal point's x in pixels", 0, (double)width, &l->cx, err);
-    if (!st) st = textfile_number(&r->file, "the principal point's y in pixels", 0, (double)height, &l->cy, err);
-    if (!st && !pinhole && textfile_more(&r->file)) {
-        st = textfile_expect(&r->file, "circle", err);
-        if (!st) st = textfile_number(&r->file, "the degrees across the image circle", 1, 239, &l->circle, err);
+    if (!textfile_int(&r->file, "a width in pixels", 1, MAX_SIDE, &width, err) &&
+        !textfile_int(&r->file, "a height in pixels", 1, MAX_SIDE, &height, err))
+        textfile_number(&r->file, "a focal length in pixels", 1, 1e6, &l->fx, err);
+    if (!err->status && pinhole) textfile_number(&r->file, "a focal length in pixels", 1, 1e6, &l->fy, err);
+    if (!err->status && !textfile_number(&r->file, "the principal point's x in pixels", 0, (double)width, &l->cx, err))
+        textfile_number(&r->file, "the principal point's y in pixels", 0, (double)height, &l->cy, err);
+    if (!err->status && !pinhole && textfile_more(&r->file)) {
+        if (!textfile_expect(&r->file, "circle", err))
+            textfile_number(&r->file, "the degrees across the image circle", 1, 239, &l->circle, err);
     }
-    if (st) return st;
+    if (err->status) return err->status;
     if (!pinhole) l->fy = l->fx;
     l->width = (int)fmax(1, round((double)width * r->scale));
     l->height = (int)fmax(1, round((double)height * r->scale));
@@ -85,37 +85,36 @@ static enum status read_lens(struct reader *r, struct err *err)
     struct shoot *s = r->shoot;
     struct shoot_lens made = {0};
     char *kind = NULL;
-    enum status st = new_name(r, &made.name, err);
-    if (!st && find_lens(s, made.name) >= 0)
-        st = textfile_error(&r->file, err, made.name, "a name that no other lens has");
-    if (!st) st = textfile_word(&r->file, "a kind of lens: pinhole or equisolid", &kind, err);
-    if (!st && strcmp(kind, "pinhole") && strcmp(kind, "equisolid"))
-        st = textfile_error(&r->file, err, kind, "a kind of lens: pinhole or equisolid");
-    if (!st) made.kind = strcmp(kind, "pinhole") ? SHOOT_EQUISOLID : SHOOT_PINHOLE;
-    if (!st) st = read_lens_numbers(r, &made, err);
-    if (!st) st = textfile_end(&r->file, err);
-    if (!st) st = description_append(&r->file, &s->lenses, s->lens_count, MAX_LINES, sizeof made, err);
-    if (!st) {
+    new_name(r, &made.name, err);
+    if (!err->status && find_lens(s, made.name) >= 0)
+        textfile_error(&r->file, err, made.name, "a name that no other lens has");
+    if (!err->status) textfile_word(&r->file, "a kind of lens: pinhole or equisolid", &kind, err);
+    if (!err->status && strcmp(kind, "pinhole") && strcmp(kind, "equisolid"))
+        textfile_error(&r->file, err, kind, "a kind of lens: pinhole or equisolid");
+    if (!err->status) made.kind = strcmp(kind, "pinhole") ? SHOOT_EQUISOLID : SHOOT_PINHOLE;
+    if (!err->status && !read_lens_numbers(r, &made, err) && !textfile_end(&r->file, err))
+        description_append(&r->file, &s->lenses, s->lens_count, MAX_LINES, sizeof made, err);
+    if (!err->status) {
         s->lenses[s->lens_count++] = made;
     } else {
         free(made.name);
     }
-    return st;
+    return err->status;
 }
 
 static enum status read_exposure(struct reader *r, struct shoot_exposure_list *e, struct err *err)
 {
     struct shoot_exposure made = {0, 8, 100, 1};
-    enum status st = textfile_number(&r->file, "an exposure time in seconds", 1e-6, 1e4, &made.seconds, err);
-    if (!st && textfile_more(&r->file)) {
-        st = textfile_number(&r->file, "an f-number", 0.5, 128, &made.f_number, err);
-        if (!st) st = textfile_number(&r->file, "an ISO speed", 1, 65535, &made.iso, err);
+    textfile_number(&r->file, "an exposure time in seconds", 1e-6, 1e4, &made.seconds, err);
+    if (!err->status && textfile_more(&r->file)) {
+        if (!textfile_number(&r->file, "an f-number", 0.5, 128, &made.f_number, err))
+            textfile_number(&r->file, "an ISO speed", 1, 65535, &made.iso, err);
     }
-    if (!st && textfile_more(&r->file))
-        st = textfile_number(&r->file, "a filter's neutral-density factor", 1, 1e9, &made.filter, err);
-    if (!st) st = textfile_end(&r->file, err);
-    if (!st) st = description_append(&r->file, &e->list, e->count, MAX_EXPOSURES, sizeof made, err);
-    if (st) return st;
+    if (!err->status && textfile_more(&r->file))
+        textfile_number(&r->file, "a filter's neutral-density factor", 1, 1e9, &made.filter, err);
+    if (!err->status && !textfile_end(&r->file, err))
+        description_append(&r->file, &e->list, e->count, MAX_EXPOSURES, sizeof made, err);
+    if (err->status) return err->status;
     e->list[e->count++] = made;
     return ST_OK;
 }
@@ -125,25 +124,24 @@ static enum status read_sensor(struct reader *r, struct err *err)
     struct shoot_sensor *sensor = &r->shoot->sensor;
     int64_t seed = 0;
     if (r->has_sensor) return textfile_error(&r->file, err, "a second sensor line", "one");
-    enum status st = textfile_number(&r->file, "a full well in electrons", 10, 1e9, &sensor->full_well, err);
-    if (!st) st = textfile_number(&r->file, "a read noise in electrons", 0, 1e6, &sensor->read_noise, err);
-    if (!st) st = textfile_number(&r->file, "a gain", 1e-9, 1e9, &sensor->gain, err);
-    if (!st) st = textfile_int(&r->file, "a seed", 0, INT64_MAX, &seed, err);
-    if (!st) st = textfile_end(&r->file, err);
+    if (!textfile_number(&r->file, "a full well in electrons", 10, 1e9, &sensor->full_well, err) &&
+        !textfile_number(&r->file, "a read noise in electrons", 0, 1e6, &sensor->read_noise, err) &&
+        !textfile_number(&r->file, "a gain", 1e-9, 1e9, &sensor->gain, err) &&
+        !textfile_int(&r->file, "a seed", 0, INT64_MAX, &seed, err))
+        textfile_end(&r->file, err);
     sensor->seed = (uint64_t)seed;
-    r->has_sensor = !st;
-    return st;
+    r->has_sensor = !err->status;
+    return err->status;
 }
 
 static enum status read_quality(struct reader *r, struct err *err)
 {
     int64_t quality = 0;
     if (r->has_quality) return textfile_error(&r->file, err, "a second quality line", "one");
-    enum status st = textfile_int(&r->file, "a JPEG quality", 1, 100, &quality, err);
-    if (!st) st = textfile_end(&r->file, err);
+    if (!textfile_int(&r->file, "a JPEG quality", 1, 100, &quality, err)) textfile_end(&r->file, err);
     r->shoot->quality = (int)quality;
-    r->has_quality = !st;
-    return st;
+    r->has_quality = !err->status;
+    return err->status;
 }
 
 /* World z points up in the image; for a camera that looks straight up or down, world y does. */
@@ -168,24 +166,25 @@ static enum status read_only_exposure(struct reader *r, struct shoot_photo *p, s
     p->exposure = -1;
     const int count = shoot_exposures(r->shoot, p).count;
     if (!count) return textfile_error(&r->file, err, "exposure", "an exposure line above the photo");
-    enum status st = textfile_int(&r->file, "the number of an exposure above, counted from 0", 0, count - 1, &k, err);
+    textfile_int(&r->file, "the number of an exposure above, counted from 0", 0, count - 1, &k, err);
     p->exposure = (int)k;
-    return st;
+    return err->status;
 }
 
 static enum status read_photo_option(struct reader *r, struct shoot_photo *p, struct err *err)
 {
     const bool witness = p->kind == SHOOT_WITNESS;
     char *word = NULL;
-    enum status st = textfile_word(&r->file, "an option of a photo", &word, err);
-    if (st) return st;
+    if (textfile_word(&r->file, "an option of a photo", &word, err)) return err->status;
     if (!strcmp(word, "roll")) return textfile_number(&r->file, "an angle in degrees", -360, 360, &p->roll, err);
     if (!strcmp(word, "exposure") && !witness) return read_only_exposure(r, p, err);
     if (strcmp(word, "sun"))
         return textfile_error(&r->file, err, word, "roll, sun%s or the end of the line", witness ? "" : ", exposure");
     p->own_sun = true;
-    st = textfile_number(&r->file, "the sun's azimuth in degrees", -360, 360, &p->sun_azimuth, err);
-    return st ? st : textfile_number(&r->file, "the sun's elevation in degrees", -90, 90, &p->sun_elevation, err);
+    return textfile_number(&r->file, "the sun's azimuth in degrees", -360, 360, &p->sun_azimuth, err) ||
+                   textfile_number(&r->file, "the sun's elevation in degrees", -90, 90, &p->sun_elevation, err)
+               ? err->status
+               : ST_OK;
 }
 
 static enum status read_photo(struct reader *r, enum shoot_kind kind, struct err *err)
@@ -193,32 +192,31 @@ static enum status read_photo(struct reader *r, enum shoot_kind kind, struct err
     struct shoot *s = r->shoot;
     struct shoot_photo made = {.kind = kind, .exposure = -1};
     char *word = NULL;
-    enum status st = new_name(r, &made.name, err);
-    if (!st && shoot_find(s, made.name) >= 0)
-        st = textfile_error(&r->file, err, made.name, "a name that no other photo has");
-    if (!st) st = textfile_word(&r->file, "the name of a lens above", &word, err);
-    if (!st && (made.lens = find_lens(s, word)) < 0)
-        st = textfile_error(&r->file, err, word, "the name of a lens above");
-    if (!st) st = description_point(&r->file, "the camera's position", &made.at, err);
-    if (!st) st = description_point(&r->file, "the point that the camera looks at", &made.look_at, err);
-    if (!st && vec3_length(vec3_sub(made.look_at, made.at)) < 1e-9)
-        st = textfile_error(&r->file, err, "the camera's own position", "another point to look at");
-    while (!st && textfile_more(&r->file)) st = read_photo_option(r, &made, err);
-    if (!st) st = description_append(&r->file, &s->photos, s->photo_count, MAX_LINES, sizeof made, err);
-    if (!st) {
+    new_name(r, &made.name, err);
+    if (!err->status && shoot_find(s, made.name) >= 0)
+        textfile_error(&r->file, err, made.name, "a name that no other photo has");
+    if (!err->status) textfile_word(&r->file, "the name of a lens above", &word, err);
+    if (!err->status && (made.lens = find_lens(s, word)) < 0)
+        textfile_error(&r->file, err, word, "the name of a lens above");
+    if (!err->status && !description_point(&r->file, "the camera's position", &made.at, err))
+        description_point(&r->file, "the point that the camera looks at", &made.look_at, err);
+    if (!err->status && vec3_length(vec3_sub(made.look_at, made.at)) < 1e-9)
+        textfile_error(&r->file, err, "the camera's own position", "another point to look at");
+    while (!err->status && textfile_more(&r->file)) read_photo_option(r, &made, err);
+    if (!err->status) description_append(&r->file, &s->photos, s->photo_count, MAX_LINES, sizeof made, err);
+    if (!err->status) {
         made.cam_from_world = pose_looking(made.at, made.look_at, made.roll);
         s->photos[s->photo_count++] = made;
     } else {
         free(made.name);
     }
-    return st;
+    return err->status;
 }
 
 static enum status read_line(struct reader *r, struct err *err)
 {
     char *word = NULL;
-    enum status st = textfile_word(&r->file, "a line of cameras.txt", &word, err);
-    if (st) return st;
+    if (textfile_word(&r->file, "a line of cameras.txt", &word, err)) return err->status;
     if (!strcmp(word, "lens")) return read_lens(r, err);
     if (!strcmp(word, "exposure")) return read_exposure(r, &r->shoot->exposures[0], err);
     if (!strcmp(word, "reference-exposure")) return read_exposure(r, &r->shoot->exposures[1], err);
@@ -250,15 +248,14 @@ enum status shoot_read(struct shoot *s, const char *folder, double scale, struct
     int version = 0;
     *s = (struct shoot){.quality = 94};
     if (asprintf(&path, "%s/cameras.txt", folder) < 0) return err_nomem(err, "a file name", strlen(folder));
-    enum status st = textfile_open(&r.file, path, err);
-    if (!st) st = description_header(&r.file, "remodel-shoot", 1, &version, err);
-    while (!st && textfile_next(&r.file)) st = read_line(&r, err);
-    if (!st) st = check_complete(&r, err);
-    if (!st && prov) st = provenance_add_file(prov, "cameras.txt", path, err);
+    if (!textfile_open(&r.file, path, err)) description_header(&r.file, "remodel-shoot", 1, &version, err);
+    while (!err->status && textfile_next(&r.file)) read_line(&r, err);
+    if (!err->status) check_complete(&r, err);
+    if (!err->status && prov) provenance_add_file(prov, "cameras.txt", path, err);
     textfile_release(&r.file);
     free(path);
-    if (st) shoot_release(s);
-    return st;
+    if (err->status) shoot_release(s);
+    return err->status;
 }
 
 void shoot_release(struct shoot *s)

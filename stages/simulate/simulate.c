@@ -50,17 +50,16 @@ static enum status make_picture(const struct request *r, struct worlds *w, const
 static enum status move_sun(struct worlds *w, const struct shoot_photo *photo, const struct sun sun[2], struct err *err)
 {
     struct world *const all[2] = {&w->plain, &w->edited};
-    enum status st = ST_OK;
-    for (int i = 0; !st && i < 2; i++) {
+    for (int i = 0; !err->status && i < 2; i++) {
         if (!all[i]->scene.item_count) continue; /* not needed in this run */
         if (photo && !all[i]->scene.sky.has_sun)
             return err_set(err, ST_DATA, "photo %s moves the sun, but its scene has none; add a sun to the scene.",
                            photo->name);
         if (all[i]->scene.sky.has_sun)
-            st = path_world_move_sun(all[i], photo ? photo->sun_azimuth : sun[i].azimuth,
-                                     photo ? photo->sun_elevation : sun[i].elevation, err);
+            path_world_move_sun(all[i], photo ? photo->sun_azimuth : sun[i].azimuth,
+                                photo ? photo->sun_elevation : sun[i].elevation, err);
     }
-    return st;
+    return err->status;
 }
 
 static enum status make_photos(const struct request *r, struct worlds *w, const struct picture_job *job,
@@ -74,15 +73,14 @@ static enum status make_photos(const struct request *r, struct worlds *w, const 
                        "there is no photo, witness or reference image %s in %s/cameras.txt; give the name of one, or "
                        "all.",
                        r->photo, r->scene);
-    enum status st = ST_OK;
-    for (int i = 0; !st && i < s->photo_count; i++) {
+    for (int i = 0; !err->status && i < s->photo_count; i++) {
         const struct shoot_photo *photo = &s->photos[i];
         if (all ? photos_only && photo->kind == SHOOT_REFERENCE : strcmp(photo->name, r->photo)) continue;
-        if (photo->own_sun) st = move_sun(w, photo, sun, err);
-        if (!st) st = make_picture(r, w, job, photo, err);
-        if (!st && photo->own_sun) st = move_sun(w, NULL, sun, err);
+        if (photo->own_sun) move_sun(w, photo, sun, err);
+        if (!err->status) make_picture(r, w, job, photo, err);
+        if (!err->status && photo->own_sun) move_sun(w, NULL, sun, err);
     }
-    return st;
+    return err->status;
 }
 
 static enum status check_request(const struct request *r, struct err *err)
@@ -107,15 +105,14 @@ static enum status read_worlds(struct worlds *w, const struct request *r, const 
 {
     char *file = NULL;
     const bool both = r->edit && r->photo && is_kind(r, "irradiance");
-    enum status st = ST_OK;
     w->shown = r->edit ? &w->edited : &w->plain;
     snprintf(w->folder, sizeof w->folder, r->edit ? "truth/edited-%s" : "truth", r->edit);
     if (asprintf(&file, "scene-%s.txt", r->edit ? r->edit : "") < 0) return err_nomem(err, "a file name", 0);
-    if (r->edit) st = path_world_read(&w->edited, r->scene, file, prov, err);
-    if (!st && (!r->edit || both)) st = path_world_read(&w->plain, r->scene, "scene.txt", prov, err);
+    if (r->edit) path_world_read(&w->edited, r->scene, file, prov, err);
+    if (!err->status && (!r->edit || both)) path_world_read(&w->plain, r->scene, "scene.txt", prov, err);
     w->plain.max_bounces = w->edited.max_bounces = params->max_bounces;
     free(file);
-    return st;
+    return err->status;
 }
 
 static enum status simulate(const struct request *r, const struct simulate_params *params, struct provenance *prov,
@@ -124,19 +121,21 @@ static enum status simulate(const struct request *r, const struct simulate_param
     struct worlds w = {0};
     struct shoot shoot = {0};
     const struct picture_job job = {&shoot, r->out, params, prov};
-    enum status st = check_request(r, err);
-    if (!st) st = read_worlds(&w, r, params, prov, err);
-    if (!st) st = shoot_read(&shoot, r->scene, params->scale, prov, err);
-    if (!st && r->estimate) st = estimate_print(stdout, &job, w.shown, err);
-    if (!st && r->points) st = irradiance_points(&job, w.shown, r->points, w.folder, err);
-    if (!st && r->common)
-        st = r->edit ? truth_write_edited(w.shown, &shoot, r->scene, r->out, r->edit, prov, err)
-                     : truth_write(w.shown, &shoot, r->scene, r->out, params, prov, err);
-    if (!st && r->photo) st = make_photos(r, &w, &job, err);
+    if (!check_request(r, err) && !read_worlds(&w, r, params, prov, err))
+        shoot_read(&shoot, r->scene, params->scale, prov, err);
+    if (!err->status && r->estimate) estimate_print(stdout, &job, w.shown, err);
+    if (!err->status && r->points) irradiance_points(&job, w.shown, r->points, w.folder, err);
+    if (!err->status && r->common) {
+        if (r->edit)
+            truth_write_edited(w.shown, &shoot, r->scene, r->out, r->edit, prov, err);
+        else
+            truth_write(w.shown, &shoot, r->scene, r->out, params, prov, err);
+    }
+    if (!err->status && r->photo) make_photos(r, &w, &job, err);
     shoot_release(&shoot);
     path_world_release(&w.plain);
     path_world_release(&w.edited);
-    return st;
+    return err->status;
 }
 
 int main(int argc, char **argv)

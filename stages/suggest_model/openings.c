@@ -120,8 +120,8 @@ enum status openings_find(struct suggestion *s, const struct finder *f, int wall
     const double c = f->params->window * f->height, narrow = f->params->min_opening * f->height;
     struct wall_grid t = {0};
     int begin = 0, end = 0;
-    enum status st = wall_grid_make(&t, f, w, err);
-    while (!st && next_run(&t, false, 0, 0, &begin, &end)) {
+    wall_grid_make(&t, f, w, err);
+    while (!err->status && next_run(&t, false, 0, 0, &begin, &end)) {
         int low = 0, high = 0, best[2] = {0, 0};
         if ((end - begin) * c >= narrow)
             for (; next_run(&t, true, begin, end, &low, &high); low = high + 1)
@@ -130,8 +130,7 @@ enum status openings_find(struct suggestion *s, const struct finder *f, int wall
             int rect[4] = {begin, best[0], end, best[1]};
             grow_opening(&t, rect);
             const bool window = rect[1] * c > 0.15 * f->height;
-            st = array_append(&s->openings, (size_t)s->opening_count, sizeof *s->openings, "openings", err);
-            if (st) break;
+            if (array_append(&s->openings, (size_t)s->opening_count, sizeof *s->openings, "openings", err)) break;
             s->openings[s->opening_count++] = (struct suggested_opening){
                 wall, w->begin + rect[0] * c, w->begin + rect[2] * c, window ? rect[1] * c : 0, rect[3] * c, window};
             if (rect[2] > end) end = rect[2];
@@ -139,5 +138,5 @@ enum status openings_find(struct suggestion *s, const struct finder *f, int wall
         begin = end + 1;
     }
     wall_grid_release(&t);
-    return st;
+    return err->status;
 }

@@ -41,17 +41,17 @@ enum status rays_find(struct ray_list *list, const struct point_cloud *cloud, co
     const size_t cells = (size_t)COLUMNS * COLUMNS * (size_t)view_count;
     float *nearest = malloc((cells + 1) * sizeof *nearest);
     size_t capacity = 0;
-    enum status st = nearest ? ST_OK : err_nomem(err, "depth buffers", cells * sizeof *nearest);
+    if (!nearest) err_nomem(err, "depth buffers", cells * sizeof *nearest);
     *list = (struct ray_list){0};
-    for (size_t i = 0; !st && i < cells; i++) nearest[i] = 1e30f;
-    for (int v = 0; !st && v < view_count; v++)
+    for (size_t i = 0; !err->status && i < cells; i++) nearest[i] = 1e30f;
+    for (int v = 0; !err->status && v < view_count; v++)
         for (size_t i = 0; i < cloud->count; i++) {
             double z;
             const int at = cell_of(&views[v], &cloud->points[i], &z);
             float *n = &nearest[(size_t)v * COLUMNS * COLUMNS + (size_t)(at < 0 ? 0 : at)];
             if (at >= 0 && z < *n) *n = (float)z;
         }
-    for (size_t i = 0; !st && i < cloud->count; i++) {
+    for (size_t i = 0; !err->status && i < cloud->count; i++) {
         struct sighting nearby[MAX_RAYS];
         const int max_count = cloud->points[i].views < MAX_RAYS ? cloud->points[i].views : MAX_RAYS;
         int count = 0;
@@ -65,12 +65,12 @@ enum status rays_find(struct ray_list *list, const struct point_cloud *cloud, co
             for (; k > 0 && nearby[k - 1].distance > d; k--) nearby[k] = nearby[k - 1];
             nearby[k] = (struct sighting){v, d};
         }
-        st = array_reserve(&list->rays, &capacity, list->count + (size_t)count, sizeof *list->rays, "lines of sight",
-                           err);
-        if (st) break;
+        if (array_reserve(&list->rays, &capacity, list->count + (size_t)count, sizeof *list->rays, "lines of sight",
+                          err))
+            break;
         for (int k = 0; k < count; k++) list->rays[list->count++] = (struct ray){nearby[k].view, i};
     }
     free(nearest);
-    if (st) ray_list_release(list);
-    return st;
+    if (err->status) ray_list_release(list);
+    return err->status;
 }

@@ -104,8 +104,8 @@ static enum status find_faces(struct finder *f, int axis, int sign, struct err *
     const int bins = (int)((f->high[axis] - f->low[axis]) / step) + 3, cells = f->across[1 - axis] * f->up;
     unsigned char *seen = calloc((size_t)cells * (size_t)bins, 1);
     int *area = calloc((size_t)bins + 2, sizeof *area);
-    enum status st = seen && area ? ST_OK : err_nomem(err, "cells of walls", (size_t)cells * (size_t)bins);
-    for (size_t i = 0; !st && i < f->cloud->count; i++) {
+    if (!seen || !area) err_nomem(err, "cells of walls", (size_t)cells * (size_t)bins);
+    for (size_t i = 0; !err->status && i < f->cloud->count; i++) {
         const struct cloud_point *p = &f->cloud->points[i];
         if (!faces_along(f, p, axis, sign)) continue;
         const double bin = (along(p->position, axis) - f->low[axis]) / step;
@@ -114,17 +114,16 @@ static enum status find_faces(struct finder *f, int axis, int sign, struct err *
         for (int b = (int)bin - 1; b <= (int)bin + 1; b++) /* windows of three bins */
             seen[(size_t)b * (size_t)cells + (size_t)cell] = 1;
     }
-    for (int b = 0; !st && b < bins; b++)
+    for (int b = 0; !err->status && b < bins; b++)
         for (int c = 0; c < cells; c++) area[b] += seen[(size_t)b * (size_t)cells + (size_t)c];
     const int min_area = (int)(MIN_FACE / (f->params->cell * f->params->cell)), apart = 4;
-    for (int b = 1; !st && b < bins - 1; b++) {
+    for (int b = 1; !err->status && b < bins - 1; b++) {
         bool best = area[b] >= min_area;
         for (int o = -apart; best && o <= apart; o++)
             if (o && b + o >= 0 && b + o < bins && (area[b + o] > area[b] || (o < 0 && area[b + o] == area[b])))
                 best = false;
         if (!best) continue;
-        st = array_append(&f->faces, (size_t)f->face_count, sizeof *f->faces, "faces of walls", err);
-        if (st) break;
+        if (array_append(&f->faces, (size_t)f->face_count, sizeof *f->faces, "faces of walls", err)) break;
         struct wall_side *face = &f->faces[f->face_count++];
         *face = (struct wall_side){.axis = axis, .sign = sign, .at = f->low[axis] + (b + 0.5) * step};
         for (int round = 0; round < 3; round++) { /* refine to the mean of the points near it */
@@ -140,7 +139,7 @@ static enum status find_faces(struct finder *f, int axis, int sign, struct err *
     }
     free(area);
     free(seen);
-    return st;
+    return err->status;
 }
 
 /* Decides which cells of a face are solid and which are seen through, by majority of the lines of sight. */
@@ -387,23 +386,25 @@ enum status suggest_plan(struct suggestion *s, const struct point_cloud *cloud, 
     struct finder f = {.cloud = cloud, .views = views, .view_count = view_count, .params = params};
     const struct wall_side *outer[4];
     *s = (struct suggestion){0};
-    enum status st = cloud->count ? find_bounds(&f, ceiling, err)
-                                  : err_set(err, ST_DATA, "there are no points; add photographs that overlap.");
-    if (!st) st = rays_find(&f.rays, cloud, views, view_count, err);
-    for (int axis = 0; !st && axis < 2; axis++)
-        for (int sign = -1; !st && sign <= 1; sign += 2) st = find_faces(&f, axis, sign, err);
-    for (int i = 0; !st && i < f.face_count; i++) st = count_cells(&f, &f.faces[i], err);
-    for (int k = 0; !st && k < 4; k++)
-        if (!(outer[k] = find_outermost(&f, k % 2 ? 0 : 1, k < 2 ? 1 : -1))) st = no_wall(&f, k, err);
-    if (!st && (outer[1]->at >= outer[3]->at || outer[0]->at >= outer[2]->at))
-        st = err_set(err, ST_DATA,
-                     "the outermost walls do not enclose the points: they face away from each other; check the axes in "
-                     "the pictures in model/axes, or write the script by hand.");
-    if (!st) {
+    if (cloud->count)
+        find_bounds(&f, ceiling, err);
+    else
+        err_set(err, ST_DATA, "there are no points; add photographs that overlap.");
+    if (!err->status) rays_find(&f.rays, cloud, views, view_count, err);
+    for (int axis = 0; !err->status && axis < 2; axis++)
+        for (int sign = -1; !err->status && sign <= 1; sign += 2) find_faces(&f, axis, sign, err);
+    for (int i = 0; !err->status && i < f.face_count; i++) count_cells(&f, &f.faces[i], err);
+    for (int k = 0; !err->status && k < 4; k++)
+        if (!(outer[k] = find_outermost(&f, k % 2 ? 0 : 1, k < 2 ? 1 : -1))) no_wall(&f, k, err);
+    if (!err->status && (outer[1]->at >= outer[3]->at || outer[0]->at >= outer[2]->at))
+        err_set(err, ST_DATA,
+                "the outermost walls do not enclose the points: they face away from each other; check the axes in "
+                "the pictures in model/axes, or write the script by hand.");
+    if (!err->status) {
         const struct box box = {{outer[1]->at, outer[0]->at}, {outer[3]->at, outer[2]->at}, {0, 1, 2, 3}};
-        for (int k = 0; k < 4 && !st; k++) {
-            st = array_append(&s->walls, (size_t)s->wall_count, sizeof *s->walls, "walls", err);
-            if (!st)
+        for (int k = 0; k < 4 && !err->status; k++) {
+            array_append(&s->walls, (size_t)s->wall_count, sizeof *s->walls, "walls", err);
+            if (!err->status)
                 s->walls[s->wall_count++] = (struct suggested_wall){.axis = outer[k]->axis,
                                                                     .face = outer[k]->at,
                                                                     .begin = box.low[1 - outer[k]->axis],
@@ -412,12 +413,12 @@ enum status suggest_plan(struct suggestion *s, const struct point_cloud *cloud, 
                                                                     .inward = outer[k]->sign};
         }
         s->ceiling = f.height;
-        if (!st) st = cut_box(s, &f, &box, err);
+        if (!err->status) cut_box(s, &f, &box, err);
     }
-    for (int w = 0; !st && w < s->wall_count; w++) st = openings_find(s, &f, w, err);
+    for (int w = 0; !err->status && w < s->wall_count; w++) openings_find(s, &f, w, err);
     for (int i = 0; i < f.face_count; i++) free(f.faces[i].cells);
     free(f.faces);
     ray_list_release(&f.rays);
-    if (st) suggest_release(s);
-    return st;
+    if (err->status) suggest_release(s);
+    return err->status;
 }

@@ -94,15 +94,15 @@ static enum status write_suggestion(const struct suggestion *s, const struct mod
                                     const struct provenance *prov, struct err *err)
 {
     struct outfile out = {0};
-    enum status st = outfile_open(&out, path, err);
-    if (!st) {
+    outfile_open(&out, path, err);
+    if (!err->status) {
         fprintf(out.fp, "%s\n", products[PRODUCT_SUGGESTED_MODEL].head);
         provenance_print(prov, out.fp);
         write_script(out.fp, s, axes);
-        st = outfile_commit(&out, err);
+        outfile_commit(&out, err);
     }
     outfile_discard(&out);
-    return st;
+    return err->status;
 }
 
 struct files {
@@ -137,19 +137,19 @@ static enum status add_view(struct walls *walls, const struct files *f, const st
     struct image picture = {0};
     struct layered_depth depth = {0};
     char path[FILE_PATH];
-    enum status st = product_path_in(path, f->depth, PRODUCT_DEPTH, &(struct product_key){.view = view->name}, err);
-    if (!st) st = view_image_read(&picture, f->views, view, prov, err);
-    if (!st) st = layered_depth_read_interior(&depth, path, prov, err);
-    if (!st && (depth.width != view->width || depth.height != view->height))
-        st = err_set(err, ST_DATA, "%s has %d x %d pixels, but its camera %d x %d; make the depth again.", path,
-                     depth.width, depth.height, view->width, view->height);
+    if (!product_path_in(path, f->depth, PRODUCT_DEPTH, &(struct product_key){.view = view->name}, err) &&
+        !view_image_read(&picture, f->views, view, prov, err))
+        layered_depth_read_interior(&depth, path, prov, err);
+    if (!err->status && (depth.width != view->width || depth.height != view->height))
+        err_set(err, ST_DATA, "%s has %d x %d pixels, but its camera %d x %d; make the depth again.", path, depth.width,
+                depth.height, view->width, view->height);
     walls->view = view;
     walls->picture = &picture;
     walls->depth = &depth;
-    if (!st) parallel_for((size_t)walls->count, 1, add_to_walls, walls);
+    if (!err->status) parallel_for((size_t)walls->count, 1, add_to_walls, walls);
     image_release(&picture);
     layered_depth_release(&depth);
-    return st;
+    return err->status;
 }
 
 /* Adds the windows that pictures and depth of all views show. */
@@ -161,22 +161,23 @@ static enum status add_windows(struct suggestion *s, const struct files *f, cons
     struct occupancy scene = {0};
     const double low[3] = {s->walls[1].face, s->walls[0].face, 0}, h = s->ceiling;
     const double high[3] = {s->walls[3].face, s->walls[2].face, h};
-    enum status st = rasters ? raster_occupancy_make(&scene, cloud, low, high, SCENE_CELL * h, err)
-                             : err_nomem(err, "walls", (size_t)s->wall_count * sizeof *rasters);
-    for (int i = 0; !st && i < s->wall_count; i++) {
+    if (rasters)
+        raster_occupancy_make(&scene, cloud, low, high, SCENE_CELL * h, err);
+    else
+        err_nomem(err, "walls", (size_t)s->wall_count * sizeof *rasters);
+    for (int i = 0; !err->status && i < s->wall_count; i++) {
         const struct suggested_wall *w = &s->walls[i];
         if (may_have_windows(w))
-            st = wall_raster_init(&rasters[i], w->axis, w->inward, w->face, w->begin, w->end, h, params->window * h,
-                                  err);
+            wall_raster_init(&rasters[i], w->axis, w->inward, w->face, w->begin, w->end, h, params->window * h, err);
     }
     struct walls walls = {.rasters = rasters, .count = s->wall_count, .scene = &scene, .scale = axes->scale};
-    for (int v = 0; !st && v < set->view_count; v++) st = add_view(&walls, f, &set->views[v], prov, err);
-    for (int i = 0; !st && i < s->wall_count; i++)
-        if (rasters[i].cells) st = windows_suggest(s, i, &rasters[i], params, err);
+    for (int v = 0; !err->status && v < set->view_count; v++) add_view(&walls, f, &set->views[v], prov, err);
+    for (int i = 0; !err->status && i < s->wall_count; i++)
+        if (rasters[i].cells) windows_suggest(s, i, &rasters[i], params, err);
     for (int i = 0; rasters && i < s->wall_count; i++) wall_raster_release(&rasters[i]);
     free(rasters);
     raster_occupancy_release(&scene);
-    return st;
+    return err->status;
 }
 
 static enum status suggest(const struct files *f, const struct suggest_params *params, struct provenance *prov,
@@ -186,21 +187,21 @@ static enum status suggest(const struct files *f, const struct suggest_params *p
     struct scene_inputs in = {0};
     struct point_cloud cloud = {0};
     struct suggestion s = {0};
-    enum status st = scene_inputs_read(&in, SCENE_POINTS | SCENE_AXES | SCENE_MODEL_VIEWS, &files, prov, err);
+    scene_inputs_read(&in, SCENE_POINTS | SCENE_AXES | SCENE_MODEL_VIEWS, &files, prov, err);
     const struct camera_set *set = &in.set;
     const struct model_axes *axes = &in.axes;
-    if (!st && !set->view_count) st = err_set(err, ST_DATA, "%s contains no views; run sfm_import again.", f->views);
-    if (!st) st = point_cloud_read(&cloud, f->points, prov, err);
-    for (size_t i = 0; !st && i < cloud.count; i++) {
+    if (!err->status && !set->view_count)
+        err_set(err, ST_DATA, "%s contains no views; run sfm_import again.", f->views);
+    if (!err->status) point_cloud_read(&cloud, f->points, prov, err);
+    for (size_t i = 0; !err->status && i < cloud.count; i++) {
         struct cloud_point *p = &cloud.points[i];
         p->position = model_from_world_point(axes, p->position);
         cloud_set_normal(p, model_from_world_direction(axes, cloud_normal(p)));
     }
-    if (!st && suggest_plan(&s, &cloud, set->views, set->view_count, axes->ceiling, params, err))
-        st = err->status == ST_DATA ? err_context(err, "%s", f->points) : err->status;
-    if (!st) st = add_windows(&s, f, axes, set, &cloud, params, prov, err);
-    if (!st) st = write_suggestion(&s, axes, f->out, prov, err);
-    if (!st) {
+    if (!err->status && suggest_plan(&s, &cloud, set->views, set->view_count, axes->ceiling, params, err) == ST_DATA)
+        err_context(err, "%s", f->points);
+    if (!err->status && !add_windows(&s, f, axes, set, &cloud, params, prov, err) &&
+        !write_suggestion(&s, axes, f->out, prov, err)) {
         int rooms = 0;
         for (int i = 0; i < s.room_count; i++) rooms += s.rooms[i].free;
         log_note("%d walls, %d rooms, %d openings", s.wall_count, rooms, s.opening_count);
@@ -211,7 +212,7 @@ static enum status suggest(const struct files *f, const struct suggest_params *p
     suggest_release(&s);
     point_cloud_release(&cloud);
     scene_inputs_release(&in);
-    return st;
+    return err->status;
 }
 
 int main(int argc, char **argv)

@@ -300,18 +300,18 @@ enum status windows_suggest(struct suggestion *s, int wall, const struct wall_ra
     unsigned char *marked = calloc(cells, 1);
     double *values = malloc((cells + 1) * sizeof *values);
     int *stack = malloc((cells + (size_t)r->up) * sizeof *stack);
-    enum status st = marked && values && stack ? ST_OK : err_nomem(err, "a wall's cells", cells * sizeof *values);
-    if (!st) {
+    if (!marked || !values || !stack) err_nomem(err, "a wall's cells", cells * sizeof *values);
+    if (!err->status) {
         remove_contradicted(s, wall, r, values);
-        for (int x = 0; !st && x < r->across; x++)
-            for (int y = 0; !st && y < r->up; y++) {
+        for (int x = 0; !err->status && x < r->across; x++)
+            for (int y = 0; !err->status && y < r->up; y++) {
                 if (marked[x * r->up + y] || state_of(r, x, y) <= 0) continue;
                 const struct rect bounds = mark_region(r, marked, stack, x, y);
-                st = try_region(s, wall, r, &bounds, params->min_opening * r->height, stack, values, err);
+                try_region(s, wall, r, &bounds, params->min_opening * r->height, stack, values, err);
             }
     }
     free(marked);
     free(values);
     free(stack);
-    return st;
+    return err->status;
 }

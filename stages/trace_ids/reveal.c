@@ -63,15 +63,15 @@ static enum status find_surfaces(struct surfaces *s, const struct model_rays *ed
     int *by_id = calloc((size_t)base->mesh.face_count + 1, sizeof *by_id);
     s->edited = calloc((size_t)edited->mesh.face_count + 1, sizeof *s->edited);
     s->base = calloc((size_t)base->mesh.face_count + 1, sizeof *s->base);
-    enum status st = first && by_id && s->edited && s->base ? ST_OK : err_nomem(err, "surfaces", (size_t)ids * 4);
-    if (!st) {
+    if (!first || !by_id || !s->edited || !s->base) err_nomem(err, "surfaces", (size_t)ids * 4);
+    if (!err->status) {
         sort_faces(by_id, first, &base->mesh, ids);
         map_surfaces(s->edited, &edited->mesh, &base->mesh, by_id, first, ids, reach);
         map_surfaces(s->base, &base->mesh, &base->mesh, by_id, first, ids, reach);
     }
     free(first);
     free(by_id);
-    return st;
+    return err->status;
 }
 
 static enum status add_layer(struct reveal *r, struct err *err)
@@ -115,18 +115,18 @@ enum status reveal_add(struct reveal *r, const struct view_trace *edited, int64_
     struct surfaces s = {0};
     *pixels = 0;
     if (r->base->in_solid) return ST_OK;
-    enum status st = find_surfaces(&s, edited->model, r->base->model, err);
-    for (size_t i = 0; !st && i < count; i++) {
+    find_surfaces(&s, edited->model, r->base->model, err);
+    for (size_t i = 0; !err->status && i < count; i++) {
         const uint32_t face = edited->faces[i] ? s.edited[edited->faces[i] - 1] : 0, now = r->base->faces[i];
         if (!face || (now && s.base[now - 1] == face)) continue;
         const double z = depth_of(r, face, i);
         if (!((float)z > 0 && isfinite((float)z))) continue; /* a plane through the camera */
         (*pixels)++;
-        st = insert(r, i, face, z, err);
+        insert(r, i, face, z, err);
     }
     free(s.edited);
     free(s.base);
-    return st;
+    return err->status;
 }
 
 enum status reveal_result(struct view_reveal *result, const struct reveal *r, struct err *err)

@@ -39,10 +39,10 @@ enum status estimate_print(FILE *to, const char *list, const struct camera_set *
 {
     struct work_estimate work = {0};
     struct textfile t = {0};
-    enum status st = textfile_open(&t, list, err);
-    while (!st && textfile_next(&t)) st = add_line(&work, &t, set, views, edits, err);
+    textfile_open(&t, list, err);
+    while (!err->status && textfile_next(&t)) add_line(&work, &t, set, views, edits, err);
     textfile_release(&t);
-    if (st || !work.items) return st;
+    if (err->status || !work.items) return err->status;
     fprintf(to, "ids: %d piece%s of work: about %.0f s of one core in all, up to %.0f MiB a process, %.0f MB\n",
             work.items, work.items == 1 ? "" : "s", work.seconds, work.mib, 1e-6 * work.bytes);
     work_estimate_print(to, &work);

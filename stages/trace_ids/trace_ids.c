@@ -116,26 +116,23 @@ static enum status trace_view(void *ctx, int i, struct err *err)
     struct view_record record = {0};
     const struct view *view = NULL;
     char text[FILE_PATH];
-    enum status st = record_path(text, out, err);
-    if (!st) st = find_view(&view, j, j->view.items[i], err);
-    if (!st) st = read_depth(&depth, j, view, err);
-    if (!st) st = view_trace(&trace, &j->rays, &j->in.axes, view, err);
-    if (!st && trace.in_solid)
+    if (!record_path(text, out, err) && !find_view(&view, j, j->view.items[i], err) &&
+        !read_depth(&depth, j, view, err))
+        view_trace(&trace, &j->rays, &j->in.axes, view, err);
+    if (!err->status && trace.in_solid)
         log_warn("the camera of view %s is inside a solid of the model, or on its surface: the view shows no face.",
                  view->name);
-    if (!st) st = view_ids_init(&ids, view->width, view->height, err);
-    if (!st) view_trace_ids(&ids, &trace);
-    if (!st) st = view_jumps_find(&ids, &trace, &depth, &j->params, err);
-    if (!st) st = view_clutter_find(&ids, &trace, &depth, j->in.axes.scale, &j->params, err);
-    if (!st) st = view_record_make(&record, &ids, &trace, &j->params, err);
-    if (!st) st = view_record_write(&record, text, &j->prov, err);
-    if (!st) st = view_ids_write(&ids, view, out, &j->prov, err);
+    if (!err->status && !view_ids_init(&ids, view->width, view->height, err)) view_trace_ids(&ids, &trace);
+    if (!err->status && !view_jumps_find(&ids, &trace, &depth, &j->params, err) &&
+        !view_clutter_find(&ids, &trace, &depth, j->in.axes.scale, &j->params, err) &&
+        !view_record_make(&record, &ids, &trace, &j->params, err) && !view_record_write(&record, text, &j->prov, err))
+        view_ids_write(&ids, view, out, &j->prov, err);
     provenance_keep(&j->prov, shared);
     view_record_release(&record);
     view_ids_release(&ids);
     view_trace_release(&trace);
     layered_depth_release(&depth);
-    return st;
+    return err->status;
 }
 
 /* Adds what one edit reveals, and a line to the record. */
@@ -146,12 +143,11 @@ static enum status add_edit(struct reveal *r, FILE *record, const struct job *j,
     char name[FILE_PATH], quoted[FILE_PATH];
     int64_t pixels = 0;
     edit_name(name, j->edits.items[edit]);
-    enum status st = view_trace(&trace, &j->edited[edit], &j->in.axes, view, err);
-    if (!st) st = reveal_add(r, &trace, &pixels, err);
-    if (!st) st = textfile_quote(name, quoted, sizeof quoted, err);
-    if (!st) fprintf(record, "edit %s %" PRId64 "\n", quoted, pixels);
+    if (!view_trace(&trace, &j->edited[edit], &j->in.axes, view, err) && !reveal_add(r, &trace, &pixels, err) &&
+        !textfile_quote(name, quoted, sizeof quoted, err))
+        fprintf(record, "edit %s %" PRId64 "\n", quoted, pixels);
     view_trace_release(&trace);
-    return st;
+    return err->status;
 }
 
 static enum status write_reveal(const struct reveal *r, const struct job *j, const struct view *view, const char *out,
@@ -161,23 +157,22 @@ static enum status write_reveal(const struct reveal *r, const struct job *j, con
     const struct provenance prov = {.stage = j->prov.stage, .version = j->prov.version};
     struct view_reveal result = {0};
     bool changed = false;
-    enum status st = reveal_result(&result, r, err);
-    if (!st) st = view_reveal_write(&result, view, out, &prov, &changed, err);
-    if (!st && !changed) log_note("%s: what edits reveal has not changed", view->name);
+    if (!reveal_result(&result, r, err)) view_reveal_write(&result, view, out, &prov, &changed, err);
+    if (!err->status && !changed) log_note("%s: what edits reveal has not changed", view->name);
     view_reveal_release(&result);
-    return st;
+    return err->status;
 }
 
 static enum status write_reveal_record(const struct job *j, const char *path, const char *lines, struct err *err)
 {
     struct outfile f = {0};
-    enum status st = product_begin(&f, PRODUCT_REVEAL_LIST, path, &j->prov, err);
-    if (!st) {
+    product_begin(&f, PRODUCT_REVEAL_LIST, path, &j->prov, err);
+    if (!err->status) {
         fputs(lines, f.fp);
-        st = outfile_commit(&f, err);
+        outfile_commit(&f, err);
     }
     outfile_discard(&f);
-    return st;
+    return err->status;
 }
 
 static enum status reveal_view(void *ctx, int i, struct err *err)
@@ -189,17 +184,19 @@ static enum status reveal_view(void *ctx, int i, struct err *err)
     char text[FILE_PATH], *lines = NULL;
     size_t size = 0;
     FILE *record = open_memstream(&lines, &size);
-    enum status st = record ? record_path(text, j->out.items[i], err) : err_nomem(err, "a record", 1);
-    if (!st) st = find_view(&view, j, j->view.items[i], err);
-    if (!st) st = view_trace(&trace, &j->rays, &j->in.axes, view, err);
-    for (int e = 0; !st && e < j->edits.count; e++) st = add_edit(&reveal, record, j, view, e, err);
+    if (record)
+        record_path(text, j->out.items[i], err);
+    else
+        err_nomem(err, "a record", 1);
+    if (!err->status && !find_view(&view, j, j->view.items[i], err))
+        view_trace(&trace, &j->rays, &j->in.axes, view, err);
+    for (int e = 0; !err->status && e < j->edits.count; e++) add_edit(&reveal, record, j, view, e, err);
     if (record) fclose(record);
-    if (!st) st = write_reveal(&reveal, j, view, j->out.items[i], err);
-    if (!st) st = write_reveal_record(j, text, lines, err);
+    if (!err->status && !write_reveal(&reveal, j, view, j->out.items[i], err)) write_reveal_record(j, text, lines, err);
     free(lines);
     reveal_release(&reveal);
     view_trace_release(&trace);
-    return st;
+    return err->status;
 }
 
 /* Warns if no camera is within the model's bounding box: then the axes or the model are wrong. */
@@ -218,22 +215,21 @@ static enum status index_faces(struct job *j, struct err *err)
 {
     struct view_ranks ranks = {.max_views = j->params.index_views};
     int empty = 0;
-    enum status st = ST_OK;
     warn_if_outside(j);
-    for (int i = 0; !st && i < j->in.set.view_count; i++) {
+    for (int i = 0; !err->status && i < j->in.set.view_count; i++) {
         struct view_record record = {0};
         char path[FILE_PATH];
         const struct product_key key = {.view = j->in.set.views[i].name};
-        st = product_path_in(path, j->index, PRODUCT_VIEW_FACES, &key, err);
-        if (!st) st = view_record_read(&record, path, NULL, err);
-        if (!st) st = view_ranks_add(&ranks, j->in.set.views[i].name, &record, err);
-        empty += !st && !record.count;
+        if (!product_path_in(path, j->index, PRODUCT_VIEW_FACES, &key, err) &&
+            !view_record_read(&record, path, NULL, err))
+            view_ranks_add(&ranks, j->in.set.views[i].name, &record, err);
+        empty += !err->status && !record.count;
         view_record_release(&record);
     }
-    if (!st) st = view_ranks_write(&ranks, j->out.items[0], &j->prov, err);
-    if (!st && empty) log_note("%d of %d views show no face of the model", empty, j->in.set.view_count);
+    if (!err->status) view_ranks_write(&ranks, j->out.items[0], &j->prov, err);
+    if (!err->status && empty) log_note("%d of %d views show no face of the model", empty, j->in.set.view_count);
     view_ranks_release(&ranks);
-    return st;
+    return err->status;
 }
 
 static enum status check_usage(const struct job *j, struct err *err)
@@ -253,16 +249,16 @@ static enum status check_usage(const struct job *j, struct err *err)
 
 static enum status estimate(struct job *j, struct err *err)
 {
-    enum status st = camera_set_read_cameras(&j->in.set, j->views, NULL, err);
-    return st ? st : estimate_print(stdout, j->estimate, &j->in.set, j->views, j->edits.count, err);
+    return camera_set_read_cameras(&j->in.set, j->views, NULL, err) ||
+                   estimate_print(stdout, j->estimate, &j->in.set, j->views, j->edits.count, err)
+               ? err->status
+               : ST_OK;
 }
 
 static enum status run(struct job *j, struct err *err)
 {
     if (j->estimate) return estimate(j, err);
-    enum status st = read_inputs(j, err);
-    if (!st) st = read_edits(j, err);
-    if (st) return st;
+    if (read_inputs(j, err) || read_edits(j, err)) return err->status;
     if (j->index) return index_faces(j, err);
     return cli_make_each(&j->view, j->reveal ? reveal_view : trace_view, j, err);
 }

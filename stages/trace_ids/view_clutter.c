@@ -105,14 +105,14 @@ static enum status clean_outlines(const struct clutter_job *job, struct err *err
     static const float levels[] = {CLUTTER_UNSURE + RATHER, 1};
     const size_t pixels = (size_t)job->ids->width * (size_t)job->ids->height;
     struct outline_scratch s = {malloc(pixels), malloc(pixels * sizeof *s.squared), malloc(pixels * sizeof *s.grown)};
-    enum status st = s.mask && s.squared && s.grown ? ST_OK : err_nomem(err, "clutter", pixels * 9);
-    for (size_t i = 0; !st && i < pixels; i++) s.grown[i] = fminf(job->clutter[i], CLUTTER_UNSURE);
-    for (int k = 0; !st && k < 2; k++) st = grow(&s, job, levels[k], err);
-    for (size_t i = 0; !st && i < pixels; i++) job->clutter[i] = job->depth->interior.id[i] ? s.grown[i] : 1;
+    if (!s.mask || !s.squared || !s.grown) err_nomem(err, "clutter", pixels * 9);
+    for (size_t i = 0; !err->status && i < pixels; i++) s.grown[i] = fminf(job->clutter[i], CLUTTER_UNSURE);
+    for (int k = 0; !err->status && k < 2; k++) grow(&s, job, levels[k], err);
+    for (size_t i = 0; !err->status && i < pixels; i++) job->clutter[i] = job->depth->interior.id[i] ? s.grown[i] : 1;
     free(s.mask);
     free(s.squared);
     free(s.grown);
-    return st;
+    return err->status;
 }
 
 /* The model's height, scene units. */

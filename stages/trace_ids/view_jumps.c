@@ -79,16 +79,16 @@ enum status view_jumps_find(struct view_ids *ids, const struct view_trace *t, co
 {
     const size_t pixels = (size_t)t->width * (size_t)t->height;
     uint8_t *inside = malloc(pixels);
-    enum status st = inside ? ST_OK : err_nomem(err, "depth jumps", pixels);
-    if (!st) {
+    if (!inside) err_nomem(err, "depth jumps", pixels);
+    if (!err->status) {
         memset(inside, 1, pixels);
         mark_jumps(inside, t, depth, params->jump);
     }
-    if (!st) st = distance_squared(ids->jump, inside, t->width, t->height, err);
-    for (size_t i = 0; !st && i < pixels; i++) {
+    if (!err->status) distance_squared(ids->jump, inside, t->width, t->height, err);
+    for (size_t i = 0; !err->status && i < pixels; i++) {
         const bool shown = ids->id[i] && depth->interior.id[i];
         ids->jump[i] = shown ? fminf(VIEW_IDS_FAR, sqrtf(ids->jump[i]) + 1) : 0;
     }
     free(inside);
-    return st;
+    return err->status;
 }

@@ -83,18 +83,18 @@ enum status view_ranks_write(struct view_ranks *r, const char *path, const struc
 {
     int *ids = malloc((r->ids + 1) * sizeof *ids), count = 0;
     struct face_views *lists = malloc((r->ids + 1) * sizeof *lists);
-    enum status st = ids && lists ? ST_OK : err_nomem(err, "an index of faces", r->ids * sizeof *lists);
-    for (size_t i = 0; !st && i < r->ids; i++) {
+    if (!ids || !lists) err_nomem(err, "an index of faces", r->ids * sizeof *lists);
+    for (size_t i = 0; !err->status && i < r->ids; i++) {
         struct face_rank *f = &r->faces[i];
         if (!f->count) continue;
         qsort(f->views, (size_t)f->count, sizeof *f->views, compare);
         ids[count] = (int)i;
         lists[count++] = (struct face_views){f->views, f->count};
     }
-    if (!st) st = face_index_write(path, ids, lists, count, prov, err);
+    if (!err->status) face_index_write(path, ids, lists, count, prov, err);
     free(ids);
     free(lists);
-    return st;
+    return err->status;
 }
 
 void view_ranks_release(struct view_ranks *r)

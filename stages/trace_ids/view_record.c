@@ -64,12 +64,11 @@ enum status view_record_make(struct view_record *r, const struct view_ids *ids, 
     int *first = calloc((size_t)count + 2, sizeof *first);
     float *distances = malloc((size_t)pixels * sizeof *distances);
     *r = (struct view_record){0};
-    enum status st = order && first && distances ? ST_OK : err_nomem(err, "faces of a view", (size_t)pixels * 8);
-    if (!st) sort_pixels(order, first, count, ids, pixels);
-    for (int id = 1; !st && id < count; id++) {
+    if (!order || !first || !distances) err_nomem(err, "faces of a view", (size_t)pixels * 8);
+    if (!err->status) sort_pixels(order, first, count, ids, pixels);
+    for (int id = 1; !err->status && id < count; id++) {
         if (first[id] == first[id + 1]) continue;
-        st = array_append(&r->faces, (size_t)r->count, sizeof *r->faces, "faces", err);
-        if (st) break;
+        if (array_append(&r->faces, (size_t)r->count, sizeof *r->faces, "faces", err)) break;
         struct seen_face *f = &r->faces[r->count++];
         *f = (struct seen_face){.id = id};
         measure(f, order + first[id], first[id + 1] - first[id], ids, t, distances, params);
@@ -77,8 +76,8 @@ enum status view_record_make(struct view_record *r, const struct view_ids *ids, 
     free(order);
     free(first);
     free(distances);
-    if (st) view_record_release(r);
-    return st;
+    if (err->status) view_record_release(r);
+    return err->status;
 }
 
 void view_record_release(struct view_record *r)
@@ -92,16 +91,16 @@ enum status view_record_write(const struct view_record *r, const char *path, con
                               struct err *err)
 {
     struct outfile f = {0};
-    enum status st = product_begin(&f, PRODUCT_VIEW_FACES, path, prov, err);
-    if (!st) {
+    product_begin(&f, PRODUCT_VIEW_FACES, path, prov, err);
+    if (!err->status) {
         for (int i = 0; i < r->count; i++) {
             const struct seen_face *s = &r->faces[i];
             fprintf(f.fp, "face %d %d %d %.9g %.9g\n", s->id, s->pixels, s->clean, s->distance, s->cosine);
         }
-        st = outfile_commit(&f, err);
+        outfile_commit(&f, err);
     }
     outfile_discard(&f);
-    return st;
+    return err->status;
 }
 
 static enum status read_face(struct seen_face *f, struct textfile *t, int last, struct err *err)
@@ -124,16 +123,15 @@ enum status view_record_read(struct view_record *r, const char *path, struct pro
 {
     struct textfile t = {0};
     *r = (struct view_record){0};
-    enum status st = product_open(&t, NULL, PRODUCT_VIEW_FACES, path, prov, err);
-    while (!st && textfile_next(&t)) {
-        st = array_append(&r->faces, (size_t)r->count, sizeof *r->faces, "faces", err);
-        if (st) break;
+    product_open(&t, NULL, PRODUCT_VIEW_FACES, path, prov, err);
+    while (!err->status && textfile_next(&t)) {
+        if (array_append(&r->faces, (size_t)r->count, sizeof *r->faces, "faces", err)) break;
         struct seen_face *f = &r->faces[r->count];
         *f = (struct seen_face){0};
-        st = read_face(f, &t, r->count ? f[-1].id : 0, err);
+        read_face(f, &t, r->count ? f[-1].id : 0, err);
         r->count++;
     }
     textfile_release(&t);
-    if (st) view_record_release(r);
-    return st;
+    if (err->status) view_record_release(r);
+    return err->status;
 }

@@ -191,15 +191,14 @@ static void fill_tiles(void *ctx, size_t begin, size_t end, int thread)
 /* Where texels came from: the channel `source` of all pages of the unedited VITA. */
 static enum status read_sources(uint32_t **sources, const struct atlas *a, const char *folder, struct err *err)
 {
-    enum status st = ST_OK;
-    for (int i = 0; !st && i < a->page_count; i++) {
+    for (int i = 0; !err->status && i < a->page_count; i++) {
         struct atlas_page page = {0};
-        st = atlas_page_read(&page, a, i, folder, NULL, err);
+        atlas_page_read(&page, a, i, folder, NULL, err);
         sources[i] = page.source;
         page.source = NULL;
         atlas_page_release(&page);
     }
-    return st;
+    return err->status;
 }
 
 static enum status make_pages(struct edited_atlas *a, const struct atlas *tiles, struct err *err)
@@ -245,15 +244,15 @@ static enum status fill(struct edited_atlas *a, const struct light_change *c, co
     const int pages = c->before.atlas.atlas.page_count;
     uint32_t **sources = calloc((size_t)pages + 1, sizeof *sources);
     struct face_areas areas = {0};
-    enum status st = sources ? ST_OK : err_nomem(err, "pages", (size_t)pages * sizeof *sources);
-    if (!st && tiles->tile_count) st = read_sources(sources, &c->before.atlas.atlas, folder, err);
-    if (!st) st = face_areas_make(&areas, &c->after.model.mesh, err);
+    if (!sources) err_nomem(err, "pages", (size_t)pages * sizeof *sources);
+    if (!err->status && tiles->tile_count) read_sources(sources, &c->before.atlas.atlas, folder, err);
+    if (!err->status) face_areas_make(&areas, &c->after.model.mesh, err);
     struct fill_job job = {c, tiles, a, face_of_tile, &areas, sources};
-    if (!st) parallel_for((size_t)tiles->tile_count, 1, fill_tiles, &job);
+    if (!err->status) parallel_for((size_t)tiles->tile_count, 1, fill_tiles, &job);
     for (int i = 0; sources && i < pages; i++) free(sources[i]);
     free(sources);
     face_areas_release(&areas);
-    return st;
+    return err->status;
 }
 
 /* More than the id of any face: the atlas may also hold faces that only other edits have. */
@@ -274,16 +273,18 @@ enum status edited_atlas_make(struct edited_atlas *a, struct light_change *c, co
     const size_t ids = id_count(c);
     bool *dropped = calloc(ids + 1, sizeof *dropped);
     *a = (struct edited_atlas){.first_page = c->before.atlas.atlas.page_count};
-    enum status st = dropped ? usual_side(&usual, &c->before.atlas.atlas, err) : err_nomem(err, "faces", ids);
-    if (!st) find_dropped(dropped, c);
-    if (!st) st = lay_out(&tiles, &face_of_tile, c, dropped, usual, err);
-    if (!st) st = make_pages(a, &tiles, err);
-    if (!st) st = fill(a, c, &tiles, face_of_tile, folder, err);
-    if (!st) st = field_atlas_replace(&c->after.atlas, dropped, &tiles, a->pages, err);
+    if (dropped)
+        usual_side(&usual, &c->before.atlas.atlas, err);
+    else
+        err_nomem(err, "faces", ids);
+    if (!err->status) find_dropped(dropped, c);
+    if (!err->status && !lay_out(&tiles, &face_of_tile, c, dropped, usual, err) && !make_pages(a, &tiles, err) &&
+        !fill(a, c, &tiles, face_of_tile, folder, err))
+        field_atlas_replace(&c->after.atlas, dropped, &tiles, a->pages, err);
     atlas_release(&tiles);
     free(face_of_tile);
     free(dropped);
-    return st;
+    return err->status;
 }
 
 void edited_atlas_release(struct edited_atlas *a)
@@ -399,17 +400,18 @@ enum status edited_atlas_write(const struct edited_atlas *a, const struct light_
 {
     const struct atlas *atlas = &c->after.atlas.atlas;
     struct face_areas areas = {0};
-    enum status st = face_areas_make(&areas, &c->after.model.mesh, err);
-    for (int i = 0; !st && i < atlas->page_count; i++) {
+    face_areas_make(&areas, &c->after.model.mesh, err);
+    for (int i = 0; !err->status && i < atlas->page_count; i++) {
         struct atlas_page page = {0};
         struct light_job job = {a, c, nets, values, &areas, &page, i};
-        st = base_page(&page, a, c, i, folder, err);
-        if (!st) keep_tiles(&page, atlas, i);
-        if (!st) parallel_for((size_t)atlas->tile_count, 1, light_tiles, &job);
-        if (!st) st = atlas_write_page(&page, out, i, prov, err);
+        if (!base_page(&page, a, c, i, folder, err)) {
+            keep_tiles(&page, atlas, i);
+            parallel_for((size_t)atlas->tile_count, 1, light_tiles, &job);
+            atlas_write_page(&page, out, i, prov, err);
+        }
         atlas_page_release(&page);
     }
-    if (!st) st = atlas_write_list(atlas, out, prov, err);
+    if (!err->status) atlas_write_list(atlas, out, prov, err);
     face_areas_release(&areas);
-    return st;
+    return err->status;
 }

@@ -33,17 +33,19 @@ static void coordinates(double at[2], const struct face_net *f, struct vec3 p)
 typedef enum status edge_fn(void *ctx, struct vec3 a, struct vec3 b, struct err *err);
 static enum status each_edge(const struct solid_mesh *m, int face, edge_fn *visit, void *ctx, struct err *err)
 {
-    enum status st = ST_OK;
-    for (int l = m->faces[face].loop; !st && l < m->faces[face].loop + m->faces[face].loops; l++) {
+    for (int l = m->faces[face].loop; l < m->faces[face].loop + m->faces[face].loops; l++) {
         const int first = m->loops[l].half_edge;
         int h = first;
         do {
             const int next = m->half_edges[h].next;
-            st = visit(ctx, m->vertices[m->half_edges[h].origin].p, m->vertices[m->half_edges[next].origin].p, err);
+            const struct vec3 from = m->vertices[m->half_edges[h].origin].p,
+                              to = m->vertices[m->half_edges[next].origin].p;
+            const enum status st = visit(ctx, from, to, err);
+            if (st) return st;
             h = next;
-        } while (!st && h != first);
+        } while (h != first);
     }
-    return st;
+    return ST_OK;
 }
 
 /* How a point lies to the edges of a face. */
@@ -118,17 +120,16 @@ static enum status add_row(void *ctx, struct vec3 a, struct vec3 b, struct err *
     const struct vec3 along = vec3_sub(b, a);
     const double length = vec3_length(along), inset = fmin(INSET * n->spacing, 0.25 * length);
     const int count = (int)ceil(length / n->spacing);
-    enum status st = ST_OK;
     if (!(length > 0)) return ST_OK;
     const struct vec3 in = vec3_normalize(vec3_cross(n->mesh->faces[s->face].normal, along));
-    for (int k = 0; !st && k <= count; k++) {
+    for (int k = 0; !err->status && k <= count; k++) {
         const double t = clamp((double)k / count, inset / length, 1 - inset / length);
         const struct vec3 p = vec3_add(a, vec3_add(vec3_scale(along, t), vec3_scale(in, inset)));
         double at[2];
         coordinates(at, &n->nets[s->face], p);
-        if (is_inside(n, s->face, at[0], at[1], 0.5 * inset)) st = face_nets_add(n, s->face, p, err);
+        if (is_inside(n, s->face, at[0], at[1], 0.5 * inset)) face_nets_add(n, s->face, p, err);
     }
-    return st;
+    return err->status;
 }
 
 static enum status add_lattice(struct spread *s, struct err *err)
@@ -137,15 +138,14 @@ static enum status add_lattice(struct spread *s, struct err *err)
     const struct face_net *f = &n->nets[s->face];
     const struct solid_face *face = &n->mesh->faces[s->face];
     const double step = n->spacing;
-    enum status st = ST_OK;
-    for (double y = ceil(s->low[1] / step); !st && y * step <= s->high[1]; y++)
-        for (double x = ceil(s->low[0] / step); !st && x * step <= s->high[0]; x++)
+    for (double y = ceil(s->low[1] / step); !err->status && y * step <= s->high[1]; y++)
+        for (double x = ceil(s->low[0] / step); !err->status && x * step <= s->high[0]; x++)
             if (is_inside(n, s->face, x * step, y * step, CLEAR * step))
-                st = face_nets_add(n, s->face,
-                                   vec3_add(vec3_scale(face->normal, face->offset),
-                                            vec3_add(vec3_scale(f->u, x * step), vec3_scale(f->v, y * step))),
-                                   err);
-    return st;
+                face_nets_add(n, s->face,
+                              vec3_add(vec3_scale(face->normal, face->offset),
+                                       vec3_add(vec3_scale(f->u, x * step), vec3_scale(f->v, y * step))),
+                              err);
+    return err->status;
 }
 
 /* A face whose corners leave no room for rows has one sample, in the middle of a triangle of its corners. */
@@ -165,11 +165,10 @@ static enum status spread_over(struct face_nets *n, int face, struct err *err)
     struct spread s = {n, face, {INFINITY, INFINITY}, {-INFINITY, -INFINITY}};
     struct face_net *f = &n->nets[face];
     frame_from_normal(n->mesh->faces[face].normal, &f->u, &f->v);
-    enum status st = each_edge(n->mesh, face, grow_box, &s, err);
-    if (!st) st = add_lattice(&s, err);
-    if (!st) st = each_edge(n->mesh, face, add_row, &s, err);
-    if (!st && !f->count) st = add_middle(&s, err);
-    return st;
+    if (!each_edge(n->mesh, face, grow_box, &s, err) && !add_lattice(&s, err))
+        each_edge(n->mesh, face, add_row, &s, err);
+    if (!err->status && !f->count) add_middle(&s, err);
+    return err->status;
 }
 
 enum status face_nets_make(struct face_nets *n, const struct solid_mesh *mesh, const bool *wanted, double spacing,

@@ -107,9 +107,9 @@ enum status rounds_run(struct rounds *r, const struct transport *t, int most, do
     double *change = calloc(values, sizeof *change);
     const double mean = mean_before(t);
     *r = (struct rounds){.values = calloc(values, sizeof *r->values)};
-    enum status st = r->values && next && change ? ST_OK : err_nomem(err, "rounds", values * sizeof *next);
-    if (!st) begin(r->values, t);
-    for (int k = 0; !st && k < most && !r->settled; k++) {
+    if (!r->values || !next || !change) err_nomem(err, "rounds", values * sizeof *next);
+    if (!err->status) begin(r->values, t);
+    for (int k = 0; !err->status && k < most && !r->settled; k++) {
         struct round_job j = {t, r->values, next, change, mean};
         parallel_for((size_t)t->count, 64, run_some, &j);
         struct rgb *old = r->values;
@@ -121,14 +121,13 @@ enum status rounds_run(struct rounds *r, const struct transport *t, int most, do
             round.left = 0;
         else if (q < 1)
             round.left = round.change * q / (1 - q);
-        st = array_append(&r->list, (size_t)r->count, sizeof *r->list, "rounds", err);
-        if (!st) r->list[r->count++] = round;
+        if (!array_append(&r->list, (size_t)r->count, sizeof *r->list, "rounds", err)) r->list[r->count++] = round;
         r->settled = round.left < tolerance;
     }
-    if (!st) r->bounded = count_bounded(t, r->values);
+    if (!err->status) r->bounded = count_bounded(t, r->values);
     free(next);
     free(change);
-    return st;
+    return err->status;
 }
 
 void rounds_release(struct rounds *r)

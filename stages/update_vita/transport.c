@@ -253,23 +253,23 @@ enum status transport_trace(struct transport *t, int first, int rays, void (*don
     const size_t values = 2 * (size_t)t->count + 1, threads = (size_t)parallel_threads();
     struct trace_job j = {.t = t, .first = first, .rays = rays, .done = done, .done_ctx = done_ctx};
     j.tallies = calloc(threads, sizeof *j.tallies);
-    enum status st = j.tallies ? ST_OK : err_nomem(err, "sums", threads * sizeof *j.tallies);
-    for (size_t k = 0; !st && k < threads; k++) {
+    if (!j.tallies) err_nomem(err, "sums", threads * sizeof *j.tallies);
+    for (size_t k = 0; !err->status && k < threads; k++) {
         struct tally *l = &j.tallies[k];
         l->sums = calloc(values, sizeof *l->sums);
         l->touched = calloc(values, sizeof *l->touched);
         l->is_touched = calloc(values, sizeof *l->is_touched);
-        if (!l->sums || !l->touched || !l->is_touched) st = err_nomem(err, "sums", values * sizeof *l->sums);
+        if (!l->sums || !l->touched || !l->is_touched) err_nomem(err, "sums", values * sizeof *l->sums);
     }
-    if (!st) parallel_for((size_t)(t->count - first), 4, trace_some, &j);
-    if (!st && j.is_short) st = err_nomem(err, "what samples send to each other", sizeof(struct transport_entry));
+    if (!err->status) parallel_for((size_t)(t->count - first), 4, trace_some, &j);
+    if (!err->status && j.is_short) err_nomem(err, "what samples send to each other", sizeof(struct transport_entry));
     for (size_t k = 0; j.tallies && k < threads; k++) {
         free(j.tallies[k].sums);
         free(j.tallies[k].touched);
         free(j.tallies[k].is_touched);
     }
     free(j.tallies);
-    return st;
+    return err->status;
 }
 
 struct rgb transport_gather(const struct transport_row *row, const struct rgb *values)

@@ -60,9 +60,9 @@ static enum status make_nets(struct work *w, struct err *err)
     bool *wanted = calloc((size_t)mesh->face_count + 1, sizeof *wanted);
     if (!wanted) return err_nomem(err, "faces", (size_t)mesh->face_count);
     for (int i = 0; i < mesh->face_count; i++) wanted[i] = !solid_face_is_pane(mesh, i) && !is_outside(&w->change, i);
-    const enum status st = face_nets_make(&w->nets, mesh, wanted, w->job->params.spacing * size, err);
+    face_nets_make(&w->nets, mesh, wanted, w->job->params.spacing * size, err);
     free(wanted);
-    return st;
+    return err->status;
 }
 
 /* ------------------------------------------------------------------------------------------------------- refinement */
@@ -74,14 +74,14 @@ static enum status first_values(struct work *w, struct rgb **values, struct err 
 {
     struct rounds r = {0};
     transport_release(&w->transport);
-    enum status st = transport_init(&w->transport, &w->change, &w->nets, err);
+    transport_init(&w->transport, &w->change, &w->nets, err);
     const int rays = w->job->params.rays / FEW_RAYS;
-    if (!st) st = transport_trace(&w->transport, 0, rays < GLANCES ? GLANCES : rays, NULL, NULL, err);
-    if (!st) st = rounds_run(&r, &w->transport, 2, w->job->params.tolerance, err);
+    if (!err->status && !transport_trace(&w->transport, 0, rays < GLANCES ? GLANCES : rays, NULL, NULL, err))
+        rounds_run(&r, &w->transport, 2, w->job->params.tolerance, err);
     *values = r.values;
     r.values = NULL;
     rounds_release(&r);
-    return st;
+    return err->status;
 }
 
 static double difference(const struct work *w, const struct rgb *values, int a, int b)
@@ -114,11 +114,11 @@ static enum status refine(struct work *w, struct err *err)
     for (double reach = w->nets.spacing; reach > finest; reach /= 2) {
         const int before = w->nets.sample_count;
         struct rgb *values = NULL;
-        enum status st = first_values(w, &values, err);
-        for (int i = 0; !st && i < w->nets.mesh->face_count; i++) st = refine_face(w, i, values, finest, err);
+        first_values(w, &values, err);
+        for (int i = 0; !err->status && i < w->nets.mesh->face_count; i++) refine_face(w, i, values, finest, err);
         free(values);
-        if (!st) st = face_nets_connect(&w->nets, err);
-        if (st) return st;
+        if (!err->status) face_nets_connect(&w->nets, err);
+        if (err->status) return err->status;
         if (w->nets.sample_count == before) break;
     }
     return ST_OK;
@@ -131,9 +131,9 @@ static enum status trace(struct work *w, struct err *err)
     transport_release(&w->transport);
     if (transport_init(&w->transport, &w->change, &w->nets, err)) return err->status;
     progress_start(&w->progress, "light", w->transport.count, "samples");
-    const enum status st = transport_trace(&w->transport, 0, w->job->params.rays, count_done, &w->progress, err);
+    transport_trace(&w->transport, 0, w->job->params.rays, count_done, &w->progress, err);
     progress_end(&w->progress);
-    return st;
+    return err->status;
 }
 
 static enum status write_rounds(const struct work *w, struct err *err)
@@ -150,9 +150,9 @@ static enum status write_rounds(const struct work *w, struct err *err)
         fprintf(f.fp, "round %d change %.6g left ", i + 1, r->list[i].change);
         fprintf(f.fp, isfinite(r->list[i].left) ? "%.6g\n" : "unknown\n", r->list[i].left);
     }
-    const enum status st = outfile_commit(&f, err);
+    outfile_commit(&f, err);
     outfile_discard(&f);
-    return st;
+    return err->status;
 }
 
 static enum status write_objects(struct work *w, struct err *err)
@@ -195,11 +195,11 @@ static enum status run(struct work *w, struct err *err)
 enum status update_vita(struct update_job *j, struct err *err)
 {
     struct work w = {.job = j};
-    const enum status st = run(&w, err);
+    run(&w, err);
     rounds_release(&w.rounds);
     transport_release(&w.transport);
     face_nets_release(&w.nets);
     edited_atlas_release(&w.atlas);
     light_change_release(&w.change);
-    return st;
+    return err->status;
 }

@@ -32,17 +32,17 @@
 static enum status verify_exr(const char *path, struct err *err)
 {
     struct exr_image im = {0};
-    enum status st = exr_read(&im, path, NULL, 0, err);
+    exr_read(&im, path, NULL, 0, err);
     exr_image_release(&im);
-    return st;
+    return err->status;
 }
 
 static enum status verify_points(const char *path, struct err *err)
 {
     struct point_cloud cloud = {0};
-    enum status st = point_cloud_read(&cloud, path, NULL, err);
+    point_cloud_read(&cloud, path, NULL, err);
     point_cloud_release(&cloud);
-    return st;
+    return err->status;
 }
 
 /* Decodes a picture whose first bytes are `signature`. */
@@ -59,9 +59,9 @@ static enum status verify_picture(const char *path, const char *signature, const
     if (size && memcmp(head, signature, strlen(signature)) != 0)
         return err_set(err, ST_DATA, "%s: found no %s signature, wanted %s by its extension; make it again.", path,
                        format, format);
-    enum status st = photo_read(&photo, path, err);
+    photo_read(&photo, path, err);
     photo_release(&photo);
-    return st;
+    return err->status;
 }
 
 static enum status verify_png(const char *path, struct err *err) { return verify_picture(path, "\x89PNG", "PNG", err); }
@@ -113,10 +113,10 @@ static enum status verify_mp4(const char *path, struct err *err)
     struct stat info;
     FILE *f = fopen(path, "rb");
     if (!f) return err_errno(err, "open", path);
-    enum status st = fstat(fileno(f), &info) ? err_errno(err, "read", path) : ST_OK;
-    if (!st) st = verify_boxes(f, (uint64_t)info.st_size, path, err);
+    if (fstat(fileno(f), &info)) err_errno(err, "read", path);
+    if (!err->status) verify_boxes(f, (uint64_t)info.st_size, path, err);
     fclose(f);
-    return st;
+    return err->status;
 }
 
 struct text_ends {
@@ -142,14 +142,14 @@ static enum status verify_text_ends(const char *path, struct text_ends *ends, st
             ends->tail[sizeof ends->tail - 1] = last;
         }
     }
-    enum status st = ferror(f) ? err_errno(err, "read", path) : ST_OK;
+    if (ferror(f)) err_errno(err, "read", path);
     fclose(f);
-    if (!st && (!last || last != '\n' || has_nul))
-        st = err_set(err, ST_DATA, "%s: found %s, wanted lines of text; make it again.", path,
-                     has_nul ? "a NUL byte"
-                     : !last ? "nothing"
-                             : "no line break at the end");
-    return st;
+    if (!err->status && (!last || last != '\n' || has_nul))
+        err_set(err, ST_DATA, "%s: found %s, wanted lines of text; make it again.", path,
+                has_nul ? "a NUL byte"
+                : !last ? "nothing"
+                        : "no line break at the end");
+    return err->status;
 }
 
 static enum status verify_text(const char *path, struct err *err)
@@ -162,9 +162,9 @@ static enum status verify_text(const char *path, struct err *err)
 static enum status verify_head(enum product_id id, const char *path, struct err *err)
 {
     struct textfile t = {0};
-    const enum status st = product_open(&t, NULL, id, path, NULL, err);
+    product_open(&t, NULL, id, path, NULL, err);
     textfile_release(&t);
-    return st;
+    return err->status;
 }
 
 static enum status verify_markup(const char *path, const char *closing, struct err *err)
@@ -199,34 +199,33 @@ static enum status verify_atlas(const char *path, struct err *err)
     char folder[FILE_PATH], name[FILE_PATH];
     const char *slash = strrchr(path, '/');
     snprintf(folder, sizeof folder, "%.*s", slash ? (int)(slash - path) : 1, slash ? path : ".");
-    enum status st = atlas_read(&atlas, folder, NULL, err);
-    for (int i = 0; !st && i < atlas.page_count; i++) {
+    atlas_read(&atlas, folder, NULL, err);
+    for (int i = 0; !err->status && i < atlas.page_count; i++) {
         const int *size = atlas.page_sizes[i];
-        st = atlas_page_path(name, folder, i, err);
-        if (!st) st = exr_read(&page, name, NULL, 0, err);
-        if (!st && (page.width != size[0] || page.height != size[1]))
-            st = err_set(err, ST_DATA, "%s: found %d x %d texels, wanted %d x %d by atlas.txt; make it again.", name,
-                         page.width, page.height, size[0], size[1]);
+        if (!atlas_page_path(name, folder, i, err)) exr_read(&page, name, NULL, 0, err);
+        if (!err->status && (page.width != size[0] || page.height != size[1]))
+            err_set(err, ST_DATA, "%s: found %d x %d texels, wanted %d x %d by atlas.txt; make it again.", name,
+                    page.width, page.height, size[0], size[1]);
         exr_image_release(&page);
     }
     atlas_release(&atlas);
-    return st;
+    return err->status;
 }
 
 static enum status verify_texture_map(const char *path, struct err *err)
 {
     struct texture_map map = {0};
-    const enum status st = texture_map_read(&map, path, NULL, err);
+    texture_map_read(&map, path, NULL, err);
     texture_map_release(&map);
-    return st;
+    return err->status;
 }
 
 static enum status verify_objects(const char *path, struct err *err)
 {
     struct object_list list = {0};
-    const enum status st = object_list_read(&list, path, NULL, err);
+    object_list_read(&list, path, NULL, err);
     object_list_release(&list);
-    return st;
+    return err->status;
 }
 
 static enum status verify_not_empty(const char *path, struct err *err)
@@ -277,6 +276,7 @@ enum status product_verify(const char *path, struct err *err)
     if (id == PRODUCT_TEXTURE_MAP) return verify_texture_map(path, err);
     if (id == PRODUCT_OBJECTS) return verify_objects(path, err);
     const enum product_format format = checks[products[id].format] ? products[id].format : PRODUCT_FORMAT_COUNT;
-    const enum status st = checks[format](path, err);
-    return !st && products[id].head && products[id].format == PRODUCT_IS_TEXT ? verify_head(id, path, err) : st;
+    if (!checks[format](path, err) && products[id].head && products[id].format == PRODUCT_IS_TEXT)
+        verify_head(id, path, err);
+    return err->status;
 }

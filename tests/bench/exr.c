@@ -85,9 +85,9 @@ static void paint_rows(void *ctx, size_t begin, size_t end, int thread)
 static enum status paint(struct exr_image *im, int width, int height, struct err *err)
 {
     static const char *const names[] = {"R", "G", "B", "A"};
-    enum status st = exr_image_init(im, width, height, err);
-    for (int i = 0; !st && i < 4; i++) st = exr_add_plane(im, names[i], EXR_FLOAT, NULL, err);
-    if (st) return st;
+    exr_image_init(im, width, height, err);
+    for (int i = 0; !err->status && i < 4; i++) exr_add_plane(im, names[i], EXR_FLOAT, NULL, err);
+    if (err->status) return err->status;
     struct painting p = {im, rng_make(1, "bench", "exr")};
     parallel_for((size_t)height, 16, paint_rows, &p);
     return ST_OK;
@@ -131,9 +131,9 @@ static enum status time_it(const struct request *r, const struct exr_image *im, 
     for (int i = -1; i < MAX_RUNS && total < RUN_SECONDS; i++) {
         exr_image_release(back);
         const double begin = clock_seconds();
-        enum status st = go(r, im, path, strcmp(r->direction, "write") ? back : NULL, err);
+        go(r, im, path, strcmp(r->direction, "write") ? back : NULL, err);
         const double took = clock_seconds() - begin;
-        if (st) return st;
+        if (err->status) return err->status;
         if (i < 0) continue;
         runs[count++] = took;
         total += took;
@@ -172,33 +172,35 @@ static enum status sample(const struct request *r, struct err *err)
     char *path = NULL;
     if (asprintf(&path, "%s/sample.exr", r->folder) < 0) return err_nomem(err, "a file name", strlen(r->folder));
 
-    enum status st = codec_from_name(&codec, r->codec, err);
-    if (!st) st = exr_read(&im, r->picture, NULL, 0, err);
+    if (!codec_from_name(&codec, r->codec, err)) exr_read(&im, r->picture, NULL, 0, err);
     for (int i = 0; i < im.count; i++) /* colours are half in the file, as in all products */
         if (strlen(im.planes[i].name) == 1 && strchr("RGBA", im.planes[i].name[0])) im.planes[i].type = EXR_HALF;
     im.codec = codec;
-    if (!st)
-        st = strcmp(r->direction, "write") ? exr_write(&im, path, NULL, err) : outfile_make_folders(r->folder, err);
-    if (!st) st = time_it(r, &im, path, &seconds, &back, err);
-    if (!st && !back.count) st = exr_read(&back, path, NULL, 0, err);
-    if (!st && stat(path, &file)) st = err_errno(err, "read", path);
+    if (!err->status) {
+        if (strcmp(r->direction, "write"))
+            exr_write(&im, path, NULL, err);
+        else
+            outfile_make_folders(r->folder, err);
+    }
+    if (!err->status) time_it(r, &im, path, &seconds, &back, err);
+    if (!err->status && !back.count) exr_read(&back, path, NULL, 0, err);
+    if (!err->status && stat(path, &file)) err_errno(err, "read", path);
     for (int i = 0; i < im.count; i++) bytes += (double)im.width * im.height * (im.planes[i].type == EXR_HALF ? 2 : 4);
-    if (!st)
+    if (!err->status)
         printf("seconds %.6f\nerror %.3g\nunit 1\nmb %.6g\nbytes %lld\npixels %lld\n", seconds, difference(&im, &back),
                bytes * 1e-6, (long long)file.st_size, (long long)im.width * im.height);
     exr_image_release(&im);
     exr_image_release(&back);
     free(path);
-    return st;
+    return err->status;
 }
 
 static enum status write_painting(const struct request *r, struct err *err)
 {
     struct exr_image im = {0};
-    enum status st = paint(&im, r->width, r->height, err);
-    if (!st) st = exr_write(&im, r->picture, NULL, err);
+    if (!paint(&im, r->width, r->height, err)) exr_write(&im, r->picture, NULL, err);
     exr_image_release(&im);
-    return st;
+    return err->status;
 }
 
 static bool one_of(const char *word, const char *a, const char *b) { return !strcmp(word, a) || !strcmp(word, b); }

@@ -67,19 +67,15 @@ int main(int argc, char **argv)
     struct provenance prov = {0};
     struct camera_set set = {0};
     struct err err = ERR_INIT;
-    enum status st = cli_parse(argc, argv, "flatten_depth", opts, &prov, &err) == CLI_RUN
-                         ? camera_set_read(&set, views, NULL, &err)
-                         : ST_USAGE;
-
-    for (int i = 0; !st && i < set.view_count; i++) {
+    if (cli_parse(argc, argv, "flatten_depth", opts, &prov, &err) == CLI_RUN) camera_set_read(&set, views, NULL, &err);
+    for (int i = 0; !err.status && i < set.view_count; i++) {
         struct layered_depth d = {0};
         char from[4096], to[4096];
         if (snprintf(from, sizeof from, "%s/%s.exr", depth, set.views[i].name) >= (int)sizeof from ||
             snprintf(to, sizeof to, "%s/%s.exr", out, set.views[i].name) >= (int)sizeof to)
-            st = err_set(&err, ST_IO, "a file name in %s or %s is too long.", depth, out);
-        if (!st) st = layered_depth_read(&d, from, NULL, &err);
-        if (!st) st = flatten(&d, &err);
-        if (!st) st = layered_depth_write(&d, &set.views[i], to, &prov, &err);
+            err_set(&err, ST_IO, "a file name in %s or %s is too long.", depth, out);
+        if (!err.status && !layered_depth_read(&d, from, NULL, &err) && !flatten(&d, &err))
+            layered_depth_write(&d, &set.views[i], to, &prov, &err);
         layered_depth_release(&d);
     }
     err_report(&err);

@@ -84,17 +84,16 @@ static enum status paint(const struct request *r, struct err *err)
 {
     const size_t samples = (size_t)r->width * (size_t)r->height * 3;
     unsigned char *rgb = malloc(samples);
-    enum status st = rgb ? ST_OK : err_nomem(err, "a photo", samples);
-    for (int k = 0; !st && k < r->exposures; k++) {
+    if (!rgb) err_nomem(err, "a photo", samples);
+    for (int k = 0; !err->status && k < r->exposures; k++) {
         char path[FILE_PATH], name[32];
         struct paint_job job = {rgb, r->width, k, exposure_of(k, r->exposures)};
         parallel_for((size_t)r->height, 16, paint_rows, &job);
         snprintf(name, sizeof name, "e%d", k);
-        st = file_path(path, r->folder, name, ".jpg", err);
-        if (!st) st = jpeg_write(path, rgb, r->width, r->height, QUALITY, err);
+        if (!file_path(path, r->folder, name, ".jpg", err)) jpeg_write(path, rgb, r->width, r->height, QUALITY, err);
     }
     free(rgb);
-    return st;
+    return err->status;
 }
 
 struct view {
@@ -144,15 +143,14 @@ static enum status merge_once(struct view *v, struct times *times, struct err *e
     const double read = clock_seconds();
     struct brackets b = {v->photos, v->exposures, count, &srgb, alignment.shifts};
     struct exposure_agreement agreement;
-    enum status st = align_brackets(&alignment, &b, count / 2, params.max_shift, err);
+    align_brackets(&alignment, &b, count / 2, params.max_shift, err);
     const double aligned = clock_seconds();
-    if (!st) st = merge_agreement(&agreement, &b, err);
-    if (!st) st = noise_measure(&measured, &known, &b, err);
+    if (!err->status && !merge_agreement(&agreement, &b, err)) noise_measure(&measured, &known, &b, err);
     for (int k = 0; k < count; k++)
         noise[k] = known ? measured : noise_given(params.electrons, params.read_noise, &srgb, 8);
-    if (!st) st = merge_brackets(&v->merged, &b, noise, &params, err);
+    if (!err->status) merge_brackets(&v->merged, &b, noise, &params, err);
     *times = (struct times){read - begun, aligned - read, clock_seconds() - aligned};
-    return st;
+    return err->status;
 }
 
 static enum status find_error(const struct view *v, double *error, struct err *err)
@@ -189,16 +187,16 @@ static enum status write_radiance(const struct view *v, double *seconds, struct 
     struct exr_plane *plane = NULL;
     char path[FILE_PATH];
     const double begun = clock_seconds();
-    enum status st = file_path(path, v->request->folder, "merged", ".exr", err);
-    if (!st) st = exr_image_init(&im, v->request->width, v->request->height, err);
-    for (size_t c = 0; !st && c < 3; c++) {
-        st = exr_add_plane(&im, names[c], EXR_HALF, &plane, err);
-        for (size_t i = 0; !st && i < pixels; i++) plane->f[i] = v->merged.radiance.data[3 * i + c];
+    if (!file_path(path, v->request->folder, "merged", ".exr", err))
+        exr_image_init(&im, v->request->width, v->request->height, err);
+    for (size_t c = 0; !err->status && c < 3; c++) {
+        exr_add_plane(&im, names[c], EXR_HALF, &plane, err);
+        for (size_t i = 0; !err->status && i < pixels; i++) plane->f[i] = v->merged.radiance.data[3 * i + c];
     }
-    if (!st) st = exr_write(&im, path, NULL, err);
+    if (!err->status) exr_write(&im, path, NULL, err);
     *seconds = clock_seconds() - begun;
     exr_image_release(&im);
-    return st;
+    return err->status;
 }
 
 static enum status sample(const struct request *r, struct err *err)
@@ -206,30 +204,33 @@ static enum status sample(const struct request *r, struct err *err)
     struct view *v = calloc(1, sizeof *v);
     double total[MAX_RUNS], read[MAX_RUNS], align[MAX_RUNS], merge[MAX_RUNS], error = 0, wrote = 0, toned = 0;
     int runs = -1; /* the first run does not count */
-    enum status st = v ? ST_OK : err_nomem(err, "a view", sizeof *v);
-    for (double begun = clock_seconds(); !st && runs < MAX_RUNS && (runs < 1 || clock_seconds() - begun < RUN_SECONDS);
-         runs++) {
+    if (!v) err_nomem(err, "a view", sizeof *v);
+    for (double begun = clock_seconds();
+         !err->status && runs < MAX_RUNS && (runs < 1 || clock_seconds() - begun < RUN_SECONDS); runs++) {
         struct times t = {0};
         release(v);
         *v = (struct view){.request = r};
-        st = merge_once(v, &t, err);
+        merge_once(v, &t, err);
         if (runs < 0) begun = clock_seconds();
-        if (st || runs < 0) continue;
+        if (err->status || runs < 0) continue;
         total[runs] = t.read + t.align + t.merge;
         read[runs] = t.read;
         align[runs] = t.align;
         merge[runs] = t.merge;
     }
-    if (!st) st = find_error(v, &error, err);
-    if (!st) {
+    if (!err->status) find_error(v, &error, err);
+    if (!err->status) {
         unsigned char *rgb = malloc((size_t)r->width * (size_t)r->height * 3);
         const double begun = clock_seconds();
-        st = rgb ? tone_map(rgb, &v->merged.radiance, err) : err_nomem(err, "a picture", 0);
+        if (rgb)
+            tone_map(rgb, &v->merged.radiance, err);
+        else
+            err_nomem(err, "a picture", 0);
         toned = clock_seconds() - begun;
         free(rgb);
     }
-    if (!st) st = write_radiance(v, &wrote, err);
-    if (!st)
+    if (!err->status) write_radiance(v, &wrote, err);
+    if (!err->status)
         printf("seconds %.6f\nread_s %.6f\nalign_s %.6f\nmerge_s %.6f\ntone_s %.6f\nwrite_s %.6f\nmpixels %.6g\nerror "
                "%.4g\n"
                "unit 1\n",
@@ -237,7 +238,7 @@ static enum status sample(const struct request *r, struct err *err)
                1e-6 * r->width * r->height * r->exposures, error);
     if (v) release(v);
     free(v);
-    return st;
+    return err->status;
 }
 
 int main(int argc, char **argv)

@@ -103,32 +103,32 @@ static enum status run_phase(const struct bench *b, struct work *w, enum phase p
     struct photo_record record = {0};
     char radiometry[RADIOMETRY_SIZE], path[FILE_PATH], name[32];
     size_t beyond;
-    enum status st = ST_OK;
     switch (phase) {
     case MERGE:
-        st = bracketed_view_read(&w->merged, w->id, folder, folder, NULL, &w->prov, err);
-        return st ? st : bracketed_view_merge(&w->merged, &params, err);
+        bracketed_view_read(&w->merged, w->id, folder, folder, NULL, &w->prov, err);
+        if (!err->status) bracketed_view_merge(&w->merged, &params, err);
+        return err->status;
     case WRITE_RADIANCE:
         return bracketed_view_write_radiance(&w->merged, folder, &w->prov, &beyond, err);
     case RECTIFY:
-        st = photo_record_read(&record, folder, w->id, NULL, err);
-        if (!st) st = linear_photo_read(&w->linear, &w->quality, radiometry, folder, &record, NULL, &w->prov, err);
+        photo_record_read(&record, folder, w->id, NULL, err);
+        if (!err->status) linear_photo_read(&w->linear, &w->quality, radiometry, folder, &record, NULL, &w->prov, err);
         photo_record_release(&record);
-        for (int k = 0; !st && k < b->view_count; k++) {
+        for (int k = 0; !err->status && k < b->view_count; k++) {
             const struct mat3 photo_from_view = mat3_transpose(mat3_from_quat(b->views[k].view_from_photo));
             const struct view view = camera_of(&b->views[k], "view");
             const struct resample_source source = {.linear = &w->linear, .quality = &w->quality};
-            st = resample_photo(&w->views[k], &w->view_quality[k], &source, &b->lens, &photo_from_view, &view, err);
+            resample_photo(&w->views[k], &w->view_quality[k], &source, &b->lens, &photo_from_view, &view, err);
         }
-        return st;
+        return err->status;
     case WRITE_VIEWS:
-        for (int k = 0; !st && k < b->view_count; k++) {
+        for (int k = 0; !err->status && k < b->view_count; k++) {
             const struct view view = camera_of(&b->views[k], "view");
             snprintf(name, sizeof name, "%s-%d", w->id, k);
-            st = file_path(path, folder, name, ".exr", err);
-            if (!st) st = view_image_write(&w->views[k], &w->view_quality[k], path, &view, &w->prov, "exact", err);
+            if (!file_path(path, folder, name, ".exr", err))
+                view_image_write(&w->views[k], &w->view_quality[k], path, &view, &w->prov, "exact", err);
         }
-        return st;
+        return err->status;
     default:
         return ST_INTERNAL;
     }
@@ -171,8 +171,8 @@ static enum status sample(const struct request *r, struct err *err)
     double view_pixels = 0;
     struct bench *b = calloc(1, sizeof *b);
     int runs = -1; /* the first run does not count */
-    enum status st = b ? ST_OK : err_nomem(err, "photos", sizeof *b);
-    if (!st) {
+    if (!b) err_nomem(err, "photos", sizeof *b);
+    if (!err->status) {
         const double focal = r->width * 16 / 36.0;
         b->request = r;
         b->lens = (struct camera){
@@ -180,28 +180,28 @@ static enum status sample(const struct request *r, struct err *err)
             r->width,
             r->height,
             {focal, focal, r->width / 2.0, r->height / 2.0, -1 / 24.0, 1 / 1920.0, -1 / 322560.0, 1 / 92897280.0}};
-        st = view_cameras_of_photo(b->views, &b->view_count, &b->lens, r->max_megapixels, 110, err);
+        view_cameras_of_photo(b->views, &b->view_count, &b->lens, r->max_megapixels, 110, err);
     }
-    for (int i = 0; !st && i < r->photos; i++) {
+    for (int i = 0; !err->status && i < r->photos; i++) {
         snprintf(b->work[i].id, sizeof b->work[i].id, "p%d", i);
         b->work[i].err = (struct err)ERR_INIT;
-        st = write_record(r, b->work[i].id, err);
+        write_record(r, b->work[i].id, err);
     }
-    for (double begun = clock_seconds(); !st && runs < MAX_RUNS && (runs < 1 || clock_seconds() - begun < RUN_SECONDS);
-         runs++) {
+    for (double begun = clock_seconds();
+         !err->status && runs < MAX_RUNS && (runs < 1 || clock_seconds() - begun < RUN_SECONDS); runs++) {
         double seconds[PHASES], used = 0;
-        st = run_once(b, seconds, &used, err);
+        run_once(b, seconds, &used, err);
         if (runs < 0) begun = clock_seconds();
-        if (st || runs < 0) continue;
+        if (err->status || runs < 0) continue;
         merge[runs] = seconds[MERGE];
         rectify[runs] = seconds[RECTIFY];
         total[runs] = merge[runs] + rectify[runs];
         cpu[runs] = used;
         wrote[runs] = seconds[WRITE_RADIANCE] + seconds[WRITE_VIEWS];
     }
-    for (int k = 0; !st && k < b->view_count; k++)
+    for (int k = 0; !err->status && k < b->view_count; k++)
         view_pixels += 1.0 * b->views[k].camera.width * b->views[k].camera.height;
-    if (!st)
+    if (!err->status)
         printf("seconds %.6f\ncpu_s %.6f\nmerge_s %.6f\nrectify_s %.6f\nwrite_s %.6f\nmpixels %.6g\nviews "
                "%d\nview_mpixels %.6g\n",
                middle_of(total, runs), middle_of(cpu, runs), middle_of(merge, runs), middle_of(rectify, runs),
@@ -209,7 +209,7 @@ static enum status sample(const struct request *r, struct err *err)
                b->view_count * r->photos, 1e-6 * view_pixels * r->photos);
     for (int i = 0; b && i < MAX_PHOTOS; i++) release_work(&b->work[i]);
     free(b);
-    return st;
+    return err->status;
 }
 
 int main(int argc, char **argv)

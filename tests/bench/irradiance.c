@@ -147,16 +147,15 @@ static enum status read_points(struct bench *b, const struct model_axes *axes, s
 {
     struct surface_points all = {0};
     char path[FILE_PATH];
-    enum status st = file_path(path, b->folder, "evaluate/irradiance_points.txt", "", err);
-    if (!st) st = surface_points_read(&all, path, err);
-    for (int i = 0; !st && i < POINTS; i++) {
+    if (!file_path(path, b->folder, "evaluate/irradiance_points.txt", "", err)) surface_points_read(&all, path, err);
+    for (int i = 0; !err->status && i < POINTS; i++) {
         const struct surface_point *p = &all.list[(size_t)i * (size_t)all.count / POINTS];
         b->points[i] =
             (struct gather_point){model_from_world_point(axes, p->at), model_from_world_direction(axes, p->normal)};
         model_field_lift(&b->model, &b->points[i], LIFT * model_rays_size(&b->model.model));
     }
     surface_points_release(&all);
-    return st;
+    return err->status;
 }
 
 static enum status make_model(struct bench *b, struct err *err)

@@ -105,22 +105,22 @@ static enum status make(const struct made *m, const struct provenance *prov, str
         return err_set(err, ST_USAGE,
                        "--views %d --width %d --height %d --side %d: wanted 1 to 99 views, sizes from 1.", m->views,
                        m->width, m->height, m->side);
-    enum status st = mkdir(m->out, 0777) && errno != EEXIST ? err_errno(err, "make", m->out) : ST_OK;
-    if (!st)
-        st = write_cameras(m, "cameras", 1, (ACROSS - 1) / 2.0 + 0.4, (m->views - 1) / ACROSS / 2.0 + 0.4, folder, err);
-    if (!st) st = write_cameras(m, "views", m->views, 0, 0, folder, err);
-    if (!st) st = camera_set_read(&set, folder, NULL, err);
+    if (mkdir(m->out, 0777) && errno != EEXIST) err_errno(err, "make", m->out);
+    if (!err->status)
+        write_cameras(m, "cameras", 1, (ACROSS - 1) / 2.0 + 0.4, (m->views - 1) / ACROSS / 2.0 + 0.4, folder, err);
+    if (!err->status) write_cameras(m, "views", m->views, 0, 0, folder, err);
+    if (!err->status) camera_set_read(&set, folder, NULL, err);
     snprintf(depth, sizeof depth, "%.4000s/depth", m->out);
-    for (int i = 0; !st && i < set.view_count; i++) {
+    for (int i = 0; !err->status && i < set.view_count; i++) {
         struct layered_depth d = {0};
         char path[4300];
         snprintf(path, sizeof path, "%s/%s.exr", depth, set.views[i].name);
-        st = make_depth(&d, &set.views[i], m->side, err);
-        if (!st) st = layered_depth_write(&d, &set.views[i], path, prov, err);
+        make_depth(&d, &set.views[i], m->side, err);
+        if (!err->status) layered_depth_write(&d, &set.views[i], path, prov, err);
         layered_depth_release(&d);
     }
     camera_set_release(&set);
-    return st;
+    return err->status;
 }
 
 int main(int argc, char **argv)

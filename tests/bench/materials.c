@@ -146,10 +146,9 @@ static enum status fit_samples(struct trial *t, struct material_samples *s, cons
     }
     struct material_choice *choice = malloc(sizeof *choice);
     if (!choice) return err_nomem(err, "a choice", sizeof *choice);
-    const enum status st = material_choose(choice, s, err);
-    if (!st) judge(t, choice, truth);
+    if (!material_choose(choice, s, err)) judge(t, choice, truth);
     free(choice);
-    return st;
+    return err->status;
 }
 
 static enum status run_trial(struct trial *t, const struct work *w, uint64_t seed, struct err *err)
@@ -163,22 +162,25 @@ static enum status run_trial(struct trial *t, const struct work *w, uint64_t see
     double share;
     struct brdf b = random_brdf(w->kind, seed, &share);
     room_make(&room, seed);
-    enum status st = views && diffuse && gloss ? material_samples_init(&s, count, err) : err_nomem(err, "samples", 0);
-    if (!st) {
+    if (views && diffuse && gloss)
+        material_samples_init(&s, count, err);
+    else
+        err_nomem(err, "samples", 0);
+    if (!err->status) {
         place_views(views, &s, &room, seed, w->views, columns, rows);
         light_samples(diffuse, gloss, &room, &b, views, count);
         b.ks = w->kind == BRDF_LAMBERT ? 0 : ks_for_share(diffuse, gloss, count, share);
         observe(&s, diffuse, gloss, b.ks, w->noise, seed);
-        st = fit_samples(t, &s, &room, views, &b, w, seed, err);
+        fit_samples(t, &s, &room, views, &b, w, seed, err);
     }
-    if (!st && getenv("MATERIALS_VERBOSE"))
+    if (!err->status && getenv("MATERIALS_VERBOSE"))
         fprintf(stderr, "%d: shape %.3g share %.2f ks %.3g chosen %s errors %.4f %.4f %.4f\n", (int)seed, b.shape,
                 share, b.ks, material_kind_name(t->chosen), t->k_d, t->ks, t->shape);
     material_samples_release(&s);
     free(views);
     free(diffuse);
     free(gloss);
-    return st;
+    return err->status;
 }
 
 static void run_trials(void *ctx, size_t begin, size_t end, int thread)

@@ -75,14 +75,13 @@ static void draw_some(void *ctx, size_t begin, size_t end, int thread)
 static enum status measure_anew(struct pair *p, const struct brute *b, const struct vec3 at[2], struct err *err)
 {
     struct depth_picture pictures[2] = {{.z = NULL}};
-    enum status st = ST_OK;
-    for (int k = 0; !st && k < 2; k++) {
+    for (int k = 0; !err->status && k < 2; k++) {
         const struct view camera = shot_end_camera(&b->v->shot, &b->v->move.end[k], at[k]);
-        st = parallax_picture_make(&pictures[k], b->scene, &camera, b->params->parallax_side, err);
+        parallax_picture_make(&pictures[k], b->scene, &camera, b->params->parallax_side, err);
     }
-    if (!st) p->parallax = parallax_between(&pictures[0], &pictures[1], parallax_tolerance(b->scene));
+    if (!err->status) p->parallax = parallax_between(&pictures[0], &pictures[1], parallax_tolerance(b->scene));
     for (int k = 0; k < 2; k++) parallax_picture_release(&pictures[k]);
-    return st;
+    return err->status;
 }
 
 static void measure_some(void *ctx, size_t begin, size_t end, int thread)
@@ -132,34 +131,32 @@ static enum status measure_path(const struct brute *b, struct viewpoint_test *te
 
 static enum status draw_candidates(struct brute *b, struct found *f, struct err *err)
 {
-    enum status st = ST_OK;
-    for (b->end = 0; !st && b->end < 2; b->end++) {
+    for (b->end = 0; !err->status && b->end < 2; b->end++) {
         const size_t cells = (size_t)b->cells[b->end];
         b->pictures[b->end] = calloc(cells + 1, sizeof **b->pictures);
         b->errors = calloc(cells + 1, sizeof *b->errors);
-        st = b->pictures[b->end] && b->errors ? ST_OK : err_nomem(err, "pictures", cells * sizeof **b->pictures);
-        if (!st) parallel_for(cells, 1, draw_some, b);
-        for (size_t i = 0; !st && i < cells; i++)
-            if (b->errors[i].status) st = err_set(err, b->errors[i].status, "%s", b->errors[i].text);
-        if (!st) f->renders += validity_region_count(&b->v->region[b->end]);
+        if (!b->pictures[b->end] || !b->errors) err_nomem(err, "pictures", cells * sizeof **b->pictures);
+        if (!err->status) parallel_for(cells, 1, draw_some, b);
+        for (size_t i = 0; !err->status && i < cells; i++)
+            if (b->errors[i].status) err_set(err, b->errors[i].status, "%s", b->errors[i].text);
+        if (!err->status) f->renders += validity_region_count(&b->v->region[b->end]);
         free(b->errors);
         b->errors = NULL;
     }
-    return st;
+    return err->status;
 }
 
 static enum status measure_pairs(struct brute *b, struct found *f, struct err *err)
 {
     const size_t starts = (size_t)b->cells[0];
-    enum status st = ST_OK;
     if (!b->anew && draw_candidates(b, f, err)) return err->status;
     b->errors = calloc(starts + 1, sizeof *b->errors);
     if (!b->errors) return err_nomem(err, "errors", starts * sizeof *b->errors);
     parallel_for(starts, 1, measure_some, b);
-    for (size_t i = 0; !st && i < starts; i++)
-        if (b->errors[i].status) st = err_set(err, b->errors[i].status, "%s", b->errors[i].text);
+    for (size_t i = 0; !err->status && i < starts; i++)
+        if (b->errors[i].status) err_set(err, b->errors[i].status, "%s", b->errors[i].text);
     free(b->errors);
-    return st;
+    return err->status;
 }
 
 static enum status best_of_all(struct found *f, const struct layer_scene *scene, const struct validity *v, bool anew,
@@ -172,20 +169,19 @@ static enum status best_of_all(struct found *f, const struct layer_scene *scene,
     const size_t count = (size_t)b.cells[0] * (size_t)b.cells[1];
 
     b.pairs = malloc(count * sizeof *b.pairs);
-    enum status st = b.pairs ? ST_OK : err_nomem(err, "pairs", count * sizeof *b.pairs);
-    if (!st) st = scene_points_collect(&points, scene, err);
-    if (!st) st = measure_pairs(&b, f, err);
-    if (!st) {
+    if (!b.pairs) err_nomem(err, "pairs", count * sizeof *b.pairs);
+    if (!err->status && !scene_points_collect(&points, scene, err)) measure_pairs(&b, f, err);
+    if (!err->status) {
         qsort(b.pairs, count, sizeof *b.pairs, more_parallax_first);
         f->best = fmax(0, b.pairs[0].parallax);
     }
-    for (size_t i = 0; !st && i < count && b.pairs[i].parallax >= 0; i++) {
+    for (size_t i = 0; !err->status && i < count && b.pairs[i].parallax >= 0; i++) {
         f->pairs++;
         f->renders += anew ? 2 : 0;
         if (f->ends.valid) continue;
         f->ends = (struct move_ends){.parallax = b.pairs[i].parallax};
         for (int k = 0; k < 2; k++) f->ends.at[k] = ends_candidate(v, k, b.pairs[i].cell[k]);
-        st = measure_path(&b, &test, &f->ends, err);
+        measure_path(&b, &test, &f->ends, err);
     }
     f->renders += test.renders;
     for (int k = 0; k < 2; k++) {
@@ -195,7 +191,7 @@ static enum status best_of_all(struct found *f, const struct layer_scene *scene,
     free(b.pairs);
     viewpoint_test_release(&test);
     scene_points_release(&points);
-    return st;
+    return err->status;
 }
 
 /* The parallax of the ends in pictures of JUDGE_SIDE px. */
@@ -203,14 +199,13 @@ static enum status judge(double *parallax, const struct found *f, const struct l
                          const struct validity *v, struct err *err)
 {
     struct depth_picture pictures[2] = {{.z = NULL}};
-    enum status st = ST_OK;
-    for (int k = 0; !st && k < 2; k++) {
+    for (int k = 0; !err->status && k < 2; k++) {
         const struct view camera = shot_end_camera(&v->shot, &v->move.end[k], f->ends.at[k]);
-        st = parallax_picture_make(&pictures[k], scene, &camera, JUDGE_SIDE, err);
+        parallax_picture_make(&pictures[k], scene, &camera, JUDGE_SIDE, err);
     }
-    if (!st) *parallax = parallax_between(&pictures[0], &pictures[1], parallax_tolerance(scene));
+    if (!err->status) *parallax = parallax_between(&pictures[0], &pictures[1], parallax_tolerance(scene));
     for (int k = 0; k < 2; k++) parallax_picture_release(&pictures[k]);
-    return st;
+    return err->status;
 }
 
 static enum status run(const struct job *job, struct err *err)
@@ -222,19 +217,18 @@ static enum status run(const struct job *job, struct err *err)
     struct found f = {.best = 0};
     double judged = 0;
 
-    enum status st = camera_set_read(&set, job->views, NULL, err);
-    if (!st) st = validity_read(&v, job->validity, NULL, err);
-    if (!st) st = layer_scene_read(&scene, &set, job->depth, NULL, err);
+    if (!camera_set_read(&set, job->views, NULL, err) && !validity_read(&v, job->validity, NULL, err))
+        layer_scene_read(&scene, &set, job->depth, NULL, err);
     const double wall = clock_seconds(), core = clock_cpu_seconds();
-    if (!st && job->all) st = best_of_all(&f, &scene, &v, job->anew, &job->params, err);
-    if (!st && !job->all) {
-        st = ends_choose(&f.ends, &notes, &scene, &v, &job->params, err);
+    if (!err->status && job->all) best_of_all(&f, &scene, &v, job->anew, &job->params, err);
+    if (!err->status && !job->all) {
+        ends_choose(&f.ends, &notes, &scene, &v, &job->params, err);
         f.pairs = notes.pairs;
         f.renders = notes.renders;
     }
     const double seconds = clock_seconds() - wall, core_s = clock_cpu_seconds() - core;
-    if (!st) st = judge(&judged, &f, &scene, &v, err);
-    if (!st) {
+    if (!err->status) judge(&judged, &f, &scene, &v, err);
+    if (!err->status) {
         printf("seconds %.6g\ncore_s %.6g\nparallax %.3f\nchosen %.3f\n", seconds, core_s, 1e2 * judged,
                1e2 * f.ends.parallax);
         if (job->all) printf("best %.3f\n", 1e2 * f.best);
@@ -244,7 +238,7 @@ static enum status run(const struct job *job, struct err *err)
     validity_release(&v);
     layer_scene_release(&scene);
     camera_set_release(&set);
-    return st;
+    return err->status;
 }
 
 int main(int argc, char **argv)

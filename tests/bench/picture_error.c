@@ -14,30 +14,29 @@ static enum status compare(const char *picture, const char *truth, struct err *e
 {
     static const char *const names[] = {"R", "G", "B"};
     struct exr_image a = {0}, b = {0};
-    enum status st = exr_read(&a, picture, names, 3, err);
-    if (!st) st = exr_read(&b, truth, names, 3, err);
-    if (!st && (a.width != b.width || a.height != b.height))
-        st = err_set(err, ST_DATA, "%s has %d x %d pixels, but %s has %d x %d; give pictures of one size.", picture,
-                     a.width, a.height, truth, b.width, b.height);
-    if (!st) {
+    if (!exr_read(&a, picture, names, 3, err)) exr_read(&b, truth, names, 3, err);
+    if (!err->status && (a.width != b.width || a.height != b.height))
+        err_set(err, ST_DATA, "%s has %d x %d pixels, but %s has %d x %d; give pictures of one size.", picture, a.width,
+                a.height, truth, b.width, b.height);
+    if (!err->status) {
         const size_t pixels = (size_t)a.width * (size_t)a.height;
         double mean = 0, sum = 0;
         for (int c = 0; c < 3; c++)
             for (size_t i = 0; i < pixels; i++) mean += (double)b.planes[c].f[i] / (3 * (double)pixels);
         if (!(mean > 0))
-            st = err_set(err, ST_DATA, "%s is black, so no relative error is defined; give another truth.", truth);
-        for (int c = 0; !st && c < 3; c++) {
+            err_set(err, ST_DATA, "%s is black, so no relative error is defined; give another truth.", truth);
+        for (int c = 0; !err->status && c < 3; c++) {
             const struct exr_plane *v = exr_find(&a, names[c]), *t = exr_find(&b, names[c]);
             for (size_t i = 0; i < pixels; i++) {
                 double off = ((double)v->f[i] - (double)t->f[i]) / (fmax(t->f[i], 0) + mean / 100);
                 sum += off * off;
             }
         }
-        if (!st) printf("error %.5g\nunit 1\npixels %zu\n", sqrt(sum / (3 * (double)pixels)), pixels);
+        if (!err->status) printf("error %.5g\nunit 1\npixels %zu\n", sqrt(sum / (3 * (double)pixels)), pixels);
     }
     exr_image_release(&a);
     exr_image_release(&b);
-    return st;
+    return err->status;
 }
 
 int main(int argc, char **argv)

@@ -75,18 +75,16 @@ static enum status set_cameras(struct bench *b, const struct job *j, struct err 
     struct model_axes axes;
     struct view from, to;
     char views[FILE_PATH], path[FILE_PATH];
-    enum status st = file_path(views, j->folder, "views", "", err);
-    if (!st) st = file_path(path, j->folder, "model/axes", ".txt", err);
-    if (!st) st = camera_set_read_cameras(&set, views, NULL, err);
-    if (!st) st = model_axes_read(&axes, path, NULL, err);
-    if (!st) st = find_view(&from, &set, j->from, &axes, err);
-    if (!st) st = find_view(&to, &set, j->to, &axes, err);
+    if (!file_path(views, j->folder, "views", "", err) && !file_path(path, j->folder, "model/axes", ".txt", err) &&
+        !camera_set_read_cameras(&set, views, NULL, err) && !model_axes_read(&axes, path, NULL, err) &&
+        !find_view(&from, &set, j->from, &axes, err))
+        find_view(&to, &set, j->to, &axes, err);
     b->cameras = calloc((size_t)j->frames, sizeof *b->cameras);
-    if (!st && !b->cameras) st = err_nomem(err, "cameras", (size_t)j->frames * sizeof *b->cameras);
-    for (int i = 0; !st && i < j->frames; i++)
+    if (!err->status && !b->cameras) err_nomem(err, "cameras", (size_t)j->frames * sizeof *b->cameras);
+    for (int i = 0; !err->status && i < j->frames; i++)
         b->cameras[i] = between(&from, &to, i / fmax(j->frames - 1, 1), j->width, j->height);
     camera_set_release(&set);
-    return st;
+    return err->status;
 }
 
 static enum status open_bench(struct bench *b, const struct job *j, struct err *err)
@@ -131,27 +129,25 @@ static enum status measure(struct rate *r, const struct bench *b, const struct j
                            struct err *err)
 {
     struct model_picture out = {0};
-    enum status st = round(b, j, &out, err);
+    round(b, j, &out, err);
     const double begin = clock_seconds(), core_begin = clock_cpu_seconds();
     int rounds = 0;
-    while (!st && clock_seconds() - begin < SECONDS_MIN) {
-        st = round(b, j, &out, err);
+    while (!err->status && clock_seconds() - begin < SECONDS_MIN) {
+        round(b, j, &out, err);
         rounds++;
     }
     const double frames = (double)rounds * j->frames;
     *r = (struct rate){(clock_seconds() - begin) / frames, (clock_cpu_seconds() - core_begin) / frames};
     model_picture_release(&out);
-    return st;
+    return err->status;
 }
 
 static enum status run(const struct job *j, struct err *err)
 {
     struct bench b = {0};
     struct rate frame, visible;
-    enum status st = open_bench(&b, j, err);
-    if (!st) st = measure(&frame, &b, j, draw_all, err);
-    if (!st) st = measure(&visible, &b, j, find_visible, err);
-    if (!st) {
+    if (!open_bench(&b, j, err) && !measure(&frame, &b, j, draw_all, err) &&
+        !measure(&visible, &b, j, find_visible, err)) {
         printf("seconds %.5g\nframes_per_s %.4g\ncore_ms %.4g\n", frame.seconds, 1 / frame.seconds,
                1e3 * frame.core_seconds);
         printf("visible_ms %.4g\nshade_ms %.4g\n", 1e3 * visible.seconds, 1e3 * (frame.seconds - visible.seconds));
@@ -159,7 +155,7 @@ static enum status run(const struct job *j, struct err *err)
     }
     shell_close(b.scene);
     free(b.cameras);
-    return st;
+    return err->status;
 }
 
 int main(int argc, char **argv)

@@ -99,23 +99,24 @@ static enum status write_frame(const char *folder, const struct view *camera, co
     struct exr_plane *plane;
     float *full = malloc(4 * pixels * sizeof *full);
     char *file = malloc(size);
-    enum status st = full && file ? exr_image_init(&im, camera->width, camera->height, err)
-                                  : err_nomem(err, "a frame", 4 * pixels * sizeof *full);
 
-    if (!st) enlarge(full, camera->width, camera->height, rgba, w, h, 4);
-    for (size_t k = 0; !st && k < 4; k++) {
-        if ((st = exr_add_plane(&im, names[k], EXR_HALF, &plane, err))) break;
+    if (!full || !file)
+        err_nomem(err, "a frame", 4 * pixels * sizeof *full);
+    else if (!exr_image_init(&im, camera->width, camera->height, err))
+        enlarge(full, camera->width, camera->height, rgba, w, h, 4);
+    for (size_t k = 0; !err->status && k < 4; k++) {
+        if (exr_add_plane(&im, names[k], EXR_HALF, &plane, err)) break;
         if (k == 3) enlarge(plane->f, camera->width, camera->height, hole, w, h, 1);
         for (size_t i = 0; k < 3 && i < pixels; i++) plane->f[i] = full[4 * i + k];
     }
-    if (!st) {
+    if (!err->status) {
         snprintf(file, size, "%s/%s.exr", folder, camera->name);
-        st = exr_write(&im, file, NULL, err);
+        exr_write(&im, file, NULL, err);
     }
     exr_image_release(&im);
     free(full);
     free(file);
-    return st;
+    return err->status;
 }
 
 static enum status write_rendered(const char *folder, const struct view *camera, const struct rendered_frame *f,
@@ -126,9 +127,9 @@ static enum status write_rendered(const char *folder, const struct view *camera,
 
     if (!hole) return err_nomem(err, "a frame's holes", pixels * sizeof *hole);
     for (size_t i = 0; i < pixels; i++) hole[i] = f->hole[i];
-    const enum status st = write_frame(folder, camera, f->rgba, hole, f->width, f->height, err);
+    write_frame(folder, camera, f->rgba, hole, f->width, f->height, err);
     free(hole);
-    return st;
+    return err->status;
 }
 
 /* ------------------------------------------------------------------------------------------------------- measuring */
@@ -147,26 +148,27 @@ static enum status measure(struct bench *b, const struct job *job, struct err *e
     struct rendered_frame frame = {0};
     double wall = 0, cpu = 0, holes = 0, megapixels = 0;
     int done = 0;
-    enum status st = ST_OK;
 
-    for (int round = 0; !st && (round == 0 || wall < SECONDS_MIN); round++) {
+    for (int round = 0; !err->status && (round == 0 || wall < SECONDS_MIN); round++) {
         if (round == 1) wall = cpu = holes = megapixels = done = 0;
-        for (int i = 0; !st && i < b->count; i++) {
+        for (int i = 0; !err->status && i < b->count; i++) {
             const struct view *camera = &b->reduced[i], *shown = job->path ? camera : b->cameras[i];
             const double wall_begin = clock_seconds(), cpu_begin = clock_cpu_seconds();
-            st = job->coverage ? layer_coverage(&frame, &b->scene, camera, 1, err)
-                               : renderer_camera(&b->renderer, camera, &frame, err);
+            if (job->coverage)
+                layer_coverage(&frame, &b->scene, camera, 1, err);
+            else
+                renderer_camera(&b->renderer, camera, &frame, err);
             wall += clock_seconds() - wall_begin;
             cpu += clock_cpu_seconds() - cpu_begin;
             holes += frame.hole_fraction;
             megapixels += 1e-6 * shown->width * shown->height;
             done++;
-            if (!st && round == 0 && job->out) st = write_rendered(job->out, b->cameras[i], &frame, err);
+            if (!err->status && round == 0 && job->out) write_rendered(job->out, b->cameras[i], &frame, err);
         }
     }
     rendered_frame_release(&frame);
-    if (!st) say(done, megapixels, wall, cpu, holes);
-    return st;
+    if (!err->status) say(done, megapixels, wall, cpu, holes);
+    return err->status;
 }
 
 static int nearest_view(const struct camera_set *set, const struct view *camera)
@@ -183,17 +185,16 @@ static int nearest_view(const struct camera_set *set, const struct view *camera)
 static enum status measure_photos(struct bench *b, const struct job *job, struct err *err)
 {
     double wall = 0, cpu = 0, holes = 0, megapixels = 0;
-    enum status st = ST_OK;
 
-    for (int i = 0; !st && i < b->count; i++) {
+    for (int i = 0; !err->status && i < b->count; i++) {
         const int nearest = nearest_view(&b->set, b->cameras[i]);
         struct image photo = {0}, copy = {0};
         float *hole = NULL;
-        st = view_image_read(&photo, job->views, &b->set.views[nearest], NULL, err);
-        const size_t pixels = st ? 0 : (size_t)photo.width * (size_t)photo.height;
-        if (!st) st = image_init(&copy, photo.width, photo.height, 4, err);
-        if (!st && !(hole = malloc(pixels * sizeof *hole))) st = err_nomem(err, "holes", pixels * sizeof *hole);
-        if (!st) {
+        view_image_read(&photo, job->views, &b->set.views[nearest], NULL, err);
+        const size_t pixels = err->status ? 0 : (size_t)photo.width * (size_t)photo.height;
+        if (!err->status) image_init(&copy, photo.width, photo.height, 4, err);
+        if (!err->status && !(hole = malloc(pixels * sizeof *hole))) err_nomem(err, "holes", pixels * sizeof *hole);
+        if (!err->status) {
             const double wall_begin = clock_seconds(), cpu_begin = clock_cpu_seconds();
             memcpy(copy.data, photo.data, 4 * pixels * sizeof *copy.data);
             wall += clock_seconds() - wall_begin;
@@ -202,14 +203,14 @@ static enum status measure_photos(struct bench *b, const struct job *job, struct
             double missing = 0;
             for (size_t p = 0; p < pixels; p++) missing += hole[p] = !(copy.data[4 * p + 3] > 0);
             holes += missing / (double)pixels;
-            if (job->out) st = write_frame(job->out, b->cameras[i], copy.data, hole, copy.width, copy.height, err);
+            if (job->out) write_frame(job->out, b->cameras[i], copy.data, hole, copy.width, copy.height, err);
         }
         image_release(&photo);
         image_release(&copy);
         free(hole);
     }
-    if (!st) say(b->count, megapixels, wall, cpu, holes);
-    return st;
+    if (!err->status) say(b->count, megapixels, wall, cpu, holes);
+    return err->status;
 }
 
 /* ------------------------------------------------------------------------------------------------ the command line */
@@ -217,17 +218,20 @@ static enum status measure_photos(struct bench *b, const struct job *job, struct
 static enum status choose_cameras(struct bench *b, const struct job *job, struct err *err)
 {
     struct frame_part part;
-    enum status st = frame_part_read(&part, NULL, job->scale, err);
+    frame_part_read(&part, NULL, job->scale, err);
 
-    if (!st)
-        st = job->path ? camera_path_read(&b->path, job->path, NULL, err)
-                       : camera_set_read(&b->set_of_cameras, job->cameras, NULL, err);
-    if (st) return st;
+    if (!err->status) {
+        if (job->path)
+            camera_path_read(&b->path, job->path, NULL, err);
+        else
+            camera_set_read(&b->set_of_cameras, job->cameras, NULL, err);
+    }
+    if (err->status) return err->status;
     b->count = job->path ? job->frames : b->set_of_cameras.view_count;
     b->cameras = calloc((size_t)b->count + 1, sizeof *b->cameras);
     b->reduced = calloc((size_t)b->count + 1, sizeof *b->reduced);
     if (!b->cameras || !b->reduced) return err_nomem(err, "cameras", (size_t)b->count);
-    for (int i = 0; !st && i < b->count; i++) {
+    for (int i = 0; !err->status && i < b->count; i++) {
         const int last = b->path.frame_count - 1;
         b->cameras[i] = job->path ? &b->path.frames[(long)i * last / (b->count > 1 ? b->count - 1 : 1)].camera
                                   : &b->set_of_cameras.views[i];
@@ -235,9 +239,9 @@ static enum status choose_cameras(struct bench *b, const struct job *job, struct
         if (job->path)
             reframe(&b->reduced[i], job->width, job->height);
         else
-            st = frame_part_camera(&b->reduced[i], &part, err);
+            frame_part_camera(&b->reduced[i], &part, err);
     }
-    return st;
+    return err->status;
 }
 
 static enum status run(struct bench *b, const struct job *job, struct err *err)

@@ -83,27 +83,26 @@ static enum status add_cell(struct house *h, int i, int j, struct err *err)
 {
     const double x = i * ROOM_X, y = j * ROOM_Y, x1 = x + ROOM_X, y1 = y + ROOM_Y;
     char name[NAME];
-    enum status st = ST_OK;
     snprintf(name, sizeof name, "pillar/%d-%d", i, j);
-    st = add_box(h, name, vec3_make(x, y, 0), vec3_make(x + WALL, y + WALL, HEIGHT), err);
+    add_box(h, name, vec3_make(x, y, 0), vec3_make(x + WALL, y + WALL, HEIGHT), err);
     snprintf(name, sizeof name, "wall/x%d-%d", i, j);
-    if (!st && i < h->columns) st = add_wall(h, name, 0, x + WALL, y, x1, y + WALL, j > 0 && j < h->rows, err);
+    if (!err->status && i < h->columns) add_wall(h, name, 0, x + WALL, y, x1, y + WALL, j > 0 && j < h->rows, err);
     snprintf(name, sizeof name, "wall/y%d-%d", i, j);
-    if (!st && j < h->rows) st = add_wall(h, name, 1, x, y + WALL, x + WALL, y1, i > 0 && i < h->columns, err);
-    if (st || i == h->columns || j == h->rows) return st;
+    if (!err->status && j < h->rows) add_wall(h, name, 1, x, y + WALL, x + WALL, y1, i > 0 && i < h->columns, err);
+    if (err->status || i == h->columns || j == h->rows) return err->status;
     snprintf(name, sizeof name, "floor/r%d-%d", i, j);
-    st = add_box(h, name, vec3_make(x, y, -WALL), vec3_make(x1, y1, 0), err);
+    add_box(h, name, vec3_make(x, y, -WALL), vec3_make(x1, y1, 0), err);
     snprintf(name, sizeof name, "ceiling/r%d-%d", i, j);
-    if (!st) st = add_box(h, name, vec3_make(x, y, HEIGHT), vec3_make(x1, y1, HEIGHT + WALL), err);
-    return st;
+    if (!err->status) add_box(h, name, vec3_make(x, y, HEIGHT), vec3_make(x1, y1, HEIGHT + WALL), err);
+    return err->status;
 }
 
 static enum status make_model(struct solid_mesh *mesh, struct house *h, struct err *err)
 {
-    enum status st = ST_OK;
-    for (int j = 0; !st && j <= h->rows; j++)
-        for (int i = 0; !st && i <= h->columns; i++) st = add_cell(h, i, j, err);
-    return st ? st : unite_solids(mesh, &h->solids, NULL, err);
+    for (int j = 0; !err->status && j <= h->rows; j++)
+        for (int i = 0; !err->status && i <= h->columns; i++) add_cell(h, i, j, err);
+    if (!err->status) unite_solids(mesh, &h->solids, NULL, err);
+    return err->status;
 }
 
 /* Camera k of the house: in room k / VIEWS, on the ring, looking across the room. */
@@ -198,17 +197,17 @@ static enum status write_lenses(const struct house *h, const char *path, struct 
 {
     struct lens_list list = {calloc((size_t)h->views, sizeof(struct lens)), h->views};
     char(*names)[16] = calloc((size_t)h->views, sizeof *names);
-    enum status st = list.lenses && names ? ST_OK : err_nomem(err, "lenses", (size_t)h->views * sizeof(struct lens));
-    for (int k = 0; !st && k < h->views; k++) {
+    if (!list.lenses || !names) err_nomem(err, "lenses", (size_t)h->views * sizeof(struct lens));
+    for (int k = 0; !err->status && k < h->views; k++) {
         snprintf(names[k], sizeof names[k], "v%06d", k);
         list.lenses[k] = (struct lens){names[k], names[k], {.model = CAMERA_PINHOLE}, {1, 0, 0, 0}};
         list.lenses[k].camera.width = list.lenses[k].camera.height = h->size;
         for (int i = 0; i < 4; i++) list.lenses[k].camera.params[i] = 0.5 * h->size;
     }
-    if (!st) st = lens_list_write(&list, path, h->prov, err);
+    if (!err->status) lens_list_write(&list, path, h->prov, err);
     free(list.lenses);
     free(names);
-    return st;
+    return err->status;
 }
 
 /* Radiance of a point on a face: stripes along a direction of the face's own. */
@@ -269,27 +268,26 @@ static enum status write_view(const struct house *h, const struct model_rays *mo
     struct photo_quality quality = {0};
     char name[16], path[PATH];
     uint32_t *faces = calloc((size_t)h->size * (size_t)h->size, sizeof *faces);
-    enum status st = faces ? ST_OK : err_nomem(err, "a view", (size_t)h->size * (size_t)h->size * 4);
+    if (!faces) err_nomem(err, "a view", (size_t)h->size * (size_t)h->size * 4);
     snprintf(name, sizeof name, "v%06d", k);
     view.name = name;
-    if (!st) model_rays_view(faces, model, &view);
-    if (!st) st = image_init(&im, h->size, h->size, 4, err);
-    if (!st) st = layered_depth_init(&d, h->size, h->size, err);
-    if (!st) st = fill_view(&im, &d, &view, model, faces, err);
+    if (!err->status) model_rays_view(faces, model, &view);
+    if (!err->status && !image_init(&im, h->size, h->size, 4, err) && !layered_depth_init(&d, h->size, h->size, err))
+        fill_view(&im, &d, &view, model, faces, err);
     snprintf(path, sizeof path, "%s/views/%s.exr", h->out, name);
-    if (!st) st = photo_quality_init(&quality, h->size, h->size, err);
-    for (int i = 0; !st && i < h->size * h->size; i++) {
+    if (!err->status) photo_quality_init(&quality, h->size, h->size, err);
+    for (int i = 0; !err->status && i < h->size * h->size; i++) {
         const float sigma = NOISE * luminance_of(im.data + 4 * i);
         quality.variance[i] = sigma * sigma;
     }
-    if (!st) st = view_image_write(&im, &quality, path, &view, h->prov, "relative", err);
+    if (!err->status) view_image_write(&im, &quality, path, &view, h->prov, "relative", err);
     photo_quality_release(&quality);
     snprintf(path, sizeof path, "%s/depth/%s.exr", h->out, name);
-    if (!st) st = layered_depth_write(&d, &view, path, h->prov, err);
+    if (!err->status) layered_depth_write(&d, &view, path, h->prov, err);
     layered_depth_release(&d);
     image_release(&im);
     free(faces);
-    return st;
+    return err->status;
 }
 
 /* A grid whose sides differ by at most one. */
@@ -313,23 +311,21 @@ static enum status make(struct house *h, struct err *err)
     struct model_axes axes = {.rotation = {1, 0, 0, 0}, .scale = 1, .metric = true, .ceiling = HEIGHT};
     struct model_rays model = {0};
     char path[PATH];
-    enum status st = plan_grid(h, err);
-    if (!st) st = make_model(&model.mesh, h, err);
+    if (!plan_grid(h, err)) make_model(&model.mesh, h, err);
     snprintf(path, sizeof path, "%s/model/model.txt", h->out);
-    if (!st) st = solid_mesh_write(&model.mesh, path, h->prov, err);
+    if (!err->status) solid_mesh_write(&model.mesh, path, h->prov, err);
     snprintf(path, sizeof path, "%s/model/axes.txt", h->out);
-    if (!st) st = model_axes_write(&axes, path, h->prov, err);
-    if (!st) st = write_text(h, "cameras", write_camera, err);
-    if (!st) st = write_text(h, "images", write_images, err);
-    if (!st) st = write_text(h, "points3D", write_points, err);
+    if (!err->status && !model_axes_write(&axes, path, h->prov, err) && !write_text(h, "cameras", write_camera, err) &&
+        !write_text(h, "images", write_images, err))
+        write_text(h, "points3D", write_points, err);
     snprintf(path, sizeof path, "%s/views/lenses.txt", h->out);
-    if (!st) st = write_lenses(h, path, err);
-    if (!st && h->count) st = model_rays_build(&model, MODEL_WITH_GLASS, err);
-    for (int k = h->first; !st && k < h->first + h->count; k++) st = write_view(h, &model, k, err);
-    if (!st) printf("views %d\nrooms %d\nfaces %d\n", h->views, h->columns * h->rows, model.mesh.face_count);
+    if (!err->status) write_lenses(h, path, err);
+    if (!err->status && h->count) model_rays_build(&model, MODEL_WITH_GLASS, err);
+    for (int k = h->first; !err->status && k < h->first + h->count; k++) write_view(h, &model, k, err);
+    if (!err->status) printf("views %d\nrooms %d\nfaces %d\n", h->views, h->columns * h->rows, model.mesh.face_count);
     model_rays_release(&model);
     solid_list_release(&h->solids);
-    return st;
+    return err->status;
 }
 
 int main(int argc, char **argv)

@@ -65,18 +65,17 @@ static enum status find_pair(struct pair *p, const char *folder, struct err *err
 static enum status read_bytes(unsigned char **bytes, size_t *size, const char *path, struct err *err)
 {
     struct stat info;
-    enum status st = ST_OK;
     FILE *f = fopen(path, "rb");
     if (!f || fstat(fileno(f), &info)) {
-        st = err_errno(err, "read", path);
+        err_errno(err, "read", path);
     } else if (!(*bytes = malloc((size_t)info.st_size + 1))) {
-        st = err_nomem(err, path, (size_t)info.st_size);
+        err_nomem(err, path, (size_t)info.st_size);
     } else {
         *size = fread(*bytes, 1, (size_t)info.st_size, f);
-        if (ferror(f)) st = err_errno(err, "read", path);
+        if (ferror(f)) err_errno(err, "read", path);
     }
     if (f) fclose(f);
-    return st;
+    return err->status;
 }
 
 static uint32_t little(const unsigned char *p, int bytes)
@@ -106,20 +105,23 @@ static enum status read_npz(float *to, const char *path, int width, int height, 
     const size_t wanted = (size_t)width * (size_t)height * sizeof(float), room = wanted + 65536;
     unsigned char *zip = NULL, *npy = malloc(room);
     size_t size = 0, got = 0;
-    enum status st = npy ? read_bytes(&zip, &size, path, err) : err_nomem(err, path, room);
-    if (!st) got = first_file(npy, room, zip, size);
+    if (npy)
+        read_bytes(&zip, &size, path, err);
+    else
+        err_nomem(err, path, room);
+    if (!err->status) got = first_file(npy, room, zip, size);
     const size_t header = got > 10 ? 10 + little(npy + 8, 2) : 0;
     char says[65536] = "";
     if (header > 10 && header <= got) memcpy(says, npy + 10, header - 10);
-    if (!st && (!header || memcmp(npy, "\x93NUMPY", 6) || got != header + wanted || !strstr(says, "'<f4'")))
-        st = err_set(err, ST_DATA, "%s: wanted an archive whose first array is deflated and has %d x %d floats.", path,
-                     width, height);
-    if (!st) memcpy(to, npy + header, wanted);
-    for (size_t i = 0; !st && i < wanted / sizeof(float); i++)
+    if (!err->status && (!header || memcmp(npy, "\x93NUMPY", 6) || got != header + wanted || !strstr(says, "'<f4'")))
+        err_set(err, ST_DATA, "%s: wanted an archive whose first array is deflated and has %d x %d floats.", path,
+                width, height);
+    if (!err->status) memcpy(to, npy + header, wanted);
+    for (size_t i = 0; !err->status && i < wanted / sizeof(float); i++)
         if (!isfinite(to[i]) || to[i] < 0) to[i] = 0;
     free(zip);
     free(npy);
-    return st;
+    return err->status;
 }
 
 static enum status read_disparities(struct pair *p, int side, struct err *err)
@@ -129,13 +131,13 @@ static enum status read_disparities(struct pair *p, int side, struct err *err)
     struct photo photo = {0};
     if (!(p->disparity[side] = malloc(pixels * sizeof(float)))) return err_nomem(err, "disparities", pixels * 4);
     if (strstr(path, ".npz")) return read_npz(p->disparity[side], path, p->width, p->height, err);
-    enum status st = photo_read(&photo, path, err);
-    if (!st && (photo.info.width != p->width || photo.info.height != p->height || photo.info.bits != 8))
-        st = err_set(err, ST_DATA, "%s: found %d x %d samples of %d bits, wanted %d x %d of 8.", path, photo.info.width,
-                     photo.info.height, photo.info.bits, p->width, p->height);
-    for (size_t i = 0; !st && i < pixels; i++) p->disparity[side][i] = (float)(photo.samples[3 * i] * p->unit);
+    photo_read(&photo, path, err);
+    if (!err->status && (photo.info.width != p->width || photo.info.height != p->height || photo.info.bits != 8))
+        err_set(err, ST_DATA, "%s: found %d x %d samples of %d bits, wanted %d x %d of 8.", path, photo.info.width,
+                photo.info.height, photo.info.bits, p->width, p->height);
+    for (size_t i = 0; !err->status && i < pixels; i++) p->disparity[side][i] = (float)(photo.samples[3 * i] * p->unit);
     photo_release(&photo);
-    return st;
+    return err->status;
 }
 
 static enum status write_truth(const struct pair *p, int side, const char *out, const struct provenance *prov,
@@ -145,14 +147,12 @@ static enum status write_truth(const struct pair *p, int side, const char *out, 
     struct exr_plane *z;
     char path[1000];
     snprintf(path, sizeof path, "%s/truth/depth/%s.exr", out, side ? "right" : "left");
-    enum status st = exr_image_init(&im, p->width, p->height, err);
-    if (!st) st = exr_add_plane(&im, "Z", EXR_FLOAT, &z, err);
-    for (size_t i = 0; !st && i < (size_t)p->width * (size_t)p->height; i++)
+    if (!exr_image_init(&im, p->width, p->height, err)) exr_add_plane(&im, "Z", EXR_FLOAT, &z, err);
+    for (size_t i = 0; !err->status && i < (size_t)p->width * (size_t)p->height; i++)
         z->f[i] = p->disparity[side][i] > 0 ? (float)(PAIR_FOCAL * PAIR_BASELINE / (double)p->disparity[side][i]) : 0;
-    if (!st) st = exr_set_attribute(&im, "remodel:depth", "z", err);
-    if (!st) st = exr_write(&im, path, prov, err);
+    if (!err->status && !exr_set_attribute(&im, "remodel:depth", "z", err)) exr_write(&im, path, prov, err);
     exr_image_release(&im);
-    return st;
+    return err->status;
 }
 
 static enum status write_text(const char *folder, const char *name, const char *text, struct err *err)
@@ -160,13 +160,13 @@ static enum status write_text(const char *folder, const char *name, const char *
     char path[1000];
     struct outfile f = {0};
     snprintf(path, sizeof path, "%s/%s", folder, name);
-    enum status st = outfile_open(&f, path, err);
-    if (!st) {
+    outfile_open(&f, path, err);
+    if (!err->status) {
         fputs(text, f.fp);
-        st = outfile_commit(&f, err);
+        outfile_commit(&f, err);
     }
     outfile_discard(&f);
-    return st;
+    return err->status;
 }
 
 static enum status write_cameras(const struct pair *p, const char *out, const char *folder, struct err *err)
@@ -175,10 +175,10 @@ static enum status write_cameras(const struct pair *p, const char *out, const ch
     snprintf(to, sizeof to, "%s/%s", out, folder);
     snprintf(text, sizeof text, "1 PINHOLE %d %d %.17g %.17g %.17g %.17g\n", p->width, p->height, PAIR_FOCAL,
              PAIR_FOCAL, p->width / 2.0, p->height / 2.0);
-    enum status st = write_text(to, "cameras.txt", text, err);
+    write_text(to, "cameras.txt", text, err);
     snprintf(text, sizeof text, "1 1 0 0 0 0 0 0 1 left.png\n\n2 1 0 0 0 %.17g 0 0 1 right.png\n\n", -PAIR_BASELINE);
-    if (!st) st = write_text(to, "images.txt", text, err);
-    return st ? st : write_text(to, "points3D.txt", "", err);
+    if (!err->status && !write_text(to, "images.txt", text, err)) write_text(to, "points3D.txt", "", err);
+    return err->status;
 }
 
 static enum status copy_picture(const struct pair *p, int side, const char *out, struct err *err)
@@ -188,15 +188,14 @@ static enum status copy_picture(const struct pair *p, int side, const char *out,
     char path[1000];
     struct outfile f = {0};
     snprintf(path, sizeof path, "%s/photos/%s.png", out, side ? "right" : "left");
-    enum status st = read_bytes(&bytes, &size, p->pictures[side], err);
-    if (!st) st = outfile_open(&f, path, err);
-    if (!st) {
+    if (!read_bytes(&bytes, &size, p->pictures[side], err)) outfile_open(&f, path, err);
+    if (!err->status) {
         fwrite(bytes, 1, size, f.fp);
-        st = outfile_commit(&f, err);
+        outfile_commit(&f, err);
     }
     outfile_discard(&f);
     free(bytes);
-    return st;
+    return err->status;
 }
 
 static enum status make_scene(const char *folder, const char *out, const struct provenance *prov, struct err *err)
@@ -206,29 +205,26 @@ static enum status make_scene(const char *folder, const char *out, const struct 
     struct photo_info info;
     float max = 0;
     char path[1000];
-    enum status st = find_pair(&p, folder, err);
-    for (int i = 0; !st && i < 5; i++) {
+    find_pair(&p, folder, err);
+    for (int i = 0; !err->status && i < 5; i++) {
         snprintf(path, sizeof path, "%s%s", out, folders[i]);
-        if (mkdir(path, 0777) && errno != EEXIST) st = err_errno(err, "make", path);
+        if (mkdir(path, 0777) && errno != EEXIST) err_errno(err, "make", path);
     }
-    if (!st) st = photo_read_info(&info, p.pictures[0], err);
-    if (!st) p.width = info.width, p.height = info.height;
-    for (int side = 0; !st && side < 2; side++) {
-        st = copy_picture(&p, side, out, err);
-        if (st || !p.disparities[side][0]) continue;
-        st = read_disparities(&p, side, err);
-        if (!st) st = write_truth(&p, side, out, prov, err);
-        for (int i = 0; !st && i < p.width * p.height; i++) max = fmaxf(max, p.disparity[side][i]);
+    if (!err->status && !photo_read_info(&info, p.pictures[0], err)) p.width = info.width, p.height = info.height;
+    for (int side = 0; !err->status && side < 2; side++) {
+        copy_picture(&p, side, out, err);
+        if (err->status || !p.disparities[side][0]) continue;
+        if (!read_disparities(&p, side, err)) write_truth(&p, side, out, prov, err);
+        for (int i = 0; !err->status && i < p.width * p.height; i++) max = fmaxf(max, p.disparity[side][i]);
     }
-    if (!st) st = write_cameras(&p, out, "model", err);
-    if (!st) st = write_cameras(&p, out, "truth", err);
-    if (!st) {
+    if (!err->status && !write_cameras(&p, out, "model", err)) write_cameras(&p, out, "truth", err);
+    if (!err->status) {
         const int disparities = (int)max / 16 * 16 + 16;
         printf("disparities %d\nnear %.17g\n", disparities, PAIR_FOCAL * PAIR_BASELINE / disparities);
     }
     free(p.disparity[0]);
     free(p.disparity[1]);
-    return st;
+    return err->status;
 }
 
 int main(int argc, char **argv)

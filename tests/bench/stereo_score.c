@@ -46,17 +46,18 @@ static enum status read_side(struct truth *t, float **disparity, const char *fol
     char path[1000];
     snprintf(path, sizeof path, "%s/depth/%s.exr", folder, side);
     if (optional && access(path, F_OK)) return ST_OK;
-    enum status st = exr_read(&im, path, names, 1, err);
+    exr_read(&im, path, names, 1, err);
     const size_t pixels = (size_t)im.width * (size_t)im.height;
-    if (!st && t->width && (im.width != t->width || im.height != t->height))
-        st = err_set(err, ST_DATA, "%s: found %d x %d pixels, wanted %d x %d as on the other side.", path, im.width,
-                     im.height, t->width, t->height);
-    if (!st && !(*disparity = malloc(pixels * sizeof(float)))) st = err_nomem(err, "disparities", pixels * 4);
-    for (size_t i = 0; !st && i < pixels; i++) (*disparity)[i] = (float)disparity_of((double)im.planes[0].f[i]);
+    if (!err->status && t->width && (im.width != t->width || im.height != t->height))
+        err_set(err, ST_DATA, "%s: found %d x %d pixels, wanted %d x %d as on the other side.", path, im.width,
+                im.height, t->width, t->height);
+    if (!err->status && !(*disparity = malloc(pixels * sizeof(float)))) err_nomem(err, "disparities", pixels * 4);
+    for (size_t i = 0; !err->status && i < pixels; i++)
+        (*disparity)[i] = (float)disparity_of((double)im.planes[0].f[i]);
     t->width = im.width;
     t->height = im.height;
     exr_image_release(&im);
-    return st;
+    return err->status;
 }
 
 /* The pixel of the right picture for a left one; -1: outside. */
@@ -96,23 +97,23 @@ static enum status read_result(struct result *r, struct camera_set *set, const c
                                struct err *err)
 {
     struct exr_image header = {0};
-    enum status st = camera_set_read(set, views, NULL, err);
-    const int left = st ? -1 : camera_set_find(set, "left");
-    if (!st && left < 0) st = err_set(err, ST_DATA, "%s/images.txt has no view left.", views);
-    if (!st) r->view = set->views[left];
-    if (!st) st = exr_read(&header, depth, NULL, 0, err);
-    if (!st && exr_find(&header, "Z"))
+    camera_set_read(set, views, NULL, err);
+    const int left = err->status ? -1 : camera_set_find(set, "left");
+    if (!err->status && left < 0) err_set(err, ST_DATA, "%s/images.txt has no view left.", views);
+    if (!err->status) r->view = set->views[left];
+    if (!err->status) exr_read(&header, depth, NULL, 0, err);
+    if (!err->status && exr_find(&header, "Z"))
         r->plain = header;
-    else if (!st) {
+    else if (!err->status) {
         exr_image_release(&header);
-        st = layered_depth_read(&r->layers, depth, NULL, err);
+        layered_depth_read(&r->layers, depth, NULL, err);
     }
     const int width = r->plain.width ? r->plain.width : r->layers.width,
               height = r->plain.width ? r->plain.height : r->layers.height;
-    if (!st && (width != r->view.width || height != r->view.height))
-        st = err_set(err, ST_DATA, "%s: found %d x %d pixels, wanted %d x %d as the view has.", depth, width, height,
-                     r->view.width, r->view.height);
-    return st;
+    if (!err->status && (width != r->view.width || height != r->view.height))
+        err_set(err, ST_DATA, "%s: found %d x %d pixels, wanted %d x %d as the view has.", depth, width, height,
+                r->view.width, r->view.height);
+    return err->status;
 }
 
 /* Disparity of the result at a position in the true picture; 0 unknown. */

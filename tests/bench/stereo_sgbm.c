@@ -46,8 +46,8 @@ struct pair {
 
 static enum status read_pair(struct pair *p, struct camera_set *set, const char *views, struct err *err)
 {
-    enum status st = camera_set_read(set, views, NULL, err);
-    for (int side = 0; !st && side < 2; side++) {
+    camera_set_read(set, views, NULL, err);
+    for (int side = 0; !err->status && side < 2; side++) {
         const char *const name = side ? "right" : "left";
         const int idx = camera_set_find(set, name);
         struct image im = {0};
@@ -63,11 +63,10 @@ static enum status read_pair(struct pair *p, struct camera_set *set, const char 
         p->rgb[side] = malloc(3 * pixels);
         p->disparity[side] = malloc(pixels * sizeof(float));
         if (!p->rgb[side] || !p->disparity[side]) return err_nomem(err, "a pair", 7 * pixels);
-        st = view_image_read(&im, views, view, NULL, err);
-        if (!st) image_to_srgb8(&im, p->rgb[side]);
+        if (!view_image_read(&im, views, view, NULL, err)) image_to_srgb8(&im, p->rgb[side]);
         image_release(&im);
     }
-    return st;
+    return err->status;
 }
 
 static void mirror(void *pixels, int width, int height, size_t size)
@@ -84,10 +83,10 @@ static enum status match_right(struct pair *p, const struct sgbm_settings *setti
 {
     const int w = p->view.width, h = p->view.height;
     for (int side = 0; side < 2; side++) mirror(p->rgb[side], w, h, 3);
-    enum status st = sgbm_match(p->disparity[1], p->rgb[1], p->rgb[0], w, h, settings, err);
+    sgbm_match(p->disparity[1], p->rgb[1], p->rgb[0], w, h, settings, err);
     mirror(p->disparity[1], w, h, sizeof(float));
     for (int side = 0; side < 2; side++) mirror(p->rgb[side], w, h, 3);
-    return st;
+    return err->status;
 }
 
 static void keep_what_agrees(struct pair *p, double apart)
@@ -128,13 +127,12 @@ static enum status write_depth(const struct pair *p, const char *out, const stru
 {
     struct exr_image im = {0};
     struct exr_plane *z = NULL;
-    enum status st = exr_image_init(&im, p->view.width, p->view.height, err);
-    if (!st) st = exr_add_plane(&im, "Z", EXR_FLOAT, &z, err);
-    for (size_t i = 0; !st && i < (size_t)p->view.width * (size_t)p->view.height; i++)
+    if (!exr_image_init(&im, p->view.width, p->view.height, err)) exr_add_plane(&im, "Z", EXR_FLOAT, &z, err);
+    for (size_t i = 0; !err->status && i < (size_t)p->view.width * (size_t)p->view.height; i++)
         if (p->disparity[0][i] > 0) z->f[i] = (float)(p->view.fx * p->baseline / (double)p->disparity[0][i]);
-    if (!st) st = exr_write(&im, out, prov, err);
+    if (!err->status) exr_write(&im, out, prov, err);
     exr_image_release(&im);
-    return st;
+    return err->status;
 }
 
 static enum status solve(struct pair *p, const struct sgbm_params *params, struct err *err)

@@ -118,15 +118,14 @@ static enum status read_points(struct pose **poses, int *count, const char *path
     char line[1024];
     FILE *fp = fopen(path, "r");
     if (!fp) return err_set(err, ST_IO, "cannot read %s.", path);
-    enum status st = ST_OK;
-    while (!st && fgets(line, sizeof line, fp)) {
+    while (!err->status && fgets(line, sizeof line, fp)) {
         struct vec3 p;
         if (sscanf(line, "%lf %lf %lf", &p.x, &p.y, &p.z) != 3) continue;
-        st = array_append(poses, (size_t)*count, sizeof **poses, "points", err);
-        if (!st) (*poses)[(*count)++] = (struct pose){{1, 0, 0, 0}, vec3_scale(p, -1)};
+        if (!array_append(poses, (size_t)*count, sizeof **poses, "points", err))
+            (*poses)[(*count)++] = (struct pose){{1, 0, 0, 0}, vec3_scale(p, -1)};
     }
     fclose(fp);
-    return st;
+    return err->status;
 }
 
 /* Points are the centres of cameras without rotation. */
@@ -134,15 +133,14 @@ static enum status align(struct job *j, struct err *err)
 {
     struct pose *truth = NULL, *found = NULL;
     int truth_count = 0, count = 0;
-    enum status st = read_points(&truth, &truth_count, j->truth_points, err);
-    if (!st) st = read_points(&found, &count, j->points, err);
-    if (!st && count != truth_count)
-        st = err_set(err, ST_DATA, "%s has %d points and %s has %d, wanted the same.", j->points, count,
-                     j->truth_points, truth_count);
-    if (!st) st = camera_alignment_find(&j->truth_from_scene, found, truth, count, err);
+    if (!read_points(&truth, &truth_count, j->truth_points, err)) read_points(&found, &count, j->points, err);
+    if (!err->status && count != truth_count)
+        err_set(err, ST_DATA, "%s has %d points and %s has %d, wanted the same.", j->points, count, j->truth_points,
+                truth_count);
+    if (!err->status) camera_alignment_find(&j->truth_from_scene, found, truth, count, err);
     free(truth);
     free(found);
-    return st;
+    return err->status;
 }
 
 /* ----------------------------------------------------------------------------------------------------------- frames */
@@ -244,15 +242,15 @@ static enum status replace_outdoors(const struct job *j, struct err *err)
     struct outdoors o = {0};
     struct sky sky;
     sky_init(&sky, &j->truth.sky);
-    enum status st = outdoors_read(&o, j->outdoors, NULL, err);
-    for (int i = 0; !st && i < o.width * o.height; i++) {
+    outdoors_read(&o, j->outdoors, NULL, err);
+    for (int i = 0; !err->status && i < o.width * o.height; i++) {
         const struct rgb c = true_pixel(j, &sky, &o, i % o.width, i / o.width);
         o.rgb[3 * i] = (float)c.r, o.rgb[3 * i + 1] = (float)c.g, o.rgb[3 * i + 2] = (float)c.b;
         o.source[i] = OUTDOORS_REFERENCE;
     }
-    if (!st) st = outdoors_write(&o, j->outdoors_out, &j->prov, err);
+    if (!err->status) outdoors_write(&o, j->outdoors_out, &j->prov, err);
     outdoors_release(&o);
-    return st;
+    return err->status;
 }
 
 /* ----------------------------------------------------------------------------------------------------------- points */
@@ -262,19 +260,18 @@ static enum status bring_points(const struct job *j, struct err *err)
     const struct similarity *s = &j->truth_from_scene;
     struct surface_points points = {0};
     struct outfile f = {0};
-    enum status st = surface_points_read(&points, j->list, err);
-    if (!st) st = outfile_open(&f, j->list_out, err);
-    for (int i = 0; !st && i < points.count; i++) {
+    if (!surface_points_read(&points, j->list, err)) outfile_open(&f, j->list_out, err);
+    for (int i = 0; !err->status && i < points.count; i++) {
         const struct vec3 n = mat3_apply(s->rotation, points.list[i].normal);
         const struct vec3 p =
             vec3_add(vec3_add(vec3_scale(mat3_apply(s->rotation, points.list[i].at), s->scale), s->translation),
                      vec3_scale(n, BEFORE));
         fprintf(f.fp, "%.9g %.9g %.9g %.9g %.9g %.9g\n", p.x, p.y, p.z, n.x, n.y, n.z);
     }
-    if (!st) st = outfile_commit(&f, err);
+    if (!err->status) outfile_commit(&f, err);
     outfile_discard(&f);
     surface_points_release(&points);
-    return st;
+    return err->status;
 }
 
 static enum status run(struct job *j, struct err *err)

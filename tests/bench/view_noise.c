@@ -40,26 +40,24 @@ static enum status read_photo(struct pictures *p, const char *path, struct err *
     const struct rectify_params params = RECTIFY_PARAMS_DEFAULT;
     const struct single_exposure assumed = {params.electrons, params.read_noise, params.saturated, params.dark};
     struct photo photo = {0};
-    enum status st = photo_read(&photo, path, err);
-    if (!st) st = photo_to_linear(&p->measured, &photo, err);
-    if (!st) st = photo_quality_of_exposure(&p->quality, &photo, &p->measured, &assumed, err);
+    if (!photo_read(&photo, path, err) && !photo_to_linear(&p->measured, &photo, err))
+        photo_quality_of_exposure(&p->quality, &photo, &p->measured, &assumed, err);
     photo_release(&photo);
-    return st;
+    return err->status;
 }
 
 static enum status read_colour(struct image *to, struct photo_quality *quality, const char *path, struct err *err)
 {
     static const char *const names[] = {"R", "G", "B", "clipped", "variance"};
     struct exr_image exr = {0};
-    enum status st = exr_read(&exr, path, names, quality ? 5 : 3, err);
-    if (!st) st = image_init(to, exr.width, exr.height, 3, err);
-    for (size_t c = 0; !st && c < 3; c++) {
+    if (!exr_read(&exr, path, names, quality ? 5 : 3, err)) image_init(to, exr.width, exr.height, 3, err);
+    for (size_t c = 0; !err->status && c < 3; c++) {
         const float *from = exr_find(&exr, names[c])->f;
         for (size_t i = 0; i < (size_t)exr.width * (size_t)exr.height; i++) to->data[3 * i + c] = fmaxf(from[i], 0);
     }
-    if (!st && quality) st = photo_quality_of_merged(quality, &exr, path, to, err);
+    if (!err->status && quality) photo_quality_of_merged(quality, &exr, path, to, err);
     exr_image_release(&exr);
-    return st;
+    return err->status;
 }
 
 /* Lists truth / measured, or abs(measured - unit truth) / sigma if unit > 0, of the unmarked pixels; returns their
@@ -102,10 +100,9 @@ static enum status report_views(const struct pictures *photo, const char *folder
     struct camera_set set = {0};
     struct lens_list lenses = {0};
     char path[FILE_PATH];
-    enum status st = file_path(path, folder, "lenses.txt", "", err);
-    if (!st) st = camera_set_read(&set, folder, NULL, err);
-    if (!st) st = lens_list_read(&lenses, path, NULL, err);
-    for (int l = 0; !st && l < lenses.count; l++) {
+    if (!file_path(path, folder, "lenses.txt", "", err) && !camera_set_read(&set, folder, NULL, err))
+        lens_list_read(&lenses, path, NULL, err);
+    for (int l = 0; !err->status && l < lenses.count; l++) {
         const struct lens *lens = &lenses.lenses[l];
         const int v = camera_set_find(&set, lens->view);
         if (v < 0 || strcmp(lens->photo, id)) continue;
@@ -113,14 +110,14 @@ static enum status report_views(const struct pictures *photo, const char *folder
         const struct resample_source measured = {.linear = &photo->measured, .quality = &photo->quality};
         const struct resample_source truth = {.linear = &photo->truth};
         struct pictures p = {.channels = 4};
-        st = resample_photo(&p.measured, &p.quality, &measured, &lens->camera, &turn, &set.views[v], err);
-        if (!st) st = resample_photo(&p.truth, NULL, &truth, &lens->camera, &turn, &set.views[v], err);
-        if (!st) st = report(&p, lens->view, &unit, err);
+        if (!resample_photo(&p.measured, &p.quality, &measured, &lens->camera, &turn, &set.views[v], err) &&
+            !resample_photo(&p.truth, NULL, &truth, &lens->camera, &turn, &set.views[v], err))
+            report(&p, lens->view, &unit, err);
         pictures_release(&p);
     }
     lens_list_release(&lenses);
     camera_set_release(&set);
-    return st;
+    return err->status;
 }
 
 static bool is_exr(const char *path)

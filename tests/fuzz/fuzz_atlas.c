@@ -41,9 +41,10 @@ static void write_bytes(const char *path, const void *bytes, size_t size)
 /* The list of an atlas that has the picture as its page, and a tile as large. */
 static void write_list_of_size(void)
 {
+    struct err none = ERR_INIT;
     struct exr_image im;
     char text[300];
-    if (exr_read(&im, picture, (const char *const[]){NULL}, 0, NULL)) im.width = im.height = 1;
+    if (exr_read(&im, picture, (const char *const[]){NULL}, 0, &none)) im.width = im.height = 1;
     snprintf(text, sizeof text,
              "remodel-atlas 1\nviewpoint P 0 0 0\nview P\nsource P\nsource Q\npage %d %d\n"
              "tile 7 0 0 0 0 %d %d 9 0 3 0 0 9 2 0 0 0 1 0\n",

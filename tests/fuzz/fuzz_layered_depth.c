@@ -49,9 +49,10 @@ static void write_bytes(const char *path, const void *bytes, size_t size)
 
 static void write_list_of_size(void)
 {
+    struct err none = ERR_INIT;
     struct exr_image im;
     char text[200];
-    if (exr_read(&im, picture, (const char *const[]){NULL}, 0, NULL)) im.width = im.height = 1;
+    if (exr_read(&im, picture, (const char *const[]){NULL}, 0, &none)) im.width = im.height = 1;
     snprintf(text, sizeof text,
              "remodel-segments 1\nsize %d %d\nsegments 3\n1 0 0 0 1 0.1 1\n2 0 0.5 0 1 0.1 1\n3 0 0 0 0 0 0\n",
              im.width, im.height);

@@ -15,9 +15,9 @@ static enum status open_bytes(struct textfile *t, const void *bytes, size_t size
 
     if (fd < 0 || write(fd, bytes, size) != (ssize_t)size) abort();
     snprintf(path, sizeof path, "/proc/self/fd/%d", fd);
-    const enum status st = textfile_open(t, path, err);
+    textfile_open(t, path, err);
     close(fd);
-    return st;
+    return err->status;
 }
 
 static void check_quoting(const char *word)

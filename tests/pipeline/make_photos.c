@@ -228,21 +228,21 @@ static enum status write_bracket(const struct room_view *rv, const struct image 
     size_t exif_size = make_exif(exif, (uint32_t)(4096 / gain));
 
     snprintf(path, sizeof path, "%s/photos/%s_e%d.jpg", folder, rv->name, number);
-    enum status st = image_init(&exposed, picture->width, picture->height, 3, err);
-    if (!st && !(rgb = malloc(samples))) st = err_nomem(err, "a photo", samples);
-    for (size_t i = 0; !st && i < samples; i++) exposed.data[i] = (float)gain * picture->data[i];
-    if (!st) image_to_srgb8(&exposed, rgb);
-    if (!st) st = jpeg_encode(&jpeg, &size, rgb, picture->width, picture->height, 95, err);
-    if (!st) st = outfile_open(&f, path, err);
-    if (!st && (fwrite(jpeg, 1, 2, f.fp) != 2 || fwrite(exif, 1, exif_size, f.fp) != exif_size ||
-                fwrite(jpeg + 2, 1, size - 2, f.fp) != size - 2))
-        st = err_errno(err, "write", path);
-    if (!st) st = outfile_commit(&f, err);
+    image_init(&exposed, picture->width, picture->height, 3, err);
+    if (!err->status && !(rgb = malloc(samples))) err_nomem(err, "a photo", samples);
+    for (size_t i = 0; !err->status && i < samples; i++) exposed.data[i] = (float)gain * picture->data[i];
+    if (!err->status) image_to_srgb8(&exposed, rgb);
+    if (!err->status && !jpeg_encode(&jpeg, &size, rgb, picture->width, picture->height, 95, err))
+        outfile_open(&f, path, err);
+    if (!err->status && (fwrite(jpeg, 1, 2, f.fp) != 2 || fwrite(exif, 1, exif_size, f.fp) != exif_size ||
+                         fwrite(jpeg + 2, 1, size - 2, f.fp) != size - 2))
+        err_errno(err, "write", path);
+    if (!err->status) outfile_commit(&f, err);
     outfile_discard(&f);
     image_release(&exposed);
     free(rgb);
     free(jpeg);
-    return st;
+    return err->status;
 }
 
 static enum status write_view(const struct room_view *rv, int brackets, const char *folder,
@@ -289,19 +289,18 @@ static enum status write_model(const struct room_view *views, int count, const c
 {
     static const char *const FILES[3] = {"cameras", "images", "points3D"};
     struct outfile f[3] = {{0}};
-    enum status st = ST_OK;
     char path[4096], track[MAX_VIEWS * 24], *lines[MAX_VIEWS] = {NULL};
     size_t sizes[MAX_VIEWS] = {0};
     int seen[MAX_VIEWS] = {0}, points = 0;
     FILE *observations[MAX_VIEWS] = {NULL};
 
-    for (int k = 0; k < 3 && !st; k++) {
+    for (int k = 0; k < 3 && !err->status; k++) {
         snprintf(path, sizeof path, "%s/model/%s.txt", folder, FILES[k]);
-        st = outfile_open(&f[k], path, err);
+        outfile_open(&f[k], path, err);
     }
-    for (int i = 0; i < count && !st; i++)
-        if (!(observations[i] = open_memstream(&lines[i], &sizes[i]))) st = err_nomem(err, "observations", 1);
-    if (st) goto done;
+    for (int i = 0; i < count && !err->status; i++)
+        if (!(observations[i] = open_memstream(&lines[i], &sizes[i]))) err_nomem(err, "observations", 1);
+    if (err->status) goto done;
 
     for (int n = 0; n < CANDIDATES * count; n++) {
         const struct view *from = &views[n % count].view;
@@ -328,20 +327,20 @@ static enum status write_model(const struct room_view *views, int count, const c
     for (int i = 0; i < count; i++) {
         v = &views[i].view;
         struct quat q = quat_from_mat3(v->cam_from_world);
-        if (fclose(observations[i])) st = err_nomem(err, "observations", sizes[i]);
+        if (fclose(observations[i])) err_nomem(err, "observations", sizes[i]);
         observations[i] = NULL;
-        if (st) goto done;
+        if (err->status) goto done;
         fprintf(f[1].fp, "%d %.17g %.17g %.17g %.17g %.17g %.17g %.17g 1 %s.jpg\n%s\n", i + 1, q.w, q.x, q.y, q.z,
                 v->translation.x, v->translation.y, v->translation.z, views[i].name, lines[i]);
     }
-    for (int k = 2; k >= 0 && !st; k--) st = outfile_commit(&f[k], err);
+    for (int k = 2; k >= 0 && !err->status; k--) outfile_commit(&f[k], err);
 done:
     for (int i = 0; i < count; i++) {
         if (observations[i]) fclose(observations[i]);
         free(lines[i]);
     }
     for (int k = 0; k < 3; k++) outfile_discard(&f[k]);
-    return st;
+    return err->status;
 }
 
 int main(int argc, char **argv)

@@ -58,19 +58,19 @@ static enum status add_filling(struct solid_list *list, const struct plan *p, co
 enum status layout_solids(struct solid_list *list, const struct plan *plan, struct err *err)
 {
     *list = (struct solid_list){0};
-    enum status st = layout_add_walls(list, plan, err);
-    for (int i = 0; i < plan->room_count && !st; i++)
-        if (!plan->rooms[i].removed) st = layout_add_room(list, plan, &plan->rooms[i], err);
-    for (int i = 0; i < plan->box_count && !st; i++)
-        if (!plan->boxes[i].removed) st = layout_add_box(list, &plan->boxes[i], err);
-    for (int i = 0; i < plan->opening_count && !st; i++) {
+    layout_add_walls(list, plan, err);
+    for (int i = 0; i < plan->room_count && !err->status; i++)
+        if (!plan->rooms[i].removed) layout_add_room(list, plan, &plan->rooms[i], err);
+    for (int i = 0; i < plan->box_count && !err->status; i++)
+        if (!plan->boxes[i].removed) layout_add_box(list, &plan->boxes[i], err);
+    for (int i = 0; i < plan->opening_count && !err->status; i++) {
         const struct plan_opening *o = &plan->openings[i];
         double off[2];
         if (plan_opening_is_there(plan, o) && layout_opening_filling(plan, o, off))
-            st = add_filling(list, plan, o, off, err);
+            add_filling(list, plan, o, off, err);
     }
-    for (int i = 0; i < plan->slot_count && !st; i++)
-        if (plan_slot_is_there(plan, &plan->slots[i])) st = layout_add_slot(list, plan, &plan->slots[i], err);
-    if (st) solid_list_release(list);
-    return st;
+    for (int i = 0; i < plan->slot_count && !err->status; i++)
+        if (plan_slot_is_there(plan, &plan->slots[i])) layout_add_slot(list, plan, &plan->slots[i], err);
+    if (err->status) solid_list_release(list);
+    return err->status;
 }

@@ -34,10 +34,12 @@ void shape_add_side(struct shape *s, double x, double y, double z, double offset
 enum status shape_add(struct solid_list *list, const char *body, struct shape *s, struct err *err)
 {
     for (int i = 0; i < s->count; i++) s->h[i].name = s->names[i];
-    const enum status st = s->no_memory ? err_nomem(err, "a solid", (size_t)s->capacity * sizeof *s->names)
-                                        : solid_list_add(list, body, s->h, s->count, err);
+    if (s->no_memory)
+        err_nomem(err, "a solid", (size_t)s->capacity * sizeof *s->names);
+    else
+        solid_list_add(list, body, s->h, s->count, err);
     shape_release(s);
-    return st;
+    return err->status;
 }
 
 const char *shape_reveal_side(const struct plan_wall *w, int upper_bound_of_hole)

@@ -105,29 +105,28 @@ static enum status add_around_slots(struct slab *b, const struct part_corner *c,
     struct part_corner(*outlines)[4] = calloc((size_t)p->slot_count + 1, sizeof *outlines);
     struct room_part *slots = calloc((size_t)p->slot_count + 1, sizeof *slots);
     int count = 0;
-    enum status st = outlines && slots ? ST_OK : err_nomem(b->err, "openings of a room", (size_t)p->slot_count);
-    for (int i = 0; i < p->slot_count && !st; i++) {
+    if (!outlines || !slots) err_nomem(b->err, "openings of a room", (size_t)p->slot_count);
+    for (int i = 0; i < p->slot_count && !b->err->status; i++) {
         const struct plan_slot *o = &p->slots[i];
         if (&p->rooms[o->room] != b->room || o->kind != b->opening || !plan_slot_is_there(p, o)) continue;
         slot_outline(p, o, outlines[count]);
         slots[count] = (struct room_part){outlines[count], 4};
         count++;
     }
-    if (!st) st = parts_outside(c, n, slots, count, add_slab, b, b->err);
+    if (!b->err->status) parts_outside(c, n, slots, count, add_slab, b, b->err);
     free(outlines);
     free(slots);
-    return st;
+    return b->err->status;
 }
 
 enum status layout_add_room(struct solid_list *list, const struct plan *p, const struct plan_room *r, struct err *err)
 {
-    enum status st = ST_OK;
-    for (int i = 0; i < r->part_count && !st; i++)
-        for (int plane = -1; plane < r->lower.count && !st; plane++) {
+    for (int i = 0; i < r->part_count && !err->status; i++)
+        for (int plane = -1; plane < r->lower.count && !err->status; plane++) {
             struct slab b = {list, p, r, plane < 0 ? OPENING_HATCH : OPENING_SKYLIGHT, plane, err};
-            st = add_around_slots(&b, r->parts[i].corners, r->parts[i].count);
+            add_around_slots(&b, r->parts[i].corners, r->parts[i].count);
         }
-    return st;
+    return err->status;
 }
 
 /* Adds one solid of what fills a slot, within its footprint: between two heights above the plane of `top`, and below
@@ -159,10 +158,9 @@ enum status layout_add_slot(struct solid_list *list, const struct plan *p, const
     const struct plan_room *r = &p->rooms[o->room];
     const struct plan_top floor = plan_level_top(r->floor), *top = o->kind == OPENING_HATCH ? &floor : &r->lower;
     const double upper = o->kind == OPENING_HATCH ? 0 : r->slab, heights[2] = {upper - o->leaf, upper};
-    enum status st = ST_OK;
     if (o->fill != FILL_LEAF && o->fill != FILL_GLASS) return ST_OK;
-    for (int i = 0; i < top->count && !st; i++) st = add_slot_part(list, p, o, top, i, heights, err);
-    return st;
+    for (int i = 0; i < top->count && !err->status; i++) add_slot_part(list, p, o, top, i, heights, err);
+    return err->status;
 }
 
 /* ------------------------------------------------------------------------------------------------------------ boxes */

@@ -273,27 +273,26 @@ static enum status add_column(struct solid_list *list, const struct column *c, c
     const int cut_count = shared_side_cuts(c, cuts);
     double z = wall->foot;
     const struct plan_opening *below = NULL;
-    enum status st = ST_OK;
     bool cut = false;
-    for (int i = 0; i <= hole_count && !st; i++) {
+    for (int i = 0; i <= hole_count && !err->status; i++) {
         const struct plan_opening *above = i < hole_count ? holes[i] : NULL;
         const double to = above ? above->z[0] : HUGE_VAL;
-        for (int k = 0; k < cut_count && !st; k++) {
+        for (int k = 0; k < cut_count && !err->status; k++) {
             if (cuts[k] <= z + NEAR || cuts[k] >= to - NEAR || !reaches(c, cuts[k])) continue;
-            st = add_piece(list, c, z, below, cuts[k], NULL, cut, err);
+            add_piece(list, c, z, below, cuts[k], NULL, cut, err);
             z = cuts[k];
             below = NULL;
             cut = true;
         }
-        if (!st && above) st = above->z[0] - z > NEAR ? add_piece(list, c, z, below, to, above, cut, err) : ST_OK;
-        if (!st && !above && reaches(c, z)) st = add_piece(list, c, z, below, HUGE_VAL, NULL, cut, err);
+        if (!err->status && above && above->z[0] - z > NEAR) add_piece(list, c, z, below, to, above, cut, err);
+        if (!err->status && !above && reaches(c, z)) add_piece(list, c, z, below, HUGE_VAL, NULL, cut, err);
         if (above) {
             z = above->z[1];
             below = above;
             cut = false;
         }
     }
-    return st;
+    return err->status;
 }
 
 /* The different ceilings of the wall's rooms above a column. */
@@ -339,9 +338,9 @@ static enum status add_in_part(struct cutting *t, const struct part_corner quad[
         n = part_clip(cut, in, n, &part->corners[i]);
         memcpy(in, cut, (size_t)n * sizeof *in);
     }
-    const enum status st = n ? add_cut_column(t, in, n) : ST_OK;
+    if (n) add_cut_column(t, in, n);
     free(in);
-    return st;
+    return t->err->status;
 }
 
 /* A column of a wall that no room lists: under the ceiling of each room in which it stands, and elsewhere up to the
@@ -352,20 +351,19 @@ static enum status add_free_column(struct cutting *t, const struct part_corner q
     const struct plan_top own = plan_level_top(p->walls[t->column->wall].top);
     struct room_part *all = NULL;
     int count = 0;
-    enum status st = ST_OK;
-    for (int i = 0; i < p->room_count && !st; i++) {
+    for (int i = 0; i < p->room_count && !t->err->status; i++) {
         const struct plan_room *r = &p->rooms[i];
         t->column->top = &r->lower;
-        for (int k = 0; k < r->part_count && !r->removed && !st; k++) {
-            st = array_append(&all, (size_t)count, sizeof *all, "parts of rooms", t->err);
-            if (!st) all[count++] = r->parts[k];
-            if (!st) st = add_in_part(t, quad, &r->parts[k]);
+        for (int k = 0; k < r->part_count && !r->removed && !t->err->status; k++) {
+            if (array_append(&all, (size_t)count, sizeof *all, "parts of rooms", t->err)) break;
+            all[count++] = r->parts[k];
+            add_in_part(t, quad, &r->parts[k]);
         }
     }
     t->column->top = &own;
-    if (!st) st = parts_outside(quad, 4, all, count, add_cut_column, t, t->err);
+    if (!t->err->status) parts_outside(quad, 4, all, count, add_cut_column, t, t->err);
     free(all);
-    return st;
+    return t->err->status;
 }
 
 /* The column's outline, counter-clockwise from its lower end. */
@@ -391,12 +389,11 @@ static enum status add_whole_column(struct cutting *t, const struct plan_top **t
     const int count = tops_above(c, tops);
     if (!count && !w->has_top) return add_free_column(t, quad);
     const struct plan_top own = plan_level_top(w->top);
-    enum status st = ST_OK;
-    for (int k = 0; k < (count ? count : 1) && !st; k++) {
+    for (int k = 0; k < (count ? count : 1) && !t->err->status; k++) {
         c->top = count ? tops[k] : &own;
-        st = add_cut_column(t, quad, 4);
+        add_cut_column(t, quad, 4);
     }
-    return st;
+    return t->err->status;
 }
 
 /* Whether one of the wall's openings has its low or upper side at s. */
@@ -437,17 +434,17 @@ static enum status add_wall(struct solid_list *list, const struct wall_parts *pa
     const struct plan_opening **holes = calloc(room, sizeof *holes);
     const struct plan_top **tops = calloc((size_t)rooms + 1, sizeof *tops);
     int kept = 0;
-    enum status st = s && cuts && holes && tops ? ST_OK : err_nomem(err, "a wall's pieces", room * sizeof *s);
-    if (!st) {
+    if (!s || !cuts || !holes || !tops) err_nomem(err, "a wall's pieces", room * sizeof *s);
+    if (!err->status) {
         plan_wall_span(parts->plan, wall, span);
         plan_wall_reach(parts->plan, wall, reach);
         kept = column_limits(parts, wall, span, s);
     }
     /* The first and the last column reach to the caps, unless an opening begins at the corner: then the corner is a
      * separate column. */
-    const bool corner[2] = {!st && span[0] - reach[0] > NEAR && opens_at(parts, wall, 0, span[0]),
-                            !st && reach[1] - span[1] > NEAR && opens_at(parts, wall, 1, span[1])};
-    for (int i = corner[0] ? -1 : 0; i < kept - 1 + corner[1] && !st; i++) {
+    const bool corner[2] = {!err->status && span[0] - reach[0] > NEAR && opens_at(parts, wall, 0, span[0]),
+                            !err->status && reach[1] - span[1] > NEAR && opens_at(parts, wall, 1, span[1])};
+    for (int i = corner[0] ? -1 : 0; i < kept - 1 + corner[1] && !err->status; i++) {
         struct column c = {.parts = parts,
                            .wall = wall,
                            .first = i <= -corner[0],
@@ -459,22 +456,21 @@ static enum status add_wall(struct solid_list *list, const struct wall_parts *pa
         c.middle = 0.5 * (s[clear] + s[clear + 1]);
         c.s[0] = i < 0 ? reach[0] : s[i];
         c.s[1] = i < kept - 1 ? s[i + 1] : reach[1];
-        st = add_whole_column(&t, tops);
+        add_whole_column(&t, tops);
     }
     free(tops);
     free(holes);
     free(cuts);
     free(s);
-    return st;
+    return err->status;
 }
 
 enum status layout_add_walls(struct solid_list *list, const struct plan *plan, struct err *err)
 {
     struct wall_parts parts;
-    enum status st = wall_parts_make(&parts, plan, err);
-    if (st) return st;
-    for (int i = 0; i < plan->wall_count && !st; i++)
-        if (!plan->walls[i].removed) st = add_wall(list, &parts, i, err);
+    if (wall_parts_make(&parts, plan, err)) return err->status;
+    for (int i = 0; i < plan->wall_count && !err->status; i++)
+        if (!plan->walls[i].removed) add_wall(list, &parts, i, err);
     wall_parts_release(&parts);
-    return st;
+    return err->status;
 }

@@ -128,28 +128,28 @@ enum status overlay_write(const struct solid_mesh *mesh, const struct photo_came
     unsigned char *rgb = NULL;
     int width = 0, height = 0;
     double scale = 1;
-    enum status st = cube ? ST_OK : err_nomem(err, "a cube of pictures", sizeof *cube);
-    if (!st) cube->center = camera->center;
-    for (int i = 0; i < 6 && !st; i++) st = raster_init(&cube->side[i], CUBE, CUBE, NULL, err);
-    if (!st) st = solid_mesh_triangulate(&tris, mesh, err);
-    if (!st) st = shrink(&rgb, &width, &height, &scale, photo, side, err);
-    for (int i = 0; !st && i < tris.count; i++) {
+    if (!cube) err_nomem(err, "a cube of pictures", sizeof *cube);
+    if (!err->status) cube->center = camera->center;
+    for (int i = 0; i < 6 && !err->status; i++) raster_init(&cube->side[i], CUBE, CUBE, NULL, err);
+    if (!err->status && !solid_mesh_triangulate(&tris, mesh, err))
+        shrink(&rgb, &width, &height, &scale, photo, side, err);
+    for (int i = 0; !err->status && i < tris.count; i++) {
         const struct solid_triangle *t = &tris.triangles[i];
         if (solid_face_is_pane(mesh, t->face)) continue;
         cube_triangle(cube, (const struct vec3[3]){mesh->vertices[t->v[0]].p, mesh->vertices[t->v[1]].p,
                                                    mesh->vertices[t->v[2]].p});
     }
-    for (int h = 0; !st && h < mesh->half_edge_count; h++) {
+    for (int h = 0; !err->status && h < mesh->half_edge_count; h++) {
         const struct solid_half_edge *e = &mesh->half_edges[h];
         const int f = mesh->loops[e->loop].face;
         if (e->twin < h) continue;
         draw_edge(rgb, width, height, scale, camera, cube, mesh->vertices[e->origin].p,
                   mesh->vertices[mesh->half_edges[e->next].origin].p, solid_face_is_pane(mesh, f));
     }
-    if (!st) st = jpeg_write(path, rgb, width, height, 88, err);
+    if (!err->status) jpeg_write(path, rgb, width, height, 88, err);
     for (int i = 0; cube && i < 6; i++) raster_release(&cube->side[i]);
     free(cube);
     free(rgb);
     solid_triangles_release(&tris);
-    return st;
+    return err->status;
 }

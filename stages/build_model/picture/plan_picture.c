@@ -243,7 +243,7 @@ enum status plan_picture_write(const struct plan *plan, const struct placer *pla
     put_scale_bar(&s, low[0], low[1] - 1.2 * margin, high[0] - low[0], metric);
     fputs("</svg>\n", f.fp);
     uselocale(before);
-    const enum status st = outfile_commit(&f, err);
+    outfile_commit(&f, err);
     outfile_discard(&f);
-    return st;
+    return err->status;
 }

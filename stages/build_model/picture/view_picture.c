@@ -193,9 +193,9 @@ static enum status write_downsampled(const struct raster *r, const char *path, s
                 small[3 * ((size_t)y * (size_t)w + (size_t)x) + (size_t)c] =
                     (unsigned char)(sum / (SUPERSAMPLING * SUPERSAMPLING));
             }
-    const enum status st = png_write(path, small, w, h, 3, err);
+    png_write(path, small, w, h, 3, err);
     free(small);
-    return st;
+    return err->status;
 }
 
 enum status view_picture_write(const struct solid_mesh *mesh, const struct plan *plan, const struct placer *placer,
@@ -217,14 +217,15 @@ enum status view_picture_write(const struct solid_mesh *mesh, const struct plan 
     a.down = vec3_cross(a.right, a.back);
     a.down = vec3_scale(a.down, a.down.z < 0 ? 1 : -1);
     if (raster_init(&r, SUPERSAMPLING * VIEW_WIDTH, SUPERSAMPLING * VIEW_HEIGHT, paper, err)) return err->status;
-    enum status st = solid_mesh_triangulate(&tris, mesh, err);
-    if (!st) fit_view(&a, mesh, &r);
-    if (!st) draw_faces(&r, &a, mesh, &tris, high);
-    if (!st) draw_mesh_edges(&r, &a, mesh, high);
-    if (!st) draw_cuts(&r, &a, plan, high);
-    if (!st) draw_frusta(&r, &a, placer, PICTURE_FRUSTUM * (high > 0 ? high / 2.5 : 1));
-    if (!st) st = write_downsampled(&r, path, err);
+    if (!solid_mesh_triangulate(&tris, mesh, err)) {
+        fit_view(&a, mesh, &r);
+        draw_faces(&r, &a, mesh, &tris, high);
+        draw_mesh_edges(&r, &a, mesh, high);
+        draw_cuts(&r, &a, plan, high);
+        draw_frusta(&r, &a, placer, PICTURE_FRUSTUM * (high > 0 ? high / 2.5 : 1));
+        write_downsampled(&r, path, err);
+    }
     solid_triangles_release(&tris);
     raster_release(&r);
-    return st;
+    return err->status;
 }

@@ -68,13 +68,11 @@ enum status place_init(struct placer *placer, const struct placer_views views[2]
     }
     placer->photos = calloc(photos, sizeof *placer->photos);
     placer->points = calloc(count + 1, sizeof *placer->points);
-    enum status st = ST_OK;
-    if (!placer->photos || !placer->points)
-        st = err_nomem(err, "the points of a model", count * sizeof *placer->points);
-    for (int k = 0; !st && k < 2; k++) st = add_photos(placer, &views[k], axes, err);
-    if (st) {
+    if (!placer->photos || !placer->points) err_nomem(err, "the points of a model", count * sizeof *placer->points);
+    for (int k = 0; !err->status && k < 2; k++) add_photos(placer, &views[k], axes, err);
+    if (err->status) {
         place_release(placer);
-        return st;
+        return err->status;
     }
     for (size_t i = 0; i < count; i++) {
         const struct cloud_point *p = &points->points[i];
@@ -429,21 +427,19 @@ enum status place_wall(struct placed_wall *wall, const struct placer *placer, co
             err, ST_DATA,
             "%s:%d: a wall by a rectangle needs the scene's points; give --points, or the wall's coordinates.", path,
             line);
-    enum status st = find_visible(&visible, &count, placer, c, place, err);
-    struct position *p = st ? NULL : calloc(count + 1, sizeof *p);
-    if (!st)
-        st = p ? locate_wall(wall, placer, c, place, normal, angled, path, line, visible, count, p, err)
-               : err_nomem(err, "points of a rectangle", count * sizeof *p);
+    struct position *p = NULL;
+    if (!find_visible(&visible, &count, placer, c, place, err) && !(p = calloc(count + 1, sizeof *p)))
+        err_nomem(err, "points of a rectangle", count * sizeof *p);
+    if (!err->status) locate_wall(wall, placer, c, place, normal, angled, path, line, visible, count, p, err);
     const double middle = 0.5 * (place->a[1] + place->a[3]);
-    for (int i = 0; i < 2 && !st; i++) {
+    for (int i = 0; i < 2 && !err->status; i++) {
         struct vec3 at;
-        st =
-            meet_plane(&at, c, place->a[2 * i], middle, vec3_make(wall->n[0], wall->n[1], 0), wall->c, path, line, err);
-        if (st) break;
+        if (meet_plane(&at, c, place->a[2 * i], middle, vec3_make(wall->n[0], wall->n[1], 0), wall->c, path, line, err))
+            break;
         wall->ends[i][0] = at.x;
         wall->ends[i][1] = at.y;
     }
     free(p);
     free(visible);
-    return st;
+    return err->status;
 }

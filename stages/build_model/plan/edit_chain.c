@@ -15,36 +15,36 @@ static const char *file_name(const char *path)
 /* The provenance has the script's file name without its folder: the product does not depend on the scene's folder. */
 static enum status read_script(struct script *script, const char *path, struct provenance *prov, struct err *err)
 {
-    const enum status st = script_read(script, path, err);
-    return st ? st : provenance_add_file(prov, file_name(path), path, err);
+    return script_read(script, path, err) || provenance_add_file(prov, file_name(path), path, err) ? err->status
+                                                                                                   : ST_OK;
 }
 
 enum status edit_chain_apply_model(struct plan *plan, const char *path, const struct placer *placer,
                                    struct provenance *prov, struct err *err)
 {
     struct script script = {0};
-    enum status st = read_script(&script, path, prov, err);
-    if (!st && script.base)
-        st = err_set(err, ST_DATA, "%s:%d: found base %s, but only an edit stands on another edit.", path,
-                     script.base_line, script.base);
-    if (!st) st = plan_apply(plan, &script, false, placer, err);
+    read_script(&script, path, prov, err);
+    if (!err->status && script.base)
+        err_set(err, ST_DATA, "%s:%d: found base %s, but only an edit stands on another edit.", path, script.base_line,
+                script.base);
+    if (!err->status) plan_apply(plan, &script, false, placer, err);
     script_release(&script);
-    return st;
+    return err->status;
 }
 
 enum status edit_chain_apply_objects(struct plan *plan, const char *path, struct provenance *prov, struct err *err)
 {
     struct script script = {0};
-    enum status st = script_read(&script, path, err);
+    script_read(&script, path, err);
     /* an edit may be named objects */
-    if (!st) st = provenance_add_file(prov, "scene/objects.txt", path, err);
-    for (int i = 0; !st && i < script.count; i++)
+    if (!err->status) provenance_add_file(prov, "scene/objects.txt", path, err);
+    for (int i = 0; !err->status && i < script.count; i++)
         if (!(script.statements[i].verb->where & IN_OBJECTS))
-            st = err_set(err, ST_DATA, "%s:%d: found %s, wanted object: this file places objects in all edits.", path,
-                         script.statements[i].line, script.statements[i].verb->word);
-    if (!st) st = plan_apply(plan, &script, true, NULL, err);
+            err_set(err, ST_DATA, "%s:%d: found %s, wanted object: this file places objects in all edits.", path,
+                    script.statements[i].line, script.statements[i].verb->word);
+    if (!err->status) plan_apply(plan, &script, true, NULL, err);
     script_release(&script);
-    return st;
+    return err->status;
 }
 
 /* An edit, and those that stand on it, the nearest first. */
@@ -74,15 +74,14 @@ static enum status apply_chain(struct plan *plan, const struct chain *edit, cons
 {
     struct script script = {0};
     char path[FILE_PATH];
-    enum status st = read_script(&script, edit->path, prov, err);
-    if (!st && script.base) {
+    read_script(&script, edit->path, prov, err);
+    if (!err->status && script.base) {
         const struct chain below = {path, edit};
-        st = base_path(path, &script, edit, err);
-        if (!st) st = apply_chain(plan, &below, placer, prov, err);
+        if (!base_path(path, &script, edit, err)) apply_chain(plan, &below, placer, prov, err);
     }
-    if (!st) st = plan_apply(plan, &script, true, placer, err);
+    if (!err->status) plan_apply(plan, &script, true, placer, err);
     script_release(&script);
-    return st;
+    return err->status;
 }
 
 enum status edit_chain_apply_edit(struct plan *plan, const char *path, const struct placer *placer,

@@ -148,36 +148,35 @@ static enum status keep_unedited(struct plan *p, struct err *err)
     u->base = NULL;
     u->wish_count = u->zone_count = u->lamp_count = u->object_count = 0;
     p->unedited = u;
-    enum status st = copy_items(&u->walls, p->walls, p->wall_count, sizeof *p->walls, err);
-    if (!st) st = copy_items(&u->openings, p->openings, p->opening_count, sizeof *p->openings, err);
-    if (!st) st = copy_items(&u->slots, p->slots, p->slot_count, sizeof *p->slots, err);
-    if (!st) st = copy_items(&u->boxes, p->boxes, p->box_count, sizeof *p->boxes, err);
-    if (!st) st = copy_items(&u->rooms, p->rooms, p->room_count, sizeof *p->rooms, err);
-    if (!st) st = copy_items(&u->names, p->names, p->name_capacity, sizeof *p->names, err);
-    for (int i = 0; !st && i < u->room_count; i++) {
+    if (!copy_items(&u->walls, p->walls, p->wall_count, sizeof *p->walls, err) &&
+        !copy_items(&u->openings, p->openings, p->opening_count, sizeof *p->openings, err) &&
+        !copy_items(&u->slots, p->slots, p->slot_count, sizeof *p->slots, err) &&
+        !copy_items(&u->boxes, p->boxes, p->box_count, sizeof *p->boxes, err) &&
+        !copy_items(&u->rooms, p->rooms, p->room_count, sizeof *p->rooms, err))
+        copy_items(&u->names, p->names, p->name_capacity, sizeof *p->names, err);
+    for (int i = 0; !err->status && i < u->room_count; i++) {
         struct plan_room *r = &u->rooms[i];
         r->walls = r->edge_of = NULL;
         r->edges = NULL;
         r->parts = NULL;
         r->wall_count = r->edge_count = r->part_count = 0;
     }
-    return st;
+    return err->status;
 }
 
 static enum status apply_edit(struct plan_context *c, const struct script *script)
 {
     struct edit_watch w = {0};
-    enum status st = c->plan->unedited ? ST_OK : keep_unedited(c->plan, c->err);
-    if (!st) st = plan_state(&w.before, c->plan, c->err);
-    for (int i = 0; i < script->count && !st; i++) {
+    if (!c->plan->unedited) keep_unedited(c->plan, c->err);
+    if (!c->err->status) plan_state(&w.before, c->plan, c->err);
+    for (int i = 0; i < script->count && !c->err->status; i++) {
         c->s = &script->statements[i];
-        st = needs_views(c);
-        if (!st) st = apply_watched(c, &w);
+        if (!needs_views(c)) apply_watched(c, &w);
     }
-    for (int i = 0; i < DEFAULTS && !st; i++)
-        if (w.set_line[i]) st = unused_default(c, (enum plan_default)i, w.set_line[i]);
+    for (int i = 0; i < DEFAULTS && !c->err->status; i++)
+        if (w.set_line[i]) unused_default(c, (enum plan_default)i, w.set_line[i]);
     free(w.before);
-    return st;
+    return c->err->status;
 }
 
 enum status plan_apply(struct plan *plan, const struct script *script, bool edit, const struct placer *placer,

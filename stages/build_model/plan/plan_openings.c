@@ -162,14 +162,13 @@ enum status plan_place_in_room(struct plan_context *c, const struct plan_room *r
 {
     if (kind == OPENING_HATCH) return plan_place_footprint(c, r->floor, low, high);
     /* of a gable's planes, the one in which the footprint's middle is on the ceiling */
-    enum status st = ST_OK;
-    for (int i = 0; i < r->lower.count && !st; i++) {
-        st = place_in_plane(c, r->lower.a[i], low, high);
+    for (int i = 0; i < r->lower.count && !c->err->status; i++) {
+        place_in_plane(c, r->lower.a[i], low, high);
         const double middle[2] = {0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1])};
         const struct plan_top one = {{{r->lower.a[i][0], r->lower.a[i][1], r->lower.a[i][2]}}, 1};
-        if (!st && plan_top_at(&one, middle) <= plan_top_at(&r->lower, middle) + LENGTH_EPS) break;
+        if (!c->err->status && plan_top_at(&one, middle) <= plan_top_at(&r->lower, middle) + LENGTH_EPS) break;
     }
-    return st;
+    return c->err->status;
 }
 
 enum status plan_read_slot(struct script_reader *r, struct statement *s) { return read_on(r, s, "a room"); }

@@ -220,21 +220,19 @@ enum status plan_check_rooms(struct plan_checker *c)
     struct plan *p = c->plan;
     unsigned char *sides = calloc((size_t)p->wall_count + 1, 1); /* bits: of each wall, the sides that face rooms */
     if (!sides) return err_nomem(c->err, "the sides of walls", (size_t)p->wall_count);
-    enum status st = ST_OK;
-    for (int i = 0; i < p->room_count && !st; i++) {
+    for (int i = 0; i < p->room_count && !c->err->status; i++) {
         struct plan_room *r = &p->rooms[i];
         if (r->removed) continue;
         free(r->edges);
         free(r->edge_of);
         r->edges = calloc((size_t)r->wall_count, sizeof *r->edges);
         r->edge_of = calloc((size_t)r->wall_count, sizeof *r->edge_of);
-        st = r->edges && r->edge_of ? group_walls(c, r) : err_nomem(c->err, "a room's edges", (size_t)r->wall_count);
-        if (!st) st = shape_room(c, r);
-        if (!st) st = slope_room(c, r);
-        for (int k = 0; !st && k < r->wall_count; k++)
+        if (!r->edges || !r->edge_of) err_nomem(c->err, "a room's edges", (size_t)r->wall_count);
+        if (!c->err->status && !group_walls(c, r) && !shape_room(c, r)) slope_room(c, r);
+        for (int k = 0; !c->err->status && k < r->wall_count; k++)
             sides[r->walls[k]] |= (unsigned char)(1 << r->edges[r->edge_of[k]].side);
     }
-    for (int i = 0; i < p->room_count && !st; i++) {
+    for (int i = 0; i < p->room_count && !c->err->status; i++) {
         struct plan_room *r = &p->rooms[i];
         for (int e = 0; !r->removed && e < r->edge_count; e++) {
             struct room_edge *edge = &r->edges[e];
@@ -242,18 +240,17 @@ enum status plan_check_rooms(struct plan_checker *c)
             edge->shared = sides[edge->wall] == 3;
             edge->border = w->c - (edge->shared ? 0.5 : edge->side == SIDE_IN ? 1 : 0) * w->thickness;
         }
-        for (int e = 0; !r->removed && !st && e < r->edge_count; e++) {
+        for (int e = 0; !r->removed && !c->err->status && e < r->edge_count; e++) {
             struct plan_line x = plan_wall_face(&p->walls[r->edges[e].wall], SIDE_IN);
             struct plan_line y = plan_wall_face(&p->walls[r->edges[(e + 1) % r->edge_count].wall], SIDE_IN);
             x.c = r->edges[e].border;
             y.c = r->edges[(e + 1) % r->edge_count].border;
             plan_line_cross(x, y, r->edges[e].outer);
             if (!(plan_top_at(&r->lower, r->edges[e].outer) - r->floor >= MIN_SIZE))
-                st = plan_error(c, r->line, "the ceiling of room %s comes down to its floor.", r->name);
+                plan_error(c, r->line, "the ceiling of room %s comes down to its floor.", r->name);
         }
-        if (!r->removed && !st) st = check_border(c, r);
-        if (!r->removed && !st) st = room_parts_make(r, p, c->err);
+        if (!r->removed && !c->err->status && !check_border(c, r)) room_parts_make(r, p, c->err);
     }
     free(sides);
-    return st;
+    return c->err->status;
 }

@@ -180,22 +180,21 @@ enum status plan_apply_wall(struct plan_context *c)
     w.foot = plan_option_or_default(c, OPTION_FOOT, DEFAULT_FLOOR);
     w.top = plan_option_or_default(c, OPTION_TOP, DEFAULT_CEILING);
     w.has_top = s->has_option[OPTION_TOP];
-    enum status st = ST_OK;
     if (!s->has_option[OPTION_THICKNESS] && w.thickness == 0)
-        st = plan_statement_error(
+        plan_statement_error(
             c, "the thickness of walls is unknown without a scale; write \"set thickness NUMBER\" before.");
     else if (!w.has_top && w.top == 0)
-        st = plan_statement_error(c, "no ceiling was found; write \"set ceiling NUMBER\" before.");
+        plan_statement_error(c, "no ceiling was found; write \"set ceiling NUMBER\" before.");
     else
-        st = plan_check_length(c, "thickness", w.thickness);
-    if (!st && !(w.top - w.foot >= MIN_SIZE))
-        st = plan_statement_error(c, "wall %s goes from %.9g up to %.9g, wanted a top above its foot.", s->name, w.foot,
-                                  w.top);
-    if (!st) st = place_new_wall(c, &w);
-    if (!st) st = array_append(&p->walls, (size_t)p->wall_count, sizeof w, "walls", c->err);
-    if (st) {
+        plan_check_length(c, "thickness", w.thickness);
+    if (!c->err->status && !(w.top - w.foot >= MIN_SIZE))
+        plan_statement_error(c, "wall %s goes from %.9g up to %.9g, wanted a top above its foot.", s->name, w.foot,
+                             w.top);
+    if (!c->err->status && !place_new_wall(c, &w))
+        array_append(&p->walls, (size_t)p->wall_count, sizeof w, "walls", c->err);
+    if (c->err->status) {
         free(w.name);
-        return st;
+        return c->err->status;
     }
     p->walls[p->wall_count++] = w;
     return plan_add_name(p, w.name, NAMED_WALL, p->wall_count - 1, c->err);

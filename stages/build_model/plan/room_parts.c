@@ -76,19 +76,18 @@ static enum status outside_from(const struct outside *o, const struct part_corne
     const size_t size = (size_t)count + (size_t)r->count + 2;
     struct part_corner *rest = malloc(2 * size * sizeof *rest), *beyond = rest + size;
     if (!rest) return err_nomem(o->err, "a polygon", 2 * size * sizeof *rest);
-    enum status st = ST_OK;
     memcpy(rest, in, (size_t)count * sizeof *rest);
-    for (int k = 0; k < r->count && count && !st; k++) {
+    for (int k = 0; k < r->count && count && !o->err->status; k++) {
         struct part_corner by = r->corners[k];
         by.line = line_reversed(by.line);
         const int n = part_clip(beyond, rest, count, &by);
-        if (n) st = outside_from(o, beyond, n, part + 1);
+        if (n) outside_from(o, beyond, n, part + 1);
         by.line = r->corners[k].line;
         count = part_clip(beyond, rest, count, &by);
         memcpy(rest, beyond, (size_t)count * sizeof *rest);
     }
     free(rest);
-    return st;
+    return o->err->status;
 }
 
 enum status parts_outside(const struct part_corner *in, int count, const struct room_part *parts, int part_count,
@@ -163,8 +162,7 @@ static enum status cut_convex(struct plan_room *r, struct part_corner *c, int n,
     if (!part)
         return err_set(err, ST_INTERNAL, "the floor of room %s could not be cut into convex parts; this is a bug.",
                        r->name);
-    enum status st = ST_OK;
-    for (int half = 0; half < 2 && !st; half++) {
+    for (int half = 0; half < 2 && !err->status; half++) {
         int m = 0;
         /* half 0: from the reflex corner along the border to the side hit, and back along the cut; half 1: the rest */
         const int from = half == 0 ? reflex : hit, to = half == 0 ? hit : reflex;
@@ -184,10 +182,10 @@ static enum status cut_convex(struct plan_room *r, struct part_corner *c, int n,
             const double *q = part[k].p, *prev = part[(k + m - 1) % m].p;
             if (hypot(q[0] - prev[0], q[1] - prev[1]) > 1e-9) part[kept++] = part[k];
         }
-        if (kept >= 3) st = cut_convex(r, part, kept, depth + 1, err);
+        if (kept >= 3) cut_convex(r, part, kept, depth + 1, err);
     }
     free(part);
-    return st;
+    return err->status;
 }
 
 enum status room_parts_make(struct plan_room *r, const struct plan *p, struct err *err)
@@ -204,7 +202,7 @@ enum status room_parts_make(struct plan_room *r, const struct plan *p, struct er
         c[e].wall = edge->shared ? PART_MIDDLE : edge->wall;
         c[e].side = edge->side == SIDE_IN ? SIDE_OUT : SIDE_IN;
     }
-    const enum status st = cut_convex(r, c, r->edge_count, 0, err);
+    cut_convex(r, c, r->edge_count, 0, err);
     free(c);
-    return st;
+    return err->status;
 }

@@ -65,29 +65,28 @@ enum status script_read(struct script *script, const char *path, struct err *err
 {
     struct script_reader r = {.err = err};
     *script = (struct script){0};
-    enum status st = textfile_open(&r.t, path, err);
-    if (!st) {
+    if (!textfile_open(&r.t, path, err)) {
         script->path = strdup(path);
         /* a word and its terminating zero need no more than the word and the blank after it */
         r.words = script->words = malloc(r.t.size + 2);
-        if (!script->path || !script->words) st = err_nomem(err, "a script", r.t.size);
+        if (!script->path || !script->words) err_nomem(err, "a script", r.t.size);
     }
-    if (!st) st = read_header(&r);
-    while (!st && textfile_next(&r.t)) {
+    if (!err->status) read_header(&r);
+    while (!err->status && textfile_next(&r.t)) {
         if (script->count == MAX_STATEMENTS) {
-            st = err_set(err, ST_DATA, "%s:%d: found more than %d statements.", path, r.t.line, MAX_STATEMENTS);
+            err_set(err, ST_DATA, "%s:%d: found more than %d statements.", path, r.t.line, MAX_STATEMENTS);
             break;
         }
-        st = array_append(&script->statements, (size_t)script->count, sizeof *script->statements, "statements", err);
-        if (st) break;
+        if (array_append(&script->statements, (size_t)script->count, sizeof *script->statements, "statements", err))
+            break;
         struct statement *s = &script->statements[script->count++];
         *s = (struct statement){0};
         r.count = script->count;
-        st = read_statement(&r, s);
+        read_statement(&r, s);
     }
     script->base = r.base;
     script->base_line = r.base_line;
     textfile_release(&r.t);
-    if (st) script_release(script);
-    return st;
+    if (err->status) script_release(script);
+    return err->status;
 }

@@ -91,7 +91,7 @@ static enum status find_near(struct sweep *w, struct err *err)
     int axis = 0, pair_count = 0, pair_capacity = 0, active_count = 0, *pairs = NULL;
     struct by_low *order = malloc((size_t)n * sizeof *order);
     int *active = malloc((size_t)n * sizeof *active);
-    enum status st = order && active ? ST_OK : err_nomem(err, "boxes of solids", (size_t)n * sizeof *order);
+    if (!order || !active) err_nomem(err, "boxes of solids", (size_t)n * sizeof *order);
 
     for (int a = 0; a < 3; a++)
         for (int i = 0; i < n; i++) {
@@ -100,18 +100,17 @@ static enum status find_near(struct sweep *w, struct err *err)
         }
     for (int a = 1; a < 3; a++)
         if (high[a] - low[a] > high[axis] - low[axis]) axis = a;
-    for (int i = 0; !st && i < n; i++) order[i] = (struct by_low){set->solids[i].low[axis], i};
-    if (!st) qsort(order, (size_t)n, sizeof *order, compare_low);
-    for (int i = 0; !st && i < n; i++) {
+    for (int i = 0; !err->status && i < n; i++) order[i] = (struct by_low){set->solids[i].low[axis], i};
+    if (!err->status) qsort(order, (size_t)n, sizeof *order, compare_low);
+    for (int i = 0; !err->status && i < n; i++) {
         const struct convex *c = &set->solids[order[i].solid];
         int kept = 0;
-        for (int k = 0; !st && k < active_count; k++) {
+        for (int k = 0; !err->status && k < active_count; k++) {
             const struct convex *o = &set->solids[active[k]];
             if (o->high[axis] + 0.25 < c->low[axis]) continue;
             active[kept++] = active[k];
             if (!boxes_meet(c->low, c->high, o->low, o->high)) continue;
-            st = exact_grow(&pairs, &pair_capacity, pair_count + 2, sizeof *pairs, err);
-            if (st) break;
+            if (exact_grow(&pairs, &pair_capacity, pair_count + 2, sizeof *pairs, err)) break;
             pairs[pair_count++] = order[i].solid;
             pairs[pair_count++] = active[k];
         }
@@ -120,9 +119,9 @@ static enum status find_near(struct sweep *w, struct err *err)
     }
     w->first = calloc((size_t)n + 2, sizeof *w->first);
     w->near = malloc(((size_t)pair_count + (size_t)n + 1) * sizeof *w->near);
-    if (!st && !(w->first && w->near))
-        st = err_nomem(err, "neighbours of solids", (size_t)pair_count * sizeof *w->near);
-    if (!st) {
+    if (!err->status && !(w->first && w->near))
+        err_nomem(err, "neighbours of solids", (size_t)pair_count * sizeof *w->near);
+    if (!err->status) {
         for (int i = 0; i < n; i++) w->first[i + 2]++;
         for (int i = 0; i < pair_count; i++) w->first[pairs[i] + 2]++;
         for (int i = 0; i < n; i++) w->first[i + 2] += w->first[i + 1];
@@ -132,7 +131,7 @@ static enum status find_near(struct sweep *w, struct err *err)
     free(order);
     free(active);
     free(pairs);
-    return st;
+    return err->status;
 }
 
 /* ---------------------------------------------------------------------------------------------------------- a line */
@@ -355,63 +354,62 @@ static enum status add_polygon(struct sweep *w, int polygon, struct err *err)
 static enum status sweep_plane(struct sweep *w, int plane, struct err *err)
 {
     struct convex_set *set = w->set;
-    enum status st = ST_OK;
     w->polygon_count = w->entry_count = 0;
-    for (int i = w->plane_first[plane]; !st && i < w->plane_first[plane + 1]; i++)
-        st = add_polygon(w, w->plane_facets[i], err);
-    for (int i = w->plane_first[plane]; !st && i < w->plane_first[plane + 1]; i++) {
+    for (int i = w->plane_first[plane]; !err->status && i < w->plane_first[plane + 1]; i++)
+        add_polygon(w, w->plane_facets[i], err);
+    for (int i = w->plane_first[plane]; !err->status && i < w->plane_first[plane + 1]; i++) {
         const struct polygon p = set->polygons[w->plane_facets[i]];
-        for (int k = w->first[p.solid]; !st && k < w->first[p.solid + 1]; k++) {
+        for (int k = w->first[p.solid]; !err->status && k < w->first[p.solid + 1]; k++) {
             const struct convex *c = &set->solids[w->near[k]];
             int section;
             if (w->polygon_of[w->near[k]] >= 0 || !boxes_meet(p.low, p.high, c->low, c->high)) continue;
-            st = convex_section(set, w->near[k], plane, &section, err);
-            if (!st && section >= 0) st = add_polygon(w, section, err);
+            convex_section(set, w->near[k], plane, &section, err);
+            if (!err->status && section >= 0) add_polygon(w, section, err);
         }
     }
     int old = w->stamp_capacity;
-    if (!st) st = exact_grow(&w->stamp, &w->stamp_capacity, set->polygon_count, sizeof *w->stamp, err);
+    if (!err->status) exact_grow(&w->stamp, &w->stamp_capacity, set->polygon_count, sizeof *w->stamp, err);
     for (; old < w->stamp_capacity; old++) w->stamp[old] = -1;
-    for (int i = 0; !st && i < w->polygon_count; i++) {
+    for (int i = 0; !err->status && i < w->polygon_count; i++) {
         const struct polygon p = set->polygons[w->polygons[i]];
         w->stamp[w->polygons[i]] = -1;
-        st = exact_grow(&w->entries, &w->entry_capacity, w->entry_count + p.count, sizeof *w->entries, err);
-        for (int k = p.first; !st && k < p.first + p.count; k++)
+        exact_grow(&w->entries, &w->entry_capacity, w->entry_count + p.count, sizeof *w->entries, err);
+        for (int k = p.first; !err->status && k < p.first + p.count; k++)
             w->entries[w->entry_count++] = (struct entry){set->edges[k].line, w->polygons[i], k};
     }
-    if (!st && w->entry_count) qsort(w->entries, (size_t)w->entry_count, sizeof *w->entries, compare_entries);
-    for (int i = 0, k; !st && i < w->entry_count; i = k) {
+    if (!err->status && w->entry_count) qsort(w->entries, (size_t)w->entry_count, sizeof *w->entries, compare_entries);
+    for (int i = 0, k; !err->status && i < w->entry_count; i = k) {
         for (k = i + 1; k < w->entry_count && w->entries[k].line == w->entries[i].line;) k++;
-        st = sweep_line(w, plane, &w->entries[i], k - i, err);
+        sweep_line(w, plane, &w->entries[i], k - i, err);
     }
     for (int i = 0; i < w->polygon_count; i++) w->polygon_of[set->polygons[w->polygons[i]].solid] = -1;
-    return st;
+    return err->status;
 }
 
 enum status borders_find(struct border_set *borders, struct convex_set *set, const int *rooms, struct err *err)
 {
     struct sweep w = {.set = set, .rooms = rooms, .borders = borders, .facets = set->polygon_count};
     const int planes = set->space.plane_count; /* sections add none */
-    enum status st = find_near(&w, err);
+    find_near(&w, err);
     w.plane_first = calloc((size_t)planes + 2, sizeof *w.plane_first);
     w.plane_facets = malloc((size_t)w.facets * sizeof *w.plane_facets);
     w.polygon_of = malloc((size_t)set->count * sizeof *w.polygon_of);
     w.bordered = calloc((size_t)w.facets, 1);
     w.visible = calloc((size_t)w.facets, 1);
-    if (!st && !(w.plane_first && w.plane_facets && w.polygon_of && w.bordered && w.visible))
-        st = err_nomem(err, "the surface of a union", (size_t)w.facets * sizeof *w.plane_facets);
-    if (!st) {
+    if (!err->status && !(w.plane_first && w.plane_facets && w.polygon_of && w.bordered && w.visible))
+        err_nomem(err, "the surface of a union", (size_t)w.facets * sizeof *w.plane_facets);
+    if (!err->status) {
         for (int i = 0; i < set->count; i++) w.polygon_of[i] = -1;
         for (int i = 0; i < w.facets; i++) w.plane_first[set->polygons[i].plane + 2]++;
         for (int i = 0; i < planes; i++) w.plane_first[i + 2] += w.plane_first[i + 1];
         for (int i = 0; i < w.facets; i++) w.plane_facets[w.plane_first[set->polygons[i].plane + 1]++] = i;
     }
-    for (int i = 0; !st && i < planes; i++) st = sweep_plane(&w, i, err);
-    for (int i = 0; !st && i < w.facets; i++) {
+    for (int i = 0; !err->status && i < planes; i++) sweep_plane(&w, i, err);
+    for (int i = 0; !err->status && i < w.facets; i++) {
         if (!w.visible[i] || w.bordered[i]) continue;
-        st = exact_grow(&borders->inner, &borders->inner_capacity, borders->inner_count + 1, sizeof *borders->inner,
-                        err);
-        if (!st) borders->inner[borders->inner_count++] = i;
+        if (!exact_grow(&borders->inner, &borders->inner_capacity, borders->inner_count + 1, sizeof *borders->inner,
+                        err))
+            borders->inner[borders->inner_count++] = i;
     }
     free(w.first);
     free(w.near);
@@ -429,5 +427,5 @@ enum status borders_find(struct border_set *borders, struct convex_set *set, con
     free(w.covers);
     free(w.room_at);
     free(w.border_at);
-    return st;
+    return err->status;
 }

@@ -137,9 +137,9 @@ enum status convex_half_spaces(struct lattice_half_space **half_spaces, const st
     struct oblique *planes = malloc((all + 1) * sizeof *planes);
     size_t *first = malloc((all + 1) * sizeof *first);
     struct lattice_half_space *out = calloc(all + 1, sizeof *out);
-    enum status st = planes && first && out ? ST_OK : err_nomem(err, "solids on the lattice", all * sizeof *planes);
+    if (!planes || !first || !out) err_nomem(err, "solids on the lattice", all * sizeof *planes);
 
-    for (int i = 0; !st && i < list->count; i++)
+    for (int i = 0; !err->status && i < list->count; i++)
         for (int k = 0; k < list->solids[i].count; k++, at++) {
             const struct half_space *h = &list->solids[i].half_spaces[k];
             const double n[3] = {h->normal.x, h->normal.y, h->normal.z};
@@ -168,17 +168,17 @@ enum status convex_half_spaces(struct lattice_half_space **half_spaces, const st
                 planes[oblique++] = o;
             }
         }
-    if (!st) {
+    if (!err->status) {
         qsort(planes, oblique, sizeof *planes, by_plane);
         snap_oblique(planes, first, oblique, out);
     }
     free(planes);
     free(first);
-    if (st)
+    if (err->status)
         free(out);
     else
         *half_spaces = out;
-    return st;
+    return err->status;
 }
 
 /* ------------------------------------------------------------------------------------------------------- polygons */
@@ -291,34 +291,33 @@ enum status convex_set_add(struct convex_set *set, const struct solid *solid,
     if (solid->count > FEW) planes = malloc(2 * (size_t)solid->count * sizeof *planes);
     if (!planes) return err_nomem(err, "a solid", 2 * (size_t)solid->count * sizeof *planes);
     int *sides = planes + (solid->count > FEW ? solid->count : FEW);
-    enum status st = ST_OK;
     bool bounded = true;
-    for (int i = 0; !st && i < solid->count; i++)
+    for (int i = 0; !err->status && i < solid->count; i++)
         if (!half_spaces[i].everywhere)
-            st = exact_plane_add(&set->space, half_spaces[i].n, half_spaces[i].d, &planes[i], &sides[i], err);
-    for (int i = 0; !st && i < solid->count; i++) {
+            exact_plane_add(&set->space, half_spaces[i].n, half_spaces[i].d, &planes[i], &sides[i], err);
+    for (int i = 0; !err->status && i < solid->count; i++) {
         bool again = half_spaces[i].everywhere;
         for (int k = 0; k < i; k++)
             again = again || (!half_spaces[k].everywhere && planes[k] == planes[i] && sides[k] == sides[i]);
         if (again) continue;
         int count;
-        st = square(set, planes[i], &count, far, err);
-        for (int k = 0; !st && count && k < solid->count; k++)
+        square(set, planes[i], &count, far, err);
+        for (int k = 0; !err->status && count && k < solid->count; k++)
             if (!half_spaces[k].everywhere && !exact_parallel(&set->space, planes[i], planes[k]))
-                st = cut(set, planes[i], &count, planes[k], sides[k], err);
+                cut(set, planes[i], &count, planes[k], sides[k], err);
             else if (!half_spaces[k].everywhere && k != i &&
                      sides[k] * exact_side(&set->space, set->scratch[0][0].corner, planes[k]) > 0)
                 count = 0; /* outside a parallel plane */
-        for (int k = 0; !st && k < count; k++)
+        for (int k = 0; !err->status && k < count; k++)
             for (int f = 0; f < 6; f++) bounded = bounded && set->scratch[0][k].plane != far[f];
-        if (!st && count)
-            st = keep(set,
-                      (struct polygon){
-                          .plane = planes[i], .solid = set->count, .side = sides[i], .name = names[i], .count = count},
-                      err);
+        if (!err->status && count)
+            keep(set,
+                 (struct polygon){
+                     .plane = planes[i], .solid = set->count, .side = sides[i], .name = names[i], .count = count},
+                 err);
     }
     if (planes != few) free(planes);
-    if (st) return st;
+    if (err->status) return err->status;
     c.count = set->polygon_count - c.first;
     if (!bounded) return wrong(solid, "is not bounded, or extends beyond 1000 units from the origin", err);
     if (c.count < 4) return wrong(solid, "is empty, or flat when rounded to a millionth of a unit", err);

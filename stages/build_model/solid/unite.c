@@ -68,10 +68,9 @@ static enum status add_result(struct body_union *j, struct polygon_soup *r, cons
     int *vertex = malloc(((size_t)j->vertex_count + 1) * sizeof *vertex);
     int *hole_first = calloc((size_t)j->face_count + 2, sizeof *hole_first);
     int *holes = malloc(((size_t)j->loop_count + 1) * sizeof *holes);
-    enum status st = order && vertex && hole_first && holes
-                         ? ST_OK
-                         : err_nomem(err, "faces of a union", (size_t)j->vertex_count * sizeof *vertex);
-    if (!st) {
+    if (!order || !vertex || !hole_first || !holes)
+        err_nomem(err, "faces of a union", (size_t)j->vertex_count * sizeof *vertex);
+    if (!err->status) {
         for (int i = 0; i < j->vertex_count; i++) vertex[i] = -1;
         for (int i = 0; i < j->face_count; i++) order[i] = (struct face_order){j->faces[i].name, i};
         qsort(order, (size_t)j->face_count, sizeof *order, compare_faces);
@@ -79,16 +78,14 @@ static enum status add_result(struct body_union *j, struct polygon_soup *r, cons
         for (int i = 0; i < j->loop_count; i++)
             if (j->loops[i].hole) holes[hole_first[j->loops[i].face + 1]++] = i;
     }
-    for (int i = 0; !st && i < j->face_count; i++) {
+    for (int i = 0; !err->status && i < j->face_count; i++) {
         const struct union_face *f = &j->faces[order[i].face];
         const struct exact_plane *p = &j->set.space.planes[f->plane];
         const double n[3] = {(double)(p->n[0] * f->side), (double)(p->n[1] * f->side), (double)(p->n[2] * f->side)};
         const double length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
         if (exact_grow(&r->polygons, &r->polygon_capacity, r->polygon_count + 1, sizeof *r->polygons, err) ||
-            exact_grow(&r->at, &r->at_capacity, 2 * r->polygon_count + 2, sizeof *r->at, err)) {
-            st = err->status;
+            exact_grow(&r->at, &r->at_capacity, 2 * r->polygon_count + 2, sizeof *r->at, err))
             break;
-        }
         r->at[2 * r->polygon_count] = (size_t)r->corner_count;
         r->at[2 * r->polygon_count + 1] = (size_t)r->size_count;
         r->polygons[r->polygon_count++] = (struct solid_polygon){
@@ -98,15 +95,15 @@ static enum status add_result(struct body_union *j, struct polygon_soup *r, cons
             .offset = (double)(p->d * f->side) / length / 1e6 + 0.,
             .loops = 1 + f->holes,
         };
-        st = add_loop(j, r, f->loop, vertex, err);
-        for (int k = hole_first[order[i].face]; !st && k < hole_first[order[i].face + 1]; k++)
-            st = add_loop(j, r, holes[k], vertex, err);
+        add_loop(j, r, f->loop, vertex, err);
+        for (int k = hole_first[order[i].face]; !err->status && k < hole_first[order[i].face + 1]; k++)
+            add_loop(j, r, holes[k], vertex, err);
     }
     free(order);
     free(vertex);
     free(hole_first);
     free(holes);
-    return st;
+    return err->status;
 }
 
 static void joined_release(struct body_union *j)
@@ -125,26 +122,23 @@ static enum status unite_body(struct polygon_soup *r, const struct solid_list *l
 {
     struct body_union j = {0};
     const struct solid *first = &list->solids[members[0]];
-    enum status st = ST_OK;
-    for (int i = 0; !st && i < count; i++) {
+    for (int i = 0; !err->status && i < count; i++) {
         const size_t at = half_space_of[members[i]];
-        st = convex_set_add(&j.set, &list->solids[members[i]], &half_spaces[at], &names->rank[at], err);
+        convex_set_add(&j.set, &list->solids[members[i]], &half_spaces[at], &names->rank[at], err);
     }
-    if (!st) st = borders_find(&j.borders, &j.set, names->room, err);
-    if (!st) st = unite_make_halves(&j, first, err);
-    if (!st) st = unite_link_halves(&j, first, err);
+    if (!err->status && !borders_find(&j.borders, &j.set, names->room, err) && !unite_make_halves(&j, first, err))
+        unite_link_halves(&j, first, err);
     int *loop_of_border = malloc(((size_t)j.borders.border_count + 1) * sizeof *loop_of_border);
-    if (!st && !loop_of_border) st = err_nomem(err, "faces of a union", (size_t)j.borders.border_count);
-    if (!st) {
+    if (!err->status && !loop_of_border) err_nomem(err, "faces of a union", (size_t)j.borders.border_count);
+    if (!err->status) {
         for (int i = 0; i < j.half_count; i++) loop_of_border[j.halves[i].border] = j.halves[i].loop;
         unite_make_vertices(&j);
-        st = unite_make_faces(&j, loop_of_border, merges, names, first, err);
+        unite_make_faces(&j, loop_of_border, merges, names, first, err);
     }
-    if (!st) st = unite_split_edges(&j, err);
-    if (!st) st = add_result(&j, r, first->body, names->texts, err);
+    if (!err->status && !unite_split_edges(&j, err)) add_result(&j, r, first->body, names->texts, err);
     free(loop_of_border);
     joined_release(&j);
-    return st;
+    return err->status;
 }
 
 /* ----------------------------------------------------------------------------------------------------- whole lists */
@@ -167,11 +161,11 @@ enum status unite_solids(struct solid_mesh *mesh, const struct solid_list *solid
     int *body = malloc((n + 1) * sizeof *body), *members = malloc((n + 1) * sizeof *members), bodies = 0;
     int *first = calloc(n + 2, sizeof *first);
     size_t *half_space_of = malloc((n + 1) * sizeof *half_space_of), at = 0;
-    enum status st = body && members && first && half_space_of ? ST_OK : err_nomem(err, "solids", n * sizeof *body);
+    if (!body || !members || !first || !half_space_of) err_nomem(err, "solids", n * sizeof *body);
 
-    if (!st) st = convex_half_spaces(&half_spaces, solids, err);
-    if (!st) st = unite_rank_names(&names, body, &bodies, solids, err);
-    if (!st) {
+    if (!err->status && !convex_half_spaces(&half_spaces, solids, err))
+        unite_rank_names(&names, body, &bodies, solids, err);
+    if (!err->status) {
         for (int i = 0; i < solids->count; at += (size_t)solids->solids[i++].count) {
             half_space_of[i] = at;
             first[body[i] + 2]++;
@@ -179,16 +173,16 @@ enum status unite_solids(struct solid_mesh *mesh, const struct solid_list *solid
         for (int i = 0; i < bodies; i++) first[i + 2] += first[i + 1];
         for (int i = 0; i < solids->count; i++) members[first[body[i] + 1]++] = i;
     }
-    for (int i = 0; !st && i < bodies; i++)
-        st = unite_body(&r, solids, &members[first[i]], first[i + 1] - first[i], half_space_of, half_spaces, &names,
-                        &merges, err);
-    for (int i = 0; !st && i < r.polygon_count; i++) {
+    for (int i = 0; !err->status && i < bodies; i++)
+        unite_body(&r, solids, &members[first[i]], first[i + 1] - first[i], half_space_of, half_spaces, &names, &merges,
+                   err);
+    for (int i = 0; !err->status && i < r.polygon_count; i++) {
         r.polygons[i].corners = r.corners + r.at[2 * i];
         r.polygons[i].sizes = r.sizes + r.at[2 * i + 1];
     }
-    if (!st) st = solid_mesh_make(mesh, r.vertices, r.vertex_count, r.polygons, r.polygon_count, NULL, err);
-    if (!st && log) st = unite_write_log(log, &merges, &names, err);
-    if (st) {
+    if (!err->status) solid_mesh_make(mesh, r.vertices, r.vertex_count, r.polygons, r.polygon_count, NULL, err);
+    if (!err->status && log) unite_write_log(log, &merges, &names, err);
+    if (err->status) {
         solid_mesh_release(mesh);
         if (log) unite_log_release(log);
     }
@@ -207,5 +201,5 @@ enum status unite_solids(struct solid_mesh *mesh, const struct solid_list *solid
     free(members);
     free(first);
     free(half_space_of);
-    return st;
+    return err->status;
 }

@@ -82,8 +82,8 @@ static enum status pair_around(struct body_union *j, int *of, int count, const s
             start = i + 1;
         }
     }
-    const enum status st = depth ? unite_broken(s, "the faces around an edge do not alternate", err) : ST_OK;
-    for (int i = 0; !st && i < count; i++) {
+    if (depth) unite_broken(s, "the faces around an edge do not alternate", err);
+    for (int i = 0; !err->status && i < count; i++) {
         const int h = of[order[(start + i) % count]];
         if (!FORWARD(h)) {
             open[depth++] = h;
@@ -95,7 +95,7 @@ static enum status pair_around(struct body_union *j, int *of, int count, const s
     }
     free(u);
     free(order);
-    return st;
+    return err->status;
 #undef FORWARD
 }
 
@@ -122,19 +122,18 @@ static enum status cut_line(struct body_union *j, const int *borders, int border
     for (int i = 0; i < count; i++) index[points[i]] = i;
     int *of = malloc(((size_t)count + 1) * sizeof *of);
     if (!of) return err_nomem(err, "the edges of a line", ((size_t)count + 1) * sizeof *of);
-    enum status st = ST_OK;
     for (int i = 0; i < count; i++) of[i] = 0; /* half-edges of the edge from point i to i + 1 */
-    for (int i = 0; !st && i < border_count; i++) {
+    for (int i = 0; !err->status && i < border_count; i++) {
         const struct border b = j->borders.borders[borders[i]];
         const int step = b.forward ? 1 : -1;
-        for (int k = index[b.from]; !st && k != index[b.to]; k += step) {
+        for (int k = index[b.from]; !err->status && k != index[b.to]; k += step) {
             of[b.forward ? k : k - 1]++;
-            st = unite_add_half(j, borders[i], points[k], err);
+            unite_add_half(j, borders[i], points[k], err);
         }
     }
     int *slots = malloc(((size_t)(j->half_count - first) + 1) * sizeof *slots);
-    if (!st && !slots) st = err_nomem(err, "the edges of a line", (size_t)(j->half_count - first) * sizeof *slots);
-    if (!st) {
+    if (!err->status && !slots) err_nomem(err, "the edges of a line", (size_t)(j->half_count - first) * sizeof *slots);
+    if (!err->status) {
         for (int i = 0, sum = 0; i < count; i++) {
             const int n = of[i];
             of[i] = sum;
@@ -145,12 +144,12 @@ static enum status cut_line(struct body_union *j, const int *borders, int border
             const int k = index[a->from] - (j->borders.borders[a->border].forward ? 0 : 1);
             slots[of[k]++] = h;
         }
-        for (int i = 0, begin = 0; !st && i < count; begin = of[i++])
-            if (of[i] > begin) st = pair_around(j, &slots[begin], of[i] - begin, s, err);
+        for (int i = 0, begin = 0; !err->status && i < count; begin = of[i++])
+            if (of[i] > begin) pair_around(j, &slots[begin], of[i] - begin, s, err);
     }
     free(of);
     free(slots);
-    return st;
+    return err->status;
 }
 
 enum status unite_make_halves(struct body_union *j, const struct solid *s, struct err *err)
@@ -162,10 +161,9 @@ enum status unite_make_halves(struct body_union *j, const struct solid *s, struc
     int *line_points = malloc(((size_t)b->point_count + 1) * sizeof *line_points);
     int *index = malloc((points + 1) * sizeof *index);
     char *ends = calloc(points + 1, 1); /* points in which a border ends */
-    enum status st = border_first && point_first && by_line && line_points && index && ends
-                         ? ST_OK
-                         : err_nomem(err, "edges of a union", lines * sizeof *border_first);
-    if (!st) {
+    if (!border_first || !point_first || !by_line || !line_points || !index || !ends)
+        err_nomem(err, "edges of a union", lines * sizeof *border_first);
+    if (!err->status) {
         for (int i = 0; i < b->border_count; i++) {
             ends[b->borders[i].from] = ends[b->borders[i].to] = 1;
             border_first[b->borders[i].line + 2]++;
@@ -180,17 +178,17 @@ enum status unite_make_halves(struct body_union *j, const struct solid *s, struc
         for (int i = 0; i < b->point_count; i++)
             if (ends[b->points[i].point]) line_points[point_first[b->points[i].line + 1]++] = b->points[i].point;
     }
-    for (size_t i = 0; !st && i < lines; i++)
+    for (size_t i = 0; !err->status && i < lines; i++)
         if (border_first[i + 1] > border_first[i])
-            st = cut_line(j, &by_line[border_first[i]], border_first[i + 1] - border_first[i],
-                          &line_points[point_first[i]], point_first[i + 1] - point_first[i], index, s, err);
+            cut_line(j, &by_line[border_first[i]], border_first[i + 1] - border_first[i], &line_points[point_first[i]],
+                     point_first[i + 1] - point_first[i], index, s, err);
     free(border_first);
     free(point_first);
     free(by_line);
     free(line_points);
     free(index);
     free(ends);
-    return st;
+    return err->status;
 }
 
 /* ---------------------------------------------------------------------------------------------------------- loops */
@@ -228,17 +226,17 @@ enum status unite_link_halves(struct body_union *j, const struct solid *s, struc
 {
     const size_t points = (size_t)j->set.space.point_count;
     int *first = calloc(points + 2, sizeof *first), *leaving = malloc(((size_t)j->half_count + 1) * sizeof *leaving);
-    enum status st = first && leaving ? ST_OK : err_nomem(err, "loops of a union", points * sizeof *first);
-    if (!st) {
+    if (!first || !leaving) err_nomem(err, "loops of a union", points * sizeof *first);
+    if (!err->status) {
         for (int i = 0; i < j->half_count; i++) first[j->halves[i].from + 2]++;
         for (size_t i = 0; i < points; i++) first[i + 2] += first[i + 1];
         for (int i = 0; i < j->half_count; i++) leaving[first[j->halves[i].from + 1]++] = i;
     }
-    for (int i = 0; !st && i < j->half_count; i++) {
+    for (int i = 0; !err->status && i < j->half_count; i++) {
         const int to = j->halves[j->halves[i].twin].from;
         const int next = following(j, i, &leaving[first[to]], first[to + 1] - first[to]);
         if (next < 0 || j->halves[next].prev >= 0) {
-            st = unite_broken(s, "the edge of a face has no successor", err);
+            unite_broken(s, "the edge of a face has no successor", err);
             break;
         }
         j->halves[i].next = next;
@@ -246,14 +244,13 @@ enum status unite_link_halves(struct body_union *j, const struct solid *s, struc
     }
     free(first);
     free(leaving);
-    for (int i = 0; !st && i < j->half_count; i++) {
+    for (int i = 0; !err->status && i < j->half_count; i++) {
         if (j->halves[i].loop >= 0) continue;
-        st = exact_grow(&j->loops, &j->loop_capacity, j->loop_count + 1, sizeof *j->loops, err);
-        if (st) break;
+        if (exact_grow(&j->loops, &j->loop_capacity, j->loop_count + 1, sizeof *j->loops, err)) break;
         for (int h = i; j->halves[h].loop < 0; h = j->halves[h].next) j->halves[h].loop = j->loop_count;
         j->loops[j->loop_count++] = (struct union_loop){.half = i, .face = -1};
     }
-    return st;
+    return err->status;
 }
 
 /* Makes a vertex for each fan of faces, and removes those in the middle of an edge. */

@@ -247,18 +247,18 @@ enum status unite_make_faces(struct body_union *j, const int *loop_of_border, st
                              const struct name_table *names, const struct solid *s, struct err *err)
 {
     struct loop_order *order = malloc(((size_t)j->loop_count + 1) * sizeof *order);
-    enum status st = order ? ST_OK : err_nomem(err, "faces of a union", (size_t)j->loop_count * sizeof *order);
-    for (int i = 0; !st && i < j->loop_count; i++) {
+    if (!order) err_nomem(err, "faces of a union", (size_t)j->loop_count * sizeof *order);
+    for (int i = 0; !err->status && i < j->loop_count; i++) {
         classify_loop(j, i);
         const struct border *b = loop_border(j, i);
         order[i] = (struct loop_order){2 * b->plane + (b->side > 0), b->room, i};
     }
-    if (!st && j->loop_count) qsort(order, (size_t)j->loop_count, sizeof *order, compare_loops);
-    for (int i = 0, k; !st && i < j->loop_count; i = k) {
+    if (!err->status && j->loop_count) qsort(order, (size_t)j->loop_count, sizeof *order, compare_loops);
+    for (int i = 0, k; !err->status && i < j->loop_count; i = k) {
         for (k = i + 1; k < j->loop_count && order[k].key == order[i].key && order[k].room == order[i].room;) k++;
-        st = faces_of_side(j, &order[i], k - i, s, err);
+        faces_of_side(j, &order[i], k - i, s, err);
     }
-    if (!st) st = name_faces(j, order, loop_of_border, merges, names, err);
+    if (!err->status) name_faces(j, order, loop_of_border, merges, names, err);
     free(order);
-    return st;
+    return err->status;
 }

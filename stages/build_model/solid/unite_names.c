@@ -35,9 +35,9 @@ static enum status number_rooms(struct name_table *names, struct err *err)
     int rooms = 0, size = 64;
     while (size < 2 * names->count) size *= 2;
     int *slots = malloc((size_t)size * sizeof *slots);
-    enum status st = first && slots ? ST_OK : err_nomem(err, "rooms of names", (size_t)size * sizeof *slots);
-    for (int i = 0; i < size && !st; i++) slots[i] = -1;
-    for (int i = 0; i < names->count && !st; i++) {
+    if (!first || !slots) err_nomem(err, "rooms of names", (size_t)size * sizeof *slots);
+    for (int i = 0; i < size && !err->status; i++) slots[i] = -1;
+    for (int i = 0; i < names->count && !err->status; i++) {
         const char *room;
         const size_t length = room_of(names->texts[i], &room);
         names->room[i] = -1;
@@ -56,7 +56,7 @@ static enum status number_rooms(struct name_table *names, struct err *err)
     }
     free(first);
     free(slots);
-    return st;
+    return err->status;
 }
 
 enum status unite_rank_names(struct name_table *names, int *body, int *body_count, const struct solid_list *list,
@@ -72,18 +72,18 @@ enum status unite_rank_names(struct name_table *names, int *body, int *body_coun
     names->rank = malloc(all * sizeof *names->rank);
     names->room = malloc(all * sizeof *names->room);
     names->present = calloc(all, 1);
-    enum status st = slots && bodies && names->texts && names->rank && names->room && names->present
-                         ? ST_OK
-                         : err_nomem(err, "names of solids", 2 * (size_t)size * sizeof *slots);
-    for (int i = 0; !st && i < 2 * size; i++) slots[i] = -1;
-    for (int i = 0; !st && i < list->count; i++) {
+    if (!slots || !bodies || !names->texts || !names->rank || !names->room || !names->present)
+        err_nomem(err, "names of solids", 2 * (size_t)size * sizeof *slots);
+    for (int i = 0; !err->status && i < 2 * size; i++) slots[i] = -1;
+    for (int i = 0; !err->status && i < list->count; i++) {
         body[i] = rank_of(list->solids[i].body, bodies, body_count, slots + size, size);
         for (int k = 0; k < list->solids[i].count; k++)
             names->rank[at++] = rank_of(list->solids[i].half_spaces[k].name, names->texts, &names->count, slots, size);
     }
     free(slots);
     free(bodies);
-    return st ? st : number_rooms(names, err);
+    if (!err->status) number_rooms(names, err);
+    return err->status;
 }
 
 static int compare_merges(const void *a, const void *b)

@@ -67,26 +67,25 @@ enum status unite_split_edges(struct body_union *j, struct err *err)
 {
     struct edge_ends *ends = malloc(((size_t)j->half_count + 1) * sizeof *ends);
     int count = 0, kept = 0;
-    enum status st = ends ? ST_OK : err_nomem(err, "edges of a union", (size_t)j->half_count * sizeof *ends);
-    for (int i = 0; !st && i < j->half_count; i++) {
+    if (!ends) err_nomem(err, "edges of a union", (size_t)j->half_count * sizeof *ends);
+    for (int i = 0; !err->status && i < j->half_count; i++) {
         if (j->halves[i].twin < i) continue;
         const int a = j->halves[i].vertex, b = j->halves[j->halves[i].twin].vertex;
         ends[count++] = (struct edge_ends){a < b ? a : b, a < b ? b : a, i, false};
     }
-    if (!st && count) qsort(ends, (size_t)count, sizeof *ends, compare_ends);
-    for (int i = 0; !st && i < count; i++) {
+    if (!err->status && count) qsort(ends, (size_t)count, sizeof *ends, compare_ends);
+    for (int i = 0; !err->status && i < count; i++) {
         const bool again = i && ends[i].low == ends[i - 1].low && ends[i].high == ends[i - 1].high;
         ends[i].split = again || crosses_a_face(j, ends[i].half);
     }
-    for (int i = 0; !st && i < count; i++)
+    for (int i = 0; !err->status && i < count; i++)
         if (ends[i].split) ends[kept++] = ends[i];
-    for (int i = 0; !st && i < kept; i++) {
+    for (int i = 0; !err->status && i < kept; i++) {
         const int pair[2] = {ends[i].half, j->halves[ends[i].half].twin}, made = j->half_count;
         double p[2][3];
         for (int k = 0; k < 2; k++) unite_half_position(j, pair[k], p[k]);
-        for (int k = 0; !st && k < 2; k++) {
-            st = unite_add_half(j, j->halves[pair[k]].border, -1, err);
-            if (st) break;
+        for (int k = 0; !err->status && k < 2; k++) {
+            if (unite_add_half(j, j->halves[pair[k]].border, -1, err)) break;
             struct half *h = j->halves, *m = &h[made + k];
             m->vertex = j->vertex_count;
             m->loop = h[pair[k]].loop;
@@ -97,9 +96,9 @@ enum status unite_split_edges(struct body_union *j, struct err *err)
             m->twin = pair[1 - k];
             for (int a = 0; a < 3; a++) m->middle[a] = 0.5 * (p[0][a] + p[1][a]);
         }
-        for (int k = 0; !st && k < 2; k++) j->halves[pair[k]].twin = made + 1 - k;
+        for (int k = 0; !err->status && k < 2; k++) j->halves[pair[k]].twin = made + 1 - k;
         j->vertex_count++;
     }
     free(ends);
-    return st;
+    return err->status;
 }

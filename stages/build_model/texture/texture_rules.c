@@ -157,22 +157,21 @@ static enum status add_coplanar(const struct rules_job *job, struct texture_face
 {
     const struct bounds own = face_bounds(job->models.edited, &job->triangles[0], face);
     double least = near_gap;
-    enum status st = ST_OK;
     *edge = 0;
-    for (int i = 0; !st && i < job->models.base->face_count; i++) {
+    for (int i = 0; !job->err->status && i < job->models.base->face_count; i++) {
         if (!texture_faces_are_coplanar(&job->models.edited->faces[face], &job->models.base->faces[i]) ||
             solid_face_is_pane(job->models.base, i))
             continue;
         const double gap = gap_between(own, face_bounds(job->models.base, &job->triangles[1], i));
         const int id = solid_face_id(job->models.base, i);
         if (gap <= SAME_PLANE && !has_place(to, id))
-            st = texture_face_add(to, shifted(TEXTURE_PLACE, id, vec3_make(0, 0, 0)), job->err);
+            texture_face_add(to, shifted(TEXTURE_PLACE, id, vec3_make(0, 0, 0)), job->err);
         if (gap < least) {
             least = gap;
             *edge = id;
         }
     }
-    return st;
+    return job->err->status;
 }
 
 static int compare_ints(const void *a, const void *b)
@@ -186,25 +185,24 @@ static enum status find_lit(int **lit, int *count, const struct rules_job *job, 
 {
     const struct solid_mesh *m = job->models.edited;
     const struct solid_face *f = &m->faces[face];
-    enum status st = ST_OK;
     int kept = 0;
-    for (int l = f->loop; !st && l < f->loop + f->loops; l++) {
+    for (int l = f->loop; !job->err->status && l < f->loop + f->loops; l++) {
         int h = m->loops[l].half_edge;
         do {
             const int other = own ? face : m->loops[m->half_edges[m->half_edges[h].twin].loop].face;
             struct vec3 by;
             if (!solid_face_is_pane(m, other) && own_place(job, other, &by) >= 0) {
-                st = array_append(lit, (size_t)*count, sizeof **lit, "faces", job->err);
-                if (!st) (*lit)[(*count)++] = solid_face_id(m, other);
+                if (!array_append(lit, (size_t)*count, sizeof **lit, "faces", job->err))
+                    (*lit)[(*count)++] = solid_face_id(m, other);
             }
             h = m->half_edges[h].next;
-        } while (!st && h != m->loops[l].half_edge);
+        } while (!job->err->status && h != m->loops[l].half_edge);
     }
     if (*count) qsort(*lit, (size_t)*count, sizeof **lit, compare_ints);
     for (int i = 0; i < *count; i++)
         if (!kept || (*lit)[kept - 1] != (*lit)[i]) (*lit)[kept++] = (*lit)[i];
     *count = kept;
-    return st;
+    return job->err->status;
 }
 
 /* The default colour. The rule takes the list. */
@@ -213,9 +211,8 @@ static enum status add_colour(const struct rules_job *job, struct texture_face *
     const double *colour = job->models.plan->colour;
     struct texture_rule rule = {.kind = TEXTURE_COLOUR, .lit = *lit, .lit_count = count};
     for (int c = 0; c < 3; c++) rule.albedo[c] = colour[c] < 0 ? default_albedo[c] : (float)colour[c];
-    const enum status st = texture_face_add(to, rule, job->err);
-    if (!st) *lit = NULL;
-    return st;
+    if (!texture_face_add(to, rule, job->err)) *lit = NULL;
+    return job->err->status;
 }
 
 /* The rules that no statement asks for. */
@@ -226,12 +223,13 @@ static enum status add_defaults(const struct rules_job *job, struct texture_face
     int edge = 0;
     if (solid_face_is_pane(job->models.edited, face))
         return texture_face_add(to, (struct texture_rule){.kind = TEXTURE_OUTDOORS}, job->err);
-    if (own) {
-        const enum status st = texture_face_add(to, shifted(TEXTURE_PLACE, id, by), job->err);
-        return st ? st : texture_face_add(to, shifted(TEXTURE_EDGE, id, by), job->err);
-    }
-    const enum status st = add_coplanar(job, to, face, &edge);
-    if (st || !edge) return st ? st : add_colour(job, to, lit, lit_count);
+    if (own)
+        return texture_face_add(to, shifted(TEXTURE_PLACE, id, by), job->err) ||
+                       texture_face_add(to, shifted(TEXTURE_EDGE, id, by), job->err)
+                   ? job->err->status
+                   : ST_OK;
+    if (add_coplanar(job, to, face, &edge)) return job->err->status;
+    if (!edge) return add_colour(job, to, lit, lit_count);
     return texture_face_add(to, shifted(TEXTURE_EDGE, edge, vec3_make(0, 0, 0)), job->err);
 }
 
@@ -241,12 +239,12 @@ static enum status add_rules(const struct rules_job *job, struct texture_face *t
     int *lit = NULL, lit_count = 0;
     bool covered = false;
     *own = place >= 0;
-    enum status st = find_lit(&lit, &lit_count, job, face, *own);
-    if (!st) st = texture_wishes_add(to, &covered, &job->models, face, place, *by, lit, lit_count, job->err);
-    if (!st && !covered) st = add_defaults(job, to, face, *own, *by, &lit, lit_count);
+    if (!find_lit(&lit, &lit_count, job, face, *own) &&
+        !texture_wishes_add(to, &covered, &job->models, face, place, *by, lit, lit_count, job->err) && !covered)
+        add_defaults(job, to, face, *own, *by, &lit, lit_count);
     texture_wishes_gloss(to, &job->models, face);
     free(lit);
-    return st;
+    return job->err->status;
 }
 
 /* --------------------------------------------------------------------------------------------------------- new area */
@@ -278,17 +276,15 @@ struct added {
 static enum status add_area(void *ctx, const struct part_corner *c, int count)
 {
     struct added *a = ctx;
-    enum status st = ST_OK;
-    for (int i = 1; !st && i + 1 < count; i++) {
+    for (int i = 1; !a->err->status && i + 1 < count; i++) {
         const double *p[3] = {c[0].p, c[i].p, c[i + 1].p};
         if (fabs((p[1][0] - p[0][0]) * (p[2][1] - p[0][1]) - (p[1][1] - p[0][1]) * (p[2][0] - p[0][0])) < 1e-8)
             continue;
-        st = array_append(&a->to->added, (size_t)a->to->added_count, sizeof *a->to->added, "triangles", a->err);
-        for (int k = 0; !st && k < 3; k++)
-            a->to->added[a->to->added_count][k] = plane_axes_point(a->axes, p[k][0], p[k][1]);
-        if (!st) a->to->added_count++;
+        if (array_append(&a->to->added, (size_t)a->to->added_count, sizeof *a->to->added, "triangles", a->err)) break;
+        for (int k = 0; k < 3; k++) a->to->added[a->to->added_count][k] = plane_axes_point(a->axes, p[k][0], p[k][1]);
+        a->to->added_count++;
     }
-    return st;
+    return a->err->status;
 }
 
 /* The triangles of the base with the face's id in its plane, moved along with it. The caller frees both arrays. */
@@ -326,14 +322,14 @@ static enum status add_new_area(const struct rules_job *job, struct texture_face
     struct room_part *parts = NULL;
     struct part_corner *corners = NULL, c[3];
     int count = 0;
-    enum status st = own ? base_parts(&parts, &corners, &count, job, face, &axes, by) : ST_OK;
-    for (int i = t->first[face]; !st && i < t->first[face + 1]; i++) {
+    if (own) base_parts(&parts, &corners, &count, job, face, &axes, by);
+    for (int i = t->first[face]; !job->err->status && i < t->first[face + 1]; i++) {
         if (!flat_triangle(c, &axes, job->models.edited, &t->triangles[i], vec3_make(0, 0, 0))) continue;
-        st = parts_outside(c, 3, parts, count, add_area, &added, job->err);
+        parts_outside(c, 3, parts, count, add_area, &added, job->err);
     }
     free(parts);
     free(corners);
-    return st;
+    return job->err->status;
 }
 
 /* ------------------------------------------------------------------------------------------------------------ faces */
@@ -343,15 +339,14 @@ static enum status add_face(struct texture_map *map, const struct rules_job *job
     const struct solid_face *f = &job->models.edited->faces[face];
     struct vec3 by = {0, 0, 0};
     bool own;
-    enum status st = array_append(&map->faces, (size_t)map->face_count, sizeof *map->faces, "faces", job->err);
-    if (st) return st;
+    if (array_append(&map->faces, (size_t)map->face_count, sizeof *map->faces, "faces", job->err))
+        return job->err->status;
     struct texture_face *to = &map->faces[map->face_count++];
     *to =
         (struct texture_face){.id = solid_face_id(job->models.edited, face), .normal = f->normal, .offset = f->offset};
     to->name = strdup(solid_face_name(job->models.edited, face));
     if (!to->name) return err_nomem(job->err, "a name", strlen(solid_face_name(job->models.edited, face)));
-    st = add_rules(job, to, face, &own, &by);
-    return st ? st : add_new_area(job, to, face, own, by);
+    return add_rules(job, to, face, &own, &by) || add_new_area(job, to, face, own, by) ? job->err->status : ST_OK;
 }
 
 /* Faces of one id in one plane have one entry: the first of them has the rules, and the area of all. */
@@ -381,21 +376,20 @@ enum status texture_rules_make(struct texture_map *map, const struct solid_mesh 
                                const struct plan *plan, struct err *err)
 {
     struct rules_job job = {.models = {edited, base, plan->unedited, plan}, .err = err};
-    enum status st = texture_wishes_check(&job.models, err);
-    if (!st && plan->base && !(map->base = strdup(plan->base))) st = err_nomem(err, "a name", strlen(plan->base) + 1);
-    if (!st) st = solid_mesh_triangulate(&job.triangles[0], edited, err);
-    if (!st) st = solid_mesh_triangulate(&job.triangles[1], base, err);
-    for (int f = 0; !st && f < edited->face_count; f++) {
+    if (!texture_wishes_check(&job.models, err) && plan->base && !(map->base = strdup(plan->base)))
+        err_nomem(err, "a name", strlen(plan->base) + 1);
+    if (!err->status && !solid_mesh_triangulate(&job.triangles[0], edited, err))
+        solid_mesh_triangulate(&job.triangles[1], base, err);
+    for (int f = 0; !err->status && f < edited->face_count; f++) {
         struct vec3 by;
         int at;
         if (!is_listed(map, edited, f, &at))
-            st = add_face(map, &job, f);
+            add_face(map, &job, f);
         else
-            st = add_new_area(&job, &map->faces[at], f, own_place(&job, f, &by) >= 0, by);
+            add_new_area(&job, &map->faces[at], f, own_place(&job, f, &by) >= 0, by);
     }
-    if (!st) st = texture_zones_add(map, plan, err);
-    if (!st) st = texture_lamps_add(map, plan, err);
+    if (!err->status && !texture_zones_add(map, plan, err)) texture_lamps_add(map, plan, err);
     if (map->face_count) qsort(map->faces, (size_t)map->face_count, sizeof *map->faces, compare_texture_faces);
     for (int k = 0; k < 2; k++) solid_triangles_release(&job.triangles[k]);
-    return st;
+    return err->status;
 }

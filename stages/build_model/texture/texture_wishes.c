@@ -85,9 +85,8 @@ static enum status check_wish(const struct texture_models *m, const struct plan_
 
 enum status texture_wishes_check(const struct texture_models *m, struct err *err)
 {
-    enum status st = ST_OK;
-    for (int i = 0; !st && i < m->plan->wish_count; i++) st = check_wish(m, &m->plan->wishes[i], err);
-    return st;
+    for (int i = 0; !err->status && i < m->plan->wish_count; i++) check_wish(m, &m->plan->wishes[i], err);
+    return err->status;
 }
 
 /* ------------------------------------------------------------------------------------------------------ rectangles */
@@ -169,8 +168,7 @@ static enum status add_copies(struct texture_face *to, const struct texture_mode
     if (!(columns * rows <= MAX_COPIES))
         return err_set(err, ST_DATA, "%s:%d: the patch would be repeated %.0f times; copy a larger one (at most %d).",
                        w->path, w->line, columns * rows, (int)MAX_COPIES);
-    enum status st = ST_OK;
-    for (int i = 0; !st && i < (int)(columns * rows); i++) {
+    for (int i = 0; !err->status && i < (int)(columns * rows); i++) {
         const double u = target.u[0] + width * (i % (int)columns), v = target.v[0] + height * (i / (int)columns);
         const struct plane_rect cell = {{u, u + width}, {v, v + height}};
         const double right = fmin(u + width, target.u[1]), upper = fmin(v + height, target.v[1]);
@@ -181,9 +179,9 @@ static enum status add_copies(struct texture_face *to, const struct texture_mode
         rule.within[1] = plane_axes_point(&a, right, v);
         rule.within[2] = plane_axes_point(&a, right, upper);
         rule.within[3] = plane_axes_point(&a, u, upper);
-        st = texture_face_add(to, rule, err);
+        texture_face_add(to, rule, err);
     }
-    return st;
+    return err->status;
 }
 
 /* The corners of a place in the plane of a face. */
@@ -206,9 +204,8 @@ static enum status add_colour(struct texture_face *to, const struct texture_mode
     rule.lit = malloc(((size_t)lit_count + 1) * sizeof *rule.lit);
     if (!rule.lit) return err_nomem(err, "faces", (size_t)lit_count * sizeof *rule.lit);
     if (lit_count) memcpy(rule.lit, lit, (size_t)lit_count * sizeof *rule.lit);
-    const enum status st = texture_face_add(to, rule, err);
-    if (st) free(rule.lit);
-    return st;
+    if (texture_face_add(to, rule, err)) free(rule.lit);
+    return err->status;
 }
 
 static enum status add_own(struct texture_face *to, const struct texture_models *m, const struct plan_wish *w, int face,
@@ -221,31 +218,31 @@ static enum status add_own(struct texture_face *to, const struct texture_models 
     const struct plane_rect cropped = {{from.u[0] + u, from.u[1] + u}, {from.v[0] + v, from.v[1] + v}};
     struct texture_rule rule = {.kind = TEXTURE_PLACE, .from = solid_face_id(m->base, base_face)};
     set_matrix(rule.matrix, &a, &from, &b, w->kind == WISH_STRETCH ? &stretched : &cropped);
-    enum status st = texture_face_add(to, rule, err);
+    texture_face_add(to, rule, err);
     rule.kind = TEXTURE_EDGE;
-    return st ? st : texture_face_add(to, rule, err);
+    if (!err->status) texture_face_add(to, rule, err);
+    return err->status;
 }
 
 enum status texture_wishes_add(struct texture_face *to, bool *covered, const struct texture_models *m, int face,
                                int base_face, struct vec3 by, const int *lit, int lit_count, struct err *err)
 {
     const char *name = solid_face_name(m->edited, face);
-    enum status st = ST_OK;
     *covered = false;
-    for (int i = m->plan->wish_count - 1; !st && !*covered && i >= 0; i--) {
+    for (int i = m->plan->wish_count - 1; !err->status && !*covered && i >= 0; i--) {
         const struct plan_wish *w = &m->plan->wishes[i];
         if (!wish_is_about(w, name)) continue;
         if (w->kind == WISH_COPY) {
-            st = add_copies(to, m, w, face, err);
+            add_copies(to, m, w, face, err);
         } else if (w->kind == WISH_COLOUR) {
-            st = add_colour(to, m, w, face, lit, lit_count, err);
+            add_colour(to, m, w, face, lit, lit_count, err);
             *covered = w->whole;
         } else if ((w->kind == WISH_STRETCH || w->kind == WISH_CROP) && base_face >= 0) {
-            st = add_own(to, m, w, face, base_face, by, err);
+            add_own(to, m, w, face, base_face, by, err);
             *covered = true;
         }
     }
-    return st;
+    return err->status;
 }
 
 void texture_wishes_gloss(struct texture_face *to, const struct texture_models *m, int face)
@@ -295,9 +292,9 @@ static enum status add_room(struct texture_map *map, const struct plan_zone *zon
     double(*corners)[2] = malloc(((size_t)room->edge_count + 1) * sizeof *corners);
     if (!corners) return err_nomem(err, "a room's corners", (size_t)room->edge_count * sizeof *corners);
     for (int i = 0; i < room->edge_count; i++) memcpy(corners[i], room->edges[i].corner, sizeof *corners);
-    const enum status st = add_zone(map, zone, room->name, corners, room->edge_count, err);
+    add_zone(map, zone, room->name, corners, room->edge_count, err);
     free(corners);
-    return st;
+    return err->status;
 }
 
 /* The space before an opening, on both sides of its wall. Things that stand there often reach a little beyond. */
@@ -314,16 +311,15 @@ static void corners_before(double corners[4][2], const struct plan *plan, const 
 
 enum status texture_zones_add(struct texture_map *map, const struct plan *plan, struct err *err)
 {
-    enum status st = ST_OK;
-    for (int i = 0; !st && i < plan->zone_count; i++) {
+    for (int i = 0; !err->status && i < plan->zone_count; i++) {
         const struct plan_zone *z = &plan->zones[i];
         double place[4][2] = {
             {z->low[0], z->low[1]}, {z->high[0], z->low[1]}, {z->high[0], z->high[1]}, {z->low[0], z->high[1]}};
         if (z->opening >= 0) corners_before(place, plan, z);
-        for (int r = 0; !st && r < plan->room_count; r++)
+        for (int r = 0; !err->status && r < plan->room_count; r++)
             if (!plan->rooms[r].removed && plan->rooms[r].edge_count > 2 && (z->all || z->room == r))
-                st = add_room(map, z, &plan->rooms[r], err);
-        if (!st && !z->all && z->room < 0) st = add_zone(map, z, "place", place, 4, err);
+                add_room(map, z, &plan->rooms[r], err);
+        if (!err->status && !z->all && z->room < 0) add_zone(map, z, "place", place, 4, err);
     }
-    return st;
+    return err->status;
 }

@@ -28,13 +28,11 @@ static enum status frame_read(struct film_frame *f, struct evaluation *e, const 
     static const char *const channels[4] = {"R", "G", "B", "made"};
     struct exr_image relit = {0};
     char path[FILE_PATH];
-    enum status st = add_picture(path, e, film, "unlit", name, err);
-    if (!st) st = model_picture_read(&f->unlit, path, NULL, err);
-    if (!st) st = add_picture(path, e, film, "frames", name, err);
-    if (!st) st = exr_read(&relit, path, channels, 4, err);
-    if (!st) st = flicker_frame_set_quotients(f, &relit, path, err);
+    if (!add_picture(path, e, film, "unlit", name, err) && !model_picture_read(&f->unlit, path, NULL, err) &&
+        !add_picture(path, e, film, "frames", name, err) && !exr_read(&relit, path, channels, 4, err))
+        flicker_frame_set_quotients(f, &relit, path, err);
     exr_image_release(&relit);
-    return st;
+    return err->status;
 }
 
 static int is_frame(const struct dirent *entry)
@@ -51,16 +49,16 @@ static enum status compare_frames(struct quantiles *differences, uint64_t *place
     char folder[FILE_PATH];
     if (file_path(folder, film, "frames", "", err)) return err->status;
     const int count = path_is_folder(folder) ? scandir(folder, &entries, is_frame, alphasort) : 0;
-    enum status st = count < 0 ? err_errno(err, "list", folder) : ST_OK;
+    if (count < 0) err_errno(err, "list", folder);
     for (int i = 0; i < count; i++) {
-        if (!st) st = frame_read(&frames[i % 2], e, film, entries[i]->d_name, err);
-        if (!st && i) *places += flicker_add(differences, &frames[(i + 1) % 2], &frames[i % 2]);
+        if (!err->status) frame_read(&frames[i % 2], e, film, entries[i]->d_name, err);
+        if (!err->status && i) *places += flicker_add(differences, &frames[(i + 1) % 2], &frames[i % 2]);
         free(entries[i]);
     }
     free(entries);
     flicker_frame_release(&frames[0]);
     flicker_frame_release(&frames[1]);
-    return st;
+    return err->status;
 }
 
 static enum status measure_film(struct evaluation *e, const char *edit, const char *film, struct err *err)
@@ -68,14 +66,12 @@ static enum status measure_film(struct evaluation *e, const char *edit, const ch
     struct quantiles q;
     char prefix[300];
     uint64_t places = 0;
-    enum status st = quantiles_init(&q, err);
-    if (!st) st = compare_frames(&q, &places, e, film, err);
+    if (!quantiles_init(&q, err)) compare_frames(&q, &places, e, film, err);
     snprintf(prefix, sizeof prefix, "edited.%.255s", edit);
-    if (!st && places)
-        st = evaluation_metric(e, NULL, prefix, "flicker50", 100 * quantiles_get(&q, 0.5), err) ||
-             evaluation_metric(e, NULL, prefix, "flicker95", 100 * quantiles_get(&q, 0.95), err);
+    if (!err->status && places && !evaluation_metric(e, NULL, prefix, "flicker50", 100 * quantiles_get(&q, 0.5), err))
+        evaluation_metric(e, NULL, prefix, "flicker95", 100 * quantiles_get(&q, 0.95), err);
     quantiles_release(&q);
-    return st ? err->status : ST_OK;
+    return err->status;
 }
 
 enum status evaluate_films(struct evaluation *e, struct err *err)
@@ -84,16 +80,15 @@ enum status evaluate_films(struct evaluation *e, struct err *err)
     struct dirent **entries = NULL;
     if (file_path(folder, e->folder, "relight", "", err)) return err->status;
     const int count = path_is_folder(folder) ? scandir(folder, &entries, NULL, alphasort) : 0;
-    enum status st = count < 0 ? err_errno(err, "list", folder) : ST_OK;
+    if (count < 0) err_errno(err, "list", folder);
     for (int i = 0; i < count; i++) {
         const char *edit = entries[i]->d_name;
-        if (!st && edit[0] != '.') {
-            st = file_path(below, folder, edit, "", err);
-            if (!st) st = file_path(film, below, "tour", "", err);
-            if (!st && path_is_folder(film)) st = measure_film(e, edit, film, err);
+        if (!err->status && edit[0] != '.') {
+            if (!file_path(below, folder, edit, "", err)) file_path(film, below, "tour", "", err);
+            if (!err->status && path_is_folder(film)) measure_film(e, edit, film, err);
         }
         free(entries[i]);
     }
     free(entries);
-    return st;
+    return err->status;
 }

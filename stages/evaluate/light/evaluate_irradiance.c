@@ -22,9 +22,8 @@ static enum status write_points(const struct evaluation *e, const struct irradia
     const struct mat3 turn = mat3_transpose(s->rotation);
     struct outfile f = {0};
     char path[FILE_PATH];
-    enum status st = evaluation_path(path, e, PRODUCT_TRUTH_POINTS, NULL, err);
-    if (!st) st = outfile_open(&f, path, err);
-    if (!st) {
+    if (!evaluation_path(path, e, PRODUCT_TRUTH_POINTS, NULL, err)) outfile_open(&f, path, err);
+    if (!err->status) {
         struct provenance prov = *e->prov; /* shares its arrays with e->prov */
         prov.count = e->shared_inputs;
         provenance_print(&prov, f.fp);
@@ -35,10 +34,10 @@ static enum status write_points(const struct evaluation *e, const struct irradia
             const struct vec3 n = mat3_apply(turn, truth->points[i].normal);
             fprintf(f.fp, "%.17g %.17g %.17g %.17g %.17g %.17g\n", p.x, p.y, p.z, n.x, n.y, n.z);
         }
-        st = outfile_commit(&f, err);
+        outfile_commit(&f, err);
     }
     outfile_discard(&f);
-    return st;
+    return err->status;
 }
 
 static void bring_to_truth(struct irradiance_list *found, const struct similarity *s)
@@ -74,12 +73,12 @@ static enum status mark_model(bool *on, bool *known, struct evaluation *e, const
     *known = path_is_file(path);
     if (!*known)
         return metric_note(&e->table, err, "skipped irradiance on surfaces of the model: there is no model/model.txt");
-    enum status st = model_rays_read(&model, path, MODEL_WITHOUT_GLASS, e->prov, err);
-    if (!st) st = model_frame_read(&frame, e, same, vec3_make(0, 0, 0), err);
-    for (int i = 0; !st && i < truth->count; i++)
+    if (!model_rays_read(&model, path, MODEL_WITHOUT_GLASS, e->prov, err))
+        model_frame_read(&frame, e, same, vec3_make(0, 0, 0), err);
+    for (int i = 0; !err->status && i < truth->count; i++)
         on[i] = on_model(&model, &frame, &truth->points[i], e->params->surface_distance);
     model_rays_release(&model);
-    return st;
+    return err->status;
 }
 
 static enum status add_errors(struct evaluation *e, const char *prefix, const char *suffix,
@@ -157,34 +156,35 @@ static enum status evaluate_points(struct evaluation *e, struct err *err)
     if (!path_is_file(path)) return metric_note(&e->table, err, "skipped irradiance: the truth has no irradiance.txt");
     if (!e->aligned)
         return metric_note(&e->table, err, "skipped irradiance: the cameras do not tell where the truth is");
-    enum status st = provenance_add_in(e->prov, "truth", e->truth_folder, "irradiance.txt", "", NULL, err);
-    if (!st) st = irradiance_list_read(&job.truth, path, err);
-    if (!st) st = write_points(e, &job.truth, err);
-    if (!st && !path_is_file(found)) {
-        st = metric_note(&e->table, err, "skipped irradiance: there is no relight/irradiance.txt");
-    } else if (!st) {
+    if (!provenance_add_in(e->prov, "truth", e->truth_folder, "irradiance.txt", "", NULL, err) &&
+        !irradiance_list_read(&job.truth, path, err))
+        write_points(e, &job.truth, err);
+    if (!err->status && !path_is_file(found)) {
+        metric_note(&e->table, err, "skipped irradiance: there is no relight/irradiance.txt");
+    } else if (!err->status) {
         const size_t capacity = (size_t)job.truth.count + 1;
         bool *marks = calloc(3 * capacity, sizeof *marks);
         job.partner = calloc(capacity, sizeof *job.partner);
         job.all = marks;
-        if (!marks || !job.partner) st = err_nomem(err, "irradiance points", capacity * sizeof *job.partner);
-        if (!st) {
+        if (marks && job.partner) {
             job.on = marks + capacity;
             job.off = marks + 2 * capacity;
+        } else {
+            err_nomem(err, "irradiance points", capacity * sizeof *job.partner);
         }
-        if (!st) st = provenance_add_file(e->prov, product_name(PRODUCT_IRRADIANCE, found), found, err);
-        if (!st) st = irradiance_list_read(&job.found, found, err);
-        if (!st) {
+        if (!err->status && !provenance_add_file(e->prov, product_name(PRODUCT_IRRADIANCE, found), found, err))
+            irradiance_list_read(&job.found, found, err);
+        if (!err->status) {
             bring_to_truth(&job.found, &e->truth_from_scene);
             irradiance_partners(job.partner, &job.truth, &job.found);
-            st = compare(e, &job, err);
+            compare(e, &job, err);
         }
     }
     free(job.all);
     free(job.partner);
     irradiance_list_release(&job.found);
     irradiance_list_release(&job.truth);
-    return st;
+    return err->status;
 }
 
 enum status evaluate_irradiance(struct evaluation *e, struct err *err)

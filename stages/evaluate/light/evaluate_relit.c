@@ -93,9 +93,9 @@ static enum status read_parts(struct relit_truth *t, struct relit_job *job, cons
     int32_t *index = malloc(t->count * sizeof *index);
     if (!index) return err_nomem(err, "pixels", t->count * sizeof *index);
     picture_true_pixels(index, r->of->lens.width, r->of->lens.height, &r->map);
-    const enum status st = model_pixels_find(t->part, &job->model, job->e, r->of, depth, index, t->count, err);
+    model_pixels_find(t->part, &job->model, job->e, r->of, depth, index, t->count, err);
     free(index);
-    return st;
+    return err->status;
 }
 
 /* *found is false if the truth lacks ids, depth or light of this picture. */
@@ -110,22 +110,22 @@ static enum status read_truth(struct relit_truth *t, bool *found, struct relit_j
     t->revealed = malloc(t->count);
     t->mask = malloc(t->count);
     t->part[PART_ALL] = malloc(t->count);
-    enum status st = true_planes_read(&planes, found, job->e, job->set, r->of->name, &r->map, err);
-    if (!st && !(t->before && t->after && t->kept && t->revealed && t->mask && t->part[PART_ALL]))
-        st = err_nomem(err, "true light", 6 * t->count * sizeof *t->before);
-    if (!st && *found) {
+    true_planes_read(&planes, found, job->e, job->set, r->of->name, &r->map, err);
+    if (!err->status && !(t->before && t->after && t->kept && t->revealed && t->mask && t->part[PART_ALL]))
+        err_nomem(err, "true light", 6 * t->count * sizeof *t->before);
+    if (!err->status && *found) {
         const struct true_surface surface = {{planes.ids[0], planes.ids[1]}, {planes.depths[0], planes.depths[1]}};
         memset(t->part[PART_ALL], 1, t->count);
         revealed_kept_find(t->kept, &surface, t->count);
         revealed_find(t->revealed, &surface, t->count);
-        st = read_light(t, found, job, r, err);
+        read_light(t, found, job, r, err);
     }
-    if (!st && *found) {
+    if (!err->status && *found) {
         relit_changes_keep(t->kept, t->before, t->after, t->count);
-        st = read_parts(t, job, r, err);
+        read_parts(t, job, r, err);
     }
     true_planes_release(&planes);
-    return st;
+    return err->status;
 }
 
 /* --------------------------------------------------------------------------------------------------------- pictures */
@@ -160,19 +160,19 @@ static enum status add_quotients(struct relit_sums *own, struct relit_job *job, 
     const size_t stem = strlen(r->path) - strlen(strrchr(r->path, '.'));
     snprintf(path, sizeof path, "%.*s-ratio.exr", (int)stem, r->path);
     if (!t->is_irradiance || !path_is_file(path)) return ST_OK;
-    enum status st = file_path(name, "rendered", job->relit.where, strrchr(path, '/'), err);
-    if (!st) st = provenance_add_file(job->e->prov, name, path, err);
-    if (!st) st = linear_picture_read(&q, path, err);
-    if (!st && (q.rgb.width != r->map.lens.width || q.rgb.height != r->map.lens.height))
-        st = err_set(err, ST_DATA, "%s is %d x %d px, but the picture beside it %d x %d; relight it again.", path,
-                     q.rgb.width, q.rgb.height, r->map.lens.width, r->map.lens.height);
-    for (int k = 0; !st && k < PICTURE_PARTS; k++) {
+    if (!file_path(name, "rendered", job->relit.where, strrchr(path, '/'), err) &&
+        !provenance_add_file(job->e->prov, name, path, err))
+        linear_picture_read(&q, path, err);
+    if (!err->status && (q.rgb.width != r->map.lens.width || q.rgb.height != r->map.lens.height))
+        err_set(err, ST_DATA, "%s is %d x %d px, but the picture beside it %d x %d; relight it again.", path,
+                q.rgb.width, q.rgb.height, r->map.lens.width, r->map.lens.height);
+    for (int k = 0; !err->status && k < PICTURE_PARTS; k++) {
         choose(t, t->kept, k);
         relit_quotient_errors_add(&own->ratios[k], q.rgb.data, t->before, t->after, t->mask, t->count);
         relit_quotient_errors_add(&job->sums.ratios[k], q.rgb.data, t->before, t->after, t->mask, t->count);
     }
     linear_picture_release(&q);
-    return st;
+    return err->status;
 }
 
 static enum status add_metric(struct relit_job *job, const char *view, const char *name, int part, double value,
@@ -187,18 +187,18 @@ static enum status add_part(struct relit_job *job, const char *view, const struc
                             struct err *err)
 {
     double relit, unlit, revealed;
-    enum status st = ST_OK;
     if (s->pixels[k] >= least && relit_encoded_error_psnr(&s->relit[k], &relit) &&
         relit_encoded_error_psnr(&s->unlit[k], &unlit)) {
-        st = add_metric(job, view, "relit_psnr", k, relit, err) || add_metric(job, view, "unlit_psnr", k, unlit, err) ||
-             add_metric(job, view, "relit_gain", k, relit - unlit, err) ||
-             add_metric(job, view, "relit_pixels", k, 100 * (double)s->pixels[k] / (double)s->all, err);
-        if (!st && s->ratios[k].count)
-            st = add_metric(job, view, "relit_ratio_error50", k, 100 * quantiles_get(&s->ratios[k], 0.5), err);
+        if (!add_metric(job, view, "relit_psnr", k, relit, err) &&
+            !add_metric(job, view, "unlit_psnr", k, unlit, err) &&
+            !add_metric(job, view, "relit_gain", k, relit - unlit, err))
+            add_metric(job, view, "relit_pixels", k, 100 * (double)s->pixels[k] / (double)s->all, err);
+        if (!err->status && s->ratios[k].count)
+            add_metric(job, view, "relit_ratio_error50", k, 100 * quantiles_get(&s->ratios[k], 0.5), err);
     }
-    if (!st && s->revealed[k].samples >= 3 * least && relit_encoded_error_psnr(&s->revealed[k], &revealed))
-        st = add_metric(job, view, "relit_revealed_psnr", k, revealed, err);
-    return st ? err->status : ST_OK;
+    if (!err->status && s->revealed[k].samples >= 3 * least && relit_encoded_error_psnr(&s->revealed[k], &revealed))
+        add_metric(job, view, "relit_revealed_psnr", k, revealed, err);
+    return err->status;
 }
 
 static enum status add_metrics(struct relit_job *job, const char *view, const struct relit_sums *s, uint64_t least,
@@ -221,16 +221,16 @@ static enum status write_truth(const struct relit_job *job, const struct render 
     struct provenance prov = *job->e->prov; /* shares its arrays with it */
     prov.count = job->e->shared_inputs;
     if (job->relit.own_cameras || !(job->e->radiance_scale > 0)) return ST_OK;
-    enum status st = evaluation_path(path, job->e, PRODUCT_TRUTH_RELIT, &key, err);
-    if (!st) st = exr_image_init(&im, truth->width, truth->height, err);
-    for (int k = 0; !st && k < 3; k++) {
-        st = exr_add_plane(&im, channels[k], EXR_HALF, NULL, err);
-        for (size_t i = 0; !st && i < (size_t)truth->width * (size_t)truth->height; i++)
+    if (!evaluation_path(path, job->e, PRODUCT_TRUTH_RELIT, &key, err))
+        exr_image_init(&im, truth->width, truth->height, err);
+    for (int k = 0; !err->status && k < 3; k++) {
+        exr_add_plane(&im, channels[k], EXR_HALF, NULL, err);
+        for (size_t i = 0; !err->status && i < (size_t)truth->width * (size_t)truth->height; i++)
             im.planes[k].f[i] = (float)fmin((double)truth->data[4 * i + (size_t)k] / job->e->radiance_scale, MAX_HALF);
     }
-    if (!st) st = exr_write(&im, path, &prov, err);
+    if (!err->status) exr_write(&im, path, &prov, err);
     exr_image_release(&im);
-    return st;
+    return err->status;
 }
 
 static enum status measure_pair(struct relit_job *job, struct relit_truth *t, struct render *r, struct render *u,
@@ -238,22 +238,20 @@ static enum status measure_pair(struct relit_job *job, struct relit_truth *t, st
 {
     struct image truth = {0}, again = {0};
     struct relit_sums own;
-    enum status st = sums_init(&own, err);
-    if (!st) st = render_read(job->e, &job->relit, r, &truth, err);
-    if (!st) st = render_read(job->e, &job->unlit, u, &again, err);
-    if (!st) {
+    if (!sums_init(&own, err) && !render_read(job->e, &job->relit, r, &truth, err))
+        render_read(job->e, &job->unlit, u, &again, err);
+    if (!err->status) {
         add_picture(&own, t, r, u, &truth, job->e->white);
         add_picture(&job->sums, t, r, u, &truth, job->e->white);
-        st = add_quotients(&own, job, t, r, err);
+        add_quotients(&own, job, t, r, err);
     }
-    if (!st) st = add_metrics(job, r->name, &own, MIN_PIXELS, err);
-    if (!st) st = write_truth(job, r, &truth, err);
+    if (!err->status && !add_metrics(job, r->name, &own, MIN_PIXELS, err)) write_truth(job, r, &truth, err);
     linear_picture_release(&r->picture);
     linear_picture_release(&u->picture);
     image_release(&truth);
     image_release(&again);
     sums_release(&own);
-    return st;
+    return err->status;
 }
 
 static enum status measure(struct relit_job *job, struct render *r, struct err *err)
@@ -265,13 +263,12 @@ static enum status measure(struct relit_job *job, struct render *r, struct err *
         job->unpaired++;
         return ST_OK;
     }
-    enum status st = read_truth(&t, &found, job, r, err);
-    if (!st && found) {
+    if (!read_truth(&t, &found, job, r, err) && found) {
         job->by_radiance += !t.is_irradiance;
-        st = measure_pair(job, &t, r, unlit, err);
+        measure_pair(job, &t, r, unlit, err);
     }
     truth_release_all(&t);
-    return st;
+    return err->status;
 }
 
 /* ------------------------------------------------------------------------------------------------------------ edits */
@@ -304,18 +301,17 @@ static enum status find_pictures(struct relit_job *job, const char *edit, struct
 static enum status add_notes(struct relit_job *job, struct err *err)
 {
     const char *of = job->set->prefix;
-    enum status st = ST_OK;
     if (job->unpaired)
-        st = metric_note(&job->e->table, err,
-                         "skipped %d relit pictures of %s: their pictures in the old light, with the same names and "
-                         "cameras, are missing",
-                         job->unpaired, of);
-    if (!st && job->by_radiance)
-        st = metric_note(&job->e->table, err,
-                         "note: of %d relit pictures of %s, where light changes is found from radiance, because the "
-                         "truth has no irradiance of them",
-                         job->by_radiance, of);
-    return st;
+        metric_note(&job->e->table, err,
+                    "skipped %d relit pictures of %s: their pictures in the old light, with the same names and "
+                    "cameras, are missing",
+                    job->unpaired, of);
+    if (!err->status && job->by_radiance)
+        metric_note(&job->e->table, err,
+                    "note: of %d relit pictures of %s, where light changes is found from radiance, because the "
+                    "truth has no irradiance of them",
+                    job->by_radiance, of);
+    return err->status;
 }
 
 static enum status measure_edit(struct evaluation *e, const char *edit, struct err *err)
@@ -324,30 +320,28 @@ static enum status measure_edit(struct evaluation *e, const char *edit, struct e
     struct relit_job job = {.e = e, .set = &set};
     char where[64];
     snprintf(where, sizeof where, "edited-%s", edit);
-    enum status st = true_set_read(&set, e->truth_folder, where, e->prov, err);
-    if (!st) st = sums_init(&job.sums, err);
-    if (!st && set.count) st = find_pictures(&job, edit, err);
-    if (!st && job.unlit.count) {
+    if (!true_set_read(&set, e->truth_folder, where, e->prov, err)) sums_init(&job.sums, err);
+    if (!err->status && set.count) find_pictures(&job, edit, err);
+    if (!err->status && job.unlit.count) {
         snprintf(where, sizeof where, "remodel/%s", edit);
-        st = renders_scale(e, &job.relit, err);
-        if (!st) st = model_pixels_read(&job.model, e, where, "relit pictures", err);
+        if (!renders_scale(e, &job.relit, err)) model_pixels_read(&job.model, e, where, "relit pictures", err);
     }
-    for (int i = 0; !st && e->white > 0 && i < job.relit.count; i++) st = measure(&job, &job.relit.list[i], err);
-    if (!st && job.sums.all) st = add_metrics(&job, NULL, &job.sums, 1, err);
-    if (!st) st = add_notes(&job, err);
+    for (int i = 0; !err->status && e->white > 0 && i < job.relit.count; i++) measure(&job, &job.relit.list[i], err);
+    if (!err->status && job.sums.all) add_metrics(&job, NULL, &job.sums, 1, err);
+    if (!err->status) add_notes(&job, err);
     sums_release(&job.sums);
     model_pixels_release(&job.model);
     renders_release(&job.unlit);
     renders_release(&job.relit);
     true_set_release(&set);
-    return st;
+    return err->status;
 }
 
 enum status evaluate_relit(struct evaluation *e, struct err *err)
 {
     struct true_edits edits = {0};
-    enum status st = true_edits_find(&edits, e->truth_folder, err);
-    for (int i = 0; !st && i < edits.count; i++) st = measure_edit(e, edits.names[i], err);
+    true_edits_find(&edits, e->truth_folder, err);
+    for (int i = 0; !err->status && i < edits.count; i++) measure_edit(e, edits.names[i], err);
     true_edits_release(&edits);
-    return st;
+    return err->status;
 }

@@ -37,11 +37,11 @@ enum status irradiance_list_read(struct irradiance_list *list, const char *path,
 {
     struct textfile t = {0};
     *list = (struct irradiance_list){0};
-    enum status st = textfile_open(&t, path, err);
-    while (!st && textfile_next(&t)) st = read_point(list, &t, err);
+    textfile_open(&t, path, err);
+    while (!err->status && textfile_next(&t)) read_point(list, &t, err);
     textfile_release(&t);
-    if (st) irradiance_list_release(list);
-    return st;
+    if (err->status) irradiance_list_release(list);
+    return err->status;
 }
 
 void irradiance_list_release(struct irradiance_list *list)

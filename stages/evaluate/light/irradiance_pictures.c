@@ -56,13 +56,12 @@ static enum status read_truth(struct pictures_job *job, struct compared *c, cons
                               struct err *err)
 {
     struct linear_picture truth = {0};
-    enum status st = add_true_input(job->e, r->truth, err);
-    if (!st) st = linear_picture_read(&truth, r->truth, err);
-    if (!st && (truth.rgb.width != r->of->lens.width || truth.rgb.height != r->of->lens.height))
-        st = err_set(err, ST_DATA, "%s is %d x %d px, but the truth's camera is %d x %d px.", r->truth, truth.rgb.width,
-                     truth.rgb.height, r->of->lens.width, r->of->lens.height);
-    if (!st) picture_true_pixels(index, truth.rgb.width, truth.rgb.height, &r->map);
-    for (size_t i = 0; !st && i < c->count; i++) {
+    if (!add_true_input(job->e, r->truth, err)) linear_picture_read(&truth, r->truth, err);
+    if (!err->status && (truth.rgb.width != r->of->lens.width || truth.rgb.height != r->of->lens.height))
+        err_set(err, ST_DATA, "%s is %d x %d px, but the truth's camera is %d x %d px.", r->truth, truth.rgb.width,
+                truth.rgb.height, r->of->lens.width, r->of->lens.height);
+    if (!err->status) picture_true_pixels(index, truth.rgb.width, truth.rgb.height, &r->map);
+    for (size_t i = 0; !err->status && i < c->count; i++) {
         if (index[i] < 0) continue;
         const float *from = truth.rgb.data + 3 * (size_t)index[i];
         memcpy(c->truth + 4 * i, from, 3 * sizeof *from);
@@ -70,7 +69,7 @@ static enum status read_truth(struct pictures_job *job, struct compared *c, cons
         c->part[PART_ALL][i] = c->truth[4 * i + 3] > 0;
     }
     linear_picture_release(&truth);
-    return st;
+    return err->status;
 }
 
 static enum status read_compared(struct compared *c, struct pictures_job *job, const struct renders *list,
@@ -82,19 +81,19 @@ static enum status read_compared(struct compared *c, struct pictures_job *job, c
     c->truth = calloc(4 * c->count, sizeof *c->truth);
     c->part[PART_ALL] = calloc(c->count, 1);
     int32_t *index = malloc(c->count * sizeof *index);
-    enum status st = c->truth && c->part[PART_ALL] && index ? ST_OK : err_nomem(err, "irradiance", 5 * c->count);
-    if (!st) st = file_path(name, "rendered", list->where, strrchr(r->path, '/'), err);
-    if (!st) st = provenance_add_file(job->e->prov, name, r->path, err);
-    if (!st) st = linear_picture_read(&c->found, r->path, err);
-    if (!st && (c->found.rgb.width != lens->width || c->found.rgb.height != lens->height))
-        st = err_set(err, ST_DATA, "%s is %d x %d px, but its camera %d x %d; render it again.", r->path,
-                     c->found.rgb.width, c->found.rgb.height, lens->width, lens->height);
-    if (!st) st = read_truth(job, c, r, index, err);
-    if (!st && job->model.known && true_plain_file(depth, job->e, "depth", r->of->name))
-        st = model_pixels_find(c->part, &job->model, job->e, r->of, depth, index, c->count, err);
+    if (!c->truth || !c->part[PART_ALL] || !index) err_nomem(err, "irradiance", 5 * c->count);
+    if (!err->status && !file_path(name, "rendered", list->where, strrchr(r->path, '/'), err) &&
+        !provenance_add_file(job->e->prov, name, r->path, err))
+        linear_picture_read(&c->found, r->path, err);
+    if (!err->status && (c->found.rgb.width != lens->width || c->found.rgb.height != lens->height))
+        err_set(err, ST_DATA, "%s is %d x %d px, but its camera %d x %d; render it again.", r->path, c->found.rgb.width,
+                c->found.rgb.height, lens->width, lens->height);
+    if (!err->status) read_truth(job, c, r, index, err);
+    if (!err->status && job->model.known && true_plain_file(depth, job->e, "depth", r->of->name))
+        model_pixels_find(c->part, &job->model, job->e, r->of, depth, index, c->count, err);
     free(index);
-    if (st) compared_release(c);
-    return st;
+    if (err->status) compared_release(c);
+    return err->status;
 }
 
 /* ---------------------------------------------------------------------------------------------------------- metrics */
@@ -111,31 +110,29 @@ static enum status add_metric(struct evaluation *e, const char *view, const char
 static enum status add_picture_errors(struct evaluation *e, const char *view,
                                       const struct radiance_error errors[PICTURE_PARTS], struct err *err)
 {
-    enum status st = ST_OK;
-    for (int k = 0; !st && k < PICTURE_PARTS; k++) {
+    for (int k = 0; !err->status && k < PICTURE_PARTS; k++) {
         double rms;
-        if (radiance_error_rms(&errors[k], &rms)) st = add_metric(e, view, "picture_rms", k, 100 * rms, err);
-        if (!st && errors[k].errors.count)
-            st = add_metric(e, view, "picture_error50", k, 100 * quantiles_get(&errors[k].errors, 0.5), err);
+        if (radiance_error_rms(&errors[k], &rms)) add_metric(e, view, "picture_rms", k, 100 * rms, err);
+        if (!err->status && errors[k].errors.count)
+            add_metric(e, view, "picture_error50", k, 100 * quantiles_get(&errors[k].errors, 0.5), err);
     }
-    return st;
+    return err->status;
 }
 
 static enum status add_ratio_errors(struct evaluation *e, const char *view,
                                     const struct ratio_error ratios[PICTURE_PARTS], struct err *err)
 {
-    enum status st = ST_OK;
-    for (int k = 0; !st && k < PICTURE_PARTS; k++) {
+    for (int k = 0; !err->status && k < PICTURE_PARTS; k++) {
         const struct ratio_error *r = &ratios[k];
         if (!r->pixels || !(r->reference > 0)) continue;
-        st = add_metric(e, view, "ratio_rms", k, 100 * sqrt(r->square / r->reference), err) ||
-             add_metric(e, view, "ratio_change", k, 100 * sqrt(r->change / r->reference), err) ||
-             add_metric(e, view, "ratio_error50", k, 100 * quantiles_get(&r->errors, 0.5), err) ||
-             add_metric(e, view, "ratio_error90", k, 100 * quantiles_get(&r->errors, 0.9), err);
+        if (!add_metric(e, view, "ratio_rms", k, 100 * sqrt(r->square / r->reference), err) &&
+            !add_metric(e, view, "ratio_change", k, 100 * sqrt(r->change / r->reference), err) &&
+            !add_metric(e, view, "ratio_error50", k, 100 * quantiles_get(&r->errors, 0.5), err))
+            add_metric(e, view, "ratio_error90", k, 100 * quantiles_get(&r->errors, 0.9), err);
     }
     const uint64_t missing = ratios[PART_ALL].missing, all = missing + ratios[PART_ALL].pixels;
-    if (!st && all) st = add_metric(e, view, "ratio_missing", PART_ALL, 100 * (double)missing / (double)all, err);
-    return st ? err->status : ST_OK;
+    if (!err->status && all) add_metric(e, view, "ratio_missing", PART_ALL, 100 * (double)missing / (double)all, err);
+    return err->status;
 }
 
 /* Measures a picture before any edit, or after one (view "edited-E/NAME"), and adds it to the job's sums if `sum`. */
@@ -144,20 +141,19 @@ static enum status measure_picture(struct pictures_job *job, const struct compar
 {
     struct radiance_error errors[PICTURE_PARTS] = {{0}};
     uint8_t *mask = malloc(c->count);
-    enum status st = mask ? ST_OK : err_nomem(err, "a mask", c->count);
-    for (int k = 0; !st && k < PICTURE_PARTS; k++) {
-        st = radiance_error_init(&errors[k], err);
-        if (st || !c->part[k]) continue;
+    if (!mask) err_nomem(err, "a mask", c->count);
+    for (int k = 0; !err->status && k < PICTURE_PARTS; k++) {
+        if (radiance_error_init(&errors[k], err) || !c->part[k]) continue;
         for (size_t i = 0; i < c->count; i++) mask[i] = c->part[k][i] && c->found.known[i];
         const struct radiance_pixels p = {c->found.rgb.data, c->truth, mask, c->count, job->scale, 0};
         radiance_error_add(&errors[k], &p);
         if (sum) radiance_error_add(&job->errors[k], &p);
     }
-    for (size_t i = 0; !st && sum && i < c->count; i++) job->true_pixels += c->part[PART_ALL][i];
-    if (!st) st = add_picture_errors(job->e, view, errors, err);
+    for (size_t i = 0; !err->status && sum && i < c->count; i++) job->true_pixels += c->part[PART_ALL][i];
+    if (!err->status) add_picture_errors(job->e, view, errors, err);
     for (int k = 0; k < PICTURE_PARTS; k++) radiance_error_release(&errors[k]);
     free(mask);
-    return st;
+    return err->status;
 }
 
 /* R G B of the truth without its fourth channel. */
@@ -175,23 +171,22 @@ static enum status measure_ratio(struct pictures_job *job, struct ratio_error of
     struct ratio_error own[PICTURE_PARTS] = {{0}};
     uint8_t *known = malloc(a->count);
     float *before = without_alpha(a), *after = without_alpha(b);
-    enum status st = known && before && after ? ST_OK : err_nomem(err, "ratios", 6 * a->count * sizeof *before);
-    for (size_t i = 0; !st && i < a->count; i++) known[i] = a->found.known[i] && b->found.known[i];
-    for (int k = 0; !st && k < PICTURE_PARTS; k++) {
-        st = ratio_error_init(&own[k], err);
-        if (st || !a->part[k]) continue;
+    if (!known || !before || !after) err_nomem(err, "ratios", 6 * a->count * sizeof *before);
+    for (size_t i = 0; !err->status && i < a->count; i++) known[i] = a->found.known[i] && b->found.known[i];
+    for (int k = 0; !err->status && k < PICTURE_PARTS; k++) {
+        if (ratio_error_init(&own[k], err) || !a->part[k]) continue;
         const struct ratio_pixels p = {a->found.rgb.data, b->found.rgb.data, known, before, after,
                                        a->part[k],        a->count};
         ratio_error_add(&own[k], &p);
         ratio_error_add(&of_edit[k], &p);
         ratio_error_add(&job->ratios[k], &p);
     }
-    if (!st) st = add_ratio_errors(job->e, view, own, err);
+    if (!err->status) add_ratio_errors(job->e, view, own, err);
     for (int k = 0; k < PICTURE_PARTS; k++) ratio_error_release(&own[k]);
     free(known);
     free(before);
     free(after);
-    return st;
+    return err->status;
 }
 
 /* ------------------------------------------------------------------------------------------------------------- sets */
@@ -206,20 +201,20 @@ static enum status find_pictures(struct renders *list, struct evaluation *e, con
         file_path(beside, relight, set->where, "", err))
         return err->status;
     if (!path_is_folder(folder) && path_is_folder(beside)) e->rendered = relight;
-    enum status st = renders_find(list, e, set, err);
+    renders_find(list, e, set, err);
     e->rendered = rendered;
     int kept = 0, encoded = 0;
-    for (int i = 0; !st && i < list->count; i++) {
+    for (int i = 0; !err->status && i < list->count; i++) {
         const char *dot = strrchr(list->list[i].path, '.');
         const bool linear = dot && !strcmp(dot, ".exr");
         encoded += !linear;
         if (linear) list->list[kept++] = list->list[i];
     }
-    if (!st) list->count = kept;
-    if (!st && encoded)
-        st = metric_note(&e->table, err, "skipped %d pictures of %s: irradiance is compared in EXR files alone",
-                         encoded, set->prefix);
-    return st;
+    if (!err->status) list->count = kept;
+    if (!err->status && encoded)
+        metric_note(&e->table, err, "skipped %d pictures of %s: irradiance is compared in EXR files alone", encoded,
+                    set->prefix);
+    return err->status;
 }
 
 static enum status measure_pair(struct pictures_job *job, struct ratio_error of_edit[PICTURE_PARTS],
@@ -230,18 +225,16 @@ static enum status measure_pair(struct pictures_job *job, struct ratio_error of_
     struct compared a = {0}, b = {0};
     char view[400];
     snprintf(view, sizeof view, "%s/%s", list->set->where, r->name);
-    enum status st = read_compared(&b, job, list, r, err);
-    if (!st) st = measure_picture(job, &b, view, false, err);
-    if (!st && !first) {
+    if (!read_compared(&b, job, list, r, err)) measure_picture(job, &b, view, false, err);
+    if (!err->status && !first) {
         (*unpaired)++;
-    } else if (!st) {
-        st = read_compared(&a, job, before, first, err);
-        if (!st) st = measure_ratio(job, of_edit, &a, &b, view, err);
+    } else if (!err->status) {
+        if (!read_compared(&a, job, before, first, err)) measure_ratio(job, of_edit, &a, &b, view, err);
         job->pair_count++;
     }
     compared_release(&a);
     compared_release(&b);
-    return st;
+    return err->status;
 }
 
 static enum status measure_edit(struct pictures_job *job, const char *where, const struct renders *before,
@@ -252,21 +245,20 @@ static enum status measure_edit(struct pictures_job *job, const char *where, con
     struct renders list = {0};
     struct ratio_error of_edit[PICTURE_PARTS] = {{0}};
     int unpaired = 0;
-    enum status st = true_set_read(&set, e->truth_folder, where, e->prov, err);
-    if (!st && set.count) st = find_pictures(&list, e, &set, err);
-    for (int k = 0; !st && k < PICTURE_PARTS; k++) st = ratio_error_init(&of_edit[k], err);
-    for (int i = 0; !st && i < list.count; i++)
-        st = measure_pair(job, of_edit, &list, &list.list[i], before, &unpaired, err);
-    if (!st) st = add_ratio_errors(e, where, of_edit, err);
-    if (!st && unpaired)
-        st = metric_note(
-            &e->table, err,
-            "skipped the ratios of %d pictures of %s: irradiance/ has no picture of the same name and camera", unpaired,
-            set.prefix);
+    true_set_read(&set, e->truth_folder, where, e->prov, err);
+    if (!err->status && set.count) find_pictures(&list, e, &set, err);
+    for (int k = 0; !err->status && k < PICTURE_PARTS; k++) ratio_error_init(&of_edit[k], err);
+    for (int i = 0; !err->status && i < list.count; i++)
+        measure_pair(job, of_edit, &list, &list.list[i], before, &unpaired, err);
+    if (!err->status) add_ratio_errors(e, where, of_edit, err);
+    if (!err->status && unpaired)
+        metric_note(&e->table, err,
+                    "skipped the ratios of %d pictures of %s: irradiance/ has no picture of the same name and camera",
+                    unpaired, set.prefix);
     for (int k = 0; k < PICTURE_PARTS; k++) ratio_error_release(&of_edit[k]);
     renders_release(&list);
     true_set_release(&set);
-    return st;
+    return err->status;
 }
 
 static enum status measure_edits(struct pictures_job *job, const struct renders *before, struct err *err)
@@ -275,20 +267,20 @@ static enum status measure_edits(struct pictures_job *job, const struct renders 
     struct true_edits edits = {0};
     char where[64], folder[FILE_PATH];
     int with_truth = 0;
-    enum status st = true_edits_find(&edits, e->truth_folder, err);
-    for (int i = 0; !st && i < edits.count; i++) {
+    true_edits_find(&edits, e->truth_folder, err);
+    for (int i = 0; !err->status && i < edits.count; i++) {
         snprintf(where, sizeof where, "edited-%s/irradiance", edits.names[i]);
-        st = file_path(folder, e->truth_folder, where, "", err);
-        if (st || !path_is_folder(folder)) continue;
+        if (file_path(folder, e->truth_folder, where, "", err) || !path_is_folder(folder)) continue;
         with_truth++;
-        st = measure_edit(job, where, before, err);
+        measure_edit(job, where, before, err);
     }
-    if (!st && !with_truth)
-        st = metric_note(&e->table, err, "skipped ratios of irradiance: the truth has no edited-E/irradiance");
-    if (!st && job->pair_count) st = evaluation_metric(e, NULL, "irradiance", "ratio_pictures", job->pair_count, err);
-    if (!st && job->pair_count) st = add_ratio_errors(e, NULL, job->ratios, err);
+    if (!err->status && !with_truth)
+        metric_note(&e->table, err, "skipped ratios of irradiance: the truth has no edited-E/irradiance");
+    if (!err->status && job->pair_count &&
+        !evaluation_metric(e, NULL, "irradiance", "ratio_pictures", job->pair_count, err))
+        add_ratio_errors(e, NULL, job->ratios, err);
     true_edits_release(&edits);
-    return st;
+    return err->status;
 }
 
 /* Without radiance.scale: the median ratio over all pixels of the pictures before an edit; 0 if they are black. */
@@ -297,36 +289,35 @@ static enum status find_scale(struct pictures_job *job, const struct renders *be
     struct quantiles ratios = {0};
     job->scale = job->e->radiance_scale;
     if (job->scale > 0 || !before->count) return ST_OK;
-    enum status st = quantiles_init(&ratios, err);
-    for (int i = 0; !st && i < before->count; i++) {
+    quantiles_init(&ratios, err);
+    for (int i = 0; !err->status && i < before->count; i++) {
         struct compared c = {0};
-        st = read_compared(&c, job, before, &before->list[i], err);
+        read_compared(&c, job, before, &before->list[i], err);
         const struct radiance_pixels p = {c.found.rgb.data, c.truth, c.found.known, c.count, 1, 0};
-        if (!st) radiance_ratios_add(&ratios, &p);
+        if (!err->status) radiance_ratios_add(&ratios, &p);
         compared_release(&c);
     }
-    if (!st && ratios.count) {
+    if (!err->status && ratios.count) {
         job->scale = quantiles_get(&ratios, 0.5);
-        st = metric_note(&job->e->table, err,
-                         "note: the scale of pictures of irradiance is their median ratio %.5g, because no view of a "
-                         "photo with a true radiance gives it",
-                         job->scale);
+        metric_note(&job->e->table, err,
+                    "note: the scale of pictures of irradiance is their median ratio %.5g, because no view of a "
+                    "photo with a true radiance gives it",
+                    job->scale);
     }
     quantiles_release(&ratios);
-    return st;
+    return err->status;
 }
 
 static enum status measure_before(struct pictures_job *job, const struct renders *before, struct err *err)
 {
-    enum status st = ST_OK;
-    for (int i = 0; !st && i < before->count; i++) {
+    for (int i = 0; !err->status && i < before->count; i++) {
         struct compared c = {0};
-        st = read_compared(&c, job, before, &before->list[i], err);
-        if (!st) st = measure_picture(job, &c, before->list[i].name, true, err);
+        if (!read_compared(&c, job, before, &before->list[i], err))
+            measure_picture(job, &c, before->list[i].name, true, err);
         compared_release(&c);
         job->before_count++;
     }
-    if (st || !job->before_count) return st;
+    if (err->status || !job->before_count) return err->status;
     if (evaluation_metric(job->e, NULL, "irradiance", "pictures", job->before_count, err)) return err->status;
     const double all = (double)job->true_pixels, found = (double)job->errors[PART_ALL].pixels;
     if (all > 0 && add_metric(job->e, NULL, "picture_missing", PART_ALL, 100 * (all - found) / all, err))
@@ -339,18 +330,15 @@ enum status evaluate_irradiance_pictures(struct evaluation *e, struct err *err)
     struct pictures_job job = {.e = e};
     struct true_set set = {0};
     struct renders before = {0};
-    enum status st = true_set_read(&set, e->truth_folder, "irradiance", e->prov, err);
-    if (!st && !set.count)
+    true_set_read(&set, e->truth_folder, "irradiance", e->prov, err);
+    if (!err->status && !set.count)
         return metric_note(&e->table, err, "skipped pictures of irradiance: the truth has none (irradiance/NAME.exr)");
-    for (int k = 0; !st && k < PICTURE_PARTS; k++)
-        st = radiance_error_init(&job.errors[k], err) ? err->status : ratio_error_init(&job.ratios[k], err);
-    if (!st) st = find_pictures(&before, e, &set, err);
-    if (!st && before.count) {
-        st = model_pixels_read(&job.model, e, "model", "pictures of irradiance", err);
-        if (!st) st = find_scale(&job, &before, err);
-        if (!st) st = measure_before(&job, &before, err);
-        if (!st) st = measure_edits(&job, &before, err);
-    }
+    for (int k = 0; !err->status && k < PICTURE_PARTS; k++)
+        if (!radiance_error_init(&job.errors[k], err)) ratio_error_init(&job.ratios[k], err);
+    if (!err->status && !find_pictures(&before, e, &set, err) && before.count &&
+        !model_pixels_read(&job.model, e, "model", "pictures of irradiance", err) && !find_scale(&job, &before, err) &&
+        !measure_before(&job, &before, err))
+        measure_edits(&job, &before, err);
     for (int k = 0; k < PICTURE_PARTS; k++) {
         radiance_error_release(&job.errors[k]);
         ratio_error_release(&job.ratios[k]);
@@ -358,5 +346,5 @@ enum status evaluate_irradiance_pictures(struct evaluation *e, struct err *err)
     model_pixels_release(&job.model);
     renders_release(&before);
     true_set_release(&set);
-    return st;
+    return err->status;
 }

@@ -50,8 +50,7 @@ enum status metric_table_write(struct metric_table *t, bool of_views, const char
                                struct err *err)
 {
     struct outfile f = {0};
-    enum status st = outfile_open(&f, path, err);
-    if (!st) {
+    if (!outfile_open(&f, path, err)) {
         if (prov) provenance_print(prov, f.fp);
         for (int i = 0; !of_views && i < t->note_count; i++) fprintf(f.fp, "# %s\n", t->notes[i]);
         fprintf(f.fp, "# %sname\tvalue\tunit\tdirection\n", of_views ? "view\t" : "");
@@ -62,10 +61,10 @@ enum status metric_table_write(struct metric_table *t, bool of_views, const char
             if (of_views) fprintf(f.fp, "%s\t", m->view);
             fprintf(f.fp, "%s\t%.9g\t%s\t%s\n", m->name, m->value + 0.0, m->kind.unit, m->kind.direction);
         }
-        st = outfile_commit(&f, err);
+        outfile_commit(&f, err);
     }
     outfile_discard(&f);
-    return st;
+    return err->status;
 }
 
 void metric_table_release(struct metric_table *t)

@@ -115,7 +115,6 @@ enum status metrics_ssim(const uint8_t *a, const uint8_t *b, int width, int heig
     size_t chunks = (rows + CHUNK_ROWS - 1) / CHUNK_ROWS;
     size_t scratch = (size_t)parallel_threads() * MOMENTS * columns * (CHUNK_ROWS + WINDOW - 1) * sizeof(double);
     double weight = 0;
-    enum status st = ST_OK;
 
     for (int k = 0; k < WINDOW; k++) {
         double d = k - WINDOW / 2;
@@ -126,7 +125,7 @@ enum status metrics_ssim(const uint8_t *a, const uint8_t *b, int width, int heig
     job.scratch = malloc(scratch);
     job.sums = calloc(chunks, sizeof *job.sums);
     if (!job.scratch || !job.sums) {
-        st = err_nomem(err, "the windows of SSIM", scratch);
+        err_nomem(err, "the windows of SSIM", scratch);
     } else {
         struct ssim_sum all = {0};
         parallel_for(rows, CHUNK_ROWS, ssim_rows, &job);
@@ -137,11 +136,11 @@ enum status metrics_ssim(const uint8_t *a, const uint8_t *b, int width, int heig
         if (all.count)
             *ssim = all.value / (double)all.count;
         else
-            st = err_set(err, ST_DATA, "no SSIM: not one window of %d x %d pixels is to be compared.", width, height);
+            err_set(err, ST_DATA, "no SSIM: not one window of %d x %d pixels is to be compared.", width, height);
     }
     free(job.scratch);
     free(job.sums);
-    return st;
+    return err->status;
 }
 
 void metrics_ssim_windows(uint8_t *windows, const uint8_t *mask, int width, int height)

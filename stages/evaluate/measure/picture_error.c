@@ -11,9 +11,9 @@ static bool ssim_exists(const uint8_t *a, const uint8_t *b, int width, int heigh
 {
     struct err why = ERR_INIT;
     metrics_ssim_windows(windows, mask, width, height);
-    enum status st = metrics_ssim(a, b, width, height, windows, ssim, &why);
-    if (st && st != ST_DATA) err_set(err, st, "%s", why.text);
-    return !st;
+    metrics_ssim(a, b, width, height, windows, ssim, &why);
+    if (why.status && why.status != ST_DATA) err_set(err, why.status, "%s", why.text);
+    return !why.status;
 }
 
 enum status picture_errors(struct picture_errors *e, const uint8_t *photo, const uint8_t *frame, const uint8_t *inside,
@@ -28,8 +28,7 @@ enum status picture_errors(struct picture_errors *e, const uint8_t *photo, const
         all += inside[i] != 0;
         covered += mask[i];
     }
-    enum status st = metrics_psnr(photo, frame, width, height, inside, &e->psnr, err);
-    if (!st) {
+    if (!metrics_psnr(photo, frame, width, height, inside, &e->psnr, err)) {
         e->holes = (double)(all - covered) / (double)all;
         e->has_covered = covered > 0;
         e->has_ssim = ssim_exists(photo, frame, width, height, inside, windows, &e->ssim, err);

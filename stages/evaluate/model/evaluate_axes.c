@@ -82,7 +82,7 @@ enum status evaluate_axes(struct evaluation *e, struct err *err)
     if (true_room_read(&room, e->truth_folder, e->prov, err)) return err->status;
     if (!room.known)
         return metric_note(t, err, "skipped axes and heights: the truth holds neither scene.txt nor scene-truth.txt");
-    enum status st = model_axes_read(&axes, path, e->prov, err) || add_axes(e, &axes, &room, err);
+    if (!model_axes_read(&axes, path, e->prov, err)) add_axes(e, &axes, &room, err);
     true_room_release(&room);
-    return st ? err->status : ST_OK;
+    return err->status;
 }

@@ -50,26 +50,23 @@ static enum status add_picture(struct evaluation *e, struct faces_job *job, cons
     struct vec3 *points = malloc(pixels * sizeof *points);
     uint32_t *ids = malloc(pixels * sizeof *ids);
     float *distance = malloc(pixels * sizeof *distance);
-    enum status st = points && ids && distance ? ST_OK : err_nomem(err, "faces", pixels * sizeof *points);
-    if (!st) st = add_input(e, ids_path, err);
-    if (!st) st = add_input(e, depth_path, err);
-    if (!st) st = read_ids(&im, ids_path, &p->lens, err);
-    if (!st) st = truth_photo_read_depth(&photo, depth_path, e->params->far, err);
-    if (!st) {
+    if (!points || !ids || !distance) err_nomem(err, "faces", pixels * sizeof *points);
+    if (!err->status && !add_input(e, ids_path, err) && !add_input(e, depth_path, err) &&
+        !read_ids(&im, ids_path, &p->lens, err) && !truth_photo_read_depth(&photo, depth_path, e->params->far, err)) {
         true_points(points, &photo);
         traced_model_faces(ids, distance, &job->model, &job->frame, p, points);
         const struct face_pixels pair = {exr_find(&im, "id")->u, ids, distance, p->lens.width, p->lens.height};
         struct err why = ERR_INIT;
-        st = face_agreement_add(&job->agreement, &pair, &why);
-        if (st) err_set(err, st, "%s: %s", ids_path, why.text);
+        face_agreement_add(&job->agreement, &pair, &why);
+        if (why.status) err_set(err, why.status, "%s: %s", ids_path, why.text);
     }
-    if (!st) job->names[job->agreement.picture_count - 1] = p->name;
+    if (!err->status) job->names[job->agreement.picture_count - 1] = p->name;
     exr_image_release(&im);
     free(photo.depth);
     free(points);
     free(ids);
     free(distance);
-    return st;
+    return err->status;
 }
 
 /* Whether a face is one of the scene's walls, openings and rooms: "NAME.left" of a part called NAME. */
@@ -87,9 +84,9 @@ static enum status choose_faces(struct faces_job *job, bool shell, const char *s
 {
     struct face_agreement *a = &job->agreement;
     struct measured_plan plan = {0};
-    enum status st = shell ? ST_OK : wall_plan_read(&plan, scene, PLAN_FROM_SCENE, err);
+    if (!shell) wall_plan_read(&plan, scene, PLAN_FROM_SCENE, err);
     a->counted[0] = true;
-    for (int i = 0; !st && i < job->truth.count; i++) {
+    for (int i = 0; !err->status && i < job->truth.count; i++) {
         const char *name = job->truth.faces[i].name;
         if (!name) continue;
         a->true_normals[i + 1] = job->truth.faces[i].normal;
@@ -98,10 +95,10 @@ static enum status choose_faces(struct faces_job *job, bool shell, const char *s
     }
     wall_plan_release(&plan);
     const struct mat3 world_from_scene = job->frame.truth_from_scene.rotation;
-    for (int i = 0; !st && i < job->model.mesh.face_count; i++)
+    for (int i = 0; !err->status && i < job->model.mesh.face_count; i++)
         a->model_normals[solid_face_id(&job->model.mesh, i)] =
             mat3_apply(world_from_scene, world_from_model_direction(&job->frame.axes, job->model.mesh.faces[i].normal));
-    return st;
+    return err->status;
 }
 
 static enum status add_shares(struct evaluation *e, const struct faces_job *job, struct err *err)
@@ -130,22 +127,21 @@ static enum status run_job(struct evaluation *e, struct faces_job *job, const ch
 {
     static const struct mat3 same = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
     char path[FILE_PATH];
-    enum status st = evaluation_path(path, e, PRODUCT_MODEL, &(struct product_key){.model = model}, err);
-    if (!st) st = model_rays_read(&job->model, path, MODEL_WITHOUT_GLASS, e->prov, err);
-    if (!st) st = model_frame_read(&job->frame, e, same, vec3_make(0, 0, 0), err);
-    if (!st) st = add_input(e, faces, err);
-    if (!st) st = true_faces_read(&job->truth, faces, err);
-    if (!st) st = face_agreement_init(&job->agreement, job->truth.count + 1, job->model.ids, err);
-    if (!st) st = choose_faces(job, shell, scene, err);
-    if (!st && !(job->names = calloc((size_t)job->set.count + 1, sizeof *job->names)))
-        st = err_nomem(err, "names", (size_t)job->set.count);
-    for (int i = 0; !st && i < job->set.count; i++) st = add_picture(e, job, &job->set.pictures[i], err);
-    if (!st) st = add_shares(e, job, err);
+    if (!evaluation_path(path, e, PRODUCT_MODEL, &(struct product_key){.model = model}, err) &&
+        !model_rays_read(&job->model, path, MODEL_WITHOUT_GLASS, e->prov, err))
+        model_frame_read(&job->frame, e, same, vec3_make(0, 0, 0), err);
+    if (!err->status && !add_input(e, faces, err) && !true_faces_read(&job->truth, faces, err) &&
+        !face_agreement_init(&job->agreement, job->truth.count + 1, job->model.ids, err))
+        choose_faces(job, shell, scene, err);
+    if (!err->status && !(job->names = calloc((size_t)job->set.count + 1, sizeof *job->names)))
+        err_nomem(err, "names", (size_t)job->set.count);
+    for (int i = 0; !err->status && i < job->set.count; i++) add_picture(e, job, &job->set.pictures[i], err);
+    if (!err->status) add_shares(e, job, err);
     free(job->names);
     face_agreement_release(&job->agreement);
     true_faces_release(&job->truth);
     model_rays_release(&job->model);
-    return st;
+    return err->status;
 }
 
 /* model: "model" or "remodel/E"; where: the scene's folder in the truth, "" or "edited-E". */
@@ -169,10 +165,10 @@ static enum status compare(struct evaluation *e, const char *prefix, const char 
     snprintf(shell, sizeof shell, "%s%sshell", where, *where ? "/" : "");
     if (file_path(path, e->truth_folder, shell, "/ids", err)) return err->status;
     const bool bare = path_is_folder(path);
-    enum status st = true_set_read(&job.set, e->truth_folder, bare ? shell : where, e->prov, err);
-    if (!st) st = run_job(e, &job, model, faces, scene, bare, err);
+    if (!true_set_read(&job.set, e->truth_folder, bare ? shell : where, e->prov, err))
+        run_job(e, &job, model, faces, scene, bare, err);
     true_set_release(&job.set);
-    return st;
+    return err->status;
 }
 
 enum status evaluate_faces(struct evaluation *e, struct err *err)
@@ -180,15 +176,15 @@ enum status evaluate_faces(struct evaluation *e, struct err *err)
     struct true_edits edits = {0};
     char path[FILE_PATH];
     if (evaluation_path(path, e, PRODUCT_MODEL, NULL, err)) return err->status;
-    enum status st = path_is_file(path) ? compare(e, "model", "model", "", err) : ST_OK;
-    if (!st) st = true_edits_find(&edits, e->truth_folder, err);
-    for (int i = 0; !st && i < edits.count; i++) {
+    if (path_is_file(path)) compare(e, "model", "model", "", err);
+    if (!err->status) true_edits_find(&edits, e->truth_folder, err);
+    for (int i = 0; !err->status && i < edits.count; i++) {
         char prefix[64], model[64], where[64];
         snprintf(prefix, sizeof prefix, "edited.%s", edits.names[i]);
         snprintf(model, sizeof model, "remodel/%s", edits.names[i]);
         snprintf(where, sizeof where, "edited-%s", edits.names[i]);
-        st = compare(e, prefix, model, where, err);
+        compare(e, prefix, model, where, err);
     }
     true_edits_release(&edits);
-    return st;
+    return err->status;
 }

@@ -54,24 +54,25 @@ static enum status compare(struct evaluation *e, const char *prefix, const char 
 {
     struct measured_plan model = {0}, truth = {0};
     struct wall_errors errors = {0};
-    struct room_height_errors heights = {0};
     char path[FILE_PATH];
-    enum status st = evaluation_path(path, e, PRODUCT_PLAN, &(struct product_key){.model = where}, err);
-    if (!st) st = provenance_add_file(e->prov, product_name(PRODUCT_PLAN, path), path, err);
-    if (!st) st = wall_plan_read(&model, path, PLAN_FROM_MODEL, err);
-    if (!st) st = wall_plan_read(&truth, truth_file, kind, err);
-    if (!st) {
+    if (!evaluation_path(path, e, PRODUCT_PLAN, &(struct product_key){.model = where}, err) &&
+        !provenance_add_file(e->prov, product_name(PRODUCT_PLAN, path), path, err) &&
+        !wall_plan_read(&model, path, PLAN_FROM_MODEL, err))
+        wall_plan_read(&truth, truth_file, kind, err);
+    if (!err->status) {
         parts_to_room(&model.faces, frame);
         parts_to_room(&model.openings, frame);
         parts_to_room(&model.rooms, frame);
-        st = wall_errors_find(&errors, &model, &truth, MAX_DISTANCE, err);
+        wall_errors_find(&errors, &model, &truth, MAX_DISTANCE, err);
     }
-    if (!st) heights = room_heights_compare(&model.rooms, &truth.rooms);
-    if (!st) st = add_walls(e, prefix, &errors, &heights, err);
+    if (!err->status) {
+        const struct room_height_errors heights = room_heights_compare(&model.rooms, &truth.rooms);
+        add_walls(e, prefix, &errors, &heights, err);
+    }
     wall_errors_release(&errors);
     wall_plan_release(&truth);
     wall_plan_release(&model);
-    return st;
+    return err->status;
 }
 
 enum status evaluate_walls(struct evaluation *e, struct err *err)
@@ -85,16 +86,16 @@ enum status evaluate_walls(struct evaluation *e, struct err *err)
     if (!e->truth_folder) return metric_note(t, err, "skipped walls: no TRUTH is given");
     if (!e->aligned) return metric_note(t, err, "skipped walls: the cameras do not tell where the truth is");
     struct provenance unused = {0}; /* evaluate_axes() has added these files to e->prov */
-    enum status st = true_room_read(&room, e->truth_folder, &unused, err);
+    true_room_read(&room, e->truth_folder, &unused, err);
     provenance_release(&unused);
-    if (!st && !room.known)
+    if (!err->status && !room.known)
         return metric_note(t, err, "skipped walls: the truth holds neither scene.txt nor scene-truth.txt");
-    if (!st) st = model_frame_read(&frame, e, room.room_from_world, room.origin, err);
-    if (!st) st = file_path(path, e->truth_folder, room.framed ? "scene-truth.txt" : "scene.txt", "", err);
-    if (!st)
-        st = compare(e, "model", "model", path, room.framed ? PLAN_FROM_SCENE_TRUTH : PLAN_FROM_SCENE, &frame, err);
+    if (!err->status && !model_frame_read(&frame, e, room.room_from_world, room.origin, err))
+        file_path(path, e->truth_folder, room.framed ? "scene-truth.txt" : "scene.txt", "", err);
+    if (!err->status)
+        compare(e, "model", "model", path, room.framed ? PLAN_FROM_SCENE_TRUTH : PLAN_FROM_SCENE, &frame, err);
     true_room_release(&room);
-    return st;
+    return err->status;
 }
 
 /* Of one edit: remodel/E/plan.txt against TRUTH/edited-E/scene.txt, whose frame is the world. */
@@ -124,8 +125,8 @@ static enum status evaluate_edit(struct evaluation *e, const char *edit, struct 
 enum status evaluate_edited_walls(struct evaluation *e, struct err *err)
 {
     struct true_edits edits = {0};
-    enum status st = true_edits_find(&edits, e->truth_folder, err);
-    for (int i = 0; !st && i < edits.count; i++) st = evaluate_edit(e, edits.names[i], err);
+    true_edits_find(&edits, e->truth_folder, err);
+    for (int i = 0; !err->status && i < edits.count; i++) evaluate_edit(e, edits.names[i], err);
     true_edits_release(&edits);
-    return st;
+    return err->status;
 }

@@ -49,9 +49,9 @@ static enum status edge_distances(float *squared, const struct face_pixels *p, s
         if ((i + 1) % width && edge_after(p, i, 1)) inside[i] = inside[i + 1] = 0;
         if (i + width < pixels && edge_after(p, i, width)) inside[i] = inside[i + width] = 0;
     }
-    const enum status st = distance_squared(squared, inside, p->width, p->height, err);
+    distance_squared(squared, inside, p->width, p->height, err);
     free(inside);
-    return st;
+    return err->status;
 }
 
 enum status face_agreement_add(struct face_agreement *a, const struct face_pixels *p, struct err *err)
@@ -61,25 +61,28 @@ enum status face_agreement_add(struct face_agreement *a, const struct face_pixel
     float *squared = malloc(pixels * sizeof *squared);
     if (!squared) return err_nomem(err, "distances from edges", pixels * sizeof *squared);
     counts.pixels = calloc((size_t)a->true_faces * (size_t)a->model_faces, sizeof *counts.pixels);
-    enum status st = counts.pixels ? edge_distances(squared, p, err) : err_nomem(err, "pixels of faces", pixels);
-    for (size_t i = 0; !st && i < pixels; i++) {
+    if (counts.pixels)
+        edge_distances(squared, p, err);
+    else
+        err_nomem(err, "pixels of faces", pixels);
+    for (size_t i = 0; !err->status && i < pixels; i++) {
         const uint32_t t = p->truth[i], m = p->model[i];
         if (t >= (uint32_t)a->true_faces || m >= (uint32_t)a->model_faces)
-            st = err_set(err, ST_DATA, "found id %u, wanted one of faces.txt, at most %d.", t, a->true_faces - 1);
-        if (st || !(squared[i] > EDGE_DISTANCE * EDGE_DISTANCE)) continue;
+            err_set(err, ST_DATA, "found id %u, wanted one of faces.txt, at most %d.", t, a->true_faces - 1);
+        if (err->status || !(squared[i] > EDGE_DISTANCE * EDGE_DISTANCE)) continue;
         const size_t k = pair_index(a, (int)t, (int)m);
         counts.pixels[k]++;
         counts.all++;
         a->pairs[k].pixels++;
         if (t && m) a->pairs[k].distance += p->distance[i];
     }
-    if (!st) st = array_append(&a->pictures, (size_t)a->picture_count, sizeof counts, "pictures", err);
-    if (st)
+    if (!err->status) array_append(&a->pictures, (size_t)a->picture_count, sizeof counts, "pictures", err);
+    if (err->status)
         free(counts.pixels);
     else
         a->pictures[a->picture_count++] = counts;
     free(squared);
-    return st;
+    return err->status;
 }
 
 /* Both faces look towards the camera that sees them; the normal of a two-sided one may point the other way. */

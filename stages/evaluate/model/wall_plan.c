@@ -127,13 +127,13 @@ static enum status read_model(struct measured_plan *plan, const char *path, stru
 {
     struct model_plan model = {0};
     struct vec3 corners[2];
-    enum status st = model_plan_read(&model, path, NULL, err);
-    for (int i = 0; !st && i < model.room_count; i++) st = add_model_room(plan, &model, i, err);
-    for (int i = 0; !st && i < model.opening_count; i++)
+    model_plan_read(&model, path, NULL, err);
+    for (int i = 0; !err->status && i < model.room_count; i++) add_model_room(plan, &model, i, err);
+    for (int i = 0; !err->status && i < model.opening_count; i++)
         if (model_opening_corners(&model, i, corners))
-            st = add_part(&plan->openings, model.openings[i].name, corners[0], corners[1], err);
+            add_part(&plan->openings, model.openings[i].name, corners[0], corners[1], err);
     model_plan_release(&model);
-    return st;
+    return err->status;
 }
 
 /* ----------------------------------------------------------------------------------- scene.txt and scene-truth.txt */
@@ -223,10 +223,11 @@ static enum status described_base(struct reader *r, int depth, struct err *err)
     const struct textfile t = r->t;
     struct err why = ERR_INIT;
     r->t = (struct textfile){0};
-    const enum status st = read_described(r, path, depth + 1, &why);
+    read_described(r, path, depth + 1, &why);
     textfile_release(&r->t);
     r->t = t;
-    return st ? err_set(err, st == ST_NOMEM ? st : ST_DATA, "%s:%d: its base: %s", t.path, t.line, why.text) : ST_OK;
+    if (!why.status) return ST_OK;
+    return err_set(err, why.status == ST_NOMEM ? ST_NOMEM : ST_DATA, "%s:%d: its base: %s", t.path, t.line, why.text);
 }
 
 static enum status described_statement(struct reader *r, const char *verb, int depth, struct err *err)
@@ -241,13 +242,12 @@ static enum status described_statement(struct reader *r, const char *verb, int d
 
 static enum status read_described(struct reader *r, const char *path, int depth, struct err *err)
 {
-    enum status st = textfile_open(&r->t, path, err);
-    while (!st && textfile_next(&r->t)) {
+    textfile_open(&r->t, path, err);
+    while (!err->status && textfile_next(&r->t)) {
         char *verb;
-        st = textfile_word(&r->t, "a word", &verb, err);
-        if (!st) st = described_statement(r, verb, depth, err);
+        if (!textfile_word(&r->t, "a word", &verb, err)) described_statement(r, verb, depth, err);
     }
-    return st;
+    return err->status;
 }
 
 static enum status axis_of(struct reader *r, int *axis, struct err *err)
@@ -324,28 +324,28 @@ static enum status framed_statement(struct reader *r, const char *verb, struct e
 
 static enum status read_framed(struct reader *r, const char *path, struct err *err)
 {
-    enum status st = textfile_open(&r->t, path, err);
-    while (!st && textfile_next(&r->t)) {
+    textfile_open(&r->t, path, err);
+    while (!err->status && textfile_next(&r->t)) {
         char *verb;
-        st = textfile_word(&r->t, "a word", &verb, err);
-        if (!st) st = framed_statement(r, verb, err);
+        if (!textfile_word(&r->t, "a word", &verb, err)) framed_statement(r, verb, err);
     }
-    return st;
+    return err->status;
 }
 
 enum status wall_plan_read(struct measured_plan *plan, const char *path, enum measured_plan_kind kind, struct err *err)
 {
     struct reader r = {.plan = plan, .partition = -1, .low = {INFINITY, INFINITY}, .high = {-INFINITY, -INFINITY}};
-    enum status st = ST_OK;
     *plan = (struct measured_plan){0};
     if (kind == PLAN_FROM_MODEL)
-        st = read_model(plan, path, err);
+        read_model(plan, path, err);
+    else if (kind == PLAN_FROM_SCENE)
+        read_described(&r, path, 0, err);
     else
-        st = kind == PLAN_FROM_SCENE ? read_described(&r, path, 0, err) : read_framed(&r, path, err);
+        read_framed(&r, path, err);
     textfile_release(&r.t);
     free(r.lines.parts);
-    if (st) wall_plan_release(plan);
-    return st;
+    if (err->status) wall_plan_release(plan);
+    return err->status;
 }
 
 /* ---------------------------------------------------------------------------------------------------------- errors */

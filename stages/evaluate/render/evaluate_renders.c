@@ -25,29 +25,27 @@ static enum status encoded_errors(struct picture_errors *errors, bool *none, con
     struct image frame = {0}, wanted = {0};
     struct err why = ERR_INIT;
     uint8_t *bytes = malloc(7 * pixels);
-    enum status st = bytes ? ST_OK : err_nomem(err, "pictures", 7 * pixels);
+    if (!bytes) err_nomem(err, "pictures", 7 * pixels);
     *none = false;
-    if (!st) st = image_init(&frame, width, height, 3, err);
-    if (!st) st = image_init(&wanted, width, height, 3, err);
-    for (size_t i = 0; !st && i < pixels; i++) {
+    if (!err->status && !image_init(&frame, width, height, 3, err)) image_init(&wanted, width, height, 3, err);
+    for (size_t i = 0; !err->status && i < pixels; i++) {
         for (size_t c = 0; c < 3; c++) {
             frame.data[3 * i + c] = (float)(r->scale / white * r->picture.rgb.data[3 * i + c]);
             wanted.data[3 * i + c] = (float)(truth->data[4 * i + c] / white);
         }
         bytes[6 * pixels + i] = truth->data[4 * i + 3] > 0;
     }
-    if (!st) {
+    if (!err->status) {
         image_to_srgb8(&wanted, bytes);
         image_to_srgb8(&frame, bytes + 3 * pixels);
-        st =
-            picture_errors(errors, bytes, bytes + 3 * pixels, bytes + 6 * pixels, r->picture.hole, width, height, &why);
-        *none = st == ST_DATA;
-        st = *none || !st ? ST_OK : err_set(err, st, "%s", why.text);
+        picture_errors(errors, bytes, bytes + 3 * pixels, bytes + 6 * pixels, r->picture.hole, width, height, &why);
+        *none = why.status == ST_DATA;
+        if (why.status && !*none) err_set(err, why.status, "%s", why.text);
     }
     image_release(&wanted);
     image_release(&frame);
     free(bytes);
-    return st;
+    return err->status;
 }
 
 static enum status add_encoded(struct evaluation *e, const char *of, const char *name, const struct picture_errors *p,
@@ -56,19 +54,18 @@ static enum status add_encoded(struct evaluation *e, const char *of, const char 
     s->pictures++;
     s->psnr += p->psnr;
     s->holes += p->holes;
-    enum status st = evaluation_metric(e, name, of, "psnr", p->psnr, err) ||
-                     evaluation_metric(e, name, of, "holes", 100 * p->holes, err);
-    if (!st && p->has_ssim) {
+    if (!evaluation_metric(e, name, of, "psnr", p->psnr, err) &&
+        !evaluation_metric(e, name, of, "holes", 100 * p->holes, err) && p->has_ssim) {
         s->ssim += p->ssim;
         s->with_ssim++;
-        st = evaluation_metric(e, name, of, "ssim", p->ssim, err);
+        evaluation_metric(e, name, of, "ssim", p->ssim, err);
     }
-    if (!st && p->has_covered) {
+    if (!err->status && p->has_covered) {
         s->psnr_covered += p->psnr_covered;
         s->covered++;
-        st = evaluation_metric(e, name, of, "psnr_covered", p->psnr_covered, err);
+        evaluation_metric(e, name, of, "psnr_covered", p->psnr_covered, err);
     }
-    return st ? err->status : ST_OK;
+    return err->status;
 }
 
 /* Linear errors: `whole` of all light, NULL of a picture that white limits; `clipped` with both clipped at white. */
@@ -77,25 +74,24 @@ static enum status add_linear(struct evaluation *e, const char *of, const char *
                               struct render_sums *s, struct err *err)
 {
     double rms;
-    enum status st = ST_OK;
     if (whole && radiance_error_rms(whole, &rms)) {
         s->rms += rms;
         s->with_rms++;
-        st = evaluation_metric(e, name, of, "rms", 100 * rms, err);
+        evaluation_metric(e, name, of, "rms", 100 * rms, err);
     }
-    if (!st && radiance_error_rms(clipped, &rms)) {
+    if (!err->status && radiance_error_rms(clipped, &rms)) {
         s->rms_clipped += rms;
         s->with_clipped++;
-        st = evaluation_metric(e, name, of, "rms_clipped", 100 * rms, err);
+        evaluation_metric(e, name, of, "rms_clipped", 100 * rms, err);
     }
     const struct radiance_error *all = whole ? whole : clipped;
-    if (!st && all->errors.count) {
+    if (!err->status && all->errors.count) {
         const double middle = quantiles_get(&all->errors, 0.5);
         s->error50 += middle;
         s->with_error++;
-        st = evaluation_metric(e, name, of, "error50", 100 * middle, err);
+        evaluation_metric(e, name, of, "error50", 100 * middle, err);
     }
-    return st;
+    return err->status;
 }
 
 /* Both errors of radiance of a picture that was read. */
@@ -105,14 +101,15 @@ static enum status linear_errors(struct evaluation *e, const char *of, const str
     struct radiance_error whole = {0}, clipped = {0};
     struct radiance_pixels p = {
         r->picture.rgb.data, truth->data, NULL, (size_t)truth->width * (size_t)truth->height, r->scale, 0};
-    enum status st = radiance_error_init(&whole, err) ? err->status : radiance_error_init(&clipped, err);
-    if (!st && !r->picture.encoded) radiance_error_add(&whole, &p);
-    p.clip = e->white;
-    if (!st) radiance_error_add(&clipped, &p);
-    if (!st) st = add_linear(e, of, r->name, r->picture.encoded ? NULL : &whole, &clipped, s, err);
+    if (!radiance_error_init(&whole, err) && !radiance_error_init(&clipped, err)) {
+        if (!r->picture.encoded) radiance_error_add(&whole, &p);
+        p.clip = e->white;
+        radiance_error_add(&clipped, &p);
+        add_linear(e, of, r->name, r->picture.encoded ? NULL : &whole, &clipped, s, err);
+    }
     radiance_error_release(&clipped);
     radiance_error_release(&whole);
-    return st;
+    return err->status;
 }
 
 static enum status measure(struct evaluation *e, const struct renders *list, struct render *r, struct render_sums *s,
@@ -122,75 +119,72 @@ static enum status measure(struct evaluation *e, const struct renders *list, str
     struct picture_errors errors;
     const char *of = list->set->prefix;
     bool none = false;
-    enum status st = render_read(e, list, r, &truth, err);
-    if (!st) st = encoded_errors(&errors, &none, r, &truth, e->white, err);
-    if (!st && none) {
-        st = metric_note(&e->table, err, "skipped %s of %s: its camera sees nothing of the true picture", r->name, of);
-    } else if (!st) {
-        if (!st) st = add_encoded(e, of, r->name, &errors, s, err);
-        if (!st) st = linear_errors(e, of, r, &truth, s, err);
+    if (!render_read(e, list, r, &truth, err)) encoded_errors(&errors, &none, r, &truth, e->white, err);
+    if (!err->status && none) {
+        metric_note(&e->table, err, "skipped %s of %s: its camera sees nothing of the true picture", r->name, of);
+    } else if (!err->status) {
+        if (!add_encoded(e, of, r->name, &errors, s, err)) linear_errors(e, of, r, &truth, s, err);
         s->offset = fmax(s->offset, r->offset);
     }
     image_release(&truth);
     linear_picture_release(&r->picture);
-    return st;
+    return err->status;
 }
 
 static enum status add_means(struct evaluation *e, const char *of, const struct render_sums *s, bool own,
                              struct err *err)
 {
     const int n = s->pictures;
-    enum status st =
-        evaluation_metric(e, NULL, of, "pictures", n, err) || evaluation_metric(e, NULL, of, "white", e->white, err) ||
-        evaluation_metric(e, NULL, of, "psnr", s->psnr / n, err) ||
-        evaluation_metric(e, NULL, of, "holes", 100 * s->holes / n, err) ||
-        (own && evaluation_metric(e, NULL, of, "offset", s->offset, err)) ||
-        (s->with_ssim && evaluation_metric(e, NULL, of, "ssim", s->ssim / s->with_ssim, err)) ||
-        (s->covered && evaluation_metric(e, NULL, of, "psnr_covered", s->psnr_covered / s->covered, err)) ||
-        (s->with_rms && evaluation_metric(e, NULL, of, "rms", 100 * s->rms / s->with_rms, err)) ||
-        (s->with_clipped &&
-         evaluation_metric(e, NULL, of, "rms_clipped", 100 * s->rms_clipped / s->with_clipped, err)) ||
-        (s->with_error && evaluation_metric(e, NULL, of, "error50", 100 * s->error50 / s->with_error, err));
-    return st ? err->status : ST_OK;
+    if (!evaluation_metric(e, NULL, of, "pictures", n, err) &&
+        !evaluation_metric(e, NULL, of, "white", e->white, err) &&
+        !evaluation_metric(e, NULL, of, "psnr", s->psnr / n, err))
+        evaluation_metric(e, NULL, of, "holes", 100 * s->holes / n, err);
+    if (!err->status && own) evaluation_metric(e, NULL, of, "offset", s->offset, err);
+    if (!err->status && s->with_ssim) evaluation_metric(e, NULL, of, "ssim", s->ssim / s->with_ssim, err);
+    if (!err->status && s->covered) evaluation_metric(e, NULL, of, "psnr_covered", s->psnr_covered / s->covered, err);
+    if (!err->status && s->with_rms) evaluation_metric(e, NULL, of, "rms", 100 * s->rms / s->with_rms, err);
+    if (!err->status && s->with_clipped)
+        evaluation_metric(e, NULL, of, "rms_clipped", 100 * s->rms_clipped / s->with_clipped, err);
+    if (!err->status && s->with_error) evaluation_metric(e, NULL, of, "error50", 100 * s->error50 / s->with_error, err);
+    return err->status;
 }
 
 static enum status measure_set(struct evaluation *e, const struct true_set *set, struct err *err)
 {
     struct renders list = {0};
     struct render_sums s = {0};
-    enum status st = renders_find(&list, e, set, err);
-    if (!st && list.count) st = renders_scale(e, &list, err);
-    for (int i = 0; !st && e->white > 0 && i < list.count; i++) st = measure(e, &list, &list.list[i], &s, err);
-    if (!st && s.pictures) st = add_means(e, set->prefix, &s, list.own_cameras, err);
+    renders_find(&list, e, set, err);
+    if (!err->status && list.count) renders_scale(e, &list, err);
+    for (int i = 0; !err->status && e->white > 0 && i < list.count; i++) measure(e, &list, &list.list[i], &s, err);
+    if (!err->status && s.pictures) add_means(e, set->prefix, &s, list.own_cameras, err);
     renders_release(&list);
-    return st;
+    return err->status;
 }
 
 static enum status evaluate_set(struct evaluation *e, const char *where, struct err *err)
 {
     struct true_set set = {0};
-    enum status st = true_set_read(&set, e->truth_folder, where, e->prov, err);
-    if (!st && set.count) st = renders_write_cameras(e, &set, err);
-    if (!st && set.count) st = measure_set(e, &set, err);
+    true_set_read(&set, e->truth_folder, where, e->prov, err);
+    if (!err->status && set.count) renders_write_cameras(e, &set, err);
+    if (!err->status && set.count) measure_set(e, &set, err);
     true_set_release(&set);
-    return st;
+    return err->status;
 }
 
 enum status evaluate_renders(struct evaluation *e, struct err *err)
 {
     struct true_edits edits = {0};
-    enum status st = evaluate_set(e, "novel", err);
-    if (!st) st = true_edits_find(&edits, e->truth_folder, err);
-    for (int i = 0; !st && i < edits.count; i++) {
+    if (!evaluate_set(e, "novel", err)) true_edits_find(&edits, e->truth_folder, err);
+    for (int i = 0; !err->status && i < edits.count; i++) {
         char where[64];
         snprintf(where, sizeof where, "edited-%s", edits.names[i]);
-        st = evaluate_set(e, where, err);
+        evaluate_set(e, where, err);
     }
-    if (!st && edits.others)
-        st = metric_note(&e->table, err,
-                         "skipped %d edited scenes of the truth: a name is at most 40 letters, digits, "
-                         "_ and -",
-                         edits.others);
+    if (!err->status && edits.others)
+        metric_note(&e->table, err,
+                    "skipped %d edited scenes of the truth: a name is at most 40 letters, digits, "
+                    "_ and -",
+                    edits.others);
     true_edits_release(&edits);
-    return st;
+    return err->status;
 }

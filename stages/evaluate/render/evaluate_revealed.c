@@ -26,10 +26,9 @@ static enum status measure(struct evaluation *e, const struct renders *list, str
     bool found;
     const size_t pixels = (size_t)r->map.lens.width * (size_t)r->map.lens.height;
     uint8_t *mask = malloc(pixels);
-    enum status st = true_planes_read(&planes, &found, e, list->set, r->of->name, &r->map, err);
-    if (!st && !mask) st = err_nomem(err, "a mask", pixels);
-    if (!st && found) st = render_read(e, list, r, &truth, err);
-    if (!st && found) {
+    true_planes_read(&planes, &found, e, list->set, r->of->name, &r->map, err);
+    if (!err->status && !mask) err_nomem(err, "a mask", pixels);
+    if (!err->status && found && !render_read(e, list, r, &truth, err)) {
         const struct true_surface surface = {{planes.ids[0], planes.ids[1]}, {planes.depths[0], planes.depths[1]}};
         const size_t revealed = revealed_find(mask, &surface, pixels);
         const struct radiance_pixels p = {r->picture.rgb.data, truth.data, mask, pixels, r->scale, e->white};
@@ -38,15 +37,14 @@ static enum status measure(struct evaluation *e, const struct renders *list, str
         if (revealed && revealed_psnr(&psnr, &p, planes.ids[1])) {
             s->square += (double)revealed * pow(10, -psnr / 10);
             s->pixels += (double)revealed;
-            if (revealed >= MIN_REVEALED)
-                st = evaluation_metric(e, r->name, list->set->prefix, "revealed_psnr", psnr, err);
+            if (revealed >= MIN_REVEALED) evaluation_metric(e, r->name, list->set->prefix, "revealed_psnr", psnr, err);
         }
     }
     free(mask);
     true_planes_release(&planes);
     image_release(&truth);
     linear_picture_release(&r->picture);
-    return st;
+    return err->status;
 }
 
 static enum status measure_edit(struct evaluation *e, const char *where, struct err *err)
@@ -54,27 +52,27 @@ static enum status measure_edit(struct evaluation *e, const char *where, struct 
     struct true_set set = {0};
     struct renders list = {0};
     struct revealed_sums s = {0};
-    enum status st = true_set_read(&set, e->truth_folder, where, e->prov, err);
-    if (!st && set.count) st = renders_find(&list, e, &set, err);
-    if (!st && list.count) st = renders_scale(e, &list, err);
-    for (int i = 0; !st && e->white > 0 && i < list.count; i++) st = measure(e, &list, &list.list[i], &s, err);
-    if (!st && s.all) st = evaluation_metric(e, NULL, set.prefix, "revealed", 100 * s.pixels / (double)s.all, err);
-    if (!st && s.pixels > 0)
-        st = evaluation_metric(e, NULL, set.prefix, "revealed_psnr", -10 * log10(s.square / s.pixels), err);
+    true_set_read(&set, e->truth_folder, where, e->prov, err);
+    if (!err->status && set.count) renders_find(&list, e, &set, err);
+    if (!err->status && list.count) renders_scale(e, &list, err);
+    for (int i = 0; !err->status && e->white > 0 && i < list.count; i++) measure(e, &list, &list.list[i], &s, err);
+    if (!err->status && s.all) evaluation_metric(e, NULL, set.prefix, "revealed", 100 * s.pixels / (double)s.all, err);
+    if (!err->status && s.pixels > 0)
+        evaluation_metric(e, NULL, set.prefix, "revealed_psnr", -10 * log10(s.square / s.pixels), err);
     renders_release(&list);
     true_set_release(&set);
-    return st;
+    return err->status;
 }
 
 enum status evaluate_revealed(struct evaluation *e, struct err *err)
 {
     struct true_edits edits = {0};
-    enum status st = true_edits_find(&edits, e->truth_folder, err);
-    for (int i = 0; !st && i < edits.count; i++) {
+    true_edits_find(&edits, e->truth_folder, err);
+    for (int i = 0; !err->status && i < edits.count; i++) {
         char where[64];
         snprintf(where, sizeof where, "edited-%s", edits.names[i]);
-        st = measure_edit(e, where, err);
+        measure_edit(e, where, err);
     }
     true_edits_release(&edits);
-    return st;
+    return err->status;
 }

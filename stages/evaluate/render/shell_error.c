@@ -56,18 +56,18 @@ enum status shell_error_add(struct shell_error *e, const struct shell_pixels *p,
 {
     const size_t count = p->radiance.count;
     uint8_t *mask = malloc(count);
-    enum status st = mask ? ST_OK : err_nomem(err, "a mask", count);
-    for (int part = 0; !st && part < SHELL_PARTS; part++) {
+    if (!mask) err_nomem(err, "a mask", count);
+    for (int part = 0; !err->status && part < SHELL_PARTS; part++) {
         struct radiance_pixels r = p->radiance;
-        for (size_t i = 0; !st && i < count; i++) {
+        for (size_t i = 0; !err->status && i < count; i++) {
             mask[i] = p->shell[i] && (p->shell[i] != p->whole[i]) == (part == SHELL_HIDDEN);
-            if (mask[i] && r.truth[4 * i + 3] > 0) st = add_sample(e, p, i, part, err);
+            if (mask[i] && r.truth[4 * i + 3] > 0) add_sample(e, p, i, part, err);
         }
         r.mask = mask;
-        if (!st) radiance_error_add(&e->all[part], &r);
+        if (!err->status) radiance_error_add(&e->all[part], &r);
     }
     free(mask);
-    return st;
+    return err->status;
 }
 
 bool shell_face_median(struct shell_error *e, int face, int part, double *middle)

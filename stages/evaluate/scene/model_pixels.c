@@ -20,10 +20,10 @@ enum status model_pixels_read(struct model_pixels *m, struct evaluation *e, cons
     if (!path_is_file(path))
         return metric_note(&e->table, err, "skipped %s on surfaces of the model: there is no %s/model.txt", what,
                            where);
-    enum status st = model_rays_read(&m->model, path, MODEL_WITHOUT_GLASS, e->prov, err);
-    if (!st) st = model_frame_read(&m->frame, e, same, vec3_make(0, 0, 0), err);
-    m->known = !st;
-    return st;
+    if (!model_rays_read(&m->model, path, MODEL_WITHOUT_GLASS, e->prov, err))
+        model_frame_read(&m->frame, e, same, vec3_make(0, 0, 0), err);
+    m->known = !err->status;
+    return err->status;
 }
 
 void model_pixels_release(struct model_pixels *m)
@@ -49,12 +49,10 @@ enum status model_pixels_find(uint8_t *part[PICTURE_PARTS], const struct model_p
     uint32_t *ids = malloc(pixels * sizeof *ids);
     float *distance = malloc(pixels * sizeof *distance);
     for (int k = PART_MODEL; k < PICTURE_PARTS; k++) part[k] = calloc(count, 1);
-    enum status st = points && ids && distance && part[PART_MODEL] && part[PART_OTHER]
-                         ? ST_OK
-                         : err_nomem(err, "surfaces of the model", pixels * sizeof *points);
-    if (!st) st = add_true_input(e, depth, err);
-    if (!st) st = truth_photo_read_depth(&photo, depth, e->params->far, err);
-    if (!st) {
+    if (!points || !ids || !distance || !part[PART_MODEL] || !part[PART_OTHER])
+        err_nomem(err, "surfaces of the model", pixels * sizeof *points);
+    if (!err->status && !add_true_input(e, depth, err)) truth_photo_read_depth(&photo, depth, e->params->far, err);
+    if (!err->status) {
         true_points(points, &photo);
         traced_model_faces(ids, distance, &m->model, &m->frame, of, points);
         for (size_t i = 0; i < count; i++) {
@@ -67,5 +65,5 @@ enum status model_pixels_find(uint8_t *part[PICTURE_PARTS], const struct model_p
     free(points);
     free(ids);
     free(distance);
-    return st;
+    return err->status;
 }

@@ -71,10 +71,10 @@ static enum status find_own(struct renders *list, struct evaluation *e, const ch
     double farthest = 0;
     char as[96];
     snprintf(as, sizeof as, "rendered/%.70s", list->where);
-    enum status st = provenance_add_in(e->prov, as, folder, "cameras.txt", "", NULL, err);
-    if (!st) st = provenance_add_in(e->prov, as, folder, "images.txt", "", NULL, err);
-    if (!st) st = sfm_model_read_cameras(&m, folder, NULL, err);
-    for (int i = 0; !st && i < m.image_count; i++) {
+    if (!provenance_add_in(e->prov, as, folder, "cameras.txt", "", NULL, err) &&
+        !provenance_add_in(e->prov, as, folder, "images.txt", "", NULL, err))
+        sfm_model_read_cameras(&m, folder, NULL, err);
+    for (int i = 0; !err->status && i < m.image_count; i++) {
         stem(name, m.images[i].name, false);
         stem(photo, m.images[i].name, true);
         const struct true_picture *of = true_set_find(list->set, name);
@@ -83,8 +83,7 @@ static enum status find_own(struct renders *list, struct evaluation *e, const ch
         strange += !of;
         if (!of) continue;
         const int before = list->count;
-        st = new_render(list, name, path, of, err);
-        if (st || list->count == before) continue;
+        if (new_render(list, name, path, of, err) || list->count == before) continue;
         struct render *r = &list->list[before];
         r->map.lens = m.cameras[m.images[i].camera_idx].camera;
         r->map.true_lens = of->lens;
@@ -96,34 +95,33 @@ static enum status find_own(struct renders *list, struct evaluation *e, const ch
         list->count--;
     }
     sfm_model_release(&m);
-    if (!st && strange)
-        st = metric_note(&e->table, err, "skipped %d pictures of %s: the truth has no picture of their names", strange,
-                         list->set->prefix);
-    if (!st && far)
-        st = metric_note(&e->table, err,
-                         "skipped %d pictures of %s: their cameras are up to %.3g m from the true ones, more than "
-                         "[evaluate] max_offset = %g",
-                         far, list->set->prefix, farthest, e->params->max_offset);
-    return st;
+    if (!err->status && strange)
+        metric_note(&e->table, err, "skipped %d pictures of %s: the truth has no picture of their names", strange,
+                    list->set->prefix);
+    if (!err->status && far)
+        metric_note(&e->table, err,
+                    "skipped %d pictures of %s: their cameras are up to %.3g m from the true ones, more than "
+                    "[evaluate] max_offset = %g",
+                    far, list->set->prefix, farthest, e->params->max_offset);
+    return err->status;
 }
 
 /* Pictures that are views. */
 static enum status find_views(struct renders *list, struct evaluation *e, const char *folder, struct err *err)
 {
     const struct view_set *sets[2] = {&e->views, &e->held};
-    enum status st = ST_OK;
     for (int k = 0; k < 2; k++)
-        for (int i = 0; !st && i < sets[k]->cameras.view_count; i++) {
+        for (int i = 0; !err->status && i < sets[k]->cameras.view_count; i++) {
             const struct view *view = &sets[k]->cameras.views[i];
             const struct true_picture *of =
                 true_set_find(list->set, photo_lens_of_view(&sets[k]->cameras, &sets[k]->lenses, i)->photo);
             char path[FILE_PATH];
             if (!of || !linear_picture_find(path, folder, view->name)) continue;
             const int before = list->count;
-            st = new_render(list, view->name, path, of, err);
-            if (!st && list->count > before) list->list[before].map = evaluation_map_of_view(sets[k], i);
+            new_render(list, view->name, path, of, err);
+            if (!err->status && list->count > before) list->list[before].map = evaluation_map_of_view(sets[k], i);
         }
-    return st;
+    return err->status;
 }
 
 enum status renders_find_in(struct renders *list, struct evaluation *e, const struct true_set *set, const char *folder,
@@ -191,21 +189,20 @@ enum status render_read(struct evaluation *e, const struct renders *list, struct
     struct linear_picture whole = {0};
     char name[FILE_PATH];
     const char *file = strrchr(r->path, '/');
-    enum status st = file_path(name, "rendered", list->where, file, err);
-    if (!st) st = provenance_add_file(e->prov, name, r->path, err);
-    if (!st) {
+    if (!file_path(name, "rendered", list->where, file, err)) provenance_add_file(e->prov, name, r->path, err);
+    if (!err->status) {
         snprintf(name, sizeof name, "truth%s", r->truth + strlen(e->truth_folder));
-        st = provenance_add_file(e->prov, name, r->truth, err);
+        provenance_add_file(e->prov, name, r->truth, err);
     }
-    if (!st) st = linear_picture_read(&r->picture, r->path, err);
-    if (!st && (r->picture.rgb.width != r->map.lens.width || r->picture.rgb.height != r->map.lens.height))
-        st = err_set(err, ST_DATA, "%s is %d x %d px, but its camera %d x %d; render it again.", r->path,
-                     r->picture.rgb.width, r->picture.rgb.height, r->map.lens.width, r->map.lens.height);
-    if (!st) st = linear_picture_read(&whole, r->truth, err);
-    if (!st) st = picture_of_truth(truth, &whole.rgb, &r->map, err);
-    if (!st) r->scale = r->picture.encoded ? e->white : e->radiance_scale;
+    if (!err->status) linear_picture_read(&r->picture, r->path, err);
+    if (!err->status && (r->picture.rgb.width != r->map.lens.width || r->picture.rgb.height != r->map.lens.height))
+        err_set(err, ST_DATA, "%s is %d x %d px, but its camera %d x %d; render it again.", r->path,
+                r->picture.rgb.width, r->picture.rgb.height, r->map.lens.width, r->map.lens.height);
+    if (!err->status && !linear_picture_read(&whole, r->truth, err) &&
+        !picture_of_truth(truth, &whole.rgb, &r->map, err))
+        r->scale = r->picture.encoded ? e->white : e->radiance_scale;
     linear_picture_release(&whole);
-    return st;
+    return err->status;
 }
 
 /* ----------------------------------------------------------------------------------------------- scale and cameras */
@@ -216,32 +213,32 @@ enum status renders_scale(struct evaluation *e, struct renders *list, struct err
     bool encoded = false;
     evaluation_set_white(e);
     if (e->radiance_scale > 0) return ST_OK;
-    enum status st = quantiles_init(&ratios, err);
-    for (int i = 0; !st && i < list->count; i++) {
+    quantiles_init(&ratios, err);
+    for (int i = 0; !err->status && i < list->count; i++) {
         struct render *r = &list->list[i];
         struct image truth = {0};
-        st = render_read(e, list, r, &truth, err);
+        render_read(e, list, r, &truth, err);
         const struct radiance_pixels p = {
             r->picture.rgb.data, truth.data, NULL, (size_t)truth.width * (size_t)truth.height, 1, 0};
         encoded = encoded || r->picture.encoded;
-        if (!st && !r->picture.encoded) radiance_ratios_add(&ratios, &p);
+        if (!err->status && !r->picture.encoded) radiance_ratios_add(&ratios, &p);
         image_release(&truth);
         linear_picture_release(&r->picture);
     }
-    if (!st && ratios.count) {
+    if (!err->status && ratios.count) {
         e->radiance_scale = quantiles_get(&ratios, 0.5);
-        st = metric_note(&e->table, err,
-                         "note: the scale of rendered radiance is the median ratio %.5g of the pictures of %s, because "
-                         "no view of a photo with a true radiance gives it",
-                         e->radiance_scale, list->set->prefix);
+        metric_note(&e->table, err,
+                    "note: the scale of rendered radiance is the median ratio %.5g of the pictures of %s, because "
+                    "no view of a photo with a true radiance gives it",
+                    e->radiance_scale, list->set->prefix);
         evaluation_set_white(e);
-    } else if (!st && !(e->white > 0)) {
-        st = metric_note(&e->table, err, "skipped pictures of %s: %s", list->set->prefix,
-                         encoded ? "8-bit pictures need [evaluate] white, the true radiance that is white in them"
-                                 : "they are black");
+    } else if (!err->status && !(e->white > 0)) {
+        metric_note(&e->table, err, "skipped pictures of %s: %s", list->set->prefix,
+                    encoded ? "8-bit pictures need [evaluate] white, the true radiance that is white in them"
+                            : "they are black");
     }
     quantiles_release(&ratios);
-    return st;
+    return err->status;
 }
 
 static enum status copy_camera(const struct evaluation *e, const struct true_picture *p, struct sfm_model *m,
@@ -269,11 +266,11 @@ enum status renders_write_cameras(struct evaluation *e, const struct true_set *s
         return err->status;
     m.cameras = calloc((size_t)set->count, sizeof *m.cameras);
     m.images = calloc((size_t)set->count, sizeof *m.images);
-    enum status st = m.cameras && m.images ? ST_OK : err_nomem(err, "cameras", (size_t)set->count * sizeof *m.images);
-    for (int i = 0; !st && i < set->count; i++) st = copy_camera(e, &set->pictures[i], &m, err);
+    if (!m.cameras || !m.images) err_nomem(err, "cameras", (size_t)set->count * sizeof *m.images);
+    for (int i = 0; !err->status && i < set->count; i++) copy_camera(e, &set->pictures[i], &m, err);
     struct provenance prov = *e->prov; /* shares its arrays with e->prov */
     prov.count = e->shared_inputs;
-    if (!st) st = sfm_model_write_text(&m, folder, &prov, err);
+    if (!err->status) sfm_model_write_text(&m, folder, &prov, err);
     sfm_model_release(&m);
-    return st;
+    return err->status;
 }

@@ -41,11 +41,11 @@ enum status true_ids_seen(uint32_t *ids, struct evaluation *e, const char *path,
 {
     const size_t pixels = (size_t)map->lens.width * (size_t)map->lens.height;
     struct seen s = {0};
-    enum status st = seen_read(&s, e, path, "id", map, err);
-    if (!st && !s.plane->u) st = err_set(err, ST_DATA, "%s: channel id holds no integers, wanted uint.", path);
-    for (size_t i = 0; !st && i < pixels; i++) ids[i] = s.index[i] < 0 ? 0 : s.plane->u[s.index[i]];
+    seen_read(&s, e, path, "id", map, err);
+    if (!err->status && !s.plane->u) err_set(err, ST_DATA, "%s: channel id holds no integers, wanted uint.", path);
+    for (size_t i = 0; !err->status && i < pixels; i++) ids[i] = s.index[i] < 0 ? 0 : s.plane->u[s.index[i]];
     seen_release(&s);
-    return st;
+    return err->status;
 }
 
 enum status true_depths_seen(float *depths, struct evaluation *e, const char *path, const struct picture_map *map,
@@ -53,11 +53,11 @@ enum status true_depths_seen(float *depths, struct evaluation *e, const char *pa
 {
     const size_t pixels = (size_t)map->lens.width * (size_t)map->lens.height;
     struct seen s = {0};
-    enum status st = seen_read(&s, e, path, "Z", map, err);
-    if (!st && !s.plane->f) st = err_set(err, ST_DATA, "%s: channel Z holds integers, wanted float.", path);
-    for (size_t i = 0; !st && i < pixels; i++) depths[i] = s.index[i] < 0 ? 0 : s.plane->f[s.index[i]];
+    seen_read(&s, e, path, "Z", map, err);
+    if (!err->status && !s.plane->f) err_set(err, ST_DATA, "%s: channel Z holds integers, wanted float.", path);
+    for (size_t i = 0; !err->status && i < pixels; i++) depths[i] = s.index[i] < 0 ? 0 : s.plane->f[s.index[i]];
     seen_release(&s);
-    return st;
+    return err->status;
 }
 
 enum status true_colours_seen(float *rgb, struct evaluation *e, const char *path, const struct picture_map *map,
@@ -68,15 +68,14 @@ enum status true_colours_seen(float *rgb, struct evaluation *e, const char *path
     char name[FILE_PATH];
     int32_t *index = malloc(pixels * sizeof *index);
     snprintf(name, sizeof name, "truth%.4000s", path + strlen(e->truth_folder));
-    enum status st = index ? ST_OK : err_nomem(err, "pixels", pixels * sizeof *index);
-    if (!st) st = provenance_add_file(e->prov, name, path, err);
-    if (!st) st = linear_picture_read(&p, path, err);
-    if (!st) picture_true_pixels(index, p.rgb.width, p.rgb.height, map);
-    for (size_t i = 0; !st && i < pixels; i++)
+    if (!index) err_nomem(err, "pixels", pixels * sizeof *index);
+    if (!err->status && !provenance_add_file(e->prov, name, path, err) && !linear_picture_read(&p, path, err))
+        picture_true_pixels(index, p.rgb.width, p.rgb.height, map);
+    for (size_t i = 0; !err->status && i < pixels; i++)
         for (size_t c = 0; c < 3; c++) rgb[3 * i + c] = index[i] < 0 ? 0 : p.rgb.data[3 * (size_t)index[i] + c];
     linear_picture_release(&p);
     free(index);
-    return st;
+    return err->status;
 }
 
 bool true_plain_file(char path[FILE_PATH], const struct evaluation *e, const char *kind, const char *name)
@@ -94,18 +93,17 @@ enum status true_planes_read(struct surface_planes *p, bool *found, struct evalu
 {
     const size_t pixels = (size_t)map->lens.width * (size_t)map->lens.height;
     char paths[4][FILE_PATH];
-    enum status st = ST_OK;
     *p = (struct surface_planes){{NULL, NULL}, {NULL, NULL}};
     *found = true_plain_file(paths[0], e, "ids", name) && true_set_file(paths[1], set, "ids", name) &&
              true_plain_file(paths[2], e, "depth", name) && true_set_file(paths[3], set, "depth", name);
-    for (int k = 0; *found && !st && k < 2; k++) {
+    for (int k = 0; *found && !err->status && k < 2; k++) {
         p->ids[k] = malloc(pixels * sizeof *p->ids[k]);
         p->depths[k] = malloc(pixels * sizeof *p->depths[k]);
-        if (!p->ids[k] || !p->depths[k]) st = err_nomem(err, "ids and depths", pixels * sizeof *p->ids[k]);
-        if (!st) st = true_ids_seen(p->ids[k], e, paths[k], map, err);
-        if (!st) st = true_depths_seen(p->depths[k], e, paths[2 + k], map, err);
+        if (!p->ids[k] || !p->depths[k]) err_nomem(err, "ids and depths", pixels * sizeof *p->ids[k]);
+        if (!err->status && !true_ids_seen(p->ids[k], e, paths[k], map, err))
+            true_depths_seen(p->depths[k], e, paths[2 + k], map, err);
     }
-    return st;
+    return err->status;
 }
 
 void true_planes_release(struct surface_planes *p)

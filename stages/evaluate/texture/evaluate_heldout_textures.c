@@ -72,23 +72,22 @@ static enum status predict(struct predict_job *job, const struct linear_picture 
     if (!bytes) return err_nomem(err, "pictures", 8 * pixels);
     job->out = &out;
     job->predicted = bytes + 6 * pixels;
-    enum status st = image_init(&out, width, height, 3, err);
-    if (!st) parallel_for((size_t)height, ROWS, predict_rows, job);
-    for (size_t i = 0; !st && i < pixels; i++) {
+    if (!image_init(&out, width, height, 3, err)) parallel_for((size_t)height, ROWS, predict_rows, job);
+    for (size_t i = 0; !err->status && i < pixels; i++) {
         mask[i] = photo->known[i] && job->faces[i];
         counted += mask[i];
         predicted += mask[i] && job->predicted[i];
     }
     *found = counted > 0;
-    if (!st && *found) {
+    if (!err->status && *found) {
         image_to_srgb8(&photo->rgb, bytes);
         image_to_srgb8(&out, bytes + 3 * pixels);
         *filled = 100 * (double)predicted / (double)counted;
-        st = metrics_psnr(bytes, bytes + 3 * pixels, width, height, mask, psnr, err);
+        metrics_psnr(bytes, bytes + 3 * pixels, width, height, mask, psnr, err);
     }
     image_release(&out);
     free(bytes);
-    return st;
+    return err->status;
 }
 
 static int nearest_viewpoint(const struct heldout_job *job, struct vec3 centre)
@@ -111,14 +110,14 @@ static enum status read_photo(struct linear_picture *photo, struct evaluation *e
                               struct err *err)
 {
     char path[FILE_PATH];
-    enum status st = evaluation_path(path, e, PRODUCT_VIEW,
-                                     &(struct product_key){.view = view->name, .views = "holdout/views"}, err);
-    if (!st) st = provenance_add_file(e->prov, product_name(PRODUCT_VIEW, path), path, err);
-    if (!st) st = linear_picture_read(photo, path, err);
-    if (!st && (photo->rgb.width != view->width || photo->rgb.height != view->height))
-        st = err_set(err, ST_DATA, "%s is %d x %d px, but its camera %d x %d; make it again.", path, photo->rgb.width,
-                     photo->rgb.height, view->width, view->height);
-    return st;
+    if (!evaluation_path(path, e, PRODUCT_VIEW, &(struct product_key){.view = view->name, .views = "holdout/views"},
+                         err) &&
+        !provenance_add_file(e->prov, product_name(PRODUCT_VIEW, path), path, err))
+        linear_picture_read(photo, path, err);
+    if (!err->status && (photo->rgb.width != view->width || photo->rgb.height != view->height))
+        err_set(err, ST_DATA, "%s is %d x %d px, but its camera %d x %d; make it again.", path, photo->rgb.width,
+                photo->rgb.height, view->width, view->height);
+    return err->status;
 }
 
 static enum status add_predictions(struct heldout_job *job, struct evaluation *e, const struct view *view,
@@ -128,9 +127,9 @@ static enum status add_predictions(struct heldout_job *job, struct evaluation *e
     const struct view inside = model_from_world_view(&job->axes, view);
     uint32_t *faces = malloc((size_t)view->width * (size_t)view->height * sizeof *faces);
     bool found = false;
-    enum status st = faces ? ST_OK : err_nomem(err, "faces", (size_t)view->width * (size_t)view->height);
-    if (!st) model_rays_view(faces, &job->model, &inside);
-    for (int k = first_kind(job); !st && k < kinds(job); k++) {
+    if (!faces) err_nomem(err, "faces", (size_t)view->width * (size_t)view->height);
+    if (!err->status) model_rays_view(faces, &job->model, &inside);
+    for (int k = first_kind(job); !err->status && k < kinds(job); k++) {
         struct predict_job one = {&job->model.mesh,
                                   &inside,
                                   faces,
@@ -138,17 +137,16 @@ static enum status add_predictions(struct heldout_job *job, struct evaluation *e
                                   NULL,
                                   NULL};
         double psnr = 0, filled = 0;
-        st = predict(&one, photo, &found, &psnr, &filled, err);
-        if (st || !found) break;
+        if (predict(&one, photo, &found, &psnr, &filled, err) || !found) break;
         job->psnr[k] += psnr;
         job->filled[k] += filled;
-        st = evaluation_metric(e, view->name, prefixes[k], "heldout_psnr", psnr, err);
+        evaluation_metric(e, view->name, prefixes[k], "heldout_psnr", psnr, err);
     }
-    job->pictures += !st && found;
-    if (!st && !found)
-        st = metric_note(&e->table, err, "skipped the textures of %s: it does not see the model", view->name);
+    job->pictures += !err->status && found;
+    if (!err->status && !found)
+        metric_note(&e->table, err, "skipped the textures of %s: it does not see the model", view->name);
     free(faces);
-    return st;
+    return err->status;
 }
 
 static enum status add_picture(struct heldout_job *job, struct evaluation *e, const struct view *view, struct err *err)
@@ -156,12 +154,12 @@ static enum status add_picture(struct heldout_job *job, struct evaluation *e, co
     struct linear_picture photo = {0};
     struct loaded_atlas nearest = {0};
     const int viewpoint = nearest_viewpoint(job, model_from_world_view(&job->axes, view).center);
-    enum status st = read_photo(&photo, e, view, err);
-    if (!st && viewpoint >= 0) st = loaded_atlas_read(&nearest, e, job->textures.viewpoints[viewpoint], err);
-    if (!st) st = add_predictions(job, e, view, &photo, viewpoint < 0 ? NULL : &nearest, err);
+    read_photo(&photo, e, view, err);
+    if (!err->status && viewpoint >= 0) loaded_atlas_read(&nearest, e, job->textures.viewpoints[viewpoint], err);
+    if (!err->status) add_predictions(job, e, view, &photo, viewpoint < 0 ? NULL : &nearest, err);
     loaded_atlas_release(&nearest);
     linear_picture_release(&photo);
-    return st;
+    return err->status;
 }
 
 /* -------------------------------------------------------------------------------------------------------- the scene */
@@ -171,18 +169,17 @@ static enum status prepare(struct heldout_job *job, struct evaluation *e, struct
     char path[FILE_PATH];
     job->centres = malloc(((size_t)job->textures.viewpoint_count + 1) * sizeof *job->centres);
     if (!job->centres) return err_nomem(err, "viewpoints", (size_t)job->textures.viewpoint_count);
-    enum status st = evaluation_path(path, e, PRODUCT_AXES, NULL, err);
-    if (!st) st = model_axes_read(&job->axes, path, e->prov, err);
-    if (!st) st = evaluation_path(path, e, PRODUCT_MODEL, NULL, err);
-    if (!st) st = model_rays_read(&job->model, path, MODEL_WITHOUT_GLASS, e->prov, err);
-    if (!st && job->textures.vita) st = loaded_atlas_read(&job->vita, e, NULL, err);
-    for (int i = 0; !st && i < job->textures.viewpoint_count; i++) {
+    if (!evaluation_path(path, e, PRODUCT_AXES, NULL, err) && !model_axes_read(&job->axes, path, e->prov, err) &&
+        !evaluation_path(path, e, PRODUCT_MODEL, NULL, err))
+        model_rays_read(&job->model, path, MODEL_WITHOUT_GLASS, e->prov, err);
+    if (!err->status && job->textures.vita) loaded_atlas_read(&job->vita, e, NULL, err);
+    for (int i = 0; !err->status && i < job->textures.viewpoint_count; i++) {
         struct atlas a = {0};
-        st = textures_read(&a, e, job->textures.viewpoints[i], err);
+        textures_read(&a, e, job->textures.viewpoints[i], err);
         job->centres[i] = a.centre;
         atlas_release(&a);
     }
-    return st;
+    return err->status;
 }
 
 static enum status add_means(struct evaluation *e, const struct heldout_job *job, struct err *err)
@@ -199,15 +196,15 @@ static enum status add_means(struct evaluation *e, const struct heldout_job *job
 enum status evaluate_heldout_textures(struct evaluation *e, struct err *err)
 {
     struct heldout_job job = {0};
-    enum status st = textures_find(&job.textures, e, err);
-    const bool some = !st && (job.textures.vita || job.textures.viewpoint_count);
-    if (some) st = prepare(&job, e, err);
-    for (int i = 0; !st && some && i < e->held.cameras.view_count; i++)
-        st = add_picture(&job, e, &e->held.cameras.views[i], err);
-    if (!st && some) st = add_means(e, &job, err);
+    textures_find(&job.textures, e, err);
+    const bool some = !err->status && (job.textures.vita || job.textures.viewpoint_count);
+    if (some) prepare(&job, e, err);
+    for (int i = 0; !err->status && some && i < e->held.cameras.view_count; i++)
+        add_picture(&job, e, &e->held.cameras.views[i], err);
+    if (!err->status && some) add_means(e, &job, err);
     model_rays_release(&job.model);
     loaded_atlas_release(&job.vita);
     free(job.centres);
     textures_release(&job.textures);
-    return st;
+    return err->status;
 }

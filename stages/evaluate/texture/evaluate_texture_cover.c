@@ -92,10 +92,10 @@ static enum status read_revealed(struct cover_points *c, struct evaluation *e, c
     char path[FILE_PATH];
     if (evaluation_path(path, e, PRODUCT_REVEAL, &(struct product_key){.view = view->name}, err)) return err->status;
     if (!path_is_file(path)) return ST_OK;
-    enum status st = view_reveal_read(&revealed, view, path, e->prov, err);
-    for (int k = 0; !st && k < revealed.layers; k++) st = add_layer(c, &revealed, k, view, axes, err);
+    view_reveal_read(&revealed, view, path, e->prov, err);
+    for (int k = 0; !err->status && k < revealed.layers; k++) add_layer(c, &revealed, k, view, axes, err);
     view_reveal_release(&revealed);
-    return st;
+    return err->status;
 }
 
 static enum status cover_viewpoint(struct cover_sum *sum, struct evaluation *e, const char *name,
@@ -103,19 +103,18 @@ static enum status cover_viewpoint(struct cover_sum *sum, struct evaluation *e, 
 {
     struct loaded_atlas atlas = {0};
     struct cover_points points = {0};
-    enum status st = loaded_atlas_read(&atlas, e, name, err);
-    for (int i = 0; !st && i < atlas.atlas.view_count; i++) {
+    loaded_atlas_read(&atlas, e, name, err);
+    for (int i = 0; !err->status && i < atlas.atlas.view_count; i++) {
         const int view = camera_set_find(&e->views.cameras, atlas.atlas.views[i]);
         if (view < 0)
-            st =
-                err_set(err, ST_DATA, "%s: view %s is none of the scene's; bake it again.", name, atlas.atlas.views[i]);
+            err_set(err, ST_DATA, "%s: view %s is none of the scene's; bake it again.", name, atlas.atlas.views[i]);
         else
-            st = read_revealed(&points, e, &e->views.cameras.views[view], axes, err);
+            read_revealed(&points, e, &e->views.cameras.views[view], axes, err);
     }
-    if (!st) add_sum(sum, &points, &atlas);
+    if (!err->status) add_sum(sum, &points, &atlas);
     free(points.list);
     loaded_atlas_release(&atlas);
-    return st;
+    return err->status;
 }
 
 /* ----------------------------------------------------------------------------------------------------- whole models */
@@ -163,16 +162,16 @@ static enum status sample_mesh(struct cover_points *c, const struct textures *t,
     double area = 0;
     for (int i = 0; i < mesh->face_count; i++) area += solid_mesh_area(mesh, i);
     const double spacing = sqrt(area / SAMPLES);
-    enum status st = solid_mesh_triangulate(&triangles, mesh, err);
-    for (int i = 0; !st && i < triangles.count; i++) {
+    solid_mesh_triangulate(&triangles, mesh, err);
+    for (int i = 0; !err->status && i < triangles.count; i++) {
         const struct solid_triangle *f = &triangles.triangles[i];
         struct vec3 corner[3];
         if (!in_model(t, mesh, f->face)) continue;
         for (int k = 0; k < 3; k++) corner[k] = mesh->vertices[f->v[k]].p;
-        st = sample_triangle(c, corner, solid_face_id(mesh, f->face), spacing, err);
+        sample_triangle(c, corner, solid_face_id(mesh, f->face), spacing, err);
     }
     solid_triangles_release(&triangles);
-    return st;
+    return err->status;
 }
 
 static enum status sample_edit(struct cover_points *c, const struct textures *t, struct evaluation *e, const char *edit,
@@ -180,12 +179,12 @@ static enum status sample_edit(struct cover_points *c, const struct textures *t,
 {
     struct solid_mesh mesh = {0};
     char where[FILE_PATH], path[FILE_PATH];
-    enum status st = file_path(where, "remodel", edit, "", err);
-    if (!st) st = evaluation_path(path, e, PRODUCT_MODEL, &(struct product_key){.model = where}, err);
-    if (!st) st = solid_mesh_read(&mesh, path, e->prov, err);
-    if (!st) st = sample_mesh(c, t, &mesh, err);
+    if (!file_path(where, "remodel", edit, "", err) &&
+        !evaluation_path(path, e, PRODUCT_MODEL, &(struct product_key){.model = where}, err) &&
+        !solid_mesh_read(&mesh, path, e->prov, err))
+        sample_mesh(c, t, &mesh, err);
     solid_mesh_release(&mesh);
-    return st;
+    return err->status;
 }
 
 /* The model, and the models of all edits O/remodel/E. */
@@ -194,32 +193,29 @@ static enum status sample_models(struct cover_points *c, const struct textures *
 {
     struct dirent **entries = NULL;
     char folder[FILE_PATH], path[FILE_PATH];
-    enum status st = sample_mesh(c, t, &t->mesh, err);
-    if (!st) st = file_path(folder, e->folder, "remodel", "", err);
-    if (st || !path_is_folder(folder)) return st;
+    if (!sample_mesh(c, t, &t->mesh, err)) file_path(folder, e->folder, "remodel", "", err);
+    if (err->status || !path_is_folder(folder)) return err->status;
     const int count = scandir(folder, &entries, NULL, alphasort);
     if (count < 0) return err_errno(err, "list", folder);
     for (int i = 0; i < count; i++) {
-        if (!st && entries[i]->d_name[0] != '.') {
-            st = file_path(path, folder, entries[i]->d_name, "/model.txt", err);
-            if (!st && path_is_file(path)) st = sample_edit(c, t, e, entries[i]->d_name, err);
+        if (!err->status && entries[i]->d_name[0] != '.') {
+            file_path(path, folder, entries[i]->d_name, "/model.txt", err);
+            if (!err->status && path_is_file(path)) sample_edit(c, t, e, entries[i]->d_name, err);
         }
         free(entries[i]);
     }
     free(entries);
-    return st;
+    return err->status;
 }
 
 static enum status cover_vita(struct cover_sum *sum, struct evaluation *e, const struct textures *t, struct err *err)
 {
     struct loaded_atlas atlas = {0};
     struct cover_points points = {0};
-    enum status st = loaded_atlas_read(&atlas, e, NULL, err);
-    if (!st) st = sample_models(&points, t, e, err);
-    if (!st) add_sum(sum, &points, &atlas);
+    if (!loaded_atlas_read(&atlas, e, NULL, err) && !sample_models(&points, t, e, err)) add_sum(sum, &points, &atlas);
     free(points.list);
     loaded_atlas_release(&atlas);
-    return st;
+    return err->status;
 }
 
 /* -------------------------------------------------------------------------------------------------------- the table */
@@ -238,14 +234,15 @@ enum status evaluate_texture_cover(struct evaluation *e, struct err *err)
     struct model_axes axes;
     struct cover_sum revealed = {0, 0}, whole = {0, 0};
     char path[FILE_PATH];
-    enum status st = textures_find(&t, e, err);
-    const bool some = !st && (t.viewpoint_count || t.vita);
-    if (some) st = evaluation_path(path, e, PRODUCT_AXES, NULL, err);
-    if (some && !st) st = model_axes_read(&axes, path, e->prov, err);
-    for (int i = 0; !st && i < t.viewpoint_count; i++) st = cover_viewpoint(&revealed, e, t.viewpoints[i], &axes, err);
-    if (!st && t.viewpoint_count) st = add_share(e, "texture", &revealed, err);
-    if (!st && t.vita) st = cover_vita(&whole, e, &t, err);
-    if (!st && t.vita) st = add_share(e, "texture.vita", &whole, err);
+    textures_find(&t, e, err);
+    const bool some = !err->status && (t.viewpoint_count || t.vita);
+    if (some) evaluation_path(path, e, PRODUCT_AXES, NULL, err);
+    if (some && !err->status) model_axes_read(&axes, path, e->prov, err);
+    for (int i = 0; !err->status && i < t.viewpoint_count; i++)
+        cover_viewpoint(&revealed, e, t.viewpoints[i], &axes, err);
+    if (!err->status && t.viewpoint_count) add_share(e, "texture", &revealed, err);
+    if (!err->status && t.vita) cover_vita(&whole, e, &t, err);
+    if (!err->status && t.vita) add_share(e, "texture.vita", &whole, err);
     textures_release(&t);
-    return st;
+    return err->status;
 }

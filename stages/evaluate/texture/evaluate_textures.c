@@ -60,32 +60,32 @@ static enum status read_known(struct photo_view *v, struct evaluation *e, struct
     char path[FILE_PATH];
     if (evaluation_path(path, e, PRODUCT_VIEW, &(struct product_key){.view = v->view->name}, err)) return err->status;
     if (!path_is_file(path)) return ST_OK;
-    enum status st = provenance_add_file(e->prov, product_name(PRODUCT_VIEW, path), path, err);
-    if (!st) st = linear_picture_read(&picture, path, err);
-    if (!st && (picture.rgb.width != v->view->width || picture.rgb.height != v->view->height))
-        st = err_set(err, ST_DATA, "%s is %d x %d px, but its camera %d x %d; make it again.", path, picture.rgb.width,
-                     picture.rgb.height, v->view->width, v->view->height);
-    if (!st) {
+    if (!provenance_add_file(e->prov, product_name(PRODUCT_VIEW, path), path, err))
+        linear_picture_read(&picture, path, err);
+    if (!err->status && (picture.rgb.width != v->view->width || picture.rgb.height != v->view->height))
+        err_set(err, ST_DATA, "%s is %d x %d px, but its camera %d x %d; make it again.", path, picture.rgb.width,
+                picture.rgb.height, v->view->width, v->view->height);
+    if (!err->status) {
         v->known = picture.known;
         picture.known = NULL;
     }
     linear_picture_release(&picture);
-    return st;
+    return err->status;
 }
 
 static enum status read_views(struct texture_job *job, struct evaluation *e, struct err *err)
 {
     const struct camera_set *cameras = &e->views.cameras;
     job->views = calloc((size_t)cameras->view_count + 1, sizeof *job->views);
-    enum status st = job->views ? ST_OK : err_nomem(err, "views", (size_t)cameras->view_count * sizeof *job->views);
-    for (int i = 0; !st && i < cameras->view_count; i++) {
+    if (!job->views) err_nomem(err, "views", (size_t)cameras->view_count * sizeof *job->views);
+    for (int i = 0; !err->status && i < cameras->view_count; i++) {
         const int shell = shell_of_photo(&job->shell, evaluation_photo(e, &e->views, i));
         if (shell < 0 || !job->shell.views[shell].clutter) continue;
         struct photo_view *v = &job->views[job->view_count++];
         *v = (struct photo_view){&cameras->views[i], shell, NULL};
-        st = read_known(v, e, err);
+        read_known(v, e, err);
     }
-    return st;
+    return err->status;
 }
 
 static void job_release(struct texture_job *job)
@@ -121,21 +121,19 @@ static enum status read_own_photo(struct atlas_truth *t, const struct texture_jo
     char folder[FILE_PATH], path[FILE_PATH], as[FILE_PATH];
     if (t->own < 0) return ST_OK;
     const struct shell_view *own = &job->shell.views[t->own];
-    enum status st = file_path(folder, e->truth_folder, "hdr", "", err);
-    if (!st) st = file_path(path, folder, own->name, ".exr", err);
-    if (st || !path_is_file(path)) return st;
-    st = file_path(as, "truth/hdr", own->name, ".exr", err);
-    if (!st) st = provenance_add_file(e->prov, as, path, err);
-    if (!st) st = linear_picture_read(&picture, path, err);
-    if (!st && (picture.rgb.width != own->lens.width || picture.rgb.height != own->lens.height))
-        st = err_set(err, ST_DATA, "%s is %d x %d px, but the truth's camera is %d x %d px.", path, picture.rgb.width,
-                     picture.rgb.height, own->lens.width, own->lens.height);
-    if (!st) {
+    if (!file_path(folder, e->truth_folder, "hdr", "", err)) file_path(path, folder, own->name, ".exr", err);
+    if (err->status || !path_is_file(path)) return err->status;
+    if (!file_path(as, "truth/hdr", own->name, ".exr", err) && !provenance_add_file(e->prov, as, path, err))
+        linear_picture_read(&picture, path, err);
+    if (!err->status && (picture.rgb.width != own->lens.width || picture.rgb.height != own->lens.height))
+        err_set(err, ST_DATA, "%s is %d x %d px, but the truth's camera is %d x %d px.", path, picture.rgb.width,
+                picture.rgb.height, own->lens.width, own->lens.height);
+    if (!err->status) {
         t->own_photo = picture.rgb;
         picture.rgb = (struct image){0};
     }
     linear_picture_release(&picture);
-    return st;
+    return err->status;
 }
 
 static bool is_own(const struct atlas *a, const char *source)
@@ -198,23 +196,21 @@ static enum status add_atlas(struct texture_result *r, const struct texture_job 
     struct atlas a = {0};
     struct atlas_truth own = {.own = -1};
     char folder[FILE_PATH];
-    enum status st = textures_read(&a, e, name, err);
-    if (!st) st = textures_folder(folder, e, name, err);
-    if (!st) st = find_sources(&own, &a, job, e, err);
+    if (!textures_read(&a, e, name, err) && !textures_folder(folder, e, name, err)) find_sources(&own, &a, job, e, err);
     const struct texel_truth truth = {&job->frame,   &job->shell, job->views,       job->view_count, e->radiance_scale,
                                       e->white,      &a,          own.source_shell, own.source_own,  own.own,
                                       &own.own_photo};
-    for (int i = 0; !st && i < a.page_count; i++) {
+    for (int i = 0; !err->status && i < a.page_count; i++) {
         struct atlas_page page = {0};
-        st = atlas_page_read(&page, &a, i, folder, NULL, err);
-        for (int k = 0; !st && k < a.tile_count; k++)
-            if (a.tiles[k].page == i) st = add_tile(r, job, &truth, &page, &a.tiles[k], err);
+        atlas_page_read(&page, &a, i, folder, NULL, err);
+        for (int k = 0; !err->status && k < a.tile_count; k++)
+            if (a.tiles[k].page == i) add_tile(r, job, &truth, &page, &a.tiles[k], err);
         atlas_page_release(&page);
     }
-    r->atlases += !st;
+    r->atlases += !err->status;
     atlas_truth_release(&own);
     atlas_release(&a);
-    return st;
+    return err->status;
 }
 
 /* -------------------------------------------------------------------------------------------------------- the table */
@@ -250,43 +246,42 @@ static enum status add_errors(struct evaluation *e, const struct texture_result 
                               struct err *err)
 {
     const struct texture_error *t = &r->error;
-    enum status st = ST_OK;
-    for (int k = is_vita(r) ? TEXTURE_WARPED : TEXTURE_ORIGINAL; !st && k < TEXTURE_PARTS; k++) {
+    for (int k = is_vita(r) ? TEXTURE_WARPED : TEXTURE_ORIGINAL; !err->status && k < TEXTURE_PARTS; k++) {
         double db = 0;
         bool found = false;
-        st = texture_median_psnr(t, (enum texture_part)k, &db, &found, err);
-        if (!st && found) st = evaluation_metric(e, NULL, r->prefix, part_names[k], db, err);
-        if (!st && !found)
-            st = metric_note(&e->table, err, "skipped %s.%s: no face has %d of these texels with a true radiance",
-                             r->prefix, part_names[k], MIN_FACE_TEXELS);
+        texture_median_psnr(t, (enum texture_part)k, &db, &found, err);
+        if (!err->status && found) evaluation_metric(e, NULL, r->prefix, part_names[k], db, err);
+        if (!err->status && !found)
+            metric_note(&e->table, err, "skipped %s.%s: no face has %d of these texels with a true radiance", r->prefix,
+                        part_names[k], MIN_FACE_TEXELS);
     }
-    if (!st) st = add_share(e, r, "compared", t->compared, t->texels, "there is no texel of a known face", err);
-    if (!st && !is_vita(r))
-        st = add_share(e, r, "clutter_avoided", t->avoided, t->clutter,
-                       "no texel's own photo is known to show clutter of another colour", err);
-    if (!st)
-        st = add_share(e, r, "clutter_baked", t->baked, t->from_views,
-                       "no texel has both a true radiance and a source whose clutter is known", err);
-    if (!st)
-        st = add_share(e, r, "unknown_clean", t->clean_unknown, t->clean,
-                       "no photo is known to show any texel's surface", err);
-    return st ? st : add_faces(e, r, job, err);
+    if (!err->status) add_share(e, r, "compared", t->compared, t->texels, "there is no texel of a known face", err);
+    if (!err->status && !is_vita(r))
+        add_share(e, r, "clutter_avoided", t->avoided, t->clutter,
+                  "no texel's own photo is known to show clutter of another colour", err);
+    if (!err->status)
+        add_share(e, r, "clutter_baked", t->baked, t->from_views,
+                  "no texel has both a true radiance and a source whose clutter is known", err);
+    if (!err->status && !add_share(e, r, "unknown_clean", t->clean_unknown, t->clean,
+                                   "no photo is known to show any texel's surface", err))
+        add_faces(e, r, job, err);
+    return err->status;
 }
 
 static enum status add_result(struct evaluation *e, const struct texture_result *r, const struct texture_job *job,
                               struct err *err)
 {
     double ratio;
-    enum status st = evaluation_metric(e, NULL, r->prefix, "atlases", r->atlases, err);
-    if (!st) st = evaluation_metric(e, NULL, r->prefix, "megapixels", 1e-6 * (double)r->texels, err);
-    if (!st && texture_seams_ratio(&r->seams, &ratio))
-        st = evaluation_metric(e, NULL, r->prefix, "seam_energy", ratio, err);
-    else if (!st)
-        st = metric_note(&e->table, err, "skipped %s.seam_energy: no two views meet in a tile", r->prefix);
-    if (!st && r->unknown_tiles)
-        st = metric_note(&e->table, err, "skipped %d tiles of %s: the model before edits lacks their faces",
-                         r->unknown_tiles, r->prefix);
-    return st || !job->compared ? st : add_errors(e, r, job, err);
+    if (!evaluation_metric(e, NULL, r->prefix, "atlases", r->atlases, err))
+        evaluation_metric(e, NULL, r->prefix, "megapixels", 1e-6 * (double)r->texels, err);
+    if (!err->status && texture_seams_ratio(&r->seams, &ratio))
+        evaluation_metric(e, NULL, r->prefix, "seam_energy", ratio, err);
+    else if (!err->status)
+        metric_note(&e->table, err, "skipped %s.seam_energy: no two views meet in a tile", r->prefix);
+    if (!err->status && r->unknown_tiles)
+        metric_note(&e->table, err, "skipped %d tiles of %s: the model before edits lacks their faces",
+                    r->unknown_tiles, r->prefix);
+    return err->status || !job->compared ? err->status : add_errors(e, r, job, err);
 }
 
 /* Reads the truth and the model that it is compared with. */
@@ -294,18 +289,18 @@ static enum status read_truth(struct texture_job *job, struct evaluation *e, str
 {
     static const struct mat3 same = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
     char path[FILE_PATH];
-    enum status st = model_frame_read(&job->frame, e, same, vec3_make(0, 0, 0), err);
-    if (!st) st = evaluation_path(path, e, PRODUCT_MODEL, NULL, err);
-    if (!st) st = model_rays_read(&job->model, path, MODEL_WITHOUT_GLASS, e->prov, err);
-    if (!st) st = shell_points_read(&job->shell, e, &job->model, &job->frame, err);
-    return st ? st : read_views(job, e, err);
+    return model_frame_read(&job->frame, e, same, vec3_make(0, 0, 0), err) ||
+                   evaluation_path(path, e, PRODUCT_MODEL, NULL, err) ||
+                   model_rays_read(&job->model, path, MODEL_WITHOUT_GLASS, e->prov, err) ||
+                   shell_points_read(&job->shell, e, &job->model, &job->frame, err) || read_views(job, e, err)
+               ? err->status
+               : ST_OK;
 }
 
 /* Whether texels can be compared with the truth; a note says why not. */
 static enum status prepare(struct texture_job *job, struct evaluation *e, struct err *err)
 {
     const char *why = NULL;
-    enum status st = ST_OK;
     evaluation_set_white(e);
     if (!e->truth_folder)
         why = "no TRUTH is given";
@@ -313,10 +308,11 @@ static enum status prepare(struct texture_job *job, struct evaluation *e, struct
         why = "the cameras do not tell where the truth is";
     else if (!(e->radiance_scale > 0))
         why = "the scale of radiance is unknown, because no view of a photo with a true radiance gives it";
-    else if (!(st = read_truth(job, e, err)) && !job->shell.count)
+    else if (!read_truth(job, e, err) && !job->shell.count)
         why = "the truth has no shell with depths";
-    job->compared = !st && !why;
-    return st || !why ? st : metric_note(&e->table, err, "skipped errors of textures: %s", why);
+    job->compared = !err->status && !why;
+    if (why) metric_note(&e->table, err, "skipped errors of textures: %s", why);
+    return err->status;
 }
 
 static enum status measure(struct texture_job *job, struct evaluation *e, const char *prefix, bool vita,
@@ -325,23 +321,23 @@ static enum status measure(struct texture_job *job, struct evaluation *e, const 
     struct texture_result r = {.prefix = prefix};
     const int count = vita ? job->textures.vita : job->textures.viewpoint_count;
     if (!count) return ST_OK;
-    enum status st = texture_error_init(&r.error, job->textures.ids, err);
-    for (int i = 0; !st && i < count; i++) st = add_atlas(&r, job, e, vita ? NULL : job->textures.viewpoints[i], err);
-    if (!st) st = add_result(e, &r, job, err);
+    texture_error_init(&r.error, job->textures.ids, err);
+    for (int i = 0; !err->status && i < count; i++)
+        add_atlas(&r, job, e, vita ? NULL : job->textures.viewpoints[i], err);
+    if (!err->status) add_result(e, &r, job, err);
     texture_error_release(&r.error);
-    return st;
+    return err->status;
 }
 
 enum status evaluate_textures(struct evaluation *e, struct err *err)
 {
     struct texture_job job = {0};
-    enum status st = textures_find(&job.textures, e, err);
-    if (!st && !job.textures.viewpoint_count && !job.textures.vita)
-        st = metric_note(&e->table, err, "skipped textures: there is no vdta and no vita");
-    else if (!st)
-        st = prepare(&job, e, err);
-    if (!st) st = measure(&job, e, "texture", false, err);
-    if (!st) st = measure(&job, e, "texture.vita", true, err);
+    textures_find(&job.textures, e, err);
+    if (!err->status && !job.textures.viewpoint_count && !job.textures.vita)
+        metric_note(&e->table, err, "skipped textures: there is no vdta and no vita");
+    else if (!err->status)
+        prepare(&job, e, err);
+    if (!err->status && !measure(&job, e, "texture", false, err)) measure(&job, e, "texture.vita", true, err);
     job_release(&job);
-    return st;
+    return err->status;
 }

@@ -7,13 +7,12 @@ enum status loaded_atlas_read(struct loaded_atlas *a, struct evaluation *e, cons
 {
     char folder[FILE_PATH];
     *a = (struct loaded_atlas){0};
-    enum status st = textures_read(&a->atlas, e, name, err);
-    if (!st) st = textures_folder(folder, e, name, err);
-    if (!st && !(a->pages = calloc((size_t)a->atlas.page_count + 1, sizeof *a->pages)))
-        st = err_nomem(err, "pages", (size_t)a->atlas.page_count * sizeof *a->pages);
-    for (int i = 0; !st && i < a->atlas.page_count; i++)
-        st = atlas_page_read(&a->pages[i], &a->atlas, i, folder, NULL, err);
-    return st;
+    if (!textures_read(&a->atlas, e, name, err)) textures_folder(folder, e, name, err);
+    if (!err->status && !(a->pages = calloc((size_t)a->atlas.page_count + 1, sizeof *a->pages)))
+        err_nomem(err, "pages", (size_t)a->atlas.page_count * sizeof *a->pages);
+    for (int i = 0; !err->status && i < a->atlas.page_count; i++)
+        atlas_page_read(&a->pages[i], &a->atlas, i, folder, NULL, err);
+    return err->status;
 }
 
 void loaded_atlas_release(struct loaded_atlas *a)

@@ -177,10 +177,10 @@ static enum status read_ids(struct exr_image *im, struct evaluation *e, const ch
 {
     static const char *const names[] = {"id"};
     if (!path_is_file(path)) return ST_OK;
-    enum status st = add_input(e, path, err);
-    if (!st) st = exr_read(im, path, names, 1, err);
-    if (!st && !im->planes[0].u) st = err_set(err, ST_DATA, "%s: channel id holds no integers, wanted uint.", path);
-    return st ? st : check_size(path, im->width, im->height, lens, err);
+    if (!add_input(e, path, err)) exr_read(im, path, names, 1, err);
+    if (!err->status && !im->planes[0].u) err_set(err, ST_DATA, "%s: channel id holds no integers, wanted uint.", path);
+    if (!err->status) check_size(path, im->width, im->height, lens, err);
+    return err->status;
 }
 
 /* The ids of a camera with furniture: those of the photo, or of a view that nobody photographed. */
@@ -188,14 +188,12 @@ static enum status read_whole_ids(struct exr_image *im, struct evaluation *e, co
                                   struct err *err)
 {
     static const char *const folders[] = {"ids", "novel/ids"};
-    enum status st = ST_OK;
-    for (int k = 0; !st && !im->count && k < 2; k++) {
+    for (int k = 0; !err->status && !im->count && k < 2; k++) {
         char path[FILE_PATH], folder[FILE_PATH];
-        st = file_path(folder, e->truth_folder, folders[k], "", err);
-        if (!st) st = file_path(path, folder, p->name, ".exr", err);
-        if (!st) st = read_ids(im, e, path, &p->lens, err);
+        if (!file_path(folder, e->truth_folder, folders[k], "", err) && !file_path(path, folder, p->name, ".exr", err))
+            read_ids(im, e, path, &p->lens, err);
     }
-    return st;
+    return err->status;
 }
 
 static enum status read_radiance(struct shell_view *v, struct evaluation *e, const struct shell_points *s,
@@ -204,15 +202,14 @@ static enum status read_radiance(struct shell_view *v, struct evaluation *e, con
     struct linear_picture picture = {0};
     char path[FILE_PATH];
     if (!true_set_file(path, &s->set, "hdr", v->name)) return ST_OK;
-    enum status st = add_input(e, path, err);
-    if (!st) st = linear_picture_read(&picture, path, err);
-    if (!st) st = check_size(path, picture.rgb.width, picture.rgb.height, &v->lens, err);
-    if (!st) {
+    if (!add_input(e, path, err) && !linear_picture_read(&picture, path, err))
+        check_size(path, picture.rgb.width, picture.rgb.height, &v->lens, err);
+    if (!err->status) {
         v->rgb = picture.rgb;
         picture.rgb = (struct image){0};
     }
     linear_picture_release(&picture);
-    return st;
+    return err->status;
 }
 
 /* What the photos of a view and the model show at its pixels, if the truth has ids without and with furniture. */
@@ -227,21 +224,20 @@ static enum status read_clutter(struct shell_view *v, struct evaluation *e, cons
     struct vec3 *points = malloc(pixels * sizeof *points);
     uint32_t *faces = malloc(pixels * sizeof *faces);
     float *distance = malloc(pixels * sizeof *distance);
-    enum status st = points && faces && distance ? ST_OK : err_nomem(err, "faces", pixels * sizeof *points);
-    if (!st) st = read_whole_ids(&whole, e, p, err);
-    if (!st && whole.count) st = read_ids(&shell, e, path, &p->lens, err);
-    if (!st && whole.count) {
+    if (!points || !faces || !distance) err_nomem(err, "faces", pixels * sizeof *points);
+    if (!err->status) read_whole_ids(&whole, e, p, err);
+    if (!err->status && whole.count && !read_ids(&shell, e, path, &p->lens, err)) {
         true_points(points, photo);
         traced_model_faces(faces, distance, trace->model, trace->frame, p, points);
         const struct shell_pixel_ids ids = {shell.planes[0].u, whole.planes[0].u, faces, distance};
-        st = shell_view_mark(v, &ids, s->tolerance, err);
+        shell_view_mark(v, &ids, s->tolerance, err);
     }
     exr_image_release(&whole);
     exr_image_release(&shell);
     free(points);
     free(faces);
     free(distance);
-    return st;
+    return err->status;
 }
 
 static enum status add_view(struct shell_points *s, struct evaluation *e, const struct true_picture *p,
@@ -249,18 +245,17 @@ static enum status add_view(struct shell_points *s, struct evaluation *e, const 
 {
     struct true_photo photo = {.lens = p->lens, .pose = p->pose};
     struct shell_view *v = &s->views[s->count];
-    enum status st = add_input(e, depth_path, err);
-    if (!st) st = truth_photo_read_depth(&photo, depth_path, e->params->far, err);
-    if (!st) st = shell_view_make(v, &photo, err);
-    if (!st) {
+    if (!add_input(e, depth_path, err) && !truth_photo_read_depth(&photo, depth_path, e->params->far, err))
+        shell_view_make(v, &photo, err);
+    if (!err->status) {
         s->count++;
         v->name = p->name;
         v->photo = photo_list_match(&e->photos, p->name);
-        st = read_clutter(v, e, s, p, &photo, trace, err);
+        read_clutter(v, e, s, p, &photo, trace, err);
     }
-    if (!st) st = read_radiance(v, e, s, err);
+    if (!err->status) read_radiance(v, e, s, err);
     free(photo.depth);
-    return st;
+    return err->status;
 }
 
 enum status shell_points_read(struct shell_points *s, struct evaluation *e, const struct model_rays *model,
@@ -268,15 +263,15 @@ enum status shell_points_read(struct shell_points *s, struct evaluation *e, cons
 {
     const struct model_trace trace = {model, frame};
     *s = (struct shell_points){.tolerance = e->params->surface_distance};
-    enum status st = true_set_read(&s->set, e->truth_folder, "shell", e->prov, err);
-    if (!st && s->set.count && !(s->views = calloc((size_t)s->set.count, sizeof *s->views)))
-        st = err_nomem(err, "true pictures", (size_t)s->set.count * sizeof *s->views);
-    for (int i = 0; !st && i < s->set.count; i++) {
+    true_set_read(&s->set, e->truth_folder, "shell", e->prov, err);
+    if (!err->status && s->set.count && !(s->views = calloc((size_t)s->set.count, sizeof *s->views)))
+        err_nomem(err, "true pictures", (size_t)s->set.count * sizeof *s->views);
+    for (int i = 0; !err->status && i < s->set.count; i++) {
         char path[FILE_PATH];
         if (true_set_file(path, &s->set, "depth", s->set.pictures[i].name))
-            st = add_view(s, e, &s->set.pictures[i], path, &trace, err);
+            add_view(s, e, &s->set.pictures[i], path, &trace, err);
     }
-    return st;
+    return err->status;
 }
 
 void shell_points_release(struct shell_points *s)

@@ -30,22 +30,22 @@ static enum status read_exr(struct linear_picture *p, const char *path, struct e
 {
     static const char *const names[3] = {"R", "G", "B"};
     struct exr_image im = {0};
-    enum status st = exr_read(&im, path, NULL, 0, err);
-    if (!st) st = image_init(&p->rgb, im.width, im.height, 3, err);
-    const size_t pixels = st ? 0 : (size_t)im.width * (size_t)im.height;
-    for (size_t c = 0; !st && c < 3; c++) {
+    if (!exr_read(&im, path, NULL, 0, err)) image_init(&p->rgb, im.width, im.height, 3, err);
+    const size_t pixels = err->status ? 0 : (size_t)im.width * (size_t)im.height;
+    for (size_t c = 0; !err->status && c < 3; c++) {
         const struct exr_plane *plane = exr_find(&im, names[c]);
         if (!plane || !plane->f)
-            st = err_set(err, ST_DATA, "%s: found no channel %s of half or float, wanted scene-linear R G B.", path,
-                         names[c]);
-        for (size_t i = 0; !st && i < pixels; i++) p->rgb.data[3 * i + c] = plane->f[i];
+            err_set(err, ST_DATA, "%s: found no channel %s of half or float, wanted scene-linear R G B.", path,
+                    names[c]);
+        for (size_t i = 0; !err->status && i < pixels; i++) p->rgb.data[3 * i + c] = plane->f[i];
     }
-    if (!st && (!(p->hole = calloc(pixels, 1)) || !(p->known = malloc(pixels))))
-        st = err_nomem(err, "masks", 2 * pixels);
-    if (!st) memset(p->known, 1, pixels);
-    const struct exr_plane *hole = st ? NULL : exr_find(&im, "hole"), *a = st ? NULL : exr_find(&im, "A");
-    const struct exr_plane *clipped = st ? NULL : exr_find(&im, "clipped");
-    const char *radiometry = st ? NULL : exr_attribute(&im, "remodel:radiometry");
+    if (!err->status && (!(p->hole = calloc(pixels, 1)) || !(p->known = malloc(pixels))))
+        err_nomem(err, "masks", 2 * pixels);
+    if (!err->status) memset(p->known, 1, pixels);
+    const struct exr_plane *hole = err->status ? NULL : exr_find(&im, "hole"),
+                           *a = err->status ? NULL : exr_find(&im, "A");
+    const struct exr_plane *clipped = err->status ? NULL : exr_find(&im, "clipped");
+    const char *radiometry = err->status ? NULL : exr_attribute(&im, "remodel:radiometry");
     const bool saturates = radiometry && strcmp(radiometry, "exact");
     for (size_t i = 0; i < pixels; i++) {
         const float *c = p->rgb.data + 3 * i;
@@ -55,21 +55,20 @@ static enum status read_exr(struct linear_picture *p, const char *path, struct e
         if (saturates && fmaxf(c[0], fmaxf(c[1], c[2])) >= 0.98f) p->known[i] = 0;
     }
     exr_image_release(&im);
-    return st;
+    return err->status;
 }
 
 static enum status read_encoded(struct linear_picture *p, const char *path, struct err *err)
 {
     struct photo photo = {0};
-    enum status st = photo_read(&photo, path, err);
-    if (!st) st = photo_to_linear(&p->rgb, &photo, err);
-    const size_t pixels = st ? 0 : (size_t)p->rgb.width * (size_t)p->rgb.height;
-    if (!st && (!(p->hole = calloc(pixels, 1)) || !(p->known = malloc(pixels))))
-        st = err_nomem(err, "masks", 2 * pixels);
-    if (!st) memset(p->known, 1, pixels);
+    if (!photo_read(&photo, path, err)) photo_to_linear(&p->rgb, &photo, err);
+    const size_t pixels = err->status ? 0 : (size_t)p->rgb.width * (size_t)p->rgb.height;
+    if (!err->status && (!(p->hole = calloc(pixels, 1)) || !(p->known = malloc(pixels))))
+        err_nomem(err, "masks", 2 * pixels);
+    if (!err->status) memset(p->known, 1, pixels);
     p->encoded = true;
     photo_release(&photo);
-    return st;
+    return err->status;
 }
 
 enum status linear_picture_read(struct linear_picture *p, const char *path, struct err *err)

@@ -134,10 +134,10 @@ enum status true_occlusion(uint8_t *occluded, const struct true_photo *photo, co
     struct mat3 world_from_photo = mat3_transpose(mat3_from_quat(photo->pose.rotation));
     struct projection *projections = malloc(pixels * sizeof *projections);
     float *ranges = NULL;
-    enum status st = projections ? ST_OK : err_nomem(err, "warped points", pixels * sizeof *projections);
+    if (!projections) err_nomem(err, "warped points", pixels * sizeof *projections);
 
     for (size_t i = 0; i < pixels; i++) candidates += occluded[i] = vec3_length(points[i]) > 0;
-    for (int k = 0; !st && candidates && k < count; k++) {
+    for (int k = 0; !err->status && candidates && k < count; k++) {
         const struct true_photo *other = others[k];
         size_t size = (size_t)other->lens.width * (size_t)other->lens.height * sizeof *ranges;
         struct warp_job job = {.projections = projections, .points = points, .lens = &other->lens};
@@ -146,13 +146,13 @@ enum status true_occlusion(uint8_t *occluded, const struct true_photo *photo, co
         parallel_for(pixels, CHUNK, warp_points, &job);
         float *grown = realloc(ranges, size);
         if (!grown) {
-            st = err_nomem(err, "depths of another photo", size);
+            err_nomem(err, "depths of another photo", size);
             break;
         }
         ranges = grown;
         if (!other->depth)
             draw_points(ranges, &other->lens, projections, pixels);
-        else if ((st = true_ranges(ranges, other, err)))
+        else if (true_ranges(ranges, other, err))
             break;
         for (size_t i = 0; i < pixels; i++) {
             if (!occluded[i] || projections[i].x < 0) continue;
@@ -165,7 +165,7 @@ enum status true_occlusion(uint8_t *occluded, const struct true_photo *photo, co
     }
     free(ranges);
     free(projections);
-    return st;
+    return err->status;
 }
 
 struct view_job {

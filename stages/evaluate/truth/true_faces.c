@@ -34,14 +34,13 @@ enum status true_faces_read(struct true_faces *faces, const char *path, struct e
 {
     struct textfile t = {0};
     *faces = (struct true_faces){0};
-    enum status st = textfile_open(&t, path, err);
-    if (!st) st = textfile_expect_line(&t, "remodel-faces", err);
-    if (!st) st = textfile_expect(&t, "1", err);
-    if (!st) st = textfile_end(&t, err);
-    while (!st && textfile_next(&t)) st = read_face(faces, &t, err);
+    if (!textfile_open(&t, path, err) && !textfile_expect_line(&t, "remodel-faces", err) &&
+        !textfile_expect(&t, "1", err))
+        textfile_end(&t, err);
+    while (!err->status && textfile_next(&t)) read_face(faces, &t, err);
     textfile_release(&t);
-    if (st) true_faces_release(faces);
-    return st;
+    if (err->status) true_faces_release(faces);
+    return err->status;
 }
 
 void true_faces_release(struct true_faces *faces)

@@ -82,20 +82,20 @@ enum status true_room_read_file(struct true_room *room, const char *path, bool f
     struct textfile t = {0};
     double yaw = 0;
     *room = (struct true_room){.framed = frame};
-    enum status st = textfile_open(&t, path, err);
-    while (!st && textfile_next(&t)) {
+    textfile_open(&t, path, err);
+    while (!err->status && textfile_next(&t)) {
         char *word;
-        st = textfile_word(&t, "a word", &word, err);
-        if (!st && frame)
-            st = framed_line(room, &yaw, &t, word, err);
-        else if (!st && !strcmp(word, "room"))
-            st = described_room(room, &t, err);
+        textfile_word(&t, "a word", &word, err);
+        if (!err->status && frame)
+            framed_line(room, &yaw, &t, word, err);
+        else if (!err->status && !strcmp(word, "room"))
+            described_room(room, &t, err);
     }
     textfile_release(&t);
     const double c = cos(yaw * M_PI / 180), s = sin(yaw * M_PI / 180);
     room->room_from_world = (struct mat3){{{c, s, 0}, {-s, c, 0}, {0, 0, 1}}};
-    if (st) true_room_release(room);
-    return st;
+    if (err->status) true_room_release(room);
+    return err->status;
 }
 
 void true_room_release(struct true_room *room)

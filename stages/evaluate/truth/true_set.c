@@ -19,24 +19,24 @@ static enum status add_cameras(struct true_set *set, const char *of_cameras, con
 {
     struct sfm_model m = {0};
     const int before = set->count;
-    enum status st = sfm_model_read_camera_files(&m, of_cameras, of_images, NULL, err);
-    for (int i = 0; !st && i < m.image_count; i++) {
+    sfm_model_read_camera_files(&m, of_cameras, of_images, NULL, err);
+    for (int i = 0; !err->status && i < m.image_count; i++) {
         const char *dot = strrchr(m.images[i].name, '.');
         struct true_picture p = {.lens = m.cameras[m.images[i].camera_idx].camera, .pose = m.images[i].cam_from_world};
         p.name = dot && dot != m.images[i].name ? strndup(m.images[i].name, (size_t)(dot - m.images[i].name))
                                                 : strdup(m.images[i].name);
         bool known = false;
         for (int k = 0; p.name && k < before; k++) known = known || !strcmp(set->pictures[k].name, p.name);
-        if (!p.name) st = err_nomem(err, "a name", strlen(m.images[i].name));
-        if (!st && !known)
-            st = array_append(&set->pictures, (size_t)set->count, sizeof *set->pictures, "true pictures", err);
-        if (st || known)
+        if (!p.name) err_nomem(err, "a name", strlen(m.images[i].name));
+        if (!err->status && !known)
+            array_append(&set->pictures, (size_t)set->count, sizeof *set->pictures, "true pictures", err);
+        if (err->status || known)
             free(p.name);
         else
             set->pictures[set->count++] = p;
     }
     sfm_model_release(&m);
-    return st;
+    return err->status;
 }
 
 /* Adds FOLDER/WHEREcameras.txt and images.txt if both exist; *found says so. */
@@ -71,16 +71,17 @@ enum status true_set_read(struct true_set *set, const char *truth, const char *w
     if (!path_is_folder(set->folder)) return ST_OK;
     snprintf(in, sizeof in, "%s%s", where, *where ? "/" : "");
     snprintf(beside, sizeof beside, "%s-", where);
-    enum status st = try_cameras(set, truth, in, &found, prov, err);
-    if (!st && !found && *where) st = try_cameras(set, truth, beside, &found, prov, err);
+    try_cameras(set, truth, in, &found, prov, err);
+    if (!err->status && !found && *where) try_cameras(set, truth, beside, &found, prov, err);
     set->own_cameras = found;
     static const char *const others[] = {"", "novel/", "novel-"};
-    for (int k = 0; !st && !set->own_cameras && k < 3; k++) st = try_cameras(set, truth, others[k], &found, prov, err);
-    if (st)
+    for (int k = 0; !err->status && !set->own_cameras && k < 3; k++)
+        try_cameras(set, truth, others[k], &found, prov, err);
+    if (err->status)
         true_set_release(set);
     else if (set->count)
         qsort(set->pictures, (size_t)set->count, sizeof *set->pictures, compare_pictures);
-    return st;
+    return err->status;
 }
 
 void true_set_release(struct true_set *set)
@@ -116,25 +117,24 @@ static bool plain_name(const char *name)
 enum status true_edits_find(struct true_edits *list, const char *truth, struct err *err)
 {
     struct dirent **entries = NULL;
-    enum status st = ST_OK;
     *list = (struct true_edits){0};
     const int count = scandir(truth, &entries, NULL, alphasort);
     if (count < 0) return err_errno(err, "list", truth);
     for (int i = 0; i < count; i++) {
         const char *name = entries[i]->d_name;
         char path[FILE_PATH];
-        if (!st && !strncmp(name, "edited-", 7)) st = file_path(path, truth, name, "", err);
-        if (!st && !strncmp(name, "edited-", 7) && path_is_folder(path)) {
+        if (!err->status && !strncmp(name, "edited-", 7) && !file_path(path, truth, name, "", err) &&
+            path_is_folder(path)) {
             if (!plain_name(name + 7))
                 list->others++;
-            else if (!(st = array_append(&list->names, (size_t)list->count, sizeof *list->names, "edits", err)))
+            else if (!array_append(&list->names, (size_t)list->count, sizeof *list->names, "edits", err))
                 snprintf(list->names[list->count++], sizeof *list->names, "%s", name + 7);
         }
         free(entries[i]);
     }
     free(entries);
-    if (st) true_edits_release(list);
-    return st;
+    if (err->status) true_edits_release(list);
+    return err->status;
 }
 
 void true_edits_release(struct true_edits *list)

@@ -12,24 +12,24 @@ enum status truth_photo_read_depth(struct true_photo *p, const char *path, doubl
 {
     static const char *const NAMES[] = {"Z"};
     struct exr_image im = {0};
-    enum status st = exr_read(&im, path, NAMES, 1, err);
-    const struct exr_plane *z = st ? NULL : exr_find(&im, "Z");
-    if (!st && !z->f) st = err_set(err, ST_DATA, "%s: channel Z holds integers, wanted half or float.", path);
-    if (!st && (im.width != p->lens.width || im.height != p->lens.height))
-        st = err_set(err, ST_DATA, "%s is %d x %d px, but the truth's camera is %d x %d px.", path, im.width, im.height,
-                     p->lens.width, p->lens.height);
-    if (!st) {
+    exr_read(&im, path, NAMES, 1, err);
+    const struct exr_plane *z = err->status ? NULL : exr_find(&im, "Z");
+    if (!err->status && !z->f) err_set(err, ST_DATA, "%s: channel Z holds integers, wanted half or float.", path);
+    if (!err->status && (im.width != p->lens.width || im.height != p->lens.height))
+        err_set(err, ST_DATA, "%s is %d x %d px, but the truth's camera is %d x %d px.", path, im.width, im.height,
+                p->lens.width, p->lens.height);
+    if (!err->status) {
         const char *kind = exr_attribute(&im, "remodel:depth");
         size_t pixels = (size_t)im.width * (size_t)im.height;
         p->along_ray = kind ? !strcmp(kind, "ray") : p->lens.model == CAMERA_OPENCV_FISHEYE;
         if (kind && strcmp(kind, "ray") && strcmp(kind, "z"))
-            st = err_set(err, ST_DATA, "%s: found remodel:depth \"%s\", wanted \"z\" or \"ray\".", path, kind);
+            err_set(err, ST_DATA, "%s: found remodel:depth \"%s\", wanted \"z\" or \"ray\".", path, kind);
         else if (!(p->depth = malloc(pixels * sizeof *p->depth)))
-            st = err_nomem(err, "a true depth map", pixels * sizeof *p->depth);
-        for (size_t i = 0; !st && i < pixels; i++) p->depth[i] = z->f[i] > 0 && z->f[i] <= far ? z->f[i] : 0;
+            err_nomem(err, "a true depth map", pixels * sizeof *p->depth);
+        for (size_t i = 0; !err->status && i < pixels; i++) p->depth[i] = z->f[i] > 0 && z->f[i] <= far ? z->f[i] : 0;
     }
     exr_image_release(&im);
-    return st;
+    return err->status;
 }
 
 /* Reads depth/NAME.exr if it exists; NAME is the image's without its extension. */
@@ -41,19 +41,19 @@ static enum status find_depth(struct truth *t, struct true_photo *p, const char 
     size_t size = strlen(folder) + (size_t)stem + 32;
     char *path = malloc(size), *name = malloc(size);
     struct stat info;
-    enum status st = path && name ? ST_OK : err_nomem(err, "a file name", size);
-    if (!st) {
+    if (path && name) {
         snprintf(path, size, "%s/depth/%.*s.exr", folder, stem, image);
         snprintf(name, size, "truth/depth/%.*s.exr", stem, image);
         if (!stat(path, &info)) {
-            st = truth_photo_read_depth(p, path, far, err);
-            if (!st) st = provenance_add_file(prov, name, path, err);
-            t->depths += !st;
+            if (!truth_photo_read_depth(p, path, far, err)) provenance_add_file(prov, name, path, err);
+            t->depths += !err->status;
         }
+    } else {
+        err_nomem(err, "a file name", size);
     }
     free(path);
     free(name);
-    return st;
+    return err->status;
 }
 
 enum status truth_read(struct truth *t, const char *folder, const struct photo_list *photos, double far,
@@ -61,28 +61,28 @@ enum status truth_read(struct truth *t, const char *folder, const struct photo_l
 {
     struct sfm_model m = {0};
     *t = (struct truth){.count = photos->count};
-    enum status st = sfm_model_read_cameras(&m, folder, NULL, err);
-    if (!st) st = provenance_add_in(prov, "truth", folder, "cameras.txt", "", NULL, err);
-    if (!st) st = provenance_add_in(prov, "truth", folder, "images.txt", "", NULL, err);
-    if (!st && !(t->photos = calloc((size_t)photos->count + 1, sizeof *t->photos)))
-        st = err_nomem(err, "true photos", (size_t)photos->count * sizeof *t->photos);
+    if (!sfm_model_read_cameras(&m, folder, NULL, err) &&
+        !provenance_add_in(prov, "truth", folder, "cameras.txt", "", NULL, err))
+        provenance_add_in(prov, "truth", folder, "images.txt", "", NULL, err);
+    if (!err->status && !(t->photos = calloc((size_t)photos->count + 1, sizeof *t->photos)))
+        err_nomem(err, "true photos", (size_t)photos->count * sizeof *t->photos);
     t->images = m.image_count;
-    for (int i = 0; !st && i < m.image_count; i++) {
+    for (int i = 0; !err->status && i < m.image_count; i++) {
         int at = photo_list_match(photos, m.images[i].name);
         if (at < 0) {
             t->unknown_images++;
             continue;
         }
         if (t->photos[at].lens.width)
-            st = err_set(err, ST_DATA, "%s/images.txt: found two images with the name of photo \"%s\", wanted one.",
-                         folder, photos->photos[at].file);
+            err_set(err, ST_DATA, "%s/images.txt: found two images with the name of photo \"%s\", wanted one.", folder,
+                    photos->photos[at].file);
         t->photos[at].lens = m.cameras[m.images[i].camera_idx].camera;
         t->photos[at].pose = m.images[i].cam_from_world;
-        if (!st) st = find_depth(t, &t->photos[at], folder, m.images[i].name, far, prov, err);
+        if (!err->status) find_depth(t, &t->photos[at], folder, m.images[i].name, far, prov, err);
     }
     sfm_model_release(&m);
-    if (st) truth_release(t);
-    return st;
+    if (err->status) truth_release(t);
+    return err->status;
 }
 
 void truth_release(struct truth *t)

@@ -38,24 +38,24 @@ enum status evaluate_cameras(struct evaluation *e, struct err *err)
     struct pose *found = malloc(capacity * sizeof *found), *truth = malloc(capacity * sizeof *truth);
     struct err why = ERR_INIT;
     struct camera_errors errors;
-    enum status st = found && truth ? ST_OK : err_nomem(err, "poses", capacity * sizeof *found);
-    int known = e->truth.images - e->truth.unknown_images, count = st ? 0 : common_poses(e, found, truth);
-    if (!st && e->truth.unknown_images)
-        st = metric_note(t, err, "note: %d of %d images of the truth are none of the photos", e->truth.unknown_images,
-                         e->truth.images);
-    if (!st && known) st = metric_add(t, NULL, "camera.placed", 100.0 * count / known, err);
-    if (!st && camera_alignment_find(&e->truth_from_scene, found, truth, count, &why)) {
-        st = metric_note(t, err, "skipped camera errors and depth errors: %s", why.text);
-    } else if (!st) {
+    if (!found || !truth) err_nomem(err, "poses", capacity * sizeof *found);
+    int known = e->truth.images - e->truth.unknown_images, count = err->status ? 0 : common_poses(e, found, truth);
+    if (!err->status && e->truth.unknown_images)
+        metric_note(t, err, "note: %d of %d images of the truth are none of the photos", e->truth.unknown_images,
+                    e->truth.images);
+    if (!err->status && known) metric_add(t, NULL, "camera.placed", 100.0 * count / known, err);
+    if (!err->status && camera_alignment_find(&e->truth_from_scene, found, truth, count, &why)) {
+        metric_note(t, err, "skipped camera errors and depth errors: %s", why.text);
+    } else if (!err->status) {
         e->aligned = true;
-        st = camera_errors_measure(&errors, &e->truth_from_scene, found, truth, count, err) ||
-             metric_add(t, NULL, "camera.center_median", errors.center_median, err) ||
-             metric_add(t, NULL, "camera.center_max", errors.center_max, err) ||
-             metric_add(t, NULL, "camera.rotation_median", errors.rotation_median, err) ||
-             metric_add(t, NULL, "camera.rotation_max", errors.rotation_max, err) ||
-             metric_add(t, NULL, "camera.scale", e->truth_from_scene.scale, err);
+        if (!camera_errors_measure(&errors, &e->truth_from_scene, found, truth, count, err) &&
+            !metric_add(t, NULL, "camera.center_median", errors.center_median, err) &&
+            !metric_add(t, NULL, "camera.center_max", errors.center_max, err) &&
+            !metric_add(t, NULL, "camera.rotation_median", errors.rotation_median, err))
+            metric_add(t, NULL, "camera.rotation_max", errors.rotation_max, err);
+        if (!err->status) metric_add(t, NULL, "camera.scale", e->truth_from_scene.scale, err);
     }
     free(found);
     free(truth);
-    return st ? err->status : ST_OK;
+    return err->status;
 }

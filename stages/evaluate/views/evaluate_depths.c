@@ -81,21 +81,21 @@ static enum status occlusion_of(const struct evaluation *e, int photo, const boo
     struct neighbour *list = malloc(capacity * sizeof *list);
     const struct true_photo **others = malloc(capacity * sizeof *others);
     int count = 0;
-    enum status st = list && others ? ST_OK : err_nomem(err, "neighbours", capacity * sizeof *list);
-    for (int j = 0; !st && j < e->photos.count; j++) {
+    if (!list || !others) err_nomem(err, "neighbours", capacity * sizeof *list);
+    for (int j = 0; !err->status && j < e->photos.count; j++) {
         const struct true_photo *p = &e->truth.photos[j];
         if (j != photo && kept[j])
             list[count++] =
                 (struct neighbour){p, vec3_length(vec3_sub(pose_center(&p->pose), pose_center(&self->pose))), j};
     }
-    if (!st) {
+    if (!err->status) {
         qsort(list, (size_t)count, sizeof *list, compare_neighbours);
         for (int j = 0; j < count; j++) others[j] = list[j].photo;
-        st = true_occlusion(occluded, self, points, others, count, err);
+        true_occlusion(occluded, self, points, others, count, err);
     }
     free(list);
     free(others);
-    return st;
+    return err->status;
 }
 
 /* What a depth map states of each pixel, by the layer with more alpha. */
@@ -188,9 +188,9 @@ static enum status write_truth(const struct evaluation *e, const struct view *vi
     view_image_set_camera(&im, view);
     struct provenance prov = *e->prov; /* shares its arrays with e->prov */
     prov.count = e->shared_inputs;
-    const enum status st = exr_write(&im, path, &prov, err);
+    exr_write(&im, path, &prov, err);
     exr_image_release(&im);
-    return st;
+    return err->status;
 }
 
 struct photo_truth { /* true points of a photo, which all its views use */
@@ -236,8 +236,11 @@ static enum status compare_depth(struct evaluation *e, int i, struct photo_truth
     struct depth_errors errors = {0};
     float *truth = malloc(pixels * sizeof *truth);
     uint8_t *occluded = malloc(pixels);
-    enum status st = truth && occluded ? depth_errors_init(&errors, err) : err_nomem(err, "true depths", pixels);
-    if (!st) {
+    if (truth && occluded)
+        depth_errors_init(&errors, err);
+    else
+        err_nomem(err, "true depths", pixels);
+    if (!err->status) {
         int side = view->width > view->height ? view->width : view->height;
         double ratio = e->params->disparity_side ? (double)e->params->disparity_side / side : 1;
         true_depth_in_view(truth, occluded, view, photo_lens_of_view(&e->views.cameras, &e->views.lenses, i),
@@ -246,13 +249,13 @@ static enum status compare_depth(struct evaluation *e, int i, struct photo_truth
         sigma_errors_add(&scene->sigmas, s->z, truth, s->sigma, s->classes, pixels);
         depth_errors_add(&errors, s->z, truth, occluded, pixels, view->fx * ratio * e->baseline);
         depth_errors_merge(&scene->depths, &errors);
-        st = add_depth_errors(e, view->name, &errors, err);
-        if (!st && errors.all.pixels) st = write_truth(e, view, truth, occluded, err);
+        add_depth_errors(e, view->name, &errors, err);
+        if (!err->status && errors.all.pixels) write_truth(e, view, truth, occluded, err);
     }
     depth_errors_release(&errors);
     free(truth);
     free(occluded);
-    return st;
+    return err->status;
 }
 
 static enum status evaluate_view(struct evaluation *e, int i, const bool *kept, struct photo_truth *tv,
@@ -264,25 +267,23 @@ static enum status evaluate_view(struct evaluation *e, int i, const bool *kept, 
     uint64_t here = 0, known_here = 0;
     char path[FILE_PATH];
     struct stated_depth stated = {0};
-    enum status st = stated_depth_init(&stated, (size_t)view->width * (size_t)view->height, err);
-    if (!st) st = evaluation_path(path, e, PRODUCT_DEPTH, &(struct product_key){.view = view->name}, err);
-    if (!st) st = layered_depth_read(&d, path, e->prov, err);
-    if (!st && (d.width != view->width || d.height != view->height))
-        st = err_set(err, ST_DATA, "%s is %d x %d px, but its view is %d x %d px; make the depth map again.", path,
-                     d.width, d.height, view->width, view->height);
-    if (!st) {
+    if (!stated_depth_init(&stated, (size_t)view->width * (size_t)view->height, err) &&
+        !evaluation_path(path, e, PRODUCT_DEPTH, &(struct product_key){.view = view->name}, err))
+        layered_depth_read(&d, path, e->prov, err);
+    if (!err->status && (d.width != view->width || d.height != view->height))
+        err_set(err, ST_DATA, "%s is %d x %d px, but its view is %d x %d px; make the depth map again.", path, d.width,
+                d.height, view->width, view->height);
+    if (!err->status) {
         visible_depth(&stated, &d, &here, &known_here);
         scene->pixels += here;
         scene->known += known_here;
     }
     layered_depth_release(&d);
-    if (!st && here) st = metric_add(&e->table, view->name, "depth.known", percent(known_here, here), err);
-    if (!st && e->aligned && e->truth.photos[photo].depth) {
-        st = photo_truth_make(tv, e, photo, kept, err);
-        if (!st) st = compare_depth(e, i, tv, &stated, scene, err);
-    }
+    if (!err->status && here) metric_add(&e->table, view->name, "depth.known", percent(known_here, here), err);
+    if (!err->status && e->aligned && e->truth.photos[photo].depth && !photo_truth_make(tv, e, photo, kept, err))
+        compare_depth(e, i, tv, &stated, scene, err);
     stated_depth_release(&stated);
-    return st;
+    return err->status;
 }
 
 /* The shares within 1, 2 and 3 stated standard deviations, and the factor by which these would have to be multiplied so
@@ -326,43 +327,46 @@ enum status evaluate_depths(struct evaluation *e, struct err *err)
     struct progress progress;
     int missing = 0;
     bool *kept = calloc((size_t)e->photos.count + 1, sizeof *kept);
-    enum status st = kept ? depth_errors_init(&scene.depths, err) : err_nomem(err, "marks", (size_t)e->photos.count);
-    if (!st) st = sigma_errors_init(&scene.sigmas, err);
-    if (!st && e->truth_folder) {
+    if (kept)
+        depth_errors_init(&scene.depths, err);
+    else
+        err_nomem(err, "marks", (size_t)e->photos.count);
+    if (!err->status) sigma_errors_init(&scene.sigmas, err);
+    if (!err->status && e->truth_folder) {
         mark_kept(e, kept);
-        st = find_baseline(e, kept, err);
+        find_baseline(e, kept, err);
     }
     progress_start(&progress, "depth maps", views->view_count, "views");
-    for (int i = 0; !st && i < views->view_count; i++) {
+    for (int i = 0; !err->status && i < views->view_count; i++) {
         char path[FILE_PATH];
-        st = evaluation_path(path, e, PRODUCT_DEPTH, &(struct product_key){.view = views->views[i].name}, err);
-        if (!st && path_is_file(path))
-            st = evaluate_view(e, i, kept, &tv, &scene, err);
-        else if (!st)
+        evaluation_path(path, e, PRODUCT_DEPTH, &(struct product_key){.view = views->views[i].name}, err);
+        if (!err->status && path_is_file(path))
+            evaluate_view(e, i, kept, &tv, &scene, err);
+        else if (!err->status)
             missing++;
         progress_add(&progress, 1);
     }
     progress_end(&progress);
-    if (!st && missing)
-        st = metric_note(&e->table, err, "skipped %d of %d views: they have no depth map", missing, views->view_count);
-    if (!st && scene.pixels) st = metric_add(&e->table, NULL, "depth.known", percent(scene.known, scene.pixels), err);
-    if (!st && scene.depths.all.pixels) {
-        st = add_depth_errors(e, NULL, &scene.depths, err);
-        if (!st) st = add_sigma_errors(&e->table, &scene.sigmas, err);
-        if (!st && e->baseline > 0)
-            st = metric_add(&e->table, NULL, "depth.baseline", e->baseline, err);
-        else if (!st)
-            st = metric_note(&e->table, err,
-                             "skipped depth.bad1 and bad2: the truth places fewer than two of the kept photos apart; "
-                             "a baseline can be given");
-    } else if (!st && e->truth_folder && e->aligned) {
-        st = metric_note(&e->table, err, "skipped depth errors: %s",
-                         e->truth.depths ? "no view with a depth map is of a photo with a true depth"
-                                         : "the truth has no depth of these photos");
+    if (!err->status && missing)
+        metric_note(&e->table, err, "skipped %d of %d views: they have no depth map", missing, views->view_count);
+    if (!err->status && scene.pixels)
+        metric_add(&e->table, NULL, "depth.known", percent(scene.known, scene.pixels), err);
+    if (!err->status && scene.depths.all.pixels) {
+        if (!add_depth_errors(e, NULL, &scene.depths, err)) add_sigma_errors(&e->table, &scene.sigmas, err);
+        if (!err->status && e->baseline > 0)
+            metric_add(&e->table, NULL, "depth.baseline", e->baseline, err);
+        else if (!err->status)
+            metric_note(&e->table, err,
+                        "skipped depth.bad1 and bad2: the truth places fewer than two of the kept photos apart; "
+                        "a baseline can be given");
+    } else if (!err->status && e->truth_folder && e->aligned) {
+        metric_note(&e->table, err, "skipped depth errors: %s",
+                    e->truth.depths ? "no view with a depth map is of a photo with a true depth"
+                                    : "the truth has no depth of these photos");
     }
     depth_errors_release(&scene.depths);
     sigma_errors_release(&scene.sigmas);
     photo_truth_release(&tv);
     free(kept);
-    return st;
+    return err->status;
 }

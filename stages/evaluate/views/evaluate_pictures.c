@@ -20,24 +20,23 @@ static enum status add_picture(struct evaluation *e, const struct view *view, co
     s->psnr += p->psnr;
     s->holes += p->holes;
     s->pictures++;
-    enum status st = metric_add(t, view->name, "holdout.psnr", p->psnr, err) ||
-                     metric_add(t, view->name, "holdout.holes", 100 * p->holes, err);
-    if (!st && p->has_ssim) {
+    if (!metric_add(t, view->name, "holdout.psnr", p->psnr, err) &&
+        !metric_add(t, view->name, "holdout.holes", 100 * p->holes, err) && p->has_ssim) {
         s->ssim += p->ssim;
         s->with_ssim++;
-        st = metric_add(t, view->name, "holdout.ssim", p->ssim, err);
+        metric_add(t, view->name, "holdout.ssim", p->ssim, err);
     }
-    if (!st && p->has_covered) {
+    if (!err->status && p->has_covered) {
         s->psnr_covered += p->psnr_covered;
         s->covered++;
-        st = metric_add(t, view->name, "holdout.psnr_covered", p->psnr_covered, err);
+        metric_add(t, view->name, "holdout.psnr_covered", p->psnr_covered, err);
     }
-    if (!st && p->has_ssim_covered) {
+    if (!err->status && p->has_ssim_covered) {
         s->ssim_covered += p->ssim_covered;
         s->with_ssim_covered++;
-        st = metric_add(t, view->name, "holdout.ssim_covered", p->ssim_covered, err);
+        metric_add(t, view->name, "holdout.ssim_covered", p->ssim_covered, err);
     }
-    return st ? err->status : ST_OK;
+    return err->status;
 }
 
 /* Photo and frame as 8-bit sRGB, and the masks of the pixels inside the photo and of holes. */
@@ -56,27 +55,27 @@ static enum status read_pictures(struct evaluation *e, const struct view *view, 
     p->frame = malloc(3 * pixels);
     p->inside = malloc(pixels);
     p->hole = malloc(pixels);
-    enum status st = p->photo && p->frame && p->inside && p->hole ? ST_OK : err_nomem(err, "pictures", 8 * pixels);
-    if (!st) st = file_path(folder, e->folder, "holdout/views", "", err);
-    if (!st) st = view_image_read(&photo, folder, view, e->prov, err);
-    if (!st) st = evaluation_path(path, e, PRODUCT_HELD_FRAME, &(struct product_key){.view = view->name}, err);
-    if (!st) st = exr_read_product(&im, PRODUCT_HELD_FRAME, path, NAMES, 4, e->prov, err);
-    if (!st && (im.width != view->width || im.height != view->height))
-        st = err_set(err, ST_DATA, "%s is %d x %d px, but its view is %d x %d px; render it again.", path, im.width,
-                     im.height, view->width, view->height);
-    if (!st) st = image_init(&frame, im.width, im.height, 3, err);
-    for (int c = 0; !st && c < 4; c++) {
+    if (!p->photo || !p->frame || !p->inside || !p->hole) err_nomem(err, "pictures", 8 * pixels);
+    if (!err->status && !file_path(folder, e->folder, "holdout/views", "", err) &&
+        !view_image_read(&photo, folder, view, e->prov, err) &&
+        !evaluation_path(path, e, PRODUCT_HELD_FRAME, &(struct product_key){.view = view->name}, err))
+        exr_read_product(&im, PRODUCT_HELD_FRAME, path, NAMES, 4, e->prov, err);
+    if (!err->status && (im.width != view->width || im.height != view->height))
+        err_set(err, ST_DATA, "%s is %d x %d px, but its view is %d x %d px; render it again.", path, im.width,
+                im.height, view->width, view->height);
+    if (!err->status) image_init(&frame, im.width, im.height, 3, err);
+    for (int c = 0; !err->status && c < 4; c++) {
         const struct exr_plane *plane = exr_find(&im, NAMES[c]);
         if (!plane->f)
-            st = err_set(err, ST_DATA, "%s: channel %s holds integers, wanted half or float; render it again.", path,
-                         NAMES[c]);
-        for (size_t i = 0; !st && i < pixels; i++)
+            err_set(err, ST_DATA, "%s: channel %s holds integers, wanted half or float; render it again.", path,
+                    NAMES[c]);
+        for (size_t i = 0; !err->status && i < pixels; i++)
             if (c < 3)
                 frame.data[3 * i + (size_t)c] = plane->f[i];
             else
                 p->hole[i] = plane->f[i] > 0.5f;
     }
-    if (!st) {
+    if (!err->status) {
         image_to_srgb8(&photo, p->photo);
         image_to_srgb8(&frame, p->frame);
         for (size_t i = 0; i < pixels; i++) p->inside[i] = photo.data[4 * i + 3] > 0;
@@ -84,7 +83,7 @@ static enum status read_pictures(struct evaluation *e, const struct view *view, 
     exr_image_release(&im);
     image_release(&photo);
     image_release(&frame);
-    return st;
+    return err->status;
 }
 
 static enum status evaluate_picture(struct evaluation *e, const struct view *view, struct picture_sums *s,
@@ -93,15 +92,14 @@ static enum status evaluate_picture(struct evaluation *e, const struct view *vie
     struct pictures p = {0};
     struct picture_errors errors;
     struct err why = ERR_INIT;
-    enum status st = read_pictures(e, view, &p, err);
-    if (!st) {
-        st = picture_errors(&errors, p.photo, p.frame, p.inside, p.hole, view->width, view->height, &why);
-        if (st == ST_DATA)
-            st = metric_note(&e->table, err, "skipped the held-out view %s: %s", view->name, why.text);
-        else if (st)
-            err_set(err, st, "%s", why.text);
+    if (!read_pictures(e, view, &p, err)) {
+        picture_errors(&errors, p.photo, p.frame, p.inside, p.hole, view->width, view->height, &why);
+        if (why.status == ST_DATA)
+            metric_note(&e->table, err, "skipped the held-out view %s: %s", view->name, why.text);
+        else if (why.status)
+            err_set(err, why.status, "%s", why.text);
         else
-            st = add_picture(e, view, &errors, s, err);
+            add_picture(e, view, &errors, s, err);
     }
     int size[2] = {view->width, view->height};
     for (int k = 0; k < 2; k++) {
@@ -112,7 +110,7 @@ static enum status evaluate_picture(struct evaluation *e, const struct view *vie
     free(p.frame);
     free(p.inside);
     free(p.hole);
-    return st;
+    return err->status;
 }
 
 enum status evaluate_pictures(struct evaluation *e, struct err *err)
@@ -121,30 +119,29 @@ enum status evaluate_pictures(struct evaluation *e, struct err *err)
     struct metric_table *t = &e->table;
     struct picture_sums s = {0};
     int missing = 0;
-    enum status st = ST_OK;
-    for (int i = 0; !st && i < held->view_count; i++) {
+    for (int i = 0; !err->status && i < held->view_count; i++) {
         char path[FILE_PATH];
-        st = evaluation_path(path, e, PRODUCT_HELD_FRAME, &(struct product_key){.view = held->views[i].name}, err);
-        if (!st && path_is_file(path))
-            st = evaluate_picture(e, &held->views[i], &s, err);
-        else if (!st)
+        evaluation_path(path, e, PRODUCT_HELD_FRAME, &(struct product_key){.view = held->views[i].name}, err);
+        if (!err->status && path_is_file(path))
+            evaluate_picture(e, &held->views[i], &s, err);
+        else if (!err->status)
             missing++;
     }
-    if (!st && missing)
-        st = metric_note(t, err, "skipped %d of %d held-out views: they were not rendered", missing, held->view_count);
-    if (st || !s.pictures) return st;
+    if (!err->status && missing)
+        metric_note(t, err, "skipped %d of %d held-out views: they were not rendered", missing, held->view_count);
+    if (err->status || !s.pictures) return err->status;
     if (s.min_size[0] == s.max_size[0] && s.min_size[1] == s.max_size[1])
-        st = metric_note(t, err, "note: held-out pictures are compared at their own size, %d x %d px", s.max_size[0],
-                         s.max_size[1]);
+        metric_note(t, err, "note: held-out pictures are compared at their own size, %d x %d px", s.max_size[0],
+                    s.max_size[1]);
     else
-        st = metric_note(t, err, "note: held-out pictures are compared at their own sizes, %d x %d to %d x %d px",
-                         s.min_size[0], s.min_size[1], s.max_size[0], s.max_size[1]);
-    st =
-        st || metric_add(t, NULL, "holdout.pictures", s.pictures, err) ||
-        metric_add(t, NULL, "holdout.psnr", s.psnr / s.pictures, err) ||
-        metric_add(t, NULL, "holdout.holes", 100 * s.holes / s.pictures, err) ||
-        (s.with_ssim && metric_add(t, NULL, "holdout.ssim", s.ssim / s.with_ssim, err)) ||
-        (s.covered && metric_add(t, NULL, "holdout.psnr_covered", s.psnr_covered / s.covered, err)) ||
-        (s.with_ssim_covered && metric_add(t, NULL, "holdout.ssim_covered", s.ssim_covered / s.with_ssim_covered, err));
-    return st ? err->status : ST_OK;
+        metric_note(t, err, "note: held-out pictures are compared at their own sizes, %d x %d to %d x %d px",
+                    s.min_size[0], s.min_size[1], s.max_size[0], s.max_size[1]);
+    if (!err->status && !metric_add(t, NULL, "holdout.pictures", s.pictures, err) &&
+        !metric_add(t, NULL, "holdout.psnr", s.psnr / s.pictures, err))
+        metric_add(t, NULL, "holdout.holes", 100 * s.holes / s.pictures, err);
+    if (!err->status && s.with_ssim) metric_add(t, NULL, "holdout.ssim", s.ssim / s.with_ssim, err);
+    if (!err->status && s.covered) metric_add(t, NULL, "holdout.psnr_covered", s.psnr_covered / s.covered, err);
+    if (!err->status && s.with_ssim_covered)
+        metric_add(t, NULL, "holdout.ssim_covered", s.ssim_covered / s.with_ssim_covered, err);
+    return err->status;
 }

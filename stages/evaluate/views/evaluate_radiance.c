@@ -42,15 +42,13 @@ static enum status read_case(struct evaluation *e, const struct radiance_case *c
                              struct image *truth, struct err *err)
 {
     struct linear_picture whole = {0};
-    enum status st = provenance_add_file(e->prov, c->input, c->path, err);
-    if (!st) st = linear_picture_read(found, c->path, err);
-    if (!st && (found->rgb.width != c->map.lens.width || found->rgb.height != c->map.lens.height))
-        st = err_set(err, ST_DATA, "%s is %d x %d px, but its camera %d x %d; make it again.", c->path,
-                     found->rgb.width, found->rgb.height, c->map.lens.width, c->map.lens.height);
-    if (!st) st = linear_picture_read(&whole, c->truth, err);
-    if (!st) st = picture_of_truth(truth, &whole.rgb, &c->map, err);
+    if (!provenance_add_file(e->prov, c->input, c->path, err)) linear_picture_read(found, c->path, err);
+    if (!err->status && (found->rgb.width != c->map.lens.width || found->rgb.height != c->map.lens.height))
+        err_set(err, ST_DATA, "%s is %d x %d px, but its camera %d x %d; make it again.", c->path, found->rgb.width,
+                found->rgb.height, c->map.lens.width, c->map.lens.height);
+    if (!err->status && !linear_picture_read(&whole, c->truth, err)) picture_of_truth(truth, &whole.rgb, &c->map, err);
     linear_picture_release(&whole);
-    return st;
+    return err->status;
 }
 
 /* What is done with a picture and its truth, in two rounds: first ratios, then errors with the scale. */
@@ -69,34 +67,28 @@ static enum status add_case(struct evaluation *e, struct radiance_cases *cases, 
     struct quantiles own = {0};
     struct radiance_error errors = {0};
     double rms;
-    enum status st = read_case(e, c, &found, &truth, err);
+    read_case(e, c, &found, &truth, err);
     struct radiance_pixels p = {found.rgb.data, truth.data,
                                 found.known,    (size_t)c->map.lens.width * (size_t)c->map.lens.height,
                                 round->scale,   0};
-    if (!st && !round->errors) {
-        st = quantiles_init(&own, err);
-        if (!st) {
-            radiance_ratios_add(&own, &p);
-            radiance_ratios_add(round->ratios, &p);
-            c->scale = own.count ? quantiles_get(&own, 0.5) : 0;
-        }
-    } else if (!st) {
-        st = radiance_error_init(&errors, err);
-        if (!st) {
-            radiance_error_add(&errors, &p);
-            radiance_error_add(round->errors, &p);
-        }
+    if (!err->status && !round->errors && !quantiles_init(&own, err)) {
+        radiance_ratios_add(&own, &p);
+        radiance_ratios_add(round->ratios, &p);
+        c->scale = own.count ? quantiles_get(&own, 0.5) : 0;
+    } else if (!err->status && round->errors && !radiance_error_init(&errors, err)) {
         const char *view = c->name, *of = cases->prefix;
-        if (!st && c->scale > 0) st = evaluation_metric(e, view, of, "scale", c->scale, err);
-        if (!st && errors.errors.count)
-            st = evaluation_metric(e, view, of, "error50", 100 * quantiles_get(&errors.errors, 0.5), err);
-        if (!st && radiance_error_rms(&errors, &rms)) st = evaluation_metric(e, view, of, "rms", 100 * rms, err);
+        radiance_error_add(&errors, &p);
+        radiance_error_add(round->errors, &p);
+        if (c->scale > 0) evaluation_metric(e, view, of, "scale", c->scale, err);
+        if (!err->status && errors.errors.count)
+            evaluation_metric(e, view, of, "error50", 100 * quantiles_get(&errors.errors, 0.5), err);
+        if (!err->status && radiance_error_rms(&errors, &rms)) evaluation_metric(e, view, of, "rms", 100 * rms, err);
     }
     radiance_error_release(&errors);
     quantiles_release(&own);
     image_release(&truth);
     linear_picture_release(&found);
-    return st;
+    return err->status;
 }
 
 /* Measures all cases; *scale: the median ratio over their pixels, 0 if there is none. */
@@ -107,31 +99,31 @@ static enum status measure(struct evaluation *e, struct radiance_cases *cases, d
     struct radiance_round round = {&ratios, NULL, 1};
     const char *of = cases->prefix;
     double rms, from = 0, to = 0;
-    enum status st = quantiles_init(&ratios, err) ? err->status : radiance_error_init(&errors, err);
+    if (!quantiles_init(&ratios, err)) radiance_error_init(&errors, err);
     *scale = 0;
-    for (int i = 0; !st && i < cases->count; i++) st = add_case(e, cases, i, &round, err);
-    if (!st && ratios.count) {
+    for (int i = 0; !err->status && i < cases->count; i++) add_case(e, cases, i, &round, err);
+    if (!err->status && ratios.count) {
         *scale = round.scale = quantiles_get(&ratios, 0.5);
         round.errors = &errors;
-        for (int i = 0; !st && i < cases->count; i++) st = add_case(e, cases, i, &round, err);
+        for (int i = 0; !err->status && i < cases->count; i++) add_case(e, cases, i, &round, err);
         for (int i = 0; i < cases->count; i++) {
             const double s = cases->list[i].scale / *scale;
             if (!(s > 0)) continue;
             from = from > 0 ? fmin(from, s) : s;
             to = fmax(to, s);
         }
-        st = st || evaluation_metric(e, NULL, of, "scale", *scale, err) ||
-             evaluation_metric(e, NULL, of, "scale_spread", 100 * (to / from - 1), err) ||
-             evaluation_metric(e, NULL, of, "error50", 100 * quantiles_get(&errors.errors, 0.5), err) ||
-             evaluation_metric(e, NULL, of, "error90", 100 * quantiles_get(&errors.errors, 0.9), err) ||
-             evaluation_metric(e, NULL, of, "pictures", cases->count, err);
-        if (!st && radiance_error_rms(&errors, &rms)) st = evaluation_metric(e, NULL, of, "rms", 100 * rms, err);
-    } else if (!st) {
-        st = metric_note(&e->table, err, "skipped %s: no pixel has light both in a picture and in the truth", of);
+        if (!err->status && !evaluation_metric(e, NULL, of, "scale", *scale, err) &&
+            !evaluation_metric(e, NULL, of, "scale_spread", 100 * (to / from - 1), err) &&
+            !evaluation_metric(e, NULL, of, "error50", 100 * quantiles_get(&errors.errors, 0.5), err) &&
+            !evaluation_metric(e, NULL, of, "error90", 100 * quantiles_get(&errors.errors, 0.9), err))
+            evaluation_metric(e, NULL, of, "pictures", cases->count, err);
+        if (!err->status && radiance_error_rms(&errors, &rms)) evaluation_metric(e, NULL, of, "rms", 100 * rms, err);
+    } else if (!err->status) {
+        metric_note(&e->table, err, "skipped %s: no pixel has light both in a picture and in the truth", of);
     }
     radiance_error_release(&errors);
     quantiles_release(&ratios);
-    return st ? err->status : ST_OK;
+    return err->status;
 }
 
 static enum status new_case(struct radiance_cases *cases, struct radiance_case **c, const char *truth, const char *name,
@@ -194,30 +186,29 @@ enum status evaluate_radiance(struct evaluation *e, struct err *err)
     struct radiance_cases views = {.prefix = "radiance"}, merged = {.prefix = "radiance.merged"};
     double of_merged = 0;
     int pictures = 0;
-    enum status st = true_set_read(&set, e->truth_folder, "", e->prov, err);
-    for (int i = 0; !st && i < set.count; i++) {
+    true_set_read(&set, e->truth_folder, "", e->prov, err);
+    for (int i = 0; !err->status && i < set.count; i++) {
         const int photo = photo_list_match(&e->photos, set.pictures[i].name);
         char truth[FILE_PATH], name[FILE_PATH];
         if (photo < 0 || !true_set_file(truth, &set, "hdr", set.pictures[i].name)) continue;
-        st = file_path(name, "truth/hdr", set.pictures[i].name, ".exr", err);
-        if (!st) st = provenance_add_file(e->prov, name, truth, err);
-        if (!st) st = add_views(e, &views, photo, truth, err);
-        if (!st) st = add_merged(e, &merged, &set.pictures[i], photo, truth, err);
+        if (!file_path(name, "truth/hdr", set.pictures[i].name, ".exr", err) &&
+            !provenance_add_file(e->prov, name, truth, err) && !add_views(e, &views, photo, truth, err))
+            add_merged(e, &merged, &set.pictures[i], photo, truth, err);
         pictures++;
     }
-    if (!st && !views.count)
-        st = metric_note(&e->table, err, "skipped radiance: %s",
-                         pictures ? "no photo with a true radiance has a view"
-                                  : "the truth has no radiance of these photos (hdr/NAME.exr)");
-    if (!st && views.count) st = measure(e, &views, &e->radiance_scale, err);
-    if (!st && merged.count) st = measure(e, &merged, &of_merged, err);
-    if (!st && merged.wrong_size)
-        st = metric_note(&e->table, err,
-                         "skipped the merged radiance of %d photos: the truth's pictures have another "
-                         "shape",
-                         merged.wrong_size);
+    if (!err->status && !views.count)
+        metric_note(&e->table, err, "skipped radiance: %s",
+                    pictures ? "no photo with a true radiance has a view"
+                             : "the truth has no radiance of these photos (hdr/NAME.exr)");
+    if (!err->status && views.count) measure(e, &views, &e->radiance_scale, err);
+    if (!err->status && merged.count) measure(e, &merged, &of_merged, err);
+    if (!err->status && merged.wrong_size)
+        metric_note(&e->table, err,
+                    "skipped the merged radiance of %d photos: the truth's pictures have another "
+                    "shape",
+                    merged.wrong_size);
     free(merged.list);
     free(views.list);
     true_set_release(&set);
-    return st;
+    return err->status;
 }

@@ -5,10 +5,9 @@
 
 enum status sigma_errors_init(struct sigma_errors *e, struct err *err)
 {
-    enum status st = ST_OK;
     *e = (struct sigma_errors){0};
-    for (int k = 0; !st && k < DEPTH_CLASSES; k++) st = quantiles_init(&e->classes[k].errors, err);
-    return st;
+    for (int k = 0; !err->status && k < DEPTH_CLASSES; k++) quantiles_init(&e->classes[k].errors, err);
+    return err->status;
 }
 
 void sigma_errors_add(struct sigma_errors *e, const float *z, const float *truth, const float *sigma,

@@ -207,11 +207,11 @@ static enum status chained(struct plan *plan, const char *objects, const char *l
     struct provenance prov = {0};
     plan_begin(plan, NULL);
     scratch_write("lower.txt", lower);
-    enum status st = edit_chain_apply_model(plan, scratch_write("model.txt", ROOM), NULL, &prov, err);
-    if (!st) st = edit_chain_apply_objects(plan, scratch_write("objects.txt", objects), &prov, err);
-    if (!st) st = edit_chain_apply_edit(plan, scratch_write("upper.txt", upper), NULL, &prov, err);
+    if (!edit_chain_apply_model(plan, scratch_write("model.txt", ROOM), NULL, &prov, err) &&
+        !edit_chain_apply_objects(plan, scratch_write("objects.txt", objects), &prov, err))
+        edit_chain_apply_edit(plan, scratch_write("upper.txt", upper), NULL, &prov, err);
     provenance_release(&prov);
-    return st;
+    return err->status;
 }
 
 static void an_edit_changes_what_those_below_it_say(void **state)

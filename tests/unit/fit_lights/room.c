@@ -162,20 +162,19 @@ static enum status solve(const char *lamp, const char *points, struct err *err)
     release();
     snprintf(text, sizeof text, "remodel-lamps 1\ndisk spot in c %s rim %s %s\n%s", pixel(2, 0, 0, 2),
              pixel(2, lamp_radius, 0, 2), lamp, points);
-    enum status st = annotation_list_read(&room.notes, scratch_write("lights.txt", text), NULL, err);
-    if (!st) st = lit_scene_resolve(&room.scene, &room.notes, &room.model, 5, err);
-    if (!st)
-        st = observe(&room.seen, &room.scene, &room.notes, &room.model, scratch, scratch_path("ids"), &params, &prov,
-                     err);
-    if (!st) st = direct_light_make(&room.direct_light, &room.scene, &room.model, err);
+    if (!annotation_list_read(&room.notes, scratch_write("lights.txt", text), NULL, err))
+        lit_scene_resolve(&room.scene, &room.notes, &room.model, 5, err);
+    if (!err->status)
+        observe(&room.seen, &room.scene, &room.notes, &room.model, scratch, scratch_path("ids"), &params, &prov, err);
+    if (!err->status) direct_light_make(&room.direct_light, &room.scene, &room.model, err);
     room.indirect = calloc((size_t)room.scene.point_count + 1, sizeof *room.indirect);
     for (int i = 0; i < room.scene.point_count; i++)
         for (int c = 0; c < 3; c++) room.indirect[i][c] = indirect_at(room.scene.points[i].at);
     const struct solve_inputs in = {
         &room.scene, &room.notes, &room.seen, &room.direct_light, (const double(*)[3])room.indirect, &params};
-    if (!st) st = solve_lights(&room.solved, &in, err);
+    if (!err->status) solve_lights(&room.solved, &in, err);
     provenance_release(&prov);
-    return st;
+    return err->status;
 }
 
 /* Marks on the floor: points under the lamp, points aside, lines across the edge at 1.456 m. */

@@ -73,15 +73,16 @@ static enum status import(struct import *im, const char *const (*shots)[2], int 
     *im = (struct import){.err = ERR_INIT};
     strcpy(params.brackets, brackets);
     for (int i = 0; i < count; i++) put(shots[i][0]);
-    enum status st = photo_scan_folder(&im->scan, photos, &im->err);
-    if (!st && exclude) photo_scan_exclude(&im->scan, exclude);
-    if (!st) st = photo_scan_check(&im->scan, records, &im->err);
-    for (int i = 0; !st && i < im->scan.count; i++)
+    photo_scan_folder(&im->scan, photos, &im->err);
+    if (!im->err.status && exclude) photo_scan_exclude(&im->scan, exclude);
+    if (!im->err.status) photo_scan_check(&im->scan, records, &im->err);
+    for (int i = 0; !im->err.status && i < im->scan.count; i++)
         for (int k = 0; k < count; k++)
             if (!strcmp(im->scan.photos[i].file, shots[k][0]) && shots[k][1])
                 im->scan.photos[i].record.info.seconds = strtod(shots[k][1], NULL);
-    if (!st) st = bracket_views_find(&im->views, &im->scan, scene, &params, &exclude, exclude ? 1 : 0, used, &im->err);
-    return st;
+    if (!im->err.status)
+        bracket_views_find(&im->views, &im->scan, scene, &params, &exclude, exclude ? 1 : 0, used, &im->err);
+    return im->err.status;
 }
 
 static const char *const cycle[9][2] = {{"v1_e0.jpg", "0.1"}, {"v1_e1.jpg", "0.4"}, {"v1_e2.jpg", "1.6"},

@@ -51,11 +51,10 @@ static const char *id_of(const struct photo_scan *scan, const char *file)
 
 static enum status import(struct photo_scan *scan, const char *exclude, struct err *err)
 {
-    enum status st = photo_scan_folder(scan, photos, err);
-    if (!st && exclude) assert_true(photo_scan_exclude(scan, exclude) > 0);
-    if (!st) st = photo_scan_check(scan, records, err);
-    if (!st) st = photo_scan_write(scan, records, err);
-    return st;
+    photo_scan_folder(scan, photos, err);
+    if (!err->status && exclude) assert_true(photo_scan_exclude(scan, exclude) > 0);
+    if (!err->status && !photo_scan_check(scan, records, err)) photo_scan_write(scan, records, err);
+    return err->status;
 }
 
 static void ids_are_safe_and_unique(void **state)

@@ -178,12 +178,11 @@ static enum status split(const char *grid, const char *exclude, struct err *err)
     struct photo_scan scan;
     struct split_grid g;
     *err = (struct err)ERR_INIT;
-    enum status st = split_grid_parse(&g, grid, &defaults, err);
-    if (!st) st = photo_scan_folder(&scan, photos, err);
-    if (!st && exclude) photo_scan_exclude(&scan, exclude);
-    if (!st) st = split_photos(&scan, &g, cuts, err);
+    if (!split_grid_parse(&g, grid, &defaults, err)) photo_scan_folder(&scan, photos, err);
+    if (!err->status && exclude) photo_scan_exclude(&scan, exclude);
+    if (!err->status) split_photos(&scan, &g, cuts, err);
     photo_scan_release(&scan);
-    return st;
+    return err->status;
 }
 
 static void assert_grey(const char *cut, int grey)

@@ -38,12 +38,11 @@ static enum status import(const char *from, const char *out, struct err *err)
     struct provenance prov = {.stage = "sfm", .version = "0"};
     struct sfm_folder f = {0};
     struct sfm_input in = {scratch, NULL, NULL, &photos, &params};
-    enum status st = sfm_folder_open(&f, scratch_path(out), err);
-    if (!st) st = user_model_add(&f, scratch_path(from), &in, &prov, err);
-    if (!st) st = sfm_folder_commit(&f, &photos, &prov, err);
+    if (!sfm_folder_open(&f, scratch_path(out), err) && !user_model_add(&f, scratch_path(from), &in, &prov, err))
+        sfm_folder_commit(&f, &photos, &prov, err);
     sfm_folder_release(&f);
     provenance_release(&prov);
-    return st;
+    return err->status;
 }
 
 static void a_text_model_is_imported(void **state)

@@ -119,7 +119,6 @@ static void unusual_files_are_read(void **state)
     assert_err(nul, ST_USAGE, "nul.cfg:2:");
     assert_int_equal(params_read_file(table, &p, "sweep", scratch, &folder), ST_USAGE);
     assert_err(folder, ST_USAGE, "Is a directory");
-    assert_int_equal(params_read_file(table, &p, "sweep", scratch_path("none.cfg"), NULL), ST_USAGE);
 }
 
 static void long_lines_are_read_or_refused(void **state)
