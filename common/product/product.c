@@ -116,13 +116,20 @@ static enum status expand_in(char path[FILE_PATH], const char *folder, size_t le
                    scan_quote(shown, folder), FILE_PATH - 1);
 }
 
-enum status product_path(char path[FILE_PATH], enum product_id id, const struct product_key *key, struct err *err)
+enum status product_path_below(char path[FILE_PATH], const char *scene, enum product_id id,
+                               const struct product_key *key, struct err *err)
 {
     static const struct product_key none;
+    size_t length = (size_t)snprintf(path, FILE_PATH, "%s%s", scene, *scene && *products[id].folder ? "/" : "");
 
-    *path = '\0';
-    return expand_in(path, products[id].folder, expand(path, 0, products[id].folder, key ? key : &none), id,
-                     key ? key : &none, err);
+    if (!key) key = &none;
+    if (length < FILE_PATH) length = expand(path, length, products[id].folder, key);
+    return expand_in(path, *scene ? scene : products[id].folder, length, id, key, err);
+}
+
+enum status product_path(char path[FILE_PATH], enum product_id id, const struct product_key *key, struct err *err)
+{
+    return product_path_below(path, "", id, key, err);
 }
 
 enum status product_path_in(char path[FILE_PATH], const char *folder, enum product_id id, const struct product_key *key,
@@ -249,27 +256,25 @@ enum status product_read_head(struct textfile *t, int *version, enum product_id 
 
     snprintf(word, sizeof word, "%.*s", (int)length, head);
     scan_int(head + length + 1, &wanted);
-    enum status st = textfile_expect_line(t, word, err);
-    if (!st) st = textfile_int(t, "the version", 1, wanted, &found, err);
-    if (!st) st = textfile_end(t, err);
-    if (!st && version) *version = (int)found;
-    return st;
+    if (!textfile_expect_line(t, word, err) && !textfile_int(t, "the version", 1, wanted, &found, err))
+        textfile_end(t, err);
+    if (!err->status && version) *version = (int)found;
+    return err->status;
 }
 
 enum status product_open(struct textfile *t, int *version, enum product_id id, const char *path,
                          struct provenance *prov, struct err *err)
 {
-    enum status st = provenance_open(prov, product_name(id, path), t, path, err);
-    if (!st && products[id].head) st = product_read_head(t, version, id, err);
-    if (st) textfile_release(t);
-    return st;
+    provenance_open(prov, product_name(id, path), t, path, err);
+    if (!err->status && products[id].head) product_read_head(t, version, id, err);
+    if (err->status) textfile_release(t);
+    return err->status;
 }
 
 enum status product_begin(struct outfile *f, enum product_id id, const char *path, const struct provenance *prov,
                           struct err *err)
 {
-    const enum status st = outfile_open(f, path, err);
-    if (st) return st;
+    if (outfile_open(f, path, err)) return err->status;
     if (prov) provenance_print(prov, f->fp);
     if (products[id].head) fprintf(f->fp, "%s\n", products[id].head);
     return ST_OK;

@@ -70,6 +70,9 @@ bool product_made_by(enum product_id id, const char *stage);
 /* The path below the scene's folder (products[id].root says which one). ST_IO: too long. The key must have all names
  * that the path has. */
 enum status product_path(char path[FILE_PATH], enum product_id id, const struct product_key *key, struct err *err);
+/* The path with the scene's folder in front. */
+enum status product_path_below(char path[FILE_PATH], const char *scene, enum product_id id,
+                               const struct product_key *key, struct err *err);
 /* FOLDER/FILE, where `folder` is given and stands for products[id].folder. */
 enum status product_path_in(char path[FILE_PATH], const char *folder, enum product_id id, const struct product_key *key,
                             struct err *err);

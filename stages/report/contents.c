@@ -3,6 +3,7 @@
 
 #include <stdarg.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "common/base/array.h"
 #include "common/base/scan.h"
@@ -16,6 +17,18 @@ enum status contents_note(struct contents *c, struct err *err, const char *fmt, 
     vsnprintf(c->notes[c->note_count++], NOTE_SIZE, fmt, args);
     va_end(args);
     return ST_OK;
+}
+
+bool contents_product(char path[FILE_PATH], const char *folder, enum product_id id, const struct product_key *key)
+{
+    struct err none = ERR_INIT; /* no file has a path that is too long */
+    return !product_path_below(path, folder, id, key, &none) && path_is_file(path);
+}
+
+char *contents_product_name(const char *folder, enum product_id id, const struct product_key *key)
+{
+    char path[FILE_PATH];
+    return contents_product(path, folder, id, key) ? strdup(path) : NULL;
 }
 
 double share_from_text(const char *text)

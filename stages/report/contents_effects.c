@@ -8,7 +8,9 @@
 
 #include "common/base/scan.h"
 
-static enum status read_frames(struct contents *c, struct effect_card *e, const char *folder, struct err *err)
+/* film: "parallax/EFFECT" */
+static enum status read_frames(struct contents *c, struct effect_card *e, const char *folder, const char *film,
+                               struct err *err)
 {
     static const char *const NAMES[] = {"R", "G", "B"};
     char problem_text[NOTE_SIZE] = "";
@@ -20,10 +22,10 @@ static enum status read_frames(struct contents *c, struct effect_card *e, const 
     for (int i = 0; i < e->path.frame_count; i++) {
         struct exr_image im = {0};
         struct err problem = ERR_INIT;
-        char path[PATH_SIZE];
+        const struct product_key key = {.film = film, .frame = e->path.frames[i].camera.name};
+        char path[FILE_PATH];
         e->holes[i] = e->unfilled[i] = -1;
-        snprintf(path, sizeof path, "%s/frames/%s.exr", folder, e->path.frames[i].camera.name);
-        if (!path_is_file(path)) continue;
+        if (!contents_product(path, folder, PRODUCT_FRAME, &key)) continue;
         if (!exr_read(&im, path, NAMES, i == 0 ? 3 : 0, &problem)) { /* attributes only, except for the first frame */
             e->frames_found++;
             e->holes[i] = share_from_text(exr_attribute(&im, "remodel:holes"));
@@ -42,16 +44,17 @@ static enum status read_frames(struct contents *c, struct effect_card *e, const 
 }
 
 /* The first (end 0) or last frame (end 1): its attributes name the photograph and the misfit. */
-static enum status read_pan_frame(struct contents *c, struct effect_card *e, const char *folder, int end,
-                                  struct err *err)
+static enum status read_pan_frame(struct contents *c, struct effect_card *e, const char *folder, const char *film,
+                                  int end, struct err *err)
 {
     static const char *const NAMES[] = {"R", "G", "B"};
     struct exr_image im = {0};
     struct err problem = ERR_INIT;
-    char path[PATH_SIZE];
-    snprintf(path, sizeof path, "%s/pan_scan/frames/%s.exr", folder,
-             e->path.frames[end ? e->path.frame_count - 1 : 0].camera.name);
-    if (!exr_read(&im, path, NAMES, end ? 0 : 3, &problem)) {
+    const char *frame = e->path.frames[end ? e->path.frame_count - 1 : 0].camera.name;
+    const struct product_key key = {.film = film, .frame = frame};
+    char path[FILE_PATH];
+    if (!product_path_below(path, folder, PRODUCT_PAN_SCAN_FRAME, &key, &problem) &&
+        !exr_read(&im, path, NAMES, end ? 0 : 3, &problem)) {
         const char *view = exr_attribute(&im, "remodel:view"), *misfit = exr_attribute(&im, "remodel:misfit");
         if (view) snprintf(e->pan.view, sizeof e->pan.view, "%s", view);
         if (!misfit || !scan_double(misfit, &e->pan.misfit[end]) || !(e->pan.misfit[end] >= 0)) e->pan.misfit[end] = -1;
@@ -62,79 +65,84 @@ static enum status read_pan_frame(struct contents *c, struct effect_card *e, con
     return ST_OK;
 }
 
-/* Made on request, so that its absence is not noted. */
-static enum status read_pan(struct contents *c, struct effect_card *e, const char *folder, struct err *err)
+/* *video stays NULL if there is none, or an empty one. */
+static enum status find_video(char **video, long long *bytes, const char *folder, enum product_id id, const char *film,
+                              struct err *err)
 {
-    char path[PATH_SIZE];
+    char path[FILE_PATH];
     struct stat s;
-    e->pan.misfit[0] = e->pan.misfit[1] = -1;
-    snprintf(path, sizeof path, "%s/pan_scan/video.mp4", folder);
-    if (stat(path, &s) || !S_ISREG(s.st_mode) || s.st_size == 0) return ST_OK;
-    e->pan.video_bytes = s.st_size;
-    if (!(e->pan.video = strdup(path))) return err_nomem(err, "a file name", strlen(path));
-    return read_pan_frame(c, e, folder, 0, err) || read_pan_frame(c, e, folder, 1, err) ? err->status : ST_OK;
+    if (!contents_product(path, folder, id, &(struct product_key){.film = film})) return ST_OK;
+    if (stat(path, &s) || s.st_size == 0) return ST_OK;
+    *bytes = s.st_size;
+    return (*video = strdup(path)) ? ST_OK : err_nomem(err, "a file name", strlen(path));
 }
 
-static enum status read_effect(struct contents *c, struct effect_card *e, const char *folder, struct err *err)
+/* Made on request, so that its absence is not noted. */
+static enum status read_pan(struct contents *c, struct effect_card *e, const char *folder, const char *film,
+                            struct err *err)
 {
-    char path[PATH_SIZE];
-    struct err problem = ERR_INIT;
-    struct stat s;
+    e->pan.misfit[0] = e->pan.misfit[1] = -1;
+    find_video(&e->pan.video, &e->pan.video_bytes, folder, PRODUCT_PAN_SCAN_VIDEO, film, err);
+    if (err->status || !e->pan.video || read_pan_frame(c, e, folder, film, 0, err)) return err->status;
+    return read_pan_frame(c, e, folder, film, 1, err);
+}
 
-    snprintf(path, sizeof path, "%s/video.mp4", folder);
-    if (stat(path, &s) || !S_ISREG(s.st_mode) || s.st_size == 0) {
-        if (contents_note(c, err, "There is no video of %s yet.", e->name)) return err->status;
-    } else {
-        e->video_bytes = s.st_size;
-        if (!(e->video = strdup(path))) return err_nomem(err, "a file name", strlen(path));
-    }
-    if (camera_path_read(&e->path, folder, NULL, &problem))
+static enum status read_effect(struct contents *c, struct effect_card *e, const char *folder, const char *film,
+                               struct err *err)
+{
+    struct err problem = ERR_INIT;
+    char path[PATH_SIZE];
+
+    if (find_video(&e->video, &e->video_bytes, folder, PRODUCT_VIDEO, film, err)) return err->status;
+    if (!e->video && contents_note(c, err, "There is no video of %s yet.", e->name)) return err->status;
+    snprintf(path, sizeof path, "%s/%s", folder, film);
+    if (camera_path_read(&e->path, path, NULL, &problem))
         return contents_note(c, err, "There is no camera path of %s. %s", e->name, problem.text);
-    return read_frames(c, e, folder, err) || read_pan(c, e, folder, err) ? err->status : ST_OK;
+    return read_frames(c, e, folder, film, err) || read_pan(c, e, folder, film, err) ? err->status : ST_OK;
 }
 
 /* The effects of a move share its valid viewpoints. */
 static enum status find_validity(struct effect_card *e, const char *folder, struct err *err)
 {
-    char path[PATH_SIZE];
-    snprintf(path, sizeof path, "%s/parallax/%.*s/validity.png", folder, (int)strcspn(e->name, "+"), e->name);
-    if (!path_is_file(path)) return ST_OK;
+    char path[FILE_PATH], move[FILE_PATH];
+    snprintf(move, sizeof move, "%.*s", (int)strcspn(e->name, "+"), e->name);
+    if (!contents_product(path, folder, PRODUCT_VALIDITY_PICTURE, &(struct product_key){.move = move})) return ST_OK;
     return (e->validity = strdup(path)) ? ST_OK : err_nomem(err, "a file name", strlen(path));
 }
 
 /* False for the folder of a move that holds only the valid viewpoints that its effects share. */
-static bool is_effect_folder(const char *folder)
+static bool is_effect_folder(const char *folder, const char *film, const char *name)
 {
-    char path[PATH_SIZE], validity[PATH_SIZE];
-    snprintf(path, sizeof path, "%s/path.txt", folder);
-    snprintf(validity, sizeof validity, "%s/validity.txt", folder);
-    return path_is_folder(folder) && (path_is_file(path) || !path_is_file(validity));
+    char path[PATH_SIZE];
+    snprintf(path, sizeof path, "%s/%s", folder, film);
+    return path_is_folder(path) &&
+           (contents_product(path, folder, PRODUCT_PATH, &(struct product_key){.film = film}) ||
+            !contents_product(path, folder, PRODUCT_VALIDITY, &(struct product_key){.move = name}));
 }
 
 enum status contents_read_effects(struct contents *c, const char *folder, struct err *err)
 {
     struct dirent **names = NULL;
-    char path[FILE_PATH];
+    char path[FILE_PATH], film[FILE_PATH];
     snprintf(path, sizeof path, "%s/parallax", folder);
     int count = scandir(path, &names, NULL, alphasort);
-    enum status st = ST_OK;
 
     c->effects = calloc((size_t)(count > 0 ? count : 0) + 1, sizeof *c->effects);
-    if (!c->effects) st = err_nomem(err, "effects", (size_t)count * sizeof *c->effects);
+    if (!c->effects) err_nomem(err, "effects", (size_t)count * sizeof *c->effects);
     for (int i = 0; i < count; i++) {
-        snprintf(path, sizeof path, "%s/parallax/%s", folder, names[i]->d_name);
-        if (!st && names[i]->d_name[0] != '.' && is_effect_folder(path)) {
+        const char *name = names[i]->d_name;
+        snprintf(film, sizeof film, "parallax/%s", name);
+        if (!err->status && *name != '.' && is_effect_folder(folder, film, name)) {
             struct effect_card *e = &c->effects[c->effect_count++];
-            snprintf(e->name, sizeof e->name, "%s", names[i]->d_name);
-            st = read_effect(c, e, path, err);
-            if (!st) st = find_validity(e, folder, err);
+            snprintf(e->name, sizeof e->name, "%s", name);
+            if (!read_effect(c, e, folder, film, err)) find_validity(e, folder, err);
         }
         free(names[i]);
     }
     free(names);
-    if (!st && !c->effect_count)
-        st = contents_note(c, err, "No camera move has been planned yet, so there is no video.");
-    return st;
+    if (!err->status && !c->effect_count)
+        contents_note(c, err, "No camera move has been planned yet, so there is no video.");
+    return err->status;
 }
 
 void effect_card_release(struct effect_card *e)

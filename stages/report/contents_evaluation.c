@@ -21,16 +21,17 @@ static void make_held_cards(void *ctx, size_t begin, size_t end, int thread)
         int lens = lens_list_find(&job->c->held_lenses, card->view->name);
         int photo = lens < 0 ? -1 : photo_list_find_id(&job->c->photos, job->c->held_lenses.lenses[lens].photo);
         int orientation = photo < 0 ? 1 : job->c->photos.photos[photo].info.orientation;
-        struct err err = ERR_INIT;
         for (int k = 0; k < 2; k++) {
+            struct err err = ERR_INIT;
             struct exr_image im = {0};
-            char path[PATH_SIZE];
-            snprintf(path, sizeof path, "%s/holdout/%s/%s.exr", job->folder, k ? "frames" : "views", card->view->name);
-            if (path_is_file(path) && !exr_read(&im, path, NAMES, 3, &err))
+            const struct product_key key = {.views = "holdout/views", .view = card->view->name};
+            char path[FILE_PATH];
+            if (contents_product(path, job->folder, k ? PRODUCT_HELD_FRAME : PRODUCT_VIEW, &key) &&
+                !exr_read(&im, path, NAMES, 3, &err))
                 picture_from_exr(k ? &card->frame : &card->picture, &im, orientation, HELD_HEIGHT, &err);
             exr_image_release(&im);
+            if (!card->problem[0]) snprintf(card->problem, sizeof card->problem, "%.*s", NOTE_SIZE - 1, err.text);
         }
-        if (err.status) snprintf(card->problem, sizeof card->problem, "%.*s", NOTE_SIZE - 1, err.text);
     }
 }
 
@@ -38,8 +39,7 @@ enum status contents_read_held(struct contents *c, const char *folder, struct er
 {
     char path[PATH_SIZE];
     struct err problem = ERR_INIT;
-    snprintf(path, sizeof path, "%s/holdout/views/lenses.txt", folder);
-    if (!path_is_file(path)) return ST_OK;
+    if (!contents_product(path, folder, PRODUCT_LENSES, &(struct product_key){.views = "holdout/views"})) return ST_OK;
     if (lens_list_read(&c->held_lenses, path, NULL, &problem))
         return contents_note(c, err, "The held-out photographs are unknown. %s", problem.text);
     snprintf(path, sizeof path, "%s/holdout/views", folder);
@@ -60,15 +60,14 @@ enum status contents_read_held(struct contents *c, const char *folder, struct er
 
 enum status contents_read_metrics(struct contents *c, const char *folder, struct err *err)
 {
-    char path[PATH_SIZE];
+    char path[FILE_PATH];
     struct err problem = ERR_INIT;
-    snprintf(path, sizeof path, "%s/metrics.tsv", folder);
-    if (!path_is_file(path)) return ST_OK;
+    if (!contents_product(path, folder, PRODUCT_METRICS, NULL)) return ST_OK;
     if (metric_rows_read(&c->metrics, path, false, &problem))
         return contents_note(c, err, "The metrics cannot be read. %s", problem.text);
     c->has_metrics = true;
-    snprintf(path, sizeof path, "%s/evaluate/views.tsv", folder);
-    if (metric_rows_read(&c->view_metrics, path, true, &problem))
+    if (product_path_below(path, folder, PRODUCT_VIEW_METRICS, NULL, &problem) ||
+        metric_rows_read(&c->view_metrics, path, true, &problem))
         return contents_note(c, err, "The metrics of the views cannot be read. %s", problem.text);
     return ST_OK;
 }
@@ -77,12 +76,12 @@ enum status contents_read_metrics(struct contents *c, const char *folder, struct
 enum status contents_check_age(struct contents *c, const char *folder, struct err *err)
 {
     struct stat table, map;
-    char path[PATH_SIZE];
-    snprintf(path, sizeof path, "%s/metrics.tsv", folder);
-    if (!c->has_metrics || stat(path, &table)) return ST_OK;
+    char path[FILE_PATH];
+    if (!c->has_metrics || !contents_product(path, folder, PRODUCT_METRICS, NULL) || stat(path, &table)) return ST_OK;
     for (int i = 0; i < c->views.view_count; i++) {
-        snprintf(path, sizeof path, "%s/depth/%s.exr", folder, c->views.views[i].name);
-        if (stat(path, &map) || map.st_mtime <= table.st_mtime) continue;
+        const struct product_key key = {.view = c->views.views[i].name};
+        if (!contents_product(path, folder, PRODUCT_DEPTH, &key) || stat(path, &map) || map.st_mtime <= table.st_mtime)
+            continue;
         return contents_note(c, err, "The metrics are older than the depth maps; run make evaluate to update them.");
     }
     return ST_OK;

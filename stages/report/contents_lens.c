@@ -52,24 +52,23 @@ static enum status read_residual(struct contents *c, struct textfile *t, struct 
     return ST_OK;
 }
 
-static enum status read_table(struct contents *c, const char *folder, const char *name, const char *head,
+static enum status read_table(struct contents *c, const char *folder, enum product_id id,
                               enum status (*row)(struct contents *, struct textfile *, struct err *), struct err *err)
 {
     struct textfile t = {0};
     struct err problem = ERR_INIT;
-    char path[PATH_SIZE];
-    snprintf(path, sizeof path, "%s/views/%s", folder, name);
-    if (!path_is_file(path)) return ST_OK;
-    enum status st = textfile_open(&t, path, &problem);
-    if (!st) st = textfile_expect_line(&t, head, &problem);
-    while (!st && textfile_next(&t)) st = row(c, &t, &problem);
+    char path[FILE_PATH];
+    if (!contents_product(path, folder, id, NULL)) return ST_OK;
+    product_open(&t, NULL, id, path, NULL, &problem);
+    while (!problem.status && textfile_next(&t)) row(c, &t, &problem);
     textfile_release(&t);
-    if (st == ST_NOMEM) return err_set(err, st, "%s", problem.text);
-    return st ? contents_note(c, err, "The cameras' %s is not shown. %s", name, problem.text) : ST_OK;
+    if (problem.status == ST_NOMEM) return err_set(err, ST_NOMEM, "%s", problem.text);
+    return problem.status ? contents_note(c, err, "The cameras' %s is not shown. %s", products[id].file, problem.text)
+                          : ST_OK;
 }
 
 enum status contents_read_lens(struct contents *c, const char *folder, struct err *err)
 {
-    if (read_table(c, folder, "lens_forms.txt", "remodel-lens-forms", read_form, err)) return err->status;
-    return c->has_photos ? read_table(c, folder, "residuals.txt", "remodel-residuals", read_residual, err) : ST_OK;
+    if (read_table(c, folder, PRODUCT_LENS_FORMS, read_form, err)) return err->status;
+    return c->has_photos ? read_table(c, folder, PRODUCT_RESIDUALS, read_residual, err) : ST_OK;
 }

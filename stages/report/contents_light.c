@@ -57,20 +57,18 @@ void light_contents_release(struct light_contents *l)
     *l = (struct light_contents){0};
 }
 
-/* Reads a JPEG, turns it upright and shrinks it. If the file does not exist, nothing is added; if it cannot be read, a
- * note is. */
+/* Reads a JPEG, turns it upright and shrinks it. What cannot be read is noted. */
 static enum status read_picture(struct picture *p, struct contents *c, const char *path, int orientation, int height,
                                 struct err *err)
 {
     struct photo photo = {0};
     struct err problem = ERR_INIT;
-    if (!path_is_file(path)) return ST_OK;
     if (photo_read(&photo, path, &problem))
         return contents_note(c, err, "A picture of the light is not shown. %s", problem.text);
     photo.info.orientation = orientation;
-    const enum status st = picture_from_photo(p, &photo, height, err);
+    picture_from_photo(p, &photo, height, err);
     photo_release(&photo);
-    return st;
+    return err->status;
 }
 
 /* ----------------------------------------------------------------------------------------------------------- lamps */
@@ -159,24 +157,22 @@ static enum status read_fit(struct contents *c, const char *folder, struct err *
 {
     struct textfile t = {0};
     struct err problem = ERR_INIT;
-    char path[PATH_SIZE];
-    snprintf(path, sizeof path, "%s/lights/fit.txt", folder);
-    if (!path_is_file(path)) return ST_OK;
-    enum status st = textfile_open(&t, path, &problem);
-    if (!st) st = textfile_expect_line(&t, "remodel-light-fit", &problem);
-    while (!st && textfile_next(&t)) st = read_fit_line(&c->light, &t, &problem);
+    char path[FILE_PATH];
+    if (!contents_product(path, folder, PRODUCT_LIGHT_FIT, NULL)) return ST_OK;
+    product_open(&t, NULL, PRODUCT_LIGHT_FIT, path, NULL, &problem);
+    while (!problem.status && textfile_next(&t)) read_fit_line(&c->light, &t, &problem);
     textfile_release(&t);
-    if (st == ST_NOMEM) return err_set(err, st, "%s", problem.text);
-    return st ? contents_note(c, err, "The fit of the lamps is not shown in full. %s", problem.text) : ST_OK;
+    if (problem.status == ST_NOMEM) return err_set(err, ST_NOMEM, "%s", problem.text);
+    return problem.status ? contents_note(c, err, "The fit of the lamps is not shown in full. %s", problem.text)
+                          : ST_OK;
 }
 
 static enum status read_lamps(struct contents *c, const char *folder, struct err *err)
 {
     struct light_contents *l = &c->light;
     struct err problem = ERR_INIT;
-    char path[PATH_SIZE + LAMP_FILE_NAME], name[LAMP_FILE_NAME];
-    snprintf(path, sizeof path, "%s/lights/lights.txt", folder);
-    if (!path_is_file(path)) return ST_OK;
+    char path[FILE_PATH], name[LAMP_FILE_NAME];
+    if (!contents_product(path, folder, PRODUCT_LIGHTS, NULL)) return ST_OK;
     if (light_list_read(&l->lights, path, NULL, &problem)) {
         light_list_release(&l->lights);
         return contents_note(c, err, "The lamps are not shown. %s", problem.text);
@@ -186,8 +182,10 @@ static enum status read_lamps(struct contents *c, const char *folder, struct err
     for (int i = 0; i < l->lights.lamp_count; i++) {
         l->lamps[i].lamp = &l->lights.lamps[i];
         light_list_lamp_file(name, &l->lights, i);
-        snprintf(path, sizeof path, "%s/lights/%s.jpg", folder, name);
-        if (read_picture(&l->lamps[i].picture, c, path, 1, LAMP_HEIGHT, err)) return err->status;
+        const struct product_key key = {.name = name};
+        if (contents_product(path, folder, PRODUCT_LAMP_PICTURE, &key) &&
+            read_picture(&l->lamps[i].picture, c, path, 1, LAMP_HEIGHT, err))
+            return err->status;
     }
     return read_fit(c, folder, err);
 }
@@ -198,9 +196,8 @@ static enum status read_materials(struct contents *c, const char *folder, struct
 {
     struct light_contents *l = &c->light;
     struct err problem = ERR_INIT;
-    char path[PATH_SIZE + 256];
-    snprintf(path, sizeof path, "%s/lights/materials.txt", folder);
-    if (!path_is_file(path)) return ST_OK;
+    char path[FILE_PATH];
+    if (!contents_product(path, folder, PRODUCT_MATERIALS, NULL)) return ST_OK;
     if (material_list_read(&l->materials, path, NULL, &problem))
         return contents_note(c, err, "The fitted materials are not shown. %s", problem.text);
     l->material_cards = calloc((size_t)l->materials.count + 1, sizeof *l->material_cards);
@@ -208,8 +205,10 @@ static enum status read_materials(struct contents *c, const char *folder, struct
     for (int i = 0; i < l->materials.count; i++) {
         struct material_card *card = &l->material_cards[i];
         card->material = &l->materials.items[i];
-        snprintf(path, sizeof path, "%s/lights/materials/%s.jpg", folder, card->material->name);
-        if (read_picture(&card->residuals, c, path, 1, VIEW_HEIGHT, err)) return err->status;
+        const struct product_key key = {.name = card->material->name};
+        if (contents_product(path, folder, PRODUCT_MATERIAL_PICTURE, &key) &&
+            read_picture(&card->residuals, c, path, 1, VIEW_HEIGHT, err))
+            return err->status;
     }
     return ST_OK;
 }
@@ -217,53 +216,56 @@ static enum status read_materials(struct contents *c, const char *folder, struct
 /* ------------------------------------------------------------------------------------------------------ irradiance */
 
 /* Thumbnails of a view, and its photograph. */
-static enum status read_view(struct gather_card *g, struct contents *c, const char *folder, const char *stem,
+static enum status read_view(struct gather_card *g, struct contents *c, const char *folder, const char *gathered,
                              struct err *err)
 {
     static const char *const NAMES[] = {"R", "G", "B"};
-    static const char *const suffixes[] = {"white", "level", "unknown"};
+    static const enum product_id ids[] = {PRODUCT_IRRADIANCE_WHITE, PRODUCT_IRRADIANCE_LEVEL,
+                                          PRODUCT_IRRADIANCE_UNKNOWN};
     struct picture *const pictures[] = {&g->white, &g->level, &g->unknown};
     const int at = camera_set_find(&c->views, g->name);
     const struct photo_record *photo = at >= 0 ? c->view_cards[at].photo : NULL;
     const int orientation = photo ? photo->info.orientation : 1;
     struct err problem = ERR_INIT;
     struct exr_image im = {0};
-    char path[PATH_SIZE + 512];
-    for (int i = 0; i < 3; i++) {
-        snprintf(path, sizeof path, "%s.%s.jpg", stem, suffixes[i]);
-        if (read_picture(pictures[i], c, path, orientation, VIEW_HEIGHT, err)) return err->status;
-    }
-    snprintf(path, sizeof path, "%s/views/%s.exr", folder, g->name);
-    if (!path_is_file(path)) return ST_OK;
-    enum status st = exr_read(&im, path, NAMES, 3, &problem);
-    if (!st) st = picture_from_exr(&g->photo, &im, orientation, VIEW_HEIGHT, &problem);
+    const struct product_key key = {.gathered = gathered, .view = g->name};
+    char path[FILE_PATH];
+    for (int i = 0; i < 3; i++)
+        if (contents_product(path, folder, ids[i], &key) &&
+            read_picture(pictures[i], c, path, orientation, VIEW_HEIGHT, err))
+            return err->status;
+    if (!contents_product(path, folder, PRODUCT_VIEW, &key)) return ST_OK;
+    if (!exr_read(&im, path, NAMES, 3, &problem)) picture_from_exr(&g->photo, &im, orientation, VIEW_HEIGHT, &problem);
     exr_image_release(&im);
-    if (st == ST_NOMEM) return err_set(err, st, "%s", problem.text);
-    return st ? contents_note(c, err, "A view is not shown beside its light. %s", problem.text) : ST_OK;
+    if (problem.status == ST_NOMEM) return err_set(err, ST_NOMEM, "%s", problem.text);
+    return problem.status ? contents_note(c, err, "A view is not shown beside its light. %s", problem.text) : ST_OK;
 }
 
+/* below: "", or "irradiance/", where those of views and faces are. */
 static enum status read_gather(struct contents *c, const char *folder, const char *below, const char *name,
                                struct err *err)
 {
     struct light_contents *l = &c->light;
     struct light_record record;
     struct err problem = ERR_INIT;
-    char stem[PATH_SIZE], path[PATH_SIZE + 64];
-    snprintf(stem, sizeof stem, "%s/%s/%s", folder, below, name);
-    snprintf(path, sizeof path, "%s%s", stem, SUFFIX);
-    if (light_record_read(&record, path, &problem))
+    char gathered[FILE_PATH], path[FILE_PATH], number[16];
+    snprintf(gathered, sizeof gathered, "%s%s", below, name);
+    if (product_path_below(path, folder, PRODUCT_LIGHT_RECORD, &(struct product_key){.gathered = gathered}, &problem) ||
+        light_record_read(&record, path, &problem))
         return contents_note(c, err, "Irradiance is not shown. %s", problem.text);
     if (l->gather_count == GATHERS_MAX) return ST_OK;
     if (array_append(&l->gathers, (size_t)l->gather_count, sizeof *l->gathers, "irradiance", err)) return err->status;
     struct gather_card *g = &l->gathers[l->gather_count++];
     *g = (struct gather_card){.record = record, .is_view = record.level[1] > 0};
     snprintf(g->name, sizeof g->name, "%s", name);
-    enum status st = g->is_view ? read_view(g, c, folder, stem, err) : ST_OK;
-    for (int i = 0; !st && i < record.example_count; i++) {
-        snprintf(path, sizeof path, "%s.hemicube%d.jpg", stem, i + 1);
-        st = read_picture(&g->hemicubes[i], c, path, 1, HEMICUBE_HEIGHT, err);
+    if (g->is_view) read_view(g, c, folder, gathered, err);
+    for (int i = 0; !err->status && i < record.example_count; i++) {
+        snprintf(number, sizeof number, "%d", i + 1);
+        const struct product_key key = {.gathered = gathered, .name = number};
+        if (contents_product(path, folder, PRODUCT_HEMICUBE, &key))
+            read_picture(&g->hemicubes[i], c, path, 1, HEMICUBE_HEIGHT, err);
     }
-    return st;
+    return err->status;
 }
 
 static int is_record(const struct dirent *e)
@@ -276,25 +278,23 @@ static enum status read_gathers(struct contents *c, const char *folder, const ch
 {
     struct dirent **names = NULL;
     char path[PATH_SIZE];
-    snprintf(path, sizeof path, "%s/%s", folder, below);
+    snprintf(path, sizeof path, "%s/relight/%s", folder, below);
     const int count = scandir(path, &names, is_record, alphasort);
-    enum status st = ST_OK;
     for (int i = 0; i < count; i++) {
         char *name = names[i]->d_name;
         name[strlen(name) - strlen(SUFFIX)] = '\0';
-        if (!st) st = read_gather(c, folder, below, name, err);
+        if (!err->status) read_gather(c, folder, below, name, err);
         free(names[i]);
     }
     free(names);
-    return st;
+    return err->status;
 }
 
 enum status contents_read_light(struct contents *c, const char *folder, struct err *err)
 {
-    if (read_lamps(c, folder, err) || read_materials(c, folder, err) ||
-        read_gathers(c, folder, "relight/irradiance", err))
+    if (read_lamps(c, folder, err) || read_materials(c, folder, err) || read_gathers(c, folder, "irradiance/", err))
         return err->status;
-    return read_gathers(c, folder, "relight", err);
+    return read_gathers(c, folder, "", err);
 }
 
 /* ------------------------------------------------------------------------------------------------------------ edits */
@@ -304,14 +304,14 @@ static enum status read_relit_edit(struct contents *c, const struct relit_source
                                    struct err *err)
 {
     struct relit_card card = {.missing = -1};
-    enum status st = relit_card_read(&card, from, edit, 1, err);
-    for (int i = 0; !st && i < card.note_count; i++) st = contents_note(c, err, "Edit %s: %s", edit, card.notes[i]);
-    if (!st && card.views) st = array_append(&c->relit, (size_t)c->relit_count, sizeof *c->relit, "relit edits", err);
-    if (st || !card.views)
-        relit_card_release(&card);
-    else
+    relit_card_read(&card, from, edit, 1, err);
+    for (int i = 0; !err->status && i < card.note_count; i++) contents_note(c, err, "Edit %s: %s", edit, card.notes[i]);
+    if (!err->status && card.views &&
+        !array_append(&c->relit, (size_t)c->relit_count, sizeof *c->relit, "relit edits", err))
         c->relit[c->relit_count++] = card;
-    return st;
+    else
+        relit_card_release(&card);
+    return err->status;
 }
 
 static int is_plain(const struct dirent *e) { return e->d_name[0] != '.' && strcmp(e->d_name, "irradiance") != 0; }
@@ -324,11 +324,10 @@ enum status contents_read_relit(struct contents *c, const char *folder, const ch
     snprintf(records, sizeof records, "%s/photos", shared);
     const struct relit_sources from = {folder, records, &c->lenses};
     const int count = scandir(path, &names, is_plain, alphasort);
-    enum status st = ST_OK;
     for (int i = 0; i < count; i++) {
-        if (!st) st = read_relit_edit(c, &from, names[i]->d_name, err);
+        if (!err->status) read_relit_edit(c, &from, names[i]->d_name, err);
         free(names[i]);
     }
     free(names);
-    return st;
+    return err->status;
 }

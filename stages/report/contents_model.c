@@ -20,10 +20,10 @@ static enum status read_axes_card(struct contents *c, const char *path, const ch
     snprintf(card->view, sizeof card->view, "%s", view);
     const int at = camera_set_find(&c->views, view);
     if (at >= 0 && c->view_cards[at].photo) photo.info.orientation = c->view_cards[at].photo->info.orientation;
-    const enum status st = picture_from_photo(&card->picture, &photo, AXES_HEIGHT, err);
-    c->axes_count += !st;
+    picture_from_photo(&card->picture, &photo, AXES_HEIGHT, err);
+    c->axes_count += !err->status;
     photo_release(&photo);
-    return st;
+    return err->status;
 }
 
 /* model/axes/VIEW.png, if the axes were found */
@@ -31,32 +31,22 @@ enum status contents_read_axes(struct contents *c, const char *folder, struct er
 {
     struct dirent **names = NULL;
     char path[PATH_SIZE];
-    snprintf(path, sizeof path, "%s/model/axes.txt", folder);
-    if (!path_is_file(path)) return ST_OK;
+    if (!contents_product(path, folder, PRODUCT_AXES, NULL)) return ST_OK;
     snprintf(path, sizeof path, "%s/model/axes", folder);
     int count = scandir(path, &names, NULL, alphasort);
-    enum status st = ST_OK;
     c->axes = calloc((size_t)(count > 0 ? count : 0) + 1, sizeof *c->axes);
-    if (!c->axes) st = err_nomem(err, "pictures of axes", (size_t)count * sizeof *c->axes);
+    if (!c->axes) err_nomem(err, "pictures of axes", (size_t)count * sizeof *c->axes);
     for (int i = 0; i < count; i++) {
         char *name = names[i]->d_name, *dot = strrchr(name, '.');
         snprintf(path, sizeof path, "%s/model/axes/%s", folder, name);
-        if (!st && dot && dot != name && name[0] != '.' && !strcmp(dot, ".png")) {
+        if (!err->status && dot && dot != name && name[0] != '.' && !strcmp(dot, ".png")) {
             *dot = '\0';
-            st = read_axes_card(c, path, name, err);
+            read_axes_card(c, path, name, err);
         }
         free(names[i]);
     }
     free(names);
-    return st;
-}
-
-/* folder/name if it is a file, owned by the caller; NULL if not. */
-static char *file_if_there(const char *folder, const char *name)
-{
-    char path[PATH_SIZE + 512];
-    snprintf(path, sizeof path, "%s/%s", folder, name);
-    return path_is_file(path) ? strdup(path) : NULL;
+    return err->status;
 }
 
 static int is_jpeg(const struct dirent *e)
@@ -66,58 +56,60 @@ static int is_jpeg(const struct dirent *e)
 }
 
 /* Edges on photographs: all of the unedited model, some of an edit, evenly spaced. */
-static enum status list_overlays(struct model_card *m, const char *folder, struct err *err)
+static enum status list_overlays(struct model_card *m, const char *folder, const char *model, struct err *err)
 {
     struct dirent **names = NULL;
     char path[PATH_SIZE];
-    snprintf(path, sizeof path, "%s/overlay", folder);
+    snprintf(path, sizeof path, "%s/%s/overlay", folder, model);
     const int found = scandir(path, &names, is_jpeg, alphasort), all = found > 0 ? found : 0;
     const int shown = m->name[0] && all > OVERLAYS_OF_EDIT ? OVERLAYS_OF_EDIT : all;
-    enum status st = ST_OK;
     m->overlays = calloc((size_t)shown + 1, sizeof *m->overlays);
     m->overlay_ids = calloc((size_t)shown + 1, sizeof *m->overlay_ids);
-    if (!m->overlays || !m->overlay_ids)
-        st = err_nomem(err, "pictures of a model", (size_t)shown * sizeof *m->overlay_ids);
-    for (int i = 0; !st && i < shown; i++) {
+    if (!m->overlays || !m->overlay_ids) err_nomem(err, "pictures of a model", (size_t)shown * sizeof *m->overlay_ids);
+    for (int i = 0; !err->status && i < shown; i++) {
         const char *file = names[(int64_t)i * all / shown]->d_name;
-        m->overlays[m->overlay_count] = file_if_there(path, file);
-        m->overlay_ids[m->overlay_count] = strndup(file, strlen(file) - strlen(".jpg"));
-        m->overlay_count += m->overlays[m->overlay_count] && m->overlay_ids[m->overlay_count];
+        char *id = m->overlay_ids[m->overlay_count] = strndup(file, strlen(file) - strlen(".jpg"));
+        if (!id) err_nomem(err, "a name", strlen(file));
+        const struct product_key key = {.model = model, .photo = id};
+        m->overlays[m->overlay_count] = id ? contents_product_name(folder, PRODUCT_OVERLAY, &key) : NULL;
+        m->overlay_count += m->overlays[m->overlay_count] != NULL;
     }
     m->overlays_left_out = all - shown;
     for (int i = 0; i < all; i++) free(names[i]);
     free(names);
-    return st;
+    return err->status;
 }
 
-static enum status read_model(struct contents *c, const char *folder, const char *name, struct err *err)
+/* model: "model", "remodel/EDIT"; name: of the edit, or "" */
+static enum status read_model(struct contents *c, const char *folder, const char *model, const char *name,
+                              struct err *err)
 {
-    char path[PATH_SIZE];
-    snprintf(path, sizeof path, "%s/model.txt", folder);
-    if (!path_is_file(path)) return ST_OK;
+    const struct product_key key = {.model = model};
+    char path[FILE_PATH];
+    if (!contents_product(path, folder, PRODUCT_MODEL, &key)) return ST_OK;
     if (array_append(&c->models, (size_t)c->model_count, sizeof *c->models, "models", err)) return err->status;
     struct model_card *m = &c->models[c->model_count++];
-    *m = (struct model_card){.plan = file_if_there(folder, "plan.svg"), .view = file_if_there(folder, "view.png")};
+    *m = (struct model_card){.plan = contents_product_name(folder, PRODUCT_PLAN_PICTURE, &key),
+                             .view = contents_product_name(folder, PRODUCT_MODEL_PICTURE, &key)};
     snprintf(m->name, sizeof m->name, "%s", name);
-    return list_overlays(m, folder, err);
+    return list_overlays(m, folder, model, err);
 }
 
 /* model/, and remodel/EDIT/ for every edit */
 enum status contents_read_models(struct contents *c, const char *folder, struct err *err)
 {
     struct dirent **names = NULL;
-    char path[PATH_SIZE], below[PATH_SIZE + 256];
-    snprintf(path, sizeof path, "%s/model", folder);
-    enum status st = read_model(c, path, "", err);
+    char path[PATH_SIZE], model[FILE_PATH];
+    read_model(c, folder, "model", "", err);
     snprintf(path, sizeof path, "%s/remodel", folder);
     const int count = scandir(path, &names, NULL, alphasort);
     for (int i = 0; i < count; i++) {
-        snprintf(below, sizeof below, "%s/%s", path, names[i]->d_name);
-        if (!st && names[i]->d_name[0] != '.') st = read_model(c, below, names[i]->d_name, err);
+        snprintf(model, sizeof model, "remodel/%s", names[i]->d_name);
+        if (!err->status && names[i]->d_name[0] != '.') read_model(c, folder, model, names[i]->d_name, err);
         free(names[i]);
     }
     free(names);
-    return st;
+    return err->status;
 }
 
 void model_card_release(struct model_card *m)

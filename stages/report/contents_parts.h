@@ -3,12 +3,18 @@
 #define REMODEL_CONTENTS_PARTS_H
 
 #include "common/base/file_path.h"
+#include "common/product/product.h"
 #include "stages/report/contents.h"
 
 enum { PATH_SIZE = FILE_PATH + 512 }; /* bytes of a folder's path and of a file below it */
 
 /* Adds a sentence to `notes`, cut at NOTE_SIZE. */
 enum status contents_note(struct contents *c, struct err *err, const char *fmt, ...) PRINTF_LIKE(3, 4);
+
+/* The product's path in the scene's folder. False: there is no such file. */
+bool contents_product(char path[FILE_PATH], const char *folder, enum product_id id, const struct product_key *key);
+/* The same path, owned by the caller; NULL: there is no such file, or no memory. */
+char *contents_product_name(const char *folder, enum product_id id, const struct product_key *key);
 
 /* The number from 0 to 1 that an attribute of a picture holds; -1: NULL, or another text. */
 double share_from_text(const char *text);

@@ -21,21 +21,19 @@ static enum status find_left_out(struct contents *c, const char *folder, struct 
 {
     struct dirent **names = NULL;
     int count = scandir(folder, &names, NULL, alphasort);
-    enum status st = ST_OK;
 
     if (count < 0)
         return contents_note(c, err, "The folder of photographs cannot be read (%s), so there are no thumbnails.",
                              strerror(errno));
     for (int i = 0; i < count; i++) {
         const char *name = names[i]->d_name;
-        if (!st && is_photo_name(name) && photo_list_find_file(&c->photos, name) < 0) {
-            st = array_append(&c->left_out, (size_t)c->left_out_count, sizeof *c->left_out, "names of photos", err);
-            if (!st) snprintf(c->left_out[c->left_out_count++], sizeof *c->left_out, "%s", name);
-        }
+        if (!err->status && is_photo_name(name) && photo_list_find_file(&c->photos, name) < 0 &&
+            !array_append(&c->left_out, (size_t)c->left_out_count, sizeof *c->left_out, "names of photos", err))
+            snprintf(c->left_out[c->left_out_count++], sizeof *c->left_out, "%s", name);
         free(names[i]);
     }
     free(names);
-    return st;
+    return err->status;
 }
 
 struct photo_job {

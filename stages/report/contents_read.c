@@ -18,27 +18,26 @@ static enum status read_runs(struct contents *c, const struct contents_sources *
 {
     const char *folders[2] = {from->folder, from->shared};
     struct settings defaults = {0};
-    enum status st = ST_OK;
 
-    for (int i = 0; i < (same_folder(folders[0], folders[1]) ? 1 : 2) && !st; i++) {
+    for (int i = 0; i < (same_folder(folders[0], folders[1]) ? 1 : 2) && !err->status; i++) {
         struct err problem = ERR_INIT;
         char path[PATH_SIZE];
         snprintf(path, sizeof path, "%s/log", folders[i]);
         if (usage_add_folder(&c->usage, path, REPORT_STAGE, &problem))
-            st = contents_note(c, err, "Not all logs can be read. %s", problem.text);
+            contents_note(c, err, "Not all logs can be read. %s", problem.text);
         problem.status = ST_OK;
         snprintf(path, sizeof path, "%s/slice", folders[i]);
-        if (!st && settings_add_folder(&c->settings, path, &problem))
-            st = contents_note(c, err, "Not all parameters can be read. %s", problem.text);
+        if (!err->status && settings_add_folder(&c->settings, path, &problem))
+            contents_note(c, err, "Not all parameters can be read. %s", problem.text);
     }
-    if (from->defaults && !st) {
+    if (from->defaults && !err->status) {
         struct err problem = ERR_INIT;
         if (settings_add_file(&defaults, from->defaults, &problem))
-            st = contents_note(c, err, "The default parameters cannot be read. %s", problem.text);
+            contents_note(c, err, "The default parameters cannot be read. %s", problem.text);
         settings_compare(&c->settings, &defaults);
     }
     settings_release(&defaults);
-    return st;
+    return err->status;
 }
 
 enum status contents_read(struct contents *c, const struct contents_sources *from, struct err *err)
@@ -55,9 +54,8 @@ enum status contents_read(struct contents *c, const struct contents_sources *fro
         contents_read_models(c, folder, err) || contents_read_textures(c, folder, err) ||
         contents_read_light(c, folder, err) || contents_read_relit(c, folder, from->shared, err))
         return err->status;
-    char page[PATH_SIZE];
-    snprintf(page, sizeof page, "%s/remodel/index.html", folder);
-    c->has_remodel_page = path_is_file(page);
+    char page[FILE_PATH];
+    c->has_remodel_page = contents_product(page, folder, PRODUCT_REMODEL_PAGE, NULL);
     return read_runs(c, from, err);
 }
 

@@ -23,6 +23,7 @@
 #include "common/base/textfile.h"
 #include "common/capture/photo_list.h"
 #include "common/texture/picture_record.h"
+#include "stages/report/contents_parts.h"
 
 struct relit_record { /* VIEW.txt */
     char view[256];
@@ -33,7 +34,7 @@ struct relit_record { /* VIEW.txt */
 struct relit_reading {
     struct relit_card *card;
     const struct relit_sources *from;
-    char folder[FILE_PATH];       /* relight/EDIT */
+    char relit[FILE_PATH];        /* "relight/EDIT" */
     struct relit_record *records; /* owned */
     int record_count;
 };
@@ -56,33 +57,32 @@ int relit_photo_orientation(const char *records, const char *photo)
     return orientation < 1 ? 1 : orientation;
 }
 
-enum status relit_read_picture(struct picture *p, const char *folder, const char *view, const char *ending,
+enum status relit_read_picture(struct picture *p, const char *folder, enum product_id id, const struct product_key *key,
                                int orientation, int height, struct err *err)
 {
     struct photo photo = {0};
     char path[FILE_PATH];
-    enum status st = file_path(path, folder, view, ending, err);
-    if (!st) st = photo_read(&photo, path, err);
+    if (!product_path_below(path, folder, id, key, err)) photo_read(&photo, path, err);
     photo.info.orientation = orientation;
-    if (!st) st = picture_from_photo(p, &photo, height, err);
+    if (!err->status) picture_from_photo(p, &photo, height, err);
     photo_release(&photo);
-    return st;
+    return err->status;
 }
 
-enum status relit_read_radiance(struct picture *p, const char *folder, const char *view, double exposure,
-                                int orientation, int height, struct err *err)
+enum status relit_read_radiance(struct picture *p, const char *folder, enum product_id id,
+                                const struct product_key *key, double exposure, int orientation, int height,
+                                struct err *err)
 {
     static const char *const names[] = {"R", "G", "B"};
     struct exr_image im = {0};
     char path[FILE_PATH];
-    enum status st = file_path(path, folder, view, ".exr", err);
-    if (!st) st = exr_read(&im, path, names, 3, err);
-    for (int k = 0; !st && k < im.count; k++)
+    if (!product_path_below(path, folder, id, key, err)) exr_read(&im, path, names, 3, err);
+    for (int k = 0; !err->status && k < im.count; k++)
         for (size_t i = 0; im.planes[k].f && i < (size_t)im.width * (size_t)im.height; i++)
             im.planes[k].f[i] *= (float)exposure;
-    if (!st) st = picture_from_exr(p, &im, orientation, height, err);
+    if (!err->status) picture_from_exr(p, &im, orientation, height, err);
     exr_image_release(&im);
-    return st;
+    return err->status;
 }
 
 /* ---------------------------------------------------------------------------------------------------------- records */
@@ -96,17 +96,12 @@ static enum status read_number(struct textfile *t, const char *word, double max,
 static enum status read_record(struct relit_record *r, const char *path, struct err *err)
 {
     struct textfile t = {0};
-    int64_t value;
-    enum status st = textfile_open(&t, path, err);
-    if (!st) st = textfile_expect_line(&t, "remodel-relit", err);
-    if (!st) st = textfile_int(&t, "version", 1, 1, &value, err);
-    if (!st) st = textfile_expect_line(&t, "size", err);
-    if (!st) st = read_number(&t, "exposure", 1e30, &r->exposure, err);
-    if (!st) st = read_number(&t, "changed", 100, &r->changed, err);
-    if (!st) st = read_number(&t, "bounded", 100, &r->bounded, err);
-    if (!st) st = read_number(&t, "kept", 100, &r->kept, err);
+    if (!product_open(&t, NULL, PRODUCT_RELIT_RECORD, path, NULL, err) && !textfile_expect_line(&t, "size", err) &&
+        !read_number(&t, "exposure", 1e30, &r->exposure, err) && !read_number(&t, "changed", 100, &r->changed, err) &&
+        !read_number(&t, "bounded", 100, &r->bounded, err))
+        read_number(&t, "kept", 100, &r->kept, err);
     textfile_release(&t);
-    return st;
+    return err->status;
 }
 
 static int is_record(const struct dirent *e)
@@ -123,31 +118,31 @@ static int compare_records(const void *a, const void *b)
     return strcmp(p->view, q->view);
 }
 
-static enum status read_records(struct relit_reading *r, struct err *err)
+static enum status read_records(struct relit_reading *r, const char *folder, struct err *err)
 {
     struct dirent **names = NULL;
-    const int found = scandir(r->folder, &names, is_record, alphasort), count = found > 0 ? found : 0;
-    enum status st = ST_OK;
+    const int found = scandir(folder, &names, is_record, alphasort), count = found > 0 ? found : 0;
     r->records = calloc((size_t)count + 1, sizeof *r->records);
-    if (!r->records) st = err_nomem(err, "records of pictures", (size_t)count * sizeof *r->records);
+    if (!r->records) err_nomem(err, "records of pictures", (size_t)count * sizeof *r->records);
     for (int i = 0; i < count; i++) {
         char path[FILE_PATH], *name = names[i]->d_name;
         struct err problem = ERR_INIT;
         struct relit_record record = {.changed = 0};
-        if (!st) st = file_path(path, r->folder, name, "", err);
+        if (!err->status) file_path(path, folder, name, "", err);
         snprintf(record.view, sizeof record.view, "%.*s", (int)(strlen(name) - strlen(".txt")), name);
         const int lens = lens_list_find(r->from->lenses, record.view);
-        if (!st && read_record(&record, path, &problem)) {
-            st = note(r->card, &problem, err);
-        } else if (!st && lens >= 0) { /* others are of cameras that somebody gave */
+        if (!err->status && read_record(&record, path, &problem)) {
+            note(r->card, &problem, err);
+        } else if (!err->status && lens >= 0) { /* others are of cameras that somebody gave */
             record.photo = r->from->lenses->lenses[lens].photo;
             r->records[r->record_count++] = record;
         }
         free(names[i]);
     }
     free(names);
-    if (!st && r->record_count) qsort(r->records, (size_t)r->record_count, sizeof *r->records, compare_records);
-    return st;
+    if (!err->status && r->record_count)
+        qsort(r->records, (size_t)r->record_count, sizeof *r->records, compare_records);
+    return err->status;
 }
 
 static enum status read_round(struct relit_card *card, struct textfile *t, struct err *err)
@@ -169,21 +164,20 @@ static enum status read_rounds(struct relit_reading *r, struct err *err)
 {
     struct textfile t = {0};
     struct err problem = ERR_INIT;
+    const struct product_key key = {.edit = r->card->name};
     char path[FILE_PATH], *word;
     r->card->missing = -1;
-    if (file_path(path, r->folder, "rounds.txt", "", err)) return err->status;
-    if (!path_is_file(path)) return ST_OK;
-    enum status st = textfile_open(&t, path, &problem);
-    if (!st) st = textfile_expect_line(&t, "remodel-light-rounds", &problem);
-    while (!st && textfile_next(&t)) {
-        st = textfile_word(&t, "a statement", &word, &problem);
-        if (!st && !strcmp(word, "round"))
-            st = read_round(r->card, &t, &problem);
-        else if (!st && !strcmp(word, "settled"))
+    if (!contents_product(path, r->from->folder, PRODUCT_LIGHT_ROUNDS, &key)) return ST_OK;
+    product_open(&t, NULL, PRODUCT_LIGHT_ROUNDS, path, NULL, &problem);
+    while (!problem.status && textfile_next(&t)) {
+        if (textfile_word(&t, "a statement", &word, &problem)) break;
+        if (!strcmp(word, "round"))
+            read_round(r->card, &t, &problem);
+        else if (!strcmp(word, "settled"))
             r->card->settled = !textfile_word(&t, "yes or no", &word, &problem) && !strcmp(word, "yes");
     }
     textfile_release(&t);
-    return st ? note(r->card, &problem, err) : ST_OK;
+    return problem.status ? note(r->card, &problem, err) : ST_OK;
 }
 
 /* --------------------------------------------------------------------------------------------------------- pictures */
@@ -200,70 +194,68 @@ static void sight_release(struct relit_sight *s)
 static enum status read_truth(struct relit_sight *s, const struct relit_reading *r, const struct relit_record *record,
                               int orientation, struct err *err)
 {
-    char truth[FILE_PATH], folder[FILE_PATH], path[FILE_PATH];
-    if (file_path(truth, r->from->folder, "evaluate/relit", "", err) ||
-        file_path(folder, truth, r->card->name, "", err) || file_path(path, folder, record->view, ".exr", err))
-        return err->status;
-    if (!path_is_file(path)) return ST_OK;
-    return relit_read_radiance(&s->truth, folder, record->view, record->exposure, orientation, RELIT_SIDE_HEIGHT, err);
+    const struct product_key key = {.edit = r->card->name, .view = record->view};
+    char path[FILE_PATH];
+    if (!contents_product(path, r->from->folder, PRODUCT_TRUTH_RELIT, &key)) return ST_OK;
+    return relit_read_radiance(&s->truth, r->from->folder, PRODUCT_TRUTH_RELIT, &key, record->exposure, orientation,
+                               RELIT_SIDE_HEIGHT, err);
 }
 
 static enum status read_sight(struct relit_sight *s, const struct relit_reading *r, const struct relit_record *record,
                               struct err *err)
 {
-    const int orientation = relit_photo_orientation(r->from->records, record->photo);
-    char views[FILE_PATH], unlit[FILE_PATH], path[FILE_PATH];
+    const int orientation = relit_photo_orientation(r->from->records, record->photo), height = RELIT_SIDE_HEIGHT;
+    const char *folder = r->from->folder;
+    char unlit[FILE_PATH], path[FILE_PATH];
+    const struct product_key key = {.view = record->view, .name = record->view, .pictures = unlit, .relit = r->relit};
     struct picture_record before; /* the photo is shown as the picture before it was relit */
     *s = (struct relit_sight){.changed = record->changed, .bounded = record->bounded, .kept = record->kept};
     snprintf(s->view, sizeof s->view, "%s", record->view);
     snprintf(s->photo, sizeof s->photo, "%s", record->photo);
-    enum status st = file_path(views, r->from->folder, "views", "", err);
-    if (!st) st = file_path(unlit, r->folder, "unlit", "", err);
-    if (!st) st = file_path(path, unlit, s->view, ".txt", err);
-    if (!st) st = picture_record_read(&before, path, NULL, err);
-    if (!st) st = relit_read_radiance(&s->before, views, s->view, before.exposure, orientation, RELIT_SIDE_HEIGHT, err);
-    if (!st) st = relit_read_picture(&s->unlit, unlit, s->view, ".jpg", orientation, RELIT_SIDE_HEIGHT, err);
-    if (!st) st = relit_read_picture(&s->relit, r->folder, s->view, ".jpg", orientation, RELIT_SIDE_HEIGHT, err);
-    if (!st) st = relit_read_picture(&s->ratio, r->folder, s->view, "-ratio.png", orientation, RELIT_SIDE_HEIGHT, err);
-    if (!st) st = read_truth(s, r, record, orientation, err);
-    if (st) sight_release(s);
-    return st;
+    if (!file_path(unlit, r->relit, "unlit", "", err) &&
+        !product_path_below(path, folder, PRODUCT_PICTURE_RECORD, &key, err) &&
+        !picture_record_read(&before, path, NULL, err))
+        relit_read_radiance(&s->before, folder, PRODUCT_VIEW, &key, before.exposure, orientation, height, err);
+    if (!err->status && !relit_read_picture(&s->unlit, folder, PRODUCT_PICTURE_JPEG, &key, orientation, height, err) &&
+        !relit_read_picture(&s->relit, folder, PRODUCT_RELIT_JPEG, &key, orientation, height, err) &&
+        !relit_read_picture(&s->ratio, folder, PRODUCT_RELIT_RATIO_PICTURE, &key, orientation, height, err))
+        read_truth(s, r, record, orientation, err);
+    if (err->status) sight_release(s);
+    return err->status;
 }
 
 static enum status read_sights(struct relit_reading *r, int most, struct err *err)
 {
     struct relit_card *card = r->card;
-    enum status st = ST_OK;
     card->sights = calloc((size_t)most + 1, sizeof *card->sights);
     if (!card->sights) return err_nomem(err, "pictures", (size_t)most * sizeof *card->sights);
-    for (int i = 0; !st && i < r->record_count && card->sight_count < most; i++) {
+    for (int i = 0; !err->status && i < r->record_count && card->sight_count < most; i++) {
         const struct relit_record *record = &r->records[i];
         struct err problem = ERR_INIT;
         bool shown = !(record->changed > 0);
         for (int k = 0; k < card->sight_count; k++) shown |= !strcmp(card->sights[k].photo, record->photo);
         if (shown) continue;
         if (read_sight(&card->sights[card->sight_count], r, record, &problem))
-            st = note(card, &problem, err);
+            note(card, &problem, err);
         else
             card->sight_count++;
     }
-    return st;
+    return err->status;
 }
 
 enum status relit_card_read(struct relit_card *card, const struct relit_sources *from, const char *edit, int most,
                             struct err *err)
 {
     struct relit_reading r = {.card = card, .from = from};
-    char relight[FILE_PATH];
+    char folder[FILE_PATH];
     snprintf(card->name, sizeof card->name, "%s", edit);
-    enum status st = file_path(relight, from->folder, "relight", "", err);
-    if (!st) st = file_path(r.folder, relight, edit, "", err);
-    if (!st && path_is_folder(r.folder)) st = read_records(&r, err);
+    if (!file_path(r.relit, "relight", edit, "", err) && !file_path(folder, from->folder, r.relit, "", err) &&
+        path_is_folder(folder))
+        read_records(&r, folder, err);
     card->views = r.record_count;
-    if (!st && card->views) st = read_rounds(&r, err);
-    if (!st && card->views) st = read_sights(&r, most, err);
+    if (!err->status && card->views && !read_rounds(&r, err)) read_sights(&r, most, err);
     free(r.records);
-    return st;
+    return err->status;
 }
 
 void relit_card_release(struct relit_card *card)

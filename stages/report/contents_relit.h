@@ -41,11 +41,12 @@ void relit_card_release(struct relit_card *card);
 /* EXIF's orientation of a photo, 1 if its record cannot be read. */
 int relit_photo_orientation(const char *records, const char *photo);
 
-/* A JPEG or PNG, turned and shrunk. ST_IO, ST_DATA. */
-enum status relit_read_picture(struct picture *p, const char *folder, const char *view, const char *ending,
+/* A product below the scene's folder, a JPEG or PNG, turned and shrunk. ST_IO, ST_DATA. */
+enum status relit_read_picture(struct picture *p, const char *folder, enum product_id id, const struct product_key *key,
                                int orientation, int height, struct err *err);
-/* FOLDER/VIEW.exr, radiance, times the exposure. */
-enum status relit_read_radiance(struct picture *p, const char *folder, const char *view, double exposure,
-                                int orientation, int height, struct err *err);
+/* The same of radiance, times the exposure. */
+enum status relit_read_radiance(struct picture *p, const char *folder, enum product_id id,
+                                const struct product_key *key, double exposure, int orientation, int height,
+                                struct err *err);
 
 #endif

@@ -24,6 +24,7 @@
 #include "common/capture/lens_list.h"
 #include "common/capture/photo_list.h"
 #include "common/texture/picture_record.h"
+#include "stages/report/contents_parts.h"
 
 struct record {
     char view[256], photo[256];
@@ -68,19 +69,18 @@ static enum status read_records(struct reading *r, const char *folder, struct er
 {
     struct dirent **names = NULL;
     const int found = scandir(folder, &names, is_record, alphasort), count = found > 0 ? found : 0;
-    enum status st = ST_OK;
     free(r->records);
     r->record_count = 0;
     r->records = calloc((size_t)count + 1, sizeof *r->records);
-    if (!r->records) st = err_nomem(err, "records of pictures", (size_t)count * sizeof *r->records);
+    if (!r->records) err_nomem(err, "records of pictures", (size_t)count * sizeof *r->records);
     for (int i = 0; i < count; i++) {
         char path[FILE_PATH], *name = names[i]->d_name;
         struct err problem = ERR_INIT;
         struct record record;
-        if (!st) st = file_path(path, folder, name, "", err);
-        if (!st && picture_record_read(&record.file, path, NULL, &problem)) {
-            st = note(r->c, "a picture is left out", &problem, err);
-        } else if (!st) {
+        if (!err->status) file_path(path, folder, name, "", err);
+        if (!err->status && picture_record_read(&record.file, path, NULL, &problem)) {
+            note(r->c, "a picture is left out", &problem, err);
+        } else if (!err->status) {
             snprintf(record.view, sizeof record.view, "%.*s", (int)(strlen(name) - strlen(".txt")), name);
             const int lens = lens_list_find(&r->lenses, record.view);
             snprintf(record.photo, sizeof record.photo, "%s", lens < 0 ? record.view : r->lenses.lenses[lens].photo);
@@ -89,8 +89,9 @@ static enum status read_records(struct reading *r, const char *folder, struct er
         free(names[i]);
     }
     free(names);
-    if (!st && r->record_count) qsort(r->records, (size_t)r->record_count, sizeof *r->records, compare_records);
-    return st;
+    if (!err->status && r->record_count)
+        qsort(r->records, (size_t)r->record_count, sizeof *r->records, compare_records);
+    return err->status;
 }
 
 /* --------------------------------------------------------------------------------------------------------- pictures */
@@ -103,33 +104,29 @@ static void sight_release(struct edit_sight *s)
 }
 
 static enum status read_sight(struct edit_sight *s, const struct reading *r, const struct record *record,
-                              const char *folder, struct err *err)
+                              const char *pictures, struct err *err)
 {
-    const int orientation = relit_photo_orientation(r->from->records, record->photo);
-    char views[FILE_PATH];
+    const int orientation = relit_photo_orientation(r->from->records, record->photo), height = SIGHT_SIDE_HEIGHT;
+    const char *scene = r->from->folder;
+    const struct product_key key = {.view = record->view, .name = record->view, .pictures = pictures};
     *s = (struct edit_sight){.changed = record->file.changed};
     memcpy(s->view, record->view, sizeof s->view);
     memcpy(s->photo, record->photo, sizeof s->photo);
     memcpy(s->shares, record->file.shares, sizeof s->shares);
-    enum status st = file_path(views, r->from->folder, "views", "", err);
-    if (!st)
-        st = relit_read_radiance(&s->before, views, record->view, record->file.exposure, orientation, SIGHT_SIDE_HEIGHT,
-                                 err);
-    if (!st) st = relit_read_picture(&s->after, folder, record->view, ".jpg", orientation, SIGHT_SIDE_HEIGHT, err);
-    if (!st)
-        st = relit_read_picture(&s->sources, folder, record->view, "-sources.png", orientation, SIGHT_SIDE_HEIGHT, err);
-    if (st) sight_release(s);
-    return st;
+    if (relit_read_radiance(&s->before, scene, PRODUCT_VIEW, &key, record->file.exposure, orientation, height, err) ||
+        relit_read_picture(&s->after, scene, PRODUCT_PICTURE_JPEG, &key, orientation, height, err) ||
+        relit_read_picture(&s->sources, scene, PRODUCT_PICTURE_SOURCES, &key, orientation, height, err))
+        sight_release(s);
+    return err->status;
 }
 
 /* The views that the edit changes most, each of another photo. */
-static enum status read_sights(struct edit_card *card, struct reading *r, const char *folder, struct err *err)
+static enum status read_sights(struct edit_card *card, struct reading *r, const char *pictures, struct err *err)
 {
-    enum status st = ST_OK;
     card->sights = calloc(SIGHTS_SHOWN, sizeof *card->sights);
     if (!card->sights) return err_nomem(err, "pictures", SIGHTS_SHOWN * sizeof *card->sights);
     card->views = r->record_count;
-    for (int i = 0; !st && i < r->record_count; i++) {
+    for (int i = 0; !err->status && i < r->record_count; i++) {
         const struct record *record = &r->records[i];
         struct err problem = ERR_INIT;
         bool shown = card->sight_count == SIGHTS_SHOWN;
@@ -137,12 +134,12 @@ static enum status read_sights(struct edit_card *card, struct reading *r, const 
         card->changed++;
         for (int k = 0; k < card->sight_count; k++) shown |= !strcmp(card->sights[k].photo, record->photo);
         if (shown) continue;
-        if (read_sight(&card->sights[card->sight_count], r, record, folder, &problem))
-            st = note(r->c, "a picture is left out", &problem, err);
+        if (read_sight(&card->sights[card->sight_count], r, record, pictures, &problem))
+            note(r->c, "a picture is left out", &problem, err);
         else
             card->sight_count++;
     }
-    return st;
+    return err->status;
 }
 
 /* ------------------------------------------------------------------------------------------------------------ edits */
@@ -170,75 +167,67 @@ static enum status read_about(char **about, const char *scripts, const char *edi
     return *about ? ST_OK : err_nomem(err, "a comment", strlen(text));
 }
 
-static bool has_file(const char *folder, const char *file)
-{
-    char path[FILE_PATH];
-    struct err none = ERR_INIT;
-    return !file_path(path, folder, file, "", &none) && path_is_file(path);
-}
-
-static char *file_if_there(const char *folder, const char *file)
-{
-    char path[FILE_PATH];
-    struct err none = ERR_INIT;
-    return !file_path(path, folder, file, "", &none) && path_is_file(path) ? strdup(path) : NULL;
-}
-
 /* The edit under the light that it makes; what cannot be read of it is a note of the page. */
 static enum status read_relit(struct edit_card *card, struct reading *r, struct err *err)
 {
     const struct relit_sources from = {r->from->folder, r->from->records, &r->lenses};
-    enum status st = relit_card_read(&card->relit, &from, card->name, RELIT_SHOWN, err);
-    for (int i = 0; !st && i < card->relit.note_count; i++) {
+    relit_card_read(&card->relit, &from, card->name, RELIT_SHOWN, err);
+    for (int i = 0; !err->status && i < card->relit.note_count; i++) {
         struct err problem = ERR_INIT;
         err_set(&problem, ST_DATA, "%s", card->relit.notes[i]);
-        st = note(r->c, "light", &problem, err);
+        note(r->c, "light", &problem, err);
     }
-    return st;
+    return err->status;
 }
 
-#define EXPORT_FILE(format, file, name, write) "export/" file,
-static const char *const exports[] = {EXPORTS(EXPORT_FILE)};
+#define EXPORT_PRODUCT(format, file, name, write) PRODUCT_EXPORT_##format,
+static const enum product_id exports[] = {EXPORTS(EXPORT_PRODUCT)};
 
 static enum status read_edit(struct reading *r, const char *name, struct err *err)
 {
     struct remodel_contents *c = r->c;
-    char remodel[FILE_PATH], folder[FILE_PATH], pictures[FILE_PATH];
-    enum status st = file_path(remodel, r->from->folder, "remodel", "", err);
-    if (!st) st = file_path(folder, remodel, name, "", err);
-    if (!st) st = file_path(pictures, folder, "pictures", "", err);
-    if (st || !has_file(folder, "model.txt")) return st;
-    if (read_records(r, pictures, err)) return err->status;
+    char model[FILE_PATH], pictures[FILE_PATH], film[FILE_PATH], path[FILE_PATH];
+    const char *scene = r->from->folder;
+    const struct product_key key = {.model = model, .film = film};
+    if (file_path(model, "remodel", name, "", err) || file_path(pictures, model, "pictures", "", err) ||
+        file_path(film, model, "tour", "", err))
+        return err->status;
+    if (!contents_product(path, scene, PRODUCT_MODEL, &key)) return ST_OK;
+    if (file_path(path, scene, pictures, "", err) || read_records(r, path, err)) return err->status;
     if (array_append(&c->edits, (size_t)c->edit_count, sizeof *c->edits, "edits", err)) return err->status;
     struct edit_card *card = &c->edits[c->edit_count++];
-    *card = (struct edit_card){.plan = file_if_there(folder, "plan.svg"), .film = has_file(folder, "tour/video.mp4")};
-    for (int i = 0; i < EXPORT_COUNT; i++) card->exported |= card->exports[i] = has_file(folder, exports[i]);
+    *card = (struct edit_card){.plan = contents_product_name(scene, PRODUCT_PLAN_PICTURE, &key),
+                               .film = contents_product(path, scene, PRODUCT_VIDEO, &key)};
+    for (int i = 0; i < EXPORT_COUNT; i++)
+        card->exported |= card->exports[i] = contents_product(path, scene, exports[i], &key);
     snprintf(card->name, sizeof card->name, "%s", name);
-    st = read_about(&card->about, r->from->scripts, name, err);
-    if (!st) st = read_sights(card, r, pictures, err);
-    return st ? st : read_relit(card, r, err);
+    return read_about(&card->about, r->from->scripts, name, err) || read_sights(card, r, pictures, err) ||
+                   read_relit(card, r, err)
+               ? err->status
+               : ST_OK;
 }
 
 enum status remodel_contents_read(struct remodel_contents *c, const struct remodel_sources *from, struct err *err)
 {
     struct reading r = {.c = c, .from = from};
     struct dirent **names = NULL;
-    char model[FILE_PATH], path[FILE_PATH];
-    enum status st = file_path(path, from->folder, "views/lenses.txt", "", err);
-    if (!st) st = lens_list_read(&r.lenses, path, NULL, err);
-    if (!st) st = file_path(model, from->folder, "model", "", err);
-    if (!st) c->plan = file_if_there(model, "plan.svg");
-    if (!st) c->film = has_file(model, "tour/video.mp4");
-    if (!st) st = file_path(path, from->folder, "remodel", "", err);
-    const int count = st ? 0 : scandir(path, &names, NULL, alphasort);
+    const struct product_key key = {.film = "model/tour"};
+    char path[FILE_PATH];
+    if (!product_path_below(path, from->folder, PRODUCT_LENSES, NULL, err) &&
+        !lens_list_read(&r.lenses, path, NULL, err)) {
+        c->plan = contents_product_name(from->folder, PRODUCT_PLAN_PICTURE, &key);
+        c->film = contents_product(path, from->folder, PRODUCT_VIDEO, &key);
+        file_path(path, from->folder, "remodel", "", err);
+    }
+    const int count = err->status ? 0 : scandir(path, &names, NULL, alphasort);
     for (int i = 0; i < count; i++) {
-        if (!st && names[i]->d_name[0] != '.') st = read_edit(&r, names[i]->d_name, err);
+        if (!err->status && names[i]->d_name[0] != '.') read_edit(&r, names[i]->d_name, err);
         free(names[i]);
     }
     free(names);
     free(r.records);
     lens_list_release(&r.lenses);
-    return st;
+    return err->status;
 }
 
 void remodel_contents_release(struct remodel_contents *c)

@@ -40,51 +40,49 @@ static enum status read_photo(const struct texture_work *w, struct texture_view 
     static const char *const NAMES[] = {"R", "G", "B"};
     const struct photo_record *photo = w->c->view_cards[view].photo;
     struct exr_image im = {0};
-    char path[PATH_SIZE];
-    snprintf(path, sizeof path, "%s/views/%s.exr", w->folder, v->name);
-    enum status st = exr_read(&im, path, NAMES, 3, err);
-    if (!st) st = picture_from_exr(&v->photo, &im, photo ? photo->info.orientation : 1, SIGHT_HEIGHT, err);
+    char path[FILE_PATH];
+    if (!product_path_below(path, w->folder, PRODUCT_VIEW, &(struct product_key){.view = v->name}, err) &&
+        !exr_read(&im, path, NAMES, 3, err))
+        picture_from_exr(&v->photo, &im, photo ? photo->info.orientation : 1, SIGHT_HEIGHT, err);
     exr_image_release(&im);
-    return st;
+    return err->status;
 }
 
 static enum status read_sights(struct texture_work *w, char *const *names, struct err *err)
 {
     const int count = w->card->view_count;
-    enum status st = ST_OK;
-    for (int i = 0; !st && i < count; i++) {
+    for (int i = 0; !err->status && i < count; i++) {
         struct texture_view *v = &w->card->views[i];
         const int view = camera_set_find(&w->c->views, names[i]);
-        char path[PATH_SIZE];
+        char path[FILE_PATH];
         if (view < 0) return err_set(err, ST_DATA, "There is no view %s; bake it again.", names[i]);
         const struct photo_record *photo = w->c->view_cards[view].photo;
         snprintf(v->name, sizeof v->name, "%s", names[i]);
-        snprintf(path, sizeof path, "%s/ids/%s.exr", w->folder, v->name);
-        st = read_photo(w, v, view, err);
-        if (!st)
-            st = texture_sight_make(&w->sights[i], &w->atlas, &w->c->views.views[view], w->axes, path,
-                                    photo ? photo->info.orientation : 1, SIGHT_HEIGHT, err);
+        if (!product_path_below(path, w->folder, PRODUCT_IDS, &(struct product_key){.view = v->name}, err) &&
+            !read_photo(w, v, view, err))
+            texture_sight_make(&w->sights[i], &w->atlas, &w->c->views.views[view], w->axes, path,
+                               photo ? photo->info.orientation : 1, SIGHT_HEIGHT, err);
     }
-    return st;
+    return err->status;
 }
 
 /* Each page once: its own picture, and its texels in all views. */
 static enum status read_pages(struct texture_work *w, const char *folder, struct err *err)
 {
     struct texture_card *card = w->card;
-    enum status st = ST_OK;
-    for (int i = 0; !st && i < w->atlas.page_count; i++) {
+    for (int i = 0; !err->status && i < w->atlas.page_count; i++) {
         struct atlas_page page = {0};
-        st = atlas_page_read(&page, &w->atlas, i, folder, NULL, err);
-        for (int k = 0; !st && k < card->view_count; k++) texture_sight_add_page(&w->sights[k], &w->atlas, &page, i);
-        if (!st && i < PAGES_SHOWN) {
-            st = picture_from_atlas_page(&card->pages[i], &page, PAGE_HEIGHT, err);
+        atlas_page_read(&page, &w->atlas, i, folder, NULL, err);
+        for (int k = 0; !err->status && k < card->view_count; k++)
+            texture_sight_add_page(&w->sights[k], &w->atlas, &page, i);
+        if (!err->status && i < PAGES_SHOWN) {
+            picture_from_atlas_page(&card->pages[i], &page, PAGE_HEIGHT, err);
             card->page_sizes[i][0] = page.width;
             card->page_sizes[i][1] = page.height;
         }
         atlas_page_release(&page);
     }
-    return st;
+    return err->status;
 }
 
 static bool is_listed(char *const *names, int count, const char *name)
@@ -129,16 +127,18 @@ static enum status draw_views(struct texture_work *w, struct err *err)
     const size_t kinds = (size_t)ATLAS_VIEWS + (size_t)w->atlas.source_count;
     struct source_colour *colours = calloc(kinds, sizeof *colours);
     long long *counts = calloc(kinds, sizeof *counts);
-    enum status st = colours && counts ? list_sources(w, colours, err) : err_nomem(err, "sources", kinds);
-    for (int i = 0; !st && i < card->view_count; i++) {
-        st = picture_from_sight(&card->views[i].texture, &w->sights[i], err);
-        if (!st) st = picture_from_sources(&card->views[i].sources, &w->sights[i], colours, counts, err);
-    }
-    for (size_t i = 0; !st && i < kinds; i++) {
+    if (colours && counts)
+        list_sources(w, colours, err);
+    else
+        err_nomem(err, "sources", kinds);
+    for (int i = 0; !err->status && i < card->view_count; i++)
+        if (!picture_from_sight(&card->views[i].texture, &w->sights[i], err))
+            picture_from_sources(&card->views[i].sources, &w->sights[i], colours, counts, err);
+    for (size_t i = 0; !err->status && i < kinds; i++) {
         card->total += counts[i];
         if (i >= ATLAS_VIEWS) card->sources[i - ATLAS_VIEWS].pixels = counts[i];
     }
-    if (!st) {
+    if (!err->status) {
         card->empty = counts[ATLAS_NONE];
         card->synthesised = counts[ATLAS_SYNTHESISED];
         card->by_default = counts[ATLAS_DEFAULT];
@@ -146,7 +146,7 @@ static enum status draw_views(struct texture_work *w, struct err *err)
     }
     free(colours);
     free(counts);
-    return st;
+    return err->status;
 }
 
 static enum status read_card(struct texture_work *w, char *const *names, int count, const char *folder, struct err *err)
@@ -176,14 +176,14 @@ static enum status add_card(struct contents *c, const char *folder, const struct
     else
         snprintf(path, sizeof path, "%s/vita", folder);
     snprintf(card->name, sizeof card->name, "%s", photo ? photo : "");
-    enum status st = atlas_read(&w.atlas, path, NULL, &problem);
-    if (!st && photo) views = w.atlas.views, view_count = w.atlas.view_count;
-    if (!st) st = read_card(&w, views, view_count, path, &problem);
+    atlas_read(&w.atlas, path, NULL, &problem);
+    if (!problem.status && photo) views = w.atlas.views, view_count = w.atlas.view_count;
+    if (!problem.status) read_card(&w, views, view_count, path, &problem);
     for (int i = 0; w.sights && i < card->view_count; i++) texture_sight_release(&w.sights[i]);
     free(w.sights);
     atlas_release(&w.atlas);
-    c->texture_count += !st;
-    if (!st) return ST_OK;
+    c->texture_count += !problem.status;
+    if (!problem.status) return ST_OK;
     texture_card_release(card);
     return contents_note(c, err, "The texture atlas %s is not shown. %s", path, problem.text);
 }
@@ -206,34 +206,35 @@ void texture_card_release(struct texture_card *t)
 static enum status list_viewpoints(char ***names, int *count, const char *folder, struct err *err)
 {
     struct dirent **entries = NULL;
-    char path[PATH_SIZE], below[PATH_SIZE + 512];
+    char path[PATH_SIZE], below[FILE_PATH], atlas[FILE_PATH];
     snprintf(path, sizeof path, "%s/vdta", folder);
     const int found = scandir(path, &entries, NULL, alphasort);
     const size_t room = (size_t)(found > 0 ? found : 0) + 1;
     *names = calloc(room, sizeof **names);
-    enum status st = *names ? ST_OK : err_nomem(err, "names", room * sizeof **names);
+    if (!*names) err_nomem(err, "names", room * sizeof **names);
     for (int i = 0; i < found; i++) {
-        snprintf(below, sizeof below, "%s/%s/atlas.txt", path, entries[i]->d_name);
-        if (!st && entries[i]->d_name[0] != '.' && path_is_file(below)) {
-            (*names)[*count] = strdup(entries[i]->d_name);
+        const char *name = entries[i]->d_name;
+        snprintf(atlas, sizeof atlas, "vdta/%s", name);
+        if (!err->status && *name != '.' &&
+            contents_product(below, folder, PRODUCT_ATLAS, &(struct product_key){.atlas = atlas})) {
+            (*names)[*count] = strdup(name);
             if ((*names)[*count])
                 ++*count;
             else
-                st = err_nomem(err, "a name", strlen(entries[i]->d_name));
+                err_nomem(err, "a name", strlen(name));
         }
         free(entries[i]);
     }
     free(entries);
-    return st;
+    return err->status;
 }
 
 /* The VITA as two views show it: the first ones of two viewpoints, or of the scene. */
 static enum status add_vita(struct contents *c, const char *folder, const struct model_axes *axes, struct err *err)
 {
-    char path[PATH_SIZE];
+    char path[FILE_PATH];
     char *views[VITA_VIEWS];
-    snprintf(path, sizeof path, "%s/vita/atlas.txt", folder);
-    if (!path_is_file(path)) return ST_OK;
+    if (!contents_product(path, folder, PRODUCT_ATLAS, NULL)) return ST_OK;
     const int choices = c->texture_count ? c->texture_count : c->views.view_count;
     const int count = choices < VITA_VIEWS ? choices : VITA_VIEWS;
     for (int i = 0; i < count; i++) {
@@ -247,23 +248,22 @@ enum status contents_read_textures(struct contents *c, const char *folder, struc
 {
     struct model_axes axes;
     struct err problem = ERR_INIT;
-    char path[PATH_SIZE], vita[PATH_SIZE];
+    char path[FILE_PATH];
     char **names = NULL;
-    enum status st = list_viewpoints(&names, &c->viewpoint_count, folder, err);
+    list_viewpoints(&names, &c->viewpoint_count, folder, err);
     const int shown = c->viewpoint_count < VIEWPOINTS_SHOWN ? c->viewpoint_count : VIEWPOINTS_SHOWN;
-    snprintf(vita, sizeof vita, "%s/vita/atlas.txt", folder);
-    snprintf(path, sizeof path, "%s/model/axes.txt", folder);
-    const bool any = !st && c->has_views && (shown || path_is_file(vita));
-    if (any && model_axes_read(&axes, path, NULL, &problem)) {
-        st = contents_note(c, err, "The texture atlases are not shown. %s", problem.text);
+    const bool any = !err->status && c->has_views && (shown || contents_product(path, folder, PRODUCT_ATLAS, NULL));
+    if (any && (product_path_below(path, folder, PRODUCT_AXES, NULL, &problem) ||
+                model_axes_read(&axes, path, NULL, &problem))) {
+        contents_note(c, err, "The texture atlases are not shown. %s", problem.text);
     } else if (any) {
         c->textures = calloc((size_t)shown + 1, sizeof *c->textures);
-        if (!c->textures) st = err_nomem(err, "texture atlases", (size_t)shown * sizeof *c->textures);
-        for (int i = 0; !st && i < shown; i++)
-            st = add_card(c, folder, &axes, names[(int64_t)i * c->viewpoint_count / shown], NULL, 0, err);
-        if (!st) st = add_vita(c, folder, &axes, err);
+        if (!c->textures) err_nomem(err, "texture atlases", (size_t)shown * sizeof *c->textures);
+        for (int i = 0; !err->status && i < shown; i++)
+            add_card(c, folder, &axes, names[(int64_t)i * c->viewpoint_count / shown], NULL, 0, err);
+        if (!err->status) add_vita(c, folder, &axes, err);
     }
     for (int i = 0; names && i < c->viewpoint_count; i++) free(names[i]);
     free(names);
-    return st;
+    return err->status;
 }

@@ -84,21 +84,21 @@ static void make_view_cards(void *ctx, size_t begin, size_t end, int thread)
         struct view_card *card = &job->c->view_cards[i];
         int orientation = card->photo ? card->photo->info.orientation : 1;
         struct exr_image im = {0};
-        struct err err = ERR_INIT;
-        char path[PATH_SIZE];
+        struct err errors[3] = {ERR_INIT, ERR_INIT, ERR_INIT}; /* one picture is shown where another cannot be read */
+        const struct product_key key = {.view = card->view->name};
+        char path[FILE_PATH];
 
-        snprintf(path, sizeof path, "%s/views/%s.exr", job->folder, card->view->name);
-        if (path_is_file(path) && !exr_read(&im, path, NAMES, 3, &err))
-            picture_from_exr(&card->picture, &im, orientation, PICTURE_HEIGHT, &err);
+        if (contents_product(path, job->folder, PRODUCT_VIEW, &key) && !exr_read(&im, path, NAMES, 3, &errors[0]))
+            picture_from_exr(&card->picture, &im, orientation, PICTURE_HEIGHT, &errors[0]);
         exr_image_release(&im);
 
-        snprintf(path, sizeof path, "%s/depth/%s.exr", job->folder, card->view->name);
-        if (path_is_file(path)) read_depth(card, path, orientation, &err);
+        if (contents_product(path, job->folder, PRODUCT_DEPTH, &key)) read_depth(card, path, orientation, &errors[1]);
 
-        snprintf(path, sizeof path, "%s/evaluate/truth/%s.exr", job->folder, card->view->name);
-        if (metric_rows_find(&job->c->view_metrics, card->view->name, "depth.occluded") && path_is_file(path))
-            read_truth(card, path, orientation, &err);
-        if (err.status) snprintf(card->problem, sizeof card->problem, "%.*s", NOTE_SIZE - 1, err.text);
+        if (metric_rows_find(&job->c->view_metrics, card->view->name, "depth.occluded") &&
+            contents_product(path, job->folder, PRODUCT_TRUTH_DEPTH, &key))
+            read_truth(card, path, orientation, &errors[2]);
+        for (int k = 0; k < 3 && !card->problem[0]; k++)
+            snprintf(card->problem, sizeof card->problem, "%.*s", NOTE_SIZE - 1, errors[k].text);
     }
 }
 
@@ -147,8 +147,8 @@ enum status contents_read_views(struct contents *c, const char *folder, struct e
     if (camera_set_read(&c->views, path, NULL, &problem))
         return contents_note(c, err, "There are no views yet. %s", problem.text);
     c->has_views = true;
-    snprintf(path, sizeof path, "%s/views/lenses.txt", folder);
-    if (lens_list_read(&c->lenses, path, NULL, &problem) &&
+    if ((product_path_below(path, folder, PRODUCT_LENSES, NULL, &problem) ||
+         lens_list_read(&c->lenses, path, NULL, &problem)) &&
         contents_note(c, err, "The photographs of the views are unknown. %s", problem.text))
         return err->status;
     c->view_cards = calloc((size_t)c->views.view_count + 1, sizeof *c->view_cards);

@@ -8,9 +8,11 @@
 #include <string.h>
 
 #include "common/base/clock.h"
+#include "common/base/file_path.h"
 #include "common/base/log.h"
 #include "common/image/exr.h"
 #include "common/image/photo.h"
+#include "common/product/product.h"
 #include "stages/simulate/sensor.h"
 
 #define FILM_MM 36.0 /* width of the sensor that focal lengths in millimetres refer to */
@@ -59,16 +61,16 @@ static enum status write_exposure(const struct picture_job *job, const struct im
     unsigned char *rgb = malloc(bytes);
     char *file = photo_file_name(s, photo, k);
     char *path = file ? text_format(err, "%s/%s/%s", job->out, folder, file) : NULL;
-    enum status st = rgb && path ? ST_OK : err_nomem(err, "a photo", bytes);
-    if (!st) {
+    if (!rgb || !path) err_nomem(err, "a photo", bytes);
+    if (!err->status) {
         const struct rng rng = rng_make(s->sensor.seed, "sensor", file);
         sensor_expose(rgb, radiance, &s->sensor, exposure, &rng);
-        st = photo_write_jpeg(path, rgb, radiance->width, radiance->height, s->quality, &info, err);
+        photo_write_jpeg(path, rgb, radiance->width, radiance->height, s->quality, &info, err);
     }
     free(path);
     free(file);
     free(rgb);
-    return st;
+    return err->status;
 }
 
 enum status photo_write_colour(const struct image *radiance, bool half, const char *path, const struct provenance *prov,
@@ -76,16 +78,16 @@ enum status photo_write_colour(const struct image *radiance, bool half, const ch
 {
     static const char *const names[3] = {"R", "G", "B"};
     struct exr_image exr = {0};
-    enum status st = exr_image_init(&exr, radiance->width, radiance->height, err);
+    exr_image_init(&exr, radiance->width, radiance->height, err);
     const size_t count = (size_t)radiance->width * (size_t)radiance->height;
-    for (int c = 0; !st && c < 3; c++) {
+    for (int c = 0; !err->status && c < 3; c++) {
         struct exr_plane *plane = NULL;
-        st = exr_add_plane(&exr, names[c], half ? EXR_HALF : EXR_FLOAT, &plane, err);
-        for (size_t i = 0; !st && i < count; i++) plane->f[i] = radiance->data[3 * i + (size_t)c];
+        exr_add_plane(&exr, names[c], half ? EXR_HALF : EXR_FLOAT, &plane, err);
+        for (size_t i = 0; !err->status && i < count; i++) plane->f[i] = radiance->data[3 * i + (size_t)c];
     }
-    if (!st) st = exr_write(&exr, path, prov, err);
+    if (!err->status) exr_write(&exr, path, prov, err);
     exr_image_release(&exr);
-    return st;
+    return err->status;
 }
 
 static enum status write_surfaces(const struct world *w, const struct camera_view *view, const char *depth_path,
@@ -94,19 +96,17 @@ static enum status write_surfaces(const struct world *w, const struct camera_vie
     struct exr_image depth = {0}, ids = {0};
     struct exr_plane *z = NULL, *id = NULL;
     const struct shoot_lens *l = view->lens;
-    enum status st = exr_image_init(&depth, l->width, l->height, err);
-    if (!st) st = exr_image_init(&ids, l->width, l->height, err);
-    if (!st) st = exr_add_plane(&depth, "Z", EXR_FLOAT, &z, err);
-    if (!st) st = exr_add_plane(&ids, "id", EXR_UINT, &id, err);
-    if (!st) st = exr_set_attribute(&depth, "remodel:depth", l->kind == SHOOT_PINHOLE ? "z" : "ray", err);
-    if (!st) {
+    if (!exr_image_init(&depth, l->width, l->height, err) && !exr_image_init(&ids, l->width, l->height, err) &&
+        !exr_add_plane(&depth, "Z", EXR_FLOAT, &z, err) && !exr_add_plane(&ids, "id", EXR_UINT, &id, err))
+        exr_set_attribute(&depth, "remodel:depth", l->kind == SHOOT_PINHOLE ? "z" : "ray", err);
+    if (!err->status) {
         render_surfaces(z->f, id->u, w, view);
-        st = exr_write(&depth, depth_path, prov, err);
+        exr_write(&depth, depth_path, prov, err);
     }
-    if (!st) st = exr_write(&ids, ids_path, prov, err);
+    if (!err->status) exr_write(&ids, ids_path, prov, err);
     exr_image_release(&depth);
     exr_image_release(&ids);
-    return st;
+    return err->status;
 }
 
 static enum status render(struct image *radiance, const struct world *w, const struct camera_view *view,
@@ -114,12 +114,12 @@ static enum status render(struct image *radiance, const struct world *w, const s
 {
     const double started = clock_seconds();
     uint64_t rays = 0;
-    enum status st = render_radiance(radiance, w, view, name, params, &rays, err);
+    render_radiance(radiance, w, view, name, params, &rays, err);
     const double seconds = clock_seconds() - started;
-    if (!st)
+    if (!err->status)
         log_note("%s: %d x %d px in %.1f s, %.2f million rays per second", name, radiance->width, radiance->height,
                  seconds, (double)rays / seconds / 1e6);
-    return st;
+    return err->status;
 }
 
 /* True radiance with samples of its own has random numbers of its own: the photo's noise is not in it. */
@@ -130,9 +130,9 @@ static enum status render_truth(struct image *radiance, const struct picture_job
     if (!params.truth_samples) return render(radiance, w, view, photo->name, &params, err);
     params.samples = params.truth_samples;
     char *name = text_format(err, "%s (truth)", photo->name);
-    enum status st = name ? render(radiance, w, view, name, &params, err) : err->status;
+    if (name) render(radiance, w, view, name, &params, err);
     free(name);
-    return st;
+    return err->status;
 }
 
 /* `radiance` may be NULL: it is rendered. */
@@ -141,18 +141,17 @@ static enum status write_truth(const struct picture_job *job, const struct world
 {
     struct image made = {0};
     const struct camera_view view = render_view_make(job->shoot, photo);
-    char *depth = text_format(err, "%s/%s/depth/%s.exr", job->out, folder, photo->name);
-    char *ids = text_format(err, "%s/%s/ids/%s.exr", job->out, folder, photo->name);
-    char *hdr = text_format(err, "%s/%s/hdr/%s.exr", job->out, folder, photo->name);
-    enum status st = depth && ids && hdr ? ST_OK : err->status;
-    if (!st && !radiance) st = render_truth(&made, job, w, &view, photo, err);
-    if (!st) st = write_surfaces(w, &view, depth, ids, job->prov, err);
-    if (!st) st = photo_write_colour(radiance ? radiance : &made, true, hdr, job->prov, err);
+    const struct product_key key = {.name = photo->name};
+    char truth[FILE_PATH], depth[FILE_PATH], ids[FILE_PATH], hdr[FILE_PATH];
+    if (file_path(truth, job->out, folder, "", err) || product_path_in(depth, truth, PRODUCT_TRUE_DEPTH, &key, err) ||
+        product_path_in(ids, truth, PRODUCT_TRUE_IDS, &key, err) ||
+        product_path_in(hdr, truth, PRODUCT_TRUE_RADIANCE, &key, err))
+        return err->status;
+    if (!radiance) render_truth(&made, job, w, &view, photo, err);
+    if (!err->status && !write_surfaces(w, &view, depth, ids, job->prov, err))
+        photo_write_colour(radiance ? radiance : &made, true, hdr, job->prov, err);
     image_release(&made);
-    free(depth);
-    free(ids);
-    free(hdr);
-    return st;
+    return err->status;
 }
 
 enum status photo_make_truth(const struct picture_job *job, const struct world *w, const struct shoot_photo *photo,
@@ -168,11 +167,10 @@ enum status photo_make(const struct picture_job *job, const struct world *w, con
     const bool truth = photo->kind == SHOOT_PHOTO && !strcmp(job->params->truth, "yes");
     struct image radiance = {0};
     if (photo->kind == SHOOT_WITNESS) return photo_make_truth(job, w, photo, "truth/novel", err);
-    enum status st = render(&radiance, w, &view, photo->name, job->params, err);
-    if (!st) st = render_check_light(&radiance, photo->name, err);
-    if (!st && truth) st = write_truth(job, w, photo, "truth", job->params->truth_samples ? NULL : &radiance, err);
-    for (int k = 0; !st && k < shoot_exposures(job->shoot, photo).count; k++)
-        st = write_exposure(job, &radiance, photo, k, err);
+    if (!render(&radiance, w, &view, photo->name, job->params, err)) render_check_light(&radiance, photo->name, err);
+    if (!err->status && truth) write_truth(job, w, photo, "truth", job->params->truth_samples ? NULL : &radiance, err);
+    for (int k = 0; !err->status && k < shoot_exposures(job->shoot, photo).count; k++)
+        write_exposure(job, &radiance, photo, k, err);
     image_release(&radiance);
-    return st;
+    return err->status;
 }

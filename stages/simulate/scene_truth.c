@@ -8,10 +8,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/base/file_path.h"
 #include "common/base/outfile.h"
 #include "common/base/parallel.h"
 #include "common/base/progress.h"
 #include "common/capture/sfm_model.h"
+#include "common/product/product.h"
 #include "stages/simulate/photos.h"
 
 #define OFF_SURFACE 0.02 /* m: distance of an irradiance probe from its surface */
@@ -41,31 +43,30 @@ static enum status write_cameras(const struct shoot *s, unsigned kinds, const ch
                                  const struct provenance *prov, struct err *err)
 {
     struct sfm_model m = {0};
-    enum status st = ST_OK;
     m.cameras = calloc((size_t)s->lens_count + 1, sizeof *m.cameras);
     m.images = calloc((size_t)s->photo_count + 1, sizeof *m.images);
     int *index = calloc((size_t)s->lens_count + 1, sizeof *index);
-    if (!m.cameras || !m.images || !index) st = err_nomem(err, "cameras", (size_t)s->photo_count * sizeof *m.images);
-    for (int i = 0; !st && i < s->lens_count; i++) {
+    if (!m.cameras || !m.images || !index) err_nomem(err, "cameras", (size_t)s->photo_count * sizeof *m.images);
+    for (int i = 0; !err->status && i < s->lens_count; i++) {
         if (!lens_used(s, kinds, i)) continue;
         index[i] = m.camera_count;
         m.cameras[m.camera_count++] = (struct sfm_camera){i + 1, shoot_lens_camera(&s->lenses[i])};
     }
-    for (int i = 0; !st && i < s->photo_count; i++) {
+    for (int i = 0; !err->status && i < s->photo_count; i++) {
         const struct shoot_photo *photo = &s->photos[i];
         char *name = NULL;
         if (!(kinds >> photo->kind & 1)) continue;
         if (asprintf(&name, "%s.jpg", photo->name) < 0)
-            st = err_nomem(err, "a name", strlen(photo->name));
+            err_nomem(err, "a name", strlen(photo->name));
         else
             m.images[m.image_count] =
                 (struct sfm_image){m.image_count + 1, photo->cam_from_world, index[photo->lens], name, NULL, 0},
             m.image_count++;
     }
-    if (!st) st = sfm_model_write_text(&m, folder, prov, err);
+    if (!err->status) sfm_model_write_text(&m, folder, prov, err);
     model_release(&m);
     free(index);
-    return st;
+    return err->status;
 }
 
 /* ------------------------------------------------------------------------------------------------------- irradiance */
@@ -125,8 +126,8 @@ enum status truth_irradiance(struct irradiance_point *points, int count, const s
 {
     struct progress progress;
     bool *found = calloc((size_t)count + 1, sizeof *found);
-    enum status st = found ? ST_OK : err_nomem(err, "irradiance points", (size_t)count);
-    if (!st) {
+    if (!found) err_nomem(err, "irradiance points", (size_t)count);
+    if (!err->status) {
         struct irradiance_job job = {
             points, w,        s, rng_make((uint64_t)params->seed, "simulate", "irradiance"), params->irradiance_samples,
             found,  &progress};
@@ -134,14 +135,13 @@ enum status truth_irradiance(struct irradiance_point *points, int count, const s
         parallel_for((size_t)count, 1, find_irradiance, &job);
         progress_end(&progress);
     }
-    for (int i = 0; !st && i < count; i++)
+    for (int i = 0; !err->status && i < count; i++)
         if (!found[i])
-            st = err_set(
-                err, ST_DATA,
-                "the photos see no surface at which to compute irradiance; check where the cameras look, or set "
-                "[simulate] irradiance_points = 0.");
+            err_set(err, ST_DATA,
+                    "the photos see no surface at which to compute irradiance; check where the cameras look, or set "
+                    "[simulate] irradiance_points = 0.");
     free(found);
-    return st;
+    return err->status;
 }
 
 /* ------------------------------------------------------------------------------------------------------- text files */
@@ -219,46 +219,40 @@ static void print_lists(FILE *to, const struct text_job *job)
     }
 }
 
-static enum status write_text(const char *out, const char *file, void (*print)(FILE *to, const struct text_job *job),
-                              const struct text_job *job, const struct provenance *prov, struct err *err)
+/* FOLDER stands for the product's. */
+static enum status write_text(const char *folder, enum product_id id,
+                              void (*print)(FILE *to, const struct text_job *job), const struct text_job *job,
+                              const struct provenance *prov, struct err *err)
 {
     struct outfile f = {0};
-    char *path = NULL;
-    enum status st = asprintf(&path, "%s/%s", out, file) < 0 ? err_nomem(err, "a file name", strlen(out)) : ST_OK;
-    if (!st) st = outfile_open(&f, path, err);
-    if (!st) {
+    char path[FILE_PATH];
+    if (!product_path_in(path, folder, id, NULL, err) && !outfile_open(&f, path, err)) {
         if (prov) provenance_print(prov, f.fp);
         print(f.fp, job);
-        st = outfile_commit(&f, err);
+        outfile_commit(&f, err);
     }
     outfile_discard(&f);
-    free(path);
-    return st;
+    return err->status;
 }
 
-/* The described scene, whole, as OUT/TO. */
-static enum status write_scene(const struct world *w, const char *folder, const char *file, const char *out,
-                               const char *to, struct err *err)
+/* The described scene, whole, in the folder of a truth. */
+static enum status write_scene(const struct world *w, const char *folder, const char *file, const char *truth,
+                               struct err *err)
 {
-    char *path = NULL;
-    if (asprintf(&path, "%s/%s", out, to) < 0) return err_nomem(err, "a file name", strlen(out));
-    enum status st = scene_write(&w->scene, folder, file, path, err);
-    free(path);
-    return st;
+    char path[FILE_PATH];
+    if (product_path_in(path, truth, PRODUCT_TRUE_SCENE, NULL, err)) return err->status;
+    return scene_write(&w->scene, folder, file, path, err);
 }
 
-/* The cameras of one or more kinds, if there are any. */
+/* The cameras of one or more kinds, if there are any, in OUT/SUB. */
 static enum status write_cameras_of(const struct shoot *s, unsigned kinds, const char *out, const char *sub,
                                     const struct provenance *prov, struct err *err)
 {
-    char *folder = NULL;
+    char folder[FILE_PATH];
     bool any = false;
     for (int i = 0; i < s->photo_count; i++) any = any || kinds >> s->photos[i].kind & 1;
-    if (!any) return ST_OK;
-    if (asprintf(&folder, "%s/%s", out, sub) < 0) return err_nomem(err, "a file name", strlen(out));
-    enum status st = write_cameras(s, kinds, folder, prov, err);
-    free(folder);
-    return st;
+    if (!any || file_path(folder, out, sub, "", err)) return err->status;
+    return write_cameras(s, kinds, folder, prov, err);
 }
 
 static enum status write_references(const struct shoot *s, const char *out, const struct provenance *prov,
@@ -267,8 +261,10 @@ static enum status write_references(const struct shoot *s, const char *out, cons
     bool any = false;
     for (int i = 0; i < s->photo_count; i++) any = any || s->photos[i].kind == SHOOT_REFERENCE;
     if (!any) return ST_OK;
-    enum status st = write_cameras_of(s, PHOTOS | REFERENCES, out, "truth/lri", prov, err);
-    return st ? st : write_text(out, "lri/exposures.txt", print_exposures, job, NULL, err);
+    return write_cameras_of(s, PHOTOS | REFERENCES, out, "truth/lri", prov, err) ||
+                   write_text(out, PRODUCT_SIMULATED_EXPOSURES, print_exposures, job, NULL, err)
+               ? err->status
+               : ST_OK;
 }
 
 enum status truth_write(const struct world *w, const struct shoot *s, const char *folder, const char *out,
@@ -277,34 +273,29 @@ enum status truth_write(const struct world *w, const struct shoot *s, const char
     const int count = params->irradiance_points;
     struct irradiance_point *points = calloc((size_t)count + 1, sizeof *points);
     struct text_job job = {w, s, params, points};
-    enum status st = points ? ST_OK : err_nomem(err, "irradiance points", (size_t)count * sizeof *points);
-    if (!st) st = write_scene(w, folder, "scene.txt", out, "truth/scene.txt", err);
-    if (!st) st = write_text(out, "truth/faces.txt", print_faces, &job, prov, err);
-    if (!st) st = write_cameras_of(s, PHOTOS, out, "truth", prov, err);
-    if (!st) st = write_cameras_of(s, WITNESSES, out, "truth/novel", prov, err);
-    if (!st) st = write_references(s, out, prov, &job, err);
-    if (!st && count) st = truth_irradiance(points, count, w, s, params, err);
-    if (!st && count) st = write_text(out, "truth/irradiance.txt", print_irradiance, &job, prov, err);
-    if (!st) st = write_text(out, "photos.mk", print_lists, &job, NULL, err);
+    char truth[FILE_PATH];
+    if (!points) err_nomem(err, "irradiance points", (size_t)count * sizeof *points);
+    if (!err->status && !file_path(truth, out, "truth", "", err) && !write_scene(w, folder, "scene.txt", truth, err) &&
+        !write_text(truth, PRODUCT_TRUE_FACES, print_faces, &job, prov, err) &&
+        !write_cameras_of(s, PHOTOS, out, "truth", prov, err) &&
+        !write_cameras_of(s, WITNESSES, out, "truth/novel", prov, err))
+        write_references(s, out, prov, &job, err);
+    if (!err->status && count && !truth_irradiance(points, count, w, s, params, err))
+        write_text(truth, PRODUCT_TRUE_IRRADIANCE_POINTS, print_irradiance, &job, prov, err);
+    if (!err->status) write_text(out, PRODUCT_SIMULATED_MK, print_lists, &job, NULL, err);
     free(points);
-    return st;
+    return err->status;
 }
 
 enum status truth_write_edited(const struct world *w, const struct shoot *s, const char *folder, const char *out,
                                const char *edit, const struct provenance *prov, struct err *err)
 {
     struct text_job job = {.world = w};
-    char *from = NULL, *to = NULL, *scene = NULL, *faces = NULL;
-    enum status st = ST_OK;
-    if (asprintf(&from, "scene-%s.txt", edit) < 0 || asprintf(&to, "truth/edited-%s", edit) < 0 ||
-        asprintf(&scene, "%s/scene.txt", to) < 0 || asprintf(&faces, "%s/faces.txt", to) < 0)
-        st = err_nomem(err, "a file name", strlen(edit));
-    if (!st) st = write_scene(w, folder, from, out, scene, err);
-    if (!st) st = write_text(out, faces, print_faces, &job, prov, err);
-    if (!st) st = write_cameras_of(s, PHOTOS | WITNESSES, out, to, prov, err);
-    free(from);
-    free(to);
-    free(scene);
-    free(faces);
-    return st;
+    char from[FILE_PATH], below[FILE_PATH], truth[FILE_PATH];
+    snprintf(from, sizeof from, "scene-%s.txt", edit);
+    snprintf(below, sizeof below, "truth/edited-%s", edit);
+    if (file_path(truth, out, below, "", err) || write_scene(w, folder, from, truth, err) ||
+        write_text(truth, PRODUCT_TRUE_FACES, print_faces, &job, prov, err))
+        return err->status;
+    return write_cameras_of(s, PHOTOS | WITNESSES, out, below, prov, err);
 }

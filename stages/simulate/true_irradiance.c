@@ -11,10 +11,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/base/file_path.h"
 #include "common/base/outfile.h"
 #include "common/base/parallel.h"
 #include "common/base/progress.h"
 #include "common/light/surface_points.h"
+#include "common/product/product.h"
 
 #define SAME_POINT 1e-5 /* of the distance: points closer together are the same */
 
@@ -81,25 +83,24 @@ enum status irradiance_picture(const struct picture_job *job, const struct world
 {
     struct image image = {0};
     struct progress progress;
-    char *path = NULL, *key = NULL;
+    char truth[FILE_PATH], path[FILE_PATH], *key = NULL;
+    const struct product_key of_photo = {.name = photo->name};
     const struct camera_view view = render_view_make(job->shoot, photo);
-    if (asprintf(&path, "%s/%s/irradiance/%s.exr", job->out, folder, photo->name) < 0) path = NULL;
-    if (asprintf(&key, "irradiance %s", photo->name) < 0) key = NULL;
-    enum status st = path && key ? ST_OK : err_nomem(err, "a file name", strlen(job->out));
-    if (!st) st = image_init(&image, view.lens->width, view.lens->height, 3, err);
-    if (!st) {
+    if (asprintf(&key, "irradiance %s", photo->name) < 0) return err_nomem(err, "a name", strlen(photo->name));
+    if (!file_path(truth, job->out, folder, "", err) &&
+        !product_path_in(path, truth, PRODUCT_TRUE_IRRADIANCE, &of_photo, err) &&
+        !image_init(&image, view.lens->width, view.lens->height, 3, err)) {
         struct picture p = {.world = w, .edited = edited, .view = view, .to = &image, .progress = &progress};
         p.rng = rng_make((uint64_t)job->params->seed, "simulate", key);
         p.samples = samples_of(job->params);
         progress_start(&progress, key, view.lens->height, "rows");
         parallel_for((size_t)view.lens->height, 1, picture_rows, &p);
         progress_end(&progress);
-        st = photo_write_colour(&image, false, path, job->prov, err);
+        photo_write_colour(&image, false, path, job->prov, err);
     }
     image_release(&image);
-    free(path);
     free(key);
-    return st;
+    return err->status;
 }
 
 /* ----------------------------------------------------------------------------------------------------------- points */
@@ -142,8 +143,8 @@ static enum status write_points(const struct point_list *l, const char *path, co
                                 struct err *err)
 {
     struct outfile f = {0};
-    enum status st = outfile_open(&f, path, err);
-    if (!st) {
+    outfile_open(&f, path, err);
+    if (!err->status) {
         if (prov) provenance_print(prov, f.fp);
         fputs("# world position, normal, irradiance E rgb = integral L cos (same units as hdr radiance, no 1/pi)\n",
               f.fp);
@@ -152,28 +153,23 @@ static enum status write_points(const struct point_list *l, const char *path, co
             fprintf(f.fp, "%.9g %.9g %.9g %.9g %.9g %.9g %.9g %.9g %.9g\n", p->at.x, p->at.y, p->at.z, p->normal.x,
                     p->normal.y, p->normal.z, p->irradiance.r, p->irradiance.g, p->irradiance.b);
         }
-        st = outfile_commit(&f, err);
+        outfile_commit(&f, err);
     }
     outfile_discard(&f);
-    return st;
+    return err->status;
 }
 
 enum status irradiance_points(const struct picture_job *job, const struct world *w, const char *points,
                               const char *folder, struct err *err)
 {
     struct point_list l = {.world = w, .samples = job->params->irradiance_samples};
-    char *path = NULL;
-    enum status st = read_points(&l, points, err);
-    if (!st && asprintf(&path, "%s/%s/irradiance-points.txt", job->out, folder) < 0) {
-        path = NULL;
-        st = err_nomem(err, "a file name", strlen(job->out));
-    }
-    if (!st) {
+    char truth[FILE_PATH], path[FILE_PATH];
+    if (!read_points(&l, points, err) && !file_path(truth, job->out, folder, "", err) &&
+        !file_path(path, truth, "irradiance-points.txt", "", err)) {
         l.rng = rng_make((uint64_t)job->params->seed, "simulate", "irradiance points");
         parallel_for((size_t)l.count, 1, find_points, &l);
-        st = write_points(&l, path, job->prov, err);
+        write_points(&l, path, job->prov, err);
     }
-    free(path);
     free(l.list);
-    return st;
+    return err->status;
 }
