@@ -45,11 +45,12 @@ static void orient_establishing_dolly(struct move_ends *e, const struct validity
 static void fill_frames(struct camera_path *path, double *fractions, const struct validity *v,
                         const struct move_ends *e, const char *ease)
 {
+    const struct vec3 at[2] = {e->at[0], e->at[1]};
     for (int i = 0; i < path->frame_count; i++) {
         const char *name = path->frames[i].camera.name;
         const double t = path_fraction(i, path->frame_count, ease);
         fractions[i] = t;
-        path->frames[i].camera = shot_camera(&v->shot, &v->move, e->at, t);
+        path->frames[i].camera = shot_camera(&v->shot, &v->move, at, t);
         path->frames[i].camera.name = name;
     }
 }
