@@ -6,7 +6,7 @@
  * of colours and gradients, as in [Bleyer 2011]; the segment's is the weighted mean over the pixels that the neighbour
  * sees. Costs are normalized so that 0 is a good match of this view and 1 a chance one (match_calibrate()), and
  * clamped to [MATCH_BEST, MATCH_WORST]. The neighbours' costs are sorted and averaged with weights that fall by
- * RANK_WEIGHT: the segment may be occluded in the worse ones. Only the best `ranks` count, and after match_select() a
+ * RANK_WEIGHT: the segment may be occluded in the worse ones. Only the best `best_neighbours` count, and after match_select() a
  * segment is compared with no others.
  *
  * A texture element has 2 x FEATURE_CHANNELS bytes, those of a pixel and of the pixel below. 32 bytes from one address
@@ -188,7 +188,7 @@ void match_row(const struct matcher *m, int neighbour, struct plane plane, int x
 float match_rank(const struct matcher *m, const float *sorted, int count, int useful, float out_of_view)
 {
     double sum = 0, total = 0, weight = 1;
-    if (useful > m->ranks) useful = m->ranks;
+    if (useful > m->params->best_neighbours) useful = m->params->best_neighbours;
     for (int k = 0; k < useful; k++, weight *= RANK_WEIGHT) {
         sum += weight * (double)(k < count ? sorted[k] : out_of_view);
         total += weight;
@@ -224,7 +224,7 @@ static inline float ranked_cost(const struct matcher *m, int segment, int pixels
         costs[at] = cost;
         order[at] = 1u << k;
     }
-    for (int k = 0; best && k < count && k < m->ranks; k++) *best |= order[k];
+    for (int k = 0; best && k < count && k < m->params->best_neighbours; k++) *best |= order[k];
     return match_rank(m, costs, count, useful, out_of_view);
 }
 
@@ -274,7 +274,7 @@ int match_evidence(const struct matcher *m, int segment, struct plane plane, uns
         costs[at] = own;
     }
     double sum = 0, total = 0, weight = 1;
-    for (int k = 0; k < count && k < m->ranks; k++, weight *= RANK_WEIGHT) {
+    for (int k = 0; k < count && k < m->params->best_neighbours; k++, weight *= RANK_WEIGHT) {
         sum += weight * (double)costs[k];
         total += weight;
     }
@@ -311,13 +311,13 @@ static void select_neighbours(void *ctx, size_t begin, size_t end, int thread)
             order[at] = k;
         }
         m->use[i] = 0;
-        for (int n = 0; n < count && n < m->ranks; n++) m->use[i] |= 1u << order[n];
+        for (int n = 0; n < count && n < m->params->best_neighbours; n++) m->use[i] |= 1u << order[n];
     }
 }
 
 enum status match_select(struct matcher *m, const struct plane *planes, const unsigned *occluded, struct err *err)
 {
-    if (m->neighbour_count <= m->ranks) return ST_OK;
+    if (m->neighbour_count <= m->params->best_neighbours) return ST_OK;
     unsigned *use = malloc(((size_t)m->segments->count + 1) * sizeof *use);
     if (!use) return err_nomem(err, "neighbours of segments", (size_t)m->segments->count * sizeof *use);
     m->use = use;
@@ -349,7 +349,7 @@ static void calibrate_segments(void *ctx, size_t begin, size_t end, int thread)
             double best = 1, sum = 0;
             int count = 0;
             job->best[at] = job->mean[at] = NOT_VISIBLE;
-            if (visible >= m->ranks && i % ALL_NEIGHBOURS) continue;
+            if (visible >= m->params->best_neighbours && i % ALL_NEIGHBOURS) continue;
             for (int d = 0; d < job->depths; d++) {
                 const struct plane plane = {
                     0, 0, job->min_inverse_z + (job->max_inverse_z - job->min_inverse_z) * d / (job->depths - 1)};

@@ -7,6 +7,7 @@
 
 #include "stages/segment_depth/neighbours.h"
 #include "stages/segment_depth/oversegment.h"
+#include "stages/segment_depth/segment_params.h"
 
 struct plane {
     double a, b, c;
@@ -50,6 +51,7 @@ struct match_neighbour {
 };
 
 struct matcher {
+    const struct segment_params *params; /* best_neighbours: how many of the neighbours' costs count, the lowest */
     const struct segmentation *segments;
     int *first;   /* count + 1: where each segment's pixels begin in x, y, weight and features; multiples of eight */
     float *x, *y; /* pixel centres */
@@ -59,7 +61,6 @@ struct matcher {
     uint8_t *edge;     /* weight of each pixel row by row, 1 .. MATCH_FULL_WEIGHT */
     struct match_neighbour neighbours[MAX_NEIGHBOURS];
     int neighbour_count;
-    int ranks;                    /* how many of the neighbours' costs count: the lowest */
     unsigned *use;                /* of each segment, bit k: matched with neighbour k; NULL: with all */
     float noise;                  /* of the view, grey levels */
     unsigned excluded;            /* bit k: neighbour k hardly tells good matches from chance ones; ignored */
@@ -100,9 +101,10 @@ static inline bool match_project(const struct match_neighbour *n, double u, doub
     return true;
 }
 
-/* m is {0} on entry; release it also after a failure. */
+/* m is {0} on entry; release it also after a failure. It keeps the segments and the parameters, which stay the
+ * caller's. */
 enum status matcher_init(struct matcher *m, const struct segmentation *segments, const struct gamma_image *reference,
-                         struct err *err);
+                         const struct segment_params *params, struct err *err);
 
 /* Adds a neighbour. Its picture is halved while it is more than 1.6 times as fine as the view at inverse depth
  * `typical`; its colours are multiplied by the median ratio at the points that both views observed, and its gradients

@@ -69,16 +69,13 @@ static void put_pixel(struct matcher *m, int i, int pixel, const uint8_t *packed
 }
 
 enum status matcher_init(struct matcher *m, const struct segmentation *s, const struct gamma_image *reference,
-                         struct err *err)
+                         const struct segment_params *params, struct err *err)
 {
     const double gain[3] = {1, 1, 1};
     double jacobian[2][2] = {{1, 0}, {0, 1}};
     size_t room = 0;
-    *m = (struct matcher){.segments = s,
-                          .good_cost = 0,
-                          .chance_cost = 1,
-                          .ranks = MAX_NEIGHBOURS,
-                          .noise = match_image_noise(reference)};
+    *m = (struct matcher){
+        .params = params, .segments = s, .good_cost = 0, .chance_cost = 1, .noise = match_image_noise(reference)};
     m->first = malloc(((size_t)s->count + 1) * sizeof *m->first);
     if (!m->first) return err_nomem(err, "a matcher", (size_t)s->count * sizeof *m->first);
     for (int k = 0; k < s->count; k++) {
@@ -230,7 +227,6 @@ enum status matcher_add(struct matcher *m, const struct camera_set *set, int vie
 
 void matcher_take(struct matcher *m, struct matcher *half)
 {
-    m->ranks = half->ranks;
     m->excluded = half->excluded;
     m->good_cost = half->good_cost;
     m->chance_cost = half->chance_cost;

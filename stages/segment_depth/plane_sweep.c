@@ -75,7 +75,7 @@ static void sweep_segments(void *ctx, size_t begin, size_t end, int thread)
             const struct plane plane = facing_plane(w, p);
             struct plane horizontal;
             /* planes are about a pixel apart: the neighbours that match one best match the next one best */
-            const bool known = p & 1 && __builtin_popcount(best) == job->m->ranks;
+            const bool known = p & 1 && __builtin_popcount(best) == job->m->params->best_neighbours;
             cost[p] = match_cost_sweep(job->m, (int)i, plane, known ? best : ~0u, &best);
             if (horizontal_plane(job, g, p, &horizontal)) {
                 const float other =

@@ -399,7 +399,7 @@ static enum status prepare_half(struct level *half, struct level *full, struct s
 {
     if (!level_halve(half, full, err) &&
         !oversegment(&half->segments, &half->gamma, v->params->segment_pixels, v->params->compactness, err) &&
-        !matcher_init(&half->matcher, &half->segments, &half->gamma, err))
+        !matcher_init(&half->matcher, &half->segments, &half->gamma, v->params, err))
         oversegment_double(&full->segments, &half->segments, &full->gamma, err);
     v->set = &half->set;
     v->seen = &half->seen;
@@ -440,10 +440,9 @@ enum status view_depth(struct layered_depth *out, int neighbours[MAX_NEIGHBOURS]
     }
     if (!err->status && half) prepare_half(half, &full, &v, err);
     if (!err->status && !half) oversegment(&full.segments, &full.gamma, own.segment_pixels, own.compactness, err);
-    if (!err->status) matcher_init(&full.matcher, &full.segments, &full.gamma, err);
+    if (!err->status) matcher_init(&full.matcher, &full.segments, &full.gamma, params, err);
     for (int k = 0; !err->status && k < *neighbour_count; k++)
         add_neighbour(&full, half, view_idx, neighbours[k], source, 0.5 * (v.min_inverse_z + v.max_inverse_z), err);
-    v.m->ranks = params->best_neighbours;
     if (!err->status) match_calibrate(v.m, v.min_inverse_z, v.max_inverse_z, err);
     v.neighbour_count = *neighbour_count;
     if (!err->status) solve(out, &v, err);

@@ -106,9 +106,9 @@ static void evidence_is_the_mean_by_rank_of_those_that_see_it(void **state)
         assert_true(low >= 0 && high >= 0);
         assert_int_equal(match_evidence(&b.matcher, i, truth, 0, &both), 2);
         assert_near(both, ((double)each[low] + RANK_WEIGHT * (double)each[high]) / (1 + RANK_WEIGHT), 1e-6);
-        b.matcher.ranks = 1;
+        b.params.best_neighbours = 1;
         match_evidence(&b.matcher, i, truth, 0, &best);
-        b.matcher.ranks = MAX_NEIGHBOURS;
+        b.params.best_neighbours = MAX_NEIGHBOURS;
         assert_true(best == each[low]);
         const struct plane off = {truth.a, truth.b, truth.c + 8 * b.problem.step};
         match_evidence(&b.matcher, i, off, 0, &wrong);
@@ -126,7 +126,7 @@ static void select_at_truth(int ranks, unsigned occluded)
     static unsigned all[MAX_SEGMENTS];
     struct err err = ERR_INIT;
     for (int i = 0; i < b.segments.count; i++) planes[i] = truth, all[i] = occluded;
-    b.matcher.ranks = ranks;
+    b.params.best_neighbours = ranks;
     if (match_select(&b.matcher, planes, occluded ? all : NULL, &err)) fail_msg("%s", err.text);
 }
 

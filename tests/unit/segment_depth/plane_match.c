@@ -18,6 +18,7 @@ struct bench {
 };
 
 static struct bench b; /* large; zeroed by start() */
+static const struct segment_params all_neighbours = {.best_neighbours = MAX_NEIGHBOURS};
 
 /* View 0 shows a slanted textured wall only. */
 static void start(void)
@@ -44,7 +45,7 @@ static void match_all(void)
     image_release(&photo);
     assert_int_equal(oversegment(&b.segments, &b.reference, 64, 8, &err), ST_OK);
     assert_int_equal(neighbours_find_points(&b.seen, &b.scene.set, 0, &err), ST_OK);
-    assert_int_equal(matcher_init(&b.matcher, &b.segments, &b.reference, &err), ST_OK);
+    assert_int_equal(matcher_init(&b.matcher, &b.segments, &b.reference, &all_neighbours, &err), ST_OK);
     for (int k = 1; k < b.scene.set.view_count; k++) {
         struct gamma_image other = {0};
         assert_int_equal(scene_photo(&b.scene, k, &photo, &err), ST_OK);
@@ -203,7 +204,7 @@ static void a_small_exposure_change_matches_without_points(void **state)
     struct image photo = {0};
     const struct observed_points none = {0};
     struct matcher m = {0};
-    assert_int_equal(matcher_init(&m, &b.segments, &b.reference, &err), ST_OK);
+    assert_int_equal(matcher_init(&m, &b.segments, &b.reference, &all_neighbours, &err), ST_OK);
     assert_int_equal(scene_photo(&b.scene, 1, &photo, &err), ST_OK);
     assert_int_equal(gamma_image_make(&other, &photo, (struct tone){0.5, 0.5}, &err), ST_OK);
     assert_int_equal(matcher_add(&m, &b.scene.set, 0, 1, &none, 0.25, &b.reference, &other, &err), ST_OK);
@@ -450,7 +451,7 @@ static void pictures_of_one_pixel_and_of_none_are_matched(void **state)
         assert_int_equal(gamma_image_make(&b.reference, &photo, (struct tone){1, 0.5}, &err), ST_OK);
         assert_int_equal(gamma_image_make(&other, &photo, (struct tone){1, 0.5}, &err), ST_OK);
         assert_int_equal(oversegment(&b.segments, &b.reference, 64, 8, &err), ST_OK);
-        assert_int_equal(matcher_init(&b.matcher, &b.segments, &b.reference, &err), ST_OK);
+        assert_int_equal(matcher_init(&b.matcher, &b.segments, &b.reference, &all_neighbours, &err), ST_OK);
         assert_int_equal(matcher_add(&b.matcher, &b.scene.set, 0, 1, &b.seen, 0.25, &b.reference, &other, &err), ST_OK);
         assert_int_equal(b.segments.count, k ? 0 : 1);
         if (!k) assert_near(match_cost(&b.matcher, 0, (struct plane){0, 0, 0.25}, 0), 0, 1e-3);

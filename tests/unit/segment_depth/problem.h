@@ -25,6 +25,7 @@ static inline void bench_empty(void)
 {
     memset(&b, 0, sizeof b);
     b.params = (struct segment_params)SEGMENT_PARAMS_DEFAULT;
+    b.params.best_neighbours = MAX_NEIGHBOURS;
 }
 
 /* Three views in a row, half a unit apart, the first in the middle. */
@@ -52,7 +53,7 @@ static inline void bench_make(double min_inverse_z, double max_inverse_z)
             continue;
         }
         assert_int_equal(oversegment(&b.segments, &b.reference, 64, 8, &err), ST_OK);
-        assert_int_equal(matcher_init(&b.matcher, &b.segments, &b.reference, &err), ST_OK);
+        assert_int_equal(matcher_init(&b.matcher, &b.segments, &b.reference, &b.params, &err), ST_OK);
     }
     assert_int_equal(match_calibrate(&b.matcher, min_inverse_z, max_inverse_z, &err), ST_OK);
     assert_int_equal(
