@@ -8,7 +8,9 @@ CXX := g++
 PKGS := OpenEXR libturbojpeg libpng libtiff-4 libraw_r libexif inih libxxhash qhull_r libdeflate
 WARN := -Wall -Wextra -Wshadow -Wstrict-prototypes -Wmissing-prototypes -Wvla -Wpointer-arith -Wwrite-strings
 FLAGS.release := -O3 -g
-FLAGS.asan := -O2 -g -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer
+# with the sanitizers' code between, gcc warns of bounds and texts that are as large as they need be
+FLAGS.asan := -O2 -g -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer \
+    -Wno-stringop-overflow -Wno-stringop-overread -Wno-format-truncation
 FLAGS.debug := -O0 -g
 FLAGS.clang := -O2 -g
 # no instruction that only newer processors have, on any processor: slower, the same products (common/math/lanes.h)
