@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # generate.sh BIN 'STAGE...' FOLDER - the files that come from the stages and the table of products: FOLDER/docs/man/STAGE.1,
-# FOLDER/configs/default.cfg, the table of stages in FOLDER/docs/architecture.md, the table of products in FOLDER/docs/formats.md. A test compares the committed files with them (tests/lint/generated.sh).
+# FOLDER/configs/default.cfg, the table of stages in FOLDER/docs/architecture.md, the table of products in FOLDER/docs/formats.md. A test compares the committed files with them (tests/lint/tree.sh).
 set -euo pipefail
 bin=$1 stages=$2 folder=$3
 

@@ -6,8 +6,8 @@
  * of colours and gradients, as in [Bleyer 2011]; the segment's is the weighted mean over the pixels that the neighbour
  * sees. Costs are normalized so that 0 is a good match of this view and 1 a chance one (match_calibrate()), and
  * clamped to [MATCH_BEST, MATCH_WORST]. The neighbours' costs are sorted and averaged with weights that fall by
- * RANK_WEIGHT: the segment may be occluded in the worse ones. Only the best `best_neighbours` count, and after match_select() a
- * segment is compared with no others.
+ * RANK_WEIGHT (match_rank(), match_evidence()): the segment may be occluded in the worse ones. Only the best
+ * `best_neighbours` count, and after match_select() a segment is compared with no others.
  *
  * A texture element has 2 x FEATURE_CHANNELS bytes, those of a pixel and of the pixel below. 32 bytes from one address
  * hold the four corners of a bilinear sample: i16x16_weigh_u8() weighs them in vertical pairs, and the two columns

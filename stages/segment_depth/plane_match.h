@@ -51,7 +51,7 @@ struct match_neighbour {
 };
 
 struct matcher {
-    const struct segment_params *params; /* best_neighbours: how many of the neighbours' costs count, the lowest */
+    const struct segment_params *params; /* of the cost: best_neighbours, how many of the lowest costs count */
     const struct segmentation *segments;
     int *first;   /* count + 1: where each segment's pixels begin in x, y, weight and features; multiples of eight */
     float *x, *y; /* pixel centres */

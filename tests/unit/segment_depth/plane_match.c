@@ -17,13 +17,14 @@ struct bench {
     double step;        /* of 1/z: a pixel in view 1 */
 };
 
-static struct bench b; /* large; zeroed by start() */
-static const struct segment_params all_neighbours = {.best_neighbours = MAX_NEIGHBOURS};
+static struct bench b;                                                /* large; zeroed by start() */
+static struct segment_params all_neighbours = SEGMENT_PARAMS_DEFAULT; /* but with all neighbours; set by start() */
 
 /* View 0 shows a slanted textured wall only. */
 static void start(void)
 {
     memset(&b, 0, sizeof b);
+    all_neighbours.best_neighbours = MAX_NEIGHBOURS;
     scene_wall(&b.scene, 0, 0, 4, 6, 6, 0.35);
     scene_view(&b.scene, W, H, FOCAL, 0, 0, 0, 0);
 }
