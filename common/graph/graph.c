@@ -84,7 +84,7 @@ static void touch_set(struct graph *g, const struct named_text *set)
     if (utimensat(AT_FDCWD, path, times, 0)) err_errno(&g->err, "set the time of", path);
 }
 
-void graph_list(struct graph *g, enum graph_list list, const char *path)
+void graph_list(struct graph *g, enum graph_list_kind list, const char *path)
 {
     if (path) graph_add_word(g, &g->lists[list], path);
 }

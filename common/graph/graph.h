@@ -83,8 +83,8 @@ const char *graph_set_path(struct graph *g, const char *set);
 
 /* Products that evaluate (measured) and report (shown) wait for. SHOWN: not on the page of two photos; REMODEL_SHOWN:
  * on the page of edits. */
-enum graph_list { GRAPH_MEASURED, GRAPH_SHOWN, GRAPH_ALWAYS_SHOWN, GRAPH_REMODEL_SHOWN, GRAPH_LISTS };
-void graph_list(struct graph *g, enum graph_list list, const char *path);
+enum graph_list_kind { GRAPH_MEASURED, GRAPH_SHOWN, GRAPH_ALWAYS_SHOWN, GRAPH_REMODEL_SHOWN, GRAPH_LISTS };
+void graph_list(struct graph *g, enum graph_list_kind list, const char *path);
 
 /* Keeps O/stamp/FILE, whose content is `text`; NULL removes it. The file is rewritten only when the text changes. Rules
  * need stamps for facts that no file's time shows, for example that a file was deleted. Returns the stamp's path. */
@@ -117,7 +117,7 @@ void rule_ignores_code(struct graph *g); /* a change of the program alone does n
 
 void rule_makes(struct graph *g, const char *path);
 void rule_needs(struct graph *g, const char *path); /* NULL: nothing */
-void rule_needs_list(struct graph *g, enum graph_list list);
+void rule_needs_list(struct graph *g, enum graph_list_kind list);
 void rule_needs_set(struct graph *g, const char *set);
 void rule_needs_cameras(struct graph *g); /* of the views: cameras, images, points3D.txt */
 void rule_needs_force(struct graph *g);   /* it is stale whatever the times are */

@@ -195,7 +195,7 @@ void rule_then(struct graph *g, const char *line)
     graph_add(g, &g->rule.then, line);
 }
 
-void rule_needs_list(struct graph *g, enum graph_list list) { graph_add_text(g, &g->rule.needs, &g->lists[list]); }
+void rule_needs_list(struct graph *g, enum graph_list_kind list) { graph_add_text(g, &g->rule.needs, &g->lists[list]); }
 
 void rule_takes(struct graph *g, const char *option, const char *path)
 {

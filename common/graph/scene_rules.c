@@ -116,7 +116,7 @@ void rule_light_change(struct graph *g, const struct scene_facts *f, const char 
     rule_option(g, "--scene", f->folder);
 }
 
-void graph_list_if(struct graph *g, enum graph_list list, const char *path, bool wanted)
+void graph_list_if(struct graph *g, enum graph_list_kind list, const char *path, bool wanted)
 {
     if (wanted || path_is_file(path)) graph_list(g, list, path);
 }

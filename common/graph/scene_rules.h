@@ -68,7 +68,7 @@ void rule_draws_photo(struct graph *g, const char *edit, const char *pictures, c
                       const char *goal);
 
 /* Adds a product to a list if a run makes it (wanted), or if it exists. */
-void graph_list_if(struct graph *g, enum graph_list list, const char *path, bool wanted);
+void graph_list_if(struct graph *g, enum graph_list_kind list, const char *path, bool wanted);
 
 /* Whether the scene asks for one of these words (blanks between them). */
 bool scene_asks_for_any(const struct scene_facts *f, const char *words);
