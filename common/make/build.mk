@@ -32,7 +32,8 @@ CFLAGS := -std=c11 -D_GNU_SOURCE $(LANES) -ffp-contract=off -fopenmp $(WARN) $(F
 STRICT := $(if $(CI),-Werror)
 # C++ only where a library has no C interface: OpenCV, Ceres, OpenEXR's C++ library
 CXXFLAGS := -std=c++17 $(if $(X86),-mavx2 -mno-fma) -ffp-contract=off -Wall -Wextra -Wshadow $(FLAGS.$(FLAVOR)) \
-  -I. -isystem /usr/include/eigen3 -isystem /usr/include/opencv4 $(shell pkg-config --cflags OpenEXR 2>/dev/null)
+  -I. -isystem /usr/include/eigen3 -isystem /usr/include/opencv4 \
+  $(patsubst -I%,-isystem %,$(shell pkg-config --cflags OpenEXR 2>/dev/null))
 LDLIBS := -lOpenEXRCore $(shell pkg-config --libs $(PKGS) 2>/dev/null) -lm
 # what a stage alone needs, and common/math and common/light; a program gets those libraries that its objects use
 MORE_LIBS := $(sort $(foreach s,$(STAGES),$(LIBS.$(s)))) -lembree3 -lceres -lglog -lcholmod -lstdc++
