@@ -6,6 +6,7 @@
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "common/base/textfile.h"
 #include "common/graph/graph_parts.h"
@@ -153,7 +154,7 @@ void rule_needs_listed(struct graph *g, const char *deps)
     /* "TARGET: FILE FILE ...", and "FILE:" for each of them */
     if (textfile_next(&t) && !textfile_word(&t, "a target", &word, &missing))
         while (textfile_more(&t) && !textfile_word(&t, "a file", &word, &missing)) {
-            if (!path_is_file(word))
+            if (access(word, F_OK))
                 rule_needs_force(g);
             else if (!has_word(&g->rule.needs, word))
                 rule_needs(g, word);

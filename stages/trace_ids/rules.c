@@ -4,6 +4,8 @@
  * VIEW.txt, and its next call sees whether VIEW.exr changed. */
 #include "common/graph/scene_rules.h"
 
+#include <unistd.h>
+
 static void say_model(struct graph *g)
 {
     rule_takes(g, "--model", PATH(g, MODEL));
@@ -41,7 +43,7 @@ static void reveal_rule(struct graph *g, const struct scene_facts *f, const char
         rule_takes(g, "--edit", edited);
     }
     rule_needs(g, edits);
-    if (!path_is_file(reveal)) rule_needs_force(g);
+    if (access(reveal, F_OK)) rule_needs_force(g);
     rule_own(g);
     rule_option(g, "--view", view);
     rule_option(g, "--out", reveal);
