@@ -4,7 +4,7 @@
  * exits: it sets the error, and the stage's main reports it once. The first error wins: later ones are ignored.
  * err_context() puts text in front of it.
  *
- * The error itself says whether a function goes on; there is no second variable for it:
+ * Test err->status to decide whether to continue; keep no separate status variable:
  *
  *     if (!a_read(&a, path, err) && !b_make(&b, &a, err)) b_write(&b, out, err);
  *     for (int i = 0; !err->status && i < n; i++) c_add(&c, i, err);

@@ -19,7 +19,7 @@ static enum status read_views(struct evaluation *e, struct view_set *set, const 
         if (!lens)
             err_set(err, ST_DATA, "%s has no line for view %s of images.txt; import the model again.", path, view);
         else if (photo_list_find_id(&e->photos, lens->photo) < 0)
-            err_set(err, ST_DATA, "%s: there is no record of photo %s; import photos and model again.", path,
+            err_set(err, ST_DATA, "%s: photo %s has no record; import the photos and the model again.", path,
                     lens->photo);
     }
     return err->status;

@@ -107,7 +107,8 @@ static enum status make_film(const struct job *job, struct provenance *prov, str
     struct film_settings film = {.name = job->effect, .fps = job->params.fps, .moves = job->moves};
     read_views(&set, &ups, job->views, job->records, prov, err);
     if (!err->status && !set.view_count)
-        err_set(err, ST_DATA, "%s has no views: there is no scene to film.", job->views);
+        err_set(err, ST_DATA, "%s has no views, so no film can be planned; check that SfM placed the photographs.",
+                job->views);
     if (!err->status && !(order = malloc((size_t)set.view_count * sizeof *order)))
         err_nomem(err, "views", (size_t)set.view_count * sizeof *order);
     if (!err->status && !central_views(order, &set, err)) {

@@ -131,7 +131,7 @@ exact_radiance_has_no_error()
 
 pictures_are_compared_through_their_own_cameras()
 {
-    says 'skipped pictures of novel: there is no folder novel'
+    says 'skipped pictures of novel: the folder novel'
     mkdir -p t/rendered/novel
     cp t/evaluate/cameras/novel/*.txt t/rendered/novel/
     cp truth/novel/hdr/c.exr t/rendered/novel/
@@ -202,14 +202,14 @@ faces_of_the_model_and_its_edit_agree()
     says 'note: most pixels that edited.wide.faces misses are on'
     rm -r t/remodel/wide
     measure
-    says 'skipped walls of edited.wide: there is no remodel/wide/plan.txt'
-    says 'skipped faces of edited.wide: there is no remodel/wide/model.txt'
+    says 'skipped walls of edited.wide: remodel/wide/plan.txt is missing'
+    says 'skipped faces of edited.wide: remodel/wide/model.txt is missing'
     mv right/wide t/remodel/
 }
 
 irradiance_is_compared_on_the_model_and_elsewhere()
 {
-    says 'skipped irradiance: there is no relight/irradiance.txt'
+    says 'skipped irradiance: relight/irradiance.txt is missing'
     mkdir -p t/relight
     paste -d' ' <(grep -v '^#' t/evaluate/irradiance_points.txt) <(grep -v '^#' truth/irradiance.txt | awk '{ print $7 * 1.1, $8 * 1.1, $9 * 1.1 }') >all.txt
     head -n 100 all.txt >t/relight/irradiance.txt
@@ -246,7 +246,7 @@ pictures_of_irradiance_are_compared_before_and_after()
     cp -r sim-scene/truth/irradiance truth/
     for part in dark same; do mkdir truth/edited-$part; cp -r sim-scene/truth/edited-$part/irradiance truth/edited-$part/; done
     measure
-    says 'skipped pictures of irradiance: there is no folder irradiance'
+    says 'skipped pictures of irradiance: the folder irradiance'
     # exact pictures, beside the points; photo c is no picture of the truth's folder of photos, but of the views
     mkdir -p t/relight t/rendered/edited-dark t/rendered/edited-same
     cp -r truth/irradiance t/relight/
@@ -325,7 +325,7 @@ relit_pictures_are_compared_where_light_changes()
 
 hidden_faces_are_scored_apart()
 {
-    says 'skipped pictures of shell: there is no folder shell'
+    says 'skipped pictures of shell: the folder shell'
     mkdir -p t/rendered/shell
     cp truth/shell/hdr/*.exr t/rendered/shell/
     measure

@@ -72,7 +72,7 @@ static enum status mark_model(bool *on, bool *known, struct evaluation *e, const
     if (evaluation_path(path, e, PRODUCT_MODEL, NULL, err)) return err->status;
     *known = path_is_file(path);
     if (!*known)
-        return metric_note(&e->table, err, "skipped irradiance on surfaces of the model: there is no model/model.txt");
+        return metric_note(&e->table, err, "skipped irradiance on surfaces of the model: model/model.txt is missing");
     if (!model_rays_read(&model, path, MODEL_WITHOUT_GLASS, e->prov, err))
         model_frame_read(&frame, e, same, vec3_make(0, 0, 0), err);
     for (int i = 0; !err->status && i < truth->count; i++)
@@ -160,7 +160,7 @@ static enum status evaluate_points(struct evaluation *e, struct err *err)
         !irradiance_list_read(&job.truth, path, err))
         write_points(e, &job.truth, err);
     if (!err->status && !path_is_file(found)) {
-        metric_note(&e->table, err, "skipped irradiance: there is no relight/irradiance.txt");
+        metric_note(&e->table, err, "skipped irradiance: relight/irradiance.txt is missing");
     } else if (!err->status) {
         const size_t capacity = (size_t)job.truth.count + 1;
         bool *marks = calloc(3 * capacity, sizeof *marks);

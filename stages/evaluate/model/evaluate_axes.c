@@ -76,7 +76,7 @@ enum status evaluate_axes(struct evaluation *e, struct err *err)
     struct true_room room = {0};
     char path[FILE_PATH];
     if (evaluation_path(path, e, PRODUCT_AXES, NULL, err)) return err->status;
-    if (!path_is_file(path)) return metric_note(t, err, "skipped axes and heights: there is no model/axes.txt");
+    if (!path_is_file(path)) return metric_note(t, err, "skipped axes and heights: model/axes.txt is missing");
     if (!e->truth_folder) return metric_note(t, err, "skipped axes and heights: no TRUTH is given");
     if (!e->aligned) return metric_note(t, err, "skipped axes and heights: the cameras do not tell where the truth is");
     if (true_room_read(&room, e->truth_folder, e->prov, err)) return err->status;

@@ -156,7 +156,7 @@ static enum status compare(struct evaluation *e, const char *prefix, const char 
         file_path(scene, e->truth_folder, folder, "scene.txt", err))
         return err->status;
     if (!path_is_file(path))
-        return metric_note(&e->table, err, "skipped faces of %s: there is no %s/model.txt", prefix, model);
+        return metric_note(&e->table, err, "skipped faces of %s: %s/model.txt is missing", prefix, model);
     if (!e->aligned)
         return metric_note(&e->table, err, "skipped faces of %s: the cameras do not tell where the truth is", prefix);
     if (!path_is_file(faces) || !path_is_file(scene))

@@ -82,7 +82,7 @@ enum status evaluate_walls(struct evaluation *e, struct err *err)
     struct true_room room = {0};
     char path[FILE_PATH];
     if (evaluation_path(path, e, PRODUCT_PLAN, NULL, err)) return err->status;
-    if (!path_is_file(path)) return metric_note(t, err, "skipped walls: there is no model/plan.txt");
+    if (!path_is_file(path)) return metric_note(t, err, "skipped walls: model/plan.txt is missing");
     if (!e->truth_folder) return metric_note(t, err, "skipped walls: no TRUTH is given");
     if (!e->aligned) return metric_note(t, err, "skipped walls: the cameras do not tell where the truth is");
     struct provenance unused = {0}; /* evaluate_axes() has added these files to e->prov */
@@ -111,7 +111,7 @@ static enum status evaluate_edit(struct evaluation *e, const char *edit, struct 
         evaluation_path(plan, e, PRODUCT_PLAN, &(struct product_key){.model = where}, err))
         return err->status;
     if (!path_is_file(plan))
-        return metric_note(&e->table, err, "skipped walls of %s: there is no %s/plan.txt", prefix, where);
+        return metric_note(&e->table, err, "skipped walls of %s: %s/plan.txt is missing", prefix, where);
     if (!e->aligned)
         return metric_note(&e->table, err, "skipped walls of %s: the cameras do not tell where the truth is", prefix);
     if (!path_is_file(path))

@@ -18,8 +18,7 @@ enum status model_pixels_read(struct model_pixels *m, struct evaluation *e, cons
         return metric_note(&e->table, err,
                            "skipped %s on surfaces of the model: the cameras do not tell where the truth is", what);
     if (!path_is_file(path))
-        return metric_note(&e->table, err, "skipped %s on surfaces of the model: there is no %s/model.txt", what,
-                           where);
+        return metric_note(&e->table, err, "skipped %s on surfaces of the model: %s/model.txt is missing", what, where);
     if (!model_rays_read(&m->model, path, MODEL_WITHOUT_GLASS, e->prov, err))
         model_frame_read(&m->frame, e, same, vec3_make(0, 0, 0), err);
     m->known = !err->status;

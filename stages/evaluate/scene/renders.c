@@ -137,7 +137,7 @@ enum status renders_find_in(struct renders *list, struct evaluation *e, const st
         return metric_note(t, err, "skipped pictures of %s: the truth has none (hdr/NAME.exr)", set->prefix);
     if (file_path(images, folder, "images.txt", "", err)) return err->status;
     if (!path_is_folder(folder))
-        return metric_note(t, err, "skipped pictures of %s: there is no folder %s of rendered pictures", set->prefix,
+        return metric_note(t, err, "skipped pictures of %s: the folder %s of rendered pictures is missing", set->prefix,
                            where);
     list->own_cameras = path_is_file(images);
     if (list->own_cameras && !e->aligned)

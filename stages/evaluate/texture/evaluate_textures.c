@@ -255,7 +255,7 @@ static enum status add_errors(struct evaluation *e, const struct texture_result 
             metric_note(&e->table, err, "skipped %s.%s: no face has %d of these texels with a true radiance", r->prefix,
                         part_names[k], MIN_FACE_TEXELS);
     }
-    if (!err->status) add_share(e, r, "compared", t->compared, t->texels, "there is no texel of a known face", err);
+    if (!err->status) add_share(e, r, "compared", t->compared, t->texels, "no texel belongs to a known face", err);
     if (!err->status && !is_vita(r))
         add_share(e, r, "clutter_avoided", t->avoided, t->clutter,
                   "no texel's own photo is known to show clutter of another colour", err);
@@ -334,7 +334,7 @@ enum status evaluate_textures(struct evaluation *e, struct err *err)
     struct texture_job job = {0};
     textures_find(&job.textures, e, err);
     if (!err->status && !job.textures.viewpoint_count && !job.textures.vita)
-        metric_note(&e->table, err, "skipped textures: there is no vdta and no vita");
+        metric_note(&e->table, err, "skipped textures: both vdta and vita are missing");
     else if (!err->status)
         prepare(&job, e, err);
     if (!err->status && !measure(&job, e, "texture", false, err)) measure(&job, e, "texture.vita", true, err);

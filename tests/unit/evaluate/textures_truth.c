@@ -199,7 +199,7 @@ static void without_a_truth_the_reason_is_noted(void **state)
     no_atlases(NULL);
     e = scene_with_truth();
     assert_ok(evaluate_textures(&e, &err), err);
-    assert_string_equal(e.table.notes[0], "skipped textures: there is no vdta and no vita");
+    assert_string_equal(e.table.notes[0], "skipped textures: both vdta and vita are missing");
     assert_int_equal(e.table.count, 0);
     scene_release(&e);
 }

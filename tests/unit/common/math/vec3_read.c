@@ -24,26 +24,28 @@ static void coordinates_are_read_in_order(void **state)
     textfile_release(&t);
 }
 
-static void a_missing_coordinate_is_named(void **state)
+typedef enum status (*reader)(struct textfile *t, const char *what, struct vec3 *v, struct err *err);
+
+static void assert_refused(reader read, const char *text, const char *words)
 {
-    struct textfile t = line_of("1 2");
+    struct textfile t = line_of(text);
     struct err err = ERR_INIT;
     struct vec3 v;
-    (void)state;
-    assert_int_equal(vec3_read(&t, "the centre", &v, &err), ST_DATA);
-    assert_non_null(strstr(err.text, "the centre"));
+    assert_int_equal(read(&t, "the centre", &v, &err), ST_DATA);
+    assert_non_null(strstr(err.text, words));
     textfile_release(&t);
+}
+
+static void a_missing_coordinate_is_named(void **state)
+{
+    (void)state;
+    assert_refused(vec3_read, "1 2", "the centre");
 }
 
 static void a_point_out_of_bounds_is_refused(void **state)
 {
-    struct textfile t = line_of("0 1e9 1e9");
-    struct err err = ERR_INIT;
-    struct vec3 v;
     (void)state;
-    assert_int_equal(vec3_read_bounded(&t, "a point", &v, &err), ST_DATA);
-    assert_non_null(strstr(err.text, "at most 1e9"));
-    textfile_release(&t);
+    assert_refused(vec3_read_bounded, "0 1e9 1e9", "at most 1e9");
 }
 
 int main(void)
