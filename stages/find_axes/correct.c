@@ -12,6 +12,7 @@
 
 #include <string.h>
 
+#include "common/math/rotation_fit.h"
 #include "stages/find_axes/directions.h"
 
 enum { ITERATIONS = 20 };
@@ -113,9 +114,9 @@ enum status correct_axes(struct mat3 *axes, struct vec3 *errors, struct correcti
         if (!o.edges) return ST_OK;
         if (!round) before = o.chi2;
         for (int k = 0; k < 3; k++) o.information.m[k][k] += 1 / (PRIOR * PRIOR);
-        inverse = direction_inverse_of_known(o.information, &unknown);
+        inverse = rotation_inverse_of_known(o.information, &unknown);
         const struct vec3 w = mat3_apply(inverse, vec3_sub(o.right, vec3_scale(total, 1 / (PRIOR * PRIOR))));
-        turned = direction_turned_by(turned, w);
+        turned = rotation_turn(turned, w);
         total = vec3_add(total, w);
     }
     c->edges = o.edges;
@@ -126,4 +127,12 @@ enum status correct_axes(struct mat3 *axes, struct vec3 *errors, struct correcti
     errors->y = fmin(errors->y, sqrt(inverse.m[1][1]));
     errors->z = fmin(errors->z, sqrt(inverse.m[2][2]));
     return ST_OK;
+}
+
+enum status correct_edge_plane(struct vec3 *normal, const struct mark *edge, const struct mark_list *fix,
+                               const struct mark_scene *scene, struct err *err)
+{
+    struct marked_edge e = {0};
+    if (!find_edge(&e, edge, fix, scene, 1, err)) *normal = e.normal;
+    return err->status;
 }

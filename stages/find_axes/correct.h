@@ -15,4 +15,8 @@ struct correction {
 enum status correct_axes(struct mat3 *axes, struct vec3 *errors, struct correction *c, const struct mark_list *fix,
                          const struct mark_scene *scene, double click, struct err *err);
 
+/* The normal of the plane through the camera that a marked edge lies in. ST_DATA with file and line. */
+enum status correct_edge_plane(struct vec3 *normal, const struct mark *edge, const struct mark_list *fix,
+                               const struct mark_scene *scene, struct err *err);
+
 #endif

@@ -12,6 +12,7 @@
 
 #include <stdlib.h>
 
+#include "common/math/rotation_fit.h"
 #include "stages/find_axes/blocks.h"
 
 enum {
@@ -24,50 +25,12 @@ enum {
 static const double CAP = 10 * M_PI / 180;   /* max angle between an axis and the normals that count for it */
 static const double REACH = 15 * M_PI / 180; /* max angle between an axis and the normals that refine it */
 static const double MIN_SPREAD = 0.3 * M_PI / 180;
-static const double KNOWN = 1e-4;     /* of the largest eigenvalue: smaller ones are undetermined by the data */
 static const double BIWEIGHT = 4.685; /* standard deviations at which a residual's weight is zero (95 % efficiency) */
 
 struct bin {
     struct vec3 sum, direction;
     double count, mass; /* mass: points within CAP of the direction */
 };
-
-struct mat3 direction_turned_by(struct mat3 a, struct vec3 w)
-{
-    const double angle = vec3_length(w), half = angle > 0 ? sin(angle / 2) / angle : 0.5;
-    const struct quat q = {cos(angle / 2), half * w.x, half * w.y, half * w.z};
-    const struct mat3 r = mat3_multiply(mat3_from_quat(q), a);
-    const struct vec3 x = vec3_normalize(mat3_row(r, 0));
-    const struct vec3 y = vec3_normalize(vec3_sub(mat3_row(r, 1), vec3_scale(x, vec3_dot(x, mat3_row(r, 1)))));
-    const struct vec3 z = vec3_cross(x, y);
-    return (struct mat3){{{x.x, x.y, x.z}, {y.x, y.y, y.z}, {z.x, z.y, z.z}}};
-}
-
-struct mat3 direction_inverse_of_known(struct mat3 a, struct mat3 *unknown)
-{
-    struct mat3 vectors, inverse = {0};
-    double values[3];
-    *unknown = (struct mat3){0};
-    mat3_eigen_symmetric(a, values, &vectors);
-    for (int k = 0; k < 3; k++) {
-        const bool known = values[k] > KNOWN * values[2];
-        struct mat3 *to = known ? &inverse : unknown;
-        for (int i = 0; i < 3; i++)
-            for (int j = 0; j < 3; j++) to->m[i][j] += vectors.m[k][i] * vectors.m[k][j] / (known ? values[k] : 1);
-    }
-    return inverse;
-}
-
-struct vec3 direction_sandwich(struct mat3 inverse, const struct vec3 *gradients, int count)
-{
-    struct mat3 middle = {0};
-    for (int b = 0; b < count; b++) {
-        const double g[3] = {gradients[b].x, gradients[b].y, gradients[b].z};
-        for (int i = 0; i < 9; i++) middle.m[i / 3][i % 3] += g[i / 3] * g[i % 3];
-    }
-    const struct mat3 c = mat3_multiply(mat3_multiply(inverse, middle), inverse);
-    return vec3_make(sqrt(fmax(c.m[0][0], 0)), sqrt(fmax(c.m[1][1], 0)), sqrt(fmax(c.m[2][2], 0)));
-}
 
 /* ------------------------------------------------------------------------------------------------------------ peaks */
 
@@ -238,8 +201,7 @@ static void refine(struct mat3 *axes, const struct point_cloud *cloud)
             weights[k] += w;
             sum = vec3_add(sum, turn);
         }
-        *axes =
-            direction_turned_by(*axes, mat3_apply(direction_inverse_of_known(information_of(weights), &unknown), sum));
+        *axes = rotation_turn(*axes, mat3_apply(rotation_inverse_of_known(information_of(weights), &unknown), sum));
     }
 }
 
@@ -264,9 +226,20 @@ enum status direction_errors(struct vec3 *errors, const struct mat3 *axes, struc
         *sum = vec3_add(*sum, turn);
     }
     if (!err->status)
-        *errors = direction_sandwich(direction_inverse_of_known(information_of(weights), &unknown), sums, BLOCKS);
+        *errors = rotation_sandwich(rotation_inverse_of_known(information_of(weights), &unknown), sums, BLOCKS);
     free(sums);
     return err->status;
+}
+
+void directions_count(struct directions *d, const struct point_cloud *cloud)
+{
+    for (int k = 0; k < 3; k++) d->part[k] = 0;
+    for (size_t i = 0; i < cloud->count; i++) {
+        double angle;
+        const int k = nearest_axis(mat3_apply(d->axes, cloud_normal(&cloud->points[i])), &angle);
+        d->part[k] += angle < CAP;
+    }
+    for (int k = 0; k < 3 && cloud->count; k++) d->part[k] /= (double)cloud->count;
 }
 
 enum status directions_find(struct directions *d, const struct point_cloud *cloud, double min_part, struct err *err)
@@ -284,12 +257,7 @@ enum status directions_find(struct directions *d, const struct point_cloud *clou
         const struct vec3 z = vec3_cross(x, y);
         d->axes = (struct mat3){{{x.x, x.y, x.z}, {y.x, y.y, y.z}, {z.x, z.y, z.z}}};
         refine(&d->axes, cloud);
-        for (size_t i = 0; i < cloud->count; i++) {
-            double angle;
-            const int k = nearest_axis(mat3_apply(d->axes, cloud_normal(&cloud->points[i])), &angle);
-            d->part[k] += angle < CAP;
-        }
-        for (int k = 0; k < 3; k++) d->part[k] /= (double)cloud->count;
+        directions_count(d, cloud);
     }
     int enough = 0;
     for (int k = 0; k < 3; k++) enough += d->part[k] >= min_part;

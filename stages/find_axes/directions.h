@@ -12,16 +12,11 @@ struct directions {
 /* min_part: fraction of the points that two of the axes must have. ST_DATA: there are no points, or no two axes. */
 enum status directions_find(struct directions *d, const struct point_cloud *cloud, double min_part, struct err *err);
 
+/* Sets d->part of given axes; 0 without points. */
+void directions_count(struct directions *d, const struct point_cloud *cloud);
+
 /* Standard errors of the rotations about the axes, from the normals, radians. origin: the middle of the scene. */
 enum status direction_errors(struct vec3 *errors, const struct mat3 *axes, struct vec3 origin,
                              const struct point_cloud *cloud, struct err *err);
-
-/* a rotated by the length of w, radians, about w, in its target's frame, and orthogonalized. */
-struct mat3 direction_turned_by(struct mat3 a, struct vec3 w);
-/* Pseudo-inverse of a symmetric matrix; *unknown: projection to the directions of negligible eigenvalues. */
-struct mat3 direction_inverse_of_known(struct mat3 a, struct mat3 *unknown);
-/* Standard errors of least squares: the sandwich estimator, from the inverse information and the gradients of blocks
- * (blocks.h). */
-struct vec3 direction_sandwich(struct mat3 inverse, const struct vec3 *gradients, int count);
 
 #endif

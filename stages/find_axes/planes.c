@@ -10,6 +10,7 @@
 #include <stdint.h>
 #include <stdlib.h>
 
+#include "common/math/rotation_fit.h"
 #include "stages/find_axes/blocks.h"
 #include "stages/find_axes/directions.h"
 
@@ -177,8 +178,8 @@ static void step(struct plane_search *s, const struct plane_sums *sums, bool tur
         for (int i = 0; i < 9; i++) information->m[i / 3][i % 3] += scale * q->lever_lever.m[i / 3][i % 3];
         add_outer(information, mean, -scale * q->w);
     }
-    if (turn) w = vec3_scale(mat3_apply(direction_inverse_of_known(*information, &unknown), right), -1);
-    s->axes = direction_turned_by(s->axes, w);
+    if (turn) w = vec3_scale(mat3_apply(rotation_inverse_of_known(*information, &unknown), right), -1);
+    s->axes = rotation_turn(s->axes, w);
     for (int j = 0; j < s->count; j++) {
         const struct plane_sums *q = &sums[j];
         struct room_plane *p = &s->planes[j];
@@ -209,8 +210,8 @@ static enum status find_errors(const struct plane_search *s, const struct plane_
         struct vec3 *g = &gradients[block_of(p, s->size) * CLASSES + s->classes[i]];
         *g = vec3_add(*g, vec3_scale(a, w * d));
     }
-    const struct mat3 inverse = direction_inverse_of_known(*information, &unknown);
-    const struct vec3 errors = direction_sandwich(inverse, gradients, BLOCKS * CLASSES);
+    const struct mat3 inverse = rotation_inverse_of_known(*information, &unknown);
+    const struct vec3 errors = rotation_sandwich(inverse, gradients, BLOCKS * CLASSES);
     tilt->x = hypot(errors.x, sqrt(fmax(unknown.m[0][0], 0)) * tilt->x);
     tilt->y = hypot(errors.y, sqrt(fmax(unknown.m[1][1], 0)) * tilt->y);
     tilt->z = hypot(errors.z, sqrt(fmax(unknown.m[2][2], 0)) * tilt->z);

@@ -1,6 +1,7 @@
 /* marks.c - the user's marks: files, positions in the room, corrections, scale. */
 #include "stages/find_axes/marks.h"
 
+#include "common/math/rotation_fit.h"
 #include "stages/find_axes/correct.h"
 #include "tests/unit/find_axes/synthetic_room.h"
 #include "tests/unit/scratch.h"
@@ -75,7 +76,7 @@ static struct room_spec turned_room(void)
 {
     const struct vec3 w = vec3_scale(vec3_normalize(vec3_make(1, 2, -1)), 0.7);
     return (struct room_spec){.ceiling = 1,
-                              .world_from_room = direction_turned_by(ROOM_IDENTITY, w),
+                              .world_from_room = rotation_turn(ROOM_IDENTITY, w),
                               .scale = 0.37,
                               .origin = vec3_make(1, 2, 3)};
 }
@@ -200,7 +201,7 @@ static void corners_and_edges_correct_axes_and_floor(void **state)
     put(text, sizeof text, &r, "edge c", 0, vec3_make(5, 4, 1.5), "");
     read_marks(&fix, text, MARKS_FIX);
     const struct mat3 room_from_world = mat3_transpose(r.spec.world_from_room);
-    struct mat3 axes = direction_turned_by(room_from_world, vec3_make(0.03, -0.02, 0.04));
+    struct mat3 axes = rotation_turn(room_from_world, vec3_make(0.03, -0.02, 0.04));
     struct vec3 errors = {1, 1, 1};
     struct correction c;
     assert_ok(correct_axes(&axes, &errors, &c, &fix, &scene, 1, &err), err);

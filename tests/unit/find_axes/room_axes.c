@@ -1,6 +1,7 @@
 /* room_axes.c - axes, floor and ceiling of synthetic rooms. */
 #include "stages/find_axes/room_axes.h"
 
+#include "common/math/rotation_fit.h"
 #include "tests/unit/find_axes/synthetic_room.h"
 #include "tests/unit/scratch.h"
 
@@ -15,7 +16,7 @@ static struct room_spec plain(void)
 static struct mat3 turned(double degrees)
 {
     const struct vec3 axis = vec3_normalize(vec3_make(0.3, -0.5, 0.8));
-    return direction_turned_by(ROOM_IDENTITY, vec3_scale(axis, degrees * M_PI / 180));
+    return rotation_turn(ROOM_IDENTITY, vec3_scale(axis, degrees * M_PI / 180));
 }
 
 static void find(struct room *room, const struct synthetic_room *r)
