@@ -1,0 +1,118 @@
+/* frame_walls.c - floor, ceiling and walls of rooms whose lines are known. */
+#include "tests/unit/find_frame/line_room.h"
+
+static const struct frame_params PARAMS = FRAME_PARAMS_DEFAULT;
+static const double size = 2.5;
+
+static void find(struct room_frame *f, struct line_room *r, const struct line_room_spec *spec)
+{
+    struct err err = ERR_INIT;
+    struct foot_lines lines = {0};
+    *f = (struct room_frame){0};
+    line_room_make(r, spec);
+    assert_ok(line_directions_find(f, &r->lines, line_room_up(), &PARAMS, &err), err);
+    assert_true(f->known);
+    int *headings = malloc(((size_t)r->lines.count + 1) * sizeof *headings);
+    assert_non_null(headings);
+    for (int i = 0; i < r->lines.count; i++) headings[i] = line_heading(f, &r->lines.lines[i]);
+    assert_ok(levels_find_floor(f, &r->lines, headings, &r->set, size, &err), err);
+    assert_true(f->floor.known);
+    assert_ok(foot_lines_add(&lines, &r->lines, headings, f, &r->set, f->floor.height, false, 3 * size, &err), err);
+    assert_ok(walls_find(f, &lines, &r->lines, headings, &r->set, size, &err), err);
+    assert_ok(levels_find_ceiling(f, &r->lines, headings, &r->set, size, &err), err);
+    assert_true(f->ceiling.known);
+    assert_ok(foot_lines_add(&lines, &r->lines, headings, f, &r->set, f->ceiling.height, true, 3 * size, &err), err);
+    assert_ok(walls_find(f, &lines, &r->lines, headings, &r->set, size, &err), err);
+    foot_lines_release(&lines);
+    free(headings);
+}
+
+/* A wall of the room: on x = offset (axis 0) or y = offset (1), from `from` to `to` along the other axis; inside: on
+ * which side the room is. */
+struct true_wall {
+    int axis, inside;
+    double offset, from, to;
+};
+
+static const struct true_wall walls[] = {{0, 1, -2, -2.5, 1.5}, {0, -1, 3, -2.5, 0.5}, {1, 1, -2.5, -2, 3},
+                                         {1, -1, 1.5, -2, 1.8}, {1, -1, 0.5, 1.8, 3},  {0, -1, 1.8, 0.5, 1.5}};
+
+/* Whether a wall of the frame is a true one, to a tolerance; *covered: the part of it that it covers. */
+static bool is_wall(const struct true_wall *t, const struct room_frame *f, const struct frame_wall *w,
+                    const struct line_room *r, double tolerance, double *covered)
+{
+    const struct vec3 across = mat3_apply(r->room_from_world, frame_across(f, w->heading)),
+                      along = mat3_apply(r->room_from_world, f->headings[w->heading].along);
+    const double normal = t->axis ? across.y : across.x, run = t->axis ? along.x : along.y;
+    if (fabs(normal) < 0.9) return false;
+    const double a = w->from * run, b = w->to * run, from = fmin(a, b), to = fmax(a, b);
+    *covered = (fmin(to, t->to) - fmax(from, t->from)) / (t->to - t->from);
+    return fabs(w->offset * normal - t->offset) < tolerance && w->side * (normal > 0 ? 1 : -1) == t->inside &&
+           *covered > 0;
+}
+
+static void floor_ceiling_and_walls_of_an_empty_room_are_found(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 6; k++) {
+        const struct line_room_spec spec = {.seed = (uint64_t)k,
+                                            .noise = k ? 0.7 : 0,
+                                            .pose_error = k ? 0.05 : 0,
+                                            .stray = k ? 0.5 : 0,
+                                            .tilt = 4,
+                                            .heading = 20 * k,
+                                            .stations = 5};
+        struct line_room r;
+        struct room_frame f;
+        int wrong = 0;
+        find(&f, &r, &spec);
+        assert_true(fabs(f.floor.height - ROOM_FLOOR) < (k ? 0.02 : 0.01));
+        assert_true(fabs(f.ceiling.height - ROOM_CEILING) < (k ? 0.02 : 0.01));
+        for (size_t t = 0; t < sizeof walls / sizeof *walls; t++) {
+            double best = 0, covered;
+            for (int i = 0; i < f.wall_count; i++)
+                if (is_wall(&walls[t], &f, &f.walls[i], &r, 0.03, &covered) && covered > best) best = covered;
+            assert_true(best > 0.9);
+        }
+        for (int i = 0; i < f.wall_count; i++) {
+            double covered;
+            bool is_true = false;
+            for (size_t t = 0; t < sizeof walls / sizeof *walls; t++)
+                is_true = is_true || is_wall(&walls[t], &f, &f.walls[i], &r, 0.03, &covered);
+            wrong += !is_true;
+        }
+        assert_in_range(wrong, 0, 1);
+        room_frame_release(&f);
+        line_room_release(&r);
+    }
+}
+
+/* Lines of one place fall on each other at no height. */
+static void one_place_shows_no_walls(void **state)
+{
+    (void)state;
+    const struct line_room_spec spec = {.stations = 1, .heading = 10};
+    struct line_room r;
+    struct room_frame f = {0};
+    struct err err = ERR_INIT;
+    line_room_make(&r, &spec);
+    assert_ok(line_directions_find(&f, &r.lines, line_room_up(), &PARAMS, &err), err);
+    assert_true(f.known);
+    int *headings = malloc(((size_t)r.lines.count + 1) * sizeof *headings);
+    assert_non_null(headings);
+    for (int i = 0; i < r.lines.count; i++) headings[i] = line_heading(&f, &r.lines.lines[i]);
+    assert_ok(levels_find_floor(&f, &r.lines, headings, &r.set, size, &err), err);
+    assert_false(f.floor.known);
+    free(headings);
+    room_frame_release(&f);
+    line_room_release(&r);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(floor_ceiling_and_walls_of_an_empty_room_are_found),
+        cmocka_unit_test(one_place_shows_no_walls),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
