@@ -3,6 +3,7 @@
  * reads   VIEWS/cameras.txt, images.txt, points3D.txt, lenses.txt   the cameras
  *         RECORDS/ID.txt                  the photos' orientations
  *         POINTS                          oriented points on which views agree
+ *         FRAME                           with --frame: directions, floor and ceiling that straight edges show
  *         SCALE, FIX                      with --scale, --fix: the user's marks (marks.h)
  *         VIEWS/VIEW.exr                  of the views that are drawn on
  * writes  axes/VIEW.png beside OUT        the axes and outlines of floor and ceiling, drawn on a few views
@@ -32,7 +33,7 @@ static const double MAX_LEANING = 20, MAX_TURN = 10; /* degrees */
 static const double MAX_BEYOND = 0.2;                /* fraction of the upward normals that are below the floor */
 
 struct files {
-    const char *views, *records, *points, *scale, *fix, *out;
+    const char *views, *records, *points, *frame, *scale, *fix, *out;
     struct provenance *prov;
 };
 
@@ -41,8 +42,9 @@ static void log_summary(const struct room *room, const struct files *f, const st
     const struct model_axes *a = &room->axes;
     const char *unit = a->metric ? "m" : "scene units";
     const double turned = room->fix.turn * 180 / M_PI;
-    log_note("normals along x, y and up: %.0f, %.0f and %.0f %%; up is %.1f degrees off the cameras' mean",
-             100 * room->part[0], 100 * room->part[1], 100 * room->part[2], room->leaning);
+    static const char *const sources[] = {"straight edges", "the points' normals", "marked edges"};
+    log_note("axes of %s; normals along x, y and up: %.0f, %.0f and %.0f %%; up is %.1f degrees off the cameras' mean",
+             sources[room->source], 100 * room->part[0], 100 * room->part[1], 100 * room->part[2], room->leaning);
     log_note("standard errors: up %.3f degrees, heading %.3f degrees, floor %.2g %s", a->tilt_error, a->heading_error,
              a->floor_error, unit);
     log_note("the origin lies on the floor below view %s, %.4g %s under its camera; %s", set->views[room->central].name,
@@ -160,6 +162,7 @@ static enum status find(const struct files *f, const struct axes_params *params,
     struct scene_inputs scene = {0};
     struct point_cloud cloud = {0};
     struct mark_list scale = {0}, fix = {0};
+    struct room_frame frame = {0};
     struct vec3 *ups = NULL;
     struct room room;
     scene_inputs_read(&scene, SCENE_POINTS | SCENE_LENSES, &files, f->prov, err);
@@ -170,14 +173,22 @@ static enum status find(const struct files *f, const struct axes_params *params,
         err_nomem(err, "up directions of views", (size_t)set->view_count * sizeof *ups);
     if (!err->status && !upright_read(ups, set, f->views, f->records, f->prov, err))
         point_cloud_read(&cloud, f->points, f->prov, err);
+    if (!err->status && f->frame) room_frame_read(&frame, f->frame, f->prov, err);
     if (!err->status && f->scale) mark_list_read(&scale, f->scale, MARKS_SCALE, f->prov, err);
     if (!err->status && f->fix) mark_list_read(&fix, f->fix, MARKS_FIX, f->prov, err);
-    const struct room_inputs in = {set, &scene.lenses, ups, &cloud, f->scale ? &scale : NULL, f->fix ? &fix : NULL};
+    const struct room_inputs in = {.set = set,
+                                   .lenses = &scene.lenses,
+                                   .ups = ups,
+                                   .cloud = &cloud,
+                                   .frame = f->frame ? &frame : NULL,
+                                   .scale = f->scale ? &scale : NULL,
+                                   .fix = f->fix ? &fix : NULL};
     if (!err->status && !room_find(&room, &in, params, err)) log_summary(&room, f, set);
     if (!err->status && !draw(&room, &in, f, params->pictures, err)) model_axes_write(&room.axes, f->out, f->prov, err);
     mark_list_release(&fix);
     mark_list_release(&scale);
     point_cloud_release(&cloud);
+    room_frame_release(&frame);
     free(ups);
     scene_inputs_release(&scene);
     return err->status;
@@ -193,6 +204,7 @@ int main(int argc, char **argv)
         CLI_STR("views", &f.views, CLI_REQUIRED, "folder of cameras and rectified views"),
         CLI_STR("records", &f.records, CLI_REQUIRED, "folder of the photos' records, for their orientations"),
         CLI_STR("points", &f.points, CLI_REQUIRED, "oriented points, points.ply"),
+        CLI_STR("frame", &f.frame, CLI_OPTIONAL, "what straight edges say of the room: frame.txt"),
         CLI_STR("scale", &f.scale, CLI_OPTIONAL, "file of marked points and the distances between them in metres"),
         CLI_STR("fix", &f.fix, CLI_OPTIONAL, "file of marked corners of the floor, edges and a wall's thickness"),
         CLI_STR("out", &f.out, CLI_REQUIRED, "axes to write; pictures go to the folder axes beside them"),

@@ -1,11 +1,14 @@
 /* room_axes.c - a room's axes, floor, ceiling, scale and extent.
  *
  * Overview [Colburn 2014, 4.4.1].
- *   1. the directions of most normals give three axes (directions.c). z is the one nearest to the mean up direction
- *      of the cameras, x the one nearest to the right direction of the most central camera, y completes them
- *   2. the planes across the axes with the most points turn the axes a little (planes.c), and so do marked edges
- *      (correct.c); after these, the planes are found again
- *   3. heights of points with upward and downward normals give floor and ceiling (heights.c). Corners of the floor
+ *   1. three axes come from the straight edges of all views, if these have common directions (find_frame), which
+ *      determine them to hundredths of a degree; else from the directions of most normals (directions.c); else from
+ *      marked edges. z is the one nearest to the mean up direction of the cameras, x the one nearest to the right
+ *      direction of the most central camera, y completes them
+ *   2. the planes across the axes with the most points turn axes of normals a little (planes.c), and marked edges turn
+ *      any axes that they contradict (correct.c); after these, the planes are found again
+ *   3. heights of points with upward and downward normals give floor and ceiling (heights.c), or those that straight
+ *      edges say, where the points have none or one far from it. Corners of the floor
  *      that are marked in several views replace the floor where there is none, or where the two differ by more than
  *      twice their common standard error
  *   4. marked lengths give metres: with distances d and lengths m the scale is sum d m / sum d^2, and its error
@@ -26,6 +29,10 @@
 #include "common/math/numbers.h"
 #include "stages/find_axes/directions.h"
 
+static const double LEVEL_EDGE = 0.3;    /* |cosine| between up and the normal of the plane of a level edge */
+static const double SAME_LEVEL = 0.05;   /* of the camera's height: points and lines show the same level */
+static const double HIGHEST_CEILING = 5; /* times the camera's height above the floor, above the camera */
+static const double UNKNOWN_EXTENT = 2;  /* times the camera's height, in each direction, of a room without points */
 static const double CONTRADICTS = 2; /* min difference between the floor and its marked corners, in standard errors */
 
 static enum status central_view(int *central, const struct camera_set *set, struct err *err)
@@ -182,6 +189,10 @@ static void find_extent(struct room *room, const struct room_planes *planes, con
             lowest = fmin(lowest, k ? p.y : p.x);
             highest = fmax(highest, k ? p.y : p.x);
         }
+        if (!(lowest <= highest)) { /* no points */
+            lowest = UNKNOWN_EXTENT * room->floor.height * room->axes.scale;
+            highest = -lowest;
+        }
         room->low[k] = low < HUGE_VAL ? low * room->axes.scale : lowest;
         room->high[k] = high > -HUGE_VAL ? high * room->axes.scale : highest;
         if (room->high[k] > room->low[k]) continue;
@@ -190,12 +201,38 @@ static void find_extent(struct room *room, const struct room_planes *planes, con
     }
 }
 
+/* Takes the level that straight edges say, unless the points have one near it. eye: height of the origin in the frame;
+ * height: of the room, as far as it is known. */
+static void take_level(struct height_level *level, const struct frame_level *known, double eye, double height)
+{
+    if (!known->known || (level->count && fabs(level->height - (known->height - eye)) < SAME_LEVEL * height)) return;
+    level->height = known->height - eye;
+    level->error = level->spread = known->error;
+    level->count = level->candidates = 1;
+    level->beyond = 0;
+}
+
+/* Forgets a ceiling that no room has: below a camera, or many times as high as the cameras. */
+static void drop_implausible(struct room *room, const struct mark_context *m, const struct camera_set *set)
+{
+    double highest = 0;
+    for (int i = 0; i < set->view_count; i++)
+        highest = fmax(highest, vec3_dot(vec3_sub(set->views[i].center, m->origin), mat3_row(m->axes, 2)));
+    if (room->ceiling.height > highest && room->ceiling.height < HIGHEST_CEILING * -room->floor.height) return;
+    room->ceiling.count = 0;
+}
+
 static enum status find_heights(struct room *room, struct mark_context *m, const struct room_inputs *in,
                                 struct vec3 errors, const struct axes_params *params, struct err *err)
 {
     if (height_find_level(&room->floor, 1, &m->axes, m->origin, errors, in->cloud, params, err) ||
         height_find_level(&room->ceiling, -1, &m->axes, m->origin, errors, in->cloud, params, err))
         return err->status;
+    if (room->source == AXES_OF_LINES) {
+        const double eye = vec3_dot(in->frame->up, m->origin), height = eye - in->frame->floor.height;
+        if (in->frame->floor.known) take_level(&room->floor, &in->frame->floor, eye, height);
+        if (in->frame->ceiling.known) take_level(&room->ceiling, &in->frame->ceiling, eye, height);
+    }
     m->list = in->fix;
     if (in->fix && corner_height(m, &room->corner_height, err)) {
         const double error = mark_error(in->fix, params->click, measure_corners, m);
@@ -220,6 +257,7 @@ static enum status find_heights(struct room *room, struct mark_context *m, const
                        "where two walls meet "
                        "the floor.",
                        in->fix->path);
+    drop_implausible(room, m, in->set);
     return ST_OK;
 }
 
@@ -238,23 +276,87 @@ static enum status find_scale(struct room *room, struct mark_context *m, const s
     return ST_OK;
 }
 
+/* Axes from a marked edge on the floor, and up. False: none is marked. */
+static bool axes_of_marks(struct mat3 *axes, const struct mark_context *m, const struct room_inputs *in, struct vec3 up,
+                          struct err *err)
+{
+    for (int i = 0; in->fix && !err->status && i < in->fix->count; i++) {
+        const struct mark *a = &in->fix->marks[i];
+        struct vec3 along;
+        if (a->kind != MARK_EDGE || correct_edge_plane(&along, a, in->fix, &m->scene, err)) continue;
+        if (fabs(vec3_dot(along, up)) < LEVEL_EDGE) continue; /* an upright edge */
+        const struct vec3 x = vec3_normalize(vec3_cross(along, up)), y = vec3_cross(up, x);
+        *axes = (struct mat3){{{x.x, x.y, x.z}, {y.x, y.y, y.z}, {up.x, up.y, up.z}}};
+        return true;
+    }
+    return false;
+}
+
+/* Axes, in any order, from what determines them best. */
+static enum status find_directions(struct directions *d, struct room *room, const struct mark_context *m,
+                                   const struct room_inputs *in, struct vec3 up, const struct axes_params *params,
+                                   struct err *err)
+{
+    struct err none = ERR_INIT;
+    struct mat3 axes;
+    room->source = AXES_OF_NORMALS;
+    if (in->frame && in->frame->known) {
+        const struct vec3 x = in->frame->headings[0].along, y = vec3_cross(in->frame->up, x), z = in->frame->up;
+        room->source = AXES_OF_LINES;
+        *d = (struct directions){.axes = {{{x.x, x.y, x.z}, {y.x, y.y, y.z}, {z.x, z.y, z.z}}}};
+        directions_count(d, in->cloud);
+        return ST_OK;
+    }
+    if (directions_find(d, in->cloud, params->min_part, &none) != ST_DATA)
+        return none.status ? err_set(err, none.status, "%s", none.text) : ST_OK;
+    room->source = AXES_OF_MARKS;
+    if (axes_of_marks(&axes, m, in, up, err)) {
+        *d = (struct directions){.axes = axes};
+        directions_count(d, in->cloud);
+        return ST_OK;
+    }
+    if (err->status) return err->status;
+    return err_set(err, ST_DATA,
+                   "%s The views' straight edges have no common directions, either. To give the axes by hand, mark a "
+                   "corner of the floor in axes_fix.txt, in a photo such as %s: \"corner a %s X Y\", and points on two "
+                   "of the edges that leave it: \"edge a %s X Y\"; mark the corner in a second photo, too, where the "
+                   "points show no floor.",
+                   none.text, in->set->views[room->central].name, in->set->views[room->central].name,
+                   in->set->views[room->central].name);
+}
+
+static enum status find_errors(struct vec3 *errors, const struct room *room, const struct mark_context *m,
+                               const struct room_inputs *in, struct err *err)
+{
+    switch (room->source) {
+    case AXES_OF_LINES:
+        *errors = vec3_make(in->frame->up_error, in->frame->up_error, in->frame->headings[0].error);
+        return ST_OK;
+    case AXES_OF_MARKS: /* correct_axes() says */
+        *errors = vec3_make(1, 1, 1);
+        return ST_OK;
+    default:
+        return direction_errors(errors, &m->axes, m->origin, in->cloud, err);
+    }
+}
+
 static enum status find_all(struct room *room, const struct room_inputs *in, const struct axes_params *params,
                             struct room_planes *planes, struct err *err)
 {
-    struct directions d;
+    struct directions d = {0};
     struct vec3 errors;
     struct model_axes *a = &room->axes;
-    if (central_view(&room->central, in->set, err) || directions_find(&d, in->cloud, params->min_part, err))
-        return err->status;
+    if (central_view(&room->central, in->set, err)) return err->status;
     const struct view *central = &in->set->views[room->central];
     struct mark_context m = {.scene = {.set = in->set, .lenses = in->lenses, .cloud = in->cloud},
                              .origin = central->center};
     const struct vec3 down = vec3_scale(in->ups[room->central], -1), right = vec3_cross(down, vec3_make(0, 0, 1));
     const struct vec3 up = mean_up(in);
+    if (find_directions(&d, room, &m, in, up, params, err)) return err->status;
     m.axes = model_order(d.axes, d.part, up, mat3_apply(mat3_transpose(central->cam_from_world), right));
     for (int k = 0; k < 3; k++) room->part[k] = d.part[k];
-    if (direction_errors(&errors, &m.axes, m.origin, in->cloud, err) ||
-        planes_find(planes, &m.axes, true, &errors, m.origin, in->cloud, params, err))
+    if (find_errors(&errors, room, &m, in, err) ||
+        planes_find(planes, &m.axes, room->source == AXES_OF_NORMALS, &errors, m.origin, in->cloud, params, err))
         return err->status;
     if (in->fix && correct_axes(&m.axes, &errors, &room->fix, in->fix, &m.scene, params->click, err))
         return err->status;

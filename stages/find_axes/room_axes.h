@@ -3,6 +3,7 @@
 #ifndef REMODEL_ROOM_AXES_H
 #define REMODEL_ROOM_AXES_H
 
+#include "common/capture/room_frame.h"
 #include "common/model/model_axes.h"
 #include "stages/find_axes/correct.h"
 #include "stages/find_axes/heights.h"
@@ -13,7 +14,8 @@ struct room_inputs {
     const struct lens_list *lenses;
     const struct vec3 *ups; /* up direction of each view, in its camera's frame */
     const struct point_cloud *cloud;
-    struct mark_list *scale, *fix; /* NULL: none; changed during the call, then restored */
+    const struct room_frame *frame; /* what straight edges say; NULL: nothing */
+    struct mark_list *scale, *fix;  /* NULL: none; changed during the call, then restored */
 };
 
 struct room {
@@ -21,6 +23,7 @@ struct room {
     double low[2], high[2]; /* extent in x and y, to the outermost walls that face inwards, model units */
     int central;            /* view under whose camera the origin lies */
     /* how it was found */
+    enum axes_source { AXES_OF_LINES, AXES_OF_NORMALS, AXES_OF_MARKS } source;
     double part[3]; /* fractions of normals along x, y, z */
     double leaning; /* degrees between up and the mean camera's up */
     struct correction fix;
@@ -30,7 +33,8 @@ struct room {
 };
 
 /* Model frame: z up; x is the axis nearest to the right direction of the central camera's picture; the origin is on the
- * floor straight below that camera. ST_DATA: no axes, no floor, or unusable marks. */
+ * floor straight below that camera. ST_DATA: neither lines nor points nor marks give axes, or a floor; the text says
+ * what to mark. Unusable marks. */
 enum status room_find(struct room *room, const struct room_inputs *in, const struct axes_params *params,
                       struct err *err);
 

@@ -13,6 +13,7 @@ RULES(find_axes)
     rule_needs(g, PATH(g, LENSES));
     rule_needs_set(g, "views");
     rule_takes(g, "--points", PATH(g, POINTS));
+    rule_takes(g, "--frame", PATH(g, ROOM_FRAME));
     rule_takes(g, "--scale", scale);
     rule_takes(g, "--fix", fix);
     /* marks that came or went are a change whatever the files' times */
