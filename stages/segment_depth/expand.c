@@ -16,6 +16,9 @@
  * that took it (plane_refit.h), and offered again, REFITS times. The ground (gravity.h) is offered with them, unless
  * the votes know it better, and is not fitted: a lawn matches nothing.
  *
+ * Floor, ceiling and walls that are known before (frame_prior.h) are offered first. Each takes the place of the plane of
+ * votes that is about the same, and is not fitted: what little matches on a blank wall would move it by chance.
+ *
  * What differs from the source: the nodes are segments, not pixels; proposals also come from the sweep, from
  * neighbouring views and from horizontal and vertical planes (plane_proposals.h); data costs are only computed while
  * they can still pay off. */
@@ -35,6 +38,7 @@
 #define NEGLIGIBLE         0.03 /* energy that a segment need not be moved for */
 #define MAX_PAIRWISE_SHARE 0.3f /* a data cost may rise by this part of max_pairwise; else the proposal is skipped */
 #define UNITS_PER_ENERGY   1e7  /* energies are rounded to multiples of 1 / UNITS_PER_ENERGY */
+#define SAME_KNOWN         0.06 /* of a known plane's inverse distance, and radians */
 #define SAME_GROUND        0.15 /* of the ground's inverse distance, and radians */
 #define MIN_SHARE          0.03 /* of all votes: weight of a plane of the scene, in the first round */
 #define MIN_SHARE_LATER    0.10 /* ... in later ones, where neighbours vote, too */
@@ -210,6 +214,9 @@ static void move_cell(struct expander *x, struct worker *w, int cell, struct err
             expansion_move(x, w, count, proposal, err);
         const int j = random_member(&random, from, n), i = random_member(&random, from, n);
         if (proposal_vertical(&proposal, p, x->plane, i, j)) expansion_move(x, w, count, proposal, err);
+        for (int f = 1; p->families && f < p->families->count; f++)
+            if (proposal_of_family(&proposal, p, x->plane, random_member(&random, from, n), f))
+                expansion_move(x, w, count, proposal, err);
     }
     for (int k = 0; k < count; k++) w->local[w->region[k]] = -1;
 }
@@ -237,10 +244,33 @@ static enum status find_scene_planes(const struct expander *x, struct err *err)
 }
 
 /* Before there are votes, the ground is the only plane of the scene. */
-static void start_with_ground(struct scene_planes *scene, const struct plane *ground)
+static void start_scene(struct scene_planes *scene, const struct frame_prior *prior, const struct plane *ground)
 {
-    *scene = (struct scene_planes){.count = ground != NULL, .has_ground = ground != NULL};
-    if (ground) scene_planes_set(scene, 0, *ground);
+    *scene = (struct scene_planes){.count = 0};
+    for (int k = 0; prior && k < prior->count; k++) {
+        scene->known = ++scene->count;
+        scene_planes_set(scene, k, prior->planes[k]);
+    }
+    if (!ground) return;
+    scene->has_ground = true;
+    scene_planes_set(scene, scene->count++, *ground);
+}
+
+/* Moves each known plane to the plane of votes that is about the same: the view's own pictures know it better. */
+static void follow_votes(struct scene_planes *scene, const struct view *view)
+{
+    for (int k = 0; k < scene->known; k++) {
+        const struct vec3 n = plane_normal(view, scene->planes[k]);
+        double least = SAME_KNOWN * vec3_length(n);
+        int best = -1;
+        for (int j = scene->known; j < scene->count; j++) {
+            const double off = vec3_length(vec3_sub(plane_normal(view, scene->planes[j]), n));
+            if (!(off <= least)) continue;
+            least = off;
+            best = j;
+        }
+        if (best >= 0) scene_planes_set(scene, k, scene->planes[best]);
+    }
 }
 
 /* Adds the ground to the planes of votes, in place of the last one if there are too many, unless one of them is about
@@ -285,6 +315,7 @@ static enum status move_to_scene_planes(struct expander *x, struct err *err)
         find_scene_planes(x, err);
     else
         err_nomem(err, "segments on a plane", (size_t)x->s->count * sizeof *members);
+    if (!err->status) follow_votes(x->p->scene, x->p->view);
     if (x->p->ground) {
         if (!err->status) add_ground(x->p->scene, x->p->view, *x->p->ground);
         for (int i = 0; i < x->s->count; i++) x->unary[i] = problem_unary_cost(x->p, i, x->plane[i], INFINITY);
@@ -294,7 +325,7 @@ static enum status move_to_scene_planes(struct expander *x, struct err *err)
     for (int i = 0; i < x->s->count; i++) w->local[i] = w->region[i] = i;
     for (int round = 0; !err->status && round <= REFITS; round++)
         for (int k = 0; !err->status && k < x->p->scene->count; k++) {
-            if (round && k < fitted) refit_scene_plane(x, k, members);
+            if (round && k >= x->p->scene->known && k < fitted) refit_scene_plane(x, k, members);
             expansion_move(x, w, x->s->count, x->p->scene->planes[k], err);
         }
     for (int i = 0; i < x->s->count; i++) w->local[i] = -1;
@@ -405,7 +436,7 @@ enum status expand_planes(struct plane *plane, const struct plane_problem *p, st
         cells += x.cells[k].across * x.cells[k].down;
     }
     if (!err->status) {
-        if (p->scene) start_with_ground(p->scene, p->ground);
+        if (p->scene) start_scene(p->scene, p->prior, p->ground);
         parallel_for((size_t)x.s->count, 64, initial_costs, &x);
         progress_start(&progress, "expansion", (int64_t)x.passes * cells, "cells");
     }

@@ -9,15 +9,21 @@
  * What differs from the source: the view is divided into GRID x GRID tiles of equal weight, however many points they
  * have, so that a bare wall counts as much as a full shelf; a tile's weight falls with the number of chosen neighbours
  * that see it. In a tile without observed points, points of other views that project there count by UNSEEN_WEIGHT,
- * since they may be occluded. If too few points are shared, distance and viewing direction decide. */
+ * since they may be occluded.
+ *
+ * Where points are few they do not decide alone: as long as there are tiles that fewer than ENOUGH of the chosen views
+ * show, as far as cameras tell (frustum_overlap.h), views are added that show the most of them. If the scene has no
+ * points, distance and viewing direction decide. */
 #include "stages/segment_depth/neighbours.h"
 
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "common/base/sort.h"
 #include "common/math/numbers.h"
+#include "stages/segment_depth/frustum_overlap.h"
 
 #define MIN_SHARED             8   /* points that two views must share to be neighbours by points */
 #define MAX_REPROJECTION_ERROR 2.0 /* px, of an observation that is used */
@@ -185,6 +191,50 @@ static int best_view(const double *score, const int *shared, int count, int view
     return best;
 }
 
+#define ENOUGH    3.0  /* views that show a tile well */
+#define WELL      0.25 /* frustum_overlap() of a view that shows a tile */
+#define MIN_ADDED 4.0  /* tiles that a further view must show, of those that too few show */
+
+static bool is_chosen(int view, const int *chosen, int count)
+{
+    for (int c = 0; c < count; c++)
+        if (chosen[c] == view) return true;
+    return false;
+}
+
+/* Adds views to those chosen by points until all tiles are shown by enough, as far as cameras tell. */
+static void add_by_frusta(int *neighbours, int *count, int max_count, const struct camera_set *set, int view_idx,
+                          const struct observed_points *seen)
+{
+    enum { TILES = FRUSTUM_TILES * FRUSTUM_TILES };
+    const struct view *view = &set->views[view_idx];
+    struct frustum_tiles tiles;
+    double shown[TILES], views[TILES] = {0};
+    if (!frustum_tiles_make(&tiles, set, view_idx, seen)) return;
+    for (int c = 0; c < *count; c++) {
+        frustum_overlap(shown, &tiles, view, &set->views[neighbours[c]]);
+        for (int k = 0; k < TILES; k++) views[k] += shown[k] >= WELL;
+    }
+    for (int best = 0; best >= 0 && *count < max_count && *count < MAX_NEIGHBOURS;) {
+        double most = MIN_ADDED, best_shown[TILES];
+        best = -1;
+        for (int j = 0; j < set->view_count; j++) {
+            double gain = 0;
+            if (j == view_idx || is_chosen(j, neighbours, *count)) continue;
+            if (!(frustum_overlap(shown, &tiles, view, &set->views[j]) > most)) continue;
+            for (int k = 0; k < TILES; k++)
+                if (views[k] < (shown[k] >= WELL ? ENOUGH : ENOUGH - 1)) gain += shown[k] / (1 + views[k]);
+            if (!(gain > most)) continue;
+            most = gain;
+            best = j;
+            memcpy(best_shown, shown, sizeof shown);
+        }
+        if (best < 0) break;
+        for (int k = 0; k < TILES; k++) views[k] += best_shown[k] >= WELL;
+        neighbours[(*count)++] = best;
+    }
+}
+
 enum status neighbours_choose(int neighbours[MAX_NEIGHBOURS], int *count, const struct camera_set *set, int view_idx,
                               const struct observed_points *seen, int max_count, struct err *err)
 {
@@ -208,6 +258,8 @@ enum status neighbours_choose(int neighbours[MAX_NEIGHBOURS], int *count, const 
         else
             best = -1;
     }
+    if (max_count > MAX_NEIGHBOURS) max_count = MAX_NEIGHBOURS;
+    add_by_frusta(neighbours, count, max_count, set, view_idx, seen);
     if (*count == 0) {
         score_poses(score, set, view_idx);
         while (*count < max_count && *count < MAX_NEIGHBOURS &&
@@ -227,8 +279,22 @@ done:
     return err->status;
 }
 
-/* Sorted inverse depths of all points that project into the view, observed by it or not: surfaces that only other views
- * matched lie at similar depths. *inverse is malloc'ed. */
+#define SAME_SIDE 45.0 /* degrees between the rays of two views to a point that both may see */
+
+/* Whether a view that does not observe a point may see it: a view that does looks at it from the same side. What only
+ * views from elsewhere observe may lie behind a wall, or in another room. */
+static bool may_see(const struct camera_set *set, const struct view *view, const struct sfm_point *p)
+{
+    for (int k = 0; k < p->track_count; k++) {
+        const int j = p->track[k].image_idx;
+        if (j >= set->view_count) continue;
+        if (angle_at(p->position, view->center, set->views[j].center) < SAME_SIDE) return true;
+    }
+    return false;
+}
+
+/* Sorted inverse depths of all points that project into the view and that it may see, observed by it or not: surfaces
+ * that only other views matched lie at similar depths. *inverse is malloc'ed. */
 static enum status framed_points(double **inverse, int *count, const struct camera_set *set, const struct view *view,
                                  struct err *err)
 {
@@ -238,11 +304,14 @@ static enum status framed_points(double **inverse, int *count, const struct came
     if (!*inverse) return err_nomem(err, "depths of points", (size_t)m->point_count * sizeof **inverse);
     for (int i = 0; i < m->point_count; i++) {
         double u, v, z = view_project(view, m->points[i].position, &u, &v);
-        if (z > 0 && u >= 0 && v >= 0 && u <= view->width && v <= view->height) (*inverse)[(*count)++] = 1 / z;
+        if (!(z > 0) || !(u >= 0 && v >= 0 && u <= view->width && v <= view->height)) continue;
+        if (may_see(set, view, &m->points[i])) (*inverse)[(*count)++] = 1 / z;
     }
     sort_doubles(*inverse, (size_t)*count);
     return ST_OK;
 }
+
+#define FEW_POINTS 30.0 /* with so many the margins of the depth range are half as wide again */
 
 enum status neighbours_depth_range(double *min_inverse_z, double *max_inverse_z, bool *guessed,
                                    const struct camera_set *set, int view_idx, const int *neighbours, int count,
@@ -255,7 +324,8 @@ enum status neighbours_depth_range(double *min_inverse_z, double *max_inverse_z,
     if (points >= MIN_SHARED) {
         const int stray = (points + 80) / 100; /* outliers at either end */
         double low = inverse[stray], high = inverse[points - 1 - stray];
-        const double margin = 0.15 * (high - low) + 0.03 * high;
+        /* few points miss the ends of the range */
+        const double margin = (0.15 * (high - low) + 0.03 * high) * (1 + FEW_POINTS / (FEW_POINTS + points));
         *min_inverse_z = fmax(low - margin, 0.3 * low);
         *max_inverse_z =
             high + 2 * margin; /* the near ground has few points: it is blurred, or occluded in most views */

@@ -23,13 +23,14 @@ enum status neighbours_find_points(struct observed_points *seen, const struct ca
                                    struct err *err);
 void neighbours_release_points(struct observed_points *seen);
 
-/* Chooses up to max_count neighbours by points, triangulation angles and scale (neighbours.c), best first. ST_DATA if
+/* Chooses up to max_count neighbours by points, triangulation angles and scale (neighbours.c), best first; then those
+ * that, as far as cameras tell, show what too few of them show. ST_DATA if
  * no other view can be matched; ST_NOMEM. */
 enum status neighbours_choose(int neighbours[MAX_NEIGHBOURS], int *count, const struct camera_set *set, int view_idx,
                               const struct observed_points *seen, int max_count, struct err *err);
 
 /* The range of inverse depths to sweep, 0 < min < max: robust percentiles, with margins, of all points of the scene
- * that project into the view. *guessed: there are too few points; the range is then what the neighbours' baselines
+ * that project into the view and that it observes, or others from the same side. *guessed: there are too few points; the range is then what the neighbours' baselines
  * resolve, from far away to a disparity of a quarter of the picture. */
 enum status neighbours_depth_range(double *min_inverse_z, double *max_inverse_z, bool *guessed,
                                    const struct camera_set *set, int view_idx, const int *neighbours, int count,

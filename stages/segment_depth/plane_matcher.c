@@ -12,7 +12,8 @@
  *
  * A neighbour is halved while its pixels are more than 1.6 times as fine as the view's at a typical depth, so that
  * both pictures have the same detail. Its colours are multiplied by the median ratio over the sparse points that
- * both see, if they are well exposed and at least twelve, else by the ratio of exposures. Its gradients are turned
+ * both see, if they are well exposed and at least twelve, else by that of what both pictures show, if that is clear, or
+ * by the ratio of exposures. Its gradients are turned
  * to the view's axes: they are covectors and transform by the transposed Jacobian of the map between the pictures.
  *
  * The map of a pixel at depth z is p' ~ K' (R K^-1 p + t / z): base and shift of struct match_neighbour.
@@ -23,6 +24,7 @@
  * Memory: about 45 bytes a pixel of the view, and 16 a pixel of each neighbour. */
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "common/base/sort.h"
 #include "common/math/numbers.h"
@@ -135,12 +137,67 @@ void matcher_homography(double base[3][3], double shift_out[3], const struct vie
     shift_out[2] = shift[2];
 }
 
-/* Median ratio of the view's colours to the neighbour's, at the points that both observed; the ratio of equal exposures
- * if there are too few points. */
-static enum status estimate_gains(double gain[3], const struct camera_set *set, const struct view *other,
-                                  int neighbour_idx, const struct observed_points *seen,
-                                  const struct gamma_image *reference, const struct gamma_image *picture,
-                                  struct err *err)
+static bool well_exposed(const float mine[3], const float theirs[3])
+{
+    for (int c = 0; c < 3; c++)
+        if (!(mine[c] > 0.05f && mine[c] < 0.97f && theirs[c] > 0.05f && theirs[c] < 0.97f)) return false;
+    return true;
+}
+
+#define GAIN_GRID   24   /* pixels of the view in each direction that are compared */
+#define MIN_COMMON  60   /* of them in the neighbour's frame */
+#define SAME_RATIO  1.15 /* of the largest to the smallest ratio of quartiles */
+#define CLEAR_RATIO 1.25 /* by which a gain must differ from what the exposures say */
+
+/* The ratio of the median colours of what both pictures show, if all of it lies at one typical depth: it depends little
+ * on which pixel falls on which. False: they share too little, or other things: light changes all quartiles by one
+ * ratio; or the ratio is about gain[]. */
+static bool gains_of_pictures(double gain[3], const struct match_neighbour *map, const struct view *view,
+                              const struct view *other, double typical, const struct gamma_image *reference,
+                              const struct gamma_image *picture)
+{
+    double mine[3][GAIN_GRID * GAIN_GRID], theirs[3][GAIN_GRID * GAIN_GRID];
+    int count = 0;
+    for (int k = 0; k < GAIN_GRID * GAIN_GRID; k++) {
+        const double u = (k % GAIN_GRID + 0.5) / GAIN_GRID * view->width,
+                     v = (double)(k / GAIN_GRID + 0.5) / GAIN_GRID * view->height;
+        double nu, nv;
+        float a[3], b[3];
+        if (!match_project(map, u, v, typical, &nu, &nv)) continue;
+        if (!(nu >= 0 && nv >= 0 && nu < other->width && nv < other->height)) continue;
+        if (!gamma_image_at(reference, u, v, a) || !gamma_image_at(picture, nu, nv, b) || !well_exposed(a, b)) continue;
+        for (int c = 0; c < 3; c++) mine[c][count] = (double)a[c], theirs[c][count] = (double)b[c];
+        count++;
+    }
+    if (count < MIN_COMMON) return false;
+    double middle[3];
+    bool differs = false;
+    for (int c = 0; c < 3; c++) {
+        double low = INFINITY, high = 0;
+        sort_doubles(mine[c], (size_t)count);
+        sort_doubles(theirs[c], (size_t)count);
+        for (int q = 1; q < 4; q++) {
+            const double ratio = mine[c][q * count / 4] / theirs[c][q * count / 4];
+            low = fmin(low, ratio);
+            high = fmax(high, ratio);
+            if (q == 2) middle[c] = ratio;
+        }
+        if (!(high <= SAME_RATIO * low)) return false;
+        differs = differs || middle[c] > CLEAR_RATIO * gain[c] || middle[c] * CLEAR_RATIO < gain[c];
+    }
+    if (!differs) return false;
+    memcpy(gain, middle, sizeof middle);
+    return true;
+}
+
+#define SURE_POINTS 12 /* that both views observed, for their median ratio to be used */
+
+/* Median ratio of the view's colours to the neighbour's, at the points that both observed; if these are too few, that
+ * of the whole pictures. */
+static enum status estimate_gains(double gain[3], const struct match_neighbour *map, const struct camera_set *set,
+                                  const struct view *view, const struct view *other, int neighbour_idx, double typical,
+                                  const struct observed_points *seen, const struct gamma_image *reference,
+                                  const struct gamma_image *picture, struct err *err)
 {
     double *ratios = malloc(((size_t)seen->count + 1) * 3 * sizeof *ratios);
     double same_light = pow(reference->tone.exposure / picture->tone.exposure, reference->tone.power);
@@ -155,18 +212,17 @@ static enum status estimate_gains(double gain[3], const struct camera_set *set, 
         if (!both || !(view_project(other, p->position, &u, &v) > 0)) continue;
         if (!gamma_image_at(reference, seen->points[i].u, seen->points[i].v, mine)) continue;
         if (!gamma_image_at(picture, u, v, theirs)) continue;
-        bool well_exposed = true;
-        for (int c = 0; c < 3; c++)
-            well_exposed = well_exposed && mine[c] > 0.05f && mine[c] < 0.97f && theirs[c] > 0.05f && theirs[c] < 0.97f;
-        if (!well_exposed) continue;
+        if (!well_exposed(mine, theirs)) continue;
         for (int c = 0; c < 3; c++) ratios[c * seen->count + count] = (double)mine[c] / (double)theirs[c];
         count++;
     }
     for (int c = 0; c < 3; c++) {
         double *r = ratios + (size_t)c * (size_t)seen->count;
         sort_doubles(r, (size_t)count);
-        gain[c] = count >= 12 ? clamp(r[count / 2], 0.25 * same_light, 4 * same_light) : same_light;
+        gain[c] = count >= SURE_POINTS ? r[count / 2] : same_light;
     }
+    if (count < SURE_POINTS) gains_of_pictures(gain, map, view, other, typical, reference, picture);
+    for (int c = 0; c < 3; c++) gain[c] = clamp(gain[c], 0.25 * same_light, 4 * same_light);
     free(ratios);
     return ST_OK;
 }
@@ -198,7 +254,9 @@ enum status matcher_add(struct matcher *m, const struct camera_set *set, int vie
     struct match_neighbour *n = &m->neighbours[m->neighbour_count];
     double jacobian[2][2] = {{1, 0}, {0, 1}}, gain[3], u0, v0, ux, vx, uy, vy;
     double u = view->width / 2.0, v = view->height / 2.0;
-    if (estimate_gains(gain, set, &other, neighbour_idx, seen, reference, picture, err)) return err->status;
+    matcher_homography(n->base, n->shift, view, &other);
+    if (estimate_gains(gain, n, set, view, &other, neighbour_idx, typical, seen, reference, picture, err))
+        return err->status;
     for (;;) {
         matcher_homography(n->base, n->shift, view, &other);
         if (!match_project(n, u, v, typical, &u0, &v0) || !match_project(n, u + 1, v, typical, &ux, &vx) ||

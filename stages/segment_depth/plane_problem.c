@@ -6,6 +6,7 @@
 #include "stages/segment_depth/plane_problem.h"
 
 #include <math.h>
+#include <string.h>
 
 #define GROUND_COST   0.3f /* of a segment that lies below the ground */
 #define GROUND_MARGIN 0.9f /* of the ground's inverse depth: a segment may be that far below at no cost */
@@ -28,6 +29,13 @@ static float match_lower_bound(const struct plane_problem *p, int segment, struc
     return lowest - SLACK;
 }
 
+/* Whether a segment is expected on a plane: the one of the scene that the prior's became. */
+static bool is_expected(const struct plane_problem *p, int segment, struct plane plane)
+{
+    if (!p->prior || p->prior->expected[segment] < 0 || p->prior->expected[segment] >= p->scene->known) return false;
+    return memcmp(&p->scene->planes[p->prior->expected[segment]], &plane, sizeof plane) == 0;
+}
+
 float problem_unary_cost(const struct plane_problem *p, int segment, struct plane plane, float max_cost)
 {
     const struct segment *g = &p->m->segments->segments[segment];
@@ -38,6 +46,7 @@ float problem_unary_cost(const struct plane_problem *p, int segment, struct plan
     float data = (float)point_evidence_cost(p->points, segment, plane, g->cx, g->cy);
     if (scene_planes_have(p->scene, plane))
         data -= (float)(point_evidence_far(p->points, plane, g->cx, g->cy) + (p->cross ? 0 : SCENE_GAIN));
+    if (is_expected(p, segment, plane)) data -= p->prior->gain[segment];
     const struct plane *ground = scene_planes_ground(p->scene);
     if (ground && plane_at(plane, g->cx, g->cy) < (double)GROUND_MARGIN * plane_at(*ground, g->cx, g->cy))
         data += GROUND_COST;

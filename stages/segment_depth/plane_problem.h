@@ -9,6 +9,10 @@
  * comes from points, by a factor of SCENE_REACH. So a blank ceiling that no view can match continues on the plane of
  * its matched part.
  *
+ * Floor, ceiling and walls that are known before (frame_prior.h) are planes of the scene, too. They may leave the range by
+ * a factor of KNOWN_REACH, since it comes from points, and a segment costs its prior's gain less on the one that its ray
+ * meets first.
+ *
  * Where no segments of the view vote for the scene's ground (gravity.h), it is one of the scene's planes all the same.
  * A segment that lies below it, by more than a tenth of the inverse depth, costs GROUND_COST more: the ground hides
  * what is there. The ground, voted for or not, may come nearer than other planes, by a factor of GROUND_REACH.
@@ -29,8 +33,10 @@
 #include <math.h>
 
 #include "stages/segment_depth/cross_view.h"
+#include "stages/segment_depth/frame_prior.h"
 #include "stages/segment_depth/given_depth.h"
 #include "stages/segment_depth/plane_match.h"
+#include "stages/segment_depth/plane_sweep.h"
 #include "stages/segment_depth/point_evidence.h"
 #include "stages/segment_depth/scene_planes.h"
 #include "stages/segment_depth/segment_params.h"
@@ -38,6 +44,8 @@
 struct plane_problem { /* borrows all that it points to */
     const struct view *view;
     struct vec3 down; /* in the view's axes */
+    const struct plane_families *families;
+    const struct frame_prior *prior; /* what segments are expected to lie on; NULL: nothing is known */
     const struct matcher *m;
     const struct point_evidence *points;
     const struct cross_view *cross;  /* NULL in the first round */

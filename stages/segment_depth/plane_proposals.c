@@ -48,6 +48,11 @@ bool proposal_horizontal(struct plane *out, const struct plane_problem *p, const
     return plane_from_normal(p->view, p->down, centroid_point(p, planes, i), out);
 }
 
+bool proposal_of_family(struct plane *out, const struct plane_problem *p, const struct plane *planes, int i, int family)
+{
+    return plane_from_normal(p->view, p->families->normal[family], centroid_point(p, planes, i), out);
+}
+
 bool proposal_vertical(struct plane *out, const struct plane_problem *p, const struct plane *planes, int i, int j)
 {
     const struct vec3 point = centroid_point(p, planes, i), along = vec3_sub(centroid_point(p, planes, j), point),

@@ -28,6 +28,8 @@ bool proposal_through_three(struct plane *out, const struct plane_problem *p, co
 bool proposal_horizontal(struct plane *out, const struct plane_problem *p, const struct plane *planes, int i);
 
 /* The vertical plane through the centroids of segments i and j: walls. */
+bool proposal_of_family(struct plane *out, const struct plane_problem *p, const struct plane *planes, int i,
+                        int family);
 bool proposal_vertical(struct plane *out, const struct plane_problem *p, const struct plane *planes, int i, int j);
 
 /* One of the best local minima of segment i's matching cost in the plane sweep, with the segment's current slant or

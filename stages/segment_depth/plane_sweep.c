@@ -2,8 +2,9 @@
  *
  * The depth range is divided into planes evenly spaced in 1/z, about one pixel of disparity apart. At each depth d the
  * cost volume holds
- *   C_i(d) = min(match_cost(z = 1/d), match_cost(horizontal plane through the segment at 1/d) + slant)
- * since floors and ceilings, seen at grazing angles, match on no plane of constant depth. With the cost of the sparse
+ *   C_i(d) = min(match_cost(z = 1/d), match_cost(plane of a family through the segment at 1/d) + slant)
+ * Families are level planes, and planes across the headings of a room's walls where these are known: floors and walls
+ * seen at grazing angles match on no plane of constant depth [Furukawa 2009]. With the cost of the sparse
  * points added, and weighted by the segment's size, it is the data cost of smooth_labels(); the label found decides the
  * segment's depth, and its matching costs decide between the constant and the horizontal plane. */
 #include "stages/segment_depth/plane_sweep.h"
@@ -24,7 +25,7 @@
 struct sweep_job {
     const struct plane_sweep *w;
     const struct view *view;
-    struct vec3 down; /* in the view's axes */
+    const struct plane_families *families;
     const struct matcher *m;
     const struct point_evidence *points;
     const struct segment_params *params;
@@ -39,11 +40,12 @@ static struct plane facing_plane(const struct plane_sweep *w, int label)
     return (struct plane){0, 0, w->min_inverse_z + label * w->step};
 }
 
-static bool horizontal_plane(const struct sweep_job *job, const struct segment *g, int label, struct plane *plane)
+static bool family_plane(const struct sweep_job *job, const struct segment *g, int label, int family,
+                         struct plane *plane)
 {
     const struct plane_sweep *w = job->w;
     const struct view *v = job->view;
-    const struct vec3 down = job->down;
+    const struct vec3 down = job->families->normal[family];
     const double d = w->min_inverse_z + label * w->step, size = sqrt(g->pixels);
     const double cosine = down.x * (g->cx - v->cx) / v->fx + down.y * (g->cy - v->cy) / v->fy + down.z;
     if (!(fabs(cosine) > HORIZON)) return false;
@@ -73,13 +75,14 @@ static void sweep_segments(void *ctx, size_t begin, size_t end, int thread)
         unsigned best = 0;
         for (int p = 0; p < w->planes; p++) {
             const struct plane plane = facing_plane(w, p);
-            struct plane horizontal;
             /* planes are about a pixel apart: the neighbours that match one best match the next one best */
             const bool known = p & 1 && __builtin_popcount(best) == job->m->params->best_neighbours;
             cost[p] = match_cost_sweep(job->m, (int)i, plane, known ? best : ~0u, &best);
-            if (horizontal_plane(job, g, p, &horizontal)) {
+            for (int f = 0; f < job->families->count; f++) {
+                struct plane slanted;
+                if (!family_plane(job, g, p, f, &slanted)) continue;
                 const float other =
-                    match_cost_sweep(job->m, (int)i, horizontal, best, NULL) + (float)job->params->slant;
+                    match_cost_sweep(job->m, (int)i, slanted, f ? ~0u : best, NULL) + (float)job->params->slant;
                 cost[p] = other < cost[p] ? other : cost[p];
             }
             energy[p] = size * (cost[p] + (float)point_evidence_cost(job->points, (int)i, plane, g->cx, g->cy));
@@ -90,12 +93,17 @@ static void sweep_segments(void *ctx, size_t begin, size_t end, int thread)
 
 static struct plane best_plane(const struct sweep_job *job, int segment, int label)
 {
-    const struct plane facing = facing_plane(job->w, label);
-    struct plane horizontal;
-    if (!horizontal_plane(job, &job->m->segments->segments[segment], label, &horizontal)) return facing;
-    const float slant = (float)job->params->slant;
-    return match_cost(job->m, segment, horizontal, 0) + slant < match_cost(job->m, segment, facing, 0) ? horizontal
-                                                                                                       : facing;
+    struct plane best = facing_plane(job->w, label), slanted;
+    float lowest = NAN;
+    for (int f = 0; f < job->families->count; f++) {
+        if (!family_plane(job, &job->m->segments->segments[segment], label, f, &slanted)) continue;
+        if (isnan(lowest)) lowest = match_cost(job->m, segment, best, 0);
+        const float cost = match_cost(job->m, segment, slanted, 0) + (float)job->params->slant;
+        if (!(cost < lowest)) continue;
+        lowest = cost;
+        best = slanted;
+    }
+    return best;
 }
 
 void plane_sweep_steps(struct plane_sweep *w, const struct matcher *m, double min_inverse_z, double max_inverse_z,
@@ -109,10 +117,10 @@ void plane_sweep_steps(struct plane_sweep *w, const struct matcher *m, double mi
 
 enum status plane_sweep_run(struct plane_sweep *w, struct plane *plane, const struct matcher *m,
                             const struct point_evidence *points, const float *weights, const struct view *view,
-                            struct vec3 down, const struct segment_params *params, struct err *err)
+                            const struct plane_families *families, const struct segment_params *params, struct err *err)
 {
     const struct segmentation *s = m->segments;
-    struct sweep_job job = {.w = w, .view = view, .down = down, .m = m, .points = points, .params = params};
+    struct sweep_job job = {.w = w, .view = view, .families = families, .m = m, .points = points, .params = params};
     const size_t costs = (size_t)s->count * (size_t)w->planes + 1;
     int *labels = malloc(((size_t)s->count + 1) * sizeof *labels);
     w->cost = malloc(costs * sizeof *w->cost);

@@ -7,6 +7,13 @@
 #include "stages/segment_depth/point_evidence.h"
 #include "stages/segment_depth/segment_params.h"
 
+/* Normals of the planes that interiors are made of, unit vectors in the view's axes: of level planes first. */
+#define MAX_FAMILIES 5
+struct plane_families {
+    struct vec3 normal[MAX_FAMILIES];
+    int count;
+};
+
 struct plane_sweep {
     double min_inverse_z, step; /* inverse depth of label k: min_inverse_z + k step */
     int planes;
@@ -19,11 +26,11 @@ struct plane_sweep {
 void plane_sweep_steps(struct plane_sweep *w, const struct matcher *m, double min_inverse_z, double max_inverse_z,
                        const struct segment_params *params);
 
-/* Fills plane[], one plane per segment. weights: of smooth_border_weights(); down: in the view's axes. w comes from
+/* Fills plane[], one plane per segment. weights: of smooth_border_weights(); w comes from
  * plane_sweep_steps(); release it also after a failure. Same result for any number of threads. */
 enum status plane_sweep_run(struct plane_sweep *w, struct plane *plane, const struct matcher *m,
                             const struct point_evidence *points, const float *weights, const struct view *view,
-                            struct vec3 down, const struct segment_params *params, struct err *err);
+                            const struct plane_families *families, const struct segment_params *params, struct err *err);
 void plane_sweep_release(struct plane_sweep *w);
 
 #endif

@@ -27,6 +27,7 @@ static void view_rule(struct graph *g, const struct scene_facts *f, const char *
     if (before) rule_needs(g, PATH(g, DEPTH, .depth = before, .view = view));
     rule_needs(g, path_is_file(given) ? given : NULL);
     rule_takes_cameras(g);
+    rule_takes(g, "--frame", PATH(g, ROOM_FRAME));
     rule_needs_listed(g, deps);
     rule_after_set(g, "views");
     if (before) rule_after(g, graph_text(g, "depth-round%d", round - 1));
@@ -48,7 +49,7 @@ static void view_rule(struct graph *g, const struct scene_facts *f, const char *
 RULES(segment_depth)
 {
     int64_t last = -1;
-    graph_step(g, "depth", STEP_FARM, "views");
+    graph_step(g, "depth", STEP_FARM, "frame");
     graph_goal(g, "depth", NULL);
     if (!scan_int(graph_parameter(g, "rounds"), &last)) return;
     for (int round = 0; round <= (int)last; round++) {

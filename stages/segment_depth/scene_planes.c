@@ -12,6 +12,7 @@
 
 #define DEPTH_PART   0.02
 #define SLANT_PIXELS 40.0
+#define VOTED_PLANES 12
 #define TRIED        128 /* planes whose support is measured */
 #define FITS         2
 
@@ -94,12 +95,14 @@ enum status scene_planes_find(struct scene_planes *s, const struct plane_vote *v
                               double least, struct err *err)
 {
     struct plane_vote *left = malloc(((size_t)count + 1) * 2 * sizeof *left), *planes = left + count + 1;
-    *s = (struct scene_planes){.count = 0};
+    s->count = s->known;
+    s->has_ground = false;
+    s->voted_ground = 0;
     if (!left) return err_nomem(err, "planes of a scene", ((size_t)count + 1) * 2 * sizeof *left);
     int n = 0;
     for (int i = 0; i < count; i++)
         if (votes[i].plane.a != 0 || votes[i].plane.b != 0) left[n++] = votes[i];
-    while (s->count < SCENE_PLANES) {
+    while (s->count < s->known + VOTED_PLANES) {
         const int distinct = list_planes(planes, left, n);
         struct plane best = {0, 0, 0};
         double most = 0;

@@ -7,12 +7,13 @@
 
 #include "stages/segment_depth/plane_match.h"
 
-#define SCENE_PLANES 12
+#define SCENE_PLANES 36
 #define SCENE_GAIN   0.05 /* by which the data cost of a segment is less on one of them, in the first round */
 
 struct scene_planes {
     struct plane planes[SCENE_PLANES]; /* the most supported first */
     int count;
+    int known;        /* how many of the first come from elsewhere, and are not fitted to the view (frame_prior.h) */
     uint64_t filter;  /* of scene_planes_key() of the planes: a plane whose bit is 0 is none of them */
     bool has_ground;  /* the last plane is the ground (gravity.h) */
     int voted_ground; /* 1 + index of the plane of votes that is about the ground; 0: none */
@@ -50,11 +51,14 @@ static inline const struct plane *scene_planes_ground(const struct scene_planes 
 
 #define SCENE_REACH  3.0
 #define GROUND_REACH 30.0
+#define KNOWN_REACH  30.0
 
 /* The factor by which a plane may leave the range of depths: more for the ground, whoever found it. s may be NULL. */
 static inline double scene_planes_reach(const struct scene_planes *s, struct plane p)
 {
     if (!scene_planes_have(s, p)) return 1;
+    for (int k = 0; k < s->known; k++)
+        if (memcmp(&s->planes[k], &p, sizeof p) == 0) return KNOWN_REACH;
     const int ground = s->has_ground ? s->count : s->voted_ground;
     return ground && memcmp(&s->planes[ground - 1], &p, sizeof p) == 0 ? GROUND_REACH : SCENE_REACH;
 }
@@ -66,7 +70,7 @@ struct plane_vote {
     double weight; /* pixels */
 };
 
-/* The planes that most votes lie on. step: of inverse depth; least: weight that a plane must have. Planes of constant
+/* Adds the planes that most votes lie on to the known ones of s, in place of all others. step: of inverse depth; least: weight that a plane must have. Planes of constant
  * depth stand for unknown slants, and do not count. ST_NOMEM. */
 enum status scene_planes_find(struct scene_planes *s, const struct plane_vote *votes, int count, double step,
                               double least, struct err *err);

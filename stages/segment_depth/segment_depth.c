@@ -124,7 +124,7 @@ static enum status warn_guessed_range(const struct camera_set *set, const int *r
 
 /* What main was asked for. */
 struct request {
-    const char *views, *records, *before, *given, *view, *out, *deps;
+    const char *views, *records, *frame, *before, *given, *view, *out, *deps;
     const struct segment_params *params;
 };
 
@@ -158,6 +158,7 @@ static enum status make_depth(const struct request *r, const struct camera_set *
 {
     struct views_folder views = {r->views, r->before, r->given, set, prov};
     struct vec3 *ups = NULL;
+    struct room_frame frame = {0};
     struct layered_depth depth = {0};
     double changed = 1;
     int count = 0;
@@ -169,8 +170,13 @@ static enum status make_depth(const struct request *r, const struct camera_set *
         else
             err_nomem(err, "upright directions", (size_t)set->view_count * sizeof *ups);
     }
-    const struct view_source source = {read_view, r->before ? read_depth : NULL, &views, r->given ? read_given : NULL,
-                                       ups};
+    if (!err->status && r->frame) room_frame_read(&frame, r->frame, prov, err);
+    const struct view_source source = {.read = read_view,
+                                       .read_depth = r->before ? read_depth : NULL,
+                                       .ctx = &views,
+                                       .read_given = r->given ? read_given : NULL,
+                                       .ups = ups,
+                                       .frame = frame.known ? &frame : NULL};
     if (!err->status && !view_depth(&depth, read + 1, &count, set, read[0], &source, r->params, err))
         find_change(&changed, &depth, r, err);
     if (!err->status && r->deps)
@@ -183,6 +189,7 @@ static enum status make_depth(const struct request *r, const struct camera_set *
         log_note("%s: the depth of %.2f %% of the pixels changed by more than %g %%", r->view, 100 * changed,
                  100 * CHANGED_PART);
     free(ups);
+    room_frame_release(&frame);
     layered_depth_release(&depth);
     return err->status;
 }
@@ -253,6 +260,8 @@ int main(int argc, char **argv)
         CLI_STR("views", &r.views, CLI_REQUIRED, "folder of cameras and rectified views"),
         CLI_STR("records", &r.records, CLI_OPTIONAL,
                 "folder of the photos' records, which tell their upper sides; without them all are taken as upright"),
+        CLI_STR("frame", &r.frame, CLI_OPTIONAL, "what straight edges say of the room: frame.txt"),
+        CLI_STR("frame", &r.frame, CLI_OPTIONAL, "what straight edges say of the room: frame.txt"),
         CLI_STR("view", &r.view, CLI_OPTIONAL, "view to work on (required, with --out)"),
         CLI_STR("before", &r.before, CLI_OPTIONAL,
                 "folder of all views' depth in the previous round; none in the first round"),

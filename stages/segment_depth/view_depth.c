@@ -5,6 +5,7 @@
  * with the neighbours' depth maps; pixels at depth edges are split into two colours. The steps, in order:
  *   neighbours    views to match with, by shared points, angle and scale; the points also bound the depth range
  *   oversegment   SLIC superpixels in gamma-encoded opponent colours
+ *   frame_prior   floor, ceiling and walls that straight edges show, where the view's rays meet them
  *   given_depth   fixed planes of the segments whose depth the user provides
  *   plane_sweep   first round: cost volume over the depth range, smoothed; later rounds start from the previous planes
  *   gravity       which way is down, from cameras and walls; and the ground, at the feet of what stands on it
@@ -55,6 +56,16 @@ static double distinctness(const float *cost, int planes, double at)
         *best = fminf(*best, cost[p]);
     }
     return clamp((double)(rival - near) / 0.4, 0, 1);
+}
+
+/* The same of the minimum of all labels. */
+static double sweep_distinctness(const struct plane_sweep *w, int segment)
+{
+    const float *cost = w->cost + (size_t)segment * (size_t)w->planes;
+    int best = 0;
+    for (int p = 1; p < w->planes; p++)
+        if (cost[p] < cost[best]) best = p;
+    return distinctness(cost, w->planes, best) * clamp(1.33 - (double)cost[best], 0, 1);
 }
 
 /* Standard deviation of a confident and of an inherited depth. */
@@ -172,6 +183,8 @@ struct solution {
     struct plane_sweep sweep;
     struct given_depth given;
     struct scene_planes scene;
+    struct plane_families families;
+    struct frame_prior prior;
     struct plane ground;
     struct plane *planes;
     double *distinct; /* of each segment: distinctness() in the first round */
@@ -197,9 +210,10 @@ static enum status find_ground(struct solution *x, const struct solver *v, struc
 /* Initial planes by a plane sweep. */
 static enum status start_first_round(struct solution *x, const struct solver *v, struct err *err)
 {
-    plane_sweep_run(&x->sweep, x->planes, v->m, &x->points, x->weights, x->problem.view, x->problem.down, v->params,
-                    err);
+    plane_sweep_run(&x->sweep, x->planes, v->m, &x->points, x->weights, x->problem.view, &x->families, v->params, err);
     x->problem.cost = x->sweep.cost;
+    for (int i = 0; !err->status && i < v->m->segments->count; i++) x->distinct[i] = sweep_distinctness(&x->sweep, i);
+    if (!err->status) frame_prior_weigh(&x->prior, x->distinct, v->m->segments, v->set, err);
     if (!err->status) match_select(v->m, x->planes, NULL, err);
     return err->status;
 }
@@ -213,6 +227,7 @@ static enum status start_later_round(struct solution *x, const struct solver *v,
     if (!cross_view_make(&x->cross, s, v->set, v->view_idx, v->neighbours, v->neighbour_count, x->sweep.step, &source,
                          err))
         read_previous_planes(x->planes, x->distinct, v, err);
+    if (!err->status) frame_prior_weigh(&x->prior, x->distinct, s, v->set, err);
     unsigned *occluded = calloc((size_t)s->count + 1, sizeof *occluded);
     if (!err->status && !occluded) err_nomem(err, "occlusions", (size_t)s->count * sizeof *occluded);
     for (int i = 0; !err->status && i < s->count; i++) cross_view_cost(&x->cross, i, x->planes[i], &occluded[i]);
@@ -252,6 +267,16 @@ static enum status start_solution(struct solution *x, const struct solver *v, st
                                         .max_inverse_z = v->max_inverse_z,
                                         .step = x->sweep.step,
                                         .planes = x->sweep.planes};
+    x->families = (struct plane_families){{x->problem.down}, 1};
+    if (v->source->frame && v->source->frame->known) {
+        const struct room_frame *f = v->source->frame;
+        x->problem.down = x->families.normal[0] = mat3_apply(view->cam_from_world, vec3_scale(f->up, -1));
+        for (int k = 0; k < f->heading_count && x->families.count < MAX_FAMILIES; k++)
+            x->families.normal[x->families.count++] = mat3_apply(view->cam_from_world, frame_across(f, k));
+    }
+    if (frame_prior_make(&x->prior, v->source->frame, view, s, err)) return err->status;
+    x->problem.prior = x->prior.count ? &x->prior : NULL;
+    x->problem.families = &x->families;
     if (v->given) fit_given(&x->given, v, x->sweep.step, err);
     if (!err->status && !find_ground(x, v, err))
         point_evidence_make(&x->points, s, v->seen, v->min_inverse_z, v->max_inverse_z, x->sweep.step, v->params, err);
@@ -266,6 +291,7 @@ static void solution_release(struct solution *x)
     free(x->weights);
     free(x->min_match);
     cross_view_release(&x->cross);
+    frame_prior_release(&x->prior);
     plane_sweep_release(&x->sweep);
     given_depth_release(&x->given);
     point_evidence_release(&x->points);

@@ -2,6 +2,7 @@
 #ifndef REMODEL_VIEW_DEPTH_H
 #define REMODEL_VIEW_DEPTH_H
 
+#include "common/capture/room_frame.h"
 #include "common/image/image.h"
 #include "common/layers/layered_depth.h"
 #include "stages/segment_depth/neighbours.h"
@@ -17,6 +18,7 @@ struct view_source {
      * callback may be NULL. */
     enum status (*read_given)(void *ctx, int view_idx, float **z, struct err *err);
     const struct vec3 *ups; /* of each view: the upright direction in its camera (upright.h); NULL: all stand upright */
+    const struct room_frame *frame; /* what is known of the room; NULL: nothing */
 };
 
 /* out: {0} on entry; the caller releases it. neighbours, neighbour_count: the views that were read besides view_idx.

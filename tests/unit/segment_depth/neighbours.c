@@ -119,7 +119,7 @@ static void similar_scales_are_preferred(void **state)
     assert_int_equal(n[0], beside);
 }
 
-static void a_view_that_shares_no_points_is_not_chosen(void **state)
+static void a_view_that_shares_no_points_comes_last(void **state)
 {
     (void)state;
     int n[MAX_NEIGHBOURS];
@@ -128,24 +128,41 @@ static void a_view_that_shares_no_points_is_not_chosen(void **state)
     at(1.5, 0, 0);
     const int seen_by = at(-0.4, 0, 0);
     patch(60, 1u | 1u << seen_by);
-    assert_int_equal(choose(n, 4, &err), 1);
+    assert_int_equal(choose(n, 4, &err), 2);
+    assert_int_equal(n[0], seen_by);
+    assert_int_equal(choose(n, 1, &err), 1);
     assert_int_equal(n[0], seen_by);
 }
 
-static void without_points_poses_decide(void **state)
+static void without_points_the_nearest_pose_is_chosen(void **state)
 {
     (void)state;
-    for (int points = 0; points < 8; points += 7) { /* none, or too few */
-        int n[MAX_NEIGHBOURS];
-        struct err err;
-        start();
-        at(3, 0, 0);
-        const int near = at(0.5, 0, 0);
-        scene_view(&scene, 160, 120, 160, 0.1, 0, 0, 1.2); /* nearer, but facing away */
-        patch(points, ALL);
-        assert_int_equal(choose(n, 4, &err), 2);
-        assert_int_equal(n[0], near);
-    }
+    int n[MAX_NEIGHBOURS];
+    struct err err;
+    start();
+    at(3, 0, 0);
+    const int near = at(0.5, 0, 0);
+    scene_view(&scene, 160, 120, 160, 0.1, 0, 0, 1.2); /* nearer, but facing away */
+    assert_int_equal(choose(n, 4, &err), 2);
+    assert_int_equal(n[0], near);
+}
+
+/* A few points tell how far the scene is, so that poses with a good angle to it come first. */
+static void with_few_points_the_poses_that_show_most_are_chosen(void **state)
+{
+    (void)state;
+    int n[MAX_NEIGHBOURS];
+    struct err err;
+    start();
+    at(0.02, 0, 0); /* a tenth of a degree */
+    const int wide = at(2, 0, 0);
+    scene_view(&scene, 160, 120, 160, 0.1, 0, 0, 1.2); /* faces away */
+    const int narrow = at(0.5, 0, 0);
+    scene_view(&scene, 160, 120, 160, 0, 0, 30, 0); /* behind the scene */
+    patch(7, ALL);
+    assert_int_equal(choose(n, 4, &err), 2);
+    assert_int_equal(n[0], wide);
+    assert_int_equal(n[1], narrow);
 }
 
 static void a_view_without_neighbours_is_an_error(void **state)
@@ -278,8 +295,9 @@ int main(void)
         cmocka_unit_test(the_second_neighbour_adds_a_direction),
         cmocka_unit_test(neighbours_cover_the_whole_view),
         cmocka_unit_test(similar_scales_are_preferred),
-        cmocka_unit_test(a_view_that_shares_no_points_is_not_chosen),
-        cmocka_unit_test(without_points_poses_decide),
+        cmocka_unit_test(a_view_that_shares_no_points_comes_last),
+        cmocka_unit_test(without_points_the_nearest_pose_is_chosen),
+        cmocka_unit_test(with_few_points_the_poses_that_show_most_are_chosen),
         cmocka_unit_test(a_view_without_neighbours_is_an_error),
         cmocka_unit_test(observed_points_are_in_front_with_small_reprojection_error),
         cmocka_unit_test(the_depth_range_contains_the_points),

@@ -35,7 +35,7 @@ static void the_planes_of_most_votes_are_found_in_order(void **state)
     (void)state;
     static struct plane_vote votes[VOTES];
     for (int noisy = 0; noisy < 2; noisy++) {
-        struct scene_planes s;
+        struct scene_planes s = {0};
         struct err err = ERR_INIT;
         make_votes(votes, noisy);
         assert_ok(scene_planes_find(&s, votes, VOTES, step, 0.05 * VOTES * 100, &err), err);
@@ -60,7 +60,7 @@ static void fine_steps_find_the_same_planes(void **state)
 {
     (void)state;
     static struct plane_vote votes[VOTES];
-    struct scene_planes s;
+    struct scene_planes s = {0};
     struct err err = ERR_INIT;
     make_votes(votes, 1);
     assert_ok(scene_planes_find(&s, votes, VOTES, 0.05 * step, 0.05 * VOTES * 100, &err), err);
@@ -71,7 +71,7 @@ static void the_order_of_votes_does_not_matter(void **state)
 {
     (void)state;
     static struct plane_vote votes[VOTES], turned[VOTES];
-    struct scene_planes a, b;
+    struct scene_planes a = {0}, b = {0};
     struct err err = ERR_INIT;
     make_votes(votes, 1);
     for (int i = 0; i < VOTES; i++) turned[i] = votes[VOTES - 1 - i];
@@ -85,7 +85,7 @@ static void constant_depths_and_small_parts_are_no_planes_of_a_scene(void **stat
 {
     (void)state;
     static struct plane_vote votes[VOTES];
-    struct scene_planes s;
+    struct scene_planes s = {0};
     struct err err = ERR_INIT;
     make_votes(votes, 0);
     assert_ok(scene_planes_find(&s, votes, VOTES, step, VOTES * 100.0, &err), err);
