@@ -7,8 +7,9 @@
  * Hidden points are removed first: points that face away from the camera, and points behind others. The rectangle is
  * cut into cells; in each of them points farther than 1.08 times the cell's front are hidden.
  *
- * Beyond the source: angled walls. Their normal is the mean normal about the fullest 5 degree bin, then three rounds of
- * a total least squares fit of the wall's line in plan to the points near it. */
+ * Beyond the source: angled walls. The
+ * normal of an angled wall is the mean normal about the fullest 5 degree bin, then three rounds of a total least squares
+ * fit of the wall's line in plan to the points near it. */
 #include "stages/build_model/place/place.h"
 
 #include <math.h>
@@ -18,11 +19,11 @@
 #include "common/base/array.h"
 #include "common/base/scan.h"
 #include "common/math/numbers.h"
+#include "stages/build_model/place/place_pixels.h"
 
 enum { MAX_CELLS = 24, MIN_IN_CELL = 60 }; /* along each side; mean number of points in a cell */
 #define BEHIND         1.08                /* times the front's distance: points beyond are hidden */
 #define FRONT_FRACTION 0.05                /* of a cell's points, taken as outliers, lie before its front */
-#define MIN_COSINE     0.02                /* between a ray and a plane's normal for an intersection */
 
 void place_release(struct placer *placer)
 {
@@ -97,9 +98,8 @@ static const char *known_photo(const void *ctx, int i)
     return i % 2 ? lenses->lenses[i / 2].view : lenses->lenses[i / 2].photo;
 }
 
-/* By a photo's id or a view's name. */
-static enum status find_photo(const struct placer_photo **found, const struct placer *placer, const char *view,
-                              const char *path, int line, struct err *err)
+enum status place_find_photo(const struct placer_photo **found, const struct placer *placer, const char *view,
+                             const char *path, int line, struct err *err)
 {
     const char *photo = view;
     char quoted[SCAN_QUOTED];
@@ -131,16 +131,18 @@ static enum status check_pixels(const struct placer_photo *c, const struct scrip
                    path, line, p->a[0], p->a[1], p->a[2], p->a[3], c->id, c->camera.lens.width, c->camera.lens.height);
 }
 
-/* The ray through a pixel, in the model's frame. */
-static enum status pixel_ray(struct vec3 *ray, const struct placer_photo *c, double x, double y, const char *path,
-                             int line, struct err *err)
+bool place_pixel_ray(struct vec3 *ray, const struct placer_photo *c, double x, double y)
 {
     struct vec3 r;
-    if (!camera_unproject(&c->camera.lens, x, y, &r))
-        return err_set(err, ST_DATA, "%s:%d: the lens of %s has no ray at pixel %.9g %.9g; choose another pixel.", path,
-                       line, c->id, x, y);
+    if (!camera_unproject(&c->camera.lens, x, y, &r)) return false;
     *ray = mat3_apply(mat3_transpose(c->camera.cam_from_world), r);
-    return ST_OK;
+    return true;
+}
+
+enum status place_no_ray(const struct placer_photo *c, double x, double y, const char *path, int line, struct err *err)
+{
+    return err_set(err, ST_DATA, "%s:%d: the lens of %s has no ray at pixel %.9g %.9g; choose another pixel.", path,
+                   line, c->id, x, y);
 }
 
 /* The intersection of a pixel's ray with the plane n p = d, from the side of n. */
@@ -148,9 +150,9 @@ static enum status meet_plane(struct vec3 *at, const struct placer_photo *c, dou
                               double d, const char *path, int line, struct err *err)
 {
     struct vec3 ray = {0, 0, 0};
-    if (pixel_ray(&ray, c, x, y, path, line, err)) return err->status;
+    if (!place_pixel_ray(&ray, c, x, y)) return place_no_ray(c, x, y, path, line, err);
     const double down = -vec3_dot(n, ray), height = vec3_dot(n, c->camera.center) - d;
-    if (!(height > 0 && down > MIN_COSINE))
+    if (!(height > 0 && down > PLACE_MIN_COSINE))
         return err_set(
             err, ST_DATA,
             "%s:%d: the ray through pixel %.9g %.9g of %s does not hit the plane: it %s; choose another photo.", path,
@@ -164,7 +166,7 @@ enum status place_corners(struct vec3 corners[2], const struct placer *placer, c
                           struct vec3 n, double d, const char *path, int line, struct err *err)
 {
     const struct placer_photo *c;
-    if (find_photo(&c, placer, place->view, path, line, err) || check_pixels(c, place, path, line, err) ||
+    if (place_find_photo(&c, placer, place->view, path, line, err) || check_pixels(c, place, path, line, err) ||
         meet_plane(&corners[0], c, place->a[0], place->a[1], n, d, path, line, err) ||
         meet_plane(&corners[1], c, place->a[2], place->a[3], n, d, path, line, err))
         return err->status;
@@ -172,13 +174,6 @@ enum status place_corners(struct vec3 corners[2], const struct placer *placer, c
 }
 
 /* --------------------------------------------------------------------------------------------------- visible points */
-
-struct visible_point {
-    const struct placed_point *point;
-    double distance;
-    float u, v; /* in the rectangle, 0 .. 1 */
-    int cell;
-};
 
 static int compare_visible(const void *a, const void *b)
 {
@@ -289,8 +284,27 @@ static enum status too_few(const struct placer_photo *c, const struct script_pla
     return err_set(
         err, ST_DATA,
         "%s:%d: the rectangle %.9g %.9g %.9g %.9g in %s contains %zu visible points%s, wanted %d or more; draw it "
-        "larger, draw it in another photo, or give the wall by coordinates.",
+        "larger or in another photo, or place the wall by its line at the floor (wall NAME foot in VIEW X0 Y0 X1 Y1) "
+        "or "
+        "by coordinates.",
         path, line, p->a[0], p->a[1], p->a[2], p->a[3], c->id, found, what, wanted);
+}
+
+/* Of a direction, the side towards which more normals point. False: none do. */
+static bool vote_side(double n[2], const struct visible_point *visible, size_t count, double max_angle,
+                      const double along[2])
+{
+    const double near = cos(max_angle * DEGREE);
+    double sides[2] = {0, 0};
+    for (size_t i = 0; i < count; i++) {
+        const struct placed_point *q = visible[i].point;
+        const double toward = q->normal[0] * along[1] - q->normal[1] * along[0];
+        if (fabs(toward) >= near) sides[toward < 0] += q->weight;
+    }
+    const double sign = sides[1] > sides[0] ? -1 : 1;
+    n[0] = sign * along[1];
+    n[1] = -sign * along[0];
+    return sides[0] + sides[1] > 0;
 }
 
 /* The horizontal direction for which most normals vote: along an axis or, for an angled wall, the mean normal about the
@@ -382,15 +396,18 @@ static void fit_line(double n[2], double c, const struct visible_point *visible,
 }
 
 static enum status locate_wall(struct placed_wall *wall, const struct placer *placer, const struct placer_photo *c,
-                               const struct script_place *place, const double normal[2], bool angled, const char *path,
+                               const struct script_place *place, const struct place_direction *wanted, const char *path,
                                int line, const struct visible_point *visible, size_t count, struct position *p,
                                struct err *err)
 {
     const struct model_params *params = placer->params;
+    const double *const normal = wanted->normal;
+    const bool angled = wanted->is_free;
     if (count < (size_t)params->min_points) return too_few(c, place, path, line, count, params->min_points, "", err);
     if (normal)
         memcpy(wall->n, normal, sizeof wall->n);
-    else if (!vote(wall->n, visible, count, params->max_angle, angled))
+    else if (wanted->along ? !vote_side(wall->n, visible, count, params->max_angle, wanted->along)
+                           : !vote(wall->n, visible, count, params->max_angle, angled))
         return too_few(c, place, path, line, 0, params->min_points, " with the normal of a wall", err);
     size_t used = gather(p, visible, count, wall->n, params->max_angle);
     if (used < (size_t)params->min_points)
@@ -414,13 +431,13 @@ static enum status locate_wall(struct placed_wall *wall, const struct placer *pl
 }
 
 enum status place_wall(struct placed_wall *wall, const struct placer *placer, const struct script_place *place,
-                       const double normal[2], bool angled, const char *path, int line, struct err *err)
+                       const struct place_direction *wanted, const char *path, int line, struct err *err)
 {
     const struct placer_photo *c;
     struct visible_point *visible = NULL;
     size_t count = 0;
     *wall = (struct placed_wall){0};
-    if (find_photo(&c, placer, place->view, path, line, err) || check_pixels(c, place, path, line, err))
+    if (place_find_photo(&c, placer, place->view, path, line, err) || check_pixels(c, place, path, line, err))
         return err->status;
     if (!placer->count)
         return err_set(
@@ -430,7 +447,7 @@ enum status place_wall(struct placed_wall *wall, const struct placer *placer, co
     struct position *p = NULL;
     if (!find_visible(&visible, &count, placer, c, place, err) && !(p = calloc(count + 1, sizeof *p)))
         err_nomem(err, "points of a rectangle", count * sizeof *p);
-    if (!err->status) locate_wall(wall, placer, c, place, normal, angled, path, line, visible, count, p, err);
+    if (!err->status) locate_wall(wall, placer, c, place, wanted, path, line, visible, count, p, err);
     const double middle = 0.5 * (place->a[1] + place->a[3]);
     for (int i = 0; i < 2 && !err->status; i++) {
         struct vec3 at;

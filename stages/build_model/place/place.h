@@ -52,11 +52,16 @@ struct placed_wall {
     size_t points;     /* number of points within the window */
 };
 
-/* normal: the wall's own, which is kept (adjust), or NULL: then the axis for which most normals vote or, if `angled`,
- * the direction that fits the points. path and line: of the script, for errors. ST_DATA: unknown view, rectangle
- * outside the photo, too few points. */
+struct place_direction {  /* of a wall; without any of these: the axis for which most normals vote */
+    const double *normal; /* the wall's own, which is kept */
+    const double *along;  /* of either sign */
+    bool is_free;         /* the direction that fits the points */
+};
+
+/* path and line: of the script, for errors. ST_DATA: unknown view, rectangle outside the photo, too few points, points
+ * of another direction, points that are scattered. */
 enum status place_wall(struct placed_wall *wall, const struct placer *placer, const struct script_place *place,
-                       const double normal[2], bool angled, const char *path, int line, struct err *err);
+                       const struct place_direction *wanted, const char *path, int line, struct err *err);
 
 /* The intersections of the plane n p = d with the rays through the rectangle's corners X0 Y0 and X1 Y1. ST_DATA as for
  * place_wall(), and where a ray misses the plane. */

@@ -64,10 +64,11 @@ void plan_begin(struct plan *plan, const struct model_axes *axes)
 
 static enum status needs_views(struct plan_context *c)
 {
-    const struct script_place *place = c->s->place.kind == PLACE_VIEW ? &c->s->place : &c->s->target;
-    if (place->kind != PLACE_VIEW || c->placer) return ST_OK;
-    return plan_statement_error(c, "the statement names the view %s, but no views are known; give --views.",
-                                place->view);
+    const struct statement *s = c->s;
+    const char *view = s->place.view ? s->place.view : s->target.view ? s->target.view : NULL;
+    if (s->corner_count) view = s->corners[0].view;
+    if (!view || c->placer) return ST_OK;
+    return plan_statement_error(c, "the statement names the view %s, but no views are known; give --views.", view);
 }
 
 /* An edit's statement that changes nothing is a mistake. A default that is set must be used further down. */

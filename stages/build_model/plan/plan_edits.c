@@ -21,7 +21,8 @@
 
 enum status plan_read_adjust(struct script_reader *r, struct statement *s)
 {
-    if (script_read_name(r, "a name", &s->name) || script_read_place(r, &s->place, 1u << PLACE_FROM_END))
+    if (script_read_name(r, "a name", &s->name) ||
+        script_read_place(r, &s->place, 1u << PLACE_FROM_END | 1u << PLACE_FOOT | 1u << PLACE_TOP))
         return r->err->status;
     s->by_points = s->place.kind == PLACE_VIEW;
     return ST_OK;
@@ -34,6 +35,10 @@ enum status plan_apply_adjust(struct plan_context *c)
     enum name_kind kind;
     int at;
     if (plan_find_solid(c, s->name, &kind, &at)) return c->err->status;
+    const bool by_line = s->place.kind == PLACE_FOOT || s->place.kind == PLACE_TOP;
+    if (by_line && kind != NAMED_WALL)
+        return plan_statement_error(
+            c, "%s is not a wall, which alone is placed by its line at the floor or the ceiling.", s->name);
     if (kind == NAMED_OPENING) {
         struct plan_opening *o = &plan->openings[at];
         if (plan_place_on_wall(c, o->wall, o->s, o->z)) return c->err->status;
@@ -65,8 +70,22 @@ enum status plan_apply_adjust(struct plan_context *c)
         w->c = c0;
         return ST_OK;
     }
+    if (by_line) {
+        struct placed_line line;
+        double span[2];
+        plan_wall_span(plan, at, span);
+        const double z = s->place.kind == PLACE_TOP ? plan_wall_top(plan, at, span[0], span[1]) : w->foot;
+        if (plan_place_line(c, s->name, z, w->d, false, &line)) return c->err->status;
+        if (line.d[0] * w->d[0] + line.d[1] * w->d[1] < 0)
+            return plan_statement_error(c, "%s shows wall %s from behind; draw the line in a photo of its inside.",
+                                        s->place.view, s->name);
+        log_note("wall %s: moved by %.3g", s->name, line.c - w->c);
+        w->c = line.c;
+        return ST_OK;
+    }
     struct placed_wall placed;
-    if (place_wall(&placed, c->placer, &s->place, in.n, false, c->path, s->line, c->err)) return c->err->status;
+    const struct place_direction kept = {.normal = in.n};
+    if (place_wall(&placed, c->placer, &s->place, &kept, c->path, s->line, c->err)) return c->err->status;
     log_note("wall %s: moved by %.3g; %zu points, median distance from the wall %.3g", s->name, placed.c - w->c,
              placed.points, placed.spread);
     w->c = placed.c;

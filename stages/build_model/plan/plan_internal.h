@@ -3,6 +3,7 @@
 #ifndef REMODEL_BUILD_MODEL_PLAN_INTERNAL_H
 #define REMODEL_BUILD_MODEL_PLAN_INTERNAL_H
 
+#include "stages/build_model/place/place_line.h"
 #include "stages/build_model/plan/plan.h"
 #include "stages/build_model/script/verbs.h"
 
@@ -64,6 +65,14 @@ double plan_use_default(struct plan_context *c, enum plan_default which);
 /* The option's value, or the default's. */
 double plan_option_or_default(struct plan_context *c, enum option option, enum plan_default which);
 enum status plan_check_length(struct plan_context *c, const char *what, double value);
+
+/* plan_walls.c */
+
+/* The line of a wall by the statement's two pixels where it meets the floor or the ceiling, at height z; its start is
+ * at the left for the camera. along: its direction, NULL: the nearest axis; is_free: that of the pixels. Logs how far
+ * it is off. ST_DATA: too far. */
+enum status plan_place_line(struct plan_context *c, const char *wall, double z, const double along[2], bool is_free,
+                            struct placed_line *line);
 
 /* plan_openings.c */
 

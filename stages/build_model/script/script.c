@@ -17,7 +17,10 @@ enum { MAX_STATEMENTS = 200000 };
 void script_release(struct script *script)
 {
     if (!script) return;
-    for (int i = 0; i < script->count; i++) free(script->statements[i].names);
+    for (int i = 0; i < script->count; i++) {
+        free(script->statements[i].names);
+        free(script->statements[i].corners);
+    }
     free(script->statements);
     free(script->words);
     free(script->path);

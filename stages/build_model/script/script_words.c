@@ -82,20 +82,41 @@ enum status script_expect(struct script_reader *r, const char *wanted)
 
 /* ------------------------------------------------------------------------------------------------------------ parts */
 
-static enum status read_rectangle(struct script_reader *r, struct script_place *p)
+static enum status read_view(struct script_reader *r, const char **view)
+{
+    char *word;
+    if (textfile_word(&r->t, "a photo or view", &word, r->err)) return r->err->status;
+    *view = script_keep_word(r, word);
+    return ST_OK;
+}
+
+static enum status read_pixels(struct script_reader *r, struct script_place *p, enum place_kind kind)
 {
     static const char *const what[] = {"x0", "y0", "x1", "y1"};
-    char *view;
-    if (textfile_word(&r->t, "a photo or view", &view, r->err)) return r->err->status;
-    p->kind = PLACE_VIEW;
-    p->view = script_keep_word(r, view);
+    p->kind = kind;
+    if (read_view(r, &p->view)) return r->err->status;
     for (int i = 0; i < 4; i++)
         if (script_read_number(r, what[i], &p->a[i])) return r->err->status;
+    return ST_OK;
+}
+
+static enum status read_rectangle(struct script_reader *r, struct script_place *p)
+{
+    if (read_pixels(r, p, PLACE_VIEW)) return r->err->status;
     if (p->a[2] > p->a[0] && p->a[3] > p->a[1]) return ST_OK;
     return err_set(r->err, ST_DATA,
                    "%s:%d: found the rectangle %.9g %.9g %.9g %.9g, wanted X0 Y0 its upper left corner and X1 Y1 its "
                    "lower right one, in pixels of the photo as it is stored.",
                    r->t.path, r->t.line, p->a[0], p->a[1], p->a[2], p->a[3]);
+}
+
+/* The line where a wall meets the floor or the ceiling. */
+static enum status read_line(struct script_reader *r, struct script_place *p, enum place_kind kind)
+{
+    if (script_expect(r, "in") || read_pixels(r, p, kind)) return r->err->status;
+    if (p->a[0] != p->a[2] || p->a[1] != p->a[3]) return ST_OK;
+    return err_set(r->err, ST_DATA, "%s:%d: found the pixel %.9g %.9g of %s twice, wanted two pixels of a line.",
+                   r->t.path, r->t.line, p->a[0], p->a[1], p->view);
 }
 
 static enum status read_from_end(struct script_reader *r, struct script_place *p)
@@ -133,6 +154,8 @@ enum status script_read_place(struct script_reader *r, struct script_place *p, u
     if (!strcmp(word, "in")) return read_rectangle(r, p);
     if (!strcmp(word, "at") && more & 1u << PLACE_FROM_END) return read_from_end(r, p);
     if (!strcmp(word, "parallel") && more & 1u << PLACE_PARALLEL) return read_parallel(r, p);
+    if (!strcmp(word, "foot") && more & 1u << PLACE_FOOT) return read_line(r, p, PLACE_FOOT);
+    if (!strcmp(word, "top") && more & 1u << PLACE_TOP) return read_line(r, p, PLACE_TOP);
     if (strcmp(word, "from"))
         return textfile_error(&r->t, r->err, word, "\"in VIEW\" or \"from\", in a line \"%s\"", r->verb->usage);
     p->kind = PLACE_COORDINATES;
@@ -141,6 +164,25 @@ enum status script_read_place(struct script_reader *r, struct script_place *p, u
         script_read_number(r, "a coordinate", &p->a[3]))
         return r->err->status;
     return ST_OK;
+}
+
+enum status script_read_along(struct script_reader *r, struct script_place *p)
+{
+    if (!script_next_is(r, "along")) return ST_OK;
+    return script_expect(r, "along") || script_read_name(r, "x, y or a wall", &p->along) ? r->err->status : ST_OK;
+}
+
+enum status script_read_corners(struct script_reader *r, struct statement *s)
+{
+    while (script_next_is(r, "corner")) {
+        if (array_append(&s->corners, (size_t)s->corner_count, sizeof *s->corners, "corners", r->err))
+            return r->err->status;
+        struct script_corner *c = &s->corners[s->corner_count++];
+        if (script_expect(r, "corner") || script_expect(r, "in") || read_view(r, &c->view) ||
+            script_read_number(r, "x", &c->x) || script_read_number(r, "y", &c->y))
+            return r->err->status;
+    }
+    return s->corner_count < 2 ? script_usage_error(r, NULL) : ST_OK;
 }
 
 /* The names of all options that the verb has. */

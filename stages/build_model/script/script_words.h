@@ -34,8 +34,12 @@ enum status script_read_name(struct script_reader *r, const char *what, const ch
 enum status script_read_number(struct script_reader *r, const char *what, double *value);
 /* Reads the word that must come next. */
 enum status script_expect(struct script_reader *r, const char *wanted);
-/* Reads a place by coordinates or in a view, or of a kind in `more` (bits of PLACE_FROM_END and PLACE_PARALLEL). */
+/* Reads a place by coordinates or in a view, or of a kind in `more` (bits of the kinds from PLACE_FROM_END on). */
 enum status script_read_place(struct script_reader *r, struct script_place *p, unsigned more);
+/* Reads the direction of a wall in a view, `along x|y|WALL`, if it comes next. */
+enum status script_read_along(struct script_reader *r, struct script_place *p);
+/* Reads corners of the floor, `corner in VIEW X Y`, as long as they come next: two or more. */
+enum status script_read_corners(struct script_reader *r, struct statement *s);
 /* Reads names until an option or the end of the line. */
 enum status script_read_list(struct script_reader *r, struct statement *s, int min_count);
 /* Reads the name of a face, such as wall/south/in, or the first part of several: box/chest. */

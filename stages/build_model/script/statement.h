@@ -2,7 +2,8 @@
  *
  * A PLACE is a position: two opposite corners, by coordinates (`from A B to C D`) or as two pixels of a photograph as
  * it is stored (`in VIEW X0 Y0 X1 Y1`); relative to walls, `at left|right D width W from Z to Z` for an opening and
- * `parallel to WALL by D between WALL WALL` for a wall. */
+ * `parallel to WALL by D between WALL WALL` for a wall; for a wall also two pixels on the line where it meets the floor
+ * or the ceiling (`foot in VIEW X0 Y0 X1 Y1`, `top in VIEW ...`). */
 #ifndef REMODEL_BUILD_MODEL_STATEMENT_H
 #define REMODEL_BUILD_MODEL_STATEMENT_H
 
@@ -10,15 +11,30 @@
 
 #include "common/light/gloss.h"
 
-enum place_kind { PLACE_NONE, PLACE_COORDINATES, PLACE_VIEW, PLACE_FROM_END, PLACE_PARALLEL };
+enum place_kind {
+    PLACE_NONE,
+    PLACE_COORDINATES,
+    PLACE_VIEW,
+    PLACE_FROM_END,
+    PLACE_PARALLEL,
+    PLACE_FOOT,
+    PLACE_TOP,
+};
 
 struct script_place {
     enum place_kind kind;
-    const char *view;       /* PLACE_VIEW */
+    const char *view;       /* PLACE_VIEW, PLACE_FOOT, PLACE_TOP */
+    const char *along;      /* the same, of a wall: its direction, "x", "y" or a wall; NULL: not given */
     const char *wall;       /* PLACE_PARALLEL: the wall that it is parallel to */
     const char *between[2]; /* PLACE_PARALLEL: the walls at its ends */
     bool right;             /* PLACE_FROM_END: measured from the wall's right end, else its left end */
     double a[4];            /* as written: A B C D, X0 Y0 X1 Y1, D W Z0 Z1, or D */
+};
+
+/* A corner of a room's floor in a photograph. */
+struct script_corner {
+    const char *view;
+    double x, y; /* px */
 };
 
 /* A word of that name, then a number; from OPTION_ANGLED on a word alone. */
@@ -62,9 +78,11 @@ struct statement {
     const char *other; /* openings: the wall or room; extend: the wall to reach, or NULL; split: the new wall; copy: the
                            face that gets the texture; texture: "stretch" or "crop"; clear, keep: the opening */
     const char *mesh;  /* object: its file in the scene's folder; else NULL */
-    bool by_points;    /* wall, adjust: the place is found by points, since it is in a view */
-    const char **names; /* join, room: walls in order; slope, gable: the two walls */
+    bool by_points;    /* wall, adjust: the place is found by points, since it is a rectangle in a view */
+    const char **names; /* join, room, walls: walls in order; slope, gable: the two walls */
     int name_count;
+    struct script_corner *corners; /* walls */
+    int corner_count;
     struct script_place place, target; /* target: of copy; PLACE_NONE of either: the whole face */
     int end;                           /* extend: END_START or END_END */
     enum filling filling;              /* fill */

@@ -85,8 +85,9 @@ static enum status place(struct placed_wall *w, const char *view, double x0, dou
                          const double *normal, bool angled, struct err *err)
 {
     const struct script_place p = {.kind = PLACE_VIEW, .view = view, .a = {x0, y0, x1, y1}};
+    const struct place_direction wanted = {.normal = normal, .is_free = angled};
     *err = (struct err)ERR_INIT;
-    return place_wall(w, &placer, &p, normal, angled, "model.txt", 9, err);
+    return place_wall(w, &placer, &p, &wanted, "model.txt", 9, err);
 }
 
 /* Pixel of a point of the model in the fisheye photo. */
