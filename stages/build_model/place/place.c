@@ -7,7 +7,7 @@
  * Hidden points are removed first: points that face away from the camera, and points behind others. The rectangle is
  * cut into cells; in each of them points farther than 1.08 times the cell's front are hidden.
  *
- * Beyond the source: angled walls. The
+ * Beyond the source: rectangles that do not show where the wall is are refused (place_judge.c), and angled walls. The
  * normal of an angled wall is the mean normal about the fullest 5 degree bin, then three rounds of a total least squares
  * fit of the wall's line in plan to the points near it. */
 #include "stages/build_model/place/place.h"
@@ -19,7 +19,7 @@
 #include "common/base/array.h"
 #include "common/base/scan.h"
 #include "common/math/numbers.h"
-#include "stages/build_model/place/place_pixels.h"
+#include "stages/build_model/place/place_judge.h"
 
 enum { MAX_CELLS = 24, MIN_IN_CELL = 60 }; /* along each side; mean number of points in a cell */
 #define BEHIND         1.08                /* times the front's distance: points beyond are hidden */
@@ -427,7 +427,8 @@ static enum status locate_wall(struct placed_wall *wall, const struct placer *pl
     qsort(p, used, sizeof *p, compare_positions);
     wall->spread = p[used / 2].at;
     wall->points = near;
-    return ST_OK;
+    const struct rectangle_wall found = {wall, c, place, visible, count, normal || wanted->along, angled};
+    return place_judge(&found, placer, path, line, err);
 }
 
 enum status place_wall(struct placed_wall *wall, const struct placer *placer, const struct script_place *place,
