@@ -56,7 +56,9 @@ static void log_summary(const struct room *room, const struct files *f, const st
         log_note("%s: the marked edges agree with the axes within their errors; the axes are unchanged", f->fix);
     if (room->corner_height < 0 && !room->floor_marked)
         log_note("%s: the marked corners agree with the floor within their errors; the floor is unchanged", f->fix);
-    if (a->ceiling > 0)
+    if (a->ceiling > 0 && !room->ceiling.count)
+        log_note("ceiling at %.4g %s, the height in %s: no points show it", a->ceiling, unit, f->scale);
+    else if (a->ceiling > 0)
         log_note("ceiling at %.4g +- %.2g %s, from %zu points", a->ceiling, a->ceiling_error, unit,
                  room->ceiling.count);
     else

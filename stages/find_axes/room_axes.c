@@ -11,8 +11,9 @@
  *      edges say, where the points have none or one far from it. Corners of the floor
  *      that are marked in several views replace the floor where there is none, or where the two differ by more than
  *      twice their common standard error
- *   4. marked lengths give metres: with distances d and lengths m the scale is sum d m / sum d^2, and its error
- *      combines the effect of clicks (mark_error()) with what the lengths leave unexplained
+ *   4. marked lengths and heights give metres: with distances d and lengths m the scale is sum d m / sum d^2, and its
+ *      error combines the effect of clicks (mark_error()) with what the lengths leave unexplained; the height of the
+ *      ceiling also has that of its level. A ceiling that was not found gets the height that is given
  *   5. marks on both sides of a wall give its thickness; the extent is that of the outermost walls that face
  *      inwards, or else of all points
  *
@@ -77,6 +78,7 @@ struct mark_context {
     struct mark_scene scene;
     struct mat3 axes;
     struct vec3 origin;
+    double ceiling; /* above the floor; 0: none was found */
 };
 
 /* Mean height, from the origin, of the floor's corners that are marked in several views; false: none, or err is set. */
@@ -110,7 +112,29 @@ static bool measure_corners(void *ctx, double *value)
     return corner_height(ctx, value, &ignored);
 }
 
-/* Metres per scene unit, by least squares over the lengths; *misfit: its standard error from their residuals. */
+/* The length of a `length` or a `height` in scene units; *known is false of a ceiling that was not found. */
+static enum status marked_length(double *d, bool *known, const struct mark *a, const struct mark_context *m,
+                                 struct err *err)
+{
+    struct vec3 p, q;
+    *known = !mark_is_ceiling(a) || m->ceiling > 0;
+    *d = m->ceiling;
+    if (mark_is_ceiling(a) || mark_locate(&p, MARK_POINT, a->name, m->list, &m->scene, err)) return err->status;
+    if (a->kind == MARK_HEIGHT) {
+        *d = vec3_dot(p, m->scene.up) - m->scene.floor;
+        if (*d > 0) return ST_OK;
+        return err_set(err, ST_DATA, "%s:%d: %s is marked at the floor or below it; mark a point above the floor.",
+                       m->list->path, a->line, a->name);
+    }
+    if (mark_locate(&q, MARK_POINT, a->view, m->list, &m->scene, err)) return err->status;
+    *d = vec3_length(vec3_sub(q, p));
+    if (*d > 0) return ST_OK;
+    return err_set(err, ST_DATA, "%s:%d: %s and %s are marked at the same position; mark two different points.",
+                   m->list->path, a->line, a->name, a->view);
+}
+
+/* Metres per scene unit, by least squares over the lengths and heights; *misfit: its standard error from their
+ * residuals. */
 static bool lengths_scale(const struct mark_context *m, double *scale, double *misfit, struct err *err)
 {
     double product = 0, square = 0, sum = 0;
@@ -118,29 +142,27 @@ static bool lengths_scale(const struct mark_context *m, double *scale, double *m
     for (int pass = 0; pass < 2; pass++)
         for (int i = 0; i < m->list->count; i++) {
             const struct mark *a = &m->list->marks[i];
-            struct vec3 p, q;
-            if (a->kind != MARK_LENGTH) continue;
-            if (mark_locate(&p, MARK_POINT, a->name, m->list, &m->scene, err) ||
-                mark_locate(&q, MARK_POINT, a->view, m->list, &m->scene, err))
-                return false;
-            const double d = vec3_length(vec3_sub(q, p));
+            double d;
+            bool known;
+            if (a->kind != MARK_LENGTH && a->kind != MARK_HEIGHT) continue;
+            if (marked_length(&d, &known, a, m, err)) return false;
+            if (!known) continue;
             if (!pass) {
                 product += d * a->metres;
                 square += d * d;
                 count++;
-                if (!(d > 0)) {
-                    err_set(err, ST_DATA,
-                            "%s:%d: %s and %s are marked at the same position; mark two different points.",
-                            m->list->path, a->line, a->name, a->view);
-                    return false;
-                }
+                *scale = product / square;
             } else {
                 sum += (d * *scale - a->metres) * (d * *scale - a->metres);
             }
-            if (!pass) *scale = product / square;
         }
+    if (!count)
+        err_set(err, ST_DATA,
+                "%s: the height of the ceiling is given, but no ceiling was found; mark a point of it in two views, or "
+                "above a point of the floor, and write \"height NAME METRES\".",
+                m->list->path);
     *misfit = count > 1 ? sqrt(sum / (count - 1) / square) : 0;
-    return true;
+    return count > 0;
 }
 
 static bool measure_scale(void *ctx, double *value)
@@ -273,6 +295,13 @@ static enum status find_scale(struct room *room, struct mark_context *m, const s
     if (!lengths_scale(m, &a->scale, &misfit, err)) return err->status;
     a->metric = true;
     a->scale_error = hypot(mark_error(in->scale, click, measure_scale, m), misfit) / a->scale;
+    for (int i = 0; i < in->scale->count; i++) {
+        if (!mark_is_ceiling(&in->scale->marks[i])) continue;
+        if (m->ceiling > 0)
+            a->scale_error = hypot(a->scale_error, hypot(room->ceiling.error, room->floor.error) / m->ceiling);
+        else
+            a->ceiling = in->scale->marks[i].metres;
+    }
     return ST_OK;
 }
 
@@ -367,6 +396,7 @@ static enum status find_all(struct room *room, const struct room_inputs *in, con
     if (find_heights(room, &m, in, errors, params, err)) return err->status;
     m.scene.up = mat3_row(m.axes, 2);
     m.scene.floor = vec3_dot(m.origin, m.scene.up) + room->floor.height;
+    if (room->ceiling.count) m.ceiling = room->ceiling.height - room->floor.height;
     *a = (struct model_axes){.rotation = quat_from_mat3(m.axes), .scale = 1};
     if (find_scale(room, &m, in, params->click, err)) return err->status;
     const struct vec3 foot = vec3_add(m.origin, vec3_scale(m.scene.up, room->floor.height));

@@ -8,8 +8,8 @@
  * cut into cells; in each of them points farther than 1.08 times the cell's front are hidden.
  *
  * Beyond the source: rectangles that do not show where the wall is are refused (place_judge.c), and angled walls. The
- * normal of an angled wall is the mean normal about the fullest 5 degree bin, then three rounds of a total least squares
- * fit of the wall's line in plan to the points near it. */
+ * normal of an angled wall is the mean normal about the fullest 5 degree bin, then three rounds of a total least
+ * squares fit of the wall's line in plan to the points near it. */
 #include "stages/build_model/place/place.h"
 
 #include <math.h>

@@ -23,7 +23,7 @@ static void errors_in_files_name_the_line(void **state)
 {
     (void)state;
     assert_refused(MARKS_SCALE, "mark p a 1 2\nmark p b 1 2\nmark q a 1 2 floor\nmeter p q 1\n",
-                   ":4: found \"meter\", wanted \"mark\" or \"length\"");
+                   ":4: found \"meter\", wanted \"mark\", \"length\" or \"height\"");
     assert_refused(MARKS_SCALE, "corner p a 1 2\n", ":1: found \"corner\"");
     assert_refused(MARKS_SCALE, "mark p a 1\n", ":1:");
     assert_refused(MARKS_SCALE, "mark p a 1 2 wall\n", "found \"wall\", wanted \"floor\", \"surface\"");
@@ -37,6 +37,13 @@ static void errors_in_files_name_the_line(void **state)
     assert_refused(MARKS_SCALE, "mark p a 1 2\nmark p a 1 3\nmark q a 1 2 floor\nlength p q 1\n",
                    ":1: p is marked twice in a");
     assert_refused(MARKS_SCALE, "mark p a 1 2 floor\nmark p b 1 2\nlength p p 1\n", "p is marked in 2 views");
+    assert_refused(MARKS_SCALE, "height door 2\n", ":1: door is named, but there is no mark of that name");
+    assert_refused(MARKS_SCALE, "height ceiling -2.5\n", ":1: found \"-2.5\", wanted a length above 0");
+    assert_refused(MARKS_SCALE, "height ceiling 2.5 3\n", ":1: found \"3\"");
+    assert_refused(MARKS_SCALE, "mark p a 1 2 above q\nheight p 2\n", ":1: q is named, but there is no mark");
+    assert_refused(MARKS_SCALE, "mark p a 1 2 above p\nheight p 2\n", ":1: p is above p, which is above another mark");
+    assert_refused(MARKS_SCALE, "mark p a 1 2 above\nheight p 2\n", ":1: found the end of the line");
+    assert_refused(MARKS_FIX, "height ceiling 2\n", ":1: found \"height\", wanted \"corner\"");
     assert_refused(MARKS_FIX, "length p q 1\n", ":1: found \"length\", wanted \"corner\"");
     assert_refused(MARKS_FIX, "corner p a 1 2\n", ":1: the corner p corrects nothing yet");
     assert_refused(MARKS_FIX, "corner p a 1 2\nedge p b 3 4\n", ":2: the corner p of this edge is not marked in b");
@@ -116,7 +123,8 @@ static void marks_have_the_right_positions(void **state)
     const struct mark_scene scene = make_turned_room(&r);
     struct mark_list list;
     char text[2048] = "";
-    const struct vec3 p = {3.4, 2.2, 0.7}, q = {4.2, 2.5, 0}, s = {5, 3, 1.2};
+    const struct vec3 p = {3.4, 2.2, 0.7}, q = {4.2, 2.5, 0}, s = {5, 3, 1.2}, h = {4.2, 2.5, 1.1};
+    put(text, sizeof text, &r, "mark h", 0, h, "above q");
     put(text, sizeof text, &r, "mark p", 0, p, "");
     put(text, sizeof text, &r, "mark p", 1, p, "");
     put(text, sizeof text, &r, "mark q", 0, q, "floor");
@@ -125,6 +133,7 @@ static void marks_have_the_right_positions(void **state)
     read_marks(&list, text, MARKS_SCALE);
     assert_true(vec3_length(vec3_sub(position_of("p", &list, &scene), room_world(&r.spec, p))) < 1e-9);
     assert_true(vec3_length(vec3_sub(position_of("q", &list, &scene), room_world(&r.spec, q))) < 1e-9);
+    assert_true(vec3_length(vec3_sub(position_of("h", &list, &scene), room_world(&r.spec, h))) < 1e-9);
     /* the points are 3 cm apart */
     assert_true(vec3_length(vec3_sub(position_of("s", &list, &scene), room_world(&r.spec, s))) < 0.02 * r.spec.scale);
     mark_list_release(&list);
@@ -334,6 +343,71 @@ static void lengths_give_the_scale_and_marks_the_thickness(void **state)
     synthetic_room_release(&r);
 }
 
+/* The room is 2.6 high. */
+static void heights_give_the_scale(void **state)
+{
+    const struct vec3 foot = {5, 2.4, 0}, head = {5, 2.4, 2.03};
+    (void)state;
+    for (int way = 0; way < 3; way++) { /* by the ceiling, by a door, by both */
+        struct synthetic_room r;
+        make_turned_room(&r);
+        struct mark_list scale;
+        struct err err = ERR_INIT;
+        char text[2048] = "";
+        if (way) put(text, sizeof text, &r, "mark foot", 0, foot, "floor");
+        if (way) put(text, sizeof text, &r, "mark door", 0, head, "above foot");
+        if (way) strcat(text, "height door 2.03\n");
+        if (way != 1) strcat(text, "height ceiling 2.626\n"); /* 1 % too high */
+        read_marks(&scale, text, MARKS_SCALE);
+        struct room_inputs in = room_inputs(&r);
+        struct room room;
+        in.scale = &scale;
+        assert_ok(room_find(&room, &in, &PARAMS, &err), err);
+        const double wanted = way == 0 ? 1.01 : way == 1 ? 1 : (2.03 * 2.03 + 2.6 * 2.626) / (2.03 * 2.03 + 2.6 * 2.6);
+        assert_true(room.axes.metric);
+        assert_true(fabs(room.axes.scale * r.spec.scale - wanted) < 1e-4);
+        assert_true(fabs(room.axes.ceiling - 2.6 * wanted) < 1e-3);
+        assert_true(room.axes.scale_error < 0.02 && (way == 0 || room.axes.scale_error > 1e-4));
+        mark_list_release(&scale);
+        synthetic_room_release(&r);
+    }
+}
+
+static void a_ceiling_that_was_not_found_has_its_given_height(void **state)
+{
+    (void)state;
+    for (int way = 0; way < 2; way++) {
+        struct synthetic_room r;
+        make_turned_room(&r);
+        size_t kept = 0; /* the points below the ceiling */
+        for (size_t i = 0; i < r.cloud.count; i++) {
+            const struct vec3 off = vec3_sub(r.cloud.points[i].position, r.spec.origin);
+            const struct vec3 at = mat3_apply(mat3_transpose(r.spec.world_from_room), off);
+            if (at.z < 2.5 * r.spec.scale) r.cloud.points[kept++] = r.cloud.points[i];
+        }
+        r.cloud.count = kept;
+        struct mark_list scale;
+        struct err err = ERR_INIT;
+        char text[2048] = "height ceiling 2.5\n";
+        if (way) put(text, sizeof text, &r, "mark p", 0, vec3_make(4.2, 2.5, 0), "floor");
+        if (way) put(text, sizeof text, &r, "mark q", 0, vec3_make(5, 3.1, 0), "floor");
+        if (way) strcat(text, "length p q 1\n");
+        read_marks(&scale, text, MARKS_SCALE);
+        struct room_inputs in = room_inputs(&r);
+        struct room room;
+        in.scale = &scale;
+        const enum status st = room_find(&room, &in, &PARAMS, &err);
+        if (way) {
+            assert_ok(st, err);
+            assert_true(room.axes.ceiling == 2.5 && fabs(room.axes.scale * r.spec.scale - 1) < 1e-5);
+        } else {
+            assert_err(err, ST_DATA, "the height of the ceiling is given, but no ceiling was found");
+        }
+        mark_list_release(&scale);
+        synthetic_room_release(&r);
+    }
+}
+
 /* A value that depends on a mark's pixel, and does not exist right of the photo. */
 static bool sum_of_marks(void *ctx, double *value)
 {
@@ -363,6 +437,8 @@ int main(void)
         cmocka_unit_test(axes_are_rotated_only_where_marks_determine_them),
         cmocka_unit_test(edges_along_no_axis_are_refused),
         cmocka_unit_test(lengths_give_the_scale_and_marks_the_thickness),
+        cmocka_unit_test(heights_give_the_scale),
+        cmocka_unit_test(a_ceiling_that_was_not_found_has_its_given_height),
         cmocka_unit_test(errors_of_marks_add_up),
     };
     return cmocka_run_group_tests_name("marks", tests, scratch_make, scratch_remove);
