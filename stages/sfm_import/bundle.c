@@ -10,6 +10,11 @@
  * distortion are those of the lens: free focal lengths drift along with the distances. Weak priors around the start
  * keep the parameters of lenses where the photos do not determine them, as for two photos or points in one plane.
  *
+ * Poses that a user gave are trusted as far as the residuals with them allow: noise of s px is what rotations off by
+ * s / f, or centres off by that times the distance of the points, would cause, and so are their priors. Without them a
+ * camera slides along directions that its few points do not determine. Given images at one place are cut from one
+ * picture, or from a camera on a tripod, and have one centre.
+ *
  * Forms of lenses are compared by the Bayesian information criterion [Schwarz 1978],
  *   BIC = -2 log likelihood + k log N,   N observations, k parameters of lenses and shifts,
  * each with its own scale s. Poses and points are the same number in all forms and are left out. */
@@ -35,20 +40,26 @@
 #define CENTER_SIGMA     0.02
 #define RADIAL_SIGMA     0.1
 #define TANGENTIAL_SIGMA 0.001
+#define SAME_PLACE       1e-5  /* given centres nearer to each other, in parts of their extent, are one */
+#define REDUNDANCY       3.0   /* numbers for each unknown of a given pose that is adjusted */
 #define MAX_SIGMAS       4.0   /* a parameter farther off shows that something else is wrong */
 enum { MIN_OBSERVATIONS = 6 }; /* of an image; with fewer its pose is kept */
 
 /* ---------------------------------------------------------------------------------------------------- the problem */
 
+static struct quat rotation_of(const struct bundle_image *im)
+{
+    return (struct quat){im->rotation[0], im->rotation[1], im->rotation[2], im->rotation[3]};
+}
+
 static bool residual_of(const struct bundle *b, const struct bundle_observation *o, double r[2])
 {
     const struct bundle_image *im = &b->images[o->image];
-    const struct pose pose = {{im->rotation[0], im->rotation[1], im->rotation[2], im->rotation[3]},
-                              {im->translation[0], im->translation[1], im->translation[2]}};
-    const double *x = b->points[o->point];
+    const struct mat3 turn = mat3_from_quat(rotation_of(im));
+    const double *x = b->points[o->point], *c = b->stations[im->station].center;
     double u, v;
-    if (!camera_project(&b->lenses[im->lens].camera, pose_apply(&pose, vec3_make(x[0], x[1], x[2])), &u, &v))
-        return false;
+    const struct vec3 p = mat3_apply(turn, vec3_make(x[0] - c[0], x[1] - c[1], x[2] - c[2]));
+    if (!camera_project(&b->lenses[im->lens].camera, p, &u, &v)) return false;
     r[0] = u + im->shift[0] - o->u;
     r[1] = v + im->shift[1] - o->v;
     return isfinite(r[0]) && isfinite(r[1]);
@@ -65,13 +76,13 @@ static int compare_lengths(const void *a, const void *b)
     return (x->point > y->point) - (x->point < y->point);
 }
 
-/* Adds the observations of a point that have a residual, if there are two. Without `quota` or if one of the images has
- * fewer observations than the quota. */
+/* Adds the observations of a point that have a residual, if they are from two stations: else its distance is unknown.
+ * Without `quota` or if one of the images has fewer observations than the quota. */
 static void add_point(struct bundle *b, int *point_of, int *in_image, const struct sfm_model *m, int point, int quota)
 {
     const struct sfm_point *p = &m->points[point];
     const size_t before = b->observation_count;
-    bool wanted = !quota;
+    bool wanted = !quota, parallax = false;
     b->points[b->point_count][0] = p->position.x;
     b->points[b->point_count][1] = p->position.y;
     b->points[b->point_count][2] = p->position.z;
@@ -81,10 +92,12 @@ static void add_point(struct bundle *b, int *point_of, int *in_image, const stru
         const struct bundle_observation seen = {t->image_idx, b->point_count, o->u, o->v};
         double r[2];
         if (!residual_of(b, &seen, r)) continue;
+        parallax = parallax || (b->observation_count > before &&
+                                b->images[t->image_idx].station != b->images[b->observations[before].image].station);
         wanted = wanted || in_image[t->image_idx] < quota;
         b->observations[b->observation_count++] = seen;
     }
-    if (!wanted || b->observation_count < before + 2) {
+    if (!wanted || !parallax) {
         b->observation_count = before;
         return;
     }
@@ -104,30 +117,130 @@ static enum status add_points(struct bundle *b, int *point_of, const struct sfm_
         order[i] = (struct track_length){i, m->points[i].track_count};
     if (!err->status && !all) qsort(order, (size_t)m->point_count, sizeof *order, compare_lengths);
     for (int i = 0; !err->status && i < m->point_count; i++) add_point(b, point_of, in_image, m, order[i].point, quota);
-    for (int i = 0; !err->status && i < m->image_count; i++) b->images[i].fixed = in_image[i] < MIN_OBSERVATIONS;
+    for (int i = 0; !err->status && i < m->image_count; i++) {
+        struct bundle_image *im = &b->images[i];
+        im->fixed = in_image[i] < MIN_OBSERVATIONS;
+        b->stations[im->station].fixed = b->stations[im->station].fixed || im->fixed;
+    }
     free(order);
     free(in_image);
     return err->status;
 }
 
-/* The lenses, images and points are one allocation, see struct bundle. */
+/* The lenses, stations (as many as images at most), images and points are one allocation, see struct bundle. */
 static enum status allocate(struct bundle *b, int lenses, int images, int points, size_t observations, struct err *err)
 {
     const size_t of_lenses = (size_t)lenses * sizeof *b->lenses, of_images = (size_t)images * sizeof *b->images;
-    char *memory = calloc(1, of_lenses + of_images + ((size_t)points + 1) * sizeof *b->points);
+    const size_t of_stations = (size_t)images * sizeof *b->stations;
+    char *memory = calloc(1, of_lenses + of_stations + of_images + ((size_t)points + 1) * sizeof *b->points);
     b->lenses = (struct bundle_lens *)memory;
     b->observations = calloc(observations + 1, sizeof *b->observations);
     if (!memory || !b->observations) {
         bundle_release(b);
         return err_nomem(err, "a bundle", observations * sizeof *b->observations);
     }
-    b->images = (struct bundle_image *)(memory + of_lenses);
-    b->points = (double(*)[3])(memory + of_lenses + of_images);
+    b->stations = (struct bundle_station *)(memory + of_lenses);
+    b->images = (struct bundle_image *)(memory + of_lenses + of_stations);
+    b->points = (double(*)[3])(memory + of_lenses + of_stations + of_images);
     return ST_OK;
 }
 
-enum status bundle_make(struct bundle *b, int **point_of, const struct sfm_model *m, size_t max_observations,
-                        struct err *err)
+static double distance_between(const double a[3], const double b[3])
+{
+    return hypot(hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]);
+}
+
+/* The extent of the stations: the largest distance from the first one. */
+static double extent_of(const struct bundle *b)
+{
+    double extent = 0;
+    for (int i = 0; i < b->station_count; i++)
+        extent = fmax(extent, distance_between(b->stations[0].center, b->stations[i].center));
+    return extent;
+}
+
+/* Each image at a station of its own; given ones that are at one place at one station. */
+static void place_images(struct bundle *b, const struct sfm_model *m, enum bundle_poses poses)
+{
+    double extent = 0;
+    for (int pass = 0; pass < 2; pass++) {
+        b->station_count = 0;
+        for (int i = 0; i < m->image_count; i++) {
+            const struct pose *pose = &m->images[i].cam_from_world;
+            const struct quat q = pose->rotation;
+            const struct vec3 c = pose_center(pose);
+            const struct bundle_station here = {.center = {c.x, c.y, c.z}, .expected = {c.x, c.y, c.z}};
+            int at = pass && poses == POSES_GIVEN ? 0 : b->station_count;
+            while (at < b->station_count && distance_between(b->stations[at].center, here.center) > SAME_PLACE * extent)
+                at++;
+            if (at == b->station_count) b->stations[b->station_count++] = here;
+            b->images[i] = (struct bundle_image){.lens = m->images[i].camera_idx,
+                                                 .station = at,
+                                                 .rotation = {q.w, q.x, q.y, q.z},
+                                                 .expected = {q.w, q.x, q.y, q.z}};
+        }
+        extent = extent_of(b);
+    }
+}
+
+/* Holds the given images and stations that the observations do not determine well. An observation has two numbers, and
+ * a point seen by n images takes three of its 2 n for itself, so 2 - 3 / n are left for each image. An image needs
+ * REDUNDANCY times as many numbers as its rotation and its share of its station's centre have unknowns, a station as
+ * many as all of its images that are adjusted. */
+static enum status hold_weak(struct bundle *b, struct err *err)
+{
+    double *numbers = calloc((size_t)b->image_count + 1, sizeof *numbers);
+    int *shared = calloc((size_t)b->station_count + 1, sizeof *shared);
+    if (!numbers || !shared) err_nomem(err, "images", (size_t)b->image_count * sizeof *numbers);
+    for (size_t from = 0, end; !err->status && from < b->observation_count; from = end) {
+        for (end = from; end < b->observation_count && b->observations[end].point == b->observations[from].point;)
+            end++;
+        for (size_t i = from; i < end; i++) numbers[b->observations[i].image] += 2 - 3 / (double)(end - from);
+    }
+    for (int i = 0; !err->status && i < b->image_count; i++) shared[b->images[i].station]++;
+    for (int i = 0; !err->status && i < b->image_count; i++) {
+        struct bundle_image *im = &b->images[i];
+        im->fixed = numbers[i] < REDUNDANCY * (3 + 3.0 / shared[im->station]);
+    }
+    for (int s = 0; !err->status && s < b->station_count; s++) {
+        double sum = 0, unknowns = 3;
+        for (int i = 0; i < b->image_count; i++) {
+            if (b->images[i].station != s || b->images[i].fixed) continue;
+            sum += numbers[i];
+            unknowns += 3;
+        }
+        b->stations[s].fixed = sum < REDUNDANCY * unknowns;
+    }
+    free(numbers);
+    free(shared);
+    return err->status;
+}
+
+enum status bundle_trust_poses(struct bundle *b, double noise, struct err *err)
+{
+    double *distance = malloc((b->observation_count + 1) * sizeof *distance);
+    double *focal = malloc((b->observation_count + 1) * sizeof *focal);
+    if (!distance || !focal) err_nomem(err, "distances", b->observation_count * sizeof *distance);
+    for (size_t i = 0; !err->status && i < b->observation_count; i++) {
+        const struct bundle_observation *o = &b->observations[i];
+        const struct bundle_image *im = &b->images[o->image];
+        distance[i] = distance_between(b->points[o->point], b->stations[im->station].center);
+        focal[i] = b->lenses[im->lens].camera.params[0];
+    }
+    if (!err->status && b->observation_count) {
+        sort_doubles(distance, b->observation_count);
+        sort_doubles(focal, b->observation_count);
+        const size_t middle = b->observation_count / 2;
+        b->turn_sigma = noise / focal[middle];
+        b->center_sigma = b->turn_sigma * distance[middle];
+    }
+    free(distance);
+    free(focal);
+    return err->status;
+}
+
+enum status bundle_make(struct bundle *b, int **point_of, const struct sfm_model *m, enum bundle_poses poses,
+                        size_t max_observations, struct err *err)
 {
     size_t total = 0;
     for (int i = 0; i < m->point_count; i++) total += (size_t)m->points[i].track_count;
@@ -141,15 +254,9 @@ enum status bundle_make(struct bundle *b, int **point_of, const struct sfm_model
     if (!*point_of) err_nomem(err, "points", (size_t)m->point_count * sizeof **point_of);
     if (!err->status) allocate(b, m->camera_count, m->image_count, m->point_count, total, err);
     for (int i = 0; !err->status && i < m->camera_count; i++) b->lenses[i].camera = m->cameras[i].camera;
-    for (int i = 0; !err->status && i < m->image_count; i++) {
-        const struct pose *pose = &m->images[i].cam_from_world;
-        b->images[i] = (struct bundle_image){
-            .lens = m->images[i].camera_idx,
-            .rotation = {pose->rotation.w, pose->rotation.x, pose->rotation.y, pose->rotation.z},
-            .translation = {pose->translation.x, pose->translation.y, pose->translation.z},
-        };
-    }
-    if (!err->status) add_points(b, *point_of, m, max_observations, total, err);
+    if (!err->status) place_images(b, m, poses);
+    if (!err->status && !add_points(b, *point_of, m, max_observations, total, err) && poses == POSES_GIVEN)
+        hold_weak(b, err);
     if (err->status) {
         bundle_release(b);
         free(*point_of);
@@ -164,6 +271,7 @@ enum status bundle_copy(struct bundle *to, const struct bundle *from, struct err
     if (allocate(to, from->lens_count, from->image_count, from->point_count, from->observation_count, err))
         return err->status;
     memcpy(to->lenses, from->lenses, (size_t)from->lens_count * sizeof *to->lenses);
+    memcpy(to->stations, from->stations, (size_t)from->image_count * sizeof *to->stations);
     memcpy(to->images, from->images, (size_t)from->image_count * sizeof *to->images);
     memcpy(to->points, from->points, (size_t)from->point_count * sizeof *to->points);
     memcpy(to->observations, from->observations, from->observation_count * sizeof *to->observations);
@@ -173,7 +281,7 @@ enum status bundle_copy(struct bundle *to, const struct bundle *from, struct err
 void bundle_release(struct bundle *b)
 {
     if (!b) return;
-    free(b->lenses); /* and the images and points after them */
+    free(b->lenses); /* and the stations, images and points after them */
     free(b->observations);
     *b = (struct bundle){0};
 }
@@ -208,6 +316,24 @@ enum status bundle_measure(struct bundle_fit *fit, const struct bundle *b, struc
     fit->bic = 2 * minus_log + fit->parameters * log(fmax((double)n, 1));
     free(length);
     return ST_OK;
+}
+
+void bundle_keep_fold(struct bundle *b, int fold, int folds, bool others)
+{
+    size_t kept = 0;
+    for (size_t i = 0; i < b->observation_count; i++)
+        if ((b->observations[i].point % folds == fold) != others) b->observations[kept++] = b->observations[i];
+    b->observation_count = kept;
+}
+
+void bundle_add_costs(double *cost, const struct bundle *b)
+{
+    for (size_t i = 0; i < b->observation_count; i++) {
+        double r[2] = {0, 0};
+        const bool has = residual_of(b, &b->observations[i], r);
+        const double square = has ? r[0] * r[0] + r[1] * r[1] : 1e6; /* behind the camera: as bad as any */
+        cost[b->observations[i].point] += (FREEDOM + 2) * log1p(square / (FREEDOM * b->noise * b->noise));
+    }
 }
 
 void bundle_prune(struct bundle *b)
@@ -372,7 +498,51 @@ enum status bundle_adjust(struct bundle_fit *fit, struct bundle *b, const struct
     return err->status;
 }
 
+void bundle_take_cameras(struct bundle *b, const struct bundle *from)
+{
+    for (int i = 0; i < b->lens_count; i++) b->lenses[i] = from->lenses[i];
+    for (int i = 0; i < b->image_count; i++) {
+        const bool fixed = b->images[i].fixed;
+        b->images[i] = from->images[i];
+        b->images[i].fixed = fixed;
+    }
+    for (int i = 0; i < b->station_count; i++) {
+        const bool fixed = b->stations[i].fixed;
+        b->stations[i] = from->stations[i];
+        b->stations[i].fixed = fixed;
+    }
+}
+
+enum status bundle_adjust_points(struct bundle *b, struct err *err)
+{
+    b->points_only = true;
+    ceres_bundle_adjust(b, err);
+    b->points_only = false;
+    return err->status;
+}
+
 /* ------------------------------------------------------------------------------------------------------- the result */
+
+static struct pose pose_of(const struct bundle *b, int image)
+{
+    const struct bundle_image *im = &b->images[image];
+    const double *c = b->stations[im->station].center;
+    const struct quat q = rotation_of(im);
+    return (struct pose){q, vec3_scale(mat3_apply(mat3_from_quat(q), vec3_make(c[0], c[1], c[2])), -1)};
+}
+
+/* Moves all points of a model along with the first image that sees them. */
+static void carry_points(struct sfm_model *m, const struct bundle *b)
+{
+    for (int i = 0; i < m->point_count; i++) {
+        struct sfm_point *p = &m->points[i];
+        if (!p->track_count) continue;
+        const int image = p->track[0].image_idx;
+        const struct pose to = pose_of(b, image);
+        const struct vec3 seen = pose_apply(&m->images[image].cam_from_world, p->position);
+        p->position = mat3_apply(mat3_transpose(mat3_from_quat(to.rotation)), vec3_sub(seen, to.translation));
+    }
+}
 
 enum status bundle_store(struct sfm_model *m, const struct bundle *b, const int *point_of, struct err *err)
 {
@@ -387,10 +557,10 @@ enum status bundle_store(struct sfm_model *m, const struct bundle *b, const int 
         const int center = is_single(l->camera.model) ? 1 : 2;
         for (int k = 0; k < 2; k++) cameras[i].camera.params[center + k] += b->images[i].shift[k];
     }
+    carry_points(m, b); /* those that are not adjusted */
     for (int i = 0; i < m->image_count; i++) {
         const struct bundle_image *im = &b->images[i];
-        const double *q = im->rotation, *t = im->translation;
-        m->images[i].cam_from_world = (struct pose){{q[0], q[1], q[2], q[3]}, {t[0], t[1], t[2]}};
+        if (!im->fixed || !b->stations[im->station].fixed) m->images[i].cam_from_world = pose_of(b, i);
         if (shifted) m->images[i].camera_idx = i;
     }
     for (int i = 0; i < m->point_count; i++) m->points[i].error = -1; /* what was stated holds no more */

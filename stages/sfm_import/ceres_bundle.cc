@@ -1,18 +1,18 @@
 /* ceres_bundle.cc - C interface to Ceres for bundle adjustment [Triggs 2000].
  *
  * Minimised is the sum over the observations of a robust function of the squared reprojection error in units of the
- * noise, plus priors. Unknown are poses (unit quaternions and translations), points, lens parameters, and a shift of
- * the principal point of each image.
+ * noise, plus priors. Unknown are rotations (unit quaternions), centres, points, lens parameters, and a shift of the
+ * principal point of each image. Images from one station have one centre.
  *
  * Robustness. Errors follow Student's t distribution with n degrees of freedom [Liu 1995]: a squared error s costs
  * (n + 2) log(1 + s / n), which is Ceres' Cauchy loss times (n + 2) / n. Wrong matches then pull with a bounded
  * force.
  *
  * Priors keep what the pictures do not determine near what is usual: single lens parameters, the ratio of the two
- * focal lengths, and shifts, whose expectation is 0.
+ * focal lengths, and shifts, whose expectation is 0; also poses that a user gave.
  *
- * Gauge. The scene may be moved, turned and scaled as a whole. The pose of the first image is held, and of the image
- * that is farthest from it the coordinate of the translation that the scale changes most.
+ * Gauge. The scene may be moved, turned and scaled as a whole. Priors of poses hold its frame. Without them the pose of
+ * the first image is held, and of the station that is farthest from it the coordinate that the scale changes most.
  *
  * Derivatives are exact: camera_project_derivatives() gives those of the lens, rotate() those of R(q) p.
  *
@@ -33,7 +33,7 @@
 namespace
 {
 
-enum { ROTATION, TRANSLATION, POINT, SHIFT, LENS, BLOCKS };
+enum { ROTATION, CENTER, POINT, SHIFT, LENS, BLOCKS };
 
 /* d(R(q) p)/dq of a unit quaternion w x y z. */
 void rotate(const double *q, const double *p, double out[3], double d_rotation[3][4], double matrix[3][3])
@@ -71,9 +71,10 @@ class reprojection : public ceres::CostFunction
         double rotated[3], d_rotation[3][4], matrix[3][3], pixel[2], d_point[2][3], d_params[2][CAMERA_MAX_PARAMS];
         c.model = model_;
         for (int i = 0; i < params; i++) c.params[i] = x[LENS][i];
-        rotate(x[ROTATION], x[POINT], rotated, d_rotation, matrix);
-        const struct vec3 p = {rotated[0] + x[TRANSLATION][0], rotated[1] + x[TRANSLATION][1],
-                               rotated[2] + x[TRANSLATION][2]};
+        const double from_center[3] = {x[POINT][0] - x[CENTER][0], x[POINT][1] - x[CENTER][1],
+                                       x[POINT][2] - x[CENTER][2]};
+        rotate(x[ROTATION], from_center, rotated, d_rotation, matrix);
+        const struct vec3 p = {rotated[0], rotated[1], rotated[2]};
         if (!camera_project_derivatives(&c, p, pixel, d_point, d_params)) return false;
         residuals[0] = (pixel[0] + x[SHIFT][0] - u_) / noise_;
         residuals[1] = (pixel[1] + x[SHIFT][1] - v_) / noise_;
@@ -84,12 +85,11 @@ class reprojection : public ceres::CostFunction
                 for (int k = 0; k < 3; k++) sum += d_point[r][k] * d_rotation[k][j];
                 jacobians[ROTATION][4 * r + j] = sum / noise_;
             }
-            for (int j = 0; j < 3 && jacobians[TRANSLATION]; j++)
-                jacobians[TRANSLATION][3 * r + j] = d_point[r][j] / noise_;
-            for (int j = 0; j < 3 && jacobians[POINT]; j++) {
+            for (int j = 0; j < 3; j++) {
                 double sum = 0;
                 for (int k = 0; k < 3; k++) sum += d_point[r][k] * matrix[k][j];
-                jacobians[POINT][3 * r + j] = sum / noise_;
+                if (jacobians[POINT]) jacobians[POINT][3 * r + j] = sum / noise_;
+                if (jacobians[CENTER]) jacobians[CENTER][3 * r + j] = -sum / noise_;
             }
             for (int j = 0; j < 2 && jacobians[SHIFT]; j++) jacobians[SHIFT][2 * r + j] = (r == j) / noise_;
             for (int j = 0; j < params && jacobians[LENS]; j++)
@@ -124,6 +124,33 @@ class prior : public ceres::CostFunction
     double expected_, sigma_;
 };
 
+/* The prior of a rotation: the angles between it and the expected one, about three axes, in units of their sigma. */
+class turn_prior : public ceres::CostFunction
+{
+  public:
+    turn_prior(const double expected[4], double sigma) : sigma_(sigma)
+    {
+        for (int i = 0; i < 4; i++) q_[i] = expected[i];
+        set_num_residuals(3);
+        mutable_parameter_block_sizes()->push_back(4);
+    }
+    bool Evaluate(double const *const *x, double *residuals, double **jacobians) const override
+    {
+        /* twice the vector of x conj(q), which is linear in x */
+        const double rows[3][4] = {
+            {-q_[1], q_[0], -q_[3], q_[2]}, {-q_[2], q_[3], q_[0], -q_[1]}, {-q_[3], -q_[2], q_[1], q_[0]}};
+        for (int r = 0; r < 3; r++) {
+            residuals[r] = 0;
+            for (int k = 0; k < 4; k++) residuals[r] += 2 * rows[r][k] * x[0][k] / sigma_;
+            for (int k = 0; k < 4 && jacobians && jacobians[0]; k++) jacobians[0][4 * r + k] = 2 * rows[r][k] / sigma_;
+        }
+        return true;
+    }
+
+  private:
+    double q_[4], sigma_;
+};
+
 /* The prior of a lens's ratio of focal lengths, its first two numbers. */
 class aspect_prior : public ceres::CostFunction
 {
@@ -149,11 +176,15 @@ class aspect_prior : public ceres::CostFunction
     double expected_, sigma_;
 };
 
-void add_lens(ceres::Problem *problem, struct bundle_lens *lens)
+void add_lens(ceres::Problem *problem, struct bundle_lens *lens, bool is_fixed)
 {
     const int params = camera_model_params(lens->camera.model);
     std::vector<int> fixed;
     problem->AddParameterBlock(lens->camera.params, params);
+    if (is_fixed) {
+        problem->SetParameterBlockConstant(lens->camera.params);
+        return;
+    }
     for (int i = 0; i < params; i++) {
         if (!lens->free[i])
             fixed.push_back(i);
@@ -170,39 +201,49 @@ void add_lens(ceres::Problem *problem, struct bundle_lens *lens)
         problem->SetManifold(lens->camera.params, new ceres::SubsetManifold(params, fixed));
 }
 
-/* The scene may be moved, turned and scaled as a whole. Fixes that: the pose of the first image, and of the image
- * farthest from it the coordinate of its translation that the scale changes most. */
+/* The scene may be moved, turned and scaled as a whole. Fixes that: the pose of the first image, and of the station
+ * farthest from it the coordinate that the scale changes most. */
 void fix_frame(ceres::Problem *problem, struct bundle *b)
 {
-    struct bundle_image *first = nullptr, *second = nullptr;
-    double farthest = 0, moved[3] = {0, 0, 0};
-    struct vec3 origin = {0, 0, 0};
+    struct bundle_image *first = nullptr;
+    struct bundle_station *origin = nullptr, *second = nullptr;
+    double farthest = 0;
     for (int i = 0; i < b->image_count; i++) {
         struct bundle_image *im = &b->images[i];
+        struct bundle_station *s = &b->stations[im->station];
         if (!problem->HasParameterBlock(im->rotation)) continue;
-        const struct pose pose = {{im->rotation[0], im->rotation[1], im->rotation[2], im->rotation[3]},
-                                  {im->translation[0], im->translation[1], im->translation[2]}};
         if (!first) {
             first = im;
-            origin = pose_center(&pose);
-            continue;
+            origin = s;
         }
-        const struct vec3 there = pose_apply(&pose, origin); /* the first centre in this camera's axes */
-        const double distance = vec3_length(there);
-        if (distance <= farthest) continue;
-        farthest = distance;
-        second = im;
-        moved[0] = there.x;
-        moved[1] = there.y;
-        moved[2] = there.z;
+        double square = 0;
+        for (int k = 0; k < 3; k++) square += (s->center[k] - origin->center[k]) * (s->center[k] - origin->center[k]);
+        if (square <= farthest) continue;
+        farthest = square;
+        second = s;
     }
     if (!second) return;
     int at = 0;
     for (int k = 1; k < 3; k++)
-        if (fabs(moved[k]) > fabs(moved[at])) at = k;
+        if (fabs(second->center[k] - origin->center[k]) > fabs(second->center[at] - origin->center[at])) at = k;
     problem->SetParameterBlockConstant(first->rotation);
-    problem->SetParameterBlockConstant(first->translation);
-    if (!second->fixed) problem->SetManifold(second->translation, new ceres::SubsetManifold(3, {at}));
+    problem->SetParameterBlockConstant(origin->center);
+    if (!second->fixed) problem->SetManifold(second->center, new ceres::SubsetManifold(3, {at}));
+}
+
+/* Priors of the poses that are adjusted. */
+void add_pose_priors(ceres::Problem *problem, struct bundle *b)
+{
+    for (int i = 0; i < b->station_count; i++) {
+        struct bundle_station *s = &b->stations[i];
+        for (int k = 0; k < 3 && !s->fixed && problem->HasParameterBlock(s->center); k++)
+            problem->AddResidualBlock(new prior(3, k, s->expected[k], b->center_sigma), nullptr, s->center);
+    }
+    for (int i = 0; i < b->image_count; i++) {
+        struct bundle_image *im = &b->images[i];
+        if (!im->fixed && problem->HasParameterBlock(im->rotation))
+            problem->AddResidualBlock(new turn_prior(im->expected, b->turn_sigma), nullptr, im->rotation);
+    }
 }
 
 std::unique_ptr<ceres::Problem> make_problem(struct bundle *b)
@@ -213,19 +254,18 @@ std::unique_ptr<ceres::Problem> make_problem(struct bundle *b)
     for (int i = 0; i < b->image_count; i++)
         if (seen[i]) used[b->images[i].lens] = true;
     for (int i = 0; i < b->lens_count; i++)
-        if (used[i]) add_lens(problem.get(), &b->lenses[i]);
+        if (used[i]) add_lens(problem.get(), &b->lenses[i], b->points_only);
     for (int i = 0; i < b->image_count; i++) {
         struct bundle_image *im = &b->images[i];
         if (!seen[i]) continue;
         problem->AddParameterBlock(im->rotation, 4, new ceres::QuaternionManifold);
-        problem->AddParameterBlock(im->translation, 3);
+        struct bundle_station *s = &b->stations[im->station];
+        problem->AddParameterBlock(s->center, 3);
         problem->AddParameterBlock(im->shift, 2);
-        if (im->fixed) {
-            problem->SetParameterBlockConstant(im->rotation);
-            problem->SetParameterBlockConstant(im->translation);
-        }
-        if (!(b->shift_sigma > 0)) problem->SetParameterBlockConstant(im->shift);
-        for (int k = 0; k < 2 && b->shift_sigma > 0; k++)
+        if (im->fixed || b->points_only) problem->SetParameterBlockConstant(im->rotation);
+        if (s->fixed || b->points_only) problem->SetParameterBlockConstant(s->center);
+        if (!(b->shift_sigma > 0) || b->points_only) problem->SetParameterBlockConstant(im->shift);
+        for (int k = 0; k < 2 && b->shift_sigma > 0 && !b->points_only; k++)
             problem->AddResidualBlock(new prior(2, k, 0, b->shift_sigma), nullptr, im->shift);
     }
     /* (n + 2) log(1 + s / n) = (n + 2) / n times Cauchy's n log(1 + s / n); one object serves all observations */
@@ -236,9 +276,12 @@ std::unique_ptr<ceres::Problem> make_problem(struct bundle *b)
         struct bundle_image *im = &b->images[o->image];
         struct bundle_lens *lens = &b->lenses[im->lens];
         problem->AddResidualBlock(new reprojection(lens->camera.model, o->u, o->v, b->noise), loss, im->rotation,
-                                  im->translation, b->points[o->point], im->shift, lens->camera.params);
+                                  b->stations[im->station].center, b->points[o->point], im->shift, lens->camera.params);
     }
-    fix_frame(problem.get(), b);
+    if (b->center_sigma > 0 && !b->points_only)
+        add_pose_priors(problem.get(), b);
+    else if (!b->points_only)
+        fix_frame(problem.get(), b);
     return problem;
 }
 
@@ -257,8 +300,13 @@ enum status ceres_bundle_adjust(struct bundle *b, struct err *err)
     problem->GetParameterBlocks(&blocks);
     for (double *block : blocks)
         if (!order->IsMember(block)) order->AddElementToGroup(block, 1);
-    options.linear_solver_ordering.reset(order);
-    options.linear_solver_type = b->image_count <= DENSE_IMAGES ? ceres::DENSE_SCHUR : ceres::SPARSE_SCHUR;
+    if (b->points_only)
+        delete order; /* there is one group alone */
+    else
+        options.linear_solver_ordering.reset(order);
+    options.linear_solver_type = b->points_only                   ? ceres::SPARSE_NORMAL_CHOLESKY
+                                 : b->image_count <= DENSE_IMAGES ? ceres::DENSE_SCHUR
+                                                                  : ceres::SPARSE_SCHUR;
     options.dense_linear_algebra_library_type = ceres::EIGEN;
     options.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE; /* one thread, unlike CHOLMOD with BLAS */
     options.max_num_iterations = b->iterations;

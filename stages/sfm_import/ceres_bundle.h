@@ -19,11 +19,16 @@ struct bundle_lens {
     double aspect, aspect_sigma; /* the same for the ratio of the second focal length to the first */
 };
 
+struct bundle_station { /* where one or several images were taken */
+    double center[3], expected[3];
+    bool fixed; /* it is not adjusted */
+};
+
 struct bundle_image {
-    int lens;                           /* index */
-    double rotation[4], translation[3]; /* cam_from_world; the quaternion is w x y z */
-    double shift[2];                    /* added to the lens's principal point, px */
-    bool fixed;                         /* its pose is not adjusted */
+    int lens, station;               /* indices */
+    double rotation[4], expected[4]; /* cam_from_world, unit quaternions w x y z */
+    double shift[2];                 /* added to the lens's principal point, px */
+    bool fixed;                      /* its rotation is not adjusted */
 };
 
 struct bundle_observation {
@@ -34,16 +39,19 @@ struct bundle_observation {
 struct bundle {
     /* parts of one allocation in this order: Ceres sorts unknowns by address, and the bits of sums depend on it */
     struct bundle_lens *lenses;
+    struct bundle_station *stations;
     struct bundle_image *images;
     double (*points)[3];
     struct bundle_observation *observations;
-    int lens_count, image_count, point_count;
+    int lens_count, station_count, image_count, point_count;
     size_t observation_count;
-    double noise;       /* sigma of a pixel coordinate, px: the scale of the robust loss */
-    double freedom;     /* degrees of freedom of the residuals' Student t distribution */
-    double shift_sigma; /* of the prior of each image's shift, px; 0: shifts are not adjusted */
-    int iterations;     /* maximum */
-    double tolerance;   /* relative change of the sum at which it ends */
+    double noise;                    /* sigma of a pixel coordinate, px: the scale of the robust loss */
+    double freedom;                  /* degrees of freedom of the residuals' Student t distribution */
+    double shift_sigma;              /* of the prior of each image's shift, px; 0: shifts are not adjusted */
+    double center_sigma, turn_sigma; /* of the priors of poses, scene units and radians; 0: none, the frame is held */
+    bool points_only;                /* nothing but points is adjusted */
+    int iterations;                  /* maximum */
+    double tolerance;                /* relative change of the sum at which it ends */
 };
 
 /* Minimises the robust reprojection error and the priors over what is free, in place: half the sum of

@@ -7,6 +7,14 @@
  * (fisheyes, rational distortion) keep their model; whether its distortion is adjusted, and their principal point, are
  * chosen.
  *
+ * A fall of the residual proves nothing where there is hardly a number more than unknowns, as with few points of two
+ * views each: then cameras move to fit errors. So points are held out [Stone 1974]: they are divided into FOLDS parts,
+ * the cameras are adjusted without one of them, and its points are placed again with these cameras. Their costs are
+ * compared point by point. A principal point for each photo must be better than the best form with one for a lens, by
+ * STRONG standard errors of the mean difference. Given poses are kept unless the adjusted ones are better than they
+ * were by CONFIDENT standard errors. Poses that were found from the same points need no such proof, nor could it be
+ * had: all points had their part in them.
+ *
  * The forms are compared on CHOICE_OBSERVATIONS, or CHOICE_OF_IMAGE per photo if that is more, evenly from all photos;
  * then everything is adjusted with the chosen form, twice, since the scale of the residuals falls with the first
  * adjustment. A form that fails or leaves its priors (bundle.c) is refused, and the next best one is taken. */
@@ -24,6 +32,9 @@
 #include "common/product/product.h"
 
 #define CHOICE_TOLERANCE 1e-5 /* of the fits that are compared */
+#define CONFIDENT        2.0  /* standard errors */
+#define STRONG           3.0
+enum { FOLDS = 5 };
 enum { CHOICE_OBSERVATIONS = 12000, CHOICE_OF_IMAGE = 300, COVARIANCE_OBSERVATIONS = 40000, MIN_OBSERVATIONS = 30 };
 
 const char *refine_form_model(const struct lens_form *form)
@@ -99,17 +110,74 @@ static int best_form(const struct refinement *r)
     return best;
 }
 
+/* -------------------------------------------------------------------------------------------------- held-out points */
+
+struct fold_job {
+    const struct bundle *start;
+    const struct lens_form *form; /* NULL: the cameras as they are */
+    double shift_sigma, *cost;
+    struct err errs[FOLDS];
+};
+
+/* Places the points of the fold again, with cameras that were adjusted without them, and notes their costs. */
+static void hold_out_folds(void *ctx, size_t begin, size_t end, int thread)
+{
+    struct fold_job *job = ctx;
+    (void)thread;
+    for (size_t i = begin; i < end; i++) {
+        struct bundle b = {0}, held = {0};
+        struct bundle_fit fit;
+        struct err *err = &job->errs[i];
+        if (!bundle_copy(&b, job->start, err) && job->form) {
+            bundle_keep_fold(&b, (int)i, FOLDS, true);
+            bundle_adjust(&fit, &b, job->form, job->shift_sigma, err);
+        }
+        if (!err->status && !bundle_copy(&held, job->start, err)) {
+            bundle_take_cameras(&held, &b);
+            held.noise = job->start->noise;
+            bundle_keep_fold(&held, (int)i, FOLDS, false);
+            if (!bundle_adjust_points(&held, err)) bundle_add_costs(job->cost, &held);
+        }
+        bundle_release(&held);
+        bundle_release(&b);
+    }
+}
+
+/* *cost: of each point of `start`; the caller frees it. ST_DATA: the adjustment failed without a part of the points. */
+static enum status hold_out(double **cost, const struct bundle *start, const struct lens_form *form, double shift_sigma,
+                            struct err *err)
+{
+    struct fold_job job = {.start = start, .form = form, .shift_sigma = shift_sigma};
+    *cost = job.cost = calloc((size_t)start->point_count + 1, sizeof *job.cost);
+    if (!job.cost) return err_nomem(err, "costs of points", (size_t)start->point_count * sizeof *job.cost);
+    parallel_for(FOLDS, 1, hold_out_folds, &job);
+    for (int i = 0; i < FOLDS && !err->status; i++)
+        if (job.errs[i].status) err_set(err, job.errs[i].status, "%s", job.errs[i].text);
+    if (err->status) {
+        free(*cost);
+        *cost = NULL;
+    }
+    return err->status;
+}
+
+static struct held_out_gain gain_of(const double *before, const double *after, int count)
+{
+    struct held_out_gain g = {0, 0};
+    double square = 0;
+    for (int i = 0; i < count; i++) g.mean += (before[i] - after[i]) / count;
+    for (int i = 0; i < count; i++) square += (before[i] - after[i] - g.mean) * (before[i] - after[i] - g.mean);
+    if (count > 1) g.error = sqrt(square / (count - 1) / count);
+    return g;
+}
+
+/* ------------------------------------------------------------------------------------------------------- everything */
+
 /* Takes lenses, poses, shifts and points of `part`; other points stay where they were. place: point_count numbers of
  * scratch. */
 static void take_solution(struct bundle *all, const int *point_of, const struct bundle *part, const int *of_part,
                           int *place, int point_count)
 {
-    for (int i = 0; i < all->lens_count; i++) all->lenses[i] = part->lenses[i];
-    for (int i = 0; i < all->image_count; i++) {
-        const bool fixed = all->images[i].fixed;
-        all->images[i] = part->images[i];
-        all->images[i].fixed = fixed;
-    }
+    bundle_take_cameras(all, part);
     for (int i = 0; i < point_count; i++) place[i] = -1;
     for (int i = 0; i < part->point_count; i++) place[of_part[i]] = i;
     for (int i = 0; i < all->point_count; i++)
@@ -158,11 +226,63 @@ static enum status note_shifts(struct refinement *r, struct bundle *b, struct er
 struct refine_job {
     struct refinement *r;
     struct sfm_model *m;
+    enum bundle_poses poses;
     struct bundle all, part;
     int *point_of, *of_part; /* points of the model */
     int *place;
     double shift_sigma; /* px */
+    double *held_out;   /* costs of the part's points with the cameras as they were */
 };
+
+/* The costs of held-out points with a form, computed once. ST_DATA: the form fails without a part of the points. */
+static enum status cost_of_form(struct refine_job *job, int form, struct err *err)
+{
+    struct form_result *f = &job->r->forms[form];
+    if (f->held_out) return ST_OK;
+    return hold_out(&f->held_out, &job->part, &f->form, job->shift_sigma, err);
+}
+
+/* Whether a form with a principal point for each photo is better on held-out points than the best one without. If not,
+ * all forms with such are refused. */
+static bool shifts_are_proved(struct refine_job *job, int form, struct err *err)
+{
+    struct refinement *r = job->r;
+    struct err why = ERR_INIT;
+    int rival = -1;
+    for (int i = 0; i < r->form_count; i++)
+        if (r->forms[i].usable && r->forms[i].form.center != CENTER_PER_PHOTO &&
+            (rival < 0 || r->forms[i].fit.bic < r->forms[rival].fit.bic))
+            rival = i;
+    if (rival < 0) return true;
+    if (cost_of_form(job, rival, &why)) r->forms[rival].usable = why.status == ST_NOMEM;
+    if (why.status == ST_NOMEM) err_set(err, ST_NOMEM, "%s", why.text);
+    if (why.status) return !err->status && shifts_are_proved(job, form, err);
+    const struct held_out_gain g = gain_of(r->forms[rival].held_out, r->forms[form].held_out, job->part.point_count);
+    if (g.mean > STRONG * g.error) return true;
+    log_note("a principal point for each photo is not proved: the cost of held-out points falls by %.3f +- %.3f",
+             g.mean, g.error);
+    for (int i = 0; i < r->form_count; i++)
+        if (r->forms[i].form.center == CENTER_PER_PHOTO) r->forms[i].usable = false;
+    return false;
+}
+
+/* Whether held-out points fit better with a form where that must be proved: with shifts, and of given poses. */
+static bool form_is_proved(struct refine_job *job, int form, struct err *err)
+{
+    struct refinement *r = job->r;
+    struct err why = ERR_INIT;
+    const bool shifts = r->forms[form].form.center == CENTER_PER_PHOTO && !r->forms[form].form.lens_kept;
+    if (!shifts && job->poses != POSES_GIVEN) return true;
+    if (cost_of_form(job, form, &why)) {
+        if (why.status == ST_NOMEM) err_set(err, ST_NOMEM, "%s", why.text);
+        return false;
+    }
+    if (shifts && !shifts_are_proved(job, form, err)) return false;
+    if (job->poses != POSES_GIVEN) return !err->status;
+    if (!job->held_out && hold_out(&job->held_out, &job->part, NULL, 0, err)) return false;
+    r->gain = gain_of(job->held_out, r->forms[form].held_out, job->part.point_count);
+    return r->gain.mean > CONFIDENT * r->gain.error;
+}
 
 static enum status try_forms(struct refine_job *job, struct choice *c, struct err *err)
 {
@@ -172,6 +292,8 @@ static enum status try_forms(struct refine_job *job, struct choice *c, struct er
     for (int at; !err->status && r->chosen < 0 && (at = best_form(r)) >= 0;) {
         struct bundle b = {0};
         struct err why = ERR_INIT;
+        r->forms[at].usable = form_is_proved(job, at, err);
+        if (!r->forms[at].usable) continue;
         if (bundle_copy(&b, &job->all, err)) break;
         take_solution(&b, job->point_of, &c->fitted[at], job->of_part, job->place, job->m->point_count);
         const enum status adjusted = adjust_all(r, &b, at, r->forms[at].fit.noise, job->shift_sigma, &why);
@@ -193,10 +315,13 @@ static enum status run_job(struct refine_job *job, bool lens_kept, struct err *e
     job->place = malloc(((size_t)job->m->point_count + 1) * sizeof *job->place);
     if (!c || !job->place) err_nomem(err, "forms of lenses", sizeof *c);
     if (!err->status) bundle_measure(&r->before, &job->all, err);
+    if (!err->status && job->poses == POSES_GIVEN) bundle_trust_poses(&job->all, r->before.noise, err);
     const int of_images = CHOICE_OF_IMAGE * job->m->image_count;
     const int wanted = of_images > CHOICE_OBSERVATIONS ? of_images : CHOICE_OBSERVATIONS;
-    if (!err->status && !bundle_make(&job->part, &job->of_part, job->m, (size_t)wanted, err)) {
+    if (!err->status && !bundle_make(&job->part, &job->of_part, job->m, job->poses, (size_t)wanted, err)) {
         job->part.noise = r->before.noise;
+        job->part.center_sigma = job->all.center_sigma;
+        job->part.turn_sigma = job->all.turn_sigma;
         job->part.tolerance = CHOICE_TOLERANCE;
         list_forms(r, &job->all, lens_kept, job->shift_sigma > 0);
         c->r = r;
@@ -216,7 +341,13 @@ static enum status run_job(struct refine_job *job, bool lens_kept, struct err *e
 static void log_choice(const struct refinement *r)
 {
     if (r->chosen < 0) {
-        log_note("the cameras are kept: no form of lens fits the observations better");
+        if (r->gain.error > 0)
+            log_note(
+                "the cameras are kept: on held-out points the cost falls by %.3f +- %.3f, which does not prove that "
+                "others are better",
+                r->gain.mean, r->gain.error);
+        else
+            log_note("the cameras are kept: no form of lens fits the observations better");
         return;
     }
     const struct form_result *f = &r->forms[r->chosen], *next = NULL;
@@ -241,12 +372,15 @@ static void log_choice(const struct refinement *r)
                  refine_form_model(&next->form), refine_form_center(&next->form), next->fit.bic - f->fit.bic);
     log_note("cameras refined: lens %s, %s; median reprojection error %.3f -> %.3f px%s", refine_form_model(&f->form),
              center, r->before.median, r->after.median, rival);
+    if (r->gain.error > 0)
+        log_note("the cost of held-out points is lower than with the given poses by %.3f +- %.3f", r->gain.mean,
+                 r->gain.error);
 }
 
 enum status refine_cameras(struct refinement *out, struct sfm_model *m, enum given_cameras given,
                            const struct sfm_import_params *params, struct err *err)
 {
-    struct refine_job job = {.r = out, .m = m};
+    struct refine_job job = {.r = out, .m = m, .poses = given == GIVEN_MODEL ? POSES_GIVEN : POSES_FOUND};
     const bool asked = !strcmp(params->refine, "yes");
     double side = 0;
     *out = (struct refinement){.chosen = -1};
@@ -258,7 +392,7 @@ enum status refine_cameras(struct refinement *out, struct sfm_model *m, enum giv
     for (int i = 0; i < m->camera_count; i++)
         side = fmax(side, fmax(m->cameras[i].camera.width, m->cameras[i].camera.height));
     job.shift_sigma = params->principal_shift * side;
-    bundle_make(&job.all, &job.point_of, m, 0, err);
+    bundle_make(&job.all, &job.point_of, m, job.poses, 0, err);
     if (!err->status && job.all.observation_count >= MIN_OBSERVATIONS) {
         if (!run_job(&job, given == GIVEN_LENS && !asked, err)) log_choice(out);
     } else if (!err->status) {
@@ -269,6 +403,7 @@ enum status refine_cameras(struct refinement *out, struct sfm_model *m, enum giv
     free(job.point_of);
     free(job.of_part);
     free(job.place);
+    free(job.held_out);
     return err->status;
 }
 
@@ -276,6 +411,7 @@ void refine_cameras_release(struct refinement *r)
 {
     if (!r) return;
     free(r->shifts);
+    for (int i = 0; i < r->form_count; i++) free(r->forms[i].held_out);
     *r = (struct refinement){.chosen = -1};
 }
 

@@ -12,6 +12,12 @@ struct form_result {
     struct lens_form form;
     struct bundle_fit fit; /* over a part of the observations */
     bool usable;           /* if not, `fit` is not set, or the form was refused */
+    double *held_out;      /* owned; the cost of each point when it is held out; NULL: not computed */
+};
+
+/* The mean fall of the cost of a held-out point, with its standard error. */
+struct held_out_gain {
+    double mean, error;
 };
 
 /* The shift of an image's principal point from that of its lens, with its standard deviations, px; they are INFINITY if
@@ -23,6 +29,7 @@ struct principal_shift {
 struct refinement {
     struct form_result forms[MAX_FORMS]; /* the forms that were compared */
     int form_count, chosen;              /* chosen: -1 if the cameras are kept */
+    struct held_out_gain gain;           /* of the form that was tried last, against the cameras as they were */
     struct bundle_fit before, after;     /* over all observations */
     struct principal_shift *shifts;      /* owned; of each image of the model; NULL: principal points do not differ */
     int shift_count;

@@ -20,6 +20,8 @@ struct setup {
     double wrong;      /* share of observations that are off by up to 4 px */
     bool flat;         /* all points in one slanted plane */
     int sparse_points; /* of the last photo; 0: all */
+    int of_station;    /* photos that are taken from one place, turned; 0: one */
+    int tracks;        /* photos at most that observe a point, each from another place; 0: all */
 };
 
 static const struct camera simple = {CAMERA_SIMPLE_RADIAL, 800, 600, {650, 400, 300, -0.05}};
@@ -59,13 +61,15 @@ static void simulate(struct truth *t, const struct setup *s)
     m->cameras[0] = (struct sfm_camera){1, s->lens};
     for (int i = 0; i < s->photos; i++) {
         struct sfm_image *im = &m->images[i];
-        const double a = 0.5 * ((i + 0.5) / s->photos - 0.5), roll = 0.3 * normal(&rng, (uint64_t)i, 30);
-        im->cam_from_world.rotation = turned(turned((struct quat){1, 0, 0, 0}, 0.02 * (i % 3), a, 0), 0, 0, roll);
+        const int turns = s->of_station ? s->of_station : 1, place = i / turns;
+        const double a = 0.5 * ((turns * place + 0.5) / s->photos - 0.5), roll = 0.3 * normal(&rng, (uint64_t)i, 30);
+        const double yaw = a + 0.25 * (i % turns - 0.5 * (turns - 1));
+        im->cam_from_world.rotation = turned(turned((struct quat){1, 0, 0, 0}, 0.02 * (i % 3), yaw, 0), 0, 0, roll);
         im->id = i + 1;
         im->name = malloc(32);
         snprintf(im->name, 32, "p%02d.jpg", i);
         im->observations = calloc((size_t)s->points, sizeof *im->observations);
-        const struct vec3 centre = vec3_make(6 * sin(a), 0.4 * (i % 3 - 1), 6 - 6 * cos(a) + 0.3 * (i % 2));
+        const struct vec3 centre = vec3_make(6 * sin(a), 0.4 * (place % 3 - 1), 6 - 6 * cos(a) + 0.3 * (place % 2));
         const struct vec3 moved = mat3_apply(mat3_from_quat(im->cam_from_world.rotation), centre);
         im->cam_from_world.translation = vec3_scale(moved, -1);
         for (int k = 0; k < 2; k++) t->shift[i][k] = s->shift * normal(&rng, (uint64_t)i, (uint64_t)(40 + k));
@@ -77,9 +81,15 @@ static void simulate(struct truth *t, const struct setup *s)
         const double z = s->flat ? 6 + 0.4 * x + 0.2 * y : 3 + 6 * rng_uniform(&rng, n, 2);
         *p = (struct sfm_point){.id = i + 1, .position = {x, y, z}, .error = -1};
         p->track = calloc((size_t)s->photos, sizeof *p->track);
-        for (int k = 0; k < s->photos; k++) {
+        const int from = s->tracks ? (int)(rng_uniform(&rng, n, 5) * s->photos) : 0;
+        for (int step = 0; step < s->photos; step++) {
+            const int k = (from + step) % s->photos, turns = s->of_station ? s->of_station : 1;
             struct sfm_image *im = &m->images[k];
             double u, v;
+            bool wanted = !s->tracks || p->track_count < s->tracks;
+            for (int j = 0; j < p->track_count && s->tracks; j++)
+                wanted = wanted && p->track[j].image_idx / turns != k / turns;
+            if (!wanted) continue;
             if (s->sparse_points && k == s->photos - 1 && im->observation_count == s->sparse_points) continue;
             if (!camera_project(&s->lens, pose_apply(&im->cam_from_world, p->position), &u, &v)) continue;
             if (!(u >= 0 && v >= 0 && u <= s->lens.width && v <= s->lens.height)) continue;
@@ -164,6 +174,104 @@ static double rotation_error(const struct outcome *o, int photos)
         worst = fmax(worst, asin(fmin(sine, 1)) / DEGREE);
     }
     return worst;
+}
+
+/* ------------------------------------------------------------------------------------------------------ given poses */
+
+/* Refines, as the user asked, given poses: places and rotations are off by these standard deviations. */
+static void refine_given(struct outcome *o, struct sfm_model *start, const struct setup *s, double off, double turn)
+{
+    const struct rng rng = rng_make(9, "refine_cameras", "given");
+    struct sfm_import_params params = defaults;
+    struct err err = ERR_INIT;
+    struct truth copies[2];
+    snprintf(params.refine, sizeof params.refine, "yes");
+    simulate(&o->truth, s);
+    for (int c = 0; c < 2; c++) {
+        simulate(&copies[c], s);
+        for (int i = 0; i < s->photos; i++) {
+            struct pose *p = &copies[c].model.images[i].cam_from_world;
+            const int place = i / (s->of_station ? s->of_station : 1);
+            struct vec3 center = pose_center(p);
+            double d[6];
+            for (int k = 0; k < 3; k++) d[k] = normal(&rng, (uint64_t)place, (uint64_t)k);
+            for (int k = 3; k < 6; k++) d[k] = normal(&rng, (uint64_t)i, (uint64_t)k);
+            if (off > 0) center = vec3_add(center, vec3_scale(vec3_make(d[0], d[1], d[2]), off));
+            if (turn > 0) p->rotation = turned(p->rotation, turn * d[3], turn * d[4], turn * d[5]);
+            p->translation = vec3_scale(mat3_apply(mat3_from_quat(p->rotation), center), -1);
+        }
+    }
+    *start = copies[0].model;
+    o->model = copies[1].model;
+    assert_ok(refine_cameras(&o->r, &o->model, GIVEN_MODEL, &params, &err), err);
+}
+
+/* The root mean square of the distances of centres from the true ones. */
+static double center_error(const struct sfm_model *m, const struct outcome *o)
+{
+    double sum = 0;
+    for (int i = 0; i < m->image_count; i++) {
+        const struct vec3 off =
+            vec3_sub(pose_center(&m->images[i].cam_from_world), pose_center(&o->truth.model.images[i].cam_from_world));
+        sum += vec3_dot(off, off) / m->image_count;
+    }
+    return sqrt(sum);
+}
+
+static void photos_of_one_place_keep_one_centre(void **state)
+{
+    (void)state;
+    struct outcome o;
+    struct sfm_model start;
+    const struct setup s = {.lens = simple, .photos = 16, .points = 700, .noise = 0.3, .of_station = 4, .tracks = 2};
+    refine_given(&o, &start, &s, 0.02, 0.002);
+    assert_int_not_equal(chosen(&o)->center, CENTER_PER_PHOTO);
+    for (int i = 0; i < 16; i++) {
+        const struct vec3 a = pose_center(&o.model.images[i].cam_from_world);
+        const struct vec3 b = pose_center(&o.model.images[i / 4 * 4].cam_from_world);
+        assert_true(vec3_length(vec3_sub(a, b)) < 1e-12);
+    }
+    assert_true(center_error(&o.model, &o) < center_error(&start, &o));
+    assert_true(o.r.gain.mean > 2 * o.r.gain.error);
+    sfm_model_release(&start);
+    release(&o);
+}
+
+/* Few points of two photos each: the residual falls by fitting their errors. */
+static void given_poses_that_are_right_are_kept(void **state)
+{
+    (void)state;
+    struct outcome o;
+    struct sfm_model start;
+    const struct setup s = {.lens = simple, .photos = 12, .points = 200, .noise = 0.5, .tracks = 2};
+    refine_given(&o, &start, &s, 0, 0);
+    assert_int_equal(o.r.chosen, -1);
+    bool falls = false;
+    for (int i = 0; i < o.r.form_count; i++)
+        falls |= o.r.forms[i].held_out && o.r.forms[i].fit.noise < 0.9 * o.r.before.noise;
+    assert_true(falls);
+    for (int i = 0; i < 12; i++)
+        assert_memory_equal(&o.model.images[i].cam_from_world, &start.images[i].cam_from_world, sizeof(struct pose));
+    assert_true(o.model.cameras[0].camera.params[0] == 650);
+    sfm_model_release(&start);
+    release(&o);
+}
+
+static void a_given_photo_with_few_points_keeps_its_pose(void **state)
+{
+    (void)state;
+    struct outcome o;
+    struct sfm_model start;
+    const struct setup s = {.lens = simple, .photos = 8, .points = 300, .noise = 0.3, .sparse_points = 8};
+    refine_given(&o, &start, &s, 0.02, 0.002);
+    assert_true(o.r.chosen >= 0);
+    for (int i = 0; i < 8; i++) {
+        const struct pose *a = &o.model.images[i].cam_from_world, *b = &start.images[i].cam_from_world;
+        assert_int_equal(!memcmp(a, b, sizeof *a), i == 7);
+    }
+    assert_true(center_error(&o.model, &o) < center_error(&start, &o));
+    sfm_model_release(&start);
+    release(&o);
 }
 
 static void principal_point(const struct sfm_model *m, int image, double center[2])
@@ -402,6 +510,9 @@ int main(void)
         cmocka_unit_test(a_fisheye_keeps_its_model),
         cmocka_unit_test(what_the_user_gave_is_refined_only_on_request),
         cmocka_unit_test(a_model_with_few_observations_is_kept),
+        cmocka_unit_test(photos_of_one_place_keep_one_centre),
+        cmocka_unit_test(given_poses_that_are_right_are_kept),
+        cmocka_unit_test(a_given_photo_with_few_points_keeps_its_pose),
         cmocka_unit_test(the_same_bits_come_from_any_number_of_threads),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
