@@ -81,6 +81,9 @@ wal x from 0 0 to 1 0|did you mean wall?
 wall south from 0 5 to 1 5|the name south is used already
 wall x from 0 0 to 1 1|is not along an axis
 wall x in v00 1 2 30 40|no views are known
+wall x foot in v00 1 2 30 40|no views are known
+walls x y corner in v00 1 2 corner in v01 3 4|no views are known
+wall x foot in v00 1 2 1 2|found the pixel 1 2 of v00 twice
 join south north|they are parallel
 door d on south from 3.5 0 to 4.5 2|is outside its wall south
 door d on suoth from 3 0 to 3.5 2|did you mean south?
