@@ -7,10 +7,11 @@
 #include <stdlib.h>
 
 #include "common/base/array.h"
+#include "stages/suggest_model/wall_joins.h"
 
 struct wall_grid { /* a wall in cells of the window's width */
     int across, up;
-    int *solid, *open; /* numbers of points on it, of lines of sight through it */
+    float *solid, *open; /* lines of sight to points on it, and through it, by the points' weights */
 };
 
 static void wall_grid_release(struct wall_grid *t)
@@ -19,10 +20,11 @@ static void wall_grid_release(struct wall_grid *t)
     free(t->open);
 }
 
-static enum status wall_grid_make(struct wall_grid *t, const struct finder *f, const struct suggested_wall *w,
+static enum status wall_grid_make(struct wall_grid *t, const struct opening_finder *f, const struct suggested_wall *w,
                                   struct err *err)
 {
-    const double c = f->params->window * f->height;
+    const double c = f->params->window * f->height, min_cosine = cos(f->params->max_angle * DEGREE);
+    const double within = w->thickness > 0 ? w->thickness : WALL_THICKNESS * f->height;
     t->across = (int)((w->end - w->begin) / c) + 1;
     t->up = (int)(1 / f->params->window) + 1;
     const size_t cells = (size_t)t->across * (size_t)t->up;
@@ -30,27 +32,26 @@ static enum status wall_grid_make(struct wall_grid *t, const struct finder *f, c
     t->open = calloc(cells, sizeof *t->open);
     if (!t->solid || !t->open) return err_nomem(err, "a wall's cells", 2 * cells * sizeof *t->open);
     for (int side = 0; side < (w->thickness > 0 ? 2 : 1); side++) {
-        const int sign = side ? -w->inward : w->inward;
-        const double at = w->face - (side ? w->inward * w->thickness : 0);
-        for (size_t i = 0; i < f->rays.count; i++) {
-            const struct ray *r = &f->rays.rays[i];
-            const struct cloud_point *p = &f->cloud->points[r->point];
+        const struct wall_line l = wall_side_line(w, side);
+        const struct wall_line behind = {{l.n[0], l.n[1]}, l.at - within};
+        for (size_t i = 0; i < f->sights->rays.count; i++) {
+            const struct ray *r = &f->sights->rays.rays[i];
+            const struct cloud_point *p = &f->sights->points.cloud.points[r->point];
+            const double across = line_across(&l, p->position.x, p->position.y);
+            const bool faces = sight_faces(p, &l, min_cosine);
             double s, z, unused[2];
-            int *count = t->solid;
-            const double behind = sign * (at - along(p->position, w->axis));
-            const double within = w->thickness > 0 ? w->thickness : WALL_THICKNESS * f->height;
-            const bool on = fabs(behind) < 2 * c && faces_along(f, p, w->axis, sign);
-            if (on ||
-                (behind > c && behind < within - c && !faces_along(f, p, w->axis, sign))) { /* the second: a reveal */
-                s = along(p->position, 1 - w->axis);
+            float *count = t->solid;
+            if ((fabs(across) < 2 * c && faces) || (-across > c && -across < within - c && !faces)) { /* or a reveal */
+                s = line_along(&l, p->position.x, p->position.y);
                 z = p->position.z;
-            } else if (crosses(f, r, w->axis, sign, at, &s, &z) &&
-                       crosses(f, r, w->axis, sign, at - sign * w->thickness, &unused[0], &unused[1]))
+            } else if (sight_crosses(f->sights, r, &l, f->height, &s, &z) &&
+                       sight_crosses(f->sights, r, &behind, f->height, &unused[0], &unused[1]))
                 count = t->open;
             else
                 continue;
-            const double x = (s - w->begin) / c, y = z / c;
-            if (x >= 0 && x < t->across && y >= 0 && y < t->up) count[(size_t)x * (size_t)t->up + (size_t)y]++;
+            const double x = ((side ? -s : s) - w->begin) / c, y = z / c;
+            if (x >= 0 && x < t->across && y >= 0 && y < t->up)
+                count[(size_t)x * (size_t)t->up + (size_t)y] += f->sights->points.weight[r->point];
         }
     }
     return ST_OK;
@@ -114,7 +115,7 @@ static void grow_opening(const struct wall_grid *t, int rect[4])
     }
 }
 
-enum status openings_find(struct suggestion *s, const struct finder *f, int wall, struct err *err)
+enum status openings_find(struct suggestion *s, const struct opening_finder *f, int wall, struct err *err)
 {
     const struct suggested_wall *w = &s->walls[wall];
     const double c = f->params->window * f->height, narrow = f->params->min_opening * f->height;

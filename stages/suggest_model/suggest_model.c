@@ -4,101 +4,64 @@
  *         POINTS                                        oriented points
  *         AXES                                          the model's frame, ceiling, thickness of walls
  *         VIEWS/VIEW.exr, DEPTH/VIEW.exr, VIEW.txt      pictures and depth, for windows
- * writes  OUT                                           a script (docs/model-script.md); no other stage reads it */
+ * writes  PICTURE, then OUT                             the plan for people; a script (docs/model-script.md), which no
+ *                                                       other stage reads
+ *
+ * Nothing that was not found is an error: the script says what is missing. */
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "common/base/cli.h"
 #include "common/base/log.h"
 #include "common/base/parallel.h"
+#include "common/base/scan.h"
+#include "common/base/sort.h"
 #include "common/capture/view_image.h"
 #include "common/model/scene_inputs.h"
 #include "common/product/product.h"
+#include "stages/suggest_model/openings.h"
+#include "stages/suggest_model/suggest_script.h"
+#include "stages/suggest_model/wall_joins.h"
 #include "stages/suggest_model/windows.h"
 
 #define PARAM_STRUCT struct suggest_params
 const struct param suggest_param_table[] = {SUGGEST_PARAMS(PARAM_ROW) PARAM_END};
 #undef PARAM_STRUCT
 
-static const double SCENE_CELL = 0.05;       /* edge of the cubes in which mirror images are looked up, likewise */
-static const double GLASS_THICKNESS = 0.008; /* as a fraction of the ceiling's height */
+/* As fractions of the ceiling's height: */
+static const double FINE = 0.005;      /* edge of the cubes that keep one point, for openings */
+static const double MIN_SIDE = 0.04;   /* of an opening */
+static const double SCENE_CELL = 0.05; /* edge of the cubes in which mirror images are looked up */
 
-static void name_of(char name[32], int wall)
-{
-    static const char *const OUTER[] = {"south", "west", "north", "east"};
-    if (wall < 4)
-        snprintf(name, 32, "%s", OUTER[wall]);
-    else
-        snprintf(name, 32, "wall%d", wall - 3);
-}
-
-static void write_wall(FILE *fp, const struct suggestion *s, int wall)
-{
-    const struct suggested_wall *w = &s->walls[wall];
-    char name[32];
-    name_of(name, wall);
-    if (w->guessed) fputs("# seen from one side only: its thickness is a guess\n", fp);
-    /* the inside is to the right of the direction from start to end */
-    const bool falls = (w->axis ? -1 : 1) * w->inward < 0;
-    const double from = falls ? w->end : w->begin, to = falls ? w->begin : w->end;
-    if (w->axis)
-        fprintf(fp, "wall %s from %.4f %.4f to %.4f %.4f", name, from, w->face, to, w->face);
-    else
-        fprintf(fp, "wall %s from %.4f %.4f to %.4f %.4f", name, w->face, from, w->face, to);
-    if (w->thickness > 0) fprintf(fp, " thickness %.4f", w->thickness);
-    fputc('\n', fp);
-    for (int end = 0; wall >= 4 && end < 2; end++) {
-        char side[32];
-        name_of(side, w->sides[falls ? 1 - end : end]);
-        fprintf(fp, "extend %s %s to %s\n", name, end ? "end" : "start", side);
-    }
-}
-
-static void write_script(FILE *fp, const struct suggestion *s, const struct model_axes *axes)
-{
-    char name[32], on[32];
-    int doors = 0, windows = 0, rooms = 0;
-    fputs("# A suggestion, made from points: compare it with the photographs, correct it, and keep it as\n"
-          "# scenes/NAME/model.txt; nothing reads it here. Lengths are those of axes.txt.\n",
-          fp);
-    fprintf(fp, "set ceiling %.4f\n", s->ceiling);
-    if (!(axes->thickness > 0))
-        fprintf(fp, "# nobody saw the outer walls' other faces: a guess\nset thickness %.4f\n",
-                WALL_THICKNESS * s->ceiling);
-    fprintf(fp, "set glass %.4f\n\n", GLASS_THICKNESS * s->ceiling);
-    for (int w = 0; w < 4; w++) write_wall(fp, s, w);
-    fputs("join south west north east south\n", fp);
-    for (int w = 4; w < s->wall_count; w++) write_wall(fp, s, w);
-    fputc('\n', fp);
-    for (int r = 0; r < s->room_count; r++) {
-        if (!s->rooms[r].free) continue;
-        fprintf(fp, "room room%d", ++rooms);
-        for (int k = 0; k < 4; k++) {
-            name_of(name, s->rooms[r].walls[k]);
-            fprintf(fp, " %s", name);
-        }
-        fputc('\n', fp);
-    }
-    fputc('\n', fp);
-    for (int i = 0; i < s->opening_count; i++) {
-        const struct suggested_opening *o = &s->openings[i];
-        name_of(on, o->wall);
-        fprintf(fp, "%s %s%d on %s from %.4f %.4f to %.4f %.4f\n", o->window ? "window" : "passage",
-                o->window ? "window" : "doorway", o->window ? ++windows : ++doors, on, o->begin, o->foot, o->end,
-                o->top);
-    }
-}
-
-static enum status write_suggestion(const struct suggestion *s, const struct model_axes *axes, const char *path,
-                                    const struct provenance *prov, struct err *err)
+static enum status write_script(const struct suggestion *s, const struct wall_names *names,
+                                const struct model_axes *axes, const char *note, const char *path,
+                                const struct provenance *prov, struct err *err)
 {
     struct outfile out = {0};
     outfile_open(&out, path, err);
     if (!err->status) {
+        const locale_t before = uselocale(scan_c_locale());
         fprintf(out.fp, "%s\n", products[PRODUCT_SUGGESTED_MODEL].head);
+        suggest_script_print(out.fp, s, names, axes, note);
+        fputs("\n# Made by:\n", out.fp);
         provenance_print(prov, out.fp);
-        write_script(out.fp, s, axes);
+        uselocale(before);
+        outfile_commit(&out, err);
+    }
+    outfile_discard(&out);
+    return err->status;
+}
+
+static enum status write_picture(const struct suggestion *s, const struct wall_names *names,
+                                 const struct sights *sights, bool metric, const char *path, struct err *err)
+{
+    struct outfile out = {0};
+    outfile_open(&out, path, err);
+    if (!err->status) {
+        const locale_t before = uselocale(scan_c_locale());
+        suggest_picture_print(out.fp, s, names, sights, metric);
+        uselocale(before);
         outfile_commit(&out, err);
     }
     outfile_discard(&out);
@@ -106,11 +69,11 @@ static enum status write_suggestion(const struct suggestion *s, const struct mod
 }
 
 struct files {
-    const char *views, *depth, *points, *axes, *out;
+    const char *views, *depth, *points, *axes, *picture, *out;
 };
 
 /* Whether a wall has the outdoors, or nothing known, behind it. */
-static bool may_have_windows(const struct suggested_wall *w) { return !(w->thickness > 0) || w->guessed; }
+static bool may_have_windows(const struct suggested_wall *w) { return !w->between || w->guessed; }
 
 struct walls { /* what the views show of them */
     struct wall_raster *rasters;
@@ -152,6 +115,24 @@ static enum status add_view(struct walls *walls, const struct files *f, const st
     return err->status;
 }
 
+/* Bounds of the walls, from the floor to the ceiling. */
+static void walls_bounds(const struct suggestion *s, double low[3], double high[3])
+{
+    low[0] = low[1] = HUGE_VAL;
+    high[0] = high[1] = -HUGE_VAL;
+    low[2] = 0;
+    high[2] = s->ceiling;
+    for (int i = 0; i < 2 * s->wall_count; i++) {
+        const struct suggested_wall *w = &s->walls[i / 2];
+        double p[2];
+        line_point(&w->line, i % 2 ? w->end : w->begin, 0, p);
+        for (int k = 0; k < 2; k++) {
+            low[k] = fmin(low[k], p[k]);
+            high[k] = fmax(high[k], p[k]);
+        }
+    }
+}
+
 /* Adds the windows that pictures and depth of all views show. */
 static enum status add_windows(struct suggestion *s, const struct files *f, const struct model_axes *axes,
                                const struct camera_set *set, const struct point_cloud *cloud,
@@ -159,16 +140,16 @@ static enum status add_windows(struct suggestion *s, const struct files *f, cons
 {
     struct wall_raster *rasters = calloc((size_t)s->wall_count, sizeof *rasters);
     struct occupancy scene = {0};
-    const double low[3] = {s->walls[1].face, s->walls[0].face, 0}, h = s->ceiling;
-    const double high[3] = {s->walls[3].face, s->walls[2].face, h};
+    double low[3], high[3];
+    const double h = s->ceiling;
+    walls_bounds(s, low, high);
     if (rasters)
         raster_occupancy_make(&scene, cloud, low, high, SCENE_CELL * h, err);
     else
         err_nomem(err, "walls", (size_t)s->wall_count * sizeof *rasters);
     for (int i = 0; !err->status && i < s->wall_count; i++) {
         const struct suggested_wall *w = &s->walls[i];
-        if (may_have_windows(w))
-            wall_raster_init(&rasters[i], w->axis, w->inward, w->face, w->begin, w->end, h, params->window * h, err);
+        if (may_have_windows(w)) wall_raster_init(&rasters[i], &w->line, w->begin, w->end, h, params->window * h, err);
     }
     struct walls walls = {.rasters = rasters, .count = s->wall_count, .scene = &scene, .scale = axes->scale};
     for (int v = 0; !err->status && v < set->view_count; v++) add_view(&walls, f, &set->views[v], prov, err);
@@ -180,16 +161,76 @@ static enum status add_windows(struct suggestion *s, const struct files *f, cons
     return err->status;
 }
 
+/* The height below which nearly all points of walls lie; 0: there are none. */
+static enum status guess_ceiling(double *height, const struct point_cloud *cloud, struct err *err)
+{
+    double *z = malloc((cloud->count + 1) * sizeof *z);
+    size_t count = 0;
+    if (!z) return err_nomem(err, "heights", cloud->count * sizeof *z);
+    for (size_t i = 0; i < cloud->count; i++)
+        if (fabs((double)cloud->points[i].normal[2]) < 0.3) z[count++] = cloud->points[i].position.z;
+    sort_doubles(z, count);
+    *height = count ? fmax(0, z[count - 1 - count / 50]) : 0;
+    free(z);
+    return ST_OK;
+}
+
+/* Adds openings, from points and from pictures. */
+static enum status add_openings(struct suggestion *s, const struct files *f, const struct model_axes *axes,
+                                const struct camera_set *set, const struct point_cloud *cloud,
+                                const struct suggest_params *params, struct provenance *prov, struct err *err)
+{
+    struct sights sights = {0};
+    if (!s->wall_count) return ST_OK;
+    const struct opening_finder finder = {&sights, params, s->ceiling};
+    sights_make(&sights, cloud, FINE * s->ceiling, set->views, set->view_count, err);
+    for (int w = 0; !err->status && w < s->wall_count; w++) openings_find(s, &finder, w, err);
+    sights_release(&sights);
+    if (!err->status && !add_windows(s, f, axes, set, cloud, params, prov, err))
+        wall_joins_cut_openings(s, suggested_thickness(axes->thickness, s->ceiling), MIN_SIDE * s->ceiling);
+    return err->status;
+}
+
+static enum status write_suggestion(const struct suggestion *s, const struct sights *sights,
+                                    const struct model_axes *axes, const struct files *f, const struct provenance *prov,
+                                    struct err *err)
+{
+    struct wall_names names = {0};
+    const char *note = s->wall_count ? NULL
+                       : !sights->points.cloud.count
+                           ? "points.ply has no points of walls; add photographs that overlap."
+                           : "no points concentrate on upright planes; look at the axes and "
+                             "heights in the pictures in model/axes, and add photographs of walls.";
+    if (!suggest_names_make(&names, s, err) &&
+        (!f->picture || !write_picture(s, &names, sights, axes->metric, f->picture, err)))
+        write_script(s, &names, axes, note, f->out, prov, err);
+    suggest_names_release(&names);
+    return err->status;
+}
+
+static void log_summary(const struct suggestion *s, const char *out)
+{
+    int closed = 0;
+    for (int i = 0; i < s->room_count; i++) closed += s->rooms[i].closed;
+    log_note("%d walls, %d rooms of which %d are closed, %d openings, %d doubts", s->wall_count, s->room_count, closed,
+             s->opening_count, s->doubt_count);
+    log_note("%s is a suggestion that no stage reads: compare it with the photographs, correct it, and copy it to "
+             "scenes/NAME/model.txt",
+             out);
+}
+
 static enum status suggest(const struct files *f, const struct suggest_params *params, struct provenance *prov,
                            struct err *err)
 {
     const struct scene_files files = {.views = f->views, .axes = f->axes};
     struct scene_inputs in = {0};
     struct point_cloud cloud = {0};
+    struct sights sights = {0};
     struct suggestion s = {0};
     scene_inputs_read(&in, SCENE_POINTS | SCENE_AXES | SCENE_MODEL_VIEWS, &files, prov, err);
     const struct camera_set *set = &in.set;
     const struct model_axes *axes = &in.axes;
+    double height = axes->ceiling;
     if (!err->status && !set->view_count)
         err_set(err, ST_DATA, "%s contains no views; run sfm_import again.", f->views);
     if (!err->status) point_cloud_read(&cloud, f->points, prov, err);
@@ -198,18 +239,16 @@ static enum status suggest(const struct files *f, const struct suggest_params *p
         p->position = model_from_world_point(axes, p->position);
         cloud_set_normal(p, model_from_world_direction(axes, cloud_normal(p)));
     }
-    if (!err->status && suggest_plan(&s, &cloud, set->views, set->view_count, axes->ceiling, params, err) == ST_DATA)
-        err_context(err, "%s", f->points);
-    if (!err->status && !add_windows(&s, f, axes, set, &cloud, params, prov, err) &&
-        !write_suggestion(&s, axes, f->out, prov, err)) {
-        int rooms = 0;
-        for (int i = 0; i < s.room_count; i++) rooms += s.rooms[i].free;
-        log_note("%d walls, %d rooms, %d openings", s.wall_count, rooms, s.opening_count);
-        log_note("%s is a suggestion that no stage reads: compare it with the photographs, correct it, and copy it to "
-                 "scenes/NAME/model.txt",
-                 f->out);
-    }
+    if (!err->status && !(height > 0)) guess_ceiling(&height, &cloud, err);
+    if (!(height > 0)) cloud.count = 0;
+    if (!err->status &&
+        !sights_make(&sights, &cloud, height > 0 ? SUGGEST_CUBE * height : 1, set->views, set->view_count, err) &&
+        !suggest_plan(&s, &sights, height, axes->thickness, params, err) &&
+        !add_openings(&s, f, axes, set, &cloud, params, prov, err) &&
+        !write_suggestion(&s, &sights, axes, f, prov, err))
+        log_summary(&s, f->out);
     suggest_release(&s);
+    sights_release(&sights);
     point_cloud_release(&cloud);
     scene_inputs_release(&in);
     return err->status;
@@ -226,6 +265,7 @@ int main(int argc, char **argv)
         CLI_STR("depth", &f.depth, CLI_REQUIRED, "folder of the views' depth"),
         CLI_STR("points", &f.points, CLI_REQUIRED, "oriented points, points.ply"),
         CLI_STR("axes", &f.axes, CLI_REQUIRED, "the model's frame, axes.txt"),
+        CLI_STR("picture", &f.picture, CLI_OPTIONAL, "SVG of the plan to write, with points, walls and doubts"),
         CLI_STR("out", &f.out, CLI_REQUIRED, "script to write"),
         CLI_PARAMS(suggest_param_table, &params, NULL),
         CLI_END,

@@ -11,12 +11,12 @@
       "width of the window in which the points of a wall lie, as a fraction of the ceiling's height")   \
     X(cell, double, 0.04, 0.005, 0.2, "",                                                               \
       "edge of a wall's cells, which are solid or seen through, as a fraction of the ceiling's height") \
-    X(min_wall, double, 0.2, 0.01, 1, "",                                                               \
-      "minimum fraction of a wall's cells that are solid, minus those that are seen through")           \
+    X(min_wall, double, 0.3, 0.01, 1, "",                                                               \
+      "minimum fraction of a wall's length that was seen; a border with less is written as a doubt")    \
     X(max_thickness, double, 0.25, 0.01, 1, "",                                                         \
       "maximum thickness of a wall between rooms, as a fraction of the ceiling's height")               \
     X(min_opening, double, 0.2, 0.02, 1, "",                                                            \
-      "min width and height of an opening, and min width of a room, as a fraction of the ceiling's height")
+      "min width and height of an opening, as a fraction of the ceiling's height")
 
 struct suggest_params {
     SUGGEST_PARAMS(PARAM_FIELD)

@@ -65,11 +65,10 @@ static bool is_occupied(const struct occupancy *o, struct vec3 v)
     return o->cells[at];
 }
 
-enum status wall_raster_init(struct wall_raster *r, int axis, int inward, double face, double begin, double end,
+enum status wall_raster_init(struct wall_raster *r, const struct wall_line *line, double begin, double end,
                              double height, double cell, struct err *err)
 {
-    *r = (struct wall_raster){
-        .axis = axis, .inward = inward, .face = face, .begin = begin, .cell = cell, .height = height};
+    *r = (struct wall_raster){.line = *line, .begin = begin, .cell = cell, .height = height};
     r->across = (int)((end - begin) / cell) + 1;
     r->up = (int)(height / cell) + 1;
     const size_t count = (size_t)r->across * (size_t)r->up;
@@ -95,14 +94,15 @@ static void add_sample(struct wall_cell *cell, const struct wall_raster *r, cons
     const float *rgba = picture->data + 4 * at;
     if (!id || !(z > 0) || rgba[3] < 0.5f) return;
     struct vec3 p = view_unproject(view, u, v, z);
-    const double behind = r->inward * (r->face - (r->axis ? p.y : p.x));
+    const double behind = -line_across(&r->line, p.x, p.y);
     if (behind < -OFF * r->height) return;
     const double weight = depth->segments[id - 1].confidence + MIN_WEIGHT;
     if (behind <= OFF * r->height)
         cell->on += weight;
     else {
         cell->beyond += weight;
-        *(r->axis ? &p.y : &p.x) += 2 * r->inward * behind;
+        p.x += 2 * behind * r->line.n[0];
+        p.y += 2 * behind * r->line.n[1];
         if (is_occupied(scene, p)) cell->mirrored += weight;
     }
     cell->brightness += log(MIN_LUMINANCE + fmax(luminance_precise(rgba), 0));
@@ -112,12 +112,12 @@ static void add_sample(struct wall_cell *cell, const struct wall_raster *r, cons
 void wall_raster_add(struct wall_raster *r, const struct view *view, const struct image *picture,
                      const struct layered_depth *depth, double scale, const struct occupancy *scene)
 {
-    if (r->inward * ((r->axis ? view->center.y : view->center.x) - r->face) <= 0) return;
+    if (line_across(&r->line, view->center.x, view->center.y) <= 0) return;
     for (int x = 0; x < r->across; x++)
         for (int y = 0; y < r->up; y++) {
-            const double s = r->begin + (x + 0.5) * r->cell, z = (y + 0.5) * r->cell;
-            double u, v;
-            const struct vec3 p = r->axis ? vec3_make(s, r->face, z) : vec3_make(r->face, s, z);
+            double at[2], u, v;
+            line_point(&r->line, r->begin + (x + 0.5) * r->cell, 0, at);
+            const struct vec3 p = vec3_make(at[0], at[1], (y + 0.5) * r->cell);
             if (view_project(view, p, &u, &v) <= 0) continue;
             if (!(u >= 0 && v >= 0 && u < view->width && v < view->height)) continue;
             add_sample(wall_raster_at(r, x, y), r, view, u, v, picture, depth, scale, scene);

@@ -1,6 +1,6 @@
 /* wall_raster.h - what the views show of a wall's plane: per cell, how bright it is and whether views see through it.
  *
- * Everything is in the model's frame; a wall's inside is the side on which `inward` points. */
+ * Everything is in the model's frame. */
 #ifndef REMODEL_WALL_RASTER_H
 #define REMODEL_WALL_RASTER_H
 
@@ -10,6 +10,7 @@
 #include "common/capture/point_cloud.h"
 #include "common/image/image.h"
 #include "common/layers/layered_depth.h"
+#include "stages/suggest_model/wall_line.h"
 
 /* Which cubes of space contain points. {0} is empty: no cube does. */
 struct occupancy {
@@ -28,14 +29,14 @@ struct wall_cell {
     int samples;
 };
 struct wall_raster {
-    int axis, inward; /* of the plane's normal */
-    double face, begin, cell, height;
+    struct wall_line line; /* of the wall's face */
+    double begin, cell, height;
     int across, up;
     struct wall_cell *cells; /* owned; across x up, a column's cells together */
 };
 
-/* A raster of the plane from begin to end and from the floor to the height. The caller releases it. */
-enum status wall_raster_init(struct wall_raster *r, int axis, int inward, double face, double begin, double end,
+/* A raster of the line's plane from S begin to end and from the floor to the height. The caller releases it. */
+enum status wall_raster_init(struct wall_raster *r, const struct wall_line *line, double begin, double end,
                              double height, double cell, struct err *err);
 void wall_raster_release(struct wall_raster *r);
 

@@ -117,7 +117,18 @@ static void make_scene(struct occupancy *o)
     point_cloud_release(&cloud);
 }
 
-/* Suggests the windows of the south wall; `before`, unless it is NULL, was found from points. */
+/* The wall's S is -x: for a viewer inside, it increases to the right. */
+static const struct wall_line SOUTH = {{0, 1}, 0};
+
+static struct suggested_opening mirrored(struct suggested_opening o)
+{
+    const double begin = o.begin;
+    o.begin = -o.end;
+    o.end = -begin;
+    return o;
+}
+
+/* Suggests the windows of the south wall, in x; `before`, unless it is NULL, was found from points. */
 static void suggest_made(struct suggestion *s, const struct room *room, const struct suggested_opening *before,
                          uint64_t seed)
 {
@@ -129,10 +140,10 @@ static void suggest_made(struct suggestion *s, const struct room *room, const st
     if (before) {
         s->openings = malloc(sizeof *s->openings);
         assert_non_null(s->openings);
-        s->openings[s->opening_count++] = *before;
+        s->openings[s->opening_count++] = mirrored(*before);
     }
     make_scene(&scene);
-    assert_ok(wall_raster_init(&raster, 1, 1, 0, 0, WIDE, HIGH, params.window * HIGH, &err), err);
+    assert_ok(wall_raster_init(&raster, &SOUTH, -WIDE, 0, HIGH, params.window * HIGH, &err), err);
     for (int k = 0; k < VIEWS; k++) {
         struct view view;
         struct image picture;
@@ -144,6 +155,7 @@ static void suggest_made(struct suggestion *s, const struct room *room, const st
         layered_depth_release(&depth);
     }
     assert_ok(windows_suggest(s, 0, &raster, &params, &err), err);
+    for (int i = 0; i < s->opening_count; i++) s->openings[i] = mirrored(s->openings[i]);
     wall_raster_release(&raster);
     raster_occupancy_release(&scene);
 }
