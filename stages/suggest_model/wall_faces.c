@@ -140,7 +140,7 @@ static enum status gather_votes(struct votes *v, const struct face_list *list, c
             (struct vote){column * list->up + (int)(p->position.z / list->cell),
                           line_across(l, p->position.x, p->position.y), (double)sights->points.weight[i] + 1e-3, 0};
     }
-    qsort(v->list, v->count, sizeof *v->list, compare_votes);
+    if (v->count) qsort(v->list, v->count, sizeof *v->list, compare_votes);
     double sum = 0;
     for (size_t i = 0, first = 0, end = 0; i < v->count; i++) {
         const struct vote *a = &v->list[i];
