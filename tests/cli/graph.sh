@@ -203,6 +203,29 @@ an_edit_needs_the_scripts_and_meshes_that_it_stands_on()
     needs $edited FORCE || fail "a missing mesh is not for the stage to report"
 }
 
+# of any name, and between any blanks: grep takes `[^ \t]` for neither a blank, a backslash nor a t
+a_rectangle_on_a_wall_of_any_name_asks_for_points()
+{
+    scene a b
+    mkdir -p scenes/t/edits
+    local wall
+    for wall in north south t tt west_tt start-0; do
+        printf 'remodel-script 1\nwall %s in a 10 20 90 80\n' $wall >scenes/t/model.txt
+        graph write
+        needs out/t/model/model.txt out/t/points/points.ply || fail "a rectangle on the wall $wall is not seen"
+    done
+    printf 'remodel-script 1\n\twall\tnorth\tin\ta\t10\t20\t90\t80\n' >scenes/t/model.txt
+    graph write
+    needs out/t/model/model.txt out/t/points/points.ply || fail "a rectangle between tabs is not seen"
+    printf 'remodel-script 1\nwall north from 0 0 to 4 0\n' >scenes/t/model.txt
+    printf 'remodel-script 1\ndoor front on north in a 10 20 90 80\n' >scenes/t/edits/cut.txt
+    graph write
+    ! grep -q -- '--points' out/t/graph/build_model.mk || fail "a door in a photograph, which reads no points, asks for them"
+    printf 'remodel-script 1\nwall north from 0 0 to 4 0\nadjust north in a 10 20 90 80\n' >scenes/t/model.txt
+    graph write
+    needs out/t/model/model.txt out/t/points/points.ply || fail "adjust north in a photograph is not seen"
+}
+
 an_edit_that_went_changes_what_edits_reveal()
 {
     scene a b
@@ -273,5 +296,5 @@ for t in nothing_is_stale_when_all_is_made every_goal_is_known_before_the_views_
     a_neighbour_that_is_a_view_no_more_redoes_the_depth_that_read_it a_parameter_redoes_its_stage_and_what_follows \
     a_changed_program_redoes_its_products_but_not_sfm a_photo_is_read_once_for_its_views frames_come_in_chunks_and_wait_for_all_depth \
     what_is_held_out_is_rectified_and_not_matched an_edit_needs_the_scripts_and_meshes_that_it_stands_on \
-    an_edit_that_went_changes_what_edits_reveal steps_come_in_order pieces_of_work_name_their_products \
+    a_rectangle_on_a_wall_of_any_name_asks_for_points an_edit_that_went_changes_what_edits_reveal steps_come_in_order pieces_of_work_name_their_products \
     a_graph_that_is_the_same_is_not_rewritten wrong_settings_are_refused; do run "$t"; done

@@ -191,6 +191,28 @@ no_pipe_ends_before_its_input_does()
     [ -z "$bad" ] || { echo "$bad"; fail "a pipe ends in grep -q, grep -m or head; use matches (tests/lib.sh), or sed -n 1p"; }
 }
 
+# grep, and the =~ of bash, take \t between brackets for a backslash and the letter t: write [[:space:]], or [[:blank:]]
+# check_brackets FILE...: lines with a letter after a backslash between brackets of these
+check_brackets()
+{
+    grep -HnE '(grep|=~)[^|]*\[[^][]*\\[a-zA-Z][^][]*\]' "$@" |
+        grep -vE '^[^:]+:[0-9]+:[[:space:]]*#' || true
+}
+
+no_bracket_of_grep_holds_a_letter_for_a_blank()
+{
+    local bad
+    bad=$({ scripts | grep -v '^tests/lint/'; sources '*.mk' Makefile; } | xargs -d '\n' bash -c "$(declare -f check_brackets)"'; check_brackets "$@"' -)
+    [ -z "$bad" ] || { echo "$bad"; fail "a letter after a backslash in the brackets of a grep; write [[:space:]] for a blank"; }
+}
+
+the_check_of_brackets_finds_what_is_wrong()
+{
+    printf '%s\n' "grep -E '^wall [^ \t]+ in '" 'if [[ $line =~ wall[[:space:]]+[^\n] ]]; then' "grep -E '^wall [^[:space:]]+ in '" \
+        "sed -E 's/^wall [^ \t]+//'" "awk '/^[ \t]*wall/'" '# grep [^ \t]' >"$scratch/brackets"
+    check_brackets "$scratch/brackets" | cut -d: -f2 | diff - <(printf '1\n2\n')
+}
+
 scripts_pass_shellcheck()
 {
     command -v shellcheck >/dev/null || skip "shellcheck is not installed"
@@ -253,6 +275,8 @@ run files_have_names_of_their_own
 run formatted
 run generated_files_are_current
 run no_pipe_ends_before_its_input_does
+run no_bracket_of_grep_holds_a_letter_for_a_blank
+run the_check_of_brackets_finds_what_is_wrong
 run scripts_pass_shellcheck
 # A variable that people give on the command line keeps that value, whatever a file of make assigns to it.
 variables_of_people_are_not_assigned()
