@@ -105,6 +105,19 @@ struct vec3 texture_rule_place(const struct texture_rule *rule, struct vec3 p)
     return vec3_make(to[0], to[1], to[2]);
 }
 
+/* The first rule that holds counts, as where a face is drawn. */
+bool texture_map_keeps(const struct texture_map *map, int id, struct vec3 p, double slack)
+{
+    const struct texture_face *face = texture_map_find(map, id, p);
+    int k = 0;
+    if (!face) return true;
+    while (k < face->rule_count && !texture_rule_holds(&face->rules[k], face->normal, p)) k++;
+    const struct texture_rule *rule = k < face->rule_count ? &face->rules[k] : NULL;
+    if (!rule || rule->kind == TEXTURE_OUTDOORS) return true;
+    return rule->kind != TEXTURE_COLOUR && rule->from == id &&
+           vec3_length(vec3_sub(texture_rule_place(rule, p), p)) <= slack;
+}
+
 static bool zone_holds(const struct texture_zone *zone, struct vec3 p)
 {
     bool inside = false;

@@ -92,6 +92,9 @@ const struct texture_face *texture_map_find(const struct texture_map *map, int i
 /* Whether the limits of a rule hold p, a point of the rule's face. */
 bool texture_rule_holds(const struct texture_rule *rule, struct vec3 normal, struct vec3 p);
 struct vec3 texture_rule_place(const struct texture_rule *rule, struct vec3 p); /* M p */
+/* Whether the face of an id still shows at p, within `slack`, what it showed there in the unedited model: its own
+ * texture in place, or what lies outdoors behind a pane. So does a face that the map does not list. */
+bool texture_map_keeps(const struct texture_map *map, int id, struct vec3 p, double slack);
 /* The factors of a lamp's radiance; NULL: the edit does not name it. */
 const double *texture_map_lamp(const struct texture_map *map, const char *name);
 /* Whether clutter at p is left out: p is in a zone to clear and in none to keep. */

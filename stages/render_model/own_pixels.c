@@ -1,7 +1,8 @@
 /* own_pixels.c - which pixels of a view an edit leaves alone; see own_pixels.h.
  *
- * [Colburn 2014, 4.6] compares the ids of faces. A wall that is moved keeps its id, so the planes are compared too: by
- * the inverse depth of the face at the pixel. */
+ * [Colburn 2014, 4.6] compares the ids of faces. Different here: a wall that is moved keeps its id, so the planes are
+ * compared too, by the inverse depth of the face at the pixel; and a wall that stands may be painted or get another
+ * texture, so the rules of the texture map must keep what the face showed there. */
 #include "stages/render_model/own_pixels.h"
 
 #include <math.h>
@@ -45,7 +46,7 @@ static double inverse_depth(const struct traced *t, uint32_t face, double u, dou
     return p[0] * u + p[1] * v + p[2];
 }
 
-/* Sets same to 1 where both models have one face in one plane. */
+/* Sets same to 1 where both models have one face in one plane, with the same texture. */
 static void compare(uint8_t *same, const struct room *room, const struct traced *base, const struct traced *edited,
                     const struct view *camera)
 {
@@ -55,9 +56,12 @@ static void compare(uint8_t *same, const struct room *room, const struct traced 
             const uint32_t a = base->faces[i], b = edited->faces[i];
             same[i] = !a && !b;
             if (!a || !b) continue;
-            if (solid_face_id(&room->base.mesh, (int)a - 1) != solid_face_id(&room->model.mesh, (int)b - 1)) continue;
+            const int id = solid_face_id(&room->model.mesh, (int)b - 1);
+            if (solid_face_id(&room->base.mesh, (int)a - 1) != id) continue;
             const double za = inverse_depth(base, a, x + 0.5, y + 0.5), zb = inverse_depth(edited, b, x + 0.5, y + 0.5);
-            same[i] = fabs(za - zb) <= same_depth * fabs(za);
+            if (!(fabs(za - zb) <= same_depth * fabs(za))) continue;
+            const struct vec3 at = view_unproject(camera, x + 0.5, y + 0.5, 1 / zb);
+            same[i] = texture_map_keeps(shell_map(room->shell), id, at, same_depth / fabs(zb));
         }
 }
 

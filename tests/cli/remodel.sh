@@ -48,6 +48,17 @@ the_edit_below_makes_those_on_it_again()
     m remodel
 }
 
+a_standing_wall_shows_its_paint()
+{
+    printf 'remodel-script 1\npaint wall/south/in 0.8 0.2 0.1\ncolour wall/north/in 0.1 0.7 0.2\n' >scenes/t/edits/paint.txt
+    m model
+    "$B/bin/render_model" --model $O/remodel/paint/model.txt --base $O/model/model.txt --map $O/remodel/paint/texture.txt "${drawn[@]}" \
+        --view "$view" --set clutter=none --out painted 2>err.txt || { cat err.txt; fail "render_model"; }
+    rm -r scenes/t/edits/paint.txt $O/remodel/paint
+    awk '$1 == "changed" { changed = $2 } $1 == "made" && $2 == "colour" { colour = $3 } END { exit !(changed > 5 && colour > 5) }' "painted/$view.txt" ||
+        { cat "painted/$view.txt"; fail "the photo still shows the wall without its paint"; }
+}
+
 bytes_do_not_depend_on_threads()
 {
     for n in 1 2; do
@@ -116,6 +127,6 @@ errors_say_what_is_wrong()
     rm scenes/t/edits/circle.txt
 }
 
-for t in every_edit_has_a_record_of_each_view a_second_run_makes_nothing the_edit_below_makes_those_on_it_again bytes_do_not_depend_on_threads \
+for t in every_edit_has_a_record_of_each_view a_second_run_makes_nothing the_edit_below_makes_those_on_it_again a_standing_wall_shows_its_paint bytes_do_not_depend_on_threads \
     pixels_that_the_edit_leaves_alone_are_the_photos_own given_cameras_are_drawn_in_any_frame_and_lens a_tour_has_frames_and_a_film \
     exports_are_written_and_the_same_each_time errors_say_what_is_wrong; do run "$t"; done
