@@ -184,6 +184,8 @@ void rule_draws_model(struct graph *g, const char *model)
     rule_needs(g, PATH(g, LENSES));
     rule_takes_vita(g);
     rule_takes(g, "--outdoors", PATH(g, OUTDOORS));
+    rule_takes(g, "--exposure", PATH(g, EXPOSURE));
+    rule_after(g, graph_own(g, "stamp/exposure.txt"));
     rule_option(g, "--vdta", graph_own(g, "vdta"));
     rule_option(g, "--ids", FOLDER(g, FACE_INDEX));
     rule_option(g, "--depth", FOLDER(g, DEPTH, .view = ""));

@@ -15,9 +15,7 @@
     X(integrals, choice, "no", 0, 0, "no|yes",                                                                       \
       "also write the integrals of light, by lamp, from which materials and lamps can be changed without a new "     \
       "gather")                                                                                                      \
-    X(exposure, double, 0, 0, 1e9, "",                                                                               \
-      "radiance times this is 1 at white; 0: that of the picture before it was relit")                               \
-    X(saturated, double, 0.03, 0, 1, "", "part of the pixels that a camera's own choice of exposure leaves saturated")
+    X(exposure, double, 0, 0, 1e9, "", "radiance times this is 1 at white; 0: that of the picture before it was relit")
 
 struct relight_params {
     RELIGHT_PARAMS(PARAM_FIELD)

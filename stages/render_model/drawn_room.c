@@ -1,14 +1,11 @@
 /* drawn_room.c - opens what pictures are drawn from, and draws a picture; see drawn_room.h. */
 #include "stages/render_model/drawn_room.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "common/capture/photo_camera.h"
-#include "common/texture/exposure.h"
-
-enum { SMALL = 160 }; /* px: width of the pictures that exposures are chosen from */
+#include "common/texture/scene_exposure.h"
 
 /* Views are in order of name, so those of a photo follow each other. */
 static enum status find_viewpoints(struct room *room, struct err *err)
@@ -48,9 +45,11 @@ enum status room_open(struct room *room, const struct room_files *files, const s
     const struct shell_files shell = {files->model, files->map, files->vdta, files->vita, params->memory};
     const struct solid_mesh *unedited = files->base ? &room->base.mesh : &room->model.mesh;
     const struct clutter_files clutter = {files->views, files->depth, files->ids, unedited, params->memory};
-    *room = (struct room){.files = *files, .params = params, .prov = prov};
+    *room = (struct room){.files = *files, .params = params, .exposure = params->exposure > 0 ? params->exposure : 1};
     if (!read_cameras(room, prov, err)) model_rays_read(&room->model, files->model, MODEL_WITH_GLASS, NULL, err);
     if (!err->status && files->base) model_rays_read(&room->base, files->base, MODEL_WITH_GLASS, prov, err);
+    if (!err->status && files->exposure && !(params->exposure > 0))
+        scene_exposure_read(&room->exposure, files->exposure, prov, err);
     if (!err->status && files->outdoors) outdoors_read(&room->outdoors, files->outdoors, prov, err);
     if (!err->status && !shell_open(&room->shell, &shell, prov, err)) shell_set_samples(room->shell, params->samples);
     if (!err->status && files->depth && !strcmp(params->clutter, "drawn"))
@@ -100,27 +99,5 @@ enum status room_draw(struct model_picture *picture, struct room *room, const st
     if (!err->status && room->clutter)
         clutter_draw(picture, room->clutter, camera, shell_map(room->shell), own < 0 ? NULL : &own, own >= 0, prov,
                      err);
-    return err->status;
-}
-
-enum status room_exposure(double *exposure, struct room *room, int viewpoint, struct err *err)
-{
-    struct viewpoint *v = &room->viewpoints[viewpoint];
-    const char *const photos[2] = {v->photo, NULL};
-    struct model_picture small = {0};
-    double sum = 0;
-    /* what an exposure is chosen from is the same for every picture, whether it is known already or not */
-    shell_set_provenance(room->shell, NULL);
-    for (int i = v->first; !err->status && v->exposure <= 0 && i < v->first + v->count; i++) {
-        struct view camera = room->cameras[i];
-        if (camera.width > SMALL)
-            view_resize(&camera, SMALL, (int)fmax(1, lround((double)camera.height * SMALL / camera.width)));
-        if (!shell_draw(&small, room->shell, &camera, photos, 0, room->files.outdoors ? &room->outdoors : NULL, err))
-            sum += log(exposure_choose(&small, room->params->saturated));
-    }
-    shell_set_provenance(room->shell, room->prov);
-    if (!err->status && v->exposure <= 0) v->exposure = exp(sum / v->count);
-    *exposure = v->exposure;
-    model_picture_release(&small);
     return err->status;
 }

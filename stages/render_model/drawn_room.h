@@ -13,7 +13,6 @@ struct viewpoint {
     const char *photo;  /* owned by the lens list */
     struct vec3 centre; /* model frame */
     int first, count;   /* its views */
-    double exposure;    /* that its camera would have chosen; 0: not known yet */
 };
 
 struct room_files {
@@ -21,12 +20,12 @@ struct room_files {
     const char *axes, *views, *vdta, *vita;
     const char *ids, *depth; /* folders; NULL: without clutter */
     const char *outdoors;    /* file; NULL: none */
+    const char *exposure;    /* file; NULL: 1 */
 };
 
 struct room {
     struct room_files files;
     const struct render_model_params *params;
-    struct provenance *prov;
     struct scene_inputs in;       /* axes, lenses, views in the scene's frame */
     struct view *cameras;         /* the views in the model's frame; owned */
     struct viewpoint *viewpoints; /* in order of photo; owned */
@@ -35,6 +34,7 @@ struct room {
     struct shell_scene *shell;
     struct clutter_scene *clutter; /* NULL: none is drawn */
     struct outdoors outdoors;
+    double exposure; /* of all pictures: what the parameters say, else the file */
 };
 
 /* The caller closes the room in each case. */
@@ -55,9 +55,5 @@ enum status room_draw(struct model_picture *picture, struct room *room, const st
 int room_viewpoint_of(const struct room *room, int view); /* the viewpoint that a view belongs to */
 /* The viewpoint of a photo's id; -1: there is none. */
 int room_find_viewpoint(const struct room *room, const char *photo);
-
-/* The exposure that the camera of a viewpoint would have chosen: the geometric mean of those of its views' shells,
- * which are drawn small. */
-enum status room_exposure(double *exposure, struct room *room, int viewpoint, struct err *err);
 
 #endif

@@ -6,6 +6,7 @@
  *         VIEWS/VIEW.exr, IDS/VIEW.exr, DEPTH/VIEW.exr  pixels, faces and layers of the views that are used
  *         VDTA/PHOTO/, VITA/                            texture atlases
  *         OUTDOORS                                      what lies outside
+ *         EXPOSURE                                      the exposure of all pictures of the scene
  *         CAMERAS/cameras.txt, images.txt               with --cameras: the cameras to draw from
  *         PATH/path.txt, path/, pairs.txt               with --path: a film
  * writes  OUT/VIEW.txt, VIEW.jpg, VIEW.exr              of each --view
@@ -106,6 +107,8 @@ int main(int argc, char **argv)
         CLI_STR("ids", &job.files.ids, CLI_OPTIONAL, "for clutter: folder of the faces that each view shows"),
         CLI_STR("depth", &job.files.depth, CLI_OPTIONAL, "for clutter: folder of layered depth maps"),
         CLI_STR("outdoors", &job.files.outdoors, CLI_OPTIONAL, "picture of what lies outside, outdoors.exr"),
+        CLI_STR("exposure", &job.files.exposure, CLI_OPTIONAL,
+                "the exposure of all pictures, exposure.txt of choose_exposure; default: 1"),
         CLI_LIST("view", &job.views, CLI_OPTIONAL, "draw this original view; repeat for several"),
         CLI_STR("cameras", &job.cameras.folder, CLI_OPTIONAL,
                 "instead: draw the cameras of this folder (COLMAP text, any lens)"),

@@ -1,8 +1,8 @@
 /* room_pictures.c - draws and writes pictures of views, of given cameras, and of the frames of a film. Formats:
  * docs/formats.md, O/remodel/E/pictures.
  *
- * Overview. room_draw() draws the model from any camera; this file decides with which textures, replaces what the
- * edit did not change, and chooses the exposure.
+ * Overview. room_draw() draws the model from any camera; this file decides with which textures, and replaces what the
+ * edit did not change.
  *
  * Original views. Where the edited model is what the photograph shows, the photograph is better than any texture of
  * it. own_pixels_find() marks these pixels; they are copied, and the model is drawn only if some pixel is left. A
@@ -13,9 +13,8 @@
  * (choose_pair()). A frame of a tour uses the pair in pairs.txt, which plan_tour chose so that textures change
  * slowly.
  *
- * Exposure. A picture is exposed by its own content, unless [render_model] exposure is given. In a film that would
- * flicker: a frame's exposure is the geometric mean of those of its pair's photos, weighted like their textures, so
- * it changes as slowly as the film moves.
+ * Exposure. All pictures and films of a scene have one exposure (choose_exposure), unless [render_model] exposure is
+ * given: what an edit, or a step along a room, does not change keeps its brightness.
  *
  * The record VIEW.txt is written last, so it stands for a complete set of files. It holds the share of the pixels by
  * origin (enum picture_made), which -sources.png shows in colours.
@@ -23,7 +22,6 @@
  * Memory: one picture, and the atlases that the room keeps. */
 #include "stages/render_model/room_pictures.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -69,15 +67,14 @@ static enum status write_picture(const struct model_picture *p, const struct roo
 {
     const struct product_key key = {.name = name};
     char path[FILE_PATH];
-    const double given = room->params->exposure;
-    const double exposure = given > 0 ? given : exposure_choose(p, room->params->saturated);
     if (radiance && !product_path_in(path, out, PRODUCT_PICTURE, &key, err))
         model_picture_write(p, camera, path, prov, err);
     if (!err->status && changed > 0 && !product_path_in(path, out, PRODUCT_PICTURE_JPEG, &key, err) &&
-        !exposure_write(p, exposure, path, err) && !product_path_in(path, out, PRODUCT_PICTURE_SOURCES, &key, err))
+        !exposure_write(p, room->exposure, path, err) &&
+        !product_path_in(path, out, PRODUCT_PICTURE_SOURCES, &key, err))
         write_sources(p, path, err);
     if (!err->status) product_path_in(path, out, PRODUCT_PICTURE_RECORD, &key, err);
-    const struct picture_record record = record_of(p, exposure, changed);
+    const struct picture_record record = record_of(p, room->exposure, changed);
     if (!err->status) picture_record_write(&record, path, prov, err);
     return err->status;
 }
@@ -245,20 +242,6 @@ static enum status frame_pair(struct texture_pair *pair, const struct room *room
     return ST_OK;
 }
 
-/* Between those of the pair's cameras, so that it changes as slowly as the film moves. */
-static enum status frame_exposure(double *exposure, struct room *room, const struct texture_pair *pair, struct err *err)
-{
-    double of[2] = {1, 1};
-    *exposure = room->params->exposure;
-    if (*exposure > 0) return ST_OK;
-    for (int k = 0; !err->status && k < 2; k++)
-        if (pair->viewpoint[k] >= 0) room_exposure(&of[k], room, pair->viewpoint[k], err);
-    if (pair->viewpoint[0] < 0) of[0] = of[1];
-    if (pair->viewpoint[1] < 0) of[1] = of[0];
-    *exposure = exp((1 - pair->t) * log(of[0]) + pair->t * log(of[1]));
-    return err->status;
-}
-
 /* A frame as a picture whose light may be changed: its radiance, and its exposure in the record. */
 static enum status write_film_picture(const struct model_picture *p, double exposure, const struct view *camera,
                                       const char *out, const struct provenance *prov, struct err *err)
@@ -287,16 +270,15 @@ enum status pictures_of_frames(struct room *room, const struct camera_path *path
         const int inputs = prov->count;
         struct texture_pair pair;
         char file[FILE_PATH];
-        double exposure = 1;
         if (!wanted[i]) continue;
-        if (!frame_pair(&pair, room, &camera, pairs, err) && !frame_exposure(&exposure, room, &pair, err) &&
+        if (!frame_pair(&pair, room, &camera, pairs, err) &&
             !room_draw(&picture, room, &camera, &pair, -1, prov, err) &&
             !product_path_in(file, out, PRODUCT_FRAME, &(struct product_key){.frame = scene->name}, err))
             set_camera_of_view(&picture, &camera);
         if (!err->status && all)
-            write_film_picture(&picture, exposure, scene, out, prov, err);
+            write_film_picture(&picture, room->exposure, scene, out, prov, err);
         else if (!err->status)
-            exposure_write_frame(&picture, exposure, scene, file, prov, err);
+            exposure_write_frame(&picture, room->exposure, scene, file, prov, err);
         provenance_keep(prov, inputs);
         progress_add(&progress, 1);
     }

@@ -18,7 +18,7 @@ enum status pictures_of_views(struct room *room, const struct cli_list *views, c
 enum status pictures_of_cameras(struct room *room, const struct camera_source *source, const struct cli_list *names,
                                 const char *out, struct provenance *prov, struct err *err);
 
-/* Writes OUT/NNNN.exr of the wanted frames: R G B A (half), times the frame's exposure. The path is in the frame of
+/* Writes OUT/NNNN.exr of the wanted frames: R G B A (half), times the scene's exposure. The path is in the frame of
  * O/views. */
 enum status pictures_of_frames(struct room *room, const struct camera_path *path, const struct viewpoint_pairs *pairs,
                                const bool *wanted, const char *out, struct provenance *prov, struct err *err);

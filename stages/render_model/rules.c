@@ -78,8 +78,8 @@ static void tour_rules(struct graph *g, const struct scene_facts *f, const char 
 RULES(render_model)
 {
     static const char *const goals[] = {"remodel-views", "remodel-cameras", "tour", "tour-frames"};
-    graph_step(g, "remodel", STEP_FARM, "textures outdoors");
-    graph_step(g, "tour", STEP_WIDE, "textures outdoors tour-path");
+    graph_step(g, "remodel", STEP_FARM, "textures outdoors exposure");
+    graph_step(g, "tour", STEP_WIDE, "textures outdoors exposure tour-path");
     graph_asked(g, "remodel", "remodel");
     graph_asked(g, "tour", "tour");
     graph_goal(g, "remodel", *scene_setting("CAMERAS") ? "remodel-cameras" : "remodel-views");

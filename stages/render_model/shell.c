@@ -145,7 +145,6 @@ void shell_close(struct shell_scene *s)
 }
 
 const struct texture_map *shell_map(const struct shell_scene *scene) { return &scene->map; }
-void shell_set_provenance(struct shell_scene *scene, struct provenance *prov) { scene->prov = prov; }
 
 void shell_set_samples(struct shell_scene *scene, int samples)
 {

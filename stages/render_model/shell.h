@@ -24,15 +24,13 @@ struct shell_files {
     int memory;        /* MiB of pages that are kept; the ones that were not used longest are dropped first */
 };
 
-/* The files that are used are added to prov (may be NULL), the atlases' when a picture needs them. The caller closes
- * the scene. */
+/* The files that are used are added to prov (may be NULL), the atlases' when a picture needs them, whether they are
+ * read for it or were read before: a picture's inputs do not depend on the pictures that were drawn before it. The
+ * caller closes the scene. */
 enum status shell_open(struct shell_scene **scene, const struct shell_files *files, struct provenance *prov,
                        struct err *err);
 void shell_close(struct shell_scene *scene); /* NULL is allowed */
 
-/* From now on the files that a picture uses are added to prov (may be NULL), whether they are read for it or were read
- * before. So a picture's inputs do not depend on the pictures that were drawn before it. */
-void shell_set_provenance(struct shell_scene *scene, struct provenance *prov);
 /* Colours are the mean of samples x samples places in each pixel, at least 1 and at most 16; 1 at first. z, id and made
  * are always those of the pixel's centre. */
 void shell_set_samples(struct shell_scene *scene, int samples);

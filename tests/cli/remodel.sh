@@ -48,6 +48,20 @@ the_edit_below_makes_those_on_it_again()
     m remodel
 }
 
+all_pictures_have_one_exposure()
+{
+    local all; all=$(awk '$1 == "exposure" { print $2 }' $O/remodel/*/pictures/*.txt | sort -u)
+    [ "$(wc -l <<<"$all")" = 1 ] || fail "pictures have several exposures: ${all//$'\n'/ }"
+    awk -v e="$all" '$1 == "exposure" { found = ($2 / e - 1) ^ 2 < 1e-12 } END { exit !found }' $O/exposure.txt || fail "pictures have exposure $all, not that of $O/exposure.txt"
+    grep -q 'pictures of the rooms have exposure' $O/log/choose_exposure.all.log || { cat $O/log/choose_exposure.all.log; fail "the log does not say the exposure"; }
+    # views that change, but not what cameras would choose, redo no picture
+    cp -p $O/exposure.txt same.txt
+    "$B/bin/choose_exposure" --config $O/slice/choose_exposure.cfg --views $O/views --out $O/exposure.txt 2>err.txt || { cat err.txt; fail "choose_exposure"; }
+    [ ! $O/exposure.txt -nt same.txt ] || fail "the exposure is written again although it is the same"
+    "$B/bin/render_model" "${edited[@]}" --exposure $O/exposure.txt --view "$view" --set exposure=0.25 --out given 2>err.txt || { cat err.txt; fail "render_model"; }
+    grep -q '^exposure 0.25$' "given/$view.txt" || fail "a given exposure is not that of the picture"
+}
+
 a_standing_wall_shows_its_paint()
 {
     printf 'remodel-script 1\npaint wall/south/in 0.8 0.2 0.1\ncolour wall/north/in 0.1 0.7 0.2\n' >scenes/t/edits/paint.txt
@@ -127,6 +141,6 @@ errors_say_what_is_wrong()
     rm scenes/t/edits/circle.txt
 }
 
-for t in every_edit_has_a_record_of_each_view a_second_run_makes_nothing the_edit_below_makes_those_on_it_again a_standing_wall_shows_its_paint bytes_do_not_depend_on_threads \
+for t in every_edit_has_a_record_of_each_view a_second_run_makes_nothing the_edit_below_makes_those_on_it_again all_pictures_have_one_exposure a_standing_wall_shows_its_paint bytes_do_not_depend_on_threads \
     pixels_that_the_edit_leaves_alone_are_the_photos_own given_cameras_are_drawn_in_any_frame_and_lens a_tour_has_frames_and_a_film \
     exports_are_written_and_the_same_each_time errors_say_what_is_wrong; do run "$t"; done
