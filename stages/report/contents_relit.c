@@ -111,9 +111,16 @@ static int is_record(const struct dirent *e)
            strcmp(e->d_name, "objects.txt") != 0;
 }
 
+/* As of edits (contents_remodel.c): what changed and is sure, not limited because it was a guess. */
+static double worth(const struct relit_record *r)
+{
+    return r->changed > r->bounded ? (r->changed - r->bounded) * (r->changed - r->bounded) / r->changed : 0;
+}
+
 static int compare_records(const void *a, const void *b)
 {
     const struct relit_record *p = a, *q = b;
+    if (worth(p) != worth(q)) return worth(p) < worth(q) ? 1 : -1;
     if (p->changed != q->changed) return p->changed < q->changed ? 1 : -1;
     return strcmp(p->view, q->view);
 }

@@ -17,7 +17,7 @@ struct relit_sight {
 
 struct relit_card {
     char name[256];
-    struct relit_sight *sights; /* most changed first, each of another photo; owned */
+    struct relit_sight *sights; /* most that changed and is sure first, each of another photo; owned */
     int sight_count, views;     /* shown; with a record */
     int rounds;                 /* of light from face to face; 0: unknown */
     bool settled;

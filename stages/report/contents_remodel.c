@@ -1,8 +1,10 @@
 /* contents_remodel.c - reads the pictures of edits (docs/formats.md, O/remodel/E/pictures).
  *
- * Which views are shown. An edit changes little in most views. Views are ranked by the share of the picture that
- * changed times the share that is not empty, since a view that looks past the photo's border shows less; of each
- * photograph the best view is taken. Views that the edit does not change are counted only.
+ * Which views are shown. An edit changes little in most views, and most where least is known: behind what it takes
+ * away. So views are ranked by what changed and is known, not guessed, times the share of this in what changed, times
+ * the share of the picture that is not empty, since a view that looks past the photo's border shows less. Views of
+ * which all is guessed come last, those that change most first. Of each photograph the best view is taken.
+ * Views that the edit does not change are counted only.
  *
  * A sight has the photograph, the picture after the edit, and the origin of its pixels in colours, all of one size
  * and exposure, so that the page can lay them over each other.
@@ -54,14 +56,21 @@ static int is_record(const struct dirent *e)
     return e->d_name[0] != '.' && dot && !strcmp(dot, ".txt");
 }
 
-/* What is changed, less where the view looks past the photo's border. */
-static double worth(const struct record *r) { return r->file.changed * (100 - r->file.shares[MADE_NOTHING]); }
+static double newly_shown(const struct record *r) { return r->file.changed * (100 - r->file.shares[MADE_NOTHING]); }
+
+static double worth(const struct record *r)
+{
+    const double changed = r->file.changed, guessed = r->file.shares[MADE_SYNTHESISED] + r->file.shares[MADE_UNSURE];
+    const double known = changed > guessed ? (changed - guessed) / changed : 0;
+    return known * known * newly_shown(r);
+}
 
 /* The best first, then by name. */
 static int compare_records(const void *a, const void *b)
 {
     const struct record *p = a, *q = b;
     if (worth(p) != worth(q)) return worth(p) < worth(q) ? 1 : -1;
+    if (newly_shown(p) != newly_shown(q)) return newly_shown(p) < newly_shown(q) ? 1 : -1;
     return strcmp(p->view, q->view);
 }
 

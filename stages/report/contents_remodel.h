@@ -24,7 +24,7 @@ struct edit_card {
     bool film;                       /* NAME/tour/video.mp4 exists */
     bool exports[EXPORT_COUNT];      /* the file in NAME/export exists */
     bool exported;                   /* any of them does */
-    struct edit_sight *sights;       /* most changed and best seen first, each of another photo; owned */
+    struct edit_sight *sights;       /* most that is new and known first, each of another photo; owned */
     int sight_count, changed, views; /* shown; views that the edit changes; views with a record: 0: no pictures yet */
     struct relit_card relit;         /* under the light that the edit makes */
 };

@@ -58,7 +58,7 @@ static void put_views(void)
 }
 
 /* The record of a view after an edit, and its pictures if the edit changes it. */
-static void put_sight(const char *edit, const char *view, double changed, double nothing)
+static void put_guess(const char *edit, const char *view, double changed, double nothing, double guessed)
 {
     unsigned char grey[3 * SIDE * SIDE];
     struct picture_record record = {SIDE, SIDE, 1.5, changed, {0}};
@@ -67,7 +67,7 @@ static void put_sight(const char *edit, const char *view, double changed, double
     record.shares[MADE_NOTHING] = nothing;
     record.shares[MADE_PHOTO] = 60 - nothing;
     record.shares[MADE_WARPED] = 30;
-    record.shares[MADE_SYNTHESISED] = 10;
+    record.shares[MADE_SYNTHESISED] = guessed;
     memset(grey, 99, sizeof grey);
     snprintf(file, sizeof file, "pictures/%s", view);
     put(in_edit(edit, file, ".txt"), "");
@@ -75,6 +75,11 @@ static void put_sight(const char *edit, const char *view, double changed, double
     if (changed <= 0) return;
     assert_ok(jpeg_write(scratch_path(in_edit(edit, file, ".jpg")), grey, SIDE, SIDE, 90, &err), err);
     assert_ok(png_write(scratch_path(in_edit(edit, file, "-sources.png")), grey, SIDE, SIDE, 3, &err), err);
+}
+
+static void put_sight(const char *edit, const char *view, double changed, double nothing)
+{
+    put_guess(edit, view, changed, nothing, 10);
 }
 
 static void put_edit(const char *edit)
@@ -208,8 +213,8 @@ static void the_views_that_an_edit_changes_most_are_shown_one_of_each_photo(void
     (void)state;
     put_views();
     put_edit("no-wall");
-    put_sight("past-the-border", "a", 60, 90); /* it shows little of what it changes */
-    put_sight("past-the-border", "c", 10, 0);
+    put_guess("past-the-border", "a", 60, 90, 0); /* it shows little of what it changes */
+    put_guess("past-the-border", "c", 10, 0, 0);
     put(in_edit("past-the-border", "model", ".txt"), "");
     read_all(&c);
     assert_int_equal(c.edit_count, 2);
@@ -222,6 +227,25 @@ static void the_views_that_an_edit_changes_most_are_shown_one_of_each_photo(void
     assert_true(card->sights[0].before.width == SIDE && card->sights[0].after.height == SIDE);
     assert_string_equal(c.edits[1].sights[0].view, "c");
     remodel_contents_release(&c);
+    remodel_contents_release(&c);
+}
+
+static void views_whose_pixels_are_known_come_before_those_that_are_guessed(void **state)
+{
+    struct remodel_contents c;
+    (void)state;
+    put_views();
+    put(in_edit("no-wall", "model", ".txt"), "");
+    put_guess("no-wall", "a", 40, 0, 36);  /* most changes, and most is guessed */
+    put_guess("no-wall", "b@0", 8, 0, 8);  /* all is */
+    put_guess("no-wall", "b@1", 12, 0, 1); /* less changes, and it is known */
+    put_guess("no-wall", "c", 20, 0, 20);
+    read_all(&c);
+    const struct edit_card *card = &c.edits[0];
+    assert_true(card->changed == 4 && card->sight_count == 3);
+    assert_string_equal(card->sights[0].view, "b@1");
+    assert_string_equal(card->sights[1].view, "a");
+    assert_string_equal(card->sights[2].view, "c");
     remodel_contents_release(&c);
 }
 
@@ -376,6 +400,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup(the_views_that_an_edit_changes_most_are_shown_one_of_each_photo, empty_scratch),
+        cmocka_unit_test_setup(views_whose_pixels_are_known_come_before_those_that_are_guessed, empty_scratch),
         cmocka_unit_test_setup(the_page_has_pictures_plans_films_and_exports, empty_scratch),
         cmocka_unit_test_setup(an_edit_is_shown_in_the_light_that_it_makes, empty_scratch),
         cmocka_unit_test_setup(what_was_not_made_is_said_and_not_linked, empty_scratch),
