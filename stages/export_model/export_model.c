@@ -1,6 +1,7 @@
 /* export_model.c - writes a model, or an edited one, with its photographic texture for other programs.
  *
  * reads   MODEL/model.txt, plan.txt                     the model; of an edit also MAP, texture.txt
+ *         OBJECTS, SCENE/FILE.obj                       of an edit: the synthetic objects and their meshes
  *         AXES                                          whether its lengths are metres
  *         VITA/atlas.txt, page0.exr, ...                the view-independent texture atlas
  * writes  OUT/page0.png, ...                            its pages, sRGB
@@ -12,11 +13,12 @@
 #include "stages/export_model/writers.h"
 
 struct job {
-    const char *name, *model, *map, *axes, *vita, *out;
+    const char *name, *model, *map, *objects, *scene, *axes, *vita, *out;
     struct scene_inputs in;
     struct texture_map texture;
     struct atlas atlas;
     struct export_faces faces;
+    struct export_objects inserted;
 };
 
 static enum status read_inputs(struct job *j, struct provenance *prov, struct err *err)
@@ -26,7 +28,8 @@ static enum status read_inputs(struct job *j, struct provenance *prov, struct er
     if (product_path_in(model, j->model, PRODUCT_MODEL, NULL, err) ||
         product_path_in(plan, j->model, PRODUCT_PLAN, NULL, err) ||
         scene_inputs_read(&j->in, SCENE_AXES | SCENE_MESH | SCENE_PLAN, &files, prov, err) ||
-        (j->map && texture_map_read(&j->texture, j->map, prov, err)))
+        (j->map && texture_map_read(&j->texture, j->map, prov, err)) ||
+        export_objects_read(&j->inserted, j->objects, j->scene, prov, err))
         return err->status;
     return atlas_read(&j->atlas, j->vita, prov, err);
 }
@@ -45,6 +48,7 @@ static enum status export_all(struct job *j, struct provenance *prov, struct err
                                        .mesh = &j->in.mesh,
                                        .faces = &j->faces,
                                        .plan = &j->in.plan,
+                                       .objects = &j->inserted,
                                        .page_sizes = (const int(*)[2])j->atlas.page_sizes,
                                        .page_count = j->atlas.page_count,
                                        .exposure = exposure,
@@ -63,6 +67,8 @@ int main(int argc, char **argv)
         CLI_STR("name", &j.name, CLI_REQUIRED, "name of the model, for titles"),
         CLI_STR("model", &j.model, CLI_REQUIRED, "folder of the model: model.txt and plan.txt"),
         CLI_STR("map", &j.map, CLI_OPTIONAL, "of an edited model: its texture.txt"),
+        CLI_STR("objects", &j.objects, CLI_OPTIONAL, "of an edited model: its objects.txt"),
+        CLI_STR("scene", &j.scene, CLI_OPTIONAL, "with --objects: folder of the meshes that it names"),
         CLI_STR("axes", &j.axes, CLI_REQUIRED, "the model's frame, axes.txt"),
         CLI_STR("vita", &j.vita, CLI_REQUIRED, "folder of the view-independent texture atlas"),
         CLI_STR("out", &j.out, CLI_REQUIRED, "folder to write to"),
@@ -73,6 +79,7 @@ int main(int argc, char **argv)
     if (cli_parse(argc, argv, "export_model", opts, &prov, &err) == CLI_RUN) export_all(&j, &prov, &err);
     err_report(&err);
     export_faces_release(&j.faces);
+    export_objects_release(&j.inserted);
     atlas_release(&j.atlas);
     texture_map_release(&j.texture);
     scene_inputs_release(&j.in);

@@ -80,4 +80,6 @@ enum status ifc_walls(struct ifc *f); /* with their openings, doors and windows 
 enum status ifc_rooms(struct ifc *f); /* slabs with their openings, and spaces */
 enum status ifc_boxes(struct ifc *f);
 
+enum status ifc_objects(struct ifc *f); /* ifc_objects.c: synthetic objects */
+
 #endif

@@ -14,6 +14,8 @@ RULES(export_model)
         rule_needs(g, PATH(g, MODEL, .model = model));
         rule_needs(g, PATH(g, PLAN, .model = model));
         rule_takes(g, "--map", map);
+        rule_takes(g, "--objects", map ? PATH(g, OBJECTS, .model = model) : NULL);
+        rule_option(g, "--scene", map ? f->folder : NULL);
         rule_takes(g, "--axes", PATH(g, AXES));
         rule_takes_vita(g);
         rule_option(g, "--name", map ? graph_text(g, "%s-%s", f->scene, name) : f->scene);

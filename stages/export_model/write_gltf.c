@@ -7,7 +7,8 @@
  * A body becomes a node with a mesh, and the triangles of a body with one material become a primitive: pages come
  * first, then glass, then the colours in order of the triangles. So the order of everything follows from the model,
  * and the same model gives the same bytes. Vertices are not shared between triangles: faces are flat, each has its
- * own normal, and the corners of two tiles have different texture coordinates.
+ * own normal, and the corners of two tiles have different texture coordinates. Synthetic objects follow, a node and a
+ * material each.
  *
  * glTF's y points up and its z to the viewer, so a point (x, y, z) becomes (x, z, -y). Textures hold the light of
  * the room, so materials are unlit (extension KHR_materials_unlit). `extras` of a primitive lists its faces with the
@@ -27,6 +28,7 @@
 #include "stages/export_model/writers.h"
 
 enum { FLOATS = 5126, ARRAY_BUFFER = 34962 }; /* numbers of the format */
+enum { MAX_OBJECT_NAME = 300 };
 
 struct bytes {
     unsigned char *data; /* owned */
@@ -138,6 +140,29 @@ static void put_point(float to[3], struct vec3 p)
     to[2] = (float)-p.y;
 }
 
+/* A primitive of `count` vertices; uv NULL: without texture. */
+static json_t *primitive_of(struct gltf *g, const float *at, const float *n, const float *uv, size_t count,
+                            int material)
+{
+    json_int_t a = 0, b = 0, c = 0;
+    if (!add_vectors(g, at, count, 3, true, &a)) add_vectors(g, n, count, 3, false, &b);
+    json_t *attributes = json_pack("{s:I, s:I}", "POSITION", a, "NORMAL", b);
+    if (!g->err->status && uv) {
+        add_vectors(g, uv, count, 2, false, &c);
+        json_object_set_new(attributes, "TEXCOORD_0", json_integer(c));
+    }
+    return json_pack("{s:o, s:i}", "attributes", attributes, "material", material);
+}
+
+/* A mesh and its node. */
+static void add_node(struct gltf *g, const char *name, json_t *primitives)
+{
+    const json_int_t mesh = (json_int_t)json_array_size(g->meshes);
+    json_array_append_new(g->meshes, json_pack("{s:s, s:o}", "name", name, "primitives", primitives));
+    json_array_append_new(g->children, json_integer((json_int_t)json_array_size(g->nodes)));
+    json_array_append_new(g->nodes, json_pack("{s:s, s:I}", "name", name, "mesh", mesh));
+}
+
 /* The triangles of a body that have one material, as a primitive; adds nothing without such triangles. */
 static enum status add_primitive(struct gltf *g, json_t *primitives, int body, int material)
 {
@@ -163,15 +188,9 @@ static enum status add_primitive(struct gltf *g, json_t *primitives, int body, i
         }
     }
     if (!g->err->status && count) {
-        json_int_t a = 0, b = 0, c = 0;
-        if (!add_vectors(g, at, count, 3, true, &a)) add_vectors(g, n, count, 3, false, &b);
-        json_t *attributes = json_pack("{s:I, s:I}", "POSITION", a, "NORMAL", b);
-        if (!g->err->status && material < g->s->page_count) {
-            add_vectors(g, uv, count, 2, false, &c);
-            json_object_set_new(attributes, "TEXCOORD_0", json_integer(c));
-        }
-        json_array_append_new(primitives, json_pack("{s:o, s:i, s:{s:O}}", "attributes", attributes, "material",
-                                                    material, "extras", "faces", faces));
+        json_t *p = primitive_of(g, at, n, material < g->s->page_count ? uv : NULL, count, material);
+        json_object_set_new(p, "extras", json_pack("{s:O}", "faces", faces));
+        json_array_append_new(primitives, p);
     }
     json_decref(faces);
     free(at);
@@ -191,12 +210,38 @@ static enum status add_bodies(struct gltf *g)
             json_decref(primitives);
             continue;
         }
-        const char *name = g->s->mesh->bodies[body].name;
-        const json_int_t mesh = (json_int_t)json_array_size(g->meshes);
-        json_array_append_new(g->meshes, json_pack("{s:s, s:o}", "name", name, "primitives", primitives));
-        json_array_append_new(g->children, json_integer((json_int_t)json_array_size(g->nodes)));
-        json_array_append_new(g->nodes, json_pack("{s:s, s:I}", "name", name, "mesh", mesh));
+        add_node(g, g->s->mesh->bodies[body].name, primitives);
     }
+    return g->err->status;
+}
+
+static enum status add_object(struct gltf *g, const struct object *o, const struct obj_mesh *mesh)
+{
+    const size_t floats = 9 * (size_t)mesh->count;
+    float *at = malloc((floats + 1) * sizeof *at), *n = malloc((floats + 1) * sizeof *n);
+    char name[MAX_OBJECT_NAME];
+    snprintf(name, sizeof name, "object/%s", o->name);
+    if (!at || !n) err_nomem(g->err, "vertices", 2 * floats * sizeof *at);
+    for (int i = 0; !g->err->status && i < 3 * mesh->count; i++) {
+        put_point(at + 3 * i, mesh->triangles[i / 3][i % 3]);
+        put_point(n + 3 * i, export_objects_normal(mesh->triangles[i / 3]));
+    }
+    if (!g->err->status) {
+        const int material = (int)json_array_size(g->materials);
+        json_t *colour =
+            json_pack("{s:[f,f,f,f]}", "baseColorFactor", o->brdf.albedo.r, o->brdf.albedo.g, o->brdf.albedo.b, 1.0);
+        json_array_append_new(g->materials, unlit(name, colour));
+        add_node(g, name, json_pack("[o]", primitive_of(g, at, n, NULL, (size_t)(3 * mesh->count), material)));
+    }
+    free(at);
+    free(n);
+    return g->err->status;
+}
+
+static enum status add_objects(struct gltf *g)
+{
+    const struct export_objects *all = g->s->objects;
+    for (int i = 0; !g->err->status && i < all->list.count; i++) add_object(g, &all->list.items[i], &all->meshes[i]);
     return g->err->status;
 }
 
@@ -266,7 +311,7 @@ enum status write_gltf(const struct export_scene *s, struct err *err)
     json_t *images = json_array(), *textures = json_array();
     add_materials(&g);
     for (int i = 0; !err->status && i < s->page_count; i++) add_picture(&g, images, textures, i);
-    if (!err->status) add_bodies(&g);
+    if (!err->status && !add_bodies(&g)) add_objects(&g);
     json_t *root = json_pack("{s:{s:s, s:s}, s:[s], s:i, s:[{s:s, s:O}], s:O, s:O, s:O, s:O, s:O, s:[{s:I}]}", "asset",
                              "version", "2.0", "generator", "remodel " REMODEL_VERSION, "extensionsUsed",
                              "KHR_materials_unlit", "scene", 0, "scenes", "name", s->name, "nodes", g.children, "nodes",

@@ -103,7 +103,7 @@ static enum status put_body(struct ifc *f)
 {
     put_head(f);
     put_pages(f);
-    if (!ifc_walls(f) && !ifc_rooms(f)) ifc_boxes(f);
+    if (!ifc_walls(f) && !ifc_rooms(f) && !ifc_boxes(f)) ifc_objects(f);
     for (int i = 0; !f->err->status && i < f->s->mesh->face_count; i++) put_covering(f, i);
     if (!f->err->status && f->contained.count) {
         ifc_begin(f, "IFCRELCONTAINEDINSPATIALSTRUCTURE", "elements");

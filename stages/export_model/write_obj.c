@@ -1,5 +1,5 @@
-/* write_obj.c - Wavefront OBJ, model.obj with model.mtl: an object for each body, a group for each face name; z is up.
- */
+/* write_obj.c - Wavefront OBJ, model.obj with model.mtl: an object for each body, a group for each face name, then the
+ * synthetic objects; z is up. */
 #include <stdio.h>
 
 #include "stages/export_model/writers.h"
@@ -22,6 +22,11 @@ static bool same_material(const struct export_triangle *a, const struct export_t
            a->albedo[2] == b->albedo[2];
 }
 
+static void put_corners(FILE *to, const struct vec3 p[3])
+{
+    for (int k = 0; k < 3; k++) fprintf(to, "v %.9g %.9g %.9g\n", p[k].x, p[k].y, p[k].z);
+}
+
 static void put_faces(FILE *to, const struct export_scene *s)
 {
     const struct export_faces *f = s->faces;
@@ -33,11 +38,31 @@ static void put_faces(FILE *to, const struct export_scene *s)
         if (face->body != body) fprintf(to, "o %s\n", s->mesh->bodies[body = face->body].name);
         if (first) fprintf(to, "g %s\n", solid_face_name(s->mesh, t->face));
         if (first || !same_material(t, last)) put_material(to, t);
-        for (int k = 0; k < 3; k++) fprintf(to, "v %.9g %.9g %.9g\n", t->p[k].x, t->p[k].y, t->p[k].z);
+        put_corners(to, t->p);
         for (int k = 0; k < 3; k++) fprintf(to, "vt %.9g %.9g\n", t->uv[k][0], 1 - t->uv[k][1]);
         if (first) fprintf(to, "vn %.9g %.9g %.9g\n", face->normal.x, face->normal.y, face->normal.z);
         fprintf(to, "f -3/-3/-1 -2/-2/-1 -1/-1/-1\n");
     }
+}
+
+static void put_objects(FILE *to, const struct export_scene *s)
+{
+    for (int i = 0; i < s->objects->list.count; i++) {
+        const struct obj_mesh *mesh = &s->objects->meshes[i];
+        fprintf(to, "o object/%s\ng object/%s\nusemtl object_%s\n", s->objects->list.items[i].name,
+                s->objects->list.items[i].name, s->objects->list.items[i].name);
+        for (int k = 0; k < mesh->count; k++) {
+            const struct vec3 n = export_objects_normal(mesh->triangles[k]);
+            put_corners(to, mesh->triangles[k]);
+            fprintf(to, "vn %.9g %.9g %.9g\nf -3//-1 -2//-1 -1//-1\n", n.x, n.y, n.z);
+        }
+    }
+}
+
+static void put_model(FILE *to, const struct export_scene *s)
+{
+    put_faces(to, s);
+    put_objects(to, s);
 }
 
 static void put_materials(FILE *to, const struct export_scene *s)
@@ -54,6 +79,11 @@ static void put_materials(FILE *to, const struct export_scene *s)
         fprintf(to, "newmtl colour_%.6g_%.6g_%.6g\nKa 0 0 0\nKd %.6g %.6g %.6g\nKs 0 0 0\nillum 1\n",
                 (double)t->albedo[0], (double)t->albedo[1], (double)t->albedo[2], (double)t->albedo[0],
                 (double)t->albedo[1], (double)t->albedo[2]);
+    }
+    for (int i = 0; i < s->objects->list.count; i++) {
+        const struct object *o = &s->objects->list.items[i];
+        fprintf(to, "newmtl object_%s\nKa 0 0 0\nKd %.6g %.6g %.6g\nKs 0 0 0\nillum 1\n", o->name, o->brdf.albedo.r,
+                o->brdf.albedo.g, o->brdf.albedo.b);
     }
 }
 
@@ -75,7 +105,7 @@ static enum status write_text(const struct export_scene *s, enum product_id id, 
 enum status write_obj(const struct export_scene *s, struct err *err)
 {
     return write_text(s, PRODUCT_EXPORT_MTL, "", put_materials, err) ||
-                   write_text(s, PRODUCT_EXPORT_OBJ, "# z is up\nmtllib model.mtl\n", put_faces, err)
+                   write_text(s, PRODUCT_EXPORT_OBJ, "# z is up\nmtllib model.mtl\n", put_model, err)
                ? err->status
                : ST_OK;
 }

@@ -5,12 +5,14 @@
 #include "common/model/model_plan.h"
 #include "common/product/exports.h"
 #include "stages/export_model/export_faces.h"
+#include "stages/export_model/export_objects.h"
 
 struct export_scene {
     const char *name; /* of the scene and the edit, for titles */
     const struct solid_mesh *mesh;
     const struct export_faces *faces;
     const struct model_plan *plan;
+    const struct export_objects *objects; /* that an edit puts into the model */
     const int (*page_sizes)[2];
     int page_count;
     double exposure; /* of the pages */

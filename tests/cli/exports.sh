@@ -6,19 +6,28 @@ boxed t textures
 printf 'door gate on north from -8 0 to 2 12 closed\nwindow pane on east from -5 5 to 5 12\n' >>scenes/t/model.txt
 sed -i 's/^set slab 1$/set slab 1\nset glass 0.1\nset leaf 0.2/' scenes/t/model.txt
 printf 'remodel-script 1\ngable hall from south 20 to north 20 ridge 30\nskylight sky on hall from 5 5 to 10 10\nhatch trap on hall from -20 -20 to -15 -15 closed\n' >scenes/t/edits/attic.txt
+# a wedge of 1 x 1 x 1: 8 triangles, since its rectangles become two each
+printf 'v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 0 1 1\nf 4 3 2 1\nf 1 2 5\nf 4 6 3\nf 1 5 6 4\nf 2 3 6 5\n' >scenes/t/wedge.obj
+printf 'remodel-script 1\nobject wedge wedge.obj at 5 7 0 turn 90 scale 2 4 3 matt 0.5 0.25 0.125\nobject ball wedge.obj at -9 -9 1 phong 0.2 0.4 0.3 0.05 20\n' >scenes/t/edits/object.txt
 make -s DEPS=manual PHOTOS=set/photos SFM=set/model SCENE=t exports >log 2>&1 || { cat log; fail "make exports"; }
 E=$PWD/out/t/remodel/bare/export
 
 # has MODULE: whether node finds it
 has() { command -v node >/dev/null && node -e "require.resolve('$1')" 2>/dev/null; }
 
+# gltf_is_valid EDIT
+gltf_is_valid()
+{
+    node -e "
+        require('gltf-validator').validateBytes(new Uint8Array(require('fs').readFileSync('out/t/remodel/$1/export/model.glb'))).then(r => {
+            console.log(JSON.stringify(r.issues.messages));
+            process.exit(r.issues.numErrors + r.issues.numWarnings > 0 || r.info.totalTriangleCount < 12 ? 1 : 0); })" >found || { cat found; fail "the validator has findings about $1"; }
+}
+
 the_gltf_validator_finds_no_error()
 {
     has gltf-validator || skip "node does not find gltf-validator (npm install gltf-validator; NODE_PATH=.../node_modules)"
-    node -e "
-        require('gltf-validator').validateBytes(new Uint8Array(require('fs').readFileSync('$E/model.glb'))).then(r => {
-            console.log(JSON.stringify(r.issues.messages));
-            process.exit(r.issues.numErrors + r.issues.numWarnings > 0 || r.info.totalTriangleCount < 12 ? 1 : 0); })" >found || { cat found; fail "the validator has findings"; }
+    for edit in bare object; do gltf_is_valid $edit; done
 }
 
 # building FILE: "TYPE COUNT VOLUME" of the building's parts, as web-ifc reads them: with openings cut out of walls and slabs
@@ -94,4 +103,34 @@ assimp_reads_obj_and_gltf()
     grep -qE '^Textures \(embed\.\): +1$' found || { cat found; fail "model.glb: wanted its picture inside"; }
 }
 
-for t in the_gltf_validator_finds_no_error web_ifc_reads_the_building web_ifc_reads_a_gable assimp_reads_obj_and_gltf; do run "$t"; done
+objects_of_an_edit_are_in_every_format()
+{
+    local F=out/t/remodel/object/export rest
+    # the wedge is turned by a quarter: x from 5 - 4 to 5, y from 7 to 7 + 2, z from 0 to 3
+    awk '$1 == "o" { at = $2 } at == "object/wedge" && $1 == "v" { for (k = 2; k <= 4; k++) { if (!n || $k < low[k]) low[k] = $k; if (!n || $k > high[k]) high[k] = $k } n++ }
+        at == "object/wedge" && $1 == "f" { faces++ }
+        END { print faces, low[2], low[3], low[4], high[2], high[3], high[4] }' $F/model.obj >found
+    [ "$(cat found)" = '8 1 7 0 5 9 3' ] || { cat found; fail "model.obj has another wedge"; }
+    # outward normals, whatever the turn: the sum of n . p area over a closed surface is three times its volume, 24 / 2
+    awk '$1 == "o" { at = $2 } at != "object/wedge" { next } $1 == "v" { for (k = 0; k < 3; k++) p[n % 3, k] = $(k + 2); n++ }
+        $1 == "f" { for (k = 0; k < 3; k++) { a = (k + 1) % 3; b = (k + 2) % 3
+            sum += p[0, k] * ((p[1, a] - p[0, a]) * (p[2, b] - p[0, b]) - (p[1, b] - p[0, b]) * (p[2, a] - p[0, a])) } }
+        END { print sum / 6 }' $F/model.obj >found
+    [ "$(cat found)" = 12 ] || { cat found; fail "the wedge of model.obj has another volume"; }
+    grep -A2 '^newmtl object_wedge$' $F/model.mtl | matches '^Kd 0.5 0.25 0.125$' || fail "model.mtl has not the wedge's colour"
+    grep -aoE '"name":"object/(wedge|ball)","mesh":[0-9]+' $F/model.glb >found || true
+    [ "$(wc -l <found)" = 2 ] || { cat found; fail "model.glb has not both objects"; }
+    grep -aq '"baseColorFactor":\[0.5,0.25,0.125,1.0\]' $F/model.glb || fail "model.glb has not the wedge's colour"
+    for rest in "IFCFURNITURE\\(.[^,]*,[$],.wedge.," "IFCFURNITURE\\(.[^,]*,[$],.ball.," "IFCCOLOURRGB\\([$],0.5,0.25,0.125\\)"; do
+        grep -qE "$rest" $F/model.ifc || fail "model.ifc has no $rest"
+    done
+    ! grep -q 'object/' "$E/model.obj" || fail "an edit without objects has one"
+    if command -v assimp >/dev/null; then
+        for rest in obj glb; do
+            assimp info $F/model.$rest >found 2>&1 || { cat found; fail "assimp cannot read model.$rest"; }
+            grep -qE "^Faces: +$(grep -c '^f ' $F/model.obj)\$" found || { cat found; fail "model.$rest has another number of triangles"; }
+        done
+    fi
+}
+
+for t in objects_of_an_edit_are_in_every_format the_gltf_validator_finds_no_error web_ifc_reads_the_building web_ifc_reads_a_gable assimp_reads_obj_and_gltf; do run "$t"; done

@@ -209,8 +209,14 @@ static void sloping_slabs_leaves_and_panes_are_in_the_ifc_file(void **state)
                   "window pane on north from 1 1 to 2 2\nwindow hole on north from 2.5 1 to 3 2 open\n");
     assert_ok(unite_solids(&mesh, &s.solids, NULL, &err), err);
     assert_ok(export_faces_make(&faces, &mesh, NULL, &atlas, &err), err);
-    const struct export_scene scene = {
-        .name = "room", .mesh = &mesh, .faces = &faces, .plan = &s.read, .metric = true, .out = scratch};
+    const struct export_objects none = {.meshes = NULL};
+    const struct export_scene scene = {.name = "room",
+                                       .mesh = &mesh,
+                                       .faces = &faces,
+                                       .plan = &s.read,
+                                       .objects = &none,
+                                       .metric = true,
+                                       .out = scratch};
     assert_ok(write_ifc(&scene, &err), err);
     text = scratch_read(scratch_path("model.ifc"));
     expect_whole_step_file(text, &lines);
