@@ -90,10 +90,12 @@ RULES(render_model)
             picture_rule(g, f, f->drawn_edits.names[e], &f->viewpoints.photos[i]);
     if (scene_asks_for(f, "remodel") && f->drawn_edits.count && f->views.count)
         graph_list(g, GRAPH_ALWAYS_SHOWN, graph_set_path(g, "pictures"));
-    /* the unedited model, unless only some edits are asked for */
-    for (int e = *scene_setting("EDIT") || *scene_setting("DRAW") ? 0 : -1; e < f->drawn_edits.count; e++) {
+    /* given cameras see the unedited model too, for comparison; a walk through it takes long, and is only made where
+     * all edits are asked for */
+    const bool some = *scene_setting("EDIT") || *scene_setting("DRAW");
+    for (int e = -1; e < f->drawn_edits.count; e++) {
         const char *model = scene_model_folder(g, &f->drawn_edits, e);
         cameras_rule(g, model);
-        tour_rules(g, f, model);
+        if (e >= 0 || !some) tour_rules(g, f, model);
     }
 }

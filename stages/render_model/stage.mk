@@ -3,7 +3,7 @@ FOLLOWS.render_model := bake_outdoors bake_vdta bake_vita choose_exposure encode
 READS.render_model := the models, texture.txt, atlases, outdoors.exr, exposure.txt, the views with their ids and depth, the tour or the cameras
 LIBS.render_model := -lembree3
 VARIABLES.render_model := CAMERAS CAMERAS_FRAME
-HELP.remodel := what the photos would show after each edit, EDIT=E: after one; with CAMERAS=DIR: from these cameras
+HELP.remodel := what the photos would show after each edit, EDIT=E: after one; with CAMERAS=DIR: what these cameras see before and after
 HELP.tour := films through the rooms, of the model and of each edit
 
 ## EDIT=E: for `make remodel`, `tour` and `relight`: after this edit alone

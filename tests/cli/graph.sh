@@ -226,6 +226,21 @@ a_rectangle_on_a_wall_of_any_name_asks_for_points()
     needs out/t/model/model.txt out/t/points/points.ply || fail "adjust north in a photograph is not seen"
 }
 
+given_cameras_see_the_unedited_model_too()
+{
+    scene a b
+    mkdir -p scenes/t/edits
+    printf 'remodel-script 1\n' | tee scenes/t/model.txt scenes/t/edits/one.txt scenes/t/edits/two.txt >/dev/null
+    given CAMERAS=cams EDIT=one
+    graph write
+    local goal; goal=$(grep -h '^remodel-cameras:' out/t/graph/render_model.mk | tr '\n' ' ')
+    for m in model remodel/one; do
+        [[ $goal == *" out/t/$m/cameras/pictures.txt"* ]] || fail "EDIT=one: no pictures of $m from given cameras: $goal"
+    done
+    [[ $goal != *remodel/two* ]] || fail "EDIT=one draws the edit two"
+    ! grep -q 'out/t/model/tour' out/t/graph/render_model.mk || fail "EDIT=one films the unedited rooms"
+}
+
 pictures_need_the_exposure_and_not_all_views()
 {
     scene a b
@@ -313,6 +328,6 @@ for t in nothing_is_stale_when_all_is_made every_goal_is_known_before_the_views_
     a_neighbour_that_is_a_view_no_more_redoes_the_depth_that_read_it a_parameter_redoes_its_stage_and_what_follows \
     a_changed_program_redoes_its_products_but_not_sfm a_photo_is_read_once_for_its_views frames_come_in_chunks_and_wait_for_all_depth \
     what_is_held_out_is_rectified_and_not_matched an_edit_needs_the_scripts_and_meshes_that_it_stands_on \
-    a_rectangle_on_a_wall_of_any_name_asks_for_points pictures_need_the_exposure_and_not_all_views \
+    a_rectangle_on_a_wall_of_any_name_asks_for_points given_cameras_see_the_unedited_model_too pictures_need_the_exposure_and_not_all_views \
     an_edit_that_went_changes_what_edits_reveal steps_come_in_order pieces_of_work_name_their_products \
     a_graph_that_is_the_same_is_not_rewritten wrong_settings_are_refused; do run "$t"; done

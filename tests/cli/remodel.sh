@@ -96,6 +96,7 @@ given_cameras_are_drawn_in_any_frame_and_lens()
     m remodel CAMERAS=cams EDIT=chest
     find $O/views $O/depth $O/vita -type f -printf '%p %T@\n' | LC_ALL=C sort | diff before - || fail "given cameras made the scene again"
     [ -s $O/remodel/chest/cameras/pictures.txt ] || fail "no list of pictures"
+    [ -s "$O/model/cameras/$view.jpg" ] || fail "no picture of the unedited rooms to compare with"
     "$B/bin/verify" --file "$O/remodel/chest/cameras/$view.exr" || fail "a picture is not whole"
     m remodel CAMERAS=cams CAMERAS_FRAME=truth TRUTH=cams EDIT=chest
     mkdir -p wide; printf '1 OPENCV_FISHEYE 64 48 30 30 32 24 0 0 0 0\n' >wide/cameras.txt
