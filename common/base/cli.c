@@ -56,6 +56,7 @@ static void report_use(void)
     getrusage(RUSAGE_CHILDREN, &children);
     const long peak = self.ru_maxrss > children.ru_maxrss ? self.ru_maxrss : children.ru_maxrss; /* KiB */
     const double now = clock_seconds(), cpu = cpu_seconds(&self) + cpu_seconds(&children);
+    log_set_subject(NULL); /* the line is the whole program's */
     log_note("used %.2f s wall, %.2f s cpu, %ld MiB peak", now - started, cpu - used_cpu, (peak + 1023) / 1024);
     started = now;
     used_cpu = cpu;

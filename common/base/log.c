@@ -8,11 +8,13 @@
 #include <unistd.h>
 
 static const char *name = "remodel";
-static bool redrawing; /* the terminal shows a line that has no line break yet */
+static const char *subject; /* NULL: none */
+static bool redrawing;      /* the terminal shows a line that has no line break yet */
 static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
 
 void log_set_name(const char *stage) { name = stage; }
 const char *log_name(void) { return name; }
+void log_set_subject(const char *of) { subject = of; }
 
 /* Logging never fails the program: a closed or full stderr is ignored. */
 static void put(const char *text, size_t size)
@@ -50,24 +52,29 @@ void log_redraw(const char *text, bool keep)
     pthread_mutex_unlock(&lock);
 }
 
-void log_note(const char *fmt, ...)
+static void put_text(const char *kind, const char *fmt, va_list args)
 {
     char text[2048];
+    int n = subject ? snprintf(text, sizeof text, "%s: ", subject) : 0;
+    if (n >= (int)sizeof text) n = (int)sizeof text - 1;
+    vsnprintf(text + n, sizeof text - (size_t)n, fmt, args);
+    log_line(kind, text);
+}
+
+void log_note(const char *fmt, ...)
+{
     va_list args;
 
     va_start(args, fmt);
-    vsnprintf(text, sizeof text, fmt, args);
+    put_text("", fmt, args);
     va_end(args);
-    log_line("", text);
 }
 
 void log_warn(const char *fmt, ...)
 {
-    char text[2048];
     va_list args;
 
     va_start(args, fmt);
-    vsnprintf(text, sizeof text, fmt, args);
+    put_text("warning: ", fmt, args);
     va_end(args);
-    log_line("warning: ", text);
 }

@@ -9,6 +9,8 @@
 
 void log_set_name(const char *stage); /* the pointer is kept: give a string literal */
 const char *log_name(void);           /* "remodel" until set */
+/* What notes and warnings are about from now on: "STAGE: SUBJECT: ..."; NULL: nothing. The pointer is kept. */
+void log_set_subject(const char *subject);
 void log_note(const char *fmt, ...) PRINTF_LIKE(1, 2);
 void log_warn(const char *fmt, ...) PRINTF_LIKE(1, 2); /* "STAGE: warning: ..." */
 void log_line(const char *kind, const char *text);     /* "STAGE: KINDTEXT"; atomic between processes */

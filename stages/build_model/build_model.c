@@ -36,6 +36,7 @@
 struct job {
     const char *script, *edit, *scene, *axes, *views, *held, *points, *base, *out;
     const char *overlay, *model, *photos, *records;
+    char subject[256]; /* the edit's name, or "model" */
     struct model_params params;
     struct provenance prov;
 
@@ -114,6 +115,16 @@ static void log_summary(const struct plan *plan, const struct solid_mesh *mesh, 
              report->volume);
 }
 
+/* A run builds many edits: each line of a log says which one it is about. */
+static void name_subject(struct job *j)
+{
+    const char *slash = j->edit ? strrchr(j->edit, '/') : NULL, *name = slash ? slash + 1 : j->edit ? j->edit : "model";
+    const char *dot = strrchr(name, '.');
+    snprintf(j->subject, sizeof j->subject, "%.*s", (int)(dot && dot > name ? (size_t)(dot - name) : strlen(name)),
+             name);
+    log_set_subject(j->subject);
+}
+
 static enum status build(struct job *j, struct err *err)
 {
     const struct placer *placer = j->views ? &j->placer : NULL;
@@ -122,6 +133,7 @@ static enum status build(struct job *j, struct err *err)
     struct solid_mesh mesh = {0}, base = {0};
     struct unite_log log = {0};
     struct solid_report report = {0};
+    name_subject(j);
     if (!read_frame(j, err)) {
         plan_begin(&plan, &j->in.axes);
         edit_chain_apply_model(&plan, j->script, placer, &j->prov, err);

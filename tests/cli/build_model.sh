@@ -292,4 +292,15 @@ make_builds_models_and_overlays()
     grep -q "script.txt:[0-9]*: found .*did you mean $first?" err.txt || { cat err.txt; fail "no guess"; }
 }
 
-for t in a_room_is_a_closed_solid an_edit_keeps_the_ids_of_its_base errors_name_file_and_line an_edit_without_effect_is_refused gables_and_skylights_have_their_volume an_edit_says_what_changes_the_light edits_of_the_loft_do_not_depend_on_views floors_of_two_rooms_stay_two_faces make_builds_models_and_overlays; do run "$t"; done
+every_line_of_a_log_names_its_edit()
+{
+    printf 'remodel-script 1\nremove way\nobject a a.obj at 1 1 0 matt 0.5 0.5 0.5\n' >no-way.txt
+    mkdir -p things; printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >things/a.obj
+    build 0 'build_model: model: 4 walls, 1 rooms, 2 openings' --script room.txt
+    cp made/model.txt base.txt
+    build 0 'build_model: no-way: object a: 1 triangle' --script room.txt --edit no-way.txt --base base.txt --scene things
+    [ "$(grep -vc '^build_model: no-way: ' err.txt)" = 1 ] || { cat err.txt; fail "a line does not name the edit"; }
+    tail -n1 err.txt | matches -E '^build_model: used [0-9.]+ s wall' || { cat err.txt; fail "the last line is not the program's"; }
+}
+
+for t in a_room_is_a_closed_solid an_edit_keeps_the_ids_of_its_base errors_name_file_and_line an_edit_without_effect_is_refused gables_and_skylights_have_their_volume an_edit_says_what_changes_the_light edits_of_the_loft_do_not_depend_on_views floors_of_two_rooms_stay_two_faces every_line_of_a_log_names_its_edit make_builds_models_and_overlays; do run "$t"; done
