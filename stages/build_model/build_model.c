@@ -17,6 +17,7 @@
 #include <string.h>
 
 #include "common/base/cli.h"
+#include "common/base/file_bytes.h"
 #include "common/base/file_path.h"
 #include "common/base/log.h"
 #include "common/base/outfile.h"
@@ -26,6 +27,7 @@
 #include "stages/build_model/layout/layout.h"
 #include "stages/build_model/objects.h"
 #include "stages/build_model/picture/overlay_picture.h"
+#include "stages/build_model/picture/overlay_shape.h"
 #include "stages/build_model/picture/plan_picture.h"
 #include "stages/build_model/picture/view_picture.h"
 #include "stages/build_model/plan/edit_chain.h"
@@ -35,7 +37,7 @@
 
 struct job {
     const char *script, *edit, *scene, *axes, *views, *held, *points, *base, *out;
-    const char *overlay, *model, *photos, *records;
+    const char *overlay, *model, *photos, *records, *same;
     char subject[256]; /* the edit's name, or "model" */
     struct model_params params;
     struct provenance prov;
@@ -59,6 +61,20 @@ static enum status read_frame(struct job *j, struct err *err)
     return err->status;
 }
 
+/* shape.txt: left alone while the faces stay as they are, whatever else changed, so that no overlay is drawn again. */
+static enum status write_shape(const struct job *j, const struct solid_mesh *mesh, struct err *err)
+{
+    struct overlay_shape shape = {0};
+    char path[FILE_PATH], hash[HASH_TEXT], text[64 + HASH_TEXT];
+    if (!product_path_in(path, j->out, PRODUCT_SHAPE, NULL, err) && !overlay_shape_make(&shape, mesh, err) &&
+        !overlay_shape_hash(hash, &shape, err)) {
+        const int size = snprintf(text, sizeof text, "%s\nhash %s\n", products[PRODUCT_SHAPE].head, hash);
+        outfile_write_if_changed(path, text, (size_t)size, err);
+    }
+    overlay_shape_release(&shape);
+    return err->status;
+}
+
 static enum status write_model(struct job *j, const struct plan *plan, const struct solid_mesh *mesh,
                                const struct unite_log *log, struct err *err)
 {
@@ -69,8 +85,8 @@ static enum status write_model(struct job *j, const struct plan *plan, const str
         product_path_in(path, j->out, PRODUCT_MODEL_PICTURE, NULL, err) ||
         view_picture_write(mesh, plan, placer, path, err) || product_path_in(path, j->out, PRODUCT_PLAN, NULL, err) ||
         plan_write(plan, path, &j->prov, err) || product_path_in(path, j->out, PRODUCT_MERGED, NULL, err) ||
-        plan_merged_write(log, path, &j->prov, err) || product_path_in(path, j->out, PRODUCT_MODEL, NULL, err) ||
-        solid_mesh_write(mesh, path, &j->prov, err))
+        plan_merged_write(log, path, &j->prov, err) || write_shape(j, mesh, err) ||
+        product_path_in(path, j->out, PRODUCT_MODEL, NULL, err) || solid_mesh_write(mesh, path, &j->prov, err))
         return err->status;
     return ST_OK;
 }
@@ -155,9 +171,37 @@ static enum status build(struct job *j, struct err *err)
     return err->status;
 }
 
+/* Whether the photo shows the edited model as it shows the unedited one. */
+static enum status compare(bool *same, struct job *j, const struct solid_mesh *mesh, const struct photo_camera *camera,
+                           struct err *err)
+{
+    struct solid_mesh base = {0};
+    struct overlay_shape shapes[2] = {{0}};
+    if (!solid_mesh_read(&base, j->base, NULL, err) && !overlay_shape_make(&shapes[0], &base, err) &&
+        !overlay_shape_make(&shapes[1], mesh, err))
+        *same = !overlay_shape_differs(&base, &shapes[0], mesh, &shapes[1], camera);
+    for (int k = 0; k < 2; k++) overlay_shape_release(&shapes[k]);
+    solid_mesh_release(&base);
+    return err->status;
+}
+
+static enum status copy(const char *from, const char *to, struct err *err)
+{
+    struct file_bytes bytes = {0};
+    struct outfile out = {0};
+    if (!file_bytes_read(&bytes, from, err) && !outfile_open(&out, to, err)) {
+        fwrite(bytes.bytes, 1, bytes.size, out.fp);
+        outfile_commit(&out, err);
+    }
+    outfile_discard(&out);
+    file_bytes_release(&bytes);
+    return err->status;
+}
+
 static enum status overlay(struct job *j, struct err *err)
 {
     struct solid_mesh mesh = {0};
+    bool same = false;
     struct photo_record record = {0};
     struct photo photo = {0};
     char path[FILE_PATH];
@@ -167,15 +211,16 @@ static enum status overlay(struct job *j, struct err *err)
         while (at < j->placer.photo_count && strcmp(j->placer.photos[at].id, j->overlay)) at++;
         if (at == j->placer.photo_count) err_set(err, ST_DATA, "%s/lenses.txt has no photo %s.", j->views, j->overlay);
     }
-    if (!err->status && !photo_record_read(&record, j->records, j->overlay, NULL, err) &&
+    const struct photo_camera *camera = err->status ? NULL : &j->placer.photos[at].camera;
+    if (!err->status && j->same) compare(&same, j, &mesh, camera, err);
+    if (!err->status && same) copy(j->same, j->out, err);
+    if (!err->status && !same && !photo_record_read(&record, j->records, j->overlay, NULL, err) &&
         !file_path(path, j->photos, record.file, "", err))
         photo_read(&photo, path, err);
-    if (!err->status && (photo.info.width != j->placer.photos[at].camera.lens.width ||
-                         photo.info.height != j->placer.photos[at].camera.lens.height))
+    if (!err->status && !same && (photo.info.width != camera->lens.width || photo.info.height != camera->lens.height))
         err_set(err, ST_DATA, "%s has %d x %d pixels, but its lens is for %d x %d; make the views again.", path,
-                photo.info.width, photo.info.height, j->placer.photos[at].camera.lens.width,
-                j->placer.photos[at].camera.lens.height);
-    if (!err->status) overlay_write(&mesh, &j->placer.photos[at].camera, &photo, j->params.overlay_side, j->out, err);
+                photo.info.width, photo.info.height, camera->lens.width, camera->lens.height);
+    if (!err->status && !same) overlay_write(&mesh, camera, &photo, j->params.overlay_side, j->out, err);
     photo_release(&photo);
     photo_record_release(&record);
     solid_mesh_release(&mesh);
@@ -187,8 +232,10 @@ static enum status check_usage(const struct job *j, struct err *err)
     if (!j->overlay && !j->script) return err_set(err, ST_USAGE, "--script or --overlay is missing; see --help.");
     if (j->overlay && (!j->model || !j->views || !j->photos || !j->records))
         return err_set(err, ST_USAGE, "--overlay also needs --model, --views, --photos and --records.");
-    if (j->base && !j->edit)
-        return err_set(err, ST_USAGE, "--base is only for --edit: it is the model before the edit.");
+    if (j->same && !j->overlay) return err_set(err, ST_USAGE, "--same is only for --overlay.");
+    if (j->same && !j->base) return err_set(err, ST_USAGE, "--same also needs --base, the model that it shows.");
+    if (j->base && !j->edit && !j->same)
+        return err_set(err, ST_USAGE, "--base is only for --edit and --same: it is the model before the edit.");
     if (j->scene && !j->edit) return err_set(err, ST_USAGE, "--scene is only for --edit: it has the edit's objects.");
     if ((j->points || j->held) && !j->views) return err_set(err, ST_USAGE, "--points and --held also need --views.");
     return ST_OK;
@@ -203,7 +250,8 @@ int main(int argc, char **argv)
         CLI_STR("edit", &j.edit, CLI_OPTIONAL, "script of changes to the model"),
         CLI_STR("scene", &j.scene, CLI_OPTIONAL,
                 "with --edit: the scene's folder, with objects.txt for all edits and the meshes of objects"),
-        CLI_STR("base", &j.base, CLI_OPTIONAL, "with --edit: model.txt of the unedited model, whose face ids are kept"),
+        CLI_STR("base", &j.base, CLI_OPTIONAL,
+                "with --edit or --same: model.txt of the unedited model, whose face ids are kept"),
         CLI_STR("axes", &j.axes, CLI_REQUIRED, "the model's frame, axes.txt"),
         CLI_STR("views", &j.views, CLI_OPTIONAL, "folder of cameras, for places in photographs and for the pictures"),
         CLI_STR("held", &j.held, CLI_OPTIONAL,
@@ -214,6 +262,8 @@ int main(int argc, char **argv)
         CLI_STR("model", &j.model, CLI_OPTIONAL, "with --overlay: model.txt"),
         CLI_STR("photos", &j.photos, CLI_OPTIONAL, "with --overlay: folder of the photographs"),
         CLI_STR("records", &j.records, CLI_OPTIONAL, "with --overlay: folder of the photos' records"),
+        CLI_STR("same", &j.same, CLI_OPTIONAL,
+                "with --overlay and --base: JPEG of the edges of --base, which is copied if the photo shows no other"),
         CLI_STR("out", &j.out, CLI_REQUIRED, "folder to write the model to, or with --overlay the JPEG"),
         CLI_PARAMS(model_param_table, &j.params, NULL),
         CLI_END,

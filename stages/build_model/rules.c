@@ -122,15 +122,32 @@ static void model_rule(struct graph *g, const struct scene_facts *f, int edit, b
         rule_option(g, "--scene", f->folder);
     }
     rule_option(g, "--out", graph_own(g, model));
+    if (path_is_file(PATH(g, SHAPE, .model = model))) graph_source(g, PATH(g, SHAPE, .model = model));
 }
 
+/* A model that is built anew often has the same faces: after another paint, say. So an overlay needs its shape.txt,
+ * which is written only if they change, where there is one. */
+static void needs_shape(struct graph *g, const char *option, const char *model)
+{
+    const char *shape = PATH(g, SHAPE, .model = model), *path = PATH(g, MODEL, .model = model);
+    const bool known = path_is_file(shape);
+    rule_needs(g, known ? shape : path);
+    if (known) rule_after(g, path);
+    rule_option(g, option, path);
+}
+
+/* Of an edit, photos that show no difference get a copy of the unedited model's. */
 static void overlay_rule(struct graph *g, const struct scene_facts *f, int edit, const char *photo)
 {
     const char *model = scene_model_folder(g, &f->edits, edit),
                *path = PATH(g, OVERLAY, .model = model, .photo = photo);
     graph_piece(g, "%s-%s", scene_model_name(model), photo);
     rule_makes(g, path);
-    rule_takes(g, "--model", PATH(g, MODEL, .model = model));
+    needs_shape(g, "--model", model);
+    if (edit >= 0) {
+        needs_shape(g, "--base", "model");
+        rule_takes(g, "--same", PATH(g, OVERLAY, .model = "model", .photo = photo));
+    }
     rule_takes(g, "--axes", PATH(g, AXES));
     rule_takes_cameras(g);
     rule_needs(g, PATH(g, LENSES));
@@ -140,7 +157,7 @@ static void overlay_rule(struct graph *g, const struct scene_facts *f, int edit,
     rule_option(g, "--records", FOLDER(g, PHOTO_LIST));
     rule_option(g, "--out", path);
     if (edit >= 0 && !name_list_has(&f->drawn_edits, scene_model_name(model))) return;
-    graph_goal(g, "overlays", path);
+    graph_goal(g, edit < 0 ? "overlays" : "edit-overlays", path);
     graph_list_if(g, GRAPH_ALWAYS_SHOWN, path, scene_asks_for_any(f, "model textures remodel"));
 }
 
@@ -151,6 +168,7 @@ RULES(build_model)
     graph_asked(g, "model", "model");
     graph_goal(g, "model", NULL);
     graph_goal(g, "overlays", NULL);
+    graph_goal(g, "edit-overlays", NULL);
     graph_list_if(g, GRAPH_MEASURED, PATH(g, AXES), modelled);
     if (!f->has_model) return;
     graph_list_if(g, GRAPH_MEASURED, PATH(g, PLAN), modelled);

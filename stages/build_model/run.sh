@@ -17,4 +17,5 @@ run_model()
 {
     one model
     farm build_model overlays
+    farm build_model edit-overlays # copies of these where a photo shows no difference
 }

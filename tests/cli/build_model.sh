@@ -265,6 +265,21 @@ make_builds_models_and_overlays()
     diff before after >changes || true
     ! grep -q 'out/t/model/' changes || { cat changes; fail "an edit redid the model"; }
     grep -q 'out/t/remodel/far/model.txt' changes || fail "a changed edit was not made again"
+    # what changes no face draws no edge again: neither of the model nor of its edits
+    overlays() { find out/t -path '*/overlay/*' -printf '%p %T@\n' | sort; }
+    overlays >before
+    printf '# a comment\n' >>scenes/t/model.txt
+    printf 'colour wall/a/in 0.1 0.2 0.8\n' >>scenes/t/edits/far.txt
+    cp -p out/t/remodel/far/model.txt far.txt
+    m
+    [ out/t/remodel/far/model.txt -nt far.txt ] && grep -q '^colour 0.1' out/t/remodel/far/texture.txt || fail "a colour is not in the edit"
+    overlays | diff before - || fail "edges were drawn again although no face changed"
+    # an edit that changes no face has copies
+    printf 'remodel-script 1\ncolour wall/a/in 0.9 0.1 0.1\n' >scenes/t/edits/red.txt
+    m
+    diff -r out/t/model/overlay out/t/remodel/red/overlay || fail "edges of the same faces are drawn otherwise"
+    ! diff -rq out/t/model/overlay out/t/remodel/far/overlay >/dev/null || fail "a wall that moved changes no photo"
+    rm -r scenes/t/edits/red.txt out/t/remodel/red
     # meshes of objects, and the objects of all edits
     printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >scenes/t/a.obj
     printf 'remodel-script 1\nobject a a.obj at 0 0 0 matt 0.5 0.5 0.5\n' >scenes/t/objects.txt
