@@ -7,7 +7,8 @@
  * A face with a new id that lies in the plane of faces of the unedited model (a wall that was split, a pier left of a
  * wall that was removed) shows those at the same place, else the nearest texels of the closest of them, if it is near.
  * Other new faces get the default colour, under the light of the faces next to them. Panes show what lies outdoors.
- * What a script's statements say of textures comes before all this (texture_wishes.c).
+ * What a script's statements say of textures comes before all this (texture_wishes.c), and then the frames of openings
+ * that move along their walls (texture_frames.c).
  *
  * The new area of a face is what its polygon has beyond the polygons of its id in the unedited model, moved like it. */
 #include "stages/build_model/texture/texture_rules.h"
@@ -18,6 +19,7 @@
 
 #include "common/base/array.h"
 #include "stages/build_model/plan/room_parts.h"
+#include "stages/build_model/texture/texture_frames.h"
 #include "stages/build_model/texture/texture_wishes.h"
 
 static const float default_albedo[3] = {0.75F, 0.75F, 0.75F}; /* white paint */
@@ -240,7 +242,8 @@ static enum status add_rules(const struct rules_job *job, struct texture_face *t
     bool covered = false;
     *own = place >= 0;
     if (!find_lit(&lit, &lit_count, job, face, *own) &&
-        !texture_wishes_add(to, &covered, &job->models, face, place, *by, lit, lit_count, job->err) && !covered)
+        !texture_wishes_add(to, &covered, &job->models, face, place, *by, lit, lit_count, job->err) && !covered &&
+        (!*own || !texture_frames_add(to, &job->models, face, place, *by, job->err)))
         add_defaults(job, to, face, *own, *by, &lit, lit_count);
     texture_wishes_gloss(to, &job->models, face);
     free(lit);

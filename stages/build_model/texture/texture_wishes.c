@@ -184,8 +184,7 @@ static enum status add_copies(struct texture_face *to, const struct texture_mode
     return err->status;
 }
 
-/* The corners of a place in the plane of a face. */
-static void place_quad(struct vec3 corners[4], const struct texture_models *m, const double place[4], int face)
+void texture_place_quad(struct vec3 corners[4], const struct texture_models *m, const double place[4], int face)
 {
     const struct solid_face *f = &m->edited->faces[face];
     const struct plan_wall *wall = wall_of(m->edited, face, m->plan);
@@ -199,7 +198,7 @@ static enum status add_colour(struct texture_face *to, const struct texture_mode
                               int face, const int *lit, int lit_count, struct err *err)
 {
     struct texture_rule rule = {.kind = TEXTURE_COLOUR, .lit_count = lit_count, .limited = !w->whole};
-    if (rule.limited) place_quad(rule.within, m, w->target, face);
+    if (rule.limited) texture_place_quad(rule.within, m, w->target, face);
     for (int c = 0; c < 3; c++) rule.albedo[c] = (float)w->colour[c];
     rule.lit = malloc(((size_t)lit_count + 1) * sizeof *rule.lit);
     if (!rule.lit) return err_nomem(err, "faces", (size_t)lit_count * sizeof *rule.lit);

@@ -31,6 +31,9 @@ enum status texture_zones_add(struct texture_map *map, const struct plan *plan, 
 /* Whether a face's name is of the item NAME: KIND/NAME or KIND/NAME/PART. */
 bool texture_face_is_of(const char *face, const char *item);
 
+/* The corners, in the plane of a face of the edited model, of a rectangle of S and Z on its wall, or of X and Y. */
+void texture_place_quad(struct vec3 corners[4], const struct texture_models *m, const double place[4], int face);
+
 /* Adds a rule; its array `lit` becomes the face's. */
 enum status texture_face_add(struct texture_face *face, struct texture_rule rule, struct err *err);
 

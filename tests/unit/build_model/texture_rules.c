@@ -76,6 +76,61 @@ static void reveals_of_a_wider_opening_move_with_its_sides(void **state)
     release(&m);
 }
 
+/* The point of the unedited model that a point of a face shows, by the first rule that holds. */
+static struct vec3 place_shown(const struct made *m, const char *name, struct vec3 at)
+{
+    const struct texture_face *face = face_of(m, name, at);
+    int k = 0;
+    while (!texture_rule_holds(&face->rules[k], face->normal, at)) k++;
+    assert_int_equal(face->rules[k].kind, TEXTURE_PLACE);
+    assert_string_equal(m->base.names[face->rules[k].from - 1].name, name);
+    return texture_rule_place(&face->rules[k], at);
+}
+
+/* The south wall is from x 4 to 0, at y 0. A window of 0.8 x 0.8, so with a band of 0.1. */
+static void the_frame_of_a_window_moves_with_it(void **state)
+{
+    static const struct {
+        double x, z, to_x, to_z;
+    } cases[] = {
+        {1.65, 1.5, 0.95, 1.4}, /* the frame's sides, corner, head and sill */
+        {2.55, 1.5, 1.85, 1.4}, {1.62, 1.92, 0.92, 1.82}, {2.0, 1.95, 1.3, 1.85},
+        {2.0, 1.05, 1.3, 0.95}, {1.2, 1.3, 0.6, 1.3}, /* the old place: its left half mirrors what is left of 0.9 ... */
+        {0.95, 1.3, 0.85, 1.3},                       /* ... its frame too ... */
+        {1.5, 1.3, 2.3, 1.3},                         /* ... and its right half what is right of 1.9 */
+        {3.5, 1.3, 3.5, 1.3},                         /* the rest of the wall stays */
+        {1.2, 2.2, 1.2, 2.2},
+    };
+    struct made m;
+    (void)state;
+    make(&m, ROOM "window w on south from 1 1 to 1.8 1.8\n", "move w by 0.7 0.1\n");
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
+        for (int out = 0; out < 2; out++) {
+            const double y = out ? -0.2 : 0;
+            const struct vec3 p =
+                place_shown(&m, out ? "wall/south/out" : "wall/south/in", vec3_make(cases[i].x, y, cases[i].z));
+            assert_true(vec3_length(vec3_sub(p, vec3_make(cases[i].to_x, y, cases[i].to_z))) < 1e-9);
+        }
+    release(&m);
+    /* its wall moves too; and one side is mirrored where the other has another window */
+    make(&m, ROOM "window w on south from 1 1 to 1.8 1.8\nwindow v on south from 0.2 1 to 0.6 1.8\n",
+         "move south by 0.5\nmove w by 0.9\n");
+    struct vec3 p = place_shown(&m, "wall/south/in", vec3_make(2.75, -0.5, 1.5));
+    assert_true(vec3_length(vec3_sub(p, vec3_make(1.85, 0, 1.5))) < 1e-9);
+    p = place_shown(&m, "wall/south/in", vec3_make(1.1, -0.5, 1.5));
+    assert_true(vec3_length(vec3_sub(p, vec3_make(2.7, 0, 1.5))) < 1e-9);
+    release(&m);
+    /* a statement says otherwise; a window that becomes wider keeps the wall's texture in place */
+    make(&m, ROOM "window w on south from 1 1 to 1.8 1.8\n", "move w by 0.7\ntexture south crop\n");
+    p = place_shown(&m, "wall/south/in", vec3_make(1.65, 0, 1.5));
+    assert_true(vec3_length(vec3_sub(p, vec3_make(1.65, 0, 1.5))) < 1e-9);
+    release(&m);
+    make(&m, ROOM "window w on south from 1 1 to 1.8 1.8\n", "resize w left 0.1\n");
+    p = place_shown(&m, "wall/south/in", vec3_make(1.95, 0, 1.5));
+    assert_true(vec3_length(vec3_sub(p, vec3_make(1.95, 0, 1.5))) < 1e-9);
+    release(&m);
+}
+
 static void a_box_that_moves_carries_its_texture(void **state)
 {
     struct made m;
@@ -467,6 +522,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_face_that_does_not_change_shows_itself),
         cmocka_unit_test(a_wall_that_moves_carries_its_texture),
+        cmocka_unit_test(the_frame_of_a_window_moves_with_it),
         cmocka_unit_test(reveals_of_a_wider_opening_move_with_its_sides),
         cmocka_unit_test(a_box_that_moves_carries_its_texture),
         cmocka_unit_test(a_new_opening_has_sides_of_the_default_colour_lit_by_its_neighbours),
