@@ -17,6 +17,7 @@ for_make() { sed -e 's/\$/$$/g' -e 's/#/\\#/g' <<<"$1"; }
     echo "PRODUCTS := ${REMODEL_PRODUCTS:-parallax}"
 } >"$folder/.scene.mk.tmp"
 [ -e "$folder/scene.cfg" ] || {
+    [ -z "${REMODEL_LENS-}" ] || printf '[sfm]\ncamera_model = %s\n\n' "$REMODEL_LENS"
     echo "# Overrides of configs/default.cfg for this scene alone, a section a stage. For example:"
     echo "#"
     echo "# [sfm]"

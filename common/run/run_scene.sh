@@ -127,6 +127,12 @@ hooks check
 planning=
 [ "$goal" != plan ] || { planning=yes dry=n goal=${REMODEL_TO:-all}; }
 
+# a lens is said once: later runs find it in scene.cfg
+if [ -n "${REMODEL_LENS-}" ]; then
+    [[ $REMODEL_LENS =~ ^[A-Z_]+$ ]] || usage "LENS=$REMODEL_LENS: wanted a camera model, such as EQUISOLID or OPENCV."
+    [ ! -e "$folder/scene.cfg" ] || grep -qE "^[[:space:]]*camera_model[[:space:]]*=[[:space:]]*${REMODEL_LENS}[[:space:]]*\$" "$folder/scene.cfg" ||
+        usage "LENS=$REMODEL_LENS is for a new scene, but $folder/scene.cfg exists and names no such lens. Write camera_model = $REMODEL_LENS in its section [sfm]."
+fi
 if [ ! -e "$folder/scene.mk" ]; then
     [ -n "${REMODEL_PHOTOS-}" ] || usage "There is no $folder/scene.mk. Give the folder of photos to begin: make PHOTOS=DIR SCENE=$scene"
     [ -d "$REMODEL_PHOTOS" ] || usage "PHOTOS=$REMODEL_PHOTOS is not a folder. Give the folder that holds the photos."

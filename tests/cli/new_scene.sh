@@ -1,0 +1,26 @@
+# what a first command writes for a new scene, and what it says; no stage runs
+. tests/lib.sh
+project new
+mkdir photos
+first() { env REMODEL_PHOTOS=photos REMODEL_PASSED='PHOTOS EXCLUDE SFM' REMODEL_PRODUCTS="${PRODUCTS-parallax}" "$@"; }
+refused() # WORDS ARGUMENT...
+{
+    local words=$1 rc=0; shift
+    make -s DEPS=manual "$@" >log 2>&1 || rc=$?
+    [ "$rc" != 0 ] && grep -qF -- "$words" log || { cat log; fail "make $*: exit $rc, nothing says '$words'"; }
+}
+
+the_first_command_names_the_lens()
+{
+    first REMODEL_LENS=EQUISOLID common/run/new_scene.sh scenes/fish axes >/dev/null
+    sed -n 1,2p scenes/fish/scene.cfg | diff - <(printf '[sfm]\ncamera_model = EQUISOLID\n')
+    "$B/bin/sfm" --print-config --config scenes/fish/scene.cfg | matches '^camera_model = EQUISOLID$' || fail "sfm does not read the lens"
+    first common/run/new_scene.sh scenes/plain axes >/dev/null
+    ! grep -q '^[^#]' scenes/plain/scene.cfg || { cat scenes/plain/scene.cfg; fail "a scene without a lens has settings"; }
+    refused 'LENS=OPENCV is for a new scene, but scenes/fish/scene.cfg exists' axes SCENE=fish LENS=OPENCV
+    refused 'LENS=fish eye: wanted a camera model' axes SCENE=fish 'LENS=fish eye'
+    make -s DEPS=manual axes PHOTOS=photos SCENE=other LENS=EQUISOLID -n >log 2>&1 || { cat log; fail "make -n of a new scene"; }
+    grep -q 'would create scenes/other/scene.mk and scene.cfg' log || { cat log; fail "nothing says what would be created"; }
+}
+
+run the_first_command_names_the_lens
