@@ -25,6 +25,8 @@ set -euo pipefail
 scene=$1 S=$2 O=$3 goal=$4 dry=$5 jobs=$6 cores=$7 bin=$8; shift 8
 make=("$@")
 folder=scenes/$scene
+# what a message tells people to give to make, to get at the products of this run
+again="SCENE=$scene$([ "${REMODEL_QUALITY:-default}" = default ] || echo " QUALITY=$REMODEL_QUALITY")"
 
 usage() { echo "$*" >&2; exit 2; }
 # print_graph WHAT [GOAL]: the graph of products, with this run's films (common/graph/print_graph.c)
@@ -53,7 +55,7 @@ farm()
     if [ "$jobs" = slurm ]; then
         # shellcheck disable=SC2046 # five numbers, or none
         REMODEL_BIN=$bin common/run/slurm.sh "$1" "$plan" "$O/jobs/$1" "${3:-1}" "${4:-${VIEWS_PER_JOB-}}" $(cut -f2- "$plan" | tr '\t' ' ' | work_of "$1")
-        graph -q "$2" || { echo "$1: the cluster's jobs have ended, but something of '$2' is still stale; see make why SCENE=$scene." >&2; exit 1; }
+        graph -q "$2" || { echo "$1: the cluster's jobs have ended, but something of '$2' is still stale; see make why $again." >&2; exit 1; }
         return
     fi
     wide=$((count < max_jobs ? count : max_jobs))
@@ -134,7 +136,7 @@ if [ -n "${REMODEL_LENS-}" ]; then
         usage "LENS=$REMODEL_LENS is for a new scene, but $folder/scene.cfg exists and names no such lens. Write camera_model = $REMODEL_LENS in its section [sfm]."
 fi
 if [ ! -e "$folder/scene.mk" ]; then
-    [ -n "${REMODEL_PHOTOS-}" ] || usage "There is no $folder/scene.mk. Give the folder of photos to begin: make PHOTOS=DIR SCENE=$scene"
+    [ -n "${REMODEL_PHOTOS-}" ] || usage "There is no $folder/scene.mk. Give the folder of photos to begin: make PHOTOS=DIR $again"
     [ -d "$REMODEL_PHOTOS" ] || usage "PHOTOS=$REMODEL_PHOTOS is not a folder. Give the folder that holds the photos."
     if [ "$dry" = n ]; then echo "would create $folder/scene.mk and scene.cfg, and go on from there"; exit 0; fi
     common/run/new_scene.sh "$folder"

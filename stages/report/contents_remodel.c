@@ -222,6 +222,7 @@ enum status remodel_contents_read(struct remodel_contents *c, const struct remod
     struct dirent **names = NULL;
     const struct product_key key = {.film = "model/tour"};
     char path[FILE_PATH];
+    c->quality = from->quality;
     if (!product_path_below(path, from->folder, PRODUCT_LENSES, NULL, err) &&
         !lens_list_read(&r.lenses, path, NULL, err)) {
         c->plan = contents_product_name(from->folder, PRODUCT_PLAN_PICTURE, &key);

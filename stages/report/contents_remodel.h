@@ -30,8 +30,9 @@ struct edit_card {
 };
 
 struct remodel_contents {
-    char *plan; /* of the unedited model; owned; NULL: none */
-    bool film;  /* ../model/tour/video.mp4 exists */
+    const char *quality; /* of the run, for commands that the page names; NULL: the default one */
+    char *plan;          /* of the unedited model; owned; NULL: none */
+    bool film;           /* ../model/tour/video.mp4 exists */
     struct edit_card *edits;
     int edit_count;
     char (*notes)[1024]; /* what could not be read */
@@ -42,6 +43,7 @@ struct remodel_sources {
     const char *folder;  /* out/SCENE */
     const char *records; /* of the photos */
     const char *scripts; /* scenes/SCENE/edits; NULL: none */
+    const char *quality; /* of the run; NULL: the default one */
 };
 
 /* c is empty on entry; the caller releases it in each case. A picture that cannot be read becomes a note. ST_NOMEM. */

@@ -151,18 +151,25 @@ static void put_film(FILE *to, const char *folder, const char *caption)
     fprintf(to, "/tour/video.mp4\"></video><figcaption>%s</figcaption></figure>\n", caption);
 }
 
+struct command { /* what people give to make */
+    const char *scene, *quality;
+};
+
 /* A sentence about what does not exist, with the goal of make that makes it. */
-static void put_missing(FILE *to, bool missing, const char *what, const char *goal, const char *scene)
+static void put_missing(FILE *to, bool missing, const char *what, const char *goal, const struct command *command)
 {
     if (!missing) return;
     fprintf(to, "<p class=\"muted\">There %s yet: <code>make %s SCENE=", what, goal);
-    html_text(to, scene);
+    html_text(to, command->scene);
+    if (command->quality) fputs(" QUALITY=", to);
+    if (command->quality) html_text(to, command->quality);
     fputs("</code></p>\n", to);
 }
 
 static enum status put_edit(FILE *to, const char *scene, const struct remodel_contents *c, int number, struct err *err)
 {
     const struct edit_card *card = &c->edits[number];
+    const struct command command = {scene, c->quality};
     fprintf(to, "<section id=\"edit%d\">\n<h2>", number);
     put_name(to, card->name);
     fputs("</h2>\n", to);
@@ -175,7 +182,7 @@ static enum status put_edit(FILE *to, const char *scene, const struct remodel_co
     for (int i = 0; i < card->sight_count; i++)
         if (put_sight(to, &card->sights[i], number, i, err)) return err->status;
     fputs("</div>\n", to);
-    put_missing(to, !card->views, "are no pictures of this change", "remodel", scene);
+    put_missing(to, !card->views, "are no pictures of this change", "remodel", &command);
     if (card->views && !card->changed) fputs("<p>No photograph shows this change.</p>\n", to);
     if (card->changed && !card->sight_count)
         fputs("<p>The pictures of this change cannot be read; <a href=\"#how\">the reasons</a> are below.</p>\n", to);
@@ -186,9 +193,9 @@ static enum status put_edit(FILE *to, const char *scene, const struct remodel_co
     fputs("</div>\n", to);
     put_exports(to, card);
     put_missing(to, !c->plan || !card->plan, c->plan ? "is no plan of it" : "is no plan of the rooms before", "model",
-                scene);
-    put_missing(to, !card->film, "is no film of a walk through these rooms", "tour", scene);
-    put_missing(to, !card->exported, "is no model of it for other programs", "exports", scene);
+                &command);
+    put_missing(to, !card->film, "is no film of a walk through these rooms", "tour", &command);
+    put_missing(to, !card->exported, "is no model of it for other programs", "exports", &command);
     fputs("</section>\n", to);
     return ST_OK;
 }

@@ -39,13 +39,14 @@ static enum status check_usage(bool remodel, const struct contents_sources *from
 {
     if (remodel ? from->photos || from->stages || from->defaults : !from->photos || !from->stages)
         return err_set(err, ST_USAGE, "wanted --photos and --stages, or --remodel without them; see --help.");
-    if ((scripts || back) && !remodel) return err_set(err, ST_USAGE, "--scripts and --back go with --remodel.");
+    if ((scripts || back) && !remodel)
+        return err_set(err, ST_USAGE, "--scripts, --back and --quality go with --remodel.");
     return ST_OK;
 }
 
 int main(int argc, char **argv)
 {
-    const char *scene = NULL, *out = NULL, *scripts = NULL, *back = NULL;
+    const char *scene = NULL, *out = NULL, *scripts = NULL, *back = NULL, *quality = NULL;
     bool remodel = false;
     struct contents_sources from = {0};
     const struct cli_opt opts[] = {
@@ -62,6 +63,8 @@ int main(int argc, char **argv)
                 "with --remodel: folder of the edits' scripts, whose comments are shown"),
         CLI_STR("back", &back, CLI_OPTIONAL,
                 "with --remodel: address of the scene's page, to link to, relative to OUT"),
+        CLI_STR("quality", &quality, CLI_OPTIONAL,
+                "with --remodel: quality of the run, for the commands that the page names; default: default"),
         CLI_STR("out", &out, CLI_REQUIRED, "HTML file to write"),
         CLI_END,
     };
@@ -70,9 +73,9 @@ int main(int argc, char **argv)
     struct err err = ERR_INIT;
     char records[FILE_PATH];
     if (cli_parse(argc, argv, "report", opts, &prov, &err) == CLI_RUN &&
-        !check_usage(remodel, &from, scripts, back, &err) && !file_path(records, from.shared, "photos", "", &err) &&
-        !outfile_open(&page, out, &err)) {
-        const struct remodel_sources edits = {from.folder, records, scripts};
+        !check_usage(remodel, &from, scripts ? scripts : quality, back, &err) &&
+        !file_path(records, from.shared, "photos", "", &err) && !outfile_open(&page, out, &err)) {
+        const struct remodel_sources edits = {from.folder, records, scripts, quality};
         if (!(remodel ? write_remodel_page(page.fp, scene, back, &edits, &err)
                       : write_page(page.fp, scene, &from, &err)))
             outfile_commit(&page, &err);

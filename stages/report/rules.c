@@ -56,6 +56,7 @@ static bool says_yes(const char *path)
 static void remodel_page_rule(struct graph *g, const struct scene_facts *f)
 {
     const char *scene_page = graph_own(g, "stamp/scene-page.txt"), *truths = graph_own(g, "evaluate/relit");
+    const char *quality = scene_setting("QUALITY");
     struct name_list edits = {0}, true_edits = {0};
     name_list_add_files(&edits, graph_text(g, "%s/edits", f->folder), "", ".txt", graph_err(g));
     name_list_add_files(&true_edits, truths, "", "", graph_err(g));
@@ -76,6 +77,7 @@ static void remodel_page_rule(struct graph *g, const struct scene_facts *f)
     rule_option(g, "--folder", f->own);
     rule_option(g, "--shared", f->shared);
     rule_option(g, "--remodel", "");
+    if (*quality && strcmp(quality, "default")) rule_option(g, "--quality", quality);
     rule_option(g, "--scripts", graph_text(g, "%s/edits", f->folder));
     if (says_yes(scene_page)) rule_option(g, "--back", "../index.html");
     rule_option(g, "--out", PATH(g, REMODEL_PAGE));

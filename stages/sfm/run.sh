@@ -3,7 +3,7 @@
 run_resfm()
 {
     one -W "$S/photos/list.txt" sfm
-    echo "make SCENE=$scene goes on from the new camera poses."
+    echo "make $again goes on from the new camera poses."
 }
 
 # names the photos and masks that are not what SfM saw
@@ -17,7 +17,7 @@ report_changed_photos()
     [ ! -e "scenes/$scene/masks" ] ||
         changed+=$(find "scenes/$scene/masks" -name '*.png' -newer "$S/sfm/models.txt" -printf 'masks/%P ' | tr ' ' '\n' | LC_ALL=C sort | tr '\n' ' ')
     [ -z "${changed// /}" ] ||
-        echo "Changed since the camera poses were found: ${changed# }- the poses are kept; make resfm SCENE=$scene finds them anew."
+        echo "Changed since the camera poses were found: ${changed# }- the poses are kept; make resfm $again finds them anew."
 }
 
 dry_sfm() { [ "$goal" != resfm ] || { first=(-W "$S/photos/list.txt"); goal=sfm; }; }

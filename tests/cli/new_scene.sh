@@ -23,4 +23,13 @@ the_first_command_names_the_lens()
     grep -q 'would create scenes/other/scene.mk and scene.cfg' log || { cat log; fail "nothing says what would be created"; }
 }
 
-run the_first_command_names_the_lens
+messages_name_the_quality()
+{
+    mkdir -p scenes/room
+    printf 'PHOTOS := photos\n' >scenes/room/scene.mk
+    refused 'make suggest SCENE=room QUALITY=draft writes a first one, out/room+draft/model/suggested.txt' model SCENE=room QUALITY=draft
+    refused 'make suggest SCENE=room writes a first one, out/room/model/suggested.txt' model SCENE=room
+    refused 'make PHOTOS=DIR SCENE=none QUALITY=draft' depth SCENE=none QUALITY=draft
+}
+
+for t in the_first_command_names_the_lens messages_name_the_quality; do run "$t"; done

@@ -128,12 +128,14 @@ static void put_relit(const char *edit, const char *view, double changed)
 
 static int empty_scratch(void **state) { return scratch_remove(state) || scratch_make(state); }
 
+static const char *page_quality; /* of the pages that are made */
+
 static void read_all(struct remodel_contents *c)
 {
     char scripts[PATH_MAX];
     struct err err = ERR_INIT;
     snprintf(scripts, sizeof scripts, "%s", scratch_path("edits"));
-    const struct remodel_sources from = {scratch, scratch_path("photos"), scripts};
+    const struct remodel_sources from = {scratch, scratch_path("photos"), scripts, page_quality};
     *c = (struct remodel_contents){0};
     assert_ok(remodel_contents_read(c, &from, &err), err);
 }
@@ -335,6 +337,12 @@ static void what_was_not_made_is_said_and_not_linked(void **state)
     expect_words(page, "There is no plan of the rooms before yet: <code>make model SCENE=loft</code>");
     expect_words(page, "There is no film of a walk through these rooms yet: <code>make tour SCENE=loft</code>");
     expect_words(page, "There is no model of it for other programs yet: <code>make exports SCENE=loft</code>");
+    page_quality = "draft";
+    char *draft = page_of("loft", NULL);
+    page_quality = NULL;
+    expect_words(draft,
+                 "There is no film of a walk through these rooms yet: <code>make tour SCENE=loft QUALITY=draft</code>");
+    free(draft);
     assert_null(strstr(page, "No photograph shows this change"));
     assert_null(strstr(page, "long ago"));
     assert_int_equal(expect_links(page), 0);
