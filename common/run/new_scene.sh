@@ -1,7 +1,13 @@
 #!/usr/bin/env bash
-# new_scene.sh FOLDER - the scene.mk and scene.cfg of a new scene, from what the user gave to make.
+# new_scene.sh FOLDER GOAL - the scene.mk and scene.cfg of a new scene, from what the user gave to make. A scene whose first
+# goal is one of rooms is a room: plain make then makes all of its products, and no film.
 set -euo pipefail
-folder=$1
+folder=$1 goal=$2
+products=${REMODEL_PRODUCTS:-parallax}
+case $goal in
+axes | suggest | model | ids | vdta | vita | textures | outdoors | remodel | tour-path | tour | exports | lights | materials | irradiance | relight | relit-tour | lri)
+    [ "$products" != parallax ] || products="model textures remodel tour relight" ;;
+esac
 mkdir -p "$folder"
 for_make() { sed -e 's/\$/$$/g' -e 's/#/\\#/g' <<<"$1"; }
 {
@@ -14,7 +20,7 @@ for_make() { sed -e 's/\$/$$/g' -e 's/#/\\#/g' <<<"$1"; }
     done
     echo "# photos to leave out, by id or file name; names with blanks in quotes"
     echo "EXCLUDE := $(for_make "${REMODEL_EXCLUDE-}")"
-    echo "PRODUCTS := ${REMODEL_PRODUCTS:-parallax}"
+    echo "PRODUCTS := $products"
 } >"$folder/.scene.mk.tmp"
 [ -e "$folder/scene.cfg" ] || {
     [ -z "${REMODEL_LENS-}" ] || printf '[sfm]\ncamera_model = %s\n\n' "$REMODEL_LENS"

@@ -139,7 +139,7 @@ if [ ! -e "$folder/scene.mk" ]; then
     [ -n "${REMODEL_PHOTOS-}" ] || usage "There is no $folder/scene.mk. Give the folder of photos to begin: make PHOTOS=DIR $again"
     [ -d "$REMODEL_PHOTOS" ] || usage "PHOTOS=$REMODEL_PHOTOS is not a folder. Give the folder that holds the photos."
     if [ "$dry" = n ]; then echo "would create $folder/scene.mk and scene.cfg, and go on from there"; exit 0; fi
-    common/run/new_scene.sh "$folder"
+    common/run/new_scene.sh "$folder" "$goal"
 fi
 [ -n "${REMODEL_PHOTOS-}" ] || usage "$folder/scene.mk sets no PHOTOS. Add a line PHOTOS := DIR, the folder of the photos."
 mkdir -p "$S"

@@ -9,7 +9,7 @@ check_build_model()
     esac
     [ ! -e "$folder/model.txt" ] || return 0
     # a new scene is kept, so that make suggest SCENE=NAME finds it
-    [ "$dry" = n ] || [ -e "$folder/scene.mk" ] || [ ! -d "${REMODEL_PHOTOS-}" ] || common/run/new_scene.sh "$folder"
+    [ "$dry" = n ] || [ -e "$folder/scene.mk" ] || [ ! -d "${REMODEL_PHOTOS-}" ] || common/run/new_scene.sh "$folder" "$goal"
     usage "make $goal wants $folder/model.txt, the script of the model (docs/model-script.md). make suggest $again writes a first one, $O/model/suggested.txt, for you to correct and copy there."
 }
 

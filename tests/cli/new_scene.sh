@@ -32,4 +32,21 @@ messages_name_the_quality()
     refused 'make PHOTOS=DIR SCENE=none QUALITY=draft' depth SCENE=none QUALITY=draft
 }
 
-for t in the_first_command_names_the_lens messages_name_the_quality; do run "$t"; done
+plain_make_of_a_room_makes_its_products()
+{
+    local goal
+    for goal in axes suggest model relight; do
+        rm -rf scenes/room
+        first common/run/new_scene.sh scenes/room $goal >/dev/null
+        grep -qx 'PRODUCTS := model textures remodel tour relight' scenes/room/scene.mk || { cat scenes/room/scene.mk; fail "a room that began with make $goal has other products"; }
+    done
+    for goal in all report frames depth points; do
+        rm -rf scenes/room
+        first common/run/new_scene.sh scenes/room $goal >/dev/null
+        grep -qx 'PRODUCTS := parallax' scenes/room/scene.mk || { cat scenes/room/scene.mk; fail "a scene that began with make $goal has other products"; }
+    done
+    PRODUCTS='model remodel' first common/run/new_scene.sh scenes/room axes >/dev/null
+    grep -qx 'PRODUCTS := model remodel' scenes/room/scene.mk || fail "products that were given are not kept"
+}
+
+for t in plain_make_of_a_room_makes_its_products the_first_command_names_the_lens messages_name_the_quality; do run "$t"; done
