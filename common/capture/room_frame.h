@@ -24,16 +24,16 @@ struct frame_level {
 };
 
 struct frame_wall {
-    int heading; /* index into headings: the wall runs along it */
-    int side;    /* 1 or -1 */
+    int heading;             /* index into headings: the wall runs along it */
+    int side;                /* 1 or -1 */
     double offset, from, to; /* across . X of the plane; along . X of its ends */
-    int support; /* places that show its foot or its head, at the best tenth of it */
+    int support;             /* places that show its foot or its head, at the best tenth of it */
 };
 
 struct room_frame {
     bool known; /* false: the lines have no common directions; all other fields are 0 */
     struct vec3 up;
-    double up_error; /* standard error, radians, in each of two directions */
+    double up_error;                /* standard error, radians, in each of two directions */
     struct frame_heading *headings; /* owned; the first two are perpendicular */
     struct frame_level floor, ceiling;
     struct frame_wall *walls; /* owned */

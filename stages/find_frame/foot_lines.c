@@ -12,9 +12,9 @@
 #include "common/base/array.h"
 #include "common/math/numbers.h"
 
-#define MIN_SLOPE     0.05 /* sine of the angle between a ray and the horizon */
-#define CELLS_ALONG   6    /* length of a cell, in its widths */
-#define MOST_CELLS    400  /* that a line may cross */
+#define MIN_SLOPE   0.05 /* sine of the angle between a ray and the horizon */
+#define CELLS_ALONG 6    /* length of a cell, in its widths */
+#define MOST_CELLS  400  /* that a line may cross */
 
 enum status foot_lines_add(struct foot_lines *f, const struct world_lines *w, const int *headings,
                            const struct room_frame *frame, const struct camera_set *set, double height, bool head,
@@ -94,8 +94,8 @@ enum status foot_lines_pairs(double *pairs, const struct foot_lines *f, double u
         int count = 0;
         for (int i = 0; !err->status && i < f->count; i++) {
             const struct foot_line *l = &f->lines[i];
-            const int across = (int)floor(l->offset / unit + 0.5 * grid), first = (int)floor(l->from / unit / CELLS_ALONG),
-                      last = (int)floor(l->to / unit / CELLS_ALONG);
+            const int across = (int)floor(l->offset / unit + 0.5 * grid),
+                      first = (int)floor(l->from / unit / CELLS_ALONG), last = (int)floor(l->to / unit / CELLS_ALONG);
             if (last - first > MOST_CELLS) continue;
             if (array_reserve(&votes, &room, (size_t)(count + last - first + 1), sizeof *votes, "cells", err)) break;
             for (int k = first; k <= last; k++) votes[count++] = (struct vote){l->heading, across, k, l->station};

@@ -7,7 +7,7 @@
 
 /* A line on the plan: the foot or the head of what stands upright on it. */
 struct foot_line {
-    int line;                /* index into the world's lines */
+    int line; /* index into the world's lines */
     int heading, station;
     bool head;               /* on the ceiling, not on the floor */
     double offset, from, to; /* of frame_wall, from < to */

@@ -1,18 +1,17 @@
 /* frame_walls.c - walls where lines on the floor, and on the ceiling, of different places fall on each other.
  *
- * Lines of one heading that are seen from one side are counted on a grid of the plan: a cell holds the places (stations)
- * that show a line there, floor and ceiling apart. The part of a row that most pairs support is a wall: cells that two
- * places show, over short gaps, which furniture and doors make. Its offset is the median of its lines.
+ * Lines of one heading that are seen from one side are counted on a grid of the plan: a cell holds the places
+ * (stations) that show a line there, floor and ceiling apart. The part of a row that most pairs support is a wall:
+ * cells that two places show, over short gaps, which furniture and doors make. Its offset is the median of its lines.
  *
  * A line on a wall that is not its foot, such as a window sill, is cast behind it, and so is the edge of a table before
  * it; where cameras stand equally far from the wall, they fall on each other, too. So walls are taken in the order of
  * their support, and each takes away all lines that lie on it at any height between floor and ceiling, as their views
  * see it; the next one is found among the lines that are left.
  *
- * Nobody sees through a wall. Where two places see what lies behind a candidate, at a height below that of windows, or at any height if
- * no line shows its head - a
- * sparse point, or a line of a wall that was taken before - it has no cells: edges of rugs and furniture are no walls,
- * and a door that stands open is no part of one. */
+ * Nobody sees through a wall. Where two places see what lies behind a candidate, at a height below that of windows, or
+ * at any height if no line shows its head - a sparse point, or a line of a wall that was taken before - it has no
+ * cells: edges of rugs and furniture are no walls, and a door that stands open is no part of one. */
 #include "stages/find_frame/frame_walls.h"
 
 #include <math.h>
@@ -118,8 +117,8 @@ static void mark_through(struct through *through, const struct grid *g, int row,
     }
 }
 
-/* How many places and levels show cell k of three rows; none if two places see through it. Where nobody sees the head of
- * a wall it may be furniture, and being seen through above counts, too. */
+/* How many places and levels show cell k of three rows; none if two places see through it. Where nobody sees the head
+ * of a wall it may be furniture, and being seen through above counts, too. */
 static int shown(const struct grid *g, const struct through *through, int row, int k)
 {
     uint64_t all = 0;
@@ -260,8 +259,8 @@ static double spread_of(const struct spread *s)
     return s->n > 0 ? sqrt(fmax(s->square / s->n - s->sum / s->n * (s->sum / s->n), 0)) : 0;
 }
 
-/* Whether the lines of wall b may lie on wall a, which is in front of it: at one height of it, as well as at the foot of
- * b. Heights are measured in those of the cameras above the floor. */
+/* Whether the lines of wall b may lie on wall a, which is in front of it: at one height of it, as well as at the foot
+ * of b. Heights are measured in those of the cameras above the floor. */
 static bool is_on(const struct foot_lines *lines, const struct frame_wall *a, const struct frame_wall *b, double size)
 {
     const double overlap = fmin(a->to, b->to) - fmax(a->from, b->from);

@@ -7,8 +7,9 @@
  *   3. the three are turned together, by robust least squares of the angles in the pictures (Tukey's biweight)
  *   4. further headings, of walls at other angles: one after the other, of the lines that are left
  *
- * Standard errors are those of clustered least squares, the lines of a view being one observation: its pose and lens err
- * for all of them alike. With few views, the error is larger by the ratio of Student's t to the normal distribution. */
+ * Standard errors are those of clustered least squares, the lines of a view being one observation: its pose and lens
+ * err for all of them alike. With few views, the error is larger by the ratio of Student's t to the normal
+ * distribution. */
 #include "stages/find_frame/line_directions.h"
 
 #include <math.h>

@@ -73,8 +73,7 @@ static enum status find_lines(const char *views, const char *name, const char *o
     for (int i = 0; !err->status && i < count; i++)
         if (is_inside(&found[i], &im))
             line_list_add(&list, &(struct view_line){found[i].u0, found[i].v0, found[i].u1, found[i].v1}, err);
-    if (!err->status && !line_list_write(&list, out, prov, err))
-        log_note("%s: %d straight edges", name, list.count);
+    if (!err->status && !line_list_write(&list, out, prov, err)) log_note("%s: %d straight edges", name, list.count);
     free(found);
     free(grey);
     line_list_release(&list);

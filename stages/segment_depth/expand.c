@@ -16,8 +16,8 @@
  * that took it (plane_refit.h), and offered again, REFITS times. The ground (gravity.h) is offered with them, unless
  * the votes know it better, and is not fitted: a lawn matches nothing.
  *
- * Floor, ceiling and walls that are known before (frame_prior.h) are offered first. Each takes the place of the plane of
- * votes that is about the same, and is not fitted: what little matches on a blank wall would move it by chance.
+ * Floor, ceiling and walls that are known before (frame_prior.h) are offered first. Each takes the place of the plane
+ * of votes that is about the same, and is not fitted: what little matches on a blank wall would move it by chance.
  *
  * What differs from the source: the nodes are segments, not pixels; proposals also come from the sweep, from
  * neighbouring views and from horizontal and vertical planes (plane_proposals.h); data costs are only computed while

@@ -3,9 +3,9 @@
  * A wall is met between its ends, from the side of its room, and between floor and ceiling. Floor and ceiling have no
  * ends. The planes that most of the view's pixels are expected on are kept.
  *
- * The pictures know better than lines what stands in a room. So a segment is drawn to its expected plane only where they
- * say little: in scenes whose photos share few points, in views of which little matches distinctly, and less where the
- * segment does. */
+ * The pictures know better than lines what stands in a room. So a segment is drawn to its expected plane only where
+ * they say little: in scenes whose photos share few points, in views of which little matches distinctly, and less where
+ * the segment does. */
 #include "stages/segment_depth/frame_prior.h"
 
 #include <math.h>

@@ -1,8 +1,8 @@
 /* frustum_overlap.c - overlap of views where sparse points say little.
  *
  * Points on blank walls are few, and a stray one says nothing of the rest of the picture. So each tile of the view is
- * given a place in space: its middle, at the median depth of the points nearest to it in the picture. Another view shows
- * it by the product of
+ * given a place in space: its middle, at the median depth of the points nearest to it in the picture. Another view
+ * shows it by the product of
  *   the angle between the two rays: little near 0, 1 from 5 to 20 degrees, falling slowly, since where views stand far
  *   apart there are no better ones; and the ratio of the pixels' footprints, at most 1.
  * A camera that the view would see behind the surface in front of it stands in another room, and shows nothing. */
@@ -99,9 +99,8 @@ double frustum_overlap(double shown[FRUSTUM_TILES * FRUSTUM_TILES], const struct
         shown[k] = 0;
         if (hidden || !(z > 0) || !(u >= 0 && v >= 0 && u < other->width && v < other->height)) continue;
         const double scale = other->fx / z / (view->fx * t->inverse_z[k]);
-        shown[k] =
-            weight_of_angle(vec3_sub(view->center, t->place[k]), vec3_sub(other->center, t->place[k])) *
-            fmin(scale, 1 / scale);
+        shown[k] = weight_of_angle(vec3_sub(view->center, t->place[k]), vec3_sub(other->center, t->place[k])) *
+                   fmin(scale, 1 / scale);
         sum += shown[k];
     }
     return sum;

@@ -30,8 +30,9 @@ enum status neighbours_choose(int neighbours[MAX_NEIGHBOURS], int *count, const 
                               const struct observed_points *seen, int max_count, struct err *err);
 
 /* The range of inverse depths to sweep, 0 < min < max: robust percentiles, with margins, of all points of the scene
- * that project into the view and that it observes, or others from the same side. *guessed: there are too few points; the range is then what the neighbours' baselines
- * resolve, from far away to a disparity of a quarter of the picture. */
+ * that project into the view and that it observes, or others from the same side. *guessed: there are too few points;
+ * the range is then what the neighbours' baselines resolve, from far away to a disparity of a quarter of the picture.
+ * */
 enum status neighbours_depth_range(double *min_inverse_z, double *max_inverse_z, bool *guessed,
                                    const struct camera_set *set, int view_idx, const int *neighbours, int count,
                                    struct err *err);

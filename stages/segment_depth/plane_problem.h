@@ -9,9 +9,9 @@
  * comes from points, by a factor of SCENE_REACH. So a blank ceiling that no view can match continues on the plane of
  * its matched part.
  *
- * Floor, ceiling and walls that are known before (frame_prior.h) are planes of the scene, too. They may leave the range by
- * a factor of KNOWN_REACH, since it comes from points, and a segment costs its prior's gain less on the one that its ray
- * meets first.
+ * Floor, ceiling and walls that are known before (frame_prior.h) are planes of the scene, too. They may leave the range
+ * by a factor of KNOWN_REACH, since it comes from points, and a segment costs its prior's gain less on the one that its
+ * ray meets first.
  *
  * Where no segments of the view vote for the scene's ground (gravity.h), it is one of the scene's planes all the same.
  * A segment that lies below it, by more than a tenth of the inverse depth, costs GROUND_COST more: the ground hides

@@ -30,7 +30,8 @@ void plane_sweep_steps(struct plane_sweep *w, const struct matcher *m, double mi
  * plane_sweep_steps(); release it also after a failure. Same result for any number of threads. */
 enum status plane_sweep_run(struct plane_sweep *w, struct plane *plane, const struct matcher *m,
                             const struct point_evidence *points, const float *weights, const struct view *view,
-                            const struct plane_families *families, const struct segment_params *params, struct err *err);
+                            const struct plane_families *families, const struct segment_params *params,
+                            struct err *err);
 void plane_sweep_release(struct plane_sweep *w);
 
 #endif

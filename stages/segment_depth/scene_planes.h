@@ -70,8 +70,8 @@ struct plane_vote {
     double weight; /* pixels */
 };
 
-/* Adds the planes that most votes lie on to the known ones of s, in place of all others. step: of inverse depth; least: weight that a plane must have. Planes of constant
- * depth stand for unknown slants, and do not count. ST_NOMEM. */
+/* Adds the planes that most votes lie on to the known ones of s, in place of all others. step: of inverse depth; least:
+ * weight that a plane must have. Planes of constant depth stand for unknown slants, and do not count. ST_NOMEM. */
 enum status scene_planes_find(struct scene_planes *s, const struct plane_vote *votes, int count, double step,
                               double least, struct err *err);
 

@@ -82,10 +82,8 @@ static void put(char *text, size_t size, const struct synthetic_room *r, const c
 static struct room_spec turned_room(void)
 {
     const struct vec3 w = vec3_scale(vec3_normalize(vec3_make(1, 2, -1)), 0.7);
-    return (struct room_spec){.ceiling = 1,
-                              .world_from_room = rotation_turn(ROOM_IDENTITY, w),
-                              .scale = 0.37,
-                              .origin = vec3_make(1, 2, 3)};
+    return (struct room_spec){
+        .ceiling = 1, .world_from_room = rotation_turn(ROOM_IDENTITY, w), .scale = 0.37, .origin = vec3_make(1, 2, 3)};
 }
 
 static struct mark_scene make_turned_room(struct synthetic_room *r)

@@ -22,8 +22,8 @@ static struct segmentation grid(void)
     return (struct segmentation){.width = W, .height = H, .count = COUNT, .segments = segments};
 }
 
-/* A room with y down: floor at y = 1, ceiling at y = -1.5, a wall at z = 4 from x = -2 to 3, one at x = 3 that begins at
- * z = 1, and one at z = 2 that is seen from behind. */
+/* A room with y down: floor at y = 1, ceiling at y = -1.5, a wall at z = 4 from x = -2 to 3, one at x = 3 that begins
+ * at z = 1, and one at z = 2 that is seen from behind. */
 static struct frame_heading headings[2] = {{{1, 0, 0}, 0.001, 0.3}, {{0, 0, 1}, 0.001, 0.3}};
 static struct frame_wall walls[3];
 
