@@ -297,7 +297,7 @@ static void weigh_columns(const struct face_list *list, struct wall_face *face)
     for (int k = 0; k < face->columns; k++) {
         int solid = 0, open = 0, above = 0, known_above = 0;
         for (int z = high - 1; z >= low; z--) { /* downwards: the uppermost known cells are the lintel */
-            const int state = face->cells[k * list->up + z];
+            const int8_t state = face->cells[k * list->up + z];
             solid += state > 0;
             open += state < 0;
             if (z >= lintel && state && known_above++ < LINTEL_CELLS) above += state;
