@@ -79,16 +79,19 @@ every_goal_is_known_before_the_views_are()
     done
 }
 
-a_changed_photo_redoes_its_view_and_the_depth_that_reads_it()
+a_changed_photo_redoes_its_view_and_the_frame_that_all_depth_reads()
 {
     scene a b c
     for v in a b c; do mkdir -p out/t/depth/round0; done
     echo 'out/t/depth/round0/b.exr: out/t/views/b.exr out/t/views/a.exr' >out/t/depth/round0/b.d
     made
     touch out/t/photos/a.txt
-    wants 'rectify a
+    wants 'find_frame all
+find_lines a
+rectify a
 segment_depth a
 segment_depth b
+segment_depth c
 ' depth-round0
 }
 
@@ -274,7 +277,7 @@ trace_ids reveal-b
 steps_come_in_order()
 {
     scene a b c
-    [ "$(graph steps depth | cut -d' ' -f3 | tr '\n' ' ')" = 'hdr sfm views depth ' ] || { graph steps depth; fail "other steps for depth"; }
+    [ "$(graph steps depth | cut -d' ' -f3 | tr '\n' ' ')" = 'hdr sfm views lines frame depth ' ] || { graph steps depth; fail "other steps for depth"; }
     given PRODUCTS='model textures'
     graph steps report >steps
     for s in model ids vdta vita textures report; do
@@ -324,7 +327,7 @@ wrong_settings_are_refused()
 }
 
 for t in nothing_is_stale_when_all_is_made every_goal_is_known_before_the_views_are \
-    a_deleted_product_is_remade_with_what_follows a_changed_photo_redoes_its_view_and_the_depth_that_reads_it \
+    a_deleted_product_is_remade_with_what_follows a_changed_photo_redoes_its_view_and_the_frame_that_all_depth_reads \
     a_neighbour_that_is_a_view_no_more_redoes_the_depth_that_read_it a_parameter_redoes_its_stage_and_what_follows \
     a_changed_program_redoes_its_products_but_not_sfm a_photo_is_read_once_for_its_views frames_come_in_chunks_and_wait_for_all_depth \
     what_is_held_out_is_rectified_and_not_matched an_edit_needs_the_scripts_and_meshes_that_it_stands_on \
