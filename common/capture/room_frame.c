@@ -6,9 +6,13 @@
 #include <string.h>
 
 #include "common/base/array.h"
+#include "common/base/sort.h"
+#include "common/math/numbers.h"
 #include "common/product/product.h"
 
-#define UNIT_ERROR 1e-6
+#define UNIT_ERROR  1e-6
+#define FEW_POINTS  30.0
+#define MANY_POINTS 60.0
 
 static enum status read_direction(struct textfile *t, struct vec3 *d, struct err *err)
 {
@@ -115,4 +119,18 @@ void room_frame_release(struct room_frame *f)
     free(f->headings);
     free(f->walls);
     *f = (struct room_frame){0};
+}
+
+enum status room_frame_trust(double *trust, const struct sfm_model *model, struct err *err)
+{
+    double *counts = calloc((size_t)model->image_count + 1, sizeof *counts), median = 0;
+    *trust = 0;
+    if (!counts) return err_nomem(err, "points of views", (size_t)model->image_count * sizeof *counts);
+    for (int i = 0; i < model->point_count; i++)
+        for (int k = 0; k < model->points[i].track_count; k++)
+            if (model->points[i].track[k].image_idx < model->image_count) counts[model->points[i].track[k].image_idx]++;
+    if (model->image_count) median = sort_median(counts, (size_t)model->image_count);
+    *trust = clamp((MANY_POINTS - median) / (MANY_POINTS - FEW_POINTS), 0, 1);
+    free(counts);
+    return ST_OK;
 }

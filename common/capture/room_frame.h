@@ -8,8 +8,7 @@
 
 #include <stdbool.h>
 
-#include "common/base/provenance.h"
-#include "common/math/vec.h"
+#include "common/capture/sfm_model.h"
 
 struct frame_heading {
     struct vec3 along; /* unit, level */
@@ -51,5 +50,9 @@ enum status room_frame_read(struct room_frame *f, const char *path, struct prove
 enum status room_frame_write(const struct room_frame *f, const char *path, const struct provenance *prov,
                              struct err *err);
 void room_frame_release(struct room_frame *f);
+
+/* How much the frame counts beside what photos match, 0 .. 1: in full where the median view observes few sparse points,
+ * so that its photos hardly match, and not at all where it observes many. ST_NOMEM. */
+enum status room_frame_trust(double *trust, const struct sfm_model *model, struct err *err);
 
 #endif

@@ -11,14 +11,11 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "common/base/sort.h"
 #include "common/math/numbers.h"
 
 #define MIN_PART      0.003 /* of the view's pixels that a plane is expected for */
 #define EXPECTED_GAIN 0.8   /* of a blank segment */
 #define SURE_PART     0.5   /* by which a distinct match lowers it */
-#define FEW_POINTS    30.0  /* that a view of the scene observes: its photos hardly match */
-#define MANY_POINTS   60.0  /* ... from which on the pictures decide alone */
 #define HARDLY_SURE   0.28  /* share of the view that matches distinctly */
 #define MOSTLY_SURE   0.36  /* ... from which on the pictures decide alone */
 #define NEAREST       1e-6  /* distance of a plane from the camera, of the wall's offset: none is nearer */
@@ -106,31 +103,17 @@ enum status frame_prior_make(struct frame_prior *prior, const struct room_frame 
     return err->status;
 }
 
-/* The median over the views of the number of points that they observe. ST_NOMEM. */
-static enum status points_of_a_view(double *median, const struct sfm_model *m, struct err *err)
-{
-    double *counts = calloc((size_t)m->image_count + 1, sizeof *counts);
-    *median = 0;
-    if (!counts) return err_nomem(err, "points of views", (size_t)m->image_count * sizeof *counts);
-    for (int i = 0; i < m->point_count; i++)
-        for (int k = 0; k < m->points[i].track_count; k++)
-            if (m->points[i].track[k].image_idx < m->image_count) counts[m->points[i].track[k].image_idx]++;
-    if (m->image_count) *median = sort_median(counts, (size_t)m->image_count);
-    free(counts);
-    return ST_OK;
-}
-
 enum status frame_prior_weigh(struct frame_prior *prior, const double *distinct, const struct segmentation *s,
                               const struct camera_set *set, struct err *err)
 {
-    double points, sure = 0, pixels = 0;
-    if (!prior->count || points_of_a_view(&points, &set->model, err)) return err->status;
+    double trust, sure = 0, pixels = 0;
+    if (!prior->count || room_frame_trust(&trust, &set->model, err)) return err->status;
     for (int i = 0; i < s->count; i++) {
         sure += s->segments[i].pixels * distinct[i];
         pixels += s->segments[i].pixels;
     }
-    const double weight = EXPECTED_GAIN * clamp((MANY_POINTS - points) / (MANY_POINTS - FEW_POINTS), 0, 1) *
-                          clamp((MOSTLY_SURE - sure / pixels) / (MOSTLY_SURE - HARDLY_SURE), 0, 1);
+    const double weight =
+        EXPECTED_GAIN * trust * clamp((MOSTLY_SURE - sure / pixels) / (MOSTLY_SURE - HARDLY_SURE), 0, 1);
     for (int i = 0; i < s->count; i++) prior->gain[i] = (float)(weight * (1 - SURE_PART * distinct[i]));
     return ST_OK;
 }

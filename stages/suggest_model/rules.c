@@ -14,6 +14,7 @@ RULES(suggest_model)
     rule_needs_set(g, "views");
     rule_takes_depth(g);
     rule_takes(g, "--points", PATH(g, POINTS));
+    rule_takes(g, "--frame", PATH(g, ROOM_FRAME));
     rule_option(g, "--picture", PATH(g, SUGGESTED_PLAN));
     rule_option(g, "--out", PATH(g, SUGGESTED_MODEL));
 }

@@ -2,6 +2,7 @@
  *
  * reads   VIEWS/cameras.txt, images.txt, points3D.txt   the cameras
  *         POINTS                                        oriented points
+ *         FRAME                                         with --frame: walls that straight edges show
  *         AXES                                          the model's frame, ceiling, thickness of walls
  *         VIEWS/VIEW.exr, DEPTH/VIEW.exr, VIEW.txt      pictures and depth, for windows
  * writes  PICTURE, then OUT                             the plan for people; a script (docs/model-script.md), which no
@@ -20,6 +21,7 @@
 #include "common/capture/view_image.h"
 #include "common/model/scene_inputs.h"
 #include "common/product/product.h"
+#include "stages/suggest_model/frame_points.h"
 #include "stages/suggest_model/openings.h"
 #include "stages/suggest_model/suggest_script.h"
 #include "stages/suggest_model/wall_joins.h"
@@ -69,7 +71,7 @@ static enum status write_picture(const struct suggestion *s, const struct wall_n
 }
 
 struct files {
-    const char *views, *depth, *points, *axes, *picture, *out;
+    const char *views, *depth, *points, *frame, *axes, *picture, *out;
 };
 
 /* Whether a wall has the outdoors, or nothing known, behind it. */
@@ -219,6 +221,19 @@ static void log_summary(const struct suggestion *s, const char *out)
              out);
 }
 
+/* Adds points on walls that straight edges show, where photos match too little to have points. */
+static enum status add_frame(struct point_cloud *cloud, const struct files *f, const struct scene_inputs *in,
+                             double height, struct provenance *prov, struct err *err)
+{
+    struct room_frame frame = {0};
+    double trust = 0;
+    if (f->frame && height > 0 && !room_frame_trust(&trust, &in->set.model, err) && trust > 0 &&
+        !room_frame_read(&frame, f->frame, prov, err))
+        frame_points_add(cloud, &frame, &in->axes, height, SUGGEST_CUBE * height, err);
+    room_frame_release(&frame);
+    return err->status;
+}
+
 static enum status suggest(const struct files *f, const struct suggest_params *params, struct provenance *prov,
                            struct err *err)
 {
@@ -240,6 +255,7 @@ static enum status suggest(const struct files *f, const struct suggest_params *p
         cloud_set_normal(p, model_from_world_direction(axes, cloud_normal(p)));
     }
     if (!err->status && !(height > 0)) guess_ceiling(&height, &cloud, err);
+    if (!err->status) add_frame(&cloud, f, &in, height, prov, err);
     if (!(height > 0)) cloud.count = 0;
     if (!err->status &&
         !sights_make(&sights, &cloud, height > 0 ? SUGGEST_CUBE * height : 1, set->views, set->view_count, err) &&
@@ -264,6 +280,7 @@ int main(int argc, char **argv)
         CLI_STR("views", &f.views, CLI_REQUIRED, "folder of cameras"),
         CLI_STR("depth", &f.depth, CLI_REQUIRED, "folder of the views' depth"),
         CLI_STR("points", &f.points, CLI_REQUIRED, "oriented points, points.ply"),
+        CLI_STR("frame", &f.frame, CLI_OPTIONAL, "what straight edges say of the room: frame.txt"),
         CLI_STR("axes", &f.axes, CLI_REQUIRED, "the model's frame, axes.txt"),
         CLI_STR("picture", &f.picture, CLI_OPTIONAL, "SVG of the plan to write, with points, walls and doubts"),
         CLI_STR("out", &f.out, CLI_REQUIRED, "script to write"),
