@@ -67,6 +67,8 @@ a_failed_task_fails_the_run_and_is_redone()
     (cd out/cluster && rm depth/photo_2.exr depth/photo_4.exr)
     cp out/cluster/views/photo_3.exr keep.exr
     head -c 2000 keep.exr >out/cluster/views/photo_3.exr # a cut view: all that read it must fail
+    touch out/cluster/lines/photo_3.txt                  # but its lines are known already
+    make -s DEPS=manual SCENE=cluster frame >log 2>&1 || { cat log; fail "the frame of known lines"; }
     if make -s DEPS=manual SCENE=cluster JOBS=slurm depth >log 2>&1; then fail "the run succeeded"; fi
     grep -q 'failed on the cluster' log || { cat log; fail "the message does not say that tasks failed"; }
     # the cut view was touched, so that all are stale, and each reads it
