@@ -10,6 +10,8 @@
     X(min_up, double, 0.045, 0, 1, "", "minimum length of upright lines, as a part of the length of all lines") \
     X(min_pair, double, 0.09, 0, 1, "",                                                                         \
       "minimum length of lines along two perpendicular headings, as a part of the length of all lines")         \
+    X(min_one, double, 0.03, 0, 1, "",                                                                          \
+      "minimum length of lines along each of the two, as a part of the length of all lines")                    \
     X(min_heading, double, 0.04, 0, 1, "",                                                                      \
       "minimum length of lines along a further heading, as a part of the length of all lines")
 

@@ -311,7 +311,10 @@ enum status line_directions_find(struct room_frame *f, const struct world_lines 
     const struct vec3 up = find_up(&s, mean_up, &upright), x = find_heading(&s, up, true, &level),
                       y = vec3_cross(up, x);
     struct mat3 axes = {{{x.x, x.y, x.z}, {y.x, y.y, y.z}, {up.x, up.y, up.z}}};
-    if (upright >= params->min_up * length && level >= params->min_pair * length && w->count >= params->min_lines) {
+    const double weaker =
+        fmin(total_support(&s, x, AGREES), total_support(&s, y, AGREES)); /* one alone may be a shelf, or the horizon */
+    if (upright >= params->min_up * length && level >= params->min_pair * length &&
+        weaker >= params->min_one * length && w->count >= params->min_lines) {
         refine(&axes, w, scratch);
         find_errors(&errors, &axes, w, scratch, err);
         f->known = true;
