@@ -130,7 +130,7 @@ static enum status needs_mark(const struct mark_list *list, const struct mark *m
 {
     if (count_of(list, MARK_POINT, name, NULL)) return ST_OK;
     return err_set(err, ST_DATA,
-                   "%s:%d: %s is named, but there is no mark of that name; add a line \"mark %s VIEW X Y\".",
+                   "%s:%d: %s is used, but no line marks it; add a line \"mark %s VIEW X Y\".",
                    list->path, m->line, name, name);
 }
 

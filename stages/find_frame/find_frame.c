@@ -6,7 +6,7 @@
  *         LINES/VIEW.txt                  the straight edges of each view
  * writes  OUT                             the frame
  *
- * A scene whose lines have no common directions has an empty frame; that is no error. */
+ * A scene whose lines have no common directions gets an empty frame, and the stage succeeds. */
 #include <stdlib.h>
 
 #include "common/base/cli.h"

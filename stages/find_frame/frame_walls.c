@@ -9,9 +9,9 @@
  * their support, and each takes away all lines that lie on it at any height between floor and ceiling, as their views
  * see it; the next one is found among the lines that are left.
  *
- * Nobody sees through a wall. Where two places see what lies behind a candidate, at a height below that of windows, or
- * at any height if no line shows its head - a sparse point, or a line of a wall that was taken before - it has no
- * cells: edges of rugs and furniture are no walls, and a door that stands open is no part of one. */
+ * A candidate that views look through is not a wall there: its cells are dropped where two places see something behind
+ * it - a sparse point, or a line of a wall that was taken before - below the height of windows, or at any height if no
+ * line shows its head. So the edges of rugs and furniture drop out, and so do open doors. */
 #include "stages/find_frame/frame_walls.h"
 
 #include <math.h>

@@ -159,7 +159,7 @@ struct command { /* what people give to make */
 static void put_missing(FILE *to, bool missing, const char *what, const char *goal, const struct command *command)
 {
     if (!missing) return;
-    fprintf(to, "<p class=\"muted\">There %s yet: <code>make %s SCENE=", what, goal);
+    fprintf(to, "<p class=\"muted\">%s not made yet: <code>make %s SCENE=", what, goal);
     html_text(to, command->scene);
     if (command->quality) fputs(" QUALITY=", to);
     if (command->quality) html_text(to, command->quality);
@@ -182,7 +182,7 @@ static enum status put_edit(FILE *to, const char *scene, const struct remodel_co
     for (int i = 0; i < card->sight_count; i++)
         if (put_sight(to, &card->sights[i], number, i, err)) return err->status;
     fputs("</div>\n", to);
-    put_missing(to, !card->views, "are no pictures of this change", "remodel", &command);
+    put_missing(to, !card->views, "The pictures of this change are", "remodel", &command);
     if (card->views && !card->changed) fputs("<p>No photograph shows this change.</p>\n", to);
     if (card->changed && !card->sight_count)
         fputs("<p>The pictures of this change cannot be read; <a href=\"#how\">the reasons</a> are below.</p>\n", to);
@@ -192,10 +192,10 @@ static enum status put_edit(FILE *to, const char *scene, const struct remodel_co
     if (card->film) put_film(to, card->name, "A walk through the rooms after the change");
     fputs("</div>\n", to);
     put_exports(to, card);
-    put_missing(to, !c->plan || !card->plan, c->plan ? "is no plan of it" : "is no plan of the rooms before", "model",
+    put_missing(to, !c->plan || !card->plan, c->plan ? "The plan after this change is" : "The plan of the rooms before is", "model",
                 &command);
-    put_missing(to, !card->film, "is no film of a walk through these rooms", "tour", &command);
-    put_missing(to, !card->exported, "is no model of it for other programs", "exports", &command);
+    put_missing(to, !card->film, "The film of a walk through these rooms is", "tour", &command);
+    put_missing(to, !card->exported, "The model for other programs is", "exports", &command);
     fputs("</section>\n", to);
     return ST_OK;
 }

@@ -2,7 +2,8 @@
  *
  * Each line of sight passes through cells of the plan, at one of eight levels of height. It ends a little before its
  * point, by more where that is far away, because depth is noisy. A level is free where two lines or more pass: one may
- * lead to a stray point. A line of sight that leaves through a window ends there: the yard is no room. */
+ * lead to a stray point. A line of sight ends where it leaves through a window, so
+ * that the yard does not become a room. */
 #include "stages/suggest_model/free_space.h"
 
 #include <math.h>

@@ -1,8 +1,8 @@
 /* search_rooms.c - rooms from the borders of the inside, and how their walls are joined.
  *
  * Each connected part of the inside has borders; each is walked edge by edge, and gives the walls that follow each
- * other round the room. A wall that stands in the room with a free end is passed on both sides in turn, and is no part
- * of the outline: such pairs are taken out, repeatedly. What remains of the longest border is the room.
+ * other round the room. A wall that stands in the room with a free end is passed on both sides in turn; such pairs do
+ * not belong to the outline, and are taken out, repeatedly. What remains of the longest border is the room.
  *
  * Walls that follow each other are joined (wall_joins.c). A short wall between two that make a corner near it is left
  * out. A room is closed if all its walls are joined in turn, and its outline, and those in the middle of the walls and

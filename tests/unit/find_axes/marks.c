@@ -28,7 +28,7 @@ static void errors_in_files_name_the_line(void **state)
     assert_refused(MARKS_SCALE, "mark p a 1\n", ":1:");
     assert_refused(MARKS_SCALE, "mark p a 1 2 wall\n", "found \"wall\", wanted \"floor\", \"surface\"");
     assert_refused(MARKS_SCALE, "# nothing\n", "no length is given");
-    assert_refused(MARKS_SCALE, "mark p a 1 2 floor\nlength p q 2\n", ":2: q is named, but there is no mark");
+    assert_refused(MARKS_SCALE, "mark p a 1 2 floor\nlength p q 2\n", ":2: q is used, but no line marks it");
     assert_refused(MARKS_SCALE, "mark p a 1 2 floor\nlength p p 2\n", ":2: found p twice");
     assert_refused(MARKS_SCALE, "mark p a 1 2 floor\nmark q a 1 2 floor\nlength p q 0\n",
                    ":3: found \"0\", wanted a length above 0");
@@ -37,10 +37,10 @@ static void errors_in_files_name_the_line(void **state)
     assert_refused(MARKS_SCALE, "mark p a 1 2\nmark p a 1 3\nmark q a 1 2 floor\nlength p q 1\n",
                    ":1: p is marked twice in a");
     assert_refused(MARKS_SCALE, "mark p a 1 2 floor\nmark p b 1 2\nlength p p 1\n", "p is marked in 2 views");
-    assert_refused(MARKS_SCALE, "height door 2\n", ":1: door is named, but there is no mark of that name");
+    assert_refused(MARKS_SCALE, "height door 2\n", ":1: door is used, but no line marks it");
     assert_refused(MARKS_SCALE, "height ceiling -2.5\n", ":1: found \"-2.5\", wanted a length above 0");
     assert_refused(MARKS_SCALE, "height ceiling 2.5 3\n", ":1: found \"3\"");
-    assert_refused(MARKS_SCALE, "mark p a 1 2 above q\nheight p 2\n", ":1: q is named, but there is no mark");
+    assert_refused(MARKS_SCALE, "mark p a 1 2 above q\nheight p 2\n", ":1: q is used, but no line marks it");
     assert_refused(MARKS_SCALE, "mark p a 1 2 above p\nheight p 2\n", ":1: p is above p, which is above another mark");
     assert_refused(MARKS_SCALE, "mark p a 1 2 above\nheight p 2\n", ":1: found the end of the line");
     assert_refused(MARKS_FIX, "height ceiling 2\n", ":1: found \"height\", wanted \"corner\"");

@@ -333,15 +333,15 @@ static void what_was_not_made_is_said_and_not_linked(void **state)
     put(in_edit("removed-long-ago", "plan", ".svg"), ""); /* a folder without a model is none of an edit */
     page = page_of("loft", NULL);
     expect_words(page, "<h2>bare</h2>");
-    expect_words(page, "There are no pictures of this change yet: <code>make remodel SCENE=loft</code>");
-    expect_words(page, "There is no plan of the rooms before yet: <code>make model SCENE=loft</code>");
-    expect_words(page, "There is no film of a walk through these rooms yet: <code>make tour SCENE=loft</code>");
-    expect_words(page, "There is no model of it for other programs yet: <code>make exports SCENE=loft</code>");
+    expect_words(page, "The pictures of this change are not made yet: <code>make remodel SCENE=loft</code>");
+    expect_words(page, "The plan of the rooms before is not made yet: <code>make model SCENE=loft</code>");
+    expect_words(page, "The film of a walk through these rooms is not made yet: <code>make tour SCENE=loft</code>");
+    expect_words(page, "The model for other programs is not made yet: <code>make exports SCENE=loft</code>");
     page_quality = "draft";
     char *draft = page_of("loft", NULL);
     page_quality = NULL;
     expect_words(draft,
-                 "There is no film of a walk through these rooms yet: <code>make tour SCENE=loft QUALITY=draft</code>");
+                 "The film of a walk through these rooms is not made yet: <code>make tour SCENE=loft QUALITY=draft</code>");
     free(draft);
     assert_null(strstr(page, "No photograph shows this change"));
     assert_null(strstr(page, "long ago"));
@@ -350,7 +350,7 @@ static void what_was_not_made_is_said_and_not_linked(void **state)
     put_sight("bare", "a", 0, 0);
     page = page_of("loft", NULL);
     expect_words(page, "No photograph shows this change.");
-    assert_null(strstr(page, "There are no pictures of this change"));
+    assert_null(strstr(page, "The pictures of this change are not made"));
     free(page);
 }
 
