@@ -80,7 +80,8 @@ static void sweep_segments(void *ctx, size_t begin, size_t end, int thread)
             cost[p] = match_cost_sweep(job->m, (int)i, plane, known ? best : ~0u, &best);
             for (int f = 0; f < job->families->count; f++) {
                 struct plane slanted;
-                if (!family_plane(job, g, p, f, &slanted)) continue;
+                /* walls at every second label: the smoothing bridges one, and expansion finds what lies between */
+                if ((f && p & 1) || !family_plane(job, g, p, f, &slanted)) continue;
                 const float other =
                     match_cost_sweep(job->m, (int)i, slanted, f ? ~0u : best, NULL) + (float)job->params->slant;
                 cost[p] = other < cost[p] ? other : cost[p];
