@@ -46,3 +46,13 @@ enum status upright_read(struct vec3 *ups, const struct camera_set *set, const c
     lens_list_release(&lenses);
     return err->status;
 }
+
+struct vec3 upright_mean(const struct camera_set *set, const struct vec3 *ups)
+{
+    struct vec3 sum = {0, 0, 0};
+    for (int i = 0; i < set->view_count; i++) {
+        const struct vec3 up = ups ? ups[i] : vec3_make(0, -1, 0);
+        sum = vec3_add(sum, mat3_apply(mat3_transpose(set->views[i].cam_from_world), up));
+    }
+    return vec3_normalize(sum);
+}

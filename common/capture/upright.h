@@ -16,4 +16,8 @@ struct vec3 upright_from_orientation(int orientation);
 enum status upright_read(struct vec3 *ups, const struct camera_set *set, const char *views, const char *records,
                          struct provenance *prov, struct err *err);
 
+/* The mean of what is up in all photos, a unit vector in the world. ups: of upright_read(); NULL: all pictures are
+ * stored upright. */
+struct vec3 upright_mean(const struct camera_set *set, const struct vec3 *ups);
+
 #endif

@@ -129,8 +129,7 @@ static int count_of(const struct mark_list *list, enum mark_kind kind, const cha
 static enum status needs_mark(const struct mark_list *list, const struct mark *m, const char *name, struct err *err)
 {
     if (count_of(list, MARK_POINT, name, NULL)) return ST_OK;
-    return err_set(err, ST_DATA,
-                   "%s:%d: %s is used, but no line marks it; add a line \"mark %s VIEW X Y\".",
+    return err_set(err, ST_DATA, "%s:%d: %s is used, but no line marks it; add a line \"mark %s VIEW X Y\".",
                    list->path, m->line, name, name);
 }
 

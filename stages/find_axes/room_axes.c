@@ -27,6 +27,7 @@
 #include <string.h>
 
 #include "common/capture/central_views.h"
+#include "common/capture/upright.h"
 #include "common/math/numbers.h"
 #include "stages/find_axes/directions.h"
 
@@ -43,14 +44,6 @@ static enum status central_view(int *central, const struct camera_set *set, stru
     if (!central_views(order, set, err)) *central = order[0];
     free(order);
     return err->status;
-}
-
-static struct vec3 mean_up(const struct room_inputs *in)
-{
-    struct vec3 sum = {0};
-    for (int i = 0; i < in->set->view_count; i++)
-        sum = vec3_add(sum, mat3_apply(mat3_transpose(in->set->views[i].cam_from_world), in->ups[i]));
-    return vec3_normalize(sum);
 }
 
 /* Orders the rows and sets their signs: z is nearest to up, x nearest to right. */
@@ -380,7 +373,7 @@ static enum status find_all(struct room *room, const struct room_inputs *in, con
     struct mark_context m = {.scene = {.set = in->set, .lenses = in->lenses, .cloud = in->cloud},
                              .origin = central->center};
     const struct vec3 down = vec3_scale(in->ups[room->central], -1), right = vec3_cross(down, vec3_make(0, 0, 1));
-    const struct vec3 up = mean_up(in);
+    const struct vec3 up = upright_mean(in->set, in->ups);
     if (find_directions(&d, room, &m, in, up, params, err)) return err->status;
     m.axes = model_order(d.axes, d.part, up, mat3_apply(mat3_transpose(central->cam_from_world), right));
     for (int k = 0; k < 3; k++) room->part[k] = d.part[k];

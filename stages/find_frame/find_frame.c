@@ -45,14 +45,6 @@ static enum status read_lines(struct world_lines *w, const struct camera_set *se
     return err->status;
 }
 
-static struct vec3 mean_up(const struct camera_set *set, const struct vec3 *ups)
-{
-    struct vec3 sum = {0};
-    for (int i = 0; i < set->view_count; i++)
-        sum = vec3_add(sum, mat3_apply(mat3_transpose(set->views[i].cam_from_world), ups[i]));
-    return vec3_normalize(sum);
-}
-
 static enum status find_room(struct room_frame *f, const struct world_lines *w, const struct camera_set *set,
                              double size, struct err *err)
 {
@@ -98,7 +90,7 @@ static enum status find_frame(const struct files *f, const struct frame_params *
     if (!err->status && !upright_read(ups, &set, f->views, f->records, f->prov, err)) read_lines(&w, &set, f, err);
     const double size = err->status ? 0 : world_lines_size(&set);
     if (!err->status && size > 0 && !world_lines_place(&w, &set, STATION * size, err) &&
-        !line_directions_find(&frame, &w, mean_up(&set, ups), params, err) && frame.known)
+        !line_directions_find(&frame, &w, upright_mean(&set, ups), params, err) && frame.known)
         find_room(&frame, &w, &set, size, err);
     if (!err->status && !room_frame_write(&frame, f->out, f->prov, err)) log_frame(&frame, &w);
     room_frame_release(&frame);

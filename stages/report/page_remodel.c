@@ -192,8 +192,8 @@ static enum status put_edit(FILE *to, const char *scene, const struct remodel_co
     if (card->film) put_film(to, card->name, "A walk through the rooms after the change");
     fputs("</div>\n", to);
     put_exports(to, card);
-    put_missing(to, !c->plan || !card->plan, c->plan ? "The plan after this change is" : "The plan of the rooms before is", "model",
-                &command);
+    put_missing(to, !c->plan || !card->plan,
+                c->plan ? "The plan after this change is" : "The plan of the rooms before is", "model", &command);
     put_missing(to, !card->film, "The film of a walk through these rooms is", "tour", &command);
     put_missing(to, !card->exported, "The model for other programs is", "exports", &command);
     fputs("</section>\n", to);

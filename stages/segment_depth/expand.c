@@ -256,6 +256,12 @@ static void start_scene(struct scene_planes *scene, const struct frame_prior *pr
     scene_planes_set(scene, scene->count++, *ground);
 }
 
+/* How far a plane is from another, whose normal is n, in the units of n. */
+static double plane_off(const struct view *view, struct plane p, struct vec3 n)
+{
+    return vec3_length(vec3_sub(plane_normal(view, p), n));
+}
+
 /* Moves each known plane to the plane of votes that is about the same: the view's own pictures know it better. */
 static void follow_votes(struct scene_planes *scene, const struct view *view)
 {
@@ -264,7 +270,7 @@ static void follow_votes(struct scene_planes *scene, const struct view *view)
         double least = SAME_KNOWN * vec3_length(n);
         int best = -1;
         for (int j = scene->known; j < scene->count; j++) {
-            const double off = vec3_length(vec3_sub(plane_normal(view, scene->planes[j]), n));
+            const double off = plane_off(view, scene->planes[j], n);
             if (!(off <= least)) continue;
             least = off;
             best = j;
@@ -279,7 +285,7 @@ static void add_ground(struct scene_planes *scene, const struct view *view, stru
 {
     const struct vec3 n = plane_normal(view, ground);
     for (int k = 0; k < scene->count; k++)
-        if (vec3_length(vec3_sub(plane_normal(view, scene->planes[k]), n)) <= SAME_GROUND * vec3_length(n)) {
+        if (plane_off(view, scene->planes[k], n) <= SAME_GROUND * vec3_length(n)) {
             scene->voted_ground = k + 1;
             return;
         }

@@ -71,11 +71,15 @@ bool frustum_tiles_make(struct frustum_tiles *t, const struct camera_set *set, i
     return true;
 }
 
-static double weight_of_angle(struct vec3 a, struct vec3 b)
+double frustum_angle_weight(double degrees, double wide)
 {
-    const double degrees = atan2(vec3_length(vec3_cross(a, b)), vec3_dot(a, b)) / DEGREE;
     if (degrees < 5) return pow(degrees / 5, 1.5);
-    return degrees <= 20 ? 1 : exp(-pow((degrees - 20) / WIDE_ANGLE, 2));
+    return degrees <= 20 ? 1 : exp(-pow((degrees - 20) / wide, 2));
+}
+
+static double degrees_between(struct vec3 a, struct vec3 b)
+{
+    return atan2(vec3_length(vec3_cross(a, b)), vec3_dot(a, b)) / DEGREE;
 }
 
 /* Whether the view would see the other camera behind the surface in front of it. */
@@ -99,8 +103,8 @@ double frustum_overlap(double shown[FRUSTUM_TILES * FRUSTUM_TILES], const struct
         shown[k] = 0;
         if (hidden || !(z > 0) || !(u >= 0 && v >= 0 && u < other->width && v < other->height)) continue;
         const double scale = other->fx / z / (view->fx * t->inverse_z[k]);
-        shown[k] = weight_of_angle(vec3_sub(view->center, t->place[k]), vec3_sub(other->center, t->place[k])) *
-                   fmin(scale, 1 / scale);
+        const double angle = degrees_between(vec3_sub(view->center, t->place[k]), vec3_sub(other->center, t->place[k]));
+        shown[k] = frustum_angle_weight(angle, WIDE_ANGLE) * fmin(scale, 1 / scale);
         sum += shown[k];
     }
     return sum;

@@ -16,6 +16,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "common/capture/upright.h"
+
 #define MAX_POINTS 4000 /* a scene with more points is represented by evenly spaced ones of its list */
 
 #define SQUARE      0.01  /* side of a square of the plan, of the points' median distance from the cameras' centre */
@@ -139,22 +141,12 @@ static bool find_pitch(double *found, struct cloud *c)
     return pairs >= PITCH_GAIN * off && pairs - off >= PITCH_PAIRS * c->count && fabs(pitch) < PITCH;
 }
 
-struct vec3 gravity_of_photos(const struct camera_set *set, const struct vec3 *ups)
-{
-    struct vec3 sum = {0, 0, 0};
-    for (int i = 0; i < set->view_count; i++) {
-        const struct vec3 up = ups ? ups[i] : vec3_make(0, -1, 0);
-        sum = vec3_sub(sum, mat3_apply(mat3_transpose(set->views[i].cam_from_world), up));
-    }
-    return vec3_normalize(sum);
-}
-
 enum status gravity_find(struct vec3 *down, bool *known, const struct camera_set *set, const struct vec3 *ups,
                          struct err *err)
 {
     struct cloud c;
     struct vec3 right = {0, 0, 0};
-    *down = gravity_of_photos(set, ups);
+    *down = vec3_scale(upright_mean(set, ups), -1);
     for (int i = 0; i < set->view_count; i++) {
         const struct vec3 up = ups ? ups[i] : vec3_make(0, -1, 0);
         right = vec3_add(right,

@@ -10,11 +10,8 @@ struct ground {       /* points X on it: down . X = offset, in the scene's frame
     double offset;
 };
 
-/* The mean of what is down in the photos, a unit vector in the scene's frame. ups: for each view the direction that is
- * up in its photo, in the view's axes; NULL: (0, -1, 0). */
-struct vec3 gravity_of_photos(const struct camera_set *set, const struct vec3 *ups);
-
-/* Sets *down to the direction of gravity: the same, but if all photos are tilted up or down, as walls show it. *known
+/* Sets *down, a unit vector in the scene's frame, to the direction of gravity: the mean of what is down in the photos
+ * (ups: as upright_mean() takes them); if all are tilted up or down, as walls show it. *known
  * is false if photos of one viewing direction show no walls: they may all be tilted. ST_NOMEM. */
 enum status gravity_find(struct vec3 *down, bool *known, const struct camera_set *set, const struct vec3 *ups,
                          struct err *err);

@@ -2,7 +2,7 @@
  *
  * Neighbours are chosen greedily [Goesele 2007]. A candidate's score is a sum over the points that both views observed
  * of the product of
- *   angle_weight   of the triangulation angle: 1 from 5 to 20 degrees, little near 0 and above 45
+ *   frustum_angle_weight() of the angle: 1 from 5 to 20 degrees, little near 0 and above 45
  *   scale          the ratio of the two pixels' footprints at the point, at most 1
  *   min(1, 0.2 + angle / 5 degrees) for the angle to each neighbour chosen already: it should add a direction
  *
@@ -69,11 +69,7 @@ static double angle_at(struct vec3 point, struct vec3 a, struct vec3 b)
     return atan2(vec3_length(vec3_cross(to_a, to_b)), vec3_dot(to_a, to_b)) / DEGREE;
 }
 
-static double angle_weight(double degrees)
-{
-    if (degrees < 5) return pow(degrees / 5, 1.5);
-    return degrees <= 20 ? 1 : exp(-pow((degrees - 20) / 12, 2));
-}
+#define WIDE_ANGLE 12.0 /* degrees beyond 20 at which a point counts 1 / e */
 
 #define GRID 12 /* tiles of a view in each direction */
 /* Each view of a point that is chosen already counts as so many further points of the tile. */
@@ -153,8 +149,8 @@ static void score_views(double *score, int *shared, const struct camera_set *set
             double u, v, z = view_project(other, p->position, &u, &v);
             if (!(z > 0)) continue;
             double scale = other->fx / z / (view->fx * at->inverse_z);
-            double w =
-                share * angle_weight(angle_at(p->position, view->center, other->center)) * fmin(scale, 1 / scale);
+            double w = share * frustum_angle_weight(angle_at(p->position, view->center, other->center), WIDE_ANGLE) *
+                       fmin(scale, 1 / scale);
             for (int c = 0; c < chosen_count; c++)
                 w *= fmin(1, 0.2 + angle_at(p->position, set->views[chosen[c]].center, other->center) / 5);
             score[j] += w;

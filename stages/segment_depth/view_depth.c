@@ -29,6 +29,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/capture/upright.h"
 #include "common/math/numbers.h"
 #include "stages/segment_depth/expand.h"
 #include "stages/segment_depth/gravity.h"
@@ -244,7 +245,7 @@ static enum status start_solution(struct solution *x, const struct solver *v, st
 {
     const struct segmentation *s = v->m->segments;
     const struct view *view = &v->set->views[v->view_idx];
-    const struct vec3 down = gravity_of_photos(v->set, v->source->ups);
+    const struct vec3 down = vec3_scale(upright_mean(v->set, v->source->ups), -1);
     const size_t count = (size_t)s->count + 1;
     x->planes = malloc(count * sizeof *x->planes);
     x->distinct = calloc(count, sizeof *x->distinct);
