@@ -340,8 +340,9 @@ static void what_was_not_made_is_said_and_not_linked(void **state)
     page_quality = "draft";
     char *draft = page_of("loft", NULL);
     page_quality = NULL;
-    expect_words(draft,
-                 "The film of a walk through these rooms is not made yet: <code>make tour SCENE=loft QUALITY=draft</code>");
+    expect_words(
+        draft,
+        "The film of a walk through these rooms is not made yet: <code>make tour SCENE=loft QUALITY=draft</code>");
     free(draft);
     assert_null(strstr(page, "No photograph shows this change"));
     assert_null(strstr(page, "long ago"));
