@@ -11,8 +11,8 @@
 #include "common/product/product.h"
 
 #define UNIT_ERROR  1e-6
-#define FEW_POINTS  30.0
-#define MANY_POINTS 60.0
+#define FEW_POINTS  25.0
+#define MANY_POINTS 40.0
 
 static enum status read_direction(struct textfile *t, struct vec3 *d, struct err *err)
 {

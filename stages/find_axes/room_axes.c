@@ -8,7 +8,7 @@
  *   2. the planes across the axes with the most points turn axes of normals a little (planes.c), and marked edges turn
  *      any axes that they contradict (correct.c); after these, the planes are found again
  *   3. heights of points with upward and downward normals give floor and ceiling (heights.c), or those that straight
- *      edges say, where the points have none or one far from it. Corners of the floor
+ *      edges say, where the points have none. Corners of the floor
  *      that are marked in several views replace the floor where there is none, or where the two differ by more than
  *      twice their common standard error
  *   4. marked lengths and heights give metres: with distances d and lengths m the scale is sum d m / sum d^2, and its
@@ -32,7 +32,6 @@
 #include "stages/find_axes/directions.h"
 
 static const double LEVEL_EDGE = 0.3;    /* |cosine| between up and the normal of the plane of a level edge */
-static const double SAME_LEVEL = 0.05;   /* of the camera's height: points and lines show the same level */
 static const double HIGHEST_CEILING = 5; /* times the camera's height above the floor, above the camera */
 static const double UNKNOWN_EXTENT = 2;  /* times the camera's height, in each direction, of a room without points */
 static const double CONTRADICTS = 2; /* min difference between the floor and its marked corners, in standard errors */
@@ -216,15 +215,13 @@ static void find_extent(struct room *room, const struct room_planes *planes, con
     }
 }
 
-/* Takes the level that straight edges say, unless the points have one near it. eye: height of the origin in the frame;
- * height: of the room, as far as it is known. */
-static void take_level(struct height_level *level, const struct frame_level *known, double eye, double height)
+/* Takes the level that straight edges say where the points have none. eye: height of the origin in the frame. */
+static void take_level(struct height_level *level, const struct frame_level *known, double eye)
 {
-    if (!known->known || (level->count && fabs(level->height - (known->height - eye)) < SAME_LEVEL * height)) return;
+    if (!known->known || level->count) return;
     level->height = known->height - eye;
     level->error = level->spread = known->error;
     level->count = level->candidates = 1;
-    level->beyond = 0;
 }
 
 /* Forgets a ceiling that no room has: below a camera, or many times as high as the cameras. */
@@ -244,9 +241,9 @@ static enum status find_heights(struct room *room, struct mark_context *m, const
         height_find_level(&room->ceiling, -1, &m->axes, m->origin, errors, in->cloud, params, err))
         return err->status;
     if (room->source == AXES_OF_LINES) {
-        const double eye = vec3_dot(in->frame->up, m->origin), height = eye - in->frame->floor.height;
-        if (in->frame->floor.known) take_level(&room->floor, &in->frame->floor, eye, height);
-        if (in->frame->ceiling.known) take_level(&room->ceiling, &in->frame->ceiling, eye, height);
+        const double eye = vec3_dot(in->frame->up, m->origin);
+        take_level(&room->floor, &in->frame->floor, eye);
+        take_level(&room->ceiling, &in->frame->ceiling, eye);
     }
     m->list = in->fix;
     if (in->fix && corner_height(m, &room->corner_height, err)) {

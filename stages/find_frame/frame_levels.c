@@ -25,10 +25,11 @@
 #define LEAST   0.08 /* how far from a camera both must be */
 #define REACH   3.0  /* farthest line that counts */
 
-#define CLEARLY    1.4 /* times the median over all heights */
-#define MIN_PAIRS  12
-#define HEAD_SHARE 0.5 /* of the votes of the best height, from which on a higher one is the ceiling */
-#define MIN_HEADS  3   /* walls and places that show a ceiling */
+#define CLEARLY      1.4 /* times the median over all heights */
+#define MIN_PAIRS    12
+#define HEAD_SHARE   0.7 /* of the votes of the best height, from which on a higher one is the ceiling */
+#define HEAD_CLEARLY 2.0 /* times the votes of a height if they lay anywhere, which the best must have */
+#define MIN_HEADS    3   /* walls and places that show a ceiling */
 
 struct camera_heights {
     double lowest, highest;
@@ -136,7 +137,8 @@ enum status levels_find_ceiling(struct room_frame *f, const struct world_lines *
         in_window[i] = distinct;
         if (distinct > best) best = distinct;
     }
-    int at = count - 1;
+    const double usual = count * 2 * STEP * size / (most - least); /* in a window, if they lay anywhere */
+    int at = best >= HEAD_CLEARLY * usual ? count - 1 : -1;
     while (!err->status && at >= 0 && !(in_window[at] >= HEAD_SHARE * best && in_window[at] >= MIN_HEADS)) at--;
     if (!err->status && at >= 0) {
         /* the fullest window that overlaps it */

@@ -65,13 +65,13 @@ static int compare_pixels(const void *a, const void *b)
     return (*x > *y) - (*x < *y);
 }
 
-enum status frame_prior_make(struct frame_prior *prior, const struct room_frame *f, const struct view *view,
-                             const struct segmentation *s, struct err *err)
+enum status frame_prior_make(struct frame_prior *prior, const struct room_frame *f, double trust,
+                             const struct view *view, const struct segmentation *s, struct err *err)
 {
     const size_t most = (size_t)(f ? f->wall_count : 0) + 2;
     struct surface *list = calloc(most, sizeof *list), **order = calloc(most, sizeof *order);
     int count = 0;
-    *prior = (struct frame_prior){.count = 0};
+    *prior = (struct frame_prior){.trust = trust};
     prior->expected = malloc(((size_t)s->count + 1) * sizeof *prior->expected);
     prior->gain = calloc((size_t)s->count + 1, sizeof *prior->gain);
     if (!list || !order || !prior->expected || !prior->gain)
@@ -103,19 +103,16 @@ enum status frame_prior_make(struct frame_prior *prior, const struct room_frame 
     return err->status;
 }
 
-enum status frame_prior_weigh(struct frame_prior *prior, const double *distinct, const struct segmentation *s,
-                              const struct camera_set *set, struct err *err)
+void frame_prior_weigh(struct frame_prior *prior, const double *distinct, const struct segmentation *s)
 {
-    double trust, sure = 0, pixels = 0;
-    if (!prior->count || room_frame_trust(&trust, &set->model, err)) return err->status;
+    double sure = 0, pixels = 0;
     for (int i = 0; i < s->count; i++) {
         sure += s->segments[i].pixels * distinct[i];
         pixels += s->segments[i].pixels;
     }
     const double weight =
-        EXPECTED_GAIN * trust * clamp((MOSTLY_SURE - sure / pixels) / (MOSTLY_SURE - HARDLY_SURE), 0, 1);
+        EXPECTED_GAIN * prior->trust * clamp((MOSTLY_SURE - sure / pixels) / (MOSTLY_SURE - HARDLY_SURE), 0, 1);
     for (int i = 0; i < s->count; i++) prior->gain[i] = (float)(weight * (1 - SURE_PART * distinct[i]));
-    return ST_OK;
 }
 
 void frame_prior_release(struct frame_prior *prior)

@@ -11,17 +11,17 @@
 struct frame_prior {
     struct plane planes[PRIOR_PLANES]; /* that the view is expected to see */
     int count;
+    double trust;  /* how much it counts beside the pictures, 0 .. 1 */
     int *expected; /* of each segment: index into planes, -1: nothing is known; owned */
     float *gain;   /* of each segment: by how much less it costs there; owned */
 };
 
-/* The planes that segments of the view are expected to lie on. prior is empty if the frame knows none; the caller
- * releases it in each case. */
-enum status frame_prior_make(struct frame_prior *prior, const struct room_frame *frame, const struct view *view,
-                             const struct segmentation *s, struct err *err);
-/* Sets the gains. distinct: of each segment, how distinctly it matches, 0 .. 1. ST_NOMEM. */
-enum status frame_prior_weigh(struct frame_prior *prior, const double *distinct, const struct segmentation *s,
-                              const struct camera_set *set, struct err *err);
+/* The planes that segments of the view are expected to lie on. trust: of room_frame_trust(). prior is empty if the frame
+ * knows none; the caller releases it in each case. */
+enum status frame_prior_make(struct frame_prior *prior, const struct room_frame *frame, double trust,
+                             const struct view *view, const struct segmentation *s, struct err *err);
+/* Sets the gains. distinct: of each segment, how distinctly it matches, 0 .. 1. */
+void frame_prior_weigh(struct frame_prior *prior, const double *distinct, const struct segmentation *s);
 void frame_prior_release(struct frame_prior *prior);
 
 #endif

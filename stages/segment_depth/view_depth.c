@@ -214,7 +214,7 @@ static enum status start_first_round(struct solution *x, const struct solver *v,
     plane_sweep_run(&x->sweep, x->planes, v->m, &x->points, x->weights, x->problem.view, &x->families, v->params, err);
     x->problem.cost = x->sweep.cost;
     for (int i = 0; !err->status && i < v->m->segments->count; i++) x->distinct[i] = sweep_distinctness(&x->sweep, i);
-    if (!err->status) frame_prior_weigh(&x->prior, x->distinct, v->m->segments, v->set, err);
+    if (!err->status) frame_prior_weigh(&x->prior, x->distinct, v->m->segments);
     if (!err->status) match_select(v->m, x->planes, NULL, err);
     return err->status;
 }
@@ -228,7 +228,7 @@ static enum status start_later_round(struct solution *x, const struct solver *v,
     if (!cross_view_make(&x->cross, s, v->set, v->view_idx, v->neighbours, v->neighbour_count, x->sweep.step, &source,
                          err))
         read_previous_planes(x->planes, x->distinct, v, err);
-    if (!err->status) frame_prior_weigh(&x->prior, x->distinct, s, v->set, err);
+    if (!err->status) frame_prior_weigh(&x->prior, x->distinct, s);
     unsigned *occluded = calloc((size_t)s->count + 1, sizeof *occluded);
     if (!err->status && !occluded) err_nomem(err, "occlusions", (size_t)s->count * sizeof *occluded);
     for (int i = 0; !err->status && i < s->count; i++) cross_view_cost(&x->cross, i, x->planes[i], &occluded[i]);
@@ -275,7 +275,10 @@ static enum status start_solution(struct solution *x, const struct solver *v, st
         for (int k = 0; k < f->heading_count && x->families.count < MAX_FAMILIES; k++)
             x->families.normal[x->families.count++] = mat3_apply(view->cam_from_world, frame_across(f, k));
     }
-    if (frame_prior_make(&x->prior, v->source->frame, view, s, err)) return err->status;
+    double trust = 0;
+    if (room_frame_trust(&trust, &v->set->model, err) ||
+        frame_prior_make(&x->prior, v->source->frame, trust, view, s, err))
+        return err->status;
     x->problem.prior = x->prior.count ? &x->prior : NULL;
     x->problem.families = &x->families;
     if (v->given) fit_given(&x->given, v, x->sweep.step, err);

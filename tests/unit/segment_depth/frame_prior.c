@@ -71,7 +71,7 @@ static void segments_are_expected_on_what_their_rays_meet_first(void **state)
     struct frame_prior prior;
     struct err err = ERR_INIT;
     int known = 0;
-    assert_ok(frame_prior_make(&prior, &f, &view, &s, &err), err);
+    assert_ok(frame_prior_make(&prior, &f, 1, &view, &s, &err), err);
     assert_int_equal(prior.count, 4);
     for (int i = 0; i < COUNT; i++) {
         const double u = segments[i].cx, v = segments[i].cy;
@@ -93,38 +93,30 @@ static void nothing_is_expected_where_nothing_is_known(void **state)
     struct err err = ERR_INIT;
     f.floor.known = f.ceiling.known = false;
     f.wall_count = 1;
-    assert_ok(frame_prior_make(&prior, &f, &view, &s, &err), err);
+    assert_ok(frame_prior_make(&prior, &f, 1, &view, &s, &err), err);
     assert_int_equal(prior.count, 1);
     for (int i = 0; i < COUNT; i++) {
         const double x = (segments[i].cx - 60) / 50 * 4;
         assert_int_equal(prior.expected[i], x > -2 && x < 3 ? 0 : -1);
     }
     frame_prior_release(&prior);
-    assert_ok(frame_prior_make(&prior, NULL, &view, &s, &err), err);
+    assert_ok(frame_prior_make(&prior, NULL, 1, &view, &s, &err), err);
     assert_int_equal(prior.count, 0);
     frame_prior_release(&prior);
     frame_prior_release(&prior);
 }
 
-/* The gain of a blank segment in a scene whose views observe `points` points each, when `part` of them match. */
-static double gain_of(int points, double part)
+/* The gain of a blank segment, when `part` of the others match. */
+static double gain_of(double trust, double part)
 {
-    enum { MOST = 100 };
-    static struct sfm_point list[MOST];
-    static struct sfm_track tracks[MOST][2];
     static double distinct[COUNT];
     const struct segmentation s = grid();
     const struct room_frame f = room();
     struct frame_prior prior;
     struct err err = ERR_INIT;
-    for (int i = 0; i < points; i++) {
-        for (int k = 0; k < 2; k++) tracks[i][k].image_idx = k;
-        list[i] = (struct sfm_point){.track = tracks[i], .track_count = 2};
-    }
-    const struct camera_set set = {.model = {.points = list, .point_count = points, .image_count = 2}};
     for (int i = 0; i < COUNT; i++) distinct[i] = i > 0 && i <= part * COUNT;
-    assert_ok(frame_prior_make(&prior, &f, &view, &s, &err), err);
-    assert_ok(frame_prior_weigh(&prior, distinct, &s, &set, &err), err);
+    assert_ok(frame_prior_make(&prior, &f, trust, &view, &s, &err), err);
+    frame_prior_weigh(&prior, distinct, &s);
     const double gain = (double)prior.gain[0];
     if (part > 0) assert_true(prior.gain[1] < prior.gain[0] || !(gain > 0));
     frame_prior_release(&prior);
@@ -134,11 +126,11 @@ static double gain_of(int points, double part)
 static void the_prior_counts_where_pictures_say_little(void **state)
 {
     (void)state;
-    assert_true(gain_of(10, 0.1) > 0.5);
-    assert_true(gain_of(10, 0.5) <= 0);
-    assert_true(gain_of(80, 0.1) <= 0);
-    assert_true(gain_of(45, 0.1) < gain_of(10, 0.1));
-    assert_true(gain_of(45, 0.1) > 0);
+    assert_true(gain_of(1, 0.1) > 0.5);
+    assert_true(gain_of(1, 0.5) <= 0);
+    assert_true(gain_of(0, 0.1) <= 0);
+    assert_true(gain_of(0.5, 0.1) < gain_of(1, 0.1));
+    assert_true(gain_of(0.5, 0.1) > 0);
 }
 
 int main(void)

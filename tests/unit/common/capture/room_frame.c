@@ -76,12 +76,38 @@ static void lines_are_read_back(void **state)
     assert_err(err, ST_DATA, "v.txt:2");
 }
 
+/* How much a frame counts in a scene whose two views observe so many points each. */
+static double trust_of(int points)
+{
+    enum { MOST = 100 };
+    static struct sfm_point list[MOST];
+    static struct sfm_track tracks[MOST][2];
+    struct err err = ERR_INIT;
+    double trust;
+    for (int i = 0; i < points; i++) {
+        for (int k = 0; k < 2; k++) tracks[i][k].image_idx = k;
+        list[i] = (struct sfm_point){.track = tracks[i], .track_count = 2};
+    }
+    const struct sfm_model model = {.points = list, .point_count = points, .image_count = 2};
+    assert_ok(room_frame_trust(&trust, &model, &err), err);
+    return trust;
+}
+
+static void a_frame_counts_where_views_observe_few_points(void **state)
+{
+    (void)state;
+    assert_true(trust_of(0) >= 1 && trust_of(20) >= 1);
+    assert_true(trust_of(30) < 1 && trust_of(35) < trust_of(30) && trust_of(35) > 0);
+    assert_true(trust_of(50) <= 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_frame_is_read_back_to_the_last_bit),
         cmocka_unit_test(damaged_frames_are_refused_with_their_line),
         cmocka_unit_test(lines_are_read_back),
+        cmocka_unit_test(a_frame_counts_where_views_observe_few_points),
     };
     return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
 }
