@@ -16,8 +16,8 @@ struct frame_prior {
     float *gain;   /* of each segment: by how much less it costs there; owned */
 };
 
-/* The planes that segments of the view are expected to lie on. trust: of room_frame_trust(). prior is empty if the frame
- * knows none; the caller releases it in each case. */
+/* The planes that segments of the view are expected to lie on. trust: of room_frame_trust(). prior is empty if the
+ * frame knows none; the caller releases it in each case. */
 enum status frame_prior_make(struct frame_prior *prior, const struct room_frame *frame, double trust,
                              const struct view *view, const struct segmentation *s, struct err *err);
 /* Sets the gains. distinct: of each segment, how distinctly it matches, 0 .. 1. */

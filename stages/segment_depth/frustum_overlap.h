@@ -6,7 +6,7 @@
 
 #define FRUSTUM_TILES 12 /* of a view in each direction */
 
-/* How well a pair of rays at this angle, in degrees, fixes a depth: little near 0, 1 from 5 to 20, 1 / e at 20 + wide. */
+/* How well a pair of rays at this angle, in degrees, fixes a depth: little near 0, 1 from 5 to 20, 1/e at 20 + wide. */
 double frustum_angle_weight(double degrees, double wide);
 
 /* One place of each tile: where its middle lies, at the depth of the nearest points. */

@@ -58,7 +58,7 @@ the_result_does_not_depend_on_threads()
 
 errors_in_marks_name_the_line()
 {
-    for c in 'meter p q 1|wanted "mark", "length" or "height"' "mark p $photo 10 10|in one view alone" 'length p q 1|p is named' "mark p $photo 1 nan floor|nan"; do
+    for c in 'meter p q 1|wanted "mark", "length" or "height"' "mark p $photo 10 10|in one view alone" 'length p q 1|p is used' "mark p $photo 1 nan floor|nan"; do
         printf '# marks\n%s\n' "${c%|*}" >marks.txt
         find_them 1 "${c##*|}" --scale marks.txt
         grep -qF 'marks.txt:2: ' err.txt || { cat err.txt; fail "no line"; }
