@@ -255,15 +255,15 @@ enum status search_rooms(struct suggestion *s, struct plan_search *p, double thi
             if (a->wall >= 0 && b->wall >= 0 && a->wall != b->wall) wall_joins_add(s, a, b);
         }
     }
-    if (!err->status) wall_joins_fit(s, thickness);
+    if (!err->status) {
+        wall_joins_fit(s, thickness);
+        wall_joins_drop_unmet(s, thickness);
+    }
     for (int i = 0; i < count && !err->status; i++) {
         reduce(&outlines[i]);
         if (outlines[i].area > 0) add_room(s, &outlines[i], thickness, err);
     }
-    if (!err->status) {
-        wall_joins_trim(s);
-        remove_walls(s, gone, number);
-    }
+    if (!err->status) remove_walls(s, gone, number);
     free(gone);
     free(number);
     for (int i = 0; i < count; i++) free(outlines[i].items);

@@ -154,13 +154,53 @@ void wall_joins_fit(struct suggestion *s, double thickness)
     }
 }
 
-void wall_joins_trim(struct suggestion *s)
+/* Ends that are joined to nothing move to where the wall was seen. */
+static void trim_ends(struct suggestion *s)
 {
     for (int i = 0; i < s->wall_count; i++) {
         struct suggested_wall *w = &s->walls[i];
         if (w->seen[1] <= w->seen[0]) continue;
         if (!w->joins[0]) w->begin = fmax(w->begin, w->seen[0]);
         if (!w->joins[1]) w->end = fmin(w->end, w->seen[1]);
+    }
+}
+
+/* From where to where a wall can be met: to the far sides of its corners. */
+static void reach_of(const struct suggestion *s, const struct suggested_wall *w, double thickness, double reach[2])
+{
+    reach[0] = w->begin;
+    reach[1] = w->end;
+    for (int e = 0; e < 2; e++) {
+        double range[2];
+        if (!w->joins[e]) continue;
+        cut_range(w, &s->walls[w->others[e]], thickness, range);
+        reach[e] = range[e];
+    }
+}
+
+static bool is_unmet(const struct suggestion *s, int wall, int end, double thickness)
+{
+    const struct suggested_wall *w = &s->walls[wall], *other = &s->walls[w->others[end]];
+    double reach[2], range[2];
+    for (int e = 0; e < 2; e++) /* a corner of both fits by itself */
+        if (other->joins[e] && other->others[e] == wall) return false;
+    cut_range(other, w, thickness, range);
+    reach_of(s, other, thickness, reach);
+    return !(range[0] >= reach[0] && range[1] <= reach[1]);
+}
+
+void wall_joins_drop_unmet(struct suggestion *s, double thickness)
+{
+    for (bool changed = true; changed;) { /* each round undoes a join: what it gave its wall, others may have met */
+        changed = false;
+        trim_ends(s);
+        for (int i = 0; i < s->wall_count; i++)
+            for (int e = 0; e < 2; e++) {
+                if (!s->walls[i].joins[e] || !is_unmet(s, i, e, thickness)) continue;
+                s->walls[i].joins[e] = JOIN_NONE;
+                s->walls[i].others[e] = -1;
+                changed = true;
+            }
     }
 }
 

@@ -19,8 +19,9 @@ bool wall_joins_has(const struct suggestion *s, int a, int b);
  * does not help are undone. thickness: of walls of which one face was seen. */
 void wall_joins_fit(struct suggestion *s, double thickness);
 
-/* Ends that are joined to nothing move to where the wall was seen. */
-void wall_joins_trim(struct suggestion *s);
+/* Moves ends that are joined to nothing to where the wall was seen, and undoes where a wall would then meet another
+ * beyond that one's end, which build_model refuses. thickness: as above. */
+void wall_joins_drop_unmet(struct suggestion *s, double thickness);
 
 /* Cuts the openings to their walls between corners and walls that meet them; removes those that remain too small, and
  * of two that overlap the smaller. */
