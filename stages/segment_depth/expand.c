@@ -16,7 +16,7 @@
  * that took it (plane_refit.h), and offered again, REFITS times. The ground (gravity.h) is offered with them, unless
  * the votes know it better, and is not fitted: a lawn matches nothing.
  *
- * Floor, ceiling and walls that are known before (frame_prior.h) are offered first. Each takes the place of the plane
+ * Floor, ceiling and walls that are known before (plane_prior.h) are offered first. Each takes the place of the plane
  * of votes that is about the same, and is not fitted: what little matches on a blank wall would move it by chance.
  *
  * What differs from the source: the nodes are segments, not pixels; proposals also come from the sweep, from
@@ -244,7 +244,7 @@ static enum status find_scene_planes(const struct expander *x, struct err *err)
 }
 
 /* Before there are votes, the ground is the only plane of the scene. */
-static void start_scene(struct scene_planes *scene, const struct frame_prior *prior, const struct plane *ground)
+static void start_scene(struct scene_planes *scene, const struct plane_prior *prior, const struct plane *ground)
 {
     *scene = (struct scene_planes){.count = 0};
     for (int k = 0; prior && k < prior->count; k++) {

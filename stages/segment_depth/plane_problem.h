@@ -9,7 +9,7 @@
  * comes from points, by a factor of SCENE_REACH. So a blank ceiling that no view can match continues on the plane of
  * its matched part.
  *
- * Floor, ceiling and walls that are known before (frame_prior.h) are planes of the scene, too. They may leave the range
+ * Floor, ceiling and walls that are known before (plane_prior.h) are planes of the scene, too. They may leave the range
  * by a factor of KNOWN_REACH, since it comes from points, and a segment costs its prior's gain less on the one that its
  * ray meets first.
  *
@@ -33,9 +33,9 @@
 #include <math.h>
 
 #include "stages/segment_depth/cross_view.h"
-#include "stages/segment_depth/frame_prior.h"
 #include "stages/segment_depth/given_depth.h"
 #include "stages/segment_depth/plane_match.h"
+#include "stages/segment_depth/plane_prior.h"
 #include "stages/segment_depth/plane_sweep.h"
 #include "stages/segment_depth/point_evidence.h"
 #include "stages/segment_depth/scene_planes.h"
@@ -45,7 +45,7 @@ struct plane_problem { /* borrows all that it points to */
     const struct view *view;
     struct vec3 down; /* in the view's axes */
     const struct plane_families *families;
-    const struct frame_prior *prior; /* what segments are expected to lie on; NULL: nothing is known */
+    const struct plane_prior *prior; /* what segments are expected to lie on; NULL: nothing is known */
     const struct matcher *m;
     const struct point_evidence *points;
     const struct cross_view *cross;  /* NULL in the first round */

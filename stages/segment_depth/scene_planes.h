@@ -13,7 +13,7 @@
 struct scene_planes {
     struct plane planes[SCENE_PLANES]; /* the most supported first */
     int count;
-    int known;        /* how many of the first come from elsewhere, and are not fitted to the view (frame_prior.h) */
+    int known;        /* how many of the first come from elsewhere, and are not fitted to the view (plane_prior.h) */
     uint64_t filter;  /* of scene_planes_key() of the planes: a plane whose bit is 0 is none of them */
     bool has_ground;  /* the last plane is the ground (gravity.h) */
     int voted_ground; /* 1 + index of the plane of votes that is about the ground; 0: none */

@@ -6,6 +6,8 @@
  *         GIVEN/VIEW.exr or .png, depth.txt             with --given: known depth, where there is any
  *         VIEWS/lenses.txt                              for given depth in the photo's pixels
  *         VIEWS/lenses.txt, RECORDS/ID.txt              with --records: the upper sides of the photos
+ *         FRAME                                         with --frame: what straight edges show of the room
+ *         MODEL, AXES                                   with --model: the solid model and its frame
  * writes  DEPS                                          make dependencies: the pictures that were read
  *         OUT with .round for .exr                      how much the depth changed in this round
  *         OUT with .txt for .exr, then OUT              segments; layers interior.* and boundary.* (RGBA, Z, id)
@@ -124,7 +126,7 @@ static enum status warn_guessed_range(const struct camera_set *set, const int *r
 
 /* What main was asked for. */
 struct request {
-    const char *views, *records, *frame, *before, *given, *view, *out, *deps;
+    const char *views, *records, *frame, *model, *axes, *before, *given, *view, *out, *deps;
     const struct segment_params *params;
 };
 
@@ -159,6 +161,8 @@ static enum status make_depth(const struct request *r, const struct camera_set *
     struct views_folder views = {r->views, r->before, r->given, set, prov};
     struct vec3 *ups = NULL;
     struct room_frame frame = {0};
+    struct model_rays model = {0};
+    struct model_axes axes = {0};
     struct layered_depth depth = {0};
     double changed = 1;
     int count = 0;
@@ -171,12 +175,16 @@ static enum status make_depth(const struct request *r, const struct camera_set *
             err_nomem(err, "upright directions", (size_t)set->view_count * sizeof *ups);
     }
     if (!err->status && r->frame) room_frame_read(&frame, r->frame, prov, err);
+    if (!err->status && r->model && !model_rays_read(&model, r->model, MODEL_WITH_GLASS, prov, err))
+        model_axes_read(&axes, r->axes, prov, err);
     const struct view_source source = {.read = read_view,
                                        .read_depth = r->before ? read_depth : NULL,
                                        .ctx = &views,
                                        .read_given = r->given ? read_given : NULL,
                                        .ups = ups,
-                                       .frame = frame.known ? &frame : NULL};
+                                       .frame = frame.known ? &frame : NULL,
+                                       .model = r->model ? &model : NULL,
+                                       .axes = &axes};
     if (!err->status && !view_depth(&depth, read + 1, &count, set, read[0], &source, r->params, err))
         find_change(&changed, &depth, r, err);
     if (!err->status && r->deps)
@@ -190,6 +198,7 @@ static enum status make_depth(const struct request *r, const struct camera_set *
                  100 * CHANGED_PART);
     free(ups);
     room_frame_release(&frame);
+    model_rays_release(&model);
     layered_depth_release(&depth);
     return err->status;
 }
@@ -230,7 +239,7 @@ static enum status segment_depth(const struct request *r, struct provenance *pro
     if (!err->status && (read[0] = camera_set_find(&set, r->view)) < 0)
         err_set(err, ST_USAGE, "there is no view %s in %s/images.txt; the views are listed in %s/views.mk.", r->view,
                 r->views, r->views);
-    if (!err->status && r->before) carry_over(&carried, r, &set, read, prov, err);
+    if (!err->status && r->before && !r->model) carry_over(&carried, r, &set, read, prov, err);
     if (!err->status && !carried) make_depth(r, &set, read, prov, err);
     camera_set_release(&set);
     return err->status;
@@ -261,7 +270,8 @@ int main(int argc, char **argv)
         CLI_STR("records", &r.records, CLI_OPTIONAL,
                 "folder of the photos' records, which tell their upper sides; without them all are taken as upright"),
         CLI_STR("frame", &r.frame, CLI_OPTIONAL, "what straight edges say of the room: frame.txt"),
-        CLI_STR("frame", &r.frame, CLI_OPTIONAL, "what straight edges say of the room: frame.txt"),
+        CLI_STR("model", &r.model, CLI_OPTIONAL, "model.txt, whose faces the view is expected to show; needs --before"),
+        CLI_STR("axes", &r.axes, CLI_OPTIONAL, "the model's frame, axes.txt; with --model"),
         CLI_STR("view", &r.view, CLI_OPTIONAL, "view to work on (required, with --out)"),
         CLI_STR("before", &r.before, CLI_OPTIONAL,
                 "folder of all views' depth in the previous round; none in the first round"),
@@ -281,6 +291,8 @@ int main(int argc, char **argv)
     const enum cli_verdict verdict = cli_parse(argc, argv, "segment_depth", opts, &prov, &err);
     if (verdict == CLI_RUN && !list == !(r.view && r.out))
         err_set(&err, ST_USAGE, "give --view and --out, or else --estimate.");
+    else if (verdict == CLI_RUN && (!r.model != !r.axes || (r.model && !r.before)))
+        err_set(&err, ST_USAGE, "--model, --axes and --before go together.");
     else if (verdict == CLI_RUN && list)
         estimate(r.views, list, jobs, &params, &err);
     else if (verdict == CLI_RUN)

@@ -5,7 +5,8 @@
  * with the neighbours' depth maps; pixels at depth edges are split into two colours. The steps, in order:
  *   neighbours    views to match with, by shared points, angle and scale; the points also bound the depth range
  *   oversegment   SLIC superpixels in gamma-encoded opponent colours
- *   frame_prior   floor, ceiling and walls that straight edges show, where the view's rays meet them
+ *   frame_prior   floor, ceiling and walls that straight edges show, where the view's rays meet them; or
+ *   model_prior   the same of the faces of the solid model, in the round that knows it
  *   given_depth   fixed planes of the segments whose depth the user provides
  *   plane_sweep   first round: cost volume over the depth range, smoothed; later rounds start from the previous planes
  *   gravity       which way is down, from cameras and walls; and the ground, at the feet of what stands on it
@@ -32,10 +33,12 @@
 #include "common/capture/upright.h"
 #include "common/math/numbers.h"
 #include "stages/segment_depth/expand.h"
+#include "stages/segment_depth/frame_prior.h"
 #include "stages/segment_depth/gravity.h"
 #include "stages/segment_depth/inherit.h"
 #include "stages/segment_depth/layers.h"
 #include "stages/segment_depth/level.h"
+#include "stages/segment_depth/model_prior.h"
 #include "stages/segment_depth/pixel_planes.h"
 #include "stages/segment_depth/plane_sweep.h"
 #include "stages/segment_depth/refine_planes.h"
@@ -185,7 +188,8 @@ struct solution {
     struct given_depth given;
     struct scene_planes scene;
     struct plane_families families;
-    struct frame_prior prior;
+    struct plane_prior prior;
+    double trust; /* in what straight edges say */
     struct plane ground;
     struct plane *planes;
     double *distinct; /* of each segment: distinctness() in the first round */
@@ -214,7 +218,7 @@ static enum status start_first_round(struct solution *x, const struct solver *v,
     plane_sweep_run(&x->sweep, x->planes, v->m, &x->points, x->weights, x->problem.view, &x->families, v->params, err);
     x->problem.cost = x->sweep.cost;
     for (int i = 0; !err->status && i < v->m->segments->count; i++) x->distinct[i] = sweep_distinctness(&x->sweep, i);
-    if (!err->status) frame_prior_weigh(&x->prior, x->distinct, v->m->segments);
+    if (!err->status) frame_prior_weigh(&x->prior, x->trust, x->distinct, v->m->segments);
     if (!err->status) match_select(v->m, x->planes, NULL, err);
     return err->status;
 }
@@ -228,7 +232,10 @@ static enum status start_later_round(struct solution *x, const struct solver *v,
     if (!cross_view_make(&x->cross, s, v->set, v->view_idx, v->neighbours, v->neighbour_count, x->sweep.step, &source,
                          err))
         read_previous_planes(x->planes, x->distinct, v, err);
-    if (!err->status) frame_prior_weigh(&x->prior, x->distinct, s);
+    if (!err->status && v->source->model)
+        model_prior_weigh(&x->prior, v->params->model_gain, x->distinct, s);
+    else if (!err->status)
+        frame_prior_weigh(&x->prior, x->trust, x->distinct, s);
     unsigned *occluded = calloc((size_t)s->count + 1, sizeof *occluded);
     if (!err->status && !occluded) err_nomem(err, "occlusions", (size_t)s->count * sizeof *occluded);
     for (int i = 0; !err->status && i < s->count; i++) cross_view_cost(&x->cross, i, x->planes[i], &occluded[i]);
@@ -238,6 +245,18 @@ static enum status start_later_round(struct solution *x, const struct solver *v,
     x->problem.min_match = x->min_match;
     for (int i = 0; !err->status && i < s->count; i++)
         if (given_depth_has(x->sweep.given, i)) x->planes[i] = x->given.planes[i];
+    return err->status;
+}
+
+/* What is known of the room: the model's faces, in the round that knows it; before, what straight edges show. */
+static enum status make_prior(struct plane_prior *prior, const struct solver *v, struct err *err)
+{
+    const struct view *view = &v->set->views[v->view_idx];
+    struct view_trace trace = {0};
+    if (!v->source->model) return frame_prior_make(prior, v->source->frame, view, v->m->segments, err);
+    if (!view_trace(&trace, v->source->model, v->source->axes, view, err))
+        model_prior_make(prior, &trace, view, v->m->segments, err);
+    view_trace_release(&trace);
     return err->status;
 }
 
@@ -275,10 +294,7 @@ static enum status start_solution(struct solution *x, const struct solver *v, st
         for (int k = 0; k < f->heading_count && x->families.count < MAX_FAMILIES; k++)
             x->families.normal[x->families.count++] = mat3_apply(view->cam_from_world, frame_across(f, k));
     }
-    double trust = 0;
-    if (room_frame_trust(&trust, &v->set->model, err) ||
-        frame_prior_make(&x->prior, v->source->frame, trust, view, s, err))
-        return err->status;
+    if (room_frame_trust(&x->trust, &v->set->model, err) || make_prior(&x->prior, v, err)) return err->status;
     x->problem.prior = x->prior.count ? &x->prior : NULL;
     x->problem.families = &x->families;
     if (v->given) fit_given(&x->given, v, x->sweep.step, err);
@@ -295,15 +311,16 @@ static void solution_release(struct solution *x)
     free(x->weights);
     free(x->min_match);
     cross_view_release(&x->cross);
-    frame_prior_release(&x->prior);
+    plane_prior_release(&x->prior);
     plane_sweep_release(&x->sweep);
     given_depth_release(&x->given);
     point_evidence_release(&x->points);
 }
 
-/* Gives floating border areas what lies behind them, without confidence. */
+/* Gives floating border areas what lies behind them, and what stands before the model without evidence the model's
+ * depth, both without confidence. */
 static enum status inherit(struct layered_depth *out, struct plane *planes, const struct plane_problem *p,
-                           bool cautious, struct err *err)
+                           bool cautious, bool knows_model, struct err *err)
 {
     const size_t count = (size_t)out->segment_count + 1;
     double *confidence = malloc(count * sizeof *confidence);
@@ -311,6 +328,7 @@ static enum status inherit(struct layered_depth *out, struct plane *planes, cons
     if (!confidence || !inherited) err_nomem(err, "confidences", count * sizeof *confidence);
     for (int i = 0; !err->status && i < out->segment_count; i++) confidence[i] = out->segments[i].confidence;
     if (!err->status) inherit_planes(planes, inherited, confidence, p, cautious, err);
+    if (!err->status && knows_model) model_prior_settle(planes, inherited, confidence, p, err);
     for (int i = 0; !err->status && i < out->segment_count; i++)
         if (inherited[i]) {
             struct depth_segment *g = &out->segments[i];
@@ -371,7 +389,7 @@ static enum status solve(struct layered_depth *out, const struct solver *v, stru
             sweep->cost + (size_t)i * (size_t)sweep->planes, sweep->planes,
             (plane_at(x.planes[i], s->segments[i].cx, s->segments[i].cy) - sweep->min_inverse_z) / sweep->step);
     if (!err->status && !fill_segments(out, &x.problem, x.planes, x.distinct, err) &&
-        !inherit(out, x.planes, &x.problem, another_round(v), err))
+        !inherit(out, x.planes, &x.problem, another_round(v), v->source->model, err))
         make_layers(out, &x, v, err);
     solution_release(&x);
     return err->status;

@@ -5,6 +5,8 @@
 #include "common/capture/room_frame.h"
 #include "common/image/image.h"
 #include "common/layers/layered_depth.h"
+#include "common/light/model_rays.h"
+#include "common/model/model_axes.h"
 #include "stages/segment_depth/neighbours.h"
 #include "stages/segment_depth/segment_params.h"
 
@@ -19,6 +21,8 @@ struct view_source {
     enum status (*read_given)(void *ctx, int view_idx, float **z, struct err *err);
     const struct vec3 *ups; /* of each view: the upright direction in its camera (upright.h); NULL: all stand upright */
     const struct room_frame *frame; /* what is known of the room; NULL: nothing */
+    const struct model_rays *model; /* the solid model, after the first round; NULL: there is none yet */
+    const struct model_axes *axes;  /* its frame */
 };
 
 /* out: {0} on entry; the caller releases it. neighbours, neighbour_count: the views that were read besides view_idx.

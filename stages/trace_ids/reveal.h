@@ -4,7 +4,8 @@
 
 #include <stdint.h>
 
-#include "stages/trace_ids/view_trace.h"
+#include "common/light/view_trace.h"
+#include "common/texture/view_ids.h"
 
 /* {.base = trace} is the empty state. */
 struct reveal {

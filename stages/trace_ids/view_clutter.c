@@ -29,7 +29,7 @@
 #include "common/base/parallel.h"
 #include "common/layers/depth_sigma.h"
 #include "common/math/distance.h"
-#include "stages/trace_ids/view_trace.h"
+#include "stages/trace_ids/view_layers.h"
 
 #define MIN_ALPHA 0.1f  /* of a boundary layer that counts */
 #define RATHER    0.25f /* what a segment of little confidence says counts half: 0.5 +- this */

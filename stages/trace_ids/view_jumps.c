@@ -16,7 +16,7 @@
 #include <string.h>
 
 #include "common/math/distance.h"
-#include "stages/trace_ids/view_trace.h"
+#include "stages/trace_ids/view_layers.h"
 
 #define SAME_PLANE 1e-9
 #define STRANGERS  0.1 /* of `jump`, between faces that share no edge */

@@ -8,7 +8,7 @@
 #ifndef REMODEL_VIEW_RECORD_H
 #define REMODEL_VIEW_RECORD_H
 
-#include "stages/trace_ids/view_trace.h"
+#include "stages/trace_ids/view_layers.h"
 
 struct seen_face {
     int id, pixels, clean;

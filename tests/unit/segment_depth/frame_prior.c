@@ -68,10 +68,10 @@ static void segments_are_expected_on_what_their_rays_meet_first(void **state)
     (void)state;
     const struct segmentation s = grid();
     const struct room_frame f = room();
-    struct frame_prior prior;
+    struct plane_prior prior;
     struct err err = ERR_INIT;
     int known = 0;
-    assert_ok(frame_prior_make(&prior, &f, 1, &view, &s, &err), err);
+    assert_ok(frame_prior_make(&prior, &f, &view, &s, &err), err);
     assert_int_equal(prior.count, 4);
     for (int i = 0; i < COUNT; i++) {
         const double u = segments[i].cx, v = segments[i].cy;
@@ -80,7 +80,7 @@ static void segments_are_expected_on_what_their_rays_meet_first(void **state)
         assert_true(fabs(plane_at(prior.planes[prior.expected[i]], u, v) - truth(u, v)) < 1e-9);
     }
     assert_int_equal(known, COUNT);
-    frame_prior_release(&prior);
+    plane_prior_release(&prior);
 }
 
 /* Beyond the end of a wall nothing is known at the horizon. */
@@ -89,21 +89,21 @@ static void nothing_is_expected_where_nothing_is_known(void **state)
     (void)state;
     const struct segmentation s = grid();
     struct room_frame f = room();
-    struct frame_prior prior;
+    struct plane_prior prior;
     struct err err = ERR_INIT;
     f.floor.known = f.ceiling.known = false;
     f.wall_count = 1;
-    assert_ok(frame_prior_make(&prior, &f, 1, &view, &s, &err), err);
+    assert_ok(frame_prior_make(&prior, &f, &view, &s, &err), err);
     assert_int_equal(prior.count, 1);
     for (int i = 0; i < COUNT; i++) {
         const double x = (segments[i].cx - 60) / 50 * 4;
         assert_int_equal(prior.expected[i], x > -2 && x < 3 ? 0 : -1);
     }
-    frame_prior_release(&prior);
-    assert_ok(frame_prior_make(&prior, NULL, 1, &view, &s, &err), err);
+    plane_prior_release(&prior);
+    assert_ok(frame_prior_make(&prior, NULL, &view, &s, &err), err);
     assert_int_equal(prior.count, 0);
-    frame_prior_release(&prior);
-    frame_prior_release(&prior);
+    plane_prior_release(&prior);
+    plane_prior_release(&prior);
 }
 
 /* The gain of a blank segment, when `part` of the others match. */
@@ -112,14 +112,14 @@ static double gain_of(double trust, double part)
     static double distinct[COUNT];
     const struct segmentation s = grid();
     const struct room_frame f = room();
-    struct frame_prior prior;
+    struct plane_prior prior;
     struct err err = ERR_INIT;
     for (int i = 0; i < COUNT; i++) distinct[i] = i > 0 && i <= part * COUNT;
-    assert_ok(frame_prior_make(&prior, &f, trust, &view, &s, &err), err);
-    frame_prior_weigh(&prior, distinct, &s);
+    assert_ok(frame_prior_make(&prior, &f, &view, &s, &err), err);
+    frame_prior_weigh(&prior, trust, distinct, &s);
     const double gain = (double)prior.gain[0];
     if (part > 0) assert_true(prior.gain[1] < prior.gain[0] || !(gain > 0));
-    frame_prior_release(&prior);
+    plane_prior_release(&prior);
     return gain;
 }
 

@@ -4,7 +4,7 @@
 
 #include "tests/unit/box_solids.h"
 
-#include "stages/trace_ids/view_trace.h"
+#include "stages/trace_ids/view_layers.h"
 
 static const struct model_axes same_frame = {.rotation = {1, 0, 0, 0}, .scale = 1};
 

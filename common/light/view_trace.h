@@ -1,12 +1,9 @@
-/* view_trace.h - a view of the solid model: face and depth of each pixel, depth jumps, clutter. */
+/* view_trace.h - a view of the solid model: face and depth of each pixel. */
 #ifndef REMODEL_VIEW_TRACE_H
 #define REMODEL_VIEW_TRACE_H
 
-#include "common/layers/layered_depth.h"
 #include "common/light/model_rays.h"
 #include "common/model/model_axes.h"
-#include "common/texture/view_ids.h"
-#include "stages/trace_ids/trace_params.h"
 
 /* {0} is the empty state. */
 struct view_trace {
@@ -28,16 +25,5 @@ static inline double view_trace_inverse_depth(const struct view_trace *t, uint32
     const double *p = t->planes[face - 1];
     return p[0] * u + p[1] * v + p[2];
 }
-
-/* Sets ids->id and z. */
-void view_trace_ids(struct view_ids *ids, const struct view_trace *t);
-
-/* Sets ids->jump. depth: of the view, for the pixels that the view does not have. */
-enum status view_jumps_find(struct view_ids *ids, const struct view_trace *t, const struct layered_depth *depth,
-                            const struct trace_params *params, struct err *err);
-
-/* Sets ids->clutter. scale: model units per scene unit. */
-enum status view_clutter_find(struct view_ids *ids, const struct view_trace *t, const struct layered_depth *depth,
-                              double scale, const struct trace_params *params, struct err *err);
 
 #endif
