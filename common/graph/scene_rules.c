@@ -188,7 +188,7 @@ void rule_draws_model(struct graph *g, const char *model)
     rule_after(g, graph_own(g, "stamp/exposure.txt"));
     rule_option(g, "--vdta", graph_own(g, "vdta"));
     rule_option(g, "--ids", FOLDER(g, FACE_INDEX));
-    rule_option(g, "--depth", FOLDER(g, DEPTH, .view = ""));
+    rule_option(g, "--depth", FOLDER(g, DEPTH, .depth = MODEL_DEPTH, .view = ""));
 }
 
 void rule_draws_photo(struct graph *g, const char *edit, const char *pictures, const struct photo_views *p,
@@ -202,7 +202,7 @@ void rule_draws_photo(struct graph *g, const char *edit, const char *pictures, c
         graph_goal(g, goal, record);
         rule_needs(g, PATH(g, VIEW, .view = p->views[i]));
         rule_needs(g, PATH(g, IDS, .view = p->views[i]));
-        rule_needs(g, PATH(g, DEPTH, .view = p->views[i]));
+        rule_needs(g, PATH(g, DEPTH, .depth = MODEL_DEPTH, .view = p->views[i]));
         rule_option(g, "--view", p->views[i]);
     }
     rule_option(g, "--out", graph_own(g, pictures));

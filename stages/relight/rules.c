@@ -71,7 +71,7 @@ static void relit_rule(struct graph *g, const struct scene_facts *f, const char 
     say_light(g, f, edit);
     rule_needs(g, scene_materials(g, f));
     rule_option(g, "--ids", FOLDER(g, FACE_INDEX));
-    rule_option(g, "--depth", FOLDER(g, DEPTH, .view = ""));
+    rule_option(g, "--depth", FOLDER(g, DEPTH, .depth = MODEL_DEPTH, .view = ""));
     rule_option(g, "--pictures", graph_own(g, unlit));
     for (int i = 0; i < p->count; i++) rule_option(g, "--picture", p->views[i]);
     rule_option(g, "--out", graph_own(g, relit));

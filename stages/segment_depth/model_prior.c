@@ -6,7 +6,7 @@
  * Evidence beats the model. A segment costs its gain less on its face, and less so the surer its depth was before. What
  * still lies off its face stays only with evidence from two views, or as part of a thing that has it: adjacent segments
  * off their faces whose planes meet at the border are a thing, and a thing stays if segments on whose depth AGREEING
- * views agree make up HELD_PART of it. Everything else takes its face, without confidence. */
+ * other views agree make up HELD_PART of it. Everything else takes its face, without confidence. */
 #include "stages/segment_depth/model_prior.h"
 
 #include <math.h>
@@ -20,7 +20,7 @@
 #define OFF_PART   0.02 /* part of the inverse depth, and ... */
 #define OFF_STEPS  1.0  /* ... steps, from which on a segment lies off its face */
 #define MEET_STEPS 3.0  /* by which planes of one thing may differ at their border */
-#define AGREEING   1.5  /* views, weighted with their confidence */
+#define AGREEING   0.9  /* other views, weighted with their confidence */
 #define HELD_PART  0.15 /* of a thing's pixels */
 
 static int candidate_of(struct prior_candidate *list, int *count, struct vec3 normal)

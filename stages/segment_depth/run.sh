@@ -29,9 +29,10 @@ views_and_rounds()
     awk -v last="$1" '
         {
             view = out = ""
-            for (i = 2; i < NF; i++) { if ($i == "segment_depth" && $(i - 2) ~ /run_stage.sh$/) view = $(i + 1); if ($i == "--out") out = $(i + 1) }
+            for (i = 2; i < NF; i++) { if ($i == "--view") view = $(i + 1); if ($i == "--out") out = $(i + 1) }
             if (view == "") next
-            print view, match(out, /\/round[0-9]+\//) ? substr(out, RSTART + 6, RLENGTH - 7) : last
+            if (out ~ /\/depth\/model\//) print view, last ? last : 1
+            else print view, match(out, /\/round[0-9]+\//) ? substr(out, RSTART + 6, RLENGTH - 7) : last
         }'
 }
 last_round() { sed -n 's/^rounds = //p' "$O/slice/segment_depth.cfg"; }

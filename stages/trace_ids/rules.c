@@ -20,9 +20,9 @@ static void ids_rule(struct graph *g, const char *view)
     rule_makes(g, faces);
     rule_makes(g, ids);
     say_model(g);
-    rule_needs(g, PATH(g, DEPTH, .view = view));
-    rule_needs(g, PATH(g, SEGMENTS, .view = view));
-    rule_option(g, "--depth", FOLDER(g, DEPTH, .view = view));
+    rule_needs(g, PATH(g, DEPTH, .depth = MODEL_DEPTH, .view = view));
+    rule_needs(g, PATH(g, SEGMENTS, .depth = MODEL_DEPTH, .view = view));
+    rule_option(g, "--depth", FOLDER(g, DEPTH, .depth = MODEL_DEPTH, .view = view));
     rule_own(g);
     rule_option(g, "--view", view);
     rule_option(g, "--out", ids);
@@ -53,7 +53,7 @@ static void reveal_rule(struct graph *g, const struct scene_facts *f, const char
 
 RULES(trace_ids)
 {
-    graph_step(g, "ids", STEP_FARM, "model");
+    graph_step(g, "ids", STEP_FARM, "model_depth");
     graph_goal(g, "ids-views", NULL);
     graph_goal(g, "ids-reveal", NULL);
     graph_goal(g, "ids", "ids-views ids-reveal");
