@@ -54,6 +54,7 @@ static void view_rule(struct graph *g, const struct scene_facts *f, const char *
     graph_goal(g, r->goal, out);
     graph_goal(g, r->goal, segments);
     graph_goal(g, r->goal, record);
+    if (r->knows_model) graph_list_if(g, GRAPH_MEASURED, out, scene_asks_for_any(f, "textures remodel"));
     if (strcmp(folder, "depth") != 0) return;
     graph_set(g, "depth", out);
     graph_set(g, "depth", segments);

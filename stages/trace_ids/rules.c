@@ -65,6 +65,7 @@ RULES(trace_ids)
     graph_goal(g, "ids", PATH(g, FACE_INDEX));
     graph_rule(g, "index");
     rule_makes(g, PATH(g, FACE_INDEX));
+    rule_makes(g, PATH(g, FACE_OFFSETS));
     for (int i = 0; i < f->views.count; i++) rule_needs(g, PATH(g, VIEW_FACES, .view = f->views.names[i]));
     say_model(g);
     rule_option(g, "--index", FOLDER(g, FACE_INDEX));

@@ -13,7 +13,8 @@
  *         VIEW.txt beside OUT                           how many pixels each edit reveals
  * With --index instead:
  * reads   MODEL, AXES, VIEWS; IDS/VIEW.txt of all views
- * writes  OUT                                           the views of each face, best first
+ * writes  IDS/offsets.txt                               where the photographs say that faces are
+ *         OUT                                           the views of each face, best first
  *
  * --estimate prints what views will take instead, and reads nothing but the cameras. */
 #include <inttypes.h>
@@ -25,6 +26,7 @@
 #include "common/base/log.h"
 #include "common/model/scene_inputs.h"
 #include "common/product/product.h"
+#include "stages/trace_ids/face_offsets.h"
 #include "stages/trace_ids/reveal.h"
 #include "stages/trace_ids/trace_estimate.h"
 #include "stages/trace_ids/view_ranks.h"
@@ -125,7 +127,7 @@ static enum status trace_view(void *ctx, int i, struct err *err)
     if (!err->status && !view_ids_init(&ids, view->width, view->height, err)) view_trace_ids(&ids, &trace);
     if (!err->status && !view_jumps_find(&ids, &trace, &depth, &j->params, err) &&
         !view_clutter_find(&ids, &trace, &depth, j->in.axes.scale, &j->params, err) &&
-        !view_record_make(&record, &ids, &trace, &j->params, err) && !view_record_write(&record, text, &j->prov, err))
+        !view_record_make(&record, &ids, &trace, &depth, &j->params, err) && !view_record_write(&record, text, &j->prov, err))
         view_ids_write(&ids, view, out, &j->prov, err);
     provenance_keep(&j->prov, shared);
     view_record_release(&record);
@@ -214,20 +216,25 @@ static void warn_if_outside(const struct job *j)
 static enum status index_faces(struct job *j, struct err *err)
 {
     struct view_ranks ranks = {.max_views = j->params.index_views};
+    struct face_offsets offsets = {0};
+    char path[FILE_PATH];
     int empty = 0;
     warn_if_outside(j);
     for (int i = 0; !err->status && i < j->in.set.view_count; i++) {
         struct view_record record = {0};
-        char path[FILE_PATH];
         const struct product_key key = {.view = j->in.set.views[i].name};
         if (!product_path_in(path, j->index, PRODUCT_VIEW_FACES, &key, err) &&
             !view_record_read(&record, path, NULL, err))
             view_ranks_add(&ranks, j->in.set.views[i].name, &record, err);
+        if (!err->status) face_offsets_add(&offsets, &record, err);
         empty += !err->status && !record.count;
         view_record_release(&record);
     }
-    if (!err->status) view_ranks_write(&ranks, j->out.items[0], &j->prov, err);
+    if (!err->status && !product_path_in(path, j->index, PRODUCT_FACE_OFFSETS, NULL, err) &&
+        !face_offsets_write(&offsets, &j->rays, &j->in.axes, path, &j->prov, err))
+        view_ranks_write(&ranks, j->out.items[0], &j->prov, err);
     if (!err->status && empty) log_note("%d of %d views show no face of the model", empty, j->in.set.view_count);
+    face_offsets_release(&offsets);
     view_ranks_release(&ranks);
     return err->status;
 }

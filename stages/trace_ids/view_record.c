@@ -8,7 +8,10 @@
 
 #include "common/base/array.h"
 #include "common/base/sort.h"
+#include "common/layers/depth_sigma.h"
 #include "common/product/product.h"
+
+#define MAX_OFFSET 0.1 /* of the face's depth */
 
 /* The face that the photo shows at a pixel; 0: none. */
 static uint32_t shown(const struct view_ids *v, int pixel) { return v->jump[pixel] > 0 ? v->id[pixel] : 0; }
@@ -56,8 +59,28 @@ static void measure(struct seen_face *f, const int *pixels, int count, const str
     f->cosine = cosines / used;
 }
 
+/* How far the view's sure depth lies from the face. Depth that is far off shows something else. */
+static void measure_offset(struct seen_face *f, const int *pixels, int count, const struct view_ids *ids,
+                           const struct view_trace *t, const struct layered_depth *depth, float *offsets,
+                           const struct trace_params *params)
+{
+    for (int i = 0; i < count; i++) {
+        const int p = pixels[i];
+        const uint32_t id = depth->interior.id[p];
+        if (solid_face_is_pane(&t->model->mesh, (int)t->faces[p] - 1)) continue; /* shows what is behind it */
+        if (!id || depth->segments[id - 1].confidence < DEPTH_SURE || ids->jump[p] <= (float)params->clean_margin)
+            continue;
+        const double part = (double)depth->interior.z[p] / (double)ids->z[p] - 1;
+        double cosine;
+        const double distance = pixel_distance(t, ids, p, &cosine);
+        if (fabs(part) <= MAX_OFFSET) offsets[f->sure++] = (float)(part * distance * cosine);
+    }
+    sort_floats(offsets, (size_t)f->sure);
+    f->offset = f->sure ? (double)offsets[f->sure / 2] : 0;
+}
+
 enum status view_record_make(struct view_record *r, const struct view_ids *ids, const struct view_trace *t,
-                             const struct trace_params *params, struct err *err)
+                             const struct layered_depth *depth, const struct trace_params *params, struct err *err)
 {
     const int pixels = ids->width * ids->height, count = t->model->ids;
     int *order = malloc((size_t)pixels * sizeof *order);
@@ -72,6 +95,7 @@ enum status view_record_make(struct view_record *r, const struct view_ids *ids, 
         struct seen_face *f = &r->faces[r->count++];
         *f = (struct seen_face){.id = id};
         measure(f, order + first[id], first[id + 1] - first[id], ids, t, distances, params);
+        measure_offset(f, order + first[id], first[id + 1] - first[id], ids, t, depth, distances, params);
     }
     free(order);
     free(first);
@@ -95,7 +119,8 @@ enum status view_record_write(const struct view_record *r, const char *path, con
     if (!err->status) {
         for (int i = 0; i < r->count; i++) {
             const struct seen_face *s = &r->faces[i];
-            fprintf(f.fp, "face %d %d %d %.9g %.9g\n", s->id, s->pixels, s->clean, s->distance, s->cosine);
+            fprintf(f.fp, "face %d %d %d %.9g %.9g %d %.9g\n", s->id, s->pixels, s->clean, s->distance, s->cosine,
+                    s->sure, s->offset);
         }
         outfile_commit(&f, err);
     }
@@ -105,17 +130,20 @@ enum status view_record_write(const struct view_record *r, const char *path, con
 
 static enum status read_face(struct seen_face *f, struct textfile *t, int last, struct err *err)
 {
-    int64_t id, pixels, clean;
+    int64_t id, pixels, clean, sure;
     if (textfile_expect(t, "face", err) ||
         textfile_int(t, "id of a face, above the last", last + 1, INT_MAX, &id, err) ||
         textfile_int(t, "pixels", 1, INT_MAX, &pixels, err) ||
         textfile_int(t, "clean pixels", 0, pixels, &clean, err) || textfile_double(t, "distance", &f->distance, err) ||
-        textfile_number(t, "cosine", 0, 1, &f->cosine, err) || textfile_end(t, err))
+        textfile_number(t, "cosine", 0, 1, &f->cosine, err) ||
+        textfile_int(t, "pixels of sure depth", 0, pixels, &sure, err) ||
+        textfile_double(t, "offset", &f->offset, err) || textfile_end(t, err))
         return err->status;
     if (!(f->distance > 0)) return textfile_wrong_number(t, f->distance, "a distance above 0", err);
     f->id = (int)id;
     f->pixels = (int)pixels;
     f->clean = (int)clean;
+    f->sure = (int)sure;
     return ST_OK;
 }
 

@@ -1,10 +1,12 @@
 /* view_record.h - the faces that a view shows: out/SCENE/ids/VIEW.txt.
  *
- *   remodel-view-faces 1
- *   face ID PIXELS CLEAN DISTANCE COSINE      in order of ID
+ *   remodel-view-faces 2
+ *   face ID PIXELS CLEAN DISTANCE COSINE SURE OFFSET      in order of ID
  * PIXELS show the face; CLEAN of them are farther than clean_margin from depth jumps and show no clutter (those of
  * unknown clutter count half); DISTANCE is the median distance from the camera (scene units) and COSINE the mean cosine
- * of the angle between the ray and the face's normal, of the clean pixels, or of all if none is clean. */
+ * of the angle between the ray and the face's normal, of the clean pixels, or of all if none is clean. SURE pixels, as
+ * far from jumps, have a sure depth within a tenth of the face's; OFFSET is their median distance from the face along its
+ * normal (scene units, above 0 farther from the camera; 0 without such pixels). */
 #ifndef REMODEL_VIEW_RECORD_H
 #define REMODEL_VIEW_RECORD_H
 
@@ -13,6 +15,8 @@
 struct seen_face {
     int id, pixels, clean;
     double distance, cosine;
+    int sure;
+    double offset;
 };
 
 struct view_record {
@@ -21,7 +25,7 @@ struct view_record {
 };
 
 enum status view_record_make(struct view_record *r, const struct view_ids *ids, const struct view_trace *t,
-                             const struct trace_params *params, struct err *err);
+                             const struct layered_depth *depth, const struct trace_params *params, struct err *err);
 void view_record_release(struct view_record *r);
 enum status view_record_write(const struct view_record *r, const char *path, const struct provenance *prov,
                               struct err *err);

@@ -34,7 +34,7 @@ index_house() # VIEWS
 {
     local to=$fast/trace$1
     mkdir -p "$to/ids"
-    seq 0 $(($1 - 1)) | awk -v ids="$to/ids" '{ f = sprintf("%s/v%06d.txt", ids, $1); print "remodel-view-faces 1" >f; close(f) }'
+    seq 0 $(($1 - 1)) | awk -v ids="$to/ids" '{ f = sprintf("%s/v%06d.txt", ids, $1); print "remodel-view-faces 2" >f; close(f) }'
     # shellcheck disable=SC2046 # a list of options
     "$B/bin/trace_ids" $(house "$to") --depth "$to/depth" $(views_of "$1" 48 | sed "s|.*|--view & --out $to/ids/&.exr|") 2>/dev/null
     # shellcheck disable=SC2046

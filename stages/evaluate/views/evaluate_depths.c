@@ -222,10 +222,30 @@ static enum status photo_truth_make(struct photo_truth *v, const struct evaluati
 }
 
 struct scene_errors { /* of all views */
-    struct depth_errors depths;
+    struct depth_errors depths, model_depths;
     struct sigma_errors sigmas;
     uint64_t pixels, known;
 };
+
+/* Adds the errors of the view's depth from the round that knows the model, if there is one. s: room for it. */
+static enum status compare_model_depth(struct evaluation *e, const struct view *view, struct stated_depth *s,
+                                       const float *truth, const uint8_t *occluded, double focal_baseline,
+                                       struct depth_errors *errors, struct err *err)
+{
+    const size_t pixels = (size_t)view->width * (size_t)view->height;
+    struct layered_depth d = {0};
+    uint64_t here = 0, known = 0;
+    char path[FILE_PATH];
+    evaluation_path(path, e, PRODUCT_DEPTH, &(struct product_key){.depth = "depth/model", .view = view->name}, err);
+    if (err->status || !path_is_file(path)) return err->status;
+    if (!layered_depth_read(&d, path, e->prov, err) && d.width == view->width && d.height == view->height) {
+        visible_depth(s, &d, &here, &known);
+        for (size_t k = 0; k < pixels; k++) s->z[k] = (float)(s->z[k] * e->truth_from_scene.scale);
+        depth_errors_add(errors, s->z, truth, occluded, pixels, focal_baseline);
+    }
+    layered_depth_release(&d);
+    return err->status;
+}
 
 /* Adds the errors of a view's depth map to the table and to `scene`. s->z is overwritten. */
 static enum status compare_depth(struct evaluation *e, int i, struct photo_truth *tv, struct stated_depth *s,
@@ -248,8 +268,9 @@ static enum status compare_depth(struct evaluation *e, int i, struct photo_truth
         for (size_t k = 0; k < pixels; k++) s->z[k] = (float)(s->z[k] * e->truth_from_scene.scale);
         sigma_errors_add(&scene->sigmas, s->z, truth, s->sigma, s->classes, pixels);
         depth_errors_add(&errors, s->z, truth, occluded, pixels, view->fx * ratio * e->baseline);
+        compare_model_depth(e, view, s, truth, occluded, view->fx * ratio * e->baseline, &scene->model_depths, err);
         depth_errors_merge(&scene->depths, &errors);
-        add_depth_errors(e, view->name, &errors, err);
+        if (!err->status) add_depth_errors(e, view->name, &errors, err);
         if (!err->status && errors.all.pixels) write_truth(e, view, truth, occluded, err);
     }
     depth_errors_release(&errors);
@@ -327,9 +348,9 @@ enum status evaluate_depths(struct evaluation *e, struct err *err)
     struct progress progress;
     int missing = 0;
     bool *kept = calloc((size_t)e->photos.count + 1, sizeof *kept);
-    if (kept)
-        depth_errors_init(&scene.depths, err);
-    else
+    if (kept && !depth_errors_init(&scene.depths, err))
+        depth_errors_init(&scene.model_depths, err);
+    else if (!kept)
         err_nomem(err, "marks", (size_t)e->photos.count);
     if (!err->status) sigma_errors_init(&scene.sigmas, err);
     if (!err->status && e->truth_folder) {
@@ -353,6 +374,8 @@ enum status evaluate_depths(struct evaluation *e, struct err *err)
         metric_add(&e->table, NULL, "depth.known", percent(scene.known, scene.pixels), err);
     if (!err->status && scene.depths.all.pixels) {
         if (!add_depth_errors(e, NULL, &scene.depths, err)) add_sigma_errors(&e->table, &scene.sigmas, err);
+        if (!err->status && scene.model_depths.all.pixels)
+            add_tally(&e->table, NULL, &scene.model_depths.all, "_model", e->baseline > 0, err);
         if (!err->status && e->baseline > 0)
             metric_add(&e->table, NULL, "depth.baseline", e->baseline, err);
         else if (!err->status)
@@ -365,6 +388,7 @@ enum status evaluate_depths(struct evaluation *e, struct err *err)
                                     : "the truth has no depth of these photos");
     }
     depth_errors_release(&scene.depths);
+    depth_errors_release(&scene.model_depths);
     sigma_errors_release(&scene.sigmas);
     photo_truth_release(&tv);
     free(kept);

@@ -12,7 +12,7 @@ static struct view_record record_of(int v)
     struct view_record r = {calloc(FACES, sizeof *r.faces), 0};
     for (int id = 1 + v % 3; id <= FACES; id += 3) {
         const int pixels = 1 + (int)((unsigned)(id * 7919 + v * 104729) % 9973u);
-        r.faces[r.count++] = (struct seen_face){id, pixels, pixels / (1 + v % 4), 1 + 0.25 * v, (1 + v % 7) / 8.0};
+        r.faces[r.count++] = (struct seen_face){id, pixels, pixels / (1 + v % 4), 1 + 0.25 * v, (1 + v % 7) / 8.0, 0, 0};
     }
     return r;
 }
@@ -115,7 +115,7 @@ static void a_face_that_no_view_shows_has_no_views(void **state)
     struct face_views list;
     struct err err = ERR_INIT;
     struct view_ranks ranks = {.max_views = 3};
-    struct seen_face seen[] = {{5, 10, 0, 1, 0.5}, {9, 1, 1, 2, 1}};
+    struct seen_face seen[] = {{5, 10, 0, 1, 0.5, 0, 0}, {9, 1, 1, 2, 1, 0, 0}};
     const struct view_record r = {seen, 2};
     assert_ok(view_ranks_add(&ranks, "with space", &r, &err), err);
     assert_ok(view_ranks_write(&ranks, path, NULL, &err), err);

@@ -1,0 +1,191 @@
+/* model_prior.c - what a view is expected to see of a room that is modelled, and what may stand before it. */
+#include "stages/segment_depth/model_prior.h"
+
+#include "tests/unit/box_solids.h"
+
+enum { W = 80, H = 60, CELL = 10, ACROSS = W / CELL, COUNT = ACROSS * (H / CELL), VIEWS = 3 };
+enum { FIRST = 2 * ACROSS + 3, SECOND = FIRST + 1 }; /* two segments in the middle */
+
+static const struct box boxes[] = {ROOM_OUTSIDE, ROOM_INSIDE, {"glass/w", "pane", {-1, -1, 1.9}, {0, 1, 1.95}, false}};
+static const struct model_axes same_frame = {.rotation = {1, 0, 0, 0}, .scale = 1};
+static const double thing = 1.25; /* depth of what stands before the wall, which is 2 away */
+
+static struct segment segments[COUNT];
+static int pixel[W * H], label[W * H];
+static struct border borders[COUNT * 4];
+static int first_border[COUNT + 1];
+static struct view views[VIEWS];
+static double confidence_before; /* of the neighbours' depth */
+
+/* A grid of square segments. */
+static struct segmentation grid(void)
+{
+    int count = 0;
+    for (int i = 0; i < COUNT; i++) {
+        const int x = i % ACROSS, y = i / ACROSS;
+        segments[i] = (struct segment){.first = i * CELL * CELL,
+                                       .pixels = CELL * CELL,
+                                       .cx = (x + 0.5) * CELL,
+                                       .cy = (y + 0.5) * CELL,
+                                       .x0 = x * CELL,
+                                       .y0 = y * CELL,
+                                       .x1 = x * CELL + CELL - 1,
+                                       .y1 = y * CELL + CELL - 1};
+        for (int k = 0; k < CELL * CELL; k++) {
+            pixel[i * CELL * CELL + k] = (y * CELL + k / CELL) * W + x * CELL + k % CELL;
+            label[pixel[i * CELL * CELL + k]] = i;
+        }
+        first_border[i] = count;
+        if (x) borders[count++] = (struct border){i - 1, CELL, 0, (float)(x * CELL), (float)segments[i].cy, 0};
+        if (x < ACROSS - 1)
+            borders[count++] = (struct border){i + 1, CELL, 0, (float)(x * CELL + CELL), (float)segments[i].cy, 0};
+    }
+    first_border[COUNT] = count;
+    return (struct segmentation){.width = W,
+                                 .height = H,
+                                 .count = COUNT,
+                                 .label = label,
+                                 .pixel = pixel,
+                                 .segments = segments,
+                                 .first_border = first_border,
+                                 .borders = borders};
+}
+
+static void expect(struct plane_prior *prior, int box_count, const struct segmentation *s)
+{
+    struct model_rays model = make_rays(boxes, box_count);
+    struct view_trace trace = {0};
+    struct err err = ERR_INIT;
+    views[0] = view_at(vec3_make(0, 0, 0), 0, 0, W, H, 40);
+    assert_ok(view_trace(&trace, &model, &same_frame, &views[0], &err), err);
+    assert_ok(model_prior_make(prior, &trace, &views[0], s, &err), err);
+    view_trace_release(&trace);
+    model_rays_release(&model);
+}
+
+/* Of the room of side 4 about the camera. */
+static double truth(double u, double v)
+{
+    return fmax(0.5, fmax(fabs(u - W / 2.0), fabs(v - H / 2.0)) / 40 / 2);
+}
+
+static void segments_are_expected_on_the_faces_that_they_show(void **state)
+{
+    (void)state;
+    const struct segmentation s = grid();
+    struct plane_prior prior;
+    expect(&prior, 2, &s);
+    assert_int_equal(prior.count, 1); /* the wall ahead fills the view */
+    for (int i = 0; i < COUNT; i++) {
+        assert_int_equal(prior.expected[i], 0);
+        assert_true(fabs(plane_at(prior.planes[0], segments[i].cx, segments[i].cy) -
+                         truth(segments[i].cx, segments[i].cy)) < 1e-9);
+    }
+    plane_prior_release(&prior);
+}
+
+static void nothing_is_expected_in_an_opening(void **state)
+{
+    (void)state;
+    const struct segmentation s = grid();
+    struct plane_prior prior;
+    int open = 0;
+    expect(&prior, 3, &s);
+    for (int i = 0; i < COUNT; i++) open += prior.expected[i] < 0;
+    assert_true(open >= 6 && open <= 12); /* the pane covers 21 x 42 pixels */
+    plane_prior_release(&prior);
+}
+
+static void a_sure_segment_gains_less(void **state)
+{
+    (void)state;
+    static double sure[COUNT];
+    const struct segmentation s = grid();
+    struct plane_prior prior;
+    expect(&prior, 2, &s);
+    sure[FIRST] = 1;
+    model_prior_weigh(&prior, 0.1, sure, &s);
+    assert_true(prior.gain[SECOND] > 0.09f && prior.gain[SECOND] < 0.11f);
+    assert_true(prior.gain[FIRST] < 0.5f * prior.gain[SECOND]);
+    plane_prior_release(&prior);
+}
+
+static enum status read_thing(void *ctx, int view_idx, struct layered_depth *d, struct err *err)
+{
+    (void)ctx;
+    (void)view_idx;
+    *d = (struct layered_depth){.width = W, .height = H, .segment_count = 1};
+    d->interior.id = calloc((size_t)W * H, sizeof *d->interior.id);
+    d->segments = calloc(1, sizeof *d->segments);
+    if (!d->interior.id || !d->segments) return err_nomem(err, "a depth map", 1);
+    for (int i = 0; i < W * H; i++) d->interior.id[i] = 1;
+    d->segments[0] = (struct depth_segment){1, W * H, {0, 0, 1 / thing}, 0.01, confidence_before};
+    return ST_OK;
+}
+
+/* All lies on the wall but two adjacent segments; `sure` is the confidence of the first. The neighbours' depth is that
+ * of the thing. Returns how many of the two stay. */
+static int settle(double sure, double neighbours_sure)
+{
+    const struct segmentation s = grid();
+    const struct camera_set set = {.views = views, .view_count = VIEWS};
+    const int neighbours[] = {1, 2};
+    const struct previous_depth_source source = {read_thing, NULL};
+    struct plane planes[COUNT];
+    double confidence[COUNT] = {0};
+    bool inherited[COUNT] = {false};
+    struct scene_planes scene = {.count = 1, .known = 1};
+    struct matcher m = {.segments = &s};
+    struct cross_view cross = {0};
+    struct plane_prior prior;
+    struct err err = ERR_INIT;
+    expect(&prior, 2, &s);
+    views[1] = view_at(vec3_make(0.1, 0, 0), 0, 0, W, H, 40);
+    views[2] = view_at(vec3_make(-0.1, 0, 0), 0, 0, W, H, 40);
+    confidence_before = neighbours_sure;
+    scene_planes_set(&scene, 0, prior.planes[0]);
+    assert_ok(cross_view_make(&cross, &s, &set, 0, neighbours, 2, 0.02, &source, &err), err);
+    const struct plane_problem p = {.m = &m, .cross = &cross, .prior = &prior, .scene = &scene, .step = 0.02};
+    for (int i = 0; i < COUNT; i++) planes[i] = prior.planes[0];
+    planes[FIRST] = planes[SECOND] = (struct plane){0, 0, 1 / thing};
+    planes[0].c *= 1.01; /* a little off: the photos may know better */
+    confidence[FIRST] = sure;
+    const double slightly_off = planes[0].c;
+    assert_ok(model_prior_settle(planes, inherited, confidence, &p, &err), err);
+    assert_true(planes[0].c == slightly_off && !inherited[0]);
+    int stay = 0;
+    for (int i = FIRST; i <= SECOND; i++) {
+        const bool on_the_wall = memcmp(&planes[i], &prior.planes[0], sizeof planes[i]) == 0;
+        assert_true(on_the_wall == inherited[i]);
+        stay += !on_the_wall;
+    }
+    cross_view_release(&cross);
+    plane_prior_release(&prior);
+    return stay;
+}
+
+static void what_no_other_view_confirms_is_the_face_behind_it(void **state)
+{
+    (void)state;
+    assert_int_equal(settle(0.9, 0.05), 0);
+    assert_int_equal(settle(0, 0.9), 0);
+}
+
+/* The second segment has no confidence of its own. */
+static void a_thing_that_views_agree_on_stays_with_all_its_parts(void **state)
+{
+    (void)state;
+    assert_int_equal(settle(0.9, 0.9), 2);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(segments_are_expected_on_the_faces_that_they_show),
+        cmocka_unit_test(nothing_is_expected_in_an_opening),
+        cmocka_unit_test(a_sure_segment_gains_less),
+        cmocka_unit_test(what_no_other_view_confirms_is_the_face_behind_it),
+        cmocka_unit_test(a_thing_that_views_agree_on_stays_with_all_its_parts),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
