@@ -13,11 +13,11 @@
 
 #include "common/math/numbers.h"
 
-#define EXPECTED_GAIN 0.8   /* of a blank segment */
-#define SURE_PART     0.5   /* by which a distinct match lowers it */
-#define HARDLY_SURE   0.28  /* share of the view that matches distinctly */
-#define MOSTLY_SURE   0.36  /* ... from which on the pictures decide alone */
-#define NEAREST       1e-6  /* distance of a plane from the camera, of the wall's offset: none is nearer */
+#define EXPECTED_GAIN 0.8  /* of a blank segment */
+#define SURE_PART     0.5  /* by which a distinct match lowers it */
+#define HARDLY_SURE   0.28 /* share of the view that matches distinctly */
+#define MOSTLY_SURE   0.36 /* ... from which on the pictures decide alone */
+#define NEAREST       1e-6 /* distance of a plane from the camera, of the wall's offset: none is nearer */
 
 struct surface {
     struct prior_candidate plane;
@@ -30,8 +30,7 @@ static void add_surface(struct surface *list, int *count, struct vec3 normal, do
 {
     const double distance = offset - vec3_dot(normal, view->center);
     if (!(fabs(distance) > NEAREST * (1 + fabs(offset)))) return;
-    list[(*count)++] =
-        (struct surface){{vec3_scale(mat3_apply(view->cam_from_world, normal), 1 / distance), 0}, wall};
+    list[(*count)++] = (struct surface){{vec3_scale(mat3_apply(view->cam_from_world, normal), 1 / distance), 0}, wall};
 }
 
 /* The first surface that the ray of a pixel meets; -1: none. */

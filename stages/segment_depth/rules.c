@@ -70,7 +70,8 @@ RULES(segment_depth)
     if (!scan_int(graph_parameter(g, "rounds"), &last)) return;
     for (int k = 0; k <= (int)last; k++) {
         const struct round r = {round_folder(g, k, (int)last), k ? round_folder(g, k - 1, (int)last) : NULL,
-                                graph_text(g, "depth-round%d", k), k ? graph_text(g, "depth-round%d", k - 1) : NULL, false};
+                                graph_text(g, "depth-round%d", k), k ? graph_text(g, "depth-round%d", k - 1) : NULL,
+                                false};
         graph_goal(g, r.goal, NULL);
         for (int i = 0; i < f->views.count; i++) view_rule(g, f, f->views.names[i], &r);
     }

@@ -34,8 +34,8 @@
     X(points, double, 1, 0, 10, "", "weight of the sparse points inside a segment")                                  \
     X(nearest_points, double, 0.01, 0, 10, "", "weight of the sparse points near a segment")                         \
     X(cross_view, double, 1.7, 0, 10, "", "weight of consistency with the neighbours' depth of the previous round")  \
-    X(model_gain, double, 0.08, 0, 10, "",                                                                             \
-      "by how much less a segment costs on the face of the solid model that it may show")                             \
+    X(model_gain, double, 0.08, 0, 10, "",                                                                           \
+      "by how much less a segment costs on the face of the solid model that it may show")                            \
     X(far_bias, double, 0.01, 0, 10, "",                                                                             \
       "cost of the nearest depth relative to the farthest where nothing else decides")                               \
     X(matte, choice, "two_colour", 0, 0, "two_colour|none", "how pixels at depth edges are split")

@@ -2,8 +2,8 @@
  *
  *   remodel-face-offsets 1
  *   face NAME VIEWS OFFSET ERROR       in order of |OFFSET|, largest first
- * OFFSET is the distance of the surface that the photographs show from the face, along its normal, in model units: above
- * 0 it is farther from the cameras. It is the median of what VIEWS views say; ERROR is its standard error. */
+ * OFFSET is the distance of the surface that the photographs show from the face, along its normal, in model units:
+ * above 0 it is farther from the cameras. It is the median of what VIEWS views say; ERROR is its standard error. */
 #ifndef REMODEL_FACE_OFFSETS_H
 #define REMODEL_FACE_OFFSETS_H
 

@@ -127,7 +127,8 @@ static enum status trace_view(void *ctx, int i, struct err *err)
     if (!err->status && !view_ids_init(&ids, view->width, view->height, err)) view_trace_ids(&ids, &trace);
     if (!err->status && !view_jumps_find(&ids, &trace, &depth, &j->params, err) &&
         !view_clutter_find(&ids, &trace, &depth, j->in.axes.scale, &j->params, err) &&
-        !view_record_make(&record, &ids, &trace, &depth, &j->params, err) && !view_record_write(&record, text, &j->prov, err))
+        !view_record_make(&record, &ids, &trace, &depth, &j->params, err) &&
+        !view_record_write(&record, text, &j->prov, err))
         view_ids_write(&ids, view, out, &j->prov, err);
     provenance_keep(&j->prov, shared);
     view_record_release(&record);

@@ -5,8 +5,8 @@
  * PIXELS show the face; CLEAN of them are farther than clean_margin from depth jumps and show no clutter (those of
  * unknown clutter count half); DISTANCE is the median distance from the camera (scene units) and COSINE the mean cosine
  * of the angle between the ray and the face's normal, of the clean pixels, or of all if none is clean. SURE pixels, as
- * far from jumps, have a sure depth within a tenth of the face's; OFFSET is their median distance from the face along its
- * normal (scene units, above 0 farther from the camera; 0 without such pixels). */
+ * far from jumps, have a sure depth within a tenth of the face's; OFFSET is their median distance from the face along
+ * its normal (scene units, above 0 farther from the camera; 0 without such pixels). */
 #ifndef REMODEL_VIEW_RECORD_H
 #define REMODEL_VIEW_RECORD_H
 

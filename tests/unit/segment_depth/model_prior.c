@@ -64,10 +64,7 @@ static void expect(struct plane_prior *prior, int box_count, const struct segmen
 }
 
 /* Of the room of side 4 about the camera. */
-static double truth(double u, double v)
-{
-    return fmax(0.5, fmax(fabs(u - W / 2.0), fabs(v - H / 2.0)) / 40 / 2);
-}
+static double truth(double u, double v) { return fmax(0.5, fmax(fabs(u - W / 2.0), fabs(v - H / 2.0)) / 40 / 2); }
 
 static void segments_are_expected_on_the_faces_that_they_show(void **state)
 {

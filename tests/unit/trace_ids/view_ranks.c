@@ -12,7 +12,8 @@ static struct view_record record_of(int v)
     struct view_record r = {calloc(FACES, sizeof *r.faces), 0};
     for (int id = 1 + v % 3; id <= FACES; id += 3) {
         const int pixels = 1 + (int)((unsigned)(id * 7919 + v * 104729) % 9973u);
-        r.faces[r.count++] = (struct seen_face){id, pixels, pixels / (1 + v % 4), 1 + 0.25 * v, (1 + v % 7) / 8.0, 0, 0};
+        r.faces[r.count++] =
+            (struct seen_face){id, pixels, pixels / (1 + v % 4), 1 + 0.25 * v, (1 + v % 7) / 8.0, 0, 0};
     }
     return r;
 }
