@@ -1,8 +1,7 @@
-/* face_offsets.c - the median over views of what each says of a face, with its error.
+/* face_offsets.c - the median over views of what each says of a face, and how far they differ.
  *
  * Views count alike, because their errors come from their cameras and their matching, not from how many pixels they
- * have. With n views and m the median of |offset - median|, the standard error of the median is
- * 1.253 * 1.483 m / sqrt(n), as for normal errors. */
+ * have. */
 #include "stages/trace_ids/face_offsets.h"
 
 #include <math.h>
@@ -16,14 +15,13 @@
 
 #define MIN_VIEWS   3
 #define MIN_SURE    200   /* pixels of sure depth that a view needs to say something of a face */
-#define CERTAIN     3.0   /* standard errors, and ... */
+#define MIN_SPREADS 2.0   /* and ... */
 #define MIN_PART    0.004 /* ... part of the model's height, above which an offset is reported */
 #define MAX_REPORTS 8
-#define MAD_SIGMA   (1.253 * 1.483)
 
 struct face_offset {
     int id, views;
-    double offset, error; /* model units */
+    double offset, spread; /* model units */
 };
 
 enum status face_offsets_add(struct face_offsets *o, const struct view_record *record, struct err *err)
@@ -64,8 +62,7 @@ static struct face_offset summarize(const struct view_offset *items, int count, 
     const double median = items[count / 2].offset;
     for (int i = 0; i < count; i++) scratch[i] = fabs(items[i].offset - median);
     qsort(scratch, (size_t)count, sizeof *scratch, compare_doubles);
-    return (struct face_offset){items[0].id, count, scale * median,
-                                scale * MAD_SIGMA * scratch[count / 2] / sqrt(count)};
+    return (struct face_offset){items[0].id, count, scale * median, scale * scratch[count / 2]};
 }
 
 /* The name of the face with an id. */
@@ -87,11 +84,11 @@ static void report(const struct face_offset *f, int count, const struct model_ra
     int reported = 0;
     for (int i = 0; i < count && reported < MAX_REPORTS; i++) {
         const double size = fabs(f[i].offset);
-        if (!(size > CERTAIN * f[i].error && size > MIN_PART * (high - low))) continue;
-        log_warn("%s: the photos say that it is %.3g%s %s than the model (%d views, standard error %.2g)",
+        if (!(size > MIN_SPREADS * f[i].spread && size > MIN_PART * (high - low))) continue;
+        log_warn("%s: the photos say that it is %.3g%s %s than the model (%d views, half within %.2g)",
                  name_of(&model->mesh, f[i].id), axes->metric ? 100 * size : size,
                  axes->metric ? " cm" : " model units", f[i].offset > 0 ? "farther" : "nearer", f[i].views,
-                 axes->metric ? 100 * f[i].error : f[i].error);
+                 axes->metric ? 100 * f[i].spread : f[i].spread);
         reported++;
     }
 }
@@ -114,7 +111,7 @@ enum status face_offsets_write(struct face_offsets *o, const struct model_rays *
         char quoted[FILE_PATH];
         for (int i = 0; i < count; i++)
             if (!textfile_quote(name_of(&model->mesh, faces[i].id), quoted, sizeof quoted, err))
-                fprintf(f.fp, "face %s %d %.6g %.6g\n", quoted, faces[i].views, faces[i].offset, faces[i].error);
+                fprintf(f.fp, "face %s %d %.6g %.6g\n", quoted, faces[i].views, faces[i].offset, faces[i].spread);
         if (!err->status) outfile_commit(&f, err);
     }
     outfile_discard(&f);
