@@ -41,7 +41,7 @@ static double noisy(int x, int y, double z)
 static void must_work_given(struct result *r, giver g)
 {
     const struct segment_params params = SEGMENT_PARAMS_DEFAULT;
-    const struct view_source source = {scene_photo, NULL, &scene, given_z, NULL, NULL};
+    const struct view_source source = {.read = scene_photo, .ctx = &scene, .read_given = given_z};
     struct err err = ERR_INIT;
     gives = g;
     assert_ok(view_depth(&r->depth, r->neighbours, &r->neighbour_count, &scene.set, 0, &source, &params, &err), err);
@@ -116,7 +116,7 @@ static void too_sparse_depth_alone_is_refused(void **state)
 {
     (void)state;
     const struct segment_params params = SEGMENT_PARAMS_DEFAULT;
-    const struct view_source source = {scene_photo, NULL, &scene, given_z, NULL, NULL};
+    const struct view_source source = {.read = scene_photo, .ctx = &scene, .read_given = given_z};
     struct result r = {0};
     struct err err = ERR_INIT;
     wall_and_card(1);
@@ -166,7 +166,8 @@ static void given_depth_is_kept(void **state)
     before.scene = &scene;
     gives = twice_as_far;
     for (int round = 0; round < 2; round++) {
-        const struct view_source source = {rounds_photo, round ? rounds_depth : NULL, &before, given_z, NULL, NULL};
+        const struct view_source source = {
+            .read = rounds_photo, .read_depth = round ? rounds_depth : NULL, .ctx = &before, .read_given = given_z};
         struct layered_depth now[3] = {{0}};
         for (int k = 0; k < 3; k++) {
             int neighbours[MAX_NEIGHBOURS], count;

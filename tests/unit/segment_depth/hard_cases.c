@@ -289,7 +289,7 @@ static enum status photo_on_disk(void *ctx, int view_idx, struct image *im, stru
 static void a_nan_in_a_view_is_an_error_with_its_pixel(void **state)
 {
     (void)state;
-    const struct view_source source = {photo_on_disk, NULL, NULL, NULL, NULL, NULL};
+    const struct view_source source = {.read = photo_on_disk};
     start();
     scene_wall(&scene, 0, 0, 5, 9, 9, 0.2);
     place_cameras(3);
@@ -345,9 +345,9 @@ static void a_previous_round_of_another_picture_is_an_error(void **state)
     scene_wall(&scene, 0, 0, 5, 9, 9, 0.2);
     place_cameras(2);
     before.scene = &scene;
-    const struct view_source first = {scene_photo, NULL, &scene, NULL, NULL, NULL},
-                             less = {rounds_photo, depth_of_narrower, &before, NULL, NULL, NULL},
-                             none = {rounds_photo, no_depth, &before, NULL, NULL, NULL};
+    const struct view_source first = {.read = scene_photo, .ctx = &scene},
+                             less = {.read = rounds_photo, .read_depth = depth_of_narrower, .ctx = &before},
+                             none = {.read = rounds_photo, .read_depth = no_depth, .ctx = &before};
     for (int k = 0; k < 2; k++)
         assert_ok(view_depth(&before.depth[k], r.neighbours, &r.neighbour_count, &scene.set, k, &first, &params, &err),
                   err);
@@ -535,7 +535,7 @@ static void an_overexposed_window_has_low_confidence_and_its_wall_is_found(void 
 static void an_extremely_long_photo_works(void **state)
 {
     (void)state;
-    const struct view_source source = {strip_photo, NULL, &scene, NULL, NULL, NULL};
+    const struct view_source source = {.read = strip_photo, .ctx = &scene};
     for (int upright = 0; upright < 2; upright++) {
         struct result r = {0};
         struct err err = ERR_INIT;

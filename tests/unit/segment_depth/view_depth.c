@@ -398,7 +398,7 @@ static enum status unrelated_photo(void *ctx, int view_idx, struct image *im, st
 static void unrelated_photos_give_valid_depths(void **state)
 {
     (void)state;
-    const struct view_source source = {unrelated_photo, NULL, &scene, NULL, NULL, NULL};
+    const struct view_source source = {.read = unrelated_photo, .ctx = &scene};
     static const int sizes[] = {64, 300, 2000};
     start();
     scene_wall(&scene, 0, 0, 5, 30, 30, 0)->cell = 0.2;
@@ -455,7 +455,7 @@ static enum status broken_photo(void *ctx, int view_idx, struct image *im, struc
 static void an_unreadable_photo_is_an_error(void **state)
 {
     (void)state;
-    const struct view_source source = {broken_photo, NULL, &scene, NULL, NULL, NULL};
+    const struct view_source source = {.read = broken_photo, .ctx = &scene};
     const struct segment_params params = SEGMENT_PARAMS_DEFAULT;
     struct result r = {0};
     struct err err = ERR_INIT;
@@ -513,7 +513,7 @@ static void planes_found_at_half_the_size_hold_for_all_pixels(void **state)
     params.half_from = 1e-6;
     for (int k = 0; k < 3; k++) { /* even and odd sizes, and a mask that leaves single pixels */
         photo_fn *photo = k == 2 ? masked_photo : scene_photo;
-        const struct view_source source = {photo, NULL, &scene, NULL, NULL, NULL};
+        const struct view_source source = {.read = photo, .ctx = &scene};
         static const double offsets[][2] = {{0, 0}, {0.4, 0}, {-0.4, 0}, {0, 0.4}, {0, -0.4}};
         struct result r = {0};
         struct err err = ERR_INIT;
@@ -588,7 +588,7 @@ static void upper_sides_of_photos_turn_the_proposals(void **state)
     scene_wall(&scene, 0.3, 0.2, 4, 0.9, 0.8, -0.4);
     place_cameras(3);
     for (int k = 0; k < 3; k++) {
-        const struct view_source source = {scene_photo, NULL, &scene, NULL, k ? ups[k - 1] : NULL, NULL};
+        const struct view_source source = {.read = scene_photo, .ctx = &scene, .ups = k ? ups[k - 1] : NULL};
         if (view_depth(&r[k].depth, r[k].neighbours, &r[k].neighbour_count, &scene.set, 0, &source, &params, &err))
             fail_msg("%s", err.text);
         check_invariants(&r[k].depth);

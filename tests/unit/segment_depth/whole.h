@@ -60,7 +60,7 @@ static inline void check_invariants(const struct layered_depth *d) { must_be_sou
 
 static inline enum status depth_of(struct result *r, const struct segment_params *params, struct err *err)
 {
-    const struct view_source source = {scene_photo, NULL, &scene, NULL, NULL, NULL};
+    const struct view_source source = {.read = scene_photo, .ctx = &scene};
     return view_depth(&r->depth, r->neighbours, &r->neighbour_count, &scene.set, 0, &source, params, err);
 }
 
@@ -155,7 +155,8 @@ static inline void must_work_in_rounds_of(struct layered_depth *first_view, int 
         now.scene = next.scene = &scene;
         now.photo = next.photo = photo;
         for (int k = 0; k < scene.set.view_count; k++) {
-            const struct view_source source = {rounds_photo, round ? rounds_depth : NULL, &now, NULL, NULL, NULL};
+            const struct view_source source = {
+                .read = rounds_photo, .read_depth = round ? rounds_depth : NULL, .ctx = &now};
             int neighbours[MAX_NEIGHBOURS], count;
             struct err err = ERR_INIT;
             if (round == more && k > 0) break;
