@@ -111,7 +111,13 @@ static int by_id(const void *a, const void *b)
     return strcmp(((const struct scanned_photo *)a)->id, ((const struct scanned_photo *)b)->id);
 }
 
-bool photo_id_reserved(const char *id) { return !strcmp(id, "list") || !strcmp(id, "brackets"); }
+bool photo_id_reserved(const char *id)
+{
+    static const char *const files[] = {"list", "brackets", "index", "offsets"};
+    for (size_t i = 0; i < sizeof files / sizeof *files; i++)
+        if (!strcmp(id, files[i])) return true;
+    return false;
+}
 
 static bool id_taken(const struct photo_scan *scan, const char *id)
 {

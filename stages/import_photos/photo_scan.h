@@ -57,7 +57,7 @@ enum status photo_scan_remove_others(const char *records, const char *const *ids
 
 enum { MAX_PHOTO_ID = 100 }; /* file names may have 255 bytes: leaves room for @k, extensions, temporary names */
 size_t photo_stem(const char *file);    /* length of the name without its extension; 0: not a photo's name */
-bool photo_id_reserved(const char *id); /* names of other files: list, brackets */
+bool photo_id_reserved(const char *id); /* other files beside those named by ids: list, brackets, index, offsets */
 void photo_id_from_stem(char id[MAX_PHOTO_ID + 1], const char *stem, size_t length);
 
 void photo_scan_release(struct photo_scan *scan);

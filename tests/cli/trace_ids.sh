@@ -37,7 +37,7 @@ a_closed_room_fills_every_view()
 {
     # the faces' pixels add up to those of the view
     for f in "$O"/ids/*.txt; do
-        [ "${f##*/}" != index.txt ] || continue
+        case ${f##*/} in index.txt | offsets.txt) continue ;; esac
         [ "$(awk '$1 == "face" { n += $3 } END { print n }' "$f")" = $((160 * 120)) ] || { cat "$f"; fail "$f: empty pixels"; }
     done
 }

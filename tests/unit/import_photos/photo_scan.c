@@ -69,7 +69,8 @@ static void ids_are_safe_and_unique(void **state)
         {"\xe6\xa9\x8b.jpg", "photo_jpg-2"},
         {"photo.png", "photo_png"},
         {"Z\xc3\xbcrich.JPG", "Z_rich"},
-        {"list.jpg", "list_jpg"}, /* list.txt is taken */
+        {"list.jpg", "list_jpg"},       /* list.txt is taken */
+        {"offsets.jpg", "offsets_jpg"}, /* so is ids/offsets.txt */
         {"same.jpg", "same_jpg"},
         {"same.JPG", "same_JPG"},
         {"same.png", "same_png"},
