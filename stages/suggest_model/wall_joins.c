@@ -99,8 +99,9 @@ static void cut_range(const struct suggested_wall *w, const struct suggested_wal
     }
 }
 
-/* What is left of a wall between its corners. */
-static void clear_span(const struct suggestion *s, const struct suggested_wall *w, double thickness, double span[2])
+/* A wall from corner to corner: to their near sides, which is what is left of it, or to their far sides. */
+static void span_of(const struct suggestion *s, const struct suggested_wall *w, double thickness, bool far,
+                    double span[2])
 {
     span[0] = w->begin;
     span[1] = w->end;
@@ -108,7 +109,7 @@ static void clear_span(const struct suggestion *s, const struct suggested_wall *
         double range[2];
         if (!w->joins[e]) continue;
         cut_range(w, &s->walls[w->others[e]], thickness, range);
-        span[e] = range[!e];
+        span[e] = range[far ? e : !e];
     }
 }
 
@@ -135,7 +136,7 @@ void wall_joins_fit(struct suggestion *s, double thickness)
         for (int i = 0; i < s->wall_count; i++) {
             const struct suggested_wall *w = &s->walls[i];
             double span[2];
-            clear_span(s, w, thickness, span);
+            span_of(s, w, thickness, false, span);
             if (span[1] - span[0] >= MIN_LENGTH * s->ceiling) continue;
             for (int e = 0; e < 2; e++) {
                 if (!w->joins[e] || s->walls[w->others[e]].between) continue;
@@ -149,7 +150,7 @@ void wall_joins_fit(struct suggestion *s, double thickness)
     }
     for (int i = 0; i < s->wall_count; i++) {
         double span[2];
-        clear_span(s, &s->walls[i], thickness, span);
+        span_of(s, &s->walls[i], thickness, false, span);
         if (span[1] - span[0] < MIN_LENGTH * s->ceiling) undo(s, i);
     }
 }
@@ -165,19 +166,7 @@ static void trim_ends(struct suggestion *s)
     }
 }
 
-/* From where to where a wall can be met: to the far sides of its corners. */
-static void reach_of(const struct suggestion *s, const struct suggested_wall *w, double thickness, double reach[2])
-{
-    reach[0] = w->begin;
-    reach[1] = w->end;
-    for (int e = 0; e < 2; e++) {
-        double range[2];
-        if (!w->joins[e]) continue;
-        cut_range(w, &s->walls[w->others[e]], thickness, range);
-        reach[e] = range[e];
-    }
-}
-
+/* Whether a wall meets another one beyond the far sides of that one's corners. */
 static bool is_unmet(const struct suggestion *s, int wall, int end, double thickness)
 {
     const struct suggested_wall *w = &s->walls[wall], *other = &s->walls[w->others[end]];
@@ -185,7 +174,7 @@ static bool is_unmet(const struct suggestion *s, int wall, int end, double thick
     for (int e = 0; e < 2; e++) /* a corner of both fits by itself */
         if (other->joins[e] && other->others[e] == wall) return false;
     cut_range(other, w, thickness, range);
-    reach_of(s, other, thickness, reach);
+    span_of(s, other, thickness, true, reach);
     return !(range[0] >= reach[0] && range[1] <= reach[1]);
 }
 
@@ -219,7 +208,7 @@ static void cut_off(struct suggested_opening *o, double low, double high)
 static void cut_opening(const struct suggestion *s, struct suggested_opening *o, double thickness)
 {
     double span[2];
-    clear_span(s, &s->walls[o->wall], thickness, span);
+    span_of(s, &s->walls[o->wall], thickness, false, span);
     o->begin = fmax(o->begin, span[0]);
     o->end = fmin(o->end, span[1]);
     o->foot = fmax(o->foot, 0);

@@ -4,7 +4,7 @@
  *   face NAME VIEWS OFFSET SPREAD      in order of |OFFSET|, largest first
  * OFFSET is the distance of the surface that the photographs show from the face, along its normal, in model units:
  * above 0 it is farther from the cameras. It is the median of what VIEWS views say, of which half differ from
- * it by at most SPREAD. That is no standard error: views share what they are wrong about. */
+ * it by at most SPREAD. A small SPREAD does not prove the offset: the same mistake may be in all views. */
 #ifndef REMODEL_FACE_OFFSETS_H
 #define REMODEL_FACE_OFFSETS_H
 

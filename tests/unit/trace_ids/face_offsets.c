@@ -1,26 +1,9 @@
 /* By how much the depth of views disagrees with a wall 2 in front of the camera. */
 #include "stages/trace_ids/face_offsets.h"
 
-#include "tests/unit/trace_ids/room.h"
+#include "tests/unit/trace_ids/whole_room.h"
 
 enum { W = 60, H = 40 };
-static const struct box boxes[] = {ROOM_OUTSIDE, ROOM_INSIDE};
-
-static struct model_rays model;
-
-static int make_model(void **state)
-{
-    (void)state;
-    model = make_rays(boxes, 2);
-    return 0;
-}
-
-static int release_model(void **state)
-{
-    (void)state;
-    model_rays_release(&model);
-    return 0;
-}
 
 /* What a view says of the wall when its depth is z, with a confidence. */
 static struct seen_face seen_at(double z, double confidence)

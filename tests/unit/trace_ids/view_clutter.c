@@ -1,24 +1,7 @@
 /* Clutter of a wall 2 in front of the camera, by what the view's depth says. */
-#include "tests/unit/trace_ids/room.h"
+#include "tests/unit/trace_ids/whole_room.h"
 
 enum { W = 60, H = 40 };
-static const struct box boxes[] = {ROOM_OUTSIDE, ROOM_INSIDE};
-
-static struct model_rays model;
-
-static int make_model(void **state)
-{
-    (void)state;
-    model = make_rays(boxes, 2);
-    return 0;
-}
-
-static int release_model(void **state)
-{
-    (void)state;
-    model_rays_release(&model);
-    return 0;
-}
 
 static struct seen see_wall(double z)
 {
