@@ -7,10 +7,13 @@
  * Discrete choice. [Colburn 2014, 3.4.2] measures the parallax of the longest pairs and takes the best, since it
  * renders the scene twice for each pair. Here each cell is rendered once, after which comparing two pictures takes less
  * than a millisecond, so all pairs are compared. The thesis tests the validity of the ends alone; here every frame's
- * position on the path is tested, and the best pair whose whole path is valid wins. If there is none, the thesis's pair
- * is drawn in towards the origin until its path is valid.
+ * position on the path is tested, and the first pair of the FIRST_PAIRS best whose whole path is valid is taken.
  *
- * Continuous refinement, not in the thesis, then moves the ends off the grid (ends_climb.c). */
+ * If none is, there are two starts: the thesis's pair, drawn in towards the origin until its path is valid; and the
+ * best valid one of a few pairs at each lower level of parallax, since neighbouring pairs mostly fail together.
+ *
+ * Continuous refinement, not in the thesis, then moves the ends of each start off the grid (ends_climb.c), and the
+ * start that ends with the most parallax wins. */
 #include "stages/plan_path/ends.h"
 
 #include <stdlib.h>
@@ -19,8 +22,22 @@
 #include "common/base/parallel.h"
 #include "stages/plan_path/ends_climb.h"
 
-#define SHRINK_STEPS     7  /* bisections when the ends are drawn in */
-#define MAX_PAIRS_TESTED 36 /* pairs whose path is tested, by falling parallax */
+#define SHRINK_STEPS 7    /* bisections when the ends are drawn in */
+#define FIRST_PAIRS  36   /* pairs whose path is tested, by falling parallax, before the ends are drawn in */
+#define LEVEL        0.97 /* parallax of a level of further pairs, relative to the level above */
+#define LEVEL_PAIRS  12   /* pairs of a level whose path is tested */
+#define MIN_START    0.5  /* parallax of the second start before it is refined, relative to the first */
+#define STARTS       2
+
+struct start {
+    struct move_ends ends; /* their path is valid */
+    int rank;              /* by parallax; -1: drawn in */
+};
+
+struct start_list {
+    struct start start[STARTS];
+    int count;
+};
 
 /* Whether an end lies as close to the scene as is valid, or as far back. Both ends of an establishing dolly stay back,
  * since it should show the whole scene; it moves sideways. */
@@ -197,41 +214,71 @@ static enum status draw_in(struct ends_search *s, struct move_ends *e, struct er
     return ends_measure_path(s, e, err);
 }
 
-/* The pair of the most parallax whose path is valid; notes->chosen stays -1 if none of the first MAX_PAIRS_TESTED
- * is. */
-static enum status choose_valid_pair(struct ends_search *s, const struct end_pair *pairs, int count,
-                                     struct move_ends *best, struct err *err)
+/* Adds the pair of this rank to the starts if its path is valid. */
+static enum status try_pair(struct ends_search *s, struct start_list *l, const struct end_pair *pairs, int rank,
+                            struct err *err)
 {
-    for (int i = 0; i < count && i < MAX_PAIRS_TESTED; i++) {
-        struct move_ends e = {.parallax = pairs[i].parallax};
-        for (int k = 0; k < 2; k++) e.at[k] = ends_candidate(s->v, k, pairs[i].cell[k]);
-        if (ends_measure_path_if_valid(s, &e, err)) return err->status;
-        if (!e.valid || e.angle > s->params->max_angle) continue;
-        s->notes->chosen = i;
-        *best = e;
-        break;
-    }
+    const struct end_pair *p = &pairs[rank];
+    struct move_ends e = {.parallax = p->parallax};
+    for (int k = 0; k < 2; k++) e.at[k] = ends_candidate(s->v, k, p->cell[k]);
+    if (ends_measure_path_if_valid(s, &e, err) || !e.valid || e.angle > s->params->max_angle) return err->status;
+    l->start[l->count++] = (struct start){e, rank};
     return ST_OK;
 }
 
-static enum status choose_on_grid(struct ends_search *s, struct move_ends *best, struct err *err)
+/* Tries up to LEVEL_PAIRS pairs of each level of parallax, evenly spread, from rank `from` down to least_parallax,
+ * until the list is full. */
+static enum status try_levels(struct ends_search *s, struct start_list *l, const struct end_pair *pairs, int count,
+                              int from, double least_parallax, struct err *err)
+{
+    while (!err->status && l->count < STARTS && from < count && pairs[from].parallax > least_parallax) {
+        const double lower = fmax(LEVEL * pairs[from].parallax, least_parallax);
+        int end = from + 1;
+        while (end < count && pairs[end].parallax > lower) end++;
+        const int of_level = end - from, tried = of_level < LEVEL_PAIRS ? of_level : LEVEL_PAIRS;
+        for (int i = 0; !err->status && l->count < STARTS && i < tried; i++)
+            try_pair(s, l, pairs, from + (int)((long)i * of_level / tried), err);
+        from = end;
+    }
+    return err->status;
+}
+
+/* Adds the ends drawn in from `ends`, whether their path is valid or not. */
+static enum status add_drawn_in(struct ends_search *s, struct start_list *l, const struct move_ends *ends,
+                                struct err *err)
+{
+    struct start *drawn = &l->start[l->count];
+    *drawn = (struct start){.ends = *ends, .rank = -1};
+    if (!draw_in(s, &drawn->ends, err) && !ends_measure_parallax(s, &drawn->ends, err)) l->count++;
+    return err->status;
+}
+
+/* Finds the starts on the grid: the first pair with a valid path, or drawn-in ends and a pair of less parallax. */
+static enum status find_starts(struct ends_search *s, struct start_list *l, bool refined, struct err *err)
 {
     struct move_ends *discrete = &s->notes->discrete;
     struct end_pair *pairs = NULL, longest;
-    int count = 0;
+    int count = 0, next = 0;
     rank_pairs(s, &pairs, &count, &longest, err);
     if (!err->status) {
         discrete->parallax = longest.parallax;
         for (int k = 0; k < 2; k++) discrete->at[k] = ends_candidate(s->v, k, longest.cell[k]);
         ends_measure_path(s, discrete, err);
     }
-    if (!err->status) choose_valid_pair(s, pairs, count, best, err);
-    if (!err->status && s->notes->chosen < 0) {
-        *best = *discrete;
-        if (!draw_in(s, best, err)) ends_measure_parallax(s, best, err);
+    for (; !err->status && !l->count && next < count && next < FIRST_PAIRS; next++) try_pair(s, l, pairs, next, err);
+    if (!err->status && !l->count && !add_drawn_in(s, l, discrete, err)) {
+        const struct move_ends *drawn = &l->start[0].ends;
+        const double least = drawn->valid ? (refined ? MIN_START : 1) * drawn->parallax : 0;
+        try_levels(s, l, pairs, count, next, least, err);
     }
     free(pairs);
     return err->status;
+}
+
+/* Valid paths first, then more parallax. */
+static bool is_better(const struct move_ends *a, const struct move_ends *b)
+{
+    return a->valid != b->valid ? a->valid : a->parallax > b->parallax;
 }
 
 enum status ends_measure(struct move_ends *e, const struct layer_scene *scene, const struct validity *v,
@@ -248,10 +295,19 @@ enum status ends_measure(struct move_ends *e, const struct layer_scene *scene, c
 enum status ends_choose(struct move_ends *best, struct ends_notes *notes, const struct layer_scene *scene,
                         const struct validity *v, const struct plan_params *params, struct err *err)
 {
+    const bool refined = !strcmp(params->refine, "yes") && !v->move.on_axis;
+    struct start_list l = {.count = 0};
     struct ends_search s;
     *notes = (struct ends_notes){.chosen = -1};
-    if (!ends_search_init(&s, scene, v, params, notes, err)) choose_on_grid(&s, best, err);
-    if (!err->status && !strcmp(params->refine, "yes") && !v->move.on_axis) ends_improve(&s, best, err);
+    if (!ends_search_init(&s, scene, v, params, notes, err)) find_starts(&s, &l, refined, err);
+    for (int i = 0; !err->status && i < l.count; i++) {
+        bool moved = false;
+        if (refined && ends_improve(&s, &l.start[i].ends, &moved, err)) break;
+        if (i && !is_better(&l.start[i].ends, best)) continue;
+        *best = l.start[i].ends;
+        notes->chosen = l.start[i].rank;
+        notes->refined = moved;
+    }
     ends_search_release(&s);
     return err->status;
 }

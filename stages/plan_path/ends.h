@@ -21,7 +21,7 @@ struct ends_notes {
     struct move_ends discrete; /* the thesis's result: the longest pairs' best by parallax, valid or not */
     int longest;               /* number of those pairs */
     int pairs;                 /* number of pairs whose parallax was measured */
-    int chosen;   /* rank by parallax of the first pair with a valid path; 0: the best; -1: none, ends were drawn in */
+    int chosen;   /* rank by parallax of the pair that the ends began as; 0: the best; -1: none, ends were drawn in */
     bool refined; /* the ends are off the grid */
     long renders; /* number of depth pictures rendered */
 };

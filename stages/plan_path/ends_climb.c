@@ -8,8 +8,8 @@
 
 #include "stages/plan_path/refine_ends.h"
 
-#define BACK_STEPS      3 /* attempts between the refined ends and those on the grid */
-#define CLIMB_ROUNDS    8
+#define BACK_STEPS      3   /* attempts between the refined ends and those on the grid */
+#define CLIMB_ROUNDS    32  /* at most; most climbs end before */
 #define PATHS_PER_ROUND 4   /* steps whose path is tested in a round */
 #define FIRST_STEP      0.5 /* of the climb, in units of the grid's spacing */
 #define MIN_STEP        0.1
@@ -112,15 +112,16 @@ static enum status climb(struct ascent *a, struct ends_search *s, struct err *er
     return ST_OK;
 }
 
-enum status ends_improve(struct ends_search *s, struct move_ends *best, struct err *err)
+enum status ends_improve(struct ends_search *s, struct move_ends *best, bool *moved, struct err *err)
 {
     struct ascent a = {.up = {*best}};
+    *moved = false;
     if (!refine(&a, s, err)) climb(&a, s, err);
     for (; !err->status && a.height > 0; a.height--) {
         struct move_ends *e = &a.up[a.height];
         if (ends_measure_path(s, e, err) || !e->valid) continue;
         *best = *e;
-        s->notes->refined = true;
+        *moved = true;
         break;
     }
     return err->status;

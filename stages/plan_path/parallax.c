@@ -64,7 +64,7 @@ void parallax_picture_release(struct depth_picture *d)
 
 double parallax_tolerance(const struct layer_scene *scene)
 {
-    return fmax(MIN_PARALLAX_TOLERANCE, SIGMAS * scene->sigma);
+    return fmin(fmax(MIN_PARALLAX_TOLERANCE, SIGMAS * scene->sigma), MAX_PARALLAX_TOLERANCE);
 }
 
 /* Fraction of b's picture that is hidden from a. A pixel's point in a's camera is its rotated ray times its depth plus

@@ -24,6 +24,7 @@ void parallax_picture_release(struct depth_picture *d);
 double parallax_between(const struct depth_picture *a, const struct depth_picture *b, double tolerance);
 
 #define MIN_PARALLAX_TOLERANCE 0.01
+#define MAX_PARALLAX_TOLERANCE 0.05 /* else a draft's move would show less parallax than the same move of good depth */
 double parallax_tolerance(const struct layer_scene *scene); /* from the uncertainty of the depths */
 
 #endif

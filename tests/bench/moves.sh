@@ -1,8 +1,8 @@
 # moves.sh - plan_path and sample_validity: parallax of the chosen ends of a move, accuracy of the limits of validity.
 #
 # Scenes: BENCH_SCENES, names of scenes/ (`make SCENE=NAME depth` is run first), or folders that already hold views/,
-# depth/ and photos/. The move is the establishing dolly. BENCH_SWEEPS="ends limits": only these panels. BENCH_THREADS
-# (all cores).
+# depth/ and photos/. The move is the establishing dolly. BENCH_SWEEPS="ends limits": only these panels; "qualities" is
+# a third, which must be named, because it makes every scene at every quality. BENCH_THREADS (all cores).
 #
 # `ends`: move_pairs.c. The baseline is the best of all pairs of the regions' cells whose whole path is valid: every
 # cell is rendered once in pictures of parallax_side, 192 px, and every pair is compared. `all pairs, film size` does so
@@ -15,6 +15,9 @@
 # `limits`: check_side of sample_validity; `reached` is the fraction of z limits, at up to BENCH_CELLS (12) positions,
 # within one step of those found in pictures of the film's size, %; `error` is the rest. seconds are those of the whole
 # stage without that comparison.
+# `qualities`: `make SCENE=NAME QUALITY=Q path` for each Q of BENCH_QUALITIES (draft default final), of scenes of scenes/
+# alone. angle, parallax and worst_h as path.txt states them; `reached` is parallax over that of the best quality, %. No
+# quality should reach less than 80 %.
 title="Camera moves: parallax of the chosen ends, accuracy of the limits"
 note="Upper left is better. Reached: parallax over that of the best of all pairs; z limits within one step."
 repeats=1
@@ -28,6 +31,7 @@ scenes=${BENCH_SCENES-still-life kermit sceaux marble-head}
 full=${BENCH_FULL-still-life}
 threads=${BENCH_THREADS:-$(nproc)}
 sweeps=${BENCH_SWEEPS:-ends limits}
+qualities=${BENCH_QUALITIES:-draft default final}
 
 wanted() { case " $sweeps " in *" $1 "*) ;; *) return 1 ;; esac; }
 quietly() { "$@" >"$work/messages" 2>&1 || { tail -n 5 "$work/messages" >&2; missing "'$*' failed."; }; }
@@ -37,6 +41,8 @@ prepare()
     [ -x "$B/tests/bench/move_pairs" ] || missing "there is no program $B/tests/bench/move_pairs."
     local s name of
     found_scenes=
+    if wanted qualities; then prepare_qualities; fi
+    if ! wanted ends && ! wanted limits; then return; fi
     for s in $scenes; do
         name=${s##*/} of=$s
         if [[ $s != */* ]]; then
@@ -53,6 +59,26 @@ prepare()
     [ -n "$found_scenes" ] || missing "there is no scene; BENCH_SCENES=\"NAMES\" lists names of scenes/, or folders that hold views/ and depth/."
 }
 
+# Makes the paths; $work/qualities gets scene, quality, degrees, parallax in %, worst H of each.
+prepare_qualities()
+{
+    local s q of
+    made_scenes=
+    for s in $scenes; do
+        if [ ! -e "scenes/$s/scene.mk" ]; then echo "moves: $s is skipped, because there is no scenes/$s/scene.mk." >&2; continue; fi
+        for q in $qualities; do
+            echo "moves: make SCENE=$s QUALITY=$q path" >&2
+            of=out/$s+$q
+            [ "$q" != default ] || of=out/$s
+            quietly "${MAKE:-make}" --no-print-directory QUALITY="$q" SCENE="$s" HOLDOUT= HOLDOUT_VIEWS= EFFECT=establishing_dolly path
+            awk -v at="$s $q" '$1 == "score" { v[$2] = $3 } END { print at, v["angle"], 100 * v["parallax"], v["worst_h"] }' \
+                "$of/parallax/establishing_dolly/path.txt" >>"$work/qualities"
+        done
+        made_scenes+=" $s"
+    done
+    [ -n "$made_scenes" ] || missing "no scene of BENCH_SCENES has a scenes/NAME/scene.mk."
+}
+
 validity() # NAME OUT ARGS...
 {
     local of=$work/$1 to=$2 records=(); shift 2
@@ -64,6 +90,9 @@ settings()
 {
     printf 'series\tscene\tsweep\tvalue\n'
     local s v
+    for s in ${made_scenes-}; do
+        for v in $qualities; do printf '%s\t%s\tqualities\t-\n' "$v" "$s"; done
+    done
     for s in $found_scenes; do
         if wanted ends; then
             [[ " $full " != *" $s "* ]] || printf '%s\t'"$s"'\tends\t-\n' 'all pairs, film size' 'drawn anew'
@@ -81,6 +110,11 @@ pairs() # NAME ARGS...
 
 sample() # SERIES SCENE SWEEP VALUE
 {
+    if [ "$3" = qualities ]; then
+        awk -v scene="$2" -v quality="$1" '$1 == scene { if ($4 > best) best = $4; if ($2 == quality) a = $3, p = $4, h = $5 }
+            END { printf "angle %.4g\nparallax %.4g\nworst_h %.3g\n", a, p, h; if (best > 0) printf "reached %.4g\n", 100 * p / best }' "$work/qualities"
+        return
+    fi
     local of=$work/$2
     if [ "$3" = limits ]; then
         mkdir -p "$fast/v"

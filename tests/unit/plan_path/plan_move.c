@@ -675,6 +675,18 @@ static void regions_without_a_valid_cell_are_an_error(void **state)
     layer_scene_release(&f.scene);
 }
 
+/* Claims that viewpoints far outside are valid: cells farther than `from` from the axis, moved out by a factor. */
+static void spread_cells(struct validity *v, double from, double factor)
+{
+    for (int k = 0; k < 2; k++)
+        for (int i = 0; i < v->region[k].columns * v->region[k].rows; i++) {
+            struct validity_cell *c = &v->region[k].cells[i];
+            if (!(hypot(c->x, c->y) > from)) continue;
+            c->x *= factor;
+            c->y *= factor;
+        }
+}
+
 /* The ends are drawn in until the path is valid; it never stays invalid. */
 static void ends_with_an_invalid_path_are_drawn_in(void **state)
 {
@@ -685,16 +697,53 @@ static void ends_with_an_invalid_path_are_drawn_in(void **state)
     struct planned_film film;
     nine_views(&f);
     sample(&film, &f, move_alone(MOVE_ESTABLISHING_DOLLY), &sampling);
-    for (int k = 0; k < 2; k++) { /* claim that viewpoints far outside are valid */
-        struct validity_region *r = &film.v.region[k];
-        for (int i = 0; i < r->columns * r->rows; i++) {
-            r->cells[i].x *= 3;
-            r->cells[i].y *= 3;
-        }
-    }
+    spread_cells(&film.v, 0, 3);
     plan(&film, &f, &params);
     assert_all_frames_valid(&film, &f);
     assert_true(film.notes.ends.length > 0.1);
+    release_all(&film, &f);
+}
+
+/* The most parallax of a pair of cells whose whole path is valid, by measuring all of them. */
+static double best_of_all_pairs(const struct planned_film *film, const struct wall_scene *f,
+                                const struct plan_params *params)
+{
+    const struct validity *v = &film->v;
+    const int cells = v->region[0].columns * v->region[0].rows;
+    double best = 0;
+    for (int a = 0; a < cells; a++)
+        for (int b = 0; b < cells; b++) {
+            if (!v->region[0].cells[a].valid || !v->region[1].cells[b].valid) continue;
+            struct move_ends e = {.at = {ends_candidate(v, 0, a), ends_candidate(v, 1, b)}};
+            struct err err = ERR_INIT;
+            if (angle_of(v, e.at) > params->max_angle) continue;
+            if (parallax_of(f, v, e.at, params->parallax_side) <= best) continue;
+            assert_ok(ends_measure(&e, &f->scene, v, params, &err), err);
+            if (e.valid) best = e.parallax;
+        }
+    return best;
+}
+
+/* Where the pairs of the most parallax have no valid path, pairs of less are tried, level by level. */
+static void a_pair_of_less_parallax_replaces_invalid_ones(void **state)
+{
+    (void)state;
+    struct wall_scene f;
+    struct validity_params sampling = quick_sampling();
+    struct plan_params params = quick();
+    struct planned_film film;
+    sampling.grid = 10;
+    params.pairs = 20736;
+    params.parallax_side = 48;
+    strcpy(params.refine, "no");
+    nine_views(&f);
+    sample(&film, &f, move_alone(MOVE_ESTABLISHING_DOLLY), &sampling);
+    spread_cells(&film.v, 0.9, 4);
+    const double best = best_of_all_pairs(&film, &f, &params);
+    plan(&film, &f, &params);
+    assert_all_frames_valid(&film, &f);
+    assert_true(best > 0 && film.notes.chosen.chosen >= 36);
+    assert_true(score(&film.path, "parallax") >= 0.9 * best);
     release_all(&film, &f);
 }
 
@@ -817,6 +866,7 @@ int main(void)
         cmocka_unit_test(coincident_centres_allow_a_move),
         cmocka_unit_test(regions_without_a_valid_cell_are_an_error),
         cmocka_unit_test(ends_with_an_invalid_path_are_drawn_in),
+        cmocka_unit_test(a_pair_of_less_parallax_replaces_invalid_ones),
         cmocka_unit_test(an_aperture_stays_shut_where_opening_shows_holes),
         cmocka_unit_test(too_few_subjects_or_frames_are_an_error),
         cmocka_unit_test(a_scene_without_depth_is_an_error),
