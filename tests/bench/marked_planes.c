@@ -1,0 +1,363 @@
+/* marked_planes.c - depth against planes that a person marked in the views.
+ *
+ *   marked_planes --views DIR --depth DIR --marks FILE
+ *
+ * Fits a plane to each face of the marks, whose format tests/long/real_room_marks.txt explains. The depth only starts
+ * the fit; it does not pull the planes. Prints a line for each face and one for all: number of marks, their root mean
+ * square distance in px, pixels of the regions, the part of these whose depth is within 5 % of the plane's in %, and
+ * the median of depth over the plane's. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/base/cli.h"
+#include "common/base/textfile.h"
+#include "common/capture/camera_set.h"
+#include "common/layers/layered_depth.h"
+#include "common/math/ceres_least_squares.h"
+#include "common/math/cholesky.h"
+#include "common/math/numbers.h"
+#include "common/math/weighted.h"
+
+enum { MAX_FACES = 16, MAX_CORNERS = 64, MAX_MARKS = 2000, MAX_REGIONS = 200, ITERATIONS = 1000 };
+#define WITHIN 0.05
+#define SOFT   2.0 /* px */
+#define OFF    1e4 /* distance of a mark that a plane does not meet, px */
+
+struct pixel {
+    int view;
+    double x, y;
+};
+
+struct mark {
+    int face[2]; /* the second is -1 for a point */
+    int first;   /* the mark of a point's first pixel */
+    struct pixel at;
+};
+
+struct region {
+    int face, corners;
+    struct pixel corner[MAX_CORNERS];
+};
+
+struct marked {
+    struct camera_set set;
+    char faces[MAX_FACES][64];
+    int face_count, mark_count, region_count;
+    double size[2]; /* of the views that were marked */
+    struct mark marks[MAX_MARKS];
+    struct region regions[MAX_REGIONS];
+    struct vec3 origin; /* the mean of the views' centres */
+};
+
+static enum status read_face(struct marked *m, struct textfile *t, int *face, struct err *err)
+{
+    char *name;
+    if (textfile_word(t, "face", &name, err)) return err->status;
+    for (*face = 0; *face < m->face_count; ++*face)
+        if (!strcmp(m->faces[*face], name)) return ST_OK;
+    if (m->face_count == MAX_FACES) return textfile_error(t, err, name, "at most %d faces", MAX_FACES);
+    snprintf(m->faces[m->face_count++], sizeof *m->faces, "%s", name);
+    return ST_OK;
+}
+
+static enum status read_view(const struct marked *m, struct textfile *t, struct pixel *p, struct err *err)
+{
+    char *name;
+    if (textfile_word(t, "view", &name, err)) return err->status;
+    p->view = camera_set_find(&m->set, name);
+    return p->view < 0 ? textfile_error(t, err, name, "the name of a view") : ST_OK;
+}
+
+static enum status read_pixel(const struct marked *m, struct textfile *t, struct pixel *p, struct err *err)
+{
+    if (textfile_double(t, "x", &p->x, err) || textfile_double(t, "y", &p->y, err)) return err->status;
+    p->x *= m->set.views[p->view].width / m->size[0];
+    p->y *= m->set.views[p->view].height / m->size[1];
+    return ST_OK;
+}
+
+static enum status read_record(struct marked *m, struct textfile *t, struct err *err)
+{
+    char *kind;
+    int face[2] = {-1, -1};
+    struct pixel p = {.view = 0};
+    if (textfile_word(t, "size, edge, point or region", &kind, err)) return err->status;
+    if (!strcmp(kind, "size"))
+        return textfile_number(t, "width", 1, 1e6, &m->size[0], err) ||
+                       textfile_number(t, "height", 1, 1e6, &m->size[1], err)
+                   ? err->status
+                   : ST_OK;
+    const bool edge = !strcmp(kind, "edge"), point = !strcmp(kind, "point"), region = !strcmp(kind, "region");
+    if (!(edge || point || region) || !(m->size[0] > 0))
+        return textfile_error(t, err, kind, "size, and after it edge, point or region");
+    for (int k = 0; k < 1 + edge; k++)
+        if (read_face(m, t, &face[k], err)) return err->status;
+    if (!point && read_view(m, t, &p, err)) return err->status;
+    struct region *r = &m->regions[m->region_count];
+    const int first = m->mark_count;
+    while (textfile_more(t)) {
+        if (m->mark_count == MAX_MARKS || m->region_count == MAX_REGIONS || r->corners == MAX_CORNERS)
+            return textfile_error(t, err, kind, "fewer marks");
+        if ((point && read_view(m, t, &p, err)) || read_pixel(m, t, &p, err)) return err->status;
+        if (region)
+            r->corner[r->corners++] = p;
+        else
+            m->marks[m->mark_count++] = (struct mark){{face[0], face[1]}, first, p};
+    }
+    if (region) r->face = face[0], m->region_count++;
+    return ST_OK;
+}
+
+static struct vec3 ray_of(const struct marked *m, const struct pixel *p) /* its z in the camera is 1 */
+{
+    const struct view *v = &m->set.views[p->view];
+    return vec3_sub(view_unproject(v, p->x, p->y, 1), v->center);
+}
+
+struct plane_fit { /* n . (X - origin) = d */
+    struct vec3 n;
+    double d;
+};
+
+static struct plane_fit plane_in(const double *x, int face)
+{
+    const struct vec3 n = vec3_make(x[4 * face], x[4 * face + 1], x[4 * face + 2]);
+    const double length = fmax(vec3_length(n), 1e-12);
+    return (struct plane_fit){vec3_scale(n, 1 / length), x[4 * face + 3] / length};
+}
+
+/* Distance of a view's centre from a plane. */
+static double miss_of(const struct marked *m, struct plane_fit plane, int view)
+{
+    return plane.d - vec3_dot(plane.n, vec3_sub(m->set.views[view].center, m->origin));
+}
+
+/* Depth of a plane at a pixel. */
+static double plane_depth(const struct marked *m, struct plane_fit plane, const struct pixel *p)
+{
+    return miss_of(m, plane, p->view) / vec3_dot(plane.n, ray_of(m, p));
+}
+
+/* Signed distance in px of an edge's mark from the picture of the line where its planes meet: the plane of the pencil
+ * through the camera's centre has the normal miss_b * a - miss_a * b. */
+static double edge_distance(const struct marked *m, const double *x, const struct mark *k)
+{
+    const struct view *v = &m->set.views[k->at.view];
+    const struct plane_fit a = plane_in(x, k->face[0]), b = plane_in(x, k->face[1]);
+    const struct vec3 normal =
+        vec3_sub(vec3_scale(a.n, miss_of(m, b, k->at.view)), vec3_scale(b.n, miss_of(m, a, k->at.view)));
+    const struct vec3 n = mat3_apply(v->cam_from_world, normal);
+    const double steep = hypot(n.x / v->fx, n.y / v->fy);
+    return vec3_dot(normal, ray_of(m, &k->at)) / fmax(steep, 1e-12);
+}
+
+/* A point's first pixel places it on the plane; the others are compared with it. */
+static double point_distance(const struct marked *m, const double *x, const struct mark *k)
+{
+    const struct pixel *first = &m->marks[k->first].at;
+    const double z = plane_depth(m, plane_in(x, k->face[0]), first);
+    const struct vec3 at = vec3_add(m->set.views[first->view].center, vec3_scale(ray_of(m, first), z));
+    double u, v;
+    if (!(view_project(&m->set.views[k->at.view], at, &u, &v) > 0)) return OFF;
+    return hypot(u - k->at.x, v - k->at.y);
+}
+
+static void distances(void *ctx, const double *x, double *r)
+{
+    const struct marked *m = ctx;
+    for (int i = 0; i < m->mark_count; i++) {
+        const struct mark *k = &m->marks[i];
+        const double d = k->face[1] >= 0 ? edge_distance(m, x, k) : point_distance(m, x, k);
+        r[i] = isfinite(d) ? clamp(d, -OFF, OFF) : OFF;
+    }
+}
+
+/* What the fit makes small: distances whose squares grow less from SOFT px on. */
+static void soft_distances(void *ctx, const double *x, double *r)
+{
+    const struct marked *m = ctx;
+    distances(ctx, x, r);
+    for (int i = 0; i < m->mark_count; i++) {
+        const double far = r[i] / SOFT;
+        r[i] = SOFT * far / sqrt(0.5 * (1 + sqrt(1 + far * far)));
+    }
+}
+
+/* The median point of those at `depth` along the marks of a face. */
+static struct vec3 middle_of(const struct vec3 *points, int count)
+{
+    struct weighted values[MAX_MARKS];
+    double middle[3];
+    for (int k = 0; k < 3; k++) {
+        for (int i = 0; i < count; i++)
+            values[i] = (struct weighted){k == 0 ? points[i].x : k == 1 ? points[i].y : points[i].z, 1};
+        middle[k] = weighted_percentile(values, (size_t)count, 0.5);
+    }
+    return vec3_make(middle[0], middle[1], middle[2]);
+}
+
+/* The direction in which points spread least about `middle`, by inverse iteration. */
+static struct vec3 thin_direction(const struct vec3 *points, int count, struct vec3 middle)
+{
+    double a[9] = {0}, n[3] = {0.6, 0.5, 0.4};
+    for (int i = 0; i < count; i++) {
+        const struct vec3 off = vec3_sub(points[i], middle);
+        const double at[3] = {off.x, off.y, off.z};
+        for (int r = 0; r < 9; r++) a[r] += at[r / 3] * at[r % 3];
+    }
+    for (int r = 0; r < 3; r++) a[4 * r] += 1e-9 * (a[0] + a[4] + a[8] + 1);
+    if (!cholesky_factor(a, 3)) return vec3_make(0, 0, 1);
+    for (int i = 0; i < 50; i++) {
+        cholesky_forward(a, 3, n);
+        cholesky_backward(a, 3, n);
+        const double length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+        for (int k = 0; k < 3; k++) n[k] /= length;
+    }
+    return vec3_make(n[0], n[1], n[2]);
+}
+
+/* Planes fitted to the depths at the marks. */
+static void start_planes(const struct marked *m, const double *depth, double *x)
+{
+    for (int f = 0; f < m->face_count; f++) {
+        struct vec3 points[MAX_MARKS];
+        int count = 0;
+        for (int i = 0; i < m->mark_count; i++) {
+            const struct mark *k = &m->marks[i];
+            if ((k->face[0] != f && k->face[1] != f) || !(depth[i] > 0)) continue;
+            points[count++] = vec3_add(m->set.views[k->at.view].center, vec3_scale(ray_of(m, &k->at), depth[i]));
+        }
+        const struct vec3 middle = middle_of(points, count), n = thin_direction(points, count, middle);
+        x[4 * f] = n.x;
+        x[4 * f + 1] = n.y;
+        x[4 * f + 2] = n.z;
+        x[4 * f + 3] = vec3_dot(n, vec3_sub(middle, m->origin));
+    }
+}
+
+static bool is_inside(const struct region *r, double x, double y)
+{
+    bool inside = false;
+    for (int i = 0, j = r->corners - 1; i < r->corners; j = i++) {
+        const struct pixel *a = &r->corner[i], *b = &r->corner[j];
+        if ((a->y > y) != (b->y > y) && x < (b->x - a->x) * (y - a->y) / (b->y - a->y) + a->x) inside = !inside;
+    }
+    return inside;
+}
+
+struct tally {
+    size_t pixels, within;
+    struct weighted *ratios;
+};
+
+/* Adds the region's pixels to its face's tally and to that of all. */
+static enum status add_region(struct tally *of, struct tally *all, const struct marked *m, const struct region *r,
+                              const double *x, const struct layered_depth *d, struct err *err)
+{
+    const size_t room = (size_t)d->width * (size_t)d->height;
+    struct tally *to[2] = {of, all};
+    for (int k = 0; k < 2; k++) {
+        struct weighted *more = realloc(to[k]->ratios, (to[k]->pixels + room) * sizeof *more);
+        if (!more) return err_nomem(err, "depths", room * sizeof *more);
+        to[k]->ratios = more;
+    }
+    for (int v = 0; v < d->height; v++)
+        for (int u = 0; u < d->width; u++) {
+            const struct pixel p = {r->corner[0].view, u + 0.5, v + 0.5};
+            if (!is_inside(r, p.x, p.y)) continue;
+            const double z = (double)d->interior.z[(size_t)v * (size_t)d->width + (size_t)u];
+            const double ratio = z / plane_depth(m, plane_in(x, r->face), &p);
+            for (int k = 0; k < 2; k++) {
+                to[k]->ratios[to[k]->pixels++] = (struct weighted){ratio, 1};
+                to[k]->within += fabs(ratio - 1) < WITHIN;
+            }
+        }
+    return ST_OK;
+}
+
+static void print_tally(const char *name, struct tally *t, int marks, double squares)
+{
+    printf("%s\t%d\t%.2f\t%zu\t%.1f\t%.3f\n", name, marks, sqrt(squares / fmax(marks, 1)), t->pixels,
+           100.0 * (double)t->within / fmax((double)t->pixels, 1), weighted_percentile(t->ratios, t->pixels, 0.5));
+    free(t->ratios);
+}
+
+static enum status read_depth(struct layered_depth *d, const struct marked *m, const char *folder, int view,
+                              struct err *err)
+{
+    char path[4096];
+    snprintf(path, sizeof path, "%s/%s.exr", folder, m->set.views[view].name);
+    return layered_depth_read_interior(d, path, NULL, err);
+}
+
+static enum status score(struct marked *m, const char *folder, struct err *err)
+{
+    double x[4 * MAX_FACES] = {0}, *depth = calloc(2 * MAX_MARKS, sizeof *depth), *off = depth + MAX_MARKS;
+    struct tally of[MAX_FACES] = {{0}}, all = {0};
+    if (!depth) return err_nomem(err, "marks", 2 * MAX_MARKS * sizeof *depth);
+    for (int i = 0; i < m->set.view_count; i++)
+        m->origin = vec3_add(m->origin, vec3_scale(m->set.views[i].center, 1.0 / m->set.view_count));
+    for (int pass = 0; pass < 2 && !err->status; pass++) {
+        for (int v = 0; v < m->set.view_count && !err->status; v++) {
+            struct layered_depth d = {0};
+            if (read_depth(&d, m, folder, v, err)) break;
+            for (int i = 0; i < m->mark_count && !pass; i++) {
+                const struct pixel *p = &m->marks[i].at;
+                if (p->view == v && p->x >= 0 && p->y >= 0 && p->x < d.width && p->y < d.height)
+                    depth[i] = (double)d.interior.z[(size_t)p->y * (size_t)d.width + (size_t)p->x];
+            }
+            for (int i = 0; i < m->region_count && pass && !err->status; i++)
+                if (m->regions[i].corner[0].view == v)
+                    add_region(&of[m->regions[i].face], &all, m, &m->regions[i], x, &d, err);
+            layered_depth_release(&d);
+        }
+        if (pass || err->status) break;
+        start_planes(m, depth, x);
+        const struct least_squares problem = {4 * m->face_count, m->mark_count, soft_distances, m, ITERATIONS};
+        ceres_least_squares(&problem, x, err);
+    }
+    if (!err->status) {
+        double sum = 0;
+        distances(m, x, off);
+        printf("face\tmarks\trms_px\tpixels\twithin_5\tmedian\n");
+        for (int f = 0; f < m->face_count; f++) {
+            double squares = 0;
+            int marks = 0;
+            for (int i = 0; i < m->mark_count; i++)
+                if (m->marks[i].face[0] == f || m->marks[i].face[1] == f) squares += off[i] * off[i], marks++;
+            print_tally(m->faces[f], &of[f], marks, squares);
+        }
+        for (int i = 0; i < m->mark_count; i++) sum += off[i] * off[i];
+        print_tally("all", &all, m->mark_count, sum);
+    }
+    free(depth);
+    return err->status;
+}
+
+int main(int argc, char **argv)
+{
+    static struct marked m;
+    const char *views = NULL, *depth = NULL, *marks = NULL;
+    const struct cli_opt opts[] = {
+        CLI_ABOUT("Compares depth with planes that a person marked in the views."),
+        CLI_STR("views", &views, CLI_REQUIRED, "folder of cameras"),
+        CLI_STR("depth", &depth, CLI_REQUIRED, "folder of the views' layers"),
+        CLI_STR("marks", &marks, CLI_REQUIRED, "file of marks"),
+        CLI_END,
+    };
+    struct err err = ERR_INIT;
+    struct provenance prov = {0};
+    struct textfile t = {0};
+    if (cli_parse(argc, argv, "marked_planes", opts, &prov, &err) == CLI_RUN &&
+        !camera_set_read(&m.set, views, NULL, &err) && !textfile_open(&t, marks, &err)) {
+        while (!err.status && textfile_next(&t))
+            if (!read_record(&m, &t, &err)) textfile_end(&t, &err);
+        if (!err.status) score(&m, depth, &err);
+    }
+    textfile_release(&t);
+    provenance_release(&prov);
+    camera_set_release(&m.set);
+    err_report(&err);
+    return err_exit_code(&err);
+}
