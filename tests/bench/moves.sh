@@ -39,9 +39,9 @@ quietly() { "$@" >"$work/messages" 2>&1 || { tail -n 5 "$work/messages" >&2; mis
 prepare()
 {
     [ -x "$B/tests/bench/move_pairs" ] || missing "there is no program $B/tests/bench/move_pairs."
-    local s name of
     found_scenes=
     if wanted qualities; then prepare_qualities; fi
+    local s name of
     if ! wanted ends && ! wanted limits; then return; fi
     for s in $scenes; do
         name=${s##*/} of=$s

@@ -40,6 +40,8 @@ missing_inputs_of_the_bench_are_named()
 {
     BENCH_SCENES=nowhere bench 3
     grep -qF 'there is no scene; BENCH_SCENES' "$scratch/err" || fail "the message does not name what is missing"
+    BENCH_SWEEPS=qualities BENCH_SCENES=nowhere bench 3
+    grep -qF 'no scene of BENCH_SCENES has a scenes/NAME/scene.mk' "$scratch/err" || fail "the message does not name what is missing"
 }
 
 for t in ends_are_compared a_small_scene_gets_its_table missing_inputs_of_the_bench_are_named; do run "$t"; done
