@@ -732,8 +732,9 @@ static void a_pair_of_less_parallax_replaces_invalid_ones(void **state)
     struct validity_params sampling = quick_sampling();
     struct plan_params params = quick();
     struct planned_film film;
-    sampling.grid = 10;
+    sampling.grid = 8;
     params.pairs = 20736;
+    params.seconds = 0.2;
     params.parallax_side = 48;
     strcpy(params.refine, "no");
     nine_views(&f);
