@@ -16,7 +16,6 @@ void rule_masks(struct graph *g, const struct scene_facts *f);
 
 /* What many stages read: they need the files, and an option names the folder. Cameras: --views; depth maps of all
  * views: --depth; faces that the views see: --ids; the atlas of all faces: --vita. */
-#define MODEL_DEPTH "depth/model" /* the depth of a scene with a model, from the round that knows it */
 void rule_takes_cameras(struct graph *g);
 void rule_takes_depth(struct graph *g);
 void rule_takes_ids(struct graph *g);

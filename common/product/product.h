@@ -63,6 +63,9 @@ struct product {
 
 extern const struct product products[PRODUCT_COUNT]; /* by enum product_id */
 
+/* The depth of a scene with a model, from the round that knows it, as struct product_key's depth. */
+#define MODEL_DEPTH "depth/model"
+
 /* Which fields of struct product_key the path has: 1 << PRODUCT_HAS_view, ... 0: there is one in a scene. */
 unsigned product_keys(enum product_id id);
 bool product_made_by(enum product_id id, const char *stage);

@@ -236,7 +236,7 @@ static enum status compare_model_depth(struct evaluation *e, const struct view *
     struct layered_depth d = {0};
     uint64_t here = 0, known = 0;
     char path[FILE_PATH];
-    evaluation_path(path, e, PRODUCT_DEPTH, &(struct product_key){.depth = "depth/model", .view = view->name}, err);
+    evaluation_path(path, e, PRODUCT_DEPTH, &(struct product_key){.depth = MODEL_DEPTH, .view = view->name}, err);
     if (err->status || !path_is_file(path)) return err->status;
     if (!layered_depth_read(&d, path, e->prov, err) && d.width == view->width && d.height == view->height) {
         visible_depth(s, &d, &here, &known);
