@@ -111,7 +111,7 @@ pairs() # NAME ARGS...
 sample() # SERIES SCENE SWEEP VALUE
 {
     if [ "$3" = qualities ]; then
-        awk -v scene="$2" -v quality="$1" '$1 == scene { if ($4 > best) best = $4; if ($2 == quality) a = $3, p = $4, h = $5 }
+        awk -v scene="$2" -v quality="$1" '$1 == scene { if ($4 > best) best = $4; if ($2 == quality) { a = $3; p = $4; h = $5 } }
             END { printf "angle %.4g\nparallax %.4g\nworst_h %.3g\n", a, p, h; if (best > 0) printf "reached %.4g\n", 100 * p / best }' "$work/qualities"
         return
     fi
