@@ -30,7 +30,7 @@
 #define STARTS       2
 
 struct start {
-    struct move_ends ends; /* their path is valid */
+    struct move_ends ends; /* their path is valid, unless drawn-in ends show none that is */
     int rank;              /* by parallax; -1: drawn in */
 };
 

@@ -291,47 +291,55 @@ static enum status read_depth(struct layered_depth *d, const struct marked *m, c
     return layered_depth_read_interior(d, path, NULL, err);
 }
 
+/* The depths at the marks, 0 where a view has none. */
+static enum status read_marks(double *depth, const struct marked *m, const char *folder, struct err *err)
+{
+    for (int v = 0; v < m->set.view_count && !err->status; v++) {
+        struct layered_depth d = {0};
+        if (read_depth(&d, m, folder, v, err)) break;
+        for (int i = 0; i < m->mark_count; i++) {
+            const struct pixel *p = &m->marks[i].at;
+            if (p->view == v && p->x >= 0 && p->y >= 0 && p->x < d.width && p->y < d.height)
+                depth[i] = (double)d.interior.z[(size_t)p->y * (size_t)d.width + (size_t)p->x];
+        }
+        layered_depth_release(&d);
+    }
+    return err->status;
+}
+
+static void print_scores(struct marked *m, const double *x, struct tally *of, struct tally *all)
+{
+    double off[MAX_MARKS], sum = 0;
+    distances(m, x, off);
+    printf("face\tmarks\trms_px\tpixels\twithin_5\tmedian\n");
+    for (int f = 0; f < m->face_count; f++) {
+        double squares = 0;
+        int marks = 0;
+        for (int i = 0; i < m->mark_count; i++)
+            if (m->marks[i].face[0] == f || m->marks[i].face[1] == f) squares += off[i] * off[i], marks++;
+        print_tally(m->faces[f], &of[f], marks, squares);
+    }
+    for (int i = 0; i < m->mark_count; i++) sum += off[i] * off[i];
+    print_tally("all", all, m->mark_count, sum);
+}
+
 static enum status score(struct marked *m, const char *folder, struct err *err)
 {
-    double x[4 * MAX_FACES] = {0}, *depth = calloc(2 * MAX_MARKS, sizeof *depth), *off = depth + MAX_MARKS;
+    double x[4 * MAX_FACES] = {0}, depth[MAX_MARKS] = {0};
     struct tally of[MAX_FACES] = {{0}}, all = {0};
-    if (!depth) return err_nomem(err, "marks", 2 * MAX_MARKS * sizeof *depth);
     for (int i = 0; i < m->set.view_count; i++)
         m->origin = vec3_add(m->origin, vec3_scale(m->set.views[i].center, 1.0 / m->set.view_count));
-    for (int pass = 0; pass < 2 && !err->status; pass++) {
-        for (int v = 0; v < m->set.view_count && !err->status; v++) {
-            struct layered_depth d = {0};
-            if (read_depth(&d, m, folder, v, err)) break;
-            for (int i = 0; i < m->mark_count && !pass; i++) {
-                const struct pixel *p = &m->marks[i].at;
-                if (p->view == v && p->x >= 0 && p->y >= 0 && p->x < d.width && p->y < d.height)
-                    depth[i] = (double)d.interior.z[(size_t)p->y * (size_t)d.width + (size_t)p->x];
-            }
-            for (int i = 0; i < m->region_count && pass && !err->status; i++)
-                if (m->regions[i].corner[0].view == v)
-                    add_region(&of[m->regions[i].face], &all, m, &m->regions[i], x, &d, err);
-            layered_depth_release(&d);
-        }
-        if (pass || err->status) break;
-        start_planes(m, depth, x);
-        const struct least_squares problem = {4 * m->face_count, m->mark_count, soft_distances, m, ITERATIONS};
-        ceres_least_squares(&problem, x, err);
+    if (read_marks(depth, m, folder, err)) return err->status;
+    start_planes(m, depth, x);
+    const struct least_squares problem = {4 * m->face_count, m->mark_count, soft_distances, m, ITERATIONS};
+    ceres_least_squares(&problem, x, err);
+    for (int i = 0; i < m->region_count && !err->status; i++) {
+        struct layered_depth d = {0};
+        const struct region *r = &m->regions[i];
+        if (!read_depth(&d, m, folder, r->corner[0].view, err)) add_region(&of[r->face], &all, m, r, x, &d, err);
+        layered_depth_release(&d);
     }
-    if (!err->status) {
-        double sum = 0;
-        distances(m, x, off);
-        printf("face\tmarks\trms_px\tpixels\twithin_5\tmedian\n");
-        for (int f = 0; f < m->face_count; f++) {
-            double squares = 0;
-            int marks = 0;
-            for (int i = 0; i < m->mark_count; i++)
-                if (m->marks[i].face[0] == f || m->marks[i].face[1] == f) squares += off[i] * off[i], marks++;
-            print_tally(m->faces[f], &of[f], marks, squares);
-        }
-        for (int i = 0; i < m->mark_count; i++) sum += off[i] * off[i];
-        print_tally("all", &all, m->mark_count, sum);
-    }
-    free(depth);
+    if (!err->status) print_scores(m, x, of, &all);
     return err->status;
 }
 

@@ -36,6 +36,14 @@ qualities=${BENCH_QUALITIES:-draft default final}
 wanted() { case " $sweeps " in *" $1 "*) ;; *) return 1 ;; esac; }
 quietly() { "$@" >"$work/messages" 2>&1 || { tail -n 5 "$work/messages" >&2; missing "'$*' failed."; }; }
 
+# known_scene NAME: whether make can make the scene; says so if it cannot
+known_scene()
+{
+    [ ! -e "scenes/$1/scene.mk" ] || return 0
+    echo "moves: $1 is skipped: scenes/$1/scene.mk does not exist." >&2
+    return 1
+}
+
 prepare()
 {
     [ -x "$B/tests/bench/move_pairs" ] || missing "there is no program $B/tests/bench/move_pairs."
@@ -46,7 +54,7 @@ prepare()
     for s in $scenes; do
         name=${s##*/} of=$s
         if [[ $s != */* ]]; then
-            if [ ! -e "scenes/$s/scene.mk" ]; then echo "moves: $s is skipped, because there is no scenes/$s/scene.mk." >&2; continue; fi
+            known_scene "$s" || continue
             echo "moves: make SCENE=$s depth" >&2
             quietly "${MAKE:-make}" --no-print-directory QUALITY=default SCENE="$s" HOLDOUT= HOLDOUT_VIEWS= depth
             of=out/$s
@@ -65,7 +73,7 @@ prepare_qualities()
     local s q of
     made_scenes=
     for s in $scenes; do
-        if [ ! -e "scenes/$s/scene.mk" ]; then echo "moves: $s is skipped, because there is no scenes/$s/scene.mk." >&2; continue; fi
+        known_scene "$s" || continue
         for q in $qualities; do
             echo "moves: make SCENE=$s QUALITY=$q path" >&2
             of=out/$s+$q

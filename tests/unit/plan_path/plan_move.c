@@ -316,6 +316,14 @@ static double angle_of(const struct validity *v, const struct vec3 at[2])
     return acos(vec3_dot(a, b) / vec3_length(a) / vec3_length(b)) * 180 / M_PI;
 }
 
+/* All pairs of cells, in small pictures; the ends stay on the grid. */
+static void compare_all_pairs(struct plan_params *params)
+{
+    params->pairs = 20736;
+    params->parallax_side = 48;
+    strcpy(params->refine, "no");
+}
+
 /* With an angle limit that excludes pairs and with one that does not. */
 static void all_pairs_agree_with_brute_force(void **state)
 {
@@ -327,9 +335,7 @@ static void all_pairs_agree_with_brute_force(void **state)
     struct plan_params params = quick();
     sampling.grid = 4;
     sampling.extent = 1;
-    params.pairs = 20736;
-    params.parallax_side = 48;
-    strcpy(params.refine, "no");
+    compare_all_pairs(&params);
     nine_views(&f);
     for (size_t m = 0; m < sizeof moves / sizeof *moves; m++) {
         struct planned_film film;
@@ -733,10 +739,8 @@ static void a_pair_of_less_parallax_replaces_invalid_ones(void **state)
     struct plan_params params = quick();
     struct planned_film film;
     sampling.grid = 8;
-    params.pairs = 20736;
     params.seconds = 0.2;
-    params.parallax_side = 48;
-    strcpy(params.refine, "no");
+    compare_all_pairs(&params);
     nine_views(&f);
     sample(&film, &f, move_alone(MOVE_ESTABLISHING_DOLLY), &sampling);
     spread_cells(&film.v, 0.9, 4);
