@@ -1,7 +1,9 @@
 /* frame_levels.c - floor and ceiling.
  *
  * Floor: see foot_lines.c. Of all heights below the cameras the one is taken at which most lines of different places
- * fall on each other, if it is clearly better than most heights. The upper edge of a skirting board is as straight as
+ * fall on each other, if it is clearly better than those around, and if few sparse points are below it: tables and beds
+ * have straight edges at one height, too, but what is seen goes on below them. Where lines do not say, as in a room
+ * seen from few places, it is the level at which the sparse points end, if there they do so at once. The upper edge of a skirting board is as straight as
  * its lower one, so the height errs by a few hundredths of the camera's.
  *
  * Ceiling: a wall whose foot is known stands at a known distance, so each line above that runs along it has one height
@@ -15,6 +17,7 @@
 #include "common/base/array.h"
 #include "common/base/sort.h"
 #include "common/math/numbers.h"
+#include "common/math/weighted.h"
 
 /* as parts of the scene's size */
 #define UNIT    0.012 /* width of a cell of the plan */
@@ -25,25 +28,45 @@
 #define LEAST   0.08 /* how far from a camera both must be */
 #define REACH   3.0  /* farthest line that counts */
 
-#define CLEARLY      1.4 /* times the median over all heights */
+#define CLEARLY      1.4 /* times the median over the heights around */
+#define AROUND       20  /* steps */
 #define MIN_PAIRS    12
 #define HEAD_SHARE   0.7 /* of the votes of the best height, from which on a higher one is the ceiling */
 #define HEAD_CLEARLY 2.0 /* times the votes of a height if they lay anywhere, which the best must have */
 #define MIN_HEADS    3   /* walls and places that show a ceiling */
+#define BEYOND       0.1 /* of the sparse points, which may be below the floor or above the ceiling: reflections, streets */
+#define EDGE_POINTS  20 /* that show where points end */
+#define EDGE_SHARE   0.01
+#define EDGE_RISE    3.0  /* times the points of the step below */
+#define EDGE_BELOW   0.03 /* of all points */
 
-struct camera_heights {
-    double lowest, highest;
+struct level_limits {
+    double lowest, highest; /* the cameras */
+    double floor, ceiling;  /* the highest that the floor can be, and the lowest that the ceiling can */
 };
 
-static struct camera_heights heights_of_cameras(const struct camera_set *set, struct vec3 up)
+static enum status limits_of(struct level_limits *h, const struct camera_set *set, struct vec3 up, double size,
+                             struct err *err)
 {
-    struct camera_heights h = {INFINITY, -INFINITY};
+    const struct sfm_model *m = &set->model;
+    const size_t count = (size_t)m->point_count;
+    struct weighted *heights = malloc((count + 1) * sizeof *heights);
+    *h = (struct level_limits){.lowest = INFINITY, .highest = -INFINITY};
+    if (!heights) return err_nomem(err, "heights of points", count * sizeof *heights);
     for (int i = 0; i < set->view_count; i++) {
         const double height = vec3_dot(up, set->views[i].center);
-        h.lowest = fmin(h.lowest, height);
-        h.highest = fmax(h.highest, height);
+        h->lowest = fmin(h->lowest, height);
+        h->highest = fmax(h->highest, height);
     }
-    return h;
+    h->floor = h->lowest - LEAST * size;
+    h->ceiling = h->highest + LEAST * size;
+    for (size_t i = 0; i < count; i++) heights[i] = (struct weighted){vec3_dot(up, m->points[i].position), 1};
+    if (count) {
+        h->floor = fmin(h->floor, weighted_percentile(heights, count, BEYOND) + STEP * size);
+        h->ceiling = fmax(h->ceiling, weighted_percentile(heights, count, 1 - BEYOND) - STEP * size);
+    }
+    free(heights);
+    return ST_OK;
 }
 
 static enum status pairs_at(double *pairs, double height, const struct room_frame *f, const struct world_lines *w,
@@ -57,21 +80,24 @@ static enum status pairs_at(double *pairs, double height, const struct room_fram
     return err->status;
 }
 
-enum status levels_find_floor(struct room_frame *f, const struct world_lines *w, const int *headings,
-                              const struct camera_set *set, double size, struct err *err)
+/* The floor that lines show. */
+static enum status floor_of_lines(struct frame_level *floor, const struct level_limits *limits,
+                                  const struct room_frame *f, const struct world_lines *w, const int *headings,
+                                  const struct camera_set *set, double size, struct err *err)
 {
-    const struct camera_heights cameras = heights_of_cameras(set, f->up);
-    const double top = cameras.lowest - LEAST * size, bottom = cameras.lowest - LOWEST * size;
+    const double top = limits->lowest - LEAST * size, bottom = limits->lowest - LOWEST * size;
     const int steps = (int)((top - bottom) / (STEP * size)) + 1;
-    double *pairs = calloc((size_t)steps * 2, sizeof *pairs), *sorted = pairs ? pairs + steps : NULL;
-    int best = 0;
-    if (!pairs) return err_nomem(err, "heights", (size_t)steps * 2 * sizeof *pairs);
+    const int first = (int)ceil(fmax(top - limits->floor, 0) / (STEP * size));
+    double *pairs = calloc((size_t)steps, sizeof *pairs), around[2 * AROUND + 1], usual = 0, most = 0;
+    int best = -1, count = 0;
+    if (!pairs) return err_nomem(err, "heights", (size_t)steps * sizeof *pairs);
     for (int k = 0; !err->status && k < steps; k++) {
         pairs_at(&pairs[k], top - k * STEP * size, f, w, headings, set, size, err);
-        sorted[k] = pairs[k];
-        if (!err->status && pairs[k] > pairs[best]) best = k;
+        if (k >= first && pairs[k] > most) best = k, most = pairs[k];
     }
-    const double most = pairs[best], usual = err->status ? 0 : sort_median(sorted, (size_t)steps);
+    for (int k = best - AROUND; !err->status && best >= 0 && k <= best + AROUND; k++)
+        if (k >= 0 && k < steps) around[count++] = pairs[k];
+    if (count) usual = sort_median(around, (size_t)count);
     free(pairs);
     if (err->status || !(most >= MIN_PAIRS && most >= CLEARLY * usual)) return err->status;
     /* the mean of finer steps around, weighted by what they have more than usual */
@@ -86,8 +112,43 @@ enum status levels_find_floor(struct room_frame *f, const struct world_lines *w,
         square += weight * k * k * FINE * FINE * size * size;
     }
     mean = sum > 0 ? mean / sum : 0;
-    f->floor =
+    *floor =
         (struct frame_level){true, rough + mean, sum > 0 ? sqrt(fmax(square / sum - mean * mean, 0)) : STEP * size};
+    return err->status;
+}
+
+/* The floor at which points end: of the steps that start at a low point, the one that has most points more than the
+ * step below it. */
+static enum status floor_of_points(struct frame_level *floor, const struct level_limits *limits, struct vec3 up,
+                                   const struct camera_set *set, double size, struct err *err)
+{
+    const size_t count = (size_t)set->model.point_count;
+    double *heights = malloc((count + 1) * sizeof *heights), most = 0;
+    size_t below = 0, end = 0; /* the first points of the step below, and behind the step */
+    if (!heights) return err_nomem(err, "heights of points", count * sizeof *heights);
+    for (size_t i = 0; i < count; i++) heights[i] = vec3_dot(up, set->model.points[i].position);
+    sort_doubles(heights, count);
+    for (size_t i = 0; i < count && (double)i <= EDGE_BELOW * (double)count; i++) {
+        while (heights[below] < heights[i] - STEP * size) below++;
+        while (end < count && heights[end] <= heights[i] + STEP * size) end++;
+        const double here = (double)(end - i), before = (double)(i - below);
+        if (here < fmax(EDGE_POINTS, EDGE_SHARE * (double)count) || here < EDGE_RISE * before || here - before <= most)
+            continue;
+        if (heights[i] > limits->lowest - LEAST * size) break;
+        most = here - before;
+        *floor = (struct frame_level){true, heights[i + (end - i) / 2], STEP * size / 2};
+    }
+    free(heights);
+    return ST_OK;
+}
+
+enum status levels_find_floor(struct room_frame *f, const struct world_lines *w, const int *headings,
+                              const struct camera_set *set, double size, struct err *err)
+{
+    struct level_limits limits;
+    if (limits_of(&limits, set, f->up, size, err)) return err->status;
+    if (!floor_of_lines(&f->floor, &limits, f, w, headings, set, size, err) && !f->floor.known)
+        floor_of_points(&f->floor, &limits, f->up, set, size, err);
     return err->status;
 }
 
@@ -107,8 +168,9 @@ static int compare_votes(const void *a, const void *b)
 enum status levels_find_ceiling(struct room_frame *f, const struct world_lines *w, const int *headings,
                                 const struct camera_set *set, double size, struct err *err)
 {
-    const struct camera_heights cameras = heights_of_cameras(set, f->up);
-    const double least = cameras.highest + LEAST * size, most = cameras.highest + HIGHEST * size;
+    struct level_limits limits;
+    if (limits_of(&limits, set, f->up, size, err)) return err->status;
+    const double least = limits.ceiling, most = limits.highest + HIGHEST * size;
     struct head_vote *votes = NULL;
     int count = 0;
     int support = 0;
