@@ -3,9 +3,12 @@
  *   marked_planes --views DIR --depth DIR --marks FILE
  *
  * Fits a plane to each face of the marks, whose format tests/long/real_room_marks.txt explains. The depth only starts
- * the fit; it does not pull the planes. Prints a line for each face and one for all: number of marks, their root mean
- * square distance in px, pixels of the regions, the part of these whose depth is within 5 % of the plane's in %, and
- * the median of depth over the plane's. */
+ * the fit; it does not pull the planes. Faces that are stated level share one normal, up, and those stated upright are
+ * parallel to it: edges seen from few places leave a plane's slope free by some degrees, and a room's builder did not.
+ * Headings of upright faces are free, so they show whether the planes are right. Prints a line for each face and one
+ * for all: number of marks, their root mean square distance in px, the heading against that of the first upright face
+ * in degrees, pixels of the regions, the part of these whose depth is within 5 % of the plane's in %, and the median of
+ * depth over the plane's. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -20,8 +23,8 @@
 #include "common/math/weighted.h"
 
 enum { MAX_FACES = 16, MAX_CORNERS = 64, MAX_MARKS = 2000, MAX_REGIONS = 200, ITERATIONS = 1000 };
+enum { SWEEPS = 6, TURNS = 60, DISTANCES = 65 }; /* of the search for a start */
 #define WITHIN 0.05
-#define SOFT   2.0 /* px */
 #define OFF    1e4 /* distance of a mark that a plane does not meet, px */
 
 struct pixel {
@@ -40,14 +43,18 @@ struct region {
     struct pixel corner[MAX_CORNERS];
 };
 
+enum stance { FREE, LEVEL, UPRIGHT }; /* what is known of a face */
+
 struct marked {
     struct camera_set set;
     char faces[MAX_FACES][64];
+    enum stance stances[MAX_FACES];
     int face_count, mark_count, region_count;
     double size[2]; /* of the views that were marked */
     struct mark marks[MAX_MARKS];
     struct region regions[MAX_REGIONS];
     struct vec3 origin; /* the mean of the views' centres */
+    double soft;        /* distance from which on a mark pulls less, px */
 };
 
 static enum status read_face(struct marked *m, struct textfile *t, int *face, struct err *err)
@@ -82,15 +89,23 @@ static enum status read_record(struct marked *m, struct textfile *t, struct err 
     char *kind;
     int face[2] = {-1, -1};
     struct pixel p = {.view = 0};
-    if (textfile_word(t, "size, edge, point or region", &kind, err)) return err->status;
+    if (textfile_word(t, "size, level, upright, edge, point or region", &kind, err)) return err->status;
     if (!strcmp(kind, "size"))
         return textfile_number(t, "width", 1, 1e6, &m->size[0], err) ||
                        textfile_number(t, "height", 1, 1e6, &m->size[1], err)
                    ? err->status
                    : ST_OK;
+    if (!strcmp(kind, "level") || !strcmp(kind, "upright")) {
+        const enum stance stance = !strcmp(kind, "level") ? LEVEL : UPRIGHT;
+        while (textfile_more(t)) {
+            if (read_face(m, t, &face[0], err)) return err->status;
+            m->stances[face[0]] = stance;
+        }
+        return ST_OK;
+    }
     const bool edge = !strcmp(kind, "edge"), point = !strcmp(kind, "point"), region = !strcmp(kind, "region");
     if (!(edge || point || region) || !(m->size[0] > 0))
-        return textfile_error(t, err, kind, "size, and after it edge, point or region");
+        return textfile_error(t, err, kind, "size, level or upright, and after these edge, point or region");
     for (int k = 0; k < 1 + edge; k++)
         if (read_face(m, t, &face[k], err)) return err->status;
     if (!point && read_view(m, t, &p, err)) return err->status;
@@ -120,11 +135,16 @@ struct plane_fit { /* n . (X - origin) = d */
     double d;
 };
 
-static struct plane_fit plane_in(const double *x, int face)
+/* x: normal and distance of each face, then up, of any length. Of a normal only what the face's stance leaves free
+ * counts. */
+static struct plane_fit plane_in(const struct marked *m, const double *x, int face)
 {
-    const struct vec3 n = vec3_make(x[4 * face], x[4 * face + 1], x[4 * face + 2]);
-    const double length = fmax(vec3_length(n), 1e-12);
-    return (struct plane_fit){vec3_scale(n, 1 / length), x[4 * face + 3] / length};
+    const double *own = &x[4 * face], *top = &x[4 * m->face_count];
+    const struct vec3 up = vec3_normalize(vec3_make(top[0], top[1], top[2]));
+    struct vec3 n = vec3_make(own[0], own[1], own[2]);
+    if (m->stances[face] == LEVEL) n = up;
+    if (m->stances[face] == UPRIGHT) n = vec3_sub(n, vec3_scale(up, vec3_dot(n, up)));
+    return (struct plane_fit){vec3_normalize(n), own[3]};
 }
 
 /* Distance of a view's centre from a plane. */
@@ -144,7 +164,7 @@ static double plane_depth(const struct marked *m, struct plane_fit plane, const 
 static double edge_distance(const struct marked *m, const double *x, const struct mark *k)
 {
     const struct view *v = &m->set.views[k->at.view];
-    const struct plane_fit a = plane_in(x, k->face[0]), b = plane_in(x, k->face[1]);
+    const struct plane_fit a = plane_in(m, x, k->face[0]), b = plane_in(m, x, k->face[1]);
     const struct vec3 normal =
         vec3_sub(vec3_scale(a.n, miss_of(m, b, k->at.view)), vec3_scale(b.n, miss_of(m, a, k->at.view)));
     const struct vec3 n = mat3_apply(v->cam_from_world, normal);
@@ -156,7 +176,7 @@ static double edge_distance(const struct marked *m, const double *x, const struc
 static double point_distance(const struct marked *m, const double *x, const struct mark *k)
 {
     const struct pixel *first = &m->marks[k->first].at;
-    const double z = plane_depth(m, plane_in(x, k->face[0]), first);
+    const double z = plane_depth(m, plane_in(m, x, k->face[0]), first);
     const struct vec3 at = vec3_add(m->set.views[first->view].center, vec3_scale(ray_of(m, first), z));
     double u, v;
     if (!(view_project(&m->set.views[k->at.view], at, &u, &v) > 0)) return OFF;
@@ -173,14 +193,14 @@ static void distances(void *ctx, const double *x, double *r)
     }
 }
 
-/* What the fit makes small: distances whose squares grow less from SOFT px on. */
+/* What the fit makes small: distances whose squares grow less from m->soft px on. */
 static void soft_distances(void *ctx, const double *x, double *r)
 {
     const struct marked *m = ctx;
     distances(ctx, x, r);
     for (int i = 0; i < m->mark_count; i++) {
-        const double far = r[i] / SOFT;
-        r[i] = SOFT * far / sqrt(0.5 * (1 + sqrt(1 + far * far)));
+        const double far = r[i] / m->soft;
+        r[i] = m->soft * far / sqrt(0.5 * (1 + sqrt(1 + far * far)));
     }
 }
 
@@ -217,9 +237,15 @@ static struct vec3 thin_direction(const struct vec3 *points, int count, struct v
     return vec3_make(n[0], n[1], n[2]);
 }
 
-/* Planes fitted to the depths at the marks. */
+/* Planes fitted to the depths at the marks. Up is as the cameras were held. */
 static void start_planes(const struct marked *m, const double *depth, double *x)
 {
+    struct vec3 up = {0, 0, 0};
+    for (int i = 0; i < m->set.view_count; i++) up = vec3_sub(up, mat3_row(m->set.views[i].cam_from_world, 1));
+    up = vec3_normalize(up);
+    x[4 * m->face_count] = up.x;
+    x[4 * m->face_count + 1] = up.y;
+    x[4 * m->face_count + 2] = up.z;
     for (int f = 0; f < m->face_count; f++) {
         struct vec3 points[MAX_MARKS];
         int count = 0;
@@ -228,11 +254,42 @@ static void start_planes(const struct marked *m, const double *depth, double *x)
             if ((k->face[0] != f && k->face[1] != f) || !(depth[i] > 0)) continue;
             points[count++] = vec3_add(m->set.views[k->at.view].center, vec3_scale(ray_of(m, &k->at), depth[i]));
         }
-        const struct vec3 middle = middle_of(points, count), n = thin_direction(points, count, middle);
+        const struct vec3 middle = middle_of(points, count),
+                          n = m->stances[f] == LEVEL ? up : thin_direction(points, count, middle);
         x[4 * f] = n.x;
         x[4 * f + 1] = n.y;
         x[4 * f + 2] = n.z;
         x[4 * f + 3] = vec3_dot(n, vec3_sub(middle, m->origin));
+    }
+}
+
+/* Tries headings and distances for one face after the other, since depth may have started a face anywhere. */
+static void search_planes(struct marked *m, double *x)
+{
+    double off[MAX_MARKS];
+    for (int k = 0; k < SWEEPS * m->face_count; k++) {
+        const int f = k % m->face_count, turns = m->stances[f] == UPRIGHT ? TURNS : 1;
+        const struct vec3 up = vec3_make(x[4 * m->face_count], x[4 * m->face_count + 1], x[4 * m->face_count + 2]);
+        const struct vec3 side = vec3_normalize(vec3_cross(up, vec3_make(up.y, up.z, up.x)));
+        const double reach = fabs(x[4 * f + 3]);
+        double *own = &x[4 * f], best[4] = {own[0], own[1], own[2], own[3]}, least = INFINITY;
+        if (m->stances[f] == FREE) continue;
+        for (int i = 0; i <= turns * 2 * DISTANCES; i++) {
+            if (i) { /* the first is the face as it is */
+                const double angle = (i - 1) % turns * PI / TURNS;
+                const int step = (i - 1) / turns;
+                const struct vec3 n =
+                    turns == 1 ? up
+                               : vec3_add(vec3_scale(side, cos(angle)), vec3_scale(vec3_cross(up, side), sin(angle)));
+                own[0] = n.x, own[1] = n.y, own[2] = n.z;
+                own[3] = (step % 2 ? -1 : 1) * reach * exp2((step / 2 - DISTANCES / 2) / 16.0);
+            }
+            double sum = 0;
+            soft_distances(m, x, off);
+            for (int j = 0; j < m->mark_count; j++) sum += off[j] * off[j];
+            if (sum < least) least = sum, memcpy(best, own, sizeof best);
+        }
+        memcpy(own, best, sizeof best);
     }
 }
 
@@ -267,7 +324,7 @@ static enum status add_region(struct tally *of, struct tally *all, const struct 
             const struct pixel p = {r->corner[0].view, u + 0.5, v + 0.5};
             if (!is_inside(r, p.x, p.y)) continue;
             const double z = (double)d->interior.z[(size_t)v * (size_t)d->width + (size_t)u];
-            const double ratio = z / plane_depth(m, plane_in(x, r->face), &p);
+            const double ratio = z / plane_depth(m, plane_in(m, x, r->face), &p);
             for (int k = 0; k < 2; k++) {
                 to[k]->ratios[to[k]->pixels++] = (struct weighted){ratio, 1};
                 to[k]->within += fabs(ratio - 1) < WITHIN;
@@ -276,11 +333,17 @@ static enum status add_region(struct tally *of, struct tally *all, const struct 
     return ST_OK;
 }
 
-static void print_tally(const char *name, struct tally *t, int marks, double squares)
+static void print_tally(const char *name, struct tally *t, int marks, double squares, const char *heading)
 {
-    printf("%s\t%d\t%.2f\t%zu\t%.1f\t%.3f\n", name, marks, sqrt(squares / fmax(marks, 1)), t->pixels,
+    printf("%s\t%d\t%.2f\t%s\t%zu\t%.1f\t%.3f\n", name, marks, sqrt(squares / fmax(marks, 1)), heading, t->pixels,
            100.0 * (double)t->within / fmax((double)t->pixels, 1), weighted_percentile(t->ratios, t->pixels, 0.5));
     free(t->ratios);
+}
+
+/* The angle between two walls, at most 90 degrees. */
+static double angle_between(struct vec3 a, struct vec3 b)
+{
+    return atan2(vec3_length(vec3_cross(a, b)), fabs(vec3_dot(a, b))) * 180 / PI;
 }
 
 static enum status read_depth(struct layered_depth *d, const struct marked *m, const char *folder, int view,
@@ -311,28 +374,36 @@ static void print_scores(struct marked *m, const double *x, struct tally *of, st
 {
     double off[MAX_MARKS], sum = 0;
     distances(m, x, off);
-    printf("face\tmarks\trms_px\tpixels\twithin_5\tmedian\n");
+    int first = 0;
+    while (first < m->face_count - 1 && m->stances[first] != UPRIGHT) first++;
+    printf("face\tmarks\trms_px\theading\tpixels\twithin_5\tmedian\n");
     for (int f = 0; f < m->face_count; f++) {
         double squares = 0;
         int marks = 0;
         for (int i = 0; i < m->mark_count; i++)
             if (m->marks[i].face[0] == f || m->marks[i].face[1] == f) squares += off[i] * off[i], marks++;
-        print_tally(m->faces[f], &of[f], marks, squares);
+        char heading[32] = "-";
+        if (m->stances[f] == UPRIGHT)
+            snprintf(heading, sizeof heading, "%.1f", angle_between(plane_in(m, x, first).n, plane_in(m, x, f).n));
+        print_tally(m->faces[f], &of[f], marks, squares, heading);
     }
     for (int i = 0; i < m->mark_count; i++) sum += off[i] * off[i];
-    print_tally("all", all, m->mark_count, sum);
+    print_tally("all", all, m->mark_count, sum, "-");
 }
 
 static enum status score(struct marked *m, const char *folder, struct err *err)
 {
-    double x[4 * MAX_FACES] = {0}, depth[MAX_MARKS] = {0};
+    double x[4 * MAX_FACES + 3] = {0}, depth[MAX_MARKS] = {0};
     struct tally of[MAX_FACES] = {{0}}, all = {0};
     for (int i = 0; i < m->set.view_count; i++)
         m->origin = vec3_add(m->origin, vec3_scale(m->set.views[i].center, 1.0 / m->set.view_count));
     if (read_marks(depth, m, folder, err)) return err->status;
     start_planes(m, depth, x);
-    const struct least_squares problem = {4 * m->face_count, m->mark_count, soft_distances, m, ITERATIONS};
-    ceres_least_squares(&problem, x, err);
+    const struct least_squares problem = {4 * m->face_count + 3, m->mark_count, soft_distances, m, ITERATIONS};
+    m->soft = 32;
+    search_planes(m, x);
+    /* planes that start off must still be pulled */
+    for (; m->soft >= 2 && !err->status; m->soft /= 4) ceres_least_squares(&problem, x, err);
     for (int i = 0; i < m->region_count && !err->status; i++) {
         struct layered_depth d = {0};
         const struct region *r = &m->regions[i];
