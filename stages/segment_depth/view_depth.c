@@ -255,7 +255,7 @@ static enum status make_prior(struct plane_prior *prior, const struct solver *v,
     struct view_trace trace = {0};
     if (!v->source->model) return frame_prior_make(prior, v->source->frame, view, v->m->segments, err);
     if (!view_trace(&trace, v->source->model, v->source->axes, view, err))
-        model_prior_make(prior, &trace, view, v->m->segments, err);
+        model_prior_make(prior, &trace, v->source->axes->scale, view, v->m->segments, err);
     view_trace_release(&trace);
     return err->status;
 }

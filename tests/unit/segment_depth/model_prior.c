@@ -1,6 +1,7 @@
 /* model_prior.c - what a view is expected to see of a room that is modelled, and what may stand before it. */
 #include "stages/segment_depth/model_prior.h"
 
+#include "common/math/numbers.h"
 #include "tests/unit/box_solids.h"
 
 enum { W = 80, H = 60, CELL = 10, ACROSS = W / CELL, COUNT = ACROSS * (H / CELL), VIEWS = 3 };
@@ -51,16 +52,22 @@ static struct segmentation grid(void)
                                  .borders = borders};
 }
 
-static void expect(struct plane_prior *prior, int box_count, const struct segmentation *s)
+/* What the first view is expected to see. */
+static void expect_of(struct plane_prior *prior, const struct box *list, int box_count, const struct segmentation *s)
 {
-    struct model_rays model = make_rays(boxes, box_count);
+    struct model_rays model = make_rays(list, box_count);
     struct view_trace trace = {0};
     struct err err = ERR_INIT;
-    views[0] = view_at(vec3_make(0, 0, 0), 0, 0, W, H, 40);
     assert_ok(view_trace(&trace, &model, &same_frame, &views[0], &err), err);
-    assert_ok(model_prior_make(prior, &trace, &views[0], s, &err), err);
+    assert_ok(model_prior_make(prior, &trace, 1, &views[0], s, &err), err);
     view_trace_release(&trace);
     model_rays_release(&model);
+}
+
+static void expect(struct plane_prior *prior, int box_count, const struct segmentation *s)
+{
+    views[0] = view_at(vec3_make(0, 0, 0), 0, 0, W, H, 40);
+    expect_of(prior, boxes, box_count, s);
 }
 
 /* Of the room of side 4 about the camera. */
@@ -91,6 +98,39 @@ static void nothing_is_expected_in_an_opening(void **state)
     for (int i = 0; i < COUNT; i++) open += prior.expected[i] < 0;
     assert_true(open >= 6 && open <= 12); /* the pane covers 21 x 42 pixels */
     plane_prior_release(&prior);
+}
+
+/* The depth at which a segment is expected; 0: none. */
+static double depth_of(const struct plane_prior *prior, int segment)
+{
+    const int k = prior->expected[segment];
+    return k < 0 ? 0 : 1 / plane_at(prior->planes[k], segments[segment].cx, segments[segment].cy);
+}
+
+/* Two walls that meet, 2.5 high, no room. The camera looks along one of them, and then away. */
+static void walls_without_a_room_have_a_floor_and_a_ceiling(void **state)
+{
+    (void)state;
+    static const struct box walls[] = {{"walls", "ahead", {-3, 3, 0}, {3, 3.2, 2.5}, false},
+                                       {"more", "left", {-3.2, -3, 0}, {-3, 3, 2.5}, false}};
+    const struct segmentation s = grid();
+    const struct vec3 eye = {0.5, 0, 1.2};
+    struct plane_prior prior;
+    for (int away = 0; away < 2; away++) {
+        views[0] = view_at(eye, 0, PI / 2, W, H, 40);
+        if (away) /* turned about the vertical */
+            views[0].cam_from_world = (struct mat3){{{-1, 0, 0}, {0, 0, -1}, {0, -1, 0}}};
+        views[0].translation = vec3_scale(mat3_apply(views[0].cam_from_world, eye), -1);
+        expect_of(&prior, walls, 2, &s);
+        for (int i = 3; i < COUNT; i += ACROSS) {
+            const double slope = (segments[i].cy - H / 2.0) / 40, level = slope < -0.5  ? (2.5 - eye.z) / -slope
+                                                                          : slope > 0.5 ? eye.z / slope
+                                                                          : away        ? 0
+                                                                                        : 3;
+            assert_true(fabs(depth_of(&prior, i) - level) < 1e-9);
+        }
+        plane_prior_release(&prior);
+    }
 }
 
 static void a_sure_segment_gains_less(void **state)
@@ -180,6 +220,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(segments_are_expected_on_the_faces_that_they_show),
         cmocka_unit_test(nothing_is_expected_in_an_opening),
+        cmocka_unit_test(walls_without_a_room_have_a_floor_and_a_ceiling),
         cmocka_unit_test(a_sure_segment_gains_less),
         cmocka_unit_test(what_no_other_view_confirms_is_the_face_behind_it),
         cmocka_unit_test(a_thing_that_views_agree_on_stays_with_all_its_parts),
