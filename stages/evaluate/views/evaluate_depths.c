@@ -16,7 +16,8 @@
  * of a picture with a long side of [evaluate] disparity_side: results do not depend on the size of the pictures.
  *
  * Stated uncertainties are judged by the share of pixels within 1, 2 and 3 standard deviations, and by the factor
- * that would bring 68.27 % within one (sigma_error.h).
+ * that would bring 68.27 % within one (sigma_error.h); and by the shares in each fifth of the pixels, from the smallest
+ * deviations to the largest (sigma_bins.h).
  *
  * Memory: the points of one photo and the planes of one view. Quantiles come from histograms (quantiles.h). */
 #include "stages/evaluate/views/views_metrics.h"
@@ -30,6 +31,7 @@
 #include "common/image/exr.h"
 #include "common/layers/layered_depth.h"
 #include "stages/evaluate/views/depth_error.h"
+#include "stages/evaluate/views/sigma_bins.h"
 #include "stages/evaluate/views/sigma_error.h"
 
 /* kept[i]: photo i has a view and a true camera. */
@@ -224,13 +226,22 @@ static enum status photo_truth_make(struct photo_truth *v, const struct evaluati
 struct scene_errors { /* of all views */
     struct depth_errors depths, model_depths;
     struct sigma_errors sigmas;
+    struct sigma_bins bins, model_bins;
     uint64_t pixels, known;
 };
+
+/* Adds the relative errors of inverse depth. s->z is in the units of the truth. */
+static void add_to_bins(struct sigma_bins *bins, const struct stated_depth *s, const float *truth, size_t pixels)
+{
+    for (size_t k = 0; k < pixels; k++)
+        if (truth[k] > 0 && s->z[k] > 0 && s->classes[k] < DEPTH_CLASSES)
+            sigma_bins_add(bins, (double)s->sigma[k], fabs(1 - (double)s->z[k] / (double)truth[k]));
+}
 
 /* Adds the errors of the view's depth from the round that knows the model, if there is one. s: room for it. */
 static enum status compare_model_depth(struct evaluation *e, const struct view *view, struct stated_depth *s,
                                        const float *truth, const uint8_t *occluded, double focal_baseline,
-                                       struct depth_errors *errors, struct err *err)
+                                       struct scene_errors *scene, struct err *err)
 {
     const size_t pixels = (size_t)view->width * (size_t)view->height;
     struct layered_depth d = {0};
@@ -241,7 +252,8 @@ static enum status compare_model_depth(struct evaluation *e, const struct view *
     if (!layered_depth_read(&d, path, e->prov, err) && d.width == view->width && d.height == view->height) {
         visible_depth(s, &d, &here, &known);
         for (size_t k = 0; k < pixels; k++) s->z[k] = (float)(s->z[k] * e->truth_from_scene.scale);
-        depth_errors_add(errors, s->z, truth, occluded, pixels, focal_baseline);
+        depth_errors_add(&scene->model_depths, s->z, truth, occluded, pixels, focal_baseline);
+        add_to_bins(&scene->model_bins, s, truth, pixels);
     }
     layered_depth_release(&d);
     return err->status;
@@ -267,8 +279,9 @@ static enum status compare_depth(struct evaluation *e, int i, struct photo_truth
                            &e->truth.photos[tv->photo], tv->points, tv->occluded);
         for (size_t k = 0; k < pixels; k++) s->z[k] = (float)(s->z[k] * e->truth_from_scene.scale);
         sigma_errors_add(&scene->sigmas, s->z, truth, s->sigma, s->classes, pixels);
+        add_to_bins(&scene->bins, s, truth, pixels);
         depth_errors_add(&errors, s->z, truth, occluded, pixels, view->fx * ratio * e->baseline);
-        compare_model_depth(e, view, s, truth, occluded, view->fx * ratio * e->baseline, &scene->model_depths, err);
+        compare_model_depth(e, view, s, truth, occluded, view->fx * ratio * e->baseline, scene, err);
         depth_errors_merge(&scene->depths, &errors);
         if (!err->status) add_depth_errors(e, view->name, &errors, err);
         if (!err->status && errors.all.pixels) write_truth(e, view, truth, occluded, err);
@@ -340,6 +353,25 @@ static enum status add_sigma_errors(struct metric_table *t, struct sigma_errors 
     return add_sigma_tally(t, &s->classes[0], "", err);
 }
 
+/* For each fifth of the pixels by stated deviation: the shares within 1 and 2, and the largest. */
+static enum status add_sigma_bins(struct metric_table *t, const struct sigma_bins *b, const char *suffix,
+                                  struct err *err)
+{
+    struct sigma_bin bins[SIGMA_BINS];
+    if (!b->pixels) return ST_OK;
+    sigma_bins_get(b, bins);
+    for (int i = 0; i < SIGMA_BINS; i++) {
+        char name[64];
+        for (int k = 0; k < 2; k++) {
+            snprintf(name, sizeof name, "depth.sigma%d_fifth%d%s", k + 1, i + 1, suffix);
+            if (metric_add(t, NULL, name, 100 * bins[i].within[k], err)) return err->status;
+        }
+        snprintf(name, sizeof name, "depth.sigma_most_fifth%d%s", i + 1, suffix);
+        if (metric_add(t, NULL, name, 100 * bins[i].most, err)) return err->status;
+    }
+    return ST_OK;
+}
+
 enum status evaluate_depths(struct evaluation *e, struct err *err)
 {
     const struct camera_set *views = &e->views.cameras;
@@ -352,7 +384,8 @@ enum status evaluate_depths(struct evaluation *e, struct err *err)
         depth_errors_init(&scene.model_depths, err);
     else if (!kept)
         err_nomem(err, "marks", (size_t)e->photos.count);
-    if (!err->status) sigma_errors_init(&scene.sigmas, err);
+    if (!err->status && !sigma_errors_init(&scene.sigmas, err) && !sigma_bins_init(&scene.bins, err))
+        sigma_bins_init(&scene.model_bins, err);
     if (!err->status && e->truth_folder) {
         mark_kept(e, kept);
         find_baseline(e, kept, err);
@@ -373,7 +406,9 @@ enum status evaluate_depths(struct evaluation *e, struct err *err)
     if (!err->status && scene.pixels)
         metric_add(&e->table, NULL, "depth.known", percent(scene.known, scene.pixels), err);
     if (!err->status && scene.depths.all.pixels) {
-        if (!add_depth_errors(e, NULL, &scene.depths, err)) add_sigma_errors(&e->table, &scene.sigmas, err);
+        if (!add_depth_errors(e, NULL, &scene.depths, err) && !add_sigma_errors(&e->table, &scene.sigmas, err) &&
+            !add_sigma_bins(&e->table, &scene.bins, "", err))
+            add_sigma_bins(&e->table, &scene.model_bins, "_model", err);
         if (!err->status && scene.model_depths.all.pixels)
             add_tally(&e->table, NULL, &scene.model_depths.all, "_model", e->baseline > 0, err);
         if (!err->status && e->baseline > 0)
@@ -390,6 +425,8 @@ enum status evaluate_depths(struct evaluation *e, struct err *err)
     depth_errors_release(&scene.depths);
     depth_errors_release(&scene.model_depths);
     sigma_errors_release(&scene.sigmas);
+    sigma_bins_release(&scene.bins);
+    sigma_bins_release(&scene.model_bins);
     photo_truth_release(&tv);
     free(kept);
     return err->status;
