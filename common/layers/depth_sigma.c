@@ -1,10 +1,10 @@
-/* depth_sigma.c - calibrated uncertainty of depth.
+/* depth_sigma.c - uncertainty of depth.
  *
- * The estimator states a sigma that grows as the confidence falls; stages use it as a tolerance, and about 97 % of the
- * pixels of confident segments are within two of it. The errors are those of a mixture: most depths of any class are
- * right to about half a step of the plane sweep, and the others are far off. A factor per class makes sigma the
- * deviation of the former: 68 % of the pixels are within one. How many are far off follows from the confidence, not
- * from sigma (docs/evaluation.md).
+ * The estimator states a standard deviation (stages/segment_depth/depth_deviation.c). Depth of other origin states a
+ * tolerance only, sigma, that grows as the confidence falls; about 97 % of the pixels of confident segments are within
+ * two of it. The errors are those of a mixture: most depths of any class are right to about half a step of the plane
+ * sweep, and the others are far off. A factor per class makes sigma the width of the former, which is also what a
+ * comparison with a surface that is known should allow. How many are far off follows from the confidence.
  *
  * The factors are the geometric means of those of two simulated scenes, loft (draft) and still-life: sure 0.29 and
  * 0.53, unsure 0.17 and 0.24, inherited 1.05 and 0.24. The third scene, apartment, took no part. */
@@ -24,4 +24,6 @@ enum depth_class depth_class(double confidence)
 
 const char *depth_class_name(enum depth_class c) { return classes[c].name; }
 
-double depth_sigma(const struct depth_segment *s) { return s->sigma * classes[depth_class(s->confidence)].factor; }
+double depth_width(const struct depth_segment *s) { return s->sigma * classes[depth_class(s->confidence)].factor; }
+
+double depth_sigma(const struct depth_segment *s) { return s->deviation > 0 ? s->deviation : depth_width(s); }

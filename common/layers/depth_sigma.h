@@ -15,8 +15,11 @@ enum depth_class {                        /* of a segment's confidence */
 enum depth_class depth_class(double confidence);
 const char *depth_class_name(enum depth_class c); /* "inherited", "unsure", "sure" */
 
-/* Standard deviation of the relative error of the segment's inverse depth, (1/z - 1/z_true) z: the segment's sigma
- * times the factor that was calibrated for its class. */
+/* Standard deviation of the relative error of the segment's inverse depth, (1/z - 1/z_true) z: what the estimator
+ * states, or else depth_width(). */
 double depth_sigma(const struct depth_segment *s);
+/* The same of the depths of the segment's class that are right: sigma times the factor that was calibrated for the
+ * class. */
+double depth_width(const struct depth_segment *s);
 
 #endif

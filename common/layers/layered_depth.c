@@ -4,7 +4,7 @@
  *   remodel-segments 1
  *   size WIDTH HEIGHT
  *   segments COUNT
- *   ID PIXELS A B C SIGMA CONFIDENCE      one line per segment, ids 1 .. COUNT in order
+ *   ID PIXELS A B C SIGMA CONFIDENCE [DEVIATION]      one line per segment, ids 1 .. COUNT in order
  * Readers check both files against each other, so that callers may index segments by id without checks. */
 #include "common/layers/layered_depth.h"
 
@@ -97,11 +97,14 @@ static enum status check_segments(const struct layered_depth *d, const char *pat
         const struct depth_segment *s = &d->segments[i];
         bool finite = isfinite(s->plane[0]) && isfinite(s->plane[1]) && isfinite(s->plane[2]);
         if (s->id == (uint32_t)i + 1 && s->pixels >= 0 && s->pixels <= (int64_t)d->width * d->height && finite &&
-            isfinite(s->sigma) && s->sigma >= 0 && s->confidence >= 0 && s->confidence <= 1)
+            isfinite(s->sigma) && s->sigma >= 0 && s->confidence >= 0 && s->confidence <= 1 && isfinite(s->deviation) &&
+            s->deviation >= 0)
             continue;
         return err_set(err, ST_INTERNAL,
-                       "cannot write %s: segment %d has id %u, %d pixels, plane %g %g %g, sigma %g, confidence %g.",
-                       path, i + 1, s->id, s->pixels, s->plane[0], s->plane[1], s->plane[2], s->sigma, s->confidence);
+                       "cannot write %s: segment %d has id %u, %d pixels, plane %g %g %g, sigma %g, confidence %g, "
+                       "deviation %g.",
+                       path, i + 1, s->id, s->pixels, s->plane[0], s->plane[1], s->plane[2], s->sigma, s->confidence,
+                       s->deviation);
     }
     return ST_OK;
 }
@@ -114,8 +117,10 @@ static enum status write_segments(const struct layered_depth *d, const char *pat
         fprintf(file.fp, "size %d %d\nsegments %d\n", d->width, d->height, d->segment_count);
         for (int i = 0; i < d->segment_count; i++) {
             const struct depth_segment *s = &d->segments[i];
-            fprintf(file.fp, "%u %d %.17g %.17g %.17g %.17g %.17g\n", s->id, s->pixels, s->plane[0], s->plane[1],
+            fprintf(file.fp, "%u %d %.17g %.17g %.17g %.17g %.17g", s->id, s->pixels, s->plane[0], s->plane[1],
                     s->plane[2], s->sigma, s->confidence);
+            if (s->deviation > 0) fprintf(file.fp, " %.9g", s->deviation);
+            fputc('\n', file.fp);
         }
         outfile_commit(&file, err);
     }
@@ -185,9 +190,10 @@ static enum status read_segment(struct depth_segment *s, struct textfile *t, int
     if (textfile_int(t, "segment id", id, id, &id_read, err) ||
         textfile_int(t, "pixels", 0, max_pixels, &pixels, err) || textfile_double(t, "plane a", &s->plane[0], err) ||
         textfile_double(t, "plane b", &s->plane[1], err) || textfile_double(t, "plane c", &s->plane[2], err) ||
-        textfile_double(t, "sigma", &s->sigma, err) || textfile_double(t, "confidence", &s->confidence, err) ||
-        textfile_end(t, err))
+        textfile_double(t, "sigma", &s->sigma, err) || textfile_double(t, "confidence", &s->confidence, err))
         return err->status;
+    if (textfile_more(t) && textfile_number(t, "deviation", 0, INFINITY, &s->deviation, err)) return err->status;
+    if (textfile_end(t, err)) return err->status;
     if (s->sigma < 0 || s->confidence < 0 || s->confidence > 1) {
         snprintf(found, sizeof found, "%.9g", s->sigma < 0 ? s->sigma : s->confidence);
         return textfile_error(t, err, found, s->sigma < 0 ? "sigma, 0 or more" : "confidence, from 0 to 1");

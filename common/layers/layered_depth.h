@@ -23,8 +23,9 @@ struct depth_segment {
     uint32_t id;       /* index in the list + 1 */
     int pixels;        /* of the interior */
     double plane[3];   /* 1/z = plane[0] u + plane[1] v + plane[2] */
-    double sigma;      /* relative uncertainty of z: dz / z */
+    double sigma;      /* relative tolerance of z: dz / z */
     double confidence; /* from 0, depth inherited from neighbours, to 1, certain */
+    double deviation;  /* standard deviation of the relative error of 1/z; 0: not stated */
 };
 
 /* Below this confidence a segment's depth counts as inherited from its neighbours: no other view saw the segment, or

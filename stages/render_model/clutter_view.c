@@ -67,7 +67,7 @@ static struct judged_segment *judge_segments(const struct layered_depth *d, cons
         return NULL;
     }
     for (int i = 0; i < d->segment_count; i++) {
-        const float sigma = (float)depth_sigma(&d->segments[i]);
+        const float sigma = (float)depth_width(&d->segments[i]);
         list[i].tolerance = TOLERANCE + SIGMAS * sigma;
         list[i].sure = sureness(d->segments[i].confidence, (double)sigma);
     }

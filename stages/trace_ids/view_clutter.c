@@ -50,7 +50,7 @@ static float judge(const struct clutter_job *job, uint32_t id, float z, double z
 {
     const struct depth_segment *s = &job->depth->segments[id - 1];
     if (!(z > 0)) return CLUTTER_UNSURE;
-    const double nearer = 1 - (double)z / z_model, sigma = depth_sigma(s);
+    const double nearer = 1 - (double)z / z_model, sigma = depth_width(s);
     const bool sure = s->confidence >= job->params->min_confidence;
     if (nearer > job->params->depth_tolerance + job->params->depth_sigmas * sigma)
         return sure ? 1 : CLUTTER_UNSURE + RATHER;

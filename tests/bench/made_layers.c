@@ -56,7 +56,7 @@ static enum status make_depth(struct layered_depth *d, const struct view *view, 
         const double u = (k % across + 0.5) * side, v = (k / across + 0.5) * side;
         const double a = inverse_depth(view, u + 0.5, v) - inverse_depth(view, u - 0.5, v);
         const double b = inverse_depth(view, u, v + 0.5) - inverse_depth(view, u, v - 0.5);
-        *s = (struct depth_segment){(uint32_t)k + 1, 0, {a, b, inverse_depth(view, u, v) - a * u - b * v}, 0.002, 1};
+        *s = (struct depth_segment){(uint32_t)k + 1, 0, {a, b, inverse_depth(view, u, v) - a * u - b * v}, 0.002, 1, 0};
     }
     for (int y = 0; y < view->height; y++)
         for (int x = 0; x < view->width; x++) {

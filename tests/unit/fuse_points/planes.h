@@ -51,7 +51,7 @@ static inline struct depth_segment segment_of(struct flat f, const struct view *
     const struct vec3 n = mat3_apply(v->cam_from_world, f.normal);
     const double d = f.offset + vec3_dot(n, v->translation);
     const double a = n.x / (d * v->fx), b = n.y / (d * v->fy);
-    return (struct depth_segment){id, 0, {a, b, n.z / d - a * v->cx - b * v->cy}, sigma, 1};
+    return (struct depth_segment){id, 0, {a, b, n.z / d - a * v->cx - b * v->cy}, sigma, 1, 0};
 }
 
 static inline struct vec3 cut(struct flat f, const struct view *v, double u, double y)

@@ -156,7 +156,7 @@ static enum status read_thing(void *ctx, int view_idx, struct layered_depth *d, 
     d->segments = calloc(1, sizeof *d->segments);
     if (!d->interior.id || !d->segments) return err_nomem(err, "a depth map", 1);
     for (int i = 0; i < W * H; i++) d->interior.id[i] = 1;
-    d->segments[0] = (struct depth_segment){1, W * H, {0, 0, 1 / thing}, 0.01, confidence_before};
+    d->segments[0] = (struct depth_segment){1, W * H, {0, 0, 1 / thing}, 0.01, confidence_before, 0};
     return ST_OK;
 }
 

@@ -49,7 +49,8 @@ static struct layered_depth sample(int width, int height)
                                                .pixels = i * i < width * height ? i * i : 0,
                                                .plane = {1.0 / (i + 3), -1e-300 * i, 0.1 + i * 1e200},
                                                .sigma = 1.0 / (7 + i),
-                                               .confidence = i / (double)(SEGMENTS - 1)};
+                                               .confidence = i / (double)(SEGMENTS - 1),
+                                               .deviation = i / 30.0}; /* the first states none */
     return d;
 }
 
@@ -68,6 +69,7 @@ static void assert_same_segments(const struct layered_depth *a, const struct lay
         assert_true(s->id == t->id && s->pixels == t->pixels);
         assert_memory_equal(s->plane, t->plane, sizeof s->plane);
         assert_true(fabs(s->sigma - t->sigma) <= 1e-9 * s->sigma);
+        assert_true(fabs(s->deviation - t->deviation) <= 1e-8 * s->deviation);
         assert_true(fabs(s->confidence - t->confidence) <= 1e-9);
     }
 }
@@ -130,7 +132,7 @@ static void shares_of_unknown_pixels_are_attributes(void **state)
     assert_non_null(d.segments);
     d.segment_count = 2;
     for (int i = 0; i < 2; i++) {
-        d.segments[i] = (struct depth_segment){(uint32_t)i + 1, 1, {0, 0, 0.5}, 0.1, i ? DEPTH_INHERITED : 0.05};
+        d.segments[i] = (struct depth_segment){(uint32_t)i + 1, 1, {0, 0, 0.5}, 0.1, i ? DEPTH_INHERITED : 0.05, 0};
         d.interior.id[2 * i] = (uint32_t)i + 1;
         d.interior.z[2 * i] = 2;
         d.interior.rgba[4 * (2 * i) + 3] = 1;
@@ -257,7 +259,9 @@ static void errors_of_a_list_name_the_line(void **state)
         {HEAD "segments 1\n1 2 0.5 0 0.25 0.01 1.5\n", "d.txt:4: found \"1.5\", wanted confidence, from 0 to 1"},
         {HEAD "segments 1\n1 2 0.5 0 0.25 0.01 -0.5\n", "d.txt:4: found \"-0.5\", wanted confidence"},
         {HEAD "segments 1\n1 2 0.5 0 0.25 0.01\n", "d.txt:4: found the end of the line, wanted confidence"},
-        {HEAD "segments 1\n1 2 0.5 0 0.25 0.01 1 0\n", "d.txt:4: found \"0\", wanted the end of the line"},
+        {HEAD "segments 1\n1 2 0.5 0 0.25 0.01 1 -0.1\n", "d.txt:4: found \"-0.1\", wanted deviation"},
+        {HEAD "segments 1\n1 2 0.5 0 0.25 0.01 1 inf\n", "d.txt:4: found \"inf\", wanted deviation"},
+        {HEAD "segments 1\n1 2 0.5 0 0.25 0.01 1 0.1 0\n", "d.txt:4: found \"0\", wanted the end of the line"},
         {"# a comment\n\n" HEAD "segments 1\n# another\n1 2 0.5 0 0.25 oops 1\n",
          "d.txt:7: found \"oops\", wanted sigma"},
     };
