@@ -14,6 +14,7 @@
  *                 scene's dominant planes are offered to the whole view, and fitted to what takes them
  *   refine        local search with the same energy
  *   inherit       border areas that nothing holds in the foreground take over what lies behind them
+ *   depth_deviation  how far off each segment's depth may be
  *   pixel_planes  each pixel chooses among the planes around it
  *   layers        opaque interiors, and mattes at depth edges
  *
@@ -31,7 +32,9 @@
 #include <string.h>
 
 #include "common/capture/upright.h"
+#include "common/layers/depth_sigma.h"
 #include "common/math/numbers.h"
+#include "stages/segment_depth/depth_deviation.h"
 #include "stages/segment_depth/expand.h"
 #include "stages/segment_depth/frame_prior.h"
 #include "stages/segment_depth/gravity.h"
@@ -129,9 +132,10 @@ struct solver {
     const struct segment_params *params;
 };
 
-/* The planes of this view in the previous round, whose segments may be others, at the middle pixel of each segment; and
- * their confidence as distinctness. */
-static enum status read_previous_planes(struct plane *planes, double *distinct, const struct solver *v, struct err *err)
+/* The planes of this view in the previous round, whose segments may be others, at the middle pixel of each segment;
+ * their confidence as distinctness; and their deviations, as inverse depths. */
+static enum status read_previous_planes(struct plane *planes, double *distinct, double *deviation,
+                                        const struct solver *v, struct err *err)
 {
     struct layered_depth before = {0};
     v->source->read_depth(v->source->ctx, v->view_idx, &before, err);
@@ -148,6 +152,7 @@ static enum status read_previous_planes(struct plane *planes, double *distinct, 
         const struct depth_segment *g = &before.segments[id - 1];
         planes[i] = (struct plane){g->plane[0], g->plane[1], g->plane[2]};
         distinct[i] = g->confidence;
+        deviation[i] = depth_sigma(g) * plane_at(planes[i], s->segments[i].cx, s->segments[i].cy);
     }
     layered_depth_release(&before);
     return err->status;
@@ -192,7 +197,8 @@ struct solution {
     double trust; /* in what straight edges say */
     struct plane ground;
     struct plane *planes;
-    double *distinct; /* of each segment: distinctness() in the first round */
+    double *distinct;  /* of each segment: distinctness() in the first round */
+    double *deviation; /* of each segment, of inverse depth: in the previous round, if there is one */
     float *weights, *min_match;
 };
 
@@ -231,7 +237,7 @@ static enum status start_later_round(struct solution *x, const struct solver *v,
     x->problem.cross = &x->cross;
     if (!cross_view_make(&x->cross, s, v->set, v->view_idx, v->neighbours, v->neighbour_count, x->sweep.step, &source,
                          err))
-        read_previous_planes(x->planes, x->distinct, v, err);
+        read_previous_planes(x->planes, x->distinct, x->deviation, v, err);
     if (!err->status && v->source->model)
         model_prior_weigh(&x->prior, v->params->model_gain, x->distinct, s);
     else if (!err->status)
@@ -268,10 +274,11 @@ static enum status start_solution(struct solution *x, const struct solver *v, st
     const size_t count = (size_t)s->count + 1;
     x->planes = malloc(count * sizeof *x->planes);
     x->distinct = calloc(count, sizeof *x->distinct);
+    x->deviation = calloc(count, sizeof *x->deviation);
     x->weights = smooth_border_weights(s, v->params->segment_pixels);
     x->min_match = malloc(count * sizeof *x->min_match);
-    if (!x->planes || !x->distinct || !x->weights || !x->min_match)
-        return err_nomem(err, "planes", (size_t)s->count * 40);
+    if (!x->planes || !x->distinct || !x->deviation || !x->weights || !x->min_match)
+        return err_nomem(err, "planes", (size_t)s->count * 48);
     plane_sweep_steps(&x->sweep, v->m, v->min_inverse_z, v->max_inverse_z, v->params);
     if (v->given) x->sweep.given = &x->given;
     x->problem = (struct plane_problem){.view = view,
@@ -308,6 +315,7 @@ static void solution_release(struct solution *x)
 {
     free(x->planes);
     free(x->distinct);
+    free(x->deviation);
     free(x->weights);
     free(x->min_match);
     cross_view_release(&x->cross);
@@ -332,12 +340,33 @@ static enum status inherit(struct layered_depth *out, struct plane *planes, cons
     for (int i = 0; !err->status && i < out->segment_count; i++)
         if (inherited[i]) {
             struct depth_segment *g = &out->segments[i];
-            *g = (struct depth_segment){g->id, g->pixels, {planes[i].a, planes[i].b, planes[i].c}, 0, 0};
+            *g = (struct depth_segment){g->id, g->pixels, {planes[i].a, planes[i].b, planes[i].c}, 0, 0, 0};
             g->sigma = UNSURE_STEPS * p->step /
                        plane_at(planes[i], p->m->segments->segments[i].cx, p->m->segments->segments[i].cy);
         }
     free(confidence);
     free(inherited);
+    return err->status;
+}
+
+/* States how far off each segment's depth may be. Given depth keeps what its residuals say. */
+static enum status state_deviations(struct layered_depth *out, struct solution *x, struct err *err)
+{
+    const struct plane_problem *p = &x->problem;
+    const int count = out->segment_count;
+    double *agreeing = calloc((size_t)count + 1, sizeof *agreeing);
+    double *found = calloc((size_t)count + 1, sizeof *found);
+    if (!agreeing || !found) err_nomem(err, "deviations", (size_t)count * 2 * sizeof *found);
+    for (int i = 0; !err->status && p->cross && i < count; i++) {
+        const bool inherited = out->segments[i].confidence < DEPTH_INHERITED;
+        agreeing[i] = inherited ? 0 : cross_view_support(p->cross, i, x->planes[i]);
+        x->deviation[i] /= p->step;
+    }
+    if (!err->status) deviation_find(found, p, x->planes, p->cross ? x->deviation : NULL, p->cross ? agreeing : NULL);
+    for (int i = 0; !err->status && i < count; i++)
+        if (!given_depth_has(p->given, i) && isfinite(found[i]) && found[i] > 0) out->segments[i].deviation = found[i];
+    free(agreeing);
+    free(found);
     return err->status;
 }
 
@@ -389,7 +418,7 @@ static enum status solve(struct layered_depth *out, const struct solver *v, stru
             sweep->cost + (size_t)i * (size_t)sweep->planes, sweep->planes,
             (plane_at(x.planes[i], s->segments[i].cx, s->segments[i].cy) - sweep->min_inverse_z) / sweep->step);
     if (!err->status && !fill_segments(out, &x.problem, x.planes, x.distinct, err) &&
-        !inherit(out, x.planes, &x.problem, another_round(v), v->source->model, err))
+        !inherit(out, x.planes, &x.problem, another_round(v), v->source->model, err) && !state_deviations(out, &x, err))
         make_layers(out, &x, v, err);
     solution_release(&x);
     return err->status;
