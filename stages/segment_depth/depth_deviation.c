@@ -11,9 +11,9 @@
  * w, of the segment: the spread of the depths that match as well. With C(o) the mean matching cost of the segment and
  * of the surface around it at o steps before or behind their planes,
  *   w^2 = sum_o o^2 exp(-C(o) / TEMPERATURE) / sum_o exp(-C(o) / TEMPERATURE).
- * It is the variance of the posterior over depths that a matching cost stands for [Matthies 1989] [Hu 2012]. The surface
- * is all segments that are reached over at most RINGS borders where planes meet. A blank segment in a textured surface
- * is known by it; a blank wall is not known at all, and w is as wide as the range of depths.
+ * It is the variance of the posterior over depths that a matching cost stands for [Matthies 1989] [Hu 2012]. The
+ * surface is all segments that are reached over at most RINGS borders where planes meet. A blank segment in a textured
+ * surface is known by it; a blank wall is not known at all, and w is as wide as the range of depths.
  *
  * Later rounds have no costs at all depths. A segment keeps the deviation of the plane it started from, but less of it
  * the more other views agree: AGREEING views are as good as a certain match.
