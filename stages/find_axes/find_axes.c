@@ -49,7 +49,9 @@ static void log_summary(const struct room *room, const struct files *f, const st
              a->floor_error, unit);
     log_note("the origin lies on the floor below view %s, %.4g %s under its camera; %s", set->views[room->central].name,
              -room->floor.height * a->scale, unit,
-             room->floor_marked ? "its height is that of the marked corners" : "its height is that of the points");
+             room->floor_marked     ? "its height is that of the marked corners"
+             : room->floor.of_edges ? "its height is that of straight edges"
+                                    : "its height is that of the points");
     if (turned > 0)
         log_note("%s turns the axes by %.2f degrees", f->fix, turned);
     else if (room->fix.edges)
@@ -59,8 +61,8 @@ static void log_summary(const struct room *room, const struct files *f, const st
     if (a->ceiling > 0 && !room->ceiling.count)
         log_note("ceiling at %.4g %s, the height in %s: no points show it", a->ceiling, unit, f->scale);
     else if (a->ceiling > 0)
-        log_note("ceiling at %.4g +- %.2g %s, from %zu points", a->ceiling, a->ceiling_error, unit,
-                 room->ceiling.count);
+        log_note("ceiling at %.4g +- %.2g %s, from %s", a->ceiling, a->ceiling_error, unit,
+                 room->ceiling.of_edges ? "straight edges" : "points");
     else
         log_note("no ceiling: only %zu points above the central camera have downward normals ([find_axes] min_ceiling)",
                  room->ceiling.candidates);

@@ -13,6 +13,7 @@ struct height_level {
     size_t count;      /* number of its points; 0: there is no such level */
     size_t candidates; /* points with that normal, below (above) the origin */
     size_t beyond;     /* candidates clearly below the floor, or above the ceiling */
+    bool of_edges;     /* straight edges show the level, not points */
 };
 
 /* axes: rows in the world, z up; origin: a camera's centre, above the floor and below the ceiling. side: 1 floor, -1

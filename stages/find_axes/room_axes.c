@@ -222,6 +222,7 @@ static void take_level(struct height_level *level, const struct frame_level *kno
     level->height = known->height - eye;
     level->error = level->spread = known->error;
     level->count = level->candidates = 1;
+    level->of_edges = true;
 }
 
 /* Forgets a ceiling that no room has: below a camera, or many times as high as the cameras. */
@@ -242,6 +243,8 @@ static enum status find_heights(struct room *room, struct mark_context *m, const
         return err->status;
     if (room->source == AXES_OF_LINES) {
         const double eye = vec3_dot(in->frame->up, m->origin);
+        if (in->frame->ceiling.known && in->frame->ceiling.error < room->ceiling.error)
+            room->ceiling.count = 0; /* edges know it better */
         take_level(&room->floor, &in->frame->floor, eye);
         take_level(&room->ceiling, &in->frame->ceiling, eye);
     }

@@ -214,8 +214,11 @@ enum status levels_find_ceiling(struct room_frame *f, const struct world_lines *
             sum += d;
             square += d * d;
         }
-        f->ceiling = (struct frame_level){true, votes[fullest].height + sum / n,
-                                          sqrt(fmax(square / n - sum / n * (sum / n), 0) / n)};
+        /* walls are as far away as the floor is low: its error counts, too */
+        const double height = votes[fullest].height + sum / n, eye = (limits.lowest + limits.highest) / 2,
+                     carried = f->floor.error * (height - eye) / (eye - f->floor.height);
+        f->ceiling =
+            (struct frame_level){true, height, hypot(carried, sqrt(fmax(square / n - sum / n * (sum / n), 0) / n))};
     }
     free(votes);
     free(groups);

@@ -18,7 +18,7 @@
  * Later rounds have no costs at all depths. A segment keeps the deviation of the plane it started from, but less of it
  * the more other views agree: AGREEING views are as good as a certain match.
  *
- * POINTS, LEAST and MATCHES were chosen on loft and redkitchen (docs/decisions/0056-what-depth-may-be-off.md). What
+ * POINTS, LEAST and MATCHES were chosen on loft and redkitchen (docs/decisions/0055-what-depth-may-be-off.md). What
  * differs from the sources: costs are averaged over a surface, and the level of the noise comes from points. */
 #include "stages/segment_depth/depth_deviation.h"
 

@@ -228,6 +228,33 @@ static void a_room_without_floor_is_an_error(void **state)
     synthetic_room_release(&r);
 }
 
+/* Points say 2.6; straight edges, 2.65. */
+static void the_ceiling_is_that_of_the_smaller_error(void **state)
+{
+    (void)state;
+    struct room_spec m = plain();
+    struct synthetic_room r;
+    struct room room;
+    struct frame_heading headings[2] = {{.along = {1, 0, 0}, .error = 1e-3, .share = 0.2},
+                                        {.along = {0, 1, 0}, .error = 1e-3, .share = 0.2}};
+    m.noise = 0.03;
+    synthetic_room_make(&r, &m);
+    for (int sure = 0; sure < 2; sure++) {
+        const struct room_frame frame = {.known = true,
+                                         .up = {0, 0, 1},
+                                         .up_error = 1e-3,
+                                         .headings = headings,
+                                         .heading_count = 2,
+                                         .ceiling = {true, 2.65, sure ? 1e-6 : 0.2}};
+        struct room_inputs in = room_inputs(&r);
+        struct err err = ERR_INIT;
+        in.frame = &frame;
+        assert_ok(room_find(&room, &in, &PARAMS, &err), err);
+        assert_true(fabs(room.axes.ceiling - (sure ? 2.65 : 2.6)) < 0.01);
+    }
+    synthetic_room_release(&r);
+}
+
 /* Photographs that are stored rotated. */
 static void records_of_rotated_photos_give_the_up_direction(void **state)
 {
@@ -258,6 +285,7 @@ int main(void)
         cmocka_unit_test(stated_errors_agree_with_true_errors),
         cmocka_unit_test(a_room_may_have_no_ceiling),
         cmocka_unit_test(the_ceiling_is_above_its_beams),
+        cmocka_unit_test(the_ceiling_is_that_of_the_smaller_error),
         cmocka_unit_test(two_directions_are_enough),
         cmocka_unit_test(tables_do_not_become_the_floor),
         cmocka_unit_test(a_ball_has_no_axes),
