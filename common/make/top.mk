@@ -37,7 +37,7 @@ deps-check:
 deps-bench:
 	+@common/run/deps.sh $(DEPS) run bench
 check: deps-check ## build and run the tests
-	+@$(BUILD) tests-build
+	+@$(BUILD) $(if $(filter-out unit fuzz,$(or $(CHECKS),all)),tests-build,$(CHECKS:%=%-build))
 	+@tests/run '$(B)' $(CHECKS)
 check-long: deps-check ## the tests that take longer: whole runs, the build with clang, its static analyser
 	+@$(BUILD) tests-build
