@@ -1,7 +1,7 @@
 # gather_irradiance: points, a face and a view of a synthetic room; lamps; glossy materials; threads; errors; make irradiance
 . tests/lib.sh
 project irradiance
-photos set >/dev/null
+photos set --size 128x96 >/dev/null
 boxed t textures
 m() { make -s DEPS=manual PHOTOS=set/photos SFM=set/model SCENE=t "$@" >log 2>&1 || { cat log; fail "make $*"; }; }
 printf '[bake_outdoors]\nheight = 64\nedge = 1\nmax_clutter = 1\n[gather_irradiance]\nestimator = hemicube\nhemicube = 32\n' >>scenes/t/scene.cfg
@@ -94,7 +94,7 @@ the_page_shows_the_light()
 }
 
 # materials MODEL...: one, in the middle of the photo of the view, as fit_materials writes it
-materials() { printf 'remodel-materials 1\nmaterial shiny %s\nregion shiny %s 60 40 100 40 100 80 60 80\n' "$1" "$view" >materials.txt; }
+materials() { printf 'remodel-materials 1\nmaterial shiny %s\nregion shiny %s 48 32 80 32 80 64 48 64\n' "$1" "$view" >materials.txt; }
 
 glossy_materials_reflect_and_bytes_do_not_depend_on_threads()
 {
@@ -139,7 +139,7 @@ make_gathers_at_points_and_views()
     m irradiance GATHER_POINTS=points.txt
     grep -q '^# input lights' $O/relight/irradiance.txt || fail "marked lamps do not reach the gather"
     printf '[fit_materials]\npoints = 40\nviews = 4\nmax_clutter = 1\nedge = 0\n' >>scenes/t/scene.cfg
-    printf 'remodel-marked-materials 1\nmaterial paint in %s 20 20 140 20 140 100 20 100\n' "$view" >scenes/t/materials.txt
+    printf 'remodel-marked-materials 1\nmaterial paint in %s 16 16 112 16 112 80 16 80\n' "$view" >scenes/t/materials.txt
     m irradiance GATHER_POINTS=points.txt GATHER_VIEWS="$view"
     grep -q '^# input lights/materials.txt' $O/relight/irradiance.txt || fail "marked materials do not reach the gather"
     grep -qa 'specular.R' $O/relight/irradiance/"$view".exr || fail "the view has no specular channels"
