@@ -125,7 +125,7 @@ static void surrounding_depths_correct_the_normals(void **state)
         for (int k = 0; k < STRIPES; k++) {
             const double u = STRIPE * (k + 0.5), v = HEIGHT / 2.0;
             d->segments[k] = (struct depth_segment){
-                (uint32_t)k + 1, 0, {0, 0, whole.plane[0] * u + whole.plane[1] * v + whole.plane[2]}, 0.03, 1};
+                (uint32_t)k + 1, 0, {0, 0, whole.plane[0] * u + whole.plane[1] * v + whole.plane[2]}, 0.03, 1, 0};
         }
         for (int at = 0; at < WIDTH * HEIGHT; at++) d->interior.id[at] = (uint32_t)(at % WIDTH / STRIPE) + 1;
     }
