@@ -25,7 +25,7 @@
 #define FINE    0.001
 #define LOWEST  1.2  /* how far below the cameras a floor is looked for */
 #define HIGHEST 1.6  /* how far above them a ceiling is */
-#define LEAST   0.08 /* how far from a camera both must be */
+#define LEAST   0.08 /* how far from a camera both must be, and by how much points may be off them */
 #define REACH   3.0  /* farthest line that counts */
 
 #define CLEARLY      1.4 /* times the median over the heights around */
@@ -62,8 +62,8 @@ static enum status limits_of(struct level_limits *h, const struct camera_set *se
     h->ceiling = h->highest + LEAST * size;
     for (size_t i = 0; i < count; i++) heights[i] = (struct weighted){vec3_dot(up, m->points[i].position), 1};
     if (count) {
-        h->floor = fmin(h->floor, weighted_percentile(heights, count, BEYOND) + STEP * size);
-        h->ceiling = fmax(h->ceiling, weighted_percentile(heights, count, 1 - BEYOND) - STEP * size);
+        h->floor = fmin(h->floor, weighted_percentile(heights, count, BEYOND) + LEAST * size);
+        h->ceiling = fmax(h->ceiling, weighted_percentile(heights, count, 1 - BEYOND) - LEAST * size);
     }
     free(heights);
     return ST_OK;
