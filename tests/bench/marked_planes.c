@@ -23,6 +23,7 @@
 #include "common/math/weighted.h"
 
 enum { MAX_FACES = 16, MAX_CORNERS = 64, MAX_MARKS = 2000, MAX_REGIONS = 200, ITERATIONS = 1000 };
+enum { AGAIN = 4 };                              /* solutions from the last: the solver stops early in flat valleys */
 enum { SWEEPS = 6, TURNS = 60, DISTANCES = 65 }; /* of the search for a start */
 #define WITHIN 0.05
 #define OFF    1e4 /* distance of a mark that a plane does not meet, px */
@@ -391,6 +392,29 @@ static void print_scores(struct marked *m, const double *x, struct tally *of, st
     print_tally("all", all, m->mark_count, sum, "-");
 }
 
+/* The best of fits that differ in how far a mark pulls at first: planes that start off must be pulled, by the right
+ * marks. */
+static enum status fit_planes(struct marked *m, double *x, struct err *err)
+{
+    const struct least_squares problem = {4 * m->face_count + 3, m->mark_count, soft_distances, m, ITERATIONS};
+    double best[4 * MAX_FACES + 3], start[4 * MAX_FACES + 3], off[MAX_MARKS], least = INFINITY;
+    memcpy(start, x, sizeof start);
+    for (int first = 8; first <= 128 && !err->status; first *= 4) {
+        double sum = 0;
+        memcpy(x, start, sizeof start);
+        for (m->soft = first; m->soft >= 2 && !err->status; m->soft /= 4) {
+            search_planes(m, x);
+            ceres_least_squares(&problem, x, err);
+        }
+        m->soft = 2;
+        soft_distances(m, x, off);
+        for (int i = 0; i < m->mark_count; i++) sum += off[i] * off[i];
+        if (sum < least) least = sum, memcpy(best, x, sizeof best);
+    }
+    memcpy(x, best, sizeof best);
+    return err->status;
+}
+
 static enum status score(struct marked *m, const char *folder, struct err *err)
 {
     double x[4 * MAX_FACES + 3] = {0}, depth[MAX_MARKS] = {0};
@@ -399,11 +423,7 @@ static enum status score(struct marked *m, const char *folder, struct err *err)
         m->origin = vec3_add(m->origin, vec3_scale(m->set.views[i].center, 1.0 / m->set.view_count));
     if (read_marks(depth, m, folder, err)) return err->status;
     start_planes(m, depth, x);
-    const struct least_squares problem = {4 * m->face_count + 3, m->mark_count, soft_distances, m, ITERATIONS};
-    m->soft = 32;
-    search_planes(m, x);
-    /* planes that start off must still be pulled */
-    for (; m->soft >= 2 && !err->status; m->soft /= 4) ceres_least_squares(&problem, x, err);
+    fit_planes(m, x, err);
     for (int i = 0; i < m->region_count && !err->status; i++) {
         struct layered_depth d = {0};
         const struct region *r = &m->regions[i];

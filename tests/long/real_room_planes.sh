@@ -5,7 +5,7 @@ data=$root/../shared/data/real-room
 project real_room_planes
 
 # Every run of COLMAP places these photos a little differently, so the limits are wide: marks that miss by 3 px, or depth
-# of less than a sixth within 5 %, mean that something broke. 85 % is the aim; 24 % were measured.
+# of less than a sixth within 5 %, mean that something broke. 36 % were measured; depth that knows a model gets 86 and more.
 depth_is_measured_on_planes_marked_by_hand()
 {
     [ -d "$data/photos" ] || skip "the photos of the room are not here"
