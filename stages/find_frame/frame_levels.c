@@ -35,7 +35,7 @@
 #define HEAD_CLEARLY 2.0 /* times the votes of a height if they lay anywhere, which the best must have */
 #define MIN_HEADS    3   /* walls and places that show a ceiling */
 #define BEYOND       0.1 /* of the sparse points, which may be beyond floor and ceiling: reflections, streets */
-#define EDGE_POINTS  20 /* that show where points end */
+#define EDGE_POINTS  20  /* that show where points end */
 #define EDGE_SHARE   0.01
 #define EDGE_RISE    3.0  /* times the points of the step below */
 #define EDGE_BELOW   0.03 /* of all points */
