@@ -3,8 +3,8 @@
  * Floor: see foot_lines.c. Of all heights below the cameras the one is taken at which most lines of different places
  * fall on each other, if it is clearly better than those around, and if few sparse points are below it: tables and beds
  * have straight edges at one height, too, but what is seen goes on below them. Where lines do not say, as in a room
- * seen from few places, it is the level at which the sparse points end, if there they do so at once. The upper edge of a
- * skirting board is as straight as its lower one, so the height errs by a few hundredths of the camera's.
+ * seen from few places, it is the level at which the sparse points end, if there they do so at once. The upper edge of
+ * a skirting board is as straight as its lower one, so the height errs by a few hundredths of the camera's.
  *
  * Ceiling: a wall whose foot is known stands at a known distance, so each line above that runs along it has one height
  * on it. Heads of doors and windows have common heights, too; the ceiling is the highest level that many walls and

@@ -6,8 +6,8 @@ static const double size = 2.5;
 
 enum { POINTS = 1000 };
 
-/* Of POINTS points, `floor` are on the floor to `noise` (standard deviation, m), `below` anywhere up to a metre below it,
- * the others above it. */
+/* Of POINTS points, `floor` are on the floor to `noise` (standard deviation, m), `below` anywhere up to a metre below
+ * it, the others above it. */
 static void add_points(struct line_room *r, struct sfm_point *points, int floor, int below, double noise)
 {
     const struct rng rng = rng_make(3, "test", "points");

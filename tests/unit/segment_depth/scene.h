@@ -249,8 +249,8 @@ struct scene_shot {
 
 enum { KEPT_SHOTS = 32 };
 
-/* The photo: 3 x 3 rays per pixel, quantized to 8 bits in sRGB, as linear R G B A of at most 1. To make one takes longer
- * than to find the depth, and tests ask for the same one again and again: the last ones are kept. */
+/* The photo: 3 x 3 rays per pixel, quantized to 8 bits in sRGB, as linear R G B A of at most 1. To make one takes
+ * longer than to find the depth, and tests ask for the same one again and again: the last ones are kept. */
 static inline enum status scene_photo(void *ctx, int view_idx, struct image *im, struct err *err)
 {
     static struct scene_shot kept[KEPT_SHOTS];
