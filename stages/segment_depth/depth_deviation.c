@@ -41,21 +41,22 @@
 
 enum { RINGS = 2, MAX_AROUND = 64, ROWS = 32 };
 
-double deviation_of_points(const struct plane_problem *p, const struct plane *planes)
+enum status deviation_of_points(double *steps, const struct plane_problem *p, const struct plane *planes,
+                                struct err *err)
 {
     const struct point_evidence *e = p->points;
     const int count = e->first[p->m->segments->count];
-    double *off = malloc(((size_t)count + 1) * sizeof *off), found = 1;
-    if (!off) return found; /* no more cautious than a view without points */
+    double *off = malloc(((size_t)count + 1) * sizeof *off);
+    if (!off) return err_nomem(err, "what points are off", (size_t)count * sizeof *off);
     for (int i = 0; i < p->m->segments->count; i++)
         for (int k = e->first[i]; k < e->first[i + 1]; k++) {
             const struct observed_point *point = &e->points[k];
             off[k] = fabs(plane_at(planes[i], point->u, point->v) - point->inverse_z) / p->step;
         }
     sort_doubles(off, (size_t)count);
-    if (count) found = (count * off[(int)(SHARE * (count - 1))] + FEW) / (count + FEW);
+    *steps = count ? (count * off[(int)(SHARE * (count - 1))] + FEW) / (count + FEW) : 1;
     free(off);
-    return found;
+    return ST_OK;
 }
 
 /* Lists segment i and those around it on the same surface. Returns how many. */
@@ -87,10 +88,9 @@ static int label_of(const struct plane_problem *p, const struct plane *planes, i
     return (int)(clamp(label, 0, p->planes - 1) + 0.5);
 }
 
-/* sum, weight: room for p->planes each. */
-static double spread(const struct plane_problem *p, const struct plane *planes, int segment, double *sum,
-                     double *weight)
+double deviation_of_matches(const struct plane_problem *p, const struct plane *planes, int segment, double *room)
 {
+    double *sum = room, *weight = room + p->planes;
     int around[MAX_AROUND];
     const int count = surface_around(around, p, planes, segment), own = label_of(p, planes, segment);
     memset(sum, 0, (size_t)p->planes * sizeof *sum);
@@ -114,39 +114,39 @@ static double spread(const struct plane_problem *p, const struct plane *planes, 
     return sqrt(square / total);
 }
 
-double deviation_of_matches(const struct plane_problem *p, const struct plane *planes, int segment)
-{
-    double *room = malloc(2 * (size_t)p->planes * sizeof *room);
-    const double found = room ? spread(p, planes, segment, room, room + p->planes) : p->planes;
-    free(room);
-    return found;
-}
-
 struct deviation_job {
     double *deviation;
     const struct plane_problem *p;
     const struct plane *planes;
     const double *before, *agreeing;
-    double points;
+    double points, *room; /* room: 2 p->planes numbers for each thread */
 };
 
 static void find_some(void *ctx, size_t begin, size_t end, int thread)
 {
     const struct deviation_job *job = ctx;
     const struct plane_problem *p = job->p;
-    (void)thread;
+    double *room = job->room + (size_t)thread * 2 * (size_t)p->planes;
     for (size_t i = begin; i < end; i++) {
         const struct segment *g = &p->m->segments->segments[i];
         const double own = job->before ? job->before[i] * (1 - fmin(job->agreeing[i] / AGREEING, 1))
-                                       : MATCHES * deviation_of_matches(p, job->planes, (int)i);
+                                       : MATCHES * deviation_of_matches(p, job->planes, (int)i, room);
         const double steps = sqrt(job->points * job->points + LEAST * LEAST + own * own);
         job->deviation[i] = steps * p->step / plane_at(job->planes[i], g->cx, g->cy);
     }
 }
 
-void deviation_find(double *deviation, const struct plane_problem *p, const struct plane *planes, const double *before,
-                    const double *agreeing)
+enum status deviation_find(double *deviation, const struct plane_problem *p, const struct plane *planes,
+                           const double *before, const double *agreeing, struct err *err)
 {
-    struct deviation_job job = {deviation, p, planes, before, agreeing, POINTS * deviation_of_points(p, planes)};
-    parallel_for((size_t)p->m->segments->count, ROWS, find_some, &job);
+    const size_t room = ((size_t)parallel_threads() * 2 * (size_t)p->planes + 1) * sizeof(double);
+    struct deviation_job job = {deviation, p, planes, before, agreeing, 0, malloc(room)};
+    if (!job.room)
+        err_nomem(err, "matching costs of surfaces", room);
+    else if (!deviation_of_points(&job.points, p, planes, err)) {
+        job.points *= POINTS;
+        parallel_for((size_t)p->m->segments->count, ROWS, find_some, &job);
+    }
+    free(job.room);
+    return err->status;
 }

@@ -362,7 +362,8 @@ static enum status state_deviations(struct layered_depth *out, struct solution *
         agreeing[i] = inherited ? 0 : cross_view_support(p->cross, i, x->planes[i]);
         x->deviation[i] /= p->step;
     }
-    if (!err->status) deviation_find(found, p, x->planes, p->cross ? x->deviation : NULL, p->cross ? agreeing : NULL);
+    if (!err->status)
+        deviation_find(found, p, x->planes, p->cross ? x->deviation : NULL, p->cross ? agreeing : NULL, err);
     for (int i = 0; !err->status && i < count; i++)
         if (!given_depth_has(p->given, i) && isfinite(found[i]) && found[i] > 0) out->segments[i].deviation = found[i];
     free(agreeing);

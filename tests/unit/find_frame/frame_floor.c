@@ -1,7 +1,6 @@
 /* frame_floor.c - the floor of a room, by its lines and by where its sparse points end. */
 #include "tests/unit/find_frame/line_room.h"
 
-static const struct frame_params PARAMS = FRAME_PARAMS_DEFAULT;
 static const double size = 2.5;
 
 enum { POINTS = 1000 };
@@ -32,15 +31,10 @@ static struct frame_level floor_of(int stations, int floor, int below, double no
     static struct sfm_point points[POINTS];
     const struct line_room_spec spec = {.stations = stations, .heading = 10, .noise = 0.5};
     struct line_room r;
-    struct room_frame f = {0};
+    struct room_frame f;
     struct err err = ERR_INIT;
-    line_room_make(&r, &spec);
+    int *headings = line_room_headings(&f, &r, &spec);
     add_points(&r, points, floor, below, noise);
-    assert_ok(line_directions_find(&f, &r.lines, line_room_up(), &PARAMS, &err), err);
-    assert_true(f.known);
-    int *headings = malloc(((size_t)r.lines.count + 1) * sizeof *headings);
-    assert_non_null(headings);
-    for (int i = 0; i < r.lines.count; i++) headings[i] = line_heading(&f, &r.lines.lines[i]);
     assert_ok(levels_find_floor(&f, &r.lines, headings, &r.set, size, &err), err);
     const struct frame_level found = f.floor;
     free(headings);

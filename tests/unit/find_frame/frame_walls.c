@@ -1,20 +1,13 @@
 /* frame_walls.c - floor, ceiling and walls of rooms whose lines are known. */
 #include "tests/unit/find_frame/line_room.h"
 
-static const struct frame_params PARAMS = FRAME_PARAMS_DEFAULT;
 static const double size = 2.5;
 
 static void find(struct room_frame *f, struct line_room *r, const struct line_room_spec *spec)
 {
     struct err err = ERR_INIT;
     struct foot_lines lines = {0};
-    *f = (struct room_frame){0};
-    line_room_make(r, spec);
-    assert_ok(line_directions_find(f, &r->lines, line_room_up(), &PARAMS, &err), err);
-    assert_true(f->known);
-    int *headings = malloc(((size_t)r->lines.count + 1) * sizeof *headings);
-    assert_non_null(headings);
-    for (int i = 0; i < r->lines.count; i++) headings[i] = line_heading(f, &r->lines.lines[i]);
+    int *headings = line_room_headings(f, r, spec);
     assert_ok(levels_find_floor(f, &r->lines, headings, &r->set, size, &err), err);
     assert_true(f->floor.known);
     assert_ok(foot_lines_add(&lines, &r->lines, headings, f, &r->set, f->floor.height, false, 3 * size, &err), err);
@@ -93,14 +86,9 @@ static void one_place_shows_no_walls(void **state)
     (void)state;
     const struct line_room_spec spec = {.stations = 1, .heading = 10};
     struct line_room r;
-    struct room_frame f = {0};
+    struct room_frame f;
     struct err err = ERR_INIT;
-    line_room_make(&r, &spec);
-    assert_ok(line_directions_find(&f, &r.lines, line_room_up(), &PARAMS, &err), err);
-    assert_true(f.known);
-    int *headings = malloc(((size_t)r.lines.count + 1) * sizeof *headings);
-    assert_non_null(headings);
-    for (int i = 0; i < r.lines.count; i++) headings[i] = line_heading(&f, &r.lines.lines[i]);
+    int *headings = line_room_headings(&f, &r, &spec);
     assert_ok(levels_find_floor(&f, &r.lines, headings, &r.set, size, &err), err);
     assert_false(f.floor.known);
     free(headings);

@@ -155,4 +155,19 @@ static inline void line_room_release(struct line_room *r) { world_lines_release(
 /* Up as the cameras are held. */
 static inline struct vec3 line_room_up(void) { return vec3_make(0, 0, 1); }
 
+/* Makes the room and finds its directions. Returns the heading of each line, which the caller frees. */
+static inline int *line_room_headings(struct room_frame *f, struct line_room *r, const struct line_room_spec *spec)
+{
+    static const struct frame_params params = FRAME_PARAMS_DEFAULT;
+    struct err err = ERR_INIT;
+    *f = (struct room_frame){0};
+    line_room_make(r, spec);
+    assert_ok(line_directions_find(f, &r->lines, line_room_up(), &params, &err), err);
+    assert_true(f->known);
+    int *headings = malloc(((size_t)r->lines.count + 1) * sizeof *headings);
+    assert_non_null(headings);
+    for (int i = 0; i < r->lines.count; i++) headings[i] = line_heading(f, &r->lines.lines[i]);
+    return headings;
+}
+
 #endif

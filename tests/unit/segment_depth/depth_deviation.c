@@ -2,6 +2,7 @@
 #include "stages/segment_depth/depth_deviation.h"
 
 #include "common/base/parallel.h"
+#include "tests/unit/scratch.h"
 #include "tests/unit/segment_depth/problem.h"
 
 enum { LABELS = 41, OWN = 20 };
@@ -27,6 +28,26 @@ static void start(void)
 /* A segment in the middle of the picture. */
 static int middle(void) { return b.segments.label[H / 2 * W + W / 2]; }
 
+static double matches_of(int segment)
+{
+    double room[2 * LABELS];
+    return deviation_of_matches(&b.problem, planes, segment, room);
+}
+
+static double points_of(void)
+{
+    double found;
+    struct err err = ERR_INIT;
+    assert_ok(deviation_of_points(&found, &b.problem, planes, &err), err);
+    return found;
+}
+
+static void find(double *found, const double *before, const double *agreeing)
+{
+    struct err err = ERR_INIT;
+    assert_ok(deviation_find(found, &b.problem, planes, before, agreeing, &err), err);
+}
+
 /* Where no depth matches better than another, the deviation is that of a uniform distribution. */
 static void a_blank_surface_may_be_anywhere(void **state)
 {
@@ -34,7 +55,7 @@ static void a_blank_surface_may_be_anywhere(void **state)
     start();
     double square = 0;
     for (int k = 0; k < LABELS; k++) square += (k - OWN) * (k - OWN);
-    assert_near(deviation_of_matches(&b.problem, planes, middle()), sqrt(square / LABELS), 1e-9);
+    assert_near(matches_of(middle()), sqrt(square / LABELS), 1e-9);
     bench_release();
 }
 
@@ -44,9 +65,9 @@ static void the_spread_is_that_of_the_depths_that_match(void **state)
     (void)state;
     start();
     for (int i = 0; i < b.segments.count; i++) cost[i * LABELS + OWN] = 0;
-    assert_near(deviation_of_matches(&b.problem, planes, middle()), 0, 0.01);
+    assert_near(matches_of(middle()), 0, 0.01);
     for (int i = 0; i < b.segments.count; i++) cost[i * LABELS + OWN + 6] = 0;
-    assert_near(deviation_of_matches(&b.problem, planes, middle()), sqrt(0.5 * 36), 0.01);
+    assert_near(matches_of(middle()), sqrt(0.5 * 36), 0.01);
     bench_release();
 }
 
@@ -56,7 +77,7 @@ static void a_match_elsewhere_counts_by_its_distance(void **state)
     (void)state;
     start();
     for (int i = 0; i < b.segments.count; i++) cost[i * LABELS + OWN - 9] = 0;
-    assert_near(deviation_of_matches(&b.problem, planes, middle()), 9, 0.01);
+    assert_near(matches_of(middle()), 9, 0.01);
     bench_release();
 }
 
@@ -68,10 +89,10 @@ static void the_surface_around_decides(void **state)
     const int own = middle();
     for (int i = 0; i < b.segments.count; i++)
         if (i != own) cost[i * LABELS + OWN] = -1;
-    assert_near(deviation_of_matches(&b.problem, planes, own), 0, 0.01);
+    assert_near(matches_of(own), 0, 0.01);
     for (int i = 0; i < b.segments.count; i++)
         if (i != own) planes[i].c = 0.25 - 3 * b.problem.step;
-    assert_true(deviation_of_matches(&b.problem, planes, own) > 10);
+    assert_true(matches_of(own) > 10);
     bench_release();
 }
 
@@ -86,7 +107,7 @@ static void a_slanted_surface_is_one(void **state)
         planes[i] = slanted;
         cost[i * LABELS + (int)(label + 0.5)] = 0;
     }
-    assert_near(deviation_of_matches(&b.problem, planes, middle()), 0, 0.01);
+    assert_near(matches_of(middle()), 0, 0.01);
     bench_release();
 }
 
@@ -111,11 +132,11 @@ static void points_measure_what_planes_are_off(void **state)
 {
     (void)state;
     start();
-    assert_near(deviation_of_points(&b.problem, planes), 1, 1e-9);
+    assert_near(points_of(), 1, 1e-9);
     set_points(95, 0.2);
-    assert_near(deviation_of_points(&b.problem, planes), (95 * 0.2 + 5) / 100, 1e-6);
+    assert_near(points_of(), (95 * 0.2 + 5) / 100, 1e-6);
     set_points(15, 3);
-    assert_near(deviation_of_points(&b.problem, planes), (15 * 3 + 5) / 20.0, 1e-6);
+    assert_near(points_of(), (15 * 3 + 5) / 20.0, 1e-6);
     bench_release();
 }
 
@@ -124,11 +145,11 @@ static void deviations_are_relative_to_the_inverse_depth(void **state)
 {
     (void)state;
     start();
-    deviation_find(deviation, &b.problem, planes, NULL, NULL);
+    find(deviation, NULL, NULL);
     const int own = middle();
     const double blank = deviation[own];
     for (int i = 0; i < b.segments.count; i++) cost[i * LABELS + OWN] = 0;
-    deviation_find(deviation, &b.problem, planes, NULL, NULL);
+    find(deviation, NULL, NULL);
     assert_true(deviation[own] < blank / 2);
     const double near = deviation[own];
     for (int i = 0; i < b.segments.count; i++) {
@@ -136,12 +157,12 @@ static void deviations_are_relative_to_the_inverse_depth(void **state)
         cost[i * LABELS + OWN] = 1;
         cost[i * LABELS + (int)((0.125 - 0.1) / b.problem.step + 0.5)] = 0;
     }
-    deviation_find(deviation, &b.problem, planes, NULL, NULL);
+    find(deviation, NULL, NULL);
     assert_near(deviation[own], 2 * near, 0.02 * near);
     bench_release();
 }
 
-/* After the first round, what other views agree on loses its doubt, and nothing else does. */
+/* In later rounds a deviation shrinks if other views agree on the depth. Otherwise it stays as it was. */
 static void agreement_of_other_views_replaces_matches(void **state)
 {
     (void)state;
@@ -154,7 +175,7 @@ static void agreement_of_other_views_replaces_matches(void **state)
     agreeing[1] = 1;
     agreeing[2] = 2;
     agreeing[3] = 5;
-    deviation_find(deviation, &b.problem, planes, before, agreeing);
+    find(deviation, before, agreeing);
     const double step = b.problem.step / 0.25;
     assert_near(deviation[0], 10 * step, 0.01 * step);
     assert_near(deviation[1], 5 * step, 0.02 * step);
@@ -171,9 +192,9 @@ static void threads_change_nothing(void **state)
     start();
     for (int i = 0; i < b.segments.count * LABELS; i++) cost[i] = (float)(i * 7919 % 1000) / 1000;
     parallel_set_threads(1);
-    deviation_find(deviation, &b.problem, planes, NULL, NULL);
+    find(deviation, NULL, NULL);
     parallel_set_threads(3);
-    deviation_find(other, &b.problem, planes, NULL, NULL);
+    find(other, NULL, NULL);
     assert_memory_equal(deviation, other, (size_t)b.segments.count * sizeof *other);
     bench_release();
 }
