@@ -9,9 +9,9 @@
 enum status deviation_of_points(double *steps, const struct plane_problem *p, const struct plane *planes,
                                 struct err *err);
 
-/* Standard deviation, in steps, of the depths around segment i's plane that match as well as it does: pictures of the
- * surface around the segment decide. Only in the first round, which has matching costs at all depths. room: for 2 p->planes
- * numbers. */
+/* Standard deviation, in steps, of the depths around a segment's plane that match as well as it does: pictures of the
+ * surface around the segment decide. Only in the first round, which has matching costs at all depths. room: for
+ * 2 p->planes numbers. */
 double deviation_of_matches(const struct plane_problem *p, const struct plane *planes, int segment, double *room);
 
 /* Fills deviation[] of all segments: the standard deviation of the relative error of inverse depth, (1/z - 1/z_true) z.

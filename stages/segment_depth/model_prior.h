@@ -6,8 +6,8 @@
 #include "stages/segment_depth/plane_problem.h"
 
 /* The planes of the faces that segments of the view show if nothing stands before them, and of floor and ceiling where
- * walls have no room; nothing is expected behind panes. trace: of the view, in the size of its segments. scale: units of
- * the model in a unit of the scene. The caller releases the prior in each case. */
+ * walls have no room; nothing is expected behind panes. trace: of the view, in the size of its segments. scale: units
+ * of the model in a unit of the scene. The caller releases the prior in each case. */
 enum status model_prior_make(struct plane_prior *prior, const struct view_trace *trace, double scale,
                              const struct view *view, const struct segmentation *s, struct err *err);
 /* Sets the gains. sure: of each segment, the confidence of its depth before, 0 .. 1. */
