@@ -300,7 +300,7 @@ static bool effect_is_valid(const char *name)
 
 static enum status read_planned_move(struct keyframe_reader *r, struct err *err)
 {
-    struct film_shot *shot;
+    struct film_shot *shot = NULL;
     char *name, *word;
     bool reversed = false;
     double seconds = 0;
