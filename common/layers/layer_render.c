@@ -14,8 +14,9 @@
  * - blending weights are taken from the view mesh at the corners of a lattice of LATTICE px and are bilinear between;
  * - a view's weight fades towards the border of its picture, so that the border leaves no visible line;
  * - where the views of the mesh leave a pixel below alpha 0.5, the nearest other view (by centre) that covers the pixel
- *   is a fallback, unless most of the mesh's views, by weight, see through its surface at something farther. Only
- *   pixels without a fallback are holes; hole_fill.h fills them as far as the options say.
+ *   is a fallback, unless most of the mesh's views, by weight, see through its surface at something farther. Surfaces
+ *   whose depth is inherited (DEPTH_INHERITED) are no evidence of that, and as fallbacks they come after all others.
+ *   Only pixels without a fallback are holes; hole_fill.h fills them as far as the options say.
  *
  * A frame is rendered in independent tiles: each tile draws the mesh's views one after another, then the fallbacks of
  * uncovered pixels, then blends the samples of each pixel, eight pixels at a time. Results therefore do not depend on
@@ -451,7 +452,7 @@ static void draw_mesh_views(struct frame_job *job, struct tile_scratch *s, const
 enum sight { SIGHT_UNKNOWN, SIGHT_THROUGH, SIGHT_BLOCKED };
 
 /* SIGHT_THROUGH: the view sees a clearly farther surface along the ray to this world point, so there is no surface at
- * the point. SIGHT_UNKNOWN: the point is outside of its picture, or the view has no depth there. */
+ * the point. SIGHT_UNKNOWN: the point is outside of its picture, or the view has no depth there but an inherited one. */
 static enum sight sight_of(const struct frame_job *job, int view, struct vec3 point, float sigma)
 {
     const struct layer_view *lv = &job->scene->views[view];
@@ -464,6 +465,7 @@ static enum sight sight_of(const struct frame_job *job, int view, struct vec3 po
     if (!id) return SIGHT_UNKNOWN;
     const struct depth_segment *seg = &job->scene->depths[view].segments[id - 1];
     const double inverse = seg->plane[0] * u + seg->plane[1] * v + seg->plane[2];
+    if (seg->confidence < DEPTH_INHERITED) return SIGHT_UNKNOWN;
     if (!(inverse > 0)) return SIGHT_THROUGH;
     const struct soft_z soft = {SIGHT_WIDTHS, job->soft.range};
     const float rho = soft_z_rho(&soft, (float)z, sigma, (float)(1 / inverse), (float)seg->sigma);
@@ -539,9 +541,10 @@ static void open_fallback(struct tile_scratch *s, int patch)
         }
 }
 
-/* Accepts the samples of another view at eight uncovered pixels where they cover the pixel and are consistent. */
-static void accept_fallback(const struct frame_job *job, struct tile_scratch *s, const struct tile *at, size_t i,
-                            bool color)
+/* Accepts the samples of another view at eight uncovered pixels where they cover the pixel, are consistent, and sure if
+ * they have to be. */
+static void accept_fallback(const struct frame_job *job, struct tile_scratch *s, const struct tile *at,
+                            const struct layered_depth *depth, size_t i, bool sure, bool color)
 {
     struct slot *slot = &s->slots[FALLBACK];
     const struct view_samples *from = &s->spare;
@@ -550,6 +553,8 @@ static void accept_fallback(const struct frame_job *job, struct tile_scratch *s,
     for (size_t p = i; p < i + 8; p++) {
         const int x = (int)(p % TILE_STRIDE);
         if (!(from->alpha[p] >= COVERED) || x >= at->width) continue;
+        const struct drawn_segment *segment = &s->segments.segments[s->visibility.front[p] & ~VISIBLE_FULL];
+        if (sure && depth->segments[segment->id - 1].confidence < DEPTH_INHERITED) continue;
         if (!is_consistent(job, &s->patches[x / LATTICE], at, x, y, from->z[p], from->sigma[p])) continue;
         s->covered[p] = 1;
         if (!color) continue;
@@ -562,8 +567,9 @@ static void accept_fallback(const struct frame_job *job, struct tile_scratch *s,
     }
 }
 
-/* Fallbacks of the pixels that the mesh's views leave uncovered: other views, the nearest first. */
-static void draw_fallback_views(struct frame_job *job, struct tile_scratch *s, const struct tile *at, bool color)
+/* Fallbacks of the pixels that the mesh's views leave uncovered: other views, the nearest first. sure: only what they
+ * have not inherited. */
+static void draw_fallbacks(struct frame_job *job, struct tile_scratch *s, const struct tile *at, bool sure, bool color)
 {
     for (int n = 0; n < job->scene->set->view_count && any_hole(s, at); n++) {
         const int view = job->by_distance[n].view;
@@ -580,9 +586,15 @@ static void draw_fallback_views(struct frame_job *job, struct tile_scratch *s, c
                     visibility_sample8(&s->spare, NULL, &s->visibility, &s->segments, lv, i, at->x, at->y);
                 else
                     visibility_cover8(&s->spare, &s->visibility, &s->segments, lv, i, at->x, at->y);
-                accept_fallback(job, s, at, i, color);
+                accept_fallback(job, s, at, drawn->depth, i, sure, color);
             }
     }
+}
+
+static void draw_fallback_views(struct frame_job *job, struct tile_scratch *s, const struct tile *at, bool color)
+{
+    draw_fallbacks(job, s, at, true, color);
+    draw_fallbacks(job, s, at, false, color);
 }
 
 /* ------------------------------------------------------------------------------------------------------- blending */

@@ -134,6 +134,7 @@ static void depth_make(struct layered_depth *d, const struct view *v, const stru
     for (int i = 0; i < d->segment_count; i++) {
         d->segments[i].id = (uint32_t)i + 1;
         d->segments[i].sigma = shape->sigma;
+        d->segments[i].confidence = 1;
         if (!d->segments[i].pixels) d->segments[i].plane[2] = 1;
     }
 }

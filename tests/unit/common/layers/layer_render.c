@@ -331,6 +331,65 @@ static void a_hole_takes_the_nearest_consistent_fallback_view(void **state)
     }
 }
 
+/* Moves a patch of a depth map to depth z, as a segment of its own. */
+static void move_patch(struct layered_depth *d, int x0, int y0, int x1, int y1, double z, double confidence)
+{
+    d->segments = realloc(d->segments, ((size_t)d->segment_count + 1) * sizeof *d->segments);
+    assert_non_null(d->segments);
+    struct depth_segment *added = &d->segments[d->segment_count++];
+    *added = d->segments[d->interior.id[y0 * W + x0] - 1];
+    *added = (struct depth_segment){.id = (uint32_t)d->segment_count,
+                                    .pixels = (x1 - x0) * (y1 - y0),
+                                    .plane = {0, 0, 1 / z},
+                                    .sigma = added->sigma,
+                                    .confidence = confidence};
+    for (int y = y0; y < y1; y++)
+        for (int x = x0; x < x1; x++) {
+            d->interior.id[y * W + x] = added->id;
+            d->interior.z[y * W + x] = (float)z;
+        }
+}
+
+/* As above, but one of the mesh's views has the patch at a far depth, and so sees through the wall that the other views
+ * have there. It does not if it only inherited that depth. Of the other views, the nearest has the patch too near: if
+ * it inherited that, it comes after the next one. */
+static void inherited_depth_is_no_evidence_against_a_fallback(void **state)
+{
+    const bool offline = *(const bool *)*state;
+    static const double rail[][3] = {{-0.6, 0, 0}, {-0.3, 0, 0}, {0.3, 0, 0}, {0.6, 0, 0}};
+    const struct view novel = view_at(0.05, 0, 0.001);
+    const struct layer_render_options options = {.offline = offline, .soft_z = SOFT_Z_WIDTHS};
+    for (int sure = 0; sure < 2; sure++) {
+        struct scene s;
+        struct layered_depth depths[4];
+        struct rendered_frame f = {0};
+        struct err err = ERR_INIT;
+        int holes = 0, right = 0;
+
+        memset(&s, 0, sizeof s);
+        for (int i = 0; i < 4; i++) {
+            s.views[i] = view_at(rail[i][0], rail[i][1], rail[i][2]);
+            depth_make(&depths[i], &s.views[i], &square);
+        }
+        move_patch(&depths[1], 78, 18, 100, 30, 60, sure ? 1 : 0.05);
+        erase(&depths[2], 62, 18, 84, 30);
+        move_patch(&depths[3], 48, 18, 76, 30, 5, 0.05);
+        s.set.views = s.views;
+        s.set.view_count = 4;
+        assert_int_equal(layer_scene_init(&s.layers, &s.set, depths, &err), ST_OK);
+        if (layer_render(&f, &s.layers, &novel, &options, &err)) fail_msg("%s", err.text);
+        for (int y = 20; y < 28; y++)
+            for (int x = 71; x < 76; x++) {
+                holes += f.hole[y * W + x];
+                right += fabs((double)f.z[y * W + x] - 6) < 0.01;
+            }
+        assert_int_equal(holes, sure ? 40 : 0);
+        assert_int_equal(right, sure ? 0 : 40);
+        layer_scene_release(&s.layers);
+        rendered_frame_release(&f);
+    }
+}
+
 /* Renders a view at the origin in its own camera. Takes ownership of the depth map. */
 static void render_own(struct rendered_frame *f, struct layered_depth *d, bool offline)
 {
@@ -869,6 +928,7 @@ int main(void)
         BOTH(there_is_no_hole_along_a_rail),
         BOTH(picture_borders_leave_no_visible_line),
         BOTH(a_hole_takes_the_nearest_consistent_fallback_view),
+        BOTH(inherited_depth_is_no_evidence_against_a_fallback),
         BOTH(boundary_layers_composite_to_the_photo),
         BOTH(unusual_cameras_are_rendered),
         BOTH(crossing_an_edge_of_the_view_mesh_is_smooth),
