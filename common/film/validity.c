@@ -13,6 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/math/numbers.h"
 #include "common/math/vec3_read.h"
 #include "common/product/product.h"
 
@@ -30,6 +31,33 @@ int validity_region_count(const struct validity_region *r)
     int count = 0;
     for (int i = 0; i < r->columns * r->rows; i++) count += r->cells[i].valid;
     return count;
+}
+
+double validity_region_at(const struct validity_region *r, double x, double y, double *low, double *high)
+{
+    const struct validity_cell *first = &r->cells[0], *last = &r->cells[r->columns * r->rows - 1];
+    const double step[2] = {r->columns > 1 ? (last->x - first->x) / (r->columns - 1) : 1,
+                            r->rows > 1 ? (last->y - first->y) / (r->rows - 1) : 1};
+    const double at[2] = {(x - first->x) / step[0], (y - first->y) / step[1]};
+    const int size[2] = {r->columns, r->rows};
+    int base[2];
+    double part[2];
+    for (int k = 0; k < 2; k++) {
+        base[k] = (int)floor(clamp(at[k], -1, size[k]));
+        part[k] = clamp(at[k] - base[k], 0, 1);
+    }
+    double valid = 0;
+    *low = *high = 0;
+    for (int j = 0; j < 2; j++)
+        for (int i = 0; i < 2; i++) {
+            const int c = base[0] + i, w = base[1] + j;
+            const double weight = (i ? part[0] : 1 - part[0]) * (j ? part[1] : 1 - part[1]);
+            if (c < 0 || w < 0 || c >= size[0] || w >= size[1] || !r->cells[w * size[0] + c].valid) continue;
+            *low += weight * r->cells[w * size[0] + c].low;
+            *high += weight * r->cells[w * size[0] + c].high;
+            valid += weight;
+        }
+    return valid;
 }
 
 void validity_release(struct validity *v)

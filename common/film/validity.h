@@ -47,6 +47,9 @@ struct validity {
 
 enum status validity_region_init(struct validity_region *r, int columns, int rows, struct err *err);
 int validity_region_count(const struct validity_region *r); /* number of valid cells */
+/* Bilinear interpolation between cells: returns the weight of the valid ones about (x, y), from 0 to 1 where all are;
+ * low and high get the sums of their weighted ranges of z. */
+double validity_region_at(const struct validity_region *r, double x, double y, double *low, double *high);
 
 /* ST_DATA with file, line, what was found and what was expected; on failure v is left empty. */
 enum status validity_read(struct validity *v, const char *path, struct provenance *prov, struct err *err);

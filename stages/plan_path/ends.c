@@ -22,20 +22,27 @@
 #include "common/base/parallel.h"
 #include "stages/plan_path/ends_climb.h"
 
-#define SHRINK_STEPS 7    /* bisections when the ends are drawn in */
-#define FIRST_PAIRS  36   /* pairs whose path is tested, by falling parallax, before the ends are drawn in */
-#define LEVEL        0.97 /* parallax of a level of further pairs, relative to the level above */
-#define LEVEL_PAIRS  12   /* pairs of a level whose path is tested */
-#define MIN_START    0.5  /* parallax of the second start before it is refined, relative to the first */
-#define STARTS       2
+#define SHRINK_STEPS 7   /* bisections when the ends are drawn in */
+#define SHRINK       0.9 /* then, until all of the path is valid */
+#define MIN_DRAWN    0.02
+#define DRAW_BELOW   0.75 /* parallax of the first start, relative to the best pair's, below which ends are drawn in */
+#define LIFTS        4    /* lifts of a pair that are tried, in equal steps */
+#define SURE_CELLS   0.5  /* weight of the valid cells about a point that may be valid */
+#define MAX_PAIRS    96   /* pairs whose path is tested */
+#define MIN_START    0.5  /* parallax of a further start before it is refined, relative to the first */
+#define APART        3    /* cells between an end of a start and that of another one */
+#define PAIR_STARTS  3
+
+enum { DRAWN_IN = -1 };
 
 struct start {
-    struct move_ends ends; /* their path is valid, unless drawn-in ends show none that is */
-    int rank;              /* by parallax; -1: drawn in */
+    struct move_ends ends;
+    int rank;    /* of its pair by parallax, or DRAWN_IN */
+    int cell[2]; /* of its pair */
 };
 
 struct start_list {
-    struct start start[STARTS];
+    struct start start[PAIR_STARTS + 1];
     int count;
 };
 
@@ -190,87 +197,133 @@ static enum status rank_pairs(struct ends_search *s, struct end_pair **pairs, in
     return ST_OK;
 }
 
-/* Draws the ends in towards the origin, by the least that makes the path valid and no wider than max_angle. */
+/* Draws the ends in towards the origin, by about the least that makes the path valid and no wider than max_angle. */
 static enum status draw_in(struct ends_search *s, struct move_ends *e, struct err *err)
 {
     const struct vec3 origin = s->v->shot.origin, from[2] = {e->at[0], e->at[1]};
-    struct move_ends widest = *e;  /* of those that are valid */
-    double valid = 0, invalid = 1; /* fractions of the way from the origin to the ends */
-
+    double valid = 0, invalid = 1; /* fractions of the way from the origin to the ends, by the coarse test */
     for (int i = 0; i < SHRINK_STEPS; i++) {
         const double middle = 0.5 * (valid + invalid);
+        bool passes = false;
         for (int k = 0; k < 2; k++) e->at[k] = point_between(origin, from[k], middle);
-        if (ends_measure_path_if_valid(s, e, err)) return err->status;
-        if (e->valid && e->angle <= s->params->max_angle)
-            valid = middle, widest = *e;
+        if (ends_angle(&s->v->shot, e->at) <= s->params->max_angle && ends_test_path(&passes, s, e->at, err))
+            return err->status;
+        if (passes)
+            valid = middle;
         else
             invalid = middle;
     }
-    if (valid > 0) {
-        *e = widest;
-        return ST_OK;
+    for (;; valid = valid > MIN_DRAWN ? SHRINK * valid : 0) {
+        for (int k = 0; k < 2; k++) e->at[k] = point_between(origin, from[k], valid);
+        if (ends_measure_path(s, e, err) || e->valid || valid == 0) return err->status;
     }
-    for (int k = 0; k < 2; k++) e->at[k] = point_between(origin, from[k], valid);
-    return ends_measure_path(s, e, err);
 }
 
-/* Adds the pair of this rank to the starts if its path is valid. */
-static enum status try_pair(struct ends_search *s, struct start_list *l, const struct end_pair *pairs, int rank,
-                            struct err *err)
+/* Whether the straight path between two viewpoints stays within the region, as far as its cells tell. */
+static bool is_within(const struct validity *v, const struct vec3 at[2])
 {
-    const struct end_pair *p = &pairs[rank];
-    struct move_ends e = {.parallax = p->parallax};
-    for (int k = 0; k < 2; k++) e.at[k] = ends_candidate(s->v, k, p->cell[k]);
-    if (ends_measure_path_if_valid(s, &e, err) || !e.valid || e.angle > s->params->max_angle) return err->status;
-    l->start[l->count++] = (struct start){e, rank};
-    return ST_OK;
+    for (int i = 0; i < PATH_SAMPLES; i++) {
+        const struct vec3 p = shot_from_world(&v->shot, point_between(at[0], at[1], i / (PATH_SAMPLES - 1.0)));
+        double low, high;
+        const double weight = validity_region_at(&v->region[0], p.x, p.y, &low, &high);
+        if (weight < SURE_CELLS || p.z < low / weight - v->step || p.z > high / weight + v->step) return false;
+    }
+    return true;
 }
 
-/* Tries up to LEVEL_PAIRS pairs of each level of parallax, evenly spread, from rank `from` down to least_parallax,
- * until the list is full. */
-static enum status try_levels(struct ends_search *s, struct start_list *l, const struct end_pair *pairs, int count,
-                              int from, double least_parallax, struct err *err)
+/* Whether both ends have the same region: then the positions of a path tell whether it is valid. */
+static bool has_one_region(const struct validity *v)
 {
-    while (!err->status && l->count < STARTS && from < count && pairs[from].parallax > least_parallax) {
-        const double lower = fmax(LEVEL * pairs[from].parallax, least_parallax);
-        int end = from + 1;
-        while (end < count && pairs[end].parallax > lower) end++;
-        const int of_level = end - from, tried = of_level < LEVEL_PAIRS ? of_level : LEVEL_PAIRS;
-        for (int i = 0; !err->status && l->count < STARTS && i < tried; i++)
-            try_pair(s, l, pairs, from + (int)((long)i * of_level / tried), err);
-        from = end;
+    const struct validity_region *a = &v->region[0], *b = &v->region[1];
+    return a->columns == b->columns && a->rows == b->rows &&
+           !memcmp(a->cells, b->cells, (size_t)cell_count(a) * sizeof *a->cells);
+}
+
+/* Sets `at` to the ends of a pair, lifted as far as its path needs. False: no lift keeps the path within the region. */
+static bool lift_pair(struct vec3 at[2], const struct validity *v, const struct end_pair *p)
+{
+    const bool one_region = has_one_region(v);
+    for (int i = 0; i <= LIFTS; i++) {
+        for (int k = 0; k < 2; k++) {
+            struct vec3 c = shot_from_world(&v->shot, ends_candidate(v, k, p->cell[k]));
+            at[k] = world_from_shot(&v->shot, c.x, c.y, c.z * (LIFTS - i) / LIFTS);
+        }
+        if (!one_region || is_within(v, at)) return true;
+    }
+    return false;
+}
+
+static int cells_apart(const struct validity_region *r, int a, int b)
+{
+    const int x = abs(a % r->columns - b % r->columns), y = abs(a / r->columns - b / r->columns);
+    return x > y ? x : y;
+}
+
+/* Whether a pair begins some cells away from the starts, whichever of its ends comes first. */
+static bool is_apart(const struct start_list *l, const struct validity *v, const struct end_pair *p)
+{
+    const struct validity_region *r = &v->region[0];
+    for (int i = 0; i < l->count; i++) {
+        const int *cell = l->start[i].cell;
+        for (int turned = 0; turned < 2; turned++)
+            if (cells_apart(r, cell[0], p->cell[turned]) < APART && cells_apart(r, cell[1], p->cell[!turned]) < APART)
+                return false;
+    }
+    return true;
+}
+
+/* Adds a pair to the starts if a few samples of its path are valid. rank: of its parallax. */
+static enum status try_pair(struct ends_search *s, struct start_list *l, const struct end_pair *p, int rank,
+                            const struct vec3 at[2], struct err *err)
+{
+    struct start *start = &l->start[l->count];
+    bool valid = false;
+    *start = (struct start){{.at = {at[0], at[1]}}, rank, {p->cell[0], p->cell[1]}};
+    if (ends_test_path(&valid, s, at, err) || !valid || ends_angle(&s->v->shot, at) > s->params->max_angle)
+        return err->status;
+    if (!ends_measure_parallax(s, &start->ends, err)) l->count++;
+    return err->status;
+}
+
+/* Tries pairs by falling parallax until the list is full. */
+static enum status try_pairs(struct ends_search *s, struct start_list *l, const struct end_pair *pairs, int count,
+                             int max_starts, struct err *err)
+{
+    for (int rank = 0, tried = 0; !err->status && rank < count && tried < MAX_PAIRS && l->count < max_starts; rank++) {
+        const struct end_pair *p = &pairs[rank];
+        struct vec3 at[2];
+        if (l->count && p->parallax < MIN_START * l->start[0].ends.parallax) break;
+        if (!is_apart(l, s->v, p) || !lift_pair(at, s->v, p)) continue;
+        try_pair(s, l, p, rank, at, err);
+        tried++;
     }
     return err->status;
 }
 
-/* Adds the ends drawn in from `ends`, whether their path is valid or not. */
-static enum status add_drawn_in(struct ends_search *s, struct start_list *l, const struct move_ends *ends,
-                                struct err *err)
+/* Adds the thesis's pair, drawn in, to the starts. */
+static enum status add_drawn_in(struct ends_search *s, struct start_list *l, struct err *err)
 {
     struct start *drawn = &l->start[l->count];
-    *drawn = (struct start){.ends = *ends, .rank = -1};
+    *drawn = (struct start){.ends = s->notes->discrete, .rank = DRAWN_IN};
     if (!draw_in(s, &drawn->ends, err) && !ends_measure_parallax(s, &drawn->ends, err)) l->count++;
     return err->status;
 }
 
-/* Finds the starts on the grid: the first pair with a valid path, or drawn-in ends and a pair of less parallax. */
+/* Finds the starts. */
 static enum status find_starts(struct ends_search *s, struct start_list *l, bool refined, struct err *err)
 {
     struct move_ends *discrete = &s->notes->discrete;
     struct end_pair *pairs = NULL, longest;
-    int count = 0, next = 0;
+    int count = 0;
     rank_pairs(s, &pairs, &count, &longest, err);
     if (!err->status) {
         discrete->parallax = longest.parallax;
         for (int k = 0; k < 2; k++) discrete->at[k] = ends_candidate(s->v, k, longest.cell[k]);
         ends_measure_path(s, discrete, err);
     }
-    for (; !err->status && !l->count && next < count && next < FIRST_PAIRS; next++) try_pair(s, l, pairs, next, err);
-    if (!err->status && !l->count && !add_drawn_in(s, l, discrete, err)) {
-        const struct move_ends *drawn = &l->start[0].ends;
-        const double least = drawn->valid ? (refined ? MIN_START : 1) * drawn->parallax : 0;
-        try_levels(s, l, pairs, count, next, least, err);
-    }
+    if (!err->status) try_pairs(s, l, pairs, count, refined ? PAIR_STARTS : 1, err);
+    if (!err->status && (!l->count || l->start[0].ends.parallax < DRAW_BELOW * pairs[0].parallax))
+        add_drawn_in(s, l, err);
     free(pairs);
     return err->status;
 }
@@ -292,6 +345,20 @@ enum status ends_measure(struct move_ends *e, const struct layer_scene *scene, c
     return err->status;
 }
 
+/* Improves a start, measures all of its path, and takes it if it is better than the best so far. */
+static enum status take_start(struct ends_search *s, struct move_ends *best, struct start *start, bool refined,
+                              struct err *err)
+{
+    bool moved = false;
+    if (refined) ends_improve(s, &start->ends, &moved, err);
+    if (!err->status && !moved) ends_measure_path(s, &start->ends, err);
+    if (err->status || !(is_better(&start->ends, best) || best->length == 0)) return err->status;
+    *best = start->ends;
+    s->notes->chosen = start->rank;
+    s->notes->refined = moved;
+    return ST_OK;
+}
+
 enum status ends_choose(struct move_ends *best, struct ends_notes *notes, const struct layer_scene *scene,
                         const struct validity *v, const struct plan_params *params, struct err *err)
 {
@@ -299,14 +366,12 @@ enum status ends_choose(struct move_ends *best, struct ends_notes *notes, const 
     struct start_list l = {.count = 0};
     struct ends_search s;
     *notes = (struct ends_notes){.chosen = -1};
+    *best = (struct move_ends){.valid = false};
     if (!ends_search_init(&s, scene, v, params, notes, err)) find_starts(&s, &l, refined, err);
     for (int i = 0; !err->status && i < l.count; i++) {
-        bool moved = false;
-        if (refined && ends_improve(&s, &l.start[i].ends, &moved, err)) break;
-        if (i && !is_better(&l.start[i].ends, best)) continue;
-        *best = l.start[i].ends;
-        notes->chosen = l.start[i].rank;
-        notes->refined = moved;
+        take_start(&s, best, &l.start[i], refined, err);
+        const bool last = i + 1 == l.count && l.start[i].rank != DRAWN_IN;
+        if (!err->status && last && !best->valid) add_drawn_in(&s, &l, err);
     }
     ends_search_release(&s);
     return err->status;

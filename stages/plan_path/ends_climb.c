@@ -15,8 +15,7 @@
 #define MIN_STEP        0.1
 #define Z_SPACING       8 /* spacing in z, in steps of the region's z */
 
-/* Ends of ever more parallax, from those on the grid upwards. The path of the first is fully measured; those of the
- * others have passed the coarse test alone. */
+/* Ends of ever more parallax, from those on the grid upwards. All have passed the coarse test of their path alone. */
 struct ascent {
     struct move_ends up[CLIMB_ROUNDS + 2];
     int height;

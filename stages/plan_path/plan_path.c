@@ -72,8 +72,7 @@ static void log_summary(const struct camera_path *path, const struct move_notes 
     if (n->is_static)
         log_warn("no move is valid on its whole path: the camera does not move");
     else if (n->chosen.chosen < 0)
-        log_note("none of the pairs of ends that were tried has a valid path: the best pair was drawn in towards the "
-                 "origin");
+        log_note("the ends were drawn in towards the origin: no pair of cells with a valid path gave as much parallax");
     if (!e->valid)
         log_warn("a part of the path is not valid: H is up to %.3g, the limit is %.3g", e->worst_h, v->limits.max_h);
     if (v->effect.focus && !(n->aperture > 0))

@@ -68,32 +68,6 @@ static double edge_separation(const struct surrogate *s, const struct vec3 at[2]
     return sum;
 }
 
-/* Bilinear interpolation of a region at (x, y): the z range, and the weight of the valid cells (1: all around are). */
-static void region_at(const struct validity_region *r, double x, double y, double *low, double *high, double *valid)
-{
-    const struct validity_cell *first = &r->cells[0], *last = &r->cells[r->columns * r->rows - 1];
-    const double step[2] = {r->columns > 1 ? (last->x - first->x) / (r->columns - 1) : 1,
-                            r->rows > 1 ? (last->y - first->y) / (r->rows - 1) : 1};
-    const double at[2] = {(x - first->x) / step[0], (y - first->y) / step[1]};
-    const int size[2] = {r->columns, r->rows};
-    int base[2];
-    double part[2];
-    for (int k = 0; k < 2; k++) {
-        base[k] = (int)floor(clamp(at[k], -1, size[k]));
-        part[k] = clamp(at[k] - base[k], 0, 1);
-    }
-    *low = *high = *valid = 0;
-    for (int j = 0; j < 2; j++)
-        for (int i = 0; i < 2; i++) {
-            const int c = base[0] + i, w = base[1] + j;
-            const double weight = (i ? part[0] : 1 - part[0]) * (j ? part[1] : 1 - part[1]);
-            if (c < 0 || w < 0 || c >= size[0] || w >= size[1] || !r->cells[w * size[0] + c].valid) continue;
-            *low += weight * r->cells[w * size[0] + c].low;
-            *high += weight * r->cells[w * size[0] + c].high;
-            *valid += weight;
-        }
-}
-
 static double penalty(double excess) { return 0.01 * exp(fmin(STIFFNESS * excess, 20)); }
 
 static void residuals(void *ctx, const double *x, double *r)
@@ -107,8 +81,8 @@ static void residuals(void *ctx, const double *x, double *r)
     r[n++] = s->initial / fmax(edge_separation(s, at), 1e-6 * s->initial);
     for (int k = 0; k < 2; k++) {
         const double px = x[3 * k] * s->unit[0], py = x[3 * k + 1] * s->unit[1], pz = x[3 * k + 2] * s->unit[2];
-        double low, high, valid;
-        region_at(&s->v->region[k], px, py, &low, &high, &valid);
+        double low, high;
+        const double valid = validity_region_at(&s->v->region[k], px, py, &low, &high);
         r[n++] = penalty((pz - high) / shot->median_depth * 4);
         r[n++] = penalty((low - pz) / shot->median_depth * 4);
         r[n++] = penalty(0.5 - valid);

@@ -710,6 +710,36 @@ static void ends_with_an_invalid_path_are_drawn_in(void **state)
     release_all(&film, &f);
 }
 
+/* The outer cells may lie back, those in the middle may not: a path between outer cells is lifted to where all may be.
+ */
+static void a_path_is_lifted_into_what_is_valid(void **state)
+{
+    (void)state;
+    struct wall_scene f;
+    const struct validity_params sampling = quick_sampling();
+    struct plan_params params = quick();
+    struct planned_film film;
+    double back = 0;
+    strcpy(params.refine, "no");
+    nine_views(&f);
+    sample(&film, &f, move_alone(MOVE_ESTABLISHING_DOLLY), &sampling);
+    for (int k = 0; k < 2; k++)
+        for (int i = 0; i < film.v.region[k].columns * film.v.region[k].rows; i++) {
+            struct validity_cell *c = &film.v.region[k].cells[i];
+            if (fabs(c->x) < 0.5) c->low = 0;
+            back = fmin(back, c->low);
+        }
+    assert_true(back < -0.1);
+    plan(&film, &f, &params);
+    assert_all_frames_valid(&film, &f);
+    assert_true(film.notes.chosen.chosen >= 0 && film.notes.ends.length > 1);
+    for (int k = 0; k < 2; k++) {
+        const struct vec3 end = shot_from_world(&film.v.shot, film.notes.ends.at[k]);
+        assert_true(fabs(end.x) < 0.5 || fabs(end.z) < 1e-9);
+    }
+    release_all(&film, &f);
+}
+
 /* The most parallax of a pair of cells whose whole path is valid, by measuring all of them. */
 static double best_of_all_pairs(const struct planned_film *film, const struct wall_scene *f,
                                 const struct plan_params *params)
@@ -730,7 +760,7 @@ static double best_of_all_pairs(const struct planned_film *film, const struct wa
     return best;
 }
 
-/* Where the pairs of the most parallax have no valid path, pairs of less are tried, level by level. */
+/* Where the pairs of the most parallax have no valid path, pairs of less are tried. */
 static void a_pair_of_less_parallax_replaces_invalid_ones(void **state)
 {
     (void)state;
@@ -871,6 +901,7 @@ int main(void)
         cmocka_unit_test(coincident_centres_allow_a_move),
         cmocka_unit_test(regions_without_a_valid_cell_are_an_error),
         cmocka_unit_test(ends_with_an_invalid_path_are_drawn_in),
+        cmocka_unit_test(a_path_is_lifted_into_what_is_valid),
         cmocka_unit_test(a_pair_of_less_parallax_replaces_invalid_ones),
         cmocka_unit_test(an_aperture_stays_shut_where_opening_shows_holes),
         cmocka_unit_test(too_few_subjects_or_frames_are_an_error),
