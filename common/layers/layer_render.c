@@ -452,7 +452,7 @@ static void draw_mesh_views(struct frame_job *job, struct tile_scratch *s, const
 enum sight { SIGHT_UNKNOWN, SIGHT_THROUGH, SIGHT_BLOCKED };
 
 /* SIGHT_THROUGH: the view sees a clearly farther surface along the ray to this world point, so there is no surface at
- * the point. SIGHT_UNKNOWN: the point is outside of its picture, or the view has no depth there but an inherited one. */
+ * the point. SIGHT_UNKNOWN: the point is outside of its picture, or the view knows no depth there, or inherits it. */
 static enum sight sight_of(const struct frame_job *job, int view, struct vec3 point, float sigma)
 {
     const struct layer_view *lv = &job->scene->views[view];
