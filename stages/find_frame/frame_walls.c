@@ -10,8 +10,9 @@
  * see it; the next one is found among the lines that are left.
  *
  * A candidate that views look through is not a wall there: its cells are dropped where two places see something behind
- * it - a sparse point, or a line of a wall that was taken before - below the height of windows, or at any height if no
- * line shows its head. So the edges of rugs and furniture drop out, and so do open doors. */
+ * it - a sparse point, or a line of a wall that was taken before - below the height of windows, or at any height unless
+ * lines show its foot and its head. So the edges of rugs, furniture and grilles in the ceiling drop out, and so do open
+ * doors. */
 #include "stages/find_frame/frame_walls.h"
 
 #include <math.h>

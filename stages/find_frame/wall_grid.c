@@ -73,13 +73,15 @@ void wall_grid_mark_through(struct seen_through *through, const struct wall_grid
     }
 }
 
-/* Where nobody sees the head of a wall it may be furniture, and being seen through above counts, too. */
+/* Where nobody sees the head of a wall it may be furniture, and where nobody sees its foot, a grille in the ceiling or
+ * a cupboard that hangs: then being seen through at any height counts. */
 uint64_t wall_grid_shown(const struct wall_grid *g, const struct seen_through *through, int row, int k)
 {
     uint64_t all = 0;
     for (int r = row - 1; r <= row + 1; r++)
         if (r >= 0 && r < g->across) all |= g->seen[r * g->along + k];
-    if (through && __builtin_popcountll(all & WALL_HEADS ? through[k].low : through[k].any) >= 2) return 0;
+    const bool both = all & WALL_HEADS && all & ~WALL_HEADS;
+    if (through && __builtin_popcountll(both ? through[k].low : through[k].any) >= 2) return 0;
     return all;
 }
 
