@@ -20,6 +20,7 @@
 
 #include "common/base/array.h"
 #include "common/base/sort.h"
+#include "stages/find_frame/explained_walls.h"
 #include "stages/find_frame/wall_grid.h"
 
 /* as parts of the scene's size */
@@ -28,9 +29,9 @@
 #define SLACK        0.02 /* beyond its ends, floor and ceiling, where lines are still on it */
 #define CORNER_REACH 0.25 /* beyond a wall's end, to the wall across it */
 #define CORNER_BACK  0.08 /* before its end */
-#define SAME_HEIGHT  0.02 /* of the cameras above the floor: what heights of one line differ by */
 #define MIN_CELLS    3    /* that two places show */
 #define MIN_PAIRS    5    /* of places that show a cell, in all its cells */
+#define MIN_BOTH     3    /* cells that three places and levels show, foot and head among them, of a sure wall */
 
 /* The median offset of a wall's lines. values: room for all lines. */
 static double median_offset(const struct foot_lines *lines, const bool *used, const struct frame_wall *w, double reach,
@@ -45,24 +46,35 @@ static double median_offset(const struct foot_lines *lines, const bool *used, co
     return count ? sort_median(values, count) : w->offset;
 }
 
-/* The best part of a row: the one with the most pairs. Returns their number; *w: the wall. */
-static int best_part(struct frame_wall *w, const struct wall_grid *g, const struct seen_through *through, int row,
-                     double size)
+/* A wall that was found, and what speaks for it. */
+struct candidate {
+    struct frame_wall wall;
+    int pairs; /* of places and levels, in all its cells */
+    int both;  /* cells that three places and levels show, foot and head among them */
+};
+
+/* The best part of a row: the one with the most pairs. c has the wall's heading and side; no pairs: there is none. */
+static void best_part(struct candidate *c, const struct wall_grid *g, const struct seen_through *through, int row,
+                      double size)
 {
-    int most = 0;
+    struct frame_wall *w = &c->wall;
+    c->pairs = 0;
     for (int k = 0; k < g->along; k++) {
-        int last = k, cells = 0, pairs = 0, support = 0;
+        int last = k, cells = 0, pairs = 0, both = 0, support = 0;
         if (__builtin_popcountll(wall_grid_shown(g, through, row, k)) < 2) continue;
         for (int n = k; n < g->along && n - last <= GAP / WALL_CELL; n++) {
-            const int here = __builtin_popcountll(wall_grid_shown(g, through, row, n));
+            const uint64_t bits = wall_grid_shown(g, through, row, n);
+            const int here = __builtin_popcountll(bits);
             if (here < 2) continue;
             last = n;
             cells++;
             pairs += here - 1;
+            both += here > 2 && bits & WALL_HEADS && bits & ~WALL_HEADS;
             if (here > support) support = here;
         }
-        if (cells >= MIN_CELLS && (last + 1 - k) * WALL_CELL >= MIN_WALL && pairs > most) {
-            most = pairs;
+        if (cells >= MIN_CELLS && (last + 1 - k) * WALL_CELL >= MIN_WALL && pairs > c->pairs) {
+            c->pairs = pairs;
+            c->both = both;
             w->from = g->from + k * WALL_CELL * size;
             w->to = g->from + (last + 1) * WALL_CELL * size;
             w->offset = g->low + (row + 0.5) * WALL_ROW * size;
@@ -70,30 +82,27 @@ static int best_part(struct frame_wall *w, const struct wall_grid *g, const stru
         }
         k = last;
     }
-    return most;
 }
 
-/* The wall that the most pairs support among the lines that are not used; returns their number. */
-static enum status best_wall(struct frame_wall *best, int *most, const struct room_frame *f,
-                             const struct foot_lines *lines, const bool *used, const struct frame_sights *seen,
-                             double size, struct err *err)
+/* The wall that the most pairs support among the lines that are not used. */
+static enum status best_wall(struct candidate *best, const struct room_frame *f, const struct foot_lines *lines,
+                             const bool *used, const struct frame_sights *seen, double size, struct err *err)
 {
-    *most = 0;
+    *best = (struct candidate){0};
     for (int heading = 0; !err->status && heading < f->heading_count; heading++)
         for (int side = -1; !err->status && side <= 1; side += 2) {
-            struct frame_wall w = {.heading = heading, .side = side};
+            struct candidate c = {.wall = {.heading = heading, .side = side}};
             struct wall_grid g = {0};
             struct seen_through *through = NULL;
             if (!wall_grid_fill(&g, lines, used, heading, side, size, err) && g.seen &&
                 !(through = malloc((size_t)g.along * sizeof *through)))
                 err_nomem(err, "cells of the plan", (size_t)g.along * sizeof *through);
             for (int row = 1; !err->status && g.seen && row + 1 < g.across; row++) {
-                if (best_part(&w, &g, NULL, row, size) <= *most) continue; /* before what takes time */
+                best_part(&c, &g, NULL, row, size);
+                if (c.pairs <= best->pairs) continue; /* before what takes time */
                 wall_grid_mark_through(through, &g, row, heading, side, f, seen, size);
-                const int pairs = best_part(&w, &g, through, row, size);
-                if (pairs <= *most) continue;
-                *most = pairs;
-                *best = w;
+                best_part(&c, &g, through, row, size);
+                if (c.pairs > best->pairs) *best = c;
             }
             wall_grid_release(&g);
             free(through);
@@ -119,61 +128,6 @@ static enum status take_lines(bool *used, struct frame_sights *s, const struct r
         if (used[i]) frame_sights_add(s, w->lines[i].station, set->views[w->lines[i].view].center, at, err);
     }
     return err->status;
-}
-
-/* Root mean square of the distance from the mean. */
-struct spread {
-    double n, sum, square;
-};
-
-static void spread_add(struct spread *s, double x)
-{
-    s->n++;
-    s->sum += x;
-    s->square += x * x;
-}
-
-static double spread_of(const struct spread *s)
-{
-    return s->n > 0 ? sqrt(fmax(s->square / s->n - s->sum / s->n * (s->sum / s->n), 0)) : 0;
-}
-
-/* Whether the lines of wall b may lie on wall a, which is in front of it: at one height of it, as well as at the foot
- * of b. Heights are measured in those of the cameras above the floor. */
-static bool is_on(const struct foot_lines *lines, const struct frame_wall *a, const struct frame_wall *b, double size)
-{
-    const double overlap = fmin(a->to, b->to) - fmax(a->from, b->from);
-    struct spread front = {0}, behind = {0};
-    if (a->heading != b->heading || a->side != b->side || !(a->side * (a->offset - b->offset) > 0)) return false;
-    if (!(overlap > 0.5 * (b->to - b->from)) || 2 * a->support < b->support) return false;
-    for (int i = 0; i < lines->count; i++) {
-        const struct foot_line *l = &lines->lines[i];
-        if (l->heading != b->heading || foot_line_side(l) != b->side ||
-            fabs(l->offset - b->offset) > 2 * WALL_ROW * size || !(l->to > b->from && l->from < b->to))
-            continue;
-        const double near = a->side * (l->eye - a->offset), far = a->side * (l->eye - b->offset),
-                     own = a->side * (l->eye - l->offset);
-        if (!(near > 0)) return false; /* somebody stands between the two */
-        spread_add(&front, near / own);
-        spread_add(&behind, far / own);
-    }
-    return front.n > 0 && spread_of(&front) <= spread_of(&behind) + SAME_HEIGHT;
-}
-
-/* Drops walls whose lines may lie on others. */
-static enum status drop_explained(struct room_frame *f, const struct foot_lines *lines, double size, struct err *err)
-{
-    bool *dropped = calloc((size_t)f->wall_count + 1, sizeof *dropped);
-    int kept = 0;
-    if (!dropped) return err_nomem(err, "walls", (size_t)f->wall_count);
-    for (int b = 0; b < f->wall_count; b++)
-        for (int a = 0; a < f->wall_count && !dropped[b]; a++)
-            dropped[b] = a != b && !dropped[a] && is_on(lines, &f->walls[a], &f->walls[b], size);
-    for (int k = 0; k < f->wall_count; k++)
-        if (!dropped[k]) f->walls[kept++] = f->walls[k];
-    f->wall_count = kept;
-    free(dropped);
-    return ST_OK;
 }
 
 /* Moves an end of a wall to the wall across it that is nearest. end: 1 of `to`, -1 of `from`. */
@@ -207,6 +161,7 @@ enum status walls_find(struct room_frame *f, const struct foot_lines *lines, con
     int *stations = malloc(((size_t)set->view_count + 1) * sizeof *stations);
     struct frame_sights seen = {0};
     double *values = malloc(((size_t)lines->count + 1) * sizeof *values);
+    bool *sure = NULL; /* of the walls */
     f->wall_count = 0;
     free(f->walls);
     f->walls = NULL;
@@ -214,9 +169,10 @@ enum status walls_find(struct room_frame *f, const struct foot_lines *lines, con
     for (int i = 0; !err->status && i < set->view_count; i++) stations[i] = -1;
     for (int i = 0; !err->status && i < w->count; i++) stations[w->lines[i].view] = w->lines[i].station;
     if (!err->status) frame_sights_of_points(&seen, stations, set, err);
-    for (int most = MIN_PAIRS; !err->status && most >= MIN_PAIRS;) {
-        struct frame_wall wall = {0};
-        if (best_wall(&wall, &most, f, lines, used, &seen, size, err) || most < MIN_PAIRS) break;
+    while (!err->status) {
+        struct candidate best;
+        if (best_wall(&best, f, lines, used, &seen, size, err) || best.pairs < MIN_PAIRS) break;
+        struct frame_wall wall = best.wall;
         wall.offset = median_offset(lines, used, &wall, 1.5 * WALL_ROW * size, values);
         if (take_lines(used, &seen, f, &wall, w, headings, set, size, err)) break;
         for (int i = 0; i < lines->count; i++) { /* so that the search ends: also those seen at grazing angles */
@@ -225,10 +181,13 @@ enum status walls_find(struct room_frame *f, const struct foot_lines *lines, con
                 fabs(l->offset - wall.offset) <= 2 * WALL_ROW * size && l->to > wall.from && l->from < wall.to)
                 used[l->line] = true;
         }
-        if (!array_append(&f->walls, (size_t)f->wall_count, sizeof wall, "walls", err))
+        if (!array_append(&sure, (size_t)f->wall_count, sizeof *sure, "walls", err) &&
+            !array_append(&f->walls, (size_t)f->wall_count, sizeof wall, "walls", err)) {
+            sure[f->wall_count] = best.both >= MIN_BOTH;
             f->walls[f->wall_count++] = wall;
+        }
     }
-    if (!err->status) drop_explained(f, lines, size, err);
+    if (!err->status) explained_walls_drop(f, sure, lines, size, err);
     for (int k = 0; !err->status && k < f->wall_count; k++)
         for (int end = -1; end <= 1; end += 2) {
             struct frame_wall met = f->walls[k];
@@ -236,6 +195,7 @@ enum status walls_find(struct room_frame *f, const struct foot_lines *lines, con
             if (met.to - met.from > MIN_WALL / 2 * size) f->walls[k] = met;
         }
     free(used);
+    free(sure);
     free(values);
     free(stations);
     free(seen.list);
