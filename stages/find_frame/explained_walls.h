@@ -7,7 +7,7 @@
 
 #include "stages/find_frame/foot_lines.h"
 
-/* Drops walls of f whose lines may lie on others, but for those that are sure. ST_NOMEM. */
+/* Drops walls of f whose lines may lie on others, but for those that are sure; the others may grow. ST_NOMEM. */
 enum status explained_walls_drop(struct room_frame *f, const bool *sure, const struct foot_lines *lines, double size,
                                  struct err *err);
 

@@ -41,7 +41,8 @@ enum status foot_lines_add(struct foot_lines *f, const struct world_lines *w, co
                                     (vec3_dot(across, place[0]) + vec3_dot(across, place[1])) / 2,
                                     fmin(a, b),
                                     fmax(a, b),
-                                    vec3_dot(across, eye)};
+                                    vec3_dot(across, eye),
+                                    vec3_dot(along, eye)};
         if (array_append(&f->lines, (size_t)f->count, sizeof o, "lines on the plan", err)) return err->status;
         f->lines[f->count++] = o;
     }

@@ -11,7 +11,7 @@ struct foot_line {
     int heading, station;
     bool head;               /* on the ceiling, not on the floor */
     double offset, from, to; /* of frame_wall, from < to */
-    double eye;              /* offset of the camera */
+    double eye, eye_place;   /* of the camera: offset, and place along the heading */
 };
 
 struct foot_lines {

@@ -21,17 +21,16 @@
 #include "common/base/array.h"
 #include "common/base/sort.h"
 #include "stages/find_frame/explained_walls.h"
+#include "stages/find_frame/wall_ends.h"
 #include "stages/find_frame/wall_grid.h"
 
 /* as parts of the scene's size */
-#define GAP          0.35 /* in a wall */
-#define MIN_WALL     0.14 /* length */
-#define SLACK        0.02 /* beyond its ends, floor and ceiling, where lines are still on it */
-#define CORNER_REACH 0.25 /* beyond a wall's end, to the wall across it */
-#define CORNER_BACK  0.08 /* before its end */
-#define MIN_CELLS    3    /* that two places show */
-#define MIN_PAIRS    5    /* of places that show a cell, in all its cells */
-#define MIN_BOTH     3    /* cells that three places and levels show, foot and head among them, of a sure wall */
+#define GAP       0.35 /* in a wall */
+#define MIN_WALL  0.14 /* length */
+#define SLACK     0.02 /* beyond its ends, floor and ceiling, where lines are still on it */
+#define MIN_CELLS 3    /* that two places show */
+#define MIN_PAIRS 5    /* of places that show a cell, in all its cells */
+#define MIN_BOTH  3    /* cells that three places and levels show, foot and head among them, of a sure wall */
 
 /* The median offset of a wall's lines. values: room for all lines. */
 static double median_offset(const struct foot_lines *lines, const bool *used, const struct frame_wall *w, double reach,
@@ -130,30 +129,6 @@ static enum status take_lines(bool *used, struct frame_sights *s, const struct r
     return err->status;
 }
 
-/* Moves an end of a wall to the wall across it that is nearest. end: 1 of `to`, -1 of `from`. */
-static void meet_wall(struct frame_wall *w, int end, const struct room_frame *f, double size)
-{
-    const struct vec3 along = f->headings[w->heading].along, across = frame_across(f, w->heading);
-    const double at = end > 0 ? w->to : w->from;
-    double nearest = INFINITY, best = at;
-    for (int k = 0; k < f->wall_count; k++) {
-        const struct frame_wall *o = &f->walls[k];
-        const struct vec3 theirs = f->headings[o->heading].along, normal = frame_across(f, o->heading);
-        const double turn = vec3_dot(along, normal), place = vec3_dot(theirs, across);
-        if (!(fabs(turn) > 0.7)) continue;
-        /* where the lines of the two meet: along the wall, and along the other */
-        const double meet = (o->offset - w->offset * vec3_dot(across, normal)) / turn,
-                     there = w->offset * place + meet * vec3_dot(along, theirs);
-        const double beyond = end * (meet - at);
-        if (!(beyond > -CORNER_BACK * size && beyond < CORNER_REACH * size)) continue;
-        if (!(there > o->from - CORNER_REACH * size && there < o->to + CORNER_REACH * size)) continue;
-        if (!(fabs(beyond) < nearest)) continue;
-        nearest = fabs(beyond);
-        best = meet;
-    }
-    *(end > 0 ? &w->to : &w->from) = best;
-}
-
 enum status walls_find(struct room_frame *f, const struct foot_lines *lines, const struct world_lines *w,
                        const int *headings, const struct camera_set *set, double size, struct err *err)
 {
@@ -191,7 +166,7 @@ enum status walls_find(struct room_frame *f, const struct foot_lines *lines, con
     for (int k = 0; !err->status && k < f->wall_count; k++)
         for (int end = -1; end <= 1; end += 2) {
             struct frame_wall met = f->walls[k];
-            meet_wall(&met, end, f, size);
+            wall_end_meet(&met, end, f, size);
             if (met.to - met.from > MIN_WALL / 2 * size) f->walls[k] = met;
         }
     free(used);

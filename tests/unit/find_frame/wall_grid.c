@@ -22,7 +22,7 @@ static int wall_lines(struct foot_line *lines, int feet, int heads)
         const int station = i / 2;
         const bool head = i % 2;
         if (!((head ? heads : feet) >> station & 1)) continue;
-        lines[count] = (struct foot_line){count, 0, station, head, 2, 0, 1, station * 0.3};
+        lines[count] = (struct foot_line){count, 0, station, head, 2, 0, 1, station * 0.3, 0.5};
         count++;
     }
     return count;
