@@ -12,7 +12,10 @@
  * A candidate that views look through is not a wall there: its cells are dropped where two places see something behind
  * it - a sparse point, or a line of a wall that was taken before - below the height of windows, or at any height unless
  * lines show its foot and its head. So the edges of rugs, furniture and grilles in the ceiling drop out, and so do open
- * doors. */
+ * doors.
+ *
+ * Lastly, walls that may be edges on others are dropped (explained_walls.c), and gaps between the ends of walls are
+ * closed where a few lines show that there is a wall (closing_walls.c). */
 #include "stages/find_frame/frame_walls.h"
 
 #include <math.h>
@@ -20,6 +23,7 @@
 
 #include "common/base/array.h"
 #include "common/base/sort.h"
+#include "stages/find_frame/closing_walls.h"
 #include "stages/find_frame/explained_walls.h"
 #include "stages/find_frame/wall_ends.h"
 #include "stages/find_frame/wall_grid.h"
@@ -163,6 +167,7 @@ enum status walls_find(struct room_frame *f, const struct foot_lines *lines, con
         }
     }
     if (!err->status) explained_walls_drop(f, sure, lines, size, err);
+    if (!err->status && f->ceiling.known) closing_walls_add(f, lines, used, &seen, size, err);
     for (int k = 0; !err->status && k < f->wall_count; k++)
         for (int end = -1; end <= 1; end += 2) {
             struct frame_wall met = f->walls[k];

@@ -21,6 +21,35 @@ bool walls_cross(double *on_a, double *on_b, const struct room_frame *f, const s
 
 static double *end_of(struct frame_wall *w, int end) { return end > 0 ? &w->to : &w->from; }
 
+bool wall_end_reaches(const struct frame_wall *w, int end, double place, double size)
+{
+    const double beyond = end * (place - (end > 0 ? w->to : w->from));
+    return beyond > -CORNER_BACK * size && beyond < CORNER_REACH * size;
+}
+
+bool walls_make_corner(const struct room_frame *f, const struct frame_wall *a, int end_a, const struct frame_wall *b,
+                       int end_b)
+{
+    /* whether each lies on the side from which the other is seen; seen from around the corner, neither does */
+    const double a_of_b = -end_a * b->side * vec3_dot(f->headings[a->heading].along, frame_across(f, b->heading)),
+                 b_of_a = -end_b * a->side * vec3_dot(f->headings[b->heading].along, frame_across(f, a->heading));
+    return (a_of_b > 0) == (b_of_a > 0);
+}
+
+bool wall_end_is_loose(const struct room_frame *f, int wall, int end, double size)
+{
+    const struct frame_wall *w = &f->walls[wall];
+    for (int k = 0; k < f->wall_count; k++) {
+        const struct frame_wall *o = &f->walls[k];
+        double here, there;
+        if (!walls_cross(&here, &there, f, w, o) || !wall_end_reaches(w, end, here, size)) continue;
+        if (there > o->from + CORNER_REACH * size && there < o->to - CORNER_REACH * size) return false;
+        for (int e = -1; e <= 1; e += 2)
+            if (wall_end_reaches(o, e, there, size) && walls_make_corner(f, w, end, o, e)) return false;
+    }
+    return true;
+}
+
 void wall_end_meet(struct frame_wall *w, int end, const struct room_frame *f, double size)
 {
     const double at = *end_of(w, end);
@@ -29,11 +58,11 @@ void wall_end_meet(struct frame_wall *w, int end, const struct room_frame *f, do
         const struct frame_wall *o = &f->walls[k];
         double meet, there;
         if (!walls_cross(&meet, &there, f, w, o)) continue;
-        const double beyond = end * (meet - at);
-        if (!(beyond > -CORNER_BACK * size && beyond < CORNER_REACH * size)) continue;
+        const double beyond = fabs(meet - at);
+        if (!wall_end_reaches(w, end, meet, size)) continue;
         if (!(there > o->from - CORNER_REACH * size && there < o->to + CORNER_REACH * size)) continue;
-        if (!(fabs(beyond) < nearest)) continue;
-        nearest = fabs(beyond);
+        if (!(beyond < nearest)) continue;
+        nearest = beyond;
         best = meet;
     }
     *end_of(w, end) = best;
