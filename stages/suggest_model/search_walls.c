@@ -6,8 +6,9 @@
  * What remains between the ends of such walls, no larger than a wall is thick, is their core.
  *
  * Outer walls. The other borders between inside and outside, along one line without a gap, are a wall that was seen
- * from one side. It is found if enough of it was seen, or if it is so short that its neighbours imply it. The rest are
- * doubts: what was seen ends there, and nobody knows whether a wall does. A wall that passes behind the end of a wall
+ * from one side. It is found if enough of it was seen, or if it is so short that its neighbours imply it; less is
+ * enough where no camera stands behind it. The rest are doubts: what was seen ends there, and nobody knows whether a
+ * wall does. A wall that passes behind the end of a wall
  * between rooms is one wall.
  *
  * Lastly, long parts of faces that are on no wall are doubts, too: a wall that was seen from afar, through a door.
@@ -315,6 +316,17 @@ static enum status add_stretches(struct suggestion *s, const struct plan_search 
     return err->status;
 }
 
+/* The least fraction of a wall that must have been seen: less if no camera stands behind it. */
+static double least_seen(const struct plan_search *p, const struct suggested_wall *w)
+{
+    for (int i = 0; i < p->sights->view_count; i++) {
+        const struct vec3 c = p->sights->views[i].center;
+        const double along = line_along(&w->line, c.x, c.y);
+        if (line_across(&w->line, c.x, c.y) < 0 && along > w->begin && along < w->end) return p->params->min_wall;
+    }
+    return fmin(p->params->min_wall, p->params->weak_wall);
+}
+
 static enum status add_outer_walls(struct suggestion *s, struct plan_search *p, struct err *err)
 {
     struct border *borders = NULL;
@@ -329,7 +341,7 @@ static enum status add_outer_walls(struct suggestion *s, struct plan_search *p, 
         }
         const struct suggested_wall w = wall_of_run(p, &borders[i], &borders[end - 1]);
         const bool is_short = w.end - w.begin < SHORT * p->faces->height;
-        if (borders[i].line >= p->border || (w.covered < p->params->min_wall && !is_short)) {
+        if (borders[i].line >= p->border || (w.covered < least_seen(p, &w) && !is_short)) {
             add_doubt(s, DOUBT_BORDER, &w.line, w.begin, w.end, -1, w.covered, err);
             continue;
         }

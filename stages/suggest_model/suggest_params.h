@@ -13,6 +13,8 @@
       "edge of a wall's cells, which are solid or seen through, as a fraction of the ceiling's height") \
     X(min_wall, double, 0.3, 0.01, 1, "",                                                               \
       "minimum fraction of a wall's length that was seen; a border with less is written as a doubt")    \
+    X(weak_wall, double, 0.2, 0.01, 1, "",                                                              \
+      "the same for an outer wall behind which no camera stands, at most min_wall")                     \
     X(max_thickness, double, 0.25, 0.01, 1, "",                                                         \
       "maximum thickness of a wall between rooms, as a fraction of the ceiling's height")               \
     X(min_opening, double, 0.2, 0.02, 1, "",                                                            \

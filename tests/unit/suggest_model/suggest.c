@@ -318,6 +318,33 @@ static void two_walls_are_found_alone(void **state)
     }
 }
 
+/* Only a quarter of the west wall has points, the rest is blank. It is a wall nonetheless, unless a camera that stands
+ * behind it shows that it is none. */
+static void a_wall_that_is_mostly_blank_is_found_unless_a_camera_is_behind(void **state)
+{
+    (void)state;
+    for (int behind = 0; behind < 2; behind++) {
+        struct made_plan p = made(false);
+        struct suggestion s;
+        made_line(&p, (const double[4][2]){{0, 0}, {5, 0}, {5, 4}, {0, 4}}, 4, false);
+        made_wall(&p, 0, 1.5, 0, 2.5, 0, p.high);
+        p.most[0] = 5, p.most[1] = 4;
+        p.low[0] = p.low[1] = 0;
+        made_camera(&p, 2, 2);
+        made_camera(&p, 3, 1.5);
+        if (behind) made_camera(&p, -0.5, 1);
+        suggest_plan_of(&s, &p, 13);
+        const int west = find_wall(&s, 1, 0, 0, 0.04);
+        if (behind) { /* at most the part that has points, and what is beside it */
+            assert_true(west < 0 || s.walls[west].end - s.walls[west].begin < 3);
+        } else {
+            assert_true(west >= 0 && s.walls[west].covered > 0.2 && s.walls[west].covered < 0.3);
+            assert_extent(&s.walls[west], (const double[2]){0, 0}, (const double[2]){0, 4}, 0.3);
+        }
+        suggest_release(&s);
+    }
+}
+
 static void an_l_shaped_room_is_found(void **state)
 {
     (void)state;
@@ -436,6 +463,7 @@ int main(void)
         cmocka_unit_test(the_number_of_rooms_is_not_limited),
         cmocka_unit_test(nothing_is_found_without_points),
         cmocka_unit_test(two_walls_are_found_alone),
+        cmocka_unit_test(a_wall_that_is_mostly_blank_is_found_unless_a_camera_is_behind),
         cmocka_unit_test(an_l_shaped_room_is_found),
         cmocka_unit_test(an_angled_wall_is_found),
         cmocka_unit_test(an_open_plan_with_a_bay_is_found),
