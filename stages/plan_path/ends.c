@@ -7,10 +7,13 @@
  * Discrete choice. [Colburn 2014, 3.4.2] measures the parallax of the longest pairs and takes the best, since it
  * renders the scene twice for each pair. Here each cell is rendered once, after which comparing two pictures takes less
  * than a millisecond, so all pairs are compared. The thesis tests the validity of the ends alone; here every frame's
- * position on the path is tested, and the first pair of the FIRST_PAIRS best whose whole path is valid is taken.
+ * position on the path is tested.
  *
- * If none is, there are two starts: the thesis's pair, drawn in towards the origin until its path is valid; and the
- * best valid one of a few pairs at each lower level of parallax, since neighbouring pairs mostly fail together.
+ * Starts. Candidates lie on the border of what is valid, so that a straight path between two of them often leaves it.
+ * The region's cells tell where; such a pair is lifted from the border towards z = 0, at which the cells were found
+ * valid, by as little as keeps the path within. The first pair, by falling parallax, whose path then passes a test is a
+ * start; further ones begin some cells away, since neighbours end on the same summit. If there is none, or none near
+ * the best pair's parallax, another start is the thesis's pair, drawn in towards the origin until its path is valid.
  *
  * Continuous refinement, not in the thesis, then moves the ends of each start off the grid (ends_climb.c), and the
  * start that ends with the most parallax wins. */
@@ -235,14 +238,18 @@ static bool is_within(const struct validity *v, const struct vec3 at[2])
 static bool has_one_region(const struct validity *v)
 {
     const struct validity_region *a = &v->region[0], *b = &v->region[1];
-    return a->columns == b->columns && a->rows == b->rows &&
-           !memcmp(a->cells, b->cells, (size_t)cell_count(a) * sizeof *a->cells);
+    bool same = a->columns == b->columns && a->rows == b->rows;
+    for (int i = 0; same && i < cell_count(a); i++) {
+        const struct validity_cell *c = &a->cells[i], *d = &b->cells[i];
+        same = c->x == d->x && c->y == d->y && c->valid == d->valid && c->low == d->low && c->high == d->high;
+    }
+    return same;
 }
 
-/* Sets `at` to the ends of a pair, lifted as far as its path needs. False: no lift keeps the path within the region. */
-static bool lift_pair(struct vec3 at[2], const struct validity *v, const struct end_pair *p)
+/* Sets `at` to the ends of a pair, lifted as far as its path needs. False: no lift keeps the path within the region of
+ * both ends. */
+static bool lift_pair(struct vec3 at[2], const struct validity *v, const struct end_pair *p, bool one_region)
 {
-    const bool one_region = has_one_region(v);
     for (int i = 0; i <= LIFTS; i++) {
         for (int k = 0; k < 2; k++) {
             struct vec3 c = shot_from_world(&v->shot, ends_candidate(v, k, p->cell[k]));
@@ -289,11 +296,12 @@ static enum status try_pair(struct ends_search *s, struct start_list *l, const s
 static enum status try_pairs(struct ends_search *s, struct start_list *l, const struct end_pair *pairs, int count,
                              int max_starts, struct err *err)
 {
+    const bool one_region = has_one_region(s->v);
     for (int rank = 0, tried = 0; !err->status && rank < count && tried < MAX_PAIRS && l->count < max_starts; rank++) {
         const struct end_pair *p = &pairs[rank];
         struct vec3 at[2];
         if (l->count && p->parallax < MIN_START * l->start[0].ends.parallax) break;
-        if (!is_apart(l, s->v, p) || !lift_pair(at, s->v, p)) continue;
+        if (!is_apart(l, s->v, p) || !lift_pair(at, s->v, p, one_region)) continue;
         try_pair(s, l, p, rank, at, err);
         tried++;
     }
