@@ -12,8 +12,7 @@
 #include "common/math/numbers.h"
 #include "stages/find_frame/wall_ends.h"
 
-#define MIN_SHOWN 0.4  /* of the wall's length */
-#define MIN_WALL  0.14 /* length, of the scene's size */
+#define MIN_SHOWN 0.4 /* of the wall's length */
 
 struct loose_end {
     int wall, end;
@@ -40,8 +39,7 @@ static bool ends_at(double *place, const struct search *s, const struct frame_wa
 }
 
 /* How many places and levels show the cells of a wall in a row, in all; 0: too little of it is shown. */
-static int shown_in(const struct wall_grid *g, const struct seen_through *through, int row, struct frame_wall *w,
-                    double size)
+static int shown_in(const struct wall_grid *g, int row, struct frame_wall *w, double size)
 {
     const double cell = WALL_CELL * size;
     const int first = clamp_int((int)floor((w->from - g->from) / cell), 0, g->along),
@@ -49,7 +47,7 @@ static int shown_in(const struct wall_grid *g, const struct seen_through *throug
     uint64_t all = 0;
     int cells = 0, sum = 0;
     for (int k = first; k < end; k++) {
-        const uint64_t bits = wall_grid_shown(g, through, row, k);
+        const uint64_t bits = wall_grid_shown(g, true, row, k);
         all |= bits;
         cells += bits != 0;
         sum += __builtin_popcountll(bits);
@@ -58,20 +56,20 @@ static int shown_in(const struct wall_grid *g, const struct seen_through *throug
     return w->support >= 2 && cells * cell > MIN_SHOWN * (w->to - w->from) ? sum : 0;
 }
 
-/* The best wall in a row from loose end to loose end, if it is better than *best. through: room for a row. */
-static void best_in_row(struct frame_wall *best, int *most, const struct search *s, const struct wall_grid *g, int row,
-                        struct frame_wall w, struct seen_through *through)
+/* The best wall in a row from loose end to loose end, if it is better than *best. */
+static void best_in_row(struct frame_wall *best, int *most, const struct search *s, struct wall_grid *g, int row,
+                        struct frame_wall w)
 {
     bool marked = false;
     w.offset = g->low + (row + 0.5) * WALL_ROW * s->size;
     for (int i = 0; i < s->end_count; i++)
         for (int k = 0; k < s->end_count; k++) {
             if (!ends_at(&w.from, s, &w, -1, &s->ends[i]) || !ends_at(&w.to, s, &w, 1, &s->ends[k]) ||
-                !(w.to - w.from > MIN_WALL * s->size))
+                !(w.to - w.from > WALL_SHORTEST * s->size))
                 continue;
-            if (!marked) wall_grid_mark_through(through, g, row, w.heading, w.side, s->f, s->seen, s->size);
+            if (!marked) wall_grid_mark_through(g, row, w.heading, w.side, s->f, s->seen, s->size);
             marked = true;
-            const int sum = shown_in(g, through, row, &w, s->size);
+            const int sum = shown_in(g, row, &w, s->size);
             if (sum <= *most) continue;
             *most = sum;
             *best = w;
@@ -86,14 +84,10 @@ static enum status best_closing(struct frame_wall *best, int *most, const struct
         for (int side = -1; !err->status && side <= 1; side += 2) {
             const struct frame_wall w = {.heading = heading, .side = side};
             struct wall_grid g = {0};
-            struct seen_through *through = NULL;
-            if (!wall_grid_fill(&g, s->lines, s->used, heading, side, s->size, err) && g.seen &&
-                !(through = malloc((size_t)g.along * sizeof *through)))
-                err_nomem(err, "cells of the plan", (size_t)g.along * sizeof *through);
+            wall_grid_fill(&g, s->lines, s->used, heading, side, s->size, err);
             for (int row = 1; !err->status && g.seen && row + 1 < g.across; row++)
-                best_in_row(best, most, s, &g, row, w, through);
+                best_in_row(best, most, s, &g, row, w);
             wall_grid_release(&g);
-            free(through);
         }
     return err->status;
 }

@@ -30,7 +30,6 @@
 
 /* as parts of the scene's size */
 #define GAP       0.35 /* in a wall */
-#define MIN_WALL  0.14 /* length */
 #define SLACK     0.02 /* beyond its ends, floor and ceiling, where lines are still on it */
 #define MIN_CELLS 3    /* that two places show */
 #define MIN_PAIRS 5    /* of places that show a cell, in all its cells */
@@ -57,16 +56,15 @@ struct candidate {
 };
 
 /* The best part of a row: the one with the most pairs. c has the wall's heading and side; no pairs: there is none. */
-static void best_part(struct candidate *c, const struct wall_grid *g, const struct seen_through *through, int row,
-                      double size)
+static void best_part(struct candidate *c, const struct wall_grid *g, bool marked, int row, double size)
 {
     struct frame_wall *w = &c->wall;
     c->pairs = 0;
     for (int k = 0; k < g->along; k++) {
         int last = k, cells = 0, pairs = 0, both = 0, support = 0;
-        if (__builtin_popcountll(wall_grid_shown(g, through, row, k)) < 2) continue;
+        if (__builtin_popcountll(wall_grid_shown(g, marked, row, k)) < 2) continue;
         for (int n = k; n < g->along && n - last <= GAP / WALL_CELL; n++) {
-            const uint64_t bits = wall_grid_shown(g, through, row, n);
+            const uint64_t bits = wall_grid_shown(g, marked, row, n);
             const int here = __builtin_popcountll(bits);
             if (here < 2) continue;
             last = n;
@@ -75,7 +73,7 @@ static void best_part(struct candidate *c, const struct wall_grid *g, const stru
             both += here > 2 && bits & WALL_HEADS && bits & ~WALL_HEADS;
             if (here > support) support = here;
         }
-        if (cells >= MIN_CELLS && (last + 1 - k) * WALL_CELL >= MIN_WALL && pairs > c->pairs) {
+        if (cells >= MIN_CELLS && (last + 1 - k) * WALL_CELL >= WALL_SHORTEST && pairs > c->pairs) {
             c->pairs = pairs;
             c->both = both;
             w->from = g->from + k * WALL_CELL * size;
@@ -96,19 +94,15 @@ static enum status best_wall(struct candidate *best, const struct room_frame *f,
         for (int side = -1; !err->status && side <= 1; side += 2) {
             struct candidate c = {.wall = {.heading = heading, .side = side}};
             struct wall_grid g = {0};
-            struct seen_through *through = NULL;
-            if (!wall_grid_fill(&g, lines, used, heading, side, size, err) && g.seen &&
-                !(through = malloc((size_t)g.along * sizeof *through)))
-                err_nomem(err, "cells of the plan", (size_t)g.along * sizeof *through);
+            wall_grid_fill(&g, lines, used, heading, side, size, err);
             for (int row = 1; !err->status && g.seen && row + 1 < g.across; row++) {
-                best_part(&c, &g, NULL, row, size);
+                best_part(&c, &g, false, row, size);
                 if (c.pairs <= best->pairs) continue; /* before what takes time */
-                wall_grid_mark_through(through, &g, row, heading, side, f, seen, size);
-                best_part(&c, &g, through, row, size);
+                wall_grid_mark_through(&g, row, heading, side, f, seen, size);
+                best_part(&c, &g, true, row, size);
                 if (c.pairs > best->pairs) *best = c;
             }
             wall_grid_release(&g);
-            free(through);
         }
     return err->status;
 }
@@ -172,7 +166,7 @@ enum status walls_find(struct room_frame *f, const struct foot_lines *lines, con
         for (int end = -1; end <= 1; end += 2) {
             struct frame_wall met = f->walls[k];
             wall_end_meet(&met, end, f, size);
-            if (met.to - met.from > MIN_WALL / 2 * size) f->walls[k] = met;
+            if (met.to - met.from > WALL_SHORTEST / 2 * size) f->walls[k] = met;
         }
     free(used);
     free(sure);

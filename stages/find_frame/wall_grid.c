@@ -33,7 +33,11 @@ enum status wall_grid_fill(struct wall_grid *g, const struct foot_lines *lines, 
     g->across = (int)((high - low) / (WALL_ROW * size)) + 5;
     g->along = (int)((to - from) / (WALL_CELL * size)) + 1;
     g->seen = calloc((size_t)g->across * (size_t)g->along, sizeof *g->seen);
-    if (!g->seen) return err_nomem(err, "cells of the plan", (size_t)g->across * (size_t)g->along * sizeof *g->seen);
+    g->through = calloc((size_t)g->along, sizeof *g->through);
+    if (!g->seen || !g->through) {
+        wall_grid_release(g);
+        return err_nomem(err, "cells of the plan", (size_t)g->across * (size_t)g->along * sizeof *g->seen);
+    }
     for (int i = 0; i < lines->count; i++) {
         const struct foot_line *l = &lines->lines[i];
         if (used[l->line] || l->heading != heading || foot_line_side(l) != side) continue;
@@ -49,16 +53,17 @@ void wall_grid_release(struct wall_grid *g)
 {
     if (!g) return;
     free(g->seen);
+    free(g->through);
     *g = (struct wall_grid){0};
 }
 
-void wall_grid_mark_through(struct seen_through *through, const struct wall_grid *g, int row, int heading, int side,
-                            const struct room_frame *f, const struct frame_sights *sights, double size)
+void wall_grid_mark_through(struct wall_grid *g, int row, int heading, int side, const struct room_frame *f,
+                            const struct frame_sights *sights, double size)
 {
     const struct vec3 along = f->headings[heading].along, across = frame_across(f, heading);
     const double offset = g->low + (row + 0.5) * WALL_ROW * size, low = f->floor.height,
                  high = f->ceiling.known ? f->ceiling.height : low + USUAL_HEIGHT * size;
-    memset(through, 0, (size_t)g->along * sizeof *through);
+    memset(g->through, 0, (size_t)g->along * sizeof *g->through);
     for (int i = 0; i < sights->count; i++) {
         const struct frame_sight *s = &sights->list[i];
         const double before = side * (vec3_dot(across, s->eye) - offset),
@@ -68,20 +73,20 @@ void wall_grid_mark_through(struct seen_through *through, const struct wall_grid
         const double part = (vec3_dot(f->up, at) - low) / (high - low);
         const int k = (int)floor((vec3_dot(along, at) - g->from) / (WALL_CELL * size));
         if (!(part > LOWEST_SIGHT && part < HIGHEST_SIGHT && k >= 0 && k < g->along)) continue;
-        through[k].any |= (uint64_t)1 << s->station % 64;
-        if (part < WINDOW_SIGHT) through[k].low |= (uint64_t)1 << s->station % 64;
+        g->through[k].any |= (uint64_t)1 << s->station % 64;
+        if (part < WINDOW_SIGHT) g->through[k].low |= (uint64_t)1 << s->station % 64;
     }
 }
 
 /* Where nobody sees the head of a wall it may be furniture, and where nobody sees its foot, a grille in the ceiling or
  * a cupboard that hangs: then being seen through at any height counts. */
-uint64_t wall_grid_shown(const struct wall_grid *g, const struct seen_through *through, int row, int k)
+uint64_t wall_grid_shown(const struct wall_grid *g, bool marked, int row, int k)
 {
     uint64_t all = 0;
     for (int r = row - 1; r <= row + 1; r++)
         if (r >= 0 && r < g->across) all |= g->seen[r * g->along + k];
     const bool both = all & WALL_HEADS && all & ~WALL_HEADS;
-    if (through && __builtin_popcountll(both ? through[k].low : through[k].any) >= 2) return 0;
+    if (marked && __builtin_popcountll(both ? g->through[k].low : g->through[k].any) >= 2) return 0;
     return all;
 }
 

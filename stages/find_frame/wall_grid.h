@@ -9,15 +9,22 @@
 #include "stages/find_frame/foot_lines.h"
 
 /* as parts of the scene's size */
-#define WALL_ROW  0.008 /* width of a cell across the lines */
-#define WALL_CELL 0.07  /* its length */
+#define WALL_ROW      0.008 /* width of a cell across the lines */
+#define WALL_CELL     0.07  /* its length */
+#define WALL_SHORTEST 0.14  /* length of a wall */
 
 #define WALL_HEADS 0xaaaaaaaaaaaaaaaau /* the bits of lines on the ceiling; the others: on the floor */
+
+/* The stations that see through a cell of a row: below the height of windows, and at any height below the ceiling. */
+struct seen_through {
+    uint64_t low, any;
+};
 
 struct wall_grid {
     double from, low; /* along and across, of cell 0 */
     int across, along;
-    uint64_t *seen; /* owned; of each cell: a bit for each station and level */
+    uint64_t *seen;               /* owned; of each cell: a bit for each station and level */
+    struct seen_through *through; /* owned; of the cells of the row that was marked last */
 };
 
 /* What a view sees: a place, from that of the view. */
@@ -31,11 +38,6 @@ struct frame_sights {
     int count;
 };
 
-/* The stations that see through a cell of a row: below the height of windows, and at any height below the ceiling. */
-struct seen_through {
-    uint64_t low, any;
-};
-
 /* 1 or -1: the side of a line on which its camera is. */
 static inline int foot_line_side(const struct foot_line *l) { return l->eye > l->offset ? 1 : -1; }
 
@@ -45,13 +47,13 @@ enum status wall_grid_fill(struct wall_grid *g, const struct foot_lines *lines, 
                            double size, struct err *err);
 void wall_grid_release(struct wall_grid *g);
 
-/* Marks the cells of a row that places see through; through has g->along of them. */
-void wall_grid_mark_through(struct seen_through *through, const struct wall_grid *g, int row, int heading, int side,
-                            const struct room_frame *f, const struct frame_sights *sights, double size);
+/* Marks the cells of a row that places see through. */
+void wall_grid_mark_through(struct wall_grid *g, int row, int heading, int side, const struct room_frame *f,
+                            const struct frame_sights *sights, double size);
 
-/* The places and levels that show cell k of a row and of the two beside it; none if two places see through it. through:
- * of the row, or NULL. */
-uint64_t wall_grid_shown(const struct wall_grid *g, const struct seen_through *through, int row, int k);
+/* The places and levels that show cell k of a row and of the two beside it. marked: none if two places see through it,
+ * which is known of the row that was marked last. */
+uint64_t wall_grid_shown(const struct wall_grid *g, bool marked, int row, int k);
 
 /* Adds a sight from a view to a place. */
 enum status frame_sights_add(struct frame_sights *s, int station, struct vec3 eye, struct vec3 place, struct err *err);

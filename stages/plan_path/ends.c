@@ -360,7 +360,7 @@ static enum status take_start(struct ends_search *s, struct move_ends *best, str
     bool moved = false;
     if (refined) ends_improve(s, &start->ends, &moved, err);
     if (!err->status && !moved) ends_measure_path(s, &start->ends, err);
-    if (err->status || !(is_better(&start->ends, best) || best->length == 0)) return err->status;
+    if (err->status || !is_better(&start->ends, best)) return err->status;
     *best = start->ends;
     s->notes->chosen = start->rank;
     s->notes->refined = moved;
@@ -374,7 +374,7 @@ enum status ends_choose(struct move_ends *best, struct ends_notes *notes, const 
     struct start_list l = {.count = 0};
     struct ends_search s;
     *notes = (struct ends_notes){.chosen = -1};
-    *best = (struct move_ends){.valid = false};
+    *best = (struct move_ends){.parallax = -1}; /* any start is better */
     if (!ends_search_init(&s, scene, v, params, notes, err)) find_starts(&s, &l, refined, err);
     for (int i = 0; !err->status && i < l.count; i++) {
         take_start(&s, best, &l.start[i], refined, err);

@@ -143,12 +143,6 @@ enum status ends_test_path(bool *valid, struct ends_search *s, const struct vec3
     return viewpoints_are_valid(valid, cameras, COARSE_SAMPLES, &s->test, err);
 }
 
-enum status ends_measure_path_if_valid(struct ends_search *s, struct move_ends *e, struct err *err)
-{
-    if (ends_test_path(&e->valid, s, e->at, err)) return err->status;
-    return e->valid ? ends_measure_path(s, e, err) : ST_OK;
-}
-
 bool ends_are_allowed(const struct ends_search *s, const struct vec3 at[2])
 {
     const struct shot_setup *shot = &s->v->shot;

@@ -50,9 +50,6 @@ enum status ends_measure_path(struct ends_search *s, struct move_ends *e, struct
 /* Whether a few samples of the path between the ends are valid. */
 enum status ends_test_path(bool *valid, struct ends_search *s, const struct vec3 at[2], struct err *err);
 
-/* As ends_measure_path if the coarse test passes; else sets e->valid to false and nothing else. */
-enum status ends_measure_path_if_valid(struct ends_search *s, struct move_ends *e, struct err *err);
-
 /* Angle between the ends at the scene's centroid, degrees. */
 double ends_angle(const struct shot_setup *shot, const struct vec3 at[2]);
 

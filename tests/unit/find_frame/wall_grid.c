@@ -36,7 +36,6 @@ static int shown_at(int feet, int heads, int stations, double height)
     const struct foot_lines lines = {list, wall_lines(list, feet, heads)};
     struct frame_sights sights = {0};
     struct wall_grid g = {0};
-    struct seen_through through[64];
     struct err err = ERR_INIT;
     for (int k = 0; k < stations; k++) { /* to behind the wall, so that it is crossed in the middle */
         const struct vec3 eye = {0.5, k * 0.3, 1.4}, at = {0.5, 2, height};
@@ -45,8 +44,8 @@ static int shown_at(int feet, int heads, int stations, double height)
     assert_ok(wall_grid_fill(&g, &lines, used, 0, SIDE, size, &err), err);
     assert_in_range(g.along, 1, 64);
     const int row = (int)((2 - g.low) / (WALL_ROW * size)), k = (int)((0.5 - g.from) / (WALL_CELL * size));
-    wall_grid_mark_through(through, &g, row, 0, SIDE, &frame, &sights, size);
-    const int shown = __builtin_popcountll(wall_grid_shown(&g, through, row, k));
+    wall_grid_mark_through(&g, row, 0, SIDE, &frame, &sights, size);
+    const int shown = __builtin_popcountll(wall_grid_shown(&g, true, row, k));
     wall_grid_release(&g);
     free(sights.list);
     return shown;

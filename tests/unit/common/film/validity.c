@@ -238,6 +238,22 @@ static void truncated_and_overlong_files_are_refused(void **state)
     assert_contains(err.text, "nowhere.txt");
 }
 
+/* Three cells in a row, of which the last is not valid. */
+static void ranges_are_interpolated_between_valid_cells(void **state)
+{
+    (void)state;
+    struct validity_cell cells[6] = {{0, 0, true, -1, 1}, {1, 0, true, -3, 2}, {2, 0, false, 0, 0},
+                                     {0, 1, true, -1, 1}, {1, 1, true, -3, 2}, {2, 1, false, 0, 0}};
+    const struct validity_region r = {3, 2, cells};
+    double low, high;
+    assert_float_equal(validity_region_at(&r, 0.25, 0.5, &low, &high), 1, 1e-12);
+    assert_true(fabs(low + 1.5) < 1e-12 && fabs(high - 1.25) < 1e-12);
+    const double weight = validity_region_at(&r, 1.75, 0, &low, &high);
+    assert_float_equal(weight, 0.25, 1e-12);
+    assert_true(fabs(low / weight + 3) < 1e-12 && fabs(high / weight - 2) < 1e-12);
+    assert_float_equal(validity_region_at(&r, -5, 9, &low, &high), 0, 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -245,6 +261,7 @@ int main(void)
         cmocka_unit_test(moves_on_the_axis_read_back_the_same),
         cmocka_unit_test(bad_lines_are_refused_with_file_and_line),
         cmocka_unit_test(truncated_and_overlong_files_are_refused),
+        cmocka_unit_test(ranges_are_interpolated_between_valid_cells),
     };
     return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
 }
