@@ -8,6 +8,12 @@
 
 #include "common/base/log.h"
 
+#ifdef __clang_analyzer__
+#undef err_set
+#undef err_errno
+#undef err_nomem
+#endif
+
 /* Truncated text ends in "...", so that it does not look complete. */
 static void mark_cut(char *text, size_t size, int length)
 {
