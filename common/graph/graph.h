@@ -112,8 +112,7 @@ void graph_rule(struct graph *g, const char *item_fmt, ...) PRINTF_LIKE(2, 3);
 void graph_piece(struct graph *g, const char *item_fmt, ...) PRINTF_LIKE(2, 3);
 /* A rule of another stage's program. */
 void rule_by(struct graph *g, const char *stage);
-void rule_shared(struct graph *g);       /* all qualities share the product: parameters and log are in S */
-void rule_ignores_code(struct graph *g); /* a change of the program alone does not redo it */
+void rule_shared(struct graph *g); /* all qualities share the product: parameters and log are in S */
 
 void rule_makes(struct graph *g, const char *path);
 void rule_needs(struct graph *g, const char *path); /* NULL: nothing */

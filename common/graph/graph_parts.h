@@ -39,7 +39,7 @@ struct asked {
 };
 
 struct rule {
-    bool open, piece, shared, ignores_code, has_own, stale;
+    bool open, piece, shared, has_own, stale;
     enum stale_kind stale_kind;
     int targets;
     char stage[64], item[FILE_PATH];

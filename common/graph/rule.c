@@ -51,7 +51,7 @@ void rule_close(struct graph *g)
     graph_add(g, &g->file, r->targets > 1 ? " &:" : ":");
     graph_add_text(g, &g->file, &r->needs);
     graph_add_word(g, &g->file, config);
-    if (!r->ignores_code) graph_add_word(g, &g->file, graph_text(g, "%s/%s", g->facts->code, r->stage));
+    graph_add_word(g, &g->file, graph_text(g, "%s/%s", g->facts->code, r->stage));
     if (r->after.size) graph_add(g, &g->file, " |");
     graph_add_text(g, &g->file, &r->after);
     graph_add(g, &g->file, "\n\t$(hide)");
@@ -85,7 +85,7 @@ static void open_rule(struct graph *g, bool piece, const char *fmt, va_list args
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) graph_empty(texts[i]);
     r->open = true;
     r->piece = piece;
-    r->shared = r->ignores_code = r->has_own = r->stale = false;
+    r->shared = r->has_own = r->stale = false;
     r->targets = 0;
     snprintf(r->stage, sizeof r->stage, "%s", g->stage);
     vsnprintf(r->item, sizeof r->item, fmt, args);
@@ -122,7 +122,6 @@ void graph_beside(struct graph *g, const char *path, const char *with)
 
 void rule_by(struct graph *g, const char *stage) { snprintf(g->rule.stage, sizeof g->rule.stage, "%s", stage); }
 void rule_shared(struct graph *g) { g->rule.shared = true; }
-void rule_ignores_code(struct graph *g) { g->rule.ignores_code = true; }
 
 void rule_makes(struct graph *g, const char *path)
 {

@@ -1,6 +1,8 @@
 /* scene_rules.c - see scene_rules.h. */
 #include "common/graph/scene_rules.h"
 
+#include <stdint.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "common/base/textfile.h"
@@ -24,6 +26,39 @@ void rule_photos(struct graph *g, const struct scene_facts *f, const char *optio
 const char *scene_photo_source(struct graph *g, const struct scene_facts *f, const char *photo)
 {
     return f->bracketed ? PATH(g, HDR, .photo = photo) : PATH(g, PHOTO, .photo = photo);
+}
+
+/* A points3D.txt with a line that is no comment, or a points3D.bin that counts a point. */
+static bool has_points(struct graph *g, const char *folder, const char *file)
+{
+    const char *path = graph_text(g, "%s/%s", folder, file);
+    FILE *fp = fopen(path, "re");
+    uint64_t count = 0;
+    int c = 0;
+    if (!fp) return false;
+    if (strstr(file, ".bin"))
+        c = fread(&count, sizeof count, 1, fp) == 1 && count ? 1 : EOF;
+    else
+        while ((c = getc(fp)) == '#' || c == '\n')
+            while (c != '\n' && c != EOF) c = getc(fp);
+    fclose(fp);
+    return c != EOF;
+}
+
+bool scene_matches_photos(struct graph *g)
+{
+    static const char *const files[] = {"points3D.txt", "points3D.bin", "0/points3D.txt", "0/points3D.bin"};
+    const char *model = scene_setting("SFM");
+    if (!*model) return true;
+    for (size_t i = 0; i < sizeof files / sizeof *files; i++)
+        if (has_points(g, model, files[i])) return false;
+    /* a model of Bundler has points; all others have these files */
+    for (int i = 0; i < 4; i++)
+        if (path_is_file(
+                graph_text(g, "%s/%s", model,
+                           (const char *const[]){"images.txt", "images.bin", "0/images.txt", "0/images.bin"}[i])))
+            return true;
+    return false;
 }
 
 void rule_masks(struct graph *g, const struct scene_facts *f)

@@ -103,6 +103,8 @@ static inline i32x8 i32x8_if(i32x8 m, i32x8 a, i32x8 b)
 }
 static inline f32x8 f32x8_load_if(i32x8 m, const float *p) { return _mm256_maskload_ps(p, (__m256i)m); }
 
+static inline i32x8 i32x8_min(i32x8 a, i32x8 b) { return (i32x8)_mm256_min_epi32((__m256i)a, (__m256i)b); }
+static inline i32x8 i32x8_max(i32x8 a, i32x8 b) { return (i32x8)_mm256_max_epi32((__m256i)a, (__m256i)b); }
 static inline unsigned i32x8_signs(i32x8 m) { return (unsigned)_mm256_movemask_ps((__m256)m); }
 static inline i32x8 i32x8_pick(i32x8 a, i32x8 i) { return (i32x8)_mm256_permutevar8x32_epi32((__m256i)a, (__m256i)i); }
 static inline i32x8 i32x8_gather(const int32_t *p, i32x8 i) { return (i32x8)_mm256_i32gather_epi32(p, (__m256i)i, 4); }
@@ -203,6 +205,8 @@ static inline f32x8 f32x8_join(f32x4 low, f32x4 high)
 }
 static inline i32x8 i32x8_if(i32x8 m, i32x8 a, i32x8 b) { return m >>= 31, (a & m) | (b & ~m); }
 static inline f32x8 f32x8_if(i32x8 m, f32x8 a, f32x8 b) { return (f32x8)i32x8_if(m, (i32x8)a, (i32x8)b); }
+static inline i32x8 i32x8_min(i32x8 a, i32x8 b) { return i32x8_if(a < b, a, b); }
+static inline i32x8 i32x8_max(i32x8 a, i32x8 b) { return i32x8_if(a > b, a, b); }
 static inline f32x8 f32x8_min(f32x8 a, f32x8 b) { return f32x8_if(a < b, a, b); }
 static inline f32x8 f32x8_max(f32x8 a, f32x8 b) { return f32x8_if(a > b, a, b); }
 static inline f32x8 f32x8_sqrt(f32x8 a)
