@@ -1,0 +1,22 @@
+/* features_params.h - parameters of extract_features. */
+#ifndef REMODEL_FEATURES_PARAMS_H
+#define REMODEL_FEATURES_PARAMS_H
+
+#include "common/base/param.h"
+
+/* name, type, default, min, max, unit, help */
+#define FEATURES_PARAMS(X)                                                              \
+    X(max_features, int, 8192, 100, 100000, "", "maximum number of features per photo") \
+    X(max_image_size, int, 3200, 200, 20000, "px",                                      \
+      "longer side to which larger photos are scaled down before features are found")   \
+    X(contrast, double, 0.02, 0.001, 0.2, "", "least contrast of a feature, white being 1")
+
+struct features_params {
+    FEATURES_PARAMS(PARAM_FIELD)
+};
+#define FEATURES_PARAMS_DEFAULT        \
+    {                                  \
+        FEATURES_PARAMS(PARAM_DEFAULT) \
+    }
+
+#endif

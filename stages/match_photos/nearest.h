@@ -1,0 +1,28 @@
+/* nearest.h - exact nearest neighbours among descriptors of two photos. */
+#ifndef REMODEL_NEAREST_H
+#define REMODEL_NEAREST_H
+
+#include "common/base/err.h"
+#include "common/capture/feature_list.h"
+
+/* The two features of another photo whose descriptors have the largest scalar products with one's own. */
+struct nearest {
+    int32_t at;           /* of the other photo's features, the lowest of equal ones; -1: there are none */
+    int32_t best, second; /* scalar products; -1: there is no such feature */
+};
+
+/* Descriptors as the search wants them, eight features a block. */
+struct descriptor_blocks {
+    int16_t *rows;  /* count x DESCRIPTOR_SIZE; owned */
+    int16_t *lanes; /* of each block, of each two neighbouring values: those of its eight features; owned */
+    int count, blocks;
+};
+
+enum status nearest_blocks_init(struct descriptor_blocks *b, const struct feature_list *list, struct err *err);
+void nearest_blocks_release(struct descriptor_blocks *b);
+
+/* For each feature of a its nearest ones of b, and the other way round. ab: a->count; ba: b->count. ST_NOMEM. */
+enum status nearest_find(struct nearest *ab, struct nearest *ba, const struct descriptor_blocks *a,
+                         const struct descriptor_blocks *b, struct err *err);
+
+#endif
