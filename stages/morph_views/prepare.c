@@ -138,7 +138,7 @@ static enum status read_cameras(struct pair_geometry *g, bool *known, const stru
         if (lens->camera.width != pair->films[i].stored_width || lens->camera.height != pair->films[i].stored_height)
             err_set(err, ST_DATA,
                     "photo %s has %d x %d pixels, but its camera has %d x %d: the photo was replaced after "
-                    "structure from motion. Redo that (make resfm), or restore the old photo.",
+                    "its camera was given. Give the new one (SFM), or restore the old photo.",
                     pair->records[i].id, pair->films[i].stored_width, pair->films[i].stored_height, lens->camera.width,
                     lens->camera.height);
         struct mat3 turn = mat3_transpose(mat3_from_quat(lens->view_from_photo));

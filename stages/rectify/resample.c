@@ -341,11 +341,10 @@ enum status resample_photo(struct image *out, struct photo_quality *out_quality,
     struct resample r = {
         .out = out, .out_quality = source->quality ? out_quality : NULL, .photo = photo, .masked = source->masked};
     if (photo->width != lens->width || photo->height != lens->height)
-        return err_set(
-            err, ST_DATA,
-            "the photo has %d x %d pixels but its camera %d x %d: the photo was replaced after structure from "
-            "motion; run that again (make resfm) or restore the old photo.",
-            photo->width, photo->height, lens->width, lens->height);
+        return err_set(err, ST_DATA,
+                       "the photo has %d x %d pixels but its camera %d x %d: the photo was replaced after the cameras "
+                       "were given; give those of the new photo (SFM) or restore the old one.",
+                       photo->width, photo->height, lens->width, lens->height);
     photo_map_init(&r.map, lens, photo_from_view, view);
     r.points_per_thread = 4 * r.map.row + 2 * r.map.knots;
     r.quality = (struct pixel_quality){.of = source->quality, .width = photo->width, .height = photo->height};

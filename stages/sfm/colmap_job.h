@@ -1,8 +1,8 @@
 /* colmap_job.h - COLMAP's commands on a work folder.
  *
- * COLMAP sees symbolic links with safe names (ID.EXT) in the work folder, not the photos' folder. The packaged COLMAP
- * has no CUDA, so features and matches run on the CPU. Its exit status alone is not trusted: callers count what it
- * made. */
+ * COLMAP sees symbolic links with safe names (ID.EXT) in the work folder, not the photos' folder. Features and matches
+ * are products of earlier stages; COLMAP verifies the matches and finds poses and points, on the processor only. Its
+ * exit status alone is not trusted: callers count what it made. */
 #ifndef REMODEL_COLMAP_JOB_H
 #define REMODEL_COLMAP_JOB_H
 
@@ -10,9 +10,10 @@
 #include "stages/sfm/start_lens.h"
 
 struct sfm_input {
-    const char *photos, *masks, *records; /* folders; masks: of ID.png (common/capture/photo_mask.h), or NULL */
+    const char *photos, *features, *matches; /* folders; features and matches: of ID.txt, or NULL */
     const struct photo_list *list;
     const struct sfm_params *params;
+    struct provenance *prov; /* gets features, matches and COLMAP's version as inputs */
 };
 
 enum { COLMAP_STEPS = 4, MIN_FEATURES = 200 }; /* photos with fewer features are reported */
@@ -22,13 +23,16 @@ struct colmap_job {
     double started; /* clock_seconds() */
     const struct photo_list *photos;
     const struct sfm_params *params;
-    char *images, *masks, *database, *sparse; /* in the work folder; masks is NULL if no photo has one; owned */
-    char *logs[COLMAP_STEPS];                 /* owned */
-    char threads[16], max_features[16], max_image_size[16], lens[SFM_LENS_TEXT];
+    const char *features_from, *matches_from;
+    struct provenance *prov;
+    char *images, *database, *sparse; /* in the work folder; owned */
+    char *logs[COLMAP_STEPS];         /* owned */
+    int *features;                    /* of each photo; -1: COLMAP could not read it; owned */
+    char threads[16], lens[SFM_LENS_TEXT];
     bool single; /* one lens for all photos */
 };
 
-/* Fills the work folder: links, masks, names of logs. params may differ from in->params. The job borrows its
+/* Fills the work folder: links, names of logs. params may differ from in->params. The job borrows its
  * arguments. */
 enum status colmap_prepare(struct colmap_job *job, const struct sfm_folder *f, const struct sfm_input *in,
                            const struct sfm_params *params, struct err *err);
@@ -41,8 +45,13 @@ enum status colmap_run(const struct colmap_job *job, int step, const char *const
                        struct err *err);
 enum status colmap_failed(const struct colmap_job *job, int step, const char *command, int status, struct err *err);
 
-/* Steps 1 and 2. *features: number of features in all photos; matching is skipped if it is 0. */
-enum status colmap_extract_and_match(long long *features, const struct colmap_job *job, struct err *err);
+/* Steps 1 and 2: the database of photos, lenses, features and verified matches. *features: number of features in all
+ * photos; nothing is verified if it is 0. */
+enum status colmap_take_matches(long long *features, const struct colmap_job *job, struct err *err);
+
+/* Lists the photos with fewer than MIN_FEATURES, "a.jpg (12), b.jpg (unreadable) and 3 more", as far as `size` allows.
+ * "" if there are none. features: of each photo, -1: unreadable. */
+void colmap_list_poor(char *text, size_t size, const int *features, const struct photo_list *photos);
 
 /* Step 3: poses and points. relaxed: the initial pair may have a smaller angle and fewer inliers than by default. */
 enum status colmap_map(const struct colmap_job *job, bool relaxed, struct err *err);

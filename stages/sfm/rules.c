@@ -1,13 +1,10 @@
-/* rules.c - SfM runs once for a set of photos: COLMAP is not reproducible, so a changed photo or mask, or another
- * program, does not redo it; make resfm does. */
+/* rules.c - SfM: COLMAP on features and matches of the photos, or a given model. */
 #include "common/graph/scene_rules.h"
 
 RULES(sfm)
 {
-    graph_step(g, "resfm", STEP_ONE, "hdr");
     graph_rule(g, "all");
     rule_shared(g);
-    rule_ignores_code(g);
     rule_makes(g, PATH(g, SFM_MODELS));
     rule_needs(g, PATH(g, PHOTO_LIST));
     rule_needs(g, graph_shared(g, "stamp/sfm_source.txt"));
@@ -18,6 +15,11 @@ RULES(sfm)
     rule_photos(g, f, "--photos");
     rule_option(g, "--records", FOLDER(g, PHOTO_LIST));
     rule_option(g, "--out", FOLDER(g, SFM_MODELS));
-    rule_masks(g, f);
+    if (scene_matches_photos(g)) {
+        rule_needs_set(g, "features");
+        rule_needs_set(g, "matches");
+        rule_option(g, "--features", FOLDER(g, FEATURES, .photo = ""));
+        rule_option(g, "--matches", FOLDER(g, MATCHES, .photo = ""));
+    }
     rule_variable(g, "--model", "SFM");
 }

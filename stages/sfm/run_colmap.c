@@ -1,4 +1,4 @@
-/* run_colmap.c - COLMAP's sparse reconstruction: features, matches, mapping, conversion to text. If the mapper finds no
+/* run_colmap.c - COLMAP's sparse reconstruction: verified matches, mapping, conversion to text. If the mapper finds no
  * initial pair it runs again with relaxed thresholds, as sets of a few photos taken close together need. */
 #include "stages/sfm/run_colmap.h"
 
@@ -13,11 +13,9 @@
 
 static enum status explain_failure(const struct colmap_job *job, struct err *err)
 {
-    struct feature_counts c = {0};
     char few[700];
     int connected = colmap_log_connected(job->logs[2]);
-    if (colmap_counts_read(&c, job->logs[0], err)) return err->status;
-    colmap_counts_list_poor(few, sizeof few, &c, job->photos, MIN_FEATURES);
+    colmap_list_poor(few, sizeof few, job->features, job->photos);
     if (connected == 0)
         err_set(err, ST_DATA,
                 "COLMAP placed none of the %d photos: no two of them match. Take photos that overlap, from places a "
@@ -28,7 +26,6 @@ static enum status explain_failure(const struct colmap_job *job, struct err *err
                 "COLMAP placed none of the %d photos, though %d match another one. They may all be taken from one "
                 "spot (step aside between photos, do not just turn) or overlap too little%s%s. Its log is %s.",
                 job->photos->count, connected, *few ? "; few features: " : "", few, job->logs[2]);
-    colmap_counts_release(&c);
     return err->status;
 }
 
@@ -70,12 +67,10 @@ enum status run_colmap(struct sfm_folder *f, const struct sfm_input *in, const s
                        "there %s; structure from motion needs at least 2, better 8 or more, taken a step apart.",
                        in->list->count ? "is only 1 photo" : "are no photos");
     f->given = strcmp(in->params->refine_camera, "no") ? "nothing" : "lens";
-    if (!colmap_prepare(&job, f, in, in->params, err)) colmap_extract_and_match(&features, &job, err);
+    if (!colmap_prepare(&job, f, in, in->params, err)) colmap_take_matches(&features, &job, err);
     if (!err->status && !features)
-        err_set(err, ST_DATA,
-                "COLMAP found no features in any of the %d photos: they are blank, masked or unreadable. Its log is "
-                "%s.",
-                in->list->count, job.logs[0]);
+        err_set(err, ST_DATA, "none of the %d photos has features: they are blank, masked or unreadable.",
+                in->list->count);
     if (!err->status)
         log_note("step 3 of %d: poses and points (%.1f s so far)", COLMAP_STEPS, clock_seconds() - job.started);
     if (!err->status) colmap_map(&job, false, err);

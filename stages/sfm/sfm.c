@@ -1,7 +1,7 @@
 /* sfm.c - finds the cameras of the photographs with COLMAP, or imports an existing model.
  *
  * reads   PHOTOS/FILE, RECORDS/list.txt, ID.txt    the photos and their records
- *         MASKS/ID.png                             black where no features may be found
+ *         FEATURES/ID.txt, MATCHES/ID.txt          their features and matches
  *         MODEL                                    a model in COLMAP's text or binary format, or Bundler's
  * writes  OUT/N/{cameras,images,points3D}.txt      the models; images have the photos' file names
  *         OUT/photos.txt                           ids and hashes of the photos
@@ -14,15 +14,19 @@
 #include "stages/sfm/run_colmap.h"
 #include "stages/sfm/user_model.h"
 
-static enum status run(const char *photos, const char *records, const char *masks, const char *model, const char *out,
-                       const struct sfm_params *params, struct provenance *prov, struct err *err)
+static enum status run(const struct sfm_input *given, const char *records, const char *model, const char *out,
+                       struct provenance *prov, struct err *err)
 {
     struct photo_list list = {0};
     struct sfm_folder folder = {0};
-    const struct sfm_input in = {photos, masks, records, &list, params};
+    struct sfm_input in = *given;
+    in.list = &list;
+    in.prov = prov;
     if (!photo_list_read(&list, records, err)) sfm_folder_open(&folder, out, err);
     if (!err->status && model)
         user_model_add(&folder, model, &in, prov, err);
+    else if (!err->status && (!in.features || !in.matches))
+        err_set(err, ST_USAGE, "without --model, --features and --matches are needed.");
     else if (!err->status)
         run_colmap(&folder, &in, prov, err);
     if (!err->status) sfm_folder_commit(&folder, &list, prov, err);
@@ -33,13 +37,16 @@ static enum status run(const char *photos, const char *records, const char *mask
 
 int main(int argc, char **argv)
 {
-    const char *photos = NULL, *records = NULL, *masks = NULL, *model = NULL, *out = NULL;
+    const char *records = NULL, *model = NULL, *out = NULL;
     struct sfm_params params = SFM_PARAMS_DEFAULT;
+    struct sfm_input in = {.params = &params};
     const struct cli_opt opts[] = {
         CLI_ABOUT("Finds the cameras of the photographs with COLMAP, or imports an existing model."),
-        CLI_STR("photos", &photos, CLI_REQUIRED, "folder of photographs"),
+        CLI_STR("photos", &in.photos, CLI_REQUIRED, "folder of photographs"),
         CLI_STR("records", &records, CLI_REQUIRED, "folder of the photos' records"),
-        CLI_STR("masks", &masks, CLI_OPTIONAL, "folder of masks ID.png, black where no features may be found"),
+        CLI_STR("features", &in.features, CLI_OPTIONAL,
+                "folder of the photos' features; needed where no model is given"),
+        CLI_STR("matches", &in.matches, CLI_OPTIONAL, "folder of their matches; likewise"),
         CLI_STR("model", &model, CLI_OPTIONAL, "folder of an existing model: COLMAP text or binary, or Bundler"),
         CLI_STR("out", &out, CLI_REQUIRED, "folder to write the models to; replaced as a whole"),
         CLI_PARAMS(sfm_param_table, &params, sfm_params_check),
@@ -47,8 +54,7 @@ int main(int argc, char **argv)
     };
     struct provenance prov = {0};
     struct err err = ERR_INIT;
-    if (cli_parse(argc, argv, "sfm", opts, &prov, &err) != CLI_RUN ||
-        run(photos, records, masks, model, out, &params, &prov, &err))
+    if (cli_parse(argc, argv, "sfm", opts, &prov, &err) != CLI_RUN || run(&in, records, model, out, &prov, &err))
         err_report(&err);
     provenance_release(&prov);
     return err_exit_code(&err);

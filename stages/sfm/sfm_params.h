@@ -17,13 +17,7 @@
       " from EXIF")                                                                                              \
     X(refine_camera, choice, "yes", 0, 0, "yes|no", "refine the lens parameters; no keeps camera_params fixed")  \
     X(single_camera, choice, "auto", 0, 0, "auto|yes|no",                                                        \
-      "one lens for all photos; auto: if all have the same size, focal length, make and model")                  \
-    X(matcher, choice, "auto", 0, 0, "auto|exhaustive|sequential",                                               \
-      "photo pairs to match: exhaustive is all pairs, sequential neighbours by name; auto: exhaustive up to 200" \
-      " photos")                                                                                                 \
-    X(max_features, int, 8192, 100, 100000, "", "maximum number of features per photo")                          \
-    X(max_image_size, int, 3200, 200, 20000, "px",                                                               \
-      "longer side to which larger photos are scaled down before feature extraction")
+      "one lens for all photos; auto: if all have the same size, focal length, make and model")
 
 struct sfm_params {
     SFM_PARAMS(PARAM_FIELD)

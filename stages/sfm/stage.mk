@@ -1,10 +1,10 @@
 # sfm: camera poses by COLMAP, or a given model.
-FOLLOWS.sfm := import_photos hdr_merge
-READS.sfm := photos or hdr/*.jpg (runs COLMAP), or a given model
+FOLLOWS.sfm := match_photos
+READS.sfm := photos or hdr/*.jpg, their features and matches (runs COLMAP), or a given model
 SHARED.sfm := yes
 VARIABLES.sfm := SFM
 SETTINGS.sfm := LENS
-HELP.resfm := run COLMAP again, after photos were changed
+LIBS.sfm := -lsqlite3
 
 ## LENS=MODEL: with a new SCENE: the camera model of its lens, for example EQUISOLID for most fisheyes; it is written to scenes/SCENE/scene.cfg
 ## SFM=DIR: a COLMAP (text, binary) or Bundler model of the photos, used in place of running COLMAP

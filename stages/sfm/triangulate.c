@@ -1,6 +1,6 @@
 /* triangulate.c - points for a model that has only cameras.
  *
- * Features are extracted and matched as for a full reconstruction; COLMAP's point_triangulator then finds the points
+ * Features and matches are those of a full reconstruction; COLMAP's point_triangulator then finds the points
  * with poses and lenses held fixed. The images written for it must have the names and ids of the database. */
 #include "stages/sfm/triangulate.h"
 
@@ -12,6 +12,7 @@
 #include "common/base/log.h"
 #include "common/base/outfile.h"
 #include "common/capture/photo_match.h"
+#include "stages/sfm/colmap_database.h"
 #include "stages/sfm/colmap_log.h"
 
 /* The lens for verifying matches: the model's, if it has only one. */
@@ -33,24 +34,13 @@ static void params_of_model(struct sfm_params *params, const struct sfm_model *m
     memcpy(params->camera_params, text, sizeof text);
 }
 
-/* COLMAP numbers the pictures that it can read from 1, in the order of the log; 0: it could not read this one. */
-static int id_in_database(const struct feature_counts *c, const char *name)
-{
-    int id = 0;
-    for (int i = 0; i < c->count; i++) {
-        id += c->list[i].features >= 0;
-        if (!strcmp(c->list[i].name, name)) return c->list[i].features >= 0 ? id : 0;
-    }
-    return 0;
-}
-
 /* Writes the model's cameras and poses, its images with their names and ids in the database. */
 static enum status write_known(const struct colmap_job *job, const struct sfm_model *m, const char *folder,
                                struct err *err)
 {
     struct sfm_model known = {.cameras = m->cameras, .camera_count = m->camera_count};
-    struct feature_counts c = {0};
-    colmap_counts_read(&c, job->logs[0], err);
+    struct colmap_database *db = NULL;
+    colmap_database_open(&db, job->database, err);
     known.images = calloc((size_t)m->image_count + 1, sizeof *known.images);
     if (!err->status && !known.images) err_nomem(err, "images", (size_t)m->image_count * sizeof *known.images);
     for (int i = 0; !err->status && i < m->image_count; i++) {
@@ -58,8 +48,8 @@ static enum status write_known(const struct colmap_job *job, const struct sfm_mo
         if (at < 0) continue;
         const struct photo_record *p = &job->photos->photos[at];
         char *name = sfm_text_format(err, "%s%s", p->id, colmap_extension(p->file));
-        int id = name ? id_in_database(&c, name) : 0;
-        if (!id) {
+        int id = 0;
+        if (!name || colmap_database_image_id(&id, db, name, err) || !id) {
             free(name);
             continue;
         }
@@ -74,7 +64,7 @@ static enum status write_known(const struct colmap_job *job, const struct sfm_mo
     if (!err->status) sfm_model_write_text(&known, folder, NULL, err);
     for (int i = 0; i < known.image_count; i++) free(known.images[i].name);
     free(known.images);
-    colmap_counts_release(&c);
+    colmap_database_close(db);
     return err->status;
 }
 
@@ -130,6 +120,10 @@ enum status triangulate(struct sfm_model *m, const struct sfm_folder *f, const s
     struct sfm_params params = *in->params;
     long long features = 0;
     bool points = false;
+    if (!in->features || !in->matches) {
+        log_warn("the model has no points, and none can be found: features and matches of the photos were not given");
+        return ST_OK;
+    }
     if (!sizes_match(m, in->list)) {
         log_warn("the model has no points, and none can be found: its cameras differ from the photos in size");
         return ST_OK;
@@ -141,7 +135,7 @@ enum status triangulate(struct sfm_model *m, const struct sfm_folder *f, const s
     const char *converter[] = {"model_converter", "--input_path", made, "--output_path", text,
                                "--output_type",   "TXT",          NULL};
     if (!err->status && !outfile_make_folders(made, err) && !outfile_make_folders(text, err) &&
-        !colmap_extract_and_match(&features, &job, err))
+        !colmap_take_matches(&features, &job, err))
         write_known(&job, m, known, err);
     if (!err->status && features) {
         log_note("step 3 of %d: points (%.1f s so far)", COLMAP_STEPS, clock_seconds() - job.started);

@@ -127,7 +127,7 @@ enum status import_check_photos(const char *sfm, const struct photo_list *photos
             any = true;
         }
     if (!err->status) {
-        if (any) log_warn("the photos have changed since their cameras were found; make resfm finds the cameras again");
+        if (any) log_warn("the photos have changed since their cameras were given (SFM): see that these still hold");
         name_lines_end(&changed);
         name_lines_end(&added);
     }

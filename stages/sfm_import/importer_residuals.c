@@ -137,7 +137,7 @@ static void warn_about_lens(const struct importer *imp, const struct lens_fit *f
                      fit->bias > 0 ? "outwards" : "inwards", fabs(fit->bias), fit->bias_radius);
         log_warn(
             "the lens model %s does not fit: the residuals %s. Set [sfm] camera_model = %s for a fisheye lens, %s for "
-            "other lenses; make resfm applies it",
+            "other lenses",
             model, found, fisheye_models(first->lens.model), other_models(first->lens.model));
         return;
     }
@@ -145,7 +145,7 @@ static void warn_about_lens(const struct importer *imp, const struct lens_fit *f
     if (!im || (fit->measured && fit->rim_radius >= PROVEN_RADIUS)) return;
     const struct photo_record *photo = &imp->photos->photos[im->photo];
     log_warn("the lens model %s may not fit: EXIF of photo \"%s\" states a focal length of %.3g mm for 35 mm film, as "
-             "fisheye lenses have. If it is one, set [sfm] camera_model = %s; make resfm applies it",
+             "fisheye lenses have. If it is one, set [sfm] camera_model = %s",
              camera_model_name(im->lens.model), photo->file, photo->info.focal35_mm, fisheye_models(im->lens.model));
 }
 

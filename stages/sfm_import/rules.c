@@ -22,7 +22,7 @@ RULES(sfm_import)
         g, "holdout.txt",
         f->holds_out ? graph_text(g, "every %s\nviews %s", scene_setting("HOLDOUT"), scene_setting("HOLDOUT_VIEWS"))
                      : NULL);
-    graph_step(g, "sfm", STEP_ONE, "hdr");
+    graph_step(g, "sfm", STEP_ONE, "matches");
     graph_goal(g, "sfm", PATH(g, VIEWS_MK));
     graph_rule(g, "all");
     rule_makes(g, PATH(g, CAMERAS));

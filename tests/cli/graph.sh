@@ -81,6 +81,9 @@ every_goal_is_known_before_the_views_are()
 
 a_changed_photo_redoes_its_view_and_the_frame_that_all_depth_reads()
 {
+    mkdir -p given
+    printf '1 0 0 0 0 0 0 0 1 1\n' >given/points3D.txt
+    given SFM=given # otherwise the cameras are found again
     scene a b c
     for v in a b c; do mkdir -p out/t/depth/round0; done
     echo 'out/t/depth/round0/b.exr: out/t/views/b.exr out/t/views/a.exr' >out/t/depth/round0/b.d
@@ -93,6 +96,21 @@ segment_depth a
 segment_depth b
 segment_depth c
 ' depth-round0
+    settings[SFM]=
+}
+
+a_changed_photo_redoes_its_features_and_the_cameras()
+{
+    scene a b c
+    made
+    touch out/t/photos/a.txt
+    wants 'extract_features a
+match_photos a
+match_photos b
+match_photos c
+sfm all
+sfm_import all
+' sfm
 }
 
 a_neighbour_that_is_a_view_no_more_redoes_the_depth_that_read_it()
@@ -143,12 +161,28 @@ a_deleted_product_is_remade_with_what_follows()
     ! grep -qx 'rectify a' found && ! grep -qx 'sfm_import all' found || fail "after a view was deleted, too much would run"
 }
 
-a_changed_program_redoes_its_products_but_not_sfm()
+a_changed_program_redoes_its_products()
 {
     scene a b c
     made
-    ! rule_of out/t/sfm/models.txt | matches "code/sfm" || fail "the program sfm redoes SfM"
+    rule_of out/t/sfm/models.txt | matches "out/build/$FLAVOR/code/sfm" || fail "SfM does not depend on its program"
     rule_of out/t/views/a.exr | matches "out/build/$FLAVOR/code/rectify" || fail "a view does not depend on its program"
+}
+
+a_given_model_with_points_needs_no_matches()
+{
+    scene a b
+    mkdir -p given
+    printf '# no point\n' >given/points3D.txt
+    touch given/images.txt
+    given SFM=given
+    graph write
+    rule_of out/t/sfm/models.txt | matches stamp/set/matches || fail "points cannot be triangulated without matches"
+    printf '# one point\n1 0 0 0 0 0 0 0 1 1\n' >given/points3D.txt
+    graph write
+    ! rule_of out/t/sfm/models.txt | matches stamp/set/matches || fail "photos are matched though the points are given"
+    [ ! -e out/t/graph/match_photos.mk ] || ! grep -q 'run_stage.*match_photos' out/t/graph/match_photos.mk || fail "matches are planned though the points are given"
+    settings[SFM]=
 }
 
 a_photo_is_read_once_for_its_views()
@@ -277,7 +311,7 @@ trace_ids reveal-b
 steps_come_in_order()
 {
     scene a b c
-    [ "$(graph steps depth | cut -d' ' -f3 | tr '\n' ' ')" = 'hdr sfm views lines frame depth ' ] || { graph steps depth; fail "other steps for depth"; }
+    [ "$(graph steps depth | cut -d' ' -f3 | tr '\n' ' ')" = 'hdr features matches sfm views lines frame depth ' ] || { graph steps depth; fail "other steps for depth"; }
     given PRODUCTS='model textures'
     graph steps report >steps
     for s in model ids vdta vita textures report; do
@@ -328,8 +362,8 @@ wrong_settings_are_refused()
 
 for t in nothing_is_stale_when_all_is_made every_goal_is_known_before_the_views_are \
     a_deleted_product_is_remade_with_what_follows a_changed_photo_redoes_its_view_and_the_frame_that_all_depth_reads \
-    a_neighbour_that_is_a_view_no_more_redoes_the_depth_that_read_it a_parameter_redoes_its_stage_and_what_follows \
-    a_changed_program_redoes_its_products_but_not_sfm a_photo_is_read_once_for_its_views frames_come_in_chunks_and_wait_for_all_depth \
+    a_changed_photo_redoes_its_features_and_the_cameras a_neighbour_that_is_a_view_no_more_redoes_the_depth_that_read_it a_parameter_redoes_its_stage_and_what_follows \
+    a_changed_program_redoes_its_products a_given_model_with_points_needs_no_matches a_photo_is_read_once_for_its_views frames_come_in_chunks_and_wait_for_all_depth \
     what_is_held_out_is_rectified_and_not_matched an_edit_needs_the_scripts_and_meshes_that_it_stands_on \
     a_rectangle_on_a_wall_of_any_name_asks_for_points given_cameras_see_the_unedited_model_too pictures_need_the_exposure_and_not_all_views \
     an_edit_that_went_changes_what_edits_reveal steps_come_in_order pieces_of_work_name_their_products \

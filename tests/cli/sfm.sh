@@ -7,6 +7,13 @@ printf '#!/bin/sh\necho "$@" >>args\nexit 1\n' >fake/colmap
 chmod +x fake/colmap
 export PATH=$scratch/fake:$root/$B/bin:$PATH
 import_photos --photos set/photos --out records 2>err || { cat err; fail "import"; }
+for p in photo_1 photo_2 photo_3; do
+    extract_features --photos set/photos --records records --photo $p --out features/$p.txt 2>err || { cat err; fail "features"; }
+done
+for p in photo_1 photo_2 photo_3; do
+    match_photos --records records --features features --photo $p --out matches/$p.txt 2>err || { cat err; fail "matches"; }
+done
+given=(--photos set/photos --records records --features features --matches matches)
 
 # passes WORDS [SETTING...]: sfm passes WORDS to COLMAP, and fails because COLMAP does
 passes()
@@ -14,7 +21,7 @@ passes()
     local words=$1 rc=0 settings=(); shift
     for s; do settings+=(--set "$s"); done
     rm -f args
-    sfm --photos set/photos --records records --out out "${settings[@]}" 2>err || rc=$?
+    sfm "${given[@]}" --out out "${settings[@]}" 2>err || rc=$?
     [ "$rc" = 1 ] || { cat err; fail "exit $rc, wanted 1"; }
     grep -qF -- "$words" args || { cat args err; fail "COLMAP did not get '$words'"; }
 }
@@ -30,7 +37,7 @@ equisolid_without_a_focal_length_is_rejected()
 {
     sed -i 's/^exif [^ ]* [^ ]*/exif 16 0/' records/photo_2.txt
     rm -f args; rc=0
-    sfm --photos set/photos --records records --out out --set camera_model=EQUISOLID 2>err || rc=$?
+    sfm "${given[@]}" --out out --set camera_model=EQUISOLID 2>err || rc=$?
     [ "$rc" = 2 ] && [ ! -e args ] || { cat err; fail "exit $rc, wanted 2 before COLMAP runs"; }
     grep -qE 'EXIF of photo "photo_[12].jpg" does not state it for 35 mm film. Set camera_params = F in pixels: .* times 64,' err || { cat err; fail "no advice"; }
 }
@@ -42,4 +49,21 @@ other_models_are_passed_unchanged()
     passes '--ImageReader.camera_params 60,32,24' camera_model=SIMPLE_PINHOLE camera_params=60,32,24
 }
 
-for t in equisolid_is_passed_as_opencv_fisheye equisolid_without_a_focal_length_is_rejected other_models_are_passed_unchanged; do run $t; done
+without_matches_it_says_what_is_missing()
+{
+    rm -f args; rc=0
+    sfm --photos set/photos --records records --out out 2>err || rc=$?
+    [ "$rc" = 2 ] && [ ! -e args ] && grep -q 'without --model, --features and --matches are needed' err || { cat err; fail "exit $rc, wanted 2 and a reason"; }
+}
+
+a_missing_list_of_features_is_named()
+{
+    mv features/photo_2.txt keep
+    sed -i 's/exit 1/exit 0/' fake/colmap
+    rc=0
+    sfm "${given[@]}" --out out 2>err || rc=$?
+    mv keep features/photo_2.txt; sed -i 's/exit 0/exit 1/' fake/colmap
+    [ "$rc" = 1 ] || { cat err; fail "exit $rc, wanted 1"; }
+}
+
+for t in without_matches_it_says_what_is_missing a_missing_list_of_features_is_named equisolid_is_passed_as_opencv_fisheye equisolid_without_a_focal_length_is_rejected other_models_are_passed_unchanged; do run $t; done

@@ -84,7 +84,6 @@ a_changed_bracket_redoes_its_view_and_its_readers()
         if reads "$d" photo_5; then grep -q "^depth/$v.exr" c || fail "$v reads the changed view, but was not remade"
         else ! grep -q "^depth/$v.exr" c || fail "$v does not read the changed view, but was made again"; fi
     done
-    ! grep -q 'Changed since the camera poses' log || fail "the middle exposure did not change"
     cp keep.jpg set/photos/photo_5_e0.jpg
     run_scene hdr >log
     merged | diff before - || fail "the old exposures do not give the old bytes"

@@ -697,7 +697,7 @@ static void a_photo_of_another_size_is_refused(void **state)
         resample_photo(&out, NULL, &(struct resample_source){.linear = &photo}, &lens, &same_axes, &view, &err),
         ST_DATA);
     assert_err(err, ST_DATA, "the photo has 20 x 10 pixels but its camera 10 x 20");
-    assert_contains(err.text, "make resfm");
+    assert_contains(err.text, "(SFM)");
     assert_null(out.data);
     image_release(&photo);
 }

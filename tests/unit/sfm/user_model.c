@@ -37,7 +37,7 @@ static enum status import(const char *from, const char *out, struct err *err)
 {
     struct provenance prov = {.stage = "sfm", .version = "0"};
     struct sfm_folder f = {0};
-    struct sfm_input in = {scratch, NULL, NULL, &photos, &params};
+    struct sfm_input in = {.photos = scratch, .list = &photos, .params = &params, .prov = &prov};
     if (!sfm_folder_open(&f, scratch_path(out), err) && !user_model_add(&f, scratch_path(from), &in, &prov, err))
         sfm_folder_commit(&f, &photos, &prov, err);
     sfm_folder_release(&f);

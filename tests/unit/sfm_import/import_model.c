@@ -383,7 +383,7 @@ static void changed_and_new_photos_are_named(void **state)
     scratch_write("photos.txt", "# c\np0 00000000000000000000000000000000\np1 00000000000000000000000000000009\n"
                                 "gone 1\np3 00000000000000000000000000000003\n");
     assert_int_equal(child_run(check_photos, &photos, &output), 0);
-    assert_contains(output, "make resfm");
+    assert_contains(output, "(SFM)");
     assert_contains(output, "changed since structure from motion ran: p1.jpg");
     assert_contains(output, "new since structure from motion ran: p2.jpg");
     free(output);
@@ -424,8 +424,7 @@ static void a_lens_model_that_does_not_fit_is_warned_about(void **state)
         {{&bent, &straight, 0, POINTS},
          "the lens model PINHOLE does not fit: the residuals grow from 0.0 px in the middle to 2.0 px at the rim"},
         {{&bent, &straight, 0, POINTS},
-         "Set [sfm] camera_model = EQUISOLID or OPENCV_FISHEYE for a fisheye lens, OPENCV or RADIAL for other lenses; "
-         "make resfm applies it"},
+         "Set [sfm] camera_model = EQUISOLID or OPENCV_FISHEYE for a fisheye lens, OPENCV or RADIAL for other lenses"},
         {{&bent, &straight, 0, 20}, NULL}, /* too few observations */
         {{&bent, &bent, 0, POINTS}, NULL},
         {{&radial, &radial, 35, POINTS}, NULL},

@@ -1,0 +1,88 @@
+/* colmap_database.c - features of the photos in COLMAP's database.
+ *
+ * COLMAP itself makes the database, with cameras and images; only two of its tables are named here. A keypoint is a row
+ * of four floats: x, y, scale, orientation. */
+#include "stages/sfm/colmap_database.h"
+
+#include <sqlite3.h>
+#include <stdlib.h>
+
+struct colmap_database {
+    sqlite3 *sql;
+};
+
+static enum status failed(struct colmap_database *db, const char *what, struct err *err)
+{
+    return err_set(err, ST_IO, "COLMAP's database: SQLite could not %s: %s.", what, sqlite3_errmsg(db->sql));
+}
+
+static enum status run_text(struct colmap_database *db, const char *text, struct err *err)
+{
+    return sqlite3_exec(db->sql, text, NULL, NULL, NULL) == SQLITE_OK ? ST_OK : failed(db, text, err);
+}
+
+enum status colmap_database_open(struct colmap_database **out, const char *path, struct err *err)
+{
+    struct colmap_database *db = calloc(1, sizeof *db);
+    *out = NULL;
+    if (!db) return err_nomem(err, "a database", sizeof *db);
+    if (sqlite3_open_v2(path, &db->sql, SQLITE_OPEN_READWRITE, NULL) != SQLITE_OK)
+        failed(db, "open it", err);
+    else
+        run_text(db, "BEGIN", err);
+    if (err->status) {
+        colmap_database_close(db);
+        return err->status;
+    }
+    *out = db;
+    return ST_OK;
+}
+
+void colmap_database_close(struct colmap_database *db)
+{
+    if (!db) return;
+    sqlite3_close(db->sql);
+    free(db);
+}
+
+enum status colmap_database_commit(struct colmap_database *db, struct err *err) { return run_text(db, "COMMIT", err); }
+
+enum status colmap_database_image_id(int *id, struct colmap_database *db, const char *name, struct err *err)
+{
+    sqlite3_stmt *find = NULL;
+    *id = 0;
+    if (sqlite3_prepare_v2(db->sql, "SELECT image_id FROM images WHERE name = ?", -1, &find, NULL) != SQLITE_OK ||
+        sqlite3_bind_text(find, 1, name, -1, SQLITE_STATIC) != SQLITE_OK)
+        failed(db, "look for an image", err);
+    else {
+        const int step = sqlite3_step(find);
+        if (step == SQLITE_ROW)
+            *id = sqlite3_column_int(find, 0);
+        else if (step != SQLITE_DONE)
+            failed(db, "look for an image", err);
+    }
+    sqlite3_finalize(find);
+    return err->status;
+}
+
+enum status colmap_database_set_features(struct colmap_database *db, int image, const struct feature_list *list,
+                                         struct err *err)
+{
+    sqlite3_stmt *set = NULL;
+    const size_t size = (size_t)list->count * 4 * sizeof(float);
+    float *rows = malloc(size + 1);
+    if (!rows) return err_nomem(err, "features", size);
+    for (int i = 0; i < list->count; i++) {
+        const struct feature *f = &list->features[i];
+        const float row[4] = {f->x, f->y, f->scale, f->angle};
+        for (int k = 0; k < 4; k++) rows[4 * (size_t)i + (size_t)k] = row[k];
+    }
+    if (sqlite3_prepare_v2(db->sql, "REPLACE INTO keypoints (image_id, rows, cols, data) VALUES (?, ?, 4, ?)", -1, &set,
+                           NULL) != SQLITE_OK ||
+        sqlite3_bind_int(set, 1, image) != SQLITE_OK || sqlite3_bind_int(set, 2, list->count) != SQLITE_OK ||
+        sqlite3_bind_blob64(set, 3, rows, size, SQLITE_STATIC) != SQLITE_OK || sqlite3_step(set) != SQLITE_DONE)
+        failed(db, "write features", err);
+    sqlite3_finalize(set);
+    free(rows);
+    return err->status;
+}

@@ -1,0 +1,21 @@
+/* colmap_database.h - features and matches of the photos in COLMAP's database (SQLite). */
+#ifndef REMODEL_COLMAP_DATABASE_H
+#define REMODEL_COLMAP_DATABASE_H
+
+#include "common/base/err.h"
+#include "common/capture/feature_list.h"
+
+struct colmap_database;
+
+/* Opens a database that COLMAP made. Changes are kept only after colmap_database_commit(). ST_IO, with SQLite's words.
+ */
+enum status colmap_database_open(struct colmap_database **db, const char *path, struct err *err);
+/* The id of an image; 0: COLMAP did not take it. */
+enum status colmap_database_image_id(int *id, struct colmap_database *db, const char *name, struct err *err);
+/* Replaces the features of an image. Descriptors are left out: nothing that follows reads them. */
+enum status colmap_database_set_features(struct colmap_database *db, int image, const struct feature_list *list,
+                                         struct err *err);
+enum status colmap_database_commit(struct colmap_database *db, struct err *err);
+void colmap_database_close(struct colmap_database *db); /* NULL: nothing */
+
+#endif
