@@ -1,6 +1,6 @@
 /* match_photos.c - matches the features of a photo with those of photos that come after it.
  *
- * reads   RECORDS/list.txt, ID.txt           the photos
+ * reads   PAIRS                              the pairs of photos that are compared
  *         FEATURES/ID.txt                    their features
  *         OUT                                the matches of an earlier run, if there are any
  * writes  OUT                                the matches
@@ -13,24 +13,24 @@
 #include "common/base/cli.h"
 #include "common/base/log.h"
 #include "common/base/parallel.h"
-#include "common/capture/photo_list.h"
+#include "common/capture/mutual_matches.h"
+#include "common/capture/pair_list.h"
 #include "common/product/product.h"
-#include "stages/match_photos/mutual_matches.h"
-#include "stages/match_photos/photo_pairs.h"
+#include "stages/match_photos/matching_params.h"
 
 #define PARAM_STRUCT struct matching_params
 static const struct param matching_param_table[] = {MATCHING_PARAMS(PARAM_ROW) PARAM_END};
 #undef PARAM_STRUCT
 
 struct matching {
-    const char *records, *features, *id, *out;
+    const char *pairs, *features, *id, *out;
     struct matching_params params;
 };
 
 /* What threads share; each pair is one piece of work. */
 struct pair_work {
     const struct matching *options;
-    const struct descriptor_blocks *own;
+    const struct nearest_descriptors *own;
     struct photo_pair **pairs; /* to match; not owned */
     struct err *errs;          /* of each of them */
 };
@@ -47,14 +47,15 @@ static enum status read_features(struct feature_list *list, const struct matchin
 static void match_some(void *ctx, size_t begin, size_t end, int thread)
 {
     struct pair_work *w = ctx;
+    const struct match_limits limits = {w->options->params.max_ratio, w->options->params.max_angle};
     (void)thread;
     for (size_t i = begin; i < end; i++) {
         struct feature_list list = {0};
-        struct descriptor_blocks other = {0};
+        struct nearest_descriptors other = {0};
         if (!read_features(&list, w->options, w->pairs[i]->other, true, &w->errs[i]) &&
-            !nearest_blocks_init(&other, &list, &w->errs[i]))
-            mutual_matches_find(w->pairs[i], w->own, &other, &w->options->params, &w->errs[i]);
-        nearest_blocks_release(&other);
+            !nearest_descriptors_init(&other, &list, &w->errs[i]))
+            mutual_matches_find(w->pairs[i], w->own, &other, &limits, &w->errs[i]);
+        nearest_descriptors_release(&other);
         feature_list_release(&list);
     }
 }
@@ -63,14 +64,14 @@ static void match_some(void *ctx, size_t begin, size_t end, int thread)
 static enum status match_new(struct match_list *list, const struct feature_list *own, const struct matching *m,
                              int *count, struct err *err)
 {
-    struct descriptor_blocks blocks = {0};
+    struct nearest_descriptors blocks = {0};
     struct pair_work w = {.options = m, .own = &blocks};
     w.pairs = malloc(((size_t)list->count + 1) * sizeof(struct photo_pair *));
     w.errs = malloc(((size_t)list->count + 1) * sizeof *w.errs);
     *count = 0;
     if (!w.pairs || !w.errs)
         err_nomem(err, "pairs of photos", (size_t)list->count * sizeof *w.errs);
-    else if (!nearest_blocks_init(&blocks, own, err)) {
+    else if (!nearest_descriptors_init(&blocks, own, err)) {
         for (int i = 0; i < list->count; i++)
             if (!list->pairs[i].matches) {
                 w.errs[*count] = (struct err)ERR_INIT;
@@ -80,25 +81,22 @@ static enum status match_new(struct match_list *list, const struct feature_list 
         for (int i = 0; i < *count && !err->status; i++)
             if (w.errs[i].status) err_set(err, w.errs[i].status, "%s", w.errs[i].text);
     }
-    nearest_blocks_release(&blocks);
+    nearest_descriptors_release(&blocks);
     free(w.pairs);
     free(w.errs);
     return err->status;
 }
 
 /* The pairs that the photo is in as the first, with the matches of an earlier run where their features are the same. */
-static enum status list_pairs(struct match_list *list, const struct photo_list *photos, const struct matching *m,
+static enum status list_pairs(struct match_list *list, const struct pair_list *pairs, const struct matching *m,
                               const struct match_list *earlier, struct err *err)
 {
-    const int at = photo_list_find_id(photos, m->id);
-    if (at < 0) return err_set(err, ST_USAGE, "%s/list.txt has no photo \"%s\".", m->records, m->id);
     const bool same = !strcmp(list->hash, earlier->hash) && list->max_ratio == earlier->max_ratio &&
                       list->max_angle == earlier->max_angle;
-    for (int j = at + 1; j < photos->count && !err->status; j++) {
+    for (int i = 0; i < pairs->count && !err->status; i++) {
         struct feature_list head = {0};
-        const char *other = photos->photos[j].id;
-        if (!photos_are_compared(at, j, photos->count, m->params.matcher) || read_features(&head, m, other, false, err))
-            continue;
+        const char *other = pairs->pairs[i].second;
+        if (strcmp(pairs->pairs[i].first, m->id) || read_features(&head, m, other, false, err)) continue;
         struct photo_pair *pair = match_list_add(list, other, head.hash, err);
         const struct photo_pair *old = same ? match_list_find(earlier, other) : NULL;
         if (!pair || !old || strcmp(old->hash, head.hash)) continue;
@@ -112,24 +110,24 @@ static enum status list_pairs(struct match_list *list, const struct photo_list *
 
 static enum status match_photos(const struct matching *m, struct provenance *prov, struct err *err)
 {
-    struct photo_list photos = {0};
+    struct pair_list pairs = {0};
     struct feature_list own = {0};
     struct match_list list = {0}, earlier = {0};
     struct err ignored = ERR_INIT;
     int matched = 0;
     if (path_is_file(m->out)) match_list_read(&earlier, m->out, NULL, &ignored); /* a damaged one is made anew */
-    if (!photo_list_read(&photos, m->records, err) && !read_features(&own, m, m->id, true, err)) {
+    if (!pair_list_read(&pairs, m->pairs, NULL, err) && !read_features(&own, m, m->id, true, err)) {
         memcpy(list.hash, own.hash, sizeof list.hash);
         list.max_ratio = m->params.max_ratio;
         list.max_angle = m->params.max_angle;
-        if (!list_pairs(&list, &photos, m, &earlier, err) && !match_new(&list, &own, m, &matched, err) &&
+        if (!list_pairs(&list, &pairs, m, &earlier, err) && !match_new(&list, &own, m, &matched, err) &&
             !match_list_write(&list, m->out, prov, err))
             log_note("%s: matched with %d photos, kept %d", m->id, matched, list.count - matched);
     }
     match_list_release(&list);
     match_list_release(&earlier);
     feature_list_release(&own);
-    photo_list_release(&photos);
+    pair_list_release(&pairs);
     return err->status;
 }
 
@@ -138,7 +136,7 @@ int main(int argc, char **argv)
     struct matching m = {.params = MATCHING_PARAMS_DEFAULT};
     const struct cli_opt opts[] = {
         CLI_ABOUT("Matches the features of a photo with those of photos that come after it."),
-        CLI_STR("records", &m.records, CLI_REQUIRED, "folder of the photos' records"),
+        CLI_STR("pairs", &m.pairs, CLI_REQUIRED, "text file of the pairs of photos"),
         CLI_STR("features", &m.features, CLI_REQUIRED, "folder of the photos' features"),
         CLI_STR("photo", &m.id, CLI_REQUIRED, "id of the photo"),
         CLI_STR("out", &m.out, CLI_REQUIRED, "text file to write"),

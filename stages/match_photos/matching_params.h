@@ -5,12 +5,9 @@
 #include "common/base/param.h"
 
 /* name, type, default, min, max, unit, help */
-#define MATCHING_PARAMS(X)                                                                                       \
-    X(matcher, choice, "auto", 0, 0, "auto|exhaustive|sequential",                                               \
-      "photo pairs to match: exhaustive is all pairs, sequential neighbours by name; auto: exhaustive up to 200" \
-      " photos")                                                                                                 \
-    X(max_ratio, double, 0.8, 0.1, 1, "",                                                                        \
-      "largest angle between the descriptors of a match, as a part of that to the second best")                  \
+#define MATCHING_PARAMS(X)                                                                      \
+    X(max_ratio, double, 0.8, 0.1, 1, "",                                                       \
+      "largest angle between the descriptors of a match, as a part of that to the second best") \
     X(max_angle, double, 0.7, 0.1, 1.58, "rad", "largest angle between the descriptors of a match")
 
 struct matching_params {

@@ -4,16 +4,15 @@
 
 RULES(match_photos)
 {
-    graph_step(g, "matches", STEP_FARM, "features");
+    graph_step(g, "matches", STEP_FARM, "pairs");
     graph_goal(g, "matches", NULL);
     for (int i = 0; scene_matches_photos(g) && i < f->photos.count; i++) {
         const char *photo = f->photos.names[i], *out = PATH(g, MATCHES, .photo = photo);
         graph_piece(g, "%s", photo);
         rule_shared(g);
         rule_makes(g, out);
-        rule_needs(g, PATH(g, PHOTO_LIST));
         rule_needs_set(g, "features");
-        rule_option(g, "--records", FOLDER(g, PHOTO_LIST));
+        rule_takes(g, "--pairs", PATH(g, PAIRS));
         rule_option(g, "--features", FOLDER(g, FEATURES, .photo = photo));
         rule_option(g, "--photo", photo);
         rule_option(g, "--out", out);

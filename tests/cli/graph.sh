@@ -104,7 +104,8 @@ a_changed_photo_redoes_its_features_and_the_cameras()
     scene a b c
     made
     touch out/t/photos/a.txt
-    wants 'extract_features a
+    wants 'choose_pairs all
+extract_features a
 match_photos a
 match_photos b
 match_photos c
@@ -311,7 +312,7 @@ trace_ids reveal-b
 steps_come_in_order()
 {
     scene a b c
-    [ "$(graph steps depth | cut -d' ' -f3 | tr '\n' ' ')" = 'hdr features matches sfm views lines frame depth ' ] || { graph steps depth; fail "other steps for depth"; }
+    [ "$(graph steps depth | cut -d' ' -f3 | tr '\n' ' ')" = 'hdr features pairs matches sfm views lines frame depth ' ] || { graph steps depth; fail "other steps for depth"; }
     given PRODUCTS='model textures'
     graph steps report >steps
     for s in model ids vdta vita textures report; do

@@ -5,8 +5,9 @@ cd "$scratch" || exit 1
 export PATH=$root/$B/bin:$PATH
 import_photos --photos set/photos --out records 2>err || { cat err; fail "import"; }
 features() { extract_features --photos set/photos --records records --photo "$1" --out "${2-features}/$1.txt" "${@:3}" 2>err || { cat err; fail "features of $1"; }; }
-matches_of() { match_photos --records records --features features --photo "$1" --out "$2/$1.txt" "${@:3}" 2>err || { cat err; fail "matches of $1"; }; }
+matches_of() { match_photos --pairs pairs.txt --features features --photo "$1" --out "$2/$1.txt" "${@:3}" 2>err || { cat err; fail "matches of $1"; }; }
 for p in photo_1 photo_2 photo_3 photo_4; do features $p; done
+choose_pairs --records records --features features --out pairs.txt 2>err || { cat err; fail "pairs"; }
 count() { sed -n 's/^features \([0-9]*\) .*/\1/p' "$1"; }
 
 features_are_the_same_for_any_number_of_threads()
@@ -76,10 +77,21 @@ kept_pairs_give_the_bytes_of_a_first_run()
 
 unknown_photos_are_refused()
 {
-    rc=0; match_photos --records records --features features --photo nobody --out x.txt 2>err || rc=$?
+    rc=0; match_photos --pairs pairs.txt --features features --photo nobody --out x.txt 2>err || rc=$?
     [ "$rc" != 0 ] && grep -q nobody err && [ ! -e x.txt ] || { cat err; fail "exit $rc"; }
 }
 
-for t in features_are_the_same_for_any_number_of_threads the_largest_features_are_kept a_mask_hides_features \
+large_sets_compare_neighbours_and_what_looks_alike()
+{
+    pairs() { choose_pairs --records records --features features --out "$1.txt" "${@:2}" 2>err || { cat err; fail "pairs"; }; }
+    [ "$(grep -c '^pair ' pairs.txt)" = 6 ] || { cat pairs.txt; fail "wanted all pairs of four photos"; }
+    pairs similar --set matcher=similar --threads 1
+    pairs again --set matcher=similar --threads 2
+    cmp similar.txt again.txt || fail "other pairs with two threads"
+    [ "$(grep -c '^pair ' similar.txt)" = 6 ] || { cat similar.txt; fail "wanted all pairs of four neighbours"; }
+    grep -q '^# input features/photo_4.txt' similar.txt || fail "the features are not in the provenance"
+}
+
+for t in large_sets_compare_neighbours_and_what_looks_alike features_are_the_same_for_any_number_of_threads the_largest_features_are_kept a_mask_hides_features \
     a_damaged_photo_has_no_features_and_a_warning a_photo_is_matched_with_later_ones kept_pairs_give_the_bytes_of_a_first_run \
     unknown_photos_are_refused; do run $t; done

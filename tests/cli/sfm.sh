@@ -10,8 +10,9 @@ import_photos --photos set/photos --out records 2>err || { cat err; fail "import
 for p in photo_1 photo_2 photo_3; do
     extract_features --photos set/photos --records records --photo $p --out features/$p.txt 2>err || { cat err; fail "features"; }
 done
+choose_pairs --records records --features features --out pairs.txt 2>err || { cat err; fail "pairs"; }
 for p in photo_1 photo_2 photo_3; do
-    match_photos --records records --features features --photo $p --out matches/$p.txt 2>err || { cat err; fail "matches"; }
+    match_photos --pairs pairs.txt --features features --photo $p --out matches/$p.txt 2>err || { cat err; fail "matches"; }
 done
 given=(--photos set/photos --records records --features features --matches matches)
 

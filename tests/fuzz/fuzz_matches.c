@@ -1,11 +1,12 @@
-/* fuzz_matches.c - lists of features and of matches: any bytes give a list that is written and read back the same, or
- * an error. Every input is read as both. */
+/* fuzz_matches.c - lists of features, of matches and of pairs: any bytes give a list that is written and read back the
+ * same, or an error. Every input is read as each. */
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
 #include "common/capture/feature_list.h"
 #include "common/capture/match_list.h"
+#include "common/capture/pair_list.h"
 #include "tests/fuzz/fuzz.h"
 #include "tests/fuzz/fuzz_scratch.h"
 
@@ -46,6 +47,16 @@ static void check_matches(const char *path, const char *copy)
     unlink(copy);
 }
 
+static void check_pairs(const char *path)
+{
+    struct pair_list list;
+    struct err err = ERR_INIT;
+    if (pair_list_read(&list, path, NULL, &err) && (list.pairs || !strstr(err.text, path))) abort();
+    for (int i = 0; i < list.count; i++)
+        if (!list.pairs[i].first || !list.pairs[i].second) abort();
+    pair_list_release(&list);
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     char path[FUZZ_PATH], copy[FUZZ_PATH + 8];
@@ -54,6 +65,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     snprintf(copy, sizeof copy, "%s.copy", path);
     check_features(path, copy);
     check_matches(path, copy);
+    check_pairs(path);
     unlink(path);
     return 0;
 }

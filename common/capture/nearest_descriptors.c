@@ -1,4 +1,4 @@
-/* nearest.c - exact nearest neighbours among descriptors of two photos.
+/* nearest_descriptors.c - exact nearest neighbours among descriptors of two photos.
  *
  * All scalar products are formed, in registers: four features of one photo (rows) times sixteen of the other (columns,
  * two blocks). A lane of a vector is a column. Descriptors are widened to 16 bits, because products of two bytes do not
@@ -7,7 +7,7 @@
  *
  * Memory: rows of a stripe (ROWS x 256 bytes) stay in the first cache while all columns pass, columns of a panel
  * (PANEL blocks x 2 KiB) in the second while all stripes pass. */
-#include "stages/match_photos/nearest.h"
+#include "common/capture/nearest_descriptors.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -16,15 +16,15 @@
 
 enum { LANES = 8, ROWS = 4, COLUMNS = 2, PANEL = 64, PAIRS = DESCRIPTOR_SIZE / 2 };
 
-enum status nearest_blocks_init(struct descriptor_blocks *b, const struct feature_list *list, struct err *err)
+enum status nearest_descriptors_init(struct nearest_descriptors *b, const struct feature_list *list, struct err *err)
 {
     const size_t blocks = ((size_t)list->count + LANES * COLUMNS - 1) / (LANES * COLUMNS) * COLUMNS;
     const size_t rows = ((size_t)list->count + ROWS - 1) / ROWS * ROWS;
-    *b = (struct descriptor_blocks){.count = list->count, .blocks = (int)blocks};
+    *b = (struct nearest_descriptors){.count = list->count, .blocks = (int)blocks};
     b->rows = calloc(rows * DESCRIPTOR_SIZE + 1, sizeof *b->rows);
     b->lanes = calloc(blocks * LANES * DESCRIPTOR_SIZE + 1, sizeof *b->lanes);
     if (!b->rows || !b->lanes) {
-        nearest_blocks_release(b);
+        nearest_descriptors_release(b);
         return err_nomem(err, "descriptors", blocks * LANES * DESCRIPTOR_SIZE * sizeof *b->lanes);
     }
     for (int i = 0; i < list->count; i++)
@@ -37,12 +37,12 @@ enum status nearest_blocks_init(struct descriptor_blocks *b, const struct featur
     return ST_OK;
 }
 
-void nearest_blocks_release(struct descriptor_blocks *b)
+void nearest_descriptors_release(struct nearest_descriptors *b)
 {
     if (!b) return;
     free(b->rows);
     free(b->lanes);
-    *b = (struct descriptor_blocks){0};
+    *b = (struct nearest_descriptors){0};
 }
 
 struct best_lanes {
@@ -102,8 +102,8 @@ static i32x8 products_of(i32x8 sum, i32x8 at, int count) { return i32x8_if(at < 
 static const struct best_lanes none = {
     {-1, -1, -1, -1, -1, -1, -1, -1}, {-1, -1, -1, -1, -1, -1, -1, -1}, {-1, -1, -1, -1, -1, -1, -1, -1}};
 
-enum status nearest_find(struct nearest *ab, struct nearest *ba, const struct descriptor_blocks *a,
-                         const struct descriptor_blocks *b, struct err *err)
+enum status nearest_descriptors_find(struct nearest *ab, struct nearest *ba, const struct nearest_descriptors *a,
+                                     const struct nearest_descriptors *b, struct err *err)
 {
     const size_t rows = ((size_t)a->count + ROWS - 1) / ROWS * ROWS, blocks = (size_t)b->blocks;
     struct best_lanes *of_rows = aligned_alloc(32, (rows + 1) * sizeof *of_rows),

@@ -5,8 +5,7 @@
 #include <stdlib.h>
 
 #include "common/base/rng.h"
-#include "stages/match_photos/mutual_matches.h"
-#include "stages/match_photos/photo_pairs.h"
+#include "common/capture/mutual_matches.h"
 
 /* Random descriptors of few values, so that products are often equal. */
 static struct feature_list random_list(int count, uint64_t seed, unsigned values)
@@ -55,18 +54,18 @@ static void nearest_descriptors_are_those_of_a_plain_search(void **state)
         for (unsigned values = 2; values <= 256; values += 127) {
             struct err err = ERR_INIT;
             struct feature_list a = random_list(sizes[s][0], s, values), b = random_list(sizes[s][1], s + 99, values);
-            struct descriptor_blocks of_a, of_b;
+            struct nearest_descriptors of_a, of_b;
             struct nearest *ab = malloc(((size_t)a.count + 1) * sizeof *ab),
                            *ba = malloc(((size_t)b.count + 1) * sizeof *ba);
-            assert_ok(nearest_blocks_init(&of_a, &a, &err), err);
-            assert_ok(nearest_blocks_init(&of_b, &b, &err), err);
-            assert_ok(nearest_find(ab, ba, &of_a, &of_b, &err), err);
+            assert_ok(nearest_descriptors_init(&of_a, &a, &err), err);
+            assert_ok(nearest_descriptors_init(&of_b, &b, &err), err);
+            assert_ok(nearest_descriptors_find(ab, ba, &of_a, &of_b, &err), err);
             check_all(ab, &a, &b);
             check_all(ba, &b, &a);
             free(ab);
             free(ba);
-            nearest_blocks_release(&of_a);
-            nearest_blocks_release(&of_b);
+            nearest_descriptors_release(&of_a);
+            nearest_descriptors_release(&of_b);
             feature_list_release(&a);
             feature_list_release(&b);
         }
@@ -87,14 +86,14 @@ static int count_matches(struct feature *a, int a_count, struct feature *b, int 
 {
     struct err err = ERR_INIT;
     const struct feature_list la = {a, a_count, ""}, lb = {b, b_count, ""};
-    const struct matching_params params = MATCHING_PARAMS_DEFAULT;
-    struct descriptor_blocks of_a, of_b;
+    const struct match_limits limits = MATCH_LIMITS;
+    struct nearest_descriptors of_a, of_b;
     *pair = (struct photo_pair){0};
-    assert_ok(nearest_blocks_init(&of_a, &la, &err), err);
-    assert_ok(nearest_blocks_init(&of_b, &lb, &err), err);
-    assert_ok(mutual_matches_find(pair, &of_a, &of_b, &params, &err), err);
-    nearest_blocks_release(&of_a);
-    nearest_blocks_release(&of_b);
+    assert_ok(nearest_descriptors_init(&of_a, &la, &err), err);
+    assert_ok(nearest_descriptors_init(&of_b, &lb, &err), err);
+    assert_ok(mutual_matches_find(pair, &of_a, &of_b, &limits, &err), err);
+    nearest_descriptors_release(&of_a);
+    nearest_descriptors_release(&of_b);
     return pair->count;
 }
 
@@ -138,24 +137,12 @@ static void blank_photos_have_no_matches(void **state)
     free(pair.matches);
 }
 
-static void large_sets_compare_neighbours(void **state)
-{
-    (void)state;
-    assert_true(photos_are_compared(0, 199, 200, "auto"));
-    assert_false(photos_are_compared(0, 199, 201, "auto"));
-    assert_true(photos_are_compared(0, 199, 201, "exhaustive"));
-    assert_true(photos_are_compared(0, 10, 201, "auto"));
-    assert_false(photos_are_compared(0, 11, 50, "sequential"));
-    assert_true(photos_are_compared(3, 67, 500, "sequential"));
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(nearest_descriptors_are_those_of_a_plain_search),
         cmocka_unit_test(a_match_is_mutual_and_clear),
         cmocka_unit_test(blank_photos_have_no_matches),
-        cmocka_unit_test(large_sets_compare_neighbours),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
