@@ -1,0 +1,54 @@
+# the same photographs give the same cameras: for any number of cores, in another folder, after a kill, and after a photo came
+# and went. Only what a photo is in is compared again.
+. tests/lib.sh
+project here
+photos set --views 5 --size 160x120 >/dev/null
+photos more --views 6 --size 160x120 --change 5 >/dev/null
+m() { make -s DEPS=manual PHOTOS=set/photos SCENE=t "$@" >log 2>&1; }
+# cameras: hashes of everything from the features to the cameras of the views
+cameras() { (cd out/t && find features matches pairs.txt sfm views -type f -name '*.txt' | LC_ALL=C sort | xargs sha256sum); }
+
+cameras_are_the_same_for_any_number_of_cores()
+{
+    m CORES=2 sfm || { cat log; fail "make sfm"; }
+    cameras >first
+    [ "$(grep -c ' features/' first)" = 5 ] && grep -q ' views/images.txt' first || { cat first; fail "products are missing"; }
+    grep -q '^# input colmap-[0-9]' out/t/sfm/models.txt || fail "the provenance does not name COLMAP's version"
+    grep -q '^# input matches/photo_5.txt ' out/t/sfm/models.txt || fail "the provenance does not name the matches"
+    rm -r out/t
+    m CORES=1 sfm || { cat log; fail "make sfm with one core"; }
+    cameras | diff first - || fail "other bytes with one core"
+}
+
+cameras_are_the_same_in_another_folder()
+{
+    project there
+    cp -r ../here/set .
+    m -j1 sfm || { cat log; fail "make sfm"; }
+    cameras | diff ../here/first - || fail "other bytes in another folder"
+}
+
+cameras_are_the_same_after_a_kill()
+{
+    rm -r out/t
+    kill_at out/t/matches/photo_2.txt make -s DEPS=manual PHOTOS=set/photos SCENE=t sfm
+    kill_at out/t/sfm.work/colmap-3.log make -s DEPS=manual PHOTOS=set/photos SCENE=t sfm
+    m sfm || { cat log; fail "make sfm"; }
+    cameras | diff first - || fail "other bytes after a kill"
+}
+
+a_photo_that_comes_and_goes_costs_its_own_pairs()
+{
+    (cd out/t && stat -c '%n %y' features/*.txt) >before
+    cp more/photos/photo_6.jpg set/photos/
+    m sfm || { cat log; fail "make sfm with another photo"; }
+    (cd out/t && stat -c '%n %y' features/photo_[1-5].txt) | diff before - || fail "the features of other photos were found again"
+    grep -h 'matched with' out/t/log/match_photos.photo_1.log | matches 'matched with 1 photos, kept 4' || fail "pairs of other photos were matched again"
+    awk '/photos are placed/ && $2 == 6 { found = 1 } END { exit !found }' log || { cat log; fail "the new photo was not placed"; }
+    rm set/photos/photo_6.jpg
+    m sfm || { cat log; fail "make sfm without it"; }
+    cameras | grep -v photo_6 | diff first - || fail "other bytes after the photo went"
+}
+
+for t in cameras_are_the_same_for_any_number_of_cores cameras_are_the_same_in_another_folder cameras_are_the_same_after_a_kill \
+    a_photo_that_comes_and_goes_costs_its_own_pairs; do run "$t"; done
