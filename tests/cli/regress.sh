@@ -40,6 +40,22 @@ tolerance_zero_allows_no_change()
     new 'a 22 1 higher' 'b 1e-9 1 lower'; verdicts 1; is worse b
 }
 
+values_are_the_same_on_a_machine_of_the_same_type()
+{
+    old 'a 1 px lower 10%' 'b 2 1 none 10%'; new 'a 1.01 px lower' 'b 2 1 none'
+    "$compare" --accept --machine 'x, gcc 1' "$scratch/old.tsv" "$scratch/old4.tsv" 2>/dev/null && fail "a missing file was accepted"
+    sed -i '1i # machine: x, gcc 1' "$scratch/old.tsv"
+    local rc=0
+    "$compare" --machine 'x, gcc 1' "$scratch/old.tsv" "$scratch/new.tsv" >"$scratch/table" || rc=$?
+    [ "$rc" = 1 ] || { cat "$scratch/table"; fail "exit $rc, wanted 1"; }
+    is differs a; is same b
+    "$compare" --machine 'x, gcc 2' "$scratch/old.tsv" "$scratch/new.tsv" >"$scratch/table" || { cat "$scratch/table"; fail "another machine gives other values"; }
+    is same a
+    "$compare" --accept --machine 'x, gcc 2' "$scratch/old.tsv" "$scratch/new.tsv"
+    [ "$(grep -c '^# machine: ' "$scratch/old.tsv")" = 1 ] && grep -qx '# machine: x, gcc 2' "$scratch/old.tsv" || { cat "$scratch/old.tsv"; fail "the type of the machine was not accepted"; }
+    "$compare" --machine 'x, gcc 2' "$scratch/old.tsv" "$scratch/new.tsv" >"$scratch/table" || { cat "$scratch/table"; fail "what was accepted differs"; }
+}
+
 a_missing_metric_fails_and_a_new_one_passes()
 {
     old 'a 1 1 lower 1%' 'b 1 1 none 1%'
@@ -114,6 +130,6 @@ SH
     go 2 compare
 }
 
-for t in better_worse_and_same_by_direction_and_tolerance tolerance_zero_allows_no_change a_missing_metric_fails_and_a_new_one_passes \
+for t in better_worse_and_same_by_direction_and_tolerance tolerance_zero_allows_no_change values_are_the_same_on_a_machine_of_the_same_type a_missing_metric_fails_and_a_new_one_passes \
     another_unit_or_direction_fails malformed_files_are_refused_with_file_and_line acceptance_keeps_tolerances_and_comments \
     colours_only_on_a_terminal runs_of_scenes_are_compared_and_accepted; do run "$t"; done
