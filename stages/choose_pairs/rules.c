@@ -4,6 +4,7 @@
 RULES(choose_pairs)
 {
     graph_step(g, "pairs", STEP_ONE, "features");
+    graph_goal(g, "pairs", NULL);
     if (!scene_matches_photos(g) || !f->photos.count) return;
     graph_goal(g, "pairs", PATH(g, PAIRS));
     graph_rule(g, "all");

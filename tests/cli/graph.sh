@@ -183,6 +183,7 @@ a_given_model_with_points_needs_no_matches()
     graph write
     ! rule_of out/t/sfm/models.txt | matches stamp/set/matches || fail "photos are matched though the points are given"
     [ ! -e out/t/graph/match_photos.mk ] || ! grep -q 'run_stage.*match_photos' out/t/graph/match_photos.mk || fail "matches are planned though the points are given"
+    for goal in features pairs matches; do wants '' $goal; done
     settings[SFM]=
 }
 
