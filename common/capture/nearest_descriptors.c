@@ -122,11 +122,12 @@ enum status nearest_descriptors_find(struct nearest *ab, struct nearest *ba, con
                 multiply(sums, a->rows + row * DESCRIPTOR_SIZE, b->lanes + block * PAIRS * 2 * LANES);
                 for (int c = 0; c < COLUMNS; c++) {
                     const i32x8 at = (int)(block + (size_t)c) * LANES + (i32x8){0, 1, 2, 3, 4, 5, 6, 7};
+                    struct best_lanes column = of_blocks[block + (size_t)c];
                     for (int r = 0; r < ROWS && row + (size_t)r < (size_t)a->count; r++) {
-                        const i32x8 product = products_of(sums[r][c], at, b->count);
-                        take(&of_rows[row + (size_t)r], product, at);
-                        take(&of_blocks[block + (size_t)c], sums[r][c], i32x8_all((int)row + r));
+                        take(&of_rows[row + (size_t)r], products_of(sums[r][c], at, b->count), at);
+                        take(&column, sums[r][c], i32x8_all((int)row + r));
                     }
+                    of_blocks[block + (size_t)c] = column;
                 }
             }
     for (int i = 0; i < a->count; i++) ab[i] = nearest_of(&of_rows[i]);

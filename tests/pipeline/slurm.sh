@@ -62,6 +62,16 @@ brackets_are_merged_on_the_cluster()
     diff a b || fail "the cluster gives other bytes"
 }
 
+photos_are_matched_on_the_cluster()
+{
+    for s in matchedlocal matchedcluster; do printf 'PHOTOS := set/photos\n' >$s.mk; mkdir -p scenes/$s; mv $s.mk scenes/$s/scene.mk; done
+    make -s DEPS=manual SCENE=matchedlocal matches >log 2>&1 || { cat log; fail "local run"; }
+    make -s DEPS=manual SCENE=matchedcluster JOBS=slurm VIEWS_PER_JOB=2 matches >log 2>&1 || { cat log; fail "cluster run"; }
+    grep -q 'extract_features: job' log && grep -q 'match_photos: job' log || { cat log; fail "nothing went to the cluster"; }
+    for s in matchedlocal matchedcluster; do (cd out/$s && sha256sum features/*.txt matches/*.txt pairs.txt) >$s.sums; done
+    diff matchedlocal.sums matchedcluster.sums || fail "the cluster gives other bytes"
+}
+
 a_failed_task_fails_the_run_and_is_redone()
 {
     (cd out/cluster && rm depth/photo_2.exr depth/photo_4.exr)
@@ -100,5 +110,5 @@ a_cancelled_job_fails_the_run_and_is_redone()
 }
 
 for t in the_cluster_gives_the_bytes_of_a_local_run chunks_of_one_and_of_seven_give_the_same_bytes \
-    atlases_baked_on_the_cluster_are_those_of_a_local_run brackets_are_merged_on_the_cluster a_failed_task_fails_the_run_and_is_redone \
+    atlases_baked_on_the_cluster_are_those_of_a_local_run brackets_are_merged_on_the_cluster photos_are_matched_on_the_cluster a_failed_task_fails_the_run_and_is_redone \
     a_cancelled_job_fails_the_run_and_is_redone; do run "$t"; done
