@@ -8,7 +8,8 @@
  *
  * Ceiling: a wall whose foot is known stands at a known distance, so each line above that runs along it has one height
  * on it. Heads of doors and windows have common heights, too; the ceiling is the highest level that many walls and
- * places share, since nothing is above it. */
+ * places share, since nothing is above it. A moulding below it has several edges: of those that lie together the highest
+ * is the ceiling. */
 #include "stages/find_frame/frame_levels.h"
 
 #include <math.h>
@@ -34,6 +35,7 @@
 #define HEAD_SHARE   0.7 /* of the votes of the best height, from which on a higher one is the ceiling */
 #define HEAD_CLEARLY 2.0 /* times the votes of a height if they lay anywhere, which the best must have */
 #define MIN_HEADS    3   /* walls and places that show a ceiling */
+#define EDGE_WIDTH   2   /* fine steps: how much the heights of one edge differ */
 #define BEYOND       0.1 /* of the sparse points, which may be beyond floor and ceiling: reflections, streets */
 #define EDGE_POINTS  20  /* that show where points end */
 #define EDGE_SHARE   0.01
@@ -165,6 +167,21 @@ static int compare_votes(const void *a, const void *b)
     return (x->group > y->group) - (x->group < y->group);
 }
 
+/* in_window[i]: of how many groups there are votes at most `width` below vote i; returns the most. groups: zeros, one for
+ * each group, which are zeros again after it. */
+static int count_in_windows(int *in_window, int *groups, const struct head_vote *votes, int count, double width)
+{
+    int most = 0, first = 0, distinct = 0;
+    for (int i = 0; i < count; i++) {
+        distinct += !groups[votes[i].group]++;
+        for (; votes[i].height - votes[first].height > width; first++) distinct -= !--groups[votes[first].group];
+        in_window[i] = distinct;
+        if (distinct > most) most = distinct;
+    }
+    for (; first < count; first++) groups[votes[first].group]--;
+    return most;
+}
+
 enum status levels_find_ceiling(struct room_frame *f, const struct world_lines *w, const int *headings,
                                 const struct camera_set *set, double size, struct err *err)
 {
@@ -188,17 +205,12 @@ enum status levels_find_ceiling(struct room_frame *f, const struct world_lines *
             if (!array_append(&votes, (size_t)count, sizeof v, "lines above walls", err)) votes[count++] = v;
         }
     if (!err->status) qsort(votes, (size_t)count, sizeof *votes, compare_votes);
-    /* windows of two steps: how many walls and places have a line in each */
     int *groups = calloc((size_t)f->wall_count * (size_t)w->stations + 1, sizeof *groups), best = 0;
     int *in_window = malloc(((size_t)count + 1) * sizeof *in_window);
-    if (!groups || !in_window) err_nomem(err, "heights", (size_t)count * sizeof *in_window);
-    for (int i = 0, first = 0, distinct = 0; !err->status && i < count; i++) {
-        distinct += !groups[votes[i].group]++;
-        for (; votes[i].height - votes[first].height > 2 * STEP * size; first++)
-            distinct -= !--groups[votes[first].group];
-        in_window[i] = distinct;
-        if (distinct > best) best = distinct;
-    }
+    if (!groups || !in_window)
+        err_nomem(err, "heights", (size_t)count * sizeof *in_window);
+    else
+        best = count_in_windows(in_window, groups, votes, count, 2 * STEP * size);
     const double usual = count * 2 * STEP * size / (most - least); /* in a window, if they lay anywhere */
     int at = best >= HEAD_CLEARLY * usual ? count - 1 : -1;
     while (!err->status && at >= 0 && !(in_window[at] >= HEAD_SHARE * best && in_window[at] >= MIN_HEADS)) at--;
@@ -207,15 +219,22 @@ enum status levels_find_ceiling(struct room_frame *f, const struct world_lines *
         int fullest = at;
         for (int i = at; i >= 0 && votes[at].height - votes[i].height < 2 * STEP * size; i--)
             if (in_window[i] > in_window[fullest]) fullest = i;
+        /* of the edges in both windows the highest that is seen from enough of the places */
+        const double lowest = votes[fullest].height - 2 * STEP * size;
+        int from = fullest, edge = at;
+        while (from > 0 && votes[from - 1].height >= lowest) from--;
+        best = count_in_windows(in_window, groups, votes + from, at - from + 1, EDGE_WIDTH * FINE * size);
+        while (edge > from && in_window[edge - from] < HEAD_SHARE * best) edge--;
+        while (edge > from && in_window[edge - 1 - from] > in_window[edge - from]) edge--;
         double sum = 0, square = 0;
         int n = 0;
-        for (int i = fullest; i >= 0 && votes[fullest].height - votes[i].height <= 2 * STEP * size; i--, n++) {
-            const double d = votes[i].height - votes[fullest].height;
+        for (int i = edge; i >= from && votes[edge].height - votes[i].height <= EDGE_WIDTH * FINE * size; i--, n++) {
+            const double d = votes[i].height - votes[edge].height;
             sum += d;
             square += d * d;
         }
         /* walls are as far away as the floor is low: its error counts, too */
-        const double height = votes[fullest].height + sum / n, eye = (limits.lowest + limits.highest) / 2,
+        const double height = votes[edge].height + sum / n, eye = (limits.lowest + limits.highest) / 2,
                      carried = f->floor.error * (height - eye) / (eye - f->floor.height);
         f->ceiling =
             (struct frame_level){true, height, hypot(carried, sqrt(fmax(square / n - sum / n * (sum / n), 0) / n))};
