@@ -8,8 +8,8 @@
  *
  * Ceiling: a wall whose foot is known stands at a known distance, so each line above that runs along it has one height
  * on it. Heads of doors and windows have common heights, too; the ceiling is the highest level that many walls and
- * places share, since nothing is above it. A moulding below it has several edges: of those that lie together the highest
- * is the ceiling. */
+ * places share, since nothing is above it. A moulding below it has several edges: the highest of those that lie
+ * together is the ceiling. */
 #include "stages/find_frame/frame_levels.h"
 
 #include <math.h>
@@ -167,8 +167,8 @@ static int compare_votes(const void *a, const void *b)
     return (x->group > y->group) - (x->group < y->group);
 }
 
-/* in_window[i]: of how many groups there are votes at most `width` below vote i; returns the most. groups: zeros, one for
- * each group, which are zeros again after it. */
+/* in_window[i]: of how many groups there are votes at most `width` below vote i; returns the most. groups: zeros, one
+ * for each group, which are zeros again after it. */
 static int count_in_windows(int *in_window, int *groups, const struct head_vote *votes, int count, double width)
 {
     int most = 0, first = 0, distinct = 0;
