@@ -4,8 +4,8 @@
 data=$root/../shared/data/real-room
 project real_room_planes
 
-# Every run of COLMAP places these photos a little differently, so the limits are wide: marks that miss by 3 px, or depth
-# of less than a sixth within 5 %, mean that something broke. 36 % were measured; depth that knows a model gets 86 and more.
+# 34 % were measured; depth that knows the suggested model gets 86. Other processors place the photos a little differently, so
+# the limits are wide: marks that miss by 3 px, or depth of less than a quarter within 5 %, mean that something broke.
 depth_is_measured_on_planes_marked_by_hand()
 {
     [ -d "$data/photos" ] || skip "the photos of the room are not here"
@@ -13,7 +13,7 @@ depth_is_measured_on_planes_marked_by_hand()
     "$root/$B/tests/bench/marked_planes" --views out/room+draft/views --depth out/room+draft/depth \
         --marks "$root/tests/long/real_room_marks.txt" >table.tsv 2>err.txt || { cat err.txt; fail "marked_planes"; }
     cat table.tsv
-    awk -F'\t' '$1 == "all" { good = $2 == 123 && $3 < 3 && $6 > 16 } END { exit !good }' table.tsv || fail "$(tail -n 1 table.tsv)"
+    awk -F'\t' '$1 == "all" { good = $2 == 123 && $3 < 3 && $6 > 25 } END { exit !good }' table.tsv || fail "$(tail -n 1 table.tsv)"
 }
 
 run depth_is_measured_on_planes_marked_by_hand
