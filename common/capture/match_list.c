@@ -8,11 +8,11 @@
 #include "common/capture/feature_list.h"
 #include "common/product/product.h"
 
-struct photo_pair *match_list_add(struct match_list *list, const char *other, const char *hash, struct err *err)
+struct matched_pair *match_list_add(struct match_list *list, const char *other, const char *hash, struct err *err)
 {
     if (array_append(&list->pairs, (size_t)list->count, sizeof *list->pairs, "pairs of photos", err)) return NULL;
-    struct photo_pair *pair = &list->pairs[list->count];
-    *pair = (struct photo_pair){.other = strdup(other)};
+    struct matched_pair *pair = &list->pairs[list->count];
+    *pair = (struct matched_pair){.other = strdup(other)};
     if (!pair->other) {
         err_nomem(err, "the name of a photo", strlen(other) + 1);
         return NULL;
@@ -22,20 +22,20 @@ struct photo_pair *match_list_add(struct match_list *list, const char *other, co
     return pair;
 }
 
-const struct photo_pair *match_list_find(const struct match_list *list, const char *other)
+const struct matched_pair *match_list_find(const struct match_list *list, const char *other)
 {
     for (int i = 0; i < list->count; i++)
         if (!strcmp(list->pairs[i].other, other)) return &list->pairs[i];
     return NULL;
 }
 
-static enum status read_match(struct feature_match *m, int above, struct textfile *t, struct err *err)
+static enum status read_match(struct index_match *m, int above, struct textfile *t, struct err *err)
 {
     int64_t first = 0, second = 0;
     if (textfile_expect_line(t, "match", err) || textfile_int(t, "I", above + 1, MAX_FEATURES - 1, &first, err) ||
         textfile_int(t, "J", 0, MAX_FEATURES - 1, &second, err))
         return err->status;
-    *m = (struct feature_match){(int)first, (int)second};
+    *m = (struct index_match){(int)first, (int)second};
     return textfile_end(t, err);
 }
 
@@ -43,7 +43,7 @@ static enum status read_pair(struct match_list *list, struct textfile *t, struct
 {
     char *other = NULL, hash[HASH_TEXT];
     int64_t count = 0;
-    struct photo_pair *pair = NULL;
+    struct matched_pair *pair = NULL;
     if (textfile_expect(t, "pair", err) || textfile_word(t, "OTHER", &other, err) ||
         textfile_word_into(t, "HASH", hash, sizeof hash, err) ||
         textfile_int(t, "COUNT", 0, MAX_FEATURES, &count, err) || textfile_end(t, err) ||
@@ -78,7 +78,7 @@ enum status match_list_write(const struct match_list *list, const char *path, co
     if (!product_begin(&f, PRODUCT_MATCHES, path, prov, err)) {
         fprintf(f.fp, "limits %.17g %.17g\nphoto %s\n", list->max_ratio, list->max_angle, list->hash);
         for (int i = 0; i < list->count; i++) {
-            const struct photo_pair *p = &list->pairs[i];
+            const struct matched_pair *p = &list->pairs[i];
             fprintf(f.fp, "pair %s %s %d\n", p->other, p->hash, p->count);
             for (int k = 0; k < p->count; k++)
                 fprintf(f.fp, "match %d %d\n", p->matches[k].first, p->matches[k].second);

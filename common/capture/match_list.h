@@ -14,28 +14,28 @@
 #include "common/base/hash.h"
 #include "common/base/provenance.h"
 
-struct feature_match {
+struct index_match {
     int first, second;
 };
 
-struct photo_pair {
+struct matched_pair {
     char *other; /* id of the second photo; owned */
     char hash[HASH_TEXT];
-    struct feature_match *matches; /* owned */
+    struct index_match *matches; /* owned */
     int count;
 };
 
 struct match_list {
     double max_ratio, max_angle;
-    char hash[HASH_TEXT];     /* of the first photo's features */
-    struct photo_pair *pairs; /* owned */
+    char hash[HASH_TEXT];       /* of the first photo's features */
+    struct matched_pair *pairs; /* owned */
     int count;
 };
 
 /* Adds a pair that has no matches yet, and returns it; NULL: out of memory. It holds until the next one is added. */
-struct photo_pair *match_list_add(struct match_list *list, const char *other, const char *hash, struct err *err);
+struct matched_pair *match_list_add(struct match_list *list, const char *other, const char *hash, struct err *err);
 /* The pair with this photo; NULL: there is none. */
-const struct photo_pair *match_list_find(const struct match_list *list, const char *other);
+const struct matched_pair *match_list_find(const struct match_list *list, const char *other);
 
 /* On failure the list is empty. */
 enum status match_list_read(struct match_list *list, const char *path, struct provenance *prov, struct err *err);

@@ -18,7 +18,7 @@ static bool is_clear(const struct nearest *n, const struct match_limits *limits)
     return best <= limits->angle && (n->second < 0 || best < limits->ratio * angle_of(n->second));
 }
 
-enum status mutual_matches_find(struct photo_pair *pair, const struct nearest_descriptors *a,
+enum status mutual_matches_find(struct matched_pair *pair, const struct nearest_descriptors *a,
                                 const struct nearest_descriptors *b, const struct match_limits *limits, struct err *err)
 {
     struct nearest *ab = malloc(((size_t)a->count + 1) * sizeof *ab), *ba = malloc(((size_t)b->count + 1) * sizeof *ba);
@@ -28,7 +28,7 @@ enum status mutual_matches_find(struct photo_pair *pair, const struct nearest_de
     else if (!nearest_descriptors_find(ab, ba, a, b, err))
         for (int i = 0; i < a->count; i++)
             if (is_clear(&ab[i], limits) && ba[ab[i].at].at == i && is_clear(&ba[ab[i].at], limits))
-                pair->matches[pair->count++] = (struct feature_match){i, ab[i].at};
+                pair->matches[pair->count++] = (struct index_match){i, ab[i].at};
     free(ab);
     free(ba);
     return err->status;

@@ -16,7 +16,7 @@ struct match_limits {
 
 /* Sets the matches of a pair that has none yet: features of a and b that are each other's nearest, and clearly nearer
  * than the second nearest [Lowe 2004]. Distances are angles between descriptors. ST_NOMEM. */
-enum status mutual_matches_find(struct photo_pair *pair, const struct nearest_descriptors *a,
+enum status mutual_matches_find(struct matched_pair *pair, const struct nearest_descriptors *a,
                                 const struct nearest_descriptors *b, const struct match_limits *limits,
                                 struct err *err);
 

@@ -5,16 +5,16 @@
 #include "common/base/err.h"
 #include "common/capture/feature_list.h"
 
-/* The two features of another photo whose descriptors have the largest scalar products with one's own. */
+/* The nearest features of another photo: those whose descriptors have the largest scalar products with a given one. */
 struct nearest {
-    int32_t at;           /* of the other photo's features, the lowest of equal ones; -1: there are none */
-    int32_t best, second; /* scalar products; -1: there is no such feature */
+    int32_t at;           /* index of the nearest, the lowest of equally near ones; -1: the photo has no features */
+    int32_t best, second; /* scalar products of the nearest and the second nearest; -1: too few features */
 };
 
-/* Descriptors as the search wants them, eight features a block. */
+/* Descriptors laid out for the search, in blocks of eight features. */
 struct nearest_descriptors {
     int16_t *rows;  /* count x DESCRIPTOR_SIZE; owned */
-    int16_t *lanes; /* of each block, of each two neighbouring values: those of its eight features; owned */
+    int16_t *lanes; /* for each block and each two neighbouring values, those of all eight features; owned */
     int count, blocks;
 };
 

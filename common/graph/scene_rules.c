@@ -28,16 +28,15 @@ const char *scene_photo_source(struct graph *g, const struct scene_facts *f, con
     return f->bracketed ? PATH(g, HDR, .photo = photo) : PATH(g, PHOTO, .photo = photo);
 }
 
-/* A points3D.txt with a line that is no comment, or a points3D.bin that counts a point. */
-static bool has_points(struct graph *g, const char *folder, const char *file)
+/* Whether points3D.txt has a line other than comments, or points3D.bin counts at least one point. */
+static bool has_points(const char *path, bool binary)
 {
-    const char *path = graph_text(g, "%s/%s", folder, file);
     FILE *fp = fopen(path, "re");
     uint64_t count = 0;
-    int c = 0;
+    int c = EOF;
     if (!fp) return false;
-    if (strstr(file, ".bin"))
-        c = fread(&count, sizeof count, 1, fp) == 1 && count ? 1 : EOF;
+    if (binary)
+        c = fread(&count, sizeof count, 1, fp) == 1 && count ? 0 : EOF;
     else
         while ((c = getc(fp)) == '#' || c == '\n')
             while (c != '\n' && c != EOF) c = getc(fp);
@@ -47,18 +46,17 @@ static bool has_points(struct graph *g, const char *folder, const char *file)
 
 bool scene_matches_photos(struct graph *g)
 {
-    static const char *const files[] = {"points3D.txt", "points3D.bin", "0/points3D.txt", "0/points3D.bin"};
+    static const char *const folders[] = {"", "/0"}, *const endings[] = {"txt", "bin"};
     const char *model = scene_setting("SFM");
+    bool lacks_points = false; /* a model of Bundler always has some */
     if (!*model) return true;
-    for (size_t i = 0; i < sizeof files / sizeof *files; i++)
-        if (has_points(g, model, files[i])) return false;
-    /* a model of Bundler has points; all others have these files */
-    for (int i = 0; i < 4; i++)
-        if (path_is_file(
-                graph_text(g, "%s/%s", model,
-                           (const char *const[]){"images.txt", "images.bin", "0/images.txt", "0/images.bin"}[i])))
-            return true;
-    return false;
+    for (int i = 0; i < 2; i++)
+        for (int binary = 0; binary < 2; binary++) {
+            const char *folder = folders[i], *ending = endings[binary];
+            if (has_points(graph_text(g, "%s%s/points3D.%s", model, folder, ending), binary)) return false;
+            lacks_points |= path_is_file(graph_text(g, "%s%s/images.%s", model, folder, ending));
+        }
+    return lacks_points;
 }
 
 void rule_masks(struct graph *g, const struct scene_facts *f)

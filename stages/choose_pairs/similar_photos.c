@@ -33,7 +33,7 @@ static void compare_photos(void *ctx, size_t begin, size_t end, int thread)
     (void)thread;
     for (size_t i = begin; i < end; i++)
         for (size_t j = i + 1; j < (size_t)s->count && !s->errs[i].status; j++) {
-            struct photo_pair pair = {0};
+            struct matched_pair pair = {0};
             mutual_matches_find(&pair, &s->photos[i], &s->photos[j], &limits, &s->errs[i]);
             s->similar[i * (size_t)s->count + j] = pair.count >= s->least;
             free(pair.matches);

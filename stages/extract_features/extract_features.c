@@ -11,9 +11,9 @@
 
 #include "common/base/cli.h"
 #include "common/base/log.h"
+#include "common/capture/opencv_sift.h"
 #include "common/capture/photo_mask.h"
 #include "stages/extract_features/features_params.h"
-#include "stages/extract_features/opencv_sift.h"
 
 #define PARAM_STRUCT struct features_params
 static const struct param features_param_table[] = {FEATURES_PARAMS(PARAM_ROW) PARAM_END};

@@ -31,8 +31,8 @@ struct matching {
 struct pair_work {
     const struct matching *options;
     const struct nearest_descriptors *own;
-    struct photo_pair **pairs; /* to match; not owned */
-    struct err *errs;          /* of each of them */
+    struct matched_pair **pairs; /* to match; not owned */
+    struct err *errs;            /* of each of them */
 };
 
 static enum status read_features(struct feature_list *list, const struct matching *m, const char *id, bool whole,
@@ -66,7 +66,7 @@ static enum status match_new(struct match_list *list, const struct feature_list 
 {
     struct nearest_descriptors blocks = {0};
     struct pair_work w = {.options = m, .own = &blocks};
-    w.pairs = malloc(((size_t)list->count + 1) * sizeof(struct photo_pair *));
+    w.pairs = malloc(((size_t)list->count + 1) * sizeof(struct matched_pair *));
     w.errs = malloc(((size_t)list->count + 1) * sizeof *w.errs);
     *count = 0;
     if (!w.pairs || !w.errs)
@@ -97,8 +97,8 @@ static enum status list_pairs(struct match_list *list, const struct pair_list *p
         struct feature_list head = {0};
         const char *other = pairs->pairs[i].second;
         if (strcmp(pairs->pairs[i].first, m->id) || read_features(&head, m, other, false, err)) continue;
-        struct photo_pair *pair = match_list_add(list, other, head.hash, err);
-        const struct photo_pair *old = same ? match_list_find(earlier, other) : NULL;
+        struct matched_pair *pair = match_list_add(list, other, head.hash, err);
+        const struct matched_pair *old = same ? match_list_find(earlier, other) : NULL;
         if (!pair || !old || strcmp(old->hash, head.hash)) continue;
         pair->matches = malloc(((size_t)old->count + 1) * sizeof *pair->matches);
         if (!pair->matches) return err_nomem(err, "matches", (size_t)old->count * sizeof *pair->matches);

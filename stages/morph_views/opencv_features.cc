@@ -1,4 +1,5 @@
-/* opencv_features.cc - SIFT features, matching and two-view geometry by OpenCV; see opencv_features.h. */
+/* opencv_features.cc - matched features of two pictures, and two-view geometry by OpenCV; see opencv_features.h. */
+#include <algorithm>
 #include <cstdlib>
 #include <cstring>
 #include <exception>
@@ -7,44 +8,46 @@
 
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core.hpp>
-#include <opencv2/features2d.hpp>
 
 extern "C" {
+#include "common/capture/mutual_matches.h"
+#include "common/capture/opencv_sift.h"
 #include "stages/morph_views/opencv_features.h"
 }
 
 namespace
 {
 
-const int MAX_FEATURES = 8000;
-const float RATIO = 0.8f;      /* max ratio of the distances of the best and the second best match [Lowe 2004] */
-const double CONTRAST = 0.015; /* threshold, lower than SIFT's default so that dim surfaces get features, too */
+const int MOST_FEATURES = 8000; /* the largest */
+const double CONTRAST = 0.015;
 const int MIN_MATCHES = 16;
 
-struct features {
-    std::vector<cv::KeyPoint> points;
-    cv::Mat descriptors;
-};
-
-features find_features(const unsigned char *grey, int width, int height)
+/* Features of both pictures that match, without saying which are inliers. */
+status find_matches(two_view *out, const unsigned char *const pictures[2], int width, int height, err *err)
 {
-    features f;
-    cv::SIFT::create(MAX_FEATURES, 3, CONTRAST)
-        ->detectAndCompute(cv::Mat(height, width, CV_8U, const_cast<unsigned char *>(grey)), cv::noArray(), f.points,
-                           f.descriptors);
-    return f;
-}
-
-/* For each feature of a its match in b, or -1. */
-std::vector<int> best_matches(const features &a, const features &b)
-{
-    std::vector<int> best(a.points.size(), -1);
-    std::vector<std::vector<cv::DMatch>> found;
-    if (a.points.empty() || b.points.size() < 2) return best;
-    cv::BFMatcher(cv::NORM_L2).knnMatch(a.descriptors, b.descriptors, found, 2);
-    for (const auto &m : found)
-        if (m.size() == 2 && m[0].distance < RATIO * m[1].distance) best[size_t(m[0].queryIdx)] = m[0].trainIdx;
-    return best;
+    const match_limits limits = MATCH_LIMITS;
+    feature_list lists[2] = {};
+    nearest_descriptors descriptors[2] = {};
+    matched_pair pair = {};
+    for (int i = 0; !err->status && i < 2; i++) {
+        if (sift_find(&lists[i], pictures[i], width, height, width + height, CONTRAST, err)) break;
+        lists[i].count = std::min(lists[i].count, MOST_FEATURES);
+        nearest_descriptors_init(&descriptors[i], &lists[i], err);
+    }
+    if (!err->status && !mutual_matches_find(&pair, &descriptors[0], &descriptors[1], &limits, err)) {
+        out->matches = static_cast<feature_match *>(std::calloc(size_t(pair.count) + 1, sizeof *out->matches));
+        if (!out->matches) err_nomem(err, "matches", size_t(pair.count) * sizeof *out->matches);
+    }
+    for (int i = 0; !err->status && i < pair.count; i++) {
+        const feature &p = lists[0].features[pair.matches[i].first], &q = lists[1].features[pair.matches[i].second];
+        out->matches[out->count++] = {double(p.x), double(p.y), double(q.x), double(q.y), false};
+    }
+    std::free(pair.matches);
+    for (int i = 0; i < 2; i++) {
+        nearest_descriptors_release(&descriptors[i]);
+        feature_list_release(&lists[i]);
+    }
+    return err->status;
 }
 
 cv::UsacParams usac(double tolerance)
@@ -80,24 +83,16 @@ void find_geometry(two_view *out, const std::vector<cv::Point2d> &a, const std::
     for (int i = 0; i < 3; i++) out->translation[i] = translation.at<double>(i);
 }
 
-void find(two_view *out, const unsigned char *first, const unsigned char *second, int width, int height, double focal,
-          double tolerance)
+void find(two_view *out, const unsigned char *const pictures[2], int width, int height, double focal, double tolerance,
+          err *err)
 {
-    cv::setNumThreads(1); /* makes the order of features deterministic */
-    const features a = find_features(first, width, height), b = find_features(second, width, height);
-    const std::vector<int> to_b = best_matches(a, b), to_a = best_matches(b, a);
-    std::vector<cv::Point2d> pa, pb;
-    for (size_t i = 0; i < to_b.size(); i++) {
-        if (to_b[i] < 0 || to_a[size_t(to_b[i])] != int(i)) continue;
-        const cv::Point2f p = a.points[i].pt, q = b.points[size_t(to_b[i])].pt;
-        pa.emplace_back(p.x + 0.5, p.y + 0.5);
-        pb.emplace_back(q.x + 0.5, q.y + 0.5);
+    std::vector<cv::Point2d> a, b;
+    if (find_matches(out, pictures, width, height, err)) return;
+    for (int i = 0; i < out->count; i++) {
+        a.emplace_back(out->matches[i].x1, out->matches[i].y1);
+        b.emplace_back(out->matches[i].x2, out->matches[i].y2);
     }
-    out->matches = static_cast<feature_match *>(std::calloc(pa.size() + 1, sizeof *out->matches));
-    if (!out->matches) throw std::bad_alloc();
-    out->count = int(pa.size());
-    for (size_t i = 0; i < pa.size(); i++) out->matches[i] = {pa[i].x, pa[i].y, pb[i].x, pb[i].y, false};
-    if (out->count >= MIN_MATCHES) find_geometry(out, pa, pb, width, height, focal, tolerance);
+    if (out->count >= MIN_MATCHES) find_geometry(out, a, b, width, height, focal, tolerance);
     if (out->inliers < MIN_MATCHES) out->inliers = 0;
 }
 
@@ -108,8 +103,10 @@ extern "C" enum status features_find(struct two_view *out, const unsigned char *
 {
     std::memset(out, 0, sizeof *out);
     try {
-        find(out, first, second, width, height, focal, tolerance);
-        return ST_OK;
+        const unsigned char *const pictures[2] = {first, second};
+        find(out, pictures, width, height, focal, tolerance, err);
+        if (err->status) features_release(out);
+        return err->status;
     } catch (const std::bad_alloc &) {
         features_release(out);
         return err_nomem(err, "features of two pictures", size_t(width) * size_t(height));

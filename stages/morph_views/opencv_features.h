@@ -1,7 +1,7 @@
 /* opencv_features.h - matched features of two pictures, and the two-view geometry estimated from them.
  *
- * A thin wrapper of OpenCV: SIFT, mutual best matches that pass the ratio test [Lowe 2004], USAC with a fixed seed. The
- * centre of the first pixel is at (0.5, 0.5). */
+ * SIFT features (common/capture/opencv_sift.h), mutual matches (mutual_matches.h), and OpenCV's USAC with a fixed seed.
+ * The centre of the first pixel is at (0.5, 0.5). */
 #ifndef REMODEL_OPENCV_FEATURES_H
 #define REMODEL_OPENCV_FEATURES_H
 

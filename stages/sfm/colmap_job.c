@@ -1,17 +1,11 @@
 /* colmap_job.c - COLMAP's commands on a work folder.
  *
- * COLMAP runs as programs, each with its own log: feature_importer, matches_importer, mapper. This file makes their
- * work folder, their arguments, and sentences from their failures; run_colmap.c decides when to run which.
+ * COLMAP runs as programs, each with its own log: feature_importer and matches_importer (colmap_matches.c), mapper. This
+ * file makes their work folder and turns their failures into sentences; run_colmap.c decides when to run which.
  *
  * Names. COLMAP's text files cannot hold every file name, so the work folder has links PHOTO-ID.EXTENSION, and
  * colmap_name_images() puts the users' names back where a text file can hold them. COLMAP tells formats by the
  * extension; one with other characters than letters and digits becomes .img.
- *
- * Features. feature_importer reads the photos' sizes and EXIF and makes lenses; it is given no features: those of the
- * scene go into its database directly (colmap_database.c).
- *
- * Matches. matches_importer verifies them, pair by pair in the order of the photos, in one thread: its random numbers
- * go on from pair to pair, so this order is a part of the result.
  *
  * Lenses. start_lens.c decides whether all photos share one lens, and where its parameters begin; otherwise each
  * photo has its own. `refine_camera = no` holds focal lengths and distortion during mapping.
@@ -32,13 +26,9 @@
 #include "common/base/outfile.h"
 #include "common/base/parallel.h"
 #include "common/base/process.h"
-#include "common/base/textfile.h"
-#include "common/capture/match_list.h"
-#include "common/product/product.h"
-#include "stages/sfm/colmap_database.h"
 #include "stages/sfm/colmap_log.h"
 
-enum { MAX_ARGS = 40, MIN_MATCHES = 15 }; /* COLMAP takes no fewer verified matches for a pair */
+enum { MAX_ARGS = 40 };
 
 void colmap_job_release(struct colmap_job *job)
 {
@@ -63,13 +53,13 @@ static enum status link_file(const char *target, const char *link, struct err *e
     return symlink(target, link) ? err_errno(err, "make the link", link) : ST_OK;
 }
 
-static enum status link_photos(struct colmap_job *job, const struct sfm_input *in, struct err *err)
+static enum status link_photos(const struct colmap_job *job, struct err *err)
 {
-    char *from = realpath(in->photos, NULL);
+    char *from = realpath(job->in->photos, NULL);
     if (from)
         outfile_make_folders(job->images, err);
     else
-        err_errno(err, "open", in->photos);
+        err_errno(err, "open", job->in->photos);
     for (int i = 0; !err->status && i < job->photos->count; i++) {
         const struct photo_record *p = &job->photos->photos[i];
         char *target = sfm_text_format(err, "%s/%s", from, p->file);
@@ -85,10 +75,7 @@ static enum status link_photos(struct colmap_job *job, const struct sfm_input *i
 enum status colmap_prepare(struct colmap_job *job, const struct sfm_folder *f, const struct sfm_input *in,
                            const struct sfm_params *params, struct err *err)
 {
-    *job = (struct colmap_job){.folder = f, .started = clock_seconds(), .photos = in->list, .params = params};
-    job->features_from = in->features;
-    job->matches_from = in->matches;
-    job->prov = in->prov;
+    *job = (struct colmap_job){.folder = f, .started = clock_seconds(), .in = in, .photos = in->list, .params = params};
     const char *work = job->folder->work;
     if (!sfm_single_camera(&job->single, job->photos, params, err)) sfm_start_lens(job->lens, job->photos, params, err);
     if (err->status) return err->status;
@@ -101,7 +88,7 @@ enum status colmap_prepare(struct colmap_job *job, const struct sfm_folder *f, c
     if (err->status) return err->status;
     for (int i = 0; i < COLMAP_STEPS; i++)
         if (!(job->logs[i] = sfm_text_format(err, "%s/colmap-%d.log", work, i + 1))) return err->status;
-    return outfile_make_folders(job->sparse, err) || link_photos(job, in, err) ? err->status : ST_OK;
+    return outfile_make_folders(job->sparse, err) || link_photos(job, err) ? err->status : ST_OK;
 }
 
 enum status colmap_exit_status(int *status, const struct colmap_job *job, int step, const char *const args[],
@@ -130,129 +117,6 @@ enum status colmap_run(const struct colmap_job *job, int step, const char *const
     return err->status;
 }
 
-/* Makes the database, with the photos and their lenses, but without features: each photo has an empty list. */
-static enum status make_database(const struct colmap_job *job, struct err *err)
-{
-    const struct sfm_params *p = job->params;
-    char *lists = sfm_text_format(err, "%s.features", job->images);
-    const char *args[MAX_ARGS] = {"feature_importer",
-                                  "--database_path",
-                                  job->database,
-                                  "--image_path",
-                                  job->images,
-                                  "--import_path",
-                                  lists,
-                                  "--ImageReader.camera_model",
-                                  sfm_is_equisolid(p) ? "OPENCV_FISHEYE" : p->camera_model,
-                                  job->single ? "--ImageReader.single_camera" : "--ImageReader.single_camera_per_image",
-                                  "1"};
-    int n = 0;
-    while (args[n]) n++;
-    if (*job->lens) {
-        args[n++] = "--ImageReader.camera_params";
-        args[n++] = job->lens;
-    }
-    for (int i = 0; !err->status && i < job->photos->count; i++) {
-        const struct photo_record *photo = &job->photos->photos[i];
-        struct outfile f = {0};
-        char *list = sfm_text_format(err, "%s/%s%s.txt", lists, photo->id, colmap_extension(photo->file));
-        if (list && !outfile_open(&f, list, err)) {
-            fprintf(f.fp, "0 %d\n", DESCRIPTOR_SIZE);
-            outfile_commit(&f, err);
-        }
-        outfile_discard(&f);
-        free(list);
-    }
-    if (!err->status) colmap_run(job, 1, args, 0, err);
-    free(lists);
-    return err->status;
-}
-
-static enum status set_features(const struct colmap_job *job, int photo, struct colmap_database *db, struct err *err)
-{
-    const struct photo_record *p = &job->photos->photos[photo];
-    struct feature_list list = {0};
-    char path[FILE_PATH];
-    int id = 0;
-    char *name = sfm_text_format(err, "%s%s", p->id, colmap_extension(p->file));
-    if (name &&
-        !product_path_in(path, job->features_from, PRODUCT_FEATURES, &(struct product_key){.photo = p->id}, err) &&
-        !feature_list_read(&list, path, job->prov, err) && !colmap_database_image_id(&id, db, name, err) && id)
-        colmap_database_set_features(db, id, &list, err);
-    job->features[photo] = id ? list.count : -1;
-    feature_list_release(&list);
-    free(name);
-    return err->status;
-}
-
-static enum status take_features(long long *found, const struct colmap_job *job, struct err *err)
-{
-    struct colmap_database *db = NULL;
-    char few[1024];
-    *found = 0;
-    colmap_database_open(&db, job->database, err);
-    for (int i = 0; !err->status && i < job->photos->count; i++) {
-        set_features(job, i, db, err);
-        *found += job->features[i] > 0 ? job->features[i] : 0;
-    }
-    if (!err->status) colmap_database_commit(db, err);
-    colmap_database_close(db);
-    if (err->status) return err->status;
-    log_note("%lld features in %d photos", *found, job->photos->count);
-    colmap_list_poor(few, sizeof few, job->features, job->photos);
-    if (*few)
-        log_warn("few features (blurred, dark, little texture, or masked), so their poses may be poor or missing: %s",
-                 few);
-    return ST_OK;
-}
-
-/* Writes the pairs of a photo in COLMAP's form: the names of both, a line for each match, a blank line. */
-static enum status write_pairs(FILE *to, const struct colmap_job *job, int photo, struct err *err)
-{
-    const struct photo_record *p = &job->photos->photos[photo];
-    struct match_list list = {0};
-    char path[FILE_PATH];
-    if (product_path_in(path, job->matches_from, PRODUCT_MATCHES, &(struct product_key){.photo = p->id}, err) ||
-        match_list_read(&list, path, job->prov, err))
-        return err->status;
-    for (int i = 0; i < list.count; i++) {
-        const struct photo_pair *pair = &list.pairs[i];
-        const int other = photo_list_find_id(job->photos, pair->other);
-        if (other < 0 || job->features[other] < 0 || pair->count < MIN_MATCHES) continue;
-        fprintf(to, "%s%s %s%s\n", p->id, colmap_extension(p->file), pair->other,
-                colmap_extension(job->photos->photos[other].file));
-        for (int k = 0; k < pair->count; k++) fprintf(to, "%d %d\n", pair->matches[k].first, pair->matches[k].second);
-        fputc('\n', to);
-    }
-    match_list_release(&list);
-    return ST_OK;
-}
-
-static enum status take_pairs(const struct colmap_job *job, struct err *err)
-{
-    struct outfile f = {0};
-    char *list = sfm_text_format(err, "%s.matches.txt", job->images);
-    const char *args[] = {"matches_importer",
-                          "--database_path",
-                          job->database,
-                          "--match_list_path",
-                          list,
-                          "--match_type",
-                          "raw",
-                          "--SiftMatching.use_gpu",
-                          "0",
-                          "--SiftMatching.num_threads",
-                          job->threads,
-                          NULL};
-    if (list) outfile_open(&f, list, err);
-    for (int i = 0; !err->status && i < job->photos->count; i++)
-        if (job->features[i] >= 0) write_pairs(f.fp, job, i, err);
-    if (!err->status && !outfile_commit(&f, err)) colmap_run(job, 2, args, 0, err);
-    outfile_discard(&f);
-    free(list);
-    return err->status;
-}
-
 enum status colmap_map(const struct colmap_job *job, bool relaxed, struct err *err)
 {
     const char *refine = strcmp(job->params->refine_camera, "no") ? "1" : "0";
@@ -273,51 +137,6 @@ enum status colmap_map(const struct colmap_job *job, bool relaxed, struct err *e
     }
     /* exit status 1 means that it found no model; the caller counts the models and explains */
     return colmap_run(job, 3, args, 1, err);
-}
-
-void colmap_list_poor(char *text, size_t size, const int *features, const struct photo_list *photos)
-{
-    size_t used = 0;
-    int named = 0, omitted = 0;
-    *text = '\0';
-    for (int i = 0; i < photos->count; i++) {
-        const struct photo_record *p = &photos->photos[i];
-        if (features[i] >= MIN_FEATURES) continue;
-        if (used + strlen(p->file) + 40 > size) {
-            omitted++;
-            continue;
-        }
-        used += (size_t)snprintf(text + used, size - used, features[i] < 0 ? "%s%s (unreadable)" : "%s%s (%d)",
-                                 named++ ? ", " : "", p->file, features[i]);
-    }
-    if (omitted) snprintf(text + used, size - used, " and %d more", omitted);
-}
-
-/* Its first line is "COLMAP 3.8 -- ..."; a program that does not say it is recorded as colmap-unknown. */
-static enum status record_version(const struct colmap_job *job, struct err *err)
-{
-    static const char *const args[] = {"help", NULL};
-    struct textfile t = {0};
-    struct err ignored = ERR_INIT;
-    char name[64] = "colmap-unknown", hash[HASH_TEXT], *word = NULL;
-    int status = 0;
-    if (colmap_exit_status(&status, job, 1, args, err)) return err->status;
-    if (!textfile_open(&t, job->logs[0], &ignored) && textfile_next(&t) && !textfile_expect(&t, "COLMAP", &ignored) &&
-        !textfile_word(&t, "a version", &word, &ignored))
-        snprintf(name, sizeof name, "colmap-%.40s", word);
-    textfile_release(&t);
-    hash_bytes(hash, name, strlen(name));
-    return provenance_add_hash(job->prov, name, hash, err);
-}
-
-enum status colmap_take_matches(long long *features, const struct colmap_job *job, struct err *err)
-{
-    log_note("step 1 of %d: %d photos, %s", COLMAP_STEPS, job->photos->count,
-             job->single ? "one lens for all" : "a lens each");
-    if (!record_version(job, err) && !make_database(job, err)) take_features(features, job, err);
-    if (err->status || !*features) return err->status;
-    log_note("step 2 of %d: verifying matches (%.1f s so far)", COLMAP_STEPS, clock_seconds() - job->started);
-    return take_pairs(job, err);
 }
 
 enum status colmap_keep_logs(const struct colmap_job *job, struct err *err)

@@ -13,18 +13,17 @@ struct sfm_input {
     const char *photos, *features, *matches; /* folders; features and matches: of ID.txt, or NULL */
     const struct photo_list *list;
     const struct sfm_params *params;
-    struct provenance *prov; /* gets features, matches and COLMAP's version as inputs */
+    struct provenance *prov; /* features, matches and COLMAP's version are added as inputs */
 };
 
-enum { COLMAP_STEPS = 4, MIN_FEATURES = 200 }; /* photos with fewer features are reported */
+enum { COLMAP_STEPS = 4 };
 
 struct colmap_job {
     const struct sfm_folder *folder;
     double started; /* clock_seconds() */
     const struct photo_list *photos;
     const struct sfm_params *params;
-    const char *features_from, *matches_from;
-    struct provenance *prov;
+    const struct sfm_input *in;
     char *images, *database, *sparse; /* in the work folder; owned */
     char *logs[COLMAP_STEPS];         /* owned */
     int *features;                    /* of each photo; -1: COLMAP could not read it; owned */
@@ -44,14 +43,6 @@ enum status colmap_exit_status(int *status, const struct colmap_job *job, int st
 enum status colmap_run(const struct colmap_job *job, int step, const char *const args[], int max_status,
                        struct err *err);
 enum status colmap_failed(const struct colmap_job *job, int step, const char *command, int status, struct err *err);
-
-/* Steps 1 and 2: the database of photos, lenses, features and verified matches. *features: number of features in all
- * photos; nothing is verified if it is 0. */
-enum status colmap_take_matches(long long *features, const struct colmap_job *job, struct err *err);
-
-/* Lists the photos with fewer than MIN_FEATURES, "a.jpg (12), b.jpg (unreadable) and 3 more", as far as `size` allows.
- * "" if there are none. features: of each photo, -1: unreadable. */
-void colmap_list_poor(char *text, size_t size, const int *features, const struct photo_list *photos);
 
 /* Step 3: poses and points. relaxed: the initial pair may have a smaller angle and fewer inliers than by default. */
 enum status colmap_map(const struct colmap_job *job, bool relaxed, struct err *err);

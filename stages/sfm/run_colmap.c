@@ -10,6 +10,7 @@
 #include "common/base/log.h"
 #include "common/base/outfile.h"
 #include "stages/sfm/colmap_log.h"
+#include "stages/sfm/colmap_matches.h"
 
 static enum status explain_failure(const struct colmap_job *job, struct err *err)
 {

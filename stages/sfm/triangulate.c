@@ -14,6 +14,7 @@
 #include "common/capture/photo_match.h"
 #include "stages/sfm/colmap_database.h"
 #include "stages/sfm/colmap_log.h"
+#include "stages/sfm/colmap_matches.h"
 
 /* The lens for verifying matches: the model's, if it has only one. */
 static void params_of_model(struct sfm_params *params, const struct sfm_model *m)

@@ -23,7 +23,7 @@ settings()
 
 prepare()
 {
-    [ -x "$B/tests/bench/matching" ] || missing "there is no program $B/tests/bench/matching; this revision has no search for descriptors."
+    [ -x "$B/tests/bench/matching" ] || missing "$B/tests/bench/matching is missing: this revision cannot match descriptors."
 }
 
 sample() # SERIES SIZE

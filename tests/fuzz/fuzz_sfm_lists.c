@@ -12,6 +12,7 @@
 #include "stages/sfm/colmap_database.c"
 #include "stages/sfm/colmap_job.c"
 #include "stages/sfm/colmap_log.c"
+#include "stages/sfm/colmap_matches.c"
 #include "stages/sfm/sfm_folder.c"
 #include "stages/sfm/sfm_params.c"
 #include "stages/sfm/start_lens.c"

@@ -1,8 +1,8 @@
 /* colmap_log.c - what is read from COLMAP's logs; COLMAP itself is not needed. */
 #include "tests/unit/scratch.h"
 
-#include "stages/sfm/colmap_job.h"
 #include "stages/sfm/colmap_log.h"
+#include "stages/sfm/colmap_matches.h"
 
 static void the_mapper_log_counts_connected_pictures(void **state)
 {

@@ -77,11 +77,11 @@ static void matches_are_read_as_they_were_written(void **state)
     (void)state;
     struct err err = ERR_INIT;
     struct match_list list = {0.8, 0.7, "0123", NULL, 0}, read;
-    struct photo_pair *pair = match_list_add(&list, "b", "4567", &err);
+    struct matched_pair *pair = match_list_add(&list, "b", "4567", &err);
     assert_non_null(pair);
     pair->matches = calloc(2, sizeof *pair->matches);
-    pair->matches[pair->count++] = (struct feature_match){0, 5};
-    pair->matches[pair->count++] = (struct feature_match){7, 2};
+    pair->matches[pair->count++] = (struct index_match){0, 5};
+    pair->matches[pair->count++] = (struct index_match){7, 2};
     pair = match_list_add(&list, "c", "89ab", &err);
     assert_non_null(pair);
     pair->matches = calloc(1, sizeof *pair->matches);
@@ -90,7 +90,7 @@ static void matches_are_read_as_they_were_written(void **state)
     assert_int_equal(read.count, 2);
     assert_string_equal(read.hash, "0123");
     assert_true(read.max_ratio == 0.8 && read.max_angle == 0.7);
-    const struct photo_pair *found = match_list_find(&read, "b");
+    const struct matched_pair *found = match_list_find(&read, "b");
     assert_non_null(found);
     assert_int_equal(found->count, 2);
     assert_string_equal(found->hash, "4567");

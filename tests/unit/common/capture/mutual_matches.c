@@ -82,13 +82,13 @@ static struct feature at_angle(int axis, double angle)
     return f;
 }
 
-static int count_matches(struct feature *a, int a_count, struct feature *b, int b_count, struct photo_pair *pair)
+static int count_matches(struct feature *a, int a_count, struct feature *b, int b_count, struct matched_pair *pair)
 {
     struct err err = ERR_INIT;
     const struct feature_list la = {a, a_count, ""}, lb = {b, b_count, ""};
     const struct match_limits limits = MATCH_LIMITS;
     struct nearest_descriptors of_a, of_b;
-    *pair = (struct photo_pair){0};
+    *pair = (struct matched_pair){0};
     assert_ok(nearest_descriptors_init(&of_a, &la, &err), err);
     assert_ok(nearest_descriptors_init(&of_b, &lb, &err), err);
     assert_ok(mutual_matches_find(pair, &of_a, &of_b, &limits, &err), err);
@@ -100,7 +100,7 @@ static int count_matches(struct feature *a, int a_count, struct feature *b, int 
 static void a_match_is_mutual_and_clear(void **state)
 {
     (void)state;
-    struct photo_pair pair;
+    struct matched_pair pair;
     struct feature a[] = {at_angle(0, 0.1), at_angle(10, 0.2), at_angle(20, 0.3)};
     struct feature b[] = {at_angle(20, 0.35), at_angle(0, 0.15), at_angle(10, 0.25), at_angle(10, 0.9)};
     assert_int_equal(count_matches(a, 3, b, 4, &pair), 3);
@@ -129,7 +129,7 @@ static void a_match_is_mutual_and_clear(void **state)
 static void blank_photos_have_no_matches(void **state)
 {
     (void)state;
-    struct photo_pair pair;
+    struct matched_pair pair;
     struct feature a[] = {at_angle(0, 0.1)};
     assert_int_equal(count_matches(a, 0, a, 1, &pair), 0);
     free(pair.matches);

@@ -1,5 +1,5 @@
 // opencv_sift.cc - see opencv_sift.h.
-#include "stages/extract_features/opencv_sift.h"
+#include "common/capture/opencv_sift.h"
 
 #include <opencv2/core.hpp>
 #include <opencv2/features2d.hpp>

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "stages/extract_features/opencv_sift.h"
+#include "common/capture/opencv_sift.h"
 
 enum { SIDE = 200 };
 
