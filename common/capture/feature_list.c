@@ -28,10 +28,10 @@ static enum status read_descriptor(uint8_t *to, struct textfile *t, struct err *
 
 static enum status read_feature(struct feature *f, struct textfile *t, struct err *err)
 {
+    static const char *const names[] = {"X", "Y", "SCALE", "ANGLE"};
     double value[4];
     textfile_expect_line(t, "feature", err);
-    for (int k = 0; !err->status && k < 4; k++)
-        textfile_double(t, &"X\0    Y\0    SCALE\0ANGLE"[6 * k], &value[k], err);
+    for (int k = 0; !err->status && k < 4; k++) textfile_double(t, names[k], &value[k], err);
     if (err->status || read_descriptor(f->descriptor, t, err) || textfile_end(t, err)) return err->status;
     f->x = (float)value[0];
     f->y = (float)value[1];

@@ -6,8 +6,8 @@
  *   pair OTHER HASH COUNT
  *   match I J                    COUNT lines, ascending in I; features from 0, of the photo and of the other
  *
- * A pair of photos is in the file of the one that comes first in the list of photos. HASH: of the photo's features
- * (feature_list.h), so that a reader sees which pairs are as the features are now. */
+ * A pair is in the file of the photo that comes first in the list of photos. HASH is that of the photo's features
+ * (feature_list.h): it shows whether a pair is up to date. */
 #ifndef REMODEL_MATCH_LIST_H
 #define REMODEL_MATCH_LIST_H
 
@@ -32,7 +32,7 @@ struct match_list {
     int count;
 };
 
-/* Adds a pair that has no matches yet, and returns it; NULL: out of memory. It holds until the next one is added. */
+/* Adds a pair without matches and returns it, or NULL without memory. The pointer is valid until the next call. */
 struct matched_pair *match_list_add(struct match_list *list, const char *other, const char *hash, struct err *err);
 /* The pair with this photo; NULL: there is none. */
 const struct matched_pair *match_list_find(const struct match_list *list, const char *other);

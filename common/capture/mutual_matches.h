@@ -6,8 +6,8 @@
 #include "common/capture/nearest_descriptors.h"
 
 struct match_limits {
-    double ratio; /* largest angle between the descriptors of a match, as a part of that to the second nearest */
-    double angle; /* largest angle itself, radians */
+    double ratio; /* maximum angle between matching descriptors, as a fraction of the angle to the second nearest */
+    double angle; /* maximum angle itself, radians */
 };
 #define MATCH_LIMITS \
     {                \

@@ -1,9 +1,9 @@
 /* nearest_descriptors.c - exact nearest neighbours among descriptors of two photos.
  *
  * All scalar products are formed, in registers: four features of one photo (rows) times sixteen of the other (columns,
- * two blocks). A lane of a vector is a column. Descriptors are widened to 16 bits, because products of two bytes do not
- * fit in the 16 bits that the instruction for bytes adds them in. A row's best is kept by lane until its columns have
- * passed, a column's best over all rows. Equal products: the lower index wins, and the second is as large as the best.
+ * two blocks). A lane of a vector is a column. Descriptors are widened to 16 bits, because the instruction that
+ * multiplies bytes adds the products in 16 bits, where they overflow. A row keeps the best of each lane until all its
+ * columns have passed. Of equal products the lower index wins, and the second is as large as the best.
  *
  * Memory: rows of a stripe (ROWS x 256 bytes) stay in the first cache while all columns pass, columns of a panel
  * (PANEL blocks x 2 KiB) in the second while all stripes pass. */

@@ -4,8 +4,8 @@
  *         FEATURES/ID.txt                    their features, where there are many photos
  * writes  OUT                                the pairs
  *
- * Few photos are all compared with each other. Of many, neighbours in order of name are, and photos whose largest
- * features match: those that show the same things, also where a walk comes back to a place. */
+ * A small set is compared in all pairs. In a larger one, a photo is compared with its neighbours by name, and with
+ * photos whose largest features match its own, so that a walk that returns to a place is closed. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -37,9 +37,9 @@ static enum status read_largest(struct feature_list *lists, const struct pair_ch
         const struct product_key key = {.photo = photos->photos[i].id};
         struct feature_list *list = &lists[i];
         if (product_path_in(path, c->features, PRODUCT_FEATURES, &key, err) ||
-            feature_list_read(list, path, prov, err) || list->count <= c->params.largest)
+            feature_list_read(list, path, prov, err) || list->count <= c->params.compared_features)
             continue;
-        list->count = c->params.largest;
+        list->count = c->params.compared_features;
         struct feature *fewer = realloc(list->features, (size_t)list->count * sizeof *fewer);
         if (fewer) list->features = fewer;
     }
@@ -53,7 +53,7 @@ static enum status find_similar(bool *similar, const struct pair_choice *c, cons
     if (!lists)
         err_nomem(err, "features", (size_t)photos->count * sizeof *lists);
     else if (!read_largest(lists, c, photos, prov, err))
-        similar_by_features(similar, lists, photos->count, c->params.least, err);
+        similar_by_features(similar, lists, photos->count, c->params.min_matches, err);
     for (int i = 0; lists && i < photos->count; i++) feature_list_release(&lists[i]);
     free(lists);
     return err->status;

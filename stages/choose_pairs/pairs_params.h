@@ -7,10 +7,11 @@
 /* name, type, default, min, max, unit, help */
 #define PAIRS_PARAMS(X)                                                                                               \
     X(matcher, choice, "auto", 0, 0, "auto|exhaustive|sequential|similar",                                            \
-      "photo pairs to match: exhaustive is all pairs, sequential neighbours by name, similar these and photos whose " \
-      "largest features match; auto: exhaustive up to 60 photos, then similar")                                       \
-    X(largest, int, 500, 20, 10000, "", "features of a photo by which similar ones are found, the largest")           \
-    X(least, int, 5, 1, 1000, "", "matches among these that make a pair similar")
+      "photo pairs to match: exhaustive means all pairs, sequential neighbours by name, similar neighbours and "      \
+      "photos "                                                                                                       \
+      "that look alike; auto: exhaustive up to 60 photos, then similar")                                              \
+    X(compared_features, int, 500, 20, 10000, "", "number of a photo's largest features used to find similar photos") \
+    X(min_matches, int, 5, 1, 1000, "", "minimum number of matches among them for two photos to be similar")
 
 struct pairs_params {
     PAIRS_PARAMS(PARAM_FIELD)

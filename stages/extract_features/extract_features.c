@@ -5,8 +5,8 @@
  *         MASKS/ID.png                       black where no features may be found
  * writes  OUT                                its features
  *
- * Features are found in grey, in the stored orientation. A photo that cannot be read has none: the others may do
- * without it. */
+ * Features are found in a grey picture, in the stored orientation. An unreadable photo gets no features and a warning,
+ * so that the run goes on with the others. */
 #include <stdlib.h>
 
 #include "common/base/cli.h"
@@ -69,7 +69,8 @@ static enum status find(struct feature_list *list, const struct extraction *e, c
         return ST_OK;
     }
     if (!photo_mask_read(&mask, e->masks, e->records, record, prov, err) && (grey = grey_of(&photo, err)) &&
-        !sift_find(list, grey, photo.info.width, photo.info.height, e->params.max_image_size, e->params.contrast, err))
+        !sift_find(list, grey, photo.info.width, photo.info.height, e->params.max_image_size, e->params.min_contrast,
+                   err))
         keep(list, &mask, e->params.max_features);
     free(grey);
     photo_mask_release(&mask);

@@ -9,7 +9,7 @@
     X(max_features, int, 8192, 100, 100000, "", "maximum number of features per photo") \
     X(max_image_size, int, 3200, 200, 20000, "px",                                      \
       "longer side to which larger photos are scaled down before features are found")   \
-    X(contrast, double, 0.013, 0.001, 0.2, "", "least contrast of a feature, white being 1")
+    X(min_contrast, double, 0.013, 0.001, 0.2, "", "minimum contrast of a feature; 1: from black to white")
 
 struct features_params {
     FEATURES_PARAMS(PARAM_FIELD)

@@ -5,10 +5,12 @@
  *         OUT                                the matches of an earlier run, if there are any
  * writes  OUT                                the matches
  *
- * Pairs whose features are what they were in an earlier run are kept: a photo that is added or changed costs its own
- * pairs only, and the result is the same as without an earlier run. */
+ * Pairs from an earlier run are kept if their features have not changed, and if this program is not newer: a photo that
+ * is added or changed costs only its own pairs, and the result is the same as without an earlier run. */
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "common/base/cli.h"
 #include "common/base/log.h"
@@ -108,6 +110,14 @@ static enum status list_pairs(struct match_list *list, const struct pair_list *p
     return err->status;
 }
 
+/* Whether a file is newer than this program. An older one may come from other code. */
+static bool is_newer_than_program(const char *path)
+{
+    struct stat file, program;
+    if (stat(path, &file) || stat("/proc/self/exe", &program)) return false;
+    return file.st_mtim.tv_sec > program.st_mtim.tv_sec;
+}
+
 static enum status match_photos(const struct matching *m, struct provenance *prov, struct err *err)
 {
     struct pair_list pairs = {0};
@@ -115,7 +125,8 @@ static enum status match_photos(const struct matching *m, struct provenance *pro
     struct match_list list = {0}, earlier = {0};
     struct err ignored = ERR_INIT;
     int matched = 0;
-    if (path_is_file(m->out)) match_list_read(&earlier, m->out, NULL, &ignored); /* a damaged one is made anew */
+    if (is_newer_than_program(m->out))
+        match_list_read(&earlier, m->out, NULL, &ignored); /* a damaged one is made anew */
     if (!pair_list_read(&pairs, m->pairs, NULL, err) && !read_features(&own, m, m->id, true, err)) {
         memcpy(list.hash, own.hash, sizeof list.hash);
         list.max_ratio = m->params.max_ratio;

@@ -5,10 +5,10 @@
 #include "common/base/param.h"
 
 /* name, type, default, min, max, unit, help */
-#define MATCHING_PARAMS(X)                                                                      \
-    X(max_ratio, double, 0.8, 0.1, 1, "",                                                       \
-      "largest angle between the descriptors of a match, as a part of that to the second best") \
-    X(max_angle, double, 0.7, 0.1, 1.58, "rad", "largest angle between the descriptors of a match")
+#define MATCHING_PARAMS(X)                                                                            \
+    X(max_ratio, double, 0.8, 0.1, 1, "",                                                             \
+      "maximum angle between matching descriptors, as a fraction of the angle to the second nearest") \
+    X(max_angle, double, 0.7, 0.1, 1.58, "rad", "maximum angle between matching descriptors")
 
 struct matching_params {
     MATCHING_PARAMS(PARAM_FIELD)

@@ -1,7 +1,7 @@
 /* colmap_job.c - COLMAP's commands on a work folder.
  *
- * COLMAP runs as programs, each with its own log: feature_importer and matches_importer (colmap_matches.c), mapper. This
- * file makes their work folder and turns their failures into sentences; run_colmap.c decides when to run which.
+ * COLMAP runs as programs, each with its own log: feature_importer and matches_importer (colmap_matches.c), mapper.
+ * This file makes their work folder and turns their failures into sentences; run_colmap.c decides when to run which.
  *
  * Names. COLMAP's text files cannot hold every file name, so the work folder has links PHOTO-ID.EXTENSION, and
  * colmap_name_images() puts the users' names back where a text file can hold them. COLMAP tells formats by the

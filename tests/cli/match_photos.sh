@@ -70,6 +70,9 @@ kept_pairs_give_the_bytes_of_a_first_run()
     cmp kept/photo_1.txt all/photo_1.txt || fail "the old features do not give the old bytes"
     matches_of photo_1 kept --set max_ratio=0.7
     grep -q 'matched with 3 photos, kept 0' err || { cat err; fail "matches with other limits were kept"; }
+    touch -d 2020-01-01 kept/photo_1.txt
+    matches_of photo_1 kept
+    grep -q 'matched with 3 photos, kept 0' err || { cat err; fail "matches of an older program were kept"; }
     echo garbage >kept/photo_1.txt
     matches_of photo_1 kept
     cmp kept/photo_1.txt all/photo_1.txt || fail "a damaged file was not made anew"
