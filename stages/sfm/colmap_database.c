@@ -1,7 +1,8 @@
-/* colmap_database.c - features of the photos in COLMAP's database.
+/* colmap_database.c - features and verified pairs of the photos in COLMAP's database.
  *
- * COLMAP itself makes the database, with cameras and images; only two of its tables are named here. A keypoint is a row
- * of four floats: x, y, scale, orientation. */
+ * COLMAP itself makes the database, with cameras and images; only three of its tables are named here. A keypoint is a
+ * row of four floats: x, y, scale, orientation. The id of a pair is (2^31 - 1) times the lower id of its images, plus
+ * the higher one. */
 #include "stages/sfm/colmap_database.h"
 
 #include <sqlite3.h>
@@ -84,5 +85,32 @@ enum status colmap_database_set_features(struct colmap_database *db, int image, 
         failed(db, "write features", err);
     sqlite3_finalize(set);
     free(rows);
+    return err->status;
+}
+
+enum status colmap_database_pairs(struct verified_pair **pairs, int *count, struct colmap_database *db, struct err *err)
+{
+    static const char text[] = "SELECT pair_id / 2147483647, pair_id % 2147483647, rows FROM two_view_geometries "
+                               "WHERE rows > 0 ORDER BY pair_id";
+    sqlite3_stmt *find = NULL;
+    int step, capacity = 0;
+    *pairs = NULL;
+    *count = 0;
+    if (sqlite3_prepare_v2(db->sql, text, -1, &find, NULL) != SQLITE_OK) return failed(db, "look for pairs", err);
+    while ((step = sqlite3_step(find)) == SQLITE_ROW) {
+        if (*count == capacity) {
+            capacity = capacity ? 2 * capacity : 256;
+            struct verified_pair *more = realloc(*pairs, (size_t)capacity * sizeof *more);
+            if (!more) {
+                err_nomem(err, "pairs", (size_t)capacity * sizeof *more);
+                break;
+            }
+            *pairs = more;
+        }
+        (*pairs)[(*count)++] = (struct verified_pair){{sqlite3_column_int(find, 0), sqlite3_column_int(find, 1)},
+                                                      sqlite3_column_int(find, 2)};
+    }
+    if (!err->status && step != SQLITE_DONE) failed(db, "look for pairs", err);
+    sqlite3_finalize(find);
     return err->status;
 }

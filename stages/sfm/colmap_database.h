@@ -1,4 +1,4 @@
-/* colmap_database.h - features and matches of the photos in COLMAP's database (SQLite). */
+/* colmap_database.h - features and verified pairs of the photos in COLMAP's database (SQLite). */
 #ifndef REMODEL_COLMAP_DATABASE_H
 #define REMODEL_COLMAP_DATABASE_H
 
@@ -6,6 +6,12 @@
 #include "common/capture/feature_list.h"
 
 struct colmap_database;
+
+/* Two images whose matches agree with one geometry. */
+struct verified_pair {
+    int images[2]; /* ids, ascending */
+    int matches;
+};
 
 /* Opens a database that COLMAP made. Changes are kept only after colmap_database_commit(). ST_IO, with SQLite's words.
  */
@@ -15,6 +21,9 @@ enum status colmap_database_image_id(int *id, struct colmap_database *db, const 
 /* Replaces the features of an image. Descriptors are left out: nothing that follows reads them. */
 enum status colmap_database_set_features(struct colmap_database *db, int image, const struct feature_list *list,
                                          struct err *err);
+/* The verified pairs, in order of their ids; the caller frees *pairs. */
+enum status colmap_database_pairs(struct verified_pair **pairs, int *count, struct colmap_database *db,
+                                  struct err *err);
 enum status colmap_database_commit(struct colmap_database *db, struct err *err);
 void colmap_database_close(struct colmap_database *db); /* NULL: nothing */
 

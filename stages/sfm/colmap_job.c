@@ -10,8 +10,8 @@
  * Lenses. start_lens.c decides whether all photos share one lens, and where its parameters begin; otherwise each
  * photo has its own. `refine_camera = no` holds focal lengths and distortion during mapping.
  *
- * The mapper may be run again `relaxed`, with a smaller angle and fewer inliers for its first pair; exit status 1 of
- * it means that it found no model, which the caller explains. */
+ * The mapper may be run again, from another photo or `relaxed`. Its exit status 1 means that it found no model, which
+ * the caller explains. */
 #include "stages/sfm/colmap_job.h"
 
 #include <ctype.h>
@@ -117,19 +117,27 @@ enum status colmap_run(const struct colmap_job *job, int step, const char *const
     return err->status;
 }
 
-enum status colmap_map(const struct colmap_job *job, bool relaxed, struct err *err)
+enum status colmap_map(const struct colmap_job *job, const struct colmap_start *start, struct err *err)
 {
     const char *refine = strcmp(job->params->refine_camera, "no") ? "1" : "0";
+    char image[16];
     const char *args[MAX_ARGS] = {"mapper",      "--database_path",
                                   job->database, "--image_path",
                                   job->images,   "--output_path",
-                                  job->sparse,   "--Mapper.num_threads",
+                                  start->folder, "--Mapper.num_threads",
                                   job->threads,  "--Mapper.ba_refine_focal_length",
                                   refine,        "--Mapper.ba_refine_extra_params",
                                   refine};
     int n = 0;
     while (args[n]) n++;
-    if (relaxed) {
+    if (start->image) {
+        snprintf(image, sizeof image, "%d", start->image);
+        args[n++] = "--Mapper.init_image_id1";
+        args[n++] = image;
+        args[n++] = "--Mapper.multiple_models";
+        args[n++] = "0";
+    }
+    if (start->relaxed) {
         static const char *const relaxations[] = {"--Mapper.init_min_tri_angle",       "4",
                                                   "--Mapper.init_min_num_inliers",     "50",
                                                   "--Mapper.abs_pose_min_num_inliers", "20"};

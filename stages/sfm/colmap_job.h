@@ -44,8 +44,14 @@ enum status colmap_run(const struct colmap_job *job, int step, const char *const
                        struct err *err);
 enum status colmap_failed(const struct colmap_job *job, int step, const char *command, int status, struct err *err);
 
-/* Step 3: poses and points. relaxed: the initial pair may have a smaller angle and fewer inliers than by default. */
-enum status colmap_map(const struct colmap_job *job, bool relaxed, struct err *err);
+struct colmap_start {
+    const char *folder; /* of the models, N from 0; it exists */
+    int image;          /* id of the first image; 0: COLMAP chooses, and makes several models if one is not enough */
+    bool relaxed;       /* the first pair may have a smaller angle and fewer inliers than by default */
+};
+
+/* Step 3: poses and points. */
+enum status colmap_map(const struct colmap_job *job, const struct colmap_start *start, struct err *err);
 
 /* Moves the logs into the product's folder. */
 enum status colmap_keep_logs(const struct colmap_job *job, struct err *err);

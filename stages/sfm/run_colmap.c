@@ -1,5 +1,7 @@
-/* run_colmap.c - COLMAP's sparse reconstruction: verified matches, mapping, conversion to text. If the mapper finds no
- * initial pair it runs again with relaxed thresholds, as sets of a few photos taken close together need. */
+/* run_colmap.c - COLMAP's sparse reconstruction: verified matches, mapping, conversion to text.
+ *
+ * If the mapper finds no initial pair it runs again with relaxed thresholds, as sets of a few photos taken close
+ * together need. If its largest model has too few of the photos it runs again from others. */
 #include "stages/sfm/run_colmap.h"
 
 #include <stdlib.h>
@@ -11,6 +13,17 @@
 #include "common/base/outfile.h"
 #include "stages/sfm/colmap_log.h"
 #include "stages/sfm/colmap_matches.h"
+#include "stages/sfm/start_photos.h"
+
+enum { MORE_STARTS = 4, ENOUGH = 90 }; /* ENOUGH: per cent of the photos that match another one */
+
+struct mapping {
+    struct colmap_job job;
+    struct sfm_folder *folder;
+    const struct provenance *prov;
+    int *placed; /* ids of the images of the largest model; owned */
+    int placed_count;
+};
 
 static enum status explain_failure(const struct colmap_job *job, struct err *err)
 {
@@ -30,61 +43,108 @@ static enum status explain_failure(const struct colmap_job *job, struct err *err
     return err->status;
 }
 
-/* Converts COLMAP's model number k to text, checks it and adds it to the folder. */
-static enum status add_model(const struct colmap_job *job, struct sfm_folder *f, int k, const struct provenance *prov,
-                             struct err *err)
+static enum status keep_placed(struct mapping *m, const struct sfm_model *model, struct err *err)
 {
-    struct sfm_model m = {0};
-    char *from = sfm_text_format(err, "%s/%d", job->sparse, k), *text = sfm_text_format(err, "%s/text/%d", f->work, k);
+    int *ids = realloc(m->placed, ((size_t)model->image_count + 1) * sizeof *ids);
+    if (!ids) return err_nomem(err, "ids of photos", (size_t)model->image_count * sizeof *ids);
+    for (int i = 0; i < model->image_count; i++) ids[i] = (int)model->images[i].id;
+    m->placed = ids;
+    m->placed_count = model->image_count;
+    return ST_OK;
+}
+
+/* Converts COLMAP's model number k in a folder to text, checks it, and adds it if it has more than `above` photos. */
+static enum status add_model(struct mapping *m, const char *sparse, int k, int above, struct err *err)
+{
+    const struct colmap_job *job = &m->job;
+    struct sfm_model model = {0};
+    char *from = sfm_text_format(err, "%s/%d", sparse, k), *text = sfm_text_format(err, "%s/%d.text", sparse, k);
     const char *args[] = {"model_converter", "--input_path", from, "--output_path", text, "--output_type", "TXT", NULL};
-    if (from && text && !outfile_make_folders(text, err) && !colmap_run(job, 4, args, 0, err) &&
-        !sfm_model_read_text(&m, text, NULL, err)) {
-        log_note("model %d: %d of %d photos, %d points", k, m.image_count, job->photos->count, m.point_count);
-        if (!colmap_name_images(&m, job->photos, err)) sfm_folder_add(f, &m, prov, err);
+    if (from && text && !outfile_make_folders(text, err) && !colmap_run(job, 4, args, 0, err))
+        sfm_model_read_text(&model, text, NULL, err);
+    if (!err->status) {
+        log_note("model: %d of %d photos, %d points", model.image_count, job->photos->count, model.point_count);
+        if (model.image_count > above && !colmap_name_images(&model, job->photos, err) &&
+            !sfm_folder_add(m->folder, &model, m->prov, err) && model.image_count > m->placed_count)
+            keep_placed(m, &model, err);
     }
-    sfm_model_release(&m);
+    sfm_model_release(&model);
     free(from);
     free(text);
     return err->status;
 }
 
-static int count_models(const struct colmap_job *job, struct err *err)
+static int count_models(const char *sparse, struct err *err)
 {
     for (int k = 0;; k++) {
-        char *path = sfm_text_format(err, "%s/%d", job->sparse, k);
+        char *path = sfm_text_format(err, "%s/%d", sparse, k);
         bool exists = path && path_is_folder(path);
         free(path);
         if (!exists) return k;
     }
 }
 
+/* Maps where COLMAP itself starts, and adds all models. */
+static enum status map_photos(struct mapping *m, struct err *err)
+{
+    struct colmap_start start = {.folder = m->job.sparse};
+    int models = 0;
+    if (!colmap_map(&m->job, &start, err) && !(models = count_models(start.folder, err))) {
+        log_note("no pair of photos is good enough to start from; trying again with smaller angles and fewer matches");
+        start.relaxed = true;
+        if (!colmap_map(&m->job, &start, err)) models = count_models(start.folder, err);
+    }
+    if (!err->status && !models) explain_failure(&m->job, err);
+    if (!err->status)
+        log_note("step 4 of %d: text of %d models (%.1f s so far)", COLMAP_STEPS, models,
+                 clock_seconds() - m->job.started);
+    for (int k = 0; !err->status && k < models; k++) add_model(m, start.folder, k, 0, err);
+    return err->status;
+}
+
+static bool are_enough(const struct mapping *m, int linked) { return 100LL * m->placed_count >= ENOUGH * linked; }
+
+/* Maps from other photos while the largest model has too few; adds what is larger. */
+static enum status map_again(struct mapping *m, struct err *err)
+{
+    struct colmap_database *db = NULL;
+    struct verified_pair *pairs = NULL;
+    int count = 0, ids[MORE_STARTS], starts = 0, linked = 0;
+    if (!colmap_database_open(&db, m->job.database, err)) colmap_database_pairs(&pairs, &count, db, err);
+    colmap_database_close(db);
+    if (!err->status)
+        start_photos_choose(ids, &starts, MORE_STARTS, &linked, pairs, count, m->placed, m->placed_count, err);
+    free(pairs);
+    for (int i = 0; !err->status && i < starts && !are_enough(m, linked); i++) {
+        char *folder = sfm_text_format(err, "%s-%d", m->job.sparse, i + 2);
+        log_note("%d of the %d photos that match another one are placed; start %d, from another photo (%.1f s so far)",
+                 m->placed_count, linked, i + 2, clock_seconds() - m->job.started);
+        if (folder && !outfile_make_folders(folder, err) &&
+            !colmap_map(&m->job, &(struct colmap_start){.folder = folder, .image = ids[i]}, err) &&
+            count_models(folder, err))
+            add_model(m, folder, 0, m->placed_count, err);
+        free(folder);
+    }
+    return err->status;
+}
+
 enum status run_colmap(struct sfm_folder *f, const struct sfm_input *in, const struct provenance *prov, struct err *err)
 {
-    struct colmap_job job = {0};
+    struct mapping m = {.folder = f, .prov = prov};
     long long features = 0;
-    int models = 0;
     if (in->list->count < 2)
         return err_set(err, ST_DATA,
                        "there %s; structure from motion needs at least 2, better 8 or more, taken a step apart.",
                        in->list->count ? "is only 1 photo" : "are no photos");
     f->given = strcmp(in->params->refine_camera, "no") ? "nothing" : "lens";
-    if (!colmap_prepare(&job, f, in, in->params, err)) colmap_take_matches(&features, &job, err);
+    if (!colmap_prepare(&m.job, f, in, in->params, err)) colmap_take_matches(&features, &m.job, err);
     if (!err->status && !features)
         err_set(err, ST_DATA, "none of the %d photos has features: they are blank, masked or unreadable.",
                 in->list->count);
     if (!err->status)
-        log_note("step 3 of %d: poses and points (%.1f s so far)", COLMAP_STEPS, clock_seconds() - job.started);
-    if (!err->status) colmap_map(&job, false, err);
-    if (!err->status && !(models = count_models(&job, err))) {
-        log_note("no pair of photos is good enough to start from; trying again with smaller angles and fewer matches");
-        if (!colmap_map(&job, true, err)) models = count_models(&job, err);
-    }
-    if (!err->status && !models) explain_failure(&job, err);
-    if (!err->status)
-        log_note("step 4 of %d: text of %d models (%.1f s so far)", COLMAP_STEPS, models,
-                 clock_seconds() - job.started);
-    for (int k = 0; !err->status && k < models; k++) add_model(&job, f, k, prov, err);
-    if (!err->status) colmap_keep_logs(&job, err);
-    colmap_job_release(&job);
+        log_note("step 3 of %d: poses and points (%.1f s so far)", COLMAP_STEPS, clock_seconds() - m.job.started);
+    if (!err->status && !map_photos(&m, err) && !map_again(&m, err)) colmap_keep_logs(&m.job, err);
+    colmap_job_release(&m.job);
+    free(m.placed);
     return err->status;
 }

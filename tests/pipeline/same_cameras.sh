@@ -50,5 +50,24 @@ a_photo_that_comes_and_goes_costs_its_own_pairs()
     cameras | grep -v photo_6 | diff first - || fail "other bytes after the photo went"
 }
 
+# COLMAP's own start is made to see two photos only
+another_start_places_the_other_photos()
+{
+    mkdir -p fake; printf 'photo_1.jpg\nphoto_2.jpg\n' >two.txt
+    cat >fake/colmap <<END
+#!/bin/sh
+case "\$*" in *init_image_id1*) ;; mapper*) set -- "\$@" --image_list_path $PWD/two.txt ;; esac
+exec $(command -v colmap) "\$@"
+END
+    chmod +x fake/colmap
+    rm -r out/t/sfm
+    PATH=$PWD/fake:$PATH m sfm || { cat log; fail "make sfm"; }
+    grep -h . out/t/log/sfm.log | matches '2 of the 5 photos that match another one are placed; start 2'
+    awk '/photos are placed/ && $2 == 5 { found = 1 } END { exit !found }' log || { cat log; fail "the other photos were not placed"; }
+    rm -r out/t/sfm
+    m sfm || { cat log; fail "make sfm without the change"; }
+    ! grep -q 'start 2' out/t/log/sfm.log || fail "it started again though all photos were placed"
+}
+
 for t in cameras_are_the_same_for_any_number_of_cores cameras_are_the_same_in_another_folder cameras_are_the_same_after_a_kill \
-    a_photo_that_comes_and_goes_costs_its_own_pairs; do run "$t"; done
+    a_photo_that_comes_and_goes_costs_its_own_pairs another_start_places_the_other_photos; do run "$t"; done
