@@ -49,13 +49,16 @@ static enum status read_largest(struct feature_list *lists, const struct pair_ch
 static enum status find_similar(bool *similar, const struct pair_choice *c, const struct photo_list *photos,
                                 struct provenance *prov, struct err *err)
 {
-    struct feature_list *lists = calloc((size_t)photos->count + 1, sizeof *lists);
-    if (!lists)
-        err_nomem(err, "features", (size_t)photos->count * sizeof *lists);
-    else if (!read_largest(lists, c, photos, prov, err))
-        similar_by_features(similar, lists, photos->count, c->params.min_matches, err);
-    for (int i = 0; lists && i < photos->count; i++) feature_list_release(&lists[i]);
+    const size_t count = (size_t)photos->count;
+    struct feature_list *lists = calloc(count + 1, sizeof *lists);
+    int *shared = calloc(count * count + 1, sizeof *shared);
+    if (!lists || !shared)
+        err_nomem(err, "features", count * count * sizeof *shared);
+    else if (!read_largest(lists, c, photos, prov, err) && !similar_count_matches(shared, lists, photos->count, err))
+        similar_choose(similar, shared, photos->count, c->params.min_matches, c->params.max_similar, err);
+    for (size_t i = 0; lists && i < count; i++) feature_list_release(&lists[i]);
     free(lists);
+    free(shared);
     return err->status;
 }
 

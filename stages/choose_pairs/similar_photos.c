@@ -2,7 +2,8 @@
  *
  * Large features are found again from most viewpoints, so a few hundred of them show whether two photos overlap
  * ("preemptive matching" [Wu 2013]), at a hundredth of the cost of all features. They are matched in the same way as
- * all features: exactly, mutually, with the ratio test. */
+ * all features: exactly, mutually, with the ratio test. A few of them match by chance where surfaces are alike, such as
+ * bricks and boards of other rooms, so only the most similar photos count. */
 #include "stages/choose_pairs/similar_photos.h"
 
 #include <stdlib.h>
@@ -22,8 +23,7 @@ bool similar_by_name(int i, int j)
 /* What threads share; a photo with all later ones is a piece of work. */
 struct search {
     const struct nearest_descriptors *photos;
-    bool *similar;
-    int count, min_matches;
+    int *shared, count;
     struct progress progress; /* photos */
     struct err *errs;         /* of each photo */
 };
@@ -32,23 +32,23 @@ static void compare_photos(void *ctx, size_t begin, size_t end, int thread)
 {
     static const struct match_limits limits = MATCH_LIMITS;
     struct search *s = ctx;
+    const size_t count = (size_t)s->count;
     (void)thread;
     for (size_t i = begin; i < end; i++) {
-        for (size_t j = i + 1; j < (size_t)s->count && !s->errs[i].status; j++) {
+        for (size_t j = i + 1; j < count && !s->errs[i].status; j++) {
             struct matched_pair pair = {0};
             mutual_matches_find(&pair, &s->photos[i], &s->photos[j], &limits, &s->errs[i]);
-            s->similar[i * (size_t)s->count + j] = pair.count >= s->min_matches;
+            s->shared[i * count + j] = s->shared[j * count + i] = pair.count;
             free(pair.matches);
         }
         progress_add(&s->progress, 1);
     }
 }
 
-enum status similar_by_features(bool *similar, const struct feature_list *lists, int count, int min_matches,
-                                struct err *err)
+enum status similar_count_matches(int *shared, const struct feature_list *lists, int count, struct err *err)
 {
     struct nearest_descriptors *photos = calloc((size_t)count + 1, sizeof *photos);
-    struct search s = {.photos = photos, .similar = similar, .count = count, .min_matches = min_matches};
+    struct search s = {.photos = photos, .shared = shared, .count = count};
     s.errs = calloc((size_t)count + 1, sizeof *s.errs);
     if (!photos || !s.errs) err_nomem(err, "descriptors", (size_t)count * sizeof *s.errs);
     for (int i = 0; !err->status && i < count; i++) nearest_descriptors_init(&photos[i], &lists[i], err);
@@ -63,4 +63,37 @@ enum status similar_by_features(bool *similar, const struct feature_list *lists,
     free(photos);
     free(s.errs);
     return err->status;
+}
+
+/* What a photo shares with another one. */
+struct likeness {
+    int shared, other;
+};
+
+static int most_first(const void *a, const void *b)
+{
+    const struct likeness *x = a, *y = b;
+    if (x->shared != y->shared) return x->shared > y->shared ? -1 : 1;
+    return (x->other > y->other) - (x->other < y->other);
+}
+
+enum status similar_choose(bool *similar, const int *shared, int count, int min_matches, int max_similar,
+                           struct err *err)
+{
+    const size_t n = (size_t)count;
+    struct likeness *others = calloc(n + 1, sizeof *others);
+    if (!others) return err_nomem(err, "photos", n * sizeof *others);
+    for (int i = 0; i < count; i++) {
+        int found = 0;
+        for (int j = 0; j < count; j++)
+            if (j != i && shared[(size_t)i * n + (size_t)j] >= min_matches)
+                others[found++] = (struct likeness){shared[(size_t)i * n + (size_t)j], j};
+        qsort(others, (size_t)found, sizeof *others, most_first);
+        for (int k = 0; k < found && k < max_similar; k++) {
+            const int j = others[k].other;
+            similar[i < j ? (size_t)i * n + (size_t)j : (size_t)j * n + (size_t)i] = true;
+        }
+    }
+    free(others);
+    return ST_OK;
 }

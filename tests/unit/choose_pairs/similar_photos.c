@@ -20,6 +20,7 @@ static void photos_of_one_place_are_similar(void **state)
     (void)state;
     struct err err = ERR_INIT;
     struct feature_list lists[PHOTOS] = {0};
+    int shared[PHOTOS * PHOTOS] = {0};
     bool similar[PHOTOS * PHOTOS] = {0};
     for (int i = 0; i < PHOTOS; i++) {
         lists[i].features = calloc(FEATURES, sizeof *lists[i].features);
@@ -30,7 +31,8 @@ static void photos_of_one_place_are_similar(void **state)
                 lists[i].features[(f + 7 * i) % FEATURES].descriptor[k] =
                     made_value(f < FEATURES / 2 ? (uint64_t)(i % PLACES) : (uint64_t)(100 + i), (uint64_t)f, k);
     }
-    assert_ok(similar_by_features(similar, lists, PHOTOS, 4, &err), err);
+    assert_ok(similar_count_matches(shared, lists, PHOTOS, &err), err);
+    assert_ok(similar_choose(similar, shared, PHOTOS, 4, PHOTOS, &err), err);
     for (int i = 0; i < PHOTOS; i++)
         for (int j = i + 1; j < PHOTOS; j++) assert_int_equal(similar[i * PHOTOS + j], (j - i) % PLACES == 0);
     for (int i = 0; i < PHOTOS; i++) feature_list_release(&lists[i]);
@@ -46,10 +48,30 @@ static void neighbours_by_name_are_near_or_powers_of_two_apart(void **state)
     assert_false(similar_by_name(0, 1024));
 }
 
+/* Photo 0 is like all others; of these, each is like one more. */
+static void of_many_similar_photos_the_most_similar_count(void **state)
+{
+    (void)state;
+    enum { N = 5 };
+    static const int shared[N * N] = {
+        0, 9, 8, 8, 7, //
+        9, 0, 3, 0, 0, //
+        8, 3, 0, 0, 0, //
+        8, 0, 0, 0, 9, //
+        7, 0, 0, 9, 0, //
+    };
+    bool similar[N * N] = {0};
+    struct err err = ERR_INIT;
+    assert_ok(similar_choose(similar, shared, N, 4, 1, &err), err);
+    static const bool wanted[N * N] = {[0 * N + 1] = true, [0 * N + 2] = true, [3 * N + 4] = true};
+    for (int i = 0; i < N * N; i++) assert_int_equal(similar[i], wanted[i]);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(photos_of_one_place_are_similar),
+        cmocka_unit_test(of_many_similar_photos_the_most_similar_count),
         cmocka_unit_test(neighbours_by_name_are_near_or_powers_of_two_apart),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
