@@ -1,7 +1,7 @@
 # the unit tests that take minutes under the address and undefined-behaviour sanitizers; make check runs them without
 . tests/lib.sh
 asan=out/build/asan
-long_sanitized=$(sed -n "s/^long_sanitized='\(.*\)'$/\1/p" tests/run | tr '|' ' ')
+eval "$(sed -n "/^long_sanitized='/,/'$/p" tests/run)"
 
 long_tests_pass_under_the_sanitizers()
 {
