@@ -11,7 +11,7 @@
       "photos that look alike; auto: exhaustive up to 60 photos, then similar")                                       \
     X(compared_features, int, 500, 20, 10000, "", "number of a photo's largest features used to find similar photos") \
     X(min_matches, int, 5, 1, 1000, "", "minimum number of matches among them for two photos to be similar")          \
-    X(max_similar, int, 50, 1, 100000, "",                                                                            \
+    X(max_similar, int, 120, 1, 100000, "",                                                                           \
       "maximum number of similar photos that a photo is compared with; they may choose it, too")
 
 struct pairs_params {

@@ -10,6 +10,9 @@
  * Lenses. start_lens.c decides whether all photos share one lens, and where its parameters begin; otherwise each
  * photo has its own. `refine_camera = no` holds focal lengths and distortion during mapping.
  *
+ * Bundle adjustment runs in one thread. Several add up their sums in any order, so that cameras would differ from run
+ * to run; by default the mapper uses them from 50000 residuals on.
+ *
  * The mapper may be run again, from another photo or `relaxed`. Its exit status 1 means that it found no model, which
  * the caller explains. */
 #include "stages/sfm/colmap_job.h"
@@ -29,6 +32,7 @@
 #include "stages/sfm/colmap_log.h"
 
 enum { MAX_ARGS = 40 };
+#define NEVER "2147483647" /* more residuals than there can be */
 
 void colmap_job_release(struct colmap_job *job)
 {
@@ -125,7 +129,8 @@ enum status colmap_map(const struct colmap_job *job, const struct colmap_start *
                                   job->database, "--image_path",
                                   job->images,   "--output_path",
                                   start->folder, "--Mapper.num_threads",
-                                  job->threads,  "--Mapper.ba_refine_focal_length",
+                                  job->threads,  "--Mapper.ba_min_num_residuals_for_multi_threading",
+                                  NEVER,         "--Mapper.ba_refine_focal_length",
                                   refine,        "--Mapper.ba_refine_extra_params",
                                   refine};
     int n = 0;
