@@ -15,6 +15,7 @@
 #include <sys/prctl.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
 static const struct {
@@ -154,7 +155,26 @@ static enum status wait_for(long pid, int *code, struct err *err)
     return ST_OK;
 }
 
+/* Calls tick until the program has ended; the program remains to be waited for. */
+static void watch(long pid, void (*tick)(void *ctx), void *ctx)
+{
+    const struct timespec pause = {.tv_nsec = 50000000};
+    siginfo_t info = {0};
+
+    while (!waitid(P_PID, (id_t)pid, &info, WEXITED | WNOHANG | WNOWAIT) && !info.si_pid) {
+        tick(ctx);
+        nanosleep(&pause, NULL);
+    }
+    tick(ctx);
+}
+
 enum status process_run(const char *const argv[], const char *const env[], const char *log, int *code, struct err *err)
+{
+    return process_run_watched(argv, env, log, NULL, NULL, code, err);
+}
+
+enum status process_run_watched(const char *const argv[], const char *const env[], const char *log,
+                                void (*tick)(void *ctx), void *ctx, int *code, struct err *err)
 {
     const int in = open("/dev/null", O_RDONLY | O_CLOEXEC);
     long pid = 0;
@@ -162,6 +182,7 @@ enum status process_run(const char *const argv[], const char *const env[], const
     if (in < 0) return err_errno(err, "open", "/dev/null");
     start(&pid, argv, env, in, log, err);
     close(in);
+    if (!err->status && tick) watch(pid, tick, ctx);
     if (!err->status) wait_for(pid, code, err);
     return err->status;
 }

@@ -12,6 +12,10 @@
  * PATH (the error names its package, if known) or cannot be started. The child is killed when this process ends. */
 enum status process_run(const char *const argv[], const char *const env[], const char *log, int *code, struct err *err);
 
+/* The same; `tick` is called with ctx several times a second until the program ends. */
+enum status process_run_watched(const char *const argv[], const char *const env[], const char *log,
+                                void (*tick)(void *ctx), void *ctx, int *code, struct err *err);
+
 /* A running program that reads its standard input from this process (ffmpeg). {0} is the empty state. */
 struct process {
     long pid;

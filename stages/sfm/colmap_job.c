@@ -95,13 +95,20 @@ enum status colmap_prepare(struct colmap_job *job, const struct sfm_folder *f, c
     return outfile_make_folders(job->sparse, err) || link_photos(job, err) ? err->status : ST_OK;
 }
 
-enum status colmap_exit_status(int *status, const struct colmap_job *job, int step, const char *const args[],
-                               struct err *err)
+static enum status run(int *status, const struct colmap_job *job, int step, const char *const args[],
+                       struct colmap_progress *progress, struct err *err)
 {
     static const char *const env[] = {"QT_QPA_PLATFORM=offscreen", NULL};
     const char *argv[MAX_ARGS + 2] = {"colmap"};
     for (int n = 1; args[n - 1]; n++) argv[n] = args[n - 1];
-    return process_run(argv, env, job->logs[step - 1], status, err);
+    return process_run_watched(argv, env, job->logs[step - 1], progress ? colmap_progress_tick : NULL, progress, status,
+                               err);
+}
+
+enum status colmap_exit_status(int *status, const struct colmap_job *job, int step, const char *const args[],
+                               struct err *err)
+{
+    return run(status, job, step, args, NULL, err);
 }
 
 enum status colmap_failed(const struct colmap_job *job, int step, const char *command, int status, struct err *err)
@@ -115,9 +122,16 @@ enum status colmap_failed(const struct colmap_job *job, int step, const char *co
 enum status colmap_run(const struct colmap_job *job, int step, const char *const args[], int max_status,
                        struct err *err)
 {
+    return colmap_run_long(job, step, args, max_status, NULL, err);
+}
+
+enum status colmap_run_long(const struct colmap_job *job, int step, const char *const args[], int max_status,
+                            struct colmap_progress *progress, struct err *err)
+{
     int status = 0;
-    if (!colmap_exit_status(&status, job, step, args, err) && status > max_status)
-        colmap_failed(job, step, args[0], status, err);
+    run(&status, job, step, args, progress, err);
+    if (progress) colmap_progress_end(progress);
+    if (!err->status && status > max_status) colmap_failed(job, step, args[0], status, err);
     return err->status;
 }
 
@@ -148,8 +162,11 @@ enum status colmap_map(const struct colmap_job *job, const struct colmap_start *
                                                   "--Mapper.abs_pose_min_num_inliers", "20"};
         for (size_t i = 0; i < sizeof relaxations / sizeof *relaxations; i++) args[n++] = relaxations[i];
     }
+    struct colmap_progress progress;
+    colmap_progress_start(&progress, job->logs[2], "Registering image #", true, "placing photos", job->photos->count,
+                          "photos");
     /* exit status 1 means that it found no model; the caller counts the models and explains */
-    return colmap_run(job, 3, args, 1, err);
+    return colmap_run_long(job, 3, args, 1, &progress, err);
 }
 
 enum status colmap_keep_logs(const struct colmap_job *job, struct err *err)

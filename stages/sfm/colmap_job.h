@@ -6,6 +6,7 @@
 #ifndef REMODEL_COLMAP_JOB_H
 #define REMODEL_COLMAP_JOB_H
 
+#include "stages/sfm/colmap_progress.h"
 #include "stages/sfm/sfm_folder.h"
 #include "stages/sfm/start_lens.h"
 
@@ -42,6 +43,9 @@ enum status colmap_exit_status(int *status, const struct colmap_job *job, int st
 /* The same; an exit status above max_status is ST_IO with the last line of the log. */
 enum status colmap_run(const struct colmap_job *job, int step, const char *const args[], int max_status,
                        struct err *err);
+/* The same, with progress, which is started and will be ended here. */
+enum status colmap_run_long(const struct colmap_job *job, int step, const char *const args[], int max_status,
+                            struct colmap_progress *progress, struct err *err);
 enum status colmap_failed(const struct colmap_job *job, int step, const char *command, int status, struct err *err);
 
 struct colmap_start {

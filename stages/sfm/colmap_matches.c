@@ -98,8 +98,9 @@ static enum status take_features(long long *found, const struct colmap_job *job,
     return ST_OK;
 }
 
-/* Writes the pairs of a photo in COLMAP's form: the names of both, a line for each match, a blank line. */
-static enum status write_pairs(FILE *to, const struct colmap_job *job, int photo, struct err *err)
+/* Writes the pairs of a photo in COLMAP's form: the names of both, a line for each match, a blank line. *written grows
+ * by their number. */
+static enum status write_pairs(FILE *to, long long *written, const struct colmap_job *job, int photo, struct err *err)
 {
     const struct photo_record *p = &job->photos->photos[photo];
     struct match_list list = {0};
@@ -115,6 +116,7 @@ static enum status write_pairs(FILE *to, const struct colmap_job *job, int photo
                 colmap_extension(job->photos->photos[other].file));
         for (int k = 0; k < pair->count; k++) fprintf(to, "%d %d\n", pair->matches[k].first, pair->matches[k].second);
         fputc('\n', to);
+        (*written)++;
     }
     match_list_release(&list);
     return ST_OK;
@@ -123,6 +125,8 @@ static enum status write_pairs(FILE *to, const struct colmap_job *job, int photo
 static enum status take_pairs(const struct colmap_job *job, struct err *err)
 {
     struct outfile f = {0};
+    struct colmap_progress progress;
+    long long pairs = 0;
     char *list = sfm_text_format(err, "%s.matches.txt", job->images);
     const char *args[] = {"matches_importer",
                           "--database_path",
@@ -138,8 +142,11 @@ static enum status take_pairs(const struct colmap_job *job, struct err *err)
                           NULL};
     if (list) outfile_open(&f, list, err);
     for (int i = 0; !err->status && i < job->photos->count; i++)
-        if (job->features[i] >= 0) write_pairs(f.fp, job, i, err);
-    if (!err->status && !outfile_commit(&f, err)) colmap_run(job, 2, args, 0, err);
+        if (job->features[i] >= 0) write_pairs(f.fp, &pairs, job, i, err);
+    if (!err->status && !outfile_commit(&f, err)) {
+        colmap_progress_start(&progress, job->logs[1], " - ", false, "verifying", pairs, "pairs");
+        colmap_run_long(job, 2, args, 0, &progress, err);
+    }
     outfile_discard(&f);
     free(list);
     return err->status;

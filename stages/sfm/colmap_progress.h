@@ -1,0 +1,26 @@
+/* colmap_progress.h - progress of a command of COLMAP, from the log that it is writing. */
+#ifndef REMODEL_COLMAP_PROGRESS_H
+#define REMODEL_COLMAP_PROGRESS_H
+
+#include <stdbool.h>
+#include <stdio.h>
+
+#include "common/base/progress.h"
+
+struct colmap_progress {
+    struct progress progress;
+    const char *path, *mark; /* the log; a line counts if it contains the mark */
+    bool numbered;           /* the count is the largest number in parentheses after a mark; else each line counts */
+    long read;               /* bytes */
+    long long count;
+};
+
+/* Follows the log at `path` from its present end on; it may be missing. what, unit, total: as of progress_start(). The
+ * strings are borrowed. */
+void colmap_progress_start(struct colmap_progress *p, const char *path, const char *mark, bool numbered,
+                           const char *what, long long total, const char *unit);
+/* Reads what is new; p is a struct colmap_progress, for process_run_watched(). */
+void colmap_progress_tick(void *p);
+void colmap_progress_end(struct colmap_progress *p);
+
+#endif
