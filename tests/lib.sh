@@ -18,8 +18,8 @@ skip() { echo "# $*" >"$scratch/.skip"; exit 0; }
 run()
 {
     rm -f "$scratch/.skip"
-    local out rc=0
-    out=$(set -e; "$1" 2>&1) || rc=$?
+    local out rc
+    out=$(set -e; "$1" 2>&1); rc=$? # not behind ||, where bash ignores set -e
     if [ -e "$scratch/.skip" ]; then echo "skip $1: $(sed 's/^# //' "$scratch/.skip")"
     elif [ "$rc" -eq 0 ]; then echo "ok $1"
     else

@@ -5,7 +5,7 @@ packages="OpenEXR libturbojpeg libpng libtiff-4 libraw_r libexif inih libxxhash 
 warnings="-Wall -Wextra -Wshadow -Wstrict-prototypes -Wmissing-prototypes -Wvla -Wpointer-arith -Wwrite-strings"
 warnings+=" -Wreserved-identifier"
 # shellcheck disable=SC2086 # a list of packages
-libraries=$(pkg-config --cflags $packages | sed 's/-I/-isystem /g') # of their headers nothing is reported
+libraries=$(pkg-config --cflags $packages | sed 's/-I/-isystem /g') # no warnings from their headers
 CLANG_FLAGS="-std=c11 -D_GNU_SOURCE -ffp-contract=off -fopenmp $warnings -I. -I$B $libraries"
 export CLANG_FLAGS
 
