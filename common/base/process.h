@@ -12,7 +12,8 @@
  * PATH (the error names its package, if known) or cannot be started. The child is killed when this process ends. */
 enum status process_run(const char *const argv[], const char *const env[], const char *log, int *code, struct err *err);
 
-/* The same; `tick` is called with ctx several times a second until the program ends. */
+/* The same, and calls tick(ctx) about 20 times a second in the calling thread, and once after the program has ended.
+ * tick NULL: no calls. The end may be noticed 50 ms late. */
 enum status process_run_watched(const char *const argv[], const char *const env[], const char *log,
                                 void (*tick)(void *ctx), void *ctx, int *code, struct err *err);
 

@@ -2,7 +2,7 @@
  *
  *   remodel-features 1
  *   features COUNT HASH
- *   feature X Y SCALE ANGLE DESCRIPTOR      COUNT lines
+ *   feature X Y SCALE ANGLE DESCRIPTOR      COUNT lines, the largest SCALE first
  *
  * X, Y: pixels of the stored photo, whose first pixel has its centre at (0.5, 0.5). SCALE: the standard deviation of
  * the blur at which it was found, in those pixels. ANGLE: radians. DESCRIPTOR: 256 hexadecimal digits. */

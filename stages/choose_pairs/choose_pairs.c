@@ -21,14 +21,14 @@
 static const struct param pairs_param_table[] = {PAIRS_PARAMS(PARAM_ROW) PARAM_END};
 #undef PARAM_STRUCT
 
-enum { MOST_EXHAUSTIVE = 60 };
+enum { MAX_EXHAUSTIVE = 60 };
 
 struct pair_choice {
     const char *records, *features, *out;
     struct pairs_params params;
 };
 
-/* The largest features of each photo. */
+/* Reads the features of each photo and keeps the first compared_features: files list the largest first. */
 static enum status read_largest(struct feature_list *lists, const struct pair_choice *c,
                                 const struct photo_list *photos, struct provenance *prov, struct err *err)
 {
@@ -70,7 +70,7 @@ static enum status choose_pairs(const struct pair_choice *c, struct provenance *
     if (photo_list_read(&photos, c->records, err)) return err->status;
     const size_t count = (size_t)photos.count;
     const char *matcher = c->params.matcher;
-    const bool all = !strcmp(matcher, "exhaustive") || (!strcmp(matcher, "auto") && count <= MOST_EXHAUSTIVE);
+    const bool all = !strcmp(matcher, "exhaustive") || (!strcmp(matcher, "auto") && count <= MAX_EXHAUSTIVE);
     const bool by_features = !all && strcmp(matcher, "sequential") != 0;
     if (by_features) {
         similar = calloc(count * count + 1, sizeof *similar);

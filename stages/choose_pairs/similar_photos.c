@@ -2,8 +2,8 @@
  *
  * Large features are found again from most viewpoints, so a few hundred of them show whether two photos overlap
  * ("preemptive matching" [Wu 2013]), at a hundredth of the cost of all features. They are matched in the same way as
- * all features: exactly, mutually, with the ratio test. A few of them match by chance where surfaces are alike, such as
- * bricks and boards of other rooms, so only the most similar photos count. */
+ * all features: exactly, mutually, with the ratio test. Repeated textures, such as bricks and boards, also match by
+ * chance between different rooms, so each photo keeps only its most similar ones. */
 #include "stages/choose_pairs/similar_photos.h"
 
 #include <stdlib.h>
@@ -20,10 +20,11 @@ bool similar_by_name(int i, int j)
     return apart <= NEIGHBOURS || (apart <= FARTHEST && !(apart & (apart - 1)));
 }
 
-/* What threads share; a photo with all later ones is a piece of work. */
+/* Shared by the threads; one piece of work compares a photo with all later ones. */
 struct search {
     const struct nearest_descriptors *photos;
-    int *shared, count;
+    int *shared; /* [count][count]: matches */
+    int count;
     struct progress progress; /* photos */
     struct err *errs;         /* of each photo */
 };
@@ -65,7 +66,7 @@ enum status similar_count_matches(int *shared, const struct feature_list *lists,
     return err->status;
 }
 
-/* What a photo shares with another one. */
+/* A photo that may be similar: number of matches, and index. */
 struct likeness {
     int shared, other;
 };

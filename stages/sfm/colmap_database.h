@@ -10,7 +10,7 @@ struct colmap_database;
 /* Two images whose matches agree with one geometry. */
 struct verified_pair {
     int images[2]; /* ids, ascending */
-    int matches;
+    int matches;   /* that agree with the geometry */
 };
 
 /* Opens a database that COLMAP made. Changes are kept only after colmap_database_commit(). ST_IO, with SQLite's words.
@@ -21,9 +21,10 @@ enum status colmap_database_image_id(int *id, struct colmap_database *db, const 
 /* Replaces the features of an image. Descriptors are left out: nothing that follows reads them. */
 enum status colmap_database_set_features(struct colmap_database *db, int image, const struct feature_list *list,
                                          struct err *err);
-/* The verified pairs, in order of their ids; the caller frees *pairs. */
+/* Reads the verified pairs, ascending by image ids. The caller frees *pairs, also after an error. ST_IO, ST_NOMEM. */
 enum status colmap_database_pairs(struct verified_pair **pairs, int *count, struct colmap_database *db,
                                   struct err *err);
+/* Keeps the changes; closing without it drops them. ST_IO. */
 enum status colmap_database_commit(struct colmap_database *db, struct err *err);
 void colmap_database_close(struct colmap_database *db); /* NULL: nothing */
 

@@ -4,14 +4,14 @@
  * This file makes their work folder and turns their failures into sentences; run_colmap.c decides when to run which.
  *
  * Names. COLMAP's text files cannot hold every file name, so the work folder has links PHOTO-ID.EXTENSION, and
- * colmap_name_images() puts the users' names back where a text file can hold them. COLMAP tells formats by the
- * extension; one with other characters than letters and digits becomes .img.
+ * colmap_name_images() puts the users' names back where a text file can hold them. The link keeps the file's extension
+ * if it has letters and digits only, otherwise it gets .img; COLMAP reads the content.
  *
  * Lenses. start_lens.c decides whether all photos share one lens, and where its parameters begin; otherwise each
  * photo has its own. `refine_camera = no` holds focal lengths and distortion during mapping.
  *
- * Bundle adjustment runs in one thread. Several add up their sums in any order, so that cameras would differ from run
- * to run; by default the mapper uses them from 50000 residuals on.
+ * The mapper runs in one thread. Several add up the sums of bundle adjustment in any order, and each has random numbers
+ * of its own for unknown focal lengths, so that cameras would differ from run to run.
  *
  * The mapper may be run again, from another photo or `relaxed`. Its exit status 1 means that it found no model, which
  * the caller explains. */
@@ -32,7 +32,6 @@
 #include "stages/sfm/colmap_log.h"
 
 enum { MAX_ARGS = 40 };
-#define NEVER "2147483647" /* more residuals than there can be */
 
 void colmap_job_release(struct colmap_job *job)
 {
@@ -84,9 +83,9 @@ enum status colmap_prepare(struct colmap_job *job, const struct sfm_folder *f, c
     if (!sfm_single_camera(&job->single, job->photos, params, err)) sfm_start_lens(job->lens, job->photos, params, err);
     if (err->status) return err->status;
     snprintf(job->threads, sizeof job->threads, "%d", parallel_threads());
-    job->images = sfm_text_format(err, "%s/images", work);
-    job->database = sfm_text_format(err, "%s/database.db", work);
-    job->sparse = sfm_text_format(err, "%s/sparse", work);
+    job->images = sfm_text_format(err, "%s/images-%d", work, f->models);
+    job->database = sfm_text_format(err, "%s/database-%d.db", work, f->models);
+    job->sparse = sfm_text_format(err, "%s/sparse-%d", work, f->models);
     job->features = calloc((size_t)job->photos->count + 1, sizeof *job->features);
     if (!job->features) err_nomem(err, "numbers of features", (size_t)job->photos->count * sizeof *job->features);
     if (err->status) return err->status;
@@ -143,8 +142,7 @@ enum status colmap_map(const struct colmap_job *job, const struct colmap_start *
                                   job->database, "--image_path",
                                   job->images,   "--output_path",
                                   start->folder, "--Mapper.num_threads",
-                                  job->threads,  "--Mapper.ba_min_num_residuals_for_multi_threading",
-                                  NEVER,         "--Mapper.ba_refine_focal_length",
+                                  "1",           "--Mapper.ba_refine_focal_length",
                                   refine,        "--Mapper.ba_refine_extra_params",
                                   refine};
     int n = 0;

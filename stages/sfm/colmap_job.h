@@ -32,8 +32,8 @@ struct colmap_job {
     bool single; /* one lens for all photos */
 };
 
-/* Fills the work folder: links, names of logs. params may differ from in->params. The job borrows its
- * arguments. */
+/* Fills the work folder: links, names of logs; its own files for each model that is added to f. params may differ from
+ * in->params. The job borrows its arguments. */
 enum status colmap_prepare(struct colmap_job *job, const struct sfm_folder *f, const struct sfm_input *in,
                            const struct sfm_params *params, struct err *err);
 
@@ -43,9 +43,10 @@ enum status colmap_exit_status(int *status, const struct colmap_job *job, int st
 /* The same; an exit status above max_status is ST_IO with the last line of the log. */
 enum status colmap_run(const struct colmap_job *job, int step, const char *const args[], int max_status,
                        struct err *err);
-/* The same, with progress, which is started and will be ended here. */
+/* The same. progress: started by the caller, ended here; NULL: none. */
 enum status colmap_run_long(const struct colmap_job *job, int step, const char *const args[], int max_status,
                             struct colmap_progress *progress, struct err *err);
+/* Sets ST_IO: the command, its exit status, the last line of its log. */
 enum status colmap_failed(const struct colmap_job *job, int step, const char *command, int status, struct err *err);
 
 struct colmap_start {
@@ -54,7 +55,8 @@ struct colmap_start {
     bool relaxed;       /* the first pair may have a smaller angle and fewer inliers than by default */
 };
 
-/* Step 3: poses and points. */
+/* Step 3: poses and points, written to start->folder as 0, 1, ... That there are none is no error: the caller counts
+ * them. ST_IO: COLMAP failed. */
 enum status colmap_map(const struct colmap_job *job, const struct colmap_start *start, struct err *err);
 
 /* Moves the logs into the product's folder. */

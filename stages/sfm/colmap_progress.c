@@ -1,6 +1,6 @@
 /* colmap_progress.c - follows a log that COLMAP is writing.
  *
- * It is opened anew each time: COLMAP writes a few lines a second at most. */
+ * The log is opened anew at each tick, because COLMAP may not have made it yet. */
 #include "stages/sfm/colmap_progress.h"
 
 #include <stdlib.h>

@@ -10,12 +10,13 @@
 struct colmap_progress {
     struct progress progress;
     const char *path, *mark; /* the log; a line counts if it contains the mark */
-    bool numbered;           /* the count is the largest number in parentheses after a mark; else each line counts */
+    bool numbered;           /* the count is the largest number in parentheses after a mark (of the mapper: photos that
+                                it has tried to place); else each line counts 1 */
     long read;               /* bytes */
     long long count;
 };
 
-/* Follows the log at `path` from its present end on; it may be missing. what, unit, total: as of progress_start(). The
+/* Follows the log at `path` from its present end on; it may be missing. what, unit, total: as in progress_start(). The
  * strings are borrowed. */
 void colmap_progress_start(struct colmap_progress *p, const char *path, const char *mark, bool numbered,
                            const char *what, long long total, const char *unit);

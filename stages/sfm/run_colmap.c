@@ -1,7 +1,7 @@
 /* run_colmap.c - COLMAP's sparse reconstruction: verified matches, mapping, conversion to text.
  *
- * If the mapper finds no initial pair it runs again with relaxed thresholds, as sets of a few photos taken close
- * together need. If its largest model has too few of the photos it runs again from others. */
+ * If the mapper finds no initial pair, it runs again with relaxed thresholds; sets of a few photos taken close together
+ * need this. If its largest model has too few photos, it runs again from other photos. */
 #include "stages/sfm/run_colmap.h"
 
 #include <stdlib.h>
@@ -15,7 +15,10 @@
 #include "stages/sfm/colmap_matches.h"
 #include "stages/sfm/start_photos.h"
 
-enum { MORE_STARTS = 4, ENOUGH = 90 }; /* ENOUGH: per cent of the photos that match another one */
+enum {
+    MORE_STARTS = 4,
+    ENOUGH = 90
+}; /* ENOUGH: per cent of the largest group of photos that verified matches connect */
 
 struct mapping {
     struct colmap_job job;
@@ -23,6 +26,7 @@ struct mapping {
     const struct provenance *prov;
     int *placed; /* ids of the images of the largest model; owned */
     int placed_count;
+    bool relaxed; /* the first pair was found only so */
 };
 
 static enum status explain_failure(const struct colmap_job *job, struct err *err)
@@ -89,9 +93,9 @@ static enum status map_photos(struct mapping *m, struct err *err)
 {
     struct colmap_start start = {.folder = m->job.sparse};
     int models = 0;
-    if (!colmap_map(&m->job, &start, err) && !(models = count_models(start.folder, err))) {
+    if (!colmap_map(&m->job, &start, err) && !(models = count_models(start.folder, err)) && !err->status) {
         log_note("no pair of photos is good enough to start from; trying again with smaller angles and fewer matches");
-        start.relaxed = true;
+        start.relaxed = m->relaxed = true;
         if (!colmap_map(&m->job, &start, err)) models = count_models(start.folder, err);
     }
     if (!err->status && !models) explain_failure(&m->job, err);
@@ -117,11 +121,13 @@ static enum status map_again(struct mapping *m, struct err *err)
     free(pairs);
     for (int i = 0; !err->status && i < starts && !are_enough(m, linked); i++) {
         char *folder = sfm_text_format(err, "%s-%d", m->job.sparse, i + 2);
-        log_note("%d of the %d photos that match another one are placed; start %d, from another photo (%.1f s so far)",
+        log_note("%d of the %d photos with verified matches are placed; mapping again from another photo (attempt %d, "
+                 "%.1f s so far)",
                  m->placed_count, linked, i + 2, clock_seconds() - m->job.started);
         if (folder && !outfile_make_folders(folder, err) &&
-            !colmap_map(&m->job, &(struct colmap_start){.folder = folder, .image = ids[i]}, err) &&
-            count_models(folder, err))
+            !colmap_map(&m->job, &(struct colmap_start){.folder = folder, .image = ids[i], .relaxed = m->relaxed},
+                        err) &&
+            count_models(folder, err) && !err->status)
             add_model(m, folder, 0, m->placed_count, err);
         free(folder);
     }

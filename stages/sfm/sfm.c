@@ -26,7 +26,7 @@ static enum status run(const struct sfm_input *given, const char *records, const
     if (!err->status && model)
         user_model_add(&folder, model, &in, prov, err);
     else if (!err->status && (!in.features || !in.matches))
-        err_set(err, ST_USAGE, "without --model, --features and --matches are needed.");
+        err_set(err, ST_USAGE, "--features and --matches are required unless --model is given.");
     else if (!err->status)
         run_colmap(&folder, &in, prov, err);
     if (!err->status) sfm_folder_commit(&folder, &list, prov, err);
@@ -46,7 +46,7 @@ int main(int argc, char **argv)
         CLI_STR("records", &records, CLI_REQUIRED, "folder of the photos' records"),
         CLI_STR("features", &in.features, CLI_OPTIONAL,
                 "folder of the photos' features; needed where no model is given"),
-        CLI_STR("matches", &in.matches, CLI_OPTIONAL, "folder of their matches; likewise"),
+        CLI_STR("matches", &in.matches, CLI_OPTIONAL, "folder of the photos' matches; needed where no model is given"),
         CLI_STR("model", &model, CLI_OPTIONAL, "folder of an existing model: COLMAP text or binary, or Bundler"),
         CLI_STR("out", &out, CLI_REQUIRED, "folder to write the models to; replaced as a whole"),
         CLI_PARAMS(sfm_param_table, &params, sfm_params_check),

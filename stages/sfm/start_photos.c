@@ -8,7 +8,8 @@
 #include <stdlib.h>
 
 struct start {
-    int id;
+    int id, group; /* group: place in the list of another photo of its group; its own: the group is counted there */
+    int grouped;   /* photos of the group, where it is counted */
     long long matches;
     bool placed, chosen, near; /* near: has a verified pair with one that is chosen */
 };
@@ -17,7 +18,7 @@ static struct start *start_of(struct start *starts, int *count, int id)
 {
     for (int i = 0; i < *count; i++)
         if (starts[i].id == id) return &starts[i];
-    starts[*count].id = id;
+    starts[*count] = (struct start){.id = id, .group = *count};
     return &starts[(*count)++];
 }
 
@@ -29,25 +30,52 @@ static bool is_before(const struct start *a, const struct start *b)
     return a->id < b->id;
 }
 
+static int group_of(const struct start *starts, int i)
+{
+    while (starts[i].group != i) i = starts[i].group;
+    return i;
+}
+
+/* Lists the photos with a verified pair, and their groups; returns their number. */
+static int list_starts(struct start *starts, const struct verified_pair *pairs, int count)
+{
+    int n = 0;
+    for (int i = 0; i < count; i++) {
+        int group[2];
+        for (int k = 0; k < 2; k++) {
+            struct start *s = start_of(starts, &n, pairs[i].images[k]);
+            s->matches += pairs[i].matches;
+            group[k] = group_of(starts, (int)(s - starts));
+        }
+        starts[group[0]].group = group[1];
+    }
+    for (int i = 0; i < n; i++) starts[group_of(starts, i)].grouped++;
+    return n;
+}
+
 enum status start_photos_choose(int *ids, int *chosen, int max, int *linked, const struct verified_pair *pairs,
                                 int count, const int *placed, int placed_count, struct err *err)
 {
     struct start *starts = calloc(2 * (size_t)count + 1, sizeof *starts);
     *chosen = *linked = 0;
     if (!starts) return err_nomem(err, "photos to start from", 2 * (size_t)count * sizeof *starts);
-    for (int i = 0; i < count; i++)
-        for (int k = 0; k < 2; k++) start_of(starts, linked, pairs[i].images[k])->matches += pairs[i].matches;
-    for (int i = 0; i < *linked; i++)
+    int n = list_starts(starts, pairs, count);
+    for (int i = 0; i < n; i++) {
+        if (starts[i].grouped > *linked) *linked = starts[i].grouped;
         for (int k = 0; k < placed_count; k++) starts[i].placed |= placed[k] == starts[i].id;
-    while (*chosen < max && *chosen < *linked) {
+    }
+    while (*chosen < max) {
         struct start *best = NULL;
-        for (int i = 0; i < *linked; i++)
-            if (!starts[i].chosen && (!best || is_before(&starts[i], best))) best = &starts[i];
+        for (int i = 0; i < n; i++)
+            if (!starts[i].chosen && starts[group_of(starts, i)].grouped > placed_count &&
+                (!best || is_before(&starts[i], best)))
+                best = &starts[i];
+        if (!best) break;
         best->chosen = true;
         ids[(*chosen)++] = best->id;
         for (int i = 0; i < count; i++)
             for (int k = 0; k < 2; k++)
-                if (pairs[i].images[k] == best->id) start_of(starts, linked, pairs[i].images[1 - k])->near = true;
+                if (pairs[i].images[k] == best->id) start_of(starts, &n, pairs[i].images[1 - k])->near = true;
     }
     free(starts);
     return ST_OK;

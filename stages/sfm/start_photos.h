@@ -5,10 +5,11 @@
 #include "common/base/err.h"
 #include "stages/sfm/colmap_database.h"
 
-/* Chooses at most `max` photos to start from, and writes COLMAP's ids of them, best first. Photos that are not placed
- * come before those that are; among them, the one with the most verified matches comes first. Photos with a verified
- * pair to one chosen before come after all others, so that starts are far apart. placed: ids of the placed photos.
- * *linked: the number of photos with a verified pair. */
+/* Chooses photos to start from. ids: room for `max` image ids, best first; *chosen: their number. pairs[count]: the
+ * verified pairs. placed[placed_count]: image ids of the largest model. *linked: photos of the largest group that
+ * verified pairs connect. Photos of groups that have no more photos than are placed are left out. Order: first photos
+ * without a verified pair to one already chosen, so that starts are far apart; then photos that are not placed; then
+ * those with more verified matches; then the lower id. ST_NOMEM. */
 enum status start_photos_choose(int *ids, int *chosen, int max, int *linked, const struct verified_pair *pairs,
                                 int count, const int *placed, int placed_count, struct err *err);
 

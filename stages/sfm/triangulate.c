@@ -98,7 +98,7 @@ static enum status find_points(bool *points, const struct colmap_job *job, const
                               "--output_path",
                               made,
                               "--Mapper.num_threads",
-                              job->threads,
+                              "1", /* as in colmap_map() */
                               "--Mapper.tri_ignore_two_view_tracks",
                               pass ? "0" : "1",
                               NULL};
@@ -130,8 +130,9 @@ enum status triangulate(struct sfm_model *m, const struct sfm_folder *f, const s
         return ST_OK;
     }
     params_of_model(&params, m);
-    char *known = sfm_text_format(err, "%s/known", f->work), *made = sfm_text_format(err, "%s/triangulated", f->work);
-    char *text = sfm_text_format(err, "%s/triangulated-text", f->work);
+    char *known = sfm_text_format(err, "%s/known-%d", f->work, f->models);
+    char *made = sfm_text_format(err, "%s/triangulated-%d", f->work, f->models);
+    char *text = sfm_text_format(err, "%s/triangulated-text-%d", f->work, f->models);
     if (known && made && text) colmap_prepare(&job, f, in, &params, err);
     const char *converter[] = {"model_converter", "--input_path", made, "--output_path", text,
                                "--output_type",   "TXT",          NULL};

@@ -208,9 +208,23 @@ static void children_are_killed_with_their_parent(void **state)
     }
 }
 
+static void count_ticks(void *ctx) { ++*(int *)ctx; }
+
+static void a_watched_program_is_watched_until_it_ends(void **state)
+{
+    (void)state;
+    static const char *const argv[] = {"sh", "-c", "sleep 0.2; exit 3", NULL};
+    struct err err = ERR_INIT;
+    int code = 0, ticks = 0;
+    assert_int_equal(process_run_watched(argv, NULL, NULL, count_ticks, &ticks, &code, &err), ST_OK);
+    assert_int_equal(code, 3);
+    assert_true(ticks >= 2);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_watched_program_is_watched_until_it_ends),
         cmocka_unit_test(exit_codes_and_signals_are_returned),
         cmocka_unit_test(arguments_bypass_the_shell),
         cmocka_unit_test(both_outputs_go_to_the_log_and_input_is_empty),
