@@ -3,8 +3,7 @@
  * A segment is expected on the face that the ray of its middle pixel meets first. Panes of glass show what is behind
  * the model, so that nothing is expected there; faces on one plane count as one. A model may have walls without a room:
  * then a ray that meets no face ends on the floor, which is at 0, or on the ceiling, which is where the highest wall
- * ends, if this is within the plan of the walls. Other rays leave the model, as in suggested scripts that lack a wall:
- * there the segment is expected where it was before the model.
+ * ends, if this is within the plan of the walls.
  *
  * Evidence beats the model. A segment costs its gain less on its face, and less so the surer its depth was before. What
  * still lies off its face stays only with evidence from two views, or as part of a thing that has it: adjacent segments
@@ -66,12 +65,11 @@ static bool meets_level(struct vec3 *normal, const struct view_trace *t, const s
 }
 
 enum status model_prior_make(struct plane_prior *prior, const struct view_trace *t, double scale,
-                             const struct plane_prior *beyond, const struct view *view, const struct segmentation *s,
-                             struct err *err)
+                             const struct view *view, const struct segmentation *s, struct err *err)
 {
     const struct solid_mesh *mesh = &t->model->mesh;
     const struct extent extent = extent_of(mesh);
-    struct prior_candidate *candidates = calloc((size_t)mesh->face_count + 2 + PRIOR_PLANES, sizeof *candidates);
+    struct prior_candidate *candidates = calloc((size_t)mesh->face_count + 2, sizeof *candidates);
     int count = 0;
     if (candidates)
         plane_prior_init(prior, s->count, err);
@@ -85,10 +83,8 @@ enum status model_prior_make(struct plane_prior *prior, const struct view_trace 
             const double *plane = t->planes[face - 1];
             if (solid_face_is_pane(mesh, (int)face - 1)) continue;
             normal = plane_normal(view, (struct plane){plane[0], plane[1], plane[2]});
-        } else if (!meets_level(&normal, t, &extent, scale, g->cx, g->cy)) {
-            if (beyond->expected[i] < 0) continue;
-            normal = plane_normal(view, beyond->planes[beyond->expected[i]]);
-        }
+        } else if (!meets_level(&normal, t, &extent, scale, g->cx, g->cy))
+            continue;
         const int k = prior->expected[i] = candidate_of(candidates, &count, normal);
         candidates[k].pixels += g->pixels;
     }

@@ -254,18 +254,15 @@ static enum status start_later_round(struct solution *x, const struct solver *v,
     return err->status;
 }
 
-/* What is known of the room: what straight edges show; in the round that knows the model, its faces first. */
+/* What is known of the room: the model's faces, in the round that knows it; before, what straight edges show. */
 static enum status make_prior(struct plane_prior *prior, const struct solver *v, struct err *err)
 {
     const struct view *view = &v->set->views[v->view_idx];
     struct view_trace trace = {0};
-    struct plane_prior edges = {0};
     if (!v->source->model) return frame_prior_make(prior, v->source->frame, view, v->m->segments, err);
-    if (!frame_prior_make(&edges, v->source->frame, view, v->m->segments, err) &&
-        !view_trace(&trace, v->source->model, v->source->axes, view, err))
-        model_prior_make(prior, &trace, v->source->axes->scale, &edges, view, v->m->segments, err);
+    if (!view_trace(&trace, v->source->model, v->source->axes, view, err))
+        model_prior_make(prior, &trace, v->source->axes->scale, view, v->m->segments, err);
     view_trace_release(&trace);
-    plane_prior_release(&edges);
     return err->status;
 }
 

@@ -52,25 +52,16 @@ static struct segmentation grid(void)
                                  .borders = borders};
 }
 
-/* What the first view is expected to see. beyond: where the model is open; NULL: nothing. */
-static void expect_beyond(struct plane_prior *prior, const struct box *list, int box_count,
-                          const struct plane_prior *beyond, const struct segmentation *s)
+/* What the first view is expected to see. */
+static void expect_of(struct plane_prior *prior, const struct box *list, int box_count, const struct segmentation *s)
 {
-    struct plane_prior nothing = {0};
     struct model_rays model = make_rays(list, box_count);
     struct view_trace trace = {0};
     struct err err = ERR_INIT;
     assert_ok(view_trace(&trace, &model, &same_frame, &views[0], &err), err);
-    assert_ok(plane_prior_init(&nothing, s->count, &err), err);
-    assert_ok(model_prior_make(prior, &trace, 1, beyond ? beyond : &nothing, &views[0], s, &err), err);
-    plane_prior_release(&nothing);
+    assert_ok(model_prior_make(prior, &trace, 1, &views[0], s, &err), err);
     view_trace_release(&trace);
     model_rays_release(&model);
-}
-
-static void expect_of(struct plane_prior *prior, const struct box *list, int box_count, const struct segmentation *s)
-{
-    expect_beyond(prior, list, box_count, NULL, s);
 }
 
 static void expect(struct plane_prior *prior, int box_count, const struct segmentation *s)
@@ -140,24 +131,6 @@ static void walls_without_a_room_have_a_floor_and_a_ceiling(void **state)
         }
         plane_prior_release(&prior);
     }
-}
-
-/* One wall, which ends in the middle of the view; straight edges show another one behind, all over the view. */
-static void where_the_model_is_open_edges_say_what_is_expected(void **state)
-{
-    (void)state;
-    static const struct box wall[] = {{"wall", "half", {-9, -9, 2}, {0, 9, 2.2}, false}};
-    const struct segmentation s = grid();
-    struct plane_prior prior, beyond;
-    struct err err = ERR_INIT;
-    views[0] = view_at(vec3_make(0, 0, 0), 0, 0, W, H, 40);
-    assert_ok(plane_prior_init(&beyond, s.count, &err), err);
-    beyond.planes[beyond.count++] = (struct plane){0, 0, 1 / 3.0};
-    for (int i = 0; i < COUNT; i++) beyond.expected[i] = 0;
-    expect_beyond(&prior, wall, 1, &beyond, &s);
-    for (int i = 0; i < COUNT; i++) assert_true(fabs(depth_of(&prior, i) - (segments[i].cx < W / 2.0 ? 2 : 3)) < 1e-9);
-    plane_prior_release(&beyond);
-    plane_prior_release(&prior);
 }
 
 static void a_sure_segment_gains_less(void **state)
@@ -248,7 +221,6 @@ int main(void)
         cmocka_unit_test(segments_are_expected_on_the_faces_that_they_show),
         cmocka_unit_test(nothing_is_expected_in_an_opening),
         cmocka_unit_test(walls_without_a_room_have_a_floor_and_a_ceiling),
-        cmocka_unit_test(where_the_model_is_open_edges_say_what_is_expected),
         cmocka_unit_test(a_sure_segment_gains_less),
         cmocka_unit_test(what_no_other_view_confirms_is_the_face_behind_it),
         cmocka_unit_test(a_thing_that_views_agree_on_stays_with_all_its_parts),
