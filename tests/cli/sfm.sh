@@ -54,7 +54,7 @@ without_matches_it_says_what_is_missing()
 {
     rm -f args; rc=0
     sfm --photos set/photos --records records --out out 2>err || rc=$?
-    [ "$rc" = 2 ] && [ ! -e args ] && grep -q '--features and --matches are required unless --model is given' err || { cat err; fail "exit $rc, wanted 2 and a reason"; }
+    [ "$rc" = 2 ] && [ ! -e args ] && grep -q -- '--features and --matches are required unless --model is given' err || { cat err; fail "exit $rc, wanted 2 and a reason"; }
 }
 
 a_missing_list_of_features_is_named()

@@ -47,6 +47,14 @@ unrelated_photos_give_a_warning_and_depth_without_points()
     awk '(NF == 7 || NF == 8) && /^[0-9]/ { n++; if ($5 * 3 > 1.31 || $5 * 20 < 0.69) bad++ } END { exit !(n > 50 && bad < n / 4) }' out/apart/depth/photo_1.txt || fail "depths are not between near and far"
 }
 
+two_models_without_points_are_both_triangulated()
+{
+    scene both; cp set/photos/* both/photos/
+    mkdir -p models; cp -r set/model models/0; cp -r set/model models/1
+    m both SFM=models sfm || { cat log; fail "make sfm"; }
+    [ "$(grep -c 'triangulated [0-9]* points' out/both/log/sfm.all.log)" = 2 ] || { cat log; fail "not both were triangulated"; }
+}
+
 # a COLMAP that is killed while it triangulates gives an error, not a model without points
 a_triangulation_that_fails_is_a_failure()
 {
@@ -58,4 +66,5 @@ a_triangulation_that_fails_is_a_failure()
 }
 
 for t in two_views_are_triangulated blank_photos_give_a_warning_and_depth_without_points unrelated_photos_give_a_warning_and_depth_without_points \
+    two_models_without_points_are_both_triangulated \
     a_triangulation_that_fails_is_a_failure; do run "$t"; done
