@@ -55,8 +55,8 @@ struct colmap_start {
     bool relaxed;       /* the first pair may have a smaller angle and fewer inliers than by default */
 };
 
-/* Step 3: poses and points, written to start->folder as 0, 1, ... That there are none is no error: the caller counts
- * them. ST_IO: COLMAP failed. */
+/* Step 3: poses and points. The models are written to start->folder as 0, 1, and so on. If COLMAP finds no model, this
+ * still succeeds: the caller counts the models. ST_IO: COLMAP failed. */
 enum status colmap_map(const struct colmap_job *job, const struct colmap_start *start, struct err *err);
 
 /* Moves the logs into the product's folder. */

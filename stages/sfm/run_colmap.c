@@ -15,10 +15,8 @@
 #include "stages/sfm/colmap_matches.h"
 #include "stages/sfm/start_photos.h"
 
-enum {
-    MORE_STARTS = 4,
-    ENOUGH = 90
-}; /* ENOUGH: per cent of the largest group of photos that verified matches connect */
+#define MORE_STARTS 4  /* at most */
+#define ENOUGH      90 /* per cent of the largest group of photos that verified matches connect */
 
 struct mapping {
     struct colmap_job job;

@@ -66,7 +66,7 @@ END
     awk '/photos are placed/ && $2 == 5 { found = 1 } END { exit !found }' log || { cat log; fail "the other photos were not placed"; }
     rm -r out/t/sfm
     m sfm || { cat log; fail "make sfm without the change"; }
-    [ -s out/t/log/sfm.all.log ] || fail "there is no log"
+    [ -s out/t/log/sfm.all.log ] || fail "the log is missing"
     ! grep -q 'mapping again' out/t/log/sfm.all.log || fail "it started again though all photos were placed"
 }
 
