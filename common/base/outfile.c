@@ -246,3 +246,20 @@ enum status outfile_write_if_changed(const char *path, const char *text, size_t 
     outfile_discard(&f);
     return err->status;
 }
+
+enum status outfile_copy(const char *to, const char *from, struct err *err)
+{
+    struct outfile file = {0};
+    char buffer[1 << 16];
+    size_t got = 0;
+    FILE *source = fopen(from, "rbe");
+    if (!source) return err_errno(err, "open", from);
+    outfile_open(&file, to, err);
+    /* the commit reports a failed write */
+    while (!err->status && (got = fread(buffer, 1, sizeof buffer, source)) > 0) fwrite(buffer, 1, got, file.fp);
+    if (!err->status && ferror(source)) err_errno(err, "read", from);
+    if (!err->status) outfile_commit(&file, err);
+    outfile_discard(&file);
+    fclose(source);
+    return err->status;
+}

@@ -29,6 +29,9 @@ void outfile_discard(struct outfile *f); /* idempotent; does nothing after a com
 /* Writes the file only if its text changes, so that Make rebuilds what depends on it only then. */
 enum status outfile_write_if_changed(const char *path, const char *text, size_t size, struct err *err);
 
+/* Copies a file. ST_IO. */
+enum status outfile_copy(const char *to, const char *from, struct err *err);
+
 /* Makes a folder and its missing parents, like mkdir -p. */
 enum status outfile_make_folders(const char *path, struct err *err);
 

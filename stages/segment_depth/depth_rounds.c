@@ -110,23 +110,6 @@ enum status round_is_settled(bool *settled, const char *folder, const struct cam
     return err->status;
 }
 
-static enum status copy_file(const char *from, const char *to, struct err *err)
-{
-    struct outfile file = {0};
-    char buffer[1 << 16];
-    size_t got = 0;
-    FILE *source = fopen(from, "rbe");
-    if (!source) return err_errno(err, "open", from);
-    outfile_open(&file, to, err);
-    /* the commit reports a failed write */
-    while (!err->status && (got = fread(buffer, 1, sizeof buffer, source)) > 0) fwrite(buffer, 1, got, file.fp);
-    if (!err->status && ferror(source)) err_errno(err, "read", from);
-    if (!err->status) outfile_commit(&file, err);
-    outfile_discard(&file);
-    fclose(source);
-    return err->status;
-}
-
 enum status round_file(char path[FILE_PATH], const char *exr, const char *suffix, struct err *err)
 {
     const size_t n = strlen(exr), suffix_size = strlen(suffix) + 1;
@@ -143,7 +126,7 @@ enum status round_carry_over(const char *folder, const char *view, const char *o
     const struct product_key key = {.view = view};
     char from[FILE_PATH], to[FILE_PATH];
     if (!product_path_in(from, folder, PRODUCT_SEGMENTS, &key, err) && !round_file(to, out, ".txt", err) &&
-        !copy_file(from, to, err) && !product_path_in(from, folder, PRODUCT_DEPTH, &key, err))
-        copy_file(from, out, err);
+        !outfile_copy(to, from, err) && !product_path_in(from, folder, PRODUCT_DEPTH, &key, err))
+        outfile_copy(out, from, err);
     return err->status;
 }

@@ -22,21 +22,44 @@ static enum status run_text(struct colmap_database *db, const char *text, struct
     return sqlite3_exec(db->sql, text, NULL, NULL, NULL) == SQLITE_OK ? ST_OK : failed(db, text, err);
 }
 
-enum status colmap_database_open(struct colmap_database **out, const char *path, struct err *err)
+/* Opens it; changes are kept at once. */
+static enum status open_plain(struct colmap_database **out, const char *path, struct err *err)
 {
     struct colmap_database *db = calloc(1, sizeof *db);
-    *out = NULL;
-    if (!db) return err_nomem(err, "a database", sizeof *db);
-    if (sqlite3_open_v2(path, &db->sql, SQLITE_OPEN_READWRITE, NULL) != SQLITE_OK)
-        failed(db, "open it", err);
-    else
-        run_text(db, "BEGIN", err);
-    if (err->status) {
-        colmap_database_close(db);
-        return err->status;
-    }
     *out = db;
-    return ST_OK;
+    if (!db) return err_nomem(err, "a database", sizeof *db);
+    return sqlite3_open_v2(path, &db->sql, SQLITE_OPEN_READWRITE, NULL) == SQLITE_OK ? ST_OK
+                                                                                     : failed(db, "open it", err);
+}
+
+enum status colmap_database_open(struct colmap_database **out, const char *path, struct err *err)
+{
+    if (!open_plain(out, path, err)) run_text(*out, "BEGIN", err);
+    if (err->status) {
+        colmap_database_close(*out);
+        *out = NULL;
+    }
+    return err->status;
+}
+
+/* Runs a statement with a path in place of its question mark. */
+static enum status run_with_path(struct colmap_database *db, const char *text, const char *path, struct err *err)
+{
+    sqlite3_stmt *statement = NULL;
+    if (sqlite3_prepare_v2(db->sql, text, -1, &statement, NULL) != SQLITE_OK ||
+        sqlite3_bind_text(statement, 1, path, -1, SQLITE_STATIC) != SQLITE_OK || sqlite3_step(statement) != SQLITE_DONE)
+        failed(db, text, err);
+    sqlite3_finalize(statement);
+    return err->status;
+}
+
+enum status colmap_database_take_pairs(const char *to, const char *from, struct err *err)
+{
+    static const char text[] = "INSERT INTO two_view_geometries SELECT * FROM part.two_view_geometries ORDER BY 1";
+    struct colmap_database *db = NULL;
+    if (!open_plain(&db, to, err) && !run_with_path(db, "ATTACH ? AS part", from, err)) run_text(db, text, err);
+    colmap_database_close(db);
+    return err->status;
 }
 
 void colmap_database_close(struct colmap_database *db)

@@ -16,6 +16,8 @@ struct verified_pair {
 /* Opens a database that COLMAP made. Changes are kept only after colmap_database_commit(). ST_IO, with SQLite's words.
  */
 enum status colmap_database_open(struct colmap_database **db, const char *path, struct err *err);
+/* Adds the verified pairs of `from`, which has the same images, to `to`, which has none of these pairs. ST_IO. */
+enum status colmap_database_take_pairs(const char *to, const char *from, struct err *err);
 /* The id of an image; 0: COLMAP did not take it. */
 enum status colmap_database_image_id(int *id, struct colmap_database *db, const char *name, struct err *err);
 /* Replaces the features of an image. Descriptors are left out: nothing that follows reads them. */

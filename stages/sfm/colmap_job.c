@@ -1,6 +1,7 @@
 /* colmap_job.c - COLMAP's commands on a work folder.
  *
- * COLMAP runs as programs, each with its own log: feature_importer and matches_importer (colmap_matches.c), mapper.
+ * COLMAP runs as programs, each with its own log: feature_importer (colmap_matches.c), matches_importer
+ * (verify_matches.c), mapper.
  * This file makes their work folder and turns their failures into sentences; run_colmap.c decides when to run which.
  *
  * Names. COLMAP's text files cannot hold every file name, so the work folder has links PHOTO-ID.EXTENSION, and
@@ -27,7 +28,6 @@
 #include "common/base/clock.h"
 #include "common/base/log.h"
 #include "common/base/outfile.h"
-#include "common/base/parallel.h"
 #include "common/base/process.h"
 #include "stages/sfm/colmap_log.h"
 
@@ -82,7 +82,6 @@ enum status colmap_prepare(struct colmap_job *job, const struct sfm_folder *f, c
     const char *work = job->folder->work;
     if (!sfm_single_camera(&job->single, job->photos, params, err)) sfm_start_lens(job->lens, job->photos, params, err);
     if (err->status) return err->status;
-    snprintf(job->threads, sizeof job->threads, "%d", parallel_threads());
     job->images = sfm_text_format(err, "%s/images-%d", work, f->models);
     job->database = sfm_text_format(err, "%s/database-%d.db", work, f->models);
     job->sparse = sfm_text_format(err, "%s/sparse-%d", work, f->models);
@@ -94,43 +93,43 @@ enum status colmap_prepare(struct colmap_job *job, const struct sfm_folder *f, c
     return outfile_make_folders(job->sparse, err) || link_photos(job, err) ? err->status : ST_OK;
 }
 
-static enum status run(int *status, const struct colmap_job *job, int step, const char *const args[],
-                       struct colmap_progress *progress, struct err *err)
-{
-    static const char *const env[] = {"QT_QPA_PLATFORM=offscreen", NULL};
-    const char *argv[MAX_ARGS + 2] = {"colmap"};
-    for (int n = 1; args[n - 1]; n++) argv[n] = args[n - 1];
-    return process_run_watched(argv, env, job->logs[step - 1], progress ? colmap_progress_tick : NULL, progress, status,
-                               err);
-}
-
-enum status colmap_exit_status(int *status, const struct colmap_job *job, int step, const char *const args[],
-                               struct err *err)
-{
-    return run(status, job, step, args, NULL, err);
-}
-
-enum status colmap_failed(const struct colmap_job *job, int step, const char *command, int status, struct err *err)
-{
-    char line[512];
-    colmap_log_last_line(line, sizeof line, job->logs[step - 1]);
-    return err_set(err, ST_IO, "colmap %s failed with exit status %d%s; its last line is \"%s\", its log is %s.",
-                   command, status, status == 137 ? " (killed: out of memory?)" : "", line, job->logs[step - 1]);
-}
-
-enum status colmap_run(const struct colmap_job *job, int step, const char *const args[], int max_status,
+static enum status run(int *status, const char *log, const char *const args[], struct colmap_progress *progress,
                        struct err *err)
 {
-    return colmap_run_long(job, step, args, max_status, NULL, err);
+    const char *slash = strrchr(log, '/'), *argv[MAX_ARGS + 2] = {"colmap"};
+    /* else its library for logs leaves files in /tmp */
+    char *logs = sfm_text_format(err, "GLOG_log_dir=%.*s", slash ? (int)(slash - log) : 1, slash ? log : ".");
+    const char *const env[] = {"QT_QPA_PLATFORM=offscreen", "OMP_NUM_THREADS=1", "OPENBLAS_NUM_THREADS=1", logs, NULL};
+    for (int n = 1; args[n - 1]; n++) argv[n] = args[n - 1];
+    if (logs) process_run_watched(argv, env, log, progress ? colmap_progress_tick : NULL, progress, status, err);
+    free(logs);
+    return err->status;
 }
 
-enum status colmap_run_long(const struct colmap_job *job, int step, const char *const args[], int max_status,
-                            struct colmap_progress *progress, struct err *err)
+enum status colmap_exit_status(int *status, const char *log, const char *const args[], struct err *err)
+{
+    return run(status, log, args, NULL, err);
+}
+
+enum status colmap_failed(const char *log, const char *command, int status, struct err *err)
+{
+    char line[512];
+    colmap_log_last_line(line, sizeof line, log);
+    return err_set(err, ST_IO, "colmap %s failed with exit status %d%s; its last line is \"%s\", its log is %s.",
+                   command, status, status == 137 ? " (killed: out of memory?)" : "", line, log);
+}
+
+enum status colmap_run(const char *log, const char *const args[], int max_status, struct err *err)
+{
+    return colmap_run_long(log, args, max_status, NULL, err);
+}
+
+enum status colmap_run_long(const char *log, const char *const args[], int max_status, struct colmap_progress *progress,
+                            struct err *err)
 {
     int status = 0;
-    run(&status, job, step, args, progress, err);
-    if (progress) colmap_progress_end(progress);
-    if (!err->status && status > max_status) colmap_failed(job, step, args[0], status, err);
+    run(&status, log, args, progress, err);
+    if (!err->status && status > max_status) colmap_failed(log, args[0], status, err);
     return err->status;
 }
 
@@ -160,11 +159,14 @@ enum status colmap_map(const struct colmap_job *job, const struct colmap_start *
                                                   "--Mapper.abs_pose_min_num_inliers", "20"};
         for (size_t i = 0; i < sizeof relaxations / sizeof *relaxations; i++) args[n++] = relaxations[i];
     }
+    struct progress placed;
     struct colmap_progress progress;
-    colmap_progress_start(&progress, job->logs[2], "Registering image #", true, "placing photos", job->photos->count,
-                          "photos");
+    progress_start(&placed, "placing photos", job->photos->count, "photos");
+    colmap_progress_start(&progress, &placed, job->logs[2], "Registering image #", true);
     /* exit status 1 means that it found no model; the caller counts the models and explains */
-    return colmap_run_long(job, 3, args, 1, &progress, err);
+    colmap_run_long(job->logs[2], args, 1, &progress, err);
+    progress_end(&placed);
+    return err->status;
 }
 
 enum status colmap_keep_logs(const struct colmap_job *job, struct err *err)

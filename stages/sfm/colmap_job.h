@@ -26,9 +26,9 @@ struct colmap_job {
     const struct sfm_params *params;
     const struct sfm_input *in;
     char *images, *database, *sparse; /* in the work folder; owned */
-    char *logs[COLMAP_STEPS];         /* owned */
+    char *logs[COLMAP_STEPS];         /* of step 1, 2, and so on; owned */
     int *features;                    /* of each photo; -1: COLMAP could not read it; owned */
-    char threads[16], lens[SFM_LENS_TEXT];
+    char lens[SFM_LENS_TEXT];
     bool single; /* one lens for all photos */
 };
 
@@ -37,17 +37,15 @@ struct colmap_job {
 enum status colmap_prepare(struct colmap_job *job, const struct sfm_folder *f, const struct sfm_input *in,
                            const struct sfm_params *params, struct err *err);
 
-/* Runs one command; its output goes to the log of `step` (1 .. COLMAP_STEPS). args ends with NULL. */
-enum status colmap_exit_status(int *status, const struct colmap_job *job, int step, const char *const args[],
-                               struct err *err);
+/* Runs one command; its output is appended to the log. args ends with NULL. */
+enum status colmap_exit_status(int *status, const char *log, const char *const args[], struct err *err);
 /* The same; an exit status above max_status is ST_IO with the last line of the log. */
-enum status colmap_run(const struct colmap_job *job, int step, const char *const args[], int max_status,
-                       struct err *err);
-/* The same. progress: started by the caller, ended here; NULL: none. */
-enum status colmap_run_long(const struct colmap_job *job, int step, const char *const args[], int max_status,
-                            struct colmap_progress *progress, struct err *err);
+enum status colmap_run(const char *log, const char *const args[], int max_status, struct err *err);
+/* The same, with progress from the log; NULL: none. */
+enum status colmap_run_long(const char *log, const char *const args[], int max_status, struct colmap_progress *progress,
+                            struct err *err);
 /* Sets ST_IO: the command, its exit status, the last line of its log. */
-enum status colmap_failed(const struct colmap_job *job, int step, const char *command, int status, struct err *err);
+enum status colmap_failed(const char *log, const char *command, int status, struct err *err);
 
 struct colmap_start {
     const char *folder; /* of the models, N from 0; it exists */

@@ -1,10 +1,8 @@
 /* colmap_matches.c - COLMAP's database of photos, lenses, features and verified matches.
  *
- * Features. feature_importer reads the photos' sizes and EXIF and makes lenses; it is given no features: those of the
+ * feature_importer reads the photos' sizes and EXIF and makes lenses; it is given no features: those of the
  * scene go into its database directly (colmap_database.c).
- *
- * Matches. matches_importer verifies them in one thread, pair by pair, in the order of the photos. Its random numbers
- * carry on from pair to pair, so the order affects the result. */
+ */
 #include "stages/sfm/colmap_matches.h"
 
 #include <stdio.h>
@@ -15,11 +13,11 @@
 #include "common/base/log.h"
 #include "common/base/outfile.h"
 #include "common/base/textfile.h"
-#include "common/capture/match_list.h"
 #include "common/product/product.h"
 #include "stages/sfm/colmap_database.h"
+#include "stages/sfm/verify_matches.h"
 
-enum { IMPORT_ARGS = 16, MIN_MATCHES = 15 }; /* COLMAP rejects pairs with fewer verified matches */
+enum { IMPORT_ARGS = 16 };
 
 /* Makes the database, with the photos and their lenses, but without features: each photo has an empty list. */
 static enum status make_database(const struct colmap_job *job, struct err *err)
@@ -55,7 +53,7 @@ static enum status make_database(const struct colmap_job *job, struct err *err)
         outfile_discard(&f);
         free(list);
     }
-    if (!err->status) colmap_run(job, 1, args, 0, err);
+    if (!err->status) colmap_run(job->logs[0], args, 0, err);
     free(lists);
     return err->status;
 }
@@ -98,60 +96,6 @@ static enum status take_features(long long *found, const struct colmap_job *job,
     return ST_OK;
 }
 
-/* Writes the pairs of a photo in COLMAP's form: the names of both, a line for each match, a blank line. *written grows
- * by their number. */
-static enum status write_pairs(FILE *to, long long *written, const struct colmap_job *job, int photo, struct err *err)
-{
-    const struct photo_record *p = &job->photos->photos[photo];
-    struct match_list list = {0};
-    char path[FILE_PATH];
-    if (product_path_in(path, job->in->matches, PRODUCT_MATCHES, &(struct product_key){.photo = p->id}, err) ||
-        match_list_read(&list, path, job->in->prov, err))
-        return err->status;
-    for (int i = 0; i < list.count; i++) {
-        const struct matched_pair *pair = &list.pairs[i];
-        const int other = photo_list_find_id(job->photos, pair->other);
-        if (other < 0 || job->features[other] < 0 || pair->count < MIN_MATCHES) continue;
-        fprintf(to, "%s%s %s%s\n", p->id, colmap_extension(p->file), pair->other,
-                colmap_extension(job->photos->photos[other].file));
-        for (int k = 0; k < pair->count; k++) fprintf(to, "%d %d\n", pair->matches[k].first, pair->matches[k].second);
-        fputc('\n', to);
-        (*written)++;
-    }
-    match_list_release(&list);
-    return ST_OK;
-}
-
-static enum status take_pairs(const struct colmap_job *job, struct err *err)
-{
-    struct outfile f = {0};
-    struct colmap_progress progress;
-    long long pairs = 0;
-    char *list = sfm_text_format(err, "%s.matches.txt", job->images);
-    const char *args[] = {"matches_importer",
-                          "--database_path",
-                          job->database,
-                          "--match_list_path",
-                          list,
-                          "--match_type",
-                          "raw",
-                          "--SiftMatching.use_gpu",
-                          "0",
-                          "--SiftMatching.num_threads",
-                          job->threads,
-                          NULL};
-    if (list) outfile_open(&f, list, err);
-    for (int i = 0; !err->status && i < job->photos->count; i++)
-        if (job->features[i] >= 0) write_pairs(f.fp, &pairs, job, i, err);
-    if (!err->status && !outfile_commit(&f, err)) {
-        colmap_progress_start(&progress, job->logs[1], " - ", false, "verifying", pairs, "pairs");
-        colmap_run_long(job, 2, args, 0, &progress, err);
-    }
-    outfile_discard(&f);
-    free(list);
-    return err->status;
-}
-
 void colmap_list_poor(char *text, size_t size, const int *features, const struct photo_list *photos)
 {
     size_t used = 0;
@@ -178,7 +122,7 @@ static enum status record_version(const struct colmap_job *job, struct err *err)
     struct err ignored = ERR_INIT;
     char name[64] = "colmap-unknown", hash[HASH_TEXT], *word = NULL;
     int status = 0;
-    if (colmap_exit_status(&status, job, 1, args, err)) return err->status;
+    if (colmap_exit_status(&status, job->logs[0], args, err)) return err->status;
     if (!textfile_open(&t, job->logs[0], &ignored) && textfile_next(&t) && !textfile_expect(&t, "COLMAP", &ignored) &&
         !textfile_word(&t, "a version", &word, &ignored))
         snprintf(name, sizeof name, "colmap-%.40s", word);
@@ -194,5 +138,5 @@ enum status colmap_take_matches(long long *features, const struct colmap_job *jo
     if (!record_version(job, err) && !make_database(job, err)) take_features(features, job, err);
     if (err->status || !*features) return err->status;
     log_note("step 2 of %d: verifying matches (%.1f s so far)", COLMAP_STEPS, clock_seconds() - job->started);
-    return take_pairs(job, err);
+    return verify_matches(job, err);
 }

@@ -6,14 +6,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-void colmap_progress_start(struct colmap_progress *p, const char *path, const char *mark, bool numbered,
-                           const char *what, long long total, const char *unit)
+void colmap_progress_start(struct colmap_progress *p, struct progress *progress, const char *path, const char *mark,
+                           bool numbered)
 {
-    *p = (struct colmap_progress){.path = path, .mark = mark, .numbered = numbered};
+    *p = (struct colmap_progress){.progress = progress, .path = path, .mark = mark, .numbered = numbered};
     FILE *log = fopen(path, "rb");
     if (log && !fseek(log, 0, SEEK_END)) p->read = ftell(log);
     if (log) fclose(log);
-    progress_start(&p->progress, what, total, unit);
 }
 
 static void count_line(struct colmap_progress *p, const char *line)
@@ -25,7 +24,7 @@ static void count_line(struct colmap_progress *p, const char *line)
         p->count++;
     else if (number && strtoll(number + 1, NULL, 10) > p->count)
         p->count = strtoll(number + 1, NULL, 10);
-    progress_add(&p->progress, p->count - before);
+    progress_add(p->progress, p->count - before);
 }
 
 void colmap_progress_tick(void *ctx)
@@ -43,5 +42,3 @@ void colmap_progress_tick(void *ctx)
     free(line);
     if (log) fclose(log);
 }
-
-void colmap_progress_end(struct colmap_progress *p) { progress_end(&p->progress); }

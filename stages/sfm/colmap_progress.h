@@ -8,7 +8,7 @@
 #include "common/base/progress.h"
 
 struct colmap_progress {
-    struct progress progress;
+    struct progress *progress;
     const char *path, *mark; /* the log; a line counts if it contains the mark */
     bool numbered;           /* the count is the largest number in parentheses after a mark (of the mapper: photos that
                                 it has tried to place); else each line counts 1 */
@@ -16,12 +16,11 @@ struct colmap_progress {
     long long count;
 };
 
-/* Follows the log at `path` from its present end on; it may be missing. what, unit, total: as in progress_start(). The
- * strings are borrowed. */
-void colmap_progress_start(struct colmap_progress *p, const char *path, const char *mark, bool numbered,
-                           const char *what, long long total, const char *unit);
+/* Follows the log at `path` from its present end on; it may be missing. Its counts are added to `progress`, which other
+ * logs may share. The pointers are kept. */
+void colmap_progress_start(struct colmap_progress *p, struct progress *progress, const char *path, const char *mark,
+                           bool numbered);
 /* Reads what is new; p is a struct colmap_progress, for process_run_watched(). */
 void colmap_progress_tick(void *p);
-void colmap_progress_end(struct colmap_progress *p);
 
 #endif

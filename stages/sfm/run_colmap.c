@@ -62,7 +62,7 @@ static enum status add_model(struct mapping *m, const char *sparse, int k, int a
     struct sfm_model model = {0};
     char *from = sfm_text_format(err, "%s/%d", sparse, k), *text = sfm_text_format(err, "%s/%d.text", sparse, k);
     const char *args[] = {"model_converter", "--input_path", from, "--output_path", text, "--output_type", "TXT", NULL};
-    if (from && text && !outfile_make_folders(text, err) && !colmap_run(job, 4, args, 0, err))
+    if (from && text && !outfile_make_folders(text, err) && !colmap_run(job->logs[3], args, 0, err))
         sfm_model_read_text(&model, text, NULL, err);
     if (!err->status) {
         log_note("model: %d of %d photos, %d points", model.image_count, job->photos->count, model.point_count);

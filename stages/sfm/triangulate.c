@@ -105,11 +105,11 @@ static enum status find_points(bool *points, const struct colmap_job *job, const
         const int aborted = 128 + SIGABRT;
         char line[512];
         int status = 0;
-        colmap_exit_status(&status, job, 3, args, err);
+        colmap_exit_status(&status, job->logs[2], args, err);
         colmap_log_last_line(line, sizeof line, job->logs[2]);
         *points = !err->status && !status;
         if (!err->status && status && !(status == aborted && strstr(line, "bundle_adjuster.Solve")))
-            colmap_failed(job, 3, args[0], status, err);
+            colmap_failed(job->logs[2], args[0], status, err);
     }
     return err->status;
 }
@@ -143,7 +143,7 @@ enum status triangulate(struct sfm_model *m, const struct sfm_folder *f, const s
         log_note("step 3 of %d: points (%.1f s so far)", COLMAP_STEPS, clock_seconds() - job.started);
         find_points(&points, &job, known, made, err);
     }
-    if (!err->status && points && !colmap_run(&job, 4, converter, 0, err) &&
+    if (!err->status && points && !colmap_run(job.logs[3], converter, 0, err) &&
         !sfm_model_read_text(&found, text, NULL, err))
         colmap_name_images(&found, in->list, err);
     if (!err->status) colmap_keep_logs(&job, err);

@@ -25,7 +25,6 @@
 #include "common/base/array.h"
 #include "common/base/log.h"
 #include "common/base/outfile.h"
-#include "common/base/process.h"
 #include "common/base/textfile.h"
 #include "common/capture/photo_match.h"
 #include "stages/sfm/triangulate.h"
@@ -107,13 +106,12 @@ static enum status add_text(struct sfm_folder *f, const char *folder, const stru
 static enum status add_binary(struct sfm_folder *f, const char *folder, const struct sfm_input *in,
                               const struct provenance *prov, struct err *err)
 {
-    static const char *const env[] = {"QT_QPA_PLATFORM=offscreen", NULL};
     char *text = sfm_text_format(err, "%s/text/%d", f->work, f->models),
          *log = sfm_text_format(err, "%s/colmap.log", f->work);
-    const char *argv[] = {"colmap", "model_converter", "--input_path", folder, "--output_path",
-                          text,     "--output_type",   "TXT",          NULL};
+    const char *args[] = {"model_converter", "--input_path", folder, "--output_path", text,
+                          "--output_type",   "TXT",          NULL};
     int code = 0;
-    if (text && log && !outfile_make_folders(text, err)) process_run(argv, env, log, &code, err);
+    if (text && log && !outfile_make_folders(text, err)) colmap_exit_status(&code, log, args, err);
     if (!err->status && code)
         err_set(err, ST_DATA, "colmap could not read the binary model in %s (exit status %d); its log is %s.", folder,
                 code, log);

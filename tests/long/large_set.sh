@@ -17,6 +17,7 @@ cameras_of_a_large_set_are_the_same_for_any_number_of_cores()
     [ -d "$data/photos" ] || skip "the photos are not here"
     cameras_with 1 >one
     awk -F: '/Residuals :/ && $2 > 50000 { large = 1 } END { exit !large }' out/set/sfm/colmap-3.log || fail "the set is too small to show it"
+    [ "$(grep -c 'Importing matches' out/set/sfm/colmap-2.log)" -ge 2 ] || fail "the matches are one block"
     cameras_with 2 >two
     diff one two || fail "other bytes with two cores"
 }

@@ -14,9 +14,11 @@ static void append(const char *path, const char *text)
 static void lines_are_counted_once_they_are_whole(void **state)
 {
     (void)state;
+    struct progress shown;
     struct colmap_progress p;
     const char *log = scratch_write("log", "a.jpg - b.jpg\n");
-    colmap_progress_start(&p, log, " - ", false, "verifying", 3, "pairs");
+    progress_start(&shown, "verifying", 3, "pairs");
+    colmap_progress_start(&p, &shown, log, " - ", false);
     append(log, "a.jpg - c.jpg\nb.jpg");
     colmap_progress_tick(&p);
     assert_int_equal(p.count, 1); /* not the line of an earlier run */
@@ -24,30 +26,34 @@ static void lines_are_counted_once_they_are_whole(void **state)
     colmap_progress_tick(&p);
     colmap_progress_tick(&p);
     assert_int_equal(p.count, 3);
-    colmap_progress_end(&p);
+    progress_end(&shown);
 }
 
 static void the_largest_number_of_placed_photos_counts(void **state)
 {
     (void)state;
+    struct progress shown;
     struct colmap_progress p;
     const char *log = scratch_write("log", "");
-    colmap_progress_start(&p, log, "Registering image #", true, "placing photos", 9, "photos");
+    progress_start(&shown, "placing photos", 9, "photos");
+    colmap_progress_start(&p, &shown, log, "Registering image #", true);
     append(log, "Registering image #7 (3)\n  => Image sees 182 / 766 points\nRegistering image #2 (4)\n");
     append(log, "Registering image #9 (2)\n"); /* another model */
     colmap_progress_tick(&p);
     assert_int_equal(p.count, 4);
-    colmap_progress_end(&p);
+    progress_end(&shown);
 }
 
 static void a_missing_log_is_no_progress(void **state)
 {
     (void)state;
+    struct progress shown;
     struct colmap_progress p;
-    colmap_progress_start(&p, "/nowhere/log", " - ", false, "verifying", 3, "pairs");
+    progress_start(&shown, "verifying", 3, "pairs");
+    colmap_progress_start(&p, &shown, "/nowhere/log", " - ", false);
     colmap_progress_tick(&p);
     assert_int_equal(p.count, 0);
-    colmap_progress_end(&p);
+    progress_end(&shown);
 }
 
 int main(void)

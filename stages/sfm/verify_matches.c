@@ -1,0 +1,158 @@
+/* verify_matches.c - verifies the matches of pairs of photos in blocks, side by side.
+ *
+ * COLMAP's matches_importer verifies in one thread, in the order of its list, and its random numbers carry on from
+ * pair to pair. So the pairs, in the order of the photos, are divided into blocks of a fixed size. Each block is
+ * verified by a process of its own in a copy of the database, and the results are joined in the order of the blocks. */
+#include "stages/sfm/verify_matches.h"
+
+#include <stdatomic.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "common/base/file_bytes.h"
+#include "common/base/outfile.h"
+#include "common/base/parallel.h"
+#include "common/capture/match_list.h"
+#include "common/product/product.h"
+#include "stages/sfm/colmap_database.h"
+
+enum { MIN_MATCHES = 15 };  /* COLMAP rejects pairs with fewer verified matches */
+enum { BLOCK_PAIRS = 500 }; /* about 12 s of one core */
+
+struct block {
+    char *list, *database, *log; /* paths; owned */
+    struct err err;
+};
+
+struct verification {
+    const struct colmap_job *job;
+    struct block *blocks; /* owned */
+    int count;
+    long long pairs;
+    struct outfile list; /* of the block that is being written */
+    struct progress progress;
+    atomic_bool failed;
+};
+
+static enum status finish_list(struct verification *v, struct err *err)
+{
+    return v->count ? outfile_commit(&v->list, err) : ST_OK;
+}
+
+static enum status start_block(struct verification *v, struct err *err)
+{
+    const struct colmap_job *job = v->job;
+    struct block *more = realloc(v->blocks, ((size_t)v->count + 1) * sizeof *more);
+    if (!more) return err_nomem(err, "blocks of pairs", ((size_t)v->count + 1) * sizeof *more);
+    v->blocks = more;
+    if (finish_list(v, err)) return err->status;
+    struct block *b = &more[v->count];
+    const int k = ++v->count;
+    *b = (struct block){.list = sfm_text_format(err, "%s.matches-%d.txt", job->images, k),
+                        .database = sfm_text_format(err, "%s.%d", job->database, k),
+                        .log = sfm_text_format(err, "%s.%d", job->logs[1], k)};
+    return err->status ? err->status : outfile_open(&v->list, b->list, err);
+}
+
+/* Writes the pairs of a photo in COLMAP's form: the names of both, a line for each match, a blank line. */
+static enum status write_pairs(struct verification *v, int photo, struct err *err)
+{
+    const struct colmap_job *job = v->job;
+    const struct photo_record *p = &job->photos->photos[photo];
+    struct match_list list = {0};
+    char path[FILE_PATH];
+    if (!product_path_in(path, job->in->matches, PRODUCT_MATCHES, &(struct product_key){.photo = p->id}, err))
+        match_list_read(&list, path, job->in->prov, err);
+    for (int i = 0; !err->status && i < list.count; i++) {
+        const struct matched_pair *pair = &list.pairs[i];
+        const int other = photo_list_find_id(job->photos, pair->other);
+        if (other < 0 || job->features[other] < 0 || pair->count < MIN_MATCHES) continue;
+        if (v->pairs % BLOCK_PAIRS == 0 && start_block(v, err)) break;
+        fprintf(v->list.fp, "%s%s %s%s\n", p->id, colmap_extension(p->file), pair->other,
+                colmap_extension(job->photos->photos[other].file));
+        for (int k = 0; k < pair->count; k++)
+            fprintf(v->list.fp, "%d %d\n", pair->matches[k].first, pair->matches[k].second);
+        fputc('\n', v->list.fp);
+        v->pairs++;
+    }
+    match_list_release(&list);
+    return err->status;
+}
+
+static void verify_block(struct verification *v, struct block *b)
+{
+    const char *args[] = {"matches_importer",
+                          "--database_path",
+                          b->database,
+                          "--match_list_path",
+                          b->list,
+                          "--match_type",
+                          "raw",
+                          "--SiftMatching.use_gpu",
+                          "0",
+                          "--SiftMatching.num_threads",
+                          "1",
+                          NULL};
+    struct colmap_progress progress;
+    if (outfile_copy(b->database, v->job->database, &b->err)) return;
+    colmap_progress_start(&progress, &v->progress, b->log, " - ", false);
+    colmap_run_long(b->log, args, 0, &progress, &b->err);
+}
+
+static void verify_blocks(void *ctx, size_t begin, size_t end, int thread)
+{
+    struct verification *v = ctx;
+    (void)thread;
+    for (size_t i = begin; i < end && !atomic_load(&v->failed); i++) {
+        verify_block(v, &v->blocks[i]);
+        if (v->blocks[i].err.status) atomic_store(&v->failed, true);
+    }
+}
+
+/* Joins the blocks in their order: pairs and logs. */
+static enum status join_blocks(const struct verification *v, struct err *err)
+{
+    FILE *log = fopen(v->job->logs[1], "ab");
+    if (!log) return err_errno(err, "write", v->job->logs[1]);
+    for (int i = 0; !err->status && i < v->count; i++) {
+        const struct block *b = &v->blocks[i];
+        struct file_bytes text = {0};
+        if (!colmap_database_take_pairs(v->job->database, b->database, err) && !file_bytes_read(&text, b->log, err))
+            fwrite(text.bytes, 1, text.size, log);
+        file_bytes_release(&text);
+    }
+    if (fclose(log)) err_errno(err, "write", v->job->logs[1]);
+    return err->status;
+}
+
+static void remove_block(struct block *b)
+{
+    if (!b->err.status) { /* what a failed block leaves says why */
+        if (b->list) remove(b->list);
+        if (b->database) remove(b->database);
+        if (b->log) remove(b->log);
+    }
+    free(b->list);
+    free(b->database);
+    free(b->log);
+}
+
+enum status verify_matches(const struct colmap_job *job, struct err *err)
+{
+    struct verification v = {.job = job};
+    for (int i = 0; !err->status && i < job->photos->count; i++)
+        if (job->features[i] >= 0) write_pairs(&v, i, err);
+    if (!err->status) finish_list(&v, err);
+    outfile_discard(&v.list);
+    if (!err->status) {
+        progress_start(&v.progress, "verifying", v.pairs, "pairs");
+        parallel_for((size_t)v.count, 1, verify_blocks, &v);
+        progress_end(&v.progress);
+    }
+    for (int i = 0; !err->status && i < v.count; i++)
+        if (v.blocks[i].err.status) *err = v.blocks[i].err;
+    if (!err->status) join_blocks(&v, err);
+    for (int i = 0; i < v.count; i++) remove_block(&v.blocks[i]);
+    free(v.blocks);
+    return err->status;
+}
