@@ -1,18 +1,29 @@
 #!/usr/bin/env bash
 # keep.sh - files that are rewritten only if their text changes, so that what depends on them does not rerun.
 #
-#   . common/run/keep.sh        for scripts: the functions keep, stamps, sums
+#   . common/run/keep.sh        for scripts: the functions keep_text, keep, stamps, sums
 #   keep.sh FILE [LINE...]      makes FILE of these lines; without a line, removes FILE; without FILE does nothing
 
-# keep FILE: standard input becomes FILE if it differs; the text before is kept as FILE.old for `make why`
+# keep_text FILE TEXT: FILE gets this text if it differs; the text before is kept as FILE.old for `make why`. Without a process
+# where nothing changes: a run looks at a hundred such files
+keep_text()
+{
+    local before=
+    if [ -f "$1" ]; then
+        IFS= read -r -d '' before <"$1" || true
+        [ "$before" != "$2" ] || return 0
+        cp -f "$1" "$1.old"
+    fi
+    [ -d "${1%/*}" ] || mkdir -p "${1%/*}"
+    printf '%s' "$2" >"$1.tmp"
+    mv "$1.tmp" "$1"
+}
+# keep FILE: the same with standard input
 keep()
 {
-    mkdir -p "$(dirname "$1")"
-    cat >"$1.tmp"
-    if cmp -s "$1.tmp" "$1"; then rm "$1.tmp"; else
-        [ ! -e "$1" ] || cp -f "$1" "$1.old"
-        mv "$1.tmp" "$1"
-    fi
+    local text
+    text=$(cat; echo .)
+    keep_text "$1" "${text%.}"
 }
 
 # stamps FOLDER: standard input is lines "NAME TEXT..."; the lines of a name become FOLDER/NAME.txt; a name that is gone says "none"
@@ -23,9 +34,9 @@ stamps()
     while read -r name text; do lines[$name]+=$text$'\n'; done
     for f in "$to"/*.txt; do
         name=${f##*/}; name=${name%.txt}
-        [ ! -e "$f" ] || [ -n "${lines[$name]-}" ] || echo none | keep "$f"
+        [ ! -e "$f" ] || [ -n "${lines[$name]-}" ] || keep_text "$f" $'none\n'
     done
-    for name in "${!lines[@]}"; do printf '%s' "${lines[$name]}" | keep "$to/$name.txt"; done
+    for name in "${!lines[@]}"; do keep_text "$to/$name.txt" "${lines[$name]}"; done
 }
 # sums FOLDER LIST ENDING...: "NAME CKSUM SIZE FILE" of the files in FOLDER, NAME without the ending; LIST names the file of valid ids
 sums()

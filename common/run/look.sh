@@ -17,5 +17,5 @@ options=()
 for c in "$@"; do options+=(--config "$c"); done
 for s in $stages; do
     text=$("$bin/$s" --print-config "${options[@]}") || exit 2
-    echo "$text" | keep "$folder/$s.cfg"
+    keep_text "$folder/$s.cfg" "$text"$'\n'
 done
