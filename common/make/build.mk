@@ -120,5 +120,5 @@ endif
 .SECONDARY: $(call objs,tests/*/*.c tests/*/*/*.c tests/*/*/*/*.c stages/*/*.c) $(STAGE_LIBS)
 # what a person calls has the rest made by a make of its own, and need not read hundreds of files before
 ifneq ($(PHASE)$(filter $(B)/%,$(MAKECMDGOALS)),)
--include $(shell find $(B)/obj -name '*.d' 2>/dev/null)
+-include $(shell find $(if $(filter %-build $(B)/tests/%,$(MAKECMDGOALS)),$(B)/obj,$(B)/obj/common $(B)/obj/stages) -name '*.d' 2>/dev/null)
 endif
