@@ -45,13 +45,16 @@ photos()
     "$root/$B/tests/pipeline/make_photos" --out "$@" 2>&1
 }
 
-# small SCENE: writes a scene.cfg for tests of the graph: few planes, six frames
+# small SCENE: writes a scene.cfg for tests of the graph: few planes, large segments, six frames; a view matches with three of
+# the others, so that some views do not read a changed one
 small()
 {
     mkdir -p "scenes/$1"
     cat >"scenes/$1/scene.cfg" <<'CFG'
 [segment_depth]
 planes = 32
+fine_pixels = 64
+neighbours = 3
 passes = 1
 [sample_validity]
 max_side = 160
@@ -68,10 +71,13 @@ parallax_side = 48
 CFG
 }
 
-# boxed SCENE PRODUCTS: a scene of set/photos inside a closed room of 60 x 60 x 20, modelled, with a box on its floor; an edit removes the box
+# boxed SCENE PRODUCTS: a scene of set/photos inside a closed room of 60 x 60 x 20, modelled, with a box on its floor; an edit removes the box.
+# Depth is estimated in one round, and texels are large: their quality does not matter here
 boxed()
 {
     small "$1"
+    sed -i 's/^planes = .*/&\nrounds = 0/' "scenes/$1/scene.cfg"
+    printf '[bake_vita]\ntexels = 80\n' >>"scenes/$1/scene.cfg"
     printf 'PRODUCTS := %s\nPHOTOS := set/photos\n' "$2" >"scenes/$1/scene.mk"
     mkdir -p "scenes/$1/edits"
     cat >"scenes/$1/model.txt" <<'END'

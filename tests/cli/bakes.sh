@@ -37,7 +37,7 @@ bytes_do_not_depend_on_threads()
 {
     for n in 1 2; do
         bake 0 texels bake_vdta "${inputs[@]}" --reveal $O/reveal --photo "$photo" --out two/$n --threads $n
-        bake 0 texels bake_vita "${inputs[@]}" --edit $O/remodel/bare/model.txt --out two/vita$n --threads $n
+        bake 0 texels bake_vita "${inputs[@]}" --set texels=80 --edit $O/remodel/bare/model.txt --out two/vita$n --threads $n
     done
     diff -r two/1 two/2; diff -r two/vita1 two/vita2
     diff -r two/1/"$photo" $O/vdta/"$photo"
