@@ -3,7 +3,7 @@
 project axes
 photos set --views 6 --size 320x240 >/dev/null
 mkdir -p scenes/t
-printf '[segment_depth]\nplanes = 48\n' >scenes/t/scene.cfg
+printf '[segment_depth]\nplanes = 48\npasses = 1\nrounds = 0\nneighbours = 3\n' >scenes/t/scene.cfg
 make_axes() { make -s DEPS=manual PHOTOS=set/photos SFM=set/model SCENE=t axes >log 2>&1 || { cat log; fail "make axes"; }; }
 make_axes
 axes=out/t/model/axes.txt

@@ -4,11 +4,11 @@ project irradiance
 photos set --size 128x96 >/dev/null
 boxed t textures
 m() { make -s DEPS=manual PHOTOS=set/photos SFM=set/model SCENE=t "$@" >log 2>&1 || { cat log; fail "make $*"; }; }
-printf '[bake_outdoors]\nheight = 64\nedge = 1\nmax_clutter = 1\n[gather_irradiance]\nestimator = hemicube\nhemicube = 32\n' >>scenes/t/scene.cfg
+printf '[bake_outdoors]\nheight = 64\nedge = 1\nmax_clutter = 1\n[gather_irradiance]\nestimator = hemicube\nhemicube = 16\n' >>scenes/t/scene.cfg
 m textures outdoors
 O=out/t
 view=$(ls $O/views/*.exr | sed -n 1p); view=$(basename "$view" .exr)
-inputs=(--model "$O/model/model.txt" --axes "$O/model/axes.txt" --vita "$O/vita" --outdoors "$O/outdoors/outdoors.exr" --set estimator=hemicube --set hemicube=32)
+inputs=(--model "$O/model/model.txt" --axes "$O/model/axes.txt" --vita "$O/vita" --outdoors "$O/outdoors/outdoors.exr" --set estimator=hemicube --set hemicube=16)
 
 # gather CODE WORD ARGUMENT...: runs gather_irradiance; checks its exit status and a word on standard error
 gather()
