@@ -2,9 +2,11 @@
  *
  * COLMAP's matches_importer verifies in one thread, in the order of its list, and its random numbers carry on from
  * pair to pair. So the pairs, in the order of the photos, are divided into blocks of a fixed size. Each block is
- * verified by a process of its own in a copy of the database, and the results are joined in the order of the blocks. */
+ * verified by a process of its own in a copy of the database. The table of verified pairs has them in the order of the
+ * photos, whichever block ends first; only the log has them as the blocks end. */
 #include "stages/sfm/verify_matches.h"
 
+#include <pthread.h>
 #include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -30,6 +32,8 @@ struct verification {
     int count;
     long long pairs;
     struct outfile list; /* of the block that is being written */
+    char *unverified;    /* path of the database without pairs; owned */
+    pthread_mutex_t joining;
     struct progress progress;
     atomic_bool failed;
 };
@@ -79,6 +83,16 @@ static enum status write_pairs(struct verification *v, int photo, struct err *er
     return err->status;
 }
 
+static enum status append_log(const struct verification *v, struct block *b)
+{
+    struct file_bytes text = {0};
+    FILE *log = fopen(v->job->logs[1], "ab");
+    if (!log) return err_errno(&b->err, "write", v->job->logs[1]);
+    if (!file_bytes_read(&text, b->log, &b->err)) fwrite(text.bytes, 1, text.size, log);
+    file_bytes_release(&text);
+    return fclose(log) ? err_errno(&b->err, "write", v->job->logs[1]) : b->err.status;
+}
+
 static void verify_block(struct verification *v, struct block *b)
 {
     const char *args[] = {"matches_importer",
@@ -94,9 +108,13 @@ static void verify_block(struct verification *v, struct block *b)
                           "1",
                           NULL};
     struct colmap_progress progress;
-    if (outfile_copy(b->database, v->job->database, &b->err)) return;
+    if (outfile_copy(b->database, v->unverified, &b->err)) return;
     colmap_progress_start(&progress, &v->progress, b->log, " - ", false);
-    colmap_run_long(b->log, args, 0, &progress, &b->err);
+    if (colmap_run_long(b->log, args, 0, &progress, &b->err)) return;
+    pthread_mutex_lock(&v->joining);
+    if (!colmap_database_take_pairs(v->job->database, b->database, &b->err)) append_log(v, b);
+    pthread_mutex_unlock(&v->joining);
+    remove(b->database); /* at once, since it is as large as all features */
 }
 
 static void verify_blocks(void *ctx, size_t begin, size_t end, int thread)
@@ -107,22 +125,6 @@ static void verify_blocks(void *ctx, size_t begin, size_t end, int thread)
         verify_block(v, &v->blocks[i]);
         if (v->blocks[i].err.status) atomic_store(&v->failed, true);
     }
-}
-
-/* Joins the blocks in their order: pairs and logs. */
-static enum status join_blocks(const struct verification *v, struct err *err)
-{
-    FILE *log = fopen(v->job->logs[1], "ab");
-    if (!log) return err_errno(err, "write", v->job->logs[1]);
-    for (int i = 0; !err->status && i < v->count; i++) {
-        const struct block *b = &v->blocks[i];
-        struct file_bytes text = {0};
-        if (!colmap_database_take_pairs(v->job->database, b->database, err) && !file_bytes_read(&text, b->log, err))
-            fwrite(text.bytes, 1, text.size, log);
-        file_bytes_release(&text);
-    }
-    if (fclose(log)) err_errno(err, "write", v->job->logs[1]);
-    return err->status;
 }
 
 static void remove_block(struct block *b)
@@ -139,20 +141,22 @@ static void remove_block(struct block *b)
 
 enum status verify_matches(const struct colmap_job *job, struct err *err)
 {
-    struct verification v = {.job = job};
+    struct verification v = {.job = job, .joining = PTHREAD_MUTEX_INITIALIZER};
     for (int i = 0; !err->status && i < job->photos->count; i++)
         if (job->features[i] >= 0) write_pairs(&v, i, err);
     if (!err->status) finish_list(&v, err);
     outfile_discard(&v.list);
-    if (!err->status) {
+    v.unverified = sfm_text_format(err, "%s.unverified", job->database);
+    if (!err->status && !outfile_copy(v.unverified, job->database, err)) {
         progress_start(&v.progress, "verifying", v.pairs, "pairs");
         parallel_for((size_t)v.count, 1, verify_blocks, &v);
         progress_end(&v.progress);
     }
     for (int i = 0; !err->status && i < v.count; i++)
         if (v.blocks[i].err.status) *err = v.blocks[i].err;
-    if (!err->status) join_blocks(&v, err);
     for (int i = 0; i < v.count; i++) remove_block(&v.blocks[i]);
+    if (v.unverified) remove(v.unverified);
+    free(v.unverified);
     free(v.blocks);
     return err->status;
 }
