@@ -8,10 +8,8 @@
  * and those connected to it have a mean confidence of at least `held`, and if its surface, of connected segments with
  * that mean, is large enough: confidence times size, in mean segments, sums to MIN_HELD. So are segments on a dominant
  * plane of the scene (scene_planes.h), and slanted planes that continue a held one: at both centres they agree within
- * COPLANAR steps, no edge is between them, that is a border whose colours differ by more than EDGE and by twice as much
- * as those at most borders of either segment, and all that continue each other have a mean confidence of at least SURE.
- * So a blank ceiling or floor, which comes near towards the border, stays on its plane, but a few chance matches do not
- * hold a blank wall in front of where it is. The others take the inverse depths d that minimize
+ * COPLANAR steps. So a blank ceiling or floor, which comes near towards the border, stays on its plane. The others take
+ * the inverse depths d that minimize
  *   sum over adjacent i, j  w_ij |d_i - d_j|  +  far_bias sum_i size_i d_i,    d_i at most what it was,
  * given those of held segments. w_ij is the weight of the smoothness cost, so that contact with an object of another
  * colour hardly counts; contact with held foreground counts `keep` times that. Nothing is moved forwards. An area stays
@@ -34,7 +32,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/base/sort.h"
 #include "common/math/numbers.h"
 #include "stages/segment_depth/max_flow.h"
 
@@ -43,8 +40,6 @@
 #define ROUNDS     3
 #define ITERATIONS 200
 #define COPLANAR   2   /* steps by which planes of one surface may differ */
-#define EDGE       4.0 /* L a b */
-#define SURE       0.15
 #define CAPACITY   1e6 /* of weight 1 */
 
 struct caution {
@@ -62,7 +57,6 @@ struct inherit {
     const double *confidence;
     struct caution caution;
     double spacing, level; /* of levels, and the one that is cut; inverse depths */
-    double *contrast;      /* of each segment: the median of its borders' */
     bool *held, *listed;
     int *members;         /* segments of an area */
     int *node;            /* of each member: its place among the members */
@@ -111,35 +105,14 @@ static bool joins_surface(const struct inherit *x, int i, int t)
     return x->held[x->s->borders[t].other] && connected(x, i, t);
 }
 
-static bool is_edge(const struct inherit *x, int i, int t)
-{
-    const struct border *b = &x->s->borders[t];
-    return (double)b->contrast > fmax(EDGE, 2 * fmin(x->contrast[i], x->contrast[b->other]));
-}
-
-static enum status find_contrasts(struct inherit *x, struct err *err)
-{
-    const struct segmentation *s = x->s;
-    double *values = malloc(((size_t)s->first_border[s->count] + 1) * sizeof *values);
-    if (!values) return err_nomem(err, "contrasts", (size_t)s->first_border[s->count] * sizeof *values);
-    for (int i = 0; i < s->count; i++) {
-        const int first = s->first_border[i], count = s->first_border[i + 1] - first;
-        for (int k = 0; k < count; k++) values[k] = (double)s->borders[first + k].contrast;
-        x->contrast[i] = count ? sort_median(values, (size_t)count) : 0;
-    }
-    free(values);
-    return ST_OK;
-}
-
-/* Whether both sides of border t are slanted and continue each other: no edge is between them, and at both centres
- * their planes agree. */
+/* Whether both sides of border t are slanted, and continue each other: at both centres their planes agree. */
 static bool joins_plane(const struct inherit *x, int i, int t)
 {
     const int j = x->s->borders[t].other;
     const struct segment *g = &x->s->segments[i], *h = &x->s->segments[j];
     const struct plane a = x->planes[i], b = x->planes[j];
     const double step = COPLANAR * x->p->step;
-    return !is_edge(x, i, t) && (a.a != 0 || a.b != 0) && (b.a != 0 || b.b != 0) &&
+    return (a.a != 0 || a.b != 0) && (b.a != 0 || b.b != 0) &&
            fabs(plane_at(a, g->cx, g->cy) - plane_at(b, g->cx, g->cy)) <= step &&
            fabs(plane_at(a, h->cx, h->cy) - plane_at(b, h->cx, h->cy)) <= step;
 }
@@ -170,21 +143,6 @@ static bool always_held(const struct inherit *x, int i)
     return given_depth_has(x->p->given, i) || scene_planes_have(x->p->scene, x->planes[i]);
 }
 
-/* The sum over the first `count` members of their pixels, each as much as it is sure. */
-static double sure_pixels(const struct inherit *x, int count)
-{
-    double sure = 0;
-    for (int k = 0; k < count; k++) sure += x->confidence[x->members[k]] * x->s->segments[x->members[k]].pixels;
-    return sure;
-}
-
-static double all_pixels(const struct inherit *x, int count)
-{
-    double all = 0;
-    for (int k = 0; k < count; k++) all += x->s->segments[x->members[k]].pixels;
-    return all;
-}
-
 static void find_held(struct inherit *x)
 {
     const struct segmentation *s = x->s;
@@ -193,16 +151,17 @@ static void find_held(struct inherit *x)
         x->listed[i] = false;
     }
     for (int i = 0; i < s->count; i++) {
+        double sure = 0;
         if (x->listed[i] || !x->held[i]) continue;
         const int count = gather(x, i, joins_surface);
-        if (sure_pixels(x, count) >= MIN_HELD * x->p->params->segment_pixels) continue;
+        for (int k = 0; k < count; k++) sure += x->confidence[x->members[k]] * s->segments[x->members[k]].pixels;
+        if (sure >= MIN_HELD * x->p->params->segment_pixels) continue;
         for (int k = 0; k < count; k++) x->held[x->members[k]] = always_held(x, x->members[k]);
     }
     memset(x->listed, 0, (size_t)s->count * sizeof *x->listed);
     for (int i = 0; i < s->count; i++) {
         if (x->listed[i] || !x->held[i]) continue;
         const int count = gather(x, i, joins_plane);
-        if (sure_pixels(x, count) < SURE * all_pixels(x, count)) continue;
         for (int k = 0; k < count; k++) x->held[x->members[k]] = true;
     }
 }
@@ -331,16 +290,14 @@ enum status inherit_planes(struct plane *planes, bool *inherited, const double *
     struct inherit x = {.p = p, .s = s, .planes = planes, .confidence = confidence};
     x.caution = cautious ? early : last;
     x.spacing = fmax(p->params->jump * p->step, range / MAX_LEVELS);
-    x.contrast = malloc(count * sizeof *x.contrast);
     x.held = malloc(count * sizeof *x.held);
     x.listed = malloc(count * sizeof *x.listed);
     x.members = malloc(count * sizeof *x.members);
     x.node = malloc(count * sizeof *x.node);
     x.cut_at = malloc(count * sizeof *x.cut_at);
     x.behind = malloc(count * sizeof *x.behind);
-    if (!x.contrast || !x.held || !x.listed || !x.members || !x.node || !x.cut_at || !x.behind)
-        err_nomem(err, "border areas", count * 46);
-    if (!err->status) find_contrasts(&x, err);
+    if (!x.held || !x.listed || !x.members || !x.node || !x.cut_at || !x.behind)
+        err_nomem(err, "border areas", count * 38);
     for (int round = 0; !err->status && round < ROUNDS; round++) {
         find_held(&x);
         memset(x.cut_at, 0, count * sizeof *x.cut_at);
@@ -348,7 +305,6 @@ enum status inherit_planes(struct plane *planes, bool *inherited, const double *
         if (err->status || !take_over(&x, inherited)) break;
     }
     max_flow_release(&x.flow);
-    free(x.contrast);
     free(x.held);
     free(x.listed);
     free(x.members);
