@@ -42,13 +42,12 @@ enum status colmap_database_open(struct colmap_database **out, const char *path,
     return err->status;
 }
 
-/* Runs a statement with a path in place of its question mark. */
-static enum status run_with_path(struct colmap_database *db, const char *text, const char *path, struct err *err)
+static enum status attach(struct colmap_database *db, const char *path, struct err *err)
 {
     sqlite3_stmt *statement = NULL;
-    if (sqlite3_prepare_v2(db->sql, text, -1, &statement, NULL) != SQLITE_OK ||
+    if (sqlite3_prepare_v2(db->sql, "ATTACH ? AS part", -1, &statement, NULL) != SQLITE_OK ||
         sqlite3_bind_text(statement, 1, path, -1, SQLITE_STATIC) != SQLITE_OK || sqlite3_step(statement) != SQLITE_DONE)
-        failed(db, text, err);
+        failed(db, "open a part of it", err);
     sqlite3_finalize(statement);
     return err->status;
 }
@@ -57,7 +56,7 @@ enum status colmap_database_take_pairs(const char *to, const char *from, struct 
 {
     static const char text[] = "INSERT INTO two_view_geometries SELECT * FROM part.two_view_geometries ORDER BY 1";
     struct colmap_database *db = NULL;
-    if (!open_plain(&db, to, err) && !run_with_path(db, "ATTACH ? AS part", from, err)) run_text(db, text, err);
+    if (!open_plain(&db, to, err) && !attach(db, from, err)) run_text(db, text, err);
     colmap_database_close(db);
     return err->status;
 }
