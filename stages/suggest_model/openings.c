@@ -132,8 +132,12 @@ enum status openings_find(struct suggestion *s, const struct opening_finder *f, 
             grow_opening(&t, rect);
             const bool window = rect[1] * c > 0.15 * f->height;
             if (array_append(&s->openings, (size_t)s->opening_count, sizeof *s->openings, "openings", err)) break;
-            s->openings[s->opening_count++] = (struct suggested_opening){
-                wall, w->begin + rect[0] * c, w->begin + rect[2] * c, window ? rect[1] * c : 0, rect[3] * c, window};
+            s->openings[s->opening_count++] = (struct suggested_opening){.wall = wall,
+                                                                         .begin = w->begin + rect[0] * c,
+                                                                         .end = w->begin + rect[2] * c,
+                                                                         .foot = window ? rect[1] * c : 0,
+                                                                         .top = rect[3] * c,
+                                                                         .window = window};
             if (rect[2] > end) end = rect[2];
         }
         begin = end + 1;

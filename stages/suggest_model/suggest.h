@@ -36,7 +36,8 @@ struct suggested_wall {
 struct suggested_opening {
     int wall;
     double begin, end, foot, top;
-    bool window; /* does not reach the floor */
+    bool window;   /* does not reach the floor */
+    bool doubtful; /* a bright area without depth: a window, or a patch of light */
 };
 enum doubt_kind { DOUBT_BORDER, DOUBT_FACE, DOUBT_STRETCH };
 struct suggested_doubt {  /* where a wall may be */

@@ -71,7 +71,7 @@ static void put_plan(const struct sheet *s, const struct suggestion *plan, const
         const struct suggested_opening *o = &plan->openings[i];
         line_point(&plan->walls[o->wall].line, o->begin, 0, a);
         line_point(&plan->walls[o->wall].line, o->end, 0, b);
-        put_line(s, a, b, o->window ? "window" : "passage");
+        put_line(s, a, b, o->doubtful ? "doubt" : o->window ? "window" : "passage");
     }
     for (int i = 0; i < plan->doubt_count; i++) {
         const struct suggested_doubt *d = &plan->doubts[i];

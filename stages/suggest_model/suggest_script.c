@@ -108,6 +108,7 @@ static void print_openings(FILE *to, const struct suggestion *s, const struct wa
         const struct suggested_wall *w = &s->walls[o->wall];
         const double a = script_s(w, o->begin), b = script_s(w, o->end);
         if (fabs(b - a) < MIN_PLACE * s->ceiling || o->top - o->foot < MIN_PLACE * s->ceiling) continue;
+        if (o->doubtful) fputs("# bright and without depth: a window, or a patch of light\n# ", to);
         fprintf(to, "%s %s%d on %s from %.4f %.4f to %.4f %.4f\n", o->window ? "window" : "passage",
                 o->window ? "window" : "doorway", o->window ? ++windows : ++doors, names->names[o->wall], fmin(a, b),
                 o->foot, fmax(a, b), o->top);

@@ -16,7 +16,6 @@
 #include "common/math/numbers.h"
 
 static const double OFF = 0.03;           /* distance from the plane, of the height, at which depth is not on it */
-static const double MIN_WEIGHT = 0.05;    /* of a vote without confidence */
 static const double MIN_LUMINANCE = 1e-4; /* added before the logarithm */
 
 enum status raster_occupancy_make(struct occupancy *o, const struct point_cloud *cloud, const double low[3],
@@ -96,7 +95,7 @@ static void add_sample(struct wall_cell *cell, const struct wall_raster *r, cons
     struct vec3 p = view_unproject(view, u, v, z);
     const double behind = -line_across(&r->line, p.x, p.y);
     if (behind < -OFF * r->height) return;
-    const double weight = depth->segments[id - 1].confidence + MIN_WEIGHT;
+    const double weight = depth->segments[id - 1].confidence + RASTER_MIN_WEIGHT;
     if (behind <= OFF * r->height)
         cell->on += weight;
     else {

@@ -22,6 +22,8 @@ enum status raster_occupancy_make(struct occupancy *o, const struct point_cloud 
                                   const double high[3], double edge, struct err *err);
 void raster_occupancy_release(struct occupancy *o);
 
+#define RASTER_MIN_WEIGHT 0.05 /* of a vote without confidence */
+
 struct wall_cell {
     double on, beyond; /* votes of views whose depth is on the plane, or behind it; weighted by confidence */
     double mirrored;   /* the part of `beyond` whose mirror image in the plane is a point of the scene */

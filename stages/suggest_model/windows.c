@@ -13,6 +13,10 @@
  * It takes the place of an opening found from points. Other openings from points stay, unless the views contradict
  * them: their cells are solid, or they are mirrors.
  *
+ * Bright areas. A blown-out window has nothing that could match, and takes its depth from the wall around it. So does a
+ * patch of sun. A bright area where nothing matched, which fills its rectangle and has edges on its sides, is therefore
+ * a doubtful window: a person decides.
+ *
  * Sides. Each side moves by a few cells to the largest step of brightness along it, because pictures have sharper edges
  * than depth. It moves farther outwards than inwards: the front of a reveal is near the plane, and its depth may be on
  * it. Where the largest step is that from the glass to the reveal, the next one outwards, from the reveal to the wall,
@@ -38,6 +42,13 @@ static const double MIN_SPREADS = 1.5;    /* times the standard deviation of log
 static const double SECOND_STEP = 0.3;    /* of the largest step of brightness, where a reveal meets the wall */
 static const double MAX_FOOT = 0.15;      /* of a doorway's lower side, of the ceiling's height */
 static const double SAME = 0.5;           /* overlap of equal openings, of the smaller area */
+/* of a bright area: */
+static const double MIN_BRIGHT = 1.4;  /* of a cell, times the wall */
+static const double MAX_MATCHED = 0.4; /* mean confidence of its cells */
+static const double MIN_FILL = 0.7;    /* of its rectangle's cells that are bright */
+static const double MIN_EDGE = 0.5;    /* step of brightness at a side, of that to the wall */
+enum { EDGE_BEGIN = 1, EDGE_END = 4 }; /* cells from a side: lines whose brightness is compared */
+enum { MIN_EDGES = 3 };                /* sides with such a step */
 
 struct rect { /* cells begin <= x < end, foot <= y < top */
     int begin, foot, end, top;
@@ -45,6 +56,7 @@ struct rect { /* cells begin <= x < end, foot <= y < top */
 
 static bool is_known(const struct wall_cell *c) { return c->samples >= MIN_SAMPLES && c->on + c->beyond > 0; }
 
+/* 1: views look through the cell; -1: they see the wall; 0: not known. */
 static int state_of(const struct wall_raster *r, int x, int y)
 {
     const struct wall_cell *c = wall_raster_at(r, x, y);
@@ -53,11 +65,21 @@ static int state_of(const struct wall_raster *r, int x, int y)
 
 static double log_brightness(const struct wall_cell *c) { return c->brightness / c->samples; }
 
+/* 1: the cell is bright and nothing matched there; -1: it is not; 0: not known. wall: log luminance of the wall. */
+static int blown_state_of(const struct wall_raster *r, int x, int y, double wall)
+{
+    const struct wall_cell *c = wall_raster_at(r, x, y);
+    if (!is_known(c)) return 0;
+    const double matched = (c->on + c->beyond) / c->samples - RASTER_MIN_WEIGHT;
+    return matched < MAX_MATCHED && log_brightness(c) - wall >= log(MIN_BRIGHT) ? 1 : -1;
+}
+
 /* ------------------------------------------------------------------------------------------------------- candidates */
 
-/* Marks the cells that can be reached from (x, y) over open cells and gaps, and finds their bounds. stack has room for
- * all cells. */
-static struct rect mark_region(const struct wall_raster *r, unsigned char *marked, int *stack, int x, int y)
+/* Marks the cells that can be reached from (x, y) over cells of state 1 and gaps, and finds their bounds. stack has
+ * room for all cells. */
+static struct rect mark_region(const struct wall_raster *r, const signed char *state, unsigned char *marked, int *stack,
+                               int x, int y)
 {
     struct rect b = {x, y, x + 1, y + 1};
     int count = 0;
@@ -73,7 +95,7 @@ static struct rect mark_region(const struct wall_raster *r, unsigned char *marke
             for (int ny = cy - GAP; ny <= cy + GAP; ny++) {
                 if ((nx != cx && ny != cy) || nx < 0 || ny < 0 || nx >= r->across || ny >= r->up) continue;
                 const int next = nx * r->up + ny;
-                if (marked[next] || state_of(r, nx, ny) <= 0) continue;
+                if (marked[next] || state[next] <= 0) continue;
                 marked[next] = 1;
                 stack[count++] = next;
             }
@@ -82,7 +104,8 @@ static struct rect mark_region(const struct wall_raster *r, unsigned char *marke
 }
 
 /* The rectangle inside the bounds with the maximum sum. rows has room for a column. */
-static struct rect best_rect(const struct wall_raster *r, const struct rect *bounds, int *rows)
+static struct rect best_rect(const struct wall_raster *r, const signed char *state, const struct rect *bounds,
+                             int *rows)
 {
     struct rect best = {0};
     int most = 0;
@@ -91,7 +114,7 @@ static struct rect best_rect(const struct wall_raster *r, const struct rect *bou
         for (int end = begin + 1; end <= bounds->end; end++) {
             int sum = 0, foot = bounds->foot;
             for (int y = bounds->foot; y < bounds->top; y++) {
-                rows[y] += state_of(r, end - 1, y);
+                rows[y] += state[(end - 1) * r->up + y];
                 if (sum <= 0) sum = 0, foot = y;
                 sum += rows[y];
                 if (sum > most) {
@@ -228,12 +251,12 @@ static bool is_same(const struct suggested_opening *a, const struct suggested_op
 static struct suggested_opening opening_from_rect(const struct wall_raster *r, const struct rect *rect, int wall)
 {
     const bool window = rect->foot * r->cell > MAX_FOOT * r->height;
-    return (struct suggested_opening){wall,
-                                      r->begin + rect->begin * r->cell,
-                                      r->begin + rect->end * r->cell,
-                                      window ? rect->foot * r->cell : 0,
-                                      rect->top * r->cell,
-                                      window};
+    return (struct suggested_opening){.wall = wall,
+                                      .begin = r->begin + rect->begin * r->cell,
+                                      .end = r->begin + rect->end * r->cell,
+                                      .foot = window ? rect->foot * r->cell : 0,
+                                      .top = rect->top * r->cell,
+                                      .window = window};
 }
 
 static struct rect rect_from_opening(const struct wall_raster *r, const struct suggested_opening *o)
@@ -279,39 +302,151 @@ static void remove_contradicted(struct suggestion *s, int wall, const struct wal
     s->opening_count = kept;
 }
 
-/* Adds the region's rectangle if it is a window. */
-static enum status try_region(struct suggestion *s, int wall, const struct wall_raster *r, const struct rect *bounds,
-                              double min_side, int *rows, double *values, struct err *err)
+/* Fraction of a rectangle's cells that have state 1. */
+static double filled(const struct wall_raster *r, const signed char *state, const struct rect *rect)
 {
-    struct rect rect = best_rect(r, bounds, rows);
-    if ((rect.end - rect.begin) * r->cell < min_side || (rect.top - rect.foot) * r->cell < min_side) return ST_OK;
-    const struct evidence e = weigh(r, &rect, values);
-    if (e.open < MIN_OPEN || e.mirrored > MAX_MIRRORED || e.border < MIN_BORDER) return ST_OK;
-    if (e.contrast < fmax(log(MIN_BRIGHTER), MIN_SPREADS * e.spread)) return ST_OK;
+    int count = 0;
+    for (int x = rect->begin; x < rect->end; x++)
+        for (int y = rect->foot; y < rect->top; y++) count += state[x * r->up + y] > 0;
+    return count / ((double)(rect->end - rect->begin) * (rect->top - rect->foot));
+}
+
+/* Mean log luminance of the lines EDGE_BEGIN to EDGE_END beside a position, towards `step`; false: none is known. */
+static bool strip_brightness(double *mean, const struct wall_raster *r, const struct rect *rect, bool row, int at,
+                             int step)
+{
+    double sum = 0;
+    int count = 0;
+    for (int k = EDGE_BEGIN; k < EDGE_END; k++) {
+        double line;
+        if (!line_brightness(&line, r, rect, row, step > 0 ? at + k : at - 1 - k)) continue;
+        sum += line;
+        count++;
+    }
+    *mean = sum / (count ? count : 1);
+    return count;
+}
+
+/* Number of sides at which the brightness rises by at least a fraction of the contrast to the wall. */
+static int edges(const struct wall_raster *r, const struct rect *rect, const struct evidence *e)
+{
+    const int at[4] = {rect->begin, rect->end, rect->foot, rect->top};
+    int count = 0;
+    for (int k = 0; k < 4; k++) {
+        const int inwards = k % 2 ? -1 : 1;
+        double inside, outside;
+        count += strip_brightness(&inside, r, rect, k >= 2, at[k], inwards) &&
+                 strip_brightness(&outside, r, rect, k >= 2, at[k], -inwards) &&
+                 inside - outside >= MIN_EDGE * e->contrast;
+    }
+    return count;
+}
+
+static bool is_brighter(const struct evidence *e)
+{
+    return e->contrast >= fmax(log(MIN_BRIGHTER), MIN_SPREADS * e->spread);
+}
+
+static bool is_window(const struct evidence *e)
+{
+    return e->open >= MIN_OPEN && e->mirrored <= MAX_MIRRORED && e->border >= MIN_BORDER && is_brighter(e);
+}
+
+static bool is_blown_out(const struct wall_raster *r, const signed char *state, const struct rect *rect,
+                         const struct evidence *e)
+{
+    return e->border >= MIN_BORDER && is_brighter(e) && filled(r, state, rect) >= MIN_FILL &&
+           edges(r, rect, e) >= MIN_EDGES;
+}
+
+static bool overlaps_opening(const struct suggestion *s, const struct suggested_opening *o)
+{
+    for (int i = 0; i < s->opening_count; i++)
+        if (is_same(&s->openings[i], o)) return true;
+    return false;
+}
+
+struct finder { /* of the windows of one wall */
+    const struct wall_raster *raster;
+    signed char *state; /* of each cell */
+    unsigned char *marked;
+    int *stack;
+    double *values;
+    double min_side;
+    int wall;
+};
+
+/* Adds a region's rectangle if it is a window, or, if `blown`, a doubtful one. */
+static enum status try_region(struct suggestion *s, const struct finder *f, const struct rect *bounds, bool blown,
+                              struct err *err)
+{
+    const struct wall_raster *r = f->raster;
+    struct rect rect = best_rect(r, f->state, bounds, f->stack);
+    if ((rect.end - rect.begin) * r->cell < f->min_side || (rect.top - rect.foot) * r->cell < f->min_side) return ST_OK;
+    const struct evidence e = weigh(r, &rect, f->values);
+    if (blown ? !is_blown_out(r, f->state, &rect, &e) : !is_window(&e)) return ST_OK;
     refine(&rect, r, e.wall);
-    const struct suggested_opening o = opening_from_rect(r, &rect, wall);
+    struct suggested_opening o = opening_from_rect(r, &rect, f->wall);
+    o.doubtful = blown;
+    if (blown && overlaps_opening(s, &o)) return ST_OK;
     return replace(s, &o, err);
+}
+
+/* Tries each region of cells with state 1. */
+static enum status try_regions(struct suggestion *s, const struct finder *f, bool blown, struct err *err)
+{
+    const struct wall_raster *r = f->raster;
+    memset(f->marked, 0, (size_t)r->across * (size_t)r->up);
+    for (int x = 0; !err->status && x < r->across; x++)
+        for (int y = 0; !err->status && y < r->up; y++) {
+            if (f->marked[x * r->up + y] || f->state[x * r->up + y] <= 0) continue;
+            const struct rect bounds = mark_region(r, f->state, f->marked, f->stack, x, y);
+            try_region(s, f, &bounds, blown, err);
+        }
+    return err->status;
+}
+
+/* Median log luminance of the cells where views see the wall. */
+static double wall_brightness(const struct wall_raster *r, double *values)
+{
+    size_t count = 0;
+    for (int x = 0; x < r->across; x++)
+        for (int y = 0; y < r->up; y++)
+            if (state_of(r, x, y) < 0) values[count++] = log_brightness(wall_raster_at(r, x, y));
+    return median_of(values, count);
+}
+
+static enum status find_windows(struct suggestion *s, const struct finder *f, struct err *err)
+{
+    const struct wall_raster *r = f->raster;
+    for (int x = 0; x < r->across; x++)
+        for (int y = 0; y < r->up; y++) f->state[x * r->up + y] = (signed char)state_of(r, x, y);
+    if (try_regions(s, f, false, err)) return err->status;
+    const double wall = wall_brightness(r, f->values);
+    for (int x = 0; x < r->across; x++)
+        for (int y = 0; y < r->up; y++) f->state[x * r->up + y] = (signed char)blown_state_of(r, x, y, wall);
+    return try_regions(s, f, true, err);
 }
 
 enum status windows_suggest(struct suggestion *s, int wall, const struct wall_raster *r,
                             const struct suggest_params *params, struct err *err)
 {
     const size_t cells = (size_t)r->across * (size_t)r->up;
-    unsigned char *marked = calloc(cells, 1);
-    double *values = malloc((cells + 1) * sizeof *values);
-    int *stack = malloc((cells + (size_t)r->up) * sizeof *stack);
-    if (!marked || !values || !stack) err_nomem(err, "a wall's cells", cells * sizeof *values);
+    const struct finder f = {.raster = r,
+                             .state = malloc(cells + 1),
+                             .marked = malloc(cells + 1),
+                             .stack = malloc((cells + (size_t)r->up) * sizeof(int)),
+                             .values = malloc((cells + 1) * sizeof(double)),
+                             .min_side = params->min_opening * r->height,
+                             .wall = wall};
+    if (!f.state || !f.marked || !f.stack || !f.values) err_nomem(err, "a wall's cells", cells * sizeof *f.values);
     if (!err->status) {
-        remove_contradicted(s, wall, r, values);
-        for (int x = 0; !err->status && x < r->across; x++)
-            for (int y = 0; !err->status && y < r->up; y++) {
-                if (marked[x * r->up + y] || state_of(r, x, y) <= 0) continue;
-                const struct rect bounds = mark_region(r, marked, stack, x, y);
-                try_region(s, wall, r, &bounds, params->min_opening * r->height, stack, values, err);
-            }
+        remove_contradicted(s, wall, r, f.values);
+        find_windows(s, &f, err);
     }
-    free(marked);
-    free(values);
-    free(stack);
+    free(f.state);
+    free(f.marked);
+    free(f.stack);
+    free(f.values);
     return err->status;
 }

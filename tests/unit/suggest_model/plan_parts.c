@@ -189,9 +189,9 @@ static void openings_stay_between_corners(void **state)
 {
     (void)state;
     struct suggested_wall walls[2] = {wall_of(5, 0, 0, 0), wall_of(2, 4, 2, 0)};
-    struct suggested_opening openings[3] = {{0, -5.2, -3, 0.9, 2, true},    /* beyond the wall's beginning */
-                                            {0, -2.1, -0.5, 0, 2.1, false}, /* where the other wall ends */
-                                            {0, -4, -3.5, 1, 1.5, true}};   /* in the first one */
+    struct suggested_opening openings[3] = {{0, -5.2, -3, 0.9, 2, true, false},    /* beyond the wall's beginning */
+                                            {0, -2.1, -0.5, 0, 2.1, false, false}, /* where the other wall ends */
+                                            {0, -4, -3.5, 1, 1.5, true, false}};   /* in the first one */
     struct suggestion s = {.ceiling = 2.5, .walls = walls, .wall_count = 2, .openings = openings, .opening_count = 3};
     wall_joins_add(&s, &(struct wall_side){1, 0}, &(struct wall_side){0, 0});
     wall_joins_cut_openings(&s, 0.15, 0.1);
@@ -207,9 +207,12 @@ static void the_script_says_what_is_missing(void **state)
     struct suggested_doubt doubt = {DOUBT_BORDER, {0, 4}, {5, 4}, -1, 0.1};
     int room_walls[2] = {0, 1};
     struct suggested_room room = {0, 2, false, {2.5, 2}, 20};
+    struct suggested_opening opening = {0, -4, -3, 0.9, 2, true, true};
     struct suggestion s = {.ceiling = 2.5,
                            .walls = walls,
                            .wall_count = 2,
+                           .openings = &opening,
+                           .opening_count = 1,
                            .doubts = &doubt,
                            .doubt_count = 1,
                            .rooms = &room,
@@ -231,6 +234,8 @@ static void the_script_says_what_is_missing(void **state)
                                  "wall south from 5.0000 0.0000 to 0.0000 0.0000\n"));
     assert_non_null(strstr(text, "\njoin south west\n"));
     assert_non_null(strstr(text, "\n# the start of south is joined to nothing: join south ...\n"));
+    assert_non_null(strstr(text, "# bright and without depth: a window, or a patch of light\n"
+                                 "# window window1 on south from 3.0000 0.9000 to 4.0000 2.0000\n"));
     assert_non_null(strstr(text, "is not closed"));
     assert_non_null(strstr(text, "\n# room room1 south west ...\n"));
     assert_non_null(strstr(text, "# what was seen ends from 0.0000 4.0000 to 5.0000 4.0000"));

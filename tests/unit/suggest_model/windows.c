@@ -11,7 +11,7 @@ static const double WIDE = 5, DEEP = 4, HIGH = 2.6, REVEAL = 0.25, YARD = 9, SOF
 static const double RECT[4] = {1.5, 0.9, 3.2, 2.2}; /* begin, foot, end, top */
 static const double WALL_LIGHT = 0.2, SKY = 4, GROUND = 1.2;
 
-enum thing { WALL, WINDOW, POSTER, SUN, MIRROR, DARK_WINDOW };
+enum thing { WALL, WINDOW, POSTER, SUN, SLANTED_SUN, GLOW, MIRROR, DARK_WINDOW };
 struct room {
     enum thing thing;
     bool bar;          /* in the middle of the window, 6 cm wide, at the wall's depth */
@@ -47,11 +47,18 @@ static struct sample look(const struct room *room, struct vec3 c, struct vec3 d)
     const double x = c.x + at * d.x, z = c.z + at * d.z;
     if (is_in(room->picture, x, z)) return (struct sample){at, 0.2 * WALL_LIGHT, true};
     if (room->bar && fabs(x - (RECT[0] + RECT[2]) / 2) < 0.03) return (struct sample){at, WALL_LIGHT, true};
+    if (room->thing == GLOW) { /* of a lamp close to the wall */
+        const double far = hypot(x - 2.3, z - 1.5), glow = 20 / (1 + 16 * far * far);
+        return (struct sample){at, (1 + glow) * WALL_LIGHT, glow < 1};
+    }
     if (room->thing == WALL || !is_in(RECT, x, z)) return (struct sample){at, WALL_LIGHT, true};
+    if (room->thing == SLANTED_SUN && fabs(x - 2.35 + 0.8 * (z - 1.55)) > 0.3)
+        return (struct sample){at, WALL_LIGHT, true};
     switch (room->thing) {
     case POSTER:
         return (struct sample){at, 6 * WALL_LIGHT, true};
-    case SUN: /* too bright to match; its depth is that of the wall around it */
+    case SUN: /* too bright to match, like a window that is blown out; its depth is that of the wall around it */
+    case SLANTED_SUN:
         return (struct sample){at, 40 * WALL_LIGHT, false};
     case MIRROR: /* of a room that is brighter than this wall */
         return (struct sample){leave_mirror(c, d), 5 * WALL_LIGHT, true};
@@ -231,10 +238,28 @@ static void a_bright_poster_is_no_window(void **state)
     assert_no_window(POSTER, 6);
 }
 
-static void a_sun_patch_that_nothing_matches_is_no_window(void **state)
+static void a_bright_rectangle_that_nothing_matches_is_a_doubtful_window(void **state)
 {
     (void)state;
-    assert_no_window(SUN, 7);
+    for (uint64_t seed = 1; seed <= 3; seed++) {
+        struct suggestion s;
+        suggest_made(&s, &(struct room){.thing = SUN}, NULL, seed);
+        assert_window(&s, RECT[0], RECT[1], RECT[2], RECT[3]);
+        assert_true(s.openings[0].doubtful);
+        suggest_release(&s);
+    }
+}
+
+static void a_slanted_patch_of_sun_is_no_window(void **state)
+{
+    (void)state;
+    assert_no_window(SLANTED_SUN, 7);
+}
+
+static void the_glow_of_a_lamp_is_no_window(void **state)
+{
+    (void)state;
+    assert_no_window(GLOW, 15);
 }
 
 /* It is bright, and its depth is behind the wall. */
@@ -305,7 +330,9 @@ int main(void)
         cmocka_unit_test(a_window_found_from_points_is_corrected),
         cmocka_unit_test(a_bare_wall_has_no_window),
         cmocka_unit_test(a_bright_poster_is_no_window),
-        cmocka_unit_test(a_sun_patch_that_nothing_matches_is_no_window),
+        cmocka_unit_test(a_bright_rectangle_that_nothing_matches_is_a_doubtful_window),
+        cmocka_unit_test(a_slanted_patch_of_sun_is_no_window),
+        cmocka_unit_test(the_glow_of_a_lamp_is_no_window),
         cmocka_unit_test(a_mirror_is_no_window),
         cmocka_unit_test(a_dark_opening_is_left_to_the_points),
         cmocka_unit_test(an_opening_where_the_wall_is_solid_is_removed),
