@@ -133,19 +133,25 @@ enum status colmap_run_long(const char *log, const char *const args[], int max_s
     return err->status;
 }
 
+/* Of a model, in photos: a quarter of the set, from 3 to 10. */
+static int min_model_size(int photos) { return photos < 12 ? 3 : photos < 40 ? photos / 4 : 10; }
+
 enum status colmap_map(const struct colmap_job *job, const struct colmap_start *start, struct err *err)
 {
     const char *refine = strcmp(job->params->refine_camera, "no") ? "1" : "0";
-    char image[16];
+    char image[16], smallest[16];
     const char *args[MAX_ARGS] = {"mapper",      "--database_path",
                                   job->database, "--image_path",
                                   job->images,   "--output_path",
                                   start->folder, "--Mapper.num_threads",
                                   "1",           "--Mapper.ba_refine_focal_length",
                                   refine,        "--Mapper.ba_refine_extra_params",
-                                  refine};
+                                  refine,        "--Mapper.min_model_size",
+                                  smallest};
     int n = 0;
     while (args[n]) n++;
+    /* COLMAP drops models of fewer than 10 photos, and of 10 photos or fewer every model that lacks one of them */
+    snprintf(smallest, sizeof smallest, "%d", min_model_size(job->photos->count));
     if (start->image) {
         snprintf(image, sizeof image, "%d", start->image);
         args[n++] = "--Mapper.init_image_id1";

@@ -1,7 +1,7 @@
 /* run_colmap.c - COLMAP's sparse reconstruction: verified matches, mapping, conversion to text.
  *
- * If the mapper finds no initial pair, it runs again with relaxed thresholds; sets of a few photos taken close together
- * need this. If its largest model has too few photos, it runs again from other photos. */
+ * If the mapper finds no model that holds together, it runs again with relaxed thresholds; sets of a few photos taken
+ * close together need this. If its largest model has too few photos, it runs again from other photos. */
 #include "stages/sfm/run_colmap.h"
 
 #include <stdlib.h>
@@ -17,6 +17,7 @@
 
 #define MORE_STARTS 4  /* at most */
 #define ENOUGH      90 /* per cent of the largest group of photos that verified matches connect */
+#define MIN_POINTS  40 /* of a model; photos from one spot give models of three photos and a few points */
 
 struct mapping {
     struct colmap_job job;
@@ -55,7 +56,8 @@ static enum status keep_placed(struct mapping *m, const struct sfm_model *model,
     return ST_OK;
 }
 
-/* Converts COLMAP's model number k in a folder to text, checks it, and adds it if it has more than `above` photos. */
+/* Converts COLMAP's model number k in a folder to text, checks it, and adds it if it has enough points and more than
+ * `above` photos. */
 static enum status add_model(struct mapping *m, const char *sparse, int k, int above, struct err *err)
 {
     const struct colmap_job *job = &m->job;
@@ -65,8 +67,10 @@ static enum status add_model(struct mapping *m, const char *sparse, int k, int a
     if (from && text && !outfile_make_folders(text, err) && !colmap_run(job->logs[3], args, 0, err))
         sfm_model_read_text(&model, text, NULL, err);
     if (!err->status) {
-        log_note("model: %d of %d photos, %d points", model.image_count, job->photos->count, model.point_count);
-        if (model.image_count > above && !colmap_name_images(&model, job->photos, err) &&
+        const bool enough = model.point_count >= MIN_POINTS;
+        log_note("model: %d of %d photos, %d points%s", model.image_count, job->photos->count, model.point_count,
+                 enough ? "" : "; too few points, not used");
+        if (enough && model.image_count > above && !colmap_name_images(&model, job->photos, err) &&
             !sfm_folder_add(m->folder, &model, m->prov, err) && model.image_count > m->placed_count)
             keep_placed(m, &model, err);
     }
@@ -86,21 +90,27 @@ static int count_models(const char *sparse, struct err *err)
     }
 }
 
-/* Maps where COLMAP itself starts, and adds all models. */
-static enum status map_photos(struct mapping *m, struct err *err)
+/* Maps into a folder, where COLMAP itself starts, and adds all models. */
+static enum status map_into(struct mapping *m, const char *folder, struct err *err)
 {
-    struct colmap_start start = {.folder = m->job.sparse};
-    int models = 0;
-    if (!colmap_map(&m->job, &start, err) && !(models = count_models(start.folder, err)) && !err->status) {
-        log_note("no pair of photos is good enough to start from; trying again with smaller angles and fewer matches");
-        start.relaxed = m->relaxed = true;
-        if (!colmap_map(&m->job, &start, err)) models = count_models(start.folder, err);
-    }
-    if (!err->status && !models) explain_failure(&m->job, err);
-    if (!err->status)
+    if (colmap_map(&m->job, &(struct colmap_start){.folder = folder, .relaxed = m->relaxed}, err)) return err->status;
+    const int models = count_models(folder, err);
+    if (!err->status && models)
         log_note("step 4 of %d: text of %d models (%.1f s so far)", COLMAP_STEPS, models,
                  clock_seconds() - m->job.started);
-    for (int k = 0; !err->status && k < models; k++) add_model(m, start.folder, k, 0, err);
+    for (int k = 0; !err->status && k < models; k++) add_model(m, folder, k, 0, err);
+    return err->status;
+}
+
+static enum status map_photos(struct mapping *m, struct err *err)
+{
+    if (map_into(m, m->job.sparse, err) || m->placed_count) return err->status;
+    log_note("no pair of photos is good enough to start from; trying again with smaller angles and fewer matches");
+    m->relaxed = true;
+    char *folder = sfm_text_format(err, "%s-1", m->job.sparse);
+    if (folder && !outfile_make_folders(folder, err)) map_into(m, folder, err);
+    free(folder);
+    if (!err->status && !m->placed_count) explain_failure(&m->job, err);
     return err->status;
 }
 
