@@ -28,7 +28,7 @@ static void set_descriptor(uint8_t *to, const float *histogram)
 }
 
 extern "C" enum status sift_find(struct feature_list *list, const unsigned char *grey, int width, int height,
-                                 int longest, double contrast, struct err *err)
+                                 const struct sift_limits *limits, struct err *err)
 {
     *list = {};
     try {
@@ -36,8 +36,8 @@ extern "C" enum status sift_find(struct feature_list *list, const unsigned char 
         cv::Mat picture(height, width, CV_8U, const_cast<unsigned char *>(grey)), descriptors;
         std::vector<cv::KeyPoint> points;
         const int longer = std::max(width, height);
-        if (longer > longest) {
-            const double scale = static_cast<double>(longest) / longer;
+        if (longer > limits->longest) {
+            const double scale = static_cast<double>(limits->longest) / longer;
             cv::resize(
                 picture, picture,
                 cv::Size(static_cast<int>(std::lround(scale * width)), static_cast<int>(std::lround(scale * height))),
@@ -45,7 +45,8 @@ extern "C" enum status sift_find(struct feature_list *list, const unsigned char 
         }
         const float to_x = static_cast<float>(width) / static_cast<float>(picture.cols),
                     to_y = static_cast<float>(height) / static_cast<float>(picture.rows);
-        cv::SIFT::create(0, 3, contrast)->detectAndCompute(picture, cv::noArray(), points, descriptors);
+        cv::SIFT::create(0, 3, limits->contrast, limits->edge)
+            ->detectAndCompute(picture, cv::noArray(), points, descriptors);
         std::vector<size_t> order(points.size());
         std::iota(order.begin(), order.end(), size_t(0));
         std::sort(order.begin(), order.end(), [&points](size_t i, size_t j) {

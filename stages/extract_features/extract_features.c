@@ -68,9 +68,10 @@ static enum status find(struct feature_list *list, const struct extraction *e, c
         log_warn("%s It has no features; the other photos are used.", unreadable.text);
         return ST_OK;
     }
+    const struct sift_limits limits = {
+        .longest = e->params.max_image_size, .contrast = e->params.min_contrast, .edge = e->params.max_edge};
     if (!photo_mask_read(&mask, e->masks, e->records, record, prov, err) && (grey = grey_of(&photo, err)) &&
-        !sift_find(list, grey, photo.info.width, photo.info.height, e->params.max_image_size, e->params.min_contrast,
-                   err))
+        !sift_find(list, grey, photo.info.width, photo.info.height, &limits, err))
         keep(list, &mask, e->params.max_features);
     free(grey);
     photo_mask_release(&mask);

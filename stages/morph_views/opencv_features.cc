@@ -18,19 +18,20 @@ extern "C" {
 namespace
 {
 
-const int MOST_FEATURES = 8000; /* the largest */
-const double CONTRAST = 0.015;
+const int MOST_FEATURES = 8000;           /* the largest */
+const double CONTRAST = 0.015, EDGE = 10; /* limits of features */
 const int MIN_MATCHES = 16;
 
 /* Features of both pictures that match, without saying which are inliers. */
 status find_matches(two_view *out, const unsigned char *const pictures[2], int width, int height, err *err)
 {
     const match_limits limits = MATCH_LIMITS;
+    const sift_limits features = {width + height, CONTRAST, EDGE};
     feature_list lists[2] = {};
     nearest_descriptors descriptors[2] = {};
     matched_pair pair = {};
     for (int i = 0; !err->status && i < 2; i++) {
-        if (sift_find(&lists[i], pictures[i], width, height, width + height, CONTRAST, err)) break;
+        if (sift_find(&lists[i], pictures[i], width, height, &features, err)) break;
         lists[i].count = std::min(lists[i].count, MOST_FEATURES);
         nearest_descriptors_init(&descriptors[i], &lists[i], err);
     }

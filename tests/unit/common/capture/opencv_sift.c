@@ -7,6 +7,7 @@
 #include "common/capture/opencv_sift.h"
 
 enum { SIDE = 200 };
+static const struct sift_limits LIMITS = {.longest = 3200, .contrast = 0.02, .edge = 10};
 
 /* A grey picture with round spots, blurred with `sigma`, at these places (pixels; first pixel's centre at 0.5, 0.5). */
 static unsigned char *spots(const double (*at)[2], int count, double sigma)
@@ -33,7 +34,7 @@ static void features_lie_where_spots_are(void **state)
         struct err err = ERR_INIT;
         struct feature_list list;
         unsigned char *grey = spots(at, 3, sigma);
-        assert_ok(sift_find(&list, grey, SIDE, SIDE, 3200, 0.02, &err), err);
+        assert_ok(sift_find(&list, grey, SIDE, SIDE, &LIMITS, &err), err);
         for (int i = 0; i < 3; i++) {
             double nearest = INFINITY;
             for (int k = 0; k < list.count; k++)
@@ -54,7 +55,7 @@ static void features_of_a_scaled_picture_are_in_its_own_pixels(void **state)
     struct err err = ERR_INIT;
     struct feature_list list;
     unsigned char *grey = spots(at, 1, 6);
-    assert_ok(sift_find(&list, grey, SIDE, SIDE, 100, 0.02, &err), err);
+    assert_ok(sift_find(&list, grey, SIDE, SIDE, &(struct sift_limits){100, 0.02, 10}, &err), err);
     assert_true(list.count > 0);
     assert_true(hypot((double)list.features[0].x - 80, (double)list.features[0].y - 121) < 0.1);
     feature_list_release(&list);
@@ -70,10 +71,10 @@ static void the_same_picture_gives_the_same_features(void **state)
     assert_non_null(grey);
     for (int i = 0; i < SIDE * SIDE; i++)
         grey[i] = (unsigned char)(((unsigned)(i % SIDE / 6 + i / SIDE / 6 * 97) * 2654435761u) >> 24);
-    assert_ok(sift_find(&first, grey, SIDE, SIDE, 3200, 0.02, &err), err);
+    assert_ok(sift_find(&first, grey, SIDE, SIDE, &LIMITS, &err), err);
     assert_true(first.count > 100);
     for (int k = 0; k < 5; k++) {
-        assert_ok(sift_find(&again, grey, SIDE, SIDE, 3200, 0.02, &err), err);
+        assert_ok(sift_find(&again, grey, SIDE, SIDE, &LIMITS, &err), err);
         assert_int_equal(again.count, first.count);
         assert_memory_equal(again.features, first.features, (size_t)first.count * sizeof *first.features);
         feature_list_release(&again);
@@ -87,6 +88,26 @@ static void the_same_picture_gives_the_same_features(void **state)
     free(grey);
 }
 
+/* A long ridge whose ends are round. */
+static void features_on_edges_need_a_higher_limit(void **state)
+{
+    (void)state;
+    double at[40][2];
+    int counts[2];
+    for (int i = 0; i < 40; i++) at[i][0] = 60 + 2 * i, at[i][1] = 100 + 0.7 * i;
+    unsigned char *grey = spots(at, 40, 3);
+    for (int k = 0; k < 2; k++) {
+        const struct sift_limits limits = {.longest = 3200, .contrast = 0.002, .edge = k ? 300 : 3};
+        struct err err = ERR_INIT;
+        struct feature_list list;
+        assert_ok(sift_find(&list, grey, SIDE, SIDE, &limits, &err), err);
+        counts[k] = list.count;
+        feature_list_release(&list);
+    }
+    assert_true(counts[1] > counts[0]);
+    free(grey);
+}
+
 static void a_blank_picture_has_no_features(void **state)
 {
     (void)state;
@@ -94,7 +115,7 @@ static void a_blank_picture_has_no_features(void **state)
     struct feature_list list;
     unsigned char *grey = calloc(SIDE, SIDE);
     assert_non_null(grey);
-    assert_ok(sift_find(&list, grey, SIDE, SIDE, 3200, 0.02, &err), err);
+    assert_ok(sift_find(&list, grey, SIDE, SIDE, &LIMITS, &err), err);
     assert_int_equal(list.count, 0);
     feature_list_release(&list);
     free(grey);
@@ -106,6 +127,7 @@ int main(void)
         cmocka_unit_test(features_lie_where_spots_are),
         cmocka_unit_test(features_of_a_scaled_picture_are_in_its_own_pixels),
         cmocka_unit_test(the_same_picture_gives_the_same_features),
+        cmocka_unit_test(features_on_edges_need_a_higher_limit),
         cmocka_unit_test(a_blank_picture_has_no_features),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
