@@ -227,6 +227,10 @@ static enum status add_zone(struct plan_context *c, bool keep)
         return plan_statement_error(c, "found foot %.9g and top %.9g, wanted a top above the foot.", zone.low[2],
                                     zone.high[2]);
     zone.all = s->name && !strcmp(s->name, "all");
+    if (zone.all && !p->room_count)
+        return plan_statement_error(c,
+                                    "the model has no rooms that could be cleared; state them with \"room\", or clear "
+                                    "a place, such as \"clear from 0 0 to 4 3\".");
     if (s->name && !zone.all && plan_find_room(c, s->name, &zone.room)) return c->err->status;
     if (s->other) {
         enum name_kind kind;

@@ -503,6 +503,8 @@ static void statements_without_meaning_are_refused(void **state)
         snprintf(whole, sizeof whole, "remodel-script 1\n%s", cases[i].edit);
         refused(ROOM, whole, cases[i].words);
     }
+    refused("remodel-script 1\nset ceiling 2.5\nset thickness 0.2\nwall w from 0 0 to 4 0\n",
+            "remodel-script 1\nclear all\n", "edit.txt:2: the model has no rooms that could be");
 }
 
 static void the_unedited_model_has_no_statements_about_textures(void **state)
