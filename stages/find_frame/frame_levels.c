@@ -8,8 +8,8 @@
  *
  * Ceiling: a wall whose foot is known stands at a known distance, so each line above that runs along it has one height
  * on it. Heads of doors and windows have common heights, too; the ceiling is the highest level that many walls and
- * places share, since nothing is above it. A moulding below it has several edges: the highest of those that lie
- * together is the ceiling. */
+ * places share, and many lines, since nothing is above it. A moulding below it has several edges: the highest of those
+ * that lie together is the ceiling. */
 #include "stages/find_frame/frame_levels.h"
 
 #include <math.h>
@@ -32,12 +32,13 @@
 #define CLEARLY      1.4 /* times the median over the heights around */
 #define AROUND       20  /* steps */
 #define MIN_PAIRS    12
-#define HEAD_SHARE   0.7 /* of the votes of the best height, from which on a higher one is the ceiling */
-#define HEAD_CLEARLY 2.0 /* times the votes of a height if they lay anywhere, which the best must have */
-#define MIN_HEADS    3   /* walls and places that show a ceiling */
-#define EDGE_WIDTH   2   /* fine steps: how much the heights of one edge differ */
-#define BEYOND       0.1 /* of the sparse points, which may be beyond floor and ceiling: reflections, streets */
-#define EDGE_POINTS  20  /* that show where points end */
+#define HEAD_SHARE   0.7  /* of the votes of the best height, from which on a higher one is the ceiling */
+#define HEAD_CLEARLY 2.0  /* times the votes of a height if they lay anywhere, which the best must have */
+#define HEAD_VOTES   0.35 /* of the lines of the height that most lines share, likewise: a few lines agree by chance */
+#define MIN_HEADS    3    /* walls and places that show a ceiling */
+#define EDGE_WIDTH   2    /* fine steps: how much the heights of one edge differ */
+#define BEYOND       0.1  /* of the sparse points, which may be beyond floor and ceiling: reflections, streets */
+#define EDGE_POINTS  20   /* that show where points end */
 #define EDGE_SHARE   0.01
 #define EDGE_RISE    3.0  /* times the points of the step below */
 #define EDGE_BELOW   0.03 /* of all points */
@@ -182,6 +183,14 @@ static int count_in_windows(int *in_window, int *groups, const struct head_vote 
     return most;
 }
 
+/* How many votes are at most `width` below vote i. */
+static int votes_below(const struct head_vote *votes, int i, double width)
+{
+    int first = i;
+    while (first > 0 && votes[i].height - votes[first - 1].height <= width) first--;
+    return i - first + 1;
+}
+
 enum status levels_find_ceiling(struct room_frame *f, const struct world_lines *w, const int *headings,
                                 const struct camera_set *set, double size, struct err *err)
 {
@@ -212,8 +221,15 @@ enum status levels_find_ceiling(struct room_frame *f, const struct world_lines *
     else
         best = count_in_windows(in_window, groups, votes, count, 2 * STEP * size);
     const double usual = count * 2 * STEP * size / (most - least); /* in a window, if they lay anywhere */
-    int at = best >= HEAD_CLEARLY * usual ? count - 1 : -1;
-    while (!err->status && at >= 0 && !(in_window[at] >= HEAD_SHARE * best && in_window[at] >= MIN_HEADS)) at--;
+    int at = best >= HEAD_CLEARLY * usual ? count - 1 : -1, lines = 0;
+    for (int i = 0; !err->status && i < count; i++) {
+        const int here = votes_below(votes, i, 2 * STEP * size);
+        if (here > lines) lines = here;
+    }
+    while (!err->status && at >= 0 &&
+           !(in_window[at] >= HEAD_SHARE * best && in_window[at] >= MIN_HEADS &&
+             votes_below(votes, at, 2 * STEP * size) >= HEAD_VOTES * lines))
+        at--;
     if (!err->status && at >= 0) {
         /* the fullest window that overlaps it */
         int fullest = at;

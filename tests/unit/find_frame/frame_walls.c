@@ -96,6 +96,22 @@ static void the_highest_edge_of_a_moulding_is_the_ceiling(void **state)
     }
 }
 
+/* As many walls and places show them as the ceiling. */
+static void a_few_lines_above_the_ceiling_are_not_it(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 4; k++) {
+        const struct line_room_spec spec = {
+            .seed = (uint64_t)k, .noise = 0.1, .heading = 20 * k, .stations = 5, .moulding = 0.0125, .above = 0.4};
+        struct line_room r;
+        struct room_frame f;
+        find(&f, &r, &spec);
+        assert_true(fabs(f.ceiling.height - ROOM_CEILING) < 0.006);
+        room_frame_release(&f);
+        line_room_release(&r);
+    }
+}
+
 /* Lines of one place fall on each other at no height. */
 static void one_place_shows_no_walls(void **state)
 {
@@ -117,6 +133,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(floor_ceiling_and_walls_of_an_empty_room_are_found),
         cmocka_unit_test(the_highest_edge_of_a_moulding_is_the_ceiling),
+        cmocka_unit_test(a_few_lines_above_the_ceiling_are_not_it),
         cmocka_unit_test(one_place_shows_no_walls),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -25,6 +25,7 @@ struct line_room_spec {
     double heading;    /* degrees: turn of the room about its vertical */
     int stations;
     double moulding; /* 0: none; otherwise two more edges, this far and twice this far below the ceiling */
+    double above;    /* 0: none; otherwise a short edge over each wall, this far above the ceiling */
 };
 
 struct line_room {
@@ -45,7 +46,7 @@ static inline double room_normal(const struct rng *rng, uint64_t a, uint64_t b)
 }
 
 /* The room: x from -2 to 3, y from -2.5 to 1.5, with a niche in the corner of large x and y; a door and a window. */
-static inline int room_edges(struct room_edge edges[ROOM_EDGES], double moulding)
+static inline int room_edges(struct room_edge edges[ROOM_EDGES], const struct line_room_spec *spec)
 {
     static const double corners[][2] = {{-2, -2.5}, {3, -2.5}, {3, 0.5}, {1.8, 0.5}, {1.8, 1.5}, {-2, 1.5}};
     enum { CORNERS = sizeof corners / sizeof *corners };
@@ -55,9 +56,12 @@ static inline int room_edges(struct room_edge edges[ROOM_EDGES], double moulding
         edges[n++] = (struct room_edge){{p[0], p[1], ROOM_FLOOR}, {q[0], q[1], ROOM_FLOOR}};
         edges[n++] = (struct room_edge){{p[0], p[1], ROOM_CEILING}, {q[0], q[1], ROOM_CEILING}};
         edges[n++] = (struct room_edge){{p[0], p[1], ROOM_FLOOR}, {p[0], p[1], ROOM_CEILING}};
-        for (int m = 1; moulding > 0 && m < 3; m++)
-            edges[n++] = (struct room_edge){{p[0], p[1], ROOM_CEILING - m * moulding},
-                                            {q[0], q[1], ROOM_CEILING - m * moulding}};
+        for (int m = 1; spec->moulding > 0 && m < 3; m++)
+            edges[n++] = (struct room_edge){{p[0], p[1], ROOM_CEILING - m * spec->moulding},
+                                            {q[0], q[1], ROOM_CEILING - m * spec->moulding}};
+        const double x = (p[0] + q[0]) / 2, y = (p[1] + q[1]) / 2, high = ROOM_CEILING + spec->above;
+        if (spec->above > 0)
+            edges[n++] = (struct room_edge){{x, y, high}, {x + 0.2 * (q[0] - p[0]), y + 0.2 * (q[1] - p[1]), high}};
     }
     /* a door in the wall at x = -2, a window in that at y = -2.5 */
     edges[n++] = (struct room_edge){{-2, -1, ROOM_FLOOR}, {-2, -1, 1.6}};
@@ -103,7 +107,7 @@ static inline void line_room_make(struct line_room *r, const struct line_room_sp
     const struct mat3 world_from_room =
         mat3_multiply(room_rotation(vec3_make(1, 0, 0), spec->tilt), room_rotation(vec3_make(0, 0, 1), spec->heading));
     struct room_edge edges[ROOM_EDGES];
-    const int count = room_edges(edges, spec->moulding);
+    const int count = room_edges(edges, spec);
     struct err err = ERR_INIT;
     memset(r, 0, sizeof *r);
     r->room_from_world = mat3_transpose(world_from_room);
