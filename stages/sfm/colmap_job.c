@@ -29,6 +29,7 @@
 #include "common/base/log.h"
 #include "common/base/outfile.h"
 #include "common/base/process.h"
+#include "common/math/numbers.h"
 #include "stages/sfm/colmap_log.h"
 
 enum { MAX_ARGS = 40 };
@@ -134,7 +135,7 @@ enum status colmap_run_long(const char *log, const char *const args[], int max_s
 }
 
 /* Of a model, in photos: a quarter of the set, from 3 to 10. */
-static int min_model_size(int photos) { return photos < 12 ? 3 : photos < 40 ? photos / 4 : 10; }
+static int min_model_size(int photos) { return clamp_int(photos / 4, 3, 10); }
 
 enum status colmap_map(const struct colmap_job *job, const struct colmap_start *start, struct err *err)
 {

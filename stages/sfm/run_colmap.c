@@ -105,7 +105,7 @@ static enum status map_into(struct mapping *m, const char *folder, struct err *e
 static enum status map_photos(struct mapping *m, struct err *err)
 {
     if (map_into(m, m->job.sparse, err) || m->placed_count) return err->status;
-    log_note("no pair of photos is good enough to start from; trying again with smaller angles and fewer matches");
+    log_note("no model holds together; trying again with smaller angles and fewer matches");
     m->relaxed = true;
     char *folder = sfm_text_format(err, "%s-1", m->job.sparse);
     if (folder && !outfile_make_folders(folder, err)) map_into(m, folder, err);
