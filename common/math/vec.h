@@ -65,6 +65,14 @@ static inline struct quat quat_normalize(struct quat q)
     const double length = sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
     return (struct quat){q.w / length, q.x / length, q.y / length, q.z / length};
 }
+/* The rotation by b, then by a. */
+static inline struct quat quat_multiply(struct quat a, struct quat b)
+{
+    return (struct quat){a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z, a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y,
+                         a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x, a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w};
+}
+/* The inverse rotation of a quaternion of unit length. */
+static inline struct quat quat_conjugate(struct quat q) { return (struct quat){q.w, -q.x, -q.y, -q.z}; }
 /* The angle of the rotation from a to b, 0 to pi; both of unit length. */
 double quat_angle(struct quat a, struct quat b);
 /* From a (t = 0) to b (t = 1) at constant speed, by the shorter way [Shoemake 1985]; all of unit length. */

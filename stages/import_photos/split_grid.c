@@ -5,26 +5,16 @@
 #include "stages/import_photos/split_grid.h"
 
 #include <stdbool.h>
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 enum { MAX_BRIGHT = 50, MAX_SHIFT = 8, MAX_UNEQUAL = 16 }; /* 1 in so many: samples of a line, of a picture */
 
 enum status split_grid_parse(struct split_grid *g, const char *text, const struct photo_params *params, struct err *err)
 {
-    const bool digits = strspn(text, "0123456789x") == strlen(text) && text[0] != '0' && !strstr(text, "x0");
-    int end = 0;
-    *g = (struct split_grid){0, 0, params->split_border, params->split_gap, params->split_dark};
-    if (!digits || strlen(text) > 5 || sscanf(text, "%dx%d%n", &g->columns, &g->rows, &end) != 2 || text[end] ||
-        g->columns > MAX_SPLIT || g->rows > MAX_SPLIT)
-        return err_set(
-            err, ST_USAGE,
-            "--split %.40s: wanted COLUMNSxROWS, like 3x2: the number of pictures in a photo, 1 to %d per side.", text,
-            MAX_SPLIT);
-    if (g->columns * g->rows == 1)
-        return err_set(err, ST_USAGE, "--split 1x1 cuts nothing; omit it, or give the number of pictures in a photo.");
-    return ST_OK;
+    struct split_size size;
+    split_size_parse(&size, text, err);
+    *g = (struct split_grid){size.columns, size.rows, params->split_border, params->split_gap, params->split_dark};
+    return err->status;
 }
 
 /* One direction of the photo: its columns or its rows. */

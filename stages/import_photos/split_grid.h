@@ -10,10 +10,11 @@
 #ifndef REMODEL_SPLIT_GRID_H
 #define REMODEL_SPLIT_GRID_H
 
+#include "common/capture/split_name.h"
 #include "common/image/photo.h"
 #include "stages/import_photos/import_params.h"
 
-enum { MAX_SPLIT = 99, MIN_SPLIT_SIDE = 16 }; /* pictures per side; pixels per side of a picture */
+enum { MIN_SPLIT_SIDE = 16 }; /* pixels per side of a picture */
 
 struct split_grid {
     int columns, rows;

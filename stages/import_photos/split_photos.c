@@ -45,10 +45,7 @@ static enum status name_cuts(struct split_photo *s, const struct scanned_photo *
     for (int r = 1; r <= g->rows; r++)
         for (int c = 1; c <= g->columns; c++) {
             struct split_cut *cut = &s->cuts[s->count];
-            if (asprintf(&cut->file, "%s_c%dr%d.png", p->id, c, r) < 0) {
-                cut->file = NULL;
-                return err_nomem(err, "a file name", 0);
-            }
+            if (!(cut->file = split_name_make(p->id, c, r))) return err_nomem(err, "a file name", 0);
             s->count++;
         }
     return ST_OK;

@@ -79,14 +79,6 @@ double curve_at(const struct curve *c, double time)
 
 /* ------------------------------------------------------------------------------------------------------ quaternions */
 
-static struct quat multiply(struct quat a, struct quat b)
-{
-    return (struct quat){a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z, a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y,
-                         a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x, a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w};
-}
-
-static struct quat conjugate(struct quat q) { return (struct quat){q.w, -q.x, -q.y, -q.z}; }
-
 /* The rotation by the length of a vector about its direction. */
 static struct quat quat_exp(struct vec3 v)
 {
@@ -105,12 +97,12 @@ static struct vec3 quat_log(struct quat q)
 struct quat motion_rotation_between(struct quat a, struct quat b, struct vec3 da, struct vec3 db, double t)
 {
     const struct vec3 first = vec3_scale(da, 1.0 / 3), last = vec3_scale(db, 1.0 / 3);
-    const struct quat from = multiply(a, quat_exp(first)), to = multiply(b, quat_exp(vec3_scale(last, -1)));
-    const struct vec3 middle = quat_log(multiply(conjugate(from), to));
+    const struct quat from = quat_multiply(a, quat_exp(first)), to = quat_multiply(b, quat_exp(vec3_scale(last, -1)));
+    const struct vec3 middle = quat_log(quat_multiply(quat_conjugate(from), to));
     const double u = 1 - t;
-    struct quat q = multiply(a, quat_exp(vec3_scale(first, 1 - u * u * u)));
-    q = multiply(q, quat_exp(vec3_scale(middle, t * t * (3 - 2 * t))));
-    q = multiply(q, quat_exp(vec3_scale(last, t * t * t)));
+    struct quat q = quat_multiply(a, quat_exp(vec3_scale(first, 1 - u * u * u)));
+    q = quat_multiply(q, quat_exp(vec3_scale(middle, t * t * (3 - 2 * t))));
+    q = quat_multiply(q, quat_exp(vec3_scale(last, t * t * t)));
     return quat_normalize(q);
 }
 
@@ -172,7 +164,7 @@ void motion_fit(struct motion *m, bool rest)
     for (int i = 0; i < m->count - 1; i++) {
         const double far = fmax(vec3_length(m->position[i]), vec3_length(m->position[i + 1]));
         m->tangent[i] = vec3_sub(m->position[i + 1], m->position[i]);
-        m->rotation_tangent[i] = quat_log(multiply(conjugate(m->rotation[i]), m->rotation[i + 1]));
+        m->rotation_tangent[i] = quat_log(quat_multiply(quat_conjugate(m->rotation[i]), m->rotation[i + 1]));
         if (!(vec3_length(m->tangent[i]) > MIN_DISTANCE * far)) m->tangent[i] = vec3_make(0, 0, 0);
         if (!(vec3_length(m->rotation_tangent[i]) > MIN_ANGLE)) m->rotation_tangent[i] = vec3_make(0, 0, 0);
     }

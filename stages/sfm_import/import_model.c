@@ -66,12 +66,6 @@ static enum status make_views(struct importer *imp, struct err *err)
     return ST_OK;
 }
 
-static struct quat quat_multiply(struct quat a, struct quat b)
-{
-    return (struct quat){a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z, a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y,
-                         a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x, a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w};
-}
-
 static enum status make_cameras(const struct importer *imp, struct imported *out, struct err *err)
 {
     size_t n = (size_t)imp->view_count;
