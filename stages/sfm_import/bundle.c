@@ -15,6 +15,11 @@
  * camera slides along directions that its few points do not determine. Given images at one place are cut from one
  * picture, or from a camera on a tripod, and have one centre.
  *
+ * The lenses of a multi-lens camera keep their poses in its body, so the pose of an image is that of the body at its
+ * capture, followed by that of the lens in the body [Schneider 2012]. Both are unknown, and tie the images (rig.c). The
+ * ties are elastic, by RIG_FLEX of what noise does to a pose: hundreds of observations determine a pose to a tenth of
+ * that or less, and a tie must be stronger than all of them.
+ *
  * Forms of lenses are compared by the Bayesian information criterion [Schwarz 1978],
  *   BIC = -2 log likelihood + k log N,   N observations, k parameters of lenses and shifts,
  * each with its own scale s. Poses and points are the same number in all forms and are left out. */
@@ -42,6 +47,7 @@
 #define TANGENTIAL_SIGMA 0.001
 #define SAME_PLACE       1e-5  /* given centres nearer to each other, in parts of their extent, are one */
 #define REDUNDANCY       3.0   /* numbers for each unknown of a given pose that is adjusted */
+#define RIG_FLEX         0.003 /* of a rig's lenses, in parts of what noise of the residuals does to a pose */
 #define MAX_SIGMAS       4.0   /* a parameter farther off shows that something else is wrong */
 enum { MIN_OBSERVATIONS = 6 }; /* of an image; with fewer its pose is kept */
 
@@ -127,12 +133,13 @@ static enum status add_points(struct bundle *b, int *point_of, const struct sfm_
     return err->status;
 }
 
-/* The lenses, stations (as many as images at most), images and points are one allocation, see struct bundle. */
+/* The unknowns are one allocation, see struct bundle. Stations, captures and mounts are as many as images at most. */
 static enum status allocate(struct bundle *b, int lenses, int images, int points, size_t observations, struct err *err)
 {
     const size_t of_lenses = (size_t)lenses * sizeof *b->lenses, of_images = (size_t)images * sizeof *b->images;
-    const size_t of_stations = (size_t)images * sizeof *b->stations;
-    char *memory = calloc(1, of_lenses + of_stations + of_images + ((size_t)points + 1) * sizeof *b->points);
+    const size_t of_stations = (size_t)images * sizeof *b->stations, of_frames = (size_t)images * sizeof *b->captures;
+    const size_t of_cameras = of_lenses + of_stations + of_images + 2 * of_frames;
+    char *memory = calloc(1, of_cameras + ((size_t)points + 1) * sizeof *b->points);
     b->lenses = (struct bundle_lens *)memory;
     b->observations = calloc(observations + 1, sizeof *b->observations);
     if (!memory || !b->observations) {
@@ -141,7 +148,9 @@ static enum status allocate(struct bundle *b, int lenses, int images, int points
     }
     b->stations = (struct bundle_station *)(memory + of_lenses);
     b->images = (struct bundle_image *)(memory + of_lenses + of_stations);
-    b->points = (double(*)[3])(memory + of_lenses + of_stations + of_images);
+    b->captures = (struct bundle_frame *)(memory + of_lenses + of_stations + of_images);
+    b->mounts = (struct bundle_frame *)(memory + of_lenses + of_stations + of_images + of_frames);
+    b->points = (double(*)[3])(memory + of_cameras);
     return ST_OK;
 }
 
@@ -176,6 +185,8 @@ static void place_images(struct bundle *b, const struct sfm_model *m, enum bundl
             if (at == b->station_count) b->stations[b->station_count++] = here;
             b->images[i] = (struct bundle_image){.lens = m->images[i].camera_idx,
                                                  .station = at,
+                                                 .capture = -1,
+                                                 .mount = -1,
                                                  .rotation = {q.w, q.x, q.y, q.z},
                                                  .expected = {q.w, q.x, q.y, q.z}};
         }
@@ -216,10 +227,13 @@ static enum status hold_weak(struct bundle *b, struct err *err)
     return err->status;
 }
 
-enum status bundle_trust_poses(struct bundle *b, double noise, struct err *err)
+/* What noise of the residuals, px, does to a pose: the angle that it is, and the length that this angle is at the
+ * points' median distance; 0 without observations. */
+static enum status noise_of_pose(double *turn, double *length, const struct bundle *b, double noise, struct err *err)
 {
     double *distance = malloc((b->observation_count + 1) * sizeof *distance);
     double *focal = malloc((b->observation_count + 1) * sizeof *focal);
+    *turn = *length = 0;
     if (!distance || !focal) err_nomem(err, "distances", b->observation_count * sizeof *distance);
     for (size_t i = 0; !err->status && i < b->observation_count; i++) {
         const struct bundle_observation *o = &b->observations[i];
@@ -231,12 +245,22 @@ enum status bundle_trust_poses(struct bundle *b, double noise, struct err *err)
         sort_doubles(distance, b->observation_count);
         sort_doubles(focal, b->observation_count);
         const size_t middle = b->observation_count / 2;
-        b->turn_sigma = noise / focal[middle];
-        b->center_sigma = b->turn_sigma * distance[middle];
+        *turn = noise / focal[middle];
+        *length = *turn * distance[middle];
     }
     free(distance);
     free(focal);
     return err->status;
+}
+
+enum status bundle_trust_poses(struct bundle *b, double noise, struct err *err)
+{
+    return noise_of_pose(&b->turn_sigma, &b->center_sigma, b, noise, err);
+}
+
+enum status bundle_trust_rig(struct bundle *b, double noise, struct err *err)
+{
+    return noise_of_pose(&b->mount_turn_sigma, &b->mount_sigma, b, RIG_FLEX * noise, err);
 }
 
 enum status bundle_make(struct bundle *b, int **point_of, const struct sfm_model *m, enum bundle_poses poses,
@@ -273,6 +297,8 @@ enum status bundle_copy(struct bundle *to, const struct bundle *from, struct err
     memcpy(to->lenses, from->lenses, (size_t)from->lens_count * sizeof *to->lenses);
     memcpy(to->stations, from->stations, (size_t)from->image_count * sizeof *to->stations);
     memcpy(to->images, from->images, (size_t)from->image_count * sizeof *to->images);
+    memcpy(to->captures, from->captures, (size_t)from->image_count * sizeof *to->captures);
+    memcpy(to->mounts, from->mounts, (size_t)from->image_count * sizeof *to->mounts);
     memcpy(to->points, from->points, (size_t)from->point_count * sizeof *to->points);
     memcpy(to->observations, from->observations, from->observation_count * sizeof *to->observations);
     return ST_OK;
@@ -281,7 +307,7 @@ enum status bundle_copy(struct bundle *to, const struct bundle *from, struct err
 void bundle_release(struct bundle *b)
 {
     if (!b) return;
-    free(b->lenses); /* and the stations, images and points after them */
+    free(b->lenses); /* and the other unknowns after them */
     free(b->observations);
     *b = (struct bundle){0};
 }
@@ -505,6 +531,8 @@ void bundle_take_cameras(struct bundle *b, const struct bundle *from)
         const bool fixed = b->images[i].fixed;
         b->images[i] = from->images[i];
         b->images[i].fixed = fixed;
+        b->captures[i] = from->captures[i];
+        b->mounts[i] = from->mounts[i];
     }
     for (int i = 0; i < b->station_count; i++) {
         const bool fixed = b->stations[i].fixed;

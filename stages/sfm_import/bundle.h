@@ -39,6 +39,9 @@ enum status bundle_make(struct bundle *b, int **point_of, const struct sfm_model
 /* Sets the priors of given poses from the noise of the residuals with them, px: the angle that it is, and the length
  * that this angle is at the points' median distance. ST_NOMEM. */
 enum status bundle_trust_poses(struct bundle *b, double noise, struct err *err);
+/* Ties the images of a rig to the frames of their captures and mounts: sets how far a lens's pose in the body differs
+ * from capture to capture, from the noise of the residuals, px. ST_NOMEM. */
+enum status bundle_trust_rig(struct bundle *b, double noise, struct err *err);
 enum status bundle_copy(struct bundle *to, const struct bundle *from, struct err *err);
 void bundle_release(struct bundle *b);
 
@@ -50,7 +53,7 @@ bool bundle_can_convert(const struct bundle *b);
 enum status bundle_adjust(struct bundle_fit *fit, struct bundle *b, const struct lens_form *form, double shift_sigma,
                           struct err *err);
 
-/* Takes the lenses, poses and shifts of a bundle of the same images; what is held stays held. */
+/* Takes the lenses, poses, shifts and rig of a bundle of the same images; what is held stays held. */
 void bundle_take_cameras(struct bundle *b, const struct bundle *from);
 
 /* Adjusts the points alone, to the cameras as they are. ST_DATA: the solver failed. */

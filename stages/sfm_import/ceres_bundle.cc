@@ -11,10 +11,15 @@
  * Priors keep what the pictures do not determine near what is usual: single lens parameters, the ratio of the two
  * focal lengths, and shifts, whose expectation is 0; also poses that a user gave.
  *
+ * Rigs. Each image of a multi-lens camera has a residual of six numbers between its pose and that of its capture and
+ * its lens's mount, which are unknown too. Images that hold their rotation or their place have none: they are held
+ * since little is known of them.
+ *
  * Gauge. The scene may be moved, turned and scaled as a whole. Priors of poses hold its frame. Without them the pose of
  * the first image is held, and of the station that is farthest from it the coordinate that the scale changes most.
  *
- * Derivatives are exact: camera_project_derivatives() gives those of the lens, rotate() those of R(q) p.
+ * Derivatives are exact: camera_project_derivatives() gives those of the lens, rotate() those of R(q) p, Ceres'
+ * automatic differentiation those of a rig's residuals.
  *
  * Solver. Points are eliminated first (Schur complement). Up to 150 images the reduced camera system is dense;
  * beyond, it is sparse and solved by Eigen. One thread, and no CHOLMOD with a threaded BLAS: sums keep their order,
@@ -25,6 +30,7 @@
 #include "stages/sfm_import/ceres_bundle.h"
 
 #include <ceres/ceres.h>
+#include <ceres/rotation.h>
 #include <glog/logging.h>
 
 #include <memory>
@@ -151,6 +157,30 @@ class turn_prior : public ceres::CostFunction
     double q_[4], sigma_;
 };
 
+/* The difference of an image's pose from that of its capture and mount, in units of the sigmas: the angles about three
+ * axes, and the place in the body. */
+struct rig_residual {
+    double turn_sigma, sigma;
+
+    template <typename T>
+    bool operator()(const T *rotation, const T *center, const T *body_rotation, const T *body_center,
+                    const T *mount_rotation, const T *mount_center, T *residuals) const
+    {
+        T expected[4], turn[4], in_body[3];
+        ceres::QuaternionProduct(mount_rotation, body_rotation, expected);
+        const T inverse[4] = {expected[0], -expected[1], -expected[2], -expected[3]};
+        ceres::QuaternionProduct(rotation, inverse, turn);
+        const double twice = turn[0] < T(0) ? -2 : 2; /* q and -q are one rotation */
+        const T offset[3] = {center[0] - body_center[0], center[1] - body_center[1], center[2] - body_center[2]};
+        ceres::UnitQuaternionRotatePoint(body_rotation, offset, in_body);
+        for (int k = 0; k < 3; k++) {
+            residuals[k] = turn[1 + k] * (twice / turn_sigma);
+            residuals[3 + k] = (in_body[k] - mount_center[k]) / sigma;
+        }
+        return true;
+    }
+};
+
 /* The prior of a lens's ratio of focal lengths, its first two numbers. */
 class aspect_prior : public ceres::CostFunction
 {
@@ -246,6 +276,27 @@ void add_pose_priors(ceres::Problem *problem, struct bundle *b)
     }
 }
 
+/* Ties the images of a rig, whose unknowns join those of the images that are adjusted. */
+void add_rig(ceres::Problem *problem, struct bundle *b)
+{
+    for (int i = 0; i < b->image_count; i++) {
+        struct bundle_image *im = &b->images[i];
+        struct bundle_station *s = &b->stations[im->station];
+        if (im->capture < 0 || im->fixed || s->fixed || !problem->HasParameterBlock(im->rotation)) continue;
+        struct bundle_frame *capture = &b->captures[im->capture], *mount = &b->mounts[im->mount];
+        for (double *rotation : {capture->rotation, mount->rotation})
+            if (!problem->HasParameterBlock(rotation))
+                problem->AddParameterBlock(rotation, 4, new ceres::QuaternionManifold);
+        problem->AddResidualBlock(new ceres::AutoDiffCostFunction<rig_residual, 6, 4, 3, 4, 3, 4, 3>(
+                                      new rig_residual{b->mount_turn_sigma, b->mount_sigma}),
+                                  nullptr, im->rotation, s->center, capture->rotation, capture->center, mount->rotation,
+                                  mount->center);
+        if (im->mount) continue;
+        problem->SetParameterBlockConstant(mount->rotation);
+        problem->SetParameterBlockConstant(mount->center);
+    }
+}
+
 std::unique_ptr<ceres::Problem> make_problem(struct bundle *b)
 {
     std::unique_ptr<ceres::Problem> problem(new ceres::Problem);
@@ -278,6 +329,7 @@ std::unique_ptr<ceres::Problem> make_problem(struct bundle *b)
         problem->AddResidualBlock(new reprojection(lens->camera.model, o->u, o->v, b->noise), loss, im->rotation,
                                   b->stations[im->station].center, b->points[o->point], im->shift, lens->camera.params);
     }
+    if (b->mount_sigma > 0 && !b->points_only) add_rig(problem.get(), b);
     if (b->center_sigma > 0 && !b->points_only)
         add_pose_priors(problem.get(), b);
     else if (!b->points_only)

@@ -24,8 +24,16 @@ struct bundle_station { /* where one or several images were taken */
     bool fixed; /* it is not adjusted */
 };
 
+/* A rigid frame of a multi-lens camera. Of a capture, one photo of such a camera: the pose of its body in the world. Of
+ * a mount: the pose of a lens in the body. */
+struct bundle_frame {
+    double rotation[4]; /* body_from_world, cam_from_body; unit quaternions w x y z */
+    double center[3];
+};
+
 struct bundle_image {
     int lens, station;               /* indices */
+    int capture, mount;              /* indices of the rig's frames; -1: the image is not part of a rig */
     double rotation[4], expected[4]; /* cam_from_world, unit quaternions w x y z */
     double shift[2];                 /* added to the lens's principal point, px */
     bool fixed;                      /* its rotation is not adjusted */
@@ -41,6 +49,7 @@ struct bundle {
     struct bundle_lens *lenses;
     struct bundle_station *stations;
     struct bundle_image *images;
+    struct bundle_frame *captures, *mounts; /* mounts[0], of the reference lens, is the identity and not adjusted */
     double (*points)[3];
     struct bundle_observation *observations;
     int lens_count, station_count, image_count, point_count;
@@ -49,14 +58,16 @@ struct bundle {
     double freedom;                  /* degrees of freedom of the residuals' Student t distribution */
     double shift_sigma;              /* of the prior of each image's shift, px; 0: shifts are not adjusted */
     double center_sigma, turn_sigma; /* of the priors of poses, scene units and radians; 0: none, the frame is held */
-    bool points_only;                /* nothing but points is adjusted */
-    int iterations;                  /* maximum */
-    double tolerance;                /* relative change of the sum at which it ends */
+    double mount_sigma, mount_turn_sigma; /* of a lens's pose in the body, scene units and radians; 0: no rig */
+    bool points_only;                     /* nothing but points is adjusted */
+    int iterations;                       /* maximum */
+    double tolerance;                     /* relative change of the sum at which it ends */
 };
 
 /* Minimises the robust reprojection error and the priors over what is free, in place: half the sum of
  *   (freedom + 2) log(1 + r^2 / (freedom noise^2))   over observations, r the residual's length in px
  *   ((x - expected) / sigma)^2                       over priors
+ *   (pose against capture and mount, / sigma)^2      over images of a rig, if both parts of their pose are adjusted
  * Every point must be in front of the cameras that observe it. Runs in one thread: the same input gives the same bits.
  * ST_DATA: Ceres found no usable solution. */
 enum status ceres_bundle_adjust(struct bundle *b, struct err *err);

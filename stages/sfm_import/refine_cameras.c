@@ -15,6 +15,10 @@
  * were by CONFIDENT standard errors. Poses that were found from the same points need no such proof, nor could it be
  * had: all points had their part in them.
  *
+ * Photos of a multi-lens camera may contradict that its lenses keep their poses in its body: it zoomed, or a contact
+ * sheet was cut unevenly. So the part is adjusted with the best form both ways, and the rig (rig.c) is dropped if the
+ * noise of the residuals is more than MAX_RIG_NOISE times as large with it.
+ *
  * The forms are compared on CHOICE_OBSERVATIONS, or CHOICE_OF_IMAGE per photo if that is more, evenly from all photos;
  * then everything is adjusted with the chosen form, twice, since the scale of the residuals falls with the first
  * adjustment. A form that fails or leaves its priors (bundle.c) is refused, and the next best one is taken. */
@@ -29,11 +33,13 @@
 #include "common/base/parallel.h"
 #include "common/base/progress.h"
 #include "common/capture/photo_match.h"
+#include "common/math/numbers.h"
 #include "common/product/product.h"
 
 #define CHOICE_TOLERANCE 1e-5 /* of the fits that are compared */
 #define CONFIDENT        2.0  /* standard errors */
 #define STRONG           3.0
+#define MAX_RIG_NOISE    1.1 /* times the noise without a rig, above which the images contradict it */
 enum { FOLDS = 5 };
 enum { CHOICE_OBSERVATIONS = 12000, CHOICE_OF_IMAGE = 300, COVARIANCE_OBSERVATIONS = 40000, MIN_OBSERVATIONS = 30 };
 
@@ -194,8 +200,8 @@ static enum status adjust_all(struct refinement *r, struct bundle *all, int form
         bundle_adjust(&r->after, all, &r->forms[form].form, shift_sigma, err);
         all->noise = r->after.noise;
     }
-    if (!err->status && !(r->after.noise < r->before.noise))
-        err_set(err, ST_DATA, "it does not lower the reprojection error");
+    const double limit = r->before.noise * (r->rig.lenses ? MAX_RIG_NOISE : 1);
+    if (!err->status && !(r->after.noise < limit)) err_set(err, ST_DATA, "it does not lower the reprojection error");
     return err->status;
 }
 
@@ -230,6 +236,7 @@ struct refine_job {
     struct bundle all, part;
     int *point_of, *of_part; /* points of the model */
     int *place;
+    struct rig rig;     /* lens_count 0: none */
     double shift_sigma; /* px */
     double *held_out;   /* costs of the part's points with the cameras as they were */
 };
@@ -284,6 +291,73 @@ static bool form_is_proved(struct refine_job *job, int form, struct err *err)
     return r->gain.mean > CONFIDENT * r->gain.error;
 }
 
+/* Makes the images of a bundle part of the rig and ties them, as far as this noise, px, lets a lens move. */
+static enum status tie_images(double *angle, struct bundle *b, const struct rig *rig, double noise, struct err *err)
+{
+    return rig_apply(angle, b, rig, err) || bundle_trust_rig(b, noise, err) ? err->status : ST_OK;
+}
+
+/* From here on images are adjusted on their own. Costs of points that were held out with the rig are forgotten. */
+static void drop_rig(struct refine_job *job)
+{
+    job->rig.lens_count = 0;
+    job->part.mount_sigma = job->all.mount_sigma = 0;
+    job->r->rig = (struct rig_result){0};
+    for (int i = 0; i < job->r->form_count; i++) {
+        free(job->r->forms[i].held_out);
+        job->r->forms[i].held_out = NULL;
+    }
+}
+
+static void warn_about_rig(const struct rig *rig, const struct bundle_fit *alone, const struct bundle_fit *tied,
+                           const struct err *why)
+{
+    char found[sizeof why->text + 64];
+    if (why->status)
+        snprintf(found, sizeof found, "one rig cannot be fitted: %s", why->text);
+    else
+        snprintf(found, sizeof found, "the noise of the residuals is %.3f px with one rig, %.3f px without",
+                 tied->noise, alone->noise);
+    log_warn("the %d lenses of the multi-lens camera are not at the same places in its %d photos: %s. Each picture is "
+             "adjusted on its own. If the camera is rigid and was not zoomed, check SPLIT and [import_photos] "
+             "split_border, split_gap and split_dark",
+             rig->lens_count, rig->capture_count, found);
+}
+
+/* Adjusts `fitted`, the part as a form fits it, further, with the rig and without. If the noise permits the rig, the
+ * images of everything and of the part are tied, and `fitted` becomes the one with the rig; else the rig is dropped. */
+static enum status weigh_rig(struct refine_job *job, struct bundle *fitted, const struct form_result *f,
+                             struct err *err)
+{
+    struct rig_result *r = &job->r->rig;
+    struct bundle with = {0}, without = {0};
+    struct bundle_fit tied = {0}, alone = {0};
+    struct err why = ERR_INIT, why_alone = ERR_INIT;
+    double angle;
+    if (!bundle_copy(&without, fitted, err) && !bundle_copy(&with, fitted, err) &&
+        !tie_images(&r->angle, &with, &job->rig, f->fit.noise, err)) {
+        with.noise = without.noise = f->fit.noise;
+        if (bundle_adjust(&alone, &without, &f->form, job->shift_sigma, &why_alone)) alone = f->fit;
+        bundle_adjust(&tied, &with, &f->form, job->shift_sigma, &why);
+        if (why_alone.status == ST_NOMEM) why = why_alone;
+        if (why.status == ST_NOMEM) err_set(err, ST_NOMEM, "%s", why.text);
+    }
+    if (!err->status && (why.status || tied.noise > MAX_RIG_NOISE * alone.noise)) {
+        warn_about_rig(&job->rig, &alone, &tied, &why);
+        drop_rig(job);
+    } else if (!err->status && !tie_images(&angle, &job->part, &job->rig, f->fit.noise, err) &&
+               !tie_images(&angle, &job->all, &job->rig, f->fit.noise, err)) {
+        r->lenses = job->rig.lens_count;
+        r->captures = job->rig.capture_count;
+        bundle_release(fitted);
+        *fitted = with;
+        with = (struct bundle){0};
+    }
+    bundle_release(&with);
+    bundle_release(&without);
+    return err->status;
+}
+
 static enum status try_forms(struct refine_job *job, struct choice *c, struct err *err)
 {
     struct refinement *r = job->r;
@@ -292,6 +366,7 @@ static enum status try_forms(struct refine_job *job, struct choice *c, struct er
     for (int at; !err->status && r->chosen < 0 && (at = best_form(r)) >= 0;) {
         struct bundle b = {0};
         struct err why = ERR_INIT;
+        if (job->rig.lens_count && weigh_rig(job, &c->fitted[at], &r->forms[at], err)) break;
         r->forms[at].usable = form_is_proved(job, at, err);
         if (!r->forms[at].usable) continue;
         if (bundle_copy(&b, &job->all, err)) break;
@@ -305,6 +380,7 @@ static enum status try_forms(struct refine_job *job, struct choice *c, struct er
         }
         bundle_release(&b);
     }
+    if (r->chosen < 0) r->rig = (struct rig_result){0};
     return err->status;
 }
 
@@ -372,13 +448,17 @@ static void log_choice(const struct refinement *r)
                  refine_form_model(&next->form), refine_form_center(&next->form), next->fit.bic - f->fit.bic);
     log_note("cameras refined: lens %s, %s; median reprojection error %.3f -> %.3f px%s", refine_form_model(&f->form),
              center, r->before.median, r->after.median, rival);
+    if (r->rig.lenses)
+        log_note("the %d lenses of the multi-lens camera have the same poses relative to each other in its %d photos; "
+                 "before, these differed by %.3f degrees (median)",
+                 r->rig.lenses, r->rig.captures, r->rig.angle / DEGREE);
     if (r->gain.error > 0)
         log_note("the cost of held-out points is lower than with the given poses by %.3f +- %.3f", r->gain.mean,
                  r->gain.error);
 }
 
 enum status refine_cameras(struct refinement *out, struct sfm_model *m, enum given_cameras given,
-                           const struct sfm_import_params *params, struct err *err)
+                           struct split_size split, const struct sfm_import_params *params, struct err *err)
 {
     struct refine_job job = {.r = out, .m = m, .poses = given == GIVEN_MODEL ? POSES_GIVEN : POSES_FOUND};
     const bool asked = !strcmp(params->refine, "yes");
@@ -392,7 +472,8 @@ enum status refine_cameras(struct refinement *out, struct sfm_model *m, enum giv
     for (int i = 0; i < m->camera_count; i++)
         side = fmax(side, fmax(m->cameras[i].camera.width, m->cameras[i].camera.height));
     job.shift_sigma = params->principal_shift * side;
-    bundle_make(&job.all, &job.point_of, m, job.poses, 0, err);
+    if (!bundle_make(&job.all, &job.point_of, m, job.poses, 0, err) && split.columns)
+        rig_find(&job.rig, m, &job.all, split, err);
     if (!err->status && job.all.observation_count >= MIN_OBSERVATIONS) {
         if (!run_job(&job, given == GIVEN_LENS && !asked, err)) log_choice(out);
     } else if (!err->status) {
@@ -400,6 +481,7 @@ enum status refine_cameras(struct refinement *out, struct sfm_model *m, enum giv
     }
     bundle_release(&job.all);
     bundle_release(&job.part);
+    rig_release(&job.rig);
     free(job.point_of);
     free(job.of_part);
     free(job.place);

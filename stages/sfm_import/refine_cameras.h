@@ -5,6 +5,7 @@
 #include "stages/sfm_import/bundle.h"
 #include "stages/sfm_import/choose_model.h"
 #include "stages/sfm_import/import_model.h"
+#include "stages/sfm_import/rig.h"
 
 enum { MAX_FORMS = 18 };
 
@@ -26,6 +27,12 @@ struct principal_shift {
     double u, v, sigma_u, sigma_v;
 };
 
+/* A rig whose lenses were adjusted with the same poses in the camera's body in all captures. */
+struct rig_result {
+    int lenses, captures; /* 0: each image was adjusted on its own */
+    double angle;         /* radians; median difference of lenses' poses from their mounts before */
+};
+
 struct refinement {
     struct form_result forms[MAX_FORMS]; /* the forms that were compared */
     int form_count, chosen;              /* chosen: -1 if the cameras are kept */
@@ -33,16 +40,19 @@ struct refinement {
     struct bundle_fit before, after;     /* over all observations */
     struct principal_shift *shifts;      /* owned; of each image of the model; NULL: principal points do not differ */
     int shift_count;
+    struct rig_result rig;
 };
 
 /* The name of a form's lens, as SIMPLE_RADIAL or same_model; and of its principal point: kept, shared, per_photo. */
 const char *refine_form_model(const struct lens_form *form);
 const char *refine_form_center(const struct lens_form *form);
 
-/* Refines lenses, poses and points of the model as params->refine says, and logs the form chosen. What cannot be
- * improved is kept, with a note. The same model gives the same bits. ST_NOMEM. */
+/* Refines lenses, poses and points of the model as params->refine says, and logs the form chosen. split: how photos of
+ * a multi-lens camera were split into the model's images; its lenses then keep their poses in the body, unless the
+ * images contradict that. What cannot be improved is kept, with a note. The same model gives the same bits.
+ * ST_NOMEM. */
 enum status refine_cameras(struct refinement *out, struct sfm_model *m, enum given_cameras given,
-                           const struct sfm_import_params *params, struct err *err);
+                           struct split_size split, const struct sfm_import_params *params, struct err *err);
 
 void refine_cameras_release(struct refinement *r);
 

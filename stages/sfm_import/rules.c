@@ -46,6 +46,7 @@ RULES(sfm_import)
     rule_option(g, "--sfm", FOLDER(g, SFM_MODELS));
     rule_option(g, "--records", FOLDER(g, PHOTO_LIST));
     rule_option(g, "--out", FOLDER(g, CAMERAS));
+    if (*scene_setting("SPLIT")) rule_option(g, "--split", scene_setting("SPLIT"));
     if (*scene_setting("HOLDOUT")) rule_option(g, "--holdout", scene_setting("HOLDOUT"));
     if (*scene_setting("HOLDOUT_VIEWS"))
         rule_option(g, "--holdout-views", graph_text(g, "'%s'", scene_setting("HOLDOUT_VIEWS")));

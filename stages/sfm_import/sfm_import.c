@@ -59,7 +59,8 @@ static enum status write_reports(const struct imported *in, const struct refinem
 }
 
 static enum status run(const char *sfm, const char *records, const char *out, const struct holdout *held,
-                       const struct sfm_import_params *params, struct provenance *prov, struct err *err)
+                       struct split_size split, const struct sfm_import_params *params, struct provenance *prov,
+                       struct err *err)
 {
     struct photo_list photos = {0};
     struct sfm_model model = {0};
@@ -69,7 +70,7 @@ static enum status run(const char *sfm, const char *records, const char *out, co
     char *name = NULL;
     if (!photo_list_read(&photos, records, err) && !import_choose(&model, &name, &given, sfm, &photos, prov, err) &&
         !import_check_photos(sfm, &photos, err))
-        refine_cameras(&refinement, &model, given, params, err);
+        refine_cameras(&refinement, &model, given, split, params, err);
     if (!err->status && import_model(&imported, &model, &photos, params, err)) err_context(err, "%s/%s", sfm, name);
     if (!err->status) write_reports(&imported, &refinement, &model, &photos, out, prov, err);
     if (!err->status && (held->every || (held->names && *held->names)))
@@ -86,8 +87,9 @@ static enum status run(const char *sfm, const char *records, const char *out, co
 
 int main(int argc, char **argv)
 {
-    const char *sfm = NULL, *records = NULL, *out = NULL;
+    const char *sfm = NULL, *records = NULL, *out = NULL, *grid = NULL;
     struct holdout held = {0};
+    struct split_size split = {0};
     struct sfm_import_params params = SFM_IMPORT_PARAMS_DEFAULT;
     const struct cli_opt opts[] = {
         CLI_ABOUT("Chooses a structure-from-motion model, checks it and converts it into rectified pinhole views."),
@@ -98,6 +100,9 @@ int main(int argc, char **argv)
                 "hold out every Nth photo in order of name, the first included; its views go to OUT/../holdout"),
         CLI_STR("holdout-views", &held.names, CLI_OPTIONAL,
                 "views to hold out, or photos, which means all their views: \"NAME NAME\""),
+        CLI_STR("split", &grid, CLI_OPTIONAL,
+                "COLUMNSxROWS of pictures ID_cXrY in each photo of a multi-lens camera, such as 3x2: its lenses keep "
+                "their relative poses, unless the pictures contradict that"),
         CLI_PARAMS(sfm_import_param_table, &params, NULL),
         CLI_END,
     };
@@ -106,8 +111,8 @@ int main(int argc, char **argv)
     enum cli_verdict verdict = cli_parse(argc, argv, "sfm_import", opts, &prov, &err);
     if (verdict == CLI_RUN && held.every < 0)
         err_set(&err, ST_USAGE, "--holdout %d: wanted N from 1, to hold out every Nth photo.", held.every);
-    else if (verdict == CLI_RUN)
-        run(sfm, records, out, &held, &params, &prov, &err);
+    else if (verdict == CLI_RUN && !(grid && split_size_parse(&split, grid, &err)))
+        run(sfm, records, out, &held, split, &params, &prov, &err);
     err_report(&err);
     provenance_release(&prov);
     return err_exit_code(&err);

@@ -78,6 +78,7 @@ options_that_exclude_each_other_are_refused()
     expect 2 "or else --estimate" "$B/bin/segment_depth" --views "$d" --view v --out v.exr --estimate list
     expect 2 "--jobs -1" "$B/bin/segment_depth" --views "$d" --estimate list --jobs -1
     expect 2 "--holdout -3" "$B/bin/sfm_import" --sfm "$d" --records "$d" --out "$d" --holdout -3
+    expect 2 "--split 3by2: wanted COLUMNSxROWS" "$B/bin/sfm_import" --sfm "$d" --records "$d" --out "$d" --split 3by2
 }
 
 missing_inputs_fail_with_their_name()

@@ -119,6 +119,27 @@ another_grid_redoes_structure_from_motion()
     grep -qx 'cut IMG_1_c2r1.png [0-9a-f]* 160 1' out/t/split/split.txt || { cat out/t/split/split.txt; fail "the border is not there"; }
 }
 
+# cameras on an arc: from each of three places to the next, two go along like the lenses of one camera
+lenses_keep_their_poses_in_the_camera()
+{
+    local k=0
+    small lenses; printf '[sfm_import]\nrefine = yes\n' >>scenes/lenses/scene.cfg
+    cp -r set/model offset
+    # poses off by some millimetres
+    awk 'NF == 10 { k++; for (i = 6; i < 9; i++) $i += 0.01 * sin(7 * k + i) } 1' set/model/images.txt >offset/images.txt
+    mkdir pairs
+    for shot in 1 2 3; do
+        ffmpeg -v error -y -start_number $((2 * shot - 1)) -i one/photo_%d.png -vf "format=rgb24,tile=2x1" -frames:v 1 -pix_fmt rgb24 "pairs/shot$shot.png"
+        for column in 1 2; do k=$((k + 1)); sed -i "s/photo_$k\.jpg/shot${shot}_c${column}r1.png/" offset/images.txt; done
+    done
+    make -s DEPS=manual PHOTOS=pairs SPLIT=2x1 SFM=offset SCENE=lenses sfm >log 2>&1 || { cat log; fail "make sfm"; }
+    grep -q 'the 2 lenses of the multi-lens camera have the same poses relative to each other in its 3 photos' log || { cat log; fail "the lenses were not adjusted as one camera"; }
+    # the third camera's lenses the wrong way round
+    sed -i 's/shot3_c1r1/shot3_c3r1/; s/shot3_c2r1/shot3_c1r1/; s/shot3_c3r1/shot3_c2r1/' offset/images.txt
+    make -s DEPS=manual SCENE=lenses sfm >log 2>&1 || { cat log; fail "make sfm"; }
+    grep -q 'warning: the 2 lenses of the multi-lens camera are not at the same places' log || { cat log; fail "no warning about lenses that moved"; }
+}
+
 photos_that_cannot_be_cut_are_named()
 {
     mkdir odd; ffmpeg -v error -y -i "rig/IMG 1.png" -vf "pad=481:241" odd/a.png
@@ -138,4 +159,4 @@ photos_that_cannot_be_cut_are_named()
 
 for t in from_one_photo_to_depth the_next_make_does_nothing a_changed_picture_redoes_its_view a_lost_picture_is_cut_again \
     pictures_are_excluded_and_masked_by_id between_dark_lines exposures_of_a_multi_lens_camera_are_merged_lens_by_lens \
-    another_grid_redoes_structure_from_motion photos_that_cannot_be_cut_are_named; do run "$t"; done
+    another_grid_redoes_structure_from_motion lenses_keep_their_poses_in_the_camera photos_that_cannot_be_cut_are_named; do run "$t"; done

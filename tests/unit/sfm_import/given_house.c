@@ -25,7 +25,7 @@ static void refined_views_of_a_panorama_keep_their_centre_and_place(void **state
     assert_ok(sfm_model_read_text(&model, HOUSE "sfm", NULL, &err), err);
     assert_ok(sfm_model_read_cameras(&truth, HOUSE "truth", NULL, &err), err);
     snprintf(params.refine, sizeof params.refine, "yes");
-    assert_ok(refine_cameras(&r, &model, GIVEN_MODEL, &params, &err), err);
+    assert_ok(refine_cameras(&r, &model, GIVEN_MODEL, (struct split_size){0}, &params, &err), err);
     assert_int_equal(model.image_count, truth.image_count);
     assert_true(!r.shifts && model.camera_count == 1);
     for (int i = 0; i < model.image_count; i++) {

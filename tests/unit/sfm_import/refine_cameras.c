@@ -5,9 +5,8 @@
 
 #include "common/base/log.h"
 #include "common/base/parallel.h"
-#include "common/base/rng.h"
-#include "common/math/numbers.h"
 #include "stages/sfm_import/refine_cameras.h"
+#include "tests/unit/sfm_import/disturb.h"
 
 enum { MAX_PHOTOS = 16 };
 
@@ -31,21 +30,6 @@ struct truth {
     struct sfm_model model; /* exact */
     double shift[MAX_PHOTOS][2];
 };
-
-static double normal(const struct rng *rng, uint64_t i, uint64_t k)
-{
-    return sqrt(-2 * log(1 - rng_uniform(rng, i, 2 * k))) * cos(2 * PI * rng_uniform(rng, i, 2 * k + 1));
-}
-
-static struct quat turned(struct quat q, double x, double y, double z)
-{
-    const struct quat d = {1, x / 2, y / 2, z / 2};
-    const struct quat r = {d.w * q.w - d.x * q.x - d.y * q.y - d.z * q.z, d.w * q.x + d.x * q.w + d.y * q.z - d.z * q.y,
-                           d.w * q.y - d.x * q.z + d.y * q.w + d.z * q.x,
-                           d.w * q.z + d.x * q.y - d.y * q.x + d.z * q.w};
-    const double n = sqrt(r.w * r.w + r.x * r.x + r.y * r.y + r.z * r.z);
-    return (struct quat){r.w / n, r.x / n, r.y / n, r.z / n};
-}
 
 /* Photos from an arc that look at the points' middle; every point in the picture is observed. */
 static void simulate(struct truth *t, const struct setup *s)
@@ -143,7 +127,7 @@ static void refine(struct outcome *o, const struct setup *s, enum given_cameras 
     simulate(&copy, s);
     o->model = copy.model;
     perturb(&o->model);
-    assert_ok(refine_cameras(&o->r, &o->model, given, &params, &err), err);
+    assert_ok(refine_cameras(&o->r, &o->model, given, (struct split_size){0}, &params, &err), err);
 }
 
 static void release(struct outcome *o)
@@ -203,7 +187,7 @@ static void refine_given(struct outcome *o, struct sfm_model *start, const struc
     }
     *start = copies[0].model;
     o->model = copies[1].model;
-    assert_ok(refine_cameras(&o->r, &o->model, GIVEN_MODEL, &params, &err), err);
+    assert_ok(refine_cameras(&o->r, &o->model, GIVEN_MODEL, (struct split_size){0}, &params, &err), err);
 }
 
 /* The root mean square of the distances of centres from the true ones. */
@@ -348,7 +332,7 @@ static void one_principal_point_off_the_centre_is_found(void **state)
     o.model.cameras[0].camera.params[1] = 400;
     o.model.cameras[0].camera.params[2] = 300;
     struct err err = ERR_INIT;
-    assert_ok(refine_cameras(&o.r, &o.model, GIVEN_NOTHING, &defaults, &err), err);
+    assert_ok(refine_cameras(&o.r, &o.model, GIVEN_NOTHING, (struct split_size){0}, &defaults, &err), err);
     double found[2];
     principal_point(&o.model, 0, found);
     assert_int_equal(chosen(&o)->center, CENTER_SHARED);
@@ -369,7 +353,7 @@ static void a_lens_with_two_coefficients_is_found_from_one_with_none(void **stat
     perturb(&o.model);
     o.model.cameras[0].camera = (struct camera){CAMERA_SIMPLE_PINHOLE, 800, 600, {640, 400, 300}};
     struct err err = ERR_INIT;
-    assert_ok(refine_cameras(&o.r, &o.model, GIVEN_NOTHING, &defaults, &err), err);
+    assert_ok(refine_cameras(&o.r, &o.model, GIVEN_NOTHING, (struct split_size){0}, &defaults, &err), err);
     assert_int_equal(chosen(&o)->model, CAMERA_RADIAL);
     assert_true(fabs(o.model.cameras[0].camera.params[3] + 0.2) < 0.02);
     release(&o);
