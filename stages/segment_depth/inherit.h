@@ -1,4 +1,4 @@
-/* inherit.h - depth of border areas that no evidence holds in front of their surroundings. */
+/* inherit.h - depth of border areas that no evidence holds apart from their surroundings. */
 #ifndef REMODEL_INHERIT_H
 #define REMODEL_INHERIT_H
 

@@ -98,17 +98,10 @@ void model_prior_weigh(struct plane_prior *prior, double gain, const double *sur
     for (int i = 0; i < s->count; i++) prior->gain[i] = (float)(gain * (1 - SURE_PART * clamp(sure[i], 0, 1)));
 }
 
-/* The plane that the segment is expected on, as the view's pictures moved it; NULL: nothing is known. */
-static const struct plane *expected_plane(const struct plane_problem *p, int segment)
-{
-    const int k = p->prior ? p->prior->expected[segment] : -1;
-    return k >= 0 && k < p->scene->known ? &p->scene->planes[k] : NULL;
-}
-
 static bool is_off(const struct plane_problem *p, int segment, struct plane plane)
 {
     const struct segment *g = &p->m->segments->segments[segment];
-    const struct plane *face = expected_plane(p, segment);
+    const struct plane *face = problem_expects(p, segment);
     if (!face) return false;
     const double there = plane_at(*face, g->cx, g->cy);
     return !(fabs(plane_at(plane, g->cx, g->cy) - there) <= fmax(OFF_PART * there, OFF_STEPS * p->step));
@@ -158,7 +151,7 @@ enum status model_prior_settle(struct plane *planes, bool *inherited, const doub
     }
     for (int i = 0; !err->status && i < s->count; i++) {
         if (!off[i] || held[root_of(parent, i)] >= HELD_PART * pixels[root_of(parent, i)]) continue;
-        planes[i] = *expected_plane(p, i);
+        planes[i] = *problem_expects(p, i);
         inherited[i] = true;
     }
     free(parent);

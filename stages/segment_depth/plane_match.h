@@ -68,8 +68,9 @@ struct matcher {
     float *out_of_view_cost, *occluded_cost; /* of each segment, for a neighbour that cannot see it */
 };
 
-#define MATCH_BEST  (-1.0f) /* minimum matching cost */
-#define MATCH_WORST 1.33f   /* maximum matching cost */
+#define MATCH_BEST   (-1.0f) /* minimum matching cost */
+#define MATCH_CHANCE 1.0f    /* of a chance match, in the mean */
+#define MATCH_WORST  1.33f   /* maximum matching cost */
 
 #define MATCH_FULL_WEIGHT 16   /* of a pixel that is not beside an edge of its segment */
 #define MATCH_UNSEEN      1e3f /* match_row(): the neighbour does not see the pixel */

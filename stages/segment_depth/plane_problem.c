@@ -29,11 +29,10 @@ static float match_lower_bound(const struct plane_problem *p, int segment, struc
     return lowest - SLACK;
 }
 
-/* Whether a segment is expected on a plane: the one of the scene that the prior's became. */
 static bool is_expected(const struct plane_problem *p, int segment, struct plane plane)
 {
-    if (!p->prior || p->prior->expected[segment] < 0 || p->prior->expected[segment] >= p->scene->known) return false;
-    return memcmp(&p->scene->planes[p->prior->expected[segment]], &plane, sizeof plane) == 0;
+    const struct plane *there = problem_expects(p, segment);
+    return there && memcmp(there, &plane, sizeof plane) == 0;
 }
 
 float problem_unary_cost(const struct plane_problem *p, int segment, struct plane plane, float max_cost)

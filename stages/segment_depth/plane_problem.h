@@ -76,6 +76,13 @@ static inline bool problem_allows(const struct plane_problem *p, const struct se
     return plane_within(plane, g, p->min_inverse_z / reach, p->max_inverse_z * reach);
 }
 
+/* The plane that straight edges, or the model, let a segment expect; NULL: nothing is known. */
+static inline const struct plane *problem_expects(const struct plane_problem *p, int segment)
+{
+    const int k = p->prior ? p->prior->expected[segment] : -1;
+    return k >= 0 && k < p->scene->known ? &p->scene->planes[k] : NULL;
+}
+
 #define PLANE_FORBIDDEN 1e4f /* unary cost of a plane outside the depth range */
 
 /* Unary term. Also PLANE_FORBIDDEN if it exceeds max_cost, as far as the terms without matching and its lower bound

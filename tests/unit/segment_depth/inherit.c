@@ -38,18 +38,23 @@ static void start_with_card(double x0, double y0, double x1, double y1)
 
 static void start(void) { start_with_card(-400, 0, -399, 1); }
 
-/* Puts the segments of a rectangle in front of the wall. Returns how many. */
-static int put_in_front(double x0, double y0, double x1, double y1, double sure)
+/* Puts the segments of a rectangle at an inverse depth. Returns how many. */
+static int put_at(double inverse_z, double x0, double y0, double x1, double y1, double sure)
 {
     int count = 0;
     for (int i = 0; i < b.segments.count; i++) {
         const struct segment *g = &b.segments.segments[i];
         if (!(g->cx >= x0 && g->cx < x1 && g->cy >= y0 && g->cy < y1)) continue;
-        planes[i] = (struct plane){0, 0, 0.42};
+        planes[i] = (struct plane){0, 0, inverse_z};
         confidence[i] = sure;
         count++;
     }
     return count;
+}
+
+static int put_in_front(double x0, double y0, double x1, double y1, double sure)
+{
+    return put_at(0.42, x0, y0, x1, y1, sure);
 }
 
 static void inherit(void)
@@ -57,6 +62,14 @@ static void inherit(void)
     struct err err = ERR_INIT;
     memcpy(before, planes, sizeof before);
     if (inherit_planes(planes, inherited, confidence, &b.problem, cautious, &err)) fail_msg("%s", err.text);
+}
+
+static void must_stay(void)
+{
+    inherit();
+    for (int i = 0; i < b.segments.count; i++) assert_false(inherited[i]);
+    assert_memory_equal(planes, before, sizeof planes);
+    bench_release();
 }
 
 /* The rectangle at each side of the picture, and a few segments in it that match something by chance. */
@@ -86,6 +99,79 @@ static void a_block_at_any_side_takes_over_the_wall(void **state)
         }
         bench_release();
     }
+}
+
+/* The same with areas far behind the wall: what only one view sees at its border continues the wall. */
+static void a_hole_at_any_side_takes_over_the_wall(void **state)
+{
+    (void)state;
+    static const double sides[][4] = {{0, 30, 40, 70}, {100, 30, W, 70}, {50, 0, 90, 40}, {50, 60, 90, H}};
+    for (int k = 0; k < 4; k++) {
+        const double *r = sides[k];
+        int filled = 0;
+        start();
+        b.problem.min_inverse_z = 0.02;
+        put_at(0.03, r[0], r[1], r[2], r[3], 0);
+        inherit();
+        for (int i = 0; i < b.segments.count; i++) {
+            const struct segment *g = &b.segments.segments[i];
+            assert_int_equal(inherited[i], before[i].c == 0.03);
+            if (!inherited[i]) continue;
+            assert_near(plane_at(planes[i], g->cx, g->cy) / bench_truth(g->cx, g->cy), 1, 0.01);
+            filled++;
+        }
+        assert_true(filled > 15);
+        bench_release();
+    }
+}
+
+/* A window at the border, whose view is matched. */
+static void a_hole_that_is_seen_stays(void **state)
+{
+    (void)state;
+    start();
+    b.problem.min_inverse_z = 0.02;
+    put_at(0.03, 0, 30, 40, 70, 0.5);
+    must_stay();
+}
+
+/* The floor is known, and a corner of the picture that nothing matches lies below it, on the plane of a wall that ends
+ * elsewhere. */
+static void nothing_unseen_lies_below_the_floor(void **state)
+{
+    (void)state;
+    static struct scene_planes scene;
+    static int expected[MAX_SEGMENTS];
+    struct plane_prior prior = {.count = 2, .expected = expected};
+    int below = 0, on_floor = 0;
+    start();
+    b.problem.min_inverse_z = 0.02;
+    const struct plane floor = plane_of_normal(b.problem.view, vec3_make(0, 1, 0)), wall = {0.0001, 0, 0.03};
+    scene = (struct scene_planes){.count = 2, .known = 2};
+    scene_planes_set(&scene, 0, floor);
+    scene_planes_set(&scene, 1, wall);
+    for (int i = 0; i < b.segments.count; i++) {
+        const struct segment *g = &b.segments.segments[i];
+        expected[i] = plane_at(floor, g->cx, g->cy) > bench_truth(g->cx, g->cy) ? 0 : -1;
+        if (expected[i] == 0) planes[i] = floor;
+        if (g->cx > 60 || expected[i] < 0) continue;
+        planes[i] = wall;
+        confidence[i] = 0;
+    }
+    b.problem.scene = &scene;
+    b.problem.prior = &prior;
+    inherit();
+    for (int i = 0; i < b.segments.count; i++) {
+        const struct segment *g = &b.segments.segments[i];
+        assert_int_equal(inherited[i], before[i].c == wall.c);
+        if (!inherited[i]) continue;
+        const double off = plane_at(planes[i], g->cx, g->cy) - plane_at(floor, g->cx, g->cy);
+        assert_true(off > -b.problem.step);
+        on_floor += fabs(off) < 0.01 * plane_at(floor, g->cx, g->cy);
+        below++;
+    }
+    assert_true(below > 15 && on_floor > 0.7 * below); /* others continue the wall beside them */
+    bench_release();
 }
 
 /* On a dominant plane of the scene a block that nothing matches stays: it is the near end of a ceiling. */
@@ -200,14 +286,6 @@ static void a_blank_surface_stays_on_the_plane_of_its_matched_part(void **state)
     bench_release();
 }
 
-static void must_stay(void)
-{
-    inherit();
-    for (int i = 0; i < b.segments.count; i++) assert_false(inherited[i]);
-    assert_memory_equal(planes, before, sizeof planes);
-    bench_release();
-}
-
 /* Inside the picture; matched; with a matched rim; and the unmatched end of a matched object. */
 static void other_areas_keep_their_depth(void **state)
 {
@@ -262,6 +340,9 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_block_at_any_side_takes_over_the_wall),
+        cmocka_unit_test(a_hole_at_any_side_takes_over_the_wall),
+        cmocka_unit_test(a_hole_that_is_seen_stays),
+        cmocka_unit_test(nothing_unseen_lies_below_the_floor),
         cmocka_unit_test(a_block_on_a_plane_of_the_scene_stays),
         cmocka_unit_test(a_block_beside_foreground_takes_over_the_wall),
         cmocka_unit_test(a_block_is_cut_off_from_the_foreground_that_it_touches),
