@@ -36,7 +36,8 @@
  * background, and stay. So does one that would match the other views worse; where none sees a segment, it counts as a
  * chance match.
  *
- * At last, where straight edges or the model show floor, ceiling and walls, nothing unsure stays beyond them. */
+ * At last, where straight edges or the model show floor, ceiling and walls, nothing unsure stays clearly
+ * beyond them. */
 #include "stages/segment_depth/inherit.h"
 
 #include <math.h>
@@ -46,14 +47,15 @@
 #include "common/math/numbers.h"
 #include "stages/segment_depth/max_flow.h"
 
-#define MIN_HELD   8 /* mean segments of confidence 1 */
-#define MAX_LEVELS 64
-#define ROUNDS     3
-#define ITERATIONS 200
-#define MAX_HOLE   0.15 /* part of the picture that may come forward at once */
-#define FINE       4    /* levels of areas that move forwards, in one of those that move back */
-#define COPLANAR   2    /* steps by which planes of one surface may differ */
-#define CAPACITY   1e6  /* of weight 1 */
+#define MIN_HELD     8 /* mean segments of confidence 1 */
+#define MAX_LEVELS   64
+#define ROUNDS       3
+#define ITERATIONS   200
+#define SHELL_MARGIN 0.9  /* of the shell's inverse depth, above which nothing is clearly beyond it */
+#define MAX_HOLE     0.15 /* part of the picture that may come forward at once */
+#define FINE         4    /* levels of areas that move forwards, in one of those that move back */
+#define COPLANAR     2    /* steps by which planes of one surface may differ */
+#define CAPACITY     1e6  /* of weight 1 */
 
 struct caution {
     double held;           /* mean confidence */
@@ -359,7 +361,8 @@ static bool take_over(struct inherit *x, bool *inherited)
     return changed;
 }
 
-/* Brings what is unsure, and lies beyond the room's shell, to it. */
+/* Brings what is unsure, and lies clearly beyond the room's shell, to it. What lies near it stays: heights of rooms are
+ * measured with it, and would be too low without what is a little too far. */
 static void stay_in_room(struct inherit *x, bool *inherited)
 {
     x->forwards = true;
@@ -368,7 +371,7 @@ static void stay_in_room(struct inherit *x, bool *inherited)
         const struct plane *shell = problem_expects(x->p, i);
         if (!shell || always_held(x, i)) continue;
         if (!inherited[i] && confidence_around(x, i) >= x->caution.held) continue;
-        if (!(plane_at(*shell, g->cx, g->cy) - at_centre(x, i) > x->p->step)) continue;
+        if (!(at_centre(x, i) < SHELL_MARGIN * plane_at(*shell, g->cx, g->cy))) continue;
         x->planes[i] = *shell;
         inherited[i] = true;
     }
