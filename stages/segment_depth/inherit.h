@@ -5,7 +5,8 @@
 #include "stages/segment_depth/plane_problem.h"
 
 /* Replaces planes, and sets inherited[i] for the segments concerned. confidence: of each segment's plane.
- * cautious: another round follows; only areas that hardly touch any foreground. ST_NOMEM. */
+ * cautious: another round follows; only areas that hardly touch any foreground move back, and none comes forward.
+ * ST_NOMEM. */
 enum status inherit_planes(struct plane *planes, bool *inherited, const double *confidence,
                            const struct plane_problem *p, bool cautious, struct err *err);
 

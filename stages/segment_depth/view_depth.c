@@ -13,7 +13,7 @@
  *   expand        expansion moves: minimum cuts over planes, slanted where that explains the pictures better; the
  *                 scene's dominant planes are offered to the whole view, and fitted to what takes them
  *   refine        local search with the same energy
- *   inherit       border areas that nothing holds in the foreground take over what lies behind them
+ *   inherit       border areas that nothing holds where they are take over what is beside them
  *   depth_deviation  how far off each segment's depth may be
  *   pixel_planes  each pixel chooses among the planes around it
  *   layers        opaque interiors, and mattes at depth edges
@@ -325,8 +325,8 @@ static void solution_release(struct solution *x)
     point_evidence_release(&x->points);
 }
 
-/* Gives floating border areas what lies behind them, and what stands before the model without evidence the model's
- * depth, both without confidence. */
+/* Gives border areas that nothing holds the planes beside them, and what stands before the model without evidence the
+ * model's depth, both without confidence. */
 static enum status inherit(struct layered_depth *out, struct plane *planes, const struct plane_problem *p,
                            bool cautious, bool knows_model, struct err *err)
 {
