@@ -7,6 +7,8 @@
 
 #include "common/base/sort.h"
 
+#define BELOW 0.05 /* of a point's depth */
+
 static const char suffix[] = ".exr";
 
 static enum status make_view(struct view *v, const struct sfm_model *m, const struct sfm_image *im, const char *folder,
@@ -151,6 +153,20 @@ int camera_set_find(const struct camera_set *set, const char *name)
 {
     const int at = (int)sort_place(set->views, (size_t)set->view_count, sizeof *set->views, is_before, name);
     return at < set->view_count && !strcmp(set->views[at].name, name) ? at : -1;
+}
+
+bool camera_set_shows_below(const struct camera_set *set, struct vec3 point, struct vec3 down)
+{
+    int views = 0;
+    for (int i = 0; i < set->view_count && views < 2; i++) {
+        const struct view *v = &set->views[i];
+        double x, y;
+        const double z = view_project(v, point, &x, &y);
+        if (!(z > 0) || !(x >= 0 && y >= 0 && x < v->width && y < v->height)) continue;
+        if (!(view_project(v, vec3_add(point, vec3_scale(down, BELOW * z)), &x, &y) > 0)) continue;
+        views += x >= 0 && y >= 0 && x < v->width && y < v->height;
+    }
+    return views == 2;
 }
 
 void camera_set_release(struct camera_set *set)

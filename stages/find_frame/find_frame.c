@@ -14,9 +14,8 @@
 #include "common/capture/upright.h"
 #include "common/math/numbers.h"
 #include "common/product/product.h"
-#include "stages/find_frame/frame_levels.h"
 #include "stages/find_frame/frame_params.h"
-#include "stages/find_frame/frame_walls.h"
+#include "stages/find_frame/frame_room.h"
 #include "stages/find_frame/line_directions.h"
 
 #define PARAM_STRUCT struct frame_params
@@ -24,7 +23,6 @@ const struct param frame_param_table[] = {FRAME_PARAMS(PARAM_ROW) PARAM_END};
 #undef PARAM_STRUCT
 
 #define STATION 0.1 /* of the scene's size: views as near to each other stand at one place */
-#define REACH   3.0 /* of the scene's size: farthest line on floor or ceiling */
 
 struct files {
     const char *views, *records, *lines, *out;
@@ -42,24 +40,6 @@ static enum status read_lines(struct world_lines *w, const struct camera_set *se
             world_lines_add(w, &set->views[i], i, &list, err);
         line_list_release(&list);
     }
-    return err->status;
-}
-
-static enum status find_room(struct room_frame *f, const struct world_lines *w, const struct camera_set *set,
-                             double size, struct err *err)
-{
-    int *headings = malloc(((size_t)w->count + 1) * sizeof *headings);
-    struct foot_lines lines = {0};
-    if (!headings) return err_nomem(err, "headings of lines", (size_t)w->count * sizeof *headings);
-    for (int i = 0; i < w->count; i++) headings[i] = line_heading(f, &w->lines[i]);
-    levels_find_floor(f, w, headings, set, size, err);
-    if (!err->status && f->floor.known &&
-        !foot_lines_add(&lines, w, headings, f, set, f->floor.height, false, REACH * size, err) &&
-        !walls_find(f, &lines, w, headings, set, size, err) && !levels_find_ceiling(f, w, headings, set, size, err) &&
-        f->ceiling.known && !foot_lines_add(&lines, w, headings, f, set, f->ceiling.height, true, REACH * size, err))
-        walls_find(f, &lines, w, headings, set, size, err);
-    foot_lines_release(&lines);
-    free(headings);
     return err->status;
 }
 
@@ -91,7 +71,7 @@ static enum status find_frame(const struct files *f, const struct frame_params *
     const double size = err->status ? 0 : world_lines_size(&set);
     if (!err->status && size > 0 && !world_lines_place(&w, &set, STATION * size, err) &&
         !line_directions_find(&frame, &w, upright_mean(&set, ups), params, err) && frame.known)
-        find_room(&frame, &w, &set, size, err);
+        frame_room_find(&frame, &w, &set, size, err);
     if (!err->status && !room_frame_write(&frame, f->out, f->prov, err)) log_frame(&frame, &w);
     room_frame_release(&frame);
     world_lines_release(&w);

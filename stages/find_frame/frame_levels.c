@@ -3,8 +3,9 @@
  * Floor: see foot_lines.c. Of all heights below the cameras the one is taken at which most lines of different places
  * fall on each other, if it is clearly better than those around, and if few sparse points are below it: tables and beds
  * have straight edges at one height, too, but what is seen goes on below them. Where lines do not say, as in a room
- * seen from few places, it is the level at which the sparse points end, if there they do so at once. The upper edge of
- * a skirting board is as straight as its lower one, so the height errs by a few hundredths of the camera's.
+ * seen from few places, it is the level at which the sparse points end, if there they do so at once, and if photos show
+ * what lies below. The upper edge of a skirting board is as straight as its lower one, so the height errs by a few
+ * hundredths of the camera's.
  *
  * Ceiling: a wall whose foot is known stands at a known distance, so each line above that runs along it has one height
  * on it. Heads of doors and windows have common heights, too; the ceiling is the highest level that many walls and
@@ -83,14 +84,15 @@ static enum status pairs_at(double *pairs, double height, const struct room_fram
     return err->status;
 }
 
-/* The floor that lines show. */
-static enum status floor_of_lines(struct frame_level *floor, const struct level_limits *limits,
-                                  const struct room_frame *f, const struct world_lines *w, const int *headings,
+enum status levels_floor_of_lines(struct room_frame *f, const struct world_lines *w, const int *headings,
                                   const struct camera_set *set, double size, struct err *err)
 {
-    const double top = limits->lowest - LEAST * size, bottom = limits->lowest - LOWEST * size;
+    struct level_limits limits;
+    f->floor = (struct frame_level){.known = false};
+    if (limits_of(&limits, set, f->up, size, err)) return err->status;
+    const double top = limits.lowest - LEAST * size, bottom = limits.lowest - LOWEST * size;
     const int steps = (int)((top - bottom) / (STEP * size)) + 1;
-    const int first = (int)ceil(fmax(top - limits->floor, 0) / (STEP * size));
+    const int first = (int)ceil(fmax(top - limits.floor, 0) / (STEP * size));
     double *pairs = calloc((size_t)steps, sizeof *pairs), around[2 * AROUND + 1], usual = 0, most = 0;
     int best = -1, count = 0;
     if (!pairs) return err_nomem(err, "heights", (size_t)steps * sizeof *pairs);
@@ -115,44 +117,50 @@ static enum status floor_of_lines(struct frame_level *floor, const struct level_
         square += weight * k * k * FINE * FINE * size * size;
     }
     mean = sum > 0 ? mean / sum : 0;
-    *floor =
+    f->floor =
         (struct frame_level){true, rough + mean, sum > 0 ? sqrt(fmax(square / sum - mean * mean, 0)) : STEP * size};
     return err->status;
 }
 
-/* The floor at which points end: of the steps that start at a low point, the one that has most points more than the
- * step below it. */
-static enum status floor_of_points(struct frame_level *floor, const struct level_limits *limits, struct vec3 up,
-                                   const struct camera_set *set, double size, struct err *err)
+struct point_height {
+    double height;
+    bool foot; /* views show what lies below it */
+};
+
+static int lower_first(const void *a, const void *b)
 {
-    const size_t count = (size_t)set->model.point_count;
-    double *heights = malloc((count + 1) * sizeof *heights), most = 0;
-    size_t below = 0, end = 0; /* the first points of the step below, and behind the step */
-    if (!heights) return err_nomem(err, "heights of points", count * sizeof *heights);
-    for (size_t i = 0; i < count; i++) heights[i] = vec3_dot(up, set->model.points[i].position);
-    sort_doubles(heights, count);
-    for (size_t i = 0; i < count && (double)i <= EDGE_BELOW * (double)count; i++) {
-        while (heights[below] < heights[i] - STEP * size) below++;
-        while (end < count && heights[end] <= heights[i] + STEP * size) end++;
-        const double here = (double)(end - i), before = (double)(i - below);
-        if (here < fmax(EDGE_POINTS, EDGE_SHARE * (double)count) || here < EDGE_RISE * before || here - before <= most)
-            continue;
-        if (heights[i] > limits->lowest - LEAST * size) break;
-        most = here - before;
-        *floor = (struct frame_level){true, heights[i + (end - i) / 2], STEP * size / 2};
-    }
-    free(heights);
-    return ST_OK;
+    const struct point_height *p = a, *q = b;
+    return (p->height > q->height) - (p->height < q->height);
 }
 
-enum status levels_find_floor(struct room_frame *f, const struct world_lines *w, const int *headings,
-                              const struct camera_set *set, double size, struct err *err)
+/* Of the steps that start at a low point, it is the one that has most feet more than the step below it has points. */
+enum status levels_floor_of_points(struct room_frame *f, const struct camera_set *set, double size, struct err *err)
 {
     struct level_limits limits;
+    f->floor = (struct frame_level){.known = false};
     if (limits_of(&limits, set, f->up, size, err)) return err->status;
-    if (!floor_of_lines(&f->floor, &limits, f, w, headings, set, size, err) && !f->floor.known)
-        floor_of_points(&f->floor, &limits, f->up, set, size, err);
-    return err->status;
+    const size_t count = (size_t)set->model.point_count;
+    struct point_height *p = malloc((count + 1) * sizeof *p);
+    size_t below = 0, end = 0; /* the first points of the step below, and behind the step */
+    double most = 0, feet = 0; /* feet: in the step */
+    if (!p) return err_nomem(err, "heights of points", count * sizeof *p);
+    for (size_t i = 0; i < count; i++) {
+        const struct vec3 at = set->model.points[i].position;
+        p[i] = (struct point_height){vec3_dot(f->up, at), camera_set_shows_below(set, at, vec3_scale(f->up, -1))};
+    }
+    qsort(p, count, sizeof *p, lower_first);
+    for (size_t i = 0; i < count && (double)i <= EDGE_BELOW * (double)count; feet -= p[i++].foot) {
+        while (p[below].height < p[i].height - STEP * size) below++;
+        while (end < count && p[end].height <= p[i].height + STEP * size) feet += p[end++].foot;
+        const double before = (double)(i - below);
+        if (feet < fmax(EDGE_POINTS, EDGE_SHARE * (double)count) || feet < EDGE_RISE * before || feet - before <= most)
+            continue;
+        if (p[i].height > limits.lowest - LEAST * size) break;
+        most = feet - before;
+        f->floor = (struct frame_level){true, p[i + (end - i) / 2].height, STEP * size / 2};
+    }
+    free(p);
+    return ST_OK;
 }
 
 /* A height at which a line above a wall lies on it, if it does. */

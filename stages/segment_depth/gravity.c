@@ -36,7 +36,6 @@
 #define MIN_POINTS   30   /* the same, in points */
 #define MIN_CAMERA   0.02 /* height of the lowest camera */
 #define MIN_SPREAD   0.04 /* standard deviation of the points within BAND along the narrower direction */
-#define OPEN_BELOW   0.05 /* of a point's depth */
 #define TILT_WEIGHT  0.3
 #define TILT_STEP    0.5 /* degrees */
 
@@ -171,24 +170,14 @@ struct level { /* a plane */
     double score;
 };
 
-/* Moves the points that may be feet to the front of the list: at least two views show what lies below them, for
- * OPEN_BELOW of their depth. At a photo's lower edge points end as well, but not because of a ground. */
+/* Moves the points that may be feet to the front of the list: views show what lies below them. At a photo's lower edge
+ * points end as well, but not because of a ground. */
 static void find_feet(struct cloud *c, const struct camera_set *set)
 {
     c->feet = 0;
     for (int i = 0; i < c->count; i++) {
-        const struct vec3 at = vec3_add(c->points[i], c->centre);
-        int views = 0;
-        for (int k = 0; k < set->view_count && views < 2; k++) {
-            const struct view *v = &set->views[k];
-            double x, y;
-            const double z = view_project(v, at, &x, &y);
-            if (!(z > 0) || !(x >= 0 && y >= 0 && x < v->width && y < v->height)) continue;
-            if (!(view_project(v, vec3_add(at, vec3_scale(c->down, OPEN_BELOW * z)), &x, &y) > 0)) continue;
-            views += x >= 0 && y >= 0 && x < v->width && y < v->height;
-        }
-        if (views < 2) continue;
         const struct vec3 foot = c->points[i];
+        if (!camera_set_shows_below(set, vec3_add(foot, c->centre), c->down)) continue;
         c->points[i] = c->points[c->feet];
         c->points[c->feet++] = foot;
     }

@@ -6,18 +6,9 @@ static const double size = 2.5;
 static void find(struct room_frame *f, struct line_room *r, const struct line_room_spec *spec)
 {
     struct err err = ERR_INIT;
-    struct foot_lines lines = {0};
-    int *headings = line_room_headings(f, r, spec);
-    assert_ok(levels_find_floor(f, &r->lines, headings, &r->set, size, &err), err);
-    assert_true(f->floor.known);
-    assert_ok(foot_lines_add(&lines, &r->lines, headings, f, &r->set, f->floor.height, false, 3 * size, &err), err);
-    assert_ok(walls_find(f, &lines, &r->lines, headings, &r->set, size, &err), err);
-    assert_ok(levels_find_ceiling(f, &r->lines, headings, &r->set, size, &err), err);
-    assert_true(f->ceiling.known);
-    assert_ok(foot_lines_add(&lines, &r->lines, headings, f, &r->set, f->ceiling.height, true, 3 * size, &err), err);
-    assert_ok(walls_find(f, &lines, &r->lines, headings, &r->set, size, &err), err);
-    foot_lines_release(&lines);
-    free(headings);
+    free(line_room_headings(f, r, spec));
+    assert_ok(frame_room_find(f, &r->lines, &r->set, size, &err), err);
+    assert_true(f->floor.known && f->ceiling.known);
 }
 
 /* A wall of the room: on x = offset (axis 0) or y = offset (1), from `from` to `to` along the other axis; inside: on
@@ -118,7 +109,7 @@ static void one_place_shows_no_walls(void **state)
     struct room_frame f;
     struct err err = ERR_INIT;
     int *headings = line_room_headings(&f, &r, &spec);
-    assert_ok(levels_find_floor(&f, &r.lines, headings, &r.set, size, &err), err);
+    assert_ok(levels_floor_of_lines(&f, &r.lines, headings, &r.set, size, &err), err);
     assert_false(f.floor.known);
     free(headings);
     room_frame_release(&f);

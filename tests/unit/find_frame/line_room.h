@@ -7,6 +7,7 @@
 #include "common/math/rotation_fit.h"
 #include "stages/find_frame/foot_lines.h"
 #include "stages/find_frame/frame_levels.h"
+#include "stages/find_frame/frame_room.h"
 #include "stages/find_frame/frame_walls.h"
 #include "stages/find_frame/line_directions.h"
 #include "tests/unit/scratch.h"
@@ -26,6 +27,7 @@ struct line_room_spec {
     int stations;
     double moulding; /* 0: none; otherwise two more edges, this far and twice this far below the ceiling */
     double above;    /* 0: none; otherwise a short edge over each wall, this far above the ceiling */
+    bool posters;    /* in place of the room's edges, short level ones on the floor, none in line with another */
 };
 
 struct line_room {
@@ -51,6 +53,13 @@ static inline int room_edges(struct room_edge edges[ROOM_EDGES], const struct li
     static const double corners[][2] = {{-2, -2.5}, {3, -2.5}, {3, 0.5}, {1.8, 0.5}, {1.8, 1.5}, {-2, 1.5}};
     enum { CORNERS = sizeof corners / sizeof *corners };
     int n = 0;
+    for (int k = 0; spec->posters && k < 16; k++) {
+        const double x = -2 + 0.3 * k, y = k % 2 ? 1.3 - 0.05 * k : -2.4 + 0.05 * k;
+        edges[n++] = (struct room_edge){{x, y, ROOM_FLOOR}, {x + 0.3, y, ROOM_FLOOR}};
+        edges[n++] = (struct room_edge){{x, y, ROOM_FLOOR}, {x, y + 0.3, ROOM_FLOOR}};
+        edges[n++] = (struct room_edge){{x, y, ROOM_FLOOR + 1}, {x, y, ROOM_FLOOR + 1.4}};
+    }
+    if (spec->posters) return n;
     for (int k = 0; k < CORNERS; k++) {
         const double *p = corners[k], *q = corners[(k + 1) % CORNERS];
         edges[n++] = (struct room_edge){{p[0], p[1], ROOM_FLOOR}, {q[0], q[1], ROOM_FLOOR}};
