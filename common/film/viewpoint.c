@@ -71,9 +71,9 @@ static double outside_fraction(const struct viewpoint_test *test, const struct v
     return sum / (small.width * small.height);
 }
 
-/* The fraction of the visible points that are too near. Weights are whole numbers of pixels, so sums are exact in any
- * order. Four points at a time, with the operations of view_project(). */
-static double near_fraction(const struct viewpoint_test *test, const struct view *camera)
+/* The weight of the points in a frame, and of those of them that are too near. Weights are whole numbers of pixels, so
+ * sums are exact in any order. Four points at a time, with the operations of view_project(). */
+static void weigh_points(double *within, double *too_near, const struct viewpoint_test *test, const struct view *camera)
 {
     const struct scene_point *points = test->points->points;
     const size_t count = test->points->count;
@@ -111,7 +111,22 @@ static double near_fraction(const struct viewpoint_test *test, const struct view
     f64x4_store(sums[0], near);
     f64x4_store(sums[1], total);
     for (int k = 1; k < 4; k++) sums[0][0] += sums[0][k], sums[1][0] += sums[1][k];
-    return sums[1][0] > 0 ? sums[0][0] / sums[1][0] : 1;
+    *too_near = sums[0][0];
+    *within = sums[1][0];
+}
+
+static double near_fraction(const struct viewpoint_test *test, const struct view *camera)
+{
+    double within, too_near;
+    weigh_points(&within, &too_near, test, camera);
+    return within > 0 ? too_near / within : 1;
+}
+
+double viewpoint_pixels_within(const struct viewpoint_test *test, const struct view *camera)
+{
+    double within, too_near;
+    weigh_points(&within, &too_near, test, camera);
+    return within;
 }
 
 enum status viewpoint_measure(struct viewpoint *v, struct viewpoint_test *test, const struct view *camera,

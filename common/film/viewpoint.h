@@ -44,6 +44,8 @@ enum status viewpoints_measure(struct viewpoint *out, const struct view *cameras
  * likely invalid should come first. */
 enum status viewpoints_are_valid(bool *valid, const struct view *cameras, int count, struct viewpoint_test *test,
                                  struct err *err);
+/* How many pixels of the views lie in a camera's frame, hidden or not: the weight of their points. */
+double viewpoint_pixels_within(const struct viewpoint_test *test, const struct view *camera);
 /* Sets up a test of the same scene and limits for another thread. */
 void viewpoint_test_copy(struct viewpoint_test *test, const struct viewpoint_test *from);
 void viewpoint_test_release(struct viewpoint_test *test);

@@ -2,7 +2,9 @@
  *
  * Candidates. Each valid cell of the start's region gives one candidate for the start, at the cell's nearest or
  * farthest valid z as the move requires; likewise for the end. A pair of candidates may subtend at most max_angle at
- * the scene's centroid, and the path of a dolly in or out must advance by at least half of its length.
+ * the scene's centroid, and the path of a dolly in or out must advance by at least half of its length. An establishing
+ * dolly must show most of the scene. It stays back in the thesis; but near objects have the most parallax, and where a
+ * region ends at the back depends on single holes, so pairs at the front compete as well if they show enough.
  *
  * Discrete choice. [Colburn 2014, 3.4.2] measures the parallax of the longest pairs and takes the best, since it
  * renders the scene twice for each pair. Here each cell is rendered once, after which comparing two pictures takes less
@@ -38,17 +40,6 @@
 
 enum { DRAWN_IN = -1 };
 
-struct start {
-    struct move_ends ends;
-    int rank;    /* of its pair by parallax, or DRAWN_IN */
-    int cell[2]; /* of its pair */
-};
-
-struct start_list {
-    struct start start[PAIR_STARTS + 1];
-    int count;
-};
-
 /* Whether an end lies as close to the scene as is valid, or as far back. Both ends of an establishing dolly stay back,
  * since it should show the whole scene; it moves sideways. */
 static bool is_forward(enum camera_move move, int end)
@@ -65,21 +56,35 @@ static bool is_forward(enum camera_move move, int end)
     }
 }
 
-struct vec3 ends_candidate(const struct validity *v, int end, int cell)
+struct vec3 ends_candidate(const struct validity *v, int end, int cell, enum side side)
 {
     const struct validity_cell *c = &v->region[end].cells[cell];
-    return world_from_shot(&v->shot, c->x, c->y, is_forward(v->move.move, end) ? c->high : c->low);
+    const bool forward = is_forward(v->move.move, end) != (side == SIDE_OTHER);
+    return world_from_shot(&v->shot, c->x, c->y, forward ? c->high : c->low);
 }
 
 struct end_pair {
     int cell[2];
+    enum side side;
     double length, parallax;
+};
+
+struct start {
+    struct move_ends ends;
+    int rank; /* of its pair by parallax, or DRAWN_IN */
+    struct end_pair pair;
+};
+
+struct start_list {
+    struct start start[PAIR_STARTS + 1];
+    int count;
 };
 
 static int longer_first(const void *a, const void *b)
 {
     const struct end_pair *p = a, *q = b;
     if (p->length != q->length) return p->length > q->length ? -1 : 1;
+    if (p->side != q->side) return p->side < q->side ? -1 : 1;
     return p->cell[0] != q->cell[0] ? p->cell[0] - q->cell[0] : p->cell[1] - q->cell[1];
 }
 
@@ -90,35 +95,62 @@ static int more_parallax_first(const void *a, const void *b)
     return longer_first(a, b);
 }
 
-/* Lists the allowed pairs, longest first; the pair of the smallest angle if none is allowed. */
-static enum status list_pairs(struct ends_search *s, struct end_pair **pairs, size_t *count, struct err *err)
+/* Which cells' candidates show enough of the scene for an end. */
+static bool *cells_that_show(const struct ends_search *s, int end, enum side side)
+{
+    const struct validity_region *r = &s->v->region[end];
+    bool *shows = calloc((size_t)cell_count(r) + 1, sizeof *shows);
+    for (int i = 0; shows && i < cell_count(r); i++)
+        shows[i] = r->cells[i].valid && ends_show_enough(s, end, ends_candidate(s->v, end, i, side));
+    return shows;
+}
+
+/* Appends the allowed pairs of one side to a list of *count that has room for all. narrowest: of all valid pairs that of
+ * the smallest angle, in degrees. */
+static enum status add_pairs(struct end_pair *pairs, size_t *count, struct end_pair *narrowest, double *min_angle,
+                             const struct ends_search *s, enum side side, struct err *err)
 {
     const struct validity *v = s->v;
-    const int cells[2] = {cell_count(&v->region[0]), cell_count(&v->region[1])};
-    const size_t max_count = (size_t)cells[0] * (size_t)cells[1];
+    bool *shows[2] = {cells_that_show(s, 0, side), cells_that_show(s, 1, side)};
+    if (!shows[0] || !shows[1]) err_nomem(err, "viewpoints", (size_t)cell_count(&v->region[0]));
+    for (int a = 0; !err->status && a < cell_count(&v->region[0]); a++)
+        for (int b = 0; b < cell_count(&v->region[1]); b++) {
+            if (!v->region[0].cells[a].valid || !v->region[1].cells[b].valid) continue;
+            const struct vec3 at[2] = {ends_candidate(v, 0, a, side), ends_candidate(v, 1, b, side)};
+            const struct end_pair p = {{a, b}, side, vec3_length(vec3_sub(at[1], at[0])), 0};
+            const double angle = ends_angle(&v->shot, at);
+            if (angle < *min_angle) *min_angle = angle, *narrowest = p;
+            if (shows[0][a] && shows[1][b] && ends_move_as_asked(s, at)) pairs[(*count)++] = p;
+        }
+    free(shows[0]);
+    free(shows[1]);
+    return err->status;
+}
+
+/* Lists the allowed pairs: first those of the move's own side, longest first, *own of them; at least one, that of the
+ * smallest angle if none is allowed. An establishing dolly has those of the other side as well. */
+static enum status list_pairs(struct ends_search *s, struct end_pair **pairs, size_t *own, size_t *count,
+                              struct err *err)
+{
+    const struct validity *v = s->v;
+    const size_t max_count = 2 * (size_t)cell_count(&v->region[0]) * (size_t)cell_count(&v->region[1]);
     struct end_pair narrowest = {.cell = {-1, -1}};
-    double min_angle = HUGE_VAL;
+    double min_angle = HUGE_VAL, ignored = -HUGE_VAL;
     size_t n = 0;
 
     *pairs = malloc((max_count + 1) * sizeof **pairs);
     if (!*pairs) return err_nomem(err, "pairs of viewpoints", max_count * sizeof **pairs);
-    for (int a = 0; a < cells[0]; a++)
-        for (int b = 0; b < cells[1]; b++) {
-            if (!v->region[0].cells[a].valid || !v->region[1].cells[b].valid) continue;
-            const struct vec3 at[2] = {ends_candidate(v, 0, a), ends_candidate(v, 1, b)};
-            const struct end_pair p = {{a, b}, vec3_length(vec3_sub(at[1], at[0])), 0};
-            const double angle = ends_angle(&v->shot, at);
-            if (angle < min_angle) min_angle = angle, narrowest = p;
-            if (ends_are_allowed(s, at)) (*pairs)[n++] = p;
-        }
+    if (add_pairs(*pairs, &n, &narrowest, &min_angle, s, SIDE_OWN, err)) return err->status;
     if (!n && narrowest.cell[0] < 0)
         return err_set(err, ST_DATA,
                        "no cell of the move's regions is valid: there is nowhere to go; see the depth maps, or raise "
                        "max_h of [sample_validity].");
     if (!n) (*pairs)[n++] = narrowest;
     qsort(*pairs, n, sizeof **pairs, longer_first);
+    *own = n;
+    if (v->move.move == MOVE_ESTABLISHING_DOLLY) add_pairs(*pairs, &n, &narrowest, &ignored, s, SIDE_OTHER, err);
     *count = n;
-    return ST_OK;
+    return err->status;
 }
 
 static bool same_camera(const struct view *a, const struct view *b)
@@ -156,16 +188,18 @@ static void score_some(void *ctx, size_t begin, size_t end, int thread)
     }
 }
 
-/* Measures the parallax of pairs. Each cell is rendered once, or once for both ends if their cameras are the same. */
+/* Measures the parallax of pairs of one side. Each cell is rendered once, or once for both ends if their cameras are the
+ * same. */
 static enum status score_pairs(struct ends_search *s, struct end_pair *pairs, size_t count, struct err *err)
 {
     const struct validity *v = s->v;
     const int starts = cell_count(&v->region[0]), cells = starts + cell_count(&v->region[1]);
     struct picture_batch b;
+    if (!count) return ST_OK;
     if (ends_batch_init(&b, s, cells, err)) return err->status;
     for (int i = 0; i < cells; i++) {
         b.end[i] = i >= starts;
-        b.at[i] = ends_candidate(v, b.end[i], i - b.end[i] * starts);
+        b.at[i] = ends_candidate(v, b.end[i], i - b.end[i] * starts, pairs[0].side);
     }
     const int second = ends_share_cameras(v, b.at) ? 0 : starts; /* first picture of the end's cells */
     for (size_t i = 0; i < count; i++)
@@ -184,11 +218,11 @@ static enum status score_pairs(struct ends_search *s, struct end_pair *pairs, si
 static enum status rank_pairs(struct ends_search *s, struct end_pair **pairs, int *count, struct end_pair *discrete,
                               struct err *err)
 {
-    size_t n = 0;
-    list_pairs(s, pairs, &n, err);
-    const size_t longest = n < (size_t)s->params->pairs ? n : (size_t)s->params->pairs;
-    if (!err->status && strcmp(s->params->refine, "yes")) n = longest;
-    if (!err->status) score_pairs(s, *pairs, n, err);
+    size_t own = 0, n = 0;
+    list_pairs(s, pairs, &own, &n, err);
+    const size_t longest = own < (size_t)s->params->pairs ? own : (size_t)s->params->pairs;
+    if (!err->status && strcmp(s->params->refine, "yes")) own = n = longest;
+    if (!err->status && !score_pairs(s, *pairs, own, err)) score_pairs(s, *pairs + own, n - own, err);
     if (err->status) return err->status;
     *discrete = (*pairs)[0];
     for (size_t i = 1; i < longest; i++)
@@ -252,7 +286,7 @@ static bool lift_pair(struct vec3 at[2], const struct validity *v, const struct 
 {
     for (int i = 0; i <= LIFTS; i++) {
         for (int k = 0; k < 2; k++) {
-            struct vec3 c = shot_from_world(&v->shot, ends_candidate(v, k, p->cell[k]));
+            struct vec3 c = shot_from_world(&v->shot, ends_candidate(v, k, p->cell[k], p->side));
             at[k] = world_from_shot(&v->shot, c.x, c.y, c.z * (LIFTS - i) / LIFTS);
         }
         if (!one_region || is_within(v, at)) return true;
@@ -266,13 +300,13 @@ static int cells_apart(const struct validity_region *r, int a, int b)
     return x > y ? x : y;
 }
 
-/* Whether a pair begins some cells away from the starts, whichever of its ends comes first. */
+/* Whether a pair begins on another side than each start, or some cells away from it, whichever of its ends comes first. */
 static bool is_apart(const struct start_list *l, const struct validity *v, const struct end_pair *p)
 {
     const struct validity_region *r = &v->region[0];
     for (int i = 0; i < l->count; i++) {
-        const int *cell = l->start[i].cell;
-        for (int turned = 0; turned < 2; turned++)
+        const int *cell = l->start[i].pair.cell;
+        for (int turned = 0; turned < 2 && p->side == l->start[i].pair.side; turned++)
             if (cells_apart(r, cell[0], p->cell[turned]) < APART && cells_apart(r, cell[1], p->cell[!turned]) < APART)
                 return false;
     }
@@ -285,7 +319,7 @@ static enum status try_pair(struct ends_search *s, struct start_list *l, const s
 {
     struct start *start = &l->start[l->count];
     bool valid = false;
-    *start = (struct start){{.at = {at[0], at[1]}}, rank, {p->cell[0], p->cell[1]}};
+    *start = (struct start){{.at = {at[0], at[1]}}, rank, *p};
     if (ends_test_path(&valid, s, at, err) || !valid || ends_angle(&s->v->shot, at) > s->params->max_angle)
         return err->status;
     if (!ends_measure_parallax(s, &start->ends, err)) l->count++;
@@ -326,7 +360,7 @@ static enum status find_starts(struct ends_search *s, struct start_list *l, bool
     rank_pairs(s, &pairs, &count, &longest, err);
     if (!err->status) {
         discrete->parallax = longest.parallax;
-        for (int k = 0; k < 2; k++) discrete->at[k] = ends_candidate(s->v, k, longest.cell[k]);
+        for (int k = 0; k < 2; k++) discrete->at[k] = ends_candidate(s->v, k, longest.cell[k], SIDE_OWN);
         ends_measure_path(s, discrete, err);
     }
     if (!err->status) try_pairs(s, l, pairs, count, refined ? PAIR_STARTS : 1, err);

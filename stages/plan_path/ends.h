@@ -41,7 +41,10 @@ enum status ends_choose(struct move_ends *best, struct ends_notes *notes, const 
 enum status ends_measure(struct move_ends *e, const struct layer_scene *scene, const struct validity *v,
                          const struct plan_params *params, struct err *err);
 
+/* Where a cell's candidates lie: as near as is valid or as far back, as the move requires, or opposite. */
+enum side { SIDE_OWN, SIDE_OTHER };
+
 /* The candidate viewpoint of a cell for one end of the move. */
-struct vec3 ends_candidate(const struct validity *v, int end, int cell);
+struct vec3 ends_candidate(const struct validity *v, int end, int cell, enum side side);
 
 #endif

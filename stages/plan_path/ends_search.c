@@ -16,7 +16,12 @@ enum status ends_search_init(struct ends_search *s, const struct layer_scene *sc
 {
     *s = (struct ends_search){.scene = scene, .v = v, .params = params, .notes = notes};
     s->test = (struct viewpoint_test){.scene = scene, .points = &s->points, .shot = &v->shot, .limits = v->limits};
-    return scene_points_collect(&s->points, scene, err);
+    if (scene_points_collect(&s->points, scene, err)) return err->status;
+    for (int k = 0; k < 2 && v->move.move == MOVE_ESTABLISHING_DOLLY; k++) {
+        const struct view camera = shot_end_camera(&v->shot, &v->move.end[k], v->shot.origin);
+        s->least_pixels[k] = params->min_shown * viewpoint_pixels_within(&s->test, &camera);
+    }
+    return ST_OK;
 }
 
 void ends_search_release(struct ends_search *s)
@@ -143,7 +148,14 @@ enum status ends_test_path(bool *valid, struct ends_search *s, const struct vec3
     return viewpoints_are_valid(valid, cameras, COARSE_SAMPLES, &s->test, err);
 }
 
-bool ends_are_allowed(const struct ends_search *s, const struct vec3 at[2])
+bool ends_show_enough(const struct ends_search *s, int end, struct vec3 at)
+{
+    if (!(s->least_pixels[end] > 0)) return true;
+    const struct view camera = shot_end_camera(&s->v->shot, &s->v->move.end[end], at);
+    return camera.fx > 0 && viewpoint_pixels_within(&s->test, &camera) >= s->least_pixels[end];
+}
+
+bool ends_move_as_asked(const struct ends_search *s, const struct vec3 at[2])
 {
     const struct shot_setup *shot = &s->v->shot;
     const enum camera_move move = s->v->move.move;
@@ -151,4 +163,9 @@ bool ends_are_allowed(const struct ends_search *s, const struct vec3 at[2])
     if (move != MOVE_DOLLY_IN && move != MOVE_DOLLY_OUT) return true;
     const double advance = shot_from_world(shot, at[1]).z - shot_from_world(shot, at[0]).z;
     return (move == MOVE_DOLLY_IN ? advance : -advance) >= MIN_ADVANCE * vec3_length(vec3_sub(at[1], at[0]));
+}
+
+bool ends_are_allowed(const struct ends_search *s, const struct vec3 at[2])
+{
+    return ends_move_as_asked(s, at) && ends_show_enough(s, 0, at[0]) && ends_show_enough(s, 1, at[1]);
 }

@@ -13,6 +13,7 @@ struct ends_search {
     struct scene_points points;
     struct viewpoint_test test;
     struct ends_notes *notes;
+    double least_pixels[2]; /* of the views in the frame of each end (viewpoint_pixels_within) */
 };
 
 enum status ends_search_init(struct ends_search *s, const struct layer_scene *scene, const struct validity *v,
@@ -53,7 +54,13 @@ enum status ends_test_path(bool *valid, struct ends_search *s, const struct vec3
 /* Angle between the ends at the scene's centroid, degrees. */
 double ends_angle(const struct shot_setup *shot, const struct vec3 at[2]);
 
+/* Whether an end of the move shows as much of the scene as it should: any end but those of an establishing dolly does. */
+bool ends_show_enough(const struct ends_search *s, int end, struct vec3 at);
+
 /* Whether a move between these ends is no wider than max_angle and, if it is a dolly in or out, advances enough. */
+bool ends_move_as_asked(const struct ends_search *s, const struct vec3 at[2]);
+
+/* Both of these. */
 bool ends_are_allowed(const struct ends_search *s, const struct vec3 at[2]);
 
 #endif

@@ -15,6 +15,8 @@
     X(height, int, 0, 0, 16384, "px", "height of a keyframed film, rounded to even; 0: from width or a photo")         \
     X(max_side, int, 1280, 16, 16384, "px", "longer side of a keyframed film, at most, if width and height are 0")     \
     X(max_angle, double, 25, 0.1, 180, "degrees", "largest angle between the ends of a move, at the scene's centroid") \
+    X(min_shown, double, 0.6, 0, 1, "",                                                                                \
+      "least that both ends of an establishing dolly show, as a part of what the centremost view shows")               \
     X(pairs, int, 12, 1, 20736, "",                                                                                    \
       "longest pairs of ends that compete if refine is no; else used for the thesis's scores and as fallback")         \
     X(refine, choice, "yes", 0, 0, "yes|no", "measure all pairs of ends and then refine the best pair off the grid")   \

@@ -66,7 +66,7 @@ static void draw_some(void *ctx, size_t begin, size_t end, int thread)
     for (size_t i = begin; i < end; i++) {
         if (!b->v->region[b->end].cells[i].valid) continue;
         const struct view camera =
-            shot_end_camera(&b->v->shot, &b->v->move.end[b->end], ends_candidate(b->v, b->end, (int)i));
+            shot_end_camera(&b->v->shot, &b->v->move.end[b->end], ends_candidate(b->v, b->end, (int)i, SIDE_OWN));
         parallax_picture_make(&b->pictures[b->end][i], b->scene, &camera, b->params->parallax_side, &b->errors[i]);
     }
 }
@@ -94,7 +94,7 @@ static void measure_some(void *ctx, size_t begin, size_t end, int thread)
             struct pair *p = &b->pairs[a * (size_t)b->cells[1] + (size_t)k];
             *p = (struct pair){{(int)a, k}, -1};
             if (!b->v->region[0].cells[a].valid || !b->v->region[1].cells[k].valid) continue;
-            const struct vec3 at[2] = {ends_candidate(b->v, 0, (int)a), ends_candidate(b->v, 1, k)};
+            const struct vec3 at[2] = {ends_candidate(b->v, 0, (int)a, SIDE_OWN), ends_candidate(b->v, 1, k, SIDE_OWN)};
             if (angle_of(b, at) > b->params->max_angle) continue;
             if (b->anew)
                 measure_anew(p, b, at, &b->errors[a]);
@@ -180,7 +180,7 @@ static enum status best_of_all(struct found *f, const struct layer_scene *scene,
         f->renders += anew ? 2 : 0;
         if (f->ends.valid) continue;
         f->ends = (struct move_ends){.parallax = b.pairs[i].parallax};
-        for (int k = 0; k < 2; k++) f->ends.at[k] = ends_candidate(v, k, b.pairs[i].cell[k]);
+        for (int k = 0; k < 2; k++) f->ends.at[k] = ends_candidate(v, k, b.pairs[i].cell[k], SIDE_OWN);
         measure_path(&b, &test, &f->ends, err);
     }
     f->renders += test.renders;

@@ -344,7 +344,7 @@ static void all_pairs_agree_with_brute_force(void **state)
         for (int i = 0; i < 2 * CELLS; i++)
             if (film.v.region[i / CELLS].cells[i % CELLS].valid)
                 end_picture(&pictures[i / CELLS][i % CELLS], &f, &film.v, i / CELLS,
-                            ends_candidate(&film.v, i / CELLS, i % CELLS), params.parallax_side);
+                            ends_candidate(&film.v, i / CELLS, i % CELLS, SIDE_OWN), params.parallax_side);
         for (int narrow = 0; narrow < 2; narrow++) {
             double best = -1;
             int counted = 0;
@@ -352,7 +352,8 @@ static void all_pairs_agree_with_brute_force(void **state)
             for (int a = 0; a < CELLS; a++)
                 for (int b = 0; b < CELLS; b++) {
                     if (!film.v.region[0].cells[a].valid || !film.v.region[1].cells[b].valid) continue;
-                    const struct vec3 at[2] = {ends_candidate(&film.v, 0, a), ends_candidate(&film.v, 1, b)};
+                    const struct vec3 at[2] = {ends_candidate(&film.v, 0, a, SIDE_OWN),
+                                               ends_candidate(&film.v, 1, b, SIDE_OWN)};
                     if (angle_of(&film.v, at) > params.max_angle) continue;
                     const double advance =
                         shot_from_world(&film.v.shot, at[1]).z - shot_from_world(&film.v.shot, at[0]).z;
@@ -414,6 +415,50 @@ static void refinement_never_loses_parallax(void **state)
     }
     assert_true(any_refined);
     layer_scene_release(&f.scene);
+}
+
+/* What the end that shows less shows of the scene, as a part of what the centremost view shows. */
+static double least_shown(const struct planned_film *film, const struct wall_scene *f)
+{
+    const struct validity *v = &film->v;
+    struct scene_points points = {0};
+    struct err err = ERR_INIT;
+    double least = HUGE_VAL;
+    assert_ok(scene_points_collect(&points, &f->scene, &err), err);
+    const struct viewpoint_test test = {.scene = &f->scene, .points = &points, .shot = &v->shot, .limits = v->limits};
+    for (int k = 0; k < 2; k++) {
+        const struct view center = shot_end_camera(&v->shot, &v->move.end[k], v->shot.origin),
+                          end = shot_end_camera(&v->shot, &v->move.end[k], film->notes.ends.at[k]);
+        least = fmin(least, viewpoint_pixels_within(&test, &end) / viewpoint_pixels_within(&test, &center));
+    }
+    scene_points_release(&points);
+    return least;
+}
+
+static void both_ends_of_an_establishing_dolly_show_most_of_the_scene(void **state)
+{
+    (void)state;
+    struct wall_scene f;
+    struct validity_params sampling = quick_sampling();
+    struct plan_params params = quick();
+    struct planned_film film;
+    double shown[2], parallax[2];
+    nine_views(&f);
+    sampling.grid = 6;
+    sampling.extent = 1;
+    sample(&film, &f, move_alone(MOVE_ESTABLISHING_DOLLY), &sampling);
+    for (int limited = 0; limited < 2; limited++) {
+        params.min_shown = limited ? 0.9 : 0;
+        plan(&film, &f, &params);
+        assert_true(film.notes.ends.valid && film.notes.chosen.chosen >= 0);
+        shown[limited] = least_shown(&film, &f);
+        parallax[limited] = film.notes.ends.parallax;
+        camera_path_release(&film.path);
+    }
+    release(&film);
+    layer_scene_release(&f.scene);
+    if (!(shown[0] < 0.85 && shown[1] >= 0.9 && parallax[0] > parallax[1]))
+        fail_msg("shown %g %g, parallax %g %g", shown[0], shown[1], parallax[0], parallax[1]);
 }
 
 static void any_thread_count_gives_the_same_path(void **state)
@@ -750,7 +795,7 @@ static double best_of_all_pairs(const struct planned_film *film, const struct wa
     for (int a = 0; a < cells; a++)
         for (int b = 0; b < cells; b++) {
             if (!v->region[0].cells[a].valid || !v->region[1].cells[b].valid) continue;
-            struct move_ends e = {.at = {ends_candidate(v, 0, a), ends_candidate(v, 1, b)}};
+            struct move_ends e = {.at = {ends_candidate(v, 0, a, SIDE_OWN), ends_candidate(v, 1, b, SIDE_OWN)}};
             struct err err = ERR_INIT;
             if (angle_of(v, e.at) > params->max_angle) continue;
             if (parallax_of(f, v, e.at, params->parallax_side) <= best) continue;
@@ -890,6 +935,7 @@ int main(void)
         cmocka_unit_test(easing_slows_down_both_ends),
         cmocka_unit_test(all_pairs_agree_with_brute_force),
         cmocka_unit_test(refinement_never_loses_parallax),
+        cmocka_unit_test(both_ends_of_an_establishing_dolly_show_most_of_the_scene),
         cmocka_unit_test(any_thread_count_gives_the_same_path),
         cmocka_unit_test(the_aperture_opens_with_the_subject_in_focus),
         cmocka_unit_test(focus_is_pulled_from_the_first_to_the_second_subject),
