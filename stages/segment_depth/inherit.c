@@ -22,8 +22,9 @@
  *
  * The minimum is found level by level [Hochbaum 2001]: the segments above a level and those below it are separated by a
  * minimum cut, independently of other levels. Levels are `jump` steps apart, and FINE times as near forwards: most of a
- * room lies within one jump of the far end. Only areas that touch the picture's border on their side of the level are
- * cut: inside the picture thin objects are often unsure, and neighbours see them.
+ * room lies within one jump of the far end. Areas that touch the picture's border on their side of the level are cut.
+ * Inside the picture thin objects are often unsure, and neighbours see them: there areas only move back, in the last
+ * round, and only if they then match the other views hardly worse, as a patch of a blank wall does.
  *
  * What differs from the source: d only says which surface an area continues: one between the last level that cuts the
  * area off and the next. The area takes over planes P that are harmonic on the segment graph,
@@ -53,6 +54,7 @@
 #define ITERATIONS   200
 #define SHELL_MARGIN 0.9  /* of the shell's inverse depth, above which nothing is clearly beyond it */
 #define MAX_HOLE     0.15 /* part of the picture that may come forward at once */
+#define HARDLY_WORSE 0.2  /* cost of a match, by which an area inside the picture may match worse behind */
 #define FINE         4    /* levels of areas that move forwards, in one of those that move back */
 #define COPLANAR     2    /* steps by which planes of one surface may differ */
 #define CAPACITY     1e6  /* of weight 1 */
@@ -60,10 +62,11 @@
 struct caution {
     double held;           /* mean confidence */
     double keep, far_bias; /* as above */
+    bool inside;           /* areas inside the picture are cut, too */
 };
 /* If another round follows: few depths are confirmed yet. In the last one, a bias of 0.02 sends unsure foreground
  * behind its surroundings. */
-static const struct caution early = {0.1, 3, 0}, last = {0.3, 1.0, 0.005};
+static const struct caution early = {0.1, 3, 0, false}, last = {0.3, 1.0, 0.005, true};
 
 struct inherit {
     const struct plane_problem *p;
@@ -252,7 +255,8 @@ static enum status cut_level(struct inherit *x, int number, struct err *err)
     for (int i = 0; !err->status && i < x->s->count; i++) {
         if (x->listed[i] || !may_move(x, i)) continue;
         const int count = gather(x, i, joins_unsure);
-        if (touches_picture_border(x, count)) cut_area(x, count, number, err);
+        const bool inside = x->caution.inside && !x->forwards;
+        if (inside || touches_picture_border(x, count)) cut_area(x, count, number, err);
     }
     return err->status;
 }
@@ -326,16 +330,17 @@ static double mismatch(const struct inherit *x, int i, struct plane plane)
     return match_evidence(x->p->m, i, plane, occluded, &cost) ? (double)cost : (double)MATCH_CHANCE;
 }
 
-/* Whether the area of the members may come forward: it is too small for the background, and the pictures do not speak
- * against what it takes over. */
-static bool may_come_forward(const struct inherit *x, int count)
+/* Whether the area of the members may take over its planes, as above. */
+static bool may_take_over(const struct inherit *x, int count)
 {
     double rise = 0, pixels = 0;
+    if (!x->forwards && touches_picture_border(x, count)) return true;
     for (int k = 0; k < count; k++) {
         const int i = x->members[k];
         rise += x->s->segments[i].pixels * (mismatch(x, i, x->taken[i]) - mismatch(x, i, x->planes[i]));
         pixels += x->s->segments[i].pixels;
     }
+    if (!x->forwards) return rise <= HARDLY_WORSE * pixels;
     return rise <= 0 && pixels <= MAX_HOLE * x->s->width * x->s->height;
 }
 
@@ -351,7 +356,7 @@ static bool take_over(struct inherit *x, bool *inherited)
     for (int i = 0; i < x->s->count; i++) {
         if (x->listed[i] || !x->moves[i]) continue;
         const int count = gather(x, i, joins_moving);
-        if (x->forwards && !may_come_forward(x, count)) continue;
+        if (!may_take_over(x, count)) continue;
         for (int k = 0; k < count; k++) {
             const int j = x->members[k];
             x->planes[j] = x->taken[j];

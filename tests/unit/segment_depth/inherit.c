@@ -286,14 +286,41 @@ static void a_blank_surface_stays_on_the_plane_of_its_matched_part(void **state)
     bench_release();
 }
 
-/* Inside the picture; matched; with a matched rim; and the unmatched end of a matched object. */
-static void other_areas_keep_their_depth(void **state)
+/* Inside the picture the last round moves an area back that matches the other views there. */
+static void an_island_goes_back_to_the_wall_that_matches(void **state)
 {
     (void)state;
     start();
+    const int island = put_in_front(50, 30, 90, 70, 0);
+    inherit();
+    assert_true(island > 15);
+    for (int i = 0; i < b.segments.count; i++) {
+        const struct segment *g = &b.segments.segments[i];
+        assert_int_equal(inherited[i], before[i].c > 0.4);
+        assert_near(plane_at(planes[i], g->cx, g->cy) / bench_truth(g->cx, g->cy), 1, 0.01);
+    }
+    bench_release();
+
+    cautious = true;
+    start();
     put_in_front(50, 30, 90, 70, 0);
     must_stay();
+    cautious = false;
+}
 
+/* A thin or plain object of which no segment is sure, though the views show it. */
+static void an_island_that_views_confirm_stays(void **state)
+{
+    (void)state;
+    start_with_card(50, 30, 90, 70);
+    assert_true(put_in_front(50, 30, 90, 70, 0) > 15);
+    must_stay();
+}
+
+/* Matched; with a matched rim; and the unmatched end of a matched object. */
+static void other_areas_keep_their_depth(void **state)
+{
+    (void)state;
     start();
     put_in_front(0, 30, 40, 70, 0.5);
     must_stay();
@@ -348,6 +375,8 @@ int main(void)
         cmocka_unit_test(a_block_is_cut_off_from_the_foreground_that_it_touches),
         cmocka_unit_test(a_ramp_does_not_hold_a_block),
         cmocka_unit_test(a_blank_surface_stays_on_the_plane_of_its_matched_part),
+        cmocka_unit_test(an_island_goes_back_to_the_wall_that_matches),
+        cmocka_unit_test(an_island_that_views_confirm_stays),
         cmocka_unit_test(other_areas_keep_their_depth),
         cmocka_unit_test(only_the_last_round_cuts_foreground_of_the_same_colour),
         cmocka_unit_test(a_block_that_fills_the_picture_keeps_its_depth),
