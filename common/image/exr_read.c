@@ -17,6 +17,8 @@
 #include "common/image/exr_zip.h"
 #include "common/math/lanes.h"
 
+#define DEFLATE_RATIO 1032 /* bytes that a packed byte can stand for, at most [RFC 1951] */
+
 struct exr_reader {
     struct exr_image *im;
     exr_context_t ctxt;
@@ -125,6 +127,14 @@ static exr_result_t chunk_info(const struct exr_reader *r, size_t chunk, exr_chu
     return exr_read_scanline_chunk_info(r->ctxt, 0, r->window.min.y + down * r->chunk_height, info);
 }
 
+/* Whether a chunk claims to unpack to more than Deflate can hold in its bytes: no buffers of gigabytes for a few bytes of
+ * a damaged file. */
+static bool unpacks_to_too_much(const exr_chunk_info_t *info)
+{
+    return (info->compression == EXR_COMPRESSION_ZIP || info->compression == EXR_COMPRESSION_ZIPS) &&
+           info->unpacked_size / DEFLATE_RATIO > info->packed_size;
+}
+
 static void decode_chunks(void *ctx, size_t begin, size_t end, int thread)
 {
     struct exr_reader *r = ctx;
@@ -135,6 +145,7 @@ static void decode_chunks(void *ctx, size_t begin, size_t end, int thread)
                                  (int)(i / (size_t)r->chunks_across) * r->chunk_height};
         exr_chunk_info_t info;
         exr_result_t rv = chunk_info(r, i, &info);
+        if (!rv && unpacks_to_too_much(&info)) rv = EXR_ERR_CORRUPT_CHUNK;
         if (!rv && pipe->context) {
             rv = exr_decoding_update(r->ctxt, 0, &info, pipe);
         } else if (!rv) {
@@ -297,6 +308,10 @@ static enum status read_file(struct exr_image *im, const char *path, struct file
     if (!err->status) read_header(&r, path, err);
     /* this loads the table of chunks: the file is large enough for it before memory is allocated */
     if (!err->status && (rv = chunk_info(&r, 0, &info))) exr_library_error(err, ST_DATA, "read", path, rv);
+    if (!err->status && unpacks_to_too_much(&info))
+        err_set(err, ST_DATA,
+                "cannot read %s: chunk 1 of %zu is too short for its pixels; it is damaged: make it again.", path,
+                r.chunks);
     if (!err->status && !choose_channels(&r, path, names, name_count, err)) read_attributes(&r, err);
     if (!err->status && im->count > 0) { /* without channels only the header is read */
         r.pipes = calloc((size_t)threads, sizeof *r.pipes);
