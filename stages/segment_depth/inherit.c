@@ -374,7 +374,7 @@ static void stay_in_room(struct inherit *x, bool *inherited)
     for (int i = 0; i < x->s->count; i++) {
         const struct segment *g = &x->s->segments[i];
         const struct plane *shell = problem_expects(x->p, i);
-        if (!shell || always_held(x, i)) continue;
+        if (!shell || !problem_allows(x->p, g, *shell) || always_held(x, i)) continue;
         if (!inherited[i] && confidence_around(x, i) >= x->caution.held) continue;
         if (!(at_centre(x, i) < SHELL_MARGIN * plane_at(*shell, g->cx, g->cy))) continue;
         x->planes[i] = *shell;

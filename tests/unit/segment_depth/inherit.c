@@ -174,6 +174,40 @@ static void nothing_unseen_lies_below_the_floor(void **state)
     bench_release();
 }
 
+/* A segment is expected where its middle lies. A plane that is behind the camera for another part of it is not taken. */
+static void a_floor_is_not_taken_above_the_horizon(void **state)
+{
+    (void)state;
+    static struct scene_planes scene;
+    static int expected[MAX_SEGMENTS];
+    struct plane_prior prior = {.count = 1, .expected = expected};
+    int below = 0;
+    start();
+    b.problem.min_inverse_z = 0.02;
+    for (int i = 0; i < b.segments.count; i++) {
+        const struct segment *g = &b.segments.segments[i];
+        expected[i] = -1;
+        if (below || g->x0 || g->y0 || !(g->cy - g->y0 > 1)) continue; /* the corner of the picture */
+        const double slope = 1 / (g->cy - g->y0); /* 0.25 at the centre, less than 0 at the first row */
+        scene = (struct scene_planes){.count = 1, .known = 1};
+        scene_planes_set(&scene, 0, (struct plane){0, slope, 0.25 - slope * g->cy});
+        expected[i] = 0;
+        planes[i] = (struct plane){0, 0, 0.03};
+        confidence[i] = 0;
+        below++;
+    }
+    assert_int_equal(below, 1);
+    b.problem.scene = &scene;
+    b.problem.prior = &prior;
+    inherit();
+    for (int i = 0; i < b.segments.count; i++) {
+        const struct segment *g = &b.segments.segments[i];
+        for (int corner = 0; corner < 4; corner++)
+            assert_true(plane_at(planes[i], corner % 2 ? g->x1 : g->x0, corner / 2 ? g->y1 : g->y0) > 0);
+    }
+    bench_release();
+}
+
 /* On a dominant plane of the scene a block that nothing matches stays: it is the near end of a ceiling. */
 static void a_block_on_a_plane_of_the_scene_stays(void **state)
 {
@@ -370,6 +404,7 @@ int main(void)
         cmocka_unit_test(a_hole_at_any_side_takes_over_the_wall),
         cmocka_unit_test(a_hole_that_is_seen_stays),
         cmocka_unit_test(nothing_unseen_lies_below_the_floor),
+        cmocka_unit_test(a_floor_is_not_taken_above_the_horizon),
         cmocka_unit_test(a_block_on_a_plane_of_the_scene_stays),
         cmocka_unit_test(a_block_beside_foreground_takes_over_the_wall),
         cmocka_unit_test(a_block_is_cut_off_from_the_foreground_that_it_touches),
