@@ -17,8 +17,8 @@
  * start; further ones begin some cells away, since neighbours end on the same summit. If there is none, or none near
  * the best pair's parallax, another start is the thesis's pair, drawn in towards the origin until its path is valid.
  *
- * Continuous refinement, not in the thesis, then moves the ends of each start off the grid (ends_climb.c), and the
- * start that ends with the most parallax wins. */
+ * Continuous refinement, not in the thesis, then moves the ends of each start off the grid (ends_climb.c). All starts
+ * climb a few rounds, the best of them to the end, and the one that ends with the most parallax wins. */
 #include "stages/plan_path/ends.h"
 
 #include <stdlib.h>
@@ -34,9 +34,11 @@
 #define LIFTS        4    /* lifts of a pair that are tried, in equal steps */
 #define SURE_CELLS   0.5  /* weight of the valid cells about a point that may be valid */
 #define MAX_PAIRS    96   /* pairs whose path is tested */
-#define MIN_START    0.5  /* parallax of a further start before it is refined, relative to the first */
+#define MIN_START    0.3  /* parallax of a further start before it is refined, relative to the first */
 #define APART        3    /* cells between an end of a start and that of another one */
-#define PAIR_STARTS  3
+#define PAIR_STARTS  8
+#define FIRST_ROUNDS 4 /* of the climb of every start */
+#define FINALISTS    3 /* starts that climb on */
 
 enum { DRAWN_IN = -1 };
 
@@ -73,6 +75,7 @@ struct start {
     struct move_ends ends;
     int rank; /* of its pair by parallax, or DRAWN_IN */
     struct end_pair pair;
+    struct ascent ascent;
 };
 
 struct start_list {
@@ -319,7 +322,7 @@ static enum status try_pair(struct ends_search *s, struct start_list *l, const s
 {
     struct start *start = &l->start[l->count];
     bool valid = false;
-    *start = (struct start){{.at = {at[0], at[1]}}, rank, *p};
+    *start = (struct start){.ends = {.at = {at[0], at[1]}}, .rank = rank, .pair = *p};
     if (ends_test_path(&valid, s, at, err) || !valid || ends_angle(&s->v->shot, at) > s->params->max_angle)
         return err->status;
     if (!ends_measure_parallax(s, &start->ends, err)) l->count++;
@@ -387,12 +390,31 @@ enum status ends_measure(struct move_ends *e, const struct layer_scene *scene, c
     return err->status;
 }
 
-/* Improves a start, measures all of its path, and takes it if it is better than the best so far. */
+/* Lets every start climb a few rounds, and sorts them by what they reached. */
+static enum status begin_ascents(struct ends_search *s, struct start_list *l, struct err *err)
+{
+    for (int i = 0; i < l->count; i++) {
+        struct ascent *a = &l->start[i].ascent;
+        if (ascent_begin(a, s, &l->start[i].ends, err) || ascent_climb(a, s, FIRST_ROUNDS, err)) return err->status;
+    }
+    for (int i = 1; i < l->count; i++) {
+        const struct start start = l->start[i];
+        const double parallax = start.ascent.up[start.ascent.height].parallax;
+        int k = i;
+        for (; k > 0 && l->start[k - 1].ascent.up[l->start[k - 1].ascent.height].parallax < parallax; k--)
+            l->start[k] = l->start[k - 1];
+        l->start[k] = start;
+    }
+    return ST_OK;
+}
+
+/* Lets a start climb on, measures all of its path, and takes it if it is better than the best so far. */
 static enum status take_start(struct ends_search *s, struct move_ends *best, struct start *start, bool refined,
                               struct err *err)
 {
     bool moved = false;
-    if (refined) ends_improve(s, &start->ends, &moved, err);
+    if (refined && !ascent_climb(&start->ascent, s, CLIMB_ROUNDS, err))
+        ascent_take_top(&start->ends, &moved, &start->ascent, s, err);
     if (!err->status && !moved) ends_measure_path(s, &start->ends, err);
     if (err->status || !is_better(&start->ends, best)) return err->status;
     *best = start->ends;
@@ -410,10 +432,14 @@ enum status ends_choose(struct move_ends *best, struct ends_notes *notes, const 
     *notes = (struct ends_notes){.chosen = -1};
     *best = (struct move_ends){.parallax = -1}; /* any start is better */
     if (!ends_search_init(&s, scene, v, params, notes, err)) find_starts(&s, &l, refined, err);
-    for (int i = 0; !err->status && i < l.count; i++) {
+    if (!err->status && refined) begin_ascents(&s, &l, err);
+    bool drawn_in = false;
+    for (int i = 0; !err->status && i < l.count && (i < FINALISTS || !best->valid); i++) {
+        drawn_in = drawn_in || l.start[i].rank == DRAWN_IN;
         take_start(&s, best, &l.start[i], refined, err);
-        const bool last = i + 1 == l.count && l.start[i].rank != DRAWN_IN;
-        if (!err->status && last && !best->valid) add_drawn_in(&s, &l, err);
+        if (err->status || best->valid || drawn_in || i + 1 < l.count || add_drawn_in(&s, &l, err) || i + 1 == l.count)
+            continue;
+        if (refined) ascent_begin(&l.start[i + 1].ascent, &s, &l.start[i + 1].ends, err);
     }
     ends_search_release(&s);
     return err->status;

@@ -9,17 +9,10 @@
 #include "stages/plan_path/refine_ends.h"
 
 #define BACK_STEPS      3   /* attempts between the refined ends and those on the grid */
-#define CLIMB_ROUNDS    32  /* at most; most climbs end before */
 #define PATHS_PER_ROUND 4   /* steps whose path is tested in a round */
 #define FIRST_STEP      0.5 /* of the climb, in units of the grid's spacing */
 #define MIN_STEP        0.1
 #define Z_SPACING       8 /* spacing in z, in steps of the region's z */
-
-/* Ends of ever more parallax, from those on the grid upwards. All have passed the coarse test of their path alone. */
-struct ascent {
-    struct move_ends up[CLIMB_ROUNDS + 2];
-    int height;
-};
 
 /* Adds the refined ends, or a point between them and the grid's ends that is valid and has more parallax. */
 static enum status refine(struct ascent *a, struct ends_search *s, struct err *err)
@@ -88,16 +81,22 @@ static int max_parallax(const struct move_ends step[STEPS])
     return best;
 }
 
+enum status ascent_begin(struct ascent *a, struct ends_search *s, const struct move_ends *from, struct err *err)
+{
+    *a = (struct ascent){.up = {*from}, .length = FIRST_STEP};
+    return refine(a, s, err);
+}
+
 /* Takes the best step whose path is valid while it gives more parallax; halves the steps when none does. This covers
  * what the surrogate leaves out: what hides what after the step, and the true borders of the regions. */
-static enum status climb(struct ascent *a, struct ends_search *s, struct err *err)
+enum status ascent_climb(struct ascent *a, struct ends_search *s, int rounds, struct err *err)
 {
-    double length = FIRST_STEP;
-    for (int round = 0; round < CLIMB_ROUNDS && length >= MIN_STEP; round++) {
+    const int end = rounds < CLIMB_ROUNDS - a->rounds ? a->rounds + rounds : CLIMB_ROUNDS;
+    for (; a->rounds < end && a->length >= MIN_STEP; a->rounds++) {
         const struct move_ends *from = &a->up[a->height];
         struct move_ends step[STEPS];
         bool moved = false;
-        list_steps(step, s->v, from, length);
+        list_steps(step, s->v, from, a->length);
         if (score_steps(step, s, from, err)) return err->status;
         for (int n = 0; !moved && n < PATHS_PER_ROUND; n++) {
             const int best = max_parallax(step);
@@ -106,22 +105,20 @@ static enum status climb(struct ascent *a, struct ends_search *s, struct err *er
             if (moved) a->up[++a->height] = step[best];
             step[best].parallax = 0;
         }
-        if (!moved) length *= 0.5;
+        if (!moved) a->length *= 0.5;
     }
     return ST_OK;
 }
 
-enum status ends_improve(struct ends_search *s, struct move_ends *best, bool *moved, struct err *err)
+enum status ascent_take_top(struct move_ends *best, bool *moved, const struct ascent *a, struct ends_search *s,
+                            struct err *err)
 {
-    struct ascent a = {.up = {*best}};
     *moved = false;
-    if (!refine(&a, s, err)) climb(&a, s, err);
-    for (; !err->status && a.height > 0; a.height--) {
-        struct move_ends *e = &a.up[a.height];
-        if (ends_measure_path(s, e, err) || !e->valid) continue;
-        *best = *e;
+    for (int i = a->height; !err->status && !*moved && i > 0; i--) {
+        struct move_ends e = a->up[i];
+        if (ends_measure_path(s, &e, err) || !e.valid) continue;
+        *best = e;
         *moved = true;
-        break;
     }
     return err->status;
 }

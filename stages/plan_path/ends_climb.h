@@ -4,8 +4,24 @@
 
 #include "stages/plan_path/ends_search.h"
 
-/* Replaces *best, whose parallax is measured, by ends of more parallax whose whole path is valid and measured, if it
- * finds any; *moved says whether it did. */
-enum status ends_improve(struct ends_search *s, struct move_ends *best, bool *moved, struct err *err);
+enum { CLIMB_ROUNDS = 32 }; /* at most; most climbs end before */
+
+/* Ends of ever more parallax, from those of a start upwards. All have passed the coarse test of their path alone. */
+struct ascent {
+    struct move_ends up[CLIMB_ROUNDS + 2];
+    int height, rounds;
+    double length; /* of the next steps, in units of the grid's spacing */
+};
+
+/* Begins at ends whose parallax is measured, with the smooth surrogate's. */
+enum status ascent_begin(struct ascent *a, struct ends_search *s, const struct move_ends *from, struct err *err);
+
+/* Climbs for some more rounds. */
+enum status ascent_climb(struct ascent *a, struct ends_search *s, int rounds, struct err *err);
+
+/* Replaces *best by the highest ends, above those of the start, whose whole path is valid, and measures them; *moved
+ * says whether there are any. */
+enum status ascent_take_top(struct move_ends *best, bool *moved, const struct ascent *a, struct ends_search *s,
+                            struct err *err);
 
 #endif
