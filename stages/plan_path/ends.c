@@ -303,7 +303,7 @@ static int cells_apart(const struct validity_region *r, int a, int b)
     return x > y ? x : y;
 }
 
-/* Whether a pair begins on another side than each start, or some cells away from it, whichever of its ends comes first. */
+/* Whether a pair is on the other side than each start, or begins some cells away from it, whichever end comes first. */
 static bool is_apart(const struct start_list *l, const struct validity *v, const struct end_pair *p)
 {
     const struct validity_region *r = &v->region[0];
