@@ -17,7 +17,7 @@
 #include "common/image/exr_zip.h"
 #include "common/math/lanes.h"
 
-#define DEFLATE_RATIO 1032 /* bytes that a packed byte can stand for, at most [RFC 1951] */
+#define DEFLATE_RATIO 1032 /* bytes that one packed byte can stand for, at most (zlib's technical details) */
 
 struct exr_reader {
     struct exr_image *im;
@@ -127,8 +127,8 @@ static exr_result_t chunk_info(const struct exr_reader *r, size_t chunk, exr_chu
     return exr_read_scanline_chunk_info(r->ctxt, 0, r->window.min.y + down * r->chunk_height, info);
 }
 
-/* Whether a chunk claims to unpack to more than Deflate can hold in its bytes: no buffers of gigabytes for a few bytes of
- * a damaged file. */
+/* Whether a chunk claims to unpack to more than Deflate can hold in its bytes. A damaged file of a few bytes must not
+ * reserve gigabytes. */
 static bool unpacks_to_too_much(const exr_chunk_info_t *info)
 {
     return (info->compression == EXR_COMPRESSION_ZIP || info->compression == EXR_COMPRESSION_ZIPS) &&

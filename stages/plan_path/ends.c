@@ -108,8 +108,8 @@ static bool *cells_that_show(const struct ends_search *s, int end, enum side sid
     return shows;
 }
 
-/* Appends the allowed pairs of one side to a list of *count that has room for all. narrowest: of all valid pairs that of
- * the smallest angle, in degrees. */
+/* Appends the allowed pairs of one side to a list of *count, which has room for all. narrowest: of all valid pairs the
+ * one of the smallest angle, in degrees. */
 static enum status add_pairs(struct end_pair *pairs, size_t *count, struct end_pair *narrowest, double *min_angle,
                              const struct ends_search *s, enum side side, struct err *err)
 {
@@ -191,8 +191,8 @@ static void score_some(void *ctx, size_t begin, size_t end, int thread)
     }
 }
 
-/* Measures the parallax of pairs of one side. Each cell is rendered once, or once for both ends if their cameras are the
- * same. */
+/* Measures the parallax of pairs of one side. Each cell is rendered once, or once for both ends if they have the same
+ * cameras. */
 static enum status score_pairs(struct ends_search *s, struct end_pair *pairs, size_t count, struct err *err)
 {
     const struct validity *v = s->v;

@@ -54,7 +54,7 @@ enum status ends_test_path(bool *valid, struct ends_search *s, const struct vec3
 /* Angle between the ends at the scene's centroid, degrees. */
 double ends_angle(const struct shot_setup *shot, const struct vec3 at[2]);
 
-/* Whether an end of the move shows as much of the scene as it should: any end but those of an establishing dolly does. */
+/* Whether an end of the move shows as much of the scene as it should. Only an establishing dolly has such a limit. */
 bool ends_show_enough(const struct ends_search *s, int end, struct vec3 at);
 
 /* Whether a move between these ends is no wider than max_angle and, if it is a dolly in or out, advances enough. */

@@ -174,7 +174,7 @@ static void nothing_unseen_lies_below_the_floor(void **state)
     bench_release();
 }
 
-/* A segment is expected where its middle lies. A plane that is behind the camera for another part of it is not taken. */
+/* A segment is expected where its middle lies. A plane that is behind the camera for another part is not taken. */
 static void a_floor_is_not_taken_above_the_horizon(void **state)
 {
     (void)state;
