@@ -395,7 +395,7 @@ static enum status begin_ascents(struct ends_search *s, struct start_list *l, st
 {
     for (int i = 0; i < l->count; i++) {
         struct ascent *a = &l->start[i].ascent;
-        if (ascent_begin(a, s, &l->start[i].ends, err) || ascent_climb(a, s, FIRST_ROUNDS, err)) return err->status;
+        if (climb_begin(a, s, &l->start[i].ends, err) || climb_on(a, s, FIRST_ROUNDS, err)) return err->status;
     }
     for (int i = 1; i < l->count; i++) {
         const struct start start = l->start[i];
@@ -413,8 +413,8 @@ static enum status take_start(struct ends_search *s, struct move_ends *best, str
                               struct err *err)
 {
     bool moved = false;
-    if (refined && !ascent_climb(&start->ascent, s, CLIMB_ROUNDS, err))
-        ascent_take_top(&start->ends, &moved, &start->ascent, s, err);
+    if (refined && !climb_on(&start->ascent, s, CLIMB_ROUNDS, err))
+        climb_take_top(&start->ends, &moved, &start->ascent, s, err);
     if (!err->status && !moved) ends_measure_path(s, &start->ends, err);
     if (err->status || !is_better(&start->ends, best)) return err->status;
     *best = start->ends;
@@ -439,7 +439,7 @@ enum status ends_choose(struct move_ends *best, struct ends_notes *notes, const 
         take_start(&s, best, &l.start[i], refined, err);
         if (err->status || best->valid || drawn_in || i + 1 < l.count || add_drawn_in(&s, &l, err) || i + 1 == l.count)
             continue;
-        if (refined) ascent_begin(&l.start[i + 1].ascent, &s, &l.start[i + 1].ends, err);
+        if (refined) climb_begin(&l.start[i + 1].ascent, &s, &l.start[i + 1].ends, err);
     }
     ends_search_release(&s);
     return err->status;

@@ -81,7 +81,7 @@ static int max_parallax(const struct move_ends step[STEPS])
     return best;
 }
 
-enum status ascent_begin(struct ascent *a, struct ends_search *s, const struct move_ends *from, struct err *err)
+enum status climb_begin(struct ascent *a, struct ends_search *s, const struct move_ends *from, struct err *err)
 {
     *a = (struct ascent){.up = {*from}, .length = FIRST_STEP};
     return refine(a, s, err);
@@ -89,7 +89,7 @@ enum status ascent_begin(struct ascent *a, struct ends_search *s, const struct m
 
 /* Takes the best step whose path is valid while it gives more parallax; halves the steps when none does. This covers
  * what the surrogate leaves out: what hides what after the step, and the true borders of the regions. */
-enum status ascent_climb(struct ascent *a, struct ends_search *s, int rounds, struct err *err)
+enum status climb_on(struct ascent *a, struct ends_search *s, int rounds, struct err *err)
 {
     const int end = rounds < CLIMB_ROUNDS - a->rounds ? a->rounds + rounds : CLIMB_ROUNDS;
     for (; a->rounds < end && a->length >= MIN_STEP; a->rounds++) {
@@ -110,8 +110,8 @@ enum status ascent_climb(struct ascent *a, struct ends_search *s, int rounds, st
     return ST_OK;
 }
 
-enum status ascent_take_top(struct move_ends *best, bool *moved, const struct ascent *a, struct ends_search *s,
-                            struct err *err)
+enum status climb_take_top(struct move_ends *best, bool *moved, const struct ascent *a, struct ends_search *s,
+                           struct err *err)
 {
     *moved = false;
     for (int i = a->height; !err->status && !*moved && i > 0; i--) {

@@ -14,14 +14,14 @@ struct ascent {
 };
 
 /* Begins at ends whose parallax is measured, with the smooth surrogate's. */
-enum status ascent_begin(struct ascent *a, struct ends_search *s, const struct move_ends *from, struct err *err);
+enum status climb_begin(struct ascent *a, struct ends_search *s, const struct move_ends *from, struct err *err);
 
 /* Climbs for some more rounds. */
-enum status ascent_climb(struct ascent *a, struct ends_search *s, int rounds, struct err *err);
+enum status climb_on(struct ascent *a, struct ends_search *s, int rounds, struct err *err);
 
 /* Replaces *best by the highest ends, above those of the start, whose whole path is valid, and measures them; *moved
  * says whether there are any. */
-enum status ascent_take_top(struct move_ends *best, bool *moved, const struct ascent *a, struct ends_search *s,
-                            struct err *err);
+enum status climb_take_top(struct move_ends *best, bool *moved, const struct ascent *a, struct ends_search *s,
+                           struct err *err);
 
 #endif
