@@ -316,15 +316,22 @@ static enum status add_stretches(struct suggestion *s, const struct plan_search 
     return err->status;
 }
 
-/* The least fraction of a wall that must have been seen: less if no camera stands behind it. */
-static double least_seen(const struct plan_search *p, const struct suggested_wall *w)
+/* How many views have their cameras behind a wall. */
+static int views_behind(const struct plan_search *p, const struct suggested_wall *w)
 {
+    int count = 0;
     for (int i = 0; i < p->sights->view_count; i++) {
         const struct vec3 c = p->sights->views[i].center;
         const double along = line_along(&w->line, c.x, c.y);
-        if (line_across(&w->line, c.x, c.y) < 0 && along > w->begin && along < w->end) return p->params->min_wall;
+        count += line_across(&w->line, c.x, c.y) < 0 && along > w->begin && along < w->end;
     }
-    return fmin(p->params->min_wall, p->params->weak_wall);
+    return count;
+}
+
+/* The least fraction of a wall that must have been seen: less if no camera stands behind it. */
+static double least_seen(const struct plan_search *p, const struct suggested_wall *w)
+{
+    return views_behind(p, w) ? p->params->min_wall : fmin(p->params->min_wall, p->params->weak_wall);
 }
 
 static enum status add_outer_walls(struct suggestion *s, struct plan_search *p, struct err *err)
@@ -342,7 +349,8 @@ static enum status add_outer_walls(struct suggestion *s, struct plan_search *p, 
         const struct suggested_wall w = wall_of_run(p, &borders[i], &borders[end - 1]);
         const bool is_short = w.end - w.begin < SHORT * p->faces->height;
         if (borders[i].line >= p->border || (w.covered < least_seen(p, &w) && !is_short)) {
-            add_doubt(s, DOUBT_BORDER, &w.line, w.begin, w.end, -1, w.covered, err);
+            if (!add_doubt(s, DOUBT_BORDER, &w.line, w.begin, w.end, -1, w.covered, err))
+                s->doubts[s->doubt_count - 1].views_beyond = views_behind(p, &w);
             continue;
         }
         for (int k = i; k < end; k++) {

@@ -43,8 +43,9 @@ enum doubt_kind { DOUBT_BORDER, DOUBT_FACE, DOUBT_STRETCH };
 struct suggested_doubt {  /* where a wall may be */
     enum doubt_kind kind; /* the border of what was seen; a face that bounds no room; a part of a wall */
     double a[2], b[2];
-    int wall;       /* of a part of a wall, else -1 */
-    double covered; /* as of a wall */
+    int wall;         /* of a part of a wall, else -1 */
+    double covered;   /* as of a wall */
+    int views_beyond; /* of the border of what was seen: views whose cameras stand behind it */
 };
 struct suggested_room {
     int first, count; /* in room_walls */

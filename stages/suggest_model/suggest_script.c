@@ -119,10 +119,13 @@ static void print_doubts(FILE *to, const struct suggestion *s)
 {
     for (int i = 0; i < s->doubt_count; i++) {
         const struct suggested_doubt *d = &s->doubts[i];
-        if (d->kind == DOUBT_BORDER)
-            fprintf(to,
-                    "# what was seen ends from %.4f %.4f to %.4f %.4f: a wall there was seen over %.0f %% of that\n",
-                    d->a[0], d->a[1], d->b[0], d->b[1], 100 * d->covered);
+        if (d->kind == DOUBT_BORDER) {
+            fprintf(to, "# what was seen ends from %.4f %.4f to %.4f %.4f: ", d->a[0], d->a[1], d->b[0], d->b[1]);
+            if (d->views_beyond)
+                fprintf(to, "no wall is there, since %d views were taken from beyond\n", d->views_beyond);
+            else
+                fprintf(to, "a wall there was seen over %.0f %% of that\n", 100 * d->covered);
+        }
         if (d->kind == DOUBT_FACE)
             fprintf(to, "# a face from %.4f %.4f to %.4f %.4f bounds no room: furniture, or a wall seen from afar\n",
                     d->a[0], d->a[1], d->b[0], d->b[1]);

@@ -204,7 +204,8 @@ static void the_script_says_what_is_missing(void **state)
 {
     (void)state;
     struct suggested_wall walls[2] = {wall_of(5, 0, 0, 0), wall_of(0, 0, 0, 4)};
-    struct suggested_doubt doubt = {DOUBT_BORDER, {0, 4}, {5, 4}, -1, 0.1};
+    struct suggested_doubt doubts[] = {{DOUBT_BORDER, {0, 4}, {5, 4}, -1, 0.1, 0},
+                                       {DOUBT_BORDER, {5, 4}, {5, 0}, -1, 0, 7}};
     int room_walls[2] = {0, 1};
     struct suggested_room room = {0, 2, false, {2.5, 2}, 20};
     struct suggested_opening opening = {0, -4, -3, 0.9, 2, true, true};
@@ -213,8 +214,8 @@ static void the_script_says_what_is_missing(void **state)
                            .wall_count = 2,
                            .openings = &opening,
                            .opening_count = 1,
-                           .doubts = &doubt,
-                           .doubt_count = 1,
+                           .doubts = doubts,
+                           .doubt_count = 2,
                            .rooms = &room,
                            .room_count = 1,
                            .room_walls = room_walls,
@@ -238,7 +239,10 @@ static void the_script_says_what_is_missing(void **state)
                                  "# window window1 on south from 3.0000 0.9000 to 4.0000 2.0000\n"));
     assert_non_null(strstr(text, "is not closed"));
     assert_non_null(strstr(text, "\n# room room1 south west ...\n"));
-    assert_non_null(strstr(text, "# what was seen ends from 0.0000 4.0000 to 5.0000 4.0000"));
+    assert_non_null(
+        strstr(text, "# what was seen ends from 0.0000 4.0000 to 5.0000 4.0000: a wall there was seen over 10 "));
+    assert_non_null(
+        strstr(text, "# what was seen ends from 5.0000 4.0000 to 5.0000 0.0000: no wall is there, since 7 views"));
     free(text);
     suggest_names_release(&names);
 }
