@@ -221,7 +221,7 @@ enum status levels_find_ceiling(struct room_frame *f, const struct world_lines *
             if (!(v.height > least && v.height < most)) continue;
             if (!array_append(&votes, (size_t)count, sizeof v, "lines above walls", err)) votes[count++] = v;
         }
-    if (!err->status) qsort(votes, (size_t)count, sizeof *votes, compare_votes);
+    if (!err->status && count) qsort(votes, (size_t)count, sizeof *votes, compare_votes);
     int *groups = calloc((size_t)f->wall_count * (size_t)w->stations + 1, sizeof *groups), best = 0;
     int *in_window = malloc(((size_t)count + 1) * sizeof *in_window);
     if (!groups || !in_window)
