@@ -24,8 +24,8 @@ enum status camera_set_read_cameras(struct camera_set *set, const char *folder, 
  * The set is unchanged on failure. */
 enum status camera_set_keep(struct camera_set *set, const bool *keep, struct err *err);
 int camera_set_find(const struct camera_set *set, const char *name); /* -1: not found */
-/* Whether at least two views show a point and what lies below it, for a twentieth of its depth: what ends there ends by
- * itself, not at the photos' lower edge. down: unit vector in the world. */
+/* Whether at least two views show a point and what lies below it, for a twentieth of its depth. If not, the points may
+ * end there only because the photos do. down: unit vector in the world. */
 bool camera_set_shows_below(const struct camera_set *set, struct vec3 point, struct vec3 down);
 void camera_set_release(struct camera_set *set);
 

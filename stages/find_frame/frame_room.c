@@ -31,7 +31,6 @@ enum status frame_room_find(struct room_frame *f, const struct world_lines *w, c
     if (!levels_floor_of_lines(f, w, headings, set, size, err)) walls_on_floor(&lines, f, w, headings, set, size, err);
     if (!err->status && !f->wall_count) {
         foot_lines_release(&lines);
-        lines = (struct foot_lines){0};
         if (!levels_floor_of_points(f, set, size, err)) walls_on_floor(&lines, f, w, headings, set, size, err);
     }
     if (!err->status && f->floor.known && !levels_find_ceiling(f, w, headings, set, size, err) && f->ceiling.known &&

@@ -330,7 +330,8 @@ static double mismatch(const struct inherit *x, int i, struct plane plane)
     return match_evidence(x->p->m, i, plane, occluded, &cost) ? (double)cost : (double)MATCH_CHANCE;
 }
 
-/* Whether the area of the members may take over its planes, as above. */
+/* Whether the area of the members may take over its planes. At the border it may always move back. Elsewhere the other
+ * views decide by how badly it then matches; and an area that comes forward must be smaller than the background. */
 static bool may_take_over(const struct inherit *x, int count)
 {
     double rise = 0, pixels = 0;

@@ -8,7 +8,7 @@
 
 struct rig {
     int *capture, *lens;           /* owned; of each image, from 0; -1: the image is not part of the rig */
-    int capture_count, lens_count; /* both are 0 if there is no rig; lens 0 is the reference lens */
+    int capture_count, lens_count; /* without a rig, both are 0; the other lenses are placed relative to lens 0 */
 };
 
 /* Finds a rig by the names of the model's images, pictures of photos that were split in this way. Images whose rotation

@@ -316,7 +316,7 @@ static enum status add_stretches(struct suggestion *s, const struct plan_search 
     return err->status;
 }
 
-/* How many views have their cameras behind a wall. */
+/* How many views were taken from behind a wall. */
 static int views_behind(const struct plan_search *p, const struct suggested_wall *w)
 {
     int count = 0;

@@ -4,7 +4,8 @@
 # depth/ and photos/. The move is the establishing dolly. BENCH_SWEEPS="ends limits": only these panels; "qualities" is
 # a third, which must be named, because it makes every scene at every quality. BENCH_THREADS (all cores).
 #
-# `ends`: move_pairs.c. The baseline is the best of all pairs of the regions' cells whose whole path is valid: every
+# `ends`: move_pairs.c. The baseline is the best of all pairs of the regions' cells whose whole path is valid, each cell
+# at the back of its range; plan_path tries the front, too, and may reach more than 100 %. Every
 # cell is rendered once in pictures of parallax_side, 192 px, and every pair is compared. `all pairs, film size` does so
 # in pictures of 1280 px; `drawn anew` renders both ends of every pair at that size for this pair alone (BENCH_FULL,
 # still-life: the scenes for which both run; the latter takes minutes). The others are the choice of [Colburn 2014] of
