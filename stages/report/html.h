@@ -20,9 +20,4 @@ void html_printf(FILE *to, const char *fmt, ...) PRINTF_LIKE(2, 3);
 /* A path as a relative address, in a quoted attribute: bytes other than letters, digits and -._~@/ become %XX. */
 void html_address(FILE *to, const char *path);
 
-/* RFC 4648, no line breaks. */
-void html_base64(FILE *to, const void *bytes, size_t size);
-/* The bytes of a file. ST_IO. */
-enum status html_base64_file(FILE *to, const char *path, struct err *err);
-
 #endif

@@ -1,6 +1,8 @@
 /* page_model.c - the axes of the room and the solid models, to be checked by eye. */
 #include "stages/report/page_parts.h"
 
+#include "common/base/base64.h"
+
 enum status page_axes(FILE *to, const struct contents *c, struct err *err)
 {
     if (!c->axes_count) return ST_OK;
@@ -28,7 +30,7 @@ static enum status put_model_picture(FILE *to, const char *file, const char *typ
     fprintf(to, "<figure><img loading=\"lazy\" alt=\"%s ", caption);
     html_text(to, name);
     fprintf(to, "\" src=\"data:image/%s;base64,", type);
-    if (html_base64_file(to, file, err)) return err->status;
+    if (base64_write_file(to, file, err)) return err->status;
     fprintf(to, "\"><figcaption><b>");
     html_text(to, name);
     fprintf(to, "</b> %s</figcaption></figure>\n", caption);

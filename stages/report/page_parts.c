@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/base/base64.h"
 #include "common/image/false_colour.h"
 
 void page_put_seconds(FILE *to, double seconds)
@@ -57,7 +58,7 @@ enum status page_put_picture(FILE *to, const struct picture *p, int quality, con
         fprintf(to, "<img width=\"%d\" height=\"%d\" alt=\"%s ", p->width, p->height, alt);
         html_text(to, name);
         fputs("\" src=\"data:image/jpeg;base64,", to);
-        html_base64(to, bytes, size);
+        base64_write(to, bytes, size);
         fputs("\">", to);
     }
     free(bytes);

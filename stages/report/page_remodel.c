@@ -13,6 +13,7 @@
 
 #include <math.h>
 
+#include "common/base/base64.h"
 #include "common/base/version.h"
 #include "common/texture/picture_made.h"
 #include "stages/report/page_parts.h"
@@ -124,7 +125,7 @@ static enum status put_plan(FILE *to, const char *file, const char *caption, str
 {
     if (!file) return ST_OK;
     fprintf(to, "<figure><img alt=\"Plan %s\" src=\"data:image/svg+xml;base64,", caption);
-    if (html_base64_file(to, file, err)) return err->status;
+    if (base64_write_file(to, file, err)) return err->status;
     fprintf(to, "\"><figcaption>Plan %s</figcaption></figure>\n", caption);
     return ST_OK;
 }

@@ -4,6 +4,8 @@
 
 #include "stages/report/page_parts.h"
 
+#include "common/base/base64.h"
+
 /* 1, 2 or 5 times a power of ten, not below x. */
 static double round_up(double x)
 {
@@ -109,12 +111,12 @@ static enum status put_video(FILE *to, const struct effect_card *e, const char *
         size_t size = 0;
         if (jpeg_encode(&jpeg, &size, poster->rgb, poster->width, poster->height, 80, err)) return err->status;
         fputs(" poster=\"data:image/jpeg;base64,", to);
-        html_base64(to, jpeg, size);
+        base64_write(to, jpeg, size);
         fputs("\"", to);
         free(jpeg);
     }
     fputs(" src=\"data:video/mp4;base64,", to);
-    if (html_base64_file(to, video, err)) return err->status;
+    if (base64_write_file(to, video, err)) return err->status;
     fputs("\">This browser cannot play the video.</video>\n<p class=\"muted\">The same video is in <code>parallax/",
           to);
     html_text(to, e->name);
@@ -149,7 +151,7 @@ static enum status put_validity(FILE *to, const struct effect_card *e, struct er
     fputs("<h3>Valid viewpoints</h3>\n<figure><img loading=\"lazy\" alt=\"Valid viewpoints of ", to);
     html_text(to, e->name);
     fputs("\" src=\"data:image/png;base64,", to);
-    if (html_base64_file(to, e->validity, err)) return err->status;
+    if (base64_write_file(to, e->validity, err)) return err->status;
     fputs("\"><figcaption>Top: the start of the move; bottom: its end. Left: how far back the camera can go; right: "
           "how far "
           "towards the scene. Dark blue: not at all; yellow: farthest; grey: not valid. White: the "

@@ -1,4 +1,4 @@
-/* html.c - text of any bytes is escaped; base64 follows RFC 4648. */
+/* html.c - text of any bytes is escaped. */
 #include "stages/report/html.h"
 
 #include "tests/unit/scratch.h"
@@ -62,61 +62,13 @@ static void bytes_of_an_address_are_encoded(void **state)
     free(text);
 }
 
-static void base64_matches_the_rfc(void **state)
-{
-    static const char *const PAIRS[][2] = {{"", ""},
-                                           {"f", "Zg=="},
-                                           {"fo", "Zm8="},
-                                           {"foo", "Zm9v"},
-                                           {"foob", "Zm9vYg=="},
-                                           {"fooba", "Zm9vYmE="},
-                                           {"foobar", "Zm9vYmFy"},
-                                           {"\xff\xfe\xfd", "//79"}};
-    (void)state;
-    for (size_t i = 0; i < sizeof PAIRS / sizeof *PAIRS; i++) {
-        char *text = NULL;
-        size_t length;
-        FILE *to = open_memstream(&text, &length);
-        html_base64(to, PAIRS[i][0], strlen(PAIRS[i][0]));
-        fclose(to);
-        assert_string_equal(text, PAIRS[i][1]);
-        free(text);
-    }
-}
-
-/* The file is longer than the reader's buffer. */
-static void a_file_is_encoded_like_its_bytes(void **state)
-{
-    enum { SIZE = 100001 };
-    unsigned char *bytes = malloc(SIZE);
-    char *whole = NULL, *streamed = NULL;
-    size_t length;
-    struct err err = ERR_INIT;
-    (void)state;
-    assert_non_null(bytes);
-    for (int i = 0; i < SIZE; i++) bytes[i] = (unsigned char)(i * 7 + i / 251);
-    const char *path = scratch_write_bytes("bytes", bytes, SIZE);
-
-    FILE *to = open_memstream(&whole, &length);
-    html_base64(to, bytes, SIZE);
-    fclose(to);
-    to = open_memstream(&streamed, &length);
-    assert_int_equal(html_base64_file(to, path, &err), ST_OK);
-    fclose(to);
-    assert_string_equal(streamed, whole);
-    remove(path);
-    assert_int_equal(html_base64_file(stdout, path, &err), ST_IO);
-    free(bytes);
-    free(whole);
-    free(streamed);
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(markup_is_escaped),         cmocka_unit_test(utf8_is_kept_and_other_bytes_are_replaced),
-        cmocka_unit_test(formatted_text_is_escaped), cmocka_unit_test(bytes_of_an_address_are_encoded),
-        cmocka_unit_test(base64_matches_the_rfc),    cmocka_unit_test(a_file_is_encoded_like_its_bytes),
+        cmocka_unit_test(markup_is_escaped),
+        cmocka_unit_test(utf8_is_kept_and_other_bytes_are_replaced),
+        cmocka_unit_test(formatted_text_is_escaped),
+        cmocka_unit_test(bytes_of_an_address_are_encoded),
     };
     return cmocka_run_group_tests_name("html", tests, scratch_make, scratch_remove);
 }

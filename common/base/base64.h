@@ -1,0 +1,14 @@
+/* base64.h - bytes as text, for pictures inside of pages and drawings: RFC 4648, no line breaks. */
+#ifndef REMODEL_BASE64_H
+#define REMODEL_BASE64_H
+
+#include <stddef.h>
+#include <stdio.h>
+
+#include "common/base/err.h"
+
+void base64_write(FILE *to, const void *bytes, size_t size);
+/* The bytes of a file. ST_IO. */
+enum status base64_write_file(FILE *to, const char *path, struct err *err);
+
+#endif
