@@ -1,0 +1,119 @@
+/* thing_list.c - the list of things and its file; see thing_list.h. */
+#include "common/model/thing_list.h"
+
+#include <inttypes.h>
+#include <limits.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/base/array.h"
+#include "common/product/product.h"
+
+static const char *const words[THING_SUPPORTS] = {"floor", "wall", "ceiling", "none"};
+
+const char *thing_support_word(enum thing_support support) { return words[support]; }
+
+int thing_list_find(const struct thing_list *list, const char *name)
+{
+    for (int i = 0; i < list->count; i++)
+        if (!strcmp(list->things[i].name, name)) return i;
+    return -1;
+}
+
+static void release(struct thing *t)
+{
+    free(t->name);
+    free(t->view);
+    *t = (struct thing){0};
+}
+
+enum status thing_list_add(struct thing_list *list, struct thing *t, struct err *err)
+{
+    if (!t->name || !t->view)
+        err_nomem(err, "a thing", sizeof *t);
+    else if (!array_append(&list->things, (size_t)list->count, sizeof *list->things, "things", err)) {
+        list->things[list->count++] = *t;
+        *t = (struct thing){0};
+    }
+    release(t);
+    return err->status;
+}
+
+void thing_list_release(struct thing_list *list)
+{
+    if (!list) return;
+    for (int i = 0; i < list->count; i++) release(&list->things[i]);
+    free(list->things);
+    *list = (struct thing_list){0};
+}
+
+enum status thing_list_write(const struct thing_list *list, const char *path, const struct provenance *prov,
+                             struct err *err)
+{
+    struct outfile f = {0};
+    char name[FILE_PATH], view[FILE_PATH];
+    product_begin(&f, PRODUCT_THINGS, path, prov, err);
+    for (int i = 0; !err->status && i < list->count; i++) {
+        const struct thing *t = &list->things[i];
+        if (!textfile_quote(t->name, name, sizeof name, err) && !textfile_quote(t->view, view, sizeof view, err))
+            fprintf(f.fp, "thing %s %s %.6g %.6g %.6g %.6g %.6g %.6g %" PRId64 " %d %s %.6g %.6g %.6g %.6g\n", name,
+                    words[t->support], t->low.x, t->low.y, t->low.z, t->high.x, t->high.y, t->high.z, t->voxels,
+                    t->views, view, t->rect[0], t->rect[1], t->rect[2], t->rect[3]);
+    }
+    if (!err->status) outfile_commit(&f, err);
+    outfile_discard(&f);
+    return err->status;
+}
+
+static enum status read_support(struct textfile *f, enum thing_support *support, struct err *err)
+{
+    char *word;
+    if (textfile_word(f, "what it stands on", &word, err)) return err->status;
+    for (int i = 0; i < THING_SUPPORTS; i++)
+        if (!strcmp(words[i], word)) {
+            *support = (enum thing_support)i;
+            return ST_OK;
+        }
+    return textfile_error(f, err, word, "floor, wall, ceiling or none");
+}
+
+static enum status read_thing(struct thing *t, struct textfile *f, struct err *err)
+{
+    double *const box[] = {&t->low.x, &t->low.y, &t->low.z, &t->high.x, &t->high.y, &t->high.z};
+    char *word;
+    int64_t views = 0;
+    if (textfile_expect(f, "thing", err) || textfile_word(f, "name", &word, err)) return err->status;
+    if (!(t->name = strdup(word))) return err_nomem(err, "a name", strlen(word));
+    if (read_support(f, &t->support, err)) return err->status;
+    for (int i = 0; i < 6; i++)
+        if (textfile_double(f, "corner of the box", box[i], err)) return err->status;
+    if (!(t->low.x < t->high.x && t->low.y < t->high.y && t->low.z < t->high.z))
+        return textfile_error(f, err, "a box without size", "a lower corner, then an upper one");
+    if (textfile_int(f, "voxels", 1, INT64_MAX, &t->voxels, err) || textfile_int(f, "views", 1, INT_MAX, &views, err) ||
+        textfile_word(f, "view", &word, err))
+        return err->status;
+    t->views = (int)views;
+    if (!(t->view = strdup(word))) return err_nomem(err, "a name", strlen(word));
+    for (int i = 0; i < 4; i++)
+        if (textfile_double(f, "edge of the rectangle", &t->rect[i], err)) return err->status;
+    return textfile_end(f, err);
+}
+
+enum status thing_list_read(struct thing_list *list, const char *path, struct provenance *prov, struct err *err)
+{
+    struct textfile f = {0};
+    *list = (struct thing_list){0};
+    product_open(&f, NULL, PRODUCT_THINGS, path, prov, err);
+    while (!err->status && textfile_next(&f)) {
+        struct thing t = {0};
+        if (!read_thing(&t, &f, err) && thing_list_find(list, t.name) >= 0)
+            textfile_error(&f, err, t.name, "another name than those above");
+        if (err->status)
+            release(&t);
+        else
+            thing_list_add(list, &t, err);
+    }
+    textfile_release(&f);
+    if (err->status) thing_list_release(list);
+    return err->status;
+}

@@ -1,0 +1,47 @@
+/* thing_list.h - the things of a scene, furniture before its walls: out/SCENE/things/things.txt.
+ *
+ *   remodel-things 1
+ *   thing NAME SUPPORT X0 Y0 Z0 X1 Y1 Z1 VOXELS VIEWS VIEW U0 V0 U1 V1
+ *
+ * One line for each; its number in the other files is that of its line, from 1. SUPPORT: floor, wall, ceiling, or none.
+ * X0 to Z1: the box around it, model frame. VOXELS: of its surfaces. VIEWS: how many show it. VIEW shows it best, in the
+ * rectangle U0 V0 U1 V1 (px). */
+#ifndef REMODEL_THING_LIST_H
+#define REMODEL_THING_LIST_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "common/base/provenance.h"
+#include "common/math/vec.h"
+
+enum thing_support { THING_ON_FLOOR, THING_ON_WALL, THING_ON_CEILING, THING_ON_NONE, THING_SUPPORTS };
+
+struct thing {
+    char *name; /* owned */
+    enum thing_support support;
+    struct vec3 low, high; /* model frame */
+    int64_t voxels;
+    int views;      /* 1 or more */
+    char *view;     /* owned */
+    double rect[4]; /* px of the view: left, top, right, bottom */
+};
+
+/* {0} is the empty state. */
+struct thing_list {
+    struct thing *things; /* owned */
+    int count;
+};
+
+const char *thing_support_word(enum thing_support support);
+int thing_list_find(const struct thing_list *list, const char *name); /* -1: not found */
+/* Takes ownership of t's texts, on failure too. */
+enum status thing_list_add(struct thing_list *list, struct thing *t, struct err *err);
+void thing_list_release(struct thing_list *list);
+enum status thing_list_write(const struct thing_list *list, const char *path, const struct provenance *prov,
+                             struct err *err);
+/* ST_DATA with file and line: a name that occurs twice, a box of no size, numbers out of range. A failure leaves the
+ * list empty. */
+enum status thing_list_read(struct thing_list *list, const char *path, struct provenance *prov, struct err *err);
+
+#endif

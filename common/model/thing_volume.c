@@ -1,0 +1,110 @@
+/* thing_volume.c - grids of voxels, and the file of which thing each belongs to; see thing_volume.h. */
+#include "common/model/thing_volume.h"
+
+#include <limits.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/image/exr.h"
+
+int64_t voxel_at(const struct voxel_grid *g, struct vec3 p)
+{
+    const double x = floor((p.x - g->origin.x) / g->voxel), y = floor((p.y - g->origin.y) / g->voxel),
+                 z = floor((p.z - g->origin.z) / g->voxel);
+    if (!(x >= 0 && y >= 0 && z >= 0 && x < g->size[0] && y < g->size[1] && z < g->size[2])) return -1;
+    return ((int64_t)z * g->size[1] + (int64_t)y) * g->size[0] + (int64_t)x;
+}
+
+struct vec3 voxel_centre(const struct voxel_grid *g, int64_t at)
+{
+    const int64_t x = at % g->size[0], y = at / g->size[0] % g->size[1], z = at / g->size[0] / g->size[1];
+    return vec3_add(g->origin, vec3_scale(vec3_make((double)x + 0.5, (double)y + 0.5, (double)z + 0.5), g->voxel));
+}
+
+enum status thing_volume_write(const struct thing_volume *v, const char *path, const struct provenance *prov,
+                               struct err *err)
+{
+    const struct voxel_grid *g = &v->grid;
+    struct exr_image im = {0};
+    struct exr_plane *id, *distance;
+    if (!exr_image_init(&im, g->size[0], g->size[1] * g->size[2], err) &&
+        !exr_add_plane(&im, "id", EXR_UINT, NULL, err) && !exr_add_plane(&im, "distance", EXR_HALF, NULL, err) &&
+        !exr_set_number(&im, "voxel", g->voxel, err) && !exr_set_number(&im, "slices", g->size[2], err) &&
+        !exr_set_number(&im, "origin_x", g->origin.x, err) && !exr_set_number(&im, "origin_y", g->origin.y, err) &&
+        !exr_set_number(&im, "origin_z", g->origin.z, err)) {
+        id = exr_find(&im, "id");
+        distance = exr_find(&im, "distance");
+        memcpy(id->u, v->id, voxel_count(g) * sizeof *v->id);
+        memcpy(distance->f, v->distance, voxel_count(g) * sizeof *v->distance);
+        exr_write(&im, path, prov, err);
+    }
+    exr_image_release(&im);
+    return err->status;
+}
+
+static enum status read_number(double *value, const struct exr_image *im, const char *name, const char *path,
+                               struct err *err)
+{
+    const char *text = exr_attribute(im, name);
+    char *end = NULL;
+    *value = text ? strtod(text, &end) : NAN;
+    if (text && end != text && !*end && isfinite(*value)) return ST_OK;
+    return err_set(err, ST_DATA, "%s: attribute %s is %s, wanted a number; run find_things again.", path, name,
+                   text ? text : "missing");
+}
+
+static enum status read_grid(struct voxel_grid *g, const struct exr_image *im, const char *path, struct err *err)
+{
+    double slices;
+    if (read_number(&g->voxel, im, "voxel", path, err) || read_number(&slices, im, "slices", path, err) ||
+        read_number(&g->origin.x, im, "origin_x", path, err) || read_number(&g->origin.y, im, "origin_y", path, err) ||
+        read_number(&g->origin.z, im, "origin_z", path, err))
+        return err->status;
+    if (!(g->voxel > 0) || !(slices >= 1 && slices <= im->height) || slices != floor(slices) ||
+        im->height % (int)slices)
+        return err_set(err, ST_DATA,
+                       "%s has %d rows for %g slices of voxels of %g; wanted as many rows in each; run find_things "
+                       "again.",
+                       path, im->height, slices, g->voxel);
+    g->size[0] = im->width;
+    g->size[1] = im->height / (int)slices;
+    g->size[2] = (int)slices;
+    return ST_OK;
+}
+
+enum status thing_volume_read(struct thing_volume *v, const char *path, uint32_t max_id, struct provenance *prov,
+                              struct err *err)
+{
+    static const char *const names[] = {"id", "distance"};
+    struct exr_image im = {0};
+    *v = (struct thing_volume){0};
+    if (exr_read_product(&im, PRODUCT_THING_VOLUME, path, names, 2, prov, err)) return err->status;
+    struct exr_plane *id = exr_find(&im, "id"), *distance = exr_find(&im, "distance");
+    if (!id->u || !distance->f)
+        err_set(err, ST_DATA, "%s: channel %s has the wrong type; run find_things again.", path, names[id->u != NULL]);
+    else if (!read_grid(&v->grid, &im, path, err)) {
+        v->id = id->u;
+        v->distance = distance->f;
+        id->u = NULL;
+        distance->f = NULL;
+    }
+    exr_image_release(&im);
+    for (size_t i = 0; !err->status && i < voxel_count(&v->grid); i++)
+        if (!(v->distance[i] >= -1 && v->distance[i] <= THING_UNSEEN))
+            err_set(err, ST_DATA, "%s: voxel %zu has distance %g, wanted -1 to %g; run find_things again.", path, i,
+                    (double)v->distance[i], (double)THING_UNSEEN);
+        else if (v->id[i] > max_id)
+            err_set(err, ST_DATA, "%s: voxel %zu is of thing %u, but there are %u; run find_things again.", path, i,
+                    v->id[i], max_id);
+    if (err->status) thing_volume_release(v);
+    return err->status;
+}
+
+void thing_volume_release(struct thing_volume *v)
+{
+    if (!v) return;
+    free(v->id);
+    free(v->distance);
+    *v = (struct thing_volume){0};
+}

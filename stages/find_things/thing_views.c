@@ -1,0 +1,84 @@
+/* thing_views.c - things in the pictures of the views; see thing_views.h. */
+#include "stages/find_things/thing_views.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/capture/view_image.h"
+#include "common/image/exr.h"
+#include "stages/find_things/fuse_views.h"
+
+#define MIN_SHARE 0.0005 /* of the picture: a view with less of a thing does not count as one that shows it */
+#define CUT       0.4    /* score of a view whose border cuts the thing */
+
+void thing_mask_find(uint32_t *mask, const struct thing_volume *volume, const struct view *camera,
+                     const struct layered_depth *depth, const struct view_ids *ids, double scale)
+{
+    for (int y = 0; y < camera->height; y++)
+        for (int x = 0; x < camera->width; x++) {
+            const size_t i = (size_t)y * (size_t)camera->width + (size_t)x;
+            mask[i] = 0;
+            if (!(ids->clutter[i] > CLUTTER_UNSURE) || !(depth->interior.z[i] > 0)) continue;
+            mask[i] =
+                thing_volume_at(volume, view_unproject(camera, x + 0.5, y + 0.5, scale * (double)depth->interior.z[i]));
+        }
+}
+
+enum status thing_mask_write(const uint32_t *mask, const struct view *view, const char *path,
+                             const struct provenance *prov, struct err *err)
+{
+    struct exr_image im = {0};
+    struct exr_plane *plane;
+    if (!exr_image_init(&im, view->width, view->height, err) && !exr_add_plane(&im, "id", EXR_UINT, &plane, err)) {
+        memcpy(plane->u, mask, (size_t)view->width * (size_t)view->height * sizeof *mask);
+        view_image_set_camera(&im, view);
+        exr_write(&im, path, prov, err);
+    }
+    exr_image_release(&im);
+    return err->status;
+}
+
+struct patch {
+    size_t pixels;
+    int low[2], high[2];
+};
+
+static double score_of(const struct patch *p, const struct view *view)
+{
+    const bool cut =
+        p->low[0] == 0 || p->low[1] == 0 || p->high[0] == view->width - 1 || p->high[1] == view->height - 1;
+    return (double)p->pixels / ((double)view->width * view->height) * (cut ? CUT : 1);
+}
+
+enum status thing_sights_add(struct thing_sight *sights, int count, const uint32_t *mask, const struct view *view,
+                             int view_index, struct err *err)
+{
+    struct patch *list = calloc((size_t)count + 1, sizeof *list);
+    if (!list) return err_nomem(err, "things of a view", (size_t)count * sizeof *list);
+    for (int y = 0; y < view->height; y++)
+        for (int x = 0; x < view->width; x++) {
+            const uint32_t id = mask[(size_t)y * (size_t)view->width + (size_t)x];
+            if (!id) continue;
+            struct patch *p = &list[id - 1];
+            const int at[2] = {x, y};
+            for (int k = 0; k < 2; k++) {
+                if (!p->pixels || at[k] < p->low[k]) p->low[k] = at[k];
+                if (!p->pixels || at[k] > p->high[k]) p->high[k] = at[k];
+            }
+            p->pixels++;
+        }
+    for (int k = 0; k < count; k++) {
+        const double score = score_of(&list[k], view);
+        struct thing_sight *s = &sights[k];
+        if ((double)list[k].pixels < MIN_SHARE * view->width * view->height && s->views) continue;
+        if (!list[k].pixels) continue;
+        s->views++;
+        if (!(score > s->score)) continue;
+        s->score = score;
+        s->best = view_index;
+        memcpy(s->low, list[k].low, sizeof s->low);
+        memcpy(s->high, list[k].high, sizeof s->high);
+    }
+    free(list);
+    return ST_OK;
+}

@@ -1,0 +1,30 @@
+/* thing_views.h - which pixels of a view show which thing, and which view shows each thing best. */
+#ifndef REMODEL_THING_VIEWS_H
+#define REMODEL_THING_VIEWS_H
+
+#include "common/capture/camera_set.h"
+#include "common/layers/layered_depth.h"
+#include "common/model/thing_list.h"
+#include "common/model/thing_volume.h"
+#include "common/texture/view_ids.h"
+
+/* Sets mask[pixel] to the id of the thing that the view shows there, 0: none. camera: model frame; scale: model units
+ * per scene unit. */
+void thing_mask_find(uint32_t *mask, const struct thing_volume *volume, const struct view *camera,
+                     const struct layered_depth *depth, const struct view_ids *ids, double scale);
+enum status thing_mask_write(const uint32_t *mask, const struct view *view, const char *path,
+                             const struct provenance *prov, struct err *err);
+
+/* What the views show of a thing. {0} is the state before the first view. */
+struct thing_sight {
+    int views;           /* that show enough of it */
+    int best;            /* index of the view that shows it best */
+    double score;        /* of that view */
+    int low[2], high[2]; /* px: its rectangle there */
+};
+
+/* Adds a view's mask to the sights, one for each of `count` things. ST_NOMEM. */
+enum status thing_sights_add(struct thing_sight *sights, int count, const uint32_t *mask, const struct view *view,
+                             int view_index, struct err *err);
+
+#endif

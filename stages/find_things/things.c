@@ -1,0 +1,357 @@
+/* things.c - from depth to things; see things.h.
+ *
+ * Overview. All views are fused into one volume (fuse_views.c). Its connected surfaces that stand before the model are
+ * the things; marks of a user name, join and split them (components.c). Each thing then grows by a margin, since depth
+ * at outlines is off, and the pixels of the views get the things that their points lie in (thing_views.c).
+ *
+ * Source: volumetric fusion [Curless 1996]; the rest is new. */
+#include "stages/find_things/things.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/base/log.h"
+#include "common/base/progress.h"
+#include "common/capture/view_image.h"
+#include "common/product/product.h"
+#include "stages/find_things/components.h"
+#include "stages/find_things/contact_sheet.h"
+#include "stages/find_things/support.h"
+#include "stages/find_things/thing_views.h"
+
+#define SUPPORT_REACH 0.04 /* of the model's height */
+#define MARK_SLACK    3    /* voxels beside a surface at which a mark still finds it */
+
+struct finder {
+    const struct things_job *job;
+    double height; /* of the model, model units */
+    struct thing_volume volume;
+    struct thing *things;       /* being described; owned */
+    struct thing_sight *sights; /* owned */
+    struct sheet_tile *tiles;   /* owned */
+    int count;
+    bool *is_pane; /* of each id of a face; owned */
+};
+
+/* ------------------------------------------------------------------------------------------------------------- grid */
+
+static enum status choose_grid(struct voxel_grid *g, struct finder *f, struct err *err)
+{
+    const struct solid_mesh *m = &f->job->model->mesh;
+    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY}, voxels = 1;
+    for (int i = 0; i < m->vertex_count; i++) {
+        const double p[3] = {m->vertices[i].p.x, m->vertices[i].p.y, m->vertices[i].p.z};
+        for (int k = 0; k < 3; k++) {
+            low[k] = fmin(low[k], p[k]);
+            high[k] = fmax(high[k], p[k]);
+        }
+    }
+    if (!(high[2] > low[2])) return err_set(err, ST_DATA, "the model has no height, so it can hold no things.");
+    f->height = high[2] - low[2];
+    g->voxel = f->job->params->voxel * f->height;
+    for (int k = 0; k < 3; k++) voxels *= ceil((high[k] - low[k]) / g->voxel);
+    const double most = 1e6 * f->job->params->max_voxels;
+    if (voxels > most) {
+        const double larger = cbrt(voxels / most);
+        log_warn("voxels are %.2f times as large as asked for, because there would be %.0f million; the most are %d "
+                 "(max_voxels).",
+                 larger, voxels / 1e6, f->job->params->max_voxels);
+        g->voxel *= larger;
+    }
+    for (int k = 0; k < 3; k++) g->size[k] = (int)ceil((high[k] - low[k]) / g->voxel);
+    g->origin = vec3_make(low[0], low[1], low[2]);
+    return ST_OK;
+}
+
+/* ------------------------------------------------------------------------------------------------------------ views */
+
+struct view_data {
+    struct view camera; /* model frame */
+    struct layered_depth depth;
+    struct view_ids ids;
+};
+
+static enum status view_data_read(struct view_data *d, const struct things_job *job, int i, struct err *err)
+{
+    const struct view *view = &job->in->set.views[i];
+    const struct product_key key = {.view = view->name};
+    char path[FILE_PATH];
+    *d = (struct view_data){.camera = model_from_world_view(&job->in->axes, view)};
+    if (!product_path_in(path, job->depth, PRODUCT_DEPTH, &key, err) &&
+        !layered_depth_read_interior(&d->depth, path, job->prov, err) &&
+        !product_path_in(path, job->ids, PRODUCT_IDS, &key, err))
+        view_ids_read(&d->ids, view, path, job->prov, err);
+    return err->status;
+}
+
+static void view_data_release(struct view_data *d)
+{
+    layered_depth_release(&d->depth);
+    view_ids_release(&d->ids);
+}
+
+static enum status find_panes(struct finder *f, struct err *err)
+{
+    const struct model_rays *m = f->job->model;
+    if (!(f->is_pane = calloc((size_t)m->ids + 1, sizeof *f->is_pane)))
+        return err_nomem(err, "panes of glass", (size_t)m->ids);
+    for (int k = 0; k < m->mesh.face_count; k++)
+        f->is_pane[solid_face_id(&m->mesh, k)] |= solid_face_is_pane(&m->mesh, k);
+    return ST_OK;
+}
+
+static enum status fuse_all(struct fused_volume *fused, const struct finder *f, struct err *err)
+{
+    const struct things_job *job = f->job;
+    struct progress progress;
+    progress_start(&progress, "fusing", job->in->set.view_count, "views");
+    for (int i = 0; !err->status && i < job->in->set.view_count; i++) {
+        struct view_data d;
+        if (!view_data_read(&d, job, i, err)) {
+            const struct fused_view view = {d.camera,   &d.depth,        &d.ids,
+                                            f->is_pane, job->model->ids, job->in->axes.scale};
+            fused_volume_add(fused, &view, err);
+        }
+        view_data_release(&d);
+        progress_add(&progress, 1);
+    }
+    progress_end(&progress);
+    return err->status;
+}
+
+/* ------------------------------------------------------------------------------------------------------------ marks */
+
+/* The first voxel of a surface that a mark's ray meets, or passes within MARK_SLACK voxels; -1: none. */
+static int64_t meet_surface(const struct thing_volume *grown, const struct thing_volume *surfaces,
+                            const struct things_job *job, const struct thing_mark *mark)
+{
+    const struct voxel_grid *g = &grown->grid;
+    const struct vec3 from = model_from_world_point(&job->in->axes, mark->origin),
+                      direction = model_from_world_direction(&job->in->axes, mark->direction);
+    const double step = 0.5 * g->voxel, far = g->voxel * (g->size[0] + g->size[1] + g->size[2]);
+    uint32_t met = 0;
+    int64_t nearest = -1;
+    double least = INFINITY;
+    for (double t = 0; t < far; t += step) {
+        const struct vec3 p = vec3_add(from, vec3_scale(direction, t));
+        const uint32_t id = thing_volume_at(grown, p);
+        if (met && id != met) break;
+        if (!id) continue;
+        met = id;
+        for (int dz = -MARK_SLACK; dz <= MARK_SLACK; dz++)
+            for (int dy = -MARK_SLACK; dy <= MARK_SLACK; dy++)
+                for (int dx = -MARK_SLACK; dx <= MARK_SLACK; dx++) {
+                    const int64_t at = voxel_at(g, vec3_add(p, vec3_scale(vec3_make(dx, dy, dz), g->voxel)));
+                    const double away = dx * dx + dy * dy + dz * dz;
+                    if (at < 0 || surfaces->id[at] != id || !(away < least)) continue;
+                    least = away;
+                    nearest = at;
+                }
+    }
+    return nearest;
+}
+
+/* Finds the surfaces that the marks are on, and lets these name, join and split the things. */
+static enum status apply_marks(uint32_t *named, struct finder *f, struct err *err)
+{
+    const struct thing_marks *marks = f->job->marks;
+    const size_t voxels = voxel_count(&f->volume.grid);
+    struct thing_volume grown = {f->volume.grid, malloc(voxels * sizeof *grown.id), NULL};
+    struct thing_seed *seeds = calloc((size_t)marks->mark_count + 1, sizeof *seeds);
+    if (!grown.id || !seeds) err_nomem(err, "a volume of voxels", voxels * sizeof *grown.id);
+    if (!err->status) {
+        memcpy(grown.id, f->volume.id, voxels * sizeof *grown.id);
+        components_grow(grown.id, &grown.grid, MARK_SLACK, err);
+    }
+    for (int k = 0; !err->status && k < marks->mark_count; k++) {
+        const struct thing_mark *m = &marks->marks[k];
+        seeds[k] = (struct thing_seed){m->name, meet_surface(&grown, &f->volume, f->job, m)};
+        if (seeds[k].at < 0)
+            log_warn("things.txt:%d: nothing stands before the model at %.6g %.6g of %s, so this mark of %s is left "
+                     "out; make things shows what was found.",
+                     m->line, m->u, m->v, m->view, marks->names[m->name]);
+    }
+    if (!err->status)
+        components_mark(f->volume.id, &f->count, &f->volume.grid, seeds, marks->mark_count, named, marks->name_count,
+                        err);
+    free(seeds);
+    free(grown.id);
+    return err->status;
+}
+
+/* Names the things: as users did, the others by their numbers. */
+static enum status name_things(struct finder *f, const uint32_t *named, struct err *err)
+{
+    char text[32];
+    for (int k = 0; k < f->job->marks->name_count; k++)
+        if (named[k] && !(f->things[named[k] - 1].name = strdup(f->job->marks->names[k])))
+            return err_nomem(err, "a name", sizeof text);
+    for (int k = 0, number = 0; k < f->count; k++) {
+        if (f->things[k].name) continue;
+        snprintf(text, sizeof text, "thing%d", ++number);
+        if (!(f->things[k].name = strdup(text))) return err_nomem(err, "a name", sizeof text);
+    }
+    return ST_OK;
+}
+
+/* What is around a surface, and below one that stands on the floor, belongs to the thing. */
+static enum status grow(struct finder *f, struct err *err)
+{
+    const struct voxel_grid *g = &f->volume.grid;
+    int *lowest = malloc(((size_t)f->count + 1) * sizeof *lowest);
+    if (!lowest) return err_nomem(err, "things", (size_t)f->count * sizeof *lowest);
+    for (int k = 0; k < f->count; k++) {
+        const struct thing *t = &f->things[k];
+        const struct vec3 middle = vec3_scale(vec3_add(t->low, t->high), 0.5);
+        const double below = support_below(f->job->model, vec3_make(middle.x, middle.y, t->low.z));
+        const bool stands = t->support == THING_ON_FLOOR && isfinite(below);
+        lowest[k + 1] = stands ? (int)fmax(0, floor((t->low.z - below - g->origin.z) / g->voxel)) : -1;
+    }
+    components_stand(f->volume.id, g, lowest);
+    free(lowest);
+    return components_grow(f->volume.id, g, (int)ceil(f->job->params->margin * f->height / g->voxel), err);
+}
+
+static enum status find_surfaces(struct finder *f, struct err *err)
+{
+    const struct thing_marks *marks = f->job->marks;
+    struct fused_volume fused = {0};
+    uint32_t *named = calloc((size_t)marks->name_count + 1, sizeof *named);
+    if (!named) err_nomem(err, "names", (size_t)marks->name_count * sizeof *named);
+    if (!err->status && !find_panes(f, err) && !choose_grid(&f->volume.grid, f, err) &&
+        !fused_volume_init(&fused, &f->volume.grid, err) && !fuse_all(&fused, f, err) &&
+        !(f->volume.id = malloc(voxel_count(&f->volume.grid) * sizeof *f->volume.id)))
+        err_nomem(err, "a volume of voxels", voxel_count(&f->volume.grid));
+    if (!err->status)
+        components_find(f->volume.id, &f->count, &fused, f->job->params, f->height, f->job->in->set.view_count, err);
+    for (size_t i = 0; !err->status && i < voxel_count(&f->volume.grid); i++) /* takes the place of the sum */
+        fused.sum[i] = fused.weight[i] > 0 ? fused.sum[i] / fused.weight[i] : THING_UNSEEN;
+    if (!err->status) {
+        f->volume.distance = fused.sum;
+        fused.sum = NULL;
+    }
+    fused_volume_release(&fused);
+    if (!err->status && !apply_marks(named, f, err)) {
+        const size_t n = (size_t)f->count + 1;
+        f->things = calloc(n, sizeof *f->things);
+        f->sights = calloc(n, sizeof *f->sights);
+        f->tiles = calloc(n, sizeof *f->tiles);
+        if (!f->things || !f->sights || !f->tiles) err_nomem(err, "things", n * sizeof *f->things);
+    }
+    if (!err->status && !name_things(f, named, err)) {
+        things_measure(f->things, f->count, &f->volume, f->job->model, SUPPORT_REACH * f->height);
+        grow(f, err);
+    }
+    free(named);
+    return err->status;
+}
+
+/* ------------------------------------------------------------------------------------------------------ descriptions */
+
+static uint32_t *new_mask(const struct view *view, struct err *err)
+{
+    const size_t pixels = (size_t)view->width * (size_t)view->height;
+    uint32_t *mask = malloc(pixels * sizeof *mask);
+    if (!mask) err_nomem(err, "the things of a view", pixels * sizeof *mask);
+    return mask;
+}
+
+static enum status see_view(struct finder *f, int i, struct err *err)
+{
+    const struct things_job *job = f->job;
+    const struct view *view = &job->in->set.views[i];
+    struct view_data d;
+    char path[FILE_PATH];
+    uint32_t *mask = new_mask(view, err);
+    if (err->status) return err->status;
+    if (!view_data_read(&d, job, i, err)) {
+        thing_mask_find(mask, &f->volume, &d.camera, &d.depth, &d.ids, job->in->axes.scale);
+        if (!product_path_in(path, job->out, PRODUCT_THING_MASK, &(struct product_key){.view = view->name}, err) &&
+            !thing_mask_write(mask, view, path, job->prov, err))
+            thing_sights_add(f->sights, f->count, mask, view, i, err);
+    }
+    view_data_release(&d);
+    free(mask);
+    return err->status;
+}
+
+/* Cuts the pictures of the things that view i shows best. */
+static enum status cut_tiles(struct finder *f, int i, struct err *err)
+{
+    const struct things_job *job = f->job;
+    const struct view *view = &job->in->set.views[i];
+    struct image photo = {0};
+    struct view_data d = {0};
+    uint32_t *mask = NULL;
+    for (int k = 0; !err->status && k < f->count; k++) {
+        if (!f->sights[k].views || f->sights[k].best != i) continue;
+        if (!mask && (mask = new_mask(view, err)) && !view_data_read(&d, job, i, err) &&
+            !view_image_read(&photo, job->views, view, job->prov, err))
+            thing_mask_find(mask, &f->volume, &d.camera, &d.depth, &d.ids, job->in->axes.scale);
+        if (!err->status) sheet_tile_make(&f->tiles[k], &photo, mask, (uint32_t)k + 1, f->things[k].rect, err);
+    }
+    view_data_release(&d);
+    image_release(&photo);
+    free(mask);
+    return err->status;
+}
+
+/* Gives each thing the view that shows it best. */
+static enum status describe(struct finder *f, struct err *err)
+{
+    const struct camera_set *set = &f->job->in->set;
+    for (int i = 0; !err->status && i < set->view_count; i++) see_view(f, i, err);
+    for (int k = 0; !err->status && k < f->count; k++) {
+        const struct thing_sight *s = &f->sights[k];
+        struct thing *t = &f->things[k];
+        t->views = s->views;
+        if (!(t->view = strdup(s->views ? set->views[s->best].name : ""))) err_nomem(err, "a name", 1);
+        for (int e = 0; e < 2; e++) {
+            t->rect[e] = s->low[e];
+            t->rect[e + 2] = s->high[e] + 1;
+        }
+    }
+    for (int i = 0; !err->status && i < set->view_count; i++) cut_tiles(f, i, err);
+    return err->status;
+}
+
+static enum status write_all(struct finder *f, struct err *err)
+{
+    const struct things_job *job = f->job;
+    const char *unit = job->in->axes.metric ? "m" : "";
+    struct thing_list list = {.things = f->things, .count = f->count};
+    char path[FILE_PATH];
+    if (!product_path_in(path, job->out, PRODUCT_THING_VOLUME, NULL, err) &&
+        !thing_volume_write(&f->volume, path, job->prov, err) &&
+        !product_path_in(path, job->out, PRODUCT_THING_SHEET, NULL, err) &&
+        !contact_sheet_write(&list, f->tiles, unit, path, err) &&
+        !product_path_in(path, job->out, PRODUCT_THINGS, NULL, err))
+        thing_list_write(&list, path, job->prov, err);
+    for (int k = 0; !err->status && k < f->count; k++) {
+        const struct thing *t = &f->things[k];
+        log_note("%s: %.2f x %.2f x %.2f%s%s at %.2f %.2f, support %s, in %d views, best in %s", t->name,
+                 t->high.x - t->low.x, t->high.y - t->low.y, t->high.z - t->low.z, *unit ? " " : "", unit,
+                 0.5 * (t->low.x + t->high.x), 0.5 * (t->low.y + t->high.y), thing_support_word(t->support), t->views,
+                 t->view);
+    }
+    return err->status;
+}
+
+enum status things_find(const struct things_job *job, struct err *err)
+{
+    struct finder f = {.job = job};
+    if (!find_surfaces(&f, err) && !describe(&f, err)) write_all(&f, err);
+    for (int k = 0; k < f.count; k++) {
+        if (f.tiles) sheet_tile_release(&f.tiles[k]);
+        if (f.things) free(f.things[k].name);
+        if (f.things) free(f.things[k].view);
+    }
+    free(f.things);
+    free(f.sights);
+    free(f.tiles);
+    free(f.is_pane);
+    thing_volume_release(&f.volume);
+    return err->status;
+}
