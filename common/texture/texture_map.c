@@ -46,11 +46,26 @@ void texture_map_release(struct texture_map *map)
         free(map->zones[i].corners);
     }
     for (int i = 0; i < map->lamp_count; i++) free(map->lamps[i].name);
+    for (int i = 0; i < map->thing_count; i++) {
+        free(map->things[i].name);
+        free(map->things[i].from);
+    }
+    free(map->things);
     free(map->lamps);
     free(map->faces);
     free(map->zones);
     free(map->base);
     *map = (struct texture_map){0};
+}
+
+enum status texture_map_add_thing(struct texture_map *map, const struct texture_thing *thing, struct err *err)
+{
+    if (array_append(&map->things, (size_t)map->thing_count, sizeof *map->things, "things", err)) return err->status;
+    struct texture_thing *to = &map->things[map->thing_count++];
+    *to = *thing;
+    to->name = strdup(thing->name);
+    to->from = strdup(thing->from);
+    return to->name && to->from ? ST_OK : err_nomem(err, "a thing", strlen(thing->name));
 }
 
 /* --------------------------------------------------------------------------------------------------------- look-ups */
@@ -205,6 +220,20 @@ static enum status print_zone(FILE *to, const struct texture_zone *zone, struct 
     return ST_OK;
 }
 
+static const char *const thing_words[] = {"clear", "keep", "move", "place"};
+
+static enum status print_thing(FILE *to, const struct texture_thing *thing, struct err *err)
+{
+    char name[NAME_SIZE], from[NAME_SIZE];
+    if (textfile_quote(thing->name, name, sizeof name, err) || textfile_quote(thing->from, from, sizeof from, err))
+        return err->status;
+    fprintf(to, "thing %s %s", name, thing_words[thing->kind]);
+    if (thing->kind == TEXTURE_THING_MOVE || thing->kind == TEXTURE_THING_PLACE)
+        fprintf(to, " %s %.17g %.17g %.17g %.17g", from, thing->by[0], thing->by[1], thing->by[2], thing->turn);
+    fputc('\n', to);
+    return ST_OK;
+}
+
 /* What the reader would refuse, or read as something else. */
 static enum status check_map(const struct texture_map *map, const char *path, struct err *err)
 {
@@ -245,6 +274,7 @@ enum status texture_map_write(const struct texture_map *map, const char *path, c
     for (int i = 0; !err->status && i < map->lamp_count; i++) print_lamp(file.fp, &map->lamps[i], err);
     for (int i = 0; !err->status && i < map->face_count; i++) print_face(file.fp, &map->faces[i], err);
     for (int i = 0; !err->status && i < map->zone_count; i++) print_zone(file.fp, &map->zones[i], err);
+    for (int i = 0; !err->status && i < map->thing_count; i++) print_thing(file.fp, &map->things[i], err);
     if (!err->status) outfile_commit(&file, err);
     outfile_discard(&file);
     return err->status;
@@ -416,13 +446,42 @@ static enum status read_zone(struct texture_map *map, struct textfile *t, bool k
     return err->status;
 }
 
+static enum status read_thing_line(struct texture_thing *thing, struct textfile *t, struct err *err)
+{
+    char *word;
+    int kind = 0;
+    if (copy_word(&thing->name, t, "the name of a thing", err) || textfile_word(t, "what happens to it", &word, err))
+        return err->status;
+    while (kind <= TEXTURE_THING_PLACE && strcmp(word, thing_words[kind])) kind++;
+    if (kind > TEXTURE_THING_PLACE) return textfile_error(t, err, word, "clear, keep, move or place");
+    thing->kind = (enum texture_thing_kind)kind;
+    if (kind < TEXTURE_THING_MOVE) {
+        thing->from = strdup(thing->name);
+        return thing->from ? textfile_end(t, err) : err_nomem(err, "a thing", strlen(thing->name));
+    }
+    if (copy_word(&thing->from, t, "the name of a thing", err)) return err->status;
+    for (int k = 0; k < 3; k++)
+        if (textfile_double(t, "a coordinate", &thing->by[k], err)) return err->status;
+    return textfile_double(t, "a turn", &thing->turn, err) ? err->status : textfile_end(t, err);
+}
+
+static enum status read_thing(struct texture_map *map, struct textfile *t, struct err *err)
+{
+    struct texture_thing thing = {0};
+    if (!read_thing_line(&thing, t, err)) texture_map_add_thing(map, &thing, err);
+    free(thing.name);
+    free(thing.from);
+    return err->status;
+}
+
 static enum status read_line(struct texture_map *map, struct textfile *t, struct err *err)
 {
-    static const char wanted[] = "lamp, face, gloss, place, edge, outdoors, colour, new, clear or keep";
+    static const char wanted[] = "lamp, face, gloss, place, edge, outdoors, colour, new, clear, keep or thing";
     char *word;
     if (textfile_word(t, wanted, &word, err)) return err->status;
     if (!strcmp(word, "lamp")) return read_lamp(map, t, err);
     if (!strcmp(word, "face")) return read_face(map, t, err);
+    if (!strcmp(word, "thing")) return read_thing(map, t, err);
     if (!strcmp(word, "clear") || !strcmp(word, "keep")) return read_zone(map, t, !strcmp(word, "keep"), err);
     struct texture_face *face = map->face_count && !map->zone_count ? &map->faces[map->face_count - 1] : NULL;
     const bool rule =

@@ -20,6 +20,10 @@
  *   triangle X Y Z X Y Z X Y Z                         this plane under this id, COUNT lines
  *   clear ROOM LOW HIGH COUNT X Y ...                  clutter is left out in this footprint, from LOW to HIGH
  *   keep NAME LOW HIGH COUNT X Y ...                   but not in this one
+ *   thing NAME clear | keep                            the thing of the photographs is left out, or kept in such places
+ *   thing NAME move FROM DX DY UP TURN                 the thing FROM stands elsewhere, by a shift and a turn; NAME is
+ *   thing NAME place FROM X Y FLOOR TURN               FROM, which then is no longer at its own place, or a copy; or it
+ *                                                      stands there, by the middle of its footprint (thing_moves.h)
  *
  * Points are of the edited model's frame, which is the unedited one's. M is twelve numbers, a 3 x 4 matrix by rows,
  * that takes a point of the edited model to one of the unedited model: the identity for texture that stays in place
@@ -75,6 +79,16 @@ struct texture_zone {
     int corner_count;
 };
 
+enum texture_thing_kind { TEXTURE_THING_CLEAR, TEXTURE_THING_KEEP, TEXTURE_THING_MOVE, TEXTURE_THING_PLACE };
+
+/* What an edit does with a thing, or a copy of one. */
+struct texture_thing {
+    enum texture_thing_kind kind;
+    char *name, *from; /* the same but for copies; owned */
+    double by[3];      /* MOVE: the shift; PLACE: the middle of the footprint, and the floor's height */
+    double turn;       /* degrees, counter-clockwise from above, about the middle of its footprint */
+};
+
 /* {0} is the empty state. */
 struct texture_map {
     char *base;                 /* NULL: none; owned */
@@ -84,9 +98,13 @@ struct texture_map {
     int face_count;
     struct texture_zone *zones; /* owned */
     int zone_count;
+    struct texture_thing *things; /* owned */
+    int thing_count;
 };
 
 void texture_map_release(struct texture_map *map);
+/* Copies the names. */
+enum status texture_map_add_thing(struct texture_map *map, const struct texture_thing *thing, struct err *err);
 /* The face of an id whose plane holds p best; NULL: there is none of that id. */
 const struct texture_face *texture_map_find(const struct texture_map *map, int id, struct vec3 p);
 /* Whether the limits of a rule hold p, a point of the rule's face. */

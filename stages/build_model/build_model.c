@@ -7,6 +7,7 @@
  *         POINTS                                        with --points: for walls given by rectangles
  *         BASE                                          with --edit: the unedited model, whose face ids are kept
  *         SCENE/objects.txt, meshes                     with --edit: synthetic objects
+ *         THINGS                                        the names of things
  * writes  OUT/plan.svg, view.png, plan.txt, merged.txt, then model.txt; with --base before them texture.txt and
  *         objects.txt
  * With --overlay PHOTO instead:
@@ -31,12 +32,13 @@
 #include "stages/build_model/picture/plan_picture.h"
 #include "stages/build_model/picture/view_picture.h"
 #include "stages/build_model/plan/edit_chain.h"
+#include "stages/build_model/plan/plan_things.h"
 #include "stages/build_model/plan_file.h"
 #include "stages/build_model/solid/unite.h"
 #include "stages/build_model/texture/texture_rules.h"
 
 struct job {
-    const char *script, *edit, *scene, *axes, *views, *held, *points, *base, *out;
+    const char *script, *edit, *things, *scene, *axes, *views, *held, *points, *base, *out;
     const char *overlay, *model, *photos, *records, *same;
     char subject[256]; /* the edit's name, or "model" */
     struct model_params params;
@@ -154,6 +156,7 @@ static enum status build(struct job *j, struct err *err)
         plan_begin(&plan, &j->in.axes);
         edit_chain_apply_model(&plan, j->script, placer, &j->prov, err);
     }
+    if (!err->status && j->things) plan_things_add(&plan, j->things, &j->prov, err);
     if (!err->status && j->edit) apply_edit(j, &plan, err);
     if (!err->status && !layout_solids(&solids, &plan, err) && !solids.count)
         err_set(err, ST_DATA, "%s: the script describes no solid; add walls, rooms or boxes.", j->script);
@@ -248,6 +251,8 @@ int main(int argc, char **argv)
         CLI_ABOUT("Builds the solid model that a script describes, or draws a model's edges on a photograph."),
         CLI_STR("script", &j.script, CLI_OPTIONAL, "model script: walls, rooms, openings (docs/model-script.md)"),
         CLI_STR("edit", &j.edit, CLI_OPTIONAL, "script of changes to the model"),
+        CLI_STR("things", &j.things, CLI_OPTIONAL,
+                "names of things, furniture that edits may clear, move and copy: scenes/NAME/things.txt"),
         CLI_STR("scene", &j.scene, CLI_OPTIONAL,
                 "with --edit: the scene's folder, with objects.txt for all edits and the meshes of objects"),
         CLI_STR("base", &j.base, CLI_OPTIONAL,

@@ -61,7 +61,10 @@ static bool needs_points(struct graph *g, const struct scene_facts *f)
 
 static void say_inputs(struct graph *g, const struct scene_facts *f, bool points)
 {
+    const char *things = graph_scene_file(g, "things.txt");
     rule_takes(g, "--script", graph_scene_file(g, "model.txt"));
+    if (things) rule_takes(g, "--things", things);
+    rule_needs(g, graph_stamp(g, "things.txt", things ? things : "none"));
     rule_takes(g, "--axes", PATH(g, AXES));
     rule_takes_cameras(g);
     rule_needs(g, PATH(g, LENSES));

@@ -9,6 +9,7 @@
  * drawn under clean texture, and the layers hold its furniture alone. */
 #include "stages/render_model/clutter.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -16,8 +17,11 @@
 #include "common/capture/view_image.h"
 #include "common/product/product.h"
 #include "stages/render_model/clutter_scene.h"
+#include "stages/render_model/thing_surface.h"
 
 #define MIB ((size_t)1 << 20)
+
+#define COVERED 0.5f /* of a pixel, that is clutter */
 
 enum { FEWEST = 2 }; /* views of a picture, however little memory is allowed */
 
@@ -175,45 +179,76 @@ static void take_given(struct clutter_choice *choice, const int *views, int coun
     }
 }
 
-/* Over the shell the clutter of the camera's own view is the photo: whatever covers at least half of a pixel hides the
- * shell there. */
-static enum status draw_own(struct model_picture *p, struct clutter_scene *s, int view, const struct view *camera,
-                            const struct texture_map *map, struct provenance *prov, struct err *err)
+/* Lays a layer over the picture. photo: what the camera's own view shows, which takes the place of the layer's colours:
+ * whatever covers at least half of a pixel hides the shell there. NULL: the camera is no view's. */
+static void lay(struct model_picture *p, float *front, const struct clutter_layer *l, const struct image *photo,
+                double scale)
 {
-    const size_t pixels = (size_t)p->width * (size_t)p->height;
-    const struct clutter_choice choice = {.view = {view}, .fade = {1}, .count = 1};
-    float *cover = malloc(pixels * sizeof *cover);
-    struct image photo = {0};
-    if (!cover) err_nomem(err, "the coverage of a picture", pixels * sizeof *cover);
-    if (!err->status && !clutter_load(s, &choice, prov, err) && !clutter_blend(p, cover, s, &choice, camera, map, err))
-        view_image_read(&photo, s->views, &s->set->views[view], prov, err);
-    for (size_t i = 0; !err->status && i < pixels; i++) {
-        const float part = cover[i] < 0.5f ? 2 * cover[i] : 1;
-        for (size_t c = 0; c < 3 && part > 0; c++)
-            p->rgb[3 * i + c] = part < 1 ? p->rgb[3 * i + c] + part * (photo.data[4 * i + c] - p->rgb[3 * i + c])
-                                         : photo.data[4 * i + c];
+    for (size_t i = 0; i < (size_t)p->width * (size_t)p->height; i++) {
+        const float *c = l->rgba + 4 * i, part = !photo ? c[3] : c[3] < 0.5f ? 2 * c[3] : 1;
+        for (size_t k = 0; k < 3 && part > 0; k++) {
+            const float own = photo ? part * photo->data[4 * i + k] : fmaxf(0, c[k]);
+            p->rgb[3 * i + k] = p->rgb[3 * i + k] * (1 - part) + own;
+        }
+        if (front && c[3] >= COVERED) front[i] = l->z[i] * (float)scale;
+        if (c[3] >= COVERED)
+            p->made[i] = MADE_CLUTTER;
+        else if (l->doubt[i] >= COVERED && p->made[i] != MADE_NOTHING)
+            p->made[i] = MADE_UNSURE;
     }
-    image_release(&photo);
-    free(cover);
-    return err->status;
 }
 
-enum status clutter_draw(struct model_picture *p, struct clutter_scene *s, const struct view *camera,
-                         const struct texture_map *map, const int *views, int count, struct provenance *prov,
+static enum status check_size(const struct model_picture *p, const struct view *camera, struct err *err)
+{
+    if (p->width == camera->width && p->height == camera->height) return ST_OK;
+    return err_set(err, ST_INTERNAL, "the picture has %d x %d pixels, but its camera %d x %d.", p->width, p->height,
+                   camera->width, camera->height);
+}
+
+enum status clutter_draw(struct model_picture *p, float *front, struct clutter_scene *s, const struct view *camera,
+                         const struct clutter_filter *filter, const int *views, int count, struct provenance *prov,
                          struct err *err)
 {
     const struct view scene_camera = world_from_model_view(&s->axes, camera);
     const int own = find_own(s, camera, views, count);
-    struct clutter_choice choice = {0};
-    if (p->width != camera->width || p->height != camera->height)
-        return err_set(err, ST_INTERNAL, "the picture has %d x %d pixels, but its camera %d x %d.", p->width, p->height,
-                       camera->width, camera->height);
-    if (own >= 0) return draw_own(p, s, own, &scene_camera, map, prov, err);
-    if (views)
+    struct clutter_choice choice = {.view = {own}, .fade = {1}, .count = 1};
+    struct clutter_layer layer = {0};
+    struct image photo = {0};
+    if (check_size(p, camera, err) || clutter_layer_init(&layer, p->width, p->height, err)) return err->status;
+    if (own < 0 && views)
         take_given(&choice, views, count);
-    else
+    else if (own < 0)
         clutter_choose(&choice, s->set, &scene_camera, p->z, 1 / s->axes.scale, max_views(s), err);
-    if (!err->status && !clutter_load(s, &choice, prov, err))
-        clutter_blend(p, NULL, s, &choice, &scene_camera, map, err);
+    if (!err->status && !clutter_load(s, &choice, prov, err) &&
+        !clutter_blend(&layer, p->z, s, &choice, &scene_camera, filter, err) && own >= 0)
+        view_image_read(&photo, s->views, &s->set->views[own], prov, err);
+    if (!err->status && front) memcpy(front, p->z, (size_t)p->width * (size_t)p->height * sizeof *front);
+    if (!err->status) lay(p, front, &layer, own >= 0 ? &photo : NULL, s->axes.scale);
+    image_release(&photo);
+    clutter_layer_release(&layer);
+    return err->status;
+}
+
+enum status clutter_draw_thing(struct model_picture *p, float *front, uint8_t *shown, struct clutter_scene *s,
+                               const struct view *camera, const struct clutter_filter *filter, struct vec3 low,
+                               struct vec3 high, struct provenance *prov, struct err *err)
+{
+    const struct view scene_camera = world_from_model_view(&s->axes, camera);
+    struct clutter_choice choice;
+    struct clutter_layer layer = {0};
+    struct vec3 points[8];
+    for (int k = 0; k < 8; k++)
+        points[k] = world_from_model_point(
+            &s->axes, vec3_make(k & 1 ? high.x : low.x, k & 2 ? high.y : low.y, k & 4 ? high.z : low.z));
+    if (check_size(p, camera, err) || clutter_layer_init(&layer, p->width, p->height, err)) return err->status;
+    if (!clutter_choose_for(&choice, s->set, scene_camera.center, points, 8, max_views(s), err) &&
+        !clutter_load(s, &choice, prov, err) && !clutter_blend(&layer, front, s, &choice, &scene_camera, filter, err))
+        thing_surface_draw(&layer, front, s, &choice, &scene_camera, filter->volume, filter->only);
+    for (size_t i = 0; !err->status && i < (size_t)p->width * (size_t)p->height; i++) {
+        layer.doubt[i] = 0; /* what is not drawn of a thing is not there: the shell is sure */
+        if (shown && layer.rgba[4 * i + 3] > 0) shown[i] = 0;
+    }
+    if (!err->status) lay(p, front, &layer, NULL, s->axes.scale);
+    clutter_layer_release(&layer);
     return err->status;
 }

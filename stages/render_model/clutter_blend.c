@@ -56,7 +56,6 @@
 #define WIDTHS     8.0f   /* of the soft z-buffer, in uncertainties */
 #define MAX_SLACK  0.03   /* of the depth */
 #define TOGETHER   0.004f /* relative difference of depths */
-#define COVERED    0.5f
 
 enum { FRAGMENTS = 2 * CLUTTER_VIEWS };
 
@@ -69,13 +68,14 @@ struct blend_tile { /* one per thread */
 };
 
 struct blend_job {
-    struct model_picture *p;
-    float *cover; /* may be NULL */
+    struct clutter_layer *to;
+    const float *shell; /* model units */
     struct clutter_scene *scene;
     const struct clutter_choice *choice;
     const struct view *camera;
-    const struct texture_map *map; /* NULL: nothing is cleared */
-    double scale;                  /* scene units per model unit */
+    const struct clutter_filter *filter;
+    bool filters; /* the filter may drop something */
+    double scale; /* scene units per model unit */
     int tiles_x, tiles;
     struct blend_tile *tile; /* one per thread */
     enum status prepared[CLUTTER_VIEWS];
@@ -140,29 +140,16 @@ static bool draw_tile(const struct blend_job *job, struct blend_tile *t, int til
 
 /* -------------------------------------------------------------------------------------------------------- fragments */
 
-/* How much of the view is clutter at a position in its picture, bilinear. */
-static float cover_at(const struct layer_view *layers, double u, double v)
-{
-    const double x = u + 0.5, y = v + 0.5; /* the padding is one texel, and texels have their centres at + 0.5 */
-    const int i = (int)x, j = (int)y;
-    const float fx = (float)(x - i), fy = (float)(y - j);
-    const uint16_t(*t)[4] = (const uint16_t(*)[4])layers->photo + (size_t)j * (size_t)layers->stride + (size_t)i;
-    const uint16_t(*b)[4] = t + layers->stride;
-    const f32x4 a = f32x4_from_half((const uint16_t[4]){t[0][3], t[1][3], b[0][3], b[1][3]});
-    const float top = a[0] + fx * (a[1] - a[0]), bottom = a[2] + fx * (a[3] - a[2]);
-    return top + fy * (bottom - top);
-}
-
 /* What a depth may be off, relative to it: estimators state more than that (common/layers/depth_sigma.c). */
 static double slack(float sigma) { return fmin((double)sigma, MAX_SLACK); }
 
-/* What the shell, and zones to clear, leave of a fragment. */
+/* What the shell, and the filter, leave of a fragment. */
 static float left_by_shell(const struct blend_job *job, const struct fragment *f, float shell)
 {
     const double spare = HIDDEN + slack(f->sigma), over = shell > 0 ? (double)f->z / (double)shell - 1 : 0;
     const float left = over > spare ? 1 - smooth((over - spare) / spare) : 1;
-    if (!(left > 0) || !job->map || !job->map->zone_count) return left;
-    return texture_map_clears(job->map, model_from_world_point(&job->scene->axes, f->point)) ? 0 : left;
+    if (!(left > 0) || !job->filters) return left;
+    return clutter_filter_drops(job->filter, model_from_world_point(&job->scene->axes, f->point)) ? 0 : left;
 }
 
 static int add_fragment(const struct blend_job *job, struct fragment *list, int count, const struct view_samples *from,
@@ -174,7 +161,7 @@ static int add_fragment(const struct blend_job *job, struct fragment *list, int 
     *f = (struct fragment){.z = from->z[i], .sigma = from->sigma[i], .slot = slot};
     memcpy(f->rgba, from->rgba[i], sizeof f->rgba);
     f->point = view_unproject(job->camera, x + 0.5, y + 0.5, (double)f->z);
-    const float shell = job->p->z[(size_t)y * (size_t)job->p->width + (size_t)x] * (float)job->scale;
+    const float shell = job->shell[(size_t)y * (size_t)job->camera->width + (size_t)x] * (float)job->scale;
     f->open = !(shell > 0);
     f->raw = left_by_shell(job, f, shell);
     const float standing = job->choice->fade[slot] * fmaxf(MIN_INSIDE, inside);
@@ -193,7 +180,9 @@ static void complete(const struct blend_job *job, struct fragment *list, int cou
     const struct view *view = &job->scene->set->views[at];
     if (!(view_project(view, list[0].point, &u, &v) > 0) || !(u >= 0 && v >= 0 && u < view->width && v < view->height))
         return;
-    const float cover = fminf(1, cover_at(&job->scene->sources[at].view.layers, u, v));
+    float here[4];
+    clutter_view_sample(here, &job->scene->sources[at].view, u, v);
+    const float cover = fminf(1, here[3]);
     for (int k = 0; k < count && cover > sum; k++)
         for (int c = 0; c < 4; c++) list[k].rgba[c] *= cover / sum;
 }
@@ -296,9 +285,11 @@ static float weight_of_surface(const struct fragment *list, const float *same, i
     return sum;
 }
 
-/* Composites sorted fragments: premultiplied colour and coverage; *doubtful: coverage if all depths were sure. */
-static void composite(float rgba[4], float *doubtful, const struct fragment *list, int count)
+/* Composites sorted fragments: premultiplied colour and coverage; *z: their mean depth; *doubtful: coverage if all
+ * depths were sure. */
+static void composite(float rgba[4], float *z, float *doubtful, const struct fragment *list, int count)
 {
+    float inverse = 0;
     float same[FRAGMENTS][FRAGMENTS], share[FRAGMENTS];
     memset(rgba, 0, 4 * sizeof *rgba);
     *doubtful = 0;
@@ -313,8 +304,10 @@ static void composite(float rgba[4], float *doubtful, const struct fragment *lis
         for (int j = 0; j < i; j++) hidden += share[j] * list[j].opacity * list[j].rgba[3] * (1 - same[i][j]);
         share[i] = sum > 0 ? f->weight / sum * f->raw * f->present * fmaxf(0, 1 - hidden) : 0;
         for (int c = 0; c < 4; c++) rgba[c] += share[i] * f->opacity * f->rgba[c];
+        inverse += share[i] * f->opacity * f->rgba[3] / f->z;
         *doubtful += share[i] * f->doubt * f->rgba[3];
     }
+    *z = inverse > 0 ? rgba[3] / inverse : 0;
     if (rgba[3] > 1)
         for (int c = 3; c >= 0; c--) rgba[c] /= rgba[3];
 }
@@ -322,7 +315,6 @@ static void composite(float rgba[4], float *doubtful, const struct fragment *lis
 static void blend_pixel(const struct blend_job *job, const struct blend_tile *t, size_t i, int x, int y)
 {
     struct fragment list[FRAGMENTS];
-    float rgba[4], doubtful;
     int count = 0;
     for (int k = 0; k < job->choice->count; k++) {
         if (!t->drawn[k]) continue;
@@ -335,17 +327,8 @@ static void blend_pixel(const struct blend_job *job, const struct blend_tile *t,
     if (!count) return;
     sort_fragments(list, count);
     judge_all(job, list, count);
-    composite(rgba, &doubtful, list, count);
-    const size_t at = (size_t)y * (size_t)job->p->width + (size_t)x;
-    if (job->cover)
-        job->cover[at] = rgba[3];
-    else
-        for (size_t c = 0; c < 3; c++)
-            job->p->rgb[3 * at + c] = job->p->rgb[3 * at + c] * (1 - rgba[3]) + fmaxf(0, rgba[c]);
-    if (rgba[3] >= COVERED)
-        job->p->made[at] = MADE_CLUTTER;
-    else if (doubtful >= COVERED && job->p->made[at] != MADE_NOTHING)
-        job->p->made[at] = MADE_UNSURE;
+    const size_t at = (size_t)y * (size_t)job->camera->width + (size_t)x;
+    composite(job->to->rgba + 4 * at, &job->to->z[at], &job->to->doubt[at], list, count);
 }
 
 static void blend_tiles(void *ctx, size_t begin, size_t end, int thread)
@@ -354,8 +337,8 @@ static void blend_tiles(void *ctx, size_t begin, size_t end, int thread)
     struct blend_tile *t = &job->tile[thread];
     for (size_t tile = begin; tile < end; tile++) {
         const int x = (int)tile % job->tiles_x * TILE_WIDTH, y = (int)tile / job->tiles_x * TILE_HEIGHT;
-        const int width = job->p->width - x < TILE_WIDTH ? job->p->width - x : TILE_WIDTH;
-        const int height = job->p->height - y < TILE_HEIGHT ? job->p->height - y : TILE_HEIGHT;
+        const int width = job->camera->width - x < TILE_WIDTH ? job->camera->width - x : TILE_WIDTH;
+        const int height = job->camera->height - y < TILE_HEIGHT ? job->camera->height - y : TILE_HEIGHT;
         if (!draw_tile(job, t, (int)tile, x, y, width, height)) continue;
         for (int row = 0; row < height; row++)
             for (int column = 0; column < width; column++)
@@ -363,16 +346,35 @@ static void blend_tiles(void *ctx, size_t begin, size_t end, int thread)
     }
 }
 
-enum status clutter_blend(struct model_picture *p, float *cover, struct clutter_scene *scene,
-                          const struct clutter_choice *choice, const struct view *camera, const struct texture_map *map,
-                          struct err *err)
+enum status clutter_layer_init(struct clutter_layer *l, int width, int height, struct err *err)
+{
+    const size_t pixels = (size_t)width * (size_t)height;
+    *l = (struct clutter_layer){calloc(4 * pixels, sizeof *l->rgba), calloc(pixels, sizeof *l->z),
+                                calloc(pixels, sizeof *l->doubt)};
+    if (l->rgba && l->z && l->doubt) return ST_OK;
+    clutter_layer_release(l);
+    return err_nomem(err, "clutter", 6 * pixels * sizeof *l->rgba);
+}
+
+void clutter_layer_release(struct clutter_layer *l)
+{
+    free(l->rgba);
+    free(l->z);
+    free(l->doubt);
+    *l = (struct clutter_layer){0};
+}
+
+enum status clutter_blend(struct clutter_layer *to, const float *shell, struct clutter_scene *scene,
+                          const struct clutter_choice *choice, const struct view *camera,
+                          const struct clutter_filter *filter, struct err *err)
 {
     const size_t threads = (size_t)parallel_threads();
-    struct blend_job job = {.p = p, .cover = cover, .scene = scene, .choice = choice, .camera = camera, .map = map};
-    if (cover) memset(cover, 0, (size_t)p->width * (size_t)p->height * sizeof *cover);
+    struct blend_job job = {.to = to, .shell = shell, .scene = scene, .choice = choice, .camera = camera};
+    job.filter = filter;
+    job.filters = clutter_filter_is_needed(filter);
     job.scale = 1 / scene->axes.scale;
-    job.tiles_x = (p->width + TILE_WIDTH - 1) / TILE_WIDTH;
-    job.tiles = job.tiles_x * ((p->height + TILE_HEIGHT - 1) / TILE_HEIGHT);
+    job.tiles_x = (camera->width + TILE_WIDTH - 1) / TILE_WIDTH;
+    job.tiles = job.tiles_x * ((camera->height + TILE_HEIGHT - 1) / TILE_HEIGHT);
     job.tile = malloc(threads * sizeof *job.tile);
     if (!job.tile) return err_nomem(err, "tiles of clutter", threads * sizeof *job.tile);
     for (size_t t = 0; t < threads; t++) {

@@ -81,23 +81,31 @@ static void sort_choice(struct clutter_choice *c)
         }
 }
 
-enum status clutter_choose(struct clutter_choice *choice, const struct camera_set *set, const struct view *camera,
-                           const float *z, double scale, int most, struct err *err)
+enum status clutter_choose_for(struct clutter_choice *choice, const struct camera_set *set, struct vec3 camera,
+                               const struct vec3 *points, int count, int most, struct err *err)
 {
     double *score = calloc(2 * (size_t)set->view_count + 1, sizeof *score);
     *choice = (struct clutter_choice){0};
     if (!score) return err_nomem(err, "scores of views", 2 * (size_t)set->view_count * sizeof *score);
+    for (int i = 0; i < count; i++) vote(score, score + set->view_count, set, points[i], camera);
+    elect(choice, score, set->view_count, most);
+    sort_choice(choice);
+    free(score);
+    return ST_OK;
+}
+
+enum status clutter_choose(struct clutter_choice *choice, const struct camera_set *set, const struct view *camera,
+                           const float *z, double scale, int most, struct err *err)
+{
+    struct vec3 points[COLUMNS * ROWS * PLACES];
+    int count = 0;
     for (int y = 0; y < ROWS; y++)
         for (int x = 0; x < COLUMNS; x++) {
             const double u = (x + 0.5) * camera->width / COLUMNS, v = (y + 0.5) * camera->height / ROWS;
             const float shell = z[(size_t)v * (size_t)camera->width + (size_t)u];
             if (!(shell > 0)) continue;
             for (int k = 1; k <= PLACES; k++)
-                vote(score, score + set->view_count, set,
-                     view_unproject(camera, u, v, (double)shell * scale * k / PLACES), camera->center);
+                points[count++] = view_unproject(camera, u, v, (double)shell * scale * k / PLACES);
         }
-    elect(choice, score, set->view_count, most);
-    sort_choice(choice);
-    free(score);
-    return ST_OK;
+    return clutter_choose_for(choice, set, camera->center, points, count, most, err);
 }

@@ -34,6 +34,11 @@ struct clutter_choice {
     int count;
 };
 
+/* Chooses the views that see these points best, from about where the camera is. All in the scene's frame. most: at most
+ * CLUTTER_VIEWS. */
+enum status clutter_choose_for(struct clutter_choice *choice, const struct camera_set *set, struct vec3 camera,
+                               const struct vec3 *points, int count, int most, struct err *err);
+
 /* Chooses the views that see best what the camera may see. camera: scene frame; z: width * height depths of the shell
  * in scene units, scaled by `scale`, 0: none. most: at most CLUTTER_VIEWS. */
 enum status clutter_choose(struct clutter_choice *choice, const struct camera_set *set, const struct view *camera,
@@ -47,10 +52,19 @@ double clutter_penalty(struct vec3 point, struct vec3 camera, struct vec3 view);
 enum status clutter_load(struct clutter_scene *scene, const struct clutter_choice *choice, struct provenance *prov,
                          struct err *err);
 
-/* Draws the clutter of the loaded views of the choice over p; see clutter_blend.c. camera: in the scene's frame. cover,
- * if not NULL, gets how much of each pixel is clutter; then p->rgb is left alone. */
-enum status clutter_blend(struct model_picture *p, float *cover, struct clutter_scene *scene,
-                          const struct clutter_choice *choice, const struct view *camera, const struct texture_map *map,
-                          struct err *err);
+/* What clutter gives each pixel of a picture. {0} is the empty state; everything is owned. */
+struct clutter_layer {
+    float *rgba;  /* premultiplied; A: how much of the pixel is clutter, up to 1 */
+    float *z;     /* its depth, scene units; 0: none */
+    float *doubt; /* A if all depths were sure */
+};
+enum status clutter_layer_init(struct clutter_layer *l, int width, int height, struct err *err);
+void clutter_layer_release(struct clutter_layer *l);
+
+/* Draws the clutter of the loaded views of the choice; see clutter_blend.c. camera: in the scene's frame. shell: the
+ * depth that hides what is behind it, model units, 0: none. */
+enum status clutter_blend(struct clutter_layer *to, const float *shell, struct clutter_scene *scene,
+                          const struct clutter_choice *choice, const struct view *camera,
+                          const struct clutter_filter *filter, struct err *err);
 
 #endif

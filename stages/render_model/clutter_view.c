@@ -23,6 +23,7 @@
 #include <stdlib.h>
 
 #include "common/layers/depth_sigma.h"
+#include "common/math/lanes.h"
 
 #define TOLERANCE  0.02f /* of the depth: errors of the model and the cameras */
 #define SIGMAS     1.5f
@@ -244,6 +245,20 @@ static enum status check(const struct layered_depth *d, const struct view_ids *i
                            name, d->interior.id[p] > d->boundary.id[p] ? d->interior.id[p] : d->boundary.id[p],
                            d->segment_count);
     return ST_OK;
+}
+
+void clutter_view_sample(float rgba[4], const struct clutter_view *view, double u, double v)
+{
+    const struct layer_view *layers = &view->layers;
+    const double x = u + 0.5, y = v + 0.5; /* the padding is one texel, and texels have their centres at + 0.5 */
+    const int i = (int)x, j = (int)y;
+    const float fx = (float)(x - i), fy = (float)(y - j);
+    const uint16_t(*t)[4] = (const uint16_t(*)[4])layers->photo + (size_t)j * (size_t)layers->stride + (size_t)i;
+    const uint16_t(*b)[4] = t + layers->stride;
+    const f32x4 a0 = f32x4_from_half(t[0]), a1 = f32x4_from_half(t[1]), b0 = f32x4_from_half(b[0]),
+                b1 = f32x4_from_half(b[1]);
+    const f32x4 top = a0 + fx * (a1 - a0), bottom = b0 + fx * (b1 - b0), all = top + fy * (bottom - top);
+    for (int c = 0; c < 4; c++) rgba[c] = all[c];
 }
 
 static size_t bytes_of(int width, int height)

@@ -54,11 +54,16 @@ enum status room_open(struct room *room, const struct room_files *files, const s
     if (!err->status && !shell_open(&room->shell, &shell, prov, err)) shell_set_samples(room->shell, params->samples);
     if (!err->status && files->depth && !strcmp(params->clutter, "drawn"))
         clutter_open(&room->clutter, &clutter, &room->in.set, &room->in.axes, err);
+    if (!err->status)
+        placed_things_read(&room->things, files->things, shell_map(room->shell),
+                           files->base ? &room->base : &room->model, &room->model, prov, err);
     return err->status;
 }
 
 void room_close(struct room *room)
 {
+    placed_things_release(&room->things);
+    free(room->front);
     clutter_close(room->clutter);
     shell_close(room->shell);
     outdoors_release(&room->outdoors);
@@ -89,15 +94,42 @@ static void photos_of(const char *photos[2], const struct room *room, const stru
     for (int k = 0; k < 2; k++) photos[k] = pair->viewpoint[k] < 0 ? NULL : room->viewpoints[pair->viewpoint[k]].photo;
 }
 
+static enum status make_front(struct room *room, size_t pixels, struct err *err)
+{
+    if (pixels <= room->front_size) return ST_OK;
+    free(room->front);
+    room->front_size = 0;
+    if (!(room->front = malloc(pixels * sizeof *room->front)))
+        return err_nomem(err, "depths of a picture", pixels * sizeof *room->front);
+    room->front_size = pixels;
+    return ST_OK;
+}
+
 enum status room_draw(struct model_picture *picture, struct room *room, const struct view *camera,
                       const struct texture_pair *pair, int own, struct provenance *prov, struct err *err)
 {
     const char *photos[2];
     photos_of(photos, room, pair);
     const struct outdoors *outdoors = room->files.outdoors ? &room->outdoors : NULL;
-    shell_draw(picture, room->shell, camera, photos, pair->t, outdoors, err);
-    if (!err->status && room->clutter)
-        clutter_draw(picture, room->clutter, camera, shell_map(room->shell), own < 0 ? NULL : &own, own >= 0, prov,
-                     err);
+    const struct clutter_filter filter = placed_things_filter(&room->things, shell_map(room->shell));
+    if (!shell_draw(picture, room->shell, camera, photos, pair->t, outdoors, err) && room->clutter &&
+        !make_front(room, (size_t)camera->width * (size_t)camera->height, err))
+        clutter_draw(picture, room->front, room->clutter, camera, &filter, own < 0 ? NULL : &own, own >= 0, prov, err);
+    return err->status || own >= 0 ? err->status : room_draw_things(picture, room, camera, NULL, prov, err);
+}
+
+enum status room_draw_things(struct model_picture *picture, struct room *room, const struct view *camera, uint8_t *same,
+                             struct provenance *prov, struct err *err)
+{
+    const struct placed_things *t = &room->things;
+    struct clutter_filter filter = placed_things_filter(t, NULL);
+    for (int i = 0; !err->status && room->clutter && i < t->placed_count; i++) {
+        const struct placed_thing *p = &t->placed[i];
+        const struct thing *thing = &t->list.things[p->id - 1];
+        const struct view moved = placed_thing_camera(p, camera);
+        filter.only = p->id;
+        clutter_draw_thing(picture, room->front, same, room->clutter, &moved, &filter, thing->low, thing->high, prov,
+                           err);
+    }
     return err->status;
 }

@@ -5,6 +5,7 @@
 #include "common/light/model_rays.h"
 #include "common/model/scene_inputs.h"
 #include "stages/render_model/clutter.h"
+#include "stages/render_model/placed_things.h"
 #include "stages/render_model/render_params.h"
 #include "stages/render_model/shell.h"
 
@@ -19,6 +20,7 @@ struct room_files {
     const char *model, *base, *map; /* model.txt; the unedited one and texture.txt of an edited model, or NULL */
     const char *axes, *views, *vdta, *vita;
     const char *ids, *depth; /* folders; NULL: without clutter */
+    const char *things;      /* folder; NULL: no edit changes things */
     const char *outdoors;    /* file; NULL: none */
     const char *exposure;    /* file; NULL: 1 */
 };
@@ -33,6 +35,9 @@ struct room {
     struct model_rays model, base; /* with panes; base is empty without an edit */
     struct shell_scene *shell;
     struct clutter_scene *clutter; /* NULL: none is drawn */
+    struct placed_things things;
+    float *front;      /* of the picture that was drawn last: depth of what is seen, model units; owned */
+    size_t front_size; /* pixels that it has room for */
     struct outdoors outdoors;
     double exposure; /* of all pictures: what the parameters say, else the file */
 };
@@ -48,9 +53,15 @@ struct texture_pair {
     double t;
 };
 
-/* Draws the shell and the clutter over it. camera: model frame. own: the original view that it is; -1: none. */
+/* Draws the shell and the clutter over it. camera: model frame. own: the original view that it is; -1: none. Things
+ * that the edit puts elsewhere are drawn too, unless the camera is a view's: there the photo's own pixels come first. */
 enum status room_draw(struct model_picture *picture, struct room *room, const struct view *camera,
                       const struct texture_pair *pair, int own, struct provenance *prov, struct err *err);
+
+/* Draws the things that the edit puts elsewhere over a picture that room_draw() drew from the same camera. same: as
+ * shown of clutter_draw_thing(). */
+enum status room_draw_things(struct model_picture *picture, struct room *room, const struct view *camera, uint8_t *same,
+                             struct provenance *prov, struct err *err);
 
 int room_viewpoint_of(const struct room *room, int view); /* the viewpoint that a view belongs to */
 /* The viewpoint of a photo's id; -1: there is none. */

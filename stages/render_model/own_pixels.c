@@ -79,12 +79,27 @@ static enum status grow(uint8_t *same, const struct view *camera, double margin,
     return err->status;
 }
 
-/* Clears `same` where the photo shows clutter of a zone that is cleared, and a little around it. */
+/* Whether the first thing on the way to the model's surface at depth z is gone: legs are too thin for depth, and where a
+ * view's depth is off, others have seen what is there. */
+static bool meets_gone(const struct clutter_filter *filter, const struct view *camera, double u, double v, double z)
+{
+    if (!filter->volume || !(z > 0)) return false;
+    const struct vec3 way = vec3_sub(view_unproject(camera, u, v, z), camera->center);
+    const int steps = (int)(vec3_length(way) / filter->volume->grid.voxel) + 1;
+    for (int k = 1; k <= steps; k++) {
+        const struct vec3 at = vec3_add(camera->center, vec3_scale(way, (double)k / steps));
+        const uint32_t id = thing_volume_at(filter->volume, at);
+        if (id) return filter->fate[id] == THING_IS_GONE;
+    }
+    return false;
+}
+
+/* Clears `same` where the photo shows clutter that is left out, and a little around it. */
 static enum status leave_cleared(uint8_t *same, const struct room *room, int view, struct provenance *prov,
                                  struct err *err)
 {
     const struct view *camera = &room->cameras[view], *world = &room->in.set.views[view];
-    const struct texture_map *map = shell_map(room->shell);
+    const struct clutter_filter filter = placed_things_filter(&room->things, shell_map(room->shell));
     const size_t pixels = (size_t)camera->width * (size_t)camera->height;
     const struct product_key key = {.view = world->name};
     char path[FILE_PATH];
@@ -104,7 +119,8 @@ static enum status leave_cleared(uint8_t *same, const struct room *room, int vie
             const size_t i = (size_t)y * (size_t)camera->width + (size_t)x;
             const double z = depth.interior.z[i] * room->in.axes.scale;
             stays[i] = !(z > 0 && ids.clutter[i] > CLUTTER_UNSURE &&
-                         texture_map_clears(map, view_unproject(camera, x + 0.5, y + 0.5, z)));
+                         clutter_filter_drops(&filter, view_unproject(camera, x + 0.5, y + 0.5, z))) &&
+                       !meets_gone(&filter, camera, x + 0.5, y + 0.5, ids.z[i] * room->in.axes.scale);
         }
     if (!err->status) grow(stays, camera, CLEARED_MARGIN, err);
     for (size_t i = 0; !err->status && i < pixels; i++) same[i] &= stays[i];
@@ -124,7 +140,8 @@ enum status own_pixels_find(uint8_t *same, const struct room *room, int view, st
         compare(same, room, &base, &edited, camera);
         grow(same, camera, room->params->margin, err);
     }
-    if (!err->status && shell_map(room->shell)->zone_count && room->files.depth && room->files.ids)
+    const struct clutter_filter filter = placed_things_filter(&room->things, shell_map(room->shell));
+    if (!err->status && clutter_filter_is_needed(&filter) && room->files.depth && room->files.ids)
         leave_cleared(same, room, view, prov, err);
     traced_release(&base);
     traced_release(&edited);

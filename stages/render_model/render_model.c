@@ -106,6 +106,8 @@ int main(int argc, char **argv)
         CLI_STR("vita", &job.files.vita, CLI_REQUIRED, "folder of the atlas of all faces"),
         CLI_STR("ids", &job.files.ids, CLI_OPTIONAL, "for clutter: folder of the faces that each view shows"),
         CLI_STR("depth", &job.files.depth, CLI_OPTIONAL, "for clutter: folder of layered depth maps"),
+        CLI_STR("things", &job.files.things, CLI_OPTIONAL,
+                "for an edit that clears, moves or copies things: folder of find_things"),
         CLI_STR("outdoors", &job.files.outdoors, CLI_OPTIONAL, "picture of what lies outside, outdoors.exr"),
         CLI_STR("exposure", &job.files.exposure, CLI_OPTIONAL,
                 "the exposure of all pictures, exposure.txt of choose_exposure; default: 1"),

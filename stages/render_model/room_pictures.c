@@ -92,11 +92,12 @@ static enum status draw_view(struct model_picture *picture, double *changed, str
     const bool own = !strcmp(room->params->photo, "where_unchanged");
     size_t differ = 0;
     if (!err->status) own_pixels_find(same, room, view, prov, err);
-    if (!err->status && (memchr(same, 0, pixels) || !own))
+    if (!err->status && (memchr(same, 0, pixels) || !own || room->things.placed_count))
         room_draw(picture, room, camera, &pair, view, prov, err);
     else if (!err->status)
         model_picture_resize(picture, camera->width, camera->height, err);
     if (!err->status && own) own_pixels_draw(picture, same, room, view, prov, err);
+    if (!err->status) room_draw_things(picture, room, camera, same, prov, err);
     for (size_t i = 0; !err->status && i < pixels; i++) differ += !same[i] && picture->made[i] != MADE_NOTHING;
     *changed = own ? 100.0 * (double)differ / (double)pixels : 100;
     free(same);

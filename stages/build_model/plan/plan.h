@@ -160,7 +160,19 @@ struct plan_zone {
     double low[3], high[3];
 };
 
-enum name_kind { NAMED_NONE, NAMED_WALL, NAMED_OPENING, NAMED_BOX, NAMED_ROOM, NAMED_SLOT };
+enum name_kind { NAMED_NONE, NAMED_WALL, NAMED_OPENING, NAMED_BOX, NAMED_ROOM, NAMED_SLOT, NAMED_THING };
+
+/* Furniture that the photographs show, or a copy of it. */
+enum plan_thing_state { PLAN_THING_LEFT, PLAN_THING_CLEARED, PLAN_THING_KEPT, PLAN_THING_MOVED, PLAN_THING_PLACED };
+
+struct plan_thing {
+    char *name; /* owned */
+    int line;   /* of things.txt; of a copy: of its statement */
+    int from;   /* index of the thing that it is a copy of; its own: it is none */
+    enum plan_thing_state state;
+    double by[3]; /* MOVED: the sum of all moves; PLACED: the middle of its footprint, and the floor's height */
+    double turn;  /* degrees, counter-clockwise from above, about the middle of its footprint */
+};
 
 struct plan_name {
     const char *name; /* NULL: free slot */
@@ -180,7 +192,8 @@ struct plan {
     double colour[3];         /* albedo of faces without a texture; -1: the default one */
     struct plan_wish *wishes; /* in the scripts' order */
     struct plan_zone *zones;
-    int wish_count, zone_count;
+    struct plan_thing *things; /* those of things.txt first */
+    int wish_count, zone_count, thing_count;
     struct plan_lamp *lamps;
     struct plan_object *objects;
     int lamp_count, object_count;

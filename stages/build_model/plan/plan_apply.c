@@ -19,6 +19,7 @@ static void unedited_release(struct plan *unedited)
     free(unedited->boxes);
     free(unedited->rooms);
     free(unedited->names);
+    free(unedited->things);
     free(unedited);
 }
 
@@ -46,6 +47,7 @@ void plan_release(struct plan *plan)
     free(plan->base);
     plan_wishes_release(plan);
     plan_lights_release(plan);
+    plan_things_release(plan);
     *plan = (struct plan){0};
 }
 
@@ -146,6 +148,7 @@ static enum status keep_unedited(struct plan *p, struct err *err)
     u->zones = NULL;
     u->lamps = NULL;
     u->objects = NULL;
+    u->things = NULL;
     u->base = NULL;
     u->wish_count = u->zone_count = u->lamp_count = u->object_count = 0;
     p->unedited = u;
@@ -153,7 +156,8 @@ static enum status keep_unedited(struct plan *p, struct err *err)
         !copy_items(&u->openings, p->openings, p->opening_count, sizeof *p->openings, err) &&
         !copy_items(&u->slots, p->slots, p->slot_count, sizeof *p->slots, err) &&
         !copy_items(&u->boxes, p->boxes, p->box_count, sizeof *p->boxes, err) &&
-        !copy_items(&u->rooms, p->rooms, p->room_count, sizeof *p->rooms, err))
+        !copy_items(&u->rooms, p->rooms, p->room_count, sizeof *p->rooms, err) &&
+        !copy_items(&u->things, p->things, p->thing_count, sizeof *p->things, err))
         copy_items(&u->names, p->names, p->name_capacity, sizeof *p->names, err);
     for (int i = 0; !err->status && i < u->room_count; i++) {
         struct plan_room *r = &u->rooms[i];

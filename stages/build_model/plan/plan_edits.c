@@ -106,10 +106,17 @@ static enum status move_footprint(struct plan_context *c, const char *what, doub
 
 enum status plan_read_move(struct script_reader *r, struct statement *s)
 {
-    if (script_read_name(r, "a name", &s->name) || script_expect(r, "by") ||
-        script_read_number(r, "a distance", &s->values[s->value_count++]))
+    if (script_read_name(r, "a name", &s->name)) return r->err->status;
+    if (script_next_is(r, "to")) {
+        s->value_count = 2;
+        return script_expect(r, "to") || script_read_name(r, "a room", &s->other) || script_expect(r, "at") ||
+                       script_read_number(r, "X", &s->values[0]) || script_read_number(r, "Y", &s->values[1])
+                   ? r->err->status
+                   : ST_OK;
+    }
+    if (script_expect(r, "by") || script_read_number(r, "a distance", &s->values[s->value_count++]))
         return r->err->status;
-    while (s->value_count < 3 && textfile_more(&r->t))
+    while (s->value_count < 3 && textfile_more(&r->t) && !script_next_is(r, "turn"))
         if (script_read_number(r, "a distance", &s->values[s->value_count++])) return r->err->status;
     return ST_OK;
 }
@@ -120,7 +127,13 @@ enum status plan_apply_move(struct plan_context *c)
     struct plan *plan = c->plan;
     enum name_kind kind;
     int at;
+    if (plan_is_thing(plan, s->name, &at)) return plan_apply_thing_move(c, at);
     if (plan_find_solid(c, s->name, &kind, &at)) return c->err->status;
+    if (s->other || s->has_option[OPTION_TURN])
+        return plan_statement_error(c,
+                                    "%s is no thing, which alone moves to a room or turns; a box is turned by "
+                                    "\"change %s turn DEGREES\".",
+                                    s->name, s->name);
     if (kind == NAMED_SLOT && s->value_count > 2)
         return plan_statement_error(c, "%s stays in its ceiling or floor: \"move %s by DX DY\".", s->name, s->name);
     if (kind == NAMED_SLOT) return move_footprint(c, s->name, plan->slots[at].low, plan->slots[at].high);

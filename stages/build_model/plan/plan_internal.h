@@ -50,6 +50,9 @@ enum status plan_find_solid(struct plan_context *c, const char *name, enum name_
 enum status plan_find_wall(struct plan_context *c, const char *name, int *wall);
 enum status plan_find_room(struct plan_context *c, const char *name, int *room);
 
+/* Whether the name is that of a thing; *at: its index. */
+bool plan_is_thing(const struct plan *plan, const char *name, int *at);
+
 /* *copy: the name, for the caller to own. ST_DATA: it was used before. */
 enum status plan_copy_new_name(struct plan_context *c, const char *name, char **copy);
 
@@ -91,6 +94,15 @@ enum status plan_fill_thickness(struct plan_context *c, enum filling fill, doubl
 
 /* plan_textures.c */
 void plan_wishes_release(struct plan *plan);
+
+/* plan_things.c */
+
+/* What move, copy, clear and keep mean for a thing. */
+enum status plan_read_thing_copy(struct script_reader *r, struct statement *s);
+enum status plan_apply_thing_move(struct plan_context *c, int thing);
+enum status plan_apply_thing_copy(struct plan_context *c);
+enum status plan_apply_thing_clear(struct plan_context *c, int thing, bool keep);
+void plan_things_release(struct plan *plan);
 
 /* plan_lights.c */
 

@@ -41,7 +41,8 @@ enum status plan_add_name(struct plan *plan, const char *name, enum name_kind ki
 
 static const char *kind_name(enum name_kind kind)
 {
-    static const char *const names[] = {"nothing", "a wall", "an opening", "a box", "a room", "an opening in a room"};
+    static const char *const names[] = {"nothing", "a wall", "an opening", "a box", "a room", "an opening in a room",
+                                        "a thing"};
     return names[kind];
 }
 
@@ -51,6 +52,7 @@ static int name_line(const struct plan *plan, enum name_kind kind, int at)
            : kind == NAMED_OPENING ? plan->openings[at].line
            : kind == NAMED_BOX     ? plan->boxes[at].line
            : kind == NAMED_SLOT    ? plan->slots[at].line
+           : kind == NAMED_THING   ? plan->things[at].line
                                    : plan->rooms[at].line;
 }
 
@@ -60,6 +62,7 @@ static bool is_removed(const struct plan *plan, enum name_kind kind, int at)
            : kind == NAMED_OPENING ? plan->openings[at].removed
            : kind == NAMED_BOX     ? plan->boxes[at].removed
            : kind == NAMED_SLOT    ? plan->slots[at].removed
+           : kind == NAMED_THING   ? false
                                    : plan->rooms[at].removed;
 }
 
@@ -85,6 +88,11 @@ enum status plan_find_named(struct plan_context *c, const char *name, unsigned k
     if (!(kinds & (1u << *kind)))
         return plan_statement_error(c, "%s is %s; wanted %s.", name, kind_name(*kind), wanted);
     return ST_OK;
+}
+
+bool plan_is_thing(const struct plan *plan, const char *name, int *at)
+{
+    return find_name(plan, name, at) == NAMED_THING;
 }
 
 enum status plan_find_solid(struct plan_context *c, const char *name, enum name_kind *kind, int *at)

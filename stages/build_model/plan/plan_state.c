@@ -82,6 +82,11 @@ enum status plan_state(char **state, const struct plan *plan, struct err *err)
     put(to, plan->colour, 3);
     fprintf(to, "base %s\n", plan->base ? plan->base : "");
     put_lights(to, plan);
+    for (int i = 0; i < plan->thing_count; i++) {
+        const struct plan_thing *t = &plan->things[i];
+        fprintf(to, "thing %d", (int)t->state);
+        put(to, (const double[]){t->by[0], t->by[1], t->by[2], t->turn}, 4);
+    }
     fprintf(to, "wishes %d zones %d\n", plan->wish_count, plan->zone_count);
     const int failed = ferror(to);
     if (!fclose(to) && !failed) return ST_OK;

@@ -174,6 +174,7 @@ static enum status check_source(struct plan_context *c, const char *face)
 
 enum status plan_read_copy(struct script_reader *r, struct statement *s)
 {
+    if (!script_next_is(r, "texture")) return plan_read_thing_copy(r, s);
     if (script_expect(r, "texture") || script_read_face(r, &s->name) ||
         script_read_place(r, &s->place, 1u << PLACE_FROM_END) || script_expect(r, "to") ||
         script_read_face(r, &s->other))
@@ -186,6 +187,8 @@ enum status plan_apply_copy(struct plan_context *c)
 {
     const struct statement *s = c->s;
     struct plan_wish wish = {.kind = WISH_COPY, .whole = s->target.kind == PLACE_NONE};
+    if (s->value_count) return plan_apply_thing_copy(c);
+    if (s->has_option[OPTION_TURN]) return plan_statement_error(c, "a texture is not turned; leave out \"turn\".");
     if (check_source(c, s->name) || place_on_face(c, c->plan->unedited, s->name, &s->place, true, wish.patch) ||
         check_rectangle(c, s->name, wish.patch))
         return c->err->status;
@@ -208,8 +211,11 @@ static enum status read_zone(struct script_reader *r, struct statement *s, bool 
                    ? r->err->status
                    : ST_OK;
     }
-    if (!named || !strncmp(next, "in ", 3) || !strncmp(next, "from ", 5)) return script_read_place(r, &s->place, 0);
-    return script_read_name(r, "a room, \"all\", \"in VIEW\", \"from\" or \"before\"", &s->name);
+    if (!strncmp(next, "in ", 3) || !strncmp(next, "from ", 5)) return script_read_place(r, &s->place, 0);
+    return script_read_name(r,
+                            named ? "a room, a thing, \"all\", \"in VIEW\", \"from\" or \"before\""
+                                  : "a thing, \"in VIEW\", \"from\" or \"before\"",
+                            &s->name);
 }
 
 enum status plan_read_clear(struct script_reader *r, struct statement *s) { return read_zone(r, s, true); }
@@ -221,6 +227,10 @@ static enum status add_zone(struct plan_context *c, bool keep)
     const struct statement *s = c->s;
     struct plan *p = c->plan;
     struct plan_zone zone = {.keep = keep, .room = -1, .opening = -1};
+    int thing;
+    if (s->name && plan_is_thing(p, s->name, &thing)) return plan_apply_thing_clear(c, thing, keep);
+    if (s->name && keep)
+        return plan_statement_error(c, "found %s, wanted a thing of things.txt, or the place to keep.", s->name);
     zone.low[2] = s->has_option[OPTION_FOOT] ? s->options[OPTION_FOOT] : -ABOVE_ALL;
     zone.high[2] = s->has_option[OPTION_TOP] ? s->options[OPTION_TOP] : ABOVE_ALL;
     if (!(zone.low[2] < zone.high[2]))

@@ -391,7 +391,8 @@ enum status texture_rules_make(struct texture_map *map, const struct solid_mesh 
         else
             add_new_area(&job, &map->faces[at], f, own_place(&job, f, &by) >= 0, by);
     }
-    if (!err->status && !texture_zones_add(map, plan, err)) texture_lamps_add(map, plan, err);
+    if (!err->status && !texture_zones_add(map, plan, err) && !texture_things_add(map, plan, err))
+        texture_lamps_add(map, plan, err);
     if (map->face_count) qsort(map->faces, (size_t)map->face_count, sizeof *map->faces, compare_texture_faces);
     for (int k = 0; k < 2; k++) solid_triangles_release(&job.triangles[k]);
     return err->status;

@@ -255,7 +255,7 @@ void texture_wishes_gloss(struct texture_face *to, const struct texture_models *
     }
 }
 
-/* ------------------------------------------------------------------------------------------------- lamps and zones */
+/* ------------------------------------------------------------------------------------------------- lamps, zones, things */
 
 enum status texture_lamps_add(struct texture_map *map, const struct plan *plan, struct err *err)
 {
@@ -319,6 +319,22 @@ enum status texture_zones_add(struct texture_map *map, const struct plan *plan, 
             if (!plan->rooms[r].removed && plan->rooms[r].edge_count > 2 && (z->all || z->room == r))
                 add_room(map, z, &plan->rooms[r], err);
         if (!err->status && !z->all && z->room < 0) add_zone(map, z, "place", place, 4, err);
+    }
+    return err->status;
+}
+
+enum status texture_things_add(struct texture_map *map, const struct plan *plan, struct err *err)
+{
+    static const enum texture_thing_kind kinds[] = {[PLAN_THING_CLEARED] = TEXTURE_THING_CLEAR,
+                                                    [PLAN_THING_KEPT] = TEXTURE_THING_KEEP,
+                                                    [PLAN_THING_MOVED] = TEXTURE_THING_MOVE,
+                                                    [PLAN_THING_PLACED] = TEXTURE_THING_PLACE};
+    for (int i = 0; !err->status && i < plan->thing_count; i++) {
+        const struct plan_thing *t = &plan->things[i];
+        if (t->state == PLAN_THING_LEFT || (t->state == PLAN_THING_CLEARED && t->from != i)) continue;
+        struct texture_thing thing = {kinds[t->state], t->name, plan->things[t->from].name, {0}, t->turn + 0.0};
+        for (int k = 0; k < 3; k++) thing.by[k] = t->by[k] + 0.0; /* -0 is 0 */
+        texture_map_add_thing(map, &thing, err);
     }
     return err->status;
 }

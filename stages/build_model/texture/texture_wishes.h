@@ -28,6 +28,9 @@ enum status texture_lamps_add(struct texture_map *map, const struct plan *plan, 
 /* The footprints in which clutter is cleared or kept. */
 enum status texture_zones_add(struct texture_map *map, const struct plan *plan, struct err *err);
 
+/* The things that are cleared, kept, moved or copied. */
+enum status texture_things_add(struct texture_map *map, const struct plan *plan, struct err *err);
+
 /* Whether a face's name is of the item NAME: KIND/NAME or KIND/NAME/PART. */
 bool texture_face_is_of(const char *face, const char *item);
 

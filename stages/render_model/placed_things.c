@@ -1,0 +1,211 @@
+/* placed_things.c - where an edit puts things, and whether they fit there; see placed_things.h.
+ *
+ * A thing is rigid and its support stays what it is: what stood on the floor must stand on the floor again, what hung on
+ * a wall must have a wall as near. Only its box is tested, shrunk a little, since depth at outlines is off. */
+#include "stages/render_model/placed_things.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/base/scan.h"
+#include "common/light/model_clearance.h"
+#include "common/product/product.h"
+
+#define SHRUNK   0.9  /* of the box's sides: what may not be in a wall */
+#define OFF_SIDE 0.03 /* of the model's height: change of the gap between a thing and its support that is none */
+
+enum { STEPS = 5 }; /* points along each side of a box that are tested */
+
+void placed_things_release(struct placed_things *t)
+{
+    if (!t) return;
+    thing_list_release(&t->list);
+    thing_volume_release(&t->volume);
+    free(t->fate);
+    free(t->placed);
+    *t = (struct placed_things){0};
+}
+
+struct clutter_filter placed_things_filter(const struct placed_things *t, const struct texture_map *map)
+{
+    return (struct clutter_filter){.map = map, .volume = t->fate ? &t->volume : NULL, .fate = t->fate};
+}
+
+static struct vec3 place(const struct placed_thing *p, struct vec3 at)
+{
+    return vec3_add(mat3_apply(p->turn, at), p->shift);
+}
+
+struct view placed_thing_camera(const struct placed_thing *p, const struct view *camera)
+{
+    struct view v = *camera;
+    v.cam_from_world = mat3_multiply(camera->cam_from_world, p->turn);
+    v.center = mat3_apply(mat3_transpose(p->turn), vec3_sub(camera->center, p->shift));
+    v.translation = vec3_scale(mat3_apply(v.cam_from_world, v.center), -1);
+    return v;
+}
+
+/* ---------------------------------------------------------------------------------------------------------- checks */
+
+/* A point of the box, from -1 to 1 in each direction. */
+static struct vec3 box_point(const struct thing *t, double x, double y, double z)
+{
+    const struct vec3 middle = vec3_scale(vec3_add(t->low, t->high), 0.5);
+    return vec3_make(middle.x + 0.5 * x * (t->high.x - t->low.x), middle.y + 0.5 * y * (t->high.y - t->low.y),
+                     middle.z + 0.5 * z * (t->high.z - t->low.z));
+}
+
+static double gap(const struct model_rays *m, struct vec3 from, struct vec3 direction)
+{
+    struct ray_hit hit;
+    return ray_scene_hit(&m->rays, from, direction, &hit) ? hit.t : INFINITY;
+}
+
+/* How far a point in a solid is from the nearest side of it. */
+static double depth_in(const struct model_rays *m, struct vec3 p)
+{
+    double least = INFINITY;
+    for (int k = 0; k < 4; k++) {
+        const double sign = k & 1 ? -1 : 1;
+        least = fmin(least, gap(m, p, k & 2 ? vec3_make(0, sign, 0) : vec3_make(sign, 0, 0)));
+    }
+    return least;
+}
+
+static enum status check_walls(const struct texture_thing *edit, const struct thing *t, const struct placed_thing *p,
+                               const struct model_rays *m, struct err *err)
+{
+    double deepest = -1;
+    for (int i = 0; i < STEPS * STEPS * STEPS; i++) {
+        const double x = 2.0 * (i % STEPS) / (STEPS - 1) - 1, y = 2.0 * (i / STEPS % STEPS) / (STEPS - 1) - 1,
+                     z = 2.0 * (i / STEPS / STEPS) / (STEPS - 1) - 1;
+        const struct vec3 at = place(p, box_point(t, SHRUNK * x, SHRUNK * y, SHRUNK * z));
+        if (model_rays_inside(m, at, 0)) deepest = fmax(deepest, depth_in(m, at));
+    }
+    if (deepest < 0) return ST_OK;
+    return err_set(err, ST_DATA, "%s would stand %.2g deep in a wall, a box or a floor. Move it elsewhere.", edit->name,
+                   deepest);
+}
+
+/* The direction from a thing to what supports it, in the room of the photographs, and the gap between them. */
+static double support_gap(struct vec3 *direction, struct vec3 *from, const struct thing *t, const struct model_rays *m)
+{
+    double least = INFINITY;
+    *direction = vec3_make(0, 0, t->support == THING_ON_CEILING ? 1 : -1);
+    *from = box_point(t, 0, 0, 0);
+    if (t->support != THING_ON_WALL) return gap(m, *from, *direction);
+    for (int k = 0; k < 4; k++) {
+        const double sign = k & 1 ? -1 : 1;
+        const struct vec3 to = k & 2 ? vec3_make(0, sign, 0) : vec3_make(sign, 0, 0);
+        const double g = gap(m, *from, to);
+        if (!(g < least)) continue;
+        least = g;
+        *direction = to;
+    }
+    return least;
+}
+
+static enum status check_support(const struct texture_thing *edit, const struct thing *t, const struct placed_thing *p,
+                                 const struct model_rays *before, const struct model_rays *after, double height,
+                                 struct err *err)
+{
+    struct vec3 direction, from;
+    if (t->support == THING_ON_NONE) return ST_OK;
+    const double was = support_gap(&direction, &from, t, before);
+    const double is = gap(after, place(p, from), mat3_apply(p->turn, direction));
+    if (!isfinite(was) || fabs(is - was) <= OFF_SIDE * height) return ST_OK;
+    const char *support = thing_support_word(t->support);
+    if (!isfinite(is))
+        return err_set(err, ST_DATA, "%s stood on the %s, but there is no %s at its new place.", edit->name, support,
+                       support);
+    return err_set(err, ST_DATA, "%s would be %.2g %s the %s that it stands on. Move it by that much less, or more.",
+                   edit->name, fabs(is - was), is > was ? "away from" : "too far into", support);
+}
+
+/* --------------------------------------------------------------------------------------------------------- placing */
+
+static const char *nth_name(const void *ctx, int i)
+{
+    const struct thing_list *list = ctx;
+    return i < list->count ? list->things[i].name : NULL;
+}
+
+static enum status find_thing(int *at, const struct placed_things *t, const char *name, struct err *err)
+{
+    *at = thing_list_find(&t->list, name);
+    if (*at >= 0) return ST_OK;
+    const char *near = scan_nearest(name, nth_name, &t->list);
+    return err_set(
+        err, ST_DATA,
+        "the edit changes %s, but no thing of that name was found%s%s. Mark it elsewhere in things.txt; make "
+        "things shows what was found.",
+        name, near ? "; the nearest is " : "", near ? near : "");
+}
+
+/* The model's height. */
+static double height_of(const struct model_rays *m)
+{
+    double low = INFINITY, high = -INFINITY;
+    for (int i = 0; i < m->mesh.vertex_count; i++) {
+        low = fmin(low, m->mesh.vertices[i].p.z);
+        high = fmax(high, m->mesh.vertices[i].p.z);
+    }
+    return high - low;
+}
+
+static struct placed_thing placement(const struct texture_thing *edit, const struct thing *t, uint32_t id,
+                                     const struct model_rays *before)
+{
+    const double turn = edit->turn * M_PI / 180, c = cos(turn), s = sin(turn);
+    struct placed_thing p = {.id = id, .turn = {{{c, -s, 0}, {s, c, 0}, {0, 0, 1}}}};
+    const struct vec3 middle = box_point(t, 0, 0, 0);
+    struct vec3 to = vec3_make(middle.x + edit->by[0], middle.y + edit->by[1], middle.z + edit->by[2]);
+    if (edit->kind == TEXTURE_THING_PLACE) {
+        const double below = gap(before, middle, vec3_make(0, 0, -1));
+        to = vec3_make(edit->by[0], edit->by[1], isfinite(below) ? edit->by[2] + below : middle.z);
+    }
+    p.shift = vec3_sub(to, mat3_apply(p.turn, middle));
+    return p;
+}
+
+static enum status apply(struct placed_things *t, const struct texture_thing *edit, const struct model_rays *before,
+                         const struct model_rays *after, struct err *err)
+{
+    int at;
+    if (find_thing(&at, t, edit->from, err)) return err->status;
+    const struct thing *thing = &t->list.things[at];
+    const uint32_t id = (uint32_t)at + 1;
+    if (edit->kind == TEXTURE_THING_KEEP) t->fate[id] = THING_IS_KEPT;
+    if (edit->kind == TEXTURE_THING_KEEP) return ST_OK;
+    if (!strcmp(edit->name, edit->from)) t->fate[id] = THING_IS_GONE;
+    if (edit->kind == TEXTURE_THING_CLEAR) return ST_OK;
+    const struct placed_thing p = placement(edit, thing, id, before);
+    if (!check_walls(edit, thing, &p, after, err) &&
+        !check_support(edit, thing, &p, before, after, height_of(before), err))
+        t->placed[t->placed_count++] = p;
+    return err->status;
+}
+
+enum status placed_things_read(struct placed_things *t, const char *folder, const struct texture_map *map,
+                               const struct model_rays *before, const struct model_rays *after, struct provenance *prov,
+                               struct err *err)
+{
+    char path[FILE_PATH];
+    *t = (struct placed_things){0};
+    if (!map || !map->thing_count) return ST_OK;
+    if (!folder)
+        return err_set(err, ST_USAGE, "the edit changes the thing %s, but --things is missing; see --help.",
+                       map->things[0].from);
+    if (!product_path_in(path, folder, PRODUCT_THINGS, NULL, err) && !thing_list_read(&t->list, path, prov, err) &&
+        !product_path_in(path, folder, PRODUCT_THING_VOLUME, NULL, err))
+        thing_volume_read(&t->volume, path, (uint32_t)t->list.count, prov, err);
+    if (!err->status) {
+        t->fate = calloc((size_t)t->list.count + 1, sizeof *t->fate);
+        t->placed = calloc((size_t)map->thing_count, sizeof *t->placed);
+        if (!t->fate || !t->placed) err_nomem(err, "things", (size_t)map->thing_count * sizeof *t->placed);
+    }
+    for (int i = 0; !err->status && i < map->thing_count; i++) apply(t, &map->things[i], before, after, err);
+    if (err->status) placed_things_release(t);
+    return err->status;
+}

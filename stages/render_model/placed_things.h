@@ -1,0 +1,38 @@
+/* placed_things.h - the things of an edit: which are gone from the photographs, and which stand elsewhere. */
+#ifndef REMODEL_PLACED_THINGS_H
+#define REMODEL_PLACED_THINGS_H
+
+#include "common/light/model_rays.h"
+#include "common/model/thing_list.h"
+#include "stages/render_model/clutter_filter.h"
+
+/* A thing at a place of its own: the point p of the photographs' room stands at turn p + shift. */
+struct placed_thing {
+    uint32_t id;
+    struct mat3 turn;
+    struct vec3 shift;
+};
+
+/* {0} is the empty state: all clutter stays. Everything is owned. */
+struct placed_things {
+    struct thing_list list;
+    struct thing_volume volume;
+    uint8_t *fate; /* enum thing_fate of each id, from 0 */
+    struct placed_thing *placed;
+    int placed_count;
+};
+
+/* Reads the products of find_things, if the edit's map says something of things, and places these. folder: of the
+ * things; may be NULL. before, after: the model that the photographs show, and the edited one. ST_DATA: the map names a
+ * thing that was not found; a thing would be in a wall, or off what it stands on, with the distance. */
+enum status placed_things_read(struct placed_things *t, const char *folder, const struct texture_map *map,
+                               const struct model_rays *before, const struct model_rays *after, struct provenance *prov,
+                               struct err *err);
+void placed_things_release(struct placed_things *t);
+
+/* What the photographs' own places show of the clutter. */
+struct clutter_filter placed_things_filter(const struct placed_things *t, const struct texture_map *map);
+/* The camera that sees the thing where it was as `camera` sees it at its new place. */
+struct view placed_thing_camera(const struct placed_thing *p, const struct view *camera);
+
+#endif

@@ -1,0 +1,154 @@
+/* thing_surface.c - a thing's surface from its volume of signed distances; see thing_surface.h.
+ *
+ * A ray meets the surface where the distance falls through 0, between two places that views have seen [Curless 1996]. The
+ * place P takes its colour from the views that see it: those whose nearest surface is at P, weighted as in unstructured
+ * lumigraph rendering [Buehler 2001] by the angle between their ray and the camera's. If P is hidden from all of them,
+ * those count that show clutter at its pixel; it is near P. */
+#include "stages/render_model/thing_surface.h"
+
+#include <math.h>
+
+#include "common/base/parallel.h"
+
+#define STEP       0.5   /* voxels */
+#define TOLERANCE  0.02  /* of the depth, beside the size of a voxel: a view's surface this near to P is P's */
+#define VOXELS     2.0   /* the same in voxels */
+#define BLUR       0.08  /* radians */
+#define MIN_COVER  0.3f  /* of a view's pixel by clutter, whose colour is used */
+#define ELSEWHERE  1e-3  /* weight of a view that does not see P, relative to one that does */
+#define MAX_BEHIND 0.05f /* of the depth: what the shell may be in front of the surface without hiding it */
+
+struct surface_job {
+    struct clutter_layer *layer;
+    const float *shell;
+    const struct clutter_scene *scene;
+    const struct clutter_choice *choice;
+    const struct view *camera;
+    const struct thing_volume *volume;
+    uint32_t id;
+    struct vec3 low, high; /* of the voxels of the thing, model frame */
+};
+
+/* The distance at a point, trilinear; THING_UNSEEN: a voxel around it is of no thing, or unseen. */
+static float distance_at(const struct surface_job *job, struct vec3 p)
+{
+    const struct voxel_grid *g = &job->volume->grid;
+    const double x = (p.x - g->origin.x) / g->voxel - 0.5, y = (p.y - g->origin.y) / g->voxel - 0.5,
+                 z = (p.z - g->origin.z) / g->voxel - 0.5;
+    if (!(x >= 0 && y >= 0 && z >= 0 && x < g->size[0] - 1 && y < g->size[1] - 1 && z < g->size[2] - 1))
+        return THING_UNSEEN;
+    const size_t i = (size_t)x, j = (size_t)y, k = (size_t)z, row = (size_t)g->size[0],
+                 slice = row * (size_t)g->size[1], at = k * slice + j * row + i;
+    const float u = (float)(x - (double)i), v = (float)(y - (double)j), w = (float)(z - (double)k);
+    float sum = 0;
+    for (size_t c = 0; c < 8; c++) {
+        const size_t n = at + (c & 1) + (c >> 1 & 1) * row + (c >> 2) * slice;
+        const float d = job->volume->distance[n];
+        if (job->volume->id[n] != job->id || d == THING_UNSEEN) return THING_UNSEEN;
+        sum += d * (c & 1 ? u : 1 - u) * (c >> 1 & 1 ? v : 1 - v) * (c >> 2 ? w : 1 - w);
+    }
+    return sum;
+}
+
+/* Cuts [*from, *to] to the part of a ray's coordinate between low and high. */
+static void cut(double *from, double *to, double at, double way, double low, double high)
+{
+    const double a = (low - at) / way, b = (high - at) / way;
+    if (way == 0 && (at < low || at > high)) *to = -INFINITY;
+    if (way == 0) return;
+    *from = fmax(*from, fmin(a, b));
+    *to = fmin(*to, fmax(a, b));
+}
+
+/* Whether a ray of the model's frame meets the surface; *t: where, of its direction. */
+static bool meet(double *t, const struct surface_job *job, struct vec3 from, struct vec3 way)
+{
+    double begin = 0, end = INFINITY;
+    cut(&begin, &end, from.x, way.x, job->low.x, job->high.x);
+    cut(&begin, &end, from.y, way.y, job->low.y, job->high.y);
+    cut(&begin, &end, from.z, way.z, job->low.z, job->high.z);
+    const double step = STEP * job->volume->grid.voxel / vec3_length(way);
+    float last = THING_UNSEEN;
+    for (double s = begin; s <= end; s += step) {
+        const float d = distance_at(job, vec3_add(from, vec3_scale(way, s)));
+        if (d <= 0 && last > 0 && last < THING_UNSEEN) {
+            *t = s - step * (double)(d / (d - last));
+            return true;
+        }
+        last = d;
+    }
+    return false;
+}
+
+/* Adds the colour that a view has at P, if it shows clutter there. */
+static void add_colour(double sum[4], const struct surface_job *job, int k, struct vec3 p)
+{
+    const struct view *view = &job->scene->set->views[job->choice->view[k]];
+    const struct clutter_view *source = &job->scene->sources[job->choice->view[k]].view;
+    double u, v;
+    const double z = view_project(view, p, &u, &v);
+    if (!(z > 0) || !(u >= 1 && v >= 1 && u < view->width - 1 && v < view->height - 1)) return;
+    const float nearest = source->sight[(size_t)v * (size_t)view->width + (size_t)u].nearest;
+    float c[4];
+    clutter_view_sample(c, source, u, v);
+    if (!(c[3] > MIN_COVER)) return;
+    const double voxel = job->volume->grid.voxel / job->scene->axes.scale;
+    const double off = nearest > 0 ? fabs(z - 1 / (double)nearest) : INFINITY;
+    const double penalty = clutter_penalty(p, job->camera->center, view->center);
+    const double weight =
+        (off < TOLERANCE * z + VOXELS * voxel ? 1 : ELSEWHERE) / pow(BLUR * BLUR + penalty * penalty, 2);
+    for (int i = 0; i < 3; i++) sum[i] += weight * (double)(c[i] / c[3]);
+    sum[3] += weight;
+}
+
+static void draw_pixel(const struct surface_job *job, int x, int y)
+{
+    const size_t at = (size_t)y * (size_t)job->camera->width + (size_t)x;
+    const struct model_axes *axes = &job->scene->axes;
+    float *to = job->layer->rgba + 4 * at;
+    double t, sum[4] = {0};
+    if (to[3] >= 1) return;
+    const struct vec3 from = model_from_world_point(axes, job->camera->center),
+                      one = model_from_world_point(axes, view_unproject(job->camera, x + 0.5, y + 0.5, 1));
+    if (!meet(&t, job, from, vec3_sub(one, from))) return;
+    const float z = (float)(t * axes->scale), shell = job->shell[at]; /* t: depth in scene units */
+    if (shell > 0 && z > shell * (1 + MAX_BEHIND)) return;
+    const struct vec3 p = view_unproject(job->camera, x + 0.5, y + 0.5, t);
+    for (int k = 0; k < job->choice->count; k++) add_colour(sum, job, k, p);
+    if (!(sum[3] > 0)) return;
+    const float left = 1 - to[3];
+    for (int i = 0; i < 3; i++) to[i] += left * (float)(sum[i] / sum[3]);
+    if (to[3] < 0.5f) job->layer->z[at] = (float)t;
+    to[3] = 1;
+}
+
+static void draw_rows(void *ctx, size_t begin, size_t end, int thread)
+{
+    const struct surface_job *job = ctx;
+    (void)thread;
+    for (size_t y = begin; y < end; y++)
+        for (int x = 0; x < job->camera->width; x++) draw_pixel(job, x, (int)y);
+}
+
+/* The box around the thing's voxels. */
+static void find_box(struct surface_job *job)
+{
+    const struct voxel_grid *g = &job->volume->grid;
+    job->low = vec3_make(INFINITY, INFINITY, INFINITY);
+    job->high = vec3_scale(job->low, -1);
+    for (int64_t i = 0; i < (int64_t)voxel_count(g); i++) {
+        if (job->volume->id[i] != job->id) continue;
+        const struct vec3 p = voxel_centre(g, i);
+        job->low = vec3_make(fmin(job->low.x, p.x), fmin(job->low.y, p.y), fmin(job->low.z, p.z));
+        job->high = vec3_make(fmax(job->high.x, p.x), fmax(job->high.y, p.y), fmax(job->high.z, p.z));
+    }
+}
+
+void thing_surface_draw(struct clutter_layer *layer, const float *shell, const struct clutter_scene *scene,
+                        const struct clutter_choice *choice, const struct view *camera,
+                        const struct thing_volume *volume, uint32_t id)
+{
+    struct surface_job job = {layer, shell, scene, choice, camera, volume, id, .low = {0, 0, 0}};
+    find_box(&job);
+    parallel_for((size_t)camera->height, 4, draw_rows, &job);
+}

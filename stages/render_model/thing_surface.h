@@ -1,0 +1,15 @@
+/* thing_surface.h - the fused surface of a thing, where the views' own layers do not show it. */
+#ifndef REMODEL_THING_SURFACE_H
+#define REMODEL_THING_SURFACE_H
+
+#include "common/model/thing_volume.h"
+#include "stages/render_model/clutter_scene.h"
+
+/* Draws the surface of the thing `id` under what a layer has of it: every pixel whose ray meets the surface becomes
+ * covered. shell: as of clutter_blend(). camera: scene frame; the views of the choice are loaded. Same bits for any
+ * number of threads. */
+void thing_surface_draw(struct clutter_layer *layer, const float *shell, const struct clutter_scene *scene,
+                        const struct clutter_choice *choice, const struct view *camera,
+                        const struct thing_volume *volume, uint32_t id);
+
+#endif
