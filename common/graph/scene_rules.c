@@ -219,7 +219,7 @@ void rule_draws_model(struct graph *g, const char *model)
     rule_takes(g, "--outdoors", PATH(g, OUTDOORS));
     rule_takes(g, "--exposure", PATH(g, EXPOSURE));
     rule_after(g, graph_own(g, "stamp/exposure.txt"));
-    if (map && graph_scene_file(g, "things.txt")) {
+    if (map) {
         rule_needs(g, PATH(g, THINGS));
         rule_needs(g, PATH(g, THING_VOLUME));
         rule_option(g, "--things", FOLDER(g, THINGS));

@@ -56,7 +56,7 @@ enum status thing_list_write(const struct thing_list *list, const char *path, co
     for (int i = 0; !err->status && i < list->count; i++) {
         const struct thing *t = &list->things[i];
         if (!textfile_quote(t->name, name, sizeof name, err) && !textfile_quote(t->view, view, sizeof view, err))
-            fprintf(f.fp, "thing %s %s %.6g %.6g %.6g %.6g %.6g %.6g %" PRId64 " %d %s %.6g %.6g %.6g %.6g\n", name,
+            fprintf(f.fp, "thing %s %s %.9g %.9g %.9g %.9g %.9g %.9g %" PRId64 " %d %s %.9g %.9g %.9g %.9g\n", name,
                     words[t->support], t->low.x, t->low.y, t->low.z, t->high.x, t->high.y, t->high.z, t->voxels,
                     t->views, view, t->rect[0], t->rect[1], t->rect[2], t->rect[3]);
     }
@@ -89,13 +89,15 @@ static enum status read_thing(struct thing *t, struct textfile *f, struct err *e
         if (textfile_double(f, "corner of the box", box[i], err)) return err->status;
     if (!(t->low.x < t->high.x && t->low.y < t->high.y && t->low.z < t->high.z))
         return textfile_error(f, err, "a box without size", "a lower corner, then an upper one");
-    if (textfile_int(f, "voxels", 1, INT64_MAX, &t->voxels, err) || textfile_int(f, "views", 1, INT_MAX, &views, err) ||
+    if (textfile_int(f, "voxels", 1, INT64_MAX, &t->voxels, err) || textfile_int(f, "views", 0, INT_MAX, &views, err) ||
         textfile_word(f, "view", &word, err))
         return err->status;
     t->views = (int)views;
     if (!(t->view = strdup(word))) return err_nomem(err, "a name", strlen(word));
     for (int i = 0; i < 4; i++)
         if (textfile_double(f, "edge of the rectangle", &t->rect[i], err)) return err->status;
+    if (!(t->rect[0] <= t->rect[2] && t->rect[1] <= t->rect[3]))
+        return textfile_error(f, err, "a rectangle without size", "its left and upper edge, then right and lower");
     return textfile_end(f, err);
 }
 

@@ -4,8 +4,8 @@
  *   thing NAME SUPPORT X0 Y0 Z0 X1 Y1 Z1 VOXELS VIEWS VIEW U0 V0 U1 V1
  *
  * One line for each; its number in the other files is that of its line, from 1. SUPPORT: floor, wall, ceiling, or none.
- * X0 to Z1: the box around it, model frame. VOXELS: of its surfaces. VIEWS: how many show it. VIEW shows it best, in the
- * rectangle U0 V0 U1 V1 (px). */
+ * X0 to Z1: the box around it, model frame. VOXELS: of its surfaces. VIEWS: how many show enough of it to count.
+ * VIEW shows it best, in the rectangle U0 V0 U1 V1 (px); "" and a rectangle of no size: none shows it. */
 #ifndef REMODEL_THING_LIST_H
 #define REMODEL_THING_LIST_H
 
@@ -22,7 +22,7 @@ struct thing {
     enum thing_support support;
     struct vec3 low, high; /* model frame */
     int64_t voxels;
-    int views;      /* 1 or more */
+    int views;      /* that show enough of it to count */
     char *view;     /* owned */
     double rect[4]; /* px of the view: left, top, right, bottom */
 };

@@ -8,7 +8,7 @@
 
 #include "common/image/exr.h"
 
-int64_t voxel_at(const struct voxel_grid *g, struct vec3 p)
+int64_t thing_voxel_at(const struct voxel_grid *g, struct vec3 p)
 {
     const double x = floor((p.x - g->origin.x) / g->voxel), y = floor((p.y - g->origin.y) / g->voxel),
                  z = floor((p.z - g->origin.z) / g->voxel);
@@ -16,7 +16,7 @@ int64_t voxel_at(const struct voxel_grid *g, struct vec3 p)
     return ((int64_t)z * g->size[1] + (int64_t)y) * g->size[0] + (int64_t)x;
 }
 
-struct vec3 voxel_centre(const struct voxel_grid *g, int64_t at)
+struct vec3 thing_voxel_centre(const struct voxel_grid *g, int64_t at)
 {
     const int64_t x = at % g->size[0], y = at / g->size[0] % g->size[1], z = at / g->size[0] / g->size[1];
     return vec3_add(g->origin, vec3_scale(vec3_make((double)x + 0.5, (double)y + 0.5, (double)z + 0.5), g->voxel));
@@ -91,9 +91,9 @@ enum status thing_volume_read(struct thing_volume *v, const char *path, uint32_t
     }
     exr_image_release(&im);
     for (size_t i = 0; !err->status && i < voxel_count(&v->grid); i++)
-        if (!(v->distance[i] >= -1 && v->distance[i] <= THING_UNSEEN))
-            err_set(err, ST_DATA, "%s: voxel %zu has distance %g, wanted -1 to %g; run find_things again.", path, i,
-                    (double)v->distance[i], (double)THING_UNSEEN);
+        if (!(v->distance[i] >= -1 && v->distance[i] <= 1) && v->distance[i] != THING_UNSEEN)
+            err_set(err, ST_DATA, "%s: voxel %zu has distance %g, wanted -1 to 1, or %g; run find_things again.", path,
+                    i, (double)v->distance[i], (double)THING_UNSEEN);
         else if (v->id[i] > max_id)
             err_set(err, ST_DATA, "%s: voxel %zu is of thing %u, but there are %u; run find_things again.", path, i,
                     v->id[i], max_id);

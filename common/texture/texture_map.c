@@ -253,6 +253,11 @@ static enum status check_map(const struct texture_map *map, const char *path, st
                 "%s: the face %s has %d triangles of new area, wanted at most %d; split the wall or the room "
                 "that it belongs to.",
                 path, map->faces[i].name, map->faces[i].added_count, (int)MAX_CORNERS);
+    for (int i = 0; i < map->thing_count; i++) {
+        const struct texture_thing *t = &map->things[i];
+        if (!isfinite(t->by[0]) || !isfinite(t->by[1]) || !isfinite(t->by[2]) || !isfinite(t->turn))
+            return err_set(err, ST_DATA, "%s: the place of the thing %s is not finite.", path, t->name);
+    }
     for (int i = 0; i < map->zone_count; i++)
         if (map->zones[i].corner_count < 3 || map->zones[i].corner_count > MAX_CORNERS)
             return err_set(err, ST_DATA, "%s: the footprint of %s has %d corners, wanted 3 to %d.", path,
@@ -446,12 +451,16 @@ static enum status read_zone(struct texture_map *map, struct textfile *t, bool k
     return err->status;
 }
 
-static enum status read_thing_line(struct texture_thing *thing, struct textfile *t, struct err *err)
+static enum status read_thing_line(struct texture_thing *thing, const struct texture_map *map, struct textfile *t,
+                                   struct err *err)
 {
     char *word;
     int kind = 0;
-    if (copy_word(&thing->name, t, "the name of a thing", err) || textfile_word(t, "what happens to it", &word, err))
-        return err->status;
+    if (copy_word(&thing->name, t, "the name of a thing", err)) return err->status;
+    for (int i = 0; i < map->thing_count; i++)
+        if (!strcmp(map->things[i].name, thing->name))
+            return textfile_error(t, err, thing->name, "a thing that no line above has");
+    if (textfile_word(t, "what happens to it", &word, err)) return err->status;
     while (kind <= TEXTURE_THING_PLACE && strcmp(word, thing_words[kind])) kind++;
     if (kind > TEXTURE_THING_PLACE) return textfile_error(t, err, word, "clear, keep, move or place");
     thing->kind = (enum texture_thing_kind)kind;
@@ -468,7 +477,7 @@ static enum status read_thing_line(struct texture_thing *thing, struct textfile 
 static enum status read_thing(struct texture_map *map, struct textfile *t, struct err *err)
 {
     struct texture_thing thing = {0};
-    if (!read_thing_line(&thing, t, err)) texture_map_add_thing(map, &thing, err);
+    if (!read_thing_line(&thing, map, t, err)) texture_map_add_thing(map, &thing, err);
     free(thing.name);
     free(thing.from);
     return err->status;
@@ -479,6 +488,7 @@ static enum status read_line(struct texture_map *map, struct textfile *t, struct
     static const char wanted[] = "lamp, face, gloss, place, edge, outdoors, colour, new, clear, keep or thing";
     char *word;
     if (textfile_word(t, wanted, &word, err)) return err->status;
+    if (map->thing_count && strcmp(word, "thing")) return textfile_error(t, err, word, "lines \"thing\" at the end");
     if (!strcmp(word, "lamp")) return read_lamp(map, t, err);
     if (!strcmp(word, "face")) return read_face(map, t, err);
     if (!strcmp(word, "thing")) return read_thing(map, t, err);

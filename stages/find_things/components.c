@@ -83,8 +83,8 @@ static int larger_first(const void *a, const void *b)
     return p->id < q->id ? -1 : p->id > q->id;
 }
 
-/* Counts ids anew, largest first, and leaves out those shorter than min_length voxels, or with fewer than min_voxels. named (may be NULL): ids that
- * are renamed alike. */
+/* Counts ids anew, largest first, and leaves out those shorter than min_length voxels, or with fewer than min_voxels.
+ * named (may be NULL): ids that are renamed alike. */
 static enum status count_anew(uint32_t *id, int *count, const struct voxel_grid *g, double min_length, int min_voxels,
                               uint32_t *named, int names, struct err *err)
 {
@@ -129,7 +129,8 @@ enum status components_find(uint32_t *id, int *count, const struct fused_volume 
 
 /* ------------------------------------------------------------------------------------------------------------ marks */
 
-/* Grows the seeds of names through the surfaces that they are on, all at the same pace. of_name[k]: the id of name k. */
+/* Grows the seeds of names through the surfaces that they are on, all at the same pace. of_name[k]: the id of name k.
+ * */
 static void split(struct walk *w, uint32_t *id, const struct voxel_grid *g, const struct thing_seed *seeds, int count,
                   const uint32_t *of_name, const bool *marked)
 {

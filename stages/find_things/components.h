@@ -13,7 +13,8 @@ struct thing_seed {
 };
 
 /* Sets id[voxel], one for each of the grid, to 1 + the number of the connected surface that it belongs to, largest
- * first; 0: of none. Surfaces shorter than min_size, or of fewer than min_voxels, are left out. height: of the model. *count: of surfaces. */
+ * first; 0: of none. Surfaces shorter than min_size, or of fewer than min_voxels, are left out. height: of the model.
+ * *count: of surfaces. */
 enum status components_find(uint32_t *id, int *count, const struct fused_volume *f, const struct things_params *params,
                             double height, int views, struct err *err);
 

@@ -34,7 +34,7 @@ struct fused_pixel {
     uint32_t thing;            /* 1: it shows clutter */
 };
 
-enum status fused_volume_init(struct fused_volume *f, const struct voxel_grid *grid, struct err *err)
+enum status fuse_volume_init(struct fused_volume *f, const struct voxel_grid *grid, struct err *err)
 {
     const size_t n = voxel_count(grid);
     *f = (struct fused_volume){.grid = *grid};
@@ -42,11 +42,11 @@ enum status fused_volume_init(struct fused_volume *f, const struct voxel_grid *g
     f->weight = calloc(n, sizeof *f->weight);
     f->views = calloc(n, sizeof *f->views);
     if (f->sum && f->weight && f->views) return ST_OK;
-    fused_volume_release(f);
+    fuse_volume_release(f);
     return err_nomem(err, "a volume of voxels", n * 9);
 }
 
-void fused_volume_release(struct fused_volume *f)
+void fuse_volume_release(struct fused_volume *f)
 {
     free(f->sum);
     free(f->weight);
@@ -108,7 +108,7 @@ static void fuse_row(const struct fuse_job *job, int y, int z)
     const struct voxel_grid *g = &job->f->grid;
     const struct view *c = job->camera;
     const size_t row = ((size_t)z * (size_t)g->size[1] + (size_t)y) * (size_t)g->size[0];
-    const struct vec3 first = voxel_centre(g, (int64_t)row);
+    const struct vec3 first = thing_voxel_centre(g, (int64_t)row);
     const struct vec3 p = vec3_add(mat3_apply(c->cam_from_world, first), c->translation);
     const struct vec3 d = vec3_scale(
         vec3_make(c->cam_from_world.m[0][0], c->cam_from_world.m[1][0], c->cam_from_world.m[2][0]), g->voxel);
@@ -142,7 +142,7 @@ static void fuse_rows(void *ctx, size_t begin, size_t end, int thread)
         fuse_row(job, (int)(i % (size_t)job->f->grid.size[1]), (int)(i / (size_t)job->f->grid.size[1]));
 }
 
-enum status fused_volume_add(struct fused_volume *f, const struct fused_view *view, struct err *err)
+enum status fuse_volume_add(struct fused_volume *f, const struct fused_view *view, struct err *err)
 {
     const struct view *camera = &view->camera;
     const size_t pixels = (size_t)camera->width * (size_t)camera->height;

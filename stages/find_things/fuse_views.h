@@ -15,8 +15,8 @@ struct fused_volume {
     uint8_t *views; /* that show a surface of clutter within its band, at most 255 */
 };
 
-enum status fused_volume_init(struct fused_volume *f, const struct voxel_grid *grid, struct err *err);
-void fused_volume_release(struct fused_volume *f);
+enum status fuse_volume_init(struct fused_volume *f, const struct voxel_grid *grid, struct err *err);
+void fuse_volume_release(struct fused_volume *f);
 
 /* A view as it is fused. */
 struct fused_view {
@@ -29,6 +29,6 @@ struct fused_view {
 };
 
 /* Adds a view. ST_DATA: sizes differ. Same bits for any number of threads. */
-enum status fused_volume_add(struct fused_volume *f, const struct fused_view *view, struct err *err);
+enum status fuse_volume_add(struct fused_volume *f, const struct fused_view *view, struct err *err);
 
 #endif

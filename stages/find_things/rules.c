@@ -11,7 +11,10 @@ RULES(find_things)
     rule_makes(g, PATH(g, THINGS));
     rule_makes(g, PATH(g, THING_VOLUME));
     rule_makes(g, PATH(g, THING_SHEET));
-    for (int i = 0; i < f->views.count; i++) rule_makes(g, PATH(g, THING_MASK, .view = f->views.names[i]));
+    for (int i = 0; i < f->views.count; i++) {
+        rule_makes(g, PATH(g, THING_MASK, .view = f->views.names[i]));
+        graph_goal(g, "things", PATH(g, THING_MASK, .view = f->views.names[i]));
+    }
     rule_takes(g, "--model", PATH(g, MODEL));
     rule_takes(g, "--axes", PATH(g, AXES));
     rule_takes_cameras(g);

@@ -56,7 +56,7 @@ static void find_support(struct thing *t, uint32_t id, const struct thing_volume
     struct gaps g = {INFINITY, INFINITY, INFINITY, 0};
     const int64_t every = t->voxels / SAMPLES + 1;
     for (int64_t i = 0; i < (int64_t)voxel_count(&v->grid); i++)
-        if (v->id[i] == id && g.seen++ % every == 0) look_around(&g, m, voxel_centre(&v->grid, i));
+        if (v->id[i] == id && g.seen++ % every == 0) look_around(&g, m, thing_voxel_centre(&v->grid, i));
     t->support = g.below <= FLOOR_REACH * reach && g.below <= FLOOR_REACH * g.beside ? THING_ON_FLOOR
                  : g.beside <= reach && g.beside <= g.above                          ? THING_ON_WALL
                  : g.above <= reach                                                  ? THING_ON_CEILING
@@ -67,6 +67,6 @@ void things_measure(struct thing *things, int count, const struct thing_volume *
                     double reach)
 {
     for (int64_t i = 0; i < (int64_t)voxel_count(&v->grid); i++)
-        if (v->id[i]) grow_box(&things[v->id[i] - 1], voxel_centre(&v->grid, i), 0.5 * v->grid.voxel);
+        if (v->id[i]) grow_box(&things[v->id[i] - 1], thing_voxel_centre(&v->grid, i), 0.5 * v->grid.voxel);
     for (int k = 0; k < count; k++) find_support(&things[k], (uint32_t)k + 1, v, model, reach);
 }

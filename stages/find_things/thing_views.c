@@ -70,9 +70,7 @@ enum status thing_sights_add(struct thing_sight *sights, int count, const uint32
     for (int k = 0; k < count; k++) {
         const double score = score_of(&list[k], view);
         struct thing_sight *s = &sights[k];
-        if ((double)list[k].pixels < MIN_SHARE * view->width * view->height && s->views) continue;
-        if (!list[k].pixels) continue;
-        s->views++;
+        s->views += (double)list[k].pixels >= MIN_SHARE * view->width * view->height;
         if (!(score > s->score)) continue;
         s->score = score;
         s->best = view_index;

@@ -112,7 +112,7 @@ static enum status fuse_all(struct fused_volume *fused, const struct finder *f, 
         if (!view_data_read(&d, job, i, err)) {
             const struct fused_view view = {d.camera,   &d.depth,        &d.ids,
                                             f->is_pane, job->model->ids, job->in->axes.scale};
-            fused_volume_add(fused, &view, err);
+            fuse_volume_add(fused, &view, err);
         }
         view_data_release(&d);
         progress_add(&progress, 1);
@@ -143,7 +143,7 @@ static int64_t meet_surface(const struct thing_volume *grown, const struct thing
         for (int dz = -MARK_SLACK; dz <= MARK_SLACK; dz++)
             for (int dy = -MARK_SLACK; dy <= MARK_SLACK; dy++)
                 for (int dx = -MARK_SLACK; dx <= MARK_SLACK; dx++) {
-                    const int64_t at = voxel_at(g, vec3_add(p, vec3_scale(vec3_make(dx, dy, dz), g->voxel)));
+                    const int64_t at = thing_voxel_at(g, vec3_add(p, vec3_scale(vec3_make(dx, dy, dz), g->voxel)));
                     const double away = dx * dx + dy * dy + dz * dz;
                     if (at < 0 || surfaces->id[at] != id || !(away < least)) continue;
                     least = away;
@@ -176,21 +176,37 @@ static enum status apply_marks(uint32_t *named, struct finder *f, struct err *er
     if (!err->status)
         components_mark(f->volume.id, &f->count, &f->volume.grid, seeds, marks->mark_count, named, marks->name_count,
                         err);
+    for (int n = 0; !err->status && n < marks->name_count; n++) {
+        bool met = false;
+        for (int k = 0; k < marks->mark_count; k++) met |= seeds[k].name == n && seeds[k].at >= 0;
+        if (met && !named[n])
+            log_warn("things.txt:%d: all marks of %s are where another thing is marked, so it is left out.",
+                     marks->lines[n], marks->names[n]);
+    }
     free(seeds);
     free(grown.id);
     return err->status;
 }
 
-/* Names the things: as users did, the others by their numbers. */
+static bool is_named(const struct thing_marks *marks, const char *name)
+{
+    for (int k = 0; k < marks->name_count; k++)
+        if (!strcmp(marks->names[k], name)) return true;
+    return false;
+}
+
+/* Names the things: as users did, the others by numbers that no user took. */
 static enum status name_things(struct finder *f, const uint32_t *named, struct err *err)
 {
+    const struct thing_marks *marks = f->job->marks;
     char text[32];
-    for (int k = 0; k < f->job->marks->name_count; k++)
-        if (named[k] && !(f->things[named[k] - 1].name = strdup(f->job->marks->names[k])))
+    for (int k = 0; k < marks->name_count; k++)
+        if (named[k] && !(f->things[named[k] - 1].name = strdup(marks->names[k])))
             return err_nomem(err, "a name", sizeof text);
     for (int k = 0, number = 0; k < f->count; k++) {
         if (f->things[k].name) continue;
-        snprintf(text, sizeof text, "thing%d", ++number);
+        do snprintf(text, sizeof text, "thing%d", ++number);
+        while (is_named(marks, text));
         if (!(f->things[k].name = strdup(text))) return err_nomem(err, "a name", sizeof text);
     }
     return ST_OK;
@@ -205,9 +221,9 @@ static enum status grow(struct finder *f, struct err *err)
     for (int k = 0; k < f->count; k++) {
         const struct thing *t = &f->things[k];
         const struct vec3 middle = vec3_scale(vec3_add(t->low, t->high), 0.5);
-        const double below = support_below(f->job->model, vec3_make(middle.x, middle.y, t->low.z));
+        const double below = support_below(f->job->model, middle);
         const bool stands = t->support == THING_ON_FLOOR && isfinite(below);
-        lowest[k + 1] = stands ? (int)fmax(0, floor((t->low.z - below - g->origin.z) / g->voxel)) : -1;
+        lowest[k + 1] = stands ? (int)fmax(0, floor((middle.z - below - g->origin.z) / g->voxel)) : -1;
     }
     components_stand(f->volume.id, g, lowest);
     free(lowest);
@@ -221,7 +237,7 @@ static enum status find_surfaces(struct finder *f, struct err *err)
     uint32_t *named = calloc((size_t)marks->name_count + 1, sizeof *named);
     if (!named) err_nomem(err, "names", (size_t)marks->name_count * sizeof *named);
     if (!err->status && !find_panes(f, err) && !choose_grid(&f->volume.grid, f, err) &&
-        !fused_volume_init(&fused, &f->volume.grid, err) && !fuse_all(&fused, f, err) &&
+        !fuse_volume_init(&fused, &f->volume.grid, err) && !fuse_all(&fused, f, err) &&
         !(f->volume.id = malloc(voxel_count(&f->volume.grid) * sizeof *f->volume.id)))
         err_nomem(err, "a volume of voxels", voxel_count(&f->volume.grid));
     if (!err->status)
@@ -232,7 +248,7 @@ static enum status find_surfaces(struct finder *f, struct err *err)
         f->volume.distance = fused.sum;
         fused.sum = NULL;
     }
-    fused_volume_release(&fused);
+    fuse_volume_release(&fused);
     if (!err->status && !apply_marks(named, f, err)) {
         const size_t n = (size_t)f->count + 1;
         f->things = calloc(n, sizeof *f->things);
@@ -248,7 +264,8 @@ static enum status find_surfaces(struct finder *f, struct err *err)
     return err->status;
 }
 
-/* ------------------------------------------------------------------------------------------------------ descriptions */
+/* ------------------------------------------------------------------------------------------------------ descriptions
+ * */
 
 static uint32_t *new_mask(const struct view *view, struct err *err)
 {
@@ -286,7 +303,7 @@ static enum status cut_tiles(struct finder *f, int i, struct err *err)
     struct view_data d = {0};
     uint32_t *mask = NULL;
     for (int k = 0; !err->status && k < f->count; k++) {
-        if (!f->sights[k].views || f->sights[k].best != i) continue;
+        if (!(f->sights[k].score > 0) || f->sights[k].best != i) continue;
         if (!mask && (mask = new_mask(view, err)) && !view_data_read(&d, job, i, err) &&
             !view_image_read(&photo, job->views, view, job->prov, err))
             thing_mask_find(mask, &f->volume, &d.camera, &d.depth, &d.ids, job->in->axes.scale);
@@ -307,10 +324,10 @@ static enum status describe(struct finder *f, struct err *err)
         const struct thing_sight *s = &f->sights[k];
         struct thing *t = &f->things[k];
         t->views = s->views;
-        if (!(t->view = strdup(s->views ? set->views[s->best].name : ""))) err_nomem(err, "a name", 1);
+        if (!(t->view = strdup(s->score > 0 ? set->views[s->best].name : ""))) err_nomem(err, "a name", 1);
         for (int e = 0; e < 2; e++) {
             t->rect[e] = s->low[e];
-            t->rect[e + 2] = s->high[e] + 1;
+            t->rect[e + 2] = s->score > 0 ? s->high[e] + 1 : 0;
         }
     }
     for (int i = 0; !err->status && i < set->view_count; i++) cut_tiles(f, i, err);

@@ -23,17 +23,17 @@ void clutter_close(struct clutter_scene *scene); /* NULL is allowed */
 
 /* Draws clutter over the shell `p`, which was drawn from the same camera (model frame): pixels that it covers get its
  * colour, blended by its coverage, and MADE_CLUTTER where that is at least a half. Clutter behind the shell's z is
- * hidden. Shell pixels where depth is too unsure to tell become MADE_UNSURE. front (may be NULL): gets the depth of what
- * is seen in each pixel, model units, 0: none. views, count: indices into the set that clutter may come from, nearest
- * first; NULL: chosen here. The views that were read are added to prov (may be NULL). Same bits for any number of
- * threads. */
+ * hidden. Shell pixels where depth is too unsure to tell become MADE_UNSURE. front (may be NULL): gets the depth of
+ * what is seen in each pixel, model units, 0: none. views, count: indices into the set that clutter may come from,
+ * nearest first; NULL: chosen here. The views that were read are added to prov (may be NULL). Same bits for any number
+ * of threads. */
 enum status clutter_draw(struct model_picture *p, float *front, struct clutter_scene *scene, const struct view *camera,
                          const struct clutter_filter *filter, const int *views, int count, struct provenance *prov,
                          struct err *err);
 
 /* Draws the one thing that the filter lets pass, wherever it is before `front`, of which it becomes a part. camera: the
- * picture's, moved as the thing was, the other way. low, high: the box around the thing. shown: set to 0 where the thing
- * covers something (may be NULL). */
+ * picture's, moved as the thing was, the other way. low, high: the box around the thing. shown: set to 0 where the
+ * thing covers something (may be NULL). */
 enum status clutter_draw_thing(struct model_picture *p, float *front, uint8_t *shown, struct clutter_scene *scene,
                                const struct view *camera, const struct clutter_filter *filter, struct vec3 low,
                                struct vec3 high, struct provenance *prov, struct err *err);

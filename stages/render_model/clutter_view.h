@@ -27,8 +27,8 @@ struct clutter_view {
  * has no segment. */
 enum status clutter_view_make(struct clutter_view *v, struct layered_depth *depth, const struct view_ids *ids,
                               const char *name, struct err *err);
-/* The clutter that the view shows at a position in its picture, bilinear: premultiplied colour, and how much of the pixel
- * it covers. */
+/* The clutter that the view shows at a position in its picture, bilinear: premultiplied colour, and how much of the
+ * pixel it covers. */
 void clutter_view_sample(float rgba[4], const struct clutter_view *v, double x, double y);
 size_t clutter_view_bytes(const struct view *view); /* of memory that it needs, about */
 void clutter_view_release(struct clutter_view *v);

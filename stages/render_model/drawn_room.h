@@ -54,7 +54,8 @@ struct texture_pair {
 };
 
 /* Draws the shell and the clutter over it. camera: model frame. own: the original view that it is; -1: none. Things
- * that the edit puts elsewhere are drawn too, unless the camera is a view's: there the photo's own pixels come first. */
+ * that the edit puts elsewhere are drawn too, unless the camera is a view's: there the photo's own pixels come first.
+ * */
 enum status room_draw(struct model_picture *picture, struct room *room, const struct view *camera,
                       const struct texture_pair *pair, int own, struct provenance *prov, struct err *err);
 

@@ -79,8 +79,8 @@ static enum status grow(uint8_t *same, const struct view *camera, double margin,
     return err->status;
 }
 
-/* Whether the first thing on the way to the model's surface at depth z is gone: legs are too thin for depth, and where a
- * view's depth is off, others have seen what is there. */
+/* Whether the first thing on the way to the model's surface at depth z is gone: legs are too thin for depth, and where
+ * a view's depth is off, others have seen what is there. */
 static bool meets_gone(const struct clutter_filter *filter, const struct view *camera, double u, double v, double z)
 {
     if (!filter->volume || !(z > 0)) return false;

@@ -1,7 +1,9 @@
 /* placed_things.c - where an edit puts things, and whether they fit there; see placed_things.h.
  *
- * A thing is rigid and its support stays what it is: what stood on the floor must stand on the floor again, what hung on
- * a wall must have a wall as near. Only its box is tested, shrunk a little, since depth at outlines is off. */
+ * A zone that is cleared takes whole things: those of which it holds more than half. The others stay whole, too.
+ *
+ * A thing is rigid and its support stays what it is: what stood on the floor must stand on the floor again, what hung
+ * on a wall must have a wall as near. Only its box is tested, shrunk a little, since depth at outlines is off. */
 #include "stages/render_model/placed_things.h"
 
 #include <math.h>
@@ -13,9 +15,10 @@
 #include "common/product/product.h"
 
 #define SHRUNK   0.9  /* of the box's sides: what may not be in a wall */
+#define MAX_STEP 0.03 /* of the model's height: between points of a box that are tested */
 #define OFF_SIDE 0.03 /* of the model's height: change of the gap between a thing and its support that is none */
 
-enum { STEPS = 5 }; /* points along each side of a box that are tested */
+enum { MIN_STEPS = 3, MAX_STEPS = 24 }; /* points along each side of a box that are tested */
 
 void placed_things_release(struct placed_things *t)
 {
@@ -62,30 +65,45 @@ static double gap(const struct model_rays *m, struct vec3 from, struct vec3 dire
     return ray_scene_hit(&m->rays, from, direction, &hit) ? hit.t : INFINITY;
 }
 
+/* The same, below 0 from inside of a solid: how far the surface is behind. */
+static double signed_gap(const struct model_rays *m, struct vec3 from, struct vec3 direction)
+{
+    struct ray_hit hit;
+    if (!ray_scene_hit(&m->rays, from, direction, &hit)) return INFINITY;
+    return hit.front ? hit.t : -gap(m, from, vec3_scale(direction, -1));
+}
+
 /* How far a point in a solid is from the nearest side of it. */
 static double depth_in(const struct model_rays *m, struct vec3 p)
 {
+    static const struct vec3 ways[6] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
     double least = INFINITY;
-    for (int k = 0; k < 4; k++) {
-        const double sign = k & 1 ? -1 : 1;
-        least = fmin(least, gap(m, p, k & 2 ? vec3_make(0, sign, 0) : vec3_make(sign, 0, 0)));
-    }
+    for (int k = 0; k < 6; k++) least = fmin(least, gap(m, p, ways[k]));
     return least;
 }
 
-static enum status check_walls(const struct texture_thing *edit, const struct thing *t, const struct placed_thing *p,
-                               const struct model_rays *m, struct err *err)
+/* Points along a side of a box, so that none is far from the next. */
+static int steps_along(double side, double height)
 {
+    const double steps = ceil(SHRUNK * side / (MAX_STEP * height)) + 1;
+    return steps < MIN_STEPS ? MIN_STEPS : steps > MAX_STEPS ? MAX_STEPS : (int)steps;
+}
+
+static enum status check_walls(const struct texture_thing *edit, const struct thing *t, const struct placed_thing *p,
+                               const struct model_rays *m, double height, struct err *err)
+{
+    const int nx = steps_along(t->high.x - t->low.x, height), ny = steps_along(t->high.y - t->low.y, height),
+              nz = steps_along(t->high.z - t->low.z, height);
     double deepest = -1;
-    for (int i = 0; i < STEPS * STEPS * STEPS; i++) {
-        const double x = 2.0 * (i % STEPS) / (STEPS - 1) - 1, y = 2.0 * (i / STEPS % STEPS) / (STEPS - 1) - 1,
-                     z = 2.0 * (i / STEPS / STEPS) / (STEPS - 1) - 1;
+    for (int i = 0; i < nx * ny * nz; i++) {
+        const double x = 2.0 * (i % nx) / (nx - 1) - 1, y = 2.0 * (i / nx % ny) / (ny - 1) - 1,
+                     z = 2.0 * (i / nx / ny) / (nz - 1) - 1;
         const struct vec3 at = place(p, box_point(t, SHRUNK * x, SHRUNK * y, SHRUNK * z));
         if (model_rays_inside(m, at, 0)) deepest = fmax(deepest, depth_in(m, at));
     }
     if (deepest < 0) return ST_OK;
-    return err_set(err, ST_DATA, "%s would stand %.2g deep in a wall, a box or a floor. Move it elsewhere.", edit->name,
-                   deepest);
+    return err_set(err, ST_DATA, "%s would stand at least %.2g deep in a wall, a box or a floor. Move it elsewhere.",
+                   edit->name, deepest);
 }
 
 /* The direction from a thing to what supports it, in the room of the photographs, and the gap between them. */
@@ -113,14 +131,15 @@ static enum status check_support(const struct texture_thing *edit, const struct 
     struct vec3 direction, from;
     if (t->support == THING_ON_NONE) return ST_OK;
     const double was = support_gap(&direction, &from, t, before);
-    const double is = gap(after, place(p, from), mat3_apply(p->turn, direction));
+    const double is = signed_gap(after, place(p, from), mat3_apply(p->turn, direction));
     if (!isfinite(was) || fabs(is - was) <= OFF_SIDE * height) return ST_OK;
     const char *support = thing_support_word(t->support);
     if (!isfinite(is))
-        return err_set(err, ST_DATA, "%s stood on the %s, but there is no %s at its new place.", edit->name, support,
-                       support);
-    return err_set(err, ST_DATA, "%s would be %.2g %s the %s that it stands on. Move it by that much less, or more.",
-                   edit->name, fabs(is - was), is > was ? "away from" : "too far into", support);
+        return err_set(err, ST_DATA, "%s %s the %s, but there is no %s at its new place.", edit->name,
+                       t->support == THING_ON_FLOOR ? "stood on" : "hung on", support, support);
+    return err_set(err, ST_DATA, "%s would be %.2g %s the %s that it %s on. Move it by that much less, or more.",
+                   edit->name, fabs(is - was), is > was ? "away from" : "too far into", support,
+                   t->support == THING_ON_FLOOR ? "stands" : "hangs");
 }
 
 /* --------------------------------------------------------------------------------------------------------- placing */
@@ -181,10 +200,29 @@ static enum status apply(struct placed_things *t, const struct texture_thing *ed
     if (!strcmp(edit->name, edit->from)) t->fate[id] = THING_IS_GONE;
     if (edit->kind == TEXTURE_THING_CLEAR) return ST_OK;
     const struct placed_thing p = placement(edit, thing, id, before);
-    if (!check_walls(edit, thing, &p, after, err) &&
-        !check_support(edit, thing, &p, before, after, height_of(before), err))
+    const double height = height_of(before);
+    if (!check_support(edit, thing, &p, before, after, height, err) &&
+        !check_walls(edit, thing, &p, after, height, err))
         t->placed[t->placed_count++] = p;
     return err->status;
+}
+
+/* Things that zones clear. */
+static enum status apply_zones(struct placed_things *t, const struct texture_map *map, struct err *err)
+{
+    const size_t things = (size_t)t->list.count + 1;
+    int64_t *held = calloc(2 * things, sizeof *held), *all = held + things;
+    if (!held) return err_nomem(err, "things", 2 * things * sizeof *held);
+    for (int64_t i = 0; i < (int64_t)voxel_count(&t->volume.grid); i++) {
+        const uint32_t id = t->volume.id[i];
+        if (!id) continue;
+        all[id]++;
+        held[id] += texture_map_clears(map, thing_voxel_centre(&t->volume.grid, i));
+    }
+    for (size_t id = 1; id < things; id++)
+        if (held[id]) t->fate[id] = 2 * held[id] > all[id] ? THING_IS_GONE : THING_IS_KEPT;
+    free(held);
+    return ST_OK;
 }
 
 enum status placed_things_read(struct placed_things *t, const char *folder, const struct texture_map *map,
@@ -193,7 +231,7 @@ enum status placed_things_read(struct placed_things *t, const char *folder, cons
 {
     char path[FILE_PATH];
     *t = (struct placed_things){0};
-    if (!map || !map->thing_count) return ST_OK;
+    if (!map || (!map->thing_count && (!map->zone_count || !folder))) return ST_OK;
     if (!folder)
         return err_set(err, ST_USAGE, "the edit changes the thing %s, but --things is missing; see --help.",
                        map->things[0].from);
@@ -202,9 +240,10 @@ enum status placed_things_read(struct placed_things *t, const char *folder, cons
         thing_volume_read(&t->volume, path, (uint32_t)t->list.count, prov, err);
     if (!err->status) {
         t->fate = calloc((size_t)t->list.count + 1, sizeof *t->fate);
-        t->placed = calloc((size_t)map->thing_count, sizeof *t->placed);
+        t->placed = calloc((size_t)map->thing_count + 1, sizeof *t->placed);
         if (!t->fate || !t->placed) err_nomem(err, "things", (size_t)map->thing_count * sizeof *t->placed);
     }
+    if (!err->status && map->zone_count) apply_zones(t, map, err);
     for (int i = 0; !err->status && i < map->thing_count; i++) apply(t, &map->things[i], before, after, err);
     if (err->status) placed_things_release(t);
     return err->status;

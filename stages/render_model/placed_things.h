@@ -22,9 +22,10 @@ struct placed_things {
     int placed_count;
 };
 
-/* Reads the products of find_things, if the edit's map says something of things, and places these. folder: of the
- * things; may be NULL. before, after: the model that the photographs show, and the edited one. ST_DATA: the map names a
- * thing that was not found; a thing would be in a wall, or off what it stands on, with the distance. */
+/* Reads the products of find_things, if the edit's map clears something or says something of things, and places these.
+ * folder: of the things; NULL: zones clear no things. before, after: the model that the photographs show, and the
+ * edited one. ST_DATA: the map names a thing that was not found; a thing would be in a wall, or off what it stands on,
+ * with the distance. */
 enum status placed_things_read(struct placed_things *t, const char *folder, const struct texture_map *map,
                                const struct model_rays *before, const struct model_rays *after, struct provenance *prov,
                                struct err *err);

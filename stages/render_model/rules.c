@@ -78,10 +78,8 @@ static void tour_rules(struct graph *g, const struct scene_facts *f, const char 
 RULES(render_model)
 {
     static const char *const goals[] = {"remodel-views", "remodel-cameras", "tour", "tour-frames"};
-    /* edits change only things that somebody named */
-    const char *things = graph_scene_file(g, "things.txt") ? " things" : "";
-    graph_step(g, "remodel", STEP_FARM, graph_text(g, "textures outdoors exposure%s", things));
-    graph_step(g, "tour", STEP_WIDE, graph_text(g, "textures outdoors exposure tour-path%s", things));
+    graph_step(g, "remodel", STEP_FARM, "textures outdoors exposure things");
+    graph_step(g, "tour", STEP_WIDE, "textures outdoors exposure tour-path things");
     graph_asked(g, "remodel", "remodel");
     graph_asked(g, "tour", "tour");
     graph_goal(g, "remodel", *scene_setting("CAMERAS") ? "remodel-cameras" : "remodel-views");

@@ -1,9 +1,9 @@
 /* thing_surface.c - a thing's surface from its volume of signed distances; see thing_surface.h.
  *
- * A ray meets the surface where the distance falls through 0, between two places that views have seen [Curless 1996]. The
- * place P takes its colour from the views that see it: those whose nearest surface is at P, weighted as in unstructured
- * lumigraph rendering [Buehler 2001] by the angle between their ray and the camera's. If P is hidden from all of them,
- * those count that show clutter at its pixel; it is near P. */
+ * A ray meets the surface where the distance falls through 0, between two places that views have seen [Curless 1996].
+ * The place P takes its colour from the views that see it: those whose nearest surface is at P, weighted as in
+ * unstructured lumigraph rendering [Buehler 2001] by the angle between their ray and the camera's. If P is hidden from
+ * all of them, those count that show clutter at its pixel; it is near P. */
 #include "stages/render_model/thing_surface.h"
 
 #include <math.h>
@@ -130,18 +130,19 @@ static void draw_rows(void *ctx, size_t begin, size_t end, int thread)
         for (int x = 0; x < job->camera->width; x++) draw_pixel(job, x, (int)y);
 }
 
-/* The box around the thing's voxels. */
-static void find_box(struct surface_job *job)
+/* The box around the thing's voxels; false: it has none. */
+static bool find_box(struct surface_job *job)
 {
     const struct voxel_grid *g = &job->volume->grid;
     job->low = vec3_make(INFINITY, INFINITY, INFINITY);
     job->high = vec3_scale(job->low, -1);
     for (int64_t i = 0; i < (int64_t)voxel_count(g); i++) {
         if (job->volume->id[i] != job->id) continue;
-        const struct vec3 p = voxel_centre(g, i);
+        const struct vec3 p = thing_voxel_centre(g, i);
         job->low = vec3_make(fmin(job->low.x, p.x), fmin(job->low.y, p.y), fmin(job->low.z, p.z));
         job->high = vec3_make(fmax(job->high.x, p.x), fmax(job->high.y, p.y), fmax(job->high.z, p.z));
     }
+    return job->low.x <= job->high.x;
 }
 
 void thing_surface_draw(struct clutter_layer *layer, const float *shell, const struct clutter_scene *scene,
@@ -149,6 +150,5 @@ void thing_surface_draw(struct clutter_layer *layer, const float *shell, const s
                         const struct thing_volume *volume, uint32_t id)
 {
     struct surface_job job = {layer, shell, scene, choice, camera, volume, id, .low = {0, 0, 0}};
-    find_box(&job);
-    parallel_for((size_t)camera->height, 4, draw_rows, &job);
+    if (find_box(&job)) parallel_for((size_t)camera->height, 4, draw_rows, &job);
 }

@@ -36,6 +36,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         if (!texture_map_write(&map, path, NULL, &err)) {
             if (texture_map_read(&again, path, NULL, &err)) abort();
             if (again.face_count != map.face_count || again.zone_count != map.zone_count) abort();
+            if (again.thing_count != map.thing_count) abort();
             texture_map_release(&again);
         }
         texture_map_release(&map);

@@ -388,6 +388,8 @@ enum status plan_apply_remove(struct plan_context *c)
     enum name_kind kind;
     int at;
     if (c->s->of_object) return plan_remove_object(c);
+    if (plan_is_thing(plan, c->s->name, &at))
+        return plan_statement_error(c, "%s is a thing, which is left out by \"clear %s\".", c->s->name, c->s->name);
     if (plan_find_named(c, c->s->name, ~0u, "anything", &kind, &at)) return c->err->status;
     switch (kind) {
     case NAMED_WALL:

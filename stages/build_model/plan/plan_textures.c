@@ -49,7 +49,8 @@ enum status plan_apply_texture(struct plan_context *c)
 {
     enum name_kind kind;
     int at;
-    if (plan_find_named(c, c->s->name, ~0u, "a wall, an opening, a box or a room", &kind, &at)) return c->err->status;
+    if (plan_find_named(c, c->s->name, ~(1u << NAMED_THING), "a wall, an opening, a box or a room", &kind, &at))
+        return c->err->status;
     const bool stretch = !strcmp(c->s->other, "stretch");
     return add_wish(c, (struct plan_wish){.kind = stretch ? WISH_STRETCH : WISH_CROP}, c->s->name, NULL);
 }

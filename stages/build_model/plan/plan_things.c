@@ -58,6 +58,8 @@ static enum status shift(struct plan_context *c, struct plan_thing *t)
     const struct statement *s = c->s;
     for (int k = 0; k < s->value_count; k++) t->by[k] += s->values[k];
     if (s->has_option[OPTION_TURN]) t->turn += s->options[OPTION_TURN];
+    const bool stays = t->by[0] == 0 && t->by[1] == 0 && t->by[2] == 0 && t->turn == 0;
+    if (t->state == PLAN_THING_LEFT && stays) return ST_OK; /* which is refused, as a statement that changes nothing */
     if (t->state != PLAN_THING_PLACED) t->state = PLAN_THING_MOVED;
     return ST_OK;
 }
@@ -93,6 +95,10 @@ enum status plan_apply_thing_copy(struct plan_context *c)
     if (plan_find_named(c, s->name, 1u << NAMED_THING, "\"texture\", or a thing of things.txt", &kind, &at) ||
         plan_copy_new_name(c, s->other, &name))
         return c->err->status;
+    if (p->things[at].state == PLAN_THING_CLEARED) {
+        free(name);
+        return plan_statement_error(c, "%s was cleared before, so there is nothing to copy; copy it first.", s->name);
+    }
     const struct plan_thing model = p->things[at]; /* a copy of a moved thing stands beside its new place */
     if (add_thing(p, name, s->line, model.from, c->err)) return c->err->status;
     struct plan_thing *t = &p->things[p->thing_count - 1];

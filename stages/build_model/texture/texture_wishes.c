@@ -255,7 +255,8 @@ void texture_wishes_gloss(struct texture_face *to, const struct texture_models *
     }
 }
 
-/* ------------------------------------------------------------------------------------------------- lamps, zones, things */
+/* ------------------------------------------------------------------------------------------------- lamps, zones,
+ * things */
 
 enum status texture_lamps_add(struct texture_map *map, const struct plan *plan, struct err *err)
 {

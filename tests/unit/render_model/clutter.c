@@ -36,6 +36,7 @@ struct change {
 
 static const struct provenance no_inputs = {.stage = "test", .version = "1"};
 static const struct change sure = {1, 0.004, -1};
+static const struct clutter_filter no_filter = {0};
 
 static double axis_of(struct vec3 v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
 
@@ -212,9 +213,10 @@ static void draw_shell(struct model_picture *p, const struct view *camera)
 static void draw(struct model_picture *p, struct scene *s, const struct view *camera, const struct texture_map *map,
                  const int *views, int count)
 {
+    const struct clutter_filter filter = {.map = map};
     struct err err = ERR_INIT;
     draw_shell(p, camera);
-    assert_ok(clutter_draw(p, s->clutter, camera, map, views, count, NULL, &err), err);
+    assert_ok(clutter_draw(p, NULL, s->clutter, camera, &filter, views, count, NULL, &err), err);
 }
 
 static struct view mid_way(void) { return camera_at(0, -1.5, 1.3, 0, 1, 0.4); }
@@ -307,7 +309,7 @@ static void a_new_wall_hides_it(void **state)
         const float z = (float)((0.5 - camera.center.y) / d.y);
         if (z < p.z[i]) p.z[i] = wall.z[i] = z;
     }
-    assert_ok(clutter_draw(&p, s.clutter, &camera, NULL, NULL, 0, NULL, &err), err);
+    assert_ok(clutter_draw(&p, NULL, s.clutter, &camera, &no_filter, NULL, 0, NULL, &err), err);
     assert_same_picture(&p, &wall);
     model_picture_release(&p);
     model_picture_release(&wall);
@@ -449,7 +451,7 @@ static void the_views_that_were_read_are_recorded(void **state)
     scene_make(&s, &sure, 100);
     for (int again = 0; again < 2; again++) { /* also when they are in memory */
         draw_shell(&p, &camera);
-        assert_ok(clutter_draw(&p, s.clutter, &camera, NULL, pair, 2, &prov, &err), err);
+        assert_ok(clutter_draw(&p, NULL, s.clutter, &camera, &no_filter, pair, 2, &prov, &err), err);
         assert_int_equal(prov.count, 6);
         assert_string_equal(prov.inputs[0].name, "depth/a.txt");
         assert_string_equal(prov.inputs[5].name, "ids/c.exr");
@@ -475,9 +477,227 @@ static void faces_of_another_size_are_refused(void **state)
     half.width = W / 2;
     assert_ok(view_ids_write(&small, &half, scratch_path("ids/b.exr"), &no_inputs, &err), err);
     draw_shell(&p, &camera);
-    assert_int_equal(clutter_draw(&p, s.clutter, &camera, NULL, &own, 1, NULL, &err), ST_DATA);
+    assert_int_equal(clutter_draw(&p, NULL, s.clutter, &camera, &no_filter, &own, 1, NULL, &err), ST_DATA);
     assert_non_null(strstr(err.text, "b.exr"));
     view_ids_release(&small);
+    model_picture_release(&p);
+    clutter_close(s.clutter);
+}
+
+/* ----------------------------------------------------------------------------------------------------------- things */
+
+enum { CUBE = 1, CELLS = 32 };
+
+/* Voxels of 0.05 around the cube: those of it, and of a margin of two voxels, are the thing's. seen: their distances
+ * are known. The caller releases it. */
+static struct thing_volume cube_volume(bool seen)
+{
+    struct thing_volume v = {.grid = {{-0.8, 0.35, -0.4}, 0.05, {CELLS, CELLS, CELLS}}};
+    v.id = calloc(voxel_count(&v.grid), sizeof *v.id);
+    v.distance = calloc(voxel_count(&v.grid), sizeof *v.distance);
+    assert_true(v.id && v.distance);
+    for (int64_t i = 0; i < (int64_t)voxel_count(&v.grid); i++) {
+        const struct vec3 p = thing_voxel_centre(&v.grid, i);
+        double out = -INFINITY;
+        for (int axis = 0; axis < 3; axis++) {
+            const double at = axis_of(p, axis);
+            out = fmax(out, fmax(axis_of(cube.low, axis) - at, at - axis_of(cube.high, axis)));
+        }
+        v.id[i] = out <= 0.1 ? CUBE : 0;
+        v.distance[i] = seen && v.id[i] ? (float)fmax(-1, out / 0.15) : THING_UNSEEN;
+    }
+    return v;
+}
+
+/* What is drawn of the cube by a camera that is moved as the cube was, the other way. */
+struct drawn_cube {
+    struct model_picture picture, shell;
+    float front[W * H];
+    uint8_t shown[W * H];
+    struct view moved; /* of the place where the cube was */
+};
+
+/* The empty room with the cube by `shift` from its place. wall: depth of something before the picture; 0: nothing. */
+static void draw_cube(struct drawn_cube *d, struct scene *s, const struct view *camera, struct vec3 shift, float wall,
+                      bool seen)
+{
+    struct thing_volume volume = cube_volume(seen);
+    const struct clutter_filter filter = {.volume = &volume, .only = CUBE};
+    struct err err = ERR_INIT;
+    *d = (struct drawn_cube){.moved = *camera};
+    d->moved.center = vec3_sub(camera->center, shift);
+    d->moved.translation = vec3_scale(mat3_apply(camera->cam_from_world, d->moved.center), -1);
+    draw_shell(&d->picture, camera);
+    draw_shell(&d->shell, camera);
+    memset(d->shown, 1, sizeof d->shown);
+    for (size_t i = 0; i < (size_t)W * H; i++) d->front[i] = wall > 0 ? wall : d->shell.z[i];
+    assert_ok(clutter_draw_thing(&d->picture, d->front, d->shown, s->clutter, &d->moved, &filter, cube.low, cube.high,
+                                 NULL, &err),
+              err);
+    thing_volume_release(&volume);
+}
+
+static void drawn_cube_release(struct drawn_cube *d)
+{
+    model_picture_release(&d->picture);
+    model_picture_release(&d->shell);
+}
+
+/* Whether a pixel must have the colour and the depth of the cube that the camera sees at its old place. At outlines and
+ * edges two surfaces mix; next to the floor and the walls the views' layers do not have it. */
+static bool must_be_cube(const struct view *v, int x, int y)
+{
+    const struct hit h = trace(v, x + 0.5, y + 0.5, true);
+    for (int dy = -RIM; dy <= RIM; dy++)
+        for (int dx = -RIM; dx <= RIM; dx++)
+            if (trace(v, x + dx + 0.5, y + dy + 0.5, true).face != h.face) return false;
+    return h.face >= ROOM_FACES && h.z < 0.95 * trace(v, x + 0.5, y + 0.5, false).z;
+}
+
+/* The cube has its colours and its depth at its new place; all else is as it was. */
+static void assert_moved_cube(const struct drawn_cube *d)
+{
+    size_t inside = 0, outside = 0;
+    for (int y = 3; y < H - 3; y++)
+        for (int x = 3; x < W - 3; x++) {
+            const size_t i = (size_t)(y * W + x);
+            const struct hit h = trace(&d->moved, x + 0.5, y + 0.5, true);
+            if (!near_cube(&d->moved, x, y, RIM, true)) {
+                assert_memory_equal(d->picture.rgb + 3 * i, d->shell.rgb + 3 * i, 3 * sizeof *d->picture.rgb);
+                assert_int_equal(d->picture.made[i], MADE_ORIGINAL);
+                assert_int_equal(d->shown[i], 1);
+                assert_float_equal(d->front[i], d->shell.z[i], 0);
+                outside++;
+            } else if (must_be_cube(&d->moved, x, y)) {
+                assert_pixel_of_cube(&d->picture, &h, i);
+                assert_int_equal(d->shown[i], 0);
+                assert_float_equal(d->front[i], h.z, 0.01 * h.z);
+                inside++;
+            }
+        }
+    assert_true(inside > 300 && outside > 9000);
+}
+
+static void a_moved_cube_appears_at_its_new_place(void **state)
+{
+    (void)state;
+    const struct view camera = mid_way();
+    static struct drawn_cube d;
+    struct scene s;
+    scene_make(&s, &sure, 100);
+    draw_cube(&d, &s, &camera, vec3_make(0.75, 0.25, 0), 0, false);
+    assert_moved_cube(&d);
+    drawn_cube_release(&d);
+    /* its surface in the volume does not change what views show */
+    draw_cube(&d, &s, &camera, vec3_make(-0.5, 0, 0.25), 0, true);
+    assert_moved_cube(&d);
+    drawn_cube_release(&d);
+    clutter_close(s.clutter);
+}
+
+static void what_stands_before_a_moved_cube_hides_it(void **state)
+{
+    (void)state;
+    const struct view camera = mid_way();
+    static struct drawn_cube d;
+    struct scene s;
+    scene_make(&s, &sure, 100);
+    for (int seen = 0; seen < 2; seen++) {
+        draw_cube(&d, &s, &camera, vec3_make(0.75, 0, 0), 1.5f, seen);
+        assert_same_picture(&d.picture, &d.shell);
+        for (size_t i = 0; i < (size_t)W * H; i++) {
+            assert_int_equal(d.shown[i], 1);
+            assert_float_equal(d.front[i], 1.5, 0);
+        }
+        drawn_cube_release(&d);
+    }
+    clutter_close(s.clutter);
+}
+
+/* The second cube is behind the first one, from which it is hidden. */
+static void a_moved_cube_hides_the_next_one(void **state)
+{
+    (void)state;
+    const struct view camera = mid_way();
+    static struct drawn_cube near, far;
+    struct thing_volume volume = cube_volume(false);
+    const struct clutter_filter filter = {.volume = &volume, .only = CUBE};
+    struct err err = ERR_INIT;
+    struct scene s;
+    scene_make(&s, &sure, 100);
+    draw_cube(&far, &s, &camera, vec3_make(0.2, 0.4, 0), 0, false);
+    draw_cube(&near, &s, &camera, vec3_make(-0.2, -0.5, 0), 0, false);
+    struct model_picture once = {0};
+    assert_ok(model_picture_resize(&once, W, H, &err), err);
+    memcpy(once.rgb, near.picture.rgb, 3 * (size_t)W * H * sizeof *once.rgb);
+    assert_ok(clutter_draw_thing(&near.picture, near.front, NULL, s.clutter, &far.moved, &filter, cube.low, cube.high,
+                                 NULL, &err),
+              err);
+    int hidden = 0, visible = 0;
+    for (int y = 3; y < H - 3; y++)
+        for (int x = 3; x < W - 3; x++) {
+            const size_t i = (size_t)(y * W + x);
+            const struct hit h = trace(&far.moved, x + 0.5, y + 0.5, true);
+            if (!must_be_cube(&far.moved, x, y)) continue;
+            if (must_be_cube(&near.moved, x, y)) {
+                assert_memory_equal(near.picture.rgb + 3 * i, once.rgb + 3 * i, 3 * sizeof *once.rgb);
+                hidden++;
+            } else if (!near_cube(&near.moved, x, y, RIM, true)) {
+                assert_pixel_of_cube(&near.picture, &h, i);
+                visible++;
+            }
+        }
+    assert_true(hidden > 100 && visible > 100);
+    model_picture_release(&once);
+    drawn_cube_release(&near);
+    drawn_cube_release(&far);
+    thing_volume_release(&volume);
+    clutter_close(s.clutter);
+}
+
+static void a_thing_that_is_gone_is_not_drawn_at_its_place(void **state)
+{
+    static const uint8_t gone[] = {THING_STAYS, THING_IS_GONE};
+    (void)state;
+    const struct view camera = mid_way();
+    struct thing_volume volume = cube_volume(false);
+    const struct clutter_filter filter = {.volume = &volume, .fate = gone};
+    struct model_picture p = {0}, shell = {0};
+    struct err err = ERR_INIT;
+    struct scene s;
+    scene_make(&s, &sure, 100);
+    draw_shell(&p, &camera);
+    draw_shell(&shell, &camera);
+    assert_ok(clutter_draw(&p, NULL, s.clutter, &camera, &filter, NULL, 0, NULL, &err), err);
+    assert_same_picture(&p, &shell);
+    model_picture_release(&p);
+    model_picture_release(&shell);
+    thing_volume_release(&volume);
+    clutter_close(s.clutter);
+}
+
+static void the_front_is_the_depth_of_what_is_seen(void **state)
+{
+    (void)state;
+    static float front[W * H];
+    const struct view camera = mid_way();
+    struct model_picture p = {0};
+    struct err err = ERR_INIT;
+    struct scene s;
+    size_t covered = 0;
+    scene_make(&s, &sure, 100);
+    draw_shell(&p, &camera);
+    assert_ok(clutter_draw(&p, front, s.clutter, &camera, &no_filter, NULL, 0, NULL, &err), err);
+    for (int i = 0; i < W * H; i++) {
+        const struct hit h = trace(&camera, i % W + 0.5, i / W + 0.5, true);
+        if (p.made[i] != MADE_CLUTTER)
+            assert_float_equal(front[i], p.z[i], 0);
+        else if (must_be_cube(&camera, i % W, i / W)) {
+            assert_float_equal(front[i], h.z, 0.01 * h.z);
+            covered++;
+        }
+    }
+    assert_true(covered > 500);
     model_picture_release(&p);
     clutter_close(s.clutter);
 }
@@ -495,6 +715,11 @@ int main(void)
         cmocka_unit_test(threads_and_memory_do_not_matter),
         cmocka_unit_test(the_views_that_were_read_are_recorded),
         cmocka_unit_test(faces_of_another_size_are_refused),
+        cmocka_unit_test(a_moved_cube_appears_at_its_new_place),
+        cmocka_unit_test(what_stands_before_a_moved_cube_hides_it),
+        cmocka_unit_test(a_moved_cube_hides_the_next_one),
+        cmocka_unit_test(a_thing_that_is_gone_is_not_drawn_at_its_place),
+        cmocka_unit_test(the_front_is_the_depth_of_what_is_seen),
     };
     return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
 }

@@ -1,6 +1,8 @@
-/* own_pixels.c - which pixels of a photo an edit leaves alone: by face, by plane, by texture. */
+/* own_pixels.c - which pixels of a photo an edit leaves alone: by face, by plane, by texture, by thing. */
 #include "stages/render_model/own_pixels.h"
 
+#include "common/layers/layered_depth.h"
+#include "common/texture/view_ids.h"
 #include "tests/unit/render_model/shell_pictures.h"
 
 static const struct texture_rule in_place = {.matrix = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
@@ -151,6 +153,146 @@ static void a_texture_that_is_moved_scaled_or_another_faces_is_not_the_photos(vo
     }
 }
 
+/* ----------------------------------------------------------------------------------------------------------- things */
+
+enum { GONE = 1, KEPT, CELLS = 16 };
+
+#define VOXEL 0.25
+
+/* Posts from floor to ceiling, 0.25 x 0.25, about 2.3 before the camera: one that is gone, one that is kept, and one
+ * that is gone behind two that are kept. */
+static struct placed_things posts(void)
+{
+    static const double places[][3] = {
+        {0.1, 1.1, GONE}, {-0.9, 0.6, KEPT}, {0.4, 0.6, KEPT}, {0.6, 0.6, KEPT}, {0.6, 1.1, GONE}};
+    struct placed_things t = {.volume = {.grid = {{-2, -2, -2}, VOXEL, {CELLS, CELLS, CELLS}}}};
+    t.volume.id = calloc(CELLS * CELLS * CELLS, sizeof *t.volume.id);
+    t.fate = calloc(3, sizeof *t.fate);
+    assert_true(t.volume.id && t.fate);
+    t.fate[GONE] = THING_IS_GONE;
+    t.fate[KEPT] = THING_IS_KEPT;
+    for (int k = 0; k < 5; k++)
+        for (int y = 0; y < CELLS; y++) {
+            const struct vec3 p = vec3_make(places[k][0], -2 + (y + 0.5) * VOXEL, places[k][1]);
+            t.volume.id[thing_voxel_at(&t.volume.grid, p)] = (uint32_t)places[k][2];
+        }
+    return t;
+}
+
+/* The depth at which the ray of a pixel of view_between() is at z, one of the model's. */
+static double depth_at(int i, double z)
+{
+    const struct view camera = view_between();
+    const struct vec3 way = vec3_sub(view_unproject(&camera, i % W + 0.5, i / W + 0.5, 1), camera.center);
+    return (z - camera.center.z) / way.z;
+}
+
+static double x_at(int i, double z)
+{
+    const struct view camera = view_between();
+    return view_unproject(&camera, i % W + 0.5, i / W + 0.5, depth_at(i, z)).x;
+}
+
+/* Where the photo is kept when posts are gone. The view's depth shows the room alone; clutter: it is at z = 1.125
+ * everywhere, in the posts that are gone, and all of it is clutter. The caller frees it. */
+static uint8_t *same_without_posts(bool clutter)
+{
+    static const struct provenance no_inputs = {.stage = "test", .version = "1"};
+    struct render_model_params params = RENDER_MODEL_PARAMS_DEFAULT;
+    struct view camera = view_between();
+    struct room drawn = {.files = {.base = "model.txt"}, .params = &params, .cameras = &camera};
+    struct layered_depth depth = {0};
+    struct view_ids ids = {0};
+    struct provenance prov = {0};
+    struct err err = ERR_INIT;
+    uint8_t *same = malloc((size_t)(W * H));
+    assert_non_null(same);
+    mkdir(scratch_path("depth"), 0777);
+    mkdir(scratch_path("ids"), 0777);
+    assert_ok(layered_depth_init(&depth, W, H, &err), err);
+    assert_ok(view_ids_init(&ids, W, H, &err), err);
+    depth.segments = calloc(1, sizeof *depth.segments);
+    assert_non_null(depth.segments);
+    depth.segment_count = 1;
+    depth.segments[0] =
+        (struct depth_segment){.id = 1, .plane = {0, 0, 0.5}, .sigma = 0.002, .confidence = 1, .pixels = W * H};
+    for (int i = 0; i < W * H; i++) {
+        bool back;
+        const struct vec3 ahead = vec3_sub(seen_at(i, &back), camera.center);
+        const double z = mat3_apply(camera.cam_from_world, ahead).z;
+        depth.interior.id[i] = ids.id[i] = 1;
+        ids.z[i] = (float)z;
+        ids.clutter[i] = clutter;
+        depth.interior.z[i] = (float)(clutter ? depth_at(i, 1.125) : z);
+        for (int c = 0; c < 4; c++) depth.interior.rgba[4 * i + c] = 1;
+    }
+    assert_ok(layered_depth_write(&depth, &camera, scratch_path("depth/v.exr"), &no_inputs, &err), err);
+    assert_ok(view_ids_write(&ids, &camera, scratch_path("ids/v.exr"), &no_inputs, &err), err);
+    layered_depth_release(&depth);
+    view_ids_release(&ids);
+    drawn.files.depth = scratch_path("depth");
+    drawn.files.ids = scratch_path("ids");
+    drawn.in.set = (struct camera_set){.views = &camera, .view_count = 1};
+    drawn.in.axes = (struct model_axes){.rotation = {1, 0, 0, 0}, .scale = 1};
+    drawn.base = make_rays(bare, 2);
+    drawn.model = make_rays(bare, 2);
+    drawn.shell = make_scene(bare, 2);
+    drawn.things = posts();
+    assert_ok(own_pixels_find(same, &drawn, 0, &prov, &err), err);
+    placed_things_release(&drawn.things);
+    shell_close(drawn.shell);
+    model_rays_release(&drawn.base);
+    model_rays_release(&drawn.model);
+    provenance_release(&prov);
+    return same;
+}
+
+static void the_photo_is_not_kept_where_a_thing_is_gone_that_its_depth_misses(void **state)
+{
+    int hit = 0, far = 0;
+    (void)state;
+    uint8_t *same = same_without_posts(false);
+    for (int i = 0; i < W * H; i++) {
+        bool back;
+        seen_at(i, &back);
+        if (!back) continue;
+        const double front = x_at(i, 1), behind = x_at(i, 1.25);
+        if (front > 0 && front < 0.25 && behind > 0 && behind < 0.25) {
+            assert_int_equal(same[i], 0);
+            hit++;
+        } else if (front < -0.25 ||
+                   front > 0.5) { /* 0.25 is more than ten pixels; the other post hides one behind it */
+            assert_int_equal(same[i], 1);
+            far++;
+        }
+    }
+    assert_true(hit > 200 && far > 1000);
+    free(same);
+}
+
+/* Also behind a thing that stays. */
+static void the_photo_is_not_kept_where_its_depth_is_in_a_thing_that_is_gone(void **state)
+{
+    int hit = 0, far = 0;
+    (void)state;
+    uint8_t *same = same_without_posts(true);
+    for (int i = 0; i < W * H; i++) {
+        bool back;
+        seen_at(i, &back);
+        const double x = x_at(i, 1.125);
+        if (!back) continue;
+        if ((x > 0 && x < 0.25) || (x > 0.5 && x < 0.75)) {
+            assert_int_equal(same[i], 0);
+            hit++;
+        } else if (x < -0.5) {
+            assert_int_equal(same[i], 1);
+            far++;
+        }
+    }
+    assert_true(hit > 400 && far > 500);
+    free(same);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -159,6 +301,8 @@ int main(void)
         cmocka_unit_test(the_photo_ends_a_margin_before_the_paint),
         cmocka_unit_test(a_painted_rectangle_leaves_the_rest_of_the_wall),
         cmocka_unit_test(a_texture_that_is_moved_scaled_or_another_faces_is_not_the_photos),
+        cmocka_unit_test(the_photo_is_not_kept_where_a_thing_is_gone_that_its_depth_misses),
+        cmocka_unit_test(the_photo_is_not_kept_where_its_depth_is_in_a_thing_that_is_gone),
     };
     return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
 }

@@ -70,6 +70,50 @@ static void lamps_and_gloss_are_read_back(void **state)
     texture_map_release(&map);
 }
 
+static void things_are_read_back(void **state)
+{
+    static const char text[] = HEAD FACE "outdoors\nclear hall 0 2.5 3 0 0 4 0 4 3\n"
+                                         "thing stool clear\nthing \"old sofa\" keep\n"
+                                         "thing table move table 0.10000000000000001 -0.80000000000000004 0 0\n"
+                                         "thing \"second table\" move table 1 0 0.25 -90\n"
+                                         "thing chair place chair 3 1.5 0.25 30.5\n"
+                                         "thing other place \"old sofa\" -3 1.5 0 0\n";
+    struct texture_map map;
+    (void)state;
+    reads_back(text, &map);
+    assert_int_equal(map.thing_count, 6);
+    assert_int_equal(map.things[0].kind, TEXTURE_THING_CLEAR);
+    assert_string_equal(map.things[0].from, "stool");
+    assert_int_equal(map.things[1].kind, TEXTURE_THING_KEEP);
+    assert_string_equal(map.things[1].name, "old sofa");
+    assert_int_equal(map.things[2].kind, TEXTURE_THING_MOVE);
+    assert_true(map.things[2].by[0] == 0.1 && map.things[2].by[1] == -0.8 && map.things[2].by[2] == 0);
+    assert_string_equal(map.things[3].name, "second table");
+    assert_string_equal(map.things[3].from, "table");
+    assert_true(map.things[3].turn == -90);
+    assert_int_equal(map.things[4].kind, TEXTURE_THING_PLACE);
+    assert_true(map.things[4].by[2] == 0.25 && map.things[4].turn == 30.5);
+    assert_string_equal(map.things[5].from, "old sofa");
+    texture_map_release(&map);
+    assert_int_equal(map.thing_count, 0);
+}
+
+static void a_thing_that_is_added_is_a_copy(void **state)
+{
+    char name[] = "b", from[] = "sofa";
+    const struct texture_thing thing = {TEXTURE_THING_PLACE, name, from, {1, 2, 3}, 45};
+    struct texture_map map = {0};
+    struct err err = ERR_INIT;
+    (void)state;
+    assert_ok(texture_map_add_thing(&map, &thing, &err), err);
+    name[0] = from[0] = 'x';
+    assert_int_equal(map.thing_count, 1);
+    assert_string_equal(map.things[0].name, "b");
+    assert_string_equal(map.things[0].from, "sofa");
+    assert_true(map.things[0].kind == TEXTURE_THING_PLACE && map.things[0].by[1] == 2 && map.things[0].turn == 45);
+    texture_map_release(&map);
+}
+
 static void a_face_is_found_by_its_plane(void **state)
 {
     struct texture_map map;
@@ -143,6 +187,20 @@ static void what_is_wrong_is_named_with_its_line(void **state)
          "a.txt:5: found \"gloss\", wanted one line \"gloss\" right after the face"},
         {HEAD FACE "outdoors\ngloss matt\n", "right after the face's line"},
         {HEAD "fcae 3\n", "lamp, face, gloss, place, edge"},
+        {HEAD "fcae 3\n", "clear, keep or thing"},
+        {HEAD "thing\n", "a.txt:3: found the end of the line, wanted the name of a thing"},
+        {HEAD "thing sofa\n", "a.txt:3: found the end of the line, wanted what happens to it"},
+        {HEAD "thing sofa lift\n", "a.txt:3: found \"lift\", wanted clear, keep, move or place"},
+        {HEAD "thing sofa clear sofa\n", "a.txt:3: found \"sofa\", wanted the end of the line"},
+        {HEAD "thing sofa keep 1\n", "a.txt:3: found \"1\", wanted the end of the line"},
+        {HEAD "thing sofa move\n", "a.txt:3: found the end of the line, wanted the name of a thing"},
+        {HEAD "thing sofa move sofa\n", "a.txt:3: found the end of the line, wanted a coordinate"},
+        {HEAD "thing sofa move sofa 1 2\n", "a.txt:3: found the end of the line, wanted a coordinate"},
+        {HEAD "thing sofa move sofa 1 2 up 0\n", "a.txt:3: found \"up\", wanted a coordinate"},
+        {HEAD "thing sofa move sofa 1 inf 0 0\n", "a.txt:3: found \"inf\""},
+        {HEAD "thing sofa place sofa 1 2 0\n", "a.txt:3: found the end of the line, wanted a turn"},
+        {HEAD "thing sofa place sofa 1 2 0 nan\n", "a.txt:3: found \"nan\", wanted a turn"},
+        {HEAD "thing a clear\nthing sofa place sofa 1 2 0 0 0\n", "a.txt:4: found \"0\", wanted the end of the line"},
     };
     (void)state;
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
@@ -151,6 +209,7 @@ static void what_is_wrong_is_named_with_its_line(void **state)
         assert_int_not_equal(texture_map_read(&map, scratch_write("a.txt", cases[i].text), NULL, &err), ST_OK);
         assert_err(err, ST_DATA, cases[i].words);
         assert_int_equal(map.face_count, 0);
+        assert_null(map.things);
     }
 }
 
@@ -203,6 +262,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_is_written_is_read_back),
         cmocka_unit_test(lamps_and_gloss_are_read_back),
+        cmocka_unit_test(things_are_read_back),
+        cmocka_unit_test(a_thing_that_is_added_is_a_copy),
         cmocka_unit_test(a_face_is_found_by_its_plane),
         cmocka_unit_test(limits_hold_points_in_either_direction),
         cmocka_unit_test(what_is_wrong_is_named_with_its_line),

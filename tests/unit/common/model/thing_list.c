@@ -1,0 +1,136 @@
+/* thing_list.c - the list of things: what is read is what was written; damaged lines are refused. */
+#include "common/model/thing_list.h"
+
+#include "tests/unit/scratch.h"
+
+#define HEAD "remodel-things 1\n"
+#define SOFA "thing sofa floor 0 0.5 0 2 1.25 0.75 3100 7 v03 10 20.5 300 200\n"
+
+static void what_is_read_is_written_again(void **state)
+{
+    (void)state;
+    static const char text[] = HEAD SOFA "thing \"old lamp\" ceiling -1 -1 2 -0.5 -0.5 2.5 100 1 \"v 04\" 0 0 1 1\n"
+                                         "thing shelf wall 1e-05 0 0 1 1 1 5000000000 2 v05 0 0 1 1\n"
+                                         "thing cloud none 0 0 0 1 1 1 1 1 v05 -1.5 0 1 1\n";
+    struct thing_list list;
+    struct provenance prov = {0};
+    struct err err = ERR_INIT;
+    assert_ok(thing_list_read(&list, scratch_write("things.txt", text), &prov, &err), err);
+    assert_int_equal(list.count, 4);
+    const struct thing *t = &list.things[0];
+    assert_string_equal(t->name, "sofa");
+    assert_string_equal(t->view, "v03");
+    assert_true(t->low.x == 0 && t->low.y == 0.5 && t->low.z == 0);
+    assert_true(t->high.x == 2 && t->high.y == 1.25 && t->high.z == 0.75);
+    assert_true(t->voxels == 3100 && t->views == 7);
+    assert_true(t->rect[0] == 10 && t->rect[1] == 20.5 && t->rect[2] == 300 && t->rect[3] == 200);
+    for (int i = 0; i < 4; i++)
+        assert_int_equal(list.things[i].support,
+                         ((int[]){THING_ON_FLOOR, THING_ON_CEILING, THING_ON_WALL, THING_ON_NONE})[i]);
+    assert_string_equal(thing_support_word(list.things[1].support), "ceiling");
+    assert_true(list.things[2].voxels == 5000000000);
+    assert_int_equal(thing_list_find(&list, "old lamp"), 1);
+    assert_int_equal(thing_list_find(&list, "old"), -1);
+    assert_int_equal(prov.count, 1);
+    assert_string_equal(prov.inputs[0].name, "things.txt");
+    assert_ok(thing_list_write(&list, scratch_path("again.txt"), NULL, &err), err);
+    assert_file_text(scratch_path("again.txt"), text);
+    provenance_release(&prov);
+    thing_list_release(&list);
+    assert_null(list.things);
+    assert_int_equal(list.count, 0);
+    thing_list_release(&list);
+    thing_list_release(NULL);
+}
+
+static void a_list_may_be_empty(void **state)
+{
+    (void)state;
+    struct thing_list list = {0};
+    struct err err = ERR_INIT;
+    assert_ok(thing_list_write(&list, scratch_path("empty.txt"), NULL, &err), err);
+    assert_file_text(scratch_path("empty.txt"), HEAD);
+    assert_ok(thing_list_read(&list, scratch_path("empty.txt"), NULL, &err), err);
+    assert_int_equal(list.count, 0);
+    assert_int_equal(thing_list_find(&list, "sofa"), -1);
+}
+
+static void a_thing_that_is_added_is_owned(void **state)
+{
+    (void)state;
+    struct thing_list list = {0};
+    struct thing t = {.name = strdup("a"), .view = strdup("v"), .views = 1}, half = {.name = strdup("b")};
+    struct err err = ERR_INIT;
+    assert_ok(thing_list_add(&list, &t, &err), err);
+    assert_int_equal(list.count, 1);
+    assert_string_equal(list.things[0].name, "a");
+    assert_null(t.name);
+    assert_null(t.view);
+    assert_int_equal(thing_list_add(&list, &half, &err), ST_NOMEM); /* a text that could not be copied */
+    assert_null(half.name);
+    assert_int_equal(list.count, 1);
+    thing_list_release(&list);
+}
+
+static void damaged_lines_are_refused(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text, *error;
+    } cases[] = {
+        {"", "found an empty file, wanted"},
+        {"remodel-objects 1\n", "things.txt:1: found \"remodel-objects\""},
+        {"remodel-things 2\n", "things.txt:1: found \"2\""},
+        {HEAD SOFA "chair sofa\n", "things.txt:3: found \"chair\", wanted \"thing\""},
+        {HEAD "thing\n", "things.txt:2: found the end of the line, wanted name"},
+        {HEAD "thing sofa\n", "things.txt:2: found the end of the line, wanted what it stands on"},
+        {HEAD "thing sofa roof 0 0 0 1 1 1 1 1 v 0 0 1 1\n",
+         "things.txt:2: found \"roof\", wanted floor, wall, ceiling or none"},
+        {HEAD "thing sofa floor 0 0 x 1 1 1 1 1 v 0 0 1 1\n", "things.txt:2: found \"x\", wanted corner of the box"},
+        {HEAD "thing sofa floor 0 0 nan 1 1 1 1 1 v 0 0 1 1\n", "things.txt:2: found \"nan\""},
+        {HEAD "thing sofa floor 0 0 0 1 1\n", "things.txt:2: found the end of the line, wanted corner of the box"},
+        {HEAD "thing sofa floor 0 0 0 1 0 1 1 1 v 0 0 1 1\n",
+         "things.txt:2: found \"a box without size\", wanted a lower corner, then an upper one"},
+        {HEAD "thing sofa floor 0 2 0 1 1 1 1 1 v 0 0 1 1\n", "things.txt:2: found \"a box without size\""},
+        {HEAD "thing sofa floor 0 0 0 1 1 1 0 1 v 0 0 1 1\n", "things.txt:2: found \"0\", wanted voxels"},
+        {HEAD "thing sofa floor 0 0 0 1 1 1 1.5 1 v 0 0 1 1\n", "things.txt:2: found \"1.5\", wanted voxels"},
+        {HEAD "thing sofa floor 0 0 0 1 1 1 1 -1 v 0 0 1 1\n", "things.txt:2: found \"-1\", wanted views"},
+        {HEAD "thing sofa floor 0 0 0 1 1 1 1 1 v 3 0 1 1\n", "things.txt:2: found \"a rectangle without size\""},
+        {HEAD "thing sofa floor 0 0 0 1 1 1 1 3000000000 v 0 0 1 1\n",
+         "things.txt:2: found \"3000000000\", wanted views"},
+        {HEAD "thing sofa floor 0 0 0 1 1 1 1 1\n", "things.txt:2: found the end of the line, wanted view"},
+        {HEAD "thing sofa floor 0 0 0 1 1 1 1 1 v 0 0 1\n",
+         "things.txt:2: found the end of the line, wanted edge of the rectangle"},
+        {HEAD "thing sofa floor 0 0 0 1 1 1 1 1 v 0 0 inf 1\n", "things.txt:2: found \"inf\""},
+        {HEAD "thing sofa floor 0 0 0 1 1 1 1 1 v 0 0 1 1 7\n", "things.txt:2: found \"7\""},
+        {HEAD SOFA "# again\n" SOFA, "things.txt:4: found \"sofa\", wanted another name than those above"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        struct thing_list list;
+        struct err err = ERR_INIT;
+        assert_int_equal(thing_list_read(&list, scratch_write("things.txt", cases[i].text), NULL, &err), ST_DATA);
+        assert_err(err, ST_DATA, cases[i].error);
+        assert_null(list.things);
+        assert_int_equal(list.count, 0);
+    }
+}
+
+static void a_name_with_a_line_break_is_not_written(void **state)
+{
+    (void)state;
+    struct thing t = {.name = (char *)"a\nb", .view = (char *)"v", .views = 1};
+    const struct thing_list list = {&t, 1};
+    struct err err = ERR_INIT;
+    assert_int_equal(thing_list_write(&list, scratch_path("broken.txt"), NULL, &err), ST_DATA);
+    assert_int_equal(access(scratch_path("broken.txt"), F_OK), -1);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(what_is_read_is_written_again),           cmocka_unit_test(a_list_may_be_empty),
+        cmocka_unit_test(a_thing_that_is_added_is_owned),          cmocka_unit_test(damaged_lines_are_refused),
+        cmocka_unit_test(a_name_with_a_line_break_is_not_written),
+    };
+    return cmocka_run_group_tests_name("thing_list", tests, scratch_make, scratch_remove);
+}

@@ -1,0 +1,161 @@
+/* Which pixels show a thing, and which view shows it best. */
+#include "stages/find_things/thing_views.h"
+
+#include "common/image/exr.h"
+#include "tests/unit/box_solids.h"
+#include "tests/unit/find_things/voxel_blocks.h"
+
+enum { W = 100, H = 80, PIXELS = W * H, N = 20 };
+
+static const struct voxel_grid grid = {{-1, -1, 0}, 0.1, {N, N, N}};
+
+static struct view front(void) { return view_at(vec3_make(0, 0, -1), 0, 0, W, H, 100); }
+
+/* The thing's block is at depths 2 to 2.5 of the view; pixels have depths and clutter of a few kinds. */
+static void pixels_show_the_thing_that_their_point_is_in(void **state)
+{
+    (void)state;
+    static uint32_t ids[N * N * N], mask[PIXELS];
+    const struct thing_volume v = {grid, ids, NULL};
+    const struct view camera = front();
+    struct layered_depth d = {0};
+    struct view_ids seen = {0};
+    struct err err = ERR_INIT;
+    put_block(ids, &grid, (struct block){5, 5, 10, 14, 14, 14}, 7);
+    assert_ok(layered_depth_init(&d, W, H, &err), err);
+    assert_ok(view_ids_init(&seen, W, H, &err), err);
+    for (int scale = 1; scale <= 2; scale++) {
+        memset(mask, 0xa5, sizeof mask);
+        for (int i = 0; i < PIXELS; i++) {
+            seen.clutter[i] = i % 4 == 0 ? CLUTTER_UNSURE : 0.75f;
+            d.interior.z[i] = (i % 4 == 1 ? 0 : i % 4 == 2 ? 3.0f : 2.05f) / (float)scale;
+        }
+        thing_mask_find(mask, &v, &camera, &d, &seen, scale);
+        for (int i = 0; i < PIXELS; i++) {
+            const double x = 2.05 * (i % W + 0.5 - W / 2) / 100, y = 2.05 * ((int)(i / W) + 0.5 - H / 2) / 100;
+            assert_int_equal(mask[i], i % 4 == 3 && fabs(x) < 0.5 && fabs(y) < 0.5 ? 7 : 0);
+        }
+    }
+    layered_depth_release(&d);
+    view_ids_release(&seen);
+}
+
+static void a_mask_is_written_with_its_camera(void **state)
+{
+    (void)state;
+    static uint32_t mask[PIXELS];
+    static const char *const names[] = {"id"};
+    const struct view camera = front();
+    struct exr_image im;
+    struct err err = ERR_INIT;
+    for (int i = 0; i < PIXELS; i++) mask[i] = (uint32_t)i % 5;
+    assert_ok(thing_mask_write(mask, &camera, scratch_path("v.exr"), NULL, &err), err);
+    assert_ok(exr_read(&im, scratch_path("v.exr"), names, 1, &err), err);
+    assert_true(im.width == W && im.height == H && im.has_world_to_camera);
+    assert_memory_equal(im.planes[0].u, mask, sizeof mask);
+    exr_image_release(&im);
+}
+
+/* ----------------------------------------------------------------------------------------------------------- sights */
+
+struct patch {
+    int left, top, right, bottom;
+    uint32_t id;
+};
+
+static void see(struct thing_sight *sights, int count, const struct patch *patches, int patch_count, int view_index)
+{
+    static uint32_t mask[PIXELS];
+    const struct view camera = front();
+    struct err err = ERR_INIT;
+    memset(mask, 0, sizeof mask);
+    for (int k = 0; k < patch_count; k++)
+        for (int y = patches[k].top; y <= patches[k].bottom; y++)
+            for (int x = patches[k].left; x <= patches[k].right; x++) mask[y * W + x] = patches[k].id;
+    assert_ok(thing_sights_add(sights, count, mask, &camera, view_index, &err), err);
+}
+
+static void is_at(const struct thing_sight *s, int left, int top, int right, int bottom)
+{
+    assert_true(s->low[0] == left && s->low[1] == top && s->high[0] == right && s->high[1] == bottom);
+}
+
+static void the_view_with_most_of_a_thing_is_the_best(void **state)
+{
+    (void)state;
+    struct thing_sight s[3] = {{0}};
+    see(s, 3, (struct patch[]){{10, 10, 19, 19, 1}, {50, 50, 52, 53, 2}}, 2, 4);
+    see(s, 3, (struct patch[]){{5, 20, 24, 39, 1}}, 1, 5);
+    see(s, 3, (struct patch[]){{5, 20, 9, 29, 1}, {60, 20, 80, 40, 2}, {95, 60, 96, 61, 2}}, 3, 6);
+    assert_int_equal(s[0].views, 3);
+    assert_int_equal(s[0].best, 5);
+    assert_float_equal(s[0].score, 400.0 / PIXELS, 1e-12);
+    is_at(&s[0], 5, 20, 24, 39);
+    assert_int_equal(s[1].views, 2);
+    assert_int_equal(s[1].best, 6);
+    is_at(&s[1], 60, 20, 96, 61); /* around both of its parts */
+    assert_int_equal(s[2].views, 0);
+}
+
+static void of_equal_views_the_first_is_the_best(void **state)
+{
+    (void)state;
+    struct thing_sight s = {0};
+    see(&s, 1, (struct patch[]){{10, 10, 19, 19, 1}}, 1, 2);
+    see(&s, 1, (struct patch[]){{30, 30, 39, 39, 1}}, 1, 3);
+    assert_int_equal(s.best, 2);
+    is_at(&s, 10, 10, 19, 19);
+}
+
+static void a_thing_that_the_border_cuts_counts_less(void **state)
+{
+    (void)state;
+    const struct patch cut[] = {
+        {0, 20, 14, 33, 1}, {85, 20, 99, 33, 1}, {20, 0, 34, 13, 1}, {20, 66, 34, 79, 1}}; /* 210 px */
+    for (int k = 0; k < 4; k++) {
+        struct thing_sight s = {0};
+        see(&s, 1, &cut[k], 1, 0);
+        see(&s, 1, (struct patch[]){{40, 40, 49, 48, 1}}, 1, 1); /* 90 px, more than 0.4 of them */
+        assert_int_equal(s.best, 1);
+        see(&s, 1, (struct patch[]){{0, 20, 14, 38, 1}}, 1, 2); /* 285 px */
+        assert_int_equal(s.best, 2);
+    }
+}
+
+/* Of 8000 px, 0.0005 is 4. */
+static void a_few_pixels_do_not_count_as_a_view(void **state)
+{
+    (void)state;
+    const struct patch few = {40, 40, 42, 40, 1}, enough = {40, 40, 43, 40, 1};
+    struct thing_sight s = {0};
+    see(&s, 1, &enough, 1, 0);
+    see(&s, 1, &few, 1, 1);
+    see(&s, 1, &enough, 1, 2);
+    assert_int_equal(s.views, 2);
+    assert_int_equal(s.best, 0);
+}
+
+static void the_order_of_views_does_not_change_their_number(void **state)
+{
+    (void)state;
+    const struct patch few = {40, 40, 42, 40, 1}, enough = {40, 40, 43, 40, 1};
+    struct thing_sight s = {0};
+    see(&s, 1, &few, 1, 0);
+    see(&s, 1, &enough, 1, 1);
+    assert_int_equal(s.best, 1);
+    assert_int_equal(s.views, 1);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(pixels_show_the_thing_that_their_point_is_in),
+        cmocka_unit_test_setup_teardown(a_mask_is_written_with_its_camera, scratch_make, scratch_remove),
+        cmocka_unit_test(the_view_with_most_of_a_thing_is_the_best),
+        cmocka_unit_test(of_equal_views_the_first_is_the_best),
+        cmocka_unit_test(a_thing_that_the_border_cuts_counts_less),
+        cmocka_unit_test(a_few_pixels_do_not_count_as_a_view),
+        cmocka_unit_test(the_order_of_views_does_not_change_their_number),
+    };
+    return cmocka_run_group_tests_name("thing_views", tests, NULL, NULL);
+}

@@ -1,0 +1,373 @@
+/* thing_surface.c - the surface of a thing in a volume of signed distances: where rays meet it, what hides it, and the
+ * colours that views give it. */
+#include "stages/render_model/thing_surface.h"
+
+#include "common/base/parallel.h"
+#include "tests/unit/box_solids.h"
+
+enum { SIZE = 40, W = 80, H = 60, SOURCES = 3, THING = 2 };
+
+#define VOXEL 0.05
+#define BAND  (3 * VOXEL)
+
+/* The model is turned, moved, and twice as large as the scene; its grid is 2 x 2 x 2 about (1, 2, 3). */
+static const struct model_axes axes = {
+    .rotation = {0.96, 0, 0, 0.28}, .translation = {0.5, 1, 0.25}, .scale = 2, .metric = true};
+static const struct vec3 middle = {1, 2, 3};
+
+struct scene {
+    struct clutter_scene clutter;
+    struct clutter_choice choice;
+    struct clutter_source sources[SOURCES];
+    struct view views[SOURCES], camera; /* scene frame */
+    struct camera_set set;
+    struct thing_volume volume;
+    float shell[W * H];
+    struct clutter_layer layer;
+};
+
+typedef double distance_fn(struct vec3 p); /* from the middle, model frame */
+
+static double to_ball(struct vec3 p) { return vec3_length(p) - 0.5; }
+
+static double to_block(struct vec3 p) { return fmax(fabs(p.x) - 0.412, fmax(fabs(p.y) - 0.333, fabs(p.z) - 0.287)); }
+
+/* The surface with its band before and behind it, and what is deeper, is of the thing; all else is unseen. */
+static void fill(struct thing_volume *v, distance_fn *distance)
+{
+    const double half = 0.5 * SIZE * VOXEL;
+    v->grid = (struct voxel_grid){{middle.x - half, middle.y - half, middle.z - half}, VOXEL, {SIZE, SIZE, SIZE}};
+    v->id = calloc(voxel_count(&v->grid), sizeof *v->id);
+    v->distance = calloc(voxel_count(&v->grid), sizeof *v->distance);
+    assert_true(v->id && v->distance);
+    for (int64_t i = 0; i < (int64_t)voxel_count(&v->grid); i++) {
+        const double d = distance(vec3_sub(thing_voxel_centre(&v->grid, i), middle)) / BAND;
+        v->id[i] = d <= 1 ? THING : 0;
+        v->distance[i] = d <= 1 ? (float)fmax(d, -1) : THING_UNSEEN;
+    }
+}
+
+/* A camera of the scene's frame at a point of the model's, that looks at the middle of the grid. */
+static struct view looking_from(double x, double y, double z)
+{
+    struct view v = {.name = "v", .width = W, .height = H, .fx = 70, .fy = 70, .cx = W / 2.0, .cy = H / 2.0};
+    v.center = world_from_model_point(&axes, vec3_make(x, y, z));
+    const struct vec3 ahead = vec3_normalize(vec3_sub(world_from_model_point(&axes, middle), v.center)),
+                      right = vec3_normalize(vec3_cross(vec3_make(0, 0, -1), ahead)), down = vec3_cross(ahead, right);
+    v.cam_from_world =
+        (struct mat3){{{right.x, right.y, right.z}, {down.x, down.y, down.z}, {ahead.x, ahead.y, ahead.z}}};
+    v.translation = vec3_scale(mat3_apply(v.cam_from_world, v.center), -1);
+    return v;
+}
+
+/* A view with one colour everywhere, all of it clutter at one depth. depth: scene units; 0: no clutter. */
+static void make_source(struct scene *s, int at, float red, float green, double depth)
+{
+    struct layered_depth d = {0};
+    struct view_ids ids = {0};
+    struct err err = ERR_INIT;
+    assert_ok(layered_depth_init(&d, W, H, &err), err);
+    assert_ok(view_ids_init(&ids, W, H, &err), err);
+    d.segments = calloc(1, sizeof *d.segments);
+    assert_non_null(d.segments);
+    d.segment_count = 1;
+    d.segments[0] = (struct depth_segment){
+        .id = 1, .plane = {0, 0, 1 / (depth > 0 ? depth : 9)}, .sigma = 0.002, .confidence = 1, .pixels = W * H};
+    for (int i = 0; i < W * H; i++) {
+        d.interior.id[i] = 1;
+        d.interior.z[i] = (float)(depth > 0 ? depth : 9);
+        d.interior.rgba[4 * i] = red;
+        d.interior.rgba[4 * i + 1] = green;
+        d.interior.rgba[4 * i + 2] = 0.25f;
+        d.interior.rgba[4 * i + 3] = 1;
+        ids.id[i] = 1;
+        ids.z[i] = 9;
+        ids.clutter[i] = depth > 0;
+    }
+    assert_ok(clutter_view_make(&s->sources[at].view, &d, &ids, "v", &err), err);
+    s->sources[at].loaded = true;
+    view_ids_release(&ids);
+}
+
+/* One source, at the camera, sees all of the thing. */
+static void scene_make(struct scene *s, distance_fn *distance)
+{
+    struct err err = ERR_INIT;
+    *s = (struct scene){.camera = looking_from(3.5, 3, 3.75)};
+    fill(&s->volume, distance);
+    for (int k = 0; k < SOURCES; k++) s->views[k] = s->camera;
+    s->set = (struct camera_set){.views = s->views, .view_count = SOURCES};
+    s->clutter = (struct clutter_scene){.set = &s->set, .axes = axes, .sources = s->sources};
+    s->choice = (struct clutter_choice){.view = {0}, .fade = {1}, .count = 1};
+    make_source(s, 0, 0.75f, 0.5f, 1.4);
+    assert_ok(clutter_layer_init(&s->layer, W, H, &err), err);
+}
+
+static void scene_release(struct scene *s)
+{
+    for (int k = 0; k < SOURCES; k++) clutter_view_release(&s->sources[k].view);
+    thing_volume_release(&s->volume);
+    clutter_layer_release(&s->layer);
+}
+
+static void draw(struct scene *s)
+{
+    const size_t pixels = (size_t)W * H;
+    memset(s->layer.rgba, 0, 4 * pixels * sizeof *s->layer.rgba);
+    memset(s->layer.z, 0, pixels * sizeof *s->layer.z);
+    thing_surface_draw(&s->layer, s->shell, &s->clutter, &s->choice, &s->camera, &s->volume, THING);
+}
+
+static bool is_drawn(const struct scene *s, int i) { return s->layer.rgba[4 * i + 3] > 0; }
+
+static int count_drawn(const struct scene *s)
+{
+    int count = 0;
+    for (int i = 0; i < W * H; i++) count += is_drawn(s, i);
+    return count;
+}
+
+/* The point of the pixel's ray at a depth (scene units), from the middle of the grid, model frame. */
+static struct vec3 ray_point(const struct scene *s, int i, double z)
+{
+    const struct vec3 p = view_unproject(&s->camera, i % W + 0.5, i / W + 0.5, z);
+    return vec3_sub(model_from_world_point(&axes, p), middle);
+}
+
+/* ----------------------------------------------------------------------------------------------------------- places */
+
+/* The depth at which a pixel's ray enters the ball, scene units; 0: it passes. *slant: the cosine of its angle there.
+ * */
+static double ball_depth(const struct scene *s, int i, double *slant)
+{
+    const struct vec3 from = ray_point(s, i, 0), way = vec3_sub(ray_point(s, i, 1), from);
+    const double a = vec3_dot(way, way), b = vec3_dot(from, way), c = vec3_dot(from, from) - 0.25, root = b * b - a * c;
+    *slant = root > 0 ? sqrt(root / a) / 0.5 : 0;
+    return root > 0 ? (-b - sqrt(root)) / a : 0;
+}
+
+static void a_ball_is_met_at_its_front(void **state)
+{
+    static struct scene s;
+    int inside = 0, outside = 0;
+    (void)state;
+    scene_make(&s, to_ball);
+    draw(&s);
+    for (int i = 0; i < W * H; i++) {
+        double slant;
+        const double z = ball_depth(&s, i, &slant);
+        if (slant > 0.5) {
+            assert_true(is_drawn(&s, i));
+            const struct vec3 off = vec3_sub(ray_point(&s, i, (double)s.layer.z[i]), ray_point(&s, i, z));
+            assert_true(vec3_length(off) < 0.1 * VOXEL);
+            inside++;
+        } else if (!(z > 0)) {
+            const struct vec3 from = ray_point(&s, i, 0), way = vec3_normalize(vec3_sub(ray_point(&s, i, 1), from));
+            if (vec3_length(vec3_cross(from, way)) < 0.5 + 0.5 * VOXEL) continue; /* the outline */
+            assert_false(is_drawn(&s, i));
+            outside++;
+        }
+    }
+    assert_true(inside > 300 && outside > 1000);
+    scene_release(&s);
+}
+
+static void the_faces_of_a_block_are_met_exactly(void **state)
+{
+    static struct scene s;
+    static const double half[3] = {0.412, 0.333, 0.287};
+    int met[3] = {0};
+    (void)state;
+    scene_make(&s, to_block);
+    draw(&s);
+    for (int i = 0; i < W * H; i++) {
+        if (!is_drawn(&s, i)) continue;
+        const struct vec3 p = ray_point(&s, i, (double)s.layer.z[i]);
+        assert_true(fabs(to_block(p)) < 0.75 * VOXEL); /* edges are rounded */
+        const double off[3] = {p.x - half[0], p.y - half[1], p.z - half[2]};
+        const int face = off[0] > off[1] ? off[0] > off[2] ? 0 : 2 : off[1] > off[2] ? 1 : 2;
+        bool at_edge = false;
+        for (int k = 0; k < 3; k++) at_edge |= k != face && fabs(off[k] + half[k]) > half[k] - 3.25 * VOXEL;
+        if (at_edge) continue;
+        assert_float_equal(off[face], 0, 0.01 * VOXEL);
+        met[face]++;
+    }
+    for (int k = 0; k < 3; k++) assert_true(met[k] > 10);
+    scene_release(&s);
+}
+
+static void the_shell_hides_what_is_behind_it(void **state)
+{
+    static struct scene s;
+    (void)state;
+    scene_make(&s, to_ball);
+    draw(&s); /* without a shell */
+    const int all = count_drawn(&s);
+    assert_true(all > 300);
+    /* depths of the shell are of the model, twice those of the scene */
+    for (int i = 0; i < W * H; i++) s.shell[i] = 2 * 5;
+    draw(&s);
+    assert_int_equal(count_drawn(&s), all);
+    for (int i = 0; i < W * H; i++) s.shell[i] = 2 * 0.5f;
+    draw(&s);
+    assert_int_equal(count_drawn(&s), 0);
+    /* on the left a wall before it, on the right the floor that it touches, a little before its surface */
+    memset(s.shell, 0, sizeof s.shell);
+    draw(&s);
+    for (int i = 0; i < W * H; i++) s.shell[i] = 2 * s.layer.z[i] * (i % W < W / 2 ? 0.9f : 0.98f);
+    int right = 0;
+    for (int i = 0; i < W * H; i++) right += i % W >= W / 2 && is_drawn(&s, i);
+    draw(&s);
+    assert_int_equal(count_drawn(&s), right);
+    for (int i = 0; i < W * H; i++) assert_true(i % W >= W / 2 || !is_drawn(&s, i));
+    scene_release(&s);
+}
+
+static void unseen_and_foreign_voxels_make_no_surface(void **state)
+{
+    static struct scene s;
+    (void)state;
+    for (int foreign = 0; foreign < 2; foreign++) {
+        int kept = 0;
+        scene_make(&s, to_ball);
+        for (int64_t i = 0; i < (int64_t)voxel_count(&s.volume.grid); i++)
+            if (thing_voxel_centre(&s.volume.grid, i).z > middle.z) {
+                if (foreign)
+                    s.volume.id[i] = THING - 1;
+                else
+                    s.volume.distance[i] = THING_UNSEEN;
+            }
+        draw(&s);
+        for (int i = 0; i < W * H; i++) {
+            double slant;
+            const double z = ball_depth(&s, i, &slant);
+            const double height = ray_point(&s, i, z).z;
+            if (slant > 0.5 && height < -VOXEL) assert_true(is_drawn(&s, i));
+            if (is_drawn(&s, i)) assert_true(ray_point(&s, i, (double)s.layer.z[i]).z <= 0);
+            kept += is_drawn(&s, i);
+        }
+        assert_true(kept > 100);
+        scene_release(&s);
+    }
+}
+
+/* Without the voxels before it, a surface begins nowhere: its inside alone is not drawn. */
+static void a_surface_needs_what_is_before_it(void **state)
+{
+    static struct scene s;
+    (void)state;
+    scene_make(&s, to_ball);
+    for (size_t i = 0; i < voxel_count(&s.volume.grid); i++)
+        if (s.volume.distance[i] > 0) s.volume.distance[i] = THING_UNSEEN;
+    draw(&s);
+    assert_int_equal(count_drawn(&s), 0);
+    scene_release(&s);
+}
+
+/* ---------------------------------------------------------------------------------------------------------- colours */
+
+static void it_has_the_colour_of_the_views_that_see_it(void **state)
+{
+    static struct scene s;
+    double slant;
+    const int centre = H / 2 * W + W / 2;
+    (void)state;
+    scene_make(&s, to_ball);
+    const double z = ball_depth(&s, centre, &slant);
+    clutter_view_release(&s.sources[0].view);
+    make_source(&s, 0, 0.75f, 0.5f, z);
+    make_source(&s, 1, 0.1f, 0.9f, 0.5 * z); /* something else hides the thing from this one */
+    make_source(&s, 2, 0.1f, 0.9f, 0);       /* this one shows no clutter */
+    s.choice = (struct clutter_choice){.view = {0, 1, 2}, .fade = {1, 1, 1}, .count = 3};
+    draw(&s);
+    assert_float_equal(s.layer.rgba[4 * centre], 0.75, 0.005);
+    assert_float_equal(s.layer.rgba[4 * centre + 1], 0.5, 0.005);
+    assert_float_equal(s.layer.rgba[4 * centre + 3], 1, 0);
+    /* those that do not see it count if there are no others */
+    s.choice = (struct clutter_choice){.view = {1, 2}, .fade = {1, 1}, .count = 2};
+    draw(&s);
+    assert_float_equal(s.layer.rgba[4 * centre], 0.1, 0.005);
+    assert_float_equal(s.layer.rgba[4 * centre + 1], 0.9, 0.005);
+    s.choice = (struct clutter_choice){.view = {2}, .fade = {1}, .count = 1};
+    draw(&s);
+    assert_int_equal(count_drawn(&s), 0);
+    scene_release(&s);
+}
+
+static void a_view_beside_the_camera_counts_more_than_one_aside(void **state)
+{
+    static struct scene s;
+    double slant;
+    const int centre = H / 2 * W + W / 2;
+    (void)state;
+    scene_make(&s, to_ball);
+    const double z = ball_depth(&s, centre, &slant);
+    clutter_view_release(&s.sources[0].view);
+    s.views[1] = looking_from(3, 4.25, 3.5);
+    const struct vec3 p = view_unproject(&s.camera, W / 2 + 0.5, H / 2 + 0.5, z);
+    double u, v;
+    make_source(&s, 0, 0.75f, 0.5f, z);
+    make_source(&s, 1, 0.25f, 0.5f, view_project(&s.views[1], p, &u, &v));
+    s.choice = (struct clutter_choice){.view = {0, 1}, .fade = {1, 1}, .count = 2};
+    draw(&s);
+    assert_true(s.layer.rgba[4 * centre] > 0.7f && s.layer.rgba[4 * centre] < 0.7499f);
+    scene_release(&s);
+}
+
+static void it_lies_under_what_the_layer_has(void **state)
+{
+    static struct scene s;
+    static const float covers[] = {0.25f, 0.75f, 1};
+    const int centre = H / 2 * W + W / 2;
+    (void)state;
+    scene_make(&s, to_ball);
+    draw(&s);
+    const float surface = s.layer.z[centre];
+    for (int k = 0; k < 3; k++) {
+        for (int i = 0; i < W * H; i++) {
+            for (int c = 0; c < 3; c++) s.layer.rgba[4 * i + c] = 0.1f * covers[k];
+            s.layer.rgba[4 * i + 3] = covers[k];
+            s.layer.z[i] = 1;
+        }
+        thing_surface_draw(&s.layer, s.shell, &s.clutter, &s.choice, &s.camera, &s.volume, THING);
+        assert_float_equal(s.layer.rgba[4 * centre], 0.1f * covers[k] + 0.75f * (1 - covers[k]), 1e-3);
+        assert_float_equal(s.layer.rgba[4 * centre + 3], 1, 0);
+        assert_float_equal(s.layer.z[centre], covers[k] < 0.5f ? surface : 1, 1e-6);
+        assert_float_equal(s.layer.rgba[3], covers[k], 0); /* beside the ball */
+    }
+    scene_release(&s);
+}
+
+static void threads_do_not_matter(void **state)
+{
+    static struct scene s;
+    (void)state;
+    scene_make(&s, to_block);
+    float *once = malloc(4 * (size_t)W * H * sizeof *once);
+    assert_non_null(once);
+    parallel_set_threads(1);
+    draw(&s);
+    memcpy(once, s.layer.rgba, 4 * (size_t)W * H * sizeof *once);
+    parallel_set_threads(3);
+    draw(&s);
+    parallel_set_threads(0);
+    assert_memory_equal(s.layer.rgba, once, 4 * (size_t)W * H * sizeof *once);
+    free(once);
+    scene_release(&s);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_ball_is_met_at_its_front),
+        cmocka_unit_test(the_faces_of_a_block_are_met_exactly),
+        cmocka_unit_test(the_shell_hides_what_is_behind_it),
+        cmocka_unit_test(unseen_and_foreign_voxels_make_no_surface),
+        cmocka_unit_test(a_surface_needs_what_is_before_it),
+        cmocka_unit_test(it_has_the_colour_of_the_views_that_see_it),
+        cmocka_unit_test(a_view_beside_the_camera_counts_more_than_one_aside),
+        cmocka_unit_test(it_lies_under_what_the_layer_has),
+        cmocka_unit_test(threads_do_not_matter),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
