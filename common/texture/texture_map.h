@@ -118,8 +118,9 @@ const double *texture_map_lamp(const struct texture_map *map, const char *name);
 /* Whether clutter at p is left out: p is in a zone to clear and in none to keep. */
 bool texture_map_clears(const struct texture_map *map, struct vec3 p);
 
-/* ST_DATA: the base is named "none", a lamp's factor is below 0 or not finite, the place of a thing is not finite, a face
- * has more than 100 000 added triangles, a zone as many corners or fewer than 3: texture_map_read() would refuse it. */
+/* ST_DATA: the base is named "none", a lamp's factor is below 0 or not finite, the place of a thing is not finite, a
+ * face has more than 100 000 added triangles, a zone as many corners or fewer than 3: texture_map_read() would refuse
+ * it. */
 enum status texture_map_write(const struct texture_map *map, const char *path, const struct provenance *prov,
                               struct err *err);
 /* ST_DATA with file and line. A failure leaves map empty. */
