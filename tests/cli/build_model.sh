@@ -210,7 +210,7 @@ END
         # a box on a floor has no wall to be placed by
         [[ $name != */object-* ]] || continue
         ! grep -q ' in v[0-9]' "$name" || fail "$name names a view"
-        build 0 closed --script loft.txt --edit "$name" --base unedited/model.txt
+        build 0 closed --script loft.txt --things "$root/scenes/loft/things.txt" --edit "$name" --base unedited/model.txt
         mv made "$(basename "$name" .txt)"
     done
     # lines LINE WORD N...: the numbers of plan.txt's line that begins so are N..., to a millionth

@@ -242,9 +242,11 @@ static enum status add_zone(struct plan_context *c, bool keep)
         return plan_statement_error(c,
                                     "the model has no rooms that could be cleared; state them with \"room\", or clear "
                                     "a place, such as \"clear from 0 0 to 4 3\".");
-    if (s->name && !zone.all && plan_find_room(c, s->name, &zone.room)) return c->err->status;
+    enum name_kind kind;
+    if (s->name && !zone.all &&
+        plan_find_named(c, s->name, 1u << NAMED_ROOM, "a room, or a thing of things.txt", &kind, &zone.room))
+        return c->err->status;
     if (s->other) {
-        enum name_kind kind;
         zone.before = s->values[0];
         if (plan_find_named(c, s->other, 1u << NAMED_OPENING, "a door, passage or window", &kind, &zone.opening))
             return c->err->status;
