@@ -24,6 +24,8 @@
 #define SUPPORT_REACH 0.04 /* of the model's height */
 #define MARK_SLACK    3    /* voxels beside a surface at which a mark still finds it */
 
+enum { SURFACE_STEPS = 3 }; /* voxels beside those of a surface in which the distance from it is kept */
+
 struct finder {
     const struct things_job *job;
     double height; /* of the model, model units */
@@ -216,6 +218,9 @@ static enum status name_things(struct finder *f, const uint32_t *named, struct e
 static enum status grow(struct finder *f, struct err *err)
 {
     const struct voxel_grid *g = &f->volume.grid;
+    if (components_grow(f->volume.id, g, SURFACE_STEPS, err)) return err->status;
+    for (size_t i = 0; i < voxel_count(g); i++) /* elsewhere the surface is that of the model */
+        if (!f->volume.id[i]) f->volume.distance[i] = THING_UNSEEN;
     int *lowest = malloc(((size_t)f->count + 1) * sizeof *lowest);
     if (!lowest) return err_nomem(err, "things", (size_t)f->count * sizeof *lowest);
     for (int k = 0; k < f->count; k++) {
@@ -227,7 +232,8 @@ static enum status grow(struct finder *f, struct err *err)
     }
     components_stand(f->volume.id, g, lowest);
     free(lowest);
-    return components_grow(f->volume.id, g, (int)ceil(f->job->params->margin * f->height / g->voxel), err);
+    const int margin = (int)ceil(f->job->params->margin * f->height / g->voxel);
+    return components_grow(f->volume.id, g, margin > SURFACE_STEPS ? margin - SURFACE_STEPS : 0, err);
 }
 
 static enum status find_surfaces(struct finder *f, struct err *err)

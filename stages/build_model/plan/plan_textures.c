@@ -231,7 +231,7 @@ static enum status add_zone(struct plan_context *c, bool keep)
     int thing;
     if (s->name && plan_is_thing(p, s->name, &thing)) return plan_apply_thing_clear(c, thing, keep);
     if (s->name && keep)
-        return plan_statement_error(c, "found %s, wanted a thing of things.txt, or the place to keep.", s->name);
+        return plan_statement_error(c, "found %s, wanted a thing of things.txt, \"in VIEW\" or \"from\".", s->name);
     zone.low[2] = s->has_option[OPTION_FOOT] ? s->options[OPTION_FOOT] : -ABOVE_ALL;
     zone.high[2] = s->has_option[OPTION_TOP] ? s->options[OPTION_TOP] : ABOVE_ALL;
     if (!(zone.low[2] < zone.high[2]))

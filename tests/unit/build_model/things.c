@@ -241,7 +241,7 @@ static void only_a_thing_at_its_place_is_kept(void **state)
     refused_edit("move sofa to hall at 1 1\nkeep sofa\n", "edit.txt:3: sofa was moved before, so it cannot be kept");
     refused_edit("copy sofa as b by 1 1\nkeep b\n", "edit.txt:3: b was moved before, so it cannot be kept");
     refused_edit("keep sofa\nkeep sofa\n", "edit.txt:3: sofa was kept before");
-    refused_edit("keep hall\n", "edit.txt:2: found hall, wanted a thing of things.txt, or the place to keep");
+    refused_edit("keep hall\n", "edit.txt:2: found hall, wanted a thing of things.txt, \"in VIEW\" or \"from\"");
     refused_edit("keep all\n", "edit.txt:2: found all, wanted a thing of things.txt");
 }
 
