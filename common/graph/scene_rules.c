@@ -239,6 +239,7 @@ void rule_draws_photo(struct graph *g, const char *edit, const char *pictures, c
         rule_makes(g, record);
         graph_goal(g, goal, record);
         rule_needs(g, PATH(g, VIEW, .view = p->views[i]));
+        rule_needs(g, PATH(g, THING_MASK, .view = p->views[i]));
         rule_needs(g, PATH(g, IDS, .view = p->views[i]));
         rule_needs(g, PATH(g, DEPTH, .depth = MODEL_DEPTH, .view = p->views[i]));
         rule_option(g, "--view", p->views[i]);

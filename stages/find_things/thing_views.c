@@ -4,15 +4,46 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "common/capture/view_image.h"
-#include "common/image/exr.h"
 #include "stages/find_things/fuse_views.h"
 
 #define MIN_SHARE 0.0005 /* of the picture: a view with less of a thing does not count as one that shows it */
+#define WHOLE     0.5    /* share of a segment's pixels that make all of it show the thing */
 #define CUT       0.4    /* score of a view whose border cuts the thing */
 
-void thing_mask_find(uint32_t *mask, const struct thing_volume *volume, const struct view *camera,
-                     const struct layered_depth *depth, const struct view_ids *ids, double scale)
+/* The thing that most pixels of a segment show: `lead` counts up for it and down for others, so that a majority
+ * wins; a second pass counts its pixels. */
+struct segment_vote {
+    uint32_t id;
+    int lead, pixels, all;
+};
+
+static enum status fill_segments(uint32_t *mask, const struct layered_depth *d, struct err *err)
+{
+    const size_t pixels = (size_t)d->width * (size_t)d->height;
+    struct segment_vote *list = calloc((size_t)d->segment_count + 1, sizeof *list);
+    if (!list) return err_nomem(err, "the segments of a view", (size_t)d->segment_count * sizeof *list);
+    for (size_t i = 0; i < pixels; i++) {
+        struct segment_vote *v = &list[d->interior.id[i]];
+        v->all++;
+        if (!mask[i]) continue;
+        if (!v->lead) v->id = mask[i];
+        v->lead += v->id == mask[i] ? 1 : -1;
+    }
+    for (size_t i = 0; i < pixels; i++) {
+        struct segment_vote *v = &list[d->interior.id[i]];
+        v->pixels += mask[i] && mask[i] == v->id;
+    }
+    for (size_t i = 0; i < pixels; i++) {
+        const struct segment_vote *v = &list[d->interior.id[i]];
+        if (d->interior.id[i] && v->pixels >= WHOLE * v->all) mask[i] = v->id;
+    }
+    free(list);
+    return ST_OK;
+}
+
+enum status thing_mask_find(uint32_t *mask, const struct thing_volume *volume, const struct view *camera,
+                            const struct layered_depth *depth, const struct view_ids *ids, double scale,
+                            struct err *err)
 {
     for (int y = 0; y < camera->height; y++)
         for (int x = 0; x < camera->width; x++) {
@@ -22,20 +53,7 @@ void thing_mask_find(uint32_t *mask, const struct thing_volume *volume, const st
             mask[i] =
                 thing_volume_at(volume, view_unproject(camera, x + 0.5, y + 0.5, scale * (double)depth->interior.z[i]));
         }
-}
-
-enum status thing_mask_write(const uint32_t *mask, const struct view *view, const char *path,
-                             const struct provenance *prov, struct err *err)
-{
-    struct exr_image im = {0};
-    struct exr_plane *plane;
-    if (!exr_image_init(&im, view->width, view->height, err) && !exr_add_plane(&im, "id", EXR_UINT, &plane, err)) {
-        memcpy(plane->u, mask, (size_t)view->width * (size_t)view->height * sizeof *mask);
-        view_image_set_camera(&im, view);
-        exr_write(&im, path, prov, err);
-    }
-    exr_image_release(&im);
-    return err->status;
+    return fill_segments(mask, depth, err);
 }
 
 struct patch {

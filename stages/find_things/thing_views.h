@@ -5,16 +5,16 @@
 #include "common/capture/camera_set.h"
 #include "common/layers/layered_depth.h"
 #include "common/model/thing_list.h"
+#include "common/model/thing_mask.h"
 #include "common/model/thing_volume.h"
 #include "common/texture/view_ids.h"
 
 /* Sets mask[pixel] to the id of the thing that the view shows there, 0: none. camera: model frame; scale: model units
- * per scene unit. */
-void thing_mask_find(uint32_t *mask, const struct thing_volume *volume, const struct view *camera,
-                     const struct layered_depth *depth, const struct view_ids *ids, double scale);
-enum status thing_mask_write(const uint32_t *mask, const struct view *view, const char *path,
-                             const struct provenance *prov, struct err *err);
-
+ * per scene unit. A segment of the depth map of which half the pixels show a thing shows it whole: segments end at
+ * edges of colour, and depth has holes. ST_NOMEM. */
+enum status thing_mask_find(uint32_t *mask, const struct thing_volume *volume, const struct view *camera,
+                            const struct layered_depth *depth, const struct view_ids *ids, double scale,
+                            struct err *err);
 /* What the views show of a thing. {0} is the state before the first view. */
 struct thing_sight {
     int views;           /* that show enough of it */

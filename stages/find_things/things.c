@@ -289,8 +289,8 @@ static enum status see_view(struct finder *f, int i, struct err *err)
     char path[FILE_PATH];
     uint32_t *mask = new_mask(view, err);
     if (err->status) return err->status;
-    if (!view_data_read(&d, job, i, err)) {
-        thing_mask_find(mask, &f->volume, &d.camera, &d.depth, &d.ids, job->in->axes.scale);
+    if (!view_data_read(&d, job, i, err) &&
+        !thing_mask_find(mask, &f->volume, &d.camera, &d.depth, &d.ids, job->in->axes.scale, err)) {
         if (!product_path_in(path, job->out, PRODUCT_THING_MASK, &(struct product_key){.view = view->name}, err) &&
             !thing_mask_write(mask, view, path, job->prov, err))
             thing_sights_add(f->sights, f->count, mask, view, i, err);
@@ -312,7 +312,7 @@ static enum status cut_tiles(struct finder *f, int i, struct err *err)
         if (!(f->sights[k].score > 0) || f->sights[k].best != i) continue;
         if (!mask && (mask = new_mask(view, err)) && !view_data_read(&d, job, i, err) &&
             !view_image_read(&photo, job->views, view, job->prov, err))
-            thing_mask_find(mask, &f->volume, &d.camera, &d.depth, &d.ids, job->in->axes.scale);
+            thing_mask_find(mask, &f->volume, &d.camera, &d.depth, &d.ids, job->in->axes.scale, err);
         if (!err->status) sheet_tile_make(&f->tiles[k], &photo, mask, (uint32_t)k + 1, f->things[k].rect, err);
     }
     view_data_release(&d);

@@ -176,8 +176,8 @@ RULES(relight)
     static const char *const goals[] = {"unlit", "relight", "relit-tour", "relit-tour-unlit", "relit-tour-frames"};
     struct name_list wanted = {0};
     graph_step(g, "unlit", STEP_FARM, "");
-    graph_step(g, "relight", STEP_FARM, "textures outdoors exposure relit-vita unlit");
-    graph_step(g, "relit-tour-unlit", STEP_FARM, "textures outdoors exposure tour-path");
+    graph_step(g, "relight", STEP_FARM, "textures outdoors exposure things relit-vita unlit");
+    graph_step(g, "relit-tour-unlit", STEP_FARM, "textures outdoors exposure tour-path things");
     graph_step(g, "relit-tour-frames", STEP_FARM, "relit-vita relit-tour-unlit");
     graph_step(g, "relit-tour", STEP_ONE, "relit-tour-frames");
     graph_asked(g, "relight", "relight");

@@ -12,6 +12,7 @@
 #include "common/capture/view_image.h"
 #include "common/layers/layered_depth.h"
 #include "common/math/distance.h"
+#include "common/model/thing_mask.h"
 #include "common/product/product.h"
 #include "common/texture/view_ids.h"
 
@@ -105,7 +106,11 @@ static enum status leave_cleared(uint8_t *same, const struct room *room, int vie
     char path[FILE_PATH];
     struct view_ids ids = {0};
     struct layered_depth depth = {0};
-    if (!product_path_in(path, room->files.ids, PRODUCT_IDS, &key, err) &&
+    uint32_t *mask = NULL;
+    if (filter.volume && room->files.things &&
+        !product_path_in(path, room->files.things, PRODUCT_THING_MASK, &key, err))
+        thing_mask_read(&mask, world, path, (uint32_t)room->things.list.count, prov, err);
+    if (!err->status && !product_path_in(path, room->files.ids, PRODUCT_IDS, &key, err) &&
         !view_ids_read(&ids, world, path, prov, err) &&
         !product_path_in(path, room->files.depth, PRODUCT_DEPTH, &key, err))
         layered_depth_read_interior(&depth, path, prov, err);
@@ -118,13 +123,16 @@ static enum status leave_cleared(uint8_t *same, const struct room *room, int vie
         for (int x = 0; x < camera->width; x++) {
             const size_t i = (size_t)y * (size_t)camera->width + (size_t)x;
             const double z = depth.interior.z[i] * room->in.axes.scale;
-            stays[i] = !(z > 0 && ids.clutter[i] > CLUTTER_UNSURE &&
+            const bool gone = mask && filter.fate[mask[i]] == THING_IS_GONE;
+            stays[i] = !gone &&
+                       !(z > 0 && ids.clutter[i] > CLUTTER_UNSURE &&
                          clutter_filter_drops(&filter, view_unproject(camera, x + 0.5, y + 0.5, z))) &&
                        !meets_gone(&filter, camera, x + 0.5, y + 0.5, ids.z[i] * room->in.axes.scale);
         }
     if (!err->status) grow(stays, camera, CLEARED_MARGIN, err);
     for (size_t i = 0; !err->status && i < pixels; i++) same[i] &= stays[i];
     free(stays);
+    free(mask);
     layered_depth_release(&depth);
     view_ids_release(&ids);
     return err->status;

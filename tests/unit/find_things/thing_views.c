@@ -30,7 +30,7 @@ static void pixels_show_the_thing_that_their_point_is_in(void **state)
             seen.clutter[i] = i % 4 == 0 ? CLUTTER_UNSURE : 0.75f;
             d.interior.z[i] = (i % 4 == 1 ? 0 : i % 4 == 2 ? 3.0f : 2.05f) / (float)scale;
         }
-        thing_mask_find(mask, &v, &camera, &d, &seen, scale);
+        assert_ok(thing_mask_find(mask, &v, &camera, &d, &seen, scale, &err), err);
         for (int i = 0; i < PIXELS; i++) {
             const double x = 2.05 * (i % W + 0.5 - W / 2) / 100, y = 2.05 * ((int)(i / W) + 0.5 - H / 2) / 100;
             assert_int_equal(mask[i], i % 4 == 3 && fabs(x) < 0.5 && fabs(y) < 0.5 ? 7 : 0);
@@ -38,6 +38,61 @@ static void pixels_show_the_thing_that_their_point_is_in(void **state)
     }
     layered_depth_release(&d);
     view_ids_release(&seen);
+}
+
+/* Segments are bands of four rows; the first ones have depth of the thing in three of four columns, the others in one. */
+static void a_segment_that_shows_half_of_a_thing_shows_it_whole(void **state)
+{
+    (void)state;
+    static uint32_t ids[N * N * N], mask[PIXELS];
+    const struct thing_volume v = {grid, ids, NULL};
+    const struct view camera = front();
+    struct layered_depth d = {0};
+    struct view_ids seen = {0};
+    struct err err = ERR_INIT;
+    for (int i = 0; i < N * N * N; i++) ids[i] = 7;
+    assert_ok(layered_depth_init(&d, W, H, &err), err);
+    assert_ok(view_ids_init(&seen, W, H, &err), err);
+    d.segment_count = (H + 3) / 4;
+    d.segments = calloc((size_t)d.segment_count, sizeof *d.segments);
+    assert_non_null(d.segments);
+    for (int i = 0; i < PIXELS; i++) {
+        const int band = i / W / 4;
+        const bool shown = band < 2 ? i % 4 != 0 : i % 4 == 0;
+        d.interior.id[i] = (uint32_t)band + 1;
+        d.interior.z[i] = shown ? 1.5f : 90.0f; /* far beyond the volume */
+        seen.clutter[i] = 1;
+    }
+    assert_ok(thing_mask_find(mask, &v, &camera, &d, &seen, 1, &err), err);
+    for (int i = 0; i < PIXELS; i++) {
+        const bool whole = i / W / 4 < 2, seen_there = i % 4 == 0;
+        assert_int_equal(mask[i], whole || seen_there ? 7 : 0);
+    }
+    layered_depth_release(&d);
+    view_ids_release(&seen);
+}
+
+static void a_mask_is_read_back_or_refused(void **state)
+{
+    (void)state;
+    static uint32_t mask[PIXELS];
+    const struct view camera = front();
+    struct view other = camera;
+    uint32_t *again = NULL;
+    struct err err = ERR_INIT;
+    other.width = W / 2;
+    for (int i = 0; i < PIXELS; i++) mask[i] = (uint32_t)i % 5;
+    assert_ok(thing_mask_write(mask, &camera, scratch_path("v.exr"), NULL, &err), err);
+    assert_ok(thing_mask_read(&again, &camera, scratch_path("v.exr"), 4, NULL, &err), err);
+    assert_memory_equal(again, mask, sizeof mask);
+    free(again);
+    assert_int_equal(thing_mask_read(&again, &camera, scratch_path("v.exr"), 3, NULL, &err), ST_DATA);
+    assert_err(err, ST_DATA, "v.exr: pixel (4, 0) is of thing 4, but there are 3; run find_things again.");
+    assert_null(again);
+    err = (struct err)ERR_INIT;
+    assert_int_equal(thing_mask_read(&again, &other, scratch_path("v.exr"), 4, NULL, &err), ST_DATA);
+    assert_err(err, ST_DATA, "px, but the view is");
+    assert_null(again);
 }
 
 static void a_mask_is_written_with_its_camera(void **state)
@@ -150,6 +205,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(pixels_show_the_thing_that_their_point_is_in),
+        cmocka_unit_test(a_segment_that_shows_half_of_a_thing_shows_it_whole),
+        cmocka_unit_test_setup_teardown(a_mask_is_read_back_or_refused, scratch_make, scratch_remove),
         cmocka_unit_test_setup_teardown(a_mask_is_written_with_its_camera, scratch_make, scratch_remove),
         cmocka_unit_test(the_view_with_most_of_a_thing_is_the_best),
         cmocka_unit_test(of_equal_views_the_first_is_the_best),

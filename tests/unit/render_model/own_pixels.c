@@ -1,6 +1,8 @@
 /* own_pixels.c - which pixels of a photo an edit leaves alone: by face, by plane, by texture, by thing. */
 #include "stages/render_model/own_pixels.h"
 
+#include "common/model/thing_mask.h"
+
 #include "common/layers/layered_depth.h"
 #include "common/texture/view_ids.h"
 #include "tests/unit/render_model/shell_pictures.h"
@@ -194,8 +196,9 @@ static double x_at(int i, double z)
 }
 
 /* Where the photo is kept when posts are gone. The view's depth shows the room alone; clutter: it is at z = 1.125
- * everywhere, in the posts that are gone, and all of it is clutter. The caller frees it. */
-static uint8_t *same_without_posts(bool clutter)
+ * everywhere, in the posts that are gone, and all of it is clutter. masked: columns at the left that the view's mask says
+ * show what is gone; 0: there is no mask. The caller frees it. */
+static uint8_t *same_without_posts(bool clutter, int masked)
 {
     static const struct provenance no_inputs = {.stage = "test", .version = "1"};
     struct render_model_params params = RENDER_MODEL_PARAMS_DEFAULT;
@@ -238,6 +241,14 @@ static uint8_t *same_without_posts(bool clutter)
     drawn.model = make_rays(bare, 2);
     drawn.shell = make_scene(bare, 2);
     drawn.things = posts();
+    drawn.things.list = (struct thing_list){calloc(2, sizeof(struct thing)), 2};
+    assert_non_null(drawn.things.list.things);
+    if (masked) {
+        static uint32_t mask[W * H];
+        for (int i = 0; i < W * H; i++) mask[i] = i % W < masked ? GONE : 0;
+        drawn.files.things = scratch_path("things");
+        assert_ok(thing_mask_write(mask, &camera, scratch_path("things/masks/v.exr"), NULL, &err), err);
+    }
     assert_ok(own_pixels_find(same, &drawn, 0, &prov, &err), err);
     placed_things_release(&drawn.things);
     shell_close(drawn.shell);
@@ -251,7 +262,7 @@ static void the_photo_is_not_kept_where_a_thing_is_gone_that_its_depth_misses(vo
 {
     int hit = 0, far = 0;
     (void)state;
-    uint8_t *same = same_without_posts(false);
+    uint8_t *same = same_without_posts(false, 0);
     for (int i = 0; i < W * H; i++) {
         bool back;
         seen_at(i, &back);
@@ -275,7 +286,7 @@ static void the_photo_is_not_kept_where_its_depth_is_in_a_thing_that_is_gone(voi
 {
     int hit = 0, far = 0;
     (void)state;
-    uint8_t *same = same_without_posts(true);
+    uint8_t *same = same_without_posts(true, 0);
     for (int i = 0; i < W * H; i++) {
         bool back;
         seen_at(i, &back);
@@ -293,9 +304,26 @@ static void the_photo_is_not_kept_where_its_depth_is_in_a_thing_that_is_gone(voi
     free(same);
 }
 
+static void the_photo_is_not_kept_where_the_mask_shows_what_is_gone(void **state)
+{
+    enum { MASKED = 6 };
+    (void)state;
+    uint8_t *without = same_without_posts(false, 0), *same = same_without_posts(false, MASKED);
+    int kept = 0;
+    for (int i = 0; i < W * H; i++) {
+        if (i % W < MASKED) assert_int_equal(same[i], 0);
+        if (i % W < MASKED) kept += without[i];
+        if (i % W > MASKED + 5) assert_int_equal(same[i], without[i]); /* beyond the margin of what is cleared */
+    }
+    assert_true(kept > 100);
+    free(without);
+    free(same);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_photo_is_not_kept_where_the_mask_shows_what_is_gone),
         cmocka_unit_test(a_wall_with_its_own_texture_in_place_keeps_the_photo),
         cmocka_unit_test(a_painted_wall_does_not_show_the_photo),
         cmocka_unit_test(the_photo_ends_a_margin_before_the_paint),
