@@ -4,10 +4,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/math/distance.h"
 #include "stages/find_things/fuse_views.h"
 
 #define MIN_SHARE 0.0005 /* of the picture: a view with less of a thing does not count as one that shows it */
 #define WHOLE     0.5    /* share of a segment's pixels that make all of it show the thing */
+#define CLOSED    0.008f /* of the width: half of the widest gap that is closed */
 #define CUT       0.4    /* score of a view whose border cuts the thing */
 
 /* The thing that most pixels of a segment show: `lead` counts up for it and down for others, so that a majority
@@ -41,6 +43,40 @@ static enum status fill_segments(uint32_t *mask, const struct layered_depth *d, 
     return ST_OK;
 }
 
+/* Pixels of clutter in narrow gaps of a thing's picture show it, too: closes the pixels of `id` by CLOSED of the width. */
+static enum status close_gaps(uint32_t *mask, uint32_t id, const struct view_ids *ids, uint8_t *inside, float *squared,
+                              struct err *err)
+{
+    const size_t pixels = (size_t)ids->width * (size_t)ids->height;
+    const float reach = CLOSED * (float)ids->width;
+    for (size_t i = 0; i < pixels; i++) inside[i] = mask[i] != id;
+    if (distance_squared(squared, inside, ids->width, ids->height, err)) return err->status;
+    for (size_t i = 0; i < pixels; i++) inside[i] = squared[i] <= reach * reach;
+    if (distance_squared(squared, inside, ids->width, ids->height, err)) return err->status;
+    for (size_t i = 0; i < pixels; i++)
+        if (!mask[i] && squared[i] > reach * reach && ids->clutter[i] >= CLUTTER_UNSURE) mask[i] = id;
+    return ST_OK;
+}
+
+static enum status close_all(uint32_t *mask, const struct view_ids *ids, struct err *err)
+{
+    const size_t pixels = (size_t)ids->width * (size_t)ids->height;
+    uint8_t *inside = malloc(pixels);
+    float *squared = malloc(pixels * sizeof *squared);
+    uint32_t most = 0;
+    if (!inside || !squared) err_nomem(err, "the things of a view", pixels * 5);
+    for (size_t i = 0; i < pixels; i++) most = mask[i] > most ? mask[i] : most;
+    uint8_t *seen = calloc((size_t)most + 1, 1);
+    if (!seen) err_nomem(err, "things", most);
+    for (size_t i = 0; !err->status && i < pixels; i++) seen[mask[i]] = 1;
+    for (uint32_t id = 1; !err->status && id <= most; id++)
+        if (seen[id]) close_gaps(mask, id, ids, inside, squared, err);
+    free(seen);
+    free(inside);
+    free(squared);
+    return err->status;
+}
+
 enum status thing_mask_find(uint32_t *mask, const struct thing_volume *volume, const struct view *camera,
                             const struct layered_depth *depth, const struct view_ids *ids, double scale,
                             struct err *err)
@@ -53,7 +89,7 @@ enum status thing_mask_find(uint32_t *mask, const struct thing_volume *volume, c
             mask[i] =
                 thing_volume_at(volume, view_unproject(camera, x + 0.5, y + 0.5, scale * (double)depth->interior.z[i]));
         }
-    return fill_segments(mask, depth, err);
+    return fill_segments(mask, depth, err) || close_all(mask, ids, err) ? err->status : ST_OK;
 }
 
 struct patch {

@@ -158,6 +158,7 @@ static int add_fragment(const struct blend_job *job, struct fragment *list, int 
     struct fragment *f = &list[count];
     const float alpha = from->rgba[i][3];
     if (!(from->alpha[i] > 0) || !(alpha > MIN_ALPHA)) return count;
+    if (job->filter->gone && job->filter->gone[(size_t)y * (size_t)job->camera->width + (size_t)x]) return count;
     *f = (struct fragment){.z = from->z[i], .sigma = from->sigma[i], .slot = slot};
     memcpy(f->rgba, from->rgba[i], sizeof f->rgba);
     f->point = view_unproject(job->camera, x + 0.5, y + 0.5, (double)f->z);

@@ -14,6 +14,7 @@ struct clutter_filter {
     const struct thing_volume *volume; /* NULL: no things */
     const uint8_t *fate;               /* enum thing_fate of each id of the volume, from 0 */
     uint32_t only;                     /* the thing that alone passes; 0: all do */
+    const uint8_t *gone;               /* of each pixel of the picture: nothing passes; NULL: of none */
 };
 
 /* Whether anything can be dropped. */

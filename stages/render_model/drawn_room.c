@@ -106,12 +106,14 @@ static enum status make_front(struct room *room, size_t pixels, struct err *err)
 }
 
 enum status room_draw(struct model_picture *picture, struct room *room, const struct view *camera,
-                      const struct texture_pair *pair, int own, struct provenance *prov, struct err *err)
+                      const struct texture_pair *pair, int own, const uint8_t *gone, struct provenance *prov,
+                      struct err *err)
 {
     const char *photos[2];
     photos_of(photos, room, pair);
     const struct outdoors *outdoors = room->files.outdoors ? &room->outdoors : NULL;
-    const struct clutter_filter filter = placed_things_filter(&room->things, shell_map(room->shell));
+    struct clutter_filter filter = placed_things_filter(&room->things, shell_map(room->shell));
+    filter.gone = gone;
     if (!shell_draw(picture, room->shell, camera, photos, pair->t, outdoors, err) && room->clutter &&
         !make_front(room, (size_t)camera->width * (size_t)camera->height, err))
         clutter_draw(picture, room->front, room->clutter, camera, &filter, own < 0 ? NULL : &own, own >= 0, prov, err);

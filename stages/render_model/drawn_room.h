@@ -53,11 +53,13 @@ struct texture_pair {
     double t;
 };
 
-/* Draws the shell and the clutter over it. camera: model frame. own: the original view that it is; -1: none. Things
+/* Draws the shell and the clutter over it. camera: model frame. own: the original view that it is; -1: none.
+ * gone: of each pixel: no clutter is drawn there; may be NULL. Things
  * that the edit puts elsewhere are drawn too, unless the camera is a view's: there the photo's own pixels come first.
  * */
 enum status room_draw(struct model_picture *picture, struct room *room, const struct view *camera,
-                      const struct texture_pair *pair, int own, struct provenance *prov, struct err *err);
+                      const struct texture_pair *pair, int own, const uint8_t *gone, struct provenance *prov,
+                      struct err *err);
 
 /* Draws the things that the edit puts elsewhere over a picture that room_draw() drew from the same camera. same: as
  * shown of clutter_draw_thing(). */

@@ -95,9 +95,9 @@ static bool meets_gone(const struct clutter_filter *filter, const struct view *c
     return false;
 }
 
-/* Clears `same` where the photo shows clutter that is left out, and a little around it. */
-static enum status leave_cleared(uint8_t *same, const struct room *room, int view, struct provenance *prov,
-                                 struct err *err)
+/* Clears `same` where the photo shows clutter that is left out, and a little around it. gone: gets 1 there. */
+static enum status leave_cleared(uint8_t *same, uint8_t *gone, const struct room *room, int view,
+                                 struct provenance *prov, struct err *err)
 {
     const struct view *camera = &room->cameras[view], *world = &room->in.set.views[view];
     const struct clutter_filter filter = placed_things_filter(&room->things, shell_map(room->shell));
@@ -123,12 +123,13 @@ static enum status leave_cleared(uint8_t *same, const struct room *room, int vie
         for (int x = 0; x < camera->width; x++) {
             const size_t i = (size_t)y * (size_t)camera->width + (size_t)x;
             const double z = depth.interior.z[i] * room->in.axes.scale;
-            const bool gone = mask && filter.fate[mask[i]] == THING_IS_GONE;
-            stays[i] = !gone &&
+            const bool masked = mask && filter.fate[mask[i]] == THING_IS_GONE;
+            stays[i] = !masked &&
                        !(z > 0 && ids.clutter[i] > CLUTTER_UNSURE &&
                          clutter_filter_drops(&filter, view_unproject(camera, x + 0.5, y + 0.5, z))) &&
                        !meets_gone(&filter, camera, x + 0.5, y + 0.5, ids.z[i] * room->in.axes.scale);
         }
+    for (size_t i = 0; !err->status && i < pixels; i++) gone[i] = !stays[i];
     if (!err->status) grow(stays, camera, CLEARED_MARGIN, err);
     for (size_t i = 0; !err->status && i < pixels; i++) same[i] &= stays[i];
     free(stays);
@@ -138,11 +139,13 @@ static enum status leave_cleared(uint8_t *same, const struct room *room, int vie
     return err->status;
 }
 
-enum status own_pixels_find(uint8_t *same, const struct room *room, int view, struct provenance *prov, struct err *err)
+enum status own_pixels_find(uint8_t *same, uint8_t *gone, const struct room *room, int view, struct provenance *prov,
+                            struct err *err)
 {
     const struct view *camera = &room->cameras[view];
     struct traced base = {0}, edited = {0};
     memset(same, 1, (size_t)camera->width * (size_t)camera->height);
+    memset(gone, 0, (size_t)camera->width * (size_t)camera->height);
     if (!room->files.base) return ST_OK;
     if (!trace(&base, &room->base, camera, err) && !trace(&edited, &room->model, camera, err)) {
         compare(same, room, &base, &edited, camera);
@@ -150,7 +153,7 @@ enum status own_pixels_find(uint8_t *same, const struct room *room, int view, st
     }
     const struct clutter_filter filter = placed_things_filter(&room->things, shell_map(room->shell));
     if (!err->status && clutter_filter_is_needed(&filter) && room->files.depth && room->files.ids)
-        leave_cleared(same, room, view, prov, err);
+        leave_cleared(same, gone, room, view, prov, err);
     traced_release(&base);
     traced_release(&edited);
     return err->status;

@@ -166,7 +166,7 @@ static enum status draw_from_cube(struct model_picture *picture, struct room *ro
         for (int i = 0; !err->status && i < width * height; i++) {
             struct vec3 ray;
             if (!camera_unproject(&camera->lens, i % width + 0.5, i / width + 0.5, &ray) || face_of(ray) != f) continue;
-            if (!drawn) room_draw(&face, room, &view, pair, -1, prov, err);
+            if (!drawn) room_draw(&face, room, &view, pair, -1, NULL, prov, err);
             drawn = true;
             if (!err->status) take(picture, (size_t)i, &face, &view, ray, mat3_apply(face_from_camera[f], ray));
         }
@@ -180,5 +180,5 @@ enum status room_camera_draw(struct model_picture *picture, struct room *room, c
 {
     struct view view;
     if (!room_camera_view(&view, camera)) return draw_from_cube(picture, room, camera, pair, prov, err);
-    return room_draw(picture, room, &view, pair, -1, prov, err);
+    return room_draw(picture, room, &view, pair, -1, NULL, prov, err);
 }

@@ -87,13 +87,13 @@ static enum status draw_view(struct model_picture *picture, double *changed, str
     const struct view *camera = &room->cameras[view];
     const struct texture_pair pair = {{room_viewpoint_of(room, view), -1}, 0};
     const size_t pixels = (size_t)camera->width * (size_t)camera->height;
-    uint8_t *same = malloc(pixels);
-    if (!same) err_nomem(err, "pixels of a view", pixels);
+    uint8_t *same = malloc(pixels), *gone = malloc(pixels);
+    if (!same || !gone) err_nomem(err, "pixels of a view", 2 * pixels);
     const bool own = !strcmp(room->params->photo, "where_unchanged");
     size_t differ = 0;
-    if (!err->status) own_pixels_find(same, room, view, prov, err);
+    if (!err->status) own_pixels_find(same, gone, room, view, prov, err);
     if (!err->status && (memchr(same, 0, pixels) || !own || room->things.placed_count))
-        room_draw(picture, room, camera, &pair, view, prov, err);
+        room_draw(picture, room, camera, &pair, view, gone, prov, err);
     else if (!err->status)
         model_picture_resize(picture, camera->width, camera->height, err);
     if (!err->status && own) own_pixels_draw(picture, same, room, view, prov, err);
@@ -101,6 +101,7 @@ static enum status draw_view(struct model_picture *picture, double *changed, str
     for (size_t i = 0; !err->status && i < pixels; i++) differ += !same[i] && picture->made[i] != MADE_NOTHING;
     *changed = own ? 100.0 * (double)differ / (double)pixels : 100;
     free(same);
+    free(gone);
     return err->status;
 }
 
@@ -273,7 +274,7 @@ enum status pictures_of_frames(struct room *room, const struct camera_path *path
         char file[FILE_PATH];
         if (!wanted[i]) continue;
         if (!frame_pair(&pair, room, &camera, pairs, err) &&
-            !room_draw(&picture, room, &camera, &pair, -1, prov, err) &&
+            !room_draw(&picture, room, &camera, &pair, -1, NULL, prov, err) &&
             !product_path_in(file, out, PRODUCT_FRAME, &(struct product_key){.frame = scene->name}, err))
             set_camera_of_view(&picture, &camera);
         if (!err->status && all)

@@ -72,6 +72,37 @@ static void a_segment_that_shows_half_of_a_thing_shows_it_whole(void **state)
     view_ids_release(&seen);
 }
 
+/* Of two gaps, the one of two pixels is closed where there may be clutter, the one of twenty is not. */
+static void narrow_gaps_of_a_thing_are_closed(void **state)
+{
+    enum { WIDE = 500, TALL = 80, GAP = 250 };
+    (void)state;
+    static uint32_t ids[N * N * N], mask[WIDE * TALL];
+    const struct thing_volume v = {grid, ids, NULL};
+    const struct view camera = view_at(vec3_make(0, 0, -1), 0, 0, WIDE, TALL, 1000);
+    struct layered_depth d = {0};
+    struct view_ids seen = {0};
+    struct err err = ERR_INIT;
+    for (int i = 0; i < N * N * N; i++) ids[i] = 7;
+    assert_ok(layered_depth_init(&d, WIDE, TALL, &err), err);
+    assert_ok(view_ids_init(&seen, WIDE, TALL, &err), err);
+    for (int i = 0; i < WIDE * TALL; i++) {
+        const int x = i % WIDE, y = i / WIDE;
+        const bool gap = (x >= GAP && x < GAP + 2) || (x >= GAP + 40 && x < GAP + 60);
+        d.interior.z[i] = gap ? 90.0f : 1.5f;
+        seen.clutter[i] = y < TALL / 2 ? 1 : gap ? 0 : 1;
+    }
+    assert_ok(thing_mask_find(mask, &v, &camera, &d, &seen, 1, &err), err);
+    for (int y = 0; y < TALL; y++) {
+        const uint32_t *row = mask + y * WIDE;
+        assert_int_equal(row[GAP - 1], 7);
+        assert_int_equal(row[GAP], y < TALL / 2 ? 7 : 0);
+        assert_int_equal(row[GAP + 50], 0); /* too wide */
+    }
+    layered_depth_release(&d);
+    view_ids_release(&seen);
+}
+
 static void a_mask_is_read_back_or_refused(void **state)
 {
     (void)state;
@@ -205,6 +236,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(pixels_show_the_thing_that_their_point_is_in),
+        cmocka_unit_test(narrow_gaps_of_a_thing_are_closed),
         cmocka_unit_test(a_segment_that_shows_half_of_a_thing_shows_it_whole),
         cmocka_unit_test_setup_teardown(a_mask_is_read_back_or_refused, scratch_make, scratch_remove),
         cmocka_unit_test_setup_teardown(a_mask_is_written_with_its_camera, scratch_make, scratch_remove),

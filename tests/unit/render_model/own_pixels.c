@@ -46,7 +46,8 @@ static uint8_t *find_same(const struct texture_rule *rules, int count, double ma
     drawn.base = make_rays(bare, 2);
     drawn.model = make_rays(bare, 2);
     drawn.shell = make_scene_with(mesh, map, scratch_path("vita"));
-    assert_ok(own_pixels_find(same, &drawn, 0, &prov, &err), err);
+    static uint8_t gone[W * H];
+    assert_ok(own_pixels_find(same, gone, &drawn, 0, &prov, &err), err);
     shell_close(drawn.shell);
     model_rays_release(&drawn.base);
     model_rays_release(&drawn.model);
@@ -249,7 +250,8 @@ static uint8_t *same_without_posts(bool clutter, int masked)
         drawn.files.things = scratch_path("things");
         assert_ok(thing_mask_write(mask, &camera, scratch_path("things/masks/v.exr"), NULL, &err), err);
     }
-    assert_ok(own_pixels_find(same, &drawn, 0, &prov, &err), err);
+    static uint8_t gone[W * H];
+    assert_ok(own_pixels_find(same, gone, &drawn, 0, &prov, &err), err);
     placed_things_release(&drawn.things);
     shell_close(drawn.shell);
     model_rays_release(&drawn.base);
