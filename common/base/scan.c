@@ -52,6 +52,15 @@ bool scan_double(const char *text, double *value)
     return true;
 }
 
+bool scan_is_name(const char *word)
+{
+    static const char letters[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
+    const size_t length = strlen(word);
+    double number;
+    return length && length <= SCAN_NAME && word[0] != '-' && strspn(word, letters) == length &&
+           !scan_double(word, &number);
+}
+
 /* Damerau-Levenshtein distance (optimal string alignment): insertions, deletions, replacements, swaps of neighbours.
  * Words longer than MAX_WORD count as far from everything. */
 enum { MAX_WORD = 63 };

@@ -12,6 +12,10 @@
 bool scan_int(const char *text, int64_t *value);
 bool scan_double(const char *text, double *value);
 
+/* Whether a word can name a part of a scene: at most SCAN_NAME letters, digits, _ and -, not - first, not a number. */
+enum { SCAN_NAME = 64 };
+bool scan_is_name(const char *word);
+
 locale_t scan_c_locale(void); /* for uselocale() around code that prints numbers */
 
 /* The known word nearest to `word` in edit distance, for "did you mean"; NULL if none is near. next(ctx, i) returns the

@@ -9,8 +9,6 @@
 #include "common/base/textfile.h"
 #include "common/capture/photo_camera.h"
 
-enum { MAX_NAME = 64 };
-
 struct marks_reader {
     struct thing_marks *marks;
     struct textfile t;
@@ -27,15 +25,6 @@ void thing_marks_release(struct thing_marks *m)
     free(m->lines);
     free(m->marks);
     *m = (struct thing_marks){0};
-}
-
-static bool is_name(const char *word)
-{
-    static const char letters[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
-    const size_t length = strlen(word);
-    double number;
-    return length && length <= MAX_NAME && word[0] != '-' && strspn(word, letters) == length &&
-           !scan_double(word, &number);
 }
 
 /* The index of a name, which is added if it is new; -1: out of memory. */
@@ -82,9 +71,9 @@ static enum status read_line(struct marks_reader *r, struct err *err)
 {
     char *word;
     if (textfile_expect(&r->t, "thing", err) || textfile_word(&r->t, "a name", &word, err)) return err->status;
-    if (!is_name(word))
+    if (!scan_is_name(word))
         return textfile_error(&r->t, err, word, "a name of at most %d letters, digits, _ and -, not a number",
-                              MAX_NAME);
+                              SCAN_NAME);
     const int name = name_index(r->marks, word, r->t.line, err);
     do
         if (name < 0 || read_mark(r, name, err)) return err->status;

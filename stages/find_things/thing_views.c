@@ -43,7 +43,7 @@ static enum status fill_segments(uint32_t *mask, const struct layered_depth *d, 
     return ST_OK;
 }
 
-/* Pixels of clutter in narrow gaps of a thing's picture show it, too: closes the pixels of `id` by CLOSED of the width. */
+/* Clutter in narrow gaps of a thing's picture shows it, too: closes the pixels of `id` by CLOSED of the width. */
 static enum status close_gaps(uint32_t *mask, uint32_t id, const struct view_ids *ids, uint8_t *inside, float *squared,
                               struct err *err)
 {

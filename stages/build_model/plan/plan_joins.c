@@ -83,7 +83,7 @@ enum status plan_read_extend(struct script_reader *r, struct statement *s)
         if (fabs(s->values[0]) <= MAX_NUMBER) return ST_OK;
         return textfile_error(&r->t, r->err, word, "a coordinate within 1e6");
     }
-    if (!script_is_name(word)) return textfile_error(&r->t, r->err, word, "the name of a wall, or a coordinate");
+    if (!scan_is_name(word)) return textfile_error(&r->t, r->err, word, "the name of a wall, or a coordinate");
     s->other = script_keep_word(r, word);
     return ST_OK;
 }

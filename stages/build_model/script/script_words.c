@@ -42,22 +42,13 @@ bool script_next_is(const struct script_reader *r, const char *word)
     return !strncmp(next, word, length) && (!next[length] || strchr(" \t\r", next[length]));
 }
 
-bool script_is_name(const char *word)
-{
-    const size_t length = strlen(word);
-    static const char letters[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
-    double number;
-    return length && length <= MAX_NAME && word[0] != '-' && strspn(word, letters) == length &&
-           !scan_double(word, &number);
-}
-
 enum status script_read_name(struct script_reader *r, const char *what, const char **name)
 {
     char *word;
     if (textfile_word(&r->t, what, &word, r->err)) return r->err->status;
-    if (!script_is_name(word))
+    if (!scan_is_name(word))
         return textfile_error(&r->t, r->err, word, "%s: a name of at most %d letters, digits, _ and -, not a number",
-                              what, MAX_NAME);
+                              what, SCAN_NAME);
     *name = script_keep_word(r, word);
     return ST_OK;
 }
@@ -225,7 +216,7 @@ enum status script_read_face(struct script_reader *r, const char **name)
     if (textfile_word(&r->t, wanted, &word, r->err)) return r->err->status;
     for (const char *c = word; *c; c++)
         if ((unsigned char)*c <= ' ' || *c == '#' || *c == '"') return textfile_error(&r->t, r->err, word, wanted);
-    if (strlen(word) > 2 * MAX_NAME || !strchr(word, '/')) return textfile_error(&r->t, r->err, word, wanted);
+    if (strlen(word) > 2 * SCAN_NAME || !strchr(word, '/')) return textfile_error(&r->t, r->err, word, wanted);
     *name = script_keep_word(r, word);
     return ST_OK;
 }

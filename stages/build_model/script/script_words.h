@@ -3,10 +3,10 @@
 #ifndef REMODEL_BUILD_MODEL_SCRIPT_WORDS_H
 #define REMODEL_BUILD_MODEL_SCRIPT_WORDS_H
 
+#include "common/base/scan.h"
 #include "common/base/textfile.h"
 #include "stages/build_model/script/verbs.h"
 
-enum { MAX_NAME = 64 };
 #define MAX_NUMBER 1e6
 
 struct script_reader {
@@ -26,7 +26,6 @@ const char *script_filling_name(enum filling filling); /* "nothing", "leaf", "gl
 /* ST_DATA: `found` (NULL: the end of the line) where the verb's usage wants something else. */
 enum status script_usage_error(struct script_reader *r, const char *found);
 const char *script_keep_word(struct script_reader *r, const char *word); /* a copy that lasts as long as the script */
-bool script_is_name(const char *word);
 /* The next word comes next, before a blank or the end of the line. */
 bool script_next_is(const struct script_reader *r, const char *word);
 const char *script_next_word(const struct script_reader *r); /* the rest of the line */

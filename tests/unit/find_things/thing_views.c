@@ -40,7 +40,7 @@ static void pixels_show_the_thing_that_their_point_is_in(void **state)
     view_ids_release(&seen);
 }
 
-/* Segments are bands of four rows; the first ones have depth of the thing in three of four columns, the others in one. */
+/* Segments are bands of four rows; the first have depth of the thing in three of four columns, the others in one. */
 static void a_segment_that_shows_half_of_a_thing_shows_it_whole(void **state)
 {
     (void)state;

@@ -197,8 +197,8 @@ static double x_at(int i, double z)
 }
 
 /* Where the photo is kept when posts are gone. The view's depth shows the room alone; clutter: it is at z = 1.125
- * everywhere, in the posts that are gone, and all of it is clutter. masked: columns at the left that the view's mask says
- * show what is gone; 0: there is no mask. The caller frees it. */
+ * everywhere, in the posts that are gone, and all of it is clutter. masked: columns at the left that show what is gone
+ * by the mask of the view; 0: there is no mask. The caller frees it. */
 static uint8_t *same_without_posts(bool clutter, int masked)
 {
     static const struct provenance no_inputs = {.stage = "test", .version = "1"};
