@@ -7,6 +7,7 @@
 #include <math.h>
 
 #define FLOOR_REACH 3.0 /* times that of walls */
+#define TABLE_REACH 9.0 /* the same where nothing else supports a thing: legs are too thin to be seen */
 
 enum { SAMPLES = 2000 }; /* voxels of a thing that rays start from, about */
 
@@ -60,6 +61,7 @@ static void find_support(struct thing *t, uint32_t id, const struct thing_volume
     t->support = g.below <= FLOOR_REACH * reach && g.below <= FLOOR_REACH * g.beside ? THING_ON_FLOOR
                  : g.beside <= reach && g.beside <= g.above                          ? THING_ON_WALL
                  : g.above <= reach                                                  ? THING_ON_CEILING
+                 : g.below <= TABLE_REACH * reach                                    ? THING_ON_FLOOR
                                                                                      : THING_ON_NONE;
 }
 

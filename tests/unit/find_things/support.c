@@ -87,7 +87,18 @@ static void the_reach_is_larger_above_the_floor(void **state)
     assert_int_equal(support_of((struct block){15, 15, 36, 20, 20, 38}), THING_ON_CEILING);
     assert_int_equal(support_of((struct block){15, 15, 34, 20, 20, 37}), THING_ON_NONE);
     assert_int_equal(support_of((struct block){15, 15, 4, 20, 20, 9}), THING_ON_FLOOR);
-    assert_int_equal(support_of((struct block){15, 15, 5, 20, 20, 9}), THING_ON_NONE);
+    /* beside a wall, at 0.65 and 0.25 above the floor */
+    assert_int_equal(support_of((struct block){1, 15, 6, 3, 20, 9}), THING_ON_WALL);
+    assert_int_equal(support_of((struct block){1, 15, 2, 3, 20, 9}), THING_ON_FLOOR);
+}
+
+/* Nine times as far as a wall, if there is nothing else. */
+static void a_table_without_legs_stands_on_the_floor(void **state)
+{
+    (void)state;
+    assert_int_equal(support_of((struct block){15, 15, 5, 20, 20, 9}), THING_ON_FLOOR);
+    assert_int_equal(support_of((struct block){15, 15, 12, 20, 20, 14}), THING_ON_FLOOR);
+    assert_int_equal(support_of((struct block){15, 15, 14, 20, 20, 16}), THING_ON_NONE);
 }
 
 static void of_several_supports_the_nearest_counts(void **state)
@@ -117,6 +128,7 @@ int main(void)
         cmocka_unit_test(a_box_is_around_all_voxels),
         cmocka_unit_test(support_is_what_is_next_to_a_thing),
         cmocka_unit_test(the_reach_is_larger_above_the_floor),
+        cmocka_unit_test(a_table_without_legs_stands_on_the_floor),
         cmocka_unit_test(of_several_supports_the_nearest_counts),
         cmocka_unit_test(the_floor_is_seen_from_inside_of_the_room_alone),
     };
