@@ -102,6 +102,14 @@ bool model_rays_enclose(const struct model_rays *m, struct vec3 p)
     return model_rays_inside(m, p, ON_SURFACE * model_rays_size(m));
 }
 
+double model_rays_gap(const struct model_rays *m, struct vec3 from, struct vec3 direction, bool *front)
+{
+    struct ray_hit hit;
+    if (!ray_scene_hit(&m->rays, from, direction, &hit)) return INFINITY;
+    if (front) *front = hit.front;
+    return hit.t;
+}
+
 bool model_rays_way_is_free(const struct model_rays *m, struct vec3 from, struct vec3 to, double margin)
 {
     return !is_near(m, from, to, margin) && !winds_around(m, from);

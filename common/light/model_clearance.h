@@ -12,6 +12,9 @@ double clearance_of_triangle(struct vec3 from, struct vec3 to, const struct vec3
 bool model_rays_inside(const struct model_rays *m, struct vec3 p, double margin);
 /* The same with a margin of a millionth of the model's size: a camera there is on a surface, and sees nothing. */
 bool model_rays_enclose(const struct model_rays *m, struct vec3 p);
+/* How far the next surface is in a direction of length 1; INFINITY: there is none. front (may be NULL): set to whether
+ * it faces the point, and left alone without a surface; from inside of a solid it does not. */
+double model_rays_gap(const struct model_rays *m, struct vec3 from, struct vec3 direction, bool *front);
 /* Whether all points of a segment are outside of the solids, and at least `margin` (> 0) from their surfaces. */
 bool model_rays_way_is_free(const struct model_rays *m, struct vec3 from, struct vec3 to, double margin);
 

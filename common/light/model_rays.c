@@ -66,7 +66,7 @@ void model_rays_release(struct model_rays *m)
     *m = (struct model_rays){0};
 }
 
-static void bounds(const struct model_rays *m, struct vec3 *low, struct vec3 *high)
+void model_rays_bounds(const struct model_rays *m, struct vec3 *low, struct vec3 *high)
 {
     *low = *high = m->mesh.vertex_count ? m->mesh.vertices[0].p : vec3_make(0, 0, 0);
     for (int i = 1; i < m->mesh.vertex_count; i++) {
@@ -79,15 +79,22 @@ static void bounds(const struct model_rays *m, struct vec3 *low, struct vec3 *hi
 double model_rays_size(const struct model_rays *m)
 {
     struct vec3 low, high;
-    bounds(m, &low, &high);
+    model_rays_bounds(m, &low, &high);
     const struct vec3 side = vec3_sub(high, low);
     return fmax(side.x, fmax(side.y, side.z));
+}
+
+double model_rays_height(const struct model_rays *m)
+{
+    struct vec3 low, high;
+    model_rays_bounds(m, &low, &high);
+    return high.z - low.z;
 }
 
 bool model_rays_near(const struct model_rays *m, struct vec3 p)
 {
     struct vec3 low, high;
-    bounds(m, &low, &high);
+    model_rays_bounds(m, &low, &high);
     return m->mesh.vertex_count && p.x >= low.x && p.y >= low.y && p.z >= low.z && p.x <= high.x && p.y <= high.y &&
            p.z <= high.z;
 }

@@ -30,8 +30,12 @@ enum status model_rays_read_with(struct model_rays *m, const char *path, enum mo
                                  const struct model_extra *extra, struct provenance *prov, struct err *err);
 void model_rays_release(struct model_rays *m);
 
-/* The largest side of the model's bounding box; 0 without vertices. */
+/* The model's bounding box; all 0 without vertices. */
+void model_rays_bounds(const struct model_rays *m, struct vec3 *low, struct vec3 *high);
+/* Its largest side; 0 without vertices. */
 double model_rays_size(const struct model_rays *m);
+/* Its height; 0 without vertices. */
+double model_rays_height(const struct model_rays *m);
 /* Whether a point is within that box. */
 bool model_rays_near(const struct model_rays *m, struct vec3 p);
 

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/base/scan.h"
 #include "common/image/exr.h"
 
 int64_t thing_voxel_at(const struct voxel_grid *g, struct vec3 p)
@@ -47,9 +48,7 @@ static enum status read_number(double *value, const struct exr_image *im, const 
                                struct err *err)
 {
     const char *text = exr_attribute(im, name);
-    char *end = NULL;
-    *value = text ? strtod(text, &end) : NAN;
-    if (text && end != text && !*end && isfinite(*value)) return ST_OK;
+    if (text && scan_double(text, value) && isfinite(*value)) return ST_OK;
     return err_set(err, ST_DATA, "%s: attribute %s is %s, wanted a number; run find_things again.", path, name,
                    text ? text : "missing");
 }

@@ -20,10 +20,11 @@
  *   triangle X Y Z X Y Z X Y Z                         this plane under this id, COUNT lines
  *   clear ROOM LOW HIGH COUNT X Y ...                  clutter is left out in this footprint, from LOW to HIGH
  *   keep NAME LOW HIGH COUNT X Y ...                   but not in this one
- *   thing NAME clear | keep                            the thing of the photographs is left out, or kept in such places
- *   thing NAME move FROM DX DY UP TURN                 the thing FROM stands elsewhere, by a shift and a turn; NAME is
- *   thing NAME place FROM X Y FLOOR TURN               FROM, which then is no longer at its own place, or a copy; or it
- *                                                      stands there, by the middle of its footprint (thing_moves.h)
+ *   thing NAME clear | keep                            leaves a photographed thing out; keeps it in a cleared place
+ *   thing NAME move FROM DX DY UP TURN                 shifts the thing FROM, and turns it
+ *   thing NAME place FROM X Y FLOOR TURN               puts the middle of its footprint at X Y, at this floor's height
+ *
+ * Where NAME is FROM, the thing leaves its own place; otherwise NAME is a copy of it.
  *
  * Points are of the edited model's frame, which is the unedited one's. M is twelve numbers, a 3 x 4 matrix by rows,
  * that takes a point of the edited model to one of the unedited model: the identity for texture that stays in place

@@ -6,6 +6,8 @@
 
 #include <math.h>
 
+#include "common/light/model_clearance.h"
+
 #define FLOOR_REACH 3.0 /* times that of walls */
 #define TABLE_REACH 9.0 /* the same where nothing else supports a thing: legs are too thin to be seen */
 
@@ -29,11 +31,12 @@ struct gaps {
     int64_t seen;
 };
 
+/* How far the next surface is that faces the point: from inside of a wall there is none. */
 static double gap(const struct model_rays *m, struct vec3 from, struct vec3 direction)
 {
-    struct ray_hit hit;
-    const bool met = ray_scene_hit(&m->rays, from, direction, &hit) && hit.front; /* not from inside of a wall */
-    return met ? hit.t : INFINITY;
+    bool front = true;
+    const double ahead = model_rays_gap(m, from, direction, &front);
+    return front ? ahead : INFINITY;
 }
 
 double support_below(const struct model_rays *model, struct vec3 point)

@@ -41,19 +41,14 @@ struct finder {
 
 static enum status choose_grid(struct voxel_grid *g, struct finder *f, struct err *err)
 {
-    const struct solid_mesh *m = &f->job->model->mesh;
-    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY}, voxels = 1;
-    for (int i = 0; i < m->vertex_count; i++) {
-        const double p[3] = {m->vertices[i].p.x, m->vertices[i].p.y, m->vertices[i].p.z};
-        for (int k = 0; k < 3; k++) {
-            low[k] = fmin(low[k], p[k]);
-            high[k] = fmax(high[k], p[k]);
-        }
-    }
-    if (!(high[2] > low[2])) return err_set(err, ST_DATA, "the model has no height, so it can hold no things.");
-    f->height = high[2] - low[2];
+    struct vec3 low, high;
+    model_rays_bounds(f->job->model, &low, &high);
+    const double sides[3] = {high.x - low.x, high.y - low.y, high.z - low.z};
+    double voxels = 1;
+    f->height = sides[2];
+    if (!(f->height > 0)) return err_set(err, ST_DATA, "the model has no height, so it can hold no things.");
     g->voxel = f->job->params->voxel * f->height;
-    for (int k = 0; k < 3; k++) voxels *= ceil((high[k] - low[k]) / g->voxel);
+    for (int k = 0; k < 3; k++) voxels *= ceil(sides[k] / g->voxel);
     const double most = 1e6 * f->job->params->max_voxels;
     if (voxels > most) {
         const double larger = cbrt(voxels / most);
@@ -62,8 +57,8 @@ static enum status choose_grid(struct voxel_grid *g, struct finder *f, struct er
                  larger, voxels / 1e6, f->job->params->max_voxels);
         g->voxel *= larger;
     }
-    for (int k = 0; k < 3; k++) g->size[k] = (int)ceil((high[k] - low[k]) / g->voxel);
-    g->origin = vec3_make(low[0], low[1], low[2]);
+    for (int k = 0; k < 3; k++) g->size[k] = (int)ceil(sides[k] / g->voxel);
+    g->origin = low;
     return ST_OK;
 }
 
@@ -306,16 +301,16 @@ static enum status cut_tiles(struct finder *f, int i, struct err *err)
     const struct things_job *job = f->job;
     const struct view *view = &job->in->set.views[i];
     struct image photo = {0};
-    struct view_data d = {0};
     uint32_t *mask = NULL;
+    char path[FILE_PATH];
     for (int k = 0; !err->status && k < f->count; k++) {
         if (!(f->sights[k].score > 0) || f->sights[k].best != i) continue;
-        if (!mask && (mask = new_mask(view, err)) && !view_data_read(&d, job, i, err) &&
-            !view_image_read(&photo, job->views, view, job->prov, err))
-            thing_mask_find(mask, &f->volume, &d.camera, &d.depth, &d.ids, job->in->axes.scale, err);
+        if (!mask &&
+            !product_path_in(path, job->out, PRODUCT_THING_MASK, &(struct product_key){.view = view->name}, err) &&
+            !thing_mask_read(&mask, view, path, (uint32_t)f->count, NULL, err))
+            view_image_read(&photo, job->views, view, job->prov, err);
         if (!err->status) sheet_tile_make(&f->tiles[k], &photo, mask, (uint32_t)k + 1, f->things[k].rect, err);
     }
-    view_data_release(&d);
     image_release(&photo);
     free(mask);
     return err->status;

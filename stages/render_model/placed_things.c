@@ -59,18 +59,12 @@ static struct vec3 box_point(const struct thing *t, double x, double y, double z
                      middle.z + 0.5 * z * (t->high.z - t->low.z));
 }
 
-static double gap(const struct model_rays *m, struct vec3 from, struct vec3 direction)
-{
-    struct ray_hit hit;
-    return ray_scene_hit(&m->rays, from, direction, &hit) ? hit.t : INFINITY;
-}
-
-/* The same, below 0 from inside of a solid: how far the surface is behind. */
+/* How far the next surface is, below 0 from inside of a solid: how far the last one is behind. */
 static double signed_gap(const struct model_rays *m, struct vec3 from, struct vec3 direction)
 {
-    struct ray_hit hit;
-    if (!ray_scene_hit(&m->rays, from, direction, &hit)) return INFINITY;
-    return hit.front ? hit.t : -gap(m, from, vec3_scale(direction, -1));
+    bool front = true;
+    const double ahead = model_rays_gap(m, from, direction, &front);
+    return front ? ahead : -model_rays_gap(m, from, vec3_scale(direction, -1), NULL);
 }
 
 /* How far a point in a solid is from the nearest side of it. */
@@ -78,7 +72,7 @@ static double depth_in(const struct model_rays *m, struct vec3 p)
 {
     static const struct vec3 ways[6] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
     double least = INFINITY;
-    for (int k = 0; k < 6; k++) least = fmin(least, gap(m, p, ways[k]));
+    for (int k = 0; k < 6; k++) least = fmin(least, model_rays_gap(m, p, ways[k], NULL));
     return least;
 }
 
@@ -112,11 +106,11 @@ static double support_gap(struct vec3 *direction, struct vec3 *from, const struc
     double least = INFINITY;
     *direction = vec3_make(0, 0, t->support == THING_ON_CEILING ? 1 : -1);
     *from = box_point(t, 0, 0, 0);
-    if (t->support != THING_ON_WALL) return gap(m, *from, *direction);
+    if (t->support != THING_ON_WALL) return model_rays_gap(m, *from, *direction, NULL);
     for (int k = 0; k < 4; k++) {
         const double sign = k & 1 ? -1 : 1;
         const struct vec3 to = k & 2 ? vec3_make(0, sign, 0) : vec3_make(sign, 0, 0);
-        const double g = gap(m, *from, to);
+        const double g = model_rays_gap(m, *from, to, NULL);
         if (!(g < least)) continue;
         least = g;
         *direction = to;
@@ -162,17 +156,6 @@ static enum status find_thing(int *at, const struct placed_things *t, const char
         name, near ? "; the nearest is " : "", near ? near : "");
 }
 
-/* The model's height. */
-static double height_of(const struct model_rays *m)
-{
-    double low = INFINITY, high = -INFINITY;
-    for (int i = 0; i < m->mesh.vertex_count; i++) {
-        low = fmin(low, m->mesh.vertices[i].p.z);
-        high = fmax(high, m->mesh.vertices[i].p.z);
-    }
-    return high - low;
-}
-
 static struct placed_thing placement(const struct texture_thing *edit, const struct thing *t, uint32_t id,
                                      const struct model_rays *before)
 {
@@ -181,7 +164,7 @@ static struct placed_thing placement(const struct texture_thing *edit, const str
     const struct vec3 middle = box_point(t, 0, 0, 0);
     struct vec3 to = vec3_make(middle.x + edit->by[0], middle.y + edit->by[1], middle.z + edit->by[2]);
     if (edit->kind == TEXTURE_THING_PLACE) {
-        const double below = gap(before, middle, vec3_make(0, 0, -1));
+        const double below = model_rays_gap(before, middle, vec3_make(0, 0, -1), NULL);
         to = vec3_make(edit->by[0], edit->by[1], isfinite(below) ? edit->by[2] + below : middle.z);
     }
     p.shift = vec3_sub(to, mat3_apply(p.turn, middle));
@@ -200,7 +183,7 @@ static enum status apply(struct placed_things *t, const struct texture_thing *ed
     if (!strcmp(edit->name, edit->from)) t->fate[id] = THING_IS_GONE;
     if (edit->kind == TEXTURE_THING_CLEAR) return ST_OK;
     const struct placed_thing p = placement(edit, thing, id, before);
-    const double height = height_of(before);
+    const double height = model_rays_height(before);
     if (!check_support(edit, thing, &p, before, after, height, err) &&
         !check_walls(edit, thing, &p, after, height, err))
         t->placed[t->placed_count++] = p;

@@ -115,22 +115,11 @@ static enum status clean_outlines(const struct clutter_job *job, struct err *err
     return err->status;
 }
 
-/* The model's height, scene units. */
-static double height_of(const struct view_trace *t, double scale)
-{
-    const struct solid_mesh *m = &t->model->mesh;
-    double low = INFINITY, high = -INFINITY;
-    for (int i = 0; i < m->vertex_count; i++) {
-        low = fmin(low, m->vertices[i].p.z);
-        high = fmax(high, m->vertices[i].p.z);
-    }
-    return high > low ? (high - low) / scale : 0;
-}
-
 enum status view_clutter_find(struct view_ids *ids, const struct view_trace *t, const struct layered_depth *depth,
                               double scale, const struct trace_params *params, struct err *err)
 {
-    struct clutter_job job = {ids->clutter, ids, depth, params, params->furniture * height_of(t, scale)};
+    struct clutter_job job = {ids->clutter, ids, depth, params,
+                              params->furniture * model_rays_height(t->model) / scale};
     parallel_for((size_t)t->height, ROWS, judge_rows, &job);
     return clean_outlines(&job, err);
 }

@@ -131,8 +131,8 @@ enum status plan_apply_move(struct plan_context *c)
     if (plan_find_solid(c, s->name, &kind, &at)) return c->err->status;
     if (s->other || s->has_option[OPTION_TURN])
         return plan_statement_error(c,
-                                    "%s is no thing, which alone moves to a room or turns; a box is turned by "
-                                    "\"change %s turn DEGREES\".",
+                                    "%s is not a thing. Only things move to a room, or turn while they move; a box is "
+                                    "turned by \"change %s turn DEGREES\".",
                                     s->name, s->name);
     if (kind == NAMED_SLOT && s->value_count > 2)
         return plan_statement_error(c, "%s stays in its ceiling or floor: \"move %s by DX DY\".", s->name, s->name);

@@ -99,7 +99,7 @@ enum status plan_apply_thing_copy(struct plan_context *c)
         free(name);
         return plan_statement_error(c, "%s was cleared before, so there is nothing to copy; copy it first.", s->name);
     }
-    const struct plan_thing model = p->things[at]; /* a copy of a moved thing stands beside its new place */
+    const struct plan_thing model = p->things[at]; /* the copy starts from where this one stands now */
     if (add_thing(p, name, s->line, model.from, c->err)) return c->err->status;
     struct plan_thing *t = &p->things[p->thing_count - 1];
     memcpy(t->by, model.by, sizeof t->by);

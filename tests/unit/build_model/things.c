@@ -268,10 +268,10 @@ static void a_thing_is_cleared_and_kept_whole(void **state)
 static void only_things_turn_and_move_to_rooms(void **state)
 {
     (void)state;
-    refused_edit("move south by 0.5 turn 30\n", "edit.txt:2: south is no thing");
+    refused_edit("move south by 0.5 turn 30\n", "edit.txt:2: south is not a thing");
     refused_edit("move crate by 0.5 0.5 turn 30\n", "\"change crate turn DEGREES\"");
-    refused_edit("move w by 0.1 turn 30\n", "edit.txt:2: w is no thing");
-    refused_edit("move crate to hall at 1 1\n", "edit.txt:2: crate is no thing, which alone moves to a room or turns");
+    refused_edit("move w by 0.1 turn 30\n", "edit.txt:2: w is not a thing");
+    refused_edit("move crate to hall at 1 1\n", "edit.txt:2: crate is not a thing. Only things move to a room");
     refused_edit("copy texture wall/west/in from 1 1 to 2 2 to wall/east/in from 1 1 to 2 2 turn 30\n",
                  "edit.txt:2: a texture is not turned");
 }

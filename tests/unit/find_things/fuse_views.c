@@ -192,7 +192,7 @@ static void the_views_that_show_the_face_are_counted(void **state)
     assert_int_equal(f.views[before], VIEWS);
     assert_true(f.sum[behind] < 0 && f.sum[before] > 0);
     assert_float_equal(f.weight[behind], VIEWS, 1e-5);
-    const size_t wall = at(NX / 2, 5, NZ - 1); /* before the far wall, which is no thing */
+    const size_t wall = at(NX / 2, 5, NZ - 1); /* before the far wall, which is part of the model */
     assert_true(f.weight[wall] > 0);
     assert_int_equal(f.views[wall], 0);
     fuse_volume_release(&f);
@@ -247,7 +247,7 @@ static void depth_is_scaled_to_the_model(void **state)
     fuse_volume_release(&g);
 }
 
-/* ------------------------------------------------------------------------------------------------- what is no thing */
+/* ---------------------------------------------------------------------------------------------- what is not a thing */
 
 /* The number of voxels of which the front view says that a thing is there, where all of the far wall is called clutter
  * of depth `nearer`, a share of its own, before it. */

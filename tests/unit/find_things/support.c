@@ -3,31 +3,14 @@
 
 #include <math.h>
 
-#include "tests/unit/box_solids.h"
 #include "tests/unit/find_things/voxel_blocks.h"
+#include "tests/unit/whole_room.h"
 
 enum { N = 40, VOXELS = N * N * N }; /* the room, from -2 to 2 */
 
 #define REACH 0.16
 
 static const struct voxel_grid grid = {{-2, -2, -2}, 0.1, {N, N, N}};
-static struct model_rays model;
-
-static int make_model(void **state)
-{
-    static const struct box boxes[] = {ROOM_OUTSIDE, ROOM_INSIDE};
-    (void)state;
-    model = make_rays(boxes, 2);
-    return 0;
-}
-
-static int release_model(void **state)
-{
-    (void)state;
-    model_rays_release(&model);
-    return 0;
-}
-
 static void measure(struct thing *things, const struct block *blocks, int count)
 {
     static uint32_t ids[VOXELS];

@@ -209,27 +209,27 @@ static void a_thing_that_the_border_cuts_counts_less(void **state)
 }
 
 /* Of 8000 px, 0.0005 is 4. */
+static const struct patch few = {40, 40, 42, 40, 1}, enough = {40, 40, 43, 40, 1};
+
+/* The views of a thing of which each view shows a patch, and the best of them. */
+static void expect_sights(const struct patch *const *patches, int count, int views, int best)
+{
+    struct thing_sight s = {0};
+    for (int i = 0; i < count; i++) see(&s, 1, patches[i], 1, i);
+    assert_int_equal(s.views, views);
+    assert_int_equal(s.best, best);
+}
+
 static void a_few_pixels_do_not_count_as_a_view(void **state)
 {
     (void)state;
-    const struct patch few = {40, 40, 42, 40, 1}, enough = {40, 40, 43, 40, 1};
-    struct thing_sight s = {0};
-    see(&s, 1, &enough, 1, 0);
-    see(&s, 1, &few, 1, 1);
-    see(&s, 1, &enough, 1, 2);
-    assert_int_equal(s.views, 2);
-    assert_int_equal(s.best, 0);
+    expect_sights((const struct patch *const[]){&enough, &few, &enough}, 3, 2, 0);
 }
 
 static void the_order_of_views_does_not_change_their_number(void **state)
 {
     (void)state;
-    const struct patch few = {40, 40, 42, 40, 1}, enough = {40, 40, 43, 40, 1};
-    struct thing_sight s = {0};
-    see(&s, 1, &few, 1, 0);
-    see(&s, 1, &enough, 1, 1);
-    assert_int_equal(s.best, 1);
-    assert_int_equal(s.views, 1);
+    expect_sights((const struct patch *const[]){&few, &enough}, 2, 1, 1);
 }
 
 int main(void)

@@ -1,7 +1,8 @@
 /* By how much the depth of views disagrees with a wall 2 in front of the camera. */
 #include "stages/trace_ids/face_offsets.h"
 
-#include "tests/unit/trace_ids/whole_room.h"
+#include "tests/unit/trace_ids/room.h"
+#include "tests/unit/whole_room.h"
 
 enum { W = 60, H = 40 };
 

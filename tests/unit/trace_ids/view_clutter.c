@@ -1,5 +1,6 @@
 /* Clutter of a wall 2 in front of the camera, by what the view's depth says. */
-#include "tests/unit/trace_ids/whole_room.h"
+#include "tests/unit/trace_ids/room.h"
+#include "tests/unit/whole_room.h"
 
 enum { W = 60, H = 40 };
 

@@ -2,7 +2,7 @@
 #ifndef REMODEL_TESTS_WHOLE_ROOM_H
 #define REMODEL_TESTS_WHOLE_ROOM_H
 
-#include "tests/unit/trace_ids/room.h"
+#include "tests/unit/box_solids.h"
 
 static struct model_rays model;
 
