@@ -73,6 +73,7 @@ struct bake {
     uint8_t *counts;
     uint8_t *hidden; /* views in which something stands in front of the texel */
     size_t list_count;
+    struct filled_atlas *filled; /* where unseen texels take their texture from; NULL: from their own face */
 };
 
 struct bake_totals {

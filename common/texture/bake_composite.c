@@ -17,6 +17,7 @@
 #include "common/math/gradient_solve.h"
 #include "common/texture/bake.h"
 #include "common/texture/fill.h"
+#include "common/texture/filled_atlas.h"
 
 static const float WEAK = 1e-5f;        /* weight of data, and of outlying differences */
 static const double DEFAULT_GREY = 0.5; /* of white */
@@ -153,8 +154,8 @@ static void set_pair(struct composite *c, int side, size_t at, size_t next)
     bool known = best[0] >= 0 && add_difference(c, side, at, p, q, best[0]);
     if (best[1] >= 0 && best[1] != best[0] && add_difference(c, side, at, p, q, best[1])) known = true;
     if (!known) c->weight[side][at] = 1;
-    if (!known && c->fill.choice) take_fill(c, side, at, next);
-    if (!known && c->fill.choice) leave_rim(c, side, at, next);
+    if (!known && c->fill.value) take_fill(c, side, at, next);
+    if (!known && c->fill.value) leave_rim(c, side, at, next);
 }
 
 /* nearest[i]: the texel of `from` that is fewest steps away, by a search from all at once; -1: there is none. */
@@ -200,7 +201,9 @@ static void set_seen(struct composite *c)
     }
 }
 
-/* Unseen texels are drawn to the nearest of the texels that are listed as such. seen: the role of seen ones from
+static bool has_guide(const struct composite *c, size_t i) { return c->fill.guide && !isnan(c->fill.guide[3 * i]); }
+
+/* Unseen texels are drawn to the filled atlas, or else to the nearest of the texels that are listed as such. seen: the role of seen ones from
  * now. */
 static void set_unseen(struct composite *c, int seen)
 {
@@ -209,7 +212,9 @@ static void set_unseen(struct composite *c, int seen)
         if (c->role[i] == GRADIENT_FREE && !c->unseen[i]) c->role[i] = (uint8_t)seen;
         if (!c->unseen[i]) continue;
         float *value = c->value + 3 * i;
-        if (c->nearest[i] >= 0)
+        if (has_guide(c, i))
+            memcpy(value, c->fill.guide + 3 * i, 3 * sizeof *value);
+        else if (c->nearest[i] >= 0)
             memcpy(value, c->value + 3 * (size_t)c->nearest[i], 3 * sizeof *value);
         else
             for (int k = 0; k < 3; k++) value[k] = bake_display((float)(DEFAULT_GREY * b->white), b->white);
@@ -259,7 +264,7 @@ static void take_texels(struct bake *b, const struct composite *c, struct bake_t
         if (is_warped(b, texel)) {
             b->made[texel] = (uint32_t)ATLAS_VIEWS + b->lists[b->list[texel]][0].source;
             totals->warped++;
-        } else if (c->nearest[i] >= 0) {
+        } else if (c->nearest[i] >= 0 || has_guide(c, i)) {
             b->made[texel] = ATLAS_SYNTHESISED;
             totals->synthesised++;
         } else {
@@ -297,9 +302,14 @@ static enum status solve_tile(struct composite *c, struct bake_totals *totals, s
     set_unseen(c, GRADIENT_FREE);
     if (solve(c, totals, err) || !memchr(c->unseen, 1, texels_of(c->t))) return err->status;
     find_clean(c);
-    if (!find_nearest(c, c->clean) && !find_nearest_seen(c)) return ST_OK;
-    const struct vec3 normal = c->b->surfaces->list[c->t->surface].normal;
-    if (texture_fill_find(&c->fill, c->t, normal, c->unseen, c->clean, c->value, err)) return err->status;
+    if (!find_nearest(c, c->clean) && !find_nearest_seen(c) && !c->b->filled) return ST_OK;
+    const struct synthesis_picture picture = {c->t->raster.width, c->t->raster.height, c->value, c->unseen, c->clean};
+    if (c->b->filled) {
+        float *guide = filled_atlas_tile(c->b->filled, c->b, c->t, err);
+        if (guide) texture_fill_guide(&c->fill, &picture, guide);
+    } else
+        texture_fill_find(&c->fill, &picture, err);
+    if (err->status) return err->status;
     set_unseen(c, GRADIENT_FIXED);
     return solve(c, totals, err);
 }

@@ -1,31 +1,28 @@
-/* fill.h - where the texture of texels that no view shows is taken from: elsewhere on the same face. See fill.c. */
+/* fill.h - the texture of texels that no view shows: copied from elsewhere on the same face, or from an atlas in which
+ * that was done before. See fill.c. */
 #ifndef REMODEL_TEXTURE_FILL_H
 #define REMODEL_TEXTURE_FILL_H
 
-#include "common/texture/bake.h"
+#include <stdbool.h>
 
-enum { FILL_SHIFTS = 6 }; /* of a hole */
+#include "common/texture/synthesis.h"
 
-struct fill_hole {
-    struct vec3 shift[FILL_SHIFTS]; /* on the face, in model units */
-    int shifts;
-};
-
+/* {0} is the empty state. */
 struct texture_fill {
-    const struct bake_tile *tile;
-    const float *value;   /* 3 a texel; read where `clean` */
-    const uint8_t *clean; /* 1: some view shows the texel, and nothing unseen is near */
-    int32_t *hole;        /* per texel; -1: seen */
-    uint8_t *choice;      /* index of the hole's shift; FILL_SHIFTS: none */
-    struct fill_hole *holes;
-    int hole_count;
+    int width, height;
+    const float *value;    /* 3 a texel; read where `clean`; not owned */
+    const uint8_t *unseen; /* not owned */
+    const uint8_t *clean;  /* 1: some view shows the texel, and nothing unseen is near; not owned */
+    int32_t *source;       /* per texel: the clean one that is copied there; -1: none; owned */
+    float *guide;          /* 3 a texel: the filled atlas there; NAN: it has none; owned. If NULL, `source` counts */
 };
 
-/* Finds the shifts. Unseen texels are those of GRADIENT_FREE in `role` that are not `seen`. normal: of the face. All
- * arrays are of the tile's texels. Same bits for any number of threads. */
-enum status texture_fill_find(struct texture_fill *f, const struct bake_tile *tile, struct vec3 normal,
-                              const uint8_t *unseen, const uint8_t *clean, const float *value, struct err *err);
-/* The texture that belongs at texel `of`, a hole's or another one, by the shift of the hole texel `at`; false: none. */
+/* Takes texture from the picture itself (synthesis.h). */
+enum status texture_fill_find(struct texture_fill *f, const struct synthesis_picture *picture, struct err *err);
+/* Takes texture from a guide, which becomes the fill's own. */
+void texture_fill_guide(struct texture_fill *f, const struct synthesis_picture *picture, float *guide);
+/* The texture that belongs at texel `of`, an unseen one or another near it, by what is copied to the unseen texel `at`;
+ * false: none. */
 bool texture_fill_copy(float copy[3], const struct texture_fill *f, size_t at, size_t of);
 /* The difference from texel `at` to `next` of the texture that is copied to `at`; false: none is. */
 bool texture_fill_difference(float difference[3], const struct texture_fill *f, size_t at, size_t next);

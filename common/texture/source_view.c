@@ -27,6 +27,8 @@
 #include <sys/stat.h>
 
 #include "common/capture/view_image.h"
+#include "common/math/distance.h"
+#include "common/model/thing_mask.h"
 
 static void add_size(uint64_t *bytes, const char *path)
 {
@@ -150,7 +152,36 @@ static enum status list_faces(struct source_view *v, struct err *err)
     return ST_OK;
 }
 
-enum status source_view_read(struct source_view *v, struct view_ids *ids, const char *views, const char *folder,
+/* Pixels that show a thing, or whose ray meets one, and those around them are hidden. */
+static enum status hide_things(struct source_view *v, const char *folder, const struct view *camera,
+                               const struct texture_params *params, struct provenance *prov, struct err *err)
+{
+    const size_t pixels = (size_t)camera->width * (size_t)camera->height;
+    const float margin = (float)(params->thing_margin * params->thing_margin);
+    char path[FILE_PATH];
+    struct thing_mask mask = {0};
+    uint8_t *free_of = malloc(pixels + 1);
+    float *squared = malloc((pixels + 1) * sizeof *squared);
+    if (!free_of || !squared) err_nomem(err, "the things of a view", pixels * 5);
+    if (!err->status &&
+        !product_path_in(path, folder, PRODUCT_THING_MASK, &(struct product_key){.view = camera->name}, err) &&
+        !thing_mask_read(&mask, camera, path, UINT32_MAX, prov, err)) {
+        add_size(&v->bytes, path);
+        for (size_t i = 0; i < pixels; i++) free_of[i] = !mask.shows[i] && !mask.meets[i];
+        distance_squared(squared, free_of, camera->width, camera->height, err);
+    }
+    for (size_t i = 0; !err->status && i < pixels; i++) {
+        if (squared[i] > margin) continue;
+        if (v->own[i] != SOURCE_NONE) v->own[i] = SOURCE_HIDDEN;
+        if (v->state[i] != SOURCE_NONE) v->state[i] = SOURCE_HIDDEN;
+    }
+    thing_mask_release(&mask);
+    free(free_of);
+    free(squared);
+    return err->status;
+}
+
+enum status source_view_read(struct source_view *v, struct view_ids *ids, const struct source_files *files,
                              const struct view *camera, const struct texture_params *params, struct provenance *prov,
                              struct err *err)
 {
@@ -159,8 +190,8 @@ enum status source_view_read(struct source_view *v, struct view_ids *ids, const 
     struct view_ids faces = {0};
     *v = (struct source_view){.camera = *camera, .level_count = 1};
     set_projection(v);
-    if (!read_picture(&picture, views, camera, &v->bytes, prov, err))
-        read_ids(&faces, folder, camera, &v->bytes, prov, err);
+    if (!read_picture(&picture, files->views, camera, &v->bytes, prov, err))
+        read_ids(&faces, files->ids, camera, &v->bytes, prov, err);
     v->state = malloc(pixels);
     v->own = malloc(pixels);
     if (!err->status && (!v->state || !v->own)) err_nomem(err, "a view's surfaces", pixels);
@@ -168,7 +199,7 @@ enum status source_view_read(struct source_view *v, struct view_ids *ids, const 
         take_pixels(v, picture.channel, &faces, params);
         v->id = faces.id;
         faces.id = NULL;
-        make_levels(v, err);
+        if (!files->things || !hide_things(v, files->things, camera, params, prov, err)) make_levels(v, err);
     }
     if (!err->status) list_faces(v, err);
     if (!err->status && ids) {

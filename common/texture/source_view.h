@@ -39,10 +39,16 @@ struct source_view {
     uint64_t bytes; /* read from disk */
 };
 
-/* Reads VIEWS/VIEW.exr and IDS/VIEW.exr. camera: in the model's frame. ids, if not NULL, gets the rest of the second
- * file (without id, which v has), in scene units; the caller releases it. v is overwritten; the caller releases it in
- * each case. ST_DATA: a missing channel, sizes that differ. */
-enum status source_view_read(struct source_view *v, struct view_ids *ids, const char *views, const char *folder,
+/* The folders of a view's files. */
+struct source_files {
+    const char *views, *ids;
+    const char *things; /* may be NULL: no things are known */
+};
+
+/* Reads VIEWS/VIEW.exr, IDS/VIEW.exr and THINGS/masks/VIEW.exr. camera: in the model's frame. ids, if not NULL, gets
+ * the rest of the second file (without id, which v has), in scene units; the caller releases it. v is overwritten; the
+ * caller releases it in each case. ST_DATA: a missing channel, sizes that differ. */
+enum status source_view_read(struct source_view *v, struct view_ids *ids, const struct source_files *files,
                              const struct view *camera, const struct texture_params *params, struct provenance *prov,
                              struct err *err);
 /* Whether a usable pixel shows a face. */

@@ -15,6 +15,8 @@
       "clutter of a view's pixel from which it shows something in front of the surface; 1: nothing is refused for it") \
     X(min_clutter, double, 0.3, 0, 1, "",                                                                              \
       "clutter from which other views decide by their colours whether the pixel shows the surface")                    \
+    X(thing_margin, double, 3, 0, 100, "px",                                                                           \
+      "distance from a thing within which a view shows no texel of what is behind: the thing's rim")                   \
     X(agree, double, 0.15, 0.001, 10, "", "largest difference of colours that agree, as a natural logarithm")          \
     X(max_gradient, double, 0.1, 0, 1000, "",                                                                          \
       "difference of neighbours, in display units, from which it counts little in compositing")

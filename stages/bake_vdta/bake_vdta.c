@@ -6,6 +6,8 @@
  *         VIEWS/cameras.txt, images.txt                 the cameras
  *         VIEWS/lenses.txt                              which views are of one photo: a viewpoint
  *         VIEWS/VIEW.exr, IDS/VIEW.exr                  the viewpoint's views and those that show hidden texels
+ *         THINGS/masks/VIEW.exr                         things that stand before the model
+ *         VITA/atlas.txt, page0.exr, ...                texture of what no photo shows
  *         IDS/index.txt                                 which views show a face
  *         REVEAL/VIEW.exr                               what the edits reveal to the viewpoint's views
  * writes  OUT/PHOTO/page0.exr, ..., atlas.txt           an atlas for each photo
@@ -40,7 +42,7 @@ struct files {
 
 static enum status read_scene(struct bake_scene *s, const struct files *f, struct provenance *prov, struct err *err)
 {
-    const struct scene_files files = {.views = s->views, .axes = f->axes, .mesh = f->model};
+    const struct scene_files files = {.views = s->from.views, .axes = f->axes, .mesh = f->model};
     return scene_inputs_read(&s->in, SCENE_CAMERAS | SCENE_LENSES | SCENE_AXES | SCENE_MODEL_VIEWS | SCENE_MESH, &files,
                              prov, err) ||
                    surfaces_make(&s->surfaces, &s->in.mesh, 1, err)
@@ -50,6 +52,7 @@ static enum status read_scene(struct bake_scene *s, const struct files *f, struc
 
 static void release_scene(struct bake_scene *s)
 {
+    filled_atlas_release(&s->filled);
     surfaces_release(&s->surfaces);
     scene_inputs_release(&s->in);
 }
@@ -69,7 +72,8 @@ static enum status bake_one(void *ctx, int i, struct err *err)
 
 static enum status run(struct job *j, struct err *err)
 {
-    read_scene(j->scene, j->files, j->prov, err);
+    if (!read_scene(j->scene, j->files, j->prov, err) && j->scene->vita && !j->files->estimate)
+        filled_atlas_open(&j->scene->filled, j->scene->vita, j->prov, err);
     if (!err->status && j->files->estimate)
         estimate_print(stdout, j->files->estimate, j->scene, err);
     else if (!err->status)
@@ -87,8 +91,11 @@ int main(int argc, char **argv)
         CLI_ABOUT("Bakes view-dependent texture atlases: the model's faces as a viewpoint sees them."),
         CLI_STR("model", &f.model, CLI_REQUIRED, "the unedited model, model.txt"),
         CLI_STR("axes", &f.axes, CLI_REQUIRED, "the model's frame, axes.txt"),
-        CLI_STR("views", &scene.views, CLI_REQUIRED, "folder of cameras and rectified views"),
-        CLI_STR("ids", &scene.ids, CLI_REQUIRED, "folder of the faces that each view shows, and of their index"),
+        CLI_STR("views", &scene.from.views, CLI_REQUIRED, "folder of cameras and rectified views"),
+        CLI_STR("ids", &scene.from.ids, CLI_REQUIRED, "folder of the faces that each view shows, and of their index"),
+        CLI_STR("things", &scene.from.things, CLI_OPTIONAL, "folder of the scene's things: textures leave them out"),
+        CLI_STR("vita", &scene.vita, CLI_OPTIONAL,
+                "folder of the view-independent atlas: texture of what no photo shows is taken from it"),
         CLI_STR("reveal", &scene.reveal, CLI_REQUIRED, "folder of what the edits reveal to each view"),
         CLI_LIST("photo", &f.photos, CLI_OPTIONAL, "viewpoint to bake, as a photo's id; repeat for several"),
         CLI_STR("out", &scene.out, CLI_REQUIRED, "folder in which each viewpoint gets a folder"),

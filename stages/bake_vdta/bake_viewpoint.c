@@ -41,7 +41,7 @@ enum { SAMPLE = 7 };                   /* every SAMPLE-th pixel counts for the l
 static const double WHITE_SHARE = 0.9; /* of the viewpoint's pixels are below white */
 
 struct work {
-    const struct bake_scene *scene;
+    struct bake_scene *scene;
     const char *photo, *deps;
     struct provenance *prov;
     int own[MAX_OWN]; /* views of the photo, in order of name */
@@ -64,7 +64,7 @@ static enum status find_own_views(struct work *w, struct err *err)
     if (w->own_count) return ST_OK;
     return err_set(err, ST_USAGE,
                    "there is no photo %s in %s/lenses.txt, where the second word of each line is a photo.", w->photo,
-                   s->views);
+                   s->from.views);
 }
 
 static int compare_floats(const void *a, const void *b)
@@ -112,8 +112,7 @@ static enum status add_tiles(struct work *w, struct err *err)
     for (int k = 0; !err->status && k < w->own_count; k++) {
         struct own_view own = {0};
         const struct view *camera = &s->in.set.views[w->own[k]];
-        if (!own_view_read(&own, s->views, s->ids, s->reveal, camera, s->in.axes.scale, &s->params->texture, w->prov,
-                           err))
+        if (!own_view_read(&own, &s->from, s->reveal, camera, s->in.axes.scale, &s->params->texture, w->prov, err))
             add_levels(&levels, &count, &room, &own.view, err);
         if (!err->status && is_withheld(s))
             memset(own.view.own, SOURCE_NONE, (size_t)camera->width * (size_t)camera->height);
@@ -157,8 +156,7 @@ static enum status read_sources(struct work *w, uint64_t *bytes, struct err *err
     progress_start(&progress, w->photo, w->view_count, "views");
     for (int i = 0; !err->status && i < w->view_count; i++) {
         struct source_view view = {0};
-        source_view_read(&view, NULL, s->views, s->ids, &s->in.set.views[w->views[i]], &s->params->texture, w->prov,
-                         err);
+        source_view_read(&view, NULL, &s->from, &s->in.set.views[w->views[i]], &s->params->texture, w->prov, err);
         if (!err->status && !(is_withheld(s) && is_own(w, w->views[i]))) bake_add_view(&w->bake, &view, i);
         *bytes += view.bytes;
         source_view_release(&view);
@@ -191,20 +189,22 @@ static enum status write_deps(const struct work *w, const char *folder, struct e
 {
     const struct bake_scene *s = w->scene;
     const size_t n = (size_t)w->view_count;
-    char(*paths)[FILE_PATH] = malloc((2 * n + 1) * sizeof *paths);
-    const char **files = malloc((2 * n + 1) * sizeof *files);
+    enum { FILES = 3 }; /* of a view */
+    const size_t count = (s->from.things ? FILES : FILES - 1) * n;
+    char(*paths)[FILE_PATH] = malloc((count + 1) * sizeof *paths);
+    const char **files = malloc((count + 1) * sizeof *files);
     if (paths && files)
-        product_path_in(paths[2 * n], folder, PRODUCT_ATLAS, NULL, err);
+        product_path_in(paths[count], folder, PRODUCT_ATLAS, NULL, err);
     else
-        err_nomem(err, "file names", 2 * n * sizeof *paths);
+        err_nomem(err, "file names", count * sizeof *paths);
     for (size_t i = 0; !err->status && i < n; i++) {
         const struct product_key key = {.view = s->in.set.views[w->views[i]].name};
-        if (!product_path_in(paths[2 * i], s->views, PRODUCT_VIEW, &key, err))
-            product_path_in(paths[2 * i + 1], s->ids, PRODUCT_IDS, &key, err);
-        files[2 * i] = paths[2 * i];
-        files[2 * i + 1] = paths[2 * i + 1];
+        if (!product_path_in(paths[2 * i], s->from.views, PRODUCT_VIEW, &key, err) &&
+            !product_path_in(paths[2 * i + 1], s->from.ids, PRODUCT_IDS, &key, err) && s->from.things)
+            product_path_in(paths[2 * n + i], s->from.things, PRODUCT_THING_MASK, &key, err);
     }
-    if (!err->status) make_deps_write(w->deps, paths[2 * n], files, (int)(2 * n), err);
+    for (size_t i = 0; !err->status && i < count; i++) files[i] = paths[i];
+    if (!err->status) make_deps_write(w->deps, paths[count], files, (int)count, err);
     free(paths);
     free(files);
     return err->status;
@@ -237,6 +237,7 @@ static enum status bake_work(struct work *w, struct err *err)
     struct bake_totals totals = {0};
     uint64_t bytes = 0;
     w->bake = (struct bake){.surfaces = &w->scene->surfaces, .params = &w->scene->params->texture, .has_centre = true};
+    if (w->scene->vita) w->bake.filled = &w->scene->filled;
     if (!find_own_views(w, err)) w->bake.centre = w->scene->in.set.views[w->own[0]].center;
     if (!err->status && !add_tiles(w, err) &&
         !sources_choose(&w->views, &w->view_count, w->scene, w->own, w->own_count, &w->bake, w->prov, err) &&
@@ -247,7 +248,7 @@ static enum status bake_work(struct work *w, struct err *err)
     return err->status;
 }
 
-enum status viewpoint_bake(const struct bake_scene *scene, const char *photo, const char *deps, struct provenance *prov,
+enum status viewpoint_bake(struct bake_scene *scene, const char *photo, const char *deps, struct provenance *prov,
                            struct err *err)
 {
     struct work w = {.scene = scene, .photo = photo, .deps = deps, .prov = prov};
@@ -255,6 +256,7 @@ enum status viewpoint_bake(const struct bake_scene *scene, const char *photo, co
     bake_work(&w, err);
     /* the next viewpoint has other inputs */
     provenance_keep(prov, shared);
+    filled_atlas_spare(&scene->filled);
     free(w.views);
     bake_release(&w.bake);
     return err->status;

@@ -4,19 +4,23 @@
 
 #include "common/model/scene_inputs.h"
 #include "common/texture/bake_atlas.h"
+#include "common/texture/filled_atlas.h"
 #include "stages/bake_vdta/vdta_params.h"
 
 /* What all viewpoints of a run share. */
 struct bake_scene {
     struct scene_inputs in; /* cameras in the model's frame; lenses; axes; the unedited model */
     struct surfaces surfaces;
-    const char *views, *ids, *reveal, *out; /* folders */
+    struct source_files from;
+    const char *reveal, *out; /* folders */
+    const char *vita;         /* folder of the atlas that texture of hidden places is taken from; NULL: none */
+    struct filled_atlas filled;
     const struct vdta_params *params;
 };
 
 /* Writes OUT/PHOTO/, and, unless it is NULL, the file of make dependencies `deps`. prov: with the inputs that all
  * viewpoints share; more are added for this one and taken off again. ST_USAGE: there is no such photo. */
-enum status viewpoint_bake(const struct bake_scene *scene, const char *photo, const char *deps, struct provenance *prov,
+enum status viewpoint_bake(struct bake_scene *scene, const char *photo, const char *deps, struct provenance *prov,
                            struct err *err);
 
 #endif

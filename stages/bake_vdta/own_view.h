@@ -10,9 +10,9 @@ struct own_view {
     struct view_reveal reveal; /* what the edits reveal; z in model units */
 };
 
-/* Reads VIEWS/VIEW.exr, IDS/VIEW.exr and REVEAL/VIEW.exr. camera: in the model's frame; scale: model units per scene
+/* Reads the files of a source (source_view.h) and REVEAL/VIEW.exr. camera: in the model's frame; scale: model units per scene
  * unit. v is overwritten; the caller releases it in each case. */
-enum status own_view_read(struct own_view *v, const char *views, const char *ids, const char *reveal,
+enum status own_view_read(struct own_view *v, const struct source_files *files, const char *reveal,
                           const struct view *camera, double scale, const struct texture_params *params,
                           struct provenance *prov, struct err *err);
 void own_view_release(struct own_view *v);

@@ -17,11 +17,14 @@ static void photo_rule(struct graph *g, const struct scene_facts *f, const struc
         rule_needs(g, PATH(g, VIEW, .view = p->views[i]));
         rule_needs(g, PATH(g, IDS, .view = p->views[i]));
         rule_needs(g, PATH(g, REVEAL, .view = p->views[i]));
+        rule_needs(g, PATH(g, THING_MASK, .view = p->views[i]));
     }
+    rule_takes_vita(g);
     rule_needs_listed(g, deps);
     rule_after_set(g, "views");
     rule_after_set(g, "ids");
     rule_option(g, "--ids", FOLDER(g, FACE_INDEX));
+    rule_option(g, "--things", FOLDER(g, THINGS));
     rule_option(g, "--reveal", FOLDER(g, REVEAL, .view = ""));
     rule_option(g, "--out", graph_own(g, "vdta"));
     rule_own(g);
@@ -37,7 +40,7 @@ static void photo_rule(struct graph *g, const struct scene_facts *f, const struc
 
 RULES(bake_vdta)
 {
-    graph_step(g, "vdta", STEP_FARM, "ids");
+    graph_step(g, "vdta", STEP_FARM, "ids things vita");
     graph_goal(g, "vdta", NULL);
     if (!f->has_model || !f->views.count) return;
     for (int i = 0; i < f->viewpoints.count; i++) photo_rule(g, f, &f->viewpoints.photos[i]);

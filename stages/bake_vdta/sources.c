@@ -123,7 +123,7 @@ static enum status find_offers(struct offers *o, const struct samples *samples, 
 {
     struct face_index index = {0};
     char path[FILE_PATH];
-    if (!product_path_in(path, s->ids, PRODUCT_FACE_INDEX, NULL, err)) face_index_open(&index, path, prov, err);
+    if (!product_path_in(path, s->from.ids, PRODUCT_FACE_INDEX, NULL, err)) face_index_open(&index, path, prov, err);
     for (size_t first = 0, last; !err->status && first < samples->count; first = last) {
         struct face_views shown_by = {0};
         for (last = first; last < samples->count && samples->list[last].id == samples->list[first].id;) last++;

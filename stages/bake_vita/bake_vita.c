@@ -5,6 +5,7 @@
  *         VIEWS/cameras.txt, images.txt                 the cameras
  *         VIEWS/lenses.txt                              which views are of one photo
  *         VIEWS/VIEW.exr, IDS/VIEW.exr                  the views that show faces best
+ *         THINGS/masks/VIEW.exr                         things that stand before the model
  *         IDS/index.txt                                 which views show a face
  * writes  OUT/page0.exr, ..., atlas.txt */
 #include <stdlib.h>
@@ -51,7 +52,7 @@ static enum status read_index(struct vita_scene *s, struct provenance *prov, str
     struct face_index index = {0};
     s->shown_by = calloc((size_t)s->surfaces.count + 1, sizeof *s->shown_by);
     if (!s->shown_by) return err_nomem(err, "faces", (size_t)s->surfaces.count * sizeof *s->shown_by);
-    if (!product_path_in(path, s->ids, PRODUCT_FACE_INDEX, NULL, err)) face_index_open(&index, path, prov, err);
+    if (!product_path_in(path, s->from.ids, PRODUCT_FACE_INDEX, NULL, err)) face_index_open(&index, path, prov, err);
     for (int i = 0; !err->status && i < s->surfaces.count; i++)
         face_index_load(&s->shown_by[i], &index, s->surfaces.list[i].id, err);
     face_index_close(&index);
@@ -60,7 +61,7 @@ static enum status read_index(struct vita_scene *s, struct provenance *prov, str
 
 static enum status read_scene(struct vita_scene *s, const struct files *f, struct provenance *prov, struct err *err)
 {
-    const struct scene_files files = {.views = s->views, .axes = f->axes};
+    const struct scene_files files = {.views = s->from.views, .axes = f->axes};
     if (!scene_inputs_read(&s->in, SCENE_CAMERAS | SCENE_LENSES | SCENE_AXES | SCENE_MODEL_VIEWS, &files, prov, err) &&
         !read_models(s, f, prov, err))
         read_index(s, prov, err);
@@ -88,8 +89,9 @@ int main(int argc, char **argv)
         CLI_LIST("edit", &f.edits, CLI_OPTIONAL,
                  "model.txt of an edit, whose part of the faces is baked too; repeat for several"),
         CLI_STR("axes", &f.axes, CLI_REQUIRED, "the models' frame, axes.txt"),
-        CLI_STR("views", &scene.views, CLI_REQUIRED, "folder of cameras and rectified views"),
-        CLI_STR("ids", &scene.ids, CLI_REQUIRED, "folder of the faces that each view shows, and of their index"),
+        CLI_STR("views", &scene.from.views, CLI_REQUIRED, "folder of cameras and rectified views"),
+        CLI_STR("ids", &scene.from.ids, CLI_REQUIRED, "folder of the faces that each view shows, and of their index"),
+        CLI_STR("things", &scene.from.things, CLI_OPTIONAL, "folder of the scene's things: textures leave them out"),
         CLI_STR("out", &scene.out, CLI_REQUIRED, "folder to write to"),
         CLI_PARAMS(vita_param_table, &params, check_params),
         CLI_END,

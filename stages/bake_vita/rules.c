@@ -3,7 +3,7 @@
 
 RULES(bake_vita)
 {
-    graph_step(g, "vita", STEP_ONE, "ids");
+    graph_step(g, "vita", STEP_ONE, "ids things");
     graph_step(g, "textures", STEP_ONE, "vdta vita");
     graph_asked(g, "textures", "textures");
     graph_goal(g, "vita", NULL);
@@ -18,6 +18,8 @@ RULES(bake_vita)
         rule_takes(g, "--edit", edited);
     }
     if (f->views.count) rule_needs(g, PATH(g, FACE_INDEX));
+    for (int i = 0; i < f->views.count; i++) rule_needs(g, PATH(g, THING_MASK, .view = f->views.names[i]));
+    if (f->views.count) rule_option(g, "--things", FOLDER(g, THINGS));
     rule_option(g, "--out", FOLDER(g, ATLAS));
     graph_list_if(g, GRAPH_MEASURED, PATH(g, ATLAS), scene_asks_for_any(f, "textures remodel"));
     graph_list_if(g, GRAPH_ALWAYS_SHOWN, PATH(g, ATLAS), scene_asks_for_any(f, "textures remodel"));

@@ -124,7 +124,7 @@ static enum status read_views(struct work *w, struct bake *b, const int *view_of
     for (int i = 0; !err->status && i < b->source_count; i++) {
         const struct view *camera = &s->in.set.views[view_of[i]];
         struct source_view view = {0};
-        if (!source_view_read(&view, NULL, s->views, s->ids, camera, &s->params->texture, w->prov, err))
+        if (!source_view_read(&view, NULL, &s->from, camera, &s->params->texture, w->prov, err))
             bake_add_view(b, &view, i);
         w->bytes += view.bytes;
         source_view_release(&view);

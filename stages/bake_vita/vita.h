@@ -12,8 +12,9 @@ struct vita_scene {
     struct solid_mesh *models; /* the unedited one, then those of the edits */
     int model_count;
     struct surfaces surfaces;
-    struct face_views *shown_by;   /* for each surface: the views that show its face, best first */
-    const char *views, *ids, *out; /* folders */
+    struct face_views *shown_by; /* for each surface: the views that show its face, best first */
+    struct source_files from;
+    const char *out; /* folder */
     const struct vita_params *params;
 };
 

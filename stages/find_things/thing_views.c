@@ -1,16 +1,19 @@
 /* thing_views.c - things in the pictures of the views; see thing_views.h. */
 #include "stages/find_things/thing_views.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "common/math/distance.h"
 #include "stages/find_things/fuse_views.h"
 
-#define MIN_SHARE 0.0005 /* of the picture: a view with less of a thing does not count as one that shows it */
-#define WHOLE     0.5    /* share of a segment's pixels that make all of it show the thing */
-#define CLOSED    0.008f /* of the width: half of the widest gap that is closed */
-#define CUT       0.4    /* score of a view whose border cuts the thing */
+#define MIN_SHARE     0.0005 /* of the picture: a view with less of a thing does not count as one that shows it */
+#define WHOLE         0.5    /* share of a segment's pixels that make all of it show the thing */
+#define HALF_DIAGONAL 0.87   /* of a voxel */
+#define CLOSED        0.008f /* of the width: half of the widest gap that is closed */
+#define NEAREST       0.5    /* voxels from the camera's plane */
+#define CUT           0.4    /* score of a view whose border cuts the thing */
 
 /* The thing that most pixels of a segment show: `lead` counts up for it and down for others, so that a majority
  * wins; a second pass counts its pixels. */
@@ -77,9 +80,9 @@ static enum status close_all(uint32_t *mask, const struct view_ids *ids, struct 
     return err->status;
 }
 
-enum status thing_mask_find(uint32_t *mask, const struct thing_volume *volume, const struct view *camera,
-                            const struct layered_depth *depth, const struct view_ids *ids, double scale,
-                            struct err *err)
+enum status thing_shows_find(uint32_t *mask, const struct thing_volume *volume, const struct view *camera,
+                             const struct layered_depth *depth, const struct view_ids *ids, double scale,
+                             struct err *err)
 {
     for (int y = 0; y < camera->height; y++)
         for (int x = 0; x < camera->width; x++) {
@@ -90,6 +93,29 @@ enum status thing_mask_find(uint32_t *mask, const struct thing_volume *volume, c
                 thing_volume_at(volume, view_unproject(camera, x + 0.5, y + 0.5, scale * (double)depth->interior.z[i]));
         }
     return fill_segments(mask, depth, err) || close_all(mask, ids, err) ? err->status : ST_OK;
+}
+
+void thing_meets_find(uint32_t *meets, const struct surface_voxel *voxels, size_t count, double voxel,
+                      const struct view *camera, const struct view_ids *ids, double scale, float *nearest)
+{
+    const size_t pixels = (size_t)camera->width * (size_t)camera->height;
+    for (size_t i = 0; i < pixels; i++) meets[i] = 0, nearest[i] = INFINITY;
+    for (size_t k = 0; k < count; k++) {
+        double u, v;
+        const double z = view_project(camera, voxels[k].at, &u, &v);
+        if (!(z > NEAREST * voxel)) continue;
+        const double radius = HALF_DIAGONAL * voxel * camera->fx / z;
+        if (!(u + radius > 0 && v + radius > 0 && u - radius < camera->width && v - radius < camera->height)) continue;
+        const int left = (int)fmax(0, ceil(u - radius - 0.5)), right = (int)fmin(camera->width - 1, u + radius - 0.5),
+                  top = (int)fmax(0, ceil(v - radius - 0.5)), below = (int)fmin(camera->height - 1, v + radius - 0.5);
+        for (int y = top; y <= below; y++)
+            for (int x = left; x <= right; x++) {
+                const size_t i = (size_t)y * (size_t)camera->width + (size_t)x;
+                if (!((float)z < nearest[i]) || !(z + voxel < scale * (double)ids->z[i])) continue;
+                nearest[i] = (float)z;
+                meets[i] = voxels[k].id;
+            }
+    }
 }
 
 struct patch {

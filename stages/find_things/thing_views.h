@@ -12,9 +12,21 @@
 /* Sets mask[pixel] to the id of the thing that the view shows there, 0: none. camera: model frame; scale: model units
  * per scene unit. A segment of the depth map of which half the pixels show a thing shows it whole: segments end at
  * edges of colour, and depth has holes. ST_NOMEM. */
-enum status thing_mask_find(uint32_t *mask, const struct thing_volume *volume, const struct view *camera,
-                            const struct layered_depth *depth, const struct view_ids *ids, double scale,
-                            struct err *err);
+enum status thing_shows_find(uint32_t *mask, const struct thing_volume *volume, const struct view *camera,
+                             const struct layered_depth *depth, const struct view_ids *ids, double scale,
+                             struct err *err);
+/* Voxels of the things' surfaces. */
+struct surface_voxel {
+    struct vec3 at; /* its centre, model frame */
+    uint32_t id;
+};
+
+/* Sets meets[pixel] to the thing whose surface the ray of the pixel meets first, more than a voxel before the model; 0:
+ * none. This tells of places where the view's own depth is off or missing, from what all views have seen. Voxels are
+ * drawn as the squares that hold them, so surfaces have no holes. */
+void thing_meets_find(uint32_t *meets, const struct surface_voxel *voxels, size_t count, double voxel,
+                      const struct view *camera, const struct view_ids *ids, double scale, float *nearest);
+
 /* What the views show of a thing. {0} is the state before the first view. */
 struct thing_sight {
     int views;           /* that show enough of it */

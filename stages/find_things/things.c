@@ -30,6 +30,8 @@ struct finder {
     const struct things_job *job;
     double height; /* of the model, model units */
     struct thing_volume volume;
+    struct surface_voxel *surface; /* of all things; owned */
+    size_t surface_count;
     struct thing *things;       /* being described; owned */
     struct thing_sight *sights; /* owned */
     struct sheet_tile *tiles;   /* owned */
@@ -209,26 +211,64 @@ static enum status name_things(struct finder *f, const uint32_t *named, struct e
     return ST_OK;
 }
 
-/* What is around a surface, and below one that stands on the floor, belongs to the thing. */
-static enum status grow(struct finder *f, struct err *err)
+static enum status list_surface(struct finder *f, struct err *err)
 {
-    const struct voxel_grid *g = &f->volume.grid;
-    if (components_grow(f->volume.id, g, SURFACE_STEPS, err)) return err->status;
-    for (size_t i = 0; i < voxel_count(g); i++) /* elsewhere the surface is that of the model */
-        if (!f->volume.id[i]) f->volume.distance[i] = THING_UNSEEN;
+    const size_t voxels = voxel_count(&f->volume.grid);
+    size_t count = 0;
+    for (size_t i = 0; i < voxels; i++) count += f->volume.id[i] != 0;
+    if (!(f->surface = malloc((count + 1) * sizeof *f->surface)))
+        return err_nomem(err, "the surfaces of things", count * sizeof *f->surface);
+    for (size_t i = 0; i < voxels; i++)
+        if (f->volume.id[i])
+            f->surface[f->surface_count++] =
+                (struct surface_voxel){thing_voxel_centre(&f->volume.grid, (int64_t)i), f->volume.id[i]};
+    return ST_OK;
+}
+
+/* Distances behind the model's own surfaces do not count. */
+static void leave_model(struct thing_volume *v)
+{
+    for (size_t i = 0; i < voxel_count(&v->grid); i++)
+        if (!v->id[i] && v->distance[i] <= 0) v->distance[i] = THING_UNSEEN;
+}
+
+/* Fills the columns below things that stand on the floor. What no view looks through is solid there, as in a visual
+ * hull: the end of a bed that no view shows, legs in the dark. */
+static enum status stand(struct finder *f, struct err *err)
+{
+    struct thing_volume *v = &f->volume;
+    const size_t voxels = voxel_count(&v->grid);
     int *lowest = malloc(((size_t)f->count + 1) * sizeof *lowest);
-    if (!lowest) return err_nomem(err, "things", (size_t)f->count * sizeof *lowest);
-    for (int k = 0; k < f->count; k++) {
+    uint8_t *before = malloc(voxels + 1);
+    if (!lowest || !before) err_nomem(err, "things", voxels);
+    for (int k = 0; !err->status && k < f->count; k++) {
         const struct thing *t = &f->things[k];
         const struct vec3 middle = vec3_scale(vec3_add(t->low, t->high), 0.5);
         const double below = support_below(f->job->model, middle);
         const bool stands = t->support == THING_ON_FLOOR && isfinite(below);
-        lowest[k + 1] = stands ? (int)fmax(0, floor((middle.z - below - g->origin.z) / g->voxel)) : -1;
+        lowest[k + 1] = stands ? (int)fmax(0, floor((middle.z - below - v->grid.origin.z) / v->grid.voxel)) : -1;
     }
-    components_stand(f->volume.id, g, lowest);
+    for (size_t i = 0; !err->status && i < voxels; i++) before[i] = v->id[i] != 0;
+    if (!err->status) components_stand(v->id, &v->grid, lowest);
+    for (size_t i = 0; !err->status && i < voxels; i++)
+        if (v->id[i] && !before[i] && v->distance[i] == THING_UNSEEN) v->distance[i] = -1;
+    free(before);
     free(lowest);
-    const int margin = (int)ceil(f->job->params->margin * f->height / g->voxel);
-    return components_grow(f->volume.id, g, margin > SURFACE_STEPS ? margin - SURFACE_STEPS : 0, err);
+    return err->status;
+}
+
+/* What is around a surface, and below one that stands on the floor, belongs to the thing. */
+static enum status grow(struct finder *f, struct err *err)
+{
+    struct thing_volume *v = &f->volume;
+    const int margin = (int)ceil(f->job->params->margin * f->height / v->grid.voxel);
+    if (components_grow(v->id, &v->grid, SURFACE_STEPS, err)) return err->status;
+    leave_model(v);
+    if (stand(f, err)) return err->status;
+    components_grow(v->id, &v->grid, margin > SURFACE_STEPS ? margin - SURFACE_STEPS : 1, err);
+    for (size_t i = 0; i < voxel_count(&v->grid); i++)
+        if (!v->id[i]) v->distance[i] = THING_UNSEEN;
+    return err->status;
 }
 
 static enum status find_surfaces(struct finder *f, struct err *err)
@@ -259,7 +299,7 @@ static enum status find_surfaces(struct finder *f, struct err *err)
     }
     if (!err->status && !name_things(f, named, err)) {
         things_measure(f->things, f->count, &f->volume, f->job->model, SUPPORT_REACH * f->height);
-        grow(f, err);
+        if (!list_surface(f, err)) grow(f, err);
     }
     free(named);
     return err->status;
@@ -268,30 +308,27 @@ static enum status find_surfaces(struct finder *f, struct err *err)
 /* ------------------------------------------------------------------------------------------------------ descriptions
  * */
 
-static uint32_t *new_mask(const struct view *view, struct err *err)
-{
-    const size_t pixels = (size_t)view->width * (size_t)view->height;
-    uint32_t *mask = malloc(pixels * sizeof *mask);
-    if (!mask) err_nomem(err, "the things of a view", pixels * sizeof *mask);
-    return mask;
-}
-
 static enum status see_view(struct finder *f, int i, struct err *err)
 {
     const struct things_job *job = f->job;
     const struct view *view = &job->in->set.views[i];
-    struct view_data d;
+    const size_t pixels = (size_t)view->width * (size_t)view->height;
+    struct view_data d = {0};
+    struct thing_mask mask = {0};
     char path[FILE_PATH];
-    uint32_t *mask = new_mask(view, err);
-    if (err->status) return err->status;
-    if (!view_data_read(&d, job, i, err) &&
-        !thing_mask_find(mask, &f->volume, &d.camera, &d.depth, &d.ids, job->in->axes.scale, err)) {
+    float *nearest = malloc((pixels + 1) * sizeof *nearest);
+    if (!nearest) err_nomem(err, "the depth of a view", pixels * sizeof *nearest);
+    if (!err->status && !thing_mask_init(&mask, view, err) && !view_data_read(&d, job, i, err) &&
+        !thing_shows_find(mask.shows, &f->volume, &d.camera, &d.depth, &d.ids, job->in->axes.scale, err)) {
+        thing_meets_find(mask.meets, f->surface, f->surface_count, f->volume.grid.voxel, &d.camera, &d.ids,
+                         job->in->axes.scale, nearest);
         if (!product_path_in(path, job->out, PRODUCT_THING_MASK, &(struct product_key){.view = view->name}, err) &&
-            !thing_mask_write(mask, view, path, job->prov, err))
-            thing_sights_add(f->sights, f->count, mask, view, i, err);
+            !thing_mask_write(&mask, view, path, job->prov, err))
+            thing_sights_add(f->sights, f->count, mask.shows, view, i, err);
     }
     view_data_release(&d);
-    free(mask);
+    thing_mask_release(&mask);
+    free(nearest);
     return err->status;
 }
 
@@ -301,18 +338,18 @@ static enum status cut_tiles(struct finder *f, int i, struct err *err)
     const struct things_job *job = f->job;
     const struct view *view = &job->in->set.views[i];
     struct image photo = {0};
-    uint32_t *mask = NULL;
+    struct thing_mask mask = {0};
     char path[FILE_PATH];
     for (int k = 0; !err->status && k < f->count; k++) {
         if (!(f->sights[k].score > 0) || f->sights[k].best != i) continue;
-        if (!mask &&
+        if (!mask.shows &&
             !product_path_in(path, job->out, PRODUCT_THING_MASK, &(struct product_key){.view = view->name}, err) &&
             !thing_mask_read(&mask, view, path, (uint32_t)f->count, NULL, err))
             view_image_read(&photo, job->views, view, job->prov, err);
-        if (!err->status) sheet_tile_make(&f->tiles[k], &photo, mask, (uint32_t)k + 1, f->things[k].rect, err);
+        if (!err->status) sheet_tile_make(&f->tiles[k], &photo, mask.shows, (uint32_t)k + 1, f->things[k].rect, err);
     }
     image_release(&photo);
-    free(mask);
+    thing_mask_release(&mask);
     return err->status;
 }
 
@@ -370,6 +407,7 @@ enum status things_find(const struct things_job *job, struct err *err)
     free(f.sights);
     free(f.tiles);
     free(f.is_pane);
+    free(f.surface);
     thing_volume_release(&f.volume);
     return err->status;
 }

@@ -40,7 +40,8 @@ enum status clutter_open(struct clutter_scene **scene, const struct clutter_file
     s->depth = strdup(files->depth);
     s->ids = strdup(files->ids);
     s->sources = calloc((size_t)set->view_count + 1, sizeof *s->sources);
-    pane_fronts_find(&s->panes, files->unedited, err);
+    s->walls = files->unedited;
+    pane_fronts_find(&s->panes, files->unedited ? &files->unedited->mesh : NULL, err);
     if (!err->status && !(s->views && s->depth && s->ids && s->sources))
         err_nomem(err, "the views of the clutter", (size_t)set->view_count * sizeof *s->sources);
     if (!err->status) return ST_OK;
@@ -218,7 +219,7 @@ enum status clutter_draw(struct model_picture *p, float *front, struct clutter_s
     if (own < 0 && views)
         take_given(&choice, views, count);
     else if (own < 0)
-        clutter_choose(&choice, s->set, &scene_camera, p->z, 1 / s->axes.scale, max_views(s), err);
+        clutter_choose(&choice, s, &scene_camera, p->z, 1 / s->axes.scale, max_views(s), err);
     if (!err->status && !clutter_load(s, &choice, prov, err) &&
         !clutter_blend(&layer, p->z, s, &choice, &scene_camera, filter, err) && own >= 0)
         view_image_read(&photo, s->views, &s->set->views[own], prov, err);
@@ -229,24 +230,31 @@ enum status clutter_draw(struct model_picture *p, float *front, struct clutter_s
     return err->status;
 }
 
-enum status clutter_draw_thing(struct model_picture *p, float *front, uint8_t *shown, struct clutter_scene *s,
-                               const struct view *camera, const struct clutter_filter *filter, struct vec3 low,
-                               struct vec3 high, struct provenance *prov, struct err *err)
+/* Takes a layer off the pixels that are to stay. */
+static void leave_pixels(struct clutter_layer *l, const uint8_t *stays, size_t pixels)
+{
+    for (size_t i = 0; i < pixels; i++)
+        for (size_t c = 0; c < 4 && stays[i]; c++) l->rgba[4 * i + c] = 0;
+}
+
+enum status clutter_draw_thing(struct model_picture *p, float *front, const struct thing_pixels *pixels,
+                               struct clutter_scene *s, const struct view *camera, const struct clutter_filter *filter,
+                               const struct thing_points *points, struct provenance *prov, struct err *err)
 {
     const struct view scene_camera = world_from_model_view(&s->axes, camera);
+    const size_t count = (size_t)p->width * (size_t)p->height;
     struct clutter_choice choice;
     struct clutter_layer layer = {0};
-    struct vec3 points[8];
-    for (int k = 0; k < 8; k++)
-        points[k] = world_from_model_point(
-            &s->axes, vec3_make(k & 1 ? high.x : low.x, k & 2 ? high.y : low.y, k & 4 ? high.z : low.z));
+    struct vec3 places[THING_POINTS];
+    for (int k = 0; k < points->count; k++) places[k] = world_from_model_point(&s->axes, points->at[k]);
     if (check_size(p, camera, err) || clutter_layer_init(&layer, p->width, p->height, err)) return err->status;
-    if (!clutter_choose_for(&choice, s->set, scene_camera.center, points, 8, max_views(s), err) &&
+    if (!clutter_choose_for(&choice, s, scene_camera.center, places, points->count, max_views(s), err) &&
         !clutter_load(s, &choice, prov, err) && !clutter_blend(&layer, front, s, &choice, &scene_camera, filter, err))
         thing_surface_draw(&layer, front, s, &choice, &scene_camera, filter->volume, filter->only);
-    for (size_t i = 0; !err->status && i < (size_t)p->width * (size_t)p->height; i++) {
+    if (!err->status && pixels->stays) leave_pixels(&layer, pixels->stays, count);
+    for (size_t i = 0; !err->status && i < count; i++) {
         layer.doubt[i] = 0; /* what is not drawn of a thing is not there: the shell is sure */
-        if (shown && layer.rgba[4 * i + 3] > 0) shown[i] = 0;
+        if (pixels->shown && layer.rgba[4 * i + 3] > 0) pixels->shown[i] = 0;
     }
     if (!err->status) lay(p, front, &layer, NULL, s->axes.scale);
     clutter_layer_release(&layer);

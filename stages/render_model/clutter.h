@@ -3,8 +3,8 @@
 #ifndef REMODEL_RENDER_CLUTTER_H
 #define REMODEL_RENDER_CLUTTER_H
 
+#include "common/light/model_rays.h"
 #include "common/model/model_axes.h"
-#include "common/model/solid_mesh.h"
 #include "common/texture/model_picture.h"
 #include "stages/render_model/clutter_filter.h"
 
@@ -12,7 +12,7 @@ struct clutter_scene; /* the views of a scene; their layers are read when they a
 
 struct clutter_files {
     const char *views, *depth, *ids;   /* folders of O */
-    const struct solid_mesh *unedited; /* NULL: no panes are known; must outlive the clutter */
+    const struct model_rays *unedited; /* NULL: no walls and panes are known; must outlive the clutter */
     int memory; /* MiB of views that are kept; where they hold fewer than 12 views, pictures are made of fewer */
 };
 
@@ -31,11 +31,18 @@ enum status clutter_draw(struct model_picture *p, float *front, struct clutter_s
                          const struct clutter_filter *filter, const int *views, int count, struct provenance *prov,
                          struct err *err);
 
+/* Flags of each pixel of a picture; may be NULL. */
+struct thing_pixels {
+    const uint8_t *stays; /* 1: a thing is not drawn there */
+    uint8_t *shown;       /* set to 0 where a thing covers something */
+};
+
 /* Draws the one thing that the filter lets pass, wherever it is before `front`, of which it becomes a part. camera: the
- * picture's, moved as the thing was, the other way. low, high: the box around the thing. shown: set to 0 where the
- * thing covers something (may be NULL). */
-enum status clutter_draw_thing(struct model_picture *p, float *front, uint8_t *shown, struct clutter_scene *scene,
-                               const struct view *camera, const struct clutter_filter *filter, struct vec3 low,
-                               struct vec3 high, struct provenance *prov, struct err *err);
+ * picture's, moved as the thing was, the other way. points: on its
+ * surface. */
+enum status clutter_draw_thing(struct model_picture *p, float *front, const struct thing_pixels *pixels,
+                               struct clutter_scene *scene, const struct view *camera,
+                               const struct clutter_filter *filter, const struct thing_points *points,
+                               struct provenance *prov, struct err *err);
 
 #endif

@@ -3,7 +3,8 @@
  * A few points of what the camera sees stand for all: on a lattice over the picture, on the shell and half way to it,
  * as nothing is known of the clutter yet. Each view is weighted at each point as in unstructured lumigraph rendering
  * [Buehler 2001]: by the angle between the rays from the view and from the camera, and by how much farther away the
- * view is. Weights are normalised per point, so that each point elects its views; those with the largest sums are
+ * view is; a view between which and the point a wall of the unedited model stands has no weight. Weights are normalised
+ * per point, so that each point elects its views; those with the largest sums are
  * chosen. Their influence falls to 0 towards the first one that is left out, so that no view pops in or out as the
  * camera moves. */
 #include <math.h>
@@ -17,6 +18,7 @@ enum { COLUMNS = 16, ROWS = 12, PLACES = 2 };
 #define FAR_FEE   0.1   /* radians per doubling of the distance */
 #define SHARPNESS 0.005 /* radians^2 */
 #define FADE      3.0
+#define NEARLY    0.98 /* of the way to a point on the shell itself */
 
 double clutter_penalty(struct vec3 point, struct vec3 camera, struct vec3 view)
 {
@@ -27,8 +29,19 @@ double clutter_penalty(struct vec3 point, struct vec3 camera, struct vec3 view)
     return chord + FAR_FEE * fmax(0, lb / la - 1);
 }
 
-static void vote(double *score, double *weight, const struct camera_set *set, struct vec3 point, struct vec3 camera)
+/* Whether the unedited model hides a point from a place; both in the scene's frame. Panes hide nothing. */
+static bool is_hidden(const struct clutter_scene *s, struct vec3 from, struct vec3 point)
 {
+    struct ray_hit hit;
+    if (!s->walls) return false;
+    const struct vec3 a = model_from_world_point(&s->axes, from), b = model_from_world_point(&s->axes, point);
+    return ray_scene_hit(&s->walls->rays, a, vec3_sub(b, a), &hit) && hit.t < NEARLY &&
+           !solid_face_is_pane(&s->walls->mesh, (int)hit.id);
+}
+
+static void vote(double *score, double *weight, const struct clutter_scene *s, struct vec3 point, struct vec3 camera)
+{
+    const struct camera_set *set = s->set;
     double sum = 0;
     for (int i = 0; i < set->view_count; i++) {
         double u, v;
@@ -36,6 +49,7 @@ static void vote(double *score, double *weight, const struct camera_set *set, st
         weight[i] = 0;
         if (!(view_project(view, point, &u, &v) > 0) || !(u >= 0 && v >= 0 && u < view->width && v < view->height))
             continue;
+        if (is_hidden(s, view->center, point)) continue;
         const double penalty = clutter_penalty(point, camera, view->center);
         weight[i] = 1 / pow(SHARPNESS + penalty * penalty, 2);
         sum += weight[i];
@@ -81,20 +95,21 @@ static void sort_choice(struct clutter_choice *c)
         }
 }
 
-enum status clutter_choose_for(struct clutter_choice *choice, const struct camera_set *set, struct vec3 camera,
+enum status clutter_choose_for(struct clutter_choice *choice, const struct clutter_scene *s, struct vec3 camera,
                                const struct vec3 *points, int count, int most, struct err *err)
 {
+    const struct camera_set *set = s->set;
     double *score = calloc(2 * (size_t)set->view_count + 1, sizeof *score);
     *choice = (struct clutter_choice){0};
     if (!score) return err_nomem(err, "scores of views", 2 * (size_t)set->view_count * sizeof *score);
-    for (int i = 0; i < count; i++) vote(score, score + set->view_count, set, points[i], camera);
+    for (int i = 0; i < count; i++) vote(score, score + set->view_count, s, points[i], camera);
     elect(choice, score, set->view_count, most);
     sort_choice(choice);
     free(score);
     return ST_OK;
 }
 
-enum status clutter_choose(struct clutter_choice *choice, const struct camera_set *set, const struct view *camera,
+enum status clutter_choose(struct clutter_choice *choice, const struct clutter_scene *s, const struct view *camera,
                            const float *z, double scale, int most, struct err *err)
 {
     struct vec3 points[COLUMNS * ROWS * PLACES];
@@ -107,5 +122,5 @@ enum status clutter_choose(struct clutter_choice *choice, const struct camera_se
             for (int k = 1; k <= PLACES; k++)
                 points[count++] = view_unproject(camera, u, v, (double)shell * scale * k / PLACES);
         }
-    return clutter_choose_for(choice, set, camera->center, points, count, most, err);
+    return clutter_choose_for(choice, s, camera->center, points, count, most, err);
 }

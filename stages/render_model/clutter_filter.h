@@ -8,6 +8,13 @@
 
 enum thing_fate { THING_STAYS, THING_IS_KEPT, THING_IS_GONE }; /* kept: also in a zone that is cleared */
 
+/* Places on the surface of a thing, spread over it. */
+enum { THING_POINTS = 64 };
+struct thing_points {
+    struct vec3 at[THING_POINTS]; /* model frame */
+    int count;
+};
+
 /* {0} lets all clutter pass. */
 struct clutter_filter {
     const struct texture_map *map;     /* NULL: no zones */

@@ -21,6 +21,7 @@ struct clutter_scene {
     size_t budget, bytes;      /* of memory: allowed, and held by the sources */
     const struct camera_set *set;
     struct model_axes axes;
+    const struct model_rays *walls; /* the unedited model; NULL: nothing is hidden */
     struct pane_fronts panes;
     struct clutter_source *sources; /* one per view; owned */
     uint64_t picture;               /* number of the present one */
@@ -34,14 +35,15 @@ struct clutter_choice {
     int count;
 };
 
-/* Chooses the views that see these points best, from about where the camera is. All in the scene's frame. most: at most
+/* Chooses the views that see these points best, from about where the camera is, with no wall between.
+ * All in the scene's frame. most: at most
  * CLUTTER_VIEWS. */
-enum status clutter_choose_for(struct clutter_choice *choice, const struct camera_set *set, struct vec3 camera,
+enum status clutter_choose_for(struct clutter_choice *choice, const struct clutter_scene *s, struct vec3 camera,
                                const struct vec3 *points, int count, int most, struct err *err);
 
 /* Chooses the views that see best what the camera may see. camera: scene frame; z: width * height depths of the shell
  * in scene units, scaled by `scale`, 0: none. most: at most CLUTTER_VIEWS. */
-enum status clutter_choose(struct clutter_choice *choice, const struct camera_set *set, const struct view *camera,
+enum status clutter_choose(struct clutter_choice *choice, const struct clutter_scene *s, const struct view *camera,
                            const float *z, double scale, int most, struct err *err);
 
 /* How much worse a view shows the point than the camera's own place would: the angle between the two rays, in radians

@@ -1,6 +1,7 @@
 /* drawn_room.c - opens what pictures are drawn from, and draws a picture; see drawn_room.h. */
 #include "stages/render_model/drawn_room.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -43,7 +44,7 @@ enum status room_open(struct room *room, const struct room_files *files, const s
                       struct provenance *prov, struct err *err)
 {
     const struct shell_files shell = {files->model, files->map, files->vdta, files->vita, params->memory};
-    const struct solid_mesh *unedited = files->base ? &room->base.mesh : &room->model.mesh;
+    const struct model_rays *unedited = files->base ? &room->base : &room->model;
     const struct clutter_files clutter = {files->views, files->depth, files->ids, unedited, params->memory};
     *room = (struct room){.files = *files, .params = params, .exposure = params->exposure > 0 ? params->exposure : 1};
     if (!read_cameras(room, prov, err)) model_rays_read(&room->model, files->model, MODEL_WITH_GLASS, NULL, err);
@@ -125,13 +126,44 @@ enum status room_draw_things(struct model_picture *picture, struct room *room, c
 {
     const struct placed_things *t = &room->things;
     struct clutter_filter filter = placed_things_filter(t, NULL);
+    const struct thing_pixels pixels = {.shown = same};
     for (int i = 0; !err->status && room->clutter && i < t->placed_count; i++) {
         const struct placed_thing *p = &t->placed[i];
-        const struct thing *thing = &t->list.things[p->id - 1];
         const struct view moved = placed_thing_camera(p, camera);
         filter.only = p->id;
-        clutter_draw_thing(picture, room->front, same, room->clutter, &moved, &filter, thing->low, thing->high, prov,
-                           err);
+        clutter_draw_thing(picture, room->front, &pixels, room->clutter, &moved, &filter, &t->points[p->id], prov, err);
+    }
+    return err->status;
+}
+
+/* Whether a box may cover a pixel that does not stay. */
+static bool box_matters(const struct view *camera, struct vec3 low, struct vec3 high, const uint8_t *stays)
+{
+    double left = INFINITY, top = INFINITY, right = -INFINITY, below = -INFINITY;
+    for (int k = 0; k < 8; k++) {
+        double u, v;
+        const struct vec3 corner = vec3_make(k & 1 ? high.x : low.x, k & 2 ? high.y : low.y, k & 4 ? high.z : low.z);
+        if (!(view_project(camera, corner, &u, &v) > 0)) u = v = NAN; /* behind the camera: it may be anywhere */
+        left = isnan(u) ? 0 : fmin(left, u), right = isnan(u) ? camera->width : fmax(right, u);
+        top = isnan(v) ? 0 : fmin(top, v), below = isnan(v) ? camera->height : fmax(below, v);
+    }
+    for (int y = (int)fmax(0, top); y < camera->height && y < below; y++)
+        for (int x = (int)fmax(0, left); x < camera->width && x < right; x++)
+            if (!stays[(size_t)y * (size_t)camera->width + (size_t)x]) return true;
+    return false;
+}
+
+enum status room_draw_uncovered(struct model_picture *picture, struct room *room, const struct view *camera,
+                                const uint8_t *stays, struct provenance *prov, struct err *err)
+{
+    const struct placed_things *t = &room->things;
+    struct clutter_filter filter = placed_things_filter(t, NULL);
+    const struct thing_pixels pixels = {.stays = stays};
+    for (int i = 0; !err->status && room->clutter && i < t->list.count; i++) {
+        const struct thing *thing = &t->list.things[i];
+        if (t->fate[i + 1] == THING_IS_GONE || !box_matters(camera, thing->low, thing->high, stays)) continue;
+        filter.only = (uint32_t)i + 1;
+        clutter_draw_thing(picture, room->front, &pixels, room->clutter, camera, &filter, &t->points[i + 1], prov, err);
     }
     return err->status;
 }

@@ -106,7 +106,7 @@ static enum status leave_cleared(uint8_t *same, uint8_t *gone, const struct room
     char path[FILE_PATH];
     struct view_ids ids = {0};
     struct layered_depth depth = {0};
-    uint32_t *mask = NULL;
+    struct thing_mask mask = {0};
     if (filter.volume && room->files.things &&
         !product_path_in(path, room->files.things, PRODUCT_THING_MASK, &key, err))
         thing_mask_read(&mask, world, path, (uint32_t)room->things.list.count, prov, err);
@@ -123,7 +123,7 @@ static enum status leave_cleared(uint8_t *same, uint8_t *gone, const struct room
         for (int x = 0; x < camera->width; x++) {
             const size_t i = (size_t)y * (size_t)camera->width + (size_t)x;
             const double z = depth.interior.z[i] * room->in.axes.scale;
-            const bool masked = mask && filter.fate[mask[i]] == THING_IS_GONE;
+            const bool masked = mask.shows && filter.fate[mask.shows[i]] == THING_IS_GONE;
             stays[i] = !masked &&
                        !(z > 0 && ids.clutter[i] > CLUTTER_UNSURE &&
                          clutter_filter_drops(&filter, view_unproject(camera, x + 0.5, y + 0.5, z))) &&
@@ -133,7 +133,7 @@ static enum status leave_cleared(uint8_t *same, uint8_t *gone, const struct room
     if (!err->status) grow(stays, camera, CLEARED_MARGIN, err);
     for (size_t i = 0; !err->status && i < pixels; i++) same[i] &= stays[i];
     free(stays);
-    free(mask);
+    thing_mask_release(&mask);
     layered_depth_release(&depth);
     view_ids_release(&ids);
     return err->status;

@@ -16,6 +16,7 @@
 
 #define SHRUNK   0.9  /* of the box's sides: what may not be in a wall */
 #define MAX_STEP 0.03 /* of the model's height: between points of a box that are tested */
+#define SURFACE  0.4f /* distance, of its band, up to which a voxel is on the surface */
 #define OFF_SIDE 0.03 /* of the model's height: change of the gap between a thing and its support that is none */
 
 enum { MIN_STEPS = 3, MAX_STEPS = 24 }; /* points along each side of a box that are tested */
@@ -27,12 +28,15 @@ void placed_things_release(struct placed_things *t)
     thing_volume_release(&t->volume);
     free(t->fate);
     free(t->placed);
+    free(t->points);
     *t = (struct placed_things){0};
 }
 
 struct clutter_filter placed_things_filter(const struct placed_things *t, const struct texture_map *map)
 {
-    return (struct clutter_filter){.map = map, .volume = t->fate ? &t->volume : NULL, .fate = t->fate};
+    bool matters = !map; /* then the caller asks for one thing alone */
+    for (int i = 0; t->fate && i <= t->list.count; i++) matters |= t->fate[i] != THING_STAYS;
+    return (struct clutter_filter){.map = map, .volume = t->fate && matters ? &t->volume : NULL, .fate = t->fate};
 }
 
 static struct vec3 place(const struct placed_thing *p, struct vec3 at)
@@ -190,6 +194,31 @@ static enum status apply(struct placed_things *t, const struct texture_thing *ed
     return err->status;
 }
 
+static bool is_surface(const struct thing_volume *v, size_t i) { return v->id[i] && fabsf(v->distance[i]) < SURFACE; }
+
+/* Every so many of the voxels of each thing's surface. */
+static enum status list_points(struct placed_things *t, struct err *err)
+{
+    const size_t things = (size_t)t->list.count + 1, voxels = voxel_count(&t->volume.grid);
+    int64_t *all = calloc(2 * things, sizeof *all), *seen = all + things;
+    t->points = calloc(things, sizeof *t->points);
+    if (!all || !t->points) {
+        free(all);
+        return err_nomem(err, "things", things * sizeof *t->points);
+    }
+    for (size_t i = 0; i < voxels; i++)
+        if (is_surface(&t->volume, i)) all[t->volume.id[i]]++;
+    for (size_t i = 0; i < voxels; i++) {
+        if (!is_surface(&t->volume, i)) continue;
+        const uint32_t id = t->volume.id[i];
+        struct thing_points *p = &t->points[id];
+        const int64_t step = all[id] / THING_POINTS + 1;
+        if (seen[id]++ % step == 0) p->at[p->count++] = thing_voxel_centre(&t->volume.grid, (int64_t)i);
+    }
+    free(all);
+    return ST_OK;
+}
+
 /* Things that zones clear. */
 static enum status apply_zones(struct placed_things *t, const struct texture_map *map, struct err *err)
 {
@@ -214,7 +243,7 @@ enum status placed_things_read(struct placed_things *t, const char *folder, cons
 {
     char path[FILE_PATH];
     *t = (struct placed_things){0};
-    if (!map || (!map->thing_count && (!map->zone_count || !folder))) return ST_OK;
+    if (!map || (!map->thing_count && !folder)) return ST_OK;
     if (!folder)
         return err_set(err, ST_USAGE, "the edit changes the thing %s, but --things is missing; see --help.",
                        map->things[0].from);
@@ -226,6 +255,7 @@ enum status placed_things_read(struct placed_things *t, const char *folder, cons
         t->placed = calloc((size_t)map->thing_count + 1, sizeof *t->placed);
         if (!t->fate || !t->placed) err_nomem(err, "things", (size_t)map->thing_count * sizeof *t->placed);
     }
+    if (!err->status) list_points(t, err);
     if (!err->status && map->zone_count) apply_zones(t, map, err);
     for (int i = 0; !err->status && i < map->thing_count; i++) apply(t, &map->things[i], before, after, err);
     if (err->status) placed_things_release(t);

@@ -20,10 +20,11 @@ struct placed_things {
     uint8_t *fate; /* enum thing_fate of each id, from 0 */
     struct placed_thing *placed;
     int placed_count;
+    struct thing_points *points; /* of each id, from 0: some of its surface */
 };
 
-/* Reads the products of find_things, if the edit's map clears something or says something of things, and places these.
- * folder: of the things; NULL: zones clear no things. before, after: the model that the photographs show, and the
+/* Reads the products of find_things, if there is an edit's map, and places the things of which it says something.
+ * folder: of the things; NULL: zones clear no things, and none are known. before, after: the model that the photographs show, and the
  * edited one. ST_DATA: the map names a thing that was not found; a thing would be in a wall, or off what it stands on,
  * with the distance. */
 enum status placed_things_read(struct placed_things *t, const char *folder, const struct texture_map *map,

@@ -81,6 +81,19 @@ static enum status write_picture(const struct model_picture *p, const struct roo
 
 /* --------------------------------------------------------------------------------------------------- original views */
 
+/* Draws the things of which the photo itself shows nothing: where it changes, and shows no furniture. */
+static enum status draw_uncovered(struct model_picture *picture, struct room *room, const struct view *camera,
+                                  const uint8_t *same, struct provenance *prov, struct err *err)
+{
+    const size_t pixels = (size_t)camera->width * (size_t)camera->height;
+    uint8_t *stays = malloc(pixels + 1);
+    if (!stays) return err_nomem(err, "pixels of a view", pixels);
+    for (size_t i = 0; i < pixels; i++) stays[i] = same[i] || picture->made[i] == MADE_CLUTTER;
+    if (memchr(stays, 0, pixels)) room_draw_uncovered(picture, room, camera, stays, prov, err);
+    free(stays);
+    return err->status;
+}
+
 static enum status draw_view(struct model_picture *picture, double *changed, struct room *room, int view,
                              struct provenance *prov, struct err *err)
 {
@@ -97,6 +110,8 @@ static enum status draw_view(struct model_picture *picture, double *changed, str
     else if (!err->status)
         model_picture_resize(picture, camera->width, camera->height, err);
     if (!err->status && own) own_pixels_draw(picture, same, room, view, prov, err);
+    if (!err->status && own && room->things.list.count && room->files.base)
+        draw_uncovered(picture, room, camera, same, prov, err);
     if (!err->status) room_draw_things(picture, room, camera, same, prov, err);
     for (size_t i = 0; !err->status && i < pixels; i++) differ += !same[i] && picture->made[i] != MADE_NOTHING;
     *changed = own ? 100.0 * (double)differ / (double)pixels : 100;

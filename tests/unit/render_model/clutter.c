@@ -517,12 +517,23 @@ struct drawn_cube {
     struct view moved; /* of the place where the cube was */
 };
 
+static struct thing_points cube_corners(void)
+{
+    struct thing_points p = {.count = 8};
+    for (int k = 0; k < 8; k++)
+        p.at[k] = vec3_make(k & 1 ? cube.high.x : cube.low.x, k & 2 ? cube.high.y : cube.low.y,
+                            k & 4 ? cube.high.z : cube.low.z);
+    return p;
+}
+
 /* The empty room with the cube by `shift` from its place. wall: depth of something before the picture; 0: nothing. */
 static void draw_cube(struct drawn_cube *d, struct scene *s, const struct view *camera, struct vec3 shift, float wall,
                       bool seen)
 {
     struct thing_volume volume = cube_volume(seen);
     const struct clutter_filter filter = {.volume = &volume, .only = CUBE};
+    const struct thing_points points = cube_corners();
+    const struct thing_pixels pixels = {.shown = d->shown};
     struct err err = ERR_INIT;
     *d = (struct drawn_cube){.moved = *camera};
     d->moved.center = vec3_sub(camera->center, shift);
@@ -531,8 +542,7 @@ static void draw_cube(struct drawn_cube *d, struct scene *s, const struct view *
     draw_shell(&d->shell, camera);
     memset(d->shown, 1, sizeof d->shown);
     for (size_t i = 0; i < (size_t)W * H; i++) d->front[i] = wall > 0 ? wall : d->shell.z[i];
-    assert_ok(clutter_draw_thing(&d->picture, d->front, d->shown, s->clutter, &d->moved, &filter, cube.low, cube.high,
-                                 NULL, &err),
+    assert_ok(clutter_draw_thing(&d->picture, d->front, &pixels, s->clutter, &d->moved, &filter, &points, NULL, &err),
               err);
     thing_volume_release(&volume);
 }
@@ -628,11 +638,13 @@ static void a_moved_cube_hides_the_next_one(void **state)
     draw_cube(&far, &s, &camera, vec3_make(0.2, 0.4, 0), 0, false);
     draw_cube(&near, &s, &camera, vec3_make(-0.2, -0.5, 0), 0, false);
     struct model_picture once = {0};
+    const struct thing_points points = cube_corners();
+    const struct thing_pixels no_pixels = {0};
     assert_ok(model_picture_resize(&once, W, H, &err), err);
     memcpy(once.rgb, near.picture.rgb, 3 * (size_t)W * H * sizeof *once.rgb);
-    assert_ok(clutter_draw_thing(&near.picture, near.front, NULL, s.clutter, &far.moved, &filter, cube.low, cube.high,
-                                 NULL, &err),
-              err);
+    assert_ok(
+        clutter_draw_thing(&near.picture, near.front, &no_pixels, s.clutter, &far.moved, &filter, &points, NULL, &err),
+        err);
     int hidden = 0, visible = 0;
     for (int y = 3; y < H - 3; y++)
         for (int x = 3; x < W - 3; x++) {

@@ -248,7 +248,8 @@ static uint8_t *same_without_posts(bool clutter, int masked)
         static uint32_t mask[W * H];
         for (int i = 0; i < W * H; i++) mask[i] = i % W < masked ? GONE : 0;
         drawn.files.things = scratch_path("things");
-        assert_ok(thing_mask_write(mask, &camera, scratch_path("things/masks/v.exr"), NULL, &err), err);
+        const struct thing_mask written = {mask, mask};
+        assert_ok(thing_mask_write(&written, &camera, scratch_path("things/masks/v.exr"), NULL, &err), err);
     }
     static uint8_t gone[W * H];
     assert_ok(own_pixels_find(same, gone, &drawn, 0, &prov, &err), err);
