@@ -40,7 +40,7 @@ struct candidate {
     float rgb[3], penalty;
     float around[3]; /* the colour of a wider area, which noise and small errors of the cameras move less: for votes */
     uint16_t source;
-    uint8_t state; /* SOURCE_POOR, SOURCE_UNSURE, SOURCE_CLEAN */
+    uint8_t state; /* SOURCE_POOR and above */
 };
 
 /* A view that colours come from. */

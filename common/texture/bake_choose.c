@@ -17,6 +17,7 @@
 enum { CHUNK = 4096, POOR_PHOTOS = 4 };
 static const double DIM = 0.02;     /* of white: differences of darker colours count less */
 static const float HIDDEN = 0.5f;   /* weight of a view in which something surely stands in front */
+static const float LIKELY = 0.75f;  /* vote of a view for itself whose depth, not sure, has nothing in front */
 static const float OUTVOTED = 1e6f; /* penalty: chosen only if nothing else is there */
 
 struct vote {
@@ -45,7 +46,7 @@ static void count_votes(float *in_favour, float *against, const struct vote *vot
     *in_favour = *against = 0;
     for (int j = 0; j < count; j++) {
         if (j == i || votes[j].group == votes[i].group || votes[j].state == SOURCE_POOR) continue;
-        const float weight = votes[j].state == SOURCE_CLEAN ? 2 : 1;
+        const float weight = votes[j].state >= SOURCE_LIKELY ? 2 : 1;
         *(agree(&votes[i], &votes[j], limit) ? in_favour : against) += weight;
     }
 }
@@ -89,9 +90,10 @@ static void choose_texel(struct bake *b, size_t texel)
     float least = INFINITY;
     for (int i = 0; i < count; i++) {
         float penalty = in[i].penalty;
-        if (in[i].state == SOURCE_UNSURE) {
+        if (in[i].state == SOURCE_UNSURE || in[i].state == SOURCE_LIKELY) {
             count_votes(&in_favour, &against, votes, count, i, limit);
             against += HIDDEN * b->hidden[list];
+            if (in[i].state == SOURCE_LIKELY) in_favour += LIKELY;
             if (against > in_favour) penalty += OUTVOTED;
         }
         if (penalty < least) least = penalty, best = i;

@@ -24,10 +24,11 @@ static const double DEFAULT_GREY = 0.5; /* of white */
 enum { REACH = 12 };                    /* texels: of the clean ones that an unseen one continues */
 enum { MIN_SEEN = 8 };                  /* of these */
 enum { ALIKE = 8 };                     /* neighbours are alike: this many count as one */
+enum { SIDE = 6 };                      /* texels beside a hole in which only views of sure depth count */
 enum { RIM = 3 };                       /* texels beside unseen ones, which may hold the shadow of what hides them */
 
 struct composite { /* of a tile; all per texel */
-    const struct bake *b;
+    struct bake *b;
     const struct bake_tile *t;
     uint8_t *role;
     float *data, *data_weight, *value;
@@ -181,6 +182,32 @@ static bool find_nearest(struct composite *c, const uint8_t *from)
     return tail > 0;
 }
 
+/* Whether something stands before a texel in every view that could show it. */
+static bool is_hole(const struct bake *b, size_t texel)
+{
+    return b->role[texel] == TEXEL_WANTED && !is_warped(b, texel) && b->list[texel] >= 0 && b->hidden[b->list[texel]];
+}
+
+/* Beside what hides the face, a view whose depth is not sure may show the side of that: such texels become part of the
+ * hole. */
+static void widen_holes(struct composite *c)
+{
+    struct bake *b = c->b;
+    const int width = c->t->raster.width, height = c->t->raster.height;
+    for (size_t i = 0; i < texels_of(c->t); i++) c->unseen[i] = is_hole(b, c->t->first + i);
+    for (int y = 0; y < height; y++)
+        for (int x = 0; x < width; x++) {
+            const size_t texel = c->t->first + (size_t)y * (size_t)width + (size_t)x;
+            if (!is_warped(b, texel) || b->lists[b->list[texel]][0].state == SOURCE_CLEAN) continue;
+            bool near = false;
+            for (int v = y > SIDE ? y - SIDE : 0; v <= y + SIDE && v < height && !near; v++) {
+                const int from = x > SIDE ? x - SIDE : 0, to = x + SIDE < width ? x + SIDE : width - 1;
+                near = memchr(c->unseen + (size_t)v * (size_t)width + (size_t)from, 1, (size_t)(to - from + 1));
+            }
+            if (near) b->counts[b->list[texel]] = 0;
+        }
+}
+
 /* Roles, and the values of texels that views show. */
 static void set_seen(struct composite *c)
 {
@@ -297,6 +324,7 @@ static bool find_nearest_seen(struct composite *c)
 /* All texels together first, unseen ones smooth; then the unseen ones again, with texture, between fixed seen ones. */
 static enum status solve_tile(struct composite *c, struct bake_totals *totals, struct err *err)
 {
+    widen_holes(c);
     set_seen(c);
     find_nearest_seen(c);
     set_unseen(c, GRADIENT_FREE);

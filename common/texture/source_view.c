@@ -56,13 +56,16 @@ static enum status read_ids(struct view_ids *ids, const char *folder, const stru
     return err->status;
 }
 
+#define SIDES 4    /* times thing_margin, where depth is not sure */
+#define SURE  0.1f /* clutter of a pixel up to which the depth itself says that the surface is there */
+
 /* Whether a pixel shows the surface that the model has there. */
 static uint8_t state_of(float alpha, float jump, float clutter, const struct texture_params *p)
 {
     if (!(alpha > 0.999f) || jump < (float)p->edge) return SOURCE_NONE;
     if (!(p->max_clutter < 1)) return SOURCE_CLEAN;
     if (clutter >= (float)p->max_clutter) return SOURCE_HIDDEN;
-    return clutter >= (float)p->min_clutter ? SOURCE_UNSURE : SOURCE_CLEAN;
+    return clutter >= (float)p->min_clutter ? SOURCE_UNSURE : clutter > SURE ? SOURCE_LIKELY : SOURCE_CLEAN;
 }
 
 static enum status level_init(struct source_level *l, int width, int height, struct err *err)
@@ -133,7 +136,7 @@ static void take_pixels(struct source_view *v, const float *const channel[VIEW_C
     for (size_t i = 0; i < pixels; i++) {
         v->own[i] = state_of(channel[VIEW_A][i], ids->jump[i], ids->clutter[i], params);
         const bool poor = channel[VIEW_CLIPPED][i] > 0 || channel[VIEW_SIGMA][i] > (float)params->max_noise;
-        v->state[i] = !poor ? v->own[i] : v->own[i] == SOURCE_CLEAN ? SOURCE_POOR : SOURCE_NONE;
+        v->state[i] = !poor ? v->own[i] : v->own[i] >= SOURCE_LIKELY ? SOURCE_POOR : SOURCE_NONE;
         const float alpha = channel[VIEW_A][i] > 0.999f;
         for (int c = 0; c < 3; c++) v->levels[0].rgba[4 * i + (size_t)c] = alpha * channel[c][i];
         v->levels[0].rgba[4 * i + 3] = alpha;
@@ -152,12 +155,13 @@ static enum status list_faces(struct source_view *v, struct err *err)
     return ST_OK;
 }
 
-/* Pixels that show a thing, or whose ray meets one, and those around them are hidden. */
+/* Pixels that show a thing, or whose ray meets one, and those around them are hidden; where depth is not sure, those in
+ * a wider rim: plain sides of furniture get the depth of the wall. */
 static enum status hide_things(struct source_view *v, const char *folder, const struct view *camera,
                                const struct texture_params *params, struct provenance *prov, struct err *err)
 {
     const size_t pixels = (size_t)camera->width * (size_t)camera->height;
-    const float margin = (float)(params->thing_margin * params->thing_margin);
+    const float margin = (float)params->thing_margin, wide = SIDES * margin;
     char path[FILE_PATH];
     struct thing_mask mask = {0};
     uint8_t *free_of = malloc(pixels + 1);
@@ -171,9 +175,11 @@ static enum status hide_things(struct source_view *v, const char *folder, const 
         distance_squared(squared, free_of, camera->width, camera->height, err);
     }
     for (size_t i = 0; !err->status && i < pixels; i++) {
-        if (squared[i] > margin) continue;
-        if (v->own[i] != SOURCE_NONE) v->own[i] = SOURCE_HIDDEN;
-        if (v->state[i] != SOURCE_NONE) v->state[i] = SOURCE_HIDDEN;
+        uint8_t *const states[] = {&v->own[i], &v->state[i]};
+        for (int k = 0; k < 2; k++) {
+            const float reach = *states[k] == SOURCE_CLEAN ? margin : wide;
+            if (*states[k] != SOURCE_NONE && squared[i] <= reach * reach) *states[k] = SOURCE_HIDDEN;
+        }
     }
     thing_mask_release(&mask);
     free(free_of);

@@ -18,6 +18,7 @@ enum source_state {
     SOURCE_HIDDEN, /* something stands in front */
     SOURCE_POOR,   /* clipped or too noisy: only if nothing better shows the place, such as a lamp */
     SOURCE_UNSURE, /* something may stand in front: other views decide */
+    SOURCE_LIKELY, /* nothing stands in front, by a depth that is not sure: other views may outvote it */
     SOURCE_CLEAN,
 };
 

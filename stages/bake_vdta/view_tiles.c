@@ -136,7 +136,7 @@ static void set_role(struct bake *b, const struct builder *w, size_t texel, size
 {
     b->role[texel] = TEXEL_WANTED;
     if (!visible || w->v->view.id[pixel] != (uint32_t)id || w->v->view.own[pixel] <= SOURCE_HIDDEN) return;
-    b->role[texel] = w->v->view.own[pixel] == SOURCE_CLEAN ? TEXEL_ORIGINAL : TEXEL_DOUBTED;
+    b->role[texel] = w->v->view.own[pixel] >= SOURCE_LIKELY ? TEXEL_ORIGINAL : TEXEL_DOUBTED;
     memcpy(b->rgb + 3 * texel, w->v->view.levels[0].rgba + 4 * pixel, 3 * sizeof *b->rgb);
     b->made[texel] = (uint32_t)ATLAS_VIEWS + (uint32_t)w->view;
 }

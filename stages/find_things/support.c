@@ -9,6 +9,7 @@
 #include "common/light/model_clearance.h"
 
 #define FLOOR_REACH 3.0 /* times that of walls */
+#define HANGING     3.0 /* times its height: what ends at the ceiling and is that far above the floor hangs there */
 #define TABLE_REACH 9.0 /* the same where nothing else supports a thing: legs are too thin to be seen */
 
 enum { SAMPLES = 2000 }; /* voxels of a thing that rays start from, about */
@@ -61,11 +62,14 @@ static void find_support(struct thing *t, uint32_t id, const struct thing_volume
     const int64_t every = t->voxels / SAMPLES + 1;
     for (int64_t i = 0; i < (int64_t)voxel_count(&v->grid); i++)
         if (v->id[i] == id && g.seen++ % every == 0) look_around(&g, m, thing_voxel_centre(&v->grid, i));
-    t->support = g.below <= FLOOR_REACH * reach && g.below <= FLOOR_REACH * g.beside ? THING_ON_FLOOR
-                 : g.beside <= reach && g.beside <= g.above                          ? THING_ON_WALL
-                 : g.above <= reach                                                  ? THING_ON_CEILING
-                 : g.below <= TABLE_REACH * reach                                    ? THING_ON_FLOOR
-                                                                                     : THING_ON_NONE;
+    const double height = t->high.z - t->low.z;
+    const bool hangs = g.above <= reach && g.below > HANGING * height;
+    t->support = hangs                                                                 ? THING_ON_CEILING
+                 : g.below <= FLOOR_REACH * reach && g.below <= FLOOR_REACH * g.beside ? THING_ON_FLOOR
+                 : g.beside <= reach && g.beside <= g.above                            ? THING_ON_WALL
+                 : g.above <= reach                                                    ? THING_ON_CEILING
+                 : g.below <= TABLE_REACH * reach                                      ? THING_ON_FLOOR
+                                                                                       : THING_ON_NONE;
 }
 
 void things_measure(struct thing *things, int count, const struct thing_volume *v, const struct model_rays *model,

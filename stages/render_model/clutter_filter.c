@@ -1,6 +1,9 @@
 /* clutter_filter.c - see clutter_filter.h. */
 #include "stages/render_model/clutter_filter.h"
 
+/* of the height: above it, what is no thing is part of a lamp, whose depth is never sure */
+#define CEILING 0.85
+
 bool clutter_filter_is_needed(const struct clutter_filter *f)
 {
     return f->only || f->volume || (f->map && f->map->zone_count);
@@ -11,5 +14,8 @@ bool clutter_filter_drops(const struct clutter_filter *f, struct vec3 p)
     const uint32_t id = f->volume ? thing_volume_at(f->volume, p) : 0;
     if (f->only) return id != f->only;
     if (id && f->fate[id] != THING_STAYS) return f->fate[id] == THING_IS_GONE;
-    return f->map && f->map->zone_count && texture_map_clears(f->map, p);
+    if (!f->map || !f->map->zone_count) return false;
+    if (f->volume && p.z > f->volume->grid.origin.z + CEILING * f->volume->grid.voxel * f->volume->grid.size[2])
+        return false;
+    return texture_map_clears(f->map, p);
 }

@@ -123,8 +123,8 @@ static enum status leave_cleared(uint8_t *same, uint8_t *gone, const struct room
         for (int x = 0; x < camera->width; x++) {
             const size_t i = (size_t)y * (size_t)camera->width + (size_t)x;
             const double z = depth.interior.z[i] * room->in.axes.scale;
-            const bool masked = mask.shows && filter.fate[mask.shows[i]] == THING_IS_GONE;
-            stays[i] = !masked &&
+            const enum thing_fate fate = mask.shows ? filter.fate[mask.shows[i]] : THING_STAYS;
+            stays[i] = fate != THING_IS_GONE &&
                        !(z > 0 && ids.clutter[i] > CLUTTER_UNSURE &&
                          clutter_filter_drops(&filter, view_unproject(camera, x + 0.5, y + 0.5, z))) &&
                        !meets_gone(&filter, camera, x + 0.5, y + 0.5, ids.z[i] * room->in.axes.scale);

@@ -219,7 +219,7 @@ static enum status list_points(struct placed_things *t, struct err *err)
     return ST_OK;
 }
 
-/* Things that zones clear. */
+/* Things that zones clear. Lamps and beams at the ceiling are the room's own. */
 static enum status apply_zones(struct placed_things *t, const struct texture_map *map, struct err *err)
 {
     const size_t things = (size_t)t->list.count + 1;
@@ -232,7 +232,9 @@ static enum status apply_zones(struct placed_things *t, const struct texture_map
         held[id] += texture_map_clears(map, thing_voxel_centre(&t->volume.grid, i));
     }
     for (size_t id = 1; id < things; id++)
-        if (held[id]) t->fate[id] = 2 * held[id] > all[id] ? THING_IS_GONE : THING_IS_KEPT;
+        if (held[id])
+            t->fate[id] = 2 * held[id] > all[id] && t->list.things[id - 1].support != THING_ON_CEILING ? THING_IS_GONE
+                                                                                                       : THING_IS_KEPT;
     free(held);
     return ST_OK;
 }
