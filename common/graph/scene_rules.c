@@ -129,6 +129,8 @@ void rule_needs_light_change(struct graph *g, const struct scene_facts *f, const
     rule_needs(g, PATH(g, AXES));
     rule_needs(g, PATH(g, ATLAS));
     rule_needs(g, PATH(g, OUTDOORS));
+    if (f->views.count) rule_needs(g, PATH(g, THINGS));
+    if (f->views.count) rule_needs(g, PATH(g, THING_VOLUME));
     if (!scene_lights(g, f)) return;
     rule_needs(g, scene_lights(g, f));
     rule_needs_references(g, f);
@@ -146,6 +148,7 @@ void rule_light_change(struct graph *g, const struct scene_facts *f, const char 
     rule_option(g, "--lights", scene_lights(g, f));
     if (scene_lights(g, f) && scene_has_references(g, f)) rule_option(g, "--references", FOLDER(g, LRI, .photo = ""));
     rule_option(g, "--objects", PATH(g, OBJECTS, .model = edited));
+    if (f->views.count) rule_option(g, "--things", FOLDER(g, THINGS));
     rule_option(g, "--scene", f->folder);
 }
 

@@ -3,6 +3,7 @@
 
 #include <inttypes.h>
 #include <limits.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -56,9 +57,11 @@ enum status thing_list_write(const struct thing_list *list, const char *path, co
     for (int i = 0; !err->status && i < list->count; i++) {
         const struct thing *t = &list->things[i];
         if (!textfile_quote(t->name, name, sizeof name, err) && !textfile_quote(t->view, view, sizeof view, err))
-            fprintf(f.fp, "thing %s %s %.9g %.9g %.9g %.9g %.9g %.9g %" PRId64 " %d %s %.9g %.9g %.9g %.9g\n", name,
-                    words[t->support], t->low.x, t->low.y, t->low.z, t->high.x, t->high.y, t->high.z, t->voxels,
-                    t->views, view, t->rect[0], t->rect[1], t->rect[2], t->rect[3]);
+            fprintf(f.fp,
+                    "thing %s %s %.9g %.9g %.9g %.9g %.9g %.9g %" PRId64 " %d %s %.9g %.9g %.9g %.9g %.9g %.9g %.9g\n",
+                    name, words[t->support], t->low.x, t->low.y, t->low.z, t->high.x, t->high.y, t->high.z, t->voxels,
+                    t->views, view, t->rect[0], t->rect[1], t->rect[2], t->rect[3], t->radiance[0], t->radiance[1],
+                    t->radiance[2]);
     }
     if (!err->status) outfile_commit(&f, err);
     outfile_discard(&f);
@@ -98,6 +101,8 @@ static enum status read_thing(struct thing *t, struct textfile *f, struct err *e
         if (textfile_double(f, "edge of the rectangle", &t->rect[i], err)) return err->status;
     if (!(t->rect[0] <= t->rect[2] && t->rect[1] <= t->rect[3]))
         return textfile_error(f, err, "a rectangle without size", "its left and upper edge, then right and lower");
+    for (int i = 0; i < 3; i++)
+        if (textfile_number(f, "mean radiance", 0, INFINITY, &t->radiance[i], err)) return err->status;
     return textfile_end(f, err);
 }
 

@@ -1,11 +1,12 @@
 /* thing_list.h - the things of a scene, furniture before its walls: out/SCENE/things/things.txt.
  *
  *   remodel-things 1
- *   thing NAME SUPPORT X0 Y0 Z0 X1 Y1 Z1 VOXELS VIEWS VIEW U0 V0 U1 V1
+ *   thing NAME SUPPORT X0 Y0 Z0 X1 Y1 Z1 VOXELS VIEWS VIEW U0 V0 U1 V1 R G B
  *
  * One line for each; its number in the other files is that of its line, from 1. SUPPORT: floor, wall, ceiling, or none.
  * X0 to Z1: the box around it, model frame. VOXELS: of its surfaces. VIEWS: how many show enough of it to count.
- * VIEW shows it best, in the rectangle U0 V0 U1 V1 (px); "" and a rectangle of no size: none shows it. */
+ * VIEW shows it best, in the rectangle U0 V0 U1 V1 (px); "" and a rectangle of no size: none shows it.
+ * R G B: the mean radiance of its pixels in all views. */
 #ifndef REMODEL_THING_LIST_H
 #define REMODEL_THING_LIST_H
 
@@ -25,6 +26,7 @@ struct thing {
     int views;      /* that show enough of it to count */
     char *view;     /* owned */
     double rect[4]; /* px of the view: left, top, right, bottom */
+    double radiance[3];
 };
 
 /* {0} is the empty state. */

@@ -18,6 +18,8 @@
         CLI_STR("references", &(files)->references, CLI_OPTIONAL,                                          \
                 "folder of the lighting reference images that openings name"),                             \
         CLI_STR("objects", &(files)->objects, CLI_OPTIONAL, "synthetic objects of the edit, objects.txt"), \
+        CLI_STR("things", &(files)->things, CLI_OPTIONAL,                                                  \
+                "folder of the scene's things: where the edit changes one, they throw shadows"),           \
         CLI_STR("scene", &(files)->scene, CLI_OPTIONAL, "folder of the objects' meshes")
 
 #endif

@@ -60,9 +60,10 @@ static enum status unite_emitters(struct light_change *c, struct err *err)
 static enum status read_fields(struct light_change *c, const struct light_change_files *files, struct provenance *prov,
                                struct err *err)
 {
-    const struct model_field_files before = {files->base, files->vita, files->outdoors, files->lights, NULL};
+    const struct model_field_files before = {files->base, files->vita, files->outdoors, files->lights,
+                                             c->things.before.count ? &c->old_things : NULL};
     const struct model_field_files after = {files->edited, files->edited_vita ? files->edited_vita : files->vita,
-                                            files->outdoors, files->lights, c->objects.count ? &c->surfaces : NULL};
+                                            files->outdoors, files->lights, c->added.count ? &c->surfaces : NULL};
     if (model_field_read(&c->before, &before, prov, err) || model_field_read(&c->after, &after, prov, err))
         return err->status;
     for (int i = 0; i < c->map.lamp_count; i++)
@@ -79,10 +80,34 @@ static enum status read_objects(struct light_change *c, const struct light_chang
 {
     struct light_objects *o = &c->objects;
     if (light_objects_read(o, files->objects, files->scene, ELEMENT, prov, err)) return err->status;
-    c->surfaces =
-        (struct field_surfaces){{(const struct vec3(*)[3])o->triangles, o->count}, (const struct rgb(*)[2])o->radiance};
     if (!o->count || !files->object_light) return ST_OK;
     return light_objects_read_light(o, files->object_light, prov, err);
+}
+
+static struct field_surfaces surfaces_of(const struct thing_surfaces *s)
+{
+    return (struct field_surfaces){{(const struct vec3(*)[3])s->triangles, s->count},
+                                   (const struct rgb(*)[2])s->radiance};
+}
+
+/* The surfaces of both fields. */
+static enum status add_surfaces(struct light_change *c, struct err *err)
+{
+    const struct light_objects *o = &c->objects;
+    const struct thing_surfaces *t = &c->things.after;
+    struct thing_surfaces *all = &c->added;
+    const size_t count = (size_t)o->count + (size_t)t->count;
+    all->triangles = malloc((count + 1) * sizeof *all->triangles);
+    all->radiance = malloc((count + 1) * sizeof *all->radiance);
+    if (!all->triangles || !all->radiance) return err_nomem(err, "triangles", count * sizeof *all->triangles);
+    if (o->count) memcpy(all->triangles, o->triangles, (size_t)o->count * sizeof *all->triangles);
+    if (o->count) memcpy(all->radiance, o->radiance, (size_t)o->count * sizeof *all->radiance);
+    if (t->count) memcpy(all->triangles + o->count, t->triangles, (size_t)t->count * sizeof *all->triangles);
+    if (t->count) memcpy(all->radiance + o->count, t->radiance, (size_t)t->count * sizeof *all->radiance);
+    all->count = (int)count;
+    c->surfaces = surfaces_of(all);
+    c->old_things = surfaces_of(&c->things.before);
+    return ST_OK;
 }
 
 enum status light_change_read(struct light_change *c, const struct light_change_files *files, struct provenance *prov,
@@ -90,7 +115,9 @@ enum status light_change_read(struct light_change *c, const struct light_change_
 {
     *c = (struct light_change){0};
     if (!model_axes_read(&c->axes, files->axes, prov, err) && !texture_map_read(&c->map, files->map, prov, err) &&
-        !read_objects(c, files, prov, err) && !read_fields(c, files, prov, err) &&
+        !read_objects(c, files, prov, err) &&
+        !light_things_read(&c->things, files->things, &c->map, files->base, files->edited, prov, err) &&
+        !add_surfaces(c, err) && !read_fields(c, files, prov, err) &&
         !face_areas_make(&c->old, &c->before.model.mesh, err))
         unite_emitters(c, err);
     c->inset = INSET * model_rays_size(&c->before.model);
@@ -104,6 +131,9 @@ void light_change_release(struct light_change *c)
     model_field_release(&c->after);
     texture_map_release(&c->map);
     light_objects_release(&c->objects);
+    light_things_release(&c->things);
+    free(c->added.triangles);
+    free(c->added.radiance);
     face_areas_release(&c->old);
     free(c->emitters);
     *c = (struct light_change){0};

@@ -10,6 +10,7 @@
 #include "common/model/model_axes.h"
 #include "common/relight/face_areas.h"
 #include "common/relight/light_objects.h"
+#include "common/relight/light_things.h"
 #include "common/texture/texture_map.h"
 
 struct light_change_files {
@@ -22,6 +23,7 @@ struct light_change_files {
     const char *references;   /* folder of the reference images that openings name; NULL: none */
     const char *objects;      /* objects.txt of the edit; NULL: none */
     const char *scene;        /* scenes/NAME, the folder of the objects' meshes */
+    const char *things;       /* folder of the scene's things; NULL: furniture throws no shadows */
     const char *object_light; /* their light, as update_vita wrote it; NULL: not known yet */
 };
 
@@ -31,8 +33,10 @@ struct light_change {
     struct texture_map map;
     struct model_axes axes;
     struct light_objects objects;
-    struct field_surfaces surfaces; /* the objects, in `after` */
-    struct face_areas old;          /* of the unedited model */
+    struct light_things things;
+    struct thing_surfaces added;                /* the objects, then the things of `after` */
+    struct field_surfaces old_things, surfaces; /* in `before`: the things; in `after`: what was added */
+    struct face_areas old;                      /* of the unedited model */
     struct emitter *emitters;
     double inset; /* how far from the rim of an old area the light on a new one is taken, model units */
 };

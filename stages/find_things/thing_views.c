@@ -130,6 +130,17 @@ static double score_of(const struct patch *p, const struct view *view)
     return (double)p->pixels / ((double)view->width * view->height) * (cut ? CUT : 1);
 }
 
+void thing_sights_add_radiance(struct thing_sight *sights, const uint32_t *mask, const struct image *photo)
+{
+    for (size_t i = 0; i < (size_t)photo->width * (size_t)photo->height; i++) {
+        const float *rgba = photo->data + 4 * i;
+        if (!mask[i] || !(rgba[3] > 0)) continue;
+        struct thing_sight *s = &sights[mask[i] - 1];
+        for (int c = 0; c < 3; c++) s->sum[c] += (double)rgba[c];
+        s->pixels++;
+    }
+}
+
 enum status thing_sights_add(struct thing_sight *sights, int count, const uint32_t *mask, const struct view *view,
                              int view_index, struct err *err)
 {

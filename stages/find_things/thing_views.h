@@ -3,6 +3,7 @@
 #define REMODEL_THING_VIEWS_H
 
 #include "common/capture/camera_set.h"
+#include "common/image/image.h"
 #include "common/layers/layered_depth.h"
 #include "common/model/thing_list.h"
 #include "common/model/thing_mask.h"
@@ -32,9 +33,13 @@ struct thing_sight {
     int views;           /* that show enough of it */
     int best;            /* index of the view that shows it best */
     double score;        /* of that view */
+    double sum[3];       /* of the radiance of its pixels */
+    int64_t pixels;      /* whose radiance is in the sum */
     int low[2], high[2]; /* px: its rectangle there */
 };
 
+/* Adds the radiance of a view's pixels to the sights. photo: of the view. */
+void thing_sights_add_radiance(struct thing_sight *sights, const uint32_t *mask, const struct image *photo);
 /* Adds a view's mask to the sights, one for each of `count` things. ST_NOMEM. */
 enum status thing_sights_add(struct thing_sight *sights, int count, const uint32_t *mask, const struct view *view,
                              int view_index, struct err *err);

@@ -315,6 +315,7 @@ static enum status see_view(struct finder *f, int i, struct err *err)
     const size_t pixels = (size_t)view->width * (size_t)view->height;
     struct view_data d = {0};
     struct thing_mask mask = {0};
+    struct image photo = {0};
     char path[FILE_PATH];
     float *nearest = malloc((pixels + 1) * sizeof *nearest);
     if (!nearest) err_nomem(err, "the depth of a view", pixels * sizeof *nearest);
@@ -325,9 +326,12 @@ static enum status see_view(struct finder *f, int i, struct err *err)
         if (!product_path_in(path, job->out, PRODUCT_THING_MASK, &(struct product_key){.view = view->name}, err) &&
             !thing_mask_write(&mask, view, path, job->prov, err))
             thing_sights_add(f->sights, f->count, mask.shows, view, i, err);
+        if (!err->status && !view_image_read(&photo, job->views, view, job->prov, err))
+            thing_sights_add_radiance(f->sights, mask.shows, &photo);
     }
     view_data_release(&d);
     thing_mask_release(&mask);
+    image_release(&photo);
     free(nearest);
     return err->status;
 }
@@ -362,6 +366,7 @@ static enum status describe(struct finder *f, struct err *err)
         const struct thing_sight *s = &f->sights[k];
         struct thing *t = &f->things[k];
         t->views = s->views;
+        for (int c = 0; c < 3; c++) t->radiance[c] = s->pixels ? fmax(0, s->sum[c] / (double)s->pixels) : 0;
         if (!(t->view = strdup(s->score > 0 ? set->views[s->best].name : ""))) err_nomem(err, "a name", 1);
         for (int e = 0; e < 2; e++) {
             t->rect[e] = s->low[e];

@@ -77,10 +77,10 @@ void pixels_release(struct pixels *p)
 
 /* ------------------------------------------------------------------------------------------------------------- rays */
 
-/* What a ray meets: the first object and the first face behind it. */
+/* What a ray meets: the first object, the first piece of furniture that the field holds, and the first face behind. */
 struct met {
-    bool object, face;
-    struct ray_hit on_object, on_face;
+    bool object, thing, face;
+    struct ray_hit on_object, on_thing, on_face;
 };
 
 static struct met meet(const struct find_job *j, struct vec3 direction)
@@ -97,8 +97,11 @@ static struct met meet(const struct find_job *j, struct vec3 direction)
             met.on_face = hit;
             break;
         }
-        if (!met.object) met.on_object = hit;
-        met.object = true;
+        const bool is_object = (int)hit.id - m->mesh.face_count < j->c->objects.count; /* the others are furniture */
+        if (is_object && !met.object) met.on_object = hit;
+        if (!is_object && !met.thing) met.on_thing = hit;
+        met.object |= is_object;
+        met.thing |= !is_object;
         from = vec3_add(hit.point, vec3_scale(direction, 2 * m->rays.epsilon));
         passed = hit.t + 2 * m->rays.epsilon;
     }
@@ -174,6 +177,22 @@ static struct vec3 segment_normal(const struct find_job *j, const struct depth_s
     return vec3_scale(vec3_normalize(mat3_apply(mat3_transpose(v->cam_from_world), n)), -1);
 }
 
+/* Furniture that the picture shows and the field holds: moved, or uncovered by the edit. False: neither. */
+static bool set_thing(struct find_job *j, size_t i, const struct met *met)
+{
+    struct vec3 was;
+    if (!met->thing || j->picture->made[i] != MADE_CLUTTER) return false;
+    const struct ray_hit *hit = &met->on_thing;
+    const struct gather_point p = {hit->point, hit->normal};
+    j->p->before[i] = j->p->after[i] = p;
+    j->p->kind[i] = PIXEL_CLUTTER;
+    const struct placed_thing *moved = light_things_moved(&was, &j->c->things, hit->point);
+    if (!moved) return true;
+    j->p->before[i].at = was;
+    j->p->before[i].normal = mat3_apply(mat3_transpose(moved->turn), p.normal);
+    return true;
+}
+
 /* through: no face lies behind the pixel; the sky has no texture and takes any depth, so the depth must be sure. */
 static bool set_clutter(struct find_job *j, size_t i, int x, int y, bool through)
 {
@@ -237,7 +256,7 @@ static void find_row(struct find_job *j, int y)
             j->p->kind[i] = PIXEL_KEPT;
         else if (lamp) /* before furniture: depth takes a lamp that hangs for some */
             set_lamp(j, i, lamp, vec3_add(j->centre, vec3_scale(d, at)));
-        else if (set_clutter(j, i, x, y, !met.face))
+        else if (set_thing(j, i, &met) || set_clutter(j, i, x, y, !met.face))
             nearest = vec3_length(vec3_sub(j->p->after[i].at, j->centre));
         else if (met.face && met.on_face.front && j->picture->made[i] != MADE_OUTDOORS)
             set_face(j, i, &met.on_face);

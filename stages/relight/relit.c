@@ -16,6 +16,9 @@
  * The light of the atlas. For films the quotient is that of the texels of both atlases (update_vita): no ray is traced,
  * and a place looks alike in all frames.
  *
+ * What furniture hid was filled from around it, in the light of there (update_vita): such texels take the quotient of the
+ * atlas, too, where the edit changes furniture.
+ *
  * Furniture that no depth tells (free cameras) gets the quotient of the shell behind it. */
 #include "stages/relight/relit.h"
 
@@ -216,20 +219,6 @@ static void apply_lamp(struct apply_job *j, size_t i)
         set(pixel, rgb_scale(j->r->after[i].value, OFF_ALBEDO / PI));
 }
 
-static void apply_some(void *ctx, size_t begin, size_t end, int thread)
-{
-    struct apply_job *j = ctx;
-    (void)thread;
-    for (size_t i = begin; i < end; i++) {
-        set_quotient(j->r, i, rgb_grey(1), RELIT_NONE);
-        if (j->picture->made[i] == MADE_NOTHING || j->p->kind[i] == PIXEL_KEPT) continue;
-        if (j->p->kind[i] == PIXEL_LAMP)
-            apply_lamp(j, i);
-        else
-            apply_surface(j, i);
-    }
-}
-
 /* -------------------------------------------------------------------------------------------------------- the atlas */
 
 static double texel_quotient(double before, double after) { return before > 0 ? after / before : 1; }
@@ -255,6 +244,22 @@ static void apply_atlas_at(struct apply_job *j, size_t i)
                  texel_quotient(was.radiance.b, now.radiance.b));
     set_quotient(j->r, i, q, RELIT_SURE);
     set(pixel, rgb_multiply(get(pixel), q));
+}
+
+static void apply_some(void *ctx, size_t begin, size_t end, int thread)
+{
+    struct apply_job *j = ctx;
+    (void)thread;
+    for (size_t i = begin; i < end; i++) {
+        set_quotient(j->r, i, rgb_grey(1), RELIT_NONE);
+        if (j->picture->made[i] == MADE_NOTHING || j->p->kind[i] == PIXEL_KEPT) continue;
+        if (j->p->kind[i] == PIXEL_LAMP)
+            apply_lamp(j, i);
+        else if (j->c->things.changes && j->picture->made[i] == MADE_SYNTHESISED)
+            apply_atlas_at(j, i);
+        else
+            apply_surface(j, i);
+    }
 }
 
 static void apply_atlas(void *ctx, size_t begin, size_t end, int thread)

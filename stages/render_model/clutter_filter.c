@@ -4,6 +4,13 @@
 /* of the height: above it, what is no thing is part of a lamp, whose depth is never sure */
 #define CEILING 0.85
 
+struct clutter_filter clutter_filter_of(const struct placed_things *t, const struct texture_map *map)
+{
+    bool matters = !map;
+    for (int i = 0; t->fate && i <= t->list.count; i++) matters |= t->fate[i] != THING_STAYS;
+    return (struct clutter_filter){.map = map, .volume = t->fate && matters ? &t->volume : NULL, .fate = t->fate};
+}
+
 bool clutter_filter_is_needed(const struct clutter_filter *f)
 {
     return f->only || f->volume || (f->map && f->map->zone_count);

@@ -3,17 +3,7 @@
 #ifndef REMODEL_CLUTTER_FILTER_H
 #define REMODEL_CLUTTER_FILTER_H
 
-#include "common/model/thing_volume.h"
-#include "common/texture/texture_map.h"
-
-enum thing_fate { THING_STAYS, THING_IS_KEPT, THING_IS_GONE }; /* kept: also in a zone that is cleared */
-
-/* Places on the surface of a thing, spread over it. */
-enum { THING_POINTS = 64 };
-struct thing_points {
-    struct vec3 at[THING_POINTS]; /* model frame */
-    int count;
-};
+#include "common/relight/placed_things.h"
 
 /* {0} lets all clutter pass. */
 struct clutter_filter {
@@ -24,6 +14,8 @@ struct clutter_filter {
     const uint8_t *gone;               /* of each pixel of the picture: nothing passes; NULL: of none */
 };
 
+/* What the photographs' own places show of the clutter. map: NULL: for one thing alone, which the caller sets. */
+struct clutter_filter clutter_filter_of(const struct placed_things *t, const struct texture_map *map);
 /* Whether anything can be dropped. */
 bool clutter_filter_is_needed(const struct clutter_filter *f);
 /* Whether clutter at a point of the unedited model's frame is left out. */

@@ -113,7 +113,7 @@ enum status room_draw(struct model_picture *picture, struct room *room, const st
     const char *photos[2];
     photos_of(photos, room, pair);
     const struct outdoors *outdoors = room->files.outdoors ? &room->outdoors : NULL;
-    struct clutter_filter filter = placed_things_filter(&room->things, shell_map(room->shell));
+    struct clutter_filter filter = clutter_filter_of(&room->things, shell_map(room->shell));
     filter.gone = gone;
     if (!shell_draw(picture, room->shell, camera, photos, pair->t, outdoors, err) && room->clutter &&
         !make_front(room, (size_t)camera->width * (size_t)camera->height, err))
@@ -125,7 +125,7 @@ enum status room_draw_things(struct model_picture *picture, struct room *room, c
                              struct provenance *prov, struct err *err)
 {
     const struct placed_things *t = &room->things;
-    struct clutter_filter filter = placed_things_filter(t, NULL);
+    struct clutter_filter filter = clutter_filter_of(t, NULL);
     const struct thing_pixels pixels = {.shown = same};
     for (int i = 0; !err->status && room->clutter && i < t->placed_count; i++) {
         const struct placed_thing *p = &t->placed[i];
@@ -157,7 +157,7 @@ enum status room_draw_uncovered(struct model_picture *picture, struct room *room
                                 const uint8_t *stays, struct provenance *prov, struct err *err)
 {
     const struct placed_things *t = &room->things;
-    struct clutter_filter filter = placed_things_filter(t, NULL);
+    struct clutter_filter filter = clutter_filter_of(t, NULL);
     const struct thing_pixels pixels = {.stays = stays};
     for (int i = 0; !err->status && room->clutter && i < t->list.count; i++) {
         const struct thing *thing = &t->list.things[i];

@@ -4,8 +4,8 @@
 
 #include "common/light/model_rays.h"
 #include "common/model/scene_inputs.h"
+#include "common/relight/placed_things.h"
 #include "stages/render_model/clutter.h"
-#include "stages/render_model/placed_things.h"
 #include "stages/render_model/render_params.h"
 #include "stages/render_model/shell.h"
 

@@ -100,7 +100,7 @@ static enum status leave_cleared(uint8_t *same, uint8_t *gone, const struct room
                                  struct provenance *prov, struct err *err)
 {
     const struct view *camera = &room->cameras[view], *world = &room->in.set.views[view];
-    const struct clutter_filter filter = placed_things_filter(&room->things, shell_map(room->shell));
+    const struct clutter_filter filter = clutter_filter_of(&room->things, shell_map(room->shell));
     const size_t pixels = (size_t)camera->width * (size_t)camera->height;
     const struct product_key key = {.view = world->name};
     char path[FILE_PATH];
@@ -151,7 +151,7 @@ enum status own_pixels_find(uint8_t *same, uint8_t *gone, const struct room *roo
         compare(same, room, &base, &edited, camera);
         grow(same, camera, room->params->margin, err);
     }
-    const struct clutter_filter filter = placed_things_filter(&room->things, shell_map(room->shell));
+    const struct clutter_filter filter = clutter_filter_of(&room->things, shell_map(room->shell));
     if (!err->status && clutter_filter_is_needed(&filter) && room->files.depth && room->files.ids)
         leave_cleared(same, gone, room, view, prov, err);
     traced_release(&base);

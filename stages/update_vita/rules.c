@@ -3,7 +3,7 @@
 
 RULES(update_vita)
 {
-    graph_step(g, "relit-vita", STEP_ONE, "vita outdoors");
+    graph_step(g, "relit-vita", STEP_ONE, "vita outdoors things");
     graph_goal(g, "relit-vita", NULL);
     for (int i = 0; f->has_model && i < f->drawn_edits.count; i++) {
         const char *edit = f->drawn_edits.names[i];

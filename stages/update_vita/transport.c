@@ -126,6 +126,10 @@ static void add_face(struct tally *l, const struct transport *t, const struct li
     struct net_weights w;
     if (seen->face >= faces) {
         const int k = (seen->face - faces) / 2, side = (seen->face - faces) % 2;
+        if (k >= c->objects.count) { /* furniture: its radiance is given */
+            *fixed = rgb_add(*fixed, seen->radiance);
+            return;
+        }
         const int element = c->objects.element[k][side];
         const struct rgb albedo = c->objects.list.items[c->objects.object[k]].brdf.albedo;
         add_entry(l, 2 * (t->nets->sample_count + element) + 1, albedo, 1 / PI);
@@ -247,6 +251,54 @@ static void trace_some(void *ctx, size_t begin, size_t end, int thread)
     if (j->done) j->done(j->done_ctx, (int64_t)(end - begin));
 }
 
+/* ------------------------------------------------------------------------------------------------------------ holes */
+
+enum { SWEEPS = 300 };
+
+/* Whether the bake filled the place from around it, because furniture hid it. */
+static bool is_hole(const struct transport *t, int i)
+{
+    const struct light_place *p = &t->samples[i].place;
+    return p->kind == LIGHT_PLACE_TEXTURE && p->source == LIGHT_SYNTHESISED;
+}
+
+/* One sweep over a face: samples in holes become the mean of those beside them. */
+static void smooth_holes(struct transport *t, const struct face_net *net, double (*sums)[4])
+{
+    memset(sums, 0, (size_t)net->count * sizeof *sums);
+    for (int i = 0; i < net->triangle_count; i++)
+        for (int k = 0; k < 3; k++)
+            for (int o = 1; o < 3; o++) {
+                const int to = net->triangles[i][k], from = net->triangles[i][(k + o) % 3];
+                const struct rgb e = t->rows[net->samples[from]].before;
+                const double dx = net->at[to][0] - net->at[from][0], dy = net->at[to][1] - net->at[from][1];
+                const double weight = 1 / fmax(sqrt(dx * dx + dy * dy), 1e-9);
+                sums[to][0] += weight * e.r, sums[to][1] += weight * e.g, sums[to][2] += weight * e.b;
+                sums[to][3] += weight;
+            }
+    for (int i = 0; i < net->count; i++)
+        if (is_hole(t, net->samples[i]) && sums[i][3] > 0)
+            t->rows[net->samples[i]].before =
+                rgb_make(sums[i][0] / sums[i][3], sums[i][1] / sums[i][3], sums[i][2] / sums[i][3]);
+}
+
+/* Where furniture hid a face, the bake continued the texture from around the hole, and with it the light of there: the
+ * irradiance before the edit is continued alike. */
+static enum status continue_into_holes(struct transport *t, struct err *err)
+{
+    for (int f = 0; f < t->nets->mesh->face_count; f++) {
+        const struct face_net *net = &t->nets->nets[f];
+        int holes = 0;
+        for (int i = 0; i < net->count; i++) holes += is_hole(t, net->samples[i]);
+        if (!holes || holes == net->count) continue;
+        double(*sums)[4] = malloc((size_t)net->count * sizeof *sums);
+        if (!sums) return err_nomem(err, "samples", (size_t)net->count * sizeof *sums);
+        for (int k = 0; k < SWEEPS; k++) smooth_holes(t, net, sums);
+        free(sums);
+    }
+    return ST_OK;
+}
+
 enum status transport_trace(struct transport *t, int first, int rays, void (*done)(void *ctx, int64_t samples),
                             void *done_ctx, struct err *err)
 {
@@ -269,7 +321,7 @@ enum status transport_trace(struct transport *t, int first, int rays, void (*don
         free(j.tallies[k].is_touched);
     }
     free(j.tallies);
-    return err->status;
+    return err->status || !t->change->things.changes ? err->status : continue_into_holes(t, err);
 }
 
 struct rgb transport_gather(const struct transport_row *row, const struct rgb *values)

@@ -1,5 +1,5 @@
 /* plan_things.c - statements about things, furniture that the photographs show. Only their names are known here; where
- * they are and whether they fit is found when pictures are drawn (stages/render_model/placed_things.c). */
+ * they are and whether they fit is found when pictures are drawn (common/relight/placed_things.c). */
 #include "stages/build_model/plan/plan_things.h"
 
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 /* placed_things.c - which things an edit takes from their places, where it puts them, and what does not fit there. */
-#include "stages/render_model/placed_things.h"
+#include "common/relight/placed_things.h"
 
 #include "tests/unit/box_solids.h"
 
@@ -121,7 +121,7 @@ static void an_edit_without_things_reads_nothing(void **state)
     (void)state;
     for (int k = 0; k < 2; k++) {
         assert_ok(placed_things_read(&t, NULL, k ? &map : NULL, NULL, NULL, NULL, &err), err);
-        const struct clutter_filter filter = placed_things_filter(&t, k ? &map : NULL);
+        const struct clutter_filter filter = clutter_filter_of(&t, k ? &map : NULL);
         assert_false(clutter_filter_is_needed(&filter));
         assert_false(clutter_filter_drops(&filter, in_voxel(SOFA)));
         placed_things_release(&t);
@@ -159,14 +159,14 @@ static void a_filter_drops_what_is_gone_and_what_zones_clear(void **state)
     struct texture_zone zone = {.low = -3, .high = 3, .corners = square, .corner_count = 4};
     const struct texture_map map = {.zones = &zone, .zone_count = 1};
     struct placed_things t = read_in(edits, 2, plain, 2);
-    struct clutter_filter filter = placed_things_filter(&t, NULL);
+    struct clutter_filter filter = clutter_filter_of(&t, NULL);
     const struct vec3 of_none = vec3_make(1, 1, 1), outside = vec3_make(-9, 0, 0);
     (void)state;
     assert_true(clutter_filter_is_needed(&filter));
     assert_true(clutter_filter_drops(&filter, in_voxel(SOFA)));
     assert_false(clutter_filter_drops(&filter, in_voxel(PICTURE)) || clutter_filter_drops(&filter, in_voxel(LAMP)));
     assert_false(clutter_filter_drops(&filter, of_none) || clutter_filter_drops(&filter, outside));
-    filter = placed_things_filter(&t, &map);
+    filter = clutter_filter_of(&t, &map);
     assert_true(clutter_filter_drops(&filter, in_voxel(SOFA)) && clutter_filter_drops(&filter, in_voxel(LAMP)));
     assert_true(clutter_filter_drops(&filter, of_none));
     assert_false(clutter_filter_drops(&filter, in_voxel(PICTURE)) || clutter_filter_drops(&filter, outside));
@@ -212,7 +212,7 @@ static void zones_alone_need_a_filter_too(void **state)
     struct texture_map map = {.zones = &zone};
     struct placed_things none = {0};
     (void)state;
-    struct clutter_filter filter = placed_things_filter(&none, &map);
+    struct clutter_filter filter = clutter_filter_of(&none, &map);
     assert_false(clutter_filter_is_needed(&filter));
     map.zone_count = 1;
     assert_true(clutter_filter_is_needed(&filter));

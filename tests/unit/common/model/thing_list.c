@@ -4,14 +4,14 @@
 #include "tests/unit/scratch.h"
 
 #define HEAD "remodel-things 1\n"
-#define SOFA "thing sofa floor 0 0.5 0 2 1.25 0.75 3100 7 v03 10 20.5 300 200\n"
+#define SOFA "thing sofa floor 0 0.5 0 2 1.25 0.75 3100 7 v03 10 20.5 300 200 0.5 0.25 2\n"
 
 static void what_is_read_is_written_again(void **state)
 {
     (void)state;
-    static const char text[] = HEAD SOFA "thing \"old lamp\" ceiling -1 -1 2 -0.5 -0.5 2.5 100 1 \"v 04\" 0 0 1 1\n"
-                                         "thing shelf wall 1e-05 0 0 1 1 1 5000000000 2 v05 0 0 1 1\n"
-                                         "thing cloud none 0 0 0 1 1 1 1 1 v05 -1.5 0 1 1\n";
+    static const char text[] = HEAD SOFA "thing \"old lamp\" ceiling -1 -1 2 -0.5 -0.5 2.5 100 1 \"v 04\" 0 0 1 1 0 1e-05 3\n"
+                                         "thing shelf wall 1e-05 0 0 1 1 1 5000000000 2 v05 0 0 1 1 0 1e-05 3\n"
+                                         "thing cloud none 0 0 0 1 1 1 1 1 v05 -1.5 0 1 1 1 1 1\n";
     struct thing_list list;
     struct provenance prov = {0};
     struct err err = ERR_INIT;
@@ -24,6 +24,7 @@ static void what_is_read_is_written_again(void **state)
     assert_true(t->high.x == 2 && t->high.y == 1.25 && t->high.z == 0.75);
     assert_true(t->voxels == 3100 && t->views == 7);
     assert_true(t->rect[0] == 10 && t->rect[1] == 20.5 && t->rect[2] == 300 && t->rect[3] == 200);
+    assert_true(t->radiance[0] == 0.5 && t->radiance[1] == 0.25 && t->radiance[2] == 2);
     for (int i = 0; i < 4; i++)
         assert_int_equal(list.things[i].support,
                          ((int[]){THING_ON_FLOOR, THING_ON_CEILING, THING_ON_WALL, THING_ON_NONE})[i]);
@@ -96,6 +97,7 @@ static void damaged_lines_are_refused(void **state)
         {HEAD "thing sofa floor 0 0 0 1 1 1 1.5 1 v 0 0 1 1\n", "things.txt:2: found \"1.5\", wanted voxels"},
         {HEAD "thing sofa floor 0 0 0 1 1 1 1 -1 v 0 0 1 1\n", "things.txt:2: found \"-1\", wanted views"},
         {HEAD "thing sofa floor 0 0 0 1 1 1 1 1 v 3 0 1 1\n", "things.txt:2: found \"a rectangle without size\""},
+        {HEAD "thing sofa floor 0 0 0 1 1 1 1 1 v 0 0 1 1 1 -1 1\n", "things.txt:2: found \"-1\", wanted mean radiance"},
         {HEAD "thing sofa floor 0 0 0 1 1 1 1 3000000000 v 0 0 1 1\n",
          "things.txt:2: found \"3000000000\", wanted views"},
         {HEAD "thing sofa floor 0 0 0 1 1 1 1 1\n", "things.txt:2: found the end of the line, wanted view"},

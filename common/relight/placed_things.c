@@ -4,7 +4,7 @@
  *
  * A thing is rigid and its support stays what it is: what stood on the floor must stand on the floor again, what hung
  * on a wall must have a wall as near. Only its box is tested, shrunk a little, since depth at outlines is off. */
-#include "stages/render_model/placed_things.h"
+#include "common/relight/placed_things.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -32,14 +32,7 @@ void placed_things_release(struct placed_things *t)
     *t = (struct placed_things){0};
 }
 
-struct clutter_filter placed_things_filter(const struct placed_things *t, const struct texture_map *map)
-{
-    bool matters = !map; /* then the caller asks for one thing alone */
-    for (int i = 0; t->fate && i <= t->list.count; i++) matters |= t->fate[i] != THING_STAYS;
-    return (struct clutter_filter){.map = map, .volume = t->fate && matters ? &t->volume : NULL, .fate = t->fate};
-}
-
-static struct vec3 place(const struct placed_thing *p, struct vec3 at)
+struct vec3 placed_thing_place(const struct placed_thing *p, struct vec3 at)
 {
     return vec3_add(mat3_apply(p->turn, at), p->shift);
 }
@@ -51,6 +44,11 @@ struct view placed_thing_camera(const struct placed_thing *p, const struct view 
     v.center = mat3_apply(mat3_transpose(p->turn), vec3_sub(camera->center, p->shift));
     v.translation = vec3_scale(mat3_apply(v.cam_from_world, v.center), -1);
     return v;
+}
+
+struct vec3 placed_thing_origin(const struct placed_thing *p, struct vec3 at)
+{
+    return mat3_apply(mat3_transpose(p->turn), vec3_sub(at, p->shift));
 }
 
 /* ---------------------------------------------------------------------------------------------------------- checks */
@@ -96,7 +94,7 @@ static enum status check_walls(const struct texture_thing *edit, const struct th
     for (int i = 0; i < nx * ny * nz; i++) {
         const double x = 2.0 * (i % nx) / (nx - 1) - 1, y = 2.0 * (i / nx % ny) / (ny - 1) - 1,
                      z = 2.0 * (i / nx / ny) / (nz - 1) - 1;
-        const struct vec3 at = place(p, box_point(t, SHRUNK * x, SHRUNK * y, SHRUNK * z));
+        const struct vec3 at = placed_thing_place(p, box_point(t, SHRUNK * x, SHRUNK * y, SHRUNK * z));
         if (model_rays_inside(m, at, 0)) deepest = fmax(deepest, depth_in(m, at));
     }
     if (deepest < 0) return ST_OK;
@@ -129,7 +127,7 @@ static enum status check_support(const struct texture_thing *edit, const struct 
     struct vec3 direction, from;
     if (t->support == THING_ON_NONE) return ST_OK;
     const double was = support_gap(&direction, &from, t, before);
-    const double is = signed_gap(after, place(p, from), mat3_apply(p->turn, direction));
+    const double is = signed_gap(after, placed_thing_place(p, from), mat3_apply(p->turn, direction));
     if (!isfinite(was) || fabs(is - was) <= OFF_SIDE * height) return ST_OK;
     const char *support = thing_support_word(t->support);
     if (!isfinite(is))

@@ -4,7 +4,17 @@
 
 #include "common/light/model_rays.h"
 #include "common/model/thing_list.h"
-#include "stages/render_model/clutter_filter.h"
+#include "common/model/thing_volume.h"
+#include "common/texture/texture_map.h"
+
+enum thing_fate { THING_STAYS, THING_IS_KEPT, THING_IS_GONE }; /* kept: also in a zone that is cleared */
+
+/* Places on the surface of a thing, spread over it. */
+enum { THING_POINTS = 64 };
+struct thing_points {
+    struct vec3 at[THING_POINTS]; /* model frame */
+    int count;
+};
 
 /* A thing at a place of its own: the point p of the photographs' room stands at turn p + shift. */
 struct placed_thing {
@@ -32,8 +42,9 @@ enum status placed_things_read(struct placed_things *t, const char *folder, cons
                                struct err *err);
 void placed_things_release(struct placed_things *t);
 
-/* What the photographs' own places show of the clutter. */
-struct clutter_filter placed_things_filter(const struct placed_things *t, const struct texture_map *map);
+/* Where a placed thing has the point p of the photographs' room, and the other way. */
+struct vec3 placed_thing_place(const struct placed_thing *p, struct vec3 at);
+struct vec3 placed_thing_origin(const struct placed_thing *p, struct vec3 at);
 /* The camera that sees the thing where it was as `camera` sees it at its new place. */
 struct view placed_thing_camera(const struct placed_thing *p, const struct view *camera);
 

@@ -1,0 +1,80 @@
+/* light_things.c - see light_things.h. */
+#include "common/relight/light_things.h"
+
+#include <stdlib.h>
+
+#include "common/base/array.h"
+#include "common/model/thing_mesh.h"
+
+static enum status add(struct thing_surfaces *s, const struct thing_mesh *m, const struct placed_thing *place,
+                       const struct thing *thing, struct err *err)
+{
+    const struct rgb radiance = rgb_make(thing->radiance[0], thing->radiance[1], thing->radiance[2]);
+    for (int i = 0; i < m->triangle_count; i++) {
+        if (array_append(&s->triangles, (size_t)s->count, sizeof *s->triangles, "triangles", err) ||
+            array_append(&s->radiance, (size_t)s->count, sizeof *s->radiance, "triangles", err))
+            return err->status;
+        for (int k = 0; k < 3; k++) {
+            const struct vec3 p = m->vertices[m->triangles[i][k]];
+            s->triangles[s->count][k] = place ? placed_thing_place(place, p) : p;
+        }
+        s->radiance[s->count][0] = s->radiance[s->count][1] = radiance;
+        s->count++;
+    }
+    return ST_OK;
+}
+
+static enum status add_thing(struct light_things *t, uint32_t id, struct err *err)
+{
+    const struct thing *thing = &t->placed.list.things[id - 1];
+    struct thing_mesh mesh = {0};
+    if (!thing_mesh_make(&mesh, &t->placed.volume, id, err) && !add(&t->before, &mesh, NULL, thing, err) &&
+        t->placed.fate[id] != THING_IS_GONE)
+        add(&t->after, &mesh, NULL, thing, err);
+    for (int k = 0; !err->status && k < t->placed.placed_count; k++)
+        if (t->placed.placed[k].id == id) add(&t->after, &mesh, &t->placed.placed[k], thing, err);
+    thing_mesh_release(&mesh);
+    return err->status;
+}
+
+enum status light_things_read(struct light_things *t, const char *folder, const struct texture_map *map,
+                              const char *before, const char *after, struct provenance *prov, struct err *err)
+{
+    struct model_rays models[2] = {{.ids = 0}};
+    *t = (struct light_things){0};
+    if (!folder || (!map->thing_count && !map->zone_count)) return ST_OK;
+    if (!model_rays_read(&models[0], before, MODEL_WITH_GLASS, NULL, err) &&
+        !model_rays_read(&models[1], after, MODEL_WITH_GLASS, NULL, err))
+        placed_things_read(&t->placed, folder, map, &models[0], &models[1], prov, err);
+    for (int k = 0; k < 2; k++) model_rays_release(&models[k]);
+    const struct placed_things *p = &t->placed;
+    t->changes = p->placed_count > 0;
+    for (int i = 1; !err->status && i <= p->list.count; i++) t->changes |= p->fate[i] == THING_IS_GONE;
+    for (int i = 1; !err->status && t->changes && i <= p->list.count; i++)
+        if (p->list.things[i - 1].support != THING_ON_CEILING) add_thing(t, (uint32_t)i, err);
+    return err->status;
+}
+
+static void release_surfaces(struct thing_surfaces *s)
+{
+    free(s->triangles);
+    free(s->radiance);
+}
+
+void light_things_release(struct light_things *t)
+{
+    placed_things_release(&t->placed);
+    release_surfaces(&t->before);
+    release_surfaces(&t->after);
+    *t = (struct light_things){0};
+}
+
+const struct placed_thing *light_things_moved(struct vec3 *was, const struct light_things *t, struct vec3 at)
+{
+    for (int k = 0; k < t->placed.placed_count; k++) {
+        const struct placed_thing *p = &t->placed.placed[k];
+        *was = placed_thing_origin(p, at);
+        if (thing_volume_at(&t->placed.volume, *was) == p->id) return p;
+    }
+    return NULL;
+}

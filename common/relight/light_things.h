@@ -1,0 +1,33 @@
+/* light_things.h - furniture as surfaces that light meets, where an edit changes it: at its old places before the edit,
+ * and at its new ones after it. */
+#ifndef REMODEL_LIGHT_THINGS_H
+#define REMODEL_LIGHT_THINGS_H
+
+#include "common/gather/model_field.h"
+#include "common/relight/placed_things.h"
+
+/* Triangles and what each sends out on its front and on its back. Everything is owned. */
+struct thing_surfaces {
+    struct vec3 (*triangles)[3];
+    struct rgb (*radiance)[2];
+    int count;
+};
+
+/* {0} is the empty state; everything is owned. */
+struct light_things {
+    struct placed_things placed;
+    struct thing_surfaces before, after;
+    bool changes; /* the edit changes a thing; otherwise both are empty */
+};
+
+/* folder: of the things; NULL: none. before, after: model.txt of both models. What hangs from the ceiling is left out,
+ * as lamps do, which have lights of their own. A thing has one radiance, the mean of its pixels. The caller releases t
+ * in each case. */
+enum status light_things_read(struct light_things *t, const char *folder, const struct texture_map *map,
+                              const char *before, const char *after, struct provenance *prov, struct err *err);
+void light_things_release(struct light_things *t);
+
+/* The thing that the edit moved to a point of the edited room; NULL: none. *was: where this place of it was before. */
+const struct placed_thing *light_things_moved(struct vec3 *was, const struct light_things *t, struct vec3 at);
+
+#endif
