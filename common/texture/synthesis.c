@@ -28,6 +28,7 @@ enum { TRIED = 64, STEPS = 12, PASSES = 4 };    /* sources anywhere; steps aroun
 enum { PROBES = 48, APART = 2 * SIDE };         /* sources that tell whether a place is unique; texels between them */
 enum { FEWEST = 64 };                           /* sources without which nothing is copied */
 static const float UNIQUE = 4, NOTHING = 4e-4f; /* times the median difference; difference of patches that are alike */
+static const float CONTRAST = 0.5f;             /* the same, of the median variance within a patch */
 static const float GUESSED = 0.5f;              /* weight of texels that were copied themselves */
 
 /* A picture at one size. */
@@ -177,6 +178,21 @@ static void step_around(const struct level *l, int32_t at, uint32_t seed, int st
 
 /* ------------------------------------------------------------------------------------------------------ unique places */
 
+/* Of the values in the patch around a middle, over all colours. */
+static float variance(const struct level *l, int32_t middle)
+{
+    float sum[3] = {0}, squares = 0;
+    for (int dy = -REACH; dy <= REACH; dy++)
+        for (int dx = -REACH; dx <= REACH; dx++)
+            for (size_t c = 0; c < 3; c++) {
+                const float v = l->value[3 * (size_t)(middle + dy * l->width + dx) + c];
+                sum[c] += v;
+                squares += v * v;
+            }
+    for (int c = 0; c < 3; c++) squares -= sum[c] * sum[c] / (SIDE * SIDE);
+    return fmaxf(0, squares) / (SIDE * SIDE);
+}
+
 struct unique_job {
     const struct level *l;
     float *least;
@@ -223,7 +239,10 @@ static enum status find_unique(uint8_t *unique, const struct level *l, struct er
     parallel_for(n, 64, find_least, &job);
     memcpy(least + n, least, n * sizeof *least);
     qsort(least + n, n, sizeof *least, compare_floats);
-    const float limit = n ? fmaxf(NOTHING, UNIQUE * least[n + n / 2]) : 0;
+    float limit = n ? fmaxf(NOTHING, UNIQUE * least[n + n / 2]) : 0;
+    for (size_t i = 0; i < n; i++) least[n + i] = variance(l, l->middles[i]);
+    qsort(least + n, n, sizeof *least, compare_floats);
+    if (n) limit = fmaxf(limit, CONTRAST * least[n + n / 2]);
     memset(unique, 0, texels_of(l));
     for (size_t i = 0; i < n; i++) {
         if (!(least[i] > limit)) continue;

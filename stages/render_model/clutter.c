@@ -187,6 +187,7 @@ static void lay(struct model_picture *p, float *front, const struct clutter_laye
 {
     for (size_t i = 0; i < (size_t)p->width * (size_t)p->height; i++) {
         const float *c = l->rgba + 4 * i, part = !photo ? c[3] : c[3] < 0.5f ? 2 * c[3] : 1;
+        if (p->made[i] == MADE_NOTHING && c[3] < COVERED) continue; /* a rim alone makes no picture */
         for (size_t k = 0; k < 3 && part > 0; k++) {
             const float own = photo ? part * photo->data[4 * i + k] : fmaxf(0, c[k]);
             p->rgb[3 * i + k] = p->rgb[3 * i + k] * (1 - part) + own;

@@ -1,6 +1,8 @@
 /* placed_things.c - which things an edit takes from their places, where it puts them, and what does not fit there. */
 #include "common/relight/placed_things.h"
 
+#include "stages/render_model/clutter_filter.h"
+
 #include "tests/unit/box_solids.h"
 
 /* Of the boxes, ROOM_INSIDE has its floor at -2 and its walls at -2 and 2; a step of 0.5 covers its western half. */
