@@ -4,6 +4,7 @@
  *         AXES                                          its frame in the scene
  *         VIEWS/cameras.txt, images.txt, lenses.txt     the viewpoints
  *         SCRIPT                                        with --script: where the tour stops, tour.txt
+ *         MAP, THINGS/things.txt                        of an edit without a script: what it changed
  * writes  OUT/plan.svg                                  the tour drawn on the plan
  *         OUT/path/, path.txt                           the cameras of the frames
  *         OUT/pairs.txt                                 the viewpoints that each frame blends */
@@ -16,6 +17,7 @@
 #include "stages/plan_tour/tour_frames.h"
 #include "stages/plan_tour/tour_picture.h"
 #include "stages/plan_tour/tour_stops.h"
+#include "stages/plan_tour/tour_walk.h"
 
 static const struct param tour_param_table[] = {
 #define PARAM_STRUCT struct tour_params
@@ -23,7 +25,7 @@ static const struct param tour_param_table[] = {
 #undef PARAM_STRUCT
 
 struct job {
-    const char *model, *axes_file, *views, *script, *out;
+    const char *model, *axes_file, *views, *script, *map, *things, *out;
     struct tour_params params;
     struct model_rays rays;
     struct scene_inputs in;
@@ -66,6 +68,28 @@ static enum status write_tour(const struct camera_path *path, const struct viewp
                : ST_OK;
 }
 
+/* Where the tour stops: as the script says, else around what the edit changed, else in each room. */
+static enum status find_stops(struct tour_stop **stops, int *count, const struct job *j, const struct tour_graph *g,
+                              struct provenance *prov, struct err *err)
+{
+    struct texture_map map = {0};
+    struct thing_list things = {0};
+    struct tour_change *changes = NULL;
+    int change_count = 0;
+    char path[FILE_PATH];
+    *count = 0;
+    if (!j->script && j->map && !texture_map_read(&map, j->map, prov, err) &&
+        (!j->things || (!product_path_in(path, j->things, PRODUCT_THINGS, NULL, err) &&
+                        !thing_list_read(&things, path, prov, err))) &&
+        !tour_changes_find(&changes, &change_count, &map, &things, &j->in.plan, err))
+        tour_walk_find(stops, count, g, &j->rays, &j->in.plan, changes, change_count, j->params.speed, err);
+    if (!err->status && !*count) tour_stops_find(stops, count, g, &j->in.plan, j->params.speed, j->script, prov, err);
+    free(changes);
+    thing_list_release(&things);
+    texture_map_release(&map);
+    return err->status;
+}
+
 static enum status plan_tour(struct job *j, struct provenance *prov, struct err *err)
 {
     struct tour_graph g = {0};
@@ -77,7 +101,7 @@ static enum status plan_tour(struct job *j, struct provenance *prov, struct err 
     char file[FILE_PATH];
     if (!read_inputs(j, prov, err) &&
         !tour_graph_make(&g, &j->in.set, &j->in.lenses, &j->in.axes, &j->rays, &j->params, err) &&
-        !tour_stops_find(&stops, &stop_count, &g, &j->in.plan, j->params.speed, j->script, prov, err) &&
+        !find_stops(&stops, &stop_count, j, &g, prov, err) &&
         !tour_keys_make(&keys, &key_count, &g, stops, stop_count, &j->params, err))
         tour_frames_make(&path, &pairs, keys, key_count, &g, &j->in.axes, &j->rays, &j->params, err);
     if (!err->status && !product_path_in(file, j->out, PRODUCT_TOUR_PLAN, NULL, err) &&
@@ -102,7 +126,10 @@ int main(int argc, char **argv)
         CLI_STR("model", &j.model, CLI_REQUIRED, "folder of the model: model.txt and plan.txt"),
         CLI_STR("axes", &j.axes_file, CLI_REQUIRED, "the model's frame, axes.txt"),
         CLI_STR("views", &j.views, CLI_REQUIRED, "folder of the views' cameras"),
-        CLI_STR("script", &j.script, CLI_OPTIONAL, "where the tour stops, tour.txt; default: in each room"),
+        CLI_STR("script", &j.script, CLI_OPTIONAL,
+                "where the tour stops, tour.txt; default: around what the edit changed, or in each room"),
+        CLI_STR("map", &j.map, CLI_OPTIONAL, "what an edit changed, texture.txt"),
+        CLI_STR("things", &j.things, CLI_OPTIONAL, "folder of the scene's things"),
         CLI_STR("out", &j.out, CLI_REQUIRED, "folder to write to"),
         CLI_PARAMS(tour_param_table, &j.params, check_params),
         CLI_END,

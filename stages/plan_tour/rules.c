@@ -6,7 +6,7 @@ RULES(plan_tour)
     static const enum product_id files[] = {PRODUCT_PATH,         PRODUCT_TOUR_PAIRS,  PRODUCT_TOUR_PLAN,
                                             PRODUCT_PATH_CAMERAS, PRODUCT_PATH_IMAGES, PRODUCT_PATH_POINTS};
     const char *script = graph_scene_file(g, "tour.txt");
-    graph_step(g, "tour-path", STEP_ONE, "model");
+    graph_step(g, "tour-path", STEP_ONE, "model things");
     graph_goal(g, "tour-path", NULL);
     for (int edit = -1; f->has_model && edit < f->edits.count; edit++) {
         const char *model = scene_model_folder(g, &f->edits, edit), *tour = graph_text(g, "%s/tour", model);
@@ -21,6 +21,11 @@ RULES(plan_tour)
         rule_takes(g, "--axes", PATH(g, AXES));
         rule_takes_cameras(g);
         rule_needs(g, PATH(g, LENSES));
+        if (scene_model_is_edited(model)) {
+            rule_takes(g, "--map", PATH(g, TEXTURE_MAP, .model = model));
+            if (f->views.count) rule_needs(g, PATH(g, THINGS));
+            if (f->views.count) rule_option(g, "--things", FOLDER(g, THINGS));
+        }
         rule_takes(g, "--script", script);
         rule_option(g, "--model", FOLDER(g, MODEL, .model = model));
         rule_option(g, "--out", graph_own(g, tour));

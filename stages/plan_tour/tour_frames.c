@@ -19,13 +19,14 @@
 
 static const double ease_out = 1, ease_in = 0.5; /* seconds */
 static const double same_place = 1e-9;           /* model units */
+static const double STEEPEST = 20;               /* degrees: of a look up or down */
 
 struct keys {
     struct tour_key **list;
     int *count;
     const struct tour_graph *g;
     const struct tour_params *params;
-    double speed; /* of the leg */
+    const struct tour_stop *from, *to; /* of the leg */
     struct err *err;
 };
 
@@ -48,11 +49,32 @@ static enum status add_axis(const struct keys *k, double time, struct vec3 at, s
     return add_key(k, time, at, azimuth_of(axis), elevation_of(axis), node);
 }
 
-/* The axis that a node of a leg has: its photo's at the ends, else towards the next node, or its own if that is
- * here. */
-static struct vec3 node_axis(const struct tour_graph *g, const int *leg, int count, int i)
+/* Towards the place that a stop looks at, from a node; not far up or down, which people rarely look. */
+static struct vec3 gaze(const struct tour_node *node, const struct tour_stop *stop)
 {
-    if (i == 0 || i == count - 1) return g->nodes[leg[i]].axis;
+    const struct vec3 way = vec3_sub(stop->look, node->centre);
+    const double level = hypot(way.x, way.y), steepest = level * tan(STEEPEST * M_PI / 180);
+    return vec3_normalize(vec3_make(way.x, way.y, fmax(-steepest, fmin(steepest, way.z))));
+}
+
+static struct vec3 stop_axis(const struct tour_graph *g, const struct tour_stop *stop)
+{
+    return stop->looks ? gaze(&g->nodes[stop->node], stop) : g->nodes[stop->node].axis;
+}
+
+/* Whether the eyes stay on one place from stop to stop. */
+static bool keeps_looking(const struct keys *k)
+{
+    return k->from->looks && k->to->looks && vec3_length(vec3_sub(k->from->look, k->to->look)) <= same_place;
+}
+
+/* The axis that a node of a leg has: its stop's at the ends; between them towards what both look at, else towards the
+ * next node, or its own photo's if that is here. */
+static struct vec3 node_axis(const struct keys *k, const int *leg, int count, int i)
+{
+    const struct tour_graph *g = k->g;
+    if (i == 0 || i == count - 1) return stop_axis(g, i ? k->to : k->from);
+    if (keeps_looking(k)) return gaze(&g->nodes[leg[i]], k->to);
     const struct vec3 ahead = vec3_sub(g->nodes[leg[i + 1]].centre, g->nodes[leg[i]].centre);
     return vec3_length(ahead) > same_place ? vec3_normalize(ahead) : g->nodes[leg[i]].axis;
 }
@@ -72,12 +94,12 @@ struct way_times {
 
 static struct way_times way_times(const struct keys *k, const int *leg, int count, int i)
 {
-    const struct vec3 a = node_axis(k->g, leg, count, i), b = node_axis(k->g, leg, count, i + 1);
+    const struct vec3 a = node_axis(k, leg, count, i), b = node_axis(k, leg, count, i + 1);
     const struct vec3 way = vec3_sub(k->g->nodes[leg[i + 1]].centre, k->g->nodes[leg[i]].centre);
-    const double d = vec3_length(way), walk = d / (k->speed * k->g->unit), turn = k->params->turn * M_PI / 180;
+    const double d = vec3_length(way), walk = d / (k->to->speed * k->g->unit), turn = k->params->turn * M_PI / 180;
     const bool first = i == 0, last = i + 2 == count;
     struct way_times t = {0};
-    if (d <= same_place) { /* it only turns */
+    if (d <= same_place || keeps_looking(k)) { /* it only turns, or has its eyes elsewhere than on the way */
         t.whole = fmax(walk, way_turn(a, b) / turn);
         return t;
     }
@@ -105,7 +127,7 @@ static enum status add_leg(const struct keys *k, const int *leg, int count, doub
             add_ease(k, leg, i, *time, t.whole - t.in, t.whole);
         *time += t.whole;
         if (!k->err->status)
-            add_axis(k, *time, k->g->nodes[leg[i + 1]].centre, node_axis(k->g, leg, count, i + 1), leg[i + 1]);
+            add_axis(k, *time, k->g->nodes[leg[i + 1]].centre, node_axis(k, leg, count, i + 1), leg[i + 1]);
     }
     return k->err->status;
 }
@@ -135,22 +157,23 @@ enum status tour_keys_make(struct tour_key **keys, int *count, const struct tour
                            const struct tour_stop *stops, int stop_count, const struct tour_params *params,
                            struct err *err)
 {
-    struct keys k = {keys, count, g, params, stops[0].speed, err};
-    const struct tour_node *first = &g->nodes[stops[0].node];
+    struct keys k = {keys, count, g, params, stops, stops, err};
     double time = params->hold;
     *keys = NULL;
     *count = 0;
-    if (!add_axis(&k, 0, first->centre, first->axis, stops[0].node))
-        add_axis(&k, time, first->centre, first->axis, stops[0].node);
+    const struct vec3 begin = stop_axis(g, &stops[0]), start = g->nodes[stops[0].node].centre;
+    if (!add_axis(&k, 0, start, begin, stops[0].node)) add_axis(&k, time, start, begin, stops[0].node);
     for (int i = 0; !err->status && i + 1 < stop_count; i++) {
         int *leg = NULL, nodes = 0;
         find_leg(&leg, &nodes, g, stops[i].node, stops[i + 1].node, err);
-        k.speed = stops[i + 1].speed;
+        k.from = &stops[i];
+        k.to = &stops[i + 1];
         if (!err->status) add_leg(&k, leg, nodes, &time);
         free(leg);
+        if (stops[i + 1].passes) continue;
         time += params->hold;
-        const struct tour_node *stop = &g->nodes[stops[i + 1].node];
-        if (!err->status) add_axis(&k, time, stop->centre, stop->axis, stops[i + 1].node);
+        if (!err->status)
+            add_axis(&k, time, g->nodes[stops[i + 1].node].centre, stop_axis(g, &stops[i + 1]), stops[i + 1].node);
     }
     return err->status;
 }

@@ -27,6 +27,9 @@ struct tour_graph {
 struct tour_stop {
     int node;
     double speed; /* of walking here, in units of the graph per second, > 0 */
+    bool passes;  /* the camera does not rest here */
+    bool looks;   /* at a place, on the way here and at the stop; otherwise as the photo and the way do */
+    struct vec3 look;
 };
 
 /* The caller releases the graph in each case. ST_DATA: no viewpoint is usable; warns of those that are not. */

@@ -58,7 +58,7 @@ static enum status add_stop(struct tour_stop **stops, int *count, int node, doub
 {
     if (*count && (*stops)[*count - 1].node == node) return ST_OK;
     if (array_append(stops, (size_t)*count, sizeof **stops, "stops", err)) return err->status;
-    (*stops)[(*count)++] = (struct tour_stop){node, speed};
+    (*stops)[(*count)++] = (struct tour_stop){.node = node, .speed = speed};
     return ST_OK;
 }
 

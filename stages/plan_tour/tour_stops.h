@@ -5,7 +5,8 @@
  *   photo ID           this viewpoint
  *   speed M            metres a second (without a scale: median distances between viewpoints) to the stops below
  *
- * A line for each stop, in order. Without the file a tour begins at the viewpoint that sees farthest, and goes on to
+ * A line for each stop, in order. Without the file the tour of an edit walks around what changed (tour_walk.h);
+ * otherwise it begins at the viewpoint that sees farthest, and goes on to
  * the room that is nearest by the ways of the graph, until it has been in all of them. */
 #ifndef REMODEL_TOUR_STOPS_H
 #define REMODEL_TOUR_STOPS_H

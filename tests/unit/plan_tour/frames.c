@@ -80,7 +80,7 @@ static void a_leg_has_the_speed_of_the_stop_that_it_leads_to(void **state)
     (void)state;
     const struct box hall[] = {HALL_OUTSIDE, HALL_INSIDE};
     const struct place places[] = {{"p1", {-2, 0, 1.5}, 20}, {"p2", {2, 0, 1.5}, -20}};
-    const struct tour_stop stops[] = {{0, 9}, {1, 0.5}, {0, 2}};
+    const struct tour_stop stops[] = {{.node = 0, .speed = 9}, {.node = 1, .speed = 0.5}, {.node = 0, .speed = 2}};
     struct walk w;
     struct err err = ERR_INIT;
     walk_make(&w, hall, 2, places, 2);
@@ -176,7 +176,7 @@ static void the_picture_shows_rooms_stops_and_viewpoints(void **state)
     struct model_room hall = {.name = (char *)"a < b & c", .corners = corners, .corner_count = 4};
     struct model_wall wall = {.name = (char *)"s", .normal = {0, 1}, .offset = -2, .thickness = 0.3, .span = {-3, 3}};
     const struct model_plan plan = {.rooms = &hall, .room_count = 1, .walls = &wall, .wall_count = 1};
-    const struct tour_stop stops[] = {{0, 1}, {2, 1}};
+    const struct tour_stop stops[] = {{.node = 0, .speed = 1}, {.node = 2, .speed = 1}};
     struct walk w;
     struct err err = ERR_INIT;
     walk_around(&w);

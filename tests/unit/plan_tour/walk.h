@@ -91,7 +91,7 @@ static inline enum status walk_graph(struct walk *w, struct err *err)
 static inline void walk_along(struct walk *w, const int *nodes, int count)
 {
     struct tour_stop stops[MAX_PHOTOS];
-    for (int i = 0; i < count; i++) stops[i] = (struct tour_stop){nodes[i], w->params.speed};
+    for (int i = 0; i < count; i++) stops[i] = (struct tour_stop){.node = nodes[i], .speed = w->params.speed};
     struct err err = ERR_INIT;
     assert_ok(tour_keys_make(&w->keys, &w->key_count, &w->g, stops, count, &w->params, &err), err);
     assert_ok(tour_frames_make(&w->path, &w->pairs, w->keys, w->key_count, &w->g, &w->axes, &w->rays, &w->params, &err),
