@@ -1,12 +1,13 @@
 /* bake_choose.c - bake_choose(): the best candidate of each texel.
  *
- * A candidate whose depth agrees with the model is trusted. Where the depth of a view is not sure, something that the
- * model does not hold may stand in front: then the views vote. Two photographs that show the surface agree in colour
- * (after their gains); one that shows furniture in front of it agrees with others only by chance, since furniture moves
- * against the surface from view to view [Waechter 2014]. The views of one photo have one vote. A view in which
- * something surely stands in front of the texel votes against those that are not sure, and if all are outvoted the
- * texel is left to be synthesised. Clipped or noisy pixels are taken where POOR_PHOTOS show nothing else and none sees
- * something in front: that is a lamp, lit or not; glare moves from photo to photo. The same decides whether the
+ * A candidate whose sure depth agrees with the model is trusted. One that agrees by a depth which is not sure has a
+ * vote for itself, and two views that see something in front outvote it. Where the depth of a view says nothing,
+ * something that the model does not hold may stand in front: then the views vote. Two photographs that show the surface
+ * agree in colour (after their gains); one that shows furniture in front of it agrees with others only by chance, since
+ * furniture moves against the surface from view to view [Waechter 2014]. The views of one photo have one vote. A view
+ * in which something surely stands in front of the texel votes against those that are not sure, and if all are outvoted
+ * the texel is left to be synthesised. Clipped or noisy pixels are taken where POOR_PHOTOS show nothing else and none
+ * sees something in front: that is a lamp, lit or not; glare moves from photo to photo. The same decides whether the
  * viewpoint's own pixel may be copied where its depth is not sure. */
 #include <math.h>
 #include <string.h>

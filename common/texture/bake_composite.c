@@ -6,9 +6,9 @@
  * difference that the best view of either has between them, if that view shows both; a difference above
  * max_gradient, an edge that may not be where the neighbour's source has it, counts little. Where no view shows
  * both, the difference is to be 0. Texels that no view shows are found afterwards, with the others fixed, so that a
- * fill never moves what is seen. They take the differences of texture elsewhere on the face (fill.h), or 0 where
- * there is none, and are drawn weakly to the nearest seen texel that is not beside what hides the face: a face's
- * mean would mix its materials. */
+ * fill never moves what is seen. They take the differences of texture elsewhere on the face, or of an atlas that has
+ * it already (fill.h), or 0 where there is none. They are drawn weakly to that atlas, else to the nearest seen texel
+ * that is not beside what hides the face: a face's mean would mix its materials. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -3,7 +3,8 @@
  *
  * Overview. A pixel is a source if the view has one there (alpha), if it is some pixels away from depth jumps, where
  * a small error of the camera would take the colour of another surface, and if nothing that the model does not hold
- * stands in front of the surface. The last is a matter of degree (view_ids.h, clutter): clean, unsure, or hidden.
+ * stands in front of the surface. The last is a matter of degree (view_ids.h, clutter): clean, likely, unsure, or
+ * hidden. Things that all views together know of (thing_mask.h) hide what is behind them, and their rims do.
  * Clipped and noisy pixels are poor: they are used only where there is nothing better.
  *
  * Pyramid [Williams 1983]. A texel that covers many pixels needs their mean, or a fine photograph aliases in a

@@ -6,7 +6,7 @@
  *         DEPTH/VIEW.exr, VIEW.txt                      the views' layered depth
  *         IDS/VIEW.exr                                  faces of the model, and clutter
  *         MARKS                                         names, and places that users marked
- * writes  OUT/masks/VIEW.exr                            the thing that each pixel shows
+ * writes  OUT/masks/VIEW.exr                            the things that each pixel shows, and its ray meets
  *         OUT/volume.exr                                the thing that each place of the rooms belongs to
  *         OUT/sheet.svg                                 a picture of all things
  *         OUT/things.txt                                the list of things */
