@@ -3,7 +3,8 @@
  * Overview.
  *   1. Slow changes, light and shade, are taken off: what is left is texture alone.
  *   2. A texel whose surroundings are like nothing else in the picture belongs to something unique, a poster, a socket,
- *      the border of a rug. It is never copied, and a hole is left smooth where such a thing is nearest.
+ *      the border of a rug. It is never copied, and a hole is left smooth where such a thing is nearest. What is like
+ *      a texel is looked for at random, along its row and column, and where its neighbours found theirs [Barnes 2009].
  *   3. At half size, unseen texels get a source one by one, from the rim of the hole inwards. Candidates continue the
  *      sources of the neighbours that have one [Ashikhmin 2001], or lie anywhere in the picture. The best has the least
  *      difference of patches, over the texels that are known by then [Efros 1999].
@@ -26,6 +27,7 @@ enum { REACH = 3, SIDE = 2 * REACH + 1 };       /* texels: of a patch */
 enum { SLOW = 20 };                             /* texels: half width of the boxes that slow changes are means of */
 enum { TRIED = 64, STEPS = 12, PASSES = 4 };    /* sources anywhere; steps around the best; at full size */
 enum { PROBES = 48, APART = 2 * SIDE };         /* sources that tell whether a place is unique; texels between them */
+enum { SHARED = 8 };                            /* texels: of the first neighbours whose likes are tried */
 enum { FEWEST = 64 };                           /* sources without which nothing is copied */
 static const float UNIQUE = 4, NOTHING = 4e-4f; /* times the median difference; difference of patches that are alike */
 static const float CONTRAST = 0.5f;             /* the same, of the median variance within a patch */
@@ -194,15 +196,16 @@ static float variance(const struct level *l, int32_t middle)
 }
 
 struct unique_job {
-    const struct level *l;
-    float *least;
+    struct level *l; /* its `source`: the like of each middle */
+    float *least;    /* difference of each middle from its like */
+    int far;         /* texels to the neighbours whose likes are tried */
 };
 
 /* The least difference of each middle from others that are not near it. */
 static void find_least(void *ctx, size_t begin, size_t end, int thread)
 {
     const struct unique_job *j = ctx;
-    const struct level *l = j->l;
+    struct level *l = j->l;
     (void)thread;
     for (size_t i = begin; i < end; i++) {
         const int32_t at = l->middles[i], x = at % l->width, y = at / l->width;
@@ -217,10 +220,43 @@ static void find_least(void *ctx, size_t begin, size_t end, int thread)
             }
             if (abs(from % l->width - x) < APART && abs(from / l->width - y) < APART) continue;
             const float d = difference(l, at, from, least);
-            if (d < least) least = d;
+            if (d < least) least = d, l->source[at] = from;
         }
         j->least[i] = least;
     }
+}
+
+/* Tries what the likes of neighbours have in its place: few probes meet the one place in a whole brick that is alike,
+ * but all of a brick are alike by the same step. The step is as long as the neighbour's, so it is not near either. */
+static void share_likes(void *ctx, size_t begin, size_t end, int thread)
+{
+    const struct unique_job *j = ctx;
+    struct level *l = j->l;
+    (void)thread;
+    for (size_t i = begin; i < end; i++) {
+        const int32_t at = l->middles[i], x = at % l->width, y = at / l->width;
+        int32_t best = l->source[at];
+        for (int k = 0; k < 4; k++) {
+            const int step = k & 1 ? j->far : -j->far, dx = k & 2 ? step : 0, dy = step - dx;
+            if (x + dx < 0 || y + dy < 0 || x + dx >= l->width || y + dy >= l->height) continue;
+            const int32_t s = l->source[at + dy * l->width + dx];
+            if (s >= 0) try(l, at, s % l->width - dx, s / l->width - dy, &best, &j->least[i]);
+        }
+        l->next[at] = best;
+    }
+}
+
+/* Leaves `source` as it was: -1. */
+static void find_likes(struct level *l, float *least)
+{
+    const size_t n = (size_t)l->middle_count;
+    struct unique_job job = {l, least, 2 * SHARED};
+    parallel_for(n, 64, find_least, &job);
+    while ((job.far /= 2) > 0) {
+        parallel_for(n, 64, share_likes, &job);
+        for (size_t i = 0; i < n; i++) l->source[l->middles[i]] = l->next[l->middles[i]];
+    }
+    for (size_t i = 0; i < n; i++) l->source[l->middles[i]] = -1;
 }
 
 static int compare_floats(const void *a, const void *b)
@@ -230,13 +266,12 @@ static int compare_floats(const void *a, const void *b)
 }
 
 /* Sets unique[texel] to 1 where a patch is like no other. */
-static enum status find_unique(uint8_t *unique, const struct level *l, struct err *err)
+static enum status find_unique(uint8_t *unique, struct level *l, struct err *err)
 {
     const size_t n = (size_t)l->middle_count;
     float *least = malloc((2 * n + 1) * sizeof *least);
     if (!least) return err_nomem(err, "unique places of a texture", 2 * n * sizeof *least);
-    struct unique_job job = {l, least};
-    parallel_for(n, 64, find_least, &job);
+    find_likes(l, least);
     memcpy(least + n, least, n * sizeof *least);
     qsort(least + n, n, sizeof *least, compare_floats);
     float limit = n ? fmaxf(NOTHING, UNIQUE * least[n + n / 2]) : 0;
