@@ -230,8 +230,8 @@ static void set_seen(struct composite *c)
 
 static bool has_guide(const struct composite *c, size_t i) { return c->fill.guide && !isnan(c->fill.guide[3 * i]); }
 
-/* Unseen texels are drawn to the filled atlas, or else to the nearest of the texels that are listed as such. seen: the role of seen ones from
- * now. */
+/* Unseen texels are drawn to the filled atlas, or else to the nearest of the texels that are listed as such. seen: the
+ * role of seen ones from now. */
 static void set_unseen(struct composite *c, int seen)
 {
     const struct bake *b = c->b;

@@ -178,7 +178,7 @@ static void step_around(const struct level *l, int32_t at, uint32_t seed, int st
     }
 }
 
-/* ------------------------------------------------------------------------------------------------------ unique places */
+/* ---------------------------------------------------------------------------------------------------- unique places */
 
 /* Of the values in the patch around a middle, over all colours. */
 static float variance(const struct level *l, int32_t middle)
@@ -287,7 +287,7 @@ static enum status find_unique(uint8_t *unique, struct level *l, struct err *err
     return ST_OK;
 }
 
-/* ------------------------------------------------------------------------------------------------------------ levels */
+/* ----------------------------------------------------------------------------------------------------------- levels */
 
 /* Half the size: the mean of four texels; one of which a quarter is wanted is wanted, one is clean if all four are. */
 static enum status halve(struct level *to, const struct level *from, struct err *err)
