@@ -188,8 +188,17 @@ static bool is_hole(const struct bake *b, size_t texel)
     return b->role[texel] == TEXEL_WANTED && !is_warped(b, texel) && b->list[texel] >= 0 && b->hidden[b->list[texel]];
 }
 
-/* Beside what hides the face, a view whose depth is not sure may show the side of that: such texels become part of the
- * hole. */
+/* Leaves a texel only the candidates of sure depth, the best first; without any it is part of the hole. */
+static void keep_clean(struct bake *b, size_t list)
+{
+    struct candidate *in = b->lists[list];
+    int kept = 0;
+    for (int i = 0; i < b->counts[list]; i++)
+        if (in[i].state == SOURCE_CLEAN) in[kept++] = in[i];
+    b->counts[list] = (uint8_t)kept;
+}
+
+/* Beside what hides the face, a view whose depth is not sure may show the side of that: only the others count there. */
 static void widen_holes(struct composite *c)
 {
     struct bake *b = c->b;
@@ -204,7 +213,7 @@ static void widen_holes(struct composite *c)
                 const int from = x > SIDE ? x - SIDE : 0, to = x + SIDE < width ? x + SIDE : width - 1;
                 near = memchr(c->unseen + (size_t)v * (size_t)width + (size_t)from, 1, (size_t)(to - from + 1));
             }
-            if (near) b->counts[b->list[texel]] = 0;
+            if (near) keep_clean(b, (size_t)b->list[texel]);
         }
 }
 
