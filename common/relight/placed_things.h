@@ -2,6 +2,7 @@
 #ifndef REMODEL_PLACED_THINGS_H
 #define REMODEL_PLACED_THINGS_H
 
+#include "common/capture/view.h"
 #include "common/light/model_rays.h"
 #include "common/model/thing_list.h"
 #include "common/model/thing_volume.h"
@@ -34,9 +35,9 @@ struct placed_things {
 };
 
 /* Reads the products of find_things, if there is an edit's map, and places the things of which it says something.
- * folder: of the things; NULL: zones clear no things, and none are known. before, after: the model that the photographs show, and the
- * edited one. ST_DATA: the map names a thing that was not found; a thing would be in a wall, or off what it stands on,
- * with the distance. */
+ * folder: of the things; NULL: zones clear no things, and none are known. before, after: the model that the photographs
+ * show, and the edited one. ST_DATA: the map names a thing that was not found; a thing would be in a wall, or off what
+ * it stands on, with the distance. */
 enum status placed_things_read(struct placed_things *t, const char *folder, const struct texture_map *map,
                                const struct model_rays *before, const struct model_rays *after, struct provenance *prov,
                                struct err *err);

@@ -10,8 +10,8 @@ struct own_view {
     struct view_reveal reveal; /* what the edits reveal; z in model units */
 };
 
-/* Reads the files of a source (source_view.h) and REVEAL/VIEW.exr. camera: in the model's frame; scale: model units per scene
- * unit. v is overwritten; the caller releases it in each case. */
+/* Reads the files of a source (source_view.h) and REVEAL/VIEW.exr. camera: in the model's frame; scale: model units per
+ * scene unit. v is overwritten; the caller releases it in each case. */
 enum status own_view_read(struct own_view *v, const struct source_files *files, const char *reveal,
                           const struct view *camera, double scale, const struct texture_params *params,
                           struct provenance *prov, struct err *err);

@@ -16,8 +16,8 @@
  * The light of the atlas. For films the quotient is that of the texels of both atlases (update_vita): no ray is traced,
  * and a place looks alike in all frames.
  *
- * What furniture hid was filled from around it, in the light of there (update_vita): such texels take the quotient of the
- * atlas, too, where the edit changes furniture.
+ * What furniture hid was filled from around it, in the light of there (update_vita): where the edit changes furniture,
+ * such texels take the quotient of the atlas, too.
  *
  * Furniture that no depth tells (free cameras) gets the quotient of the shell behind it. */
 #include "stages/relight/relit.h"

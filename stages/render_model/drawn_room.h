@@ -53,9 +53,9 @@ struct texture_pair {
     double t;
 };
 
-/* Draws the shell and the clutter over it. camera: model frame. own: the original view that it is; -1: none.
- * gone: of each pixel: no clutter is drawn there; may be NULL. Things
- * that the edit puts elsewhere are drawn too, unless the camera is a view's: there the photo's own pixels come first. */
+/* Draws the shell and the clutter over it. camera: model frame. own: the original view that it is; -1: none. gone: of
+ * each pixel: no clutter is drawn there; may be NULL. Things that the edit puts elsewhere are drawn too, unless the
+ * camera is a view's: there the photo's own pixels come first. */
 enum status room_draw(struct model_picture *picture, struct room *room, const struct view *camera,
                       const struct texture_pair *pair, int own, const uint8_t *gone, struct provenance *prov,
                       struct err *err);
@@ -65,8 +65,8 @@ enum status room_draw(struct model_picture *picture, struct room *room, const st
 enum status room_draw_things(struct model_picture *picture, struct room *room, const struct view *camera, uint8_t *same,
                              struct provenance *prov, struct err *err);
 
-/* Draws the things that stay where they are, but not at the pixels that have `stays` 1: those that an edit uncovers to a
- * view, which other views show. front: as room_draw() left it. */
+/* Draws the things that stay where they are, but not at the pixels that have `stays` 1: those that an edit uncovers to
+ * a view, which other views show. front: as room_draw() left it. */
 enum status room_draw_uncovered(struct model_picture *picture, struct room *room, const struct view *camera,
                                 const uint8_t *stays, struct provenance *prov, struct err *err);
 

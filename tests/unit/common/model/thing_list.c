@@ -9,9 +9,10 @@
 static void what_is_read_is_written_again(void **state)
 {
     (void)state;
-    static const char text[] = HEAD SOFA "thing \"old lamp\" ceiling -1 -1 2 -0.5 -0.5 2.5 100 1 \"v 04\" 0 0 1 1 0 1e-05 3\n"
-                                         "thing shelf wall 1e-05 0 0 1 1 1 5000000000 2 v05 0 0 1 1 0 1e-05 3\n"
-                                         "thing cloud none 0 0 0 1 1 1 1 1 v05 -1.5 0 1 1 1 1 1\n";
+    static const char text[] =
+        HEAD SOFA "thing \"old lamp\" ceiling -1 -1 2 -0.5 -0.5 2.5 100 1 \"v 04\" 0 0 1 1 0 1e-05 3\n"
+                  "thing shelf wall 1e-05 0 0 1 1 1 5000000000 2 v05 0 0 1 1 0 1e-05 3\n"
+                  "thing cloud none 0 0 0 1 1 1 1 1 v05 -1.5 0 1 1 1 1 1\n";
     struct thing_list list;
     struct provenance prov = {0};
     struct err err = ERR_INIT;
@@ -97,7 +98,8 @@ static void damaged_lines_are_refused(void **state)
         {HEAD "thing sofa floor 0 0 0 1 1 1 1.5 1 v 0 0 1 1\n", "things.txt:2: found \"1.5\", wanted voxels"},
         {HEAD "thing sofa floor 0 0 0 1 1 1 1 -1 v 0 0 1 1\n", "things.txt:2: found \"-1\", wanted views"},
         {HEAD "thing sofa floor 0 0 0 1 1 1 1 1 v 3 0 1 1\n", "things.txt:2: found \"a rectangle without size\""},
-        {HEAD "thing sofa floor 0 0 0 1 1 1 1 1 v 0 0 1 1 1 -1 1\n", "things.txt:2: found \"-1\", wanted mean radiance"},
+        {HEAD "thing sofa floor 0 0 0 1 1 1 1 1 v 0 0 1 1 1 -1 1\n",
+         "things.txt:2: found \"-1\", wanted mean radiance"},
         {HEAD "thing sofa floor 0 0 0 1 1 1 1 3000000000 v 0 0 1 1\n",
          "things.txt:2: found \"3000000000\", wanted views"},
         {HEAD "thing sofa floor 0 0 0 1 1 1 1 1\n", "things.txt:2: found the end of the line, wanted view"},
