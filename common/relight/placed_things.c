@@ -27,6 +27,7 @@ void placed_things_release(struct placed_things *t)
     thing_list_release(&t->list);
     thing_volume_release(&t->volume);
     free(t->fate);
+    for (int i = 0; i < t->placed_count; i++) free(t->placed[i].name);
     free(t->placed);
     free(t->points);
     *t = (struct placed_things){0};
@@ -184,12 +185,13 @@ static enum status apply(struct placed_things *t, const struct texture_thing *ed
     if (edit->kind == TEXTURE_THING_KEEP) return ST_OK;
     if (!strcmp(edit->name, edit->from)) t->fate[id] = THING_IS_GONE;
     if (edit->kind == TEXTURE_THING_CLEAR) return ST_OK;
-    const struct placed_thing p = placement(edit, thing, id, before);
+    struct placed_thing p = placement(edit, thing, id, before);
     const double height = model_rays_height(before);
-    if (!check_support(edit, thing, &p, before, after, height, err) &&
-        !check_walls(edit, thing, &p, after, height, err))
-        t->placed[t->placed_count++] = p;
-    return err->status;
+    if (check_support(edit, thing, &p, before, after, height, err) || check_walls(edit, thing, &p, after, height, err))
+        return err->status;
+    if (!(p.name = strdup(edit->name))) return err_nomem(err, "a name", strlen(edit->name));
+    t->placed[t->placed_count++] = p;
+    return ST_OK;
 }
 
 static bool is_surface(const struct thing_volume *v, size_t i) { return v->id[i] && fabsf(v->distance[i]) < SURFACE; }

@@ -20,6 +20,7 @@ struct thing_points {
 /* A thing at a place of its own: the point p of the photographs' room stands at turn p + shift. */
 struct placed_thing {
     uint32_t id;
+    char *name; /* of the thing or of its copy; owned */
     struct mat3 turn;
     struct vec3 shift;
 };

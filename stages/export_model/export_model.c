@@ -2,6 +2,7 @@
  *
  * reads   MODEL/model.txt, plan.txt                     the model; of an edit also MAP, texture.txt
  *         OBJECTS, SCENE/FILE.obj                       of an edit: the synthetic objects and their meshes
+ *         THINGS/things.txt, volume.exr                 furniture; of an edit that changes it also BASE, the old model
  *         AXES                                          whether its lengths are metres
  *         VITA/atlas.txt, page0.exr, ...                the view-independent texture atlas
  * writes  OUT/page0.png, ...                            its pages, sRGB
@@ -13,12 +14,13 @@
 #include "stages/export_model/writers.h"
 
 struct job {
-    const char *name, *model, *map, *objects, *scene, *axes, *vita, *out;
+    const char *name, *model, *map, *base, *things, *objects, *scene, *axes, *vita, *out;
     struct scene_inputs in;
     struct texture_map texture;
     struct atlas atlas;
     struct export_faces faces;
     struct export_objects inserted;
+    struct export_things furniture;
 };
 
 static enum status read_inputs(struct job *j, struct provenance *prov, struct err *err)
@@ -31,6 +33,8 @@ static enum status read_inputs(struct job *j, struct provenance *prov, struct er
         (j->map && texture_map_read(&j->texture, j->map, prov, err)) ||
         export_objects_read(&j->inserted, j->objects, j->scene, prov, err))
         return err->status;
+    const struct export_thing_files things = {j->things, model, j->base, j->map};
+    if (export_things_read(&j->furniture, &things, j->map ? &j->texture : NULL, prov, err)) return err->status;
     return atlas_read(&j->atlas, j->vita, prov, err);
 }
 
@@ -49,6 +53,7 @@ static enum status export_all(struct job *j, struct provenance *prov, struct err
                                        .faces = &j->faces,
                                        .plan = &j->in.plan,
                                        .objects = &j->inserted,
+                                       .things = &j->furniture,
                                        .page_sizes = (const int(*)[2])j->atlas.page_sizes,
                                        .page_count = j->atlas.page_count,
                                        .exposure = exposure,
@@ -67,6 +72,8 @@ int main(int argc, char **argv)
         CLI_STR("name", &j.name, CLI_REQUIRED, "name of the model, for titles"),
         CLI_STR("model", &j.model, CLI_REQUIRED, "folder of the model: model.txt and plan.txt"),
         CLI_STR("map", &j.map, CLI_OPTIONAL, "of an edited model: its texture.txt"),
+        CLI_STR("base", &j.base, CLI_OPTIONAL, "of an edited model: model.txt of the unedited one, for --things"),
+        CLI_STR("things", &j.things, CLI_OPTIONAL, "folder of find_things, whose furniture is exported, too"),
         CLI_STR("objects", &j.objects, CLI_OPTIONAL, "of an edited model: its objects.txt"),
         CLI_STR("scene", &j.scene, CLI_OPTIONAL, "with --objects: folder of the meshes that it names"),
         CLI_STR("axes", &j.axes, CLI_REQUIRED, "the model's frame, axes.txt"),
@@ -80,6 +87,7 @@ int main(int argc, char **argv)
     err_report(&err);
     export_faces_release(&j.faces);
     export_objects_release(&j.inserted);
+    export_things_release(&j.furniture);
     atlas_release(&j.atlas);
     texture_map_release(&j.texture);
     scene_inputs_release(&j.in);

@@ -34,6 +34,8 @@ int ifc_point(struct ifc *f, struct vec3 p);
 int ifc_direction(struct ifc *f, struct vec3 d);
 /* An element of the storey: "kind name ... , placement, shape, tag, rest". shape 0: it has none. */
 int ifc_element(struct ifc *f, const char *kind, const char *name, int shape, const char *rest);
+/* The same with a GUID of the kind and a key. */
+int ifc_element_of(struct ifc *f, const char *kind, const char *key, const char *name, int shape, const char *rest);
 /* An IfcOpeningElement in an element, and the relation between them. */
 int ifc_opening(struct ifc *f, const char *name, int element, int shape);
 /* A door or window in an opening, of the size that the lines need; shape 0: it has none. opening 0: it is in none. */
@@ -80,6 +82,6 @@ enum status ifc_walls(struct ifc *f); /* with their openings, doors and windows 
 enum status ifc_rooms(struct ifc *f); /* slabs with their openings, and spaces */
 enum status ifc_boxes(struct ifc *f);
 
-enum status ifc_objects(struct ifc *f); /* ifc_objects.c: synthetic objects */
+enum status ifc_objects(struct ifc *f); /* ifc_objects.c: synthetic objects, then furniture */
 
 #endif

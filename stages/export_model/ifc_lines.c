@@ -19,16 +19,18 @@ int ifc_put(struct ifc *f, const char *fmt, ...)
     return id;
 }
 
-int ifc_begin(struct ifc *f, const char *kind, const char *name)
+static int begin(struct ifc *f, const char *kind, const char *key, const char *name)
 {
     char guid[23], text[1200];
     const int id = ifc_next(f);
-    snprintf(text, sizeof text, "%s/%s/%s", f->s->name, kind, name);
+    snprintf(text, sizeof text, "%s/%s/%s", f->s->name, kind, key);
     ifc_guid(guid, text);
     fprintf(f->to, "#%d=%s('%s',$,", id, kind, guid);
     ifc_text(f->to, name);
     return id;
 }
+
+int ifc_begin(struct ifc *f, const char *kind, const char *name) { return begin(f, kind, name, name); }
 
 enum status ifc_keep(struct ifc *f, struct ifc_ids *ids, int id)
 {
@@ -71,7 +73,12 @@ int ifc_direction(struct ifc *f, struct vec3 d)
 
 int ifc_element(struct ifc *f, const char *kind, const char *name, int shape, const char *rest)
 {
-    const int id = ifc_begin(f, kind, name);
+    return ifc_element_of(f, kind, name, name, shape, rest);
+}
+
+int ifc_element_of(struct ifc *f, const char *kind, const char *key, const char *name, int shape, const char *rest)
+{
+    const int id = begin(f, kind, key, name);
     fprintf(f->to, ",$,$,#%d,", f->placement);
     if (shape)
         fprintf(f->to, "#%d,$%s);\n", shape, rest);

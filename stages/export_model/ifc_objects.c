@@ -1,29 +1,48 @@
-/* ifc_objects.c - synthetic objects in IFC4: an IfcFurniture of triangles each, in its colour. */
+/* ifc_objects.c - synthetic objects and furniture in IFC4: an IfcFurniture of triangles each, in its colour. */
+#include <stdio.h>
 #include <stdlib.h>
 
 #include "stages/export_model/ifc.h"
 
-static void put_points(struct ifc *f, const struct obj_mesh *mesh)
-{
-    char x[40], y[40], z[40];
-    fputs("((", f->to);
-    for (int i = 0; i < 3 * mesh->count; i++) {
-        const struct vec3 p = mesh->triangles[i / 3][i % 3];
-        fprintf(f->to, "%s(%s,%s,%s)", i ? "," : "", ifc_real(x, p.x), ifc_real(y, p.y), ifc_real(z, p.z));
-    }
-    fputs("))", f->to);
-}
+enum { MAX_KEY = 300 };
 
-static int put_style(struct ifc *f, const char *name, struct rgb albedo)
+static int put_style(struct ifc *f, const char *name, const double colour[3])
 {
     char r[40], g[40], b[40];
-    const int colour =
-        ifc_put(f, "IFCCOLOURRGB($,%s,%s,%s)", ifc_real(r, albedo.r), ifc_real(g, albedo.g), ifc_real(b, albedo.b));
-    const int shading = ifc_put(f, "IFCSURFACESTYLESHADING(#%d,0.)", colour), style = ifc_next(f);
+    const int rgb =
+        ifc_put(f, "IFCCOLOURRGB($,%s,%s,%s)", ifc_real(r, colour[0]), ifc_real(g, colour[1]), ifc_real(b, colour[2]));
+    const int shading = ifc_put(f, "IFCSURFACESTYLESHADING(#%d,0.)", rgb), style = ifc_next(f);
     fprintf(f->to, "#%d=IFCSURFACESTYLE(", style);
     ifc_text(f->to, name);
     fprintf(f->to, ",.BOTH.,(#%d));\n", shading);
     return style;
+}
+
+/* An IfcTriangulatedFaceSet. corners NULL: each three points are a triangle. */
+static int put_triangles(struct ifc *f, const struct vec3 *points, int point_count, const int (*corners)[3], int count)
+{
+    char x[40], y[40], z[40];
+    const int list = ifc_next(f);
+    fprintf(f->to, "#%d=IFCCARTESIANPOINTLIST3D((", list);
+    for (int i = 0; i < point_count; i++)
+        fprintf(f->to, "%s(%s,%s,%s)", i ? "," : "", ifc_real(x, points[i].x), ifc_real(y, points[i].y),
+                ifc_real(z, points[i].z));
+    fputs("));\n", f->to);
+    const int set = ifc_next(f);
+    fprintf(f->to, "#%d=IFCTRIANGULATEDFACESET(#%d,$,.F.,(", set, list);
+    for (int k = 0; k < count; k++) {
+        const int own[3] = {3 * k, 3 * k + 1, 3 * k + 2}, *c = corners ? corners[k] : own;
+        fprintf(f->to, "%s(%d,%d,%d)", k ? "," : "", c[0] + 1, c[1] + 1, c[2] + 1);
+    }
+    fputs("),$);\n", f->to);
+    return set;
+}
+
+static enum status put_furniture(struct ifc *f, const char *key, const char *name, int set, const double colour[3])
+{
+    ifc_put(f, "IFCSTYLEDITEM(#%d,(#%d),$)", set, put_style(f, name, colour));
+    const int shape = ifc_tessellation(f, &(struct ifc_ids){&set, 1});
+    return ifc_keep(f, &f->contained, ifc_element_of(f, "IFCFURNITURE", key, name, shape, ",.NOTDEFINED."));
 }
 
 enum status ifc_objects(struct ifc *f)
@@ -32,18 +51,20 @@ enum status ifc_objects(struct ifc *f)
     for (int i = 0; !f->err->status && i < objects->list.count; i++) {
         const struct object *o = &objects->list.items[i];
         const struct obj_mesh *mesh = &objects->meshes[i];
-        const int list = ifc_next(f);
-        fprintf(f->to, "#%d=IFCCARTESIANPOINTLIST3D", list);
-        put_points(f, mesh);
-        fputs(";\n", f->to);
-        int set = ifc_next(f);
-        fprintf(f->to, "#%d=IFCTRIANGULATEDFACESET(#%d,$,.F.,(", set, list);
-        for (int k = 0; k < mesh->count; k++)
-            fprintf(f->to, "%s(%d,%d,%d)", k ? "," : "", 3 * k + 1, 3 * k + 2, 3 * k + 3);
-        fputs("),$);\n", f->to);
-        ifc_put(f, "IFCSTYLEDITEM(#%d,(#%d),$)", set, put_style(f, o->name, o->brdf.albedo));
-        const int shape = ifc_tessellation(f, &(struct ifc_ids){&set, 1});
-        ifc_keep(f, &f->contained, ifc_element(f, "IFCFURNITURE", o->name, shape, ",.NOTDEFINED."));
+        const int set = put_triangles(f, (const struct vec3 *)mesh->triangles, 3 * mesh->count, NULL, mesh->count);
+        const double colour[3] = {o->brdf.albedo.r, o->brdf.albedo.g, o->brdf.albedo.b};
+        put_furniture(f, o->name, o->name, set, colour);
+    }
+    for (int i = 0; !f->err->status && i < f->s->things->count; i++) {
+        const struct export_thing *t = &f->s->things->things[i];
+        const struct thing_mesh *m = &t->mesh;
+        const int set =
+            put_triangles(f, m->vertices, m->vertex_count, (const int(*)[3])m->triangles, m->triangle_count);
+        char key[MAX_KEY]; /* an object may have the same name */
+        double colour[3];
+        snprintf(key, sizeof key, "thing/%s", t->name);
+        export_thing_colour(colour, t, f->s->exposure);
+        put_furniture(f, key, t->name, set, colour);
     }
     return f->err->status;
 }

@@ -1,9 +1,10 @@
-/* rules.c - the textured model and its edits for other programs. The pages come first, the IFC file last. */
+/* rules.c - the textured model and its edits, with their furniture, for other programs. The pages come first, the IFC
+ * file last. */
 #include "common/graph/scene_rules.h"
 
 RULES(export_model)
 {
-    graph_step(g, "exports", STEP_ONE, "vita");
+    graph_step(g, "exports", STEP_ONE, "vita things");
     graph_goal(g, "exports", NULL);
     for (int edit = -1; f->has_model && edit < f->edits.count; edit++) {
         const char *model = scene_model_folder(g, &f->edits, edit), *name = scene_model_name(model);
@@ -14,6 +15,12 @@ RULES(export_model)
         rule_needs(g, PATH(g, MODEL, .model = model));
         rule_needs(g, PATH(g, PLAN, .model = model));
         rule_takes(g, "--map", map);
+        rule_takes(g, "--base", map ? PATH(g, MODEL) : NULL);
+        if (f->views.count) {
+            rule_needs(g, PATH(g, THINGS));
+            rule_needs(g, PATH(g, THING_VOLUME));
+            rule_option(g, "--things", FOLDER(g, THINGS));
+        }
         rule_takes(g, "--objects", map ? PATH(g, OBJECTS, .model = model) : NULL);
         rule_option(g, "--scene", map ? f->folder : NULL);
         rule_takes(g, "--axes", PATH(g, AXES));

@@ -7,8 +7,9 @@
  * A body becomes a node with a mesh, and the triangles of a body with one material become a primitive: pages come
  * first, then glass, then the colours in order of the triangles. So the order of everything follows from the model,
  * and the same model gives the same bytes. Vertices are not shared between triangles: faces are flat, each has its
- * own normal, and the corners of two tiles have different texture coordinates. Synthetic objects follow, a node and a
- * material each.
+ * own normal, and the corners of two tiles have different texture coordinates. Synthetic objects follow, then
+ * furniture, a node and a material each. Furniture has thousands of triangles of a curved surface, so these do share
+ * their vertices, and have no normals, which unlit materials do not need.
  *
  * glTF's y points up and its z to the viewer, so a point (x, y, z) becomes (x, z, -y). Textures hold the light of
  * the room, so materials are unlit (extension KHR_materials_unlit). `extras` of a primitive lists its faces with the
@@ -27,7 +28,8 @@
 #include "common/product/product.h"
 #include "stages/export_model/writers.h"
 
-enum { FLOATS = 5126, ARRAY_BUFFER = 34962 }; /* numbers of the format */
+/* numbers of the format; NO_TARGET: a view that holds no vertices */
+enum { INTEGERS = 5125, FLOATS = 5126, NO_TARGET = 0, VERTICES = 34962, TRIANGLES = 34963 };
 enum { MAX_OBJECT_NAME = 300 };
 
 struct bytes {
@@ -55,13 +57,13 @@ static enum status put_bytes(struct gltf *g, const void *data, size_t size)
 }
 
 /* *index: of the new view of the buffer. */
-static enum status add_view(struct gltf *g, const void *data, size_t size, bool vertices, json_int_t *index)
+static enum status add_view(struct gltf *g, const void *data, size_t size, int target, json_int_t *index)
 {
     const size_t at = g->bin.size;
     if (put_bytes(g, data, size)) return g->err->status;
     json_t *view =
         json_pack("{s:i, s:I, s:I}", "buffer", 0, "byteOffset", (json_int_t)at, "byteLength", (json_int_t)size);
-    if (vertices) json_object_set_new(view, "target", json_integer(ARRAY_BUFFER));
+    if (target) json_object_set_new(view, "target", json_integer(target));
     *index = (json_int_t)json_array_size(g->views);
     json_array_append_new(g->views, view);
     return ST_OK;
@@ -72,7 +74,7 @@ static enum status add_vectors(struct gltf *g, const float *data, size_t count, 
                                json_int_t *index)
 {
     json_int_t view;
-    if (add_view(g, data, count * (size_t)size * sizeof *data, true, &view)) return g->err->status;
+    if (add_view(g, data, count * (size_t)size * sizeof *data, VERTICES, &view)) return g->err->status;
     json_t *a = json_pack("{s:I, s:i, s:I, s:s}", "bufferView", view, "componentType", (int)FLOATS, "count",
                           (json_int_t)count, "type", size == 3 ? "VEC3" : "VEC2");
     if (bounds) {
@@ -245,6 +247,53 @@ static enum status add_objects(struct gltf *g)
     return g->err->status;
 }
 
+/* An accessor of the corners of triangles. */
+static enum status add_triangles(struct gltf *g, const struct thing_mesh *mesh, json_int_t *index)
+{
+    const size_t count = 3 * (size_t)mesh->triangle_count;
+    uint32_t *corners = malloc((count + 1) * sizeof *corners);
+    json_int_t view;
+    if (!corners) return err_nomem(g->err, "triangles", count * sizeof *corners);
+    for (size_t i = 0; i < count; i++) corners[i] = (uint32_t)mesh->triangles[i / 3][i % 3];
+    if (!add_view(g, corners, count * sizeof *corners, TRIANGLES, &view)) {
+        *index = (json_int_t)json_array_size(g->accessors);
+        json_array_append_new(g->accessors, json_pack("{s:I, s:i, s:I, s:s}", "bufferView", view, "componentType",
+                                                      (int)INTEGERS, "count", (json_int_t)count, "type", "SCALAR"));
+    }
+    free(corners);
+    return g->err->status;
+}
+
+static enum status add_thing(struct gltf *g, const struct export_thing *t)
+{
+    const struct thing_mesh *mesh = &t->mesh;
+    const size_t count = (size_t)mesh->vertex_count;
+    float *at = malloc((3 * count + 1) * sizeof *at);
+    char name[MAX_OBJECT_NAME];
+    json_int_t points = 0, triangles = 0;
+    double c[3];
+    snprintf(name, sizeof name, "thing/%s", t->name);
+    export_thing_colour(c, t, g->s->exposure);
+    if (!at) err_nomem(g->err, "vertices", 3 * count * sizeof *at);
+    for (size_t i = 0; !g->err->status && i < count; i++) put_point(at + 3 * i, mesh->vertices[i]);
+    if (!g->err->status && !add_vectors(g, at, count, 3, true, &points) && !add_triangles(g, mesh, &triangles)) {
+        const json_int_t material = (json_int_t)json_array_size(g->materials);
+        json_array_append_new(g->materials,
+                              unlit(name, json_pack("{s:[f,f,f,f]}", "baseColorFactor", c[0], c[1], c[2], 1.0)));
+        add_node(g, name,
+                 json_pack("[{s:{s:I}, s:I, s:I, s:{s:[{s:s, s:i}]}}]", "attributes", "POSITION", points, "indices",
+                           triangles, "material", material, "extras", "faces", "name", name, "first", 0));
+    }
+    free(at);
+    return g->err->status;
+}
+
+static enum status add_things(struct gltf *g)
+{
+    for (int i = 0; !g->err->status && i < g->s->things->count; i++) add_thing(g, &g->s->things->things[i]);
+    return g->err->status;
+}
+
 static enum status add_picture(struct gltf *g, json_t *images, json_t *textures, int page)
 {
     char path[FILE_PATH], name[32];
@@ -262,7 +311,7 @@ static enum status add_picture(struct gltf *g, json_t *images, json_t *textures,
     const bool whole = data && fread(data, 1, (size_t)size, file) == (size_t)size;
     if (file) fclose(file);
     if (whole)
-        add_view(g, data, (size_t)size, false, &view);
+        add_view(g, data, (size_t)size, NO_TARGET, &view);
     else
         err_set(g->err, ST_IO, "%s cannot be read again.", path);
     free(data);
@@ -311,7 +360,7 @@ enum status write_gltf(const struct export_scene *s, struct err *err)
     json_t *images = json_array(), *textures = json_array();
     add_materials(&g);
     for (int i = 0; !err->status && i < s->page_count; i++) add_picture(&g, images, textures, i);
-    if (!err->status && !add_bodies(&g)) add_objects(&g);
+    if (!err->status && !add_bodies(&g) && !add_objects(&g)) add_things(&g);
     json_t *root = json_pack("{s:{s:s, s:s}, s:[s], s:i, s:[{s:s, s:O}], s:O, s:O, s:O, s:O, s:O, s:[{s:I}]}", "asset",
                              "version", "2.0", "generator", "remodel " REMODEL_VERSION, "extensionsUsed",
                              "KHR_materials_unlit", "scene", 0, "scenes", "name", s->name, "nodes", g.children, "nodes",

@@ -2,6 +2,7 @@
  *
  * Walls, slabs and spaces are extruded outlines (ifc_walls.c, ifc_rooms.c); an opening is a box that voids its wall or
  * slab, and a door or window fills it (ifc_fillings.c). Walls that are along no axis are the triangles of their faces.
+ * An object or a piece of furniture is an IfcFurniture of triangles in one colour (ifc_objects.c).
  * Photographic texture is on coverings: each face of the model is an IfcCovering of triangles, with the texture maps
  * that IFC4 defines for IfcTriangulatedFaceSet, so that readers without textures lose nothing of the building. */
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 /* write_obj.c - Wavefront OBJ, model.obj with model.mtl: an object for each body, a group for each face name, then the
- * synthetic objects; z is up. */
+ * synthetic objects, then the furniture; z is up. */
 #include <stdio.h>
 
 #include "stages/export_model/writers.h"
@@ -59,15 +59,34 @@ static void put_objects(FILE *to, const struct export_scene *s)
     }
 }
 
+/* Curved surfaces, whose triangles share corners. */
+static void put_things(FILE *to, const struct export_scene *s)
+{
+    for (int i = 0; i < s->things->count; i++) {
+        const struct export_thing *t = &s->things->things[i];
+        const int n = t->mesh.vertex_count;
+        fprintf(to, "o thing/%s\ng thing/%s\nusemtl thing_%s\n", t->name, t->name, t->name);
+        for (int k = 0; k < n; k++) {
+            const struct vec3 p = t->mesh.vertices[k];
+            fprintf(to, "v %.9g %.9g %.9g\n", p.x, p.y, p.z);
+        }
+        for (int k = 0; k < t->mesh.triangle_count; k++) { /* -1 is the last corner above */
+            const int *c = t->mesh.triangles[k];
+            fprintf(to, "f %d %d %d\n", c[0] - n, c[1] - n, c[2] - n);
+        }
+    }
+}
+
 static void put_model(FILE *to, const struct export_scene *s)
 {
     put_faces(to, s);
     put_objects(to, s);
+    put_things(to, s);
 }
 
 static void put_materials(FILE *to, const struct export_scene *s)
 {
-    fprintf(to, "# pages hold radiance times %.9g, as sRGB\n", s->exposure);
+    fprintf(to, "# pages hold radiance times %.9g, as sRGB; Kd of things is the same, linear\n", s->exposure);
     for (int i = 0; i < s->page_count; i++)
         fprintf(to, "newmtl page%d\nKa 0 0 0\nKd 1 1 1\nKs 0 0 0\nillum 1\nmap_Kd page%d.png\n", i, i);
     fputs("newmtl glass\nKa 0 0 0\nKd 0.8 0.9 0.95\nKs 0 0 0\nd 0.2\nillum 1\n", to);
@@ -84,6 +103,12 @@ static void put_materials(FILE *to, const struct export_scene *s)
         const struct object *o = &s->objects->list.items[i];
         fprintf(to, "newmtl object_%s\nKa 0 0 0\nKd %.6g %.6g %.6g\nKs 0 0 0\nillum 1\n", o->name, o->brdf.albedo.r,
                 o->brdf.albedo.g, o->brdf.albedo.b);
+    }
+    for (int i = 0; i < s->things->count; i++) {
+        double c[3];
+        export_thing_colour(c, &s->things->things[i], s->exposure);
+        fprintf(to, "newmtl thing_%s\nKa 0 0 0\nKd %.6g %.6g %.6g\nKs 0 0 0\nillum 1\n", s->things->things[i].name,
+                c[0], c[1], c[2]);
     }
 }
 

@@ -6,6 +6,7 @@
 #include "common/product/exports.h"
 #include "stages/export_model/export_faces.h"
 #include "stages/export_model/export_objects.h"
+#include "stages/export_model/export_things.h"
 
 struct export_scene {
     const char *name; /* of the scene and the edit, for titles */
@@ -13,6 +14,7 @@ struct export_scene {
     const struct export_faces *faces;
     const struct model_plan *plan;
     const struct export_objects *objects; /* that an edit puts into the model */
+    const struct export_things *things;   /* furniture that the photographs show */
     const int (*page_sizes)[2];
     int page_count;
     double exposure; /* of the pages */

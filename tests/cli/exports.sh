@@ -6,6 +6,9 @@ boxed t textures
 printf 'door gate on north from -8 0 to 2 12 closed\nwindow pane on east from -5 5 to 5 12\n' >>scenes/t/model.txt
 sed -i 's/^set slab 1$/set slab 1\nset glass 0.1\nset leaf 0.2/' scenes/t/model.txt
 printf 'remodel-script 1\ngable hall from south 20 to north 20 ridge 30\nskylight sky on hall from 5 5 to 10 10\nhatch trap on hall from -20 -20 to -15 -15 closed\n' >scenes/t/edits/attic.txt
+# of the two things that the photos show, one goes, and one has a copy
+printf 'remodel-marked-things 1\nthing cube in photo_2 80 60\nthing screen in photo_2 5 20\n' >scenes/t/things.txt
+printf 'remodel-script 1\nclear screen\nmove cube by 1 0.5 0.1\ncopy cube as second by -12 0 turn 90\n' >scenes/t/edits/furniture.txt
 # a wedge of 1 x 1 x 1: 8 triangles, since its rectangles become two each
 printf 'v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 0 1 1\nf 4 3 2 1\nf 1 2 5\nf 4 6 3\nf 1 5 6 4\nf 2 3 6 5\n' >scenes/t/wedge.obj
 printf 'remodel-script 1\nobject wedge wedge.obj at 5 7 0 turn 90 scale 2 4 3 matt 0.5 0.25 0.125\nobject ball wedge.obj at -9 -9 1 phong 0.2 0.4 0.3 0.05 20\n' >scenes/t/edits/object.txt
@@ -27,7 +30,7 @@ gltf_is_valid()
 the_gltf_validator_finds_no_error()
 {
     has gltf-validator || skip "node does not find gltf-validator (npm install gltf-validator; NODE_PATH=.../node_modules)"
-    for edit in bare object; do gltf_is_valid $edit; done
+    for edit in bare object furniture; do gltf_is_valid $edit; done
 }
 
 # building FILE: "TYPE COUNT VOLUME" of the building's parts, as web-ifc reads them: with openings cut out of walls and slabs
@@ -133,4 +136,75 @@ objects_of_an_edit_are_in_every_format()
     fi
 }
 
-for t in objects_of_an_edit_are_in_every_format the_gltf_validator_finds_no_error web_ifc_reads_the_building web_ifc_reads_a_gable assimp_reads_obj_and_gltf; do run "$t"; done
+# boxes FORMAT EDIT|model: "NAME X0 Y0 Z0 X1 Y1 Z1" of each thing in an exported file, z up
+boxes()
+{
+    local E=out/t/remodel/$2/export; [ "$2" != model ] || E=out/t/model/export
+    case $1 in
+        obj) awk 'function put() { if (n) print name, low[2], low[3], low[4], high[2], high[3], high[4]; n = 0 }
+            $1 == "o" { put(); name = $2; thing = sub(/^thing\//, "", name) }
+            $1 == "v" && thing { for (k = 2; k <= 4; k++) { if (!n || $k < low[k]) low[k] = $k; if (!n || $k > high[k]) high[k] = $k } n++ }
+            END { put() }' "$E/model.obj" ;;
+        ifc) awk '/IFCCARTESIANPOINTLIST3D/ { points = $0; sub(/^[^(]*\(\(\(/, "", points) }
+            /=IFCFURNITURE\(/ { split($0, part, "\047"); n = split(points, v, /[(),;]+/)
+                for (i = 1; i + 2 <= n; i += 3) for (k = 0; k < 3; k++) { x = v[i + k] + 0
+                    if (i == 1 || x < low[k]) low[k] = x; if (i == 1 || x > high[k]) high[k] = x }
+                print part[4], low[0], low[1], low[2], high[0], high[1], high[2] }' "$E/model.ifc" ;;
+        glb) node -e "
+            const b = require('fs').readFileSync('$E/model.glb'), g = JSON.parse(b.subarray(20, 20 + b.readUInt32LE(12)));
+            for (const n of g.nodes) {
+                const p = g.meshes[n.mesh].primitives[0], a = g.accessors[p.attributes.POSITION], l = a.min, h = a.max;
+                if (!n.name.startsWith('thing/')) continue;
+                if (p.extras.faces[0].name != n.name || g.materials[p.material].name != n.name) throw n.name;
+                console.log(n.name.slice(6), l[0], -h[2], l[1], h[0], -l[2], h[1]);
+            }" ;;
+    esac
+}
+
+# things_are_at FORMAT: in files of this format
+things_are_at()
+{
+    boxes "$1" model >before
+    [ "$(cut -d' ' -f1 before | xargs)" = 'screen cube' ] || { cat before; fail "$1: wanted the things of the photos"; }
+    boxes "$1" furniture >found
+    # the middle of the cube's box is at 2 5.3; the copy is turned by a quarter about it
+    awk 'function near(a, b) { return (a - b) ^ 2 < 0.0001 }
+        FNR == NR { if ($1 == "cube") for (k = 2; k <= 7; k++) c[k] = $k; next }
+        $1 == "cube" { ok += near($2, c[2] + 1) && near($3, c[3] + 0.5) && near($4, c[4] + 0.1) && near($5, c[5] + 1) && near($6, c[6] + 0.5) && near($7, c[7] + 0.1) }
+        $1 == "second" { ok += near($2 + 9, 5.3 - c[6]) && near($5 + 9, 5.3 - c[3]) && near($3 - 5.8, c[2] - 2) && near($6 - 5.8, c[5] - 2) && near($4, c[4] + 0.1) && near($7, c[7] + 0.1) }
+        END { exit !(ok == 2 && FNR == 2) }' before found || { cat before found; fail "$1: the cube or its copy is elsewhere, or the screen is still there"; }
+}
+
+things_are_in_every_format_as_the_edit_has_them()
+{
+    local F=out/t/remodel/furniture/export
+    awk '$3 == "floor" && $2 == "cube" { low = $4; high = $7; exit !((low + high - 4) ^ 2 < 0.001) }' out/t/things/things.txt || fail "this test wants another cube"
+    things_are_at obj
+    things_are_at ifc
+    ! grep -q screen $F/model.obj $F/model.mtl $F/model.ifc || fail "the cleared screen is still in a file"
+    ! grep -aq screen $F/model.glb || fail "the cleared screen is still in model.glb"
+    # radiance times exposure, as the comment of model.mtl says, is the colour everywhere
+    awk 'FNR == NR { if ($2 == "cube") for (k = 0; k < 3; k++) r[k] = $(17 + k); next } /pages hold radiance times/ { e = $6 } $1 == "newmtl" { at = $2 }
+        $1 == "Kd" && at ~ /^thing_(cube|second)$/ { for (k = 0; k < 3; k++) { w = e * r[k] > 1 ? 1 : e * r[k]; d = $(k + 2) - w; ok += d * d < 1e-9 } }
+        END { exit ok != 6 }' out/t/things/things.txt $F/model.mtl || { cat $F/model.mtl; fail "model.mtl has other colours"; }
+    [ "$(grep -c '^usemtl thing_' $F/model.obj)" = 2 ] || fail "model.obj does not use the colours"
+    ! grep -oE "IFC[A-Z]*\('[^']{22}'" $F/model.ifc | grep -oE "'.*'" | sort | uniq -d | matches . || fail "a GUID occurs twice"
+    command -v node >/dev/null || skip "model.glb was not read: node is not installed"
+    things_are_at glb
+}
+
+things_of_an_edit_want_the_unedited_model()
+{
+    local rc=0
+    "$B/bin/export_model" --name t --model out/t/remodel/furniture --map out/t/remodel/furniture/texture.txt --things out/t/things \
+        --axes out/t/model/axes.txt --vita out/t/vita --out made 2>err.txt || rc=$?
+    { [ $rc = 2 ] && grep -q 'furniture/texture.txt: the edit changes the thing .*, but --base is missing; see --help\.$' err.txt; } ||
+        { cat err.txt; fail "exit $rc; nothing asks for the unedited model"; }
+    [ ! -e made/model.ifc ] || fail "a file was left"
+    # without things there is furniture in no file
+    "$B/bin/export_model" --name t --model out/t/model --axes out/t/model/axes.txt --vita out/t/vita --out made 2>err.txt || { cat err.txt; fail "export_model"; }
+    ! grep -q thing made/model.obj || fail "things were exported without --things"
+}
+
+for t in objects_of_an_edit_are_in_every_format things_are_in_every_format_as_the_edit_has_them \
+    things_of_an_edit_want_the_unedited_model the_gltf_validator_finds_no_error web_ifc_reads_the_building web_ifc_reads_a_gable assimp_reads_obj_and_gltf; do run "$t"; done
