@@ -29,4 +29,5 @@ RULES(find_things)
     const char *marks = graph_scene_file(g, "things.txt");
     if (marks) rule_takes(g, "--marks", marks);
     rule_option(g, "--out", FOLDER(g, THINGS));
+    graph_list_if(g, GRAPH_ALWAYS_SHOWN, PATH(g, THING_SHEET), scene_asks_for_any(f, "textures remodel"));
 }

@@ -1,4 +1,4 @@
-/* contents_model.c - pictures of the room's axes and of the solid models. */
+/* contents_model.c - pictures of the room's axes, the solid models and the furniture. */
 #include "stages/report/contents_parts.h"
 
 #include <dirent.h>
@@ -110,6 +110,12 @@ enum status contents_read_models(struct contents *c, const char *folder, struct 
     }
     free(names);
     return err->status;
+}
+
+/* things/, if find_things has run */
+void contents_find_things(struct contents *c, const char *folder)
+{
+    c->thing_sheet = contents_product_name(folder, PRODUCT_THING_SHEET, NULL);
 }
 
 void model_card_release(struct model_card *m)

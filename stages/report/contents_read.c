@@ -54,6 +54,7 @@ enum status contents_read(struct contents *c, const struct contents_sources *fro
         contents_read_models(c, folder, err) || contents_read_textures(c, folder, err) ||
         contents_read_light(c, folder, err) || contents_read_relit(c, folder, from->shared, err))
         return err->status;
+    contents_find_things(c, folder);
     char page[FILE_PATH];
     c->has_remodel_page = contents_product(page, folder, PRODUCT_REMODEL_PAGE, NULL);
     return read_runs(c, from, err);
@@ -79,6 +80,7 @@ void contents_release(struct contents *c)
     free(c->lens_forms);
     for (int i = 0; i < c->model_count; i++) model_card_release(&c->models[i]);
     free(c->models);
+    free(c->thing_sheet);
     for (int i = 0; i < c->texture_count; i++) texture_card_release(&c->textures[i]);
     free(c->textures);
     light_contents_release(&c->light);

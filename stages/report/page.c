@@ -31,6 +31,7 @@ static void put_head(FILE *to, const char *scene, const struct contents *c)
     fputs(" · remodel " REMODEL_VERSION "</p>\n<nav aria-label=\"Contents\">", to);
     if (page_has_videos(c)) fputs("<a href=\"#video\">Video</a>", to);
     if (c->model_count) fputs("<a href=\"#model\">Model</a>", to);
+    if (c->thing_sheet) fputs("<a href=\"#things\">Things</a>", to);
     if (c->has_remodel_page) fputs("<a href=\"remodel/index.html\">Remodelled rooms</a>", to);
     if (c->texture_count) fputs("<a href=\"#textures\">Textures</a>", to);
     if (light_contents_any(&c->light)) fputs("<a href=\"#light\">Light</a>", to);
@@ -52,9 +53,9 @@ static void put_head(FILE *to, const char *scene, const struct contents *c)
 enum status page_write(FILE *to, const char *scene, const struct contents *c, struct err *err)
 {
     put_head(to, scene, c);
-    if (page_videos(to, c, err) || page_models(to, c, err) || page_textures(to, c, err) || page_light(to, c, err) ||
-        page_relit(to, c, err) || page_evaluation(to, c, err) || page_photos(to, c, err) || page_depths(to, c, err) ||
-        page_axes(to, c, err))
+    if (page_videos(to, c, err) || page_models(to, c, err) || page_things(to, c, err) || page_textures(to, c, err) ||
+        page_light(to, c, err) || page_relit(to, c, err) || page_evaluation(to, c, err) || page_photos(to, c, err) ||
+        page_depths(to, c, err) || page_axes(to, c, err))
         return err->status;
     page_numbers(to, c);
     page_lens(to, c);

@@ -1,4 +1,4 @@
-/* page_model.c - the axes of the room and the solid models, to be checked by eye. */
+/* page_model.c - the axes of the room, the solid models and the furniture, to be checked by eye. */
 #include "stages/report/page_parts.h"
 
 #include "common/base/base64.h"
@@ -67,6 +67,29 @@ enum status page_models(FILE *to, const struct contents *c, struct err *err)
         }
         fputs("</details>\n", to);
     }
+    fputs("</section>\n", to);
+    return ST_OK;
+}
+
+static enum status put_things_picture(FILE *to, const char *file, const char *alt, const char *caption, struct err *err)
+{
+    if (!file) return ST_OK;
+    fprintf(to, "<figure><img loading=\"lazy\" alt=\"%s\" src=\"data:image/svg+xml;base64,", alt);
+    if (base64_write_file(to, file, err)) return err->status;
+    fprintf(to, "\"><figcaption>%s</figcaption></figure>\n", caption);
+    return ST_OK;
+}
+
+enum status page_things(FILE *to, const struct contents *c, struct err *err)
+{
+    if (!c->thing_sheet) return ST_OK;
+    fputs("<section id=\"things\" aria-labelledby=\"things-title\">\n<h2 id=\"things-title\">Things</h2>\n"
+          "<p class=\"muted\">Furniture and whatever else is in front of the walls. An edit can clear, move or copy a "
+          "thing that has a name in things.txt.</p>\n",
+          to);
+    if (put_things_picture(to, c->thing_sheet, "Pictures of all things with their names",
+                           "Each thing in the view that shows it best, with its size and its support.", err))
+        return err->status;
     fputs("</section>\n", to);
     return ST_OK;
 }

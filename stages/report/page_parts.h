@@ -9,6 +9,7 @@
  * ST_NOMEM; ST_IO: a file that the page embeds cannot be read. */
 enum status page_videos(FILE *to, const struct contents *c, struct err *err);
 enum status page_models(FILE *to, const struct contents *c, struct err *err);
+enum status page_things(FILE *to, const struct contents *c, struct err *err);
 enum status page_textures(FILE *to, const struct contents *c, struct err *err);
 enum status page_light(FILE *to, const struct contents *c, struct err *err);
 enum status page_relit(FILE *to, const struct contents *c, struct err *err);

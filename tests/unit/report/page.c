@@ -53,6 +53,22 @@ static void the_page_of_remodelled_rooms_is_linked_if_there_is_one(void **state)
     free(page);
 }
 
+static void things_are_shown_if_there_are_any(void **state)
+{
+    struct err err = ERR_INIT;
+    char *page = page_of("scene", NULL);
+    (void)state;
+    assert_null(strstr(page, "Things"));
+    free(page);
+    assert_ok(outfile_make_folders(scratch_path("things"), &err), err);
+    scratch_write("things/sheet.svg", "<svg/>");
+    page = page_of("scene", NULL);
+    assert_contains(page, "<a href=\"#things\">Things</a>");
+    assert_contains(page, "<h2 id=\"things-title\">Things</h2>");
+    assert_contains(page, "src=\"data:image/svg+xml;base64,PHN2Zy8+\"");
+    free(page);
+}
+
 static void a_missing_scene_is_an_error(void **state)
 {
     const struct contents_sources from = {scratch_path("no-such-scene"), scratch, scratch, "rectify", NULL};
@@ -176,6 +192,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(missing_products_are_listed, scratch_make, scratch_remove),
         cmocka_unit_test_setup_teardown(the_page_of_remodelled_rooms_is_linked_if_there_is_one, scratch_make,
                                         scratch_remove),
+        cmocka_unit_test_setup_teardown(things_are_shown_if_there_are_any, scratch_make, scratch_remove),
         cmocka_unit_test_setup_teardown(a_missing_scene_is_an_error, scratch_make, scratch_remove),
         cmocka_unit_test_setup_teardown(photographs_are_shown_and_unlisted_ones_named, scratch_make, scratch_remove),
         cmocka_unit_test_setup_teardown(forms_of_lens_show_the_chosen_one_and_those_refused, scratch_make,
