@@ -11,11 +11,13 @@ RULES(find_things)
     rule_makes(g, PATH(g, THINGS));
     rule_makes(g, PATH(g, THING_VOLUME));
     rule_makes(g, PATH(g, THING_SHEET));
+    rule_makes(g, PATH(g, THING_PLAN));
     for (int i = 0; i < f->views.count; i++) {
         rule_makes(g, PATH(g, THING_MASK, .view = f->views.names[i]));
         graph_goal(g, "things", PATH(g, THING_MASK, .view = f->views.names[i]));
     }
     rule_takes(g, "--model", PATH(g, MODEL));
+    rule_takes(g, "--plan", PATH(g, PLAN));
     rule_takes(g, "--axes", PATH(g, AXES));
     rule_takes_cameras(g);
     rule_needs(g, PATH(g, LENSES));
@@ -30,4 +32,5 @@ RULES(find_things)
     if (marks) rule_takes(g, "--marks", marks);
     rule_option(g, "--out", FOLDER(g, THINGS));
     graph_list_if(g, GRAPH_ALWAYS_SHOWN, PATH(g, THING_SHEET), scene_asks_for_any(f, "textures remodel"));
+    graph_list_if(g, GRAPH_ALWAYS_SHOWN, PATH(g, THING_PLAN), scene_asks_for_any(f, "textures remodel"));
 }

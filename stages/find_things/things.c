@@ -20,6 +20,7 @@
 #include "stages/find_things/contact_sheet.h"
 #include "stages/find_things/support.h"
 #include "stages/find_things/thing_views.h"
+#include "stages/find_things/things_plan.h"
 
 #define SUPPORT_REACH 0.04 /* of the model's height */
 #define MARK_SLACK    3    /* voxels beside a surface at which a mark still finds it */
@@ -387,6 +388,8 @@ static enum status write_all(struct finder *f, struct err *err)
         !thing_volume_write(&f->volume, path, job->prov, err) &&
         !product_path_in(path, job->out, PRODUCT_THING_SHEET, NULL, err) &&
         !contact_sheet_write(&list, f->tiles, unit, path, err) &&
+        !product_path_in(path, job->out, PRODUCT_THING_PLAN, NULL, err) &&
+        !things_plan_write(&list, &job->in->plan, path, err) &&
         !product_path_in(path, job->out, PRODUCT_THINGS, NULL, err))
         thing_list_write(&list, path, job->prov, err);
     for (int k = 0; !err->status && k < f->count; k++) {

@@ -12,15 +12,15 @@
 struct things_job {
     const char *views, *depth, *ids; /* folders */
     const char *out;                 /* folder of the products */
-    const struct scene_inputs *in;   /* cameras, axes */
+    const struct scene_inputs *in;   /* cameras, axes, plan */
     const struct model_rays *model;  /* without panes */
     const struct thing_marks *marks;
     const struct things_params *params;
     struct provenance *prov;
 };
 
-/* Writes the masks of all views, the volume and the contact sheet, then the list. A mark where no surface is gives a
- * warning. */
+/* Writes the masks of all views, the volume, the contact sheet and the plan, then the list. A mark where no surface
+ * is gives a warning. */
 enum status things_find(const struct things_job *job, struct err *err);
 
 #endif

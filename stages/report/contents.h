@@ -131,7 +131,7 @@ struct contents {
     int axes_count;
     struct model_card *models;
     int model_count;
-    char *thing_sheet; /* the picture of all things, owned; NULL: not made */
+    char *thing_sheet, *thing_plan; /* files of the pictures of all things, owned; NULL: not made */
     struct texture_card *textures;
     int texture_count, viewpoint_count; /* cards; viewpoints that have an atlas, shown or not */
     struct light_contents light;

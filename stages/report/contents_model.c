@@ -116,6 +116,7 @@ enum status contents_read_models(struct contents *c, const char *folder, struct 
 void contents_find_things(struct contents *c, const char *folder)
 {
     c->thing_sheet = contents_product_name(folder, PRODUCT_THING_SHEET, NULL);
+    c->thing_plan = contents_product_name(folder, PRODUCT_THING_PLAN, NULL);
 }
 
 void model_card_release(struct model_card *m)

@@ -81,6 +81,7 @@ void contents_release(struct contents *c)
     for (int i = 0; i < c->model_count; i++) model_card_release(&c->models[i]);
     free(c->models);
     free(c->thing_sheet);
+    free(c->thing_plan);
     for (int i = 0; i < c->texture_count; i++) texture_card_release(&c->textures[i]);
     free(c->textures);
     light_contents_release(&c->light);

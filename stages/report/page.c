@@ -31,7 +31,7 @@ static void put_head(FILE *to, const char *scene, const struct contents *c)
     fputs(" · remodel " REMODEL_VERSION "</p>\n<nav aria-label=\"Contents\">", to);
     if (page_has_videos(c)) fputs("<a href=\"#video\">Video</a>", to);
     if (c->model_count) fputs("<a href=\"#model\">Model</a>", to);
-    if (c->thing_sheet) fputs("<a href=\"#things\">Things</a>", to);
+    if (c->thing_sheet || c->thing_plan) fputs("<a href=\"#things\">Things</a>", to);
     if (c->has_remodel_page) fputs("<a href=\"remodel/index.html\">Remodelled rooms</a>", to);
     if (c->texture_count) fputs("<a href=\"#textures\">Textures</a>", to);
     if (light_contents_any(&c->light)) fputs("<a href=\"#light\">Light</a>", to);

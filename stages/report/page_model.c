@@ -82,13 +82,16 @@ static enum status put_things_picture(FILE *to, const char *file, const char *al
 
 enum status page_things(FILE *to, const struct contents *c, struct err *err)
 {
-    if (!c->thing_sheet) return ST_OK;
+    if (!c->thing_sheet && !c->thing_plan) return ST_OK;
     fputs("<section id=\"things\" aria-labelledby=\"things-title\">\n<h2 id=\"things-title\">Things</h2>\n"
           "<p class=\"muted\">Furniture and whatever else is in front of the walls. An edit can clear, move or copy a "
           "thing that has a name in things.txt.</p>\n",
           to);
     if (put_things_picture(to, c->thing_sheet, "Pictures of all things with their names",
-                           "Each thing in the view that shows it best, with its size and its support.", err))
+                           "Each thing in the view that shows it best, with its size and its support.", err) ||
+        put_things_picture(to, c->thing_plan, "Plan of the rooms with all things",
+                           "From above: the box around each thing. Dashed: it hangs on a wall or from the ceiling.",
+                           err))
         return err->status;
     fputs("</section>\n", to);
     return ST_OK;

@@ -65,6 +65,7 @@ const char page_style[] =
     "img{width:100%}.sight+p{font-size:.85rem}\n"
     ".key .flat{height:12px;width:22px}.key .view{background:linear-gradient(90deg,#e0745c,#9a9a30,#3d97c9)}"
     ".key .made{background:repeating-linear-gradient(135deg,#464646 0 3px,#cdcdcd 3px 6px)}\n"
+    "#things figure{margin-bottom:16px}\n"
     ".pages{margin:8px 0 28px}.pages img{height:132px}\n"
     ".pairs{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(100%,460px),1fr));gap:20px}\n"
     ".pair{display:grid;grid-template-columns:1fr 1fr;gap:6px}.pair img{width:100%}\n"

@@ -7,7 +7,7 @@ m() { make -s DEPS=manual PHOTOS=set/photos SFM=set/model SCENE=t "$@" >log 2>&1
 m things
 O=out/t
 # shellcheck disable=SC2206 # a list of options without blanks
-inputs=(--model "$O/model/model.txt" --axes "$O/model/axes.txt" --views "$O/views"
+inputs=(--model "$O/model/model.txt" --plan "$O/model/plan.txt" --axes "$O/model/axes.txt" --views "$O/views"
     --depth "$O/depth/model" --ids "$O/ids")
 
 # find_things CODE WORD ARGUMENT...: runs find_things; checks its exit status and a word on standard error
@@ -30,7 +30,7 @@ times() { find $O/things -type f -printf '%p %T@\n' | LC_ALL=C sort; }
 make_makes_a_list_a_volume_a_sheet_and_masks()
 {
     local v
-    for f in things.txt volume.exr sheet.svg; do [ -s "$O/things/$f" ] || fail "no $f"; done
+    for f in things.txt volume.exr sheet.svg plan.svg; do [ -s "$O/things/$f" ] || fail "no $f"; done
     for v in "$O"/ids/*.exr; do [ -s "$O/things/masks/${v##*/}" ] || fail "no mask of $v"; done
     [ "$(ls $O/things/masks | wc -l)" = "$(ls $O/ids/*.exr | wc -l)" ] || fail "masks of no view"
     # the wall at the back, and the cube before it
@@ -38,7 +38,9 @@ make_makes_a_list_a_volume_a_sheet_and_masks()
         $O/things/things.txt ||
         { cat $O/things/things.txt; fail "wanted two things on the floor that six views show"; }
     [ "$(grep -c '<image ' $O/things/sheet.svg)" = 2 ] || fail "the sheet has not two pictures"
-    ! grep -qF "$PWD" $O/things/things.txt $O/things/sheet.svg || fail "a product names a folder of this machine"
+    [ "$(grep -c '<path class="thing"' $O/things/plan.svg)" = 2 ] || fail "the plan has not two things"
+    for v in hall thing1 thing2; do grep -q ">$v</text>" $O/things/plan.svg || fail "the plan does not name $v"; done
+    ! grep -qF "$PWD" $O/things/things.txt $O/things/sheet.svg $O/things/plan.svg || fail "a product names a folder of this machine"
 }
 
 bytes_do_not_depend_on_threads()
@@ -47,7 +49,7 @@ bytes_do_not_depend_on_threads()
     for n in 1 2; do find_things 0 used "${inputs[@]}" --marks marks.txt --threads $n; rm -rf two$n; mv made two$n; done
     diff -r two1 two2
     find_things 0 used "${inputs[@]}"
-    for f in volume.exr sheet.svg masks; do diff -r made/$f $O/things/$f; done
+    for f in volume.exr sheet.svg plan.svg masks; do diff -r made/$f $O/things/$f; done
 }
 
 marks_name_join_and_split_things()
@@ -99,7 +101,8 @@ larger_voxels_if_there_would_be_too_many()
 errors_say_what_is_wrong()
 {
     find_things 2 '--model is missing' "${inputs[@]:2}"
-    find_things 2 '--ids is missing' "${inputs[@]:0:8}"
+    find_things 2 '--plan is missing' "${inputs[@]:0:2}" "${inputs[@]:4}"
+    find_things 2 '--ids is missing' "${inputs[@]:0:10}"
     find_things 1 'nowhere.txt' "${inputs[@]}" --marks nowhere.txt
     for c in "chair sofa in photo_2 1 1|found \"chair\", wanted \"thing\"" \
         "thing 12 in photo_2 1 1|found \"12\", wanted a name" \
@@ -110,10 +113,10 @@ errors_say_what_is_wrong()
         find_things 1 "${c##*|}" "${inputs[@]}" --marks marks.txt
         grep -qF 'marks.txt:3: ' err.txt || { cat err.txt; fail "$c: no file and line"; }
     done
-    find_things 1 'no-such/photo_1.' "${inputs[@]:0:6}" --depth no-such --ids $O/ids
-    find_things 1 'no-such/photo_1.exr' "${inputs[@]:0:8}" --ids no-such
+    find_things 1 'no-such/photo_1.' "${inputs[@]:0:8}" --depth no-such --ids $O/ids
+    find_things 1 'no-such/photo_1.exr' "${inputs[@]:0:10}" --ids no-such
     mkdir -p less; cp $O/depth/model/*.exr $O/depth/model/*.txt less; rm less/photo_4.exr
-    find_things 1 'less/photo_4.exr' "${inputs[@]:0:6}" --depth less --ids $O/ids
+    find_things 1 'less/photo_4.exr' "${inputs[@]:0:8}" --depth less --ids $O/ids
 }
 
 make_remakes_only_what_changed()

@@ -66,6 +66,12 @@ static void things_are_shown_if_there_are_any(void **state)
     assert_contains(page, "<a href=\"#things\">Things</a>");
     assert_contains(page, "<h2 id=\"things-title\">Things</h2>");
     assert_contains(page, "src=\"data:image/svg+xml;base64,PHN2Zy8+\"");
+    assert_lacks(page, "Plan of the rooms");
+    free(page);
+    scratch_write("things/plan.svg", "<svg></svg>");
+    page = page_of("scene", NULL);
+    assert_contains(page,
+                    "alt=\"Plan of the rooms with all things\" src=\"data:image/svg+xml;base64,PHN2Zz48L3N2Zz4=\"");
     free(page);
 }
 
