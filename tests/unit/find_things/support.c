@@ -91,9 +91,22 @@ static void of_several_supports_the_nearest_counts(void **state)
     /* a radiator: 0.45 above the floor, 0.05 from the wall */
     assert_int_equal(support_of((struct block){0, 15, 4, 1, 20, 9}), THING_ON_WALL);
     /* a cupboard at the wall, nearly as high as the ceiling */
-    assert_int_equal(support_of((struct block){0, 15, 33, 3, 20, 38}), THING_ON_WALL);
+    assert_int_equal(support_of((struct block){0, 15, 25, 3, 20, 38}), THING_ON_WALL);
     /* a lamp of the ceiling, beside a wall */
     assert_int_equal(support_of((struct block){1, 15, 37, 3, 20, 39}), THING_ON_CEILING);
+}
+
+/* Its ends are nearer to the walls than its top is to the ceiling. */
+static void a_beam_whose_ends_touch_walls_hangs_from_the_ceiling(void **state)
+{
+    (void)state;
+    assert_int_equal(support_of((struct block){0, 15, 36, 39, 17, 38}), THING_ON_CEILING);
+    assert_int_equal(support_of((struct block){0, 15, 36, 20, 17, 38}), THING_ON_CEILING); /* one end is free */
+    /* too far below the ceiling: a curtain's rod */
+    assert_int_equal(support_of((struct block){0, 15, 35, 39, 17, 37}), THING_ON_WALL);
+    /* it must be more than three times as far above the floor as it is high: 2.95 and 1, 3.05 and 0.9 */
+    assert_int_equal(support_of((struct block){0, 15, 29, 39, 17, 38}), THING_ON_WALL);
+    assert_int_equal(support_of((struct block){0, 15, 30, 39, 17, 38}), THING_ON_CEILING);
 }
 
 static void the_floor_is_seen_from_inside_of_the_room_alone(void **state)
@@ -113,6 +126,7 @@ int main(void)
         cmocka_unit_test(the_reach_is_larger_above_the_floor),
         cmocka_unit_test(a_table_without_legs_stands_on_the_floor),
         cmocka_unit_test(of_several_supports_the_nearest_counts),
+        cmocka_unit_test(a_beam_whose_ends_touch_walls_hangs_from_the_ceiling),
         cmocka_unit_test(the_floor_is_seen_from_inside_of_the_room_alone),
     };
     return cmocka_run_group_tests_name("support", tests, make_model, release_model);

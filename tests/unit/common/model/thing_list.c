@@ -106,7 +106,9 @@ static void damaged_lines_are_refused(void **state)
         {HEAD "thing sofa floor 0 0 0 1 1 1 1 1 v 0 0 1\n",
          "things.txt:2: found the end of the line, wanted edge of the rectangle"},
         {HEAD "thing sofa floor 0 0 0 1 1 1 1 1 v 0 0 inf 1\n", "things.txt:2: found \"inf\""},
-        {HEAD "thing sofa floor 0 0 0 1 1 1 1 1 v 0 0 1 1 7\n", "things.txt:2: found \"7\""},
+        {HEAD "thing sofa floor 0 0 0 1 1 1 1 1 v 0 0 1 1 1 1\n",
+         "things.txt:2: found the end of the line, wanted mean radiance"},
+        {HEAD "thing sofa floor 0 0 0 1 1 1 1 1 v 0 0 1 1 1 1 1 7\n", "things.txt:2: found \"7\""},
         {HEAD SOFA "# again\n" SOFA, "things.txt:4: found \"sofa\", wanted another name than those above"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
