@@ -145,6 +145,127 @@ static void a_mask_is_written_with_its_camera(void **state)
     exr_image_release(&im);
 }
 
+/* ------------------------------------------------------------------------------------------------------------ meets */
+
+#define VOXEL 0.1
+
+struct meeting {
+    uint32_t meets[PIXELS];
+    float nearest[PIXELS];
+};
+
+/* The model is a wall at the depth `wall` (scene units) all over the view. */
+static void meet(struct meeting *m, const struct surface_voxel *voxels, size_t count, const struct view *camera,
+                 double scale, float wall)
+{
+    struct view_ids seen = {0};
+    struct err err = ERR_INIT;
+    assert_ok(view_ids_init(&seen, W, H, &err), err);
+    for (int i = 0; i < PIXELS; i++) seen.z[i] = wall;
+    memset(m, 0xa5, sizeof *m);
+    thing_meets_find(m->meets, voxels, count, VOXEL, camera, &seen, scale, m->nearest);
+    view_ids_release(&seen);
+}
+
+/* What the ray of the view's middle meets, of two voxels on it at these depths. */
+static uint32_t met_of(double first, double second, double scale, float wall)
+{
+    static struct meeting m;
+    const struct view camera = front();
+    const struct surface_voxel voxels[] = {{{0, 0, first - 1}, 7}, {{0, 0, second - 1}, 8}};
+    const size_t middle = (size_t)H / 2 * W + W / 2;
+    meet(&m, voxels, 2, &camera, scale, wall);
+    if (!m.meets[middle]) assert_true(isinf(m.nearest[middle]));
+    if (m.meets[middle]) assert_float_equal(m.nearest[middle], m.meets[middle] == 7 ? first : second, 1e-6);
+    assert_int_equal(m.meets[0], 0);
+    return m.meets[middle];
+}
+
+static void a_ray_meets_the_first_of_two_things(void **state)
+{
+    (void)state;
+    assert_int_equal(met_of(2, 3, 1, 9), 7);
+    assert_int_equal(met_of(3, 2, 1, 9), 8);
+    assert_int_equal(met_of(2, 2, 1, 9), 7); /* of equals the first that is listed */
+    /* what is behind the camera, or in its plane, is not met */
+    assert_int_equal(met_of(-2, 3, 1, 9), 8);
+    assert_int_equal(met_of(0.04, 3, 1, 9), 8);
+}
+
+static void what_the_model_hides_is_not_met(void **state)
+{
+    (void)state;
+    assert_int_equal(met_of(3, 4, 1, 2), 0);
+    assert_int_equal(met_of(3, 2, 1, 2.5f), 8);
+    /* the model's depth is in scene units */
+    assert_int_equal(met_of(3, 4, 2, 2), 7);
+    assert_int_equal(met_of(3, 4, 0.5, 2), 0);
+    assert_int_equal(met_of(2, 3, 1, 0), 0); /* there is no model that a thing could be before */
+}
+
+/* It must be more than a voxel before the model, whose own surface it may be. */
+static void a_surface_near_that_of_the_model_is_not_met(void **state)
+{
+    (void)state;
+    assert_int_equal(met_of(2, 4, 1, 2.05f), 0);
+    assert_int_equal(met_of(2, 4, 1, 2.09f), 0);
+    assert_int_equal(met_of(2, 4, 1, 2.11f), 7);
+}
+
+/* A plane of voxels, 2.1 x 2.1, that is turned by `turn` about the y axis, `away` before the camera. All pixels whose
+ * ray goes through it meet it, nearly at its depth; if it faces the camera, others do not, but for a rim. */
+static void assert_no_holes(double away, double turn)
+{
+    enum { SIDE = 21 };
+    static struct surface_voxel plane[SIDE * SIDE];
+    static struct meeting m;
+    const struct view camera = front();
+    const double half = 0.5 * SIDE * VOXEL, rim = VOXEL + away / 100;
+    int inside = 0;
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        const double x = VOXEL * (i % SIDE - SIDE / 2), y = VOXEL * ((int)(i / SIDE) - SIDE / 2);
+        plane[i] = (struct surface_voxel){{cos(turn) * x, y, away - 1 + sin(turn) * x}, 9};
+    }
+    meet(&m, plane, SIDE * SIDE, &camera, 1, 99);
+    for (int i = 0; i < PIXELS; i++) {
+        const double u = (i % W + 0.5 - W / 2) / 100, v = ((int)(i / W) + 0.5 - H / 2) / 100;
+        const double x = u * away / (cos(turn) - u * sin(turn)), z = away + sin(turn) * x; /* along the plane; depth */
+        if (fabs(x) < half && fabs(v * z) < half) {
+            assert_int_equal(m.meets[i], 9);
+            assert_float_equal(m.nearest[i], z, 2 * VOXEL);
+            inside++;
+        } else if (turn == 0 && (fabs(x) > half + rim || fabs(v * z) > half + rim))
+            assert_int_equal(m.meets[i], 0);
+    }
+    assert_true(inside > 0);
+}
+
+static void a_plane_of_voxels_has_no_holes_from_near_or_afar(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 3; k++) {
+        const double turn = 0.4 * k;
+        assert_no_holes(1, turn); /* a voxel is 10 px wide */
+        assert_no_holes(4, turn);
+        assert_no_holes(10, turn); /* 1 px */
+        assert_no_holes(25, turn); /* 0.4 px */
+    }
+}
+
+static void a_plane_before_the_camera_covers_the_view(void **state)
+{
+    enum { SIDE = 41 };
+    static struct surface_voxel plane[SIDE * SIDE];
+    static struct meeting m;
+    const struct view camera = front();
+    (void)state;
+    for (int i = 0; i < SIDE * SIDE; i++) /* 0.06 before it: wider than the view */
+        plane[i] =
+            (struct surface_voxel){{VOXEL * (i % SIDE - SIDE / 2), VOXEL * ((int)(i / SIDE) - SIDE / 2), 0.06 - 1}, 9};
+    meet(&m, plane, SIDE * SIDE, &camera, 1, 1);
+    for (int i = 0; i < PIXELS; i++) assert_int_equal(m.meets[i], 9);
+}
+
 /* ----------------------------------------------------------------------------------------------------------- sights */
 
 struct patch {
@@ -235,6 +356,28 @@ static void the_order_of_views_does_not_change_their_number(void **state)
     expect_sights((const struct patch *const[]){&few, &enough}, 2, 1, 1);
 }
 
+/* The sums are of all views; a pixel that the photo does not have adds nothing. */
+static void the_radiance_of_a_thing_is_that_of_its_pixels(void **state)
+{
+    (void)state;
+    static uint32_t mask[6] = {1, 2, 0, 2, 1, 2};
+    float rgba[4 * 6];
+    const struct image photo = {.width = 3, .height = 2, .channels = 4, .data = rgba};
+    struct thing_sight s[3] = {{0}};
+    for (int i = 0; i < 6; i++)
+        for (int c = 0; c < 4; c++) rgba[4 * i + c] = c == 3 ? i != 5 : (float)(i + 1) * (float)(c + 1) / 4;
+    for (int view = 1; view <= 2; view++) {
+        thing_sights_add_radiance(s, mask, &photo);
+        assert_int_equal(s[0].pixels, 2 * view);
+        assert_int_equal(s[1].pixels, 2 * view); /* not the last */
+        for (int c = 0; c < 3; c++) {
+            assert_float_equal(s[0].sum[c], view * (1 + 5) * (c + 1) / 4.0, 1e-9);
+            assert_float_equal(s[1].sum[c], view * (2 + 4) * (c + 1) / 4.0, 1e-9);
+        }
+    }
+    assert_true(!s[2].pixels && s[2].sum[0] == 0 && !s[0].views);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -243,6 +386,12 @@ int main(void)
         cmocka_unit_test(a_segment_that_shows_half_of_a_thing_shows_it_whole),
         cmocka_unit_test_setup_teardown(a_mask_is_read_back_or_refused, scratch_make, scratch_remove),
         cmocka_unit_test_setup_teardown(a_mask_is_written_with_its_camera, scratch_make, scratch_remove),
+        cmocka_unit_test(a_ray_meets_the_first_of_two_things),
+        cmocka_unit_test(what_the_model_hides_is_not_met),
+        cmocka_unit_test(a_surface_near_that_of_the_model_is_not_met),
+        cmocka_unit_test(a_plane_of_voxels_has_no_holes_from_near_or_afar),
+        cmocka_unit_test(a_plane_before_the_camera_covers_the_view),
+        cmocka_unit_test(the_radiance_of_a_thing_is_that_of_its_pixels),
         cmocka_unit_test(the_view_with_most_of_a_thing_is_the_best),
         cmocka_unit_test(of_equal_views_the_first_is_the_best),
         cmocka_unit_test(a_thing_that_the_border_cuts_counts_less),
