@@ -178,8 +178,8 @@ static void a_filter_drops_what_is_gone_and_what_zones_clear(void **state)
     placed_things_release(&t);
 }
 
-/* The volume reaches from -2 to 2, so 0.85 of its height is at 1.4. Depth of lamps and beams is never sure, and they are
- * the room's own. */
+/* The volume reaches from -2 to 2, so 0.85 of its height is at 1.4. Lamps and beams are the room's own, and their depth
+ * is never sure. */
 static void a_zone_leaves_what_is_of_no_thing_at_the_ceiling(void **state)
 {
     const struct texture_thing edit = edit_of(TEXTURE_THING_CLEAR, "sofa", 0, 0, 0, 0);
