@@ -14,6 +14,7 @@
 #include "stages/render_model/clutter_scene.h"
 
 enum { COLUMNS = 16, ROWS = 12, PLACES = 2 };
+enum { THROUGH = 16 }; /* faces of panes behind one another */
 
 #define FAR_FEE   0.1   /* radians per doubling of the distance */
 #define SHARPNESS 0.005 /* radians^2 */
@@ -34,9 +35,19 @@ static bool is_hidden(const struct clutter_scene *s, struct vec3 from, struct ve
 {
     struct ray_hit hit;
     if (!s->walls) return false;
-    const struct vec3 a = model_from_world_point(&s->axes, from), b = model_from_world_point(&s->axes, point);
-    return ray_scene_hit(&s->walls->rays, a, vec3_sub(b, a), &hit) && hit.t < NEARLY &&
-           !solid_face_is_pane(&s->walls->mesh, (int)hit.id);
+    const struct vec3 to = model_from_world_point(&s->axes, point);
+    struct vec3 at = model_from_world_point(&s->axes, from);
+    const double way = vec3_length(vec3_sub(to, at));
+    const struct vec3 direction = vec3_normalize(vec3_sub(to, at));
+    double passed = 0;
+    for (int k = 0; k < THROUGH && way > 0 && ray_scene_hit(&s->walls->rays, at, direction, &hit); k++) {
+        passed += hit.t;
+        if (!(passed < NEARLY * way)) return false;
+        if (!solid_face_is_pane(&s->walls->mesh, (int)hit.id)) return true;
+        at = vec3_add(hit.point, vec3_scale(direction, 2 * s->walls->rays.epsilon));
+        passed += 2 * s->walls->rays.epsilon;
+    }
+    return false;
 }
 
 static void vote(double *score, double *weight, const struct clutter_scene *s, struct vec3 point, struct vec3 camera)
