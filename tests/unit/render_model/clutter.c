@@ -6,6 +6,7 @@
 #include "common/layers/layered_depth.h"
 #include "common/texture/view_ids.h"
 #include "stages/render_model/clutter.h"
+#include "stages/render_model/drawn_room.h"
 
 enum { W = 160, H = 120, VIEWS = 4, ROOM_FACES = 6, RIM = 3 };
 
@@ -688,6 +689,80 @@ static void a_thing_that_is_gone_is_not_drawn_at_its_place(void **state)
     clutter_close(s.clutter);
 }
 
+/* Draws the cube, which an edit leaves where it is, over a shell at the pixels that do not stay. */
+static void draw_uncovered(struct drawn_cube *d, struct scene *s, const uint8_t *stays, enum thing_fate fate)
+{
+    uint8_t fates[] = {THING_STAYS, (uint8_t)fate};
+    struct thing thing = {.low = cube.low, .high = cube.high};
+    struct thing_points points[] = {{.count = 0}, cube_corners()};
+    struct err err = ERR_INIT;
+    *d = (struct drawn_cube){.moved = mid_way()};
+    draw_shell(&d->picture, &d->moved);
+    draw_shell(&d->shell, &d->moved);
+    for (size_t i = 0; i < (size_t)W * H; i++) d->front[i] = d->shell.z[i];
+    struct room room_of_cube = {
+        .clutter = s->clutter,
+        .front = d->front,
+        .things = {.list = {&thing, 1}, .volume = cube_volume(false), .fate = fates, .points = points}};
+    assert_ok(room_draw_uncovered(&d->picture, &room_of_cube, &d->moved, stays, NULL, &err), err);
+    thing_volume_release(&room_of_cube.things.volume);
+}
+
+/* Nothing was drawn at a pixel. */
+static void assert_left(const struct drawn_cube *d, size_t i)
+{
+    assert_memory_equal(d->picture.rgb + 3 * i, d->shell.rgb + 3 * i, 3 * sizeof *d->picture.rgb);
+    assert_int_equal(d->picture.made[i], MADE_ORIGINAL);
+    assert_float_equal(d->front[i], d->shell.z[i], 0);
+}
+
+/* The cube is in the middle of the picture; its left half was the photo's already. */
+static void what_an_edit_uncovers_is_drawn_where_no_pixel_stays(void **state)
+{
+    (void)state;
+    static uint8_t stays[W * H];
+    static struct drawn_cube d;
+    struct scene s;
+    int drawn = 0, left = 0;
+    scene_make(&s, &sure, 100);
+    for (int i = 0; i < W * H; i++) stays[i] = i % W < W / 2;
+    draw_uncovered(&d, &s, stays, THING_STAYS);
+    for (int y = 0; y < H; y++)
+        for (int x = 0; x < W; x++) {
+            const size_t i = (size_t)(y * W + x);
+            const struct hit h = trace(&d.moved, x + 0.5, y + 0.5, true);
+            const bool is_of_cube = must_be_cube(&d.moved, x, y);
+            left += stays[i] && is_of_cube;
+            if (stays[i] || !near_cube(&d.moved, x, y, RIM, true))
+                assert_left(&d, i);
+            else if (is_of_cube) {
+                assert_pixel_of_cube(&d.picture, &h, i);
+                assert_float_equal(d.front[i], h.z, 0.01 * h.z);
+                drawn++;
+            }
+        }
+    assert_true(drawn > 150 && left > 150);
+    drawn_cube_release(&d);
+    clutter_close(s.clutter);
+}
+
+static void nothing_is_uncovered_of_a_thing_that_is_gone_or_elsewhere(void **state)
+{
+    (void)state;
+    static uint8_t stays[W * H];
+    static struct drawn_cube d;
+    struct scene s;
+    scene_make(&s, &sure, 100);
+    for (int k = 0; k < 3; k++) {
+        for (int y = 0; y < H; y++) /* nothing stays; all does; all does but for the picture's corner */
+            for (int x = 0; x < W; x++) stays[y * W + x] = k == 1 || (k == 2 && (x > 20 || y > 20));
+        draw_uncovered(&d, &s, stays, k ? THING_STAYS : THING_IS_GONE);
+        for (size_t i = 0; i < (size_t)W * H; i++) assert_left(&d, i);
+        drawn_cube_release(&d);
+    }
+    clutter_close(s.clutter);
+}
+
 static void the_front_is_the_depth_of_what_is_seen(void **state)
 {
     (void)state;
@@ -731,6 +806,8 @@ int main(void)
         cmocka_unit_test(what_stands_before_a_moved_cube_hides_it),
         cmocka_unit_test(a_moved_cube_hides_the_next_one),
         cmocka_unit_test(a_thing_that_is_gone_is_not_drawn_at_its_place),
+        cmocka_unit_test(what_an_edit_uncovers_is_drawn_where_no_pixel_stays),
+        cmocka_unit_test(nothing_is_uncovered_of_a_thing_that_is_gone_or_elsewhere),
         cmocka_unit_test(the_front_is_the_depth_of_what_is_seen),
     };
     return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
