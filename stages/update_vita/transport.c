@@ -262,7 +262,8 @@ static bool is_hole(const struct transport *t, int i)
     return p->kind == LIGHT_PLACE_TEXTURE && p->source == LIGHT_SYNTHESISED;
 }
 
-/* One sweep over a face: samples in holes become the mean of those beside them. */
+/* One sweep over a face: samples in holes become the mean of those beside them that have light before the edit; paint
+ * has none. */
 static void smooth_holes(struct transport *t, const struct face_net *net, double (*sums)[4])
 {
     memset(sums, 0, (size_t)net->count * sizeof *sums);
@@ -270,6 +271,7 @@ static void smooth_holes(struct transport *t, const struct face_net *net, double
         for (int k = 0; k < 3; k++)
             for (int o = 1; o < 3; o++) {
                 const int to = net->triangles[i][k], from = net->triangles[i][(k + o) % 3];
+                if (t->samples[net->samples[from]].place.kind != LIGHT_PLACE_TEXTURE) continue;
                 const struct rgb e = t->rows[net->samples[from]].before;
                 const double dx = net->at[to][0] - net->at[from][0], dy = net->at[to][1] - net->at[from][1];
                 const double weight = 1 / fmax(sqrt(dx * dx + dy * dy), 1e-9);
