@@ -1,10 +1,11 @@
-/* Rays from samples: rows that sum to the irradiance, energy in a painted room, objects, the same bits for any
- * threads. */
+/* Rays from samples: rows that sum to the irradiance, energy in a painted room, objects, the light that is continued
+ * behind furniture, the same bits for any threads. */
 #include "stages/update_vita/edited_atlas.h"
 #include "stages/update_vita/light_rounds.h"
 
 #include "common/base/parallel.h"
 #include "common/math/numbers.h"
+#include "tests/unit/ball_thing.h"
 #include "tests/unit/edit_room.h"
 
 enum { RAYS = 1024 };
@@ -16,12 +17,13 @@ struct traced {
     struct transport transport;
 };
 
-static void trace(struct traced *t, struct edit *e, double spacing)
+/* All but the rays. The edit was written. */
+static void prepare(struct traced *t, struct edit *e, double spacing)
 {
     bool wanted[6 * MAX_BOXES];
     struct err err = ERR_INIT;
     *t = (struct traced){.nets = {0}};
-    edit_read(&t->change, e);
+    assert_ok(light_change_read(&t->change, &e->files, NULL, &err), err);
     const struct solid_mesh *mesh = &t->change.after.model.mesh;
     for (int i = 0; i < mesh->face_count; i++) {
         const int id = solid_face_id(mesh, i);
@@ -30,6 +32,13 @@ static void trace(struct traced *t, struct edit *e, double spacing)
     assert_ok(edited_atlas_make(&t->atlas, &t->change, e->files.vita, &err), err);
     assert_ok(face_nets_make(&t->nets, mesh, wanted, spacing, &err), err);
     assert_ok(transport_init(&t->transport, &t->change, &t->nets, &err), err);
+}
+
+static void trace(struct traced *t, struct edit *e, double spacing)
+{
+    struct err err = ERR_INIT;
+    edit_write(e);
+    prepare(t, e, spacing);
     assert_ok(transport_trace(&t->transport, 0, RAYS, NULL, NULL, &err), err);
 }
 
@@ -209,6 +218,106 @@ static void an_object_that_touches_the_floor_leaves_no_light_under_it(void **sta
     release(&t);
 }
 
+/* ------------------------------------------------------------------------------------------------------------ holes */
+
+/* A black ball over the floor, which an edit clears. It hid the floor below it, which the bake filled. Beyond EDGE the
+ * edit may paint the floor. */
+#define HOLE 0.55
+#define EDGE 0.6
+
+struct cleared {
+    struct edit edit;
+    struct texture_thing clear;
+    struct traced traced;
+    int floor;
+};
+
+static bool is_in_hole(const struct vec3 p) { return hypot(p.x, p.y) < HOLE; }
+
+/* holes: the samples in the hole are marked as filled by the bake. painted: those beyond EDGE are of a new colour. */
+static void trace_cleared(struct cleared *c, bool holes, bool painted)
+{
+    struct err err = ERR_INIT;
+    struct transport *t = &c->traced.transport;
+    *c = (struct cleared){.edit = edit_of_closed_room(plain), .clear = edit_ball(TEXTURE_THING_CLEAR, 0, 0, 0)};
+    c->edit.map = (struct texture_map){.things = &c->clear, .thing_count = 1};
+    edit_write(&c->edit);
+    c->edit.files.things = write_ball(vec3_make(0, 0, -1.5), 0.4, 0);
+    prepare(&c->traced, &c->edit, 0.2);
+    assert_true(c->traced.change.things.changes);
+    c->floor = face_named(&c->traced.change.after.model.mesh, "floor/5");
+    for (int i = 0; i < c->traced.nets.sample_count; i++) {
+        struct light_place *place = &t->samples[i].place;
+        if (c->traced.nets.samples[i].face != c->floor) continue;
+        if (holes && is_in_hole(t->samples[i].after.at)) place->source = LIGHT_SYNTHESISED;
+        if (painted && t->samples[i].after.at.x > EDGE) place->kind = LIGHT_PLACE_COLOUR;
+    }
+    assert_ok(transport_trace(t, 0, RAYS, NULL, NULL, &err), err);
+}
+
+/* The least and the most light before the edit on the floor around the hole, which the hole's is to be between. */
+static void light_around(double range[2], const struct cleared *c)
+{
+    range[0] = INFINITY;
+    range[1] = -INFINITY;
+    for (int i = 0; i < c->traced.nets.sample_count; i++) {
+        const struct transport_sample *s = &c->traced.transport.samples[i];
+        const struct vec3 p = s->after.at;
+        if (c->traced.nets.samples[i].face != c->floor || is_in_hole(p) || hypot(p.x, p.y) > 2 * HOLE) continue;
+        if (s->place.kind != LIGHT_PLACE_TEXTURE) continue;
+        range[0] = fmin(range[0], c->traced.transport.rows[i].before.g);
+        range[1] = fmax(range[1], c->traced.transport.rows[i].before.g);
+    }
+}
+
+static void a_hole_behind_furniture_gets_the_light_around_it(void **state)
+{
+    static struct cleared shadow, hole;
+    double range[2];
+    int inside = 0;
+    (void)state;
+    trace_cleared(&shadow, false, false);
+    trace_cleared(&hole, true, false);
+    light_around(range, &hole);
+    assert_true(range[0] < 0.9 * range[1]); /* the ball's shadow reaches over the rim */
+    assert_int_equal(shadow.traced.nets.sample_count, hole.traced.nets.sample_count);
+    for (int i = 0; i < hole.traced.nets.sample_count; i++) {
+        const struct transport_row *was = &shadow.traced.transport.rows[i], *is = &hole.traced.transport.rows[i];
+        const struct vec3 p = hole.traced.transport.samples[i].after.at;
+        assert_memory_equal(&is->fixed, &was->fixed, sizeof is->fixed); /* after the edit nothing is continued */
+        if (hole.traced.nets.samples[i].face != hole.floor || !is_in_hole(p)) {
+            assert_memory_equal(&is->before, &was->before, sizeof is->before);
+            continue;
+        }
+        inside++;
+        assert_true(is->before.g >= range[0] && is->before.g <= range[1]);
+        assert_near(is->before.r, is->before.g, 1e-9);
+        if (hypot(p.x, p.y) < 0.25) assert_true(is->before.g > 1.5 * was->before.g); /* just below the ball */
+    }
+    assert_true(inside > 15);
+    release(&shadow.traced);
+    release(&hole.traced);
+}
+
+/* Paint has no light before the edit: the texture around the hole was not continued from there. */
+static void paint_beside_a_hole_does_not_darken_it(void **state)
+{
+    static struct cleared c;
+    double range[2];
+    (void)state;
+    trace_cleared(&c, true, true);
+    light_around(range, &c);
+    for (int i = 0; i < c.traced.nets.sample_count; i++) {
+        const struct transport_sample *s = &c.traced.transport.samples[i];
+        if (c.traced.nets.samples[i].face != c.floor || !is_in_hole(s->after.at)) continue;
+        const double light = c.traced.transport.rows[i].before.g;
+        if (!(light >= range[0] && light <= range[1]))
+            fail_msg("at (%.2f, %.2f) there is %.3f, around the hole %.3f to %.3f", s->after.at.x, s->after.at.y, light,
+                     range[0], range[1]);
+    }
+    release(&c.traced);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -217,6 +326,8 @@ int main(void)
         cmocka_unit_test(threads_do_not_change_a_bit),
         cmocka_unit_test(a_painted_room_absorbs_what_its_lamp_sends_out),
         cmocka_unit_test(an_object_that_touches_the_floor_leaves_no_light_under_it),
+        cmocka_unit_test(a_hole_behind_furniture_gets_the_light_around_it),
+        cmocka_unit_test(paint_beside_a_hole_does_not_darken_it),
     };
     return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
 }
