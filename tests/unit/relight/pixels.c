@@ -1,5 +1,6 @@
-/* What pixels show: textures of moved and new places, colours, lamps, objects by their share of a pixel; many
- * emitters. */
+/* What pixels show: textures of moved and new places, colours, lamps, furniture, objects by their share of a pixel;
+ * many emitters. */
+#include "tests/unit/ball_thing.h"
 #include "tests/unit/relight/relit_room.h"
 
 static void find(struct relit_room *r, struct edit *e, struct vec3 from, struct quat turn)
@@ -145,6 +146,98 @@ static void of_fifty_lamps_all_count(void **state)
     }
 }
 
+/* -------------------------------------------------------------------------------------------------------- furniture */
+
+#define RADIUS 0.5
+
+static const struct vec3 ball_was = {-0.8, 0.2, -0.5};
+
+/* A picture of the room from above, with the ball of one edit. shown: what its pixels are made of where the field has
+ * the ball. */
+static void find_ball(struct relit_room *r, struct edit *e, struct texture_thing *thing, enum picture_made shown)
+{
+    const struct vec3 from = vec3_make(0.1, 0.2, 1.5);
+    struct err err = ERR_INIT;
+    *e = edit_of_closed_room(coloured);
+    e->map = (struct texture_map){.things = thing, .thing_count = 1};
+    *r = (struct relit_room){.params = RELIGHT_PARAMS_DEFAULT};
+    edit_write(e);
+    e->files.things = write_ball(ball_was, RADIUS, 0.25);
+    assert_ok(light_change_read(&r->change, &e->files, NULL, &err), err);
+    assert_true(r->change.things.changes);
+    draw_picture(r, from, to_floor, coloured);
+    for (int i = 0; i < PIXELS; i++) /* draw_picture() leaves out what is no face */
+        if (r->picture.made[i] == MADE_NOTHING) r->picture.made[i] = (uint8_t)shown;
+    assert_ok(pixels_find(&r->pixels, &r->change, &r->picture, NULL, NULL, &err), err);
+}
+
+/* The number of pixels that show furniture, which is the ball about `is`. Each is lit there after the edit, and
+ * before it on the ball where it was, at the place that is turned by `turn` (degrees, about the vertical) since. */
+static int count_ball(const struct relit_room *r, struct vec3 is, double turn)
+{
+    const double c = cos(turn * PI / 180), s = sin(turn * PI / 180);
+    int count = 0;
+    for (int i = 0; i < PIXELS; i++) {
+        if (r->pixels.kind[i] != PIXEL_CLUTTER) continue;
+        const struct gather_point *p = &r->pixels.before[i], *q = &r->pixels.after[i];
+        const struct vec3 old = vec3_sub(p->at, ball_was), new = vec3_sub(q->at, is);
+        assert_near(vec3_length(new), RADIUS, 0.05);
+        assert_near(c * old.x - s * old.y, new.x, 1e-6);
+        assert_near(s * old.x + c * old.y, new.y, 1e-6);
+        assert_near(old.z, new.z, 1e-6);
+        assert_near(c * p->normal.x - s * p->normal.y, q->normal.x, 1e-6);
+        assert_near(s * p->normal.x + c * p->normal.y, q->normal.y, 1e-6);
+        assert_near(p->normal.z, q->normal.z, 1e-6);
+        assert_true(vec3_dot(q->normal, new) > 0.8 * RADIUS); /* outwards */
+        count++;
+    }
+    return count;
+}
+
+static void a_moved_thing_is_lit_at_its_new_place_and_was_at_its_old_one(void **state)
+{
+    struct texture_thing move = edit_ball(TEXTURE_THING_MOVE, 1.5, 0.25, 60);
+    struct relit_room r;
+    struct edit e;
+    (void)state;
+    find_ball(&r, &e, &move, MADE_CLUTTER);
+    assert_true(count_ball(&r, vec3_add(ball_was, vec3_make(1.5, 0.25, 0)), 60) > 20);
+    relit_room_release(&r);
+}
+
+/* A copy in a corner of the ceiling, which the camera does not see, leaves the ball where it is. */
+static void a_thing_that_stays_is_lit_where_it_is(void **state)
+{
+    struct texture_thing copy = edit_ball(TEXTURE_THING_MOVE, -0.65, -1.6, 90);
+    struct relit_room r;
+    struct edit e;
+    (void)state;
+    copy.name = (char *)"twin";
+    copy.by[2] = 1.9; /* its top is at the ceiling */
+    find_ball(&r, &e, &copy, MADE_CLUTTER);
+    assert_true(count_ball(&r, ball_was, 0) > 20);
+    for (int i = 0; i < PIXELS; i++)
+        if (r.pixels.kind[i] == PIXEL_CLUTTER)
+            assert_memory_equal(&r.pixels.before[i], &r.pixels.after[i], sizeof *r.pixels.before);
+    relit_room_release(&r);
+}
+
+/* A texel behind the ball, which the picture shows instead, is a face. */
+static void what_the_picture_does_not_show_as_furniture_is_a_face(void **state)
+{
+    struct texture_thing move = edit_ball(TEXTURE_THING_MOVE, 1.5, 0.25, 0),
+                         clear = edit_ball(TEXTURE_THING_CLEAR, 0, 0, 0);
+    struct relit_room r;
+    struct edit e;
+    (void)state;
+    find_ball(&r, &e, &move, MADE_WARPED);
+    for (int i = 0; i < PIXELS; i++) assert_int_equal(r.pixels.kind[i], PIXEL_TEXTURE);
+    relit_room_release(&r);
+    find_ball(&r, &e, &clear, MADE_CLUTTER); /* the field of the edited room has it no more */
+    for (int i = 0; i < PIXELS; i++) assert_int_equal(r.pixels.kind[i], PIXEL_TEXTURE);
+    relit_room_release(&r);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -152,6 +245,9 @@ int main(void)
         cmocka_unit_test(a_moved_wall_is_gathered_at_its_old_place_and_a_colour_has_its_albedo),
         cmocka_unit_test(pixels_without_a_surface_keep_their_light),
         cmocka_unit_test(an_object_covers_as_many_pixels_as_its_area),
+        cmocka_unit_test(a_moved_thing_is_lit_at_its_new_place_and_was_at_its_old_one),
+        cmocka_unit_test(a_thing_that_stays_is_lit_where_it_is),
+        cmocka_unit_test(what_the_picture_does_not_show_as_furniture_is_a_face),
         cmocka_unit_test(of_fifty_lamps_all_count),
     };
     return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
