@@ -238,7 +238,7 @@ static void leave_model(struct thing_volume *v)
 static enum status stand(struct finder *f, struct err *err)
 {
     struct thing_volume *v = &f->volume;
-    const size_t voxels = voxel_count(&v->grid);
+    const size_t voxels = voxel_count(&v->grid), slice = (size_t)v->grid.size[0] * (size_t)v->grid.size[1];
     int *lowest = malloc(((size_t)f->count + 1) * sizeof *lowest);
     uint8_t *before = malloc(voxels + 1);
     if (!lowest || !before) err_nomem(err, "things", voxels);
@@ -251,8 +251,13 @@ static enum status stand(struct finder *f, struct err *err)
     }
     for (size_t i = 0; !err->status && i < voxels; i++) before[i] = v->id[i] != 0;
     if (!err->status) components_stand(v->id, &v->grid, lowest);
-    for (size_t i = 0; !err->status && i < voxels; i++)
-        if (v->id[i] && !before[i] && v->distance[i] == THING_UNSEEN) v->distance[i] = -1;
+    for (size_t i = voxels; !err->status && i-- > 0;) {
+        const uint32_t id = v->id[i];
+        if (!id || v->distance[i] != THING_UNSEEN) continue;
+        const size_t above = i + slice; /* it is done already; what grew below a surface is solid, too */
+        const bool goes_on = above < voxels && v->id[above] == id && v->distance[above] <= 0;
+        if (!before[i] || (goes_on && lowest[id] >= 0 && (int)(i / slice) >= lowest[id])) v->distance[i] = -1;
+    }
     free(before);
     free(lowest);
     return err->status;
