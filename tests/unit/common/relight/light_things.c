@@ -197,7 +197,7 @@ static void a_copy_is_there_beside_its_thing(void **state)
     light_things_release(&t);
 }
 
-/* A zone over the whole room takes all that no statement keeps. The lamp hangs from the ceiling, so it is in neither. */
+/* A zone over the whole room takes all that no statement keeps. The lamp is at the ceiling, so it is in neither. */
 static void a_zone_takes_what_it_does_not_keep(void **state)
 {
     (void)state;
