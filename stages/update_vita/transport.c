@@ -253,7 +253,8 @@ static void trace_some(void *ctx, size_t begin, size_t end, int thread)
 
 /* ------------------------------------------------------------------------------------------------------------ holes */
 
-enum { SWEEPS = 300 };
+enum { MAX_SWEEPS = 5000 };
+static const double SETTLED = 1e-5; /* largest change of a sweep that ends them, as a part of the light */
 
 /* Whether the bake filled the place from around it, because furniture hid it. */
 static bool is_hole(const struct transport *t, int i)
@@ -263,8 +264,8 @@ static bool is_hole(const struct transport *t, int i)
 }
 
 /* One sweep over a face: samples in holes become the mean of those beside them that have light before the edit; paint
- * has none. */
-static void smooth_holes(struct transport *t, const struct face_net *net, double (*sums)[4])
+ * has none. The result is the largest change, as a part of the light. */
+static double smooth_holes(struct transport *t, const struct face_net *net, double (*sums)[4])
 {
     memset(sums, 0, (size_t)net->count * sizeof *sums);
     for (int i = 0; i < net->triangle_count; i++)
@@ -278,10 +279,16 @@ static void smooth_holes(struct transport *t, const struct face_net *net, double
                 sums[to][0] += weight * e.r, sums[to][1] += weight * e.g, sums[to][2] += weight * e.b;
                 sums[to][3] += weight;
             }
-    for (int i = 0; i < net->count; i++)
-        if (is_hole(t, net->samples[i]) && sums[i][3] > 0)
-            t->rows[net->samples[i]].before =
-                rgb_make(sums[i][0] / sums[i][3], sums[i][1] / sums[i][3], sums[i][2] / sums[i][3]);
+    double largest = 0;
+    for (int i = 0; i < net->count; i++) {
+        if (!is_hole(t, net->samples[i]) || !(sums[i][3] > 0)) continue;
+        struct rgb *light = &t->rows[net->samples[i]].before;
+        const struct rgb mean = rgb_scale(rgb_make(sums[i][0], sums[i][1], sums[i][2]), 1 / sums[i][3]);
+        const double change = fmax(fabs(mean.r - light->r), fmax(fabs(mean.g - light->g), fabs(mean.b - light->b)));
+        largest = fmax(largest, change / fmax(rgb_max(mean), 1e-30));
+        *light = mean;
+    }
+    return largest;
 }
 
 /* Where furniture hid a face, the bake continued the texture from around the hole, and with it the light of there: the
@@ -295,7 +302,7 @@ static enum status continue_into_holes(struct transport *t, struct err *err)
         if (!holes || holes == net->count) continue;
         double(*sums)[4] = malloc((size_t)net->count * sizeof *sums);
         if (!sums) return err_nomem(err, "samples", (size_t)net->count * sizeof *sums);
-        for (int k = 0; k < SWEEPS; k++) smooth_holes(t, net, sums);
+        for (int k = 0; k < MAX_SWEEPS && smooth_holes(t, net, sums) > SETTLED; k++) continue;
         free(sums);
     }
     return ST_OK;
