@@ -220,26 +220,28 @@ static void an_object_that_touches_the_floor_leaves_no_light_under_it(void **sta
 
 /* ------------------------------------------------------------------------------------------------------------ holes */
 
-/* A black ball over the floor, which an edit clears. It hid the floor below it, which the bake filled. Beyond EDGE the
- * edit may paint the floor. */
+/* A black ball over the floor, which an edit clears. It hid the floor below it, which the bake filled. Beyond the hole
+ * and a little more the edit may paint the floor. */
 #define HOLE 0.55
-#define EDGE 0.6
+#define EDGE 0.05
 
 struct cleared {
     struct edit edit;
     struct texture_thing clear;
     struct traced traced;
+    double hole; /* its radius */
     int floor;
 };
 
-static bool is_in_hole(const struct vec3 p) { return hypot(p.x, p.y) < HOLE; }
+static bool is_in_hole(const struct cleared *c, struct vec3 p) { return hypot(p.x, p.y) < c->hole; }
 
 /* holes: the samples in the hole are marked as filled by the bake. painted: those beyond EDGE are of a new colour. */
 static void trace_cleared(struct cleared *c, bool holes, bool painted)
 {
     struct err err = ERR_INIT;
     struct transport *t = &c->traced.transport;
-    *c = (struct cleared){.edit = edit_of_closed_room(plain), .clear = edit_ball(TEXTURE_THING_CLEAR, 0, 0, 0)};
+    *c = (struct cleared){
+        .edit = edit_of_closed_room(plain), .clear = edit_ball(TEXTURE_THING_CLEAR, 0, 0, 0), .hole = HOLE};
     c->edit.map = (struct texture_map){.things = &c->clear, .thing_count = 1};
     edit_write(&c->edit);
     c->edit.files.things = write_ball(vec3_make(0, 0, -1.5), 0.4, 0);
@@ -249,8 +251,8 @@ static void trace_cleared(struct cleared *c, bool holes, bool painted)
     for (int i = 0; i < c->traced.nets.sample_count; i++) {
         struct light_place *place = &t->samples[i].place;
         if (c->traced.nets.samples[i].face != c->floor) continue;
-        if (holes && is_in_hole(t->samples[i].after.at)) place->source = LIGHT_SYNTHESISED;
-        if (painted && t->samples[i].after.at.x > EDGE) place->kind = LIGHT_PLACE_COLOUR;
+        if (holes && is_in_hole(c, t->samples[i].after.at)) place->source = LIGHT_SYNTHESISED;
+        if (painted && t->samples[i].after.at.x > HOLE + EDGE) place->kind = LIGHT_PLACE_COLOUR;
     }
     assert_ok(transport_trace(t, 0, RAYS, NULL, NULL, &err), err);
 }
@@ -263,7 +265,8 @@ static void light_around(double range[2], const struct cleared *c)
     for (int i = 0; i < c->traced.nets.sample_count; i++) {
         const struct transport_sample *s = &c->traced.transport.samples[i];
         const struct vec3 p = s->after.at;
-        if (c->traced.nets.samples[i].face != c->floor || is_in_hole(p) || hypot(p.x, p.y) > 2 * HOLE) continue;
+        if (c->traced.nets.samples[i].face != c->floor || is_in_hole(c, p) || hypot(p.x, p.y) > c->hole + HOLE)
+            continue;
         if (s->place.kind != LIGHT_PLACE_TEXTURE) continue;
         range[0] = fmin(range[0], c->traced.transport.rows[i].before.g);
         range[1] = fmax(range[1], c->traced.transport.rows[i].before.g);
@@ -285,7 +288,7 @@ static void a_hole_behind_furniture_gets_the_light_around_it(void **state)
         const struct transport_row *was = &shadow.traced.transport.rows[i], *is = &hole.traced.transport.rows[i];
         const struct vec3 p = hole.traced.transport.samples[i].after.at;
         assert_memory_equal(&is->fixed, &was->fixed, sizeof is->fixed); /* after the edit nothing is continued */
-        if (hole.traced.nets.samples[i].face != hole.floor || !is_in_hole(p)) {
+        if (hole.traced.nets.samples[i].face != hole.floor || !is_in_hole(&hole, p)) {
             assert_memory_equal(&is->before, &was->before, sizeof is->before);
             continue;
         }
@@ -299,6 +302,42 @@ static void a_hole_behind_furniture_gets_the_light_around_it(void **state)
     release(&hole.traced);
 }
 
+/* A hole of 40 samples across, as that of a bed: light must come in from its rim to its middle. */
+static void the_middle_of_a_large_hole_gets_the_light_around_it(void **state)
+{
+    enum { SIDE = 60 };
+    static struct cleared c;
+    struct err err = ERR_INIT;
+    struct transport *t = &c.traced.transport;
+    bool wanted[6 * MAX_BOXES] = {false};
+    double range[2];
+    (void)state;
+    c = (struct cleared){
+        .edit = edit_of_closed_room(plain), .clear = edit_ball(TEXTURE_THING_CLEAR, 0, 0, 0), .hole = 1.3};
+    c.edit.map = (struct texture_map){.things = &c.clear, .thing_count = 1};
+    edit_write(&c.edit);
+    c.edit.files.things = write_ball(vec3_make(0, 0, -1.05), 0.9, 0);
+    assert_ok(light_change_read(&c.traced.change, &c.edit.files, NULL, &err), err);
+    const struct solid_mesh *mesh = &c.traced.change.after.model.mesh;
+    c.floor = face_named(mesh, "floor/5");
+    wanted[c.floor] = true; /* the others are not needed here */
+    assert_ok(edited_atlas_make(&c.traced.atlas, &c.traced.change, c.edit.files.vita, &err), err);
+    assert_ok(face_nets_make(&c.traced.nets, mesh, wanted, 4.0 / SIDE, &err), err);
+    assert_ok(transport_init(t, &c.traced.change, &c.traced.nets, &err), err);
+    for (int i = 0; i < c.traced.nets.sample_count; i++)
+        if (is_in_hole(&c, t->samples[i].after.at)) t->samples[i].place.source = LIGHT_SYNTHESISED;
+    assert_ok(transport_trace(t, 0, RAYS / 2, NULL, NULL, &err), err);
+    light_around(range, &c);
+    for (int i = 0; i < c.traced.nets.sample_count; i++) {
+        const double light = t->rows[i].before.g;
+        if (!is_in_hole(&c, t->samples[i].after.at)) continue;
+        if (!(light >= range[0] && light <= range[1]))
+            fail_msg("at (%.2f, %.2f) there is %.3f, around the hole %.3f to %.3f", t->samples[i].after.at.x,
+                     t->samples[i].after.at.y, light, range[0], range[1]);
+    }
+    release(&c.traced);
+}
+
 /* Paint has no light before the edit: the texture around the hole was not continued from there. */
 static void paint_beside_a_hole_does_not_darken_it(void **state)
 {
@@ -309,7 +348,7 @@ static void paint_beside_a_hole_does_not_darken_it(void **state)
     light_around(range, &c);
     for (int i = 0; i < c.traced.nets.sample_count; i++) {
         const struct transport_sample *s = &c.traced.transport.samples[i];
-        if (c.traced.nets.samples[i].face != c.floor || !is_in_hole(s->after.at)) continue;
+        if (c.traced.nets.samples[i].face != c.floor || !is_in_hole(&c, s->after.at)) continue;
         const double light = c.traced.transport.rows[i].before.g;
         if (!(light >= range[0] && light <= range[1]))
             fail_msg("at (%.2f, %.2f) there is %.3f, around the hole %.3f to %.3f", s->after.at.x, s->after.at.y, light,
@@ -327,6 +366,7 @@ int main(void)
         cmocka_unit_test(a_painted_room_absorbs_what_its_lamp_sends_out),
         cmocka_unit_test(an_object_that_touches_the_floor_leaves_no_light_under_it),
         cmocka_unit_test(a_hole_behind_furniture_gets_the_light_around_it),
+        cmocka_unit_test(the_middle_of_a_large_hole_gets_the_light_around_it),
         cmocka_unit_test(paint_beside_a_hole_does_not_darken_it),
     };
     return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
