@@ -65,6 +65,8 @@ extern const struct product products[PRODUCT_COUNT]; /* by enum product_id */
 
 /* The depth of a scene with a model, from the round that knows it, as struct product_key's depth. */
 #define MODEL_DEPTH "depth/model"
+/* The view-independent atlas of the unedited model, from which those of viewpoints take what no photo shows. */
+#define FILL_ATLAS "fill"
 
 /* Which fields of struct product_key the path has: 1 << PRODUCT_HAS_view, ... 0: there is one in a scene. */
 unsigned product_keys(enum product_id id);

@@ -290,6 +290,10 @@ static void take_texels(struct bake *b, const struct composite *c, struct bake_t
     for (size_t i = 0; i < texels_of(c->t); i++) {
         const size_t texel = c->t->first + i;
         if (b->role[texel] == TEXEL_NONE) continue;
+        if (b->filled && c->unseen[i] && !has_guide(c, i)) { /* what only an edit has: the VITA shows it */
+            b->role[texel] = TEXEL_NONE;
+            continue;
+        }
         totals->texels++;
         if (b->role[texel] == TEXEL_ORIGINAL) {
             totals->original++; /* made[] has the view already */

@@ -7,7 +7,7 @@
  *         VIEWS/lenses.txt                              which views are of one photo: a viewpoint
  *         VIEWS/VIEW.exr, IDS/VIEW.exr                  the viewpoint's views and those that show hidden texels
  *         THINGS/masks/VIEW.exr                         things that stand before the model
- *         VITA/atlas.txt, page0.exr, ...                texture of what no photo shows
+ *         FILL/atlas.txt, page0.exr, ...                texture of what no photo shows
  *         IDS/index.txt                                 which views show a face
  *         REVEAL/VIEW.exr                               what the edits reveal to the viewpoint's views
  * writes  OUT/PHOTO/page0.exr, ..., atlas.txt           an atlas for each photo
@@ -72,8 +72,8 @@ static enum status bake_one(void *ctx, int i, struct err *err)
 
 static enum status run(struct job *j, struct err *err)
 {
-    if (!read_scene(j->scene, j->files, j->prov, err) && j->scene->vita && !j->files->estimate)
-        filled_atlas_open(&j->scene->filled, j->scene->vita, j->prov, err);
+    if (!read_scene(j->scene, j->files, j->prov, err) && j->scene->fill && !j->files->estimate)
+        filled_atlas_open(&j->scene->filled, j->scene->fill, j->prov, err);
     if (!err->status && j->files->estimate)
         estimate_print(stdout, j->files->estimate, j->scene, err);
     else if (!err->status)
@@ -94,8 +94,9 @@ int main(int argc, char **argv)
         CLI_STR("views", &scene.from.views, CLI_REQUIRED, "folder of cameras and rectified views"),
         CLI_STR("ids", &scene.from.ids, CLI_REQUIRED, "folder of the faces that each view shows, and of their index"),
         CLI_STR("things", &scene.from.things, CLI_OPTIONAL, "folder of the scene's things: textures leave them out"),
-        CLI_STR("vita", &scene.vita, CLI_OPTIONAL,
-                "folder of the view-independent atlas: texture of what no photo shows is taken from it"),
+        CLI_STR("fill", &scene.fill, CLI_OPTIONAL,
+                "folder of a view-independent atlas of the unedited model: texture of what no photo shows is taken "
+                "from it"),
         CLI_STR("reveal", &scene.reveal, CLI_REQUIRED, "folder of what the edits reveal to each view"),
         CLI_LIST("photo", &f.photos, CLI_OPTIONAL, "viewpoint to bake, as a photo's id; repeat for several"),
         CLI_STR("out", &scene.out, CLI_REQUIRED, "folder in which each viewpoint gets a folder"),

@@ -237,7 +237,7 @@ static enum status bake_work(struct work *w, struct err *err)
     struct bake_totals totals = {0};
     uint64_t bytes = 0;
     w->bake = (struct bake){.surfaces = &w->scene->surfaces, .params = &w->scene->params->texture, .has_centre = true};
-    if (w->scene->vita) w->bake.filled = &w->scene->filled;
+    if (w->scene->fill) w->bake.filled = &w->scene->filled;
     if (!find_own_views(w, err)) w->bake.centre = w->scene->in.set.views[w->own[0]].center;
     if (!err->status && !add_tiles(w, err) &&
         !sources_choose(&w->views, &w->view_count, w->scene, w->own, w->own_count, &w->bake, w->prov, err) &&

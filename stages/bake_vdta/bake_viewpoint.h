@@ -13,7 +13,7 @@ struct bake_scene {
     struct surfaces surfaces;
     struct source_files from;
     const char *reveal, *out; /* folders */
-    const char *vita;         /* folder of the atlas that texture of hidden places is taken from; NULL: none */
+    const char *fill;         /* folder of the atlas that texture of hidden places is taken from; NULL: none */
     struct filled_atlas filled;
     const struct vdta_params *params;
 };

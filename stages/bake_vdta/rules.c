@@ -19,7 +19,8 @@ static void photo_rule(struct graph *g, const struct scene_facts *f, const struc
         rule_needs(g, PATH(g, REVEAL, .view = p->views[i]));
         rule_needs(g, PATH(g, THING_MASK, .view = p->views[i]));
     }
-    rule_takes_vita(g);
+    rule_needs(g, PATH(g, ATLAS, .atlas = FILL_ATLAS));
+    rule_option(g, "--fill", FOLDER(g, ATLAS, .atlas = FILL_ATLAS));
     rule_needs_listed(g, deps);
     rule_after_set(g, "views");
     rule_after_set(g, "ids");
@@ -40,7 +41,7 @@ static void photo_rule(struct graph *g, const struct scene_facts *f, const struc
 
 RULES(bake_vdta)
 {
-    graph_step(g, "vdta", STEP_FARM, "ids things vita");
+    graph_step(g, "vdta", STEP_FARM, "ids things fill");
     graph_goal(g, "vdta", NULL);
     if (!f->has_model || !f->views.count) return;
     for (int i = 0; i < f->viewpoints.count; i++) photo_rule(g, f, &f->viewpoints.photos[i]);

@@ -36,7 +36,7 @@ every_photo_has_an_atlas_and_the_model_has_one()
 bytes_do_not_depend_on_threads()
 {
     for n in 1 2; do
-        bake 0 texels bake_vdta "${inputs[@]}" --vita $O/vita --reveal $O/reveal --photo "$photo" --out two/$n --threads $n
+        bake 0 texels bake_vdta "${inputs[@]}" --fill $O/fill --reveal $O/reveal --photo "$photo" --out two/$n --threads $n
         bake 0 texels bake_vita "${inputs[@]}" --set texels=80 --edit $O/remodel/bare/model.txt --out two/vita$n --threads $n
     done
     diff -r two/1 two/2; diff -r two/vita1 two/vita2
@@ -49,7 +49,7 @@ several_viewpoints_of_a_process_have_the_bytes_of_one_alone()
     for p in "$O"/vdta/*/; do p=${p%/}; options+=(--photo "${p##*/}" --deps "two/${p##*/}.d"); done
     for n in 1 2; do
         rm -rf two/all
-        bake 0 "made 2 of $((${#options[@]} / 4)): " bake_vdta "${inputs[@]}" --vita $O/vita --reveal $O/reveal --out two/all "${options[@]}" --threads $n
+        bake 0 "made 2 of $((${#options[@]} / 4)): " bake_vdta "${inputs[@]}" --fill $O/fill --reveal $O/reveal --out two/all "${options[@]}" --threads $n
         diff -r -x '*.d' two/all $O/vdta
     done
     diff <(sed "s|two/all|$O/vdta|" two/"$photo".d) $O/vdta/"$photo".d
@@ -61,7 +61,7 @@ a_viewpoint_that_fails_is_named_and_the_others_are_baked()
     for p in "$O"/vdta/*/; do p=${p%/}; others+=("${p##*/}"); done
     mkdir -p few/reveal; cp $O/reveal/*.exr few/reveal/; rm few/reveal/"${others[1]}".exr
     rm -rf two/some
-    bake 1 '1 of 3 failed' bake_vdta "${inputs[@]}" --vita $O/vita --reveal few/reveal --out two/some --photo "${others[0]}" --photo "${others[1]}" --photo "${others[2]}"
+    bake 1 '1 of 3 failed' bake_vdta "${inputs[@]}" --fill $O/fill --reveal few/reveal --out two/some --photo "${others[0]}" --photo "${others[1]}" --photo "${others[2]}"
     grep -q "failed 2 of 3: ${others[1]}\$" err.txt || { cat err.txt; fail "it is not named"; }
     grep -q "error: .*few/reveal/${others[1]}.exr" err.txt || { cat err.txt; fail "nothing says why"; }
     [ ! -e two/some/"${others[1]}"/atlas.txt ] || fail "half a product was left"
@@ -112,11 +112,11 @@ make_names_what_fails_and_keeps_the_rest()
 
 errors_say_what_is_wrong()
 {
-    bake 2 'give --photo' bake_vdta "${inputs[@]}" --vita $O/vita --reveal $O/reveal --out made
-    bake 2 'there is no photo nobody' bake_vdta "${inputs[@]}" --vita $O/vita --reveal $O/reveal --photo nobody --out made
-    bake 2 'found 2 --photo and 1 --deps' bake_vdta "${inputs[@]}" --vita $O/vita --reveal $O/reveal --photo a --photo b --deps made/d --out made
-    bake 1 'no-such/' bake_vdta "${inputs[@]}" --vita $O/vita --reveal no-such --photo "$photo" --out made
-    bake 2 'min_clutter = 0.9 is above max_clutter' bake_vdta "${inputs[@]}" --vita $O/vita --reveal $O/reveal --photo "$photo" --out made --set min_clutter=0.9
+    bake 2 'give --photo' bake_vdta "${inputs[@]}" --fill $O/fill --reveal $O/reveal --out made
+    bake 2 'there is no photo nobody' bake_vdta "${inputs[@]}" --fill $O/fill --reveal $O/reveal --photo nobody --out made
+    bake 2 'found 2 --photo and 1 --deps' bake_vdta "${inputs[@]}" --fill $O/fill --reveal $O/reveal --photo a --photo b --deps made/d --out made
+    bake 1 'no-such/' bake_vdta "${inputs[@]}" --fill $O/fill --reveal no-such --photo "$photo" --out made
+    bake 2 'min_clutter = 0.9 is above max_clutter' bake_vdta "${inputs[@]}" --fill $O/fill --reveal $O/reveal --photo "$photo" --out made --set min_clutter=0.9
     bake 1 'no-such' bake_vita "${inputs[@]}" --edit no-such/model.txt --out made
     mkdir -p broken; cp $O/ids/*.exr broken/; printf 'remodel-face-index 2\n' >broken/index.txt
     bake 1 'broken/index.txt' bake_vdta --model $O/model/model.txt --axes $O/model/axes.txt --views $O/views --ids broken --reveal $O/reveal --photo "$photo" --out made
@@ -125,12 +125,12 @@ errors_say_what_is_wrong()
 an_estimate_says_what_the_viewpoints_take()
 {
     awk '!/^#/ && NF > 2 { print $2 }' $O/views/lenses.txt | sort -u >list
-    bake 0 used bake_vdta "${inputs[@]}" --vita $O/vita --reveal $O/reveal --out made --estimate list
+    bake 0 used bake_vdta "${inputs[@]}" --fill $O/fill --reveal $O/reveal --out made --estimate list
     awk -v n="$(wc -l <list)" '$1 == "estimate" { found = NF == 6 && $2 == n && $3 > 0 && $4 > 60 && $5 > 0 && $6 <= $3 } END { exit !found }' out.txt ||
         { cat out.txt; fail "no line of the estimate, or a wrong one"; }
     [ ! -e made ] || fail "an estimate wrote something"
     echo nobody >list
-    bake 2 'there is no photo nobody' bake_vdta "${inputs[@]}" --vita $O/vita --reveal $O/reveal --out made --estimate list
+    bake 2 'there is no photo nobody' bake_vdta "${inputs[@]}" --fill $O/fill --reveal $O/reveal --out made --estimate list
     rm -rf out/t/vdta
     make -s plan DEPS=manual SFM=set/model SCENE=t TO=vdta >plan 2>&1 || { cat plan; fail "make plan"; }
     grep -qE '^bake_vdta +[0-9]+ +[0-9]+ +[0-9.]+ ' plan || { cat plan; fail "make plan does not count the bakes"; }
