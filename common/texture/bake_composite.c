@@ -239,6 +239,12 @@ static void set_seen(struct composite *c)
 
 static bool has_guide(const struct composite *c, size_t i) { return c->fill.guide && !isnan(c->fill.guide[3 * i]); }
 
+/* Whether no texel is made: only an edit has the place, or no view shows the face, so that the VITA is as good. */
+static bool is_left_out(const struct composite *c, size_t i)
+{
+    return c->fill.guide && c->unseen[i] && !has_guide(c, i);
+}
+
 /* Unseen texels are drawn to the filled atlas, or else to the nearest of the texels that are listed as such. seen: the
  * role of seen ones from now. */
 static void set_unseen(struct composite *c, int seen)
@@ -247,6 +253,10 @@ static void set_unseen(struct composite *c, int seen)
     for (size_t i = 0; i < texels_of(c->t); i++) {
         if (c->role[i] == GRADIENT_FREE && !c->unseen[i]) c->role[i] = (uint8_t)seen;
         if (!c->unseen[i]) continue;
+        if (is_left_out(c, i)) {
+            c->role[i] = GRADIENT_OUT;
+            continue;
+        }
         float *value = c->value + 3 * i;
         if (has_guide(c, i))
             memcpy(value, c->fill.guide + 3 * i, 3 * sizeof *value);
@@ -290,7 +300,7 @@ static void take_texels(struct bake *b, const struct composite *c, struct bake_t
     for (size_t i = 0; i < texels_of(c->t); i++) {
         const size_t texel = c->t->first + i;
         if (b->role[texel] == TEXEL_NONE) continue;
-        if (b->filled && c->unseen[i] && !has_guide(c, i)) { /* what only an edit has: the VITA shows it */
+        if (is_left_out(c, i)) {
             b->role[texel] = TEXEL_NONE;
             continue;
         }

@@ -481,8 +481,9 @@ static void a_hole_takes_the_texture_of_the_filled_atlas_and_the_light_around_it
     provenance_release(&prov);
 }
 
-/* Measured: 0.065 on the left, beside the boards on the right. */
-static void where_the_filled_atlas_has_nothing_a_hole_is_smooth(void **state)
+/* There the atlas of all faces is as good: a renderer takes its texel. Measured: 0.108, beside the cut, where nothing
+ * holds the light of the hole. */
+static void where_the_filled_atlas_has_nothing_a_viewpoint_has_no_texel(void **state)
 {
     (void)state;
     static filled_texel *const kinds[] = {boards_on_the_right_nothing_on_the_left,
@@ -491,18 +492,19 @@ static void where_the_filled_atlas_has_nothing_a_hole_is_smooth(void **state)
         struct fixture f;
         struct filled_atlas a;
         struct provenance prov = {0};
-        double worst[2] = {0};
+        double worst = 0;
         open_filled(&a, &prov, k ? "default" : "nothing", kinds[k]);
         bake_filled(&f, &a);
         for (int i = 0; i < SIZE * SIZE; i++) {
             const int x = i % SIZE;
             if (f.bake.role[i] == TEXEL_ORIGINAL) continue;
-            assert_int_equal(f.bake.made[i], ATLAS_SYNTHESISED);
-            const double wanted = light_at(i) * (x < 32 ? 1 : boards_at(x + 0.5, i / SIZE + 0.5));
-            worst[x >= 32] = fmax(worst[x >= 32], fabs(f.bake.rgb[3 * i] / wanted - 1));
+            assert_int_equal(f.bake.role[i], x < 32 ? TEXEL_NONE : TEXEL_WANTED);
+            if (x <= 32) continue; /* where the atlas ends, the mean of the texels that exist lies half a texel off */
+            const double wanted = light_at(i) * boards_at(x + 0.5, i / SIZE + 0.5);
+            worst = fmax(worst, fabs(f.bake.rgb[3 * i] / wanted - 1));
         }
-        print_message("worst %.4f on the left, %.4f on the right\n", worst[0], worst[1]);
-        assert_true(worst[0] < 0.1 && worst[1] < 0.1);
+        print_message("worst %.4f\n", worst);
+        assert_true(worst < 0.13);
         end(&f);
         filled_atlas_release(&a);
         provenance_release(&prov);
@@ -526,11 +528,13 @@ static void a_tile_that_no_view_shows_takes_the_values_of_the_filled_atlas(void 
         for (int i = 0; i < SIZE * SIZE; i++) {
             const bool filled = !k || i % SIZE >= 32;
             const double wanted = 0.6 * boards_at(i % SIZE + 0.5, i / SIZE + 0.5);
-            assert_int_equal(f.bake.made[i], filled ? ATLAS_SYNTHESISED : ATLAS_DEFAULT);
-            if (filled) worst = fmax(worst, fabs(f.bake.rgb[3 * i] / wanted - 1));
+            assert_int_equal(f.bake.role[i], filled ? TEXEL_WANTED : TEXEL_NONE);
+            if (!filled) continue;
+            assert_int_equal(f.bake.made[i], ATLAS_SYNTHESISED);
+            worst = fmax(worst, fabs(f.bake.rgb[3 * i] / wanted - 1));
         }
         print_message("worst %.4f\n", worst);
-        assert_true(k || worst < 0.02); /* grey, where the atlas has nothing, draws the others to itself */
+        assert_true(worst < 0.02);
         end(&f);
         filled_atlas_release(&a);
         provenance_release(&prov);
@@ -711,7 +715,7 @@ int main(void)
         cmocka_unit_test(boards_continue_where_no_view_shows_them),
         cmocka_unit_test(what_is_walled_up_continues_the_wall_and_not_its_rim),
         cmocka_unit_test(a_hole_takes_the_texture_of_the_filled_atlas_and_the_light_around_it),
-        cmocka_unit_test(where_the_filled_atlas_has_nothing_a_hole_is_smooth),
+        cmocka_unit_test(where_the_filled_atlas_has_nothing_a_viewpoint_has_no_texel),
         cmocka_unit_test(a_tile_that_no_view_shows_takes_the_values_of_the_filled_atlas),
         cmocka_unit_test(pages_of_the_filled_atlas_are_recorded_once_in_each_product),
         cmocka_unit_test(a_page_that_cannot_be_read_is_an_error),
