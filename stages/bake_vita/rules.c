@@ -1,5 +1,5 @@
-/* rules.c - one atlas of all faces, the edits' too; and one of the unedited model's, from which the viewpoints take what
- * no photo shows: an edit that is added must not bake them all again. */
+/* rules.c - one atlas of all faces, those of edits too; and one of the unedited model's, from which viewpoints take
+ * what no photo shows: an edit that is added must not bake them all again. */
 #include "common/graph/scene_rules.h"
 
 static void bake_rule(struct graph *g, const struct scene_facts *f, const char *name, const char *folder, bool edits)

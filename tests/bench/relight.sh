@@ -74,7 +74,7 @@ change_args() # EDIT
 {
     local lights=$room/lights/lights.txt
     printf '%s\n' --model "$room/model/model.txt" --edited "$room/remodel/$1/model.txt" --map "$room/remodel/$1/texture.txt" --axes "$room/model/axes.txt" \
-        --vita "$room/vita" --outdoors "$room/outdoors/outdoors.exr" --objects "$room/remodel/$1/objects.txt" --scene "$described"
+        --vita "$room/vita" --outdoors "$room/outdoors/outdoors.exr" --objects "$room/remodel/$1/objects.txt" --scene "$described" --things "$room/things"
     [ ! -e "$lights" ] || printf '%s\n' --lights "$lights"
     [ ! -d "$kept/project/out/room/lri" ] || printf '%s\n' --references "$kept/project/out/room/lri"
 }
@@ -84,7 +84,7 @@ prepare_edit() # EDIT
     local change views
     mapfile -t change < <(change_args "$1")
     mapfile -t views < <(views_of --view | tr ' ' '\n')
-    quietly "$B/bin/render_model" --views "$room/views" --depth "$room/depth" --vdta "$room/vdta" --vita "$room/vita" --ids "$room/ids" --outdoors "$room/outdoors/outdoors.exr" \
+    quietly "$B/bin/render_model" --views "$room/views" --depth "$room/depth/model" --things "$room/things" --vdta "$room/vdta" --vita "$room/vita" --ids "$room/ids" --outdoors "$room/outdoors/outdoors.exr" \
         --axes "$room/model/axes.txt" --model "$room/remodel/$1/model.txt" --base "$room/model/model.txt" --map "$room/remodel/$1/texture.txt" \
         "${views[@]}" --set radiance=all --out "$fast/unlit/edited-$1"
     measured "$B/bin/update_vita" --threads "$threads" "${change[@]}" --out "$fast/light/$1" >"$fast/update-$1" || { tail -n 5 "$work/err" >&2; missing "update_vita failed."; }

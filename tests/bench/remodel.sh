@@ -80,6 +80,7 @@ sample() # SERIES SCENE
     rm -rf "$fast/row"; mkdir -p "$fast/row"
     ln -s "$(realpath "$from")"/{views,model,ids} "$fast/row/"
     args=(--views "$from/views" --depth "$from/depth" --threads "$threads")
+    [ "$1" = render_views ] || args[3]=$from/depth/model
     drawn=(--model "$from/model/model.txt" --axes "$from/model/axes.txt" --vdta "$from/vdta" --vita "$from/vita" --ids "$from/ids" --outdoors "$from/outdoors/outdoors.exr")
     case $1 in
     render_views) measured "$B/bin/render_views" "${args[@]}" --cameras "$cameras" --out "$fast/row/rendered/novel" >"$fast/time" || return ;;
@@ -90,7 +91,7 @@ sample() # SERIES SCENE
         where=edited-$e of=edited.$e psnr=revealed_psnr
         drawn[1]=$from/remodel/$e/model.txt
         # shellcheck disable=SC2046 # options
-        measured "$B/bin/render_model" "${args[@]}" "${drawn[@]}" --base "$from/model/model.txt" --map "$from/remodel/$e/texture.txt" $(views_of) \
+        measured "$B/bin/render_model" "${args[@]}" "${drawn[@]}" --base "$from/model/model.txt" --map "$from/remodel/$e/texture.txt" --things "$from/things" $(views_of) \
             --set radiance=yes --out "$fast/row/rendered/$where" >"$fast/time" || return ;;
     esac
     [ "$where" != novel ] || cp "$cameras"/*.txt "$fast/row/rendered/novel/"
