@@ -107,7 +107,7 @@ sample() # EDIT SCENE KIND TARGET
     mapfile -t pictures < <(views_of --picture | tr ' ' '\n')
     rm -rf "$fast/row"; mkdir -p "$fast/row/rendered"
     ln -s "$(realpath "$room")"/{views,model,ids,remodel} "$fast/row/"
-    measured "$B/bin/relight" --threads "$threads" "${change[@]}" --relit "$fast/light/$1" --views "$room/views" --ids "$room/ids" --depth "$room/depth" \
+    measured "$B/bin/relight" --threads "$threads" "${change[@]}" --relit "$fast/light/$1" --views "$room/views" --ids "$room/ids" --depth "$room/depth/model" \
         --pictures "$fast/unlit/edited-$1" "${pictures[@]}" --set "target_error=$4" --out "$fast/row/rendered/relit-$1" >"$fast/time" || return
     ln -s "$fast/unlit/edited-$1" "$fast/row/rendered/edited-$1"
     "$B/bin/evaluate" --folder "$fast/row" --shared "$kept/project/out/room" --truth "$kept/room/truth" --rendered "$fast/row/rendered" --out "$fast/row/metrics.tsv" 2>"$work/err" || return
