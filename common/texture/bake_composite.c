@@ -155,6 +155,10 @@ static void set_pair(struct composite *c, int side, size_t at, size_t next)
     bool known = best[0] >= 0 && add_difference(c, side, at, p, q, best[0]);
     if (best[1] >= 0 && best[1] != best[0] && add_difference(c, side, at, p, q, best[1])) known = true;
     if (!known) c->weight[side][at] = 1;
+    if (!known && c->fill.loose && c->unseen[at] != c->unseen[next] && c->fill.loose[c->unseen[at] ? next : at]) {
+        c->weight[side][at] = 0;
+        return;
+    }
     if (!known && c->fill.value) take_fill(c, side, at, next);
     if (!known && c->fill.value) leave_rim(c, side, at, next);
 }
@@ -357,7 +361,7 @@ static enum status solve_tile(struct composite *c, struct bake_totals *totals, s
     const struct synthesis_picture picture = {c->t->raster.width, c->t->raster.height, c->value, c->unseen, c->clean};
     if (c->b->filled) {
         float *guide = filled_atlas_tile(c->b->filled, c->b, c->t, err);
-        if (guide) texture_fill_guide(&c->fill, &picture, guide);
+        if (guide) texture_fill_guide(&c->fill, &picture, guide, err);
     } else
         texture_fill_find(&c->fill, &picture, err);
     if (err->status) return err->status;

@@ -11,26 +11,35 @@
 #include <math.h>
 #include <stdlib.h>
 
+static const float OTHER = 0.25f;    /* display units: a seen texel this far from the guide shows something else */
 static const float MAX_STEP = 0.15f; /* display units: between a seen texel and the copy of its place */
 
 static void set_picture(struct texture_fill *f, const struct synthesis_picture *p)
 {
-    *f = (struct texture_fill){p->width, p->height, p->value, p->unseen, p->clean, NULL, NULL};
+    *f = (struct texture_fill){p->width, p->height, p->value, p->unseen, p->clean, NULL, NULL, NULL};
 }
 
 enum status texture_fill_find(struct texture_fill *f, const struct synthesis_picture *picture, struct err *err)
 {
     const size_t texels = (size_t)picture->width * (size_t)picture->height;
     set_picture(f, picture);
-    if (!(f->source = malloc((texels + 1) * sizeof *f->source)))
-        return err_nomem(err, "the holes of a tile", texels * sizeof *f->source);
-    return synthesis_find(f->source, picture, err);
+    f->source = malloc((texels + 1) * sizeof *f->source);
+    f->loose = calloc(texels + 1, 1);
+    if (!f->source || !f->loose) return err_nomem(err, "the holes of a tile", texels * sizeof *f->source);
+    return synthesis_find(f->source, f->loose, picture, err);
 }
 
-void texture_fill_guide(struct texture_fill *f, const struct synthesis_picture *picture, float *guide)
+enum status texture_fill_guide(struct texture_fill *f, const struct synthesis_picture *picture, float *guide,
+                               struct err *err)
 {
+    const size_t texels = (size_t)picture->width * (size_t)picture->height;
     set_picture(f, picture);
     f->guide = guide;
+    if (!(f->loose = calloc(texels + 1, 1))) return err_nomem(err, "the holes of a tile", texels);
+    for (size_t i = 0; i < texels; i++)
+        for (size_t k = 0; k < 3 && !f->unseen[i] && !isnan(guide[3 * i]); k++)
+            f->loose[i] |= fabsf(f->value[3 * i + k] - guide[3 * i + k]) > OTHER;
+    return ST_OK;
 }
 
 bool texture_fill_copy(float copy[3], const struct texture_fill *f, size_t at, size_t of)
@@ -75,6 +84,7 @@ bool texture_fill_difference(float difference[3], const struct texture_fill *f, 
 void texture_fill_release(struct texture_fill *f)
 {
     free(f->source);
+    free(f->loose);
     free(f->guide);
     *f = (struct texture_fill){0};
 }

@@ -3,7 +3,8 @@
  * Overview.
  *   1. Slow changes, light and shade, are taken off: what is left is texture alone.
  *   2. A texel whose surroundings are like nothing else in the picture belongs to something unique, a poster, a socket,
- *      the border of a rug. It is never copied, and a hole is left smooth where such a thing is nearest. What is like
+ *      the border of a rug. It is never copied, and a hole is left smooth where such a thing is nearest. If most of a
+ *      hole's sides are not unique, those that are do not hold its colours. What is like
  *      a texel is looked for at random, along its row and column, and where its neighbours found theirs [Barnes 2009].
  *   3. At half size, unseen texels get a source one by one, from the rim of the hole inwards. Candidates continue the
  *      sources of the neighbours that have one [Ashikhmin 2001], or lie anywhere in the picture. The best has the least
@@ -29,8 +30,9 @@ enum { TRIED = 64, STEPS = 12, PASSES = 4 };    /* sources anywhere; steps aroun
 enum { PROBES = 48, APART = 2 * SIDE };         /* sources that tell whether a place is unique; texels between them */
 enum { SHARED = 8 };                            /* texels: of the first neighbours whose likes are tried */
 enum { FEWEST = 64 };                           /* sources without which nothing is copied */
-static const float UNIQUE = 4, NOTHING = 4e-4f; /* times the median difference; difference of patches that are alike */
+static const float UNLIKE = 4, NOTHING = 4e-4f; /* times the median difference; difference of patches that are alike */
 static const float CONTRAST = 0.5f;             /* the same, of the median variance within a patch */
+enum { UNKNOWN, ORDINARY, UNIQUE };             /* places */
 static const float GUESSED = 0.5f;              /* weight of texels that were copied themselves */
 
 /* A picture at one size. */
@@ -265,7 +267,8 @@ static int compare_floats(const void *a, const void *b)
     return p < q ? -1 : p > q;
 }
 
-/* Sets unique[texel] to 1 where a patch is like no other. */
+/* Sets unique[texel] to ORDINARY where a patch around it is like another, to UNIQUE where none is, and to UNKNOWN where
+ * no patch is clean. */
 static enum status find_unique(uint8_t *unique, struct level *l, struct err *err)
 {
     const size_t n = (size_t)l->middle_count;
@@ -274,15 +277,17 @@ static enum status find_unique(uint8_t *unique, struct level *l, struct err *err
     find_likes(l, least);
     memcpy(least + n, least, n * sizeof *least);
     qsort(least + n, n, sizeof *least, compare_floats);
-    float limit = n ? fmaxf(NOTHING, UNIQUE * least[n + n / 2]) : 0;
+    float limit = n ? fmaxf(NOTHING, UNLIKE * least[n + n / 2]) : 0;
     for (size_t i = 0; i < n; i++) least[n + i] = variance(l, l->middles[i]);
     qsort(least + n, n, sizeof *least, compare_floats);
     if (n) limit = fmaxf(limit, CONTRAST * least[n + n / 2]);
-    memset(unique, 0, texels_of(l));
-    for (size_t i = 0; i < n; i++) {
-        if (!(least[i] > limit)) continue;
-        for (int dy = -REACH; dy <= REACH; dy++) memset(unique + l->middles[i] + dy * l->width - REACH, 1, SIDE);
-    }
+    memset(unique, UNKNOWN, texels_of(l));
+    for (int kind = UNIQUE; kind >= ORDINARY; kind--) /* a patch that is ordinary holds no texel that is unique */
+        for (size_t i = 0; i < n; i++) {
+            if ((least[i] > limit) != (kind == UNIQUE)) continue;
+            uint8_t *first = unique + l->middles[i] - REACH * l->width - REACH;
+            for (int dy = 0; dy < SIDE; dy++) memset(first + dy * l->width, kind, SIDE);
+        }
     free(least);
     return ST_OK;
 }
@@ -318,6 +323,16 @@ static void start(struct level *l)
     }
 }
 
+/* The four texels beside one; -1: the picture ends there. */
+static void neighbours(int32_t around[4], const struct level *l, int32_t at)
+{
+    const int x = at % l->width, y = at / l->width;
+    around[0] = x > 0 ? at - 1 : -1;
+    around[1] = x + 1 < l->width ? at + 1 : -1;
+    around[2] = y > 0 ? at - l->width : -1;
+    around[3] = y + 1 < l->height ? at + l->width : -1;
+}
+
 /* Lists the wanted texels by their distance in steps from a texel that is not wanted. Leaves out those to which a
  * unique place is nearest. */
 static void list_order(struct level *l, const uint8_t *unique)
@@ -325,22 +340,57 @@ static void list_order(struct level *l, const uint8_t *unique)
     const size_t n = texels_of(l);
     int32_t *queue = l->next; /* holds each texel once */
     size_t head = 0, tail = 0;
-    uint8_t *state = l->known; /* 1: reached; 2: reached from a unique place; set anew by start() */
+    uint8_t *state = l->known; /* of the nearest place that is known; set anew by start() */
     for (size_t i = 0; i < n; i++) {
-        state[i] = l->clean[i] ? unique[i] ? 2 : 1 : 0;
+        state[i] = l->clean[i] ? unique[i] : UNKNOWN;
         if (state[i]) queue[tail++] = (int32_t)i;
     }
     l->count = 0;
     while (head < tail) {
         const int32_t at = queue[head++];
-        const int x = at % l->width, y = at / l->width;
-        const int32_t around[4] = {x > 0 ? at - 1 : -1, x + 1 < l->width ? at + 1 : -1, y > 0 ? at - l->width : -1,
-                                   y + 1 < l->height ? at + l->width : -1};
-        if (l->unseen[at] && state[at] == 1) l->order[l->count++] = at;
+        int32_t around[4];
+        neighbours(around, l, at);
+        if (l->unseen[at] && state[at] == ORDINARY) l->order[l->count++] = at;
         for (int k = 0; k < 4; k++) {
             if (around[k] < 0 || state[around[k]]) continue;
             state[around[k]] = state[at];
             queue[tail++] = around[k];
+        }
+    }
+}
+
+/* Marks, in loose[], what is unique beside holes of which most sides are not: keys of a piano that lean on a wall must
+ * not tint what is continued behind them. After list_order(), whose states tell what is unique. */
+static void find_loose(uint8_t *loose, const struct level *l)
+{
+    const size_t n = texels_of(l);
+    int32_t *list = l->next;
+    uint8_t *listed = l->middle; /* set anew by start() */
+    memset(loose, 0, n);
+    memset(listed, 0, n);
+    for (size_t first = 0; first < n; first++) {
+        if (!l->unseen[first] || listed[first]) continue;
+        size_t count = 0, sides[3] = {0};
+        list[count++] = (int32_t)first;
+        listed[first] = 1;
+        for (size_t i = 0; i < count; i++) {
+            int32_t around[4];
+            neighbours(around, l, list[i]);
+            for (int k = 0; k < 4; k++) {
+                if (around[k] < 0 || listed[around[k]]) continue;
+                if (!l->unseen[around[k]]) {
+                    sides[l->known[around[k]]]++;
+                    continue;
+                }
+                listed[around[k]] = 1;
+                list[count++] = around[k];
+            }
+        }
+        for (size_t i = 0; i < count && sides[ORDINARY] > sides[UNIQUE]; i++) {
+            int32_t around[4];
+            neighbours(around, l, list[i]);
+            for (int k = 0; k < 4; k++)
+                if (around[k] >= 0 && !l->unseen[around[k]] && l->known[around[k]] == UNIQUE) loose[around[k]] = 1;
         }
     }
 }
@@ -428,7 +478,7 @@ static void take_halves(struct level *l, const struct level *half)
     }
 }
 
-static enum status find_sources(struct level *l, struct err *err)
+static enum status find_sources(struct level *l, uint8_t *loose, struct err *err)
 {
     struct level half = {0};
     uint8_t *unique = calloc(2 * texels_of(l) + 2, 1), *halved = unique + texels_of(l) + 1;
@@ -445,8 +495,9 @@ static enum status find_sources(struct level *l, struct err *err)
     if (!err->status) {
         list_order(&half, halved);
         list_order(l, unique);
-        for (size_t i = 0; i < texels_of(&half); i++) half.clean[i] &= !halved[i];
-        for (size_t i = 0; i < texels_of(l); i++) l->clean[i] &= !unique[i];
+        find_loose(loose, l);
+        for (size_t i = 0; i < texels_of(&half); i++) half.clean[i] &= halved[i] != UNIQUE;
+        for (size_t i = 0; i < texels_of(l); i++) l->clean[i] &= unique[i] != UNIQUE;
         start(&half);
         start(l);
         if (half.middle_count >= FEWEST && l->middle_count >= FEWEST) {
@@ -460,13 +511,13 @@ static enum status find_sources(struct level *l, struct err *err)
     return err->status;
 }
 
-enum status synthesis_find(int32_t *source, const struct synthesis_picture *p, struct err *err)
+enum status synthesis_find(int32_t *source, uint8_t *loose, const struct synthesis_picture *p, struct err *err)
 {
     struct level l = {0};
     if (!level_init(&l, p->width, p->height, err)) {
         memcpy(l.unseen, p->unseen, texels_of(&l));
         memcpy(l.clean, p->clean, texels_of(&l));
-        if (!flatten(&l, p->value, err) && !find_sources(&l, err))
+        if (!flatten(&l, p->value, err) && !find_sources(&l, loose, err))
             memcpy(source, l.source, texels_of(&l) * sizeof *source);
     }
     level_release(&l);

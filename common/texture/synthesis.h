@@ -15,7 +15,8 @@ struct synthesis_picture {
 };
 
 /* Sets source[texel], for unseen ones, to the clean texel whose surroundings belong there; -1: there is none, the place
- * is to be smooth. Seen texels get -1. Same bits for any number of threads. ST_NOMEM. */
-enum status synthesis_find(int32_t *source, const struct synthesis_picture *picture, struct err *err);
+ * is to be smooth. Seen texels get -1. Sets loose[texel] to 1 for seen ones whose colours must not spread into the hole
+ * beside them, else to 0. Same bits for any number of threads. ST_NOMEM. */
+enum status synthesis_find(int32_t *source, uint8_t *loose, const struct synthesis_picture *picture, struct err *err);
 
 #endif

@@ -17,6 +17,7 @@ struct picture {
     float *value;
     uint8_t *unseen, *clean;
     int32_t *source;
+    uint8_t *loose;
 };
 
 static struct picture make_picture(int width, int height)
@@ -25,8 +26,9 @@ static struct picture make_picture(int width, int height)
     struct picture p = {.value = calloc(n, 3 * sizeof *p.value),
                         .unseen = calloc(n, 1),
                         .clean = malloc(n),
-                        .source = malloc(n * sizeof *p.source)};
-    assert_true(p.value && p.unseen && p.clean && p.source);
+                        .source = malloc(n * sizeof *p.source),
+                        .loose = malloc(n)};
+    assert_true(p.value && p.unseen && p.clean && p.source && p.loose);
     memset(p.clean, 1, n);
     memset(p.source, 0x55, n * sizeof *p.source);
     p.given = (struct synthesis_picture){width, height, p.value, p.unseen, p.clean};
@@ -39,6 +41,7 @@ static void release(struct picture *p)
     free(p->unseen);
     free(p->clean);
     free(p->source);
+    free(p->loose);
 }
 
 static int texels_of(const struct picture *p) { return p->given.width * p->given.height; }
@@ -62,7 +65,7 @@ static void cut_hole(struct picture *p, struct rectangle hole)
 static void find(struct picture *p)
 {
     struct err err = ERR_INIT;
-    assert_ok(synthesis_find(p->source, &p->given, &err), err);
+    assert_ok(synthesis_find(p->source, p->loose, &p->given, &err), err);
     for (int i = 0; i < texels_of(p); i++) {
         const int32_t from = p->source[i];
         assert_in_range(from + 1, 0, texels_of(p));
@@ -253,6 +256,36 @@ static void a_hole_between_a_unique_thing_and_a_wall_continues_the_wall_alone(vo
     release(&p);
 }
 
+/* The hole takes a corner of the poster away: three of its sides are wall. */
+static void a_unique_thing_does_not_hold_the_colours_of_a_hole_in_the_wall(void **state)
+{
+    (void)state;
+    struct picture p = make_poster();
+    const struct rectangle hole = {62, 60, 40, 40};
+    int loose = 0;
+    cut_hole(&p, hole);
+    find(&p);
+    for (int i = 0; i < texels_of(&p); i++) {
+        if (!p.loose[i]) continue;
+        loose++;
+        assert_false(p.unseen[i]);
+        assert_true(is_in(&p, i, poster, 2)); /* and what is between it and the next clean place */
+    }
+    assert_true(loose > 20);
+    release(&p);
+}
+
+static void a_unique_thing_holds_the_colours_of_a_hole_in_itself(void **state)
+{
+    (void)state;
+    struct picture p = make_poster();
+    const struct rectangle hole = {39, 50, 11, 11};
+    cut_hole(&p, hole);
+    find(&p);
+    for (int i = 0; i < texels_of(&p); i++) assert_false(p.loose[i]);
+    release(&p);
+}
+
 /* -------------------------------------------------------------------------------------------------- too few to copy */
 
 static void without_enough_clean_texels_nothing_is_copied(void **state)
@@ -302,6 +335,8 @@ int main(void)
         cmocka_unit_test(a_unique_thing_is_never_a_source),
         cmocka_unit_test(a_hole_in_a_unique_thing_stays_smooth),
         cmocka_unit_test(a_hole_between_a_unique_thing_and_a_wall_continues_the_wall_alone),
+        cmocka_unit_test(a_unique_thing_does_not_hold_the_colours_of_a_hole_in_the_wall),
+        cmocka_unit_test(a_unique_thing_holds_the_colours_of_a_hole_in_itself),
         cmocka_unit_test(without_enough_clean_texels_nothing_is_copied),
         cmocka_unit_test(a_picture_without_holes_gets_no_source),
         cmocka_unit_test(tiny_pictures_get_no_source),
