@@ -143,6 +143,14 @@ static void leave_rim(struct composite *c, int side, size_t at, size_t next)
     }
 }
 
+/* Whether one of a pair is in a hole behind furniture, and the other does not hold the hole's colours. */
+static bool is_loose(const struct composite *c, size_t at, size_t next)
+{
+    if (!c->fill.loose || c->unseen[at] == c->unseen[next]) return false;
+    const int32_t list = c->b->list[c->t->first + (c->unseen[at] ? at : next)];
+    return list >= 0 && c->b->hidden[list] && c->fill.loose[c->unseen[at] ? next : at];
+}
+
 /* The pair of a texel and its neighbour to the right or below. */
 static void set_pair(struct composite *c, int side, size_t at, size_t next)
 {
@@ -155,7 +163,7 @@ static void set_pair(struct composite *c, int side, size_t at, size_t next)
     bool known = best[0] >= 0 && add_difference(c, side, at, p, q, best[0]);
     if (best[1] >= 0 && best[1] != best[0] && add_difference(c, side, at, p, q, best[1])) known = true;
     if (!known) c->weight[side][at] = 1;
-    if (!known && c->fill.loose && c->unseen[at] != c->unseen[next] && c->fill.loose[c->unseen[at] ? next : at]) {
+    if (!known && is_loose(c, at, next)) {
         c->weight[side][at] = 0;
         return;
     }
