@@ -20,8 +20,8 @@ struct texture_fill {
 
 /* Takes texture from the picture itself (synthesis.h). */
 enum status texture_fill_find(struct texture_fill *f, const struct synthesis_picture *picture, struct err *err);
-/* Takes texture from a guide, which becomes the fill's own. Seen texels that are unlike the guide do not hold the colours
- * of holes beside them: the view's rim shows furniture there. ST_NOMEM. */
+/* Takes texture from a guide, which becomes the fill's own. Seen texels that are unlike the guide do not hold the
+ * colours of holes beside them: the view's rim shows furniture there. ST_NOMEM. */
 enum status texture_fill_guide(struct texture_fill *f, const struct synthesis_picture *picture, float *guide,
                                struct err *err);
 /* The texture that belongs at texel `of`, an unseen one or another near it, by what is copied to the unseen texel `at`;

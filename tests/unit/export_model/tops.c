@@ -210,13 +210,15 @@ static void sloping_slabs_leaves_and_panes_are_in_the_ifc_file(void **state)
     assert_ok(unite_solids(&mesh, &s.solids, NULL, &err), err);
     assert_ok(export_faces_make(&faces, &mesh, NULL, &atlas, &err), err);
     const struct export_objects none = {.meshes = NULL};
+    const struct export_things no_things = {.things = NULL};
     const struct export_scene scene = {.name = "room",
                                        .mesh = &mesh,
                                        .faces = &faces,
                                        .plan = &s.read,
                                        .objects = &none,
                                        .metric = true,
-                                       .out = scratch};
+                                       .out = scratch,
+                                       .things = &no_things};
     assert_ok(write_ifc(&scene, &err), err);
     text = scratch_read(scratch_path("model.ifc"));
     expect_whole_step_file(text, &lines);
