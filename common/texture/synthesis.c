@@ -3,7 +3,7 @@
  * Overview.
  *   1. Slow changes, light and shade, are taken off: what is left is texture alone.
  *   2. A texel whose surroundings are like nothing else in the picture belongs to something unique, a poster, a socket,
- *      the border of a rug. It is never copied, and a hole is left smooth where such a thing is nearest. If most of a
+ *      the border of a rug. So does a colour that the face hardly has. It is never copied, and a hole is left smooth where such a thing is nearest. If most of a
  *      hole's sides are not unique, those that are do not hold its colours. What is like
  *      a texel is looked for at random, along its row and column, and where its neighbours found theirs [Barnes 2009].
  *   3. At half size, unseen texels get a source one by one, from the rim of the hole inwards. Candidates continue the
@@ -32,6 +32,7 @@ enum { SHARED = 8 };                            /* texels: of the first neighbou
 enum { FEWEST = 64 };                           /* sources without which nothing is copied */
 static const float UNLIKE = 4, NOTHING = 4e-4f; /* times the median difference; difference of patches that are alike */
 static const float CONTRAST = 0.5f;             /* the same, of the median variance within a patch */
+static const float ODD = 6, PLAIN = 0.12f;      /* times the median distance from the slow changes; display units */
 enum { UNKNOWN, ORDINARY, UNIQUE };             /* places */
 static const float GUESSED = 0.5f;              /* weight of texels that were copied themselves */
 
@@ -478,6 +479,25 @@ static void take_halves(struct level *l, const struct level *half)
     }
 }
 
+/* Marks texels of a colour that the face hardly has as unique, too: the border of a rug is like itself all along. */
+static enum status find_odd_colours(uint8_t *unique, const struct level *l, struct err *err)
+{
+    const size_t n = texels_of(l);
+    float *off = malloc((n + 1) * sizeof *off);
+    if (!off) return err_nomem(err, "colours of a texture", n * sizeof *off);
+    for (size_t c = 0; c < 3; c++) {
+        size_t count = 0;
+        for (size_t i = 0; i < n; i++)
+            if (l->clean[i]) off[count++] = fabsf(l->value[3 * i + c]);
+        qsort(off, count, sizeof *off, compare_floats);
+        const float limit = count ? fmaxf(PLAIN, ODD * off[count / 2]) : 0;
+        for (size_t i = 0; i < n; i++)
+            if (l->clean[i] && fabsf(l->value[3 * i + c]) > limit) unique[i] = UNIQUE;
+    }
+    free(off);
+    return ST_OK;
+}
+
 static enum status find_sources(struct level *l, uint8_t *loose, struct err *err)
 {
     struct level half = {0};
@@ -485,7 +505,7 @@ static enum status find_sources(struct level *l, uint8_t *loose, struct err *err
     if (!unique) err_nomem(err, "unique places of a texture", 2 * texels_of(l));
     if (!err->status && !halve(&half, l, err)) {
         start(&half);
-        find_unique(halved, &half, err);
+        if (!find_unique(halved, &half, err)) find_odd_colours(halved, &half, err);
     }
     for (int y = 0; !err->status && y < l->height; y++)
         for (int x = 0; x < l->width; x++)

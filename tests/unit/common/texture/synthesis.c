@@ -256,6 +256,26 @@ static void a_hole_between_a_unique_thing_and_a_wall_continues_the_wall_alone(vo
     release(&p);
 }
 
+/* The border of a rug is like itself all along, but hardly any of the floor has its colour. */
+static void a_line_of_an_odd_colour_is_never_a_source(void **state)
+{
+    (void)state;
+    const struct rectangle line = {20, 0, 8, 120}, hole = {90, 40, 57, 50};
+    struct picture p = make_picture(170, 120);
+    int filled = 0;
+    for (int i = 0; i < texels_of(&p); i++)
+        for (int c = 0; c < 3; c++) p.value[3 * i + c] = (is_in(&p, i, line, 0) ? 0.9f : 0.5f) + 0.03f * noise(i, c);
+    cut_hole(&p, hole);
+    find(&p);
+    for (int i = 0; i < texels_of(&p); i++) {
+        if (p.source[i] < 0) continue;
+        assert_false(is_in(&p, p.source[i], line, 0));
+        filled++;
+    }
+    assert_int_equal(filled, hole.width * hole.height);
+    release(&p);
+}
+
 /* The hole takes a corner of the poster away: three of its sides are wall. */
 static void a_unique_thing_does_not_hold_the_colours_of_a_hole_in_the_wall(void **state)
 {
@@ -335,6 +355,7 @@ int main(void)
         cmocka_unit_test(a_unique_thing_is_never_a_source),
         cmocka_unit_test(a_hole_in_a_unique_thing_stays_smooth),
         cmocka_unit_test(a_hole_between_a_unique_thing_and_a_wall_continues_the_wall_alone),
+        cmocka_unit_test(a_line_of_an_odd_colour_is_never_a_source),
         cmocka_unit_test(a_unique_thing_does_not_hold_the_colours_of_a_hole_in_the_wall),
         cmocka_unit_test(a_unique_thing_holds_the_colours_of_a_hole_in_itself),
         cmocka_unit_test(without_enough_clean_texels_nothing_is_copied),
