@@ -2,10 +2,11 @@
  *
  * Overview.
  *   1. Slow changes, light and shade, are taken off: what is left is texture alone.
- *   2. A texel whose surroundings are like nothing else in the picture belongs to something unique, a poster, a socket,
- *      the border of a rug. So does a colour that the face hardly has. It is never copied, and a hole is left smooth where such a thing is nearest. If most of a
- *      hole's sides are not unique, those that are do not hold its colours. What is like
- *      a texel is looked for at random, along its row and column, and where its neighbours found theirs [Barnes 2009].
+ *   2. A texel whose surroundings are like nothing else in the picture belongs to something unique, a poster, a socket.
+ *      So does a colour that the picture hardly has, the border of a rug. What is unique is never copied, and a hole is
+ *      left smooth where it is nearest. If most of a hole's sides are not unique, those that are do not hold its
+ *      colours. What is like a texel is looked for at random, along its row and column, and where its neighbours found
+ *      theirs [Barnes 2009].
  *   3. At half size, unseen texels get a source one by one, from the rim of the hole inwards. Candidates continue the
  *      sources of the neighbours that have one [Ashikhmin 2001], or lie anywhere in the picture. The best has the least
  *      difference of patches, over the texels that are known by then [Efros 1999].
