@@ -23,7 +23,7 @@ struct plan_sheet {
     locale_t before;               /* of the caller: numbers are written in the C locale */
 };
 
-/* The sheet holds the rooms, or the walls where there is no room. */
+/* Makes the sheet large enough for all rooms; without rooms, for all walls. */
 void plan_sheet_fit(struct plan_sheet *s, const struct model_plan *plan);
 void plan_sheet_hold(struct plan_sheet *s, double x, double y);
 

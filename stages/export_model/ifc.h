@@ -23,6 +23,8 @@ struct ifc {
 /* ifc_lines.c */
 
 int ifc_next(struct ifc *f); /* the next number */
+/* An IfcCartesianPointList3D; returns its number. */
+int ifc_points(struct ifc *f, const struct vec3 *points, int count);
 /* Writes "#N=" and the formatted text; returns N. */
 int ifc_put(struct ifc *f, const char *fmt, ...) PRINTF_LIKE(2, 3);
 /* Begins "#N=KIND('guid',$,'name'": the GUID is that of the kind and the name. */

@@ -7,6 +7,18 @@
 
 int ifc_next(struct ifc *f) { return ++f->last; }
 
+int ifc_points(struct ifc *f, const struct vec3 *points, int count)
+{
+    char x[40], y[40], z[40];
+    const int list = ifc_next(f);
+    fprintf(f->to, "#%d=IFCCARTESIANPOINTLIST3D((", list);
+    for (int i = 0; i < count; i++)
+        fprintf(f->to, "%s(%s,%s,%s)", i ? "," : "", ifc_real(x, points[i].x), ifc_real(y, points[i].y),
+                ifc_real(z, points[i].z));
+    fputs("));\n", f->to);
+    return list;
+}
+
 int ifc_put(struct ifc *f, const char *fmt, ...)
 {
     va_list args;

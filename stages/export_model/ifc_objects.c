@@ -21,13 +21,7 @@ static int put_style(struct ifc *f, const char *name, const double colour[3])
 /* An IfcTriangulatedFaceSet. corners NULL: each three points are a triangle. */
 static int put_triangles(struct ifc *f, const struct vec3 *points, int point_count, const int (*corners)[3], int count)
 {
-    char x[40], y[40], z[40];
-    const int list = ifc_next(f);
-    fprintf(f->to, "#%d=IFCCARTESIANPOINTLIST3D((", list);
-    for (int i = 0; i < point_count; i++)
-        fprintf(f->to, "%s(%s,%s,%s)", i ? "," : "", ifc_real(x, points[i].x), ifc_real(y, points[i].y),
-                ifc_real(z, points[i].z));
-    fputs("));\n", f->to);
+    const int list = ifc_points(f, points, point_count);
     const int set = ifc_next(f);
     fprintf(f->to, "#%d=IFCTRIANGULATEDFACESET(#%d,$,.F.,(", set, list);
     for (int k = 0; k < count; k++) {

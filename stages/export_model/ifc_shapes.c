@@ -79,7 +79,6 @@ int ifc_polyhedron(struct ifc *f, const struct vec3 *corners, const int *ends, i
     const int total = count ? ends[count - 1] : 0;
     struct vec3 *points = malloc(((size_t)total + 1) * sizeof *points);
     struct ifc_ids faces = {0};
-    char x[40], y[40], z[40];
     int point_count = 0;
     if (!points) return err_nomem(f->err, "corners", (size_t)total * sizeof *points), 0;
     for (int i = 0, k = 0; i < count; i++) {
@@ -90,12 +89,7 @@ int ifc_polyhedron(struct ifc *f, const struct vec3 *corners, const int *ends, i
         fputs("));\n", f->to);
         ifc_keep(f, &faces, id);
     }
-    const int list = ifc_next(f);
-    fprintf(f->to, "#%d=IFCCARTESIANPOINTLIST3D((", list);
-    for (int i = 0; i < point_count; i++)
-        fprintf(f->to, "%s(%s,%s,%s)", i ? "," : "", ifc_real(x, points[i].x), ifc_real(y, points[i].y),
-                ifc_real(z, points[i].z));
-    fputs("));\n", f->to);
+    const int list = ifc_points(f, points, point_count);
     int set = ifc_next(f);
     fprintf(f->to, "#%d=IFCPOLYGONALFACESET(#%d,.T.,", set, list);
     ifc_put_ids(f, &faces);

@@ -23,8 +23,8 @@ struct surface_voxel {
 };
 
 /* Sets meets[pixel] to the thing whose surface the ray of the pixel meets first, more than a voxel before the model; 0:
- * none. This tells of places where the view's own depth is off or missing, from what all views have seen. Voxels are
- * drawn as the squares that hold them, so surfaces have no holes. */
+ * none. Where the view's own depth is wrong or missing, the other views tell what is there. Voxels are drawn as the
+ * squares that hold them, so surfaces have no holes. */
 void thing_meets_find(uint32_t *meets, const struct surface_voxel *voxels, size_t count, double voxel,
                       const struct view *camera, const struct view_ids *ids, double scale, float *nearest);
 

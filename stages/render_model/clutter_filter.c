@@ -1,7 +1,7 @@
 /* clutter_filter.c - see clutter_filter.h. */
 #include "stages/render_model/clutter_filter.h"
 
-/* of the height: above it, what is no thing is part of a lamp, whose depth is never sure */
+/* Of the height. Clutter above it that belongs to no thing is part of a lamp: the depth of lamps is never sure. */
 #define CEILING 0.85
 
 struct clutter_filter clutter_filter_of(const struct placed_things *t, const struct texture_map *map)
