@@ -7,8 +7,9 @@
  * max_gradient, an edge that may not be where the neighbour's source has it, counts little. Where no view shows
  * both, the difference is to be 0. Texels that no view shows are found afterwards, with the others fixed, so that a
  * fill never moves what is seen. They take the differences of texture elsewhere on the face, or of an atlas that has
- * it already (fill.h), or 0 where there is none. They are drawn weakly to that atlas, else to the nearest seen texel
- * that is not beside what hides the face: a face's mean would mix its materials. */
+ * it already (fill.h), or 0 where there is none. They are drawn to that atlas, so that a viewpoint whose rim lies in
+ * a thing's shadow has no darker hole than others, else weakly to the nearest seen texel that is not beside what hides
+ * the face: a face's mean would mix its materials. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -20,6 +21,7 @@
 #include "common/texture/filled_atlas.h"
 
 static const float WEAK = 1e-5f;        /* weight of data, and of outlying differences */
+static const float GUIDED = 2.5e-3f;    /* weight of the filled atlas: a hole's rim tells less beyond 20 texels */
 static const double DEFAULT_GREY = 0.5; /* of white */
 enum { REACH = 12 };                    /* texels: of the clean ones that an unseen one continues */
 enum { MIN_SEEN = 8 };                  /* of these */
@@ -277,7 +279,7 @@ static void set_unseen(struct composite *c, int seen)
         else
             for (int k = 0; k < 3; k++) value[k] = bake_display((float)(DEFAULT_GREY * b->white), b->white);
         memcpy(c->data + 3 * i, value, 3 * sizeof *value);
-        c->data_weight[i] = WEAK;
+        c->data_weight[i] = has_guide(c, i) ? GUIDED : WEAK;
     }
 }
 
