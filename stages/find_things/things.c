@@ -18,6 +18,7 @@
 #include "common/product/product.h"
 #include "stages/find_things/components.h"
 #include "stages/find_things/contact_sheet.h"
+#include "stages/find_things/legs.h"
 #include "stages/find_things/support.h"
 #include "stages/find_things/thing_views.h"
 #include "stages/find_things/things_plan.h"
@@ -33,6 +34,8 @@ struct finder {
     struct thing_volume volume;
     struct surface_voxel *surface; /* of all things; owned */
     size_t surface_count;
+    struct surface_voxel *legs; /* those of them that are legs without depth; owned */
+    size_t leg_count;
     struct thing *things;       /* being described; owned */
     struct thing_sight *sights; /* owned */
     struct sheet_tile *tiles;   /* owned */
@@ -212,6 +215,74 @@ static enum status name_things(struct finder *f, const uint32_t *named, struct e
     return ST_OK;
 }
 
+/* ------------------------------------------------------------------------------------------------------------- legs */
+
+/* The things that stand on the floor; returns their number. */
+static int list_standing(struct legged *list, const struct finder *f)
+{
+    int count = 0;
+    for (int k = 0; k < f->count; k++) {
+        const struct thing *t = &f->things[k];
+        const struct vec3 middle = vec3_scale(vec3_add(t->low, t->high), 0.5);
+        const double below = support_below(f->job->model, middle);
+        if (t->support != THING_ON_FLOOR || !isfinite(below)) continue;
+        list[count++] = (struct legged){(uint32_t)k + 1, t->low, t->high, middle.z - below};
+    }
+    return count;
+}
+
+/* Shows all views to the search for legs; learn: they teach it the floor. */
+static enum status show_views(struct legs *l, const struct finder *f, bool learn, struct err *err)
+{
+    const struct things_job *job = f->job;
+    for (int i = 0; !err->status && i < job->in->set.view_count; i++) {
+        struct view_data d;
+        struct image photo = {0};
+        if (!view_data_read(&d, job, i, err) &&
+            !view_image_read(&photo, job->views, &job->in->set.views[i], job->prov, err)) {
+            const struct legs_view view = {d.camera, &d.depth, &d.ids, &photo, job->in->axes.scale};
+            if (learn)
+                legs_learn_floor(l, &view);
+            else
+                legs_look(l, &view);
+        }
+        view_data_release(&d);
+        image_release(&photo);
+    }
+    return err->status;
+}
+
+static enum status keep_legs(struct finder *f, const int64_t *voxels, size_t count, struct err *err)
+{
+    if (!(f->legs = malloc((count + 1) * sizeof *f->legs))) return err_nomem(err, "legs", count * sizeof *f->legs);
+    for (size_t i = 0; i < count; i++)
+        f->legs[i] = (struct surface_voxel){thing_voxel_centre(&f->volume.grid, voxels[i]), f->volume.id[voxels[i]]};
+    f->leg_count = count;
+    for (int k = 0; k < f->count; k++) f->things[k].voxels = 0; /* boxes are measured again */
+    things_measure(f->things, f->count, &f->volume, f->job->model, SUPPORT_REACH * f->height);
+    return ST_OK;
+}
+
+/* Adds the legs of standing things to their surfaces. */
+static enum status add_legs(struct finder *f, struct err *err)
+{
+    struct legs legs = {0};
+    struct legged *list = malloc(((size_t)f->count + 1) * sizeof *list);
+    int64_t *voxels = NULL;
+    size_t count;
+    if (!list) return err_nomem(err, "things on legs", (size_t)f->count * sizeof *list);
+    if (!legs_init(&legs, &f->volume, list, list_standing(list, f), err) && legs.count &&
+        !show_views(&legs, f, true, err)) {
+        legs_settle(&legs);
+        if (!show_views(&legs, f, false, err) && !legs_take(&voxels, &count, &legs, &f->volume, err))
+            keep_legs(f, voxels, count, err);
+    }
+    legs_release(&legs);
+    free(voxels);
+    free(list);
+    return err->status;
+}
+
 static enum status list_surface(struct finder *f, struct err *err)
 {
     const size_t voxels = voxel_count(&f->volume.grid);
@@ -305,7 +376,7 @@ static enum status find_surfaces(struct finder *f, struct err *err)
     }
     if (!err->status && !name_things(f, named, err)) {
         things_measure(f->things, f->count, &f->volume, f->job->model, SUPPORT_REACH * f->height);
-        if (!list_surface(f, err)) grow(f, err);
+        if (!add_legs(f, err) && !list_surface(f, err)) grow(f, err);
     }
     free(named);
     return err->status;
@@ -327,8 +398,12 @@ static enum status see_view(struct finder *f, int i, struct err *err)
     if (!nearest) err_nomem(err, "the depth of a view", pixels * sizeof *nearest);
     if (!err->status && !thing_mask_init(&mask, view, err) && !view_data_read(&d, job, i, err) &&
         !thing_shows_find(mask.shows, &f->volume, &d.camera, &d.depth, &d.ids, job->in->axes.scale, err)) {
-        thing_meets_find(mask.meets, f->surface, f->surface_count, f->volume.grid.voxel, &d.camera, &d.ids,
-                         job->in->axes.scale, nearest);
+        const double voxel = f->volume.grid.voxel, scale = job->in->axes.scale;
+        thing_meets_find(mask.meets, f->legs, f->leg_count, voxel, &d.camera, &d.ids, scale, nearest);
+        for (size_t p = 0; p < pixels; p++) /* a leg's own depth is that of the floor */
+            if (!mask.shows[p] && mask.meets[p] && scale * (double)d.depth.interior.z[p] > (double)nearest[p] - voxel)
+                mask.shows[p] = mask.meets[p];
+        thing_meets_find(mask.meets, f->surface, f->surface_count, voxel, &d.camera, &d.ids, scale, nearest);
         if (!product_path_in(path, job->out, PRODUCT_THING_MASK, &(struct product_key){.view = view->name}, err) &&
             !thing_mask_write(&mask, view, path, job->prov, err))
             thing_sights_add(f->sights, f->count, mask.shows, view, i, err);
@@ -421,6 +496,7 @@ enum status things_find(const struct things_job *job, struct err *err)
     free(f.tiles);
     free(f.is_pane);
     free(f.surface);
+    free(f.legs);
     thing_volume_release(&f.volume);
     return err->status;
 }
