@@ -222,11 +222,9 @@ void rule_draws_model(struct graph *g, const char *model)
     rule_takes(g, "--outdoors", PATH(g, OUTDOORS));
     rule_takes(g, "--exposure", PATH(g, EXPOSURE));
     rule_after(g, graph_own(g, "stamp/exposure.txt"));
-    if (map) {
-        rule_needs(g, PATH(g, THINGS));
-        rule_needs(g, PATH(g, THING_VOLUME));
-        rule_option(g, "--things", FOLDER(g, THINGS));
-    }
+    rule_needs(g, PATH(g, THINGS));
+    rule_needs(g, PATH(g, THING_VOLUME));
+    rule_option(g, "--things", FOLDER(g, THINGS));
     rule_option(g, "--vdta", graph_own(g, "vdta"));
     rule_option(g, "--ids", FOLDER(g, FACE_INDEX));
     rule_option(g, "--depth", FOLDER(g, DEPTH, .depth = MODEL_DEPTH, .view = ""));

@@ -245,7 +245,7 @@ enum status placed_things_read(struct placed_things *t, const char *folder, cons
 {
     char path[FILE_PATH];
     *t = (struct placed_things){0};
-    if (!map || (!map->thing_count && !folder)) return ST_OK;
+    if (!folder && !(map && map->thing_count)) return ST_OK;
     if (!folder)
         return err_set(err, ST_USAGE, "the edit changes the thing %s, but --things is missing; see --help.",
                        map->things[0].from);
@@ -254,12 +254,12 @@ enum status placed_things_read(struct placed_things *t, const char *folder, cons
         thing_volume_read(&t->volume, path, (uint32_t)t->list.count, prov, err);
     if (!err->status) {
         t->fate = calloc((size_t)t->list.count + 1, sizeof *t->fate);
-        t->placed = calloc((size_t)map->thing_count + 1, sizeof *t->placed);
-        if (!t->fate || !t->placed) err_nomem(err, "things", (size_t)map->thing_count * sizeof *t->placed);
+        t->placed = calloc(map ? (size_t)map->thing_count + 1 : 1, sizeof *t->placed);
+        if (!t->fate || !t->placed) err_nomem(err, "things", (size_t)t->list.count * sizeof *t->placed);
     }
     if (!err->status) list_points(t, err);
-    if (!err->status && map->zone_count) apply_zones(t, map, err);
-    for (int i = 0; !err->status && i < map->thing_count; i++) apply(t, &map->things[i], before, after, err);
+    if (!err->status && map && map->zone_count) apply_zones(t, map, err);
+    for (int i = 0; !err->status && map && i < map->thing_count; i++) apply(t, &map->things[i], before, after, err);
     if (err->status) placed_things_release(t);
     return err->status;
 }

@@ -39,10 +39,11 @@ enum status clutter_open(struct clutter_scene **scene, const struct clutter_file
     s->views = strdup(files->views);
     s->depth = strdup(files->depth);
     s->ids = strdup(files->ids);
+    s->things = files->things ? strdup(files->things) : NULL;
     s->sources = calloc((size_t)set->view_count + 1, sizeof *s->sources);
     s->walls = files->unedited;
     pane_fronts_find(&s->panes, files->unedited ? &files->unedited->mesh : NULL, err);
-    if (!err->status && !(s->views && s->depth && s->ids && s->sources))
+    if (!err->status && !(s->views && s->depth && s->ids && s->sources && !s->things == !files->things))
         err_nomem(err, "the views of the clutter", (size_t)set->view_count * sizeof *s->sources);
     if (!err->status) return ST_OK;
     clutter_close(s);
@@ -69,6 +70,7 @@ void clutter_close(struct clutter_scene *s)
     free(s->views);
     free(s->depth);
     free(s->ids);
+    free(s->things);
     free(s->sources);
     free(s);
 }
@@ -79,21 +81,25 @@ static enum status read_source(struct clutter_scene *s, int at, struct err *err)
     struct clutter_source *source = &s->sources[at];
     struct layered_depth depth = {0};
     struct view_ids ids = {0};
+    struct thing_mask things = {0};
     const struct product_key key = {.view = view->name};
     char path[FILE_PATH];
     if (!product_path_in(path, s->depth, PRODUCT_DEPTH, &key, err) &&
         !layered_depth_read(&depth, path, &source->inputs, err) &&
         !product_path_in(path, s->ids, PRODUCT_IDS, &key, err))
         view_ids_read(&ids, view, path, &source->inputs, err);
+    if (!err->status && s->things && !product_path_in(path, s->things, PRODUCT_THING_MASK, &key, err))
+        thing_mask_read(&things, view, path, UINT32_MAX, &source->inputs, err);
     if (!err->status) {
         const struct view camera = model_from_world_view(&s->axes, view);
         pane_fronts_apply(&ids, &s->panes, &camera, s->axes.scale);
     }
-    if (!err->status && !clutter_view_make(&source->view, &depth, &ids, view->name, err)) {
+    if (!err->status && !clutter_view_make(&source->view, &depth, &ids, s->things ? &things : NULL, view->name, err)) {
         source->loaded = true;
         s->bytes += source->view.bytes;
     }
     view_ids_release(&ids);
+    thing_mask_release(&things);
     layered_depth_release(&depth);
     return err->status;
 }
@@ -258,6 +264,29 @@ enum status clutter_draw_thing(struct model_picture *p, float *front, const stru
         if (pixels->shown && layer.rgba[4 * i + 3] > 0) pixels->shown[i] = 0;
     }
     if (!err->status) lay(p, front, &layer, NULL, s->axes.scale);
+    clutter_layer_release(&layer);
+    return err->status;
+}
+
+enum status clutter_draw_surface(struct model_picture *p, float *front, struct clutter_scene *s,
+                                 const struct view *camera, const struct thing_volume *volume, uint32_t id,
+                                 const struct thing_points *points, struct provenance *prov, struct err *err)
+{
+    const struct view scene_camera = world_from_model_view(&s->axes, camera);
+    const size_t count = (size_t)p->width * (size_t)p->height;
+    struct clutter_choice choice;
+    struct clutter_layer layer = {0};
+    struct vec3 places[THING_POINTS];
+    for (int k = 0; k < points->count; k++) places[k] = world_from_model_point(&s->axes, points->at[k]);
+    if (check_size(p, camera, err) || clutter_layer_init(&layer, p->width, p->height, err)) return err->status;
+    for (size_t i = 0; i < count; i++) layer.rgba[4 * i + 3] = p->made[i] == MADE_CLUTTER;
+    if (!clutter_choose_for(&choice, s, scene_camera.center, places, points->count, max_views(s), err) &&
+        !clutter_load(s, &choice, prov, err)) {
+        thing_surface_draw(&layer, front, s, &choice, &scene_camera, volume, id);
+        for (size_t i = 0; i < count; i++)
+            if (p->made[i] == MADE_CLUTTER) layer.rgba[4 * i + 3] = 0;
+        lay(p, front, &layer, NULL, s->axes.scale);
+    }
     clutter_layer_release(&layer);
     return err->status;
 }

@@ -12,6 +12,7 @@ struct clutter_scene; /* the views of a scene; their layers are read when they a
 
 struct clutter_files {
     const char *views, *depth, *ids;   /* folders of O */
+    const char *things;                /* the same; NULL: none are known */
     const struct model_rays *unedited; /* NULL: no walls and panes are known; must outlive the clutter */
     int memory; /* MiB of views that are kept; where they hold fewer than 12 views, pictures are made of fewer */
 };
@@ -44,5 +45,11 @@ enum status clutter_draw_thing(struct model_picture *p, float *front, const stru
                                struct clutter_scene *scene, const struct view *camera,
                                const struct clutter_filter *filter, const struct thing_points *points,
                                struct provenance *prov, struct err *err);
+
+/* Draws the fused surface of the thing `id` where a picture shows no clutter and nothing nearer. The rest as for
+ * clutter_draw_thing(). */
+enum status clutter_draw_surface(struct model_picture *p, float *front, struct clutter_scene *scene,
+                                 const struct view *camera, const struct thing_volume *volume, uint32_t id,
+                                 const struct thing_points *points, struct provenance *prov, struct err *err);
 
 #endif

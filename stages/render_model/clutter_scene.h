@@ -17,8 +17,8 @@ struct clutter_source { /* a view of the set */
 };
 
 struct clutter_scene {
-    char *views, *depth, *ids; /* folders; owned */
-    size_t budget, bytes;      /* of memory: allowed, and held by the sources */
+    char *views, *depth, *ids, *things; /* folders; owned. things: NULL: none are known */
+    size_t budget, bytes;               /* of memory: allowed, and held by the sources */
     const struct camera_set *set;
     struct model_axes axes;
     const struct model_rays *walls; /* the unedited model; NULL: nothing is hidden */

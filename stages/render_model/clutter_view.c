@@ -153,16 +153,24 @@ static void find_rims(uint8_t *rim, const struct layered_depth *d, const struct 
     }
 }
 
-/* Empties the texels of a layer that show the model, and lets the others fade by their weight. */
+/* Whether a pixel shows a thing that is fused from other views, such as a table's leg, whatever its own depth is. */
+static bool shows_fused(const struct thing_mask *things, size_t p)
+{
+    return things && things->shows[p] && things->meets[p] == things->shows[p];
+}
+
+/* Empties the texels of a layer that show the model, and lets the others fade by their weight. Texels of things whose
+ * depth is the model's keep their colour for the fused surface, but are part of no segment. */
 static void keep_clutter(struct layer *l, const uint8_t *rim, uint8_t bit, const struct judged_segment *list,
-                         const struct view_ids *ids)
+                         const struct view_ids *ids, const struct thing_mask *things)
 {
     const size_t pixels = (size_t)ids->width * (size_t)ids->height;
     for (size_t p = 0; p < pixels; p++) {
         if (!l->id[p]) continue;
         const struct judged_segment *s = &list[l->id[p] - 1];
         const float w = rim[p] & bit ? 0 : texel_weight(s, l->z[p], ids->z[p], ids->clutter[p]);
-        for (size_t c = 0; c < 4; c++) l->rgba[4 * p + c] *= w < MIN_WEIGHT ? 0 : w;
+        const float kept = w < MIN_WEIGHT ? (float)shows_fused(things, p) : w;
+        for (size_t c = 0; c < 4; c++) l->rgba[4 * p + c] *= kept;
         if (w < MIN_WEIGHT) l->id[p] = 0;
     }
 }
@@ -270,7 +278,7 @@ static size_t bytes_of(int width, int height)
 size_t clutter_view_bytes(const struct view *view) { return bytes_of(view->width, view->height); }
 
 enum status clutter_view_make(struct clutter_view *v, struct layered_depth *depth, const struct view_ids *ids,
-                              const char *name, struct err *err)
+                              const struct thing_mask *things, const char *name, struct err *err)
 {
     const size_t pixels = (size_t)depth->width * (size_t)depth->height;
     struct judged_segment *list = NULL;
@@ -286,8 +294,8 @@ enum status clutter_view_make(struct clutter_view *v, struct layered_depth *dept
     if (!err->status) {
         find_nearest(v, &v->depth, list);
         find_rims(rim, &v->depth, list, ids);
-        keep_clutter(&v->depth.interior, rim, INTERIOR, list, ids);
-        keep_clutter(&v->depth.boundary, rim, BOUNDARY, list, ids);
+        keep_clutter(&v->depth.interior, rim, INTERIOR, list, ids, things);
+        keep_clutter(&v->depth.boundary, rim, BOUNDARY, list, ids, things);
         find_shows(v, &v->depth);
         layer_view_pack(&v->layers, &v->depth, name, err);
     }

@@ -4,6 +4,7 @@
 #define REMODEL_RENDER_CLUTTER_VIEW_H
 
 #include "common/layers/layer_view.h"
+#include "common/model/thing_mask.h"
 #include "common/texture/view_ids.h"
 
 /* What a view sees at a pixel, and within one pixel of it. */
@@ -16,17 +17,17 @@ struct clutter_sight {
 /* {0} is the empty state; everything is owned. Depths are in scene units. */
 struct clutter_view {
     struct layered_depth depth;  /* size and segments only */
-    struct layer_view layers;    /* texels of clutter; the others are empty */
+    struct layer_view layers;    /* texels of clutter; the others are empty. Its photo has things without depth, too */
     struct clutter_sight *sight; /* per pixel */
     size_t bytes;                /* of memory */
 };
 
 #define CLUTTER_SURE 255.0f
 
-/* Takes the contents of `depth`, also on failure. ids: of the same view. ST_DATA: their sizes differ, or a pixel's id
- * has no segment. */
+/* Takes the contents of `depth`, also on failure. ids: of the same view. things: of the same view; NULL: none are
+ * known. ST_DATA: their sizes differ, or a pixel's id has no segment. */
 enum status clutter_view_make(struct clutter_view *v, struct layered_depth *depth, const struct view_ids *ids,
-                              const char *name, struct err *err);
+                              const struct thing_mask *things, const char *name, struct err *err);
 /* The clutter that the view shows at a position in its picture, bilinear: premultiplied colour, and how much of the
  * pixel it covers. */
 void clutter_view_sample(float rgba[4], const struct clutter_view *v, double x, double y);

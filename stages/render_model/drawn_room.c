@@ -45,7 +45,8 @@ enum status room_open(struct room *room, const struct room_files *files, const s
 {
     const struct shell_files shell = {files->model, files->map, files->vdta, files->vita, params->memory};
     const struct model_rays *unedited = files->base ? &room->base : &room->model;
-    const struct clutter_files clutter = {files->views, files->depth, files->ids, unedited, params->memory};
+    const struct clutter_files clutter = {files->views,  files->depth, files->ids,
+                                          files->things, unedited,     params->memory};
     *room = (struct room){.files = *files, .params = params, .exposure = params->exposure > 0 ? params->exposure : 1};
     if (!read_cameras(room, prov, err)) model_rays_read(&room->model, files->model, MODEL_WITH_GLASS, NULL, err);
     if (!err->status && files->base) model_rays_read(&room->base, files->base, MODEL_WITH_GLASS, prov, err);
@@ -106,21 +107,6 @@ static enum status make_front(struct room *room, size_t pixels, struct err *err)
     return ST_OK;
 }
 
-enum status room_draw(struct model_picture *picture, struct room *room, const struct view *camera,
-                      const struct texture_pair *pair, int own, const uint8_t *gone, struct provenance *prov,
-                      struct err *err)
-{
-    const char *photos[2];
-    photos_of(photos, room, pair);
-    const struct outdoors *outdoors = room->files.outdoors ? &room->outdoors : NULL;
-    struct clutter_filter filter = clutter_filter_of(&room->things, shell_map(room->shell));
-    filter.gone = gone;
-    if (!shell_draw(picture, room->shell, camera, photos, pair->t, outdoors, err) && room->clutter &&
-        !make_front(room, (size_t)camera->width * (size_t)camera->height, err))
-        clutter_draw(picture, room->front, room->clutter, camera, &filter, own < 0 ? NULL : &own, own >= 0, prov, err);
-    return err->status || own >= 0 ? err->status : room_draw_things(picture, room, camera, NULL, prov, err);
-}
-
 enum status room_draw_things(struct model_picture *picture, struct room *room, const struct view *camera, uint8_t *same,
                              struct provenance *prov, struct err *err)
 {
@@ -136,7 +122,7 @@ enum status room_draw_things(struct model_picture *picture, struct room *room, c
     return err->status;
 }
 
-/* Whether a box may cover a pixel that does not stay. */
+/* Whether a box may cover a pixel that does not stay. stays: NULL: none does. */
 static bool box_matters(const struct view *camera, struct vec3 low, struct vec3 high, const uint8_t *stays)
 {
     double left = INFINITY, top = INFINITY, right = -INFINITY, below = -INFINITY;
@@ -149,7 +135,7 @@ static bool box_matters(const struct view *camera, struct vec3 low, struct vec3 
     }
     for (int y = (int)fmax(0, top); y < camera->height && y < below; y++)
         for (int x = (int)fmax(0, left); x < camera->width && x < right; x++)
-            if (!stays[(size_t)y * (size_t)camera->width + (size_t)x]) return true;
+            if (!stays || !stays[(size_t)y * (size_t)camera->width + (size_t)x]) return true;
     return false;
 }
 
@@ -166,4 +152,34 @@ enum status room_draw_uncovered(struct model_picture *picture, struct room *room
         clutter_draw_thing(picture, room->front, &pixels, room->clutter, camera, &filter, &t->points[i + 1], prov, err);
     }
     return err->status;
+}
+
+/* Draws what the views' own layers have not of the things that stay: legs, and sides that no view shows well. */
+static enum status draw_surfaces(struct model_picture *picture, struct room *room, const struct view *camera,
+                                 struct provenance *prov, struct err *err)
+{
+    const struct placed_things *t = &room->things;
+    for (int i = 0; !err->status && room->clutter && i < t->list.count; i++) {
+        const struct thing *thing = &t->list.things[i];
+        if (t->fate[i + 1] == THING_IS_GONE || !box_matters(camera, thing->low, thing->high, NULL)) continue;
+        clutter_draw_surface(picture, room->front, room->clutter, camera, &t->volume, (uint32_t)i + 1,
+                             &t->points[i + 1], prov, err);
+    }
+    return err->status;
+}
+
+enum status room_draw(struct model_picture *picture, struct room *room, const struct view *camera,
+                      const struct texture_pair *pair, int own, const uint8_t *gone, struct provenance *prov,
+                      struct err *err)
+{
+    const char *photos[2];
+    photos_of(photos, room, pair);
+    const struct outdoors *outdoors = room->files.outdoors ? &room->outdoors : NULL;
+    struct clutter_filter filter = clutter_filter_of(&room->things, shell_map(room->shell));
+    filter.gone = gone;
+    if (!shell_draw(picture, room->shell, camera, photos, pair->t, outdoors, err) && room->clutter &&
+        !make_front(room, (size_t)camera->width * (size_t)camera->height, err))
+        clutter_draw(picture, room->front, room->clutter, camera, &filter, own < 0 ? NULL : &own, own >= 0, prov, err);
+    if (err->status || own >= 0 || draw_surfaces(picture, room, camera, prov, err)) return err->status;
+    return room_draw_things(picture, room, camera, NULL, prov, err);
 }

@@ -20,7 +20,7 @@ struct room_files {
     const char *model, *base, *map; /* model.txt; the unedited one and texture.txt of an edited model, or NULL */
     const char *axes, *views, *vdta, *vita;
     const char *ids, *depth; /* folders; NULL: without clutter */
-    const char *things;      /* folder; NULL: no edit changes things */
+    const char *things;      /* folder; NULL: none are known */
     const char *outdoors;    /* file; NULL: none */
     const char *exposure;    /* file; NULL: 1 */
 };

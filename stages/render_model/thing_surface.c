@@ -2,8 +2,9 @@
  *
  * A ray meets the surface where the distance falls through 0, between two places that views have seen [Curless 1996].
  * The place P takes its colour from the views that see it: those whose nearest surface is at P, weighted as in
- * unstructured lumigraph rendering [Buehler 2001] by the angle between their ray and the camera's. If P is hidden from
- * all of them, those count that show clutter at its pixel; it is near P. */
+ * unstructured lumigraph rendering [Buehler 2001] by the angle between their ray and the camera's. A view that sees
+ * past P, to the floor, but shows the thing there counts where none sees P: a leg is thinner than its segments. If P is
+ * hidden from all of them, those count that show clutter at its pixel; it is near P. */
 #include "stages/render_model/thing_surface.h"
 
 #include <math.h>
@@ -15,7 +16,8 @@
 #define VOXELS     2.0   /* the same in voxels */
 #define BLUR       0.08  /* radians */
 #define MIN_COVER  0.3f  /* of a view's pixel by clutter, whose colour is used */
-#define ELSEWHERE  1e-3  /* weight of a view that does not see P, relative to one that does */
+#define PAST       0.03  /* weight of a view that sees past P, relative to one that sees P */
+#define ELSEWHERE  1e-3  /* the same of a view from which P is hidden */
 #define MAX_BEHIND 0.05f /* of the depth: what the shell may be in front of the surface without hiding it */
 
 struct surface_job {
@@ -93,10 +95,10 @@ static void add_colour(double sum[4], const struct surface_job *job, int k, stru
     clutter_view_sample(c, source, u, v);
     if (!(c[3] > MIN_COVER)) return;
     const double voxel = job->volume->grid.voxel / job->scene->axes.scale;
-    const double off = nearest > 0 ? fabs(z - 1 / (double)nearest) : INFINITY;
+    const double beyond = nearest > 0 ? 1 / (double)nearest - z : -INFINITY, slack = TOLERANCE * z + VOXELS * voxel;
+    const double sees = beyond < -slack ? ELSEWHERE : beyond > slack ? PAST : 1;
     const double penalty = clutter_penalty(p, job->camera->center, view->center);
-    const double weight =
-        (off < TOLERANCE * z + VOXELS * voxel ? 1 : ELSEWHERE) / pow(BLUR * BLUR + penalty * penalty, 2);
+    const double weight = sees / pow(BLUR * BLUR + penalty * penalty, 2);
     for (int i = 0; i < 3; i++) sum[i] += weight * (double)(c[i] / c[3]);
     sum[3] += weight;
 }

@@ -35,7 +35,7 @@ static struct clutter_view make(struct given *g)
 {
     struct clutter_view v;
     struct err err = ERR_INIT;
-    assert_ok(clutter_view_make(&v, &g->depth, &g->ids, "view", &err), err);
+    assert_ok(clutter_view_make(&v, &g->depth, &g->ids, NULL, "view", &err), err);
     view_ids_release(&g->ids);
     return v;
 }
@@ -121,7 +121,7 @@ static void an_id_without_segment_is_refused(void **state)
     struct err err = ERR_INIT;
     give(&g, 0, 0.5, 1);
     g.depth.boundary.id[7] = 9;
-    assert_int_equal(clutter_view_make(&v, &g.depth, &g.ids, "sofa", &err), ST_DATA);
+    assert_int_equal(clutter_view_make(&v, &g.depth, &g.ids, NULL, "sofa", &err), ST_DATA);
     assert_non_null(strstr(err.text, "sofa"));
     assert_non_null(strstr(err.text, "segment 9"));
     view_ids_release(&g.ids);

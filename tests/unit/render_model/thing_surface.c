@@ -84,7 +84,7 @@ static void make_source(struct scene *s, int at, float red, float green, double 
         ids.z[i] = 9;
         ids.clutter[i] = depth > 0;
     }
-    assert_ok(clutter_view_make(&s->sources[at].view, &d, &ids, "v", &err), err);
+    assert_ok(clutter_view_make(&s->sources[at].view, &d, &ids, NULL, "v", &err), err);
     s->sources[at].loaded = true;
     view_ids_release(&ids);
 }
