@@ -31,7 +31,8 @@
 #define SPREADS    2.0f  /* ... or that are usual at a place of the floor, in spreads of its colours */
 #define SIDES      0.3f  /* logarithm: of the colours of a leg's sides */
 #define MOST       2.0f  /* differences in these measures count no more */
-#define BETTER     0.3f  /* how much better a leg must explain a column */
+#define BETTER     0.3f  /* how much better a leg must explain a column, ... */
+#define BEST       0.4f  /* ... and at least one of a leg's columns */
 #define THIN       0.12  /* of the gap's columns: what has more of them is no leg */
 #define SEEN       0.5   /* of a column's voxels, that enough views see */
 #define SOLID      -0.5f /* distance in a leg, in bands */
@@ -67,6 +68,7 @@ struct gap {
     struct candidate *candidates;
     size_t candidate_count;
     uint8_t *leg; /* of each column */
+    float *gain;  /* the same: how much better a leg explains it */
     double floor;
     int place_low[2], place_size[2];
     struct place *places;
@@ -111,6 +113,7 @@ static void gap_release(struct gap *g)
     free(g->under);
     free(g->candidates);
     free(g->leg);
+    free(g->gain);
     free(g->places);
     *g = (struct gap){0};
 }
@@ -159,8 +162,9 @@ static enum status gap_init(struct gap *g, const struct thing_volume *v, struct 
     const size_t columns = columns_of(g);
     g->under = malloc(columns * sizeof *g->under);
     g->leg = calloc(columns, 1);
+    g->gain = calloc(columns, sizeof *g->gain);
     g->places = calloc(places_of(g), sizeof *g->places);
-    if (!g->under || !g->leg || !g->places)
+    if (!g->under || !g->leg || !g->gain || !g->places)
         return err_nomem(err, "the floor below a thing", places_of(g) * sizeof *g->places);
     find_under(g, v);
     return list_candidates(g, err);
@@ -380,8 +384,9 @@ static void judge_columns(struct gap *g)
             sum += gain_of_leg(&g->candidates[end]);
             seen++;
         }
-        if (seen && (double)seen >= SEEN * (double)(end - first) && sum >= BETTER * (float)seen)
-            g->leg[column] = UNTRIED;
+        if (!seen || (double)seen < SEEN * (double)(end - first)) continue;
+        g->gain[column] = sum / (float)seen;
+        if (g->gain[column] >= BETTER) g->leg[column] = UNTRIED;
     }
 }
 
@@ -414,7 +419,10 @@ static enum status find_legs(struct gap *g, struct err *err)
         if (g->leg[i] != UNTRIED) continue;
         list[0] = i;
         const size_t count = walk(g, list);
-        for (size_t n = 0; n < count; n++) g->leg[list[n]] = (double)count <= THIN * (double)columns ? LEG : NO_LEG;
+        float best = 0;
+        for (size_t n = 0; n < count; n++) best = fmaxf(best, g->gain[list[n]]);
+        const bool is_leg = best >= BEST && (double)count <= THIN * (double)columns;
+        for (size_t n = 0; n < count; n++) g->leg[list[n]] = is_leg ? LEG : NO_LEG;
     }
     free(list);
     return ST_OK;
