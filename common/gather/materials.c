@@ -24,6 +24,7 @@
 #include "common/base/array.h"
 #include "common/base/scan.h"
 #include "common/math/numbers.h"
+#include "common/math/polygon.h"
 #include "common/product/product.h"
 
 enum { MAX_WORD = 255, QUOTED_SIZE = 2 * MAX_WORD + 3 };
@@ -114,12 +115,7 @@ enum status material_read_region(struct material *m, struct textfile *t, struct 
 
 bool material_region_holds(const struct material_region *r, double x, double y)
 {
-    bool inside = false;
-    for (int i = 0, j = r->corners - 1; i < r->corners; j = i++) {
-        const double *a = r->pixel + 2 * i, *b = r->pixel + 2 * j;
-        if ((a[1] > y) != (b[1] > y) && x < a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0])) inside = !inside;
-    }
-    return inside;
+    return polygon_holds((const double(*)[2])r->pixel, r->corners, x, y);
 }
 
 double material_region_area(const struct material_region *r)

@@ -23,6 +23,7 @@
 #include "common/base/scan.h"
 #include "common/base/sort.h"
 #include "common/base/textfile.h"
+#include "common/math/polygon.h"
 #include "common/product/product.h"
 
 #define NO_BASE "none"
@@ -135,13 +136,8 @@ bool texture_map_keeps(const struct texture_map *map, int id, struct vec3 p, dou
 
 static bool zone_holds(const struct texture_zone *zone, struct vec3 p)
 {
-    bool inside = false;
-    if (p.z < zone->low || p.z > zone->high) return false;
-    for (int i = 0, j = zone->corner_count - 1; i < zone->corner_count; j = i++) {
-        const double *a = zone->corners[i], *b = zone->corners[j];
-        if ((a[1] > p.y) != (b[1] > p.y) && p.x < (b[0] - a[0]) * (p.y - a[1]) / (b[1] - a[1]) + a[0]) inside = !inside;
-    }
-    return inside;
+    return p.z >= zone->low && p.z <= zone->high &&
+           polygon_holds((const double(*)[2])zone->corners, zone->corner_count, p.x, p.y);
 }
 
 bool texture_map_clears(const struct texture_map *map, struct vec3 p)

@@ -18,6 +18,7 @@
 #include "common/product/product.h"
 #include "stages/find_things/components.h"
 #include "stages/find_things/contact_sheet.h"
+#include "stages/find_things/flat_things.h"
 #include "stages/find_things/legs.h"
 #include "stages/find_things/support.h"
 #include "stages/find_things/thing_views.h"
@@ -25,6 +26,7 @@
 
 #define SUPPORT_REACH 0.04 /* of the model's height */
 #define MARK_SLACK    3    /* voxels beside a surface at which a mark still finds it */
+#define FLAT_SLACK    0.5  /* voxels: what is so near to a face lies on it */
 
 enum { SURFACE_STEPS = 3 }; /* voxels beside those of a surface in which the distance from it is kept */
 
@@ -36,6 +38,7 @@ struct finder {
     size_t surface_count;
     struct surface_voxel *legs; /* those of them that are legs without depth; owned */
     size_t leg_count;
+    struct flat_things flats;   /* the last of the things */
     struct thing *things;       /* being described; owned */
     struct thing_sight *sights; /* owned */
     struct sheet_tile *tiles;   /* owned */
@@ -168,8 +171,10 @@ static enum status apply_marks(uint32_t *named, struct finder *f, struct err *er
         memcpy(grown.id, f->volume.id, voxels * sizeof *grown.id);
         components_grow(grown.id, &grown.grid, MARK_SLACK, err);
     }
+    for (int k = 0; k < marks->mark_count && seeds; k++) seeds[k] = (struct thing_seed){marks->marks[k].name, -1};
     for (int k = 0; !err->status && k < marks->mark_count; k++) {
         const struct thing_mark *m = &marks->marks[k];
+        if (marks->flat[m->name]) continue;
         seeds[k] = (struct thing_seed){m->name, meet_surface(&grown, &f->volume, f->job, m)};
         if (seeds[k].at < 0)
             log_warn("things.txt:%d: nothing stands before the model at %.6g %.6g of %s, so this mark of %s is left "
@@ -348,6 +353,20 @@ static enum status grow(struct finder *f, struct err *err)
     return err->status;
 }
 
+/* Adds what lies flat on faces, as the last of the things. */
+static enum status add_flats(struct finder *f, struct err *err)
+{
+    for (int i = 0; !err->status && i < f->flats.count; i++) {
+        struct thing *t = &f->things[f->count];
+        f->flats.list[i].id = (uint32_t)++f->count;
+        if (!(t->name = strdup(f->job->marks->names[f->flats.list[i].name]))) err_nomem(err, "a name", 1);
+    }
+    flat_things_fill(&f->flats, &f->volume);
+    for (int i = 0; i < f->flats.count; i++)
+        flat_thing_measure(&f->things[f->flats.list[i].id - 1], &f->flats.list[i], &f->volume);
+    return err->status;
+}
+
 static enum status find_surfaces(struct finder *f, struct err *err)
 {
     const struct thing_marks *marks = f->job->marks;
@@ -367,8 +386,10 @@ static enum status find_surfaces(struct finder *f, struct err *err)
         fused.sum = NULL;
     }
     fuse_volume_release(&fused);
-    if (!err->status && !apply_marks(named, f, err)) {
-        const size_t n = (size_t)f->count + 1;
+    if (!err->status && !apply_marks(named, f, err) &&
+        !flat_things_place(&f->flats, marks, &f->job->in->axes, f->job->model, FLAT_SLACK * f->volume.grid.voxel,
+                           err)) {
+        const size_t n = (size_t)f->count + (size_t)f->flats.count + 1;
         f->things = calloc(n, sizeof *f->things);
         f->sights = calloc(n, sizeof *f->sights);
         f->tiles = calloc(n, sizeof *f->tiles);
@@ -376,7 +397,7 @@ static enum status find_surfaces(struct finder *f, struct err *err)
     }
     if (!err->status && !name_things(f, named, err)) {
         things_measure(f->things, f->count, &f->volume, f->job->model, SUPPORT_REACH * f->height);
-        if (!add_legs(f, err) && !list_surface(f, err)) grow(f, err);
+        if (!add_legs(f, err) && !list_surface(f, err) && !grow(f, err)) add_flats(f, err);
     }
     free(named);
     return err->status;
@@ -404,6 +425,7 @@ static enum status see_view(struct finder *f, int i, struct err *err)
             if (!mask.shows[p] && mask.meets[p] && scale * (double)d.depth.interior.z[p] > (double)nearest[p] - voxel)
                 mask.shows[p] = mask.meets[p];
         thing_meets_find(mask.meets, f->surface, f->surface_count, voxel, &d.camera, &d.ids, scale, nearest);
+        flat_things_see(&mask, &f->flats, &d.camera, &d.ids, d.depth.interior.z, FLAT_SLACK * voxel, scale);
         if (!product_path_in(path, job->out, PRODUCT_THING_MASK, &(struct product_key){.view = view->name}, err) &&
             !thing_mask_write(&mask, view, path, job->prov, err))
             thing_sights_add(f->sights, f->count, mask.shows, view, i, err);
@@ -497,6 +519,7 @@ enum status things_find(const struct things_job *job, struct err *err)
     free(f.is_pane);
     free(f.surface);
     free(f.legs);
+    flat_things_release(&f.flats);
     thing_volume_release(&f.volume);
     return err->status;
 }

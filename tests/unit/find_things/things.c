@@ -1,9 +1,12 @@
-/* things.c - a table that stands in a room: it is found, filled below where no view looks through, and described. */
+/* things.c - a table that stands in a room: it is found, filled below where no view looks through, and described; and
+ * a rug whose outline a user drew. */
 #include "stages/find_things/things.h"
 
 #include "common/capture/view_image.h"
 #include "common/image/image.h"
 #include "common/layers/layered_depth.h"
+#include "common/model/thing_mask.h"
+#include "common/product/product.h"
 #include "common/texture/view_ids.h"
 #include "tests/unit/box_solids.h"
 
@@ -89,8 +92,26 @@ static void write_view(const struct view *v, const struct model_rays *room, cons
     image_release(&photo);
 }
 
+enum { TABLE = 1, RUG, CORNERS = 4 };
+static const double rug[CORNERS][2] = {{0.8, -0.6}, {1.5, -0.6}, {1.5, 0.6}, {0.8, 0.6}};
+
+/* The corners, seen from below the ceiling. */
+static struct thing_marks rug_marks(void)
+{
+    static char name[] = "rug", view[] = "a", *names[] = {name};
+    static int lines[] = {2};
+    static bool flat[] = {true};
+    static struct thing_mark corners[CORNERS];
+    for (int k = 0; k < CORNERS; k++)
+        corners[k] = (struct thing_mark){
+            0, 2, view, 0, 0, {1.2, 0, 2}, vec3_sub(vec3_make(rug[k][0], rug[k][1], 0), vec3_make(1.2, 0, 2))};
+    return (struct thing_marks){names, lines, corners, flat, 1, CORNERS};
+}
+
 static struct thing_list list;
 static struct thing_volume volume;
+static struct thing_mask mask;                         /* of view a, which sees both */
+static struct view seeing = {.width = W, .height = H}; /* that view */
 
 /* Four views from above, one from each side. */
 static int find(void **state)
@@ -99,7 +120,7 @@ static int find(void **state)
     struct view views[VIEWS] = {looking_from(0, -1.5), looking_from(0, 1.5), looking_from(-1.6, 0),
                                 looking_from(1.6, 0)};
     const struct scene_inputs in = {.set = {.views = views, .view_count = VIEWS}, .axes = same_frame};
-    const struct thing_marks marks = {0};
+    const struct thing_marks marks = rug_marks();
     struct things_params params = THINGS_PARAMS_DEFAULT;
     struct model_rays room = make_rays(scene, 1), whole = make_rays(scene, 2);
     struct provenance prov = {.stage = "find_things", .version = "1"};
@@ -124,6 +145,9 @@ static int find(void **state)
     assert_ok(things_find(&job, &err), err);
     assert_ok(thing_list_read(&list, scratch_path("things/things.txt"), NULL, &err), err);
     assert_ok(thing_volume_read(&volume, scratch_path("things/volume.exr"), (uint32_t)list.count, NULL, &err), err);
+    seeing = views[0];
+    assert_ok(thing_mask_read(&mask, &seeing, scratch_path("things/masks/a.exr"), (uint32_t)list.count, NULL, &err),
+              err);
     provenance_release(&prov);
     model_rays_release(&room);
     model_rays_release(&whole);
@@ -134,6 +158,7 @@ static int release(void **state)
 {
     thing_list_release(&list);
     thing_volume_release(&volume);
+    thing_mask_release(&mask);
     return scratch_remove(state);
 }
 
@@ -147,7 +172,7 @@ static float distance_at(double x, double y, double z)
 static void the_table_stands_on_the_floor(void **state)
 {
     (void)state;
-    assert_int_equal(list.count, 1);
+    assert_int_equal(list.count, 2);
     const struct thing *t = &list.things[0];
     assert_int_equal(t->support, THING_ON_FLOOR);
     assert_int_equal(t->views, VIEWS);
@@ -195,6 +220,40 @@ static void beside_it_and_above_it_there_is_nothing(void **state)
     }
 }
 
+static size_t pixel_of(double x, double y, double z)
+{
+    double u, v;
+    assert_true(view_project(&seeing, vec3_make(x, y, z), &u, &v) > 0);
+    assert_true(u >= 0 && v >= 0 && u < W && v < H);
+    return (size_t)v * W + (size_t)u;
+}
+
+static void a_rug_lies_where_its_outline_was_drawn(void **state)
+{
+    (void)state;
+    const struct thing *t = &list.things[RUG - 1];
+    assert_string_equal(t->name, "rug");
+    assert_int_equal(t->support, THING_ON_FLOOR);
+    assert_float_equal(t->low.x, 0.8, 1e-9);
+    assert_float_equal(t->high.y, 0.6, 1e-9);
+    assert_true(t->high.z > 0 && t->high.z < 0.06);
+    assert_true(t->views > 0);
+    assert_int_equal(thing_volume_at(&volume, vec3_make(1.2, 0.3, 0.01)), RUG);
+    assert_int_equal(thing_volume_at(&volume, vec3_make(1.2, 0.3, 0.16)), 0);
+    assert_int_equal(thing_volume_at(&volume, vec3_make(1.2, 0.7, 0.01)), 0);
+    assert_true(distance_at(1.2, 0.3, 0.03) > 0 && distance_at(1.2, 0.3, 0.03) < 0.2f);
+}
+
+static void a_view_shows_the_rug_where_nothing_is_before_it(void **state)
+{
+    (void)state;
+    const size_t free = pixel_of(0.9, -0.3, 0), beside = pixel_of(0.6, -0.7, 0), table = pixel_of(0, 0, 0.6);
+    assert_int_equal(mask.shows[free], RUG);
+    assert_int_equal(mask.meets[free], RUG);
+    assert_int_equal(mask.shows[beside], 0);
+    assert_int_equal(mask.shows[table], TABLE);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -203,6 +262,8 @@ int main(void)
         cmocka_unit_test(what_no_view_looks_through_below_it_is_solid),
         cmocka_unit_test(what_a_view_looks_through_below_it_is_not_solid),
         cmocka_unit_test(beside_it_and_above_it_there_is_nothing),
+        cmocka_unit_test(a_rug_lies_where_its_outline_was_drawn),
+        cmocka_unit_test(a_view_shows_the_rug_where_nothing_is_before_it),
     };
     return cmocka_run_group_tests_name("things", tests, find, release);
 }

@@ -192,8 +192,8 @@ static void scene_make(struct scene *s, const struct change *change, int memory)
         write_ids(&s->views[i]);
         write_view(&s->views[i]);
     }
-    const struct clutter_files files = {scratch_path("views"), scratch_path("depth"), scratch_path("ids"), NULL, NULL,
-                                        memory};
+    const struct clutter_files files = {
+        scratch_path("views"), scratch_path("depth"), scratch_path("ids"), NULL, NULL, memory};
     assert_ok(clutter_open(&s->clutter, &files, &s->set, &same_frame, &err), err);
 }
 
@@ -368,7 +368,8 @@ static void views_deny_what_they_see_through(void **state)
     scene_make(&s, &sure, 100);
     clutter_close(s.clutter);
     for (int i = 1; i < VIEWS; i++) write_depth(&s.views[i], &sure, true);
-    const struct clutter_files files = {scratch_path("views"), scratch_path("depth"), scratch_path("ids"), NULL, NULL, 100};
+    const struct clutter_files files = {
+        scratch_path("views"), scratch_path("depth"), scratch_path("ids"), NULL, NULL, 100};
     assert_ok(clutter_open(&s.clutter, &files, &s.set, &same_frame, &err), err);
     assert_shell(&s, &camera, NULL);
     clutter_close(s.clutter);

@@ -99,6 +99,23 @@ static void names_need_no_cameras(void **state)
     is_empty(&m);
 }
 
+static void outlines_are_rays_in_order(void **state)
+{
+    (void)state;
+    struct thing_marks m;
+    struct err err = ERR_INIT;
+    const char *text = HEAD "thing sofa in a 20 15\nflat rug in a 5 5 35 5 20 25\n";
+    assert_ok(thing_marks_read(&m, scratch_write("things.txt", text), &set, &lens_list, NULL, &err), err);
+    assert_true(m.name_count == 2 && !m.flat[0] && m.flat[1]);
+    assert_int_equal(m.mark_count, 4);
+    for (int i = 1; i < 4; i++) assert_int_equal(m.marks[i].name, 1);
+    is_ray(&m.marks[2], vec3_make(1, 2, 3), vec3_make(15, -10, 30));
+    thing_marks_release(&m);
+    assert_ok(thing_names_read(&m, scratch_write("things.txt", text), NULL, &err), err);
+    assert_string_equal(m.names[1], "rug");
+    thing_marks_release(&m);
+}
+
 struct refusal {
     const char *text, *error;
 };
@@ -114,7 +131,7 @@ static void what_is_wrong_is_named_with_its_line(void **state)
         {"remodel-marked-things\n", "things.txt:1: found the end of the line, wanted the version"},
         {"remodel-marked-things 2\n", "things.txt:1: found \"2\", wanted the version, an integer from 1 to 1"},
         {"remodel-marked-things 1 1\n", "things.txt:1: found \"1\""},
-        {HEAD "material x in a 1 2\n", "things.txt:2: found \"material\", wanted \"thing\""},
+        {HEAD "material x in a 1 2\n", "things.txt:2: found \"material\", wanted thing or flat"},
         {HEAD "thing\n", "things.txt:2: found the end of the line, wanted a name"},
         {HEAD "thing \"a b\" in a 1 2\n", "things.txt:2: found \"a b\", " NAME_RULE},
         {HEAD "thing \"\" in a 1 2\n", "things.txt:2: found \"\", " NAME_RULE},
@@ -130,6 +147,11 @@ static void what_is_wrong_is_named_with_its_line(void **state)
         {HEAD "thing x in a 1\n", "things.txt:2: found the end of the line, wanted Y"},
         {HEAD "thing x in a 1 nan\n", "things.txt:2: found \"nan\", wanted Y"},
         {HEAD "thing x in a 1 2\nthing y in a 1 2 3\n", "things.txt:3: found \"3\", wanted \"in\""},
+        {HEAD "flat x in a 1 2 3 4\n", "things.txt:2: found the end of the line, wanted X"},
+        {HEAD "flat x in a 1 2 3 4 5\n", "things.txt:2: found the end of the line, wanted Y"},
+        {HEAD "flat x in a 1 2 3 4 5 6 in b 1 2\n", "things.txt:2: found \"in\", wanted X"},
+        {HEAD "thing x in a 1 2\nflat x in a 1 2 3 4 5 6\n", "wanted another name: line 2 marks a thing of this name"},
+        {HEAD "flat x in a 1 2 3 4 5 6\nthing x in a 1 2\n", "wanted another name: line 2 has an outline of it"},
     };
     for (size_t i = 0; i < 2 * sizeof cases / sizeof *cases; i++) {
         const struct refusal *c = &cases[i / 2];
@@ -182,7 +204,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(marks_are_rays_in_the_world),          cmocka_unit_test(names_need_no_cameras),
         cmocka_unit_test(what_is_wrong_is_named_with_its_line), cmocka_unit_test(marks_must_be_on_photos),
-        cmocka_unit_test(a_missing_file_is_an_error),
+        cmocka_unit_test(a_missing_file_is_an_error),           cmocka_unit_test(outlines_are_rays_in_order),
     };
     return cmocka_run_group_tests_name("thing_marks", tests, scratch_make, scratch_remove);
 }
