@@ -20,15 +20,20 @@
 #include "common/texture/fill.h"
 #include "common/texture/filled_atlas.h"
 
-static const float WEAK = 1e-5f;           /* weight of data, and of outlying differences */
-static const float GUIDED = 2.5e-3f;       /* weight of the filled atlas: a hole's rim tells less beyond 20 texels */
-static const double DEFAULT_GREY = 0.5;    /* of white */
-enum { REACH = 12 };                       /* texels: of the clean ones that an unseen one continues */
-enum { MIN_SEEN = 8 };                     /* of these */
-enum { ALIKE = 8 };                        /* neighbours are alike: this many count as one */
-enum { SIDE = 6 };                         /* texels beside a hole in which only views of sure depth count */
-enum { MIN_LEVEL = 64, MAX_LEVEL = 4096 }; /* seen texels that tell how far they are above the filled atlas */
-enum { RIM = 3 };                          /* texels beside unseen ones, which may hold the shadow of what hides them */
+static const float WEAK = 1e-5f;        /* weight of data, and of outlying differences */
+static const float GUIDED = 2.5e-3f;    /* weight of the filled atlas: a hole's rim tells less beyond 20 texels */
+static const double DEFAULT_GREY = 0.5; /* of white */
+enum { REACH = 12 };                    /* texels: of the clean ones that an unseen one continues */
+enum { MIN_SEEN = 8 };                  /* of these */
+enum { ALIKE = 8 };                     /* neighbours are alike: this many count as one */
+enum { SIDE = 6 };                      /* texels beside a hole in which only views of sure depth count */
+enum { RIM = 3 };                       /* texels beside unseen ones, which may hold the shadow of what hides them */
+
+/* How far a viewpoint is above the filled atlas. */
+struct level {
+    float above[3];
+    bool known;
+};
 
 struct composite { /* of a tile; all per texel */
     struct bake *b;
@@ -39,8 +44,7 @@ struct composite { /* of a tile; all per texel */
     int32_t *nearest, *queue;       /* the nearest seen texel */
     uint8_t *unseen, *clean;        /* no view shows the texel; some does, and it is not within RIM of an unseen one */
     struct texture_fill fill;
-    bool levelled;
-    float level[3]; /* how far seen texels are above the filled atlas, if they tell */
+    const struct level *level;
 };
 
 static size_t texels_of(const struct bake_tile *t) { return (size_t)t->raster.width * (size_t)t->raster.height; }
@@ -262,34 +266,6 @@ static bool is_left_out(const struct composite *c, size_t i)
     return c->fill.guide && c->unseen[i] && !has_guide(c, i);
 }
 
-static int by_value(const void *a, const void *b)
-{
-    const float p = *(const float *)a, q = *(const float *)b;
-    return (p > q) - (p < q);
-}
-
-/* The median of what clean texels have above the filled atlas: the photos of a viewpoint have an exposure and a
- * daylight of their own. */
-static enum status find_level(struct composite *c, struct err *err)
-{
-    size_t both = 0;
-    for (size_t i = 0; i < texels_of(c->t); i++) both += c->clean[i] && has_guide(c, i);
-    const size_t step = both / MAX_LEVEL + 1;
-    float *values = malloc((both / step + 1) * sizeof *values);
-    if (!values) return err_nomem(err, "the level of a tile", (both / step + 1) * sizeof *values);
-    c->levelled = both >= MIN_LEVEL;
-    for (size_t k = 0; k < 3 && c->levelled; k++) {
-        size_t met = 0, kept = 0;
-        for (size_t i = 0; i < texels_of(c->t); i++)
-            if (c->clean[i] && has_guide(c, i) && met++ % step == 0)
-                values[kept++] = c->value[3 * i + k] - c->fill.guide[3 * i + k];
-        qsort(values, kept, sizeof *values, by_value);
-        c->level[k] = values[kept / 2];
-    }
-    free(values);
-    return ST_OK;
-}
-
 /* Unseen texels are drawn to the filled atlas, or else to the nearest of the texels that are listed as such. seen: the
  * role of seen ones from now. */
 static void set_unseen(struct composite *c, int seen)
@@ -304,13 +280,13 @@ static void set_unseen(struct composite *c, int seen)
         }
         float *value = c->value + 3 * i;
         if (has_guide(c, i))
-            for (size_t k = 0; k < 3; k++) value[k] = c->fill.guide[3 * i + k] + c->level[k];
+            for (size_t k = 0; k < 3; k++) value[k] = c->fill.guide[3 * i + k] + c->level->above[k];
         else if (c->nearest[i] >= 0)
             memcpy(value, c->value + 3 * (size_t)c->nearest[i], 3 * sizeof *value);
         else
             for (int k = 0; k < 3; k++) value[k] = bake_display((float)(DEFAULT_GREY * b->white), b->white);
         memcpy(c->data + 3 * i, value, 3 * sizeof *value);
-        c->data_weight[i] = has_guide(c, i) && c->levelled ? GUIDED : WEAK;
+        c->data_weight[i] = has_guide(c, i) && c->level->known ? GUIDED : WEAK;
     }
 }
 
@@ -402,7 +378,7 @@ static enum status solve_tile(struct composite *c, struct bake_totals *totals, s
     const struct synthesis_picture picture = {c->t->raster.width, c->t->raster.height, c->value, c->unseen, c->clean};
     if (c->b->filled) {
         float *guide = filled_atlas_tile(c->b->filled, c->b, c->t, err);
-        if (guide && !texture_fill_guide(&c->fill, &picture, guide, err)) find_level(c, err);
+        if (guide) texture_fill_guide(&c->fill, &picture, guide, err);
     } else
         texture_fill_find(&c->fill, &picture, err);
     if (err->status) return err->status;
@@ -410,8 +386,8 @@ static enum status solve_tile(struct composite *c, struct bake_totals *totals, s
     return solve(c, totals, err);
 }
 
-static enum status composite_tile(struct bake *b, const struct bake_tile *t, struct bake_totals *totals,
-                                  struct err *err)
+static enum status composite_tile(struct bake *b, const struct bake_tile *t, const struct level *level,
+                                  struct bake_totals *totals, struct err *err)
 {
     enum { FLOATS = 3 + 1 + 3 + 2 * (3 + 1) };
     const size_t n = texels_of(t);
@@ -423,6 +399,7 @@ static enum status composite_tile(struct bake *b, const struct bake_tile *t, str
     } else {
         struct composite c = {.b = b,
                               .t = t,
+                              .level = level,
                               .role = flags,
                               .unseen = flags + n,
                               .clean = flags + 2 * n,
@@ -444,7 +421,9 @@ static enum status composite_tile(struct bake *b, const struct bake_tile *t, str
 
 enum status bake_composite(struct bake *b, struct bake_totals *totals, struct err *err)
 {
+    struct level level = {.known = false};
     *totals = (struct bake_totals){0};
-    for (int i = 0; !err->status && i < b->tile_count; i++) composite_tile(b, &b->tiles[i], totals, err);
+    if (b->filled) filled_atlas_level(level.above, &level.known, b->filled, b, err);
+    for (int i = 0; !err->status && i < b->tile_count; i++) composite_tile(b, &b->tiles[i], &level, totals, err);
     return err->status;
 }

@@ -28,4 +28,9 @@ void filled_atlas_spare(struct filled_atlas *a);
  * colour. The caller frees it. NULL: err says why. */
 float *filled_atlas_tile(struct filled_atlas *a, const struct bake *b, const struct bake_tile *t, struct err *err);
 
+/* How far a viewpoint's own texels are above the atlas, the median of each colour, in display units: its photos have an
+ * exposure and a daylight of their own. *known: false: too few texels tell. */
+enum status filled_atlas_level(float level[3], bool *known, struct filled_atlas *a, const struct bake *b,
+                               struct err *err);
+
 #endif

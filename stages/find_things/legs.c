@@ -22,6 +22,7 @@
 #include <string.h>
 
 #include "common/base/parallel.h"
+#include "common/base/sort.h"
 
 #define REACH      0.4   /* of the model's height: how far beside a gap the floor behind it is looked at */
 #define GRADE      0.6f  /* of a pixel of clutter, from trace_ids */
@@ -269,30 +270,20 @@ void legs_learn_floor(struct legs *l, const struct legs_view *view)
     }
 }
 
-static int by_value(const void *a, const void *b)
+static float difference(const float a[3], const float b[3])
 {
-    const float p = *(const float *)a, q = *(const float *)b;
-    return (p > q) - (p < q);
-}
-
-static float median(float *values, int count)
-{
-    qsort(values, (size_t)count, sizeof *values, by_value);
-    return count % 2 ? values[count / 2] : 0.5f * (values[count / 2 - 1] + values[count / 2]);
+    return fmaxf(fabsf(a[0] - b[0]), fmaxf(fabsf(a[1] - b[1]), fabsf(a[2] - b[2])));
 }
 
 static void settle_place(struct place *p)
 {
-    float values[COLOURS];
+    double values[COLOURS];
     for (int c = 0; c < 3 && p->count; c++) {
-        for (int k = 0; k < p->count; k++) values[k] = p->colours[k][c];
-        p->median[c] = median(values, p->count);
+        for (int k = 0; k < p->count; k++) values[k] = (double)p->colours[k][c];
+        p->median[c] = (float)sort_median(values, p->count);
     }
-    for (int k = 0; k < p->count; k++) {
-        values[k] = 0;
-        for (int c = 0; c < 3; c++) values[k] = fmaxf(values[k], fabsf(p->colours[k][c] - p->median[c]));
-    }
-    p->spread = p->count ? median(values, p->count) : 0;
+    for (int k = 0; k < p->count; k++) values[k] = (double)difference(p->colours[k], p->median);
+    p->spread = p->count ? (float)sort_median(values, p->count) : 0;
 }
 
 void legs_settle(struct legs *l)
@@ -316,11 +307,6 @@ static const struct place *floor_behind(const struct legs_job *job, size_t pixel
     if (x < 0 || y < 0 || x >= g->place_size[0] || y >= g->place_size[1]) return NULL;
     const struct place *place = &g->places[(size_t)y * (size_t)g->place_size[0] + (size_t)x];
     return place->count >= MIN_COLOURS ? place : NULL;
-}
-
-static float difference(const float a[3], const float b[3])
-{
-    return fmaxf(fabsf(a[0] - b[0]), fmaxf(fabsf(a[1] - b[1]), fabsf(a[2] - b[2])));
 }
 
 static void collect(void *ctx, size_t begin, size_t end, int thread)
@@ -357,10 +343,11 @@ void legs_look(struct legs *l, const struct legs_view *view)
 /* How much better one colour explains a voxel's pixels than the floor does. */
 static float gain_of_leg(const struct candidate *c)
 {
-    float values[SAMPLES], common[3], sum = 0;
+    double values[SAMPLES];
+    float common[3], sum = 0;
     for (int k = 0; k < 3; k++) {
-        for (int i = 0; i < c->count; i++) values[i] = c->samples[i].colour[k];
-        common[k] = median(values, c->count);
+        for (int i = 0; i < c->count; i++) values[i] = (double)c->samples[i].colour[k];
+        common[k] = (float)sort_median(values, c->count);
     }
     for (int i = 0; i < c->count; i++) {
         const struct sample *s = &c->samples[i];
