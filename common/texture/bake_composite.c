@@ -21,7 +21,7 @@
 #include "common/texture/filled_atlas.h"
 
 static const float WEAK = 1e-5f;        /* weight of data, and of outlying differences */
-static const float GUIDED = 2.5e-3f;    /* weight of the filled atlas: a hole's rim tells less beyond 20 texels */
+static const float GUIDED = 5e-3f;      /* weight of the filled atlas: a hole's rim tells less beyond 14 texels */
 static const double DEFAULT_GREY = 0.5; /* of white */
 enum { REACH = 12 };                    /* texels: of the clean ones that an unseen one continues */
 enum { MIN_SEEN = 8 };                  /* of these */

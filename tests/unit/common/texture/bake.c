@@ -481,6 +481,36 @@ static void a_hole_takes_the_texture_of_the_filled_atlas_and_the_light_around_it
     provenance_release(&prov);
 }
 
+/* The rim of 4 texels lies in the shadow of what hid the hole, at half the light. */
+static void a_shadow_at_the_rim_of_a_hole_does_not_fill_it(void **state)
+{
+    (void)state;
+    struct fixture f;
+    struct filled_atlas a;
+    struct provenance prov = {0};
+    struct err err = ERR_INIT;
+    open_filled(&a, &prov, "rim", boards_everywhere);
+    begin(&f, 1);
+    f.bake.filled = &a;
+    for (int i = 0; i < SIZE * SIZE; i++) {
+        const double r = hypot(i % SIZE - 32, (int)(i / SIZE) - 32);
+        f.bake.role[i] = r < 26 ? TEXEL_WANTED : TEXEL_ORIGINAL;
+        for (int c = 0; c < 3; c++) f.bake.rgb[3 * i + c] = r < 30 ? 0.3f : 0.6f;
+    }
+    assert_ok(bake_list_texels(&f.bake, &err), err);
+    for (int i = 0; i < SIZE * SIZE; i++)
+        if (f.bake.list[i] >= 0) f.bake.hidden[f.bake.list[i]] = 1;
+    assert_ok(bake_composite(&f.bake, &f.totals, &err), err);
+    const int middle = 32 * SIZE + 32, rim = 32 * SIZE + 32 + 24;
+    const double light = (double)f.bake.rgb[3 * middle] / (0.6 * (double)boards_at(32.5, 32.5));
+    print_message("light in the middle %.3f\n", light);
+    assert_in_range((int)(1000 * light), 650, 1000);                  /* with a weak atlas 503 */
+    assert_true(f.bake.rgb[3 * rim] < 0.9f * f.bake.rgb[3 * middle]); /* no seam */
+    end(&f);
+    filled_atlas_release(&a);
+    provenance_release(&prov);
+}
+
 /* There the atlas of all faces is as good: a renderer takes its texel. Measured: 0.108, beside the cut, where nothing
  * holds the light of the hole. */
 static void where_the_filled_atlas_has_nothing_a_viewpoint_has_no_texel(void **state)
@@ -715,6 +745,7 @@ int main(void)
         cmocka_unit_test(boards_continue_where_no_view_shows_them),
         cmocka_unit_test(what_is_walled_up_continues_the_wall_and_not_its_rim),
         cmocka_unit_test(a_hole_takes_the_texture_of_the_filled_atlas_and_the_light_around_it),
+        cmocka_unit_test(a_shadow_at_the_rim_of_a_hole_does_not_fill_it),
         cmocka_unit_test(where_the_filled_atlas_has_nothing_a_viewpoint_has_no_texel),
         cmocka_unit_test(a_tile_that_no_view_shows_takes_the_values_of_the_filled_atlas),
         cmocka_unit_test(pages_of_the_filled_atlas_are_recorded_once_in_each_product),
