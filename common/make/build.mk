@@ -87,7 +87,7 @@ $(B)/rules.def: FORCE
 	+@mkdir -p $(@D); t=$@.$$$$.tmp; printf 'STAGE(%s)\n' $(foreach s,$(STAGES),$(if $(wildcard stages/$(s)/rules.c),$(s))) >$$t; cmp -s $$t $@ && rm $$t || mv $$t $@
 $(GRAPH_MAIN): CFLAGS += -I$(B)
 $(GRAPH_MAIN): $(B)/rules.def
-$(B)/lib/bench.a: $(call objs,tests/bench/*.cc)
+$(B)/lib/bench.a: $(call objs,tests/bench/*.cc tests/bench/*/*.c)
 	$(archive)
 
 # what a product depends on is the code, not the file: a stamp of the stripped program, rewritten only if that changed
