@@ -86,8 +86,10 @@ static int steps_along(double side, double height)
     return steps < MIN_STEPS ? MIN_STEPS : steps > MAX_STEPS ? MAX_STEPS : (int)steps;
 }
 
+/* Points of the box that were in a solid of the photographed room do not count: there its outline is off. */
 static enum status check_walls(const struct texture_thing *edit, const struct thing *t, const struct placed_thing *p,
-                               const struct model_rays *m, double height, struct err *err)
+                               const struct model_rays *before, const struct model_rays *after, double height,
+                               struct err *err)
 {
     const int nx = steps_along(t->high.x - t->low.x, height), ny = steps_along(t->high.y - t->low.y, height),
               nz = steps_along(t->high.z - t->low.z, height);
@@ -95,8 +97,9 @@ static enum status check_walls(const struct texture_thing *edit, const struct th
     for (int i = 0; i < nx * ny * nz; i++) {
         const double x = 2.0 * (i % nx) / (nx - 1) - 1, y = 2.0 * (i / nx % ny) / (ny - 1) - 1,
                      z = 2.0 * (i / nx / ny) / (nz - 1) - 1;
-        const struct vec3 at = placed_thing_place(p, box_point(t, SHRUNK * x, SHRUNK * y, SHRUNK * z));
-        if (model_rays_inside(m, at, 0)) deepest = fmax(deepest, depth_in(m, at));
+        const struct vec3 was = box_point(t, SHRUNK * x, SHRUNK * y, SHRUNK * z), at = placed_thing_place(p, was);
+        if (model_rays_inside(after, at, 0) && !model_rays_inside(before, was, 0))
+            deepest = fmax(deepest, depth_in(after, at));
     }
     if (deepest < 0) return ST_OK;
     return err_set(err, ST_DATA, "%s would stand at least %.2g deep in a wall, a box or a floor. Move it elsewhere.",
@@ -187,7 +190,8 @@ static enum status apply(struct placed_things *t, const struct texture_thing *ed
     if (edit->kind == TEXTURE_THING_CLEAR) return ST_OK;
     struct placed_thing p = placement(edit, thing, id, before);
     const double height = model_rays_height(before);
-    if (check_support(edit, thing, &p, before, after, height, err) || check_walls(edit, thing, &p, after, height, err))
+    if (check_support(edit, thing, &p, before, after, height, err) ||
+        check_walls(edit, thing, &p, before, after, height, err))
         return err->status;
     if (!(p.name = strdup(edit->name))) return err_nomem(err, "a name", strlen(edit->name));
     t->placed[t->placed_count++] = p;

@@ -24,8 +24,10 @@ static void write_list(void)
         {(char *)"picture", THING_ON_WALL, {1.9, -0.5, -0.5}, {2, 0.5, 0.5}, 10, 1, (char *)"a", {0, 0, 9, 9}, {0}},
         {(char *)"lamp", THING_ON_CEILING, {0.3, 0.5, 1}, {0.7, 0.9, 2}, 10, 1, (char *)"a", {0, 0, 9, 9}, {0}},
         {(char *)"bird", THING_ON_NONE, {0.5, 1.5, 0}, {0.7, 1.7, 0.2}, 10, 1, (char *)"a", {0, 0, 9, 9}, {0}},
+        /* its outline reaches below the floor */
+        {(char *)"mat", THING_ON_FLOOR, {-1, 1, -2.2}, {-0.5, 1.5, -1.7}, 10, 1, (char *)"a", {0, 0, 9, 9}, {0}},
     };
-    struct thing_list list = {(struct thing *)things, 4};
+    struct thing_list list = {(struct thing *)things, 5};
     struct err err = ERR_INIT;
     assert_ok(thing_list_write(&list, scratch_path("things/things.txt"), &no_inputs, &err), err);
 }
@@ -329,6 +331,8 @@ static void outlines_may_touch_a_wall(void **state)
 {
     (void)state;
     move_allowed("sofa", 0.64, 0, 0, 0); /* its box reaches to 2.04, nine tenths of it to 1.98 */
+    move_allowed("mat", 0.5, 0, 0, 30);
+    move_refused("mat", -1.2, 0, 0, 0, "mat would stand at least");
 }
 
 static void what_stood_on_the_floor_stands_on_a_floor(void **state)
