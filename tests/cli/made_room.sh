@@ -1,4 +1,4 @@
-# made_room: two seeds make scenes that `simulate` photographs, also edited; the same seed makes the same bytes
+# made_room: seeds make scenes, one of each shape, that `simulate` photographs, also edited; the same seed makes the same bytes
 . tests/lib.sh
 made() { "$B/tests/bench/made_room" --seed "$1" --out "$2" 2>"$scratch/err" || { cat "$scratch/err"; fail "seed $1 made no room"; }; }
 # a photo of a few pixels: SCENE OPTIONS...
@@ -30,7 +30,7 @@ a_seed_repeats()
 rooms_are_photographed_before_and_after_edits()
 {
     local s
-    for s in 1 2; do
+    for s in 1 2 3; do # two rooms, a rectangle, an L
         made "$s" "$scratch/room$s"
         shot "$scratch/room$s"
         [ -s "$scratch/shots/photos/v00_e2.jpg" ] || fail "there is no photo"

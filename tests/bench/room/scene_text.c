@@ -61,8 +61,8 @@ static void write_brick(FILE *to, enum made_look look, double wide, double high,
     fputs("\n", to);
 }
 
-/* Boards, tiles with joints, or a mottled carpet. */
-static void write_floor(FILE *to, enum made_look look, struct dice *d)
+/* Boards, tiles with joints, or a mottled carpet; whether they are boards, which may be glossy. */
+static bool write_floor(FILE *to, enum made_look look, struct dice *d)
 {
     const int what = dice_choose(d, 4);
     if (what < 2)
@@ -71,6 +71,7 @@ static void write_floor(FILE *to, enum made_look look, struct dice *d)
         write_brick(to, look, 0.4, dice_between(d, 0.2, 0.4), 0.008, draw_colour(d, 0.25, 0.45, 0.25), d);
     else
         write_plaster(to, look, dice_between(d, 0.08, 0.2), 0.4, draw_colour(d, 0.2, 0.4, 0.5), d);
+    return what < 2;
 }
 
 static void write_accent(FILE *to, struct dice *d)
@@ -81,9 +82,10 @@ static void write_accent(FILE *to, struct dice *d)
         write_plaster(to, LOOK_ACCENT, 0.3, dice_between(d, 0.2, 0.35), draw_colour(d, 0.25, 0.5, 0.6), d);
 }
 
-static void write_textures(const struct made_room *r, FILE *to, struct dice *d)
+/* Whether the floor of the first room is of boards. */
+static bool write_textures(const struct made_room *r, FILE *to, struct dice *d)
 {
-    write_floor(to, LOOK_FLOOR, d);
+    const bool boards = write_floor(to, LOOK_FLOOR, d);
     write_floor(to, LOOK_FLOOR2, d);
     if (dice_chance(d, 0.4))
         write_wood(to, LOOK_CEILING, 0.14, draw_colour(d, 0.7, 0.78, 0.06), 0.88, d);
@@ -107,16 +109,17 @@ static void write_textures(const struct made_room *r, FILE *to, struct dice *d)
     for (int i = 0; i < r->rug_count; i++)
         fprintf(to, "texture rug%d print %d %.2f %.2f\n", i + 1, 400 + r->seed + i, r->rugs[i].x1 - r->rugs[i].x0,
                 r->rugs[i].y1 - r->rugs[i].y0);
+    return boards;
 }
 
 static void write_materials(const struct made_room *r, FILE *to)
 {
     struct dice d = dice_make(r->seed, "materials", 0);
-    write_textures(r, to, &d);
+    const bool boards = write_textures(r, to, &d);
     const bool glossy = dice_chance(&d, 0.5);
     fputs("\n", to);
     for (int i = 0; i < LOOK_COUNT; i++) {
-        const bool gloss = glossy && (i == LOOK_FLOOR || i == LOOK_WOOD2);
+        const bool gloss = glossy && ((i == LOOK_FLOOR && boards) || i == LOOK_WOOD2);
         fprintf(to, gloss ? "material %s ward %s 0.04 0.25\n" : "material %s lambert %s\n", look_names[i],
                 look_names[i]);
     }
