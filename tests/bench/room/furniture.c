@@ -461,5 +461,5 @@ bool made_pictures(struct made_room *r, int attempt)
         if (picture_fits(r, &p)) r->pictures[r->picture_count++] = p;
     }
     if (dice_chance(&d, 0.7)) draw_rug(r, &d);
-    return r->picture_count >= 4;
+    return r->picture_count >= 7;
 }

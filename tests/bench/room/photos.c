@@ -3,7 +3,8 @@
  * Random rays from the free floor sample the visible surfaces. A candidate is a place at eye level on the free floor
  * and a direction with an open view. Photos are chosen greedily: a surface point that n photos show already adds
  * 1 / (1 + n)^2, so that all points are soon seen from several places. With two rooms, four photos around the doorway
- * come first, because they connect the rooms.
+ * come first, because they connect the rooms. Structure from motion must place every photo, so an attempt whose photos
+ * do not overlap is given up.
  *
  * The model's x axis is the wall direction nearest to the right-hand direction of the most central camera
  * (docs/formats/models.md); the mean viewing direction decides between the views of one photo. So that the model has
@@ -19,6 +20,8 @@ enum { POINTS = 700, CANDIDATES = 320, CENTRAL = 3 };
 #define OPEN     2.0  /* least free view ahead */
 #define NEAREST  0.6  /* what a photo shows: distances, m */
 #define FARTHEST 6.0
+#define REACH    2.0 /* between two photos that overlap, which show so much of the same: */
+#define SHARED   0.2
 #define SLANT    0.2 /* least cosine between the view and a surface's normal */
 
 struct point {
@@ -233,6 +236,50 @@ static bool look_north(const struct made_room *r)
     return north > fabs(east) + 2.5;
 }
 
+/* Whether no photo looks out of a window, or at a wall, from near it. */
+static bool look_inside(const struct made_room *r)
+{
+    for (int i = 0; i < r->photo_count; i++) {
+        const struct vec3 ahead = vec3_add(r->photos[i].at, mat3_row(r->photos[i].cam_from_world, 2));
+        if (made_area_of(r, ahead.x, ahead.y, 0) < 0) return false;
+    }
+    return true;
+}
+
+/* Whether two photos show enough of the same from places near enough that their features match. */
+static bool overlap(const struct choice *c, int a, int b, unsigned char sees[MADE_PHOTOS][POINTS])
+{
+    int both = 0, of_a = 0, of_b = 0;
+    if (vec3_length(vec3_sub(c->room->photos[a].at, c->room->photos[b].at)) > REACH) return false;
+    for (int i = 0; i < POINTS; i++) {
+        both += sees[a][i] && sees[b][i];
+        of_a += sees[a][i];
+        of_b += sees[b][i];
+    }
+    return both >= SHARED * (of_a < of_b ? of_a : of_b);
+}
+
+/* Whether each photo overlaps at least two others, and steps between overlapping photos lead from the first to all. */
+static bool are_connected(const struct choice *c)
+{
+    static unsigned char sees[MADE_PHOTOS][POINTS]; /* too large for the stack */
+    const int count = c->room->photo_count;
+    int reached[MADE_PHOTOS] = {0}, reached_count = 1, neighbours[MADE_PHOTOS] = {0};
+    bool known[MADE_PHOTOS] = {true};
+    for (int k = 0; k < count; k++) look(sees[k], c, &c->room->photos[k]);
+    for (int i = 0; i < reached_count; i++)
+        for (int k = 0; k < count; k++) {
+            if (k == reached[i] || !overlap(c, reached[i], k, sees)) continue;
+            neighbours[reached[i]]++;
+            if (known[k]) continue;
+            known[k] = true;
+            reached[reached_count++] = k;
+        }
+    for (int k = 0; k < count; k++)
+        if (neighbours[k] < 2) return false;
+    return reached_count == count;
+}
+
 bool made_photos(struct made_room *r, int attempt)
 {
     static struct choice c; /* too large for the stack */
@@ -245,5 +292,5 @@ bool made_photos(struct made_room *r, int attempt)
     if (r->shape == SHAPE_TWO_ROOMS && !add_doorway_photos(&c)) return false;
     if (!draw_candidates(&c, &d) || !choose_photos(&c, wanted) || !face_north(&c)) return false;
     order_photos(r);
-    return look_north(r);
+    return look_north(r) && look_inside(r) && are_connected(&c);
 }
