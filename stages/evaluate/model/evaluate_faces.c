@@ -69,16 +69,6 @@ static enum status add_picture(struct evaluation *e, struct faces_job *job, cons
     return err->status;
 }
 
-/* Whether a face is one of the scene's walls, openings and rooms: "NAME.left" of a part called NAME. */
-static bool part_of(const struct measured_parts *list, const char *face)
-{
-    for (int i = 0; i < list->count; i++) {
-        const size_t length = strlen(list->parts[i].name);
-        if (!strncmp(list->parts[i].name, face, length) && face[length] == '.') return true;
-    }
-    return false;
-}
-
 /* Which true faces count: all of a shell; otherwise those of walls, openings and rooms. */
 static enum status choose_faces(struct faces_job *job, bool shell, const char *scene, struct err *err)
 {
@@ -90,8 +80,8 @@ static enum status choose_faces(struct faces_job *job, bool shell, const char *s
         const char *name = job->truth.faces[i].name;
         if (!name) continue;
         a->true_normals[i + 1] = job->truth.faces[i].normal;
-        a->counted[i + 1] =
-            shell || part_of(&plan.faces, name) || part_of(&plan.openings, name) || part_of(&plan.rooms, name);
+        a->counted[i + 1] = shell || measured_parts_have(&plan.faces, name) ||
+                            measured_parts_have(&plan.openings, name) || measured_parts_have(&plan.rooms, name);
     }
     wall_plan_release(&plan);
     const struct mat3 world_from_scene = job->frame.truth_from_scene.rotation;

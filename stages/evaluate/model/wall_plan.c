@@ -40,6 +40,7 @@ void wall_plan_release(struct measured_plan *plan)
     free(plan->faces.parts);
     free(plan->openings.parts);
     free(plan->rooms.parts);
+    free(plan->furniture.parts);
     *plan = (struct measured_plan){0};
 }
 
@@ -54,9 +55,19 @@ static enum status add_part(struct measured_parts *list, const char *name, struc
     return ST_OK;
 }
 
+bool measured_parts_have(const struct measured_parts *list, const char *face)
+{
+    for (int i = 0; i < list->count; i++) {
+        const size_t length = strlen(list->parts[i].name);
+        if (!strncmp(list->parts[i].name, face, length) && face[length] == '.') return true;
+    }
+    return false;
+}
+
 struct reader {
     struct measured_plan *plan;
     struct textfile t;
+    bool furniture;              /* what follows is furniture */
     struct measured_parts lines; /* of walls; at: the point where S of an opening is 0, and the direction of S */
     /* scene-truth.txt */
     double low[2], high[2]; /* bounds of the rooms */
@@ -197,6 +208,7 @@ static enum status described_drop(struct reader *r, struct err *err)
         drop_named(&r->plan->faces, name);
         drop_named(&r->plan->openings, name);
         drop_named(&r->plan->rooms, name);
+        drop_named(&r->plan->furniture, name);
         drop_named(&r->lines, name);
     } while (textfile_more(&r->t));
     return ST_OK;
@@ -230,6 +242,22 @@ static enum status described_base(struct reader *r, int depth, struct err *err)
     return err_set(err, why.status == ST_NOMEM ? ST_NOMEM : ST_DATA, "%s:%d: its base: %s", t.path, t.line, why.text);
 }
 
+static enum status described_item(struct reader *r, struct err *err)
+{
+    const struct vec3 nowhere = {0, 0, 0};
+    char *name;
+    if (textfile_word(&r->t, "an item's name", &name, err)) return err->status;
+    return add_part(&r->plan->furniture, name, nowhere, nowhere, err);
+}
+
+static enum status described_switch(struct reader *r, struct err *err)
+{
+    char *word;
+    if (textfile_word(&r->t, "on or off", &word, err)) return err->status;
+    r->furniture = !strcmp(word, "on");
+    return ST_OK;
+}
+
 static enum status described_statement(struct reader *r, const char *verb, int depth, struct err *err)
 {
     if (!strcmp(verb, "base")) return described_base(r, depth, err);
@@ -237,7 +265,8 @@ static enum status described_statement(struct reader *r, const char *verb, int d
     if (!strcmp(verb, "room")) return described_room(r, err);
     if (!strcmp(verb, "wall")) return described_wall(r, err);
     if (!strcmp(verb, "opening") || !strcmp(verb, "window")) return described_opening(r, err);
-    return ST_OK;
+    if (!strcmp(verb, "furniture")) return described_switch(r, err);
+    return r->furniture ? described_item(r, err) : ST_OK;
 }
 
 static enum status read_described(struct reader *r, const char *path, int depth, struct err *err)

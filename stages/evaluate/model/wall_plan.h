@@ -4,7 +4,8 @@
  * A face runs along the foot of a wall with its room on the left. Sources:
  *   model/plan.txt      edges of the rooms (docs/formats.md); openings are on the inner face of their wall
  *   TRUTH/scene.txt     both sides of each wall, whose line is its middle (docs/scenes.md); openings are on the middle;
- *                       an edit: `base FILE` first, then `drop NAME ...` and what it adds
+ *                       an edit: `base FILE` first, then `drop NAME ...` and what it adds; items between
+ *                       `furniture on` and `furniture off` are furniture
  *   TRUTH/scene-truth.txt, in the frame of the rooms:
  *     NAME X0 Y0 Z0 X1 Y1 Z1                    a room: its four walls
  *     partition x|y A B                         a wall between rooms; its faces are those of the rooms
@@ -32,6 +33,7 @@ struct measured_plan {
     struct measured_parts faces, openings;
     /* of a truth: the lower corner of a room and the opposite upper one; of a model: its middle on floor and ceiling */
     struct measured_parts rooms;
+    struct measured_parts furniture; /* of a described scene: its names */
 };
 
 enum measured_plan_kind { PLAN_FROM_MODEL, PLAN_FROM_SCENE, PLAN_FROM_SCENE_TRUTH };
@@ -39,6 +41,8 @@ enum measured_plan_kind { PLAN_FROM_MODEL, PLAN_FROM_SCENE, PLAN_FROM_SCENE_TRUT
 /* plan is overwritten, and empty after an error. ST_DATA with file and line. */
 enum status wall_plan_read(struct measured_plan *plan, const char *path, enum measured_plan_kind kind, struct err *err);
 void wall_plan_release(struct measured_plan *plan);
+/* Whether a true face belongs to one of the parts: "NAME.left" to a part called NAME. */
+bool measured_parts_have(const struct measured_parts *list, const char *face);
 
 struct part_errors {
     double *errors; /* sorted; owned */

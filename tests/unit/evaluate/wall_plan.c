@@ -134,6 +134,24 @@ static void an_edit_changes_its_base(void **state)
     wall_plan_release(&plan);
 }
 
+static void furniture_is_what_is_switched_on(void **state)
+{
+    (void)state;
+    struct err err = ERR_INIT;
+    struct measured_plan plan = {0};
+    scratch_write("scene.txt",
+                  "remodel-scene 2\nquad poster 0 0 1  1 0 0  0 0 1  p\nfurniture on\nbox desk 0 0 0 1 1 1 m\n"
+                  "quad row1 0 0 1  1 0 0  0 0 1  p\nfurniture off\nquad map 0 0 1  1 0 0  0 0 1  p\n");
+    const char *path =
+        scratch_write("scene-e.txt", "remodel-scene 2\nbase scene.txt\ndrop row1\nbox beam 0 0 2 1 1 3 m\n"
+                                     "furniture on\nbox chair 0 0 0 1 1 1 m\n");
+    assert_ok(wall_plan_read(&plan, path, PLAN_FROM_SCENE, &err), err);
+    assert_int_equal(plan.furniture.count, 2);
+    assert_true(measured_parts_have(&plan.furniture, "desk.top") && measured_parts_have(&plan.furniture, "chair.left"));
+    assert_false(measured_parts_have(&plan.furniture, "desk") || measured_parts_have(&plan.furniture, "desks.top"));
+    wall_plan_release(&plan);
+}
+
 static void broken_lines_are_refused(void **state)
 {
     (void)state;
@@ -165,11 +183,9 @@ static void broken_lines_are_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(errors_are_the_known_shifts),
-        cmocka_unit_test(an_edge_of_a_removed_wall_is_no_face),
-        cmocka_unit_test(extra_and_missing_parts_are_counted),
-        cmocka_unit_test(an_edit_changes_its_base),
-        cmocka_unit_test(broken_lines_are_refused),
+        cmocka_unit_test(errors_are_the_known_shifts),         cmocka_unit_test(an_edge_of_a_removed_wall_is_no_face),
+        cmocka_unit_test(extra_and_missing_parts_are_counted), cmocka_unit_test(an_edit_changes_its_base),
+        cmocka_unit_test(furniture_is_what_is_switched_on),    cmocka_unit_test(broken_lines_are_refused),
     };
     return cmocka_run_group_tests_name("wall_plan", tests, scratch_make, scratch_remove);
 }
