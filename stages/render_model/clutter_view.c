@@ -175,13 +175,15 @@ static void keep_clutter(struct layer *l, const uint8_t *rim, uint8_t bit, const
     }
 }
 
-static void see_pixels(struct clutter_view *v, const struct layered_depth *d, const struct judged_segment *list)
+static void see_pixels(struct clutter_view *v, const struct layered_depth *d, const struct judged_segment *list,
+                       const struct thing_mask *things)
 {
     const size_t pixels = (size_t)d->width * (size_t)d->height;
     for (size_t p = 0; p < pixels; p++) {
         const float inner = d->interior.z[p] > 0 ? 1 / d->interior.z[p] : 0;
         const float outer = d->boundary.id[p] && d->boundary.z[p] > 0 ? 1 / d->boundary.z[p] : 0;
         v->sight[p].nearest = fmaxf(inner, outer);
+        v->sight[p].thing = things ? (uint16_t)things->shows[p] : 0;
         v->sight[p].sure = inner > 0 ? (uint8_t)(CLUTTER_SURE * list[d->interior.id[p] - 1].sure) : 0;
     }
 }
@@ -232,9 +234,10 @@ static void find_shows(struct clutter_view *v, const struct layered_depth *d)
 
 /* What the view sees within one pixel, of both layers: outlines of segments are off by as much, and a view must not
  * deny what another one shows for that. */
-static void find_nearest(struct clutter_view *v, const struct layered_depth *d, const struct judged_segment *list)
+static void find_nearest(struct clutter_view *v, const struct layered_depth *d, const struct judged_segment *list,
+                         const struct thing_mask *things)
 {
-    see_pixels(v, d, list);
+    see_pixels(v, d, list, things);
     for (int y = 0; y < d->height; y++) spread_line(v, (size_t)y * (size_t)d->width, 1, d->width);
     for (int x = 0; x < d->width; x++) spread_line(v, (size_t)x, (size_t)d->width, d->height);
 }
@@ -292,7 +295,7 @@ enum status clutter_view_make(struct clutter_view *v, struct layered_depth *dept
         if (!rim || !v->sight) err_nomem(err, "what a view sees", pixels * (sizeof *v->sight + 1));
     }
     if (!err->status) {
-        find_nearest(v, &v->depth, list);
+        find_nearest(v, &v->depth, list, things);
         find_rims(rim, &v->depth, list, ids);
         keep_clutter(&v->depth.interior, rim, INTERIOR, list, ids, things);
         keep_clutter(&v->depth.boundary, rim, BOUNDARY, list, ids, things);

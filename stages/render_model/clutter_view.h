@@ -9,9 +9,10 @@
 
 /* What a view sees at a pixel, and within one pixel of it. */
 struct clutter_sight {
-    float nearest; /* 1 / z of the nearest surface, 0: not known */
-    uint8_t sure;  /* least confidence that the depths deserve, 255: full */
-    uint8_t shows; /* largest part of a pixel that clutter covers, 255: all */
+    float nearest;  /* 1 / z of the nearest surface, 0: not known */
+    uint8_t sure;   /* least confidence that the depths deserve, 255: full */
+    uint8_t shows;  /* largest part of a pixel that clutter covers, 255: all */
+    uint16_t thing; /* that the pixel itself shows; 0: none, or not known */
 };
 
 /* {0} is the empty state; everything is owned. Depths are in scene units. */

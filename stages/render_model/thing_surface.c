@@ -4,7 +4,7 @@
  * The place P takes its colour from the views that see it: those whose nearest surface is at P, weighted as in
  * unstructured lumigraph rendering [Buehler 2001] by the angle between their ray and the camera's. A view that sees
  * past P, to the floor, but shows the thing there counts where none sees P: a leg is thinner than its segments. If P is
- * hidden from all of them, those count that show clutter at its pixel; it is near P. */
+ * hidden from all of them, those count that show clutter at its pixel, unless it is another thing; it is near P. */
 #include "stages/render_model/thing_surface.h"
 
 #include <math.h>
@@ -90,7 +90,9 @@ static void add_colour(double sum[4], const struct surface_job *job, int k, stru
     double u, v;
     const double z = view_project(view, p, &u, &v);
     if (!(z > 0) || !(u >= 1 && v >= 1 && u < view->width - 1 && v < view->height - 1)) return;
-    const float nearest = source->sight[(size_t)v * (size_t)view->width + (size_t)u].nearest;
+    const struct clutter_sight *sight = &source->sight[(size_t)v * (size_t)view->width + (size_t)u];
+    const float nearest = sight->nearest;
+    if (sight->thing && sight->thing != job->id) return; /* it is before P */
     float c[4];
     clutter_view_sample(c, source, u, v);
     if (!(c[3] > MIN_COVER)) return;

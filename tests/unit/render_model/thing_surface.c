@@ -196,6 +196,21 @@ static void the_faces_of_a_block_are_met_exactly(void **state)
     scene_release(&s);
 }
 
+static void what_a_view_shows_of_another_thing_is_no_colour(void **state)
+{
+    static struct scene s;
+    (void)state;
+    scene_make(&s, to_ball);
+    for (int k = 0; k < 3; k++) {
+        static const uint16_t shown[] = {0, THING, THING + 1};
+        for (int i = 0; i < W * H; i++) s.sources[0].view.sight[i].thing = shown[k];
+        draw(&s);
+        assert_int_equal(count_drawn(&s) > 300, k < 2);
+        assert_int_equal(count_drawn(&s) == 0, k == 2);
+    }
+    scene_release(&s);
+}
+
 static void the_shell_hides_what_is_behind_it(void **state)
 {
     static struct scene s;
@@ -361,6 +376,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_ball_is_met_at_its_front),
         cmocka_unit_test(the_faces_of_a_block_are_met_exactly),
+        cmocka_unit_test(what_a_view_shows_of_another_thing_is_no_colour),
         cmocka_unit_test(the_shell_hides_what_is_behind_it),
         cmocka_unit_test(unseen_and_foreign_voxels_make_no_surface),
         cmocka_unit_test(a_surface_needs_what_is_before_it),
