@@ -11,11 +11,11 @@
 #include "common/light/frame.h"
 #include "common/math/polygon.h"
 
-#define UPRIGHT    0.7   /* |z| of the normal of a floor or a ceiling, at least */
-#define BEFORE     0.25  /* voxels: of the surface before the face */
-#define PER_BAND   2.5   /* voxels of a band of distances */
-#define GRADE      0.6f  /* of a pixel of clutter, from trace_ids */
-#define SAME_DEPTH 0.02f /* relative: a view sees the face itself */
+#define UPRIGHT  0.7   /* |z| of the normal of a floor or a ceiling, at least */
+#define BEFORE   0.25  /* voxels: of the surface before the face */
+#define PER_BAND 2.5   /* voxels of a band of distances */
+#define GRADE    0.6f  /* of a pixel of clutter, from trace_ids */
+#define NEARER   0.08f /* relative: noise of the depth of a blank rug is less */
 
 static struct vec3 on_plane(const struct flat_thing *f, struct vec3 from, struct vec3 along)
 {
@@ -166,7 +166,7 @@ void flat_things_see(struct thing_mask *mask, const struct flat_things *f, const
         for (int x = 0; x < camera->width; x++) {
             const size_t i = (size_t)y * (size_t)camera->width + (size_t)x;
             if (!(ids->z[i] > 0) || mask->shows[i] || ids->clutter[i] > GRADE) continue;
-            if (depth[i] > 0 && depth[i] < ids->z[i] * (1 - SAME_DEPTH)) continue;
+            if (depth[i] > 0 && depth[i] < ids->z[i] * (1 - NEARER)) continue;
             const struct vec3 p = view_unproject(camera, x + 0.5, y + 0.5, scale * (double)ids->z[i]);
             for (int k = 0; k < f->count; k++)
                 if (fabs(height_over(&f->list[k], p)) <= slack && holds(&f->list[k], p)) {
