@@ -4,7 +4,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "stages/evaluate/model/wall_plan.h"
+#include "stages/evaluate/truth/wall_plan.h"
 #include "tests/fuzz/fuzz.h"
 #include "tests/fuzz/fuzz_scratch.h"
 

@@ -6,9 +6,9 @@
 
 #include "common/image/exr.h"
 #include "stages/evaluate/model/face_agreement.h"
-#include "stages/evaluate/model/wall_plan.h"
 #include "stages/evaluate/scene/traced_model.h"
 #include "stages/evaluate/truth/true_faces.h"
+#include "stages/evaluate/truth/wall_plan.h"
 
 struct faces_job { /* one model against one scene */
     const char *prefix;
@@ -80,8 +80,8 @@ static enum status choose_faces(struct faces_job *job, bool shell, const char *s
         const char *name = job->truth.faces[i].name;
         if (!name) continue;
         a->true_normals[i + 1] = job->truth.faces[i].normal;
-        a->counted[i + 1] = shell || measured_parts_have(&plan.faces, name) ||
-                            measured_parts_have(&plan.openings, name) || measured_parts_have(&plan.rooms, name);
+        a->counted[i + 1] = shell || wall_plan_has(&plan.faces, name) || wall_plan_has(&plan.openings, name) ||
+                            wall_plan_has(&plan.rooms, name);
     }
     wall_plan_release(&plan);
     const struct mat3 world_from_scene = job->frame.truth_from_scene.rotation;

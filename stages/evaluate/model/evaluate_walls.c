@@ -9,9 +9,9 @@
 
 #include "common/base/sort.h"
 #include "stages/evaluate/model/room_heights.h"
-#include "stages/evaluate/model/wall_plan.h"
 #include "stages/evaluate/scene/model_frame.h"
 #include "stages/evaluate/truth/true_room.h"
+#include "stages/evaluate/truth/wall_plan.h"
 
 #define MAX_DISTANCE 0.5 /* m: a wall farther away is another one */
 

@@ -2,7 +2,7 @@
 #ifndef REMODEL_ROOM_HEIGHTS_H
 #define REMODEL_ROOM_HEIGHTS_H
 
-#include "stages/evaluate/model/wall_plan.h"
+#include "stages/evaluate/truth/wall_plan.h"
 
 struct room_height_errors {
     double floor, ceiling; /* maximum over the rooms */

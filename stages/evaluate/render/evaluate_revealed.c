@@ -1,5 +1,5 @@
-/* evaluate_revealed.c - pictures of edited scenes where the edit reveals something: edited.E.revealed*, and where that is
- * furniture: edited.E.revealed_things* */
+/* evaluate_revealed.c - pictures of edited scenes where the edit reveals something: edited.E.revealed*; and where that
+ * is furniture: edited.E.revealed_things* */
 #include "stages/evaluate/render/render_metrics.h"
 
 #include <math.h>
@@ -7,11 +7,11 @@
 #include <stdlib.h>
 
 #include "common/base/file_path.h"
-#include "stages/evaluate/model/wall_plan.h"
 #include "stages/evaluate/render/revealed_error.h"
 #include "stages/evaluate/scene/renders.h"
 #include "stages/evaluate/scene/true_planes.h"
 #include "stages/evaluate/truth/true_faces.h"
+#include "stages/evaluate/truth/wall_plan.h"
 
 enum { MIN_REVEALED = 200 }; /* pixels of a picture, for a value of its own */
 
@@ -42,7 +42,7 @@ static enum status find_things(struct revealed_sums *s, const struct evaluation 
         s->ids = (uint32_t)list.count + 1;
         if (!(s->is_thing = calloc(s->ids, sizeof *s->is_thing))) err_nomem(err, "true faces", s->ids);
         for (int i = 0; s->is_thing && i < list.count; i++)
-            s->is_thing[i + 1] = list.faces[i].name && measured_parts_have(&plan.furniture, list.faces[i].name);
+            s->is_thing[i + 1] = list.faces[i].name && wall_plan_has(&plan.furniture, list.faces[i].name);
     }
     wall_plan_release(&plan);
     true_faces_release(&list);

@@ -1,5 +1,5 @@
 /* wall_plan.c - walls and openings of a model against those of a truth: errors are the known shifts. */
-#include "stages/evaluate/model/wall_plan.h"
+#include "stages/evaluate/truth/wall_plan.h"
 
 #include "tests/unit/scratch.h"
 
@@ -147,8 +147,8 @@ static void furniture_is_what_is_switched_on(void **state)
                                      "furniture on\nbox chair 0 0 0 1 1 1 m\n");
     assert_ok(wall_plan_read(&plan, path, PLAN_FROM_SCENE, &err), err);
     assert_int_equal(plan.furniture.count, 2);
-    assert_true(measured_parts_have(&plan.furniture, "desk.top") && measured_parts_have(&plan.furniture, "chair.left"));
-    assert_false(measured_parts_have(&plan.furniture, "desk") || measured_parts_have(&plan.furniture, "desks.top"));
+    assert_true(wall_plan_has(&plan.furniture, "desk.top") && wall_plan_has(&plan.furniture, "chair.left"));
+    assert_false(wall_plan_has(&plan.furniture, "desk") || wall_plan_has(&plan.furniture, "desks.top"));
     wall_plan_release(&plan);
 }
 

@@ -18,7 +18,7 @@
  * compared.
  *
  * O(faces of the model x faces of the truth). */
-#include "stages/evaluate/model/wall_plan.h"
+#include "stages/evaluate/truth/wall_plan.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -55,7 +55,7 @@ static enum status add_part(struct measured_parts *list, const char *name, struc
     return ST_OK;
 }
 
-bool measured_parts_have(const struct measured_parts *list, const char *face)
+bool wall_plan_has(const struct measured_parts *list, const char *face)
 {
     for (int i = 0; i < list->count; i++) {
         const size_t length = strlen(list->parts[i].name);

@@ -42,7 +42,7 @@ enum measured_plan_kind { PLAN_FROM_MODEL, PLAN_FROM_SCENE, PLAN_FROM_SCENE_TRUT
 enum status wall_plan_read(struct measured_plan *plan, const char *path, enum measured_plan_kind kind, struct err *err);
 void wall_plan_release(struct measured_plan *plan);
 /* Whether a true face belongs to one of the parts: "NAME.left" to a part called NAME. */
-bool measured_parts_have(const struct measured_parts *list, const char *face);
+bool wall_plan_has(const struct measured_parts *list, const char *face);
 
 struct part_errors {
     double *errors; /* sorted; owned */
