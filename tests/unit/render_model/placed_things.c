@@ -41,6 +41,10 @@ static void write_volume(void)
     struct err err = ERR_INIT;
     for (uint32_t k = SOFA; k <= BIRD; k++)
         for (int y = 0; y < 3; y++) id[8 * y + (int)k] = k;
+    for (int y = 4; y < 8; y++) { /* the sofa's margin, in a wall */
+        id[8 * y + SOFA] = SOFA;
+        distance[8 * y + SOFA] = 1;
+    }
     assert_ok(thing_volume_write(&volume, scratch_path("things/volume.exr"), &no_inputs, &err), err);
 }
 
