@@ -286,7 +286,7 @@ enum status clutter_view_make(struct clutter_view *v, struct layered_depth *dept
     const size_t pixels = (size_t)depth->width * (size_t)depth->height;
     struct judged_segment *list = NULL;
     uint8_t *rim = NULL;
-    *v = (struct clutter_view){.depth = *depth};
+    *v = (struct clutter_view){.depth = *depth, .knows_things = things != NULL};
     *depth = (struct layered_depth){0};
     if (!check(&v->depth, ids, name, err)) list = judge_segments(&v->depth, ids, err);
     if (!err->status) {

@@ -21,6 +21,7 @@ struct clutter_view {
     struct layer_view layers;    /* texels of clutter; the others are empty. Its photo has things without depth, too */
     struct clutter_sight *sight; /* per pixel */
     size_t bytes;                /* of memory */
+    bool knows_things;           /* thing of `sight` is set */
 };
 
 #define CLUTTER_SURE 255.0f

@@ -92,12 +92,13 @@ static void add_colour(double sum[4], const struct surface_job *job, int k, stru
     if (!(z > 0) || !(u >= 1 && v >= 1 && u < view->width - 1 && v < view->height - 1)) return;
     const struct clutter_sight *sight = &source->sight[(size_t)v * (size_t)view->width + (size_t)u];
     const float nearest = sight->nearest;
-    if (sight->thing && sight->thing != job->id) return; /* it is before P */
     float c[4];
     clutter_view_sample(c, source, u, v);
     if (!(c[3] > MIN_COVER)) return;
     const double voxel = job->volume->grid.voxel / job->scene->axes.scale;
     const double beyond = nearest > 0 ? 1 / (double)nearest - z : -INFINITY, slack = TOLERANCE * z + VOXELS * voxel;
+    const bool other = sight->thing ? sight->thing != job->id : source->knows_things && beyond < -slack;
+    if (other) return;
     const double sees = beyond < -slack ? ELSEWHERE : beyond > slack ? PAST : 1;
     const double penalty = clutter_penalty(p, job->camera->center, view->center);
     const double weight = sees / pow(BLUR * BLUR + penalty * penalty, 2);

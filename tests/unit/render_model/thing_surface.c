@@ -208,6 +208,13 @@ static void what_a_view_shows_of_another_thing_is_no_colour(void **state)
         assert_int_equal(count_drawn(&s) > 300, k < 2);
         assert_int_equal(count_drawn(&s) == 0, k == 2);
     }
+    for (int k = 0; k < 2; k++) { /* something near that is no known thing */
+        for (int i = 0; i < W * H; i++) s.sources[0].view.sight[i] = (struct clutter_sight){.nearest = 5};
+        s.sources[0].view.knows_things = k;
+        draw(&s);
+        assert_int_equal(count_drawn(&s) > 300, !k);
+        assert_int_equal(count_drawn(&s) == 0, k);
+    }
     scene_release(&s);
 }
 
