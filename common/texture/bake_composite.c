@@ -7,9 +7,10 @@
  * max_gradient, an edge that may not be where the neighbour's source has it, counts little. Where no view shows
  * both, the difference is to be 0. Texels that no view shows are found afterwards, with the others fixed, so that a
  * fill never moves what is seen. They take the differences of texture elsewhere on the face, or of an atlas that has
- * it already (fill.h), or 0 where there is none. They are drawn to that atlas, so that a viewpoint whose rim lies in
- * a thing's shadow has no darker hole than others, else weakly to the nearest seen texel that is not beside what hides
- * the face: a face's mean would mix its materials. */
+ * it already (fill.h), or 0 where there is none. They are drawn weakly to that atlas, else to the nearest seen texel
+ * that is not beside what hides the face: a face's mean would mix its materials. Where the atlas is brighter than what
+ * came of it they are drawn to it more, so that a viewpoint whose rim lies in a thing's shadow has no darker hole than
+ * others. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -260,6 +261,11 @@ static void set_seen(struct composite *c)
 
 static bool has_guide(const struct composite *c, size_t i) { return c->fill.guide && !isnan(c->fill.guide[3 * i]); }
 
+static float levelled_guide(const struct composite *c, size_t i, size_t channel)
+{
+    return c->fill.guide[3 * i + channel] + c->level->above[channel];
+}
+
 /* Whether no texel is made: only an edit has the place, or no view shows the face, so that the VITA is as good. */
 static bool is_left_out(const struct composite *c, size_t i)
 {
@@ -280,14 +286,31 @@ static void set_unseen(struct composite *c, int seen)
         }
         float *value = c->value + 3 * i;
         if (has_guide(c, i))
-            for (size_t k = 0; k < 3; k++) value[k] = c->fill.guide[3 * i + k] + c->level->above[k];
+            for (size_t k = 0; k < 3; k++) value[k] = levelled_guide(c, i, k);
         else if (c->nearest[i] >= 0)
             memcpy(value, c->value + 3 * (size_t)c->nearest[i], 3 * sizeof *value);
         else
             for (int k = 0; k < 3; k++) value[k] = bake_display((float)(DEFAULT_GREY * b->white), b->white);
         memcpy(c->data + 3 * i, value, 3 * sizeof *value);
-        c->data_weight[i] = has_guide(c, i) && c->level->known ? GUIDED : WEAK;
+        c->data_weight[i] = WEAK;
     }
+}
+
+/* Draws unseen texels to the filled atlas where that is brighter than what was solved; false: nowhere. A hole whose rim
+ * lies in the shadow of what hides it is too dark; no rim makes it too bright as often. */
+static bool draw_to_guide(struct composite *c)
+{
+    bool any = false;
+    for (size_t i = 0; i < texels_of(c->t) && c->level->known; i++) {
+        float brighter = 0;
+        if (!c->unseen[i] || !has_guide(c, i)) continue;
+        for (size_t k = 0; k < 3; k++) brighter += levelled_guide(c, i, k) - c->value[3 * i + k];
+        if (!(brighter > 0)) continue;
+        for (size_t k = 0; k < 3; k++) c->data[3 * i + k] = levelled_guide(c, i, k);
+        c->data_weight[i] = GUIDED;
+        any = true;
+    }
+    return any;
 }
 
 /* Which texels are clean. */
@@ -383,6 +406,7 @@ static enum status solve_tile(struct composite *c, struct bake_totals *totals, s
         texture_fill_find(&c->fill, &picture, err);
     if (err->status) return err->status;
     set_unseen(c, GRADIENT_FIXED);
+    if (solve(c, totals, err) || !draw_to_guide(c)) return err->status;
     return solve(c, totals, err);
 }
 
