@@ -24,19 +24,19 @@
 #include "common/base/parallel.h"
 #include "common/base/sort.h"
 
-#define REACH      0.4   /* of the model's height: how far beside a gap the floor behind it is looked at */
-#define GRADE      0.6f  /* of a pixel of clutter, from trace_ids */
-#define SAME_DEPTH 0.02  /* relative: a view shows the model's surface at this depth */
-#define DARK       0.05  /* of the first photo's mean radiance: differences of darker colours count less */
-#define UNLIKE     0.15f /* logarithm: differences of colours that noise explains, ... */
-#define SPREADS    2.0f  /* ... or that are usual at a place of the floor, in spreads of its colours */
-#define SIDES      0.3f  /* logarithm: of the colours of a leg's sides */
-#define MOST       2.0f  /* differences in these measures count no more */
-#define BETTER     0.3f  /* how much better a leg must explain a column, ... */
-#define BEST       0.4f  /* ... and at least one of a leg's columns */
-#define THIN       0.12  /* of the gap's columns: what has more of them is no leg */
-#define SEEN       0.5   /* of a column's voxels, that enough views see */
-#define SOLID      -0.5f /* distance in a leg, in bands */
+#define REACH      0.4     /* of the model's height: how far beside a gap the floor behind it is looked at */
+#define GRADE      0.6f    /* of a pixel of clutter, from trace_ids */
+#define SAME_DEPTH 0.02    /* relative: a view shows the model's surface at this depth */
+#define DARK       0.05    /* of the first photo's mean radiance: differences of darker colours count less */
+#define UNLIKE     0.15f   /* logarithm: differences of colours that noise explains, ... */
+#define SPREADS    2.0f    /* ... or that are usual at a place of the floor, in spreads of its colours */
+#define SIDES      0.3f    /* logarithm: of the colours of a leg's sides */
+#define MOST       2.0f    /* differences in these measures count no more */
+#define BETTER     0.3f    /* how much better a leg must explain a column, ... */
+#define BEST       0.4f    /* ... and at least one of a leg's columns */
+#define THIN       0.12    /* of the gap's columns: what has more of them is no leg */
+#define SEEN       0.5     /* of a column's voxels, that enough views see */
+#define SOLID      (-0.5f) /* distance in a leg, in bands */
 
 enum { BESIDE = 2 };  /* voxels: columns beside a thing's that count as below it */
 enum { MIN_GAP = 3 }; /* voxels between floor and thing */
