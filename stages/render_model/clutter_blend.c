@@ -52,10 +52,12 @@
 #define OPEN_SURE  0.95
 #define BLUR       0.08 /* radians */
 #define MIN_INSIDE 1e-3f
-#define PRESENT    0.1f   /* fade * inside of a view that is fully present */
-#define WIDTHS     8.0f   /* of the soft z-buffer, in uncertainties */
-#define MAX_SLACK  0.03   /* of the depth */
-#define TOGETHER   0.004f /* relative difference of depths */
+#define PRESENT    0.1f    /* fade * inside of a view that is fully present */
+#define WIDTHS     8.0f    /* of the soft z-buffer, in uncertainties */
+#define MAX_SLACK  0.03    /* of the depth */
+#define SELF       2.5     /* voxels before a thing's surface, of more than what is thin */
+#define SOLID      (-0.2f) /* distance, in bands, of what is surely within a thing */
+#define TOGETHER   0.004f  /* relative difference of depths */
 
 enum { FRAGMENTS = 2 * CLUTTER_VIEWS };
 
@@ -143,13 +145,25 @@ static bool draw_tile(const struct blend_job *job, struct blend_tile *t, int til
 /* What a depth may be off, relative to it: estimators state more than that (common/layers/depth_sigma.c). */
 static double slack(float sigma) { return fmin((double)sigma, MAX_SLACK); }
 
+/* Whether the one thing that is drawn is solid before a point of its surface: its back, which no view shows, hides it. */
+static bool is_behind_itself(const struct blend_job *job, struct vec3 p)
+{
+    const struct thing_volume *v = job->filter->volume;
+    const struct vec3 camera = model_from_world_point(&job->scene->axes, job->camera->center);
+    const struct vec3 before = vec3_scale(vec3_normalize(vec3_sub(camera, p)), SELF * v->grid.voxel);
+    const int64_t at = thing_voxel_at(&v->grid, vec3_add(p, before));
+    return at >= 0 && v->id[at] == job->filter->only && v->distance[at] < SOLID;
+}
+
 /* What the shell, and the filter, leave of a fragment. */
 static float left_by_shell(const struct blend_job *job, const struct fragment *f, float shell)
 {
     const double spare = HIDDEN + slack(f->sigma), over = shell > 0 ? (double)f->z / (double)shell - 1 : 0;
     const float left = over > spare ? 1 - smooth((over - spare) / spare) : 1;
     if (!(left > 0) || !job->filters) return left;
-    return clutter_filter_drops(job->filter, model_from_world_point(&job->scene->axes, f->point)) ? 0 : left;
+    const struct vec3 p = model_from_world_point(&job->scene->axes, f->point);
+    if (clutter_filter_drops(job->filter, p)) return 0;
+    return job->filter->only && is_behind_itself(job, p) ? 0 : left;
 }
 
 static int add_fragment(const struct blend_job *job, struct fragment *list, int count, const struct view_samples *from,

@@ -4,7 +4,8 @@
  * The place P takes its colour from the views that see it: those whose nearest surface is at P, weighted as in
  * unstructured lumigraph rendering [Buehler 2001] by the angle between their ray and the camera's. A view that sees
  * past P, to the floor, but shows the thing there counts where none sees P: a leg is thinner than its segments. If P is
- * hidden from all of them, those count that show clutter at its pixel, unless it is another thing; it is near P. */
+ * hidden from all of them, those count that show clutter at its pixel, unless it is another thing; it is near P. From
+ * behind the surface no view counts: the back of a bookcase that nobody saw is not drawn. */
 #include "stages/render_model/thing_surface.h"
 
 #include <math.h>
@@ -16,6 +17,7 @@
 #define VOXELS     2.0   /* the same in voxels */
 #define BLUR       0.08  /* radians */
 #define MIN_COVER  0.3f  /* of a view's pixel by clutter, whose colour is used */
+#define BEHIND     0.25  /* sine of the angle by which a view may be behind a surface, whose normal is not sure */
 #define PAST       0.03  /* weight of a view that sees past P, relative to one that sees P */
 #define ELSEWHERE  1e-3  /* the same of a view from which P is hidden */
 #define MAX_BEHIND 0.05f /* of the depth: what the shell may be in front of the surface without hiding it */
@@ -82,14 +84,38 @@ static bool meet(double *t, const struct surface_job *job, struct vec3 from, str
     return false;
 }
 
+/* The direction away from the surface at a point of the model's frame; 0: it is not known. */
+static struct vec3 normal_at(const struct surface_job *job, struct vec3 p)
+{
+    static const struct vec3 axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    double slope[3];
+    for (int k = 0; k < 3; k++) {
+        const struct vec3 step = vec3_scale(axes[k], job->volume->grid.voxel);
+        const float after = distance_at(job, vec3_add(p, step)), before = distance_at(job, vec3_sub(p, step));
+        if (after >= THING_UNSEEN || before >= THING_UNSEEN) return vec3_make(0, 0, 0);
+        slope[k] = (double)(after - before);
+    }
+    const struct vec3 n = vec3_make(slope[0], slope[1], slope[2]);
+    return vec3_length(n) > 0 ? vec3_normalize(n) : n;
+}
+
+/* Whether a view may see the side of the surface whose normal this is: from behind no view tells its colour. */
+static bool may_see(const struct surface_job *job, const struct view *view, struct vec3 p, struct vec3 normal)
+{
+    const struct model_axes *axes = &job->scene->axes;
+    const struct vec3 to = vec3_sub(model_from_world_point(axes, view->center), model_from_world_point(axes, p));
+    return vec3_dot(normal, to) > -BEHIND * vec3_length(to) || !(vec3_length(normal) > 0);
+}
+
 /* Adds the colour that a view has at P, if it shows clutter there. */
-static void add_colour(double sum[4], const struct surface_job *job, int k, struct vec3 p)
+static void add_colour(double sum[4], const struct surface_job *job, int k, struct vec3 p, struct vec3 normal)
 {
     const struct view *view = &job->scene->set->views[job->choice->view[k]];
     const struct clutter_view *source = &job->scene->sources[job->choice->view[k]].view;
     double u, v;
     const double z = view_project(view, p, &u, &v);
     if (!(z > 0) || !(u >= 1 && v >= 1 && u < view->width - 1 && v < view->height - 1)) return;
+    if (!may_see(job, view, p, normal)) return;
     const struct clutter_sight *sight = &source->sight[(size_t)v * (size_t)view->width + (size_t)u];
     const float nearest = sight->nearest;
     float c[4];
@@ -119,7 +145,8 @@ static void draw_pixel(const struct surface_job *job, int x, int y)
     const float z = (float)(t * axes->scale), shell = job->shell[at]; /* t: depth in scene units */
     if (shell > 0 && z > shell * (1 + MAX_BEHIND)) return;
     const struct vec3 p = view_unproject(job->camera, x + 0.5, y + 0.5, t);
-    for (int k = 0; k < job->choice->count; k++) add_colour(sum, job, k, p);
+    const struct vec3 normal = normal_at(job, vec3_add(from, vec3_scale(vec3_sub(one, from), t)));
+    for (int k = 0; k < job->choice->count; k++) add_colour(sum, job, k, p, normal);
     if (!(sum[3] > 0)) return;
     const float left = 1 - to[3];
     for (int i = 0; i < 3; i++) to[i] += left * (float)(sum[i] / sum[3]);

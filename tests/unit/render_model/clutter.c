@@ -607,6 +607,35 @@ static void a_moved_cube_appears_at_its_new_place(void **state)
     clutter_close(s.clutter);
 }
 
+/* The views' own layers show it, but all about it is solid. */
+static void a_side_that_its_thing_hides_is_not_drawn(void **state)
+{
+    (void)state;
+    const struct view camera = mid_way();
+    struct thing_volume volume = cube_volume(true);
+    const struct clutter_filter filter = {.volume = &volume, .only = CUBE};
+    const struct thing_points points = cube_corners();
+    const struct thing_pixels pixels = {0};
+    struct model_picture picture = {0}, shell = {0};
+    static float front[W * H];
+    struct err err = ERR_INIT;
+    struct scene s;
+    scene_make(&s, &sure, 100);
+    for (size_t i = 0; i < voxel_count(&volume.grid); i++) {
+        volume.id[i] = CUBE;
+        volume.distance[i] = -1;
+    }
+    draw_shell(&picture, &camera);
+    draw_shell(&shell, &camera);
+    memcpy(front, shell.z, sizeof front);
+    assert_ok(clutter_draw_thing(&picture, front, &pixels, s.clutter, &camera, &filter, &points, NULL, &err), err);
+    assert_same_picture(&picture, &shell);
+    model_picture_release(&picture);
+    model_picture_release(&shell);
+    thing_volume_release(&volume);
+    clutter_close(s.clutter);
+}
+
 static void what_stands_before_a_moved_cube_hides_it(void **state)
 {
     (void)state;
@@ -804,6 +833,7 @@ int main(void)
         cmocka_unit_test(the_views_that_were_read_are_recorded),
         cmocka_unit_test(faces_of_another_size_are_refused),
         cmocka_unit_test(a_moved_cube_appears_at_its_new_place),
+        cmocka_unit_test(a_side_that_its_thing_hides_is_not_drawn),
         cmocka_unit_test(what_stands_before_a_moved_cube_hides_it),
         cmocka_unit_test(a_moved_cube_hides_the_next_one),
         cmocka_unit_test(a_thing_that_is_gone_is_not_drawn_at_its_place),

@@ -218,6 +218,22 @@ static void what_a_view_shows_of_another_thing_is_no_colour(void **state)
     scene_release(&s);
 }
 
+static void a_view_from_behind_gives_no_colour(void **state)
+{
+    static struct scene s;
+    const int centre = (H / 2) * W + W / 2;
+    (void)state;
+    scene_make(&s, to_ball);
+    draw(&s);
+    const int whole = count_drawn(&s);
+    assert_true(is_drawn(&s, centre));
+    s.views[0] = looking_from(2 * middle.x - 3.5, 2 * middle.y - 3, 2 * middle.z - 3.75);
+    draw(&s);
+    assert_false(is_drawn(&s, centre));
+    assert_in_range(count_drawn(&s), 0, whole / 4); /* of the rim, where both look along the surface */
+    scene_release(&s);
+}
+
 static void the_shell_hides_what_is_behind_it(void **state)
 {
     static struct scene s;
@@ -384,6 +400,7 @@ int main(void)
         cmocka_unit_test(a_ball_is_met_at_its_front),
         cmocka_unit_test(the_faces_of_a_block_are_met_exactly),
         cmocka_unit_test(what_a_view_shows_of_another_thing_is_no_colour),
+        cmocka_unit_test(a_view_from_behind_gives_no_colour),
         cmocka_unit_test(the_shell_hides_what_is_behind_it),
         cmocka_unit_test(unseen_and_foreign_voxels_make_no_surface),
         cmocka_unit_test(a_surface_needs_what_is_before_it),
