@@ -244,6 +244,19 @@ static void leave_pixels(struct clutter_layer *l, const uint8_t *stays, size_t p
         for (size_t c = 0; c < 4 && stays[i]; c++) l->rgba[4 * i + c] = 0;
 }
 
+/* Chooses and loads the views that a thing is drawn from, with an empty layer. camera: scene frame. */
+static enum status prepare_thing(struct clutter_layer *layer, struct clutter_choice *choice,
+                                 const struct model_picture *p, struct clutter_scene *s, const struct view *camera,
+                                 const struct thing_points *points, struct provenance *prov, struct err *err)
+{
+    struct vec3 places[THING_POINTS];
+    for (int k = 0; k < points->count; k++) places[k] = world_from_model_point(&s->axes, points->at[k]);
+    if (check_size(p, camera, err) || clutter_layer_init(layer, p->width, p->height, err)) return err->status;
+    if (!clutter_choose_for(choice, s, camera->center, places, points->count, max_views(s), err))
+        clutter_load(s, choice, prov, err);
+    return err->status;
+}
+
 enum status clutter_draw_thing(struct model_picture *p, float *front, const struct thing_pixels *pixels,
                                struct clutter_scene *s, const struct view *camera, const struct clutter_filter *filter,
                                const struct thing_points *points, struct provenance *prov, struct err *err)
@@ -252,11 +265,8 @@ enum status clutter_draw_thing(struct model_picture *p, float *front, const stru
     const size_t count = (size_t)p->width * (size_t)p->height;
     struct clutter_choice choice;
     struct clutter_layer layer = {0};
-    struct vec3 places[THING_POINTS];
-    for (int k = 0; k < points->count; k++) places[k] = world_from_model_point(&s->axes, points->at[k]);
-    if (check_size(p, camera, err) || clutter_layer_init(&layer, p->width, p->height, err)) return err->status;
-    if (!clutter_choose_for(&choice, s, scene_camera.center, places, points->count, max_views(s), err) &&
-        !clutter_load(s, &choice, prov, err) && !clutter_blend(&layer, front, s, &choice, &scene_camera, filter, err))
+    if (!prepare_thing(&layer, &choice, p, s, &scene_camera, points, prov, err) &&
+        !clutter_blend(&layer, front, s, &choice, &scene_camera, filter, err))
         thing_surface_draw(&layer, front, s, &choice, &scene_camera, filter->volume, filter->only);
     if (!err->status && pixels->stays) leave_pixels(&layer, pixels->stays, count);
     for (size_t i = 0; !err->status && i < count; i++) {
@@ -276,12 +286,8 @@ enum status clutter_draw_surface(struct model_picture *p, float *front, struct c
     const size_t count = (size_t)p->width * (size_t)p->height;
     struct clutter_choice choice;
     struct clutter_layer layer = {0};
-    struct vec3 places[THING_POINTS];
-    for (int k = 0; k < points->count; k++) places[k] = world_from_model_point(&s->axes, points->at[k]);
-    if (check_size(p, camera, err) || clutter_layer_init(&layer, p->width, p->height, err)) return err->status;
-    for (size_t i = 0; i < count; i++) layer.rgba[4 * i + 3] = p->made[i] == MADE_CLUTTER;
-    if (!clutter_choose_for(&choice, s, scene_camera.center, places, points->count, max_views(s), err) &&
-        !clutter_load(s, &choice, prov, err)) {
+    if (!prepare_thing(&layer, &choice, p, s, &scene_camera, points, prov, err)) {
+        for (size_t i = 0; i < count; i++) layer.rgba[4 * i + 3] = p->made[i] == MADE_CLUTTER;
         thing_surface_draw(&layer, front, s, &choice, &scene_camera, volume, id);
         for (size_t i = 0; i < count; i++)
             if (p->made[i] == MADE_CLUTTER) layer.rgba[4 * i + 3] = 0;
