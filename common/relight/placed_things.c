@@ -200,7 +200,13 @@ static enum status apply(struct placed_things *t, const struct texture_thing *ed
 
 static bool is_surface(const struct thing_volume *v, size_t i) { return v->id[i] && fabsf(v->distance[i]) < SURFACE; }
 
-/* Every so many of the voxels of each thing's surface. */
+static void grow_box(struct thing_points *t, struct vec3 p)
+{
+    t->low = vec3_make(fmin(t->low.x, p.x), fmin(t->low.y, p.y), fmin(t->low.z, p.z));
+    t->high = vec3_make(fmax(t->high.x, p.x), fmax(t->high.y, p.y), fmax(t->high.z, p.z));
+}
+
+/* The boxes of the things, and every so many of the voxels of each one's surface. */
 static enum status list_points(struct placed_things *t, struct err *err)
 {
     const size_t things = (size_t)t->list.count + 1, voxels = voxel_count(&t->volume.grid);
@@ -210,8 +216,16 @@ static enum status list_points(struct placed_things *t, struct err *err)
         free(all);
         return err_nomem(err, "things", things * sizeof *t->points);
     }
-    for (size_t i = 0; i < voxels; i++)
-        if (is_surface(&t->volume, i)) all[t->volume.id[i]]++;
+    for (size_t id = 0; id < things; id++) {
+        t->points[id].low = vec3_make(INFINITY, INFINITY, INFINITY);
+        t->points[id].high = vec3_make(-INFINITY, -INFINITY, -INFINITY);
+    }
+    for (size_t i = 0; i < voxels; i++) {
+        const uint32_t id = t->volume.id[i];
+        if (!id) continue;
+        grow_box(&t->points[id], thing_voxel_centre(&t->volume.grid, (int64_t)i));
+        if (is_surface(&t->volume, i)) all[id]++;
+    }
     for (size_t i = 0; i < voxels; i++) {
         if (!is_surface(&t->volume, i)) continue;
         const uint32_t id = t->volume.id[i];

@@ -10,11 +10,12 @@
 
 enum thing_fate { THING_STAYS, THING_IS_KEPT, THING_IS_GONE }; /* kept: also in a zone that is cleared */
 
-/* Places on the surface of a thing, spread over it. */
+/* Places on the surface of a thing, spread over it, and the box around its voxels. Model frame. */
 enum { THING_POINTS = 64 };
 struct thing_points {
-    struct vec3 at[THING_POINTS]; /* model frame */
+    struct vec3 at[THING_POINTS];
     int count;
+    struct vec3 low, high; /* through the centres of its outer voxels; low.x > high.x: it has none */
 };
 
 /* A thing at a place of its own: the point p of the photographs' room stands at turn p + shift. */

@@ -186,12 +186,12 @@ static void take_given(struct clutter_choice *choice, const int *views, int coun
     }
 }
 
-/* Lays a layer over the picture. photo: what the camera's own view shows, which takes the place of the layer's colours:
+/* Lays rows of a layer over the picture. photo: what the camera's own view shows, which takes the place of the layer's colours:
  * whatever covers at least half of a pixel hides the shell there. NULL: no view has this camera. */
 static void lay(struct model_picture *p, float *front, const struct clutter_layer *l, const struct image *photo,
-                double scale)
+                double scale, struct thing_rows rows)
 {
-    for (size_t i = 0; i < (size_t)p->width * (size_t)p->height; i++) {
+    for (size_t i = rows.first * (size_t)p->width; i < rows.last * (size_t)p->width; i++) {
         const float *c = l->rgba + 4 * i, part = !photo ? c[3] : c[3] < 0.5f ? 2 * c[3] : 1;
         if (p->made[i] == MADE_NOTHING && c[3] < COVERED) continue; /* a rim alone makes no picture */
         for (size_t k = 0; k < 3 && part > 0; k++) {
@@ -205,6 +205,8 @@ static void lay(struct model_picture *p, float *front, const struct clutter_laye
             p->made[i] = MADE_UNSURE;
     }
 }
+
+static struct thing_rows all_rows(const struct model_picture *p) { return (struct thing_rows){0, (size_t)p->height}; }
 
 static enum status check_size(const struct model_picture *p, const struct view *camera, struct err *err)
 {
@@ -231,7 +233,7 @@ enum status clutter_draw(struct model_picture *p, float *front, struct clutter_s
         !clutter_blend(&layer, p->z, s, &choice, &scene_camera, filter, err) && own >= 0)
         view_image_read(&photo, s->views, &s->set->views[own], prov, err);
     if (!err->status && front) memcpy(front, p->z, (size_t)p->width * (size_t)p->height * sizeof *front);
-    if (!err->status) lay(p, front, &layer, own >= 0 ? &photo : NULL, s->axes.scale);
+    if (!err->status) lay(p, front, &layer, own >= 0 ? &photo : NULL, s->axes.scale, all_rows(p));
     image_release(&photo);
     clutter_layer_release(&layer);
     return err->status;
@@ -265,15 +267,16 @@ enum status clutter_draw_thing(struct model_picture *p, float *front, const stru
     const size_t count = (size_t)p->width * (size_t)p->height;
     struct clutter_choice choice;
     struct clutter_layer layer = {0};
+    struct thing_rows drawn;
     if (!prepare_thing(&layer, &choice, p, s, &scene_camera, points, prov, err) &&
         !clutter_blend(&layer, front, s, &choice, &scene_camera, filter, err))
-        thing_surface_draw(&layer, front, s, &choice, &scene_camera, filter->volume, filter->only);
+        thing_surface_draw(&drawn, &layer, front, s, &choice, &scene_camera, filter->volume, filter->only, points);
     if (!err->status && pixels->stays) leave_pixels(&layer, pixels->stays, count);
     for (size_t i = 0; !err->status && i < count; i++) {
         layer.doubt[i] = 0; /* what is not drawn of a thing is not there: the shell is sure */
         if (pixels->shown && layer.rgba[4 * i + 3] > 0) pixels->shown[i] = 0;
     }
-    if (!err->status) lay(p, front, &layer, NULL, s->axes.scale);
+    if (!err->status) lay(p, front, &layer, NULL, s->axes.scale, all_rows(p));
     clutter_layer_release(&layer);
     return err->status;
 }
@@ -286,12 +289,14 @@ enum status clutter_draw_surface(struct model_picture *p, float *front, struct c
     const size_t count = (size_t)p->width * (size_t)p->height;
     struct clutter_choice choice;
     struct clutter_layer layer = {0};
+    struct thing_rows rows;
     if (!prepare_thing(&layer, &choice, p, s, &scene_camera, points, prov, err)) {
-        for (size_t i = 0; i < count; i++) layer.rgba[4 * i + 3] = p->made[i] == MADE_CLUTTER;
-        thing_surface_draw(&layer, front, s, &choice, &scene_camera, volume, id);
+        for (size_t i = 0; i < count; i++)
+            if (p->made[i] == MADE_CLUTTER) layer.rgba[4 * i + 3] = 1;
+        thing_surface_draw(&rows, &layer, front, s, &choice, &scene_camera, volume, id, points);
         for (size_t i = 0; i < count; i++)
             if (p->made[i] == MADE_CLUTTER) layer.rgba[4 * i + 3] = 0;
-        lay(p, front, &layer, NULL, s->axes.scale);
+        lay(p, front, &layer, NULL, s->axes.scale, rows);
     }
     clutter_layer_release(&layer);
     return err->status;

@@ -31,6 +31,7 @@ struct surface_job {
     const struct thing_volume *volume;
     uint32_t id;
     struct vec3 low, high; /* of the voxels of the thing, model frame */
+    size_t first;          /* row */
 };
 
 /* The distance at a point, trilinear; THING_UNSEEN: a voxel around it is of no thing, or unseen. */
@@ -159,28 +160,36 @@ static void draw_rows(void *ctx, size_t begin, size_t end, int thread)
     const struct surface_job *job = ctx;
     (void)thread;
     for (size_t y = begin; y < end; y++)
-        for (int x = 0; x < job->camera->width; x++) draw_pixel(job, x, (int)y);
+        for (int x = 0; x < job->camera->width; x++) draw_pixel(job, x, (int)(job->first + y));
 }
 
-/* The box around the thing's voxels; false: it has none. */
-static bool find_box(struct surface_job *job)
+/* The rows of the picture that the box may cover. */
+static void find_rows(size_t *first, size_t *last, const struct surface_job *job)
 {
-    const struct voxel_grid *g = &job->volume->grid;
-    job->low = vec3_make(INFINITY, INFINITY, INFINITY);
-    job->high = vec3_scale(job->low, -1);
-    for (int64_t i = 0; i < (int64_t)voxel_count(g); i++) {
-        if (job->volume->id[i] != job->id) continue;
-        const struct vec3 p = thing_voxel_centre(g, i);
-        job->low = vec3_make(fmin(job->low.x, p.x), fmin(job->low.y, p.y), fmin(job->low.z, p.z));
-        job->high = vec3_make(fmax(job->high.x, p.x), fmax(job->high.y, p.y), fmax(job->high.z, p.z));
+    double top = INFINITY, below = -INFINITY;
+    for (int k = 0; k < 8; k++) {
+        double u, v;
+        const struct vec3 corner = vec3_make(k & 1 ? job->high.x : job->low.x, k & 2 ? job->high.y : job->low.y,
+                                             k & 4 ? job->high.z : job->low.z);
+        if (!(view_project(job->camera, world_from_model_point(&job->scene->axes, corner), &u, &v) > 0)) {
+            top = 0, below = job->camera->height; /* behind the camera: it may be anywhere */
+            break;
+        }
+        top = fmin(top, v), below = fmax(below, v);
     }
-    return job->low.x <= job->high.x;
+    *first = (size_t)fmin(fmax(0, floor(top)), job->camera->height);
+    *last = (size_t)fmin(fmax(0, ceil(below)), job->camera->height);
 }
 
-void thing_surface_draw(struct clutter_layer *layer, const float *shell, const struct clutter_scene *scene,
-                        const struct clutter_choice *choice, const struct view *camera,
-                        const struct thing_volume *volume, uint32_t id)
+void thing_surface_draw(struct thing_rows *rows, struct clutter_layer *layer, const float *shell,
+                        const struct clutter_scene *scene, const struct clutter_choice *choice,
+                        const struct view *camera, const struct thing_volume *volume, uint32_t id,
+                        const struct thing_points *points)
 {
-    struct surface_job job = {layer, shell, scene, choice, camera, volume, id, .low = {0, 0, 0}};
-    if (find_box(&job)) parallel_for((size_t)camera->height, 4, draw_rows, &job);
+    struct surface_job job = {layer, shell, scene, choice, camera, volume, id, points->low, points->high, 0};
+    *rows = (struct thing_rows){0, 0};
+    if (points->low.x > points->high.x) return;
+    find_rows(&rows->first, &rows->last, &job);
+    job.first = rows->first;
+    if (rows->last > rows->first) parallel_for(rows->last - rows->first, 4, draw_rows, &job);
 }

@@ -521,7 +521,8 @@ struct drawn_cube {
 
 static struct thing_points cube_corners(void)
 {
-    struct thing_points p = {.count = 8};
+    const struct vec3 margin = {0.15, 0.15, 0.15};
+    struct thing_points p = {.count = 8, .low = vec3_sub(cube.low, margin), .high = vec3_add(cube.high, margin)};
     for (int k = 0; k < 8; k++)
         p.at[k] = vec3_make(k & 1 ? cube.high.x : cube.low.x, k & 2 ? cube.high.y : cube.low.y,
                             k & 4 ? cube.high.z : cube.low.z);

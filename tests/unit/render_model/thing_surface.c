@@ -110,12 +110,23 @@ static void scene_release(struct scene *s)
     clutter_layer_release(&s->layer);
 }
 
+/* The box of the whole grid. */
+static struct thing_points points_of(const struct thing_volume *v)
+{
+    const double side = SIZE * VOXEL;
+    return (struct thing_points){.low = v->grid.origin, .high = vec3_add(v->grid.origin, vec3_make(side, side, side))};
+}
+
 static void draw(struct scene *s)
 {
     const size_t pixels = (size_t)W * H;
     memset(s->layer.rgba, 0, 4 * pixels * sizeof *s->layer.rgba);
     memset(s->layer.z, 0, pixels * sizeof *s->layer.z);
-    thing_surface_draw(&s->layer, s->shell, &s->clutter, &s->choice, &s->camera, &s->volume, THING);
+    const struct thing_points points = points_of(&s->volume);
+    struct thing_rows rows;
+    thing_surface_draw(&rows, &s->layer, s->shell, &s->clutter, &s->choice, &s->camera, &s->volume, THING, &points);
+    for (int i = 0; i < W * H; i++)
+        assert_true(!(s->layer.rgba[4 * i + 3] > 0) || ((size_t)(i / W) >= rows.first && (size_t)(i / W) < rows.last));
 }
 
 static bool is_drawn(const struct scene *s, int i) { return s->layer.rgba[4 * i + 3] > 0; }
@@ -360,6 +371,8 @@ static void it_lies_under_what_the_layer_has(void **state)
     (void)state;
     scene_make(&s, to_ball);
     draw(&s);
+    const struct thing_points points = points_of(&s.volume);
+    struct thing_rows rows;
     const float surface = s.layer.z[centre];
     for (int k = 0; k < 3; k++) {
         for (int i = 0; i < W * H; i++) {
@@ -367,7 +380,7 @@ static void it_lies_under_what_the_layer_has(void **state)
             s.layer.rgba[4 * i + 3] = covers[k];
             s.layer.z[i] = 1;
         }
-        thing_surface_draw(&s.layer, s.shell, &s.clutter, &s.choice, &s.camera, &s.volume, THING);
+        thing_surface_draw(&rows, &s.layer, s.shell, &s.clutter, &s.choice, &s.camera, &s.volume, THING, &points);
         assert_float_equal(s.layer.rgba[4 * centre], 0.1f * covers[k] + 0.75f * (1 - covers[k]), 1e-3);
         assert_float_equal(s.layer.rgba[4 * centre + 3], 1, 0);
         assert_float_equal(s.layer.z[centre], covers[k] < 0.5f ? surface : 1, 1e-6);
