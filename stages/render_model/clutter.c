@@ -23,7 +23,8 @@
 
 #define COVERED 0.5f /* of a pixel, that is clutter */
 
-enum { FEWEST = 2 }; /* views of a picture, however little memory is allowed */
+enum { SURFACE_VIEWS = 6 }; /* of the colours of a surface that fills holes: every thing has views of its own */
+enum { FEWEST = 2 };        /* views of a picture, however little memory is allowed */
 
 /* ------------------------------------------------------------------------------------------------------------ views */
 
@@ -249,12 +250,12 @@ static void leave_pixels(struct clutter_layer *l, const uint8_t *stays, size_t p
 /* Chooses and loads the views that a thing is drawn from, with an empty layer. camera: scene frame. */
 static enum status prepare_thing(struct clutter_layer *layer, struct clutter_choice *choice,
                                  const struct model_picture *p, struct clutter_scene *s, const struct view *camera,
-                                 const struct thing_points *points, struct provenance *prov, struct err *err)
+                                 const struct thing_points *points, int most, struct provenance *prov, struct err *err)
 {
     struct vec3 places[THING_POINTS];
     for (int k = 0; k < points->count; k++) places[k] = world_from_model_point(&s->axes, points->at[k]);
     if (check_size(p, camera, err) || clutter_layer_init(layer, p->width, p->height, err)) return err->status;
-    if (!clutter_choose_for(choice, s, camera->center, places, points->count, max_views(s), err))
+    if (!clutter_choose_for(choice, s, camera->center, places, points->count, most, err))
         clutter_load(s, choice, prov, err);
     return err->status;
 }
@@ -268,7 +269,7 @@ enum status clutter_draw_thing(struct model_picture *p, float *front, const stru
     struct clutter_choice choice;
     struct clutter_layer layer = {0};
     struct thing_rows drawn;
-    if (!prepare_thing(&layer, &choice, p, s, &scene_camera, points, prov, err) &&
+    if (!prepare_thing(&layer, &choice, p, s, &scene_camera, points, max_views(s), prov, err) &&
         !clutter_blend(&layer, front, s, &choice, &scene_camera, filter, err))
         thing_surface_draw(&drawn, &layer, front, s, &choice, &scene_camera, filter->volume, filter->only, points);
     if (!err->status && pixels->stays) leave_pixels(&layer, pixels->stays, count);
@@ -290,7 +291,8 @@ enum status clutter_draw_surface(struct model_picture *p, float *front, struct c
     struct clutter_choice choice;
     struct clutter_layer layer = {0};
     struct thing_rows rows;
-    if (!prepare_thing(&layer, &choice, p, s, &scene_camera, points, prov, err)) {
+    const int most = max_views(s) < SURFACE_VIEWS ? max_views(s) : SURFACE_VIEWS;
+    if (!prepare_thing(&layer, &choice, p, s, &scene_camera, points, most, prov, err)) {
         for (size_t i = 0; i < count; i++)
             if (p->made[i] == MADE_CLUTTER) layer.rgba[4 * i + 3] = 1;
         thing_surface_draw(&rows, &layer, front, s, &choice, &scene_camera, volume, id, points);
