@@ -104,7 +104,7 @@ errors_say_what_is_wrong()
     find_things 2 '--plan is missing' "${inputs[@]:0:2}" "${inputs[@]:4}"
     find_things 2 '--ids is missing' "${inputs[@]:0:10}"
     find_things 1 'nowhere.txt' "${inputs[@]}" --marks nowhere.txt
-    for c in "chair sofa in photo_2 1 1|found \"chair\", wanted \"thing\"" \
+    for c in "chair sofa in photo_2 1 1|found \"chair\", wanted thing or flat" \
         "thing 12 in photo_2 1 1|found \"12\", wanted a name" \
         "thing sofa in nobody 1 1|found \"nobody\", wanted a photo" \
         "thing sofa in photo_2 161 1|a pixel of the photo, which has 160 x 120" \
