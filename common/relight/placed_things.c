@@ -245,7 +245,7 @@ static enum status apply_zones(struct placed_things *t, const struct texture_map
     if (!held) return err_nomem(err, "things", 2 * things * sizeof *held);
     for (int64_t i = 0; i < (int64_t)voxel_count(&t->volume.grid); i++) {
         const uint32_t id = t->volume.id[i];
-        if (!is_surface(&t->volume, (size_t)i)) continue; /* in a corner, much of what is around it lies in walls */
+        if (!id || !(t->volume.distance[i] < SURFACE)) continue; /* in a corner, what is around it lies in walls */
         all[id]++;
         held[id] += texture_map_clears(map, thing_voxel_centre(&t->volume.grid, i));
     }
