@@ -187,8 +187,8 @@ static void take_given(struct clutter_choice *choice, const int *views, int coun
     }
 }
 
-/* Lays rows of a layer over the picture. photo: what the camera's own view shows, which takes the place of the layer's colours:
- * whatever covers at least half of a pixel hides the shell there. NULL: no view has this camera. */
+/* Lays rows of a layer over the picture. photo: what the camera's own view shows, which takes the place of the layer's
+ * colours: whatever covers at least half of a pixel hides the shell there. NULL: no view has this camera. */
 static void lay(struct model_picture *p, float *front, const struct clutter_layer *l, const struct image *photo,
                 double scale, struct thing_rows rows)
 {

@@ -145,7 +145,8 @@ static bool draw_tile(const struct blend_job *job, struct blend_tile *t, int til
 /* What a depth may be off, relative to it: estimators state more than that (common/layers/depth_sigma.c). */
 static double slack(float sigma) { return fmin((double)sigma, MAX_SLACK); }
 
-/* Whether the one thing that is drawn is solid before a point of its surface: its back, which no view shows, hides it. */
+/* Whether the one thing that is drawn is solid before a point of its surface: its back, which no view shows, hides
+ * it. */
 static bool is_behind_itself(const struct blend_job *job, struct vec3 p)
 {
     const struct thing_volume *v = job->filter->volume;
