@@ -27,7 +27,7 @@ enum status estimate_viewpoint(struct work_estimate *w, const struct bake_scene 
         const char *name = set->views[i].name;
         if (!strncmp(name, photo, length) && (!name[length] || name[length] == '@')) own += megapixels(&set->views[i]);
     }
-    if (!(own > 0)) return err_set(err, ST_USAGE, "there is no photo %s in %s/images.txt.", photo, scene->from.views);
+    if (!(own > 0)) return err_set(err, ST_USAGE, "%s/images.txt has no photo %s.", scene->from.views, photo);
     const double mean = all / set->view_count, sources = scene->params->texture.max_sources;
     const double read = own + (sources < set->view_count ? sources : set->view_count) * mean;
     work_estimate_add(w, OWN_SECONDS * own + SOURCE_SECONDS * read, MIB + OWN_MIB * own, OWN_BYTES * own);

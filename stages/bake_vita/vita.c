@@ -10,7 +10,7 @@
  * without its best ones. A view that several batches need is read by each.
  *
  * A batch goes through the same steps as a viewpoint of bake_vdta: candidates, gains, the choice, the composite
- * (bake_atlas.h). There is no own photo here, so no texel is original. What no view shows is filled here for all
+ * (bake_atlas.h). This atlas belongs to no photo, so no texel is original. What no view shows is filled here for all
  * viewpoints (filled_atlas.h).
  *
  * Sources are listed before the first batch is baked, because pages name them by their number in the list of the

@@ -34,7 +34,7 @@
 #define MOST       2.0f    /* differences in these measures count no more */
 #define BETTER     0.3f    /* how much better a leg must explain a column, ... */
 #define BEST       0.4f    /* ... and at least one of a leg's columns */
-#define THIN       0.12    /* of the gap's columns: what has more of them is no leg */
+#define THIN       0.12    /* largest share of the gap's columns that a leg fills */
 #define SEEN       0.5     /* of a column's voxels, that enough views see */
 #define SOLID      (-0.5f) /* distance in a leg, in bands */
 

@@ -6,7 +6,7 @@
 
 struct clutter_filter clutter_filter_of(const struct placed_things *t, const struct texture_map *map)
 {
-    bool matters = !map || map->zone_count; /* where a zone ends below the ceiling is told by the volume */
+    bool matters = !map || map->zone_count; /* the volume tells where a zone ends below the ceiling */
     for (int i = 0; t->fate && i <= t->list.count; i++) matters |= t->fate[i] != THING_STAYS;
     return (struct clutter_filter){.map = map, .volume = t->fate && matters ? &t->volume : NULL, .fate = t->fate};
 }

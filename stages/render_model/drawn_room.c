@@ -175,7 +175,8 @@ enum status room_draw(struct model_picture *picture, struct room *room, const st
     const char *photos[2];
     photos_of(photos, room, pair);
     const struct outdoors *outdoors = room->files.outdoors ? &room->outdoors : NULL;
-    struct clutter_filter filter = clutter_filter_of(&room->things, shell_map(room->shell));
+    const struct texture_map unedited = {0}, *map = shell_map(room->shell);
+    struct clutter_filter filter = clutter_filter_of(&room->things, map ? map : &unedited);
     filter.gone = gone;
     if (!shell_draw(picture, room->shell, camera, photos, pair->t, outdoors, err) && room->clutter &&
         !make_front(room, (size_t)camera->width * (size_t)camera->height, err))

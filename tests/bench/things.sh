@@ -36,7 +36,7 @@ edit_of() { if [ "$1" = moved ]; then echo moved; else echo bare; fi; } # SERIES
 prepare()
 {
     local p f s
-    for p in bin/simulate bin/evaluate bin/relight tests/bench/made_room; do [ -x "$B/$p" ] || missing "there is no program $B/$p."; done
+    for p in bin/simulate bin/evaluate bin/relight tests/bench/made_room; do [ -x "$B/$p" ] || missing "the program $B/$p is missing."; done
     mkdir -p "$project/out" "$project/scenes"
     for f in Makefile stages common configs tests; do ln -srfn "$PWD/$f" "$project/$f"; done
     ln -srfn "$PWD/out/build" "$project/out/build"

@@ -130,7 +130,7 @@ an_estimate_says_what_the_viewpoints_take()
         { cat out.txt; fail "no line of the estimate, or a wrong one"; }
     [ ! -e made ] || fail "an estimate wrote something"
     echo nobody >list
-    bake 2 'there is no photo nobody' bake_vdta "${inputs[@]}" --fill $O/fill --reveal $O/reveal --out made --estimate list
+    bake 2 'images.txt has no photo nobody' bake_vdta "${inputs[@]}" --fill $O/fill --reveal $O/reveal --out made --estimate list
     rm -rf out/t/vdta
     make -s plan DEPS=manual SFM=set/model SCENE=t TO=vdta >plan 2>&1 || { cat plan; fail "make plan"; }
     grep -qE '^bake_vdta +[0-9]+ +[0-9]+ +[0-9.]+ ' plan || { cat plan; fail "make plan does not count the bakes"; }
