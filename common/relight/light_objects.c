@@ -23,9 +23,11 @@ static enum status add_triangle(struct light_objects *o, const struct vec3 t[3],
         return err_set(err, ST_DATA, "the object %s makes more than %d triangles; give a coarser mesh.",
                        o->list.items[object].name, MAX_TRIANGLES);
     if (array_append(&o->triangles, (size_t)o->count, sizeof *o->triangles, "triangles", err) ||
-        array_append(&o->object, (size_t)o->count, sizeof *o->object, "triangles", err))
+        array_append(&o->object, (size_t)o->count, sizeof *o->object, "triangles", err) ||
+        array_append(&o->facet, (size_t)o->count, sizeof *o->facet, "triangles", err))
         return err->status;
     memcpy(o->triangles[o->count], t, sizeof *o->triangles);
+    o->facet[o->count] = o->facet_count - 1;
     o->object[o->count++] = object;
     return ST_OK;
 }
@@ -49,6 +51,16 @@ static enum status cut_triangle(struct light_objects *o, const struct vec3 t[3],
     return ST_OK;
 }
 
+static enum status add_facet(struct light_objects *o, const struct obj_mesh *mesh, int i, int object, double side,
+                             struct err *err)
+{
+    if (array_append(&o->facets, (size_t)o->facet_count, sizeof *o->facets, "triangles", err)) return err->status;
+    struct obj_facet *f = &o->facets[o->facet_count++];
+    memcpy(f->corners, mesh->triangles[i], sizeof f->corners);
+    memcpy(f->normals, mesh->normals[i], sizeof f->normals);
+    return cut_triangle(o, mesh->triangles[i], object, side, 0, err);
+}
+
 static enum status read_object(struct light_objects *o, int object, const char *folder, double side,
                                struct provenance *prov, struct err *err)
 {
@@ -58,7 +70,7 @@ static enum status read_object(struct light_objects *o, int object, const char *
     object_mesh_read(&mesh, item, folder, err); /* which compares the hash */
     if (!err->status) file_path(name, "objects", item->file, "", err);
     if (!err->status && prov) provenance_add_hash(prov, name, item->hash, err);
-    for (int i = 0; !err->status && i < mesh.count; i++) cut_triangle(o, mesh.triangles[i], object, side, 0, err);
+    for (int i = 0; !err->status && i < mesh.count; i++) add_facet(o, &mesh, i, object, side, err);
     obj_mesh_release(&mesh);
     return err->status;
 }
@@ -160,11 +172,33 @@ void light_objects_release(struct light_objects *o)
     if (!o) return;
     object_list_release(&o->list);
     free(o->triangles);
+    free(o->facet);
+    free(o->facets);
     free(o->object);
     free(o->element);
     free(o->elements);
     free(o->radiance);
     *o = (struct light_objects){0};
+}
+
+struct gather_point light_objects_point(const struct light_objects *o, int triangle, struct vec3 at, struct vec3 facing)
+{
+    const struct obj_facet *f = &o->facets[o->facet[triangle]];
+    const struct vec3 *corners = f->corners, *normals = f->normals;
+    const struct vec3 flat = vec3_cross(vec3_sub(corners[1], corners[0]), vec3_sub(corners[2], corners[0]));
+    const double side = vec3_dot(flat, facing) < 0 ? -1 : 1, area = vec3_dot(flat, flat);
+    struct vec3 normal = {0, 0, 0}, offset = {0, 0, 0};
+    for (int k = 0; k < 3; k++) {
+        const struct vec3 *a = &corners[(k + 1) % 3], *b = &corners[(k + 2) % 3];
+        const double weight = clamp(vec3_dot(vec3_cross(vec3_sub(*a, at), vec3_sub(*b, at)), flat) / area, 0, 1);
+        const struct vec3 n = vec3_scale(normals[k], side);
+        const double below = fmin(0, vec3_dot(vec3_sub(at, corners[k]), n)); /* of the corner's tangent plane */
+        normal = vec3_add(normal, vec3_scale(n, weight));
+        offset = vec3_add(offset, vec3_scale(n, -weight * below));
+    }
+    normal = vec3_normalize(normal);
+    if (!(vec3_dot(normal, facing) > 0)) return (struct gather_point){at, facing}; /* a sliver, or normals that lie */
+    return (struct gather_point){vec3_add(at, offset), normal};
 }
 
 void light_objects_set_radiance(struct light_objects *o)

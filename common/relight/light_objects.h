@@ -14,12 +14,19 @@ struct object_element {
     struct rgb irradiance;     /* as update_vita found it; 0 before */
 };
 
+struct obj_facet {
+    struct vec3 corners[3], normals[3]; /* of the surface at the corners */
+};
+
 /* {0} is the empty state; everything is owned. */
 struct light_objects {
     struct object_list list;
     struct vec3 (*triangles)[3];
     int *object, count; /* of each triangle */
-    int (*element)[2];  /* of each triangle: of its front, its back */
+    int *facet;         /* of each triangle: the triangle of the mesh that it was cut from */
+    struct obj_facet *facets;
+    int facet_count;
+    int (*element)[2]; /* of each triangle: of its front, its back */
     struct object_element *elements;
     int element_count;
     struct rgb (*radiance)[2]; /* of each triangle: of its front, its back; what a field of light shows */
@@ -31,6 +38,12 @@ struct light_objects {
 enum status light_objects_read(struct light_objects *o, const char *path, const char *folder, double side,
                                struct provenance *prov, struct err *err);
 void light_objects_release(struct light_objects *o);
+
+/* The point of a round surface near a point of one of its triangles, to gather light at: its normal is interpolated from
+ * the corners, on the side of `facing`, and it lies where the corners' tangent planes let it, so that the flat triangles
+ * cast no shadow on it [Hanika 2021]. A flat triangle gives `at`, but for rounding. */
+struct gather_point light_objects_point(const struct light_objects *o, int triangle, struct vec3 at,
+                                        struct vec3 facing);
 
 /* Sets the radiance of all triangles from the irradiance of their elements. */
 void light_objects_set_radiance(struct light_objects *o);

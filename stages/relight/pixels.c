@@ -230,8 +230,9 @@ static void set_object(struct find_job *j, size_t i, int x, int y, double neares
             count++;
             const bool is_middle = u == SUB / 2 && v == SUB / 2;
             if (o->object >= 0 && !is_middle) continue;
-            o->object = objects->object[(int)met.on_object.id - j->c->after.model.mesh.face_count];
-            o->point = (struct gather_point){met.on_object.point, met.on_object.normal};
+            const int triangle = (int)met.on_object.id - j->c->after.model.mesh.face_count;
+            o->object = objects->object[triangle];
+            o->point = light_objects_point(objects, triangle, met.on_object.point, met.on_object.normal);
             o->to_viewer = vec3_scale(d, -1);
         }
     o->pixel = (int)i;

@@ -1,4 +1,4 @@
-/* fuzz_obj_mesh.c - OBJ meshes: any bytes give triangles with an area and finite corners, or an error with the file. */
+/* fuzz_obj_mesh.c - OBJ meshes: any bytes give triangles with an area, finite corners and unit normals, or an error with the file. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,6 +14,8 @@ static void check(const struct obj_mesh *mesh)
     for (int i = 0; i < mesh->count; i++) {
         const struct vec3 *t = mesh->triangles[i];
         if (!(vec3_length(vec3_cross(vec3_sub(t[1], t[0]), vec3_sub(t[2], t[0]))) > 0)) abort();
+        for (int k = 0; k < 3; k++)
+            if (!(fabs(vec3_length(mesh->normals[i][k]) - 1) < 1e-9)) abort();
         for (int k = 0; k < 3; k++)
             if (!(fmax(fabs(t[k].x), fmax(fabs(t[k].y), fabs(t[k].z))) <= OBJ_MAX_COORDINATE)) abort();
     }

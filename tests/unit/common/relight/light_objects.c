@@ -50,6 +50,69 @@ static void elements_lie_on_their_side_and_are_as_wide_as_asked(void **state)
     light_objects_release(&o);
 }
 
+/* A ball of radius 1 of flat pieces, 15 degrees wide. */
+static const char *write_ball(void)
+{
+    enum { ROUND = 24, HIGH = 12 };
+    static char text[65536];
+    int n = 0;
+    for (int i = 0; i <= HIGH; i++)
+        for (int k = 0; k < ROUND; k++) {
+            const double down = PI * i / HIGH, about = 2 * PI * k / ROUND, wide = i == HIGH ? 0 : sin(down);
+            n += snprintf(text + n, sizeof text - (size_t)n, "v %.17g %.17g %.17g\n", wide * cos(about),
+                          wide * sin(about), cos(down));
+        }
+    for (int i = 0; i < HIGH; i++)
+        for (int k = 0; k < ROUND; k++) {
+            const int a = i * ROUND + k + 1, b = i * ROUND + (k + 1) % ROUND + 1;
+            n += snprintf(text + n, sizeof text - (size_t)n, "f %d %d %d %d\n", a, a + ROUND, b + ROUND, b);
+        }
+    return text;
+}
+
+static void a_ball_of_flat_pieces_is_lit_as_a_ball(void **state)
+{
+    static const struct vec3 middle = {1, 0, -2};
+    struct light_objects o;
+    struct err err = ERR_INIT;
+    struct provenance prov = {0};
+    double most = 0;
+    (void)state;
+    assert_ok(light_objects_read(&o, write_objects(object, write_ball()), scratch, 0.1, &prov, &err), err);
+    provenance_release(&prov);
+    for (int i = 0; i < o.count; i++) {
+        const struct vec3 *t = o.triangles[i];
+        const struct vec3 at = vec3_scale(vec3_add(t[0], vec3_add(t[1], t[2])), 1.0 / 3);
+        const struct vec3 flat = vec3_normalize(vec3_cross(vec3_sub(t[1], t[0]), vec3_sub(t[2], t[0])));
+        const struct gather_point p = light_objects_point(&o, i, at, flat);
+        const struct vec3 out = vec3_sub(p.at, middle);
+        most = fmax(most, acos(fmin(1, vec3_dot(p.normal, vec3_normalize(out)))) / DEGREE);
+        assert_near(vec3_length(p.normal), 1, 1e-12);
+        assert_true(vec3_length(out) >= vec3_length(vec3_sub(at, middle)) - 1e-12);
+        /* no piece stands above the point's horizon: the ball does not shade itself */
+        for (int k = 0; k < o.facet_count; k++)
+            for (int c = 0; c < 3; c++) assert_true(vec3_dot(vec3_sub(o.facets[k].corners[c], p.at), p.normal) < 2e-3);
+        const struct gather_point inside = light_objects_point(&o, i, at, vec3_scale(flat, -1));
+        assert_true(vec3_dot(inside.normal, p.normal) < -0.999);
+    }
+    if (!(most < 1.5)) fail_msg("normals are %g degrees off", most); /* of 7.5 between the pieces and the ball */
+    light_objects_release(&o);
+}
+
+static void a_cube_stays_flat(void **state)
+{
+    struct light_objects o;
+    (void)state;
+    read_cube(&o, 0.5);
+    for (int i = 0; i < o.count; i++) {
+        const struct vec3 *t = o.triangles[i];
+        const struct vec3 flat = vec3_normalize(vec3_cross(vec3_sub(t[1], t[0]), vec3_sub(t[2], t[0])));
+        const struct gather_point p = light_objects_point(&o, i, t[1], flat);
+        assert_true(vec3_length(vec3_sub(p.normal, flat)) < 1e-12 && vec3_length(vec3_sub(p.at, t[1])) < 1e-12);
+    }
+    light_objects_release(&o);
+}
+
 static void light_is_read_as_it_was_written_and_gives_radiance(void **state)
 {
     struct light_objects o, p;
@@ -112,6 +175,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(triangles_are_cut_to_size_and_keep_their_area),
         cmocka_unit_test(elements_lie_on_their_side_and_are_as_wide_as_asked),
+        cmocka_unit_test(a_ball_of_flat_pieces_is_lit_as_a_ball),
+        cmocka_unit_test(a_cube_stays_flat),
         cmocka_unit_test(light_is_read_as_it_was_written_and_gives_radiance),
         cmocka_unit_test(damaged_light_is_refused_with_its_line),
         cmocka_unit_test(no_file_is_no_object),
