@@ -1,7 +1,8 @@
 /* obj_normals.c - see obj_normals.h.
  *
- * Weights are angles [Thuermer 1998], so that it does not matter along which diagonal a square is cut. Vertices are told apart by position, as many exporters write a vertex for each face. A vertex of more triangles than
- * MAX_AROUND keeps their own normals, or the time would grow with the square of their number. */
+ * Weights are angles [Thuermer 1998], so that it does not matter along which diagonal a square is cut. Vertices are
+ * told apart by position, as many exporters write a vertex for each face. A vertex of more triangles than MAX_AROUND
+ * keeps their own normals, or the time would grow with the square of their number. */
 #include "common/light/obj_normals.h"
 
 #include <math.h>

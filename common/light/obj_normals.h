@@ -4,8 +4,8 @@
 
 #include "common/light/obj_mesh.h"
 
-/* Gives each corner the mean normal of the triangles at its vertex, by their angle there, that lean against its own triangle
- * by less than OBJ_CREASE: round things look round, edges of boxes stay sharp. ST_NOMEM. */
+/* Gives each corner the mean normal of the triangles at its vertex, by their angle there, that lean against its own
+ * triangle by less than OBJ_CREASE: round things look round, edges of boxes stay sharp. ST_NOMEM. */
 enum status obj_normals_smooth(struct obj_mesh *mesh, struct err *err);
 
 #endif

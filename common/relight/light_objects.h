@@ -39,9 +39,9 @@ enum status light_objects_read(struct light_objects *o, const char *path, const 
                                struct provenance *prov, struct err *err);
 void light_objects_release(struct light_objects *o);
 
-/* The point of a round surface near a point of one of its triangles, to gather light at: its normal is interpolated from
- * the corners, on the side of `facing`, and it lies where the corners' tangent planes let it, so that the flat triangles
- * cast no shadow on it [Hanika 2021]. A flat triangle gives `at`, but for rounding. */
+/* The point of a round surface near a point of one of its triangles, to gather light at: its normal is interpolated
+ * from the corners, on the side of `facing`, and it lies where the corners' tangent planes let it, so that the flat
+ * triangles cast no shadow on it [Hanika 2021]. A flat triangle gives `at`, but for rounding. */
 struct gather_point light_objects_point(const struct light_objects *o, int triangle, struct vec3 at,
                                         struct vec3 facing);
 

@@ -208,6 +208,16 @@ static enum status read_truth(struct relit_sight *s, const struct relit_reading 
                                RELIT_SIDE_HEIGHT, err);
 }
 
+/* The picture in the old light. Where the edit changes no pixel, as under a lamp that is switched, none is written: it
+ * is the photograph. */
+static enum status read_unlit(struct picture *p, const char *folder, const struct product_key *key,
+                              const struct picture_record *record, int orientation, struct err *err)
+{
+    if (record->changed > 0)
+        return relit_read_picture(p, folder, PRODUCT_PICTURE_JPEG, key, orientation, RELIT_SIDE_HEIGHT, err);
+    return relit_read_radiance(p, folder, PRODUCT_VIEW, key, record->exposure, orientation, RELIT_SIDE_HEIGHT, err);
+}
+
 static enum status read_sight(struct relit_sight *s, const struct relit_reading *r, const struct relit_record *record,
                               struct err *err)
 {
@@ -223,7 +233,7 @@ static enum status read_sight(struct relit_sight *s, const struct relit_reading 
         !product_path_below(path, folder, PRODUCT_PICTURE_RECORD, &key, err) &&
         !picture_record_read(&before, path, NULL, err))
         relit_read_radiance(&s->before, folder, PRODUCT_VIEW, &key, before.exposure, orientation, height, err);
-    if (!err->status && !relit_read_picture(&s->unlit, folder, PRODUCT_PICTURE_JPEG, &key, orientation, height, err) &&
+    if (!err->status && !read_unlit(&s->unlit, folder, &key, &before, orientation, err) &&
         !relit_read_picture(&s->relit, folder, PRODUCT_RELIT_JPEG, &key, orientation, height, err) &&
         !relit_read_picture(&s->ratio, folder, PRODUCT_RELIT_RATIO_PICTURE, &key, orientation, height, err))
         read_truth(s, r, record, orientation, err);

@@ -4,6 +4,9 @@ project relit_pages
 photos set >/dev/null
 boxed t textures
 printf 'remodel-script 1\n# A blue chest, in an empty room.\nbase bare\nbox chest from -4 6 to 4 12 top 3\ncolour box/chest 0.1 0.2 0.8\nmaterial box/chest ward 0.05 0.2\nlamp ceiling off\nclear hall\n' >scenes/t/edits/chest.txt
+mkdir -p scenes/t/objects
+printf 'v 0 0 0\nv 8 0 0\nv 8 8 0\nv 0 8 0\nv 4 4 8\nf 4 3 2 1\nf 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\n' >scenes/t/objects/tent.obj
+printf 'remodel-script 1\n# The room as it is, with a tent in it.\nobject tent objects/tent.obj at -4 4 0 matt 0.6 0.2 0.1\n' >scenes/t/edits/tent.txt
 printf '[bake_outdoors]\nheight = 64\n[plan_tour]\nwidth = 64\nheight = 48\nfps = 2\nspeed = 8\nclearance = 0.5\nhold = 0.5\n[update_vita]\nspacing = 0.1\nfinest = 0.05\nrays = 128\ntolerance = 0.05\n[relight]\ntarget_error = 0.2\nrays = 256\n' >>scenes/t/scene.cfg
 m() { make -s DEPS=manual PHOTOS=set/photos SFM=set/model SCENE=t "$@" >log 2>&1 || { cat log; fail "make $*"; }; }
 m remodel
@@ -20,6 +23,13 @@ make_relight_adds_the_light_to_the_page_of_edits()
     times >before
     m relight RELIT_VIEWS="$view"
     times | diff before - || fail "something was made again"
+}
+
+light_that_an_object_changes_is_shown()
+{
+    m relight RELIT_VIEWS="$view" EDIT=tent
+    awk '$1 == "changed" { exit !($2 > 0) }' "$O/relight/tent/$view.txt" || fail "the tent changes no light"
+    ! grep -q 'The light of no picture changes\|a relit picture is left out' $O/remodel/index.html || fail "the page does not show the light about an object"
 }
 
 plain_make_shows_it_on_both_pages()
@@ -48,4 +58,4 @@ films_and_given_cameras_are_relit()
     awk -F'\t' '$1 == "edited.chest.flicker95" { n++; bad += $2 > 5 } END { exit n != 1 || bad }' metrics.tsv || { grep flicker metrics.tsv; fail "the film flickers, or was not measured"; }
 }
 
-for t in make_relight_adds_the_light_to_the_page_of_edits plain_make_shows_it_on_both_pages films_and_given_cameras_are_relit; do run "$t"; done
+for t in make_relight_adds_the_light_to_the_page_of_edits light_that_an_object_changes_is_shown plain_make_shows_it_on_both_pages films_and_given_cameras_are_relit; do run "$t"; done

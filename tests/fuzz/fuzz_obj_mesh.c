@@ -1,4 +1,5 @@
-/* fuzz_obj_mesh.c - OBJ meshes: any bytes give triangles with an area, finite corners and unit normals, or an error with the file. */
+/* fuzz_obj_mesh.c - OBJ meshes: any bytes give triangles with an area, finite corners and unit normals, or an error
+ * with the file. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
