@@ -103,6 +103,26 @@ const char *scan_nearest(const char *word, const char *(*next)(const void *ctx, 
     return nearest;
 }
 
+/* Bytes of the character at p if nobody can see it, or tell it from a blank: a no-break space, a byte order mark, marks
+ * of zero width; its code goes to *code. 0: another character. */
+static int unseen(const char *p, unsigned *code)
+{
+    static const unsigned ranges[][2] = {{0x80, 0xA0},     {0xAD, 0xAD},     {0x2000, 0x200F}, {0x2028, 0x202F},
+                                         {0x205F, 0x206F}, {0x3000, 0x3000}, {0xFEFF, 0xFEFF}};
+    const unsigned char *c = (const unsigned char *)p;
+    int length = 0;
+    if ((c[0] & 0xE0) == 0xC0 && (c[1] & 0xC0) == 0x80) {
+        *code = (c[0] & 0x1Fu) << 6 | (c[1] & 0x3Fu);
+        length = 2;
+    } else if ((c[0] & 0xF0) == 0xE0 && (c[1] & 0xC0) == 0x80 && (c[2] & 0xC0) == 0x80) {
+        *code = (c[0] & 0x0Fu) << 12 | (c[1] & 0x3Fu) << 6 | (c[2] & 0x3Fu);
+        length = 3;
+    }
+    for (size_t i = 0; length && i < sizeof ranges / sizeof *ranges; i++)
+        if (*code >= ranges[i][0] && *code <= ranges[i][1]) return length;
+    return 0;
+}
+
 const char *scan_quote(char shown[SCAN_QUOTED], const char *found)
 {
     size_t n = 0;
@@ -113,12 +133,16 @@ const char *scan_quote(char shown[SCAN_QUOTED], const char *found)
     for (; *p; p++) {
         const unsigned char c = (unsigned char)*p;
         const bool continued = (c & 0xC0) == 0x80; /* inside a UTF-8 character */
+        unsigned code = 0;
+        int length;
         if ((!continued && characters == 40) || n > SCAN_QUOTED - 12) break;
         characters += !continued;
         if (c == '\t' || c == '\r' || c == '\n')
             n += (size_t)sprintf(shown + n, "\\%c", c == '\t' ? 't' : c == '\r' ? 'r' : 'n');
         else if (c < 0x20 || c == 0x7F)
             n += (size_t)sprintf(shown + n, "\\x%02x", c);
+        else if ((length = unseen(p, &code)))
+            n += (size_t)sprintf(shown + n, "\\u%04x", code), p += length - 1;
         else
             shown[n++] = (char)c;
     }

@@ -22,7 +22,7 @@ locale_t scan_c_locale(void); /* for uselocale() around code that prints numbers
  * i-th known word, NULL after the last. */
 const char *scan_nearest(const char *word, const char *(*next)(const void *ctx, int i), const void *ctx);
 
-/* Quotes `found` for an error message: at most 40 characters, control characters escaped. Returns `shown`. */
+/* Quotes `found` for an error message: at most 40 characters, those that nobody can see escaped. Returns `shown`. */
 #define SCAN_QUOTED 200
 const char *scan_quote(char shown[SCAN_QUOTED], const char *found);
 

@@ -3,7 +3,7 @@
  * The whole file is read into one buffer, and words are cut out of it in place by writing NULs over the blanks: no
  * copies, and a word lasts as long as the file. Words in quotes may hold blanks; \" and \\ are unescaped in place,
  * which never makes them longer. Lines that are blank or begin with # are skipped; \r before the end of a line is
- * dropped.
+ * dropped. A byte order mark before the first line is skipped.
  *
  * Errors. Every function says what it wants (`what`), so a message has file, line, what was found and what was
  * wanted. A NUL byte means that the file is damaged or no text, and is an error of its line.
@@ -36,6 +36,13 @@ enum status textfile_open(struct textfile *t, const char *path, struct err *err)
     return file_bytes_read(&file, path, err) || textfile_take(t, &file, path, err) ? err->status : ST_OK;
 }
 
+/* What some editors write before the text. */
+static bool begins_with_mark(const struct textfile *t, const char *mark)
+{
+    const size_t n = strlen(mark);
+    return t->size >= n && !memcmp(t->bytes, mark, n);
+}
+
 enum status textfile_take(struct textfile *t, struct file_bytes *file, const char *path, struct err *err)
 {
     const char *nul;
@@ -44,11 +51,15 @@ enum status textfile_take(struct textfile *t, struct file_bytes *file, const cha
     *file = (struct file_bytes){0};
     if (!t->path) {
         err_nomem(err, "a file name", strlen(path) + 1);
+    } else if (begins_with_mark(t, "\xFF\xFE") || begins_with_mark(t, "\xFE\xFF")) {
+        t->line = 1;
+        textfile_error(t, err, "a byte order mark of UTF-16", "UTF-8; save the file as UTF-8 or plain text");
     } else if ((nul = memchr(t->bytes, '\0', t->size))) {
         for (const char *p = t->bytes; p < nul; p++) t->line += *p == '\n';
         t->line++;
         textfile_error(t, err, "\\0", "text without NUL bytes; the file is damaged or not a text file");
     }
+    if (!err->status && begins_with_mark(t, "\xEF\xBB\xBF")) t->at = 3;
     if (err->status) textfile_release(t);
     return err->status;
 }

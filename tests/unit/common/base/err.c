@@ -109,6 +109,8 @@ static void quoted_text_escapes_control_characters(void **state)
 
     (void)state;
     assert_string_equal(scan_quote(shown, "a\tb\033[31m"), "\"a\\tb\\x1b[31m\"");
+    assert_string_equal(scan_quote(shown, "1\xC2\xA0\xE2\x80\x8B\xEF\xBB\xBF\xC3\xA9"),
+                        "\"1\\u00a0\\u200b\\ufeff\xC3\xA9\"");
     assert_string_equal(scan_quote(shown, "0123456789012345678901234567890123456789"),
                         "\"0123456789012345678901234567890123456789\"");
     assert_string_equal(scan_quote(shown, "01234567890123456789012345678901234567890"),

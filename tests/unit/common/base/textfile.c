@@ -49,6 +49,31 @@ static void records_are_read(void **state)
     textfile_release(NULL);
 }
 
+static void a_byte_order_mark_is_skipped(void **state)
+{
+    struct textfile t = opened("\xEF\xBB\xBFhead 1\n\xEF\xBB\xBFlate\n");
+    struct err err = ERR_INIT;
+    (void)state;
+    assert_ok(textfile_expect_line(&t, "head", &err), err);
+    assert_int_equal(t.line, 1);
+    assert_int_equal(textfile_expect_line(&t, "late", &err), ST_DATA); /* only before the text */
+    assert_err(err, ST_DATA, ":2: found \"\\ufefflate\", wanted a line \"late ...\"");
+    textfile_release(&t);
+    t = opened("\xEF\xBB\xBF");
+    assert_false(textfile_next(&t));
+    textfile_release(&t);
+}
+
+static void utf_16_is_refused_by_name(void **state)
+{
+    static const char text[] = "\xFF\xFEh\0i\0";
+    struct textfile t;
+    struct err err = ERR_INIT;
+    (void)state;
+    assert_int_equal(textfile_open(&t, scratch_write_bytes("u.txt", text, sizeof text - 1), &err), ST_DATA);
+    assert_err(err, ST_DATA, "u.txt:1: found \"a byte order mark of UTF-16\", wanted UTF-8");
+}
+
 static void raw_lines_include_blanks_and_comments(void **state)
 {
     struct textfile t = opened("a\n\n#c\n");
@@ -274,6 +299,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(records_are_read),
+        cmocka_unit_test(a_byte_order_mark_is_skipped),
+        cmocka_unit_test(utf_16_is_refused_by_name),
         cmocka_unit_test(raw_lines_include_blanks_and_comments),
         cmocka_unit_test(invalid_lines_are_located),
         cmocka_unit_test(numbers_stay_within_their_range),
