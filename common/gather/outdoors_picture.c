@@ -184,7 +184,7 @@ static enum status use_ids(struct outdoors_picture *p, const struct model_rays *
     struct view_ids ids = {0};
     view_ids_read(&ids, &size, p->ids, prov, err);
     for (size_t i = 0; !err->status && i < (size_t)size.width * (size_t)size.height; i++) {
-        struct vec3 d;
+        struct vec3 d = {0, 0, 0};
         if (!p->state[i]) continue;
         if (ids.clutter[i] >= (float)max_clutter && max_clutter < 1) {
             p->state[i] = SHOWS_NOTHING;
