@@ -12,11 +12,11 @@
  * rejected, whereupon the ray goes on. */
 #include "common/light/ray_scene.h"
 
-#include <embree3/rtcore.h>
 #include <math.h>
 #include <stdlib.h>
 
 #include "common/base/array.h"
+#include "common/light/embree.h"
 #include "common/light/frame.h"
 
 #define MAX_PRIMITIVES (1 << 23)
@@ -177,7 +177,6 @@ static inline void exact_hit(struct ray_hit *hit, const struct ray_scene *s, str
 
 bool ray_scene_hit(const struct ray_scene *s, struct vec3 from, struct vec3 direction, struct ray_hit *hit)
 {
-    struct RTCIntersectContext context;
     struct RTCRayHit r = {
         .ray = {.org_x = (float)from.x,
                 .org_y = (float)from.y,
@@ -189,8 +188,7 @@ bool ray_scene_hit(const struct ray_scene *s, struct vec3 from, struct vec3 dire
                 .mask = UINT32_MAX},
         .hit = {.geomID = RTC_INVALID_GEOMETRY_ID, .instID = {RTC_INVALID_GEOMETRY_ID}},
     };
-    rtcInitIntersectContext(&context);
-    rtcIntersect1(s->embree, &context, &r);
+    embree_intersect(s->embree, &r);
     if (r.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
     exact_hit(hit, s, from, direction, r.hit.geomID, r.hit.primID, (double)r.ray.tfar);
     return true;
@@ -198,7 +196,6 @@ bool ray_scene_hit(const struct ray_scene *s, struct vec3 from, struct vec3 dire
 
 bool ray_scene_blocked(const struct ray_scene *s, struct vec3 from, struct vec3 direction, double t_max)
 {
-    struct RTCIntersectContext context;
     struct RTCRay r = {
         .org_x = (float)from.x,
         .org_y = (float)from.y,
@@ -209,8 +206,7 @@ bool ray_scene_blocked(const struct ray_scene *s, struct vec3 from, struct vec3 
         .tfar = (float)t_max,
         .mask = UINT32_MAX,
     };
-    rtcInitIntersectContext(&context);
-    rtcOccluded1(s->embree, &context, &r);
+    embree_occluded(s->embree, &r);
     return r.tfar < 0;
 }
 
@@ -229,24 +225,15 @@ static void fill_packet(struct RTCRay8 *r, int valid[RAY_PACKET], const struct v
     }
 }
 
-static struct RTCIntersectContext coherent_context(void)
-{
-    struct RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-    return context;
-}
-
 unsigned ray_scene_hit_packet(const struct ray_scene *s, const struct vec3 from[RAY_PACKET],
                               const struct vec3 direction[RAY_PACKET], unsigned active, struct ray_hit hit[RAY_PACKET])
 {
-    struct RTCIntersectContext context = coherent_context();
     struct RTCRayHit8 r;
     _Alignas(32) int valid[RAY_PACKET];
     unsigned found = 0;
     fill_packet(&r.ray, valid, from, direction, NULL, active);
     for (int i = 0; i < RAY_PACKET; i++) r.hit.geomID[i] = r.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
-    rtcIntersect8(valid, s->embree, &context, &r);
+    embree_intersect_packet(s->embree, valid, &r);
     for (int i = 0; i < RAY_PACKET; i++) {
         if (!valid[i] || r.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
         found |= 1u << i;
@@ -259,12 +246,11 @@ unsigned ray_scene_blocked_packet(const struct ray_scene *s, const struct vec3 f
                                   const struct vec3 direction[RAY_PACKET], const double t_max[RAY_PACKET],
                                   unsigned active)
 {
-    struct RTCIntersectContext context = coherent_context();
     struct RTCRay8 r;
     _Alignas(32) int valid[RAY_PACKET];
     unsigned blocked = 0;
     fill_packet(&r, valid, from, direction, t_max, active);
-    rtcOccluded8(valid, s->embree, &context, &r);
+    embree_occluded_packet(s->embree, valid, &r);
     for (int i = 0; i < RAY_PACKET; i++)
         if (valid[i] && r.tfar[i] < 0) blocked |= 1u << i;
     return blocked;

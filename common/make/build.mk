@@ -38,8 +38,10 @@ CXXFLAGS := -std=c++17 $(if $(X86),-mavx2 -mno-fma) -ffp-contract=off -Wall -Wex
   -I. -isystem /usr/include/eigen3 -isystem /usr/include/opencv4 \
   $(patsubst -I%,-isystem %,$(shell pkg-config --cflags OpenEXR 2>/dev/null))
 LDLIBS := -lOpenEXRCore $(shell pkg-config --libs $(PKGS) 2>/dev/null) -lm
+# Debian 12 has version 3, Debian 13 version 4; ray_scene.c chooses alike
+EMBREE := -lembree$(if $(wildcard /usr/include/embree4/rtcore.h),4,3)
 # what a stage alone needs, and common/math and common/light; a program gets those libraries that its objects use
-MORE_LIBS := $(sort $(foreach s,$(STAGES),$(LIBS.$(s)))) -lembree3 -lceres -lglog -lcholmod -lstdc++
+MORE_LIBS := $(sort $(foreach s,$(STAGES),$(LIBS.$(s)))) $(EMBREE) -lceres -lglog -lcholmod -lstdc++
 
 objs = $(patsubst %.c,$(B)/obj/%.o,$(patsubst %.cc,$(B)/obj/%.o,$(wildcard $(1))))
 # print_graph is a program of its own: it calls the rules of all stages

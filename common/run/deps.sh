@@ -9,8 +9,8 @@ while read -r group package probe; do
     case $probe in
     command:*) PATH=$PATH:/usr/sbin command -v "${probe#*:}" >/dev/null && continue ;;
     pkg:*) pkg-config --exists "${probe#*:}" 2>/dev/null && continue ;;
-    header:*) [ -e "/usr/include/${probe#*:}" ] && continue ;;
-    file:*) [ -e "${probe#*:}" ] && continue ;;
+    header:*) compgen -G "/usr/include/${probe#*:}" >/dev/null && continue ;;
+    file:*) compgen -G "${probe#*:}" >/dev/null && continue ;;
     *) echo "configs/packages.txt: found the probe '$probe', wanted command:, pkg:, header: or file:." >&2; exit 2 ;;
     esac
     missing+=("$package") reasons+=("${probe#*:}")

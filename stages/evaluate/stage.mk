@@ -2,7 +2,6 @@
 FOLLOWS.evaluate = $(filter-out evaluate report verify,$(STAGE_FOLDERS))
 READS.evaluate := cameras, views, depth maps, models, texture atlases, held-out photos and their frames, rendered pictures, the truth
 VARIABLES.evaluate := TRUTH RENDERED
-LIBS.evaluate := -lembree3
 HELP.evaluate := the products, compared with TRUTH or with photos held out, into metrics.tsv
 
 ## TRUTH=DIR: known cameras and depths, which products are compared with (docs/evaluation.md)

@@ -1,7 +1,6 @@
 # render_model: the model and its edits under photographic texture, from the photos' views, from given cameras, and as films.
 FOLLOWS.render_model := bake_outdoors bake_vdta bake_vita choose_exposure encode_video find_things plan_tour
 READS.render_model := the models, texture.txt, atlases, outdoors.exr, exposure.txt, the views with their ids and depth, the things of edits, the tour or the cameras
-LIBS.render_model := -lembree3
 VARIABLES.render_model := CAMERAS CAMERAS_FRAME
 HELP.remodel := what the photos would show after each edit, EDIT=E: after one; with CAMERAS=DIR: what these cameras see before and after
 HELP.tour := films through the rooms, of the model and of each edit

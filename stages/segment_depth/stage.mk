@@ -1,7 +1,6 @@
 # segment_depth: layered depth of each view, in rounds.
 FOLLOWS.segment_depth := rectify find_frame
 READS.segment_depth := the frame of the room, one view and the neighbours it selects; its given depth, if there is any; after the first round, their depth maps of the round before and how much these had changed; once there is a model, the model and its axes
-LIBS.segment_depth := -lembree3
 VARIABLES.segment_depth := DEPTH
 HELP.depth := + layered depth maps
 HELP.model_depth := + depth maps of a scene with a model, which fill what no photo shows with the faces behind it

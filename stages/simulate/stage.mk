@@ -3,7 +3,6 @@ FOLLOWS.simulate :=
 READS.simulate := a described scene (scenes/NAME/scene.txt, cameras.txt; docs/scenes.md)
 SETTINGS.simulate := EDITS EDIT_VIEWS IRRADIANCE_VIEWS
 SHARED.simulate := yes
-LIBS.simulate := -lembree3
 HELP.truth := more truth of a described scene: its witnesses, its rooms without furniture, IRRADIANCE_VIEWS
 HELP.edited := truth of the edited scenes EDITS of a described scene, from the same cameras or EDIT_VIEWS
 

@@ -1,5 +1,4 @@
 # trace_ids: the faces of the solid model in each view, where furniture hides them, and what edits reveal.
 FOLLOWS.trace_ids := build_model rectify segment_depth
 READS.trace_ids := the model, its axes and edits, cameras, one view's depth
-LIBS.trace_ids := -lembree3
 HELP.ids := + faces of the solid model in each view, where furniture hides them, and what edits reveal
