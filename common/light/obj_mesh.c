@@ -82,7 +82,7 @@ static enum status read_corner(struct obj_reader *r)
         return r->err->status;
     struct obj_corner *corner = &r->polygon[r->polygon_count++];
     *corner = (struct obj_corner){r->vertices[vertex], {0, 0, 0}};
-    if (normal && *normal) corner->normal = vec3_normalize(r->normals[of_normal]);
+    if (normal && *normal) corner->normal = obj_unit(r->normals[of_normal]);
     return ST_OK;
 }
 
@@ -103,7 +103,7 @@ static enum status add_triangle(struct obj_reader *r, const int corners[3])
         return r->err->status;
     for (int k = 0; k < 3; k++) {
         m->triangles[m->count][k] = c[k]->at;
-        m->normals[m->count][k] = vec3_length(c[k]->normal) > 0 ? c[k]->normal : vec3_normalize(across);
+        m->normals[m->count][k] = vec3_length(c[k]->normal) > 0 ? c[k]->normal : obj_unit(across);
     }
     m->count++;
     return ST_OK;
@@ -160,9 +160,8 @@ enum status obj_mesh_read(struct obj_mesh *mesh, const char *path, struct err *e
 /* The normals of a surface that m moves, times a factor: with the cofactors of m's 3 x 3 part. */
 static struct vec3 moved_normal(const struct vec3 rows[3], struct vec3 n)
 {
-    return vec3_normalize(vec3_make(vec3_dot(vec3_cross(rows[1], rows[2]), n),
-                                    vec3_dot(vec3_cross(rows[2], rows[0]), n),
-                                    vec3_dot(vec3_cross(rows[0], rows[1]), n)));
+    return obj_unit(vec3_make(vec3_dot(vec3_cross(rows[1], rows[2]), n), vec3_dot(vec3_cross(rows[2], rows[0]), n),
+                              vec3_dot(vec3_cross(rows[0], rows[1]), n)));
 }
 
 void obj_mesh_move(struct obj_mesh *mesh, const double m[3][4])

@@ -29,9 +29,16 @@ static int by_position(const void *a, const void *b)
 
 static bool is_same_position(struct vec3 a, struct vec3 b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
 
+struct vec3 obj_unit(struct vec3 v)
+{
+    const double largest = fmax(fabs(v.x), fmax(fabs(v.y), fabs(v.z)));
+    if (!(largest > 0)) return v;
+    return vec3_normalize(vec3_make(v.x / largest, v.y / largest, v.z / largest));
+}
+
 static struct vec3 normal_of(const struct vec3 t[3])
 {
-    return vec3_normalize(vec3_cross(vec3_sub(t[1], t[0]), vec3_sub(t[2], t[0])));
+    return obj_unit(vec3_cross(vec3_sub(t[1], t[0]), vec3_sub(t[2], t[0])));
 }
 
 static double angle_at(const struct vec3 t[3], int corner)
@@ -51,8 +58,8 @@ static void smooth_vertex(struct obj_mesh *mesh, const struct obj_around *around
             const struct vec3 normal = normal_of(t);
             if (vec3_dot(own, normal) > cosine) sum = vec3_add(sum, vec3_scale(normal, angle_at(t, around[k].corner)));
         }
-        sum = vec3_normalize(sum);
-        mesh->normals[around[i].triangle][around[i].corner] = vec3_length(sum) > 0 ? sum : own;
+        sum = obj_unit(sum);
+        if (vec3_length(sum) > 0) mesh->normals[around[i].triangle][around[i].corner] = sum;
     }
 }
 

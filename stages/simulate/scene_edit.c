@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "common/base/array.h"
+#include "common/base/file_path.h"
 #include "common/base/outfile.h"
 #include "stages/simulate/scene_reader.h"
 
@@ -88,23 +89,13 @@ static bool about_file(const char *line)
 static enum status copy_lines(const struct scene *s, FILE *to, const char *folder, const char *file, bool base,
                               struct err *err)
 {
-    char *path = NULL, *text = NULL;
-    size_t size = 0;
-    FILE *from = NULL;
-    if (asprintf(&path, "%s/%s", folder, file) < 0) {
-        path = NULL;
-        err_nomem(err, "a file name", strlen(file));
-    }
-    if (!err->status && !(from = fopen(path, "rbe"))) err_errno(err, "open", path);
-    for (int line = 1; !err->status && getline(&text, &size, from) >= 0; line++) {
-        if (s->base && (about_file(text) || (base && is_dropped(s, line)))) continue;
-        fputs(text, to);
-        if (s->base && !strchr(text, '\n')) putc('\n', to);
-    }
-    if (!err->status && ferror(from)) err_errno(err, "read", path);
-    if (from) fclose(from);
-    free(text);
-    free(path);
+    char path[FILE_PATH];
+    struct textfile from = {0};
+    if (!file_path(path, folder, file, "", err)) textfile_open(&from, path, err);
+    while (!err->status && textfile_next_raw(&from))
+        if (!s->base || (!about_file(from.cursor) && !(base && is_dropped(s, from.line))))
+            fprintf(to, "%s\n", from.cursor);
+    textfile_release(&from);
     return err->status;
 }
 

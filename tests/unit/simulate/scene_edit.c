@@ -102,6 +102,26 @@ static void an_edit_is_written_as_a_whole_scene(void **state)
     path_world_release(&w);
 }
 
+static void byte_order_marks_do_not_reach_the_whole_scene(void **state)
+{
+    struct world w = {0};
+    struct err err = ERR_INIT;
+    char text[4096] = "";
+    (void)state;
+    scratch_write("scene.txt", "\xEF\xBB\xBF" BASE);
+    scratch_write("scene-e.txt", "\xEF\xBB\xBF" EDIT "drop b\n");
+    assert_ok(path_world_read(&w, scratch, "scene-e.txt", NULL, &err), err);
+    assert_ok(scene_write(&w.scene, scratch, "scene-e.txt", scratch_path("whole.txt"), &err), err);
+    FILE *f = fopen(scratch_path("whole.txt"), "r");
+    assert_non_null(f);
+    assert_true(fread(text, 1, sizeof text - 1, f) > 0);
+    fclose(f);
+    assert_null(strchr(text, '\xEF'));
+    assert_null(strstr(text + 20, "remodel-scene"));
+    assert_null(strstr(text, "box b"));
+    path_world_release(&w);
+}
+
 static void assert_invalid(const char *text, const char *words)
 {
     struct scene s;
@@ -144,6 +164,7 @@ int main(void)
         cmocka_unit_test(an_edit_without_changes_is_its_base),
         cmocka_unit_test(dropped_items_are_gone_and_the_others_keep_their_ids),
         cmocka_unit_test(an_edit_is_written_as_a_whole_scene),
+        cmocka_unit_test(byte_order_marks_do_not_reach_the_whole_scene),
         cmocka_unit_test(errors_of_edits_name_line_and_word),
     };
     return cmocka_run_group_tests_name("simulate edits", tests, scratch_make, scratch_remove);

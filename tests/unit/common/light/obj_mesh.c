@@ -77,6 +77,21 @@ static void normals_come_from_the_file(void **state)
     obj_mesh_release(&mesh);
 }
 
+static void tiny_numbers_give_unit_normals(void **state)
+{
+    static const char *const texts[] = {
+        "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 1e-160 2e-160 0\nvn 0 1e-320 0\nvn 0 0 0\nf 1//1 2//2 3//3\n",
+        "v 0 0 0\nv 3e-81 0 0\nv 0 4e-81 1e-81\nv 1 0 0\nf 1 2 3\nf 1 4 3\n"};
+    (void)state;
+    for (int i = 0; i < 2; i++) {
+        struct obj_mesh mesh;
+        struct err err = ERR_INIT;
+        assert_ok(obj_mesh_read(&mesh, scratch_write("tiny.obj", texts[i]), &err), err);
+        for (int k = 0; k < 3 * mesh.count; k++) assert_true(fabs(vec3_length(mesh.normals[k / 3][k % 3]) - 1) < 1e-12);
+        obj_mesh_release(&mesh);
+    }
+}
+
 /* Two squares that meet in the y axis: the second leans by an angle. */
 static struct vec3 normal_at_an_edge(double degrees)
 {
@@ -160,6 +175,7 @@ int main(void)
         cmocka_unit_test(a_concave_polygon_keeps_its_notch),
         cmocka_unit_test(a_polygon_that_crosses_itself_is_read),
         cmocka_unit_test(normals_come_from_the_file),
+        cmocka_unit_test(tiny_numbers_give_unit_normals),
         cmocka_unit_test(a_bend_is_round_and_an_edge_is_sharp),
         cmocka_unit_test(a_mesh_is_moved_by_a_matrix),
         cmocka_unit_test(damaged_meshes_are_refused),
