@@ -179,7 +179,7 @@ static void five_walls_lie_within_clicks_of_the_layout(void **state)
         struct script script = {0};
         struct plan plan;
         struct err err = ERR_INIT;
-        double pixels[4], best[4], longest = 0;
+        double pixels[4] = {0}, best[4], longest = 0;
         int wall = -1, photo = 0;
         char text[400];
         for (int i = 0; i < house.outline_count; i++)
