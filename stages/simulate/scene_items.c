@@ -122,6 +122,8 @@ static enum status read_mesh(struct reader *r, struct scene_item *it, struct err
     if (!err->status && obj_mesh_read(&mesh, path, err)) err_context(err, "%s:%d", r->file.path, r->file.line);
     it->triangles = mesh.triangles;
     it->triangle_count = mesh.count;
+    mesh.triangles = NULL; /* the item's now; pieces are flat here, so normals are not kept */
+    obj_mesh_release(&mesh);
     if (!err->status && r->prov) provenance_add_file(r->prov, file, path, err);
     if (!err->status) material_of(r, &it->material, err);
     while (!err->status && textfile_more(&r->file)) {
