@@ -2,6 +2,7 @@
 #include "common/base/file_path.h"
 
 #include <stdio.h>
+#include <string.h>
 #include <sys/stat.h>
 
 enum status file_path(char path[FILE_PATH], const char *folder, const char *file, const char *suffix, struct err *err)
@@ -9,6 +10,12 @@ enum status file_path(char path[FILE_PATH], const char *folder, const char *file
     if (snprintf(path, FILE_PATH, "%s/%s%s", folder, file, suffix) < FILE_PATH) return ST_OK;
     return err_set(err, ST_IO, "the path %s/%s%s is longer than %d bytes; use a shorter folder or file name.", folder,
                    file, suffix, FILE_PATH - 1);
+}
+
+const char *path_file_name(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
 }
 
 bool path_is_file(const char *path)

@@ -84,11 +84,7 @@ const char *scene_model_folder(struct graph *g, const struct name_list *edits, i
 
 bool scene_model_is_edited(const char *model) { return strchr(model, '/') != NULL; }
 
-const char *scene_model_name(const char *model)
-{
-    const char *slash = strrchr(model, '/');
-    return slash ? slash + 1 : model;
-}
+const char *scene_model_name(const char *model) { return path_file_name(model); }
 
 bool rule_needs_references(struct graph *g, const struct scene_facts *f)
 {

@@ -7,6 +7,8 @@
 #include "common/relight/placed_things.h"
 
 #include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -53,6 +55,17 @@ struct vec3 placed_thing_origin(const struct placed_thing *p, struct vec3 at)
 }
 
 /* ---------------------------------------------------------------------------------------------------------- checks */
+
+/* An error of a statement about a thing. */
+static enum status PRINTF_LIKE(3, 4) edit_error(struct err *err, const struct texture_thing *edit, const char *fmt, ...)
+{
+    char text[1500];
+    va_list args;
+    va_start(args, fmt);
+    vsnprintf(text, sizeof text, fmt, args);
+    va_end(args);
+    return err_set(err, ST_DATA, "%s:%d: %s", edit->script, edit->line, text);
+}
 
 /* A point of the box, from -1 to 1 in each direction. */
 static struct vec3 box_point(const struct thing *t, double x, double y, double z)
@@ -102,8 +115,8 @@ static enum status check_walls(const struct texture_thing *edit, const struct th
             deepest = fmax(deepest, depth_in(after, at));
     }
     if (deepest < 0) return ST_OK;
-    return err_set(err, ST_DATA, "%s would stand at least %.2g deep in a wall, a box or a floor. Move it elsewhere.",
-                   edit->name, deepest);
+    return edit_error(err, edit, "%s would stand at least %.2g deep in a wall, a box or a floor. Move it elsewhere.",
+                      edit->name, deepest);
 }
 
 /* The direction from a thing to what supports it, in the room of the photographs, and the gap between them. */
@@ -135,11 +148,11 @@ static enum status check_support(const struct texture_thing *edit, const struct 
     if (!isfinite(was) || fabs(is - was) <= OFF_SIDE * height) return ST_OK;
     const char *support = thing_support_word(t->support);
     if (!isfinite(is))
-        return err_set(err, ST_DATA, "%s %s the %s, but there is no %s at its new place.", edit->name,
-                       t->support == THING_ON_FLOOR ? "stood on" : "hung on", support, support);
-    return err_set(err, ST_DATA, "%s would be %.2g %s the %s that it %s on. Move it by that much less, or more.",
-                   edit->name, fabs(is - was), is > was ? "away from" : "too far into", support,
-                   t->support == THING_ON_FLOOR ? "stands" : "hangs");
+        return edit_error(err, edit, "%s %s the %s, but there is no %s at its new place.", edit->name,
+                          t->support == THING_ON_FLOOR ? "stood on" : "hung on", support, support);
+    return edit_error(err, edit, "%s would be %.2g %s the %s that it %s on. Move it by that much less, or more.",
+                      edit->name, fabs(is - was), is > was ? "away from" : "too far into", support,
+                      t->support == THING_ON_FLOOR ? "stands" : "hangs");
 }
 
 /* --------------------------------------------------------------------------------------------------------- placing */
@@ -150,16 +163,15 @@ static const char *nth_name(const void *ctx, int i)
     return i < list->count ? list->things[i].name : NULL;
 }
 
-static enum status find_thing(int *at, const struct placed_things *t, const char *name, struct err *err)
+static enum status find_thing(int *at, const struct placed_things *t, const struct texture_thing *edit, struct err *err)
 {
-    *at = thing_list_find(&t->list, name);
+    *at = thing_list_find(&t->list, edit->from);
     if (*at >= 0) return ST_OK;
-    const char *near = scan_nearest(name, nth_name, &t->list);
-    return err_set(
-        err, ST_DATA,
-        "the edit changes %s, but no thing of that name was found%s%s. Mark it elsewhere in things.txt; make "
-        "things shows what was found.",
-        name, near ? "; the nearest is " : "", near ? near : "");
+    const char *near = scan_nearest(edit->from, nth_name, &t->list);
+    return edit_error(err, edit,
+                      "the edit changes %s, but no thing of that name was found%s%s. Mark it elsewhere in things.txt; "
+                      "make things shows what was found.",
+                      edit->from, near ? "; the nearest is " : "", near ? near : "");
 }
 
 static struct placed_thing placement(const struct texture_thing *edit, const struct thing *t, uint32_t id,
@@ -181,7 +193,7 @@ static enum status apply(struct placed_things *t, const struct texture_thing *ed
                          const struct model_rays *after, struct err *err)
 {
     int at;
-    if (find_thing(&at, t, edit->from, err)) return err->status;
+    if (find_thing(&at, t, edit, err)) return err->status;
     const struct thing *thing = &t->list.things[at];
     const uint32_t id = (uint32_t)at + 1;
     if (edit->kind == TEXTURE_THING_KEEP) t->fate[id] = THING_IS_KEPT;

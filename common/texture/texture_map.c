@@ -50,6 +50,7 @@ void texture_map_release(struct texture_map *map)
     for (int i = 0; i < map->thing_count; i++) {
         free(map->things[i].name);
         free(map->things[i].from);
+        free(map->things[i].script);
     }
     free(map->things);
     free(map->lamps);
@@ -66,7 +67,8 @@ enum status texture_map_add_thing(struct texture_map *map, const struct texture_
     *to = *thing;
     to->name = strdup(thing->name);
     to->from = strdup(thing->from);
-    return to->name && to->from ? ST_OK : err_nomem(err, "a thing", strlen(thing->name));
+    to->script = strdup(thing->script);
+    return to->name && to->from && to->script ? ST_OK : err_nomem(err, "a thing", strlen(thing->name));
 }
 
 /* --------------------------------------------------------------------------------------------------------- look-ups */
@@ -220,13 +222,14 @@ static const char *const thing_words[] = {"clear", "keep", "move", "place"};
 
 static enum status print_thing(FILE *to, const struct texture_thing *thing, struct err *err)
 {
-    char name[NAME_SIZE], from[NAME_SIZE];
-    if (textfile_quote(thing->name, name, sizeof name, err) || textfile_quote(thing->from, from, sizeof from, err))
+    char name[NAME_SIZE], from[NAME_SIZE], script[NAME_SIZE];
+    if (textfile_quote(thing->name, name, sizeof name, err) || textfile_quote(thing->from, from, sizeof from, err) ||
+        textfile_quote(thing->script, script, sizeof script, err))
         return err->status;
     fprintf(to, "thing %s %s", name, thing_words[thing->kind]);
     if (thing->kind == TEXTURE_THING_MOVE || thing->kind == TEXTURE_THING_PLACE)
         fprintf(to, " %s %.17g %.17g %.17g %.17g", from, thing->by[0], thing->by[1], thing->by[2], thing->turn);
-    fputc('\n', to);
+    fprintf(to, " %s %d\n", script, thing->line);
     return ST_OK;
 }
 
@@ -447,6 +450,17 @@ static enum status read_zone(struct texture_map *map, struct textfile *t, bool k
     return err->status;
 }
 
+/* Where the edit says so. */
+static enum status read_statement(struct texture_thing *thing, struct textfile *t, struct err *err)
+{
+    int64_t line = 0;
+    if (copy_word(&thing->script, t, "the name of a script", err) ||
+        textfile_int(t, "a line of the script", 1, INT_MAX, &line, err))
+        return err->status;
+    thing->line = (int)line;
+    return textfile_end(t, err);
+}
+
 static enum status read_thing_line(struct texture_thing *thing, const struct texture_map *map, struct textfile *t,
                                    struct err *err)
 {
@@ -462,12 +476,12 @@ static enum status read_thing_line(struct texture_thing *thing, const struct tex
     thing->kind = (enum texture_thing_kind)kind;
     if (kind < TEXTURE_THING_MOVE) {
         thing->from = strdup(thing->name);
-        return thing->from ? textfile_end(t, err) : err_nomem(err, "a thing", strlen(thing->name));
+        return thing->from ? read_statement(thing, t, err) : err_nomem(err, "a thing", strlen(thing->name));
     }
     if (copy_word(&thing->from, t, "the name of a thing", err)) return err->status;
     for (int k = 0; k < 3; k++)
         if (textfile_double(t, "a coordinate", &thing->by[k], err)) return err->status;
-    return textfile_double(t, "a turn", &thing->turn, err) ? err->status : textfile_end(t, err);
+    return textfile_double(t, "a turn", &thing->turn, err) ? err->status : read_statement(thing, t, err);
 }
 
 static enum status read_thing(struct texture_map *map, struct textfile *t, struct err *err)
@@ -476,6 +490,7 @@ static enum status read_thing(struct texture_map *map, struct textfile *t, struc
     if (!read_thing_line(&thing, map, t, err)) texture_map_add_thing(map, &thing, err);
     free(thing.name);
     free(thing.from);
+    free(thing.script);
     return err->status;
 }
 
@@ -506,7 +521,7 @@ enum status texture_map_read(struct texture_map *map, const char *path, struct p
     int version = 0;
     *map = (struct texture_map){0};
     product_open(&t, &version, PRODUCT_TEXTURE_MAP, path, prov, err);
-    if (!err->status && version != 2) textfile_wrong_number(&t, version, "version 2", err);
+    if (!err->status && version != 3) textfile_wrong_number(&t, version, "version 3", err);
     if (!err->status && !textfile_expect_line(&t, "base", err) && !copy_word(&base, &t, "an edit or \"none\"", err))
         textfile_end(&t, err);
     if (!err->status && strcmp(base, NO_BASE))

@@ -5,7 +5,7 @@
  * carries a face's id has rules, in order: the first rule that covers a point of the face gives its texture there.
  * "The baked domain" is the area of the unedited model and of all declared edits (surfaces.h), which the atlases hold.
  *
- *   remodel-texture 2
+ *   remodel-texture 3
  *   base E|none                                        the edit that this one stands on
  *   lamp NAME R G B                                    the radiance of this lamp of lights.txt is multiplied; 0 0 0:
  *                                                      off
@@ -20,10 +20,11 @@
  *   triangle X Y Z X Y Z X Y Z                         this plane under this id, COUNT lines
  *   clear ROOM LOW HIGH COUNT X Y ...                  clutter is left out in this footprint, from LOW to HIGH
  *   keep NAME LOW HIGH COUNT X Y ...                   but not in this one
- *   thing NAME clear | keep                            leaves a photographed thing out; keeps it in a cleared place
- *   thing NAME move FROM DX DY UP TURN                 shifts the thing FROM, and turns it
- *   thing NAME place FROM X Y FLOOR TURN               puts the middle of its footprint at X Y, at this floor's height
+ *   thing NAME clear | keep SCRIPT LINE                leaves a photographed thing out; keeps it in a cleared place
+ *   thing NAME move FROM DX DY UP TURN SCRIPT LINE     shifts the thing FROM, and turns it
+ *   thing NAME place FROM X Y FLOOR TURN SCRIPT LINE   puts the middle of its footprint at X Y, at this floor's height
  *
+ * SCRIPT and LINE: the file, without its folder, and the line of the statement that said so last, for messages.
  * Where NAME is FROM, the thing leaves its own place; otherwise NAME is a copy of it.
  *
  * Points are of the edited model's frame, which is the unedited one's. M is twelve numbers, a 3 x 4 matrix by rows,
@@ -88,6 +89,8 @@ struct texture_thing {
     char *name, *from; /* the same but for copies; owned */
     double by[3];      /* MOVE: the shift; PLACE: the middle of the footprint, and the floor's height */
     double turn;       /* degrees, counter-clockwise from above, about the middle of its footprint */
+    char *script;      /* file name of the script that says so, for messages; owned */
+    int line;          /* of its statement, from 1 */
 };
 
 /* {0} is the empty state. */
@@ -104,7 +107,7 @@ struct texture_map {
 };
 
 void texture_map_release(struct texture_map *map);
-/* Copies the names. */
+/* Copies the texts. */
 enum status texture_map_add_thing(struct texture_map *map, const struct texture_thing *thing, struct err *err);
 /* The face of an id whose plane holds p best; NULL: there is none of that id. */
 const struct texture_face *texture_map_find(const struct texture_map *map, int id, struct vec3 p);

@@ -136,8 +136,7 @@ static void log_summary(const struct plan *plan, const struct solid_mesh *mesh, 
 /* A run builds many edits: each line of a log says which one it is about. */
 static void name_subject(struct job *j)
 {
-    const char *slash = j->edit ? strrchr(j->edit, '/') : NULL, *name = slash ? slash + 1 : j->edit ? j->edit : "model";
-    const char *dot = strrchr(name, '.');
+    const char *name = j->edit ? path_file_name(j->edit) : "model", *dot = strrchr(name, '.');
     snprintf(j->subject, sizeof j->subject, "%.*s", (int)(dot && dot > name ? (size_t)(dot - name) : strlen(name)),
              name);
     log_set_subject(j->subject);

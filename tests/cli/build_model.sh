@@ -139,7 +139,7 @@ an_edit_says_what_changes_the_light()
     printf 'remodel-script 1\n# none\n' >home/edits/plain.txt
     edited() { local code=$1 word=$2; shift 2; build "$code" "$word" --script room.txt --edit "$1" --scene home --base base/model.txt; }
     edited 0 closed home/edits/plain.txt
-    [ "$(sed -n 1p made/texture.txt)" = 'remodel-texture 2' ] || { sed -n 1,3p made/texture.txt; fail "the version of texture.txt"; }
+    [ "$(sed -n 1p made/texture.txt)" = 'remodel-texture 3' ] || { sed -n 1,3p made/texture.txt; fail "the version of texture.txt"; }
     [ "$(sed -n 1p made/objects.txt)" = 'remodel-objects 1' ] && ! grep -q '^object' made/objects.txt || { cat made/objects.txt; fail "objects.txt without objects"; }
     printf 'remodel-script 1\nobject plant meshes/a.obj at 1 1 0 matt 0.1 0.4 0.1\n' >home/objects.txt
     cat >home/edits/dark.txt <<'END'

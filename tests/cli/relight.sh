@@ -64,7 +64,7 @@ an_edit_that_says_nothing_of_light_leaves_the_picture_alone()
 {
     cp -r $O/remodel/dark same
     cp $O/model/model.txt same/model.txt
-    printf 'remodel-texture 2\nbase none\n' >same/texture.txt
+    printf 'remodel-texture 3\nbase none\n' >same/texture.txt
     local nothing=(--model "$O/model/model.txt" --edited same/model.txt --map same/texture.txt --axes "$O/model/axes.txt" --vita "$O/vita"
         --outdoors "$O/outdoors/outdoors.exr" --lights lamps.txt --config scenes/t/scene.cfg)
     "$B/bin/render_model" --model $O/model/model.txt --axes $O/model/axes.txt --views $O/views --vdta $O/vdta --vita $O/vita --ids $O/ids --depth $O/depth \

@@ -44,7 +44,7 @@ static inline const char *write_ball(struct vec3 middle, double radius, double r
 
 static inline struct texture_thing edit_ball(enum texture_thing_kind kind, double x, double y, double turn)
 {
-    return (struct texture_thing){kind, (char *)"ball", (char *)"ball", {x, y, 0}, turn};
+    return (struct texture_thing){kind, (char *)"ball", (char *)"ball", {x, y, 0}, turn, (char *)"e.txt", 2};
 }
 
 #endif

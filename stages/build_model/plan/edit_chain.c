@@ -4,19 +4,14 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "common/base/file_path.h"
 #include "stages/build_model/script/verbs.h"
-
-static const char *file_name(const char *path)
-{
-    const char *slash = strrchr(path, '/');
-    return slash ? slash + 1 : path;
-}
 
 /* The provenance has the script's file name without its folder: the product does not depend on the scene's folder. */
 static enum status read_script(struct script *script, const char *path, struct provenance *prov, struct err *err)
 {
-    return script_read(script, path, err) || provenance_add_file(prov, file_name(path), path, err) ? err->status
-                                                                                                   : ST_OK;
+    return script_read(script, path, err) || provenance_add_file(prov, path_file_name(path), path, err) ? err->status
+                                                                                                        : ST_OK;
 }
 
 enum status edit_chain_apply_model(struct plan *plan, const char *path, const struct placer *placer,
@@ -57,11 +52,11 @@ struct chain {
 static enum status base_path(char path[FILE_PATH], const struct script *script, const struct chain *edit,
                              struct err *err)
 {
-    const int folder = (int)(file_name(edit->path) - edit->path);
+    const int folder = (int)(path_file_name(edit->path) - edit->path);
     if (snprintf(path, FILE_PATH, "%.*s%s.txt", folder, edit->path, script->base) >= FILE_PATH)
         return err_set(err, ST_IO, "%s: the path is too long.", edit->path);
     for (const struct chain *e = edit; e; e = e->above)
-        if (!strcmp(file_name(path), file_name(e->path)))
+        if (!strcmp(path_file_name(path), path_file_name(e->path)))
             return err_set(err, ST_DATA, "%s:%d: base %s goes in a circle: that edit stands on this one.", edit->path,
                            script->base_line, script->base);
     if (path_is_file(path)) return ST_OK;

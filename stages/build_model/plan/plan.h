@@ -172,6 +172,8 @@ struct plan_thing {
     enum plan_thing_state state;
     double by[3]; /* MOVED: the sum of all moves; PLACED: the middle of its footprint, and the floor's height */
     double turn;  /* degrees, counter-clockwise from above, about the middle of its footprint */
+    char *script; /* file name of the script that said so last, for messages; NULL: none did; owned */
+    int said;     /* line of its statement */
 };
 
 struct plan_name {

@@ -6,14 +6,27 @@
 #include <string.h>
 
 #include "common/base/array.h"
+#include "common/base/file_path.h"
 #include "common/model/thing_marks.h"
 #include "stages/build_model/plan/plan_internal.h"
 #include "stages/build_model/script/script_words.h"
 
 void plan_things_release(struct plan *plan)
 {
-    for (int i = 0; i < plan->thing_count; i++) free(plan->things[i].name);
+    for (int i = 0; i < plan->thing_count; i++) {
+        free(plan->things[i].name);
+        free(plan->things[i].script);
+    }
     free(plan->things);
+}
+
+/* Remembers the statement for messages about the thing's place: products do not depend on the scene's folder. */
+static enum status note_statement(const struct plan_context *c, struct plan_thing *t)
+{
+    free(t->script);
+    t->said = c->s->line;
+    t->script = strdup(path_file_name(c->path));
+    return t->script ? ST_OK : err_nomem(c->err, "a script's name", strlen(c->path));
 }
 
 /* Adds a thing, of which the name is taken over. from: -1: it is itself. */
@@ -56,6 +69,7 @@ enum status plan_read_thing_copy(struct script_reader *r, struct statement *s)
 static enum status shift(struct plan_context *c, struct plan_thing *t)
 {
     const struct statement *s = c->s;
+    if (note_statement(c, t)) return c->err->status;
     for (int k = 0; k < s->value_count; k++) t->by[k] += s->values[k];
     if (s->has_option[OPTION_TURN]) t->turn += s->options[OPTION_TURN];
     const bool stays = t->by[0] == 0 && t->by[1] == 0 && t->by[2] == 0 && t->turn == 0;
@@ -76,7 +90,7 @@ enum status plan_apply_thing_move(struct plan_context *c, int at)
         return plan_statement_error(c, "a thing moves by two distances, in x and y: \"move %s by DX DY [UP]\".",
                                     s->name);
     if (!s->other) return shift(c, t);
-    if (plan_find_room(c, s->other, &room)) return c->err->status;
+    if (plan_find_room(c, s->other, &room) || note_statement(c, t)) return c->err->status;
     t->state = PLAN_THING_PLACED;
     t->by[0] = s->values[0];
     t->by[1] = s->values[1];
@@ -120,5 +134,5 @@ enum status plan_apply_thing_clear(struct plan_context *c, int at, bool keep)
                                     : t->state == PLAN_THING_KEPT  ? "kept"
                                                                    : "moved");
     t->state = keep ? PLAN_THING_KEPT : PLAN_THING_CLEARED;
-    return ST_OK;
+    return note_statement(c, t);
 }

@@ -333,7 +333,8 @@ enum status texture_things_add(struct texture_map *map, const struct plan *plan,
     for (int i = 0; !err->status && i < plan->thing_count; i++) {
         const struct plan_thing *t = &plan->things[i];
         if (t->state == PLAN_THING_LEFT || (t->state == PLAN_THING_CLEARED && t->from != i)) continue;
-        struct texture_thing thing = {kinds[t->state], t->name, plan->things[t->from].name, {0}, t->turn + 0.0};
+        struct texture_thing thing = {kinds[t->state], t->name, plan->things[t->from].name, {0}, t->turn + 0.0,
+                                      t->script,       t->said};
         for (int k = 0; k < 3; k++) thing.by[k] = t->by[k] + 0.0; /* -0 is 0 */
         texture_map_add_thing(map, &thing, err);
     }

@@ -69,9 +69,19 @@ static char *lines_after(const char *text, const char *statements)
     return lines;
 }
 
+/* wanted: the lines without the script and the line of the statement, which end each of them. */
 static void after(const char *text, const char *statements, const char *wanted)
 {
-    char *lines = lines_after(text, statements);
+    char *lines = lines_after(text, statements), *to = lines;
+    for (const char *from = lines; *from;) {
+        const char *script = strstr(from, " edit.txt "), *end = strchr(from, '\n');
+        assert_true(script && end && script < end);
+        memmove(to, from, (size_t)(script - from));
+        to += script - from;
+        *to++ = '\n';
+        from = end + 1;
+    }
+    *to = 0;
     assert_string_equal(lines, wanted);
     free(lines);
 }
@@ -161,6 +171,30 @@ static void a_copy_is_moved_copied_and_cleared_like_a_thing(void **state)
           "thing second place sofa 3 1 0.25 0\n");
     after(ROOM, "copy sofa as second by 1 0\ncopy second as third by 0.5 0\nclear second\n",
           "thing third move sofa 1.5 0 0 0\n");
+}
+
+static void each_line_names_the_statement_that_said_so_last(void **state)
+{
+    char *lines = lines_after(ROOM, "clear table\nmove sofa by 1 0\n\n# beside it\ncopy sofa as second by 0 1\n"
+                                    "move sofa by 0 0.5\nkeep low-chair\n");
+    struct plan plan;
+    struct script script = {0};
+    struct err err = ERR_INIT;
+    (void)state;
+    assert_string_equal(lines, "thing sofa move sofa 1 0.5 0 0 edit.txt 7\nthing table clear edit.txt 2\n"
+                               "thing low-chair keep edit.txt 8\nthing second move sofa 1 1 0 0 edit.txt 6\n");
+    free(lines);
+    /* an edit that stands on another one */
+    assert_ok(scripted_things(&plan, ROOM, THINGS, EDIT "move sofa by 1 0\nmove table by 1 0\n", &err), err);
+    assert_ok(script_read(&script, scratch_write("more.txt", EDIT "\n\nmove table by 0 1\n"), &err), err);
+    assert_ok(plan_apply(&plan, &script, true, NULL, &err), err);
+    assert_string_equal(plan.things[0].script, "edit.txt");
+    assert_int_equal(plan.things[0].said, 2);
+    assert_string_equal(plan.things[1].script, "more.txt");
+    assert_int_equal(plan.things[1].said, 4);
+    assert_null(plan.things[2].script);
+    script_release(&script);
+    plan_release(&plan);
 }
 
 /* --------------------------------------------------------------------------------------------------------- refusals */
@@ -337,6 +371,7 @@ int main(void)
         cmocka_unit_test(a_copy_stands_beside_its_thing),
         cmocka_unit_test(a_copy_of_what_was_moved_stands_beside_the_new_place),
         cmocka_unit_test(a_copy_is_moved_copied_and_cleared_like_a_thing),
+        cmocka_unit_test(each_line_names_the_statement_that_said_so_last),
         cmocka_unit_test(unknown_names_are_refused),
         cmocka_unit_test(a_thing_shares_its_name_with_nothing_in_the_model),
         cmocka_unit_test(what_an_edit_adds_does_not_take_the_name_of_a_thing),

@@ -128,9 +128,9 @@ static void without_an_edit_all_things_are_where_they_were(void **state)
 static void cleared_moved_and_copied_things(void **state)
 {
     struct texture_thing edits[] = {
-        {TEXTURE_THING_MOVE, (char *)"sofa", (char *)"sofa", {-0.5, 1, 0}, 90},
-        {TEXTURE_THING_MOVE, (char *)"second", (char *)"lamp", {2, 0.25, 0}, 0},
-        {TEXTURE_THING_CLEAR, (char *)"thing1", (char *)"thing1", {0}, 0},
+        {TEXTURE_THING_MOVE, (char *)"sofa", (char *)"sofa", {-0.5, 1, 0}, 90, (char *)"e.txt", 2},
+        {TEXTURE_THING_MOVE, (char *)"second", (char *)"lamp", {2, 0.25, 0}, 0, (char *)"e.txt", 2},
+        {TEXTURE_THING_CLEAR, (char *)"thing1", (char *)"thing1", {0}, 0, (char *)"e.txt", 2},
     };
     struct export_things t = read_in(edits, 3);
     (void)state;
@@ -170,7 +170,7 @@ static void colours_are_radiance_times_exposure_up_to_white(void **state)
 
 static void without_a_folder_there_are_none(void **state)
 {
-    struct texture_thing edit = {TEXTURE_THING_CLEAR, (char *)"sofa", (char *)"sofa", {0}, 0};
+    struct texture_thing edit = {TEXTURE_THING_CLEAR, (char *)"sofa", (char *)"sofa", {0}, 0, (char *)"e.txt", 2};
     const struct texture_map map = {.things = &edit, .thing_count = 1};
     const struct export_thing_files files = {NULL, "no/model.txt", NULL, "texture.txt"};
     struct export_things t;
@@ -182,7 +182,7 @@ static void without_a_folder_there_are_none(void **state)
 
 static void errors_say_what_is_wrong(void **state)
 {
-    struct texture_thing edit = {TEXTURE_THING_MOVE, (char *)"sofa", (char *)"sofa", {1, 0, 0}, 0};
+    struct texture_thing edit = {TEXTURE_THING_MOVE, (char *)"sofa", (char *)"sofa", {1, 0, 0}, 0, (char *)"e.txt", 2};
     const struct texture_map map = {.things = &edit, .thing_count = 1};
     struct export_thing_files files = {scratch_path("things"), scratch_path("model.txt"), NULL, "texture.txt"};
     struct export_things t;
@@ -193,15 +193,16 @@ static void errors_say_what_is_wrong(void **state)
     export_things_release(&t);
     err = (struct err)ERR_INIT;
     try_read(&t, &map, &err);
-    assert_err(err, ST_DATA, "sofa would stand at least");
+    assert_err(err, ST_DATA, "e.txt:2: sofa would stand at least");
     export_things_release(&t);
     err = (struct err)ERR_INIT;
-    edit = (struct texture_thing){TEXTURE_THING_MOVE, (char *)"thing1", (char *)"sofa", {-0.25, 0, 0}, 0};
+    edit = (struct texture_thing){
+        TEXTURE_THING_MOVE, (char *)"thing1", (char *)"sofa", {-0.25, 0, 0}, 0, (char *)"e.txt", 2};
     try_read(&t, &map, &err);
     assert_err(err, ST_DATA, "texture.txt: a copy of sofa has the name thing1, which another thing has, too. Give");
     export_things_release(&t);
     err = (struct err)ERR_INIT;
-    edit = (struct texture_thing){TEXTURE_THING_CLEAR, (char *)"sofaa", (char *)"sofaa", {0}, 0};
+    edit = (struct texture_thing){TEXTURE_THING_CLEAR, (char *)"sofaa", (char *)"sofaa", {0}, 0, (char *)"e.txt", 2};
     try_read(&t, &map, &err);
     assert_err(err, ST_DATA, "the edit changes sofaa, but no thing of that name was found; the nearest is sofa");
     export_things_release(&t);

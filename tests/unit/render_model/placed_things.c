@@ -82,7 +82,7 @@ static struct placed_things read_in(const struct texture_thing *edits, int count
 static struct texture_thing edit_of(enum texture_thing_kind kind, const char *name, double x, double y, double z,
                                     double turn)
 {
-    return (struct texture_thing){kind, (char *)name, (char *)name, {x, y, z}, turn};
+    return (struct texture_thing){kind, (char *)name, (char *)name, {x, y, z}, turn, (char *)"e.txt", 2};
 }
 
 static void refused_in(const struct texture_thing *edit, const struct box *after, int count, const char *words)
@@ -141,7 +141,7 @@ static void each_thing_stays_is_kept_or_is_gone(void **state)
     const struct texture_thing edits[] = {
         edit_of(TEXTURE_THING_CLEAR, "sofa", 0, 0, 0, 0),
         edit_of(TEXTURE_THING_KEEP, "picture", 0, 0, 0, 0),
-        {TEXTURE_THING_MOVE, (char *)"second", (char *)"lamp", {-1, 0, 0}, 0}, /* a copy */
+        {TEXTURE_THING_MOVE, (char *)"second", (char *)"lamp", {-1, 0, 0}, 0, (char *)"e.txt", 2}, /* a copy */
         edit_of(TEXTURE_THING_MOVE, "bird", 0, -1, 0, 0),
     };
     struct placed_things t = read_in(edits, 4, plain, 2);
@@ -312,23 +312,24 @@ static void its_camera_sees_a_point_where_the_moved_point_is(void **state)
 
 static void a_thing_does_not_stand_in_a_wall(void **state)
 {
-    const struct texture_thing moved = edit_of(TEXTURE_THING_MOVE, "sofa", -2.05, 0.5, 0, 0),
-                               placed = edit_of(TEXTURE_THING_PLACE, "sofa", -1.25, 0.5, -2, 0),
-                               across = edit_of(TEXTURE_THING_MOVE, "sofa", -1.9, 0.5, 0, 0),
-                               copy = {TEXTURE_THING_MOVE, (char *)"twin", (char *)"sofa", {0.9, 0, 0}, 0};
+    const struct texture_thing
+        moved = edit_of(TEXTURE_THING_MOVE, "sofa", -2.05, 0.5, 0, 0),
+        placed = edit_of(TEXTURE_THING_PLACE, "sofa", -1.25, 0.5, -2, 0),
+        across = edit_of(TEXTURE_THING_MOVE, "sofa", -1.9, 0.5, 0, 0),
+        copy = {TEXTURE_THING_MOVE, (char *)"twin", (char *)"sofa", {0.9, 0, 0}, 0, (char *)"e.txt", 2};
     (void)state;
     /* nine tenths of the sofa, which is 1.2 long, reach to 2.24 */
-    move_refused("sofa", 0.9, 0, 0, 0, "sofa would stand at least 0.24 deep in a wall, a box or a floor");
-    refused_in(&copy, plain, 2, "twin would stand at least 0.24 deep");
-    move_refused("bird", 1.6, 0, 0, 0, "bird would stand at least 0.29 deep");
-    move_refused("sofa", 0.2, 1.55, 0, 90, "sofa would stand at least 0.09 deep"); /* turned it is too long */
+    move_refused("sofa", 0.9, 0, 0, 0, "e.txt:2: sofa would stand at least 0.24 deep in a wall, a box or a floor");
+    refused_in(&copy, plain, 2, "e.txt:2: twin would stand at least 0.24 deep");
+    move_refused("bird", 1.6, 0, 0, 0, "e.txt:2: bird would stand at least 0.29 deep");
+    move_refused("sofa", 0.2, 1.55, 0, 90, "e.txt:2: sofa would stand at least 0.09 deep"); /* turned it is too long */
     move_allowed("sofa", 0.2, 1.55, 0, 0);
     /* there is a wall in the edited model alone */
-    refused_in(&moved, walled, 3, "sofa would stand at least 0.17 deep");
-    refused_in(&placed, walled, 3, "sofa would stand at least 0.17 deep");
+    refused_in(&moved, walled, 3, "e.txt:2: sofa would stand at least 0.17 deep");
+    refused_in(&placed, walled, 3, "e.txt:2: sofa would stand at least 0.17 deep");
     /* both ends of the sofa are free of this one */
     refused_in(&across, thin, 3, "deep in a wall");
-    move_refused("sofa", 0, 0, -0.5, 0, "sofa would be 0.5 too far into the floor that it stands on");
+    move_refused("sofa", 0, 0, -0.5, 0, "e.txt:2: sofa would be 0.5 too far into the floor that it stands on");
 }
 
 static void outlines_may_touch_a_wall(void **state)
@@ -336,7 +337,7 @@ static void outlines_may_touch_a_wall(void **state)
     (void)state;
     move_allowed("sofa", 0.64, 0, 0, 0); /* its box reaches to 2.04, nine tenths of it to 1.98 */
     move_allowed("mat", 0.5, 0, 0, 30);
-    move_refused("mat", -1.2, 0, 0, 0, "mat would stand at least");
+    move_refused("mat", -1.2, 0, 0, 0, "e.txt:2: mat would stand at least");
 }
 
 static void what_stood_on_the_floor_stands_on_a_floor(void **state)
@@ -345,8 +346,8 @@ static void what_stood_on_the_floor_stands_on_a_floor(void **state)
     struct placed_things t;
     struct err err = ERR_INIT;
     (void)state;
-    move_refused("sofa", 0, 0, 0.5, 0, "sofa would be 0.5 away from the floor that it stands on");
-    move_refused("sofa", 10, 0, 0, 0, "sofa stood on the floor, but there is no floor at its new place");
+    move_refused("sofa", 0, 0, 0.5, 0, "e.txt:2: sofa would be 0.5 away from the floor that it stands on");
+    move_refused("sofa", 10, 0, 0, 0, "e.txt:2: sofa stood on the floor, but there is no floor at its new place");
     move_allowed("sofa", 0, 0, 0.1, 0); /* within 0.03 of the model's height, which is 6 */
     assert_ok(try_read(&t, &on_step, 1, plain, 2, stepped, 3, &err), err);
     placed_things_release(&t);
@@ -359,10 +360,10 @@ static void what_hung_on_a_wall_or_the_ceiling_hangs_there_again(void **state)
     (void)state;
     assert_at(placed_at(&t.placed[0], 2, 0.5, 0), -0.5, 2, 0);
     placed_things_release(&t);
-    move_refused("picture", -1, 0, 0, 0, "picture would be 1 away from the wall that it hangs on");
-    move_refused("picture", 0, 0, 0, 180, "picture would be 3.9 away from the wall");
+    move_refused("picture", -1, 0, 0, 0, "e.txt:2: picture would be 1 away from the wall that it hangs on");
+    move_refused("picture", 0, 0, 0, 180, "e.txt:2: picture would be 3.9 away from the wall");
     move_allowed("picture", 0, 1, 1, 0);
-    move_refused("lamp", 0, 0, -0.75, 0, "lamp would be 0.75 away from the ceiling that it hangs on");
+    move_refused("lamp", 0, 0, -0.75, 0, "e.txt:2: lamp would be 0.75 away from the ceiling that it hangs on");
     move_allowed("lamp", -1, -1, 0, 45);
     move_allowed("bird", 0, 0, -1, 0); /* it hung in the air */
 }
@@ -375,10 +376,10 @@ static void unknown_things_are_named_with_their_nearest(void **state)
     for (int k = 0; k < 4; k++) {
         const struct texture_thing edit = edit_of(kinds[k], "sofaa", 0, 0, 0, 0);
         refused_in(&edit, plain, 2,
-                   "the edit changes sofaa, but no thing of that name was found; the nearest is sofa.");
+                   "e.txt:2: the edit changes sofaa, but no thing of that name was found; the nearest is sofa.");
     }
     const struct texture_thing edit = edit_of(TEXTURE_THING_CLEAR, "wardrobe", 0, 0, 0, 0);
-    refused_in(&edit, plain, 2, "the edit changes wardrobe, but no thing of that name was found. ");
+    refused_in(&edit, plain, 2, "e.txt:2: the edit changes wardrobe, but no thing of that name was found. ");
 }
 
 static void the_folder_of_things_must_be_given_and_there(void **state)

@@ -79,7 +79,7 @@ static int write_things(void **state)
 
 static struct texture_thing edit_of(enum texture_thing_kind kind, const char *name, double x, double y, double turn)
 {
-    return (struct texture_thing){kind, (char *)name, (char *)name, {x, y, 0}, turn};
+    return (struct texture_thing){kind, (char *)name, (char *)name, {x, y, 0}, turn, (char *)"e.txt", 2};
 }
 
 static enum status try_read(struct light_things *t, const char *folder, const struct texture_map *map,
@@ -187,7 +187,8 @@ static void what_is_moved_is_at_its_new_place_after(void **state)
 static void a_copy_is_there_beside_its_thing(void **state)
 {
     (void)state;
-    struct texture_thing edit = {TEXTURE_THING_MOVE, (char *)"twin", (char *)"bird", {0, -1.5, 0}, 0};
+    struct texture_thing edit = {
+        TEXTURE_THING_MOVE, (char *)"twin", (char *)"bird", {0, -1.5, 0}, 0, (char *)"e.txt", 2};
     struct light_things t = read_edits(&edit, 1);
     const struct vec3 to = vec3_add(middles[BIRD - 1], vec3_make(0, -1.5, 0));
     assert_true(t.changes);
@@ -258,7 +259,7 @@ static void a_thing_that_does_not_fit_is_refused(void **state)
     struct light_things t;
     struct err err = ERR_INIT;
     assert_int_equal(try_read(&t, scratch_path("things"), &map, "walled.txt", &err), ST_DATA);
-    assert_err(err, ST_DATA, "bird would stand at least");
+    assert_err(err, ST_DATA, "e.txt:2: bird would stand at least");
     assert_true(!t.changes && !t.before.count && !t.after.count);
     light_things_release(&t);
 }

@@ -7,7 +7,7 @@
 
 #include "tests/unit/scratch.h"
 
-#define HEAD "remodel-texture 2\nbase none\n"
+#define HEAD "remodel-texture 3\nbase none\n"
 #define FACE "face 3 0 0 1 0 floor/hall\n"
 #define SAME " 1 0 0 0 0 1 0 0 0 0 1 0"
 
@@ -29,7 +29,7 @@ static void reads_back(const char *text, struct texture_map *map)
 static void what_is_written_is_read_back(void **state)
 {
     static const char text[] =
-        "remodel-texture 2\nbase \"open plan\"\n"
+        "remodel-texture 3\nbase \"open plan\"\n"
         "face 3 0 0 1 0.10000000000000001 floor/hall\n"
         "place 3" SAME "\nedge 7 1 0 0 0.5 0 1 0 0 0 0 1 0 within 0 0 0 1 0 0 1 1 0 0 1 0\n"
         "new 1\ntriangle 0 0 0 1 0 0 0 1 0\n"
@@ -50,7 +50,7 @@ static void what_is_written_is_read_back(void **state)
 
 static void lamps_and_gloss_are_read_back(void **state)
 {
-    static const char text[] = "remodel-texture 2\nbase none\n"
+    static const char text[] = "remodel-texture 3\nbase none\n"
                                "lamp \"over the table\" 0 0 0\nlamp floor 2 0.5 0.10000000000000001\n"
                                "face 3 0 0 1 0 floor/hall\ngloss phong 0.10000000000000001 30\noutdoors\n"
                                "face 4 0 0 1 0 box/b/top\ngloss matt\n"
@@ -73,11 +73,11 @@ static void lamps_and_gloss_are_read_back(void **state)
 static void things_are_read_back(void **state)
 {
     static const char text[] = HEAD FACE "outdoors\nclear hall 0 2.5 3 0 0 4 0 4 3\n"
-                                         "thing stool clear\nthing \"old sofa\" keep\n"
-                                         "thing table move table 0.10000000000000001 -0.80000000000000004 0 0\n"
-                                         "thing \"second table\" move table 1 0 0.25 -90\n"
-                                         "thing chair place chair 3 1.5 0.25 30.5\n"
-                                         "thing other place \"old sofa\" -3 1.5 0 0\n";
+                                         "thing stool clear e.txt 2\nthing \"old sofa\" keep \"open plan.txt\" 3\n"
+                                         "thing table move table 0.10000000000000001 -0.80000000000000004 0 0 e.txt 4\n"
+                                         "thing \"second table\" move table 1 0 0.25 -90 e.txt 5\n"
+                                         "thing chair place chair 3 1.5 0.25 30.5 e.txt 6\n"
+                                         "thing other place \"old sofa\" -3 1.5 0 0 e.txt 7\n";
     struct texture_map map;
     (void)state;
     reads_back(text, &map);
@@ -91,6 +91,10 @@ static void things_are_read_back(void **state)
     assert_string_equal(map.things[3].name, "second table");
     assert_string_equal(map.things[3].from, "table");
     assert_true(map.things[3].turn == -90);
+    assert_string_equal(map.things[1].script, "open plan.txt");
+    assert_int_equal(map.things[1].line, 3);
+    assert_string_equal(map.things[3].script, "e.txt");
+    assert_int_equal(map.things[3].line, 5);
     assert_int_equal(map.things[4].kind, TEXTURE_THING_PLACE);
     assert_true(map.things[4].by[2] == 0.25 && map.things[4].turn == 30.5);
     assert_string_equal(map.things[5].from, "old sofa");
@@ -100,16 +104,18 @@ static void things_are_read_back(void **state)
 
 static void a_thing_that_is_added_is_a_copy(void **state)
 {
-    char name[] = "b", from[] = "sofa";
-    const struct texture_thing thing = {TEXTURE_THING_PLACE, name, from, {1, 2, 3}, 45};
+    char name[] = "b", from[] = "sofa", script[] = "e.txt";
+    const struct texture_thing thing = {TEXTURE_THING_PLACE, name, from, {1, 2, 3}, 45, script, 6};
     struct texture_map map = {0};
     struct err err = ERR_INIT;
     (void)state;
     assert_ok(texture_map_add_thing(&map, &thing, &err), err);
-    name[0] = from[0] = 'x';
+    name[0] = from[0] = script[0] = 'x';
     assert_int_equal(map.thing_count, 1);
     assert_string_equal(map.things[0].name, "b");
     assert_string_equal(map.things[0].from, "sofa");
+    assert_string_equal(map.things[0].script, "e.txt");
+    assert_int_equal(map.things[0].line, 6);
     assert_true(map.things[0].kind == TEXTURE_THING_PLACE && map.things[0].by[1] == 2 && map.things[0].turn == 45);
     texture_map_release(&map);
 }
@@ -150,8 +156,8 @@ static void what_is_wrong_is_named_with_its_line(void **state)
     static const struct {
         const char *text, *words;
     } cases[] = {
-        {"remodel-texture 1\n", "a.txt:1: found \"1\", wanted version 2"},
-        {"remodel-texture 3\n", "a.txt:1"},
+        {"remodel-texture 2\n", "a.txt:1: found \"2\", wanted version 3"},
+        {"remodel-texture 4\n", "a.txt:1"},
         {HEAD "place 3" SAME "\n", "a.txt:3: found \"place\", wanted a line \"face\" before it"},
         {HEAD FACE "place 0" SAME "\n", "a.txt:4"},
         {HEAD FACE "place 3 1 0 0\n", "a.txt:4"},
@@ -191,8 +197,8 @@ static void what_is_wrong_is_named_with_its_line(void **state)
         {HEAD "thing\n", "a.txt:3: found the end of the line, wanted the name of a thing"},
         {HEAD "thing sofa\n", "a.txt:3: found the end of the line, wanted what happens to it"},
         {HEAD "thing sofa lift\n", "a.txt:3: found \"lift\", wanted clear, keep, move or place"},
-        {HEAD "thing sofa clear sofa\n", "a.txt:3: found \"sofa\", wanted the end of the line"},
-        {HEAD "thing sofa keep 1\n", "a.txt:3: found \"1\", wanted the end of the line"},
+        {HEAD "thing sofa clear sofa\n", "a.txt:3: found the end of the line, wanted a line of the script"},
+        {HEAD "thing sofa keep e.txt 0\n", "a.txt:3: found \"0\""},
         {HEAD "thing sofa move\n", "a.txt:3: found the end of the line, wanted the name of a thing"},
         {HEAD "thing sofa move sofa\n", "a.txt:3: found the end of the line, wanted a coordinate"},
         {HEAD "thing sofa move sofa 1 2\n", "a.txt:3: found the end of the line, wanted a coordinate"},
@@ -200,7 +206,9 @@ static void what_is_wrong_is_named_with_its_line(void **state)
         {HEAD "thing sofa move sofa 1 inf 0 0\n", "a.txt:3: found \"inf\""},
         {HEAD "thing sofa place sofa 1 2 0\n", "a.txt:3: found the end of the line, wanted a turn"},
         {HEAD "thing sofa place sofa 1 2 0 nan\n", "a.txt:3: found \"nan\", wanted a turn"},
-        {HEAD "thing a clear\nthing sofa place sofa 1 2 0 0 0\n", "a.txt:4: found \"0\", wanted the end of the line"},
+        {HEAD "thing sofa clear\n", "a.txt:3: found the end of the line, wanted the name of a script"},
+        {HEAD "thing a clear e.txt 1\nthing sofa place sofa 1 2 0 0 e.txt 2 0\n",
+         "a.txt:4: found \"0\", wanted the end of the line"},
     };
     (void)state;
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
