@@ -10,6 +10,10 @@
 #include "common/base/array.h"
 #include "common/product/product.h"
 
+#define NORMAL_SLACK 1e-6
+
+enum { MAX_CORNERS = 100000 };
+
 static const char *const words[THING_SUPPORTS] = {"floor", "wall", "ceiling", "none"};
 
 const char *thing_support_word(enum thing_support support) { return words[support]; }
@@ -25,6 +29,7 @@ static void release(struct thing *t)
 {
     free(t->name);
     free(t->view);
+    flat_outline_release(&t->outline);
     *t = (struct thing){0};
 }
 
@@ -48,6 +53,13 @@ void thing_list_release(struct thing_list *list)
     *list = (struct thing_list){0};
 }
 
+static void write_outline(FILE *to, const struct flat_outline *o)
+{
+    fprintf(to, "flat %.17g %.17g %.17g %.17g %d", o->normal.x, o->normal.y, o->normal.z, o->offset, o->count);
+    for (int i = 0; i < o->count; i++) fprintf(to, " %.17g %.17g", o->xy[i][0], o->xy[i][1]);
+    fputc('\n', to);
+}
+
 enum status thing_list_write(const struct thing_list *list, const char *path, const struct provenance *prov,
                              struct err *err)
 {
@@ -62,6 +74,7 @@ enum status thing_list_write(const struct thing_list *list, const char *path, co
                     name, words[t->support], t->low.x, t->low.y, t->low.z, t->high.x, t->high.y, t->high.z, t->voxels,
                     t->views, view, t->rect[0], t->rect[1], t->rect[2], t->rect[3], t->radiance[0], t->radiance[1],
                     t->radiance[2]);
+        if (!err->status && t->outline.count) write_outline(f.fp, &t->outline);
     }
     if (!err->status) outfile_commit(&f, err);
     outfile_discard(&f);
@@ -85,7 +98,7 @@ static enum status read_thing(struct thing *t, struct textfile *f, struct err *e
     double *const box[] = {&t->low.x, &t->low.y, &t->low.z, &t->high.x, &t->high.y, &t->high.z};
     char *word;
     int64_t views = 0;
-    if (textfile_expect(f, "thing", err) || textfile_word(f, "name", &word, err)) return err->status;
+    if (textfile_word(f, "name", &word, err)) return err->status;
     if (!(t->name = strdup(word))) return err_nomem(err, "a name", strlen(word));
     if (read_support(f, &t->support, err)) return err->status;
     for (int i = 0; i < 6; i++)
@@ -106,20 +119,48 @@ static enum status read_thing(struct thing *t, struct textfile *f, struct err *e
     return textfile_end(f, err);
 }
 
+/* The line "flat" of a thing, whose first word has been read. */
+static enum status read_outline(struct flat_outline *o, struct textfile *f, struct err *err)
+{
+    struct vec3 normal = {0, 0, 0};
+    double offset = 0, *const plane[] = {&normal.x, &normal.y, &normal.z, &offset};
+    int64_t count = 0;
+    for (int i = 0; i < 4; i++)
+        if (textfile_double(f, "the plane of a face", plane[i], err)) return err->status;
+    if (!(fabs(vec3_length(normal) - 1) < NORMAL_SLACK))
+        return textfile_wrong_number(f, vec3_length(normal), "a normal of length 1", err);
+    if (textfile_int(f, "a number of corners", 3, MAX_CORNERS, &count, err) ||
+        flat_outline_init(o, normal, offset, (int)count, err))
+        return err->status;
+    for (int i = 0; i < 2 * o->count; i++)
+        if (textfile_double(f, "coordinate of a corner", &o->xy[i / 2][i % 2], err)) return err->status;
+    return textfile_end(f, err);
+}
+
+static enum status read_line(struct thing_list *list, struct textfile *f, struct err *err)
+{
+    struct thing t = {0};
+    char *word;
+    if (textfile_word(f, "thing or flat", &word, err)) return err->status;
+    if (!strcmp(word, "flat")) {
+        if (!list->count || list->things[list->count - 1].outline.count)
+            return textfile_error(f, err, word, "a line \"thing\" before it");
+        return read_outline(&list->things[list->count - 1].outline, f, err);
+    }
+    if (strcmp(word, "thing")) return textfile_error(f, err, word, "thing or flat");
+    if (!read_thing(&t, f, err) && thing_list_find(list, t.name) >= 0)
+        textfile_error(f, err, t.name, "another name than those above");
+    if (!err->status) return thing_list_add(list, &t, err);
+    release(&t);
+    return err->status;
+}
+
 enum status thing_list_read(struct thing_list *list, const char *path, struct provenance *prov, struct err *err)
 {
     struct textfile f = {0};
     *list = (struct thing_list){0};
     product_open(&f, NULL, PRODUCT_THINGS, path, prov, err);
-    while (!err->status && textfile_next(&f)) {
-        struct thing t = {0};
-        if (!read_thing(&t, &f, err) && thing_list_find(list, t.name) >= 0)
-            textfile_error(&f, err, t.name, "another name than those above");
-        if (err->status)
-            release(&t);
-        else
-            thing_list_add(list, &t, err);
-    }
+    while (!err->status && textfile_next(&f)) read_line(list, &f, err);
     textfile_release(&f);
     if (err->status) thing_list_release(list);
     return err->status;

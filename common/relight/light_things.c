@@ -74,7 +74,7 @@ const struct placed_thing *light_things_moved(struct vec3 *was, const struct lig
     for (int k = 0; k < t->placed.placed_count; k++) {
         const struct placed_thing *p = &t->placed.placed[k];
         *was = placed_thing_origin(p, at);
-        if (thing_volume_at(&t->placed.volume, *was) == p->id) return p;
+        if (placed_thing_holds(&t->placed, p, *was)) return p;
     }
     return NULL;
 }

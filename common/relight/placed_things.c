@@ -16,10 +16,11 @@
 #include "common/light/model_clearance.h"
 #include "common/product/product.h"
 
-#define SHRUNK   0.9  /* of the box's sides: what may not be in a wall */
-#define MAX_STEP 0.03 /* of the model's height: between points of a box that are tested */
-#define SURFACE  0.4f /* distance, of its band, up to which a voxel is on the surface */
-#define OFF_SIDE 0.03 /* of the model's height: change of the gap between a thing and its support that is none */
+#define SHRUNK     0.9  /* of the box's sides: what may not be in a wall */
+#define MAX_STEP   0.03 /* of the model's height: between points of a box that are tested */
+#define FLAT_SLACK 0.5  /* voxels: what is so near to the face that a thing lies on is of the thing */
+#define SURFACE    0.4f /* distance, of its band, up to which a voxel is on the surface */
+#define OFF_SIDE   0.03 /* of the model's height: change of the gap between a thing and its support that is none */
 
 enum { MIN_STEPS = 3, MAX_STEPS = 24 }; /* points along each side of a box that are tested */
 
@@ -33,6 +34,36 @@ void placed_things_release(struct placed_things *t)
     free(t->placed);
     free(t->points);
     *t = (struct placed_things){0};
+}
+
+struct thing_shape placed_things_shape(const struct placed_things *t, uint32_t id)
+{
+    return (struct thing_shape){id, &t->volume, &t->points[id], &t->list.things[id - 1].outline};
+}
+
+const struct flat_outline *placed_things_outline(const struct placed_things *t, uint32_t id)
+{
+    if (!id || id > (uint32_t)t->list.count || !t->list.things[id - 1].outline.count) return NULL;
+    return &t->list.things[id - 1].outline;
+}
+
+/* Whether a thing that lies flat has a point of its face. */
+static bool lies_at(const struct placed_things *t, const struct flat_outline *o, struct vec3 p)
+{
+    return fabs(flat_outline_height(o, p)) <= FLAT_SLACK * t->volume.grid.voxel && flat_outline_holds(o, p);
+}
+
+uint32_t placed_things_flat_at(const struct placed_things *t, struct vec3 p, enum thing_fate fate)
+{
+    for (int i = 0; i < t->list.count; i++)
+        if (t->fate[i + 1] == fate && lies_at(t, &t->list.things[i].outline, p)) return (uint32_t)i + 1;
+    return 0;
+}
+
+bool placed_thing_holds(const struct placed_things *t, const struct placed_thing *p, struct vec3 was)
+{
+    const struct flat_outline *flat = placed_things_outline(t, p->id);
+    return flat ? lies_at(t, flat, was) : thing_volume_at(&t->volume, was) == p->id;
 }
 
 struct vec3 placed_thing_place(const struct placed_thing *p, struct vec3 at)
@@ -218,6 +249,17 @@ static void grow_box(struct thing_points *t, struct vec3 p)
     t->high = vec3_make(fmax(t->high.x, p.x), fmax(t->high.y, p.y), fmax(t->high.z, p.z));
 }
 
+/* An outline is exact, where the voxels of what lies flat are coarse, and may be missing. */
+static void add_outline(struct thing_points *t, const struct flat_outline *o)
+{
+    const bool none = !t->count;
+    for (int i = 0; i < o->count; i++) {
+        const struct vec3 corner = flat_outline_corner(o, i);
+        grow_box(t, corner);
+        if (none && t->count < THING_POINTS) t->at[t->count++] = corner;
+    }
+}
+
 /* The boxes of the things, and every so many of the voxels of each one's surface. */
 static enum status list_points(struct placed_things *t, struct err *err)
 {
@@ -246,6 +288,7 @@ static enum status list_points(struct placed_things *t, struct err *err)
         if (seen[id]++ % step == 0) p->at[p->count++] = thing_voxel_centre(&t->volume.grid, (int64_t)i);
     }
     free(all);
+    for (int k = 0; k < t->list.count; k++) add_outline(&t->points[k + 1], &t->list.things[k].outline);
     return ST_OK;
 }
 

@@ -12,13 +12,9 @@
 #include "common/texture/view_ids.h"
 
 struct flat_thing {
-    int name;            /* of the marks */
-    uint32_t id;         /* of the volume and the masks; the caller sets it */
-    struct vec3 normal;  /* of the face, unit: into the room; model frame */
-    double offset;       /* normal . p of the face */
-    struct vec3 axes[2]; /* of the face: corner i is at xy[i] of them */
-    double (*xy)[2];
-    int corners;
+    int name;    /* of the marks */
+    uint32_t id; /* of the volume and the masks; the caller sets it */
+    struct flat_outline outline;
 };
 
 /* {0} is the empty state; everything is owned. */
@@ -37,8 +33,9 @@ void flat_things_release(struct flat_things *f);
 /* Gives the things the voxels about their faces that nothing else stands in. */
 void flat_things_fill(const struct flat_things *f, struct thing_volume *v);
 
-/* Sets the box and the support of a thing. voxel: its thickness. */
-void flat_thing_measure(struct thing *t, const struct flat_thing *f, const struct thing_volume *v);
+/* Sets the outline, the box and the support of a thing. v: with its voxels, of which one is its thickness. ST_NOMEM. */
+enum status flat_thing_measure(struct thing *t, const struct flat_thing *f, const struct thing_volume *v,
+                               struct err *err);
 
 /* Sets the pixels of a mask that show a flat thing, with nothing before it. camera: model frame; ids: of the view;
  * depth: of what it shows, scene units, like that of ids; scale: model units per scene unit. */

@@ -362,8 +362,8 @@ static enum status add_flats(struct finder *f, struct err *err)
         if (!(t->name = strdup(f->job->marks->names[f->flats.list[i].name]))) err_nomem(err, "a name", 1);
     }
     flat_things_fill(&f->flats, &f->volume);
-    for (int i = 0; i < f->flats.count; i++)
-        flat_thing_measure(&f->things[f->flats.list[i].id - 1], &f->flats.list[i], &f->volume);
+    for (int i = 0; !err->status && i < f->flats.count; i++)
+        flat_thing_measure(&f->things[f->flats.list[i].id - 1], &f->flats.list[i], &f->volume, err);
     return err->status;
 }
 
@@ -512,6 +512,7 @@ enum status things_find(const struct things_job *job, struct err *err)
         if (f.tiles) sheet_tile_release(&f.tiles[k]);
         if (f.things) free(f.things[k].name);
         if (f.things) free(f.things[k].view);
+        if (f.things) flat_outline_release(&f.things[k].outline);
     }
     free(f.things);
     free(f.sights);

@@ -261,17 +261,18 @@ static enum status prepare_thing(struct clutter_layer *layer, struct clutter_cho
 }
 
 enum status clutter_draw_thing(struct model_picture *p, float *front, const struct thing_pixels *pixels,
-                               struct clutter_scene *s, const struct view *camera, const struct clutter_filter *filter,
-                               const struct thing_points *points, struct provenance *prov, struct err *err)
+                               struct clutter_scene *s, const struct view *camera, const struct thing_shape *thing,
+                               struct provenance *prov, struct err *err)
 {
+    const struct clutter_filter filter = {.volume = thing->volume, .only = thing->id};
     const struct view scene_camera = world_from_model_view(&s->axes, camera);
     const size_t count = (size_t)p->width * (size_t)p->height;
     struct clutter_choice choice;
     struct clutter_layer layer = {0};
     struct thing_rows drawn;
-    if (!prepare_thing(&layer, &choice, p, s, &scene_camera, points, max_views(s), prov, err) &&
-        !clutter_blend(&layer, front, s, &choice, &scene_camera, filter, err))
-        thing_surface_draw(&drawn, &layer, front, s, &choice, &scene_camera, filter->volume, filter->only, points);
+    if (!prepare_thing(&layer, &choice, p, s, &scene_camera, thing->points, max_views(s), prov, err) &&
+        (thing->outline->count || !clutter_blend(&layer, front, s, &choice, &scene_camera, &filter, err)))
+        thing_surface_draw(&drawn, &layer, front, s, &choice, &scene_camera, thing);
     if (!err->status && pixels->stays) leave_pixels(&layer, pixels->stays, count);
     for (size_t i = 0; !err->status && i < count; i++) {
         layer.doubt[i] = 0; /* what is not drawn of a thing is not there: the shell is sure */
@@ -283,8 +284,8 @@ enum status clutter_draw_thing(struct model_picture *p, float *front, const stru
 }
 
 enum status clutter_draw_surface(struct model_picture *p, float *front, struct clutter_scene *s,
-                                 const struct view *camera, const struct thing_volume *volume, uint32_t id,
-                                 const struct thing_points *points, struct provenance *prov, struct err *err)
+                                 const struct view *camera, const struct thing_shape *thing, struct provenance *prov,
+                                 struct err *err)
 {
     const struct view scene_camera = world_from_model_view(&s->axes, camera);
     const size_t count = (size_t)p->width * (size_t)p->height;
@@ -292,10 +293,10 @@ enum status clutter_draw_surface(struct model_picture *p, float *front, struct c
     struct clutter_layer layer = {0};
     struct thing_rows rows;
     const int most = max_views(s) < SURFACE_VIEWS ? max_views(s) : SURFACE_VIEWS;
-    if (!prepare_thing(&layer, &choice, p, s, &scene_camera, points, most, prov, err)) {
+    if (!prepare_thing(&layer, &choice, p, s, &scene_camera, thing->points, most, prov, err)) {
         for (size_t i = 0; i < count; i++)
             if (p->made[i] == MADE_CLUTTER) layer.rgba[4 * i + 3] = 1;
-        thing_surface_draw(&rows, &layer, front, s, &choice, &scene_camera, volume, id, points);
+        thing_surface_draw(&rows, &layer, front, s, &choice, &scene_camera, thing);
         for (size_t i = 0; i < count; i++)
             if (p->made[i] == MADE_CLUTTER) layer.rgba[4 * i + 3] = 0;
         lay(p, front, &layer, NULL, s->axes.scale, rows);

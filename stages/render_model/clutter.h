@@ -38,18 +38,16 @@ struct thing_pixels {
     uint8_t *shown;       /* set to 0 where a thing covers something */
 };
 
-/* Draws the one thing that the filter lets pass, wherever it is before `front`, of which it becomes a part. camera: the
- * picture's, moved as the thing was, the other way. points: on its
- * surface. */
+/* Draws a thing, wherever it is before `front`, of which it becomes a part. camera: the picture's, moved as the thing
+ * was, the other way. */
 enum status clutter_draw_thing(struct model_picture *p, float *front, const struct thing_pixels *pixels,
-                               struct clutter_scene *scene, const struct view *camera,
-                               const struct clutter_filter *filter, const struct thing_points *points,
+                               struct clutter_scene *scene, const struct view *camera, const struct thing_shape *thing,
                                struct provenance *prov, struct err *err);
 
-/* Draws the fused surface of the thing `id` where a picture shows no clutter and nothing nearer. The rest as for
+/* Draws the fused surface of a thing where a picture shows no clutter and nothing nearer. The rest as for
  * clutter_draw_thing(). */
 enum status clutter_draw_surface(struct model_picture *p, float *front, struct clutter_scene *scene,
-                                 const struct view *camera, const struct thing_volume *volume, uint32_t id,
-                                 const struct thing_points *points, struct provenance *prov, struct err *err);
+                                 const struct view *camera, const struct thing_shape *thing, struct provenance *prov,
+                                 struct err *err);
 
 #endif

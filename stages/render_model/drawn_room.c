@@ -111,13 +111,12 @@ enum status room_draw_things(struct model_picture *picture, struct room *room, c
                              struct provenance *prov, struct err *err)
 {
     const struct placed_things *t = &room->things;
-    struct clutter_filter filter = clutter_filter_of(t, NULL);
     const struct thing_pixels pixels = {.shown = same};
     for (int i = 0; !err->status && room->clutter && i < t->placed_count; i++) {
         const struct placed_thing *p = &t->placed[i];
         const struct view moved = placed_thing_camera(p, camera);
-        filter.only = p->id;
-        clutter_draw_thing(picture, room->front, &pixels, room->clutter, &moved, &filter, &t->points[p->id], prov, err);
+        const struct thing_shape shape = placed_things_shape(t, p->id);
+        clutter_draw_thing(picture, room->front, &pixels, room->clutter, &moved, &shape, prov, err);
     }
     return err->status;
 }
@@ -143,13 +142,12 @@ enum status room_draw_uncovered(struct model_picture *picture, struct room *room
                                 const uint8_t *stays, struct provenance *prov, struct err *err)
 {
     const struct placed_things *t = &room->things;
-    struct clutter_filter filter = clutter_filter_of(t, NULL);
     const struct thing_pixels pixels = {.stays = stays};
     for (int i = 0; !err->status && room->clutter && i < t->list.count; i++) {
         const struct thing *thing = &t->list.things[i];
         if (t->fate[i + 1] == THING_IS_GONE || !box_matters(camera, thing->low, thing->high, stays)) continue;
-        filter.only = (uint32_t)i + 1;
-        clutter_draw_thing(picture, room->front, &pixels, room->clutter, camera, &filter, &t->points[i + 1], prov, err);
+        const struct thing_shape shape = placed_things_shape(t, (uint32_t)i + 1);
+        clutter_draw_thing(picture, room->front, &pixels, room->clutter, camera, &shape, prov, err);
     }
     return err->status;
 }
@@ -162,8 +160,8 @@ static enum status draw_surfaces(struct model_picture *picture, struct room *roo
     for (int i = 0; !err->status && room->clutter && i < t->list.count; i++) {
         const struct thing *thing = &t->list.things[i];
         if (t->fate[i + 1] == THING_IS_GONE || !box_matters(camera, thing->low, thing->high, NULL)) continue;
-        clutter_draw_surface(picture, room->front, room->clutter, camera, &t->volume, (uint32_t)i + 1,
-                             &t->points[i + 1], prov, err);
+        const struct thing_shape shape = placed_things_shape(t, (uint32_t)i + 1);
+        clutter_draw_surface(picture, room->front, room->clutter, camera, &shape, prov, err);
     }
     return err->status;
 }

@@ -81,18 +81,18 @@ static enum status grow(uint8_t *same, const struct view *camera, double margin,
 }
 
 /* Whether the first thing on the way to the model's surface at depth z is gone: legs are too thin for depth, and where
- * a view's depth is off, others have seen what is there. */
-static bool meets_gone(const struct clutter_filter *filter, const struct view *camera, double u, double v, double z)
+ * a view's depth is off, others have seen what is there. What lies flat is met in its outline, behind all others. */
+static bool meets_gone(const struct placed_things *t, const struct view *camera, double u, double v, double z)
 {
-    if (!filter->volume || !(z > 0)) return false;
-    const struct vec3 way = vec3_sub(view_unproject(camera, u, v, z), camera->center);
-    const int steps = (int)(vec3_length(way) / filter->volume->grid.voxel) + 1;
+    if (!(z > 0)) return false;
+    const struct vec3 end = view_unproject(camera, u, v, z), way = vec3_sub(end, camera->center);
+    const int steps = (int)(vec3_length(way) / t->volume.grid.voxel) + 1;
     for (int k = 1; k <= steps; k++) {
         const struct vec3 at = vec3_add(camera->center, vec3_scale(way, (double)k / steps));
-        const uint32_t id = thing_volume_at(filter->volume, at);
-        if (id) return filter->fate[id] == THING_IS_GONE;
+        const uint32_t id = thing_volume_at(&t->volume, at);
+        if (id && !placed_things_outline(t, id)) return t->fate[id] == THING_IS_GONE;
     }
-    return false;
+    return placed_things_flat_at(t, end, THING_IS_GONE) > 0;
 }
 
 /* Clears `same` where the photo shows clutter that is left out, and a little around it. gone: gets 1 there. */
@@ -124,10 +124,11 @@ static enum status leave_cleared(uint8_t *same, uint8_t *gone, const struct room
             const size_t i = (size_t)y * (size_t)camera->width + (size_t)x;
             const double z = depth.interior.z[i] * room->in.axes.scale;
             const enum thing_fate fate = mask.shows ? filter.fate[mask.shows[i]] : THING_STAYS;
-            stays[i] = fate != THING_IS_GONE &&
-                       !(z > 0 && ids.clutter[i] > CLUTTER_UNSURE &&
-                         clutter_filter_drops(&filter, view_unproject(camera, x + 0.5, y + 0.5, z))) &&
-                       !meets_gone(&filter, camera, x + 0.5, y + 0.5, ids.z[i] * room->in.axes.scale);
+            stays[i] =
+                fate != THING_IS_GONE &&
+                !(z > 0 && ids.clutter[i] > CLUTTER_UNSURE &&
+                  clutter_filter_drops(&filter, view_unproject(camera, x + 0.5, y + 0.5, z))) &&
+                !(filter.volume && meets_gone(&room->things, camera, x + 0.5, y + 0.5, ids.z[i] * room->in.axes.scale));
         }
     for (size_t i = 0; !err->status && i < pixels; i++) gone[i] = !stays[i];
     if (!err->status) grow(stays, camera, CLEARED_MARGIN, err);

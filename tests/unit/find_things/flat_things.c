@@ -47,7 +47,7 @@ static void a_poster_hangs_on_a_wall(void **state)
     struct err err = ERR_INIT;
     assert_ok(try_place(&f, poster, &err), err);
     assert_int_equal(f.count, 1);
-    assert_float_equal(f.list[0].normal.x, -1, 1e-6); /* into the room */
+    assert_float_equal(f.list[0].outline.normal.x, -1, 1e-6); /* into the room */
     v.id = calloc(voxels, sizeof *v.id);
     v.distance = calloc(voxels, sizeof *v.distance);
     assert_true(v.id && v.distance);
@@ -60,7 +60,11 @@ static void a_poster_hangs_on_a_wall(void **state)
     assert_true(v.distance[thing_voxel_at(&v.grid, before)] > 0 && v.distance[thing_voxel_at(&v.grid, behind)] < 0);
     assert_int_equal(thing_volume_at(&v, vec3_make(1.97, 0, 1.75)), 0);
     assert_int_equal(thing_volume_at(&v, vec3_make(1.8, 0, 1.3)), 0);
-    flat_thing_measure(&t, &f.list[0], &v);
+    assert_ok(flat_thing_measure(&t, &f.list[0], &v, &err), err);
+    assert_int_equal(t.outline.count, CORNERS);
+    for (int i = 0; i < CORNERS; i++)
+        assert_float_equal(vec3_length(vec3_sub(flat_outline_corner(&t.outline, i), poster[i])), 0, 1e-6);
+    flat_outline_release(&t.outline);
     assert_int_equal(t.support, THING_ON_WALL);
     assert_float_equal(t.low.x, 2 - VOXEL, 1e-9);
     assert_float_equal(t.high.z, 1.6, 1e-6);

@@ -490,6 +490,8 @@ static void faces_of_another_size_are_refused(void **state)
 
 enum { CUBE = 1, CELLS = 32 };
 
+static const struct flat_outline not_flat = {.count = 0};
+
 /* Voxels of 0.05 around the cube: those of it, and of a margin of two voxels, are the thing's. seen: their distances
  * are known. The caller releases it. */
 static struct thing_volume cube_volume(bool seen)
@@ -534,8 +536,8 @@ static void draw_cube(struct drawn_cube *d, struct scene *s, const struct view *
                       bool seen)
 {
     struct thing_volume volume = cube_volume(seen);
-    const struct clutter_filter filter = {.volume = &volume, .only = CUBE};
     const struct thing_points points = cube_corners();
+    const struct thing_shape thing = {CUBE, &volume, &points, &not_flat};
     const struct thing_pixels pixels = {.shown = d->shown};
     struct err err = ERR_INIT;
     *d = (struct drawn_cube){.moved = *camera};
@@ -545,8 +547,7 @@ static void draw_cube(struct drawn_cube *d, struct scene *s, const struct view *
     draw_shell(&d->shell, camera);
     memset(d->shown, 1, sizeof d->shown);
     for (size_t i = 0; i < (size_t)W * H; i++) d->front[i] = wall > 0 ? wall : d->shell.z[i];
-    assert_ok(clutter_draw_thing(&d->picture, d->front, &pixels, s->clutter, &d->moved, &filter, &points, NULL, &err),
-              err);
+    assert_ok(clutter_draw_thing(&d->picture, d->front, &pixels, s->clutter, &d->moved, &thing, NULL, &err), err);
     thing_volume_release(&volume);
 }
 
@@ -614,8 +615,8 @@ static void a_side_that_its_thing_hides_is_not_drawn(void **state)
     (void)state;
     const struct view camera = mid_way();
     struct thing_volume volume = cube_volume(true);
-    const struct clutter_filter filter = {.volume = &volume, .only = CUBE};
     const struct thing_points points = cube_corners();
+    const struct thing_shape thing = {CUBE, &volume, &points, &not_flat};
     const struct thing_pixels pixels = {0};
     struct model_picture picture = {0}, shell = {0};
     static float front[W * H];
@@ -629,7 +630,7 @@ static void a_side_that_its_thing_hides_is_not_drawn(void **state)
     draw_shell(&picture, &camera);
     draw_shell(&shell, &camera);
     memcpy(front, shell.z, sizeof front);
-    assert_ok(clutter_draw_thing(&picture, front, &pixels, s.clutter, &camera, &filter, &points, NULL, &err), err);
+    assert_ok(clutter_draw_thing(&picture, front, &pixels, s.clutter, &camera, &thing, NULL, &err), err);
     assert_same_picture(&picture, &shell);
     model_picture_release(&picture);
     model_picture_release(&shell);
@@ -663,7 +664,6 @@ static void a_moved_cube_hides_the_next_one(void **state)
     const struct view camera = mid_way();
     static struct drawn_cube near, far;
     struct thing_volume volume = cube_volume(false);
-    const struct clutter_filter filter = {.volume = &volume, .only = CUBE};
     struct err err = ERR_INIT;
     struct scene s;
     scene_make(&s, &sure, 100);
@@ -671,12 +671,12 @@ static void a_moved_cube_hides_the_next_one(void **state)
     draw_cube(&near, &s, &camera, vec3_make(-0.2, -0.5, 0), 0, false);
     struct model_picture once = {0};
     const struct thing_points points = cube_corners();
+    const struct thing_shape thing = {CUBE, &volume, &points, &not_flat};
     const struct thing_pixels no_pixels = {0};
     assert_ok(model_picture_resize(&once, W, H, &err), err);
     memcpy(once.rgb, near.picture.rgb, 3 * (size_t)W * H * sizeof *once.rgb);
-    assert_ok(
-        clutter_draw_thing(&near.picture, near.front, &no_pixels, s.clutter, &far.moved, &filter, &points, NULL, &err),
-        err);
+    assert_ok(clutter_draw_thing(&near.picture, near.front, &no_pixels, s.clutter, &far.moved, &thing, NULL, &err),
+              err);
     int hidden = 0, visible = 0;
     for (int y = 3; y < H - 3; y++)
         for (int x = 3; x < W - 3; x++) {

@@ -22,6 +22,7 @@ struct scene {
     struct view views[SOURCES], camera; /* scene frame */
     struct camera_set set;
     struct thing_volume volume;
+    struct flat_outline outline;
     float shell[W * H];
     struct clutter_layer layer;
 };
@@ -107,6 +108,7 @@ static void scene_release(struct scene *s)
 {
     for (int k = 0; k < SOURCES; k++) clutter_view_release(&s->sources[k].view);
     thing_volume_release(&s->volume);
+    flat_outline_release(&s->outline);
     clutter_layer_release(&s->layer);
 }
 
@@ -124,7 +126,8 @@ static void draw(struct scene *s)
     memset(s->layer.z, 0, pixels * sizeof *s->layer.z);
     const struct thing_points points = points_of(&s->volume);
     struct thing_rows rows;
-    thing_surface_draw(&rows, &s->layer, s->shell, &s->clutter, &s->choice, &s->camera, &s->volume, THING, &points);
+    const struct thing_shape thing = {THING, &s->volume, &points, &s->outline};
+    thing_surface_draw(&rows, &s->layer, s->shell, &s->clutter, &s->choice, &s->camera, &thing);
     for (int i = 0; i < W * H; i++)
         assert_true(!(s->layer.rgba[4 * i + 3] > 0) || ((size_t)(i / W) >= rows.first && (size_t)(i / W) < rows.last));
 }
@@ -313,6 +316,111 @@ static void a_surface_needs_what_is_before_it(void **state)
     scene_release(&s);
 }
 
+/* ------------------------------------------------------------------------------------------------------------ rims */
+
+/* A rug of five corners, turned against the voxels, in the plane through the middle of the grid. Its voxels are as
+ * find_things makes them: of whole columns. */
+static void lay_rug(struct scene *s)
+{
+    static const double corners[][2] = {{-0.8, -0.3}, {0.1, -0.85}, {0.75, -0.2}, {0.3, 0.6}, {-0.5, 0.45}};
+    struct err err = ERR_INIT;
+    assert_ok(flat_outline_init(&s->outline, vec3_make(0, 0, 1), middle.z, 5, &err), err);
+    for (int i = 0; i < 5; i++)
+        flat_outline_put(&s->outline, i, vec3_add(middle, vec3_make(corners[i][0], corners[i][1], 0)));
+    for (int64_t i = 0; i < (int64_t)voxel_count(&s->volume.grid); i++) {
+        const struct vec3 p = thing_voxel_centre(&s->volume.grid, i);
+        const double above = (p.z - middle.z) / VOXEL;
+        const bool has = above > -1 && above <= 2 && flat_outline_holds(&s->outline, p);
+        s->volume.id[i] = has ? THING : 0;
+        s->volume.distance[i] = has ? (float)(above / 2.5) : THING_UNSEEN;
+    }
+}
+
+/* The distance in the picture, px, of a place from the rim of the rug. */
+static double from_rim(const struct scene *s, double x, double y)
+{
+    double least = INFINITY, at[2][2];
+    for (int i = 0; i < s->outline.count; i++) {
+        for (int k = 0; k < 2; k++) {
+            const struct vec3 corner = flat_outline_corner(&s->outline, (i + k) % s->outline.count);
+            view_project(&s->camera, world_from_model_point(&axes, corner), &at[k][0], &at[k][1]);
+        }
+        const double dx = at[1][0] - at[0][0], dy = at[1][1] - at[0][1];
+        const double t = fmin(1, fmax(0, ((x - at[0][0]) * dx + (y - at[0][1]) * dy) / (dx * dx + dy * dy)));
+        least = fmin(least, hypot(x - at[0][0] - t * dx, y - at[0][1] - t * dy));
+    }
+    return least;
+}
+
+/* The area of the rug in the picture, px. */
+static double area_seen(const struct scene *s)
+{
+    double sum = 0, u[2], v[2];
+    for (int i = 0; i < s->outline.count; i++) {
+        for (int k = 0; k < 2; k++)
+            view_project(&s->camera,
+                         world_from_model_point(&axes, flat_outline_corner(&s->outline, (i + k) % s->outline.count)),
+                         &u[k], &v[k]);
+        sum += u[0] * v[1] - u[1] * v[0];
+    }
+    return fabs(sum / 2);
+}
+
+/* Its rim is that of its outline within a pixel, wherever the camera that draws it stands. Voxels would be off by up to
+ * two pixels here. */
+static void the_rim_of_a_rug_is_straight(void **state)
+{
+    static const double cameras[][3] = {{3.5, 3, 4.5}, {2, 4.25, 3.6}, {1.1, 2.2, 5}};
+    static struct scene s;
+    (void)state;
+    for (size_t c = 0; c < sizeof cameras / sizeof *cameras; c++) {
+        int inside = 0, rim = 0;
+        double covered = 0;
+        scene_make(&s, to_ball);
+        s.camera = s.views[0] = looking_from(cameras[c][0], cameras[c][1], cameras[c][2]);
+        lay_rug(&s);
+        draw(&s);
+        for (int i = 0; i < W * H; i++) {
+            const double x = i % W + 0.5, y = i / W + 0.5, away = from_rim(&s, x, y);
+            const struct vec3 from = model_from_world_point(&axes, s.camera.center),
+                              one = model_from_world_point(&axes, view_unproject(&s.camera, x, y, 1));
+            const bool is_rug = flat_outline_meets(NULL, &s.outline, from, vec3_sub(one, from));
+            const float part = s.layer.rgba[4 * i + 3];
+            if (x < 3 || y < 3 || x > W - 3 || y > H - 3) continue; /* the view's border gives no colour */
+            covered += (double)part;
+            if (away > 1) {
+                assert_float_equal(part, is_rug, 0);
+                inside += is_rug;
+            } else if (part > 0) {
+                assert_float_equal(s.layer.rgba[4 * i], 0.75f * part, 1e-3); /* its own colour, premultiplied */
+                rim++;
+            }
+            if (part >= 0.5f) assert_float_equal(ray_point(&s, i, (double)s.layer.z[i]).z, 0, 1e-6);
+        }
+        assert_true(inside > 100 && rim > 50);
+        assert_float_equal(covered / area_seen(&s), 1, 0.01);
+        scene_release(&s);
+    }
+}
+
+/* What lies flat is hidden by what is a little before it: its depth is exact. */
+static void legs_on_a_rug_hide_it(void **state)
+{
+    static struct scene s;
+    (void)state;
+    scene_make(&s, to_ball);
+    lay_rug(&s);
+    draw(&s);
+    for (int i = 0; i < W * H; i++) s.shell[i] = 2 * s.layer.z[i] * (i % W < W / 2 ? 0.98f : 0.999f);
+    int right = 0;
+    for (int i = 0; i < W * H; i++) right += i % W >= W / 2 && is_drawn(&s, i);
+    draw(&s);
+    assert_true(right > 100);
+    for (int i = 0; i < W * H; i++) assert_true(i % W >= W / 2 || !is_drawn(&s, i) || !(s.shell[i] > 0));
+    memset(s.shell, 0, sizeof s.shell);
+    scene_release(&s);
+}
+
 /* ---------------------------------------------------------------------------------------------------------- colours */
 
 static void it_has_the_colour_of_the_views_that_see_it(void **state)
@@ -380,7 +488,8 @@ static void it_lies_under_what_the_layer_has(void **state)
             s.layer.rgba[4 * i + 3] = covers[k];
             s.layer.z[i] = 1;
         }
-        thing_surface_draw(&rows, &s.layer, s.shell, &s.clutter, &s.choice, &s.camera, &s.volume, THING, &points);
+        const struct thing_shape thing = {THING, &s.volume, &points, &s.outline};
+        thing_surface_draw(&rows, &s.layer, s.shell, &s.clutter, &s.choice, &s.camera, &thing);
         assert_float_equal(s.layer.rgba[4 * centre], 0.1f * covers[k] + 0.75f * (1 - covers[k]), 1e-3);
         assert_float_equal(s.layer.rgba[4 * centre + 3], 1, 0);
         assert_float_equal(s.layer.z[centre], covers[k] < 0.5f ? surface : 1, 1e-6);
@@ -417,6 +526,8 @@ int main(void)
         cmocka_unit_test(the_shell_hides_what_is_behind_it),
         cmocka_unit_test(unseen_and_foreign_voxels_make_no_surface),
         cmocka_unit_test(a_surface_needs_what_is_before_it),
+        cmocka_unit_test(the_rim_of_a_rug_is_straight),
+        cmocka_unit_test(legs_on_a_rug_hide_it),
         cmocka_unit_test(it_has_the_colour_of_the_views_that_see_it),
         cmocka_unit_test(a_view_beside_the_camera_counts_more_than_one_aside),
         cmocka_unit_test(it_lies_under_what_the_layer_has),

@@ -3,7 +3,8 @@
 
 #include "tests/unit/scratch.h"
 
-#define HEAD "remodel-things 1\n"
+#define HEAD "remodel-things 2\n"
+#define RUG  "thing rug floor 0 0 0.25 1 2 0.5 100 2 v05 0 0 1 1 0 1e-05 3\n"
 #define SOFA "thing sofa floor 0 0.5 0 2 1.25 0.75 3100 7 v03 10 20.5 300 200 0.5 0.25 2\n"
 
 static void what_is_read_is_written_again(void **state)
@@ -74,6 +75,31 @@ static void a_thing_that_is_added_is_owned(void **state)
     thing_list_release(&list);
 }
 
+static void the_outline_of_what_lies_flat_is_kept(void **state)
+{
+    (void)state;
+    static const char text[] = HEAD RUG "flat 0 0 1 0.25 4 0 0 1 0.5 1 2 -0.10000000000000001 1\n" SOFA
+                                        "thing sign wall 0 0 0 1 1 1 9 1 v05 0 0 1 1 1 1 1\n"
+                                        "flat -0.59999999999999998 -0.80000000000000004 0 -2 3 0 0 1 0 1 1\n";
+    struct thing_list list;
+    struct err err = ERR_INIT;
+    assert_ok(thing_list_read(&list, scratch_write("things.txt", text), NULL, &err), err);
+    assert_int_equal(list.count, 3);
+    const struct flat_outline *rug = &list.things[0].outline, *sign = &list.things[2].outline;
+    assert_int_equal(rug->count, 4);
+    assert_true(rug->normal.z == 1 && rug->offset == 0.25);
+    const struct vec3 corner = flat_outline_corner(rug, 3);
+    assert_true(corner.x == -0.1 && corner.y == 1 && corner.z == 0.25);
+    assert_int_equal(list.things[1].outline.count, 0);
+    assert_true(sign->count == 3 && sign->normal.y == -0.8 && sign->offset == -2);
+    /* its normal is largest in y, so corners are X and Z */
+    assert_float_equal(flat_outline_corner(sign, 1).y, (2 - 0.6) / 0.8, 1e-12);
+    assert_true(flat_outline_corner(sign, 2).z == 1);
+    assert_ok(thing_list_write(&list, scratch_path("again.txt"), NULL, &err), err);
+    assert_file_text(scratch_path("again.txt"), text);
+    thing_list_release(&list);
+}
+
 static void damaged_lines_are_refused(void **state)
 {
     (void)state;
@@ -82,8 +108,8 @@ static void damaged_lines_are_refused(void **state)
     } cases[] = {
         {"", "found an empty file, wanted"},
         {"remodel-objects 1\n", "things.txt:1: found \"remodel-objects\""},
-        {"remodel-things 2\n", "things.txt:1: found \"2\""},
-        {HEAD SOFA "chair sofa\n", "things.txt:3: found \"chair\", wanted \"thing\""},
+        {"remodel-things 3\n", "things.txt:1: found \"3\""},
+        {HEAD SOFA "chair sofa\n", "things.txt:3: found \"chair\", wanted thing or flat"},
         {HEAD "thing\n", "things.txt:2: found the end of the line, wanted name"},
         {HEAD "thing sofa\n", "things.txt:2: found the end of the line, wanted what it stands on"},
         {HEAD "thing sofa roof 0 0 0 1 1 1 1 1 v 0 0 1 1\n",
@@ -109,6 +135,14 @@ static void damaged_lines_are_refused(void **state)
         {HEAD "thing sofa floor 0 0 0 1 1 1 1 1 v 0 0 1 1 1 1\n",
          "things.txt:2: found the end of the line, wanted mean radiance"},
         {HEAD "thing sofa floor 0 0 0 1 1 1 1 1 v 0 0 1 1 1 1 1 7\n", "things.txt:2: found \"7\""},
+        {HEAD "flat 0 0 1 0 3 0 0 1 0 1 1\n", "things.txt:2: found \"flat\", wanted a line \"thing\" before it"},
+        {HEAD RUG "flat 0 0 1 0 3 0 0 1 0 1 1\nflat 0 0 1 0 3 0 0 1 0 1 1\n", "things.txt:4: found \"flat\""},
+        {HEAD RUG "flat 0 0 2 0 3 0 0 1 0 1 1\n", "things.txt:3: found \"2\", wanted a normal of length 1"},
+        {HEAD RUG "flat 0 0 1 inf 3 0 0 1 0 1 1\n", "things.txt:3: found \"inf\""},
+        {HEAD RUG "flat 0 0 1 0 2 0 0 1 0\n", "things.txt:3: found \"2\", wanted a number of corners"},
+        {HEAD RUG "flat 0 0 1 0 3 0 0 1 0 1\n",
+         "things.txt:3: found the end of the line, wanted coordinate of a corner"},
+        {HEAD RUG "flat 0 0 1 0 3 0 0 1 0 1 1 0\n", "things.txt:3: found \"0\", wanted the end of the line"},
         {HEAD SOFA "# again\n" SOFA, "things.txt:4: found \"sofa\", wanted another name than those above"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
@@ -134,9 +168,9 @@ static void a_name_with_a_line_break_is_not_written(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_is_read_is_written_again),           cmocka_unit_test(a_list_may_be_empty),
-        cmocka_unit_test(a_thing_that_is_added_is_owned),          cmocka_unit_test(damaged_lines_are_refused),
-        cmocka_unit_test(a_name_with_a_line_break_is_not_written),
+        cmocka_unit_test(what_is_read_is_written_again),  cmocka_unit_test(a_list_may_be_empty),
+        cmocka_unit_test(a_thing_that_is_added_is_owned), cmocka_unit_test(the_outline_of_what_lies_flat_is_kept),
+        cmocka_unit_test(damaged_lines_are_refused),      cmocka_unit_test(a_name_with_a_line_break_is_not_written),
     };
     return cmocka_run_group_tests_name("thing_list", tests, scratch_make, scratch_remove);
 }
