@@ -2,6 +2,8 @@
  *
  * A zone that is cleared takes whole things: those of which it holds more than half. The others stay whole, too.
  *
+ * A thing does not stand in another one, either (thing_overlap.c).
+ *
  * A thing is rigid and its support stays what it is: what stood on the floor must stand on the floor again, what hung
  * on a wall must have a wall as near. Only its box is tested, shrunk a little, since depth at outlines is off. */
 #include "common/relight/placed_things.h"
@@ -15,6 +17,7 @@
 #include "common/base/scan.h"
 #include "common/light/model_clearance.h"
 #include "common/product/product.h"
+#include "common/relight/thing_overlap.h"
 
 #define SHRUNK     0.9  /* of the box's sides: what may not be in a wall */
 #define MAX_STEP   0.03 /* of the model's height: between points of a box that are tested */
@@ -220,6 +223,11 @@ static struct placed_thing placement(const struct texture_thing *edit, const str
     return p;
 }
 
+static bool is_placed(const struct texture_thing *edit)
+{
+    return edit->kind == TEXTURE_THING_MOVE || edit->kind == TEXTURE_THING_PLACE;
+}
+
 static enum status apply(struct placed_things *t, const struct texture_thing *edit, const struct model_rays *before,
                          const struct model_rays *after, struct err *err)
 {
@@ -239,6 +247,34 @@ static enum status apply(struct placed_things *t, const struct texture_thing *ed
     if (!(p.name = strdup(edit->name))) return err_nomem(err, "a name", strlen(edit->name));
     t->placed[t->placed_count++] = p;
     return ST_OK;
+}
+
+/* Refuses a placed thing that stands in another one. what: the name of that. */
+static enum status check_overlap(const struct placed_things *t, const struct texture_thing *edit,
+                                 const struct placed_thing *a, const struct placed_thing *b, uint32_t other,
+                                 const char *what, struct err *err)
+{
+    double depth;
+    if (thing_overlap_depth(&depth, t, a, b, other, err) || !(depth > 0)) return err->status;
+    return edit_error(err, edit,
+                      "%s would stand %.2g deep in %s. Move it by that much or more, or clear %s or move it away, too.",
+                      edit->name, depth, what, what);
+}
+
+/* When all things of an edit have their places: what stays, and what was placed before, must not be in their way. */
+static enum status check_overlaps(const struct placed_things *t, const struct texture_map *map, struct err *err)
+{
+    for (int i = 0, k = 0; !err->status && i < map->thing_count; i++) {
+        if (!is_placed(&map->things[i])) continue;
+        const struct placed_thing *a = &t->placed[k];
+        for (int n = 0; !err->status && n < t->list.count; n++)
+            if (t->fate[n + 1] != THING_IS_GONE)
+                check_overlap(t, &map->things[i], a, NULL, (uint32_t)n + 1, t->list.things[n].name, err);
+        for (int n = 0; !err->status && n < k; n++)
+            check_overlap(t, &map->things[i], a, &t->placed[n], t->placed[n].id, t->placed[n].name, err);
+        k++;
+    }
+    return err->status;
 }
 
 static bool is_surface(const struct thing_volume *v, size_t i) { return v->id[i] && fabsf(v->distance[i]) < SURFACE; }
@@ -333,6 +369,7 @@ enum status placed_things_read(struct placed_things *t, const char *folder, cons
     if (!err->status) list_points(t, err);
     if (!err->status && map && map->zone_count) apply_zones(t, map, err);
     for (int i = 0; !err->status && map && i < map->thing_count; i++) apply(t, &map->things[i], before, after, err);
+    if (!err->status && map) check_overlaps(t, map, err);
     if (err->status) placed_things_release(t);
     return err->status;
 }

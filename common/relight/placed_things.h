@@ -40,7 +40,7 @@ struct placed_things {
 /* Reads the products of find_things, and places the things of which an edit's map says something. folder: of the
  * things; NULL: zones clear no things, and none are known. map: NULL: all things stay. before, after: the model that
  * the photographs show, and the edited one. ST_DATA: the map names a thing that was not found; a thing would be in a
- * wall or off what it stands on, with the distance. Such errors name the script and the line of the statement. */
+ * wall or in another thing, or off what it stands on, with the distance. Such errors name the script and the line of the statement. */
 enum status placed_things_read(struct placed_things *t, const char *folder, const struct texture_map *map,
                                const struct model_rays *before, const struct model_rays *after, struct provenance *prov,
                                struct err *err);
