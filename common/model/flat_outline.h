@@ -28,7 +28,8 @@ struct vec3 flat_outline_corner(const struct flat_outline *o, int i);
 double flat_outline_area(const struct flat_outline *o);
 /* How far a point is before the face. */
 double flat_outline_height(const struct flat_outline *o, struct vec3 p);
-/* Whether the outline holds a point of its plane; of a point beside it, its place along the coordinate that xy lacks. */
+/* Whether the outline holds a point of its plane; of a point beside it, its place along the coordinate that xy
+ * lacks. */
 bool flat_outline_holds(const struct flat_outline *o, struct vec3 p);
 /* Whether a ray meets the front of the outline; *t (may be NULL): where, in lengths of `way`. */
 bool flat_outline_meets(double *t, const struct flat_outline *o, struct vec3 from, struct vec3 way);

@@ -4,8 +4,9 @@
  *   thing NAME SUPPORT X0 Y0 Z0 X1 Y1 Z1 VOXELS VIEWS VIEW U0 V0 U1 V1 R G B
  *   flat NX NY NZ OFFSET COUNT U V U V ...
  *
- * One line "thing" for each; its number in the other files is that of its line, from 1, other lines not counted. SUPPORT: floor, wall, ceiling, or none.
- * X0 to Z1: the box around it, model frame. VOXELS: of its surfaces. VIEWS: how many show enough of it to count.
+ * One line "thing" for each; its number in the other files is that of its line, from 1, other lines not counted.
+ * SUPPORT: floor, wall, ceiling, or none. X0 to Z1: the box around it, model frame. VOXELS: of its surfaces. VIEWS: how
+ * many show enough of it to count.
  * VIEW shows it best, in the rectangle U0 V0 U1 V1 (px); "" and a rectangle of no size: none shows it.
  * R G B: the mean radiance of its pixels in all views.
  * flat: the thing of the line above lies flat on a face, on the plane N . P = OFFSET, N of length 1 and into the room.

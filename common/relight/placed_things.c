@@ -69,25 +69,6 @@ bool placed_thing_holds(const struct placed_things *t, const struct placed_thing
     return flat ? lies_at(t, flat, was) : thing_volume_at(&t->volume, was) == p->id;
 }
 
-struct vec3 placed_thing_place(const struct placed_thing *p, struct vec3 at)
-{
-    return vec3_add(mat3_apply(p->turn, at), p->shift);
-}
-
-struct view placed_thing_camera(const struct placed_thing *p, const struct view *camera)
-{
-    struct view v = *camera;
-    v.cam_from_world = mat3_multiply(camera->cam_from_world, p->turn);
-    v.center = mat3_apply(mat3_transpose(p->turn), vec3_sub(camera->center, p->shift));
-    v.translation = vec3_scale(mat3_apply(v.cam_from_world, v.center), -1);
-    return v;
-}
-
-struct vec3 placed_thing_origin(const struct placed_thing *p, struct vec3 at)
-{
-    return mat3_apply(mat3_transpose(p->turn), vec3_sub(at, p->shift));
-}
-
 /* ---------------------------------------------------------------------------------------------------------- checks */
 
 /* An error of a statement about a thing. */
@@ -255,7 +236,8 @@ static enum status check_overlap(const struct placed_things *t, const struct tex
                                  const char *what, struct err *err)
 {
     double depth;
-    if (thing_overlap_depth(&depth, t, a, b, other, err) || !(depth > 0)) return err->status;
+    if (placed_things_outline(t, a->id) || placed_things_outline(t, other)) return ST_OK; /* what is flat is no solid */
+    if (thing_overlap_depth(&depth, &t->volume, a, b, other, err) || !(depth > 0)) return err->status;
     return edit_error(err, edit,
                       "%s would stand %.2g deep in %s. Move it by that much or more, or clear %s or move it away, too.",
                       edit->name, depth, what, what);

@@ -2,10 +2,10 @@
 #ifndef REMODEL_PLACED_THINGS_H
 #define REMODEL_PLACED_THINGS_H
 
-#include "common/capture/view.h"
 #include "common/light/model_rays.h"
 #include "common/model/thing_list.h"
 #include "common/model/thing_volume.h"
+#include "common/relight/placed_thing.h"
 #include "common/texture/texture_map.h"
 
 enum thing_fate { THING_STAYS, THING_IS_KEPT, THING_IS_GONE }; /* kept: also in a zone that is cleared */
@@ -17,14 +17,6 @@ struct thing_points {
     int count;
     struct vec3 low, high; /* through the centres of its outer voxels; of what lies flat also through the corners of its
                             * outline; low.x > high.x: it has none */
-};
-
-/* A thing at a place of its own: the point p of the photographs' room stands at turn p + shift. */
-struct placed_thing {
-    uint32_t id;
-    char *name; /* of the thing or of its copy; owned */
-    struct mat3 turn;
-    struct vec3 shift;
 };
 
 /* {0} is the empty state: all clutter stays. Everything is owned. */
@@ -40,7 +32,8 @@ struct placed_things {
 /* Reads the products of find_things, and places the things of which an edit's map says something. folder: of the
  * things; NULL: zones clear no things, and none are known. map: NULL: all things stay. before, after: the model that
  * the photographs show, and the edited one. ST_DATA: the map names a thing that was not found; a thing would be in a
- * wall or in another thing, or off what it stands on, with the distance. Such errors name the script and the line of the statement. */
+ * wall or in another thing, or off what it stands on, with the distance. Such errors name the script and the line of
+ * the statement. */
 enum status placed_things_read(struct placed_things *t, const char *folder, const struct texture_map *map,
                                const struct model_rays *before, const struct model_rays *after, struct provenance *prov,
                                struct err *err);
@@ -56,15 +49,11 @@ struct thing_shape {
 struct thing_shape placed_things_shape(const struct placed_things *t, uint32_t id);
 /* The outline of a thing that lies flat; NULL: it does not. */
 const struct flat_outline *placed_things_outline(const struct placed_things *t, uint32_t id);
-/* The thing that lies flat at a point of the photographs' room, within half a voxel of its face; 0: none of that fate. */
+/* The thing that lies flat at a point of the photographs' room, within half a voxel of its face; 0: none of that
+ * fate. */
 uint32_t placed_things_flat_at(const struct placed_things *t, struct vec3 p, enum thing_fate fate);
 
-/* Where a placed thing has the point p of the photographs' room, and the other way. */
-struct vec3 placed_thing_place(const struct placed_thing *p, struct vec3 at);
-struct vec3 placed_thing_origin(const struct placed_thing *p, struct vec3 at);
 /* Whether a placed thing has a point of the photographs' room. */
 bool placed_thing_holds(const struct placed_things *t, const struct placed_thing *p, struct vec3 was);
-/* The camera that sees the thing where it was as `camera` sees it at its new place. */
-struct view placed_thing_camera(const struct placed_thing *p, const struct view *camera);
 
 #endif
