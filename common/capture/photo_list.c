@@ -68,7 +68,7 @@ static enum status read_bracket(struct photo_record *r, struct textfile *t, stru
         return err->status;
     r->bracket_count++; /* from here on it is released with the record */
     if (!read_hash(t, b->hash, err)) read_exposure(t, "exposure", &b->exposure, err);
-    if (!err->status && before && before->exposure >= b->exposure)
+    if (!err->status && before && before->exposure > b->exposure)
         textfile_error(t, err, b->file, "exposures in ascending order");
     if (!err->status) textfile_end(t, err);
     return err->status;
@@ -113,6 +113,8 @@ static enum status read_fields(struct photo_record *r, struct textfile *t, struc
         return err->status;
     if (textfile_expect_line(t, "camera", err) || textfile_word_into(t, "make", info->make, sizeof info->make, err) ||
         textfile_word_into(t, "model", info->model, sizeof info->model, err) || textfile_end(t, err))
+        return err->status;
+    if (textfile_expect_line(t, "taken", err) || read_exif(t, "time taken", &info->taken, err) || textfile_end(t, err))
         return err->status;
     if (textfile_next(t)) read_brackets(r, t, err);
     if (!err->status) textfile_end_of_file(t, err);
@@ -162,7 +164,7 @@ enum status photo_record_write(const struct photo_record *r, const char *folder,
             r->hash, info->width, info->height, info->bits, info->orientation);
     fprintf(to, "exif %.17g %.17g %.17g %.17g %.17g\n", info->focal_mm, info->focal35_mm, info->seconds, info->f_number,
             info->iso);
-    fprintf(to, "camera %s %s\n", make, model);
+    fprintf(to, "camera %s %s\ntaken %.17g\n", make, model, info->taken);
     if (r->bracket_count) fprintf(to, "brackets %d %d %.17g\n", r->bracket_count, r->middle, r->white);
     for (int i = 0; !err->status && i < r->bracket_count; i++) {
         const struct bracket *b = &r->brackets[i];

@@ -2,7 +2,7 @@
  *
  * list.txt has one line ID "FILE" per photo in order of id, and is rewritten only if the set changes. ID.txt is the
  * record of a photo, rewritten only if that photo's content changes:
- *   remodel-photo 1
+ *   remodel-photo 2
  *   file "IMG 1.jpg"            in the folder PHOTOS
  *   hash 0123...                of its bytes (common/base/hash.h)
  *   size WIDTH HEIGHT
@@ -10,10 +10,11 @@
  *   orientation 1               EXIF, 1..8
  *   exif FOCAL_MM FOCAL35_MM SECONDS F_NUMBER ISO     0: unknown
  *   camera "MAKE" "MODEL"
+ *   taken 1714564922.35         seconds since 1970 by the camera's clock; 0: unknown
  * The record of a view with several exposures describes the middle one. Its file is ID.jpg, made by hdr_merge
  * (out/SCENE/hdr); the hash is that of the middle photo in the folder PHOTOS. These lines follow:
  *   brackets COUNT MIDDLE WHITE       MIDDLE from 0; WHITE: the exposure at which 1 in hdr/ID.exr is white
- *   bracket "IMG 1.jpg" HASH EXPOSURE COUNT lines, shortest exposure first
+ *   bracket "IMG 1.jpg" HASH EXPOSURE COUNT lines, shortest exposure first; some may be equal
  * An id is safe for Make, shells and file systems: letters, digits, _ and -, not - first. It is unique in the scene and
  * depends only on the set of file names. photos.mk has the ids for Make. */
 #ifndef REMODEL_PHOTO_LIST_H

@@ -29,8 +29,8 @@ enum status photo_to_linear(struct image *out, const struct photo *p, struct err
 enum status png_write(const char *path, const unsigned char *pixels, int width, int height, int channels,
                       struct err *err);
 enum status jpeg_write(const char *path, const unsigned char *rgb, int width, int height, int quality, struct err *err);
-/* Writes a JPEG with the EXIF data of `info`: make, model, orientation, focal lengths, exposure time, f-number, ISO
- * speed; 0 and "" are omitted. Ignores width, height and bits of info. */
+/* Writes a JPEG with the EXIF data of `info`: make, model, time taken, orientation, focal lengths, exposure time,
+ * f-number, ISO speed; 0 and "" are omitted. Ignores width, height and bits of info. */
 enum status photo_write_jpeg(const char *path, const unsigned char *rgb, int width, int height, int quality,
                              const struct photo_info *info, struct err *err);
 /* Writes a rectangle of the photo as PNG of 8 or 16 bits, with EXIF data as above. Samples are unchanged. */

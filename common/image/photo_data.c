@@ -1,7 +1,10 @@
 /* photo_data.c - photographs in memory. */
 #include "common/image/photo_data.h"
 
+#include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
+#include <time.h>
 
 #define MAX_PIXELS (UINT64_C(1) << 28)
 
@@ -52,4 +55,21 @@ void photo_keep_text(char *to, size_t size, const char *from, size_t max_length)
         if (from[i] >= 32 && from[i] < 127 && (n || from[i] != ' ')) to[n++] = from[i];
     while (n && to[n - 1] == ' ') n--;
     to[n] = 0;
+}
+
+double photo_time(const char *date, const char *subseconds)
+{
+    struct tm t = {0};
+    char fraction[16];
+    const size_t digits = strspn(subseconds, "0123456789");
+    if (sscanf(date, "%4d:%2d:%2d %2d:%2d:%2d", &t.tm_year, &t.tm_mon, &t.tm_mday, &t.tm_hour, &t.tm_min, &t.tm_sec) !=
+        6)
+        return 0;
+    if (t.tm_year < 1970 || t.tm_mon < 1 || t.tm_mon > 12 || t.tm_mday < 1 || t.tm_mday > 31 || t.tm_hour < 0 ||
+        t.tm_hour > 24 || t.tm_min < 0 || t.tm_min > 59 || t.tm_sec < 0 || t.tm_sec > 60)
+        return 0;
+    t.tm_year -= 1900;
+    t.tm_mon--;
+    snprintf(fraction, sizeof fraction, "0.%.*s", digits < 9 ? (int)digits : 9, subseconds);
+    return (double)timegm(&t) + (digits ? strtod(fraction, NULL) : 0);
 }

@@ -13,6 +13,7 @@ struct photo_info { /* unknown values are 0 or "" */
     int orientation; /* EXIF 1..8; 1 if absent */
     double focal_mm, focal35_mm, seconds, f_number, iso;
     char make[64], model[64];
+    double taken; /* DateTimeOriginal with its sub-seconds, as seconds since 1970 by the camera's clock */
 };
 
 struct photo {
@@ -40,5 +41,7 @@ enum status photo_init_values(struct photo *p, struct err *err);
 float photo_find_saturation(const struct photo *p);
 /* Copies text from a file, up to a NUL or max_length characters: only printable ASCII, without blanks at the ends. */
 void photo_keep_text(char *to, size_t size, const char *from, size_t max_length);
+/* The seconds since 1970 of EXIF's "2024:05:01 12:02:02" and sub-seconds "35"; 0: that is no time. */
+double photo_time(const char *date, const char *subseconds);
 
 #endif

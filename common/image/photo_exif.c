@@ -2,8 +2,10 @@
  *
  * The block is found here, in JPEG's APP1 segment or PNG's eXIf chunk, and only the block is given to libexif. */
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 #include <libexif/exif-data.h>
 
@@ -66,9 +68,9 @@ static double exif_number(ExifData *data, ExifIfd ifd, ExifTag tag)
     return value;
 }
 
-static void exif_text(ExifData *data, ExifTag tag, char *text, size_t size)
+static void exif_text(ExifData *data, ExifIfd ifd, ExifTag tag, char *text, size_t size)
 {
-    ExifEntry *e = exif_content_get_entry(data->ifd[EXIF_IFD_0], tag);
+    ExifEntry *e = exif_content_get_entry(data->ifd[ifd], tag);
     const bool has_text = e && e->data && e->format == EXIF_FORMAT_ASCII;
     photo_keep_text(text, size, has_text ? (const char *)e->data : "", has_text ? e->size : 0);
 }
@@ -98,8 +100,12 @@ enum status photo_exif_read(struct photo_info *info, const struct photo_bytes *f
         info->seconds = exif_number(data, EXIF_IFD_EXIF, EXIF_TAG_EXPOSURE_TIME);
         info->f_number = exif_number(data, EXIF_IFD_EXIF, EXIF_TAG_FNUMBER);
         info->iso = exif_number(data, EXIF_IFD_EXIF, EXIF_TAG_ISO_SPEED_RATINGS);
-        exif_text(data, EXIF_TAG_MAKE, info->make, sizeof info->make);
-        exif_text(data, EXIF_TAG_MODEL, info->model, sizeof info->model);
+        exif_text(data, EXIF_IFD_0, EXIF_TAG_MAKE, info->make, sizeof info->make);
+        exif_text(data, EXIF_IFD_0, EXIF_TAG_MODEL, info->model, sizeof info->model);
+        char date[32], subseconds[16];
+        exif_text(data, EXIF_IFD_EXIF, EXIF_TAG_DATE_TIME_ORIGINAL, date, sizeof date);
+        exif_text(data, EXIF_IFD_EXIF, EXIF_TAG_SUB_SEC_TIME_ORIGINAL, subseconds, sizeof subseconds);
+        info->taken = photo_time(date, subseconds);
     }
     if (data) exif_data_unref(data);
     free(marked);
@@ -139,12 +145,25 @@ static ExifEntry *exif_add(ExifData *data, ExifIfd ifd, ExifTag tag, ExifFormat 
     return values ? e : NULL;
 }
 
-static bool exif_put_text(ExifData *data, ExifTag tag, const char *text)
+static bool exif_put_text(ExifData *data, ExifIfd ifd, ExifTag tag, const char *text)
 {
     if (!*text) return true;
-    ExifEntry *e = exif_add(data, EXIF_IFD_0, tag, EXIF_FORMAT_ASCII, strlen(text) + 1);
+    ExifEntry *e = exif_add(data, ifd, tag, EXIF_FORMAT_ASCII, strlen(text) + 1);
     if (e) memcpy(e->data, text, strlen(text) + 1);
     return e;
+}
+
+/* In milliseconds. */
+static bool exif_put_time(ExifData *data, double taken)
+{
+    const double rounded = floor(taken * 1000 + 0.5) / 1000, second = floor(rounded);
+    const time_t time = (time_t)second;
+    struct tm t;
+    char date[32], subseconds[8];
+    if (!(taken > 0) || !gmtime_r(&time, &t) || !strftime(date, sizeof date, "%Y:%m:%d %H:%M:%S", &t)) return true;
+    snprintf(subseconds, sizeof subseconds, "%03d", (int)fmin(999, round((rounded - second) * 1000)));
+    return exif_put_text(data, EXIF_IFD_EXIF, EXIF_TAG_DATE_TIME_ORIGINAL, date) &&
+           exif_put_text(data, EXIF_IFD_EXIF, EXIF_TAG_SUB_SEC_TIME_ORIGINAL, subseconds);
 }
 
 static bool exif_put_short(ExifData *data, ExifIfd ifd, ExifTag tag, double value)
@@ -171,7 +190,8 @@ enum status photo_exif_block(unsigned char **block, unsigned *size, const struct
     if (made) {
         exif_data_set_byte_order(data, EXIF_BYTE_ORDER_INTEL);
         exif_data_unset_option(data, EXIF_DATA_OPTION_FOLLOW_SPECIFICATION);
-        made = exif_put_text(data, EXIF_TAG_MAKE, info->make) && exif_put_text(data, EXIF_TAG_MODEL, info->model) &&
+        made = exif_put_text(data, EXIF_IFD_0, EXIF_TAG_MAKE, info->make) &&
+               exif_put_text(data, EXIF_IFD_0, EXIF_TAG_MODEL, info->model) && exif_put_time(data, info->taken) &&
                exif_put_short(data, EXIF_IFD_0, EXIF_TAG_ORIENTATION, info->orientation) &&
                exif_put_rational(data, EXIF_TAG_EXPOSURE_TIME, info->seconds) &&
                exif_put_rational(data, EXIF_TAG_FNUMBER, info->f_number) &&

@@ -10,6 +10,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+#include <time.h>
 
 #include <libraw/libraw.h>
 
@@ -39,6 +40,13 @@ static enum status failed(const struct photo_bytes *file, const char *what, int 
 
 static double plausible(double value) { return value > 0 && value < 1e9 ? value : 0; }
 
+/* libraw takes the camera's clock for local time; the result does not depend on the time zone here. */
+static double time_taken(time_t timestamp)
+{
+    struct tm t;
+    return timestamp > 0 && localtime_r(&timestamp, &t) ? fmax(0, (double)timegm(&t)) : 0;
+}
+
 /* The size is that of the developed image, except for rotated sensors and non-square pixels. */
 static void keep_info(struct photo_info *info, const libraw_data_t *raw)
 {
@@ -53,6 +61,7 @@ static void keep_info(struct photo_info *info, const libraw_data_t *raw)
     info->iso = plausible((double)raw->other.iso_speed);
     info->focal_mm = plausible((double)raw->other.focal_len);
     info->focal35_mm = plausible((double)raw->lens.FocalLengthIn35mmFormat);
+    info->taken = time_taken(raw->other.timestamp);
     photo_keep_text(info->make, sizeof info->make, raw->idata.make, sizeof raw->idata.make);
     photo_keep_text(info->model, sizeof info->model, raw->idata.model, sizeof raw->idata.model);
 }

@@ -148,6 +148,10 @@ static void read_exif(struct photo_info *info, TIFF *t)
     keep_text(t, TIFFTAG_MAKE, info->make, sizeof info->make);
     keep_text(t, TIFFTAG_MODEL, info->model, sizeof info->model);
     if (!TIFFGetField(t, TIFFTAG_EXIFIFD, &exif) || !TIFFReadEXIFDirectory(t, exif)) return;
+    char date[32], subseconds[16];
+    keep_text(t, EXIFTAG_DATETIMEORIGINAL, date, sizeof date);
+    keep_text(t, EXIFTAG_SUBSECTIMEORIGINAL, subseconds, sizeof subseconds);
+    info->taken = photo_time(date, subseconds);
     info->seconds = plausible(exif_number(t, EXIFTAG_EXPOSURETIME));
     info->f_number = plausible(exif_number(t, EXIFTAG_FNUMBER));
     info->iso = plausible(exif_number(t, EXIFTAG_ISOSPEEDRATINGS));

@@ -27,8 +27,8 @@ static void check_list(const char *folder, const uint8_t *data, size_t size)
     for (int i = 0; i < 4; i++) snprintf(paths[i], sizeof paths[i], "%s/%s", folder, names[i]);
     for (int i = 0; i < 2; i++) {
         snprintf(text, sizeof text,
-                 "remodel-photo 1\nfile %s\nhash 0123456789abcdef0123456789abcdef\nsize 640 480\nbits 8\norientation "
-                 "1\nexif 0 0 0 0 0\ncamera \"\" \"\"\n",
+                 "remodel-photo 2\nfile %s\nhash 0123456789abcdef0123456789abcdef\nsize 640 480\nbits 8\norientation "
+                 "1\nexif 0 0 0 0 0\ncamera \"\" \"\"\ntaken 0\n",
                  files[i]);
         write_file(paths[i], text, strlen(text));
     }

@@ -8,7 +8,8 @@
 static struct photo_record sample(char *id, char *file)
 {
     struct photo_record r = {.id = id, .file = file, .hash = "0123456789abcdef0123456789abcdef"};
-    r.info = (struct photo_info){640, 480, 8, 6, 5.85, 35, 1 / 250.0, 2.8, 400, "MAKE", "a \"quoted\" \\ model"};
+    r.info = (struct photo_info){
+        640, 480, 8, 6, 5.85, 35, 1 / 250.0, 2.8, 400, "MAKE", "a \"quoted\" \\ model", 1714564922.35};
     return r;
 }
 
@@ -145,7 +146,7 @@ static void invalid_lists_are_rejected(void **state)
 static void invalid_records_are_rejected(void **state)
 {
     const char *const cases[][2] = {
-        {"version", ":1: found \"2\", wanted the version"},
+        {"version", ":1: found \"3\", wanted the version"},
         {"short-hash", ":3:"},
         {"size-zero", ":4: found \"0\", wanted width"},
         {"bits", ":5: found \"7\", wanted bits"},
@@ -156,13 +157,14 @@ static void invalid_records_are_rejected(void **state)
         {"extra-word", ":7:"},
         {"long-make", ":8:"},
         {"open-quote", ":8:"},
-        {"extra-line", ":9:"},
+        {"negative-time", ":9: found \"a negative number\", wanted time taken"},
+        {"extra-line", ":10:"},
         {"brackets-cut", ": found the end of the file, wanted a line \"bracket ...\""},
-        {"brackets-order", ":11: found \"b.jpg\", wanted exposures in ascending order"},
-        {"brackets-middle", ":9: found \"1\", wanted index of the middle exposure, an integer from 0 to 0"},
-        {"brackets-zero", ":9: found \"0\", wanted exposure of white above 0"},
-        {"brackets-many", ":9: found \"1001\", wanted number of exposures"},
-        {"brackets-more", ":11:"},
+        {"brackets-order", ":12: found \"b.jpg\", wanted exposures in ascending order"},
+        {"brackets-middle", ":10: found \"1\", wanted index of the middle exposure, an integer from 0 to 0"},
+        {"brackets-zero", ":10: found \"0\", wanted exposure of white above 0"},
+        {"brackets-many", ":10: found \"1001\", wanted number of exposures"},
+        {"brackets-more", ":12:"},
         {"empty", "wanted a line \"remodel-photo ...\""},
         {"cut", "cut.txt"},
         {"nul", "nul.txt"},

@@ -103,6 +103,31 @@ static void exif_is_read(void **state)
     }
 }
 
+static void times_of_exif_are_seconds(void **state)
+{
+    const struct {
+        const char *date, *subseconds;
+        double seconds;
+    } cases[] = {
+        {"2024:05:01 12:02:02", "", 1714564922},
+        {"2024:05:01 12:02:02", "35", 1714564922.35},
+        {"2024:05:01 12:02:02", "5 ", 1714564922.5},
+        {"2024:05:01 12:02:02", "x", 1714564922},
+        {"2024:02:29 00:00:00", "", 1709164800},
+        {"1970:01:01 00:00:01", "", 1},
+        {"0000:00:00 00:00:00", "", 0},
+        {"    :  :     :  :  ", "", 0},
+        {"2024:13:01 12:02:02", "", 0},
+        {"2024:05:01", "", 0},
+        {"2024:05:01 12:61:02", "", 0},
+        {"", "123456789123456789", 0},
+        {"2024:05:01 12:02:02", "123456789123456789", 1714564922.123456789},
+    };
+    (void)state;
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
+        assert_true(fabs(photo_time(cases[i].date, cases[i].subseconds) - cases[i].seconds) < 1e-6);
+}
+
 /* False or truncated EXIF loses its values, never the pixels. */
 static void damaged_exif_keeps_the_pixels(void **state)
 {
@@ -240,13 +265,15 @@ static void exif_is_written(void **state)
     (void)state;
     for (int i = 0; i < 16 * 12 * 3; i++) rgb[i] = (unsigned char)(i * 5);
     for (size_t i = 0; i < sizeof seconds / sizeof *seconds; i++) {
-        const struct photo_info info_written = {0, 0, 0, 1, 24.5, 33, seconds[i], 5.6, 400, "remodel", "lens of 24 mm"};
+        const struct photo_info info_written = {
+            0, 0, 0, 1, 24.5, 33, seconds[i], 5.6, 400, "remodel", "lens of 24 mm", 1714564922.25 + 86400 * (double)i};
         const char *path = scratch_path("exif.jpg");
         assert_ok(photo_write_jpeg(path, rgb, 16, 12, 90, &info_written, &err), err);
         assert_ok(photo_read_info(&info, path, &err), err);
         assert_true(info.width == 16 && info.height == 12 && info.bits == 8 && info.orientation == 1);
         assert_true(fabs(info.seconds - seconds[i]) < 1e-12 && info.f_number == 5.6 && info.iso == 400);
         assert_true(info.focal_mm == 24.5 && info.focal35_mm == 33);
+        assert_true(fabs(info.taken - info_written.taken) < 1e-6);
         assert_string_equal(info.make, "remodel");
         assert_string_equal(info.model, "lens of 24 mm");
     }
@@ -266,7 +293,8 @@ static void a_written_part_keeps_the_samples(void **state)
     struct err err = ERR_INIT;
     (void)state;
     for (int bits = 8; bits <= 16; bits += 8) {
-        const struct photo_info info_written = {0, 0, 0, 6, 24.5, 70, 1.0 / 60, 5.6, 400, "remodel", "nine lenses"};
+        const struct photo_info info_written = {0,        0,   0,   6,         24.5,          70,
+                                                1.0 / 60, 5.6, 400, "remodel", "nine lenses", 1e9 + 0.9996};
         struct photo part, p = {.info = {.width = 20, .height = 10, .bits = bits}, .samples = samples};
         for (int i = 0; i < 20 * 10 * 3; i++) samples[i] = (uint16_t)(i * 109 % (bits == 8 ? 256 : 65536));
         assert_ok(photo_write_part(scratch_path("part.png"), &p, 13, 4, 7, 6, &info_written, &err), err);
@@ -278,6 +306,7 @@ static void a_written_part_keeps_the_samples(void **state)
         assert_true(part.info.orientation == 6 && part.info.focal_mm == 24.5 && part.info.focal35_mm == 70);
         assert_true(fabs(part.info.seconds - 1.0 / 60) < 1e-12 && part.info.f_number == 5.6 && part.info.iso == 400);
         assert_string_equal(part.info.model, "nine lenses");
+        assert_true(part.info.taken == 1e9 + 1); /* to milliseconds */
         photo_release(&part);
     }
 }
@@ -316,6 +345,7 @@ int main(void)
         cmocka_unit_test(grey_and_palette_pngs_are_read),
         cmocka_unit_test(colour_jpegs_are_read),
         cmocka_unit_test(exif_is_read),
+        cmocka_unit_test(times_of_exif_are_seconds),
         cmocka_unit_test(damaged_exif_keeps_the_pixels),
         cmocka_unit_test(damaged_files_are_errors),
         cmocka_unit_test(truncated_files_are_errors),
