@@ -82,8 +82,14 @@ static void drop_constant(struct patch_sample *s, int count)
     const float min_slope = 0.15f; /* the sRGB curve has 0.42 or more */
     bool constant[RECOVER_MAX_EXPOSURES];
     for (int c = 0; c < 3; c++) {
-        for (int k = 0; k < count; k++)
-            constant[k] = !in_range(s[k].rgb[c]) || slope(k ? &s[k - 1] : s, k ? &s[k] : s + 1, c) < min_slope;
+        for (int k = 0; k < count; k++) {
+            int a = k - 1, b = k + 1; /* the nearest other exposure: some may be equal */
+            while (a >= 0 && !(s[a].time < s[k].time)) a--;
+            while (b < count && !(s[b].time > s[k].time)) b++;
+            const bool other = a >= 0 || b < count;
+            constant[k] = !in_range(s[k].rgb[c]) || !other ||
+                          slope(a >= 0 ? &s[a] : &s[k], a >= 0 ? &s[k] : &s[b], c) < min_slope;
+        }
         for (int k = 0; k < count; k++)
             if (constant[k]) s[k].rgb[c] = ABSENT;
     }
@@ -171,7 +177,8 @@ static size_t find_pairs(struct level_ratio *pairs, const struct response *r, co
         for (int k = 1; k < p->counts[i]; k++)
             for (int c = 0; c < 3; c++) {
                 const struct patch_sample *a = &s[k - 1], *b = &s[k];
-                if (b->exposure != a->exposure + 1 || !judged(a->rgb[c]) || !judged(b->rgb[c])) continue;
+                if (b->exposure != a->exposure + 1 || !(b->time > a->time) || !judged(a->rgb[c]) || !judged(b->rgb[c]))
+                    continue;
                 const double la = (double)response_light(r, c, a->rgb[c]), lb = (double)response_light(r, c, b->rgb[c]);
                 if (!(la > 0) || !(lb > 0)) continue;
                 pairs[count++] = (struct level_ratio){a->exposure, c, (a->rgb[c] + b->rgb[c]) / 2,

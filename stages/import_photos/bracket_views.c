@@ -1,8 +1,4 @@
-/* bracket_views.c - which photographs are exposures of one view.
- *
- * The rules are in bracket_views.h. A cycle is found by trial: for every length from 2 to MAX_CYCLE and every start
- * among the first CYCLE_STARTS photos, the exposures there are the candidate; its occurrences are counted without
- * overlap. The candidate that covers most photos wins. */
+/* bracket_views.c - which photographs are exposures of one view, by the rules in bracket_views.h. */
 #include "stages/import_photos/bracket_views.h"
 
 #include <math.h>
@@ -15,13 +11,11 @@
 #include "common/base/array.h"
 #include "common/base/log.h"
 #include "common/base/sort.h"
+#include "stages/import_photos/bracket_cycle.h"
 #include "stages/import_photos/bracket_list.h"
+#include "stages/import_photos/photo_order.h"
 
-enum { MAX_CYCLE = 16, CYCLE_STARTS = 48, MIN_CYCLED = 6, MAX_NAMED = 8, TEXT_SIZE = 160 };
-
-static const double MAX_EQUAL = 1.01, MIN_DISTINCT = 1.2; /* ratios of exposures */
-
-static bool equal_exposures(double a, double b) { return a > 0 && b > 0 && a < MAX_EQUAL * b && b < MAX_EQUAL * a; }
+enum { MAX_DISTINCT = 16 /* references of one view */, MAX_NAMED = 8, TEXT_SIZE = 160 };
 
 /* The time as cameras display it. */
 static const char *show_seconds(char text[32], const struct exposure *e)
@@ -151,103 +145,70 @@ static enum status group_by_list(struct bracket_views *v, const struct photo_sca
 
 struct ordered { /* the photos that are not excluded, in the order of the camera */
     int *photos;
-    double *values; /* exposures */
+    struct bracket_shot *shots;
     int count;
+    enum photo_order order;
+    struct bracket_cycle cycle;
+    enum bracket_verdict verdict;
 };
 
-struct cycle {
-    int begin, length; /* in `ordered` */
-    int count;         /* number of occurrences */
-};
-
-struct photo_name {
-    const char *lens, *file; /* lens: _cXrY.png of a picture cut out of a photo, otherwise "" */
-    int photo;
-};
-
-static int by_name(const void *a, const void *b)
+static void release_ordered(struct ordered *o)
 {
-    const struct photo_name *x = a, *y = b;
-    int order = strverscmp(x->lens, y->lens);
-    if (!order) order = strverscmp(x->file, y->file);
-    return order ? order : strcmp(x->file, y->file);
+    free(o->photos);
+    free(o->shots);
 }
 
-static enum status order_photos(struct ordered *o, const struct bracket_views *v, const struct photo_scan *scan,
-                                struct err *err)
+/* Looks for a cycle in one order of the photos. Without their times there is none in order of time. */
+static enum status find_ordered(struct ordered *o, enum photo_order order, const struct bracket_views *v,
+                                const struct photo_scan *scan, enum bracket_wish wish, struct err *err)
 {
-    size_t count = (size_t)scan->count;
-    struct photo_name *names = calloc(count + 1, sizeof *names);
-    o->photos = calloc(count + 1, sizeof *o->photos);
-    o->values = calloc(count + 1, sizeof *o->values);
-    if (!names || !o->photos || !o->values) err_nomem(err, "photos", count * sizeof *names);
-    for (int i = 0; !err->status && i < scan->count; i++)
-        if (!scan->photos[i].excluded) {
-            const char *file = scan->photos[i].file, *end = scan->cut ? strrchr(file, '_') : NULL;
-            names[o->count++] = (struct photo_name){end ? end : "", file, i};
-        }
-    if (!err->status) qsort(names, (size_t)o->count, sizeof *names, by_name);
-    for (int i = 0; !err->status && i < o->count; i++) {
-        o->photos[i] = names[i].photo;
-        o->values[i] = exposure_value(&v->exposures[names[i].photo]);
+    size_t room = (size_t)scan->count + 1;
+    *o = (struct ordered){.photos = calloc(room, sizeof *o->photos), .order = order};
+    o->shots = calloc(room, sizeof *o->shots);
+    if (!o->photos || !o->shots) return err_nomem(err, "photos", room * sizeof *o->shots);
+    if (photo_order_find(o->photos, &o->count, scan, order, err)) return err->status;
+    for (int i = 0; i < o->count; i++) {
+        const struct exposure *e = &v->exposures[o->photos[i]];
+        o->shots[i] =
+            (struct bracket_shot){exposure_value(e), e->seconds, scan->photos[o->photos[i]].record.info.taken};
     }
-    free(names);
+    o->verdict = o->count ? bracket_cycle_find(&o->cycle, o->shots, o->count, wish) : BRACKETS_NONE;
+    return ST_OK;
+}
+
+/* The order of time, unless the photos have a complete cycle only in that of names, or no times. */
+static enum status order_photos(struct ordered *o, const struct bracket_views *v, const struct photo_scan *scan,
+                                enum bracket_wish wish, struct err *err)
+{
+    struct ordered by_name = {0};
+    find_ordered(o, ORDER_BY_TIME, v, scan, wish, err);
+    if (!err->status && o->verdict != BRACKETS_ALL) find_ordered(&by_name, ORDER_BY_NAME, v, scan, wish, err);
+    if (!err->status && (!o->count || by_name.verdict == BRACKETS_ALL)) {
+        const struct ordered other = *o;
+        *o = by_name;
+        by_name = other;
+    }
+    release_ordered(&by_name);
     return err->status;
 }
 
-static bool distinct(const double *values, int count)
-{
-    for (int i = 0; i < count; i++) {
-        if (!(values[i] > 0)) return false;
-        for (int k = 0; k < i; k++)
-            if (values[i] < MIN_DISTINCT * values[k] && values[k] < MIN_DISTINCT * values[i]) return false;
-    }
-    return true;
-}
-
-static bool cycle_at(const struct ordered *o, const struct cycle *c, int at)
-{
-    if (at + c->length > o->count) return false;
-    for (int k = 0; k < c->length; k++)
-        if (!equal_exposures(o->values[c->begin + k], o->values[at + k])) return false;
-    return true;
-}
-
-/* The cycle that covers most photos; of equal ones the longest, then the first. length 0: none. */
-static struct cycle find_cycle(const struct ordered *o)
-{
-    struct cycle best = {0};
-    for (int length = 2; length <= MAX_CYCLE && length <= o->count; length++)
-        for (int begin = 0; begin + length <= o->count && begin < CYCLE_STARTS; begin++) {
-            struct cycle c = {begin, length, 0};
-            if (!distinct(o->values + begin, length)) continue;
-            for (int at = 0; at < o->count;) {
-                bool occurs = cycle_at(o, &c, at);
-                c.count += occurs;
-                at += occurs ? length : 1;
-            }
-            int more = c.count * length - best.count * best.length;
-            if (c.count >= 2 && (more > 0 || (!more && length > best.length))) best = c;
-        }
-    return best;
-}
-
-static void show_cycle(char *text, size_t size, const struct bracket_views *v, const struct ordered *o,
-                       const struct cycle *c)
+static void show_shots(char *text, size_t size, const struct bracket_views *v, const struct ordered *o, int begin,
+                       int count)
 {
     char one[32];
     *text = 0;
-    for (int k = 0; k < c->length; k++)
-        append(text, size, ", ", show_seconds(one, &v->exposures[o->photos[c->begin + k]]));
+    for (int k = begin; k < begin + count; k++)
+        append(text, size, ", ", show_seconds(one, &v->exposures[o->photos[k]]));
 }
 
 static enum status incomplete(const struct bracket_views *v, const struct photo_scan *scan, const struct ordered *o,
-                              const struct cycle *c, struct err *err)
+                              struct err *err)
 {
+    const struct bracket_cycle *c = &o->cycle;
     char cycle[400], odd[700] = "", ids[400] = "", one[32];
     int count = 0;
     for (int at = 0; at < o->count;) {
-        bool occurs = cycle_at(o, c, at);
+        bool occurs = bracket_cycle_at(c, o->shots, o->count, at);
         const struct scanned_photo *p = &scan->photos[o->photos[at]];
         if (!occurs && count++ < MAX_NAMED) {
             char *text = NULL;
@@ -260,19 +221,25 @@ static enum status incomplete(const struct bracket_views *v, const struct photo_
         at += occurs ? c->length : 1;
     }
     const char *more = count > MAX_NAMED ? " ..." : "";
-    show_cycle(cycle, sizeof cycle, v, o, c);
+    show_shots(cycle, sizeof cycle, v, o, c->begin, c->length);
     return err_set(
         err, ST_DATA,
-        "the photos in %s are brackets of %s in order of file name, but these belong to no complete one: "
+        "the photos in %s are brackets of %s%s in order of %s, but these belong to no complete one: "
         "%s%s. Add the missing photos (a missing time: to exposures.txt), leave these out (EXCLUDE = %s%s), list "
         "the photos of each view in the scene's brackets.txt, or set [import_photos] brackets = no.",
-        scan->folder, cycle, odd, more, ids, more);
+        scan->folder, cycle, c->steps ? " (the first; others have the same steps)" : "",
+        o->order == ORDER_BY_TIME ? "time" : "file name", odd, more, ids, more);
 }
 
-static enum status add_cycles(struct bracket_views *v, const struct ordered *o, const struct cycle *c, struct err *err)
+/* Photos that jump may be brackets that no rule finds. */
+static void warn_of_jumps(const struct bracket_views *v, const struct photo_scan *scan, const struct ordered *o)
 {
-    for (int at = 0; !err->status && at < o->count; at += c->length) add_view(v, "", o->photos + at, c->length, err);
-    return err->status;
+    char text[400];
+    show_shots(text, sizeof text, v, o, 0, o->count < MAX_NAMED ? o->count : MAX_NAMED);
+    log_warn("the exposures of the photos in %s jump from photo to photo (%s%s), but form no cycle of brackets; each "
+             "photo becomes a view of its own. If some are exposures of one view, list the photos of each view in the "
+             "scene's brackets.txt; if not, [import_photos] brackets = no ends this warning.",
+             scan->folder, text, o->count > MAX_NAMED ? ", ..." : "");
 }
 
 static enum status group_by_cycle(struct bracket_views *v, const struct photo_scan *scan, bool required,
@@ -280,25 +247,25 @@ static enum status group_by_cycle(struct bracket_views *v, const struct photo_sc
 {
     struct ordered o = {0};
     char text[400];
-    order_photos(&o, v, scan, err);
-    struct cycle c = {0};
-    if (!err->status) c = find_cycle(&o);
-    int covered = c.count * c.length;
-    bool clear = covered >= MIN_CYCLED || ((required || scan->references) && covered);
-    if (!err->status && clear && covered == o.count) {
-        add_cycles(v, &o, &c, err);
-        show_cycle(text, sizeof text, v, &o, &c);
-        if (!err->status) log_note("%d views of %d exposures each: %s", c.count, c.length, text);
-    } else if (!err->status && clear && (required || 4 * covered >= 3 * o.count)) {
-        incomplete(v, scan, &o, &c, err);
+    order_photos(&o, v, scan, required ? BRACKETS_MUST_BE : scan->references ? BRACKETS_LIKELY : BRACKETS_MAY_BE, err);
+    const struct bracket_cycle *c = &o.cycle;
+    if (!err->status && o.verdict == BRACKETS_ALL) {
+        for (int at = 0; !err->status && at < o.count; at += c->length) add_view(v, "", o.photos + at, c->length, err);
+        show_shots(text, sizeof text, v, &o, c->begin, c->length);
+        if (!err->status)
+            log_note("%d views of %d exposures each: %s%s", c->count, c->length, text,
+                     c->steps ? "; the others have the same steps" : "");
+    } else if (!err->status && o.verdict == BRACKETS_SOME) {
+        incomplete(v, scan, &o, err);
     } else if (!err->status && required) {
         err_set(err, ST_DATA,
                 "[import_photos] brackets is yes, but the exposures of the %d photos in %s form no cycle that "
                 "occurs at least twice; list the photos of each view in the scene's brackets.txt.",
                 o.count, scan->folder);
+    } else if (!err->status && o.verdict == BRACKETS_JUMPS && !scan->references) {
+        warn_of_jumps(v, scan, &o);
     }
-    free(o.photos);
-    free(o.values);
+    release_ordered(&o);
     return err->status;
 }
 
@@ -325,13 +292,13 @@ static bool any_tiff(const struct photo_scan *scan)
 /* All photos as one view, if no two exposures are equal: a bracket that does not repeat. */
 static enum status group_distinct(struct bracket_views *v, const struct photo_scan *scan, struct err *err)
 {
-    int photos[MAX_CYCLE], count = 0;
+    int photos[MAX_DISTINCT], count = 0;
     for (int i = 0; i < scan->count; i++) {
         if (scan->photos[i].excluded) continue;
         const double value = exposure_value(&v->exposures[i]);
-        if (count == MAX_CYCLE || !(value > 0)) return ST_OK;
+        if (count == MAX_DISTINCT || !(value > 0)) return ST_OK;
         for (int k = 0; k < count; k++)
-            if (equal_exposures(value, exposure_value(&v->exposures[photos[k]]))) return ST_OK;
+            if (bracket_equal(value, exposure_value(&v->exposures[photos[k]]))) return ST_OK;
         photos[count++] = i;
     }
     return count > 1 ? add_view(v, "", photos, count, err) : ST_OK;
@@ -428,6 +395,26 @@ static enum status sort_view(struct bracket_view *view, const struct bracket_vie
     return ST_OK;
 }
 
+/* Number of exposures of the view that are equal to the one before. */
+static int count_repeats(const struct bracket_view *view, const struct bracket_views *v)
+{
+    int repeats = 0;
+    for (int i = 1; i < view->count; i++)
+        repeats += bracket_equal(exposure_value(&v->exposures[view->photos[i]]),
+                                 exposure_value(&v->exposures[view->photos[i - 1]]));
+    return repeats;
+}
+
+/* Whether at least half of the views have as many equal exposures: then the camera was set so. In one view alone they
+ * are a slip in brackets.txt. */
+static bool repeats_are_meant(const struct bracket_view *view, const struct bracket_views *v)
+{
+    const int wanted = count_repeats(view, v);
+    int same = 0;
+    for (int i = 0; i < v->count; i++) same += count_repeats(&v->views[i], v) >= wanted;
+    return 2 * same >= v->count && v->count > 1;
+}
+
 static enum status check_view(const struct bracket_view *view, const struct bracket_views *v,
                               const struct photo_scan *scan, struct err *err)
 {
@@ -449,7 +436,8 @@ static enum status check_view(const struct bracket_view *view, const struct brac
                            "size. Leave one out (EXCLUDE), or correct brackets.txt.",
                            view->id, p->file, info->width, info->height, first->file, first->record.info.width,
                            first->record.info.height);
-        if (i && equal_exposures(value, exposure_value(&v->exposures[view->photos[i - 1]])))
+        if (i && bracket_equal(value, exposure_value(&v->exposures[view->photos[i - 1]])) &&
+            !repeats_are_meant(view, v))
             return err_set(err, ST_DATA,
                            "view %s: %s and %s have the same exposure (%s); leave one out (EXCLUDE), or correct them "
                            "in exposures.txt or brackets.txt.",

@@ -1,11 +1,22 @@
 /* bracket_views.h - brackets: which photographs are exposures of one view.
  *
- * If SCENE/brackets.txt exists it lists them. Otherwise the exposures decide. In order of file name, numbers by value,
- * a bracketing camera leaves a cycle of exposures: 1/500 1/125 1/30 1/500 1/125 1/30 ... A cycle has 2 to 16 exposures
- * that differ by factors of at least 1.2; it must occur at least twice and cover at least 6 photos.
- *   All photos covered:            they are brackets.
- *   Three quarters or more of them: some are missing or extra, which is an error.
- *   Fewer:                         they are single photos.
+ * If SCENE/brackets.txt exists it lists them. Otherwise the exposures decide, in the order in which the camera took
+ * the photos (photo_order.h): a bracketing camera leaves a cycle of 2 to 16 exposures. There are two kinds:
+ *   Equal exposures: 1/500 1/125 1/30 1/500 1/125 1/30 ... The exposures of a cycle differ by factors of at least 1.2.
+ *   It occurs at least twice and covers at least 6 photos.
+ *   Equal steps: 1/60 1/240 1/15, 1/30 1/120 1/8 ... as in aperture priority, where the light of each view sets the
+ *   first time. Steps agree within 15 %, since cameras round times. The range is a factor of 2 or more; exposures may
+ *   be equal if three are different. (views - 1) x (exposures - 1) is at least 6, or at least 4 if the times show
+ *   bursts: each pause between two exposures of a view is shorter than each between two views. If the pauses within
+ *   views are longer than those between, they are single photos.
+ *   All photos covered:            they are brackets. Equal exposures are preferred.
+ *   Three quarters or more of them: some are missing or extra, which is an error; for equal exposures only if their
+ *                                  range is a factor of 2, for equal steps only if that product is at least 12.
+ *   Fewer:                         they are single photos. If two thirds of the exposures or more differ from the one
+ *                                  before by a factor of 1.8, a warning names brackets.txt.
+ * Photos with automatic exposure stay single: by chance, fewer than one set in 100 000 has equal steps. Where the order
+ * of time gives no complete cycle, that of names is tried.
+ *
  * TIFF, EXR and raw files that are not brackets, and all photos if [import_photos] brackets = single, become views of
  * one exposure each and are brought to one scale. If no exposure is known, all are assumed to be equal. Pictures cut
  * out of photos (split_photos.h) are ordered lens by lens, so that one bracket of a multi-lens camera is a cycle, too.

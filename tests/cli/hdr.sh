@@ -30,6 +30,30 @@ jpegs_are_fitted_and_merged()
     cmp set/photos-hdr/photo_3.jpg set/photos/photo_3_e1.jpg || fail "picture=middle is not the middle exposure's bytes"
 }
 
+# two photos of one exposure, each with noise of its own: the second makes the radiance better
+equal_exposures_are_merged()
+{
+    mkdir -p equal equal-scene
+    for p in set/photos/photo_?_e?.jpg; do
+        b=$(basename "${p%.jpg}")
+        ffmpeg -v error -i "$p" -vf noise=alls=3:allf=u:all_seed=1 -pix_fmt rgb24 "equal/$b.png"
+        [ "${b#*_e}" != 1 ] || ffmpeg -v error -i "$p" -vf noise=alls=3:allf=u:all_seed=2 -pix_fmt rgb24 "equal/${b}b.png"
+    done
+    for p in equal/*.png; do echo "$(basename "$p") $(basename "$p" .png | sed 's/.*_e\(.\).*/\1/' | awk '{ print 4 ^ $1 / 16384 }') 8 100"; done >equal-scene/exposures.txt
+    records equal || { cat err; fail "import"; }
+    says "views of 4 exposures each: 1/16384 s, 1/4096 s, 1/4096 s, 1/1024 s"
+    fit_response --photos equal --records equal-records --out equal/response.txt 2>err || { cat err; fail "fit_response"; }
+    says "response curve: sRGB"
+    merged equal photo_3 || { cat err; fail "merge"; }
+    ! grep -q warning err || { cat err; fail "equal exposures are doubted"; }
+    "$root/$B/tests/bench/picture_error" equal-hdr/photo_3.exr first.exr >with || fail "no comparison"
+    rm equal/*b.png; sed -i '/b.png/d' equal-scene/exposures.txt
+    records equal && merged equal photo_3 || { cat err; fail "without the second photo"; }
+    "$root/$B/tests/bench/picture_error" equal-hdr/photo_3.exr first.exr >without || fail "no comparison"
+    awk '$1 == "error" { e[n++] = $2 } END { exit !(n == 2 && e[0] < 0.98 * e[1] && e[1] < 0.1) }' with without ||
+        { cat with without; fail "the second photo does not help"; }
+}
+
 tiff_and_png_merge_like_jpeg()
 {
     mkdir -p tif tif-scene; n=0
@@ -237,5 +261,5 @@ TXT
     says "--marks, --plan and --axes belong together"
 }
 
-for t in jpegs_are_fitted_and_merged tiff_and_png_merge_like_jpeg an_exr_is_a_single_exposure a_tiff_is_a_single_exposure single_jpegs_share_one_scale raw_files_are_recognised wrong_exposures_are_refused \
+for t in jpegs_are_fitted_and_merged equal_exposures_are_merged tiff_and_png_merge_like_jpeg an_exr_is_a_single_exposure a_tiff_is_a_single_exposure single_jpegs_share_one_scale raw_files_are_recognised wrong_exposures_are_refused \
     missing_exposures_and_times_are_named shifts_are_reported_and_corrected errors_in_a_response_name_the_line cameras_are_copied_and_references_scaled marked_corners_give_the_camera; do run "$t"; done

@@ -64,7 +64,7 @@ static void import_release(struct import *im)
     photo_scan_release(&im->scan);
 }
 
-/* name and seconds of each photo; seconds NULL: unknown. */
+/* name and seconds of each photo, or SECONDS@TAKEN; NULL: unknown. */
 static enum status import(struct import *im, const char *const (*shots)[2], int count, const char *brackets,
                           const char *exclude)
 {
@@ -78,8 +78,11 @@ static enum status import(struct import *im, const char *const (*shots)[2], int 
     if (!im->err.status) photo_scan_check(&im->scan, records, &im->err);
     for (int i = 0; !im->err.status && i < im->scan.count; i++)
         for (int k = 0; k < count; k++)
-            if (!strcmp(im->scan.photos[i].file, shots[k][0]) && shots[k][1])
-                im->scan.photos[i].record.info.seconds = strtod(shots[k][1], NULL);
+            if (!strcmp(im->scan.photos[i].file, shots[k][0]) && shots[k][1]) {
+                char *end;
+                im->scan.photos[i].record.info.seconds = strtod(shots[k][1], &end);
+                if (*end == '@') im->scan.photos[i].record.info.taken = strtod(end + 1, NULL);
+            }
     if (!im->err.status)
         bracket_views_find(&im->views, &im->scan, scene, &params, &exclude, exclude ? 1 : 0, used, &im->err);
     return im->err.status;
@@ -153,6 +156,111 @@ static void the_order_in_brackets_txt_does_not_matter(void **state)
     assert_string_equal(text[0], text[1]);
     free(text[0]);
     free(text[1]);
+}
+
+/* The ids of the view's photos, from the shortest exposure on. */
+static void assert_view(const struct import *im, const char *id, const char *files)
+{
+    for (int i = 0; i < im->views.count; i++) {
+        const struct bracket_view *view = &im->views.views[i];
+        char text[400] = "";
+        if (strcmp(view->id, id) != 0) continue;
+        for (int k = 0; k < view->count; k++) {
+            size_t n = strlen(text);
+            snprintf(text + n, sizeof text - n, "%s%s", k ? " " : "", im->scan.photos[view->photos[k]].file);
+        }
+        assert_string_equal(text, files);
+        return;
+    }
+    fail_msg("no view %s", id);
+}
+
+/* The counter wraps between two exposures of a view, with one clock of whole seconds and one with sub-seconds. */
+static void views_follow_the_clock_not_the_counter(void **state)
+{
+    static const char *const seconds[9][2] = {
+        {"DSC_9995.JPG", "0.02@1000"}, {"DSC_9996.JPG", "0.005@1000"}, {"DSC_9997.JPG", "0.08@1001"},
+        {"DSC_9998.JPG", "0.02@1060"}, {"DSC_9999.JPG", "0.005@1060"}, {"DSC_0001.JPG", "0.08@1060"},
+        {"DSC_0002.JPG", "0.02@1120"}, {"DSC_0003.JPG", "0.005@1120"}, {"DSC_0004.JPG", "0.08@1121"}};
+    static const char *const parts[9][2] = {
+        {"DSC_9995.JPG", "0.02@1000.1"}, {"DSC_9996.JPG", "0.005@1000.3"}, {"DSC_9997.JPG", "0.08@1000.5"},
+        {"DSC_9998.JPG", "0.02@1060.0"}, {"DSC_9999.JPG", "0.005@1060.2"}, {"DSC_0001.JPG", "0.08@1060.4"},
+        {"DSC_0002.JPG", "0.02@1120.4"}, {"DSC_0003.JPG", "0.005@1120.6"}, {"DSC_0004.JPG", "0.08@1120.8"}};
+    (void)state;
+    for (int i = 0; i < 2; i++) {
+        struct import im;
+        fresh(NULL);
+        assert_ok(import(&im, i ? parts : seconds, 9, "auto", NULL), im.err);
+        assert_int_equal(im.views.count, 3);
+        assert_view(&im, "DSC_9995", "DSC_9996.JPG DSC_9995.JPG DSC_9997.JPG");
+        assert_view(&im, "DSC_9998", "DSC_9999.JPG DSC_9998.JPG DSC_0001.JPG");
+        assert_view(&im, "DSC_0002", "DSC_0003.JPG DSC_0002.JPG DSC_0004.JPG");
+        import_release(&im);
+    }
+}
+
+/* Without times the order is that of names; so it is where only names give a complete cycle. */
+static void views_follow_the_names_where_the_clock_does_not_help(void **state)
+{
+    const char *shots[9][2];
+    struct import im;
+    (void)state;
+    memcpy(shots, cycle, sizeof shots);
+    shots[0][1] = "0.1@1000"; /* one time alone says nothing */
+    assert_ok(import(&im, (const char *const(*)[2])shots, 9, "auto", NULL), im.err);
+    assert_view(&im, "v1", "v1_e0.jpg v1_e1.jpg v1_e2.jpg");
+    import_release(&im);
+    static const char *const clocks[9][2] = {/* two cameras with clocks of their own */
+                                             {"a1.jpg", "0.1@10"}, {"a2.jpg", "0.4@12"}, {"a3.jpg", "1.6@14"},
+                                             {"b1.jpg", "0.1@11"}, {"b2.jpg", "0.4@13"}, {"b3.jpg", "1.6@15"},
+                                             {"c1.jpg", "0.1@70"}, {"c2.jpg", "0.4@71"}, {"c3.jpg", "1.6@72"}};
+    fresh(NULL);
+    assert_ok(import(&im, clocks, 9, "auto", NULL), im.err);
+    assert_int_equal(im.views.count, 3);
+    assert_view(&im, "b1", "b1.jpg b2.jpg b3.jpg");
+    import_release(&im);
+}
+
+static void views_may_have_bases_of_their_own(void **state)
+{
+    static const char *const shots[12][2] = {
+        {"i01.jpg", "0.0166667"}, {"i02.jpg", "0.0041667"}, {"i03.jpg", "0.0666667"}, {"i04.jpg", "0.0333333"},
+        {"i05.jpg", "0.0083333"}, {"i06.jpg", "0.125"},     {"i07.jpg", "0.008"},     {"i08.jpg", "0.002"},
+        {"i09.jpg", "0.0333333"}, {"i10.jpg", "0.0125"},    {"i11.jpg", "0.003125"},  {"i12.jpg", "0.05"}};
+    struct import im;
+    (void)state;
+    assert_ok(import(&im, shots, 12, "auto", NULL), im.err);
+    assert_int_equal(im.views.count, 4);
+    assert_view(&im, "i04", "i05.jpg i04.jpg i06.jpg");
+    assert_true(fabs(im.views.white - 0.0125) < 1e-9); /* the median of the middle exposures, the shorter one */
+    import_release(&im);
+    assert_int_equal(import(&im, shots, 11, "yes", NULL), ST_DATA);
+    assert_err(im.err, ST_DATA, "(the first; others have the same steps) in order of file name");
+    assert_contains(im.err.text, "i10.jpg (1/80 s), i11.jpg (1/320 s), i12.jpg (no exposure time).");
+    import_release(&im);
+}
+
+static void exposures_of_all_views_may_be_equal(void **state)
+{
+    static const char *const four[] = {"0.0041667", "0.0166667", "0.0166667", "0.0666667"};
+    char names[16][8];
+    const char *shots[16][2];
+    struct import im;
+    struct photo_list list;
+    (void)state;
+    for (int i = 0; i < 16; i++) {
+        snprintf(names[i], sizeof names[i], "%02d.jpg", i);
+        shots[i][0] = names[i];
+        shots[i][1] = four[i % 4];
+    }
+    assert_ok(import(&im, (const char *const(*)[2])shots, 16, "auto", NULL), im.err);
+    assert_int_equal(im.views.count, 4);
+    assert_view(&im, "04", "04.jpg 05.jpg 06.jpg 07.jpg");
+    assert_ok(bracket_views_write(&im.views, &im.scan, records, &im.err), im.err);
+    assert_ok(photo_list_read(&list, records, &im.err), im.err);
+    assert_true(list.photos[1].brackets[1].exposure == list.photos[1].brackets[2].exposure);
+    photo_list_release(&list);
+    import_release(&im);
 }
 
 static void photos_without_a_cycle_stay_single(void **state)
@@ -311,6 +419,10 @@ int main(void)
         cmocka_unit_test_setup(a_cycle_of_exposures_makes_views, fresh),
         cmocka_unit_test_setup(views_with_equal_stems_are_named_after_their_first_photo, fresh),
         cmocka_unit_test_setup(the_order_in_brackets_txt_does_not_matter, fresh),
+        cmocka_unit_test_setup(views_follow_the_clock_not_the_counter, fresh),
+        cmocka_unit_test_setup(views_follow_the_names_where_the_clock_does_not_help, fresh),
+        cmocka_unit_test_setup(views_may_have_bases_of_their_own, fresh),
+        cmocka_unit_test_setup(exposures_of_all_views_may_be_equal, fresh),
         cmocka_unit_test_setup(photos_without_a_cycle_stay_single, fresh),
         cmocka_unit_test_setup(photos_of_incomplete_cycles_are_named, fresh),
         cmocka_unit_test_setup(exposures_txt_overrides_exif, fresh),
