@@ -12,6 +12,7 @@
 #include "common/base/parallel.h"
 #include "common/image/exr.h"
 #include "common/image/photo_formats.h"
+#include "common/image/photo_kind.h"
 
 /* name: in prov; NULL: the photo is not recorded. */
 static enum status read_bytes(struct photo_bytes *file, const char *path, const char *name, struct provenance *prov,
@@ -27,31 +28,15 @@ static enum status read_bytes(struct photo_bytes *file, const char *path, const 
     return err->status;
 }
 
-enum format { FORMAT_JPEG, FORMAT_PNG, FORMAT_TIFF, FORMAT_EXR, FORMAT_RAW };
-
-static enum status detect_format(const struct photo_bytes *file, enum format *format, struct err *err)
+static enum status unknown_kind(const struct photo_bytes *file, struct err *err)
 {
-    static const unsigned char jpeg[] = {0xff, 0xd8, 0xff}, png[] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'},
-                               exr[] = {0x76, 0x2f, 0x31, 0x01};
-    if (file->size >= sizeof jpeg && !memcmp(file->bytes, jpeg, sizeof jpeg)) {
-        *format = FORMAT_JPEG;
-    } else if (file->size >= sizeof png && !memcmp(file->bytes, png, sizeof png)) {
-        *format = FORMAT_PNG;
-    } else if (file->size >= sizeof exr && !memcmp(file->bytes, exr, sizeof exr)) {
-        *format = FORMAT_EXR;
-    } else if (photo_is_raw(file)) {
-        *format = FORMAT_RAW;
-    } else if (photo_is_tiff(file)) {
-        *format = FORMAT_TIFF;
-    } else {
-        char begin[32] = "";
-        for (size_t i = 0; i < file->size && i < 8; i++) sprintf(begin + 3 * i, " %02x", file->bytes[i]);
-        return err_set(err, ST_DATA,
-                       "%s is neither JPEG, PNG, TIFF, EXR nor a known raw format (it begins with the bytes%s); save "
-                       "it as one of them.",
-                       file->path, begin);
-    }
-    return ST_OK;
+    char begin[32] = "";
+    for (size_t i = 0; i < file->size && i < 8; i++) sprintf(begin + 3 * i, " %02x", file->bytes[i]);
+    return err_set(
+        err, ST_DATA,
+        "%s is neither JPEG, PNG, TIFF, HEIC, AVIF, WebP, JPEG XL, EXR nor a known raw format (it begins with "
+        "the bytes%s); save it as one of them.",
+        file->path, begin);
 }
 
 /* EXR is linear. It has no EXIF data: exposure and camera stay unknown. */
@@ -85,17 +70,20 @@ static enum status read_photo(struct photo *p, const char *path, bool pixels, bo
                               struct provenance *prov, struct err *err)
 {
     static enum status (*const read[])(struct photo *, const struct photo_bytes *, bool, struct err *) = {
-        [FORMAT_JPEG] = photo_read_jpeg, [FORMAT_PNG] = photo_read_png, [FORMAT_TIFF] = photo_read_tiff,
-        [FORMAT_EXR] = read_exr,         [FORMAT_RAW] = photo_read_raw,
+        [PHOTO_KIND_JPEG] = photo_read_jpeg, [PHOTO_KIND_PNG] = photo_read_png, [PHOTO_KIND_TIFF] = photo_read_tiff,
+        [PHOTO_KIND_EXR] = read_exr,         [PHOTO_KIND_RAW] = photo_read_raw, [PHOTO_KIND_HEIF] = photo_read_heif,
+        [PHOTO_KIND_WEBP] = photo_read_webp, [PHOTO_KIND_JXL] = photo_read_jxl,
     };
     struct photo_bytes file = {0};
-    enum format format = FORMAT_JPEG;
+    enum photo_kind kind = PHOTO_KIND_OTHER;
     *p = (struct photo){.info.orientation = 1};
-    if (!read_bytes(&file, path, name, prov, err)) detect_format(&file, &format, err);
-    if (!err->status && !any_format && (format == FORMAT_EXR || format == FORMAT_RAW))
-        err_set(err, ST_DATA, "%s is %s; wanted JPEG, PNG or TIFF here.", path,
-                format == FORMAT_EXR ? "an EXR file" : "a camera's raw file");
-    if (!err->status) read[format](p, &file, pixels, err);
+    if (!read_bytes(&file, path, name, prov, err)) kind = photo_kind_of(file.bytes, file.size);
+    if (kind == PHOTO_KIND_TIFF && photo_tiff_is_raw(&file)) kind = PHOTO_KIND_RAW;
+    if (!err->status && kind == PHOTO_KIND_OTHER) unknown_kind(&file, err);
+    if (!err->status && !any_format && (kind == PHOTO_KIND_EXR || kind == PHOTO_KIND_RAW))
+        err_set(err, ST_DATA, "%s is %s; wanted JPEG, PNG, TIFF, HEIC, AVIF, WebP or JPEG XL here.", path,
+                kind == PHOTO_KIND_EXR ? "an EXR file" : "a camera's raw file");
+    if (!err->status) read[kind](p, &file, pixels, err);
     free(file.bytes);
     if (err->status) photo_release(p);
     return err->status;

@@ -80,9 +80,18 @@ enum status photo_exif_read(struct photo_info *info, const struct photo_bytes *f
     const unsigned char *block = NULL;
     size_t size = 0;
     info->orientation = 1;
-    if (!(png ? find_exif_png : find_exif_jpeg)(file, &block, &size)) return ST_OK;
-    if (size > 1 << 20) return ST_OK; /* no camera writes this much: damaged */
+    return (png ? find_exif_png : find_exif_jpeg)(file, &block, &size) ? photo_exif_take(info, block, size, err)
+                                                                       : ST_OK;
+}
 
+enum status photo_exif_take(struct photo_info *info, const unsigned char *block, size_t size, struct err *err)
+{
+    info->orientation = 1;
+    if (size > sizeof exif_mark && !memcmp(block, exif_mark, sizeof exif_mark)) {
+        block += sizeof exif_mark;
+        size -= sizeof exif_mark;
+    }
+    if (size > PHOTO_MAX_EXIF) return ST_OK;
     unsigned char *marked = malloc(sizeof exif_mark + size);
     ExifData *data = exif_data_new();
     if (!marked || !data) {

@@ -14,23 +14,6 @@
 
 #include <libraw/libraw.h>
 
-bool photo_is_raw(const struct photo_bytes *file)
-{
-    static const struct {
-        size_t at;
-        const char *mark;
-        size_t size;
-    } marks[] = {
-        {0, "FUJIFILMCCD-RAW", 15}, {0, "IIRO", 4}, {0, "IIRS", 4},  {0, "MMOR", 4},     {0, "IIU\0", 4},
-        {6, "HEAPCCDR", 8},         {0, "FOVb", 4}, {0, "\0MRM", 4}, {4, "ftypcrx ", 8}, {8, "CR\2\0", 4},
-    };
-    for (size_t i = 0; i < sizeof marks / sizeof *marks; i++)
-        if (file->size >= marks[i].at + marks[i].size &&
-            !memcmp(file->bytes + marks[i].at, marks[i].mark, marks[i].size))
-            return true;
-    return photo_tiff_is_raw(file);
-}
-
 static enum status failed(const struct photo_bytes *file, const char *what, int code, struct err *err)
 {
     return err_set(err, ST_DATA,

@@ -77,19 +77,10 @@ static enum status damaged(const struct tiff_reader *r, struct err *err)
                    *r->message ? r->message : "decoding failed");
 }
 
-bool photo_is_tiff(const struct photo_bytes *file)
-{
-    static const unsigned char marks[4][4] = {
-        {'I', 'I', 42, 0}, {'M', 'M', 0, 42}, {'I', 'I', 43, 0}, {'M', 'M', 0, 43}};
-    for (int i = 0; i < 4; i++)
-        if (file->size >= 8 && !memcmp(file->bytes, marks[i], 4)) return true;
-    return false;
-}
-
 bool photo_tiff_is_raw(const struct photo_bytes *file)
 {
     struct tiff_reader r = {.file = file};
-    TIFF *t = photo_is_tiff(file) ? open_tiff(&r) : NULL;
+    TIFF *t = open_tiff(&r);
     if (!t) return false;
     uint32_t subfile = 0;
     uint16_t photometric = PHOTOMETRIC_RGB, compression = COMPRESSION_NONE;

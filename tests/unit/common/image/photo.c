@@ -87,14 +87,47 @@ static void colour_jpegs_are_read(void **state)
     photo_release(&p);
 }
 
+/* 64 x 48 pixels of 4 x, 5 y, 128 in 8 bits; 1024 x + 3, 1280 y + 5, 32768 in 16, stored with `bits`. */
+static void other_formats_are_read(void **state)
+{
+    static const struct {
+        const char *file;
+        int bits, most; /* most: difference in steps of 8 or 10 bits; encoders round to YCbCr, deep.avif is lossy */
+    } cases[] = {
+        {"rgb.heic", 8, 1}, {"turned.heic", 8, 1}, {"rgb.avif", 8, 1},  {"rgb.webp", 8, 0},
+        {"rgb.jxl", 8, 0},  {"deep.heic", 10, 2},  {"deep.jxl", 16, 0}, {"deep.avif", 10, 6},
+    };
+    (void)state;
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        struct photo p = read_good(cases[k].file);
+        const bool deep = cases[k].bits > 8, turned = strstr(cases[k].file, "turned");
+        assert_int_equal(p.info.bits, deep ? 16 : 8);
+        assert_true(p.info.width == (turned ? 48 : 64) && p.info.height == (turned ? 64 : 48));
+        assert_int_equal(p.info.orientation, 1);
+        int worst = 0;
+        for (int y = 0; y < 48; y++)
+            for (int x = 0; x < 64; x++) {
+                /* turned by 90 degrees clockwise: the left column becomes the top row */
+                const uint16_t *s = p.samples + 3 * (turned ? x * 48 + 47 - y : y * 64 + x);
+                const int wanted[] = {deep ? 1024 * x + 3 : 4 * x, deep ? 1280 * y + 5 : 5 * y, deep ? 32768 : 128};
+                for (int c = 0; c < 3; c++) worst = abs(s[c] - wanted[c]) > worst ? abs(s[c] - wanted[c]) : worst;
+            }
+        print_message("%s: largest difference %d\n", cases[k].file, worst);
+        if (worst > cases[k].most * (deep ? 64 : 1)) fail_msg("%s is off by %d", cases[k].file, worst);
+        photo_release(&p);
+    }
+}
+
+/* A HEIC stands upright already; its camera's EXIF may say otherwise. */
 static void exif_is_read(void **state)
 {
-    const char *const files[] = {"exif.jpg", "exif-big-endian.jpg", "exif.png", "exif-after-data.png"};
+    const char *const files[] = {"exif.jpg",  "exif-big-endian.jpg", "exif.png", "exif-after-data.png",
+                                 "exif.heic", "exif.webp",           "exif.jxl"};
     (void)state;
     for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
         struct photo p = read_good(files[i]);
         const struct photo_info *info = &p.info;
-        assert_int_equal(info->orientation, 6);
+        assert_int_equal(info->orientation, strstr(files[i], "heic") ? 1 : 6);
         assert_true(info->focal_mm == 5.85 && info->focal35_mm == 35 && info->seconds == 1 / 250.0);
         assert_true(info->f_number == 2.8 && info->iso == 400);
         assert_string_equal(info->make, "Mker"); /* printable ASCII of "  M\xc3\xa4ker\n " */
@@ -145,17 +178,33 @@ static void damaged_exif_keeps_the_pixels(void **state)
 static void damaged_files_are_errors(void **state)
 {
     const char *const cases[][2] = {
-        {"no-such.jpg", "cannot open"},       {"empty.jpg", "is empty"},
-        {"two-bytes.jpg", "neither JPEG"},    {"gif.jpg", "47 49 46 38"},
-        {"text.png", "neither JPEG, PNG"},    {"cmyk.jpg", "is a CMYK JPEG"},
-        {"cut.jpg", "cut-off JPEG"},          {"cut-before-end.jpg", "cut-off JPEG"},
-        {"cut-in-header.jpg", "header"},      {"progressive-cut.jpg", "cut-off JPEG"},
-        {"bad-code.jpg", "damaged"},          {"zero-height.jpg", "damaged"},
-        {"too-large.jpg", "65500"},           {"twelve-bits.jpg", "precision 12"},
-        {"cut-in-data.png", "cut-off PNG"},   {"cut-before-end.png", "cut-off PNG"},
-        {"cut-in-header.png", "cut-off PNG"}, {"short-data.png", "cut-off PNG"},
-        {"bad-crc.png", "damaged"},           {"palette-missing.png", "damaged"},
-        {"zero-size.png", "damaged"},         {"too-large.png", "65535 x 65535"},
+        {"no-such.jpg", "cannot open"},
+        {"empty.jpg", "is empty"},
+        {"two-bytes.jpg", "neither JPEG"},
+        {"gif.jpg", "47 49 46 38"},
+        {"text.png", "neither JPEG, PNG"},
+        {"cmyk.jpg", "is a CMYK JPEG"},
+        {"cut.heic", "cut.heic is a damaged or cut-off HEIC"},
+        {"cut.avif", "cut.avif is a damaged or cut-off HEIC"},
+        {"cut-in-header.heic", "damaged"},
+        {"cut.webp", "damaged or cut-off WebP"},
+        {"cut.jxl", "damaged or cut-off JPEG XL"},
+        {"cut.jpg", "cut-off JPEG"},
+        {"cut-before-end.jpg", "cut-off JPEG"},
+        {"cut-in-header.jpg", "header"},
+        {"progressive-cut.jpg", "cut-off JPEG"},
+        {"bad-code.jpg", "damaged"},
+        {"zero-height.jpg", "damaged"},
+        {"too-large.jpg", "65500"},
+        {"twelve-bits.jpg", "precision 12"},
+        {"cut-in-data.png", "cut-off PNG"},
+        {"cut-before-end.png", "cut-off PNG"},
+        {"cut-in-header.png", "cut-off PNG"},
+        {"short-data.png", "cut-off PNG"},
+        {"bad-crc.png", "damaged"},
+        {"palette-missing.png", "damaged"},
+        {"zero-size.png", "damaged"},
+        {"too-large.png", "65535 x 65535"},
     };
     (void)state;
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
@@ -344,6 +393,7 @@ int main(void)
         cmocka_unit_test(colour_pngs_are_read),
         cmocka_unit_test(grey_and_palette_pngs_are_read),
         cmocka_unit_test(colour_jpegs_are_read),
+        cmocka_unit_test(other_formats_are_read),
         cmocka_unit_test(exif_is_read),
         cmocka_unit_test(times_of_exif_are_seconds),
         cmocka_unit_test(damaged_exif_keeps_the_pixels),

@@ -1,0 +1,46 @@
+/* photo_webp.c - WebP files, by libwebp. Alpha is dropped; of an animation there is no photo. */
+#include "common/image/photo_formats.h"
+
+#include <stdlib.h>
+
+#include <webp/decode.h>
+#include <webp/demux.h>
+
+static enum status read_webp_exif(struct photo_info *info, const struct photo_bytes *file, struct err *err)
+{
+    const WebPData data = {file->bytes, file->size};
+    WebPDemuxer *demuxer = WebPDemux(&data);
+    WebPChunkIterator chunk;
+    if (demuxer && WebPDemuxGetChunk(demuxer, "EXIF", 1, &chunk)) {
+        photo_exif_take(info, chunk.chunk.bytes, chunk.chunk.size, err);
+        WebPDemuxReleaseChunkIterator(&chunk);
+    }
+    WebPDemuxDelete(demuxer);
+    return err->status;
+}
+
+enum status photo_read_webp(struct photo *p, const struct photo_bytes *file, bool pixels, struct err *err)
+{
+    WebPBitstreamFeatures features;
+    if (WebPGetFeatures(file->bytes, file->size, &features) != VP8_STATUS_OK)
+        return err_set(err, ST_DATA, "%s is a damaged or cut-off WebP file; copy or export the photo again.",
+                       file->path);
+    if (features.has_animation)
+        return err_set(err, ST_DATA, "%s is an animated WebP file; export one photo as JPEG or PNG.", file->path);
+    p->info.width = features.width;
+    p->info.height = features.height;
+    p->info.bits = 8;
+    if (photo_check_size(file->path, (uint64_t)features.width, (uint64_t)features.height, err) ||
+        read_webp_exif(&p->info, file, err) || !pixels)
+        return err->status;
+    const size_t samples = (size_t)p->info.width * (size_t)p->info.height * 3;
+    unsigned char *rgb = malloc(samples);
+    if (!rgb) return err_nomem(err, "a photo", samples);
+    if (!WebPDecodeRGBInto(file->bytes, file->size, rgb, samples, 3 * p->info.width))
+        err_set(err, ST_DATA, "%s is a damaged or cut-off WebP file; copy or export the photo again.", file->path);
+    else
+        photo_init_samples(p, err);
+    for (size_t i = 0; !err->status && i < samples; i++) p->samples[i] = rgb[i];
+    free(rgb);
+    return err->status;
+}
