@@ -1,5 +1,5 @@
-/* photo.h - reads photographs (JPEG, PNG, TIFF, HEIC, AVIF, WebP, JPEG XL, raw files, EXR) with their EXIF data; writes
- * JPEG and PNG.
+/* photo.h - reads photographs (JPEG, PNG, TIFF, HEIC, AVIF, WebP, JPEG XL, raw files, EXR) with their EXIF data;
+ * writes JPEG and PNG.
  *
  * Rows are in the order of the file: EXIF orientation is reported, never applied. HEIC and AVIF stand upright. */
 #ifndef REMODEL_PHOTO_H
@@ -9,9 +9,10 @@
 #include "common/image/image.h"
 #include "common/image/photo_data.h"
 
-/* Reads JPEG, PNG, TIFF, HEIC, AVIF, WebP and JPEG XL of 8 or 16 bits. Grey becomes RGB; alpha is dropped. ST_DATA, naming the file and what to
- * do: another format (by content, not by name), an empty or truncated file (a JPEG that ends early is an error, not a
- * grey lower half), CMYK or YCCK, no pixels or more than 2^28. On failure p is empty. */
+/* Reads JPEG, PNG, TIFF, HEIC, AVIF, WebP and JPEG XL of 8 or 16 bits. Grey becomes RGB; alpha is dropped.
+ * ST_DATA, naming the file and what to do: another format (by content, not by name), an empty or truncated file (a
+ * JPEG that ends early is an error, not a grey lower half), CMYK or YCCK, no pixels or more than 2^28. On failure p
+ * is empty. */
 enum status photo_read(struct photo *p, const char *path, struct err *err);
 /* The same, recorded in prov as `name`. */
 enum status photo_read_input(struct photo *p, const char *path, const char *name, struct provenance *prov,

@@ -5,7 +5,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 #include <unistd.h>
 
 #include "common/base/array.h"
@@ -279,14 +278,22 @@ static bool any_linear(const struct photo_scan *scan, const char **file)
     return false;
 }
 
-/* COLMAP does not read 16-bit TIFF. */
-static bool any_tiff(const struct photo_scan *scan)
+/* COLMAP reads JPEG and PNG everywhere, other kinds in some builds or not in 16 bits. NULL: there are no others. */
+static const char *other_kind(const struct photo_scan *scan)
 {
     for (int i = 0; i < scan->count; i++) {
-        const char *ending = scan->photos[i].file + photo_stem(scan->photos[i].file);
-        if (!scan->photos[i].excluded && (!strcasecmp(ending, ".tif") || !strcasecmp(ending, ".tiff"))) return true;
+        const enum photo_kind kind = scan->photos[i].kind;
+        if (!scan->photos[i].excluded && kind != PHOTO_KIND_JPEG && kind != PHOTO_KIND_PNG) return scan->photos[i].file;
     }
-    return false;
+    return NULL;
+}
+
+/* HEIC, AVIF, WebP or JPEG XL, which COLMAP does not read. */
+static const char *unread_kind(const struct photo_scan *scan)
+{
+    for (int i = 0; i < scan->count; i++)
+        if (!scan->photos[i].excluded && scan->photos[i].kind >= PHOTO_KIND_HEIF) return scan->photos[i].file;
+    return NULL;
 }
 
 /* All photos as one view, if no two exposures are equal: a bracket that does not repeat. */
@@ -516,6 +523,12 @@ enum status bracket_views_find(struct bracket_views *v, const struct photo_scan 
             "%s/%s is an EXR or a raw file, which can only be used if brackets are merged; set [import_photos] "
             "brackets = auto, or leave it out (EXCLUDE).",
             scan->folder, linear);
+    if (!strcmp(params->brackets, "no") && !scan->references && unread_kind(scan))
+        return err_set(
+            err, ST_DATA,
+            "%s/%s is HEIC, AVIF, WebP or JPEG XL, which COLMAP does not read; set [import_photos] brackets = "
+            "auto, so that it gets a JPEG, or leave it out (EXCLUDE).",
+            scan->folder, unread_kind(scan));
     if (!strcmp(params->brackets, "no") && !scan->references) return ST_OK;
     find_exposures(v, scan, scene, err);
     if (!err->status && scene && asprintf(&path, "%s/brackets.txt", scene) < 0) {
@@ -527,7 +540,7 @@ enum status bracket_views_find(struct bracket_views *v, const struct photo_scan 
     if (!err->status && !listed && !single)
         group_by_cycle(v, scan, !strcmp(params->brackets, "yes") && !scan->references, err);
     if (!err->status && !listed && !v->count && !single && scan->references) group_distinct(v, scan, err);
-    if (!err->status && !listed && !v->count && (scan->references || single || has_linear || any_tiff(scan)))
+    if (!err->status && !listed && !v->count && (scan->references || single || has_linear || other_kind(scan)))
         single_views(v, scan, err);
     if (!err->status && listed && v->count) qsort(v->views, (size_t)v->count, sizeof *v->views, by_view);
     if (!err->status && !listed && v->count) name_views(v, scan, err);

@@ -17,9 +17,10 @@
  * Photos with automatic exposure stay single: by chance, fewer than one set in 100 000 has equal steps. Where the order
  * of time gives no complete cycle, that of names is tried.
  *
- * TIFF, EXR and raw files that are not brackets, and all photos if [import_photos] brackets = single, become views of
- * one exposure each and are brought to one scale. If no exposure is known, all are assumed to be equal. Pictures cut
- * out of photos (split_photos.h) are ordered lens by lens, so that one bracket of a multi-lens camera is a cycle, too.
+ * Photos other than JPEG and PNG that are not brackets, and all photos if [import_photos] brackets = single, become
+ * views of one exposure each and are brought to one scale. If no exposure is known, all are assumed to be equal.
+ * Pictures cut out of photos (split_photos.h) are ordered lens by lens, so that one bracket of a multi-lens camera is
+ * a cycle, too.
  *
  * Lighting reference images without brackets.txt and cycle are one view if no two exposures are equal, otherwise views
  * of one exposure each.

@@ -1,6 +1,6 @@
 /* import_photos.c - checks the photographs of a folder, gives them ids, groups exposures of one view.
  *
- * reads   --photos DIR   JPEG, PNG, TIFF, EXR and raw files, exposures.txt; subfolders are ignored, nothing is written
+ * reads   --photos DIR   photos of any kind (common/image/photo_kind.h), exposures.txt; nothing is written
  *         --like DIR     records of a scene: the photos are its lighting reference images, on its scale
  *         --split CxR    each photo contains C x R pictures of a multi-lens camera; these become the photos
  *         --scene DIR    brackets.txt and exposures.txt, if they exist
@@ -58,12 +58,7 @@ static void report_unused(const struct photo_scan *scan, const struct exclusion 
 static void report_scan(const struct photo_scan *scan)
 {
     for (int i = 0; i < scan->count; i++) err_report(&scan->photos[i].err);
-    if (scan->ignored)
-        log_note("ignored in %s: %d files or folders that do not have names of photos", scan->folder, scan->ignored);
-    if (scan->doubled)
-        log_note("ignored in %s: %d raw files beside a JPEG of the same name; to use them, put the raw files into a "
-                 "folder of their own",
-                 scan->folder, scan->doubled);
+    left_out_report(&scan->left, scan->folder);
 }
 
 /* Cuts the pictures out of the photos into `cuts`. */
@@ -162,7 +157,8 @@ int main(int argc, char **argv)
     struct photo_params params = PHOTO_PARAMS_DEFAULT;
     const struct cli_opt opts[] = {
         CLI_ABOUT("Checks the photographs of a folder, gives them ids and records their properties."),
-        CLI_STR("photos", &photos, CLI_REQUIRED, "folder of photos: JPEG, PNG, TIFF, EXR, raw; subfolders are ignored"),
+        CLI_STR("photos", &photos, CLI_REQUIRED,
+                "folder of photos: JPEG, PNG, TIFF, HEIC, AVIF, WebP, JPEG XL, EXR, raw; subfolders are not searched"),
         CLI_STR("scene", &scene, CLI_OPTIONAL, "folder that may contain brackets.txt and exposures.txt"),
         CLI_STR("like", &like, CLI_OPTIONAL,
                 "folder of a scene's records: the photos become its lighting reference images, on its scale"),

@@ -6,8 +6,10 @@
  * added, then a number; names whose id is unique keep it, so that adding a photo changes as few ids as possible.
  * Only the order of the names matters, never that of the folder.
  *
- * Which files. The extension decides. Where a camera wrote a raw file and a JPEG of one name, the JPEG is taken,
- * because its owner has seen it. Hidden files and other kinds are counted as ignored.
+ * Which files. The first bytes decide (photo_kind.h): phones and browsers give JPEGs names that end with .HEIC, .jfif
+ * or nothing. A file that has a photo's name but no photo in it is an unusable photo. Where a camera wrote a raw file
+ * or a HEIC and a JPEG of one name, the JPEG is taken, because its owner has seen it. What is left out has a reason
+ * (left_out.h).
  *
  * Checks. Every photo is read to its end once, in parallel, because a truncated file should be found before hours of
  * work. The record has the hash of the bytes: a photo with the same hash as in its old record is not read again.
@@ -32,53 +34,71 @@
 #include "common/base/progress.h"
 #include "common/base/textfile.h"
 
+static size_t known_stem(const char *file, const char *const *extensions, size_t count)
+{
+    const size_t length = strlen(file);
+    for (size_t i = 0; i < count; i++) {
+        const size_t tail = strlen(extensions[i]);
+        if (length > tail && !strcasecmp(file + length - tail, extensions[i])) return length - tail;
+    }
+    return 0;
+}
+
 /* photo_stem() for raw files only. */
 static size_t raw_stem(const char *file)
 {
     static const char *const extensions[] = {".dng", ".cr2", ".cr3", ".crw", ".nef", ".nrw", ".arw", ".sr2", ".raf",
                                              ".orf", ".rw2", ".pef", ".srw", ".x3f", ".3fr", ".iiq", ".mrw"};
-    const size_t length = strlen(file);
-    for (size_t i = 0; i < sizeof extensions / sizeof *extensions; i++)
-        if (length > 4 && !strcasecmp(file + length - 4, extensions[i])) return length - 4;
-    return 0;
+    return known_stem(file, extensions, sizeof extensions / sizeof *extensions);
+}
+
+/* Length of the name without the extension of a photo; 0: it has none. */
+static size_t named_stem(const char *file)
+{
+    static const char *const extensions[] = {".jpg",  ".jpeg", ".jpe",  ".jfif", ".png", ".tif", ".tiff",
+                                             ".heic", ".heif", ".avif", ".webp", ".jxl", ".exr"};
+    const size_t stem = known_stem(file, extensions, sizeof extensions / sizeof *extensions);
+    return stem ? stem : raw_stem(file);
 }
 
 size_t photo_stem(const char *file)
 {
-    static const char *const extensions[] = {".jpg", ".jpeg", ".png", ".tif", ".tiff", ".exr"};
-    const size_t length = strlen(file), raw = raw_stem(file);
-    for (size_t i = 0; i < sizeof extensions / sizeof *extensions; i++) {
-        size_t tail = strlen(extensions[i]);
-        if (length > tail && !strcasecmp(file + length - tail, extensions[i])) return length - tail;
-    }
-    return raw;
+    const size_t stem = named_stem(file), length = strlen(file);
+    const char *dot = strrchr(file, '.');
+    if (stem || !dot || dot == file) return stem ? stem : length;
+    /* of other names an extension is a letter with up to four letters and digits behind the last dot */
+    const size_t tail = strspn(dot + 1, "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789");
+    const bool extension = tail >= 1 && tail <= 5 && !dot[1 + tail] && !(dot[1] >= '0' && dot[1] <= '9');
+    return extension ? (size_t)(dot - file) : length;
 }
 
-/* Cameras that write both give them the same name. The JPEG is used because its owner has seen it. */
-static bool has_jpeg_twin(const struct photo_scan *scan, const char *raw)
+/* Cameras that write two files of a shot give them the same name. The JPEG is used because its owner has seen it. */
+static bool has_jpeg_twin(const struct photo_scan *scan, const struct scanned_photo *p)
 {
-    const size_t stem = raw_stem(raw);
-    for (int i = 0; stem && i < scan->count; i++) {
+    if (!raw_stem(p->file) && p->kind != PHOTO_KIND_HEIF) return false;
+    const size_t stem = photo_stem(p->file);
+    for (int i = 0; i < scan->count; i++) {
         const char *other = scan->photos[i].file;
-        if (!raw_stem(other) && photo_stem(other) == stem && !strncmp(other, raw, stem) &&
+        if (&scan->photos[i] != p && photo_stem(other) == stem && !strncmp(other, p->file, stem) &&
             (!strcasecmp(other + stem, ".jpg") || !strcasecmp(other + stem, ".jpeg")))
             return true;
     }
     return false;
 }
 
-static void drop_raw_with_jpeg_twin(struct photo_scan *scan)
+static enum status drop_jpeg_twins(struct photo_scan *scan, struct err *err)
 {
     int kept = 0;
-    for (int i = 0; i < scan->count; i++) scan->photos[i].excluded = has_jpeg_twin(scan, scan->photos[i].file);
+    for (int i = 0; i < scan->count; i++) scan->photos[i].excluded = has_jpeg_twin(scan, &scan->photos[i]);
     for (int i = 0; i < scan->count; i++)
         if (scan->photos[i].excluded) {
+            left_out_add(&scan->left, scan->photos[i].file, LEFT_DOUBLE, err);
             free(scan->photos[i].file);
-            scan->doubled++;
         } else {
             scan->photos[kept++] = scan->photos[i];
         }
     scan->count = kept;
+    return err->status;
 }
 
 static bool id_char(char c)
@@ -161,7 +181,9 @@ static enum status assign_ids(struct photo_scan *scan, struct err *err)
             char id[MAX_PHOTO_ID + 32];
             if (shared[i] != (pass == 1)) continue;
             if (shared[i]) {
-                int n = 1, length = snprintf(id, sizeof id, "%s_%s", bases[i].text, strrchr(p->file, '.') + 1);
+                const char *extension = p->file + photo_stem(p->file);
+                int n = 1,
+                    length = snprintf(id, sizeof id, "%s_%s", bases[i].text, *extension ? extension + 1 : "photo");
                 while (id_taken(scan, id)) snprintf(id + length, sizeof id - (size_t)length, "-%d", ++n);
             }
             p->id = strdup(shared[i] ? id : bases[i].text);
@@ -181,22 +203,51 @@ static char *join_path(const char *folder, const char *name, const char *suffix)
     return asprintf(&path, "%s/%s%s", folder, name, suffix) < 0 ? NULL : path;
 }
 
+/* What the file holds by its first bytes; OTHER also if it cannot be read, which is said later. */
+static enum photo_kind kind_of_file(const char *path)
+{
+    unsigned char begin[64];
+    FILE *f = fopen(path, "rb");
+    const size_t size = f ? fread(begin, 1, sizeof begin, f) : 0;
+    if (f) fclose(f);
+    return photo_kind_of(begin, size);
+}
+
+static bool has_photos(const char *path)
+{
+    bool found = false;
+    DIR *dir = opendir(path);
+    for (struct dirent *e; dir && !found && (e = readdir(dir));) found = e->d_name[0] != '.' && named_stem(e->d_name);
+    if (dir) closedir(dir);
+    return found;
+}
+
+static enum status add_photo(struct photo_scan *scan, const char *name, enum photo_kind kind, struct err *err)
+{
+    if (array_append(&scan->photos, (size_t)scan->count, sizeof *scan->photos, "photos", err)) return err->status;
+    scan->photos[scan->count] = (struct scanned_photo){.file = strdup(name), .kind = kind};
+    return scan->photos[scan->count++].file ? ST_OK : err_nomem(err, "a file name", strlen(name) + 1);
+}
+
 static enum status scan_entry(struct photo_scan *scan, const char *name, struct err *err)
 {
     struct stat info;
-    if (name[0] == '.' || !strcmp(name, "exposures.txt") || !strcmp(name, "split.txt")) return ST_OK;
+    if (!strcmp(name, "exposures.txt") || !strcmp(name, "split.txt")) return ST_OK;
+    if (name[0] == '.') return named_stem(name) ? left_out_add(&scan->left, name, LEFT_HIDDEN, err) : ST_OK;
     char *path = join_path(scan->folder, name, "");
     if (!path) return err_nomem(err, "a path", 0);
-    bool other = !photo_stem(name) ||
-                 (!stat(path, &info) && !S_ISREG(info.st_mode)); /* a dead link counts as an unusable photo */
+    const bool there = !stat(path, &info), file = there && S_ISREG(info.st_mode);
+    const enum photo_kind kind = file ? kind_of_file(path) : PHOTO_KIND_OTHER;
+    if (there && S_ISDIR(info.st_mode))
+        left_out_add(&scan->left, name, has_photos(path) ? LEFT_FOLDER : LEFT_OTHER, err);
+    else if (kind != PHOTO_KIND_OTHER && left_out_is_backup(name))
+        left_out_add(&scan->left, name, LEFT_BACKUP, err);
+    else if (kind != PHOTO_KIND_OTHER || (named_stem(name) && (file || !there)))
+        add_photo(scan, name, kind, err); /* a dead link, and a photo's name without a photo, are unusable photos */
+    else
+        left_out_add(&scan->left, name, left_out_reason(name), err);
     free(path);
-    if (other) {
-        scan->ignored++;
-        return ST_OK;
-    }
-    if (array_append(&scan->photos, (size_t)scan->count, sizeof *scan->photos, "photos", err)) return err->status;
-    scan->photos[scan->count] = (struct scanned_photo){.file = strdup(name)};
-    return scan->photos[scan->count++].file ? ST_OK : err_nomem(err, "a file name", strlen(name) + 1);
+    return err->status;
 }
 
 enum status photo_scan_folder(struct photo_scan *scan, const char *folder, struct err *err)
@@ -214,7 +265,8 @@ enum status photo_scan_folder(struct photo_scan *scan, const char *folder, struc
     for (struct dirent *entry; !err->status && (entry = readdir(dir)); errno = 0) scan_entry(scan, entry->d_name, err);
     if (!err->status && errno) err_errno(err, "list the folder of photos", folder);
     closedir(dir);
-    drop_raw_with_jpeg_twin(scan);
+    if (!err->status) drop_jpeg_twins(scan, err);
+    left_out_sort(&scan->left);
     if (!err->status && scan->count) {
         qsort(scan->photos, (size_t)scan->count, sizeof *scan->photos, by_file);
         assign_ids(scan, err);
@@ -405,6 +457,7 @@ void photo_scan_release(struct photo_scan *scan)
         photo_record_release(&scan->photos[i].record);
     }
     free(scan->photos);
+    left_out_release(&scan->left);
     free(scan->folder);
     *scan = (struct photo_scan){0};
 }

@@ -1,20 +1,23 @@
 /* photo_scan.h - the photographs of a folder: their ids, which are excluded, and which cannot be used.
  *
- * A photo is a file in the folder itself whose name has the extension of a JPEG, PNG, TIFF, EXR or raw file (in any
- * case) and does not begin with a dot. Raw files beside a JPEG of the same name are ignored. An id is the name without
- * the extension, with every run of characters other than letters, digits, _ and - replaced by one _; it does not begin
- * with -. If photos would share an id, or have a reserved one, the extension is added to each, as _jpg, and if that is
- * taken -2, -3 in order of file name. Ids depend only on the set of names, including those of excluded photos, so
- * excluding one renames no other. */
+ * A photo is a file in the folder itself that holds one (photo_kind.h), whatever its name, unless that begins with a
+ * dot or is that of a backup; or one that has a photo's name. Raw files and HEIC beside a JPEG of the same name are
+ * left out. An id is the name without the extension, with every run of characters other than letters, digits, _ and -
+ * replaced by one _; it does not begin with -. If photos would share an id, or have a reserved one, the extension is
+ * added to each, as _jpg, and if that is taken -2, -3 in order of file name. Ids depend only on the set of names,
+ * including those of excluded photos, so excluding one renames no other. */
 #ifndef REMODEL_PHOTO_SCAN_H
 #define REMODEL_PHOTO_SCAN_H
 
 #include <stdbool.h>
 
 #include "common/capture/photo_list.h"
+#include "common/image/photo_kind.h"
+#include "stages/import_photos/left_out.h"
 
 struct scanned_photo {
     char *file, *id; /* owned */
+    enum photo_kind kind;
     bool excluded;
     struct photo_record record; /* filled by photo_scan_check() */
     struct err err;             /* the reason if it cannot be used */
@@ -26,8 +29,7 @@ struct photo_scan {
     int count;
     bool cut;        /* the photos are pictures cut out of others, ID_cXrY.png; set by the caller */
     bool references; /* the photos are lighting reference images; set by the caller */
-    int doubled;     /* raw files beside a JPEG of the same name */
-    int ignored;     /* other files and folders, without hidden ones, exposures.txt and split.txt */
+    struct left_out left;
 };
 
 /* ST_IO, ST_DATA: the folder is missing, not a folder, or unreadable. A folder without photos is not an error here. */
@@ -56,7 +58,7 @@ enum status photo_scan_write(const struct photo_scan *scan, const char *records,
 enum status photo_scan_remove_others(const char *records, const char *const *ids, int count, struct err *err);
 
 enum { MAX_PHOTO_ID = 100 }; /* file names may have 255 bytes: leaves room for @k, extensions, temporary names */
-size_t photo_stem(const char *file);    /* length of the name without its extension; 0: not a photo's name */
+size_t photo_stem(const char *file);    /* length of the name without its extension */
 bool photo_id_reserved(const char *id); /* other files beside those named by ids: list, brackets, index, offsets */
 void photo_id_from_stem(char id[MAX_PHOTO_ID + 1], const char *stem, size_t length);
 

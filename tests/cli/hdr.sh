@@ -119,7 +119,7 @@ raw_files_are_recognised()
     mkdir -p raw; cp set/photos/photo_[12]_e1.jpg raw/
     echo "not read" >raw/photo_1_e1.CR2
     records raw || { cat err; fail "import"; }
-    says "1 raw files beside a JPEG of the same name"
+    says "not used in raw: photo_1_e1.CR2 (a raw file, HEIC or AVIF beside a JPEG of the same name"
     printf 'FUJIFILMCCD-RAW 0201' >raw/photo_9.raf
     refused "photo_9.raf is a raw file that cannot be read (libraw:" records raw
 }

@@ -43,4 +43,21 @@ cut_pictures_are_photos()
     grep -qx 'size 40 40' "$scratch/records/a_c2r2.txt" || fail "wrong size"
 }
 
-for t in invalid_grids_are_rejected invalid_parameters_are_rejected photos_that_cannot_be_cut_are_named cut_pictures_are_photos; do run "$t"; done
+# as phones and browsers name them; each left out by its name, with what to do
+files_are_known_by_their_content()
+{
+    local c=$root/tests/fuzz/corpus/photo m=$scratch/mixed; mkdir -p "$m/cam1"
+    cp "$c/rgb.jpg" "$m/1.jfif"; cp "$c/rgb.jpg" "$m/2.HEIC"; cp "$c/rgb.heic" "$m/3.HEIC"; cp "$c/rgb.webp" "$m/4.webp"
+    cp "$c/rgb.jpg" "$m/cam1/5.jpg"; cp "$c/rgb.jpg" "$m/1.jfif_original"; cp "$c/rgb.jpg" "$m/._2.jpg"; echo >"$m/6.mov"; echo >"$m/7.xmp"
+    "$B/bin/import_photos" --photos "$m" --out "$scratch/mixed-records" 2>"$scratch/err" || { cat "$scratch/err"; fail "it failed"; }
+    [ "$(cut -d' ' -f1 "$scratch/mixed-records/list.txt" | tr '\n' ' ')" = "1 2 3 4 " ] || fail "wrong photos"
+    grep -qx 'BRACKETED := yes' "$scratch/mixed-records/photos.mk" || fail "COLMAP would get HEIC"
+    for words in "warning: not used in $m: cam1 (folders with photos" "warning: not used in $m: 6.mov (videos" "not used in $m: 1.jfif_original (backups" \
+        "not used in $m: ._2.jpg (hidden" "not used in $m: 7.xmp (no pictures)"; do
+        grep -qF "$words" "$scratch/err" || { cat "$scratch/err"; fail "nothing says '$words'"; }
+    done
+    rc=0; "$B/bin/import_photos" --photos "$m" --out "$scratch/mixed-records" --set brackets=no 2>"$scratch/err" || rc=$?
+    [ "$rc" = 1 ] && grep -qF "3.HEIC is HEIC, AVIF, WebP or JPEG XL, which COLMAP does not read" "$scratch/err" || { cat "$scratch/err"; fail "brackets = no"; }
+}
+
+for t in invalid_grids_are_rejected invalid_parameters_are_rejected photos_that_cannot_be_cut_are_named cut_pictures_are_photos files_are_known_by_their_content; do run "$t"; done

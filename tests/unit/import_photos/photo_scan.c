@@ -7,6 +7,8 @@
 #define OTHER "tests/fuzz/corpus/photo/rgb8.png"
 #define CUT   "tests/fuzz/corpus/photo/cut.jpg"
 #define CMYK  "tests/fuzz/corpus/photo/cmyk.jpg"
+#define HEIC  "tests/fuzz/corpus/photo/rgb.heic"
+#define TEXT  "tests/fuzz/corpus/photo/text.png"
 
 static char photos[300], records[300];
 
@@ -85,22 +87,84 @@ static void ids_are_safe_and_unique(void **state)
     (void)state;
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) put(names[i][0], GOOD);
     put(".hidden.jpg", GOOD);
-    put("notes.txt", GOOD);
-    put("jpg", GOOD);
-    put("clip.jpg.mp4", GOOD);
+    put(".DS_Store", TEXT);
+    put("notes.txt", TEXT);
+    put("jpg", TEXT);
+    put("clip.jpg.mp4", TEXT);
     char sub[400];
     snprintf(sub, sizeof sub, "%s/sub.jpg", photos);
     assert_int_equal(mkdir(sub, 0777), 0);
 
     assert_ok(photo_scan_folder(&scan, photos, &err), err);
     assert_int_equal(scan.count, sizeof names / sizeof *names);
-    assert_int_equal(scan.ignored, 4);
+    assert_int_equal(scan.left.count, 5);
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
         assert_string_equal(id_of(&scan, names[i][0]), names[i][1]);
     for (int i = 1; i < scan.count; i++) assert_true(strcmp(scan.photos[i - 1].id, scan.photos[i].id) < 0);
     photo_scan_release(&scan);
     photo_scan_release(&scan);
     photo_scan_release(NULL);
+}
+
+static enum left_reason reason_of(const struct photo_scan *scan, const char *file)
+{
+    for (int i = 0; i < scan->left.count; i++)
+        if (!strcmp(scan->left.files[i].file, file)) return scan->left.files[i].reason;
+    return LEFT_REASONS;
+}
+
+/* What a file holds decides, not its name; what is not used has its reason. */
+static void files_are_known_by_their_content(void **state)
+{
+    static const struct {
+        const char *file, *from, *id; /* id NULL: left out */
+        enum left_reason reason;
+    } cases[] = {
+        {"a.jfif", GOOD, "a", 0},
+        {"b.jpe", GOOD, "b", 0},
+        {"c.HEIC", GOOD, "c", 0},
+        {"d.heic", HEIC, "d", 0},
+        {"e", GOOD, "e", 0},
+        {"f.mpo", GOOD, "f_mpo", 0},
+        {"f", OTHER, "f_photo", 0},
+        {"1341847980.722988", GOOD, "1341847980_722988", 0},
+        {"g.webp", "tests/fuzz/corpus/photo/rgb.webp", "g", 0},
+        {"h.jxl", "tests/fuzz/corpus/photo/rgb.jxl", "h", 0},
+        {"i.avif", "tests/fuzz/corpus/photo/rgb.avif", "i", 0},
+        {"j.png", TEXT, "j", 0}, /* unusable: it has a photo's name */
+        {"k.jpg", GOOD, "k", 0},
+        {"l.jpg", HEIC, "l", 0}, /* no JPEG, and no twin of its own */
+        {"k.heic", HEIC, NULL, LEFT_DOUBLE},
+        {"k.CR2", TEXT, NULL, LEFT_DOUBLE},
+        {"k.jpg_original", GOOD, NULL, LEFT_BACKUP},
+        {"k.THM", GOOD, NULL, LEFT_BACKUP},
+        {"._k.jpg", GOOD, NULL, LEFT_HIDDEN},
+        {"k.MOV", TEXT, NULL, LEFT_VIDEO},
+        {"k.gif", "tests/fuzz/corpus/photo/gif.jpg", NULL, LEFT_PICTURE},
+        {"k.xmp", TEXT, NULL, LEFT_OTHER},
+    };
+    struct photo_scan scan = {0};
+    struct err err = ERR_INIT;
+    char path[400];
+    int used = 0;
+    (void)state;
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) put(cases[i].file, cases[i].from);
+    snprintf(path, sizeof path, "%s/cam1", photos);
+    assert_int_equal(mkdir(path, 0777), 0);
+    put("cam1/l.jpg", GOOD);
+    snprintf(path, sizeof path, "%s/empty", photos);
+    assert_int_equal(mkdir(path, 0777), 0);
+    assert_ok(photo_scan_folder(&scan, photos, &err), err);
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        used += cases[i].id != NULL;
+        if (cases[i].id && strcmp(id_of(&scan, cases[i].file), cases[i].id) != 0)
+            fail_msg("%s: id %s, wanted %s", cases[i].file, id_of(&scan, cases[i].file), cases[i].id);
+        if (!cases[i].id) assert_int_equal(reason_of(&scan, cases[i].file), cases[i].reason);
+    }
+    assert_int_equal(scan.count, used);
+    assert_int_equal(reason_of(&scan, "cam1"), LEFT_FOLDER);
+    assert_int_equal(reason_of(&scan, "empty"), LEFT_OTHER);
+    photo_scan_release(&scan);
 }
 
 static void long_names_give_short_unique_ids(void **state)
@@ -249,7 +313,7 @@ static void too_few_photos_and_missing_folders_are_rejected(void **state)
     struct photo_scan scan = {0};
     struct err err = ERR_INIT;
     (void)state;
-    put("notes.txt", GOOD);
+    put("notes.txt", TEXT);
     assert_int_equal(import(&scan, NULL, &err), ST_DATA);
     assert_err(err, ST_DATA, "contains no photo; a parallax video needs at least 2");
     photo_scan_release(&scan);
@@ -282,6 +346,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup(ids_are_safe_and_unique, fresh),
+        cmocka_unit_test_setup(files_are_known_by_their_content, fresh),
         cmocka_unit_test_setup(long_names_give_short_unique_ids, fresh),
         cmocka_unit_test_setup(excluded_photos_rename_no_others, fresh),
         cmocka_unit_test_setup(only_changed_files_are_rewritten, fresh),
