@@ -17,7 +17,8 @@
  * would change the irradiance by all of it.
  *
  * The standard error comes from the differences of neighbouring cells in a ring: their mean square is twice the
- * variance within a cell, and a little more where light has a slope.
+ * variance within a cell, and a little more where light has a slope. For the change from one field to another they are
+ * those of b - q a, cell by cell: where the edit changes nothing but the brightness, nothing is left of them.
  *
  * Source: [Ward 1992b]. Different here: lamps and openings are left out, because their light changes at the edges of
  * shadows, which no gradient foresees; the caller gathers it at each point. */
@@ -30,7 +31,7 @@
 #include "common/light/frame.h"
 #include "common/math/numbers.h"
 
-enum { RINGS_MAX = 72, COLUMNS_MAX = 228 }; /* 16 k cells */
+enum { RINGS_MAX = 72, COLUMNS_MAX = CACHE_CELLS_MAX / RINGS_MAX }; /* 16 k cells */
 
 /* One column of cells, before and after its edges. */
 struct column {
@@ -46,6 +47,7 @@ struct hemisphere {
     struct rng rng;
     int rings, columns;
     struct rgb sum, squares;
+    struct cache_cells *cells; /* NULL: not asked for */
 };
 
 static struct vec3 tangent(const struct hemisphere *h, double turns)
@@ -101,6 +103,8 @@ static void trace_column(struct hemisphere *h, struct column *c, int k)
         }
         h->field->look(h->field->ctx, from, p.normal, direction, (1u << count) - 1, seen);
         for (int i = 0; i < count; i++) add_look(h, c, j + i, direction[i], turns[i], &seen[i]);
+        for (int i = 0; h->cells && i < count; i++)
+            h->cells->light[k * h->rings + j + i] = (float)rgb_luminance(c->light[j + i]);
     }
 }
 
@@ -170,18 +174,32 @@ static void gather(struct hemisphere *h, int rays)
     h->rings = h->rings < 4 ? 4 : h->rings > RINGS_MAX ? RINGS_MAX : h->rings;
     h->columns = (int)(PI * h->rings);
     if (h->columns > COLUMNS_MAX) h->columns = COLUMNS_MAX;
+    if (h->cells) h->cells->rings = h->rings, h->cells->columns = h->columns;
     trace_columns(h);
     finish(h);
 }
 
 void cache_record_gather_once(struct cache_record *r, const struct light_field *f, struct gather_point p, int rays,
-                              uint64_t key)
+                              uint64_t key, struct cache_cells *cells)
 {
-    struct hemisphere h = {.record = r, .field = f, .rng = rng_make(key, "gather", "cache")};
+    struct hemisphere h = {.record = r, .field = f, .rng = rng_make(key, "gather", "cache"), .cells = cells};
     r->point = p;
     frame_from_normal(p.normal, &h.x, &h.y);
     mixture_init(&h.lights, f, p, MIXTURE_LIGHTS);
     gather(&h, rays);
+}
+
+double cache_cells_error(const struct cache_cells *a, const struct cache_cells *b, double q)
+{
+    const int cells = a->rings * a->columns;
+    double squares = 0;
+    for (int i = 0; i < cells; i++) {
+        const int beside = i < a->rings ? cells - a->rings + i : i - a->rings; /* in the column before */
+        const double d =
+            ((double)b->light[i] - q * (double)a->light[i]) - ((double)b->light[beside] - q * (double)a->light[beside]);
+        squares += d * d;
+    }
+    return cells ? sqrt(squares / 2) * PI / cells : 0;
 }
 
 void cache_record_gather(struct cache_record *r, const struct light_field *f, struct gather_point p, double target,
@@ -189,7 +207,7 @@ void cache_record_gather(struct cache_record *r, const struct light_field *f, st
 {
     int spent = 0;
     for (int rays = least;; rays *= 4) {
-        cache_record_gather_once(r, f, p, rays, key);
+        cache_record_gather_once(r, f, p, rays, key, NULL);
         spent += r->rays;
         if (r->error <= target * (beside + rgb_luminance(r->value)) || rays >= 16 * least) break;
     }

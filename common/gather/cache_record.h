@@ -15,10 +15,21 @@ struct cache_record {
     int rays;
 };
 
+/* What each cell of the hemisphere sees: luminance without MIXTURE_LIGHTS. With one key and number of rays, a cell of
+ * two fields has the same ray. */
+enum { CACHE_CELLS_MAX = 72 * 228 };
+struct cache_cells {
+    int rings, columns;
+    float light[CACHE_CELLS_MAX]; /* column by column */
+};
+
 /* Gathers once with about `rays` rays, at most 16 k. The same key, point and number give the same directions in any
- * field. */
+ * field. cells: NULL, or set. */
 void cache_record_gather_once(struct cache_record *r, const struct light_field *f, struct gather_point p, int rays,
-                              uint64_t key);
+                              uint64_t key, struct cache_cells *cells);
+
+/* Standard error of the luminance of b - q a, from the cells of both: without the noise that they share. */
+double cache_cells_error(const struct cache_cells *a, const struct cache_cells *b, double q);
 
 /* Gathers with at least `least` rays, up to 16 times that, until the standard error is at most `target` of the
  * luminance with `beside`, the luminance of direct light, added. */

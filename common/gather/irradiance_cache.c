@@ -20,6 +20,14 @@
  * the smaller one. Direct light is gathered in both by the same rays until the quotient is known well enough, so that
  * noise which both share does not count, and none is spent where nothing has changed.
  *
+ * Errors of the quotient. Both fields have the same rays, so b - q a has the noise that they do not share: of direct
+ * light replicate by replicate, of records cell by cell. Where the edit changes nothing it is 0, whatever the noise of
+ * each.
+ *
+ * Cells. With a step above 1, points are gathered at the corners of cells, and within those whose quotients differ by
+ * more than the target and four times their noise, or whose points do not lie between the corners (grid_cells.c).
+ * Means of lights that are equal before and after are equal: the quotient of what does not change is exactly 1.
+ *
  * Source: [Ward 1988] for records, [Ward 1992b] for gradients. Different here: direct light at each point; weights that
  * fade; placing by levels. */
 #include "common/gather/irradiance_cache.h"
@@ -31,19 +39,31 @@
 #include "common/base/parallel.h"
 #include "common/gather/cache_record.h"
 #include "common/gather/cache_tree.h"
+#include "common/gather/grid_cells.h"
 
-enum { COARSEST = 32, CHUNK = 64, RECORD_RAYS = 1024, DIRECT_RAYS = 64 };
+enum { COARSEST = 32, CHUNK = 64, RECORD_RAYS = 1024, FEW_RAYS = 256, DIRECT_RAYS = 64 };
 static const double SPREAD = 1.6;    /* a over the square root of the target */
 static const double SPACINGS = 1;    /* a record reaches at least that many points' spacing */
 static const double WIDEST = 0.1;    /* of the points' box: a record reaches at most that far */
 static const double IN_FRONT = 0.05; /* of the radius */
-static const double SHARE = 1; /* of the target, for each of records and direct light; most points are far below it */
+static const double PARALLEL = 0.95; /* least cosine of normals between which light is interpolated */
+static const double OFF = 0.25; /* of a cell's size: how far its points may be from the place between its corners */
+static const double SHARE = 1;  /* of the target, for each of records and direct light; most points are far below it */
+
+static const double OWN =
+    4; /* of the target: how well the light in each field must be known where the quotient counts */
 
 enum { SIDES = 2 };
+
+/* Luminance in each field. */
+struct irradiance_sides {
+    double light[SIDES];
+};
 
 /* A record in one field, or in both. */
 struct record {
     struct cache_record side[SIDES]; /* they share the radius */
+    double change_error;             /* standard error of the luminance of b - q a */
 };
 
 struct side {
@@ -63,7 +83,8 @@ struct cache {
     size_t *wanted;          /* points that become records */
     size_t wanted_count;
     unsigned char *is_wanted;
-    int step;
+    int step, grid_step;    /* of the level; of the cells */
+    struct grid_cells grid; /* points to evaluate */
 };
 
 static bool is_point(const struct gather_point *p) { return vec3_length(p->normal) > 0; }
@@ -78,7 +99,7 @@ struct lookup_side {
 
 struct lookup {
     const struct cache *cache;
-    double weight;
+    double weight, change_error;
     struct lookup_side side[SIDES];
 };
 
@@ -111,6 +132,7 @@ static void add_record(void *ctx, int index)
     for (int k = 0; k < c->side_count; k++) w = fmin(w, weigh(c, &r->side[k], &l->side[k].point));
     if (!(w > 0)) return;
     l->weight += w;
+    l->change_error += w * r->change_error;
     for (int k = 0; k < c->side_count; k++) add_side(&l->side[k], &r->side[k], w);
 }
 
@@ -174,21 +196,38 @@ static double direct_luminance(const struct cache *c, int side, size_t i)
     return rgb_luminance(e.value);
 }
 
+/* By what light changes from the first field to the second, direct light included; 0: it was dark. */
+static double quotient_of(const struct irradiance_sides *l) { return l->light[0] > 0 ? l->light[1] / l->light[0] : 0; }
+
+/* Whether a record of both fields is known well enough: their quotient to the target, and each of them to OWN of it, or
+ * the target too where it counts by itself. */
+static bool is_record_known(const struct record *r, const struct cache *c, size_t i, const double beside[SIDES])
+{
+    const double target = SHARE * c->job->target;
+    const bool is_whole = c->side_count == 1 || (c->job->other.whole && c->job->other.whole[i]);
+    const double own = is_whole ? target : OWN * target;
+    for (int k = 0; k < c->side_count; k++)
+        if (r->side[k].error > own * (beside[k] + rgb_luminance(r->side[k].value))) return false;
+    return c->side_count == 1 || r->change_error <= target * (beside[1] + rgb_luminance(r->side[1].value));
+}
+
 /* Gathers a record in each field, with as many rays as the more demanding one asks for. */
 static void gather_record(struct record *r, const struct cache *c, size_t i)
 {
-    double beside[SIDES];
+    struct cache_cells cells[SIDES];
+    double beside[SIDES] = {0};
     int spent = 0;
     for (int k = 0; k < c->side_count; k++) beside[k] = direct_luminance(c, k, i);
-    for (int rays = RECORD_RAYS;; rays *= 4) {
-        bool is_enough = true;
+    for (int rays = c->side_count == SIDES ? FEW_RAYS : RECORD_RAYS;; rays *= 4) {
+        struct irradiance_sides l = {{0}};
         for (int k = 0; k < c->side_count; k++) {
-            struct cache_record *s = &r->side[k];
-            cache_record_gather_once(s, c->sides[k].field, c->sides[k].points[i], rays, c->job->key + i);
-            is_enough &= s->error <= SHARE * c->job->target * (beside[k] + rgb_luminance(s->value));
+            cache_record_gather_once(&r->side[k], c->sides[k].field, c->sides[k].points[i], rays, c->job->key + i,
+                                     c->side_count == SIDES ? &cells[k] : NULL);
+            l.light[k] = beside[k] + rgb_luminance(r->side[k].value);
         }
+        r->change_error = c->side_count == SIDES ? cache_cells_error(&cells[0], &cells[1], quotient_of(&l)) : 0;
         spent += r->side[0].rays;
-        if (is_enough || rays >= 16 * RECORD_RAYS) break;
+        if (is_record_known(r, c, i, beside) || rays >= 16 * RECORD_RAYS) break;
     }
     for (int k = 0; k < c->side_count; k++) r->side[k].rays = spent;
 }
@@ -207,14 +246,13 @@ static void gather_records(void *ctx, size_t begin, size_t end, int thread)
         radius = fmin(fmax(radius, least), c->widest / c->accuracy);
         if (!(radius > 0)) radius = 1e-9 * c->widest / c->accuracy;
         for (int k = 0; k < c->side_count; k++) r->side[k].radius = radius;
+        if (c->job->done) c->job->done(c->job->done_ctx, 0);
     }
 }
 
-static enum status add_level(struct cache *c, struct err *err)
+/* Makes records of the wanted points, all at once. */
+static enum status add_records(struct cache *c, struct err *err)
 {
-    const size_t rows = ((size_t)c->job->height + (size_t)c->step - 1) / (size_t)c->step;
-    parallel_for(rows, 1, mark_row, c);
-    list_wanted(c);
     if (array_reserve(&c->records, &c->capacity, c->record_count + c->wanted_count, sizeof *c->records,
                       "a cache of irradiance", err))
         return err->status;
@@ -227,57 +265,86 @@ static enum status add_level(struct cache *c, struct err *err)
     return ST_OK;
 }
 
+static enum status add_level(struct cache *c, struct err *err)
+{
+    const size_t rows = ((size_t)c->job->height + (size_t)c->step - 1) / (size_t)c->step;
+    parallel_for(rows, 1, mark_row, c);
+    list_wanted(c);
+    return add_records(c, err);
+}
+
+static void mark_listed(void *ctx, size_t begin, size_t end, int thread)
+{
+    const struct cache *c = ctx;
+    (void)thread;
+    for (size_t n = begin; n < end; n++) {
+        const size_t i = c->grid.wanted[n];
+        struct lookup l;
+        if (!is_point(&c->job->points[i])) continue;
+        look_up(&l, c, i);
+        c->is_wanted[i] = !(l.weight > 0);
+    }
+}
+
+/* Covers the points that the grid wants. */
+static enum status add_listed(struct cache *c, struct err *err)
+{
+    parallel_for(c->grid.wanted_count, CHUNK, mark_listed, c);
+    list_wanted(c);
+    return add_records(c, err);
+}
+
 /* ------------------------------------------------------------------------------------------------------- evaluation */
 
-/* Relative standard error of the quotient of light in both fields, replicate by replicate: a - q b has the noise that
- * they do not share. beside: further light in each field. */
-static double quotient_error(const struct mixture m[SIDES], const struct irradiance e[SIDES],
-                             const double beside[SIDES])
+/* Standard error of the luminance of b - q a, replicate by replicate: the noise that both fields do not share. */
+static double change_error(const struct mixture m[SIDES], double q)
 {
-    double sum = 0, squares = 0, light[SIDES];
-    for (int k = 0; k < SIDES; k++) light[k] = beside[k] + rgb_luminance(e[k].value);
-    if (!(light[0] > 0 && light[1] > 0)) return 0;
-    const double q = light[1] / light[0];
+    double sum = 0, squares = 0;
     for (int r = 0; r < MIXTURE_REPLICATES; r++) {
         const double d = rgb_luminance(m[1].replicates[r]) - q * rgb_luminance(m[0].replicates[r]);
         sum += d;
         squares += d * d;
     }
     const double variance = fmax(0, squares - sum * sum / MIXTURE_REPLICATES);
-    return sqrt(variance / (MIXTURE_REPLICATES * (MIXTURE_REPLICATES - 1.0))) / light[1];
+    return sqrt(variance / (MIXTURE_REPLICATES * (MIXTURE_REPLICATES - 1.0)));
 }
 
-/* The same rays in both fields, until the quotient is known. */
-static void gather_direct_of_both(struct irradiance e[SIDES], const struct cache *c, size_t i,
-                                  const double beside[SIDES])
+/* The same rays in both fields, until the quotient is known. The result is the standard error of b - q a. */
+static double gather_direct_of_both(struct irradiance e[SIDES], const struct cache *c, size_t i,
+                                    const double beside[SIDES])
 {
     struct mixture m[SIDES];
+    double error = 0;
     int spent = 0;
     for (int k = 0; k < SIDES; k++) {
         e[k] = (struct irradiance){.nearest = INFINITY};
         mixture_init(&m[k], c->sides[k].field, c->sides[k].points[i], MIXTURE_LIGHTS);
     }
-    if (!m[0].count && !m[1].count) return;
+    if (!m[0].count && !m[1].count) return 0;
     for (int rays = DIRECT_RAYS;; rays *= 4) {
-        for (int k = 0; k < SIDES; k++)
+        struct irradiance_sides l;
+        for (int k = 0; k < SIDES; k++) {
             if (m[k].count) mixture_gather(&e[k], &m[k], rays, c->job->key + i, false);
+            l.light[k] = beside[k] + rgb_luminance(e[k].value);
+        }
         spent += e[0].rays > e[1].rays ? e[0].rays : e[1].rays;
-        if (!(quotient_error(m, e, beside) > SHARE * c->job->target) || spent + 4 * rays > c->job->rays) break;
+        error = change_error(m, quotient_of(&l));
+        const bool is_dark = !(l.light[0] > 0 && l.light[1] > 0);
+        if (is_dark || !(error > SHARE * c->job->target * l.light[1]) || spent + 4 * rays > c->job->rays) break;
     }
     for (int k = 0; k < SIDES; k++) e[k].rays = spent;
+    return error;
 }
 
-static void gather_direct(struct irradiance e[SIDES], const struct cache *c, size_t i, const double beside[SIDES])
+static double gather_direct(struct irradiance e[SIDES], const struct cache *c, size_t i, const double beside[SIDES])
 {
     struct mixture m;
-    if (c->side_count == SIDES) {
-        gather_direct_of_both(e, c, i, beside);
-        return;
-    }
+    if (c->side_count == SIDES) return gather_direct_of_both(e, c, i, beside);
     mixture_init(&m, c->job->field, c->job->points[i], MIXTURE_LIGHTS);
     e[0] = (struct irradiance){.nearest = INFINITY};
     if (m.count)
         mixture_gather_to(e, &m, SHARE * c->job->target, beside[0], DIRECT_RAYS, c->job->rays, c->job->key + i);
+    return 0;
 }
 
 static double both(double a, double b) { return sqrt(a * a + b * b); }
@@ -298,21 +365,149 @@ static void evaluate(void *ctx, size_t begin, size_t end, int thread)
 {
     struct cache *c = ctx;
     (void)thread;
-    for (size_t i = begin; i < end; i++) {
+    for (size_t n = begin; n < end; n++) {
+        const size_t i = c->grid.wanted[n];
         struct irradiance e[SIDES];
         struct lookup l;
         double beside[SIDES] = {0};
-        for (int k = 0; k < c->side_count; k++) c->sides[k].results[i] = (struct irradiance){0};
         if (!is_point(&c->job->points[i])) continue;
         look_up(&l, c, i);
         for (int k = 0; k < c->side_count; k++) beside[k] = rgb_luminance(l.side[k].sum) / l.weight;
-        gather_direct(e, c, i, beside);
+        const double error = both(gather_direct(e, c, i, beside), l.change_error / l.weight);
         for (int k = 0; k < c->side_count; k++) {
             add_indirect(&e[k], &l.side[k], l.weight);
             c->sides[k].results[i] = e[k];
         }
+        const double light = rgb_luminance(e[c->side_count - 1].value);
+        if (c->job->other.errors) c->job->other.errors[i] = light > 0 ? (float)(error / light) : 0;
     }
     if (c->job->done) c->job->done(c->job->done_ctx, end - begin);
+}
+
+/* ---------------------------------------------------------------------------------------------------- interpolation */
+
+static void cell_weights(const struct grid_cell *cell, int x, int y, double weights[4])
+{
+    const double u = cell->x[1] > cell->x[0] ? (x - cell->x[0]) / (double)(cell->x[1] - cell->x[0]) : 0;
+    const double v = cell->y[1] > cell->y[0] ? (y - cell->y[0]) / (double)(cell->y[1] - cell->y[0]) : 0;
+    weights[0] = (1 - u) * (1 - v), weights[1] = u * (1 - v), weights[2] = (1 - u) * v, weights[3] = u * v;
+}
+
+/* Whether a point lies near the place between the corners, and has the direction of one of them. */
+static bool is_between(const struct gather_point *p, const struct gather_point *const corners[4],
+                       const double weights[4], double most)
+{
+    struct vec3 at = {0, 0, 0};
+    double cosine = -1;
+    for (int k = 0; k < 4; k++) {
+        at = vec3_add(at, vec3_scale(corners[k]->at, weights[k]));
+        cosine = fmax(cosine, vec3_dot(p->normal, corners[k]->normal));
+    }
+    return cosine > PARALLEL && vec3_length(vec3_sub(p->at, at)) <= most;
+}
+
+static bool is_one_surface(const struct cache *c, int side, const struct grid_cell *cell, const size_t corners[4])
+{
+    const struct gather_point *p = c->sides[side].points;
+    const struct gather_point *at[4];
+    for (int k = 0; k < 4; k++) at[k] = &p[corners[k]];
+    const double size = fmax(vec3_length(vec3_sub(at[3]->at, at[0]->at)), vec3_length(vec3_sub(at[2]->at, at[1]->at)));
+    for (int y = cell->y[0]; y <= cell->y[1]; y++)
+        for (int x = cell->x[0]; x <= cell->x[1]; x++) {
+            const struct gather_point *q = &p[(size_t)y * (size_t)c->job->width + (size_t)x];
+            double weights[4];
+            cell_weights(cell, x, y, weights);
+            if (is_point(q) && !is_between(q, at, weights, OFF * size)) return false;
+        }
+    return true;
+}
+
+static double channel(struct rgb a, int k) { return k == 0 ? a.r : k == 1 ? a.g : a.b; }
+
+/* The largest and the smallest of four values differ by less than a part of them. */
+static bool are_alike(const double v[4], double part)
+{
+    double low = v[0], high = v[0];
+    for (int k = 1; k < 4; k++) low = fmin(low, v[k]), high = fmax(high, v[k]);
+    return high - low <= part * low;
+}
+
+/* Whether the light at the corners tells that between them, up to its noise. */
+static bool is_light_alike(const struct cache *c, const size_t corners[4])
+{
+    const struct irradiance_cache_other *o = &c->job->other;
+    bool is_whole = false;
+    double error = 0;
+    for (int k = 0; k < 4; k++) {
+        is_whole |= o->whole && o->whole[corners[k]];
+        if (o->errors) error = fmax(error, (double)o->errors[corners[k]]);
+    }
+    for (int s = 0; s < 3; s++) {
+        double quotient[4], light[4];
+        for (int k = 0; k < 4; k++) {
+            const double a = channel(c->sides[0].results[corners[k]].value, s);
+            light[k] = channel(c->sides[1].results[corners[k]].value, s);
+            quotient[k] = light[k] == a ? 1 : a > 0 ? light[k] / a : INFINITY;
+        }
+        if (!are_alike(quotient, c->job->target + 4 * error)) return false;
+        if (is_whole && !are_alike(light, c->job->target + 4 * error)) return false;
+    }
+    return true;
+}
+
+static bool is_flat(const void *ctx, const struct grid_cell *cell, const size_t corners[4])
+{
+    const struct cache *c = ctx;
+    for (int k = 0; k < 4; k++)
+        if (!is_point(&c->job->points[corners[k]])) return false;
+    return is_light_alike(c, corners) && is_one_surface(c, 0, cell, corners) && is_one_surface(c, 1, cell, corners);
+}
+
+static struct irradiance between(const struct irradiance *all, const size_t corners[4], const double weights[4])
+{
+    struct irradiance e = {.nearest = INFINITY};
+    for (int k = 0; k < 4; k++) {
+        const struct irradiance *f = &all[corners[k]];
+        e.value = rgb_add(e.value, rgb_scale(f->value, weights[k]));
+        e.error = rgb_add(e.error, rgb_scale(f->error, weights[k]));
+        for (int s = 0; s < LIGHT_SOURCES; s++) e.from[s] += weights[k] * f->from[s];
+        e.mean_inverse += weights[k] * f->mean_inverse;
+        e.nearest = fmin(e.nearest, f->nearest);
+    }
+    return e;
+}
+
+static void fill_between(const void *ctx, size_t point, const size_t corners[4], const double weights[4])
+{
+    const struct cache *c = ctx;
+    double error = 0;
+    if (!is_point(&c->job->points[point])) return;
+    for (int k = 0; k < SIDES; k++) c->sides[k].results[point] = between(c->sides[k].results, corners, weights);
+    if (!c->job->other.errors) return;
+    for (int k = 0; k < 4; k++) error += weights[k] * (double)c->job->other.errors[corners[k]];
+    c->job->other.errors[point] = (float)error;
+}
+
+/* Evaluates points until all are set. */
+static enum status evaluate_all(struct cache *c, struct err *err)
+{
+    const struct grid_fill fill = {c, is_flat, fill_between};
+    while (!err->status && (c->grid.wanted_count || c->grid.count)) {
+        if (add_listed(c, err)) return err->status;
+        parallel_for(c->grid.wanted_count, CHUNK, evaluate, c);
+        grid_cells_next(&c->grid, &fill, err);
+    }
+    return err->status;
+}
+
+/* ------------------------------------------------------------------------------------------------------------- fill */
+
+static void clear_results(struct cache *c)
+{
+    const size_t points = (size_t)c->job->width * (size_t)c->job->height;
+    for (int k = 0; k < c->side_count; k++)
+        for (size_t i = 0; i < points; i++) c->sides[k].results[i] = (struct irradiance){0};
+    for (size_t i = 0; c->job->other.errors && i < points; i++) c->job->other.errors[i] = 0;
 }
 
 static enum status start(struct cache *c, struct err *err)
@@ -350,10 +545,14 @@ enum status irradiance_cache_fill(struct irradiance *results, const struct irrad
 {
     struct cache c = {.job = j, .sides = {{j->field, j->points, results}}, .side_count = j->other.field ? SIDES : 1};
     c.sides[1] = (struct side){j->other.field, j->other.points, j->other.results};
+    c.grid_step = c.side_count == SIDES && j->other.step > 1 ? j->other.step : 1;
+    clear_results(&c);
     start(&c, err);
-    for (c.step = COARSEST; !err->status && c.step >= 1; c.step /= 2) add_level(&c, err);
-    if (!err->status) parallel_for((size_t)j->width * (size_t)j->height, CHUNK, evaluate, &c);
+    for (c.step = COARSEST; !err->status && c.step >= c.grid_step; c.step /= 2) add_level(&c, err);
+    if (!err->status) grid_cells_start(&c.grid, j->width, j->height, c.grid_step, err);
+    if (!err->status) evaluate_all(&c, err);
     if (!err->status && stats) count(stats, &c);
+    grid_cells_release(&c.grid);
     cache_tree_release(&c.tree);
     free(c.records);
     free(c.wanted);

@@ -13,6 +13,13 @@ struct irradiance_cache_other {
     const struct light_field *field;   /* NULL: one field only */
     const struct gather_point *points; /* a normal of 0 0 0 where those of the first field have none, and only there */
     struct irradiance *results;        /* set like the first field's */
+    float *errors; /* NULL, or set: relative standard error of the quotient of both fields' luminance; 0: none */
+    /* NULL, or not 0 where the light in the second field counts by itself, not by the quotient. */
+    const unsigned char *whole;
+    /* 1: light is gathered at each point. More: at the corners of cells of so many columns and rows, and within a cell
+     * where the corners' quotients differ by more than the target, or the surface bends; the others are interpolated.
+     * What is smaller than a cell may be missed. */
+    int step;
 };
 
 struct irradiance_cache_job {
@@ -23,7 +30,8 @@ struct irradiance_cache_job {
     double target; /* relative error; with a second field, also of the quotient of both */
     int rays;      /* most, of direct light at a point */
     uint64_t key;
-    void (*done)(void *ctx, size_t points); /* NULL, or told how many more points are done; by several threads */
+    void (*done)(void *ctx,
+                 size_t points); /* NULL, or told how many more points are done, also 0; by several threads */
     void *done_ctx;
 };
 

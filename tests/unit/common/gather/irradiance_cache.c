@@ -154,7 +154,7 @@ static void fill_both(struct irradiance *results, struct irradiance *others, con
     struct err err = ERR_INIT;
     const struct irradiance_cache_job job = {.field = &f->field,
                                              .points = points,
-                                             .other = {&other->field, points, others},
+                                             .other = {&other->field, points, others, .step = 4},
                                              .width = WIDTH,
                                              .height = HEIGHT,
                                              .target = 0.05,
@@ -238,6 +238,51 @@ static void two_fields_have_the_same_bits_for_any_number_of_threads(void **state
     assert_memory_equal(one, two, sizeof one);
 }
 
+/* Both fields at the corners of cells, against each point; where light is the same, equal bits as well. */
+static void cells_find_the_quotient_of_each_point(void **state)
+{
+    enum { COLUMNS = 96, ROWS = 64 };
+    static struct gather_point points[COLUMNS * ROWS];
+    static struct irradiance one[2][COLUMNS * ROWS], two[2][COLUMNS * ROWS];
+    static float errors[2][COLUMNS * ROWS];
+    static struct patch_field f, g;
+    struct irradiance_cache_stats stats[2];
+    struct err err = ERR_INIT;
+    double squares = 0, stated = 0;
+    (void)state;
+    field_make_room(&f);
+    field_make_room(&g);
+    g.patches[5].radiance = rgb_make(3, 2, 1); /* the ceiling */
+    for (int i = 0; i < COLUMNS * ROWS; i++) {
+        const double x = 0.1 + 3.8 * (i % COLUMNS) / COLUMNS, y = 0.1 + 2.8 * (i / COLUMNS) / ROWS;
+        points[i] = i / COLUMNS < ROWS / 2 ? (struct gather_point){{x, y, 2.5}, {0, 0, -1}}
+                                           : (struct gather_point){{x, y, 0}, {0, 0, 1}};
+    }
+    for (int k = 0; k < 2; k++) {
+        const struct irradiance_cache_job job = {
+            .field = &f.field,
+            .points = points,
+            .other = {.field = &g.field, .points = points, .results = two[k], .errors = errors[k], .step = k ? 8 : 1},
+            .width = COLUMNS,
+            .height = ROWS,
+            .target = 0.02,
+            .rays = 1024};
+        assert_ok(irradiance_cache_fill(one[k], &job, &stats[k], &err), err);
+    }
+    assert_memory_equal(one[1], two[1], COLUMNS * ROWS / 2 * sizeof *one[1]);
+    for (int i = 0; i < COLUMNS * ROWS / 2; i++) assert_true(errors[1][i] == 0);
+    for (int i = COLUMNS * ROWS / 2; i < COLUMNS * ROWS; i++) {
+        const double q[2] = {two[0][i].value.g / one[0][i].value.g, two[1][i].value.g / one[1][i].value.g};
+        squares += (q[1] / q[0] - 1) * (q[1] / q[0] - 1) / (COLUMNS * ROWS / 2);
+        stated += (double)errors[1][i] / (COLUMNS * ROWS / 2);
+    }
+    print_message("cells: RMS difference %.2g %%, stated %.2g %%, direct rays %.3g instead of %.3g\n",
+                  100 * sqrt(squares), 100 * stated, stats[1].direct_rays, stats[0].direct_rays);
+    assert_true(sqrt(squares) < 0.02);
+    assert_true(stated > 0 && stated < 0.02);
+    assert_true(stats[1].direct_rays < stats[0].direct_rays / 4);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -250,6 +295,7 @@ int main(void)
         cmocka_unit_test(twice_the_field_gives_a_quotient_of_two),
         cmocka_unit_test(what_does_not_see_a_change_has_equal_bits),
         cmocka_unit_test(two_fields_have_the_same_bits_for_any_number_of_threads),
+        cmocka_unit_test(cells_find_the_quotient_of_each_point),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
