@@ -14,7 +14,8 @@
  * field is read (field_atlas.c), so that no light counts twice.
  *
  * Emitters say where bright light is: every lamp; the openings of lights.txt; panes of the model that lights.txt does
- * not name, since the sky lights through those too; the suns of the outdoors (field_sky.c).
+ * not name, since the sky lights through those too; panes that an edit has moved or resized, whatever lights.txt says
+ * of the window that was there; the suns of the outdoors (field_sky.c).
  *
  * Source: the light function L(x -> direction) of [Colburn 2014, 5.3.1 to 5.3.3]. Different here: beyond the
  * images that an opening names, the outdoors are one picture of all lighting reference images and photographs. */
@@ -27,6 +28,7 @@
 #include "common/math/numbers.h"
 
 static const double HANGING = 0.1;     /* of the model's size: lamps further from a face leave its texels alone */
+static const double SAME_PANE = 0.01;  /* of its size: how far a pane may move and is still the same */
 static const double PANE_REACH = 0.01; /* of the model's size: beyond that, a pane's surroundings are looked at */
 
 /* ------------------------------------------------------------------------------------------------------------- look */
@@ -252,6 +254,29 @@ static void add_openings(struct model_field *f)
     }
 }
 
+/* The pane of a name; NULL: none. */
+static const struct solid_body *find_pane(const struct solid_mesh *mesh, const char *name)
+{
+    for (int i = 0; i < mesh->body_count; i++) {
+        const char *other = pane_name(&mesh->bodies[i]);
+        if (other && mesh->bodies[i].faces && !strcmp(other, name)) return &mesh->bodies[i];
+    }
+    return NULL;
+}
+
+/* Whether two panes let light in at one place. */
+static bool is_same_pane(const struct solid_mesh *a, const struct solid_body *pane_a, const struct solid_mesh *b,
+                         const struct solid_body *pane_b)
+{
+    struct vec3 centre[2], x[2], y[2];
+    span_face(a, largest_face(a, pane_a), &centre[0], &x[0], &y[0]);
+    span_face(b, largest_face(b, pane_b), &centre[1], &x[1], &y[1]);
+    const double most = SAME_PANE * (vec3_length(x[0]) + vec3_length(y[0]));
+    const double wider = fabs(vec3_length(x[1]) - vec3_length(x[0])),
+                 higher = fabs(vec3_length(y[1]) - vec3_length(y[0]));
+    return vec3_length(vec3_sub(centre[1], centre[0])) <= most && wider <= most && higher <= most;
+}
+
 static void set_plain(struct model_field *f)
 {
     f->plain = f->field;
@@ -283,6 +308,18 @@ void model_field_scale_lamp(struct model_field *f, const char *name, const doubl
         f->lamps[i].off = !(rgb_max(l->radiance) > 0);
     }
     list_emitters(f);
+    set_plain(f);
+}
+
+void model_field_add_changed_panes(struct model_field *f, const struct model_field *was)
+{
+    const struct solid_mesh *mesh = &f->model.mesh, *old = &was->model.mesh;
+    for (int i = 0; f->outdoors.rgb && i < mesh->body_count; i++) {
+        const char *name = pane_name(&mesh->bodies[i]);
+        if (!name || !mesh->bodies[i].faces || !is_listed(&f->lights, name)) continue;
+        const struct solid_body *pane = find_pane(old, name);
+        if (pane && !is_same_pane(old, pane, mesh, &mesh->bodies[i])) add_pane(f, &mesh->bodies[i]);
+    }
     set_plain(f);
 }
 

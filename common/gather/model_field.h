@@ -82,6 +82,10 @@ void model_field_switch_lamp(struct model_field *f, int lamp, bool on);
 /* Multiplies the radiance of the lamp of this name; 0 0 0 switches it off. Unknown names are left alone. */
 void model_field_scale_lamp(struct model_field *f, const char *name, const double scale[3]);
 
+/* Adds an emitter for each pane that lights.txt names and that `was`, the field before an edit, has at another place or
+ * in another size: lights.txt tells of the window as it was. Last, after lamps were switched or scaled. */
+void model_field_add_changed_panes(struct model_field *f, const struct model_field *was);
+
 /* The nearest lamp that is on and seen from its bright side, on a ray from `from` in a unit direction up to the
  * distance t of a surface (INFINITY allowed), or a little behind that; sets *at to its distance. NULL: none. */
 const struct lamp *model_field_lamp(const struct model_field *f, struct vec3 from, struct vec3 direction, double t,

@@ -68,6 +68,7 @@ static enum status read_fields(struct light_change *c, const struct light_change
         return err->status;
     for (int i = 0; i < c->map.lamp_count; i++)
         model_field_scale_lamp(&c->after, c->map.lamps[i].name, c->map.lamps[i].scale);
+    model_field_add_changed_panes(&c->after, &c->before);
     if (!files->references) return ST_OK;
     if (model_field_read_references(&c->before, files->references, &c->axes, prov, err) ||
         model_field_read_references(&c->after, files->references, &c->axes, prov, err))

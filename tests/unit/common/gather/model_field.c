@@ -291,6 +291,34 @@ static const char *write_reference(bool with_pose)
     return scratch;
 }
 
+/* lights.txt tells of the window as it was: where the edit widens it, light comes in beside that, too. */
+static void a_listed_pane_that_an_edit_widens_is_an_emitter_of_its_own(void **state)
+{
+    struct box wide_room[3];
+    struct built was = {.files = {.model = write_boxes(open_room, 3), .vita = write_vita(grey, 6, 0)}}, is;
+    (void)state;
+    was.files.outdoors = write_outdoors(0.5f, 0.5f, 0);
+    was.files.lights = write_lights("opening big 0 2 2 2 0 0 0 0 2\n");
+    const struct model_field *old = read_field(&was);
+    is = (struct built){.files = was.files};
+    read_field(&is);
+    model_field_add_changed_panes(&is.field, old);
+    assert_int_equal(is.field.field.emitter_count, 1);
+    model_field_release(&is.field);
+    memcpy(wide_room, open_room, sizeof wide_room);
+    wide_room[2].high.x = 3;
+    is = (struct built){.files = was.files};
+    is.files.model = write_boxes(wide_room, 3);
+    read_field(&is);
+    model_field_add_changed_panes(&is.field, old);
+    assert_int_equal(is.field.field.emitter_count, 2);
+    assert_int_equal(is.field.plain.emitter_count, 2);
+    assert_near(is.field.emitters[1].centre.x, 0.5, 1e-9);
+    assert_near(vec3_length(is.field.emitters[1].x), 2.5, 1e-9);
+    model_field_release(&is.field);
+    model_field_release(&was.field);
+}
+
 static void an_opening_shows_its_reference_image_and_the_outdoors_beyond_its_field(void **state)
 {
     static const struct model_axes axes = {.rotation = {1, 0, 0, 0}, .scale = 1};
@@ -354,6 +382,7 @@ int main(void)
         cmocka_unit_test(without_outdoors_it_is_dark_outside),
         cmocka_unit_test(a_sun_is_found_with_its_energy_where_columns_wrap_around),
         cmocka_unit_test(a_pane_lets_the_sky_in_and_is_an_emitter_unless_it_is_listed),
+        cmocka_unit_test(a_listed_pane_that_an_edit_widens_is_an_emitter_of_its_own),
         cmocka_unit_test(an_opening_shows_its_reference_image_and_the_outdoors_beyond_its_field),
         cmocka_unit_test(an_atlas_of_a_view_is_refused),
     };
