@@ -23,6 +23,7 @@
 #include "common/image/exr.h"
 #include "common/image/image.h"
 #include "common/image/photo.h"
+#include "common/math/numbers.h"
 
 enum { BINS = 1 << 11, DIGITS = 3 }; /* 11 + 10 + 10 bits */
 enum { JPEG_QUALITY = 95 };
@@ -75,6 +76,13 @@ double exposure_choose(const struct model_picture *p, double saturated)
     const size_t k = wanted < 1 ? 1 : wanted > (double)seen ? seen : (size_t)wanted;
     if (seen) level = select_level(p, k);
     return level > 0 ? 1 / level : 1;
+}
+
+double exposure_follow(double exposure, double was, double is)
+{
+    const double low = fmin(EXPOSURE_DIM, was * exposure), high = fmax(EXPOSURE_BRIGHT, was * exposure);
+    if (!(is > 0)) return exposure;
+    return exposure * fmin(fmax(clamp(is * exposure, low, high) / (is * exposure), 1 / EXPOSURE_MOST), EXPOSURE_MOST);
 }
 
 static bool ends_in(const char *path, const char *ending)

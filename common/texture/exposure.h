@@ -8,6 +8,15 @@
  * or above. 1 if nothing is seen. */
 double exposure_choose(const struct model_picture *p, double saturated);
 
+/* The exposure at which a picture whose light has changed still shows its room, given that of the picture before: `was`
+ * and `is` are the medians of radiance of its surfaces, before and after. The same one, as long as the median is
+ * between EXPOSURE_DIM and EXPOSURE_BRIGHT of white, or no further out than it was before; else the nearest that is, at
+ * most EXPOSURE_MOST times as much or as little. */
+#define EXPOSURE_DIM    0.05
+#define EXPOSURE_BRIGHT 0.6
+#define EXPOSURE_MOST   64.0
+double exposure_follow(double exposure, double was, double is);
+
 /* Writes the picture as an 8-bit sRGB JPEG or PNG, by the ending of `path`. Pixels of MADE_NOTHING are black. */
 enum status exposure_write(const struct model_picture *p, double exposure, const char *path, struct err *err);
 

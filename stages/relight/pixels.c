@@ -29,9 +29,10 @@
 #include "common/product/product.h"
 #include "common/texture/view_ids.h"
 
-enum { SUB = 3, THROUGH = 64 };  /* rays along a pixel's side; objects behind one another */
-static const double SURE = 0.5;  /* confidence of a segment before an opening */
-static const double LIFT = 0.02; /* of the model's size: how far below a surface furniture may seem to be */
+enum { SUB = 3, THROUGH = 64 };   /* rays along a pixel's side; objects behind one another */
+static const double DRAWN = 0.01; /* of a picture: with less, it counts as black */
+static const double SURE = 0.5;   /* confidence of a segment before an opening */
+static const double LIFT = 0.02;  /* of the model's size: how far below a surface furniture may seem to be */
 
 struct find_job {
     struct pixels *p;
@@ -295,6 +296,15 @@ static enum status list_objects(struct pixels *p, const struct object_pixel *obj
     return ST_OK;
 }
 
+/* Whether a picture shows something. The views of a photo that look away from it are all but black. */
+static bool is_drawn(const struct model_picture *p)
+{
+    const size_t n = (size_t)p->width * (size_t)p->height;
+    size_t drawn = 0;
+    for (size_t i = 0; i < n; i++) drawn += p->made[i] != MADE_NOTHING;
+    return (double)drawn >= DRAWN * (double)n;
+}
+
 enum status pixels_find(struct pixels *p, const struct light_change *c, const struct model_picture *picture,
                         const struct pixel_layers *layers, struct provenance *prov, struct err *err)
 {
@@ -304,6 +314,9 @@ enum status pixels_find(struct pixels *p, const struct light_change *c, const st
     struct layered_depth depth = {0};
     struct view_ids ids = {0};
     pixels_init(p, picture->width, picture->height, err);
+    p->is_black = !c->objects.count && !is_drawn(picture);
+    for (size_t i = 0; !err->status && p->is_black && i < n; i++) p->face[i] = -1;
+    if (err->status || p->is_black) return err->status;
     j.centre = p->centre = pose_center(&picture->pose);
     if (!err->status && layers) {
         read_layers(&depth, &ids, layers, picture, prov, err);

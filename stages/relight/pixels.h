@@ -33,6 +33,7 @@ struct pixels {
     struct vec3 centre;                  /* of the camera */
     struct object_pixel *objects;
     int object_count;
+    bool is_black; /* all but nothing is drawn: all pixels are kept */
 };
 
 /* A view's own depth and clutter, for pictures of original views; NULL folders: unknown. */

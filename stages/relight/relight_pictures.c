@@ -108,6 +108,7 @@ static enum status relight_one(struct session *s, const char *name, struct err *
             write_frame(j, &picture, exposure, &camera, err);
         else if (!strcmp(j->params.integrals, "yes"))
             write_integrals(s, &relit, &pixels, &camera, err);
+        if (!err->status && pixels.is_black) log_note("%s: all but nothing is drawn; nothing is relit", name);
         if (!err->status && !j->frames)
             relit_write(&relit, &picture, &j->params, exposure, &camera, j->out, name, &j->prov, err);
     }

@@ -2,8 +2,8 @@
  *
  * Overview. Irradiance at all pixels before and after the edit comes from one cache of irradiance with the same rays in
  * both fields (irradiance_cache.c), or from rays at each pixel if there are more emitters than a cache can tell apart.
- * A texture's radiance is multiplied by the quotient (light_quotient.c); a colour of the edit gets albedo / pi times
- * the irradiance after it; a synthetic object is shaded with irradiance of its own.
+ * A texture's radiance is multiplied by the quotient (light_quotient.c), as far as it is sure (quotients.c); a colour
+ * of the edit gets albedo / pi times the irradiance after it; a synthetic object is shaded with irradiance of its own.
  *
  * Gloss. A glossy surface of albedo a sends out L = a E / pi + k_s I_s. Its texture is what remains of the photograph
  * without k_s I_s, in the light before, towards the place that the texel was photographed from; the gloss after the
@@ -55,6 +55,7 @@ void relit_release(struct relit *r)
     if (!r) return;
     free(r->before);
     free(r->after);
+    free(r->error);
     free(r->quotient);
     free(r->albedo);
     free(r->specular);
@@ -67,9 +68,10 @@ static enum status init(struct relit *r, const struct pixels *p, struct err *err
     *r = (struct relit){.width = p->width, .height = p->height};
     r->before = calloc(n + 1, sizeof *r->before);
     r->after = calloc(n + 1, sizeof *r->after);
+    r->error = calloc(n + 1, sizeof *r->error);
     r->quotient = calloc(n + 1, sizeof *r->quotient);
     r->albedo = calloc(n + 1, sizeof *r->albedo);
-    if (r->before && r->after && r->quotient && r->albedo) return ST_OK;
+    if (r->before && r->after && r->error && r->quotient && r->albedo) return ST_OK;
     return err_nomem(err, "light of the pixels", 2 * n * sizeof *r->before);
 }
 
@@ -85,7 +87,13 @@ struct ray_job {
     struct progress *progress;
 };
 
-/* The same rays in both fields, as long as their noise is alike. */
+static double relative_error(const struct irradiance *e)
+{
+    const double light = rgb_luminance(e->value);
+    return light > 0 ? rgb_luminance(e->error) / light : 0;
+}
+
+/* The same rays in both fields, as long as their noise is alike; what they share is not known. */
 static void gather_some(void *ctx, size_t begin, size_t end, int thread)
 {
     const struct ray_job *j = ctx;
@@ -96,6 +104,8 @@ static void gather_some(void *ctx, size_t begin, size_t end, int thread)
                           j->params->rays, i);
         ray_irradiance_to(&j->r->after[i], &j->c->after.plain, j->p->after[i], j->params->target_error, j->params->rays,
                           i);
+        const double was = relative_error(&j->r->before[i]), is = relative_error(&j->r->after[i]);
+        j->r->error[i] = (float)sqrt(was * was + is * is);
     }
     cache_done(j->progress, end - begin);
 }
@@ -105,23 +115,29 @@ static enum status gather(struct relit *r, const struct pixels *p, const struct 
 {
     struct progress progress;
     struct irradiance_cache_stats stats;
-    const struct irradiance_cache_job job = {.field = &c->before.plain,
-                                             .points = p->before,
-                                             .other = {&c->after.plain, p->after, r->after},
-                                             .width = p->width,
-                                             .height = p->height,
-                                             .target = params->target_error,
-                                             .rays = params->rays,
-                                             .done = cache_done,
-                                             .done_ctx = &progress};
+    const size_t n = (size_t)p->width * (size_t)p->height;
+    unsigned char *whole = calloc(n + 1, 1);
+    if (!whole) return err_nomem(err, "pixels", n);
+    for (size_t i = 0; i < n; i++) whole[i] = p->kind[i] == PIXEL_COLOUR || p->kind[i] == PIXEL_LAMP;
+    const struct irradiance_cache_job job = {
+        .field = &c->before.plain,
+        .points = p->before,
+        .other = {&c->after.plain, p->after, r->after, r->error, whole, params->step},
+        .width = p->width,
+        .height = p->height,
+        .target = params->target_error,
+        .rays = params->rays,
+        .done = cache_done,
+        .done_ctx = &progress};
     progress_start(&progress, "light", (int64_t)p->width * p->height, "pixels");
     struct ray_job rays = {r, p, c, params, &progress};
     const bool is_cached = irradiance_cache_suits(job.field);
     if (is_cached)
         irradiance_cache_fill(r->before, &job, &stats, err);
     else
-        parallel_for((size_t)p->width * (size_t)p->height, 64, gather_some, &rays);
+        parallel_for(n, 64, gather_some, &rays);
     progress_end(&progress);
+    free(whole);
     r->records = err->status || !is_cached ? 0 : stats.records;
     return err->status;
 }
@@ -167,19 +183,55 @@ static void set_quotient(struct relit *r, size_t i, struct rgb q, float a)
     r->quotient[i][3] = a;
 }
 
-/* Radiance of a texture, or of furniture, after the edit. */
-static struct rgb relit_texture(struct apply_job *j, size_t i, struct rgb radiance, struct rgb gloss)
+/* What remains of a texture's radiance without its gloss. */
+static struct rgb matt_part(struct rgb radiance, struct rgb gloss)
+{
+    return rgb_make(fmax(radiance.r - gloss.r, 0), fmax(radiance.g - gloss.g, 0), fmax(radiance.b - gloss.b, 0));
+}
+
+/* Whether the pixel takes the quotient of the atlas: its texture was filled from around it. */
+static bool is_of_atlas(const struct apply_job *j, size_t i)
+{
+    return j->c->things.changes && j->picture->made[i] == MADE_SYNTHESISED;
+}
+
+static bool is_surface(const struct apply_job *j, size_t i)
+{
+    const uint8_t kind = j->p->kind[i];
+    return j->picture->made[i] != MADE_NOTHING && kind != PIXEL_KEPT && kind != PIXEL_LAMP && !is_of_atlas(j, i);
+}
+
+/* The quotient of a texture, or of furniture, with the part of its radiance that it holds for. */
+static void find_quotient(struct apply_job *j, size_t i)
 {
     struct relit *r = j->r;
+    const struct rgb radiance = get(j->picture->rgb + 3 * i);
+    const struct rgb base = r->specular ? matt_part(radiance, get(r->specular[i][0])) : radiance;
     bool is_bounded = !(rgb_luminance(r->before[i].value) > j->dark);
-    const struct rgb base =
-        rgb_make(fmax(radiance.r - gloss.r, 0), fmax(radiance.g - gloss.g, 0), fmax(radiance.b - gloss.b, 0));
     const struct rgb q = light_quotient(r->before[i].value, r->after[i].value, base, &is_bounded);
     const struct rgb albedo = light_albedo(r->before[i].value, base);
     set_quotient(r, i, q, is_bounded ? RELIT_BOUNDED : RELIT_SURE);
     set(r->albedo[i],
         rgb_make(fmin(albedo.r, LIGHT_ALBEDO_MAX), fmin(albedo.g, LIGHT_ALBEDO_MAX), fmin(albedo.b, LIGHT_ALBEDO_MAX)));
-    return rgb_multiply(base, q);
+}
+
+static void find_some(void *ctx, size_t begin, size_t end, int thread)
+{
+    struct apply_job *j = ctx;
+    (void)thread;
+    for (size_t i = begin; i < end; i++) {
+        struct brdf after, before;
+        struct vec3 viewpoint;
+        set_quotient(j->r, i, rgb_grey(1), RELIT_NONE);
+        if (!is_surface(j, i)) continue;
+        if (j->r->specular && gloss_of(&after, &before, &viewpoint, j, i)) {
+            set(j->r->specular[i][0],
+                reflected(&j->c->before.plain, j->p->before[i], &before, viewpoint, j->params, i));
+            set(j->r->specular[i][1],
+                reflected(&j->c->after.plain, j->p->after[i], &after, j->p->centre, j->params, i));
+        }
+        if (j->p->kind[i] != PIXEL_COLOUR) find_quotient(j, i);
+    }
 }
 
 static bool equal(struct rgb a, struct rgb b) { return a.r == b.r && a.g == b.g && a.b == b.b; }
@@ -187,25 +239,18 @@ static bool equal(struct rgb a, struct rgb b) { return a.r == b.r && a.g == b.g 
 static void apply_surface(struct apply_job *j, size_t i)
 {
     float *pixel = j->picture->rgb + 3 * i;
-    const struct rgb was = get(pixel), after = j->r->after[i].value;
-    struct brdf brdf_after, brdf_before;
-    struct vec3 viewpoint;
     struct rgb gloss = {0, 0, 0}, shine = {0, 0, 0};
-    if (gloss_of(&brdf_after, &brdf_before, &viewpoint, j, i)) {
-        gloss = reflected(&j->c->before.plain, j->p->before[i], &brdf_before, viewpoint, j->params, i);
-        shine = reflected(&j->c->after.plain, j->p->after[i], &brdf_after, j->p->centre, j->params, i);
-        if (j->r->specular) set(j->r->specular[i][0], gloss), set(j->r->specular[i][1], shine);
-    }
+    if (j->r->specular) gloss = get(j->r->specular[i][0]), shine = get(j->r->specular[i][1]);
     if (j->p->kind[i] == PIXEL_COLOUR) {
         const struct rgb albedo = get(j->p->albedo[i]);
         set(j->r->albedo[i], albedo);
         set_quotient(j->r, i, rgb_grey(1), RELIT_SURE);
-        set(pixel, rgb_add(rgb_scale(rgb_multiply(albedo, after), 1 / PI), shine));
+        set(pixel, rgb_add(rgb_scale(rgb_multiply(albedo, j->r->after[i].value), 1 / PI), shine));
         return;
     }
-    const struct rgb base = relit_texture(j, i, was, gloss);
-    if (equal(get(j->r->quotient[i]), rgb_grey(1)) && equal(gloss, shine)) return;
-    set(pixel, rgb_add(base, shine));
+    const struct rgb q = get(j->r->quotient[i]);
+    if (equal(q, rgb_grey(1)) && equal(gloss, shine)) return;
+    set(pixel, rgb_add(rgb_multiply(matt_part(get(pixel), gloss), q), shine));
 }
 
 static void apply_lamp(struct apply_job *j, size_t i)
@@ -251,11 +296,10 @@ static void apply_some(void *ctx, size_t begin, size_t end, int thread)
     struct apply_job *j = ctx;
     (void)thread;
     for (size_t i = begin; i < end; i++) {
-        set_quotient(j->r, i, rgb_grey(1), RELIT_NONE);
         if (j->picture->made[i] == MADE_NOTHING || j->p->kind[i] == PIXEL_KEPT) continue;
         if (j->p->kind[i] == PIXEL_LAMP)
             apply_lamp(j, i);
-        else if (j->c->things.changes && j->picture->made[i] == MADE_SYNTHESISED)
+        else if (is_of_atlas(j, i))
             apply_atlas_at(j, i);
         else
             apply_surface(j, i);
@@ -329,6 +373,27 @@ static double mean_light(const struct relit *r)
     return count ? sum / (double)count : 0;
 }
 
+static int by_value(const void *a, const void *b)
+{
+    const float x = *(const float *)a, y = *(const float *)b;
+    return (x > y) - (x < y);
+}
+
+/* Median luminance of the surfaces that are relit; lamps and the outdoors say nothing of how bright a room is. */
+static enum status find_median(double *median, const struct apply_job *j, struct err *err)
+{
+    const size_t n = (size_t)j->p->width * (size_t)j->p->height;
+    float *values = malloc((n + 1) * sizeof *values);
+    size_t count = 0;
+    if (!values) return err_nomem(err, "pixels", n * sizeof *values);
+    for (size_t i = 0; i < n; i++)
+        if (is_surface(j, i)) values[count++] = (float)rgb_luminance(get(j->picture->rgb + 3 * i));
+    qsort(values, count, sizeof *values, by_value);
+    *median = count ? (double)values[count / 2] : 0;
+    free(values);
+    return ST_OK;
+}
+
 /* Sets the gloss that the edit gives to faces; *any: some surface of the scene may be glossy. */
 static enum status find_glosses(struct apply_job *j, bool *any, struct err *err)
 {
@@ -359,12 +424,16 @@ enum status relit_make(struct relit *r, struct model_picture *picture, const str
     if (!err->status && is_glossy && !(r->specular = calloc(n + 1, sizeof *r->specular)))
         err_nomem(err, "gloss", n * sizeof *r->specular);
     const bool is_gathered = strcmp(params->light, "atlas") != 0;
-    if (!err->status && is_gathered) gather(r, p, c, params, err);
+    if (!err->status) find_median(&r->median[0], &j, err);
+    if (!err->status && is_gathered && !p->is_black) gather(r, p, c, params, err);
     if (!err->status) {
         j.dark = DARK * mean_light(r);
-        parallel_for(n, 256, is_gathered ? apply_some : apply_atlas, &j);
-        shade_objects(&j, err);
+        if (is_gathered) parallel_for(n, 256, find_some, &j);
+        if (is_gathered) quotients_settle(r->quotient, r->error, p, params, err);
+        if (!err->status) parallel_for(n, 256, is_gathered ? apply_some : apply_atlas, &j);
+        if (!err->status) shade_objects(&j, err);
     }
+    if (!err->status) find_median(&r->median[1], &j, err);
     free(j.glosses);
     free(j.has_gloss);
     return err->status;

@@ -3,22 +3,17 @@
 #define REMODEL_RELIT_H
 
 #include "common/gather/irradiance_cache.h"
-#include "stages/relight/pixels.h"
-#include "stages/relight/relight_params.h"
-
-/* How far a pixel's quotient can be trusted: the channel A of the picture of quotients. */
-#define RELIT_SURE    1.0f
-#define RELIT_BOUNDED 0.5f /* the rule of light_quotient.c applied, or there was no light before */
-#define RELIT_NONE    0.0f /* no surface of the model: its light stays */
+#include "stages/relight/quotients.h"
 
 /* {0} is the empty state; everything is owned. */
 struct relit {
     int width, height;
     struct irradiance *before, *after; /* irradiance at the pixels */
+    float *error;                      /* relative standard error of the quotient of luminance */
     float (*quotient)[4];              /* R G B, and A as above */
     float (*albedo)[3];                /* that picture and light imply, bounded: pi L / E */
     float (*specular)[2][3];           /* what gloss reflects before and after; NULL: no pixel is glossy */
-    double gather_seconds;
+    double median[2];                  /* luminance of the surfaces that are relit, before and after; 0: none */
     size_t records;
 };
 

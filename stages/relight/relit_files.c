@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/base/log.h"
 #include "common/capture/view_image.h"
 #include "common/image/exr.h"
 #include "common/image/image.h"
@@ -98,7 +99,11 @@ enum status relit_write(const struct relit *r, const struct model_picture *pictu
 {
     const struct product_key key = {.name = name};
     char path[FILE_PATH];
-    const double exposure = params->exposure > 0 ? params->exposure : unlit;
+    const double exposure =
+        params->exposure > 0 ? params->exposure : exposure_follow(unlit, r->median[0], r->median[1]);
+    if (exposure != unlit && !(params->exposure > 0))
+        log_note("%s: shown at %+.1f stops, before and after, or the room would be too %s to see", name,
+                 log2(exposure / unlit), exposure > unlit ? "dark" : "bright");
     if (!product_path_in(path, out, PRODUCT_RELIT_RATIO, &key, err) && !write_ratio(r, camera, path, prov, err) &&
         !product_path_in(path, out, PRODUCT_RELIT_RATIO_PICTURE, &key, err))
         draw_ratio(r, path, err);

@@ -238,9 +238,31 @@ static void what_the_picture_does_not_show_as_furniture_is_a_face(void **state)
     relit_room_release(&r);
 }
 
+/* A view that looks away from the photo: nothing of it is gathered. */
+static void of_a_black_picture_nothing_is_relit(void **state)
+{
+    struct edit e = edit_of_closed_room(coloured);
+    struct relit_room r;
+    struct err err = ERR_INIT;
+    (void)state;
+    find(&r, &e, vec3_make(0.1, 0.2, 0.3), to_floor);
+    assert_false(r.pixels.is_black);
+    pixels_release(&r.pixels);
+    for (int i = 0; i < PIXELS - PIXELS / 200; i++) r.picture.made[i] = MADE_NOTHING;
+    memcpy(r.was, r.picture.rgb, sizeof r.was);
+    assert_ok(pixels_find(&r.pixels, &r.change, &r.picture, NULL, NULL, &err), err);
+    assert_true(r.pixels.is_black);
+    for (int i = 0; i < PIXELS; i++) assert_true(r.pixels.kind[i] == PIXEL_KEPT && r.pixels.face[i] == -1);
+    assert_ok(relit_make(&r.relit, &r.picture, &r.pixels, &r.change, &r.params, &err), err);
+    assert_memory_equal(r.picture.rgb, r.was, sizeof r.was);
+    assert_int_equal(r.relit.records, 0);
+    relit_room_release(&r);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(of_a_black_picture_nothing_is_relit),
         cmocka_unit_test(pixels_of_an_unchanged_room_are_gathered_where_they_are),
         cmocka_unit_test(a_moved_wall_is_gathered_at_its_old_place_and_a_colour_has_its_albedo),
         cmocka_unit_test(pixels_without_a_surface_keep_their_light),

@@ -3,6 +3,8 @@
 
 #include "tests/unit/scratch.h"
 
+#include <math.h>
+
 #include "common/base/rng.h"
 #include "common/image/photo.h"
 
@@ -123,6 +125,18 @@ static void a_picture_is_written_by_its_name_and_white_is_where_the_exposure_say
     free(m);
 }
 
+static void an_exposure_is_kept_while_the_room_is_seen_and_follows_where_it_is_not(void **state)
+{
+    (void)state;
+    assert_true(exposure_follow(1.7, 0.2, 0.2) == 1.7);
+    assert_true(fabs(exposure_follow(2, 0.1, 0.04) - 2) < 1e-12);             /* 0.08 of white */
+    assert_true(fabs(exposure_follow(2, 0.1, 0.005) - 10) < 1e-12);           /* brought to EXPOSURE_DIM */
+    assert_true(fabs(exposure_follow(1, 0.02, 0.01) - 2) < 1e-12);            /* a dark room stays as dark as it was */
+    assert_true(fabs(exposure_follow(1, 0.3, 1.2) - 0.5) < 1e-12);            /* EXPOSURE_BRIGHT */
+    assert_true(fabs(exposure_follow(1, 0.3, 1e-9) - EXPOSURE_MOST) < 1e-12); /* all but dark */
+    assert_true(exposure_follow(3, 0.3, 0) == 3 && exposure_follow(3, 0, 0) == 3);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -131,6 +145,7 @@ int main(void)
         cmocka_unit_test(pixels_that_show_nothing_do_not_count),
         cmocka_unit_test(a_picture_of_nothing_and_a_black_one_have_exposure_1),
         cmocka_unit_test(a_picture_is_written_by_its_name_and_white_is_where_the_exposure_says),
+        cmocka_unit_test(an_exposure_is_kept_while_the_room_is_seen_and_follows_where_it_is_not),
     };
     return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
 }
