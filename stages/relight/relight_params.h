@@ -11,9 +11,6 @@
     X(step, int, 4, 1, 32, "px",                                                                                     \
       "light is gathered at the corners of cells so wide, and between them where it or the surface differs; 1: at "  \
       "each pixel")                                                                                                  \
-    X(model_error, double, 0.03, 0, 1, "",                                                                           \
-      "error of the quotient of light that model and textures cause, as a natural logarithm: changes well below it " \
-      "and the gather's own error are left out")                                                                     \
     X(smooth, int, 3, 0, 6, "", "passes that smooth the noise of the quotient along surfaces")                       \
     X(light, choice, "gathered", 0, 0, "gathered|atlas",                                                             \
       "gathered at each pixel, with sharp shadows; or that of the atlas of update_vita: fast, and the same from "    \
