@@ -24,12 +24,23 @@ static enum status add(struct thing_surfaces *s, const struct thing_mesh *m, con
     return ST_OK;
 }
 
+static enum status add_before(struct light_things *t, const struct thing_mesh *m, const struct thing *thing, bool stays,
+                              struct err *err)
+{
+    const size_t first = (size_t)t->before.count, count = first + (size_t)m->triangle_count;
+    bool *grown = realloc(t->stays, (count + 1) * sizeof *grown);
+    if (!grown) return err_nomem(err, "triangles", count * sizeof *grown);
+    t->stays = grown;
+    for (size_t i = first; i < count; i++) t->stays[i] = stays;
+    return add(&t->before, m, NULL, thing, err);
+}
+
 static enum status add_thing(struct light_things *t, uint32_t id, struct err *err)
 {
     const struct thing *thing = &t->placed.list.things[id - 1];
+    const bool stays = t->placed.fate[id] != THING_IS_GONE;
     struct thing_mesh mesh = {0};
-    if (!thing_mesh_make(&mesh, &t->placed.volume, id, err) && !add(&t->before, &mesh, NULL, thing, err) &&
-        t->placed.fate[id] != THING_IS_GONE)
+    if (!thing_mesh_make(&mesh, &t->placed.volume, id, err) && !add_before(t, &mesh, thing, stays, err) && stays)
         add(&t->after, &mesh, NULL, thing, err);
     for (int k = 0; !err->status && k < t->placed.placed_count; k++)
         if (t->placed.placed[k].id == id) add(&t->after, &mesh, &t->placed.placed[k], thing, err);
@@ -66,6 +77,7 @@ void light_things_release(struct light_things *t)
     placed_things_release(&t->placed);
     release_surfaces(&t->before);
     release_surfaces(&t->after);
+    free(t->stays);
     *t = (struct light_things){0};
 }
 

@@ -17,6 +17,7 @@ struct thing_surfaces {
 struct light_things {
     struct placed_things placed;
     struct thing_surfaces before, after;
+    bool *stays;  /* of each triangle of `before`: `after` has it at the same place */
     bool changes; /* the edit changes a thing; otherwise both are empty */
 };
 

@@ -19,6 +19,8 @@
 #include "common/math/numbers.h"
 
 enum { DIRECT_SHARE = 4 };             /* rays / this go towards emitters */
+static const double IN_SIGHT = 0.5;    /* of a place's hemisphere: things that stand beside it cover so much */
+static const double HIDDEN = 0.75;     /* what is covered so far is in a gap that nobody looks into */
 static const double AROUND = 1.0 / 16; /* of the spacing: how far around a sample colours are averaged */
 
 /* ---------------------------------------------------------------------------------------------------------- samples */
@@ -152,11 +154,18 @@ static void add_face(struct tally *l, const struct transport *t, const struct li
 
 struct ray_job {
     const struct transport *t;
+    int *covered;        /* counts rays that meet things that stay; NULL: after the edit */
     struct tally *tally; /* NULL: all is fixed */
     struct gather_point point;
     const struct mixture *lights;
     struct rgb fixed;
 };
+
+static bool is_staying_thing(const struct light_change *c, int face)
+{
+    const int faces = c->before.model.mesh.face_count;
+    return face >= faces && c->things.stays[(face - faces) / 2];
+}
 
 static void look(struct ray_job *j, const struct light_field *f, const struct vec3 direction[RAY_PACKET], int count)
 {
@@ -165,6 +174,7 @@ static void look(struct ray_job *j, const struct light_field *f, const struct ve
     for (int k = 0; k < RAY_PACKET; k++) from[k] = j->point.at;
     f->look(f->ctx, from, j->point.normal, direction, (1u << count) - 1, seen);
     for (int k = 0; k < count; k++) {
+        if (j->covered) *j->covered += is_staying_thing(j->t->change, seen[k].face);
         if (mixture_is_light(j->lights, direction[k], seen[k].source)) continue;
         const bool is_face = j->tally && seen[k].face >= 0 && seen[k].source != LIGHT_NONE;
         if (is_face)
@@ -176,7 +186,7 @@ static void look(struct ray_job *j, const struct light_field *f, const struct ve
 }
 
 /* Irradiance at a point by `rays` rays, pi / rays not yet applied to what is in the tally. */
-static struct rgb gather(const struct transport *t, struct tally *tally, const struct light_field *f,
+static struct rgb gather(const struct transport *t, struct tally *tally, int *covered, const struct light_field *f,
                          struct gather_point p, int rays, uint64_t key)
 {
     const struct rng rng = rng_make(key, "update_vita", "rays");
@@ -185,7 +195,7 @@ static struct rgb gather(const struct transport *t, struct tally *tally, const s
     struct mixture lights;
     struct irradiance direct = {.rays = 0};
     struct vec3 direction[RAY_PACKET];
-    struct ray_job j = {.t = t, .tally = tally, .point = p, .lights = &lights};
+    struct ray_job j = {.t = t, .tally = tally, .covered = covered, .point = p, .lights = &lights};
     int waiting = 0;
     mixture_init(&lights, f, p, MIXTURE_LIGHTS);
     if (lights.count) mixture_gather(&direct, &lights, rays / DIRECT_SHARE, key, false);
@@ -242,10 +252,12 @@ static void trace_some(void *ctx, size_t begin, size_t end, int thread)
         const size_t i = (size_t)j->first + n;
         const struct transport_sample *s = &t->samples[i];
         struct transport_row *row = &t->rows[i];
+        int covered = 0;
         row->before = rgb_grey(0);
         if (s->place.kind == LIGHT_PLACE_TEXTURE)
-            row->before = gather(t, NULL, &t->change->before.field, s->place.before, j->rays, i);
-        row->fixed = gather(t, &j->tallies[thread], &t->change->after.field, s->after, j->rays, i);
+            row->before = gather(t, NULL, &covered, &t->change->before.field, s->place.before, j->rays, i);
+        row->own = clamp((covered / (double)j->rays - IN_SIGHT) / (HIDDEN - IN_SIGHT), 0, 1);
+        row->fixed = gather(t, &j->tallies[thread], NULL, &t->change->after.field, s->after, j->rays, i);
         if (!keep_entries(row, &j->tallies[thread], PI / j->rays)) j->is_short = true;
     }
     if (j->done) j->done(j->done_ctx, (int64_t)(end - begin));
@@ -291,19 +303,33 @@ static double smooth_holes(struct transport *t, const struct face_net *net, doub
     return largest;
 }
 
+static enum status continue_into_face(struct transport *t, const struct face_net *net, struct err *err)
+{
+    const size_t count = (size_t)net->count;
+    double(*sums)[4] = malloc(count * sizeof *sums);
+    struct rgb *own = malloc(count * sizeof *own);
+    if (!sums || !own) err_nomem(err, "samples", count * sizeof *sums);
+    for (size_t i = 0; !err->status && i < count; i++) own[i] = t->rows[net->samples[i]].before;
+    for (int k = 0; !err->status && k < MAX_SWEEPS && smooth_holes(t, net, sums) > SETTLED; k++) continue;
+    for (size_t i = 0; !err->status && i < count; i++) {
+        struct transport_row *row = &t->rows[net->samples[i]];
+        if (row->own > 0) row->before = rgb_add(rgb_scale(row->before, 1 - row->own), rgb_scale(own[i], row->own));
+    }
+    free(sums);
+    free(own);
+    return err->status;
+}
+
 /* Where furniture hid a face, the bake continued the texture from around the hole, and with it the light of there: the
- * irradiance before the edit is continued alike. */
+ * irradiance before the edit is continued alike. In gaps behind furniture that stays, the light before stays its
+ * own: such a texel is too bright before and after alike, and furniture beside it sees no change that is none. */
 static enum status continue_into_holes(struct transport *t, struct err *err)
 {
     for (int f = 0; f < t->nets->mesh->face_count; f++) {
         const struct face_net *net = &t->nets->nets[f];
         int holes = 0;
         for (int i = 0; i < net->count; i++) holes += is_hole(t, net->samples[i]);
-        if (!holes || holes == net->count) continue;
-        double(*sums)[4] = malloc((size_t)net->count * sizeof *sums);
-        if (!sums) return err_nomem(err, "samples", (size_t)net->count * sizeof *sums);
-        for (int k = 0; k < MAX_SWEEPS && smooth_holes(t, net, sums) > SETTLED; k++) continue;
-        free(sums);
+        if (holes && holes < net->count && continue_into_face(t, net, err)) return err->status;
     }
     return ST_OK;
 }

@@ -18,6 +18,7 @@ struct transport_entry {
 
 struct transport_row {
     struct rgb before;               /* irradiance in the unedited model; 0 where the sample has no place there */
+    double own;                      /* how far things that stay hide the sample, 0 to 1: its light is not continued */
     struct rgb fixed;                /* irradiance in the edited one that no sample changes: lamps, the sky */
     struct transport_entry *entries; /* in order of `from`; owned */
     int count;

@@ -302,6 +302,44 @@ static void a_hole_behind_furniture_gets_the_light_around_it(void **state)
     release(&hole.traced);
 }
 
+/* A second ball is put elsewhere, and the first one stays, 0.02 above the floor: seen from there it covers more than
+ * (r / d)^2 cos(t) = 0.82 of the hemisphere up to 0.2 from its foot. The light there stays that of its shadow. Further
+ * out, in sight, the light around is continued. */
+static void the_light_in_a_gap_behind_furniture_that_stays_does_not_change(void **state)
+{
+    static struct traced t;
+    struct edit e = edit_of_closed_room(plain);
+    struct texture_thing copy = edit_ball(TEXTURE_THING_MOVE, 1.8, 1.8, 0);
+    struct err err = ERR_INIT;
+    int hidden = 0, in_sight = 0;
+    (void)state;
+    copy.name = (char *)"second";
+    e.map = (struct texture_map){.things = &copy, .thing_count = 1};
+    edit_write(&e);
+    e.files.things = write_ball(vec3_make(-0.9, -0.9, -1.35), 0.63, 0);
+    prepare(&t, &e, 0.1);
+    assert_true(t.change.things.changes);
+    const int floor = face_named(&t.change.after.model.mesh, "floor/5");
+    for (int i = 0; i < t.nets.sample_count; i++) {
+        const struct vec3 p = t.transport.samples[i].after.at;
+        if (t.nets.samples[i].face == floor && hypot(p.x + 0.9, p.y + 0.9) < 0.8)
+            t.transport.samples[i].place.source = LIGHT_SYNTHESISED;
+    }
+    assert_ok(transport_trace(&t.transport, 0, RAYS, NULL, NULL, &err), err);
+    for (int i = 0; i < t.nets.sample_count; i++) {
+        const struct vec3 p = t.transport.samples[i].after.at;
+        const double off = hypot(p.x + 0.9, p.y + 0.9);
+        if (t.nets.samples[i].face != floor || off > 0.75) continue;
+        const double was = t.transport.rows[i].before.g, is = sum_of(&t.transport.rows[i]).g;
+        if (off < 0.2) assert_true(was < 0.22 * 0.3 * PI && is <= was + 1e-5 && is > 0.8 * was);
+        if (off > 0.6) assert_true(is < 0.95 * was); /* 0.3 pi and a shadow after, more before */
+        hidden += off < 0.2;
+        in_sight += off > 0.6;
+    }
+    assert_true(hidden > 3 && in_sight > 10);
+    release(&t);
+}
+
 /* A hole of 40 samples across, as that of a bed: light must come in from its rim to its middle. */
 static void the_middle_of_a_large_hole_gets_the_light_around_it(void **state)
 {
@@ -366,6 +404,7 @@ int main(void)
         cmocka_unit_test(a_painted_room_absorbs_what_its_lamp_sends_out),
         cmocka_unit_test(an_object_that_touches_the_floor_leaves_no_light_under_it),
         cmocka_unit_test(a_hole_behind_furniture_gets_the_light_around_it),
+        cmocka_unit_test(the_light_in_a_gap_behind_furniture_that_stays_does_not_change),
         cmocka_unit_test(the_middle_of_a_large_hole_gets_the_light_around_it),
         cmocka_unit_test(paint_beside_a_hole_does_not_darken_it),
     };
