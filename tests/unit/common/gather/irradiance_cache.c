@@ -210,7 +210,7 @@ static void what_does_not_see_a_change_has_equal_bits(void **state)
     }
     const struct irradiance_cache_job job = {.field = &f.field,
                                              .points = points,
-                                             .other = {&g.field, points, two},
+                                             .other = {.field = &g.field, .points = points, .results = two, .step = 1},
                                              .width = COLUMNS,
                                              .height = ROWS,
                                              .target = 0.05,
