@@ -90,6 +90,18 @@ static enum status read_brackets(struct photo_record *r, struct textfile *t, str
     return err->status;
 }
 
+/* A line "colour NAME", which only photos have that are not in sRGB. *more: another line follows, whose first word is
+ * still to be read. */
+static enum status read_colour(struct photo_info *info, bool *more, struct textfile *t, struct err *err)
+{
+    if (strncmp(t->cursor, "colour ", 7) != 0) return ST_OK;
+    if (textfile_expect(t, "colour", err) ||
+        textfile_word_into(t, "a colour space", info->colour, sizeof info->colour, err) || textfile_end(t, err))
+        return err->status;
+    *more = textfile_next(t);
+    return ST_OK;
+}
+
 static enum status read_fields(struct photo_record *r, struct textfile *t, struct err *err)
 {
     struct photo_info *info = &r->info;
@@ -116,7 +128,8 @@ static enum status read_fields(struct photo_record *r, struct textfile *t, struc
         return err->status;
     if (textfile_expect_line(t, "taken", err) || read_exif(t, "time taken", &info->taken, err) || textfile_end(t, err))
         return err->status;
-    if (textfile_next(t)) read_brackets(r, t, err);
+    bool more = textfile_next(t);
+    if (more && !read_colour(info, &more, t, err) && more) read_brackets(r, t, err);
     if (!err->status) textfile_end_of_file(t, err);
     return err->status;
 }
@@ -150,13 +163,14 @@ static enum status finish_text(FILE *to, char **text, size_t *size, const char *
 enum status photo_record_write(const struct photo_record *r, const char *folder, struct err *err)
 {
     const struct photo_info *info = &r->info;
-    char file[QUOTED_SIZE], make[QUOTED_SIZE], model[QUOTED_SIZE];
+    char file[QUOTED_SIZE], make[QUOTED_SIZE], model[QUOTED_SIZE], colour[QUOTED_SIZE];
     char path[FILE_PATH], *text = NULL;
     size_t size = 0;
 
     if (product_path_in(path, folder, PRODUCT_PHOTO, &(struct product_key){.photo = r->id}, err) ||
         textfile_quote(r->file, file, sizeof file, err) || textfile_quote(info->make, make, sizeof make, err) ||
-        textfile_quote(info->model, model, sizeof model, err))
+        textfile_quote(info->model, model, sizeof model, err) ||
+        textfile_quote(info->colour, colour, sizeof colour, err))
         return err->status;
     FILE *to = open_memstream(&text, &size);
     if (!to) return err_nomem(err, "a record", 0);
@@ -165,6 +179,7 @@ enum status photo_record_write(const struct photo_record *r, const char *folder,
     fprintf(to, "exif %.17g %.17g %.17g %.17g %.17g\n", info->focal_mm, info->focal35_mm, info->seconds, info->f_number,
             info->iso);
     fprintf(to, "camera %s %s\ntaken %.17g\n", make, model, info->taken);
+    if (*info->colour) fprintf(to, "colour %s\n", colour);
     if (r->bracket_count) fprintf(to, "brackets %d %d %.17g\n", r->bracket_count, r->middle, r->white);
     for (int i = 0; !err->status && i < r->bracket_count; i++) {
         const struct bracket *b = &r->brackets[i];

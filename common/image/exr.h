@@ -34,6 +34,9 @@ struct exr_image {
     int count;
     enum exr_codec codec;     /* for exr_write(); exr_read() reads any codec and sets EXR_ZIP */
     struct exr_plane *planes; /* owned, with their data */
+    bool has_chromaticities;  /* only of files that were read */
+    float chromaticities[8];  /* x and y of red, green, blue, white */
+    float pixel_aspect_ratio; /* of files that were read; 0: unknown */
     bool has_world_to_camera;
     float world_to_camera[16];  /* in Imath's row-vector convention, as in the file; see view_image_set_camera() */
     char (*attributes)[2][256]; /* other string attributes, name and value; owned; may be NULL */

@@ -210,6 +210,7 @@ static enum status choose_channels(struct exr_reader *r, const char *path, const
 static enum status read_attributes(struct exr_reader *r, struct err *err)
 {
     int32_t count = 0;
+    exr_get_pixel_aspect_ratio(r->ctxt, 0, &r->im->pixel_aspect_ratio);
     exr_get_attribute_count(r->ctxt, 0, &count);
     for (int32_t i = 0; i < count; i++) {
         const exr_attribute_t *a = NULL;
@@ -218,6 +219,13 @@ static enum status read_attributes(struct exr_reader *r, struct err *err)
             memcpy(r->im->world_to_camera, a->m44f->m, sizeof r->im->world_to_camera);
             r->im->has_world_to_camera = true;
             for (int k = 0; k < 16; k++) r->im->has_world_to_camera &= isfinite(a->m44f->m[k]) != 0;
+        }
+        if (a->type == EXR_ATTR_CHROMATICITIES && !strcmp(a->name, "chromaticities")) {
+            const exr_attr_chromaticities_t *c = a->chromaticities;
+            const float xy[8] = {c->red_x,  c->red_y,  c->green_x, c->green_y,
+                                 c->blue_x, c->blue_y, c->white_x, c->white_y};
+            memcpy(r->im->chromaticities, xy, sizeof xy);
+            r->im->has_chromaticities = true;
         }
         if (a->type != EXR_ATTR_STRING || !a->string->str) continue;
         bool reserved = !strcmp(a->name, "type") || !strcmp(a->name, "name");

@@ -39,6 +39,20 @@ static enum status unknown_kind(const struct photo_bytes *file, struct err *err)
         file->path, begin);
 }
 
+/* The primaries of an EXR file; Rec.709 without the attribute. */
+static enum status read_exr_colours(struct photo *p, const struct exr_image *exr, const char *path, struct err *err)
+{
+    struct chromaticities c;
+    if (exr->pixel_aspect_ratio > 0 && fabsf(exr->pixel_aspect_ratio - 1) > 1e-3f)
+        return err_set(err, ST_DATA,
+                       "%s: its pixels are %.4g times as wide as high, wanted square ones; save it with a pixel aspect "
+                       "ratio of 1.",
+                       path, (double)exr->pixel_aspect_ratio);
+    if (!exr->has_chromaticities) return ST_OK;
+    for (int i = 0; i < 8; i++) c.xy[i / 2][i % 2] = (double)exr->chromaticities[i];
+    return photo_set_primaries(p, &c, 1, "of the EXR file's chromaticities", path, err);
+}
+
 /* EXR is linear. It has no EXIF data: exposure and camera stay unknown. */
 static enum status read_exr(struct photo *p, const struct photo_bytes *file, bool pixels, struct err *err)
 {
@@ -62,6 +76,7 @@ static enum status read_exr(struct photo *p, const struct photo_bytes *file, boo
         for (size_t i = 0; i < count; i++) p->values[3 * i + c] = fmaxf(from[i], 0);
     }
     if (!err->status && pixels) p->saturation = photo_find_saturation(p);
+    if (!err->status) read_exr_colours(p, &exr, file->path, err);
     exr_image_release(&exr);
     return err->status;
 }
@@ -115,7 +130,7 @@ enum status photo_read_info(struct photo_info *info, const char *path, struct er
 
 struct linear_job {
     const struct photo *photo;
-    const float *curve;
+    const float *curves[3]; /* of red, green, blue */
     float *out;
 };
 
@@ -123,20 +138,24 @@ static void linear_samples(void *ctx, size_t begin, size_t end, int thread)
 {
     (void)thread;
     const struct linear_job *job = ctx;
-    for (size_t i = begin; i < end; i++) job->out[i] = job->curve[job->photo->samples[i]];
+    for (size_t i = 3 * begin; i < 3 * end; i++) job->out[i] = job->curves[i % 3][job->photo->samples[i]];
 }
 
 enum status photo_to_linear(struct image *out, const struct photo *p, struct err *err)
 {
     *out = (struct image){0};
+    const struct colour_space *space = p->space;
     size_t levels = p->info.bits == 16 ? 65536 : 256;
     float *curve = malloc(levels * sizeof *curve);
     if (!curve) return err_nomem(err, "a tone curve", levels * sizeof *curve);
     for (size_t i = 0; i < levels; i++) curve[i] = linear_from_srgb((float)i / (float)(levels - 1));
     image_init(out, p->info.width, p->info.height, 3, err);
     if (!err->status) {
-        struct linear_job job = {p, curve, out->data};
-        parallel_for((size_t)p->info.width * (size_t)p->info.height * 3, 1 << 16, linear_samples, &job);
+        const size_t pixels = (size_t)p->info.width * (size_t)p->info.height;
+        struct linear_job job = {p, {curve, curve, curve}, out->data};
+        for (size_t c = 0; space && c < 3; c++) job.curves[c] = space->light + c * levels;
+        parallel_for(pixels, 1 << 15, linear_samples, &job);
+        if (space) colour_space_to_rec709(space, out->data, pixels);
     }
     free(curve);
     return err->status;

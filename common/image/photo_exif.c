@@ -75,6 +75,14 @@ static void exif_text(ExifData *data, ExifIfd ifd, ExifTag tag, char *text, size
     photo_keep_text(text, size, has_text ? (const char *)e->data : "", has_text ? e->size : 0);
 }
 
+/* Cameras name Adobe RGB by a colour space of 2, or as "uncalibrated" with the interoperability index R03. */
+static bool exif_is_adobe(ExifData *data)
+{
+    ExifEntry *e = exif_content_get_entry(data->ifd[EXIF_IFD_INTEROPERABILITY], EXIF_TAG_INTEROPERABILITY_INDEX);
+    const double space = exif_number(data, EXIF_IFD_EXIF, EXIF_TAG_COLOR_SPACE);
+    return space == 2 || (space != 1 && e && e->data && e->size >= 3 && !memcmp(e->data, "R03", 3));
+}
+
 enum status photo_exif_read(struct photo_info *info, const struct photo_bytes *file, bool png, struct err *err)
 {
     const unsigned char *block = NULL;
@@ -115,6 +123,7 @@ enum status photo_exif_take(struct photo_info *info, const unsigned char *block,
         exif_text(data, EXIF_IFD_EXIF, EXIF_TAG_DATE_TIME_ORIGINAL, date, sizeof date);
         exif_text(data, EXIF_IFD_EXIF, EXIF_TAG_SUB_SEC_TIME_ORIGINAL, subseconds, sizeof subseconds);
         info->taken = photo_time(date, subseconds);
+        info->adobe_rgb = exif_is_adobe(data);
     }
     if (data) exif_data_unref(data);
     free(marked);

@@ -1,5 +1,5 @@
 /* photo_formats.h - readers of single photo formats, and EXIF: what photo.c calls in photo_jpeg.c, photo_png.c,
- * photo_tiff.c, photo_raw.c, photo_heif.c, photo_webp.c, photo_jxl.c and photo_exif.c. */
+ * photo_tiff.c, photo_raw.c, photo_heif.c, photo_webp.c, photo_jxl.c, photo_colour.c and photo_exif.c. */
 #ifndef REMODEL_PHOTO_FORMATS_H
 #define REMODEL_PHOTO_FORMATS_H
 
@@ -16,6 +16,16 @@ enum status photo_read_raw(struct photo *p, const struct photo_bytes *file, bool
 enum status photo_read_heif(struct photo *p, const struct photo_bytes *file, bool pixels, struct err *err);
 enum status photo_read_webp(struct photo *p, const struct photo_bytes *file, bool pixels, struct err *err);
 enum status photo_read_jxl(struct photo *p, const struct photo_bytes *file, bool pixels, struct err *err);
+
+/* Give p what its file says of its colours; readers call one of them last, with `pixels` after the samples are read. */
+/* ICC bytes; size 0: none, then EXIF decides. Samples of a profile of tables become 16 bits. ST_DATA with the path. */
+enum status photo_set_icc(struct photo *p, const unsigned char *icc, size_t size, bool pixels, const char *path,
+                          struct err *err);
+/* Codes of ITU-T H.273. */
+enum status photo_set_codes(struct photo *p, int primaries, int transfer, const char *path, struct err *err);
+/* gamma: 0: the curve of sRGB. */
+enum status photo_set_primaries(struct photo *p, const struct chromaticities *primaries, double gamma, const char *name,
+                                const char *path, struct err *err);
 
 /* A TIFF that is a raw file: it has a DNG version, its first image is reduced or a colour filter mosaic, or its
  * compression is unknown to libtiff. */

@@ -70,6 +70,27 @@ static enum status read_heif_pixels(struct photo *p, const struct photo_bytes *f
     return err->status;
 }
 
+/* An ICC profile, or codes. */
+static enum status read_heif_colours(struct photo *p, const struct heif_image_handle *handle, bool pixels,
+                                     const char *path, struct err *err)
+{
+    const size_t size = heif_image_handle_get_raw_color_profile_size(handle);
+    struct heif_color_profile_nclx *nclx = NULL;
+    if (size > 0) {
+        unsigned char *icc = malloc(size);
+        if (!icc) return err_nomem(err, "a colour profile", size);
+        const struct heif_error problem = heif_image_handle_get_raw_color_profile(handle, icc);
+        photo_set_icc(p, icc, problem.code == heif_error_Ok ? size : 0, pixels, path, err);
+        free(icc);
+    } else if (heif_image_handle_get_nclx_color_profile(handle, &nclx).code == heif_error_Ok && nclx) {
+        photo_set_codes(p, (int)nclx->color_primaries, (int)nclx->transfer_characteristics, path, err);
+        heif_nclx_color_profile_free(nclx);
+    } else {
+        photo_set_icc(p, NULL, 0, pixels, path, err);
+    }
+    return err->status;
+}
+
 enum status photo_read_heif(struct photo *p, const struct photo_bytes *file, bool pixels, struct err *err)
 {
     struct heif_context *context = heif_context_alloc();
@@ -89,8 +110,8 @@ enum status photo_read_heif(struct photo *p, const struct photo_bytes *file, boo
                     bits);
         else if (!photo_check_size(file->path, width > 0 ? (uint64_t)width : 0, height > 0 ? (uint64_t)height : 0,
                                    err) &&
-                 !read_heif_exif(&p->info, handle, err) && pixels)
-            read_heif_pixels(p, file, handle, bits, err);
+                 !read_heif_exif(&p->info, handle, err) && (!pixels || !read_heif_pixels(p, file, handle, bits, err)))
+            read_heif_colours(p, handle, pixels, file->path, err);
     }
     if (handle) heif_image_handle_release(handle);
     heif_context_free(context);

@@ -80,6 +80,38 @@ static double jpeg_variance(const struct photo_bytes *file)
     return 0;
 }
 
+/* The parts of the ICC profile, in order of their numbers; NULL: none, or parts are missing. The caller frees it. */
+static unsigned char *jpeg_profile(size_t *size, const struct photo_bytes *file)
+{
+    enum { MARK = 14 /* the name, a NUL, the part's number, their count */, MAX_PARTS = 256 };
+    const unsigned char *b = file->bytes, *parts[MAX_PARTS] = {NULL};
+    size_t lengths[MAX_PARTS] = {0}, count = 0;
+    *size = 0;
+    for (size_t at = 2; at + 4 <= file->size && b[at] == 0xff && b[at + 1] != 0xda;) {
+        if (b[at + 1] == 0xff) { /* fill byte */
+            at++;
+            continue;
+        }
+        const size_t length = (size_t)b[at + 2] << 8 | b[at + 3];
+        if (length < 2 || at + 2 + length > file->size) break;
+        if (b[at + 1] == 0xe2 && length > 2 + MARK && !memcmp(b + at + 4, "ICC_PROFILE", 12)) {
+            const unsigned char part = b[at + 4 + 12];
+            count = b[at + 4 + 13];
+            parts[part] = b + at + 4 + MARK;
+            lengths[part] = length - 2 - MARK;
+        }
+        at += 2 + length;
+    }
+    for (size_t i = 1; i <= count; i++) *size = parts[i] && (*size || i == 1) ? *size + lengths[i] : 0;
+    unsigned char *icc = *size ? malloc(*size) : NULL, *to = icc;
+    for (size_t i = 1; icc && i <= count; i++) {
+        memcpy(to, parts[i], lengths[i]);
+        to += lengths[i];
+    }
+    if (!icc) *size = 0;
+    return icc;
+}
+
 enum status photo_read_jpeg(struct photo *p, const struct photo_bytes *file, bool pixels, struct err *err)
 {
     tjhandle handle = tjInitDecompress();
@@ -88,6 +120,10 @@ enum status photo_read_jpeg(struct photo *p, const struct photo_bytes *file, boo
     if (!err->status && pixels) read_jpeg_pixels(p, file, handle, err);
     p->jpeg_variance = jpeg_variance(file);
     if (!err->status) photo_exif_read(&p->info, file, false, err);
+    size_t size = 0;
+    unsigned char *icc = err->status ? NULL : jpeg_profile(&size, file);
+    if (!err->status) photo_set_icc(p, icc, size, pixels, file->path, err);
+    free(icc);
     tjDestroy(handle);
     return err->status;
 }

@@ -1,5 +1,7 @@
 /* photo_png.c - PNG files, by libpng. */
+#include <math.h>
 #include <setjmp.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -86,15 +88,67 @@ static enum status read_png_pixels(struct png_reader *r, struct err *err)
     return ST_OK;
 }
 
+/* The chunk cICP: codes of primaries and transfer. libpng before 1.6.45 does not know it. */
+static bool get_codes(const struct png_reader *r, png_byte codes[2])
+{
+#ifdef PNG_cICP_SUPPORTED
+    png_byte matrix = 0, full = 0;
+    return png_get_cICP(r->png, r->info, &codes[0], &codes[1], &matrix, &full) != 0;
+#else
+    png_unknown_chunkp chunks = NULL;
+    const int count = png_get_unknown_chunks(r->png, r->info, &chunks);
+    for (int i = 0; i < count; i++)
+        if (!memcmp(chunks[i].name, "cICP", 4) && chunks[i].size == 4) {
+            codes[0] = chunks[i].data[0];
+            codes[1] = chunks[i].data[1];
+            return true;
+        }
+    return false;
+#endif
+}
+
+/* What the chunks say of colours. As the standard demands, codes count first, then a profile, the word sRGB, and gamma
+ * and primaries. A gamma near 1/2.2 is the curve of sRGB, as programs mean it. */
+static enum status read_png_colours(struct png_reader *r, bool pixels, struct err *err)
+{
+    static const struct chromaticities rec709 = {{{0.64, 0.33}, {0.30, 0.60}, {0.15, 0.06}, {0.3127, 0.3290}}};
+    struct chromaticities c = rec709;
+    png_charp name = NULL;
+    png_bytep icc = NULL;
+    png_uint_32 size = 0;
+    int method = 0, intent = 0;
+    double gamma = 1 / 2.2;
+    const char *path = r->file->path;
+    png_byte codes[2];
+    if (get_codes(r, codes)) return photo_set_codes(r->photo, codes[0], codes[1], path, err);
+    if (png_get_iCCP(r->png, r->info, &name, &method, &icc, &size))
+        return photo_set_icc(r->photo, icc, size, pixels, path, err);
+    if (png_get_sRGB(r->png, r->info, &intent)) return ST_OK;
+    const bool has_gamma = png_get_gAMA(r->png, r->info, &gamma) != 0;
+    const bool has_primaries = png_get_cHRM(r->png, r->info, &c.xy[3][0], &c.xy[3][1], &c.xy[0][0], &c.xy[0][1],
+                                            &c.xy[1][0], &c.xy[1][1], &c.xy[2][0], &c.xy[2][1]) != 0;
+    if (!has_gamma && !has_primaries) return photo_set_icc(r->photo, NULL, 0, pixels, path, err);
+    if (!(gamma > 0.01 && gamma < 100))
+        return err_set(err, ST_DATA, "%s: its chunk gAMA says %g, wanted 0.01 to 100; save the photo as sRGB.", path,
+                       gamma);
+    char text[32];
+    const bool usual = fabs(gamma * 2.2 - 1) < 0.02;
+    snprintf(text, sizeof text, "gAMA %.5g%s", gamma, has_primaries ? " and cHRM" : "");
+    return photo_set_primaries(r->photo, &c, usual ? 0 : 1 / gamma, has_gamma ? text : "cHRM", path, err);
+}
+
 enum status photo_read_png(struct photo *p, const struct photo_bytes *file, bool pixels, struct err *err)
 {
     struct png_reader r = {.file = file, .photo = p};
     r.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &r, png_keep_message, png_ignore_warning);
     if (r.png) r.info = png_create_info_struct(r.png);
     if (!r.info) err_nomem(err, "a PNG decoder", 0);
+#ifndef PNG_cICP_SUPPORTED
+    if (r.info) png_set_keep_unknown_chunks(r.png, PNG_HANDLE_CHUNK_ALWAYS, (png_const_bytep) "cICP", 1);
+#endif
     if (!err->status) read_png_header(&r, err);
     if (!err->status && pixels) read_png_pixels(&r, err);
-    if (!err->status) photo_exif_read(&p->info, file, true, err);
+    if (!err->status && !photo_exif_read(&p->info, file, true, err)) read_png_colours(&r, pixels, err);
     png_destroy_read_struct(&r.png, &r.info, NULL);
     free(r.rows);
     return err->status;
@@ -120,7 +174,25 @@ struct png_picture {
     int width, height, channels, bits;
     const unsigned char *exif; /* NULL: none */
     unsigned exif_size;
+    const struct colour_space *space; /* NULL: sRGB */
 };
+
+static void put_space(struct png_writer *w, const struct colour_space *space)
+{
+    const png_byte primaries = (png_byte)space->primaries, transfer = (png_byte)space->transfer;
+    if (space->icc) {
+        png_set_iCCP(w->png, w->info, "profile", PNG_COMPRESSION_TYPE_BASE, space->icc, (png_uint_32)space->icc_size);
+        return;
+    }
+#ifdef PNG_cICP_SUPPORTED
+    png_set_cICP(w->png, w->info, primaries, transfer, 0, 1);
+#else
+    png_byte codes[4] = {primaries, transfer, 0, 1}; /* RGB, full range */
+    png_unknown_chunk chunk = {.name = "cICP", .data = codes, .size = sizeof codes, .location = PNG_HAVE_IHDR};
+    png_set_keep_unknown_chunks(w->png, PNG_HANDLE_CHUNK_ALWAYS, chunk.name, 1);
+    png_set_unknown_chunks(w->png, w->info, &chunk, 1);
+#endif
+}
 
 static enum status write_png_rows(struct png_writer *w, FILE *fp, const char *path, const struct png_picture *p,
                                   struct err *err)
@@ -133,6 +205,7 @@ static enum status write_png_rows(struct png_writer *w, FILE *fp, const char *pa
     png_set_IHDR(w->png, w->info, (png_uint_32)p->width, (png_uint_32)p->height, p->bits,
                  p->channels == 1 ? PNG_COLOR_TYPE_GRAY : PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
                  PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    if (p->space) put_space(w, p->space);
     if (p->exif) png_set_eXIf_1(w->png, w->info, p->exif_size, (png_bytep)p->exif);
     png_write_info(w->png, w->info);
     if (p->bits == 16) png_set_swap(w->png); /* libpng's samples are big-endian */
@@ -163,7 +236,7 @@ static enum status write_png(const char *path, const struct png_picture *p, stru
 enum status png_write(const char *path, const unsigned char *pixels, int width, int height, int channels,
                       struct err *err)
 {
-    return write_png(path, &(struct png_picture){pixels, width, height, channels, 8, NULL, 0}, err);
+    return write_png(path, &(struct png_picture){pixels, width, height, channels, 8, NULL, 0, NULL}, err);
 }
 
 enum status photo_write_part(const char *path, const struct photo *p, int x, int y, int width, int height,
@@ -182,8 +255,10 @@ enum status photo_write_part(const char *path, const struct photo *p, int x, int
     if (!err->status) photo_exif_block(&exif, &exif_size, info, err);
     if (!err->status) {
         const unsigned mark = PHOTO_EXIF_MARK; /* PNG stores the block without it */
-        write_png(path, &(struct png_picture){pixels, width, height, 3, p->info.bits, exif + mark, exif_size - mark},
-                  err);
+        write_png(
+            path,
+            &(struct png_picture){pixels, width, height, 3, p->info.bits, exif + mark, exif_size - mark, p->space},
+            err);
     }
     free(exif);
     free(pixels);

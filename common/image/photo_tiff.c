@@ -256,7 +256,14 @@ enum status photo_read_tiff(struct photo *p, const struct photo_bytes *file, boo
         else
             read_converted(p, t, &r, err);
     }
+    uint32_t size = 0;
+    void *tag = NULL;
+    unsigned char *icc = NULL;
+    if (!err->status && TIFFGetField(t, TIFFTAG_ICCPROFILE, &size, &tag) && size && (icc = malloc(size)))
+        memcpy(icc, tag, size);
     TIFFClose(t);
+    if (!err->status) photo_set_icc(p, icc, icc ? size : 0, pixels, file->path, err);
+    free(icc);
     if (err->status) return err->status;
     r = (struct tiff_reader){.file = file}; /* reading EXIF changes the current directory, so open again */
     t = open_tiff(&r);

@@ -6,16 +6,37 @@
 #include <webp/decode.h>
 #include <webp/demux.h>
 
-static enum status read_webp_exif(struct photo_info *info, const struct photo_bytes *file, struct err *err)
+static enum status read_webp_exif(struct photo_info *info, const WebPDemuxer *demuxer, struct err *err)
 {
-    const WebPData data = {file->bytes, file->size};
-    WebPDemuxer *demuxer = WebPDemux(&data);
     WebPChunkIterator chunk;
     if (demuxer && WebPDemuxGetChunk(demuxer, "EXIF", 1, &chunk)) {
         photo_exif_take(info, chunk.chunk.bytes, chunk.chunk.size, err);
         WebPDemuxReleaseChunkIterator(&chunk);
     }
-    WebPDemuxDelete(demuxer);
+    return err->status;
+}
+
+static enum status read_webp_colours(struct photo *p, const WebPDemuxer *demuxer, bool pixels, const char *path,
+                                     struct err *err)
+{
+    WebPChunkIterator chunk;
+    if (!demuxer || !WebPDemuxGetChunk(demuxer, "ICCP", 1, &chunk)) return photo_set_icc(p, NULL, 0, pixels, path, err);
+    photo_set_icc(p, chunk.chunk.bytes, chunk.chunk.size, pixels, path, err);
+    WebPDemuxReleaseChunkIterator(&chunk);
+    return err->status;
+}
+
+static enum status read_webp_pixels(struct photo *p, const struct photo_bytes *file, struct err *err)
+{
+    const size_t samples = (size_t)p->info.width * (size_t)p->info.height * 3;
+    unsigned char *rgb = malloc(samples);
+    if (!rgb) return err_nomem(err, "a photo", samples);
+    if (!WebPDecodeRGBInto(file->bytes, file->size, rgb, samples, 3 * p->info.width))
+        err_set(err, ST_DATA, "%s is a damaged or cut-off WebP file; copy or export the photo again.", file->path);
+    else
+        photo_init_samples(p, err);
+    for (size_t i = 0; !err->status && i < samples; i++) p->samples[i] = rgb[i];
+    free(rgb);
     return err->status;
 }
 
@@ -30,17 +51,11 @@ enum status photo_read_webp(struct photo *p, const struct photo_bytes *file, boo
     p->info.width = features.width;
     p->info.height = features.height;
     p->info.bits = 8;
-    if (photo_check_size(file->path, (uint64_t)features.width, (uint64_t)features.height, err) ||
-        read_webp_exif(&p->info, file, err) || !pixels)
-        return err->status;
-    const size_t samples = (size_t)p->info.width * (size_t)p->info.height * 3;
-    unsigned char *rgb = malloc(samples);
-    if (!rgb) return err_nomem(err, "a photo", samples);
-    if (!WebPDecodeRGBInto(file->bytes, file->size, rgb, samples, 3 * p->info.width))
-        err_set(err, ST_DATA, "%s is a damaged or cut-off WebP file; copy or export the photo again.", file->path);
-    else
-        photo_init_samples(p, err);
-    for (size_t i = 0; !err->status && i < samples; i++) p->samples[i] = rgb[i];
-    free(rgb);
+    if (photo_check_size(file->path, (uint64_t)features.width, (uint64_t)features.height, err)) return err->status;
+    const WebPData data = {file->bytes, file->size};
+    WebPDemuxer *demuxer = WebPDemux(&data);
+    if (!read_webp_exif(&p->info, demuxer, err) && (!pixels || !read_webp_pixels(p, file, err)))
+        read_webp_colours(p, demuxer, pixels, file->path, err);
+    WebPDemuxDelete(demuxer);
     return err->status;
 }

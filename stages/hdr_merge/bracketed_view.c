@@ -87,6 +87,24 @@ static enum status read_photos(struct bracketed_view *v, const char *photos, str
     return err->status;
 }
 
+/* All exposures have one colour space. Its curve is the response, unless one is given; its matrix is applied to what is
+ * merged. */
+static enum status use_colour_space(struct bracketed_view *v, struct err *err)
+{
+    const struct colour_space *space = v->photos[0].space;
+    for (int i = 1; i < v->record.bracket_count; i++)
+        if (!colour_space_same(space, v->photos[i].space) && v->photos[i].info.bits == v->photos[0].info.bits)
+            return err_set(err, ST_DATA,
+                           "view %s: %s and %s have different colour profiles; save all exposures of a view in one.",
+                           v->record.id, v->record.brackets[0].file, v->record.brackets[i].file);
+    if (!space || !space->light || v->response.table) return ST_OK;
+    v->response.table = true;
+    for (int c = 0; c < 3; c++)
+        for (int i = 0; i < RESPONSE_LEVELS; i++)
+            v->response.light[c][i] = space->light[c * space->levels + i * (space->levels - 1) / (RESPONSE_LEVELS - 1)];
+    return ST_OK;
+}
+
 enum status bracketed_view_read(struct bracketed_view *v, const char *id, const char *photos, const char *records,
                                 const char *response, struct provenance *prov, struct err *err)
 {
@@ -100,7 +118,7 @@ enum status bracketed_view_read(struct bracketed_view *v, const char *id, const 
         err_set(err, ST_DATA, "view %s has %d exposures, wanted at most %d; exclude some of them (EXCLUDE).", id,
                 v->record.bracket_count, (int)MERGE_MAX_EXPOSURES);
     if (!err->status && response) response_read(&v->response, response, prov, err);
-    if (!err->status) read_photos(v, photos, prov, err);
+    if (!err->status && !read_photos(v, photos, prov, err)) use_colour_space(v, err);
     v->brackets = (struct brackets){v->photos, v->exposures, v->record.bracket_count, &v->response, NULL};
     return err->status;
 }
@@ -184,6 +202,9 @@ enum status bracketed_view_merge(struct bracketed_view *v, const struct merge_pa
     if (!strcmp(params->align, "correct")) v->brackets.shifts = v->alignment.shifts;
     if (!err->status && !check_agreement(v, params, err) && !find_noise(v, params, err))
         merge_brackets(&v->merged, &v->brackets, v->noise, params, err);
+    const struct image *merged = &v->merged.radiance;
+    if (!err->status && v->photos[0].space)
+        colour_space_to_rec709(v->photos[0].space, merged->data, (size_t)merged->width * (size_t)merged->height);
     return err->status && err->status != ST_NOMEM ? err_context(err, "view %s", v->record.id) : err->status;
 }
 

@@ -20,6 +20,10 @@ enum status page_photos(FILE *to, const struct contents *c, struct err *err)
         fputs("<figcaption><b>", to);
         html_text(to, card->record->file);
         fprintf(to, "</b> <span class=\"size\">%d × %d</span>", card->record->info.width, card->record->info.height);
+        if (*card->record->info.colour) {
+            fputs(", ", to);
+            html_text(to, card->record->info.colour);
+        }
         if (card->views > 1) fprintf(to, ", %d views", card->views);
         if (card->residual > 0) fprintf(to, ", residual %.2f px", card->residual);
         if (card->held_out) page_put_tag(to, "held out");
