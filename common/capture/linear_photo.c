@@ -40,9 +40,9 @@ static enum status read_merged(struct image *linear, struct photo_quality *quali
         const size_t pixels = (size_t)exr.width * (size_t)exr.height;
         for (size_t i = 0; i < pixels; i++) {
             float *to = linear->data + 3 * i;
-            to[0] = r[i] > 0 ? r[i] : 0;
-            to[1] = g[i] > 0 ? g[i] : 0;
-            to[2] = b[i] > 0 ? b[i] : 0;
+            to[0] = r[i];
+            to[1] = g[i];
+            to[2] = b[i];
         }
     }
     if (!err->status && quality) photo_quality_of_merged(quality, &exr, path, linear, err);

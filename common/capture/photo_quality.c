@@ -39,9 +39,23 @@ void photo_quality_release(struct photo_quality *q)
 struct exposure_job {
     struct photo_quality *q;
     const float *rgb;
+    const struct photo *photo;
+    float white; /* of the photo's colour space */
     float photon, read2, saturated, dark;
     float shared_photon, shared_read2; /* of noise that is the same in all colours */
 };
+
+static float light_of(const float v) { return v > 0 ? v : 0; }
+
+/* Whether a sample is saturated: colours outside of Rec.709 exceed 1 without being so. */
+static bool is_bright(const struct exposure_job *job, size_t i)
+{
+    const struct colour_space *s = job->photo->space;
+    const uint16_t *sample = job->photo->samples + 3 * i;
+    bool bright = false;
+    for (int c = 0; c < 3; c++) bright |= s->light[c * s->levels + sample[c]] >= job->saturated * job->white;
+    return bright;
+}
 
 static void judge_pixels(void *ctx, size_t begin, size_t end, int thread)
 {
@@ -50,13 +64,15 @@ static void judge_pixels(void *ctx, size_t begin, size_t end, int thread)
     const float shared_photon = job->shared_photon, shared_read2 = job->shared_read2;
     static const float luma[3] = LUMINANCE_WEIGHTS;
     const float r2 = luma[0] * luma[0], g2 = luma[1] * luma[1], b2 = luma[2] * luma[2];
+    const bool spaced = job->photo->space != NULL;
     (void)thread;
     for (size_t i = begin; i < end; i++) {
         const float *v = job->rgb + 3 * i;
         const float light = luminance_of(v), limit = light * light;
-        const float noise = photon * (r2 * v[0] + g2 * v[1] + b2 * v[2]) + read2 * (r2 + g2 + b2) +
-                            shared_photon * light + shared_read2;
-        const bool bright = (v[0] >= saturated) | (v[1] >= saturated) | (v[2] >= saturated);
+        const float noise = photon * (r2 * light_of(v[0]) + g2 * light_of(v[1]) + b2 * light_of(v[2])) +
+                            read2 * (r2 + g2 + b2) + shared_photon * light_of(light) + shared_read2;
+        const bool bright =
+            spaced ? is_bright(job, i) : (v[0] >= saturated) | (v[1] >= saturated) | (v[2] >= saturated);
         const bool black = (v[0] <= dark) | (v[1] <= dark) | (v[2] <= dark);
         job->q->variance[i] = bright || noise > limit ? limit : noise;
         job->q->marks[i] = bright ? PHOTO_BRIGHT : black ? PHOTO_DARK : 0;
@@ -66,13 +82,15 @@ static void judge_pixels(void *ctx, size_t begin, size_t end, int thread)
 enum status photo_quality_of_exposure(struct photo_quality *q, const struct photo *photo, const struct image *linear,
                                       const struct single_exposure *assumed, struct err *err)
 {
-    const struct response srgb = {0};
-    const struct noise n = noise_given(assumed->electrons, assumed->read_noise, &srgb, photo->info.bits);
-    const struct noise jpeg = noise_of_samples(photo->jpeg_variance, &srgb, 8);
+    const struct response curve = {.space = photo->space};
+    const struct noise n = noise_given(assumed->electrons, assumed->read_noise, &curve, photo->info.bits);
+    const struct noise jpeg = noise_of_samples(photo->jpeg_variance, &curve, 8);
     const size_t pixels = (size_t)linear->width * (size_t)linear->height;
     if (photo_quality_init(q, linear->width, linear->height, err)) return err->status;
     struct exposure_job job = {.q = q,
                                .rgb = linear->data,
+                               .photo = photo,
+                               .white = colour_space_white(photo->space),
                                .photon = (float)n.photon,
                                .read2 = (float)n.read2,
                                .shared_photon = (float)jpeg.photon,

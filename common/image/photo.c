@@ -73,7 +73,7 @@ static enum status read_exr(struct photo *p, const struct photo_bytes *file, boo
     const size_t count = (size_t)p->info.width * (size_t)p->info.height;
     for (size_t c = 0; !err->status && pixels && c < 3; c++) {
         const float *from = exr_find(&exr, names[c])->f;
-        for (size_t i = 0; i < count; i++) p->values[3 * i + c] = fmaxf(from[i], 0);
+        for (size_t i = 0; i < count; i++) p->values[3 * i + c] = from[i];
     }
     if (!err->status && pixels) p->saturation = photo_find_saturation(p);
     if (!err->status) read_exr_colours(p, &exr, file->path, err);

@@ -14,7 +14,7 @@ struct photo_info { /* unknown values are 0 or "" */
     int orientation; /* EXIF 1..8; 1 if absent */
     double focal_mm, focal35_mm, seconds, f_number, iso;
     char make[64], model[64];
-    double taken; /* DateTimeOriginal with its sub-seconds, as seconds since 1970 by the camera's clock */
+    double taken;    /* DateTimeOriginal with its sub-seconds, as seconds since 1970 by the camera's clock */
     char colour[64]; /* the colour space if it is not sRGB, as its profile calls it */
     bool adobe_rgb;  /* EXIF says so */
 };
@@ -22,7 +22,7 @@ struct photo_info { /* unknown values are 0 or "" */
 struct photo {
     struct photo_info info;
     uint16_t *samples;          /* RGB interleaved, w * h * 3, owned; 8-bit files hold 0..255, 16-bit files 0..65535 */
-    float *values;              /* instead of samples if bits is 32: linear, finite, not negative; owned */
+    float *values;              /* instead of samples if bits is 32: linear, finite; owned */
     float saturation;           /* the value at which `values` are clipped; 0: not clipped */
     struct colour_space *space; /* NULL: sRGB, or linear Rec.709 for values; owned */
     double jpeg_variance;       /* of the errors of a JPEG's luma by quantization, in sample values^2; 0: no JPEG */

@@ -10,10 +10,11 @@
 
 float response_light(const struct response *r, int colour, float sample)
 {
-    if (!r->table) return linear_from_srgb(sample);
-    const float at = (sample > 0 ? sample < 1 ? sample : 1 : 0) * (RESPONSE_LEVELS - 1);
-    const int below = at < RESPONSE_LEVELS - 2 ? (int)at : RESPONSE_LEVELS - 2;
-    const float *light = r->light[colour];
+    if (!r->table && !r->space) return linear_from_srgb(sample);
+    const int levels = r->table ? RESPONSE_LEVELS : r->space->levels;
+    const float *light = r->table ? r->light[colour] : r->space->light + colour * levels;
+    const float at = (sample > 0 ? sample < 1 ? sample : 1 : 0) * (float)(levels - 1);
+    const int below = at < (float)(levels - 2) ? (int)at : levels - 2;
     return light[below] + (at - (float)below) * (light[below + 1] - light[below]);
 }
 
@@ -24,7 +25,7 @@ float *response_tables(const struct response *r, int bits, struct err *err)
     if (!tables) err_nomem(err, "tone curves", 3 * levels * sizeof *tables);
     for (int c = 0; tables && c < 3; c++) {
         float *to = tables + (size_t)c * levels;
-        if (c && !r->table)
+        if (c && !r->table && !r->space)
             memcpy(to, tables, levels * sizeof *to);
         else
             for (size_t i = 0; i < levels; i++) to[i] = response_light(r, c, (float)i / (float)(levels - 1));

@@ -19,8 +19,9 @@
 enum { RESPONSE_LEVELS = 256 };
 
 struct response {
-    bool table; /* false: the sRGB curve, which {0} is */
+    bool table; /* false: the curve of `space` or of sRGB, which {0} is */
     float light[3][RESPONSE_LEVELS];
+    const struct colour_space *space; /* of samples; not owned; may be NULL */
 };
 
 /* Linear light of a sample in [0, 1]. colour: 0 red, 1 green, 2 blue. */

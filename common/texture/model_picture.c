@@ -2,6 +2,7 @@
 #include "common/texture/model_picture.h"
 
 #include <limits.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -111,7 +112,7 @@ enum status model_picture_write(const struct model_picture *p, const struct view
     for (int k = 0; !err->status && k < PLANES; k++) exr_add_plane(&im, names[k], types[k], NULL, err);
     if (!err->status) {
         for (size_t i = 0; i < pixels; i++) {
-            for (size_t c = 0; c < RGB; c++) im.planes[c].f[i] = p->rgb[RGB * i + c];
+            for (size_t c = 0; c < RGB; c++) im.planes[c].f[i] = fmaxf(p->rgb[RGB * i + c], 0);
             im.planes[5].u[i] = p->made[i];
         }
         memcpy(im.planes[3].f, p->z, pixels * sizeof *p->z);

@@ -139,7 +139,7 @@ static void take_pixels(struct source_view *v, const float *const channel[VIEW_C
         const bool poor = channel[VIEW_CLIPPED][i] > 0 || channel[VIEW_SIGMA][i] > (float)params->max_noise;
         v->state[i] = !poor ? v->own[i] : v->own[i] >= SOURCE_LIKELY ? SOURCE_POOR : SOURCE_NONE;
         const float alpha = channel[VIEW_A][i] > 0.999f;
-        for (int c = 0; c < 3; c++) v->levels[0].rgba[4 * i + (size_t)c] = alpha * channel[c][i];
+        for (int c = 0; c < 3; c++) v->levels[0].rgba[4 * i + (size_t)c] = alpha * fmaxf(channel[c][i], 0);
         v->levels[0].rgba[4 * i + 3] = alpha;
     }
 }

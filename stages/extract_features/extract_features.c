@@ -24,11 +24,38 @@ struct extraction {
     struct features_params params;
 };
 
-/* Rec. 709 luma of the stored values. */
+/* Rec. 709 luma of 8 bits. */
+static unsigned char luma_of(unsigned r, unsigned g, unsigned b)
+{
+    const unsigned luma = (218 * r + 732 * g + 74 * b + 512) >> 10;
+    return (unsigned char)(luma > 255 ? 255 : luma);
+}
+
+static unsigned char *grey_of_spaced(const struct photo *p, struct err *err)
+{
+    const size_t pixels = (size_t)p->info.width * (size_t)p->info.height;
+    unsigned char *grey = malloc(pixels), *rgb = malloc(3 * pixels);
+    struct image linear = {0};
+    if (!grey || !rgb)
+        err_nomem(err, "a grey picture", 4 * pixels);
+    else if (!photo_to_linear(&linear, p, err))
+        image_to_srgb8(&linear, rgb);
+    for (size_t i = 0; !err->status && i < pixels; i++) grey[i] = luma_of(rgb[3 * i], rgb[3 * i + 1], rgb[3 * i + 2]);
+    image_release(&linear);
+    free(rgb);
+    if (err->status) {
+        free(grey);
+        grey = NULL;
+    }
+    return grey;
+}
+
+/* Rec. 709 luma of the stored values, or of those in sRGB if the photo is in another space. */
 static unsigned char *grey_of(const struct photo *p, struct err *err)
 {
     const size_t pixels = (size_t)p->info.width * (size_t)p->info.height;
     const unsigned shift = p->info.bits == 16 ? 8 : 0;
+    if (p->space) return grey_of_spaced(p, err);
     unsigned char *grey = malloc(pixels);
     if (!grey) err_nomem(err, "a grey picture", pixels);
     for (size_t i = 0; grey && i < pixels; i++) {

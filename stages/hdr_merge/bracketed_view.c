@@ -93,15 +93,12 @@ static enum status use_colour_space(struct bracketed_view *v, struct err *err)
 {
     const struct colour_space *space = v->photos[0].space;
     for (int i = 1; i < v->record.bracket_count; i++)
-        if (!colour_space_same(space, v->photos[i].space) && v->photos[i].info.bits == v->photos[0].info.bits)
+        if (strcmp(v->photos[i].info.colour, v->photos[0].info.colour) != 0 ||
+            (v->photos[i].info.bits == v->photos[0].info.bits && !colour_space_same(space, v->photos[i].space)))
             return err_set(err, ST_DATA,
-                           "view %s: %s and %s have different colour profiles; save all exposures of a view in one.",
+                           "view %s: %s and %s are in different colour spaces; save all exposures of a view in one.",
                            v->record.id, v->record.brackets[0].file, v->record.brackets[i].file);
-    if (!space || !space->light || v->response.table) return ST_OK;
-    v->response.table = true;
-    for (int c = 0; c < 3; c++)
-        for (int i = 0; i < RESPONSE_LEVELS; i++)
-            v->response.light[c][i] = space->light[c * space->levels + i * (space->levels - 1) / (RESPONSE_LEVELS - 1)];
+    if (space && space->light) v->response.space = space;
     return ST_OK;
 }
 
@@ -239,11 +236,14 @@ static enum status copy_file(const char *from, const char *to, struct err *err)
 static enum status encode_photo(const struct photo *p, const char *path, struct err *err)
 {
     size_t samples = (size_t)p->info.width * (size_t)p->info.height * 3;
+    struct image linear = {0};
     unsigned char *rgb = malloc(samples);
     if (!rgb) return err_nomem(err, "a photo", samples);
-    for (size_t i = 0; i < samples; i++)
+    if (p->space && !photo_to_linear(&linear, p, err)) image_to_srgb8(&linear, rgb);
+    for (size_t i = 0; !p->space && i < samples; i++)
         rgb[i] = (unsigned char)(p->info.bits == 16 ? p->samples[i] >> 8 : p->samples[i]);
-    photo_write_jpeg(path, rgb, p->info.width, p->info.height, QUALITY, &p->info, err);
+    if (!err->status) photo_write_jpeg(path, rgb, p->info.width, p->info.height, QUALITY, &p->info, err);
+    image_release(&linear);
     free(rgb);
     return err->status;
 }
@@ -286,7 +286,11 @@ static enum status set_attributes(struct exr_image *im, const struct bracketed_v
     char name[64], text[64];
     const char *radiometry = r->bracket_count < 2 ? "one exposure" : v->agree ? "exact" : "approximate";
     if (!exr_set_attribute(im, "remodel:radiometry", radiometry, err) &&
-        !exr_set_attribute(im, "remodel:response", v->response.table ? "table" : "srgb", err))
+        !exr_set_attribute(im, "remodel:response",
+                           v->response.table   ? "table"
+                           : v->response.space ? "profile"
+                                               : "srgb",
+                           err))
         exr_set_number(im, "remodel:white", r->white, err);
     for (int i = 0; !err->status && i < r->bracket_count; i++) {
         snprintf(name, sizeof name, "remodel:exposure.%d", i + 1);

@@ -39,7 +39,7 @@ enum { ROWS = 8, BLOCK = 64 };
 
 static const float SATURATED_FROM = 0.8f; /* of `saturated`: the weight falls from here */
 static const float DARK_UNTIL = 3;        /* of `dark`: the weight rises to here */
-static const float ABSENT = -1;           /* the shifted exposure does not cover this pixel */
+static const float ABSENT = -1e30f;       /* the shifted exposure does not cover this pixel */
 static const float luma[3] = LUMINANCE_WEIGHTS;
 
 struct exposure_job {
@@ -72,7 +72,7 @@ static inline float smaller(float a, float b) { return a < b ? a : b; }
 /* Weight for saturation, 0 to 1; 0 for ABSENT. */
 static inline float trust(const struct exposure_job *e, float v)
 {
-    return v < 0 ? 0 : clamp01((e->saturated - v) * e->falling);
+    return v <= ABSENT ? 0 : clamp01((e->saturated - v) * e->falling);
 }
 
 /* Weight for darkness, 0 to 1. */
@@ -85,7 +85,7 @@ static float bound(const struct merge_job *m, const float *v, int c, uint8_t *ma
 {
     int known = -1, shortest = -1; /* the longest exposure that does not saturate; the shortest that covers the pixel */
     for (int k = m->count - 1; k >= 0; k--) {
-        if (v[3 * k + c] < 0) continue;
+        if (v[3 * k + c] <= ABSENT) continue;
         shortest = k;
         if (known < 0 && v[3 * k + c] < m->exposures[k].saturated) known = k;
     }
@@ -113,7 +113,7 @@ static void merge_colours(const struct merge_job *m, const float *v, float rgb[3
             const struct exposure_job *e = &m->exposures[k];
             const float value = e->t * first;
             const float trusted = smaller(trust(e, v[3 * k + c]), trust(e, value)) * clarity(e, value);
-            const float w = trusted * e->t / (e->photon * value + e->read2);
+            const float w = trusted * e->t / (e->photon * larger(value, 0) + e->read2);
             weighted += w * v[3 * k + c];
             weights += w * e->t;
             squares += w * trusted * e->t;
@@ -165,7 +165,7 @@ static void first_round(const struct merge_job *m, plane (*const v)[3], plane fi
         const float *r = v[k][0], *g = v[k][1], *b = v[k][2];
         for (int i = 0; i < n; i++) {
             const float max = larger(r[i], larger(g[i], b[i]));
-            const float trusted = clamp01((saturated - max) * falling), w = max < 0 ? 0 : trusted;
+            const float trusted = clamp01((saturated - max) * falling), w = max <= ABSENT ? 0 : trusted;
             first[0][i] += w * r[i];
             first[1][i] += w * g[i];
             first[2][i] += w * b[i];
@@ -198,7 +198,7 @@ static void second_round(const struct merge_job *m, plane (*const v)[3], plane f
             const float max = larger(r[i], larger(g[i], b[i]));
             const float measured = clamp01((e.saturated - max) * e.falling),
                         predicted = clamp01((e.saturated - e.t * max_first[i]) * e.falling);
-            shared[i] = max < 0 ? 0 : smaller(measured, predicted);
+            shared[i] = max <= ABSENT ? 0 : smaller(measured, predicted);
         }
         for (int c = 0; c < 3; c++) {
             const float *s = v[k][c], *x = first[c];
@@ -206,7 +206,8 @@ static void second_round(const struct merge_job *m, plane (*const v)[3], plane f
             /* a separate loop: inside the next one the clamp would prevent vectorization */
             for (int i = 0; i < n; i++) clear[i] = clamp01((e.t * x[i] - e.dark) * e.rising);
             for (int i = 0; i < n; i++) {
-                const float trusted = shared[i] * clear[i] * e.t, w = trusted / (e.photon * (e.t * x[i]) + e.read2);
+                const float trusted = shared[i] * clear[i] * e.t,
+                            w = trusted / (e.photon * larger(e.t * x[i], 0) + e.read2);
                 weighted[i] += w * s[i];
                 weights[i] += w * e.t;
                 squares[i] += w * trusted;
@@ -308,7 +309,7 @@ static void set_limits(struct exposure_job *e, const struct photo *p, const stru
     if (p->values) { /* an EXR may have values above 1, or be clipped below it */
         saturated = p->saturation > 0 ? saturated * p->saturation : HUGE_VALF;
         trusted = SATURATED_FROM * saturated;
-    } else if (r->table) {
+    } else if (r->table || r->space) {
         const float at[4] = {srgb_from_linear(saturated), srgb_from_linear(trusted), srgb_from_linear(dark),
                              srgb_from_linear(clear)};
         saturated = trusted = HUGE_VALF;

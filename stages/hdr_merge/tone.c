@@ -52,7 +52,7 @@ static void reduce_rows(void *ctx, size_t begin, size_t end, int thread)
             for (int dy = 0; dy < REDUCE && (int)y * REDUCE + dy < im->height; dy++)
                 for (int dx = 0; dx < REDUCE && x * REDUCE + dx < im->width; dx++, n++)
                     sum += luminance_of(image_at(im, x * REDUCE + dx, (int)y * REDUCE + dy));
-            job->to->v[y * (size_t)job->to->width + (size_t)x] = logf(sum / (float)n + FLOOR);
+            job->to->v[y * (size_t)job->to->width + (size_t)x] = logf(fmaxf(sum, 0) / (float)n + FLOOR);
         }
 }
 
@@ -128,7 +128,8 @@ static void tone_rows(void *ctx, size_t begin, size_t end, int thread)
     (void)thread;
     for (size_t y = begin; y < end; y++)
         for (int x = 0; x < im->width; x++) {
-            const float *rgb = image_at(im, x, (int)y), light = luminance_of(rgb), level = logf(light + FLOOR);
+            const float *rgb = image_at(im, x, (int)y), light = luminance_of(rgb),
+                        level = logf(fmaxf(light, 0) + FLOOR);
             const float base =
                 upsampled(job->slope, (float)x, (float)y) * level + upsampled(job->offset, (float)x, (float)y);
             const float sample = 1 / (1 + expf(ADAPTATION * base + (1 - ADAPTATION) * grey - level));

@@ -65,10 +65,10 @@ void page_thumb_size(int width, int height, int orientation, int upright, int *t
     *thumb_height = (int)fmax(1, floor(height * scale + 0.5));
 }
 
-/* Either samples to look up in a table, or planes of linear light. */
+/* Samples to look up in a table, or interleaved or in planes linear light. */
 struct source {
     int width, height, orientation;
-    const uint16_t *samples; /* interleaved; indices into `linear` */
+    const uint16_t *samples; /* interleaved; indices into `linear`; NULL: `linear` is the picture */
     const float *linear;
     const float *planes[3];
 };
@@ -80,7 +80,9 @@ static void box_mean(const struct source *s, int x0, int x1, int y0, int y1, uns
         for (int x = x0; x < x1; x++) {
             size_t at = (size_t)y * (size_t)s->width + (size_t)x;
             for (int c = 0; c < 3; c++)
-                sum[c] += s->samples ? s->linear[s->samples[3 * at + (size_t)c]] : s->planes[c][at];
+                sum[c] += s->samples  ? s->linear[s->samples[3 * at + (size_t)c]]
+                          : s->linear ? s->linear[3 * at + (size_t)c]
+                                      : s->planes[c][at];
         }
     double area = (double)(x1 - x0) * (y1 - y0);
     for (int c = 0; c < 3; c++) rgb[c] = (unsigned char)(255 * srgb_from_linear((float)(sum[c] / area)) + 0.5f);
@@ -102,8 +104,22 @@ static enum status shrink(struct picture *p, const struct source *s, int upright
     return ST_OK;
 }
 
+/* Of a photo in another space than sRGB. */
+static enum status picture_from_spaced(struct picture *p, const struct photo *photo, int height, struct err *err)
+{
+    struct image linear = {0};
+    struct source s = {photo->info.width, photo->info.height, photo->info.orientation, NULL, NULL, {NULL}};
+    if (!photo_to_linear(&linear, photo, err)) {
+        s.linear = linear.data;
+        shrink(p, &s, height, err);
+    }
+    image_release(&linear);
+    return err->status;
+}
+
 enum status picture_from_photo(struct picture *p, const struct photo *photo, int height, struct err *err)
 {
+    if (photo->space) return picture_from_spaced(p, photo, height, err);
     int levels = photo->info.bits == 16 ? 65536 : 256;
     float *linear = malloc((size_t)levels * sizeof *linear);
     if (!linear) return err_nomem(err, "an sRGB table", (size_t)levels * sizeof *linear);
