@@ -212,6 +212,15 @@ enum status colour_space_from_icc(struct colour_space **space, bool *tables, con
     return finish(space, s, err);
 }
 
+static bool set_name(cmsHPROFILE profile, const char *name)
+{
+    cmsMLU *text = cmsMLUalloc(NULL, 1);
+    const bool set =
+        text && cmsMLUsetASCII(text, "en", "US", name) && cmsWriteTag(profile, cmsSigProfileDescriptionTag, text);
+    cmsMLUfree(text);
+    return set;
+}
+
 /* The profile of primaries and a gamma; NULL: none. */
 static cmsHPROFILE profile_of(const struct chromaticities *p, double gamma)
 {
@@ -240,7 +249,8 @@ enum status colour_space_from_primaries(struct colour_space **space, const struc
     cmsHPROFILE profile = s ? profile_of(p, gamma) : NULL;
     if (s) {
         snprintf(s->name, sizeof s->name, "%s", name);
-        if (!profile || (s->light && !curves_of(s, profile, false)) || !matrix_of(s->matrix, profile))
+        if (!profile || !set_name(profile, name) || (s->light && !curves_of(s, profile, false)) ||
+            !matrix_of(s->matrix, profile))
             wrong_primaries(name, err);
         else
             keep_profile(s, profile, err);

@@ -50,7 +50,7 @@ static enum status read_exr_colours(struct photo *p, const struct exr_image *exr
                        path, (double)exr->pixel_aspect_ratio);
     if (!exr->has_chromaticities) return ST_OK;
     for (int i = 0; i < 8; i++) c.xy[i / 2][i % 2] = (double)exr->chromaticities[i];
-    return photo_set_primaries(p, &c, 1, "of the EXR file's chromaticities", path, err);
+    return photo_set_primaries(p, &c, 1, "EXR chromaticities", path, err);
 }
 
 /* EXR is linear. It has no EXIF data: exposure and camera stay unknown. */
