@@ -3,11 +3,10 @@
  * Little CMS reads profiles [ICC 2010]. A profile of curves and a matrix is taken apart, because its matrix may give
  * components below 0, which are right, and because brackets are merged in the light of the camera's own colours. Both
  * its matrix and that of sRGB lead to colours under D50 (the profile connection space), so their quotient leads from
- * one to the other. Samples of a profile of tables become 16-bit samples of a space with wider primaries [ROMM 2002], so
+ * one to the other. Samples of a profile of tables become 16-bit samples of a space with wider primaries [ISO 2013], so
  * that they, too, have curves and a matrix.
  *
- * Curves of codes [H.273 2021] are exact at each level. The light of PQ is absolute: 203 cd/m^2 is white, as [BT.2408
- * 2023] recommends. The light of HLG is that of the scene, and white is where it recommends: at 75 % of the signal. */
+ * Curves of codes [ITU 2021] are exact at each level. The light of PQ is absolute: 203 cd/m^2 is white, as [ITU 2023] recommends. The light of HLG is that of the scene, and white is where it recommends: at 75 % of the signal. */
 #include "common/image/colour_space.h"
 
 #include <math.h>

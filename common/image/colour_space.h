@@ -37,7 +37,7 @@ enum status colour_space_from_icc(struct colour_space **space, bool *tables, con
 /* Of primaries and a gamma (1: linear, 0: the curve of sRGB), with white adapted by Bradford's transform. */
 enum status colour_space_from_primaries(struct colour_space **space, const struct chromaticities *primaries,
                                         double gamma, int bits, const char *name, struct err *err);
-/* Of the codes that HEIC, AVIF, PNG and videos have [H.273 2021]; unspecified ones (2) are those of sRGB. */
+/* Of the codes that HEIC, AVIF, PNG and videos have [ITU 2021]; unspecified ones (2) are those of sRGB. */
 enum status colour_space_from_codes(struct colour_space **space, int primaries, int transfer, int bits,
                                     const char *path, struct err *err);
 /* Adobe RGB (1998), which many cameras name only in EXIF. */

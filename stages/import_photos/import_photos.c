@@ -12,6 +12,7 @@
  * Each file is rewritten only if its text changes, so that Make sees which photos changed. All photos that cannot be
  * used are reported, with the reason, before the stage fails. */
 #include <stdlib.h>
+#include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -81,6 +82,28 @@ static enum status cut(const char *photos, const char *split, const char *cuts, 
     return err->status;
 }
 
+/* The colour spaces that came in, but for sRGB. */
+static void report_colours(const struct photo_scan *scan)
+{
+    for (int i = 0; i < scan->count; i++) {
+        const struct scanned_photo *p = &scan->photos[i];
+        int before = 0, count = 0;
+        if (p->excluded || p->err.status || !*p->record.info.colour) continue;
+        for (int k = 0; k < scan->count; k++) {
+            const struct scanned_photo *q = &scan->photos[k];
+            const bool same = !q->excluded && !q->err.status && !strcmp(p->record.info.colour, q->record.info.colour);
+            before += same && k < i;
+            count += same;
+        }
+        if (before) continue;
+        if (count == 1)
+            log_note("%s: its colours are in %s; they become linear Rec.709.", p->file, p->record.info.colour);
+        else
+            log_note("%s and %d more photos: their colours are in %s; they become linear Rec.709.", p->file, count - 1,
+                     p->record.info.colour);
+    }
+}
+
 /* Gives the views the white exposure of the scene whose records are in `folder`, so that both have one scale. */
 static enum status share_white(struct bracket_views *views, const char *folder, struct err *err)
 {
@@ -116,6 +139,7 @@ static enum status import(struct photo_scan *scan, const char *scene, const char
     if (!bad && !err->status && like) share_white(&views, like, err);
     bool bracketed = err->status || views.bracketed || (bad && exists(out, "brackets.txt"));
     report_unused(scan, leave);
+    report_colours(scan);
     if (!bracketed)
         photo_scan_write(scan, out, err);
     else if (photo_scan_write_records(scan, members, &failed))

@@ -402,6 +402,31 @@ static void compare_with_truth(const char *folder, const char *const *views, int
     }
 }
 
+/* Linear light with a colour outside of Rec.709, alone and in two exposures. */
+static void negative_light_stays(void **state)
+{
+    const float light[3] = {0.5f, -0.0625f, 0.25f};
+    (void)state;
+    for (int count = 1; count <= 2; count++) {
+        struct merged out = {0};
+        struct err err = ERR_INIT;
+        struct shot b = {.count = count};
+        for (int k = 0; k < count; k++) {
+            b.exposures[k] = k + 1;
+            b.photos[k].info = (struct photo_info){.width = 1, .height = 1, .bits = 32};
+            b.photos[k].values = malloc(3 * sizeof *b.photos[k].values);
+            assert_non_null(b.photos[k].values);
+            for (int c = 0; c < 3; c++) b.photos[k].values[c] = light[c] * (float)(k + 1);
+        }
+        assert_ok(try_merge(&out, &b, NULL, &err), err);
+        for (int c = 0; c < 3; c++) assert_float_equal(out.radiance.data[c], light[c], 1e-6);
+        assert_int_equal(out.marks[0], PHOTO_DARK);
+        assert_true(out.variance[0] > 0 && out.variance[0] <= 1);
+        merge_release(&out);
+        release(&b);
+    }
+}
+
 /* Rendered photos of a flat. */
 static void rendered_brackets_merge_to_the_true_radiance(void **state)
 {
@@ -432,6 +457,7 @@ int main(void)
         cmocka_unit_test(the_result_does_not_depend_on_threads),
         cmocka_unit_test(disagreeing_exposures_are_found),
         cmocka_unit_test(invalid_input_is_refused),
+        cmocka_unit_test(negative_light_stays),
         cmocka_unit_test(rendered_brackets_merge_to_the_true_radiance),
         cmocka_unit_test(simulated_brackets_merge_to_the_true_radiance),
     };

@@ -90,7 +90,8 @@ static void photographs_are_shown_and_unlisted_ones_named(void **state)
 {
     static const unsigned char GREY[6 * 4 * 3] = {0};
     char id[] = "a_b", file[] = "a <b>.jpg";
-    struct photo_record r = {.id = id, .file = file, .info = {.width = 6, .height = 4, .bits = 8, .orientation = 1}};
+    struct photo_record r = {
+        .id = id, .file = file, .info = {.width = 6, .height = 4, .bits = 8, .orientation = 1, .colour = "P3 & more"}};
     struct err err = ERR_INIT;
     (void)state;
     assert_int_equal(outfile_make_folders(scratch_path("photos"), &err), ST_OK);
@@ -103,6 +104,7 @@ static void photographs_are_shown_and_unlisted_ones_named(void **state)
 
     char *page = page_of("scene", NULL);
     assert_non_null(strstr(page, "alt=\"Photograph a &lt;b&gt;.jpg\" src=\"data:image/jpeg;base64,/9j/"));
+    assert_non_null(strstr(page, "6 × 4</span>, P3 &amp; more"));
     assert_non_null(strstr(page, "<b>unused.JPG</b> is in the folder"));
     assert_null(strstr(page, "not placed by SfM")); /* there are no views yet */
     free(page);

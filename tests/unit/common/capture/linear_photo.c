@@ -61,7 +61,7 @@ static void several_exposures_are_read_from_the_merged_file(void **state)
     char id[] = "b", file[] = "b1.jpg";
     const struct photo_record record = {.id = id, .file = file, .bracket_count = 2};
     const float rgba[] = {2, 4, 8, 1, -1, 0.5f, 0.25f, 1};
-    const float expected[] = {2, 4, 8, 0, 0.5f, 0.25f}; /* negative values become 0 */
+    const float expected[] = {2, 4, 8, -1, 0.5f, 0.25f}; /* negative values, of colours outside of Rec.709, stay */
     struct exr_image exr;
     struct reading r;
     struct err err = ERR_INIT;
@@ -98,6 +98,30 @@ static void noise_and_marks_of_one_exposure_are_assumed(void **state)
     assert_int_equal(q.marks[2], PHOTO_DARK);
     photo_quality_release(&q);
     image_release(&linear);
+}
+
+/* Saturated red of Display P3 has red above 1 and the others below 0, but only a saturated sample is clipped. */
+static void colours_outside_of_rec709_are_not_clipped(void **state)
+{
+    static const struct chromaticities p3 = {{{0.680, 0.320}, {0.265, 0.690}, {0.150, 0.060}, {0.3127, 0.3290}}};
+    const struct single_exposure assumed = {1000, 10, 0.9, 0.01};
+    uint16_t samples[9] = {240, 0, 0, 255, 0, 0, 128, 128, 128};
+    struct photo photo = {.info = {.width = 3, .height = 1, .bits = 8}, .samples = samples};
+    struct image linear = {0};
+    struct photo_quality q = {0};
+    struct err err = ERR_INIT;
+    (void)state;
+    assert_ok(colour_space_from_primaries(&photo.space, &p3, 0, 8, "P3", &err), err);
+    assert_ok(photo_to_linear(&linear, &photo, &err), err);
+    assert_true(linear.data[0] > 1 && linear.data[1] < 0);
+    assert_ok(photo_quality_of_exposure(&q, &photo, &linear, &assumed, &err), err);
+    assert_int_equal(q.marks[0], PHOTO_DARK);
+    assert_int_equal(q.marks[1], PHOTO_BRIGHT);
+    assert_int_equal(q.marks[2], 0);
+    for (int i = 0; i < 3; i++) assert_true(q.variance[i] > 0);
+    photo_quality_release(&q);
+    image_release(&linear);
+    colour_space_release(photo.space);
 }
 
 /* Errors of two sample values: the sRGB curve has the slope 2.275 v^0.583, and all colours share the error. The noise
@@ -180,6 +204,7 @@ int main(void)
         cmocka_unit_test(one_exposure_is_linearised),
         cmocka_unit_test(several_exposures_are_read_from_the_merged_file),
         cmocka_unit_test(noise_and_marks_of_one_exposure_are_assumed),
+        cmocka_unit_test(colours_outside_of_rec709_are_not_clipped),
         cmocka_unit_test(errors_of_jpeg_are_shared_by_the_colours),
         cmocka_unit_test(noise_and_marks_of_merged_exposures_are_read),
         cmocka_unit_test(unreadable_files_are_reported),

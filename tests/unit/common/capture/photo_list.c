@@ -9,7 +9,7 @@ static struct photo_record sample(char *id, char *file)
 {
     struct photo_record r = {.id = id, .file = file, .hash = "0123456789abcdef0123456789abcdef"};
     r.info = (struct photo_info){
-        640, 480, 8, 6, 5.85, 35, 1 / 250.0, 2.8, 400, "MAKE", "a \"quoted\" \\ model", 1714564922.35};
+        640, 480, 8, 6, 5.85, 35, 1 / 250.0, 2.8, 400, "MAKE", "a \"quoted\" \\ model", 1714564922.35, "", false};
     return r;
 }
 
@@ -41,6 +41,14 @@ static void a_record_round_trips(void **state)
     photo_record_release(&in);
     photo_record_release(&in);
     photo_record_release(NULL);
+
+    strcpy(r.info.colour, "Display P3 \"x\"");
+    assert_ok(photo_record_write(&r, scratch, &err), err);
+    assert_ok(photo_record_read(&in, scratch, "IMG_1", NULL, &err), err);
+    assert_memory_equal(&in.info, &r.info, sizeof r.info);
+    photo_record_release(&in);
+    r.info.colour[0] = 0;
+    assert_ok(photo_record_write(&r, scratch, &err), err);
 
     make_old(scratch_path("IMG_1.txt"));
     assert_ok(photo_record_write(&r, scratch, &err), err);
@@ -99,6 +107,7 @@ static void records_of_bracketed_views_round_trip(void **state)
     struct err err = ERR_INIT;
     (void)state;
     r.brackets = brackets;
+    strcpy(r.info.colour, "Display P3");
     r.bracket_count = 2;
     r.middle = 1;
     r.white = 1.0 / 30;
@@ -110,6 +119,7 @@ static void records_of_bracketed_views_round_trip(void **state)
     assert_ok(photo_list_read(&in, scratch, &err), err);
     assert_int_equal(in.photos[0].bracket_count, 2);
     assert_int_equal(in.photos[0].middle, 1);
+    assert_string_equal(in.photos[0].info.colour, "Display P3");
     assert_true(in.photos[0].white == r.white);
     for (int i = 0; i < 2; i++) {
         assert_string_equal(in.photos[0].brackets[i].file, brackets[i].file);
@@ -159,6 +169,8 @@ static void invalid_records_are_rejected(void **state)
         {"open-quote", ":8:"},
         {"negative-time", ":9: found \"a negative number\", wanted time taken"},
         {"extra-line", ":10:"},
+        {"colour-cut", ":10:"},
+        {"colour-long", ":10:"},
         {"brackets-cut", ": found the end of the file, wanted a line \"bracket ...\""},
         {"brackets-order", ":12: found \"b.jpg\", wanted exposures in ascending order"},
         {"brackets-middle", ":10: found \"1\", wanted index of the middle exposure, an integer from 0 to 0"},
@@ -171,11 +183,11 @@ static void invalid_records_are_rejected(void **state)
         {"binary", "binary.txt"},
         {"no-such", "no-such.txt"},
     };
-    const char *const valid[] = {"good", "comments", "crlf"};
+    const char *const valid[] = {"good", "comments", "crlf", "colour"};
     struct photo_record in;
     struct err err = ERR_INIT;
     (void)state;
-    for (int i = 0; i < 3; i++) {
+    for (int i = 0; i < 4; i++) {
         assert_ok(photo_record_read(&in, CORPUS, valid[i], NULL, &err), err);
         assert_string_equal(in.file, "IMG 1.jpg");
         assert_string_equal(in.info.model, "a \"quoted\" model");

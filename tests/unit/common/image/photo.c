@@ -314,8 +314,20 @@ static void exif_is_written(void **state)
     (void)state;
     for (int i = 0; i < 16 * 12 * 3; i++) rgb[i] = (unsigned char)(i * 5);
     for (size_t i = 0; i < sizeof seconds / sizeof *seconds; i++) {
-        const struct photo_info info_written = {
-            0, 0, 0, 1, 24.5, 33, seconds[i], 5.6, 400, "remodel", "lens of 24 mm", 1714564922.25 + 86400 * (double)i};
+        const struct photo_info info_written = {0,
+                                                0,
+                                                0,
+                                                1,
+                                                24.5,
+                                                33,
+                                                seconds[i],
+                                                5.6,
+                                                400,
+                                                "remodel",
+                                                "lens of 24 mm",
+                                                1714564922.25 + 86400 * (double)i,
+                                                "",
+                                                false};
         const char *path = scratch_path("exif.jpg");
         assert_ok(photo_write_jpeg(path, rgb, 16, 12, 90, &info_written, &err), err);
         assert_ok(photo_read_info(&info, path, &err), err);
@@ -342,8 +354,8 @@ static void a_written_part_keeps_the_samples(void **state)
     struct err err = ERR_INIT;
     (void)state;
     for (int bits = 8; bits <= 16; bits += 8) {
-        const struct photo_info info_written = {0,        0,   0,   6,         24.5,          70,
-                                                1.0 / 60, 5.6, 400, "remodel", "nine lenses", 1e9 + 0.9996};
+        const struct photo_info info_written = {
+            0, 0, 0, 6, 24.5, 70, 1.0 / 60, 5.6, 400, "remodel", "nine lenses", 1e9 + 0.9996, "", false};
         struct photo part, p = {.info = {.width = 20, .height = 10, .bits = bits}, .samples = samples};
         for (int i = 0; i < 20 * 10 * 3; i++) samples[i] = (uint16_t)(i * 109 % (bits == 8 ? 256 : 65536));
         assert_ok(photo_write_part(scratch_path("part.png"), &p, 13, 4, 7, 6, &info_written, &err), err);
