@@ -38,8 +38,9 @@ struct model_picture {
 enum status model_picture_resize(struct model_picture *p, int width, int height, struct err *err);
 void model_picture_release(struct model_picture *p);
 void model_picture_set_camera(struct model_picture *p, const struct camera *lens, const struct pose *cam_from_model);
-/* R G B half, Z float, id and made uint. camera: in the scene's frame, for the EXR's attributes. The lens and the pose
- * in the model's frame, if they are set, become attributes remodel:lens, remodel:lens0, ..., remodel:pose. */
+/* R G B half, Z float, id and made uint; R G B below 0, of colours outside of Rec.709, become 0. camera: in the scene's
+ * frame, for the EXR's attributes. The lens and the pose in the model's frame, if they are set, become attributes
+ * remodel:lens, remodel:lens0, ..., remodel:pose. */
 enum status model_picture_write(const struct model_picture *p, const struct view *camera, const char *path,
                                 const struct provenance *prov, struct err *err);
 enum status model_picture_read(struct model_picture *p, const char *path, struct provenance *prov, struct err *err);

@@ -124,6 +124,27 @@ raw_files_are_recognised()
     refused "photo_9.raf is a raw file that cannot be read (libraw:" records raw
 }
 
+# photos of one colour in Display P3: every format gives its light
+other_colour_spaces_are_merged()
+{
+    mkdir -p p3 mixed mixed-scene; for e in heic avif webp jxl; do cp "$root/tests/fuzz/corpus/photo/p3.$e" "p3/$e.$e"; done
+    records p3 || { cat err; fail "import"; }
+    says "heic.heic and 2 more photos: their colours are in RGB built-in; they become linear Rec.709."
+    says "avif.avif: its colours are in Display P3, sRGB curve; they become linear Rec.709."
+    grep -qx 'colour "Display P3, sRGB curve"' p3-records/avif.txt || fail "the record does not name the colours"
+    for e in heic avif webp jxl; do
+        merged p3 "$e" || { cat err; fail "merge of $e"; }
+        "$root/$B/tests/bench/picture_error" "p3-hdr/$e.exr" p3-hdr/heic.exr | awk '$1 == "error" { exit !($2 < 0.02) }' || fail "$e differs from heic"
+    done
+    has p3-hdr/webp.exr profile
+    for k in 1 2; do
+        cp "$root/tests/fuzz/corpus/photo/p3.png" "mixed/$k-p3.png"; cp "$root/tests/fuzz/corpus/photo/rgb.jpg" "mixed/$k.jpg"
+        echo "v$k $k-p3.png $k.jpg" >>mixed-scene/brackets.txt; printf '%s 0.01 8 100\n%s 0.02 8 100\n' "$k-p3.png" "$k.jpg" >>mixed-scene/exposures.txt
+    done
+    records mixed || { cat err; fail "import of two spaces"; }
+    refused "view v1: 1-p3.png and 1.jpg are in different colour spaces; save all exposures of a view in one." merged mixed v1
+}
+
 wrong_exposures_are_refused()
 {
     mkdir -p wrong wrong-scene; cp set/photos/photo_[123]_e?.jpg wrong/
@@ -261,5 +282,5 @@ TXT
     says "--marks, --plan and --axes belong together"
 }
 
-for t in jpegs_are_fitted_and_merged equal_exposures_are_merged tiff_and_png_merge_like_jpeg an_exr_is_a_single_exposure a_tiff_is_a_single_exposure single_jpegs_share_one_scale raw_files_are_recognised wrong_exposures_are_refused \
+for t in jpegs_are_fitted_and_merged equal_exposures_are_merged tiff_and_png_merge_like_jpeg an_exr_is_a_single_exposure a_tiff_is_a_single_exposure single_jpegs_share_one_scale raw_files_are_recognised other_colour_spaces_are_merged wrong_exposures_are_refused \
     missing_exposures_and_times_are_named shifts_are_reported_and_corrected errors_in_a_response_name_the_line cameras_are_copied_and_references_scaled marked_corners_give_the_camera; do run "$t"; done

@@ -88,7 +88,6 @@ static void refuse(void (*spoil)(struct model_picture *p))
 static void spoil_made(struct model_picture *p) { p->made[7] = MADE_COUNT; }
 static void spoil_z(struct model_picture *p) { p->z[7] = 0, p->id[7] = 3; }
 static void spoil_id(struct model_picture *p) { p->z[7] = 1, p->id[7] = 0; }
-static void spoil_colour(struct model_picture *p) { p->rgb[22] = -1; }
 static void spoil_nothing(struct model_picture *p) { p->rgb[21] = 1, p->made[7] = MADE_NOTHING; }
 
 static void wrong_pixels_are_named(void **state)
@@ -97,8 +96,29 @@ static void wrong_pixels_are_named(void **state)
     refuse(spoil_made);
     refuse(spoil_z);
     refuse(spoil_id);
-    refuse(spoil_colour);
     refuse(spoil_nothing);
+}
+
+/* Colours outside of Rec.709 become displayable ones; a file with others is not one of these. */
+static void colours_are_0_or_more(void **state)
+{
+    struct model_picture p = make_picture(), q = {0};
+    struct exr_image im = {0};
+    struct err err = ERR_INIT;
+    const char *path = scratch_path("bad.exr");
+    (void)state;
+    p.rgb[22] = -1;
+    assert_ok(model_picture_write(&p, &camera, path, &prov, &err), err);
+    assert_ok(model_picture_read(&q, path, NULL, &err), err);
+    assert_true(q.rgb[22] == 0 && q.rgb[21] == p.rgb[21]);
+    model_picture_release(&q);
+    assert_ok(exr_read(&im, path, NULL, 0, &err), err);
+    exr_find(&im, "G")->f[7] = -1;
+    assert_ok(exr_write(&im, path, &prov, &err), err);
+    exr_image_release(&im);
+    assert_int_not_equal(model_picture_read(&q, path, NULL, &err), ST_OK);
+    assert_err(err, ST_DATA, "pixel (2, 1)");
+    model_picture_release(&p);
 }
 
 int main(void)
@@ -107,6 +127,7 @@ int main(void)
         cmocka_unit_test(a_picture_is_read_as_it_was_written),
         cmocka_unit_test(a_resized_picture_is_empty),
         cmocka_unit_test(wrong_pixels_are_named),
+        cmocka_unit_test(colours_are_0_or_more),
     };
     return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
 }
