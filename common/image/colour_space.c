@@ -6,7 +6,8 @@
  * one to the other. Samples of a profile of tables become 16-bit samples of a space with wider primaries [ISO 2013], so
  * that they, too, have curves and a matrix.
  *
- * Curves of codes [ITU 2021] are exact at each level. The light of PQ is absolute: 203 cd/m^2 is white, as [ITU 2023] recommends. The light of HLG is that of the scene, and white is where it recommends: at 75 % of the signal. */
+ * Curves of codes [ITU 2021] are exact at each level. The light of PQ is absolute: 203 cd/m^2 is white, as [ITU 2023]
+ * recommends. The light of HLG is that of the scene, and white is where it recommends: at 75 % of the signal. */
 #include "common/image/colour_space.h"
 
 #include <math.h>

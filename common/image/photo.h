@@ -24,8 +24,8 @@ enum status photo_read_any(struct photo *p, const char *path, struct err *err);
 enum status photo_read_info(struct photo_info *info, const char *path,
                             struct err *err); /* any format; reads headers only */
 
-/* Linear Rec.709, by the photo's colour space or the sRGB curve: 3 channels, white is 1; colours outside of Rec.709 have
- * components below 0. p must have samples. */
+/* Linear Rec.709, by the photo's colour space or the sRGB curve: 3 channels, white is 1; colours outside of Rec.709
+ * have components below 0. p must have samples. */
 enum status photo_to_linear(struct image *out, const struct photo *p, struct err *err);
 
 /* Write 8-bit RGB (channels 3) or grey (1) through an outfile. quality: 1..100. The same pixels give the same bytes. */

@@ -158,7 +158,8 @@ static const char *in(const char *folder, const char *name)
     return path;
 }
 
-static const struct photo_info exif = {0, 0, 0, 1, 24.5, 35, 1.0 / 60, 5.6, 400, "remodel", "nine lenses", 1e9};
+static const struct photo_info exif = {0,   0,  0,    1, 24.5, 35, 1.0 / 60, 5.6, 400, "remodel", "nine lenses",
+                                       1e9, "", false};
 
 /* A photo of 3 x 2 pictures of 20 x 30 px; picture (x, y) has the grey value 30 + 60 x + 5 y + more. */
 static void put(const char *name, int more)
