@@ -125,6 +125,7 @@ enum status photo_read_info(struct photo_info *info, const char *path, struct er
     struct photo p = {0};
     read_photo(&p, path, false, true, NULL, NULL, err);
     *info = p.info;
+    photo_release(&p);
     return err->status;
 }
 
