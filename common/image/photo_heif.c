@@ -86,10 +86,12 @@ static enum status read_heif_colours(struct photo *p, const struct heif_image_ha
     }
     if (heif_image_handle_get_color_profile_type(handle) != heif_color_profile_type_nclx)
         return photo_set_icc(p, NULL, 0, pixels, path, err);
-    if (heif_image_handle_get_nclx_color_profile(handle, &nclx).code != heif_error_Ok || !nclx)
-        return err_set(err, ST_DATA, "%s: its colour codes are none that libheif knows; save the photo as sRGB.", path);
-    photo_set_codes(p, (int)nclx->color_primaries, (int)nclx->transfer_characteristics, path, err);
-    heif_nclx_color_profile_free(nclx);
+    const bool known = heif_image_handle_get_nclx_color_profile(handle, &nclx).code == heif_error_Ok && nclx;
+    if (known)
+        photo_set_codes(p, (int)nclx->color_primaries, (int)nclx->transfer_characteristics, path, err);
+    else
+        err_set(err, ST_DATA, "%s: its colour codes are none that libheif knows; save the photo as sRGB.", path);
+    if (nclx) heif_nclx_color_profile_free(nclx); /* libheif gives one after a failure, too */
     return err->status;
 }
 
