@@ -11,7 +11,12 @@
 
 static enum status heif_failed(const struct photo_bytes *file, struct heif_error problem, struct err *err)
 {
-    if (problem.code == heif_error_Memory_allocation_error) return err_nomem(err, "a photo", 0);
+    if (problem.code == heif_error_Memory_allocation_error)
+        return err_set(
+            err, ST_NOMEM,
+            "%s asks for more memory than there is (%s); unless it is huge it is damaged: copy or export the "
+            "photo again.",
+            file->path, problem.message);
     if (problem.code == heif_error_Unsupported_feature || problem.code == heif_error_Unsupported_filetype)
         return err_set(err, ST_DATA,
                        "%s is a HEIC or AVIF file that libheif here cannot decode (%s); install its decoders "
