@@ -5,8 +5,7 @@
  * once, and a quantity is a number or the word `fit`.
  *
  * Names. A window or a lamp may be declared once. Points name their lamp, which may stand below them, so they are
- * connected after the last line. The points of a lamp must be of one material, because their reflectance is one
- * unknown of the fit; points without a material are of one named like the lamp.
+ * connected after the last line. Points without a material are of one named like the lamp.
  *
  * All bounds are checked here, with file and line, so that later stages only meet geometry that is wrong, not
  * numbers. */
@@ -196,6 +195,8 @@ static enum status read_line(struct annotation *a, struct textfile *t, struct er
     if (read_place(a, t, 2, err)) return err->status;
     if (hypot(a->pixel[2] - a->pixel[0], a->pixel[3] - a->pixel[1]) < 4)
         return textfile_error(t, err, "a shorter line", "a line of at least 4 pixels");
+    if (!textfile_more(t)) return ST_OK;
+    if (textfile_expect(t, "of", err) || copy_word(t, "the name of a material", &a->material, err)) return err->status;
     return textfile_end(t, err);
 }
 
@@ -239,24 +240,6 @@ static enum status read_statement(struct annotation_list *list, struct textfile 
     }
 }
 
-/* The points of a lamp are of one material. */
-static enum status check_materials(const struct annotation_list *list, struct err *err)
-{
-    for (int i = 0; i < list->count; i++)
-        for (int k = 0; k < i; k++) {
-            const struct annotation *a = &list->items[i], *b = &list->items[k];
-            const char *of = a->material ? a->material : a->name, *other = b->material ? b->material : b->name;
-            if (a->lamp < 0 || a->lamp != b->lamp || a->kind == NOTE_LINE || b->kind == NOTE_LINE) continue;
-            if (strcmp(of, other))
-                return err_set(
-                    err, ST_DATA,
-                    "%s:%d: found a point of the lamp %s of the material %s, but that on line %d is of %s; the "
-                    "points of a lamp must be of one material.",
-                    list->path, a->line, a->name, of, b->line, other);
-        }
-    return ST_OK;
-}
-
 static enum status find_lamps(struct annotation_list *list, struct err *err)
 {
     for (int i = 0; i < list->count; i++) {
@@ -291,7 +274,7 @@ enum status annotation_list_read(struct annotation_list *list, const char *path,
         textfile_end(&t, err);
     while (!err->status && textfile_next(&t)) read_statement(list, &t, err);
     textfile_release(&t);
-    if (!err->status && !find_lamps(list, err)) check_materials(list, err);
+    if (!err->status) find_lamps(list, err);
     if (err->status) annotation_list_release(list);
     return err->status;
 }

@@ -8,8 +8,8 @@
  *   area NAME in VIEW X Y X Y X Y X Y [OPTIONS]   four corners in order
  *       OPTIONS: [off D] in front of the model's surface; [radiance R G B]
  *   lit NAME in VIEW X Y [X1 Y1] [of MATERIAL]     a point, or a rectangle of points, that the lamp NAME lights
- *   unlit NAME in VIEW X Y [X1 Y1] [of MATERIAL]   of the same material, and not lit by it
- *   line NAME in VIEW X Y X Y             of the same material, across the edge of the lamp's cone */
+ *   unlit NAME in VIEW X Y [X1 Y1] [of MATERIAL]   not lit by it
+ *   line NAME in VIEW X Y X Y [of MATERIAL]        across the edge of the lamp's cone */
 #ifndef REMODEL_ANNOTATIONS_H
 #define REMODEL_ANNOTATIONS_H
 
@@ -36,7 +36,7 @@ struct annotation {
     enum quantity has_beta, has_exponent, has_radiance;
     double beta, exponent; /* degrees */
     double radiance[3];
-    char *material; /* lit, unlit: owned; NULL: the lamp's own */
+    char *material; /* lit, unlit, line: owned; NULL: not said */
     int lamp;       /* lit, unlit, line: index of their lamp's annotation */
 };
 

@@ -17,10 +17,9 @@ enum { OUTLINE_POINTS = 96 /* a multiple of 4 */ };
 #define WIDEST (89.5 * DEGREE) /* beyond, the cone is the whole half space */
 #define APART  8.0             /* times the distance of neighbouring rays at a surface that faces them */
 
-static bool cast(struct curve_point *p, double *distance, const struct lamp *l, double turns,
-                 const struct model_rays *model)
+bool cone_edge_ray(struct curve_point *p, const struct lamp *l, struct vec3 d, const struct model_rays *model,
+                   unsigned *face)
 {
-    const struct vec3 d = frame_direction(l->normal, sin(l->beta), cos(l->beta), turns);
     struct vec3 from = vec3_add(l->centre, vec3_scale(l->normal, 4 * model->rays.epsilon));
     struct ray_hit hit;
     if (!ray_scene_hit(&model->rays, from, d, &hit)) return false;
@@ -29,7 +28,7 @@ static bool cast(struct curve_point *p, double *distance, const struct lamp *l, 
         if (!ray_scene_hit(&model->rays, from, d, &hit) || !hit.front) return false;
     }
     *p = (struct curve_point){hit.point, hit.normal, false};
-    *distance = vec3_length(vec3_sub(hit.point, l->centre));
+    *face = hit.id;
     return true;
 }
 
@@ -39,8 +38,13 @@ void cone_edge_find(struct curve *c, const struct lamp *l, const struct model_ra
     int step[CURVE_POINTS]; /* the ray of each point */
     c->count = 0;
     if (!(l->beta < WIDEST)) return;
-    for (int i = 0; i < CURVE_POINTS; i++)
-        if (cast(&c->points[c->count], &distance[c->count], l, (double)i / CURVE_POINTS, model)) step[c->count++] = i;
+    for (int i = 0; i < CURVE_POINTS; i++) {
+        const struct vec3 d = frame_direction(l->normal, sin(l->beta), cos(l->beta), (double)i / CURVE_POINTS);
+        unsigned face;
+        if (!cone_edge_ray(&c->points[c->count], l, d, model, &face)) continue;
+        distance[c->count] = vec3_length(vec3_sub(c->points[c->count].at, l->centre));
+        step[c->count++] = i;
+    }
     for (int i = 0; i < c->count; i++) {
         const int next = (i + 1) % c->count;
         const double spacing = 2 * PI / CURVE_POINTS * sin(l->beta) * fmin(distance[i], distance[next]);

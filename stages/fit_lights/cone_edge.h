@@ -18,6 +18,10 @@ struct curve {
     int count;
 };
 
+/* The first surface on a ray from a lamp's centre, and its id (ray_hit). False: none, or its back. */
+bool cone_edge_ray(struct curve_point *p, const struct lamp *l, struct vec3 direction, const struct model_rays *model,
+                   unsigned *face);
+
 /* The first surfaces on rays from the lamp's centre at the angle beta from its normal, evenly around it. Points on two
  * surfaces, one of which hides the other, are not joined. Empty if beta is 90 degrees: the cone has no edge. */
 void cone_edge_find(struct curve *c, const struct lamp *l, const struct model_rays *model);

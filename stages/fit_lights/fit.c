@@ -2,178 +2,169 @@
  *
  * Overview. A point of a Lambertian material has the radiance L = k_d (E + sum over lamps of S_j D_j): E is its
  * indirect irradiance, D_j that of lamp j with radiance 1. E and D_j are known; k_d of each material and S_j of each
- * lamp are not. One lit and one unlit point determine them (5.5); more points make an overdetermined system.
+ * lamp are not. One lit and one unlit point determine them (5.5); more points make an overdetermined system. Marks are
+ * evidence: any of them may be on another material or in shade, and a lamp need not have an unlit one, because E and D
+ * also differ between lit places.
  *
  * Mathematics. Reflectance varies from point to point by factors, and so does the error of E. So the residuals are
- * those of logarithms, r = log L - log k_d - log(E + sum S_j D_j). Their covariance (fit_texture.c) is that of the
- * material's variation, and of noise. Then log k_d is a weighted mean of a material's points and drops out [Golub
- * 1973]. Left are log S_j per colour, which keeps S positive, and the square root of an exponent. Levenberg-Marquardt
- * (Ceres) solves for these; the covariance is renewed in rounds. A lamp whose picture is not saturated adds log S - log
- * of the radiance that it shows.
+ * those of logarithms, r = log L - log(E + sum S_j D_j) - log of a usual k_d. Their covariance (fit_texture.c) is that
+ * of what albedos are usual, which the points of a material share, of the offsets of marks, of the material's
+ * variation, and of noise. Left are log S_j per colour, which keeps S positive, and the square root of an exponent.
+ * Levenberg-Marquardt (Ceres) solves for these from the best of a grid of radiances; the covariance is renewed in
+ * rounds. A lamp whose picture is not saturated adds log S - log of the radiance that it shows; a saturated one that,
+ * where S is less. From this solution a Markov chain (fit_chain.c) goes on to all others that explain the marks, which
+ * gives intervals, how materials vary and which marks are off; a last descent uses these.
  *
  * What differs from the source: points, colours and lamps are fitted together, by logarithms and robustly; neighbours
- * vary together; what views show of a lamp counts, too. */
+ * vary together; what views show of a lamp counts, too. Nothing is refused: what is not known has a wide interval. */
 #include "stages/fit_lights/fit.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/base/log.h"
 #include "common/math/ceres_least_squares.h"
+#include "common/math/numbers.h"
 #include "common/math/weighted.h"
-#include "stages/fit_lights/fit_errors.h"
+#include "stages/fit_lights/fit_chain.h"
 #include "stages/fit_lights/fit_texture.h"
 
-enum { ROUNDS = 8, ESTIMATES = 4 /* rounds that estimate how materials vary */, ITERATIONS = 100 };
-#define MIN_SHARE 1e-3 /* difference in the lamp's share of the light by which lit points must differ from others */
-
-/* ----------------------------------------------------------------------------------------- what cannot be solved */
-
-static enum status check_points(const struct light_fit *f, struct err *err)
-{
-    for (int i = 0; i < f->point_count; i++) {
-        const struct fit_point *p = &f->points[i];
-        if (p->kind == POINT_UNLIT && !(fmin(p->indirect[0], fmin(p->indirect[1], p->indirect[2])) > 0))
-            return err_set(
-                err, ST_DATA,
-                "%s: no indirect light reaches this unlit point, so nothing can be learned from its radiance; "
-                "choose another point.",
-                p->place);
-    }
-    return ST_OK;
-}
-
-/* Whether a point tells of a lamp: a lit one that was marked for it, or any unlit one of its material. */
-static bool concerns(const struct light_fit *f, int point, int lamp, bool lit)
-{
-    const struct fit_point *p = &f->points[point];
-    return p->kind == (lit ? POINT_LIT : POINT_UNLIT) &&
-           (lit ? p->lamp == lamp : p->material == f->lamps[lamp].material);
-}
-
-static const char *place_of(const struct light_fit *f, int lamp, bool lit)
-{
-    for (int i = 0; i < f->point_count; i++)
-        if (concerns(f, i, lamp, lit)) return f->points[i].place;
-    return "";
-}
-
-/* The light at a point without that of one lamp. */
-static double other_light(const struct problem *p, int point, int colour, int lamp)
-{
-    return fit_irradiance(p, point, colour) -
-           p->f->lamps[lamp].radiance[colour] * p->direct[lamp * p->f->point_count + point];
-}
-
-/* Whether a lamp's light differs between its lit points and the others. */
-static enum status check_lamp(const struct problem *p, int lamp, struct err *err)
-{
-    const struct light_fit *f = p->f;
-    const char *name = f->lamps[lamp].name;
-    double most = 0, least = INFINITY;
-    int lit = 0, unlit = 0;
-    for (int i = 0; i < f->point_count; i++) {
-        const double share = p->direct[lamp * f->point_count + i] / fmax(f->points[i].indirect[1], 1e-30);
-        if (concerns(f, i, lamp, true)) {
-            most = fmax(most, share);
-            lit++;
-        } else if (concerns(f, i, lamp, false)) {
-            least = fmin(least, share);
-            unlit++;
-        }
-    }
-    if (!lit || !unlit)
-        return err_set(
-            err, ST_DATA,
-            "the lamp %s has %d lit and %d unlit points that views show unsaturated, wanted one of each; add a line "
-            "\"%s %s in VIEW X Y\".",
-            name, lit, unlit, lit ? "unlit" : "lit", name);
-    if (!(most > 0))
-        return err_set(
-            err, ST_DATA,
-            "%s: no light of the lamp %s reaches its lit points: they are outside its cone, turned away, or the "
-            "model hides it from them.",
-            place_of(f, lamp, true), name);
-    if (most - least < MIN_SHARE * most)
-        return err_set(
-            err, ST_DATA,
-            "%s: the lamp %s gives its lit and unlit points the same irradiance, so its radiance cannot be told "
-            "from the reflectance; choose unlit points outside its cone or in shadow.",
-            place_of(f, lamp, true), name);
-    return ST_OK;
-}
+enum {
+    ROUNDS = 8,
+    ESTIMATES = 4, /* rounds that estimate how materials vary */
+    ITERATIONS = 100,
+    START_ROUNDS = 3,
+    START_STEPS = 48
+};
+#define START_STEP 1.4
 
 /* ------------------------------------------------------------------------------------------------------- the start */
 
-/* The median k_d of the unlit points of a lamp's material. */
-static double start_k_d(const struct problem *p, int lamp, int colour, struct weighted *scratch)
+/* Sets `middle` to the median logarithm of k_d of a material in one colour, at the present radiances. False: it has no
+ * points. */
+static bool find_middle(const struct problem *p, int material, int colour, struct weighted *scratch, double *middle)
 {
     const struct light_fit *f = p->f;
     size_t n = 0;
     for (int i = 0; i < f->point_count; i++)
-        if (concerns(f, i, lamp, false))
-            scratch[n++] = (struct weighted){f->points[i].radiance[colour] / fit_irradiance(p, i, colour), 1};
-    return weighted_percentile(scratch, n, 0.5);
+        if (f->points[i].material == material) scratch[n++] = (struct weighted){p->logs[3 * i + colour], 1};
+    *middle = weighted_percentile(scratch, n, 0.5);
+    return n > 0;
 }
 
-/* The median S of a lamp's lit points, given k_d; 0: they are no brighter. */
-static double start_radiance(const struct problem *p, int lamp, int colour, double k_d, struct weighted *scratch)
+/* How badly the present radiances explain a colour, whatever some marks show. */
+static double start_cost(struct problem *p, int colour, struct weighted *scratch)
 {
     const struct light_fit *f = p->f;
-    const double *direct = p->direct + (ptrdiff_t)lamp * f->point_count;
-    size_t n = 0;
-    for (int i = 0; i < f->point_count; i++)
-        if (concerns(f, i, lamp, true) && direct[i] > 0)
-            scratch[n++] = (struct weighted){
-                (f->points[i].radiance[colour] / k_d - other_light(p, i, colour, lamp)) / direct[i], 1};
-    const double s = weighted_percentile(scratch, n, 0.5);
-    return s > 0 && isfinite(s) ? s : 0;
-}
-
-/* S of the lamps by (5.5), from medians, one lamp and colour after the other; some rounds, as lamps light each other's
- * points. ST_DATA: the lit points of a lamp are no brighter. */
-static enum status start_lamps(struct problem *p, struct weighted *scratch, struct err *err)
-{
-    const struct light_fit *f = p->f;
-    for (int round = 0; round < ROUNDS; round++)
-        for (int l = 0; l < f->lamp_count; l++)
-            for (int c = 0; f->lamps[l].fit && c < 3; c++)
-                f->lamps[l].radiance[c] = start_radiance(p, l, c, start_k_d(p, l, c, scratch), scratch);
-    for (int l = 0; l < f->lamp_count; l++) {
-        struct fit_lamp *lamp = &f->lamps[l];
-        const double best = fmax(lamp->radiance[0], fmax(lamp->radiance[1], lamp->radiance[2]));
-        if (!lamp->fit) continue;
-        if (!(best > 0))
-            return err_set(
-                err, ST_DATA,
-                "%s: the lit points of the lamp %s are no brighter than its unlit points under the indirect light "
-                "alone: the lamp is off, or they are of different materials.",
-                place_of(f, l, true), lamp->name);
-        for (int c = 0; c < 3; c++) lamp->radiance[c] = fmax(lamp->radiance[c], 0.01 * best);
+    const double scale = fmax(2 * f->texture, 0.02);
+    double sum = 0, middle;
+    fit_set_logs(p);
+    for (int m = 0; m < f->material_count; m++) {
+        if (!find_middle(p, m, colour, scratch, &middle)) continue;
+        const double unusual = (middle - fit_usual_log_k_d()) / ALBEDO_DEVIATION;
+        sum += unusual * unusual;
+        for (int i = 0; i < f->point_count; i++) {
+            const double r = (p->logs[3 * i + colour] - middle) / scale;
+            if (f->points[i].material == m) sum += log1p(r * r);
+        }
     }
-    return ST_OK;
+    for (int l = 0; l < f->lamp_count; l++) {
+        const double off = f->lamps[l].fit ? fit_seen_residual(&f->lamps[l], colour, f->lamps[l].radiance[colour]) : 0;
+        sum += off * off;
+    }
+    return sum;
+}
+
+/* The radiance with the least cost on a grid of factors of START_STEP, one lamp and colour after the other; some
+ * rounds, as lamps light each other's points. */
+static void start_lamps(struct problem *p, struct weighted *scratch)
+{
+    struct light_fit *f = p->f;
+    for (int l = 0; l < f->lamp_count; l++)
+        for (int c = 0; f->lamps[l].fit && c < 3; c++)
+            f->lamps[l].radiance[c] = fmax(fit_least_radiance(p, l, c), 1e-12);
+    for (int round = 0; round < START_ROUNDS; round++)
+        for (int u = 0; u < p->unknown_count; u++) {
+            const int l = p->unknowns[u].lamp, c = p->unknowns[u].colour;
+            if (c == 3) continue;
+            double *s = &f->lamps[l].radiance[c], least = INFINITY, best = *s;
+            *s = fmax(fit_least_radiance(p, l, c), 1e-12);
+            for (int k = 0; k < START_STEPS; k++, *s *= START_STEP) {
+                const double cost = start_cost(p, c, scratch);
+                if (!(cost < least)) continue;
+                least = cost;
+                best = *s;
+            }
+            *s = best;
+        }
+}
+
+/* The variances of points that lie far from the median of their material at the start. */
+static void start_excess(struct problem *p, struct weighted *scratch)
+{
+    const struct light_fit *f = p->f;
+    memset(p->excess, 0, (size_t)f->point_count * sizeof *p->excess);
+    fit_set_logs(p);
+    for (int c = 0; c < 3; c++)
+        for (int m = 0; m < f->material_count; m++) {
+            double middle;
+            if (!find_middle(p, m, c, scratch, &middle)) continue;
+            for (int i = 0; i < f->point_count; i++) {
+                const double off = (p->logs[3 * i + c] - middle) / 2;
+                if (f->points[i].material == m) p->excess[i] += off * off / 3;
+            }
+        }
 }
 
 /* ----------------------------------------------------------------------------------------------------- the solution */
 
-static enum status solve(struct problem *p, struct err *err)
+static void begin_covariance(struct problem *p)
+{
+    struct light_fit *f = p->f;
+    f->wall_variance = f->irradiance_error * f->irradiance_error + 1e-12;
+    for (int m = 0; m < f->material_count; m++) {
+        f->materials[m].deviation = f->texture;
+        f->materials[m].length = 0;
+        f->materials[m].grain = 1;
+    }
+    for (int m = 0; m < f->mark_count; m++) f->marks[m].variance = f->texture * f->texture + 1e-8;
+}
+
+static enum status descend(struct problem *p, struct err *err)
 {
     const struct least_squares problem = {p->unknown_count, fit_residual_count(p), fit_evaluate, p, ITERATIONS};
     double x[MAX_UNKNOWNS];
+    if (fit_texture_set_covariance(p, err)) return err->status;
     fit_get_unknowns(p, x);
-    for (int m = 0; m < p->f->material_count; m++) {
-        p->f->materials[m].deviation = p->f->texture;
-        p->f->materials[m].length = 0;
-        p->f->materials[m].grain = 1;
-    }
+    if (p->unknown_count && ceres_least_squares(&problem, x, err)) return err->status;
+    fit_set_unknowns(p, x);
+    return ST_OK;
+}
+
+static enum status solve(struct problem *p, struct weighted *scratch, struct err *err)
+{
+    begin_covariance(p);
+    start_lamps(p, scratch);
+    start_excess(p, scratch);
     for (int round = 0; round < ROUNDS; round++) {
-        if (fit_texture_set_covariance(p, err)) return err->status;
-        if (p->unknown_count && ceres_least_squares(&problem, x, err)) return err->status;
-        fit_set_unknowns(p, x);
+        if (descend(p, err)) return err->status;
+        fit_texture_set_marks(p);
         fit_texture_set_excess(p);
         if (round < ESTIMATES) fit_texture_estimate(p);
     }
-    if (fit_texture_set_covariance(p, err)) return err->status;
+    return descend(p, err);
+}
+
+/* The best solution with what the chain found of materials and marks, if it is among the middle half of the chain's. */
+static enum status refine(struct problem *p, struct err *err)
+{
+    if (descend(p, err)) return err->status;
+    for (int l = 0; l < p->f->lamp_count; l++) {
+        struct fit_lamp *lamp = &p->f->lamps[l];
+        for (int c = 0; lamp->fit && c < 3; c++)
+            lamp->radiance[c] = clamp(lamp->radiance[c], lamp->middle[0][c], lamp->middle[1][c]);
+    }
     fit_set_residuals(p);
     return ST_OK;
 }
@@ -194,50 +185,28 @@ static double spread_of(const struct problem *p, int material, struct weighted *
     return weighted_percentile(scratch, n, 0.75) / 1.1503;
 }
 
-static enum status check_spread(struct problem *p, struct weighted *scratch, struct err *err)
-{
-    for (int m = 0; m < p->f->material_count; m++) {
-        struct fit_material *material = &p->f->materials[m];
-        const char *place = "";
-        for (int i = p->f->point_count - 1; i >= 0; i--)
-            if (p->f->points[i].material == m) place = p->f->points[i].place;
-        if (!(material->lit + material->unlit)) continue;
-        material->spread = spread_of(p, m, scratch);
-        if (material->spread > p->f->max_spread)
-            return err_set(
-                err, ST_DATA,
-                "%s: the points of the material %s are not of one material: their reflectances differ by %.0f %%, at "
-                "most %.0f %% are allowed (max_spread); choose points of one material.",
-                place, material->name, 100 * material->spread, 100 * p->f->max_spread);
-    }
-    return ST_OK;
-}
-
 /* -------------------------------------------------------------------------------------------------------------- all */
 
-static enum status list_unknowns(struct problem *p, struct err *err)
+static void list_unknowns(struct problem *p)
 {
-    for (int l = 0; l < p->f->lamp_count; l++)
-        for (int c = 0; p->f->lamps[l].fit && c < 3 + p->f->lamps[l].fit_exponent; c++) {
-            if (p->unknown_count == MAX_UNKNOWNS)
-                return err_set(err, ST_DATA,
-                               "%d lamps are too many to be fitted together, at most %d; give the radiance of some.",
-                               p->f->lamp_count, MAX_UNKNOWNS / 4);
-            p->unknowns[p->unknown_count++] = (struct unknown){l, c};
+    for (int l = 0; l < p->f->lamp_count; l++) {
+        struct fit_lamp *lamp = &p->f->lamps[l];
+        if (lamp->fit && p->unknown_count + 4 > MAX_UNKNOWNS) {
+            log_warn("only %d lamps can be fitted together, so the lamp %s is not; give its radiance.",
+                     MAX_UNKNOWNS / 4, lamp->name);
+            lamp->fit = false;
         }
-    return ST_OK;
+        for (int c = 0; lamp->fit && c < 3 + lamp->fit_exponent; c++)
+            p->unknowns[p->unknown_count++] = (struct unknown){l, c};
+    }
 }
 
-static enum status fit_all(struct problem *p, struct weighted *scratch, double *jacobian, struct err *err)
+static enum status fit_all(struct problem *p, struct weighted *scratch, struct err *err)
 {
     struct light_fit *f = p->f;
     for (int l = 0; l < f->lamp_count; l++) fit_set_direct(p, l);
-    check_points(f, err);
-    for (int l = 0; !err->status && l < f->lamp_count; l++)
-        if (f->lamps[l].fit) check_lamp(p, l, err);
-    if (!err->status && !start_lamps(p, scratch, err) && !solve(p, err)) check_spread(p, scratch, err);
-    if (err->status) return err->status;
-    fit_set_errors(p, jacobian);
+    if (solve(p, scratch, err) || (f->draws > 0 && (fit_chain_run(p, err) || refine(p, err)))) return err->status;
+    for (int m = 0; m < f->material_count; m++) f->materials[m].spread = spread_of(p, m, scratch);
     return ST_OK;
 }
 
@@ -255,11 +224,9 @@ static void release(struct problem *p)
 
 static enum status reserve(struct problem *p, struct err *err)
 {
-    const size_t n = (size_t)p->f->point_count, square = n * n;
+    const size_t n = (size_t)p->f->point_count, square = n * n, marks = (size_t)p->f->mark_count;
     if (n > MAX_FIT_POINTS)
-        return err_set(err, ST_DATA,
-                       "%s: %zu points are marked for lamps, at most %d can be fitted; lower [fit_lights] grid.",
-                       p->f->points[0].place, n, MAX_FIT_POINTS);
+        return err_set(err, ST_DATA, "%zu points are marked for lamps, at most %d can be fitted.", n, MAX_FIT_POINTS);
     p->direct = calloc(n * (size_t)p->f->lamp_count + 1, sizeof *p->direct);
     p->logs = calloc(3 * n, sizeof *p->logs);
     p->excess = calloc(n, sizeof *p->excess);
@@ -267,7 +234,7 @@ static enum status reserve(struct problem *p, struct err *err)
     p->ones = calloc(n * (size_t)p->f->material_count, sizeof *p->ones);
     p->whitened = calloc(3 * n, sizeof *p->whitened);
     p->vector = calloc(n, sizeof *p->vector);
-    p->next_excess = calloc(n, sizeof *p->next_excess);
+    p->next_excess = calloc(n + marks, sizeof *p->next_excess);
     if (p->direct && p->logs && p->excess && p->factor && p->ones && p->whitened && p->vector && p->next_excess)
         return ST_OK;
     return err_nomem(err, "points of lamps", square * sizeof *p->factor);
@@ -282,14 +249,13 @@ enum status fit_solve(struct light_fit *f, struct err *err)
         m->lit += f->points[i].kind == POINT_LIT;
         m->unlit += f->points[i].kind == POINT_UNLIT;
     }
-    if (list_unknowns(&p, err) || !f->point_count) return err->status;
+    list_unknowns(&p);
+    if (!f->point_count) return ST_OK;
     reserve(&p, err);
     struct weighted *scratch = calloc(3 * (size_t)f->point_count, sizeof *scratch);
-    double *jacobian = calloc((size_t)fit_residual_count(&p) * (size_t)(p.unknown_count + 1), sizeof *jacobian);
-    if (!err->status && (!scratch || !jacobian)) err_nomem(err, "points of lamps", (size_t)f->point_count);
-    if (!err->status) fit_all(&p, scratch, jacobian, err);
+    if (!err->status && !scratch) err_nomem(err, "points of lamps", (size_t)f->point_count);
+    if (!err->status) fit_all(&p, scratch, err);
     release(&p);
     free(scratch);
-    free(jacobian);
     return err->status;
 }

@@ -45,7 +45,7 @@ static enum status read_inputs(struct job *j, struct err *err)
                           err) ||
         (j->lamps && annotation_list_read(&j->notes, j->lamps, &j->prov, err)))
         return err->status;
-    return lit_scene_resolve(&j->scene, j->lamps ? &j->notes : NULL, &j->model, j->params.grid, err);
+    return lit_scene_resolve(&j->scene, j->lamps ? &j->notes : NULL, &j->model, j->params.grid, j->params.places, err);
 }
 
 #define COPY_FIELD(name, ...) memcpy(&g.name, &p->name, sizeof g.name);
@@ -129,8 +129,8 @@ static enum status fit(struct job *j, struct err *err)
     if (!err->status && j->lamps)
         observe(&seen, &j->scene, &j->notes, &j->model, j->views, j->ids, &j->params, &j->prov, err);
     if (!err->status) direct_light_make(&direct, &j->scene, &j->model, err);
-    const struct solve_inputs in = {&j->scene, &j->notes, &seen, &direct, (const double(*)[3])j->indirect.at,
-                                    &j->params};
+    const struct solve_inputs in = {&j->scene,      &j->notes, &seen, &direct, (const double(*)[3])j->indirect.at,
+                                    &j->model.rays, &j->params};
     if (!err->status && !solve_lights(&solved, &in, err)) write_lights(j, &solved, &in, err);
     solve_release(&solved);
     direct_light_release(&direct);

@@ -10,11 +10,12 @@
     X(patch, int, 1, 0, 20, "px", "half side of the square of a view's pixels that are averaged at a point")         \
     X(grid, int, 5, 1, 50, "", "points along each side of an annotated rectangle")                                   \
     X(texture, double, 0.05, 0, 1, "", "assumed relative deviation of a material's reflectance from point to point") \
-    X(max_spread, double, 0.25, 0.01, 10, "",                                                                        \
-      "largest relative deviation of reflectance at which points still count as one material")                       \
-    X(irradiance_error, double, 0.03, 0, 1, "", "relative error of indirect light, which the intervals include")     \
+    X(places, int, 160, 0, 1000, "",                                                                                 \
+      "rays of a lamp without lit and unlit points; where they meet the model, the lamp's light tells its radiance") \
+    X(irradiance_error, double, 0.05, 0, 1, "",                                                                      \
+      "assumed relative error of indirect light: of all of it, of each wall's")                                      \
     X(seen_error, double, 0.02, 0.001, 1, "",                                                                        \
-      "relative error of a lamp's radiance as unsaturated views show it, which then counts beside its points")       \
+      "relative error of a lamp's radiance, or of its lower bound, as views show it")                                \
     X(click, double, 0.5, 0, 100, "px", "assumed error of the marked centre of a lamp, for the interval of beta")    \
     X(max_clutter, double, 0.5, 0, 1, "", "clutter of a view's pixel from which it does not show a point of the model")
 

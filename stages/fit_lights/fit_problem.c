@@ -1,4 +1,4 @@
-/* fit_problem.c - the light at points, and the residuals of a fit; the mathematics stand in fit.c. */
+/* fit_problem.c - the light at points, and the residuals of a fit; fit.c explains the mathematics. */
 #include "stages/fit_lights/fit_problem.h"
 
 #include <math.h>
@@ -7,6 +7,11 @@
 
 #include "common/math/cholesky.h"
 #include "common/math/numbers.h"
+
+#define LEAST_SHARE      0.01 /* of the light at the point that the lamp lights best */
+#define LEAST_IRRADIANCE 1e-6 /* of the radiance of a point: in the dark, residuals stay finite */
+
+double fit_usual_log_k_d(void) { return log(USUAL_ALBEDO / PI); }
 
 void fit_set_direct(struct problem *p, int lamp)
 {
@@ -41,34 +46,52 @@ double fit_irradiance(const struct problem *p, int point, int colour)
     const struct light_fit *f = p->f;
     double e = f->points[point].indirect[colour];
     for (int l = 0; l < f->lamp_count; l++) e += f->lamps[l].radiance[colour] * p->direct[l * f->point_count + point];
-    return e;
+    return fmax(e, LEAST_IRRADIANCE * f->points[point].radiance[colour]);
+}
+
+double fit_least_radiance(const struct problem *p, int lamp, int colour)
+{
+    const struct light_fit *f = p->f;
+    double best = 0;
+    for (int i = 0; i < f->point_count; i++) {
+        const double e = fmax(f->points[i].indirect[colour], LEAST_IRRADIANCE * f->points[i].radiance[colour]);
+        best = fmax(best, p->direct[lamp * f->point_count + i] / e);
+    }
+    return best > 0 ? LEAST_SHARE / best : 0;
+}
+
+void fit_set_logs(struct problem *p)
+{
+    for (int i = 0; i < p->f->point_count; i++)
+        for (int c = 0; c < 3; c++) p->logs[3 * i + c] = log(p->f->points[i].radiance[c] / fit_irradiance(p, i, c));
 }
 
 void fit_set_residuals(struct problem *p)
 {
     struct light_fit *f = p->f;
     const int n = f->point_count;
-    for (int i = 0; i < n; i++)
-        for (int c = 0; c < 3; c++) p->logs[3 * i + c] = log(f->points[i].radiance[c] / fit_irradiance(p, i, c));
+    fit_set_logs(p);
     for (int c = 0; c < 3; c++) {
         double *whitened = p->whitened + (ptrdiff_t)c * n;
-        for (int i = 0; i < n; i++) whitened[i] = p->logs[3 * i + c];
+        for (int i = 0; i < n; i++) whitened[i] = p->logs[3 * i + c] - fit_usual_log_k_d();
         cholesky_forward(p->factor, n, whitened);
         for (int m = 0; m < f->material_count; m++) {
             const double *ones = p->ones + (ptrdiff_t)m * n;
-            double sum = 0, weights = 0;
-            for (int i = 0; i < n; i++) {
-                sum += ones[i] * whitened[i];
-                weights += ones[i] * ones[i];
-            }
-            const double mean = weights > 0 ? sum / weights : 0;
-            for (int i = 0; i < n; i++) whitened[i] -= mean * ones[i];
-            f->materials[m].k_d[c] = weights > 0 ? exp(mean) : 0;
+            double sum = 0;
+            for (int i = 0; i < n; i++) sum += ones[i] * whitened[i];
+            f->materials[m].k_d[c] = exp(fit_usual_log_k_d() + ALBEDO_DEVIATION * ALBEDO_DEVIATION * sum);
         }
     }
 }
 
 int fit_residual_count(const struct problem *p) { return 3 * (p->f->point_count + p->f->lamp_count); }
+
+double fit_seen_residual(const struct fit_lamp *lamp, int colour, double radiance)
+{
+    if (!(lamp->seen_error[colour] > 0 && lamp->seen[colour] > 0)) return 0;
+    const double r = log(radiance / lamp->seen[colour]) / lamp->seen_error[colour];
+    return lamp->seen_is_bound ? fmin(r, 0) : r;
+}
 
 void fit_evaluate(void *ctx, const double *x, double *residuals)
 {
@@ -79,10 +102,8 @@ void fit_evaluate(void *ctx, const double *x, double *residuals)
     memcpy(residuals, p->whitened, points * sizeof *residuals);
     for (int l = 0; l < p->f->lamp_count; l++) {
         const struct fit_lamp *lamp = &p->f->lamps[l];
-        for (int c = 0; c < 3; c++) {
-            const bool counts = lamp->fit && lamp->seen_error[c] > 0 && lamp->seen[c] > 0;
+        for (int c = 0; c < 3; c++)
             residuals[points + 3 * (size_t)l + (size_t)c] =
-                counts ? log(lamp->radiance[c] / lamp->seen[c]) / lamp->seen_error[c] : 0;
-        }
+                lamp->fit ? fit_seen_residual(lamp, c, lamp->radiance[c]) : 0;
     }
 }

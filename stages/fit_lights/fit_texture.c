@@ -11,8 +11,17 @@
  * lengths and grains; deviation has a closed form, with a few points' worth of the assumed deviation. Colours vary
  * together: they count as one sample.
  *
- * A point that the others do not predict (a poster) has its variance enlarged, so that its error, which the inverse of
- * the covariance gives, is OUTLIER standard deviations: it counts less, the farther off it is. */
+ * The mean of a material is one more normal deviation, that of usual albedos (fit_problem.h), which all its points
+ * share. The points of a mark share another one, its offset: a mark may be on another material, in shade or in the sun.
+ * Offsets have Student's t distribution, that is, a normal one whose variance is unknown; the variance is renewed from
+ * the offset that the fit finds [Lange 1989]. So a mark that the others do not predict counts less, the farther off it
+ * is, but the differences between its own points still count.
+ *
+ * The error of the indirect irradiance is much the same along a wall, and another one on the next. So the points of a
+ * wall share a deviation, too: a lamp is known by what differs on one wall, and hardly by what differs between two.
+ *
+ * A single point that the others do not predict (the frame of a picture) has its variance enlarged, so that its error,
+ * which the inverse of the covariance gives, is OUTLIER standard deviations. */
 #include "stages/fit_lights/fit_texture.h"
 
 #include <math.h>
@@ -22,50 +31,76 @@
 
 #include "common/math/cholesky.h"
 
-enum { MAX_SAMPLED = 256, LENGTHS = 7, GRAINS = 4, MIN_POINTS = 8, PRIOR_POINTS = 4 };
-static const double grains[GRAINS] = {0.02, 0.1, 0.3, 0.6};
+enum { MIN_POINTS = 8 };
+static const double grains[TEXTURE_GRAINS] = {0.02, 0.1, 0.3, 0.6};
 #define OUTLIER 2.5
+#define ACROSS  3.0
 
 static double distance(const struct light_fit *f, int a, int b)
 {
     return vec3_length(vec3_sub(f->points[a].at, f->points[b].at));
 }
 
-static double correlation(const struct light_fit *f, int a, int b, double length, double grain)
+struct texture_kind fit_texture_kind(int k, double longest)
 {
-    return (1 - grain) * (length > 0 ? exp(-distance(f, a, b) / length) : 0);
+    if (k >= TEXTURE_KINDS - 1) return (struct texture_kind){0, 1};
+    return (struct texture_kind){longest / (1 << k / TEXTURE_GRAINS), grains[k % TEXTURE_GRAINS]};
+}
+
+double fit_texture_correlation(const struct light_fit *f, int a, int b, struct texture_kind kind)
+{
+    return (1 - kind.grain) * (kind.length > 0 ? exp(-distance(f, a, b) / kind.length) : 0);
 }
 
 /* ---------------------------------------------------------------------------------------------------- the variation */
 
-struct sampled {
-    int points[MAX_SAMPLED], count;
-    int unknowns; /* of one colour: lamps that are fitted to the material */
-};
-
-static struct sampled sample(const struct problem *p, int material)
+/* Evenly chosen, those across an edge ACROSS times as densely: they tell a lamp's light from the texture. */
+struct texture_sample fit_texture_sample(const struct light_fit *f, int material)
 {
-    const struct light_fit *f = p->f;
-    struct sampled s = {.count = 0};
-    int all = 0, at = 0;
-    for (int i = 0; i < f->point_count; i++) all += f->points[i].material == material;
-    const int stride = (all + MAX_SAMPLED - 1) / MAX_SAMPLED;
+    struct texture_sample s = {.count = 0};
+    double all = 0, at = 0;
     for (int i = 0; i < f->point_count; i++)
-        if (f->points[i].material == material && at++ % stride == 0) s.points[s.count++] = i;
-    for (int l = 0; l < f->lamp_count; l++) s.unknowns += f->lamps[l].fit && f->lamps[l].material == material;
+        if (f->points[i].material == material) all += f->points[i].kind == POINT_ACROSS ? ACROSS : 1;
+    for (int i = 0; i < f->point_count; i++) {
+        if (f->points[i].material != material) continue;
+        const double before = at;
+        at += f->points[i].kind == POINT_ACROSS ? ACROSS : 1;
+        const bool next = floor(at * MAX_SAMPLED / all) > floor(before * MAX_SAMPLED / all);
+        if (s.count < MAX_SAMPLED && next) s.points[s.count++] = i;
+    }
+    for (int i = 0; i < s.count; i++) s.longest = fmax(s.longest, distance(f, s.points[0], s.points[i]));
     return s;
 }
 
-/* The restricted likelihood's logarithm; sets *variance. matrix and vector: room for the points. */
-static double likelihood(double *variance, const struct problem *p, const struct sampled *s, double length,
-                         double grain, double *matrix, double *vector)
+/* The number of lamps that are fitted to a material's points. */
+static int lamps_of(const struct light_fit *f, int material)
 {
-    const int n = s->count, dof = n - 1 - s->unknowns;
+    int count = 0;
+    for (int l = 0; l < f->lamp_count; l++) {
+        bool found = false;
+        for (int i = 0; i < f->point_count; i++) found |= f->points[i].material == material && f->points[i].lamp == l;
+        count += f->lamps[l].fit && found;
+    }
+    return count;
+}
+
+/* The restricted likelihood's logarithm; sets *variance. matrix and vector: room for the points. */
+static double likelihood(double *variance, const struct problem *p, const struct texture_sample *s, int lamps,
+                         struct texture_kind kind, double *matrix, double *vector)
+{
+    const int n = s->count, dof = n - 1 - lamps;
     const double before = p->f->materials[p->f->points[s->points[0]].material].deviation;
     double ones[MAX_SAMPLED], determinant = 0, weights = 0, squares = 0;
     for (int i = 0; i < n; i++) {
-        for (int k = 0; k < i; k++) matrix[i * n + k] = correlation(p->f, s->points[i], s->points[k], length, grain);
-        matrix[i * n + i] = 1 + p->excess[s->points[i]] / (before * before);
+        const int mark = p->f->points[s->points[i]].mark;
+        const int wall = p->f->points[s->points[i]].wall;
+        const double shared = p->f->marks[mark].variance / (before * before);
+        const double of_wall = p->f->wall_variance / (before * before);
+        for (int k = 0; k < i; k++)
+            matrix[i * n + k] = fit_texture_correlation(p->f, s->points[i], s->points[k], kind) +
+                                (p->f->points[s->points[k]].mark == mark ? shared : 0) +
+                                (p->f->points[s->points[k]].wall == wall ? of_wall : 0);
+        matrix[i * n + i] = 1 + shared + of_wall + p->excess[s->points[i]] / (before * before);
         ones[i] = 1;
     }
     if (!cholesky_factor(matrix, n)) return -INFINITY;
@@ -81,29 +116,26 @@ static double likelihood(double *variance, const struct problem *p, const struct
         for (int i = 0; i < n; i++) along += vector[i] * ones[i] / weights;
         for (int i = 0; i < n; i++) squares += (vector[i] - along * ones[i]) * (vector[i] - along * ones[i]) / 3;
     }
-    const double prior = PRIOR_POINTS * p->f->texture * p->f->texture;
-    *variance = (squares + prior) / (dof + PRIOR_POINTS) + 1e-12;
-    return -0.5 * ((dof + PRIOR_POINTS) * log(*variance) + determinant + log(weights));
+    const double prior = TEXTURE_PRIOR * p->f->texture * p->f->texture;
+    *variance = (squares + prior) / (dof + TEXTURE_PRIOR) + 1e-12;
+    return -0.5 * ((dof + TEXTURE_PRIOR) * log(*variance) + determinant + log(weights));
 }
 
 static void estimate_material(struct problem *p, int material, double *matrix, double *vector)
 {
-    const struct sampled s = sample(p, material);
+    const struct texture_sample s = fit_texture_sample(p->f, material);
     struct fit_material *m = &p->f->materials[material];
-    double longest = 0, variance = 0;
-    if (s.count < MIN_POINTS || s.count <= 1 + s.unknowns) return;
-    for (int i = 0; i < s.count; i++) longest = fmax(longest, distance(p->f, s.points[0], s.points[i]));
-    double best = likelihood(&variance, p, &s, 0, 1, matrix, vector), deviation = sqrt(variance);
-    m->length = 0;
-    m->grain = 1;
-    for (int k = 0; k < LENGTHS * GRAINS; k++) {
-        const double length = longest / (1 << k / GRAINS), grain = grains[k % GRAINS];
-        const double found = likelihood(&variance, p, &s, length, grain, matrix, vector);
+    const int lamps = lamps_of(p->f, material);
+    double best = -INFINITY, variance = 0, deviation = m->deviation;
+    if (s.count < MIN_POINTS || s.count <= 1 + lamps) return;
+    for (int k = TEXTURE_KINDS - 1; k >= 0; k--) {
+        const struct texture_kind kind = fit_texture_kind(k, s.longest);
+        const double found = likelihood(&variance, p, &s, lamps, kind, matrix, vector);
         if (!(found > best)) continue;
         best = found;
         deviation = sqrt(variance);
-        m->length = length;
-        m->grain = grain;
+        m->length = kind.length;
+        m->grain = kind.grain;
     }
     m->deviation = deviation;
 }
@@ -127,17 +159,20 @@ enum status fit_texture_set_covariance(struct problem *p, struct err *err)
     const int n = f->point_count;
     for (int i = 0; i < n; i++) {
         const struct fit_material *m = &f->materials[f->points[i].material];
-        const double variance = m->deviation * m->deviation;
+        const struct texture_kind kind = {m->length, m->grain};
+        const double variance = m->deviation * m->deviation, shared = f->marks[f->points[i].mark].variance;
         double *row = p->factor + (ptrdiff_t)i * n;
         for (int k = 0; k < i; k++)
-            row[k] = f->points[k].material == f->points[i].material
-                         ? variance * correlation(f, i, k, m->length, m->grain)
-                         : 0;
-        row[i] = own_variance(f, i) + p->excess[i];
+            row[k] = f->points[k].material != f->points[i].material
+                         ? 0
+                         : ALBEDO_DEVIATION * ALBEDO_DEVIATION + variance * fit_texture_correlation(f, i, k, kind) +
+                               (f->points[k].mark == f->points[i].mark ? shared : 0) +
+                               (f->points[k].wall == f->points[i].wall ? f->wall_variance : 0);
+        row[i] = ALBEDO_DEVIATION * ALBEDO_DEVIATION + own_variance(f, i) + shared + f->wall_variance + p->excess[i];
     }
     if (!cholesky_factor(p->factor, n))
-        return err_set(err, ST_DATA, "%s: the covariance of the marked points is not positive; mark fewer points.",
-                       f->points[0].place);
+        return err_set(err, ST_DATA,
+                       "the covariance of the %d marked points of lamps is not positive; mark fewer points.", n);
     for (int m = 0; m < f->material_count; m++) {
         double *ones = p->ones + (ptrdiff_t)m * n;
         for (int i = 0; i < n; i++) ones[i] = f->points[i].material == m;
@@ -165,4 +200,34 @@ void fit_texture_set_excess(struct problem *p)
         p->next_excess[i] = fmax(squares / (OUTLIER * OUTLIER) - (1 / inverse - p->excess[i]), 0);
     }
     memcpy(p->excess, p->next_excess, (size_t)n * sizeof *p->excess);
+}
+
+void fit_texture_set_marks(struct problem *p)
+{
+    const struct light_fit *f = p->f;
+    const int n = f->point_count;
+    const double scale = MARK_SCALE * MARK_SCALE * f->texture * f->texture;
+    fit_set_residuals(p);
+    for (int c = 0; c < 3; c++) cholesky_backward(p->factor, n, p->whitened + (ptrdiff_t)c * n);
+    for (int m = 0; m < f->mark_count; m++) {
+        struct fit_mark *mark = &f->marks[m];
+        double squares = 0, weights = 0;
+        int points = 0;
+        for (int i = 0; i < n; i++) {
+            p->vector[i] = f->points[i].mark == m;
+            points += f->points[i].mark == m;
+        }
+        if (!points) continue;
+        cholesky_forward(p->factor, n, p->vector);
+        for (int i = 0; i < n; i++) weights += p->vector[i] * p->vector[i];
+        for (int c = 0; c < 3; c++) {
+            double sum = 0;
+            for (int i = 0; i < n; i++)
+                if (f->points[i].mark == m) sum += p->whitened[(ptrdiff_t)c * n + i];
+            squares += mark->variance * sum * mark->variance * sum / 3;
+        }
+        const double left = mark->variance - mark->variance * mark->variance * weights; /* unknown of the offset */
+        p->next_excess[m] = (MARK_FREEDOM * scale + squares + fmax(left, 0)) / (MARK_FREEDOM + 1);
+    }
+    for (int m = 0; m < f->mark_count; m++) f->marks[m].variance = p->next_excess[m];
 }

@@ -10,25 +10,33 @@ enum fit_point_kind { POINT_LIT, POINT_UNLIT, POINT_ACROSS };
 
 /* A point of a material with what is known of it. */
 struct fit_point {
-    int material, lamp;       /* lamp: that it is annotated for */
+    int material, lamp, mark; /* lamp: that it is annotated for */
+    int wall;                 /* points of a lamp on one plane: one factor is the error of their indirect irradiance */
     enum fit_point_kind kind; /* whether that lamp lights it; POINT_ACROSS: of a line across the edge of its cone */
     struct vec3 at;
     double indirect[3]; /* irradiance without any lamp */
     double radiance[3]; /* observed; above 0 */
     double sigma;       /* relative standard deviation of the radiance */
-    const char *place;  /* for errors: "FILE:LINE" */
+};
+
+/* The points of one line of the annotations, or of one patch of a face. They may be of another material than the line
+ * says, in shade or in the sun: all of them are then brighter or darker by one factor. */
+struct fit_mark {
+    double off, off_error; /* logarithm of that factor, the mean of the colours; its standard deviation */
+    double variance;       /* of the factor's logarithm, as far as the fit counts the mark */
 };
 
 struct fit_lamp {
     const char *name;
-    int material; /* of its points */
     bool fit, fit_exponent;
     double radiance[3], exponent;             /* given, or to be found */
     double radiance_error[3], exponent_error; /* standard errors; 0: given */
+    double low[3], high[3];                   /* interval of 95 % of the radiance */
+    double middle[2][3];                      /* and of its middle half */
     double seen[3], seen_error[3]; /* radiance that views show of the lamp itself; relative standard errors, 0: none */
+    bool seen_is_bound;            /* the lamp saturates there: it is at least as bright */
 };
 
-/* The points of a lamp are of one material; several lamps may light the same one. */
 struct fit_material {
     const char *name;
     double k_d[3], k_d_error[3];
@@ -41,11 +49,14 @@ struct light_fit {
     struct fit_point *points;
     struct fit_lamp *lamps;
     struct fit_material *materials;
-    int point_count, lamp_count, material_count;
+    struct fit_mark *marks;
+    int point_count, lamp_count, material_count, mark_count;
     /* irradiance at a point from a lamp of radiance 1 */
     double (*direct)(const void *ctx, int lamp, int point, double exponent);
     const void *ctx;
-    double texture, max_spread, irradiance_error; /* as the parameters */
+    double texture, irradiance_error; /* as the parameters */
+    double wall_variance;             /* of the logarithms of walls' factors; the fit sets it */
+    int draws; /* of solutions, for intervals, errors and offsets of marks; 0: none of these are wanted */
 };
 
 #endif

@@ -14,9 +14,13 @@
  * light through it is then found by rays that happen to leave, with more noise.
  *
  * Points. A rectangle becomes grid x grid points, those on the surface at its middle. A line becomes 161 points
- * between its two ends, which must lie on one surface, because a fit of a falloff needs one normal.
+ * between its two ends, which must lie on one surface, because a fit of a falloff needs one normal. A lamp that nobody
+ * marked points for, and whose radiance is not given, gets points itself: where rays from it, as many as places, meet
+ * the model. Their density is that of a lamp's light. Those within a cube of a face are one mark.
  *
- * Errors name the file, the line and the pixel. Units: the model's, angles in radians after this file. */
+ * Marks are evidence: one whose pixels mean nothing (a photo that was not registered, a ray that leaves the model) is
+ * left out with a warning that names the file, the line and the pixel. Units: the model's, angles in radians after this
+ * file. */
 #include "stages/fit_lights/lit_scene.h"
 
 #include <math.h>
@@ -26,10 +30,13 @@
 #include "common/base/array.h"
 #include "common/base/log.h"
 #include "common/capture/photo_camera.h"
+#include "common/light/frame.h"
 #include "common/math/numbers.h"
+#include "stages/fit_lights/cone_edge.h"
 
 enum { LINE_POINTS = 161 };
 #define SAME_PLANE 0.999 /* cosine between normals of one surface */
+#define PLACE_SIDE 0.05  /* of the model's size: of the cube whose places are one mark */
 
 void lit_model_release(struct lit_model *m)
 {
@@ -43,6 +50,7 @@ void lit_scene_release(struct lit_scene *s)
     light_list_release(&s->lights);
     free(s->lamp_notes);
     free(s->points);
+    free(s->marks);
     *s = (struct lit_scene){0};
 }
 
@@ -50,7 +58,7 @@ struct resolver {
     struct lit_scene *scene;
     const struct annotation_list *notes;
     const struct lit_model *model;
-    int grid;
+    int grid, places;
 };
 
 /* ----------------------------------------------------------------------------------------------------------- pixels */
@@ -154,6 +162,15 @@ static enum status place_area(struct lamp *l, const struct resolver *r, const st
     return ST_OK;
 }
 
+/* Turns an error of a lamp or mark into a warning. False: it is another kind of error. */
+static bool left_out(struct err *err, const char *what)
+{
+    if (err->status != ST_DATA) return false;
+    log_warn("%s %s", err->text, what);
+    *err = (struct err)ERR_INIT;
+    return true;
+}
+
 static enum status add_lamp(struct resolver *r, int note, struct err *err)
 {
     const struct annotation *a = &r->notes->items[note];
@@ -165,7 +182,9 @@ static enum status add_lamp(struct resolver *r, int note, struct err *err)
     struct lamp *l = &list->lamps[list->lamp_count++];
     *l = (struct lamp){.name = strdup(a->name)};
     if (!l->name) return err_nomem(err, "a name", strlen(a->name) + 1);
-    return a->kind == NOTE_DISK ? place_disk(l, r, a, err) : place_area(l, r, a, err);
+    if (!(a->kind == NOTE_DISK ? place_disk(l, r, a, err) : place_area(l, r, a, err))) return ST_OK;
+    if (left_out(err, "This lamp stays as photographed.")) free(list->lamps[--list->lamp_count].name);
+    return err->status;
 }
 
 /* --------------------------------------------------------------------------------------------------------- openings */
@@ -266,15 +285,30 @@ static enum status check_openings(const struct resolver *r, struct err *err)
 
 /* ----------------------------------------------------------------------------------------------------------- points */
 
+static int lamp_of_note(const struct resolver *r, int note)
+{
+    for (int i = 0; i < r->scene->lights.lamp_count; i++)
+        if (r->scene->lamp_notes[i] == note) return i;
+    return -1;
+}
+
+static enum status add_mark(struct resolver *r, int note, int face, struct err *err)
+{
+    struct lit_scene *s = r->scene;
+    if (array_append(&s->marks, (size_t)s->mark_count, sizeof *s->marks, "marks", err)) return err->status;
+    s->marks[s->mark_count++] = (struct lit_mark){note, face};
+    return ST_OK;
+}
+
+/* Of the last mark. */
 static enum status add_point(struct resolver *r, int note, struct vec3 at, struct vec3 normal, double along,
                              struct err *err)
 {
     struct lit_scene *s = r->scene;
     const struct annotation *a = &r->notes->items[note];
-    int lamp = 0;
     if (array_append(&s->points, (size_t)s->point_count, sizeof *s->points, "points", err)) return err->status;
-    while (s->lamp_notes[lamp] != a->lamp) lamp++;
-    s->points[s->point_count++] = (struct lit_point){at, normal, lamp, note, a->kind, along};
+    s->points[s->point_count++] =
+        (struct lit_point){at, normal, lamp_of_note(r, a->lamp), note, s->mark_count - 1, a->kind, along};
     return ST_OK;
 }
 
@@ -318,22 +352,77 @@ static enum status add_points(struct resolver *r, int note, struct err *err)
 {
     const struct annotation *a = &r->notes->items[note];
     struct ray_hit hit;
-    if (a->kind == NOTE_LINE) return add_line(r, note, err);
-    if (a->pixels == 2) return add_rectangle(r, note, err);
-    if (pixel_hit(&hit, r, a, a->pixel, err)) return err->status;
-    return add_point(r, note, hit.point, hit.normal, 0, err);
+    if (lamp_of_note(r, a->lamp) < 0) return ST_OK; /* its lamp was left out */
+    if (add_mark(r, note, -1, err)) return err->status;
+    if (a->kind == NOTE_LINE)
+        add_line(r, note, err);
+    else if (a->pixels == 2)
+        add_rectangle(r, note, err);
+    else if (!pixel_hit(&hit, r, a, a->pixel, err))
+        add_point(r, note, hit.point, hit.normal, 0, err);
+    left_out(err, "This mark does not count.");
+    return err->status;
+}
+
+/* Whether the radiance of a lamp is neither given nor marked. */
+static bool needs_places(const struct resolver *r, int lamp)
+{
+    bool marked = r->notes->items[r->scene->lamp_notes[lamp]].has_radiance;
+    for (int i = 0; i < r->scene->point_count; i++)
+        marked |= r->scene->points[i].lamp == lamp && r->scene->points[i].kind != NOTE_LINE;
+    return !marked;
+}
+
+/* The mark of a place, which is new if no other place of the lamp is in its cube. */
+static enum status mark_of_place(int *mark, struct resolver *r, int from, int note, int face, const int cube[3],
+                                 double side, struct err *err)
+{
+    const struct lit_scene *s = r->scene;
+    for (int i = from; i < s->point_count; i++) {
+        const double at[3] = {s->points[i].at.x, s->points[i].at.y, s->points[i].at.z};
+        bool same = s->marks[s->points[i].mark].face == face;
+        for (int k = 0; k < 3; k++) same &= (int)floor(at[k] / side) == cube[k];
+        *mark = s->points[i].mark;
+        if (same) return ST_OK;
+    }
+    *mark = s->mark_count;
+    return add_mark(r, note, face, err);
+}
+
+static enum status add_places(struct resolver *r, int lamp, struct err *err)
+{
+    struct lit_scene *s = r->scene;
+    const struct lamp *l = &s->lights.lamps[lamp];
+    const int note = s->lamp_notes[lamp], from = s->point_count;
+    const double side = PLACE_SIDE * model_rays_size(&r->model->rays);
+    for (int i = 0; !err->status && i < r->places; i++) {
+        /* evenly over the projected hemisphere [Vogel 1979] */
+        const double sin2 = (i + 0.5) / r->places, turns = i * 0.6180339887498949;
+        const struct vec3 d = frame_direction(l->normal, sqrt(sin2), sqrt(1 - sin2), turns - floor(turns));
+        struct curve_point p;
+        unsigned face;
+        int mark;
+        if (!cone_edge_ray(&p, l, d, &r->model->rays, &face)) continue;
+        const int cube[3] = {(int)floor(p.at.x / side), (int)floor(p.at.y / side), (int)floor(p.at.z / side)};
+        if (mark_of_place(&mark, r, from, note, (int)face, cube, side, err)) continue;
+        if (!array_append(&s->points, (size_t)s->point_count, sizeof *s->points, "points", err))
+            s->points[s->point_count++] = (struct lit_point){p.at, p.normal, lamp, note, mark, NOTE_LIT, 0};
+    }
+    return err->status;
 }
 
 enum status lit_scene_resolve(struct lit_scene *s, const struct annotation_list *notes, const struct lit_model *model,
-                              int grid, struct err *err)
+                              int grid, int places, struct err *err)
 {
-    struct resolver r = {s, notes, model, grid};
+    struct resolver r = {s, notes, model, grid, places};
     *s = (struct lit_scene){0};
     if (notes) check_openings(&r, err);
     for (int i = 0; !err->status && notes && i < notes->count; i++)
         if (notes->items[i].kind == NOTE_DISK || notes->items[i].kind == NOTE_AREA) add_lamp(&r, i, err);
     for (int i = 0; !err->status && notes && i < notes->count; i++)
         if (notes->items[i].kind >= NOTE_LIT) add_points(&r, i, err);
+    for (int i = 0; !err->status && i < s->lights.lamp_count; i++)
+        if (needs_places(&r, i)) add_places(&r, i, err);
     if (!err->status) add_openings(&r, err);
     return err->status;
 }

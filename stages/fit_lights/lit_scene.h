@@ -20,23 +20,30 @@ void lit_model_release(struct lit_model *m);
 struct lit_point {
     struct vec3 at, normal;
     int lamp;                  /* of the list of lamps */
-    int note;                  /* index of its annotation */
+    int note;                  /* index of its annotation; of a place that nobody marked, that of its lamp */
+    int mark;                  /* of the list of marks */
     enum annotation_kind kind; /* NOTE_LIT, NOTE_UNLIT or NOTE_LINE */
     double along;              /* of a line, 0 to 1 */
+};
+
+/* Points of one annotation, or of a patch of a face that a lamp without marks lights. */
+struct lit_mark {
+    int note, face; /* face: of a place that nobody marked; -1: a person marked it */
 };
 
 struct lit_scene {
     struct light_list lights; /* lamps in the order of the annotations; radiance 0 until fitted */
     int *lamp_notes;          /* the annotation of each lamp */
     struct lit_point *points;
-    int point_count;
+    struct lit_mark *marks;
+    int point_count, mark_count;
 };
 
-/* notes may be NULL: then there are only the plan's windows. grid: points along a side of a rectangle. The caller
- * releases s. ST_DATA with file and line: an unknown view or opening, a pixel without a surface behind it, a lamp
- * without area. */
+/* notes may be NULL: then there are only the plan's windows. grid: points along a side of a rectangle; places: rays of
+ * a lamp without radiance and without marks, each of which adds the point that it hits. The caller releases s. A lamp
+ * or a mark whose pixels mean nothing is left out with a warning. ST_DATA with file and line: an unknown opening. */
 enum status lit_scene_resolve(struct lit_scene *s, const struct annotation_list *notes, const struct lit_model *model,
-                              int grid, struct err *err);
+                              int grid, int places, struct err *err);
 void lit_scene_release(struct lit_scene *s);
 
 #endif

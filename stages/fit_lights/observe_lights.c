@@ -103,6 +103,7 @@ static bool bilinear(const struct viewer *v, double x, double y, struct observat
 
 static bool marked_here(const struct viewer *v, const struct lit_point *p)
 {
+    if (v->scene->marks[p->mark].face >= 0) return false;
     const struct lens *lens = photo_lens_of_view(&v->model->in.set, &v->model->in.lenses, v->index);
     const char *marked = v->notes->items[p->note].view;
     return !strcmp(marked, v->camera.name) || (lens && !strcmp(marked, lens->photo));

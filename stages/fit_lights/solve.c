@@ -3,8 +3,16 @@
  * Beta comes first, because a lit point counts only inside of the cone: from the steps along lines, with the lamp's
  * radiance unknown. Then all lamps' radiances, exponents and the materials are fitted together; then beta again, with
  * the radiance known and the other lamps' light added; then the radiances again. What unsaturated views show of a lamp
- * itself is compared with that and, if it agrees, counts in a last fit. A lamp without lit points is measured where
- * views show it: where it saturates, its radiance is only a lower bound. */
+ * itself is compared with that and, if it agrees, counts in a last fit; where the lamp saturates, as a lower bound. A
+ * lamp without marks is measured where views show it; where it saturates, its radiance is fitted to the light that it
+ * casts on the faces about it (lit_scene.c).
+ *
+ * Counted once. The irradiance without the lamps is gathered from the room as it was photographed, with the lamps'
+ * own light in everything that they light, and only what the lamps show themselves is left out (field_atlas.c). So E
+ * holds all reflections of the lamps' light, and S D what comes straight from them.
+ *
+ * Nothing stops the fit. Marks that no photo measures or that the others contradict, and cones whose edge is not found,
+ * are named in warnings. A lamp of which nothing is known stays as photographed. */
 #include "stages/fit_lights/solve.h"
 
 #include <math.h>
@@ -18,18 +26,25 @@
 #include "common/math/weighted.h"
 #include "common/product/product.h"
 #include "stages/fit_lights/fit.h"
+#include "stages/fit_lights/fit_problem.h"
 #include "stages/fit_lights/lines.h"
 
-enum { PLACE_SIZE = 512, LINE_STRIDE = 8 /* of a line's points, one in so many is fitted */ };
-#define CONFIDENCE 1.96 /* standard errors of an interval of 95 % */
+enum { NAME_SIZE = 600, LINE_STRIDE = 8 /* of a line's points, one in so many is fitted */ };
+#define CONFIDENCE  1.96 /* standard errors of an interval of 95 % */
+#define UNKNOWN     30.0 /* a radiance whose interval spans this factor is not known */
+#define SAME_PLANE  0.02 /* of the model's height: points of a wall are so near to one plane, */
+#define SAME_NORMAL 0.98 /* and the cosine between their normals is at least this */
+#define LEAST_OFF   0.15 /* of its radiance, by which a mark is off before it is named, */
+#define SURE_OFF    2.5  /* and standard errors */
 
-static const char *const source_words[] = {"given", "fitted", "measured", "bound"};
+static const char *const source_words[] = {"given", "fitted", "measured", "bound", "unknown"};
 
 void solve_release(struct solved_lights *s)
 {
-    for (int i = 0; i < s->point_count; i++) free((char *)s->points[i].place);
+    for (int i = 0; i < s->material_count; i++) free((char *)s->materials[i].name);
     free(s->lamps);
     free(s->materials);
+    free(s->marks);
     free(s->points);
     free(s->point_notes);
     *s = (struct solved_lights){0};
@@ -48,6 +63,7 @@ static void measure_lamp(struct lamp_result *r, const struct solve_inputs *in, i
     const struct observations *o = in->seen;
     struct weighted *values = calloc((size_t)o->sight_count + 1, sizeof *values);
     if (!values) return; /* a check less */
+    r->saturated = r->unsaturated = 0;
     for (int i = 0; i < o->sight_count; i++)
         if (o->sights[i].lamp == lamp && o->sights[i].angle < l->beta) r->saturated += o->sights[i].saturated;
     for (int c = 0; c < 3; c++) {
@@ -75,13 +91,14 @@ static void compare(struct lamp_result *r, const struct lamp *l)
 {
     const double s[3] = {l->radiance.r, l->radiance.g, l->radiance.b};
     for (int c = 0; c < 3; c++) {
-        const double interval = CONFIDENCE * hypot(r->radiance_error[c], r->seen_error[c]), off = r->seen[c] - s[c];
-        if (r->unsaturated ? fabs(off) <= interval : off <= interval) continue;
+        const double error = CONFIDENCE * r->seen_error[c];
+        if (r->seen[c] - error <= r->high[c] && (!r->unsaturated || r->seen[c] + error >= r->low[c])) continue;
         r->disagrees = true;
-        log_warn("the lamp %s: its fitted radiance of %.4g +- %.2g disagrees with %s %.4g that views show of the lamp "
+        log_warn("the lamp %s: its fitted radiance of %.4g (%.4g to %.4g) disagrees with %s %.4g that views show of "
+                 "the lamp "
                  "(colour %d); check its points, its cone and the indirect light.",
-                 l->name, s[c], CONFIDENCE * r->radiance_error[c], r->unsaturated ? "the" : "the lower bound of",
-                 r->seen[c], c + 1);
+                 l->name, s[c], r->low[c], r->high[c], r->unsaturated ? "the" : "the lower bound of", r->seen[c],
+                 c + 1);
         return;
     }
 }
@@ -107,60 +124,94 @@ static bool summarize(struct fit_point *p, const struct observations *o, int poi
     return n > 0;
 }
 
-static enum status refuse_saturated(const struct solve_inputs *in, struct err *err)
+/* Warns of marks that no view measures. */
+static void report_unseen(const struct solve_inputs *in)
 {
-    for (int k = 0; k < in->notes->count; k++) {
-        const struct annotation *a = &in->notes->items[k];
-        int clipped = 0, seen = 0;
-        if (a->kind != NOTE_LIT && a->kind != NOTE_UNLIT) continue;
-        for (int i = 0; i < in->scene->point_count; i++)
-            if (in->scene->points[i].note == k) clipped += in->seen->clipped_points[i];
-        for (int i = 0; i < in->seen->count; i++) seen += in->scene->points[in->seen->items[i].point].note == k;
-        if (!seen && clipped)
-            return err_set(
-                err, ST_DATA,
-                "%s:%d: all views are saturated or dark at the points of %s; choose points that some exposure "
-                "measures.",
-                in->notes->path, a->line, a->name);
-        if (!seen)
-            return err_set(err, ST_DATA, "%s:%d: no view shows the points of %s; choose points that no view loses.",
-                           in->notes->path, a->line, a->name);
+    for (int k = 0; k < in->scene->mark_count; k++) {
+        const struct annotation *a = &in->notes->items[in->scene->marks[k].note];
+        int clipped = 0, seen = 0, points = 0;
+        if (in->scene->marks[k].face >= 0) continue;
+        for (int i = 0; i < in->scene->point_count; i++) {
+            if (in->scene->points[i].mark != k) continue;
+            clipped += in->seen->clipped_points[i];
+            points++;
+        }
+        for (int i = 0; i < in->seen->count; i++) seen += in->scene->points[in->seen->items[i].point].mark == k;
+        if (seen || !points) continue;
+        log_warn("%s:%d: %s this mark (%s %s), so it does not count; choose %s.", in->notes->path, a->line,
+                 clipped ? "all views are saturated or dark at" : "no view shows", annotation_word(a->kind), a->name,
+                 clipped ? "places that some exposure measures" : "places that nothing hides");
     }
-    return ST_OK;
 }
 
-/* The name of what a lamp's points are of. */
-static const char *material_name(const struct solve_inputs *in, int lamp)
+static const char *material_of_note(const struct annotation *a)
 {
-    for (int i = 0; i < in->scene->point_count; i++) {
-        const struct lit_point *p = &in->scene->points[i];
-        if (p->lamp == lamp && p->kind != NOTE_LINE && in->notes->items[p->note].material)
-            return in->notes->items[p->note].material;
+    if (a->material) return a->material;
+    return a->kind == NOTE_LINE ? NULL : a->name;
+}
+
+/* The material of a line that does not name one: that of the lamp's marks, if they are of one; NULL: they are not. */
+static const char *material_of_line(const struct solve_inputs *in, int lamp)
+{
+    const char *found = NULL;
+    for (int i = 0; i < in->scene->mark_count; i++) {
+        const struct annotation *a = &in->notes->items[in->scene->marks[i].note];
+        const char *name = in->scene->marks[i].face < 0 ? material_of_note(a) : NULL;
+        if (!name || a->lamp != in->scene->lamp_notes[lamp]) continue;
+        if (found && strcmp(found, name)) return NULL;
+        found = name;
     }
-    return in->scene->lights.lamps[lamp].name;
-}
-
-/* The index of a lamp's material, which is added if it is new. There are no more materials than lamps. */
-static int material_of(struct solved_lights *s, const struct solve_inputs *in, int lamp)
-{
-    const char *name = material_name(in, lamp);
-    for (int m = 0; m < s->material_count; m++)
-        if (!strcmp(s->materials[m].name, name)) return m;
-    s->materials[s->material_count] = (struct fit_material){.name = name};
-    return s->material_count++;
-}
-
-static bool has_points(const struct solve_inputs *in, int lamp)
-{
-    bool found = false;
-    for (int i = 0; i < in->scene->point_count; i++)
-        found |= in->scene->points[i].lamp == lamp && in->scene->points[i].kind != NOTE_LINE;
     return found;
 }
 
-static bool is_fitted(const struct solve_inputs *in, int lamp)
+static void name_material(char name[], size_t size, const struct solve_inputs *in, const struct lit_point *p)
 {
-    return !note_of_lamp(in, lamp)->has_radiance && has_points(in, lamp);
+    const struct lit_mark *m = &in->scene->marks[p->mark];
+    const struct annotation *a = &in->notes->items[m->note];
+    if (m->face >= 0) {
+        snprintf(name, size, "face %s", solid_face_name(&in->rays->mesh, m->face));
+        return;
+    }
+    const char *own = material_of_note(a);
+    if (!own) own = material_of_line(in, p->lamp);
+    if (own)
+        snprintf(name, size, "%s", own);
+    else
+        snprintf(name, size, "line %d", a->line);
+}
+
+/* The index of a point's material, which is added if it is new; -1: no memory. There are no more than marks. */
+static int material_of(struct solved_lights *s, const struct solve_inputs *in, const struct lit_point *p)
+{
+    char name[NAME_SIZE];
+    name_material(name, sizeof name, in, p);
+    for (int m = 0; m < s->material_count; m++)
+        if (!strcmp(s->materials[m].name, name)) return m;
+    char *own = strdup(name);
+    if (!own) return -1;
+    s->materials[s->material_count] = (struct fit_material){.name = own};
+    return s->material_count++;
+}
+
+/* Whether a mark tells of its lamp's radiance. Places that nobody marked do not where views measure the lamp itself. */
+static bool counts(const struct solved_lights *s, const struct solve_inputs *in, const struct lit_point *p)
+{
+    return in->scene->marks[p->mark].face < 0 || s->lamps[p->lamp].uses_places;
+}
+
+static bool has_points(const struct solved_lights *s, const struct solve_inputs *in, int lamp)
+{
+    bool found = false;
+    for (int i = 0; i < in->scene->point_count; i++) {
+        const struct lit_point *p = &in->scene->points[i];
+        found |= p->lamp == lamp && p->kind != NOTE_LINE && counts(s, in, p);
+    }
+    return found;
+}
+
+static bool is_fitted(const struct solved_lights *s, const struct solve_inputs *in, int lamp)
+{
+    return !note_of_lamp(in, lamp)->has_radiance && s->lamps[lamp].measured_points > 0;
 }
 
 static enum fit_point_kind point_kind(const struct lit_point *p)
@@ -169,28 +220,60 @@ static enum fit_point_kind point_kind(const struct lit_point *p)
     return p->kind == NOTE_LIT ? POINT_LIT : POINT_UNLIT;
 }
 
+/* Keeps points evenly, if there are more than can be fitted. */
+static void thin_points(struct solved_lights *s)
+{
+    const int64_t all = s->point_count;
+    int kept = 0;
+    for (int64_t i = 0; all > MAX_FIT_POINTS && i < all; i++) {
+        if ((i + 1) * MAX_FIT_POINTS / all <= kept) continue;
+        s->points[kept] = s->points[i];
+        s->point_notes[kept++] = s->point_notes[i];
+    }
+    if (all > MAX_FIT_POINTS) s->point_count = kept;
+}
+
+/* The number of the wall of a point: that of the first point of the fit that is marked for the same lamp on the same
+ * plane. */
+static int wall_of(const struct solved_lights *s, const struct solve_inputs *in, const struct lit_point *p)
+{
+    const double off = SAME_PLANE * model_rays_height(in->rays);
+    for (int i = 0; i < s->point_count; i++) {
+        const struct lit_point *q = &in->scene->points[s->point_notes[i]];
+        if (q->lamp == p->lamp && vec3_dot(q->normal, p->normal) > SAME_NORMAL &&
+            fabs(vec3_dot(vec3_sub(p->at, q->at), q->normal)) < off)
+            return s->points[i].wall;
+    }
+    return s->point_count;
+}
+
 static enum status list_points(struct solved_lights *s, const struct solve_inputs *in, struct err *err)
 {
-    const size_t most = (size_t)in->scene->point_count + 1;
+    const size_t most = (size_t)in->scene->point_count + 1, marks = (size_t)in->scene->mark_count + 1;
     int next = 0;
     s->points = calloc(most, sizeof *s->points);
     s->point_notes = calloc(most, sizeof *s->point_notes);
-    if (!s->points || !s->point_notes) return err_nomem(err, "points", most * sizeof *s->points);
+    s->materials = calloc(marks, sizeof *s->materials);
+    s->marks = calloc(marks, sizeof *s->marks);
+    s->mark_count = in->scene->mark_count;
+    if (!s->points || !s->point_notes || !s->materials || !s->marks)
+        return err_nomem(err, "points", most * sizeof *s->points);
     for (int i = 0; i < in->scene->point_count; i++) {
         const struct lit_point *p = &in->scene->points[i];
         struct fit_point *q = &s->points[s->point_count];
-        if (p->kind == NOTE_LINE && (!is_fitted(in, p->lamp) || i % LINE_STRIDE)) continue;
-        *q = (struct fit_point){
-            .material = material_of(s, in, p->lamp), .lamp = p->lamp, .kind = point_kind(p), .at = p->at};
+        if (!counts(s, in, p) || (p->kind == NOTE_LINE && (!has_points(s, in, p->lamp) || i % LINE_STRIDE))) continue;
+        *q = (struct fit_point){.lamp = p->lamp, .mark = p->mark, .kind = point_kind(p), .at = p->at};
         if (!summarize(q, in->seen, i, &next)) continue;
-        char place[PLACE_SIZE];
-        snprintf(place, sizeof place, "%s:%d", in->notes->path, in->notes->items[p->note].line);
-        q->place = strdup(place);
-        if (!q->place) return err_nomem(err, "a place", sizeof place);
+        q->material = material_of(s, in, p);
+        if (q->material < 0) return err_nomem(err, "a name", NAME_SIZE);
         memcpy(q->indirect, in->indirect[i], sizeof q->indirect);
+        q->wall = wall_of(s, in, p);
         s->point_notes[s->point_count++] = i;
+        s->lamps[p->lamp].measured_points += p->kind != NOTE_LINE;
     }
-    return refuse_saturated(in, err);
+    thin_points(s);
+    report_unseen(in);
+    return ST_OK;
 }
 
 /* ---------------------------------------------------------------------------------------------------------- the fit */
@@ -206,11 +289,12 @@ static double direct_at(const void *ctx, int lamp, int point, double exponent)
     return direct_light_at(c->in->direct, lamp, c->points[point], c->in->scene->lights.lamps[lamp].beta, exponent);
 }
 
-/* What unsaturated views show of a lamp itself, unless it disagrees: they may show something else there. The exponent
- * of a lamp, if that is fitted, would have to be known. */
+/* What views show of a lamp itself, unless it disagrees: they may show something else there. The exponent of a lamp, if
+ * that is fitted, would have to be known. */
 static void add_seen(struct fit_lamp *l, const struct lamp_result *r, const struct solve_inputs *in)
 {
-    for (int c = 0; r->unsaturated && !r->disagrees && !l->fit_exponent && c < 3; c++) {
+    l->seen_is_bound = !r->unsaturated;
+    for (int c = 0; !r->disagrees && !(r->unsaturated && l->fit_exponent) && c < 3; c++) {
         if (!(r->seen[c] > 0)) return;
         l->seen[c] = r->seen[c];
         l->seen_error[c] = hypot(r->seen_error[c] / r->seen[c], in->params->seen_error);
@@ -223,32 +307,34 @@ enum pass { PASS_PROVISIONAL, PASS_POINTS, PASS_POINTS_AND_PICTURES };
 static enum status fit_radiances(struct solved_lights *s, const struct solve_inputs *in, enum pass pass,
                                  struct err *err)
 {
+    static const int draws[] = {0, FIT_FEW_DRAWS, FIT_DRAWS};
     struct light_list *list = &in->scene->lights;
     struct fit_lamp *lamps = calloc((size_t)list->lamp_count + 1, sizeof *lamps);
     const struct fit_ctx ctx = {in, s->point_notes};
     if (!lamps) return err_nomem(err, "lamps", (size_t)list->lamp_count * sizeof *lamps);
     for (int i = 0; i < list->lamp_count; i++) {
         const struct lamp *l = &list->lamps[i];
-        const bool fit = is_fitted(in, i);
+        const bool fit = is_fitted(s, in, i);
         lamps[i] = (struct fit_lamp){.name = l->name,
-                                     .material = fit ? material_of(s, in, i) : -1,
                                      .fit = fit,
                                      .fit_exponent = fit && note_of_lamp(in, i)->has_exponent == QUANTITY_FIT,
                                      .radiance = {l->radiance.r, l->radiance.g, l->radiance.b},
                                      .exponent = l->exponent};
         if (pass == PASS_POINTS_AND_PICTURES) add_seen(&lamps[i], &s->lamps[i], in);
     }
-    struct light_fit f = {s->points,
-                          lamps,
-                          s->materials,
-                          s->point_count,
-                          list->lamp_count,
-                          s->material_count,
-                          direct_at,
-                          &ctx,
-                          in->params->texture,
-                          pass == PASS_PROVISIONAL ? INFINITY : in->params->max_spread,
-                          in->params->irradiance_error};
+    struct light_fit f = {.points = s->points,
+                          .lamps = lamps,
+                          .materials = s->materials,
+                          .marks = s->marks,
+                          .point_count = s->point_count,
+                          .lamp_count = list->lamp_count,
+                          .material_count = s->material_count,
+                          .mark_count = s->mark_count,
+                          .direct = direct_at,
+                          .ctx = &ctx,
+                          .texture = in->params->texture,
+                          .irradiance_error = in->params->irradiance_error,
+                          .draws = draws[pass]};
     fit_solve(&f, err);
     for (int i = 0; !err->status && i < list->lamp_count; i++) {
         struct lamp *l = &list->lamps[i];
@@ -256,6 +342,8 @@ static enum status fit_radiances(struct solved_lights *s, const struct solve_inp
         l->radiance = rgb_make(lamps[i].radiance[0], lamps[i].radiance[1], lamps[i].radiance[2]);
         l->exponent = lamps[i].exponent;
         memcpy(s->lamps[i].radiance_error, lamps[i].radiance_error, sizeof lamps[i].radiance_error);
+        memcpy(s->lamps[i].low, lamps[i].low, sizeof lamps[i].low);
+        memcpy(s->lamps[i].high, lamps[i].high, sizeof lamps[i].high);
         s->lamps[i].exponent_error = lamps[i].exponent_error;
         s->lamps[i].source = LAMP_FITTED;
     }
@@ -275,68 +363,136 @@ static void begin_lamps(struct solved_lights *s, const struct solve_inputs *in)
     }
 }
 
-/* Lamps without points have the radiance that views show. */
-static enum status take_seen(struct solved_lights *s, const struct solve_inputs *in, struct err *err)
+/* A lamp has the radiance that views show of it; if they saturate, that is a lower bound. */
+static void take_seen(struct solved_lights *s, const struct solve_inputs *in, int lamp)
+{
+    struct lamp_result *r = &s->lamps[lamp];
+    struct lamp *l = &in->scene->lights.lamps[lamp];
+    const struct annotation *a = note_of_lamp(in, lamp);
+    const bool seen = r->unsaturated || r->saturated;
+    l->radiance = seen ? rgb_make(r->seen[0], r->seen[1], r->seen[2]) : rgb_grey(0);
+    l->bound = !r->unsaturated;
+    r->source = r->unsaturated ? LAMP_MEASURED : seen ? LAMP_BOUND : LAMP_UNKNOWN;
+    memcpy(r->radiance_error, r->seen_error, sizeof r->seen_error);
+    if (r->source == LAMP_BOUND)
+        log_warn("%s:%d: the lamp %s is saturated in all %d views that show it, and nothing says how bright it is, so "
+                 "its radiance of %.4g %.4g %.4g is a lower bound; mark lit and unlit points.",
+                 in->notes->path, a->line, l->name, r->saturated, r->seen[0], r->seen[1], r->seen[2]);
+    if (r->source == LAMP_UNKNOWN)
+        log_warn("%s:%d: nothing says how bright the lamp %s is: no mark tells, and no view shows it large enough%s, "
+                 "so it stays as photographed; mark lit and unlit points, or give radiance R G B.",
+                 in->notes->path, a->line, l->name, l->beta < 1.5 ? " within its cone" : "");
+}
+
+static void take_unfitted(struct solved_lights *s, const struct solve_inputs *in)
 {
     for (int i = 0; i < in->scene->lights.lamp_count; i++) {
-        struct lamp_result *r = &s->lamps[i];
-        struct lamp *l = &in->scene->lights.lamps[i];
-        const struct annotation *a = note_of_lamp(in, i);
-        measure_lamp(r, in, i);
-        if (a->has_radiance || is_fitted(in, i)) continue;
-        if (!r->unsaturated && !r->saturated)
-            return err_set(
-                err, ST_DATA,
-                "%s:%d: nothing says how bright the lamp %s is: it has no lit and unlit points, and no view shows it "
-                "large enough%s; add lit and unlit points, or radiance R G B.",
-                in->notes->path, a->line, a->name, l->beta < 1.5 ? " within its cone" : "");
-        l->radiance = rgb_make(r->seen[0], r->seen[1], r->seen[2]);
-        l->bound = !r->unsaturated;
-        r->source = l->bound ? LAMP_BOUND : LAMP_MEASURED;
-        memcpy(r->radiance_error, r->seen_error, sizeof r->seen_error);
-        if (l->bound)
-            log_warn("the lamp %s is saturated in all %d views that show it, so its radiance of %.4g %.4g %.4g is a "
-                     "lower bound; "
-                     "annotate lit and unlit points.",
-                     l->name, r->saturated, r->seen[0], r->seen[1], r->seen[2]);
+        measure_lamp(&s->lamps[i], in, i);
+        if (!note_of_lamp(in, i)->has_radiance && !is_fitted(s, in, i)) take_seen(s, in, i);
     }
+}
+
+/* Lamps of which the marks say next to nothing. */
+static void drop_unknown(struct solved_lights *s, const struct solve_inputs *in)
+{
+    for (int i = 0; i < in->scene->lights.lamp_count; i++) {
+        const struct lamp_result *r = &s->lamps[i];
+        bool known = r->source != LAMP_FITTED;
+        for (int c = 0; c < 3; c++) known |= r->high[c] < UNKNOWN * r->low[c];
+        if (!known) take_seen(s, in, i);
+    }
+}
+
+/* Without an edge that photos show, beta lies between the lit and the unlit marks. */
+static void guess_cone(struct solved_lights *s, const struct solve_inputs *in, int lamp)
+{
+    struct lamp *l = &in->scene->lights.lamps[lamp];
+    double inside = 0, outside = 0.5 * PI;
+    for (int i = 0; i < in->scene->point_count; i++) {
+        const struct lit_point *p = &in->scene->points[i];
+        const struct vec3 to = vec3_normalize(vec3_sub(p->at, l->centre));
+        const double angle = acos(clamp(vec3_dot(to, l->normal), -1, 1));
+        if (p->lamp != lamp || in->scene->marks[p->mark].face >= 0) continue;
+        if (p->kind == NOTE_LIT) inside = fmax(inside, fmin(angle, 0.5 * PI));
+    }
+    for (int i = 0; i < in->scene->point_count; i++) {
+        const struct lit_point *p = &in->scene->points[i];
+        const struct vec3 to = vec3_normalize(vec3_sub(p->at, l->centre));
+        const double angle = acos(clamp(vec3_dot(to, l->normal), -1, 1));
+        if (p->lamp == lamp && p->kind == NOTE_UNLIT && angle > inside) outside = fmin(outside, angle);
+    }
+    const bool between = inside > 0 && outside < 0.5 * PI;
+    l->beta = between ? 0.5 * (inside + outside) : 0.5 * PI;
+    s->lamps[lamp].beta_error = between ? (outside - inside) / sqrt(12) : 0;
+    log_warn("%s:%d: the edge of the cone of the lamp %s was not found, so its beta is %.1f degrees, %s; add lines "
+             "across the edge, or give beta.",
+             in->notes->path, note_of_lamp(in, lamp)->line, l->name, l->beta / DEGREE,
+             between ? "between its lit and its unlit marks" : "as if it shone to all sides");
+}
+
+static enum status fit_cone(struct solved_lights *s, const struct solve_inputs *in, int lamp, bool known,
+                            struct err *err)
+{
+    const bool wanted = lines_of_lamp(in->scene, lamp) > 0;
+    if (wanted && !lines_fit_beta(&s->lamps[lamp].beta_error, in, lamp, known, err)) return ST_OK;
+    if (err->status && err->status != ST_DATA) return err->status;
+    if (err->status && !known) log_warn("%s", err->text);
+    *err = (struct err)ERR_INIT;
+    if (known) return ST_OK; /* it stays as it was found, or guessed, before */
+    if (wanted || note_of_lamp(in, lamp)->has_beta == QUANTITY_FIT) guess_cone(s, in, lamp);
     return ST_OK;
 }
 
 static enum status fit_cones(struct solved_lights *s, const struct solve_inputs *in, bool known, struct err *err)
 {
-    for (int i = 0; i < in->scene->lights.lamp_count; i++) {
-        const struct annotation *a = note_of_lamp(in, i);
-        const bool wanted = lines_of_lamp(in->scene, i) > 0;
-        if (!wanted && a->has_beta == QUANTITY_FIT)
-            return err_set(err, ST_DATA,
-                           "%s:%d: the beta of the lamp %s is to be fitted, but it has no line; add \"line %s in VIEW "
-                           "X Y X Y\" across the edge of its cone.",
-                           in->notes->path, a->line, a->name, a->name);
-        if (wanted && lines_fit_beta(&s->lamps[i].beta_error, in, i, known, err)) return err->status;
-    }
+    for (int i = 0; i < in->scene->lights.lamp_count; i++)
+        if (fit_cone(s, in, i, known, err)) return err->status;
     return ST_OK;
+}
+
+static bool is_outlier(const struct fit_mark *m)
+{
+    return fabs(expm1(m->off)) > LEAST_OFF && fabs(m->off) > SURE_OFF * m->off_error;
+}
+
+/* Names the marks that the others do not explain. */
+static void report_outliers(const struct solved_lights *s, const struct solve_inputs *in)
+{
+    for (int k = 0; k < s->mark_count; k++) {
+        const struct annotation *a = &in->notes->items[in->scene->marks[k].note];
+        const struct fit_mark *m = &s->marks[k];
+        if (in->scene->marks[k].face >= 0 || !is_outlier(m)) continue;
+        log_warn("%s:%d: this mark (%s %s) is %.0f %% %s than the other marks say, so it counts little: it may be on "
+                 "another material, in shade or in the sun.",
+                 in->notes->path, a->line, annotation_word(a->kind), a->name, 100 * fabs(expm1(m->off)),
+                 m->off > 0 ? "brighter" : "darker");
+    }
 }
 
 enum status solve_lights(struct solved_lights *s, const struct solve_inputs *in, struct err *err)
 {
     const int lamps = in->scene->lights.lamp_count;
-    *s = (struct solved_lights){.lamps = calloc((size_t)lamps + 1, sizeof *s->lamps),
-                                .materials = calloc((size_t)lamps + 1, sizeof *s->materials),
-                                .lamp_count = lamps};
-    if (!s->lamps || !s->materials) return err_nomem(err, "lamps", (size_t)lamps * sizeof *s->lamps);
+    *s = (struct solved_lights){.lamps = calloc((size_t)lamps + 1, sizeof *s->lamps), .lamp_count = lamps};
+    if (!s->lamps) return err_nomem(err, "lamps", (size_t)lamps * sizeof *s->lamps);
     begin_lamps(s, in);
-    if (list_points(s, in, err) || fit_cones(s, in, false, err) || take_seen(s, in, err) ||
-        fit_radiances(s, in, PASS_PROVISIONAL, err) || fit_cones(s, in, true, err) ||
+    for (int i = 0; i < lamps; i++) {
+        measure_lamp(&s->lamps[i], in, i);
+        s->lamps[i].uses_places = !s->lamps[i].unsaturated;
+    }
+    if (list_points(s, in, err) || fit_cones(s, in, false, err)) return err->status;
+    take_unfitted(s, in);
+    if (fit_radiances(s, in, PASS_PROVISIONAL, err) || fit_cones(s, in, true, err) ||
         fit_radiances(s, in, PASS_POINTS, err))
         return err->status;
-    bool seen = false;
     for (int i = 0; i < lamps; i++) {
         if (s->lamps[i].source != LAMP_FITTED) continue;
+        measure_lamp(&s->lamps[i], in, i);
         compare(&s->lamps[i], &in->scene->lights.lamps[i]);
-        seen |= s->lamps[i].unsaturated > 0 && !s->lamps[i].disagrees;
     }
-    return seen ? fit_radiances(s, in, PASS_POINTS_AND_PICTURES, err) : ST_OK;
+    if (fit_radiances(s, in, PASS_POINTS_AND_PICTURES, err)) return err->status;
+    drop_unknown(s, in);
+    report_outliers(s, in);
+    return ST_OK;
 }
 
 /* ---------------------------------------------------------------------------------------------------------- fit.txt */
@@ -356,6 +512,36 @@ static void write_lamp(const struct solved_lights *s, const struct solve_inputs 
         fprintf(to, "seen %s %.9g %.9g %.9g %.4g %.4g %.4g unsaturated %d saturated %d%s\n", name, r->seen[0],
                 r->seen[1], r->seen[2], CONFIDENCE * r->seen_error[0], CONFIDENCE * r->seen_error[1],
                 CONFIDENCE * r->seen_error[2], r->unsaturated, r->saturated, r->disagrees ? " disagrees" : "");
+}
+
+/* The interval of a lamp's radiance, which need not have the value in its middle. */
+static void write_range(const struct solved_lights *s, const struct solve_inputs *in, int i, FILE *to)
+{
+    const struct lamp_result *r = &s->lamps[i];
+    char name[600];
+    struct err ignored = ERR_INIT;
+    if (r->source != LAMP_FITTED) return;
+    if (textfile_quote(in->scene->lights.lamps[i].name, name, sizeof name, &ignored)) return;
+    fprintf(to, "range %s", name);
+    for (int c = 0; c < 3; c++) fprintf(to, " %.6g %.6g", r->low[c], r->high[c]);
+    fprintf(to, "\n");
+}
+
+static void write_mark(const struct solved_lights *s, const struct solve_inputs *in, int k, FILE *to)
+{
+    const struct fit_mark *m = &s->marks[k];
+    const struct lit_mark *mark = &in->scene->marks[k];
+    const struct annotation *a = &in->notes->items[mark->note];
+    const double usual = MARK_SCALE * in->params->texture;
+    int points = 0;
+    char name[600];
+    struct err ignored = ERR_INIT;
+    for (int i = 0; i < s->point_count; i++) points += s->points[i].mark == k;
+    if (!points || textfile_quote(a->name, name, sizeof name, &ignored)) return;
+    fprintf(to, "mark %d %s %s points %d off %.4g %.4g weight %.4g%s\n", a->line,
+            mark->face < 0 ? annotation_word(a->kind) : "place", name, points, expm1(m->off),
+            CONFIDENCE * m->off_error * exp(m->off), fmin(1, usual * usual / fmax(m->variance, 1e-30)),
+            is_outlier(m) ? " outlier" : "");
 }
 
 static void write_material(const struct fit_material *m, FILE *to)
@@ -400,8 +586,12 @@ enum status solve_write(const struct solved_lights *s, const struct solve_inputs
 {
     struct outfile f = {0};
     product_begin(&f, PRODUCT_LIGHT_FIT, path, prov, err);
-    for (int i = 0; !err->status && i < s->lamp_count; i++) write_lamp(s, in, i, f.fp);
+    for (int i = 0; !err->status && i < s->lamp_count; i++) {
+        write_lamp(s, in, i, f.fp);
+        write_range(s, in, i, f.fp);
+    }
     for (int i = 0; !err->status && i < s->material_count; i++) write_material(&s->materials[i], f.fp);
+    for (int k = 0; !err->status && k < s->mark_count; k++) write_mark(s, in, k, f.fp);
     for (int i = 0; !err->status && i < s->point_count; i++)
         if (s->points[i].kind != POINT_ACROSS) write_point(s, in, i, f.fp);
     if (!err->status) outfile_commit(&f, err);

@@ -11,7 +11,8 @@ struct solve_inputs {
     const struct annotation_list *notes;
     const struct observations *seen;
     const struct direct_light *direct;
-    const double (*indirect)[3]; /* of each point */
+    const double (*indirect)[3];   /* of each point */
+    const struct model_rays *rays; /* for the names of faces and the height */
     const struct fit_lights_params *params;
 };
 

@@ -74,17 +74,32 @@ given_indirect_light_is_for_the_points_that_are_listed()
     fit 1 '26 points, one for each that was listed' --lamps marks.txt --indirect fewer.txt
 }
 
+# unknown WORD LINE...: the marks of a lamp that stays as photographed; a window's light still comes in
+unknown()
+{
+    local word=$1; shift
+    marked "$@"
+    fit 0 "$word" --lamps marks.txt
+    [ "$(grep -c '^opening in-' made/lights.txt)" = 2 ] || { cat made/lights.txt; fail "$*: the openings are lost"; }
+}
+
+what_is_wrong_with_a_mark_is_said_and_the_rest_goes_on()
+{
+    photo=$(first_photo)
+    unknown 'marks.txt:2: found "nothing", wanted a photo' 'disk spot in nothing 1 1 rim 2 2'
+    unknown 'is not inside the photo' "disk spot in $photo 1e5 1 rim 2 2"
+    unknown 'has no area' "disk spot in $photo 100 60 rim 100 60 radiance 1 1 1"
+    unknown 'the edge of the cone of the lamp spot was not found' "disk spot in $photo 100 60 rim 101 60 beta fit radiance 1 1 1"
+    unknown '1 lamps, 2 openings' "disk spot in $photo 100 60 rim 104 60" "lit spot in $photo 100 90"
+}
+
 errors_say_what_is_wrong()
 {
     photo=$(first_photo)
     fit 1 'no-such.txt' --lamps no-such.txt
     marked 'window none'; fit 1 'marks.txt:2: found none, wanted the name of an opening' --lamps marks.txt
-    marked 'disk spot in nothing 1 1 rim 2 2'; fit 1 'marks.txt:2: found "nothing", wanted a photo' --lamps marks.txt
-    marked "disk spot in $photo 1e5 1 rim 2 2"; fit 1 'is not inside the photo' --lamps marks.txt
-    marked "disk spot in $photo 100 60 rim 100 60 radiance 1 1 1"; fit 1 'has no area' --lamps marks.txt
-    marked "disk spot in $photo 100 60 rim 101 60 beta fit radiance 1 1 1"; fit 1 'it has no line' --lamps marks.txt
-    marked "disk spot in $photo 100 60 rim 104 60" "lit spot in $photo 100 90"; fit 1 'unlit spot' --lamps marks.txt
+    marked "disk spot in $photo 100 60 rim 104 60 beta 30" "line spot in $photo 90 60 95 64"; fit 1 'write beta fit there' --lamps marks.txt
     fit 2 'hemicube = 33 is odd' --set hemicube=33
 }
 
-for t in windows_let_daylight_in_unless_they_are_shut marked_lamps_are_placed given_indirect_light_is_for_the_points_that_are_listed errors_say_what_is_wrong; do run "$t"; done
+for t in windows_let_daylight_in_unless_they_are_shut marked_lamps_are_placed given_indirect_light_is_for_the_points_that_are_listed what_is_wrong_with_a_mark_is_said_and_the_rest_goes_on errors_say_what_is_wrong; do run "$t"; done

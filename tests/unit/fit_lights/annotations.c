@@ -66,7 +66,7 @@ static void mistakes_are_refused(void **state)
         {HEAD "disk a in v01 1 2 rim 3 4 beta 30\nline a in v01 1 1 9 9\n", "write beta fit there"},
         {HEAD SPOT "lit spot in v01 5 5 on floor\n", "of, or a pixel's x, a number from 0 to 1000000"},
         {HEAD SPOT "lit spot in v01 5 5 of\n", "the name of a material"},
-        {HEAD SPOT "lit spot in v01 5 5 of a\nunlit spot in v01 5 5 of b\n", "must be of one material"},
+        {HEAD SPOT "line spot in v01 5 5 16 6 on a\n", "\"of\""},
         {HEAD "window w lri_1\n", "\"reference\""},
         {HEAD "window w reference\n", "lighting reference image"},
     };

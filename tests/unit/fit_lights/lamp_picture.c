@@ -180,8 +180,8 @@ static void the_picture_shows_the_patch_and_beside_it_the_lamp(void **state)
     struct view views[2] = {view_at(vec3_make(0.1, -0.2, 1), PI, 0, SIDE, SIDE, 150),
                             view_at(vec3_make(0, 0, -1), 0, 0, SIDE, SIDE, 300)};
     struct lamp l = spot(20 * DEGREE);
-    struct lit_point points[2] = {{{0.1, -0.2, -2}, {0, 0, 1}, 0, 0, NOTE_LIT, 0},
-                                  {{1.8, -0.2, -2}, {0, 0, 1}, 0, 1, NOTE_UNLIT, 0}};
+    struct lit_point points[2] = {{{0.1, -0.2, -2}, {0, 0, 1}, 0, 0, 0, NOTE_LIT, 0},
+                                  {{1.8, -0.2, -2}, {0, 0, 1}, 0, 1, 1, NOTE_UNLIT, 0}};
     const struct lit_scene scene = {.lights = {.lamps = &l, .lamp_count = 1}, .points = points, .point_count = 2};
     struct lit_model model = {
         .in = {.axes = {.rotation = {1, 0, 0, 0}, .scale = 1}, .set = {.views = views, .view_count = 2}}};
