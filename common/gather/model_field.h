@@ -83,7 +83,8 @@ void model_field_switch_lamp(struct model_field *f, int lamp, bool on);
 void model_field_scale_lamp(struct model_field *f, const char *name, const double scale[3]);
 
 /* Adds an emitter for each pane that lights.txt names and that `was`, the field before an edit, has at another place or
- * in another size: lights.txt tells of the window as it was. Last, after lamps were switched or scaled. */
+ * in another size, because lights.txt describes the window as it was. Call it last, after lamps were switched or
+ * scaled. */
 void model_field_add_changed_panes(struct model_field *f, const struct model_field *was);
 
 /* The nearest lamp that is on and seen from its bright side, on a ray from `from` in a unit direction up to the

@@ -28,7 +28,7 @@ struct chromaticities {
 };
 
 /* Each gives *space, which the caller releases; NULL: it is sRGB, to half a per cent. bits: 8 or 16 of samples, 32 for
- * values, which are linear. ST_DATA: it is no colour space, or none that is known. */
+ * values, which are linear. ST_DATA: the space is damaged or unknown. */
 
 /* Of an ICC profile. *tables: the profile is one of tables, and *space that of samples which colour_space_widen() has
  * converted. ST_DATA with the photo's path: a damaged profile, or one for something else than RGB and grey. */

@@ -45,7 +45,7 @@ enum status photo_init_values(struct photo *p, struct err *err);
 float photo_find_saturation(const struct photo *p);
 /* Copies text from a file, up to a NUL or max_length characters: only printable ASCII, without blanks at the ends. */
 void photo_keep_text(char *to, size_t size, const char *from, size_t max_length);
-/* The seconds since 1970 of EXIF's "2024:05:01 12:02:02" and sub-seconds "35"; 0: that is no time. */
+/* The seconds since 1970 of EXIF's "2024:05:01 12:02:02" and sub-seconds "35"; 0 if the text is not a time. */
 double photo_time(const char *date, const char *subseconds);
 
 #endif

@@ -1,4 +1,4 @@
-/* photo_webp.c - WebP files, by libwebp. Alpha is dropped; of an animation there is no photo. */
+/* photo_webp.c - WebP files, by libwebp. Alpha is dropped. Animations are refused. */
 #include "common/image/photo_formats.h"
 
 #include <stdlib.h>

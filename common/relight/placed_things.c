@@ -236,7 +236,7 @@ static enum status check_overlap(const struct placed_things *t, const struct tex
                                  const char *what, struct err *err)
 {
     double depth;
-    if (placed_things_outline(t, a->id) || placed_things_outline(t, other)) return ST_OK; /* what is flat is no solid */
+    if (placed_things_outline(t, a->id) || placed_things_outline(t, other)) return ST_OK; /* flat: not solid */
     if (thing_overlap_depth(&depth, &t->volume, a, b, other, err) || !(depth > 0)) return err->status;
     return edit_error(err, edit,
                       "%s would stand %.2g deep in %s. Move it by that much or more, or clear %s or move it away, too.",

@@ -1,12 +1,12 @@
-/* thing_overlap.c - whether two things stand in each other; see thing_overlap.h.
+/* thing_overlap.c - whether a thing would occupy the same space as another one; see thing_overlap.h.
  *
- * Boxes around things say too much: a chair stands below a table, and a stool in the corner of a sofa. So the voxels
- * are compared that are inside of both: behind the surfaces that the views show, or below them where no view looks
- * through. Surfaces are off by about a voxel, and single voxels may be wrong: a few of them do not count, nor does an
- * overlap of two voxels.
+ * Boxes around things would refuse too much: a chair fits below a table, and a stool in the corner of a sofa. So voxels
+ * are compared. A voxel is inside of a thing if it is behind the surfaces that the views show, or below them where no
+ * view looks through. Surfaces are off by about a voxel, and single voxels may be wrong, so a few shared voxels do not
+ * count, and neither does an overlap of up to two voxels.
  *
- * The depth of an overlap is the way out of it: the thing is shifted voxel by voxel until it is free, to eight sides
- * and up. Of two boxes this is their overlap along the axis in which it is least, to half a voxel. */
+ * The depth of an overlap is the length of the shortest way out: the thing is shifted by half a voxel at a time, in
+ * eight directions and upwards, until it is free. For two boxes that is their smallest overlap along an axis. */
 #include "common/relight/thing_overlap.h"
 
 #include <math.h>

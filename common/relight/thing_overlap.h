@@ -5,8 +5,8 @@
 #include "common/model/thing_volume.h"
 #include "common/relight/placed_thing.h"
 
-/* Sets *depth to the least shift of `a`, to one of eight sides or up, after which it stands in `b` no more; 0: it does
- * not stand in it, or by no more than outlines are off. other: the number of `b` in the volume; b NULL: the thing of
+/* Sets *depth to the smallest shift of `a`, in one of eight directions or upwards, that takes it out of `b`; 0 if they
+ * overlap by no more than outlines are off. other: the number of `b` in the volume; b NULL: the thing of
  * that number, where it was photographed. Same bits for any number of threads. ST_NOMEM. */
 enum status thing_overlap_depth(double *depth, const struct thing_volume *v, const struct placed_thing *a,
                                 const struct placed_thing *b, uint32_t other, struct err *err);

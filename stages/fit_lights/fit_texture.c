@@ -18,7 +18,7 @@
  * is, but the differences between its own points still count.
  *
  * The error of the indirect irradiance is much the same along a wall, and another one on the next. So the points of a
- * wall share a deviation, too: a lamp is known by what differs on one wall, and hardly by what differs between two.
+ * wall share a deviation, too. Differences within one wall tell of a lamp; differences between two walls hardly do.
  *
  * A single point that the others do not predict (the frame of a picture) has its variance enlarged, so that its error,
  * which the inverse of the covariance gives, is OUTLIER standard deviations. */

@@ -95,8 +95,7 @@ static void compare(struct lamp_result *r, const struct lamp *l)
         if (r->seen[c] - error <= r->high[c] && (!r->unsaturated || r->seen[c] + error >= r->low[c])) continue;
         r->disagrees = true;
         log_warn("the lamp %s: its fitted radiance of %.4g (%.4g to %.4g) disagrees with %s %.4g that views show of "
-                 "the lamp "
-                 "(colour %d); check its points, its cone and the indirect light.",
+                 "the lamp (colour %d); check its points, its cone and the indirect light.",
                  l->name, s[c], r->low[c], r->high[c], r->unsaturated ? "the" : "the lower bound of", r->seen[c],
                  c + 1);
         return;
@@ -193,7 +192,7 @@ static int material_of(struct solved_lights *s, const struct solve_inputs *in, c
     return s->material_count++;
 }
 
-/* Whether a mark tells of its lamp's radiance. Places that nobody marked do not where views measure the lamp itself. */
+/* Whether a mark helps to fit its lamp. Places that nobody marked do not if views measure the lamp itself. */
 static bool counts(const struct solved_lights *s, const struct solve_inputs *in, const struct lit_point *p)
 {
     return in->scene->marks[p->mark].face < 0 || s->lamps[p->lamp].uses_places;
@@ -392,7 +391,7 @@ static void take_unfitted(struct solved_lights *s, const struct solve_inputs *in
     }
 }
 
-/* Lamps of which the marks say next to nothing. */
+/* Takes what views show, for lamps whose marks say almost nothing. */
 static void drop_unknown(struct solved_lights *s, const struct solve_inputs *in)
 {
     for (int i = 0; i < in->scene->lights.lamp_count; i++) {

@@ -12,8 +12,8 @@
  *   d' = d D^4 / (D^4 + s^4),
  * D the largest of the three channels' |d|. A change of twice its error stays (94 %), one of half its error is left out
  * (6 %), and in between it fades, so that no outline shows. Squares in place of fourth powers, Wiener's filter, would
- * take 20 % of a change of twice its error; the error stated is that before smoothing. Errors of the model have no part
- * in it: they go with the change, so a small change is no less true than a large one. */
+ * take 20 % of a change of twice its error. The error is that before smoothing. Errors of the model do not count here:
+ * they grow with the change, so a small change is as true as a large one. */
 #include "stages/relight/quotients.h"
 
 #include <math.h>

@@ -291,7 +291,7 @@ static const char *write_reference(bool with_pose)
     return scratch;
 }
 
-/* lights.txt tells of the window as it was: where the edit widens it, light comes in beside that, too. */
+/* lights.txt describes the window as it was. Where the edit widens it, light also comes in beside that. */
 static void a_listed_pane_that_an_edit_widens_is_an_emitter_of_its_own(void **state)
 {
     struct box wide_room[3];

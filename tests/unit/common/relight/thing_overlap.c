@@ -141,7 +141,7 @@ static void things_that_move_together_stay_apart(void **state)
     placed_things_release(&t);
 }
 
-/* Noise of depth: a few voxels of a thing in the midst of another place are no overlap. */
+/* Noise of depth puts a few voxels of a thing elsewhere; they are not an overlap. */
 static void a_few_stray_voxels_do_not_count(void **state)
 {
     struct placed_things t = furnish();
