@@ -23,6 +23,18 @@ int colmap_log_connected(const char *log)
     return found;
 }
 
+/* The words of a line without what newer versions and failed checks begin a line with, which is severity, date, time, thread and place:
+ * "I20251114 16:04:38.468699 1930356 mapper.cc:976] words". */
+static const char *words_of(const char *line)
+{
+    const char *digits = line + 1, *end;
+    if (!*line || !strchr("IWEF", *line)) return line;
+    const size_t count = strspn(digits, "0123456789");
+    if ((count != 4 && count != 8) || digits[count] != ' ') return line;
+    end = strstr(digits, "] ");
+    return end ? end + 2 : line;
+}
+
 void colmap_log_last_line(char *text, size_t size, const char *log)
 {
     struct textfile t = {0};
@@ -30,7 +42,8 @@ void colmap_log_last_line(char *text, size_t size, const char *log)
     *text = '\0';
     if (textfile_open(&t, log, &ignored)) return;
     while (textfile_next_raw(&t)) {
-        const char *p = t.cursor + strspn(t.cursor, " \t");
+        const char *p = words_of(t.cursor);
+        p += strspn(p, " \t");
         if (isalpha((unsigned char)*p)) snprintf(text, size, "%s", p);
     }
     textfile_release(&t);

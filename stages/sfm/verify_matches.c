@@ -17,6 +17,7 @@
 #include "common/capture/match_list.h"
 #include "common/product/product.h"
 #include "stages/sfm/colmap_database.h"
+#include "stages/sfm/colmap_options.h"
 
 enum { MIN_MATCHES = 15 };  /* COLMAP rejects pairs with fewer verified matches */
 enum { BLOCK_PAIRS = 500 }; /* about 12 s of one core */
@@ -28,6 +29,7 @@ struct block {
 
 struct verification {
     const struct colmap_job *job;
+    struct colmap_options options;
     struct block *blocks; /* owned */
     int count;
     long long pairs;
@@ -102,9 +104,9 @@ static void verify_block(struct verification *v, struct block *b)
                           b->list,
                           "--match_type",
                           "raw",
-                          "--SiftMatching.use_gpu",
+                          v->options.use_gpu,
                           "0",
-                          "--SiftMatching.num_threads",
+                          v->options.num_threads,
                           "1",
                           NULL};
     struct colmap_progress progress;
@@ -147,6 +149,8 @@ enum status verify_matches(const struct colmap_job *job, struct err *err)
     if (!err->status) finish_list(&v, err);
     outfile_discard(&v.list);
     v.unverified = sfm_text_format(err, "%s.unverified", job->database);
+    char *help = sfm_text_format(err, "%s.help", job->database);
+    if (!err->status && v.count) colmap_options_ask(&v.options, help, err);
     if (!err->status && !outfile_copy(v.unverified, job->database, err)) {
         progress_start(&v.progress, "verifying", v.pairs, "pairs");
         parallel_for((size_t)v.count, 1, verify_blocks, &v);
@@ -156,6 +160,7 @@ enum status verify_matches(const struct colmap_job *job, struct err *err)
         if (v.blocks[i].err.status) *err = v.blocks[i].err;
     for (int i = 0; i < v.count; i++) remove_block(&v.blocks[i]);
     if (v.unverified) remove(v.unverified);
+    free(help);
     free(v.unverified);
     free(v.blocks);
     return err->status;
