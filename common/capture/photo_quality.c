@@ -16,7 +16,7 @@
 
 enum { CHUNK = 1 << 16 }; /* pixels */
 
-_Static_assert((int)EXR_PADDING >= (int)QUALITY_PADDING, "a channel of a file becomes a photo's variance");
+_Static_assert(EXR_PADDING - QUALITY_PADDING >= 0, "a channel of a file becomes a photo's variance");
 
 enum status photo_quality_init(struct photo_quality *q, int width, int height, struct err *err)
 {

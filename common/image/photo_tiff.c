@@ -210,7 +210,9 @@ static enum status read_plain(struct photo *p, TIFF *t, const struct tiff_layout
             for (size_t x = 0; x < width; x++)
                 for (size_t c = separate && !grey ? plane : 0; c < (separate && !grey ? plane + 1u : 3u); c++) {
                     const size_t at = x * step + (separate || grey ? 0 : c);
-                    to[3 * x + c] = l->bits == 8 ? line[at] : ((const uint16_t *)(const void *)line)[at];
+                    uint16_t value = line[at];
+                    if (l->bits != 8) memcpy(&value, line + at * sizeof value, sizeof value);
+                    to[3 * x + c] = value;
                 }
         }
     free(line);

@@ -37,8 +37,7 @@ static enum status read_levels(struct response *r, struct textfile *t, struct er
 {
     static const char *const colours[] = {"red", "green", "blue"};
     for (int i = 0; !err->status && i < RESPONSE_LEVELS; i++) {
-        if (!textfile_next(t))
-            return textfile_error(t, err, NULL, "%d lines \"R G B\", not %d", (int)RESPONSE_LEVELS, i);
+        if (!textfile_next(t)) return textfile_error(t, err, NULL, "%d lines \"R G B\", not %d", RESPONSE_LEVELS, i);
         for (int c = 0; !err->status && c < 3; c++) {
             double light = 0;
             char found[32];

@@ -77,12 +77,12 @@ struct mesh_reader { /* the records so far; offsets replace pointers until the e
 
 static enum status grow(void *items, int *capacity, int need, size_t size, struct err *err)
 {
-    void *grown;
+    void *old;
     if (need <= *capacity) return ST_OK;
     if (need > INT_MAX / 2 - 16) return err_nomem(err, "a model", (size_t)need * size);
     const int more = need + need / 2 + 16;
-    memcpy(&grown, items, sizeof grown);
-    grown = realloc(grown, (size_t)more * size);
+    memcpy(&old, items, sizeof old);
+    void *grown = realloc(old, (size_t)more * size);
     if (!grown) return err_nomem(err, "a model", (size_t)more * size);
     memcpy(items, &grown, sizeof grown);
     *capacity = more;

@@ -70,7 +70,9 @@ static const char *value_of(const struct placeholder *place, const struct produc
     const char *at = (const char *)key + place->offset, *value;
 
     if (*place->forms == '#') {
-        snprintf(text, 16, "%d", *(const int *)(const void *)at);
+        int number;
+        memcpy(&number, at, sizeof number);
+        snprintf(text, 16, "%d", number);
         value = text;
     } else {
         memcpy(&value, at, sizeof value);

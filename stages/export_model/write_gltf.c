@@ -75,7 +75,7 @@ static enum status add_vectors(struct gltf *g, const float *data, size_t count, 
 {
     json_int_t view;
     if (add_view(g, data, count * (size_t)size * sizeof *data, VERTICES, &view)) return g->err->status;
-    json_t *a = json_pack("{s:I, s:i, s:I, s:s}", "bufferView", view, "componentType", (int)FLOATS, "count",
+    json_t *a = json_pack("{s:I, s:i, s:I, s:s}", "bufferView", view, "componentType", FLOATS, "count",
                           (json_int_t)count, "type", size == 3 ? "VEC3" : "VEC2");
     if (bounds) {
         json_t *low = json_array(), *high = json_array();
@@ -258,7 +258,7 @@ static enum status add_triangles(struct gltf *g, const struct thing_mesh *mesh, 
     if (!add_view(g, corners, count * sizeof *corners, TRIANGLES, &view)) {
         *index = (json_int_t)json_array_size(g->accessors);
         json_array_append_new(g->accessors, json_pack("{s:I, s:i, s:I, s:s}", "bufferView", view, "componentType",
-                                                      (int)INTEGERS, "count", (json_int_t)count, "type", "SCALAR"));
+                                                      INTEGERS, "count", (json_int_t)count, "type", "SCALAR"));
     }
     free(corners);
     return g->err->status;
@@ -304,10 +304,8 @@ static enum status add_picture(struct gltf *g, json_t *images, json_t *textures,
     FILE *file = fopen(path, "rb");
     unsigned char *data = NULL;
     long size = -1;
-    if (file && !fseek(file, 0, SEEK_END) && (size = ftell(file)) > 0) {
-        rewind(file);
+    if (file && !fseek(file, 0, SEEK_END) && (size = ftell(file)) > 0 && !fseek(file, 0, SEEK_SET))
         data = malloc((size_t)size);
-    }
     const bool whole = data && fread(data, 1, (size_t)size, file) == (size_t)size;
     if (file) fclose(file);
     if (whole)

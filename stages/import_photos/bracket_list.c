@@ -15,8 +15,8 @@ static enum status check_view(const struct bracket_list *list, const struct text
                               struct err *err)
 {
     if (!*view || *view == '-' || strspn(view, safe) != strlen(view) || strlen(view) > MAX_NAME)
-        return textfile_error(
-            t, err, view, "a view's name of at most %d letters, digits, _ and -, not beginning with -", (int)MAX_NAME);
+        return textfile_error(t, err, view,
+                              "a view's name of at most %d letters, digits, _ and -, not beginning with -", MAX_NAME);
     if (!strcmp(view, "list") || !strcmp(view, "brackets"))
         return textfile_error(t, err, view, "another name for the view; this one is reserved");
     for (int i = 0; i < list->count; i++)

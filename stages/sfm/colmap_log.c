@@ -23,7 +23,7 @@ int colmap_log_connected(const char *log)
     return found;
 }
 
-/* The words of a line without what newer versions and failed checks begin a line with, which is severity, date, time, thread and place:
+/* The words of a line. Newer versions, and failed checks, begin a line with severity, date, time, thread and place:
  * "I20251114 16:04:38.468699 1930356 mapper.cc:976] words". */
 static const char *words_of(const char *line)
 {

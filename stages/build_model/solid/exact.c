@@ -42,12 +42,12 @@ void exact_release(struct exact_space *s)
 
 enum status exact_grow(void *items, int *capacity, int need, size_t size, struct err *err)
 {
-    void *grown;
+    void *old;
     if (need <= *capacity) return ST_OK;
     const size_t more = (size_t)need + (size_t)need / 2 + 16;
     if (more > INT32_MAX) return err_nomem(err, "the union of solids", more * size);
-    memcpy(&grown, items, sizeof grown);
-    grown = realloc(grown, more * size);
+    memcpy(&old, items, sizeof old);
+    void *grown = realloc(old, more * size);
     if (!grown) return err_nomem(err, "the union of solids", more * size);
     memcpy(items, &grown, sizeof grown);
     *capacity = (int)more;
