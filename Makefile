@@ -1,7 +1,8 @@
 # remodel: from a folder of photographs to a 3D pan & scan video, or to a solid model of a room. `make help` lists the rest.
 #
 # This file has the scene and how to run. common/make/ has the other parts: stages.mk puts the stages in order, top.mk is what
-# a person calls, build.mk makes the programs under out/build/FLAVOR, graph.mk executes the graph of products of a scene.
+# a person calls, develop.mk what the programs are worked on with, build.mk makes them under out/build/FLAVOR, graph.mk executes the
+# graph of products of a scene.
 # stages/NAME/stage.mk holds what all of them must know about a stage, stages/NAME/rules.c its rules (docs/adding-a-stage.md).
 # The top calls this file again with PHASE=build, then with PHASE=graph for each step of a run, before which print_graph
 # prints the graph anew: which photos, views and frames there are is known only when earlier steps have listed them.
@@ -17,6 +18,9 @@ hide = $(if $(V),,@)
 ifeq ($(PHASE),graph)
 include common/make/graph.mk
 else
+
+# an installed remodel has this file, and compiles nothing (common/install/install.sh)
+INSTALLED := $(wildcard common/make/installed)
 
 ## SCENE=NAME: the scene to work on, scenes/NAME/
 ## PHOTOS=DIR: folder of photos (JPEG, PNG, TIFF, HEIC, AVIF, WebP, JPEG XL, EXR, raw); with a new SCENE it is written to scenes/SCENE/scene.mk
@@ -36,7 +40,7 @@ CORES ?= $(shell nproc)
 DEPS ?= auto
 ## REPEATS=N: how often a bench runs each setting
 ## SCENES="A B": the scenes that plain `make` and `make regress` run (the latter also A+holdoutN: with HOLDOUT=N)
-SCENES ?= still-life loft
+SCENES ?= $(if $(INSTALLED),,still-life loft)
 REGRESS := $(if $(filter file,$(origin SCENES)),still-life still-life+holdout4 loft,$(SCENES))
 ## FLAVOR=release|debug|asan|clang: how the programs are compiled
 FLAVOR ?= release
@@ -45,7 +49,7 @@ FLAVOR ?= release
 B := out/build/$(FLAVOR)
 SUB := $(MAKE) --no-print-directory
 # without a -j of the caller's, compiling uses all cores
-BUILD = $(SUB) PHASE=build $(if $(findstring -j,$(MAKEFLAGS)),,-j$(CORES))
+BUILD = $(if $(INSTALLED),:,$(SUB) PHASE=build $(if $(findstring -j,$(MAKEFLAGS)),,-j$(CORES)))
 
 ifneq ($(SCENE),)
   ifeq ($(shell [[ '$(subst ','\'',$(SCENE))' =~ ^[A-Za-z0-9_][A-Za-z0-9_-]*$$ ]] && echo good),)
@@ -68,5 +72,10 @@ O := $(S)$(if $(filter-out default,$(QUALITY)),+$(QUALITY))$(if $(HOLDOUT),+hold
 ifeq ($(PHASE),)
   include common/make/top.mk
 endif
-include common/make/build.mk
+ifeq ($(INSTALLED),)
+  ifeq ($(PHASE),)
+    include common/make/develop.mk
+  endif
+  include common/make/build.mk
+endif
 endif

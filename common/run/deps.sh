@@ -4,8 +4,11 @@
 set -euo pipefail
 mode=$1; shift
 missing=() reasons=()
-while read -r group package probe; do
+# shellcheck source=/dev/null
+debian=$([ ! -e /etc/os-release ] || (. /etc/os-release && [ "$ID" = debian ] && echo "${VERSION_ID-}") || true)
+while read -r group package probe since; do
     [[ $group != \#* && -n $group && " $* " == *" $group "* ]] || continue
+    [ -z "$since" ] || [ "${debian:-0}" -ge "$since" ] || continue
     case $probe in
     command:*) PATH=$PATH:/usr/sbin command -v "${probe#*:}" >/dev/null && continue ;;
     pkg:*) pkg-config --exists "${probe#*:}" 2>/dev/null && continue ;;
