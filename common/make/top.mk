@@ -20,9 +20,11 @@ ifeq ($(SCENE),)
 all: deps ## everything a scene asks for; without SCENE builds the programs and runs SCENES, at draft quality by default
 	+@$(BUILD) build
 	+@common/run/run_scenes.sh '$(if $(filter file,$(origin QUALITY)),draft,$(QUALITY))' '$(SCENES)' $(SUB)
+doctor: # without a scene it looks at the machine alone
+	@common/run/doctor.sh
 why:    ## what is stale, and because of what
 plan:   ## what a run would do: pieces of work, jobs, core-hours, memory, bytes written; TO=GOAL; makes and submits nothing
-$(GOALS) why plan:
+$(filter-out doctor,$(GOALS)) why plan:
 	@echo "make $@ works on a scene: make $@ SCENE=NAME ('make help' lists the scenes)." >&2; exit 2
 else
 all $(GOALS) why plan: deps
