@@ -13,6 +13,14 @@ check_render_model()
     [ -z "$REMODEL_EDIT" ] || [ -e "$folder/edits/$REMODEL_EDIT.txt" ] || usage "EDIT=$REMODEL_EDIT: there is no $folder/edits/$REMODEL_EDIT.txt."
 }
 
+# of commands, one a line, the pictures of those that draw
+estimate_render_model()
+{
+    awk '{ line = "process"; for (i = 1; i < NF; i++) if ($i == "--view") line = line " " $(i + 1); print line }' >"$work/drawn.list"
+    "$bin/render_model" --config "$O/slice/render_model.cfg" --model x --axes x --vdta x --vita x --views "$O/views" --out "$O/remodel" \
+        --estimate "$work/drawn.list"
+}
+
 run_remodel()
 {
     farm render_model remodel

@@ -116,4 +116,20 @@ what_is_wrong_is_named()
     try 2 'max_samples' update_vita "${dark[@]}" --set max_samples=0 --out made
 }
 
-for t in a_lamp_goes_off_and_bytes_do_not_depend_on_threads an_edit_that_says_nothing_of_light_leaves_the_picture_alone make_relights_the_views_and_a_second_make_does_nothing what_is_wrong_is_named; do run "$t"; done
+a_plan_says_what_the_pictures_take()
+{
+    printf 'process %s\nprocess %s %s\n' "$view" "$view" "$view" >list
+    for p in relight "render_model --model x --axes x --vdta x --vita x"; do
+        # shellcheck disable=SC2086 # a program and its options
+        try 0 used $p --views "$O/views" --out made --estimate list
+        awk '$1 == "estimate" { found = NF == 6 && $2 == 2 && $3 > 0 && $3 < 2.0001 * $6 && $4 > 60 && $5 > 0 } END { exit !found }' out.txt ||
+            { cat out.txt; fail "$p: no line of the estimate, or a wrong one"; }
+        [ ! -e made ] || fail "an estimate wrote something"
+    done
+    rm -rf $O/relight/dark/unlit $O/relight/dark/*.txt
+    make -s DEPS=manual PHOTOS=set/photos SFM=set/model SCENE=t EDIT=dark RELIT_VIEWS=photo_1 TO=relight plan >log 2>&1 || { cat log; fail "make plan"; }
+    ! grep '^?: .*\(relight\|render_model\)' log || fail "they have no estimate"
+    awk '$1 == "relight" || $1 == "render_model" { n += $4 ~ /^[0-9.]+$/ } END { exit n != 2 }' log || { cat log; fail "the plan does not tell them"; }
+}
+
+for t in a_lamp_goes_off_and_bytes_do_not_depend_on_threads an_edit_that_says_nothing_of_light_leaves_the_picture_alone make_relights_the_views_and_a_second_make_does_nothing what_is_wrong_is_named a_plan_says_what_the_pictures_take; do run "$t"; done
