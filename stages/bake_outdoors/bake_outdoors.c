@@ -4,17 +4,25 @@
  *         VIEWS/cameras.txt, images.txt                 the cameras
  *         VIEWS/lenses.txt                              which views are of one photo
  *         VIEWS/VIEW.exr, IDS/VIEW.exr                  the views of which some ray leaves the model
+ *         VITA                                          the textures of the unedited model: patches of sun
  *         REFERENCE...                                  lighting reference images
- * writes  OUT                                           an equirectangular picture */
+ * writes  SKY                                           the sky and the sun that were found
+ *         OUT                                           an equirectangular picture; last */
+#include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "common/base/cli.h"
 #include "common/base/log.h"
+#include "common/base/outfile.h"
 #include "common/capture/photo_camera.h"
+#include "common/math/numbers.h"
 #include "common/model/scene_inputs.h"
 #include "common/product/product.h"
 #include "stages/bake_outdoors/outdoors_gather.h"
+#include "stages/bake_outdoors/outdoors_guess.h"
+#include "stages/bake_outdoors/outdoors_sun.h"
 
 #define PARAM_STRUCT struct outdoors_params
 static const struct param outdoors_param_table[] = {OUTDOORS_PARAMS(PARAM_ROW) PARAM_END};
@@ -29,7 +37,7 @@ static enum status check_params(const void *values, struct err *err)
 }
 
 struct job {
-    const char *model_path, *axes_path, *views, *ids, *out;
+    const char *model_path, *axes_path, *views, *ids, *vita, *sky, *out;
     struct cli_list references;
     struct outdoors_params params;
     struct provenance prov;
@@ -103,6 +111,80 @@ static void report(const struct outdoors_totals *t)
         100 * t->by_references, t->references, 100 * t->by_photos, t->photos, t->min_gain, t->max_gain);
 }
 
+static void report_sun(const struct outdoors_sun *s)
+{
+    const double azimuth = atan2(s->direction.y, s->direction.x) / DEGREE, elevation = asin(s->direction.z) / DEGREE;
+    switch (s->source) {
+    case SUN_SEEN:
+        log_note("a lighting reference image shows the sun, at azimuth %.1f and elevation %.1f degrees", azimuth,
+                 elevation);
+        break;
+    case SUN_HIDDEN:
+        log_warn("patches of sun come from azimuth %.1f and elevation %.1f degrees, but a lighting reference image "
+                 "shows no sun there; no sun is added. Check the image's pose, or take it at the time of the photos.",
+                 azimuth, elevation);
+        break;
+    case SUN_PATCHES:
+        if (!s->light.places)
+            log_warn("patches of sun come from azimuth %.1f and elevation %.1f degrees, but their edges do not tell "
+                     "how bright the sun is; none is added.",
+                     azimuth, elevation);
+        else
+            log_note("patches of sun come from azimuth %.1f and elevation %.1f degrees (+- %.2f); the sun's irradiance "
+                     "is %.3g (+- %.0f %%), from %d places",
+                     azimuth, elevation, s->search.fit.error, rgb_luminance(s->light.irradiance), 100 * s->light.error,
+                     s->light.places);
+        break;
+    case SUN_UNKNOWN:
+        log_note("no picture shows the sun, and no patches of sun are found indoors; none is added");
+        break;
+    }
+}
+
+/* looked: patches of sun were looked for */
+static enum status write_sky(const struct job *j, const struct sky_fit *sky, const struct outdoors_sun *s, bool looked,
+                             struct err *err)
+{
+    static const char *const sources[] = {"unknown", "seen", "hidden", "patches"};
+    struct outfile f = {0};
+    if (product_begin(&f, PRODUCT_SKY, j->sky, &j->prov, err)) return err->status;
+    if (sky->type)
+        fprintf(f.fp, "sky %d brightest %.6g misfit %.4g\n", sky->type, sky->brightest, sky->misfit);
+    else
+        fprintf(f.fp, "sky unknown\n");
+    fprintf(f.fp, "sun %s", sources[s->source]);
+    if (s->source != SUN_UNKNOWN)
+        fprintf(f.fp, " azimuth %.6g elevation %.6g", atan2(s->direction.y, s->direction.x) / DEGREE,
+                asin(s->direction.z) / DEGREE);
+    if (s->source == SUN_PATCHES)
+        fprintf(f.fp, " error %.4g radius %.4g painted %.4g irradiance %.6g %.6g %.6g error %.4g places %d",
+                s->search.fit.error, s->search.fit.radius, s->radius, s->light.irradiance.r, s->light.irradiance.g,
+                s->light.irradiance.b, s->light.places ? s->light.error : 0, s->light.places);
+    fputc('\n', f.fp);
+    if (looked)
+        fprintf(f.fp, "patches gain %.4g next %.4g contrast %.4g agree %.4g border %d\n", s->search.fit.gain,
+                s->search.next, s->search.evidence.contrast, s->search.evidence.agree, s->search.evidence.border);
+    outfile_commit(&f, err);
+    outfile_discard(&f);
+    return err->status;
+}
+
+/* What no picture shows: the sky, the ground and the sun. */
+static enum status complete(const struct job *j, struct outdoors *outdoors, bool known, struct provenance *prov,
+                            struct err *err)
+{
+    struct outdoors_sun sun = {0};
+    struct sky_fit sky = {0};
+    const bool look = known && !strcmp(j->params.sun, "find");
+    if (look) outdoors_sun_find(&sun, outdoors, &j->model, j->vita, prov, err);
+    if (!err->status) outdoors_guess(outdoors, sun.source != SUN_UNKNOWN ? &sun.direction : NULL, &sky, err);
+    if (!err->status) outdoors_sun_add(&sun, outdoors, &j->model, err);
+    if (!err->status && look && (j->vita || sun.source == SUN_SEEN)) report_sun(&sun);
+    if (!err->status && j->sky) write_sky(j, &sky, &sun, look && j->vita && sun.source != SUN_SEEN, err);
+    outdoors_sun_release(&sun);
+    return err->status;
+}
+
 static enum status bake(struct job *j, struct err *err)
 {
     struct outdoors outdoors = {0};
@@ -110,7 +192,8 @@ static enum status bake(struct job *j, struct err *err)
     if (!read_inputs(j, err) && !list_pictures(j, err) &&
         !outdoors_gather(&outdoors, &totals, j->pictures, j->count, j->photos, &j->model, &j->params, &j->prov, err)) {
         report(&totals);
-        outdoors_write(&outdoors, j->out, &j->prov, err);
+        if (!complete(j, &outdoors, totals.photos + totals.references > 0, &j->prov, err))
+            outdoors_write(&outdoors, j->out, &j->prov, err);
     }
     outdoors_release(&outdoors);
     return err->status;
@@ -137,6 +220,9 @@ int main(int argc, char **argv)
         CLI_STR("ids", &j.ids, CLI_REQUIRED, "folder of the faces that each view shows"),
         CLI_LIST("reference", &j.references, CLI_OPTIONAL,
                  "lighting reference image with lens and pose; comes before the views; repeat for several"),
+        CLI_STR("vita", &j.vita, CLI_OPTIONAL,
+                "folder of the textures of the unedited model, in which patches of sun are looked for"),
+        CLI_STR("sky", &j.sky, CLI_OPTIONAL, "text to write: the sky and the sun that were found"),
         CLI_STR("out", &j.out, CLI_REQUIRED, "EXR to write"),
         CLI_PARAMS(outdoors_param_table, &j.params, check_params),
         CLI_END,

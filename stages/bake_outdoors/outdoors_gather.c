@@ -9,7 +9,7 @@
  *      that chose it, interpolated bilinearly: 1 inside an area of one picture, with a transition of a cell's width to
  *      the next, so that no edge shows where two pictures meet. Pictures that are not chosen there have a very small
  *      weight, which only counts where the chosen ones show nothing. A pixel is the mean of 2 x 2 samples.
- * What remains is guessed (outdoors_guess.c).
+ * What remains is guessed afterwards (outdoors_guess.c).
  *
  * Source: looking up what lies outside by direction in a lighting reference image is [Colburn 2014, 5.3.2]. Different
  * here: photographs fill what no reference image shows, and directions that nothing shows are guessed and marked. */
@@ -307,10 +307,7 @@ enum status outdoors_gather(struct outdoors *o, struct outdoors_totals *totals, 
         second_pass(&g, count, totals, model, &progress, err);
     }
     progress_end(&progress);
-    if (!err->status) {
-        sum_up(totals, &g, count);
-        outdoors_guess(o, err);
-    }
+    if (!err->status) sum_up(totals, &g, count);
     free(g.cells.lists);
     free(g.cells.chosen);
     free(g.gain);

@@ -36,9 +36,6 @@ enum status outdoors_find_gains(double *gain, int photos, const struct outdoors_
 void outdoors_choose(struct outdoors_cells *cells, const struct outdoors_picture *pictures, const double *gain,
                      double agree);
 
-/* outdoors_guess.c. Fills what no picture shows. Without any known pixel the picture stays black. */
-enum status outdoors_guess(struct outdoors *o, struct err *err);
-
 /* The model without panes, and the normals of its faces. {0} is the empty state. */
 struct outdoors_model {
     struct model_rays rays;
@@ -55,8 +52,9 @@ struct outdoors_totals {
     double min_gain, max_gain;       /* of photos */
 };
 
-/* Makes the picture. Files that show the outdoors are added to prov, named views/VIEW.exr, ids/VIEW.exr, lri/ID.exr.
- * o is {0} on entry; the caller releases it. Same bits for any number of threads. */
+/* Makes the picture of what pictures show; the rest stays black. Files that show the outdoors are added to prov, named
+ * views/VIEW.exr, ids/VIEW.exr, lri/ID.exr. o is {0} on entry; the caller releases it. Same bits for any number of
+ * threads. */
 enum status outdoors_gather(struct outdoors *o, struct outdoors_totals *totals, struct outdoors_picture *pictures,
                             int count, int photos, const struct outdoors_model *model,
                             const struct outdoors_params *params, struct provenance *prov, struct err *err);

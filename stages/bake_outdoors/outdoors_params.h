@@ -15,7 +15,9 @@ enum { CELL = 4 }; /* px: side of the cells of the picture in which one source i
     X(edge, double, 5, 0, 100, "px", "distance from what is not outdoors within which a picture shows no outdoors")  \
     X(max_clutter, double, 0.6, 0, 1, "", "clutter of a view's pixel from which it does not show the outdoors")      \
     X(agree, double, 0.3, 0.001, 10, "",                                                                             \
-      "largest difference of a photo from the median of all that show a direction, as a natural logarithm")
+      "largest difference of a photo from the median of all that show a direction, as a natural logarithm")          \
+    X(sun, choice, "find", 0, 0, "find|none",                                                                        \
+      "a sun that no lighting reference image shows: found from its patches on floors and walls, or none")
 
 struct outdoors_params {
     OUTDOORS_PARAMS(PARAM_FIELD)

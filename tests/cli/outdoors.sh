@@ -41,9 +41,21 @@ windows_show_the_outdoors()
     find $O/outdoors -type f -printf '%p %T@\n' | diff before - || fail "a second make made it again"
 }
 
+the_sky_and_the_sun_are_written_down()
+{
+    grep -q '^remodel-sky 1$' $O/outdoors/sky.txt || fail "sky.txt has no first line"
+    grep -Eq '^sky ([0-9]+ brightest|unknown)' $O/outdoors/sky.txt || { cat $O/outdoors/sky.txt; fail "no sky"; }
+    grep -q '^sun unknown$' $O/outdoors/sky.txt || { cat $O/outdoors/sky.txt; fail "a sun where there is none"; }
+    grep -q '^patches gain' $O/outdoors/sky.txt || fail "patches were not looked for"
+    bake 0 'directions' "${inputs[@]}" --vita $O/fill --set sun=none --sky made/sky.txt --out made/a.exr
+    ! grep -q '^patches' made/sky.txt || fail "patches were looked for with sun = none"
+    bake 1 'no-such/' "${inputs[@]}" --vita no-such --out made/a.exr
+}
+
 bytes_do_not_depend_on_threads()
 {
-    for n in 1 2; do bake 0 'directions' "${inputs[@]}" --threads $n --out two/$n.exr; done
+    for n in 1 2; do bake 0 'directions' "${inputs[@]}" --threads $n --vita $O/fill --sky two/$n.txt --out two/$n.exr; done
+    cmp two/1.txt two/2.txt
     cmp two/1.exr two/2.exr
     cmp two/1.exr $O/outdoors/outdoors.exr
 }
@@ -68,4 +80,4 @@ errors_say_what_is_wrong()
     bake 1 'no-such.txt' --model no-such.txt --axes $O/model/axes.txt --views $O/views --ids $O/ids --out made/a.exr
 }
 
-for t in a_closed_room_has_black_outdoors windows_show_the_outdoors bytes_do_not_depend_on_threads what_stands_before_a_window_is_left_out a_reference_image_without_a_pose_is_left_out errors_say_what_is_wrong; do run "$t"; done
+for t in a_closed_room_has_black_outdoors windows_show_the_outdoors the_sky_and_the_sun_are_written_down bytes_do_not_depend_on_threads what_stands_before_a_window_is_left_out a_reference_image_without_a_pose_is_left_out errors_say_what_is_wrong; do run "$t"; done

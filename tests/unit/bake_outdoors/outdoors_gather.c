@@ -1,4 +1,4 @@
-/* outdoors_gather.c - the picture of the outdoors: which pictures it is taken from, gains, guesses. */
+/* outdoors_gather.c - the picture of the outdoors: which pictures it is taken from, and gains. */
 #include "stages/bake_outdoors/outdoors_gather.h"
 
 #include "tests/unit/scratch.h"
@@ -337,60 +337,6 @@ static void a_reference_image_comes_before_photos_and_sets_their_level(void **st
     outdoors_release(&o);
 }
 
-/* ---------------------------------------------------------------------------------------------------------- guesses */
-
-/* A sky of 3, ground of 0.5; known: columns from `first` to `last` of rows from `top` to `bottom`. */
-static void make_known(struct outdoors *o, int first, int last, int top, int bottom)
-{
-    struct err err = ERR_INIT;
-    assert_ok(outdoors_init(o, 64, &err), err);
-    for (int y = top; y < bottom; y++)
-        for (int x = first; x < last; x++) {
-            const size_t at = (size_t)y * (size_t)o->width + (size_t)x;
-            o->source[at] = OUTDOORS_PHOTO;
-            for (size_t c = 0; c < 3; c++) o->rgb[3 * at + c] = y < 32 ? 3 : 0.5f;
-        }
-    assert_ok(outdoors_guess(o, &err), err);
-}
-
-static void guesses_are_sky_above_the_horizon_and_ground_below(void **state)
-{
-    (void)state;
-    struct outdoors o = {0};
-    make_known(&o, 10, 50, 25, 40);
-    for (int i = 0; i < o.width * o.height; i++)
-        assert_true(fabsf(o.rgb[3 * i] / (i / o.width < 32 ? 3 : 0.5f) - 1) < 1e-4f);
-    outdoors_release(&o);
-}
-
-static void a_side_of_the_horizon_that_nothing_shows_takes_the_other_side(void **state)
-{
-    (void)state;
-    struct outdoors o = {0};
-    make_known(&o, 120, 128, 10, 20);
-    for (int i = 0; i < o.width * o.height; i++) assert_true(fabsf(o.rgb[3 * i] / 3 - 1) < 1e-4f);
-    outdoors_release(&o);
-}
-
-static void guesses_join_what_is_known_across_azimuth_pi(void **state)
-{
-    (void)state;
-    struct outdoors o = {0};
-    struct err err = ERR_INIT;
-    assert_ok(outdoors_init(&o, 64, &err), err);
-    for (int y = 20; y < 30; y++)
-        for (int x = 0; x < 100; x++) { /* bright in the first columns, dark in the last ones */
-            const size_t at = (size_t)y * (size_t)o.width + (size_t)x;
-            o.source[at] = OUTDOORS_PHOTO;
-            for (size_t c = 0; c < 3; c++) o.rgb[3 * at + c] = x < 50 ? 4 : 1;
-        }
-    assert_ok(outdoors_guess(&o, &err), err);
-    const float *row = o.rgb + 3 * (size_t)25 * (size_t)o.width;
-    assert_true(row[3 * 127] > 2.5f && row[3 * 101] < 1.6f); /* the column before 0 is like column 0 */
-    for (int x = 100; x < 128; x++) assert_true(row[3 * x] > 0.9f && row[3 * x] < 4.4f);
-    outdoors_release(&o);
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -402,9 +348,6 @@ int main(void)
         cmocka_unit_test(the_same_bytes_for_any_number_of_threads),
         cmocka_unit_test(a_reference_image_has_its_lens_and_pose_in_its_file),
         cmocka_unit_test(a_reference_image_comes_before_photos_and_sets_their_level),
-        cmocka_unit_test(guesses_are_sky_above_the_horizon_and_ground_below),
-        cmocka_unit_test(a_side_of_the_horizon_that_nothing_shows_takes_the_other_side),
-        cmocka_unit_test(guesses_join_what_is_known_across_azimuth_pi),
     };
     return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
 }

@@ -1,0 +1,41 @@
+/* outdoors_sun.h - the sun in the picture of the outdoors, as a lighting reference image shows it, or found from its
+ * patches indoors. */
+#ifndef REMODEL_OUTDOORS_SUN_H
+#define REMODEL_OUTDOORS_SUN_H
+
+#include "stages/bake_outdoors/outdoors_gather.h"
+#include "stages/bake_outdoors/sun_light.h"
+#include "stages/bake_outdoors/sun_search.h"
+
+enum sun_source {
+    SUN_UNKNOWN, /* no picture shows it, and no patches are found */
+    SUN_SEEN,    /* a lighting reference image shows it */
+    SUN_HIDDEN,  /* there are patches, but a lighting reference image shows their direction without a sun */
+    SUN_PATCHES  /* it is found from its patches */
+};
+
+/* {0} is the empty state. */
+struct outdoors_sun {
+    enum sun_source source;
+    struct vec3 direction;    /* unless it is unknown; unit, model frame */
+    struct sun_search search; /* if patches were looked for */
+    struct sun_light light;   /* SUN_PATCHES */
+    double radius;            /* degrees, of the disk that was painted */
+    struct field_atlas atlas; /* the VITA; owned */
+    struct face_plane *planes;
+};
+
+/* Finds the direction. o: what pictures show. vita: folder of the VITA without edits; NULL: only lighting reference
+ * images tell. The caller releases s, also after a failure. ST_DATA: a damaged VITA; ST_NOMEM. */
+enum status outdoors_sun_find(struct outdoors_sun *s, const struct outdoors *o, const struct outdoors_model *model,
+                              const char *vita, struct provenance *prov, struct err *err);
+/* Of a sun found from patches: measures its light under the rest of the outdoors, and paints its disk into them. */
+enum status outdoors_sun_add(struct outdoors_sun *s, struct outdoors *o, const struct outdoors_model *model,
+                             struct err *err);
+void outdoors_sun_release(struct outdoors_sun *s);
+
+/* Paints a disk (radius in degrees) that gives a surface which faces it this irradiance. Its pixels count as guessed.
+ * Returns the radius that was painted: a disk too bright for half floats is made wider. */
+double outdoors_paint_sun(struct outdoors *o, struct vec3 direction, double radius, struct rgb irradiance);
+
+#endif

@@ -1,0 +1,27 @@
+/* sun_fit.h - the sun's direction and size from the edges of its patches, to a fraction of a degree. */
+#ifndef REMODEL_SUN_FIT_H
+#define REMODEL_SUN_FIT_H
+
+#include "stages/bake_outdoors/sun_texels.h"
+
+struct sun_fit {
+    struct vec3 direction; /* unit, towards the sun, model frame */
+    double radius;         /* of its disk, degrees */
+    double error;          /* of the direction, degrees: half the width of its interval of 95 % */
+    double gain;           /* share of the contrast of pairs at edges of the patches that the sun explains, 0 to 1 */
+    double chance;         /* the same of a sun that makes dark, in the same place: what chance explains */
+};
+
+/* Refines f->direction. texels: squares close to the edges of its patches. ST_NOMEM. Same bits for any number of
+ * threads. */
+enum status sun_fit_edges(struct sun_fit *f, const struct sun_texels *texels, const struct model_rays *model,
+                          struct err *err);
+
+/* Sets share[i] to the part of the sun's disk that square i sees. */
+void sun_shares(float *share, const struct sun_texels *texels, const struct model_rays *model, struct vec3 direction,
+                double radius);
+
+/* A unit direction `degrees` off a unit direction, at an angle (radians) around it. */
+struct vec3 sun_aside(struct vec3 direction, double angle, double degrees);
+
+#endif

@@ -1,0 +1,19 @@
+/* sun_light.h - how much light the sun gives, from how much brighter its patches are than what is beside them. */
+#ifndef REMODEL_SUN_LIGHT_H
+#define REMODEL_SUN_LIGHT_H
+
+#include "common/texture/outdoors.h"
+#include "stages/bake_outdoors/sun_fit.h"
+
+struct sun_light {
+    struct rgb irradiance; /* of a surface that faces the sun */
+    double error;          /* relative: half the width of its interval of 95 %, from the spread of the places */
+    int places;            /* at which it was measured; 0: at none, and irradiance is 0 */
+};
+
+/* texels: squares close to the edges of the patches of a sun of this direction and radius (degrees); o: the outdoors
+ * without it. ST_NOMEM. */
+enum status sun_light_measure(struct sun_light *l, const struct sun_scene *scene, const struct outdoors *o,
+                              const struct sun_texels *texels, struct vec3 direction, double radius, struct err *err);
+
+#endif
