@@ -40,15 +40,16 @@ static const double EDGE = 0.2, FLASH = 0.7, MUCH_DARKER = 1.4, DARKER = 0.45; /
 static const double FARTHEST = 1.5;                                            /* of a difference, a logarithm */
 static const double POLE = 15;                                                 /* degrees */
 static const double DARKEST = 1e-4; /* of the mean radiance: darker pixels count as that dark */
+static const double BELT = 1.5;     /* degrees: above and below, over which shares of solids are averaged */
 static const double FEW = 0.01;     /* of a row's pixels, added to those that are known */
 
-static const struct fading of_colours = {5, 0.75f}, of_shares = {4, 0.5f};
+static const struct fading of_colours = {5, 0.75f}, of_shares = {5, 0.6f};
 
 struct guess {
     struct outdoors *o;
     uint8_t *kind; /* of each pixel */
     float *share;  /* of solids in each pixel */
-    double *prior; /* the same of each row */
+    double *prior; /* the same of each row, where no picture is near; then as many rows before they are smooth */
     float darkest;
     struct sky_fit sky;
     double solid[2][3]; /* logarithms: above the horizon, below */
@@ -229,21 +230,27 @@ static enum status find_colours(struct guess *g, struct err *err)
     return ST_OK;
 }
 
-/* The share of solids at each height. */
+/* The share of solids at each height, smooth, so that no belt has an edge. */
 static void find_prior(struct guess *g)
 {
-    const int half = g->o->height / 2;
+    const int half = g->o->height / 2, reach = (int)lround(BELT / 180 * g->o->height);
+    double *sharp = g->prior + g->o->height;
     for (int y = 0; y < g->o->height; y++) {
         int known = 0, solid = 0;
-        g->prior[y] = 1;
+        sharp[y] = 1;
         if (y >= half) continue;
         for (int x = 0; x < g->o->width; x++) {
             const uint8_t kind = g->kind[pixel_of(g, x, y)];
             known += kind != UNKNOWN;
             solid += kind == SOLID;
         }
-        g->prior[y] = solid / (known + FEW * g->o->width);
-        if (y && g->prior[y] < g->prior[y - 1]) g->prior[y] = g->prior[y - 1];
+        sharp[y] = solid / (known + FEW * g->o->width);
+        if (y && sharp[y] < sharp[y - 1]) sharp[y] = sharp[y - 1];
+    }
+    for (int y = 0; y < g->o->height; y++) {
+        double sum = 0;
+        for (int k = -reach; k <= reach; k++) sum += sharp[clamp_int(y + k, 0, y < half ? half - 1 : g->o->height - 1)];
+        g->prior[y] = sum / (2 * reach + 1);
     }
 }
 
@@ -356,7 +363,7 @@ enum status outdoors_guess(struct outdoors *o, const struct vec3 *to_sun, struct
     if (!(g.darkest > 0)) return ST_OK;
     g.kind = calloc(pixels, sizeof *g.kind);
     g.share = calloc(pixels, sizeof *g.share);
-    g.prior = calloc((size_t)o->height, sizeof *g.prior);
+    g.prior = calloc(2 * (size_t)o->height, sizeof *g.prior);
     if (!g.kind || !g.share || !g.prior) err_nomem(err, "a picture of the outdoors", pixels * 5);
     if (!err->status && !sort_pixels(&g, err) && !fit_sky(&g, to_sun, err) && !find_colours(&g, err)) {
         find_prior(&g);
