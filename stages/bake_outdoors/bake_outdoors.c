@@ -157,9 +157,9 @@ static enum status write_sky(const struct job *j, const struct sky_fit *sky, con
         fprintf(f.fp, " azimuth %.6g elevation %.6g", atan2(s->direction.y, s->direction.x) / DEGREE,
                 asin(s->direction.z) / DEGREE);
     if (s->source == SUN_PATCHES)
-        fprintf(f.fp, " error %.4g radius %.4g painted %.4g irradiance %.6g %.6g %.6g error %.4g places %d",
+        fprintf(f.fp, " error %.4g radius %.4g painted %.4g irradiance %.6g %.6g %.6g error %.4g places %d lamps %.4g",
                 s->search.fit.error, s->search.fit.radius, s->radius, s->light.irradiance.r, s->light.irradiance.g,
-                s->light.irradiance.b, s->light.places ? s->light.error : 0, s->light.places);
+                s->light.irradiance.b, s->light.places ? s->light.error : 0, s->light.places, s->light.lamps);
     fputc('\n', f.fp);
     if (looked)
         fprintf(f.fp, "patches gain %.4g next %.4g contrast %.4g agree %.4g border %d\n", s->search.fit.gain,

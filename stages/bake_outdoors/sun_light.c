@@ -8,64 +8,32 @@
  * The squares near the edges of all patches are sorted into places: cubes of space on one face, a hand wide. In a place
  * with enough lit and unlit squares q is the quotient of their mean radiances; texture differs from square to square,
  * but not on average. Places whose lit squares are hardly brighter are shadows of furniture, and do not count. The
- * result is the weighted median over all places, of each colour.
+ * result is the weighted median over all places, of each colour. The atlas lacks the light of lamps that saturate in
+ * all photographs, of cones of spots, and of lamps that hang in the room. sun_lamps.c fits it, roughly. So a place's
+ * weight is the square of the share of its light that comes from outdoors: sills and reveals, which lamps hardly
+ * reach, count most.
  *
- * Limits. The atlas lacks the light of lamps that saturate in all photographs, of cones of spots, and of lamps that
- * hang in the room. Below them E is too small, and the sun with it, by as much. So a place's weight is the square of
- * the share of its light that comes from outdoors: sills and reveals, which lamps hardly reach, count most. Where lamps
- * are as bright as the sun the result is a lower bound. A gloss brightens lit and unlit squares alike, and lowers q. */
+ * The interval has two parts: the spread of the places, and how far the fitted lamps may be off, UNSURE of their share
+ * of the light, which is the same at all places.
+ *
+ * Limits. A gloss brightens lit and unlit squares alike, and lowers q. */
 #include "stages/bake_outdoors/sun_light.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 
 #include "common/base/parallel.h"
-#include "common/gather/irradiance.h"
 #include "common/math/numbers.h"
 #include "common/math/weighted.h"
+#include "stages/bake_outdoors/sun_lamps.h"
 
 enum { RAYS = 1024, MIN_SQUARES = 5, MOST = 400 };
 static const double PLACE = 12;              /* squares: the side of a place */
 static const double LIT = 0.95, DARK = 0.05; /* shares of the disk */
 static const double LEAST = 1.1;             /* quotient of lit to unlit */
 static const double GRAZING = 0.1;           /* cosine below which a surface does not measure */
-
-/* ------------------------------------------------------------------------------------------------ light without sun */
-
-/* What a gather sees. */
-struct indoors {
-    const struct sun_scene *scene;
-    const struct outdoors *outdoors;
-};
-
-static void look(const void *ctx, const struct vec3 from[RAY_PACKET], struct vec3 normal,
-                 const struct vec3 direction[RAY_PACKET], unsigned active, struct light_look seen[RAY_PACKET])
-{
-    const struct indoors *in = ctx;
-    const struct sun_scene *s = in->scene;
-    struct vec3 origin[RAY_PACKET];
-    struct ray_hit hits[RAY_PACKET];
-    for (int k = 0; k < RAY_PACKET; k++)
-        if (active >> k & 1) origin[k] = vec3_add(from[k], vec3_scale(normal, s->model->rays.epsilon));
-    const unsigned hit = ray_scene_hit_packet(&s->model->rays, origin, direction, active, hits);
-    for (int k = 0; k < RAY_PACKET; k++) {
-        float rgb[3];
-        if (!(active >> k & 1)) continue;
-        seen[k] = (struct light_look){{0, 0, 0}, INFINITY, LIGHT_NONE, -1};
-        if (hit >> k & 1) {
-            seen[k].distance = hits[k].t;
-            if (!hits[k].front) continue;
-            const struct field_texel texel =
-                field_atlas_look(s->atlas, solid_face_id(&s->model->mesh, (int)hits[k].id), hits[k].point);
-            seen[k].radiance = texel.radiance;
-            seen[k].source = texel.source;
-        } else {
-            outdoors_sample(rgb, in->outdoors, direction[k]);
-            seen[k].radiance = rgb_make((double)rgb[0], (double)rgb[1], (double)rgb[2]);
-            seen[k].source = LIGHT_SKY;
-        }
-    }
-}
+static const double UNSURE = 0.5;            /* of the light of fitted lamps: half of its interval of 95 % */
 
 /* ----------------------------------------------------------------------------------------------------------- places */
 
@@ -77,6 +45,7 @@ struct place {
     struct vec3 at, normal; /* of the dark squares, summed */
     double sun[3];          /* the irradiance that it tells */
     double weight;
+    double lamps; /* share of its light that fitted lamps give */
 };
 
 static struct place *find_place(struct place *places, int *count, const struct sun_texel *t, double size)
@@ -117,6 +86,8 @@ static int keep_useful(struct place *places, int count, struct vec3 direction)
 
 struct measuring {
     struct place *places;
+    const struct sun_lamps *lamps;
+    const struct model_rays *model;
     struct light_field field;
     struct vec3 direction;
 };
@@ -129,8 +100,11 @@ static void measure_range(void *ctx, size_t begin, size_t end, int thread)
         struct place *p = &m->places[i];
         struct irradiance e;
         ray_irradiance(&e, &m->field, (struct gather_point){p->at, p->normal}, RAYS, i);
-        const double without[3] = {e.value.r, e.value.g, e.value.b}, cosine = vec3_dot(p->normal, m->direction);
-        const double sky = e.from[LIGHT_SKY] + e.from[LIGHT_SKY_GUESSED];
+        const struct rgb lamps = sun_lamps_irradiance(m->lamps, m->model, p->at, p->normal);
+        const double without[3] = {e.value.r + lamps.r, e.value.g + lamps.g, e.value.b + lamps.b};
+        const double cosine = vec3_dot(p->normal, m->direction), known = rgb_luminance(e.value);
+        p->lamps = rgb_luminance(lamps) / fmax(known + rgb_luminance(lamps), DBL_MIN);
+        const double sky = (e.from[LIGHT_SKY] + e.from[LIGHT_SKY_GUESSED]) * (1 - p->lamps);
         p->weight = sky * sky;
         for (int c = 0; c < 3; c++) {
             const double quotient = p->sum[0][c] / p->lit / (p->sum[1][c] / p->dark);
@@ -139,26 +113,50 @@ static void measure_range(void *ctx, size_t begin, size_t end, int thread)
     }
 }
 
-/* The median of the places' irradiances of a colour, or of their luminances (c = 3). */
-static double median_of(const struct place *places, int count, int c, double less, struct weighted *scratch)
+/* What a place tells of a colour, or of the luminance (c = 3). */
+static double sun_of(const struct place *p, int c)
 {
-    for (int i = 0; i < count; i++) {
-        const double *sun = places[i].sun;
-        const double v = c < 3 ? sun[c] : rgb_luminance(rgb_make(sun[0], sun[1], sun[2]));
-        scratch[i] = (struct weighted){less >= 0 ? fabs(v - less) : v, places[i].weight};
-    }
+    return c < 3 ? p->sun[c] : rgb_luminance(rgb_make(p->sun[0], p->sun[1], p->sun[2]));
+}
+
+static double median_of(const struct place *places, int count, int c, struct weighted *scratch)
+{
+    for (int i = 0; i < count; i++) scratch[i] = (struct weighted){sun_of(&places[i], c), places[i].weight};
     return weighted_percentile(scratch, (size_t)count, 0.5);
+}
+
+/* For a normal distribution, a median deviates 1.2533 times as much as a mean, and the standard deviation is 1.2533
+ * times the mean absolute one. */
+static double spread_of(const struct place *places, int count, double luminance)
+{
+    double weights = 0, squares = 0, deviation = 0;
+    for (int i = 0; i < count; i++) {
+        const double w = places[i].weight;
+        weights += w;
+        squares += w * w;
+        deviation += w * fabs(sun_of(&places[i], 3) - luminance);
+    }
+    if (!(weights > 0 && luminance > 0)) return INFINITY;
+    return 1.96 * 1.2533 * 1.2533 * deviation / (weights * luminance) * sqrt(squares) / weights;
+}
+
+static double mean_share_of_lamps(const struct place *places, int count)
+{
+    double sum = 0, weights = 0;
+    for (int i = 0; i < count; i++) {
+        sum += places[i].weight * places[i].lamps;
+        weights += places[i].weight;
+    }
+    return weights > 0 ? sum / weights : 0;
 }
 
 static void sum_up(struct sun_light *l, const struct place *places, int count, struct weighted *scratch)
 {
-    const double r = median_of(places, count, 0, -1, scratch), g = median_of(places, count, 1, -1, scratch);
-    const double b = median_of(places, count, 2, -1, scratch), luminance = median_of(places, count, 3, -1, scratch);
-    const double deviation = 1.4826 * median_of(places, count, 3, luminance, scratch);
     l->places = count;
-    l->irradiance = rgb_make(r, g, b);
-    /* the median's deviation is 1.2533 times that of the mean */
-    l->error = luminance > 0 ? 1.96 * 1.2533 * deviation / (luminance * sqrt(count)) : INFINITY;
+    l->irradiance = rgb_make(median_of(places, count, 0, scratch), median_of(places, count, 1, scratch),
+                             median_of(places, count, 2, scratch));
+    l->lamps = mean_share_of_lamps(places, count);
+    l->error = hypot(spread_of(places, count, median_of(places, count, 3, scratch)), UNSURE * l->lamps);
 }
 
 enum status sun_light_measure(struct sun_light *l, const struct sun_scene *scene, const struct outdoors *o,
@@ -167,8 +165,10 @@ enum status sun_light_measure(struct sun_light *l, const struct sun_scene *scene
     struct place *places = malloc(MOST * sizeof *places);
     struct weighted *scratch = malloc(MOST * sizeof *scratch);
     float *share = malloc(((size_t)texels->count + 1) * sizeof *share);
+    const struct sun_indoors in = {scene, o};
+    struct sun_lamps lamps = {0};
     int count = 0;
-    *l = (struct sun_light){{0, 0, 0}, 0, 0};
+    *l = (struct sun_light){0};
     if (!places || !scratch || !share) err_nomem(err, "places", MOST * sizeof *places);
     if (!err->status) {
         sun_shares(share, texels, scene->model, direction, radius);
@@ -177,11 +177,13 @@ enum status sun_light_measure(struct sun_light *l, const struct sun_scene *scene
             if (p) add_square(p, &texels->list[i], (double)share[i]);
         }
         count = keep_useful(places, count, direction);
-        const struct indoors in = {scene, o};
-        struct measuring m = {places, {.ctx = &in, .look = look}, direction};
-        parallel_for((size_t)count, 1, measure_range, &m);
-        if (count) sum_up(l, places, count, scratch);
     }
+    if (!err->status && count && !sun_lamps_fit(&lamps, &in, texels, direction, radius, err)) {
+        struct measuring m = {places, &lamps, scene->model, sun_indoors_field(&in), direction};
+        parallel_for((size_t)count, 1, measure_range, &m);
+        sum_up(l, places, count, scratch);
+    }
+    sun_lamps_release(&lamps);
     free(places);
     free(scratch);
     free(share);

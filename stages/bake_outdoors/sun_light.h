@@ -7,7 +7,8 @@
 
 struct sun_light {
     struct rgb irradiance; /* of a surface that faces the sun */
-    double error;          /* relative: half the width of its interval of 95 %, from the spread of the places */
+    double error;          /* relative: half the width of its interval of 95 % */
+    double lamps;          /* share of the light beside its patches that comes from fitted lamps */
     int places;            /* at which it was measured; 0: at none, and irradiance is 0 */
 };
 

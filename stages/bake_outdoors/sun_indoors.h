@@ -1,0 +1,18 @@
+/* sun_indoors.h - the light indoors without the sun, and what surfaces make of it. */
+#ifndef REMODEL_SUN_INDOORS_H
+#define REMODEL_SUN_INDOORS_H
+
+#include "common/gather/irradiance.h"
+#include "common/texture/outdoors.h"
+#include "stages/bake_outdoors/sun_texels.h"
+
+/* What a gather sees: the textures of the model, and through its openings the outdoors without the sun. */
+struct sun_indoors {
+    const struct sun_scene *scene;
+    const struct outdoors *outdoors;
+};
+
+/* The field that gathers read; `in` must live as long. */
+struct light_field sun_indoors_field(const struct sun_indoors *in);
+
+#endif
