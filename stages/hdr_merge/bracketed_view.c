@@ -313,6 +313,8 @@ static enum status set_frame(struct exr_image *im, const struct bracketed_view *
     if (v->marked.marks)
         snprintf(text, sizeof text, "marks %d %.4g %.4g %.4g %.4g %.4g %.4g %d", v->marked.marks, p->rms, p->max,
                  p->error.x, p->error.y, p->error.z, p->turn_error, v->marked.found.count);
+    else if (v->marked.in_window)
+        snprintf(text, sizeof text, "window %s", v->marked.level ? "level" : "horizon");
     else if (v->frame.photos)
         snprintf(text, sizeof text, "%d %.4g %.4g %.4g %.4g", v->frame.photos, e->center_median, e->center_max,
                  e->rotation_median, e->rotation_max);

@@ -68,6 +68,11 @@ static void warn_of_other_pose(const char *id, const struct marked_pose *m)
 static void report_marks(const struct bracketed_view *v)
 {
     const struct marked_pose *m = &v->marked;
+    if (m->in_window)
+        log_note(
+            "%s: placed in an opening of the wall %s, looking straight out, %s; what it shows is turned by as much as "
+            "the camera was. Marked corners place it better.",
+            v->record.id, m->wall, m->level ? "level" : "level by its horizon");
     if (!m->marks) return;
     const char *id = v->record.id, *unit = m->metric ? "m" : "units";
     const struct resection_pose *p = &m->found.poses[m->chosen];

@@ -2,13 +2,15 @@
  *
  * Marks give the pose in the model's frame (resection.c). Where several poses explain them equally well, a line "near"
  * decides; otherwise the best fit does, if there are more than three marks. Three marks fit all their poses exactly, so
- * that without "near" nothing tells which is right. The pose then moves to the scene's frame by axes.txt. */
+ * that without "near" nothing tells which is right. A line "in" places an image without marks (window_pose.c). The pose
+ * then moves to the scene's frame by axes.txt. */
 #include "stages/hdr_merge/marked_pose.h"
 
 #include <stdio.h>
 #include <string.h>
 
 #include "common/model/model_axes.h"
+#include "stages/hdr_merge/window_pose.h"
 
 struct marked_image {
     const struct photo_record *image;
@@ -16,8 +18,8 @@ struct marked_image {
     struct resection_mark marks[RESECTION_MAX];
     int lines[RESECTION_MAX];
     int count;
-    const struct reference_mark *lens, *near; /* NULL: none */
-    const struct model_wall *wall;            /* of the first corner; NULL: none */
+    const struct reference_mark *lens, *near, *window, *horizon; /* NULL: none */
+    const struct model_wall *wall;                               /* of the first corner; NULL: none */
 };
 
 /* -------------------------------------------------------------------------------------------------------- the marks */
@@ -42,6 +44,17 @@ static enum status add_mark(struct marked_image *m, const struct reference_mark 
     return ST_OK;
 }
 
+static enum status check_window(const struct marked_image *m, struct err *err)
+{
+    if (m->window && m->count)
+        return err_set(err, ST_DATA, "%s:%d: found a window for image %s, which also has marks (line %d); delete one.",
+                       m->list->path, m->window->line, m->image->id, m->lines[0]);
+    if (m->horizon && !m->window)
+        return err_set(err, ST_DATA, "%s:%d: found a horizon of image %s, which has no line \"in\"; add one.",
+                       m->list->path, m->horizon->line, m->image->id);
+    return ST_OK;
+}
+
 static enum status collect(struct marked_image *m, const struct model_plan *plan, struct err *err)
 {
     for (int i = 0; !err->status && i < m->list->count; i++) {
@@ -52,9 +65,14 @@ static enum status collect(struct marked_image *m, const struct model_plan *plan
             m->lens = mark;
         else if (mark->kind == REFERENCE_NEAR)
             m->near = mark;
+        else if (mark->kind == REFERENCE_WINDOW)
+            m->window = mark;
+        else if (mark->kind == REFERENCE_HORIZON)
+            m->horizon = mark;
         else
             add_mark(m, mark, plan, err);
     }
+    if (!err->status) check_window(m, err);
     if (!err->status && m->count && m->count < RESECTION_MIN)
         err_set(err, ST_DATA, "%s has %d mark%s of image %s, wanted at least %d, better four or more.", m->list->path,
                 m->count, m->count == 1 ? "" : "s", m->image->id, (int)RESECTION_MIN);
@@ -163,6 +181,25 @@ static enum status choose(struct marked_pose *to, const struct marked_image *m, 
         m->list->path, m->image->id, p->degrees, p->rms, params->max_mark_misfit, to->worst_line, p->max);
 }
 
+/* Places an image in an opening. */
+static enum status stand_in_window(struct marked_pose *to, const struct marked_image *m, const struct model_plan *plan,
+                                   const struct camera *lens, struct err *err)
+{
+    const struct reference_mark *h = m->horizon;
+    const struct model_wall *wall;
+    struct window_pose w = {.level = !h};
+    if (reference_mark_locate(&w.at, &wall, m->window, m->list, plan, err)) return err->status;
+    w.out = vec3_make(-wall->normal[0], -wall->normal[1], 0);
+    if (h) memcpy(w.horizon, (double[2][2]){{h->x, h->y}, {h->other[0], h->other[1]}}, sizeof w.horizon);
+    to->in_window = true;
+    to->level = w.level;
+    to->found.count = 1;
+    snprintf(to->wall, sizeof to->wall, "%s", wall->name);
+    if (window_pose_find(&to->found.poses[0].cam_from_world, &w, lens, err))
+        err_context(err, "%s:%d", m->list->path, h ? h->line : m->window->line);
+    return err->status;
+}
+
 /* Moves a pose from the model's frame to the scene's. */
 static enum status to_scene(struct marked_pose *m, struct pose *cam_from_world, const struct reference_frame *frame,
                             const struct merge_params *params, struct provenance *prov, struct err *err)
@@ -186,12 +223,13 @@ enum status marked_pose_find(struct marked_pose *m, struct camera *lens, struct 
     *m = (struct marked_pose){0};
     if (!reference_marks_read(&list, frame->marks, prov, err) && !model_plan_read(&plan, frame->plan, prov, err))
         collect(&marked, &plan, err);
-    *known = !err->status && marked.count;
+    *known = !err->status && (marked.count || marked.window);
     if (*known) find_lens(lens, &marked, model, prov, err);
-    if (*known && !err->status &&
+    if (*known && !err->status && marked.window) stand_in_window(m, &marked, &plan, lens, err);
+    if (*known && !err->status && !marked.window &&
         resection_find(&m->found, lens, marked.marks, marked.count, params->mark_error, image->id, err))
         err_context(err, "%s", list.path);
-    if (*known && !err->status) choose(m, &marked, params, err);
+    if (*known && !err->status && !marked.window) choose(m, &marked, params, err);
     if (*known && !err->status) to_scene(m, cam_from_world, frame, params, prov, err);
     model_plan_release(&plan);
     reference_marks_release(&list);

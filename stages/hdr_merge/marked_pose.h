@@ -8,7 +8,8 @@
 
 /* How the pose was found. Poses are in the model's frame. */
 struct marked_pose {
-    int marks; /* 0: the image was not placed by marks */
+    int marks;             /* 0: the image was not placed by marks */
+    bool in_window, level; /* it was placed in an opening, held level; its pose is found.poses[0] */
     struct resection found;
     int chosen;         /* of found.poses */
     int worst_line;     /* of the mark that fits worst */
@@ -20,8 +21,8 @@ struct marked_pose {
 
 /* Finds lens and pose of an image, in the scene's frame, from frame->marks, plan and axes. model: a folder with
  * cameras.txt, for the lens of images that the marks give none; may be NULL. *known: the file has marks of the image.
- * ST_DATA: too few marks, one off the image, no lens, a lens of another size, a bad fit, three marks that several poses
- * explain. */
+ * ST_DATA: too few marks, marks beside a line "in", one off the image, no lens, a lens of another size, a bad fit,
+ * three marks that several poses explain; what window_pose_find() refuses. */
 enum status marked_pose_find(struct marked_pose *m, struct camera *lens, struct pose *cam_from_world, bool *known,
                              const struct photo_record *image, const char *model, const struct reference_frame *frame,
                              const struct merge_params *params, struct provenance *prov, struct err *err);

@@ -26,8 +26,9 @@
 enum { MAX_LINES = 4096 };
 
 static const char *const kinds[] = {
-    [REFERENCE_CORNER] = "corner", [REFERENCE_POINT] = "point", [REFERENCE_LENS] = "lens", [REFERENCE_NEAR] = "near"};
-static const char wanted_kinds[] = "\"corner\", \"point\", \"lens\" or \"near\"";
+    [REFERENCE_CORNER] = "corner", [REFERENCE_POINT] = "point", [REFERENCE_LENS] = "lens",
+    [REFERENCE_NEAR] = "near",     [REFERENCE_WINDOW] = "in",   [REFERENCE_HORIZON] = "horizon"};
+static const char wanted_kinds[] = "\"corner\", \"point\", \"lens\", \"near\", \"in\" or \"horizon\"";
 
 void reference_marks_release(struct reference_marks *list)
 {
@@ -86,6 +87,43 @@ static enum status read_corner(struct reference_mark *m, struct textfile *t, str
     return m->outer ? ST_OK : textfile_error(t, err, word, "\"outer\" or the end of the line");
 }
 
+static enum status read_word(struct textfile *t, const char *wanted, struct err *err)
+{
+    char quoted[32], *word;
+    snprintf(quoted, sizeof quoted, "\"%s\"", wanted);
+    if (textfile_word(t, quoted, &word, err)) return err->status;
+    return strcmp(word, wanted) ? textfile_error(t, err, word, "%s", quoted) : ST_OK;
+}
+
+static enum status read_share(double *share, struct textfile *t, const char *what, struct err *err)
+{
+    char found[32];
+    if (textfile_double(t, what, share, err)) return err->status;
+    if (*share >= 0 && *share <= 1) return ST_OK;
+    snprintf(found, sizeof found, "%.9g", *share);
+    return textfile_error(t, err, found, "%s, from 0 to 1", what);
+}
+
+static enum status read_window(struct reference_mark *m, struct textfile *t, struct err *err)
+{
+    bool at;
+    m->outer = true;
+    m->x = m->y = 0.5;
+    if (read_name(&m->opening, t, "an opening of the model", err) || read_side(&at, t, "looking", "at", err) ||
+        (at && (read_share(&m->x, t, "a share of the opening's width", err) ||
+                read_share(&m->y, t, "a share of the opening's height", err) || read_word(t, "looking", err))))
+        return err->status;
+    return read_word(t, "out", err);
+}
+
+static enum status read_horizon(struct reference_mark *m, struct textfile *t, struct err *err)
+{
+    return read_pixel(m, t, err) || textfile_double(t, "x of a second pixel", &m->other[0], err) ||
+                   textfile_double(t, "y of a second pixel", &m->other[1], err)
+               ? err->status
+               : ST_OK;
+}
+
 static enum status read_equisolid(struct camera *c, struct textfile *t, struct err *err)
 {
     int64_t width, height;
@@ -129,6 +167,10 @@ static enum status read_line(struct reference_mark *m, struct textfile *t, struc
         read_lens(m, t, err);
     else if (m->kind == REFERENCE_NEAR)
         read_place(&m->point, t, err);
+    else if (m->kind == REFERENCE_WINDOW)
+        read_window(m, t, err);
+    else if (m->kind == REFERENCE_HORIZON)
+        read_horizon(m, t, err);
     else if (!read_pixel(m, t, err))
         read_place(&m->point, t, err);
     if (!err->status) textfile_end(t, err);
@@ -214,7 +256,7 @@ enum status reference_mark_locate(struct vec3 *at, const struct model_wall **wal
     int opening = 0;
     *at = m->point;
     *wall = NULL;
-    if (m->kind != REFERENCE_CORNER) return ST_OK;
+    if (m->kind != REFERENCE_CORNER && m->kind != REFERENCE_WINDOW) return ST_OK;
     if (find_opening(&opening, m, list, plan, err)) return err->status;
     const struct model_wall *w = *wall = &plan->walls[plan->openings[opening].wall];
     if (!model_opening_corners(plan, opening, corners))
@@ -225,8 +267,10 @@ enum status reference_mark_locate(struct vec3 *at, const struct model_wall **wal
             list->path, m->line, m->opening, w->name);
     /* for a viewer who faces the wall from its inside, the right-hand direction is (-ny, nx) */
     const bool right_is_upper = fabs(w->normal[0]) > 0.5 ? w->normal[0] > 0 : w->normal[1] < 0;
-    *at = corners[m->right == right_is_upper];
-    at->z = corners[m->top].z;
+    const double right = m->kind == REFERENCE_CORNER ? m->right : m->x,
+                 top = m->kind == REFERENCE_CORNER ? m->top : m->y;
+    *at = vec3_add(vec3_scale(corners[!right_is_upper], 1 - right), vec3_scale(corners[right_is_upper], right));
+    at->z = (1 - top) * corners[0].z + top * corners[1].z;
     if (!m->outer) return ST_OK;
     at->x -= w->normal[0] * w->thickness;
     at->y -= w->normal[1] * w->thickness;

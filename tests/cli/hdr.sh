@@ -277,6 +277,14 @@ TXT
     merged set/photos photo_3 $marks || { cat err; fail "merge with a place near the camera"; }
     says "three marks always fit"
     says "its camera is at 0.300 0.500 1.200 m"
+    printf 'lens photo_3 PINHOLE 320 240 150 150 160 120\nin photo_3 w at 0.5 0.5 looking out\n' >marked/lri.txt
+    merged set/photos photo_3 $marks || { cat err; fail "merge in a window"; }
+    says "photo_3: placed in an opening of the wall south, looking straight out, level;"
+    has set/photos-hdr/photo_3.exr 'window level'
+    echo 'horizon photo_3 10 100 310 110' >>marked/lri.txt
+    merged set/photos photo_3 $marks || { cat err; fail "merge with a horizon"; }
+    says "level by its horizon"
+    has set/photos-hdr/photo_3.exr 'window horizon'
     rc=0; merged set/photos photo_3 --marks marked/lri.txt || rc=$?
     [ "$rc" = 2 ] || fail "--marks without --plan: exit $rc, wanted 2"
     says "--marks, --plan and --axes belong together"

@@ -21,13 +21,14 @@ static const struct photo_record image = {.id = id};
 static void locate(const struct reference_mark *m, const struct reference_marks *list)
 {
     const struct model_wall *wall;
+    const bool in_opening = m->kind == REFERENCE_CORNER || m->kind == REFERENCE_WINDOW;
     struct err err = ERR_INIT;
     struct vec3 at;
     if (reference_mark_locate(&at, &wall, m, list, &plan, &err)) {
-        if (!strstr(err.text, list->path) || m->kind != REFERENCE_CORNER) abort();
+        if (!strstr(err.text, list->path) || !in_opening) abort();
         return;
     }
-    if ((wall != NULL) != (m->kind == REFERENCE_CORNER)) abort();
+    if ((wall != NULL) != in_opening) abort();
     if (!isfinite(at.x) || !isfinite(at.y) || !isfinite(at.z)) abort();
 }
 

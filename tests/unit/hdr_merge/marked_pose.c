@@ -244,8 +244,9 @@ static void marks_that_cannot_be_used_are_refused(void **state)
                    "lri.txt:2: found \"lower\", wanted \"left\" or \"right\"");
     assert_refused(changed("left bottom", "left lower"), NULL, "wanted \"bottom\" or \"top\"");
     assert_refused(changed("corner sky", "corner *"), NULL, "lri.txt:2: found \"*\", wanted an image");
-    assert_refused(changed("corner", "edge"), NULL,
-                   "lri.txt:2: found \"edge\", wanted \"corner\", \"point\", \"lens\" or \"near\"");
+    assert_refused(
+        changed("corner", "edge"), NULL,
+        "lri.txt:2: found \"edge\", wanted \"corner\", \"point\", \"lens\", \"near\", \"in\" or \"horizon\"");
     assert_refused(changed("left bottom ", "left bottom 99"), NULL, "off image sky of 480 x 480 pixels.");
     assert_refused(changed("left bottom ", "left bottom nan "), NULL, "lri.txt:2: found");
     assert_refused(changed("480 480", "480 479"), NULL,
@@ -285,6 +286,75 @@ static void the_lens_may_come_from_a_model(void **state)
                    "has 2 cameras of 480 x 480 pixels, the size of image sky, wanted one; add a line \"lens sky");
 }
 
+/* A camera of the dome that is turned about its own axes: up by pitch, then to the right by roll; radians. */
+static struct pose tilted(const struct pose *level, double pitch, double roll)
+{
+    const double cp = cos(pitch), sp = sin(pitch), cr = cos(roll), sr = sin(roll);
+    const struct mat3 up = {{{1, 0, 0}, {0, cp, sp}, {0, -sp, cp}}}, over = {{{cr, sr, 0}, {-sr, cr, 0}, {0, 0, 1}}};
+    const struct mat3 turn = mat3_multiply(over, mat3_multiply(up, mat3_from_quat(level->rotation)));
+    return (struct pose){quat_from_mat3(turn), vec3_scale(mat3_apply(turn, pose_center(level)), -1)};
+}
+
+static void assert_in_window(const struct pose *truth, const char *marks, bool level)
+{
+    struct marked_pose m;
+    struct pose found;
+    struct err err;
+    bool known = false;
+    assert_ok(find(&m, &found, &known, marks, NULL, &err), err);
+    assert_true(known && m.in_window && m.level == level);
+    assert_int_equal(m.marks, 0);
+    assert_true(vec3_length(vec3_sub(scene_center(&found), pose_center(truth))) < 1e-9);
+    assert_true(degrees_from(&found, truth) < 1e-6);
+}
+
+static void a_window_places_an_image_that_looks_out(void **state)
+{
+    const struct pose middle = dome_at(vec3_make(2.4, -0.15, 1.5), 0, -1);
+    const struct pose east = dome_at(vec3_make(8.95, 1.5 + 0.75 * 0.9, 0.95 + 0.25 * 1.2), 1, 0);
+    (void)state;
+    assert_in_window(&middle, DOME "in sky sunny looking out\n", true);
+    /* left, seen from inside, is the larger y */
+    assert_in_window(&east, DOME "in sky north-light at 0.25 0.25 looking out\n", true);
+}
+
+static void a_horizon_tells_pitch_and_roll(void **state)
+{
+    const struct camera lens = camera_equisolid(480, 480, 169.705627, 240, 240);
+    const struct pose level = dome_at(vec3_make(2.4, -0.15, 1.5), 0, -1);
+    (void)state;
+    for (int k = 0; k < 4; k++) {
+        const struct pose truth = tilted(&level, k & 1 ? 0.2 : -0.35, k & 2 ? 0.15 : -0.4);
+        double u[2], v[2];
+        for (int i = 0; i < 2; i++) {
+            const struct vec3 far = {i ? 0.8 : -0.6, i ? -0.6 : -0.8, 0};
+            assert_true(camera_project(&lens, mat3_apply(mat3_from_quat(truth.rotation), far), &u[i], &v[i]));
+        }
+        snprintf(text, sizeof text, DOME "in sky sunny looking out\nhorizon sky %.17g %.17g %.17g %.17g\n", u[k >> 1],
+                 v[k >> 1], u[!(k >> 1)], v[!(k >> 1)]);
+        assert_in_window(&truth, text, false);
+    }
+}
+
+static void windows_that_cannot_be_used_are_refused(void **state)
+{
+    (void)state;
+    assert_refused(DOME "in sky suny looking out\n", NULL, "lri.txt:2: found the opening \"suny\"");
+    assert_refused(DOME "in sky sunny\n", NULL, "wanted \"looking\" or \"at\"");
+    assert_refused(DOME "in sky sunny looking in\n", NULL, "lri.txt:2: found \"in\", wanted \"out\"");
+    assert_refused(DOME "in sky sunny at 0.5 1.5 looking out\n", NULL,
+                   "lri.txt:2: found \"1.5\", wanted a share of the opening's height, from 0 to 1");
+    assert_refused(DOME "horizon sky 100 240 300 240\n", NULL,
+                   "lri.txt:2: found a horizon of image sky, which has no line \"in\"");
+    assert_refused(DOME "in sky sunny looking out\nhorizon sky 239 240 241 240\n", NULL,
+                   "lri.txt:3: the two pixels of the horizon are less than 5 degrees apart");
+    assert_refused(DOME "in sky sunny looking out\nhorizon sky 200 460 280 460\n", NULL,
+                   "lri.txt:3: the image looks up or down by more than 80 degrees");
+    assert_refused(DOME "in sky sunny looking out\npoint sky 1 1 1 1 1\n", NULL,
+                   "lri.txt:2: found a window for image sky, which also has marks (line 3)");
+    assert_refused("in sky sunny looking out\n", NULL, "lri.txt does not give the lens of image sky");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -297,6 +367,9 @@ int main(void)
         cmocka_unit_test(an_image_without_marks_is_unknown),
         cmocka_unit_test(marks_that_cannot_be_used_are_refused),
         cmocka_unit_test(the_lens_may_come_from_a_model),
+        cmocka_unit_test(a_window_places_an_image_that_looks_out),
+        cmocka_unit_test(a_horizon_tells_pitch_and_roll),
+        cmocka_unit_test(windows_that_cannot_be_used_are_refused),
     };
     return cmocka_run_group_tests_name("marked_pose", tests, scratch_make, scratch_remove);
 }
