@@ -16,7 +16,7 @@
  * The interval has two parts: the spread of the places, and how far the fitted lamps may be off, UNSURE of their share
  * of the light, which is the same at all places.
  *
- * Limits. A gloss brightens lit and unlit squares alike, and lowers q. */
+ * Limits. A gloss brightens lit and unlit squares alike, and lowers q; so does the blur of pictures at an edge. */
 #include "stages/bake_outdoors/sun_light.h"
 
 #include <float.h>
@@ -152,11 +152,13 @@ static double mean_share_of_lamps(const struct place *places, int count)
 
 static void sum_up(struct sun_light *l, const struct place *places, int count, struct weighted *scratch)
 {
+    const double spread = spread_of(places, count, median_of(places, count, 3, scratch));
+    if (!isfinite(spread)) return; /* no place has light from outdoors, or none is brighter in the sun */
     l->places = count;
     l->irradiance = rgb_make(median_of(places, count, 0, scratch), median_of(places, count, 1, scratch),
                              median_of(places, count, 2, scratch));
     l->lamps = mean_share_of_lamps(places, count);
-    l->error = hypot(spread_of(places, count, median_of(places, count, 3, scratch)), UNSURE * l->lamps);
+    l->error = hypot(spread, UNSURE * l->lamps);
 }
 
 enum status sun_light_measure(struct sun_light *l, const struct sun_scene *scene, const struct outdoors *o,

@@ -38,7 +38,7 @@ static const double APART = 8, NEAR = 4, SMALLEST = 0.02; /* degrees: of peaks; 
 static const double GRAZING = 0.05;                       /* cosine: surfaces that the sun only grazes count as unlit */
 static const double FINER = 0.25;                         /* of a coarse square's side */
 /* what a patch of sun has at least */
-static const double MIN_GAIN = 0.2, MIN_OVER_NEXT = 1.5, MIN_CONTRAST = 0.15, MIN_AGREE = 0.78;
+static const double MIN_GAIN = 0.12, MIN_OVER_NEXT = 2, MIN_CONTRAST = 0.15, MIN_AGREE = 0.72;
 
 static struct vec3 direction_at(double azimuth, double elevation)
 {
