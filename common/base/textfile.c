@@ -80,6 +80,14 @@ bool textfile_next_raw(struct textfile *t)
     return true;
 }
 
+const char *textfile_peek(const struct textfile *t, size_t *length)
+{
+    if (t->at >= t->size) return NULL;
+    const char *begin = t->bytes + t->at, *end = memchr(begin, '\n', t->size - t->at);
+    *length = end ? (size_t)(end - begin) : t->size - t->at;
+    return begin;
+}
+
 bool textfile_next(struct textfile *t)
 {
     while (textfile_next_raw(t)) {

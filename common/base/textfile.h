@@ -35,6 +35,8 @@ enum status textfile_take(struct textfile *t, struct file_bytes *file, const cha
 bool textfile_next(struct textfile *t);
 /* Moves to the next line, even if it is blank or a comment (COLMAP's images.txt has blank lines). */
 bool textfile_next_raw(struct textfile *t);
+/* The next line as it is in the file, without moving to it: *length bytes, not ended by NUL. NULL at the end. */
+const char *textfile_peek(const struct textfile *t, size_t *length);
 
 /* The next word of the line. It may be quoted: "two words", with \" and \\ inside (see textfile_quote). */
 enum status textfile_word(struct textfile *t, const char *what, char **word, struct err *err);

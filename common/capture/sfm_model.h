@@ -1,4 +1,5 @@
-/* sfm_model.h - cameras, posed images and sparse points. Reads and writes COLMAP's text format, reads Bundler's.
+/* sfm_model.h - cameras, posed images and sparse points. Reads and writes COLMAP's text format, reads its binary one and
+ * Bundler's.
  *
  * Numbers are written with %.17g, so that reading them back gives the same bits. */
 #ifndef REMODEL_SFM_MODEL_H
@@ -53,6 +54,12 @@ struct sfm_model {
  * that refers to nothing, a quaternion of length 0 (other lengths are normalised). The files are recorded in prov, as
  * are those that readers of other products read; it may be NULL. */
 enum status sfm_model_read_text(struct sfm_model *m, const char *folder, struct provenance *prov, struct err *err);
+
+/* The same of a folder that another program exported, as text or as .bin files. The points may be missing. What refers
+ * to nothing is no error: entries of tracks without an observation of their point are left out, and *loose counts them;
+ * other observations are of no point. ST_DATA, of binary files without a line: as above. */
+enum status sfm_model_read_given_text(struct sfm_model *m, const char *folder, long long *loose, struct err *err);
+enum status sfm_model_read_given_binary(struct sfm_model *m, const char *folder, long long *loose, struct err *err);
 
 /* Reads cameras.txt and images.txt only: poses and lenses, no points and no observations. */
 enum status sfm_model_read_cameras(struct sfm_model *m, const char *folder, struct provenance *prov, struct err *err);

@@ -146,12 +146,7 @@ static enum status read_point(struct bundler_reader *r, struct sfm_point *p, str
     if (read_views(r, p->id, &count, err)) return err->status;
     p->position = vec3_make(position[0], position[1], position[2]);
     p->error = -1; /* not in the file */
-    if (!count) return ST_OK;
-    p->track = malloc((size_t)count * sizeof *p->track);
-    if (!p->track) return err_nomem(err, "a track", (size_t)count * sizeof *p->track);
-    memcpy(p->track, r->track, (size_t)count * sizeof *p->track);
-    p->track_count = count;
-    return ST_OK;
+    return sfm_set_track(p, r->track, count, err);
 }
 
 static enum status read_points(struct bundler_reader *r, int64_t points, struct err *err)

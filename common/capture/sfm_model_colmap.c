@@ -10,73 +10,13 @@
 #include "common/base/array.h"
 #include "common/base/file_path.h"
 #include "common/base/outfile.h"
+#include "common/base/scan.h"
 #include "common/base/sort.h"
 #include "common/base/textfile.h"
+#include "common/capture/sfm_ids.h"
 #include "common/capture/sfm_model_parts.h"
+#include "common/capture/sfm_tracks.h"
 #include "common/product/product.h"
-
-/* The id of a record, the index of the record in its array, and its line in the file. */
-struct id_row {
-    int64_t id;
-    int idx, line;
-};
-
-struct id_list {
-    struct id_row *rows;
-    int count;
-    bool ascending; /* in the file */
-};
-
-static enum status id_list_add(struct id_list *l, int64_t id, int line, struct err *err)
-{
-    if (sfm_append(&l->rows, l->count, sizeof *l->rows, "ids", err)) return err->status;
-    l->ascending = l->count == 0 || (l->ascending && l->rows[l->count - 1].id < id);
-    l->rows[l->count] = (struct id_row){id, l->count, line};
-    l->count++;
-    return ST_OK;
-}
-
-static int compare_rows(const void *a, const void *b)
-{
-    const struct id_row *x = a, *y = b;
-    return x->id != y->id ? (x->id < y->id ? -1 : 1) : (x->line > y->line) - (x->line < y->line);
-}
-
-static enum status id_list_sort(struct id_list *l, const char *path, const char *what, struct err *err)
-{
-    if (l->count && !l->ascending) qsort(l->rows, (size_t)l->count, sizeof *l->rows, compare_rows);
-    for (int i = 1; i < l->count; i++)
-        if (l->rows[i - 1].id == l->rows[i].id)
-            return err_set(err, ST_DATA,
-                           "%s:%d: found %s %" PRId64 " a second time (first on line %d), wanted each id once.", path,
-                           l->rows[i].line, what, l->rows[i].id, l->rows[i - 1].line);
-    return ST_OK;
-}
-
-static bool row_is_below(const void *row, const void *id)
-{
-    return ((const struct id_row *)row)->id < *(const int64_t *)id;
-}
-
-/* The row with this id, or NULL. The list is sorted. */
-static struct id_row *id_list_row(const struct id_list *l, int64_t id)
-{
-    const int at = (int)sort_place(l->rows, (size_t)l->count, sizeof *l->rows, row_is_below, &id);
-    return at < l->count && l->rows[at].id == id ? &l->rows[at] : NULL;
-}
-
-/* Index of the record with this id, or -1. */
-static int id_list_find(const struct id_list *l, int64_t id)
-{
-    const struct id_row *row = id_list_row(l, id);
-    return row ? row->idx : -1;
-}
-
-static void id_list_release(struct id_list *l)
-{
-    free(l->rows);
-    *l = (struct id_list){0};
-}
 
 static bool point_is_below(const void *point, const void *id)
 {
@@ -148,7 +88,29 @@ static enum status read_observations(struct textfile *t, struct sfm_image *im, s
     return err->status;
 }
 
-/* The two lines of an image. On failure the caller releases its name and observations. */
+/* Whether the next line begins another image: some programs leave out the second lines, which would be blank. It has
+ * nine numbers and then a name; observations are numbers only. */
+static bool next_is_an_image(const struct textfile *t)
+{
+    size_t length = 0;
+    const char *p = textfile_peek(t, &length), *const end = p ? p + length : NULL;
+    for (int words = 0; p; words++) {
+        char word[64];
+        size_t n = 0;
+        double value;
+        while (p < end && (*p == ' ' || *p == '\t' || *p == '\r')) p++;
+        while (p + n < end && p[n] != ' ' && p[n] != '\t' && p[n] != '\r') n++;
+        if (n == 0) return false;
+        const bool is_long = n >= sizeof word;
+        if (!is_long) snprintf(word, sizeof word, "%.*s", (int)n, p);
+        const bool is_number = !is_long && scan_double(word, &value);
+        if (words == 9 || !is_number) return words == 9 && !is_number;
+        p += n;
+    }
+    return false;
+}
+
+/* The two lines of an image; the second may be missing. On failure the caller releases its name and observations. */
 static enum status read_image(struct sfm_image *im, struct textfile *t, const struct id_list *cameras, struct err *err)
 {
     struct quat *q = &im->cam_from_world.rotation;
@@ -173,7 +135,7 @@ static enum status read_image(struct sfm_image *im, struct textfile *t, const st
     }
     im->name = strdup(name);
     if (!im->name) return err_nomem(err, "a name", strlen(name) + 1);
-    return textfile_next_raw(t) ? read_observations(t, im, err) : ST_OK;
+    return !next_is_an_image(t) && textfile_next_raw(t) ? read_observations(t, im, err) : ST_OK;
 }
 
 /* Sorts the images by name; lines and ids follow. lines: of each image in the file. */
@@ -222,37 +184,49 @@ static enum status read_images(struct sfm_model *m, const struct id_list *camera
     return err->status;
 }
 
-/* One entry of a track: an observation of this point that no track has listed yet. */
-static enum status read_track_entry(struct textfile *t, const struct sfm_model *m, const struct id_list *images,
-                                    unsigned char **listed, int64_t point_id, struct sfm_track *track, struct err *err)
+/* How points3D.txt is read. */
+struct point_reader {
+    struct textfile file;
+    struct track_marks *marks;
+    bool given;       /* by a user: what refers to nothing is left out */
+    long long *loose; /* entries of tracks that were left out; NULL: not wanted */
+    struct sfm_track *track;
+    size_t track_capacity;
+};
+
+/* One entry of a track. *good: false if it is left out. */
+static enum status read_track_entry(struct point_reader *r, int64_t point_id, struct sfm_track *track, bool *good,
+                                    struct err *err)
 {
+    struct textfile *t = &r->file;
     int64_t image_id = 0, observation = 0;
     char found[96];
     if (textfile_int(t, "image id of a track", 0, INT64_MAX, &image_id, err) ||
         textfile_int(t, "observation of a track", 0, INT64_MAX, &observation, err))
         return err->status;
-    int idx = id_list_find(images, image_id);
-    if (idx < 0) {
+    const enum track_fault fault = track_marks_take(r->marks, image_id, observation, point_id, track);
+    *good = fault == TRACK_GOOD;
+    if (*good || r->given) {
+        if (!*good && r->loose) ++*r->loose;
+        return ST_OK;
+    }
+    if (fault == TRACK_WITHOUT_IMAGE) {
         snprintf(found, sizeof found, "image %" PRId64, image_id);
         return textfile_error(t, err, found, "the id of an image in images.txt");
     }
     snprintf(found, sizeof found, "observation %" PRId64 " of image %" PRId64, observation, image_id);
-    const struct sfm_image *im = &m->images[idx];
-    if (observation >= im->observation_count)
-        return textfile_error(t, err, found, "one of that image's %d observations", im->observation_count);
-    if (im->observations[observation].point_id != point_id)
+    if (fault == TRACK_WITHOUT_OBSERVATION)
+        return textfile_error(t, err, found, "one of that image's %d observations",
+                              r->marks->m->images[track->image_idx].observation_count);
+    if (fault == TRACK_OF_OTHER_POINT)
         return textfile_error(t, err, found, "an observation that images.txt assigns to point %" PRId64, point_id);
-    if (listed[idx][observation]) return textfile_error(t, err, found, "each observation once");
-    listed[idx][observation] = 1;
-    *track = (struct sfm_track){idx, (int)observation};
-    return ST_OK;
+    return textfile_error(t, err, found, "each observation once");
 }
 
-/* A line of points3D.txt. `track` is scratch memory. On failure the caller releases p->track. */
-static enum status read_point(struct sfm_point *p, struct textfile *t, const struct sfm_model *m,
-                              const struct id_list *images, unsigned char **listed, struct sfm_track **track,
-                              size_t *capacity, struct err *err)
+/* A line of points3D.txt. On failure the caller releases p->track. */
+static enum status read_point(struct sfm_point *p, struct point_reader *r, struct err *err)
 {
+    struct textfile *t = &r->file;
     int64_t rgb[3] = {0};
     int count = 0;
     if (textfile_int(t, "point id", 0, INT64_MAX, &p->id, err) || textfile_double(t, "X", &p->position.x, err) ||
@@ -261,63 +235,47 @@ static enum status read_point(struct sfm_point *p, struct textfile *t, const str
         textfile_int(t, "B", 0, 255, &rgb[2], err) || textfile_double(t, "reprojection error", &p->error, err))
         return err->status;
     for (int i = 0; i < 3; i++) p->rgb[i] = (uint8_t)rgb[i];
-    for (; textfile_more(t); count++)
-        if (array_reserve(track, capacity, (size_t)count + 1, sizeof **track, "track entries", err) ||
-            read_track_entry(t, m, images, listed, p->id, &(*track)[count], err))
+    while (textfile_more(t)) {
+        bool good = false;
+        if (array_reserve(&r->track, &r->track_capacity, (size_t)count + 1, sizeof *r->track, "track entries", err) ||
+            read_track_entry(r, p->id, &r->track[count], &good, err))
             return err->status;
-    if (!count) return ST_OK;
-    p->track = malloc((size_t)count * sizeof *p->track);
-    if (!p->track) return err_nomem(err, "a track", (size_t)count * sizeof *p->track);
-    memcpy(p->track, *track, (size_t)count * sizeof *p->track);
-    p->track_count = count;
-    return ST_OK;
+        count += good;
+    }
+    return sfm_set_track(p, r->track, count, err);
 }
 
-/* Puts the points into the order of the list, which is sorted by id. */
-static enum status sort_points(struct sfm_model *m, const struct id_list *ids, struct err *err)
+/* r->file is closed; the rest of r is set. */
+static enum status read_points(struct sfm_model *m, struct point_reader *r, const char *path, struct provenance *prov,
+                               struct err *err)
 {
-    struct sfm_point *sorted = malloc((size_t)ids->count * sizeof *sorted);
-    if (!sorted) return err_nomem(err, "points", (size_t)ids->count * sizeof *sorted);
-    for (int i = 0; i < ids->count; i++) sorted[i] = m->points[ids->rows[i].idx];
-    free(m->points);
-    m->points = sorted;
-    return ST_OK;
-}
-
-static enum status read_points(struct sfm_model *m, const struct id_list *images, unsigned char **listed,
-                               const char *folder, struct provenance *prov, struct err *err)
-{
-    struct textfile t = {0};
+    struct textfile *t = &r->file;
     struct id_list ids = {0};
-    struct sfm_track *track = NULL;
-    size_t capacity = 0;
-    char path[FILE_PATH];
-    if (product_path_in(path, folder, PRODUCT_POINTS3D, NULL, err)) return err->status;
-    open_part(&t, path, prov, err);
-    while (!err->status && textfile_next(&t)) {
+    open_part(t, path, prov, err);
+    while (!err->status && textfile_next(t)) {
         struct sfm_point p = {0};
-        if (sfm_append(&m->points, m->point_count, sizeof p, "points", err) ||
-            read_point(&p, &t, m, images, listed, &track, &capacity, err) || id_list_add(&ids, p.id, t.line, err))
+        if (sfm_append(&m->points, m->point_count, sizeof p, "points", err) || read_point(&p, r, err) ||
+            id_list_add(&ids, p.id, t->line, err))
             free(p.track);
         else
             m->points[m->point_count++] = p;
     }
     m->points = sfm_shrink(m->points, m->point_count, sizeof *m->points);
-    if (!err->status && !ids.ascending && ids.count && !id_list_sort(&ids, path, "point", err))
-        sort_points(m, &ids, err);
-    free(track);
+    if (!err->status) sfm_sort_points(m, &ids, path, err);
+    free(r->track);
     id_list_release(&ids);
-    textfile_release(&t);
+    textfile_release(t);
     return err->status;
 }
 
-static enum status check_observations(const struct sfm_model *m, unsigned char **listed, const int *lines,
-                                      const char *folder, struct err *err)
+static enum status check_observations(const struct track_marks *t, const int *lines, const char *folder,
+                                      struct err *err)
 {
+    const struct sfm_model *m = t->m;
     for (int i = 0; i < m->image_count; i++)
         for (int k = 0; k < m->images[i].observation_count; k++) {
             int64_t id = m->images[i].observations[k].point_id;
-            if (id == -1 || listed[i][k]) continue;
+            if (id == -1 || t->listed[i][k]) continue;
             return err_set(err, ST_DATA,
                            "%s/images.txt:%d: found that observation %d (from 0) of image \"%s\" is of point %" PRId64
                            ", wanted %s in points3D.txt.",
@@ -337,31 +295,47 @@ static enum status model_paths(char of_cameras[FILE_PATH], char of_images[FILE_P
                : ST_OK;
 }
 
-enum status sfm_model_read_text(struct sfm_model *m, const char *folder, struct provenance *prov, struct err *err)
+/* loose: as in point_reader; points: NULL: the file of points is missing, and observations are of none. */
+static enum status read_text(struct sfm_model *m, const char *folder, bool given, const char *points, long long *loose,
+                             struct provenance *prov, struct err *err)
 {
     struct id_list cameras = {0}, images = {0};
-    unsigned char **listed = NULL;
+    struct track_marks marks = {0};
+    struct point_reader reader = {.marks = &marks, .given = given, .loose = loose};
     int *lines = NULL;
     char of_cameras[FILE_PATH], of_images[FILE_PATH];
     *m = (struct sfm_model){0};
     if (!model_paths(of_cameras, of_images, folder, err) && !read_cameras(m, &cameras, of_cameras, prov, err) &&
-        !read_images(m, &cameras, &images, &lines, of_images, prov, err)) {
-        listed = calloc((size_t)m->image_count, sizeof *listed);
-        if (!listed) err_nomem(err, "marks", (size_t)m->image_count * sizeof *listed);
-        for (int i = 0; !err->status && i < m->image_count; i++) {
-            listed[i] = calloc((size_t)m->images[i].observation_count + 1, 1);
-            if (!listed[i]) err_nomem(err, "marks", (size_t)m->images[i].observation_count);
-        }
-    }
-    if (!err->status && !read_points(m, &images, listed, folder, prov, err))
-        check_observations(m, listed, lines, folder, err);
-    for (int i = 0; listed && i < m->image_count; i++) free(listed[i]);
-    free(listed);
+        !read_images(m, &cameras, &images, &lines, of_images, prov, err) &&
+        !track_marks_make(&marks, m, &images, err) && points)
+        read_points(m, &reader, points, prov, err);
+    if (!err->status && given)
+        track_marks_clear_others(&marks);
+    else if (!err->status)
+        check_observations(&marks, lines, folder, err);
+    track_marks_release(&marks);
     free(lines);
     id_list_release(&cameras);
     id_list_release(&images);
     if (err->status) sfm_model_release(m);
     return err->status;
+}
+
+enum status sfm_model_read_text(struct sfm_model *m, const char *folder, struct provenance *prov, struct err *err)
+{
+    char points[FILE_PATH];
+    *m = (struct sfm_model){0};
+    if (product_path_in(points, folder, PRODUCT_POINTS3D, NULL, err)) return err->status;
+    return read_text(m, folder, false, points, NULL, prov, err);
+}
+
+enum status sfm_model_read_given_text(struct sfm_model *m, const char *folder, long long *loose, struct err *err)
+{
+    char points[FILE_PATH];
+    *m = (struct sfm_model){0};
+    *loose = 0;
+    if (product_path_in(points, folder, PRODUCT_POINTS3D, NULL, err)) return err->status;
+    return read_text(m, folder, true, path_is_file(points) ? points : NULL, loose, NULL, err);
 }
 
 enum status sfm_model_read_cameras(struct sfm_model *m, const char *folder, struct provenance *prov, struct err *err)
