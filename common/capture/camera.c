@@ -88,6 +88,33 @@ void camera_focal(const struct camera *c, double *fx, double *fy, double *cx, do
     *cy = single ? p[2] : p[3];
 }
 
+/* Whether both sides differ by the same ratio, up to the half pixel (of the smaller picture) that rounding explains. */
+static bool same_shape(const struct camera *c, int width, int height)
+{
+    double ratio = (double)width / c->width, other = (double)height / c->height;
+    bool smaller = ratio < 1;
+    double off = smaller ? fmin(fabs(c->height * ratio - height), fabs(c->width * other - width))
+                         : fmin(fabs(height / ratio - c->height), fabs(width / other - c->width));
+    return off <= 0.5;
+}
+
+bool camera_resize(struct camera *c, int width, int height)
+{
+    if (c->width == width && c->height == height) return true;
+    if (!same_shape(c, width, height)) return false;
+    const double scale_u = (double)width / c->width, scale_v = (double)height / c->height;
+    const bool single = single_focal(c->model);
+    double *p = c->params, fx, fy, cx, cy;
+    camera_focal(c, &fx, &fy, &cx, &cy);
+    p[0] = fx * (single ? sqrt(scale_u * scale_v) : scale_u);
+    if (!single) p[1] = fy * scale_v;
+    p[single ? 1 : 2] = cx * scale_u;
+    p[single ? 2 : 3] = cy * scale_v;
+    c->width = width;
+    c->height = height;
+    return true;
+}
+
 /* ------------------------------------------------------------------------------------------------- distortion */
 
 enum { N_TERMS = 5, D_TERMS = 4, SLOPE_TERMS = N_TERMS + D_TERMS - 1 };

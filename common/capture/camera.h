@@ -44,6 +44,10 @@ enum status camera_check(const struct camera *c, struct err *err);
 
 void camera_focal(const struct camera *c, double *fx, double *fy, double *cx, double *cy);
 
+/* The camera of the same pictures at another size. False: the shapes differ by more than the half pixel, of the smaller
+ * picture, that rounding explains; *c is unchanged. */
+bool camera_resize(struct camera *c, int width, int height);
+
 /* Point in camera coordinates -> pixel. False: behind the camera (z <= 0; for a fisheye only the origin and the
  * negative axis), or beyond the radius up to which the distortion is one-to-one. */
 bool camera_project(const struct camera *c, struct vec3 p, double *u, double *v);

@@ -1,5 +1,4 @@
 /* importer_photos.c - which photo each image of the model is, and its lens at the photo's size. */
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -59,24 +58,12 @@ enum status importer_match_photos(struct importer *imp, struct import_stats *sta
     return err->status;
 }
 
-/* Whether both sides differ by the same ratio, up to the half pixel (of the smaller picture) that rounding explains. */
-static bool same_shape(const struct camera *c, int width, int height)
-{
-    double ratio = (double)width / c->width, other = (double)height / c->height;
-    bool smaller = ratio < 1;
-    double off = smaller ? fmin(fabs(c->height * ratio - height), fabs(c->width * other - width))
-                         : fmin(fabs(height / ratio - c->height), fabs(width / other - c->width));
-    return off <= 0.5;
-}
-
 static enum status fit_lens(struct input_image *im, const struct camera *c, const struct photo_record *photo,
                             struct err *err)
 {
     int w = photo->info.width, h = photo->info.height;
     im->lens = *c;
-    im->scale_u = im->scale_v = 1;
-    if (c->width == w && c->height == h) return ST_OK;
-    if (!same_shape(c, w, h))
+    if (!camera_resize(&im->lens, w, h))
         return err_set(
             err, ST_DATA,
             "the model's camera for photo \"%s\" is %d x %d px, but the photo is %d x %d px; the model must be of the "
@@ -84,15 +71,6 @@ static enum status fit_lens(struct input_image *im, const struct camera *c, cons
             photo->file, c->width, c->height, w, h);
     im->scale_u = (double)w / c->width;
     im->scale_v = (double)h / c->height;
-    double *p = im->lens.params, both = sqrt(im->scale_u * im->scale_v), fx, fy, cx, cy;
-    bool single = camera_model_params(c->model) < 6 && c->model != CAMERA_PINHOLE;
-    camera_focal(c, &fx, &fy, &cx, &cy);
-    p[0] = fx * (single ? both : im->scale_u);
-    if (!single) p[1] = fy * im->scale_v;
-    p[single ? 1 : 2] = cx * im->scale_u;
-    p[single ? 2 : 3] = cy * im->scale_v;
-    im->lens.width = w;
-    im->lens.height = h;
     return ST_OK;
 }
 
