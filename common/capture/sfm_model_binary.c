@@ -174,7 +174,7 @@ static enum status read_observations(struct binary_file *f, struct sfm_image *im
     im->observations = malloc((size_t)count * sizeof *im->observations);
     if (!im->observations) return err_nomem(err, "observations", (size_t)count * sizeof *im->observations);
     for (; im->observation_count < (int)count; im->observation_count++) {
-        double at[2];
+        double at[2] = {0};
         uint64_t point = 0;
         if (take_doubles(f, at, 2, err) || take_64(f, &point, err)) return err->status;
         im->observations[im->observation_count] =
@@ -187,7 +187,7 @@ static enum status read_observations(struct binary_file *f, struct sfm_image *im
 static enum status read_image(struct binary_file *f, struct sfm_image *im, const struct id_list *cameras,
                               struct err *err)
 {
-    double pose[7];
+    double pose[7] = {0};
     uint32_t id = 0, camera = 0;
     if (take_32(f, &id, err) || take_doubles(f, pose, 7, err) || take_32(f, &camera, err)) return err->status;
     const char *name = f->file.bytes + f->at, *end = memchr(name, '\0', f->file.size - f->at);
@@ -249,7 +249,7 @@ struct track_buffer {
 static enum status read_point(struct binary_file *f, struct sfm_point *p, struct track_marks *marks,
                               struct track_buffer *track, long long *loose, struct err *err)
 {
-    double position[3];
+    double position[3] = {0};
     uint64_t id = 0, length = 0;
     int count = 0;
     if (take_64(f, &id, err) || take_doubles(f, position, 3, err) || take(f, p->rgb, 3, err) ||

@@ -1,7 +1,6 @@
 /* scene_rules.c - see scene_rules.h. */
 #include "common/graph/scene_rules.h"
 
-#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -28,35 +27,14 @@ const char *scene_photo_source(struct graph *g, const struct scene_facts *f, con
     return f->bracketed ? PATH(g, HDR, .photo = photo) : PATH(g, PHOTO, .photo = photo);
 }
 
-/* Whether points3D.txt has a line other than comments, or points3D.bin counts at least one point. */
-static bool has_points(const char *path, bool binary)
-{
-    FILE *fp = fopen(path, "re");
-    uint64_t count = 0;
-    int c = EOF;
-    if (!fp) return false;
-    if (binary)
-        c = fread(&count, sizeof count, 1, fp) == 1 && count ? 0 : EOF;
-    else
-        while ((c = getc(fp)) == '#' || c == '\n')
-            while (c != '\n' && c != EOF) c = getc(fp);
-    fclose(fp);
-    return c != EOF;
-}
-
 bool scene_matches_photos(struct graph *g)
 {
-    static const char *const folders[] = {"", "/0"}, *const endings[] = {"txt", "bin"};
-    const char *model = scene_setting("SFM");
-    bool lacks_points = false; /* a model of Bundler always has some */
-    if (!*model) return true;
-    for (int i = 0; i < 2; i++)
-        for (int binary = 0; binary < 2; binary++) {
-            const char *folder = folders[i], *ending = endings[binary];
-            if (has_points(graph_text(g, "%s%s/points3D.%s", model, folder, ending), binary)) return false;
-            lacks_points |= path_is_file(graph_text(g, "%s%s/images.%s", model, folder, ending));
-        }
-    return lacks_points;
+    char line[16] = "";
+    if (!*scene_setting("SFM")) return true;
+    FILE *fp = fopen(graph_shared(g, "stamp/sfm_points.txt"), "re");
+    const bool few = fp && fgets(line, sizeof line, fp) && !strncmp(line, "few", 3);
+    if (fp) fclose(fp);
+    return few;
 }
 
 void rule_masks(struct graph *g, const struct scene_facts *f)

@@ -278,9 +278,11 @@ done:
 #define SAME_SIDE 45.0 /* degrees between the rays of two views to a point that both may see */
 
 /* Whether a view that does not observe a point may see it: a view that does looks at it from the same side. What only
- * views from elsewhere observe may lie behind a wall, or in another room. */
+ * views from elsewhere observe may lie behind a wall, or in another room. Of points that no view observes, as some
+ * given models have them, nothing is known. */
 static bool may_see(const struct camera_set *set, const struct view *view, const struct sfm_point *p)
 {
+    if (!p->track_count) return true;
     for (int k = 0; k < p->track_count; k++) {
         const int j = p->track[k].image_idx;
         if (j >= set->view_count) continue;

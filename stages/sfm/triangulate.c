@@ -4,6 +4,7 @@
  * with poses and lenses held fixed. The images written for it must have the names and ids of the database. */
 #include "stages/sfm/triangulate.h"
 
+#include <math.h>
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,16 +17,27 @@
 #include "stages/sfm/colmap_log.h"
 #include "stages/sfm/colmap_matches.h"
 
-/* The lens for verifying matches: the model's, if it has only one. */
-static void params_of_model(struct sfm_params *params, const struct sfm_model *m)
+#define SIMILAR_FOCAL 0.1 /* relative; lenses that differ less are one for verifying matches */
+
+/* The lens for verifying matches: the model's, if it has only one, or all are similar. */
+static void params_of_model(struct sfm_params *params, const struct sfm_model *known)
 {
-    if (m->camera_count != 1) {
+    const struct camera *c = &known->cameras[0].camera;
+    bool similar = true;
+    double own[4], other[4];
+    camera_focal(c, &own[0], &own[1], &own[2], &own[3]);
+    for (int i = 1; i < known->camera_count; i++) {
+        const struct camera *d = &known->cameras[i].camera;
+        camera_focal(d, &other[0], &other[1], &other[2], &other[3]);
+        similar = similar && d->model == c->model && d->width == c->width && d->height == c->height &&
+                  fabs(other[0] / own[0] - 1) < SIMILAR_FOCAL;
+    }
+    if (!similar) {
         if (!sfm_is_equisolid(params)) return;
         strcpy(params->camera_model, "OPENCV_FISHEYE"); /* the model's lenses are used: no start is needed */
         *params->camera_params = '\0';
         return;
     }
-    const struct camera *c = &m->cameras[0].camera;
     char text[PARAM_TEXT_SIZE] = "";
     size_t used = 0;
     for (int i = 0; i < camera_model_params(c->model) && used < sizeof text; i++)
@@ -35,49 +47,76 @@ static void params_of_model(struct sfm_params *params, const struct sfm_model *m
     memcpy(params->camera_params, text, sizeof text);
 }
 
-/* Writes the model's cameras and poses, its images with their names and ids in the database. */
-static enum status write_known(const struct colmap_job *job, const struct sfm_model *m, const char *folder,
+static int find_camera(const struct sfm_model *m, const struct camera *c)
+{
+    const size_t size = (size_t)camera_model_params(c->model) * sizeof *c->params;
+    for (int i = 0; i < m->camera_count; i++) {
+        const struct camera *d = &m->cameras[i].camera;
+        if (d->model == c->model && d->width == c->width && d->height == c->height &&
+            !memcmp(d->params, c->params, size))
+            return i;
+    }
+    return -1;
+}
+
+/* The images of the model that are photos of the scene, with each different lens once, at the photos' size; images keep
+ * the names of the model, which `known` borrows. *fits: false if the photos are of another shape. */
+static enum status known_cameras(struct sfm_model *known, bool *fits, const struct sfm_model *m,
+                                 const struct photo_list *photos, struct err *err)
+{
+    const size_t count = (size_t)m->image_count + 1;
+    *fits = true;
+    known->cameras = calloc(count, sizeof *known->cameras);
+    known->images = calloc(count, sizeof *known->images);
+    if (!known->cameras || !known->images) return err_nomem(err, "images", count * sizeof *known->images);
+    for (int i = 0; i < m->image_count; i++) {
+        const int photo = photo_list_match(photos, m->images[i].name);
+        struct camera c = m->cameras[m->images[i].camera_idx].camera;
+        if (photo < 0) continue;
+        if (!camera_resize(&c, photos->photos[photo].info.width, photos->photos[photo].info.height)) *fits = false;
+        int at = find_camera(known, &c);
+        if (at < 0) {
+            at = known->camera_count++;
+            known->cameras[at] = (struct sfm_camera){at + 1, c};
+        }
+        known->images[known->image_count++] = (struct sfm_image){
+            .cam_from_world = m->images[i].cam_from_world, .camera_idx = at, .name = m->images[i].name};
+    }
+    return ST_OK;
+}
+
+/* Writes the known cameras and poses, its images with their names and ids in the database. */
+static enum status write_known(const struct colmap_job *job, const struct sfm_model *known, const char *folder,
                                struct err *err)
 {
-    struct sfm_model known = {.cameras = m->cameras, .camera_count = m->camera_count};
+    struct sfm_model written = {.cameras = known->cameras, .camera_count = known->camera_count};
     struct colmap_database *db = NULL;
     colmap_database_open(&db, job->database, err);
-    known.images = calloc((size_t)m->image_count + 1, sizeof *known.images);
-    if (!err->status && !known.images) err_nomem(err, "images", (size_t)m->image_count * sizeof *known.images);
-    for (int i = 0; !err->status && i < m->image_count; i++) {
-        int at = photo_list_match(job->photos, m->images[i].name);
-        if (at < 0) continue;
-        const struct photo_record *p = &job->photos->photos[at];
+    written.images = calloc((size_t)known->image_count + 1, sizeof *written.images);
+    if (!err->status && !written.images) err_nomem(err, "images", (size_t)known->image_count * sizeof *written.images);
+    for (int i = 0; !err->status && i < known->image_count; i++) {
+        const struct photo_record *p = &job->photos->photos[photo_list_match(job->photos, known->images[i].name)];
         char *name = sfm_text_format(err, "%s%s", p->id, colmap_extension(p->file));
         int id = 0;
         if (!name || colmap_database_image_id(&id, db, name, err) || !id) {
             free(name);
             continue;
         }
-        known.images[known.image_count++] =
-            (struct sfm_image){id, m->images[i].cam_from_world, m->images[i].camera_idx, name, NULL, 0};
+        struct sfm_image *im = &written.images[written.image_count++];
+        *im = known->images[i];
+        im->id = id;
+        im->name = name;
     }
-    if (!err->status && known.image_count < 2)
+    if (!err->status && written.image_count < 2)
         err_set(err, ST_DATA,
                 "the model has no points, and none can be triangulated: only %d of its %d images are readable photos "
                 "of the scene. Use the model of these photos.",
-                known.image_count, m->image_count);
-    if (!err->status) sfm_model_write_text(&known, folder, NULL, err);
-    for (int i = 0; i < known.image_count; i++) free(known.images[i].name);
-    free(known.images);
+                written.image_count, known->image_count);
+    if (!err->status) sfm_model_write_text(&written, folder, NULL, err);
+    for (int i = 0; i < written.image_count; i++) free(written.images[i].name);
+    free(written.images);
     colmap_database_close(db);
     return err->status;
-}
-
-static bool sizes_match(const struct sfm_model *m, const struct photo_list *photos)
-{
-    for (int i = 0; i < m->image_count; i++) {
-        int at = photo_list_match(photos, m->images[i].name);
-        const struct camera *c = &m->cameras[m->images[i].camera_idx].camera;
-        if (at >= 0 && (c->width != photos->photos[at].info.width || c->height != photos->photos[at].info.height))
-            return false;
-    }
-    return true;
 }
 
 /* Runs COLMAP's triangulator on the cameras in `known`. *points: whether it made a model. It aborts in its bundle
@@ -114,55 +153,63 @@ static enum status find_points(bool *points, const struct colmap_job *job, const
     return err->status;
 }
 
-enum status triangulate(struct sfm_model *m, const struct sfm_folder *f, const struct sfm_input *in, struct err *err)
+/* Triangulates points for known cameras. *features: number of the photos' features. */
+static enum status triangulate_known(struct sfm_model *found, long long *features, const struct sfm_model *known,
+                                     const struct sfm_folder *f, const struct sfm_input *in, struct err *err)
 {
     struct colmap_job job = {0};
-    struct sfm_model found = {0};
     struct sfm_params params = *in->params;
-    long long features = 0;
     bool points = false;
-    if (!in->features || !in->matches) {
-        log_warn("the model has no points, and none can be found: features and matches of the photos were not given");
-        return ST_OK;
-    }
-    if (!sizes_match(m, in->list)) {
-        log_warn("the model has no points, and none can be found: its cameras differ from the photos in size");
-        return ST_OK;
-    }
-    params_of_model(&params, m);
-    char *known = sfm_text_format(err, "%s/known-%d", f->work, f->models);
+    params_of_model(&params, known);
+    char *of_known = sfm_text_format(err, "%s/known-%d", f->work, f->models);
     char *made = sfm_text_format(err, "%s/triangulated-%d", f->work, f->models);
     char *text = sfm_text_format(err, "%s/triangulated-text-%d", f->work, f->models);
-    if (known && made && text) colmap_prepare(&job, f, in, &params, err);
+    if (of_known && made && text) colmap_prepare(&job, f, in, &params, err);
     const char *converter[] = {"model_converter", "--input_path", made, "--output_path", text,
                                "--output_type",   "TXT",          NULL};
     if (!err->status && !outfile_make_folders(made, err) && !outfile_make_folders(text, err) &&
-        !colmap_take_matches(&features, &job, err))
-        write_known(&job, m, known, err);
-    if (!err->status && features) {
+        !colmap_take_matches(features, &job, err))
+        write_known(&job, known, of_known, err);
+    if (!err->status && *features) {
         log_note("step 3 of %d: points (%.1f s so far)", COLMAP_STEPS, clock_seconds() - job.started);
-        find_points(&points, &job, known, made, err);
+        find_points(&points, &job, of_known, made, err);
     }
     if (!err->status && points && !colmap_run(job.logs[3], converter, 0, err) &&
-        !sfm_model_read_text(&found, text, NULL, err))
-        colmap_name_images(&found, in->list, err);
+        !sfm_model_read_text(found, text, NULL, err))
+        colmap_name_images(found, in->list, err);
     if (!err->status) colmap_keep_logs(&job, err);
-    if (!err->status && found.point_count) {
-        log_note("triangulated %d points from the model's cameras", found.point_count);
-        sfm_model_release(m);
-        *m = found;
-        found = (struct sfm_model){0};
-    } else if (!err->status) {
-        log_warn(
-            "the model has no points, and none can be found: %s. Its cameras are used as they are; depths are searched "
-            "between [segment_depth] near and far or, if these are not set, where the baselines allow it",
-            features ? "no two photos show the same features where its cameras see them"
-                     : "the photos have no features");
-    }
-    sfm_model_release(&found);
     colmap_job_release(&job);
-    free(known);
+    free(of_known);
     free(made);
     free(text);
+    return err->status;
+}
+
+enum status triangulate(struct sfm_model *found, const struct sfm_model *m, const struct sfm_folder *f,
+                        const struct sfm_input *in, struct err *err)
+{
+    struct sfm_model known = {0};
+    long long features = 0;
+    bool fits = false;
+    const char *why = NULL;
+    *found = (struct sfm_model){0};
+    if (!in->features || !in->matches)
+        why = "features and matches of the photos were not given";
+    else if (!known_cameras(&known, &fits, m, in->list, err) && !fits)
+        why = "its cameras differ from the photos in shape";
+    if (!err->status && !why) triangulate_known(found, &features, &known, f, in, err);
+    if (!err->status && found->point_count)
+        log_note("triangulated %d points from the model's cameras", found->point_count);
+    else if (!err->status && !why)
+        why = features ? "no two photos show the same features where its cameras see them"
+                       : "the photos have no features";
+    if (!err->status && why)
+        log_warn("the model has no points that its photos share, and none can be found: %s. Its cameras are used as "
+                 "they are; depths are searched between [segment_depth] near and far or, if these are not set, where "
+                 "%s",
+                 why, m->point_count ? "its points are" : "the baselines allow it");
+    free(known.cameras);
+    free(known.images);
+    if (err->status) sfm_model_release(found);
     return err->status;
 }

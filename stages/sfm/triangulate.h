@@ -4,9 +4,10 @@
 
 #include "stages/sfm/colmap_job.h"
 
-/* Replaces *m by a model with triangulated points; poses and lenses stay. Images that are not photos of the scene are
- * dropped. If no points can be found the model stays as it is and a warning is logged. ST_DATA: fewer than two images
- * are readable photos. */
-enum status triangulate(struct sfm_model *m, const struct sfm_folder *f, const struct sfm_input *in, struct err *err);
+/* *found: the model m with triangulated points, at the size of the photos; poses and lenses stay. Images that are not
+ * photos of the scene are left out. If no points can be found *found is empty, and a warning is logged. The caller
+ * releases it. */
+enum status triangulate(struct sfm_model *found, const struct sfm_model *m, const struct sfm_folder *f,
+                        const struct sfm_input *in, struct err *err);
 
 #endif

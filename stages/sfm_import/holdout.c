@@ -103,13 +103,13 @@ static enum status copy_points(struct imported *out, const struct imported *in, 
         const struct sfm_point *from = &in->model.points[i];
         bool two_photos;
         int length = track_length(from, &in->lenses, held, want, &two_photos);
-        if (!length || (!want && !two_photos))
-            continue; /* want: the held-out views, for which one observation is enough */
+        /* want: the held-out views, for which one observation is enough; without tracks points belong to all */
+        if (from->track_count && (!length || (!want && !two_photos))) continue;
         struct sfm_point *p = &m->points[m->point_count];
         *p = *from;
         p->track_count = 0;
-        p->track = malloc((size_t)length * sizeof *p->track);
-        if (!p->track) return err_nomem(err, "a track", (size_t)length * sizeof *p->track);
+        p->track = length ? malloc((size_t)length * sizeof *p->track) : NULL;
+        if (length && !p->track) return err_nomem(err, "a track", (size_t)length * sizeof *p->track);
         m->point_count++;
         for (int k = 0; k < from->track_count; k++) {
             const struct sfm_track *t = &from->track[k];

@@ -20,7 +20,8 @@
 const struct param sfm_import_param_table[] = {SFM_IMPORT_PARAMS(PARAM_ROW) PARAM_END};
 #undef PARAM_STRUCT
 
-enum { MIN_POINTS = 10 }; /* photos that see fewer are reported */
+enum { MIN_POINTS = 10 };     /* photos that see fewer are reported */
+enum { MOST_UNSEEN = 20000 }; /* points that no two photos observe, evenly from all */
 
 static int compare_views(const void *a, const void *b)
 {
@@ -167,6 +168,39 @@ static enum status add_point(struct sfm_model *m, const struct sfm_point *p, con
     return ST_OK;
 }
 
+static bool is_in_frame(const struct input_image *im, struct vec3 point)
+{
+    double u, v;
+    const struct vec3 at = vec3_add(mat3_apply(im->cam_from_world, point), im->translation);
+    return camera_project(&im->lens, at, &u, &v) && u >= 0 && v >= 0 && u <= im->lens.width && v <= im->lens.height;
+}
+
+/* Points that no two photos observe say at least where the scene is: keeps those in the frame of a photo, without
+ * tracks. */
+static enum status keep_unseen_points(const struct importer *imp, struct imported *out, struct err *err)
+{
+    const struct sfm_model *in = imp->in;
+    const int stride = in->point_count / MOST_UNSEEN + 1;
+    if (!in->point_count) return ST_OK;
+    free(out->model.points);
+    out->model.points = malloc(((size_t)in->point_count / (size_t)stride + 1) * sizeof *out->model.points);
+    if (!out->model.points) return err_nomem(err, "points", (size_t)in->point_count * sizeof *out->model.points);
+    for (int i = 0; i < in->point_count; i += stride) {
+        bool framed = false;
+        for (int k = 0; !framed && k < in->image_count; k++)
+            framed = imp->images[k].photo >= 0 && is_in_frame(&imp->images[k], in->points[i].position);
+        if (!framed) continue;
+        struct sfm_point *p = &out->model.points[out->model.point_count++];
+        *p = in->points[i];
+        p->track = NULL;
+        p->track_count = 0;
+    }
+    if (out->model.point_count)
+        log_note("no two photos observe a point of the model: %d points only say between which depths the scene lies",
+                 out->model.point_count);
+    return ST_OK;
+}
+
 static enum status make_points(const struct importer *imp, struct imported *out, struct err *err)
 {
     const struct sfm_model *in = imp->in;
@@ -174,9 +208,8 @@ static enum status make_points(const struct importer *imp, struct imported *out,
     int longest = 0;
     for (int i = 0; i < in->point_count; i++)
         if (in->points[i].track_count > longest) longest = in->points[i].track_count;
-    if (!longest) return ST_OK;
-    sightings = malloc((size_t)longest * MAX_PHOTO_VIEWS * sizeof *sightings);
-    out->model.points = malloc((size_t)in->point_count * sizeof *out->model.points);
+    sightings = malloc(((size_t)longest * MAX_PHOTO_VIEWS + 1) * sizeof *sightings);
+    out->model.points = malloc(((size_t)in->point_count + 1) * sizeof *out->model.points);
     if (!sightings || !out->model.points) err_nomem(err, "points", (size_t)in->point_count * sizeof *out->model.points);
     const double *error = imp->errors;
     for (int i = 0; !err->status && i < in->point_count; i++) {
@@ -200,12 +233,14 @@ static enum status make_points(const struct importer *imp, struct imported *out,
         add_point(&out->model, p, sightings, count, sum / kept, err);
     }
     free(sightings);
+    if (!err->status && !out->model.point_count) keep_unseen_points(imp, out, err);
     return err->status;
 }
 
 static void warn_about_few_points(const struct importer *imp, const struct sfm_model *m)
 {
-    for (int i = 0; i < imp->in->image_count && m->point_count; i++) {
+    if (!m->point_count || !m->points[0].track_count) return;
+    for (int i = 0; i < imp->in->image_count; i++) {
         const struct input_image *im = &imp->images[i];
         int seen = 0;
         for (int k = 0; k < im->view_count; k++) seen += m->images[im->views[k]].observation_count;

@@ -152,7 +152,8 @@ static void warn_about_lens(const struct importer *imp, const struct lens_fit *f
 enum status importer_judge_errors(const struct importer *imp, const struct import_stats *stats, struct err *err)
 {
     if (!stats->observations) {
-        log_warn("the model has no points that these photos see; depth estimation will have no starting points");
+        log_warn("%s; depth estimation will have no starting points",
+                 imp->in->point_count ? "these photos observe none of the model's points" : "the model has no points");
         warn_about_lens(imp, &stats->lens);
         return ST_OK;
     }

@@ -31,7 +31,7 @@ blank_photos_give_a_warning_and_depth_without_points()
     for k in 1 2; do ffmpeg -loglevel error -y -f lavfi -i color=gray:size=160x120 -frames:v 1 "blank/photos/photo_$k.jpg" || fail "ffmpeg wrote no photo"; done
     m blank depth || { cat log; fail "make depth"; }
     [ "$(points blank)" = 0 ] || fail "a blank wall has points"
-    grep -q 'warning: the model has no points, and none can be found: the photos have no features' log || { cat log; fail "no warning that there are no points"; }
+    grep -q 'warning: the model has no points that its photos share, and none can be found: the photos have no features' log || { cat log; fail "no warning that there are no points"; }
     grep -q 'warning: .*sparse points.*set \[segment_depth\] near and far' out/blank/log/segment_depth.photo_1.log || fail "no warning that the depths are guessed"
     [ -s out/blank/depth/photo_1.exr ] || fail "no depth"
 }
@@ -42,7 +42,7 @@ unrelated_photos_give_a_warning_and_depth_without_points()
     ffmpeg -loglevel error -y -f lavfi -i testsrc2=size=160x120 -frames:v 1 apart/photos/photo_2.jpg || fail "ffmpeg wrote no photo"
     printf 'near = 3\nfar = 20\n' >near; sed -i '/^\[segment_depth\]/r near' scenes/apart/scene.cfg
     m apart depth || { cat log; fail "make depth"; }
-    grep -q 'warning: the model has no points, and none can be found: no two photos' log || { cat log; fail "no warning that there are no points"; }
+    grep -q 'warning: the model has no points that its photos share, and none can be found: no two photos' log || { cat log; fail "no warning that there are no points"; }
     ! grep 'sparse points' out/apart/log/segment_depth.photo_1.log || fail "depths were guessed though near and far are set"
     awk '(NF == 7 || NF == 8) && /^[0-9]/ { n++; if ($5 * 3 > 1.31 || $5 * 20 < 0.69) bad++ } END { exit !(n > 50 && bad < n / 4) }' out/apart/depth/photo_1.txt || fail "depths are not between near and far"
 }

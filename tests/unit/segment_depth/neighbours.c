@@ -276,6 +276,21 @@ static void points_at_one_depth_give_a_range_with_margins(void **state)
     assert_true(min_inverse_z < 0.0975 && max_inverse_z > 0.1025);
 }
 
+/* A given model may have points that no view observes: they say where the scene is, but are no evidence. */
+static void points_without_observations_give_the_depth_range(void **state)
+{
+    (void)state;
+    double min_inverse_z, max_inverse_z;
+    int n[MAX_NEIGHBOURS];
+    struct err err;
+    start();
+    at(1, 0, 0);
+    patch(100, 0);
+    assert_false(range_of(&min_inverse_z, &max_inverse_z));
+    assert_true(1 / min_inverse_z < 12 && 1 / min_inverse_z > 10 && 1 / max_inverse_z > 8);
+    assert_int_equal(choose(n, 16, &err), 1);
+}
+
 static void without_points_the_depth_range_comes_from_the_baseline(void **state)
 {
     (void)state;
@@ -303,6 +318,7 @@ int main(void)
         cmocka_unit_test(the_depth_range_contains_the_points),
         cmocka_unit_test(outliers_do_not_widen_the_depth_range),
         cmocka_unit_test(points_at_one_depth_give_a_range_with_margins),
+        cmocka_unit_test(points_without_observations_give_the_depth_range),
         cmocka_unit_test(without_points_the_depth_range_comes_from_the_baseline),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -106,6 +106,81 @@ static void a_bundler_model_needs_its_list_of_images(void **state)
     assert_err(err, ST_DATA, "none of the 3 images");
 }
 
+/* Bundler's file of three cameras, of which none sees a point. */
+static const char three_cameras[] = "# Bundle file v0.3\n3 0\n"
+                                    "60 0 0\n1 0 0\n0 1 0\n0 0 1\n0 0 0\n60 0 0\n1 0 0\n0 1 0\n0 0 1\n1 0 0\n"
+                                    "60 0 0\n1 0 0\n0 1 0\n0 0 1\n2 0 0\n";
+
+/* Imports the Bundler model with a list of images; a.jpg is the third one, b.jpg the first. */
+static void expect_list(const char *name, const char *list)
+{
+    struct err err = ERR_INIT;
+    struct sfm_model m;
+    folder("lists");
+    scratch_write("lists/bundle.out", three_cameras);
+    scratch_write(name, list);
+    assert_ok(import("lists", "sfm-lists", &err), err);
+    unlink(scratch_path(name));
+    assert_ok(sfm_model_read_text(&m, scratch_path("sfm-lists/0"), NULL, &err), err);
+    assert_int_equal(m.image_count, 2);
+    for (int i = 0; i < 2; i++) {
+        const bool is_a = strstr(m.images[i].name, "a.jpg");
+        assert_true(is_a || strstr(m.images[i].name, "b.jpg"));
+        assert_true(m.images[i].cam_from_world.translation.x == (is_a ? 2 : 0));
+    }
+    sfm_model_release(&m);
+}
+
+static void lists_of_images_may_have_any_systems_paths(void **state)
+{
+    (void)state;
+    expect_list("lists/images.lst", "C:\\Users\\Ann\\b.jpg\r\nC:\\Users\\Ann\\other.jpg\r\nC:\\Users\\Ann\\a.jpg\r\n");
+    expect_list("lists/list.txt", "C:\\Ann Lee\\My 2 Photos\\b.jpg\nD:\\x y.jpg\nC:\\Ann Lee\\My 2 Photos\\a.jpg\n");
+    expect_list("lists/list.txt", "\"C:\\new folder\\b.jpg\"\n\"C:\\x\"\n\"C:\\new folder\\a.jpg\"\n");
+    expect_list("lists/list.txt", "# photos\n\n./my photos/b.jpg 0 660.8\n./x.jpg 0 1\n  ./my photos/a.jpg  0\n");
+    expect_list("lists/PHOTOS.LST", "\xEF\xBB\xBF/home/ann/b.jpg\n/home/ann/c.jpg\n/home/ann/a.jpg\n");
+}
+
+static void a_model_may_be_in_a_folder_sparse(void **state)
+{
+    (void)state;
+    struct err err = ERR_INIT;
+    folder("project");
+    folder("project/sparse");
+    write_text_model("project/sparse/0");
+    scratch_write("project/images.txt", "");
+    assert_int_equal(import("project", "sfm-project", &err), ST_DATA);
+    assert_err(err, ST_DATA, "has images.txt but no cameras.txt");
+    unlink(scratch_path("project/images.txt"));
+    err = (struct err)ERR_INIT;
+    assert_ok(import("project", "sfm-project", &err), err);
+    assert_int_equal(count_entries(scratch_path("sfm-project")), 3);
+}
+
+/* Eight points that both photos see suffice; with seven the photos are matched. */
+static void models_are_judged_by_their_points(void **state)
+{
+    (void)state;
+    for (int points = 7; points <= 8; points++) {
+        struct err err = ERR_INIT;
+        bool suffice = points == 7;
+        char of_points[512] = "", of_images[2][256] = {"", ""}, text[1024];
+        for (int i = 1; i <= points; i++) {
+            const size_t n = strlen(of_points);
+            snprintf(of_points + n, sizeof of_points - n, "%d 0 0 5 1 2 3 0.5 1 %d 2 %d\n", i, i - 1, i - 1);
+            for (int k = 0; k < 2; k++) snprintf(of_images[k] + strlen(of_images[k]), 16, "%d 2 %d ", i, i);
+        }
+        snprintf(text, sizeof text, "1 1 0 0 0 0 0 0 1 a.jpg\n%s\n2 1 0 0 0 1 0 0 1 b.jpg\n%s\n", of_images[0],
+                 of_images[1]);
+        folder("judged");
+        scratch_write("judged/cameras.txt", cameras);
+        scratch_write("judged/images.txt", text);
+        scratch_write("judged/points3D.txt", of_points);
+        assert_ok(user_model_judge(&suffice, scratch_path("judged"), &photos, &err), err);
+        assert_int_equal(suffice, points == 8);
+    }
+}
+
 static void invalid_models_are_rejected_and_the_old_folder_stays(void **state)
 {
     (void)state;
@@ -168,6 +243,9 @@ int main(void)
         cmocka_unit_test(a_text_model_is_imported),
         cmocka_unit_test(all_numbered_models_are_imported),
         cmocka_unit_test(a_bundler_model_needs_its_list_of_images),
+        cmocka_unit_test(lists_of_images_may_have_any_systems_paths),
+        cmocka_unit_test(a_model_may_be_in_a_folder_sparse),
+        cmocka_unit_test(models_are_judged_by_their_points),
         cmocka_unit_test(invalid_models_are_rejected_and_the_old_folder_stays),
         cmocka_unit_test(a_folder_with_other_files_is_not_replaced),
         cmocka_unit_test(removing_a_folder_keeps_the_targets_of_links),

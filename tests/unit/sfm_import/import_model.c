@@ -325,6 +325,24 @@ static void cameras_without_points_are_imported(void **state)
     release(&f);
 }
 
+/* Points of which no photo, or only one, has an observation are kept where no other points are: those in a frame. */
+static void points_that_no_two_photos_observe_say_where_the_scene_is(void **state)
+{
+    (void)state;
+    for (int tracks = 0; tracks < 2; tracks++) {
+        struct fixture f = made_of(&radial);
+        for (int i = 0; i < f.model.point_count; i++) f.model.points[i].track_count = tracks;
+        f.model.points[0].position = vec3_make(0, 0, -6); /* behind all cameras */
+        f.model.points[0].track_count = 0;
+        assert_ok(import_model(&f.out, &f.model, &f.photos, &defaults, &f.err), f.err);
+        assert_true(f.out.model.point_count > POINTS / 2 && f.out.model.point_count < POINTS);
+        assert_int_equal(f.out.model.points[0].id, f.model.points[1].id);
+        for (int i = 0; i < f.out.model.point_count; i++) assert_int_equal(f.out.model.points[i].track_count, 0);
+        for (int i = 0; i < PHOTOS; i++) assert_int_equal(f.out.model.images[i].observation_count, 0);
+        release(&f);
+    }
+}
+
 static void the_model_with_most_photos_is_chosen(void **state)
 {
     (void)state;
@@ -457,6 +475,7 @@ int main(void)
         cmocka_unit_test(outliers_are_dropped),
         cmocka_unit_test(a_fisheye_photo_becomes_five_views),
         cmocka_unit_test(cameras_without_points_are_imported),
+        cmocka_unit_test(points_that_no_two_photos_observe_say_where_the_scene_is),
         cmocka_unit_test(the_model_with_most_photos_is_chosen),
         cmocka_unit_test(a_lens_model_that_does_not_fit_is_warned_about),
         cmocka_unit_test(changed_and_new_photos_are_named),

@@ -1,0 +1,51 @@
+# models that other programs exported, for developers who have ../shared/data/cases and ../shared/data/kermit: each must place the
+# photos and give them points, or say by name what is wrong
+. tests/lib.sh
+cases=$root/../shared/data/cases photos=$root/../shared/data/kermit/photos
+export PATH=$root/$B/bin:$PATH
+cd "$scratch" || exit 1
+
+# prepared: the records, features and matches of the photos, made once
+prepared()
+{
+    [ -d "$cases" ] && [ -d "$photos" ] || skip "$cases and $photos do not both exist"
+    [ ! -e prepared ] || return 0
+    import_photos --photos "$photos" --out records
+    for f in "$photos"/*.jpg; do extract_features --photos "$photos" --records records --photo "$(basename "$f" .jpg)" --out "features/$(basename "$f" .jpg).txt"; done
+    choose_pairs --records records --features features --out pairs.txt
+    for f in "$photos"/*.jpg; do match_photos --pairs pairs.txt --features features --photo "$(basename "$f" .jpg)" --out "matches/$(basename "$f" .jpg).txt"; done
+    touch prepared
+}
+# imported MODEL: SfM of a case, messages in err
+imported() { sfm --photos "$photos" --records records --features features --matches matches --model "$cases/$1" --out sfm 2>err; }
+# gives MODEL JUDGED POINTS: all photos are placed, with so many points at least
+gives()
+{
+    prepared
+    [ "$(sfm --records records --model "$cases/$1" --judge 2>/dev/null)" = "$2" ] || fail "$1 is not judged as $2"
+    imported "$1" || { cat err; fail "sfm failed"; }
+    sfm_import --sfm sfm --records records --out views 2>err || { cat err; fail "sfm_import failed"; }
+    grep -q '11 of 11 photos are placed' err || { cat err; fail "not all photos are placed"; }
+    local points; points=$(grep -vc '^#' views/points3D.txt)
+    [ "$points" -ge "$3" ] || { cat err; fail "$points points, wanted $3"; }
+}
+
+text_without_points_is_triangulated() { gives colmap-no-blank-lines/model few 600; }
+binary_without_points_is_triangulated() { gives colmap-binary-without-points/model few 600; }
+bundler_without_points_is_triangulated() { gives bundler-without-points/model few 600; }
+points_without_tracks_are_found_anew() { gives points-without-tracks/model few 600; }
+points_with_tracks_of_one_are_found_anew() { gives points-tracks-of-one/model few 600; }
+lists_with_windows_paths_are_read() { gives realitycapture-bundler/lst enough 760; }
+lists_with_blanks_are_read() { gives realitycapture-bundler/spaces enough 760; }
+lists_with_quotes_are_read() { gives realitycapture-bundler/quotes enough 760; }
+good_points_are_kept() { gives given-disparity/model enough 760; }
+an_unknown_lens_is_named()
+{
+    prepared
+    ! imported colmap-binary-without-points/newlens || fail "it was accepted"
+    grep -q 'newlens/cameras.bin: camera 1 has COLMAP.s lens model number 11, RAD_TAN_THIN_PRISM_FISHEYE' err || { cat err; fail "the lens is not named"; }
+}
+
+for t in text_without_points_is_triangulated binary_without_points_is_triangulated bundler_without_points_is_triangulated \
+    points_without_tracks_are_found_anew points_with_tracks_of_one_are_found_anew lists_with_windows_paths_are_read lists_with_blanks_are_read \
+    lists_with_quotes_are_read good_points_are_kept an_unknown_lens_is_named; do run "$t"; done
