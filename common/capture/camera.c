@@ -3,7 +3,10 @@
  * A perspective model maps the plane coordinates (x, y) = (X / Z, Y / Z) to distorted ones,
  *   x_d = x g(s) + 2 p1 x y + p2 (s + 2 x^2),  y_d = y g(s) + 2 p2 x y + p1 (s + 2 y^2),  s = x^2 + y^2,
  *   g(s) = N(s) / D(s),  N = 1 + n1 s + n2 s^2 + ..., D = 1 + d1 s + d2 s^2 + d3 s^3,
- * and the fisheye maps the angle t from the axis to the radius t N(t^2). Every model is a special case.
+ * and a fisheye maps the angle t from the axis to the radius t N(t^2): with (x, y) the direction from the axis times t
+ * and g = N, the same formulas hold, and thin prisms [Weng 1992] add (sx, sy) s. The FOV model [Devernay 2001] has
+ *   g(s) = arctan(2 r tan(w / 2)) / (w r), r^2 = s,
+ * which rises everywhere. Every model is a special case.
  *
  * The radial map r -> r g(r^2) is one-to-one only up to the first radius where its derivative is 0; rays beyond it fold
  * back onto pixels of other rays. The numerator of the derivative is a polynomial in s with coefficients
@@ -28,6 +31,10 @@ static const struct {
     [CAMERA_OPENCV] = {"OPENCV", 8},
     [CAMERA_OPENCV_FISHEYE] = {"OPENCV_FISHEYE", 8},
     [CAMERA_FULL_OPENCV] = {"FULL_OPENCV", 12},
+    [CAMERA_FOV] = {"FOV", 5},
+    [CAMERA_SIMPLE_RADIAL_FISHEYE] = {"SIMPLE_RADIAL_FISHEYE", 4},
+    [CAMERA_RADIAL_FISHEYE] = {"RADIAL_FISHEYE", 5},
+    [CAMERA_THIN_PRISM_FISHEYE] = {"THIN_PRISM_FISHEYE", 12},
 };
 
 const char *camera_model_name(enum camera_model model) { return models[model].name; }
@@ -43,9 +50,16 @@ bool camera_model_from_name(const char *name, enum camera_model *model)
     return false;
 }
 
-static bool single_focal(enum camera_model model)
+bool camera_model_has_one_focal(enum camera_model model)
 {
-    return model == CAMERA_SIMPLE_PINHOLE || model == CAMERA_SIMPLE_RADIAL || model == CAMERA_RADIAL;
+    return model == CAMERA_SIMPLE_PINHOLE || model == CAMERA_SIMPLE_RADIAL || model == CAMERA_RADIAL ||
+           model == CAMERA_SIMPLE_RADIAL_FISHEYE || model == CAMERA_RADIAL_FISHEYE;
+}
+
+bool camera_model_is_fisheye(enum camera_model model)
+{
+    return model == CAMERA_OPENCV_FISHEYE || model == CAMERA_SIMPLE_RADIAL_FISHEYE || model == CAMERA_RADIAL_FISHEYE ||
+           model == CAMERA_THIN_PRISM_FISHEYE;
 }
 
 /* The coefficients are those of the Taylor series
@@ -71,17 +85,19 @@ enum status camera_check(const struct camera *c, struct err *err)
         if (!isfinite(c->params[i]))
             return err_set(err, ST_DATA, "parameter %d of the %s camera is not a finite number.", i + 1,
                            models[c->model].name);
-    for (int i = 0; i < (single_focal(c->model) ? 1 : 2); i++)
+    for (int i = 0; i < (camera_model_has_one_focal(c->model) ? 1 : 2); i++)
         if (!(c->params[i] > 0))
             return err_set(err, ST_DATA, "the %s camera's focal length is %.9g px; it must be greater than 0.",
                            models[c->model].name, c->params[i]);
+    if (c->model == CAMERA_FOV && !(fabs(c->params[4]) < PI))
+        return err_set(err, ST_DATA, "the FOV camera's field is %.9g radians; it must be below pi.", c->params[4]);
     return ST_OK;
 }
 
 void camera_focal(const struct camera *c, double *fx, double *fy, double *cx, double *cy)
 {
     const double *p = c->params;
-    bool single = single_focal(c->model);
+    bool single = camera_model_has_one_focal(c->model);
     *fx = p[0];
     *fy = single ? p[0] : p[1];
     *cx = single ? p[1] : p[2];
@@ -103,7 +119,7 @@ bool camera_resize(struct camera *c, int width, int height)
     if (c->width == width && c->height == height) return true;
     if (!same_shape(c, width, height)) return false;
     const double scale_u = (double)width / c->width, scale_v = (double)height / c->height;
-    const bool single = single_focal(c->model);
+    const bool single = camera_model_has_one_focal(c->model);
     double *p = c->params, fx, fy, cx, cy;
     camera_focal(c, &fx, &fy, &cx, &cy);
     p[0] = fx * (single ? sqrt(scale_u * scale_v) : scale_u);
@@ -121,9 +137,12 @@ enum { N_TERMS = 5, D_TERMS = 4, SLOPE_TERMS = N_TERMS + D_TERMS - 1 };
 
 struct distortion {
     double n[N_TERMS], d[D_TERMS]; /* coefficients of s^0, s^1, ... */
-    double p1, p2;
+    double p1, p2, sx, sy;
+    double omega, slope; /* of the FOV model; slope: 2 tan(omega / 2); omega 0: another model */
     bool none, tangential;
 };
+
+#define MIN_OMEGA 1e-6 /* radians; a narrower FOV lens has no distortion */
 
 static struct distortion distortion_of(const struct camera *c)
 {
@@ -131,14 +150,32 @@ static struct distortion distortion_of(const struct camera *c)
     const double *p = c->params;
     switch (c->model) {
     case CAMERA_SIMPLE_RADIAL:
+    case CAMERA_SIMPLE_RADIAL_FISHEYE:
         q.n[1] = p[3];
         break;
     case CAMERA_RADIAL:
+    case CAMERA_RADIAL_FISHEYE:
         q.n[1] = p[3];
         q.n[2] = p[4];
         break;
     case CAMERA_OPENCV_FISHEYE:
         memcpy(q.n + 1, p + 4, 4 * sizeof *p);
+        break;
+    case CAMERA_FOV:
+        q.omega = fabs(p[4]);
+        q.none = q.omega < MIN_OMEGA;
+        if (q.none) q.omega = 0;
+        q.slope = 2 * tan(q.omega / 2);
+        break;
+    case CAMERA_THIN_PRISM_FISHEYE:
+        q.n[1] = p[4];
+        q.n[2] = p[5];
+        q.p1 = p[6];
+        q.p2 = p[7];
+        q.n[3] = p[8];
+        q.n[4] = p[9];
+        q.sx = p[10];
+        q.sy = p[11];
         break;
     case CAMERA_FULL_OPENCV:
         q.n[3] = p[8];
@@ -153,7 +190,7 @@ static struct distortion distortion_of(const struct camera *c)
     default:
         q.none = true;
     }
-    q.tangential = q.p1 != 0 || q.p2 != 0;
+    q.tangential = q.p1 != 0 || q.p2 != 0 || q.sx != 0 || q.sy != 0;
     return q;
 }
 
@@ -164,9 +201,26 @@ static double poly(const double *c, int terms, double s)
     return v;
 }
 
+/* The same of the FOV model. With k the slope, arctan(k r) / r = k (1 - z / 3 + z^2 / 5 - ...), z = k^2 s. */
+static void radial_fov(const struct distortion *q, double s, double *g, double *dg)
+{
+    const double k = q->slope, z = k * k * s, r = sqrt(s);
+    if (z < 1e-4) {
+        *g = k / q->omega * (1 - z * (1 / 3.0 - z * (1 / 5.0 - z / 7)));
+        *dg = k * k * k / q->omega * (-1 / 3.0 + z * (2 / 5.0 - z * 3 / 7));
+    } else {
+        *g = atan(k * r) / (q->omega * r);
+        *dg = (k / (q->omega * (1 + z)) - *g) / (2 * s);
+    }
+}
+
 /* g(s) and its derivative. */
 static void radial(const struct distortion *q, double s, double *g, double *dg)
 {
+    if (q->omega > 0) {
+        radial_fov(q, s, g, dg);
+        return;
+    }
     double n = poly(q->n, N_TERMS, s), d = poly(q->d, D_TERMS, s), dn = 0, dd = 0;
     for (int i = N_TERMS - 1; i > 0; i--) dn = dn * s + i * q->n[i];
     for (int i = D_TERMS - 1; i > 0; i--) dd = dd * s + i * q->d[i];
@@ -220,23 +274,26 @@ static double positive_until(const double *c, int terms, double end)
 /* Largest s up to `end` on which the radial part is one-to-one. */
 static double one_to_one_until(const struct distortion *q, double end)
 {
+    if (q->omega > 0) return end;
     double slope[SLOPE_TERMS];
     slope_poly(q, slope);
     return positive_until(slope, SLOPE_TERMS, positive_until(q->d, D_TERMS, end));
 }
 
-/* Distorted point and Jacobian ([0] dx/dx, [1] dx/dy = dy/dx, [2] dy/dy); false where the map is not one-to-one. */
-static bool distort(const struct distortion *q, double x, double y, double *xd, double *yd, double jacobian[3])
+/* Distorted point and Jacobian ([0] dx/dx, [1] dx/dy, [2] dy/dx, [3] dy/dy); false where the map is not one-to-one. */
+static bool distort(const struct distortion *q, double x, double y, double *xd, double *yd, double jacobian[4])
 {
     double s = x * x + y * y, g, dg;
     if (!isfinite(s) || one_to_one_until(q, s) < s) return false;
     radial(q, s, &g, &dg);
-    *xd = x * g + 2 * q->p1 * x * y + q->p2 * (s + 2 * x * x);
-    *yd = y * g + 2 * q->p2 * x * y + q->p1 * (s + 2 * y * y);
-    jacobian[0] = g + 2 * x * x * dg + 2 * q->p1 * y + 6 * q->p2 * x;
-    jacobian[1] = 2 * x * y * dg + 2 * q->p1 * x + 2 * q->p2 * y;
-    jacobian[2] = g + 2 * y * y * dg + 2 * q->p2 * x + 6 * q->p1 * y;
-    return jacobian[0] * jacobian[2] > jacobian[1] * jacobian[1];
+    *xd = x * g + 2 * q->p1 * x * y + q->p2 * (s + 2 * x * x) + q->sx * s;
+    *yd = y * g + 2 * q->p2 * x * y + q->p1 * (s + 2 * y * y) + q->sy * s;
+    const double both = 2 * x * y * dg + 2 * q->p1 * x + 2 * q->p2 * y;
+    jacobian[0] = g + 2 * x * x * dg + 2 * q->p1 * y + 6 * q->p2 * x + 2 * q->sx * x;
+    jacobian[1] = both + 2 * q->sx * y;
+    jacobian[2] = both + 2 * q->sy * x;
+    jacobian[3] = g + 2 * y * y * dg + 2 * q->p2 * x + 6 * q->p1 * y + 2 * q->sy * y;
+    return jacobian[0] * jacobian[3] > jacobian[1] * jacobian[2];
 }
 
 /* Finds r in [0, end] with r g(r^2) = rd, by Newton's method within a shrinking bracket. False: there is none; *r is
@@ -244,6 +301,10 @@ static bool distort(const struct distortion *q, double x, double y, double *xd, 
 static bool undistort_radius(const struct distortion *q, double rd, double end, double *r)
 {
     double low = 0, high = fmin(rd, end), g, dg;
+    if (q->omega > 0) {
+        *r = rd * q->omega < PI / 2 ? tan(rd * q->omega) / q->slope : end;
+        return rd * q->omega < PI / 2 && *r < end;
+    }
     for (;; high = fmin(2 * high, end)) {
         double limit = one_to_one_until(q, high * high);
         bool last = limit < high * high || high >= end;
@@ -276,7 +337,7 @@ static bool undistort_radius(const struct distortion *q, double rd, double end, 
 /* Newton's method in the plane from (x, y); steps are halved until the error decreases. */
 static bool undistort_tangential(const struct distortion *q, double xd, double yd, double *x, double *y)
 {
-    double a, b, j[3];
+    double a, b, j[4];
     for (int i = 0; !distort(q, *x, *y, &a, &b, j); i++) {
         if (i == 20) return false;
         *x *= 0.75;
@@ -284,10 +345,10 @@ static bool undistort_tangential(const struct distortion *q, double xd, double y
     }
     double ex = a - xd, ey = b - yd, tolerance = 1e-14 * (1 + hypot(xd, yd));
     for (int i = 0; i < 100 && hypot(ex, ey) > tolerance; i++) {
-        double det = j[0] * j[2] - j[1] * j[1], step = 1;
-        double dx = (j[2] * ex - j[1] * ey) / det, dy = (j[0] * ey - j[1] * ex) / det;
+        double det = j[0] * j[3] - j[1] * j[2], step = 1;
+        double dx = (j[3] * ex - j[1] * ey) / det, dy = (j[0] * ey - j[2] * ex) / det;
         for (; step > 1e-6; step /= 2) {
-            double nj[3], nx = *x - step * dx, ny = *y - step * dy;
+            double nj[4], nx = *x - step * dx, ny = *y - step * dy;
             if (!distort(q, nx, ny, &a, &b, nj) || !(hypot(a - xd, b - yd) < hypot(ex, ey))) continue;
             *x = nx;
             *y = ny;
@@ -308,21 +369,25 @@ bool camera_project(const struct camera *c, struct vec3 p, double *u, double *v)
     double fx, fy, cx, cy, x, y;
     struct distortion q = distortion_of(c);
     camera_focal(c, &fx, &fy, &cx, &cy);
-    if (c->model == CAMERA_OPENCV_FISHEYE) {
-        double rho = hypot(p.x, p.y), theta = atan2(rho, p.z), scale = p.z > 0 ? 1 / p.z : 0;
-        if (rho > 0) {
+    if (camera_model_is_fisheye(c->model)) {
+        double rho = hypot(p.x, p.y), theta = atan2(rho, p.z), scale = p.z > 0 ? 1 / p.z : 0, j[4];
+        if (rho > 0 && q.tangential) {
+            if (theta >= PI || !distort(&q, p.x / rho * theta, p.y / rho * theta, &x, &y, j)) return false;
+        } else if (rho > 0) {
             if (one_to_one_until(&q, theta * theta) < theta * theta || theta >= PI) return false;
             scale = theta * poly(q.n, N_TERMS, theta * theta) / rho;
         } else if (!(p.z > 0)) {
             return false;
         }
-        x = p.x * scale;
-        y = p.y * scale;
+        if (!q.tangential || !(rho > 0)) {
+            x = p.x * scale;
+            y = p.y * scale;
+        }
     } else {
         if (!(p.z > 0)) return false;
         x = p.x / p.z;
         y = p.y / p.z;
-        double s = x * x + y * y, g, dg, j[3];
+        double s = x * x + y * y, g, dg, j[4];
         if (q.tangential) {
             if (!distort(&q, x, y, &x, &y, j)) return false;
         } else if (!q.none) {
@@ -345,19 +410,31 @@ static void distortion_derivatives(const struct camera *c, const struct distorti
                                    double (*dx)[CAMERA_MAX_PARAMS], const double focal[2])
 {
     const double s = x * x + y * y, d = poly(q->d, D_TERMS, s), n = poly(q->n, N_TERMS, s);
-    const bool single = single_focal(c->model);
+    const bool single = camera_model_has_one_focal(c->model);
     const int first = single ? 3 : 4, count = models[c->model].params - first;
-    const bool tangential = c->model == CAMERA_OPENCV || c->model == CAMERA_FULL_OPENCV;
+    const bool thin_prism = c->model == CAMERA_THIN_PRISM_FISHEYE;
+    const bool tangential = c->model == CAMERA_OPENCV || c->model == CAMERA_FULL_OPENCV || thin_prism;
     double power = 1; /* of s: one more for each radial coefficient, of the numerator and then of the denominator */
     for (int i = 0; i < count; i++) {
         double ex, ey;
-        if (tangential && (i == 2 || i == 3)) {
+        if (c->model == CAMERA_FOV) {
+            double g, dg;
+            radial(q, s, &g, &dg);
+            const double k = q->slope, by_omega = (1 + k * k / 4) / (1 + k * k * s) / q->omega - g / q->omega;
+            const double slope = q->none ? 0 : c->params[4] < 0 ? -by_omega : by_omega;
+            ex = x * slope;
+            ey = y * slope;
+        } else if (tangential && (i == 2 || i == 3)) {
             ex = i == 2 ? 2 * x * y : s + 2 * x * x;
             ey = i == 2 ? s + 2 * y * y : 2 * x * y;
+        } else if (thin_prism && i > 5) {
+            ex = i == 6 ? s : 0;
+            ey = i == 7 ? s : 0;
         } else {
-            if (tangential && i == 5) power = 1; /* k4, the denominator's first */
+            const bool below = tangential && !thin_prism && i >= 5;
+            if (below && i == 5) power = 1; /* k4, the denominator's first */
             power *= s;
-            const double slope = tangential && i >= 5 ? -n / (d * d) * power : power / d;
+            const double slope = below ? -n / (d * d) * power : power / d;
             ex = x * slope;
             ey = y * slope;
         }
@@ -366,43 +443,54 @@ static void distortion_derivatives(const struct camera *c, const struct distorti
     }
 }
 
+/* Derivatives by the point of a fisheye's (X, Y) h(rho, Z), h = t g(t^2) / rho, rho = |(X, Y)|, t = atan2(rho, Z). */
+static void fisheye_derivatives(struct vec3 p, double g, double dg, double d[2][3])
+{
+    const double rho = hypot(p.x, p.y), square = rho * rho + p.z * p.z, t = atan2(rho, p.z);
+    double by_rho = 0, by_z = -1 / (p.z * p.z), h = 1 / p.z; /* by_rho: dh / drho / rho */
+    if (rho > 1e-9 * sqrt(square)) {
+        const double slope = g + 2 * t * t * dg; /* of t g(t^2) */
+        h = t * g / rho;
+        by_rho = (slope * p.z / square * rho - t * g) / (rho * rho * rho);
+        by_z = -slope / square;
+    }
+    d[0][0] = h + p.x * p.x * by_rho;
+    d[0][1] = d[1][0] = p.x * p.y * by_rho;
+    d[1][1] = h + p.y * p.y * by_rho;
+    d[0][2] = p.x * by_z;
+    d[1][2] = p.y * by_z;
+}
+
 bool camera_project_derivatives(const struct camera *c, struct vec3 p, double pixel[2], double d_point[2][3],
                                 double d_params[2][CAMERA_MAX_PARAMS])
 {
     const struct distortion q = distortion_of(c);
-    const bool single = single_focal(c->model);
-    double focal[2], center[2], x, y, jacobian[3], xd, yd;
+    const bool single = camera_model_has_one_focal(c->model);
+    double focal[2], center[2], x, y, jacobian[4], xd, yd;
     camera_focal(c, &focal[0], &focal[1], &center[0], &center[1]);
     if (!camera_project(c, p, &pixel[0], &pixel[1])) return false;
     xd = (pixel[0] - center[0]) / focal[0];
     yd = (pixel[1] - center[1]) / focal[1];
-    if (c->model == CAMERA_OPENCV_FISHEYE) {
-        /* (xd, yd) = (X, Y) h(rho, Z), h = t N(t^2) / rho, rho = |(X, Y)|, t = atan2(rho, Z) */
-        const double rho = hypot(p.x, p.y), square = rho * rho + p.z * p.z, t = atan2(rho, p.z);
-        double g, dg, by_rho = 0, by_z = -1 / (p.z * p.z), h = 1 / p.z; /* by_rho: dh / drho / rho */
-        radial(&q, t * t, &g, &dg);
-        if (rho > 1e-9 * sqrt(square)) {
-            const double slope = g + 2 * t * t * dg; /* of t N(t^2) */
-            h = t * g / rho;
-            by_rho = (slope * p.z / square * rho - t * g) / (rho * rho * rho);
-            by_z = -slope / square;
-        }
-        d_point[0][0] = focal[0] * (h + p.x * p.x * by_rho);
-        d_point[0][1] = focal[0] * p.x * p.y * by_rho;
-        d_point[1][0] = focal[1] * p.x * p.y * by_rho;
-        d_point[1][1] = focal[1] * (h + p.y * p.y * by_rho);
-        d_point[0][2] = focal[0] * p.x * by_z;
-        d_point[1][2] = focal[1] * p.y * by_z;
+    if (camera_model_is_fisheye(c->model)) {
+        const double rho = hypot(p.x, p.y), t = atan2(rho, p.z);
+        double g = 1, dg = 0, d[2][3];
         x = rho > 0 ? p.x / rho * t : 0;
         y = rho > 0 ? p.y / rho * t : 0;
+        if (!q.tangential) radial(&q, t * t, &g, &dg);
+        fisheye_derivatives(p, g, dg, d);
+        if (q.tangential && !distort(&q, x, y, &xd, &yd, jacobian)) return false;
+        for (int i = 0; i < 2; i++)
+            for (int k = 0; k < 3; k++)
+                d_point[i][k] =
+                    focal[i] * (q.tangential ? jacobian[2 * i] * d[0][k] + jacobian[2 * i + 1] * d[1][k] : d[i][k]);
     } else {
         x = p.x / p.z;
         y = p.y / p.z;
         if (!distort(&q, x, y, &xd, &yd, jacobian)) return false;
         d_point[0][0] = focal[0] * jacobian[0] / p.z;
         d_point[0][1] = focal[0] * jacobian[1] / p.z;
-        d_point[1][0] = focal[1] * jacobian[1] / p.z;
-        d_point[1][1] = focal[1] * jacobian[2] / p.z;
+        d_point[1][0] = focal[1] * jacobian[2] / p.z;
+        d_point[1][1] = focal[1] * jacobian[3] / p.z;
         for (int i = 0; i < 2; i++) d_point[i][2] = -(d_point[i][0] * x + d_point[i][1] * y);
     }
     d_params[0][0] = xd;
@@ -428,7 +516,16 @@ bool camera_unproject(const struct camera *c, double u, double v, struct vec3 *r
     camera_focal(c, &fx, &fy, &cx, &cy);
     double xd = (u - cx) / fx, yd = (v - cy) / fy, rd = hypot(xd, yd), r = rd;
     if (!isfinite(rd)) return false;
-    if (c->model == CAMERA_OPENCV_FISHEYE) {
+    if (camera_model_is_fisheye(c->model) && q.tangential) {
+        undistort_radius(&q, rd, PI, &r);
+        double a = rd > 0 ? xd * (r / rd) : 0, b = rd > 0 ? yd * (r / rd) : 0;
+        if (!undistort_tangential(&q, xd, yd, &a, &b)) return false;
+        const double t = hypot(a, b), across = t > 0 ? sin(t) / t : 1;
+        if (t >= PI) return false;
+        *ray = vec3_normalize(vec3_make(a * across, b * across, cos(t)));
+        return true;
+    }
+    if (camera_model_is_fisheye(c->model)) {
         if (rd > 0 && (!undistort_radius(&q, rd, PI, &r) || r >= PI)) return false;
         double across = rd > 0 ? sin(r) / rd : 0;
         *ray = vec3_normalize(vec3_make(xd * across, yd * across, cos(r)));

@@ -4,7 +4,8 @@
  * camera is (width / 2, height / 2). Parameters are in COLMAP's order:
  *   SIMPLE_PINHOLE f cx cy; PINHOLE fx fy cx cy; SIMPLE_RADIAL f cx cy k; RADIAL f cx cy k1 k2;
  *   OPENCV fx fy cx cy k1 k2 p1 p2; OPENCV_FISHEYE fx fy cx cy k1 k2 k3 k4;
- *   FULL_OPENCV fx fy cx cy k1 k2 p1 p2 k3 k4 k5 k6 */
+ *   FULL_OPENCV fx fy cx cy k1 k2 p1 p2 k3 k4 k5 k6; FOV fx fy cx cy omega; SIMPLE_RADIAL_FISHEYE f cx cy k;
+ *   RADIAL_FISHEYE f cx cy k1 k2; THIN_PRISM_FISHEYE fx fy cx cy k1 k2 p1 p2 k3 k4 sx1 sy1 */
 #ifndef REMODEL_CAMERA_H
 #define REMODEL_CAMERA_H
 
@@ -21,6 +22,10 @@ enum camera_model {
     CAMERA_OPENCV,
     CAMERA_OPENCV_FISHEYE,
     CAMERA_FULL_OPENCV,
+    CAMERA_FOV,
+    CAMERA_SIMPLE_RADIAL_FISHEYE,
+    CAMERA_RADIAL_FISHEYE,
+    CAMERA_THIN_PRISM_FISHEYE,
     CAMERA_MODEL_COUNT,
 };
 
@@ -35,11 +40,13 @@ struct camera {
 const char *camera_model_name(enum camera_model model);
 int camera_model_params(enum camera_model model);
 bool camera_model_from_name(const char *name, enum camera_model *model);
+bool camera_model_is_fisheye(enum camera_model model);    /* radii follow the angle from the axis, which may be wide */
+bool camera_model_has_one_focal(enum camera_model model); /* its parameters are f cx cy ..., not fx fy cx cy ... */
 
 /* The OPENCV_FISHEYE nearest to an equisolid fisheye, r = 2 focal sin(theta / 2). */
 struct camera camera_equisolid(int width, int height, double focal, double cx, double cy);
 
-/* ST_DATA: a parameter is not finite, a focal length not > 0, a side < 1. */
+/* ST_DATA: a parameter is not finite, a focal length not > 0, a side < 1, the field of a FOV lens not below 180 degrees. */
 enum status camera_check(const struct camera *c, struct err *err);
 
 void camera_focal(const struct camera *c, double *fx, double *fy, double *cx, double *cy);

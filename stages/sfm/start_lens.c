@@ -51,7 +51,7 @@ void sfm_png_lens(char text[SFM_LENS_TEXT], const struct photo_list *photos, con
     }
     if (!first || !camera_model_from_name(params->camera_model, &model)) return;
     const int count = camera_model_params(model);
-    const bool one = model == CAMERA_SIMPLE_PINHOLE || model == CAMERA_SIMPLE_RADIAL || model == CAMERA_RADIAL;
+    const bool one = camera_model_has_one_focal(model);
     /* COLMAP's rule for JPEGs: the longer side is 35 mm */
     const double focal = first->focal35_mm / 35 * fmax(first->width, first->height);
     int length = snprintf(text, SFM_LENS_TEXT, "%.9g", focal);

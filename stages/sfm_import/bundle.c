@@ -384,26 +384,23 @@ void bundle_thin(struct bundle *b, size_t max_observations)
 
 /* ------------------------------------------------------------------------------------------------- forms of lenses */
 
-static bool is_single(enum camera_model model)
-{
-    return model == CAMERA_SIMPLE_PINHOLE || model == CAMERA_SIMPLE_RADIAL || model == CAMERA_RADIAL;
-}
-
 /* Lenses that can take another model: those whose distortion is a polynomial of two terms at most. */
 static bool is_convertible(enum camera_model model)
 {
-    return is_single(model) || model == CAMERA_PINHOLE || model == CAMERA_OPENCV;
+    return model == CAMERA_SIMPLE_PINHOLE || model == CAMERA_SIMPLE_RADIAL || model == CAMERA_RADIAL ||
+           model == CAMERA_PINHOLE || model == CAMERA_OPENCV;
 }
 
 /* The lens in another model, as near as that one comes. */
 static struct camera convert(const struct camera *c, enum camera_model model)
 {
     struct camera to = {.model = model, .width = c->width, .height = c->height};
-    const int from_first = is_single(c->model) ? 3 : 4, to_first = is_single(model) ? 3 : 4;
+    const int from_first = camera_model_has_one_focal(c->model) ? 3 : 4,
+              to_first = camera_model_has_one_focal(model) ? 3 : 4;
     const int from_terms = camera_model_params(c->model) - from_first;
     double fx, fy, cx, cy;
     camera_focal(c, &fx, &fy, &cx, &cy);
-    to.params[0] = is_single(model) ? sqrt(fx * fy) : fx;
+    to.params[0] = camera_model_has_one_focal(model) ? sqrt(fx * fy) : fx;
     to.params[1] = fy;
     to.params[to_first - 2] = cx;
     to.params[to_first - 1] = cy;
@@ -422,7 +419,9 @@ bool bundle_can_convert(const struct bundle *b)
 /* The power of the radius that a parameter of the distortion scales, relative to the undistorted one; 0: tangential. */
 static int radial_power(enum camera_model model, int param)
 {
-    const int first = is_single(model) ? 3 : 4, k = param - first;
+    const int first = camera_model_has_one_focal(model) ? 3 : 4, k = param - first;
+    if (model == CAMERA_THIN_PRISM_FISHEYE && (k == 2 || k == 3 || k > 5)) return 0; /* prisms are as weak */
+    if (model == CAMERA_THIN_PRISM_FISHEYE && k > 3) return 2 * (k - 1);
     if (model == CAMERA_OPENCV || model == CAMERA_FULL_OPENCV) {
         if (k == 2 || k == 3) return 0;
         if (k > 3) return k == 4 ? 6 : 2 * (k - 4); /* k3 of the numerator, k4 to k6 of the denominator */
@@ -434,7 +433,7 @@ static int radial_power(enum camera_model model, int param)
 static void set_priors(struct bundle_lens *l)
 {
     const struct camera *c = &l->camera;
-    const int center = is_single(c->model) ? 1 : 2;
+    const int center = camera_model_has_one_focal(c->model) ? 1 : 2;
     const double corner = hypot(c->width, c->height) / 2 / c->params[0]; /* radius, in focal lengths */
     for (int k = 0; k < camera_model_params(c->model); k++) {
         l->expected[k] = c->params[k];
@@ -448,7 +447,7 @@ static void set_priors(struct bundle_lens *l)
             l->sigma[k] = TANGENTIAL_SIGMA;
     }
     l->aspect = c->params[1] / c->params[0];
-    l->aspect_sigma = !is_single(c->model) && l->free[0] ? ASPECT_SIGMA : 0;
+    l->aspect_sigma = !camera_model_has_one_focal(c->model) && l->free[0] ? ASPECT_SIGMA : 0;
 }
 
 static void take_form(struct bundle *b, const struct lens_form *form)
@@ -457,7 +456,7 @@ static void take_form(struct bundle *b, const struct lens_form *form)
         struct bundle_lens *l = &b->lenses[i];
         if (!form->model_kept && !form->lens_kept && is_convertible(l->camera.model))
             l->camera = convert(&l->camera, form->model);
-        const int center = is_single(l->camera.model) ? 1 : 2;
+        const int center = camera_model_has_one_focal(l->camera.model) ? 1 : 2;
         for (int k = 0; k < camera_model_params(l->camera.model); k++) {
             const bool of_center = k == center || k == center + 1;
             l->free[k] = !form->lens_kept && (!of_center || form->center != CENTER_KEPT) &&
@@ -582,7 +581,7 @@ enum status bundle_store(struct sfm_model *m, const struct bundle *b, const int 
         const struct bundle_lens *l = &b->lenses[shifted ? b->images[i].lens : i];
         cameras[i] = (struct sfm_camera){shifted ? i + 1 : m->cameras[i].id, l->camera};
         if (!shifted) continue;
-        const int center = is_single(l->camera.model) ? 1 : 2;
+        const int center = camera_model_has_one_focal(l->camera.model) ? 1 : 2;
         for (int k = 0; k < 2; k++) cameras[i].camera.params[center + k] += b->images[i].shift[k];
     }
     carry_points(m, b); /* those that are not adjusted */

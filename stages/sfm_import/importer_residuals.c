@@ -95,7 +95,7 @@ enum status importer_measure_errors(struct importer *imp, struct import_stats *s
 /* Models to try in place of one that does not fit. */
 static const char *fisheye_models(enum camera_model model)
 {
-    return model == CAMERA_OPENCV_FISHEYE ? "EQUISOLID" : "EQUISOLID or OPENCV_FISHEYE";
+    return camera_model_is_fisheye(model) ? "EQUISOLID" : "EQUISOLID or OPENCV_FISHEYE";
 }
 
 static const char *other_models(enum camera_model model)
@@ -109,7 +109,7 @@ static const struct input_image *unmodelled_fisheye(const struct importer *imp)
 {
     for (int i = 0; i < imp->in->image_count; i++) {
         const struct input_image *im = &imp->images[i];
-        if (im->photo < 0 || im->lens.model == CAMERA_OPENCV_FISHEYE) continue;
+        if (im->photo < 0 || camera_model_is_fisheye(im->lens.model)) continue;
         const double focal = imp->photos->photos[im->photo].info.focal35_mm;
         if (focal > 0 && focal < FISHEYE_FOCAL35) return im;
     }

@@ -21,7 +21,7 @@ enum status truth_photo_read_depth(struct true_photo *p, const char *path, doubl
     if (!err->status) {
         const char *kind = exr_attribute(&im, "remodel:depth");
         size_t pixels = (size_t)im.width * (size_t)im.height;
-        p->along_ray = kind ? !strcmp(kind, "ray") : p->lens.model == CAMERA_OPENCV_FISHEYE;
+        p->along_ray = kind ? !strcmp(kind, "ray") : camera_model_is_fisheye(p->lens.model);
         if (kind && strcmp(kind, "ray") && strcmp(kind, "z"))
             err_set(err, ST_DATA, "%s: found remodel:depth \"%s\", wanted \"z\" or \"ray\".", path, kind);
         else if (!(p->depth = malloc(pixels * sizeof *p->depth)))

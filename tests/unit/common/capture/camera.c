@@ -20,6 +20,14 @@ static const struct camera lenses[] = {
     {CAMERA_FULL_OPENCV, 1920, 1080, {1100, 1090, 950, 545, 0.4, 0.1, 0.001, 0.0005, 0.02, 0.7, 0.15, 0.01}},
     {CAMERA_OPENCV_FISHEYE, 2000, 2000, {640, 640, 1000, 1000, 0.02, -0.004, 0.0005, -0.00002}},
     {CAMERA_OPENCV_FISHEYE, 1000, 800, {350, 352, 505, 396, -1.0 / 24, 1.0 / 1920, -1.0 / 322560, 1.0 / 92897280}},
+    {CAMERA_FOV, 640, 480, {300, 310, 322, 238, 0.93}},
+    {CAMERA_FOV, 640, 480, {600, 600, 320, 240, -1e-3}},
+    {CAMERA_SIMPLE_RADIAL_FISHEYE, 1000, 800, {350, 505, 396, -0.03}},
+    {CAMERA_RADIAL_FISHEYE, 1000, 800, {350, 505, 396, 0.02, -0.004}},
+    {CAMERA_THIN_PRISM_FISHEYE,
+     1000,
+     800,
+     {350, 352, 505, 396, 0.02, -0.004, 0.002, -0.001, 0.0005, -0.00002, 0.003, -0.002}},
 };
 enum { LENSES = sizeof lenses / sizeof *lenses };
 
@@ -33,7 +41,7 @@ static void model_names_are_those_of_colmap(void **state)
     }
     assert_string_equal(camera_model_name(CAMERA_OPENCV_FISHEYE), "OPENCV_FISHEYE");
     assert_int_equal(camera_model_params(CAMERA_FULL_OPENCV), CAMERA_MAX_PARAMS);
-    assert_false(camera_model_from_name("FOV", &m));
+    assert_false(camera_model_from_name("RAD_TAN_THIN_PRISM_FISHEYE", &m));
 }
 
 static void an_equisolid_lens_has_the_radius_of_its_closed_form(void **state)
@@ -46,6 +54,74 @@ static void an_equisolid_lens_has_the_radius_of_its_closed_form(void **state)
         assert_true(camera_project(&c, vec3_make(0.6 * sin(theta), 0.8 * sin(theta), cos(theta)), &u, &v));
         assert_near(u - 505, 0.6 * 1000 * sin(theta / 2), 1e-3);
         assert_near(v - 396, 0.8 * 1000 * sin(theta / 2), 1e-3);
+    }
+}
+
+/* With 2 tan(omega / 2) = 1 the FOV model is equidistant, r = angle / omega, and in general
+ * tan(omega r) = 2 tan(omega / 2) tan(angle). */
+static void a_fov_lens_has_the_radius_of_its_closed_form(void **state)
+{
+    (void)state;
+    const double omega = 2 * atan(0.5);
+    const struct camera c = {CAMERA_FOV, 1000, 800, {500, 400, 505, 396, omega}};
+    const struct camera d = {CAMERA_FOV, 1000, 800, {500, 400, 505, 396, 1.7}};
+    double u, v;
+    for (int i = 1; i < 90; i++) {
+        const double theta = i * M_PI / 180;
+        const struct vec3 p = vec3_make(0.6 * sin(theta), 0.8 * sin(theta), cos(theta));
+        assert_true(camera_project(&c, p, &u, &v));
+        assert_near(u - 505, 0.6 * 500 * theta / omega, 1e-10);
+        assert_near(v - 396, 0.8 * 400 * theta / omega, 1e-10);
+        assert_true(camera_project(&d, p, &u, &v));
+        assert_near(tan(1.7 * hypot((u - 505) / 500, (v - 396) / 400)), 2 * tan(0.85) * tan(theta), 1e-9 * tan(theta));
+    }
+    assert_false(camera_unproject(&c, 505 + 500 * 1.01 * M_PI / 2 / omega, 396, &(struct vec3){0}));
+    struct camera bad = c;
+    struct err err = ERR_INIT;
+    bad.params[4] = 3.2;
+    assert_int_equal(camera_check(&bad, &err), ST_DATA);
+    assert_non_null(strstr(err.text, "field is 3.2 radians"));
+}
+
+/* The other fisheyes are OPENCV_FISHEYE with fewer coefficients, or with more. */
+static void fisheyes_agree_where_their_coefficients_do(void **state)
+{
+    (void)state;
+    const struct camera opencv = {CAMERA_OPENCV_FISHEYE, 1000, 800, {350, 350, 505, 396, 0.02, -0.004}};
+    const struct camera radial = {CAMERA_RADIAL_FISHEYE, 1000, 800, {350, 505, 396, 0.02, -0.004}};
+    struct camera prism = {CAMERA_THIN_PRISM_FISHEYE, 1000, 800, {350, 350, 505, 396, 0.02, -0.004}};
+    double u[3], v[3];
+    for (int i = 0; i <= 100; i++) {
+        const double theta = i * M_PI / 180;
+        const struct vec3 p = vec3_make(0.6 * sin(theta), 0.8 * sin(theta), cos(theta));
+        assert_true(camera_project(&opencv, p, &u[0], &v[0]));
+        assert_true(camera_project(&radial, p, &u[1], &v[1]));
+        assert_true(camera_project(&prism, p, &u[2], &v[2]));
+        assert_true(u[0] == u[1] && v[0] == v[1] && u[0] == u[2] && v[0] == v[2]);
+    }
+    /* tangential and prism terms, by their formula in the direction from the axis times the angle */
+    const double angle = 0.7, x = 0.6 * angle, y = 0.8 * angle, s = angle * angle;
+    const double g = 1 + s * (0.02 + s * (-0.004 + s * (0.0005 + s * -0.00002)));
+    const double more[] = {0.002, -0.001, 0.0005, -0.00002, 0.003, -0.005};
+    memcpy(prism.params + 6, more, sizeof more);
+    assert_true(camera_project(&prism, vec3_make(0.6 * sin(angle), 0.8 * sin(angle), cos(angle)), u, v));
+    assert_near(*u, 505 + 350 * (x * g + 2 * 0.002 * x * y - 0.001 * (s + 2 * x * x) + 0.003 * s), 1e-10);
+    assert_near(*v, 396 + 350 * (y * g + 0.002 * (s + 2 * y * y) - 2 * 0.001 * x * y - 0.005 * s), 1e-10);
+}
+
+static void a_camera_may_be_of_pictures_of_another_size(void **state)
+{
+    (void)state;
+    for (int i = 0; i < LENSES; i++) {
+        struct camera c = lenses[i];
+        double u, v, u2, v2;
+        assert_true(camera_resize(&c, 3 * c.width, 3 * c.height));
+        assert_true(camera_project(&lenses[i], vec3_make(0.1, -0.2, 1), &u, &v));
+        assert_true(camera_project(&c, vec3_make(0.1, -0.2, 1), &u2, &v2));
+        assert_near(u2, 3 * u, 1e-9);
+        assert_near(v2, 3 * v, 1e-9);
+        assert_false(camera_resize(&c, c.height, c.width + 2));
+        assert_int_equal(c.width, 3 * lenses[i].width);
     }
 }
 
@@ -110,7 +186,7 @@ static void every_pixel_of_every_model_round_trips(void **state)
                 struct vec3 ray;
                 if (!camera_unproject(&lenses[i], u, v, &ray)) {
                     /* the corners of the equisolid lens are beyond 180 degrees */
-                    assert_int_equal(lenses[i].model, CAMERA_OPENCV_FISHEYE);
+                    assert_true(camera_model_is_fisheye(lenses[i].model));
                     continue;
                 }
                 assert_near(vec3_length(ray), 1, 1e-14);
@@ -259,6 +335,9 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(model_names_are_those_of_colmap),
+        cmocka_unit_test(a_fov_lens_has_the_radius_of_its_closed_form),
+        cmocka_unit_test(fisheyes_agree_where_their_coefficients_do),
+        cmocka_unit_test(a_camera_may_be_of_pictures_of_another_size),
         cmocka_unit_test(invalid_cameras_are_rejected_with_a_reason),
         cmocka_unit_test(projection_follows_the_formulas),
         cmocka_unit_test(every_pixel_of_every_model_round_trips),
