@@ -5,7 +5,8 @@
 #include "common/capture/photo_list.h"
 
 /* Matches, in this order: the exact file name; the name after its last slash; the photo's id, with or without
- * extension; the file name of a view's middle exposure. Returns the index into the list; -1: none. */
+ * extension; the file name of a view's middle exposure; the only file of the same name up to extensions.
+ * Returns the index into the list; -1: none. */
 int photo_list_match(const struct photo_list *photos, const char *name);
 
 #endif

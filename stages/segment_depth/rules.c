@@ -48,7 +48,10 @@ static void view_rule(struct graph *g, const struct scene_facts *f, const char *
     rule_option(g, "--view", view);
     rule_option(g, "--records", FOLDER(g, PHOTO_LIST));
     if (before) rule_option(g, "--before", FOLDER(g, DEPTH, .depth = before, .view = view));
-    rule_variable(g, "--given", "DEPTH");
+    if (*scene_setting("DEPTH"))
+        rule_variable(g, "--given", "DEPTH");
+    else if (path_is_folder(graph_shared(g, "sfm_depth")))
+        rule_option(g, "--given", graph_shared(g, "sfm_depth"));
     rule_option(g, "--out", out);
     rule_option(g, "--deps", deps);
     graph_goal(g, r->goal, out);

@@ -9,8 +9,9 @@ check_segment_depth()
 # says which views have a file in DEPTH, and which files belong to no view
 report_given_depth()
 {
-    local views held of_views=0 of_none='' f
-    [ -n "${REMODEL_DEPTH-}" ] || return 0
+    local views held of_views=0 of_none='' f depth=${REMODEL_DEPTH-}
+    [ -n "$depth" ] || [ ! -d "$S/sfm_depth" ] || depth=$S/sfm_depth
+    [ -n "$depth" ] || return 0
     views=$(sed 's/^VIEWS :=//' "$O/views/views.mk")
     held=$([ ! -e "$O/holdout/views/views.mk" ] || sed 's/^VIEWS :=//' "$O/holdout/views/views.mk")
     for f in "$S"/stamp/given/*.txt; do

@@ -7,7 +7,8 @@
  *         OUT/photos.txt                           ids and hashes of the photos
  *         OUT/models.txt                           the list of models
  *
- * --judge prints "enough" or "few" instead: whether the points of the model serve the photos.
+ * --judge prints "enough" or "few" instead: whether the points of the model serve the photos; with --depth it makes
+ * links to the depth maps that the model names.
  *
  * OUT is written in OUT.work and replaced as a whole. */
 #include <stdbool.h>
@@ -15,6 +16,7 @@
 
 #include "common/base/cli.h"
 #include "stages/sfm/run_colmap.h"
+#include "stages/sfm/transforms_model.h"
 #include "stages/sfm/user_model.h"
 
 static enum status run(const struct sfm_input *given, const char *records, const char *model, const char *out,
@@ -38,11 +40,14 @@ static enum status run(const struct sfm_input *given, const char *records, const
     return err->status;
 }
 
-static enum status judge(const char *records, const char *model, struct err *err)
+/* depth: a folder for links to depth maps, or NULL. */
+static enum status judge(const char *records, const char *model, const char *depth, struct err *err)
 {
     struct photo_list list = {0};
     bool suffice = false;
-    if (!photo_list_read(&list, records, err) && !user_model_judge(&suffice, model, &list, err))
+    int maps = 0;
+    if (!photo_list_read(&list, records, err) && !user_model_judge(&suffice, model, &list, err) &&
+        !(depth && transforms_link_depth(&maps, depth, model, &list, err)))
         puts(suffice ? "enough" : "few");
     photo_list_release(&list);
     return err->status;
@@ -50,7 +55,7 @@ static enum status judge(const char *records, const char *model, struct err *err
 
 int main(int argc, char **argv)
 {
-    const char *records = NULL, *model = NULL, *out = NULL;
+    const char *records = NULL, *model = NULL, *out = NULL, *depth = NULL;
     struct sfm_params params = SFM_PARAMS_DEFAULT;
     struct sfm_input in = {.params = &params};
     bool judges = false;
@@ -61,10 +66,12 @@ int main(int argc, char **argv)
         CLI_STR("features", &in.features, CLI_OPTIONAL,
                 "folder of the photos' features; needed where no model is given"),
         CLI_STR("matches", &in.matches, CLI_OPTIONAL, "folder of the photos' matches; needed where no model is given"),
-        CLI_STR("model", &model, CLI_OPTIONAL, "folder of an existing model: COLMAP text or binary, or Bundler"),
+        CLI_STR("model", &model, CLI_OPTIONAL, "folder of cameras by COLMAP or another program"),
         CLI_STR("out", &out, CLI_OPTIONAL, "folder to write the models to; replaced as a whole"),
         CLI_FLAG("judge", &judges,
                  "instead: print whether the photos share enough points of the model: enough, or few; with --model"),
+        CLI_STR("depth", &depth, CLI_OPTIONAL,
+                "with --judge: folder to make, of links to the depth maps that the model names for photos"),
         CLI_PARAMS(sfm_param_table, &params, sfm_params_check),
         CLI_END,
     };
@@ -74,7 +81,7 @@ int main(int argc, char **argv)
     if (verdict == CLI_RUN && (judges ? !model : !(in.photos && out)))
         err_set(&err, ST_USAGE, "give --photos and --out, or else --model and --judge.");
     else if (verdict == CLI_RUN && judges)
-        judge(records, model, &err);
+        judge(records, model, depth, &err);
     else if (verdict == CLI_RUN)
         run(&in, records, model, out, &prov, &err);
     err_report(&err);

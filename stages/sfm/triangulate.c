@@ -16,6 +16,7 @@
 #include "stages/sfm/colmap_database.h"
 #include "stages/sfm/colmap_log.h"
 #include "stages/sfm/colmap_matches.h"
+#include "stages/sfm/given_cameras.h"
 
 #define SIMILAR_FOCAL 0.1 /* relative; lenses that differ less are one for verifying matches */
 
@@ -47,18 +48,6 @@ static void params_of_model(struct sfm_params *params, const struct sfm_model *k
     memcpy(params->camera_params, text, sizeof text);
 }
 
-static int find_camera(const struct sfm_model *m, const struct camera *c)
-{
-    const size_t size = (size_t)camera_model_params(c->model) * sizeof *c->params;
-    for (int i = 0; i < m->camera_count; i++) {
-        const struct camera *d = &m->cameras[i].camera;
-        if (d->model == c->model && d->width == c->width && d->height == c->height &&
-            !memcmp(d->params, c->params, size))
-            return i;
-    }
-    return -1;
-}
-
 /* The images of the model that are photos of the scene, with each different lens once, at the photos' size; images keep
  * the names of the model, which `known` borrows. *fits: false if the photos are of another shape. */
 static enum status known_cameras(struct sfm_model *known, bool *fits, const struct sfm_model *m,
@@ -74,7 +63,7 @@ static enum status known_cameras(struct sfm_model *known, bool *fits, const stru
         struct camera c = m->cameras[m->images[i].camera_idx].camera;
         if (photo < 0) continue;
         if (!camera_resize(&c, photos->photos[photo].info.width, photos->photos[photo].info.height)) *fits = false;
-        int at = find_camera(known, &c);
+        int at = given_cameras_find(known, &c);
         if (at < 0) {
             at = known->camera_count++;
             known->cameras[at] = (struct sfm_camera){at + 1, c};

@@ -20,7 +20,10 @@
 #include "common/base/file_path.h"
 #include "common/base/log.h"
 #include "stages/sfm/bundler_model.h"
+#include "stages/sfm/csv_model.h"
 #include "stages/sfm/given_points.h"
+#include "stages/sfm/metashape_model.h"
+#include "stages/sfm/transforms_model.h"
 #include "stages/sfm/triangulate.h"
 
 /* What is done with each model that is found. The visitor may change the model. */
@@ -121,6 +124,9 @@ static enum status find_colmap(const struct model_search *s, const char *folder,
 /* Readers of models that are one of their kind in a folder. */
 static enum status (*const readers[])(struct sfm_model *m, bool *found, const char *folder,
                                       const struct photo_list *photos, struct provenance *prov, struct err *err) = {
+    transforms_model_read,
+    metashape_model_read,
+    csv_model_read,
     bundler_model_read,
 };
 
@@ -139,8 +145,9 @@ static enum status find_models(const struct model_search *s, const char *from, s
     if (!err->status && !s->visitor->count)
         err_set(err, ST_DATA,
                 "%s contains no structure-from-motion model; wanted COLMAP's cameras, images and points3D (.txt or "
-                ".bin), in it or in its subfolders 0, 1, ..., or a Bundler file (.out, beginning with \"# Bundle "
-                "file\") with its list of images.",
+                ".bin), in it or in its subfolders 0, 1, ...; transforms.json; Metashape's .xml; RealityScan's .csv of "
+                "internal and external camera parameters; or a Bundler file (.out, beginning with \"# Bundle file\") "
+                "with its list of images.",
                 from);
     return err->status;
 }

@@ -185,6 +185,19 @@ a_given_model_with_points_needs_no_matches()
     settings[SFM]=
 }
 
+depth_that_a_model_names_is_given_unless_depth_is()
+{
+    scene a b
+    mkdir -p out/t/sfm_depth
+    graph write
+    cat out/t/graph/*.mk | matches -F -- '--given out/t/sfm_depth' || { grep -h given out/t/graph/*.mk | head -3; fail "the model's depth is not given"; }
+    mkdir -p own
+    given DEPTH=own
+    graph write
+    ! cat out/t/graph/*.mk | matches -F -- '--given out/t/sfm_depth' || fail "the model's depth replaces DEPTH"
+    settings[DEPTH]=
+}
+
 a_photo_is_read_once_for_its_views()
 {
     scene a@0 a@1 b
@@ -363,7 +376,7 @@ wrong_settings_are_refused()
 for t in nothing_is_stale_when_all_is_made every_goal_is_known_before_the_views_are \
     a_deleted_product_is_remade_with_what_follows a_changed_photo_redoes_its_view_and_the_frame_that_all_depth_reads \
     a_changed_photo_redoes_its_features_and_the_cameras a_neighbour_that_is_a_view_no_more_redoes_the_depth_that_read_it a_parameter_redoes_its_stage_and_what_follows \
-    a_changed_program_redoes_its_products a_given_model_with_points_needs_no_matches a_photo_is_read_once_for_its_views frames_come_in_chunks_and_wait_for_all_depth \
+    a_changed_program_redoes_its_products a_given_model_with_points_needs_no_matches depth_that_a_model_names_is_given_unless_depth_is a_photo_is_read_once_for_its_views frames_come_in_chunks_and_wait_for_all_depth \
     what_is_held_out_is_rectified_and_not_matched an_edit_needs_the_scripts_and_meshes_that_it_stands_on \
     a_rectangle_on_a_wall_of_any_name_asks_for_points given_cameras_see_the_unedited_model_too pictures_need_the_exposure_and_not_all_views \
     an_edit_that_went_changes_what_edits_reveal steps_come_in_order pieces_of_work_name_their_products \

@@ -23,7 +23,7 @@ find "out/fuzz/$name/obj" -name '*.o' -exec ar rcs "out/fuzz/$name/stages.a" {} 
 [ -e "out/fuzz/$name/stages.a" ] || ar rcs "out/fuzz/$name/stages.a"
 embree=-lembree3; [ ! -e /usr/include/embree4/rtcore.h ] || embree=-lembree4
 # shellcheck disable=SC2046,SC2086 # lists of flags
-clang "${flags[@]}" -o "out/fuzz/$name/fuzz" "tests/fuzz/fuzz_$name.c" common/*/*.c "out/fuzz/$name/stages.a" -lOpenEXRCore "$embree" -lcholmod \
+clang "${flags[@]}" -o "out/fuzz/$name/fuzz" "tests/fuzz/fuzz_$name.c" common/*/*.c "out/fuzz/$name/stages.a" -lOpenEXRCore "$embree" -lcholmod -ljansson -lexpat \
     $(pkg-config --libs $packages) -lm
 cd "out/fuzz/$name"
 OMP_NUM_THREADS=1 ASAN_OPTIONS=detect_leaks=0 ./fuzz -max_total_time="$seconds" -timeout=20 -rss_limit_mb=4096 found "$OLDPWD/tests/fuzz/corpus/$name"

@@ -31,7 +31,9 @@ static void names_are_matched_to_photos(void **state)
         {"b", 2},
         {"v1.png", 4},
         {"b.tar.gz", 3}, /* the file name has priority over the id b */
-        {"IMG_", -1},    /* beginnings and extensions of names do not match */
+        {"IMG 10", 1},   /* the file up to extensions, whose id has no blank */
+        {"x/IMG 10.png", 1},
+        {"IMG_", -1}, /* beginnings and extensions of names do not match */
         {"IMG_100.jpg", -1},
         {"IMG_1.JPG.png", -1},
         {"img_1.jpg", -1},
