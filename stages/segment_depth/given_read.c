@@ -5,21 +5,19 @@
 #include "stages/segment_depth/given_read.h"
 
 #include <math.h>
-#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
+#include "common/base/file_path.h"
 #include "common/base/log.h"
 #include "common/base/textfile.h"
-#include "common/image/exr.h"
-#include "common/image/photo.h"
+#include "stages/segment_depth/given_map.h"
 
 #define MIN_Z 1e-30 /* depths outside this range are unknown */
 #define MAX_Z 1e30
 
-struct given_map { /* a file's samples as depths */
+struct depth_map { /* a file's samples as depths */
     const char *path;
     int width, height;
     float *z; /* w * h, 0 unknown; owned */
@@ -32,7 +30,7 @@ enum status given_units_read(struct given_units *u, const char *path, struct err
     *u = (struct given_units){0};
     textfile_open(&t, path, err);
     while (!err->status && textfile_next(&t)) {
-        if (textfile_word(&t, "scale or pixels", &word, err)) break;
+        if (textfile_word(&t, "scale, samples or pixels", &word, err)) break;
         if (!strcmp(word, "scale") && !(u->scale > 0)) {
             textfile_number(&t, "a scale, the depth of a sample of 1", 1e-12, 1e12, &u->scale, err);
         } else if (!strcmp(word, "pixels") && u->pixels == PIXELS_BY_SIZE) {
@@ -43,8 +41,19 @@ enum status given_units_read(struct given_units *u, const char *path, struct err
                 u->pixels = PIXELS_OF_PHOTO;
             else if (!err->status)
                 textfile_error(&t, err, word, "view or photo");
+        } else if (!strcmp(word, "samples") && u->samples == SAMPLES_UNSAID) {
+            textfile_word(&t, "depth or disparity", &word, err);
+            if (!err->status && !strcmp(word, "depth"))
+                u->samples = SAMPLES_DEPTH;
+            else if (!err->status && !strcmp(word, "disparity"))
+                u->samples = SAMPLES_DISPARITY;
+            else if (!err->status)
+                textfile_error(&t, err, word, "depth or disparity");
         } else {
-            textfile_error(&t, err, word, "a line \"scale NUMBER\" or \"pixels view|photo\", each at most once");
+            textfile_error(
+                &t, err, word,
+                "a line \"scale NUMBER\", \"samples depth|disparity\" or \"pixels view|photo\", each at most "
+                "once");
         }
         if (!err->status) textfile_end(&t, err);
     }
@@ -53,69 +62,43 @@ enum status given_units_read(struct given_units *u, const char *path, struct err
     return err->status;
 }
 
-static enum status store_sample(struct given_map *m, size_t i, double sample, double scale, struct err *err)
+/* Makes depths of the samples: relative disparities stay what they are. */
+static enum status take_samples(struct depth_map *m, const struct given_map *from, const struct given_units *units,
+                                struct err *err)
 {
-    const double z = sample * scale;
-    if (sample < 0 && isfinite(sample))
-        return err_set(
-            err, ST_DATA,
-            "%s: pixel (%d, %d) has the depth %.9g; wanted z along the camera's axis: positive, or 0 where it is "
-            "unknown.",
-            m->path, (int)(i % (size_t)m->width), (int)(i / (size_t)m->width), sample);
-    m->z[i] = z >= MIN_Z && z <= MAX_Z ? (float)z : 0;
+    const size_t pixels = (size_t)from->width * (size_t)from->height;
+    const double scale = units->scale > 0 ? units->scale : 1;
+    const bool inverse = units->samples == SAMPLES_DISPARITY && units->scale > 0;
+    m->width = from->width;
+    m->height = from->height;
+    m->z = malloc(pixels * sizeof *m->z);
+    if (!m->z) return err_nomem(err, "given depth", pixels * sizeof *m->z);
+    for (size_t i = 0; i < pixels; i++) {
+        const double sample = from->samples[i], z = inverse ? scale / sample : sample * scale;
+        if (sample < 0)
+            return err_set(err, ST_DATA,
+                           "%s: pixel (%d, %d) has the depth %.9g; wanted z along the camera's axis: positive, or 0 "
+                           "where it is unknown.",
+                           m->path, (int)(i % (size_t)m->width), (int)(i / (size_t)m->width), sample);
+        m->z[i] = z >= MIN_Z && z <= MAX_Z ? (float)z : 0; /* NaN and 0 are unknown */
+    }
     return ST_OK;
 }
 
-static enum status init_map(struct given_map *m, int width, int height, struct err *err)
+static enum status read_map(struct depth_map *m, const struct given_units *units, const char *folder, struct err *err)
 {
-    const size_t pixels = (size_t)width * (size_t)height;
-    m->width = width;
-    m->height = height;
-    m->z = malloc(pixels * sizeof *m->z);
-    return m->z ? ST_OK : err_nomem(err, "given depth", pixels * sizeof *m->z);
-}
-
-static enum status read_exr(struct given_map *m, const struct given_units *units, struct err *err)
-{
-    struct exr_image exr = {0};
-    exr_read_any(&exr, m->path, err);
-    const struct exr_plane *plane = err->status ? NULL : exr_find(&exr, "Z");
-    if (!err->status && !plane && exr.count == 1) plane = exr.planes;
-    if (!err->status && !plane) {
-        char channels[1024] = "";
-        for (int c = 0; c < exr.count; c++) {
-            const size_t length = strlen(channels);
-            snprintf(channels + length, sizeof channels - length, " %s", exr.planes[c].name);
-        }
-        err_set(err, ST_DATA, "%s has the channels%s; wanted a channel Z, or a single channel.", m->path, channels);
-    }
-    if (!err->status) init_map(m, exr.width, exr.height, err);
-    const double scale = units->scale > 0 ? units->scale : 1;
-    const size_t pixels = (size_t)m->width * (size_t)m->height;
-    for (size_t i = 0; !err->status && i < pixels; i++)
-        store_sample(m, i, plane->f ? (double)plane->f[i] : (double)plane->u[i], scale, err);
-    exr_image_release(&exr);
-    return err->status;
-}
-
-static enum status read_png(struct given_map *m, const struct given_units *units, const char *folder, struct err *err)
-{
-    struct photo photo = {0};
-    if (!(units->scale > 0))
-        return err_set(err, ST_DATA,
-                       "%s holds whole numbers of unknown scale; write the line \"scale NUMBER\" into %s/depth.txt, "
-                       "where NUMBER times a sample is its depth in scene units.",
-                       m->path, folder);
-    if (!photo_read(&photo, m->path, err)) init_map(m, photo.info.width, photo.info.height, err);
-    const size_t pixels = (size_t)m->width * (size_t)m->height;
-    for (size_t i = 0; !err->status && i < pixels; i++) {
-        const uint16_t *s = photo.samples + 3 * i;
-        if (s[0] != s[1] || s[0] != s[2])
-            err_set(err, ST_DATA, "%s is a colour picture; wanted a grey PNG of 8 or 16 bits per pixel.", m->path);
-        else
-            store_sample(m, i, s[0], units->scale, err);
-    }
-    photo_release(&photo);
+    struct given_map map = {0};
+    if (given_map_read(&map, m->path, err)) return err->status;
+    if (map.whole_numbers && !(units->scale > 0) && units->samples != SAMPLES_DISPARITY)
+        err_set(err, ST_DATA,
+                "%s holds whole numbers of unknown scale; write the line \"scale NUMBER\" into %s/depth.txt, where "
+                "NUMBER times a sample is its depth in scene units.",
+                m->path, folder);
+    if (!err->status && map.sentinels)
+        log_note("%s: %d pixels have the value %g, far from all others, which is taken as unknown", m->path,
+                 map.sentinels, map.sentinel);
+    if (!err->status) take_samples(m, &map, units, err);
+    given_map_release(&map);
     return err->status;
 }
 
@@ -127,7 +110,7 @@ static bool same_aspect(int w, int h, int width, int height)
 }
 
 struct map_projection {
-    const struct given_map *map;
+    const struct depth_map *map;
     const struct view *view;
     const struct lens *lens; /* NULL: the map is of the view */
     struct mat3 photo_from_view;
@@ -168,7 +151,7 @@ static bool lens_matters(const struct map_projection *of_photo)
     return false;
 }
 
-static enum status choose_projection(struct map_projection *g, const struct given_map *m, const char *folder,
+static enum status choose_projection(struct map_projection *g, const struct depth_map *m, const char *folder,
                                      const struct given_units *units, const struct view *view, const struct lens *lens,
                                      struct err *err)
 {
@@ -219,51 +202,42 @@ static enum status map_to_view(float **z, const struct map_projection *g, struct
     return ST_OK;
 }
 
-/* *path: FOLDER/NAME, malloc'ed, recorded as an input; NULL if there is no such file. */
-static enum status find_file(char **path, const char *folder, const char *name, const char *ending,
-                             struct provenance *prov, struct err *err)
+/* Records a file as an input: given/NAMEENDING, the ending in small letters. */
+static enum status record(struct provenance *prov, const char *path, const char *name, struct err *err)
 {
     char *input = NULL;
-    if (asprintf(path, "%s/%s%s", folder, name, ending) < 0) *path = NULL;
-    if (!*path || asprintf(&input, "given/%s%s", name, ending) < 0) {
-        err_nomem(err, "a file name", strlen(folder) + strlen(name));
-    } else if (access(*path, F_OK)) {
-        free(*path);
-        *path = NULL;
-    } else {
-        provenance_add_file(prov, input, *path, err);
-    }
+    const char *ending = strrchr(path, '.');
+    if (asprintf(&input, "given/%s%s", name, ending) < 0) return err_nomem(err, "a file name", strlen(path));
+    for (char *p = input + strlen(input) - strlen(ending); *p; p++)
+        if (*p >= 'A' && *p <= 'Z') *p = (char)(*p + 'a' - 'A');
+    provenance_add_file(prov, input, path, err);
     free(input);
     return err->status;
 }
 
-enum status given_read(float **z, const char *folder, const struct view *view, const struct lens *lens,
+static enum status read_units(struct given_units *u, const char *folder, struct provenance *prov, struct err *err)
+{
+    char path[FILE_PATH];
+    if (file_path(path, folder, "depth", ".txt", err) || !path_is_file(path)) return err->status;
+    return record(prov, path, "depth", err) || given_units_read(u, path, err) ? err->status : ST_OK;
+}
+
+enum status given_read(struct given *g, const char *folder, const struct view *view, const struct lens *lens,
                        struct provenance *prov, struct err *err)
 {
     struct given_units units = {0};
-    struct given_map map = {0};
+    struct depth_map map = {0};
     struct map_projection projection;
-    char *path = NULL, *units_path = NULL;
-    bool png = false;
-    *z = NULL;
-    find_file(&path, folder, view->name, ".exr", prov, err);
-    if (!err->status && !path) {
-        png = true;
-        find_file(&path, folder, view->name, ".png", prov, err);
-    }
-    if (!err->status && path) find_file(&units_path, folder, "depth", ".txt", prov, err);
-    if (!err->status && units_path) given_units_read(&units, units_path, err);
-    if (!err->status && path) {
-        map.path = path;
-        if (png)
-            read_png(&map, &units, folder, err);
-        else
-            read_exr(&map, &units, err);
-        if (!err->status && !choose_projection(&projection, &map, folder, &units, view, lens, err))
-            map_to_view(z, &projection, err);
-    }
+    char *path = NULL;
+    *g = (struct given){0};
+    if (given_map_find(&path, folder, view->name, err) || !path) return err->status;
+    map.path = path;
+    if (!record(prov, path, view->name, err) && !read_units(&units, folder, prov, err) &&
+        !read_map(&map, &units, folder, err) && !choose_projection(&projection, &map, folder, &units, view, lens, err))
+        map_to_view(&g->z, &projection, err);
+    g->disparity = units.samples == SAMPLES_DISPARITY;
+    g->relative = g->disparity && !(units.scale > 0);
     free(map.z);
-    free(units_path);
     free(path);
     return err->status;
 }

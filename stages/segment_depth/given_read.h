@@ -1,13 +1,17 @@
-/* given_read.h - depth maps that the user provides: DIR/NAME.exr or DIR/NAME.png, where NAME is a view's.
+/* given_read.h - depth maps that the user provides: DIR/NAME.exr, .png, .pfm, .tif or .tiff, where NAME is a view's.
  *
- * Samples are z along the camera's axis in scene units; 0, NaN and infinity are unknown. An EXR has a channel Z, or a
- * single channel; a PNG is grey with 8 or 16 bits. DIR/depth.txt describes the samples, one line each, both optional:
- *   scale NUMBER           z is a sample times NUMBER; 1 without it, but required for PNG
- *   pixels view|photo      whether the map shows the view, or the photo that the view was made from, with its lens
- * distortion Without `pixels` the map's size decides: equal to the view, else equal to the photo, else the aspect ratio
- * of the view, else that of the photo. */
+ * Samples are z along the camera's axis in scene units; 0, NaN, infinity and sentinels (given_map.h) are unknown.
+ * DIR/depth.txt describes the samples, one line each, all optional:
+ *   scale NUMBER            z is a sample times NUMBER; 1 without it, but required for whole numbers (PNG, some TIFF)
+ *   samples depth|disparity disparity: z is NUMBER divided by a sample; without a scale it follows from sparse points
+ *   pixels view|photo       whether the map shows the view, or the photo that the view was made from, with its lens
+ *                           distortion
+ * Without `pixels` the map's size decides: equal to the view, else equal to the photo, else the aspect ratio of the
+ * view, else that of the photo. */
 #ifndef REMODEL_GIVEN_READ_H
 #define REMODEL_GIVEN_READ_H
+
+#include <stdbool.h>
 
 #include "common/base/provenance.h"
 #include "common/capture/camera_set.h"
@@ -15,18 +19,27 @@
 
 enum given_pixels { PIXELS_BY_SIZE, PIXELS_OF_VIEW, PIXELS_OF_PHOTO };
 
+enum given_samples { SAMPLES_UNSAID, SAMPLES_DEPTH, SAMPLES_DISPARITY };
+
 struct given_units {
     double scale; /* 0: not given */
+    enum given_samples samples;
     enum given_pixels pixels;
 };
 
 /* Reads depth.txt. ST_DATA with file and line. */
 enum status given_units_read(struct given_units *u, const char *path, struct err *err);
 
-/* *z: depth of each pixel of the view by the nearest sample, 0 if unknown; malloc'ed, NULL if there is no file. lens:
- * the view's, NULL if it is unknown. ST_DATA: an unreadable file, another aspect ratio, a negative depth, a PNG without
- * scale. */
-enum status given_read(float **z, const char *folder, const struct view *view, const struct lens *lens,
+/* What was read. z: of each pixel of the view by the nearest sample, 0 if unknown; malloc'ed, NULL if there is no file.
+ * disparity: that is what depth.txt says; without a scale, which `relative` says, z is the disparity itself. */
+struct given {
+    float *z;
+    bool disparity, relative;
+};
+
+/* lens: the view's, NULL if it is unknown. ST_DATA: an unreadable file, another aspect ratio, a negative depth, whole
+ * numbers without scale. */
+enum status given_read(struct given *g, const char *folder, const struct view *view, const struct lens *lens,
                        struct provenance *prov, struct err *err);
 
 #endif

@@ -3,13 +3,13 @@
 check_segment_depth()
 {
     [ -z "${REMODEL_DEPTH-}" ] || [ -d "$REMODEL_DEPTH" ] ||
-        usage "DEPTH=$REMODEL_DEPTH is not a folder. Give the folder that holds VIEW.exr or VIEW.png, the depth of views."
+        usage "DEPTH=$REMODEL_DEPTH is not a folder. Give the folder that holds VIEW.exr, .png, .pfm, .tif or .tiff, the depth of views."
 }
 
 # says which views have a file in DEPTH, and which files belong to no view
 report_given_depth()
 {
-    local views held of_views=0 of_none='' f depth=${REMODEL_DEPTH-}
+    local views held of_views=0 of_held=0 of_none='' f depth=${REMODEL_DEPTH-}
     [ -n "$depth" ] || [ ! -d "$S/sfm_depth" ] || depth=$S/sfm_depth
     [ -n "$depth" ] || return 0
     views=$(sed 's/^VIEWS :=//' "$O/views/views.mk")
@@ -18,10 +18,14 @@ report_given_depth()
         [ -e "$f" ] && [ "$(<"$f")" != none ] || continue
         f=${f##*/} f=${f%.txt}
         case " $views " in *" $f "*) of_views=$((of_views + 1)); continue ;; esac
-        case " $held " in *" $f "*) ;; *) of_none+=" $f" ;; esac
+        case " $held " in *" $f "*) of_held=$((of_held + 1)) ;; *) of_none+=" $f" ;; esac
     done
-    echo "DEPTH=$REMODEL_DEPTH gives the depth of $of_views of $(wc -w <<<"$views") views."
-    [ -z "$of_none" ] || echo "warning: DEPTH=$REMODEL_DEPTH has files that belong to no view:$of_none; $O/views/views.mk lists the views." >&2
+    if [ -n "${REMODEL_DEPTH-}" ] && [ "$of_views$of_held" = 00 ]; then
+        echo "DEPTH=$depth gives the depth of 0 of $(wc -w <<<"$views") views. Name its files VIEW.exr, VIEW.png, VIEW.pfm, VIEW.tif or VIEW.tiff, where VIEW is one of:$(cut -c1-200 <<<"$views"). It has: $(ls "$depth" | head -n 5 | tr '\n' ' ')" >&2
+        exit 2
+    fi
+    echo "DEPTH=$depth gives the depth of $of_views of $(wc -w <<<"$views") views."
+    [ -z "$of_none" ] || echo "warning: DEPTH=$depth has files that belong to no view:$of_none; $O/views/views.mk lists the views." >&2
 }
 
 # views_and_rounds LAST: of commands, one a line, "VIEW ROUND" of those that make depth; LAST: the last round

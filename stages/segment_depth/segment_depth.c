@@ -3,7 +3,7 @@
  * reads   VIEWS/cameras.txt, images.txt, points3D.txt   the cameras and sparse points
  *         VIEWS/VIEW.exr                                the view and the neighbours it selects, linear RGBA
  *         BEFORE/VIEW.exr, VIEW.txt, VIEW.round         with --before: depth of the view and its neighbours
- *         GIVEN/VIEW.exr or .png, depth.txt             with --given: known depth, where there is any
+ *         GIVEN/VIEW.exr, .png, .pfm, .tif, depth.txt   with --given: known depth, where there is any
  *         VIEWS/lenses.txt                              for given depth in the photo's pixels
  *         VIEWS/lenses.txt, RECORDS/ID.txt              with --records: the upper sides of the photos
  *         FRAME                                         with --frame: what straight edges show of the room
@@ -15,6 +15,7 @@
  * --estimate prints the time and memory that depth will take instead; it reads cameras and points only.
  *
  * Each file appears whole or not at all, OUT last: if it is new, so are the others. */
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -29,6 +30,7 @@
 #include "common/product/product.h"
 #include "stages/segment_depth/depth_estimate.h"
 #include "stages/segment_depth/depth_rounds.h"
+#include "stages/segment_depth/given_check.h"
 #include "stages/segment_depth/given_depth.h"
 #include "stages/segment_depth/given_read.h"
 #include "stages/segment_depth/view_depth.h"
@@ -57,27 +59,74 @@ static enum status read_depth(void *ctx, int view_idx, struct layered_depth *d, 
                : ST_OK;
 }
 
-/* *z: the view's given depth; NULL if there is none or all of it is unknown. */
+#define INSIDE_OUT (-0.3) /* rank correlation below which given depth falls where the points' depth rises */
+#define UNRELATED  0.3    /* below which it hardly depends on it */
+
+/* Whether the given depth may be used, as its view's sparse points say; makes depth of relative disparity. Warns in the
+ * first round only. */
+static enum status check_given(bool *usable, struct given *g, const struct views_folder *f, int view_idx,
+                               struct err *err)
+{
+    const struct view *view = &f->set->views[view_idx];
+    struct observed_points seen = {0};
+    double ranks = NAN;
+    bool fits = true;
+    neighbours_find_points(&seen, f->set, view_idx, err);
+    if (!err->status && g->relative) given_check_fit(&fits, g->z, view->width, view->height, &seen, err);
+    if (!err->status && fits) given_check_ranks(&ranks, g->z, view->width, view->height, &seen, err);
+    neighbours_release_points(&seen);
+    *usable = fits && !(ranks < INSIDE_OUT);
+    if (err->status || f->before) return err->status;
+    if (!fits)
+        log_warn(
+            "the disparity given for view %s in %s has no scale, and none agrees with the view's sparse points; the "
+            "view is matched as if there were none. Write the line \"scale NUMBER\" into %s/depth.txt, where depth "
+            "is NUMBER divided by a sample.",
+            view->name, f->given, f->given);
+    else if (!*usable)
+        log_warn(
+            "the depth given for view %s in %s falls where that of its sparse points rises (rank correlation %.2f), "
+            "so it seems to be %s; the view is matched as if there were none. Write the line \"samples %s\" into "
+            "%s/depth.txt.",
+            view->name, f->given, ranks, g->disparity ? "depth, not disparity" : "disparity, inverse depth",
+            g->disparity ? "depth" : "disparity", f->given);
+    else if (ranks < UNRELATED)
+        log_warn(
+            "the depth given for view %s in %s hardly follows that of its sparse points (rank correlation %.2f): it "
+            "may be of another picture.",
+            view->name, f->given, ranks);
+    return ST_OK;
+}
+
+/* *z: the view's given depth; NULL if there is none, or none that may be used. */
 static enum status read_given(void *ctx, int view_idx, float **z, struct err *err)
 {
     const struct views_folder *f = ctx;
     const struct view *view = &f->set->views[view_idx];
     struct lens_list lenses = {0};
+    struct given given = {0};
+    bool usable = true;
     char path[FILE_PATH];
+    *z = NULL;
     if (product_path_in(path, f->folder, PRODUCT_LENSES, NULL, err)) return err->status;
     if (!access(path, F_OK)) lens_list_read(&lenses, path, NULL, err);
     const int lens = err->status ? -1 : lens_list_find(&lenses, view->name);
-    if (!err->status) given_read(z, f->given, view, lens < 0 ? NULL : &lenses.lenses[lens], f->prov, err);
+    if (!err->status) given_read(&given, f->given, view, lens < 0 ? NULL : &lenses.lenses[lens], f->prov, err);
     double min_inverse_z = 0, max_inverse_z = 0;
-    if (!err->status && *z &&
-        !given_depth_range(&min_inverse_z, &max_inverse_z, *z, (size_t)view->width * (size_t)view->height)) {
+    if (!err->status && given.z &&
+        !given_depth_range(&min_inverse_z, &max_inverse_z, given.z, (size_t)view->width * (size_t)view->height)) {
+        usable = false;
         if (!f->before) /* warns in the first round only */
             log_warn("the given depth of view %s in %s is unknown everywhere (0, NaN or infinite); the view is matched "
                      "as if there were none.",
                      view->name, f->given);
-        free(*z);
-        *z = NULL;
+    } else if (!err->status && given.z) {
+        check_given(&usable, &given, f, view_idx, err);
     }
+    if (!err->status && usable)
+        *z = given.z;
+    else
+        free(given.z);
     lens_list_release(&lenses);
     return err->status;
 }
@@ -276,7 +325,7 @@ int main(int argc, char **argv)
         CLI_STR("before", &r.before, CLI_OPTIONAL,
                 "folder of all views' depth in the previous round; none in the first round"),
         CLI_STR("given", &r.given, CLI_OPTIONAL,
-                "folder of known depth, of any of the views: VIEW.exr, or VIEW.png with depth.txt"),
+                "folder of known depth, of any of the views: VIEW.exr, .png, .pfm, .tif or .tiff, and depth.txt"),
         CLI_STR("out", &r.out, CLI_OPTIONAL, "EXR to write"),
         CLI_STR("deps", &r.deps, CLI_OPTIONAL, "make dependencies to write: the pictures that were read"),
         CLI_STR("estimate", &list, CLI_OPTIONAL,

@@ -46,6 +46,57 @@ an_unknown_lens_is_named()
     grep -q 'newlens/cameras.bin: camera 1 has COLMAP.s lens model number 11, RAD_TAN_THIN_PRISM_FISHEYE' err || { cat err; fail "the lens is not named"; }
 }
 
+
+# depth FOLDER [DEPTH.TXT]: depth of kermit003 with the case's depth, messages in err
+depth()
+{
+    prepared
+    if [ ! -e views-of-photos ]; then
+        imported given-disparity/model && sfm_import --sfm sfm --records records --out views
+        for f in "$photos"/*.jpg; do rectify --photo "$(basename "$f" .jpg)" --photos "$photos" --records records --views views --out views; done
+        touch views-of-photos
+    fi
+    rm -rf given; mkdir given; cp "$cases/$1"/* given; chmod u+w given/*
+    [ -z "${2-}" ] || printf '%s' "$2" >given/depth.txt
+    segment_depth --views views --view kermit003 --given given --out depth/kermit003.exr --set planes=32 --set passes=1 2>err
+}
+says() { grep -qF -- "$1" err || { cat err; fail "nothing says '$1'"; }; }
+
+disparity_is_recognised_and_named()
+{
+    depth given-disparity/depth || { cat err; fail "it failed"; }
+    says "falls where that of its sparse points rises (rank correlation -"
+    says 'Write the line "samples disparity" into given/depth.txt'
+    ! grep -q 'depth is given for' err || fail "depth that is inside out is used"
+}
+# said to be disparity, it is used; the depth of most points is then right
+disparity_that_is_said_is_used()
+{
+    depth given-disparity/depth "samples disparity" || { cat err; fail "it failed"; }
+    says 'depth is given for'
+    ! grep -q 'warning' err || { cat err; fail "a warning"; }
+}
+formats_of_depth_are_read()
+{
+    local f
+    for f in KERMIT003.EXR kermit003.pfm kermit003.tif; do
+        depth given-depth-formats/depth || { cat err; fail "it failed"; }
+        find given -type f ! -name "$f" -delete
+        segment_depth --views views --view kermit003 --given given --out depth/kermit003.exr --set planes=32 --set passes=1 2>err || { cat err; fail "$f"; }
+        says 'depth is given for'
+        ! grep -q warning err || { cat err; fail "$f: a warning"; }
+        sed '/^#/d' depth/kermit003.txt >"planes-$f"
+    done
+    cmp planes-kermit003.pfm planes-kermit003.tif && cmp planes-KERMIT003.EXR planes-kermit003.pfm || fail "the formats differ"
+}
+sentinels_are_unknown()
+{
+    depth given-depth-formats/sentinel || { cat err; fail "it failed"; }
+    says 'pixels have the value 1e+10, far from all others, which is taken as unknown'
+    ! grep -q warning err || { cat err; fail "a warning"; }
+}
+
 for t in text_without_points_is_triangulated binary_without_points_is_triangulated bundler_without_points_is_triangulated \
     points_without_tracks_are_found_anew points_with_tracks_of_one_are_found_anew lists_with_windows_paths_are_read lists_with_blanks_are_read \
-    lists_with_quotes_are_read good_points_are_kept an_unknown_lens_is_named; do run "$t"; done
+    lists_with_quotes_are_read good_points_are_kept an_unknown_lens_is_named \
+    disparity_is_recognised_and_named disparity_that_is_said_is_used formats_of_depth_are_read sentinels_are_unknown; do run "$t"; done

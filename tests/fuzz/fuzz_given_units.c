@@ -17,7 +17,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     fuzz_file(path, data, size);
     if (given_units_read(&units, path, &err)) {
         if (!strstr(err.text, path) || units.scale > 0) abort();
-    } else if (!isfinite(units.scale) || units.scale < 0 || units.scale > 1e12 || units.pixels > PIXELS_OF_PHOTO) {
+    } else if (!isfinite(units.scale) || units.scale < 0 || units.scale > 1e12 || units.pixels > PIXELS_OF_PHOTO ||
+               units.samples > SAMPLES_DISPARITY) {
         abort();
     }
     unlink(path);

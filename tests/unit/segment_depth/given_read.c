@@ -80,8 +80,9 @@ static float *read_for(const struct view *view, const struct lens *lens)
 {
     struct provenance prov = {0};
     struct err err = ERR_INIT;
-    float *z;
-    assert_ok(given_read(&z, scratch, view, lens, &prov, &err), err);
+    struct given given;
+    assert_ok(given_read(&given, scratch, view, lens, &prov, &err), err);
+    float *z = given.z;
     if (z) assert_true(prov.count > 0 && !strncmp(prov.inputs[0].name, "given/v.", 8));
     provenance_release(&prov);
     return z;
@@ -91,9 +92,9 @@ static void refused(const struct view *view, const struct lens *lens, const char
 {
     struct provenance prov = {0};
     struct err err = ERR_INIT;
-    float *z;
-    given_read(&z, scratch, view, lens, &prov, &err);
-    assert_null(z);
+    struct given given;
+    given_read(&given, scratch, view, lens, &prov, &err);
+    assert_null(given.z);
     assert_err(err, ST_DATA, message);
     assert_contains(err.text, more);
     provenance_release(&prov);
@@ -329,6 +330,33 @@ static void depth_is_converted_to_a_rotated_views_axis(void **state)
 
 /* ------------------------------------------------------------------------------------------------------- depth.txt */
 
+/* Depth is the scale divided by a disparity; without a scale it is left to the sparse points. */
+static void disparity_is_divided_into_the_scale(void **state)
+{
+    (void)state;
+    const struct view view = view_of(W, H, 40);
+    const char *const names[] = {"Z"};
+    struct provenance prov = {0};
+    struct err err = ERR_INIT;
+    struct given given;
+    write_exr(W, H, names, 1, EXR_FLOAT, ramp);
+    scratch_write("depth.txt", "samples disparity\nscale 120\n");
+    assert_ok(given_read(&given, scratch, &view, NULL, &prov, &err), err);
+    assert_true(given.disparity && !given.relative);
+    for (int i = 0; i < W * H; i++) assert_true(given.z[i] == (float)(120.0 / (2 + i % W + 100 * (i / W))));
+    free(given.z);
+    scratch_write("depth.txt", "samples disparity\n");
+    assert_ok(given_read(&given, scratch, &view, NULL, &prov, &err), err);
+    assert_true(given.disparity && given.relative);
+    assert_true(given.z[W + 1] == 103);
+    free(given.z);
+    scratch_write("depth.txt", "samples depth\n");
+    assert_ok(given_read(&given, scratch, &view, NULL, &prov, &err), err);
+    assert_true(!given.disparity && !given.relative && given.z[W + 1] == 103);
+    free(given.z);
+    provenance_release(&prov);
+}
+
 static void errors_in_depth_txt_name_their_line(void **state)
 {
     (void)state;
@@ -375,6 +403,7 @@ int main(void)
         cmocka_unit_test_setup(another_size_gives_the_nearest_sample, empty_folder),
         cmocka_unit_test_setup(depth_of_a_photo_is_mapped_through_its_lens, empty_folder),
         cmocka_unit_test_setup(depth_is_converted_to_a_rotated_views_axis, empty_folder),
+        cmocka_unit_test_setup(disparity_is_divided_into_the_scale, empty_folder),
         cmocka_unit_test_setup(errors_in_depth_txt_name_their_line, empty_folder),
     };
     return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
