@@ -60,6 +60,9 @@ static enum status write_film(const struct camera_path *path, const struct effec
                : ST_OK;
 }
 
+#define STILL_ANGLE    1.0  /* degrees; a film that moves through less */
+#define STILL_PARALLAX 0.02 /* of the frame area, and shows less, seems to stand still; stages/plan_path/run.sh */
+
 static void log_summary(const struct camera_path *path, const struct move_notes *n, const struct validity *v)
 {
     const struct move_ends *e = &n->ends, *d = &n->chosen.discrete;
@@ -71,7 +74,9 @@ static void log_summary(const struct camera_path *path, const struct move_notes 
         100 * e->parallax, n->chosen.longest, 100 * d->parallax, e->worst_h, 100 * e->worst_at, d->worst_h);
     if (n->is_static)
         log_warn("no move is valid on its whole path: the camera does not move");
-    else if (n->chosen.chosen < 0)
+    else if (e->angle < STILL_ANGLE && e->parallax < STILL_PARALLAX)
+        log_warn("the camera moves through only %.2g degrees and shows hardly any parallax", e->angle);
+    if (!n->is_static && n->chosen.chosen < 0)
         log_note("the ends were drawn in towards the origin: no pair of cells with a valid path gave as much parallax");
     if (!e->valid)
         log_warn("a part of the path is not valid: H is up to %.3g, the limit is %.3g", e->worst_h, v->limits.max_h);

@@ -52,4 +52,18 @@ a_camera_that_cannot_move_causes_a_warning()
     plan 1 'nowhere to go' --validity still.txt --effect establishing_dolly
 }
 
-for t in a_move_is_planned_with_its_scores bad_arguments_are_refused_with_a_sentence a_camera_that_cannot_move_causes_a_warning; do run "$t"; done
+a_film_that_seems_to_stand_still_causes_a_warning_at_the_end()
+{
+    mkdir -p end/parallax/{establishing_dolly,good}
+    plan 0 'and shows hardly any parallax' --validity validity.txt --effect establishing_dolly --set max_angle=0.2 --set refine=no
+    cp made/path.txt end/parallax/establishing_dolly/
+    plan 0 'parallax' --validity validity.txt --effect establishing_dolly
+    cp made/path.txt end/parallax/good/
+    # shellcheck disable=SC2016
+    O=end goal=report bash -euo pipefail -c '. stages/plan_path/run.sh; end_plan_path' 2>words
+    grep -q '^warning: film establishing_dolly: its camera moves through only 0\.[0-9]* degrees' words || { cat words; fail "no warning"; }
+    ! grep -q 'film good' words || fail "a warning of a good film"
+}
+
+for t in a_move_is_planned_with_its_scores bad_arguments_are_refused_with_a_sentence a_camera_that_cannot_move_causes_a_warning \
+    a_film_that_seems_to_stand_still_causes_a_warning_at_the_end; do run "$t"; done
