@@ -7,7 +7,7 @@ bin=$1 folder=$2
 . common/run/keep.sh
 {
     if [ -n "${REMODEL_SFM-}" ]; then
-        (cd "$REMODEL_SFM" && find . -type f \( -name '*.txt' -o -name '*.bin' -o -name '*.out' -o -name '*.lst' -o -name '*.json' -o -iname '*.xml' -o -iname '*.csv' \) -print0 | LC_ALL=C sort -z | xargs -0r cksum)
+        (cd "$REMODEL_SFM" && find . -type f \( -name '*.txt' -o -name '*.bin' -o -name '*.out' -o -iname '*.lst' -o -name '*.json' -o -iname '*.xml' -o -iname '*.csv' \) -print0 | LC_ALL=C sort -z | xargs -0r cksum)
     else
         colmap help 2>/dev/null | sed -n 1p
     fi
