@@ -46,7 +46,7 @@ bool camera_model_has_one_focal(enum camera_model model); /* its parameters are 
 /* The OPENCV_FISHEYE nearest to an equisolid fisheye, r = 2 focal sin(theta / 2). */
 struct camera camera_equisolid(int width, int height, double focal, double cx, double cy);
 
-/* ST_DATA: a parameter is not finite, a focal length not > 0, a side < 1, the field of a FOV lens not below 180 degrees. */
+/* ST_DATA: a parameter is not finite, a focal length not > 0, a side < 1, a FOV lens of 180 degrees or more. */
 enum status camera_check(const struct camera *c, struct err *err);
 
 void camera_focal(const struct camera *c, double *fx, double *fy, double *cx, double *cy);

@@ -53,6 +53,18 @@ int id_list_find(const struct id_list *l, int64_t id)
     return row ? row->idx : -1;
 }
 
+enum status sfm_sort_points(struct sfm_model *m, struct id_list *ids, const char *path, struct err *err)
+{
+    if (!ids->count || ids->ascending) return ST_OK;
+    if (id_list_sort(ids, path, "point", err)) return err->status;
+    struct sfm_point *sorted = malloc((size_t)ids->count * sizeof *sorted);
+    if (!sorted) return err_nomem(err, "points", (size_t)ids->count * sizeof *sorted);
+    for (int i = 0; i < ids->count; i++) sorted[i] = m->points[ids->rows[i].idx];
+    free(m->points);
+    m->points = sorted;
+    return ST_OK;
+}
+
 void id_list_release(struct id_list *l)
 {
     free(l->rows);

@@ -72,18 +72,6 @@ enum status sfm_sort_images(struct sfm_model *m, int **old_idx, struct err *err)
     return err->status;
 }
 
-enum status sfm_sort_points(struct sfm_model *m, struct id_list *ids, const char *path, struct err *err)
-{
-    if (!ids->count || ids->ascending) return ST_OK;
-    if (id_list_sort(ids, path, "point", err)) return err->status;
-    struct sfm_point *sorted = malloc((size_t)ids->count * sizeof *sorted);
-    if (!sorted) return err_nomem(err, "points", (size_t)ids->count * sizeof *sorted);
-    for (int i = 0; i < ids->count; i++) sorted[i] = m->points[ids->rows[i].idx];
-    free(m->points);
-    m->points = sorted;
-    return ST_OK;
-}
-
 enum status sfm_set_track(struct sfm_point *p, const struct sfm_track *track, int count, struct err *err)
 {
     if (!count) return ST_OK;

@@ -1,4 +1,4 @@
-/* sfm_model.h - cameras, posed images and sparse points. Reads and writes COLMAP's text format, reads its binary one and
+/* sfm_model.h - cameras, posed images and sparse points. Reads and writes COLMAP text, reads its binary files and
  * Bundler's.
  *
  * Numbers are written with %.17g, so that reading them back gives the same bits. */
