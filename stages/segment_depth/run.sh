@@ -21,7 +21,7 @@ report_given_depth()
         case " $held " in *" $f "*) of_held=$((of_held + 1)) ;; *) of_none+=" $f" ;; esac
     done
     if [ -n "${REMODEL_DEPTH-}" ] && [ "$of_views$of_held" = 00 ]; then
-        echo "DEPTH=$depth gives the depth of 0 of $(wc -w <<<"$views") views. Name its files VIEW.exr, VIEW.png, VIEW.pfm, VIEW.tif or VIEW.tiff, where VIEW is one of:$(cut -c1-200 <<<"$views"). It has: $(ls "$depth" | head -n 5 | tr '\n' ' ')" >&2
+        echo "DEPTH=$depth gives the depth of 0 of $(wc -w <<<"$views") views. Name its files VIEW.exr, VIEW.png, VIEW.pfm, VIEW.tif or VIEW.tiff, where VIEW is one of:$(cut -c1-200 <<<"$views"). It has: $(ls "$depth" | sed -n 1,5p | tr '\n' ' ')" >&2
         exit 2
     fi
     echo "DEPTH=$depth gives the depth of $of_views of $(wc -w <<<"$views") views."

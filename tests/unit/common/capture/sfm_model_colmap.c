@@ -166,8 +166,8 @@ static void errors_name_the_file_and_line(void **state)
     static const struct {
         const char *cameras, *images, *points, *message;
     } bad[] = {
-        {"1 FOV 640 480 500 500 320 240 0.9\n", images_ok, points_ok, "cameras.txt:1: found \"FOV\""},
-        {"1 FOV 640 480 500 500 320 240 0.9\n", images_ok, points_ok, "OPENCV_FISHEYE"},
+        {"1 DIVISION 640 480 500 500 320 240 0.9\n", images_ok, points_ok, "cameras.txt:1: found \"DIVISION\""},
+        {"1 DIVISION 640 480 500 500 320 240 0.9\n", images_ok, points_ok, "OPENCV_FISHEYE"},
         {"7 PINHOLE 640 480 500 nan 320 240\n", images_ok, points_ok, "cameras.txt:1: found \"nan\""},
         {"7 PINHOLE 640 480 500 0 320 240\n", images_ok, points_ok, "focal length is 0"},
         {"7 PINHOLE 640 480 500 500 320\n", images_ok, points_ok, "cameras.txt:1: found the end of the line"},
