@@ -49,7 +49,7 @@ static void errors_name_the_line(void **state)
         {"remodel-lenses 2\n", "found \"2\""},
         {HEAD, "a line for each view"},
         {HEAD GOOD GOOD, "lenses.txt:3: found view a after a"},
-        {HEAD "a a FOV 4 3 5 2 1.5 turn 1 0 0 0\n", "found \"FOV\""},
+        {HEAD "a a DIVISION 4 3 5 2 1.5 turn 1 0 0 0\n", "found \"DIVISION\""},
         {HEAD "a a SIMPLE_PINHOLE 4 3 0 2 1.5 turn 1 0 0 0\n", "focal length is 0"},
         {HEAD "a a SIMPLE_PINHOLE 4 3 5 2 1.5 turned 1 0 0 0\n", "found \"turned\""},
         {HEAD "a a SIMPLE_PINHOLE 4 3 5 2 1.5 turn 1 0 0 1\n", "a turn of length 1.41"},
