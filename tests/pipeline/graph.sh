@@ -223,55 +223,6 @@ given_depth_is_used_and_redoes_its_view_and_its_readers()
     grep -q "gives the depth of 1 of 6 views" log || { cat log; fail "a name in capitals is not known"; }
     grep -q 'files that belong to no view: photo_33' log || { cat log; fail "no warning about a file of no view"; }
     run_scene depth >log 2>&1 || { cat log; fail "make without DEPTH"; }
-    made_of views depth | diff clean - || fail "without the mask other bytes come out than before"
-    grep -q 'masks/photo_9.png masks nothing' log || { cat log; fail "no warning about a mask of no photo"; }
-    rm -r scenes/t/masks
-}
-
-# the planes in the depth map of photo_5
-planes_5() { awk '/^segments/ { go = 1; next } go { print $3, $4, $5 }' out/t/depth/photo_5.txt; }
-
-given_depth_is_used_and_redoes_its_view_and_its_readers()
-{
-    mkdir -p given
-    for what in one two other; do
-        snapshot out/t >a
-        case $what in
-        one) cp set/truth/photo_5.exr given ;;
-        two) echo 'scale 2' >given/depth.txt ;;
-        other) mv given/photo_5.exr given/photo_6.exr ;;
-        esac
-        run_scene DEPTH=given depth >log || { cat log; fail "make with $what"; }
-        snapshot out/t >b
-        changed a b >c
-        ! grep -qE '^(sfm|views)/' c || { cat c; fail "too much was remade"; }
-        gave=photo_5; [ $what != other ] || gave='photo_[56]'
-        grep -q "gives the depth of 1 of 6 views" log || { cat log; fail "the run does not count the views whose depth is given"; }
-        grep -q "depth is given for 19200 of 19200 pixels" out/t/log/segment_depth.photo_$([ $what = other ] && echo 6 || echo 5).log || fail "the log does not count the pixels whose depth is given"
-        ! grep -E '^depth/round0/.*exr' c | matches -v "round0/$gave.exr" || { cat c; fail "views whose depth is not given were remade in the first round"; }
-        for d in out/t/depth/photo_?.d; do
-            v=$(basename "$d" .d)
-            # shellcheck disable=SC2053 # a pattern
-            if [[ $v == $gave ]] || sed 1d "$d" | matches "/depth/round0/$gave.exr"; then grep -q "^depth/$v.exr" c || fail "$v reads given depth, but was not remade"
-            else ! grep -q "^depth/$v.exr" c || fail "$v does not read given depth, but was remade"; fi
-        done
-        case $what in
-        one) planes_5 >planes ;;
-        two) planes_5 | paste - planes | awk '{ for (i = 1; i <= 3; i++) if ((d = 2 * $i - $(i + 3)) > 1e-6 || d < -1e-6) { bad++; break } } END { print bad+0, NR; exit bad > NR / 20 || NR < 100 }' || fail "depth that is twice as far has not half the inverse depths" ;;
-        esac
-    done
-    snapshot out/t >a
-    run_scene DEPTH=given depth >log
-    snapshot out/t >b
-    diff a b || fail "a second make remade something"
-    ffmpeg -v error -f lavfi -i color=gray:s=160x120 -frames:v 1 -pix_fmt gray16be given/photo_3.png
-    echo 'pixels view' >given/depth.txt
-    if run_scene DEPTH=given depth >log 2>&1; then fail "a PNG without scale was accepted"; fi
-    grep -q 'given/photo_3.png holds whole numbers' log || { cat log; fail "no message about the scale"; }
-    # a file of no view alone
-    rm given/photo_6.exr; mv given/photo_3.png given/photo_33.png
-    run_scene DEPTH=given depth >log 2>&1 || { cat log; fail "make"; }
-    grep -q 'files that belong to no view: photo_33' log || { cat log; fail "no warning about a file of no view"; }
     made_of views depth | diff clean - || fail "without given depth other bytes come out than before"
     if run_scene DEPTH=nowhere depth >log 2>&1; then fail "DEPTH=nowhere was accepted"; fi
     grep -q 'DEPTH=nowhere is not a folder' log || { cat log; fail "no message about the folder"; }
