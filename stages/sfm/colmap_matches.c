@@ -58,16 +58,22 @@ static enum status make_database(const struct colmap_job *job, struct err *err)
     return err->status;
 }
 
+enum status colmap_matches_features(struct feature_list *list, const struct colmap_job *job, int photo, struct err *err)
+{
+    const struct product_key key = {.photo = job->photos->photos[photo].id};
+    char path[FILE_PATH];
+    *list = (struct feature_list){0};
+    if (product_path_in(path, job->in->features, PRODUCT_FEATURES, &key, err)) return err->status;
+    return feature_list_read(list, path, job->in->prov, err);
+}
+
 static enum status set_features(const struct colmap_job *job, int photo, struct colmap_database *db, struct err *err)
 {
     const struct photo_record *p = &job->photos->photos[photo];
     struct feature_list list = {0};
-    char path[FILE_PATH];
     int id = 0;
     char *name = sfm_text_format(err, "%s%s", p->id, colmap_extension(p->file));
-    if (name &&
-        !product_path_in(path, job->in->features, PRODUCT_FEATURES, &(struct product_key){.photo = p->id}, err) &&
-        !feature_list_read(&list, path, job->in->prov, err) && !colmap_database_image_id(&id, db, name, err) && id)
+    if (name && !colmap_matches_features(&list, job, photo, err) && !colmap_database_image_id(&id, db, name, err) && id)
         colmap_database_set_features(db, id, &list, err);
     job->features[photo] = id ? list.count : -1;
     feature_list_release(&list);

@@ -74,48 +74,101 @@ static enum status known_cameras(struct sfm_model *known, bool *fits, const stru
     return ST_OK;
 }
 
-/* Writes the known cameras and poses, its images with their names and ids in the database. */
-static enum status write_known(const struct colmap_job *job, const struct sfm_model *known, const char *folder,
-                               struct err *err)
+static bool is_connected(int id, const struct verified_pair *pairs, int count)
 {
-    struct sfm_model written = {.cameras = known->cameras, .camera_count = known->camera_count};
-    struct colmap_database *db = NULL;
-    colmap_database_open(&db, job->database, err);
-    written.images = calloc((size_t)known->image_count + 1, sizeof *written.images);
-    if (!err->status && !written.images) err_nomem(err, "images", (size_t)known->image_count * sizeof *written.images);
-    for (int i = 0; !err->status && i < known->image_count; i++) {
-        const struct photo_record *p = &job->photos->photos[photo_list_match(job->photos, known->images[i].name)];
-        char *name = sfm_text_format(err, "%s%s", p->id, colmap_extension(p->file));
-        int id = 0;
-        if (!name || colmap_database_image_id(&id, db, name, err) || !id) {
-            free(name);
-            continue;
-        }
-        struct sfm_image *im = &written.images[written.image_count++];
-        *im = known->images[i];
-        im->id = id;
-        im->name = name;
-    }
-    if (!err->status && written.image_count < 2)
-        err_set(err, ST_DATA,
-                "the model has no points, and none can be triangulated: only %d of its %d images are readable photos "
-                "of the scene. Use the model of these photos.",
-                written.image_count, known->image_count);
-    if (!err->status) sfm_model_write_text(&written, folder, NULL, err);
-    for (int i = 0; i < written.image_count; i++) free(written.images[i].name);
-    free(written.images);
-    colmap_database_close(db);
+    for (int i = 0; i < count; i++)
+        if (pairs[i].images[0] == id || pairs[i].images[1] == id) return true;
+    return false;
+}
+
+/* Gives an image the places of its photo's features, as they are in the database. COLMAP 3.8 takes them from there, but
+ * 3.10 ends in an error if it has to. */
+static enum status set_places(struct sfm_image *image, const struct colmap_job *job, int photo, struct err *err)
+{
+    struct feature_list list = {0};
+    if (colmap_matches_features(&list, job, photo, err)) return err->status;
+    image->observations = malloc(((size_t)list.count + 1) * sizeof *image->observations);
+    if (!image->observations) err_nomem(err, "places of features", (size_t)list.count * sizeof *image->observations);
+    for (int i = 0; !err->status && i < list.count; i++)
+        image->observations[i] = (struct sfm_observation){list.features[i].x, list.features[i].y, -1};
+    if (!err->status) image->observation_count = list.count;
+    feature_list_release(&list);
     return err->status;
 }
 
-/* Runs COLMAP's triangulator on the cameras in `known`. *points: whether it made a model. It aborts in its bundle
- * adjustment if it found no points or kept none; that is not an error here. Tracks of two photos, which are more often
- * wrong, are used only if there are no longer ones. */
-static enum status find_points(bool *points, const struct colmap_job *job, const char *known, const char *made,
+/* Known images as the database has them. */
+struct known_images {
+    struct sfm_image *connected, *alone; /* those that match another one, and the others; names and places are owned */
+    int connected_count, alone_count;
+};
+
+static void release_images(struct sfm_image *images, int count)
+{
+    for (int i = 0; images && i < count; i++) {
+        free(images[i].observations);
+        free(images[i].name);
+    }
+    free(images);
+}
+
+/* Finds the images of known cameras that COLMAP took, with their names and ids in the database. */
+static enum status find_images(struct known_images *k, const struct colmap_job *job, const struct sfm_model *known,
                                struct err *err)
 {
-    *points = false;
-    for (int pass = 0; !err->status && !*points && pass < 2; pass++) {
+    const size_t count = (size_t)known->image_count + 1;
+    struct colmap_database *db = NULL;
+    struct verified_pair *pairs = NULL;
+    int pair_count = 0;
+    k->connected = calloc(count, sizeof *k->connected);
+    k->alone = calloc(count, sizeof *k->alone);
+    if (!k->connected || !k->alone) err_nomem(err, "images", count * sizeof *k->alone);
+    if (!err->status && !colmap_database_open(&db, job->database, err))
+        colmap_database_pairs(&pairs, &pair_count, db, err);
+    for (int i = 0; !err->status && i < known->image_count; i++) {
+        const int photo = photo_list_match(job->photos, known->images[i].name);
+        const struct photo_record *p = &job->photos->photos[photo];
+        struct sfm_image image = known->images[i];
+        int id = 0;
+        image.name = sfm_text_format(err, "%s%s", p->id, colmap_extension(p->file));
+        if (!image.name || colmap_database_image_id(&id, db, image.name, err) || !id) {
+            free(image.name);
+            continue;
+        }
+        image.id = id;
+        const bool connected = is_connected(id, pairs, pair_count);
+        struct sfm_image *to = connected ? &k->connected[k->connected_count++] : &k->alone[k->alone_count++];
+        *to = image;
+        if (connected) set_places(to, job, photo, err);
+    }
+    free(pairs);
+    colmap_database_close(db);
+    if (!err->status && k->connected_count + k->alone_count < 2)
+        err_set(err, ST_DATA,
+                "the model has no points, and none can be triangulated: only %d of its %d images are readable photos "
+                "of the scene. Use the model of these photos.",
+                k->connected_count + k->alone_count, known->image_count);
+    return err->status;
+}
+
+/* Reads the model that COLMAP's triangulator made. */
+static enum status read_made(struct sfm_model *found, const struct colmap_job *job, const char *made, struct err *err)
+{
+    char *text = sfm_text_format(err, "%s-text", made);
+    const char *args[] = {"model_converter", "--input_path", made, "--output_path", text, "--output_type", "TXT", NULL};
+    sfm_model_release(found);
+    if (text && !outfile_make_folders(text, err) && !colmap_run(job->logs[3], args, 0, err))
+        sfm_model_read_text(found, text, NULL, err);
+    free(text);
+    return err->status;
+}
+
+/* Runs COLMAP's triangulator on the cameras in `known`; `found` has no points if it found none. Version 3.8 then aborts
+ * in its bundle adjustment; that is not an error here. Later versions write a model without points. Tracks of two
+ * photos, which are more often wrong, are used only if there are no longer ones. */
+static enum status find_points(struct sfm_model *found, const struct colmap_job *job, const char *known,
+                               const char *made, struct err *err)
+{
+    for (int pass = 0; !err->status && !found->point_count && pass < 2; pass++) {
         const char *args[] = {"point_triangulator",
                               "--database_path",
                               job->database,
@@ -133,13 +186,39 @@ static enum status find_points(bool *points, const struct colmap_job *job, const
         const int aborted = 128 + SIGABRT;
         char line[512];
         int status = 0;
-        colmap_exit_status(&status, job->logs[2], args, err);
+        if (colmap_exit_status(&status, job->logs[2], args, err)) break;
         colmap_log_last_line(line, sizeof line, job->logs[2]);
-        *points = !err->status && !status;
-        if (!err->status && status && !(status == aborted && strstr(line, "bundle_adjuster.Solve")))
+        if (!status)
+            read_made(found, job, made, err);
+        else if (status != aborted || !strstr(line, "bundle_adjuster.Solve"))
             colmap_failed(job->logs[2], args[0], status, err);
     }
     return err->status;
+}
+
+/* Adds the images that match no other one, which COLMAP was not given, with their cameras. Their names are taken. */
+static enum status add_alone(struct sfm_model *found, struct known_images *k, const struct sfm_model *known,
+                             struct err *err)
+{
+    struct sfm_image *images =
+        realloc(found->images, ((size_t)found->image_count + (size_t)k->alone_count + 1) * sizeof *images);
+    if (!images) return err_nomem(err, "images", (size_t)k->alone_count * sizeof *images);
+    found->images = images;
+    for (int i = 0; i < k->alone_count; i++) {
+        int at = given_cameras_find(found, &known->cameras[k->alone[i].camera_idx].camera);
+        if (at < 0) {
+            struct sfm_camera *cameras = realloc(found->cameras, ((size_t)found->camera_count + 1) * sizeof *cameras);
+            if (!cameras) return err_nomem(err, "cameras", ((size_t)found->camera_count + 1) * sizeof *cameras);
+            found->cameras = cameras;
+            at = found->camera_count++;
+            cameras[at] = known->cameras[k->alone[i].camera_idx];
+        }
+        struct sfm_image *image = &images[found->image_count++];
+        *image = k->alone[i];
+        image->camera_idx = at;
+        k->alone[i].name = NULL;
+    }
+    return ST_OK;
 }
 
 /* Triangulates points for known cameras. *features: number of the photos' features. */
@@ -147,30 +226,30 @@ static enum status triangulate_known(struct sfm_model *found, long long *feature
                                      const struct sfm_folder *f, const struct sfm_input *in, struct err *err)
 {
     struct colmap_job job = {0};
+    struct known_images images = {0};
     struct sfm_params params = *in->params;
-    bool points = false;
     params_of_model(&params, known);
     char *of_known = sfm_text_format(err, "%s/known-%d", f->work, f->models);
     char *made = sfm_text_format(err, "%s/triangulated-%d", f->work, f->models);
-    char *text = sfm_text_format(err, "%s/triangulated-text-%d", f->work, f->models);
-    if (of_known && made && text) colmap_prepare(&job, f, in, &params, err);
-    const char *converter[] = {"model_converter", "--input_path", made, "--output_path", text,
-                               "--output_type",   "TXT",          NULL};
-    if (!err->status && !outfile_make_folders(made, err) && !outfile_make_folders(text, err) &&
-        !colmap_take_matches(features, &job, err))
-        write_known(&job, known, of_known, err);
-    if (!err->status && *features) {
+    if (of_known && made) colmap_prepare(&job, f, in, &params, err);
+    if (!err->status && !outfile_make_folders(made, err) && !colmap_take_matches(features, &job, err))
+        find_images(&images, &job, known, err);
+    if (!err->status && images.connected_count) {
+        const struct sfm_model given = {.cameras = known->cameras,
+                                        .camera_count = known->camera_count,
+                                        .images = images.connected,
+                                        .image_count = images.connected_count};
         log_note("step 3 of %d: points (%.1f s so far)", COLMAP_STEPS, clock_seconds() - job.started);
-        find_points(&points, &job, of_known, made, err);
+        if (!sfm_model_write_text(&given, of_known, NULL, err)) find_points(found, &job, of_known, made, err);
     }
-    if (!err->status && points && !colmap_run(job.logs[3], converter, 0, err) &&
-        !sfm_model_read_text(found, text, NULL, err))
+    if (!err->status && found->point_count && !add_alone(found, &images, known, err))
         colmap_name_images(found, in->list, err);
     if (!err->status) colmap_keep_logs(&job, err);
+    release_images(images.connected, images.connected_count);
+    release_images(images.alone, images.alone_count);
     colmap_job_release(&job);
     free(of_known);
     free(made);
-    free(text);
     return err->status;
 }
 
