@@ -97,7 +97,15 @@ static int int_attribute(const char **attributes, const char *name, int missing)
     return text && scan_int(text, &value) && value >= 0 && value < 1000000000 ? (int)value : missing;
 }
 
-static int line_of(const struct document *d) { return (int)XML_GetCurrentLineNumber(d->parser); }
+/* Expat 2.9 deprecates the older name, which is all that earlier ones have. */
+static int line_of(const struct document *d)
+{
+#if XML_MAJOR_VERSION > 2 || XML_MINOR_VERSION >= 9
+    return (int)XML_GetCurrentLineNumber64(d->parser);
+#else
+    return (int)XML_GetCurrentLineNumber(d->parser);
+#endif
+}
 
 static void fail(struct document *d)
 {
