@@ -23,7 +23,7 @@ else
 INSTALLED := $(wildcard common/make/installed)
 
 ## SCENE=NAME: the scene to work on, scenes/NAME/
-## PHOTOS=DIR: folder of photos (JPEG, PNG, TIFF, HEIC, AVIF, WebP, JPEG XL, EXR, raw); with a new SCENE it is written to scenes/SCENE/scene.mk
+## PHOTOS=DIR: folder of photos (JPEG, PNG, TIFF, HEIC, AVIF, WebP, JPEG XL, EXR, raw) and clips (MP4, QuickTime), or clips themselves ("a.mp4 b.mov"); with a new SCENE it is written to scenes/SCENE/scene.mk
 ## QUALITY=draft|default|final: configs/QUALITY.cfg; draft and final work beside the default, in out/SCENE+QUALITY
 QUALITY ?= default
 ## PRODUCTS="WORDS": what plain `make` makes: words among parallax (the default), model, which scenes/SCENE/model.txt describes, and of it textures, remodel, tour and relight: its edits, walks through them, and their light

@@ -10,6 +10,8 @@ void rule_originals(struct graph *g, const char *option)
 {
     if (*scene_setting("SPLIT"))
         rule_option(g, option, FOLDER(g, SPLIT_LIST));
+    else if (path_is_file(PATH(g, CLIP_LIST)))
+        rule_option(g, option, FOLDER(g, CLIP_LIST));
     else
         rule_variable(g, option, "PHOTOS");
 }

@@ -28,8 +28,11 @@ static enum status read_bytes(struct photo_bytes *file, const char *path, const 
     return err->status;
 }
 
-static enum status unknown_kind(const struct photo_bytes *file, struct err *err)
+static enum status unknown_kind(const struct photo_bytes *file, enum photo_kind kind, struct err *err)
 {
+    if (kind == PHOTO_KIND_VIDEO)
+        return err_set(err, ST_DATA, "%s is a video, not a photo; only the folder of photos may contain videos.",
+                       file->path);
     char begin[32] = "";
     for (size_t i = 0; i < file->size && i < 8; i++) sprintf(begin + 3 * i, " %02x", file->bytes[i]);
     return err_set(
@@ -94,7 +97,7 @@ static enum status read_photo(struct photo *p, const char *path, bool pixels, bo
     *p = (struct photo){.info.orientation = 1};
     if (!read_bytes(&file, path, name, prov, err)) kind = photo_kind_of(file.bytes, file.size);
     if (kind == PHOTO_KIND_TIFF && photo_tiff_is_raw(&file)) kind = PHOTO_KIND_RAW;
-    if (!err->status && kind == PHOTO_KIND_OTHER) unknown_kind(&file, err);
+    if (!err->status && (kind == PHOTO_KIND_OTHER || kind == PHOTO_KIND_VIDEO)) unknown_kind(&file, kind, err);
     if (!err->status && !any_format && (kind == PHOTO_KIND_EXR || kind == PHOTO_KIND_RAW))
         err_set(err, ST_DATA, "%s is %s; wanted JPEG, PNG, TIFF, HEIC, AVIF, WebP or JPEG XL here.", path,
                 kind == PHOTO_KIND_EXR ? "an EXR file" : "a camera's raw file");

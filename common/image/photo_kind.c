@@ -31,6 +31,11 @@ static const struct mark marks[] = {
     {8, "WEBP", 4, PHOTO_KIND_WEBP},
     {0, "\xff\x0a", 2, PHOTO_KIND_JXL},
     {0, "\0\0\0\x0cJXL \r\n\x87\n", 12, PHOTO_KIND_JXL},
+    {0, "\x1a\x45\xdf\xa3", 4, PHOTO_KIND_VIDEO}, /* Matroska, WebM */
+    {8, "AVI LIST", 8, PHOTO_KIND_VIDEO},
+    {4, "moov", 4, PHOTO_KIND_VIDEO}, /* QuickTime before it had brands */
+    {4, "mdat", 4, PHOTO_KIND_VIDEO},
+    {4, "wide", 4, PHOTO_KIND_VIDEO},
 };
 
 /* An ISO media file is a picture if its main brand, or one of those it is compatible with, is that of HEIF pictures. */
@@ -46,10 +51,21 @@ static bool is_heif(const unsigned char *b, size_t size)
     return false;
 }
 
+/* Any other ISO media file, but for those that say that they hold sound alone. */
+static bool is_video(const unsigned char *b, size_t size)
+{
+    static const char *const sounds[] = {"M4A ", "M4B ", "M4P ", "F4A ", "F4B "};
+    if (size < 12 || memcmp(b + 4, "ftyp", 4) != 0) return false;
+    for (size_t i = 0; i < sizeof sounds / sizeof *sounds; i++)
+        if (!memcmp(b + 8, sounds[i], 4)) return false;
+    return true;
+}
+
 enum photo_kind photo_kind_of(const unsigned char *bytes, size_t size)
 {
     for (size_t i = 0; i < sizeof marks / sizeof *marks; i++)
         if (size >= marks[i].at + marks[i].size && !memcmp(bytes + marks[i].at, marks[i].bytes, marks[i].size))
             return marks[i].kind;
-    return is_heif(bytes, size) ? PHOTO_KIND_HEIF : PHOTO_KIND_OTHER;
+    if (is_heif(bytes, size)) return PHOTO_KIND_HEIF;
+    return is_video(bytes, size) ? PHOTO_KIND_VIDEO : PHOTO_KIND_OTHER;
 }

@@ -15,6 +15,7 @@ enum photo_kind {
     PHOTO_KIND_HEIF, /* HEIC and AVIF */
     PHOTO_KIND_WEBP,
     PHOTO_KIND_JXL,
+    PHOTO_KIND_VIDEO, /* MP4, QuickTime, Matroska, AVI; no photo */
 };
 
 enum photo_kind photo_kind_of(const unsigned char *bytes, size_t size);

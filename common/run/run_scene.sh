@@ -135,9 +135,17 @@ if [ -n "${REMODEL_LENS-}" ]; then
     [ ! -e "$folder/scene.cfg" ] || grep -qE "^[[:space:]]*camera_model[[:space:]]*=[[:space:]]*${REMODEL_LENS}[[:space:]]*\$" "$folder/scene.cfg" ||
         usage "LENS=$REMODEL_LENS is for a new scene, but $folder/scene.cfg exists and names no such lens. Write camera_model = $REMODEL_LENS in its section [sfm]."
 fi
+# is_photos: PHOTOS is a folder or a clip, or names clips; names with blanks are quoted
+is_photos()
+{
+    local n
+    [ ! -e "$REMODEL_PHOTOS" ] || return 0
+    while IFS= read -r -d '' n; do [ -f "$n" ] || return 1; done < <(xargs printf '%s\0' 2>/dev/null <<<"$REMODEL_PHOTOS")
+    [ -n "${n-}" ]
+}
 if [ ! -e "$folder/scene.mk" ]; then
     [ -n "${REMODEL_PHOTOS-}" ] || usage "There is no $folder/scene.mk. Give the folder of photos to begin: make PHOTOS=DIR $again"
-    [ -d "$REMODEL_PHOTOS" ] || usage "PHOTOS=$REMODEL_PHOTOS is not a folder. Give the folder that holds the photos."
+    is_photos || usage "PHOTOS=$REMODEL_PHOTOS is neither a folder nor a list of clips. Give the folder that holds the photos, or clips; quote names with blanks."
     if [ "$dry" = n ]; then echo "would create $folder/scene.mk and scene.cfg, and go on from there"; exit 0; fi
     common/run/new_scene.sh "$folder" "$goal"
 fi

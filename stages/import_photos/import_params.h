@@ -9,6 +9,7 @@
     X(brackets, choice, "auto", 0, 0, "auto|yes|single|no",                                                       \
       "photos are several exposures of each view; auto: if brackets.txt exists or their exposures form a cycle; " \
       "single: each photo is the only exposure of a view")                                                        \
+    X(frames, int, 24, 2, 10000, "", "most frames of a clip that become photos")                                  \
     X(split_border, int, 0, 0, 100000, "px", "with SPLIT: width of the border around all pictures of a photo")    \
     X(split_gap, int, 0, 0, 100000, "px", "with SPLIT: width of the gap between two pictures of a photo")         \
     X(split_dark, int, 0, 0, 254, "",                                                                             \

@@ -1,12 +1,15 @@
 /* import_photos.c - checks the photographs of a folder, gives them ids, groups exposures of one view.
  *
- * reads   --photos DIR   photos of any kind (common/image/photo_kind.h), exposures.txt; nothing is written
+ * reads   --photos DIR   photos of any kind (common/image/photo_kind.h), clips, exposures.txt; nothing is written
+ *         --photos CLIP  a clip; several clips: the option several times
  *         --like DIR     records of a scene: the photos are its lighting reference images, on its scale
  *         --split CxR    each photo contains C x R pictures of a multi-lens camera; these become the photos
  *         --scene DIR    brackets.txt and exposures.txt, if they exist
  * writes  --out DIR      ID.txt, one record per photo (content hash, size, EXIF); then list.txt; then photos.mk
  *                        for brackets: members/ID.txt, one record per photo; ID.txt, one record per view, and
  *                        brackets.txt; then list.txt and photos.mk with the views
+ *         --frames DIR   CLIP_fN.png, frames of the clips, and links to the photos; then frames.txt. Without clips
+ *                        these are removed
  *         --cuts DIR     with --split: ID_cXrY.png, the pictures; then split.txt
  *
  * Each file is rewritten only if its text changes, so that Make sees which photos changed. All photos that cannot be
@@ -17,8 +20,10 @@
 #include <unistd.h>
 
 #include "common/base/cli.h"
+#include "common/base/file_path.h"
 #include "common/base/log.h"
 #include "stages/import_photos/bracket_views.h"
+#include "stages/import_photos/clip_frames.h"
 #include "stages/import_photos/split_photos.h"
 
 /* The stage never writes to the user's folder. */
@@ -58,6 +63,7 @@ static void report_unused(const struct photo_scan *scan, const struct exclusion 
 
 static void report_scan(const struct photo_scan *scan)
 {
+    for (int i = 0; i < scan->clip_count; i++) err_report(&scan->clips[i].err);
     for (int i = 0; i < scan->count; i++) err_report(&scan->photos[i].err);
     left_out_report(&scan->left, scan->folder);
 }
@@ -151,23 +157,74 @@ static enum status import(struct photo_scan *scan, const char *scene, const char
     return err->status;
 }
 
-static enum status run(struct photo_scan *scan, const char *photos, const char *scene, const char *like,
-                       const char *split, const char *cuts, const struct cli_list *exclude, const char *out,
+/* What --photos gives: one folder, or clips. */
+static enum status scan_sources(struct photo_scan *scan, const struct cli_list *photos, struct err *err)
+{
+    const char *first = photos->items[0];
+    return photos->count == 1 && (path_is_folder(first) || !path_is_file(first))
+               ? photo_scan_folder(scan, first, err)
+               : photo_scan_clips(scan, photos->items, photos->count, err);
+}
+
+/* Takes the frames of the clips, if there are any: *folder becomes `frames`. */
+static enum status take_frames(const char **folder, const struct cli_list *photos, const char *frames,
+                               struct exclusion *leave, const struct photo_params *params, struct err *err)
+{
+    struct photo_scan scan = {0};
+    int clips = 0;
+    scan_sources(&scan, photos, err);
+    if (!err->status) exclude_photos(&scan, leave);
+    for (int i = 0; i < scan.clip_count; i++) clips += !scan.clips[i].excluded;
+    if (!err->status && !frames && !scan.folder)
+        err_set(err, ST_USAGE, "--photos %s is a clip and needs --frames, a folder for its frames.", photos->items[0]);
+    if (!err->status && frames && (clips || !scan.folder)) {
+        clip_frames_make(&scan, frames, params, err);
+        *folder = frames;
+        report_scan(&scan);
+    } else if (!err->status && frames) {
+        clip_frames_remove(frames, err);
+    }
+    photo_scan_release(&scan);
+    return err->status;
+}
+
+/* Clips of a folder whose clips are not used. */
+static enum status leave_clips_out(struct photo_scan *scan, struct err *err)
+{
+    for (int i = 0; !err->status && i < scan->clip_count; i++)
+        if (!scan->clips[i].excluded) left_out_add(&scan->left, path_file_name(scan->clips[i].path), LEFT_CLIP, err);
+    left_out_sort(&scan->left);
+    return err->status;
+}
+
+/* Where the stage reads and writes. */
+struct places {
+    const struct cli_list *photos;
+    const char *scene, *like, *split, *cuts, *frames, *out;
+};
+
+static enum status run(struct photo_scan *scan, const struct places *p, const struct cli_list *exclude,
                        const struct photo_params *params, struct err *err)
 {
+    const char *folder = p->photos->items[0];
     struct exclusion left = {exclude, calloc((size_t)exclude->count + 1, sizeof(bool))};
     if (!left.used) err_nomem(err, "names", (size_t)exclude->count);
-    if (!err->status && !split != !cuts)
+    if (!err->status && !p->split != !p->cuts)
         err_set(err, ST_USAGE,
                 "--split and --cuts go together: the number of pictures in a photo, and the folder for them.");
-    if (!err->status && !check_out(photos, "--out", out, err)) check_out(photos, "--cuts", cuts, err);
-    if (!err->status && split) cut(photos, split, cuts, &left, params, err);
-    if (!err->status) photo_scan_folder(scan, split ? cuts : photos, err);
-    scan->cut = split;
-    scan->references = like;
+    if (!err->status && !check_out(folder, "--out", p->out, err) && !check_out(folder, "--cuts", p->cuts, err))
+        check_out(folder, "--frames", p->frames, err);
+    if (!err->status) take_frames(&folder, p->photos, p->frames, &left, params, err);
+    const bool framed = folder == p->frames;
+    if (!err->status && p->split) cut(folder, p->split, p->cuts, &left, params, err);
+    if (!err->status) photo_scan_folder(scan, p->split ? p->cuts : folder, err);
+    scan->cut = p->split;
+    scan->references = p->like;
     if (!err->status) {
         exclude_photos(scan, &left);
-        if (!photo_scan_check(scan, out, err)) import(scan, scene, like, &left, out, params, err);
+        if (!framed) leave_clips_out(scan, err);
+        if (!err->status && !photo_scan_check(scan, p->out, err))
+            import(scan, p->scene, p->like, &left, p->out, params, err);
     }
     report_scan(scan);
     free(left.used);
@@ -176,23 +233,25 @@ static enum status run(struct photo_scan *scan, const char *photos, const char *
 
 int main(int argc, char **argv)
 {
-    const char *photos = NULL, *scene = NULL, *like = NULL, *split = NULL, *cuts = NULL, *out = NULL;
-    struct cli_list exclude = {0};
+    struct cli_list photos = {0}, exclude = {0};
+    struct places at = {.photos = &photos};
     struct photo_params params = PHOTO_PARAMS_DEFAULT;
     const struct cli_opt opts[] = {
         CLI_ABOUT("Checks the photographs of a folder, gives them ids and records their properties."),
-        CLI_STR("photos", &photos, CLI_REQUIRED,
-                "folder of photos: JPEG, PNG, TIFF, HEIC, AVIF, WebP, JPEG XL, EXR, raw; subfolders are not searched"),
-        CLI_STR("scene", &scene, CLI_OPTIONAL, "folder that may contain brackets.txt and exposures.txt"),
-        CLI_STR("like", &like, CLI_OPTIONAL,
+        CLI_LIST("photos", &photos, CLI_REQUIRED,
+                 "folder of photos (JPEG, PNG, TIFF, HEIC, AVIF, WebP, JPEG XL, EXR, raw) and clips (MP4, QuickTime, "
+                 "Matroska, AVI), without its subfolders; or clips, each with the option"),
+        CLI_STR("scene", &at.scene, CLI_OPTIONAL, "folder that may contain brackets.txt and exposures.txt"),
+        CLI_STR("like", &at.like, CLI_OPTIONAL,
                 "folder of a scene's records: the photos become its lighting reference images, on its scale"),
         CLI_LIST("exclude", &exclude, CLI_OPTIONAL,
                  "photo or view to leave out: file name, with or without extension, or id"),
-        CLI_STR("split", &split, CLI_OPTIONAL,
+        CLI_STR("split", &at.split, CLI_OPTIONAL,
                 "CxR: each photo contains C columns and R rows of pictures of a multi-lens camera, which become the "
                 "photos"),
-        CLI_STR("cuts", &cuts, CLI_OPTIONAL, "folder to write these pictures to"),
-        CLI_STR("out", &out, CLI_REQUIRED, "folder to write the records to"),
+        CLI_STR("cuts", &at.cuts, CLI_OPTIONAL, "folder to write these pictures to"),
+        CLI_STR("frames", &at.frames, CLI_OPTIONAL, "folder to write frames of clips to"),
+        CLI_STR("out", &at.out, CLI_REQUIRED, "folder to write the records to"),
         CLI_PARAMS(photo_param_table, &params, photo_params_check),
         CLI_END,
     };
@@ -202,7 +261,7 @@ int main(int argc, char **argv)
 
     switch (cli_parse(argc, argv, "import_photos", opts, &prov, &err)) {
     case CLI_RUN:
-        run(&scan, photos, scene, like, split, cuts, &exclude, out, &params, &err);
+        run(&scan, &at, &exclude, &params, &err);
         err_report(&err);
         break;
     case CLI_DONE:
@@ -212,6 +271,7 @@ int main(int argc, char **argv)
         break;
     }
     photo_scan_release(&scan);
+    cli_list_release(&photos);
     cli_list_release(&exclude);
     provenance_release(&prov);
     return err_exit_code(&err);

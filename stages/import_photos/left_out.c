@@ -17,7 +17,11 @@ static const struct {
 } reasons[LEFT_REASONS] = {
     [LEFT_FOLDER] = {true, "folders with photos, which are not searched; move the photos into one folder, or give that "
                            "one as the folder of photos"},
-    [LEFT_VIDEO] = {true, "videos; to use one, extract sharp frames: ffmpeg -i CLIP -vf fps=2 -q:v 2 FRAME%04d.jpg"},
+    [LEFT_VIDEO] = {true, "videos of a kind that is not read here; convert them to MP4"},
+    [LEFT_CLIP] = {true, "videos, which are used only as photos of a scene"},
+    [LEFT_LIVE] = {false,
+                   "clips beside photos of the same name, as phones record them with a photo; to use one, give it "
+                   "as PHOTOS or rename it"},
     [LEFT_PICTURE] = {true, "pictures of a kind that is not read; save them as JPEG, PNG or TIFF if they are photos"},
     [LEFT_DOUBLE] = {false,
                      "a raw file, HEIC or AVIF beside a JPEG of the same name, the same shot twice; to use them, "
@@ -64,6 +68,12 @@ enum left_reason left_out_reason(const char *file)
     static const char *const pictures[] = {".gif", ".bmp", ".psd", ".psb", ".tga", ".svg", ".pdf", ".jp2", ".hdr"};
     if (ends_with(file, videos, sizeof videos / sizeof *videos)) return LEFT_VIDEO;
     return ends_with(file, pictures, sizeof pictures / sizeof *pictures) ? LEFT_PICTURE : LEFT_OTHER;
+}
+
+bool left_out_is_film(const char *file)
+{
+    static const char *const others[] = {".lrv", ".insv", ".360"};
+    return !ends_with(file, others, sizeof others / sizeof *others);
 }
 
 bool left_out_is_backup(const char *file)

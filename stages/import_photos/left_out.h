@@ -8,7 +8,9 @@
 
 enum left_reason {
     LEFT_FOLDER,  /* a folder with photos in it */
-    LEFT_VIDEO,   /* by its name */
+    LEFT_VIDEO,   /* by its name, but of a kind that is not read */
+    LEFT_CLIP,    /* a video where clips are not used */
+    LEFT_LIVE,    /* a clip beside a photo of the same name */
     LEFT_PICTURE, /* GIF, BMP and others, by their names */
     LEFT_DOUBLE,  /* a raw file, HEIC or AVIF beside a JPEG of the same name */
     LEFT_BACKUP,  /* a photo's content under the name of a backup, a thumbnail or an unfinished download */
@@ -31,6 +33,8 @@ enum status left_out_add(struct left_out *l, const char *file, enum left_reason 
 void left_out_sort(struct left_out *l);
 /* LEFT_VIDEO, LEFT_PICTURE or LEFT_OTHER. */
 enum left_reason left_out_reason(const char *file);
+/* Whether a video of this name is one that people film: no preview, and none of a camera that sees all around. */
+bool left_out_is_film(const char *file);
 bool left_out_is_backup(const char *file);
 /* A line for each reason: the names, why they are not used, and what to do. What is likely a mistake is a warning. */
 void left_out_report(const struct left_out *l, const char *folder);

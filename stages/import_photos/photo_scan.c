@@ -29,6 +29,7 @@
 #include <unistd.h>
 
 #include "common/base/array.h"
+#include "common/base/file_path.h"
 #include "common/base/outfile.h"
 #include "common/base/parallel.h"
 #include "common/base/progress.h"
@@ -229,10 +230,84 @@ static enum status add_photo(struct photo_scan *scan, const char *name, enum pho
     return scan->photos[scan->count++].file ? ST_OK : err_nomem(err, "a file name", strlen(name) + 1);
 }
 
+static enum status add_clip(struct photo_scan *scan, const char *path, struct err *err)
+{
+    if (array_append(&scan->clips, (size_t)scan->clip_count, sizeof *scan->clips, "clips", err)) return err->status;
+    scan->clips[scan->clip_count] = (struct scanned_clip){.path = strdup(path)};
+    return scan->clips[scan->clip_count++].path ? ST_OK : err_nomem(err, "a path", strlen(path) + 1);
+}
+
+/* Phones write a clip of a few seconds beside a photo. */
+static enum status drop_live_clips(struct photo_scan *scan, struct err *err)
+{
+    int kept = 0;
+    for (int i = 0; i < scan->clip_count; i++) {
+        const char *file = path_file_name(scan->clips[i].path);
+        const size_t stem = photo_stem(file);
+        bool live = false;
+        for (int k = 0; k < scan->count && !live; k++)
+            live = photo_stem(scan->photos[k].file) == stem && !strncmp(scan->photos[k].file, file, stem);
+        if (!live) {
+            scan->clips[kept++] = scan->clips[i];
+            continue;
+        }
+        left_out_add(&scan->left, file, LEFT_LIVE, err);
+        free(scan->clips[i].path);
+    }
+    scan->clip_count = kept;
+    return err->status;
+}
+
+static int by_clip(const void *a, const void *b)
+{
+    const char *x = ((const struct scanned_clip *)a)->path, *y = ((const struct scanned_clip *)b)->path;
+    const int order = strcmp(path_file_name(x), path_file_name(y));
+    return order ? order : strcmp(x, y);
+}
+
+/* The ids leave room for what follows them in the names of frames. */
+static enum status name_clips(struct photo_scan *scan, struct err *err)
+{
+    enum { MAX_CLIP_ID = MAX_PHOTO_ID - 20 };
+    if (scan->clip_count) qsort(scan->clips, (size_t)scan->clip_count, sizeof *scan->clips, by_clip);
+    for (int i = 0; i < scan->clip_count; i++) {
+        const char *file = path_file_name(scan->clips[i].path);
+        char id[MAX_PHOTO_ID + 32];
+        photo_id_from_stem(id, file, photo_stem(file));
+        id[MAX_CLIP_ID] = 0;
+        const size_t length = strlen(id);
+        for (int k = 0, n = 1; k < i; k++)
+            if (!strcmp(scan->clips[k].id, id)) {
+                snprintf(id + length, sizeof id - length, "-%d", ++n);
+                k = -1;
+            }
+        if (!(scan->clips[i].id = strdup(id))) return err_nomem(err, "a clip's id", sizeof id);
+    }
+    return ST_OK;
+}
+
+enum status photo_scan_clips(struct photo_scan *scan, const char *const *paths, int count, struct err *err)
+{
+    *scan = (struct photo_scan){0};
+    for (int i = 0; !err->status && i < count; i++) {
+        struct stat info;
+        if (stat(paths[i], &info))
+            err_errno(err, "read", paths[i]);
+        else if (!S_ISREG(info.st_mode) || kind_of_file(paths[i]) != PHOTO_KIND_VIDEO)
+            err_set(
+                err, ST_DATA,
+                "%s is no video (MP4, QuickTime, Matroska, AVI) by its content; give a folder of photos, or videos.",
+                paths[i]);
+        else
+            add_clip(scan, paths[i], err);
+    }
+    return err->status ? err->status : name_clips(scan, err);
+}
+
 static enum status scan_entry(struct photo_scan *scan, const char *name, struct err *err)
 {
     struct stat info;
-    if (!strcmp(name, "exposures.txt") || !strcmp(name, "split.txt")) return ST_OK;
+    if (!strcmp(name, "exposures.txt") || !strcmp(name, "split.txt") || !strcmp(name, "frames.txt")) return ST_OK;
     if (name[0] == '.') return named_stem(name) ? left_out_add(&scan->left, name, LEFT_HIDDEN, err) : ST_OK;
     char *path = join_path(scan->folder, name, "");
     if (!path) return err_nomem(err, "a path", 0);
@@ -242,6 +317,8 @@ static enum status scan_entry(struct photo_scan *scan, const char *name, struct 
         left_out_add(&scan->left, name, has_photos(path) ? LEFT_FOLDER : LEFT_OTHER, err);
     else if (kind != PHOTO_KIND_OTHER && left_out_is_backup(name))
         left_out_add(&scan->left, name, LEFT_BACKUP, err);
+    else if (kind == PHOTO_KIND_VIDEO && !named_stem(name))
+        left_out_is_film(name) ? add_clip(scan, path, err) : left_out_add(&scan->left, name, LEFT_VIDEO, err);
     else if (kind != PHOTO_KIND_OTHER || (named_stem(name) && (file || !there)))
         add_photo(scan, name, kind, err); /* a dead link, and a photo's name without a photo, are unusable photos */
     else
@@ -265,6 +342,7 @@ enum status photo_scan_folder(struct photo_scan *scan, const char *folder, struc
     for (struct dirent *entry; !err->status && (entry = readdir(dir)); errno = 0) scan_entry(scan, entry->d_name, err);
     if (!err->status && errno) err_errno(err, "list the folder of photos", folder);
     closedir(dir);
+    if (!err->status && !drop_live_clips(scan, err)) name_clips(scan, err);
     if (!err->status) drop_jpeg_twins(scan, err);
     left_out_sort(&scan->left);
     if (!err->status && scan->count) {
@@ -277,6 +355,14 @@ enum status photo_scan_folder(struct photo_scan *scan, const char *folder, struc
 int photo_scan_exclude(struct photo_scan *scan, const char *name)
 {
     int matched = 0;
+    for (int i = 0; i < scan->clip_count; i++) {
+        struct scanned_clip *c = &scan->clips[i];
+        const char *file = path_file_name(c->path);
+        const size_t stem = photo_stem(file);
+        if (strcmp(name, file) && strcmp(name, c->id) && (strlen(name) != stem || strncmp(name, file, stem))) continue;
+        c->excluded = true;
+        matched++;
+    }
     for (int i = 0; i < scan->count; i++) {
         struct scanned_photo *p = &scan->photos[i];
         size_t stem = photo_stem(p->file);
@@ -456,7 +542,12 @@ void photo_scan_release(struct photo_scan *scan)
         free(scan->photos[i].id);
         photo_record_release(&scan->photos[i].record);
     }
+    for (int i = 0; i < scan->clip_count; i++) {
+        free(scan->clips[i].path);
+        free(scan->clips[i].id);
+    }
     free(scan->photos);
+    free(scan->clips);
     left_out_release(&scan->left);
     free(scan->folder);
     *scan = (struct photo_scan){0};

@@ -23,19 +23,30 @@ struct scanned_photo {
     struct err err;             /* the reason if it cannot be used */
 };
 
+struct scanned_clip {
+    char *path, *id; /* owned; the id is the name without the extension, as that of photos */
+    bool excluded;
+    struct err err; /* the reason if it cannot be used */
+};
+
 struct photo_scan {
-    char *folder;                 /* owned */
+    char *folder;                 /* owned; NULL: clips that were given one by one */
     struct scanned_photo *photos; /* in order of id (strcmp) */
     int count;
     bool cut;        /* the photos are pictures cut out of others, ID_cXrY.png; set by the caller */
     bool references; /* the photos are lighting reference images; set by the caller */
     struct left_out left;
+    struct scanned_clip *clips; /* in order of file name */
+    int clip_count;
 };
 
 /* ST_IO, ST_DATA: the folder is missing, not a folder, or unreadable. A folder without photos is not an error here. */
 enum status photo_scan_folder(struct photo_scan *scan, const char *folder, struct err *err);
 
-/* Excludes the photos whose file name, with or without extension, or id is `name`. Returns their number. */
+/* The same of clips in place of a folder. ST_IO, ST_DATA: one is missing or no video by its content. */
+enum status photo_scan_clips(struct photo_scan *scan, const char *const *paths, int count, struct err *err);
+
+/* Excludes the photos and clips whose file name, with or without extension, or id is `name`. Returns their number. */
 int photo_scan_exclude(struct photo_scan *scan, const char *name);
 
 /* Fills the records of all photos that are not excluded: from `records` or its folder `members` if the file has not

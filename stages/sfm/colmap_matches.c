@@ -13,17 +13,29 @@
 #include "common/base/log.h"
 #include "common/base/outfile.h"
 #include "common/base/textfile.h"
+#include "common/capture/frame_name.h"
 #include "common/product/product.h"
 #include "stages/sfm/colmap_database.h"
 #include "stages/sfm/verify_matches.h"
 
 enum { IMPORT_ARGS = 16 };
 
-/* Makes the database, with the photos and their lenses, but without features: each photo has an empty list. */
-static enum status make_database(const struct colmap_job *job, struct err *err)
+/* Whether two photos are imported together. Frames of one clip have one lens. Other photos have a lens each, and so
+ * have all if the user says so. */
+static bool in_one_group(const struct colmap_job *job, const struct photo_record *a, const struct photo_record *b)
+{
+    const size_t clip = frame_name_clip(a->file);
+    if (job->single || !strcmp(job->params->single_camera, "no")) return true;
+    return clip == frame_name_clip(b->file) && !strncmp(a->file, b->file, clip);
+}
+
+/* Runs feature_importer for the group of photo `first`. */
+static enum status import_group(const struct colmap_job *job, const char *lists, int first, struct err *err)
 {
     const struct sfm_params *p = job->params;
-    char *lists = sfm_text_format(err, "%s.features", job->images);
+    const struct photo_record *photos = job->photos->photos;
+    const bool one = job->single || (strcmp(p->single_camera, "no") && frame_name_clip(photos[first].file));
+    char *names = sfm_text_format(err, "%s.names", job->images);
     const char *args[IMPORT_ARGS] = {"feature_importer",
                                      "--database_path",
                                      job->database,
@@ -31,17 +43,34 @@ static enum status make_database(const struct colmap_job *job, struct err *err)
                                      job->images,
                                      "--import_path",
                                      lists,
+                                     "--image_list_path",
+                                     names,
                                      "--ImageReader.camera_model",
                                      sfm_is_equisolid(p) ? "OPENCV_FISHEYE" : p->camera_model,
-                                     job->single ? "--ImageReader.single_camera"
-                                                 : "--ImageReader.single_camera_per_image",
+                                     one ? "--ImageReader.single_camera" : "--ImageReader.single_camera_per_image",
                                      "1"};
+    struct outfile f = {0};
     int n = 0;
     while (args[n]) n++;
     if (*job->lens) {
         args[n++] = "--ImageReader.camera_params";
         args[n++] = job->lens;
     }
+    if (!err->status) outfile_open(&f, names, err);
+    for (int i = first; !err->status && i < job->photos->count; i++)
+        if (in_one_group(job, &photos[first], &photos[i]))
+            fprintf(f.fp, "%s%s\n", photos[i].id, colmap_extension(photos[i].file));
+    if (!err->status) outfile_commit(&f, err);
+    if (!err->status) colmap_run(job->logs[0], args, 0, err);
+    outfile_discard(&f);
+    free(names);
+    return err->status;
+}
+
+/* Makes the database, with the photos and their lenses, but without features: each photo has an empty list. */
+static enum status make_database(const struct colmap_job *job, struct err *err)
+{
+    char *lists = sfm_text_format(err, "%s.features", job->images);
     for (int i = 0; !err->status && i < job->photos->count; i++) {
         const struct photo_record *photo = &job->photos->photos[i];
         struct outfile f = {0};
@@ -53,7 +82,12 @@ static enum status make_database(const struct colmap_job *job, struct err *err)
         outfile_discard(&f);
         free(list);
     }
-    if (!err->status) colmap_run(job->logs[0], args, 0, err);
+    for (int i = 0; !err->status && i < job->photos->count; i++) {
+        bool imported = false; /* with an earlier one */
+        for (int k = 0; k < i && !imported; k++)
+            imported = in_one_group(job, &job->photos->photos[k], &job->photos->photos[i]);
+        if (!imported) import_group(job, lists, i, err);
+    }
     free(lists);
     return err->status;
 }

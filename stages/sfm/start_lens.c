@@ -1,13 +1,17 @@
 /* start_lens.c - the lens that COLMAP starts from.
  *
  * An equisolid fisheye maps the angle theta from the axis to the radius r = 2 f sin(theta / 2). COLMAP has no model for
- * it, but OPENCV_FISHEYE, r = f theta (1 + k1 theta^2 + k2 theta^4 + ...), reproduces it (camera_equisolid()). */
+ * it, but OPENCV_FISHEYE, r = f theta (1 + k1 theta^2 + k2 theta^4 + ...), reproduces it (camera_equisolid()).
+ *
+ * Frames of one clip have one lens. Two clips have two, even of one camera, because zoom and stabilization differ. */
 #include "stages/sfm/start_lens.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 #include <strings.h>
+
+#include "common/capture/frame_name.h"
 
 enum status sfm_single_camera(bool *single, const struct photo_list *photos, const struct sfm_params *params,
                               struct err *err)
@@ -21,9 +25,11 @@ enum status sfm_single_camera(bool *single, const struct photo_list *photos, con
             if (same_size) other = i;
             same_size = false;
         }
+        const size_t clip = frame_name_clip(photos->photos[i].file);
         /* a value missing from EXIF is 0 or "", and must be missing from all photos */
         same_lens = same_lens && info->focal_mm == first->focal_mm && !strcmp(info->make, first->make) &&
-                    !strcmp(info->model, first->model);
+                    !strcmp(info->model, first->model) && clip == frame_name_clip(photos->photos[0].file) &&
+                    !strncmp(photos->photos[i].file, photos->photos[0].file, clip);
     }
     *single =
         !strcmp(params->single_camera, "yes") || (!strcmp(params->single_camera, "auto") && same_size && same_lens);

@@ -52,7 +52,7 @@ files_are_known_by_their_content()
     "$B/bin/import_photos" --photos "$m" --out "$scratch/mixed-records" 2>"$scratch/err" || { cat "$scratch/err"; fail "it failed"; }
     [ "$(cut -d' ' -f1 "$scratch/mixed-records/list.txt" | tr '\n' ' ')" = "1 2 3 4 " ] || fail "wrong photos"
     grep -qx 'BRACKETED := yes' "$scratch/mixed-records/photos.mk" || fail "COLMAP would get HEIC"
-    for words in "warning: not used in $m: cam1 (folders with photos" "warning: not used in $m: 6.mov (videos" "not used in $m: 1.jfif_original (backups" \
+    for words in "warning: not used in $m: cam1 (folders with photos" "warning: not used in $m: 6.mov (videos of a kind" "not used in $m: 1.jfif_original (backups" \
         "not used in $m: ._2.jpg (hidden" "not used in $m: 7.xmp (no pictures)"; do
         grep -qF "$words" "$scratch/err" || { cat "$scratch/err"; fail "nothing says '$words'"; }
     done
@@ -60,4 +60,67 @@ files_are_known_by_their_content()
     [ "$rc" = 1 ] && grep -qF "3.HEIC is HEIC, AVIF, WebP or JPEG XL, which COLMAP does not read" "$scratch/err" || { cat "$scratch/err"; fail "brackets = no"; }
 }
 
-for t in invalid_grids_are_rejected invalid_parameters_are_rejected photos_that_cannot_be_cut_are_named cut_pictures_are_photos files_are_known_by_their_content; do run "$t"; done
+# make_clip FILE FRAMES STEP [FILTER]: a board that moves by 2 STEP px a frame against a wall of smooth noise
+make_clip()
+{
+    [ -e "$scratch/wall.png" ] || ffmpeg -v error -f lavfi -i "nullsrc=size=900x270,geq=lum='random(1)*255':cb=128:cr=128,gblur=sigma=2,normalize" \
+        -frames:v 1 "$scratch/wall.png"
+    ffmpeg -v error -y -framerate 30 -loop 1 -i "$scratch/wall.png" -framerate 30 -loop 1 -i "$scratch/wall.png" -filter_complex \
+        "[0]crop=480:270:x='$3*n':y=0[w];[1]hflip,crop=200:160:50:50[b];[w][b]overlay=x='100+$3*n':y=60,format=yuv420p${4:+,$4}" \
+        -frames:v "$2" -c:v libx264 -crf 12 -flags:v +bitexact -fflags +bitexact "$1"
+}
+frames_of() { grep -c '^frame ' "$scratch/frames/frames.txt"; }
+films() { rm -rf "$scratch/records"; "$B/bin/import_photos" --out "$scratch/records" --frames "$scratch/frames" "$@" 2>"$scratch/err"; }
+
+clips_among_photos_become_photos()
+{
+    local m=$scratch/clips times sum; mkdir "$m"
+    make_clip "$m/walk 1.MOV" 40 2; make_clip "$m/IMG_7.mov" 20 2; cp "$d/a.png" "$m/IMG_7.png"; cp "$d/a.png" "$m/b.png"; cp "$m/IMG_7.mov" "$m/GX1.LRV"
+    films --photos "$m" --threads 2 || { cat "$scratch/err"; fail "it failed"; }
+    grep -qF "IMG_7.mov (clips beside photos of the same name" "$scratch/err" || fail "the clip of a live photo is not named"
+    grep -qF "GX1.LRV (videos of a kind" "$scratch/err" || fail "the preview is not named"
+    grep -qE "walk 1.MOV: [0-9]+ of 40 frames become photos, at 0.0" "$scratch/err" || fail "the times are not listed"
+    [ "$(frames_of)" -ge 5 ] && [ "$(frames_of)" -le 16 ] || fail "$(frames_of) frames"
+    [ "$(grep -c '^walk_1_f0000' "$scratch/records/list.txt")" = "$(frames_of)" ] || fail "not all frames are photos"
+    grep -qx 'b b.png' "$scratch/records/list.txt" && [ "$(readlink "$scratch/frames/b.png")" = "$(realpath "$m")/b.png" ] || fail "a photo beside the clip is lost"
+    # again: nothing is taken again, with other threads the bytes are the same
+    times=$(stat -c '%n %y' "$scratch"/frames/*); sum=$(cat "$scratch"/frames/* | cksum)
+    films --photos "$m" || fail "the second run failed"
+    [ "$times" = "$(stat -c '%n %y' "$scratch"/frames/*)" ] || fail "frames were taken again"
+    rm -rf "$scratch/frames"; films --photos "$m" --threads 1 || fail "it fails with one thread"
+    [ "$sum" = "$(cat "$scratch"/frames/* | cksum)" ] || fail "the bytes depend on the threads"
+    films --photos "$m" --set frames=3 || fail "it fails with 3 frames"
+    [ "$(frames_of)" = 3 ] && [ "$(find "$scratch/frames" -name '*_f*' | wc -l)" = 3 ] || fail "$(frames_of) frames, wanted 3"
+    films --photos "$m" --exclude "walk 1" || fail "it fails without the clip"
+    [ -z "$(find "$scratch/frames" -type f -o -type l)" ] || fail "frames of a clip that is left out remain"
+}
+
+clips_are_given_by_name()
+{
+    make_clip "$scratch/one.mp4" 30 2; mkdir -p "$scratch/other"; make_clip "$scratch/other/one.mp4" 30 3
+    films --photos "$scratch/one.mp4" --photos "$scratch/other/one.mp4" || { cat "$scratch/err"; fail "it failed"; }
+    grep -q '^one_f' "$scratch/records/list.txt" && grep -q '^one-2_f' "$scratch/records/list.txt" || fail "wrong ids"
+    rc=0; "$B/bin/import_photos" --photos "$scratch/one.mp4" --out "$scratch/none" 2>"$scratch/err" || rc=$?
+    [ "$rc" = 2 ] && grep -qF "needs --frames" "$scratch/err" || fail "a clip without --frames: exit $rc"
+}
+
+# unusable NAME WORDS
+unusable()
+{
+    local rc=0; rm -rf "$scratch/frames"; films --photos "$scratch/$1" || rc=$?
+    [ "$rc" = 1 ] && grep -qE "$1.*$2" "$scratch/err" || { cat "$scratch/err"; fail "$1: exit $rc, nothing says '$2'"; }
+    [ ! -e "$scratch/records/list.txt" ] && [ ! -e "$scratch/frames/frames.txt" ] || fail "$1: a product was left"
+}
+unusable_clips_are_named()
+{
+    make_clip "$scratch/still.mp4" 30 0; make_clip "$scratch/whole.mov" 30 2
+    ffmpeg -v error -f lavfi -i sine=duration=1 -c:a aac "$scratch/sound.mp4"
+    head -c 40000 "$scratch/whole.mov" >"$scratch/cut.mov"; echo text >"$scratch/text.mp4"
+    unusable still.mp4 "its camera moves too little"
+    unusable sound.mp4 "has no video stream"
+    unusable cut.mov "damaged, cut off or no video"
+    unusable text.mp4 "is no video .MP4, QuickTime, Matroska, AVI. by its content"
+}
+
+for t in invalid_grids_are_rejected invalid_parameters_are_rejected photos_that_cannot_be_cut_are_named cut_pictures_are_photos files_are_known_by_their_content \
+    clips_among_photos_become_photos clips_are_given_by_name unusable_clips_are_named; do run "$t"; done

@@ -39,6 +39,27 @@ static void photos_share_a_lens_if_size_and_exif_agree(void **state)
     assert_err(err, ST_USAGE, "\"b.jpg\" 480 x 640 px");
 }
 
+static void frames_of_one_clip_share_a_lens(void **state)
+{
+    (void)state;
+    char ids[3][12] = {"a", "b", "c"}, files[3][20] = {"walk_f000000.png", "walk_f000012.png", "room_f000003.png"};
+    struct photo_record photos[3];
+    for (int i = 0; i < 3; i++)
+        photos[i] = (struct photo_record){.id = ids[i], .file = files[i], .info = {.width = 640, .height = 480}};
+    struct photo_list list = {photos, 2};
+    struct sfm_params p = SFM_PARAMS_DEFAULT;
+    struct err err = ERR_INIT;
+    bool single = false;
+    assert_ok(sfm_single_camera(&single, &list, &p, &err), err);
+    assert_true(single);
+    list.count = 3; /* another clip */
+    assert_ok(sfm_single_camera(&single, &list, &p, &err), err);
+    assert_false(single);
+    strcpy(files[2], "c.png"); /* a photo */
+    assert_ok(sfm_single_camera(&single, &list, &p, &err), err);
+    assert_false(single);
+}
+
 static void pngs_start_from_the_focal_length_in_exif(void **state)
 {
     (void)state;
@@ -125,6 +146,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(photos_share_a_lens_if_size_and_exif_agree),
+        cmocka_unit_test(frames_of_one_clip_share_a_lens),
         cmocka_unit_test(pngs_start_from_the_focal_length_in_exif),
         cmocka_unit_test(an_equisolid_lens_becomes_opencv_fisheye_parameters),
     };
