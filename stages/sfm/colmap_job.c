@@ -57,6 +57,16 @@ static enum status link_file(const char *target, const char *link, struct err *e
     return symlink(target, link) ? err_errno(err, "make the link", link) : ST_OK;
 }
 
+/* COLMAP reads no pictures of 16 bits. It needs their size alone, since features are given to it: a blank one does. */
+static enum status write_blank(const struct photo_info *info, const char *path, struct err *err)
+{
+    unsigned char *grey = calloc((size_t)info->height, (size_t)info->width);
+    if (!grey) return err_nomem(err, "a blank picture", (size_t)info->height * (size_t)info->width);
+    png_write(path, grey, info->width, info->height, 1, err);
+    free(grey);
+    return err->status;
+}
+
 static enum status link_photos(const struct colmap_job *job, struct err *err)
 {
     char *from = realpath(job->in->photos, NULL);
@@ -68,7 +78,10 @@ static enum status link_photos(const struct colmap_job *job, struct err *err)
         const struct photo_record *p = &job->photos->photos[i];
         char *target = sfm_text_format(err, "%s/%s", from, p->file);
         char *link = sfm_text_format(err, "%s/%s%s", job->images, p->id, colmap_extension(p->file));
-        if (target && link) link_file(target, link, err);
+        if (target && link && p->info.bits == 16)
+            write_blank(&p->info, link, err);
+        else if (target && link)
+            link_file(target, link, err);
         free(target);
         free(link);
     }

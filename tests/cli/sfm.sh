@@ -67,4 +67,26 @@ a_missing_list_of_features_is_named()
     [ "$rc" = 1 ] || { cat err; fail "exit $rc, wanted 1"; }
 }
 
-for t in without_matches_it_says_what_is_missing a_missing_list_of_features_is_named equisolid_is_passed_as_opencv_fisheye equisolid_without_a_focal_length_is_rejected other_models_are_passed_unchanged; do run $t; done
+# Frames of one clip have one lens, which COLMAP gives to all photos of a call; it reads no PNG of 16 bits.
+frames_of_a_clip_share_a_lens()
+{
+    local p; mkdir film
+    for p in 1 2; do ffmpeg -v error -i set/photos/photo_$p.jpg -pix_fmt rgb48be film/walk_f00000$p.png; done
+    cp set/photos/photo_3.jpg film/
+    import_photos --photos film --out film-records --set brackets=no 2>err || { cat err; fail "import"; }
+    for p in walk_f000001 walk_f000002 photo_3; do extract_features --photos film --records film-records --photo $p --out film-features/$p.txt 2>err || fail "features"; done
+    choose_pairs --records film-records --features film-features --out film-pairs.txt 2>err || { cat err; fail "pairs"; }
+    for p in walk_f000001 walk_f000002 photo_3; do match_photos --pairs film-pairs.txt --features film-features --photo $p --out film-matches/$p.txt 2>err || fail "matches"; done
+    # shellcheck disable=SC2016 # expanded by the script
+    printf '#!/bin/bash\n[ "$1" = feature_importer ] || exit 0\nwhile [ $# -gt 1 ]; do case $1 in --ImageReader.single*) echo "$1";; --image_path) images=$2;;
+--image_list_path) while read -r n; do echo "$n $(od -An -tu1 -j24 -N1 "$images/$n")"; done <"$2";; esac; shift; done >>calls\n' >fake/colmap
+    for p in auto no; do
+        rm -f calls; sfm --photos film --records film-records --features film-features --matches film-matches --out out --set single_camera=$p 2>err || true
+        sed -i 's/  */ /g; s/photo_3.jpg .*/photo_3.jpg/' calls; tr '\n' ' ' <calls >calls.$p
+    done
+    [ "$(cat calls.auto)" = "photo_3.jpg --ImageReader.single_camera_per_image walk_f000001.png 8 walk_f000002.png 8 --ImageReader.single_camera " ] || { cat calls.auto err; fail "calls"; }
+    [ "$(cat calls.no)" = "photo_3.jpg walk_f000001.png 8 walk_f000002.png 8 --ImageReader.single_camera_per_image " ] || { cat calls.no err; fail "calls with a lens each"; }
+}
+
+for t in without_matches_it_says_what_is_missing a_missing_list_of_features_is_named equisolid_is_passed_as_opencv_fisheye equisolid_without_a_focal_length_is_rejected other_models_are_passed_unchanged \
+    frames_of_a_clip_share_a_lens; do run $t; done
