@@ -12,12 +12,14 @@
 #include <stdlib.h>
 
 #include "common/base/file_bytes.h"
+#include "common/base/log.h"
 #include "common/base/outfile.h"
 #include "common/base/parallel.h"
 #include "common/capture/match_list.h"
 #include "common/product/product.h"
 #include "stages/sfm/colmap_database.h"
 #include "stages/sfm/colmap_options.h"
+#include "stages/sfm/still_matches.h"
 
 enum { MIN_MATCHES = 15 };  /* COLMAP rejects pairs with fewer verified matches */
 enum { BLOCK_PAIRS = 500 }; /* about 12 s of one core */
@@ -36,6 +38,7 @@ struct verification {
     struct outfile list; /* of the block that is being written */
     char *unverified;    /* path of the database without pairs; owned */
     pthread_mutex_t joining;
+    struct still_places still;
     struct progress progress;
     atomic_bool failed;
 };
@@ -70,9 +73,11 @@ static enum status write_pairs(struct verification *v, int photo, struct err *er
     if (!product_path_in(path, job->in->matches, PRODUCT_MATCHES, &(struct product_key){.photo = p->id}, err))
         match_list_read(&list, path, job->in->prov, err);
     for (int i = 0; !err->status && i < list.count; i++) {
-        const struct matched_pair *pair = &list.pairs[i];
+        struct matched_pair *pair = &list.pairs[i];
         const int other = photo_list_find_id(job->photos, pair->other);
-        if (other < 0 || job->features[other] < 0 || pair->count < MIN_MATCHES) continue;
+        if (other < 0 || job->features[other] < 0) continue;
+        still_places_drop(&v->still, pair, photo, other);
+        if (pair->count < MIN_MATCHES) continue;
         if (v->pairs % BLOCK_PAIRS == 0 && start_block(v, err)) break;
         fprintf(v->list.fp, "%s%s %s%s\n", p->id, colmap_extension(p->file), pair->other,
                 colmap_extension(job->photos->photos[other].file));
@@ -82,6 +87,34 @@ static enum status write_pairs(struct verification *v, int photo, struct err *er
         v->pairs++;
     }
     match_list_release(&list);
+    return err->status;
+}
+
+/* Names what stands still in the picture, and writes a mask of it. */
+static enum status report_still(const struct verification *v, const struct still_group *g, struct err *err)
+{
+    const struct colmap_job *job = v->job;
+    const char *id = job->photos->photos[g->first].id;
+    char where[256], mask[FILE_PATH], shown[FILE_PATH];
+    const struct product_key key = {.photo = id};
+    if (product_path_in(mask, job->folder->made, PRODUCT_SFM_STILL, &key, err) ||
+        product_path_in(shown, job->folder->out, PRODUCT_SFM_STILL, &key, err) || still_places_write_mask(g, mask, err))
+        return err->status;
+    still_places_describe(where, sizeof where, g);
+    log_warn(
+        "something stands still in %d of %d photos while the scene moves (%d matches), at %s: a watermark, a date "
+        "stamp, or dirt on the lens? Matches there are left out. To keep it out of depth and films, too, copy %s to "
+        "masks/PHOTO.png in the scene's folder for each of these photos.",
+        g->photos, g->count, g->matches, where, shown);
+    return ST_OK;
+}
+
+static enum status find_still(struct verification *v, struct err *err)
+{
+    const struct sfm_input *in = v->job->in;
+    still_places_find(&v->still, v->job->photos, in->features, in->matches, err);
+    for (int k = 0; !err->status && k < v->still.count; k++)
+        if (v->still.groups[k].places) report_still(v, &v->still.groups[k], err);
     return err->status;
 }
 
@@ -144,6 +177,7 @@ static void remove_block(struct block *b)
 enum status verify_matches(const struct colmap_job *job, struct err *err)
 {
     struct verification v = {.job = job, .joining = PTHREAD_MUTEX_INITIALIZER};
+    find_still(&v, err);
     for (int i = 0; !err->status && i < job->photos->count; i++)
         if (job->features[i] >= 0) write_pairs(&v, i, err);
     if (!err->status) finish_list(&v, err);
@@ -161,6 +195,7 @@ enum status verify_matches(const struct colmap_job *job, struct err *err)
     for (int i = 0; i < v.count; i++) remove_block(&v.blocks[i]);
     if (v.unverified) remove(v.unverified);
     free(help);
+    still_places_release(&v.still);
     free(v.unverified);
     free(v.blocks);
     return err->status;
