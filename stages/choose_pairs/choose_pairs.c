@@ -12,6 +12,7 @@
 #include "common/base/cli.h"
 #include "common/base/log.h"
 #include "common/capture/pair_list.h"
+#include "common/capture/panorama_name.h"
 #include "common/capture/photo_list.h"
 #include "common/product/product.h"
 #include "stages/choose_pairs/pairs_params.h"
@@ -81,7 +82,9 @@ static enum status choose_pairs(const struct pair_choice *c, struct provenance *
     }
     for (size_t i = 0; i < count; i++)
         for (size_t j = i + 1; j < count && !err->status; j++)
-            if (all || similar_by_name((int)i, (int)j) || (by_features && similar[i * count + j]))
+            if (panorama_name_same(photos.photos[i].file, photos.photos[j].file))
+                continue; /* from one place: their matches show no depth */
+            else if (all || similar_by_name((int)i, (int)j) || (by_features && similar[i * count + j]))
                 pair_list_add(&list, photos.photos[i].id, photos.photos[j].id, err);
     if (!err->status && !pair_list_write(&list, c->out, prov, err))
         log_note("%d of %zu pairs of photos are compared", list.count, count * (count - (count > 0)) / 2);

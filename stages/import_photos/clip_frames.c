@@ -18,9 +18,18 @@
 #include "common/base/parallel.h"
 #include "common/base/progress.h"
 #include "common/capture/frame_name.h"
+#include "common/capture/panorama_name.h"
 #include "stages/import_photos/clip_list.h"
 #include "stages/import_photos/clip_reader.h"
 #include "stages/import_photos/frame_choice.h"
+#include "stages/import_photos/panorama.h"
+
+/* Of the files in the folder; panorama_name_read() wants a place for the yaw. */
+static bool is_our_name(const char *file)
+{
+    int yaw;
+    return frame_name_clip(file) || panorama_name_read(&yaw, file);
+}
 
 static const char *const list_file = "frames.txt", *const exposures_file = "exposures.txt";
 
@@ -201,6 +210,58 @@ static enum status make_clip(struct clip *c, const struct scanned_clip *from, co
     return err->status;
 }
 
+/* ------------------------------------------------------------------------------------------------------ panoramas */
+
+/* The views of a panorama, whose numbers are their yaws. */
+static enum status cut_panorama(struct clip *c, const char *path, const char *out, struct err *err)
+{
+    struct photo whole = {0}, views[PANORAMA_VIEWS] = {0};
+    struct err errs[PANORAMA_VIEWS] = {0};
+    struct write_job job = {out, NULL, views, errs, 0};
+    c->pictures = calloc(PANORAMA_VIEWS, sizeof *c->pictures);
+    if (!c->pictures) return err_nomem(err, "views of a panorama", PANORAMA_VIEWS * sizeof *c->pictures);
+    job.pictures = c->pictures;
+    photo_read(&whole, path, err);
+    for (int i = 0; !err->status && i < PANORAMA_VIEWS; i++) {
+        struct clip_picture *p = &c->pictures[c->count++];
+        p->frame.number = i * PANORAMA_STEP;
+        if (!(p->file = panorama_name_make(c->id, i))) err_nomem(err, "a file name", 0);
+        if (!err->status && !panorama_cut(&views[i], &whole, p->frame.number, err)) job.count++;
+        views[i].space = whole.space; /* borrowed */
+    }
+    if (!err->status) {
+        c->width = c->height = panorama_side(&whole);
+        parallel_for((size_t)job.count, 1, write_pictures, &job);
+    }
+    for (int i = 0; i < PANORAMA_VIEWS; i++) {
+        if (!err->status && errs[i].status) err_set(err, errs[i].status, "%s", errs[i].text);
+        views[i].space = NULL;
+        photo_release(&views[i]);
+    }
+    if (!err->status)
+        log_note("%s is a panorama of 360 degrees; it becomes %d views of %d x %d px", c->file, (int)PANORAMA_VIEWS,
+                 c->width, c->height);
+    photo_release(&whole);
+    return err->status;
+}
+
+static enum status cut_panoramas(struct clip_list *list, struct photo_scan *scan, const struct clip_list *old,
+                                 const char *out, struct err *err)
+{
+    for (int i = 0; !err->status && i < scan->count; i++) {
+        struct scanned_photo *from = &scan->photos[i];
+        struct clip *c = &list->clips[list->count];
+        char path[FILE_PATH];
+        if (!from->panorama || file_path(path, scan->folder, from->file, "", err)) continue;
+        list->count++;
+        *c = (struct clip){.file = strdup(from->file), .id = strdup(from->id)};
+        if (!c->file || !c->id) err_nomem(err, "a panorama", 0);
+        if (!err->status && !hash_file(c->hash, path, err) && !up_to_date(c, old, list->most, out))
+            cut_panorama(c, path, out, err);
+    }
+    return err->status;
+}
+
 /* ----------------------------------------------------------------------------------------------------------- folder */
 
 static enum status link_file(const char *folder, const char *file, const char *out, struct err *err)
@@ -224,7 +285,7 @@ static bool is_wanted(const struct photo_scan *scan, const struct clip_list *lis
         for (int k = 0; k < list->clips[i].count; k++)
             if (!strcmp(list->clips[i].pictures[k].file, file)) return true;
     for (int i = 0; scan && i < scan->count; i++)
-        if (!strcmp(scan->photos[i].file, file)) return true;
+        if (!scan->photos[i].panorama && !strcmp(scan->photos[i].file, file)) return true;
     return false;
 }
 
@@ -239,7 +300,7 @@ static enum status remove_others(const struct photo_scan *scan, const struct cli
         struct stat info;
         if (e->d_name[0] == '.' || is_wanted(scan, list, e->d_name)) continue;
         if (file_path(path, out, e->d_name, "", err) || lstat(path, &info)) continue;
-        const bool frame = S_ISREG(info.st_mode) && (frame_name_clip(e->d_name) || !strcmp(e->d_name, list_file));
+        const bool frame = S_ISREG(info.st_mode) && (is_our_name(e->d_name) || !strcmp(e->d_name, list_file));
         const bool keep = scan && (!strcmp(e->d_name, list_file) || !strcmp(e->d_name, exposures_file));
         if (!keep && (frame || S_ISLNK(info.st_mode)) && unlink(path)) err_errno(err, "remove", path);
     }
@@ -253,6 +314,7 @@ static enum status link_photos(const struct photo_scan *scan, const struct clip_
     char exposures[FILE_PATH], old[FILE_PATH];
     for (int i = 0; !err->status && i < scan->count; i++) {
         const char *file = scan->photos[i].file;
+        if (scan->photos[i].panorama) continue;
         if (is_wanted(NULL, list, file))
             err_set(err, ST_DATA, "%s/%s has the name of a frame of a clip; rename it.", scan->folder, file);
         else
@@ -289,7 +351,7 @@ enum status clip_frames_make(struct photo_scan *scan, const char *out, const str
     char path[FILE_PATH];
     int used = 0;
     for (int i = 0; i < scan->clip_count; i++) used += !scan->clips[i].excluded;
-    list.clips = calloc((size_t)scan->clip_count + 1, sizeof *list.clips);
+    list.clips = calloc((size_t)scan->clip_count + (size_t)scan->count + 1, sizeof *list.clips);
     if (!list.clips) err_nomem(err, "clips", (size_t)scan->clip_count * sizeof *list.clips);
     if (!err->status && !outfile_make_folders(out, err) && !file_path(path, out, list_file, "", err))
         clip_list_read(&old, path, &ignored); /* if it cannot be read, all frames are taken again */
@@ -304,8 +366,9 @@ enum status clip_frames_make(struct photo_scan *scan, const char *out, const str
             make_clip(c, from, out, params->frames, used == 1 && !photo_scan_used(scan), &from->err);
         if (from->err.status == ST_NOMEM) err_set(err, ST_NOMEM, "%s", from->err.text);
     }
-    (void)(err->status || refuse_bad(scan, err) || remove_others(scan, &list, out, err) ||
-           link_photos(scan, &list, out, err) || clip_list_write(&list, path, err));
+    (void)(err->status || refuse_bad(scan, err) || cut_panoramas(&list, scan, &old, out, err) ||
+           remove_others(scan, &list, out, err) || link_photos(scan, &list, out, err) ||
+           clip_list_write(&list, path, err));
     clip_list_release(&old);
     clip_list_release(&list);
     return err->status;

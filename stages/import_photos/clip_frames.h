@@ -1,8 +1,8 @@
-/* clip_frames.h - makes photos of clips: a folder with frames of each clip, which later steps use as the photos.
+/* clip_frames.h - makes photos of clips and panoramas: a folder with frames, which later steps use as the photos.
  *
  * Frames are CLIP_fN.png (frame_name.h) of 8 bits, or of 16 if the clip has more, with the clip's colour space. Photos
- * beside the clips, and their exposures.txt, are links. frames.txt (clip_list.h) lists the frames and their times.
- * Frames are taken again only if their clip, the rule or a frame has changed. */
+ * beside them, and their exposures.txt, are links. Panoramas become views (panorama.h). frames.txt (clip_list.h) lists
+ * the frames and their times. Frames are taken again only if their clip, the rule or a frame has changed. */
 #ifndef REMODEL_CLIP_FRAMES_H
 #define REMODEL_CLIP_FRAMES_H
 

@@ -24,6 +24,7 @@
 #include "common/base/log.h"
 #include "stages/import_photos/bracket_views.h"
 #include "stages/import_photos/clip_frames.h"
+#include "stages/import_photos/panorama.h"
 #include "stages/import_photos/split_photos.h"
 
 /* The stage never writes to the user's folder. */
@@ -177,7 +178,8 @@ static enum status take_frames(const char **folder, const struct cli_list *photo
     for (int i = 0; i < scan.clip_count; i++) clips += !scan.clips[i].excluded;
     if (!err->status && !frames && !scan.folder)
         err_set(err, ST_USAGE, "--photos %s is a clip and needs --frames, a folder for its frames.", photos->items[0]);
-    if (!err->status && frames && (clips || !scan.folder)) {
+    const bool cut = !err->status && frames && scan.folder && panorama_find(&scan, params);
+    if (!err->status && frames && (clips || cut || !scan.folder)) {
         clip_frames_make(&scan, frames, params, err);
         *folder = frames;
         report_scan(&scan);

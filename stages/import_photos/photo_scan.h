@@ -19,6 +19,7 @@ struct scanned_photo {
     char *file, *id; /* owned */
     enum photo_kind kind;
     bool excluded;
+    bool panorama;              /* it becomes several views (panorama.h) */
     struct photo_record record; /* filled by photo_scan_check() */
     struct err err;             /* the reason if it cannot be used */
 };

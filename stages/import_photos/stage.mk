@@ -1,4 +1,4 @@
-# import_photos: what the folder of photos holds: a record of each photo, brackets, parts of multi-lens pictures, frames of clips.
+# import_photos: what the folder of photos holds: a record of each photo, brackets, parts of multi-lens pictures, frames of clips, views of panoramas.
 FOLLOWS.import_photos := simulate
 READS.import_photos := the folder of photos
 SHARED.import_photos := yes

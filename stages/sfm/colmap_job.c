@@ -94,6 +94,9 @@ enum status colmap_prepare(struct colmap_job *job, const struct sfm_folder *f, c
 {
     *job = (struct colmap_job){.folder = f, .started = clock_seconds(), .in = in, .photos = in->list, .params = params};
     const char *work = job->folder->work;
+    char known[SFM_LENS_TEXT];
+    job->known = job->photos->count > 0;
+    for (int i = 0; i < job->photos->count; i++) job->known &= sfm_panorama_lens(known, &job->photos->photos[i]);
     if (!sfm_single_camera(&job->single, job->photos, params, err)) sfm_start_lens(job->lens, job->photos, params, err);
     if (err->status) return err->status;
     job->images = sfm_text_format(err, "%s/images-%d", work, f->models);
@@ -152,7 +155,7 @@ static int min_model_size(int photos) { return clamp_int(photos / 4, 3, 10); }
 
 enum status colmap_map(const struct colmap_job *job, const struct colmap_start *start, struct err *err)
 {
-    const char *refine = strcmp(job->params->refine_camera, "no") ? "1" : "0";
+    const char *refine = strcmp(job->params->refine_camera, "no") && !job->known ? "1" : "0";
     char image[16], smallest[16];
     const char *args[MAX_ARGS] = {"mapper",      "--database_path",
                                   job->database, "--image_path",

@@ -30,6 +30,7 @@ struct colmap_job {
     int *features;                    /* of each photo; -1: COLMAP could not read it; owned */
     char lens[SFM_LENS_TEXT];
     bool single; /* one lens for all photos */
+    bool known;  /* all photos are views of panoramas: their lenses are known */
 };
 
 /* Fills the work folder: links, names of logs; its own files for each model that is added to f. params may differ from

@@ -20,12 +20,16 @@
 
 enum { IMPORT_ARGS = 16 };
 
-/* Whether two photos are imported together. Frames of one clip have one lens. Other photos have a lens each, and so
- * have all if the user says so. */
+/* Whether two photos are imported together. Frames of one clip have one lens, and so have views of panoramas of one
+ * size. Other photos have a lens each, and so have all if the user says so. */
 static bool in_one_group(const struct colmap_job *job, const struct photo_record *a, const struct photo_record *b)
 {
+    char lens[2][SFM_LENS_TEXT] = {"", ""};
     const size_t clip = frame_name_clip(a->file);
-    if (job->single || !strcmp(job->params->single_camera, "no")) return true;
+    sfm_panorama_lens(lens[0], a);
+    sfm_panorama_lens(lens[1], b);
+    if (strcmp(lens[0], lens[1]) != 0) return false;
+    if (job->single || *lens[0] || !strcmp(job->params->single_camera, "no")) return true;
     return clip == frame_name_clip(b->file) && !strncmp(a->file, b->file, clip);
 }
 
@@ -34,7 +38,10 @@ static enum status import_group(const struct colmap_job *job, const char *lists,
 {
     const struct sfm_params *p = job->params;
     const struct photo_record *photos = job->photos->photos;
-    const bool one = job->single || (strcmp(p->single_camera, "no") && frame_name_clip(photos[first].file));
+    char known[SFM_LENS_TEXT] = "";
+    const bool panorama = sfm_panorama_lens(known, &photos[first]);
+    const bool frames = strcmp(p->single_camera, "no") && frame_name_clip(photos[first].file);
+    const char *lens = panorama ? known : job->lens;
     char *names = sfm_text_format(err, "%s.names", job->images);
     const char *args[IMPORT_ARGS] = {"feature_importer",
                                      "--database_path",
@@ -46,15 +53,18 @@ static enum status import_group(const struct colmap_job *job, const char *lists,
                                      "--image_list_path",
                                      names,
                                      "--ImageReader.camera_model",
-                                     sfm_is_equisolid(p) ? "OPENCV_FISHEYE" : p->camera_model,
-                                     one ? "--ImageReader.single_camera" : "--ImageReader.single_camera_per_image",
+                                     panorama              ? "PINHOLE"
+                                     : sfm_is_equisolid(p) ? "OPENCV_FISHEYE"
+                                                           : p->camera_model,
+                                     job->single || panorama || frames ? "--ImageReader.single_camera"
+                                                                       : "--ImageReader.single_camera_per_image",
                                      "1"};
     struct outfile f = {0};
     int n = 0;
     while (args[n]) n++;
-    if (*job->lens) {
+    if (*lens) {
         args[n++] = "--ImageReader.camera_params";
-        args[n++] = job->lens;
+        args[n++] = lens;
     }
     if (!err->status) outfile_open(&f, names, err);
     for (int i = first; !err->status && i < job->photos->count; i++)

@@ -13,6 +13,7 @@
 #include "common/base/outfile.h"
 #include "stages/sfm/colmap_log.h"
 #include "stages/sfm/colmap_matches.h"
+#include "stages/sfm/panorama_rigs.h"
 #include "stages/sfm/start_photos.h"
 
 #define MORE_STARTS 4  /* at most */
@@ -71,7 +72,8 @@ static enum status add_model(struct mapping *m, const char *sparse, int k, int a
         log_note("model: %d of %d photos, %d points%s", model.image_count, job->photos->count, model.point_count,
                  enough ? "" : "; too few points, not used");
         if (enough && model.image_count > above && !colmap_name_images(&model, job->photos, err) &&
-            !sfm_folder_add(m->folder, &model, m->prov, err) && model.image_count > m->placed_count)
+            !panorama_rigs_join(&model, err) && !sfm_folder_add(m->folder, &model, m->prov, err) &&
+            model.image_count > m->placed_count)
             keep_placed(m, &model, err);
     }
     sfm_model_release(&model);
@@ -152,6 +154,7 @@ enum status run_colmap(struct sfm_folder *f, const struct sfm_input *in, const s
                        in->list->count ? "is only 1 photo" : "are no photos");
     f->given = strcmp(in->params->refine_camera, "no") ? "nothing" : "lens";
     if (!colmap_prepare(&m.job, f, in, in->params, err)) colmap_take_matches(&features, &m.job, err);
+    if (m.job.known) f->given = "model"; /* joined rigs are not taken apart again */
     if (!err->status && !features)
         err_set(err, ST_DATA, "none of the %d photos has features: they are blank, masked or unreadable.",
                 in->list->count);

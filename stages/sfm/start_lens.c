@@ -3,7 +3,8 @@
  * An equisolid fisheye maps the angle theta from the axis to the radius r = 2 f sin(theta / 2). COLMAP has no model for
  * it, but OPENCV_FISHEYE, r = f theta (1 + k1 theta^2 + k2 theta^4 + ...), reproduces it (camera_equisolid()).
  *
- * Frames of one clip have one lens. Two clips have two, even of one camera, because zoom and stabilization differ. */
+ * Frames of one clip have one lens. Two clips have two, even of one camera, because zoom and stabilization differ. The
+ * lens of views of panoramas is known (panorama_name.h). */
 #include "stages/sfm/start_lens.h"
 
 #include <math.h>
@@ -12,6 +13,7 @@
 #include <strings.h>
 
 #include "common/capture/frame_name.h"
+#include "common/capture/panorama_name.h"
 
 enum status sfm_single_camera(bool *single, const struct photo_list *photos, const struct sfm_params *params,
                               struct err *err)
@@ -26,10 +28,13 @@ enum status sfm_single_camera(bool *single, const struct photo_list *photos, con
             same_size = false;
         }
         const size_t clip = frame_name_clip(photos->photos[i].file);
+        int yaw;
         /* a value missing from EXIF is 0 or "", and must be missing from all photos */
-        same_lens = same_lens && info->focal_mm == first->focal_mm && !strcmp(info->make, first->make) &&
-                    !strcmp(info->model, first->model) && clip == frame_name_clip(photos->photos[0].file) &&
-                    !strncmp(photos->photos[i].file, photos->photos[0].file, clip);
+        same_lens =
+            same_lens && info->focal_mm == first->focal_mm && !strcmp(info->make, first->make) &&
+            !strcmp(info->model, first->model) && clip == frame_name_clip(photos->photos[0].file) &&
+            !strncmp(photos->photos[i].file, photos->photos[0].file, clip) &&
+            !panorama_name_read(&yaw, photos->photos[i].file) == !panorama_name_read(&yaw, photos->photos[0].file);
     }
     *single =
         !strcmp(params->single_camera, "yes") || (!strcmp(params->single_camera, "auto") && same_size && same_lens);
@@ -41,6 +46,15 @@ enum status sfm_single_camera(bool *single, const struct photo_list *photos, con
             a->file, a->info.width, a->info.height, b->file, b->info.width, b->info.height);
     }
     return ST_OK;
+}
+
+bool sfm_panorama_lens(char text[SFM_LENS_TEXT], const struct photo_record *photo)
+{
+    int yaw;
+    const double f = photo->info.width / 2.0;
+    if (!panorama_name_read(&yaw, photo->file)) return false;
+    snprintf(text, SFM_LENS_TEXT, "%.9g,%.9g,%.9g,%.9g", f, f, f, f);
+    return true;
 }
 
 void sfm_png_lens(char text[SFM_LENS_TEXT], const struct photo_list *photos, const struct sfm_params *params)

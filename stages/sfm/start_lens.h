@@ -16,6 +16,9 @@ enum { SFM_LENS_TEXT = 400 };
 enum status sfm_start_lens(char text[SFM_LENS_TEXT], const struct photo_list *photos, const struct sfm_params *params,
                            struct err *err);
 
+/* The PINHOLE lens of a view of a panorama; false: the photo is none. */
+bool sfm_panorama_lens(char text[SFM_LENS_TEXT], const struct photo_record *photo);
+
 /* COLMAP does not read EXIF from PNG. If all photos are PNGs of one size with the same focal length for 35 mm film,
  * text gets the parameters that COLMAP would choose for JPEGs; otherwise "". */
 void sfm_png_lens(char text[SFM_LENS_TEXT], const struct photo_list *photos, const struct sfm_params *params);

@@ -122,5 +122,18 @@ unusable_clips_are_named()
     unusable text.mp4 "is no video .MP4, QuickTime, Matroska, AVI. by its content"
 }
 
+panoramas_become_views()
+{
+    local m=$scratch/panoramas; mkdir "$m"
+    ffmpeg -v error -f lavfi -i "nullsrc=size=512x256,geq=lum='128+100*sin(2*PI*(X+0.5)/W)*sin(PI*(Y+0.5)/H)':cb=128:cr=128" -frames:v 1 "$m/R 1.png"
+    cp "$d/a.png" "$m/b.png"
+    films --photos "$m" || { cat "$scratch/err"; fail "it failed"; }
+    matches "R 1.png is a panorama of 360 degrees; it becomes 6 views of 164 x 164 px" <"$scratch/err" || { cat "$scratch/err"; fail "nothing says so"; }
+    [ "$(cut -d' ' -f1 "$scratch/records/list.txt" | tr '\n' ' ')" = "R_1_yaw000 R_1_yaw060 R_1_yaw120 R_1_yaw180 R_1_yaw240 R_1_yaw300 b " ] || fail "wrong ids"
+    films --photos "$m" --set panoramas=no || { cat "$scratch/err"; fail "it fails without views"; }
+    [ "$(cut -d' ' -f1 "$scratch/records/list.txt" | tr '\n' ' ')" = "R_1 b " ] && [ ! -e "$scratch/frames/frames.txt" ] || fail "views remain"
+}
+
 for t in invalid_grids_are_rejected invalid_parameters_are_rejected photos_that_cannot_be_cut_are_named cut_pictures_are_photos files_are_known_by_their_content \
-    clips_among_photos_become_photos clips_are_given_by_name unusable_clips_are_named; do run "$t"; done
+    clips_among_photos_become_photos clips_are_given_by_name unusable_clips_are_named \
+    panoramas_become_views; do run "$t"; done
