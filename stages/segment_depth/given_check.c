@@ -4,7 +4,8 @@
  * inverse depth, which networks and stereo programs write, from depth in other units [Spearman 1904].
  *
  * Disparity of a network has an unknown scale and shift [Ranftl 2022]. They are found by least median of squares
- * [Rousseeuw 1984] over lines through two points, then by least squares of the points within INLIER_RANGE deviations. */
+ * [Rousseeuw 1984] over lines through two points, then by least squares of the points within INLIER_RANGE
+ * deviations. */
 #include "stages/segment_depth/given_check.h"
 
 #include <math.h>

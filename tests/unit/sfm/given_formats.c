@@ -32,8 +32,8 @@ static enum status read_as(reader *read, struct sfm_model *m, const char *name, 
     return err->status;
 }
 
-/* Camera a is at (1, 2, 3) and looks along the world's +y; the top of its picture is towards +z. So its x axis is +x, its
- * y axis -z. A point 10 ahead, 2 to the right and 1 up has the plane coordinates (0.2, -0.1). */
+/* Camera a is at (1, 2, 3) and looks along the world's +y; the top of its picture is towards +z. So its x axis is +x,
+ * its y axis -z. A point 10 ahead, 2 to the right and 1 up has the plane coordinates (0.2, -0.1). */
 static void check_a(const struct sfm_model *m, double u, double v, double scale, struct vec3 offset)
 {
     const struct sfm_image *im = &m->images[0];

@@ -1,4 +1,4 @@
-/* sfm_model_given.c - models that other programs exported: text without blank lines or points, COLMAP's binary files. */
+/* sfm_model_given.c - models of other programs: text without blank lines or points, COLMAP's binary files. */
 #include "tests/unit/scratch.h"
 
 #include <math.h>
