@@ -33,7 +33,9 @@ for s in $stages; do
     for f in "stages/$s"/*.sh; do [ ! -e "$f" ] || cp "$f" "$lib/stages/$s/"; done
 done
 
-install -D -m 755 <(fill $here/remodel.sh) "$destdir$prefix/bin/remodel"
+mkdir -p "$destdir$prefix/bin" "$destdir$prefix/share/bash-completion/completions"
+fill $here/remodel.sh >"$destdir$prefix/bin/remodel"
+chmod 755 "$destdir$prefix/bin/remodel"
 man=$destdir$prefix/share/man/man1
 mkdir -p "$man"
 fill $here/remodel.1 >"$man/remodel.1"
@@ -41,8 +43,8 @@ for s in $stages; do sed "1s/^\.TH [^ ]*/.TH REMODEL-${s^^}/" "docs/man/$s.1" >"
 words=$(common/run/help.sh Makefile common/make/top.mk $(printf 'stages/%s/stage.mk ' $stages))
 goals=$(sed -n '/^targets/,/^variables/s/^  \([a-z][a-z-]*\) .*/\1/p' <<<"$words" | tr '\n' ' ')
 variables=$(sed -n '/^variables/,/^scenes/s/^  \([A-Z_]*\)=.*/\1=/p' <<<"$words" | tr '\n' ' ')
-install -D -m 644 <(fill -e "s|@GOALS@|$goals|; s|@VARIABLES@|$variables|; s|@STAGES@|$stages|" $here/completion.bash) \
-    "$destdir$prefix/share/bash-completion/completions/remodel"
+fill -e "s|@GOALS@|$goals|; s|@VARIABLES@|$variables|; s|@STAGES@|$stages|" $here/completion.bash \
+    >"$destdir$prefix/share/bash-completion/completions/remodel"
 doc=$destdir$prefix/share/doc/remodel
 rm -rf "$doc"; mkdir -p "$doc"
 cp -r README.md CHANGELOG.md LICENSE docs "$doc/"

@@ -1,11 +1,15 @@
 # an installed remodel: a scene in a folder outside of the source tree, the words of its command, a package
 . tests/lib.sh
-cd "$root" || exit 1
 prefix=$scratch/usr
-make -s DEPS=manual FLAVOR="$FLAVOR" PREFIX="$prefix" install >"$scratch/log" 2>&1 || cat "$scratch/log"
 mkdir "$scratch/home"; cd "$scratch/home" || exit 1
 photos photos --views 4 >/dev/null
 PATH=$prefix/bin:$PATH
+
+it_is_installed()
+{
+    cd "$root" || exit 1
+    make -s DEPS=manual FLAVOR="$FLAVOR" PREFIX="$prefix" install >"$scratch/log" 2>&1 || { cat "$scratch/log"; fail "make install: $(tail -n 3 "$scratch/log" | tr '\n' ' ')"; }
+}
 
 a_scene_is_made_outside_of_the_source_tree()
 {
@@ -86,5 +90,5 @@ it_is_removed_whole()
     grep -q 'PREFIX=usr is not a path from the root' "$scratch/err" || { cat "$scratch/err"; fail "no reason"; }
 }
 
-for t in a_scene_is_made_outside_of_the_source_tree its_words_are_those_of_make what_it_cannot_do_is_said words_are_completed \
-    manual_pages_are_there a_package_has_the_same_files it_is_removed_whole; do run "$t"; done
+for t in it_is_installed a_scene_is_made_outside_of_the_source_tree its_words_are_those_of_make what_it_cannot_do_is_said \
+    words_are_completed manual_pages_are_there a_package_has_the_same_files it_is_removed_whole; do run "$t"; done
