@@ -56,7 +56,7 @@ struct sfm_model {
 enum status sfm_model_read_text(struct sfm_model *m, const char *folder, struct provenance *prov, struct err *err);
 
 /* The same of a folder that another program exported, as text or as .bin files. The points may be missing. What refers
- * to nothing is no error: entries of tracks without an observation of their point are left out, and *loose counts them;
+ * to nothing is accepted: entries of tracks without an observation of their point are left out, and *loose counts them;
  * other observations are of no point. ST_DATA, of binary files without a line: as above. */
 enum status sfm_model_read_given_text(struct sfm_model *m, const char *folder, long long *loose, struct err *err);
 enum status sfm_model_read_given_binary(struct sfm_model *m, const char *folder, long long *loose, struct err *err);

@@ -54,8 +54,8 @@ struct binary_file {
 static enum status cut_off(const struct binary_file *f, struct err *err)
 {
     return err_set(err, ST_DATA,
-                   "%s ends in %s %" PRIu64 " of %" PRIu64 ": it was cut off, or is no file of COLMAP; copy it again.",
-                   f->path, f->what, f->record + 1, f->count);
+                   "%s ends in %s %" PRIu64 " of %" PRIu64 ": it is cut off, or not COLMAP's. Copy it again.", f->path,
+                   f->what, f->record + 1, f->count);
 }
 
 static enum status take(struct binary_file *f, void *to, size_t size, struct err *err)

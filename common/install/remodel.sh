@@ -27,7 +27,7 @@ version | --version) echo "remodel @VERSION@"; exit 0 ;;
 help) exec make -s --no-print-directory -C "$lib" help ;;
 run)
     [ $# -ge 2 ] || die "run wants the name of a stage: $(cd "$lib/stages" && echo *)"
-    [ -x "$lib/build/bin/$2" ] || die "there is no stage $2; there are: $(cd "$lib/stages" && echo *)"
+    [ -x "$lib/build/bin/$2" ] || die "$2 is not a stage. The stages are: $(cd "$lib/stages" && echo *)"
     exec "$lib/build/bin/${*:2:1}" "${@:3}" ;;
 esac
 [[ " $*" == *" SCENE="?* ]] || die "give the scene to work on: remodel SCENE=NAME ${*:-PHOTOS=DIR} (remodel --help says more)."

@@ -2,6 +2,6 @@
 # uninstall.sh PREFIX DESTDIR - removes what install.sh installed there.
 set -euo pipefail
 to=$2${1%/}
-[ -e "$to/lib/remodel/common/make/installed" ] || { echo "make uninstall: there is no remodel in $to. Give the PREFIX and DESTDIR that it was installed with." >&2; exit 2; }
+[ -e "$to/lib/remodel/common/make/installed" ] || { echo "make uninstall: remodel is not installed in $to. Give the PREFIX and DESTDIR that it was installed with." >&2; exit 2; }
 rm -rf "$to/lib/remodel" "$to/share/doc/remodel" "$to/bin/remodel" "$to/share/bash-completion/completions/remodel"
 rm -f "$to/share/man/man1/remodel.1" "$to"/share/man/man1/remodel-*.1

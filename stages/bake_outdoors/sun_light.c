@@ -113,7 +113,7 @@ static void measure_range(void *ctx, size_t begin, size_t end, int thread)
     }
 }
 
-/* What a place tells of a colour, or of the luminance (c = 3). */
+/* The value of a place for one colour, or for the luminance (c = 3). */
 static double sun_of(const struct place *p, int c)
 {
     return c < 3 ? p->sun[c] : rgb_luminance(rgb_make(p->sun[0], p->sun[1], p->sun[2]));

@@ -156,7 +156,7 @@ static void report_frames(const struct clip *c, const struct chosen_frames *chos
                  c->file);
 }
 
-/* One frame is no view from different places; beside other clips or photos it may be one of several. */
+/* One frame alone shows no parallax. Beside other clips or photos it may be one of several views. */
 static enum status check_movement(const struct clip *c, const struct chosen_frames *chosen, int frames, bool alone,
                                   const char *path, struct err *err)
 {

@@ -31,7 +31,7 @@ its_words_are_those_of_make()
     [ "$(remodel version)" = "remodel $(sed -nE 's/.*REMODEL_VERSION "(.*)"/\1/p' "$root/common/base/version.h")" ] || fail "version"
     remodel run verify --help | matches -i usage || fail "a stage's help"
     ! remodel run nothing 2>err || fail "a stage that does not exist"
-    grep -q 'there is no stage nothing; there are: .*verify' err || { cat err; fail "no list of stages"; }
+    grep -q 'nothing is not a stage. The stages are: .*verify' err || { cat err; fail "no list of stages"; }
 }
 
 what_it_cannot_do_is_said()
@@ -85,7 +85,7 @@ it_is_removed_whole()
     make -s DEPS=manual PREFIX="$prefix" uninstall || fail "uninstall"
     [ -z "$(find "$prefix" -type f)" ] || { find "$prefix" -type f; fail "files stay"; }
     ! make -s DEPS=manual PREFIX="$prefix" uninstall 2>"$scratch/err" || fail "removed twice"
-    grep -q 'there is no remodel in' "$scratch/err" || fail "no reason"
+    grep -q 'remodel is not installed in' "$scratch/err" || fail "no reason"
     ! make -s DEPS=manual PREFIX=usr install 2>"$scratch/err" || fail "a relative PREFIX"
     grep -q 'PREFIX=usr is not a path from the root' "$scratch/err" || { cat "$scratch/err"; fail "no reason"; }
 }
