@@ -1,9 +1,12 @@
 /* panorama_name.c - see panorama_name.h. */
 #include "common/capture/panorama_name.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "common/math/numbers.h"
 
 char *panorama_name_make(const char *panorama, int view)
 {
@@ -25,4 +28,10 @@ bool panorama_name_same(const char *a, const char *b)
     int yaw;
     const size_t length = panorama_name_read(&yaw, a);
     return length && length == panorama_name_read(&yaw, b) && !strncmp(a, b, length);
+}
+
+struct quat panorama_name_turn(int yaw)
+{
+    const double half = yaw * DEGREE / 2;
+    return (struct quat){cos(half), 0, -sin(half), 0};
 }

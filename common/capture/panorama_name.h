@@ -8,6 +8,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "common/math/vec.h"
+
 enum { PANORAMA_VIEWS = 6, PANORAMA_STEP = 360 / PANORAMA_VIEWS };
 
 /* The file name of a view; the caller frees it. NULL: out of memory. panorama: its id; view: from 0. */
@@ -18,5 +20,7 @@ char *panorama_name_make(const char *panorama, int view);
 size_t panorama_name_read(int *yaw, const char *name);
 /* Whether two names are those of views of one panorama. */
 bool panorama_name_same(const char *a, const char *b);
+/* view_from_panorama of a view that is turned to the right by these degrees: about the axis that points down. */
+struct quat panorama_name_turn(int yaw);
 
 #endif

@@ -26,19 +26,12 @@ struct rig_view {
     double weight;
 };
 
-/* A view is turned to the right: about the axis that points down. */
-static struct quat view_from_panorama(int yaw)
-{
-    const double half = yaw * DEGREE / 2;
-    return (struct quat){cos(half), 0, -sin(half), 0};
-}
-
 static struct rig_view view_of(const struct sfm_image *image, int at)
 {
     int yaw = 0;
     panorama_name_read(&yaw, image->name);
     struct rig_view v = {
-        .image = at, .turn = view_from_panorama(yaw), .centre = pose_center(&image->cam_from_world), .weight = 1};
+        .image = at, .turn = panorama_name_turn(yaw), .centre = pose_center(&image->cam_from_world), .weight = 1};
     v.says = quat_multiply(quat_conjugate(v.turn), image->cam_from_world.rotation);
     for (int k = 0; k < image->observation_count; k++) v.weight += image->observations[k].point_id >= 0;
     return v;

@@ -17,6 +17,7 @@
 #include "common/product/product.h"
 #include "stages/sfm_import/choose_model.h"
 #include "stages/sfm_import/holdout.h"
+#include "stages/sfm_import/place_siblings.h"
 #include "stages/sfm_import/refine_cameras.h"
 
 struct holdout { /* views to hold out; every 0 and names NULL: none */
@@ -71,6 +72,8 @@ static enum status run(const char *sfm, const char *records, const char *out, co
     if (!photo_list_read(&photos, records, err) && !import_choose(&model, &name, &given, sfm, &photos, prov, err) &&
         !import_check_photos(sfm, &photos, err))
         refine_cameras(&refinement, &model, given, split, params, err);
+    if (!refinement.rig.lenses) split = (struct split_size){0}; /* its lenses do not keep their poses */
+    if (!err->status && given != GIVEN_MODEL) place_siblings(&model, &photos, split, err);
     if (!err->status && import_model(&imported, &model, &photos, params, err)) err_context(err, "%s/%s", sfm, name);
     if (!err->status) write_reports(&imported, &refinement, &model, &photos, out, prov, err);
     if (!err->status && (held->every || (held->names && *held->names)))
