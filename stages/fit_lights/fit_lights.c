@@ -7,7 +7,7 @@
  *         VITA/atlas.txt, page0.exr, ..., OUTDOORS,     what else lights the marked points; or
  *         REFERENCES/ID.exr
  *         INDIRECT                                      their irradiance without the lamps
- * writes  OUT/declared.txt, fit.txt, LAMP.jpg, then OUT/lights.txt
+ * writes  OUT/declared.txt, candidates.txt, fit.txt, LAMP.jpg, then OUT/lights.txt
  * With --list instead:
  * writes  OUT                                           the points at which indirect light is needed */
 #include <stdlib.h>
@@ -20,6 +20,7 @@
 #include "common/product/product.h"
 #include "stages/fit_lights/indirect.h"
 #include "stages/fit_lights/lamp_picture.h"
+#include "stages/fit_lights/mark_candidates.h"
 #include "stages/fit_lights/solve.h"
 
 #define PARAM_STRUCT struct fit_lights_params
@@ -111,7 +112,9 @@ static enum status write_lights(struct job *j, const struct solved_lights *s, co
                                 struct err *err)
 {
     char path[FILE_PATH];
-    if (product_path_in(path, j->out, PRODUCT_LIGHT_FIT, NULL, err) || solve_write(s, in, path, &j->prov, err) ||
+    if (product_path_in(path, j->out, PRODUCT_MARK_CANDIDATES, NULL, err) ||
+        mark_candidates_write(&j->scene, &j->notes, &j->model, j->views, j->ids, &j->params, path, &j->prov, err) ||
+        product_path_in(path, j->out, PRODUCT_LIGHT_FIT, NULL, err) || solve_write(s, in, path, &j->prov, err) ||
         lamp_pictures_write(&j->scene, &j->model, j->views, j->out, err) ||
         product_path_in(path, j->out, PRODUCT_LIGHTS, NULL, err) ||
         light_list_write(&j->scene.lights, path, &j->prov, err))

@@ -1,6 +1,7 @@
 /* solve.c, lit_scene.c, observe_lights.c - from marks on noisy pictures of a room to its lamp: a spot in the ceiling of
  * a cube lights the floor. Its light on the floor is a sum over its area, by distance from its axis. */
 #include "common/image/luminance.h"
+#include "stages/fit_lights/mark_candidates.h"
 #include "stages/fit_lights/solve.h"
 
 #include <math.h>
@@ -29,6 +30,7 @@ static struct room {
     double (*indirect)[3];
 } room;
 static int places; /* rays of a lamp without marks */
+static bool lamp_is_off;
 
 static double indirect_at(struct vec3 at) { return 1 + 0.15 * at.x - 0.1 * at.y; }
 
@@ -60,7 +62,7 @@ static void paint(float rgb[3], struct vec3 at, const char *view, uint64_t pixel
 {
     const double r = hypot(at.x, at.y) / 0.005;
     const int k = clamp_int((int)r, 0, RADII - 2);
-    const double d = at.z > -1.99 ? 0 : room.direct[k] + (r - k) * (room.direct[k + 1] - room.direct[k]);
+    const double d = at.z > -1.99 || lamp_is_off ? 0 : room.direct[k] + (r - k) * (room.direct[k + 1] - room.direct[k]);
     for (int c = 0; c < 3; c++)
         rgb[c] =
             (float)(k_d[c] * (indirect_at(at) + true_s[c] * d) * (1 + noise * gauss(view, 3 * pixel + (uint64_t)c)));
@@ -327,6 +329,65 @@ static void lines_without_an_edge_leave_the_cone_to_the_marks(void **state)
     assert_true(room.solved.lamps[0].beta_error > 0);
 }
 
+/* The statements that are proposed for the lamp, marked without any. */
+static const char *candidates(void)
+{
+    static const struct fit_lights_params params = FIT_LIGHTS_PARAMS_DEFAULT;
+    static char text[4096];
+    struct provenance prov = {0};
+    struct textfile t = {0};
+    struct err err = ERR_INIT;
+    int n = 0;
+    places = 160;
+    assert_ok(solve("beta fit exponent 1", "", &err), err);
+    places = 0;
+    assert_ok(mark_candidates_write(&room.scene, &room.notes, &room.model, scratch, scratch_path("ids"), &params,
+                                    scratch_path("candidates.txt"), &prov, &err),
+              err);
+    provenance_release(&prov);
+    text[0] = 0;
+    assert_ok(product_open(&t, NULL, PRODUCT_MARK_CANDIDATES, scratch_path("candidates.txt"), NULL, &err), err);
+    while (textfile_next(&t)) {
+        char *rest;
+        assert_ok(textfile_rest(&t, "a mark", &rest, &err), err);
+        n += snprintf(text + n, sizeof text - (size_t)n, "%s\n", rest);
+    }
+    textfile_release(&t);
+    return text;
+}
+
+static void proposed_marks_lie_across_the_edge_and_beside_it(void **state)
+{
+    (void)state;
+    struct err err = ERR_INIT;
+    int found[NOTE_KINDS] = {0};
+    assert_ok(solve("beta fit exponent 1", candidates(), &err), err);
+    for (int i = 0; i < room.scene.point_count; i++) {
+        const struct lit_point *p = &room.scene.points[i];
+        const double angle = atan(hypot(p->at.x, p->at.y) / 4) / DEGREE;
+        found[p->kind]++;
+        assert_true(p->at.z < -1.99);
+        if (p->kind == NOTE_LIT) assert_true(angle < 19);
+        if (p->kind == NOTE_UNLIT) assert_true(angle > 21);
+        if (p->kind == NOTE_LINE && p->along == 0) assert_true(angle < 19);
+        if (p->kind == NOTE_LINE && p->along == 1) assert_true(angle > 21);
+    }
+    assert_true(found[NOTE_LIT] >= 50 && found[NOTE_UNLIT] >= 50 && found[NOTE_LINE] >= 3 * 161);
+    const struct lamp *l = &room.scene.lights.lamps[0];
+    if (fabs(l->beta - true_beta) > 0.5 * DEGREE) fail_msg("beta is %.3f degrees", l->beta / DEGREE);
+    if (fabs(l->radiance.g / true_s[1] - 1) > 0.05) fail_msg("radiance is %.4g", l->radiance.g);
+}
+
+static void photos_without_an_edge_give_no_marks(void **state)
+{
+    (void)state;
+    lamp_is_off = true;
+    for (int i = 0; i < VIEWS; i++) write_view(&room.views[i], 0);
+    assert_string_equal(candidates(), "");
+    lamp_is_off = false;
+    for (int i = 0; i < VIEWS; i++) write_view(&room.views[i], 0);
+}
+
 static void a_lamp_that_no_photo_can_place_is_left_out(void **state)
 {
     (void)state;
@@ -359,6 +420,8 @@ int main(void)
         cmocka_unit_test(marks_on_two_materials_leave_the_lamp_as_bright),
         cmocka_unit_test(a_line_over_a_corner_does_not_count),
         cmocka_unit_test(lines_without_an_edge_leave_the_cone_to_the_marks),
+        cmocka_unit_test(proposed_marks_lie_across_the_edge_and_beside_it),
+        cmocka_unit_test(photos_without_an_edge_give_no_marks),
         cmocka_unit_test(a_lamp_that_no_photo_can_place_is_left_out),
         cmocka_unit_test(a_lamp_of_which_nothing_is_known_stays_as_photographed),
     };
