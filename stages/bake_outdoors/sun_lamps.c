@@ -131,35 +131,28 @@ static void fill_range(void *ctx, size_t begin, size_t end, int thread)
     }
 }
 
-static bool is_near_edge(const struct sun_texel *t, const struct sun_texels *edges, double reach)
-{
-    for (int i = 0; i < edges->count; i++) {
-        const struct vec3 d = vec3_sub(edges->list[i].at, t->at);
-        if (edges->list[i].tile == t->tile && fabs(d.x) < reach && fabs(d.y) < reach && fabs(d.z) < reach) return true;
-    }
-    return false;
-}
-
 /* Keeps the squares that the sun does not reach. */
 static enum status list_rows(struct rows *r, const struct sun_texels *edges, struct vec3 direction, double radius,
                              struct err *err)
 {
     const struct sun_scene *scene = r->in->scene;
     struct sun_texels squares = {0};
+    struct sun_places near = {0};
     float *share = NULL;
     const double side = sun_texels_side(scene, SQUARES);
     if (side > 0) sun_texels_list(&squares, scene, side, 1, NULL, err);
     if (!err->status && !(share = malloc(((size_t)squares.count + 1) * sizeof *share)))
         err_nomem(err, "squares", (size_t)squares.count * sizeof *share);
-    if (!err->status) {
+    if (!err->status && !sun_places_list(&near, edges, NULL, scene->atlas->atlas.tile_count, err)) {
         sun_shares(share, &squares, scene->model, direction, radius);
         for (int i = 0; i < squares.count; i++)
-            if (share[i] == 0 && !is_near_edge(&squares.list[i], edges, squares.side))
+            if (share[i] == 0 && !sun_places_near(&near, squares.list[i].tile, squares.list[i].at, squares.side))
                 squares.list[r->count++] = squares.list[i];
         r->list = squares.list;
         squares.list = NULL;
     }
     sun_texels_release(&squares);
+    sun_places_release(&near);
     free(share);
     return err->status;
 }

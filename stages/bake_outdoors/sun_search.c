@@ -186,22 +186,14 @@ static int find_peaks(struct peak peaks[PEAKS], const struct vec3 *directions, c
 
 /* Coarse squares at which the light changes in directions near one. */
 struct edges {
-    const struct atlas *atlas;
     const struct sun_texels *coarse;
-    const bool *edge;
-    int *first; /* of each tile: its first coarse square; owned */
+    struct sun_places places;
 };
 
 static bool is_near_edge(const void *ctx, int tile, struct vec3 at)
 {
     const struct edges *e = ctx;
-    const double reach = 1.5 * e->coarse->side;
-    for (int i = e->first[tile]; i < e->first[tile + 1]; i++) {
-        if (!e->edge[i]) continue;
-        const struct vec3 d = vec3_sub(at, e->coarse->list[i].at);
-        if (fabs(d.x) < reach && fabs(d.y) < reach && fabs(d.z) < reach) return true;
-    }
-    return false;
+    return sun_places_near(&e->places, tile, at, 1.5 * e->coarse->side);
 }
 
 /* Marks the squares whose light changes within NEAR degrees of a direction. */
@@ -226,16 +218,6 @@ static enum status mark_edges(bool *edge, const struct sun_texels *coarse, const
     free(lit);
     free(other);
     return err->status;
-}
-
-static enum status index_tiles(struct edges *e, struct err *err)
-{
-    e->first = calloc((size_t)e->atlas->tile_count + 1, sizeof *e->first);
-    if (!e->first) return err_nomem(err, "tiles", (size_t)e->atlas->tile_count * sizeof *e->first);
-    for (int i = 0; i < e->coarse->count; i++) e->first[e->coarse->list[i].tile + 1] = i + 1;
-    for (int k = 0; k < e->atlas->tile_count; k++)
-        if (e->first[k + 1] < e->first[k]) e->first[k + 1] = e->first[k];
-    return ST_OK;
 }
 
 /* Moves a direction uphill. */
@@ -279,11 +261,12 @@ static enum status refine_peak(struct peak *peak, struct sun_texels *fine, const
                                const struct sun_scene *scene, struct err *err)
 {
     bool *edge = calloc((size_t)coarse->count + 1, sizeof *edge);
-    struct edges edges = {&scene->atlas->atlas, coarse, edge, NULL};
+    struct edges edges = {.coarse = coarse};
     if (!edge) err_nomem(err, "squares", (size_t)coarse->count);
-    if (!err->status && !index_tiles(&edges, err) && !mark_edges(edge, coarse, scene->model, peak->direction, err))
+    if (!err->status && !mark_edges(edge, coarse, scene->model, peak->direction, err) &&
+        !sun_places_list(&edges.places, coarse, edge, scene->atlas->atlas.tile_count, err))
         refine(peak, fine, &edges, scene, err);
-    free(edges.first);
+    sun_places_release(&edges.places);
     free(edge);
     return err->status;
 }

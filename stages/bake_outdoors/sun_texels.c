@@ -147,3 +147,34 @@ enum status sun_texels_list(struct sun_texels *s, const struct sun_scene *scene,
     }
     return err->status;
 }
+
+enum status sun_places_list(struct sun_places *p, const struct sun_texels *squares, const bool *marked, int tiles,
+                            struct err *err)
+{
+    int count = 0;
+    *p = (struct sun_places){malloc(((size_t)squares->count + 1) * sizeof *p->at),
+                             calloc((size_t)tiles + 1, sizeof *p->first)};
+    if (!p->at || !p->first) return err_nomem(err, "squares", (size_t)squares->count * sizeof *p->at);
+    for (int i = 0, tile = 0; i <= squares->count; i++) {
+        const int next = i < squares->count ? squares->list[i].tile : tiles;
+        while (tile < next) p->first[++tile] = count;
+        if (i < squares->count && (!marked || marked[i])) p->at[count++] = squares->list[i].at;
+    }
+    return ST_OK;
+}
+
+bool sun_places_near(const struct sun_places *p, int tile, struct vec3 at, double reach)
+{
+    for (int i = p->first[tile]; i < p->first[tile + 1]; i++) {
+        const struct vec3 d = vec3_sub(at, p->at[i]);
+        if (fabs(d.x) < reach && fabs(d.y) < reach && fabs(d.z) < reach) return true;
+    }
+    return false;
+}
+
+void sun_places_release(struct sun_places *p)
+{
+    free(p->at);
+    free(p->first);
+    *p = (struct sun_places){0};
+}

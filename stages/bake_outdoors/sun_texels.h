@@ -47,4 +47,17 @@ enum status sun_texels_list(struct sun_texels *s, const struct sun_scene *scene,
                             const struct sun_filter *filter, struct err *err);
 void sun_texels_release(struct sun_texels *s);
 
+/* Where squares are, by tile, to ask what is near them. {0} is the empty state; everything is owned. */
+struct sun_places {
+    struct vec3 *at;
+    int *first; /* of each tile: its first place; one more for the end */
+};
+
+/* The squares that are marked; marked: of each, NULL: all. tiles: of the atlas. ST_NOMEM. */
+enum status sun_places_list(struct sun_places *p, const struct sun_texels *squares, const bool *marked, int tiles,
+                            struct err *err);
+/* Whether a place of the tile is closer than `reach` along each axis. */
+bool sun_places_near(const struct sun_places *p, int tile, struct vec3 at, double reach);
+void sun_places_release(struct sun_places *p);
+
 #endif
