@@ -4,7 +4,8 @@
  * the views say how bright it is there. Along an azimuth, in one photo, this is a profile. At the edge of the cone it
  * falls by a step, at the same angle in all profiles; borders of things, textures and shadows fall or rise at other
  * angles in each. So at each angle the logarithm of the radiance on both sides, on one face, is fitted as a line with a
- * step, and the angle is taken at which the steps, over their standard errors, are largest in sum.
+ * step. The angle is taken at which the steps, over their standard errors, are largest in the mean: borders of things are
+ * clear in few of the profiles, even if these are many.
  *
  * Proposed are the profiles with the clearest steps, well apart from each other: as lines across the edge, and as
  * rectangles on both sides of it that keep off it. */
@@ -40,7 +41,8 @@ enum {
 static const double MIN_STEP = 0.03;   /* of the logarithm of the radiance */
 static const double MIN_SURE = 3;      /* standard errors of a step */
 static const double MAX_SURE = 4;      /* as many standard errors count; a border of a thing may have more */
-static const double MIN_SCORE = 4;     /* standard errors of all steps together */
+static const double MIN_SUM = 4;       /* standard errors of all steps together */
+static const double FEW = 30;          /* profiles without a step, added to those of an angle */
 static const double STEP_NOISE = 0.01; /* of a step, which the profile's own noise does not show */
 static const double AREA = 0.3;        /* half side of a rectangle, of the distance from its middle to the edge */
 
@@ -178,19 +180,18 @@ static bool measure_step(struct step *s, const float *profile, const struct plac
     return true;
 }
 
-/* Fills f->steps with those at an angle; returns how many there are. *score: their sum, in standard errors. */
-static int steps_at(double *score, const struct finder *f, int at, int first)
+/* Fills f->steps with those at an angle; returns how many there are. *sum: of their standard errors. */
+static int steps_at(double *sum, const struct finder *f, int at, int first)
 {
     int count = 0;
-    *score = 0;
+    *sum = 0;
     for (int photo = 0; photo < f->model->in.set.view_count; photo++)
         for (int azimuth = 0; azimuth < AZIMUTHS; azimuth++) {
             struct step s = {photo, azimuth, 0, 0};
             if (!measure_step(&s, profile_of(f, photo, azimuth), places_of(f, at, azimuth), first)) continue;
-            *score += clamp(s.sure, -MAX_SURE, MAX_SURE);
+            *sum += clamp(s.sure, -MAX_SURE, MAX_SURE);
             f->steps[count++] = s;
         }
-    if (count) *score /= sqrt(count);
     return count;
 }
 
@@ -198,14 +199,14 @@ static int steps_at(double *score, const struct finder *f, int at, int first)
 static int find_edge(const struct finder *f, int at)
 {
     int best = -1;
-    double most = MIN_SCORE;
+    double most = 0;
     for (int first = 0; first < STEPS; first++) {
-        double score;
+        double sum;
         int clear = 0;
-        const int count = steps_at(&score, f, at, first);
+        const int count = steps_at(&sum, f, at, first);
         for (int i = 0; i < count; i++) clear += f->steps[i].height >= MIN_STEP && f->steps[i].sure >= MIN_SURE;
-        if (score <= most || clear < MIN_PROFILES) continue;
-        most = score;
+        if (sum < MIN_SUM * sqrt(count) || clear < MIN_PROFILES || sum / (count + FEW) <= most) continue;
+        most = sum / (count + FEW);
         best = first;
     }
     return best;
@@ -218,7 +219,7 @@ static double edge_angle(int first) { return first + SIDE + 0.5 * (GAP + 1); } /
 struct sheet {
     const struct finder *f;
     struct photo_camera camera;
-    const char *photo;
+    const char *lamp, *photo;
     int at, first;
 };
 
@@ -254,9 +255,12 @@ static bool area_of(double area[4], const struct sheet *s, int azimuth, bool lit
     return area[0] > 0 && area[1] > 0 && area[2] < s->camera.lens.width && area[3] < s->camera.lens.height;
 }
 
-static void print_mark(FILE *to, const char *word, const char *lamp, const char *photo, const double pixel[4])
+/* Places of one face are taken for one material. */
+static void print_mark(FILE *to, const char *word, const struct sheet *s, int azimuth, const double pixel[4])
 {
-    fprintf(to, "%s %s in %s %.1f %.1f %.1f %.1f\n", word, lamp, photo, pixel[0], pixel[1], pixel[2], pixel[3]);
+    const struct place *p = &places_of(s->f, s->at, azimuth)[s->first];
+    fprintf(to, "%s %s in %s %.1f %.1f %.1f %.1f of %s\n", word, s->lamp, s->photo, pixel[0], pixel[1], pixel[2],
+            pixel[3], solid_face_name(&s->f->model->rays.mesh, (int)p->face));
 }
 
 static int compare_steps(const void *a, const void *b)
@@ -276,7 +280,7 @@ static bool is_near(const int *taken, int count, int azimuth)
 }
 
 /* Prints marks at the clearest of `count` steps; returns how many lines there are. */
-static int print_marks(FILE *to, struct sheet *s, const char *lamp, int count, struct err *err)
+static int print_marks(FILE *to, struct sheet *s, int count, struct err *err)
 {
     const struct lit_model *model = s->f->model;
     int taken[MAX_LINES], lines = 0, areas[2] = {0, 0};
@@ -284,18 +288,19 @@ static int print_marks(FILE *to, struct sheet *s, const char *lamp, int count, s
     for (int i = 0; !err->status && i < count && lines < MAX_LINES; i++) {
         const struct step *step = &s->f->steps[i];
         const struct lens *lens = photo_lens_of_view(&model->in.set, &model->in.lenses, step->photo);
-        const char *photo = lens ? lens->photo : model->in.set.views[step->photo].name;
+        s->photo = lens ? lens->photo : model->in.set.views[step->photo].name;
         double pixel[4];
         if (step->height < MIN_STEP || step->sure < MIN_SURE) break;
         if (is_near(taken, lines, step->azimuth)) continue;
-        if (photo_camera_find(&s->camera, photo, &model->in.set, &model->in.lenses, s->f->notes->path, 1, err)) break;
+        if (photo_camera_find(&s->camera, s->photo, &model->in.set, &model->in.lenses, s->f->notes->path, 1, err))
+            break;
         if (!line_of(pixel, s, step->azimuth)) continue;
         taken[lines++] = step->azimuth;
-        print_mark(to, "line", lamp, photo, pixel);
+        print_mark(to, "line", s, step->azimuth, pixel);
         for (int lit = 0; lit < 2; lit++) {
             if (areas[lit] >= MAX_AREAS || !area_of(pixel, s, step->azimuth, lit)) continue;
             areas[lit]++;
-            print_mark(to, lit ? "lit" : "unlit", lamp, photo, pixel);
+            print_mark(to, lit ? "lit" : "unlit", s, step->azimuth, pixel);
         }
     }
     return lines;
@@ -311,9 +316,9 @@ static bool has_line(const struct finder *f, int lamp)
 static enum status print_lamp(FILE *to, const struct finder *f, int at, const char *path, struct err *err)
 {
     const int lamp = f->lamps[at];
-    struct sheet s = {.f = f, .at = at};
     char name[600];
-    double score;
+    struct sheet s = {.f = f, .lamp = name, .at = at};
+    double sum;
     if (textfile_quote(f->scene->lights.lamps[lamp].name, name, sizeof name, err)) return err->status;
     fill_profiles((struct finder *)f, at);
     s.first = find_edge(f, at);
@@ -321,9 +326,9 @@ static enum status print_lamp(FILE *to, const struct finder *f, int at, const ch
         fprintf(to, "# %s: the photos show no edge of its cone\n", name);
         return ST_OK;
     }
-    const int count = steps_at(&score, f, at, s.first);
+    const int count = steps_at(&sum, f, at, s.first);
     fprintf(to, "# %s: the edge of its cone seems to be %.1f degrees from its normal\n", name, edge_angle(s.first));
-    const int lines = print_marks(to, &s, name, count, err);
+    const int lines = print_marks(to, &s, count, err);
     if (lines && !has_line(f, lamp))
         log_note("no line of %s is marked across the edge of its cone; %s proposes %d of them", name, path, lines);
     return err->status;
