@@ -91,6 +91,13 @@ double model_rays_height(const struct model_rays *m)
     return high.z - low.z;
 }
 
+double model_rays_area(const struct model_rays *m)
+{
+    double sum = 0;
+    for (int i = 0; i < m->mesh.face_count; i++) sum += solid_mesh_area(&m->mesh, i);
+    return sum;
+}
+
 bool model_rays_near(const struct model_rays *m, struct vec3 p)
 {
     struct vec3 low, high;

@@ -36,6 +36,8 @@ void model_rays_bounds(const struct model_rays *m, struct vec3 *low, struct vec3
 double model_rays_size(const struct model_rays *m);
 /* Its height; 0 without vertices. */
 double model_rays_height(const struct model_rays *m);
+/* The area of all its faces; needs no search tree. */
+double model_rays_area(const struct model_rays *m);
 /* Whether a point is within that box. */
 bool model_rays_near(const struct model_rays *m, struct vec3 p);
 

@@ -12,6 +12,8 @@
 
 #include "common/base/cli.h"
 #include "common/base/file_path.h"
+#include "common/base/work_estimate.h"
+#include "common/light/model_rays.h"
 #include "common/product/product.h"
 #include "stages/bake_vita/vita.h"
 
@@ -78,8 +80,26 @@ static void release_scene(struct vita_scene *s)
     free(s->models);
 }
 
+/* Prints what atlases of this model will take. The costs are those of loft and of a real room at draft, on one core of
+ * a server of 2023. */
+static enum status estimate(int atlases, const char *model, const struct vita_params *params, struct err *err)
+{
+    struct work_estimate work = {0};
+    struct model_rays m = {0};
+    if (!solid_mesh_read(&m.mesh, model, NULL, err)) {
+        const double side = model_rays_height(&m) / params->texels;
+        const double megatexels = side > 0 ? 1e-6 * model_rays_area(&m) / (side * side) : 0;
+        for (int i = 0; i < atlases; i++)
+            work_estimate_add(&work, 1.5 + 1.5 * megatexels, 150 + 50 * megatexels, 2e6 * megatexels);
+        work_estimate_print(stdout, &work);
+    }
+    solid_mesh_release(&m.mesh);
+    return err->status;
+}
+
 int main(int argc, char **argv)
 {
+    int to_estimate = 0;
     struct vita_params params = VITA_PARAMS_DEFAULT;
     struct vita_scene scene = {.params = &params};
     struct files f = {0};
@@ -92,14 +112,19 @@ int main(int argc, char **argv)
         CLI_STR("views", &scene.from.views, CLI_REQUIRED, "folder of cameras and rectified views"),
         CLI_STR("ids", &scene.from.ids, CLI_REQUIRED, "folder of the faces that each view shows, and of their index"),
         CLI_STR("things", &scene.from.things, CLI_OPTIONAL, "folder of the scene's things: textures leave them out"),
+        CLI_INT("estimate", &to_estimate, CLI_OPTIONAL, "instead: print what this many atlases of --model will take"),
         CLI_STR("out", &scene.out, CLI_REQUIRED, "folder to write to"),
         CLI_PARAMS(vita_param_table, &params, check_params),
         CLI_END,
     };
     struct provenance prov = {0};
     struct err err = ERR_INIT;
-    if (cli_parse(argc, argv, "bake_vita", opts, &prov, &err) == CLI_RUN && !read_scene(&scene, &f, &prov, &err))
-        vita_bake(&scene, &prov, &err);
+    if (cli_parse(argc, argv, "bake_vita", opts, &prov, &err) == CLI_RUN) {
+        if (to_estimate > 0)
+            estimate(to_estimate, f.model, &params, &err);
+        else if (!read_scene(&scene, &f, &prov, &err))
+            vita_bake(&scene, &prov, &err);
+    }
     err_report(&err);
     release_scene(&scene);
     cli_list_release(&f.edits);

@@ -15,6 +15,7 @@
 
 #include "common/base/cli.h"
 #include "common/base/log.h"
+#include "common/base/work_estimate.h"
 #include "common/gather/model_field.h"
 #include "common/math/numbers.h"
 #include "common/product/product.h"
@@ -148,8 +149,28 @@ static enum status run(struct job *j, struct err *err)
     return fit(j, err);
 }
 
+/* Prints what the marks of the lamps will take: light is gathered at each point. The costs are those of loft's lamps, on
+ * one core of a server of 2023. */
+static enum status estimate(struct job *j, struct err *err)
+{
+    struct work_estimate work = {0};
+    double points = 0;
+    if (j->lamps && annotation_list_read(&j->notes, j->lamps, NULL, err)) return err->status;
+    for (int i = 0; i < j->notes.count; i++) {
+        const struct annotation *a = &j->notes.items[i];
+        if (a->kind == NOTE_LIT || a->kind == NOTE_UNLIT)
+            points += a->pixels == 2 ? j->params.grid * j->params.grid : 1;
+        if (a->kind == NOTE_LINE) points += LINE_POINTS;
+        if (a->kind == NOTE_DISK || a->kind == NOTE_AREA) points += j->params.places;
+    }
+    work_estimate_add(&work, 1 + 0.0045 * points, 300, 4e5);
+    work_estimate_print(stdout, &work);
+    return ST_OK;
+}
+
 int main(int argc, char **argv)
 {
+    bool to_estimate = false;
     struct job j = {.params = FIT_LIGHTS_PARAMS_DEFAULT};
     const struct cli_opt opts[] = {
         CLI_ABOUT("Places the lamps and windows that a person marked, and fits the lamps' radiance and cones."),
@@ -167,12 +188,18 @@ int main(int argc, char **argv)
                 "irradiance without the lamps at the points that --list writes: X Y Z NX NY NZ R G B a line"),
         CLI_STR("list", &j.list, CLI_OPTIONAL,
                 "\"points\": only write the points at which indirect light is needed, to --out"),
+        CLI_FLAG("estimate", &to_estimate, "instead: print what fitting --lamps will take"),
         CLI_STR("out", &j.out, CLI_REQUIRED, "folder of lights.txt and fit.txt to write, or with --list the file"),
         CLI_PARAMS(fit_lights_param_table, &j.params, check_params),
         CLI_END,
     };
     struct err err = ERR_INIT;
-    if (cli_parse(argc, argv, "fit_lights", opts, &j.prov, &err) == CLI_RUN) run(&j, &err);
+    if (cli_parse(argc, argv, "fit_lights", opts, &j.prov, &err) == CLI_RUN) {
+        if (to_estimate)
+            estimate(&j, &err);
+        else
+            run(&j, &err);
+    }
     err_report(&err);
     indirect_release(&j.indirect);
     lit_scene_release(&j.scene);

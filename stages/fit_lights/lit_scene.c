@@ -34,7 +34,6 @@
 #include "common/math/numbers.h"
 #include "stages/fit_lights/cone_edge.h"
 
-enum { LINE_POINTS = 161 };
 #define SAME_PLANE 0.999 /* cosine between normals of one surface */
 #define PLACE_SIDE 0.05  /* of the model's size: of the cube whose places are one mark */
 

@@ -16,6 +16,8 @@ struct lit_model {
 };
 void lit_model_release(struct lit_model *m);
 
+enum { LINE_POINTS = 161 }; /* of a line */
+
 /* A point whose radiance the views show. Points of a line are evenly spaced from its first to its second pixel. */
 struct lit_point {
     struct vec3 at, normal;

@@ -126,10 +126,26 @@ a_plan_says_what_the_pictures_take()
             { cat out.txt; fail "$p: no line of the estimate, or a wrong one"; }
         [ ! -e made ] || fail "an estimate wrote something"
     done
+    mv $O/vita/atlas.txt atlas.kept
     rm -rf $O/relight/dark/unlit $O/relight/dark/*.txt
     make -s DEPS=manual PHOTOS=set/photos SFM=set/model SCENE=t EDIT=dark RELIT_VIEWS=photo_1 TO=relight plan >log 2>&1 || { cat log; fail "make plan"; }
-    ! grep '^?: .*\(relight\|render_model\)' log || fail "they have no estimate"
-    awk '$1 == "relight" || $1 == "render_model" { n += $4 ~ /^[0-9.]+$/ } END { exit n != 2 }' log || { cat log; fail "the plan does not tell them"; }
+    mv atlas.kept $O/vita/atlas.txt
+    ! grep '^?: .*\(relight\|render_model\|update_vita\|bake_vita\|fit_lights\)' log || { cat log; fail "they have no estimate"; }
+    awk '$1 ~ /^(relight|render_model|update_vita|bake_vita)$/ { n += $4 ~ /^[0-9.]+$/ } END { exit n != 4 }' log || { cat log; fail "the plan does not tell them"; }
 }
 
-for t in a_lamp_goes_off_and_bytes_do_not_depend_on_threads an_edit_that_says_nothing_of_light_leaves_the_picture_alone make_relights_the_views_and_a_second_make_does_nothing what_is_wrong_is_named a_plan_says_what_the_pictures_take; do run "$t"; done
+# light goes by the surface of the model, and by samples and rays up to a limit
+light_takes_what_the_model_has_of_surface()
+{
+    "$root/$B/bin/update_vita" "${dark[@]}" --out made --estimate 2 --set rays=1000 >few 2>/dev/null && "$root/$B/bin/update_vita" "${dark[@]}" --out made --estimate 2 --set rays=2000 >many 2>/dev/null || fail "update_vita"
+    paste -d' ' few many | awk '{ exit !($2 == 2 && $6 * 2 - $3 < 0.003 && $9 > 1.2 * $3 && $9 < 2 * $3) }' || { cat few many; fail "rays do not count"; }
+    "$root/$B/bin/bake_vita" --model $O/model/model.txt --axes x --views x --ids x --out made --estimate 1 --set texels=500 >few 2>/dev/null && "$root/$B/bin/bake_vita" --model $O/model/model.txt --axes x --views x --ids x --out made --estimate 1 --set texels=1000 >many 2>/dev/null || fail "bake_vita"
+    paste -d' ' few many | awk '{ exit !($11 > 3.9 * $5 && $11 < 4.1 * $5) }' || { cat few many; fail "texels do not count"; }
+    [ ! -e made ] || fail "an estimate wrote something"
+    printf 'remodel-lamps 1\ndisk d in v 1 1 rim 2 2\nlit d in v 1 1\n' >one
+    { cat one; echo 'lit d in v 1 1 9 9'; } >more
+    for f in one more; do "$root/$B/bin/fit_lights" --model x --plan x --axes x --views x --ids x --out made --estimate --lamps $f 2>/dev/null; done |
+        paste -sd' ' | awk '{ exit !($9 > $3 && $9 < 1.2 * $3) }' || fail "marks do not count"
+}
+
+for t in a_lamp_goes_off_and_bytes_do_not_depend_on_threads an_edit_that_says_nothing_of_light_leaves_the_picture_alone make_relights_the_views_and_a_second_make_does_nothing what_is_wrong_is_named a_plan_says_what_the_pictures_take light_takes_what_the_model_has_of_surface; do run "$t"; done
