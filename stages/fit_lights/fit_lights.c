@@ -149,8 +149,8 @@ static enum status run(struct job *j, struct err *err)
     return fit(j, err);
 }
 
-/* Prints what the marks of the lamps will take: light is gathered at each point. The costs are those of loft's lamps, on
- * one core of a server of 2023. */
+/* Prints what the marks of the lamps will take: light is gathered at each point. The costs are those of loft's lamps,
+ * on one core of a server of 2023. */
 static enum status estimate(struct job *j, struct err *err)
 {
     struct work_estimate work = {0};

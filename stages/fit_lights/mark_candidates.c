@@ -4,8 +4,8 @@
  * the views say how bright it is there. Along an azimuth, in one photo, this is a profile. At the edge of the cone it
  * falls by a step, at the same angle in all profiles; borders of things, textures and shadows fall or rise at other
  * angles in each. So at each angle the logarithm of the radiance on both sides, on one face, is fitted as a line with a
- * step. The angle is taken at which the steps, over their standard errors, are largest in the mean: borders of things are
- * clear in few of the profiles, even if these are many.
+ * step. The angle is taken at which the steps, over their standard errors, are largest in the mean: borders of things
+ * are clear in few of the profiles, even if these are many.
  *
  * Proposed are the profiles with the clearest steps, well apart from each other: as lines across the edge, and as
  * rectangles on both sides of it that keep off it. */

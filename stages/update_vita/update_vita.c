@@ -31,8 +31,7 @@ static enum status estimate(const struct update_job *j, int edits, struct err *e
         const double spacing = j->params.spacing * model_rays_size(&m);
         const double first = spacing > 0 ? model_rays_area(&m) / (spacing * spacing) : 0;
         const double samples = fmin(MOST * first, j->params.max_samples);
-        for (int i = 0; i < edits; i++)
-            work_estimate_add(&work, 0.5 + 1.1e-6 * samples * j->params.rays, 430, 7e6);
+        for (int i = 0; i < edits; i++) work_estimate_add(&work, 0.5 + 1.1e-6 * samples * j->params.rays, 430, 7e6);
         work_estimate_print(stdout, &work);
     }
     solid_mesh_release(&m.mesh);

@@ -143,8 +143,8 @@ light_takes_what_the_model_has_of_surface()
     paste -d' ' few many | awk '{ exit !($11 > 3.9 * $5 && $11 < 4.1 * $5) }' || { cat few many; fail "texels do not count"; }
     [ ! -e made ] || fail "an estimate wrote something"
     printf 'remodel-lamps 1\ndisk d in v 1 1 rim 2 2\nlit d in v 1 1\n' >one
-    { cat one; echo 'lit d in v 1 1 9 9'; } >more
-    for f in one more; do "$root/$B/bin/fit_lights" --model x --plan x --axes x --views x --ids x --out made --estimate --lamps $f 2>/dev/null; done |
+    { cat one; echo 'lit d in v 1 1 9 9'; } >two_marks
+    for f in one two_marks; do "$root/$B/bin/fit_lights" --model x --plan x --axes x --views x --ids x --out made --estimate --lamps $f 2>/dev/null; done |
         paste -sd' ' | awk '{ exit !($9 > $3 && $9 < 1.2 * $3) }' || fail "marks do not count"
 }
 
