@@ -250,7 +250,9 @@ static enum status mesh_of_line(struct view_mesh *mesh, struct err *err)
     for (int i = 0; i < n; i++) {
         line[i].vertex = i;
         line[i].x = to_plane(mesh, mesh->vertices[i]).x;
-        reach = fmax(reach, DUPLICATE_REACH * fabs(line[i].x));
+        /* not fmax: gcc 12 for arm64 stops with an internal error */
+        const double outward = DUPLICATE_REACH * fabs(line[i].x);
+        if (outward > reach) reach = outward;
     }
     qsort(line, (size_t)n, sizeof *line, compare_line_vertices);
 

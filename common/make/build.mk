@@ -18,26 +18,37 @@ FLAGS.debug := -O0 -g
 FLAGS.clang := -O2 -g
 # no instruction that only newer processors have, on any processor: slower, the same products (common/math/lanes.h)
 FLAGS.portable := -O3 -g
+# for another processor: its unit tests run under an emulator (tests/long/arm64.sh)
+FLAGS.arm64 := -O3 -g
 ifeq ($(FLAGS.$(FLAVOR)),)
-  $(error FLAVOR=$(FLAVOR) is not one of: release asan debug clang portable)
+  $(error FLAVOR=$(FLAVOR) is not one of: release asan debug clang portable arm64)
 endif
 ifeq ($(FLAVOR),clang)
   CC := clang
   CXX := clang++
 endif
+PKG_CONFIG := pkg-config
+ifeq ($(FLAVOR),arm64)
+  CROSS := aarch64-linux-gnu-
+  CC := $(CROSS)gcc
+  CXX := $(CROSS)g++
+  PKG_CONFIG := PKG_CONFIG_LIBDIR=/usr/lib/aarch64-linux-gnu/pkgconfig:/usr/share/pkgconfig pkg-config
+endif
+AR := $(CROSS)ar
+STRIP := $(CROSS)strip
 # -ffp-contract=off: the same bits from every compiler version; on x86-64, AVX2 and F16C (every processor with the one
 # has the other) are what the hot loops are fast with. C++ is the same in all flavours: Eigen sums in the order of its vectors
-X86 := $(filter x86_64-%,$(shell $(CC) -dumpmachine))
+X86 := $(filter x86_64-%,$(shell $(CC) -dumpmachine 2>/dev/null))
 LANES := $(if $(filter portable,$(FLAVOR)),-Wno-psabi,$(if $(X86),-mavx2 -mf16c -mno-fma))
 CFLAGS := -std=c11 -D_GNU_SOURCE $(LANES) -ffp-contract=off -fopenmp $(WARN) $(FLAGS.$(FLAVOR)) \
-  -I. $(shell pkg-config --cflags $(PKGS) 2>/dev/null)
+  -I. $(shell $(PKG_CONFIG) --cflags $(PKGS) 2>/dev/null)
 # apart from the flags that decide what is compiled anew: tests unset CI
 STRICT := $(if $(CI),-Werror)
 # C++ only where a library has no C interface: OpenCV, Ceres, OpenEXR's C++ library
 CXXFLAGS := -std=c++17 $(if $(X86),-mavx2 -mno-fma) -ffp-contract=off -Wall -Wextra -Wshadow $(FLAGS.$(FLAVOR)) \
   -I. -isystem /usr/include/eigen3 -isystem /usr/include/opencv4 \
-  $(patsubst -I%,-isystem %,$(shell pkg-config --cflags OpenEXR 2>/dev/null))
-LDLIBS := -lOpenEXRCore $(shell pkg-config --libs $(PKGS) 2>/dev/null) -lm
+  $(patsubst -I%,-isystem %,$(shell $(PKG_CONFIG) --cflags OpenEXR 2>/dev/null))
+LDLIBS := -lOpenEXRCore $(shell $(PKG_CONFIG) --libs $(PKGS) 2>/dev/null) -lm
 # Debian 12 has version 3, Debian 13 version 4; ray_scene.c chooses alike
 EMBREE := -lembree$(if $(wildcard /usr/include/embree4/rtcore.h),4,3)
 # what a stage alone needs, and common/math and common/light; a program gets those libraries that its objects use
@@ -75,7 +86,7 @@ $(B)/obj/%.o: %.cc $(B)/flags
 $(UNIT_TESTS:$(B)/%=$(B)/obj/%.o): private CFLAGS += $(UNIT_FLAGS.$(FLAVOR))
 
 # libraries: common/, each stage with its folders but without its main, and what benches share
-archive = $(call say,AR $@)mkdir -p $(@D); rm -f $@; ar rcsD $@ $^
+archive = $(call say,AR $@)mkdir -p $(@D); rm -f $@; $(AR) rcsD $@ $^
 $(B)/libremodel.a: $(COMMON_OBJS)
 	$(archive)
 # the objects of a stage without its main
@@ -94,7 +105,7 @@ $(B)/lib/bench.a: $(call objs,tests/bench/*.cc tests/bench/*/*.c)
 
 # what a product depends on is the code, not the file: a stamp of the stripped program, rewritten only if that changed
 $(B)/code/%: $(B)/bin/%
-	+@[ -e $< ] || exit 0; mkdir -p $(@D); t=$@.$$$$; strip -s -o $$t.bin $<; cksum <$$t.bin >$$t.tmp; rm $$t.bin; \
+	+@[ -e $< ] || exit 0; mkdir -p $(@D); t=$@.$$$$; $(STRIP) -s -o $$t.bin $<; cksum <$$t.bin >$$t.tmp; rm $$t.bin; \
 	  cmp -s $$t.tmp $@ && rm $$t.tmp || mv $$t.tmp $@
 
 # archives may need each other; libraries that nothing needs are left out
@@ -105,12 +116,12 @@ $(BINS) $(B)/bin/print_graph: $(B)/libremodel.a
 	$(call link)
 TESTS := $(UNIT_TESTS) $(FUZZ_TESTS) $(BENCHES) $(TOOLS)
 # a test's program is linked by what is fastest here: there are hundreds, and no product depends on them
-FAST_LINK := $(if $(shell command -v ld.lld),-fuse-ld=lld)
+FAST_LINK := $(if $(CROSS),,$(if $(shell command -v ld.lld),-fuse-ld=lld))
 $(TESTS): $(B)/tests/%: $(B)/obj/tests/%.o $(B)/libremodel.a
 	$(call link,$(FAST_LINK) $(if $(filter $(B)/tests/unit/%,$@),-lcmocka))
 $(FUZZ_TESTS): $(B)/obj/tests/fuzz/run_corpus.o
 $(BENCHES): $(B)/lib/bench.a
-$(BENCHES): private MORE_LIBS += -lopencv_calib3d -lopencv_imgproc -lopencv_core $(shell pkg-config --libs OpenEXR 2>/dev/null)
+$(BENCHES): private MORE_LIBS += -lopencv_calib3d -lopencv_imgproc -lopencv_core $(shell $(PKG_CONFIG) --libs OpenEXR 2>/dev/null)
 # a test of stage NAME, below tests/unit/NAME/, has the stage's library; so has every program that includes a header of the stage
 ifneq ($(filter %-build $(B)/tests/%,$(MAKECMDGOALS)),)
 USES := $(sort $(shell grep -roE --include='*.[ch]' '^\#include "stages/[a-z_0-9]+/' tests | sed -E 's|(.*):.*/(.*)/|\1:\2|'))
