@@ -20,7 +20,7 @@ mkdir -p "$destdir$prefix" 2>/dev/null && [ -w "$destdir$prefix" ] ||
 rm -rf "$lib"
 mkdir -p "$lib/build/bin" "$lib/build/code" "$lib/common/make" "$lib/common/run" "$lib/configs"
 for s in $stages print_graph; do strip -o "$lib/build/bin/$s" "$build/bin/$s"; done
-cp "$build"/code/* "$lib/build/code/"
+for s in $stages; do cp "$build/code/$s" "$lib/build/code/"; done
 cp Makefile "$lib/"
 cp common/make/{stages,top,graph}.mk "$lib/common/make/"
 echo "$version" >"$lib/common/make/installed"

@@ -66,7 +66,7 @@ FUZZ_TESTS := $(patsubst %.c,$(B)/%,$(wildcard tests/fuzz/fuzz_*.c))
 TOOLS := $(B)/tests/pipeline/make_photos
 
 .PHONY: build tests-build bench-build unit-build fuzz-build
-build: $(BINS) $(B)/bin/print_graph $(STAGES:%=$(B)/code/%)
+build: $(BINS) $(B)/bin/print_graph $(STAGES:%=$(B)/stripped/%)
 tests-build: build $(BENCHES) $(UNIT_TESTS) $(FUZZ_TESTS) $(TOOLS)
 bench-build: build $(BENCHES)
 # for the groups of tests that need no other program
@@ -103,10 +103,12 @@ $(GRAPH_MAIN): $(B)/rules.def
 $(B)/lib/bench.a: $(call objs,tests/bench/*.cc tests/bench/*/*.c)
 	$(archive)
 
-# what a product depends on is the code, not the file: a stamp of the stripped program, rewritten only if that changed
-$(B)/code/%: $(B)/bin/%
-	+@[ -e $< ] || exit 0; mkdir -p $(@D); t=$@.$$$$; $(STRIP) -s -o $$t.bin $<; cksum <$$t.bin >$$t.tmp; rm $$t.bin; \
-	  cmp -s $$t.tmp $@ && rm $$t.tmp || mv $$t.tmp $@
+# what a product depends on is the code, not the file: code/STAGE is a checksum of the stripped program, rewritten only if that
+# changed. stripped/STAGE has the time of the program that was looked at. Temporary files stay there: make install and
+# others read code/ while runs of scenes look at the same programs
+$(B)/stripped/%: $(B)/bin/%
+	+@[ -e $< ] || exit 0; mkdir -p $(@D) $(B)/code; t=$@.$$$$; touch -r $< $$t; $(STRIP) -s -o $$t.bin $<; \
+	  cksum <$$t.bin >$$t.tmp; rm $$t.bin; cmp -s $$t.tmp $(B)/code/$* && rm $$t.tmp || mv $$t.tmp $(B)/code/$*; mv $$t $@
 
 # archives may need each other; libraries that nothing needs are left out
 link = $(call say,LD $@)mkdir -p $(@D); $(CC) $(CFLAGS) -o $@ $(filter %.o,$^) -Wl,--start-group $(filter %.a,$^) -Wl,--end-group \

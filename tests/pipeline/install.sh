@@ -9,6 +9,7 @@ it_is_installed()
 {
     cd "$root" || exit 1
     make -s DEPS=manual FLAVOR="$FLAVOR" PREFIX="$prefix" install >"$scratch/log" 2>&1 || { cat "$scratch/log"; fail "make install: $(tail -n 3 "$scratch/log" | tr '\n' ' ')"; }
+    diff <(ls "$prefix/lib/remodel/build/code") <(make -s DEPS=manual list-stages | tr ' ' '\n' | LC_ALL=C sort) || fail "other checksums than those of the stages"
 }
 
 a_scene_is_made_outside_of_the_source_tree()
