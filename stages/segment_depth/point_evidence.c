@@ -144,10 +144,12 @@ double point_evidence_cost(const struct point_evidence *e, int segment, struct p
     if (begin < end) inside /= end - begin + 1.0; /* a single point counts half as much as many */
     const struct near_point *near = e->nearest + (size_t)segment * NEAREST_POINTS;
     double tolerance = fmax(TOLERANCE * (e->max_inverse_z - e->min_inverse_z), TOLERANCE_STEPS * e->step);
-    for (int k = 0; k < e->nearest_count; k++)
-        nearest =
-            fmin(nearest,
-                 fabs(plane_at(plane, (double)near[k].u, (double)near[k].v) - (double)near[k].inverse_z) / tolerance);
+    for (int k = 0; k < e->nearest_count; k++) {
+        /* not fmin: gcc 12 for arm64 stops with an internal error */
+        const double off =
+            fabs(plane_at(plane, (double)near[k].u, (double)near[k].v) - (double)near[k].inverse_z) / tolerance;
+        if (off < nearest) nearest = off;
+    }
     return e->inside_weight * inside + (e->nearest_count ? e->nearest_weight * nearest : 0) +
            point_evidence_far(e, plane, u, v);
 }
