@@ -9,7 +9,7 @@ enum { DIGITS = 6 };
 char *frame_name_make(const char *clip, int number)
 {
     char *name = NULL;
-    return asprintf(&name, "%s_f%0*d.png", clip, (int)DIGITS, number) < 0 ? NULL : name;
+    return asprintf(&name, "%s_f%0*d.png", clip, DIGITS, number) < 0 ? NULL : name;
 }
 
 size_t frame_name_clip(const char *name)

@@ -239,7 +239,7 @@ static enum status cut_panorama(struct clip *c, const char *path, const char *ou
         photo_release(&views[i]);
     }
     if (!err->status)
-        log_note("%s is a panorama of 360 degrees; it becomes %d views of %d x %d px", c->file, (int)PANORAMA_VIEWS,
+        log_note("%s is a panorama of 360 degrees; it becomes %d views of %d x %d px", c->file, PANORAMA_VIEWS,
                  c->width, c->height);
     photo_release(&whole);
     return err->status;
