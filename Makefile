@@ -42,7 +42,7 @@ DEPS ?= auto
 ## SCENES="A B": the scenes that plain `make` and `make regress` run (the latter also A+holdoutN: with HOLDOUT=N)
 SCENES ?= $(if $(INSTALLED),,still-life loft)
 REGRESS := $(if $(filter file,$(origin SCENES)),still-life still-life+holdout4 loft,$(SCENES))
-## FLAVOR=release|debug|asan|clang: how the programs are compiled
+## FLAVOR=release|debug|asan|clang|portable|arm64: how the programs are compiled
 FLAVOR ?= release
 ## V=1: show commands
 

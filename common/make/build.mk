@@ -30,6 +30,9 @@ endif
 PKG_CONFIG := pkg-config
 ifeq ($(FLAVOR),arm64)
   CROSS := aarch64-linux-gnu-
+  ifeq ($(shell command -v $(CROSS)gcc),)
+    $(error FLAVOR=arm64 needs Debian's crossbuild-essential-arm64; docs/architecture.md says how to set it up)
+  endif
   CC := $(CROSS)gcc
   CXX := $(CROSS)g++
   PKG_CONFIG := PKG_CONFIG_LIBDIR=/usr/lib/aarch64-linux-gnu/pkgconfig:/usr/share/pkgconfig pkg-config

@@ -266,13 +266,17 @@ static void pipes_are_read_to_the_end(void **state)
 }
 
 #ifndef __SANITIZE_ADDRESS__
+enum { NO_LIMITS = 3 };
+
 static int without_memory(void *ctx)
 {
     const struct rlimit limit = {1u << 30, 1u << 30};
+    struct rlimit kept;
     struct textfile t;
     struct err err = ERR_INIT;
 
-    if (setrlimit(RLIMIT_AS, &limit)) return 1;
+    if (setrlimit(RLIMIT_AS, &limit) || getrlimit(RLIMIT_AS, &kept)) return 1;
+    if (kept.rlim_cur != limit.rlim_cur) return NO_LIMITS;
     const enum status st = textfile_open(&t, ctx, &err);
     printf("%s", err.text);
     return st == ST_NOMEM && !t.path && !t.bytes ? 0 : 2;
@@ -288,7 +292,14 @@ static void a_file_too_large_for_memory_is_an_error(void **state)
 #else
     char *output, *path = strdup(scratch_write("big", ""));
     assert_int_equal(truncate(path, (off_t)1 << 33), 0); /* sparse */
-    assert_int_equal(child_run(without_memory, path, &output), 0);
+    const int code = child_run(without_memory, path, &output);
+    if (code == NO_LIMITS) {
+        print_message("the emulator sets no limit of memory\n");
+        free(output);
+        free(path);
+        skip();
+    }
+    assert_int_equal(code, 0);
     assert_contains(output, "big: not enough memory for a file (8589934594 bytes).");
     free(output);
     free(path);
