@@ -4,8 +4,10 @@
 mkdir -p "$scratch/project/scenes"
 cd "$scratch/project" || exit 1
 for f in Makefile stages common configs; do ln -s "$root/$f" .; done
-mkdir -p out
-ln -s "$root/out/build" out/build
+# checksums of programs of its own: they get old times here, which would make every run of another script look at all programs
+mkdir -p "out/build/$FLAVOR"
+ln -s "$root/$B/bin" "out/build/$FLAVOR/bin"
+cp -r "$root/$B/code" "out/build/$FLAVOR/code"
 stages=$(cd "$root" && make -s --no-print-directory list-stages)
 
 # given NAME=VALUE...: the settings of the calls that follow
@@ -41,7 +43,7 @@ made()
         targets_of_graph | while read -r f; do [ -e "$f" ] || { mkdir -p "${f%/*}"; touch -d 2020-01-01 "$f"; }; done
         [ -s out/t/parallax/establishing_dolly/frames.mk ] || echo 'FRAMES := 0001 0002 0003' >out/t/parallax/establishing_dolly/frames.mk
     done
-    find out/t/ "$root/$B/code/" scenes/t -newermt 2020-01-02 -exec touch -h -d 2019-01-01 {} + 2>/dev/null || true
+    find out/t/ "out/build/$FLAVOR/code/" scenes/t -newermt 2020-01-02 -exec touch -h -d 2019-01-01 {} + 2>/dev/null || true
     touch -d 2020-01-01 $(targets_of_graph)
     graph write
 }
