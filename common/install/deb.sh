@@ -15,6 +15,8 @@ mkdir -p "$work/debian" "$work/root/DEBIAN"
 printf 'Source: remodel\n\nPackage: remodel\nArchitecture: any\n' >"$work/debian/control"
 libraries=$(cd "$work" && dpkg-shlibdeps -O root/usr/lib/remodel/build/bin/* 2>/dev/null | sed -n 's/^shlibs:Depends=//p')
 [ -n "$libraries" ] || { echo "make deb: dpkg-shlibdeps names no libraries; run it by hand on $build/bin to see why." >&2; exit 1; }
+# where HEIC and AVIF are read by plugins (Debian 13), photos of phones need them
+! apt-cache show libheif-plugin-libde265 >/dev/null 2>&1 || libraries="$libraries, libheif-plugin-libde265, libheif-plugin-dav1d"
 cat >"$work/root/DEBIAN/control" <<TEXT
 Package: remodel
 Version: $version
@@ -22,7 +24,7 @@ Architecture: $architecture
 Maintainer: The remodel authors <remodel@localhost>
 Installed-Size: $(du -sk "$work/root" | cut -f1)
 Depends: $libraries, bash, make, util-linux, colmap, ffmpeg, opencv-data
-Recommends: $(! apt-cache show libheif-plugin-libde265 >/dev/null 2>&1 || printf 'libheif-plugin-libde265, libheif-plugin-dav1d, ')bash-completion
+Recommends: bash-completion
 Suggests: slurm-client
 Section: graphics
 Priority: optional
