@@ -82,6 +82,8 @@ static void videos_have_all_frames_and_tags(void **state)
     assert_contains(text, "pix_fmt=yuv420p");
     assert_contains(text, "color_range=tv");
     assert_contains(text, "color_space=bt709");
+    assert_contains(text, "color_transfer=bt709");
+    assert_contains(text, "color_primaries=bt709");
     assert_contains(text, "r_frame_rate=25/1");
     assert_contains(text, "nb_read_frames=5");
 

@@ -57,18 +57,18 @@ static double signal_of_pq(double l)
     }
 
 static const struct kind kinds[] = {
-    {"bt709.mp4", "-color_primaries bt709 -color_trc bt709 -colorspace bt709 -color_range tv", 0.2126, 0.0722, 8, 0,
+    {"bt709.mp4", "-vf setparams=range=tv:color_primaries=bt709:color_trc=bt709:colorspace=bt709", 0.2126, 0.0722, 8, 0,
      signal_of_709, SAME},
-    {"full.mp4", "-color_primaries bt709 -color_trc bt709 -colorspace bt709 -color_range pc", 0.2126, 0.0722, 8, 1,
+    {"full.mp4", "-vf setparams=range=pc:color_primaries=bt709:color_trc=bt709:colorspace=bt709", 0.2126, 0.0722, 8, 1,
      signal_of_709, SAME},
-    {"bt601.mp4", "-color_primaries bt709 -color_trc bt709 -colorspace smpte170m -color_range tv", 0.299, 0.114, 8, 0,
-     signal_of_709, SAME},
-    {"hlg.mov", "-color_primaries bt2020 -color_trc arib-std-b67 -colorspace bt2020nc -color_range tv", 0.2627, 0.0593,
-     10, 0, signal_of_hlg, TO_2020},
-    {"hlg-full.mov", "-color_primaries bt2020 -color_trc arib-std-b67 -colorspace bt2020nc -color_range pc", 0.2627,
+    {"bt601.mp4", "-vf setparams=range=tv:color_primaries=bt709:color_trc=bt709:colorspace=smpte170m", 0.299, 0.114, 8,
+     0, signal_of_709, SAME},
+    {"hlg.mov", "-vf setparams=range=tv:color_primaries=bt2020:color_trc=arib-std-b67:colorspace=bt2020nc", 0.2627,
+     0.0593, 10, 0, signal_of_hlg, TO_2020},
+    {"hlg-full.mov", "-vf setparams=range=pc:color_primaries=bt2020:color_trc=arib-std-b67:colorspace=bt2020nc", 0.2627,
      0.0593, 10, 1, signal_of_hlg, TO_2020},
-    {"pq.mp4", "-color_primaries bt2020 -color_trc smpte2084 -colorspace bt2020nc -color_range tv", 0.2627, 0.0593, 10,
-     0, signal_of_pq, TO_2020},
+    {"pq.mp4", "-vf setparams=range=tv:color_primaries=bt2020:color_trc=smpte2084:colorspace=bt2020nc", 0.2627, 0.0593,
+     10, 0, signal_of_pq, TO_2020},
 };
 
 /* Linear Rec.709: greys, saturated colours, and in HDR light above white. */
@@ -97,7 +97,8 @@ static void patch_codes(int codes[3], int patch, const struct kind *k)
     codes[2] = (int)lrint(k->full ? r * top + 128 * step : (128 + 224 * r) * step);
 }
 
-/* 4:2:0; patches are larger than samples of chroma. */
+/* 4:2:0; patches are larger than samples of chroma. Tags are those of the frames, by setparams: as options of the output
+ * they make ffmpeg 7 convert the samples, or are dropped. */
 static const char *make_clip(const struct kind *k)
 {
     const char *raw = clip("raw.yuv");
