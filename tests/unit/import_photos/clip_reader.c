@@ -97,7 +97,7 @@ static void patch_codes(int codes[3], int patch, const struct kind *k)
     codes[2] = (int)lrint(k->full ? r * top + 128 * step : (128 + 224 * r) * step);
 }
 
-/* 4:2:0; patches are larger than samples of chroma. Tags are those of the frames, by setparams: as options of the output
+/* 4:2:0; patches are larger than samples of chroma. The frames have the tags, by setparams: as options of the output
  * they make ffmpeg 7 convert the samples, or are dropped. */
 static const char *make_clip(const struct kind *k)
 {
