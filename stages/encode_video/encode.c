@@ -25,10 +25,9 @@ const struct param encode_param_table[] = {ENCODE_PARAMS(PARAM_ROW) PARAM_END};
 /* x264's output depends on its number of threads, so the number is fixed */
 #define ENCODER_THREADS "2"
 
-/* Primaries and transfer are set in the frames: ffmpeg 7 drops them as options of the output. */
-#define FILTERS                                                                              \
-    "scale=out_color_matrix=bt709:out_range=tv:flags=accurate_rnd+full_chroma_int+bitexact," \
-    "format=yuv420p,setparams=color_primaries=bt709:color_trc=bt709"
+/* primaries and transfer are set in the frames: ffmpeg 7 drops them as options of the output */
+static const char filters[] = "scale=out_color_matrix=bt709:out_range=tv:flags=accurate_rnd+full_chroma_int+bitexact,"
+                              "format=yuv420p,setparams=color_primaries=bt709:color_trc=bt709";
 
 static enum status start_encoder(struct process *ffmpeg, const struct camera_path *path, const char *file,
                                  const struct encode_params *params, struct err *err)
@@ -43,7 +42,7 @@ static enum status start_encoder(struct process *ffmpeg, const struct camera_pat
     const char *const argv[] = {
         "ffmpeg", "-hide_banner", "-loglevel", "error", "-y",
         "-f", "rawvideo", "-pix_fmt", "rgb24", "-video_size", size, "-framerate", rate, "-i", "pipe:0",
-        "-vf", FILTERS,
+        "-vf", filters,
         "-c:v", "libx264", "-preset", params->preset, "-crf", crf, "-threads", ENCODER_THREADS,
         "-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709", "-color_range", "tv",
         "-flags:v", "+bitexact", "-fflags", "+bitexact", "-map_metadata", "-1",
