@@ -6,7 +6,8 @@
  *   file "IMG 1.jpg"            in the folder PHOTOS
  *   hash 0123...                of its bytes (common/base/hash.h)
  *   size WIDTH HEIGHT
- *   bits 8                      per sample; 32: linear light (EXR, raw files), which hdr_merge makes a picture of
+ *   bits 8                      per sample; 32: linear light (EXR, raw files, gain maps), of which hdr_merge makes a
+ *                               picture
  *   orientation 1               EXIF, 1..8
  *   exif FOCAL_MM FOCAL35_MM SECONDS F_NUMBER ISO     0: unknown
  *   camera "MAKE" "MODEL"

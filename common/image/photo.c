@@ -84,7 +84,9 @@ static enum status read_exr(struct photo *p, const struct photo_bytes *file, boo
     return err->status;
 }
 
-static enum status read_photo(struct photo *p, const char *path, bool pixels, bool any_format, const char *name,
+enum read { PIXELS = 1, ANY_FORMAT = 2, GAIN = 4 /* apply gain maps */ };
+
+static enum status read_photo(struct photo *p, const char *path, unsigned how, const char *name,
                               struct provenance *prov, struct err *err)
 {
     static enum status (*const read[])(struct photo *, const struct photo_bytes *, bool, struct err *) = {
@@ -98,10 +100,11 @@ static enum status read_photo(struct photo *p, const char *path, bool pixels, bo
     if (!read_bytes(&file, path, name, prov, err)) kind = photo_kind_of(file.bytes, file.size);
     if (kind == PHOTO_KIND_TIFF && photo_tiff_is_raw(&file)) kind = PHOTO_KIND_RAW;
     if (!err->status && (kind == PHOTO_KIND_OTHER || kind == PHOTO_KIND_VIDEO)) unknown_kind(&file, kind, err);
-    if (!err->status && !any_format && (kind == PHOTO_KIND_EXR || kind == PHOTO_KIND_RAW))
+    if (!err->status && !(how & ANY_FORMAT) && (kind == PHOTO_KIND_EXR || kind == PHOTO_KIND_RAW))
         err_set(err, ST_DATA, "%s is %s; wanted JPEG, PNG, TIFF, HEIC, AVIF, WebP or JPEG XL here.", path,
                 kind == PHOTO_KIND_EXR ? "an EXR file" : "a camera's raw file");
-    if (!err->status) read[kind](p, &file, pixels, err);
+    if (!err->status) read[kind](p, &file, how & PIXELS, err);
+    if (!err->status && how & GAIN && kind == PHOTO_KIND_JPEG) photo_apply_gain(p, &file, how & PIXELS, err);
     free(file.bytes);
     if (err->status) photo_release(p);
     return err->status;
@@ -109,27 +112,42 @@ static enum status read_photo(struct photo *p, const char *path, bool pixels, bo
 
 enum status photo_read(struct photo *p, const char *path, struct err *err)
 {
-    return read_photo(p, path, true, false, NULL, NULL, err);
+    return read_photo(p, path, PIXELS, NULL, NULL, err);
 }
 
 enum status photo_read_input(struct photo *p, const char *path, const char *name, struct provenance *prov,
                              struct err *err)
 {
-    return read_photo(p, path, true, false, name, prov, err);
+    return read_photo(p, path, PIXELS, name, prov, err);
 }
 
 enum status photo_read_any(struct photo *p, const char *path, struct err *err)
 {
-    return read_photo(p, path, true, true, NULL, NULL, err);
+    return read_photo(p, path, PIXELS | ANY_FORMAT, NULL, NULL, err);
+}
+
+enum status photo_read_hdr(struct photo *p, const char *path, struct err *err)
+{
+    return read_photo(p, path, PIXELS | ANY_FORMAT | GAIN, NULL, NULL, err);
+}
+
+static enum status read_info(struct photo_info *info, const char *path, unsigned how, struct err *err)
+{
+    struct photo p = {0};
+    read_photo(&p, path, how, NULL, NULL, err);
+    *info = p.info;
+    photo_release(&p);
+    return err->status;
 }
 
 enum status photo_read_info(struct photo_info *info, const char *path, struct err *err)
 {
-    struct photo p = {0};
-    read_photo(&p, path, false, true, NULL, NULL, err);
-    *info = p.info;
-    photo_release(&p);
-    return err->status;
+    return read_info(info, path, ANY_FORMAT, err);
+}
+
+enum status photo_read_hdr_info(struct photo_info *info, const char *path, struct err *err)
+{
+    return read_info(info, path, ANY_FORMAT | GAIN, err);
 }
 
 struct linear_job {

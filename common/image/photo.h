@@ -21,8 +21,12 @@ enum status photo_read_input(struct photo *p, const char *path, const char *name
  * largest value counts as clipped there, otherwise as unclipped. Raw files are developed by libraw as described in
  * photo_raw.c. */
 enum status photo_read_any(struct photo *p, const char *path, struct err *err);
-enum status photo_read_info(struct photo_info *info, const char *path,
-                            struct err *err); /* any format; reads headers only */
+/* The same, but a JPEG with a gain map becomes its linear HDR (info.bits 32), in Rec.709. ST_DATA: the map is missing
+ * or damaged. */
+enum status photo_read_hdr(struct photo *p, const char *path, struct err *err);
+/* Any format; these read headers only. */
+enum status photo_read_info(struct photo_info *info, const char *path, struct err *err);
+enum status photo_read_hdr_info(struct photo_info *info, const char *path, struct err *err); /* of photo_read_hdr() */
 
 /* Linear Rec.709, by the photo's colour space or the sRGB curve: 3 channels, white is 1; colours outside of Rec.709
  * have components below 0. p must have samples. */

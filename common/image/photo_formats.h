@@ -1,5 +1,5 @@
 /* photo_formats.h - readers of single photo formats, and EXIF: what photo.c calls in photo_jpeg.c, photo_png.c,
- * photo_tiff.c, photo_raw.c, photo_heif.c, photo_webp.c, photo_jxl.c, photo_colour.c and photo_exif.c. */
+ * photo_tiff.c, photo_raw.c, photo_heif.c, photo_webp.c, photo_jxl.c, photo_gain.c, photo_colour.c, photo_exif.c. */
 #ifndef REMODEL_PHOTO_FORMATS_H
 #define REMODEL_PHOTO_FORMATS_H
 
@@ -26,6 +26,10 @@ enum status photo_set_codes(struct photo *p, int primaries, int transfer, const 
 /* gamma: 0: the curve of sRGB. */
 enum status photo_set_primaries(struct photo *p, const struct chromaticities *primaries, double gamma, const char *name,
                                 const char *path, struct err *err);
+
+/* Gives a JPEG that has a gain map its linear HDR: info.bits becomes 32, and with `pixels` values replace the samples.
+ * A photo without one stays as it is. ST_DATA with the path: the map is missing or damaged. */
+enum status photo_apply_gain(struct photo *p, const struct photo_bytes *file, bool pixels, struct err *err);
 
 /* A TIFF that is a raw file: it has a DNG version, its first image is reduced or a colour filter mosaic, or its
  * compression is unknown to libtiff. */

@@ -38,7 +38,7 @@ static enum status sample_view(struct sample_job *job)
     for (int k = 0; !job->err.status && !linear && k < count; k++) {
         char path[FILE_PATH];
         if (!file_path(path, job->photos, r->brackets[k].file, "", &job->err))
-            photo_read_any(&photos[k], path, &job->err);
+            (r->info.bits == 32 ? photo_read_hdr : photo_read_any)(&photos[k], path, &job->err);
         if (!job->err.status &&
             (photos[k].info.width != photos[0].info.width || photos[k].info.height != photos[0].info.height))
             err_set(&job->err, ST_DATA,

@@ -52,6 +52,7 @@ static enum status join(char **path, const char *folder, const char *name, const
 
 struct photo_job {
     struct photo *photos;
+    bool hdr; /* gain maps were applied when the photos were imported */
     char *paths[MERGE_MAX_EXPOSURES];
     struct err errs[MERGE_MAX_EXPOSURES];
 };
@@ -60,7 +61,8 @@ static void read_some(void *ctx, size_t begin, size_t end, int thread)
 {
     struct photo_job *job = ctx;
     (void)thread;
-    for (size_t i = begin; i < end; i++) photo_read_any(&job->photos[i], job->paths[i], &job->errs[i]);
+    for (size_t i = begin; i < end; i++)
+        (job->hdr ? photo_read_hdr : photo_read_any)(&job->photos[i], job->paths[i], &job->errs[i]);
 }
 
 static enum status read_photos(struct bracketed_view *v, const char *photos, struct provenance *prov, struct err *err)
@@ -71,6 +73,7 @@ static enum status read_photos(struct bracketed_view *v, const char *photos, str
     for (int i = 0; !err->status && i < count; i++) join(&job->paths[i], photos, v->record.brackets[i].file, "", err);
     if (!err->status) {
         job->photos = v->photos;
+        job->hdr = v->record.info.bits == 32;
         parallel_for((size_t)count, 1, read_some, job);
     }
     for (int i = 0; !err->status && i < count; i++) {
@@ -269,9 +272,10 @@ enum status bracketed_view_write_picture(const struct bracketed_view *v, const c
     const struct photo *middle = &v->photos[r->middle];
     char *from = NULL, *to = NULL;
     if (!join(&from, photos, r->brackets[r->middle].file, "", err)) join(&to, out, r->id, ".jpg", err);
-    if (!err->status && (!strcmp(params->picture, "tone") || middle->values))
+    const bool jpeg = !err->status && is_jpeg(from); /* with a gain map it has values, too */
+    if (!err->status && (!strcmp(params->picture, "tone") || (middle->values && !jpeg)))
         write_toned(v, to, err);
-    else if (!err->status && is_jpeg(from))
+    else if (jpeg)
         copy_file(from, to, err);
     else if (!err->status)
         encode_photo(middle, to, err);

@@ -518,11 +518,11 @@ enum status bracket_views_find(struct bracket_views *v, const struct photo_scan 
     const bool single = !strcmp(params->brackets, "single"), has_linear = any_linear(scan, &linear);
     *v = (struct bracket_views){0};
     if (!strcmp(params->brackets, "no") && has_linear && !scan->references)
-        return err_set(
-            err, ST_DATA,
-            "%s/%s is an EXR or a raw file, which can only be used if brackets are merged; set [import_photos] "
-            "brackets = auto, or leave it out (EXCLUDE).",
-            scan->folder, linear);
+        return err_set(err, ST_DATA,
+                       "%s/%s is an EXR, a raw file or a photo with a gain map, which can only be used if brackets are "
+                       "merged; set [import_photos] "
+                       "brackets = auto, or leave it out (EXCLUDE).",
+                       scan->folder, linear);
     if (!strcmp(params->brackets, "no") && !scan->references && unread_kind(scan))
         return err_set(
             err, ST_DATA,

@@ -13,6 +13,8 @@
     X(panoramas, choice, "auto", 0, 0, "auto|yes|no",                                                              \
       "photos of 2:1 are panoramas of 360 degrees, which become views; auto: if GPano data say so or their edges " \
       "meet")                                                                                                      \
+    X(gain_map, choice, "no", 0, 0, "no|yes",                                                                      \
+      "JPEGs with a gain map (Ultra HDR) become their linear HDR picture; no: the ordinary picture is used")       \
     X(split_border, int, 0, 0, 100000, "px", "with SPLIT: width of the border around all pictures of a photo")     \
     X(split_gap, int, 0, 0, 100000, "px", "with SPLIT: width of the gap between two pictures of a photo")          \
     X(split_dark, int, 0, 0, 254, "",                                                                              \

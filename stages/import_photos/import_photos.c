@@ -111,6 +111,23 @@ static void report_colours(const struct photo_scan *scan)
     }
 }
 
+/* How many photos came in with the light of their gain maps. */
+static void report_gain_maps(const struct photo_scan *scan)
+{
+    int used = 0, count = 0;
+    for (int i = 0; i < scan->count; i++) {
+        const struct scanned_photo *p = &scan->photos[i];
+        if (p->excluded || p->err.status || p->kind != PHOTO_KIND_JPEG) continue;
+        count++;
+        used += p->record.info.bits == 32;
+    }
+    if (!scan->gain_maps) return;
+    if (used)
+        log_note("%d of %d JPEGs have gain maps, which are applied: white is 1, and lights are brighter.", used, count);
+    else
+        log_warn("[import_photos] gain_map is yes, but none of the photos in %s has a gain map.", scan->folder);
+}
+
 /* Gives the views the white exposure of the scene whose records are in `folder`, so that both have one scale. */
 static enum status share_white(struct bracket_views *views, const char *folder, struct err *err)
 {
@@ -147,6 +164,7 @@ static enum status import(struct photo_scan *scan, const char *scene, const char
     bool bracketed = err->status || views.bracketed || (bad && exists(out, "brackets.txt"));
     report_unused(scan, leave);
     report_colours(scan);
+    report_gain_maps(scan);
     if (!bracketed)
         photo_scan_write(scan, out, err);
     else if (photo_scan_write_records(scan, members, &failed))
@@ -222,6 +240,7 @@ static enum status run(struct photo_scan *scan, const struct places *p, const st
     if (!err->status) photo_scan_folder(scan, p->split ? p->cuts : folder, err);
     scan->cut = p->split;
     scan->references = p->like;
+    scan->gain_maps = !strcmp(params->gain_map, "yes");
     if (!err->status) {
         exclude_photos(scan, &left);
         if (!framed) leave_clips_out(scan, err);

@@ -390,8 +390,17 @@ static bool read_old_record(struct photo_record *old, const char *records, const
     return found;
 }
 
+/* Whether a record of the same bytes was made with the present setting of gain maps. */
+static bool same_setting(const struct scanned_photo *p, const struct photo_info *old, const char *path, bool gain_maps)
+{
+    struct photo_info info;
+    struct err ignored = ERR_INIT;
+    if (p->kind != PHOTO_KIND_JPEG || (!gain_maps && old->bits != 32)) return true;
+    return gain_maps && !photo_read_hdr_info(&info, path, &ignored) && info.bits == old->bits;
+}
+
 /* Makes the record of the file's present content. The old record is reused if the hash is the same. */
-static enum status check_photo(struct scanned_photo *p, const char *folder, const char *records)
+static enum status check_photo(struct scanned_photo *p, const char *folder, const char *records, bool gain_maps)
 {
     struct photo_record old = {0};
     struct photo photo = {0};
@@ -401,10 +410,11 @@ static enum status check_photo(struct scanned_photo *p, const char *folder, cons
     if (!path) err_nomem(&p->err, "a path", 0);
     if (!p->err.status && !textfile_quote(p->file, quoted, sizeof quoted, &p->err))
         hash_file(p->record.hash, path, &p->err);
-    if (!p->err.status && read_old_record(&old, records, p->id) && !strcmp(old.hash, p->record.hash)) {
+    if (!p->err.status && read_old_record(&old, records, p->id) && !strcmp(old.hash, p->record.hash) &&
+        same_setting(p, &old.info, path, gain_maps)) {
         p->record.info = old.info;
     } else if (!p->err.status) {
-        photo_read_any(&photo, path, &p->err);
+        (gain_maps ? photo_read_hdr : photo_read_any)(&photo, path, &p->err);
         p->record.info = photo.info;
     }
     if (!p->err.status) {
@@ -424,7 +434,7 @@ static void check_photos(void *ctx, size_t begin, size_t end, int thread)
     struct check_job *job = ctx;
     for (size_t i = begin; i < end; i++) {
         struct scanned_photo *p = &job->scan->photos[i];
-        if (!p->excluded) check_photo(p, job->scan->folder, job->records);
+        if (!p->excluded) check_photo(p, job->scan->folder, job->records, job->scan->gain_maps);
         progress_add(&job->progress, 1);
     }
 }

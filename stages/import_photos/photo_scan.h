@@ -36,6 +36,7 @@ struct photo_scan {
     int count;
     bool cut;        /* the photos are pictures cut out of others, ID_cXrY.png; set by the caller */
     bool references; /* the photos are lighting reference images; set by the caller */
+    bool gain_maps;  /* gain maps are applied; set by the caller */
     struct left_out left;
     struct scanned_clip *clips; /* in order of file name */
     int clip_count;

@@ -87,7 +87,7 @@ an_exr_is_a_single_exposure()
     awk '$1 == "error" { exit !($2 < 0.001) }' out || { cat out; fail "the radiance is not the file's"; }
     fit_response --photos exr --records exr-records --out exr.txt 2>err || { cat err; fail "fit_response"; }
     grep -qx 'curve srgb' exr.txt || fail "a curve without evidence"
-    refused "photo_1.exr is an EXR or a raw file" records exr --set brackets=no
+    refused "photo_1.exr is an EXR, a raw file or a photo with a gain map" records exr --set brackets=no
     printf 'photo_1.exr 1\nphoto_2.exr 0.25\nphoto_3.exr 1\n' >exr-scene/exposures.txt
     records exr && merged exr photo_2 || { cat err; fail "with times"; }
     "$root/$B/tests/bench/picture_error" exr-hdr/photo_2.exr exr/photo_2.exr >out
@@ -112,6 +112,30 @@ single_jpegs_share_one_scale()
     merged one photo_1 || { cat err; fail "merge"; }
     has one-hdr/photo_1.exr "one exposure"
     has one-hdr/photo_1.exr remodel:white
+}
+
+# Ultra HDR photos of the corpus: one with a map of three colours, one with a smaller grey map, one with a damaged map
+gain_maps_give_linear_light()
+{
+    local c=$root/tests/fuzz/corpus/photo; mkdir -p gain; cp "$c/gain.jpg" "$c/gain-grey.jpg" gain/
+    records gain || { cat err; fail "import"; }
+    grep -qx 'bits 8' gain-records/gain.txt && ! grep -q 'BRACKETED := yes' gain-records/photos.mk && ! grep -q "gain maps" err || { cat err; fail "gain maps are used without being asked for"; }
+    records gain --set gain_map=yes || { cat err; fail "import with gain maps"; }
+    says "2 of 2 JPEGs have gain maps"
+    grep -qx 'bits 32' gain-records/gain.txt && grep -qx 'BRACKETED := yes' gain-records/photos.mk || fail "an old record was taken"
+    records gain --set gain_map=yes && grep -qx 'bits 32' gain-records/gain.txt || fail "the second run gives another record"
+    fit_response --photos gain --records gain-records --out gain.txt 2>err && merged gain gain --response gain.txt || { cat err; fail "merge"; }
+    cmp gain-hdr/gain.jpg gain/gain.jpg || fail "the picture for structure from motion is not the photo"
+    refused "a photo with a gain map, which can only be used if brackets are merged" records gain --set gain_map=yes --set brackets=no
+    cp "$c/gain-damaged.jpg" "$c/gain-outside.jpg" gain/
+    refused "2 of 4 photos in gain cannot be used" records gain --set gain_map=yes
+    says "gain-damaged.jpg: its XMP data, which describe its gain map, are damaged"
+    says "gain-outside.jpg says that it has a gain map, but none"
+    records gain || { cat err; fail "damaged maps matter though they are not used"; }
+    grep -qx 'bits 8' gain-records/gain.txt || fail "the record of the HDR picture stays"
+    rm gain/gain*; cp set/photos/photo_[12]_e1.jpg gain/
+    records gain --set gain_map=yes || { cat err; fail "photos without gain maps"; }
+    says "none of the photos in gain has a gain map"
 }
 
 raw_files_are_recognised()
@@ -290,5 +314,5 @@ TXT
     says "--marks, --plan and --axes belong together"
 }
 
-for t in jpegs_are_fitted_and_merged equal_exposures_are_merged tiff_and_png_merge_like_jpeg an_exr_is_a_single_exposure a_tiff_is_a_single_exposure single_jpegs_share_one_scale raw_files_are_recognised other_colour_spaces_are_merged wrong_exposures_are_refused \
+for t in jpegs_are_fitted_and_merged equal_exposures_are_merged tiff_and_png_merge_like_jpeg an_exr_is_a_single_exposure a_tiff_is_a_single_exposure single_jpegs_share_one_scale gain_maps_give_linear_light raw_files_are_recognised other_colour_spaces_are_merged wrong_exposures_are_refused \
     missing_exposures_and_times_are_named shifts_are_reported_and_corrected errors_in_a_response_name_the_line cameras_are_copied_and_references_scaled marked_corners_give_the_camera; do run "$t"; done

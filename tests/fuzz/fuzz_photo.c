@@ -1,4 +1,5 @@
 /* fuzz_photo.c - photographs: any input gives an image of the size in its header, or an error that names the file. */
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -29,6 +30,16 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         if (info_st || memcmp(&info, &photo.info, sizeof info)) abort();
         if (info.orientation < 1 || info.orientation > 8) abort();
     }
+    photo_release(&photo);
+
+    struct err hdr_err = ERR_INIT, hdr_info_err = ERR_INIT; /* with gain maps */
+    info_st = photo_read_hdr_info(&info, path, &hdr_info_err);
+    st = photo_read_hdr(&photo, path, &hdr_err);
+    if (st && (photo.samples || photo.values || !strstr(hdr_err.text, path))) abort();
+    if (!st && (info_st || memcmp(&info, &photo.info, sizeof info) || !photo.values != (photo.info.bits != 32)))
+        abort();
+    for (size_t i = 0; !st && photo.values && i < (size_t)photo.info.width * (size_t)photo.info.height * 3; i++)
+        if (!isfinite(photo.values[i])) abort();
     photo_release(&photo);
     close(fd);
     return 0;
