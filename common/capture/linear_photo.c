@@ -60,3 +60,47 @@ enum status linear_photo_read(struct image *linear, struct photo_quality *qualit
     if (record->bracket_count) return read_merged(linear, quality, photos, record->id, radiometry, prov, err);
     return read_single(linear, quality, photos, record->file, assumed, prov, err);
 }
+
+static enum status open_single(struct linear_photo *p, const char *photos, const char *file,
+                               const struct single_exposure *assumed, struct provenance *prov, struct err *err)
+{
+    char path[FILE_PATH], name[FILE_PATH];
+    if (!file_path(path, photos, file, "", err) && !file_path(name, "photos", file, "", err) &&
+        !photo_read_compact(&p->photo, path, name, prov, err))
+        photo_light_init(&p->light, &p->photo, err);
+    if (err->status) return err->status;
+    photo_quality_judge_init(&p->judge, &p->photo, assumed);
+    p->width = p->photo.info.width;
+    p->height = p->photo.info.height;
+    return ST_OK;
+}
+
+enum status linear_photo_open(struct linear_photo *p, char radiometry[RADIOMETRY_SIZE], const char *photos,
+                              const struct photo_record *record, const struct single_exposure *assumed,
+                              struct provenance *prov, struct err *err)
+{
+    *p = (struct linear_photo){0};
+    strcpy(radiometry, "approximate");
+    if (!record->bracket_count) return open_single(p, photos, record->file, assumed, prov, err);
+    read_merged(&p->linear, &p->quality, photos, record->id, radiometry, prov, err);
+    p->width = p->linear.width;
+    p->height = p->linear.height;
+    return err->status;
+}
+
+void linear_photo_take(const struct linear_photo *p, float *rgb, float *variance, uint8_t *marks, size_t first,
+                       size_t count)
+{
+    photo_light_take(&p->light, rgb, first, count);
+    photo_quality_judge(&p->judge, variance, marks, rgb, first, count);
+}
+
+void linear_photo_release(struct linear_photo *p)
+{
+    if (!p) return;
+    image_release(&p->linear);
+    photo_quality_release(&p->quality);
+    photo_light_release(&p->light);
+    photo_release(&p->photo);
+    *p = (struct linear_photo){0};
+}

@@ -36,67 +36,80 @@ void photo_quality_release(struct photo_quality *q)
     *q = (struct photo_quality){0};
 }
 
-struct exposure_job {
-    struct photo_quality *q;
-    const float *rgb;
-    const struct photo *photo;
-    float white; /* of the photo's colour space */
-    float photon, read2, saturated, dark;
-    float shared_photon, shared_read2; /* of noise that is the same in all colours */
-};
-
 static float light_of(const float v) { return v > 0 ? v : 0; }
 
 /* Whether a sample is saturated: colours outside of Rec.709 exceed 1 without being so. */
-static bool is_bright(const struct exposure_job *job, size_t i)
+static bool is_bright(const struct exposure_judge *job, size_t i)
 {
-    const struct colour_space *s = job->photo->space;
-    const uint16_t *sample = job->photo->samples + 3 * i;
+    const struct photo *p = job->photo;
+    const struct colour_space *s = p->space;
     bool bright = false;
-    for (int c = 0; c < 3; c++) bright |= s->light[c * s->levels + sample[c]] >= job->saturated * job->white;
+    for (size_t c = 0; c < 3; c++) {
+        const size_t sample = p->bytes ? p->bytes[3 * i + c] : p->samples[3 * i + c];
+        bright |= s->light[c * (size_t)s->levels + sample] >= job->saturated * job->white;
+    }
     return bright;
 }
 
-static void judge_pixels(void *ctx, size_t begin, size_t end, int thread)
+void photo_quality_judge_init(struct exposure_judge *j, const struct photo *photo,
+                              const struct single_exposure *assumed)
 {
-    const struct exposure_job *job = ctx;
-    const float photon = job->photon, read2 = job->read2, saturated = job->saturated, dark = job->dark;
-    const float shared_photon = job->shared_photon, shared_read2 = job->shared_read2;
+    const struct response curve = {.space = photo->space};
+    const struct noise n = noise_given(assumed->electrons, assumed->read_noise, &curve, photo->info.bits);
+    const struct noise jpeg = noise_of_samples(photo->jpeg_variance, &curve, 8);
+    *j = (struct exposure_judge){.photo = photo,
+                                 .white = colour_space_white(photo->space),
+                                 .photon = (float)n.photon,
+                                 .read2 = (float)n.read2,
+                                 .shared_photon = (float)jpeg.photon,
+                                 .shared_read2 = (float)jpeg.read2,
+                                 .saturated = (float)assumed->saturated,
+                                 .dark = (float)assumed->dark};
+}
+
+void photo_quality_judge(const struct exposure_judge *j, float *variance, uint8_t *marks, const float *rgb,
+                         size_t first, size_t count)
+{
+    const float photon = j->photon, read2 = j->read2, saturated = j->saturated, dark = j->dark;
+    const float shared_photon = j->shared_photon, shared_read2 = j->shared_read2;
     static const float luma[3] = LUMINANCE_WEIGHTS;
     const float r2 = luma[0] * luma[0], g2 = luma[1] * luma[1], b2 = luma[2] * luma[2];
-    const bool spaced = job->photo->space != NULL;
-    (void)thread;
-    for (size_t i = begin; i < end; i++) {
-        const float *v = job->rgb + 3 * i;
+    const bool spaced = j->photo->space != NULL;
+    for (size_t i = 0; i < count; i++) {
+        const float *v = rgb + 3 * i;
         const float light = luminance_of(v), limit = light * light;
         const float noise = photon * (r2 * light_of(v[0]) + g2 * light_of(v[1]) + b2 * light_of(v[2])) +
                             read2 * (r2 + g2 + b2) + shared_photon * light_of(light) + shared_read2;
         const bool bright =
-            spaced ? is_bright(job, i) : (v[0] >= saturated) | (v[1] >= saturated) | (v[2] >= saturated);
+            spaced ? is_bright(j, first + i) : (v[0] >= saturated) | (v[1] >= saturated) | (v[2] >= saturated);
         const bool black = (v[0] <= dark) | (v[1] <= dark) | (v[2] <= dark);
-        job->q->variance[i] = bright || noise > limit ? limit : noise;
-        job->q->marks[i] = bright ? PHOTO_BRIGHT : black ? PHOTO_DARK : 0;
+        variance[i] = bright || noise > limit ? limit : noise;
+        marks[i] = bright ? PHOTO_BRIGHT : black ? PHOTO_DARK : 0;
     }
+}
+
+struct exposure_job {
+    const struct exposure_judge *judge;
+    struct photo_quality *q;
+    const float *rgb;
+};
+
+static void judge_pixels(void *ctx, size_t begin, size_t end, int thread)
+{
+    const struct exposure_job *job = ctx;
+    (void)thread;
+    photo_quality_judge(job->judge, job->q->variance + begin, job->q->marks + begin, job->rgb + 3 * begin, begin,
+                        end - begin);
 }
 
 enum status photo_quality_of_exposure(struct photo_quality *q, const struct photo *photo, const struct image *linear,
                                       const struct single_exposure *assumed, struct err *err)
 {
-    const struct response curve = {.space = photo->space};
-    const struct noise n = noise_given(assumed->electrons, assumed->read_noise, &curve, photo->info.bits);
-    const struct noise jpeg = noise_of_samples(photo->jpeg_variance, &curve, 8);
+    struct exposure_judge judge;
     const size_t pixels = (size_t)linear->width * (size_t)linear->height;
     if (photo_quality_init(q, linear->width, linear->height, err)) return err->status;
-    struct exposure_job job = {.q = q,
-                               .rgb = linear->data,
-                               .photo = photo,
-                               .white = colour_space_white(photo->space),
-                               .photon = (float)n.photon,
-                               .read2 = (float)n.read2,
-                               .shared_photon = (float)jpeg.photon,
-                               .shared_read2 = (float)jpeg.read2,
-                               .saturated = (float)assumed->saturated,
-                               .dark = (float)assumed->dark};
+    photo_quality_judge_init(&judge, photo, assumed);
+    struct exposure_job job = {&judge, q, linear->data};
     parallel_for(pixels, CHUNK, judge_pixels, &job);
     return ST_OK;
 }

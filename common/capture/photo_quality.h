@@ -36,6 +36,18 @@ enum status photo_quality_init(struct photo_quality *q, int width, int height, s
 /* Of one exposure with the sRGB curve. linear: the photo's linear colour, R G B. */
 enum status photo_quality_of_exposure(struct photo_quality *q, const struct photo *photo, const struct image *linear,
                                       const struct single_exposure *assumed, struct err *err);
+/* The same of parts of a photo with samples or bytes, which must stay. */
+struct exposure_judge {
+    const struct photo *photo;
+    float white; /* of the photo's colour space */
+    float photon, read2, saturated, dark;
+    float shared_photon, shared_read2; /* of noise that is the same in all colours */
+};
+void photo_quality_judge_init(struct exposure_judge *j, const struct photo *photo,
+                              const struct single_exposure *assumed);
+/* rgb, variance, marks: of `count` pixels from pixel `first` of the photo on, in order of rows. */
+void photo_quality_judge(const struct exposure_judge *j, float *variance, uint8_t *marks, const float *rgb,
+                         size_t first, size_t count);
 /* From the channels `variance`, whose memory it takes, and `clipped` of a file of hdr_merge. linear: its colour.
  * ST_DATA, naming path: a channel is missing or has another type. */
 enum status photo_quality_of_merged(struct photo_quality *q, struct exr_image *merged, const char *path,

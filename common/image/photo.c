@@ -84,15 +84,15 @@ static enum status read_exr(struct photo *p, const struct photo_bytes *file, boo
     return err->status;
 }
 
-enum read { PIXELS = 1, ANY_FORMAT = 2, GAIN = 4 /* apply gain maps */ };
+enum read { ANY_FORMAT = 1, GAIN = 2 /* apply gain maps */ };
 
-static enum status read_photo(struct photo *p, const char *path, unsigned how, const char *name,
+static enum status read_photo(struct photo *p, const char *path, enum photo_want want, unsigned how, const char *name,
                               struct provenance *prov, struct err *err)
 {
     static enum status (*const read[])(struct photo *, const struct photo_bytes *, bool, struct err *) = {
-        [PHOTO_KIND_JPEG] = photo_read_jpeg, [PHOTO_KIND_PNG] = photo_read_png, [PHOTO_KIND_TIFF] = photo_read_tiff,
-        [PHOTO_KIND_EXR] = read_exr,         [PHOTO_KIND_RAW] = photo_read_raw, [PHOTO_KIND_HEIF] = photo_read_heif,
-        [PHOTO_KIND_WEBP] = photo_read_webp, [PHOTO_KIND_JXL] = photo_read_jxl,
+        [PHOTO_KIND_PNG] = photo_read_png, [PHOTO_KIND_TIFF] = photo_read_tiff, [PHOTO_KIND_EXR] = read_exr,
+        [PHOTO_KIND_RAW] = photo_read_raw, [PHOTO_KIND_HEIF] = photo_read_heif, [PHOTO_KIND_WEBP] = photo_read_webp,
+        [PHOTO_KIND_JXL] = photo_read_jxl,
     };
     struct photo_bytes file = {0};
     enum photo_kind kind = PHOTO_KIND_OTHER;
@@ -103,8 +103,11 @@ static enum status read_photo(struct photo *p, const char *path, unsigned how, c
     if (!err->status && !(how & ANY_FORMAT) && (kind == PHOTO_KIND_EXR || kind == PHOTO_KIND_RAW))
         err_set(err, ST_DATA, "%s is %s; wanted JPEG, PNG, TIFF, HEIC, AVIF, WebP or JPEG XL here.", path,
                 kind == PHOTO_KIND_EXR ? "an EXR file" : "a camera's raw file");
-    if (!err->status) read[kind](p, &file, how & PIXELS, err);
-    if (!err->status && how & GAIN && kind == PHOTO_KIND_JPEG) photo_apply_gain(p, &file, how & PIXELS, err);
+    if (!err->status && kind == PHOTO_KIND_JPEG)
+        photo_read_jpeg(p, &file, want, err);
+    else if (!err->status)
+        read[kind](p, &file, want != PHOTO_HEADER, err);
+    if (!err->status && how & GAIN && kind == PHOTO_KIND_JPEG) photo_apply_gain(p, &file, want, err);
     free(file.bytes);
     if (err->status) photo_release(p);
     return err->status;
@@ -112,29 +115,36 @@ static enum status read_photo(struct photo *p, const char *path, unsigned how, c
 
 enum status photo_read(struct photo *p, const char *path, struct err *err)
 {
-    return read_photo(p, path, PIXELS, NULL, NULL, err);
+    return read_photo(p, path, PHOTO_SAMPLES, 0, NULL, NULL, err);
 }
 
 enum status photo_read_input(struct photo *p, const char *path, const char *name, struct provenance *prov,
                              struct err *err)
 {
-    return read_photo(p, path, PIXELS, name, prov, err);
+    return read_photo(p, path, PHOTO_SAMPLES, 0, name, prov, err);
 }
 
 enum status photo_read_any(struct photo *p, const char *path, struct err *err)
 {
-    return read_photo(p, path, PIXELS | ANY_FORMAT, NULL, NULL, err);
+    return read_photo(p, path, PHOTO_SAMPLES, ANY_FORMAT, NULL, NULL, err);
 }
 
 enum status photo_read_hdr(struct photo *p, const char *path, struct err *err)
 {
-    return read_photo(p, path, PIXELS | ANY_FORMAT | GAIN, NULL, NULL, err);
+    return read_photo(p, path, PHOTO_SAMPLES, ANY_FORMAT | GAIN, NULL, NULL, err);
 }
 
-static enum status read_info(struct photo_info *info, const char *path, unsigned how, struct err *err)
+enum status photo_read_compact(struct photo *p, const char *path, const char *name, struct provenance *prov,
+                               struct err *err)
+{
+    return read_photo(p, path, PHOTO_BYTES, 0, name, prov, err);
+}
+
+static enum status read_info(struct photo_info *info, const char *path, enum photo_want want, unsigned how,
+                             struct err *err)
 {
     struct photo p = {0};
-    read_photo(&p, path, how, NULL, NULL, err);
+    read_photo(&p, path, want, how, NULL, NULL, err);
     *info = p.info;
     photo_release(&p);
     return err->status;
@@ -142,43 +152,83 @@ static enum status read_info(struct photo_info *info, const char *path, unsigned
 
 enum status photo_read_info(struct photo_info *info, const char *path, struct err *err)
 {
-    return read_info(info, path, ANY_FORMAT, err);
+    return read_info(info, path, PHOTO_HEADER, ANY_FORMAT, err);
 }
 
 enum status photo_read_hdr_info(struct photo_info *info, const char *path, struct err *err)
 {
-    return read_info(info, path, ANY_FORMAT | GAIN, err);
+    return read_info(info, path, PHOTO_HEADER, ANY_FORMAT | GAIN, err);
+}
+
+enum status photo_check(struct photo_info *info, const char *path, bool gain_maps, struct err *err)
+{
+    return read_info(info, path, PHOTO_CHECK, ANY_FORMAT | (gain_maps ? GAIN : 0), err);
+}
+
+/* ------------------------------------------------------------------------------------------------------------ light */
+
+enum status photo_light_init(struct photo_light *l, const struct photo *p, struct err *err)
+{
+    const size_t levels = p->info.bits == 16 ? 65536 : 256;
+    *l = (struct photo_light){p, {NULL}, NULL};
+    for (size_t c = 0; p->space && c < 3; c++) l->curves[c] = p->space->light + c * levels;
+    if (p->space) return ST_OK;
+    l->curve = malloc(levels * sizeof *l->curve);
+    if (!l->curve) return err_nomem(err, "a tone curve", levels * sizeof *l->curve);
+    for (size_t i = 0; i < levels; i++) l->curve[i] = linear_from_srgb((float)i / (float)(levels - 1));
+    for (size_t c = 0; c < 3; c++) l->curves[c] = l->curve;
+    return ST_OK;
+}
+
+void photo_light_take(const struct photo_light *l, float *rgb, size_t first, size_t count)
+{
+    const struct photo *p = l->photo;
+    const float *const red = l->curves[0], *const green = l->curves[1], *const blue = l->curves[2];
+    if (p->bytes) {
+        const uint8_t *from = p->bytes + 3 * first;
+        for (size_t i = 0; i < 3 * count; i += 3) {
+            rgb[i] = red[from[i]];
+            rgb[i + 1] = green[from[i + 1]];
+            rgb[i + 2] = blue[from[i + 2]];
+        }
+    } else {
+        const uint16_t *from = p->samples + 3 * first;
+        for (size_t i = 0; i < 3 * count; i += 3) {
+            rgb[i] = red[from[i]];
+            rgb[i + 1] = green[from[i + 1]];
+            rgb[i + 2] = blue[from[i + 2]];
+        }
+    }
+    if (p->space) colour_space_to_rec709(p->space, rgb, count);
+}
+
+void photo_light_release(struct photo_light *l)
+{
+    if (!l) return;
+    free(l->curve);
+    *l = (struct photo_light){0};
 }
 
 struct linear_job {
-    const struct photo *photo;
-    const float *curves[3]; /* of red, green, blue */
+    const struct photo_light *light;
     float *out;
 };
 
-static void linear_samples(void *ctx, size_t begin, size_t end, int thread)
+static void take_some(void *ctx, size_t begin, size_t end, int thread)
 {
     (void)thread;
     const struct linear_job *job = ctx;
-    for (size_t i = 3 * begin; i < 3 * end; i++) job->out[i] = job->curves[i % 3][job->photo->samples[i]];
+    photo_light_take(job->light, job->out + 3 * begin, begin, end - begin);
 }
 
 enum status photo_to_linear(struct image *out, const struct photo *p, struct err *err)
 {
+    struct photo_light light;
     *out = (struct image){0};
-    const struct colour_space *space = p->space;
-    size_t levels = p->info.bits == 16 ? 65536 : 256;
-    float *curve = malloc(levels * sizeof *curve);
-    if (!curve) return err_nomem(err, "a tone curve", levels * sizeof *curve);
-    for (size_t i = 0; i < levels; i++) curve[i] = linear_from_srgb((float)i / (float)(levels - 1));
-    image_init(out, p->info.width, p->info.height, 3, err);
-    if (!err->status) {
-        const size_t pixels = (size_t)p->info.width * (size_t)p->info.height;
-        struct linear_job job = {p, {curve, curve, curve}, out->data};
-        for (size_t c = 0; space && c < 3; c++) job.curves[c] = space->light + c * levels;
-        parallel_for(pixels, 1 << 15, linear_samples, &job);
-        if (space) colour_space_to_rec709(space, out->data, pixels);
+    if (!photo_light_init(&light, p, err) && !image_init(out, p->info.width, p->info.height, 3, err)) {
+        struct linear_job job = {&light, out->data};
+        parallel_for((size_t)p->info.width * (size_t)p->info.height, 1 << 15, take_some, &job);
     }
-    free(curve);
+    photo_light_release(&light);
     return err->status;
 }

@@ -17,6 +17,9 @@ enum status photo_read(struct photo *p, const char *path, struct err *err);
 /* The same, recorded in prov as `name`. */
 enum status photo_read_input(struct photo *p, const char *path, const char *name, struct provenance *prov,
                              struct err *err);
+/* The same, recorded in prov as `name`. A JPEG has bytes instead of samples, which take half of the memory. */
+enum status photo_read_compact(struct photo *p, const char *path, const char *name, struct provenance *prov,
+                               struct err *err);
 /* Reads EXR and raw files too, which are linear (info.bits 32). An EXR with more than 1 in 10 000 samples at its
  * largest value counts as clipped there, otherwise as unclipped. Raw files are developed by libraw as described in
  * photo_raw.c. */
@@ -24,6 +27,8 @@ enum status photo_read_any(struct photo *p, const char *path, struct err *err);
 /* The same, but a JPEG with a gain map becomes its linear HDR (info.bits 32), in Rec.709. ST_DATA: the map is missing
  * or damaged. */
 enum status photo_read_hdr(struct photo *p, const char *path, struct err *err);
+/* As photo_read_any(), or with gain maps photo_read_hdr(), but keeps no pixels: a large JPEG takes little memory. */
+enum status photo_check(struct photo_info *info, const char *path, bool gain_maps, struct err *err);
 /* Any format; these read headers only. */
 enum status photo_read_info(struct photo_info *info, const char *path, struct err *err);
 enum status photo_read_hdr_info(struct photo_info *info, const char *path, struct err *err); /* of photo_read_hdr() */
@@ -31,6 +36,17 @@ enum status photo_read_hdr_info(struct photo_info *info, const char *path, struc
 /* Linear Rec.709, by the photo's colour space or the sRGB curve: 3 channels, white is 1; colours outside of Rec.709
  * have components below 0. p must have samples. */
 enum status photo_to_linear(struct image *out, const struct photo *p, struct err *err);
+
+/* The same of parts. {0} is the empty state; the photo must stay. */
+struct photo_light {
+    const struct photo *photo;
+    const float *curves[3]; /* of red, green, blue */
+    float *curve;           /* that of sRGB; owned */
+};
+enum status photo_light_init(struct photo_light *l, const struct photo *p, struct err *err);
+/* `count` pixels from pixel `first` on, in order of rows. The same values as photo_to_linear(). */
+void photo_light_take(const struct photo_light *l, float *rgb, size_t first, size_t count);
+void photo_light_release(struct photo_light *l);
 
 /* Write 8-bit RGB (channels 3) or grey (1) through an outfile. quality: 1..100. The same pixels give the same bytes. */
 enum status png_write(const char *path, const unsigned char *pixels, int width, int height, int channels,

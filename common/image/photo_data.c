@@ -12,6 +12,7 @@ void photo_release(struct photo *p)
 {
     if (!p) return;
     free(p->samples);
+    free(p->bytes);
     free(p->values);
     colour_space_release(p->space);
     *p = (struct photo){0};

@@ -22,6 +22,7 @@ struct photo_info { /* unknown values are 0 or "" */
 struct photo {
     struct photo_info info;
     uint16_t *samples;          /* RGB interleaved, w * h * 3, owned; 8-bit files hold 0..255, 16-bit files 0..65535 */
+    uint8_t *bytes;             /* instead of samples of 8 bits if so asked; owned */
     float *values;              /* instead of samples if bits is 32: linear, finite; owned */
     float saturation;           /* the value at which `values` are clipped; 0: not clipped */
     struct colour_space *space; /* NULL: sRGB, or linear Rec.709 for values; owned */

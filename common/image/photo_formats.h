@@ -9,7 +9,13 @@
 
 /* Readers fill p->info, with EXIF data if there are any, and with `pixels` also the samples or values. On failure p may
  * be partly filled; the caller releases it. */
-enum status photo_read_jpeg(struct photo *p, const struct photo_bytes *file, bool pixels, struct err *err);
+enum photo_want {
+    PHOTO_HEADER,
+    PHOTO_CHECK, /* decodes the pixels, to find damages, and keeps none */
+    PHOTO_SAMPLES,
+    PHOTO_BYTES, /* in p->bytes; samples if the photo's space needs 16 bits */
+};
+enum status photo_read_jpeg(struct photo *p, const struct photo_bytes *file, enum photo_want want, struct err *err);
 enum status photo_read_png(struct photo *p, const struct photo_bytes *file, bool pixels, struct err *err);
 enum status photo_read_tiff(struct photo *p, const struct photo_bytes *file, bool pixels, struct err *err);
 enum status photo_read_raw(struct photo *p, const struct photo_bytes *file, bool pixels, struct err *err);
@@ -27,9 +33,9 @@ enum status photo_set_codes(struct photo *p, int primaries, int transfer, const 
 enum status photo_set_primaries(struct photo *p, const struct chromaticities *primaries, double gamma, const char *name,
                                 const char *path, struct err *err);
 
-/* Gives a JPEG that has a gain map its linear HDR: info.bits becomes 32, and with `pixels` values replace the samples.
+/* Gives a JPEG that has a gain map its linear HDR: info.bits becomes 32, and values replace the samples, if it has any.
  * A photo without one stays as it is. ST_DATA with the path: the map is missing or damaged. */
-enum status photo_apply_gain(struct photo *p, const struct photo_bytes *file, bool pixels, struct err *err);
+enum status photo_apply_gain(struct photo *p, const struct photo_bytes *file, enum photo_want want, struct err *err);
 
 /* A TIFF that is a raw file: it has a DNG version, its first image is reduced or a colour filter mosaic, or its
  * compression is unknown to libtiff. */

@@ -267,7 +267,7 @@ static enum status apply(struct photo *p, const struct gain_map_data *data, cons
     return err->status;
 }
 
-enum status photo_apply_gain(struct photo *p, const struct photo_bytes *file, bool pixels, struct err *err)
+enum status photo_apply_gain(struct photo *p, const struct photo_bytes *file, enum photo_want want, struct err *err)
 {
     struct map_file map;
     struct gain_map_data data;
@@ -275,10 +275,11 @@ enum status photo_apply_gain(struct photo *p, const struct photo_bytes *file, bo
     int width = 0, height = 0;
     if (find_map(&map, file, err) || !map.bytes || read_data(&data, &map, file->path, err) || data.base_is_hdr)
         return err->status;
-    if (pixels && !decode_map(&rgb, &width, &height, &map, file->path, err)) apply(p, &data, rgb, width, height, err);
+    if (want != PHOTO_HEADER) decode_map(&rgb, &width, &height, &map, file->path, err);
+    if (!err->status && want == PHOTO_SAMPLES && !apply(p, &data, rgb, width, height, err))
+        p->saturation = photo_find_saturation(p);
     free(rgb);
     if (err->status) return err->status;
-    if (pixels) p->saturation = photo_find_saturation(p);
     p->info.bits = 32;
     free(p->samples);
     p->samples = NULL;

@@ -3,9 +3,14 @@
  * JPEG rounds the coefficients of an orthonormal transform of blocks of 8 x 8 pixels to multiples of the steps q_k in
  * the file. If the errors are spread evenly, their variance is q_k^2 / 12 each, so that of a pixel is the mean over k.
  * Where coefficients are smaller than half a step, it is less. */
+#include <setjmp.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include <jpeglib.h>
+
+#include <jerror.h>
 #include <turbojpeg.h>
 
 #include "common/base/outfile.h"
@@ -14,10 +19,10 @@
 
 /* ---------------------------------------------------------------------------------------------------------- reading */
 
-static enum status jpeg_damaged(const struct photo_bytes *file, tjhandle handle, struct err *err)
+static enum status jpeg_damaged(const struct photo_bytes *file, const char *reason, struct err *err)
 {
     return err_set(err, ST_DATA, "%s is a damaged or cut-off JPEG (%s); copy or export the photo again.", file->path,
-                   tjGetErrorStr2(handle));
+                   reason);
 }
 
 static enum status read_jpeg_header(struct photo_info *info, const struct photo_bytes *file, tjhandle handle,
@@ -25,7 +30,7 @@ static enum status read_jpeg_header(struct photo_info *info, const struct photo_
 {
     int subsampling = 0, space = 0;
     if (tjDecompressHeader3(handle, file->bytes, file->size, &info->width, &info->height, &subsampling, &space))
-        return jpeg_damaged(file, handle, err);
+        return jpeg_damaged(file, tjGetErrorStr2(handle), err);
     if (info->width < 1) /* not an error to the decoder, which waits for more data */
         return err_set(err, ST_DATA, "%s is a JPEG that ends within its header; copy the photo again.", file->path);
     if (space == TJCS_CMYK || space == TJCS_YCCK)
@@ -34,27 +39,82 @@ static enum status read_jpeg_header(struct photo_info *info, const struct photo_
     return photo_check_size(file->path, (uint64_t)info->width, (uint64_t)info->height, err);
 }
 
+struct jpeg_reader {
+    struct jpeg_decompress_struct d;
+    struct jpeg_error_mgr errors;
+    struct jpeg_progress_mgr progress;
+    jmp_buf failed;
+    char reason[JMSG_LENGTH_MAX];
+    unsigned char *row; /* R G B; owned */
+};
+
+static _Noreturn void give_up(j_common_ptr c)
+{
+    struct jpeg_reader *r = c->client_data;
+    c->err->format_message(c, r->reason);
+    longjmp(r->failed, 1);
+}
+
 /* A decoder's warning means that pixels are missing or invented. One warning is harmless: some cameras write padding
  * between the complete image and the end marker 0xd9. */
-static enum status read_jpeg_pixels(struct photo *p, const struct photo_bytes *file, tjhandle handle, struct err *err)
+static void take_message(j_common_ptr c, int level)
 {
-    size_t samples = (size_t)p->info.width * (size_t)p->info.height * 3;
-    unsigned char *rgb = malloc(samples);
-    if (!rgb) return err_nomem(err, "a photo", samples);
+    if (level < 0 && !(c->err->msg_code == JWRN_EXTRANEOUS_DATA && c->err->msg_parm.i[1] == 0xd9)) give_up(c);
+}
 
-    int rv = tjDecompress2(handle, file->bytes, file->size, rgb, p->info.width, 0, p->info.height, TJPF_RGB,
-                           TJFLAG_STOPONWARNING | TJFLAG_LIMITSCANS);
-    if (rv && strstr(tjGetErrorStr2(handle), "extraneous bytes before marker 0xd9")) {
-        rv = tjDecompress2(handle, file->bytes, file->size, rgb, p->info.width, 0, p->info.height, TJPF_RGB,
-                           TJFLAG_LIMITSCANS);
-        if (rv && tjGetErrorCode(handle) == TJERR_WARNING) rv = 0;
+/* A small file may ask for thousands of scans of a huge picture. */
+static void count_scans(j_common_ptr c)
+{
+    enum { MAX_SCANS = 500 };
+    struct jpeg_reader *r = c->client_data;
+    if (r->d.input_scan_number <= MAX_SCANS) return;
+    snprintf(r->reason, sizeof r->reason, "it has more than %d scans", (int)MAX_SCANS);
+    longjmp(r->failed, 1);
+}
+
+/* Decodes row by row, so that a picture is in memory once; want = PHOTO_CHECK: not at all. */
+static void decode_rows(struct photo *p, const struct photo_bytes *file, enum photo_want want, struct jpeg_reader *r)
+{
+    const size_t samples = (size_t)p->info.width * 3;
+    jpeg_mem_src(&r->d, file->bytes, file->size);
+    jpeg_read_header(&r->d, TRUE);
+    r->d.out_color_space = JCS_EXT_RGB;
+    jpeg_start_decompress(&r->d);
+    while (r->d.output_scanline < r->d.output_height) {
+        const size_t at = r->d.output_scanline * samples;
+        unsigned char *row = want == PHOTO_BYTES ? p->bytes + at : r->row;
+        jpeg_read_scanlines(&r->d, &row, 1);
+        for (size_t i = 0; want == PHOTO_SAMPLES && i < samples; i++) p->samples[at + i] = row[i];
     }
-    if (rv)
-        jpeg_damaged(file, handle, err);
-    else
-        photo_init_samples(p, err);
-    for (size_t i = 0; !err->status && i < samples; i++) p->samples[i] = rgb[i];
-    free(rgb);
+    jpeg_finish_decompress(&r->d);
+}
+
+static enum status read_jpeg_pixels(struct photo *p, const struct photo_bytes *file, enum photo_want want,
+                                    struct err *err)
+{
+    const size_t row = (size_t)p->info.width * 3;
+    struct jpeg_reader *r = calloc(1, sizeof *r);
+    if (!r || !(r->row = malloc(row))) err_nomem(err, "a JPEG decoder", sizeof *r + row);
+    if (!err->status && want == PHOTO_SAMPLES) photo_init_samples(p, err);
+    if (!err->status && want == PHOTO_BYTES && !(p->bytes = malloc(row * (size_t)p->info.height)))
+        err_nomem(err, "a photo", row * (size_t)p->info.height);
+    if (!err->status) {
+        r->d.err = jpeg_std_error(&r->errors);
+        r->errors.error_exit = give_up;
+        r->errors.emit_message = take_message;
+        r->progress.progress_monitor = count_scans;
+        if (setjmp(r->failed)) {
+            jpeg_damaged(file, r->reason, err);
+        } else {
+            r->d.client_data = r;
+            jpeg_create_decompress(&r->d);
+            r->d.progress = &r->progress;
+            decode_rows(p, file, want, r);
+        }
+        jpeg_destroy_decompress(&r->d);
+    }
+    if (r) free(r->row);
+    free(r);
     return err->status;
 }
 
@@ -112,17 +172,33 @@ static unsigned char *jpeg_profile(size_t *size, const struct photo_bytes *file)
     return icc;
 }
 
-enum status photo_read_jpeg(struct photo *p, const struct photo_bytes *file, bool pixels, struct err *err)
+/* The profile is one of tables, by which samples of 8 bits become those of 16. */
+static enum status widen_bytes(struct photo *p, const unsigned char *icc, size_t size, const char *path,
+                               struct err *err)
+{
+    const size_t samples = (size_t)p->info.width * (size_t)p->info.height * 3;
+    if (photo_init_samples(p, err)) return err->status;
+    for (size_t i = 0; i < samples; i++) p->samples[i] = p->bytes[i];
+    free(p->bytes);
+    p->bytes = NULL;
+    p->info.bits = 8;
+    colour_space_release(p->space);
+    p->space = NULL;
+    return photo_set_icc(p, icc, size, true, path, err);
+}
+
+enum status photo_read_jpeg(struct photo *p, const struct photo_bytes *file, enum photo_want want, struct err *err)
 {
     tjhandle handle = tjInitDecompress();
     if (!handle) return err_nomem(err, "a JPEG decoder", 0);
     read_jpeg_header(&p->info, file, handle, err);
-    if (!err->status && pixels) read_jpeg_pixels(p, file, handle, err);
+    if (!err->status && want != PHOTO_HEADER) read_jpeg_pixels(p, file, want, err);
     p->jpeg_variance = jpeg_variance(file);
     if (!err->status) photo_exif_read(&p->info, file, false, err);
     size_t size = 0;
     unsigned char *icc = err->status ? NULL : jpeg_profile(&size, file);
-    if (!err->status) photo_set_icc(p, icc, size, pixels, file->path, err);
+    if (!err->status) photo_set_icc(p, icc, size, want == PHOTO_SAMPLES, file->path, err);
+    if (!err->status && p->bytes && p->info.bits == 16) widen_bytes(p, icc, size, file->path, err);
     free(icc);
     tjDestroy(handle);
     return err->status;

@@ -5,7 +5,7 @@ say = $(if $(V),,@echo '  $(1)';)
 
 CC := gcc
 CXX := g++
-PKGS := OpenEXR libturbojpeg libpng libtiff-4 libraw_r libexif lcms2 expat libheif libwebp libwebpdemux libjxl inih libxxhash qhull_r libdeflate
+PKGS := OpenEXR libjpeg libturbojpeg libpng libtiff-4 libraw_r libexif lcms2 expat libheif libwebp libwebpdemux libjxl inih libxxhash qhull_r libdeflate
 WARN := -Wall -Wextra -Wshadow -Wstrict-prototypes -Wmissing-prototypes -Wvla -Wpointer-arith -Wwrite-strings
 FLAGS.release := -O3 -g
 # with the sanitizers' code between, gcc warns of bounds and texts that are as large as they need be; -g1 has the lines that

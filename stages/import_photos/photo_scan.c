@@ -403,7 +403,6 @@ static bool same_setting(const struct scanned_photo *p, const struct photo_info 
 static enum status check_photo(struct scanned_photo *p, const char *folder, const char *records, bool gain_maps)
 {
     struct photo_record old = {0};
-    struct photo photo = {0};
     char quoted[1024];
     char *path = join_path(folder, p->file, "");
 
@@ -414,8 +413,7 @@ static enum status check_photo(struct scanned_photo *p, const char *folder, cons
         same_setting(p, &old.info, path, gain_maps)) {
         p->record.info = old.info;
     } else if (!p->err.status) {
-        (gain_maps ? photo_read_hdr : photo_read_any)(&photo, path, &p->err);
-        p->record.info = photo.info;
+        photo_check(&p->record.info, path, gain_maps, &p->err);
     }
     if (!p->err.status) {
         p->record.file = strdup(p->file);
@@ -423,7 +421,6 @@ static enum status check_photo(struct scanned_photo *p, const char *folder, cons
         if (!p->record.file || !p->record.id) err_nomem(&p->err, "a record", 0);
     }
     photo_record_release(&old);
-    photo_release(&photo);
     free(path);
     return p->err.status;
 }

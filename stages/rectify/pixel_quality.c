@@ -10,6 +10,7 @@
 #include "stages/rectify/pixel_quality.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 #include "common/image/samples.h"
 #include "common/math/lanes.h"
@@ -19,17 +20,22 @@ enum { TILE_SHIFT = 3 };
 
 static int tiles_across(int pixels) { return (pixels - 1) / (1 << TILE_SHIFT) + 1; }
 
-enum status pixel_quality_prepare(struct pixel_quality *q, struct err *err)
+enum status pixel_quality_init(struct pixel_quality *q, size_t pixels, struct err *err)
+{
+    const size_t tiles = pixels / 8 + 1; /* those of a picture of one row are most: an eighth of its pixels */
+    q->tiles = samples_alloc(tiles);
+    return q->tiles ? ST_OK : err_nomem(err, "tiles of marks", tiles);
+}
+
+void pixel_quality_prepare(struct pixel_quality *q)
 {
     const size_t columns = (size_t)tiles_across(q->width), rows = (size_t)tiles_across(q->height);
-    q->tiles = samples_alloc(columns * rows);
-    if (!q->tiles) return err_nomem(err, "tiles of marks", columns * rows);
+    memset(q->tiles, 0, columns * rows);
     for (int y = 0; y < q->height; y++) {
         const uint8_t *marks = q->of->marks + (size_t)y * (size_t)q->width;
         uint8_t *tiles = q->tiles + (size_t)(y >> TILE_SHIFT) * columns;
         for (int x = 0; x < q->width; x++) tiles[x >> TILE_SHIFT] |= marks[x];
     }
-    return ST_OK;
 }
 
 void pixel_quality_release(struct pixel_quality *q)

@@ -12,8 +12,10 @@ struct pixel_quality {
     uint8_t *tiles; /* owned: the union of the marks in each tile */
 };
 
-/* Fills tiles. ST_NOMEM. */
-enum status pixel_quality_prepare(struct pixel_quality *q, struct err *err);
+/* Allocates tiles for up to `pixels` pixels. ST_NOMEM. */
+enum status pixel_quality_init(struct pixel_quality *q, size_t pixels, struct err *err);
+/* Fills tiles for the present size. */
+void pixel_quality_prepare(struct pixel_quality *q);
 void pixel_quality_release(struct pixel_quality *q);
 
 /* Union of the marks in columns x0 to x1 - 1 and rows y0 to y1 - 1; those beyond the border are those at it. */

@@ -31,8 +31,7 @@ struct rectify_request {
 };
 
 struct photo_source { /* the photograph, read once for all views */
-    struct image linear;
-    struct photo_quality quality;
+    struct linear_photo photo;
     struct photo_mask mask;
     char radiometry[RADIOMETRY_SIZE];
 };
@@ -44,7 +43,7 @@ static enum status read_source(struct photo_source *s, const struct rectify_requ
     const struct single_exposure assumed = {r->params.electrons, r->params.read_noise, r->params.saturated,
                                             r->params.dark};
     if (!photo_record_read(&record, r->records, r->photo, NULL, err) &&
-        !linear_photo_read(&s->linear, &s->quality, s->radiometry, r->photos, &record, &assumed, prov, err))
+        !linear_photo_open(&s->photo, s->radiometry, r->photos, &record, &assumed, prov, err))
         photo_mask_read(&s->mask, r->masks, r->records, &record, prov, err);
     photo_record_release(&record);
     return err->status;
@@ -55,7 +54,11 @@ static enum status make_view(const struct photo_source *s, const struct rectify_
 {
     struct image rectified = {0};
     struct photo_quality quality = {0};
-    const struct resample_source source = {&s->linear, s->mask.masked, &s->quality};
+    const bool whole = s->photo.linear.data;
+    const struct resample_source source = {.linear = whole ? &s->photo.linear : NULL,
+                                           .photo = whole ? NULL : &s->photo,
+                                           .masked = s->mask.masked,
+                                           .quality = whole ? &s->photo.quality : NULL};
     char path[FILE_PATH];
     const struct mat3 photo_from_view = mat3_transpose(mat3_from_quat(lens->view_from_photo));
     product_path_in(path, r->out, PRODUCT_VIEW, &(struct product_key){.view = view->name}, err);
@@ -110,8 +113,7 @@ static enum status rectify(const struct rectify_request *r, struct provenance *p
         else
             make_view(&source, r, lens, &set.views[v], prov, err);
     }
-    image_release(&source.linear);
-    photo_quality_release(&source.quality);
+    linear_photo_release(&source.photo);
     photo_mask_release(&source.mask);
     lens_list_release(&lenses);
     camera_set_release(&set);

@@ -5,6 +5,11 @@
  * the kernel and so prevents aliasing. Negative lobes would draw dark lines beside bright windows in linear light, so
  * results are clamped to the range of the samples within one lobe.
  *
+ * A photo of one exposure stays in memory as it was stored, with 3 bytes a pixel; in linear floats with noise and marks
+ * it would take 17 more. The view is made in tiles, and the part of the photo under a tile's kernels becomes linear for
+ * it. Neighbouring tiles overlap by a kernel's width, which costs no more time than the memory did. A tile whose part is
+ * too large, as it is where a lens spreads or turns the picture, is halved.
+ *
  * Kernel weights would take much of the time. Without reduction they depend only on the position between pixels and
  * come from a table; photo_map.c finds the positions.
  *
@@ -26,16 +31,31 @@
 #define LOBES KERNEL_LOBES
 #define STEPS 256 /* table entries per pixel; interpolated linearly, with an error below 1e-5 */
 
-enum { CHUNK = 16, SHARP = 2 * LOBES };
+enum {
+    CHUNK = 16, /* rows of a view */
+    TILE = 256, /* columns */
+    SHARP = 2 * LOBES,
+    BEYOND = LANES / 3 + 1, /* pixels beyond the taps that the last load may read */
+    MAX_PART = 1 << 18,     /* pixels; more than a single pixel of the view needs */
+};
+
+/* The photo, or what a tile of the view needs of it. */
+struct part {
+    struct image linear;         /* R G B */
+    struct photo_quality marked; /* if it is not the whole photo */
+    struct pixel_quality quality;
+    int x0, y0; /* of its first pixel in the photo */
+};
 
 struct resample {
     struct image *out;
     struct photo_quality *out_quality; /* NULL: not wanted */
-    const struct image *photo;
-    const unsigned char *masked; /* per pixel of the photo; NULL: none */
-    struct pixel_quality quality;
+    const struct linear_photo *photo;  /* NULL: all of it is in `whole` */
+    int width, height;                 /* of the photo */
+    const unsigned char *masked;       /* per pixel of the photo; NULL: none */
+    struct part whole, *parts;         /* parts: per thread */
     struct photo_map map;
-    double *points; /* per thread: two rows, u then v, and the knots of a row */
+    double *points; /* per thread: rows, u then v, and the knots of a row */
     size_t points_per_thread;
     float kernel[LOBES * STEPS + 2];
     float sharp[STEPS + 1][LANES]; /* weights without reduction, by the offset from the third sample's centre */
@@ -170,8 +190,7 @@ static void filter_inside(float rgba[4], const struct image *photo, const struct
 /* Are the taps, and the lanes after the last one, inside the photo? */
 static bool is_inside(const struct image *photo, const struct kernel_taps *tx, const struct kernel_taps *ty)
 {
-    const int lanes = LANES / 3 + 1; /* pixels beyond the taps that the last load may read */
-    return tx->first >= 0 && ty->first >= 0 && tx->first + tx->count + lanes <= photo->width &&
+    return tx->first >= 0 && ty->first >= 0 && tx->first + tx->count + BEYOND <= photo->width &&
            ty->first + ty->count <= photo->height && tx->near_begin < tx->near_end && ty->near_begin < ty->near_end;
 }
 
@@ -180,9 +199,9 @@ static bool is_masked(const struct resample *r, double u, double v, double wide,
 {
     const int x1 = (int)floor(u - 0.5 + wide), y1 = (int)floor(v - 0.5 + high);
     for (int y = (int)ceil(v - 0.5 - high); y <= y1; y++) {
-        const size_t row = (size_t)clamp_int(y, 0, r->photo->height - 1) * (size_t)r->photo->width;
+        const size_t row = (size_t)clamp_int(y, 0, r->height - 1) * (size_t)r->width;
         for (int x = (int)ceil(u - 0.5 - wide); x <= x1; x++)
-            if (r->masked[row + (size_t)clamp_int(x, 0, r->photo->width - 1)]) return true;
+            if (r->masked[row + (size_t)clamp_int(x, 0, r->width - 1)]) return true;
     }
     return false;
 }
@@ -197,10 +216,10 @@ static f32x8 sharp_weights(const struct resample *r, double offset)
 
 /* Filters six by six samples from (x, y) on. The 18 values of a row are loaded as pixels 0 and 1, 2 and 3, and 4 and 5
  * after two values of weight 0. */
-static void filter_sharp(const struct resample *r, float rgba[4], int x, int y, f32x8 across, const float *down)
+static void filter_sharp(const struct image *photo, float rgba[4], int x, int y, f32x8 across, const float *down)
 {
-    const size_t stride = 3 * (size_t)r->photo->width;
-    const float *row = image_at(r->photo, x, y);
+    const size_t stride = 3 * (size_t)photo->width;
+    const float *row = image_at(photo, x, y);
     const i32x8 second = {3, 4, 5, 5, 5, 5, 5, 5};
     f32x8 first = {0}, middle = first, last = first, near[2];
     for (int j = 0; j < SHARP; j++, row += stride) {
@@ -227,72 +246,171 @@ static void filter_sharp(const struct resample *r, float rgba[4], int x, int y, 
 }
 
 /* Not inlined, so that the usual case has a small stack frame. */
-static __attribute__((noinline)) void filter_wide(const struct resample *r, size_t to, const struct photo_point *at,
-                                                  double su, double sv)
+static __attribute__((noinline)) void filter_wide(const struct resample *r, const struct part *part, size_t to,
+                                                  const struct photo_point *at, double su, double sv)
 {
     float *rgba = r->out->data + 4 * to;
     struct kernel_taps tx, ty;
     make_taps(&tx, r->kernel, at->u, su);
     make_taps(&ty, r->kernel, at->v, sv);
-    if (is_inside(r->photo, &tx, &ty))
-        filter_inside(rgba, r->photo, &tx, &ty);
+    tx.first -= part->x0;
+    ty.first -= part->y0;
+    if (is_inside(&part->linear, &tx, &ty))
+        filter_inside(rgba, &part->linear, &tx, &ty);
     else
-        filter_border(rgba, r->photo, &tx, &ty);
+        filter_border(rgba, &part->linear, &tx, &ty);
     rgba[3] = 1;
     if (!r->out_quality) return;
-    r->out_quality->variance[to] = pixel_quality_variance(&r->quality, &tx, &ty);
+    r->out_quality->variance[to] = pixel_quality_variance(&part->quality, &tx, &ty);
     r->out_quality->marks[to] =
-        pixel_quality_marks(&r->quality, tx.first, ty.first, tx.first + tx.count, ty.first + ty.count);
+        pixel_quality_marks(&part->quality, tx.first, ty.first, tx.first + tx.count, ty.first + ty.count);
 }
 
-/* One-sided differences are exact enough for the width of a filter. At the end of the lens they are taken to the other
- * side. */
-static void resample_pixel(const struct resample *r, int x, int y, const struct map_row *here,
+/* A pixel of the view in the photo, and how many of the photo's pixels it covers along its axes, at least 1. One-sided
+ * differences are exact enough for the width of a filter. At the end of the lens they are taken to the other side.
+ * False: it is outside the photo. */
+static inline bool find_footprint(const struct resample *r, int x, int y, const struct map_row *here,
+                                  const struct map_row *below, struct photo_point *at, double *su, double *sv)
+{
+    *at = (struct photo_point){here->u[x], here->v[x]};
+    struct photo_point right = {here->u[x + 1], here->v[x + 1]}, down = {below->u[x], below->v[x]};
+    if (!(at->u >= 0 && at->v >= 0 && at->u <= r->width && at->v <= r->height)) return false;
+    if (isnan(right.u)) right = photo_map_point(&r->map, x - 1, y);
+    if (isnan(right.u)) right = *at;
+    if (isnan(down.u)) down = photo_map_point(&r->map, x, y - 1);
+    if (isnan(down.u)) down = *at;
+    const double ru = right.u - at->u, du = down.u - at->u, rv = right.v - at->v, dv = down.v - at->v;
+    const double across = ru * ru + du * du, along = rv * rv + dv * dv;
+    *su = across > 1 ? fmin(sqrt(across), MAX_REDUCTION) : 1;
+    *sv = along > 1 ? fmin(sqrt(along), MAX_REDUCTION) : 1;
+    return true;
+}
+
+static void resample_pixel(const struct resample *r, const struct part *part, int x, int y, const struct map_row *here,
                            const struct map_row *below)
 {
-    const struct image *photo = r->photo;
-    const struct photo_point at = {here->u[x], here->v[x]};
-    struct photo_point right = {here->u[x + 1], here->v[x + 1]}, down = {below->u[x], below->v[x]};
-    if (!(at.u >= 0 && at.v >= 0 && at.u <= photo->width && at.v <= photo->height)) return;
-    if (isnan(right.u)) right = photo_map_point(&r->map, x - 1, y);
-    if (isnan(right.u)) right = at;
-    if (isnan(down.u)) down = photo_map_point(&r->map, x, y - 1);
-    if (isnan(down.u)) down = at;
-    const double ru = right.u - at.u, du = down.u - at.u, rv = right.v - at.v, dv = down.v - at.v;
-    const double across = ru * ru + du * du, along = rv * rv + dv * dv;
-    const double su = across > 1 ? fmin(sqrt(across), MAX_REDUCTION) : 1;
-    const double sv = along > 1 ? fmin(sqrt(along), MAX_REDUCTION) : 1;
+    const struct image *photo = &part->linear;
+    struct photo_point at;
+    double su, sv;
+    if (!find_footprint(r, x, y, here, below, &at, &su, &sv)) return;
     const double left = floor(at.u - 0.5), top = floor(at.v - 0.5);
-    const int u = (int)left - LOBES + 1, v = (int)top - LOBES + 1;
+    const int u = (int)left - LOBES + 1 - part->x0, v = (int)top - LOBES + 1 - part->y0;
     const size_t to = (size_t)y * (size_t)r->out->width + (size_t)x;
     if (r->masked && is_masked(r, at.u, at.v, su, sv)) return;
     if (su == 1 && sv == 1 && u >= 0 && v >= 0 && u + SHARP <= photo->width && v + SHARP <= photo->height) {
         const f32x8 weights_x = sharp_weights(r, at.u - 0.5 - left);
         float weights_y[LANES];
         f32x8_store(weights_y, sharp_weights(r, at.v - 0.5 - top));
-        filter_sharp(r, r->out->data + 4 * to, u, v, weights_x, weights_y);
+        filter_sharp(photo, r->out->data + 4 * to, u, v, weights_x, weights_y);
         if (!r->out_quality) return;
-        r->out_quality->variance[to] = pixel_quality_sharp_variance(&r->quality, u, v, weights_x, weights_y, SHARP);
-        r->out_quality->marks[to] = pixel_quality_marks(&r->quality, u, v, u + SHARP, v + SHARP);
+        r->out_quality->variance[to] = pixel_quality_sharp_variance(&part->quality, u, v, weights_x, weights_y, SHARP);
+        r->out_quality->marks[to] = pixel_quality_marks(&part->quality, u, v, u + SHARP, v + SHARP);
         return;
     }
-    filter_wide(r, to, &at, su, sv);
+    filter_wide(r, part, to, &at, su, sv);
+}
+
+/* Columns x0 to x1 - 1 and rows y0 to y1 - 1, of a view or of the photo. */
+struct box {
+    int x0, y0, x1, y1;
+};
+
+/* The projections of a chunk's rows and of the one below it. */
+struct chunk {
+    const struct map_row *rows;
+    int first; /* the row of rows[0] */
+};
+
+/* What the kernels of a tile reach of the photo, with the widest of them; empty: nothing. */
+static struct box find_reach(const struct resample *r, const struct box *tile, const struct chunk *chunk)
+{
+    double left = INFINITY, top = INFINITY, right = -INFINITY, bottom = -INFINITY, wide = 1, high = 1;
+    for (int y = tile->y0; y < tile->y1; y++) {
+        const struct map_row *here = chunk->rows + (y - chunk->first), *below = here + 1;
+        for (int x = tile->x0; x < tile->x1; x++) {
+            const double u = here->u[x], v = here->v[x];
+            if (!(u >= 0 && v >= 0 && u <= r->width && v <= r->height)) continue;
+            const double ru = here->u[x + 1] - u, du = below->u[x] - u, rv = here->v[x + 1] - v, dv = below->v[x] - v;
+            double across = ru * ru + du * du, along = rv * rv + dv * dv;
+            if (isnan(across) || isnan(along)) { /* at the end of the lens */
+                struct photo_point at;
+                double su = 1, sv = 1;
+                find_footprint(r, x, y, here, below, &at, &su, &sv);
+                across = su * su;
+                along = sv * sv;
+            }
+            left = u < left ? u : left;
+            right = u > right ? u : right;
+            top = v < top ? v : top;
+            bottom = v > bottom ? v : bottom;
+            wide = across > wide ? across : wide;
+            high = along > high ? along : high;
+        }
+    }
+    if (left > right) return (struct box){0};
+    const double su = LOBES * fmin(sqrt(wide), MAX_REDUCTION) + 2, sv = LOBES * fmin(sqrt(high), MAX_REDUCTION) + 2;
+    return (struct box){clamp_int((int)(left - su), 0, r->width), clamp_int((int)(top - sv), 0, r->height),
+                        clamp_int((int)(right + su) + BEYOND + 1, 0, r->width),
+                        clamp_int((int)(bottom + sv) + 1, 0, r->height)};
+}
+
+/* Makes a box of the photo linear. */
+static void fill_part(struct part *part, const struct resample *r, const struct box *b)
+{
+    const size_t width = (size_t)(b->x1 - b->x0);
+    part->x0 = b->x0;
+    part->y0 = b->y0;
+    part->linear.width = part->quality.width = b->x1 - b->x0;
+    part->linear.height = part->quality.height = b->y1 - b->y0;
+    for (int y = b->y0; y < b->y1; y++) {
+        const size_t to = (size_t)(y - b->y0) * width;
+        linear_photo_take(r->photo, part->linear.data + 3 * to, part->marked.variance + to, part->marked.marks + to,
+                          (size_t)y * (size_t)r->width + (size_t)b->x0, width);
+    }
+}
+
+static void resample_tile(const struct resample *r, struct part *part, const struct box *tile,
+                          const struct chunk *chunk)
+{
+    if (r->photo) {
+        const struct box reach = find_reach(r, tile, chunk);
+        if (reach.x0 >= reach.x1 || reach.y0 >= reach.y1) return;
+        if ((int64_t)(reach.x1 - reach.x0) * (reach.y1 - reach.y0) > MAX_PART) {
+            struct box half[2] = {*tile, *tile};
+            if (tile->x1 - tile->x0 >= tile->y1 - tile->y0)
+                half[0].x1 = half[1].x0 = tile->x0 + (tile->x1 - tile->x0) / 2;
+            else
+                half[0].y1 = half[1].y0 = tile->y0 + (tile->y1 - tile->y0) / 2;
+            for (int i = 0; i < 2; i++) resample_tile(r, part, &half[i], chunk);
+            return;
+        }
+        fill_part(part, r, &reach);
+        if (r->out_quality) pixel_quality_prepare(&part->quality);
+    }
+    for (int y = tile->y0; y < tile->y1; y++) {
+        const struct map_row *here = chunk->rows + (y - chunk->first);
+        for (int x = tile->x0; x < tile->x1; x++) resample_pixel(r, part, x, y, here, here + 1);
+    }
 }
 
 static void resample_rows(void *ctx, size_t begin, size_t end, int thread)
 {
-    const struct resample *r = ctx;
+    struct resample *r = ctx;
     double *points = r->points + r->points_per_thread * (size_t)thread;
     const size_t row = r->map.row;
-    struct map_row here = {points, points + row}, below = {points + 2 * row, points + 3 * row};
-    const struct map_row knots = {points + 4 * row, points + 4 * row + r->map.knots};
-    photo_map_row(&r->map, (int)begin, &here, &knots);
-    for (int y = (int)begin; y < (int)end; y++) {
-        photo_map_row(&r->map, y + 1, &below, &knots);
-        for (int x = 0; x < r->map.view->width; x++) resample_pixel(r, x, y, &here, &below);
-        const struct map_row done = here;
-        here = below;
-        below = done;
+    const int width = r->map.view->width;
+    struct map_row rows[CHUNK + 1];
+    const struct map_row knots = {points, points + r->map.knots};
+    points += 2 * r->map.knots;
+    for (size_t y = begin; y <= end; y++) {
+        double *at = points + 2 * row * (y - begin);
+        rows[y - begin] = (struct map_row){at, at + row};
+        photo_map_row(&r->map, (int)y, &rows[y - begin], &knots);
+    }
+    const struct chunk chunk = {rows, (int)begin};
+    for (int x = 0; x < width; x += TILE) {
+        const struct box tile = {x, (int)begin, x + TILE < width ? x + TILE : width, (int)end};
+        resample_tile(r, r->photo ? &r->parts[thread] : &r->whole, &tile, &chunk);
     }
 }
 
@@ -308,22 +426,43 @@ static bool same_camera(const struct photo_map *m)
            m->lens->width == m->view->width && m->lens->height == m->view->height;
 }
 
-static void copy_photo(const struct resample *r)
+static void copy_pixels(const struct resample *r, const struct part *part, const struct box *b)
 {
-    for (size_t i = 0; i < (size_t)r->out->width * (size_t)r->out->height; i++) {
-        if (r->masked && r->masked[i]) continue;
-        memcpy(r->out->data + 4 * i, r->photo->data + 3 * i, 3 * sizeof(float));
-        r->out->data[4 * i + 3] = 1;
-        if (!r->out_quality) continue;
-        r->out_quality->variance[i] = r->quality.of->variance[i];
-        r->out_quality->marks[i] = r->quality.of->marks[i];
-    }
+    const struct photo_quality *from = part->quality.of;
+    size_t i = 0;
+    for (int y = b->y0; y < b->y1; y++)
+        for (int x = b->x0; x < b->x1; x++, i++) {
+            const size_t to = (size_t)y * (size_t)r->width + (size_t)x;
+            if (r->masked && r->masked[to]) continue;
+            memcpy(r->out->data + 4 * to, part->linear.data + 3 * i, 3 * sizeof(float));
+            r->out->data[4 * to + 3] = 1;
+            if (!r->out_quality) continue;
+            r->out_quality->variance[to] = from->variance[i];
+            r->out_quality->marks[to] = from->marks[i];
+        }
+}
+
+/* Rows of a view that has the photo's own camera. */
+static void copy_rows(void *ctx, size_t begin, size_t end, int thread)
+{
+    struct resample *r = ctx;
+    for (size_t y = begin; y < end; y++)
+        for (int x = 0; x < r->width; x += MAX_PART) {
+            const int after = r->width - x > MAX_PART ? x + MAX_PART : r->width;
+            const struct box b = {x, (int)y, after, (int)y + 1};
+            fill_part(&r->parts[thread], r, &b);
+            copy_pixels(r, &r->parts[thread], &b);
+        }
 }
 
 static enum status filter_photo(struct resample *r, struct err *err)
 {
+    r->points_per_thread = 2 * (CHUNK + 1) * r->map.row + 2 * r->map.knots;
     const size_t bytes = r->points_per_thread * (size_t)parallel_threads() * sizeof *r->points;
-    if (r->out_quality && pixel_quality_prepare(&r->quality, err)) return err->status;
+    if (!r->photo && r->out_quality) {
+        if (pixel_quality_init(&r->whole.quality, (size_t)r->width * (size_t)r->height, err)) return err->status;
+        pixel_quality_prepare(&r->whole.quality);
+    }
     r->points = malloc(bytes);
     if (!r->points) return err_nomem(err, "rows of a view", bytes);
     make_kernel(r->kernel);
@@ -333,31 +472,66 @@ static enum status filter_photo(struct resample *r, struct err *err)
     return ST_OK;
 }
 
+/* Memory for a part of the photo for each thread. */
+static enum status init_parts(struct resample *r, struct err *err)
+{
+    const int threads = parallel_threads();
+    r->parts = calloc((size_t)threads, sizeof *r->parts);
+    if (!r->parts) return err_nomem(err, "parts of a photo", (size_t)threads * sizeof *r->parts);
+    for (int i = 0; !err->status && i < threads; i++) {
+        struct part *part = &r->parts[i];
+        part->quality.of = &part->marked;
+        if (!image_init(&part->linear, MAX_PART, 1, 3, err) && !photo_quality_init(&part->marked, MAX_PART, 1, err))
+            pixel_quality_init(&part->quality, MAX_PART, err);
+    }
+    return err->status;
+}
+
+static void release_parts(struct resample *r)
+{
+    for (int i = 0; r->parts && i < parallel_threads(); i++) {
+        image_release(&r->parts[i].linear);
+        photo_quality_release(&r->parts[i].marked);
+        pixel_quality_release(&r->parts[i].quality);
+    }
+    free(r->parts);
+    pixel_quality_release(&r->whole.quality);
+}
+
 enum status resample_photo(struct image *out, struct photo_quality *out_quality, const struct resample_source *source,
                            const struct camera *lens, const struct mat3 *photo_from_view, const struct view *view,
                            struct err *err)
 {
-    const struct image *photo = source->linear;
-    struct resample r = {
-        .out = out, .out_quality = source->quality ? out_quality : NULL, .photo = photo, .masked = source->masked};
-    if (photo->width != lens->width || photo->height != lens->height)
+    const struct linear_photo *photo = source->photo;
+    struct resample r = {.out = out,
+                         .out_quality = photo || source->quality ? out_quality : NULL,
+                         .photo = photo,
+                         .width = photo ? photo->width : source->linear->width,
+                         .height = photo ? photo->height : source->linear->height,
+                         .masked = source->masked};
+    if (r.width != lens->width || r.height != lens->height)
         return err_set(err, ST_DATA,
                        "the photo has %d x %d pixels but its camera %d x %d: the photo was replaced after the cameras "
                        "were given; give those of the new photo (SFM) or restore the old one.",
-                       photo->width, photo->height, lens->width, lens->height);
+                       r.width, r.height, lens->width, lens->height);
     photo_map_init(&r.map, lens, photo_from_view, view);
-    r.points_per_thread = 4 * r.map.row + 2 * r.map.knots;
-    r.quality = (struct pixel_quality){.of = source->quality, .width = photo->width, .height = photo->height};
+    if (!photo) r.whole.linear = *source->linear;
+    r.whole.quality = (struct pixel_quality){.of = source->quality, .width = r.width, .height = r.height};
     image_init(out, view->width, view->height, 4, err);
     if (!err->status && r.out_quality) photo_quality_init(r.out_quality, view->width, view->height, err);
-    if (!err->status && same_camera(&r.map))
-        copy_photo(&r);
-    else if (!err->status)
+    if (!err->status && photo) init_parts(&r, err);
+    if (!err->status && same_camera(&r.map)) {
+        if (photo)
+            parallel_for((size_t)r.height, CHUNK, copy_rows, &r);
+        else
+            copy_pixels(&r, &r.whole, &(struct box){0, 0, r.width, r.height});
+    } else if (!err->status) {
         filter_photo(&r, err);
+    }
     if (err->status) {
         image_release(out);
-        photo_quality_release(r.out_quality);
+        photo_quality_release(out_quality);
     }
-    pixel_quality_release(&r.quality);
+    release_parts(&r);
     return err->status;
 }

@@ -6,13 +6,15 @@
 #define REMODEL_RESAMPLE_H
 
 #include "common/capture/camera_set.h"
+#include "common/capture/linear_photo.h"
 #include "common/capture/photo_quality.h"
 #include "common/image/image.h"
 
 struct resample_source {
-    const struct image *linear;          /* R G B of the lens's size */
+    const struct image *linear;          /* R G B of the lens's size, or */
+    const struct linear_photo *photo;    /* one exposure, of which parts are made linear when they are needed */
     const unsigned char *masked;         /* a byte per pixel, not 0 where masked; NULL: no mask */
-    const struct photo_quality *quality; /* of its pixels; NULL: unknown */
+    const struct photo_quality *quality; /* of the pixels of `linear`; NULL: unknown */
 };
 
 /* out gets R G B A of the view's size; A is 1 inside the photo, and A and colour are 0 outside. It is empty on entry,

@@ -9,7 +9,7 @@ names=$(cd tests/fuzz && ls fuzz_*.c | sed 's/^fuzz_//; s/\.c$//' | tr '\n' ' ')
 command -v clang >/dev/null && [ -n "$(find "$(clang -print-resource-dir)" -name 'libclang_rt.fuzzer*' -print -quit)" ] ||
     { echo "Fuzzing needs clang with its run-time library: apt-get install clang libclang-rt-dev libomp-dev" >&2; exit 1; }
 mkdir -p "out/fuzz/$name/found"
-packages="OpenEXR libturbojpeg libpng libtiff-4 libraw_r libexif lcms2 libheif libwebp libwebpdemux libjxl inih libxxhash qhull_r libdeflate"
+packages="OpenEXR libjpeg libturbojpeg libpng libtiff-4 libraw_r libexif lcms2 expat libheif libwebp libwebpdemux libjxl inih libxxhash qhull_r libdeflate"
 # shellcheck disable=SC2086 # a list of packages
 read -ra flags <<<"-std=c11 -D_GNU_SOURCE -O1 -g -fopenmp -fsanitize=fuzzer,address,undefined -I. $(pkg-config --cflags $packages)"
 # the stages whose headers it includes, without their main: an archive, of which the linker takes what is needed

@@ -1,7 +1,7 @@
 # a second compiler and a linter of C: clang's warnings, and clang-tidy
 . tests/lib.sh
 
-packages="OpenEXR libturbojpeg libpng libtiff-4 libraw_r libexif lcms2 libheif libwebp libwebpdemux libjxl inih libxxhash qhull_r libdeflate"
+packages="OpenEXR libjpeg libturbojpeg libpng libtiff-4 libraw_r libexif lcms2 expat libheif libwebp libwebpdemux libjxl inih libxxhash qhull_r libdeflate"
 warnings="-Wall -Wextra -Wshadow -Wstrict-prototypes -Wmissing-prototypes -Wvla -Wpointer-arith -Wwrite-strings"
 warnings+=" -Wreserved-identifier"
 # shellcheck disable=SC2086 # a list of packages

@@ -1,7 +1,7 @@
 # clang's static analyser over all C code; what it looks for, and what is left out, is below
 . tests/lib.sh
 
-packages="OpenEXR libturbojpeg libpng libtiff-4 libraw_r libexif lcms2 libheif libwebp libwebpdemux libjxl inih libxxhash qhull_r libdeflate"
+packages="OpenEXR libjpeg libturbojpeg libpng libtiff-4 libraw_r libexif lcms2 expat libheif libwebp libwebpdemux libjxl inih libxxhash qhull_r libdeflate"
 # shellcheck disable=SC2086 # a list of packages
 CLANG_FLAGS="-std=c11 -D_GNU_SOURCE -ffp-contract=off -I. $(pkg-config --cflags $packages)"
 export CLANG_FLAGS

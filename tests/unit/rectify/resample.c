@@ -702,6 +702,71 @@ static void a_photo_of_another_size_is_refused(void **state)
     image_release(&photo);
 }
 
+/* ------------------------------------------------------------------------------------------------ parts of photos */
+
+/* Samples of 8 bits as samples or bytes, of 16 bits, and of a space of its own. */
+static struct linear_photo stored_photo(int width, int height, int kind)
+{
+    static const struct single_exposure assumed = {30000, 6, 0.95, 0.02};
+    static const struct chromaticities p3 = {{{0.680, 0.320}, {0.265, 0.690}, {0.150, 0.060}, {0.3127, 0.3290}}};
+    struct linear_photo p = {.width = width, .height = height};
+    struct rng rng = rng_make(8, "resample", "stored");
+    struct err err = ERR_INIT;
+    p.photo.info = (struct photo_info){.width = width, .height = height, .bits = kind == 2 ? 16 : 8};
+    assert_ok(photo_init_samples(&p.photo, &err), err);
+    for (int i = 0; i < width * height * 3; i++) /* dark and bright ones are marked */
+        p.photo.samples[i] = (uint16_t)(rng_uniform(&rng, (uint64_t)i, 0) * (kind == 2 ? 65535.99 : 255.99));
+    if (kind == 3) assert_ok(colour_space_from_primaries(&p.photo.space, &p3, 0, 8, "P3", &err), err);
+    if (kind == 1) {
+        p.photo.bytes = malloc((size_t)width * (size_t)height * 3);
+        for (int i = 0; i < width * height * 3; i++) p.photo.bytes[i] = (uint8_t)p.photo.samples[i];
+    }
+    assert_ok(photo_light_init(&p.light, &p.photo, &err), err);
+    photo_quality_judge_init(&p.judge, &p.photo, &assumed);
+    return p;
+}
+
+/* Through its own camera, a distorted lens, reductions so strong that tiles are halved, a turned wide lens. */
+static void parts_give_the_same_picture_as_the_whole(void **state)
+{
+    enum { WIDE = 1500, HIGH = 1100 };
+    const struct single_exposure assumed = {30000, 6, 0.95, 0.02};
+    const struct camera cameras[] = {
+        pinhole(WIDE, HIGH, 1200),
+        {CAMERA_SIMPLE_RADIAL, WIDE, HIGH, {1200, WIDE / 2.0, HIGH / 2.0, -0.1}},
+        pinhole(WIDE, HIGH, 1200),
+        {CAMERA_OPENCV_FISHEYE, WIDE, HIGH, {420, 420, WIDE / 2.0, HIGH / 2.0, 0.01, 0, 0, 0}}};
+    const struct view views[] = {centred_view(WIDE, HIGH, 1200), centred_view(700, 520, 600), centred_view(60, 44, 48),
+                                 centred_view(500, 500, 250)};
+    (void)state;
+    for (int k = 0; k < 4; k++) {
+        struct linear_photo p = stored_photo(WIDE, HIGH, k);
+        const struct mat3 axes = k == 3 ? turn(90, 0, 1, 0) : same_axes;
+        struct image linear, out = {0}, parts = {0};
+        struct photo_quality q = {0}, out_q = {0}, parts_q = {0};
+        struct err err = ERR_INIT;
+        assert_ok(photo_to_linear(&linear, &p.photo, &err), err);
+        assert_ok(photo_quality_of_exposure(&q, &p.photo, &linear, &assumed, &err), err);
+        const struct resample_source whole = {.linear = &linear, .quality = &q}, source = {.photo = &p};
+        assert_ok(resample_photo(&out, &out_q, &whole, &cameras[k], &axes, &views[k], &err), err);
+        assert_ok(resample_photo(&parts, &parts_q, &source, &cameras[k], &axes, &views[k], &err), err);
+        const size_t pixels = (size_t)out.width * (size_t)out.height;
+        int inside = 0;
+        for (size_t i = 0; i < pixels; i++) inside += out.data[4 * i + 3] == 1;
+        assert_true(inside > 0.2 * (double)pixels);
+        assert_memory_equal(out.data, parts.data, pixels * 4 * sizeof(float));
+        assert_memory_equal(out_q.variance, parts_q.variance, pixels * sizeof(float));
+        assert_memory_equal(out_q.marks, parts_q.marks, pixels);
+        image_release(&linear);
+        image_release(&out);
+        image_release(&parts);
+        photo_quality_release(&q);
+        photo_quality_release(&out_q);
+        photo_quality_release(&parts_q);
+        linear_photo_release(&p);
+    }
+}
+
 /* ------------------------------------------------------------------------------------------------------------ masks */
 
 /* With the photo's own camera, a reduction, and a distorted lens: no pixel shows light of the masked part, although
@@ -774,6 +839,7 @@ int main(void)
         cmocka_unit_test(the_smallest_and_the_longest_sizes_are_resampled),
         cmocka_unit_test(the_result_does_not_depend_on_threads),
         cmocka_unit_test(a_photo_of_another_size_is_refused),
+        cmocka_unit_test(parts_give_the_same_picture_as_the_whole),
         cmocka_unit_test(masked_pixels_are_empty),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
