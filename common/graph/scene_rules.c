@@ -29,9 +29,10 @@ const char *scene_photo_source(struct graph *g, const struct scene_facts *f, con
     return f->bracketed ? PATH(g, HDR, .photo = photo) : PATH(g, PHOTO, .photo = photo);
 }
 
-bool scene_matches_photos(struct graph *g)
+bool scene_matches_photos(struct graph *g, const struct scene_facts *f)
 {
     char line[16] = "";
+    if (f->photos.count == 1) return false;
     if (!*scene_setting("SFM")) return true;
     FILE *fp = fopen(graph_shared(g, "stamp/sfm_points.txt"), "re");
     const bool few = fp && fgets(line, sizeof line, fp) && !strncmp(line, "few", 3);

@@ -12,7 +12,7 @@ void rule_photos(struct graph *g, const struct scene_facts *f, const char *optio
 /* What the views of a photo are made from: its merged exposures, or its record, which changes with it. */
 const char *scene_photo_source(struct graph *g, const struct scene_facts *f, const char *photo);
 /* Whether photos are compared with each other: the cameras are found from them, or a given model has no points. */
-bool scene_matches_photos(struct graph *g);
+bool scene_matches_photos(struct graph *g, const struct scene_facts *f);
 /* --masks FOLDER where the scene has masks. */
 void rule_masks(struct graph *g, const struct scene_facts *f);
 

@@ -5,7 +5,7 @@ RULES(choose_pairs)
 {
     graph_step(g, "pairs", STEP_ONE, "features");
     graph_goal(g, "pairs", NULL);
-    if (!scene_matches_photos(g) || !f->photos.count) return;
+    if (!scene_matches_photos(g, f) || !f->photos.count) return;
     graph_goal(g, "pairs", PATH(g, PAIRS));
     graph_rule(g, "all");
     rule_shared(g);

@@ -5,7 +5,7 @@ RULES(extract_features)
 {
     graph_step(g, "features", STEP_FARM, "hdr");
     graph_goal(g, "features", NULL);
-    for (int i = 0; scene_matches_photos(g) && i < f->photos.count; i++) {
+    for (int i = 0; scene_matches_photos(g, f) && i < f->photos.count; i++) {
         const char *photo = f->photos.names[i], *out = PATH(g, FEATURES, .photo = photo);
         const char *mask = graph_text(g, "%s/stamp/mask/%s.txt", f->shared, photo);
         graph_piece(g, "%s", photo);

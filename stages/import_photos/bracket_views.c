@@ -594,10 +594,10 @@ enum status bracket_views_write(const struct bracket_views *v, const struct phot
         photo_scan_remove_others(records, ids, v->count + 1, err);
     }
     for (int i = 0; !err->status && i < v->count; i++) photo_record_write(&list.photos[i], records, err);
-    if (!err->status && v->count < (scan->references ? 1 : 2))
+    if (!err->status && v->count < (scan->references || scan->single ? 1 : 2))
         err_set(err, ST_DATA,
                 "the photos in %s are exposures of %s; a parallax video needs at least 2 views, taken from "
-                "different places.",
+                "different places, or one with its depth (DEPTH).",
                 scan->folder, v->count ? "one view" : "views that are all left out");
     if (!err->status) photo_list_write(&list, records, err);
     photo_list_release(&list);

@@ -221,6 +221,7 @@ static enum status leave_clips_out(struct photo_scan *scan, struct err *err)
 struct places {
     const struct cli_list *photos;
     const char *scene, *like, *split, *cuts, *frames, *out;
+    bool single;
 };
 
 static enum status run(struct photo_scan *scan, const struct places *p, const struct cli_list *exclude,
@@ -240,6 +241,7 @@ static enum status run(struct photo_scan *scan, const struct places *p, const st
     if (!err->status) photo_scan_folder(scan, p->split ? p->cuts : folder, err);
     scan->cut = p->split;
     scan->references = p->like;
+    scan->single = p->single;
     scan->gain_maps = !strcmp(params->gain_map, "yes");
     if (!err->status) {
         exclude_photos(scan, &left);
@@ -272,6 +274,7 @@ int main(int argc, char **argv)
                 "photos"),
         CLI_STR("cuts", &at.cuts, CLI_OPTIONAL, "folder to write these pictures to"),
         CLI_STR("frames", &at.frames, CLI_OPTIONAL, "folder to write frames of clips to"),
+        CLI_FLAG("single", &at.single, "one photo is enough: its depth is given"),
         CLI_STR("out", &at.out, CLI_REQUIRED, "folder to write the records to"),
         CLI_PARAMS(photo_param_table, &params, photo_params_check),
         CLI_END,

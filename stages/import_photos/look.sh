@@ -13,10 +13,12 @@ split=()
 photos=() # a folder, or clips; names with blanks are quoted
 if [ -e "$REMODEL_PHOTOS" ]; then photos=(--photos "$REMODEL_PHOTOS")
 else while IFS= read -r -d '' n; do photos+=(--photos "$n"); done < <(xargs printf '%s\0' <<<"$REMODEL_PHOTOS"); fi
+single=() # with its depth, one photo is enough
+[ -z "${REMODEL_DEPTH-}" ] || single=(--single)
 mode=silent
 [ -e "$folder/photos/list.txt" ] || mode=live
 common/run/run_stage.sh "$mode" import_photos all "$folder" "$bin/import_photos" --config "$folder/slice/import_photos.cfg" \
-    "${photos[@]}" --scene "$scene" "${exclude[@]}" "${split[@]}" --frames "$folder/frames" --out "$folder/photos"
+    "${photos[@]}" --scene "$scene" "${exclude[@]}" "${split[@]}" "${single[@]}" --frames "$folder/frames" --out "$folder/photos"
 [ "$mode" = live ] || grep -h warning: "$folder/log/import_photos.all.log" >&2 || true
 for r in "$folder"/photos/*.txt; do
     [[ ${r##*/} = list.txt || ${r##*/} = brackets.txt ]] || { printf '%s ' "${r##*/}"; grep -E '^(size|orientation) ' "$r" | tr '\n' ' '; echo; }

@@ -529,8 +529,10 @@ enum status photo_scan_write(const struct photo_scan *scan, const char *records,
     int used = photo_scan_used(scan);
     photo_scan_write_records(scan, records, err);
 
-    if (!err->status && used < 2)
-        err_set(err, ST_DATA, "%s contains %s photo%s; a parallax video needs at least 2, taken from different places.",
+    if (!err->status && used < (scan->single ? 1 : 2))
+        err_set(err, ST_DATA,
+                "%s contains %s photo%s; a parallax video needs at least 2, taken from different places, or one with "
+                "its depth (DEPTH).",
                 scan->folder, used ? "one" : "no", used < scan->count ? " besides those left out" : "");
     if (!err->status && !(list.photos = calloc((size_t)scan->count + 1, sizeof *list.photos)))
         err_nomem(err, "a list of photos", (size_t)scan->count * sizeof *list.photos);

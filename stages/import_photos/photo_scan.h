@@ -36,6 +36,7 @@ struct photo_scan {
     int count;
     bool cut;        /* the photos are pictures cut out of others, ID_cXrY.png; set by the caller */
     bool references; /* the photos are lighting reference images; set by the caller */
+    bool single;     /* one photo is enough: its depth is known; set by the caller */
     bool gain_maps;  /* gain maps are applied; set by the caller */
     struct left_out left;
     struct scanned_clip *clips; /* in order of file name */
@@ -64,7 +65,7 @@ enum status photo_scan_refuse_bad(const struct photo_scan *scan, struct err *err
  * `err`). */
 enum status photo_scan_write_records(const struct photo_scan *scan, const char *records, struct err *err);
 
-/* The same, then the list and photos.mk. ST_DATA also for fewer than two photos. */
+/* The same, then the list and photos.mk. ST_DATA also for fewer than two photos, or none if one is enough. */
 enum status photo_scan_write(const struct photo_scan *scan, const char *records, struct err *err);
 
 /* Removes all records in a folder except those of the ids. */

@@ -5,7 +5,7 @@ RULES(judge_photos)
 {
     graph_step(g, "doctor", STEP_ONE, "matches");
     graph_goal(g, "doctor", NULL);
-    if (!scene_matches_photos(g) || !f->photos.count) return;
+    if (!scene_matches_photos(g, f) || !f->photos.count) return;
     graph_goal(g, "doctor", PATH(g, JUDGEMENT));
     graph_rule(g, "all");
     rule_shared(g);

@@ -6,7 +6,7 @@ RULES(match_photos)
 {
     graph_step(g, "matches", STEP_FARM, "pairs");
     graph_goal(g, "matches", NULL);
-    for (int i = 0; scene_matches_photos(g) && i < f->photos.count; i++) {
+    for (int i = 0; scene_matches_photos(g, f) && i < f->photos.count; i++) {
         const char *photo = f->photos.names[i], *out = PATH(g, MATCHES, .photo = photo);
         graph_piece(g, "%s", photo);
         rule_shared(g);

@@ -153,3 +153,27 @@ enum status given_check_fit(bool *fits, float *values, int width, int height, co
     free(p);
     return err->status;
 }
+
+enum status given_check_lone(bool *known, double *farthest, float *values, int width, int height, bool disparity,
+                             struct err *err)
+{
+    const size_t pixels = (size_t)width * (size_t)height;
+    float *sorted = malloc(pixels * sizeof *sorted);
+    size_t count = 0;
+    *known = false;
+    if (!sorted) return err_nomem(err, "given depth", pixels * sizeof *sorted);
+    for (size_t i = 0; i < pixels; i++)
+        if (values[i] > 0) sorted[count++] = values[i];
+    if (count) {
+        sort_floats(sorted, count);
+        const size_t tail = count / 50;
+        const float near = sorted[disparity ? count - 1 - tail : tail],
+                    far = sorted[disparity ? tail : count - 1 - tail];
+        for (size_t i = 0; i < pixels; i++)
+            if (values[i] > 0) values[i] = fminf(disparity ? near / values[i] : values[i] / near, (float)LONE_FARTHEST);
+        *farthest = fmin((double)(disparity ? near / far : far / near), LONE_FARTHEST);
+        *known = true;
+    }
+    free(sorted);
+    return ST_OK;
+}

@@ -17,4 +17,12 @@ enum status given_check_ranks(double *correlation, const float *values, int widt
 enum status given_check_fit(bool *fits, float *values, int width, int height, const struct observed_points *seen,
                             struct err *err);
 
+enum { LONE_FARTHEST = 100 };
+
+/* The same of the only view of a scene, to which no point says anything: z = 1 where the 2 % of the greatest values
+ * begin, at most LONE_FARTHEST elsewhere. Also of depths (disparity false), of which the nearest 2 % end at 1.
+ * *farthest: the depth at which the farthest 2 % begin. False: no value is known. ST_NOMEM. */
+enum status given_check_lone(bool *known, double *farthest, float *values, int width, int height, bool disparity,
+                             struct err *err);
+
 #endif

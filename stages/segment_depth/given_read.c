@@ -85,11 +85,17 @@ static enum status take_samples(struct depth_map *m, const struct given_map *fro
     return ST_OK;
 }
 
-static enum status read_map(struct depth_map *m, const struct given_units *units, const char *folder, struct err *err)
+static enum status read_map(struct depth_map *m, const struct given_units *units, const char *folder, bool lone,
+                            struct err *err)
 {
     struct given_map map = {0};
     if (given_map_read(&map, m->path, err)) return err->status;
-    if (map.whole_numbers && !(units->scale > 0) && units->samples != SAMPLES_DISPARITY)
+    if (lone && map.whole_numbers && !(units->scale > 0) && units->samples == SAMPLES_UNSAID)
+        err_set(err, ST_DATA,
+                "%s holds whole numbers, which may be depth or disparity; write the line \"samples depth\", if the "
+                "greatest are the farthest, or \"samples disparity\" into %s/depth.txt.",
+                m->path, folder);
+    else if (!lone && map.whole_numbers && !(units->scale > 0) && units->samples != SAMPLES_DISPARITY)
         err_set(err, ST_DATA,
                 "%s holds whole numbers of unknown scale; write the line \"scale NUMBER\" into %s/depth.txt, where "
                 "NUMBER times a sample is its depth in scene units.",
@@ -222,7 +228,7 @@ static enum status read_units(struct given_units *u, const char *folder, struct 
     return record(prov, path, "depth", err) || given_units_read(u, path, err) ? err->status : ST_OK;
 }
 
-enum status given_read(struct given *g, const char *folder, const struct view *view, const struct lens *lens,
+enum status given_read(struct given *g, const char *folder, const struct view *view, const struct lens *lens, bool lone,
                        struct provenance *prov, struct err *err)
 {
     struct given_units units = {0};
@@ -230,10 +236,23 @@ enum status given_read(struct given *g, const char *folder, const struct view *v
     struct map_projection projection;
     char *path = NULL;
     *g = (struct given){0};
-    if (given_map_find(&path, folder, view->name, err) || !path) return err->status;
+    char above[FILE_PATH];
+    if (lone && path_is_file(folder)) { /* one file, beside depth.txt */
+        if (!(path = strdup(folder))) return err_nomem(err, "a path", strlen(folder));
+        snprintf(above, sizeof above, "%.*s", (int)(path_file_name(path) - path), path);
+        folder = *above ? above : ".";
+    } else if (given_map_find(&path, folder, view->name, err) || !path) {
+        return err->status;
+    }
     map.path = path;
+    if (!strrchr(path_file_name(path), '.')) {
+        err_set(err, ST_DATA, "%s: the name of a depth map must end in .exr, .png, .pfm, .tif or .tiff.", path);
+        free(path);
+        return err->status;
+    }
     if (!record(prov, path, view->name, err) && !read_units(&units, folder, prov, err) &&
-        !read_map(&map, &units, folder, err) && !choose_projection(&projection, &map, folder, &units, view, lens, err))
+        !read_map(&map, &units, folder, lone, err) &&
+        !choose_projection(&projection, &map, folder, &units, view, lens, err))
         map_to_view(&g->z, &projection, err);
     g->disparity = units.samples == SAMPLES_DISPARITY;
     g->relative = g->disparity && !(units.scale > 0);

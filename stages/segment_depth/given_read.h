@@ -37,9 +37,10 @@ struct given {
     bool disparity, relative;
 };
 
-/* lens: the view's, NULL if it is unknown. ST_DATA: an unreadable file, another aspect ratio, a negative depth, whole
- * numbers without scale. */
-enum status given_read(struct given *g, const char *folder, const struct view *view, const struct lens *lens,
+/* lens: the view's, NULL if it is unknown. lone: the view is the only one of its scene, so that its scale is free, and
+ * `folder` may be a file. ST_DATA: an unreadable file, another aspect ratio, a negative depth, whole numbers without
+ * scale, or of a lone view without a line `samples`. */
+enum status given_read(struct given *g, const char *folder, const struct view *view, const struct lens *lens, bool lone,
                        struct provenance *prov, struct err *err);
 
 #endif

@@ -98,6 +98,20 @@ static enum status check_given(bool *usable, struct given *g, const struct views
     return ST_OK;
 }
 
+/* The depth of the only view of a scene: its scale is free, so that the nearest surfaces are at 1. */
+static enum status scale_lone(struct given *g, const struct views_folder *f, const struct view *view, struct err *err)
+{
+    double farthest = 0;
+    bool known = false;
+    if (given_check_lone(&known, &farthest, g->z, view->width, view->height, g->relative, err)) return err->status;
+    if (known && !f->before)
+        log_note(
+            "%s is the only view, so the scale of its depth is free: the nearest surfaces are taken to be at 1, the "
+            "farthest at %.3g%s",
+            view->name, farthest, farthest >= LONE_FARTHEST ? ", the limit" : "");
+    return ST_OK;
+}
+
 /* *z: the view's given depth; NULL if there is none, or none that may be used. */
 static enum status read_given(void *ctx, int view_idx, float **z, struct err *err)
 {
@@ -105,13 +119,15 @@ static enum status read_given(void *ctx, int view_idx, float **z, struct err *er
     const struct view *view = &f->set->views[view_idx];
     struct lens_list lenses = {0};
     struct given given = {0};
+    const bool lone = f->set->view_count == 1;
     bool usable = true;
     char path[FILE_PATH];
     *z = NULL;
     if (product_path_in(path, f->folder, PRODUCT_LENSES, NULL, err)) return err->status;
     if (!access(path, F_OK)) lens_list_read(&lenses, path, NULL, err);
     const int lens = err->status ? -1 : lens_list_find(&lenses, view->name);
-    if (!err->status) given_read(&given, f->given, view, lens < 0 ? NULL : &lenses.lenses[lens], f->prov, err);
+    if (!err->status) given_read(&given, f->given, view, lens < 0 ? NULL : &lenses.lenses[lens], lone, f->prov, err);
+    if (!err->status && lone && given.z) scale_lone(&given, f, view, err);
     double min_inverse_z = 0, max_inverse_z = 0;
     if (!err->status && given.z &&
         !given_depth_range(&min_inverse_z, &max_inverse_z, given.z, (size_t)view->width * (size_t)view->height)) {
@@ -120,7 +136,7 @@ static enum status read_given(void *ctx, int view_idx, float **z, struct err *er
             log_warn("the given depth of view %s in %s is unknown everywhere (0, NaN or infinite); the view is matched "
                      "as if there were none.",
                      view->name, f->given);
-    } else if (!err->status && given.z) {
+    } else if (!err->status && given.z && !lone) {
         check_given(&usable, &given, f, view_idx, err);
     }
     if (!err->status && usable)

@@ -15,7 +15,7 @@ RULES(sfm)
     rule_photos(g, f, "--photos");
     rule_option(g, "--records", FOLDER(g, PHOTO_LIST));
     rule_option(g, "--out", FOLDER(g, SFM_MODELS));
-    if (scene_matches_photos(g)) {
+    if (scene_matches_photos(g, f)) {
         rule_needs_set(g, "features");
         rule_needs_set(g, "matches");
         rule_option(g, "--features", FOLDER(g, FEATURES, .photo = ""));

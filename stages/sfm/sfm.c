@@ -1,6 +1,6 @@
 /* sfm.c - finds the cameras of the photographs with COLMAP, or imports an existing model.
  *
- * reads   PHOTOS/FILE, RECORDS/list.txt, ID.txt    the photos and their records
+ * reads   PHOTOS/FILE, RECORDS/list.txt, ID.txt    the photos and their records; of one photo these alone
  *         FEATURES/ID.txt, MATCHES/ID.txt          their features and matches
  *         MODEL                                    a model of COLMAP or another program (user_model.h)
  * writes  OUT/N/{cameras,images,points3D}.txt      the models; images have the photos' file names
@@ -16,6 +16,7 @@
 
 #include "common/base/cli.h"
 #include "stages/sfm/run_colmap.h"
+#include "stages/sfm/single_photo.h"
 #include "stages/sfm/transforms_model.h"
 #include "stages/sfm/user_model.h"
 
@@ -30,8 +31,10 @@ static enum status run(const struct sfm_input *given, const char *records, const
     if (!photo_list_read(&list, records, err)) sfm_folder_open(&folder, out, err);
     if (!err->status && model)
         user_model_add(&folder, model, &in, prov, err);
+    else if (!err->status && list.count == 1)
+        single_photo_add(&folder, &list, in.params, prov, err);
     else if (!err->status && (!in.features || !in.matches))
-        err_set(err, ST_USAGE, "--features and --matches are required unless --model is given.");
+        err_set(err, ST_USAGE, "--features and --matches are required unless --model is given or there is one photo.");
     else if (!err->status)
         run_colmap(&folder, &in, prov, err);
     if (!err->status) sfm_folder_commit(&folder, &list, prov, err);

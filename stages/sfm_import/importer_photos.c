@@ -48,7 +48,7 @@ enum status importer_match_photos(struct importer *imp, struct import_stats *sta
                 "none of the model's %d images (\"%s\", ...) is named like a photo of the scene (\"%s\", ...); use the "
                 "model of these photos.",
                 imp->in->image_count, imp->in->images[0].name, photos->count ? photos->photos[0].file : "");
-    if (!err->status && stats->registered < 2)
+    if (!err->status && stats->registered < 2 && photos->count > 1) /* of one photo the depth is given */
         err_set(
             err, ST_DATA,
             "the model places only %d of %d photos, and depth needs at least 2; take more photos, a step apart, each "

@@ -81,7 +81,7 @@ static float *read_for(const struct view *view, const struct lens *lens)
     struct provenance prov = {0};
     struct err err = ERR_INIT;
     struct given given;
-    assert_ok(given_read(&given, scratch, view, lens, &prov, &err), err);
+    assert_ok(given_read(&given, scratch, view, lens, false, &prov, &err), err);
     float *z = given.z;
     if (z) assert_true(prov.count > 0 && !strncmp(prov.inputs[0].name, "given/v.", 8));
     provenance_release(&prov);
@@ -93,7 +93,7 @@ static void refused(const struct view *view, const struct lens *lens, const char
     struct provenance prov = {0};
     struct err err = ERR_INIT;
     struct given given;
-    given_read(&given, scratch, view, lens, &prov, &err);
+    given_read(&given, scratch, view, lens, false, &prov, &err);
     assert_null(given.z);
     assert_err(err, ST_DATA, message);
     assert_contains(err.text, more);
@@ -341,17 +341,17 @@ static void disparity_is_divided_into_the_scale(void **state)
     struct given given;
     write_exr(W, H, names, 1, EXR_FLOAT, ramp);
     scratch_write("depth.txt", "samples disparity\nscale 120\n");
-    assert_ok(given_read(&given, scratch, &view, NULL, &prov, &err), err);
+    assert_ok(given_read(&given, scratch, &view, NULL, false, &prov, &err), err);
     assert_true(given.disparity && !given.relative);
     for (int i = 0; i < W * H; i++) assert_true(given.z[i] == (float)(120.0 / (2 + i % W + 100 * (i / W))));
     free(given.z);
     scratch_write("depth.txt", "samples disparity\n");
-    assert_ok(given_read(&given, scratch, &view, NULL, &prov, &err), err);
+    assert_ok(given_read(&given, scratch, &view, NULL, false, &prov, &err), err);
     assert_true(given.disparity && given.relative);
     assert_true(given.z[W + 1] == 103);
     free(given.z);
     scratch_write("depth.txt", "samples depth\n");
-    assert_ok(given_read(&given, scratch, &view, NULL, &prov, &err), err);
+    assert_ok(given_read(&given, scratch, &view, NULL, false, &prov, &err), err);
     assert_true(!given.disparity && !given.relative && given.z[W + 1] == 103);
     free(given.z);
     provenance_release(&prov);
