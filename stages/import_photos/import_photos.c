@@ -10,6 +10,7 @@
  *                        brackets.txt; then list.txt and photos.mk with the views
  *         --frames DIR   CLIP_fN.png, frames of the clips, and links to the photos; then frames.txt. Without clips
  *                        these are removed
+ *         --depth DIR    ID.pfm and depth.txt, of a lone HEIC or AVIF that carries its depth; otherwise removed
  *         --cuts DIR     with --split: ID_cXrY.png, the pictures; then split.txt
  *
  * Each file is rewritten only if its text changes, so that Make sees which photos changed. All photos that cannot be
@@ -25,6 +26,7 @@
 #include "stages/import_photos/bracket_views.h"
 #include "stages/import_photos/clip_frames.h"
 #include "stages/import_photos/panorama.h"
+#include "stages/import_photos/portrait_depth.h"
 #include "stages/import_photos/split_photos.h"
 
 /* The stage never writes to the user's folder. */
@@ -217,10 +219,27 @@ static enum status leave_clips_out(struct photo_scan *scan, struct err *err)
     return err->status;
 }
 
+/* A lone portrait brings its depth with it. */
+static enum status take_depth(struct photo_scan *scan, const char *out, struct err *err)
+{
+    const struct scanned_photo *only = NULL;
+    bool taken = false;
+    char path[FILE_PATH];
+    for (int i = 0; i < scan->count; i++)
+        if (!scan->photos[i].excluded) only = &scan->photos[i];
+    if (only && photo_scan_used(scan) == 1 && !only->err.status && only->kind == PHOTO_KIND_HEIF && !scan->single &&
+        !file_path(path, scan->folder, only->file, "", err))
+        portrait_depth_take(&taken, path, only->id, out, err);
+    if (!err->status) portrait_depth_remove(taken ? only->id : NULL, out, err);
+    if (!err->status && taken) log_note("%s carries its depth, from which a film is made", only->file);
+    scan->single |= taken;
+    return err->status;
+}
+
 /* Where the stage reads and writes. */
 struct places {
     const struct cli_list *photos;
-    const char *scene, *like, *split, *cuts, *frames, *out;
+    const char *scene, *like, *split, *cuts, *frames, *depth, *out;
     bool single;
 };
 
@@ -246,7 +265,7 @@ static enum status run(struct photo_scan *scan, const struct places *p, const st
     if (!err->status) {
         exclude_photos(scan, &left);
         if (!framed) leave_clips_out(scan, err);
-        if (!err->status && !photo_scan_check(scan, p->out, err))
+        if (!err->status && !photo_scan_check(scan, p->out, err) && !(p->depth && take_depth(scan, p->depth, err)))
             import(scan, p->scene, p->like, &left, p->out, params, err);
     }
     report_scan(scan);
@@ -274,6 +293,8 @@ int main(int argc, char **argv)
                 "photos"),
         CLI_STR("cuts", &at.cuts, CLI_OPTIONAL, "folder to write these pictures to"),
         CLI_STR("frames", &at.frames, CLI_OPTIONAL, "folder to write frames of clips to"),
+        CLI_STR("depth", &at.depth, CLI_OPTIONAL,
+                "folder to write the depth to that the only photo, a portrait, carries"),
         CLI_FLAG("single", &at.single, "one photo is enough: its depth is given"),
         CLI_STR("out", &at.out, CLI_REQUIRED, "folder to write the records to"),
         CLI_PARAMS(photo_param_table, &params, photo_params_check),

@@ -18,7 +18,7 @@ single=() # with its depth, one photo is enough
 mode=silent
 [ -e "$folder/photos/list.txt" ] || mode=live
 common/run/run_stage.sh "$mode" import_photos all "$folder" "$bin/import_photos" --config "$folder/slice/import_photos.cfg" \
-    "${photos[@]}" --scene "$scene" "${exclude[@]}" "${split[@]}" "${single[@]}" --frames "$folder/frames" --out "$folder/photos"
+    "${photos[@]}" --scene "$scene" "${exclude[@]}" "${split[@]}" "${single[@]}" --depth "$folder/photo_depth" --frames "$folder/frames" --out "$folder/photos"
 [ "$mode" = live ] || grep -h warning: "$folder/log/import_photos.all.log" >&2 || true
 for r in "$folder"/photos/*.txt; do
     [[ ${r##*/} = list.txt || ${r##*/} = brackets.txt ]] || { printf '%s ' "${r##*/}"; grep -E '^(size|orientation) ' "$r" | tr '\n' ' '; echo; }

@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
-# look.sh BIN S - the depth files of DEPTH, or of the model in SFM, in S/stamp/given, each with the checksum of the file that gives their units. Which view
+# look.sh BIN S - the depth files of DEPTH, of the model in SFM, or of a portrait, in S/stamp/given, each with the checksum of the file that gives their units. Which view
 # a file belongs to is known only when there are views.
 set -euo pipefail
 folder=$2
 . common/run/keep.sh
 depth=${REMODEL_DEPTH-}
 [ -n "$depth" ] || [ ! -d "$folder/sfm_depth" ] || depth=$folder/sfm_depth
+[ -n "$depth" ] || [ ! -d "$folder/photo_depth" ] || depth=$folder/photo_depth
 # maps DIR LIST: "ID CKSUM SIZE FILE" of the depth files in DIR, whose names, extensions too, may differ from the ids in LIST in capitals
 maps()
 {

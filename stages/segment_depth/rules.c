@@ -52,6 +52,8 @@ static void view_rule(struct graph *g, const struct scene_facts *f, const char *
         rule_variable(g, "--given", "DEPTH");
     else if (path_is_folder(graph_shared(g, "sfm_depth")))
         rule_option(g, "--given", graph_shared(g, "sfm_depth"));
+    else if (path_is_folder(graph_shared(g, "photo_depth")))
+        rule_option(g, "--given", graph_shared(g, "photo_depth"));
     rule_option(g, "--out", out);
     rule_option(g, "--deps", deps);
     graph_goal(g, r->goal, out);

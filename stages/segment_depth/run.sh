@@ -2,8 +2,8 @@
 
 check_segment_depth()
 {
-    [ -z "${REMODEL_DEPTH-}" ] || [ -d "$REMODEL_DEPTH" ] ||
-        usage "DEPTH=$REMODEL_DEPTH is not a folder. Give the folder that holds VIEW.exr, .png, .pfm, .tif or .tiff, the depth of views."
+    [ -z "${REMODEL_DEPTH-}" ] || [ -d "$REMODEL_DEPTH" ] || [ -f "$REMODEL_DEPTH" ] ||
+        usage "DEPTH=$REMODEL_DEPTH is not a folder. Give the folder that holds VIEW.exr, .png, .pfm, .tif or .tiff, the depth of views, or, of one photo, the file."
 }
 
 # says which views have a file in DEPTH, and which files belong to no view
@@ -11,6 +11,7 @@ report_given_depth()
 {
     local views held of_views=0 of_held=0 of_none='' f depth=${REMODEL_DEPTH-}
     [ -n "$depth" ] || [ ! -d "$S/sfm_depth" ] || depth=$S/sfm_depth
+    [ -n "$depth" ] || [ ! -d "$S/photo_depth" ] || depth=$S/photo_depth
     [ -n "$depth" ] || return 0
     views=$(sed 's/^VIEWS :=//' "$O/views/views.mk")
     held=$([ ! -e "$O/holdout/views/views.mk" ] || sed 's/^VIEWS :=//' "$O/holdout/views/views.mk")
