@@ -5,4 +5,4 @@ VARIABLES.segment_depth := DEPTH
 HELP.depth := + layered depth maps
 HELP.model_depth := + depth maps of a scene with a model, which fill what no photo shows with the faces behind it
 
-## DEPTH=DIR: depth that is known already: DIR/VIEW.exr or .png of any view (docs/formats.md); the others are matched
+## DEPTH=DIR: depth that is known already: DIR/VIEW.exr or .png of any view (docs/formats.md); the others are matched. Of one photo, the file

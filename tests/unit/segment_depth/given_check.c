@@ -109,13 +109,40 @@ static void depth_is_no_disparity(void **state)
     assert_false(fits);
 }
 
+/* The only view: 49 of 50 of 2 % are cut at either end of an even ramp from 10 to 40 with two wild values. */
+static void the_only_view_has_a_free_scale(void **state)
+{
+    enum { N = 1000 };
+    float own[N];
+    struct err err = ERR_INIT;
+    (void)state;
+    for (int disparity = 0; disparity < 2; disparity++) {
+        bool known = false;
+        double farthest = 0;
+        for (int i = 0; i < N; i++) own[i] = i < 2 ? 0 : 10 + 30 * (float)(i - 2) / (N - 3); /* two are unknown */
+        own[N - 1] = 1e6f;
+        own[2] = 1e-3f;
+        const double low = 10 + 30 * 19 / 997.0, high = 10 + 30 * 978 / 997.0; /* of 998 known ones, 19 at either end */
+        assert_ok(given_check_lone(&known, &farthest, own, N / 10, 10, disparity, &err), err);
+        assert_true(known);
+        assert_float_equal(farthest, high / low, 1e-4 * high / low);
+        assert_true(own[0] == 0 && own[1] == 0);
+        assert_float_equal(own[500], disparity ? high / (10 + 30 * 498 / 997.0) : (10 + 30 * 498 / 997.0) / low, 1e-4);
+        assert_true(own[disparity ? 2 : N - 1] == LONE_FARTHEST); /* as far as it may be */
+    }
+    bool known = true;
+    double farthest = 0;
+    memset(own, 0, sizeof own);
+    assert_ok(given_check_lone(&known, &farthest, own, N / 10, 10, true, &err), err);
+    assert_false(known);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(ranks_tell_depth_from_disparity),
-        cmocka_unit_test(the_correlation_is_spearmans),
-        cmocka_unit_test(relative_disparity_becomes_depth),
-        cmocka_unit_test(depth_is_no_disparity),
+        cmocka_unit_test(ranks_tell_depth_from_disparity),  cmocka_unit_test(the_correlation_is_spearmans),
+        cmocka_unit_test(relative_disparity_becomes_depth), cmocka_unit_test(depth_is_no_disparity),
+        cmocka_unit_test(the_only_view_has_a_free_scale),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -357,6 +357,37 @@ static void disparity_is_divided_into_the_scale(void **state)
     provenance_release(&prov);
 }
 
+/* The only view of a scene may have its depth in one file of any name, without a scale but with its kind. */
+static void the_only_view_takes_one_file(void **state)
+{
+    (void)state;
+    const struct view view = view_of(W, H, 40);
+    const char *const names[] = {"Z"};
+    struct provenance prov = {0};
+    struct err err = ERR_INIT, unsaid = ERR_INIT, bare = ERR_INIT;
+    struct given given;
+    write_exr(W, H, names, 1, EXR_FLOAT, ramp);
+    assert_int_equal(rename(scratch_path("v.exr"), scratch_path("any.exr")), 0);
+    scratch_write("depth.txt", "samples disparity\n");
+    assert_ok(given_read(&given, scratch_path("any.exr"), &view, NULL, true, &prov, &err), err);
+    assert_true(given.disparity && given.relative && given.z[W + 1] == 103);
+    assert_string_equal(prov.inputs[0].name, "given/v.exr");
+    free(given.z);
+    scratch_write("bare", "");
+    given_read(&given, scratch_path("bare"), &view, NULL, true, &prov, &bare);
+    assert_err(bare, ST_DATA, "the name of a depth map must end in");
+
+    write_png16(W, H, false);
+    scratch_write("depth.txt", "samples depth\n");
+    assert_ok(given_read(&given, scratch_path("v.png"), &view, NULL, true, &prov, &err), err);
+    assert_true(!given.relative && given.z);
+    free(given.z);
+    unlink(scratch_path("depth.txt"));
+    given_read(&given, scratch_path("v.png"), &view, NULL, true, &prov, &unsaid);
+    assert_err(unsaid, ST_DATA, "holds whole numbers, which may be depth or disparity");
+    provenance_release(&prov);
+}
+
 static void errors_in_depth_txt_name_their_line(void **state)
 {
     (void)state;
@@ -404,6 +435,7 @@ int main(void)
         cmocka_unit_test_setup(depth_of_a_photo_is_mapped_through_its_lens, empty_folder),
         cmocka_unit_test_setup(depth_is_converted_to_a_rotated_views_axis, empty_folder),
         cmocka_unit_test_setup(disparity_is_divided_into_the_scale, empty_folder),
+        cmocka_unit_test_setup(the_only_view_takes_one_file, empty_folder),
         cmocka_unit_test_setup(errors_in_depth_txt_name_their_line, empty_folder),
     };
     return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
