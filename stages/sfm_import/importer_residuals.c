@@ -152,8 +152,10 @@ static void warn_about_lens(const struct importer *imp, const struct lens_fit *f
 enum status importer_judge_errors(const struct importer *imp, const struct import_stats *stats, struct err *err)
 {
     if (!stats->observations) {
-        log_warn("%s; depth estimation will have no starting points",
-                 imp->in->point_count ? "these photos observe none of the model's points" : "the model has no points");
+        if (imp->photos->count > 1) /* of one photo the depth is given */
+            log_warn("%s; depth estimation will have no starting points",
+                     imp->in->point_count ? "these photos observe none of the model's points"
+                                          : "the model has no points");
         warn_about_lens(imp, &stats->lens);
         return ST_OK;
     }

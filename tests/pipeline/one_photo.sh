@@ -25,6 +25,7 @@ disparity_of_a_folder_and_of_a_file()
 {
     scene two; cp "$one" two/photos/me.jpg; mkdir two/depth; ramp two/depth/me.pfm 10 40; echo 'samples disparity' >two/depth/depth.txt
     m two DEPTH=two/depth depth || { cat log; fail "make depth"; }
+    ! grep -q "starting points" log || fail "points are missed where none can be"
     grep -qF "an ordinary angle of view is taken, 60 degrees" log || { cat log; fail "nothing says which lens was taken"; }
     # a hundredth of 10 to 40 at either end: 39.4 / 10.6
     grep -qE "the nearest surfaces are taken to be at 1, the farthest at 3.7" out/two/log/segment_depth.me.log || { cat out/two/log/segment_depth.me.log; fail "nothing says which range was taken"; }

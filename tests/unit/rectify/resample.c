@@ -705,25 +705,24 @@ static void a_photo_of_another_size_is_refused(void **state)
 /* ------------------------------------------------------------------------------------------------ parts of photos */
 
 /* Samples of 8 bits as samples or bytes, of 16 bits, and of a space of its own. */
-static struct linear_photo stored_photo(int width, int height, int kind)
+static void store_photo(struct linear_photo *p, int width, int height, int kind)
 {
     static const struct single_exposure assumed = {30000, 6, 0.95, 0.02};
     static const struct chromaticities p3 = {{{0.680, 0.320}, {0.265, 0.690}, {0.150, 0.060}, {0.3127, 0.3290}}};
-    struct linear_photo p = {.width = width, .height = height};
     struct rng rng = rng_make(8, "resample", "stored");
     struct err err = ERR_INIT;
-    p.photo.info = (struct photo_info){.width = width, .height = height, .bits = kind == 2 ? 16 : 8};
-    assert_ok(photo_init_samples(&p.photo, &err), err);
+    *p = (struct linear_photo){.width = width, .height = height};
+    p->photo.info = (struct photo_info){.width = width, .height = height, .bits = kind == 2 ? 16 : 8};
+    assert_ok(photo_init_samples(&p->photo, &err), err);
     for (int i = 0; i < width * height * 3; i++) /* dark and bright ones are marked */
-        p.photo.samples[i] = (uint16_t)(rng_uniform(&rng, (uint64_t)i, 0) * (kind == 2 ? 65535.99 : 255.99));
-    if (kind == 3) assert_ok(colour_space_from_primaries(&p.photo.space, &p3, 0, 8, "P3", &err), err);
+        p->photo.samples[i] = (uint16_t)(rng_uniform(&rng, (uint64_t)i, 0) * (kind == 2 ? 65535.99 : 255.99));
+    if (kind == 3) assert_ok(colour_space_from_primaries(&p->photo.space, &p3, 0, 8, "P3", &err), err);
     if (kind == 1) {
-        p.photo.bytes = malloc((size_t)width * (size_t)height * 3);
-        for (int i = 0; i < width * height * 3; i++) p.photo.bytes[i] = (uint8_t)p.photo.samples[i];
+        p->photo.bytes = malloc((size_t)width * (size_t)height * 3);
+        for (int i = 0; i < width * height * 3; i++) p->photo.bytes[i] = (uint8_t)p->photo.samples[i];
     }
-    assert_ok(photo_light_init(&p.light, &p.photo, &err), err);
-    photo_quality_judge_init(&p.judge, &p.photo, &assumed);
-    return p;
+    assert_ok(photo_light_init(&p->light, &p->photo, &err), err);
+    photo_quality_judge_init(&p->judge, &p->photo, &assumed);
 }
 
 /* Through its own camera, a distorted lens, reductions so strong that tiles are halved, a turned wide lens. */
@@ -740,7 +739,8 @@ static void parts_give_the_same_picture_as_the_whole(void **state)
                                  centred_view(500, 500, 250)};
     (void)state;
     for (int k = 0; k < 4; k++) {
-        struct linear_photo p = stored_photo(WIDE, HIGH, k);
+        struct linear_photo p;
+        store_photo(&p, WIDE, HIGH, k);
         const struct mat3 axes = k == 3 ? turn(90, 0, 1, 0) : same_axes;
         struct image linear, out = {0}, parts = {0};
         struct photo_quality q = {0}, out_q = {0}, parts_q = {0};
