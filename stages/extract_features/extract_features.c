@@ -13,6 +13,7 @@
 #include "common/base/log.h"
 #include "common/capture/opencv_sift.h"
 #include "common/capture/photo_mask.h"
+#include "common/image/luma.h"
 #include "stages/extract_features/features_params.h"
 
 #define PARAM_STRUCT struct features_params
@@ -24,13 +25,6 @@ struct extraction {
     struct features_params params;
 };
 
-/* Rec. 709 luma of 8 bits. */
-static unsigned char luma_of(unsigned r, unsigned g, unsigned b)
-{
-    const unsigned luma = (218 * r + 732 * g + 74 * b + 512) >> 10;
-    return (unsigned char)(luma > 255 ? 255 : luma);
-}
-
 static unsigned char *grey_of_spaced(const struct photo *p, struct err *err)
 {
     const size_t pixels = (size_t)p->info.width * (size_t)p->info.height;
@@ -40,7 +34,7 @@ static unsigned char *grey_of_spaced(const struct photo *p, struct err *err)
         err_nomem(err, "a grey picture", 4 * pixels);
     else if (!photo_to_linear(&linear, p, err))
         image_to_srgb8(&linear, rgb);
-    for (size_t i = 0; !err->status && i < pixels; i++) grey[i] = luma_of(rgb[3 * i], rgb[3 * i + 1], rgb[3 * i + 2]);
+    for (size_t i = 0; !err->status && i < pixels; i++) grey[i] = luma_of(rgb + 3 * i);
     image_release(&linear);
     free(rgb);
     if (err->status) {
@@ -58,11 +52,7 @@ static unsigned char *grey_of(const struct photo *p, struct err *err)
     if (p->space) return grey_of_spaced(p, err);
     unsigned char *grey = malloc(pixels);
     if (!grey) err_nomem(err, "a grey picture", pixels);
-    for (size_t i = 0; grey && i < pixels; i++) {
-        const uint16_t *s = p->samples + 3 * i;
-        const unsigned luma = 218u * s[0] + 732u * s[1] + 74u * s[2] + (512u << shift);
-        grey[i] = (unsigned char)(luma >> (10 + shift) > 255 ? 255 : luma >> (10 + shift));
-    }
+    for (size_t i = 0; grey && i < pixels; i++) grey[i] = luma_of_samples(p->samples + 3 * i, shift);
     return grey;
 }
 

@@ -4,6 +4,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "common/image/luma.h"
+
 enum { TENTHS = 10, MAX_WIDTH = 40, BINS = TENTHS * MAX_WIDTH };
 enum { MIN_EDGES = 200 }; /* in a direction, to tell a width */
 enum { MIN_HEIGHT = 36 }; /* of an edge; the luma is 0 to 255 */
@@ -57,11 +59,6 @@ static double quartile(const struct edge_widths *w)
     return MAX_WIDTH;
 }
 
-static unsigned char luma_at(const unsigned char *rgb)
-{
-    return (unsigned char)((218u * rgb[0] + 732u * rgb[1] + 74u * rgb[2] + 512u) >> 10);
-}
-
 /* Whether a square of a sixteenth of the shorter side, with this corner, is black. */
 static bool is_black(const unsigned char *luma, int width, int height, bool right, bool bottom)
 {
@@ -82,7 +79,7 @@ void photo_measures_take(struct photo_measures *m, const unsigned char *rgb, int
     long long bright = 0, dark = 0;
     for (size_t i = 0; i < pixels; i++) {
         const unsigned char *c = rgb + 3 * i;
-        luma[i] = luma_at(c);
+        luma[i] = luma_of(c);
         bright += c[0] >= WHITE && c[1] >= WHITE && c[2] >= WHITE;
         dark += luma[i] <= BLACK;
     }
