@@ -65,6 +65,8 @@ static enum status choose_frames(struct chosen_frames *chosen, int *frames, cons
     if (!err->status && !frame_choice_begin(&choice, width, height, err) &&
         !look_at(clip, choice, grey, width, height, frames, err))
         frame_choice_end(chosen, choice, most, err);
+    if (!err->status && clip_is_interlaced(clip))
+        log_note("%s is interlaced; every other row of its frames is used", path_file_name(path));
     frame_choice_release(choice);
     clip_close(clip);
     free(grey);
@@ -161,6 +163,12 @@ static enum status check_movement(const struct clip *c, const struct chosen_fram
                                   const char *path, struct err *err)
 {
     if (c->count > 1) return ST_OK;
+    if (alone && !c->count)
+        return err_set(
+            err, ST_DATA,
+            "%s: none of its %d frames shows enough texture to follow; film something with texture, in enough "
+            "light.",
+            path, frames);
     if (alone)
         return err_set(
             err, ST_DATA,

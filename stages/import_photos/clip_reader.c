@@ -6,6 +6,9 @@
  * as in HEIC. A clip that does not state its matrix has that of BT.601 if it has fewer than 720 rows, as players
  * assume.
  *
+ * Interlaced frames show two moments, in even and odd rows. The even rows are used; the odd ones are interpolated, so that
+ * all pictures of a clip lie half a pixel lower than they should, all alike.
+ *
  * Damage. A decoder hides damage by repeating older pictures. Such a frame would be taken for a photo, so that a clip
  * with a damaged frame is refused. */
 #include "stages/import_photos/clip_reader.h"
@@ -24,7 +27,6 @@
 #include <libavutil/pixdesc.h>
 #include <libswscale/swscale.h>
 
-#include "common/base/log.h"
 #include "common/base/parallel.h"
 #include "common/image/photo_formats.h"
 
@@ -41,6 +43,8 @@ struct clip_reader {
     bool drained;         /* the decoder was told that there are no more packets */
     int next;             /* number of the next frame */
     double seconds;       /* of the present frame */
+    double shown;         /* to when the packets are shown that were read */
+    bool interlaced;      /* a frame is */
     int turn[4];          /* from stored to upright: x' = turn[0] x + turn[1] y, y' = turn[2] x + turn[3] y */
     int width, height;    /* of the upright picture */
     struct photo_info of; /* what the file says of its camera */
@@ -193,6 +197,13 @@ enum status clip_open(struct clip_reader **clip, const char *path, struct err *e
 
 /* --------------------------------------------------------------------------------------------------------- decoding */
 
+/* Since the clip began. */
+static double seconds_of(const struct clip_reader *c, int64_t time)
+{
+    const int64_t begin = c->stream->start_time == AV_NOPTS_VALUE ? 0 : c->stream->start_time;
+    return (double)(time - begin) * av_q2d(c->stream->time_base);
+}
+
 /* Gives the decoder the stream's next packet, or the end. */
 static enum status feed(struct clip_reader *c, struct err *err)
 {
@@ -204,17 +215,28 @@ static enum status feed(struct clip_reader *c, struct err *err)
     }
     if (code < 0) return damaged(c, code, err);
     const bool ours = c->packet->stream_index == c->stream->index, whole = !(c->packet->flags & AV_PKT_FLAG_CORRUPT);
+    if (ours && c->packet->pts != AV_NOPTS_VALUE && c->packet->duration > 0)
+        c->shown = fmax(c->shown, seconds_of(c, c->packet->pts + c->packet->duration));
     if (ours && whole) code = avcodec_send_packet(c->decoder, c->packet);
     av_packet_unref(c->packet);
     return ours && (!whole || code < 0) ? damaged(c, code, err) : ST_OK;
 }
 
-/* The last packet of a file that was cut off may be whole. */
+/* The last packet of a file that was cut off may be whole. A whole file may show its last frame for long. */
 static enum status check_end(const struct clip_reader *c, struct err *err)
 {
     const double wanted = c->stream->duration > 0 ? (double)c->stream->duration * av_q2d(c->stream->time_base) : 0;
     const double frame = c->next > 1 ? c->seconds / (c->next - 1) : 0;
-    return c->next && c->seconds + 1.5 * frame + 0.5 < wanted ? damaged(c, AVERROR_EOF, err) : ST_OK;
+    return c->next && fmax(c->shown, c->seconds + 1.5 * frame) + 0.5 < wanted ? damaged(c, AVERROR_EOF, err) : ST_OK;
+}
+
+static bool is_interlaced(const AVFrame *f)
+{
+#ifdef AV_FRAME_FLAG_INTERLACED
+    return f->flags & AV_FRAME_FLAG_INTERLACED && f->height > 1;
+#else
+    return f->interlaced_frame && f->height > 1;
+#endif
 }
 
 bool clip_next(struct clip_reader *c, struct clip_frame *frame, struct err *err)
@@ -234,14 +256,15 @@ bool clip_next(struct clip_reader *c, struct clip_frame *frame, struct err *err)
         damaged(c, code, err);
         return false;
     }
-    const int64_t begin = c->stream->start_time == AV_NOPTS_VALUE ? 0 : c->stream->start_time;
-    if (c->frame->best_effort_timestamp != AV_NOPTS_VALUE)
-        c->seconds = (double)(c->frame->best_effort_timestamp - begin) * av_q2d(c->stream->time_base);
+    if (c->frame->best_effort_timestamp != AV_NOPTS_VALUE) c->seconds = seconds_of(c, c->frame->best_effort_timestamp);
+    c->interlaced |= is_interlaced(c->frame);
     *frame = (struct clip_frame){c->next++, c->seconds};
     return true;
 }
 
 /* --------------------------------------------------------------------------------------------------------- pictures */
+
+bool clip_is_interlaced(const struct clip_reader *c) { return c->interlaced; }
 
 void clip_size(const struct clip_reader *c, int longest, int *width, int *height)
 {
@@ -265,12 +288,14 @@ static enum status scale_frame(const struct clip_reader *c, struct SwsContext **
 {
     const AVFrame *f = c->frame;
     const int *matrix = sws_getCoefficients(SWS_CS_DEFAULT);
-    *scaler = sws_getCachedContext(*scaler, f->width, f->height, f->format, width, height, format, method | SCALING,
-                                   NULL, NULL, NULL);
+    const int every = is_interlaced(f) ? 2 : 1, rows = (f->height + every - 1) / every;
+    int from[4];
+    for (int i = 0; i < 4; i++) from[i] = every * f->linesize[i];
+    *scaler = sws_getCachedContext(*scaler, f->width, rows, f->format, width, height, format, method | SCALING, NULL,
+                                   NULL, NULL);
     if (!*scaler) return no_scaler(c, err);
     sws_setColorspaceDetails(*scaler, matrix, 1, matrix, 1, 0, 1 << 16, 1 << 16); /* both "full": as they are */
-    if (sws_scale(*scaler, (const uint8_t *const *)f->data, f->linesize, 0, f->height, to, stride) < 0)
-        return no_scaler(c, err);
+    if (sws_scale(*scaler, (const uint8_t *const *)f->data, from, 0, rows, to, stride) < 0) return no_scaler(c, err);
     return ST_OK;
 }
 

@@ -22,6 +22,9 @@ enum status clip_open(struct clip_reader **clip, const char *path, struct err *e
 /* Decodes the next frame; false at the end. ST_DATA: the file is damaged or cut off. */
 bool clip_next(struct clip_reader *clip, struct clip_frame *frame, struct err *err);
 
+/* Whether a frame that was decoded is interlaced: only its even rows are used. */
+bool clip_is_interlaced(const struct clip_reader *clip);
+
 /* The size of pictures whose longer side has at most `longest` pixels. */
 void clip_size(const struct clip_reader *clip, int longest, int *width, int *height);
 /* The present frame as its luma, 0..255, in this size; as stored, not upright. */

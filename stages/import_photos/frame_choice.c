@@ -5,7 +5,8 @@
  * measured anew from the frame that was chosen. A window ends after MAX_WAITING frames, too: a camera that rests would
  * fill memory.
  *
- * Frames in which too few points are found are blurred or show something else. Blurred ones are passed over. After
+ * A part begins at a frame that can be followed: black frames of a fade and blank walls are passed over. Later frames in
+ * which too few points are found are blurred or show something else. Blurred ones are passed over. After
  * CUT_FRAMES sharp ones in a row, or at the end, the clip was cut or moved too fast: it begins anew at the first of
  * them. So all sharp frames of a clip that jumps from one to the next are chosen. */
 #include "stages/import_photos/frame_choice.h"
@@ -34,6 +35,7 @@ struct frame_choice {
     int width, height;                      /* of the pictures given */
     struct track *key;                      /* NULL: the next frame begins a part of the clip */
     bool starting;                          /* the key is the first frame of a part, not yet a chosen one */
+    bool untried;                           /* the next frame to be measured is the key itself */
     struct chosen_frame recent[MAX_RECENT]; /* a ring: frame `number` is at number % MAX_RECENT */
     struct waiting *waiting;
     int count, next; /* waiting; next: the first whose progress is not measured */
@@ -88,7 +90,7 @@ static void drop_first(struct frame_choice *c, int count)
 /* The frame becomes the key, and those behind it are measured anew. */
 static enum status begin_at(struct frame_choice *c, int at, bool starting, struct err *err)
 {
-    c->starting = starting;
+    c->starting = c->untried = starting;
     c->lost = 0;
     track_begin(&c->key, c->waiting[at].grey, c->width / 2, c->height / 2, err);
     drop_first(c, at);
@@ -110,6 +112,15 @@ static enum status choose(struct frame_choice *c, struct err *err)
     return ST_OK;
 }
 
+/* The first waiting frame shows nothing that can be followed, not even to itself: the next one begins a part. */
+static void pass_over(struct frame_choice *c)
+{
+    drop_first(c, 1);
+    track_release(c->key);
+    c->key = NULL;
+    c->lost = 0;
+}
+
 static double progress_of(const struct track_motion *m)
 {
     return fmax(m->parallax / FRAME_PARALLAX, (1 - m->overlap) / (1 - FRAME_OVERLAP));
@@ -122,6 +133,9 @@ static enum status step(struct frame_choice *c, struct err *err)
     struct track_motion m = {0};
     if (!c->key) return begin_at(c, c->next, true, err);
     if (track_measure(&m, c->key, w->grey, err)) return err->status;
+    const bool itself = c->untried;
+    c->untried = false;
+    if (itself && !m.known) return pass_over(c), ST_OK;
     const int at = c->next++;
     if (!m.known) {
         const bool sharp = w->of.sharpness >= SHARP * w->sharpest;

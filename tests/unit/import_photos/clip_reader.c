@@ -233,6 +233,48 @@ static void wide_pixels_are_stretched(void **state)
     photo_release(&p);
 }
 
+static int count_frames(const char *path)
+{
+    struct clip_reader *c = NULL;
+    struct clip_frame at = {-1, 0};
+    struct err err = ERR_INIT;
+    if (!clip_open(&c, path, &err))
+        while (clip_next(c, &at, &err)) continue;
+    clip_close(c);
+    assert_ok(err.status, err);
+    return at.number + 1;
+}
+
+/* A screen recording holds its last picture as long as nothing changes. */
+static void a_last_frame_may_be_shown_for_long(void **state)
+{
+    (void)state;
+    shell("ffmpeg -v error -y -f lavfi -i testsrc2=size=%dx%d:rate=10 -frames:v %d -c:v libx264 -bf 0 "
+          "-bsf:v 'setts=duration=if(eq(N\\,%d)\\,20/TB\\,DURATION)' '%s'",
+          W, H, FRAMES, FRAMES - 1, clip("hold.mp4"));
+    assert_int_equal(count_frames(clip("hold.mp4")), FRAMES);
+}
+
+/* Even rows show a bar at x 8 to 24, odd ones, a field later, at x 40 to 56. */
+static void interlaced_frames_show_one_moment(void **state)
+{
+    struct photo p = {0};
+    (void)state;
+    shell("ffmpeg -v error -y -f lavfi -i \"color=black:size=%dx%d:rate=10,drawbox=x=8:w=16:c=white:t=fill\" -f lavfi "
+          "-i \"color=black:size=%dx%d:rate=10,drawbox=x=40:w=16:c=white:t=fill\" -filter_complex "
+          "'[0][1]blend=all_expr=if(mod(Y\\,2)\\,B\\,A),setfield=tff' -frames:v %d -flags +ilme+ildct -x264opts tff=1 "
+          "-c:v libx264 -qp 0 "
+          "-pix_fmt yuv420p '%s'",
+          W, H, W, H, FRAMES, clip("fields.mp4"));
+    read_frame(&p, clip("fields.mp4"), 1);
+    for (int y = 0; y < H; y++) {
+        const uint16_t *row = p.samples + (size_t)3 * W * y;
+        if (row[3 * 16] < 250 || row[3 * 48] > 5)
+            fail_msg("row %d: %d at x 16, %d at x 48", y, row[3 * 16], row[3 * 48]);
+    }
+    photo_release(&p);
+}
+
 static void fails(const char *path, const char *words)
 {
     struct clip_reader *c = NULL;
@@ -266,10 +308,9 @@ static void unusable_clips_are_named(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(colours_are_those_of_the_clip),
-        cmocka_unit_test(clips_stand_upright),
-        cmocka_unit_test(wide_pixels_are_stretched),
-        cmocka_unit_test(unusable_clips_are_named),
+        cmocka_unit_test(colours_are_those_of_the_clip),     cmocka_unit_test(clips_stand_upright),
+        cmocka_unit_test(wide_pixels_are_stretched),         cmocka_unit_test(a_last_frame_may_be_shown_for_long),
+        cmocka_unit_test(interlaced_frames_show_one_moment), cmocka_unit_test(unusable_clips_are_named),
     };
     return cmocka_run_group_tests_name("clip_reader", tests, scratch_make, scratch_remove);
 }

@@ -47,11 +47,12 @@ static double texture(int seed, int x, int y)
 struct shot {
     int wall, board; /* px by which they have moved */
     int blur;        /* px to each side */
-    int scene;       /* other pictures on both */
+    int scene;       /* other pictures on both; below 0: black */
 };
 
 static double light_at(const struct shot *s, int x, int y)
 {
+    if (s->scene < 0) return 0;
     const int on_board = x - 200 - s->board;
     const bool board = on_board >= 0 && on_board < 300 && y >= 80 && y < 300;
     return board ? texture(1 + 2 * s->scene, on_board, y) : texture(2 + 2 * s->scene, x - s->wall, y);
@@ -171,6 +172,33 @@ static void a_clip_that_jumps_gives_all_frames(void **state)
     frame_choice_free(&chosen);
 }
 
+/* Fades from black and to black, and a wall without texture in between. */
+static void frames_that_show_nothing_are_passed_over(void **state)
+{
+    struct shot shots[60];
+    struct chosen_frames chosen = {0};
+    (void)state;
+    for (int i = 0; i < 60; i++)
+        shots[i] = (struct shot){-2 * i, 2 * i, 0, i < 10 || i >= 50 || (i >= 25 && i < 35) ? -1 : 0};
+    choose(&chosen, shots, 60, MOST);
+    assert_in_range(chosen.count, 30 / 4.2, 30 / 2.2 + 2);
+    for (int i = 0; i < chosen.count; i++)
+        if (shots[chosen.frames[i].number].scene < 0) fail_msg("frame %d is black", chosen.frames[i].number);
+    frame_choice_free(&chosen);
+}
+
+/* It ends, which is not a matter of course. */
+static void a_black_clip_gives_no_frame(void **state)
+{
+    struct shot shots[60];
+    struct chosen_frames chosen = {0};
+    (void)state;
+    for (int i = 0; i < 60; i++) shots[i] = (struct shot){0, 0, 0, -1};
+    choose(&chosen, shots, 60, MOST);
+    assert_int_equal(chosen.count, 0);
+    frame_choice_free(&chosen);
+}
+
 static void too_many_frames_are_thinned_evenly(void **state)
 {
     struct shot shots[60];
@@ -196,6 +224,8 @@ int main(void)
         cmocka_unit_test(turns_are_covered_without_parallax),
         cmocka_unit_test(a_cut_begins_anew),
         cmocka_unit_test(a_clip_that_jumps_gives_all_frames),
+        cmocka_unit_test(frames_that_show_nothing_are_passed_over),
+        cmocka_unit_test(a_black_clip_gives_no_frame),
         cmocka_unit_test(too_many_frames_are_thinned_evenly),
     };
     return cmocka_run_group_tests_name("frame_choice", tests, NULL, NULL);
