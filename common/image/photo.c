@@ -84,6 +84,36 @@ static enum status read_exr(struct photo *p, const struct photo_bytes *file, boo
     return err->status;
 }
 
+/* Orientations 2, 4, 5 and 7 are mirrored: rows are reversed, so that what is left is a turn. */
+static void unmirror(struct photo *p)
+{
+    static const int turns[] = {[2] = 1, [4] = 3, [5] = 8, [7] = 6};
+    const int o = p->info.orientation, w = p->info.width;
+    if (o != 2 && o != 4 && o != 5 && o != 7) return;
+    p->info.orientation = turns[o];
+    for (int y = 0; y < p->info.height; y++)
+        for (int x = 0; x < w / 2; x++)
+            for (int c = 0; c < 3; c++) {
+                const size_t row = (size_t)y * (size_t)w, a = 3 * (row + (size_t)x) + (size_t)c,
+                             b = 3 * (row + (size_t)(w - 1 - x)) + (size_t)c;
+                if (p->bytes) {
+                    const uint8_t kept = p->bytes[a];
+                    p->bytes[a] = p->bytes[b];
+                    p->bytes[b] = kept;
+                }
+                if (p->samples) {
+                    const uint16_t kept = p->samples[a];
+                    p->samples[a] = p->samples[b];
+                    p->samples[b] = kept;
+                }
+                if (p->values) {
+                    const float kept = p->values[a];
+                    p->values[a] = p->values[b];
+                    p->values[b] = kept;
+                }
+            }
+}
+
 enum read { ANY_FORMAT = 1, GAIN = 2 /* apply gain maps */ };
 
 static enum status read_photo(struct photo *p, const char *path, enum photo_want want, unsigned how, const char *name,
@@ -109,6 +139,9 @@ static enum status read_photo(struct photo *p, const char *path, enum photo_want
         read[kind](p, &file, want != PHOTO_HEADER, err);
     if (!err->status && how & GAIN && kind == PHOTO_KIND_JPEG) photo_apply_gain(p, &file, want, err);
     free(file.bytes);
+    if (!err->status && !(how & ANY_FORMAT) && p->info.bits == 32)
+        err_set(err, ST_DATA, "%s is a TIFF of floating-point samples; wanted 8 or 16 bits here.", path);
+    if (!err->status) unmirror(p);
     if (err->status) photo_release(p);
     return err->status;
 }

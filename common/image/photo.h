@@ -1,7 +1,8 @@
 /* photo.h - reads photographs (JPEG, PNG, TIFF, HEIC, AVIF, WebP, JPEG XL, raw files, EXR) with their EXIF data;
  * writes JPEG and PNG.
  *
- * Rows are in the order of the file: EXIF orientation is reported, never applied. HEIC and AVIF stand upright. */
+ * Rows are in the order of the file: EXIF orientation is reported, never applied, but for its mirror: rows of mirrored
+ * photos (2, 4, 5, 7) are reversed, and the turn that is left is reported. HEIC and AVIF stand upright. */
 #ifndef REMODEL_PHOTO_H
 #define REMODEL_PHOTO_H
 
@@ -9,7 +10,8 @@
 #include "common/image/image.h"
 #include "common/image/photo_data.h"
 
-/* Reads JPEG, PNG, TIFF, HEIC, AVIF, WebP and JPEG XL of 8 or 16 bits. Grey becomes RGB; alpha is dropped.
+/* Reads JPEG, PNG, TIFF, HEIC, AVIF, WebP and JPEG XL of 8 or 16 bits. Grey becomes RGB; alpha is dropped,
+ * but counted (p->transparent) for PNG, TIFF and WebP.
  * ST_DATA, naming the file and what to do: another format (by content, not by name), an empty or truncated file (a
  * JPEG that ends early is an error, not a grey lower half), CMYK or YCCK, no pixels or more than 2^28. On failure p
  * is empty. */
@@ -20,9 +22,9 @@ enum status photo_read_input(struct photo *p, const char *path, const char *name
 /* The same, recorded in prov as `name`. A JPEG has bytes instead of samples, which take half of the memory. */
 enum status photo_read_compact(struct photo *p, const char *path, const char *name, struct provenance *prov,
                                struct err *err);
-/* Reads EXR and raw files too, which are linear (info.bits 32). An EXR with more than 1 in 10 000 samples at its
- * largest value counts as clipped there, otherwise as unclipped. Raw files are developed by libraw as described in
- * photo_raw.c. */
+/* Reads EXR, TIFF of floating-point samples and raw files too, which are linear (info.bits 32). An EXR with more than
+ * 1 in 10 000 samples at its largest value counts as clipped there, otherwise as unclipped. Raw files are developed by
+ * libraw as described in photo_raw.c. */
 enum status photo_read_any(struct photo *p, const char *path, struct err *err);
 /* The same, but a JPEG with a gain map becomes its linear HDR (info.bits 32), in Rec.709. ST_DATA: the map is missing
  * or damaged. */

@@ -26,6 +26,8 @@ struct photo {
     float *values;              /* instead of samples if bits is 32: linear, finite; owned */
     float saturation;           /* the value at which `values` are clipped; 0: not clipped */
     struct colour_space *space; /* NULL: sRGB, or linear Rec.709 for values; owned */
+    double transparent;         /* share of the pixels that alpha hides; samples are as if it did not */
+    int pages;                  /* of a TIFF that has several photos: their number; else 0 */
     double jpeg_variance;       /* of the errors of a JPEG's luma by quantization, in sample values^2; 0: no JPEG */
 };
 

@@ -21,7 +21,8 @@ struct png_reader {
     size_t at;
     png_structp png;
     png_infop info;
-    png_bytepp rows; /* owned */
+    png_bytepp rows;   /* owned */
+    png_uint_16p rgba; /* of a picture with alpha; owned */
     struct photo *photo;
     char message[200];
 };
@@ -63,28 +64,38 @@ static enum status read_png_header(struct png_reader *r, struct err *err)
     return ST_OK;
 }
 
-/* Every PNG becomes 16-bit RGB: palettes, grey and fewer bits are expanded (8 bits as v * 257), alpha is dropped. */
+/* Every PNG becomes 16-bit RGB: palettes, grey and fewer bits are expanded (8 bits as v * 257), alpha is counted. */
 static enum status read_png_pixels(struct png_reader *r, struct err *err)
 {
     struct photo *p = r->photo;
-    size_t row = (size_t)p->info.width * 3, height = (size_t)p->info.height;
+    const bool alpha =
+        png_get_color_type(r->png, r->info) & PNG_COLOR_MASK_ALPHA || png_get_valid(r->png, r->info, PNG_INFO_tRNS);
+    const size_t channels = alpha ? 4 : 3, row = (size_t)p->info.width * channels, height = (size_t)p->info.height;
+    const size_t pixels = (size_t)p->info.width * height;
     if (photo_init_samples(p, err)) return err->status;
+    if (alpha && !(r->rgba = malloc(row * height * sizeof *r->rgba)))
+        return err_nomem(err, "a photo", row * height * sizeof *r->rgba);
     r->rows = malloc(height * sizeof *r->rows);
     if (!r->rows) return err_nomem(err, "a photo's rows", height * sizeof *r->rows);
-    for (size_t y = 0; y < height; y++) r->rows[y] = (png_bytep)(p->samples + y * row);
+    for (size_t y = 0; y < height; y++) r->rows[y] = (png_bytep)((alpha ? r->rgba : p->samples) + y * row);
 
     if (setjmp(png_jmpbuf(r->png))) return png_damaged(r, err);
     png_set_expand_16(r->png);
     png_set_gray_to_rgb(r->png);
-    png_set_strip_alpha(r->png);
     png_set_swap(r->png); /* libpng's samples are big-endian */
     png_set_interlace_handling(r->png);
     png_read_update_info(r->png, r->info);
     if (png_get_rowbytes(r->png, r->info) != row * sizeof *p->samples) png_error(r->png, "unknown row format");
     png_read_image(r->png, r->rows);
     png_read_end(r->png, NULL);
+    size_t hidden = 0;
+    for (size_t i = 0; alpha && i < pixels; i++) {
+        memcpy(p->samples + 3 * i, r->rgba + 4 * i, 3 * sizeof *r->rgba);
+        hidden += r->rgba[4 * i + 3] < 32768;
+    }
+    p->transparent = (double)hidden / (double)pixels;
     if (p->info.bits == 8)
-        for (size_t i = 0; i < row * height; i++) p->samples[i] >>= 8;
+        for (size_t i = 0; i < 3 * pixels; i++) p->samples[i] >>= 8;
     return ST_OK;
 }
 
@@ -151,6 +162,7 @@ enum status photo_read_png(struct photo *p, const struct photo_bytes *file, bool
     if (!err->status && !photo_exif_read(&p->info, file, true, err)) read_png_colours(&r, pixels, err);
     png_destroy_read_struct(&r.png, &r.info, NULL);
     free(r.rows);
+    free(r.rgba);
     return err->status;
 }
 

@@ -1,9 +1,11 @@
-/* photo_tiff.c - TIFF files of 8 and 16 bits, by libtiff.
+/* photo_tiff.c - TIFF files of 8 and 16 bits, and of floating-point samples, by libtiff.
  *
- * RGB and grey samples are read as stored; libtiff converts other 8-bit kinds to RGB. libtiff rather than OpenCV's
+ * RGB and grey samples are read as stored, in strips, tiles or planes; libtiff converts other 8-bit kinds to RGB.
+ * Floating-point samples are linear light. Of several pages the first is the photo. libtiff rather than OpenCV's
  * reader, because it is C, keeps 16 bits and gives the EXIF data. */
 #include "common/image/photo_formats.h"
 
+#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -154,8 +156,20 @@ static void read_exif(struct photo_info *info, TIFF *t)
 
 struct tiff_layout {
     uint16_t bits, samples, planar, photometric, format, compression;
-    bool plain; /* rows of RGB or grey, 8 or 16 bits */
+    uint16_t alpha; /* number of the sample that is alpha; 0: none */
+    bool premultiplied, real;
+    bool plain; /* rows or tiles of RGB or grey, of 8 or 16 bits, or real numbers */
 };
+
+static void find_alpha(struct tiff_layout *l, TIFF *t, uint16_t colours)
+{
+    uint16_t count = 0;
+    const uint16_t *kinds = NULL;
+    if (!TIFFGetField(t, TIFFTAG_EXTRASAMPLES, &count, &kinds) || !count || l->samples <= colours) return;
+    if (kinds[0] != EXTRASAMPLE_ASSOCALPHA && kinds[0] != EXTRASAMPLE_UNASSALPHA) return;
+    l->alpha = colours;
+    l->premultiplied = kinds[0] == EXTRASAMPLE_ASSOCALPHA;
+}
 
 static enum status read_layout(struct tiff_layout *l, struct photo_info *info, TIFF *t, const char *path,
                                struct err *err)
@@ -173,53 +187,148 @@ static enum status read_layout(struct tiff_layout *l, struct photo_info *info, T
     if (photo_check_size(path, width, height, err)) return err->status;
     info->width = (int)width;
     info->height = (int)height;
-    info->bits = l->bits == 16 ? 16 : 8;
     const bool rgb = l->photometric == PHOTOMETRIC_RGB && l->samples >= 3,
-               grey = l->photometric == PHOTOMETRIC_MINISBLACK && l->samples >= 1;
-    l->plain = (rgb || grey) && (l->bits == 8 || l->bits == 16) && l->format == SAMPLEFORMAT_UINT && l->samples <= 8 &&
-               !TIFFIsTiled(t);
+               black = l->photometric == PHOTOMETRIC_MINISBLACK && l->samples >= 1,
+               white = l->photometric == PHOTOMETRIC_MINISWHITE && l->samples >= 1;
+    l->real = l->format == SAMPLEFORMAT_IEEEFP && (l->bits == 16 || l->bits == 32 || l->bits == 64);
+    info->bits = l->real ? 32 : l->bits == 16 ? 16 : 8;
+    l->plain = (rgb || black || (white && !l->real)) && l->samples <= 8 &&
+               (l->real || (l->format == SAMPLEFORMAT_UINT && (l->bits == 8 || l->bits == 16)));
+    if (l->plain) find_alpha(l, t, rgb ? 3 : 1);
     if (!l->plain && (l->bits > 8 || l->format != SAMPLEFORMAT_UINT || l->photometric == PHOTOMETRIC_SEPARATED))
         return err_set(
             err, ST_DATA,
-            "%s is a TIFF of an unsupported kind (%d samples of %d bits%s%s); save it as RGB of 8 or 16 bits "
-            "without tiles, or as EXR.",
-            path, l->samples, l->bits, l->format == SAMPLEFORMAT_IEEEFP ? ", floating point" : "",
-            TIFFIsTiled(t) ? ", in tiles" : "");
+            "%s is a TIFF of an unsupported kind (%d samples of %d bits%s%s); save it as RGB of 8 or 16 bits, or as "
+            "EXR.",
+            path, l->samples, l->bits,
+            l->format == SAMPLEFORMAT_IEEEFP ? ", floating point"
+            : l->format == SAMPLEFORMAT_INT  ? ", with a sign"
+                                             : "",
+            l->photometric == PHOTOMETRIC_SEPARATED ? ", CMYK" : "");
     return ST_OK;
 }
 
+static float half_of(uint16_t h)
+{
+    const int exponent = h >> 10 & 31, mantissa = h & 1023;
+    const double size = exponent == 31  ? (mantissa ? NAN : INFINITY)
+                        : exponent == 0 ? ldexp(mantissa, -24)
+                                        : ldexp(mantissa + 1024, exponent - 25);
+    return (float)(h & 0x8000 ? -size : size);
+}
+
+/* A sample as a number; not a number and infinite ones are 0. */
+static float number_at(const unsigned char *at, uint16_t bits)
+{
+    float f = 0;
+    double d = 0;
+    uint16_t h = 0;
+    if (bits == 16) {
+        memcpy(&h, at, sizeof h);
+        f = half_of(h);
+    } else if (bits == 32) {
+        memcpy(&f, at, sizeof f);
+    } else {
+        memcpy(&d, at, sizeof d);
+        f = (float)d;
+    }
+    return isfinite(f) ? f : 0;
+}
+
+/* Where the samples of a block go: rows x columns, whose first pixel is at (x, y). */
+struct tiff_block {
+    int x, y, columns, rows;
+    uint16_t plane;
+    size_t row; /* bytes */
+};
+
+static void take_block(struct photo *p, unsigned char *alpha, const struct tiff_layout *l, const struct tiff_block *b,
+                       const unsigned char *bytes)
+{
+    const bool separate = l->planar == PLANARCONFIG_SEPARATE, grey = l->photometric != PHOTOMETRIC_RGB;
+    const size_t size = l->bits / 8, step = separate ? 1 : l->samples;
+    const int last_x = p->info.width - b->x, last_y = p->info.height - b->y;
+    for (int v = 0; v < b->rows && v < last_y; v++)
+        for (int u = 0; u < b->columns && u < last_x; u++) {
+            const unsigned char *from = bytes + (size_t)v * b->row + (size_t)u * step * size;
+            const size_t pixel = (size_t)(b->y + v) * (size_t)p->info.width + (size_t)(b->x + u);
+            for (uint16_t s = 0; s < step; s++) {
+                const uint16_t sample = separate ? b->plane : s;
+                const unsigned char *at = from + s * size;
+                uint16_t value = *at;
+                if (!l->real && size == 2) memcpy(&value, at, sizeof value);
+                if (l->photometric == PHOTOMETRIC_MINISWHITE && sample == 0)
+                    value = (uint16_t)((size == 2 ? 65535 : 255) - value);
+                const float number = l->real ? number_at(at, l->bits) : (float)value / (size == 2 ? 65535.0f : 255.0f);
+                if (alpha && sample == l->alpha) alpha[pixel] = (unsigned char)lrintf(255 * fminf(fmaxf(number, 0), 1));
+                for (uint16_t c = 0; c < 3; c++) {
+                    if (sample != (grey ? 0 : c)) continue;
+                    if (l->real)
+                        p->values[3 * pixel + c] = number;
+                    else
+                        p->samples[3 * pixel + c] = value;
+                }
+            }
+        }
+}
+
+/* Counts what is transparent, and divides colours by their alpha if they were multiplied by it. */
+static void apply_alpha(struct photo *p, const unsigned char *alpha, bool premultiplied)
+{
+    const size_t pixels = (size_t)p->info.width * (size_t)p->info.height;
+    const double largest = p->info.bits == 16 ? 65535 : 255;
+    size_t hidden = 0;
+    for (size_t i = 0; i < pixels; i++) {
+        hidden += alpha[i] < 128;
+        for (size_t c = 0; premultiplied && alpha[i] && c < 3; c++) {
+            if (p->values)
+                p->values[3 * i + c] *= 255.0f / alpha[i];
+            else
+                p->samples[3 * i + c] = (uint16_t)lrint(fmin(largest, p->samples[3 * i + c] * 255.0 / alpha[i]));
+        }
+    }
+    p->transparent = (double)hidden / (double)pixels;
+}
+
+/* Rows of strips, or tiles, of each plane. */
 static enum status read_plain(struct photo *p, TIFF *t, const struct tiff_layout *l, const struct tiff_reader *r,
                               struct err *err)
 {
-    const size_t row = (size_t)TIFFScanlineSize(t), width = (size_t)p->info.width;
-    const bool separate = l->planar == PLANARCONFIG_SEPARATE, grey = l->photometric == PHOTOMETRIC_MINISBLACK;
-    const size_t step = separate ? 1 : l->samples;
-    if (row < width * step * (l->bits / 8)) return damaged(r, err);
-    unsigned char *line = malloc(row);
-    if (line)
-        photo_init_samples(p, err);
+    const bool separate = l->planar == PLANARCONFIG_SEPARATE, tiled = TIFFIsTiled(t);
+    const size_t pixels = (size_t)p->info.width * (size_t)p->info.height, step = separate ? 1 : l->samples;
+    uint32_t columns = (uint32_t)p->info.width, rows = 1;
+    if (tiled && (!TIFFGetField(t, TIFFTAG_TILEWIDTH, &columns) || !TIFFGetField(t, TIFFTAG_TILELENGTH, &rows)))
+        return damaged(r, err);
+    if (!columns || !rows || columns > 1 << 20 || rows > 1 << 20) return damaged(r, err);
+    const size_t row = (size_t)(tiled ? TIFFTileRowSize(t) : TIFFScanlineSize(t)), bytes = row * rows;
+    if (row < columns * step * (l->bits / 8) || (tiled && (size_t)TIFFTileSize(t) < bytes)) return damaged(r, err);
+    unsigned char *block = malloc(tiled ? (size_t)TIFFTileSize(t) : bytes),
+                  *alpha = l->alpha ? calloc(pixels, 1) : NULL;
+    if (!block || (l->alpha && !alpha))
+        err_nomem(err, "a part of a photo", bytes + pixels);
+    else if (l->real)
+        photo_init_values(p, err);
     else
-        err_nomem(err, "a row of a photo", row);
-    for (uint16_t plane = 0; !err->status && plane < (separate && !grey ? 3 : 1); plane++)
-        for (int y = 0; !err->status && y < p->info.height; y++) {
-            uint16_t *to = p->samples + (size_t)y * width * 3;
-            if (TIFFReadScanline(t, line, (uint32_t)y, plane) != 1) {
-                damaged(r, err);
-                break;
+        photo_init_samples(p, err);
+    for (uint16_t plane = 0; !err->status && plane < (separate ? l->samples : 1); plane++)
+        for (int y = 0; !err->status && y < p->info.height; y += (int)rows)
+            for (int x = 0; !err->status && x < p->info.width; x += (int)columns) {
+                const struct tiff_block at = {x, y, (int)columns, (int)rows, plane, row};
+                const bool good = tiled ? TIFFReadTile(t, block, (uint32_t)x, (uint32_t)y, 0, plane) >= 0
+                                        : TIFFReadScanline(t, block, (uint32_t)y, plane) == 1;
+                if (good)
+                    take_block(p, alpha, l, &at, block);
+                else
+                    damaged(r, err);
             }
-            for (size_t x = 0; x < width; x++)
-                for (size_t c = separate && !grey ? plane : 0; c < (separate && !grey ? plane + 1u : 3u); c++) {
-                    const size_t at = x * step + (separate || grey ? 0 : c);
-                    uint16_t value = line[at];
-                    if (l->bits != 8) memcpy(&value, line + at * sizeof value, sizeof value);
-                    to[3 * x + c] = value;
-                }
-        }
-    free(line);
+    if (!err->status && alpha) apply_alpha(p, alpha, l->premultiplied);
+    if (!err->status && l->real) p->saturation = photo_find_saturation(p);
+    free(alpha);
+    free(block);
     return err->status;
 }
 
-/* Palettes, fewer bits, YCbCr, tiles: libtiff converts them to 8-bit RGB. */
+/* Palettes, fewer bits, YCbCr: libtiff converts them to 8-bit RGB. */
 static enum status read_converted(struct photo *p, TIFF *t, const struct tiff_reader *r, struct err *err)
 {
     const size_t pixels = (size_t)p->info.width * (size_t)p->info.height;
@@ -240,6 +349,19 @@ static enum status read_converted(struct photo *p, TIFF *t, const struct tiff_re
     }
     free(rgba);
     return err->status;
+}
+
+/* The photos in a file: pages that are neither reduced copies nor masks. */
+static int count_pages(TIFF *t)
+{
+    enum { MOST = 1000 };
+    int count = 1;
+    for (int i = 0; i < MOST && TIFFReadDirectory(t); i++) {
+        uint32_t kind = 0;
+        TIFFGetField(t, TIFFTAG_SUBFILETYPE, &kind);
+        count += !(kind & (FILETYPE_REDUCEDIMAGE | FILETYPE_MASK));
+    }
+    return count;
 }
 
 enum status photo_read_tiff(struct photo *p, const struct photo_bytes *file, bool pixels, struct err *err)
@@ -263,6 +385,8 @@ enum status photo_read_tiff(struct photo *p, const struct photo_bytes *file, boo
     unsigned char *icc = NULL;
     if (!err->status && TIFFGetField(t, TIFFTAG_ICCPROFILE, &size, &tag) && size && (icc = malloc(size)))
         memcpy(icc, tag, size);
+    const int pages = !err->status && pixels ? count_pages(t) : 1;
+    if (pages > 1) p->pages = pages;
     TIFFClose(t);
     if (!err->status) photo_set_icc(p, icc, icc ? size : 0, pixels, file->path, err);
     free(icc);

@@ -1,4 +1,4 @@
-/* photo_webp.c - WebP files, by libwebp. Alpha is dropped. Animations are refused. */
+/* photo_webp.c - WebP files, by libwebp. Alpha is counted. Animations are refused. */
 #include "common/image/photo_formats.h"
 
 #include <stdlib.h>
@@ -28,15 +28,20 @@ static enum status read_webp_colours(struct photo *p, const WebPDemuxer *demuxer
 
 static enum status read_webp_pixels(struct photo *p, const struct photo_bytes *file, struct err *err)
 {
-    const size_t samples = (size_t)p->info.width * (size_t)p->info.height * 3;
-    unsigned char *rgb = malloc(samples);
-    if (!rgb) return err_nomem(err, "a photo", samples);
-    if (!WebPDecodeRGBInto(file->bytes, file->size, rgb, samples, 3 * p->info.width))
+    const size_t pixels = (size_t)p->info.width * (size_t)p->info.height;
+    unsigned char *rgba = malloc(4 * pixels);
+    size_t hidden = 0;
+    if (!rgba) return err_nomem(err, "a photo", 4 * pixels);
+    if (!WebPDecodeRGBAInto(file->bytes, file->size, rgba, 4 * pixels, 4 * p->info.width))
         err_set(err, ST_DATA, "%s is a damaged or cut-off WebP file; copy or export the photo again.", file->path);
     else
         photo_init_samples(p, err);
-    for (size_t i = 0; !err->status && i < samples; i++) p->samples[i] = rgb[i];
-    free(rgb);
+    for (size_t i = 0; !err->status && i < pixels; i++) {
+        for (size_t c = 0; c < 3; c++) p->samples[3 * i + c] = rgba[4 * i + c];
+        hidden += rgba[4 * i + 3] < 128;
+    }
+    p->transparent = (double)hidden / (double)pixels;
+    free(rgba);
     return err->status;
 }
 

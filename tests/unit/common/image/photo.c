@@ -162,6 +162,58 @@ static void times_of_exif_are_seconds(void **state)
 }
 
 /* False or truncated EXIF loses its values, never the pixels. */
+/* A sample of the picture that EXIF's orientation shows, at column x of row y. */
+static int shown(const struct photo *p, int orientation, int x, int y)
+{
+    const int w = p->info.width, h = p->info.height, across = w - 1, down = h - 1;
+    const int u[] = {x, across - x, across - x, x, y, y, across - y, across - y},
+              v[] = {y, y, down - y, down - y, x, down - x, down - x, x};
+    return p->samples[3 * (v[orientation - 1] * w + u[orientation - 1])];
+}
+
+/* Rows of mirrored photos are reversed, and a turn is left, which shows the same picture. */
+static void mirrored_photos_lose_their_mirror(void **state)
+{
+    enum { W = 5, H = 3 };
+    (void)state;
+    for (int orientation = 1; orientation <= 8; orientation++) {
+        struct photo made = {.info = {.width = W, .height = H, .bits = 8, .orientation = orientation}}, read;
+        struct photo_info header;
+        struct err err = ERR_INIT;
+        const char *path = scratch_path("turned.png");
+        assert_ok(photo_init_samples(&made, &err), err);
+        for (int i = 0; i < W * H * 3; i++) made.samples[i] = (uint16_t)(i / 3 * 7);
+        assert_ok(photo_write_part(path, &made, 0, 0, W, H, &made.info, &err), err);
+        assert_ok(photo_read(&read, path, &err), err);
+        assert_ok(photo_read_info(&header, path, &err), err);
+        const int left = read.info.orientation;
+        assert_int_equal(header.orientation, left);
+        assert_true(left == 1 || left == 3 || left == 6 || left == 8);
+        const bool mirrored = orientation == 2 || orientation == 4 || orientation == 5 || orientation == 7;
+        assert_int_equal(mirrored, left != orientation);
+        const int width = orientation > 4 ? H : W, height = orientation > 4 ? W : H;
+        for (int y = 0; y < height; y++)
+            for (int x = 0; x < width; x++) assert_int_equal(shown(&read, left, x, y), shown(&made, orientation, x, y));
+        photo_release(&made);
+        photo_release(&read);
+    }
+}
+
+/* Those with an alpha below a half. */
+static void transparent_pixels_are_counted(void **state)
+{
+    static const struct {
+        const char *file;
+        double share;
+    } wanted[] = {{"rgb8.png", 0}, {"rgba8.png", 5 / 7.0}, {"rgba16.png", 4 / 7.0}, {"rgb-transparent.png", 1 / 35.0}};
+    (void)state;
+    for (size_t i = 0; i < sizeof wanted / sizeof *wanted; i++) {
+        struct photo p = read_good(wanted[i].file);
+        assert_true(p.transparent == wanted[i].share);
+        photo_release(&p);
+    }
+}
+
 static void damaged_exif_keeps_the_pixels(void **state)
 {
     const char *const files[] = {"exif-bad-offsets.jpg",    "exif-cut.jpg",        "exif-empty.jpg", "exif-loop.jpg",
@@ -408,6 +460,8 @@ int main(void)
         cmocka_unit_test(other_formats_are_read),
         cmocka_unit_test(exif_is_read),
         cmocka_unit_test(times_of_exif_are_seconds),
+        cmocka_unit_test(mirrored_photos_lose_their_mirror),
+        cmocka_unit_test(transparent_pixels_are_counted),
         cmocka_unit_test(damaged_exif_keeps_the_pixels),
         cmocka_unit_test(damaged_files_are_errors),
         cmocka_unit_test(truncated_files_are_errors),

@@ -20,25 +20,68 @@ struct kind {
     const char *name;
     int bits, samples, planar, compression, photometric;
     bool tiled;
+    int format, alpha; /* SAMPLEFORMAT_UINT is 1; EXTRASAMPLE: 0: none */
 };
 
 static const struct kind kinds[] = {
-    {"rgb8.tif", 8, 3, PLANARCONFIG_CONTIG, COMPRESSION_NONE, PHOTOMETRIC_RGB, false},
-    {"rgb16.tif", 16, 3, PLANARCONFIG_CONTIG, COMPRESSION_LZW, PHOTOMETRIC_RGB, false},
-    {"rgba16.tif", 16, 4, PLANARCONFIG_CONTIG, COMPRESSION_ADOBE_DEFLATE, PHOTOMETRIC_RGB, false},
-    {"planes16.tif", 16, 3, PLANARCONFIG_SEPARATE, COMPRESSION_NONE, PHOTOMETRIC_RGB, false},
-    {"grey8.tif", 8, 1, PLANARCONFIG_CONTIG, COMPRESSION_PACKBITS, PHOTOMETRIC_MINISBLACK, false},
-    {"grey16.tif", 16, 1, PLANARCONFIG_CONTIG, COMPRESSION_NONE, PHOTOMETRIC_MINISBLACK, false},
-    {"white-is-zero.tif", 8, 1, PLANARCONFIG_CONTIG, COMPRESSION_NONE, PHOTOMETRIC_MINISWHITE, false},
-    {"tiles16.tif", 16, 3, PLANARCONFIG_CONTIG, COMPRESSION_NONE, PHOTOMETRIC_RGB, true},
+    {"rgb8.tif", 8, 3, PLANARCONFIG_CONTIG, COMPRESSION_NONE, PHOTOMETRIC_RGB, false, 1, 0},
+    {"rgb16.tif", 16, 3, PLANARCONFIG_CONTIG, COMPRESSION_LZW, PHOTOMETRIC_RGB, false, 1, 0},
+    {"rgba16.tif", 16, 4, PLANARCONFIG_CONTIG, COMPRESSION_ADOBE_DEFLATE, PHOTOMETRIC_RGB, false, 1,
+     EXTRASAMPLE_UNASSALPHA},
+    {"premultiplied8.tif", 8, 4, PLANARCONFIG_CONTIG, COMPRESSION_NONE, PHOTOMETRIC_RGB, false, 1,
+     EXTRASAMPLE_ASSOCALPHA},
+    {"premultiplied16.tif", 16, 4, PLANARCONFIG_CONTIG, COMPRESSION_NONE, PHOTOMETRIC_RGB, true, 1,
+     EXTRASAMPLE_ASSOCALPHA},
+    {"planes16.tif", 16, 3, PLANARCONFIG_SEPARATE, COMPRESSION_NONE, PHOTOMETRIC_RGB, false, 1, 0},
+    {"planes8.tif", 8, 3, PLANARCONFIG_SEPARATE, COMPRESSION_LZW, PHOTOMETRIC_RGB, true, 1, 0},
+    {"grey8.tif", 8, 1, PLANARCONFIG_CONTIG, COMPRESSION_PACKBITS, PHOTOMETRIC_MINISBLACK, false, 1, 0},
+    {"grey16.tif", 16, 1, PLANARCONFIG_CONTIG, COMPRESSION_NONE, PHOTOMETRIC_MINISBLACK, false, 1, 0},
+    {"white-is-zero.tif", 8, 1, PLANARCONFIG_CONTIG, COMPRESSION_NONE, PHOTOMETRIC_MINISWHITE, false, 1, 0},
+    {"white-is-zero16.tif", 16, 1, PLANARCONFIG_CONTIG, COMPRESSION_NONE, PHOTOMETRIC_MINISWHITE, false, 1, 0},
+    {"tiles8.tif", 8, 3, PLANARCONFIG_CONTIG, COMPRESSION_NONE, PHOTOMETRIC_RGB, true, 1, 0},
+    {"tiles16.tif", 16, 3, PLANARCONFIG_CONTIG, COMPRESSION_NONE, PHOTOMETRIC_RGB, true, 1, 0},
+    {"tiled-planes16.tif", 16, 3, PLANARCONFIG_SEPARATE, COMPRESSION_LZW, PHOTOMETRIC_RGB, true, 1, 0},
+    {"float.tif", 32, 3, PLANARCONFIG_CONTIG, COMPRESSION_NONE, PHOTOMETRIC_RGB, false, SAMPLEFORMAT_IEEEFP, 0},
+    {"tiled-float.tif", 32, 3, PLANARCONFIG_SEPARATE, COMPRESSION_NONE, PHOTOMETRIC_RGB, true, SAMPLEFORMAT_IEEEFP, 0},
+    {"half.tif", 16, 3, PLANARCONFIG_CONTIG, COMPRESSION_NONE, PHOTOMETRIC_RGB, false, SAMPLEFORMAT_IEEEFP, 0},
+    {"double-grey.tif", 64, 1, PLANARCONFIG_CONTIG, COMPRESSION_NONE, PHOTOMETRIC_MINISBLACK, false,
+     SAMPLEFORMAT_IEEEFP, 0},
 };
 
-static void put(unsigned char *to, int i, int value, int bits)
+/* Of the pixels, one in three is hidden by an alpha of a quarter; the others have an alpha of 1. */
+static bool is_hidden(const struct kind *k, int x, int y) { return k->alpha && (x + y) % 3 == 0; }
+
+/* The number that is stored for a sample of a pixel. */
+static double stored(const struct kind *k, int x, int y, int c)
 {
-    if (bits == 16)
-        ((uint16_t *)(void *)to)[i] = (uint16_t)value;
-    else
-        to[i] = (unsigned char)value;
+    const double largest = k->bits == 16 ? 65535 : 255;
+    if (k->format == SAMPLEFORMAT_IEEEFP) return colour(x, y, c, 8) / 64.0; /* exact in half floats */
+    if (c == 3) return is_hidden(k, x, y) ? largest / 4 : largest;
+    const double value = colour(x, y, c, k->bits);
+    return k->alpha == EXTRASAMPLE_ASSOCALPHA && is_hidden(k, x, y) ? value / 4 : value;
+}
+
+static void put(unsigned char *to, int i, double value, const struct kind *k)
+{
+    const size_t size = (size_t)k->bits / 8;
+    const uint16_t whole = (uint16_t)lrint(value);
+    const float single = (float)value;
+    to += (size_t)i * size;
+    if (k->format != SAMPLEFORMAT_IEEEFP && size == 1)
+        *to = (unsigned char)whole;
+    else if (k->format != SAMPLEFORMAT_IEEEFP)
+        memcpy(to, &whole, size);
+    else if (size == 4)
+        memcpy(to, &single, size);
+    else if (size == 8)
+        memcpy(to, &value, size);
+    else { /* half: all values are 0, or normal and exact */
+        int exponent = 0;
+        const double mantissa = frexp(value, &exponent);
+        const uint16_t half =
+            value == 0 ? 0 : (uint16_t)((exponent + 14) << 10 | ((unsigned)lrint(mantissa * 2048) & 1023));
+        memcpy(to, &half, size);
+    }
 }
 
 static const char *write_tiff(const struct kind *k)
@@ -47,7 +90,7 @@ static const char *write_tiff(const struct kind *k)
     uint64_t exif = 0;
     uint16_t iso = 200;
     TIFF *t = TIFFOpen(path, "w");
-    unsigned char line[2 * 4 * 16 * 16] = {0};
+    unsigned char line[8 * 4 * 16 * 16];
     assert_non_null(t);
     TIFFSetField(t, TIFFTAG_IMAGEWIDTH, WIDTH);
     TIFFSetField(t, TIFFTAG_IMAGELENGTH, HEIGHT);
@@ -56,25 +99,29 @@ static const char *write_tiff(const struct kind *k)
     TIFFSetField(t, TIFFTAG_PLANARCONFIG, k->planar);
     TIFFSetField(t, TIFFTAG_COMPRESSION, k->compression);
     TIFFSetField(t, TIFFTAG_PHOTOMETRIC, k->photometric);
+    TIFFSetField(t, TIFFTAG_SAMPLEFORMAT, k->format);
     TIFFSetField(t, TIFFTAG_ORIENTATION, 6);
     TIFFSetField(t, TIFFTAG_MAKE, "remodel");
     TIFFSetField(t, TIFFTAG_MODEL, "a test");
-    if (k->samples == 4) TIFFSetField(t, TIFFTAG_EXTRASAMPLES, 1, (uint16_t[]){EXTRASAMPLE_UNASSALPHA});
+    if (k->alpha) TIFFSetField(t, TIFFTAG_EXTRASAMPLES, 1, (uint16_t[]){(uint16_t)k->alpha});
+    const bool apart = k->planar == PLANARCONFIG_SEPARATE;
+    const int planes = apart ? k->samples : 1, step = apart ? 1 : k->samples;
     if (k->tiled) {
         TIFFSetField(t, TIFFTAG_TILEWIDTH, 16);
         TIFFSetField(t, TIFFTAG_TILELENGTH, 16);
-        for (int y = 0; y < HEIGHT; y++)
-            for (int i = 0; i < WIDTH * 3; i++) put(line, y * 48 + i, colour(i / 3, y, i % 3, k->bits), k->bits);
-        assert_true(TIFFWriteEncodedTile(t, 0, line, 16 * 16 * 3 * k->bits / 8) > 0);
+        for (int plane = 0; plane < planes; plane++) {
+            memset(line, 0, sizeof line);
+            for (int y = 0; y < HEIGHT; y++)
+                for (int i = 0; i < WIDTH * step; i++)
+                    put(line, y * 16 * step + i, stored(k, i / step, y, apart ? plane : i % step), k);
+            assert_true(TIFFWriteTile(t, line, 0, 0, 0, (uint16_t)plane) > 0);
+        }
     } else {
-        const bool apart = k->planar == PLANARCONFIG_SEPARATE;
         TIFFSetField(t, TIFFTAG_ROWSPERSTRIP, 3);
-        for (int plane = 0; plane < (apart ? 3 : 1); plane++)
+        for (int plane = 0; plane < planes; plane++)
             for (int y = 0; y < HEIGHT; y++) {
-                for (int i = 0; i < WIDTH * (apart ? 1 : k->samples); i++) {
-                    const int c = apart ? plane : i % k->samples;
-                    put(line, i, c == 3 ? 1 : colour(apart ? i : i / k->samples, y, c, k->bits), k->bits);
-                }
+                for (int i = 0; i < WIDTH * step; i++)
+                    put(line, i, stored(k, i / step, y, apart ? plane : i % step), k);
                 assert_true(TIFFWriteScanline(t, line, (uint32_t)y, (uint16_t)plane) == 1);
             }
     }
@@ -102,20 +149,29 @@ static void every_kind_of_tiff_is_read(void **state)
         struct photo p;
         struct photo_info info;
         struct err err = ERR_INIT;
-        if (k->tiled) {
-            assert_int_equal(photo_read(&p, path, &err), ST_DATA);
-            assert_err(err, ST_DATA, "3 samples of 16 bits, in tiles");
-            continue;
-        }
-        assert_ok(photo_read(&p, path, &err), err);
+        const bool real = k->format == SAMPLEFORMAT_IEEEFP;
+        int hidden = 0;
+        assert_ok(photo_read_any(&p, path, &err), err);
         assert_ok(photo_read_info(&info, path, &err), err);
         assert_memory_equal(&info, &p.info, sizeof info);
-        assert_true(p.info.width == WIDTH && p.info.height == HEIGHT && p.info.bits == k->bits);
+        assert_true(p.info.width == WIDTH && p.info.height == HEIGHT && p.info.bits == (real ? 32 : k->bits));
         for (int i = 0; i < WIDTH * HEIGHT * 3; i++) {
             const int x = i / 3 % WIDTH, y = i / 3 / WIDTH, c = k->samples == 1 ? 0 : i % 3;
-            const int stored = colour(x, y, c, k->bits),
-                      wanted = k->photometric == PHOTOMETRIC_MINISWHITE ? 255 - stored : stored;
-            if (p.samples[i] != wanted) fail_msg("%s: sample %d is %d, wanted %d", k->name, i, p.samples[i], wanted);
+            const int value = colour(x, y, c, k->bits), largest = k->bits == 16 ? 65535 : 255,
+                      wanted = k->photometric == PHOTOMETRIC_MINISWHITE ? largest - value : value,
+                      /* a quarter of the value and of alpha were rounded */
+                room = k->alpha == EXTRASAMPLE_ASSOCALPHA && is_hidden(k, x, y) ? 2 + wanted / 50 : 0;
+            if (real && p.values[i] != (float)stored(k, x, y, c))
+                fail_msg("%s: value %d is %g", k->name, i, (double)p.values[i]);
+            if (!real && abs(p.samples[i] - wanted) > room)
+                fail_msg("%s: sample %d is %d, wanted %d", k->name, i, p.samples[i], wanted);
+            hidden += i % 3 == 0 && is_hidden(k, x, y);
+        }
+        assert_true(fabs(p.transparent - (double)hidden / (WIDTH * HEIGHT)) < 1e-12 && p.pages == 0);
+        if (real) {
+            struct photo none;
+            assert_int_equal(photo_read(&none, path, &err), ST_DATA);
+            assert_err(err, ST_DATA, "is a TIFF of floating-point samples");
         }
         assert_int_equal(p.info.orientation, 6);
         assert_float_equal(p.info.seconds, 0.0125, 1e-7);
@@ -126,6 +182,32 @@ static void every_kind_of_tiff_is_read(void **state)
         assert_string_equal(p.info.model, "a test");
         photo_release(&p);
     }
+}
+
+/* The first page is the photo. Reduced copies are no pages. */
+static void pages_of_a_tiff_are_counted(void **state)
+{
+    const char *path = scratch_path("pages.tif");
+    const unsigned char row[WIDTH] = {0};
+    (void)state;
+    TIFF *t = TIFFOpen(path, "w");
+    assert_non_null(t);
+    for (int page = 0; page < 4; page++) {
+        TIFFSetField(t, TIFFTAG_SUBFILETYPE, page == 2 ? FILETYPE_REDUCEDIMAGE : page ? FILETYPE_PAGE : 0);
+        TIFFSetField(t, TIFFTAG_IMAGEWIDTH, WIDTH);
+        TIFFSetField(t, TIFFTAG_IMAGELENGTH, 1 + page);
+        TIFFSetField(t, TIFFTAG_BITSPERSAMPLE, 8);
+        TIFFSetField(t, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK);
+        for (int y = 0; y <= page; y++) assert_true(TIFFWriteScanline(t, (void *)row, (uint32_t)y, 0) == 1);
+        assert_true(TIFFWriteDirectory(t));
+    }
+    TIFFClose(t);
+    struct photo p;
+    struct err err = ERR_INIT;
+    assert_ok(photo_read(&p, path, &err), err);
+    assert_int_equal(p.info.height, 1);
+    assert_int_equal(p.pages, 3);
+    photo_release(&p);
 }
 
 static void damaged_tiffs_are_errors(void **state)
@@ -303,9 +385,13 @@ static void unknown_formats_are_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_kind_of_tiff_is_read),   cmocka_unit_test(damaged_tiffs_are_errors),
-        cmocka_unit_test(exr_is_read_as_linear),        cmocka_unit_test(raw_files_are_developed_to_linear_light),
-        cmocka_unit_test(damaged_raw_files_are_errors), cmocka_unit_test(unknown_formats_are_refused),
+        cmocka_unit_test(every_kind_of_tiff_is_read),
+        cmocka_unit_test(pages_of_a_tiff_are_counted),
+        cmocka_unit_test(damaged_tiffs_are_errors),
+        cmocka_unit_test(exr_is_read_as_linear),
+        cmocka_unit_test(raw_files_are_developed_to_linear_light),
+        cmocka_unit_test(damaged_raw_files_are_errors),
+        cmocka_unit_test(unknown_formats_are_refused),
     };
     return cmocka_run_group_tests_name("photo_formats", tests, scratch_make, scratch_remove);
 }
