@@ -91,6 +91,7 @@ static void unmirror(struct photo *p)
     const int o = p->info.orientation, w = p->info.width;
     if (o != 2 && o != 4 && o != 5 && o != 7) return;
     p->info.orientation = turns[o];
+    if (!p->bytes && !p->samples && !p->values) return;
     for (int y = 0; y < p->info.height; y++)
         for (int x = 0; x < w / 2; x++)
             for (int c = 0; c < 3; c++) {
@@ -193,9 +194,11 @@ enum status photo_read_hdr_info(struct photo_info *info, const char *path, struc
     return read_info(info, path, PHOTO_HEADER, ANY_FORMAT | GAIN, err);
 }
 
-enum status photo_check(struct photo_info *info, const char *path, bool gain_maps, struct err *err)
+enum status photo_check(struct photo *p, const char *path, bool gain_maps, struct err *err)
 {
-    return read_info(info, path, PHOTO_CHECK, ANY_FORMAT | (gain_maps ? GAIN : 0), err);
+    if (read_photo(p, path, PHOTO_CHECK, ANY_FORMAT | (gain_maps ? GAIN : 0), NULL, NULL, err)) return err->status;
+    photo_release_pixels(p);
+    return ST_OK;
 }
 
 /* ------------------------------------------------------------------------------------------------------------ light */

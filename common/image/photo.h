@@ -30,7 +30,7 @@ enum status photo_read_any(struct photo *p, const char *path, struct err *err);
  * or damaged. */
 enum status photo_read_hdr(struct photo *p, const char *path, struct err *err);
 /* As photo_read_any(), or with gain maps photo_read_hdr(), but keeps no pixels: a large JPEG takes little memory. */
-enum status photo_check(struct photo_info *info, const char *path, bool gain_maps, struct err *err);
+enum status photo_check(struct photo *p, const char *path, bool gain_maps, struct err *err);
 /* Any format; these read headers only. */
 enum status photo_read_info(struct photo_info *info, const char *path, struct err *err);
 enum status photo_read_hdr_info(struct photo_info *info, const char *path, struct err *err); /* of photo_read_hdr() */

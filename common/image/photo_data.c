@@ -8,12 +8,20 @@
 
 #define MAX_PIXELS (UINT64_C(1) << 28)
 
-void photo_release(struct photo *p)
+void photo_release_pixels(struct photo *p)
 {
-    if (!p) return;
     free(p->samples);
     free(p->bytes);
     free(p->values);
+    p->samples = NULL;
+    p->bytes = NULL;
+    p->values = NULL;
+}
+
+void photo_release(struct photo *p)
+{
+    if (!p) return;
+    photo_release_pixels(p);
     colour_space_release(p->space);
     *p = (struct photo){0};
 }

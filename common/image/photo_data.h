@@ -32,6 +32,7 @@ struct photo {
 };
 
 void photo_release(struct photo *p);
+void photo_release_pixels(struct photo *p); /* what is known of them stays */
 
 struct photo_bytes { /* a file's contents in memory */
     const char *path;

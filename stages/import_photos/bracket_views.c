@@ -311,20 +311,36 @@ static enum status group_distinct(struct bracket_views *v, const struct photo_sc
     return count > 1 ? add_view(v, "", photos, count, err) : ST_OK;
 }
 
-static enum status single_views(struct bracket_views *v, const struct photo_scan *scan, struct err *err)
+/* Whether the same of time, f-number and ISO is known of both. */
+static bool known_alike(const struct exposure *a, const struct exposure *b)
 {
+    return (a->seconds > 0) == (b->seconds > 0) && (a->f_number > 0) == (b->f_number > 0) &&
+           (a->iso > 0) == (b->iso > 0);
+}
+
+/* may_equal: photos of unknown exposure among others make all equal, since they are pictures for people: edited ones,
+ * scans and screenshots have lost their EXIF data. */
+static enum status single_views(struct bracket_views *v, const struct photo_scan *scan, bool may_equal, struct err *err)
+{
+    const struct exposure *first = NULL;
     int timed = 0, count = 0;
+    bool alike = true;
     for (int i = 0; !err->status && i < scan->count; i++) {
+        const struct exposure *e = &v->exposures[i];
         if (scan->photos[i].excluded) continue;
+        if (!first) first = e;
+        alike = alike && known_alike(first, e);
         count++;
-        timed += v->exposures[i].seconds > 0;
+        timed += e->seconds > 0;
         add_view(v, "", &i, 1, err);
     }
-    v->untimed = !timed;
-    for (int i = 0; !err->status && !timed && i < scan->count; i++) v->exposures[i] = (struct exposure){1, 0, 0, 1};
+    v->untimed = !timed || (may_equal && !alike);
+    for (int i = 0; !err->status && v->untimed && i < scan->count; i++) v->exposures[i] = (struct exposure){1, 0, 0, 1};
     if (!err->status && count)
         log_note("%d views of one exposure each%s", count,
-                 timed ? "" : "; no exposure time is known, so all are assumed to be equal");
+                 !v->untimed ? ""
+                 : timed     ? "; not all exposures are known, so all are assumed to be equal"
+                             : "; no exposure time is known, so all are assumed to be equal");
     return err->status;
 }
 
@@ -541,7 +557,7 @@ enum status bracket_views_find(struct bracket_views *v, const struct photo_scan 
         group_by_cycle(v, scan, !strcmp(params->brackets, "yes") && !scan->references, err);
     if (!err->status && !listed && !v->count && !single && scan->references) group_distinct(v, scan, err);
     if (!err->status && !listed && !v->count && (scan->references || single || has_linear || other_kind(scan)))
-        single_views(v, scan, err);
+        single_views(v, scan, !has_linear && !single && !scan->references, err);
     if (!err->status && listed && v->count) qsort(v->views, (size_t)v->count, sizeof *v->views, by_view);
     if (!err->status && !listed && v->count) name_views(v, scan, err);
     for (int i = 0; !err->status && i < v->count; i++) sort_view(&v->views[i], v, scan, err);

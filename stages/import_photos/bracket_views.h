@@ -18,7 +18,8 @@
  * of time gives no complete cycle, that of names is tried.
  *
  * Photos other than JPEG and PNG that are not brackets, and all photos if [import_photos] brackets = single, become
- * views of one exposure each and are brought to one scale. If no exposure is known, all are assumed to be equal.
+ * views of one exposure each and are brought to one scale. If no exposure is known, or, of
+ * photos without EXR and raw files, not all of them, all are assumed to be equal.
  * Pictures cut out of photos (split_photos.h) are ordered lens by lens, so that one bracket of a multi-lens camera is
  * a cycle, too.
  *

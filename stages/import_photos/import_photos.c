@@ -130,6 +130,22 @@ static void report_gain_maps(const struct photo_scan *scan)
         log_warn("[import_photos] gain_map is yes, but none of the photos in %s has a gain map.", scan->folder);
 }
 
+/* What photos hold that is not used. */
+static void report_unused_parts(const struct photo_scan *scan)
+{
+    for (int i = 0; i < scan->count; i++) {
+        const struct scanned_photo *p = &scan->photos[i];
+        if (p->excluded || p->err.status) continue;
+        if (p->pages)
+            log_warn("%s/%s has %d pages, of which the first is used; save each photo as a file of its own.",
+                     scan->folder, p->file, p->pages);
+        if (p->transparent > 1e-4)
+            log_warn("%s/%s: %.2g %% of its pixels are transparent, but are used like the others; to leave them out, "
+                     "draw them black in masks/%s.png in the scene's folder.",
+                     scan->folder, p->file, 100 * p->transparent, p->id);
+    }
+}
+
 /* Gives the views the white exposure of the scene whose records are in `folder`, so that both have one scale. */
 static enum status share_white(struct bracket_views *views, const char *folder, struct err *err)
 {
@@ -167,6 +183,7 @@ static enum status import(struct photo_scan *scan, const char *scene, const char
     report_unused(scan, leave);
     report_colours(scan);
     report_gain_maps(scan);
+    report_unused_parts(scan);
     if (!bracketed)
         photo_scan_write(scan, out, err);
     else if (photo_scan_write_records(scan, members, &failed))
@@ -265,7 +282,8 @@ static enum status run(struct photo_scan *scan, const struct places *p, const st
     if (!err->status) {
         exclude_photos(scan, &left);
         if (!framed) leave_clips_out(scan, err);
-        if (!err->status && !photo_scan_check(scan, p->out, err) && !(p->depth && take_depth(scan, p->depth, err)))
+        if (!err->status && !photo_scan_check(scan, p->out, err) && (p->like || !photo_scan_drop_same(scan, err)) &&
+            !(p->depth && take_depth(scan, p->depth, err)))
             import(scan, p->scene, p->like, &left, p->out, params, err);
     }
     report_scan(scan);

@@ -22,10 +22,12 @@ static const struct {
     [LEFT_LIVE] = {false,
                    "clips beside photos of the same name, as phones record them with a photo; to use one, give it "
                    "as PHOTOS or rename it"},
+    [LEFT_ARCHIVE] = {true, "archives, which are not opened; unpack their photos into the folder"},
     [LEFT_PICTURE] = {true, "pictures of a kind that is not read; save them as JPEG, PNG or TIFF if they are photos"},
     [LEFT_DOUBLE] = {false,
                      "a raw file, HEIC or AVIF beside a JPEG of the same name, the same shot twice; to use them, "
                      "put them into a folder of their own"},
+    [LEFT_SAME] = {false, "the same bytes as another photo, under a second name"},
     [LEFT_BACKUP] = {false, "backups, thumbnails or unfinished downloads by their names; rename those that are photos"},
     [LEFT_HIDDEN] = {false, "hidden files; rename those that are photos"},
     [LEFT_OTHER] = {false, "no pictures"},
@@ -66,6 +68,8 @@ enum left_reason left_out_reason(const char *file)
     static const char *const videos[] = {".mp4",  ".mov", ".m4v", ".avi",  ".mkv", ".webm", ".mts",
                                          ".m2ts", ".3gp", ".lrv", ".insv", ".360", ".mpg",  ".wmv"};
     static const char *const pictures[] = {".gif", ".bmp", ".psd", ".psb", ".tga", ".svg", ".pdf", ".jp2", ".hdr"};
+    static const char *const archives[] = {".zip", ".rar", ".7z", ".tar", ".tgz", ".gz", ".xz", ".bz2", ".zst"};
+    if (ends_with(file, archives, sizeof archives / sizeof *archives)) return LEFT_ARCHIVE;
     if (ends_with(file, videos, sizeof videos / sizeof *videos)) return LEFT_VIDEO;
     return ends_with(file, pictures, sizeof pictures / sizeof *pictures) ? LEFT_PICTURE : LEFT_OTHER;
 }

@@ -11,8 +11,10 @@ enum left_reason {
     LEFT_VIDEO,   /* by its name, but of a kind that is not read */
     LEFT_CLIP,    /* a video where clips are not used */
     LEFT_LIVE,    /* a clip beside a photo of the same name */
+    LEFT_ARCHIVE, /* by its name */
     LEFT_PICTURE, /* GIF, BMP and others, by their names */
     LEFT_DOUBLE,  /* a raw file, HEIC or AVIF beside a JPEG of the same name */
+    LEFT_SAME,    /* the same bytes as another photo */
     LEFT_BACKUP,  /* a photo's content under the name of a backup, a thumbnail or an unfinished download */
     LEFT_HIDDEN,  /* a photo's name that begins with a dot */
     LEFT_OTHER,   /* no picture: texts, folders without photos */
@@ -31,7 +33,7 @@ struct left_out {
 
 enum status left_out_add(struct left_out *l, const char *file, enum left_reason reason, struct err *err);
 void left_out_sort(struct left_out *l);
-/* LEFT_VIDEO, LEFT_PICTURE or LEFT_OTHER. */
+/* LEFT_VIDEO, LEFT_ARCHIVE, LEFT_PICTURE or LEFT_OTHER. */
 enum left_reason left_out_reason(const char *file);
 /* Whether a video of this name is one that people film: no preview, and none of a camera that sees all around. */
 bool left_out_is_film(const char *file);

@@ -286,6 +286,22 @@ static enum status name_clips(struct photo_scan *scan, struct err *err)
     return ST_OK;
 }
 
+/* What was given in place of a folder or of videos. */
+static enum status refuse_source(const char *path, struct err *err)
+{
+    if (path_is_folder(path))
+        return err_set(err, ST_DATA, "%s is a folder; give one folder of photos, or videos alone.", path);
+    if (left_out_reason(path) == LEFT_ARCHIVE)
+        return err_set(err, ST_DATA, "%s is an archive; unpack it, and give the folder of its photos.", path);
+    if (kind_of_file(path) != PHOTO_KIND_OTHER)
+        return err_set(err, ST_DATA, "%s is one photo; give the folder that holds all photos of the scene.", path);
+    return err_set(
+        err, ST_DATA,
+        "%s is no video (MP4, QuickTime, Matroska, AVI) by its content; convert other videos to MP4, or give "
+        "a folder of photos.",
+        path);
+}
+
 enum status photo_scan_clips(struct photo_scan *scan, const char *const *paths, int count, struct err *err)
 {
     *scan = (struct photo_scan){0};
@@ -293,13 +309,10 @@ enum status photo_scan_clips(struct photo_scan *scan, const char *const *paths, 
         struct stat info;
         if (stat(paths[i], &info))
             err_errno(err, "read", paths[i]);
-        else if (!S_ISREG(info.st_mode) || kind_of_file(paths[i]) != PHOTO_KIND_VIDEO)
-            err_set(
-                err, ST_DATA,
-                "%s is no video (MP4, QuickTime, Matroska, AVI) by its content; give a folder of photos, or videos.",
-                paths[i]);
-        else
+        else if (S_ISREG(info.st_mode) && kind_of_file(paths[i]) == PHOTO_KIND_VIDEO)
             add_clip(scan, paths[i], err);
+        else
+            refuse_source(paths[i], err);
     }
     return err->status ? err->status : name_clips(scan, err);
 }
@@ -380,6 +393,12 @@ struct check_job {
     struct progress progress;
 };
 
+/* A record of a mirrored photo is of an earlier release: photos lose their mirror when they are read. */
+static bool is_mirrored(int orientation)
+{
+    return orientation == 2 || orientation == 4 || orientation == 5 || orientation == 7;
+}
+
 static bool read_old_record(struct photo_record *old, const char *records, const char *id)
 {
     struct err absent = ERR_INIT, ignored = ERR_INIT;
@@ -387,7 +406,7 @@ static bool read_old_record(struct photo_record *old, const char *records, const
     bool found = (members && !photo_record_read(old, members, id, NULL, &absent)) ||
                  !photo_record_read(old, records, id, NULL, &ignored);
     free(members);
-    return found;
+    return found && !is_mirrored(old->info.orientation);
 }
 
 /* Whether a record of the same bytes was made with the present setting of gain maps. */
@@ -403,6 +422,7 @@ static bool same_setting(const struct scanned_photo *p, const struct photo_info 
 static enum status check_photo(struct scanned_photo *p, const char *folder, const char *records, bool gain_maps)
 {
     struct photo_record old = {0};
+    struct photo photo = {0};
     char quoted[1024];
     char *path = join_path(folder, p->file, "");
 
@@ -413,7 +433,10 @@ static enum status check_photo(struct scanned_photo *p, const char *folder, cons
         same_setting(p, &old.info, path, gain_maps)) {
         p->record.info = old.info;
     } else if (!p->err.status) {
-        photo_check(&p->record.info, path, gain_maps, &p->err);
+        photo_check(&photo, path, gain_maps, &p->err);
+        p->record.info = photo.info;
+        p->transparent = photo.transparent;
+        p->pages = photo.pages;
     }
     if (!p->err.status) {
         p->record.file = strdup(p->file);
@@ -421,6 +444,7 @@ static enum status check_photo(struct scanned_photo *p, const char *folder, cons
         if (!p->record.file || !p->record.id) err_nomem(&p->err, "a record", 0);
     }
     photo_record_release(&old);
+    photo_release(&photo);
     free(path);
     return p->err.status;
 }
@@ -445,6 +469,25 @@ enum status photo_scan_check(struct photo_scan *scan, const char *records, struc
     for (int i = 0; i < scan->count; i++) /* not an error of the photo */
         if (scan->photos[i].err.status == ST_NOMEM) return err_set(err, ST_NOMEM, "%s", scan->photos[i].err.text);
     return ST_OK;
+}
+
+/* Of photos with the same bytes the one with the shortest name stays: the others are called "copy of". */
+enum status photo_scan_drop_same(struct photo_scan *scan, struct err *err)
+{
+    for (int i = 0; !err->status && i < scan->count; i++) {
+        struct scanned_photo *p = &scan->photos[i];
+        for (int k = 0; !p->excluded && !p->err.status && k < scan->count; k++) {
+            const struct scanned_photo *q = &scan->photos[k];
+            const size_t own = strlen(p->file), other = strlen(q->file);
+            if (k == i || q->excluded || q->err.status || strcmp(p->record.hash, q->record.hash) || other > own ||
+                (other == own && k > i))
+                continue;
+            p->excluded = true;
+            left_out_add(&scan->left, p->file, LEFT_SAME, err);
+        }
+    }
+    left_out_sort(&scan->left);
+    return err->status;
 }
 
 static bool usable(const struct scanned_photo *p) { return !p->excluded && !p->err.status; }

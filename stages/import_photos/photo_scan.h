@@ -21,6 +21,8 @@ struct scanned_photo {
     bool excluded;
     bool panorama;              /* it becomes several views (panorama.h) */
     struct photo_record record; /* filled by photo_scan_check() */
+    double transparent;         /* share of its pixels; this and pages only if it is new */
+    int pages;                  /* of a TIFF that has several; else 0 */
     struct err err;             /* the reason if it cannot be used */
 };
 
@@ -56,6 +58,9 @@ int photo_scan_exclude(struct photo_scan *scan, const char *name);
  * changed, otherwise by decoding all its pixels. Photos that cannot be used have `err` set, which is not an error of
  * this function. */
 enum status photo_scan_check(struct photo_scan *scan, const char *records, struct err *err);
+
+/* Excludes photos with the same bytes as another one, and lists them as left out. ST_NOMEM. */
+enum status photo_scan_drop_same(struct photo_scan *scan, struct err *err);
 int photo_scan_bad(const struct photo_scan *scan);  /* number of unusable photos */
 int photo_scan_used(const struct photo_scan *scan); /* number of photos that are not excluded */
 /* ST_DATA, naming them, if there are unusable photos. */
