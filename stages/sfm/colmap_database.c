@@ -1,11 +1,12 @@
 /* colmap_database.c - features and verified pairs of the photos in COLMAP's database.
  *
  * COLMAP itself makes the database, with cameras and images; only three of its tables are named here. A keypoint is a
- * row of four floats: x, y, scale, orientation. The id of a pair is (2^31 - 1) times the lower id of its images, plus
+ * row of four floats: x, y, scale, orientation; a match is a row of two 32-bit numbers. The id of a pair is (2^31 - 1) times the lower id of its images, plus
  * the higher one. */
 #include "stages/sfm/colmap_database.h"
 
 #include <sqlite3.h>
+#include <stdint.h>
 #include <stdlib.h>
 
 struct colmap_database {
@@ -133,6 +134,31 @@ enum status colmap_database_pairs(struct verified_pair **pairs, int *count, stru
                                                       sqlite3_column_int(find, 2)};
     }
     if (!err->status && step != SQLITE_DONE) failed(db, "look for pairs", err);
+    sqlite3_finalize(find);
+    return err->status;
+}
+
+enum status colmap_database_inliers(struct index_match **matches, int *count, struct colmap_database *db,
+                                    const struct verified_pair *pair, struct err *err)
+{
+    sqlite3_stmt *find = NULL;
+    const sqlite3_int64 id = 2147483647 * (sqlite3_int64)pair->images[0] + pair->images[1];
+    *matches = NULL;
+    *count = 0;
+    if (sqlite3_prepare_v2(db->sql, "SELECT rows, data FROM two_view_geometries WHERE pair_id = ?", -1, &find, NULL) !=
+            SQLITE_OK ||
+        sqlite3_bind_int64(find, 1, id) != SQLITE_OK || sqlite3_step(find) != SQLITE_ROW)
+        failed(db, "look for matches", err);
+    else {
+        const int rows = sqlite3_column_int(find, 0);
+        const uint32_t *data = sqlite3_column_blob(find, 1);
+        if (rows < 0 || !data || (size_t)sqlite3_column_bytes(find, 1) != (size_t)rows * 2 * sizeof *data)
+            err_set(err, ST_DATA, "COLMAP's database: a pair has %d matches, but not as many rows of data.", rows);
+        else if (!(*matches = malloc(((size_t)rows + 1) * sizeof **matches)))
+            err_nomem(err, "matches", (size_t)rows * sizeof **matches);
+        for (; !err->status && *count < rows; (*count)++)
+            (*matches)[*count] = (struct index_match){(int)data[2 * *count], (int)data[2 * *count + 1]};
+    }
     sqlite3_finalize(find);
     return err->status;
 }

@@ -4,6 +4,7 @@
 
 #include "common/base/err.h"
 #include "common/capture/feature_list.h"
+#include "common/capture/match_list.h"
 
 struct colmap_database;
 
@@ -26,6 +27,10 @@ enum status colmap_database_set_features(struct colmap_database *db, int image, 
 /* Reads the verified pairs, ascending by image ids. The caller frees *pairs, also after an error. ST_IO, ST_NOMEM. */
 enum status colmap_database_pairs(struct verified_pair **pairs, int *count, struct colmap_database *db,
                                   struct err *err);
+/* Reads the matches of a verified pair that agree with its geometry: indices of features. The caller frees *matches,
+ * also after an error. ST_IO, ST_NOMEM, and ST_DATA if the rows are not as COLMAP writes them. */
+enum status colmap_database_inliers(struct index_match **matches, int *count, struct colmap_database *db,
+                                    const struct verified_pair *pair, struct err *err);
 /* Keeps the changes; closing without it drops them. ST_IO. */
 enum status colmap_database_commit(struct colmap_database *db, struct err *err);
 void colmap_database_close(struct colmap_database *db); /* NULL: nothing */

@@ -19,6 +19,8 @@
 #include "common/image/photo.h"
 #include "common/product/product.h"
 
+enum { COPY_MATCHES = 50, COPY_BLOCKS = 4, COPY_SPREAD = 8 }; /* of COPY_BLOCKS^2 blocks of a picture */
+static const float COPY_SHARE = 0.9f;                         /* of the matches, which do not move */
 enum { CELLS = 64, BLOCK = 4, MIN_PHOTOS = 3, MIN_ALIKE = 10, MAX_COMPARED = 400, NEAREST = 3, MAX_NAMED = 3 };
 static const double PHOTO_SHARE = 0.2;
 static const float STILL = 1, LARGE = 1600; /* px; the longer side above which STILL grows with it */
@@ -78,12 +80,14 @@ static enum status find_groups(struct still_places *s, const struct photo_list *
 {
     s->photos = photos->count;
     s->group_of = calloc((size_t)photos->count + 1, sizeof *s->group_of);
+    s->copy_of = calloc((size_t)photos->count + 1, sizeof *s->copy_of);
     s->features = calloc((size_t)photos->count + 1, sizeof *s->features);
-    if (!s->group_of || !s->features)
+    if (!s->group_of || !s->copy_of || !s->features)
         return err_nomem(err, "sizes of photos", (size_t)photos->count * sizeof *s->group_of);
     for (int i = 0; i < photos->count; i++) {
         const struct photo_info *info = &photos->photos[i].info;
         int k = 0;
+        s->copy_of[i] = -1;
         while (k < s->count && (s->groups[k].width != info->width || s->groups[k].height != info->height)) k++;
         if (k == s->count && add_group(s, info, i, err)) return err->status;
         s->group_of[i] = k;
@@ -214,7 +218,43 @@ static enum status count_pair(struct search *w, int a, int b, const struct match
     return ST_OK;
 }
 
-static enum status count_photo(struct search *w, int photo, const char *matches, struct err *err)
+/* Whether both photos show the same picture, of their sizes: nearly all matches stay, all over the picture. A text that is
+ * burnt in has most of the matches at most. */
+static bool is_copy(const struct search *w, int a, int b, const struct matched_pair *pair)
+{
+    const struct photo_info *from = &w->photos->photos[a].info, *to = &w->photos->photos[b].info;
+    const float sx = (float)to->width / (float)from->width, sy = (float)to->height / (float)from->height;
+    const float room = tolerance(&w->to->groups[w->to->group_of[b]]) * fmaxf(1, fmaxf(sx, sy));
+    bool seen[COPY_BLOCKS * COPY_BLOCKS] = {false};
+    int still = 0, spread = 0;
+    if (pair->count < COPY_MATCHES || fabsf(sx / sy - 1) > 0.01f) return false;
+    for (int i = 0; i < pair->count; i++) {
+        const struct spot *p = &w->spots[a][pair->matches[i].first], *q = &w->spots[b][pair->matches[i].second];
+        if (hypotf(sx * p->x - q->x, sy * p->y - q->y) > room) continue;
+        const int u = (int)(COPY_BLOCKS * p->x / (float)from->width),
+                  v = (int)(COPY_BLOCKS * p->y / (float)from->height);
+        still++;
+        if (u >= 0 && v >= 0 && u < COPY_BLOCKS && v < COPY_BLOCKS) seen[v * COPY_BLOCKS + u] = true;
+    }
+    for (int k = 0; k < COPY_BLOCKS * COPY_BLOCKS; k++) spread += seen[k];
+    return (float)still >= COPY_SHARE * (float)pair->count && spread >= COPY_SPREAD;
+}
+
+static void mark_copy(struct search *w, int a, int b, const struct matched_pair *pair)
+{
+    int *copy_of = w->to->copy_of;
+    const int first = a < b ? a : b, second = a < b ? b : a;
+    if (copy_of[second] < 0 && is_copy(w, a, b, pair)) copy_of[second] = copy_of[first] < 0 ? first : copy_of[first];
+}
+
+static void count_if_alike(struct search *w, int a, int b, const struct matched_pair *pair, struct err *err)
+{
+    const struct still_places *s = w->to;
+    if (s->group_of[a] == s->group_of[b] && s->copy_of[a] < 0 && s->copy_of[b] < 0) count_pair(w, a, b, pair, err);
+}
+
+/* Twice: copies are found first. */
+static enum status visit_photo(struct search *w, int photo, const char *matches, bool counting, struct err *err)
 {
     struct match_list list = {0};
     char path[FILE_PATH];
@@ -224,9 +264,11 @@ static enum status count_photo(struct search *w, int photo, const char *matches,
     if (!path_is_file(path) || match_list_read(&list, path, NULL, err)) return err->status;
     for (int i = 0; !err->status && i < list.count; i++) {
         const int other = photo_list_find_id(w->photos, list.pairs[i].other);
-        if (other >= 0 && w->to->group_of[photo] == w->to->group_of[other] && w->spots[photo] && w->spots[other] &&
-            fits(w, photo, other, &list.pairs[i]))
-            count_pair(w, photo, other, &list.pairs[i], err);
+        if (other < 0 || !w->spots[photo] || !w->spots[other] || !fits(w, photo, other, &list.pairs[i])) continue;
+        if (counting)
+            count_if_alike(w, photo, other, &list.pairs[i], err);
+        else
+            mark_copy(w, photo, other, &list.pairs[i]);
     }
     match_list_release(&list);
     return err->status;
@@ -329,7 +371,8 @@ enum status still_places_find(struct still_places *s, const struct photo_list *p
     *s = (struct still_places){0};
     if (!find_groups(s, photos, err)) start_search(&w, err);
     for (int i = 0; !err->status && i < photos->count; i++) read_spots(&w, i, features, err);
-    for (int i = 0; !err->status && i < photos->count; i++) count_photo(&w, i, matches, err);
+    for (int i = 0; !err->status && i < photos->count; i++) visit_photo(&w, i, matches, false, err);
+    for (int i = 0; !err->status && i < photos->count; i++) visit_photo(&w, i, matches, true, err);
     for (int k = 0; !err->status && k < s->count; k++) decide(&s->groups[k], &w.tallies[k], photos->count, err);
     if (!err->status) mark_features(s, &w, err);
     end_search(&w);
@@ -409,6 +452,7 @@ void still_places_release(struct still_places *s)
     for (int i = 0; s->features && i < s->photos; i++) free(s->features[i]);
     free(s->groups);
     free(s->group_of);
+    free(s->copy_of);
     free(s->features);
     *s = (struct still_places){0};
 }

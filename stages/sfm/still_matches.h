@@ -30,6 +30,7 @@ struct still_places {
     struct still_group *groups;
     int count;
     int *group_of;            /* of each photo; owned */
+    int *copy_of;             /* of each photo: the first one that shows the same picture, or -1; owned */
     unsigned char **features; /* of each photo, of each feature: it is in such a place; NULL: none is; owned */
     int photos;
 };

@@ -1,7 +1,10 @@
 /* triangulate.c - points for a model that has only cameras.
  *
  * Features and matches are those of a full reconstruction; COLMAP's point_triangulator then finds the points
- * with poses and lenses held fixed. The images written for it must have the names and ids of the database. */
+ * with poses and lenses held fixed. The images written for it must have the names and ids of the database.
+ *
+ * Before that, the verified matches are compared with the given poses. Poses of another convention than COLMAP's still
+ * give some points by chance, and a film of them. */
 #include "stages/sfm/triangulate.h"
 
 #include <math.h>
@@ -17,7 +20,9 @@
 #include "stages/sfm/colmap_log.h"
 #include "stages/sfm/colmap_matches.h"
 #include "stages/sfm/given_cameras.h"
+#include "stages/sfm/pose_agreement.h"
 
+#define AGREE_ROOM    4.0 /* px */
 #define SIMILAR_FOCAL 0.1 /* relative; lenses that differ less are one for verifying matches */
 
 /* The lens for verifying matches: the model's, if it has only one, or all are similar. */
@@ -221,6 +226,96 @@ static enum status add_alone(struct sfm_model *found, struct known_images *k, co
     return ST_OK;
 }
 
+/* The matches of the pair, as rays. matches: room for them. */
+static void add_rays(struct pose_match *matches, int *count, const struct sfm_model *known,
+                     const struct sfm_image *images, const int at[2], const struct index_match *inliers,
+                     int inlier_count)
+{
+    const struct camera *c[2];
+    double f[2], ignored;
+    for (int k = 0; k < 2; k++) {
+        c[k] = &known->cameras[images[at[k]].camera_idx].camera;
+        camera_focal(c[k], &f[k], &ignored, &ignored, &ignored);
+    }
+    for (int i = 0; i < inlier_count; i++) {
+        struct pose_match *m = &matches[*count];
+        const int feature[2] = {inliers[i].first, inliers[i].second};
+        bool good = true;
+        *m = (struct pose_match){.first = at[0], .second = at[1], .room = AGREE_ROOM / fmin(f[0], f[1])};
+        for (int k = 0; good && k < 2; k++) {
+            const struct sfm_image *im = &images[at[k]];
+            good = feature[k] >= 0 && feature[k] < im->observation_count &&
+                   camera_unproject(c[k], im->observations[feature[k]].u, im->observations[feature[k]].v, &m->rays[k]);
+        }
+        *count += good;
+    }
+}
+
+static int place_of(const struct known_images *k, int id)
+{
+    for (int i = 0; i < k->connected_count; i++)
+        if (k->connected[i].id == id) return i;
+    return -1;
+}
+
+/* All verified matches between the images. The caller frees *matches, also after an error. */
+static enum status take_rays(struct pose_match **matches, int *count, const struct known_images *k,
+                             const struct sfm_model *known, const char *database, struct err *err)
+{
+    struct colmap_database *db = NULL;
+    struct verified_pair *pairs = NULL;
+    int pair_count = 0;
+    size_t room = 0;
+    *matches = NULL;
+    *count = 0;
+    if (colmap_database_open(&db, database, err)) return err->status;
+    colmap_database_pairs(&pairs, &pair_count, db, err);
+    for (int i = 0; i < pair_count; i++) room += (size_t)pairs[i].matches;
+    if (!err->status && !(*matches = malloc((room + 1) * sizeof **matches)))
+        err_nomem(err, "matches", room * sizeof **matches);
+    for (int i = 0; !err->status && i < pair_count; i++) {
+        const int at[2] = {place_of(k, pairs[i].images[0]), place_of(k, pairs[i].images[1])};
+        struct index_match *inliers = NULL;
+        int inlier_count = 0;
+        if (at[0] >= 0 && at[1] >= 0 && !colmap_database_inliers(&inliers, &inlier_count, db, &pairs[i], err) &&
+            inlier_count <= pairs[i].matches)
+            add_rays(*matches, count, known, k->connected, at, inliers, inlier_count);
+        free(inliers);
+    }
+    free(pairs);
+    colmap_database_close(db);
+    return err->status;
+}
+
+/* ST_DATA: the poses contradict the photos, and another way to read them does not. */
+static enum status compare_poses(const struct known_images *k, const struct sfm_model *known, const char *database,
+                                 struct err *err)
+{
+    enum { ENOUGH = 100 };
+    struct pose_match *matches = NULL;
+    struct pose_agreement a = {0};
+    struct pose *poses = malloc(((size_t)k->connected_count + 1) * sizeof *poses);
+    int count = 0;
+    if (!poses) err_nomem(err, "poses", (size_t)k->connected_count * sizeof *poses);
+    for (int i = 0; !err->status && i < k->connected_count; i++) poses[i] = k->connected[i].cam_from_world;
+    if (!err->status && !take_rays(&matches, &count, k, known, database, err))
+        pose_agreement_measure(&a, poses, k->connected_count, matches, count, err);
+    free(matches);
+    free(poses);
+    if (err->status || count < ENOUGH || a.share >= AGREE_LEAST) return err->status;
+    if (a.best >= AGREE_SURELY)
+        return err_set(err, ST_DATA,
+                       "the given cameras contradict their photos: of %d matches between photos, %.0f %% are where the "
+                       "cameras see them, but %.0f %% would be if their poses, in COLMAP's convention, were read %s. "
+                       "Convert the poses, or export them anew.",
+                       count, 100 * a.share, 100 * a.best, a.reading);
+    log_warn(
+        "the given cameras hardly agree with their photos: of %d matches between photos, %.0f %% are within %g px of "
+        "where the cameras see them. Are these the poses of these photos, for lenses of this model?",
+        count, 100 * a.share, AGREE_ROOM);
+    return ST_OK;
+}
+
 /* Triangulates points for known cameras. *features: number of the photos' features. */
 static enum status triangulate_known(struct sfm_model *found, long long *features, const struct sfm_model *known,
                                      const struct sfm_folder *f, const struct sfm_input *in, struct err *err)
@@ -234,6 +329,7 @@ static enum status triangulate_known(struct sfm_model *found, long long *feature
     if (of_known && made) colmap_prepare(&job, f, in, &params, err);
     if (!err->status && !outfile_make_folders(made, err) && !colmap_take_matches(features, &job, err))
         find_images(&images, &job, known, err);
+    if (!err->status && images.connected_count) compare_poses(&images, known, job.database, err);
     if (!err->status && images.connected_count) {
         const struct sfm_model given = {.cameras = known->cameras,
                                         .camera_count = known->camera_count,

@@ -10,6 +10,7 @@
 #include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "common/base/file_bytes.h"
 #include "common/base/log.h"
@@ -109,10 +110,34 @@ static enum status report_still(const struct verification *v, const struct still
     return ST_OK;
 }
 
+/* Names photos that show the same picture as others. */
+static void report_copies(const struct verification *v)
+{
+    enum { NAMED = 4 };
+    const struct photo_list *photos = v->job->photos;
+    char names[400] = "", ids[600] = "";
+    int count = 0;
+    for (int i = 0; i < photos->count; i++) {
+        const int first = v->still.copy_of[i];
+        const size_t n = strlen(names), k = strlen(ids);
+        if (first < 0) continue;
+        if (count++ < NAMED)
+            snprintf(names + n, sizeof names - n, "%s%s that of %s", n ? ", " : "", photos->photos[i].file,
+                     photos->photos[first].file);
+        snprintf(ids + k, sizeof ids - k, " %s", photos->photos[i].id);
+    }
+    if (count)
+        log_warn(
+            "%d photos show the same picture as another one (%s%s). They add nothing, and take places of photos that "
+            "show depth; leave them out: EXCLUDE =%s",
+            count, names, count > NAMED ? ", ..." : "", ids);
+}
+
 static enum status find_still(struct verification *v, struct err *err)
 {
     const struct sfm_input *in = v->job->in;
     still_places_find(&v->still, v->job->photos, in->features, in->matches, err);
+    if (!err->status) report_copies(v);
     for (int k = 0; !err->status && k < v->still.count; k++)
         if (v->still.groups[k].places) report_still(v, &v->still.groups[k], err);
     return err->status;

@@ -45,7 +45,28 @@ an_unknown_lens_is_named()
     ! imported colmap-binary-without-points/newlens || fail "it was accepted"
     grep -q 'newlens/cameras.bin: camera 1 has COLMAP.s lens model number 11, RAD_TAN_THIN_PRISM_FISHEYE' err || { cat err; fail "the lens is not named"; }
 }
-
+# poses in the axes of OpenGL, and from camera to world, without points: each gives some points by chance
+poses_of_other_conventions_are_named()
+{
+    prepared
+    mkdir turned
+    cp "$cases/given-disparity/model/cameras.txt" turned
+    : >turned/points3D.txt
+    local way
+    for way in "y up and z backward" "camera's centre in place of the translation"; do
+        awk -v way="$way" '
+            /^#/ || NF != 10 || $10 !~ /jpg/ { next }
+            way ~ /^y/ { print $1, -$3, $2, -$5, $4, $6, -$7, -$8, $9, $10; print ""; next }
+            { # C = -R^T t, by the conjugate quaternion
+              w = $2; x = -$3; y = -$4; z = -$5; a = -$6; b = -$7; c = -$8
+              u = 2 * (y * c - z * b); v = 2 * (z * a - x * c); s = 2 * (x * b - y * a)
+              print $1, $2, $3, $4, $5, a + w * u + y * s - z * v, b + w * v + z * u - x * s, c + w * s + x * v - y * u, $9, $10; print "" }
+            ' "$cases/given-disparity/model/images.txt" >turned/images.txt
+        ! sfm --photos "$photos" --records records --features features --matches matches --model turned --out sfm 2>err || fail "$way: it was accepted"
+        grep -q 'the given cameras contradict their photos: of [0-9]* matches between photos, [0-9] % are where the cameras see them, but 9[0-9] % would be' err || { cat err; fail "$way: it is not said"; }
+        says "$way"
+    done
+}
 
 # depth FOLDER [DEPTH.TXT]: depth of kermit003 with the case's depth, messages in err
 depth()
@@ -98,5 +119,5 @@ sentinels_are_unknown()
 
 for t in text_without_points_is_triangulated binary_without_points_is_triangulated bundler_without_points_is_triangulated \
     points_without_tracks_are_found_anew points_with_tracks_of_one_are_found_anew lists_with_windows_paths_are_read lists_with_blanks_are_read \
-    lists_with_quotes_are_read good_points_are_kept an_unknown_lens_is_named \
+    lists_with_quotes_are_read good_points_are_kept an_unknown_lens_is_named poses_of_other_conventions_are_named \
     disparity_is_recognised_and_named disparity_that_is_said_is_used formats_of_depth_are_read sentinels_are_unknown; do run "$t"; done

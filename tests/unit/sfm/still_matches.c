@@ -198,6 +198,32 @@ static void what_is_found_is_described_and_masked(void **state)
     still_places_release(&places);
 }
 
+/* The second photo is taken from the place of the first one, or is the first one again at half its size. */
+static void copies_are_named(void **state)
+{
+    const struct scene s = {POINTS, 0, 10, 60, 3, 0, 2, 0}, moves = {POINTS, MARKS, WRONG, 60, 3, 0, 0, 0};
+    (void)state;
+    for (int way = 0; way < 3; way++) {
+        struct still_places places;
+        struct err err = ERR_INIT;
+        make(way < 2 ? &s : &moves);
+        if (way == 1) { /* as if each pixel of the first photo were four */
+            struct feature_list f;
+            char path[400];
+            snprintf(path, sizeof path, "%s/%s.txt", features, ids[0]);
+            assert_ok(feature_list_read(&f, path, NULL, &err), err);
+            for (int k = 0; k < f.count; k++) f.features[k].x *= 2, f.features[k].y *= 2;
+            assert_ok(feature_list_write(&f, path, &(struct provenance){.stage = "test", .version = "0"}, &err), err);
+            feature_list_release(&f);
+            records[0].info.width *= 2;
+            records[0].info.height *= 2;
+        }
+        assert_ok(still_places_find(&places, &photos, features, matches, &err), err);
+        for (int i = 0; i < PHOTOS; i++) assert_int_equal(places.copy_of[i], way < 2 && i == 1 ? 0 : -1);
+        still_places_release(&places);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -208,6 +234,7 @@ int main(void)
         cmocka_unit_test(photos_from_a_tripod_keep_their_matches),
         cmocka_unit_test(a_far_background_keeps_its_matches),
         cmocka_unit_test(what_is_found_is_described_and_masked),
+        cmocka_unit_test(copies_are_named),
     };
     return cmocka_run_group_tests_name("still_matches", tests, scratch_make, scratch_remove);
 }
