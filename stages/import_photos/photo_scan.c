@@ -102,26 +102,6 @@ static enum status drop_jpeg_twins(struct photo_scan *scan, struct err *err)
     return err->status;
 }
 
-static bool id_char(char c)
-{
-    return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || c == '_' || c == '-';
-}
-
-void photo_id_from_stem(char id[MAX_PHOTO_ID + 1], const char *stem, size_t length)
-{
-    size_t n = 0;
-    bool begun = false, named = false, run = false; /* run: within a run of replaced characters */
-    for (size_t i = 0; i < length && n < MAX_PHOTO_ID; i++) {
-        bool plain = id_char(stem[i]) && (begun || stem[i] != '-');
-        if (plain || !run) id[n++] = plain ? stem[i] : '_';
-        begun |= plain;
-        named |= plain && stem[i] != '_' && stem[i] != '-';
-        run = !plain;
-    }
-    id[n] = 0;
-    if (!named) strcpy(id, "photo");
-}
-
 static int by_file(const void *a, const void *b)
 {
     return strcmp(((const struct scanned_photo *)a)->file, ((const struct scanned_photo *)b)->file);

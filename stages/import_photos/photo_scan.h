@@ -11,6 +11,7 @@
 
 #include <stdbool.h>
 
+#include "common/capture/photo_id.h"
 #include "common/capture/photo_list.h"
 #include "common/image/photo_kind.h"
 #include "stages/import_photos/left_out.h"
@@ -76,10 +77,8 @@ enum status photo_scan_write(const struct photo_scan *scan, const char *records,
 /* Removes all records in a folder except those of the ids. */
 enum status photo_scan_remove_others(const char *records, const char *const *ids, int count, struct err *err);
 
-enum { MAX_PHOTO_ID = 100 }; /* file names may have 255 bytes: leaves room for @k, extensions, temporary names */
 size_t photo_stem(const char *file);    /* length of the name without its extension */
 bool photo_id_reserved(const char *id); /* other files beside those named by ids: list, brackets, index, offsets */
-void photo_id_from_stem(char id[MAX_PHOTO_ID + 1], const char *stem, size_t length);
 
 void photo_scan_release(struct photo_scan *scan);
 

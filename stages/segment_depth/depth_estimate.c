@@ -19,6 +19,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/base/array.h"
 #include "common/base/log.h"
 #include "common/base/parallel.h"
 #include "common/base/textfile.h"
@@ -199,6 +200,35 @@ enum status estimate_print(FILE *to, const char *list, const struct camera_set *
     if (*warning) fprintf(to, "depth: warning: %s.\n", warning);
     work_estimate_print(to, &t.work);
     return ST_OK;
+}
+
+enum status estimate_foresee(FILE *to, const char *list, const struct segment_params *params, struct err *err)
+{
+    struct textfile file = {0};
+    struct work_estimate low = {0}, high = {0};
+    double *pixels = NULL;
+    int count = 0;
+    textfile_open(&file, list, err);
+    while (!err->status && textfile_next(&file)) {
+        int64_t width = 0, height = 0;
+        if (textfile_int(&file, "width", 1, 1 << 20, &width, err) ||
+            textfile_int(&file, "height", 1, 1 << 20, &height, err) || textfile_end(&file, err) ||
+            array_append(&pixels, (size_t)count, sizeof *pixels, "views", err))
+            break;
+        pixels[count++] = (double)width * (double)height;
+    }
+    textfile_release(&file);
+    const int all = params->neighbours < count - 1 ? params->neighbours : count - 1, few = all < 2 ? all : 2;
+    for (int i = 0; !err->status && i < count; i++)
+        for (int round = 0; round <= params->rounds; round++) {
+            const struct depth_work least = depth_work(pixels[i], few, !round, params);
+            const struct depth_work most = depth_work(pixels[i], all, !round, params);
+            if (!round) work_estimate_add(&low, least.core_seconds, least.mib, least.bytes);
+            work_estimate_add(&high, most.core_seconds, most.mib, most.bytes);
+        }
+    free(pixels);
+    if (!err->status) fprintf(to, "foresee %.0f %.0f %.0f %.0f\n", low.seconds, high.seconds, high.mib, high.bytes);
+    return err->status;
 }
 
 enum status estimate_log(const struct camera_set *set, int view_idx, bool first, const struct segment_params *params,

@@ -26,6 +26,11 @@ enum status estimate_view(struct depth_work *work, int *neighbours, const struct
 enum status estimate_print(FILE *to, const char *list, const struct camera_set *set, int jobs,
                            const struct segment_params *params, struct err *err);
 
+/* Prints what is known before there are cameras, "foresee LOW HIGH MIB BYTES": core-seconds of all rounds with two
+ * neighbours a view and only the first round, and with all neighbours and rounds; peak memory of a view; bytes written.
+ * list: a file of lines "WIDTH HEIGHT", the views. */
+enum status estimate_foresee(FILE *to, const char *list, const struct segment_params *params, struct err *err);
+
 /* Logs the work of one view if it is long or large; warns if it exceeds the free memory. */
 enum status estimate_log(const struct camera_set *set, int view_idx, bool first, const struct segment_params *params,
                          struct err *err);

@@ -12,7 +12,8 @@
  *         OUT with .round for .exr                      how much the depth changed in this round
  *         OUT with .txt for .exr, then OUT              segments; layers interior.* and boundary.* (RGBA, Z, id)
  *
- * --estimate prints the time and memory that depth will take instead; it reads cameras and points only.
+ * --estimate prints the time and memory that depth will take instead; it reads cameras and points only. --foresee prints
+ * between which times it will lie, from the sizes of the photos alone.
  *
  * Each file appears whole or not at all, OUT last: if it is new, so are the others. */
 #include <math.h>
@@ -327,11 +328,11 @@ int main(int argc, char **argv)
 {
     struct segment_params params = SEGMENT_PARAMS_DEFAULT;
     struct request r = {.params = &params};
-    const char *list = NULL;
+    const char *list = NULL, *sizes = NULL;
     int jobs = 1;
     const struct cli_opt opts[] = {
         CLI_ABOUT("Layered depth of one view by multi-view segment matching."),
-        CLI_STR("views", &r.views, CLI_REQUIRED, "folder of cameras and rectified views"),
+        CLI_STR("views", &r.views, CLI_OPTIONAL, "folder of cameras and rectified views (required, without --foresee)"),
         CLI_STR("records", &r.records, CLI_OPTIONAL,
                 "folder of the photos' records, which tell their upper sides; without them all are taken as upright"),
         CLI_STR("frame", &r.frame, CLI_OPTIONAL, "what straight edges say of the room: frame.txt"),
@@ -346,6 +347,8 @@ int main(int argc, char **argv)
         CLI_STR("deps", &r.deps, CLI_OPTIONAL, "make dependencies to write: the pictures that were read"),
         CLI_STR("estimate", &list, CLI_OPTIONAL,
                 "file of lines VIEW ROUND: makes no depth, but prints the time and memory that these will take"),
+        CLI_STR("foresee", &sizes, CLI_OPTIONAL,
+                "file of lines WIDTH HEIGHT, a view each: prints between which times the depth of all of them lies"),
         CLI_INT("jobs", &jobs, CLI_OPTIONAL,
                 "with --estimate: views made at a time, each with all --threads (1); 0: on a cluster"),
         CLI_PARAMS(segment_param_table, &params, NULL),
@@ -354,8 +357,10 @@ int main(int argc, char **argv)
     struct provenance prov = {0};
     struct err err = ERR_INIT;
     const enum cli_verdict verdict = cli_parse(argc, argv, "segment_depth", opts, &prov, &err);
-    if (verdict == CLI_RUN && !list == !(r.view && r.out))
-        err_set(&err, ST_USAGE, "give --view and --out, or else --estimate.");
+    if (verdict == CLI_RUN && sizes)
+        estimate_foresee(stdout, sizes, &params, &err);
+    else if (verdict == CLI_RUN && (!r.views || !list == !(r.view && r.out)))
+        err_set(&err, ST_USAGE, "give --views, and --view and --out, or else --estimate; or --foresee alone.");
     else if (verdict == CLI_RUN && (!r.model != !r.axes || (r.model && !r.before)))
         err_set(&err, ST_USAGE, "--model, --axes and --before go together.");
     else if (verdict == CLI_RUN && list)

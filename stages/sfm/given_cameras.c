@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "common/base/array.h"
+#include "common/capture/photo_match.h"
 #include "common/capture/sfm_model_parts.h"
 
 #define MAX_OFF 1e-3 /* cosine of two axes, and relative difference of their lengths */
@@ -55,6 +56,17 @@ static bool is_turned(const struct vec3 axes[3])
         if (!(fabs(vec3_dot(axes[i], axes[(i + 1) % 3])) < MAX_OFF * length * length)) return false;
     }
     return vec3_dot(vec3_cross(axes[0], axes[1]), axes[2]) > 0;
+}
+
+enum status given_panorama_lens(struct camera *c, const char *name, const struct photo_list *photos, const char *where,
+                                struct err *err)
+{
+    const int photo = photo_list_match(photos, name);
+    *c = (struct camera){CAMERA_PINHOLE, 2, 1, {1, 1, 1, 0.5}};
+    if (photo < 0) return ST_OK;
+    return err_set(err, ST_DATA,
+                   "%s is a panorama, but its photo %s is not taken for one; set [import_photos] panoramas = yes.",
+                   where, photos->photos[photo].file);
 }
 
 enum status given_cameras_add(struct sfm_model *m, const char *name, const struct camera *c, const struct vec3 axes[3],

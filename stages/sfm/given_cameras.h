@@ -20,6 +20,11 @@ struct given_lens {
  * model has, or no camera. */
 enum status given_lens_camera(struct camera *c, const struct given_lens *lens, const char *where, struct err *err);
 
+/* Stands for the lens of a panorama, which has no camera model: panorama_poses_expand() replaces its images. ST_DATA,
+ * with `where` in front: the panorama itself is a photo of the scene, which would be taken for a pinhole picture. */
+enum status given_panorama_lens(struct camera *c, const char *name, const struct photo_list *photos, const char *where,
+                                struct err *err);
+
 /* The index of this camera in the model, or -1. */
 int given_cameras_find(const struct sfm_model *m, const struct camera *c);
 

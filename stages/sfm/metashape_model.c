@@ -228,16 +228,19 @@ static void end(void *ctx, const char *name)
 
 /* ------------------------------------------------------------------------------------------------------ the model */
 
-static enum status lens_of(struct camera *c, const struct sensor *s, const char *path, struct err *err)
+/* name: of the camera's photo. */
+static enum status lens_of(struct camera *c, const struct sensor *s, const char *path, const char *name,
+                           const struct photo_list *photos, struct err *err)
 {
     const double *n = s->number;
     const bool old = n[FX] > 0;
     const double fx = old ? n[FX] : n[F] + n[B1], fy = old ? n[FY] : n[F];
     char where[FILE_PATH + 64];
     snprintf(where, sizeof where, "%s:%d: sensor %d", path, s->line, s->id);
+    if (!strcmp(s->type, "spherical")) return given_panorama_lens(c, name, photos, where, err);
     if (strcmp(s->type, "frame") != 0 && strcmp(s->type, "fisheye") != 0)
-        return err_set(err, ST_DATA, "%s is of type %s, which is not supported; wanted frame or fisheye.", where,
-                       s->type);
+        return err_set(err, ST_DATA, "%s is of type %s, which is not supported; wanted frame, fisheye or spherical.",
+                       where, s->type);
     if (!(fy > 0) || s->width < 1)
         return err_set(err, ST_DATA, "%s has no calibration with a focal length; align the photos, then export again.",
                        where);
@@ -257,7 +260,8 @@ static enum status lens_of(struct camera *c, const struct sensor *s, const char 
     return given_lens_camera(c, &lens, where, err);
 }
 
-static enum status add_camera(struct sfm_model *m, const struct document *d, const struct aligned *a, struct err *err)
+static enum status add_camera(struct sfm_model *m, const struct document *d, const struct aligned *a,
+                              const struct photo_list *photos, struct err *err)
 {
     const struct sensor *sensor = NULL;
     struct component component = {0, {1, 0, 0, 0, 1, 0, 0, 0, 1}, {0}, 1};
@@ -271,7 +275,7 @@ static enum status add_camera(struct sfm_model *m, const struct document *d, con
     snprintf(where, sizeof where, "%s:%d: camera \"%.200s\"", d->path, a->line, a->label);
     if (!sensor)
         return err_set(err, ST_DATA, "%s is of sensor %d, which the file does not describe.", where, a->sensor);
-    if (lens_of(&c, sensor, d->path, err)) return err->status;
+    if (lens_of(&c, sensor, d->path, a->label, photos, err)) return err->status;
     struct mat3 turn;
     memcpy(turn.m, component.rotation, sizeof turn.m);
     for (int k = 0; k < 3; k++) axes[k] = mat3_apply(turn, vec3_make(a->matrix[k], a->matrix[4 + k], a->matrix[8 + k]));
@@ -312,8 +316,8 @@ static bool names_a_document(const struct file_bytes *file)
     return memmem(file->bytes, head, "<document", 9) != NULL;
 }
 
-static enum status read_file(struct sfm_model *m, bool *found, const char *path, struct provenance *prov,
-                             struct err *err)
+static enum status read_file(struct sfm_model *m, bool *found, const char *path, const struct photo_list *photos,
+                             struct provenance *prov, struct err *err)
 {
     struct document d = {.path = path};
     struct file_bytes file = {0};
@@ -321,7 +325,7 @@ static enum status read_file(struct sfm_model *m, bool *found, const char *path,
     *found = !err->status && names_a_document(&file) && (parse(&d, &file, err) || d.is_chunk);
     file_bytes_release(&file);
     if (*found && !err->status && prov) provenance_add_file(prov, "model/cameras.xml", path, err);
-    for (int i = 0; *found && !err->status && i < d.camera_count; i++) add_camera(m, &d, &d.cameras[i], err);
+    for (int i = 0; *found && !err->status && i < d.camera_count; i++) add_camera(m, &d, &d.cameras[i], photos, err);
     if (*found && !err->status && d.unaligned) log_note("%d cameras of %s are not aligned", d.unaligned, path);
     if (*found && !err->status && d.chunks > 1) log_warn("%s has %d chunks; only the first is used", path, d.chunks);
     if (*found && !err->status) given_cameras_end(m, path, err);
@@ -334,14 +338,13 @@ enum status metashape_model_read(struct sfm_model *m, bool *found, const char *f
 {
     struct dirent **names = NULL;
     const int count = scandir(folder, &names, NULL, alphasort);
-    (void)photos;
     *m = (struct sfm_model){0};
     *found = false;
     for (int i = 0; i < count && !err->status && !*found; i++) {
         const char *dot = strrchr(names[i]->d_name, '.');
         char path[FILE_PATH];
         if (dot && !strcasecmp(dot, ".xml") && !file_path(path, folder, names[i]->d_name, "", err))
-            read_file(m, found, path, prov, err);
+            read_file(m, found, path, photos, prov, err);
     }
     for (int i = 0; i < count; i++) free(names[i]);
     free(names);

@@ -4,7 +4,8 @@
  *   w, h                                 size of the pictures, px; without it that of the photos
  *   fl_x, fl_y or camera_angle_x, _y     focal lengths, px, or fields of view, radians
  *   cx, cy                               principal point, px; without it the middle
- *   camera_model                         PINHOLE, OPENCV, OPENCV_FISHEYE, ...; is_fisheye: true is the last
+ *   camera_model                         PINHOLE, OPENCV, OPENCV_FISHEYE, ...; is_fisheye: true is the last;
+ *                                        EQUIRECTANGULAR: a panorama
  *   k1 to k4, p1, p2                     OpenCV's coefficients
  *   frames: file_path, transform_matrix  and any of the above, where they differ
  *   depth_file_path or depth_path        the depth of a frame, z along the axis; of whole numbers
@@ -56,6 +57,13 @@ static enum status read_number(const struct frame *f, const char *key, double *v
     return ST_OK;
 }
 
+static bool is_panorama(const struct frame *f)
+{
+    const json_t *v = find_value(f, "camera_model");
+    const char *name = json_is_string(v) ? json_string_value(v) : "";
+    return !strcasecmp(name, "EQUIRECTANGULAR") || !strcasecmp(name, "spherical");
+}
+
 /* *has: whether the frame's lens is a fisheye. ST_DATA: a model that is none of OpenCV's. */
 static enum status read_model(const struct frame *f, bool *fisheye, struct err *err)
 {
@@ -70,8 +78,8 @@ static enum status read_model(const struct frame *f, bool *fisheye, struct err *
     for (size_t i = 0; i < sizeof plain / sizeof *plain; i++) known = known || !strcmp(name, plain[i]);
     return known ? ST_OK
                  : err_set(err, ST_DATA,
-                           "%s: its camera_model is %s, which is not supported; wanted OPENCV, OPENCV_FISHEYE or "
-                           "PINHOLE.",
+                           "%s: its camera_model is %s, which is not supported; wanted OPENCV, OPENCV_FISHEYE, "
+                           "PINHOLE or EQUIRECTANGULAR.",
                            f->where, *name ? name : "no name");
 }
 
@@ -198,7 +206,12 @@ enum status transforms_model_read(struct sfm_model *m, bool *found, const char *
         bool sized = false;
         if (frame_at(&f, &name, &t, i, err)) break;
         const int photo = photo_list_match(photos, name);
-        if (read_lens(&c, &sized, &f, photo < 0 ? NULL : &photos->photos[photo], err)) break;
+        if (is_panorama(&f)) {
+            sized = true;
+            if (given_panorama_lens(&c, name, photos, f.where, err)) break;
+        } else if (read_lens(&c, &sized, &f, photo < 0 ? NULL : &photos->photos[photo], err)) {
+            break;
+        }
         unsized += !sized;
         if (sized && !read_matrix(&f, axes, &center, err)) given_cameras_add(m, name, &c, axes, center, f.where, err);
     }

@@ -7,7 +7,8 @@
  * All models take one way, whatever their format. The reader of the format makes a model whose images are named as in
  * the user's files; its errors name these. Then the points are judged by the photos (given_points.c). Where they do not
  * serve, points are triangulated with the given cameras (triangulate.c), and the points that serve more photos are
- * kept; points that no photo observes stay in the model and say where the scene is (sfm_import).
+ * kept; points that no photo observes stay in the model and say where the scene is (sfm_import). Poses of panoramas
+ * become those of their views before that (panorama_poses.c).
  *
  * All models end as COLMAP text in one form (sfm_folder.c), so that no later stage knows where a model came from.
  * The hashes of the files that were read go into the provenance. */
@@ -23,6 +24,7 @@
 #include "stages/sfm/csv_model.h"
 #include "stages/sfm/given_points.h"
 #include "stages/sfm/metashape_model.h"
+#include "stages/sfm/panorama_poses.h"
 #include "stages/sfm/transforms_model.h"
 #include "stages/sfm/triangulate.h"
 
@@ -42,6 +44,9 @@ struct model_search {
 
 static enum status take_model(const struct model_search *s, struct sfm_model *m, struct err *err)
 {
+    int panoramas = 0;
+    if (!err->status) panorama_poses_expand(&panoramas, m, s->photos, err);
+    if (!err->status && panoramas && s->prov) log_note("the poses of %d panoramas are those of their views", panoramas);
     if (!err->status && !s->visitor->visit(s->visitor->ctx, m, err)) s->visitor->count++;
     sfm_model_release(m);
     return err->status;

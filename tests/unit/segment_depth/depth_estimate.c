@@ -147,6 +147,33 @@ static void too_little_memory_is_a_warning(void **state)
     free(text);
 }
 
+/* Two sizes: each of three views has two neighbours at most, so that low and high differ by the later round alone. */
+static void what_is_foreseen_is_the_sum_of_all_views(void **state)
+{
+    struct segment_params few = SEGMENT_PARAMS_DEFAULT;
+    struct err err = ERR_INIT;
+    double low = 0, high = 0, mib = 0, bytes = 0, wanted[2] = {0};
+    const double pixels[3] = {1e6, 1e6, 2e6};
+    char text[200] = "";
+    (void)state;
+    FILE *fp = fmemopen(text, sizeof text, "w");
+    assert_non_null(fp);
+    assert_ok(estimate_foresee(fp, scratch_write("sizes", "1000 1000\n1000 1000\n2000 1000\n"), &few, &err), err);
+    fclose(fp);
+    assert_int_equal(sscanf(text, "foresee %lf %lf %lf %lf\n", &low, &high, &mib, &bytes), 4);
+    for (int i = 0; i < 3; i++)
+        for (int round = 0; round <= few.rounds; round++) {
+            const double seconds = depth_work(pixels[i], 2, !round, &few).core_seconds;
+            wanted[0] += round ? 0 : seconds;
+            wanted[1] += seconds;
+        }
+    assert_true(fabs(low - wanted[0]) <= 0.5 && fabs(high - wanted[1]) <= 0.5 && low < high);
+    assert_true(fabs(mib - depth_work(2e6, 2, true, &few).mib) <= 1);
+    assert_true(fabs(bytes - 16.0 * 4e6 * (1 + few.rounds)) <= 1);
+    assert_int_equal(estimate_foresee(stdout, scratch_write("sizes", "1000\n"), &few, &err), ST_DATA);
+    assert_contains(err.text, "sizes:1");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -156,6 +183,7 @@ int main(void)
         cmocka_unit_test(an_empty_list_prints_nothing),
         cmocka_unit_test(a_faulty_list_is_an_error),
         cmocka_unit_test(too_little_memory_is_a_warning),
+        cmocka_unit_test(what_is_foreseen_is_the_sum_of_all_views),
     };
     return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
 }

@@ -112,7 +112,8 @@ static void what_is_wrong_with_transforms_is_named(void **state)
         {"{" POSES, "transforms.json: frame 1 (\"./images/a.jpg\") has no focal length"},
         {"{\"fl_x\": \"500\", " POSES, "\"fl_x\" is not a number"},
         {"{\"fl_x\": 500, \"k4\": 0.1, " POSES, "has a fourth radial coefficient, k4 = 0.1"},
-        {"{\"fl_x\": 500, \"camera_model\": \"EQUIRECTANGULAR\", " POSES, "its camera_model is EQUIRECTANGULAR"},
+        {"{\"fl_x\": 500, \"camera_model\": \"CUBEMAP\", " POSES, "its camera_model is CUBEMAP"},
+        {"{\"camera_model\": \"EQUIRECTANGULAR\", " POSES, "is a panorama, but its photo a.jpg is not taken for one"},
         {"{\"fl_x\": 500, \"frames\": [{\"file_path\": \"a.jpg\"}]}", "(\"a.jpg\"): its transform_matrix is missing"},
         {"{\"fl_x\": 500, \"frames\": [{\"file_path\": \"a.jpg\", \"transform_matrix\": "
          "[[1,0,0,0],[0,1,0,0],[0,0,-1,0],[0,0,0,1]]}]}",
@@ -235,7 +236,8 @@ static void what_is_wrong_with_xml_is_named(void **state)
     static const struct {
         const char *type, *calibration, *components, *words;
     } cases[] = {
-        {"spherical", "<f>500</f>", "", "cameras.xml:5: sensor 3 is of type spherical"},
+        {"cylindrical", "<f>500</f>", "", "cameras.xml:5: sensor 3 is of type cylindrical"},
+        {"spherical", "<f>500</f>", "", "is a panorama, but its photo a.jpg is not taken for one"},
         {"frame", "<cx>5</cx>", "", "cameras.xml:5: sensor 3 has no calibration"},
         {"frame", "<f>500</f><b2>5</b2>", "", "has the skew b2 = 5 px"},
         {"frame", "<f>500</f><k4>0.5</k4>", "", "has a fourth radial coefficient, k4 = 0.5"},
