@@ -110,7 +110,8 @@ static enum status judge(struct judging *j, struct provenance *prov, struct err 
         progress_end(&j->progress);
         for (size_t i = 0; !err->status && i < count; i++)
             if (j->errs[i].status) *err = j->errs[i];
-        if (!err->status && !read_overlaps(j, &list, prov, err)) judgement_write(&j->judgement, j->out, prov, err);
+        if (!err->status && !read_overlaps(j, &list, prov, err)) judgement_join_panoramas(&j->judgement);
+        if (!err->status) judgement_write(&j->judgement, j->out, prov, err);
     }
     free(j->judgement.photos);
     free(j->errs);

@@ -24,6 +24,8 @@ struct judgement {
 
 /* Adds an overlap of two photos: counts it and joins their groups. */
 void judgement_link(struct judgement *j, int first, int second);
+/* Puts views of one panorama, which have one place, into one group. */
+void judgement_join_panoramas(struct judgement *j);
 
 /* Writes out/SCENE/judgement.txt and says the same: warnings about photos, advice about the set. */
 enum status judgement_write(const struct judgement *j, const char *path, const struct provenance *prov,

@@ -73,10 +73,30 @@ one_command_looks_at_machine_and_photos()
     mkdir scenes/d; : >scenes/d/scene.cfg
     make -s DEPS=manual SCENE=d PHOTOS="$scratch/kept/photos" doctor >log 2>&1 || { cat log; fail "make doctor"; }
     grep -q '6 photos that overlap' log && grep -q '^ok    COLMAP' log && grep -q '^list   out/d/judgement.txt' log || { cat log; fail "something is not said"; }
+    grep -Eq '^ok    a film of these 6 photos takes about [0-9]+ s to [0-9]+ (s|min) on [0-9]+ cores?, [0-9]+ MiB of memory and [0-9]+ MiB of disk$' log || { cat log; fail "it does not say what a film takes"; }
+    grep -q '^ok    make plan SCENE=d says more' log || { cat log; fail "make plan is not named"; }
     [ ! -e out/d/sfm ] || fail "it went on to poses"
     make -s DEPS=manual doctor >log 2>&1 || { cat log; fail "make doctor without a scene"; }
     ! grep judge log || fail "photos without a scene"
 }
 
+# two panoramas that overlap: twelve views of two places
+panoramas_are_places()
+{
+    mkdir -p pano/features pano/matches pano/records pano/photos
+    local p k other
+    ffmpeg -loglevel error -y -f lavfi -i testsrc2=size=512x256 -frames:v 1 pano/photos/a.png || fail "ffmpeg"
+    ffmpeg -loglevel error -y -f lavfi -i testsrc=size=512x256 -frames:v 1 pano/photos/b.png || fail "ffmpeg"
+    import_photos --photos pano/photos --frames pano/frames --out pano/records --set panoramas=yes 2>err || { cat err; fail "import"; }
+    for p in $(cut -d' ' -f1 pano/records/list.txt); do extract_features --photos pano/frames --records pano/records --photo "$p" --out "pano/features/$p.txt" 2>err || { cat err; fail "features"; }; done
+    choose_pairs --records pano/records --features pano/features --out pano/pairs.txt 2>err || { cat err; fail "pairs"; }
+    for p in $(cut -d' ' -f1 pano/records/list.txt); do match_photos --pairs pano/pairs.txt --features pano/features --photo "$p" --out "pano/matches/$p.txt" 2>err || { cat err; fail "matches"; }; done
+    judge_photos --photos pano/frames --records pano/records --features pano/features --matches pano/matches --out pano/j.txt 2>said || { cat said; fail "judge_photos"; }
+    grep -q 'The lens of 12 views of panoramas is known' said || { cat said; fail "the lens is taken as unknown"; }
+    ! grep -q 'EXIF does not state' said || { cat said; fail "a lens is missed"; }
+    [ "$(grep -c 'a_yaw000 and the other views of its panorama overlap no other photo' said)" = 1 ] || { cat said; fail "a panorama apart is not named"; }
+    [ "$(grep -c "warning: .*overlap" said)" = 2 ] || { cat said; fail "other warnings"; }
+}
+
 for t in a_good_set_has_no_warnings a_blurred_photo_is_named white_and_dark_photos_are_named a_photo_of_something_else_is_named \
-    the_same_bytes_for_any_number_of_threads one_command_looks_at_machine_and_photos; do run "$t"; done
+    the_same_bytes_for_any_number_of_threads panoramas_are_places one_command_looks_at_machine_and_photos; do run "$t"; done
