@@ -66,7 +66,7 @@ STAGE_LIBS := $(STAGES:%=$(B)/lib/%.a)
 UNIT_TESTS := $(patsubst %.c,$(B)/%,$(wildcard tests/unit/*/*.c tests/unit/*/*/*.c))
 BENCHES := $(patsubst %.c,$(B)/%,$(wildcard tests/bench/*.c))
 FUZZ_TESTS := $(patsubst %.c,$(B)/%,$(wildcard tests/fuzz/fuzz_*.c))
-TOOLS := $(B)/tests/pipeline/make_photos
+TOOLS := $(B)/tests/pipeline/make_photos $(B)/tests/pipeline/picture_tool
 
 .PHONY: build tests-build bench-build unit-build fuzz-build
 build: $(BINS) $(B)/bin/print_graph $(STAGES:%=$(B)/stripped/%)

@@ -4,7 +4,8 @@
 setting() { sed -n "s/^$2 = //p" "$O/slice/$1.cfg"; }
 
 # foresee_film: between which times a film of the photos lies, and what memory and disk it takes. Views are photos of at most
-# max_megapixels. Depth has the costs of `make plan`; the others were measured on kermit and fern (docs/scaling.md)
+# max_megapixels. Depth has the costs of `make plan`, with few neighbours and with all; the others were measured on kermit, and
+# lie within a factor of two of that on sceaux
 foresee_film()
 {
     local max_megapixels low high mib bytes
@@ -28,14 +29,14 @@ foresee_film()
             if ($1 * $2 * s * s / 1e6 > frame) frame = $1 * $2 * s * s / 1e6
         }
         END {
-            cameras = 0.3 * photos + 0.6 * taken
-            low += cameras + 20 + 0.3 * frames * frame
-            high += 4 * cameras + 5 * photos + 40 * frame * 3 + (renderer == "offline" ? 6 : 0.6) * frames * frame
+            # core-seconds: reading, matching and poses; the move; the frames
+            low += 1.5 * photos + 2.5 * taken + 30 + (renderer == "offline" ? 0.8 : 0.25) * frames * frame
+            high += 3 * photos + 5 * taken + 100 + (renderer == "offline" ? 2 : 0.6) * frames * frame
             memory = mib * (jobs < photos ? jobs : photos)
             if (40 + 65 * views > memory) memory = 40 + 65 * views
             if (25 * largest * jobs > memory) memory = 25 * largest * jobs
             disk = (bytes + 6e6 * views + 8e6 * frames * frame) / 2^20
-            from = length_of(0.7 * low / cores); to = length_of(1.4 * high / cores)
+            from = length_of(0.8 * low / cores); to = length_of(1.3 * high / cores)
             say = sprintf("a film of these %d photos takes %s on %d core%s, %s of memory and %s of disk",
                 photos, from == to ? "about " to : "about " from " to " to, cores, cores == 1 ? "" : "s", size_of(memory), size_of(disk))
             if (memory > free_mib) print "note  " say ", but " size_of(free_mib) " of memory are free. Give -j1, or lower [sfm_import] max_megapixels"
