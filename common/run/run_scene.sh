@@ -146,6 +146,12 @@ is_photos()
 if [ ! -e "$folder/scene.mk" ]; then
     [ -n "${REMODEL_PHOTOS-}" ] || usage "There is no $folder/scene.mk. Give the folder of photos to begin: make PHOTOS=DIR $again"
     is_photos || usage "PHOTOS=$REMODEL_PHOTOS is neither a folder nor a list of clips. Give the folder that holds the photos, or clips; quote names with blanks."
+    # by their names: nothing is created for what cannot be photos
+    [ ! -f "$REMODEL_PHOTOS" ] || case ${REMODEL_PHOTOS,,} in
+        *.zip | *.rar | *.7z | *.tar | *.gz | *.tgz) usage "PHOTOS=$REMODEL_PHOTOS is an archive. Unpack it, and give the folder of its photos." ;;
+        *.jpg | *.jpeg | *.png | *.tif | *.tiff | *.hei[cf] | *.webp | *.avif | *.jxl | *.exr | *.dng)
+            usage "PHOTOS=$REMODEL_PHOTOS is one photo. Give the folder that holds all photos of the scene." ;;
+    esac
     if [ "$dry" = n ]; then echo "would create $folder/scene.mk and scene.cfg, and go on from there"; exit 0; fi
     common/run/new_scene.sh "$folder" "$goal"
 fi

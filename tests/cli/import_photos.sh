@@ -47,7 +47,8 @@ cut_pictures_are_photos()
 files_are_known_by_their_content()
 {
     local c=$root/tests/fuzz/corpus/photo m=$scratch/mixed; mkdir -p "$m/cam1"
-    cp "$c/rgb.jpg" "$m/1.jfif"; cp "$c/rgb.jpg" "$m/2.HEIC"; cp "$c/rgb.heic" "$m/3.HEIC"; cp "$c/rgb.webp" "$m/4.webp"
+    cp "$c/rgb.jpg" "$m/1.jfif"; { cat "$c/rgb.jpg"; echo; } >"$m/2.HEIC"; # not the same bytes twice
+    cp "$c/rgb.heic" "$m/3.HEIC"; cp "$c/rgb.webp" "$m/4.webp"
     cp "$c/rgb.jpg" "$m/cam1/5.jpg"; cp "$c/rgb.jpg" "$m/1.jfif_original"; cp "$c/rgb.jpg" "$m/._2.jpg"; echo >"$m/6.mov"; echo >"$m/7.xmp"
     "$B/bin/import_photos" --photos "$m" --out "$scratch/mixed-records" 2>"$scratch/err" || { cat "$scratch/err"; fail "it failed"; }
     [ "$(cut -d' ' -f1 "$scratch/mixed-records/list.txt" | tr '\n' ' ')" = "1 2 3 4 " ] || fail "wrong photos"
@@ -76,7 +77,7 @@ films() { rm -rf "$scratch/records"; "$B/bin/import_photos" --out "$scratch/reco
 clips_among_photos_become_photos()
 {
     local m=$scratch/clips times sum; mkdir "$m"
-    make_clip "$m/walk 1.MOV" 40 2; make_clip "$m/IMG_7.mov" 20 2; cp "$d/a.png" "$m/IMG_7.png"; cp "$d/a.png" "$m/b.png"; cp "$m/IMG_7.mov" "$m/GX1.LRV"
+    make_clip "$m/walk 1.MOV" 40 2; make_clip "$m/IMG_7.mov" 20 2; cp "$d/a.png" "$m/IMG_7.png"; ffmpeg -v error -i "$d/a.png" -vf hflip "$m/b.png"; cp "$m/IMG_7.mov" "$m/GX1.LRV"
     films --photos "$m" --threads 2 || { cat "$scratch/err"; fail "it failed"; }
     grep -qF "IMG_7.mov (clips beside photos of the same name" "$scratch/err" || fail "the clip of a live photo is not named"
     grep -qF "GX1.LRV (videos of a kind" "$scratch/err" || fail "the preview is not named"
@@ -136,6 +137,46 @@ panoramas_become_views()
     [ "$(cut -d' ' -f1 "$scratch/records/list.txt" | tr '\n' ' ')" = "R_1 b " ] && [ ! -e "$scratch/frames/frames.txt" ] || fail "views remain"
 }
 
+# a folder as a downloads folder is: the same photo twice, an archive, a TIFF of two pages, transparent pixels, a name with blanks
+what_is_not_used_is_named()
+{
+    local f=$scratch/downloads
+    mkdir "$f"
+    for k in 1 2 3; do ffmpeg -v error -f lavfi -i testsrc2=size=120x80 -vf "hue=h=$((40 * k))" -frames:v 1 "$f/IMG $k.png"; done
+    cp "$f/IMG 2.png" "$f/Copy of IMG 2 (1).png"
+    : >"$f/photos.zip"
+    ffmpeg -v error -f lavfi -i testsrc2=size=120x80 -vf 'format=rgba,geq=r=r(X\,Y):g=g(X\,Y):b=b(X\,Y):a=255*gt(X\,29)' -frames:v 1 "$f/cut out.png"
+    "$B/bin/import_photos" --photos "$f" --out "$scratch/used" 2>"$scratch/err" || { cat "$scratch/err"; fail "it failed"; }
+    for words in "Copy of IMG 2 (1).png (the same bytes as another photo" "photos.zip (archives, which are not opened" \
+        "cut out.png: 25 % of its pixels are transparent" "masks/cut_out.png"; do
+        grep -qF -- "$words" "$scratch/err" || { cat "$scratch/err"; fail "nothing says '$words'"; }
+    done
+    [ "$(cut -d' ' -f1 "$scratch/used/list.txt" | tr '\n' ' ')" = "IMG_1 IMG_2 IMG_3 cut_out " ] || { cat "$scratch/used/list.txt"; fail "wrong photos"; }
+}
+
+# an edited photo has lost its EXIF data
+photos_of_unknown_exposure_among_others()
+{
+    command -v cwebp >/dev/null || skip "cwebp is not installed"
+    local f=$scratch/edited
+    mkdir "$f"
+    for k in 1 2 3; do ffmpeg -v error -f lavfi -i testsrc2=size=120x80 -vf "hue=h=$((40 * k))" -frames:v 1 "$f/$k.png"; done
+    cwebp -quiet "$f/3.png" -o "$f/3.webp"; rm "$f/3.png"
+    printf '1.png 0.01\n2.png 0.01\n' >"$f/exposures.txt"
+    "$B/bin/import_photos" --photos "$f" --out "$scratch/equal" 2>"$scratch/err" || { cat "$scratch/err"; fail "it failed"; }
+    grep -q '3 views of one exposure each; not all exposures are known, so all are assumed to be equal' "$scratch/err" || { cat "$scratch/err"; fail "it is not said"; }
+}
+
+sources_that_are_none_are_named()
+{
+    cp "$d/a.png" "$scratch/photo"
+    : >"$scratch/set.zip"; echo text >"$scratch/text"
+    for pair in "photo|is one photo; give the folder" "set.zip|is an archive; unpack it" "text|is no video (MP4"; do
+        ! "$B/bin/import_photos" --photos "$scratch/${pair%%|*}" --frames "$scratch/frames" --out "$scratch/none" 2>"$scratch/err" || fail "$pair was accepted"
+        grep -qF -- "${pair#*|}" "$scratch/err" || { cat "$scratch/err"; fail "nothing says '${pair#*|}'"; }
+    done
+}
+
 for t in invalid_grids_are_rejected invalid_parameters_are_rejected photos_that_cannot_be_cut_are_named cut_pictures_are_photos files_are_known_by_their_content \
     clips_among_photos_become_photos clips_are_given_by_name unusable_clips_are_named \
-    panoramas_become_views; do run "$t"; done
+    panoramas_become_views what_is_not_used_is_named photos_of_unknown_exposure_among_others sources_that_are_none_are_named; do run "$t"; done

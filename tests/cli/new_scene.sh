@@ -32,6 +32,14 @@ messages_name_the_quality()
     refused 'make PHOTOS=DIR SCENE=none QUALITY=draft' depth SCENE=none QUALITY=draft
 }
 
+nothing_is_created_for_what_cannot_be_photos()
+{
+    : >set.zip; : >one.JPG
+    refused 'PHOTOS=set.zip is an archive. Unpack it' PHOTOS=set.zip SCENE=wrong
+    refused 'PHOTOS=one.JPG is one photo. Give the folder' PHOTOS=one.JPG SCENE=wrong
+    [ ! -e scenes/wrong ] || fail "a scene was created"
+}
+
 plain_make_of_a_room_makes_its_products()
 {
     local goal
@@ -49,4 +57,4 @@ plain_make_of_a_room_makes_its_products()
     grep -qx 'PRODUCTS := model remodel' scenes/room/scene.mk || fail "products that were given are not kept"
 }
 
-for t in plain_make_of_a_room_makes_its_products the_first_command_names_the_lens messages_name_the_quality; do run "$t"; done
+for t in plain_make_of_a_room_makes_its_products the_first_command_names_the_lens messages_name_the_quality nothing_is_created_for_what_cannot_be_photos; do run "$t"; done

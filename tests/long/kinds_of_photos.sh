@@ -61,7 +61,7 @@ heic_in_p3()
 # a clip that shows each photo for four frames, stored sideways as by a phone that is held upright
 clip()
 {
-    local f k i=0 turned=(-metadata:s:v rotate=90)
+    local f k i=0 turned=(-metadata:s:v rotate=270) # before ffmpeg 6 it counted the other way
     mkdir signals
     for f in originals/*.jpg; do
         "$tool" "$1" "$f" one.png

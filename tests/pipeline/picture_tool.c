@@ -29,7 +29,10 @@ static double hlg_signal(double l)
 static enum status read_linear(struct image *out, const char *path, struct err *err)
 {
     struct photo p = {0};
-    if (!photo_read_any(&p, path, err)) photo_to_linear(out, &p, err);
+    if (!photo_read_any(&p, path, err) && !p.values)
+        photo_to_linear(out, &p, err);
+    else if (!err->status && !image_init(out, p.info.width, p.info.height, 3, err))
+        memcpy(out->data, p.values, 3 * (size_t)out->width * (size_t)out->height * sizeof *p.values);
     photo_release(&p);
     return err->status;
 }
