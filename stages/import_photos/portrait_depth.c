@@ -3,8 +3,8 @@
  * It is an auxiliary picture, often smaller than the photo, whose samples s from 0 to 1 stand for disparity, larger
  * where the scene is nearer: low + (high - low) s. Phones of Apple state low and high, and whether that is disparity or
  * depth, in XMP data of the picture ("pixel data info"); other files may do so in a message of their stream. Without
- * either, low is a level below 0, since the farthest surface is somewhere. What unit they have does not matter: the scale
- * of a single photo is free. */
+ * either, low is a level above 0, since the farthest surface is somewhere. Their unit does not matter: the scale of a
+ * single photo is free. */
 #include "stages/import_photos/portrait_depth.h"
 
 #include <dirent.h>

@@ -7,8 +7,8 @@
  *
  * A photo of one exposure stays in memory as it was stored, with 3 bytes a pixel; in linear floats with noise and marks
  * it would take 17 more. The view is made in tiles, and the part of the photo under a tile's kernels is made linear.
- * Neighbouring tiles overlap by a kernel's width, which costs no more time than the memory did. A tile whose part is too
- * large, as it is where a lens spreads or turns the picture, is halved.
+ * Neighbouring tiles overlap by a kernel's width, which costs no more time than the memory did. A tile whose part is
+ * too large, as it is where a lens spreads or turns the picture, is halved.
  *
  * Kernel weights would take much of the time. Without reduction they depend only on the position between pixels and
  * come from a table; photo_map.c finds the positions.

@@ -1,4 +1,4 @@
-/* fuzz_portrait_depth.c - any bytes have no depth, or give a depth map and its units, or an error that names the file. */
+/* fuzz_portrait_depth.c - any bytes have no depth, or give a depth map and its units, or an error with the file. */
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
