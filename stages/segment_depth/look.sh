@@ -27,7 +27,7 @@ maps()
 }
 if [ -f "$depth" ]; then # that of the only photo
     above=$(dirname "$depth"); units=; [ ! -e "$above/depth.txt" ] || units=$(cksum <"$above/depth.txt")
-    grep -v '^#' "$folder/photos/list.txt" | head -n 1 | while read -r id _; do echo "$id $(cksum <"$depth") ${depth##*/} $units"; done
+    sed '/^#/d' "$folder/photos/list.txt" | sed -n 1p | while read -r id _; do echo "$id $(cksum <"$depth") ${depth##*/} $units"; done
 elif [ -n "$depth" ]; then
     units=$(cd "$depth" && { [ ! -e depth.txt ] || cksum depth.txt; })
     maps "$depth" "$folder/photos/list.txt" | sed "s|\$| $units|"
