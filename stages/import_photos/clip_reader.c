@@ -6,7 +6,8 @@
  * as in HEIC. A clip that does not state its matrix has that of BT.601 if it has fewer than 720 rows, as players
  * assume.
  *
- * Interlaced frames show two moments, in even and odd rows. The even rows are used; the odd ones are interpolated, so that
+ * Interlaced frames show two moments, in even and odd rows. The even rows are used; the odd ones are interpolated,
+ * so that
  * all pictures of a clip lie half a pixel lower than they should, all alike.
  *
  * Damage. A decoder hides damage by repeating older pictures. Such a frame would be taken for a photo, so that a clip

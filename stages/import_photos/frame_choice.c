@@ -5,7 +5,8 @@
  * measured anew from the frame that was chosen. A window ends after MAX_WAITING frames, too: a camera that rests would
  * fill memory.
  *
- * A part begins at a frame that can be followed: black frames of a fade and blank walls are passed over. Later frames in
+ * A part begins at a frame that can be followed: black frames of a fade and blank walls are passed over. Later
+ * frames in
  * which too few points are found are blurred or show something else. Blurred ones are passed over. After
  * CUT_FRAMES sharp ones in a row, or at the end, the clip was cut or moved too fast: it begins anew at the first of
  * them. So all sharp frames of a clip that jumps from one to the next are chosen. */

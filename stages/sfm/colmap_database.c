@@ -1,8 +1,8 @@
 /* colmap_database.c - features and verified pairs of the photos in COLMAP's database.
  *
  * COLMAP itself makes the database, with cameras and images; only three of its tables are named here. A keypoint is a
- * row of four floats: x, y, scale, orientation; a match is a row of two 32-bit numbers. The id of a pair is (2^31 - 1) times the lower id of its images, plus
- * the higher one. */
+ * row of four floats: x, y, scale, orientation; a match is a row of two 32-bit numbers. The id of a pair is
+ * (2^31 - 1) times the lower id of its images, plus the higher one. */
 #include "stages/sfm/colmap_database.h"
 
 #include <sqlite3.h>

@@ -218,8 +218,8 @@ static enum status count_pair(struct search *w, int a, int b, const struct match
     return ST_OK;
 }
 
-/* Whether both photos show the same picture, of their sizes: nearly all matches stay, all over the picture. A text that is
- * burnt in has most of the matches at most. */
+/* Whether both photos show the same picture, of their sizes: nearly all matches stay, all over the picture. A text
+ * that is burnt in has most of the matches at most. */
 static bool is_copy(const struct search *w, int a, int b, const struct matched_pair *pair)
 {
     const struct photo_info *from = &w->photos->photos[a].info, *to = &w->photos->photos[b].info;

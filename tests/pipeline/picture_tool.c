@@ -6,7 +6,8 @@
  *   panorama K OUT.jpg      a made-up room as a panorama of 360 degrees, from its Kth place
  *   pinhole K YAW SIDE OUT.png   the same as a pinhole picture of 90 degrees, turned to the right
  *
- * Colours of photos are those of the product's readers; light, signals and differences are computed here in closed form. */
+ * Colours of photos are those of the product's readers; light, signals and differences are computed here in closed
+ * form. */
 #include <lcms2.h>
 #include <math.h>
 #include <stdio.h>

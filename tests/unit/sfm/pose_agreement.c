@@ -1,4 +1,5 @@
-/* pose_agreement.c - cameras around points in space: matches agree with true poses, and each wrong convention is named. */
+/* pose_agreement.c - cameras around points in space: matches agree with true poses, and each wrong convention is
+ * named. */
 #include "tests/unit/scratch.h"
 
 #include <math.h>
