@@ -166,6 +166,18 @@ static enum status share_white(struct bracket_views *views, const char *folder, 
     return err->status;
 }
 
+/* Photos with the same bytes as another one are left out, but not those of a bracket: its exposures may be equal. */
+static enum status find_views(struct bracket_views *views, struct photo_scan *scan, const char *scene, const char *like,
+                              struct exclusion *leave, const struct photo_params *params, struct err *err)
+{
+    bool several = false, dropped = false;
+    bracket_views_find(views, scan, scene, params, leave->names->items, leave->names->count, leave->used, err);
+    for (int i = 0; i < views->count; i++) several |= views->views[i].count > 1;
+    if (err->status || like || several || photo_scan_drop_same(scan, &dropped, err) || !dropped) return err->status;
+    bracket_views_release(views);
+    return bracket_views_find(views, scan, scene, params, leave->names->items, leave->names->count, leave->used, err);
+}
+
 /* The records of bracketed photos are in `members`, even if they cannot be grouped or one is unusable: the views'
  * records stay untouched until everything is valid. */
 static enum status import(struct photo_scan *scan, const char *scene, const char *like, struct exclusion *leave,
@@ -176,8 +188,7 @@ static enum status import(struct photo_scan *scan, const char *scene, const char
     bool bad = photo_scan_bad(scan) > 0;
     struct err failed = ERR_INIT; /* of the members, whose records are written whether they can be grouped or not */
     if (asprintf(&members, "%s/members", out) < 0) return err_nomem(err, "a path", 0);
-    if (!bad)
-        bracket_views_find(&views, scan, scene, params, leave->names->items, leave->names->count, leave->used, err);
+    if (!bad) find_views(&views, scan, scene, like, leave, params, err);
     if (!bad && !err->status && like) share_white(&views, like, err);
     bool bracketed = err->status || views.bracketed || (bad && exists(out, "brackets.txt"));
     report_unused(scan, leave);
@@ -282,8 +293,7 @@ static enum status run(struct photo_scan *scan, const struct places *p, const st
     if (!err->status) {
         exclude_photos(scan, &left);
         if (!framed) leave_clips_out(scan, err);
-        if (!err->status && !photo_scan_check(scan, p->out, err) && (p->like || !photo_scan_drop_same(scan, err)) &&
-            !(p->depth && take_depth(scan, p->depth, err)))
+        if (!err->status && !photo_scan_check(scan, p->out, err) && !(p->depth && take_depth(scan, p->depth, err)))
             import(scan, p->scene, p->like, &left, p->out, params, err);
     }
     report_scan(scan);

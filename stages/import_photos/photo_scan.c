@@ -452,7 +452,7 @@ enum status photo_scan_check(struct photo_scan *scan, const char *records, struc
 }
 
 /* Of photos with the same bytes the one with the shortest name stays: the others are called "copy of". */
-enum status photo_scan_drop_same(struct photo_scan *scan, struct err *err)
+enum status photo_scan_drop_same(struct photo_scan *scan, bool *dropped, struct err *err)
 {
     for (int i = 0; !err->status && i < scan->count; i++) {
         struct scanned_photo *p = &scan->photos[i];
@@ -462,7 +462,7 @@ enum status photo_scan_drop_same(struct photo_scan *scan, struct err *err)
             if (k == i || q->excluded || q->err.status || strcmp(p->record.hash, q->record.hash) || other > own ||
                 (other == own && k > i))
                 continue;
-            p->excluded = true;
+            p->excluded = *dropped = true;
             left_out_add(&scan->left, p->file, LEFT_SAME, err);
         }
     }

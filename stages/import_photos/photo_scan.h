@@ -60,8 +60,9 @@ int photo_scan_exclude(struct photo_scan *scan, const char *name);
  * this function. */
 enum status photo_scan_check(struct photo_scan *scan, const char *records, struct err *err);
 
-/* Excludes photos with the same bytes as another one, and lists them as left out. ST_NOMEM. */
-enum status photo_scan_drop_same(struct photo_scan *scan, struct err *err);
+/* Excludes photos with the same bytes as another one, and lists them as left out. Sets *dropped if there were such.
+ * ST_NOMEM. */
+enum status photo_scan_drop_same(struct photo_scan *scan, bool *dropped, struct err *err);
 int photo_scan_bad(const struct photo_scan *scan);  /* number of unusable photos */
 int photo_scan_used(const struct photo_scan *scan); /* number of photos that are not excluded */
 /* ST_DATA, naming them, if there are unusable photos. */

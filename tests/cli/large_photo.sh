@@ -7,8 +7,8 @@ export PATH=$root/$B/bin:$PATH
 photo()
 {
     mkdir -p "photos-$1" "views-$1"
-    ffmpeg -y -v error -f lavfi -i "testsrc2=size=$2x$3" -frames:v 1 -q:v 3 -pix_fmt yuvj420p "photos-$1/a.jpg"
-    cp "photos-$1/a.jpg" "photos-$1/b.jpg"
+    ffmpeg -y -v error -f lavfi -i "testsrc2=size=$2x$3:rate=1" -frames:v 2 -q:v 3 -pix_fmt yuvj420p "photos-$1/%d.jpg"
+    mv "photos-$1/1.jpg" "photos-$1/a.jpg"; mv "photos-$1/2.jpg" "photos-$1/b.jpg"
     local f=$(($2 * 4 / 5))
     echo "1 PINHOLE 800 600 640 640 400 300" >"views-$1/cameras.txt"
     printf '1 1 0 0 0 0 0 0 1 a.exr\n\n' >"views-$1/images.txt"

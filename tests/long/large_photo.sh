@@ -11,7 +11,7 @@ two_hundred_megapixels_fit_into_memory()
     case $FLAVOR in asan*) skip "the sanitizers take memory of their own" ;; esac
     mkdir photos views
     ffmpeg -v error -f lavfi -i testsrc2=size=16320x12240 -frames:v 1 -q:v 3 -pix_fmt yuvj420p photos/a.jpg
-    ln photos/a.jpg photos/b.jpg
+    cp photos/a.jpg photos/b.jpg; printf ' ' >>photos/b.jpg # other bytes: of two that are alike one is left out
     echo "1 PINHOLE 1600 1200 1280 1280 800 600" >views/cameras.txt
     printf '1 1 0 0 0 0 0 0 1 a.exr\n\n' >views/images.txt
     : >views/points3D.txt

@@ -212,9 +212,9 @@ static void room_colour(double rgb[3], struct vec3 from, struct vec3 way)
     const struct vec3 p = vec3_add(from, vec3_scale(way, block ? in : near));
     for (int c = 0; c < 3; c++) {
         double v = 0;
-        for (int octave = 0; octave < 5; octave++)
-            v += noise(vec3_scale(p, 2 << octave), 31 * c + 7 * octave + (block ? 1000 : 0)) / 5;
-        rgb[c] = fmin(fmax(0.5 + 2.2 * (v - 0.5) + 0.1 * (c - 1), 0), 1);
+        for (int octave = 0; octave < 4; octave++) /* the finest is some pixels wide, so that resampling keeps it */
+            v += noise(vec3_scale(p, 2 << octave), 31 * c + 7 * octave + (block ? 1000 : 0)) * (8 >> octave) / 15;
+        rgb[c] = fmin(fmax(0.5 + 1.8 * (v - 0.5) + 0.1 * (c - 1), 0), 1);
     }
 }
 
