@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# look.sh BIN S - the depth files of DEPTH, of the model in SFM, or of a portrait, in S/stamp/given, each with the checksum of the file that gives their units. Which view
-# a file belongs to is known only when there are views.
+# look.sh BIN S - the depth files of DEPTH, of the model in SFM, or of a portrait, in S/stamp/given, each with the checksum of the
+# file that gives their units. Which view a file belongs to is known only when there are views.
 set -euo pipefail
 folder=$2
 . common/run/keep.sh

@@ -13,8 +13,7 @@
  *         OUT with .txt for .exr, then OUT              segments; layers interior.* and boundary.* (RGBA, Z, id)
  *
  * --estimate prints the time and memory that depth will take instead; it reads cameras and points only. --foresee
- * prints
- * between which times it will lie, from the sizes of the photos alone.
+ * prints between which times it will lie, from the sizes of the photos alone.
  *
  * Each file appears whole or not at all, OUT last: if it is new, so are the others. */
 #include <math.h>
