@@ -13,7 +13,7 @@ grey()
 boards()
 {
     rm -rf "$pair" "$made"; mkdir -p "$pair"
-    grey "$pair/im2.png" 'v = 40 + x'; grey "$pair/im6.png" 'v = 40 + x'
+    grey "$pair/im2.png" 'v = 40 + x'; grey "$pair/im6.png" 'v = 41 + x'
     grey "$pair/disp2.png" 'v = y > 1 && y < 6 && x > 13 && x < 20 ? 32 : 16'
     grey "$pair/disp6.png" 'v = y > 1 && y < 6 && x > 5 && x < 12 ? 32 : 16'
 }
@@ -74,7 +74,7 @@ write_npz()
 float_disparities_of_one_side_are_read()
 {
     rm -rf "$pair" "$made"; mkdir -p "$pair"
-    grey "$pair/wall_left.png" 'v = 40 + x'; grey "$pair/wall_right.png" 'v = 40 + x'
+    grey "$pair/wall_left.png" 'v = 40 + x'; grey "$pair/wall_right.png" 'v = 41 + x'
     write_npz '<f4'; make_scene
     [ "$(ls "$made/truth/depth")" = left.exr ] || fail "there is a truth of the right side"
     wants "$(score "$made/truth/depth/left.exr")" "known 100.0000 pixels 223 "
