@@ -16,6 +16,7 @@
 #include <expat.h>
 
 #include "common/base/scan.h"
+#include "common/base/xml_line.h"
 
 #define HDRGM "http://ns.adobe.com/hdr-gain-map/1.0/"
 #define ITEM  "http://ns.google.com/photos/1.0/container/item/"
@@ -131,7 +132,7 @@ static enum status read_xmp(struct reader *r, const char *xmp, size_t size, cons
         err_set(err, ST_DATA,
                 "%s: its XMP data, which describe its gain map, are damaged (%s in line %llu); export the photo again, "
                 "or set [import_photos] gain_map = no.",
-                path, XML_ErrorString(XML_GetErrorCode(parser)), (unsigned long long)XML_GetCurrentLineNumber(parser));
+                path, XML_ErrorString(XML_GetErrorCode(parser)), (unsigned long long)xml_line(parser));
     else if (r->too_deep || r->too_many)
         err_set(err, ST_DATA,
                 "%s: its XMP data, which describe its gain map, have more than %d %s; export the photo again, or set "

@@ -28,6 +28,7 @@
 #include "common/base/file_path.h"
 #include "common/base/log.h"
 #include "common/base/scan.h"
+#include "common/base/xml_line.h"
 #include "common/capture/photo_match.h"
 #include "stages/sfm/given_cameras.h"
 
@@ -97,15 +98,7 @@ static int int_attribute(const char **attributes, const char *name, int missing)
     return text && scan_int(text, &value) && value >= 0 && value < 1000000000 ? (int)value : missing;
 }
 
-/* Expat 2.9 deprecates the older name, which is all that earlier ones have. */
-static int line_of(const struct document *d)
-{
-#if XML_MAJOR_VERSION > 2 || XML_MINOR_VERSION >= 9
-    return (int)XML_GetCurrentLineNumber64(d->parser);
-#else
-    return (int)XML_GetCurrentLineNumber(d->parser);
-#endif
-}
+static int line_of(const struct document *d) { return (int)xml_line(d->parser); }
 
 static void fail(struct document *d)
 {
