@@ -7,8 +7,8 @@
  * step. The angle is taken at which the steps, over their standard errors, are largest in the mean: borders of things
  * are clear in few of the profiles, even if these are many.
  *
- * Proposed are the profiles with the clearest steps, well apart from each other: as lines across the edge, and as
- * rectangles on both sides of it that keep off it. */
+ * Proposed are the profiles with the clearest steps on plain surfaces, well apart from each other: as lines across the
+ * edge, and as rectangles on both sides of it that keep off it. */
 #include "stages/fit_lights/mark_candidates.h"
 
 #include <math.h>
@@ -18,6 +18,7 @@
 
 #include "common/base/log.h"
 #include "common/base/outfile.h"
+#include "common/base/sort.h"
 #include "common/base/textfile.h"
 #include "common/capture/photo_camera.h"
 #include "common/light/frame.h"
@@ -39,11 +40,12 @@ enum {
     MIN_LINE = 12 /* px */
 };
 static const double MIN_STEP = 0.03;   /* of the logarithm of the radiance */
-static const double MIN_SURE = 3;      /* standard errors of a step */
+static const double MIN_SURE = 2;      /* standard errors of a step that counts as clear */
 static const double MAX_SURE = 4;      /* as many standard errors count; a border of a thing may have more */
 static const double MIN_SUM = 4;       /* standard errors of all steps together */
 static const double FEW = 30;          /* profiles without a step, added to those of an angle */
 static const double STEP_NOISE = 0.01; /* of a step, which the profile's own noise does not show */
+static const double HIGHEST = 2;       /* times the median step of plain surfaces */
 static const double AREA = 0.3;        /* half side of a rectangle, of the distance from its middle to the edge */
 
 /* The places of one lamp. */
@@ -56,6 +58,7 @@ struct place {
 struct step {
     int photo, azimuth; /* photo: its first view */
     double height, sure;
+    double noise; /* standard deviation of the profile about its line and step */
 };
 
 struct finder {
@@ -68,8 +71,9 @@ struct finder {
     struct lit_scene probe; /* its points are the places that are met; their marks are of no person */
     int *place_of;          /* of each point */
     struct observations seen;
-    float *profiles;    /* of one lamp: log radiance by photo, azimuth, angle; NAN: not seen */
+    float *profiles;    /* of one lamp: log radiance by photo, azimuth, colour, angle; NAN: not seen */
     struct step *steps; /* scratch: of one angle */
+    double *numbers;    /* scratch: of as many */
 };
 
 static bool is_looked_at(const struct finder *f, int lamp)
@@ -126,9 +130,9 @@ static enum status find_places(struct finder *f, struct err *err)
 
 /* --------------------------------------------------------------------------------------------------------- profiles */
 
-static float *profile_of(const struct finder *f, int photo, int azimuth)
+static float *profile_of(const struct finder *f, int photo, int azimuth, int colour)
 {
-    return f->profiles + ((size_t)photo * AZIMUTHS + (size_t)azimuth) * ANGLES;
+    return f->profiles + (((size_t)photo * AZIMUTHS + (size_t)azimuth) * 3 + (size_t)colour) * ANGLES;
 }
 
 static const struct place *places_of(const struct finder *f, int at, int azimuth)
@@ -138,13 +142,15 @@ static const struct place *places_of(const struct finder *f, int at, int azimuth
 
 static void fill_profiles(struct finder *f, int at)
 {
-    const size_t n = (size_t)f->model->in.set.view_count * AZIMUTHS * ANGLES;
+    const size_t n = (size_t)f->model->in.set.view_count * AZIMUTHS * 3 * ANGLES;
     for (size_t i = 0; i < n; i++) f->profiles[i] = NAN;
     for (int i = 0; i < f->seen.count; i++) {
         const struct observation *o = &f->seen.items[i];
         const int place = f->place_of[o->point], within = place % (AZIMUTHS * ANGLES);
-        if (place / (AZIMUTHS * ANGLES) != at || !(o->radiance[1] > 0)) continue;
-        profile_of(f, o->photo, within / ANGLES)[within % ANGLES] = (float)log(o->radiance[1]);
+        if (place / (AZIMUTHS * ANGLES) != at) continue;
+        for (int c = 0; c < 3; c++)
+            if (o->radiance[c] > 0)
+                profile_of(f, o->photo, within / ANGLES, c)[within % ANGLES] = (float)log(o->radiance[c]);
     }
 }
 
@@ -176,7 +182,20 @@ static bool measure_step(struct step *s, const float *profile, const struct plac
         const double r = l[i] - mean_l - slope * (x[i] - mean_x) - s->height * (i < SIDE ? 0.5 : -0.5);
         rest += r * r / (2 * SIDE - 3);
     }
+    s->noise = sqrt(rest);
     s->sure = s->height / sqrt(rest * xx / det + STEP_NOISE * STEP_NOISE);
+    return true;
+}
+
+/* That of the colour in which it is least: light has a step in all colours, paint and rugs seldom. */
+static bool least_step(struct step *s, const struct finder *f, int at, int photo, int azimuth, int first)
+{
+    const struct place *places = places_of(f, at, azimuth);
+    for (int c = 0; c < 3; c++) {
+        struct step one = {photo, azimuth, 0, 0, 0};
+        if (!measure_step(&one, profile_of(f, photo, azimuth, c), places, first)) return false;
+        if (!c || one.height < s->height) *s = one;
+    }
     return true;
 }
 
@@ -187,8 +206,8 @@ static int steps_at(double *sum, const struct finder *f, int at, int first)
     *sum = 0;
     for (int photo = 0; photo < f->model->in.set.view_count; photo++)
         for (int azimuth = 0; azimuth < AZIMUTHS; azimuth++) {
-            struct step s = {photo, azimuth, 0, 0};
-            if (!measure_step(&s, profile_of(f, photo, azimuth), places_of(f, at, azimuth), first)) continue;
+            struct step s;
+            if (!least_step(&s, f, at, photo, azimuth, first)) continue;
             *sum += clamp(s.sure, -MAX_SURE, MAX_SURE);
             f->steps[count++] = s;
         }
@@ -279,11 +298,26 @@ static bool is_near(const int *taken, int count, int azimuth)
     return false;
 }
 
+/* What steps on plain surfaces have: those on posters and rugs are noisier, or higher than the others. */
+static void find_plain(double *noise, double *height, const struct finder *f, int count)
+{
+    double *values = f->numbers;
+    int clear = 0;
+    for (int i = 0; i < count; i++) values[i] = f->steps[i].noise;
+    *noise = sort_median(values, (size_t)count);
+    for (int i = 0; i < count; i++)
+        if (f->steps[i].height >= MIN_STEP && f->steps[i].sure >= MIN_SURE && f->steps[i].noise <= *noise)
+            values[clear++] = f->steps[i].height;
+    *height = clear ? sort_median(values, (size_t)clear) : 0;
+}
+
 /* Prints marks at the clearest of `count` steps; returns how many lines there are. */
 static int print_marks(FILE *to, struct sheet *s, int count, struct err *err)
 {
+    double noise, height;
     const struct lit_model *model = s->f->model;
     int taken[MAX_LINES], lines = 0, areas[2] = {0, 0};
+    find_plain(&noise, &height, s->f, count);
     qsort(s->f->steps, (size_t)count, sizeof *s->f->steps, compare_steps);
     for (int i = 0; !err->status && i < count && lines < MAX_LINES; i++) {
         const struct step *step = &s->f->steps[i];
@@ -291,6 +325,7 @@ static int print_marks(FILE *to, struct sheet *s, int count, struct err *err)
         s->photo = lens ? lens->photo : model->in.set.views[step->photo].name;
         double pixel[4];
         if (step->height < MIN_STEP || step->sure < MIN_SURE) break;
+        if (step->noise > noise || step->height > HIGHEST * height) continue;
         if (is_near(taken, lines, step->azimuth)) continue;
         if (photo_camera_find(&s->camera, s->photo, &model->in.set, &model->in.lenses, s->f->notes->path, 1, err))
             break;
@@ -340,9 +375,11 @@ static enum status print_all(struct finder *f, const char *path, const struct pr
 {
     struct outfile out = {0};
     const size_t profiles = (size_t)f->model->in.set.view_count * AZIMUTHS;
-    f->profiles = malloc((profiles * ANGLES + 1) * sizeof *f->profiles);
+    f->profiles = malloc((profiles * 3 * ANGLES + 1) * sizeof *f->profiles);
     f->steps = malloc((profiles + 1) * sizeof *f->steps);
-    if (!f->profiles || !f->steps) return err_nomem(err, "profiles", profiles * ANGLES * sizeof *f->profiles);
+    f->numbers = malloc((profiles + 1) * sizeof *f->numbers);
+    if (!f->profiles || !f->steps || !f->numbers)
+        return err_nomem(err, "profiles", profiles * 3 * ANGLES * sizeof *f->profiles);
     product_begin(&out, PRODUCT_MARK_CANDIDATES, path, prov, err);
     for (int i = 0; !err->status && i < f->lamp_count; i++) print_lamp(out.fp, f, i, path, err);
     if (!err->status) outfile_commit(&out, err);
@@ -370,5 +407,6 @@ enum status mark_candidates_write(const struct lit_scene *scene, const struct an
     free(f.probe.marks);
     free(f.profiles);
     free(f.steps);
+    free(f.numbers);
     return err->status;
 }

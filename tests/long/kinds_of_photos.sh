@@ -67,7 +67,7 @@ clip()
         "$tool" "$1" "$f" one.png
         for k in 1 2 3 4; do cp one.png "signals/$(printf %04d $i).png"; i=$((i + 1)); done
     done
-    ffmpeg -loglevel error -y -framerate 10 -i signals/%04d.png -vf "transpose=2,scale=out_color_matrix=bt2020:out_range=tv:flags=accurate_rnd+full_chroma_int,format=$2" \
+    ffmpeg -loglevel error -y -framerate 10 -i signals/%04d.png -vf "transpose=2,scale=out_color_matrix=bt2020:out_range=tv:flags=accurate_rnd+full_chroma_int,format=$2,setparams=color_primaries=bt2020:color_trc=arib-std-b67:colorspace=bt2020nc" \
         -c:v libx264 -crf 8 -color_primaries bt2020 -color_trc arib-std-b67 -colorspace bt2020nc -color_range tv sideways.mov || fail "ffmpeg"
     if ffmpeg -hide_banner -h full 2>/dev/null | matches display_rotation; then ffmpeg -loglevel error -y -display_rotation -90 -i sideways.mov -c copy clip.mov
     else ffmpeg -loglevel error -y -i sideways.mov -c copy "${turned[@]}" clip.mov; fi || fail "ffmpeg"
