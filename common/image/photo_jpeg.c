@@ -68,7 +68,7 @@ static void count_scans(j_common_ptr c)
     enum { MAX_SCANS = 500 };
     struct jpeg_reader *r = c->client_data;
     if (r->d.input_scan_number <= MAX_SCANS) return;
-    snprintf(r->reason, sizeof r->reason, "it has more than %d scans", (int)MAX_SCANS);
+    snprintf(r->reason, sizeof r->reason, "it has more than %d scans", MAX_SCANS);
     longjmp(r->failed, 1);
 }
 

@@ -252,8 +252,8 @@ static void take_block(struct photo *p, unsigned char *alpha, const struct tiff_
         for (int u = 0; u < b->columns && u < last_x; u++) {
             const unsigned char *from = bytes + (size_t)v * b->row + (size_t)u * step * size;
             const size_t pixel = (size_t)(b->y + v) * (size_t)p->info.width + (size_t)(b->x + u);
-            for (uint16_t s = 0; s < step; s++) {
-                const uint16_t sample = separate ? b->plane : s;
+            for (size_t s = 0; s < step; s++) {
+                const uint16_t sample = separate ? b->plane : (uint16_t)s;
                 const unsigned char *at = from + s * size;
                 uint16_t value = *at;
                 if (!l->real && size == 2) memcpy(&value, at, sizeof value);
