@@ -6,7 +6,8 @@
 
 enum { MAX_PHOTO_ID = 100 }; /* file names may have 255 bytes: leaves room for @k, extensions, temporary names */
 
-/* Each run of other characters becomes one _. Names that would get one id are told apart by the import of photos. */
+/* Replaces other characters by _, several in a row by a single one. Two names can get the same id: the import of photos
+ * then makes them different. */
 void photo_id_from_stem(char id[MAX_PHOTO_ID + 1], const char *stem, size_t length);
 
 #endif

@@ -65,7 +65,7 @@ struct finder {
     const struct lit_scene *scene;
     const struct annotation_list *notes;
     const struct lit_model *model;
-    struct place *places; /* of the lamps that are looked at, of azimuths, of angles */
+    struct place *places; /* by lamp (as in `lamps`), then azimuth, then angle */
     int *lamps;           /* their indices */
     int lamp_count;
     struct lit_scene probe; /* its points are the places that are met; their marks are of no person */

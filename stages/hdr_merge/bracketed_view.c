@@ -272,7 +272,7 @@ enum status bracketed_view_write_picture(const struct bracketed_view *v, const c
     const struct photo *middle = &v->photos[r->middle];
     char *from = NULL, *to = NULL;
     if (!join(&from, photos, r->brackets[r->middle].file, "", err)) join(&to, out, r->id, ".jpg", err);
-    const bool jpeg = !err->status && is_jpeg(from); /* with a gain map it has values, too */
+    const bool jpeg = !err->status && is_jpeg(from); /* with a gain map it also has values */
     if (!err->status && (!strcmp(params->picture, "tone") || (middle->values && !jpeg)))
         write_toned(v, to, err);
     else if (jpeg)

@@ -137,7 +137,7 @@ static void report_unused_parts(const struct photo_scan *scan)
         const struct scanned_photo *p = &scan->photos[i];
         if (p->excluded || p->err.status) continue;
         if (p->pages)
-            log_warn("%s/%s has %d pages, of which the first is used; save each photo as a file of its own.",
+            log_warn("%s/%s has %d pages, and only the first is used; save each photo as a file of its own.",
                      scan->folder, p->file, p->pages);
         if (p->transparent > 1e-4)
             log_warn("%s/%s: %.2g %% of its pixels are transparent, but are used like the others; to leave them out, "

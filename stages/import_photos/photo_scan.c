@@ -277,8 +277,8 @@ static enum status refuse_source(const char *path, struct err *err)
         return err_set(err, ST_DATA, "%s is one photo; give the folder that holds all photos of the scene.", path);
     return err_set(
         err, ST_DATA,
-        "%s is no video (MP4, QuickTime, Matroska, AVI) by its content; convert other videos to MP4, or give "
-        "a folder of photos.",
+        "%s does not contain a video in MP4, QuickTime, Matroska or AVI; convert other videos to MP4, or give a folder "
+        "of photos.",
         path);
 }
 

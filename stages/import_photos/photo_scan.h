@@ -49,7 +49,7 @@ struct photo_scan {
 /* ST_IO, ST_DATA: the folder is missing, not a folder, or unreadable. A folder without photos is not an error here. */
 enum status photo_scan_folder(struct photo_scan *scan, const char *folder, struct err *err);
 
-/* The same of clips in place of a folder. ST_IO, ST_DATA: one is missing or no video by its content. */
+/* The same of clips in place of a folder. ST_IO, ST_DATA: one is missing or does not contain a video. */
 enum status photo_scan_clips(struct photo_scan *scan, const char *const *paths, int count, struct err *err);
 
 /* Excludes the photos and clips whose file name, with or without extension, or id is `name`. Returns their number. */

@@ -122,7 +122,7 @@ unusable_clips_are_named()
     unusable still.mp4 "its camera moves too little"
     unusable sound.mp4 "has no video stream"
     unusable cut.mov "damaged, cut off or no video"
-    unusable text.mp4 "is no video .MP4, QuickTime, Matroska, AVI. by its content"
+    unusable text.mp4 "does not contain a video in MP4, QuickTime, Matroska or AVI"
 }
 
 panoramas_become_views()
@@ -171,7 +171,7 @@ sources_that_are_none_are_named()
 {
     cp "$d/a.png" "$scratch/photo"
     : >"$scratch/set.zip"; echo text >"$scratch/text"
-    for pair in "photo|is one photo; give the folder" "set.zip|is an archive; unpack it" "text|is no video (MP4"; do
+    for pair in "photo|is one photo; give the folder" "set.zip|is an archive; unpack it" "text|does not contain a video in MP4"; do
         ! "$B/bin/import_photos" --photos "$scratch/${pair%%|*}" --frames "$scratch/frames" --out "$scratch/none" 2>"$scratch/err" || fail "$pair was accepted"
         grep -qF -- "${pair#*|}" "$scratch/err" || { cat "$scratch/err"; fail "nothing says '${pair#*|}'"; }
     done
