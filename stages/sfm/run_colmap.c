@@ -4,6 +4,7 @@
  * close together need this. If its largest model has too few photos, it runs again from other photos. */
 #include "stages/sfm/run_colmap.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -31,9 +32,10 @@ struct mapping {
 
 static enum status explain_failure(const struct colmap_job *job, struct err *err)
 {
-    char few[700];
-    int connected = colmap_log_connected(job->logs[2]);
+    char few[700], linked[60] = "";
+    const int connected = colmap_log_connected(job->logs[2]);
     colmap_list_poor(few, sizeof few, job->features, job->photos);
+    if (connected > 0) snprintf(linked, sizeof linked, ", though %d match another one", connected);
     if (connected == 0)
         err_set(err, ST_DATA,
                 "COLMAP placed none of the %d photos: no two of them match. Take photos that overlap, from places a "
@@ -41,9 +43,9 @@ static enum status explain_failure(const struct colmap_job *job, struct err *err
                 job->photos->count, *few ? "; few features: " : "", few);
     else
         err_set(err, ST_DATA,
-                "COLMAP placed none of the %d photos, though %d match another one. They may all be taken from one "
+                "COLMAP placed none of the %d photos%s. They may all be taken from one "
                 "spot (step aside between photos, do not just turn) or overlap too little%s%s. Its log is %s.",
-                job->photos->count, connected, *few ? "; few features: " : "", few, job->logs[2]);
+                job->photos->count, linked, *few ? "; few features: " : "", few, job->logs[2]);
     return err->status;
 }
 
