@@ -10,7 +10,8 @@
  *   4. find the noise: measured from the differences between exposures (bracket_noise.c), or given in electrons
  *   5. merge (merge.c)
  *
- * A lighting reference image is also placed: by marks (marked_pose.c), or by its camera in a model.
+ * A lighting reference image is also placed: by marks (marked_pose.c), or by its camera in a model. One in an opening is
+ * turned by what photos show outdoors (outdoors_turn.c), after it is merged.
  *
  * Exposures are divided by the `white` of the record, so that radiance 1 is white in the exposure that was meant to
  * be looked at. JPEG, TIFF and EXR all arrive as struct photo.
@@ -208,6 +209,17 @@ enum status bracketed_view_merge(struct bracketed_view *v, const struct merge_pa
     return err->status && err->status != ST_NOMEM ? err_context(err, "view %s", v->record.id) : err->status;
 }
 
+enum status bracketed_view_turn(struct bracketed_view *v, const struct reference_frame *frame,
+                                const struct merge_params *params, struct provenance *prov, struct err *err)
+{
+    struct marked_pose *m = &v->marked;
+    const struct outdoors_image image = {v->record.id, &v->merged.radiance, &v->lens, m->opening_idx, m->stated};
+    if (!m->in_window || !frame->outdoors || !strcmp(params->outdoors, "no")) return ST_OK;
+    if (outdoors_turn_find(&v->turn, &m->found.poses[0].cam_from_world, &image, frame, params, prov, err))
+        return err->status;
+    return marked_pose_to_scene(m, &v->cam_from_world, frame, params, prov, err);
+}
+
 static bool is_jpeg(const char *path)
 {
     unsigned char begin[3] = {0};
@@ -308,6 +320,15 @@ static enum status set_attributes(struct exr_image *im, const struct bracketed_v
     return err->status;
 }
 
+static void set_window(char *text, size_t size, const struct bracketed_view *v)
+{
+    const struct outdoors_rotation *r = &v->turn.found;
+    const int used = snprintf(text, size, "window %s", v->marked.level ? "level" : "horizon");
+    if (v->turn.tried && r->verdict == OUTDOORS_TURNED)
+        snprintf(text + used, size - (size_t)used, " outdoors %d %d %d %.4g %.4g", r->sights, r->agree, r->photos,
+                 r->turned, r->error);
+}
+
 /* How the pose was found (docs/formats.md, S/lri). */
 static enum status set_frame(struct exr_image *im, const struct bracketed_view *v, struct err *err)
 {
@@ -318,7 +339,7 @@ static enum status set_frame(struct exr_image *im, const struct bracketed_view *
         snprintf(text, sizeof text, "marks %d %.4g %.4g %.4g %.4g %.4g %.4g %d", v->marked.marks, p->rms, p->max,
                  p->error.x, p->error.y, p->error.z, p->turn_error, v->marked.found.count);
     else if (v->marked.in_window)
-        snprintf(text, sizeof text, "window %s", v->marked.level ? "level" : "horizon");
+        set_window(text, sizeof text, v);
     else if (v->frame.photos)
         snprintf(text, sizeof text, "%d %.4g %.4g %.4g %.4g", v->frame.photos, e->center_median, e->center_max,
                  e->rotation_median, e->rotation_max);

@@ -8,6 +8,7 @@
 #include "stages/hdr_merge/align.h"
 #include "stages/hdr_merge/marked_pose.h"
 #include "stages/hdr_merge/merge.h"
+#include "stages/hdr_merge/outdoors_turn.h"
 #include "stages/hdr_merge/reference_pose.h"
 
 struct bracketed_view {
@@ -27,6 +28,7 @@ struct bracketed_view {
     struct pose cam_from_world;
     struct frame_agreement frame; /* how its frame was found */
     struct marked_pose marked;    /* how its pose was found from marks */
+    struct outdoors_turn turn;    /* how it was turned by what photos show outdoors */
 };
 
 /* Reads RECORDS/ID.txt, the photos in PHOTOS that it names, and the response curve (NULL: sRGB). v is {0} on entry;
@@ -42,6 +44,9 @@ enum status bracketed_view_place(struct bracketed_view *v, bool *known, const ch
                                  struct provenance *prov, struct err *err);
 /* Finds shifts, checks the exposures, measures noise, merges. ST_DATA: exposures that disagree with the photos. */
 enum status bracketed_view_merge(struct bracketed_view *v, const struct merge_params *params, struct err *err);
+/* Turns a merged view that was placed in an opening by what photos show through it. */
+enum status bracketed_view_turn(struct bracketed_view *v, const struct reference_frame *frame,
+                                const struct merge_params *params, struct provenance *prov, struct err *err);
 /* Writes OUT/ID.jpg: the tone-mapped radiance or the middle exposure; a JPEG is copied, other formats are encoded. */
 enum status bracketed_view_write_picture(const struct bracketed_view *v, const char *photos, const char *out,
                                          const struct merge_params *params, struct err *err);

@@ -5,6 +5,7 @@
  *         MODEL/cameras.txt, images.txt   the view's lens and pose, if the model has them
  *         VIEWS/cameras.txt, images.txt, lenses.txt, RECORDS-OF-THE-SCENE/ID.txt, or AXES   the frame of that pose
  *         MARKS, PLAN, AXES   corners of the room's model that are marked in the view, from which its pose is found
+ *         OUTDOORS/cameras.txt, images.txt, VIEW.exr   views that show what an image in an opening shows
  *         RESPONSE          the response curve; without it the sRGB curve
  * writes  OUT/ID.jpg        the picture for structure from motion: by default the tone-mapped radiance
  *         OUT/ID.exr        R G B (half): 1 is white at the exposure remodel:white, the same for all views of a scene;
@@ -65,14 +66,39 @@ static void warn_of_other_pose(const char *id, const struct marked_pose *m)
              id, other->rms, m->found.poses[0].rms, there.x, there.y, there.z, id);
 }
 
+static void report_turn(const struct bracketed_view *v)
+{
+    const struct outdoors_turn *t = &v->turn;
+    const struct outdoors_rotation *r = &t->found;
+    const char *id = v->record.id, *opening = v->marked.opening;
+    if (r->verdict == OUTDOORS_TURNED)
+        log_note(
+            "%s: turned by %.2f degrees by what photos show through %s: of %d matches %d agree, from %d photos, to "
+            "%.2g degrees each; standard error of the rotation %.2g degrees",
+            id, r->turned, opening, r->sights, r->agree, r->photos, r->spread, r->error);
+    else if (!t->views)
+        log_note("%s: no photo looks out of %s, so that nothing tells how the image is turned", id, opening);
+    else if (r->verdict == OUTDOORS_FEW)
+        log_warn("view %s: it is not turned by what photos show through %s: found %d matches in %d views, of which %d "
+                 "agree, wanted %d. Mark corners or a horizon, or check the opening and the lens in lri.txt.",
+                 id, opening, r->sights, t->views, r->agree, r->wanted);
+    else
+        log_warn("view %s: it is not turned by what photos show through %s: of %d matches %d agree, with a rotation of "
+                 "%.2g degrees that is known to %.2g degrees only. State where in the opening the camera was (at U V), "
+                 "mark corners or a horizon, or raise [hdr_merge] outdoors_error.",
+                 id, opening, r->sights, r->agree, r->turned, r->error);
+}
+
 static void report_marks(const struct bracketed_view *v)
 {
     const struct marked_pose *m = &v->marked;
     if (m->in_window)
-        log_note(
-            "%s: placed in an opening of the wall %s, looking straight out, %s; what it shows is turned by as much as "
-            "the camera was. Marked corners place it better.",
-            v->record.id, m->wall, m->level ? "level" : "level by its horizon");
+        log_note("%s: placed in an opening of the wall %s, looking straight out, %s%s", v->record.id, m->wall,
+                 m->level ? "level" : "level by its horizon",
+                 v->turn.tried && v->turn.found.verdict == OUTDOORS_TURNED
+                     ? ""
+                     : "; what it shows is turned by as much as the camera was. Marked corners place it better.");
+    if (v->turn.tried) report_turn(v);
     if (!m->marks) return;
     const char *id = v->record.id, *unit = m->metric ? "m" : "units";
     const struct resection_pose *p = &m->found.poses[m->chosen];
@@ -122,6 +148,8 @@ struct request { /* the options of these names */
 static enum status check_request(const struct request *r, struct err *err)
 {
     const struct reference_frame *f = &r->frame;
+    if (f->outdoors && !f->marks)
+        return err_set(err, ST_USAGE, "--outdoors wants --marks, --plan and --axes; give these, too.");
     if (!f->marks != !f->plan || (f->marks && (!f->axes || f->views)))
         return err_set(err, ST_USAGE, "--marks, --plan and --axes belong together, without --views; give all three.");
     if (!f->views == !f->records && !(f->views && f->axes) && (r->model || f->marks || (!f->views && !f->axes)))
@@ -152,6 +180,7 @@ static enum status hdr_merge(const struct request *r, const struct merge_params 
     if (!err->status && wanted) bracketed_view_place(&v, &placed, r->model, &r->frame, params, prov, err);
     if (!err->status && wanted && !placed) warn_without_pose(r);
     if (!err->status && !bracketed_view_merge(&v, params, err) &&
+        !bracketed_view_turn(&v, &r->frame, params, prov, err) &&
         !bracketed_view_write_picture(&v, r->photos, r->out, params, err))
         bracketed_view_write_radiance(&v, r->out, prov, &clamped, err);
     if (!err->status && clamped)
@@ -182,6 +211,10 @@ int main(int argc, char **argv)
                 "lri.txt: corners of the room's model that are marked in the view; they give its pose, with --plan and "
                 "--axes, and --model is read for lenses only"),
         CLI_STR("plan", &r.frame.plan, CLI_OPTIONAL, "plan.txt of the room's model"),
+        CLI_STR(
+            "outdoors", &r.frame.outdoors, CLI_OPTIONAL,
+            "folder of the scene's cameras and rectified views: with --marks, an image that is placed in an opening "
+            "is turned by what they show through it"),
         CLI_STR("out", &r.out, CLI_REQUIRED, "folder to write ID.jpg and ID.exr into"),
         CLI_PARAMS(merge_param_table, &params, NULL),
         CLI_END,

@@ -193,6 +193,9 @@ static enum status stand_in_window(struct marked_pose *to, const struct marked_i
     if (h) memcpy(w.horizon, (double[2][2]){{h->x, h->y}, {h->other[0], h->other[1]}}, sizeof w.horizon);
     to->in_window = true;
     to->level = w.level;
+    to->stated = m->window->at;
+    snprintf(to->opening, sizeof to->opening, "%s", m->window->opening);
+    while (strcmp(plan->openings[to->opening_idx].name, m->window->opening) != 0) to->opening_idx++;
     to->found.count = 1;
     snprintf(to->wall, sizeof to->wall, "%s", wall->name);
     if (window_pose_find(&to->found.poses[0].cam_from_world, &w, lens, err))
@@ -200,9 +203,9 @@ static enum status stand_in_window(struct marked_pose *to, const struct marked_i
     return err->status;
 }
 
-/* Moves a pose from the model's frame to the scene's. */
-static enum status to_scene(struct marked_pose *m, struct pose *cam_from_world, const struct reference_frame *frame,
-                            const struct merge_params *params, struct provenance *prov, struct err *err)
+enum status marked_pose_to_scene(struct marked_pose *m, struct pose *cam_from_world,
+                                 const struct reference_frame *frame, const struct merge_params *params,
+                                 struct provenance *prov, struct err *err)
 {
     const struct reference_frame in_model = {.axes = frame->axes};
     struct frame_agreement none;
@@ -230,7 +233,7 @@ enum status marked_pose_find(struct marked_pose *m, struct camera *lens, struct 
         resection_find(&m->found, lens, marked.marks, marked.count, params->mark_error, image->id, err))
         err_context(err, "%s", list.path);
     if (*known && !err->status && !marked.window) choose(m, &marked, params, err);
-    if (*known && !err->status) to_scene(m, cam_from_world, frame, params, prov, err);
+    if (*known && !err->status) marked_pose_to_scene(m, cam_from_world, frame, params, prov, err);
     model_plan_release(&plan);
     reference_marks_release(&list);
     return err->status;

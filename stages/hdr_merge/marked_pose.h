@@ -10,6 +10,9 @@
 struct marked_pose {
     int marks;             /* 0: the image was not placed by marks */
     bool in_window, level; /* it was placed in an opening, held level; its pose is found.poses[0] */
+    char opening[64];      /* that opening, cut to fit */
+    int opening_idx;       /* in the plan */
+    bool stated;           /* somebody stated where in the opening */
     struct resection found;
     int chosen;         /* of found.poses */
     int worst_line;     /* of the mark that fits worst */
@@ -26,5 +29,10 @@ struct marked_pose {
 enum status marked_pose_find(struct marked_pose *m, struct camera *lens, struct pose *cam_from_world, bool *known,
                              const struct photo_record *image, const char *model, const struct reference_frame *frame,
                              const struct merge_params *params, struct provenance *prov, struct err *err);
+
+/* Moves the chosen pose to the scene's frame: *cam_from_world. */
+enum status marked_pose_to_scene(struct marked_pose *m, struct pose *cam_from_world,
+                                 const struct reference_frame *frame, const struct merge_params *params,
+                                 struct provenance *prov, struct err *err);
 
 #endif

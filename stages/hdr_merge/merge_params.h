@@ -33,6 +33,13 @@
     X(max_mark_misfit, double, 2, 0.01, 90, "degrees",                                                               \
       "largest allowed angle between the marks of a lighting reference image and the model's points, seen from the " \
       "pose that fits best (root mean square); if it is exceeded, the image fails")                                  \
+    X(outdoors, choice, "match", 0, 0, "match|no",                                                                   \
+      "how lighting reference images that are placed in an opening (scenes/NAME/lri.txt, in ... looking out) are "   \
+      "turned; match: by what they and photos show outdoors; no: as lri.txt says")                                   \
+    X(outdoors_matches, int, 12, 4, 100000, "",                                                                      \
+      "number of matches outdoors, besides a quarter of all, that must agree with a rotation, or it is not used")    \
+    X(outdoors_error, double, 1, 0.001, 90, "degrees",                                                               \
+      "largest standard error of a rotation from matches outdoors with which it is used")                            \
     X(picture, choice, "tone", 0, 0, "tone|middle",                                                                  \
       "picture for structure from motion: the tone-mapped radiance (tone) or the middle exposure (middle)")
 

@@ -106,12 +106,11 @@ static enum status read_share(double *share, struct textfile *t, const char *wha
 
 static enum status read_window(struct reference_mark *m, struct textfile *t, struct err *err)
 {
-    bool at;
     m->outer = true;
     m->x = m->y = 0.5;
-    if (read_name(&m->opening, t, "an opening of the model", err) || read_side(&at, t, "looking", "at", err) ||
-        (at && (read_share(&m->x, t, "a share of the opening's width", err) ||
-                read_share(&m->y, t, "a share of the opening's height", err) || read_word(t, "looking", err))))
+    if (read_name(&m->opening, t, "an opening of the model", err) || read_side(&m->at, t, "looking", "at", err) ||
+        (m->at && (read_share(&m->x, t, "a share of the opening's width", err) ||
+                   read_share(&m->y, t, "a share of the opening's height", err) || read_word(t, "looking", err))))
         return err->status;
     return read_word(t, "out", err);
 }

@@ -36,6 +36,7 @@ struct reference_mark { /* a line of the file */
     int line;
     char *image, *opening; /* owned; opening is NULL unless it is a corner's or a window's */
     bool right, top, outer;
+    bool at;           /* of a window: U, V are stated */
     double x, y;       /* of a window: U, V */
     double other[2];   /* of a horizon: the second pixel */
     struct vec3 point; /* also where the camera is */

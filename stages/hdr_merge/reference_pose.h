@@ -11,6 +11,7 @@ struct reference_frame {
     const char *views, *records; /* the scene's views and the records of its photos: some are in the model, too */
     const char *axes;            /* axes.txt: the pose is in the frame of the room's model */
     const char *marks, *plan;    /* lri.txt and plan.txt, with axes: marks in the image give the pose (marked_pose.h) */
+    const char *outdoors;        /* with these: views that turn an image in an opening (outdoors_turn.h); may be NULL */
 };
 
 /* Moves *cam_from_world, a camera of `model` (of the folder `folder`), to the scene's frame. ST_DATA: too few common

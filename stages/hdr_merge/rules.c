@@ -41,6 +41,9 @@ static void say_place(struct graph *g, const struct scene_facts *f, enum place p
     } else if (place == PLACE_CORNERS) {
         rule_takes(g, "--marks", marks);
         rule_takes(g, "--plan", PATH(g, PLAN));
+        rule_needs_cameras(g);
+        for (int i = 0; i < f->views.count; i++) rule_needs(g, PATH(g, VIEW, .view = f->views.names[i]));
+        rule_option(g, "--outdoors", FOLDER(g, CAMERAS));
     }
     if (place != PLACE_MODEL && place != PLACE_CORNERS) return;
     rule_takes(g, "--axes", PATH(g, AXES));
