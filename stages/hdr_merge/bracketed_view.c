@@ -10,8 +10,8 @@
  *   4. find the noise: measured from the differences between exposures (bracket_noise.c), or given in electrons
  *   5. merge (merge.c)
  *
- * A lighting reference image is also placed: by marks (marked_pose.c), or by its camera in a model. One in an opening is
- * turned by what photos show outdoors (outdoors_turn.c), after it is merged.
+ * A lighting reference image is also placed: by marks (marked_pose.c), or by its camera in a model. One in an opening
+ * is turned by what photos show outdoors (outdoors_turn.c), after it is merged.
  *
  * Exposures are divided by the `white` of the record, so that radiance 1 is white in the exposure that was meant to
  * be looked at. JPEG, TIFF and EXR all arrive as struct photo.

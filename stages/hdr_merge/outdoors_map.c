@@ -1,7 +1,8 @@
 /* outdoors_map.c - resamples what cameras show of the outdoors to maps of azimuth and elevation, and finds features.
  *
  * In such maps what is far away has the same size and is upright, whatever the lenses, as far as the poses are known.
- * The pitch is that of the reference image at its centre. A map's pixel is the mean of TAPS x TAPS samples where the
+ * The pitch is half a pixel of the reference image at its centre: photos are often sharper, and finer maps give more
+ * matches. A map's pixel is the mean of TAPS x TAPS samples where the
  * picture has finer pixels.
  *
  * Features want eight bits. Outdoors are far brighter than rooms, so the grey of a map is set by the outdoors alone:
@@ -18,9 +19,9 @@
 #include "common/image/luminance.h"
 #include "common/math/numbers.h"
 
-enum { TAPS_MAX = 8, MAX_SIDE = 8192, EDGE_SAMPLES = 16, SEEN_STEPS = 24 };
+enum { TAPS_MAX = 8, MAX_SIDE = 3200, EDGE_SAMPLES = 16, SEEN_STEPS = 24 };
 
-static const double WHITE_SHARE = 0.98, FEATURE_CLEARANCE = 4, LEFT = -90 * DEGREE, TOP = 60 * DEGREE;
+static const double WHITE_SHARE = 0.98, FEATURE_CLEARANCE = 4, FINER = 0.5, LEFT = -90 * DEGREE, TOP = 45 * DEGREE;
 static const struct sift_limits limits = {.longest = MAX_SIDE, .contrast = 0.01, .edge = 15};
 
 struct vec3 outdoors_map_direction(const struct outdoors_grid *g, double x, double y)
@@ -62,7 +63,7 @@ static enum status map_init(struct map *m, const struct outdoors_grid *grid, str
     return err_nomem(err, "a map of the outdoors", pixels * (sizeof *m->luminance + 1));
 }
 
-/* ---------------------------------------------------------------------------------------------------------- features */
+/* --------------------------------------------------------------------------------------------------------- features */
 
 /* The luminance that is white. */
 static enum status find_white(float *white, const struct map *m, struct err *err)
@@ -126,7 +127,7 @@ static enum status find_features(struct feature_list *list, const struct map *m,
     return err->status;
 }
 
-/* -------------------------------------------------------------------------------------------------- reference images */
+/* ------------------------------------------------------------------------------------------------- reference images */
 
 /* Bilinear luminance of a picture of 3 channels; pixel centres are at 0.5. */
 static float luminance_at(const struct image *im, double u, double v)
@@ -148,7 +149,7 @@ enum status outdoors_map_of_reference(struct feature_list *list, struct outdoors
     camera_focal(lens, &fx, &fy, &cx, &cy);
     grid->left = LEFT;
     grid->top = TOP;
-    grid->pitch = fmax(1 / fmax(fx, fy), -2 * LEFT / MAX_SIDE);
+    grid->pitch = fmax(FINER / fmax(fx, fy), -2 * LEFT / MAX_SIDE);
     grid->width = (int)ceil(-2 * LEFT / grid->pitch);
     grid->height = (int)ceil(2 * TOP / grid->pitch);
     *list = (struct feature_list){0};
@@ -168,7 +169,7 @@ enum status outdoors_map_of_reference(struct feature_list *list, struct outdoors
     return err->status;
 }
 
-/* ------------------------------------------------------------------------------------------------------------- views */
+/* ------------------------------------------------------------------------------------------------------------ views */
 
 /* The pixel in which a view shows a direction; false: in none. */
 static bool pixel_of(double *u, double *v, const struct view *view, struct vec3 direction)

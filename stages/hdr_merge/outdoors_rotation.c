@@ -15,11 +15,14 @@
  *    the weights of [Geman 1987], whose width shrinks to CUT standard deviations of the residuals; in the last steps
  *    sights within that count fully and others not at all, so that the residuals show their standard deviation.
  * 3. The standard error is the larger of two: that of independent errors of the residuals' size, and the sandwich
- *    estimator [Cameron 2011] over photos and points, because an error of a photo's pose moves all that it shows, and one
- *    of a ray all sights of its point. What an error of the camera's place does, through q, is added.
+ *    estimator [Cameron 2011] over photos and points, because an error of a photo's pose moves all that it shows, and
+ *    one of a ray all sights of its point. What an error of the camera's place does, through q, is added.
  *
- * Matches by chance lie on an arc by chance, about one of fifty; so a share of all must agree, MIN_SHARE, besides a
- * number. All sums run in the order of the matches. */
+ * 4. Wrong matches lie on an arc by chance, too, all the more where everything is at the horizon. How often is counted:
+ *    the ray of each match with the direction of others of its photo. So many must agree that as many would by chance
+ *    in one of a million draws (CHANCE), besides the three that the rotation was drawn from, and a given number.
+ *
+ * All sums run in the order of the matches. */
 #include "stages/hdr_merge/outdoors_rotation.h"
 
 #include <math.h>
@@ -29,9 +32,9 @@
 #include "common/math/numbers.h"
 #include "common/math/rotation_fit.h"
 
-enum { DRAWS = 2000, NEWTON_STEPS = 6, STEPS = 40, LAST_STEPS = 10, DISTANCE_STEPS = 3 };
+enum { DRAWS = 2000, NEWTON_STEPS = 6, STEPS = 40, LAST_STEPS = 10, DISTANCE_STEPS = 3, EXCHANGES = 16 };
 
-static const double AGREE = 0.5 * DEGREE, PULL = 1e-4, MIN_SHARE = 0.25, MIN_SPREAD = 0.005 * DEGREE, CUT = 3.5;
+static const double AGREE = 0.5 * DEGREE, PULL = 1e-4, CHANCE = 1e-6, MIN_SPREAD = 0.005 * DEGREE, CUT = 3.5;
 
 struct fit {
     const struct outdoors_sight *sights;
@@ -83,15 +86,16 @@ static double best_inverse(const struct fit *f, struct vec3 m, int begin, int en
 /* -------------------------------------------------------------------------------------------------------- the draws */
 
 /* One minus the squared distance to the arc, in units of AGREE; 0 beyond that. */
-static double agreement(const struct fit *f, struct mat3 turn, int i)
+static double agreement_of(const struct fit *f, struct mat3 turn, const struct outdoors_sight *s)
 {
-    const struct outdoors_sight *s = &f->sights[i];
     const struct vec3 m = ray_in_model(turn, s), slope = vec3_cross(s->direction, s->from);
     const double below = vec3_dot(slope, slope);
     const double q = below > 0 ? clamp(vec3_dot(vec3_cross(s->direction, m), slope) / below, 0, f->max_inverse) : 0;
     const double off = vec3_length(residual_at(direction_at(m, q, s), s)) / AGREE;
     return off < 1 ? 1 - off * off : 0;
 }
+
+static double agreement(const struct fit *f, struct mat3 turn, int i) { return agreement_of(f, turn, &f->sights[i]); }
 
 /* Solves a symmetric, positive definite system. */
 static struct vec3 solve(struct mat3 a, struct vec3 b)
@@ -341,8 +345,38 @@ static enum status find_error(struct outdoors_rotation *r, const struct fit *f, 
     return ST_OK;
 }
 
+/* The share of wrong matches that agree with the rotation. */
+static double share_by_chance(const struct fit *f)
+{
+    int agree = 0, tried = 0;
+    for (int i = 0; i < f->count; i++)
+        for (int j = i + 1, exchanged = 0; j < f->count && exchanged < EXCHANGES; j++) {
+            struct outdoors_sight s = f->sights[j];
+            if (s.photo != f->sights[i].photo || s.point == f->sights[i].point) continue;
+            s.ray = f->sights[i].ray;
+            agree += agreement_of(f, f->turn, &s) > 0;
+            tried++;
+            exchanged++;
+        }
+    return tried ? (agree + 1.0) / (tried + 1.0) : 1;
+}
+
+/* The least k such that k or more of n happen with a probability of at most CHANCE, each with p; n + 1: none. */
+static int least_by_chance(int n, double p)
+{
+    double tail = 0;
+    int k = n;
+    for (; k > 0; k--) {
+        tail += exp(lgamma(n + 1.0) - lgamma(k + 1.0) - lgamma(n - k + 1.0) + k * log(p) + (n - k) * log1p(-p));
+        if (!(tail <= CHANCE)) break;
+    }
+    return k + 1;
+}
+
 static void judge(struct outdoors_rotation *r, const struct fit *f, const struct outdoors_rules *rules)
 {
+    const int wanted = 3 + least_by_chance(f->count - 3, share_by_chance(f));
+    if (wanted > r->wanted) r->wanted = wanted;
     r->turned = angle_between(f->turn, f->given);
     r->verdict = r->agree < r->wanted                                             ? OUTDOORS_FEW
                  : r->error <= rules->max_error && r->turned <= OUTDOORS_MAX_TURN ? OUTDOORS_TURNED
@@ -354,16 +388,13 @@ enum status outdoors_rotation_find(struct outdoors_rotation *r, struct mat3 cam_
                                    const struct outdoors_sight *sights, int count, const struct outdoors_rules *rules,
                                    const char *name, struct err *err)
 {
-    const int share = (int)ceil(MIN_SHARE * count);
     struct fit f = {.sights = sights,
                     .count = count,
                     .max_inverse = 1 / rules->nearest,
                     .given = cam_from_model,
                     .turn = cam_from_model};
-    *r = (struct outdoors_rotation){.verdict = OUTDOORS_FEW,
-                                    .cam_from_model = cam_from_model,
-                                    .sights = count,
-                                    .wanted = share > rules->min_sights ? share : rules->min_sights};
+    *r = (struct outdoors_rotation){
+        .verdict = OUTDOORS_FEW, .cam_from_model = cam_from_model, .sights = count, .wanted = rules->min_sights};
     if (count < 3) return ST_OK;
     f.weights = calloc((size_t)count, sizeof *f.weights);
     f.inverses = calloc((size_t)count, sizeof *f.inverses);

@@ -1,8 +1,8 @@
 /* outdoors_turn.c - matches a lighting reference image with the views that look out of its opening.
  *
- * Features of what both show outdoors (outdoors_map.c) are matched as those of photos are; each match gives a ray of the
- * image's camera and a direction from the view's place. The rotation follows from them (outdoors_rotation.c); the place
- * stays. How well it is known depends on whether somebody stated it (PLACE), and else on the size of the opening.
+ * Features of what both show outdoors (outdoors_map.c) are matched as those of photos are; each match gives a ray of
+ * the image's camera and a direction from the view's place. The rotation follows from them (outdoors_rotation.c); the
+ * place stays. How well it is known depends on whether somebody stated it (PLACE), and else on the size of the opening.
  * At most MAX_VIEWS views are matched, those that show most of the outdoors. */
 #include "stages/hdr_merge/outdoors_turn.h"
 

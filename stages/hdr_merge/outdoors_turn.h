@@ -23,8 +23,8 @@ struct outdoors_turn {
     struct outdoors_rotation found;
 };
 
-/* Turns the camera about its place, if enough matches agree; otherwise cam_from_model stays. Reads frame->outdoors, axes
- * and plan. */
+/* Turns the camera about its place, if enough matches agree; otherwise cam_from_model stays. Reads frame->outdoors,
+ * axes and plan. */
 enum status outdoors_turn_find(struct outdoors_turn *t, struct pose *cam_from_model, const struct outdoors_image *image,
                                const struct reference_frame *frame, const struct merge_params *params,
                                struct provenance *prov, struct err *err);

@@ -174,7 +174,8 @@ static void matches_by_chance_are_refused(void **state)
         const struct outdoors_rotation r = find(3, &rules);
         assert_int_equal(r.verdict, OUTDOORS_FEW);
         assert_int_equal(r.sights, sight_count);
-        assert_int_equal(r.wanted, (int)ceil(0.25 * sight_count));
+        print_message("# %d of %d agree, wanted %d\n", r.agree, r.sights, r.wanted);
+        assert_true(r.wanted > 12 && r.wanted < 0.15 * sight_count);
         assert_true(r.agree < r.wanted);
         assert_true(fabs(degrees_off(r.cam_from_model) - 3) < 1e-6);
     }
