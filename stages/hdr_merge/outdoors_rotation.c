@@ -20,7 +20,7 @@
  *
  * 4. Wrong matches lie on an arc by chance, too, all the more where everything is at the horizon. How often is counted:
  *    the ray of each match with the direction of others of its photo. So many must agree that as many would by chance
- *    in one of a million draws (CHANCE), besides the three that the rotation was drawn from, and a given number.
+ *    in one of a hundred million draws (CHANCE), besides the three that the rotation was drawn from, and a given number.
  *
  * All sums run in the order of the matches. */
 #include "stages/hdr_merge/outdoors_rotation.h"
@@ -34,7 +34,7 @@
 
 enum { DRAWS = 2000, NEWTON_STEPS = 6, STEPS = 40, LAST_STEPS = 10, DISTANCE_STEPS = 3, EXCHANGES = 16 };
 
-static const double AGREE = 0.5 * DEGREE, PULL = 1e-4, CHANCE = 1e-6, MIN_SPREAD = 0.005 * DEGREE, CUT = 3.5;
+static const double AGREE = 0.5 * DEGREE, PULL = 1e-4, CHANCE = 1e-8, MIN_SPREAD = 0.005 * DEGREE, CUT = 3.5;
 
 struct fit {
     const struct outdoors_sight *sights;

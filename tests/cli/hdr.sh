@@ -312,6 +312,9 @@ TXT
     rc=0; merged set/photos photo_3 --marks marked/lri.txt || rc=$?
     [ "$rc" = 2 ] || fail "--marks without --plan: exit $rc, wanted 2"
     says "--marks, --plan and --axes belong together"
+    rc=0; merged set/photos photo_3 --outdoors views || rc=$?
+    [ "$rc" = 2 ] || fail "--outdoors without --marks: exit $rc, wanted 2"
+    says "--outdoors wants --marks, --plan and --axes"
 }
 
 for t in jpegs_are_fitted_and_merged equal_exposures_are_merged tiff_and_png_merge_like_jpeg an_exr_is_a_single_exposure a_tiff_is_a_single_exposure single_jpegs_share_one_scale gain_maps_give_linear_light raw_files_are_recognised other_colour_spaces_are_merged wrong_exposures_are_refused \

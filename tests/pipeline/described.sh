@@ -186,6 +186,8 @@ TXT
     sed -i 's/ w left/ door left/' scenes/room/lri.txt
     ! make -s DEPS=manual SCENE=room lri >log 2>&1 || fail "a mark of no window was accepted"
     grep -q 'scenes/room/lri.txt:2: found the opening "door"' log || { cat log; fail "the message does not name the line"; }
+    printf 'lens * PINHOLE 120 80 60 60 60 40\nin r w looking out\n' >scenes/room/lri.txt; m lri
+    grep -q 'no photo looks out of w, so that nothing tells how the image is turned' $said || { cat $said; fail "the views were not looked at"; }
 }
 
 # a lens of 180 degrees: black corners, the middle in the light of the room
