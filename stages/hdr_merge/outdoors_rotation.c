@@ -20,7 +20,8 @@
  *
  * 4. Wrong matches lie on an arc by chance, too, all the more where everything is at the horizon. How often is counted:
  *    the ray of each match with the direction of others of its photo. So many must agree that as many would by chance
- *    in one of a hundred million draws (CHANCE), besides the three that the rotation was drawn from, and a given number.
+ *    in one of a hundred million draws (CHANCE), besides the three that the rotation was drawn from, and at least a
+ *    given number.
  *
  * All sums run in the order of the matches. */
 #include "stages/hdr_merge/outdoors_rotation.h"
