@@ -89,6 +89,9 @@ struct cache {
 
 static bool is_point(const struct gather_point *p) { return vec3_length(p->normal) > 0; }
 
+/* Whether light in the second field counts by itself at a point, not by the quotient. */
+static bool is_whole(const struct cache *c, size_t i) { return c->job->other.whole && c->job->other.whole[i]; }
+
 /* ----------------------------------------------------------------------------------------------------------- lookup */
 
 struct lookup_side {
@@ -204,8 +207,7 @@ static double quotient_of(const struct irradiance_sides *l) { return l->light[0]
 static bool is_record_known(const struct record *r, const struct cache *c, size_t i, const double beside[SIDES])
 {
     const double target = SHARE * c->job->target;
-    const bool is_whole = c->side_count == 1 || (c->job->other.whole && c->job->other.whole[i]);
-    const double own = is_whole ? target : OWN * target;
+    const double own = c->side_count == 1 || is_whole(c, i) ? target : OWN * target;
     for (int k = 0; k < c->side_count; k++)
         if (r->side[k].error > own * (beside[k] + rgb_luminance(r->side[k].value))) return false;
     return c->side_count == 1 || r->change_error <= target * (beside[1] + rgb_luminance(r->side[1].value));
@@ -309,7 +311,8 @@ static double change_error(const struct mixture m[SIDES], double q)
     return sqrt(variance / (MIXTURE_REPLICATES * (MIXTURE_REPLICATES - 1.0)));
 }
 
-/* The same rays in both fields, until the quotient is known. The result is the standard error of b - q a. */
+/* The same rays in both fields, until the quotient is known, and the light in the second field where it counts by
+ * itself. The result is the standard error of b - q a. */
 static double gather_direct_of_both(struct irradiance e[SIDES], const struct cache *c, size_t i,
                                     const double beside[SIDES])
 {
@@ -329,8 +332,9 @@ static double gather_direct_of_both(struct irradiance e[SIDES], const struct cac
         }
         spent += e[0].rays > e[1].rays ? e[0].rays : e[1].rays;
         error = change_error(m, quotient_of(&l));
-        const bool is_dark = !(l.light[0] > 0 && l.light[1] > 0);
-        if (is_dark || !(error > SHARE * c->job->target * l.light[1]) || spent + 4 * rays > c->job->rays) break;
+        const bool whole = is_whole(c, i), is_dark = !(l.light[1] > 0 && (whole || l.light[0] > 0));
+        const double noise = whole ? fmax(error, rgb_luminance(e[1].error)) : error;
+        if (is_dark || !(noise > SHARE * c->job->target * l.light[1]) || spent + 4 * rays > c->job->rays) break;
     }
     for (int k = 0; k < SIDES; k++) e[k].rays = spent;
     return error;
@@ -435,12 +439,15 @@ static bool are_alike(const double v[4], double part)
 /* Whether the light at the corners tells that between them, up to its noise. */
 static bool is_light_alike(const struct cache *c, const size_t corners[4])
 {
-    const struct irradiance_cache_other *o = &c->job->other;
-    bool is_whole = false;
-    double error = 0;
+    const float *errors = c->job->other.errors;
+    bool any_whole = false;
+    double error = 0, noise = 0; /* of the quotient; of light by itself */
     for (int k = 0; k < 4; k++) {
-        is_whole |= o->whole && o->whole[corners[k]];
-        if (o->errors) error = fmax(error, (double)o->errors[corners[k]]);
+        const struct irradiance *e = &c->sides[1].results[corners[k]];
+        const double value = rgb_luminance(e->value);
+        any_whole |= is_whole(c, corners[k]);
+        if (errors) error = fmax(error, (double)errors[corners[k]]);
+        if (value > 0) noise = fmax(noise, rgb_luminance(e->error) / value);
     }
     for (int s = 0; s < 3; s++) {
         double quotient[4], light[4];
@@ -450,7 +457,7 @@ static bool is_light_alike(const struct cache *c, const size_t corners[4])
             quotient[k] = light[k] == a ? 1 : a > 0 ? light[k] / a : INFINITY;
         }
         if (!are_alike(quotient, c->job->target + 4 * error)) return false;
-        if (is_whole && !are_alike(light, c->job->target + 4 * error)) return false;
+        if (any_whole && !are_alike(light, c->job->target + 4 * noise)) return false;
     }
     return true;
 }
