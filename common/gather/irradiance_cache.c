@@ -18,7 +18,9 @@
  *
  * Two fields. For the quotient of irradiance in two fields, each record holds both, from the same rays; its radius is
  * the smaller one. Direct light is gathered in both by the same rays until the quotient is known well enough, so that
- * noise which both share does not count, and none is spent where nothing has changed.
+ * noise which both share does not count, and none is spent where nothing has changed. Where the light in the second
+ * field counts by itself, as on a wall that an edit adds, it ends when that light is known, too, and cells are cut by
+ * the noise of the light.
  *
  * Errors of the quotient. Both fields have the same rays, so b - q a has the noise that they do not share: of direct
  * light replicate by replicate, of records cell by cell. Where the edit changes nothing it is 0, whatever the noise of

@@ -3,6 +3,7 @@
 #include "tests/unit/common/light/near.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 #include "common/base/parallel.h"
 #include "common/gather/cache_record.h"
@@ -283,6 +284,52 @@ static void cells_find_the_quotient_of_each_point(void **state)
     assert_true(stats[1].direct_rays < stats[0].direct_rays / 4);
 }
 
+/* Where the light after an edit counts by itself, as on a wall that the edit adds, it is known to the target although
+ * the quotient is 1 without any noise. A black room with a lamp of 1 x 1, against its closed form. */
+static void light_that_counts_by_itself_is_known_to_the_target(void **state)
+{
+    enum { COLUMNS = 40, ROWS = 40 };
+    static const struct rgb black[6];
+    static struct gather_point points[COLUMNS * ROWS];
+    static struct irradiance one[COLUMNS * ROWS], two[2][COLUMNS * ROWS];
+    static float errors[COLUMNS * ROWS];
+    static unsigned char whole[COLUMNS * ROWS];
+    static struct patch_field f;
+    struct irradiance_cache_stats stats[2];
+    struct err err = ERR_INIT;
+    double off[2] = {0}, stated = 0;
+    (void)state;
+    field_start(&f, rgb_grey(0));
+    field_add_box(&f, vec3_make(0, 0, 0), vec3_make(4, 3, 2.5), black, true);
+    struct patch *lamp = field_add(&f, EMITTER_QUAD, vec3_make(1.7, 1.3, 1.2), vec3_make(0.5, 0, 0),
+                                   vec3_make(0, 0.5, 0), vec3_make(0, 0, -1), rgb_grey(9));
+    field_name(&f, lamp);
+    for (int i = 0; i < COLUMNS * ROWS; i++)
+        points[i] = (struct gather_point){{0.1 + 3.8 * (i % COLUMNS) / COLUMNS, 0.1 + 2.8 * (i / COLUMNS) / ROWS, 0},
+                                          {0, 0, 1}};
+    for (int k = 0; k < 2; k++) {
+        memset(whole, k, sizeof whole);
+        const struct irradiance_cache_job job = {.field = &f.field,
+                                                 .points = points,
+                                                 .other = {&f.field, points, two[k], errors, whole, 8},
+                                                 .width = COLUMNS,
+                                                 .height = ROWS,
+                                                 .target = 0.002,
+                                                 .rays = 65536};
+        assert_ok(irradiance_cache_fill(one, &job, &stats[k], &err), err);
+        for (int i = 0; i < COLUMNS * ROWS; i++) {
+            const double truth = PI * 9 * patch_factor(lamp, points[i]), error = two[k][i].value.g / truth - 1;
+            off[k] += error * error / (COLUMNS * ROWS);
+            if (k) stated = fmax(stated, two[k][i].error.g / two[k][i].value.g);
+        }
+    }
+    print_message(
+        "by itself: RMS error %.2g %%, by the quotient %.2g %%; stated at most %.2g %%; direct rays %.3g and %.3g\n",
+        100 * sqrt(off[1]), 100 * sqrt(off[0]), 100 * stated, stats[1].direct_rays, stats[0].direct_rays);
+    assert_true(stated <= 0.002);
+    assert_true(sqrt(off[1]) < 0.002);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -296,6 +343,7 @@ int main(void)
         cmocka_unit_test(what_does_not_see_a_change_has_equal_bits),
         cmocka_unit_test(two_fields_have_the_same_bits_for_any_number_of_threads),
         cmocka_unit_test(cells_find_the_quotient_of_each_point),
+        cmocka_unit_test(light_that_counts_by_itself_is_known_to_the_target),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
