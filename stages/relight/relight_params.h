@@ -12,6 +12,8 @@
       "light is gathered at the corners of cells so wide, and between them where it or the surface differs; 1: at "  \
       "each pixel")                                                                                                  \
     X(smooth, int, 3, 0, 6, "", "passes that smooth the noise of the quotient along surfaces")                       \
+    X(penumbra, int, 6, 0, 16, "px",                                                                                 \
+      "most shift of the edge of an old shadow or patch of sun that is fitted to the photograph; 0: none is fitted") \
     X(light, choice, "gathered", 0, 0, "gathered|atlas",                                                             \
       "gathered at each pixel, with sharp shadows; or that of the atlas of update_vita: fast, and the same from "    \
       "every "                                                                                                       \

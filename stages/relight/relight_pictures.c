@@ -109,6 +109,9 @@ static enum status relight_one(struct session *s, const char *name, struct err *
         else if (!strcmp(j->params.integrals, "yes"))
             write_integrals(s, &relit, &pixels, &camera, err);
         if (!err->status && pixels.is_black) log_note("%s: all but nothing is drawn; nothing is relit", name);
+        if (!err->status && relit.penumbra.fitted)
+            log_note("%s: old light's edges are fitted at %d of %d places, by %.1f px", name, relit.penumbra.fitted,
+                     relit.penumbra.points, relit.penumbra.shift);
         if (!err->status && !j->frames)
             relit_write(&relit, &picture, &j->params, exposure, &camera, j->out, name, &j->prov, err);
     }

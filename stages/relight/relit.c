@@ -4,6 +4,7 @@
  * both fields (irradiance_cache.c), or from rays at each pixel if there are more emitters than a cache can tell apart.
  * A texture's radiance is multiplied by the quotient (light_quotient.c), as far as it is sure (quotients.c); a colour
  * of the edit gets albedo / pi times the irradiance after it; a synthetic object is shaded with irradiance of its own.
+ * Edges of old light are moved to where the photograph has them (penumbra.c).
  *
  * Gloss. A glossy surface of albedo a sends out L = a E / pi + k_s I_s. Its texture is what remains of the photograph
  * without k_s I_s, in the light before, towards the place that the texel was photographed from; the gloss after the
@@ -234,6 +235,20 @@ static void find_some(void *ctx, size_t begin, size_t end, int thread)
     }
 }
 
+/* Moves edges of old light to where the picture has them. */
+static enum status fit_penumbra(struct apply_job *j, struct err *err)
+{
+    struct relit *r = j->r;
+    const size_t n = (size_t)r->width * (size_t)r->height;
+    float(*matt)[3] = calloc(n + 1, sizeof *matt);
+    if (!matt) return err_nomem(err, "edges of light", n * sizeof *matt);
+    for (size_t i = 0; i < n; i++)
+        set(matt[i], matt_part(get(j->picture->rgb + 3 * i), r->specular ? get(r->specular[i][0]) : rgb_grey(0)));
+    penumbra_fit(r->quotient, &r->penumbra, (const float(*)[3])matt, r->before, j->p, j->params, err);
+    free(matt);
+    return err->status;
+}
+
 static bool equal(struct rgb a, struct rgb b) { return a.r == b.r && a.g == b.g && a.b == b.b; }
 
 static void apply_surface(struct apply_job *j, size_t i)
@@ -429,7 +444,7 @@ enum status relit_make(struct relit *r, struct model_picture *picture, const str
     if (!err->status) {
         j.dark = DARK * mean_light(r);
         if (is_gathered) parallel_for(n, 256, find_some, &j);
-        if (is_gathered) quotients_settle(r->quotient, r->error, p, params, err);
+        if (is_gathered && !quotients_settle(r->quotient, r->error, p, params, err)) fit_penumbra(&j, err);
         if (!err->status) parallel_for(n, 256, is_gathered ? apply_some : apply_atlas, &j);
         if (!err->status) shade_objects(&j, err);
     }

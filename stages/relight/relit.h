@@ -3,7 +3,7 @@
 #define REMODEL_RELIT_H
 
 #include "common/gather/irradiance_cache.h"
-#include "stages/relight/quotients.h"
+#include "stages/relight/penumbra.h"
 
 /* {0} is the empty state; everything is owned. */
 struct relit {
@@ -15,6 +15,7 @@ struct relit {
     float (*specular)[2][3];           /* what gloss reflects before and after; NULL: no pixel is glossy */
     double median[2];                  /* luminance of the surfaces that are relit, before and after; 0: none */
     size_t records;
+    struct penumbra_stats penumbra; /* edges of old light */
 };
 
 /* Relights the picture: its radiance is that after the edit. picture: as render_model drew it. The caller releases r in
