@@ -55,14 +55,22 @@ static const double SAME_NORMAL = 0.9; /* least cosine of normals of one edge */
 static const double NOISE = 0.01;      /* of log radiance: less is no evidence */
 static const double EXPLAINED = 0.69;  /* least fall of the log mean square */
 static const double STRENGTH[2] = {0.5, 1.5};
-static const double SPLAT = 3; /* px: standard deviation of a point's weight along the edge */
+static const double STIFF = 0.01; /* of the weights: what holds a shift along an edge */
+static const double SPLAT = 3;    /* px: standard deviation of a point's weight along the edge */
 
 struct edge_point {
     int pixel;
+    double x, y;   /* on the ridge beside its centre */
     double nx, ny; /* normal, towards more old light */
     double half;   /* of the penumbra, px */
     double shift, steeper, part;
     bool is_known; /* it has a profile */
+};
+
+/* What the edges around a pixel say of where its quotient is: sums of weights w times n n^T, n u, 1, for edges with the
+ * normal n across which it is u away. */
+struct flow {
+    float xx, xy, yy, x, y, weight, along;
 };
 
 struct edges {
@@ -78,7 +86,7 @@ struct edges {
     float *costs;       /* shifts * WIDTHS of each point */
     float *unexplained; /* the cost without the edge */
     float (*source)[4]; /* log quotients before they are moved */
-    float (*flow)[4];   /* sums: x, y, weight, weight along the edge */
+    struct flow *flow;
     float (*quotient)[4];
 };
 
@@ -243,7 +251,7 @@ static double steepness_at(const struct edges *s, double x, double y)
 static int foot(double *value, const struct edges *s, const struct edge_point *p, int surface, double steepest,
                 int sign)
 {
-    const int x = p->pixel % s->width, y = p->pixel / s->width;
+    const double x = p->x, y = p->y;
     double last = 0, next;
     int t = 0;
     sample(&last, s, s->smooth_e, surface, x, y);
@@ -264,8 +272,11 @@ static bool is_edge(struct edge_point *p, const struct edges *s, int x, int y)
     const double steepest = hypot(g[0], g[1]);
     if (!(steepest >= MIN_SLOPE) || g[0] * old[0] + g[1] * old[1] < OLD * steepest * steepest) return false;
     *p = (struct edge_point){.pixel = y * s->width + x, .nx = g[0] / steepest, .ny = g[1] / steepest};
-    if (steepness_at(s, x + p->nx, y + p->ny) > steepest || steepness_at(s, x - p->nx, y - p->ny) >= steepest)
-        return false;
+    const double next = steepness_at(s, x + p->nx, y + p->ny), last = steepness_at(s, x - p->nx, y - p->ny);
+    if (next > steepest || last >= steepest) return false;
+    const double by = 0.5 * (next - last) / (2 * steepest - next - last);
+    p->x = x + by * p->nx;
+    p->y = y + by * p->ny;
     const int surface = s->surface[p->pixel];
     const int above = foot(&high, s, p, surface, steepest, 1), below = foot(&low, s, p, surface, steepest, -1);
     p->half = fmax(1.5, above > below ? above : below);
@@ -299,7 +310,7 @@ struct profile {
 static bool mean_at(double *value, const struct edges *s, const float *field, const struct edge_point *p, double t,
                     int beside)
 {
-    const double x = p->pixel % s->width + t * p->nx, y = p->pixel / s->width + t * p->ny;
+    const double x = p->x + t * p->nx, y = p->y + t * p->ny;
     double sum = 0, one;
     int count = 0;
     for (int k = -beside; k <= beside; k++) {
@@ -415,7 +426,7 @@ static void find_some_costs(void *ctx, size_t begin, size_t end, int thread)
 static double weight_along(double *ahead, const struct edges *s, const struct edge_point *a, const struct edge_point *b,
                            double deviation)
 {
-    const double x = b->pixel % s->width - a->pixel % s->width, y = b->pixel / s->width - a->pixel / s->width;
+    const double x = b->x - a->x, y = b->y - a->y;
     const double across = x * a->nx + y * a->ny;
     *ahead = -x * a->ny + y * a->nx;
     if (s->surface[a->pixel] != s->surface[b->pixel] || a->nx * b->nx + a->ny * b->ny < SAME_NORMAL) return 0;
@@ -556,17 +567,31 @@ static void splat(struct edges *s, const struct edge_point *p)
     for (int y = clamp_int(at_y - r, 0, s->height); y < clamp_int(at_y + r + 1, 0, s->height); y++)
         for (int x = clamp_int(at_x - r, 0, s->width); x < clamp_int(at_x + r + 1, 0, s->width); x++) {
             const size_t i = (size_t)y * (size_t)s->width + (size_t)x;
-            const double t = (x - at_x) * p->nx + (y - at_y) * p->ny, along = (y - at_y) * p->nx - (x - at_x) * p->ny;
+            const double t = (x - p->x) * p->nx + (y - p->y) * p->ny, along = (y - p->y) * p->nx - (x - p->x) * p->ny;
             if (s->surface[i] != s->surface[p->pixel] || fabs(t) > reach || fabs(along) > 2.5 * SPLAT) continue;
             const double by_along = exp(-along * along / (2 * SPLAT * SPLAT));
             const double fade = clamp((reach - fabs(t)) / FADE, 0, 1), off = t / p->half;
-            const double weight = by_along / (1 + off * off),
-                         by = fade * fade * (3 - 2 * fade) * p->part * (moved(p, t, p->shift, p->steeper) - t);
-            s->flow[i][0] += (float)(weight * by * p->nx);
-            s->flow[i][1] += (float)(weight * by * p->ny);
-            s->flow[i][2] += (float)weight;
-            s->flow[i][3] += (float)by_along;
+            const double weight = p->part * by_along / (1 + off * off);
+            const double by = fade * fade * (3 - 2 * fade) * (moved(p, t, p->shift, p->steeper) - t);
+            struct flow *f = &s->flow[i];
+            f->xx += (float)(weight * p->nx * p->nx);
+            f->xy += (float)(weight * p->nx * p->ny);
+            f->yy += (float)(weight * p->ny * p->ny);
+            f->x += (float)(weight * by * p->nx);
+            f->y += (float)(weight * by * p->ny);
+            f->weight += (float)weight;
+            f->along += (float)(p->part * by_along);
         }
+}
+
+/* The shift that agrees best with all edges: at a corner, with that of both. */
+static void find_shift(double by[2], const struct flow *f)
+{
+    const double least = STIFF * (double)f->weight, xx = (double)f->xx + least, yy = (double)f->yy + least;
+    const double xy = (double)f->xy, determinant = xx * yy - xy * xy;
+    const double part = fmin(1, (double)f->along / SPLAT) / determinant;
+    by[0] = part * (yy * (double)f->x - xy * (double)f->y);
+    by[1] = part * (xx * (double)f->y - xy * (double)f->x);
 }
 
 /* Weights of four values in a row at u between the middle ones: cubic, for a penumbra is a few pixels wide and a linear
@@ -603,10 +628,9 @@ static bool read_quotient(double to[3], const struct edges *s, int surface, doub
 static void move_pixel(const struct edges *s, int x, int y)
 {
     const size_t i = (size_t)y * (size_t)s->width + (size_t)x;
-    double q[3];
-    if (!(s->flow[i][2] > 0)) return;
-    const double part = fmin(1, (double)s->flow[i][3] / SPLAT) / (double)s->flow[i][2];
-    const double by[2] = {part * (double)s->flow[i][0], part * (double)s->flow[i][1]};
+    double q[3], by[2];
+    if (!(s->flow[i].weight > 0)) return;
+    find_shift(by, &s->flow[i]);
     if (by[0] == 0 && by[1] == 0) return;
     if (!read_quotient(q, s, s->surface[i], x + by[0], y + by[1], true) &&
         !read_quotient(q, s, s->surface[i], x + by[0], y + by[1], false))
@@ -630,7 +654,8 @@ static enum status move(struct edges *s, struct err *err)
     if (!s->source || !s->flow) return err_nomem(err, "edges of light", 2 * n * sizeof *s->flow);
     for (size_t i = 0; i < n; i++)
         for (int c = 0; s->surface[i] >= 0 && c < 3; c++) s->source[i][c] = logf(s->quotient[i][c]);
-    for (size_t k = 0; k < s->count; k++) splat(s, &s->points[k]);
+    for (size_t k = 0; k < s->count; k++)
+        if (s->points[k].part > 0) splat(s, &s->points[k]);
     parallel_for((size_t)s->height, 8, move_rows, s);
     return ST_OK;
 }
