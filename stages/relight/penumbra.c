@@ -53,7 +53,8 @@ static const double FOOT = 0.15;       /* of the steepest slope: where a penumbr
 static const double ALONG = 16;        /* px: standard deviation of weights along an edge */
 static const double SAME_NORMAL = 0.9; /* least cosine of normals of one edge */
 static const double NOISE = 0.01;      /* of log radiance: less is no evidence */
-static const double EXPLAINED = 0.69;  /* least fall of the log mean square */
+static const double EXPLAINED = 1.4;   /* least fall of the log mean square */
+static const double GAIN = 0.15;       /* fall of the log mean square by the move, of which half counts */
 static const double STRENGTH[2] = {0.5, 1.5};
 static const double STIFF = 0.01; /* of the weights: what holds a shift along an edge */
 static const double SPLAT = 3;    /* px: standard deviation of a point's weight along the edge */
@@ -513,8 +514,10 @@ static void fit_point(struct edge_point *p, const struct edges *s, size_t n)
         least_pair(&shifts[1], &other, s, sums[2], weights[2]);
         off = fabs(shifts[1] - shifts[0]);
     }
+    const int unmoved = s->most * STEPS * WIDTHS + WIDTHS / 2;
+    const double gain = (sums[0][unmoved] - sums[0][least(sums[0], size)]) / weights[0] / GAIN;
     const double moves = fmax(1, fmax(fabs(p->shift), fabs(log(p->steeper)) * p->half)), r = off / moves;
-    p->part = 1 / (1 + r * r * r * r);
+    p->part = gain * gain / (1 + gain * gain) / (1 + r * r * r * r);
 }
 
 static void fit_some(void *ctx, size_t begin, size_t end, int thread)
