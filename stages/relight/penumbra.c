@@ -53,8 +53,9 @@ static const double FOOT = 0.15;       /* of the steepest slope: where a penumbr
 static const double ALONG = 16;        /* px: standard deviation of weights along an edge */
 static const double SAME_NORMAL = 0.9; /* least cosine of normals of one edge */
 static const double NOISE = 0.01;      /* of log radiance: less is no evidence */
-static const double EXPLAINED = 1.4;   /* least fall of the log mean square */
-static const double GAIN = 0.15;       /* fall of the log mean square by the move, of which half counts */
+static const double EXPLAINED = 0.5;   /* fall of it by the edge of which half is believed */
+static const double STAY = 0.05;       /* cost of the largest shift, and of half or twice the width */
+static const double GAIN = 0.15;       /* fall of the log mean square by the move of which half is believed */
 static const double STRENGTH[2] = {0.5, 1.5};
 static const double STIFF = 0.01; /* of the weights: what holds a shift along an edge */
 static const double SPLAT = 3;    /* px: standard deviation of a point's weight along the edge */
@@ -483,6 +484,15 @@ static bool least_pair(double *shift, double *steeper, const struct edges *s, co
     return true;
 }
 
+/* What a shift or a width costs by itself: of pairs that fit alike, the least move. */
+static double unlikely(const struct edges *s, int c)
+{
+    const double d = ((double)(c / WIDTHS) / STEPS - s->most) / s->most, a = log(STEEPER[c % WIDTHS]) / log(STEEPER[0]);
+    return STAY * (d * d + a * a);
+}
+
+static double believed(double gain, double half) { return gain > 0 ? gain * gain / (gain * gain + half * half) : 0; }
+
 static void fit_point(struct edge_point *p, const struct edges *s, size_t n)
 {
     double sums[3][MAX_COSTS] = {{0}}; /* all, behind, ahead */
@@ -506,8 +516,9 @@ static void fit_point(struct edge_point *p, const struct edges *s, size_t n)
     }
     p->part = 0;
     if (!(weights[0] > 0.5 * ALONG)) return;
-    const bool is_between = least_pair(&p->shift, &p->steeper, s, sums[0], weights[0]);
-    if (!is_between || unexplained - sums[0][least(sums[0], size)] < EXPLAINED * weights[0]) return;
+    for (int c = 0; c < size; c++)
+        for (int k = 0; k < 3; k++) sums[k][c] += weights[k] * unlikely(s, c);
+    if (!least_pair(&p->shift, &p->steeper, s, sums[0], weights[0])) return;
     double off = 0, shifts[2], other;
     if (weights[1] > 0.2 * weights[0] && weights[2] > 0.2 * weights[0]) {
         least_pair(&shifts[0], &other, s, sums[1], weights[1]);
@@ -515,9 +526,10 @@ static void fit_point(struct edge_point *p, const struct edges *s, size_t n)
         off = fabs(shifts[1] - shifts[0]);
     }
     const int unmoved = s->most * STEPS * WIDTHS + WIDTHS / 2;
-    const double gain = (sums[0][unmoved] - sums[0][least(sums[0], size)]) / weights[0] / GAIN;
+    const double best = sums[0][least(sums[0], size)];
+    const double gain = (sums[0][unmoved] - best) / weights[0], explained = (unexplained - best) / weights[0];
     const double moves = fmax(1, fmax(fabs(p->shift), fabs(log(p->steeper)) * p->half)), r = off / moves;
-    p->part = gain * gain / (1 + gain * gain) / (1 + r * r * r * r);
+    p->part = believed(gain, GAIN) * believed(explained, EXPLAINED) / (1 + r * r * r * r);
 }
 
 static void fit_some(void *ctx, size_t begin, size_t end, int thread)
