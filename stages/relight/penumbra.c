@@ -45,17 +45,19 @@ enum {
     MAX_COSTS = (2 * STEPS * MAX_SHIFT + 1) * WIDTHS
 };
 static const double STEEPER[WIDTHS] = {0.5, 0.62996052, 0.79370053, 1, 1.25992105, 1.58740105, 2};
-static const double BLUR = 2;          /* px, before slopes are taken */
-static const double MIN_SLOPE = 0.008; /* of e, a pixel */
-static const double MIN_STEP = 0.06;   /* of e across the edge */
-static const double OLD = 0.5;         /* least part of the slope of e that the old light has */
-static const double FOOT = 0.15;       /* of the steepest slope: where a penumbra ends */
-static const double ALONG = 16;        /* px: standard deviation of weights along an edge */
+static const double BLUR = 2;            /* px, before slopes are taken */
+static const double MIN_SLOPE = 0.008;   /* of e, a pixel */
+static const double MIN_STEP = 0.06;     /* of e across the edge */
+static const double OLD = 0.5;           /* least part of the slope of e that the old light has */
+static const double FOOT = 0.15;         /* of the steepest slope: where a penumbra ends */
+static const double NEAR = 16, FAR = 64; /* px: standard deviations of weights along an edge */
+static const double FAR_SHARE = 0.25;
+static const double BEND = 0.1;        /* how far points of one edge may lie off a line, as a part of their distance */
 static const double SAME_NORMAL = 0.9; /* least cosine of normals of one edge */
 static const double NOISE = 0.01;      /* of log radiance: less is no evidence */
 static const double EXPLAINED = 0.5;   /* fall of it by the edge of which half is believed */
 static const double STAY = 0.05;       /* cost of the largest shift, and of half or twice the width */
-static const double GAIN = 0.15;       /* fall of the log mean square by the move of which half is believed */
+static const double GAIN = 0.5;        /* fall of the log mean square by the move of which half is believed */
 static const double STRENGTH[2] = {0.5, 1.5};
 static const double STIFF = 0.01; /* of the weights: what holds a shift along an edge */
 static const double SPLAT = 3;    /* px: standard deviation of a point's weight along the edge */
@@ -424,26 +426,25 @@ static void find_some_costs(void *ctx, size_t begin, size_t end, int thread)
 
 /* ------------------------------------------------------------------------------------------------- along the edge */
 
-/* The weight of point b for point a, 0 of another edge; *ahead: b's place along the edge. */
-static double weight_along(double *ahead, const struct edges *s, const struct edge_point *a, const struct edge_point *b,
-                           double deviation)
+/* Whether two points lie on one edge; *ahead: the place of b along it, from a, px. */
+static bool is_same_edge(double *ahead, const struct edges *s, const struct edge_point *a, const struct edge_point *b)
 {
     const double x = b->x - a->x, y = b->y - a->y;
-    const double across = x * a->nx + y * a->ny;
     *ahead = -x * a->ny + y * a->nx;
-    if (s->surface[a->pixel] != s->surface[b->pixel] || a->nx * b->nx + a->ny * b->ny < SAME_NORMAL) return 0;
-    if (fabs(*ahead) > 2.5 * deviation || fabs(across) > 2 + 0.25 * fabs(*ahead)) return 0;
-    return exp(-*ahead * *ahead / (2 * deviation * deviation));
+    if (s->surface[a->pixel] != s->surface[b->pixel] || a->nx * b->nx + a->ny * b->ny < SAME_NORMAL) return false;
+    return fabs(x * a->nx + y * a->ny) <= 2 + BEND * fabs(*ahead);
 }
+
+static double bell(double x, double deviation) { return exp(-x * x / (2 * deviation * deviation)); }
 
 struct span {
     size_t begin, end;
 };
 
 /* The points in the rows around a point. */
-static struct span around(const struct edges *s, const struct edge_point *p, double deviation)
+static struct span around(const struct edges *s, const struct edge_point *p, double reach_px)
 {
-    const int y = p->pixel / s->width, reach = (int)ceil(3 * deviation);
+    const int y = p->pixel / s->width, reach = (int)ceil(reach_px);
     return (struct span){s->rows[clamp_int(y - reach, 0, s->height)], s->rows[clamp_int(y + reach + 1, 0, s->height)]};
 }
 
@@ -491,31 +492,50 @@ static double unlikely(const struct edges *s, int c)
     return STAY * (d * d + a * a);
 }
 
-static double believed(double gain, double half) { return gain > 0 ? gain * gain / (gain * gain + half * half) : 0; }
+static double believed(double gain, double half)
+{
+    const double x = fmax(0, gain / half);
+    return x * x * x * x / (1 + x * x * x * x);
+}
+
+/* The weight of a point for another one of its edge. */
+static double weight_at(double ahead) { return bell(ahead, NEAR) + FAR_SHARE * bell(ahead, FAR); }
+
+/* The middle of an edge's points, weighted; from a point along the edge. */
+static double middle_of(const struct edges *s, const struct edge_point *p, struct span near)
+{
+    double sum = 0, weights = 0, ahead;
+    for (size_t k = near.begin; k < near.end; k++) {
+        if (!s->points[k].is_known || !is_same_edge(&ahead, s, p, &s->points[k])) continue;
+        sum += weight_at(ahead) * ahead;
+        weights += weight_at(ahead);
+    }
+    return weights > 0 ? sum / weights : 0;
+}
 
 static void fit_point(struct edge_point *p, const struct edges *s, size_t n)
 {
-    double sums[3][MAX_COSTS] = {{0}}; /* all, behind, ahead */
+    double sums[3][MAX_COSTS] = {{0}}; /* all, and both halves of the edge */
     double weights[3] = {0}, unexplained = 0;
     const int size = s->shifts * WIDTHS;
-    const struct span near = around(s, &s->points[n], ALONG);
+    const struct span near = around(s, &s->points[n], 2.5 * FAR);
+    const double middle = middle_of(s, &s->points[n], near);
     for (size_t k = near.begin; k < near.end; k++) {
         double ahead;
-        if (!s->points[k].is_known) continue;
-        const double w = weight_along(&ahead, s, &s->points[n], &s->points[k], ALONG);
-        if (!(w > 0)) continue;
+        if (!s->points[k].is_known || !is_same_edge(&ahead, s, &s->points[n], &s->points[k])) continue;
+        const double w = weight_at(ahead);
+        const int part = ahead > middle ? 2 : 1;
         const float *costs = s->costs + k * (size_t)size;
-        double *half = sums[ahead > 0 ? 2 : 1];
         for (int c = 0; c < size; c++) {
             sums[0][c] += w * (double)costs[c];
-            half[c] += w * (double)costs[c];
+            sums[part][c] += w * (double)costs[c];
         }
         weights[0] += w;
-        weights[ahead > 0 ? 2 : 1] += w;
+        weights[part] += w;
         unexplained += w * (double)s->unexplained[k];
     }
     p->part = 0;
-    if (!(weights[0] > 0.5 * ALONG)) return;
+    if (!(weights[0] > 0.5 * NEAR)) return;
     for (int c = 0; c < size; c++)
         for (int k = 0; k < 3; k++) sums[k][c] += weights[k] * unlikely(s, c);
     if (!least_pair(&p->shift, &p->steeper, s, sums[0], weights[0])) return;
@@ -549,12 +569,13 @@ static void join_some(void *ctx, size_t begin, size_t end, int thread)
     (void)thread;
     for (size_t n = begin; n < end; n++) {
         struct edge_point *to = &s->points[n];
-        const struct span near = around(s, to, 0.5 * ALONG);
+        const struct span near = around(s, to, 1.5 * NEAR);
         double weights = 0, parts = 0, shift = 0, steeper = 0, half = 0;
         for (size_t k = near.begin; k < near.end; k++) {
             double ahead;
             const struct edge_point *f = &s->fitted[k];
-            const double w = weight_along(&ahead, s, to, f, 0.5 * ALONG);
+            if (!is_same_edge(&ahead, s, to, f)) continue;
+            const double w = bell(ahead, 0.5 * NEAR);
             weights += w;
             parts += w * f->part;
             half += w * f->half;
