@@ -10,17 +10,21 @@
  * Fit. Across an edge's point, t runs along the normal, towards the lit side. Both profiles are means of a few pixels
  * along the edge on the same face. The photograph's should be
  *   log L(t) = c + m t + s e(t'), t' = t - d + (a - 1) clamp(t - d, -w, w)
- * with the shift d, the penumbra a times as steep, w half its width, and free c, m and strength s, 0.5 to 1.5. Texture
- * hides a single profile, so what counts is the sum over the edge's points within some pixels of the logarithm of the
- * rest's mean square, which a bright joint in one profile cannot rule. All pairs (d, a) are tried.
+ * with the shift d, the penumbra a times as steep, w half its width, and free c, m and strength s, 0.5 to 1.5. All
+ * pairs (d, a) are tried. Texture hides a single profile, so a pair's cost is a sum over the edge's points: of the
+ * logarithm of the rest's mean square, which a bright joint in one profile cannot rule. Near points weigh most, but
+ * some weight reaches far, since boards and print run along an edge for a while.
  *
- * Evidence. The pair counts as far as the photograph tells it. The edge must explain half of the profile's mean square;
- * d must lie within the range that was tried; and the points before and behind along the edge, each by themselves, must
- * agree about d: with r their difference over what is moved, the shift is multiplied by 1 / (1 + r^4).
+ * Evidence. What moves a quotient must be sure, for a wrong move draws an outline where none was. A fit is multiplied
+ * by x^4 / (1 + x^4) for how far the move lowers the mean logarithm (x = 1 at 0.5), and for how far the edge itself
+ * does; and by 1 / (1 + r^4), r the difference of the shifts that both halves of the edge find by themselves, over what
+ * is moved. A shift at the end of the range does not count. Large moves cost a little, so that of pairs that fit alike
+ * the nearest is taken.
  *
- * Result. A pixel near an edge takes the quotient of the place t' in place of its own t, weighted over the edge's
- * points beside it. Beyond the penumbra the quotient is flat across the edge, and the shift fades. Where the edit leaves
- * a part of the old edge, that part is in the light before and after alike and moves with the quotient. */
+ * Result. A pixel near an edge takes the quotient of the place t' in place of its own t: that of the vector v that
+ * minimises sum w (v . n - (t' - t))^2 over the points beside it, so that at a corner both edges move. Beyond the
+ * penumbra the quotient is flat across the edge, and the shift fades. Where the edit leaves a part of the old edge,
+ * that part is in the light before and after alike and moves with the quotient. */
 #include "stages/relight/penumbra.h"
 
 #include <math.h>
@@ -51,13 +55,13 @@ static const double MIN_STEP = 0.06;     /* of e across the edge */
 static const double OLD = 0.5;           /* least part of the slope of e that the old light has */
 static const double FOOT = 0.15;         /* of the steepest slope: where a penumbra ends */
 static const double NEAR = 16, FAR = 64; /* px: standard deviations of weights along an edge */
-static const double FAR_SHARE = 0.25;
+static const double FAR_SHARE = 0.25;    /* of the weight of the near ones */
 static const double BEND = 0.1;        /* how far points of one edge may lie off a line, as a part of their distance */
 static const double SAME_NORMAL = 0.9; /* least cosine of normals of one edge */
 static const double NOISE = 0.01;      /* of log radiance: less is no evidence */
-static const double EXPLAINED = 0.5;   /* fall of it by the edge of which half is believed */
+static const double EXPLAINED = 0.5;   /* fall of the log mean square by the edge of which half is believed */
 static const double STAY = 0.05;       /* cost of the largest shift, and of half or twice the width */
-static const double GAIN = 0.5;        /* fall of the log mean square by the move of which half is believed */
+static const double GAIN = 0.5;        /* the same by the move */
 static const double STRENGTH[2] = {0.5, 1.5};
 static const double STIFF = 0.01; /* of the weights: what holds a shift along an edge */
 static const double SPLAT = 3;    /* px: standard deviation of a point's weight along the edge */
@@ -78,7 +82,6 @@ struct flow {
 };
 
 struct edges {
-    const struct pixels *p;
     int width, height, most; /* most: shift, px */
     int shifts;              /* that are tried */
     int *surface;            /* face of each pixel; -1: none that counts */
@@ -128,7 +131,7 @@ static enum status init(struct edges *s, float (*quotient)[4], const float (*mat
                         const struct pixels *p, int most, struct err *err)
 {
     const size_t n = (size_t)p->width * (size_t)p->height;
-    *s = (struct edges){.p = p, .width = p->width, .height = p->height, .most = most, .shifts = 2 * STEPS * most + 1};
+    *s = (struct edges){.width = p->width, .height = p->height, .most = most, .shifts = 2 * STEPS * most + 1};
     s->quotient = quotient;
     s->surface = calloc(n + 1, sizeof *s->surface);
     s->photo = calloc(n + 1, sizeof *s->photo);
