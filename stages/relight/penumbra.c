@@ -63,8 +63,9 @@ static const double EXPLAINED = 0.5;   /* fall of the log mean square by the edg
 static const double STAY = 0.05;       /* cost of the largest shift, and of half or twice the width */
 static const double GAIN = 0.5;        /* the same by the move */
 static const double STRENGTH[2] = {0.5, 1.5};
-static const double STIFF = 0.01; /* of the weights: what holds a shift along an edge */
-static const double SPLAT = 3;    /* px: standard deviation of a point's weight along the edge */
+static const double LEAST_PART = 0.05; /* of a move that is believed: less is none */
+static const double STIFF = 0.01;      /* of the weights: what holds a shift along an edge */
+static const double SPLAT = 3;         /* px: standard deviation of a point's weight along the edge */
 
 struct edge_point {
     int pixel;
@@ -694,7 +695,7 @@ static enum status move(struct edges *s, struct err *err)
     for (size_t i = 0; i < n; i++)
         for (int c = 0; s->surface[i] >= 0 && c < 3; c++) s->source[i][c] = logf(s->quotient[i][c]);
     for (size_t k = 0; k < s->count; k++)
-        if (s->points[k].part > 0) splat(s, &s->points[k]);
+        if (s->points[k].part > LEAST_PART) splat(s, &s->points[k]);
     parallel_for((size_t)s->height, 8, move_rows, s);
     return ST_OK;
 }
