@@ -111,11 +111,12 @@ static enum status refine_face(struct work *w, int face, const struct rgb *value
 static enum status refine(struct work *w, struct err *err)
 {
     const double finest = w->job->params.finest * model_rays_size(&w->change.after.model);
-    for (double reach = w->nets.spacing; reach > finest; reach /= 2) {
+    for (int halvings = 0; ldexp(w->nets.spacing, -halvings) > finest; halvings++) {
         const int before = w->nets.sample_count;
         struct rgb *values = NULL;
         first_values(w, &values, err);
-        for (int i = 0; !err->status && i < w->nets.mesh->face_count; i++) refine_face(w, i, values, finest, err);
+        for (int i = 0; values && !err->status && i < w->nets.mesh->face_count; i++)
+            refine_face(w, i, values, finest, err);
         free(values);
         if (!err->status) face_nets_connect(&w->nets, err);
         if (err->status) return err->status;
