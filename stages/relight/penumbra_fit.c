@@ -145,7 +145,7 @@ static double product(const double *a, const double *b, const struct profile *f)
 static void find_costs(float *costs, float *unexplained, struct profile *f, const struct fit *s,
                        const struct edge_point *p)
 {
-    double e[2 * MAX_REACH + 1], weights = 0;
+    double e[2 * MAX_REACH + 1] = {0}, weights = 0;
     for (int k = 0; k <= 2 * f->reach; k++) weights += f->weight[k];
     detrend(f->photo, f);
     const double all = product(f->photo, f->photo, f);
@@ -169,7 +169,7 @@ static void find_some_costs(void *ctx, size_t begin, size_t end, int thread)
     const size_t size = (size_t)s->shifts * WIDTHS;
     (void)thread;
     for (size_t n = begin; n < end; n++) {
-        struct profile f;
+        struct profile f = {0};
         s->edges->points[n].is_known = read_profile(&f, s, &s->edges->points[n]);
         if (s->edges->points[n].is_known)
             find_costs(s->costs + n * size, s->unexplained + n, &f, s, &s->edges->points[n]);
