@@ -18,7 +18,7 @@
  *    estimator [Cameron 2011] over photos and points, because an error of a photo's pose moves all that it shows, and
  *    one of a ray all sights of its point. What an error of the camera's place does, through q, is added.
  *
- * 4. Wrong matches lie on an arc by chance, too, all the more where everything is at the horizon. How often is counted:
+ * 4. Wrong matches also lie on an arc by chance, the more so where everything is at the horizon. How often is counted:
  *    the ray of each match with the direction of others of its photo. So many must agree that as many would by chance
  *    in one of a hundred million draws (CHANCE), besides the three that the rotation was drawn from, and at least a
  *    given number.

@@ -37,7 +37,7 @@ static const double NEAR = 16, FAR = 64; /* px: standard deviations of weights a
 static const double FAR_SHARE = 0.25;    /* of the weight of the near ones */
 static const double BEND = 0.1;        /* how far points of one edge may lie off a line, as a part of their distance */
 static const double SAME_NORMAL = 0.9; /* least cosine of normals of one edge */
-static const double NOISE = 0.01;      /* of log radiance: less is no evidence */
+static const double NOISE = 0.01;      /* of log radiance: a smaller misfit counts as this */
 static const double EXPLAINED = 0.5;   /* fall of the log mean square by the edge of which half is believed */
 static const double STAY = 0.05;       /* cost of the largest shift, and of half or twice the width */
 static const double GAIN = 0.5;        /* the same by the move */
