@@ -7,7 +7,8 @@
  * scenes/loft. Writes
  *   scene.txt, cameras.txt               the furnished rooms and the photos (docs/scenes.md)
  *   scene-bare.txt, scene-moved.txt      without furniture; with one piece gone and one moved
- *   model.txt, scale.txt, things.txt, lights.txt, edits/bare.txt, edits/moved.txt
+ *   scene-window.txt                     with a larger window
+ *   model.txt, scale.txt, things.txt, lights.txt, edits/bare.txt, edits/moved.txt, edits/window.txt
  *                                        what a person would write of it, by marks in the photos
  *   scene.mk, scene.cfg                  photos are rendered at half the size in cameras.txt
  * The same seed gives the same bytes. */
@@ -25,8 +26,10 @@ static enum status draw_room(struct made_room *r, int seed, struct err *err)
 {
     for (int i = 0; i < ATTEMPTS; i++) {
         *r = (struct made_room){.seed = seed};
-        if (made_outline(r, i) && made_furniture(r, i) && made_pictures(r, i) && made_photos(r, i) && made_marks(r))
-            return ST_OK;
+        if (!made_outline(r, i) || !made_furniture(r, i) || !made_pictures(r, i) || !made_photos(r, i)) continue;
+        if (!made_marks(r)) continue;
+        made_larger_window(r);
+        return ST_OK;
     }
     return err_set(err, ST_DATA, "--seed %d: none of %d attempts led to a room; try another seed.", seed, ATTEMPTS);
 }
@@ -68,6 +71,7 @@ static enum status write_texts(const struct made_room *r, const struct scene_fol
         {"model.txt", made_write_model},          {"scale.txt", made_write_scale},
         {"things.txt", made_write_things},        {"lights.txt", made_write_lights},
         {"edits/bare.txt", made_write_edit_bare}, {"edits/moved.txt", made_write_edit_moved},
+        {"scene-window.txt", made_write_window},  {"edits/window.txt", made_write_edit_window},
     };
     for (size_t i = 0; !err->status && i < sizeof texts / sizeof *texts; i++) {
         struct outfile file = {0};

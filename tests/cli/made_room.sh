@@ -13,7 +13,7 @@ every_file_is_written()
     local f s n
     for s in 1 2; do
         made "$s" "$scratch/room$s"
-        for f in scene scene-bare scene-moved cameras model scale things lights edits/bare edits/moved; do [ -s "$scratch/room$s/$f.txt" ] || fail "there is no $f.txt"; done
+        for f in scene scene-bare scene-moved cameras model scale things lights scene-window edits/bare edits/moved edits/window; do [ -s "$scratch/room$s/$f.txt" ] || fail "there is no $f.txt"; done
         [ -s "$scratch/room$s/scene.mk" ] && [ -s "$scratch/room$s/scene.cfg" ] || fail "there are no settings"
         n=$(grep -c '^photo ' "$scratch/room$s/cameras.txt")
         [ "$n" -ge 20 ] && [ "$n" -le 26 ] || fail "$n photos, wanted 20 to 26"
@@ -36,7 +36,8 @@ rooms_are_photographed_before_and_after_edits()
         [ -s "$scratch/shots/photos/v00_e2.jpg" ] || fail "there is no photo"
         shot "$scratch/room$s" --edit bare
         shot "$scratch/room$s" --edit moved
-        [ -s "$scratch/shots/truth/edited-bare/hdr/v00.exr" ] && [ -s "$scratch/shots/truth/edited-moved/hdr/v00.exr" ] || fail "there is no edited picture"
+        shot "$scratch/room$s" --edit window
+        [ -s "$scratch/shots/truth/edited-window/hdr/v00.exr" ] && [ -s "$scratch/shots/truth/edited-bare/hdr/v00.exr" ] && [ -s "$scratch/shots/truth/edited-moved/hdr/v00.exr" ] || fail "there is no edited picture"
     done
 }
 

@@ -447,6 +447,17 @@ static void draw_rug(struct made_room *r, struct dice *d)
 }
 
 /* Pictures hang on the side of a wall that its normal points to. */
+bool made_on_picture(const struct made_room *r, int wall, double s, double z, double margin)
+{
+    for (int i = 0; i < r->picture_count; i++) {
+        const struct made_picture *p = &r->pictures[i];
+        if (p->wall == wall && s > p->s - p->wide - margin && s < p->s + margin && z > p->z - margin &&
+            z < p->z + p->high + margin)
+            return true;
+    }
+    return false;
+}
+
 bool made_pictures(struct made_room *r, int attempt)
 {
     struct dice d = dice_make(r->seed, "pictures", attempt);

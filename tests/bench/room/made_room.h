@@ -23,6 +23,7 @@ enum {
     MADE_RUGS = 2,
     MADE_PHOTOS = 26,
     MADE_MARKS = 3, /* most marks of a thing or of a point */
+    MADE_LIT = 6,   /* most rectangles that a lamp lights */
 };
 
 /* --------------------------------------------------------------------------------------------------------- numbers */
@@ -82,6 +83,8 @@ enum made_look {
     LOOK_COUNT,
 };
 
+const char *made_look_name(enum made_look look);
+
 /* A wall by its centre line; the room from which it is seen is on the left of its direction. */
 struct made_wall {
     const char *name;
@@ -137,6 +140,12 @@ struct made_marks {
     struct made_mark list[MADE_MARKS];
     int count;
 };
+/* Rectangles of photos, each on one wall that a lamp lights. */
+struct made_lit {
+    struct made_mark list[MADE_LIT];
+    int walls[MADE_LIT];
+    int count;
+};
 
 /* ------------------------------------------------------------------------------------------------------------- room */
 
@@ -165,6 +174,8 @@ struct made_room {
     int picture_count;
     struct rect rugs[MADE_RUGS];
     int rug_count;
+    int widened;                /* opening: the window that an edit makes larger */
+    struct made_opening larger; /* that window after it */
 
     struct made_photo photos[MADE_PHOTOS];
     int photo_count;
@@ -172,6 +183,7 @@ struct made_room {
     struct made_mark wall_marks[MADE_WALLS], opening_marks[MADE_OPENINGS];
     struct made_mark lamp_marks[MADE_LAMPS][2]; /* x0 y0 x1 y1: two corners each, in order; photo -1: none */
     struct made_marks cleared_marks, moved_marks, picture_marks[MADE_PICTURES];
+    struct made_lit lit[MADE_LAMPS];
 };
 
 /* Each draws its part from the seed, after those above it. False: this attempt does not lead to a room. */
@@ -179,6 +191,10 @@ bool made_outline(struct made_room *r, int attempt);
 bool made_furniture(struct made_room *r, int attempt);
 bool made_pictures(struct made_room *r, int attempt);
 bool made_photos(struct made_room *r, int attempt);
+/* The window that the edit `window` makes larger: the first, through which the sun shines. */
+void made_larger_window(struct made_room *r);
+/* Whether a place on a wall, s along it and z above the floor, is on a picture or less than `margin` from one. */
+bool made_on_picture(const struct made_room *r, int wall, double s, double z, double margin);
 bool made_marks(struct made_room *r);
 
 /* ------------------------------------------------------------------------------------------------------------ walls */
@@ -215,6 +231,7 @@ bool made_piece_near(const struct made_piece *p, double x, double y, double marg
 void made_write_scene(const struct made_room *r, FILE *to);
 void made_write_bare(const struct made_room *r, FILE *to);
 void made_write_moved(const struct made_room *r, FILE *to);
+void made_write_window(const struct made_room *r, FILE *to);
 void made_write_cameras(const struct made_room *r, FILE *to);
 void made_write_model(const struct made_room *r, FILE *to);
 void made_write_scale(const struct made_room *r, FILE *to);
@@ -222,5 +239,6 @@ void made_write_things(const struct made_room *r, FILE *to);
 void made_write_lights(const struct made_room *r, FILE *to);
 void made_write_edit_bare(const struct made_room *r, FILE *to);
 void made_write_edit_moved(const struct made_room *r, FILE *to);
+void made_write_edit_window(const struct made_room *r, FILE *to);
 
 #endif

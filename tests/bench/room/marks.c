@@ -1,5 +1,5 @@
 /* marks.c - what a person would mark in the photos of a made room: rectangles on walls, corners of openings and lamps,
- * furniture, corners of pictures.
+ * furniture, corners of pictures, walls that a lamp lights.
  *
  * A picture of what each photo shows, in cells of some pixels, gives the largest rectangle that shows one wall alone,
  * and the pixels of a piece of furniture. Corners are projected, and marked where nothing hides them. */
@@ -128,6 +128,60 @@ static void mark_lamp(struct made_room *r, int i)
     }
 }
 
+/* ------------------------------------------------------------------------------------------------- what lamps light */
+
+#define WALL_EDGE 0.15 /* m between a lit rectangle and the ends, floor and ceiling of its wall, and pictures */
+#define AT_LAMP   0.35 /* least cosine between the way to a lamp and the normals of the wall and of the lamp */
+#define LIT_SIDE  5    /* px, half of a lit rectangle */
+
+/* The wall that a pixel shows where a lamp lights it in full and the sun does not; -1: none. */
+static int lit_wall(const struct made_room *r, const struct sight *s, const struct made_lamp *lamp, int photo, double u,
+                    double v)
+{
+    const struct vec3 ray = photo_ray(&r->photos[photo], u, v);
+    const struct sight_hit hit = sight_cast(s, r->photos[photo].at, ray);
+    if (hit.owner < SIGHT_WALL || hit.owner >= SIGHT_PIECE) return -1;
+    const int wall = hit.owner - SIGHT_WALL;
+    const struct made_wall *w = &r->walls[wall];
+    const struct vec3 normal = made_wall_normal(w), p = vec3_add(r->photos[photo].at, vec3_scale(ray, hit.distance));
+    const double along =
+        vec3_dot(vec3_sub(p, made_wall_place(w, 0, 0)), vec3_normalize(vec3_make(w->x1 - w->x0, w->y1 - w->y0, 0)));
+    if (vec3_dot(hit.normal, normal) < 0.99 || vec3_dot(ray, normal) > -FACING) return -1;
+    if (p.z < WALL_EDGE || p.z > r->ceiling - WALL_EDGE || along < WALL_EDGE ||
+        along > made_wall_length(w) - WALL_EDGE || made_on_picture(r, wall, along, p.z, WALL_EDGE))
+        return -1;
+    const struct vec3 before = vec3_add(p, vec3_scale(normal, 0.02));
+    for (int k = 0; k < 4; k++) { /* the lamp's corners */
+        const struct vec3 corner =
+            vec3_make(lamp->x + lamp->side * (k & 1), lamp->y + lamp->side * (k >> 1), r->ceiling - 0.02);
+        const struct vec3 way = vec3_normalize(vec3_sub(corner, before));
+        if (vec3_dot(way, normal) < AT_LAMP || way.z < AT_LAMP || !sight_clear(s, before, corner)) return -1;
+    }
+    const double azimuth = r->sun_azimuth * M_PI / 180, elevation = r->sun_elevation * M_PI / 180;
+    const struct vec3 sun = vec3_make(cos(azimuth) * cos(elevation), sin(azimuth) * cos(elevation), sin(elevation));
+    return sight_cast(s, before, sun).owner == SIGHT_NOTHING ? -1 : wall;
+}
+
+/* Rectangles of plain wall, as a person would choose them: lit by the lamp, without sun, shadow or picture. */
+static void mark_lit(struct made_room *r, const struct sight *s, int i)
+{
+    struct dice d = dice_make(r->seed, "lit", i);
+    struct made_lit *lit = &r->lit[i];
+    for (int n = 0; lit->count < MADE_LIT && n < 4000; n++) {
+        const int photo = dice_choose(&d, r->photo_count);
+        const double u = round(dice_between(&d, EDGE + LIT_SIDE, MADE_WIDTH - EDGE - LIT_SIDE));
+        const double v = round(dice_between(&d, EDGE + LIT_SIDE, MADE_HEIGHT - EDGE - LIT_SIDE));
+        const int wall = lit_wall(r, s, &r->lamps[i], photo, u, v);
+        bool all = wall >= 0;
+        for (int k = 0; all && k < 4; k++)
+            all = lit_wall(r, s, &r->lamps[i], photo, u + (k & 1 ? LIT_SIDE : -LIT_SIDE),
+                           v + (k & 2 ? LIT_SIDE : -LIT_SIDE)) == wall;
+        if (!all) continue;
+        lit->walls[lit->count] = wall;
+        lit->list[lit->count++] = (struct made_mark){photo, u - LIT_SIDE, v - LIT_SIDE, u + LIT_SIDE, v + LIT_SIDE};
+    }
+}
+
 /* A picture's upper left corner, in the photo that is first to show it and in those farthest from it. */
 static void mark_picture(struct made_room *r, const struct sight *s, int i)
 {
@@ -219,7 +273,10 @@ bool made_marks(struct made_room *r)
     for (int k = 0; k < r->photo_count; k++) show(&cells[k], r, &s, &r->photos[k]);
     mark_walls(r, cells);
     for (int i = 0; i < r->opening_count; i++) mark_opening(r, &s, i);
-    for (int i = 0; i < r->lamp_count; i++) mark_lamp(r, i);
+    for (int i = 0; i < r->lamp_count; i++) {
+        mark_lamp(r, i);
+        mark_lit(r, &s, i);
+    }
     for (int i = 0; i < r->picture_count; i++) mark_picture(r, &s, i);
     mark_piece(&r->cleared_marks, r, cells, r->cleared);
     mark_piece(&r->moved_marks, r, cells, r->moved);

@@ -165,6 +165,26 @@ static bool draw_openings(struct made_room *r, struct dice *d)
     return true;
 }
 
+#define GROWN 0.4 /* most that a side of a window moves outwards */
+
+void made_larger_window(struct made_room *r)
+{
+    r->widened = 0;
+    while (!r->openings[r->widened].window) r->widened++;
+    const struct made_opening *before = &r->openings[r->widened];
+    double low = END, high = made_wall_length(&r->walls[before->wall]) - END;
+    for (int i = 0; i < r->opening_count; i++) {
+        const struct made_opening *o = &r->openings[i];
+        if (i == r->widened || o->wall != before->wall) continue;
+        if (o->s0 > before->s1) high = fmin(high, o->s0 - WINDOW_GAP / 2);
+        if (o->s1 < before->s0) low = fmax(low, o->s1 + WINDOW_GAP / 2);
+    }
+    r->larger = *before;
+    r->larger.s0 = fmax(low, before->s0 - GROWN);
+    r->larger.s1 = fmin(high, before->s1 + GROWN);
+    r->larger.z0 = before->z0 - GROWN;
+}
+
 /* ------------------------------------------------------------------------------------------------------------ light */
 
 static void draw_lamps(struct made_room *r, struct dice *d)

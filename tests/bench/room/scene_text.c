@@ -9,6 +9,8 @@ static const char *const look_names[LOOK_COUNT] = {"floor",  "floor2", "overhead
                                                    "accent", "wood",   "wood2",    "cloth", "cloth2",
                                                    "linen",  "dark",   "clay",     "books", "pattern"};
 
+const char *made_look_name(enum made_look look) { return look_names[look]; }
+
 #define FLAT 0.004 /* of pictures and rugs before their wall and floor */
 
 /* -------------------------------------------------------------------------------------------------------- materials */
@@ -222,6 +224,19 @@ void made_write_moved(const struct made_room *r, FILE *to)
     write_drop(&r->after, to);
     fputs("furniture on\n", to);
     write_piece(&r->after, to);
+}
+
+/* Pictures that would hang in the larger window are gone. */
+void made_write_window(const struct made_room *r, FILE *to)
+{
+    const struct made_opening *o = &r->larger;
+    fprintf(to, "remodel-scene 2\nbase scene.txt\n# %s is larger on three sides.\ndrop %s", o->name, o->name);
+    for (int i = 0; i < r->picture_count; i++) {
+        const struct made_picture *p = &r->pictures[i];
+        const bool beside = p->s <= o->s0 || p->s - p->wide >= o->s1 || p->z + p->high <= o->z0 || p->z >= o->z1;
+        if (p->wall == o->wall && !beside) fprintf(to, " picture%d", i + 1);
+    }
+    fprintf(to, "\nwindow %s %s %.2f %.2f  %.2f %.2f\n", o->name, r->walls[o->wall].name, o->s0, o->s1, o->z0, o->z1);
 }
 
 /* The lens and the exposures of scenes/loft. */

@@ -104,6 +104,11 @@ void made_write_lights(const struct made_room *r, FILE *to)
         if (m[0].photo < 0) continue;
         fprintf(to, "area lamp%d in v%02d %.2f %.2f %.2f %.2f %.2f %.2f %.2f %.2f\n", i + 1, m[0].photo, m[0].x0,
                 m[0].y0, m[0].x1, m[0].y1, m[1].x0, m[1].y0, m[1].x1, m[1].y1);
+        for (int k = 0; k < r->lit[i].count; k++) {
+            fprintf(to, "lit lamp%d", i + 1);
+            write_mark(to, &r->lit[i].list[k]);
+            fprintf(to, " of %s\n", made_look_name(r->walls[r->lit[i].walls[k]].look));
+        }
     }
 }
 
@@ -119,4 +124,12 @@ void made_write_edit_moved(const struct made_room *r, FILE *to)
     fprintf(to, "remodel-script 1\nclear %s\nmove %s by %.2f %.2f", r->pieces[r->cleared].name, before->name,
             after->x - before->x, after->y - before->y);
     fprintf(to, r->turned ? " turn %g\n" : "\n", r->turned);
+}
+
+/* For a viewer in the room the left end of a window is at its larger s. */
+void made_write_edit_window(const struct made_room *r, FILE *to)
+{
+    const struct made_opening *before = &r->openings[r->widened], *after = &r->larger;
+    fprintf(to, "remodel-script 1\nresize %s left %.2f right %.2f bottom %.2f\n", before->name, after->s1 - before->s1,
+            before->s0 - after->s0, before->z0 - after->z0);
 }
