@@ -23,7 +23,7 @@ enum {
     MADE_RUGS = 2,
     MADE_PHOTOS = 26,
     MADE_MARKS = 3, /* most marks of a thing or of a point */
-    MADE_LIT = 6,   /* most rectangles that a lamp lights */
+    MADE_LIT = 6,   /* most squares that a lamp lights */
 };
 
 /* --------------------------------------------------------------------------------------------------------- numbers */
@@ -140,7 +140,7 @@ struct made_marks {
     struct made_mark list[MADE_MARKS];
     int count;
 };
-/* Rectangles of photos, each on one wall that a lamp lights. */
+/* Squares in photos, each on one wall that a lamp lights. */
 struct made_lit {
     struct made_mark list[MADE_LIT];
     int walls[MADE_LIT];

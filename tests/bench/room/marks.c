@@ -130,9 +130,11 @@ static void mark_lamp(struct made_room *r, int i)
 
 /* ------------------------------------------------------------------------------------------------- what lamps light */
 
-#define WALL_EDGE 0.15 /* m between a lit rectangle and the ends, floor and ceiling of its wall, and pictures */
+#define WALL_EDGE 0.15 /* m between a lit square and the ends, floor and ceiling of its wall, and pictures */
 #define AT_LAMP   0.35 /* least cosine between the way to a lamp and the normals of the wall and of the lamp */
-#define LIT_SIDE  5    /* px, half of a lit rectangle */
+#define LIT_STEP  4    /* px, by which half of a lit square grows, */
+#define LIT_MOST  40   /* at most to this */
+#define LIT_TRIES 150  /* of which the largest square is marked */
 
 /* The wall that a pixel shows where a lamp lights it in full and the sun does not; -1: none. */
 static int lit_wall(const struct made_room *r, const struct sight *s, const struct made_lamp *lamp, int photo, double u,
@@ -162,23 +164,43 @@ static int lit_wall(const struct made_room *r, const struct sight *s, const stru
     return sight_cast(s, before, sun).owner == SIGHT_NOTHING ? -1 : wall;
 }
 
-/* Rectangles of plain wall, as a person would choose them: lit by the lamp, without sun, shadow or picture. */
+/* Half of the side of the largest square about a pixel that shows one wall, lit as above; 0: there is none. */
+static int lit_square(const struct made_room *r, const struct sight *s, const struct made_lamp *lamp, int photo,
+                      double u, double v)
+{
+    const int wall = lit_wall(r, s, lamp, photo, u, v);
+    int half = 0;
+    for (bool all = wall >= 0; all && half < LIT_MOST; half += all * LIT_STEP) {
+        const int next = half + LIT_STEP;
+        for (int k = 0; all && k < 8; k++) { /* around its edge */
+            const int x = k < 3 ? -1 : k < 5 ? 0 : 1, y = k < 3 ? k - 1 : k < 5 ? 2 * k - 7 : k - 6;
+            all = lit_wall(r, s, lamp, photo, u + x * next, v + y * next) == wall;
+        }
+    }
+    return half;
+}
+
+/* Large squares of plain wall, as a person would choose them: lit by the lamp, without sun, shadow or picture. */
 static void mark_lit(struct made_room *r, const struct sight *s, int i)
 {
     struct dice d = dice_make(r->seed, "lit", i);
     struct made_lit *lit = &r->lit[i];
-    for (int n = 0; lit->count < MADE_LIT && n < 4000; n++) {
-        const int photo = dice_choose(&d, r->photo_count);
-        const double u = round(dice_between(&d, EDGE + LIT_SIDE, MADE_WIDTH - EDGE - LIT_SIDE));
-        const double v = round(dice_between(&d, EDGE + LIT_SIDE, MADE_HEIGHT - EDGE - LIT_SIDE));
-        const int wall = lit_wall(r, s, &r->lamps[i], photo, u, v);
-        bool all = wall >= 0;
-        for (int k = 0; all && k < 4; k++)
-            all = lit_wall(r, s, &r->lamps[i], photo, u + (k & 1 ? LIT_SIDE : -LIT_SIDE),
-                           v + (k & 2 ? LIT_SIDE : -LIT_SIDE)) == wall;
-        if (!all) continue;
-        lit->walls[lit->count] = wall;
-        lit->list[lit->count++] = (struct made_mark){photo, u - LIT_SIDE, v - LIT_SIDE, u + LIT_SIDE, v + LIT_SIDE};
+    for (int n = 0; n < MADE_LIT; n++) {
+        struct made_mark best = {.photo = -1};
+        int most = 0;
+        for (int k = 0; k < LIT_TRIES; k++) {
+            const int photo = dice_choose(&d, r->photo_count);
+            const double u = round(dice_between(&d, EDGE, MADE_WIDTH - EDGE));
+            const double v = round(dice_between(&d, EDGE, MADE_HEIGHT - EDGE));
+            const int half = lit_square(r, s, &r->lamps[i], photo, u, v);
+            if (half <= most || u - half < EDGE || u + half > MADE_WIDTH - EDGE || v - half < EDGE ||
+                v + half > MADE_HEIGHT - EDGE)
+                continue;
+            most = half;
+            best = (struct made_mark){photo, u - half, v - half, u + half, v + half};
+            lit->walls[lit->count] = lit_wall(r, s, &r->lamps[i], photo, u, v);
+        }
+        if (best.photo >= 0) lit->list[lit->count++] = best;
     }
 }
 
