@@ -5,7 +5,8 @@
  * the wall is the densest window of positions, refined to the weighted mean of its content (mean shift, 8 rounds).
  *
  * Hidden points are removed first: points that face away from the camera, and points behind others. The rectangle is
- * cut into cells; in each of them points farther than 1.08 times the cell's front are hidden.
+ * cut into cells; in each of them points farther than 1.08 times the cell's front are hidden. The front is told by solid
+ * angle: points are as dense on a far wall as on a near one, so before a large room a near wall has few of them.
  *
  * Beyond the source: rectangles that do not show where the wall is are refused (place_judge.c), and angled walls. The
  * normal of an angled wall is the mean normal about the fullest 5 degree bin, then three rounds of a total least
@@ -23,7 +24,7 @@
 
 enum { MAX_CELLS = 24, MIN_IN_CELL = 60 }; /* along each side; mean number of points in a cell */
 #define BEHIND         1.08                /* times the front's distance: points beyond are hidden */
-#define FRONT_FRACTION 0.05                /* of a cell's points, taken as outliers, lie before its front */
+#define FRONT_FRACTION 0.05                /* of the solid angle of a cell's points, outliers, is before its front */
 
 void place_release(struct placer *placer)
 {
@@ -199,6 +200,28 @@ static double bounding_cone(const struct placer_photo *c, const struct script_pl
     return cos(fmin(acos(fmax(-1, min_cos)) * 1.1 + 0.01, 3.14));
 }
 
+/* The distance of the nearest surface of a cell, whose points are in the order of their distance. */
+static double front_of(const struct visible_point *cell, size_t count)
+{
+    double all = 0, before = 0;
+    size_t i = 0;
+    for (size_t k = 0; k < count; k++) all += cell[k].angle;
+    for (; i + 1 < count && (before += cell[i].angle) <= FRONT_FRACTION * all; i++) continue;
+    return cell[i].distance;
+}
+
+/* So many points of equal solid angle would be as many [Kish 1965]: where a near wall covers most of a rectangle, the
+ * points behind it hardly count. */
+static double effective_count(const struct visible_point *p, size_t count)
+{
+    double sum = 0, squares = 0;
+    for (size_t i = 0; i < count; i++) {
+        sum += p[i].angle;
+        squares += (double)p[i].angle * p[i].angle;
+    }
+    return squares > 0 ? sum * sum / squares : 0;
+}
+
 /* The points that are visible in the rectangle; the caller frees them, also after a failure. */
 static enum status find_visible(struct visible_point **visible, size_t *count, const struct placer *placer,
                                 const struct placer_photo *c, const struct script_place *p, struct err *err)
@@ -212,18 +235,23 @@ static enum status find_visible(struct visible_point **visible, size_t *count, c
         const struct placed_point *q = &placer->points[i];
         const struct vec3 at = vec3_make(q->position[0], q->position[1], q->position[2]);
         const struct vec3 to = vec3_sub(at, c->camera.center);
-        if (!(to.x * q->normal[0] + to.y * q->normal[1] + to.z * q->normal[2] < 0)) continue;
+        const double before = -(to.x * q->normal[0] + to.y * q->normal[1] + to.z * q->normal[2]);
+        if (!(before > 0)) continue;
         const struct vec3 cam = mat3_apply(turn, to);
         const double distance = vec3_length(cam);
         double u, v;
         if (vec3_dot(cam, axis) < cone * distance || !camera_project(&c->camera.lens, cam, &u, &v)) continue;
         if (!(u >= p->a[0] && u < p->a[2] && v >= p->a[1] && v < p->a[3])) continue;
         if (array_append(visible, *count, sizeof **visible, "points of a rectangle", err)) return err->status;
-        (*visible)[(*count)++] = (struct visible_point){q, distance, (float)((u - p->a[0]) / (p->a[2] - p->a[0])),
-                                                        (float)((v - p->a[1]) / (p->a[3] - p->a[1])), 0};
+        (*visible)[(*count)++] = (struct visible_point){q,
+                                                        distance,
+                                                        (float)(before / (distance * distance * distance)),
+                                                        (float)((u - p->a[0]) / (p->a[2] - p->a[0])),
+                                                        (float)((v - p->a[1]) / (p->a[3] - p->a[1])),
+                                                        0};
     }
-    /* fewer points make larger cells, so that a cell that sees through a sparse wall contains points of the wall too */
-    const int cells = (int)fmax(1, fmin(MAX_CELLS, sqrt((double)*count / MIN_IN_CELL)));
+    /* fewer points make larger cells, so that a cell that sees through a sparse wall contains points of the wall, too */
+    const int cells = (int)fmax(1, fmin(MAX_CELLS, sqrt(effective_count(*visible, *count) / MIN_IN_CELL)));
     for (size_t i = 0; i < *count; i++) {
         const int x = (int)((*visible)[i].u * (float)cells), y = (int)((*visible)[i].v * (float)cells);
         (*visible)[i].cell = (y < cells ? y : cells - 1) * cells + (x < cells ? x : cells - 1);
@@ -232,7 +260,7 @@ static enum status find_visible(struct visible_point **visible, size_t *count, c
     size_t kept = 0;
     for (size_t from = 0, end; from < *count; from = end) {
         for (end = from; end < *count && (*visible)[end].cell == (*visible)[from].cell;) end++;
-        const double front = (*visible)[from + (size_t)(FRONT_FRACTION * (double)(end - from))].distance;
+        const double front = front_of(*visible + from, end - from);
         for (size_t i = from; i < end; i++)
             if ((*visible)[i].distance <= front * BEHIND) (*visible)[kept++] = (*visible)[i];
     }

@@ -10,7 +10,8 @@
 struct visible_point { /* in a rectangle */
     const struct placed_point *point;
     double distance;
-    float u, v; /* in the rectangle, 0 .. 1 */
+    float angle; /* the solid angle of a unit of its surface */
+    float u, v;  /* in the rectangle, 0 .. 1 */
     int cell;
 };
 

@@ -65,11 +65,14 @@ static int start(void **state)
         views[i].center = world_from_model_point(&axes, v.center);
     }
     /* in front of the camera a wall at y = 4 with its normal along -y; 40 cm in front of it a board at y = 3.6, behind
-     * it a wall of another room, to the side an angled wall */
+     * it a wall of another room, to the side an angled wall; to the left a wall at x = 1, and behind it a far one that
+     * has many more points in each direction */
     add_wall(0, -1, -4, 2, 4, 1.5, 6000, 0.02);
     add_wall(0, -1, -3.6, 1.2, 3.6, 0.3, 1500, 0.02);
     add_wall(0, -1, -6, 2, 6, 3, 20000, 0.02);
     add_wall(-0.8, -0.6, -(0.8 * 4.5 + 0.6 * 3.6), 4.5, 3.6, 0.7, 6000, 0.01);
+    add_wall(1, 0, 1, 1, 2.2, 0.7, 15000, 0.01);
+    add_wall(1, 0, -6, -6, 7.6, 1.3, 40000, 0.01);
     const struct placer_views known[2] = {{&set, &list}, {&no_views, &no_lenses}};
     return scratch_make(state) || place_init(&placer, known, &axes, &cloud, &params, &err);
 }
@@ -121,6 +124,19 @@ static void a_board_in_front_is_outvoted(void **state)
     pixel(3.2, 4, 1.5, &u1, &v);
     assert_ok(place(&w, "fish", u0, 200, u1, 440, NULL, false, &err), err);
     assert_true(fabs(w.c + 4) < 0.005);
+}
+
+static void a_near_wall_hides_a_far_one_of_many_more_points(void **state)
+{
+    struct placed_wall w;
+    struct err err;
+    double u0, u1, v;
+    (void)state;
+    pixel(1, 2.55, 1.5, &u0, &v);
+    pixel(1, 2.85, 1.5, &u1, &v);
+    assert_ok(place(&w, "fish", u0, v - 60, u1, v + 60, NULL, false, &err), err);
+    assert_true(w.n[0] == 1 && w.n[1] == 0);
+    assert_true(fabs(w.c - 1) < 0.005);
 }
 
 static void pixels_are_those_of_the_photo_for_any_of_its_views(void **state)
@@ -233,6 +249,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_rectangle_places_a_wall),
         cmocka_unit_test(a_board_in_front_is_outvoted),
+        cmocka_unit_test(a_near_wall_hides_a_far_one_of_many_more_points),
         cmocka_unit_test(pixels_are_those_of_the_photo_for_any_of_its_views),
         cmocka_unit_test(an_angled_wall_gets_the_direction_of_its_points),
         cmocka_unit_test(adjust_keeps_the_direction),
