@@ -107,8 +107,8 @@ static void mark_opening(struct made_room *r, const struct sight *s, int i)
     }
 }
 
-/* All four corners of a lamp in one photo, the one that shows it largest. */
-static void mark_lamp(struct made_room *r, int i)
+/* All four corners of a lamp in one photo, the one that shows it largest, of those in which nothing hides a corner. */
+static void mark_lamp(struct made_room *r, const struct sight *s, int i)
 {
     const struct made_lamp *lamp = &r->lamps[i];
     const double x = lamp->x, y = lamp->y, far = lamp->side, z = r->ceiling - 0.012;
@@ -118,7 +118,11 @@ static void mark_lamp(struct made_room *r, int i)
     for (int k = 0; k < r->photo_count; k++) {
         double u[4], v[4], area = 0;
         bool all = true;
-        for (int c = 0; c < 4; c++) all = all && photo_project(&r->photos[k], corner[c], EDGE, &u[c], &v[c]);
+        for (int c = 0; c < 4; c++) {
+            const struct vec3 below = vec3_sub(corner[c], vec3_make(0, 0, 0.02));
+            all = all && photo_project(&r->photos[k], corner[c], EDGE, &u[c], &v[c]) &&
+                  sight_clear(s, r->photos[k].at, below);
+        }
         if (!all) continue;
         for (int c = 0; c < 4; c++) area += 0.5 * (u[c] * v[(c + 1) % 4] - u[(c + 1) % 4] * v[c]);
         if (fabs(area) <= most) continue;
@@ -296,7 +300,7 @@ bool made_marks(struct made_room *r)
     mark_walls(r, cells);
     for (int i = 0; i < r->opening_count; i++) mark_opening(r, &s, i);
     for (int i = 0; i < r->lamp_count; i++) {
-        mark_lamp(r, i);
+        mark_lamp(r, &s, i);
         mark_lit(r, &s, i);
     }
     for (int i = 0; i < r->picture_count; i++) mark_picture(r, &s, i);
