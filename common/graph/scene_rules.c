@@ -255,6 +255,14 @@ void rule_takes_vita(struct graph *g)
     rule_option(g, "--vita", FOLDER(g, ATLAS));
 }
 
+void rule_takes_things(struct graph *g, const struct scene_facts *f)
+{
+    if (!f->views.count) return;
+    rule_needs(g, PATH(g, THINGS));
+    rule_needs(g, PATH(g, THING_VOLUME));
+    rule_option(g, "--things", FOLDER(g, THINGS));
+}
+
 void rule_takes_seen_model(struct graph *g)
 {
     rule_takes(g, "--model", PATH(g, MODEL));

@@ -22,6 +22,8 @@ void rule_takes_cameras(struct graph *g);
 void rule_takes_depth(struct graph *g);
 void rule_takes_ids(struct graph *g);
 void rule_takes_vita(struct graph *g);
+/* Furniture: --things, if the scene has views. */
+void rule_takes_things(struct graph *g, const struct scene_facts *f);
 /* What programs read that look at the model in the photos: --model, --axes, cameras with their lenses and views, and
  * the faces that the views see. */
 void rule_takes_seen_model(struct graph *g);

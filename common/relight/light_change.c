@@ -85,12 +85,6 @@ static enum status read_objects(struct light_change *c, const struct light_chang
     return light_objects_read_light(o, files->object_light, prov, err);
 }
 
-static struct field_surfaces surfaces_of(const struct thing_surfaces *s)
-{
-    return (struct field_surfaces){{(const struct vec3(*)[3])s->triangles, s->count},
-                                   (const struct rgb(*)[2])s->radiance};
-}
-
 /* The surfaces of both fields. */
 static enum status add_surfaces(struct light_change *c, struct err *err)
 {
@@ -106,8 +100,8 @@ static enum status add_surfaces(struct light_change *c, struct err *err)
     if (t->count) memcpy(all->triangles + o->count, t->triangles, (size_t)t->count * sizeof *all->triangles);
     if (t->count) memcpy(all->radiance + o->count, t->radiance, (size_t)t->count * sizeof *all->radiance);
     all->count = (int)count;
-    c->surfaces = surfaces_of(all);
-    c->old_things = surfaces_of(&c->things.before);
+    c->surfaces = thing_surfaces_of_field(all);
+    c->old_things = thing_surfaces_of_field(&c->things.before);
     return ST_OK;
 }
 

@@ -66,17 +66,39 @@ enum status light_things_read(struct light_things *t, const char *folder, const 
     return err->status;
 }
 
-static void release_surfaces(struct thing_surfaces *s)
+void thing_surfaces_release(struct thing_surfaces *s)
 {
     free(s->triangles);
     free(s->radiance);
+    *s = (struct thing_surfaces){0};
+}
+
+enum status thing_surfaces_read(struct thing_surfaces *s, const char *folder, struct provenance *prov, struct err *err)
+{
+    struct placed_things all = {0};
+    *s = (struct thing_surfaces){0};
+    placed_things_read(&all, folder, NULL, NULL, NULL, prov, err);
+    for (int i = 1; !err->status && i <= all.list.count; i++) {
+        struct thing_mesh mesh = {0};
+        if (all.list.things[i - 1].support == THING_ON_CEILING) continue;
+        if (!thing_mesh_make(&mesh, &all.volume, (uint32_t)i, err)) add(s, &mesh, NULL, &all.list.things[i - 1], err);
+        thing_mesh_release(&mesh);
+    }
+    placed_things_release(&all);
+    return err->status;
+}
+
+struct field_surfaces thing_surfaces_of_field(const struct thing_surfaces *s)
+{
+    return (struct field_surfaces){{(const struct vec3(*)[3])s->triangles, s->count},
+                                   (const struct rgb(*)[2])s->radiance};
 }
 
 void light_things_release(struct light_things *t)
 {
     placed_things_release(&t->placed);
-    release_surfaces(&t->before);
-    release_surfaces(&t->after);
+    thing_surfaces_release(&t->before);
+    thing_surfaces_release(&t->after);
     free(t->stays);
     *t = (struct light_things){0};
 }

@@ -13,6 +13,12 @@ struct thing_surfaces {
     int count;
 };
 
+/* The things of a scene as they stand. folder: of the things. What hangs from the ceiling is left out. The caller
+ * releases s in each case. ST_DATA: a damaged file. */
+enum status thing_surfaces_read(struct thing_surfaces *s, const char *folder, struct provenance *prov, struct err *err);
+void thing_surfaces_release(struct thing_surfaces *s);
+struct field_surfaces thing_surfaces_of_field(const struct thing_surfaces *s);
+
 /* {0} is the empty state; everything is owned. */
 struct light_things {
     struct placed_things placed;

@@ -16,11 +16,7 @@ RULES(export_model)
         rule_needs(g, PATH(g, PLAN, .model = model));
         rule_takes(g, "--map", map);
         rule_takes(g, "--base", map ? PATH(g, MODEL) : NULL);
-        if (f->views.count) {
-            rule_needs(g, PATH(g, THINGS));
-            rule_needs(g, PATH(g, THING_VOLUME));
-            rule_option(g, "--things", FOLDER(g, THINGS));
-        }
+        rule_takes_things(g, f);
         rule_takes(g, "--objects", map ? PATH(g, OBJECTS, .model = model) : NULL);
         rule_option(g, "--scene", map ? f->folder : NULL);
         rule_takes(g, "--axes", PATH(g, AXES));

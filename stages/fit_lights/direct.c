@@ -35,16 +35,16 @@ static uint64_t seen_from(const struct lamp *l, const struct lit_point *p, const
     return seen;
 }
 
-enum status direct_light_make(struct direct_light *d, const struct lit_scene *scene, const struct lit_model *model,
+enum status direct_light_make(struct direct_light *d, const struct lit_scene *scene, const struct model_rays *model,
                               struct err *err)
 {
     const size_t points = (size_t)scene->point_count, lamps = (size_t)scene->lights.lamp_count;
     *d = (struct direct_light){scene, calloc(points * lamps + 1, sizeof *d->seen)};
-    const double reach = LAMP_REACH * model_rays_size(&model->rays);
+    const double reach = LAMP_REACH * model_rays_size(model);
     if (!d->seen) return err_nomem(err, "lamps seen from points", points * lamps * sizeof *d->seen);
     for (size_t l = 0; l < lamps; l++)
         for (size_t i = 0; i < points; i++)
-            d->seen[l * points + i] = seen_from(&scene->lights.lamps[l], &scene->points[i], &model->rays.rays, reach);
+            d->seen[l * points + i] = seen_from(&scene->lights.lamps[l], &scene->points[i], &model->rays, reach);
     return ST_OK;
 }
 

@@ -1,4 +1,4 @@
-/* direct.h - light of lamps at annotated points, with the shadows that the model casts. */
+/* direct.h - light of lamps at annotated points, with the shadows that the model and its furniture cast. */
 #ifndef REMODEL_FIT_LIGHTS_DIRECT_H
 #define REMODEL_FIT_LIGHTS_DIRECT_H
 
@@ -10,7 +10,8 @@ struct direct_light {
     uint64_t *seen; /* [lamp][point]: a bit for each part of the lamp; owned */
 };
 
-enum status direct_light_make(struct direct_light *d, const struct lit_scene *scene, const struct lit_model *model,
+/* model: what throws shadows, the model with or without furniture. ST_NOMEM. */
+enum status direct_light_make(struct direct_light *d, const struct lit_scene *scene, const struct model_rays *model,
                               struct err *err);
 void direct_light_release(struct direct_light *d);
 

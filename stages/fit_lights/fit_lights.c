@@ -6,6 +6,7 @@
  *         VIEWS/VIEW.exr, IDS/VIEW.exr                  the views that face a marked point or a lamp
  *         VITA/atlas.txt, page0.exr, ..., OUTDOORS,     what else lights the marked points; or
  *         REFERENCES/ID.exr
+ *         THINGS/things.txt, volume.exr                 the furniture, which throws shadows and reflects; optional
  *         INDIRECT                                      their irradiance without the lamps
  * writes  OUT/declared.txt, candidates.txt, fit.txt, LAMP.jpg, then OUT/lights.txt
  * With --list instead:
@@ -19,6 +20,7 @@
 #include "common/gather/model_field.h"
 #include "common/math/numbers.h"
 #include "common/product/product.h"
+#include "common/relight/light_things.h"
 #include "stages/fit_lights/indirect.h"
 #include "stages/fit_lights/lamp_picture.h"
 #include "stages/fit_lights/mark_candidates.h"
@@ -30,14 +32,24 @@ static const struct param fit_lights_param_table[] = {FIT_LIGHTS_PARAMS(PARAM_RO
 
 struct job {
     const char *lamps, *model_path, *plan_path, *axes_path, *views, *ids, *vita, *outdoors, *references, *indirect_path,
-        *list, *out;
+        *list, *things_path, *out;
     struct fit_lights_params params;
     struct provenance prov;
     struct annotation_list notes;
     struct lit_model model;
     struct lit_scene scene;
     struct indirect indirect;
+    struct thing_surfaces things;
+    struct field_surfaces furniture; /* of things */
+    struct model_rays furnished;     /* the model with them: what throws shadows */
 };
+
+static enum status read_things(struct job *j, struct err *err)
+{
+    if (j->things_path && thing_surfaces_read(&j->things, j->things_path, &j->prov, err)) return err->status;
+    j->furniture = thing_surfaces_of_field(&j->things);
+    return model_rays_read_with(&j->furnished, j->model_path, MODEL_WITHOUT_GLASS, &j->furniture.triangles, NULL, err);
+}
 
 static enum status read_inputs(struct job *j, struct err *err)
 {
@@ -45,7 +57,7 @@ static enum status read_inputs(struct job *j, struct err *err)
     if (model_rays_read(&j->model.rays, j->model_path, MODEL_WITHOUT_GLASS, &j->prov, err) ||
         scene_inputs_read(&j->model.in, SCENE_CAMERAS | SCENE_LENSES | SCENE_AXES | SCENE_PLAN, &files, &j->prov,
                           err) ||
-        (j->lamps && annotation_list_read(&j->notes, j->lamps, &j->prov, err)))
+        (j->lamps && annotation_list_read(&j->notes, j->lamps, &j->prov, err)) || read_things(j, err))
         return err->status;
     return lit_scene_resolve(&j->scene, j->lamps ? &j->notes : NULL, &j->model, j->params.grid, j->params.places, err);
 }
@@ -71,8 +83,11 @@ static enum status gather_indirect(struct job *j, struct err *err)
     struct model_field field = {0};
     struct gatherer *gatherer = NULL;
     const struct gather_params params = gather_params_of(&j->params);
-    const struct model_field_files files = {
-        .model = j->model_path, .vita = j->vita, .outdoors = j->outdoors, .lights = declared};
+    const struct model_field_files files = {.model = j->model_path,
+                                            .vita = j->vita,
+                                            .outdoors = j->outdoors,
+                                            .lights = declared,
+                                            .surfaces = j->things.count ? &j->furniture : NULL};
     if (!product_path_in(declared, j->out, PRODUCT_LIGHTS_DECLARED, NULL, err) &&
         !light_list_write(&j->scene.lights, declared, &j->prov, err))
         model_field_read(&field, &files, &j->prov, err);
@@ -132,7 +147,7 @@ static enum status fit(struct job *j, struct err *err)
     find_indirect(j, err);
     if (!err->status && j->lamps)
         observe(&seen, &j->scene, &j->notes, &j->model, j->views, j->ids, &j->params, &j->prov, err);
-    if (!err->status) direct_light_make(&direct, &j->scene, &j->model, err);
+    if (!err->status) direct_light_make(&direct, &j->scene, &j->furnished, err);
     const struct solve_inputs in = {&j->scene,      &j->notes, &seen, &direct, (const double(*)[3])j->indirect.at,
                                     &j->model.rays, &j->params};
     if (!err->status && !solve_lights(&solved, &in, err)) write_lights(j, &solved, &in, err);
@@ -184,6 +199,8 @@ int main(int argc, char **argv)
         CLI_STR("outdoors", &j.outdoors, CLI_OPTIONAL, "what lies outside, by direction; without it, it is dark"),
         CLI_STR("references", &j.references, CLI_OPTIONAL,
                 "folder of the lighting reference images that windows of --lamps name"),
+        CLI_STR("things", &j.things_path, CLI_OPTIONAL,
+                "folder of the things, furniture that throws shadows and reflects"),
         CLI_STR("indirect", &j.indirect_path, CLI_OPTIONAL,
                 "irradiance without the lamps at the points that --list writes: X Y Z NX NY NZ R G B a line"),
         CLI_STR("list", &j.list, CLI_OPTIONAL,
@@ -204,6 +221,8 @@ int main(int argc, char **argv)
     indirect_release(&j.indirect);
     lit_scene_release(&j.scene);
     lit_model_release(&j.model);
+    model_rays_release(&j.furnished);
+    thing_surfaces_release(&j.things);
     annotation_list_release(&j.notes);
     provenance_release(&j.prov);
     return err_exit_code(&err);

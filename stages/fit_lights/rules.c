@@ -4,7 +4,7 @@
 RULES(fit_lights)
 {
     const char *lamps = graph_scene_file(g, "lights.txt");
-    graph_step(g, "lights", STEP_ONE, "vita outdoors");
+    graph_step(g, "lights", STEP_ONE, "vita outdoors things");
     graph_goal(g, "lights", NULL);
     if (!f->has_model) return;
     graph_goal(g, "lights", PATH(g, LIGHTS));
@@ -14,6 +14,7 @@ RULES(fit_lights)
     rule_takes_seen_model(g);
     rule_takes(g, "--plan", PATH(g, PLAN));
     rule_takes_vita(g);
+    rule_takes_things(g, f);
     rule_takes(g, "--outdoors", PATH(g, OUTDOORS));
     if (lamps) rule_needs_references(g, f);
     rule_takes(g, "--lamps", lamps);

@@ -5,6 +5,7 @@
  *         OUTDOORS                            what lies outside, by direction
  *         LIGHTS                              its lamps and openings
  *         REFERENCES/ID.exr                   lighting reference images that openings name
+ *         THINGS/things.txt, volume.exr       its furniture, which throws shadows and reflects
  *         MATERIALS                           fitted materials, which need VIEWS/lenses.txt, too
  *         POINTS                              points and normals, in the frame of VIEWS
  *         VIEWS/cameras.txt, images.txt       the cameras
@@ -30,7 +31,7 @@ static enum status check_params(const void *values, struct err *err) { return ga
 
 struct options {
     struct model_field_files files;
-    const char *axes, *references, *materials, *points, *view, *views, *step;
+    const char *axes, *references, *materials, *things, *points, *view, *views, *step;
     int face;
     bool specular;
 };
@@ -70,9 +71,15 @@ static enum status complete_field(struct gather_job *j, const struct options *o,
 static enum status gather(struct gather_job *j, const struct options *o, struct err *err)
 {
     double step;
-    if (check_options(j, o, err) || model_field_read(&j->field, &o->files, &j->prov, err) ||
-        model_axes_read(&j->axes, o->axes, &j->prov, err) || gatherer_make(&j->gatherer, &j->params, err) ||
-        complete_field(j, o, err))
+    struct model_field_files files = o->files;
+    if (check_options(j, o, err)) return err->status;
+    if (o->things) {
+        if (thing_surfaces_read(&j->things, o->things, &j->prov, err)) return err->status;
+        j->furniture = thing_surfaces_of_field(&j->things);
+        if (j->things.count) files.surfaces = &j->furniture;
+    }
+    if (model_field_read(&j->field, &files, &j->prov, err) || model_axes_read(&j->axes, o->axes, &j->prov, err) ||
+        gatherer_make(&j->gatherer, &j->params, err) || complete_field(j, o, err))
         return err->status;
     if (o->points) return gather_points_of_file(j, o->points, err);
     if (o->view) return gather_view(j, o->views, o->view, o->specular, err);
@@ -94,6 +101,7 @@ int main(int argc, char **argv)
                 "folder of the lighting reference images that openings name; without it, outdoors.exr alone counts"),
         CLI_STR("materials", &o.materials, CLI_OPTIONAL,
                 "fitted materials, materials.txt; without it, surfaces look alike from everywhere"),
+        CLI_STR("things", &o.things, CLI_OPTIONAL, "folder of the things, furniture that throws shadows and reflects"),
         CLI_STR("points", &o.points, CLI_OPTIONAL, "points and normals, X Y Z NX NY NZ a line, in the views' frame"),
         CLI_STR("view", &o.view, CLI_OPTIONAL, "view, each pixel of which gets the irradiance of its surface"),
         CLI_FLAG("specular", &o.specular,

@@ -25,6 +25,7 @@ void gather_job_release(struct gather_job *j)
 {
     gatherer_free(j->gatherer);
     model_field_release(&j->field);
+    thing_surfaces_release(&j->things);
     provenance_release(&j->prov);
 }
 

@@ -5,6 +5,7 @@
 #include "common/gather/gatherer.h"
 #include "common/gather/model_field.h"
 #include "common/model/model_axes.h"
+#include "common/relight/light_things.h"
 
 /* {0} is the empty state, but for the parameters; everything but `out` is owned. */
 struct gather_job {
@@ -13,6 +14,8 @@ struct gather_job {
     struct provenance prov;
     struct model_field field;
     struct model_axes axes;
+    struct thing_surfaces things;
+    struct field_surfaces furniture; /* of things, which must outlive the field */
     struct gatherer *gatherer;
     int hemicubes; /* points whose hemicube is drawn */
 };

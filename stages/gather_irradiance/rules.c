@@ -9,6 +9,7 @@ static void say_light(struct graph *g, const struct scene_facts *f)
     rule_takes(g, "--model", PATH(g, MODEL));
     rule_takes(g, "--axes", PATH(g, AXES));
     rule_takes_vita(g);
+    rule_takes_things(g, f);
     rule_takes(g, "--outdoors", PATH(g, OUTDOORS));
     rule_takes(g, "--lights", lights);
     rule_takes(g, "--materials", materials);
@@ -22,7 +23,7 @@ RULES(gather_irradiance)
 {
     const char *points = graph_own(g, "stamp/irradiance_points.txt");
     struct name_list views = {0}, records = {0};
-    graph_step(g, "irradiance", STEP_ONE, "vita outdoors");
+    graph_step(g, "irradiance", STEP_ONE, "vita outdoors things");
     graph_goal(g, "irradiance", NULL);
     if (f->has_model && path_is_file(points)) { /* look.sh makes it */
         graph_goal(g, "irradiance", PATH(g, IRRADIANCE));

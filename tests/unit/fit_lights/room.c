@@ -169,7 +169,7 @@ static enum status solve(const char *lamp, const char *points, struct err *err)
         lit_scene_resolve(&room.scene, &room.notes, &room.model, 5, places, err);
     if (!err->status)
         observe(&room.seen, &room.scene, &room.notes, &room.model, scratch, scratch_path("ids"), &params, &prov, err);
-    if (!err->status) direct_light_make(&room.direct_light, &room.scene, &room.model, err);
+    if (!err->status) direct_light_make(&room.direct_light, &room.scene, &room.model.rays, err);
     room.indirect = calloc((size_t)room.scene.point_count + 1, sizeof *room.indirect);
     for (int i = 0; i < room.scene.point_count; i++)
         for (int c = 0; c < 3; c++) room.indirect[i][c] = indirect_at(room.scene.points[i].at);
@@ -227,7 +227,7 @@ static void a_lamp_a_little_behind_a_surface_is_not_hidden(void **state)
     for (int step = 0; step < 2; step++) {
         l->centre.z = 2 + (step ? 1.1 : 0.9) * reach;
         direct_light_release(&room.direct_light);
-        assert_ok(direct_light_make(&room.direct_light, &room.scene, &room.model, &err), err);
+        assert_ok(direct_light_make(&room.direct_light, &room.scene, &room.model.rays, &err), err);
         for (int i = 0; i < room.scene.point_count; i++)
             assert_true(room.direct_light.seen[i] == (step ? 0 : UINT64_MAX));
     }
@@ -409,6 +409,33 @@ static void a_lamp_of_which_nothing_is_known_stays_as_photographed(void **state)
     assert_true(room.scene.lights.lamps[0].radiance.g == 0);
 }
 
+/* A board half way to the floor, over x > 0. A point of the floor sees the lamp past it if it is at x < -radius, none of
+ * it at x > radius. */
+static void furniture_hides_a_lamp(void **state)
+{
+    static const struct vec3 board[2][3] = {{{0, -2, 0}, {2, -2, 0}, {2, 2, 0}}, {{0, -2, 0}, {2, 2, 0}, {0, 2, 0}}};
+    const struct model_extra furniture = {board, 2};
+    struct model_rays furnished = {0};
+    struct err err = ERR_INIT;
+    int seen = 0, hidden = 0;
+    (void)state;
+    assert_ok(solve("beta fit exponent 1", marks(), &err), err);
+    assert_ok(solid_mesh_write(&room.model.rays.mesh, scratch_path("model.txt"), NULL, &err), err);
+    assert_ok(model_rays_read_with(&furnished, scratch_path("model.txt"), MODEL_WITHOUT_GLASS, &furniture, NULL, &err),
+              err);
+    direct_light_release(&room.direct_light);
+    assert_ok(direct_light_make(&room.direct_light, &room.scene, &furnished, &err), err);
+    for (int i = 0; i < room.scene.point_count; i++) {
+        const double x = room.scene.points[i].at.x;
+        if (x > lamp_radius) assert_true(room.direct_light.seen[i] == 0);
+        if (x < -lamp_radius) assert_true(room.direct_light.seen[i] == UINT64_MAX);
+        hidden += x > lamp_radius;
+        seen += x < -lamp_radius;
+    }
+    assert_true(seen > 20 && hidden > 20);
+    model_rays_release(&furnished);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -423,6 +450,7 @@ int main(void)
         cmocka_unit_test(proposed_marks_lie_across_the_edge_and_beside_it),
         cmocka_unit_test(photos_without_an_edge_give_no_marks),
         cmocka_unit_test(a_lamp_that_no_photo_can_place_is_left_out),
+        cmocka_unit_test(furniture_hides_a_lamp),
         cmocka_unit_test(a_lamp_of_which_nothing_is_known_stays_as_photographed),
     };
     return cmocka_run_group_tests(tests, build, clean);

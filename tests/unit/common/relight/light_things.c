@@ -306,9 +306,27 @@ static void what_has_not_moved_to_a_place_is_not_found_there(void **state)
     light_things_release(&t);
 }
 
+static void the_things_of_a_scene_are_surfaces_but_what_hangs_from_the_ceiling(void **state)
+{
+    static const uint32_t shown[] = {SOFA, PICTURE, BIRD, UNSEEN};
+    struct thing_surfaces s;
+    struct err err = ERR_INIT;
+    (void)state;
+    assert_ok(thing_surfaces_read(&s, scratch_path("things"), NULL, &err), err);
+    assert_things(&s, shown, 4, 0);
+    const struct field_surfaces field = thing_surfaces_of_field(&s);
+    assert_int_equal(field.triangles.count, s.count);
+    assert_true(field.radiance[0][0].r == SOFA);
+    thing_surfaces_release(&s);
+    thing_surfaces_read(&s, scratch_path("nothing"), NULL, &err);
+    assert_err(err, ST_IO, "things.txt");
+    thing_surfaces_release(&s);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_things_of_a_scene_are_surfaces_but_what_hangs_from_the_ceiling),
         cmocka_unit_test(balls_have_triangles),
         cmocka_unit_test(what_is_cleared_is_there_before_alone),
         cmocka_unit_test(what_is_moved_is_at_its_new_place_after),
