@@ -53,6 +53,25 @@ void thing_list_release(struct thing_list *list)
     *list = (struct thing_list){0};
 }
 
+struct vec3 thing_radiance_of_side(const struct thing *t, struct vec3 normal)
+{
+    const double n[3] = {normal.x, normal.y, normal.z};
+    struct vec3 sum = {0, 0, 0};
+    if (!(vec3_length(normal) > 0)) return vec3_make(t->radiance[0], t->radiance[1], t->radiance[2]);
+    for (int k = 0; k < 3; k++) {
+        const double *side = t->sides[2 * k + (n[k] < 0)];
+        sum = vec3_add(sum, vec3_scale(vec3_make(side[0], side[1], side[2]), n[k] * n[k]));
+    }
+    return sum;
+}
+
+static void write_sides(FILE *to, const struct thing *t)
+{
+    fputs("sides", to);
+    for (int i = 0; i < 3 * THING_SIDES; i++) fprintf(to, " %.9g", t->sides[i / 3][i % 3]);
+    fputc('\n', to);
+}
+
 static void write_outline(FILE *to, const struct flat_outline *o)
 {
     fprintf(to, "flat %.17g %.17g %.17g %.17g %d", o->normal.x, o->normal.y, o->normal.z, o->offset, o->count);
@@ -74,6 +93,7 @@ enum status thing_list_write(const struct thing_list *list, const char *path, co
                     name, words[t->support], t->low.x, t->low.y, t->low.z, t->high.x, t->high.y, t->high.z, t->voxels,
                     t->views, view, t->rect[0], t->rect[1], t->rect[2], t->rect[3], t->radiance[0], t->radiance[1],
                     t->radiance[2]);
+        if (!err->status) write_sides(f.fp, t);
         if (!err->status && t->outline.count) write_outline(f.fp, &t->outline);
     }
     if (!err->status) outfile_commit(&f, err);
@@ -116,6 +136,15 @@ static enum status read_thing(struct thing *t, struct textfile *f, struct err *e
         return textfile_error(f, err, "a rectangle without size", "its left and upper edge, then right and lower");
     for (int i = 0; i < 3; i++)
         if (textfile_number(f, "mean radiance", 0, INFINITY, &t->radiance[i], err)) return err->status;
+    for (int k = 0; k < THING_SIDES; k++) memcpy(t->sides[k], t->radiance, sizeof t->sides[k]);
+    return textfile_end(f, err);
+}
+
+/* The line "sides" of a thing, whose first word has been read. */
+static enum status read_sides(struct thing *t, struct textfile *f, struct err *err)
+{
+    for (int i = 0; i < 3 * THING_SIDES; i++)
+        if (textfile_number(f, "radiance of a side", 0, INFINITY, &t->sides[i / 3][i % 3], err)) return err->status;
     return textfile_end(f, err);
 }
 
@@ -141,13 +170,14 @@ static enum status read_line(struct thing_list *list, struct textfile *f, struct
 {
     struct thing t = {0};
     char *word;
-    if (textfile_word(f, "thing or flat", &word, err)) return err->status;
-    if (!strcmp(word, "flat")) {
-        if (!list->count || list->things[list->count - 1].outline.count)
-            return textfile_error(f, err, word, "a line \"thing\" before it");
-        return read_outline(&list->things[list->count - 1].outline, f, err);
-    }
-    if (strcmp(word, "thing")) return textfile_error(f, err, word, "thing or flat");
+    struct thing *last = list->count ? &list->things[list->count - 1] : NULL;
+    if (textfile_word(f, "thing, sides or flat", &word, err)) return err->status;
+    const bool sides = !strcmp(word, "sides"), flat = !strcmp(word, "flat");
+    if ((sides || flat) && (!last || last->outline.count))
+        return textfile_error(f, err, word, "a line \"thing\" before it");
+    if (sides) return read_sides(last, f, err);
+    if (flat) return read_outline(&last->outline, f, err);
+    if (strcmp(word, "thing")) return textfile_error(f, err, word, "thing, sides or flat");
     if (!read_thing(&t, f, err) && thing_list_find(list, t.name) >= 0)
         textfile_error(f, err, t.name, "another name than those above");
     if (!err->status) return thing_list_add(list, &t, err);

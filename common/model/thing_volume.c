@@ -23,6 +23,41 @@ struct vec3 thing_voxel_centre(const struct voxel_grid *g, int64_t at)
     return vec3_add(g->origin, vec3_scale(vec3_make((double)x + 0.5, (double)y + 0.5, (double)z + 0.5), g->voxel));
 }
 
+float thing_volume_distance(const struct thing_volume *v, uint32_t id, struct vec3 p)
+{
+    const struct voxel_grid *g = &v->grid;
+    const double x = (p.x - g->origin.x) / g->voxel - 0.5, y = (p.y - g->origin.y) / g->voxel - 0.5,
+                 z = (p.z - g->origin.z) / g->voxel - 0.5;
+    if (!(x >= 0 && y >= 0 && z >= 0 && x < g->size[0] - 1 && y < g->size[1] - 1 && z < g->size[2] - 1))
+        return THING_UNSEEN;
+    const size_t i = (size_t)x, j = (size_t)y, k = (size_t)z, row = (size_t)g->size[0],
+                 slice = row * (size_t)g->size[1], at = k * slice + j * row + i;
+    const float a = (float)(x - (double)i), b = (float)(y - (double)j), c = (float)(z - (double)k);
+    float sum = 0;
+    for (size_t n = 0; n < 8; n++) {
+        const size_t voxel = at + (n & 1) + (n >> 1 & 1) * row + (n >> 2) * slice;
+        const float d = v->distance[voxel];
+        if (v->id[voxel] != id || d == THING_UNSEEN) return THING_UNSEEN;
+        sum += d * (n & 1 ? a : 1 - a) * (n >> 1 & 1 ? b : 1 - b) * (n >> 2 ? c : 1 - c);
+    }
+    return sum;
+}
+
+struct vec3 thing_volume_normal(const struct thing_volume *v, uint32_t id, struct vec3 p)
+{
+    static const struct vec3 axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    double slope[3];
+    for (int k = 0; k < 3; k++) {
+        const struct vec3 step = vec3_scale(axes[k], v->grid.voxel);
+        const float after = thing_volume_distance(v, id, vec3_add(p, step)),
+                    before = thing_volume_distance(v, id, vec3_sub(p, step));
+        if (after >= THING_UNSEEN || before >= THING_UNSEEN) return vec3_make(0, 0, 0);
+        slope[k] = (double)(after - before);
+    }
+    const struct vec3 n = vec3_make(slope[0], slope[1], slope[2]);
+    return vec3_length(n) > 0 ? vec3_normalize(n) : n;
+}
+
 enum status thing_volume_write(const struct thing_volume *v, const char *path, const struct provenance *prov,
                                struct err *err)
 {

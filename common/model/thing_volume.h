@@ -43,6 +43,12 @@ static inline uint32_t thing_volume_at(const struct thing_volume *v, struct vec3
     return at < 0 ? 0 : v->id[at];
 }
 
+/* The distance at a point from the surface of a thing, trilinear; THING_UNSEEN: a voxel around it is of another thing,
+ * of none, or unseen. */
+float thing_volume_distance(const struct thing_volume *v, uint32_t id, struct vec3 p);
+/* The direction away from that surface, of length 1; 0: it is not known. */
+struct vec3 thing_volume_normal(const struct thing_volume *v, uint32_t id, struct vec3 p);
+
 enum status thing_volume_write(const struct thing_volume *v, const char *path, const struct provenance *prov,
                                struct err *err);
 /* ST_DATA: the size of the picture is not that of its grid; an id above max_id; a distance out of range. A failure

@@ -9,16 +9,16 @@
 static enum status add(struct thing_surfaces *s, const struct thing_mesh *m, const struct placed_thing *place,
                        const struct thing *thing, struct err *err)
 {
-    const struct rgb radiance = rgb_make(thing->radiance[0], thing->radiance[1], thing->radiance[2]);
     for (int i = 0; i < m->triangle_count; i++) {
         if (array_append(&s->triangles, (size_t)s->count, sizeof *s->triangles, "triangles", err) ||
             array_append(&s->radiance, (size_t)s->count, sizeof *s->radiance, "triangles", err))
             return err->status;
-        for (int k = 0; k < 3; k++) {
-            const struct vec3 p = m->vertices[m->triangles[i][k]];
-            s->triangles[s->count][k] = place ? placed_thing_place(place, p) : p;
-        }
-        s->radiance[s->count][0] = s->radiance[s->count][1] = radiance;
+        const struct vec3 p[3] = {m->vertices[m->triangles[i][0]], m->vertices[m->triangles[i][1]],
+                                  m->vertices[m->triangles[i][2]]};
+        const struct vec3 side =
+            thing_radiance_of_side(thing, vec3_normalize(vec3_cross(vec3_sub(p[1], p[0]), vec3_sub(p[2], p[0]))));
+        for (int k = 0; k < 3; k++) s->triangles[s->count][k] = place ? placed_thing_place(place, p[k]) : p[k];
+        s->radiance[s->count][0] = s->radiance[s->count][1] = rgb_make(side.x, side.y, side.z);
         s->count++;
     }
     return ST_OK;

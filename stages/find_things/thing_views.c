@@ -8,6 +8,9 @@
 #include "common/math/distance.h"
 #include "stages/find_things/fuse_views.h"
 
+enum { SIDE_STEP = 3 }; /* one in so many pixels tells of a side */
+
+#define MIN_SIDE      10.0   /* such pixels that tell of a side, at least */
 #define MIN_SHARE     0.0005 /* of the picture: a view with less of a thing does not count as one that shows it */
 #define WHOLE         0.5    /* share of a segment's pixels that make all of it show the thing */
 #define HALF_DIAGONAL 0.87   /* of a voxel */
@@ -130,7 +133,28 @@ static double score_of(const struct patch *p, const struct view *view)
     return (double)p->pixels / ((double)view->width * view->height) * (cut ? CUT : 1);
 }
 
-void thing_sights_add_radiance(struct thing_sight *sights, const uint32_t *mask, const struct image *photo)
+/* Away from the surface that a pixel shows; 0: it is not known. */
+static struct vec3 normal_of_pixel(const struct thing_geometry *g, uint32_t id, size_t pixel)
+{
+    const size_t width = (size_t)g->camera->width;
+    const double z = g->scale * (double)g->z[pixel];
+    if (!(z > 0)) return vec3_make(0, 0, 0);
+    const double u = (double)(pixel % width) + 0.5, v = (double)(pixel / width) + 0.5;
+    return thing_volume_normal(g->volume, id, view_unproject(g->camera, u, v, z));
+}
+
+static void add_sides(struct thing_sight *s, struct vec3 normal, const float *rgb)
+{
+    const double n[3] = {normal.x, normal.y, normal.z};
+    for (int k = 0; k < 3; k++) {
+        const int side = 2 * k + (n[k] < 0);
+        s->side_weight[side] += n[k] * n[k];
+        for (int c = 0; c < 3; c++) s->side_sum[side][c] += n[k] * n[k] * (double)rgb[c];
+    }
+}
+
+void thing_sights_add_radiance(struct thing_sight *sights, const uint32_t *mask, const struct image *photo,
+                               const struct thing_geometry *geometry)
 {
     for (size_t i = 0; i < (size_t)photo->width * (size_t)photo->height; i++) {
         const float *rgba = photo->data + 4 * i;
@@ -138,7 +162,17 @@ void thing_sights_add_radiance(struct thing_sight *sights, const uint32_t *mask,
         struct thing_sight *s = &sights[mask[i] - 1];
         for (int c = 0; c < 3; c++) s->sum[c] += (double)rgba[c];
         s->pixels++;
+        if (geometry && i % SIDE_STEP == 0) add_sides(s, normal_of_pixel(geometry, mask[i], i), rgba);
     }
+}
+
+void thing_sight_radiance(struct thing *t, const struct thing_sight *s)
+{
+    for (int c = 0; c < 3; c++) t->radiance[c] = s->pixels ? fmax(0, s->sum[c] / (double)s->pixels) : 0;
+    for (int k = 0; k < THING_SIDES; k++)
+        for (int c = 0; c < 3; c++)
+            t->sides[k][c] =
+                s->side_weight[k] >= MIN_SIDE ? fmax(0, s->side_sum[k][c] / s->side_weight[k]) : t->radiance[c];
 }
 
 enum status thing_sights_add(struct thing_sight *sights, int count, const uint32_t *mask, const struct view *view,

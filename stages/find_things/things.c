@@ -420,6 +420,7 @@ static enum status see_view(struct finder *f, int i, struct err *err)
     if (!err->status && !thing_mask_init(&mask, view, err) && !view_data_read(&d, job, i, err) &&
         !thing_shows_find(mask.shows, &f->volume, &d.camera, &d.depth, &d.ids, job->in->axes.scale, err)) {
         const double voxel = f->volume.grid.voxel, scale = job->in->axes.scale;
+        const struct thing_geometry geometry = {&f->volume, &d.camera, d.depth.interior.z, scale};
         thing_meets_find(mask.meets, f->legs, f->leg_count, voxel, &d.camera, &d.ids, scale, nearest);
         for (size_t p = 0; p < pixels; p++) /* a leg's own depth is that of the floor */
             if (!mask.shows[p] && mask.meets[p] && scale * (double)d.depth.interior.z[p] > (double)nearest[p] - voxel)
@@ -430,7 +431,7 @@ static enum status see_view(struct finder *f, int i, struct err *err)
             !thing_mask_write(&mask, view, path, job->prov, err))
             thing_sights_add(f->sights, f->count, mask.shows, view, i, err);
         if (!err->status && !view_image_read(&photo, job->views, view, job->prov, err))
-            thing_sights_add_radiance(f->sights, mask.shows, &photo);
+            thing_sights_add_radiance(f->sights, mask.shows, &photo, &geometry);
     }
     view_data_release(&d);
     thing_mask_release(&mask);
@@ -469,7 +470,7 @@ static enum status describe(struct finder *f, struct err *err)
         const struct thing_sight *s = &f->sights[k];
         struct thing *t = &f->things[k];
         t->views = s->views;
-        for (int c = 0; c < 3; c++) t->radiance[c] = s->pixels ? fmax(0, s->sum[c] / (double)s->pixels) : 0;
+        thing_sight_radiance(t, s);
         if (!(t->view = strdup(s->score > 0 ? set->views[s->best].name : ""))) err_nomem(err, "a name", 1);
         for (int e = 0; e < 2; e++) {
             t->rect[e] = s->low[e];

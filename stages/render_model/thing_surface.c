@@ -39,27 +39,6 @@ struct surface_job {
     size_t first;                      /* row */
 };
 
-/* The distance at a point, trilinear; THING_UNSEEN: a voxel around it is of no thing, or unseen. */
-static float distance_at(const struct surface_job *job, struct vec3 p)
-{
-    const struct voxel_grid *g = &job->volume->grid;
-    const double x = (p.x - g->origin.x) / g->voxel - 0.5, y = (p.y - g->origin.y) / g->voxel - 0.5,
-                 z = (p.z - g->origin.z) / g->voxel - 0.5;
-    if (!(x >= 0 && y >= 0 && z >= 0 && x < g->size[0] - 1 && y < g->size[1] - 1 && z < g->size[2] - 1))
-        return THING_UNSEEN;
-    const size_t i = (size_t)x, j = (size_t)y, k = (size_t)z, row = (size_t)g->size[0],
-                 slice = row * (size_t)g->size[1], at = k * slice + j * row + i;
-    const float u = (float)(x - (double)i), v = (float)(y - (double)j), w = (float)(z - (double)k);
-    float sum = 0;
-    for (size_t c = 0; c < 8; c++) {
-        const size_t n = at + (c & 1) + (c >> 1 & 1) * row + (c >> 2) * slice;
-        const float d = job->volume->distance[n];
-        if (job->volume->id[n] != job->thing->id || d == THING_UNSEEN) return THING_UNSEEN;
-        sum += d * (c & 1 ? u : 1 - u) * (c >> 1 & 1 ? v : 1 - v) * (c >> 2 ? w : 1 - w);
-    }
-    return sum;
-}
-
 /* Cuts [*from, *to] to the part of a ray's coordinate between low and high. */
 static void cut(double *from, double *to, double at, double way, double low, double high)
 {
@@ -81,7 +60,7 @@ static bool meet(double *t, const struct surface_job *job, struct vec3 from, str
     const double step = STEP * job->volume->grid.voxel / vec3_length(way);
     float last = THING_UNSEEN;
     for (double s = begin; s <= end; s += step) {
-        const float d = distance_at(job, vec3_add(from, vec3_scale(way, s)));
+        const float d = thing_volume_distance(job->volume, job->thing->id, vec3_add(from, vec3_scale(way, s)));
         if (d <= 0 && last > 0 && last < THING_UNSEEN) {
             *t = s - step * (double)(d / (d - last));
             return true;
@@ -89,21 +68,6 @@ static bool meet(double *t, const struct surface_job *job, struct vec3 from, str
         last = d;
     }
     return false;
-}
-
-/* The direction away from the surface at a point of the model's frame; 0: it is not known. */
-static struct vec3 normal_at(const struct surface_job *job, struct vec3 p)
-{
-    static const struct vec3 axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-    double slope[3];
-    for (int k = 0; k < 3; k++) {
-        const struct vec3 step = vec3_scale(axes[k], job->volume->grid.voxel);
-        const float after = distance_at(job, vec3_add(p, step)), before = distance_at(job, vec3_sub(p, step));
-        if (after >= THING_UNSEEN || before >= THING_UNSEEN) return vec3_make(0, 0, 0);
-        slope[k] = (double)(after - before);
-    }
-    const struct vec3 n = vec3_make(slope[0], slope[1], slope[2]);
-    return vec3_length(n) > 0 ? vec3_normalize(n) : n;
 }
 
 /* Whether a view may see the side of the surface whose normal this is: from behind no view tells its colour. */
@@ -174,7 +138,8 @@ static void draw_pixel(const struct surface_job *job, int x, int y)
     const float z = (float)(t * axes->scale), shell = job->shell[at]; /* t: depth in scene units */
     if (shell > 0 && z > shell * (1 + (flat ? FLAT_BEHIND : MAX_BEHIND))) return;
     const struct vec3 p = view_unproject(job->camera, x + 0.5, y + 0.5, t);
-    const struct vec3 normal = flat ? flat->normal : normal_at(job, vec3_add(from, vec3_scale(way, t)));
+    const struct vec3 normal =
+        flat ? flat->normal : thing_volume_normal(job->volume, job->thing->id, vec3_add(from, vec3_scale(way, t)));
     for (int k = 0; k < job->choice->count; k++) add_colour(sum, job, k, p, normal);
     if (!(sum[3] > 0)) return;
     const float left = (1 - to[3]) * share;

@@ -367,7 +367,7 @@ static void the_radiance_of_a_thing_is_that_of_its_pixels(void **state)
     for (int i = 0; i < 6; i++)
         for (int c = 0; c < 4; c++) rgba[4 * i + c] = c == 3 ? i != 5 : (float)(i + 1) * (float)(c + 1) / 4;
     for (int view = 1; view <= 2; view++) {
-        thing_sights_add_radiance(s, mask, &photo);
+        thing_sights_add_radiance(s, mask, &photo, NULL);
         assert_int_equal(s[0].pixels, 2 * view);
         assert_int_equal(s[1].pixels, 2 * view); /* not the last */
         for (int c = 0; c < 3; c++) {
@@ -376,6 +376,53 @@ static void the_radiance_of_a_thing_is_that_of_its_pixels(void **state)
         }
     }
     assert_true(!s[2].pixels && s[2].sum[0] == 0 && !s[0].views);
+}
+
+/* A slanted surface faces the camera, three fifths of the way east: its pixels tell of the sides east and down alone. */
+static void the_sides_of_a_thing_have_the_radiance_of_what_faces_their_way(void **state)
+{
+    static uint32_t id[N * N * N], mask[PIXELS];
+    static float distance[N * N * N], z[PIXELS], rgba[4 * PIXELS];
+    const struct thing_volume v = {grid, id, distance};
+    const struct view camera = front();
+    const struct image photo = {.width = W, .height = H, .channels = 4, .data = rgba};
+    const struct thing_geometry geometry = {&v, &camera, z, 2};
+    const struct vec3 normal = vec3_make(0.6, 0, -0.8);
+    enum { EAST, DOWN = 5 };
+    struct thing_sight s = {0};
+    struct thing t = {0};
+    (void)state;
+    for (int i = 0; i < N * N * N; i++) {
+        id[i] = 1;
+        distance[i] = (float)(0.3 * vec3_dot(normal, vec3_sub(thing_voxel_centre(&grid, i), vec3_make(0, 0, 1))));
+    }
+    for (int i = 0; i < PIXELS; i++) {
+        mask[i] = 1;
+        z[i] = (float)(0.5 * 1.6 / (0.8 - 0.6 * (i % W + 0.5 - W / 2) / 100)); /* scene units of two */
+        for (int c = 0; c < 4; c++) rgba[4 * i + c] = c == 3 ? 1 : (float)c + 0.5F;
+    }
+    thing_sights_add_radiance(&s, mask, &photo, &geometry);
+    assert_true(s.pixels == PIXELS && s.side_weight[EAST] > 0.36 * PIXELS / 10);
+    assert_true(fabs(s.side_weight[EAST] / s.side_weight[DOWN] - 0.36 / 0.64) < 1e-3);
+    thing_sight_radiance(&t, &s);
+    for (int c = 0; c < 3; c++) {
+        assert_true(fabs(t.radiance[c] - (c + 0.5)) < 1e-6);
+        for (int k = 0; k < THING_SIDES; k++) assert_true(fabs(t.sides[k][c] - (c + 0.5)) < 1e-6);
+    }
+    for (int k = 1; k < DOWN; k++) assert_true(s.side_weight[k] < 1e-3 * s.side_weight[EAST]);
+    /* the same surface in another colour, seen from where it faces west, changes no other side */
+    for (int i = 0; i < N * N * N; i++) {
+        const struct vec3 p = vec3_sub(thing_voxel_centre(&grid, i), vec3_make(0, 0, 1));
+        distance[i] = (float)(0.3 * vec3_dot(vec3_make(-0.6, 0, -0.8), p));
+    }
+    for (int i = 0; i < PIXELS; i++) {
+        z[i] = (float)(0.5 * 1.6 / (0.8 + 0.6 * (i % W + 0.5 - W / 2) / 100));
+        rgba[4 * i] = 9;
+    }
+    thing_sights_add_radiance(&s, mask, &photo, &geometry);
+    thing_sight_radiance(&t, &s);
+    assert_true(fabs(t.sides[EAST][0] - 0.5) < 1e-6 && fabs(t.sides[EAST + 1][0] - 9) < 1e-6);
+    assert_true(t.sides[DOWN][0] > 3 && t.sides[DOWN][0] < 6);
 }
 
 int main(void)
@@ -392,6 +439,7 @@ int main(void)
         cmocka_unit_test(a_plane_of_voxels_has_no_holes_from_near_or_afar),
         cmocka_unit_test(a_plane_before_the_camera_covers_the_view),
         cmocka_unit_test(the_radiance_of_a_thing_is_that_of_its_pixels),
+        cmocka_unit_test(the_sides_of_a_thing_have_the_radiance_of_what_faces_their_way),
         cmocka_unit_test(the_view_with_most_of_a_thing_is_the_best),
         cmocka_unit_test(of_equal_views_the_first_is_the_best),
         cmocka_unit_test(a_thing_that_the_border_cuts_counts_less),

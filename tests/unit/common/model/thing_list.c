@@ -3,17 +3,21 @@
 
 #include "tests/unit/scratch.h"
 
-#define HEAD "remodel-things 2\n"
-#define RUG  "thing rug floor 0 0 0.25 1 2 0.5 100 2 v05 0 0 1 1 0 1e-05 3\n"
-#define SOFA "thing sofa floor 0 0.5 0 2 1.25 0.75 3100 7 v03 10 20.5 300 200 0.5 0.25 2\n"
+#define HEAD  "remodel-things 3\n"
+#define RUG   "thing rug floor 0 0 0.25 1 2 0.5 100 2 v05 0 0 1 1 0 1e-05 3\n"
+#define SOFA  "thing sofa floor 0 0.5 0 2 1.25 0.75 3100 7 v03 10 20.5 300 200 0.5 0.25 2\n"
+#define SIDES "sides 1 2 3 4 5 6 7 8 9 10 11 12 0 0 0 1e-05 0.5 2\n"
 
 static void what_is_read_is_written_again(void **state)
 {
     (void)state;
     static const char text[] =
-        HEAD SOFA "thing \"old lamp\" ceiling -1 -1 2 -0.5 -0.5 2.5 100 1 \"v 04\" 0 0 1 1 0 1e-05 3\n"
-                  "thing shelf wall 1e-05 0 0 1 1 1 5000000000 2 v05 0 0 1 1 0 1e-05 3\n"
-                  "thing cloud none 0 0 0 1 1 1 1 1 v05 -1.5 0 1 1 1 1 1\n";
+        HEAD SOFA SIDES "thing \"old lamp\" ceiling -1 -1 2 -0.5 -0.5 2.5 100 1 \"v 04\" 0 0 1 1 0 1e-05 3\n"
+                        "sides 0 1e-05 3 0 1e-05 3 0 1e-05 3 0 1e-05 3 0 1e-05 3 0 1e-05 3\n"
+                        "thing shelf wall 1e-05 0 0 1 1 1 5000000000 2 v05 0 0 1 1 0 1e-05 3\n"
+                        "sides 0 1e-05 3 0 1e-05 3 0 1e-05 3 0 1e-05 3 0 1e-05 3 0 1e-05 3\n"
+                        "thing cloud none 0 0 0 1 1 1 1 1 v05 -1.5 0 1 1 1 1 1\n"
+                        "sides 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1\n";
     struct thing_list list;
     struct provenance prov = {0};
     struct err err = ERR_INIT;
@@ -27,6 +31,8 @@ static void what_is_read_is_written_again(void **state)
     assert_true(t->voxels == 3100 && t->views == 7);
     assert_true(t->rect[0] == 10 && t->rect[1] == 20.5 && t->rect[2] == 300 && t->rect[3] == 200);
     assert_true(t->radiance[0] == 0.5 && t->radiance[1] == 0.25 && t->radiance[2] == 2);
+    assert_true(t->sides[0][0] == 1 && t->sides[3][2] == 12 && t->sides[5][1] == 0.5);
+    assert_true(list.things[3].sides[4][2] == 1);
     for (int i = 0; i < 4; i++)
         assert_int_equal(list.things[i].support,
                          ((int[]){THING_ON_FLOOR, THING_ON_CEILING, THING_ON_WALL, THING_ON_NONE})[i]);
@@ -78,8 +84,10 @@ static void a_thing_that_is_added_is_owned(void **state)
 static void the_outline_of_what_lies_flat_is_kept(void **state)
 {
     (void)state;
-    static const char text[] = HEAD RUG "flat 0 0 1 0.25 4 0 0 1 0.5 1 2 -0.10000000000000001 1\n" SOFA
+    static const char text[] = HEAD RUG "sides 0 1e-05 3 0 1e-05 3 0 1e-05 3 0 1e-05 3 0 1e-05 3 0 1e-05 3\n"
+                                        "flat 0 0 1 0.25 4 0 0 1 0.5 1 2 -0.10000000000000001 1\n" SOFA SIDES
                                         "thing sign wall 0 0 0 1 1 1 9 1 v05 0 0 1 1 1 1 1\n"
+                                        "sides 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1\n"
                                         "flat -0.59999999999999998 -0.80000000000000004 0 -2 3 0 0 1 0 1 1\n";
     struct thing_list list;
     struct err err = ERR_INIT;
@@ -100,6 +108,25 @@ static void the_outline_of_what_lies_flat_is_kept(void **state)
     thing_list_release(&list);
 }
 
+/* Half way between two sides what faces there has the mean of both; without a line of sides all have the thing's. */
+static void sides_are_blended_by_where_a_surface_faces(void **state)
+{
+    struct thing_list list;
+    struct err err = ERR_INIT;
+    (void)state;
+    assert_ok(thing_list_read(&list, scratch_write("things.txt", HEAD SOFA SIDES RUG), NULL, &err), err);
+    const struct vec3 east = thing_radiance_of_side(&list.things[0], vec3_make(1, 0, 0));
+    const struct vec3 between = thing_radiance_of_side(&list.things[0], vec3_make(sqrt(0.5), -sqrt(0.5), 0));
+    const struct vec3 unknown = thing_radiance_of_side(&list.things[0], vec3_make(0, 0, 0));
+    const struct vec3 rug = thing_radiance_of_side(&list.things[1], vec3_make(0, 0.6, -0.8));
+    assert_true(east.x == 1 && east.y == 2 && east.z == 3);
+    assert_float_equal(between.x, (1 + 10) / 2.0, 1e-12);
+    assert_float_equal(between.z, (3 + 12) / 2.0, 1e-12);
+    assert_true(unknown.x == 0.5 && unknown.y == 0.25 && unknown.z == 2);
+    assert_float_equal(rug.z, 3, 1e-12);
+    thing_list_release(&list);
+}
+
 static void damaged_lines_are_refused(void **state)
 {
     (void)state;
@@ -108,8 +135,8 @@ static void damaged_lines_are_refused(void **state)
     } cases[] = {
         {"", "found an empty file, wanted"},
         {"remodel-objects 1\n", "things.txt:1: found \"remodel-objects\""},
-        {"remodel-things 3\n", "things.txt:1: found \"3\""},
-        {HEAD SOFA "chair sofa\n", "things.txt:3: found \"chair\", wanted thing or flat"},
+        {"remodel-things 4\n", "things.txt:1: found \"4\""},
+        {HEAD SOFA "chair sofa\n", "things.txt:3: found \"chair\", wanted thing, sides or flat"},
         {HEAD "thing\n", "things.txt:2: found the end of the line, wanted name"},
         {HEAD "thing sofa\n", "things.txt:2: found the end of the line, wanted what it stands on"},
         {HEAD "thing sofa roof 0 0 0 1 1 1 1 1 v 0 0 1 1\n",
@@ -137,6 +164,9 @@ static void damaged_lines_are_refused(void **state)
         {HEAD "thing sofa floor 0 0 0 1 1 1 1 1 v 0 0 1 1 1 1 1 7\n", "things.txt:2: found \"7\""},
         {HEAD "flat 0 0 1 0 3 0 0 1 0 1 1\n", "things.txt:2: found \"flat\", wanted a line \"thing\" before it"},
         {HEAD RUG "flat 0 0 1 0 3 0 0 1 0 1 1\nflat 0 0 1 0 3 0 0 1 0 1 1\n", "things.txt:4: found \"flat\""},
+        {HEAD SIDES, "things.txt:2: found \"sides\", wanted a line \"thing\" before it"},
+        {HEAD SOFA "sides 1 2 3\n", "things.txt:3: found the end of the line, wanted radiance of a side"},
+        {HEAD SOFA "sides 1 2 3 4 5 6 7 8 9 1 2 3 4 5 6 7 8 -9\n", "things.txt:3: found \"-9\""},
         {HEAD RUG "flat 0 0 2 0 3 0 0 1 0 1 1\n", "things.txt:3: found \"2\", wanted a normal of length 1"},
         {HEAD RUG "flat 0 0 1 inf 3 0 0 1 0 1 1\n", "things.txt:3: found \"inf\""},
         {HEAD RUG "flat 0 0 1 0 2 0 0 1 0\n", "things.txt:3: found \"2\", wanted a number of corners"},
@@ -168,9 +198,13 @@ static void a_name_with_a_line_break_is_not_written(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_is_read_is_written_again),  cmocka_unit_test(a_list_may_be_empty),
-        cmocka_unit_test(a_thing_that_is_added_is_owned), cmocka_unit_test(the_outline_of_what_lies_flat_is_kept),
-        cmocka_unit_test(damaged_lines_are_refused),      cmocka_unit_test(a_name_with_a_line_break_is_not_written),
+        cmocka_unit_test(what_is_read_is_written_again),
+        cmocka_unit_test(a_list_may_be_empty),
+        cmocka_unit_test(a_thing_that_is_added_is_owned),
+        cmocka_unit_test(the_outline_of_what_lies_flat_is_kept),
+        cmocka_unit_test(sides_are_blended_by_where_a_surface_faces),
+        cmocka_unit_test(damaged_lines_are_refused),
+        cmocka_unit_test(a_name_with_a_line_break_is_not_written),
     };
     return cmocka_run_group_tests_name("thing_list", tests, scratch_make, scratch_remove);
 }

@@ -13,6 +13,7 @@ enum { SOFA = 1, PICTURE, LAMP, BIRD, UNSEEN, THINGS = UNSEEN, SIDE = 40 };
 
 #define VOXEL  0.1
 #define RADIUS 0.3
+#define TOP    3.0 /* more red radiance of what faces up */
 
 static const struct provenance no_inputs = {.stage = "test", .version = "1"};
 static const struct vec3 middles[THINGS] = {{1, 0, -1.6}, {1.5, 1, 0}, {0.5, -1, 1.5}, {-1, 1, 0}, {-1, -1, -1}};
@@ -35,6 +36,8 @@ static void write_list(void)
                                    .views = 1,
                                    .view = (char *)"a",
                                    .radiance = {k + 1, 0.5, 0.25 * k}};
+        for (int n = 0; n < THING_SIDES; n++) memcpy(things[k].sides[n], things[k].radiance, sizeof things[k].sides[n]);
+        things[k].sides[4][0] = k + 1 + TOP;
     }
     assert_ok(thing_list_write(&list, scratch_path("things/things.txt"), &no_inputs, &err), err);
 }
@@ -115,7 +118,7 @@ static int triangles_of(uint32_t id)
 }
 
 /* The number of triangles whose corners are all on the ball of a thing, if its middle is there. They have the thing's
- * radiance on both sides, and face outwards. */
+ * radiance on both sides, more of red where they face up, and face outwards. Things turn about the vertical alone. */
 static int count_at(const struct thing_surfaces *s, uint32_t id, struct vec3 middle)
 {
     int count = 0;
@@ -124,11 +127,13 @@ static int count_at(const struct thing_surfaces *s, uint32_t id, struct vec3 mid
         bool on = true;
         for (int k = 0; k < 3; k++) on &= fabs(vec3_length(vec3_sub(p[k], middle)) - RADIUS) < 0.5 * VOXEL;
         if (!on) continue;
+        const struct vec3 normal = vec3_normalize(vec3_cross(vec3_sub(p[1], p[0]), vec3_sub(p[2], p[0])));
         for (int side = 0; side < 2; side++) {
             const struct rgb r = s->radiance[i][side];
-            assert_true(r.r == id && r.g == 0.5 && r.b == 0.25 * (id - 1));
+            assert_float_equal(r.r, id + TOP * fmax(normal.z, 0) * fmax(normal.z, 0), 1e-6);
+            assert_float_equal(r.g, 0.5, 1e-9);
+            assert_float_equal(r.b, 0.25 * (id - 1), 1e-9);
         }
-        const struct vec3 normal = vec3_cross(vec3_sub(p[1], p[0]), vec3_sub(p[2], p[0]));
         assert_true(vec3_dot(normal, vec3_sub(p[0], middle)) > 0);
         count++;
     }
@@ -316,7 +321,7 @@ static void the_things_of_a_scene_are_surfaces_but_what_hangs_from_the_ceiling(v
     assert_things(&s, shown, 4, 0);
     const struct field_surfaces field = thing_surfaces_of_field(&s);
     assert_int_equal(field.triangles.count, s.count);
-    assert_true(field.radiance[0][0].r == SOFA);
+    assert_true(field.radiance == (const struct rgb(*)[2])s.radiance);
     thing_surfaces_release(&s);
     thing_surfaces_read(&s, scratch_path("nothing"), NULL, &err);
     assert_err(err, ST_IO, "things.txt");
