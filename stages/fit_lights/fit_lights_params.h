@@ -10,8 +10,9 @@
     X(patch, int, 1, 0, 20, "px", "half side of the square of a view's pixels that are averaged at a point")         \
     X(grid, int, 5, 1, 50, "", "points along each side of an annotated rectangle")                                   \
     X(texture, double, 0.05, 0, 1, "", "assumed relative deviation of a material's reflectance from point to point") \
-    X(places, int, 160, 0, 1000, "",                                                                                 \
-      "rays of a lamp without lit and unlit points; where they meet the model, the lamp's light tells its radiance") \
+    X(places, int, 400, 0, 1000, "",                                                                                 \
+      "rays of a lamp; where they meet the model, or, if it has marks, a face of theirs, its light tells its "       \
+      "radiance")                                                                                                    \
     X(irradiance_error, double, 0.05, 0, 1, "",                                                                      \
       "assumed relative error of indirect light: of all of it, of each wall's")                                      \
     X(seen_error, double, 0.02, 0.001, 1, "",                                                                        \

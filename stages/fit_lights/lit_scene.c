@@ -14,9 +14,11 @@
  * light through it is then found by rays that happen to leave, with more noise.
  *
  * Points. A rectangle becomes grid x grid points, those on the surface at its middle. A line becomes 161 points
- * between its two ends, which must lie on one surface, because a fit of a falloff needs one normal. A lamp that nobody
- * marked points for, and whose radiance is not given, gets points itself: where rays from it, as many as places, meet
- * the model. Their density is that of a lamp's light. Those within a cube of a face are one mark.
+ * between its two ends, which must lie on one surface, because a fit of a falloff needs one normal. A lamp whose
+ * radiance is not given gets points itself: where rays from it, as many as places, meet the model, or, if somebody
+ * marked points for it, those of its faces whose marks are of one material: this is that of the whole face, but for
+ * pictures and doors, which the fit takes for outliers. Their density is that of a lamp's light. Those within a cube of
+ * a face are one mark.
  *
  * Marks are evidence: one whose pixels mean nothing (a photo that was not registered, a ray that leaves the model) is
  * left out with a warning that names the file, the line and the pixel. Units: the model's, angles in radians after this
@@ -295,7 +297,7 @@ static enum status add_mark(struct resolver *r, int note, int face, struct err *
 {
     struct lit_scene *s = r->scene;
     if (array_append(&s->marks, (size_t)s->mark_count, sizeof *s->marks, "marks", err)) return err->status;
-    s->marks[s->mark_count++] = (struct lit_mark){note, face};
+    s->marks[s->mark_count++] = (struct lit_mark){note, face, face, -1};
     return ST_OK;
 }
 
@@ -318,6 +320,7 @@ static enum status add_rectangle(struct resolver *r, int note, struct err *err)
     const double *p = a->pixel, middle[2] = {0.5 * (p[0] + p[2]), 0.5 * (p[1] + p[3])};
     struct ray_hit centre, hit;
     if (pixel_hit(&centre, r, a, middle, err)) return err->status;
+    r->scene->marks[r->scene->mark_count - 1].on = (int)centre.id;
     for (int i = 0; i < r->grid * r->grid; i++) {
         const double x = (i % r->grid + 0.5) / r->grid, y = (i / r->grid + 0.5) / r->grid;
         const double pixel[2] = {p[0] + x * (p[2] - p[0]), p[1] + y * (p[3] - p[1])};
@@ -357,19 +360,37 @@ static enum status add_points(struct resolver *r, int note, struct err *err)
         add_line(r, note, err);
     else if (a->pixels == 2)
         add_rectangle(r, note, err);
-    else if (!pixel_hit(&hit, r, a, a->pixel, err))
+    else if (!pixel_hit(&hit, r, a, a->pixel, err)) {
+        r->scene->marks[r->scene->mark_count - 1].on = (int)hit.id;
         add_point(r, note, hit.point, hit.normal, 0, err);
+    }
     left_out(err, "This mark does not count.");
     return err->status;
 }
 
-/* Whether the radiance of a lamp is neither given nor marked. */
-static bool needs_places(const struct resolver *r, int lamp)
+static bool is_marked(const struct resolver *r, int lamp)
 {
-    bool marked = r->notes->items[r->scene->lamp_notes[lamp]].has_radiance;
+    bool marked = false;
     for (int i = 0; i < r->scene->point_count; i++)
         marked |= r->scene->points[i].lamp == lamp && r->scene->points[i].kind != NOTE_LINE;
-    return !marked;
+    return marked;
+}
+
+/* A mark on a face, if all marks there are of one material; -1: they are not, or there is none. */
+static int mark_on_face(const struct resolver *r, int face)
+{
+    const char *material = NULL;
+    int found = -1;
+    for (int k = 0; k < r->scene->mark_count; k++) {
+        const struct lit_mark *m = &r->scene->marks[k];
+        const struct annotation *a = &r->notes->items[m->note];
+        if (m->face >= 0 || m->on != face || a->kind == NOTE_LINE) continue;
+        const char *own = a->material ? a->material : a->name;
+        if (material && strcmp(material, own)) return -1;
+        material = own;
+        found = k;
+    }
+    return found;
 }
 
 /* The mark of a place, which is new if no other place of the lamp is in its cube. */
@@ -391,6 +412,7 @@ static enum status mark_of_place(int *mark, struct resolver *r, int from, int no
 static enum status add_places(struct resolver *r, int lamp, struct err *err)
 {
     struct lit_scene *s = r->scene;
+    const bool marked = is_marked(r, lamp);
     const struct lamp *l = &s->lights.lamps[lamp];
     const int note = s->lamp_notes[lamp], from = s->point_count;
     const double side = PLACE_SIDE * model_rays_size(&r->model->rays);
@@ -403,7 +425,10 @@ static enum status add_places(struct resolver *r, int lamp, struct err *err)
         int mark;
         if (!cone_edge_ray(&p, l, d, &r->model->rays, &face)) continue;
         const int cube[3] = {(int)floor(p.at.x / side), (int)floor(p.at.y / side), (int)floor(p.at.z / side)};
+        const int like = marked ? mark_on_face(r, (int)face) : -1;
+        if (marked && like < 0) continue;
         if (mark_of_place(&mark, r, from, note, (int)face, cube, side, err)) continue;
+        s->marks[mark].like = like;
         if (!array_append(&s->points, (size_t)s->point_count, sizeof *s->points, "points", err))
             s->points[s->point_count++] = (struct lit_point){p.at, p.normal, lamp, note, mark, NOTE_LIT, 0};
     }
@@ -421,7 +446,7 @@ enum status lit_scene_resolve(struct lit_scene *s, const struct annotation_list 
     for (int i = 0; !err->status && notes && i < notes->count; i++)
         if (notes->items[i].kind >= NOTE_LIT) add_points(&r, i, err);
     for (int i = 0; !err->status && i < s->lights.lamp_count; i++)
-        if (needs_places(&r, i)) add_places(&r, i, err);
+        if (!notes->items[s->lamp_notes[i]].has_radiance) add_places(&r, i, err);
     if (!err->status) add_openings(&r, err);
     return err->status;
 }

@@ -28,9 +28,11 @@ struct lit_point {
     double along;              /* of a line, 0 to 1 */
 };
 
-/* Points of one annotation, or of a patch of a face that a lamp without marks lights. */
+/* Points of one annotation, or of a patch of a face that a lamp lights. */
 struct lit_mark {
     int note, face; /* face: of a place that nobody marked; -1: a person marked it */
+    int on;         /* the face on which its points lie; -1: none */
+    int like;       /* a place on a face that a person marked: the mark whose material it is; otherwise -1 */
 };
 
 struct lit_scene {
@@ -42,7 +44,8 @@ struct lit_scene {
 };
 
 /* notes may be NULL: then there are only the plan's windows. grid: points along a side of a rectangle; places: rays of
- * a lamp without radiance and without marks, each of which adds the point that it hits. The caller releases s. A lamp
+ * a lamp without radiance, each of which adds the point that it hits: on any face for a lamp without marks, otherwise
+ * on faces whose marks are of one material. The caller releases s. A lamp
  * or a mark whose pixels mean nothing is left out with a warning. ST_DATA with file and line: an unknown opening. */
 enum status lit_scene_resolve(struct lit_scene *s, const struct annotation_list *notes, const struct lit_model *model,
                               int grid, int places, struct err *err);

@@ -121,7 +121,7 @@ static enum status find_places(struct finder *f, struct err *err)
     for (int i = 0; i < lamps; i++) {
         if (!is_looked_at(f, i)) continue;
         f->lamps[f->lamp_count] = i;
-        f->probe.marks[f->probe.mark_count++] = (struct lit_mark){f->scene->lamp_notes[i], 0};
+        f->probe.marks[f->probe.mark_count++] = (struct lit_mark){f->scene->lamp_notes[i], 0, 0, -1};
         place_rays(f, f->lamp_count++);
     }
     list_points(f);

@@ -166,8 +166,8 @@ static const char *material_of_line(const struct solve_inputs *in, int lamp)
 static void name_material(char name[], size_t size, const struct solve_inputs *in, const struct lit_point *p)
 {
     const struct lit_mark *m = &in->scene->marks[p->mark];
-    const struct annotation *a = &in->notes->items[m->note];
-    if (m->face >= 0) {
+    const struct annotation *a = &in->notes->items[in->scene->marks[m->like >= 0 ? m->like : p->mark].note];
+    if (m->face >= 0 && m->like < 0) {
         snprintf(name, size, "face %s", solid_face_name(&in->rays->mesh, m->face));
         return;
     }

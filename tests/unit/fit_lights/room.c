@@ -284,6 +284,33 @@ static void a_saturated_lamp_is_told_by_the_light_that_it_casts(void **state)
     write_view(&room.views[2], 0);
 }
 
+/* Two marks near the lamp's axis tell little; the rest of the floor that they are on tells the most. */
+static void a_marked_face_tells_beside_its_marks(void **state)
+{
+    char text[500];
+    double spans[2];
+    struct err err = ERR_INIT;
+    (void)state;
+    snprintf(text, sizeof text, "lit spot in a %s of floor\nlit spot in a %s of floor\n", pixel(0, 0.1, 0, -2),
+             pixel(0, -0.4, 0.3, -2));
+    write_view(&room.views[2], PHOTO_BRIGHT);
+    for (int with = 0; with < 2; with++) {
+        places = with ? 400 : 0;
+        assert_ok(solve("beta 20 exponent 1", text, &err), err);
+        const struct lamp_result *r = &room.solved.lamps[0];
+        spans[with] = r->high[1] / r->low[1];
+        assert_int_equal(room.solved.material_count, 1);
+        assert_true(r->low[1] < true_s[1] && true_s[1] < r->high[1]);
+    }
+    if (fabs(room.scene.lights.lamps[0].radiance.g / true_s[1] - 1) > 0.05)
+        fail_msg("radiance %.4g, wanted %.4g", room.scene.lights.lamps[0].radiance.g, true_s[1]);
+    if (!(spans[1] < 0.7 * spans[0])) fail_msg("intervals span %.3g and %.3g", spans[0], spans[1]);
+    assert_true(room.scene.point_count > 40);
+    for (int k = 0; k < room.scene.point_count; k++) assert_true(fabs(room.scene.points[k].at.z + 2) < 1e-4);
+    places = 0;
+    write_view(&room.views[2], 0);
+}
+
 static const struct fit_mark *mark_of_line(int line)
 {
     for (int k = 0; k < room.solved.mark_count; k++)
@@ -451,6 +478,7 @@ int main(void)
         cmocka_unit_test(photos_without_an_edge_give_no_marks),
         cmocka_unit_test(a_lamp_that_no_photo_can_place_is_left_out),
         cmocka_unit_test(furniture_hides_a_lamp),
+        cmocka_unit_test(a_marked_face_tells_beside_its_marks),
         cmocka_unit_test(a_lamp_of_which_nothing_is_known_stays_as_photographed),
     };
     return cmocka_run_group_tests(tests, build, clean);
