@@ -13,7 +13,7 @@
 BENCH_LIGHT='' . "${BENCHES:-tests/bench}/things.sh"
 title="A hundred rooms: error of their light, and what new light gains"
 note="Each point is a room that nobody tuned on. Upper left is better."
-line=series label= panel=
+line=series label='' panel=''
 x=irradiance50 x_label="Median relative error of irradiance" y=gain y_label="Gain of relit pictures over the old light (dB)" zero=yes
 seeds=${BENCH_SEEDS:-$(seq 1 100)}
 samples=${BENCH_EDIT_SAMPLES:-32}

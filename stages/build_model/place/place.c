@@ -5,8 +5,8 @@
  * the wall is the densest window of positions, refined to the weighted mean of its content (mean shift, 8 rounds).
  *
  * Hidden points are removed first: points that face away from the camera, and points behind others. The rectangle is
- * cut into cells; in each of them points farther than 1.08 times the cell's front are hidden. The front is told by solid
- * angle: points are as dense on a far wall as on a near one, so before a large room a near wall has few of them.
+ * cut into cells; in each of them points farther than 1.08 times the cell's front are hidden. The front is told by
+ * solid angle: points are as dense on a far wall as on a near one, so before a large room a near wall has few of them.
  *
  * Beyond the source: rectangles that do not show where the wall is are refused (place_judge.c), and angled walls. The
  * normal of an angled wall is the mean normal about the fullest 5 degree bin, then three rounds of a total least
@@ -22,7 +22,7 @@
 #include "common/math/numbers.h"
 #include "stages/build_model/place/place_judge.h"
 
-enum { MAX_CELLS = 24, MIN_IN_CELL = 60 }; /* along each side; mean number of points in a cell */
+enum { MAX_CELLS = 24, MIN_IN_CELL = 55 }; /* along each side; mean effective number of points in a cell */
 #define BEHIND         1.08                /* times the front's distance: points beyond are hidden */
 #define FRONT_FRACTION 0.05                /* of the solid angle of a cell's points, outliers, is before its front */
 
@@ -250,7 +250,7 @@ static enum status find_visible(struct visible_point **visible, size_t *count, c
                                                         (float)((v - p->a[1]) / (p->a[3] - p->a[1])),
                                                         0};
     }
-    /* fewer points make larger cells, so that a cell that sees through a sparse wall contains points of the wall, too */
+    /* fewer points make larger cells, so that a cell that sees through a sparse wall has points of the wall, too */
     const int cells = (int)fmax(1, fmin(MAX_CELLS, sqrt(effective_count(*visible, *count) / MIN_IN_CELL)));
     for (size_t i = 0; i < *count; i++) {
         const int x = (int)((*visible)[i].u * (float)cells), y = (int)((*visible)[i].v * (float)cells);

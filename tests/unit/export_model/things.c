@@ -49,10 +49,17 @@ static void write_volume(void)
 static int write_things(void **state)
 {
     static const struct thing things[] = {
-        {(char *)"sofa", THING_ON_FLOOR, {0.25, -0.5, -2}, {1.25, 0, -1.375}, SEEN, {0.25, 0.5, 4}, {.count = 0}},
-        {(char *)"lamp", THING_ON_CEILING, {-1.5, -1.5, 1}, {-1, -1, 2}, SEEN, {1, 1, 1}, {.count = 0}},
-        {(char *)"thing1", THING_ON_NONE, {-0.5, 1, -0.25}, {0, 1.25, 0}, SEEN, {0, 0, 0}, {.count = 0}},
-        {(char *)"ghost", THING_ON_NONE, {-0.75, -0.75, -0.75}, {-0.5, -0.5, -0.5}, SEEN, {0}, {.count = 0}},
+        {(char *)"sofa",
+         THING_ON_FLOOR,
+         {0.25, -0.5, -2},
+         {1.25, 0, -1.375},
+         SEEN,
+         {0.25, 0.5, 4},
+         {{0}},
+         {.count = 0}},
+        {(char *)"lamp", THING_ON_CEILING, {-1.5, -1.5, 1}, {-1, -1, 2}, SEEN, {1, 1, 1}, {{0}}, {.count = 0}},
+        {(char *)"thing1", THING_ON_NONE, {-0.5, 1, -0.25}, {0, 1.25, 0}, SEEN, {0, 0, 0}, {{0}}, {.count = 0}},
+        {(char *)"ghost", THING_ON_NONE, {-0.75, -0.75, -0.75}, {-0.5, -0.5, -0.5}, SEEN, {0}, {{0}}, {.count = 0}},
     };
     struct thing_list list = {(struct thing *)things, 4};
     struct err err = ERR_INIT;

@@ -378,7 +378,7 @@ static void the_radiance_of_a_thing_is_that_of_its_pixels(void **state)
     assert_true(!s[2].pixels && s[2].sum[0] == 0 && !s[0].views);
 }
 
-/* A slanted surface faces the camera, three fifths of the way east: its pixels tell of the sides east and down alone. */
+/* A slanted surface faces the camera, three fifths of the way east: its pixels tell of east and down alone. */
 static void the_sides_of_a_thing_have_the_radiance_of_what_faces_their_way(void **state)
 {
     static uint32_t id[N * N * N], mask[PIXELS];

@@ -436,8 +436,8 @@ static void a_lamp_of_which_nothing_is_known_stays_as_photographed(void **state)
     assert_true(room.scene.lights.lamps[0].radiance.g == 0);
 }
 
-/* A board half way to the floor, over x > 0. A point of the floor sees the lamp past it if it is at x < -radius, none of
- * it at x > radius. */
+/* A board half way to the floor, over x > 0. A point of the floor sees the whole lamp if it is at x < -radius, and none
+ * of it at x > radius. */
 static void furniture_hides_a_lamp(void **state)
 {
     static const struct vec3 board[2][3] = {{{0, -2, 0}, {2, -2, 0}, {2, 2, 0}}, {{0, -2, 0}, {2, 2, 0}, {0, 2, 0}}};

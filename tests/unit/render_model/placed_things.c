@@ -19,7 +19,7 @@ static const struct provenance no_inputs = {.stage = "test", .version = "1"};
 
 /* What no test here looks at: voxels, views, radiance; and nothing lies flat. */
 #define SEEN \
-    10, 1, (char *)"a", {0, 0, 9, 9}, {0}, { .count = 0 }
+    10, 1, (char *)"a", {0, 0, 9, 9}, {0}, {{0}}, { .count = 0 }
 
 static void write_list(void)
 {
