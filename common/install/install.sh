@@ -31,6 +31,7 @@ for s in $stages; do
     mkdir -p "$lib/stages/$s"
     cp "stages/$s"/*.mk "$lib/stages/$s/"
     for f in "stages/$s"/*.sh; do [ ! -e "$f" ] || cp "$f" "$lib/stages/$s/"; done
+    [ ! -d "stages/$s/page" ] || cp -r "stages/$s/page" "$lib/stages/$s/"
 done
 
 mkdir -p "$destdir$prefix/bin" "$destdir$prefix/share/bash-completion/completions"

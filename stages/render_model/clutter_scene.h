@@ -2,10 +2,10 @@
 #ifndef REMODEL_RENDER_CLUTTER_SCENE_H
 #define REMODEL_RENDER_CLUTTER_SCENE_H
 
+#include "common/clutter/clutter_view.h"
+#include "common/clutter/pane_fronts.h"
 #include "common/layers/layer_visibility.h"
 #include "stages/render_model/clutter.h"
-#include "stages/render_model/clutter_view.h"
-#include "stages/render_model/pane_fronts.h"
 
 enum { CLUTTER_VIEWS = 12 }; /* the most that a picture is drawn from */
 

@@ -4,83 +4,56 @@
  * A face takes its rules in order. A place in the unedited model is looked up in the atlases of the two viewpoints, and
  * in the next pass in the VITA. Only pages of tiles that the picture may show are read.
  *
- * The light on a new surface is not known before irradiance is. Diffuse light of irradiance E makes a surface of albedo
- * a send out a E / pi. The median radiance of the named faces stands for that of a wall of albedo 0.6, a usual paint,
- * and so gives E. The median is taken channel by channel, so that the colour of the light is kept, over texels that
- * some view shows; it is exact, as halves of 0 or more are in order as integers. */
+ * The light on a new surface is not known before irradiance is: common/texture/radiance_median.c guesses it, from texels
+ * that some view shows. */
 #include <math.h>
 #include <stdlib.h>
 
 #include "common/base/array.h"
 #include "common/light/model_rays.h"
-#include "common/math/lanes.h"
+#include "common/texture/radiance_median.h"
 #include "stages/render_model/shell_scene.h"
 
 static const double PARALLEL = 0.999; /* cosine between a face's normal and the direction in which a tile sees it */
 static const double SLACK = 1e-6;     /* of the model's size: how far beyond its limits a rule counts */
-static const float USUAL_ALBEDO = 0.6f;
 
 /* ------------------------------------------------------------------------------------------------ radiance of faces */
 
-enum { HALVES = 0x7c00 }; /* finite ones of 0 or more */
-
-struct radiances {
-    uint32_t (*counts)[HALVES]; /* [channel] */
-    uint64_t total;
-};
-
-static bool is_lit(const struct texture_rule *rule, int face)
-{
-    for (int i = 0; i < rule->lit_count; i++)
-        if (rule->lit[i] == face) return true;
-    return !rule->lit_count;
-}
-
-static void count_tile(struct radiances *r, const struct texture_set *set, int tile, bool seen)
+static void count_tile(struct radiance_median *r, const struct texture_set *set, int tile, bool seen)
 {
     const struct atlas_tile *t = &set->atlas.tiles[tile];
     const struct texture_page *page = &set->pages[t->page];
     const size_t texels = (size_t)texture_stride(t) * (size_t)(t->height + 2);
     for (size_t i = set->first[tile]; i < set->first[tile] + texels; i++) {
         if (page->made[i] == MADE_NOTHING || (seen && page->made[i] != MADE_WARPED)) continue;
-        for (int c = 0; c < 3; c++) r->counts[c][page->texels[4 * i + (size_t)c]]++;
-        r->total++;
+        radiance_median_add(r, page->texels + 4 * i);
     }
 }
 
-static enum status count_radiances(struct radiances *r, struct shell_scene *s, struct texture_set *vita,
+static enum status count_radiances(struct radiance_median *r, struct shell_scene *s, struct texture_set *vita,
                                    const struct texture_rule *rule, bool seen, struct err *err)
 {
     for (int i = 0; i < vita->atlas.tile_count; i++) {
         const struct atlas_tile *t = &vita->atlas.tiles[i];
-        if (!is_lit(rule, t->face)) continue;
+        if (!radiance_median_wants(rule, t->face)) continue;
         if (page_cache_load(s->pages, vita, t->page, err)) return err->status;
         count_tile(r, vita, i, seen);
     }
     return ST_OK;
 }
 
-static float median(const uint32_t *counts, uint64_t total)
-{
-    uint64_t below = 0;
-    int half = 0;
-    while (half + 1 < HALVES && (below += counts[half]) <= (total - 1) / 2) half++;
-    return float_from_half((uint16_t)half);
-}
-
 /* Sets the colour of a rule, unless there is no texel to take the light from. */
 static enum status find_colour(struct shell_rule *rule, struct shell_scene *s, struct texture_set *vita,
                                struct err *err)
 {
-    struct radiances r = {calloc(3, sizeof *r.counts), 0};
-    if (!r.counts) return err_nomem(err, "radiances", 3 * sizeof *r.counts);
+    struct radiance_median r;
+    if (radiance_median_init(&r, err)) return err->status;
     count_radiances(&r, s, vita, &rule->rule, true, err);
     if (!err->status && !r.total) count_radiances(&r, s, vita, &rule->rule, false, err);
     rule->tried = !err->status;
     rule->known = !err->status && r.total;
-    for (int c = 0; rule->known && c < 3; c++)
-        rule->colour[c] = rule->rule.albedo[c] / USUAL_ALBEDO * median(r.counts[c], r.total);
-    free(r.counts);
+    if (rule->known) radiance_median_colour(rule->colour, &r, rule->rule.albedo);
+    radiance_median_release(&r);
     return err->status;
 }
 

@@ -1,7 +1,7 @@
 /* clutter_view.h - what a view shows in front of the model: its layers without the model's own surfaces, ready to be
  * drawn, and what it sees everywhere, by which it confirms or denies the clutter of other views. */
-#ifndef REMODEL_RENDER_CLUTTER_VIEW_H
-#define REMODEL_RENDER_CLUTTER_VIEW_H
+#ifndef REMODEL_CLUTTER_VIEW_H
+#define REMODEL_CLUTTER_VIEW_H
 
 #include "common/layers/layer_view.h"
 #include "common/model/thing_mask.h"

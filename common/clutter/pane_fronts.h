@@ -1,6 +1,6 @@
 /* pane_fronts.h - where a room ends before a pane of glass: at the inner face of the wall around it. */
-#ifndef REMODEL_RENDER_PANE_FRONTS_H
-#define REMODEL_RENDER_PANE_FRONTS_H
+#ifndef REMODEL_PANE_FRONTS_H
+#define REMODEL_PANE_FRONTS_H
 
 #include "common/model/solid_mesh.h"
 #include "common/texture/view_ids.h"

@@ -1,7 +1,7 @@
 /* Which texels of a view's layers stand in front of the model. The model's depths are given, not traced. */
 #include "tests/unit/scratch.h"
 
-#include "stages/render_model/clutter_view.h"
+#include "common/clutter/clutter_view.h"
 
 enum { W = 120, H = 60, EDGE = 60 };
 

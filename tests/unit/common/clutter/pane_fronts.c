@@ -1,7 +1,7 @@
 /* Where a room ends before a pane: an opening 0.5 deep in a wall at x = 2, with its pane at the far side. */
 #include "tests/unit/box_solids.h"
 
-#include "stages/render_model/pane_fronts.h"
+#include "common/clutter/pane_fronts.h"
 
 static const struct box window[] = {
     {"walls", "window/sunny", {2, -1, -1}, {2.5, 1, 1}, true},

@@ -16,7 +16,7 @@
  * Depth also bleeds over the model's jumps; see find_rims().
  *
  * Source: none. The thesis draws whole views [Colburn 2014, 3.6]. */
-#include "stages/render_model/clutter_view.h"
+#include "common/clutter/clutter_view.h"
 
 #include <math.h>
 #include <stddef.h>

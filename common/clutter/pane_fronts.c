@@ -7,7 +7,7 @@
  * the shell wins.
  *
  * Source: none. */
-#include "stages/render_model/pane_fronts.h"
+#include "common/clutter/pane_fronts.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,0 +1,228 @@
+/* view_texture.c - see view_texture.h.
+ *
+ * The furniture of a view is drawn as a mesh over a grid of its pixels. A point of the grid has the depth of the nearest
+ * pixel of furniture within a cell of it, so that all cells that hold such a pixel have four corners; how much of a
+ * pixel is furniture, its alpha, cuts the outline. */
+#include "stages/walk/view_texture.h"
+
+#include <libdeflate.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/base/base64.h"
+#include "common/capture/view_image.h"
+#include "common/clutter/clutter_view.h"
+#include "common/image/photo.h"
+#include "common/product/product.h"
+#include "common/texture/picture_made.h"
+#include "stages/walk/atlas_texture.h"
+#include "stages/walk/data_file.h"
+
+enum { DEPTH_LEVELS = 65535, THINGS = 255, LEVEL = 9 };
+static const float LEAST = 0.25f; /* of a pixel, from which it is furniture with a depth of its own */
+
+static enum status read_clutter(struct clutter_view *clutter, const struct walk_scene *s, int at,
+                                const struct pane_fronts *panes, struct err *err)
+{
+    const struct view *view = &s->in.set.views[at];
+    const struct product_key key = {.view = view->name};
+    struct layered_depth depth = {0};
+    struct view_ids ids = {0};
+    struct thing_mask things = {0};
+    char path[FILE_PATH];
+    if (!product_path_in(path, s->files->depth, PRODUCT_DEPTH, &key, err) &&
+        !layered_depth_read(&depth, path, NULL, err) && !product_path_in(path, s->files->ids, PRODUCT_IDS, &key, err))
+        view_ids_read(&ids, view, path, NULL, err);
+    if (!err->status && s->files->things && !product_path_in(path, s->files->things, PRODUCT_THING_MASK, &key, err))
+        thing_mask_read(&things, view, path, UINT32_MAX, NULL, err);
+    if (!err->status) {
+        pane_fronts_apply(&ids, panes, &s->cameras[at], s->in.axes.scale);
+        clutter_view_make(clutter, &depth, &ids, s->files->things ? &things : NULL, view->name, err);
+    }
+    view_ids_release(&ids);
+    thing_mask_release(&things);
+    layered_depth_release(&depth);
+    return err->status;
+}
+
+/* 1 / z of the furniture at a pixel, scene units; 0: there is none. */
+static double inverse_depth(const struct clutter_view *c, int x, int y, float *cover)
+{
+    float rgba[4];
+    layer_view_photo(&c->layers, x, y, rgba);
+    *cover = rgba[3];
+    if (rgba[3] < LEAST) return 0;
+    const struct texel *t = &c->layers.texels[(size_t)(y + 1) * (size_t)c->layers.stride + (size_t)(x + 1)];
+    const uint32_t first = t->id[0] & ~TEXEL_JOINED, id = first ? first : t->id[1] & ~TEXEL_JOINED;
+    if (!id) return 0;
+    const double *plane = c->depth.segments[id - 1].plane;
+    return fmax(0, plane[0] * (x + 0.5) + plane[1] * (y + 0.5) + plane[2]);
+}
+
+/* The depths of a view's pixels, and how much of each is furniture. */
+struct pixels {
+    double *inverse;
+    unsigned char *cover;
+};
+
+struct grid {
+    int columns, rows, step;
+    double *inverse;
+    unsigned char *thing;
+};
+
+static void find_point(struct grid *g, const struct pixels *p, const struct view *view, int i, int j)
+{
+    const int x = i * g->step, y = j * g->step;
+    double nearest = INFINITY;
+    for (int v = y - g->step; v < y + g->step; v++)
+        for (int u = x - g->step; u < x + g->step; u++) {
+            if (u < 0 || v < 0 || u >= view->width || v >= view->height) continue;
+            const double inverse = p->inverse[(size_t)v * (size_t)view->width + (size_t)u];
+            const double away = hypot(u + 0.5 - x, v + 0.5 - y);
+            if (!(inverse > 0) || away >= nearest) continue;
+            nearest = away;
+            g->inverse[(size_t)j * (size_t)g->columns + (size_t)i] = inverse;
+        }
+}
+
+static enum status write_packed(FILE *to, const unsigned char *bytes, size_t size, struct err *err)
+{
+    struct libdeflate_compressor *c = libdeflate_alloc_compressor(LEVEL);
+    const size_t room = c ? libdeflate_zlib_compress_bound(c, size) : 0;
+    unsigned char *packed = malloc(room + 1);
+    putc('"', to);
+    if (c && packed)
+        base64_write(to, packed, libdeflate_zlib_compress(c, bytes, size, packed, room));
+    else
+        err_nomem(err, "a grid of depths", room);
+    putc('"', to);
+    free(packed);
+    if (c) libdeflate_free_compressor(c);
+    return err->status;
+}
+
+static enum status write_grid(FILE *to, const struct walk_scene *s, int at, const struct pixels *p, struct err *err)
+{
+    const struct view *view = &s->cameras[at];
+    const struct thing_volume *volume = &s->models[0].things.volume;
+    struct grid g = {.step = s->params->grid};
+    g.columns = (view->width + g.step - 1) / g.step + 1;
+    g.rows = (view->height + g.step - 1) / g.step + 1;
+    const size_t points = (size_t)g.columns * (size_t)g.rows;
+    unsigned char *bytes = calloc(3, points);
+    g.inverse = calloc(points, sizeof *g.inverse);
+    if (!bytes || !g.inverse) err_nomem(err, "a grid of depths", points * (3 + sizeof *g.inverse));
+    double most = 0;
+    for (int j = 0; !err->status && j < g.rows; j++)
+        for (int i = 0; i < g.columns; i++) {
+            find_point(&g, p, view, i, j);
+            most = fmax(most, g.inverse[(size_t)j * (size_t)g.columns + (size_t)i]);
+        }
+    for (size_t k = 0; !err->status && k < points; k++) {
+        if (!(g.inverse[k] > 0)) continue;
+        const int level = (int)fmax(1, DEPTH_LEVELS * g.inverse[k] / most + 0.5);
+        const double u = (double)(k % (size_t)g.columns) * g.step, v = (double)(k / (size_t)g.columns) * g.step;
+        const uint32_t thing = thing_volume_at(volume, view_unproject(view, u, v, s->in.axes.scale / g.inverse[k]));
+        bytes[k] = (unsigned char)(level & 255); /* planes of low bytes, high bytes, things: they pack better */
+        bytes[points + k] = (unsigned char)(level >> 8);
+        bytes[2 * points + k] = thing <= THINGS ? (unsigned char)thing : 0;
+    }
+    fprintf(to, ",\"columns\":%d,\"rows\":%d,\"most\":", g.columns, g.rows);
+    data_write_number(to, most / s->in.axes.scale);
+    fputs(",\"depth\":", to);
+    if (!err->status) write_packed(to, bytes, 3 * points, err);
+    free(g.inverse);
+    free(bytes);
+    return err->status;
+}
+
+static enum status find_pixels(struct pixels *p, const struct walk_scene *s, int at, const struct pane_fronts *panes,
+                               struct err *err)
+{
+    const struct view *view = &s->cameras[at];
+    const size_t pixels = (size_t)view->width * (size_t)view->height;
+    struct clutter_view clutter = {0};
+    p->inverse = calloc(pixels, sizeof *p->inverse);
+    p->cover = calloc(pixels, 1);
+    if (!p->inverse || !p->cover) return err_nomem(err, "depths", pixels * (1 + sizeof *p->inverse));
+    if (!s->files->depth || read_clutter(&clutter, s, at, panes, err)) return err->status;
+    for (int y = 0; y < view->height; y++)
+        for (int x = 0; x < view->width; x++) {
+            const size_t i = (size_t)y * (size_t)view->width + (size_t)x;
+            float cover;
+            p->inverse[i] = inverse_depth(&clutter, x, y, &cover);
+            p->cover[i] = (unsigned char)(fminf(1, fmaxf(0, cover)) * (255 - VIEW_ALPHA_SEEN));
+        }
+    clutter_view_release(&clutter);
+    return ST_OK;
+}
+
+enum status view_texture_write(FILE *to, const struct walk_scene *s, int at, const struct pane_fronts *panes,
+                               struct err *err)
+{
+    const struct view *view = &s->cameras[at];
+    const size_t pixels = (size_t)view->width * (size_t)view->height;
+    struct image photo = {0}, im = {0};
+    struct pixels p = {0};
+    unsigned char *alpha = malloc(pixels + 1), *rgba = NULL;
+    if (!alpha) err_nomem(err, "a view", pixels);
+    if (!err->status && !view_image_read(&photo, s->files->views, &s->in.set.views[at], NULL, err) &&
+        !image_init(&im, view->width, view->height, 3, err))
+        find_pixels(&p, s, at, panes, err);
+    for (size_t i = 0; !err->status && i < pixels; i++) {
+        alpha[i] = photo.data[4 * i + 3] > 0 ? (unsigned char)(VIEW_ALPHA_SEEN + p.cover[i]) : 0;
+        for (size_t c = 0; c < 3; c++) im.data[3 * i + c] = (float)(s->exposure * (double)photo.data[4 * i + c]);
+    }
+    fputs("{\"picture\":", to);
+    if (!err->status && !atlas_texture_bytes(&rgba, &im, alpha, err))
+        atlas_texture_encode(to, rgba, view->width, view->height, s->params->photo_quality, s->params->effort, err);
+    if (!err->status && s->files->depth) write_grid(to, s, at, &p, err);
+    putc('}', to);
+    image_release(&photo);
+    image_release(&im);
+    free(p.inverse);
+    free(p.cover);
+    free(alpha);
+    free(rgba);
+    return err->status;
+}
+
+/* ---------------------------------------------------------------------------------------------------------- changes */
+
+/* What a pixel comes from, by its colour in a picture of sources. */
+static enum picture_made made_of(const uint16_t *rgb)
+{
+    for (int k = 0; k < MADE_COUNT; k++) {
+        const uint8_t *of = picture_made_kind((enum picture_made)k)->rgb;
+        if (rgb[0] == of[0] && rgb[1] == of[1] && rgb[2] == of[2]) return (enum picture_made)k;
+    }
+    return MADE_NOTHING;
+}
+
+enum status view_texture_write_change(FILE *to, const struct walk_scene *s, const char *jpeg, const char *sources,
+                                      struct err *err)
+{
+    struct photo picture = {0}, made = {0};
+    unsigned char *rgba = NULL;
+    if (!photo_read(&picture, jpeg, err) && sources) photo_read(&made, sources, err);
+    if (!err->status && sources && (made.info.width != picture.info.width || made.info.height != picture.info.height))
+        err_set(err, ST_DATA, "%s has %d x %d pixels, but %s has %d x %d. Run make remodel again.", sources,
+                made.info.width, made.info.height, jpeg, picture.info.width, picture.info.height);
+    const size_t pixels = (size_t)picture.info.width * (size_t)picture.info.height;
+    if (!err->status && !(rgba = malloc(4 * pixels))) err_nomem(err, "a picture", 4 * pixels);
+    for (size_t i = 0; !err->status && i < pixels; i++) {
+        const enum picture_made kind = sources ? made_of(made.samples + 3 * i) : MADE_PHOTO;
+        const bool shown = !sources || (kind != MADE_NOTHING && kind != MADE_PHOTO);
+        for (size_t c = 0; c < 3; c++) rgba[4 * i + c] = (unsigned char)picture.samples[3 * i + c];
+        rgba[4 * i + 3] = shown ? (unsigned char)(VIEW_ALPHA_MADE + VIEW_ALPHA_STEP * (int)kind) : 0;
+    }
+    if (!err->status)
+        atlas_texture_encode(to, rgba, picture.info.width, picture.info.height, s->params->photo_quality,
+                             s->params->effort, err);
+    free(rgba);
+    photo_release(&picture);
+    photo_release(&made);
+    return err->status;
+}
