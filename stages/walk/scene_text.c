@@ -67,6 +67,19 @@ struct face_writer {
     struct solid_triangles triangles;
 };
 
+/* The colour of a new surface under the light of the rooms, times the exposure. */
+static enum status write_colour(FILE *to, const struct walk_scene *s, const struct texture_rule *rule,
+                                const struct atlas_page *vita_pages, struct err *err)
+{
+    float colour[3];
+    double shown[3];
+    if (scene_text_colour(colour, rule, &s->vita, vita_pages, err)) return err->status;
+    for (int c = 0; c < 3; c++) shown[c] = (double)colour[c] * s->exposure;
+    fputs(",\"rgb\":", to);
+    data_write_numbers(to, shown, 3);
+    return ST_OK;
+}
+
 static enum status write_rule(const struct face_writer *w, const struct texture_rule *rule, struct err *err)
 {
     static const char *const kinds[] = {"place", "edge", "outdoors", "colour"};
@@ -76,13 +89,7 @@ static enum status write_rule(const struct face_writer *w, const struct texture_
         write_matrix(w->to, rule->matrix);
     }
     if (rule->kind == TEXTURE_COLOUR) {
-        float colour[3];
-        if (scene_text_colour(colour, rule, &w->scene->vita, w->vita_pages, err)) return err->status;
-        fputs(",\"rgb\":", w->to);
-        data_write_numbers(w->to,
-                           (const double[]){colour[0] * w->scene->exposure, colour[1] * w->scene->exposure,
-                                            colour[2] * w->scene->exposure},
-                           3);
+        if (write_colour(w->to, w->scene, rule, w->vita_pages, err)) return err->status;
     }
     if (rule->limited) {
         fputs(",\"within\":", w->to);
@@ -178,15 +185,18 @@ static void write_things(FILE *to, const struct walk_model *m)
     putc(']', to);
 }
 
-static void write_objects(FILE *to, const struct walk_model *m)
+static enum status write_objects(FILE *to, const struct walk_scene *s, const struct walk_model *m,
+                                 const struct atlas_page *vita_pages, struct err *err)
 {
     fputs(",\n\"objects\":[", to);
-    for (int i = 0; i < m->objects.count; i++) {
+    for (int i = 0; !err->status && i < m->objects.count; i++) {
         const struct object *o = &m->objects.items[i];
+        const struct texture_rule rule = {
+            .kind = TEXTURE_COLOUR,
+            .albedo = {(float)o->brdf.albedo.r, (float)o->brdf.albedo.g, (float)o->brdf.albedo.b}};
         fprintf(to, "%s{\"name\":", i ? "," : "");
         data_write_text(to, o->name);
-        fputs(",\"albedo\":", to);
-        data_write_numbers(to, (const double[]){o->brdf.albedo.r, o->brdf.albedo.g, o->brdf.albedo.b}, 3);
+        write_colour(to, s, &rule, vita_pages, err);
         fputs(",\"corners\":[", to);
         for (int k = 0; k < m->meshes[i].count; k++)
             for (int c = 0; c < 3; c++) {
@@ -197,6 +207,7 @@ static void write_objects(FILE *to, const struct walk_model *m)
         fputs("]}", to);
     }
     putc(']', to);
+    return err->status;
 }
 
 static int place_of(const struct walk_scene *s, const char *photo)
@@ -247,7 +258,7 @@ static enum status write_model(FILE *to, const struct walk_scene *s, const struc
     fputs("],\n", to);
     write_plan(to, &m->plan);
     write_things(to, m);
-    write_objects(to, m);
+    if (!err->status) write_objects(to, s, m, vita_pages, err);
     write_tour(to, s, m);
     fprintf(to, ",\n\"light\":%s}", m->relit ? "true" : "false");
     return err->status;

@@ -1,0 +1,367 @@
+// draw.js - draws the rooms with WebGL 2.
+//
+// A picture of the rooms is made in linear light in a buffer of half floats: the faces under the textures of two
+// viewpoints, then under the texture of all faces where these have none, then what lies outdoors, then the change of
+// light of an edit. The stencil says which pixels have their colour: 1: of the first viewpoint, 2: done. The alpha of the
+// buffer is the share of the first viewpoint where that has a texel, so that the second one blends to it. Furniture is
+// drawn from several photographs into a buffer of its own: first its depth, then the mean of what they show near that
+// depth. In a viewpoint the photograph itself covers all.
+'use strict';
+
+W.shaders = {
+    // faces
+    solid: [`layout(location=0) in vec3 p; uniform mat4 clip; void main() { gl_Position = clip * vec4(p, 1.); }`,
+        `void main() {}`],
+    face: [`layout(location=0) in vec3 p; layout(location=1) in vec3 uvw; layout(location=2) in vec4 rect;
+        uniform mat4 clip; out vec3 at; flat out vec4 box;
+        void main() { gl_Position = clip * vec4(p, 1.); at = uvw; box = rect; }`,
+        `in vec3 at; flat in vec4 box; uniform sampler2D page; uniform vec2 size; uniform float alpha, most; uniform int kind, made;
+        uniform vec3 kinds[9]; out vec4 colour;
+        void main() {
+            if (kind == 2) { colour = vec4(made == 1 ? kinds[5] : box.rgb, alpha); return; }
+            vec2 uv = clamp(at.xy / at.z, box.xy + .5, box.zw - .5);
+            vec4 t = texture(page, uv / size);
+            if (kind == 0 && t.a < .02) discard;
+            colour = vec4(t.rgb * most, alpha);
+            if (made == 1) {
+                float a = texelFetch(page, ivec2(uv), 0).a;
+                vec3 k = a > .9 ? kinds[2] : a > .6 ? kinds[3] : a > .4 || kind == 1 ? kinds[4] : a > .2 ? kinds[5] : kinds[4];
+                colour.rgb = mix(k, k * dot(t.rgb, vec3(.2126, .7152, .0722)) * 2., .5);
+            }
+            if (made == 2) { colour = vec4(abs(dot(t.rgb * most, vec3(1. / 3.)) - 1.) > .03 ? kinds[0] : vec3(1), 1); }
+        }`],
+    sky: [`layout(location=0) in vec3 p; out vec2 at; void main() { gl_Position = vec4(p.xy, 1., 1.); at = p.xy; }`,
+        `in vec2 at; uniform sampler2D page; uniform mat3 turn; uniform vec4 lens; uniform int made; uniform vec3 kinds[9];
+        out vec4 colour;
+        void main() {
+            vec3 d = turn * vec3((at.x - lens.z) / lens.x, (at.y - lens.w) / lens.y, 1.);
+            vec2 uv = vec2(atan(d.y, d.x) / 6.2831853 + .5, .5 - atan(d.z, length(d.xy)) / 3.1415927);
+            colour = vec4(textureLod(page, uv, 0.).rgb, 1.);
+            if (made == 1) colour.rgb = mix(kinds[6], colour.rgb, .3);
+        }`],
+    // a photograph in its viewpoint
+    photo: [`layout(location=0) in vec3 p; uniform mat4 clip; uniform mat3 turn; uniform vec3 centre; uniform vec4 lens; uniform vec2 size;
+        out vec2 uv;
+        void main() {
+            uv = p.xy; vec3 d = vec3((p.xy * size - lens.zw) / lens.xy, 1.);
+            gl_Position = (clip * vec4(centre + turn * d, 1.)).xyww;
+        }`,
+        `in vec2 uv; uniform sampler2D page; uniform float alpha; uniform int made, change; uniform vec3 kinds[9]; out vec4 colour;
+        void main() {
+            vec4 t = texture(page, uv);
+            if (t.a < .03) discard;
+            colour = vec4(t.rgb, alpha);
+            if (made == 1) {
+                int k = change == 1 ? int(texelFetch(page, ivec2(uv * vec2(textureSize(page, 0))), 0).a * 17. - 6.6667 + .5) : 1;
+                colour.rgb = mix(kinds[clamp(k, 0, 8)], t.rgb, .3);
+            }
+        }`],
+    // furniture
+    clutter: [`layout(location=0) in vec3 p; layout(location=1) in vec2 place; uniform mat4 clip, moved;
+        out vec2 uv;
+        void main() { uv = place; gl_Position = clip * moved * vec4(p, 1.); }`,
+        `in vec2 uv; uniform sampler2D page; uniform float weight; uniform int made; uniform vec3 kinds[9]; out vec4 colour;
+        void main() {
+            vec4 t = texture(page, uv);
+            float a = clamp((t.a * 255. - 15.) / 240., 0., 1.);
+            if (a < .3) discard;
+            vec3 c = made == 1 ? mix(kinds[7], kinds[7] * dot(t.rgb, vec3(.2126, .7152, .0722)) * 2., .5) : t.rgb;
+            a *= max(weight, .001);
+            colour = vec4(c * a, a);
+        }`],
+    object: [`layout(location=0) in vec3 p; layout(location=1) in vec3 n; uniform mat4 clip; out vec3 normal;
+        void main() { normal = n; gl_Position = clip * vec4(p, 1.); }`,
+        `in vec3 normal; uniform vec3 albedo; uniform int made; uniform vec3 kinds[9]; out vec4 colour;
+        void main() { colour = vec4(made == 1 ? kinds[5] : albedo * (.75 + .25 * normalize(normal).z), 1.); }`],
+    show: [`layout(location=0) in vec3 p; out vec2 uv; void main() { gl_Position = vec4(p.xy, 0., 1.); uv = p.xy * .5 + .5; }`,
+        `in vec2 uv; uniform sampler2D shell, clutter; uniform int furniture; out vec4 colour;
+        void main() {
+            vec3 c = texture(shell, uv).rgb;
+            if (furniture == 1) { vec4 f = texture(clutter, uv); if (f.a > 0.) c = f.rgb / f.a; }
+            c = clamp(c, 0., 1.);
+            colour = vec4(mix(12.92 * c, 1.055 * pow(c, vec3(1. / 2.4)) - .055, step(.0031308, c)), 1.);
+        }`],
+};
+
+W.integers = new Set(['made', 'kind', 'furniture', 'change', 'shell', 'clutter']); // uniforms
+
+class Painter {
+    constructor(canvas) {
+        const gl = canvas.getContext('webgl2', {alpha: false, antialias: false, depth: false, preserveDrawingBuffer: true});
+        if (!gl) throw new Error('This browser has no WebGL 2, which the rooms are drawn with. Try another browser, or allow its hardware acceleration.');
+        this.gl = gl;
+        this.floats = gl.getExtension('EXT_color_buffer_float') || gl.getExtension('EXT_color_buffer_half_float');
+        this.programs = {};
+        for (const name in W.shaders) this.programs[name] = this.compile(name);
+        this.square = this.buffer(new Float32Array([-1, -1, 0, 1, -1, 0, -1, 1, 0, 1, 1, 0]), [[0, 3]]);
+        this.unit = this.buffer(new Float32Array([0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0]), [[0, 3]]);
+        this.empty = this.texture(new ImageData(1, 1));
+        this.counts = {};
+        this.texels = new Map(); // of each texture
+    }
+    compile(name) {
+        const gl = this.gl, program = gl.createProgram(), head = '#version 300 es\nprecision highp float; precision highp int;\n';
+        W.shaders[name].forEach((text, i) => {
+            const shader = gl.createShader(i ? gl.FRAGMENT_SHADER : gl.VERTEX_SHADER);
+            gl.shaderSource(shader, head + text);
+            gl.compileShader(shader);
+            if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS)) throw new Error(`${name}: ${gl.getShaderInfoLog(shader)}`);
+            gl.attachShader(program, shader);
+        });
+        gl.linkProgram(program);
+        if (!gl.getProgramParameter(program, gl.LINK_STATUS)) throw new Error(`${name}: ${gl.getProgramInfoLog(program)}`);
+        const places = {};
+        for (let i = 0; i < gl.getProgramParameter(program, gl.ACTIVE_UNIFORMS); i++) {
+            const key = gl.getActiveUniform(program, i).name.replace('[0]', '');
+            places[key] = gl.getUniformLocation(program, key);
+        }
+        return {program, places};
+    }
+    // layout: [[location, numbers], ...] of a corner
+    buffer(data, layout, elements) {
+        const gl = this.gl, array = gl.createVertexArray(), stride = 4 * layout.reduce((sum, l) => sum + l[1], 0);
+        gl.bindVertexArray(array);
+        gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer());
+        gl.bufferData(gl.ARRAY_BUFFER, data, gl.STATIC_DRAW);
+        let at = 0;
+        for (const [place, count] of layout) {
+            gl.enableVertexAttribArray(place);
+            gl.vertexAttribPointer(place, count, gl.FLOAT, false, stride, at);
+            at += 4 * count;
+        }
+        let index = null;
+        if (elements) {
+            index = gl.createBuffer();
+            gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, index);
+            gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, elements, gl.STATIC_DRAW);
+        }
+        gl.bindVertexArray(null);
+        return {array, index, count: elements ? elements.length : (4 * data.length) / stride};
+    }
+    texture(picture) {
+        const gl = this.gl, t = gl.createTexture();
+        gl.bindTexture(gl.TEXTURE_2D, t);
+        gl.pixelStorei(gl.UNPACK_PREMULTIPLY_ALPHA_WEBGL, false);
+        gl.pixelStorei(gl.UNPACK_COLORSPACE_CONVERSION_WEBGL, gl.NONE);
+        gl.texImage2D(gl.TEXTURE_2D, 0, gl.SRGB8_ALPHA8, gl.RGBA, gl.UNSIGNED_BYTE, picture);
+        gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.LINEAR);
+        gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.LINEAR);
+        gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_S, gl.CLAMP_TO_EDGE);
+        gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_T, gl.CLAMP_TO_EDGE);
+        const made = {texture: t, size: [picture.width, picture.height], bytes: 4 * picture.width * picture.height};
+        if (picture.close) picture.close();
+        return made;
+    }
+    drop(t) {
+        if (t) this.gl.deleteTexture(t.texture);
+    }
+    dropBuffer(b) {
+        if (!b) return;
+        this.gl.deleteVertexArray(b.array);
+    }
+    resize(width, height) {
+        if (this.width === width && this.height === height) return;
+        const gl = this.gl;
+        for (const b of this.targets || []) {
+            gl.deleteFramebuffer(b.frame);
+            gl.deleteTexture(b.colour);
+        }
+        if (this.depth) gl.deleteRenderbuffer(this.depth);
+        Object.assign(this, {width, height});
+        this.depth = gl.createRenderbuffer();
+        gl.bindRenderbuffer(gl.RENDERBUFFER, this.depth);
+        gl.renderbufferStorage(gl.RENDERBUFFER, gl.DEPTH24_STENCIL8, width, height);
+        this.targets = [0, 1].map(() => {
+            const colour = gl.createTexture(), frame = gl.createFramebuffer();
+            gl.bindTexture(gl.TEXTURE_2D, colour);
+            gl.texStorage2D(gl.TEXTURE_2D, 1, this.floats ? gl.RGBA16F : gl.SRGB8_ALPHA8, width, height);
+            gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.NEAREST);
+            gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.NEAREST);
+            gl.bindFramebuffer(gl.FRAMEBUFFER, frame);
+            gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, colour, 0);
+            gl.framebufferRenderbuffer(gl.FRAMEBUFFER, gl.DEPTH_STENCIL_ATTACHMENT, gl.RENDERBUFFER, this.depth);
+            return {colour, frame};
+        });
+    }
+    use(name, values) {
+        const gl = this.gl, {program, places} = this.programs[name];
+        gl.useProgram(program);
+        this.set(name, values);
+        return places;
+    }
+    set(name, values) {
+        const gl = this.gl, places = this.programs[name].places;
+        for (const key in values) {
+            const v = values[key], at = places[key];
+            if (at === undefined) continue;
+            if (key === 'kinds') gl.uniform3fv(at, v);
+            else if (W.integers.has(key)) gl.uniform1i(at, v);
+            else if (typeof v === 'number') gl.uniform1f(at, v);
+            else if (v.length === 2) gl.uniform2fv(at, v);
+            else if (v.length === 3) gl.uniform3fv(at, v);
+            else if (v.length === 4) gl.uniform4fv(at, v);
+            else if (v.length === 9) gl.uniformMatrix3fv(at, false, v);
+            else gl.uniformMatrix4fv(at, false, v);
+        }
+    }
+    bind(t) {
+        this.gl.bindTexture(this.gl.TEXTURE_2D, t.texture);
+        this.seen.set(t, t.bytes);
+    }
+    draw(buffer, first, count, strip) {
+        const gl = this.gl;
+        gl.bindVertexArray(buffer.array);
+        if (buffer.index) gl.drawElements(gl.TRIANGLES, count, gl.UNSIGNED_INT, 4 * first);
+        else gl.drawArrays(strip ? gl.TRIANGLE_STRIP : gl.TRIANGLES, first, count);
+        this.counts.calls++;
+        this.counts.triangles += count / 3;
+    }
+    // Draws the parts of a mesh of kind `place`, or with those of colour and of nearest texels, that have rule r.
+    faces(set, r, values, all) {
+        const kinds = {place: 0, edge: 1, colour: 2};
+        for (const d of set.draws) {
+            if (d.rule !== r || (!all && d.kind !== 'place')) continue;
+            const page = d.kind === 'colour' ? this.empty : set.pages[d.page];
+            if (!page) continue;
+            this.bind(page);
+            this.set('face', {...values, kind: kinds[d.kind], size: page.size});
+            this.draw(set.buffer, d.first, d.count);
+        }
+    }
+    /* p: what to draw:
+     *   camera, box (x y width height of the canvas), solid, sets: [first, second] viewpoint or null, share, vita, rules,
+     *   outdoors, light: {set, most}, clutter: [{texture, buffer, first, count, moved, weight}], photos: [{view, texture,
+     *   alpha, change}], objects, made (0, or 1: colours of origin), kinds, near, far */
+    paint(p) {
+        const gl = this.gl, {camera} = p, clip = W.clipMatrix(camera, p.near, p.far), values = {clip, made: p.made, kinds: p.kinds, most: 1};
+        this.seen = this.seen || new Map();
+        gl.bindFramebuffer(gl.FRAMEBUFFER, this.targets[0].frame);
+        gl.viewport(0, 0, this.width, this.height);
+        gl.enable(gl.SCISSOR_TEST);
+        gl.scissor(...p.box);
+        gl.activeTexture(gl.TEXTURE0);
+        gl.enable(gl.DEPTH_TEST);
+        gl.depthMask(true);
+        gl.stencilMask(255);
+        gl.colorMask(true, true, true, true);
+        gl.clearColor(0, 0, 0, 0);
+        gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT | gl.STENCIL_BUFFER_BIT);
+        gl.enable(gl.CULL_FACE);
+        // what hides what
+        gl.depthFunc(gl.LESS);
+        gl.colorMask(false, false, false, false);
+        gl.enable(gl.POLYGON_OFFSET_FILL);
+        gl.polygonOffset(1, 2);
+        this.use('solid', {clip});
+        this.draw(p.solid, 0, p.solid.count);
+        gl.disable(gl.POLYGON_OFFSET_FILL);
+        gl.colorMask(true, true, true, true);
+        gl.depthMask(false);
+        gl.depthFunc(gl.LEQUAL);
+        // faces
+        gl.enable(gl.STENCIL_TEST);
+        const [a, b] = p.sets;
+        this.use('face', values);
+        for (let r = 0; r < p.rules; r++) {
+            gl.disable(gl.BLEND);
+            gl.stencilFunc(gl.EQUAL, 0, 255);
+            gl.stencilOp(gl.KEEP, gl.KEEP, gl.INCR);
+            if (a) this.faces(a, r, {alpha: 1 - p.share});
+            if (b && (p.share > 0 || !a)) {
+                if (a && !r) {
+                    gl.enable(gl.BLEND);
+                    gl.blendFuncSeparate(gl.ONE_MINUS_DST_ALPHA, gl.DST_ALPHA, gl.ONE, gl.ZERO);
+                    gl.stencilFunc(gl.GREATER, 2, 255);
+                    gl.stencilOp(gl.KEEP, gl.KEEP, gl.REPLACE);
+                }
+                this.faces(b, r, {alpha: 1});
+            }
+            gl.disable(gl.BLEND);
+            gl.stencilFunc(gl.EQUAL, 0, 255);
+            gl.stencilOp(gl.KEEP, gl.KEEP, gl.INCR);
+            if (p.vita) this.faces(p.vita, r, {alpha: 1}, true);
+        }
+        if (p.light) { // once in each pixel
+            gl.stencilMask(128);
+            gl.stencilFunc(gl.NOTEQUAL, 128, 128);
+            gl.stencilOp(gl.KEEP, gl.KEEP, gl.REPLACE);
+            gl.enable(gl.BLEND);
+            gl.blendFunc(gl.DST_COLOR, gl.ZERO);
+            for (let r = 0; r < p.rules; r++) this.faces(p.light.set, r, {alpha: 1, most: p.light.most, made: p.made ? 2 : 0, kinds: p.made ? p.relitKinds : p.kinds}, false);
+            gl.disable(gl.BLEND);
+        }
+        gl.disable(gl.STENCIL_TEST);
+        gl.disable(gl.CULL_FACE);
+        if (p.objects) {
+            gl.depthMask(true);
+            for (const o of p.objects) {
+                this.use('object', {...values, albedo: o.albedo});
+                this.draw(o.buffer, 0, o.buffer.count);
+            }
+            gl.depthMask(false);
+        }
+        if (p.outdoors) {
+            this.bind(p.outdoors);
+            const [fx, fy, cx, cy] = camera.lens, w = 2 / camera.width, h = 2 / camera.height, t = camera.turn;
+            this.use('sky', {...values, lens: [fx * w, -fy * h, cx * w - 1, 1 - cy * h], turn: t});
+            this.draw(this.square, 0, 4, true);
+        }
+        if (p.clutter.length) this.paintClutter(p, values);
+        gl.disable(gl.DEPTH_TEST);
+        gl.activeTexture(gl.TEXTURE1);
+        gl.bindTexture(gl.TEXTURE_2D, this.targets[1].colour);
+        gl.activeTexture(gl.TEXTURE0);
+        if (p.photos.length) this.paintPhotos(p, values);
+        gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+        gl.bindTexture(gl.TEXTURE_2D, this.targets[0].colour);
+        this.use('show', {shell: 0, clutter: 1, furniture: p.clutter.length && !p.photos.length ? 1 : 0});
+        this.draw(this.square, 0, 4, true);
+    }
+    paintClutter(p, values) {
+        const gl = this.gl;
+        gl.bindFramebuffer(gl.FRAMEBUFFER, this.targets[1].frame);
+        gl.clear(gl.COLOR_BUFFER_BIT);
+        for (const pass of [0, 1]) {
+            gl.colorMask(pass, pass, pass, pass);
+            gl.depthMask(!pass);
+            if (pass) {
+                gl.enable(gl.BLEND);
+                gl.blendFunc(gl.ONE, gl.ONE);
+            }
+            // near the first surface counts as on it: as if it were 3 % nearer
+            const clip = pass ? W.clipMatrix(p.camera, p.near * 1.03, p.far * 1.03) : values.clip;
+            this.use('clutter', {...values, clip});
+            for (const c of p.clutter) {
+                if (!c.count) continue;
+                this.bind(c.texture);
+                this.set('clutter', {moved: c.moved, weight: c.weight});
+                this.draw(c.buffer, c.first, c.count);
+            }
+        }
+        gl.disable(gl.BLEND);
+    }
+    // Over everything, furniture too: that is laid over the faces first.
+    paintPhotos(p, values) {
+        const gl = this.gl;
+        gl.bindFramebuffer(gl.FRAMEBUFFER, this.targets[0].frame);
+        gl.enable(gl.BLEND);
+        gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
+        if (p.clutter.length) {
+            gl.bindTexture(gl.TEXTURE_2D, this.targets[1].colour);
+            this.use('lay', {shell: 0});
+            this.draw(this.square, 0, 4, true);
+        }
+        for (const photo of p.photos) {
+            this.bind(photo.texture);
+            const v = photo.view;
+            this.use('photo', {...values, turn: v.turn, centre: p.camera.centre, lens: v.lens, size: [v.width, v.height],
+                alpha: photo.alpha, change: photo.change ? 1 : 0});
+            this.draw(this.unit, 0, 4, true);
+        }
+        gl.disable(gl.BLEND);
+    }
+}
+W.shaders.lay = [W.shaders.show[0],
+    `in vec2 uv; uniform sampler2D shell; out vec4 colour;
+    void main() { vec4 f = texture(shell, uv); if (f.a <= 0.) discard; colour = vec4(f.rgb / f.a, 1.); }`];
+W.Painter = Painter;
