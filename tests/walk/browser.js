@@ -80,6 +80,18 @@ const open = async (url, {width = 1280, height = 720, mobile = false} = {}) => {
         await mouse('mousePressed', x, y, 1);
         await mouse('mouseReleased', x, y);
     };
-    return {send, evaluate, screenshot, key, mouse, click, close, errors, begin};
+    // CPU seconds of all its processes until now
+    const cpu = () => {
+        let ticks = 0;
+        for (const pid of fs.readdirSync('/proc')) {
+            if (!/^\d+$/.test(pid)) continue;
+            try {
+                const w = fs.readFileSync(`/proc/${pid}/stat`, 'utf8').replace(/^.*\) /, '').split(' ');
+                if (+w[2] === child.pid) ticks += +w[11] + +w[12];
+            } catch (e) { /* it ended */ }
+        }
+        return ticks / 100;
+    };
+    return {cpu, send, evaluate, screenshot, key, mouse, click, close, errors, begin};
 };
 module.exports = {open, find};

@@ -229,7 +229,7 @@ W.atlasMesh = (model, atlas, free, wanted = () => true) => {
             for (const polygon of W.limited(face, rule)) {
                 if (polygon.length < 3) continue;
                 if (rule.kind === 'colour') {
-                    if (free) pieces.add(r, 'colour', 0, polygon.map((p) => [...p, 0, 0, 1]), [...rule.rgb, 1]);
+                    if (free) pieces.add(r, 'colour', 0, polygon.map((p) => [...p, 0, 0, 1]), [...W.squared(rule.rgb), 1]);
                     continue;
                 }
                 if (rule.kind === 'edge' && !free) continue;

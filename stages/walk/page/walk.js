@@ -2,7 +2,7 @@
 'use strict';
 
 const $ = (id) => document.getElementById(id);
-const FIELD = 1.31, MOST_BYTES = 400e6, CLUTTER_VIEWS = 12;
+const FIELD = 1.31, MOST_BYTES = 400e6, CLUTTER_VIEWS = 12, MOVING_VIEWS = 7;
 
 W.say = (text, bad) => {
     $('told').textContent = text || '';
@@ -106,7 +106,7 @@ const modelOf = (m) => {
         rules: Math.max(1, ...model.faces.map((f) => f.rules.length)),
         solid: painter.buffer(W.solidMesh(model), [[0, 3]]), vita: freeMesh(model, scene.vita),
         aboveSolid: () => painter.buffer(W.solidMesh(model, inside), [[0, 3]]), aboveVita: () => freeMesh(model, scene.vita, inside),
-        objects: model.objects.map((o) => ({albedo: o.rgb, buffer: painter.buffer(new Float32Array(o.corners), [[0, 3], [1, 3]])})),
+        objects: model.objects.map((o) => ({albedo: W.squared(o.rgb), buffer: painter.buffer(new Float32Array(o.corners), [[0, 3], [1, 3]])})),
         pair: {places: [-1, -1], t: 0}, clutter: [],
     };
     return models[m];
@@ -224,7 +224,7 @@ const choose = (camera, m, fine) => {
         return;
     }
     made.pair = W.choosePair(scene, model, camera, fine);
-    made.clutter = scene.clutter ? W.chooseClutter(scene, camera, W.clutterPlaces(model, camera, fine), CLUTTER_VIEWS) : [];
+    made.clutter = scene.clutter ? W.chooseClutter(scene, camera, W.clutterPlaces(model, camera, fine), fine ? CLUTTER_VIEWS : MOVING_VIEWS) : [];
 };
 
 const eyeCamera = (width, height) => {
@@ -673,9 +673,9 @@ const start = async () => {
         scene.models.forEach(W.prepareModel);
         S.size = Math.max(...[0, 1].map((k) => scene.models[0].high[k] - scene.models[0].low[k]));
         S.frame = 0;
-        kinds = new Float32Array(scene.made.flatMap((k) => k.rgb.map((x) => (x / 255) ** 2.2)));
+        kinds = new Float32Array(scene.made.flatMap((k) => k.rgb.map((x) => (x / 255) ** 2)));
         relitKinds = kinds.slice();
-        relitKinds.set([1.6, 1.1, 0.05]);
+        relitKinds.set([1.6, 1.1, 0.05]); // the first one: where light changes
         for (const p of scene.places) places.push({texture: null, photo: null, asked: {}, used: 0, meshes: {}, changes: {}, cells: {}});
         plan = new W.Plan($('plan'), scene, goToPlan, enter);
         build();
@@ -777,6 +777,6 @@ window.walk = {
         touch();
         return result;
     },
-    state: S, scene: () => scene,
+    state: S, scene: () => scene, get painter() { return painter; }, get painter() { return painter; }, get painter() { return painter; },
 };
 start();
