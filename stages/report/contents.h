@@ -116,7 +116,7 @@ struct contents {
     struct photo_list photos;
     struct camera_set views;
     struct lens_list lenses;
-    bool has_photos, has_views, has_remodel_page; /* remodel/index.html exists */
+    bool has_photos, has_views, has_remodel_page, has_walk; /* remodel/index.html, walk/index.html exist */
 
     struct photo_card *photo_cards; /* photos.count */
     struct view_card *view_cards;   /* views.view_count */

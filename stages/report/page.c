@@ -33,6 +33,7 @@ static void put_head(FILE *to, const char *scene, const struct contents *c)
     if (c->model_count) fputs("<a href=\"#model\">Model</a>", to);
     if (c->thing_sheet || c->thing_plan) fputs("<a href=\"#things\">Things</a>", to);
     if (c->has_remodel_page) fputs("<a href=\"remodel/index.html\">Remodelled rooms</a>", to);
+    if (c->has_walk) fputs("<a href=\"walk/index.html\">Walk through the rooms</a>", to);
     if (c->texture_count) fputs("<a href=\"#textures\">Textures</a>", to);
     if (light_contents_any(&c->light)) fputs("<a href=\"#light\">Light</a>", to);
     if (c->relit_count) fputs("<a href=\"#relit\">Light of changes</a>", to);

@@ -13,6 +13,7 @@ static const char *steps_before(struct graph *g, const struct scene_facts *f)
         const char *step = graph_step_of(g, f->products.names[i]);
         if (step && strcmp(f->products.names[i], "parallax")) steps = graph_text(g, "%s %s", steps, step);
     }
+    if (f->has_model && scene_asks_for(f, "remodel")) steps = graph_text(g, "%s walk", steps);
     if (f->films.count || *f->choose) steps = graph_text(g, "%s video", steps);
     if (f->holds_out || *scene_setting("TRUTH")) steps = graph_text(g, "%s evaluate", steps);
     return graph_text(g, "%s pan_scan", steps);

@@ -207,7 +207,7 @@ W.limited = (face, rule) => {
 // Whether a face bounds a room from inside, so that a look from above needs it.
 W.isInside = (model, face) => {
     if (face.n[2] < -0.5) return false; // ceilings
-    if (face.n[2] > 0.5) return true;
+    if (face.n[2] > 0.5) return face.corners[0][2] < model.low[2] + 0.8 * (model.high[2] - model.low[2]);
     const n = face.corners.length, middle = face.corners.reduce((s, p) => W.add(s, p, 1 / n), [0, 0, 0]);
     const before = W.add(middle, face.n, 0.02 * (model.high[2] - model.low[2]));
     return !model.rooms.length || model.rooms.some((r) => W.insidePolygon(r.corners.flat(), before[0], before[1])) ||

@@ -169,6 +169,7 @@ const photosAt = (camera, m, light) => {
     if (!photo) return [];
     const own = photo.map((v) => ({texture: v.texture, view: v.view, alpha}));
     if (!model.edit) return own;
+    if (alpha < 1) return []; // what changed must cover the photograph, not mix with it
     if (light && model.light) {
         const relit = changesOf(`light-${model.edit}`, best);
         return relit ? own.map((v, k) => relit[k] && {...v, texture: relit[k], relit: true}).filter((v) => v) : [];

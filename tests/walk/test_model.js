@@ -1,0 +1,137 @@
+// node test_model.js FOLDER - the page's scripts without a browser: rays, weights of viewpoints, pieces of textures,
+// furniture, against values that follow from geometry.
+'use strict';
+const fs = require('fs');
+const path = require('path');
+const assert = require('assert');
+const code = ['space.js', 'model.js'].map((f) => fs.readFileSync(path.join(process.argv[2], f), 'utf8')).join('\n');
+const W = new Function(`${code}; return W;`)();
+const near = (a, b, e = 1e-6) => assert(Math.abs(a - b) <= e, `${a} is not ${b}`);
+
+// a room of 4 x 3 x 2.5 seen from inside: 6 faces whose normals point into it
+const room = () => {
+    const v = [], faces = [];
+    for (const z of [0, 2.5]) for (const y of [0, 3]) for (const x of [0, 4]) v.push(x, y, z);
+    const quads = [[[0, 1, 3, 2], [0, 0, 1], 0, 'floor'], [[4, 6, 7, 5], [0, 0, -1], -2.5, 'ceiling'], [[0, 4, 5, 1], [0, 1, 0], 0, 'south/in'],
+        [[2, 3, 7, 6], [0, -1, 0], -3, 'north/in'], [[0, 2, 6, 4], [1, 0, 0], 0, 'west/in'], [[1, 5, 7, 3], [-1, 0, 0], -4, 'east/in']];
+    quads.forEach(([q, n, d, name], i) => faces.push({id: i + 1, name, n, d, pane: 0, shown: 1, area: 1,
+        tris: [q[0], q[1], q[2], q[0], q[2], q[3]], rules: [{kind: 'place', from: i + 1, m: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0]}]}));
+    const model = {vertices: v, faces, rooms: [{name: 'hall', floor: 0, corners: [[0, 0], [4, 0], [4, 3], [0, 3]]}], things: [], zones: [], placed: []};
+    W.prepareModel(model);
+    return model;
+};
+const lookAt = (centre, heading) => W.camera(centre, heading, 0, 100, 100, Math.PI / 2);
+const sceneOf = (model, centres) => {
+    const views = [], places = [];
+    centres.forEach((centre, i) => {
+        places.push({photo: `p${i}`, centre, first: views.length, count: 4});
+        for (let k = 0; k < 4; k++) views.push({...lookAt(centre, (k * Math.PI) / 2), name: `p${i}@${k}`});
+    });
+    return {views, places, models: [model]};
+};
+const tests = {
+    a_ray_meets_the_wall_where_it_stands() {
+        const hit = W.hit(room(), [1, 1, 1], [1, 0, 0]);
+        near(hit.t, 3);
+        assert.strictEqual(hit.face.name, 'east/in');
+        near(W.hit(room(), [1, 1, 1], W.unit([0, -1, 1])).t, Math.SQRT2);
+        assert(!W.blocked(room(), [1, 1, 1], [1, 0, 0], 2.999) && W.blocked(room(), [1, 1, 1], [1, 0, 0], 3.001));
+    },
+    a_point_is_drawn_where_its_pixel_is() {
+        const c = {centre: [1, 2, 1.5], turn: W.turnOf(0.7, -0.2), lens: [90, 80, 47, 33], width: 100, height: 70};
+        const p = W.add(c.centre, W.rayOf(c, 20, 60), 2.5), m = W.clipMatrix(c, 0.1, 10), q = [...p, 1];
+        near(W.project(c, p)[0], 20);
+        near(W.project(c, p)[1], 60);
+        const clip = [0, 1, 2, 3].map((r) => [0, 1, 2, 3].reduce((s, k) => s + m[4 * k + r] * q[k], 0));
+        near((clip[0] / clip[3] + 1) / 2, 0.2, 1e-5);
+        near((1 - clip[1] / clip[3]) / 2, 60 / 70, 1e-5);
+        near(clip[3], 2.5, 1e-5);
+    },
+    in_a_viewpoint_it_has_all_the_weight() {
+        const model = room(), scene = sceneOf(model, [[1, 1, 1.5], [3, 1, 1.5], [2, 2.5, 1.5]]);
+        const pair = W.choosePair(scene, model, lookAt([3, 1, 1.5], Math.PI / 2), true);
+        assert.strictEqual(pair.places[0], 1);
+        near(pair.t, 0);
+    },
+    halfway_between_two_they_share() {
+        const model = room(), scene = sceneOf(model, [[1, 1.5, 1.25], [3, 1.5, 1.25], [0.2, 0.2, 0.3]]);
+        const pair = W.choosePair(scene, model, lookAt([2, 1.5, 1.25], Math.PI / 2), true); // both see the same, mirrored
+        assert.deepStrictEqual([...pair.places].sort(), [0, 1]);
+        near(pair.t, 0.5, 1e-9);
+    },
+    weights_change_without_a_jump() {
+        const model = room(), scene = sceneOf(model, [[1, 1, 1.5], [3, 1, 1.5], [2, 2.5, 1.5], [0.5, 2.5, 1.5]]);
+        let last = null;
+        for (let x = 0.6; x < 3.6; x += 0.01) {
+            const pair = W.choosePair(scene, model, lookAt([x, 1.3, 1.5], 1), true), shares = scene.places.map(() => 0);
+            pair.places.forEach((i, k) => { if (i >= 0) shares[i] += k ? pair.t : 1 - pair.t; });
+            if (last) shares.forEach((s, i) => assert(Math.abs(s - last[i]) < 0.12, `the share of ${i} jumps at ${x}: ${last[i]} to ${s}`));
+            last = shares;
+        }
+    },
+    a_view_behind_a_wall_draws_no_furniture() {
+        const model = room(), scene = sceneOf(model, [[1, 1.5, 1.25], [6, 1.5, 1.25]]);
+        const camera = lookAt([2, 1.5, 1.25], Math.PI), chosen = W.chooseClutter(scene, camera, W.clutterPlaces(model, camera, true), 12);
+        assert(chosen.length > 0 && chosen.every(([i]) => i < 4));
+        near(chosen.reduce((s, c) => s + c[1], 0), 1);
+    },
+    pieces_cover_a_face_once() {
+        const model = room(); // the floor in two tiles of 2 x 3 m, 100 texels a metre, cut at x = 2
+        const atlas = {pages: [[512, 512]], tiles: [[1, 0, 0, 0, 200, 300, [100, 0, 0, 0, 0, 100, 0, 0, 0, 0, 0, 1]],
+            [1, 0, 200, 0, 200, 300, [100, 0, 0, 0, 0, 100, 0, 0, 0, 0, 0, 1]]]};
+        const {data, draws} = W.atlasMesh(model, atlas, true);
+        let area = 0;
+        for (let k = 0; k < data.length; k += 30) {
+            const p = [0, 10, 20].map((c) => [...data.subarray(k + c, k + c + 3)]);
+            area += W.length(W.cross(W.add(p[1], p[0], -1), W.add(p[2], p[0], -1))) / 2;
+            for (const c of [0, 10, 20]) near(data[k + c + 3], 100 * data[k + c], 1e-3); // the place in the page is that of the point
+        }
+        near(area, 12, 1e-4);
+        assert.strictEqual(draws.length, 1);
+    },
+    limits_of_a_rule_cut_it() {
+        const model = room();
+        model.faces[0].rules[0].within = [1, 1, 0, 3, 1, 0, 3, 2, 0, 1, 2, 0];
+        const area = W.limited(model.faces[0], model.faces[0].rules[0]).reduce((s, p) => {
+            for (let k = 1; k + 1 < p.length; k++) s += W.length(W.cross(W.add(p[k], p[0], -1), W.add(p[k + 1], p[0], -1))) / 2;
+            return s;
+        }, 0);
+        near(area, 2, 1e-4);
+    },
+    furniture_stands_at_its_depth_and_goes_with_its_edit() {
+        const model = room(), scene = {...sceneOf(model, [[0.5, 1.5, 1.25]]), grid: 50}, view = scene.views[0];
+        const bytes = new Uint8Array(27); // 3 x 3 points at 1 / z = 0.5, thing 1
+        for (let k = 0; k < 9; k++) {
+            bytes[k] = bytes[9 + k] = 255;
+            bytes[18 + k] = 1;
+        }
+        const grid = W.clutterGrid(scene, view, {columns: 3, rows: 3, most: 0.5}, bytes);
+        for (let k = 0; k < 9; k++) near(grid.points[5 * k], 2.5, 1e-5);
+        assert.strictEqual(grid.cells.length, 4);
+        model.things = ['stays'];
+        assert.strictEqual(W.clutterCells(model, grid, 0).length, 24);
+        model.things = ['gone'];
+        assert.strictEqual(W.clutterCells(model, grid, 0).length, 0);
+        assert.strictEqual(W.clutterCells(model, grid, 1).length, 24);
+        model.things = ['stays'];
+        model.zones = [{keep: 0, low: 0, high: 2.5, corners: [2, 0, 4, 0, 4, 3, 2, 3]}];
+        assert(W.clutterCells(model, grid, 0).length < 24);
+        model.things = ['kept'];
+        assert.strictEqual(W.clutterCells(model, grid, 0).length, 24);
+    },
+    from_above_ceilings_are_off() {
+        const inside = room().faces.filter((f) => W.isInside(room(), f)).map((f) => f.name);
+        assert(!inside.includes('ceiling') && inside.includes('floor') && inside.includes('north/in'));
+    },
+};
+let failed = 0;
+for (const name in tests) {
+    try {
+        tests[name]();
+        console.log(`ok ${name}`);
+    } catch (e) {
+        failed++;
+        console.log(`not ok ${name}: ${e.message}`);
+    }
+}
+process.exit(failed ? 1 : 0);

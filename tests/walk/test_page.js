@@ -1,0 +1,149 @@
+// node test_page.js FOLDER [--at EDIT PICTURES DB] [--between EDIT CAMERAS PICTURES DB] - opens a walk in Chromium.
+//
+// Alone: the page starts, keys and clicks do what they say. --at: what the walk shows in viewpoints after an edit is what
+// render_model draws there, PICTURES/VIEW.jpg. --between: the same of given cameras, a COLMAP text model in the model's
+// frame, and PICTURES/NAME.jpg; EDIT "": the unedited rooms. DB: the least PSNR. The console stays empty in each case.
+'use strict';
+const fs = require('fs');
+const path = require('path');
+const {open} = require('./browser.js');
+const folder = process.argv[2];
+const words = (option, count) => {
+    const at = process.argv.indexOf(option);
+    return at < 0 ? null : process.argv.slice(at + 1, at + 1 + count);
+};
+const at = words('--at', 3), between = words('--between', 4);
+let failed = 0;
+const check = (name, fine, why) => {
+    console.log(`${fine ? 'ok' : 'not ok'} ${name}${fine ? '' : `: ${why}`}`);
+    failed += !fine;
+};
+
+const readCameras = (cameras) => {
+    const lenses = {}, list = [];
+    for (const line of fs.readFileSync(path.join(cameras, 'cameras.txt'), 'utf8').split('\n')) {
+        const w = line.split(' ');
+        if (w[1] === 'PINHOLE') lenses[w[0]] = {width: +w[2], height: +w[3], lens: w.slice(4, 8).map(Number)};
+    }
+    for (const line of fs.readFileSync(path.join(cameras, 'images.txt'), 'utf8').split('\n')) {
+        const w = line.split(' ');
+        if (line[0] === '#' || w.length < 10) continue;
+        const [a, x, y, z] = w.slice(1, 5).map(Number), t = w.slice(5, 8).map(Number);
+        const turn = [1 - 2 * (y * y + z * z), 2 * (x * y - a * z), 2 * (x * z + a * y), 2 * (x * y + a * z), 1 - 2 * (x * x + z * z),
+            2 * (y * z - a * x), 2 * (x * z - a * y), 2 * (y * z + a * x), 1 - 2 * (x * x + y * y)];
+        const centre = [0, 1, 2].map((k) => -(turn[k] * t[0] + turn[3 + k] * t[1] + turn[6 + k] * t[2]));
+        list.push({name: w[9].replace(/\.[a-z]+$/, ''), camera: {...lenses[w[8]], turn, centre}});
+    }
+    return list;
+};
+
+// The mean squared difference of two pictures, computed in the page, which has the decoders. sources: what the second
+// one's pixels come from; where that is nothing they do not count.
+const compare = (browser, url, file, sources) => {
+    const text = (f) => JSON.stringify(f && fs.existsSync(f) ? `,${fs.readFileSync(f).toString('base64')}` : '');
+    return browser.evaluate(`(async () => {
+        const pixels = async (url) => {
+            const b = await createImageBitmap(new Blob([Uint8Array.from(atob(url.split(',')[1]), (c) => c.charCodeAt(0))]));
+            const c = new OffscreenCanvas(b.width, b.height).getContext('2d');
+            c.drawImage(b, 0, 0);
+            return c.getImageData(0, 0, b.width, b.height).data;
+        };
+        const a = await pixels(${JSON.stringify(url)}), b = await pixels(${text(file)}), made = ${text(sources)} && await pixels(${text(sources)});
+        if (a.length !== b.length) return -1;
+        let sum = 0, count = 0;
+        for (let i = 0; i < a.length; i += 4) {
+            if (made && made[i] + made[i + 1] + made[i + 2] === 0) continue;
+            count += 3;
+            for (let c = i; c < i + 3; c++) sum += (a[c] - b[c]) ** 2;
+        }
+        return sum / count;
+    })()`);
+};
+
+const main = async () => {
+    const browser = await open(`file://${path.resolve(folder)}/index.html`);
+    try {
+        const first = await browser.evaluate('walk.ready()');
+        console.log(`# first picture after ${Math.round(first)} ms`);
+        const size = fs.readdirSync(folder).reduce((s, f) => s + fs.statSync(path.join(folder, f)).size, 0);
+        console.log(`# ${(size / 1e6).toFixed(1)} MB on disk`);
+        check('the_walk_is_smaller_than_40_MB', size < 40e6, `${size} bytes`);
+        const lit = await browser.evaluate(`(async () => { const v = walk.scene().views[0], r = await walk.picture({camera: v}); const b = await (await fetch(r.url)).blob(),
+            p = await createImageBitmap(b), c = new OffscreenCanvas(p.width, p.height).getContext('2d'); c.drawImage(p, 0, 0); const d = c.getImageData(0, 0, p.width, p.height).data; let n = 0; for (let i = 0; i < d.length; i += 4) n += d[i] + d[i + 1] + d[i + 2] > 30; return n / (p.width * p.height); })()`);
+        check('a_viewpoint_is_filled', lit > 0.95, `${(100 * lit).toFixed(1)} % of its pixels show something`);
+        const look = async (name, spec, file, least) => {
+            const picture = await browser.evaluate(`walk.picture(${JSON.stringify(spec)})`);
+            const e = await compare(browser, picture.url, file, file.replace(/\.jpg$/, '-sources.png')), dB = 10 * Math.log10(255 ** 2 / e);
+            console.log(`# ${name}: ${dB.toFixed(1)} dB; ${picture.counts.calls} draw calls, ${(picture.bytes / 1e6).toFixed(1)} MB of textures`);
+            check(`${name}_is_what_render_model_draws`, e >= 0 && dB >= +least, `${dB.toFixed(1)} dB, wanted ${least}`);
+        };
+        if (at) {
+            const views = await browser.evaluate('walk.scene().views'), [edit, pictures, least] = at;
+            for (const v of views) {
+                const file = path.join(pictures, `${v.name}.jpg`);
+                if (fs.existsSync(file)) await look(v.name, {camera: v, edit}, file, least);
+            }
+        }
+        if (between) {
+            const [edit, cameras, pictures, least] = between; // given cameras are drawn without the photo itself
+            for (const {name, camera} of readCameras(cameras)) await look(name, {camera, edit: edit || 0, photos: false}, path.join(pictures, `${name}.jpg`), least);
+        }
+        if (!at && !between) {
+            const state = (key) => browser.evaluate(`JSON.stringify(walk.state.${key})`).then((t) => t && JSON.parse(t));
+            const wait = (ms) => new Promise((take) => setTimeout(take, ms));
+            await browser.evaluate('document.getElementById("rooms").focus()');
+            const was = await state('eye');
+            await browser.send('Input.dispatchKeyEvent', {type: 'keyDown', key: 'ArrowLeft', code: 'ArrowLeft'});
+            await wait(700);
+            await browser.send('Input.dispatchKeyEvent', {type: 'keyUp', key: 'ArrowLeft', code: 'ArrowLeft'});
+            check('the_left_arrow_turns_left', (await state('eye')).heading > was.heading, 'the heading is the same');
+            await browser.mouse('mousePressed', 600, 400, 1);
+            await browser.mouse('mouseMoved', 700, 420, 1);
+            await browser.mouse('mouseReleased', 700, 420);
+            await wait(100);
+            check('dragging_to_the_right_turns_left', (await state('eye')).heading > was.heading, 'the heading is the same');
+            const count = await browser.evaluate('walk.scene().models.length');
+            const last = Math.min(9, count - 1);
+            await browser.key(`${last}`);
+            check('a_digit_chooses_an_edit', (await state('edit')) === last, await state('edit'));
+            await browser.key('b');
+            check('b_compares', await state('compare'), 'no comparison');
+            const split = await state('split');
+            await browser.key(']');
+            check('a_bracket_moves_the_border', (await state('split')) > split, await state('split'));
+            await browser.key('Escape');
+            await browser.key('c');
+            check('c_shows_the_origin_with_its_legend', await browser.evaluate('!document.getElementById("legend").hidden && /another photograph/.test(document.getElementById("legend").textContent)'), 'no legend');
+            await browser.key('c');
+            await browser.key('m');
+            await browser.key('Enter');
+            check('enter_measures_a_surface', /(m²|square units)/.test(await browser.evaluate('document.getElementById("told").textContent')), await browser.evaluate('document.getElementById("told").textContent'));
+            await browser.key('m');
+            await browser.key('o');
+            check('o_looks_from_above', await state('above'), 'not from above');
+            await browser.key('o');
+            const before = (await state('eye')).centre;
+            await browser.key('n');
+            await wait(200);
+            await browser.evaluate('walk.ready()');
+            check('n_goes_to_a_photograph', (await state('move')) || (await state('eye')).centre.join() !== before.join(), 'nothing moves');
+            const names = await browser.evaluate('[...document.querySelectorAll("button")].every((b) => b.textContent.trim() || b.getAttribute("aria-label"))');
+            check('every_button_has_a_name', names, 'a button has none');
+        }
+        check('the_console_is_empty', !browser.errors.length, browser.errors.join(' | '));
+        if (process.env.WALK_SPEED) {
+            await browser.evaluate('walk.speed(12, 1280, 720)');
+            const begin = browser.cpu(), r = await browser.evaluate('walk.speed(24, 1280, 720)'), cpu = (browser.cpu() - begin) / 48;
+            const area = 1280 * 720;
+            console.log(`# 1280 x 720 without a GPU: ${r.fps.toFixed(1)} frames a second as measured, ${cpu.toFixed(3)} core-seconds a frame, so ${(2 / cpu).toFixed(1)} a second on 2 free cores`);
+            console.log(`# a frame: ${r.calls.toFixed(0)} draw calls, ${r.triangles.toFixed(0)} triangles, ${(r.bytes / 1e6).toFixed(1)} MB of textures, about ${(9 * area / 1e6).toFixed(0)} million texels and ${(area * 8 * 10 / 1e6).toFixed(0)} MB of pixels read and written`);
+        }
+    } finally {
+        await browser.close();
+    }
+    process.exit(failed ? 1 : 0);
+};
+main().catch((e) => {
+    console.log(`not ok the_page: ${e.message}`);
+    process.exit(1);
+});
