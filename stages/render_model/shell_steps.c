@@ -4,8 +4,8 @@
  * A face takes its rules in order. A place in the unedited model is looked up in the atlases of the two viewpoints, and
  * in the next pass in the VITA. Only pages of tiles that the picture may show are read.
  *
- * The light on a new surface is not known before irradiance is: common/texture/radiance_median.c guesses it, from texels
- * that some view shows. */
+ * The light on a new surface is not known before irradiance is: common/texture/radiance_median.c guesses it, from
+ * texels that some view shows. */
 #include <math.h>
 #include <stdlib.h>
 

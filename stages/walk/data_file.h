@@ -1,6 +1,7 @@
 /* data_file.h - a script file that hands data to the page: walk_take("NAME", {...});
  *
- * A page that was opened from disk may neither fetch files nor use picture files as textures, but it may load scripts. */
+ * A page that was opened from disk may neither fetch files nor use picture files as textures, but it may load
+ * scripts. */
 #ifndef REMODEL_WALK_DATA_FILE_H
 #define REMODEL_WALK_DATA_FILE_H
 

@@ -1,8 +1,8 @@
 /* view_texture.c - see view_texture.h.
  *
- * The furniture of a view is drawn as a mesh over a grid of its pixels. A point of the grid has the depth of the nearest
- * pixel of furniture within a cell of it, so that all cells that hold such a pixel have four corners; how much of a
- * pixel is furniture, its alpha, cuts the outline. */
+ * The furniture of a view is drawn as a mesh over a grid of its pixels. A point of the grid has the depth of the
+ * nearest pixel of furniture within a cell of it, so that all cells that hold such a pixel have four corners; how much
+ * of a pixel is furniture, its alpha, cuts the outline. */
 #include "stages/walk/view_texture.h"
 
 #include <libdeflate.h>

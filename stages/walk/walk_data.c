@@ -139,8 +139,8 @@ static bool find_picture(char path[FILE_PATH], const char *folder, enum product_
     return !product_path_in(path, folder, id, &(struct product_key){.name = view}, err) && path_is_file(path);
 }
 
-/* The pictures of an edit from a photo's views: changed is the folder of those that `make remodel` drew, or of the relit
- * ones. A photo without any gets no file. */
+/* The pictures of an edit from a photo's views; folder: of those that `make remodel` drew, or of the relit ones. A
+ * photo without any gets no file. */
 static enum status write_changes(const struct data_job *j, const struct walk_viewpoint *p, const char *kind,
                                  const char *folder, bool relit, bool *any, struct err *err)
 {

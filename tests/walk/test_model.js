@@ -11,12 +11,33 @@ const near = (a, b, e = 1e-6) => assert(Math.abs(a - b) <= e, `${a} is not ${b}`
 // a room of 4 x 3 x 2.5 seen from inside: 6 faces whose normals point into it
 const room = () => {
     const v = [], faces = [];
-    for (const z of [0, 2.5]) for (const y of [0, 3]) for (const x of [0, 4]) v.push(x, y, z);
-    const quads = [[[0, 1, 3, 2], [0, 0, 1], 0, 'floor'], [[4, 6, 7, 5], [0, 0, -1], -2.5, 'ceiling'], [[0, 4, 5, 1], [0, 1, 0], 0, 'south/in'],
-        [[2, 3, 7, 6], [0, -1, 0], -3, 'north/in'], [[0, 2, 6, 4], [1, 0, 0], 0, 'west/in'], [[1, 5, 7, 3], [-1, 0, 0], -4, 'east/in']];
-    quads.forEach(([q, n, d, name], i) => faces.push({id: i + 1, name, n, d, pane: 0, shown: 1, area: 1,
-        tris: [q[0], q[1], q[2], q[0], q[2], q[3]], rules: [{kind: 'place', from: i + 1, m: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0]}]}));
-    const model = {vertices: v, faces, rooms: [{name: 'hall', floor: 0, corners: [[0, 0], [4, 0], [4, 3], [0, 3]]}], things: [], zones: [], placed: []};
+    for (const z of [0, 2.5])
+        for (const y of [0, 3])
+            for (const x of [0, 4]) v.push(x, y, z);
+    const quads = [
+        [[0, 1, 3, 2], [0, 0, 1], 0, 'floor'], [[4, 6, 7, 5], [0, 0, -1], -2.5, 'ceiling'],
+        [[0, 4, 5, 1], [0, 1, 0], 0, 'south/in'], [[2, 3, 7, 6], [0, -1, 0], -3, 'north/in'],
+        [[0, 2, 6, 4], [1, 0, 0], 0, 'west/in'], [[1, 5, 7, 3], [-1, 0, 0], -4, 'east/in']
+    ];
+    quads.forEach(([q, n, d, name], i) => faces.push({
+        id: i + 1,
+        name,
+        n,
+        d,
+        pane: 0,
+        shown: 1,
+        area: 1,
+        tris: [q[0], q[1], q[2], q[0], q[2], q[3]],
+        rules: [{kind: 'place', from: i + 1, m: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0]}]
+    }));
+    const model = {
+        vertices: v,
+        faces,
+        rooms: [{name: 'hall', floor: 0, corners: [[0, 0], [4, 0], [4, 3], [0, 3]]}],
+        things: [],
+        zones: [],
+        placed: []
+    };
     W.prepareModel(model);
     return model;
 };
@@ -55,7 +76,8 @@ const tests = {
     },
     halfway_between_two_they_share() {
         const model = room(), scene = sceneOf(model, [[1, 1.5, 1.25], [3, 1.5, 1.25], [0.2, 0.2, 0.3]]);
-        const pair = W.choosePair(scene, model, lookAt([2, 1.5, 1.25], Math.PI / 2), true); // both see the same, mirrored
+        const pair =
+            W.choosePair(scene, model, lookAt([2, 1.5, 1.25], Math.PI / 2), true);  // both see the same, mirrored
         assert.deepStrictEqual([...pair.places].sort(), [0, 1]);
         near(pair.t, 0.5, 1e-9);
     },
@@ -64,27 +86,39 @@ const tests = {
         let last = null;
         for (let x = 0.6; x < 3.6; x += 0.01) {
             const pair = W.choosePair(scene, model, lookAt([x, 1.3, 1.5], 1), true), shares = scene.places.map(() => 0);
-            pair.places.forEach((i, k) => { if (i >= 0) shares[i] += k ? pair.t : 1 - pair.t; });
-            if (last) shares.forEach((s, i) => assert(Math.abs(s - last[i]) < 0.12, `the share of ${i} jumps at ${x}: ${last[i]} to ${s}`));
+            pair.places.forEach((i, k) => {
+                if (i >= 0) shares[i] += k ? pair.t : 1 - pair.t;
+            });
+            if (last)
+                shares.forEach(
+                    (s, i) =>
+                        assert(Math.abs(s - last[i]) < 0.12, `the share of ${i} jumps at ${x}: ${last[i]} to ${s}`));
             last = shares;
         }
     },
     a_view_behind_a_wall_draws_no_furniture() {
         const model = room(), scene = sceneOf(model, [[1, 1.5, 1.25], [6, 1.5, 1.25]]);
-        const camera = lookAt([2, 1.5, 1.25], Math.PI), chosen = W.chooseClutter(scene, camera, W.clutterPlaces(model, camera, true), 12);
+        const camera = lookAt([2, 1.5, 1.25], Math.PI),
+              chosen = W.chooseClutter(scene, camera, W.clutterPlaces(model, camera, true), 12);
         assert(chosen.length > 0 && chosen.every(([i]) => i < 4));
         near(chosen.reduce((s, c) => s + c[1], 0), 1);
     },
     pieces_cover_a_face_once() {
-        const model = room(); // the floor in two tiles of 2 x 3 m, 100 texels a metre, cut at x = 2
-        const atlas = {pages: [[512, 512]], tiles: [[1, 0, 0, 0, 200, 300, [100, 0, 0, 0, 0, 100, 0, 0, 0, 0, 0, 1]],
-            [1, 0, 200, 0, 200, 300, [100, 0, 0, 0, 0, 100, 0, 0, 0, 0, 0, 1]]]};
+        const model = room();  // the floor in two tiles of 2 x 3 m, 100 texels a metre, cut at x = 2
+        const atlas = {
+            pages: [[512, 512]],
+            tiles: [
+                [1, 0, 0, 0, 200, 300, [100, 0, 0, 0, 0, 100, 0, 0, 0, 0, 0, 1]],
+                [1, 0, 200, 0, 200, 300, [100, 0, 0, 0, 0, 100, 0, 0, 0, 0, 0, 1]]
+            ]
+        };
         const {data, draws} = W.atlasMesh(model, atlas, true);
         let area = 0;
         for (let k = 0; k < data.length; k += 30) {
             const p = [0, 10, 20].map((c) => [...data.subarray(k + c, k + c + 3)]);
             area += W.length(W.cross(W.add(p[1], p[0], -1), W.add(p[2], p[0], -1))) / 2;
-            for (const c of [0, 10, 20]) near(data[k + c + 3], 100 * data[k + c], 1e-3); // the place in the page is that of the point
+            for (const c of [0, 10, 20])
+                near(data[k + c + 3], 100 * data[k + c], 1e-3);  // the place in the page is that of the point
         }
         near(area, 12, 1e-4);
         assert.strictEqual(draws.length, 1);
@@ -93,14 +127,15 @@ const tests = {
         const model = room();
         model.faces[0].rules[0].within = [1, 1, 0, 3, 1, 0, 3, 2, 0, 1, 2, 0];
         const area = W.limited(model.faces[0], model.faces[0].rules[0]).reduce((s, p) => {
-            for (let k = 1; k + 1 < p.length; k++) s += W.length(W.cross(W.add(p[k], p[0], -1), W.add(p[k + 1], p[0], -1))) / 2;
+            for (let k = 1; k + 1 < p.length; k++)
+                s += W.length(W.cross(W.add(p[k], p[0], -1), W.add(p[k + 1], p[0], -1))) / 2;
             return s;
         }, 0);
         near(area, 2, 1e-4);
     },
     furniture_stands_at_its_depth_and_goes_with_its_edit() {
         const model = room(), scene = {...sceneOf(model, [[0.5, 1.5, 1.25]]), grid: 50}, view = scene.views[0];
-        const bytes = new Uint8Array(27); // 3 x 3 points at 1 / z = 0.5, thing 1
+        const bytes = new Uint8Array(27);  // 3 x 3 points at 1 / z = 0.5, thing 1
         for (let k = 0; k < 9; k++) {
             bytes[k] = bytes[9 + k] = 255;
             bytes[18 + k] = 1;

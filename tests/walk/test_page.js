@@ -1,8 +1,9 @@
 // node test_page.js FOLDER [--at EDIT PICTURES DB] [--between EDIT CAMERAS PICTURES DB] - opens a walk in Chromium.
 //
-// Alone: the page starts, keys and clicks do what they say. --at: what the walk shows in viewpoints after an edit is what
-// render_model draws there, PICTURES/VIEW.jpg. --between: the same of given cameras, a COLMAP text model in the model's
-// frame, and PICTURES/NAME.jpg; EDIT "": the unedited rooms. DB: the least PSNR. The console stays empty in each case.
+// Alone: the page starts, keys and clicks do what they say. --at: what the walk shows in viewpoints after an edit is
+// what render_model draws there, PICTURES/VIEW.jpg. --between: the same of given cameras, a COLMAP text model in the
+// model's frame, and PICTURES/NAME.jpg; EDIT "": the unedited rooms. DB: the least PSNR. The console stays empty in
+// each case.
 'use strict';
 const fs = require('fs');
 const path = require('path');
@@ -29,8 +30,11 @@ const readCameras = (cameras) => {
         const w = line.split(' ');
         if (line[0] === '#' || w.length < 10) continue;
         const [a, x, y, z] = w.slice(1, 5).map(Number), t = w.slice(5, 8).map(Number);
-        const turn = [1 - 2 * (y * y + z * z), 2 * (x * y - a * z), 2 * (x * z + a * y), 2 * (x * y + a * z), 1 - 2 * (x * x + z * z),
-            2 * (y * z - a * x), 2 * (x * z - a * y), 2 * (y * z + a * x), 1 - 2 * (x * x + y * y)];
+        const turn = [
+            1 - 2 * (y * y + z * z), 2 * (x * y - a * z), 2 * (x * z + a * y), 2 * (x * y + a * z),
+            1 - 2 * (x * x + z * z), 2 * (y * z - a * x), 2 * (x * z - a * y), 2 * (y * z + a * x),
+            1 - 2 * (x * x + y * y)
+        ];
         const centre = [0, 1, 2].map((k) => -(turn[k] * t[0] + turn[3 + k] * t[1] + turn[6 + k] * t[2]));
         list.push({name: w[9].replace(/\.[a-z]+$/, ''), camera: {...lenses[w[8]], turn, centre}});
     }
@@ -48,7 +52,8 @@ const compare = (browser, url, file, sources) => {
             c.drawImage(b, 0, 0);
             return c.getImageData(0, 0, b.width, b.height).data;
         };
-        const a = await pixels(${JSON.stringify(url)}), b = await pixels(${text(file)}), made = ${text(sources)} && await pixels(${text(sources)});
+        const a = await pixels(${JSON.stringify(url)}), b = await pixels(${text(file)}), made = ${
+        text(sources)} && await pixels(${text(sources)});
         if (a.length !== b.length) return -1;
         let sum = 0, count = 0;
         for (let i = 0; i < a.length; i += 4) {
@@ -68,13 +73,16 @@ const main = async () => {
         const size = fs.readdirSync(folder).reduce((s, f) => s + fs.statSync(path.join(folder, f)).size, 0);
         console.log(`# ${(size / 1e6).toFixed(1)} MB on disk`);
         check('the_walk_is_smaller_than_40_MB', size < 40e6, `${size} bytes`);
-        const lit = await browser.evaluate(`(async () => { const v = walk.scene().views[0], r = await walk.picture({camera: v}); const b = await (await fetch(r.url)).blob(),
+        const lit = await browser.evaluate(
+            `(async () => { const v = walk.scene().views[0], r = await walk.picture({camera: v}); const b = await (await fetch(r.url)).blob(),
             p = await createImageBitmap(b), c = new OffscreenCanvas(p.width, p.height).getContext('2d'); c.drawImage(p, 0, 0); const d = c.getImageData(0, 0, p.width, p.height).data; let n = 0; for (let i = 0; i < d.length; i += 4) n += d[i] + d[i + 1] + d[i + 2] > 30; return n / (p.width * p.height); })()`);
         check('a_viewpoint_is_filled', lit > 0.95, `${(100 * lit).toFixed(1)} % of its pixels show something`);
         const look = async (name, spec, file, least) => {
             const picture = await browser.evaluate(`walk.picture(${JSON.stringify(spec)})`);
-            const e = await compare(browser, picture.url, file, file.replace(/\.jpg$/, '-sources.png')), dB = 10 * Math.log10(255 ** 2 / e);
-            console.log(`# ${name}: ${dB.toFixed(1)} dB; ${picture.counts.calls} draw calls, ${(picture.bytes / 1e6).toFixed(1)} MB of textures`);
+            const e = await compare(browser, picture.url, file, file.replace(/\.jpg$/, '-sources.png')),
+                  dB = 10 * Math.log10(255 ** 2 / e);
+            console.log(`# ${name}: ${dB.toFixed(1)} dB; ${picture.counts.calls} draw calls, ${
+                (picture.bytes / 1e6).toFixed(1)} MB of textures`);
             check(`${name}_is_what_render_model_draws`, e >= 0 && dB >= +least, `${dB.toFixed(1)} dB, wanted ${least}`);
         };
         if (at) {
@@ -85,11 +93,13 @@ const main = async () => {
             }
         }
         if (between) {
-            const [edit, cameras, pictures, least] = between; // given cameras are drawn without the photo itself
-            for (const {name, camera} of readCameras(cameras)) await look(name, {camera, edit: edit || 0, photos: false}, path.join(pictures, `${name}.jpg`), least);
+            const [edit, cameras, pictures, least] = between;  // given cameras are drawn without the photo itself
+            for (const {name, camera} of readCameras(cameras))
+                await look(name, {camera, edit: edit || 0, photos: false}, path.join(pictures, `${name}.jpg`), least);
         }
         if (!at && !between) {
-            const state = (key) => browser.evaluate(`JSON.stringify(walk.state.${key})`).then((t) => t && JSON.parse(t));
+            const state = (key) =>
+                browser.evaluate(`JSON.stringify(walk.state.${key})`).then((t) => t && JSON.parse(t));
             const wait = (ms) => new Promise((take) => setTimeout(take, ms));
             await browser.evaluate('document.getElementById("rooms").focus()');
             const was = await state('eye');
@@ -101,7 +111,9 @@ const main = async () => {
             await browser.mouse('mouseMoved', 700, 420, 1);
             await browser.mouse('mouseReleased', 700, 420);
             await wait(100);
-            check('dragging_to_the_right_turns_left', (await state('eye')).heading > was.heading, 'the heading is the same');
+            check(
+                'dragging_to_the_right_turns_left', (await state('eye')).heading > was.heading,
+                'the heading is the same');
             const count = await browser.evaluate('walk.scene().models.length');
             const last = Math.min(9, count - 1);
             await browser.key(`${last}`);
@@ -113,11 +125,18 @@ const main = async () => {
             check('a_bracket_moves_the_border', (await state('split')) > split, await state('split'));
             await browser.key('Escape');
             await browser.key('c');
-            check('c_shows_the_origin_with_its_legend', await browser.evaluate('!document.getElementById("legend").hidden && /another photograph/.test(document.getElementById("legend").textContent)'), 'no legend');
+            check(
+                'c_shows_the_origin_with_its_legend',
+                await browser.evaluate(
+                    '!document.getElementById("legend").hidden && /another photograph/.test(document.getElementById("legend").textContent)'),
+                'no legend');
             await browser.key('c');
             await browser.key('m');
             await browser.key('Enter');
-            check('enter_measures_a_surface', /(m²|square units)/.test(await browser.evaluate('document.getElementById("told").textContent')), await browser.evaluate('document.getElementById("told").textContent'));
+            check(
+                'enter_measures_a_surface',
+                /(m²|square units)/.test(await browser.evaluate('document.getElementById("told").textContent')),
+                await browser.evaluate('document.getElementById("told").textContent'));
             await browser.key('m');
             await browser.key('o');
             check('o_looks_from_above', await state('above'), 'not from above');
@@ -126,17 +145,24 @@ const main = async () => {
             await browser.key('n');
             await wait(200);
             await browser.evaluate('walk.ready()');
-            check('n_goes_to_a_photograph', (await state('move')) || (await state('eye')).centre.join() !== before.join(), 'nothing moves');
-            const names = await browser.evaluate('[...document.querySelectorAll("button")].every((b) => b.textContent.trim() || b.getAttribute("aria-label"))');
+            check(
+                'n_goes_to_a_photograph', (await state('move')) || (await state('eye')).centre.join() !== before.join(),
+                'nothing moves');
+            const names = await browser.evaluate(
+                '[...document.querySelectorAll("button")].every((b) => b.textContent.trim() || b.getAttribute("aria-label"))');
             check('every_button_has_a_name', names, 'a button has none');
         }
         check('the_console_is_empty', !browser.errors.length, browser.errors.join(' | '));
         if (process.env.WALK_SPEED) {
             await browser.evaluate('walk.speed(12, 1280, 720)');
-            const begin = browser.cpu(), r = await browser.evaluate('walk.speed(24, 1280, 720)'), cpu = (browser.cpu() - begin) / 48;
+            const begin = browser.cpu(), r = await browser.evaluate('walk.speed(24, 1280, 720)'),
+                  cpu = (browser.cpu() - begin) / 48;
             const area = 1280 * 720;
-            console.log(`# 1280 x 720 without a GPU: ${r.fps.toFixed(1)} frames a second as measured, ${cpu.toFixed(3)} core-seconds a frame, so ${(2 / cpu).toFixed(1)} a second on 2 free cores`);
-            console.log(`# a frame: ${r.calls.toFixed(0)} draw calls, ${r.triangles.toFixed(0)} triangles, ${(r.bytes / 1e6).toFixed(1)} MB of textures, about ${(9 * area / 1e6).toFixed(0)} million texels and ${(area * 8 * 10 / 1e6).toFixed(0)} MB of pixels read and written`);
+            console.log(`# 1280 x 720 without a GPU: ${r.fps.toFixed(1)} frames a second as measured, ${
+                cpu.toFixed(3)} core-seconds a frame, so ${(2 / cpu).toFixed(1)} a second on 2 free cores`);
+            console.log(`# a frame: ${r.calls.toFixed(0)} draw calls, ${r.triangles.toFixed(0)} triangles, ${
+                (r.bytes / 1e6).toFixed(1)} MB of textures, about ${(9 * area / 1e6).toFixed(0)} million texels and ${
+                (area * 8 * 10 / 1e6).toFixed(0)} MB of pixels read and written`);
         }
     } finally {
         await browser.close();

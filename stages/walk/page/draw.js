@@ -2,22 +2,26 @@
 //
 // A picture of the rooms is made in a buffer of half floats: the faces under the textures of two
 // viewpoints, then under the texture of all faces where these have none, then what lies outdoors, then the change of
-// light of an edit. The stencil says which pixels have their colour: 1: of the first viewpoint, 2: done. The alpha of the
-// buffer is the share of the first viewpoint where that has a texel, so that the second one blends to it. Furniture is
-// drawn from several photographs into a buffer of its own: first its depth, then the mean of what they show near that
-// depth. In a viewpoint the photograph itself covers all.
+// light of an edit. The stencil says which pixels have their colour: 1: of the first viewpoint, 2: done. The alpha of
+// the buffer is the share of the first viewpoint where that has a texel, so that the second one blends to it. Furniture
+// is drawn from several photographs into a buffer of its own: first its depth, then the mean of what they show near
+// that depth. In a viewpoint the photograph itself covers all.
 'use strict';
 
 // Pictures are blended as squares of sRGB, which are nearly linear in light: the way there and back is exact and quick,
 // where textures of sRGB take half of the time when software draws.
 const LINEAR = 'vec3 linear(vec3 c) { return c * c; }\n';
-W.squared = (linear) => linear.map((x) => Math.min(1, x <= 0.0031308 ? 12.92 * x : 1.055 * x ** (1 / 2.4) - 0.055) ** 2);
+W.squared = (linear) =>
+    linear.map((x) => Math.min(1, x <= 0.0031308 ? 12.92 * x : 1.055 * x ** (1 / 2.4) - 0.055) ** 2);
 
 W.shaders = {
     // faces
-    solid: [`layout(location=0) in vec3 p; uniform mat4 clip; void main() { gl_Position = clip * vec4(p, 1.); }`,
-        `void main() {}`],
-    face: [`layout(location=0) in vec3 p; layout(location=1) in vec3 uvw; layout(location=2) in vec4 rect;
+    solid: [
+        `layout(location=0) in vec3 p; uniform mat4 clip; void main() { gl_Position = clip * vec4(p, 1.); }`,
+        `void main() {}`
+    ],
+    face: [
+        `layout(location=0) in vec3 p; layout(location=1) in vec3 uvw; layout(location=2) in vec4 rect;
         uniform mat4 clip; uniform vec2 size; out vec3 at; flat out vec4 box;
         void main() { gl_Position = clip * vec4(p, 1.); at = vec3(uvw.xy / size, uvw.z); box = (rect + vec4(.5, .5, -.5, -.5)) / size.xyxy; }`,
         `in vec3 at; flat in vec4 box; uniform sampler2D page; uniform float alpha, least; out vec4 colour;
@@ -25,14 +29,18 @@ W.shaders = {
             vec4 t = texture(page, clamp(at.xy / at.z, box.xy, box.zw));
             if (t.a < least) discard;
             colour = vec4(linear(t.rgb), alpha);
-        }`],
+        }`
+    ],
     // a surface of one colour: rect holds it
-    plain: [`layout(location=0) in vec3 p; layout(location=2) in vec4 rect; uniform mat4 clip; flat out vec4 box;
+    plain: [
+        `layout(location=0) in vec3 p; layout(location=2) in vec4 rect; uniform mat4 clip; flat out vec4 box;
         void main() { gl_Position = clip * vec4(p, 1.); box = rect; }`,
         `flat in vec4 box; uniform int made; uniform vec3 kinds[9]; out vec4 colour;
-        void main() { colour = vec4(made == 1 ? kinds[5] : box.rgb, 1.); }`],
+        void main() { colour = vec4(made == 1 ? kinds[5] : box.rgb, 1.); }`
+    ],
     // the same as face, in colours of origin, or as factors of light
-    origin: [`layout(location=0) in vec3 p; layout(location=1) in vec3 uvw; layout(location=2) in vec4 rect;
+    origin: [
+        `layout(location=0) in vec3 p; layout(location=1) in vec3 uvw; layout(location=2) in vec4 rect;
         uniform mat4 clip; out vec3 at; flat out vec4 box;
         void main() { gl_Position = clip * vec4(p, 1.); at = uvw; box = rect; }`,
         `in vec3 at; flat in vec4 box; uniform sampler2D page; uniform vec2 size; uniform float alpha, least, most; uniform int made;
@@ -49,8 +57,10 @@ W.shaders = {
                 colour.rgb = mix(k, k * dot(t.rgb, vec3(.2126, .7152, .0722)) * 2., .5);
             }
             if (made == 2) { colour = vec4(abs(dot(t.rgb * most, vec3(1. / 3.)) - 1.) > .03 ? kinds[0] : vec3(1), 1); }
-        }`],
-    sky: [`layout(location=0) in vec3 p; out vec2 at; void main() { gl_Position = vec4(p.xy, 1., 1.); at = p.xy; }`,
+        }`
+    ],
+    sky: [
+        `layout(location=0) in vec3 p; out vec2 at; void main() { gl_Position = vec4(p.xy, 1., 1.); at = p.xy; }`,
         `in vec2 at; uniform sampler2D page; uniform mat3 turn; uniform vec4 lens; uniform int made; uniform vec3 kinds[9];
         out vec4 colour;
         void main() {
@@ -58,9 +68,11 @@ W.shaders = {
             vec2 uv = vec2(atan(d.y, d.x) / 6.2831853 + .5, .5 - atan(d.z, length(d.xy)) / 3.1415927);
             colour = vec4(linear(textureLod(page, uv, 0.).rgb), 1.);
             if (made == 1) colour.rgb = mix(kinds[6], colour.rgb, .3);
-        }`],
+        }`
+    ],
     // a photograph in its viewpoint
-    photo: [`layout(location=0) in vec3 p; uniform mat4 clip; uniform mat3 turn; uniform vec3 centre; uniform vec4 lens; uniform vec2 size;
+    photo: [
+        `layout(location=0) in vec3 p; uniform mat4 clip; uniform mat3 turn; uniform vec3 centre; uniform vec4 lens; uniform vec2 size;
         out vec2 uv;
         void main() {
             uv = p.xy; vec3 d = vec3((p.xy * size - lens.zw) / lens.xy, 1.);
@@ -76,40 +88,51 @@ W.shaders = {
                 int k = change == 1 ? int(texelFetch(page, ivec2(uv * vec2(textureSize(page, 0))), 0).a * 17. - 6.6667 + .5) : 1;
                 colour.rgb = mix(kinds[clamp(k, 0, 8)], t.rgb, .3);
             }
-        }`],
+        }`
+    ],
     // furniture
-    clutter: [`layout(location=0) in vec3 p; layout(location=1) in vec2 place; uniform mat4 clip, moved;
+    clutter: [
+        `layout(location=0) in vec3 p; layout(location=1) in vec2 place; uniform mat4 clip, moved;
         out vec2 uv;
         void main() { uv = place; gl_Position = clip * moved * vec4(p, 1.); }`,
         `in vec2 uv; uniform sampler2D page; uniform float weight; uniform int made; uniform vec3 kinds[9]; out vec4 colour;
         void main() {
             vec4 t = texture(page, uv);
             float a = clamp((t.a * 255. - 15.) / 240., 0., 1.);
-            if (a < .3) discard;
+            if (a < .6) discard;
             t.rgb = linear(t.rgb);
             vec3 c = made == 1 ? mix(kinds[7], kinds[7] * dot(t.rgb, vec3(.2126, .7152, .0722)) * 2., .5) : t.rgb;
             a *= max(weight, .001);
             colour = vec4(c * a, a);
-        }`],
-    object: [`layout(location=0) in vec3 p; layout(location=1) in vec3 n; uniform mat4 clip; out vec3 normal;
+        }`
+    ],
+    object: [
+        `layout(location=0) in vec3 p; layout(location=1) in vec3 n; uniform mat4 clip; out vec3 normal;
         void main() { normal = n; gl_Position = clip * vec4(p, 1.); }`,
         `in vec3 normal; uniform vec3 albedo; uniform int made; uniform vec3 kinds[9]; out vec4 colour;
-        void main() { colour = vec4(made == 1 ? kinds[5] : albedo * (.75 + .25 * normalize(normal).z), 1.); }`],
-    show: [`layout(location=0) in vec3 p; out vec2 uv; void main() { gl_Position = vec4(p.xy, 0., 1.); uv = p.xy * .5 + .5; }`,
+        void main() { colour = vec4(made == 1 ? kinds[5] : albedo * (.75 + .25 * normalize(normal).z), 1.); }`
+    ],
+    show: [
+        `layout(location=0) in vec3 p; out vec2 uv; uniform vec2 part;
+        void main() { gl_Position = vec4(p.xy, 0., 1.); uv = (p.xy * .5 + .5) * part; }`,
         `in vec2 uv; uniform sampler2D shell, clutter; uniform int furniture; out vec4 colour;
         void main() {
             vec3 c = texture(shell, uv).rgb;
             if (furniture == 1) { vec4 f = texture(clutter, uv); if (f.a > 0.) c = f.rgb / f.a; }
             colour = vec4(sqrt(clamp(c, 0., 1.)), 1.);
-        }`],
+        }`
+    ],
 };
 
-W.integers = new Set(['made', 'kind', 'furniture', 'change', 'shell', 'clutter']); // uniforms
+W.integers = new Set(['made', 'kind', 'furniture', 'change', 'shell', 'clutter']);  // uniforms
 
 class Painter {
     constructor(canvas) {
-        const gl = canvas.getContext('webgl2', {alpha: false, antialias: false, depth: false, preserveDrawingBuffer: true});
-        if (!gl) throw new Error('This browser has no WebGL 2, which the rooms are drawn with. Try another browser, or allow its hardware acceleration.');
+        const gl =
+            canvas.getContext('webgl2', {alpha: false, antialias: false, depth: false, preserveDrawingBuffer: true});
+        if (!gl)
+            throw new Error(
+                'This browser has no WebGL 2, which the rooms are drawn with. Try another browser, or allow its hardware acceleration.');
         this.gl = gl;
         this.floats = gl.getExtension('EXT_color_buffer_float') || gl.getExtension('EXT_color_buffer_half_float');
         this.programs = {};
@@ -118,7 +141,7 @@ class Painter {
         this.unit = this.buffer(new Float32Array([0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0]), [[0, 3]]);
         this.empty = this.texture(new ImageData(1, 1));
         this.counts = {};
-        this.texels = new Map(); // of each texture
+        this.texels = new Map();  // of each texture
     }
     compile(name) {
         const gl = this.gl, program = gl.createProgram(), head = (i) => `#version 300 es
@@ -128,11 +151,13 @@ ${i ? LINEAR : ''}`;
             const shader = gl.createShader(i ? gl.FRAGMENT_SHADER : gl.VERTEX_SHADER);
             gl.shaderSource(shader, head(i) + text);
             gl.compileShader(shader);
-            if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS)) throw new Error(`${name}: ${gl.getShaderInfoLog(shader)}`);
+            if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS))
+                throw new Error(`${name}: ${gl.getShaderInfoLog(shader)}`);
             gl.attachShader(program, shader);
         });
         gl.linkProgram(program);
-        if (!gl.getProgramParameter(program, gl.LINK_STATUS)) throw new Error(`${name}: ${gl.getProgramInfoLog(program)}`);
+        if (!gl.getProgramParameter(program, gl.LINK_STATUS))
+            throw new Error(`${name}: ${gl.getProgramInfoLog(program)}`);
         const places = {};
         for (let i = 0; i < gl.getProgramParameter(program, gl.ACTIVE_UNIFORMS); i++) {
             const key = gl.getActiveUniform(program, i).name.replace('[0]', '');
@@ -199,7 +224,7 @@ ${i ? LINEAR : ''}`;
             gl.bindTexture(gl.TEXTURE_2D, colour);
             gl.texStorage2D(gl.TEXTURE_2D, 1, this.floats ? gl.RGBA16F : gl.RGBA8, width, height);
             gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.NEAREST);
-            gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.NEAREST);
+            gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.LINEAR);
             gl.bindFramebuffer(gl.FRAMEBUFFER, frame);
             gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, colour, 0);
             gl.framebufferRenderbuffer(gl.FRAMEBUFFER, gl.DEPTH_STENCIL_ATTACHMENT, gl.RENDERBUFFER, this.depth);
@@ -217,14 +242,22 @@ ${i ? LINEAR : ''}`;
         for (const key in values) {
             const v = values[key], at = places[key];
             if (at === undefined) continue;
-            if (key === 'kinds') gl.uniform3fv(at, v);
-            else if (W.integers.has(key)) gl.uniform1i(at, v);
-            else if (typeof v === 'number') gl.uniform1f(at, v);
-            else if (v.length === 2) gl.uniform2fv(at, v);
-            else if (v.length === 3) gl.uniform3fv(at, v);
-            else if (v.length === 4) gl.uniform4fv(at, v);
-            else if (v.length === 9) gl.uniformMatrix3fv(at, false, v);
-            else gl.uniformMatrix4fv(at, false, v);
+            if (key === 'kinds')
+                gl.uniform3fv(at, v);
+            else if (W.integers.has(key))
+                gl.uniform1i(at, v);
+            else if (typeof v === 'number')
+                gl.uniform1f(at, v);
+            else if (v.length === 2)
+                gl.uniform2fv(at, v);
+            else if (v.length === 3)
+                gl.uniform3fv(at, v);
+            else if (v.length === 4)
+                gl.uniform4fv(at, v);
+            else if (v.length === 9)
+                gl.uniformMatrix3fv(at, false, v);
+            else
+                gl.uniformMatrix4fv(at, false, v);
         }
     }
     bind(t) {
@@ -234,8 +267,10 @@ ${i ? LINEAR : ''}`;
     draw(buffer, first, count, strip) {
         const gl = this.gl;
         gl.bindVertexArray(buffer.array);
-        if (buffer.index) gl.drawElements(gl.TRIANGLES, count, gl.UNSIGNED_INT, 4 * first);
-        else gl.drawArrays(strip ? gl.TRIANGLE_STRIP : gl.TRIANGLES, first, count);
+        if (buffer.index)
+            gl.drawElements(gl.TRIANGLES, count, gl.UNSIGNED_INT, 4 * first);
+        else
+            gl.drawArrays(strip ? gl.TRIANGLE_STRIP : gl.TRIANGLES, first, count);
         this.counts.calls++;
         this.counts.triangles += count / 3;
     }
@@ -255,16 +290,20 @@ ${i ? LINEAR : ''}`;
         }
     }
     /* p: what to draw:
-     *   camera, box (x y width height of the canvas), solid, sets: [first, second] viewpoint or null, share, vita, rules,
-     *   outdoors, light: {set, most}, clutter: [{texture, buffer, first, count, moved, weight}], photos: [{view, texture,
-     *   alpha, change}], objects, made (0, or 1: colours of origin), kinds, near, far */
+     *   camera, box (x y width height of the canvas), part (of its pixels along each side: less while it must be
+     * quick), solid, sets: [first, second] viewpoint or null, share, vita, rules, outdoors, light: {set, most},
+     * clutter: [{texture, buffer, first, count, moved, weight}], photos: [{view, texture, alpha, change}], objects,
+     * made (0, or 1: colours of origin), kinds, near, far */
     paint(p) {
-        const gl = this.gl, {camera} = p, clip = W.clipMatrix(camera, p.near, p.far), values = {clip, made: p.made, kinds: p.kinds, most: 1};
+        const gl = this.gl, {camera} = p, clip = W.clipMatrix(camera, p.near, p.far),
+              values = {clip, made: p.made, kinds: p.kinds, most: 1};
         this.seen = this.seen || new Map();
         gl.bindFramebuffer(gl.FRAMEBUFFER, this.targets[0].frame);
-        gl.viewport(0, 0, this.width, this.height);
+        const part = p.part || 1, [wide, high] = [this.width, this.height].map((x) => Math.round(part * x));
+        const box = p.box.map((x) => Math.round(part * x));
+        gl.viewport(0, 0, wide, high);
         gl.enable(gl.SCISSOR_TEST);
-        gl.scissor(...p.box);
+        gl.scissor(...box);
         gl.activeTexture(gl.TEXTURE0);
         gl.enable(gl.DEPTH_TEST);
         gl.depthMask(true);
@@ -306,13 +345,19 @@ ${i ? LINEAR : ''}`;
             gl.stencilOp(gl.KEEP, gl.KEEP, gl.INCR);
             this.faces(program, p.vita, r, {...values, alpha: 1}, true);
         }
-        if (p.light) { // once in each pixel
+        if (p.light) {  // once in each pixel
             gl.stencilMask(128);
             gl.stencilFunc(gl.NOTEQUAL, 128, 128);
             gl.stencilOp(gl.KEEP, gl.KEEP, gl.REPLACE);
             gl.enable(gl.BLEND);
             gl.blendFunc(gl.DST_COLOR, gl.ZERO);
-            this.faces('origin', p.light.set, 0, {...values, alpha: 1, most: p.light.most, made: p.made ? 2 : 0, kinds: p.made ? p.relitKinds : p.kinds});
+            this.faces('origin', p.light.set, 0, {
+                ...values,
+                alpha: 1,
+                most: p.light.most,
+                made: p.made ? 2 : 0,
+                kinds: p.made ? p.relitKinds : p.kinds
+            });
             gl.disable(gl.BLEND);
         }
         gl.disable(gl.STENCIL_TEST);
@@ -338,8 +383,15 @@ ${i ? LINEAR : ''}`;
         gl.activeTexture(gl.TEXTURE0);
         if (p.photos.length) this.paintPhotos(p, values);
         gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+        gl.viewport(0, 0, this.width, this.height);
+        gl.scissor(...p.box);
         gl.bindTexture(gl.TEXTURE_2D, this.targets[0].colour);
-        this.use('show', {shell: 0, clutter: 1, furniture: p.clutter.length && !p.photos.length ? 1 : 0});
+        this.use('show', {
+            shell: 0,
+            clutter: 1,
+            part: [wide / this.width, high / this.height],
+            furniture: p.clutter.length && !p.photos.length ? 1 : 0
+        });
         this.draw(this.square, 0, 4, true);
     }
     paintClutter(p, values) {
@@ -373,20 +425,31 @@ ${i ? LINEAR : ''}`;
         gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
         if (p.clutter.length) {
             gl.bindTexture(gl.TEXTURE_2D, this.targets[1].colour);
-            this.use('lay', {shell: 0});
+            this.use('lay', {
+                shell: 0,
+                part: [gl.getParameter(gl.VIEWPORT)[2] / this.width, gl.getParameter(gl.VIEWPORT)[3] / this.height]
+            });
             this.draw(this.square, 0, 4, true);
         }
         for (const photo of p.photos) {
             this.bind(photo.texture);
             const v = photo.view;
-            this.use('photo', {...values, turn: v.turn, centre: p.camera.centre, lens: v.lens, size: [v.width, v.height],
-                alpha: photo.alpha, change: photo.change ? 1 : 0});
+            this.use('photo', {
+                ...values,
+                turn: v.turn,
+                centre: p.camera.centre,
+                lens: v.lens,
+                size: [v.width, v.height],
+                alpha: photo.alpha,
+                change: photo.change ? 1 : 0
+            });
             this.draw(this.unit, 0, 4, true);
         }
         gl.disable(gl.BLEND);
     }
 }
-W.shaders.lay = [W.shaders.show[0],
-    `in vec2 uv; uniform sampler2D shell; out vec4 colour;
-    void main() { vec4 f = texture(shell, uv); if (f.a <= 0.) discard; colour = vec4(f.rgb / f.a, 1.); }`];
+W.shaders.lay = [
+    W.shaders.show[0], `in vec2 uv; uniform sampler2D shell; out vec4 colour;
+    void main() { vec4 f = texture(shell, uv); if (f.a <= 0.) discard; colour = vec4(f.rgb / f.a, 1.); }`
+];
 W.Painter = Painter;

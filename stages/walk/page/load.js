@@ -33,5 +33,5 @@ W.unpack = async (base64) => {
     const stream = new Blob([W.bytes(base64)]).stream().pipeThrough(new DecompressionStream('deflate'));
     return new Uint8Array(await new Response(stream).arrayBuffer());
 };
-W.picture = (base64) => createImageBitmap(new Blob([W.bytes(base64)], {type: 'image/webp'}),
-    {premultiplyAlpha: 'none', colorSpaceConversion: 'none'});
+W.picture = (base64) => createImageBitmap(
+    new Blob([W.bytes(base64)], {type: 'image/webp'}), {premultiplyAlpha: 'none', colorSpaceConversion: 'none'});

@@ -119,8 +119,9 @@ W.choosePair = (scene, model, camera, fine) => {
 };
 
 // Places where furniture may be seen: on what the camera sees, and half way to it.
-W.clutterPlaces = (model, camera, fine) => W.samples(model, camera, fine ? 16 : 8, fine ? 12 : 6).flatMap((s) =>
-    [0.5, 1].map((part) => W.add(W.scale(camera.centre, 1 - part), s.point, part)));
+W.clutterPlaces = (model, camera, fine) =>
+    W.samples(model, camera, fine ? 16 : 8, fine ? 12 : 6)
+        .flatMap((s) => [0.5, 1].map((part) => W.add(W.scale(camera.centre, 1 - part), s.point, part)));
 
 // The views that furniture is drawn from, with their weights: [[view, weight], ...], best first.
 W.chooseClutter = (scene, camera, places, most) => {
@@ -157,7 +158,7 @@ W.chooseClutter = (scene, camera, places, most) => {
 // Triangles of the parts of polygons, each corner: x y z, place in the page (u v w), four numbers more.
 class Pieces {
     constructor() {
-        this.groups = new Map(); // "rule page kind": numbers
+        this.groups = new Map();  // "rule page kind": numbers
     }
     add(rule, kind, page, polygon, more) {
         const key = `${rule} ${kind} ${page}`;
@@ -197,7 +198,8 @@ W.limited = (face, rule) => {
     const area = W.cross(W.add(q[2], q[0], -1), W.add(q[3], q[1], -1)), turn = W.dot(area, face.n) < 0 ? -1 : 1;
     return polygons.map((p) => {
         for (let k = 0; k < 4; k++) {
-            const left = W.scale(W.unit(W.cross(face.n, W.add(q[(k + 1) % 4], q[k], -1))), turn), off = W.dot(left, q[k]);
+            const left = W.scale(W.unit(W.cross(face.n, W.add(q[(k + 1) % 4], q[k], -1))), turn),
+                  off = W.dot(left, q[k]);
             p = W.clip(p, (c) => W.dot(left, c) - off + 1e-6);
         }
         return p;
@@ -206,7 +208,7 @@ W.limited = (face, rule) => {
 
 // Whether a face bounds a room from inside, so that a look from above needs it.
 W.isInside = (model, face) => {
-    if (face.n[2] < -0.5) return false; // ceilings
+    if (face.n[2] < -0.5) return false;  // ceilings
     if (face.n[2] > 0.5) return face.corners[0][2] < model.low[2] + 0.8 * (model.high[2] - model.low[2]);
     const n = face.corners.length, middle = face.corners.reduce((s, p) => W.add(s, p, 1 / n), [0, 0, 0]);
     const before = W.add(middle, face.n, 0.02 * (model.high[2] - model.low[2]));
@@ -214,8 +216,8 @@ W.isInside = (model, face) => {
         !/\/(out|in)$/.test(face.name);
 };
 
-// The mesh of a model under an atlas. wanted(face): which faces. free: an atlas of no viewpoint, whose tiles look straight at their faces; it also
-// gives the colours and the nearest texels of rules.
+// The mesh of a model under an atlas. wanted(face): which faces. free: an atlas of no viewpoint, whose tiles look
+// straight at their faces; it also gives the colours and the nearest texels of rules.
 W.atlasMesh = (model, atlas, free, wanted = () => true) => {
     const pieces = new Pieces(), tiles = new Map();
     for (const t of atlas.tiles) {
@@ -229,7 +231,8 @@ W.atlasMesh = (model, atlas, free, wanted = () => true) => {
             for (const polygon of W.limited(face, rule)) {
                 if (polygon.length < 3) continue;
                 if (rule.kind === 'colour') {
-                    if (free) pieces.add(r, 'colour', 0, polygon.map((p) => [...p, 0, 0, 1]), [...W.squared(rule.rgb), 1]);
+                    if (free)
+                        pieces.add(r, 'colour', 0, polygon.map((p) => [...p, 0, 0, 1]), [...W.squared(rule.rgb), 1]);
                     continue;
                 }
                 if (rule.kind === 'edge' && !free) continue;
@@ -287,7 +290,9 @@ W.clutterGrid = (scene, view, grid, bytes) => {
 };
 
 // The cells that a model shows where the photographs have them (thing 0), or those of one thing: corners of triangles.
-W.clutterCells = (model, grid, thing) => {
+// below: only those below this part of the height; 0: all.
+W.clutterCells = (model, grid, thing, below) => {
+    const limit = below ? model.low[2] + below * (model.high[2] - model.low[2]) : Infinity;
     const list = [], ceiling = model.low[2] + 0.85 * (model.high[2] - model.low[2]);
     const cleared = (p) => {
         let gone = false;
@@ -299,7 +304,7 @@ W.clutterCells = (model, grid, thing) => {
         return gone;
     };
     for (const [id, c] of grid.cells) {
-        if (thing && id !== thing) continue;
+        if ((thing && id !== thing) || grid.points[5 * c[0] + 2] > limit) continue;
         if (!thing) {
             const fate = id ? model.things[id - 1] : 'stays', p = grid.points.subarray(5 * c[0], 5 * c[0] + 3);
             if (fate === 'gone' || (fate === 'stays' && model.zones.length && p[2] <= ceiling && cleared(p))) continue;

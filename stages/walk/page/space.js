@@ -33,7 +33,7 @@ W.clip = (polygon, side) => {
     return kept;
 };
 
-W.insidePolygon = (corners, x, y) => { // corners: x, y, x, y, ...
+W.insidePolygon = (corners, x, y) => {  // corners: x, y, x, y, ...
     let inside = false;
     for (let i = 0, j = corners.length - 2; i < corners.length; j = i, i += 2)
         if (corners[i + 1] > y !== corners[j + 1] > y &&
@@ -68,7 +68,8 @@ W.clipMatrix = (camera, near, far) => {
     const mix = (a, b, s, t) => a.map((x, k) => s * x + t * b[k]);
     const x = mix(rows[0], rows[2], (2 * fx) / w, (2 * cx) / w - 1);
     const y = mix(rows[1], rows[2], (-2 * fy) / h, 1 - (2 * cy) / h);
-    const z = rows[2].map((v, k) => (v * (far + near)) / (far - near) - (k === 3 ? (2 * far * near) / (far - near) : 0));
+    const z =
+        rows[2].map((v, k) => (v * (far + near)) / (far - near) - (k === 3 ? (2 * far * near) / (far - near) : 0));
     const m = [];
     for (let k = 0; k < 4; k++) m.push(x[k], y[k], z[k], rows[2][k]);
     return new Float32Array(m);
