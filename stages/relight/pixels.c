@@ -58,7 +58,8 @@ static enum status pixels_init(struct pixels *p, int width, int height, struct e
     p->face = calloc(n + 1, sizeof *p->face);
     p->from = calloc(n + 1, sizeof *p->from);
     p->texel = calloc(n + 1, sizeof *p->texel);
-    if (p->kind && p->before && p->after && p->albedo && p->face && p->from && p->texel) return ST_OK;
+    p->is_new = calloc(n + 1, sizeof *p->is_new);
+    if (p->kind && p->before && p->after && p->albedo && p->face && p->from && p->texel && p->is_new) return ST_OK;
     return err_nomem(err, "pixels", n * (sizeof *p->before + sizeof *p->after));
 }
 
@@ -72,6 +73,7 @@ void pixels_release(struct pixels *p)
     free(p->face);
     free(p->from);
     free(p->texel);
+    free(p->is_new);
     free(p->objects);
     *p = (struct pixels){0};
 }
@@ -125,6 +127,7 @@ static void set_texture(struct find_job *j, size_t i, const struct light_place *
     j->p->before[i] = place->before;
     j->p->after[i] = after;
     j->p->from[i] = place->face;
+    j->p->is_new[i] = place->is_new;
     const double at[3] = {place->texel.x, place->texel.y, place->texel.z};
     for (int k = 0; k < 3; k++) j->p->texel[i][k] = (float)at[k];
 }

@@ -30,6 +30,7 @@ struct pixels {
     int *face;                           /* index into the edited model's mesh; -1: none */
     int *from;                           /* id of the unedited face that has the texel */
     float (*texel)[3];                   /* its place there */
+    bool *is_new;                        /* the unedited model has no surface there */
     struct vec3 centre;                  /* of the camera */
     struct object_pixel *objects;
     int object_count;

@@ -32,6 +32,7 @@
 #include "common/gather/specular.h"
 #include "common/math/numbers.h"
 #include "common/relight/light_quotient.h"
+#include "stages/relight/rim_light.h"
 
 static const float COVERED = 0.5f; /* part of a pixel from which it is an object's */
 static const double DARK =
@@ -119,7 +120,7 @@ static enum status gather(struct relit *r, const struct pixels *p, const struct 
     const size_t n = (size_t)p->width * (size_t)p->height;
     unsigned char *whole = calloc(n + 1, 1);
     if (!whole) return err_nomem(err, "pixels", n);
-    for (size_t i = 0; i < n; i++) whole[i] = p->kind[i] == PIXEL_COLOUR || p->kind[i] == PIXEL_LAMP;
+    for (size_t i = 0; i < n; i++) whole[i] = p->kind[i] == PIXEL_COLOUR || p->kind[i] == PIXEL_LAMP || p->is_new[i];
     const struct irradiance_cache_job job = {
         .field = &c->before.plain,
         .points = p->before,
@@ -140,6 +141,7 @@ static enum status gather(struct relit *r, const struct pixels *p, const struct 
     progress_end(&progress);
     free(whole);
     r->records = err->status || !is_cached ? 0 : stats.records;
+    if (!err->status) rim_light_fill(r->before, r->error, r->after, p, c, params, err);
     return err->status;
 }
 
