@@ -6,8 +6,9 @@
  *   - a lamp that the edit dims: one that is off shows what falls on it, as surfaces do. Lamps come before
  *     furniture, because estimated depth takes a hanging lamp for some
  *   - furniture, where an original view's depth says that something stands before the model: the light is that at
- *     the furniture, whose normal is that of its segment's plane. Where no face lies behind, only a sure depth
- *     counts, for the sky takes any
+ *     the furniture, whose normal is that of its segment's plane. Clutter grows by a rim: where the pixel's own depth
+ *     is that of the model or behind it, the face counts. Where no face lies behind, only a sure depth counts that
+ *     stands clearly before the opening, for the sky takes any
  *   - a face: with the place in the unedited model that its texel came from, or with a new colour
  *
  * Synthetic objects on the ray's way are noted with the part of the pixel that they cover, by 3 x 3 rays; what lies
@@ -29,10 +30,11 @@
 #include "common/product/product.h"
 #include "common/texture/view_ids.h"
 
-enum { SUB = 3, THROUGH = 64 };   /* rays along a pixel's side; objects behind one another */
-static const double DRAWN = 0.01; /* of a picture: with less, it counts as black */
-static const double SURE = 0.5;   /* confidence of a segment before an opening */
-static const double LIFT = 0.02;  /* of the model's size: how far below a surface furniture may seem to be */
+enum { SUB = 3, THROUGH = 64, AROUND = 3 }; /* rays along a pixel's side; objects behind one another; pixels */
+static const double DRAWN = 0.01;           /* of a picture: with less, it counts as black */
+static const double SURE = 0.5;             /* confidence of a segment before an opening */
+static const double BEFORE = 0.06; /* of the distance: what stands before an opening; twice the tolerance of clutter */
+static const double LIFT = 0.02;   /* of the model's size: how far below a surface furniture may seem to be */
 
 struct find_job {
     struct pixels *p;
@@ -197,17 +199,42 @@ static bool set_thing(struct find_job *j, size_t i, const struct met *met)
     return true;
 }
 
-/* through: no face lies behind the pixel; the sky has no texture and takes any depth, so the depth must be sure. */
+/* Whether a pixel's own depth, and that of most pixels around it, stands clearly before the unedited model, whose panes
+ * count. Clutter grows by a rim, which shows what lies behind, and a curtain at a pane is noise about the tolerance of
+ * clutter: spots of it would be relit, and the curtain around them would not. */
+static bool stands_before(const struct find_job *j, int x, int y)
+{
+    const int width = j->p->width, height = j->p->height;
+    int known = 0, before = 0;
+    bool own = true;
+    for (int v = y - AROUND; v <= y + AROUND; v++)
+        for (int u = x - AROUND; u <= x + AROUND; u++) {
+            if (u < 0 || v < 0 || u >= width || v >= height) continue;
+            const size_t n = (size_t)v * (size_t)width + (size_t)u;
+            const double z = (double)j->depth->interior.z[n], model = (double)j->ids->z[n];
+            if (!(z > 0 && model > 0)) continue;
+            const bool is_before = z < (1 - BEFORE) * model;
+            known++;
+            before += is_before;
+            if (u == x && v == y) own = is_before;
+        }
+    return own && 2 * before >= known;
+}
+
+/* through: no face lies behind the pixel; the sky has no texture and takes any depth, so the depth must be sure, and
+ * stand before the opening. */
 static bool set_clutter(struct find_job *j, size_t i, int x, int y, bool through)
 {
     const struct layered_depth *d = j->depth;
     const uint8_t made = j->picture->made[i];
     if (!d || !(j->ids->clutter[i] > CLUTTER_UNSURE) || !(d->interior.z[i] > 0) || !d->interior.id[i]) return false;
     if (made != MADE_PHOTO && made != MADE_CLUTTER) return false;
+    if (j->ids->z[i] > 0 && !(d->interior.z[i] < j->ids->z[i])) return false; /* a rim, which shows what lies behind */
     const struct depth_segment *s = &d->segments[d->interior.id[i] - 1];
     const struct gather_point p = {view_unproject(&j->camera, x + 0.5, y + 0.5, (double)d->interior.z[i] * j->scale),
                                    segment_normal(j, s)};
-    if (through && !(s->confidence >= SURE && model_rays_near(&j->c->before.model, p.at))) return false;
+    if (through && !(s->confidence >= SURE && model_rays_near(&j->c->before.model, p.at) && stands_before(j, x, y)))
+        return false;
     const double lift = LIFT * model_rays_size(&j->c->before.model);
     j->p->kind[i] = PIXEL_CLUTTER;
     j->p->before[i] = j->p->after[i] = p;

@@ -4,7 +4,9 @@
  * both fields (irradiance_cache.c), or from rays at each pixel if there are more emitters than a cache can tell apart.
  * A texture's radiance is multiplied by the quotient (light_quotient.c), as far as it is sure (quotients.c); a colour
  * of the edit gets albedo / pi times the irradiance after it; a synthetic object is shaded with irradiance of its own.
- * Edges of old light are moved to where the photograph has them (penumbra.c).
+ * Edges of old light are moved to where the photograph has them (penumbra.c). A place that the edit made had the light
+ * of the rim around it (rim_light.c); furniture whose point lies in the dark takes the quotient beside it
+ * (dark_points.c).
  *
  * Gloss. A glossy surface of albedo a sends out L = a E / pi + k_s I_s. Its texture is what remains of the photograph
  * without k_s I_s, in the light before, towards the place that the texel was photographed from; the gloss after the
@@ -32,6 +34,7 @@
 #include "common/gather/specular.h"
 #include "common/math/numbers.h"
 #include "common/relight/light_quotient.h"
+#include "stages/relight/dark_points.h"
 #include "stages/relight/rim_light.h"
 
 static const float COVERED = 0.5f; /* part of a pixel from which it is an object's */
@@ -447,6 +450,7 @@ enum status relit_make(struct relit *r, struct model_picture *picture, const str
         j.dark = DARK * mean_light(r);
         if (is_gathered) parallel_for(n, 256, find_some, &j);
         if (is_gathered && !quotients_settle(r->quotient, r->error, p, params, err)) fit_penumbra(&j, err);
+        if (is_gathered && !err->status) dark_points_fill(r->quotient, r->before, r->after, p, err);
         if (!err->status) parallel_for(n, 256, is_gathered ? apply_some : apply_atlas, &j);
         if (!err->status) shade_objects(&j, err);
     }
