@@ -221,9 +221,9 @@ static bool stands_before(const struct find_job *j, int x, int y)
     return own && 2 * before >= known;
 }
 
-/* through: no face lies behind the pixel; the sky has no texture and takes any depth, so the depth must be sure, and
+/* Where no face lies behind the pixel, the sky has no texture and takes any depth: then the depth must be sure, and
  * stand before the opening. */
-static bool set_clutter(struct find_job *j, size_t i, int x, int y, bool through)
+static bool set_clutter(struct find_job *j, size_t i, int x, int y, const struct met *met)
 {
     const struct layered_depth *d = j->depth;
     const uint8_t made = j->picture->made[i];
@@ -231,10 +231,13 @@ static bool set_clutter(struct find_job *j, size_t i, int x, int y, bool through
     if (made != MADE_PHOTO && made != MADE_CLUTTER) return false;
     if (j->ids->z[i] > 0 && !(d->interior.z[i] < j->ids->z[i])) return false; /* a rim, which shows what lies behind */
     const struct depth_segment *s = &d->segments[d->interior.id[i] - 1];
-    const struct gather_point p = {view_unproject(&j->camera, x + 0.5, y + 0.5, (double)d->interior.z[i] * j->scale),
-                                   segment_normal(j, s)};
-    if (through && !(s->confidence >= SURE && model_rays_near(&j->c->before.model, p.at) && stands_before(j, x, y)))
+    struct gather_point p = {view_unproject(&j->camera, x + 0.5, y + 0.5, (double)d->interior.z[i] * j->scale),
+                             segment_normal(j, s)};
+    if (!met->face && !(s->confidence >= SURE && model_rays_near(&j->c->before.model, p.at) && stands_before(j, x, y)))
         return false;
+    /* the picture shows it, so it is not behind a wall that the edit adds */
+    if (met->face && vec3_length(vec3_sub(p.at, j->centre)) > vec3_length(vec3_sub(met->on_face.point, j->centre)))
+        p = (struct gather_point){met->on_face.point, j->c->after.model.mesh.faces[met->on_face.id].normal};
     const double lift = LIFT * model_rays_size(&j->c->before.model);
     j->p->kind[i] = PIXEL_CLUTTER;
     j->p->before[i] = j->p->after[i] = p;
@@ -288,7 +291,7 @@ static void find_row(struct find_job *j, int y)
             j->p->kind[i] = PIXEL_KEPT;
         else if (lamp) /* before furniture: depth takes a lamp that hangs for some */
             set_lamp(j, i, lamp, vec3_add(j->centre, vec3_scale(d, at)));
-        else if (set_thing(j, i, &met) || set_clutter(j, i, x, y, !met.face))
+        else if (set_thing(j, i, &met) || set_clutter(j, i, x, y, &met))
             nearest = vec3_length(vec3_sub(j->p->after[i].at, j->centre));
         else if (met.face && met.on_face.front && j->picture->made[i] != MADE_OUTDOORS)
             set_face(j, i, &met.on_face);

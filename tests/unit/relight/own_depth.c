@@ -96,6 +96,27 @@ static void a_rim_of_furniture_that_shows_the_wall_is_the_wall(void **state)
     relit_room_release(&r);
 }
 
+/* The picture shows it before a wall that the edit adds, whatever its depth says: it is lit there, not behind it. */
+static void what_is_drawn_before_a_new_wall_is_lit_on_this_side(void **state)
+{
+    struct edit e = {.before = closed_room,
+                     .after = split_room,
+                     .before_count = COUNT(closed_room),
+                     .after_count = COUNT(split_room),
+                     .colours = plain};
+    struct relit_room r;
+    int beyond = 0;
+    (void)state;
+    find_view(&r, &e, vec3_make(-1, 0.2, 1), to_floor, 0.9, -1, 0);
+    assert_int_equal(count_kind(&r, PIXEL_CLUTTER), PIXELS);
+    for (int i = 0; i < PIXELS; i++) {
+        assert_true(r.pixels.after[i].at.x < -0.2 + 1e-6);
+        beyond += fabs(r.pixels.after[i].at.x + 0.2) < 1e-6;
+    }
+    assert_true(beyond > 100);
+    relit_room_release(&r);
+}
+
 static struct edit edit_of_window_room(void)
 {
     return (struct edit){.before = window_room,
@@ -137,6 +158,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_stands_before_the_model_is_furniture),
         cmocka_unit_test(a_rim_of_furniture_that_shows_the_wall_is_the_wall),
+        cmocka_unit_test(what_is_drawn_before_a_new_wall_is_lit_on_this_side),
         cmocka_unit_test(a_curtain_at_a_pane_keeps_its_light_with_its_spots),
         cmocka_unit_test(what_stands_well_before_a_window_is_furniture),
     };
