@@ -77,5 +77,6 @@ ifeq ($(INSTALLED),)
     include common/make/develop.mk
   endif
   include common/make/build.mk
+  include common/make/wasm.mk
 endif
 endif

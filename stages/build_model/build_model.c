@@ -25,17 +25,11 @@
 #include "common/capture/photo_list.h"
 #include "common/model/scene_inputs.h"
 #include "common/product/product.h"
-#include "stages/build_model/layout/layout.h"
-#include "stages/build_model/objects.h"
+#include "stages/build_model/building/building.h"
 #include "stages/build_model/picture/overlay_picture.h"
 #include "stages/build_model/picture/overlay_shape.h"
 #include "stages/build_model/picture/plan_picture.h"
 #include "stages/build_model/picture/view_picture.h"
-#include "stages/build_model/plan/edit_chain.h"
-#include "stages/build_model/plan/plan_things.h"
-#include "stages/build_model/plan_file.h"
-#include "stages/build_model/solid/unite.h"
-#include "stages/build_model/texture/texture_rules.h"
 
 struct job {
     const char *script, *edit, *things, *scene, *axes, *views, *held, *points, *base, *out;
@@ -77,60 +71,31 @@ static enum status write_shape(const struct job *j, const struct solid_mesh *mes
     return err->status;
 }
 
-static enum status write_model(struct job *j, const struct plan *plan, const struct solid_mesh *mesh,
-                               const struct unite_log *log, struct err *err)
+/* The pictures, shape.txt, then what model.txt stands for. */
+static enum status write_model(struct job *j, struct building *b, const struct building_files *files, struct err *err)
 {
     const struct placer *placer = j->views ? &j->placer : NULL;
     char path[FILE_PATH];
-    if (product_path_in(path, j->out, PRODUCT_PLAN_PICTURE, NULL, err) ||
-        plan_picture_write(plan, placer, j->in.axes.metric, path, err) ||
+    if ((files->base && building_write_edit(b, files, j->out, &j->prov, err)) ||
+        product_path_in(path, j->out, PRODUCT_PLAN_PICTURE, NULL, err) ||
+        plan_picture_write(&b->plan, placer, j->in.axes.metric, path, err) ||
         product_path_in(path, j->out, PRODUCT_MODEL_PICTURE, NULL, err) ||
-        view_picture_write(mesh, plan, placer, path, err) || product_path_in(path, j->out, PRODUCT_PLAN, NULL, err) ||
-        plan_write(plan, path, &j->prov, err) || product_path_in(path, j->out, PRODUCT_MERGED, NULL, err) ||
-        plan_merged_write(log, path, &j->prov, err) || write_shape(j, mesh, err) ||
-        product_path_in(path, j->out, PRODUCT_MODEL, NULL, err) || solid_mesh_write(mesh, path, &j->prov, err))
+        view_picture_write(&b->mesh, &b->plan, placer, path, err) || write_shape(j, &b->mesh, err))
         return err->status;
-    return ST_OK;
+    return building_write(b, j->out, &j->prov, err);
 }
 
-/* texture.txt and objects.txt of an edited model. */
-static enum status write_edit(struct job *j, const struct solid_mesh *mesh, const struct solid_mesh *base,
-                              const struct plan *plan, struct err *err)
-{
-    struct texture_map map = {0};
-    struct object_list objects = {0};
-    char path[FILE_PATH];
-    if (!texture_rules_make(&map, mesh, base, plan, err) && !objects_make(&objects, plan, j->scene, err) &&
-        !product_path_in(path, j->out, PRODUCT_OBJECTS, NULL, err) &&
-        !object_list_write(&objects, path, &j->prov, err) &&
-        !product_path_in(path, j->out, PRODUCT_TEXTURE_MAP, NULL, err))
-        texture_map_write(&map, path, &j->prov, err);
-    object_list_release(&objects);
-    texture_map_release(&map);
-    return err->status;
-}
-
-/* The objects of all edits, if the scene has such a file, then the edit. */
-static enum status apply_edit(struct job *j, struct plan *plan, struct err *err)
-{
-    char path[FILE_PATH];
-    if (j->scene && file_path(path, j->scene, "objects.txt", "", err)) return err->status;
-    if (j->scene && path_is_file(path) && edit_chain_apply_objects(plan, path, &j->prov, err)) return err->status;
-    return edit_chain_apply_edit(plan, j->edit, j->views ? &j->placer : NULL, &j->prov, err);
-}
-
-static void log_summary(const struct plan *plan, const struct solid_mesh *mesh, const struct unite_log *log,
-                        const struct solid_report *report)
+static void log_summary(const struct building *b)
 {
     int merged = 0;
-    for (int i = 0; i < log->count; i++) {
-        if (log->notes[i].event != UNITE_MERGED) continue;
-        if (++merged <= 12) log_note("face %s became part of %s", log->notes[i].name, log->notes[i].into);
+    for (int i = 0; i < b->log.count; i++) {
+        if (b->log.notes[i].event != UNITE_MERGED) continue;
+        if (++merged <= 12) log_note("face %s became part of %s", b->log.notes[i].name, b->log.notes[i].into);
     }
     if (merged > 12) log_note("and %d more, in merged.txt", merged - 12);
     log_note("%d walls, %d rooms, %d openings: %d faces in %d bodies, volume %.4g; closed, without self-intersection",
-             plan->wall_count, plan->room_count, plan->opening_count, mesh->face_count, mesh->body_count,
-             report->volume);
+             b->plan.wall_count, b->plan.room_count, b->plan.opening_count, b->mesh.face_count, b->mesh.body_count,
+             b->report.volume);
 }
 
 /* A run builds many edits: each line of a log says which one it is about. */
@@ -145,31 +110,13 @@ static void name_subject(struct job *j)
 static enum status build(struct job *j, struct err *err)
 {
     const struct placer *placer = j->views ? &j->placer : NULL;
-    struct plan plan = {0};
-    struct solid_list solids = {0};
-    struct solid_mesh mesh = {0}, base = {0};
-    struct unite_log log = {0};
-    struct solid_report report = {0};
+    const struct building_files files = {j->script, j->things, j->edit, j->base, j->scene};
+    struct building building = {0};
     name_subject(j);
-    if (!read_frame(j, err)) {
-        plan_begin(&plan, &j->in.axes);
-        edit_chain_apply_model(&plan, j->script, placer, &j->prov, err);
-    }
-    if (!err->status && j->things) plan_things_add(&plan, j->things, &j->prov, err);
-    if (!err->status && j->edit) apply_edit(j, &plan, err);
-    if (!err->status && !layout_solids(&solids, &plan, err) && !solids.count)
-        err_set(err, ST_DATA, "%s: the script describes no solid; add walls, rooms or boxes.", j->script);
-    if (!err->status && !unite_solids(&mesh, &solids, &log, err)) solid_mesh_check(&mesh, 0, &report, err);
-    if (!err->status && j->base && !solid_mesh_read(&base, j->base, &j->prov, err) &&
-        !solid_mesh_carry_ids(&mesh, &base, err))
-        write_edit(j, &mesh, &base, &plan, err);
-    if (!err->status && !write_model(j, &plan, &mesh, &log, err)) log_summary(&plan, &mesh, &log, &report);
-    solid_report_release(&report);
-    unite_log_release(&log);
-    solid_mesh_release(&base);
-    solid_mesh_release(&mesh);
-    solid_list_release(&solids);
-    plan_release(&plan);
+    if (!read_frame(j, err) && !building_make(&building, &files, &j->in.axes, placer, &j->prov, err) &&
+        !write_model(j, &building, &files, err))
+        log_summary(&building);
+    building_release(&building);
     return err->status;
 }
 

@@ -21,6 +21,7 @@
 #include "common/base/scan.h"
 #include "common/math/numbers.h"
 #include "stages/build_model/place/place_judge.h"
+#include "stages/build_model/place/place_memory.h"
 
 enum { MAX_CELLS = 24, MIN_IN_CELL = 55 }; /* along each side; mean effective number of points in a cell */
 #define BEHIND         1.08                /* times the front's distance: points beyond are hidden */
@@ -473,6 +474,11 @@ enum status place_wall(struct placed_wall *wall, const struct placer *placer, co
             err, ST_DATA,
             "%s:%d: a wall by a rectangle needs the scene's points; give --points, or the wall's coordinates.", path,
             line);
+    const struct placed_wall *known = place_memory_find(placer->memory, place, wanted);
+    if (known) {
+        *wall = *known;
+        return ST_OK;
+    }
     struct position *p = NULL;
     if (!find_visible(&visible, &count, placer, c, place, err) && !(p = calloc(count + 1, sizeof *p)))
         err_nomem(err, "points of a rectangle", count * sizeof *p);
@@ -485,6 +491,7 @@ enum status place_wall(struct placed_wall *wall, const struct placer *placer, co
         wall->ends[i][0] = at.x;
         wall->ends[i][1] = at.y;
     }
+    if (!err->status) place_memory_add(placer->memory, place, wanted, wall);
     free(p);
     free(visible);
     return err->status;

@@ -23,6 +23,8 @@ struct placer_photo {
     struct photo_camera camera; /* in the model's frame */
 };
 
+struct place_memory;
+
 /* The cameras of views and their photographs. */
 struct placer_views {
     const struct camera_set *set;
@@ -37,7 +39,13 @@ struct placer {
     size_t count;
     double window; /* of wall positions, model units */
     const struct model_params *params;
+    struct place_memory *memory; /* NULL: what was placed is not kept */
 };
+
+/* Of walls that were placed, for a placer that builds scripts again and again; NULL: not enough memory. The caller frees
+ * it. It knows no points: another placer needs another one. */
+struct place_memory *place_memory_new(void);
+void place_memory_free(struct place_memory *memory);
 
 /* views[1]: those that were held out, in which places may be drawn too. points may be NULL: then walls cannot be placed
  * by rectangles. Keeps pointers to lenses and params. */

@@ -2,7 +2,7 @@
  * others. */
 #include <math.h>
 
-#include "stages/build_model/objects.h"
+#include "stages/build_model/building/objects.h"
 #include "stages/build_model/plan/edit_chain.h"
 #include "tests/unit/build_model/textured.h"
 

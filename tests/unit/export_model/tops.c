@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "stages/build_model/plan_file.h"
+#include "stages/build_model/building/plan_file.h"
 #include "stages/build_model/solid/unite.h"
 #include "stages/export_model/ceiling_parts.h"
 #include "stages/export_model/wall_top.h"

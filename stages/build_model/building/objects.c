@@ -1,5 +1,5 @@
 /* objects.c - see objects.h. */
-#include "stages/build_model/objects.h"
+#include "stages/build_model/building/objects.h"
 
 #include <math.h>
 #include <stdlib.h>

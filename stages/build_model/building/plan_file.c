@@ -1,5 +1,5 @@
 /* plan_file.c - writes plan.txt and merged.txt. */
-#include "stages/build_model/plan_file.h"
+#include "stages/build_model/building/plan_file.h"
 
 #include "common/base/scan.h"
 
