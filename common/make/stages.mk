@@ -7,6 +7,7 @@
 #                    REMODEL_NAME in the environment
 #   SHARED.STAGE     yes: all qualities of a scene share its products
 #   LIBS.STAGE       libraries that only it links
+#   DEPS.GOAL        a group of configs/packages.txt that only `make GOAL` needs; BUILDS.GOAL: a goal of the build likewise
 #   HELP.GOAL        a line of `make help`, which makes a step of the stage a goal: `make GOAL`
 #
 # The rules of its products, and its steps in a run, are in stages/NAME/rules.c. A function run_STEP in stages/STAGE/run.sh

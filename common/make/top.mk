@@ -27,8 +27,10 @@ plan:   ## what a run would do: pieces of work, jobs, core-hours, memory, bytes 
 $(filter-out doctor,$(GOALS)) why plan:
 	@echo "make $@ works on a scene: make $@ SCENE=NAME ('make help' lists the scenes)." >&2; exit 2
 else
+# DEPS.GOAL, BUILDS.GOAL: packages and programs that only this goal needs
 all $(GOALS) why plan: deps
-	+@$(BUILD) build
+	+@$(if $(INSTALLED),:,$(if $(DEPS.$@),common/run/deps.sh $(DEPS) $(DEPS.$@),:))
+	+@$(BUILD) build $(BUILDS.$@)
 	+@$(ENVIRONMENT) common/run/run_scene.sh '$(SCENE)' '$(S)' '$(O)' '$@' '$(dry)' '$(JOBS)' '$(CORES)' '$(B)/bin' $(SUB)
 endif
 

@@ -21,11 +21,7 @@ $(B)/wasm/flags: FORCE
 $(B)/wasm/obj/%.o: %.c $(B)/wasm/flags
 	$(call say,CC $<)mkdir -p $(@D); $(WASM_CC) $(WASM_FLAGS) $(STRICT) -MMD -MP -c -o $@ $<
 $(WASM): $(WASM_OBJS)
-	$(call say,LD $@)rm -f $(B)/wasm/all.a; $(WASM_AR) rcs $(B)/wasm/all.a $(filter-out %/live.o,$^); \
-	  $(WASM_CC) -mexec-model=reactor -o $@ $(filter %/live.o,$^) $(B)/wasm/all.a \
-	  -Wl,--export-dynamic,--strip-all,-z,stack-size=1048576
-# an index of WebAssembly is for LLVM's ar alone; Debian names it by its version
-WASM_AR = $(lastword $(sort $(wildcard /usr/bin/llvm-ar /usr/bin/llvm-ar-*)))
+	$(call say,LD $@)$(WASM_CC) -mexec-model=reactor -o $@ $^ -Wl,--export-dynamic,--strip-all,-z,stack-size=1048576
 ifneq ($(filter wasm-build $(WASM),$(MAKECMDGOALS)),)
 -include $(WASM_OBJS:.o=.d)
 endif

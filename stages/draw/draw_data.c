@@ -1,0 +1,248 @@
+/* draw_data.c - scripts that hand data to the page; see draw_data.h.
+ *
+ * Each script calls a function of the page. Texts are JSON strings; points are compressed by zlib's format, which
+ * browsers read, and written as base64 in parts, because a string of a browser has a largest length. */
+#include "stages/draw/draw_data.h"
+
+#include <dirent.h>
+#include <libdeflate.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/base/base64.h"
+#include "common/base/file_bytes.h"
+#include "common/base/file_path.h"
+#include "common/base/outfile.h"
+#include "common/capture/camera_set.h"
+#include "common/capture/lens_list.h"
+#include "common/capture/line_list.h"
+#include "common/capture/photo_camera.h"
+#include "common/model/scene_inputs.h"
+#include "common/product/product.h"
+
+#define PARAM_STRUCT struct draw_params
+const struct param draw_param_table[] = {DRAW_PARAMS(PARAM_ROW) PARAM_END};
+#undef PARAM_STRUCT
+
+static void write_string(FILE *to, const char *text, size_t size)
+{
+    putc('"', to);
+    for (size_t i = 0; i < size; i++) {
+        const unsigned char c = (unsigned char)text[i];
+        if (c == '\n')
+            fputs("\\n", to);
+        else if (c < ' ' || c == 127)
+            fprintf(to, "\\u%04x", c);
+        else
+            fprintf(to, c == '"' || c == '\\' ? "\\%c" : "%c", c);
+    }
+    putc('"', to);
+}
+
+/* "NAME": "its text", if there is such a file. */
+static enum status write_file(FILE *to, const char *name, const char *path, struct err *err)
+{
+    struct file_bytes file = {0};
+    if (!path || !path_is_file(path) || file_bytes_read(&file, path, err)) return err->status;
+    fputs(",\n", to);
+    write_string(to, name, strlen(name));
+    fputs(": ", to);
+    write_string(to, file.bytes, file.size);
+    file_bytes_release(&file);
+    return ST_OK;
+}
+
+static int is_text(const struct dirent *entry)
+{
+    const size_t n = strlen(entry->d_name);
+    return entry->d_name[0] != '.' && n > 4 && !strcmp(entry->d_name + n - 4, ".txt");
+}
+
+/* The files that people write: scenes/NAME/X.txt as scene/X.txt. */
+static enum status write_folder(FILE *to, const char *as, const char *folder, struct err *err)
+{
+    struct dirent **entries = NULL;
+    const int count = scandir(folder, &entries, is_text, alphasort);
+    for (int i = 0; i < count; i++) {
+        char path[FILE_PATH], name[FILE_PATH];
+        if (!err->status && !file_path(path, folder, entries[i]->d_name, "", err) &&
+            !file_path(name, as, entries[i]->d_name, "", err))
+            write_file(to, name, path, err);
+        free(entries[i]);
+    }
+    free(entries);
+    return err->status;
+}
+
+static enum status write_texts(FILE *to, const struct draw_sources *from, struct err *err)
+{
+    static const enum product_id of_views[] = {PRODUCT_CAMERAS, PRODUCT_IMAGES, PRODUCT_POINTS3D, PRODUCT_LENSES};
+    char path[FILE_PATH], name[FILE_PATH];
+    for (size_t i = 0; i < sizeof of_views / sizeof *of_views; i++)
+        if (product_path_in(path, from->views, of_views[i], NULL, err) ||
+            file_path(name, "out/views", path_file_name(path), "", err) || write_file(to, name, path, err))
+            return err->status;
+    if (write_file(to, "out/model/axes.txt", from->axes, err) ||
+        write_file(to, "out/model/suggested.txt", from->suggested, err) ||
+        write_file(to, "out/build_model.cfg", from->config, err) || file_path(name, "scenes", from->name, "", err) ||
+        write_folder(to, name, from->scene, err))
+        return err->status;
+    return file_path(path, from->scene, "edits", "", err) || file_path(name, "scenes", from->name, "/edits", err) ||
+                   write_folder(to, name, path, err)
+               ? err->status
+               : ST_OK;
+}
+
+/* ----------------------------------------------------------------------------------------------------- straight edges */
+
+/* A pixel of a view in the photo that it was made from. */
+static bool to_photo(double photo[2], const struct view *view, const struct lens *lens, double u, double v)
+{
+    const struct vec3 ray = vec3_make((u - view->cx) / view->fx, (v - view->cy) / view->fy, 1);
+    const struct mat3 turn = mat3_transpose(mat3_from_quat(lens->view_from_photo));
+    return camera_project(&lens->camera, mat3_apply(turn, ray), &photo[0], &photo[1]) && photo[0] >= 0 &&
+           photo[1] >= 0 && photo[0] <= lens->camera.width && photo[1] <= lens->camera.height;
+}
+
+static void write_line(FILE *to, const struct view *view, const struct lens *lens, const struct view_line *l,
+                       bool *more)
+{
+    enum { PARTS = 4 };
+    double at[PARTS + 1][2];
+    for (int i = 0; i <= PARTS; i++) {
+        const double t = (double)i / PARTS;
+        if (!to_photo(at[i], view, lens, l->u0 + t * (l->u1 - l->u0), l->v0 + t * (l->v1 - l->v0))) return;
+    }
+    fputs(*more ? ",[" : "[", to);
+    for (int i = 0; i <= PARTS; i++) fprintf(to, "%s%.1f,%.1f", i ? "," : "", at[i][0], at[i][1]);
+    putc(']', to);
+    *more = true;
+}
+
+static enum status write_lines(FILE *to, const struct draw_sources *from, struct err *err)
+{
+    const struct scene_files files = {.views = from->views};
+    struct scene_inputs in = {0};
+    const char *photo = "";
+    bool more = false;
+    scene_inputs_read(&in, SCENE_CAMERAS | SCENE_LENSES, &files, NULL, err);
+    for (int i = 0; !err->status && i < in.set.view_count; i++) {
+        const struct lens *lens = photo_lens_of_view(&in.set, &in.lenses, i);
+        const struct product_key key = {.view = in.set.views[i].name};
+        struct line_list lines = {0};
+        char path[FILE_PATH];
+        if (!lens || product_path_in(path, from->lines, PRODUCT_LINES, &key, err) || !path_is_file(path)) continue;
+        line_list_read(&lines, path, NULL, err);
+        if (strcmp(photo, lens->photo)) {
+            fputs(*photo ? "],\n" : "\n", to);
+            write_string(to, lens->photo, strlen(lens->photo));
+            fputs(": [", to);
+            photo = lens->photo;
+            more = false;
+        }
+        for (int k = 0; k < lines.count; k++) write_line(to, &in.set.views[i], lens, &lines.lines[k], &more);
+        line_list_release(&lines);
+    }
+    if (*photo) fputs("]", to);
+    scene_inputs_release(&in);
+    return err->status;
+}
+
+enum status draw_data_write_scene(const char *path, const struct draw_sources *from, struct err *err)
+{
+    struct outfile out = {0};
+    if (outfile_open(&out, path, err)) return err->status;
+    fputs("remodel.scene = {\"name\": ", out.fp);
+    write_string(out.fp, from->name, strlen(from->name));
+    fputs(", \"files\": {\"\": \"\"", out.fp);
+    write_texts(out.fp, from, err);
+    fputs("},\n\"lines\": {", out.fp);
+    if (!err->status && from->lines) write_lines(out.fp, from, err);
+    fputs("}};\n", out.fp);
+    if (!err->status) outfile_commit(&out, err);
+    outfile_discard(&out);
+    return err->status;
+}
+
+/* ------------------------------------------------------------------------------------------------------------- points */
+
+enum { RECORD = 45, PART = 6 << 20 }; /* bytes of a point; of a part of base64, a multiple of three */
+static const char element[] = "element vertex ", header_end[] = "end_header\n";
+
+/* Leaves every n-th point of a cloud, so that at most `most` remain. Returns n; 0: it is no cloud of this form. */
+static size_t thin(struct file_bytes *ply, size_t most)
+{
+    char *count_at = strstr(ply->bytes, element), *end = strstr(ply->bytes, header_end), number[64];
+    if (!count_at || !end) return 0;
+    char *const records = end + strlen(header_end);
+    const size_t head = (size_t)(records - ply->bytes), count = (ply->size - head) / RECORD,
+                 step = (count + most - 1) / most;
+    if (step <= 1) return 1;
+    const size_t kept = (count + step - 1) / step;
+    for (size_t i = 0; i < kept; i++) memmove(records + i * RECORD, records + i * step * RECORD, RECORD);
+    /* the number keeps its width, so that the head does */
+    char *digits = count_at + strlen(element);
+    const int width = (int)strcspn(digits, "\n");
+    snprintf(number, sizeof number, "%0*zu", width, kept);
+    memcpy(digits, number, (size_t)width);
+    ply->size = head + kept * RECORD;
+    return step;
+}
+
+static enum status write_points(FILE *to, struct file_bytes *ply, const struct draw_sources *from,
+                                const struct draw_params *params, struct err *err)
+{
+    const size_t step = thin(ply, (size_t)params->max_points);
+    if (!step) return err_set(err, ST_DATA, "%s is not a point cloud of remodel; make the points again.", from->points);
+    struct libdeflate_compressor *c = libdeflate_alloc_compressor(1);
+    const size_t room = c ? libdeflate_zlib_compress_bound(c, ply->size) : 0;
+    unsigned char *packed = malloc(room + 1);
+    const size_t size = c && packed ? libdeflate_zlib_compress(c, ply->bytes, ply->size, packed, room) : 0;
+    if (!size) err_nomem(err, "the points of a page", room);
+    fprintf(to, "remodel.points({\"step\": %zu, \"size\": %zu, \"parts\": [", step, ply->size);
+    for (size_t at = 0; at < size; at += PART) {
+        fputs(at ? ",\n\"" : "\n\"", to);
+        base64_write(to, packed + at, size - at < PART ? size - at : PART);
+        putc('"', to);
+    }
+    fputs("]});\n", to);
+    free(packed);
+    libdeflate_free_compressor(c);
+    return err->status;
+}
+
+enum status draw_data_write_points(const char *path, const struct draw_sources *from, const struct draw_params *params,
+                                   struct err *err)
+{
+    struct outfile out = {0};
+    struct file_bytes ply = {0};
+    if (from->points && file_bytes_read(&ply, from->points, err)) return err->status;
+    if (!outfile_open(&out, path, err)) {
+        if (from->points)
+            write_points(out.fp, &ply, from, params, err);
+        else
+            fputs("remodel.points(null);\n", out.fp);
+        if (!err->status) outfile_commit(&out, err);
+    }
+    outfile_discard(&out);
+    file_bytes_release(&ply);
+    return err->status;
+}
+
+enum status draw_data_write_code(const char *path, const struct draw_sources *from, struct err *err)
+{
+    struct outfile out = {0};
+    if (!path_is_file(from->wasm))
+        return err_set(err, ST_IO,
+                       "%s is missing: the page needs build_model as WebAssembly; run make draw, which builds it.",
+                       from->wasm);
+    if (!outfile_open(&out, path, err)) {
+        fputs("remodel.code = \"", out.fp);
+        base64_write_file(out.fp, from->wasm, err);
+        fputs("\";\n", out.fp);
+        if (!err->status) outfile_commit(&out, err);
+    }
+    outfile_discard(&out);
+    return err->status;
+}

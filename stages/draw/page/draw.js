@@ -1,0 +1,536 @@
+/* draw.js - the page: what is shown, and what keys, buttons and the pointer do.
+ *
+ * Each change of a text is built by the C code at once; what it refuses is said beside the photo, marked at its line and
+ * at its pixels. The last model that could be built stays in sight. */
+'use strict';
+
+const el = (id) => document.getElementById(id);
+
+function bytesFromBase64(text) {
+    const binary = atob(text), bytes = new Uint8Array(binary.length);
+    for (let i = 0; i < bytes.length; i++) bytes[i] = binary.charCodeAt(i);
+    return bytes;
+}
+
+class App {
+    constructor(scene, code) {
+        const system = new WasiFiles(), encode = new TextEncoder();
+        this.scene = scene;
+        this.path = `scenes/${scene.name}/`;
+        const texts = {};
+        for (const [name, text] of Object.entries(scene.files)) {
+            if (name.startsWith(this.path)) texts[name.slice(this.path.length)] = text;
+            else if (name) system.files.set(name, encode.encode(text));
+        }
+        texts['model.txt'] ??= '';
+        this.system = system;
+        this.live = new Live(bytesFromBase64(code), system);
+        this.texts = new Texts(texts);
+        this.view = new PhotoView(el('canvas'));
+        this.picture = new PhotoPicture(this.view, this.live);
+        this.solid = new SolidPicture(el('solid'));
+        this.model = {walls: [], openings: [], slots: [], boxes: [], rooms: [], things: [], faces: [], vertices: []};
+        this.file = 'model.txt';
+        this.tool = TOOLS[0];
+        this.points = [];
+        this.pointPhotos = [];
+        this.selected = [];
+        this.refused = null;
+        this.hasPoints = scene.files['out/points'] !== undefined;
+        this.images = new Map();
+    }
+
+    start() {
+        const failed = this.begin(false);
+        if (failed) return this.refuse(failed);
+        this.photos = this.live.json('live_photos');
+        this.photo = 0;
+        document.title = `Draw ${this.scene.name}`;
+        el('title').textContent = this.scene.name;
+        this.forms = new FormsPanel(el('forms'), this);
+        this.suggested = new SuggestedPanel(el('suggested'), this, this.scene.files['out/model/suggested.txt']);
+        this.store = new Store(this.scene.name, this.texts);
+        this.listPhotos();
+        this.listen();
+        const kept = this.store.restore();
+        if (kept.length) this.say(`Taken back from this browser, not saved yet: ${kept.join(', ')}.`);
+        if (this.store.changedSince.length) this.say(`Changed on disk meanwhile: ${this.store.changedSince.join(', ')}. Undo shows that.`);
+        this.texts.watch(() => this.changed());
+        this.openFile('model.txt');
+        this.openPhoto(0);
+        this.loadPoints();
+    }
+
+    begin(points) {
+        return this.live.begin({views: 'out/views', axes: 'out/model/axes.txt', points: points ? 'out/points/points.ply' : '',
+            config: this.system.files.has('out/build_model.cfg') ? 'out/build_model.cfg' : ''});
+    }
+
+    /* ------------------------------------------------------------------------------------------------------ points */
+
+    loadPoints() {
+        this.say('The points are being read; walls by rectangles wait for them.');
+        this.waiting = true;
+        remodel.points = async (packed) => {
+            this.waiting = false;
+            if (packed) {
+                const parts = packed.parts.map(bytesFromBase64);
+                const stream = new Blob(parts).stream().pipeThrough(new DecompressionStream('deflate'));
+                this.system.files.set('out/points/points.ply', new Uint8Array(await new Response(stream).arrayBuffer()));
+                const failed = this.begin(true);
+                if (failed) return this.refuse(failed);
+                this.system.files.delete('out/points/points.ply');
+                this.say(packed.step > 1 ? `Walls by rectangles use one point of ${packed.step} here; make model uses all, and may place them some mm elsewhere.` : 'Ready.');
+            } else
+                this.say('This scene has no points: draw walls by their feet or by corners.');
+            this.picture.forget();
+            this.build();
+            this.ready = true;
+        };
+        const script = document.createElement('script');
+        script.src = 'points.js';
+        script.onerror = () => remodel.points(null);
+        document.body.append(script);
+    }
+
+    /* ------------------------------------------------------------------------------------------------------- texts */
+
+    openFile(name) {
+        this.file = name;
+        this.points = [];
+        if (!this.tool.files.test(name)) this.tool = TOOLS.find((t) => t.files.test(name)) || TOOLS[0];
+        const marks = ['scale.txt', 'axes_fix.txt', 'lights.txt', 'materials.txt', 'things.txt', 'subjects.txt'];
+        const edits = this.texts.names().filter((n) => EDIT_FILES.test(n));
+        const others = this.texts.names().filter((n) => n !== 'model.txt' && !EDIT_FILES.test(n) && !marks.includes(n) && /^(objects|tour)\.txt$/.test(n));
+        el('file').replaceChildren();
+        for (const [title, names] of [['Model', ['model.txt']], ['Edits', edits], ['Marks', marks], ['Others', others]]) {
+            const group = document.createElement('optgroup');
+            group.label = title;
+            for (const n of names) group.append(new Option(n, n, false, n === name));
+            if (names.length) el('file').append(group);
+        }
+        el('file').value = name;
+        this.listTools();
+        this.showText();
+        this.build();
+        this.forms.show();
+        this.suggested.show();
+    }
+
+    changed() {
+        this.showText();
+        this.build();
+        this.suggested.show();
+    }
+
+    showText() {
+        const text = el('text'), now = this.texts.get(this.file);
+        if (text.value !== now) text.value = now;
+        el('undo').disabled = !this.texts.done.length;
+        el('redo').disabled = !this.texts.undone.length;
+        const unsaved = this.store.unsaved();
+        el('saved').textContent = unsaved.length ? `not saved: ${unsaved.join(', ')}` : 'saved';
+    }
+
+    showNumbers() {
+        const current = this.currentLine(), refused = this.refused ? this.refused.line : 0;
+        el('numbers').innerHTML = this.texts.get(this.file).split('\n').map((_, i) =>
+            i + 1 === refused ? `<b>✕ ${i + 1}</b>` : i + 1 === current ? `<i>▸ ${i + 1}</i>` : i + 1).join('\n');
+        el('numbers').scrollTop = el('text').scrollTop;
+    }
+
+    currentLine() {
+        const text = el('text');
+        return document.activeElement === text || this.showLine ? text.value.slice(0, text.selectionStart).split('\n').length : 0;
+    }
+
+    /* Writes one statement, or several lines, below what the file has. */
+    write(statement) {
+        this.texts.add(this.file, statement);
+        el('text').scrollTop = el('text').scrollHeight;
+        this.forms.show();
+    }
+
+    /* ------------------------------------------------------------------------------------------------------- model */
+
+    build() {
+        const put = (name, text) => this.system.files.set(this.path + name, new TextEncoder().encode(text));
+        for (const name of this.texts.names()) put(name, this.texts.get(name));
+        const isEdit = EDIT_FILES.test(this.file), files = {script: this.path + 'model.txt',
+            things: this.texts.get('things.txt') ? this.path + 'things.txt' : '',
+            edit: isEdit ? this.path + this.file : '', scene: isEdit ? this.path.slice(0, -1) : ''};
+        this.refused = null;
+        el('refusal').hidden = true;
+        const empty = !Script.statements(this.texts.get('model.txt')).filter((s) => s.words[0] !== 'remodel-script').length;
+        if (this.waiting || empty) {
+            if (empty) this.model = {walls: [], openings: [], slots: [], boxes: [], rooms: [], things: [], faces: [], vertices: []};
+            this.picture.forget();
+            if (empty) el('plan').innerHTML = '<p>The plan appears with the first wall.</p>';
+            this.solid.draw(this.model);
+            this.draw();
+            return;
+        }
+        const failed = this.live.build(files);
+        this.notes();
+        if (failed) this.refuse(failed);
+        else this.showModel();
+        this.draw();
+    }
+
+    showModel() {
+        this.model = this.live.json('live_model') || this.model;
+        this.picture.forget();
+        this.selected = this.selected.filter((s) => this.model.faces.some((f) => f.name === s.face));
+        if (!this.live.writePlan('plan.svg')) el('plan').innerHTML = new TextDecoder().decode(this.system.files.get('plan.svg'));
+        this.solid.draw(this.model, this.selected[0] && this.selected[0].name);
+    }
+
+    /* Says what the C code refused, in its words, and where. */
+    refuse(message) {
+        const path = this.path + this.file, other = this.path + 'model.txt';
+        this.refused = Script.refusal(message, path);
+        if (!this.refused.line && this.file !== 'model.txt' && message.includes(other + ':')) this.refused.text = message;
+        el('refusal').textContent = message.split(this.path).join('');
+        el('refusal').hidden = false;
+    }
+
+    notes() {
+        const lines = this.system.lines.map((l) => l.replace(/^build_model: /, ''));
+        el('notes').textContent = lines.join('\n') || this.said || '';
+    }
+
+    say(text) {
+        this.said = text;
+        el('notes').textContent = text;
+    }
+
+    pick(u, v) { return this.live.pick(this.photo, u, v); }
+    ray(u, v) { return this.live.ray(this.photo, u, v); }
+    photoId() { return this.photos[this.photo].id; }
+    px(value) { return Script.number(value, 2); }
+    colour() { return (this.forms.colour || '#3355aa').match(/\w\w/g).map((h) => parseInt(h, 16) / 255)
+        .map((v) => Script.number(v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4, 3)).join(' '); }
+    named() { return (this.forms.name || '').trim(); }
+    markName(kind) { return this.named() || this.newName(kind); }
+    onFloor() { return this.file === 'scale.txt'; }
+
+    newName(kind, more = '') { return Script.newName(kind, ...this.texts.names().map((n) => this.texts.get(n)), more); }
+
+    select(hit, more) {
+        const item = itemOf(this, hit && hit.face);
+        this.selected = item ? more ? [...this.selected, item] : [item] : [];
+        this.solid.draw(this.model, this.selected[0] && this.selected[0].name);
+        this.forms.show();
+        if (item && item.of.line && this.file === 'model.txt') this.goToLine(item.of.line);
+        this.hint();
+        return null;
+    }
+
+    selectedWalls() { return this.selected.filter((s) => s.kind === 'wall').map((s) => s.name).join(' '); }
+    selectedName(kind, at = 0) {
+        const item = this.selected.filter((s) => !kind || s.kind === kind)[at];
+        return item ? item.name : '';
+    }
+
+    goToLine(line) {
+        const text = el('text'), start = text.value.split('\n').slice(0, line - 1).join('\n').length + (line > 1 ? 1 : 0);
+        text.setSelectionRange(start, start);
+        text.scrollTop = Math.max(0, (line - 4) * 18);
+        this.showLine = true;
+        this.showNumbers();
+    }
+
+    /* ------------------------------------------------------------------------------------------------------ photos */
+
+    image(i) {
+        if (!this.images.has(i)) {
+            const image = new Image();
+            image.onload = () => this.draw();
+            image.src = `photos/${encodeURIComponent(this.photos[i].id)}.jpg`;
+            this.images.set(i, image);
+        }
+        return this.images.get(i);
+    }
+
+    listPhotos() {
+        el('photos').replaceChildren(...this.photos.map((p, i) => {
+            const button = document.createElement('button'), image = document.createElement('img');
+            button.type = 'button';
+            image.loading = 'lazy';
+            image.src = `photos/${encodeURIComponent(p.id)}.jpg`;
+            image.alt = '';
+            button.append(image, p.id);
+            button.onclick = () => this.openPhoto(i);
+            return button;
+        }));
+    }
+
+    openPhoto(i) {
+        this.photo = i;
+        if (this.tool.form !== 'corners') this.points = [];
+        [...el('photos').children].forEach((b, k) => b.setAttribute('aria-pressed', k === i));
+        el('photos').children[i].scrollIntoView({block: 'nearest'});
+        this.view.setPhoto(this.photos[i].width, this.photos[i].height);
+        this.cursor = this.view.size.map((s) => s / 2);
+        this.draw();
+    }
+
+    draw() {
+        if (!this.photos) return;
+        const id = this.photoId(), current = this.currentLine(), refused = this.refused ? this.refused.line : 0, drawn = [];
+        for (const p of Script.pixels(this.texts.get(this.file))) {
+            if (p.photo.split('@')[0] !== id) continue;
+            const isRefused = p.line === refused;
+            if (!el('show-drawn').checked && !isRefused && p.line !== current) continue;
+            drawn.push({...p, refused: isRefused, current: p.line === current, label: isRefused ? `refused, line ${p.line}` : p.line === current ? `line ${p.line}` : ''});
+        }
+        const here = this.points.filter((_, k) => this.pointPhotos[k] === id);
+        const gesture = here.length ? {kind: this.tool.form === 'rectangle' ? 'rectangle' : 'line',
+            points: this.cursor && here.length === this.points.length ? [...here, this.cursor] : here} : null;
+        this.picture.draw({image: this.image(this.photo), photo: this.photo, drawn, gesture, lines: this.scene.lines[id] || [],
+            cursor: this.cursor, snapped: this.snapped,
+            shown: {edges: el('show-edges').checked && this.model.faces.length, points: el('show-points').checked, lines: el('show-lines').checked, floor: el('show-floor').checked}});
+        el('where').textContent = this.cursor ? `${id}  ${this.px(this.cursor[0])} ${this.px(this.cursor[1])}` : id;
+        this.showNumbers();
+    }
+
+    /* ---------------------------------------------------------------------------------------------------- gestures */
+
+    listTools() {
+        el('tools').replaceChildren(...TOOLS.filter((t) => t.files.test(this.file)).map((t) => {
+            const button = document.createElement('button');
+            button.type = 'button';
+            button.textContent = t.label;
+            button.id = 'tool-' + t.id;
+            if (t.key) button.title = `key ${t.key}`;
+            button.setAttribute('aria-pressed', t === this.tool);
+            button.onclick = () => this.chooseTool(t);
+            return button;
+        }));
+        this.hint();
+    }
+
+    chooseTool(tool) {
+        this.tool = tool;
+        this.points = [];
+        this.listTools();
+        this.draw();
+    }
+
+    hint() {
+        const what = this.selected.length ? ` Selected: ${this.selected.map((s) => `${s.kind === 'floor' || s.kind === 'ceiling' ? 'room' : s.kind} ${s.name}`).join(', ')}.` : '';
+        el('hint').textContent = this.tool.hint + what;
+    }
+
+    /* The nearest corner or edge of the model, or straight edge of the photo, within 8 px of the screen. */
+    snap(at) {
+        this.snapped = false;
+        if (!el('snap').checked) return at;
+        let best = 8 / this.view.scale, found = null;
+        const consider = (p, weight) => {
+            const d = Math.hypot(p[0] - at[0], p[1] - at[1]) * weight;
+            if (d < best) best = d, found = p;
+        };
+        if (el('show-edges').checked && this.model.faces.length) {
+            const dots = this.picture.edges(this.photo);
+            for (let i = 0; i < dots.length; i += 3) if (dots[i + 2] & 1) consider([dots[i], dots[i + 1]], 1.5);
+            for (const p of this.corners()) consider(p, 0.7);
+        }
+        for (const l of this.scene.lines[this.photoId()] || [])
+            for (let i = 0; i + 3 < l.length; i += 2) {
+                const a = [l[i], l[i + 1]], b = [l[i + 2], l[i + 3]], d = [b[0] - a[0], b[1] - a[1]];
+                const t = Math.min(1, Math.max(0, ((at[0] - a[0]) * d[0] + (at[1] - a[1]) * d[1]) / (d[0] * d[0] + d[1] * d[1] || 1)));
+                consider([a[0] + t * d[0], a[1] + t * d[1]], 1);
+            }
+        this.snapped = found !== null;
+        return found ? [...found] : at;
+    }
+
+    corners() {
+        return this.picture.keep('corners' + this.photo, () => this.model.vertices.map((p) => this.live.project(this.photo, p)).filter((p) => p));
+    }
+
+    setPoint(at, more = false) {
+        const tool = this.tool, corner = this.view.clamp(at);
+        if (tool.form === 'pixel') return this.finish([corner], more);
+        const last = this.points[this.points.length - 1];
+        if (tool.form === 'corners' && last && Math.hypot(last[0] - corner[0], last[1] - corner[1]) * this.view.scale < 2 && this.points.length > 1)
+            return this.finish(this.points);
+        this.points.push(corner);
+        this.pointPhotos[this.points.length - 1] = this.photoId();
+        if (tool.form !== 'corners' && this.points.length === 2) return this.finish(this.points);
+        this.draw();
+    }
+
+    finish(points, more) {
+        const photos = [...this.pointPhotos], made = this.tool.make(this, points, this.tool.form === 'pixel' ? more : photos);
+        this.points = [];
+        this.pointPhotos = [];
+        if (made && made.error) this.complain(made.error);
+        else if (made) this.write(made);
+        this.draw();
+    }
+
+    /* A gesture that makes no statement. */
+    complain(text) {
+        el('refusal').textContent = text;
+        el('refusal').hidden = false;
+    }
+
+    listen() {
+        const canvas = el('canvas');
+        let from = null, pan = null;
+        canvas.addEventListener('pointerdown', (e) => {
+            canvas.focus();
+            canvas.setPointerCapture(e.pointerId);
+            if (e.button === 1 || e.button === 2 || e.altKey) {
+                pan = [e.clientX, e.clientY];
+                return;
+            }
+            this.showLine = false;
+            from = [e.clientX, e.clientY];
+            this.cursor = this.snap(this.view.toPhoto(e));
+            this.setPoint(this.cursor, e.shiftKey);
+        });
+        canvas.addEventListener('pointermove', (e) => {
+            if (pan) {
+                this.view.pan(e.clientX - pan[0], e.clientY - pan[1]);
+                pan = [e.clientX, e.clientY];
+                this.draw();
+                return;
+            }
+            this.cursor = this.snap(this.view.toPhoto(e));
+            this.draw();
+        });
+        canvas.addEventListener('pointerup', (e) => {
+            const moved = from && Math.hypot(e.clientX - from[0], e.clientY - from[1]) > 4;
+            from = pan = null;
+            if (!moved || !this.points.length || this.tool.form === 'corners') return;
+            this.cursor = this.snap(this.view.toPhoto(e));
+            this.setPoint(this.cursor);
+        });
+        canvas.addEventListener('contextmenu', (e) => e.preventDefault());
+        canvas.addEventListener('wheel', (e) => {
+            e.preventDefault();
+            this.view.zoom(e.deltaY < 0 ? 1.2 : 1 / 1.2, ...this.view.toPhoto(e));
+            this.draw();
+        }, {passive: false});
+        canvas.addEventListener('keydown', (e) => this.canvasKey(e));
+        document.addEventListener('keydown', (e) => this.pageKey(e));
+        el('text').addEventListener('input', () => this.texts.set(this.file, el('text').value, true));
+        el('text').addEventListener('scroll', () => { el('numbers').scrollTop = el('text').scrollTop; });
+        for (const type of ['keyup', 'click', 'focus', 'blur'])
+            el('text').addEventListener(type, () => { this.showLine = false; this.draw(); });
+        el('file').onchange = () => this.openFile(el('file').value);
+        el('new-edit').onclick = () => this.newEdit();
+        el('undo').onclick = () => this.undo();
+        el('redo').onclick = () => this.redo();
+        el('save').onclick = () => this.save();
+        el('help-button').onclick = () => this.help();
+        el('zoom-in').onclick = () => this.zoom(1.5);
+        el('zoom-out').onclick = () => this.zoom(1 / 1.5);
+        el('zoom-all').onclick = () => { this.view.showAll(); this.draw(); };
+        for (const id of ['show-edges', 'show-points', 'show-floor', 'show-lines', 'show-drawn', 'snap']) el(id).onchange = () => this.draw();
+        new ResizeObserver(() => {
+            if (this.view.whole) this.view.showAll();
+            this.draw();
+        }).observe(el('stage'));
+        new ResizeObserver(() => this.solid.draw(this.model, this.selected[0] && this.selected[0].name)).observe(el('solid'));
+    }
+
+    zoom(factor) {
+        this.view.zoom(factor, ...this.cursor);
+        this.view.reveal(...this.cursor);
+        this.draw();
+    }
+
+    canvasKey(e) {
+        const by = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1]}[e.key];
+        if (by) {
+            const step = e.shiftKey ? 20 : e.ctrlKey ? 0.1 : 1;
+            this.cursor = this.view.clamp(this.cursor.map((v, k) => v + step * by[k]));
+            this.snapped = false;
+            this.view.reveal(...this.cursor);
+        } else if (e.key === 'Enter')
+            this.setPoint(this.cursor, e.shiftKey);
+        else if (e.key === 'Escape') {
+            this.points = [];
+            this.pointPhotos = [];
+        } else if (e.key === '+' || e.key === '=')
+            this.zoom(1.5);
+        else if (e.key === '-')
+            this.zoom(1 / 1.5);
+        else if (e.key === '0')
+            this.view.showAll();
+        else
+            return;
+        e.preventDefault();
+        this.draw();
+    }
+
+    pageKey(e) {
+        const control = e.ctrlKey || e.metaKey, key = e.key.toLowerCase(), inText = /^(INPUT|TEXTAREA|SELECT)$/.test(e.target.tagName) && e.target.type !== 'checkbox';
+        if (control && key === 's') this.save();
+        else if (control && key === 'z' && !e.shiftKey) this.undo();
+        else if (control && (key === 'y' || (key === 'z' && e.shiftKey))) this.redo();
+        else if (!control && !e.altKey && !inText && e.key === '?') this.help();
+        else if (!control && !e.altKey && !inText && (key === 'pagedown' || key === 'pageup'))
+            this.openPhoto((this.photo + (key === 'pagedown' ? 1 : this.photos.length - 1)) % this.photos.length);
+        else {
+            const tool = !control && !e.altKey && !inText && TOOLS.find((t) => t.key && t.key === key && t.files.test(this.file));
+            if (!tool) return;
+            this.chooseTool(tool);
+            el('canvas').focus();
+        }
+        e.preventDefault();
+    }
+
+    undo() { this.after(this.texts.undo()); }
+    redo() { this.after(this.texts.redo()); }
+    after(name) {
+        this.points = [];
+        if (name && name !== this.file && (this.texts.now[name] !== undefined || name === 'model.txt')) this.openFile(name);
+        else if (name && this.texts.now[this.file] === undefined && EDIT_FILES.test(this.file)) this.openFile('model.txt');
+    }
+
+    async save() {
+        try {
+            this.say(await this.store.save());
+        } catch (e) {
+            this.say(e.name === 'AbortError' ? 'Not saved: no folder was chosen.' : `Not saved: ${e.message}`);
+        }
+        this.showText();
+    }
+
+    newEdit() {
+        const dialog = el('ask'), form = document.createElement('form'), ok = document.createElement('button');
+        form.method = 'dialog';
+        ok.textContent = 'Begin it';
+        const name = field('name', 'Name of the edit, of letters, digits, _ and -:', '');
+        form.append(name, ' ', ok);
+        dialog.replaceChildren(form);
+        form.onsubmit = () => {
+            const given = form.elements.name.value.trim();
+            if (!/^[A-Za-z0-9_][A-Za-z0-9_-]*$/.test(given)) return this.complain(`"${given}" is not a name: use letters, digits, _ and -.`);
+            const file = `edits/${given}.txt`;
+            if (this.texts.now[file] === undefined) this.texts.set(file, 'remodel-script 1\n');
+            this.openFile(file);
+        };
+        dialog.showModal();
+    }
+
+    help() {
+        const keys = [['arrows', 'move the cursor by a pixel of the photo; Shift: by 20, Ctrl: by 0.1'], ['Enter', 'sets a corner, as a click does; twice ends a chain'],
+            ['Escape', 'begins the gesture again'], ['PageUp PageDown', 'other photos'], ['+ - 0', 'larger, smaller, the whole photo; the wheel does the same, Alt and drag moves it'],
+            ['Ctrl+Z Ctrl+Y', 'undo, redo'], ['Ctrl+S', 'save'], ['Tab', 'from part to part']];
+        const tools = TOOLS.filter((t) => t.key).map((t) => [t.key, `${t.label}: ${t.hint}`]);
+        const rows = [...keys, ...tools].map(([k, what]) => `<tr><td><kbd>${k}</kbd></td><td>${what}</td></tr>`).join('');
+        el('help').innerHTML = `<h2>How to draw</h2><p>Choose a photo on the left and a tool above it. Each gesture writes one statement into the script on the right, and the model is built at once.
+            Begin with the walls, then <b>Join walls</b> and <b>Room</b>, then doors and windows; or accept what is suggested. What is refused says why: undo it, or correct its line.</p>
+            <table>${rows}</table><form method="dialog"><button>Close</button></form>`;
+        el('help').showModal();
+    }
+}
+
+const app = new App(remodel.scene, remodel.code);
+app.start();

@@ -1,0 +1,133 @@
+/* script.js - the texts that people write: the model, its edits and the files of marks; with undo, and names for new
+ * statements.
+ *
+ * A text is only ever changed as a whole, so undo restores its bytes. What a statement means is for the C code alone:
+ * here its words are looked at to name new things, and to draw the pixels that it has. */
+'use strict';
+
+const HEADS = {model: 'remodel-script 1', edits: 'remodel-script 1', lights: 'remodel-lamps 1',
+    things: 'remodel-marked-things 1', materials: 'remodel-marked-materials 1', objects: 'remodel-script 1'};
+
+class Texts {
+    /* texts: an object of names ("model.txt", "edits/E.txt") to their texts */
+    constructor(texts) {
+        this.now = {...texts};
+        this.done = [];
+        this.undone = [];
+        this.watchers = [];
+    }
+
+    get(name) { return this.now[name] ?? ''; }
+    names() { return Object.keys(this.now).sort(); }
+    watch(call) { this.watchers.push(call); }
+
+    /* typing: joins with the change before, if that was typing in the same file too */
+    set(name, text, typing = false) {
+        const before = this.now[name];
+        if (before === text) return;
+        const last = this.done[this.done.length - 1];
+        if (typing && last && last.typing && last.name === name && Date.now() - last.time < 1500)
+            Object.assign(last, {after: text, time: Date.now()});
+        else
+            this.done.push({name, before, after: text, typing, time: Date.now()});
+        this.undone = [];
+        this.put(name, text);
+    }
+
+    put(name, text) {
+        if (text === undefined) delete this.now[name];
+        else this.now[name] = text;
+        for (const call of this.watchers) call(name);
+    }
+
+    /* The file that changed; null: there was nothing to undo. */
+    undo() {
+        const change = this.done.pop();
+        if (!change) return null;
+        this.undone.push(change);
+        this.put(change.name, change.before);
+        return change.name;
+    }
+
+    redo() {
+        const change = this.undone.pop();
+        if (!change) return null;
+        this.done.push(change);
+        this.put(change.name, change.after);
+        return change.name;
+    }
+
+    /* Adds a statement as the last line, below the head that the file begins with. */
+    add(name, statement) {
+        const head = HEADS[name.split(/[/.]/)[0]];
+        let text = this.get(name);
+        if (!text.trim() && head) text = head + '\n';
+        if (text && !text.endsWith('\n')) text += '\n';
+        this.set(name, text + statement + '\n');
+    }
+}
+
+const Script = {
+    /* The statements of a text: {line, words}; line counts from 1. */
+    statements(text) {
+        return text.split('\n').map((line, i) => ({line: i + 1, words: line.split('#')[0].trim().split(/\s+/)}))
+            .filter((s) => s.words[0]);
+    },
+
+    /* The names that statements give. */
+    names(text) {
+        const names = new Set();
+        for (const {words} of Script.statements(text)) {
+            if (words[0] === 'walls') for (const w of words.slice(1, words.indexOf('corner'))) names.add(w);
+            else if (/^(wall|door|passage|window|skylight|hatch|box|room|thing|flat|disk|area|mark|object)$/.test(words[0])) names.add(words[1]);
+            if (words[0] === 'split') names.add(words[words.length - 1]);
+            if (words[0] === 'copy') names.add(words[words.indexOf('as') + 1]);
+        }
+        return names;
+    },
+
+    /* A name that is not taken: door1, door2 ... */
+    newName(kind, ...texts) {
+        const taken = new Set(texts.flatMap((text) => [...Script.names(text)]));
+        let n = 1;
+        while (taken.has(kind + n)) n++;
+        return kind + n;
+    },
+
+    /* What a text has of pixels in photos: {line, photo, kind: rectangle|line|corners, points}. */
+    pixels(text) {
+        const list = [];
+        for (const {line, words} of Script.statements(text)) {
+            const corners = [];
+            for (let i = 0; i + 3 < words.length; i++) {
+                if (words[i] !== 'in') continue;
+                const numbers = [];
+                for (let k = i + 2; k < words.length && /^[-+.0-9e]+$/.test(words[k]); k++) numbers.push(+words[k]);
+                if (words[i - 1] === 'corner' && numbers.length >= 2)
+                    corners.push({photo: words[i + 1], points: [numbers.slice(0, 2)]});
+                else if (numbers.length >= 4) {
+                    const points = [];
+                    for (let k = 0; k + 1 < numbers.length; k += 2) points.push(numbers.slice(k, k + 2));
+                    const isLine = /^(foot|top)$/.test(words[i - 1]) || words[0] === 'line';
+                    list.push({line, photo: words[i + 1], kind: isLine || points.length > 2 ? 'line' : 'rectangle', points});
+                } else if (numbers.length >= 2)
+                    list.push({line, photo: words[i + 1], kind: 'corners', points: [numbers.slice(0, 2)]});
+            }
+            for (const c of corners) list.push({line, photo: c.photo, kind: 'corners', points: c.points});
+            if (words[0] === 'mark' && words.length >= 5)
+                list.push({line, photo: words[2], kind: 'corners', points: [[+words[3], +words[4]]]});
+        }
+        return list;
+    },
+
+    /* "PATH:LINE: text" of an error: {line, text}; line 0: it names none. */
+    refusal(message, path) {
+        const at = message.indexOf(path + ':');
+        const match = at >= 0 && /^:(\d+)/.exec(message.slice(at + path.length));
+        return {line: match ? +match[1] : 0, text: message};
+    },
+
+    number(value, digits = 2) { return String(+value.toFixed(digits)); },
+};
+
+if (typeof module !== 'undefined') module.exports = {Texts, Script};

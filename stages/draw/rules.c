@@ -1,0 +1,54 @@
+/* rules.c - the page in which people draw a model. It needs no model: people may begin with it. */
+#include <string.h>
+
+#include "common/graph/scene_rules.h"
+
+/* Sources of the page, and the code that it runs. */
+static const char *const sources[] = {"page.html", "page.css", "wasi.js",     "live.js",  "script.js", "canvas.js",
+                                      "photo.js",  "plan.js",  "gestures.js", "forms.js", "store.js",  "draw.js"};
+
+static void needs_texts(struct graph *g, const struct scene_facts *f)
+{
+    static const char *const files[] = {"model.txt",  "things.txt",   "objects.txt",   "scale.txt",
+                                        "lights.txt", "axes_fix.txt", "materials.txt", "tour.txt"};
+    for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
+        const char *path = graph_scene_file(g, files[i]);
+        rule_needs(g, graph_stamp(g, graph_text(g, "draw-%s", files[i]), path ? path : "none"));
+        rule_needs(g, path);
+    }
+    rule_needs(g, graph_stamp_list(g, "draw-edits.txt", &f->edits));
+    for (int i = 0; i < f->edits.count; i++)
+        rule_needs(g, graph_text(g, "%s/edits/%s.txt", f->folder, f->edits.names[i]));
+}
+
+RULES(draw)
+{
+    const char *wasm = graph_text(g, "%.*swasm/build_model.wasm", (int)(strlen(f->bin) - strlen("bin")), f->bin);
+    graph_step(g, "draw", STEP_ONE, "lines suggest");
+    graph_goal(g, "draw", PATH(g, DRAW_PAGE));
+    graph_rule(g, "page");
+    rule_makes(g, PATH(g, DRAW_PAGE));
+    rule_makes(g, PATH(g, DRAW_SCENE));
+    rule_makes(g, PATH(g, DRAW_POINTS));
+    rule_makes(g, PATH(g, DRAW_CODE));
+    rule_takes_cameras(g);
+    rule_needs(g, PATH(g, LENSES));
+    rule_takes(g, "--axes", PATH(g, AXES));
+    rule_takes(g, "--points", PATH(g, POINTS));
+    rule_takes(g, "--suggested", PATH(g, SUGGESTED_MODEL));
+    rule_needs_set(g, "lines");
+    rule_option(g, "--lines", FOLDER(g, LINES, .view = ""));
+    rule_takes(g, "--model-config", graph_text(g, "%s/slice/build_model.cfg", f->own));
+    for (int i = 0; i < f->viewpoints.count; i++)
+        rule_needs(g, scene_photo_source(g, f, f->viewpoints.photos[i].photo));
+    rule_photos(g, f, "--photos");
+    rule_option(g, "--records", FOLDER(g, PHOTO_LIST));
+    needs_texts(g, f);
+    for (size_t i = 0; i < sizeof sources / sizeof *sources; i++)
+        rule_needs(g, graph_text(g, "stages/draw/page/%s", sources[i]));
+    rule_takes(g, "--wasm", wasm);
+    rule_option(g, "--page", "stages/draw/page");
+    rule_option(g, "--name", f->scene);
+    rule_option(g, "--scene", f->folder);
+    rule_option(g, "--out", FOLDER(g, DRAW_PAGE));
+}
