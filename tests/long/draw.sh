@@ -1,0 +1,65 @@
+# draw, at length: all tests of the page in the room of tests/browser/room.js; the model of loft, drawn from nothing, against
+# the truth, where that scene was made (make SCENE=loft QUALITY=draft)
+. tests/lib.sh
+loft=$root/out/loft+draft
+project draw
+
+absent()
+{
+    command -v node >/dev/null || { echo "node is absent"; return; }
+    command -v chromium >/dev/null || { echo "chromium is absent"; return; }
+    bash common/run/deps.sh manual draw >/dev/null 2>&1 || echo "what make draw builds with is absent (clang, lld, wasi-libc)"
+}
+wasm()
+{
+    local why; why=$(absent)
+    [ -z "$why" ] || skip "$why"
+    (cd "$root" && make -s PHASE=build DEPS=manual SCENES= FLAVOR="$FLAVOR" -j2 wasm-build) >log 2>&1 || { cat log; fail "make wasm-build"; }
+}
+verdicts() { cat said.txt; ! grep -q '^not ok' said.txt || fail "$(grep -m1 '^not ok' said.txt)"; grep -q '^ok' said.txt || fail "the browser ended"; }
+
+a_room_is_drawn_in_all_ways()
+{
+    wasm
+    mkdir -p empty
+    node "$root/tests/browser/room.js" room
+    "$B/bin/draw" --name room --scene empty --views room/views --axes room/model/axes.txt --points room/points/points.ply --lines room/lines \
+        --photos room/photos --records room/records --wasm "$B/wasm/build_model.wasm" --page stages/draw/page --out page
+    node "$root/tests/browser/draw.js" "$PWD/page" >said.txt 2>&1 || { cat said.txt; fail "the browser ended"; }
+    verdicts
+}
+
+loft_is_drawn_from_nothing()
+{
+    wasm
+    [ -e "$loft/points/points.ply" ] || skip "out/loft+draft has no points; run make SCENE=loft QUALITY=draft"
+    mkdir -p empty
+    "$B/bin/draw" --name loft --scene empty --views "$loft/views" --axes "$loft/model/axes.txt" --points "$loft/points/points.ply" --lines "$loft/lines" \
+        --photos "${loft%+draft}/hdr" --records "${loft%+draft}/photos" --wasm "$B/wasm/build_model.wasm" --page stages/draw/page --out page
+    node "$root/tests/browser/draw_loft.js" "$PWD/page" "$root/scenes/loft/model.txt" "$root/scenes/loft/scene.txt" >said.txt 2>&1 || { cat said.txt; fail "the browser ended"; }
+    verdicts
+}
+
+the_module_makes_the_bytes_of_loft_and_its_edits()
+{
+    wasm
+    [ -e "$loft/points/points.ply" ] || skip "out/loft+draft has no points; run make SCENE=loft QUALITY=draft"
+    mkdir -p of/views of/model of/points made
+    cp "$loft"/views/*.txt of/views/; cp "$loft/model/axes.txt" of/model/; ln -s "$loft/points/points.ply" of/points/
+    ln -s "$root/scenes/loft" scenes/loft
+    node "$root/tests/browser/live_model.js" "$B/wasm/build_model.wasm" of scenes/loft || fail "the module does not run"
+    local e f edit count=0
+    for e in model $(basename -s .txt scenes/loft/edits/*.txt); do
+        edit=(); [ "$e" = model ] || edit=(--edit "scenes/loft/edits/$e.txt" --scene scenes/loft --base made/model/model.txt)
+        "$B/bin/build_model" --script scenes/loft/model.txt --things scenes/loft/things.txt --axes of/model/axes.txt --views of/views --points of/points/points.ply \
+            "${edit[@]}" --out "made/$e" 2>err.txt || { cat err.txt; fail "$e"; }
+        for f in model.txt plan.txt merged.txt plan.svg texture.txt objects.txt; do
+            [ -e "made/$e/$f" ] || continue
+            cmp "made/$e/$f" "of/live/$e/$f" || fail "$e/$f differs"
+            count=$((count + 1))
+        done
+    done
+    [ $count = 64 ] || fail "compared $count files, wanted 64: 4 of the model, 6 of each of ten edits"
+}
+
+for t in a_room_is_drawn_in_all_ways loft_is_drawn_from_nothing the_module_makes_the_bytes_of_loft_and_its_edits; do run $t; done
