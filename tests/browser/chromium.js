@@ -19,7 +19,8 @@ class Chromium {
         b.waiting = new Map();
         b.events = [];
         b.next = 1;
-        b.process = spawn(Chromium.find(), ['--headless', '--no-sandbox', '--disable-gpu', '--disable-dev-shm-usage', '--no-first-run',
+        b.process = spawn(Chromium.find(), ['--headless', '--no-sandbox', '--disable-gpu', '--disable-dev-shm-usage',
+            '--no-first-run',
             '--remote-debugging-pipe', `--user-data-dir=${profile}`, '--window-size=1400,900', 'about:blank'],
         {stdio: ['ignore', 'ignore', 'ignore', 'pipe', 'pipe']});
         let rest = '';
@@ -61,9 +62,12 @@ class Page {
         Object.assign(this, {browser, session, target, errors: [], dialogs: 0});
         browser.events.push((m) => {
             if (m.sessionId !== session) return;
-            if (m.method === 'Runtime.exceptionThrown') this.errors.push(m.params.exceptionDetails.exception ? m.params.exceptionDetails.exception.description : m.params.exceptionDetails.text);
-            if (m.method === 'Runtime.consoleAPICalled' && m.params.type === 'error') this.errors.push(m.params.args.map((a) => a.value).join(' '));
-            if (m.method === 'Log.entryAdded' && m.params.entry.level === 'error') this.errors.push(m.params.entry.text);
+            if (m.method === 'Runtime.exceptionThrown') this.errors.push(m.params.exceptionDetails.exception
+                ? m.params.exceptionDetails.exception.description : m.params.exceptionDetails.text);
+            if (m.method === 'Runtime.consoleAPICalled' &&
+                m.params.type === 'error') this.errors.push(m.params.args.map((a) => a.value).join(' '));
+            if (m.method === 'Log.entryAdded' &&
+                m.params.entry.level === 'error') this.errors.push(m.params.entry.text);
             if (m.method === 'Page.javascriptDialogOpening') {
                 this.dialogs++;
                 this.send('Page.handleJavaScriptDialog', {accept: true});
@@ -81,8 +85,10 @@ class Page {
     }
 
     async run(expression) {
-        const {result, exceptionDetails} = await this.send('Runtime.evaluate', {expression, returnByValue: true, awaitPromise: true});
-        if (exceptionDetails) throw new Error((exceptionDetails.exception && exceptionDetails.exception.description) || exceptionDetails.text);
+        const {result, exceptionDetails} = await this.send('Runtime.evaluate',
+            {expression, returnByValue: true, awaitPromise: true});
+        if (exceptionDetails) throw new Error((exceptionDetails.exception &&
+            exceptionDetails.exception.description) || exceptionDetails.text);
         return result.value;
     }
 
@@ -99,7 +105,8 @@ class Page {
     }
 
     mouse(type, [x, y], more = {}) {
-        return this.send('Input.dispatchMouseEvent', {type, x, y, button: 'left', buttons: type === 'mouseMoved' && !more.down ? 0 : 1,
+        return this.send('Input.dispatchMouseEvent', {type, x, y, button: 'left', buttons: type === 'mouseMoved' &&
+            !more.down ? 0 : 1,
             clickCount: 1, pointerType: 'mouse', modifiers: more.modifiers || 0});
     }
 
@@ -120,8 +127,10 @@ class Page {
     /* key: as KeyboardEvent.key has it; modifiers: 1 Alt, 2 Ctrl, 8 Shift */
     async key(key, modifiers = 0) {
         const text = key.length === 1 && !(modifiers & 3) ? key : key === 'Enter' ? '\r' : undefined;
-        const code = {Enter: 13, Escape: 27, ArrowLeft: 37, ArrowUp: 38, ArrowRight: 39, ArrowDown: 40, Tab: 9}[key] || key.toUpperCase().charCodeAt(0);
-        await this.send('Input.dispatchKeyEvent', {type: text ? 'keyDown' : 'rawKeyDown', key, text, modifiers, windowsVirtualKeyCode: code});
+        const code = {Enter: 13, Escape: 27, ArrowLeft: 37, ArrowUp: 38, ArrowRight: 39, ArrowDown: 40,
+            Tab: 9}[key] || key.toUpperCase().charCodeAt(0);
+        await this.send('Input.dispatchKeyEvent', {type: text ? 'keyDown' : 'rawKeyDown', key, text, modifiers,
+            windowsVirtualKeyCode: code});
         await this.send('Input.dispatchKeyEvent', {type: 'keyUp', key, modifiers, windowsVirtualKeyCode: code});
     }
 

@@ -7,7 +7,8 @@ const {project} = require('./room.js');
 const n = (v) => String(+v.toFixed(2));
 const folder = process.argv[2], chosen = process.argv.slice(3);
 
-const WALLS = [['p0', [200, 120, 440, 300]], ['p1', [200, 120, 440, 300]], ['p2', [200, 120, 440, 300]], ['p3', [200, 120, 440, 300]]];
+const WALLS = [['p0', [200, 120, 440, 300]], ['p1', [200, 120, 440, 300]], ['p2', [200, 120, 440, 300]],
+    ['p3', [200, 120, 440, 300]]];
 const ROOM = 'remodel-script 1\n' + WALLS.map(([p, a], i) => `wall wall${i + 1} in ${p} ${a.join(' ')}\n`).join('') +
     'join wall1 wall2 wall3 wall4 wall1\nroom room1 wall1 wall2 wall3 wall4\n';
 /* on the south wall: x from 2.4 to 3.2, seen from the north; upper left is the larger x */
@@ -25,7 +26,8 @@ const tests = {
         await hand.drag('window', 'p2', WINDOW);
         check(await hand.refusal() === '', await hand.refusal());
         const rectangle = ([a, b]) => [a, b].flat().map(n).join(' ');
-        const wanted = ROOM + `door door1 on wall1 in p0 ${rectangle(DOOR)}\nwindow window1 on wall3 in p2 ${rectangle(WINDOW)}\n`;
+        const wanted = ROOM +
+            `door door1 on wall1 in p0 ${rectangle(DOOR)}\nwindow window1 on wall3 in p2 ${rectangle(WINDOW)}\n`;
         check(await hand.text() === wanted, `the script is\n${await hand.text()}, wanted\n${wanted}`);
         const model = await hand.model(), at = Object.fromEntries(model.walls.map((w) => [w.name, w.at]));
         for (const [name, c] of [['wall1', 0], ['wall2', -4], ['wall3', -3], ['wall4', 0]])
@@ -41,13 +43,15 @@ const tests = {
         check(/^wall wall1 foot in p0 /.test(await hand.last()), await hand.last());
         check(await hand.refusal() === '' && Math.abs((await hand.model()).walls[0].at) < 0.01, await hand.refusal());
         await hand.begin();
-        const corner = [[4, 0], [4, 3]].map(([x, y]) => project('p1', [x, y, 0])), back = [[0, 3], [0, 0]].map(([x, y]) => project('p3', [x, y, 0]));
+        const corner = [[4, 0], [4, 3]].map(([x, y]) => project('p1', [x, y, 0])),
+            back = [[0, 3], [0, 0]].map(([x, y]) => project('p3', [x, y, 0]));
         await hand.clicks('corners', 'p1', corner);
         await hand.photo('p3');
         for (const p of [...back, back[1]]) await hand.page.click(await hand.screen(p));
         check(/^walls wall1 wall2 wall3 corner in p1 .* corner in p1 .* corner in p3 .* corner in p3 /.test(await hand.last()), await hand.last());
         check(await hand.refusal() === '', await hand.refusal());
-        check(Math.abs((await hand.model()).walls[1].at + 3) < 0.01, 'the wall between the second and the third corner is not at y = 3');
+        check(Math.abs((await hand.model()).walls[1].at + 3) < 0.01,
+            'the wall between the second and the third corner is not at y = 3');
     },
 
     async keys_draw_as_the_pointer_does(hand) {
@@ -68,28 +72,43 @@ const tests = {
 
     async what_is_refused_is_said_at_its_line(hand) {
         const cases = [
-            ['a wall with few points', ROOM, () => hand.drag('wall', 'p0', [[100, 100], [104, 103]]), /rectangle 100 100 104 103 in p0 contains \d+ visible points/],
+            ['a wall with few points', ROOM, () => hand.drag('wall', 'p0', [[100, 100], [104, 103]]),
+                /rectangle 100 100 104 103 in p0 contains \d+ visible points/],
             ['a wall on the floor', ROOM, () => hand.drag('wall', 'p0', [[250, 440], [400, 478]]), /model\.txt:8: /],
-            ['a foot above the horizon', ROOM, () => hand.clicks('foot', 'p0', [[100, 50], [500, 50]]), /model\.txt:8: .*(floor|horizon)/],
-            ['a foot across the room', ROOM, () => hand.clicks('foot', 'p0', [project('p0', [3, 0.1, 0]), project('p0', [1, 0.6, 0])]), /model\.txt:8: .*degrees/],
-            ['a door beside its wall', ROOM, () => hand.form('Any statement', {line: 'door out on wall1 from 3.5 0 to 4.5 2'}), /model\.txt:8: .*out/],
-            ['a door above the ceiling', ROOM, () => hand.form('Any statement', {line: 'door high on wall1 from 1 0 to 2 2.6'}), /model\.txt:8: .*high/],
-            ['two openings at one place', ROOM + 'window a on wall1 from 1 1 to 2 2\n', () => hand.form('Any statement', {line: 'window b on wall1 from 1.5 1 to 2.5 2'}), /model\.txt:9: .*b/],
+            ['a foot above the horizon', ROOM, () => hand.clicks('foot', 'p0', [[100, 50], [500, 50]]),
+                /model\.txt:8: .*(floor|horizon)/],
+            ['a foot across the room', ROOM, () => hand.clicks('foot', 'p0',
+                [project('p0', [3, 0.1, 0]), project('p0', [1, 0.6, 0])]), /model\.txt:8: .*degrees/],
+            ['a door beside its wall', ROOM, () => hand.form('Any statement',
+                {line: 'door out on wall1 from 3.5 0 to 4.5 2'}), /model\.txt:8: .*out/],
+            ['a door above the ceiling', ROOM, () => hand.form('Any statement',
+                {line: 'door high on wall1 from 1 0 to 2 2.6'}), /model\.txt:8: .*high/],
+            ['two openings at one place', ROOM + 'window a on wall1 from 1 1 to 2 2\n', () =>
+                hand.form('Any statement', {line: 'window b on wall1 from 1.5 1 to 2.5 2'}), /model\.txt:9: .*b/],
             ['a join of parallel walls', ROOM, () => hand.form('Join walls', {walls: 'wall1 wall3'}), /model\.txt:8: /],
-            ['a room of walls that are not joined', 'remodel-script 1\nwall a from 0 0 to 3 0\nwall b from 3 1 to 3 3\nwall c from 2 3 to 0 3\n', () => hand.form('Room', {name: 'r', walls: 'a b c', ceiling: ''}), /model\.txt:5: /],
-            ['a name that is taken', ROOM, () => hand.form('Any statement', {line: 'wall wall1 from 0 0 to 1 0'}), /model\.txt:8: .*wall1/],
+            ['a room of walls that are not joined',
+                'remodel-script 1\nwall a from 0 0 to 3 0\nwall b from 3 1 to 3 3\nwall c from 2 3 to 0 3\n', () =>
+                    hand.form('Room', {name: 'r', walls: 'a b c', ceiling: ''}), /model\.txt:5: /],
+            ['a name that is taken', ROOM, () => hand.form('Any statement', {line: 'wall wall1 from 0 0 to 1 0'}),
+                /model\.txt:8: .*wall1/],
             ['a name that is unknown', ROOM, () => hand.form('Remove', {name: 'nothing'}), /model\.txt:8: .*nothing/],
-            ['a statement that is unknown', ROOM, () => hand.form('Any statement', {line: 'dor a on wall1 from 1 0 to 2 2'}), /model\.txt:8: .*did you mean door/],
-            ['a wall that is too thin', ROOM, () => hand.form('Heights and thickness', {what: 'thickness', value: '0'}), /model\.txt:8: .*thickness/],
-            ['a split outside of its wall', ROOM, () => hand.form('Split wall', {wall: 'wall1', from: '5', to: '6', into: 'w'}), /model\.txt:8: /],
-            ['a ceiling below the floor', ROOM, () => hand.form('Change', {name: 'room1', how: 'ceiling -1'}), /model\.txt:8: /],
+            ['a statement that is unknown', ROOM, () => hand.form('Any statement',
+                {line: 'dor a on wall1 from 1 0 to 2 2'}), /model\.txt:8: .*did you mean door/],
+            ['a wall that is too thin', ROOM, () => hand.form('Heights and thickness',
+                {what: 'thickness', value: '0'}), /model\.txt:8: .*thickness/],
+            ['a split outside of its wall', ROOM, () => hand.form('Split wall',
+                {wall: 'wall1', from: '5', to: '6', into: 'w'}), /model\.txt:8: /],
+            ['a ceiling below the floor', ROOM, () => hand.form('Change', {name: 'room1', how: 'ceiling -1'}),
+                /model\.txt:8: /],
         ];
         for (const [what, text, gesture, wanted] of cases) {
             await hand.begin(text);
             await gesture();
-            const said = await hand.refusal(), marked = await hand.page.run("(document.querySelector('#numbers b') || {}).textContent");
+            const said = await hand.refusal(),
+                marked = await hand.page.run("(document.querySelector('#numbers b') || {}).textContent");
             check(wanted.test(said), `${what}: said "${said}", wanted ${wanted}; the text is\n${await hand.text()}`);
-            check(marked && marked.includes(/model\.txt:(\d+)/.exec(said + 'model.txt:8')[1]), `${what}: line ${marked} is marked, after "${said}"`);
+            check(marked && marked.includes(/model\.txt:(\d+)/.exec(said + 'model.txt:8')[1]),
+                `${what}: line ${marked} is marked, after "${said}"`);
             check((await hand.model()).walls.length > 0 || text !== ROOM, `${what}: the last model is gone`);
         }
     },
@@ -101,16 +120,20 @@ const tests = {
         await start();
         await hand.drag('resize', 'p2', [project('p2', [2.78, 3, 1.5]), project('p2', [3.28, 3, 1.5])]);
         check(/^resize sunny right 0\.48$/.test(await said()), await said());
-        check(await hand.refusal() === '' && Math.abs((await hand.model()).openings[0].s[1] - 3.28) < 0.02, `${await said()}: ${await hand.refusal()}`);
+        check(await hand.refusal() === '' && Math.abs((await hand.model()).openings[0].s[1] - 3.28) < 0.02,
+            `${await said()}: ${await hand.refusal()}`);
         await start();
         await hand.drag('move', 'p2', [project('p2', [2, 3, 1.5]), project('p2', [1.7, 3, 1.5])]);
-        check(await hand.refusal() === '' && Math.abs((await hand.model()).openings[0].s[0] - 0.9) < 0.02, `${await said()}: ${await hand.refusal()}`);
+        check(await hand.refusal() === '' && Math.abs((await hand.model()).openings[0].s[0] - 0.9) < 0.02,
+            `${await said()}: ${await hand.refusal()}`);
         await start();
         await hand.drag('move', 'p1', [project('p1', [4, 1.5, 0.3]), project('p1', [3.5, 1.5, 0.3])]);
-        check(await hand.refusal() === '' && Math.abs((await hand.model()).walls.find((w) => w.name === 'wall2').at + 3.5) < 0.05, `${await said()}: ${await hand.refusal()}`);
+        check(await hand.refusal() === '' && Math.abs((await hand.model()).walls.find((w) => w.name === 'wall2').at +
+            3.5) < 0.05, `${await said()}: ${await hand.refusal()}`);
         await start();
         await hand.clicks('paint', 'p0', [project('p0', [2, 0.7, 0.4])]);
-        check(/^colour box\/chest\/back 0\.033 0\.091 0\.402$/.test(await said()) && await hand.refusal() === '', `${await said()}: ${await hand.refusal()}`);
+        check(/^colour box\/chest\/back 0\.033 0\.091 0\.402$/.test(await said()) && await hand.refusal() === '',
+            `${await said()}: ${await hand.refusal()}`);
         await start();
         await hand.form('Remove', {name: 'chest'});
         check(await said() === 'remove chest' && !(await hand.model()).boxes.length, 'the box is still there');
@@ -120,7 +143,8 @@ const tests = {
 
     async undo_of_100_gestures_restores_the_bytes(hand) {
         await hand.begin(ROOM);
-        const before = JSON.stringify(await hand.page.run('app.texts.now')), undone = await hand.page.run('app.texts.done.length');
+        const before = JSON.stringify(await hand.page.run('app.texts.now')),
+            undone = await hand.page.run('app.texts.done.length');
         let seed = 7;
         const random = (below) => (seed = (seed * 1103515245 + 12345) % 2147483648) / 2147483648 * below;
         await hand.page.run("document.getElementById('snap').checked = true");
@@ -141,7 +165,8 @@ const tests = {
 
     async nothing_typed_is_lost_when_the_page_closes(hand, browser) {
         await hand.begin(ROOM + '# typed\n');
-        check((await hand.page.run("document.getElementById('saved').textContent")).includes('model.txt'), 'the page does not say what is not saved');
+        check((await hand.page.run("document.getElementById('saved').textContent")).includes('model.txt'),
+            'the page does not say what is not saved');
         const again = await browser.page(`file://${folder}/index.html`);
         await again.until('app.ready', 60);
         check((await again.run("app.texts.get('model.txt')")).endsWith('# typed\n'), 'the text is gone');

@@ -13,12 +13,14 @@ const texts = (text) => words(text).map((w) => w.join(' '));
 
 /* The page names new things itself; `names` maps those to the names of the script. */
 async function draw(hand) {
-    const names = new Map(), wanted = words(fs.readFileSync(script, 'utf8')).slice(1), photos = new Set(), now = (w) => w.map((x) => names.get(x) || x);
+    const names = new Map(), wanted = words(fs.readFileSync(script, 'utf8')).slice(1), photos = new Set(),
+        now = (w) => w.map((x) => names.get(x) || x);
     await hand.begin();
     for (const w of wanted) {
         if (w[0] === 'set') await hand.form('Heights and thickness', {what: w[1], value: w[2]});
         else if (w[0] === 'join') await hand.form('Join walls', {walls: now(w.slice(1)).join(' ')});
-        else if (w[0] === 'extend') await hand.form('Extend wall', {wall: now([w[1]])[0], end: w[2], to: now([w[4]])[0]});
+        else if (w[0] === 'extend') await hand.form('Extend wall',
+            {wall: now([w[1]])[0], end: w[2], to: now([w[4]])[0]});
         else if (w[0] === 'room') await hand.form('Room', {name: w[1], walls: now(w.slice(2)).join(' '), ceiling: ''});
         else {
             const at = w.indexOf('in'), [u0, v0, u1, v1] = w.slice(at + 2, at + 6).map(Number);
@@ -58,16 +60,19 @@ function truth() {
         await page.run('localStorage.clear()');
         const {names, photos} = await draw(hand), back = new Map([...names].map(([a, b]) => [b, a]));
         check(photos.size === 5, `${photos.size} photos were drawn on, wanted 5`);
-        const drawn = texts((await hand.text()).split('\n').map((l) => l.split(' ').map((x) => back.get(x) || x).join(' ')).join('\n'));
+        const drawn = texts((await hand.text()).split('\n').map((l) =>
+            l.split(' ').map((x) => back.get(x) || x).join(' ')).join('\n'));
         const byHand = texts(fs.readFileSync(script, 'utf8'));
         check(JSON.stringify(drawn) === JSON.stringify(byHand), `the script is\n${drawn.join('\n')}`);
         console.log(`ok ${test}`);
 
         test = 'walls_are_within_1_cm_and_openings_within_2_cm';
-        const model = await hand.model(), t = truth(), wall = (name) => model.walls.find((w) => w.name === names.get(name));
+        const model = await hand.model(), t = truth(), wall = (name) =>
+            model.walls.find((w) => w.name === names.get(name));
         /* inner faces of the truth: the walls' lines less half their thickness */
         const inside = (a, b) => Math.abs(a) - (t.walls[b[0]].thickness + t.walls[b[1]].thickness) / 2;
-        const across = {south_north: [inside(4.2, ['south', 'north']), ['south', 'north']], west_east: [inside(8.8, ['west', 'east']), ['west', 'east']],
+        const across = {south_north: [inside(4.2, ['south', 'north']), ['south', 'north']],
+            west_east: [inside(8.8, ['west', 'east']), ['west', 'east']],
             west_partition: [inside(5.4, ['west', 'partition']), ['west', 'partition']]};
         let worst = 0, worstOpening = 0;
         for (const [, [wanted, [a, b]]] of Object.entries(across)) {
@@ -76,7 +81,8 @@ function truth() {
         }
         for (const [name, o] of Object.entries(t.openings)) {
             const found = model.openings.find((m) => m.name === names.get(name));
-            const off = [found.s[1] - found.s[0] - (o.s[1] - o.s[0]), found.z[1] - o.z[1], found.z[0] - o.z[0]].map(Math.abs);
+            const off = [found.s[1] - found.s[0] - (o.s[1] - o.s[0]), found.z[1] - o.z[1],
+                found.z[0] - o.z[0]].map(Math.abs);
             worstOpening = Math.max(worstOpening, ...off);
         }
         console.log(`# walls: at most ${(100 * worst).toFixed(2)} cm off; openings: ${(100 * worstOpening).toFixed(2)} cm`);

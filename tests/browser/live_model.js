@@ -3,8 +3,8 @@
  * refused goes to refused.txt there. */
 'use strict';
 const fs = require('fs');
-const {WasiFiles} = require('../../stages/draw/page/wasi.js');
-const {Live} = require('../../stages/draw/page/live.js');
+const {WasiFiles} = require('../../stages/draw_model/page/wasi.js');
+const {Live} = require('../../stages/draw_model/page/live.js');
 const [wasm, folder, scene] = process.argv.slice(2);
 
 const system = new WasiFiles();
@@ -13,7 +13,8 @@ for (const f of ['cameras', 'images', 'points3D', 'lenses']) add(`out/views/${f}
 add('out/model/axes.txt', `${folder}/model/axes.txt`);
 add('out/points/points.ply', `${folder}/points/points.ply`);
 for (const f of ['model', 'things', 'objects']) add(`${scene}/${f}.txt`, `${scene}/${f}.txt`);
-const edits = fs.existsSync(`${scene}/edits`) ? fs.readdirSync(`${scene}/edits`).filter((f) => f.endsWith('.txt')).sort() : [];
+const edits = fs.existsSync(`${scene}/edits`) ? fs.readdirSync(`${scene}/edits`).filter((f) =>
+    f.endsWith('.txt')).sort() : [];
 for (const e of edits) add(`${scene}/edits/${e}`, `${scene}/edits/${e}`);
 
 const live = new Live(fs.readFileSync(wasm), system);
@@ -24,8 +25,10 @@ if (failed) {
 }
 for (const edit of ['', ...edits]) {
     const made = `${folder}/live/${edit ? edit.replace('.txt', '') : 'model'}`;
-    const refused = live.build({script: `${scene}/model.txt`, things: system.files.has(`${scene}/things.txt`) ? `${scene}/things.txt` : '',
-        edit: edit && `${scene}/edits/${edit}`, scene: edit && scene, base: edit && 'out/model/model.txt'}) || live.write('made') || live.writePlan('made/plan.svg');
+    const refused = live.build({script: `${scene}/model.txt`, things: system.files.has(`${scene}/things.txt`)
+        ? `${scene}/things.txt` : '',
+        edit: edit && `${scene}/edits/${edit}`, scene: edit && scene, base: edit && 'out/model/model.txt'}) ||
+            live.write('made') || live.writePlan('made/plan.svg');
     fs.mkdirSync(made, {recursive: true});
     if (refused) fs.writeFileSync(`${made}/refused.txt`, refused + '\n');
     for (const [name, bytes] of [...system.files]) {

@@ -1,4 +1,4 @@
-/* stdlib.h - the system's, and qsort_r(), which older C libraries for WebAssembly lack (qsort_r.c). */
+/* stdlib.h - the system's, and qsort_r(), which older C libraries for WebAssembly lack (wasm_qsort_r.c). */
 #ifndef REMODEL_WASM_STDLIB_H
 #define REMODEL_WASM_STDLIB_H
 

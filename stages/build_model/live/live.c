@@ -1,7 +1,7 @@
 /* live.c - the model of a scene while somebody draws it; see live.h.
  *
- * It does what build_model does: it reads the same files, and its model has the same bytes. A model that cannot be built
- * leaves the last one in place, so that a page goes on showing it beside the reason. */
+ *  * It does what build_model does: it reads the same files, and its model has the same bytes. A model that cannot be
+ * built leaves the last one in place, so that a page goes on showing it beside the reason. */
 #include "stages/build_model/live/live.h"
 
 #include <math.h>

@@ -24,11 +24,11 @@ const char *live_error(void);
 int live_begin(const char *views, const char *axes, const char *points, const char *config);
 void live_end(void);
 
-/* Builds the model of a script and of an edit. things, edit, scene and base as in building.h; NULL or "": none. The last
- * model that could be built stays after a failure. */
+/* Builds the model of a script and of an edit. things, edit, scene and base as in building.h; NULL or "": none. The
+ * last model that could be built stays after a failure. */
 int live_build(const char *script, const char *things, const char *edit, const char *scene, const char *base);
-/* Writes plan.txt, merged.txt and model.txt of the last model into a folder, as build_model does, of an edit with a base
- * also texture.txt and objects.txt. */
+/* Writes plan.txt, merged.txt and model.txt of the last model into a folder, as build_model does, of an edit with a
+ * base also texture.txt and objects.txt. */
 int live_write(const char *folder);
 int live_write_plan(const char *path); /* plan.svg of it */
 
@@ -39,8 +39,8 @@ const char *live_photos(void); /* [{"id": ..., "width": ..., "height": ..., "cen
 /* Numbers of the last function that says so. */
 const double *live_numbers(void);
 
-/* Edges of the last model in a photo, as u, v and flags (1: visible, 2: glass, 4: the first dot of an edge) of each dot.
- * apart: px between dots. Returns how many dots there are, or -1. */
+/* Edges of the last model in a photo, as u, v and flags (1: visible, 2: glass, 4: the first dot of an edge) of each
+ * dot. apart: px between dots. Returns how many dots there are, or -1. */
 int live_edges(int photo, double apart);
 /* Points of the scene that face a photo's camera and lie in it, as u, v and the axis of their normal (0 to 2, 3: none).
  * Every point that is not of the first `most` is passed over evenly. Returns how many there are, or -1. */

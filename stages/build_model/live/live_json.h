@@ -1,7 +1,7 @@
 /* live_json.h - a model as JSON, for pages.
  *
- *   walls     name, line, normal [x, y] and at: the in face n p = c, from, to: S where openings may lie, foot, top, sign,
- *             origin, direction, corners: four in plan, angled
+ *   walls     name, line, normal [x, y] and at: the in face n p = c; span: S where openings may lie; foot, top,
+ *             thickness, sign, origin, direction; corners: four in plan; angled
  *   openings  name, line, kind, wall, s, z, fill; slots: name, line, kind, room, low, high
  *   boxes     name, line, low, high, turn; rooms: name, line, floor, ceiling, walls, middle
  *   things    name

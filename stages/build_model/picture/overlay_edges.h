@@ -1,4 +1,4 @@
-/* overlay_edges.h - the edges of a model as a photograph shows them: dots along them, visible or hidden by the model. */
+/* overlay_edges.h - the edges of a model as a photograph shows them: dots along them, visible or hidden. */
 #ifndef REMODEL_OVERLAY_EDGES_H
 #define REMODEL_OVERLAY_EDGES_H
 

@@ -42,8 +42,8 @@ struct placer {
     struct place_memory *memory; /* NULL: what was placed is not kept */
 };
 
-/* Of walls that were placed, for a placer that builds scripts again and again; NULL: not enough memory. The caller frees
- * it. It knows no points: another placer needs another one. */
+/* Of walls that were placed, for a placer that builds scripts again and again; NULL: not enough memory. The caller
+ * frees it. It knows no points: another placer needs another one. */
 struct place_memory *place_memory_new(void);
 void place_memory_free(struct place_memory *memory);
 

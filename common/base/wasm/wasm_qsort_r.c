@@ -1,4 +1,4 @@
-/* qsort_r.c - sorts by merging, as the C library of Linux does: equal items keep their order. */
+/* wasm_qsort_r.c - sorts by merging, as the C library of Linux does: equal items keep their order. */
 #include <stdlib.h>
 #include <string.h>
 

@@ -16,7 +16,8 @@ class PhotoPicture {
         return this.kept.get(key);
     }
 
-    edges(photo) { return this.keep('edges' + photo, () => this.live.edges(photo, Math.max(1, this.view.size[0] / 500))); }
+    edges(photo) { return this.keep('edges' + photo, () => this.live.edges(photo,
+        Math.max(1, this.view.size[0] / 500))); }
     points(photo) { return this.keep('points' + photo, () => this.live.points(photo, 30000)); }
 
     /* {image, photo, scene, shown, drawn, refused, gesture, cursor, selected} */
@@ -116,7 +117,8 @@ class PhotoPicture {
             return (colour, width, dash = []) => {
                 for (let i = 0; i <= 40; i++) {
                     const t = i / 40, p = a.map((v, k) => v + t * (b[k] - v)), at = this.live.project(photo, p);
-                    if (at && at[0] > -200 && at[1] > -200 && at[0] < this.view.size[0] + 200 && at[1] < this.view.size[1] + 200) points.push([...at]);
+                    if (at && at[0] > -200 && at[1] > -200 && at[0] < this.view.size[0] + 200 &&
+                        at[1] < this.view.size[1] + 200) points.push([...at]);
                     else flush(colour, width, dash);
                 }
                 flush(colour, width, dash);
@@ -126,7 +128,8 @@ class PhotoPicture {
             along([i, -6, 0], [i, 6, 0])('#cfd6de', 0.6);
             along([-6, i, 0], [6, i, 0])('#cfd6de', 0.6);
         }
-        const names = [['x', [1, 0, 0], '#ff9a9a', []], ['y', [0, 1, 0], '#9affb0', [8, 3]], ['z', [0, 0, 1], '#a9c8ff', [2, 3]]];
+        const names = [['x', [1, 0, 0], '#ff9a9a', []], ['y', [0, 1, 0], '#9affb0', [8, 3]],
+            ['z', [0, 0, 1], '#a9c8ff', [2, 3]]];
         for (const [name, end, colour, dash] of names) {
             along([0, 0, 0], end)(colour, 2.5, dash);
             const at = this.live.project(photo, end);
@@ -148,7 +151,8 @@ class PhotoPicture {
         const styles = {mark: ['#ffffff', 1.2, [4, 4]], current: ['#ffd24a', 2, []], refused: ['#ff8a80', 3, [9, 4]],
             gesture: ['#ffd24a', 2, []]};
         const points = mark.kind === 'rectangle' && mark.points.length === 2
-            ? [mark.points[0], [mark.points[1][0], mark.points[0][1]], mark.points[1], [mark.points[0][0], mark.points[1][1]]]
+            ? [mark.points[0], [mark.points[1][0], mark.points[0][1]], mark.points[1],
+                [mark.points[0][0], mark.points[1][1]]]
             : mark.points;
         this.path(c, points, mark.kind === 'rectangle');
         this.stroke(c, ...styles[kind]);

@@ -1,14 +1,14 @@
 /* draw_page.c - one HTML file of a page's sources.
  *
- * In page.html a line "<!-- script NAME.js -->" or "<!-- style NAME.css -->" stands for that file, beside it. Modules of
- * scripts would be simpler, but a browser loads none from a disk. */
+ *  * In page.html a line "<!-- script NAME.js -->" or "<!-- style NAME.css -->" stands for that file, beside it.
+ * Modules of scripts would be simpler, but a browser loads none from a disk. */
 #include <stdio.h>
 #include <string.h>
 
 #include "common/base/file_bytes.h"
 #include "common/base/file_path.h"
 #include "common/base/outfile.h"
-#include "stages/draw/draw_data.h"
+#include "stages/draw_model/draw_data.h"
 
 static enum status write_part(FILE *to, const char *kind, const char *folder, const char *name, int length,
                               struct err *err)

@@ -109,7 +109,8 @@ const Script = {
                     const points = [];
                     for (let k = 0; k + 1 < numbers.length; k += 2) points.push(numbers.slice(k, k + 2));
                     const isLine = /^(foot|top)$/.test(words[i - 1]) || words[0] === 'line';
-                    list.push({line, photo: words[i + 1], kind: isLine || points.length > 2 ? 'line' : 'rectangle', points});
+                    list.push({line, photo: words[i + 1], kind: isLine || points.length > 2 ? 'line' : 'rectangle',
+                        points});
                 } else if (numbers.length >= 2)
                     list.push({line, photo: words[i + 1], kind: 'corners', points: [numbers.slice(0, 2)]});
             }

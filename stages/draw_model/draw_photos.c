@@ -10,7 +10,7 @@
 #include "common/image/photo.h"
 #include "common/model/scene_inputs.h"
 #include "common/product/product.h"
-#include "stages/draw/draw_data.h"
+#include "stages/draw_model/draw_data.h"
 
 static enum status write_photo(const char *path, const struct photo *photo, int side, struct err *err)
 {

@@ -21,7 +21,7 @@ static void needs_texts(struct graph *g, const struct scene_facts *f)
         rule_needs(g, graph_text(g, "%s/edits/%s.txt", f->folder, f->edits.names[i]));
 }
 
-RULES(draw)
+RULES(draw_model)
 {
     const char *wasm = graph_text(g, "%.*swasm/build_model.wasm", (int)(strlen(f->bin) - strlen("bin")), f->bin);
     graph_step(g, "draw", STEP_ONE, "lines suggest");
@@ -45,9 +45,9 @@ RULES(draw)
     rule_option(g, "--records", FOLDER(g, PHOTO_LIST));
     needs_texts(g, f);
     for (size_t i = 0; i < sizeof sources / sizeof *sources; i++)
-        rule_needs(g, graph_text(g, "stages/draw/page/%s", sources[i]));
+        rule_needs(g, graph_text(g, "stages/draw_model/page/%s", sources[i]));
     rule_takes(g, "--wasm", wasm);
-    rule_option(g, "--page", "stages/draw/page");
+    rule_option(g, "--page", "stages/draw_model/page");
     rule_option(g, "--name", f->scene);
     rule_option(g, "--scene", f->folder);
     rule_option(g, "--out", FOLDER(g, DRAW_PAGE));

@@ -3,24 +3,37 @@
 
 /* label, files, fields [name, what, value], make(values, app) */
 const FORMS = [
-    ['Join walls', SCRIPT_FILES, [['walls', 'walls in order, the first again at the end to close', (app) => app.selectedWalls()]], (v) => `join ${v.walls}`],
-    ['Room', SCRIPT_FILES, [['name', 'name', (app) => app.newName('room')], ['walls', 'walls round it', (app) => app.selectedWalls()], ['ceiling', 'ceiling, if not the usual', () => '']],
+    ['Join walls', SCRIPT_FILES, [['walls', 'walls in order, the first again at the end to close', (app) =>
+        app.selectedWalls()]], (v) => `join ${v.walls}`],
+    ['Room', SCRIPT_FILES, [['name', 'name', (app) => app.newName('room')],
+        ['walls', 'walls round it', (app) => app.selectedWalls()], ['ceiling', 'ceiling, if not the usual', () => '']],
         (v) => `room ${v.name} ${v.walls}${v.ceiling ? ' ceiling ' + v.ceiling : ''}`],
-    ['Extend wall', SCRIPT_FILES, [['wall', 'wall', (app) => app.selectedName('wall')], ['end', 'start or end', () => 'end'], ['to', 'to wall or S', (app) => app.selectedName('wall', 1)]],
+    ['Extend wall', SCRIPT_FILES, [['wall', 'wall', (app) => app.selectedName('wall')],
+        ['end', 'start or end', () => 'end'], ['to', 'to wall or S', (app) => app.selectedName('wall', 1)]],
         (v) => `extend ${v.wall} ${v.end} to ${v.to}`],
-    ['Split wall', SCRIPT_FILES, [['wall', 'wall', (app) => app.selectedName('wall')], ['from', 'from S', () => ''], ['to', 'to S', () => ''], ['into', 'new wall', (app) => app.newName('wall')]],
+    ['Split wall', SCRIPT_FILES, [['wall', 'wall', (app) => app.selectedName('wall')], ['from', 'from S', () => ''],
+        ['to', 'to S', () => ''], ['into', 'new wall', (app) => app.newName('wall')]],
         (v) => `split ${v.wall} from ${v.from} to ${v.to} into ${v.into}`],
-    ['Heights and thickness', SCRIPT_FILES, [['what', 'ceiling, floor, thickness, slab, glass or leaf', () => 'ceiling'], ['value', 'number', () => '']],
+    ['Heights and thickness', SCRIPT_FILES, [['what', 'ceiling, floor, thickness, slab, glass or leaf', () =>
+        'ceiling'], ['value', 'number', () => '']],
         (v) => `set ${v.what} ${v.value}`],
-    ['Change', SCRIPT_FILES, [['name', 'wall, box or room', (app) => app.selectedName()], ['how', 'such as "top 2.1" or "ceiling 2.6"', () => '']], (v) => `change ${v.name} ${v.how}`],
-    ['Fill opening', SCRIPT_FILES, [['name', 'opening', (app) => app.selectedName()], ['with', 'leaf, glass, wall or nothing', () => 'glass']], (v) => `fill ${v.name} with ${v.with}`],
+    ['Change', SCRIPT_FILES, [['name', 'wall, box or room', (app) => app.selectedName()],
+        ['how', 'such as "top 2.1" or "ceiling 2.6"', () => '']], (v) => `change ${v.name} ${v.how}`],
+    ['Fill opening', SCRIPT_FILES, [['name', 'opening', (app) => app.selectedName()],
+        ['with', 'leaf, glass, wall or nothing', () => 'glass']], (v) => `fill ${v.name} with ${v.with}`],
     ['Remove', SCRIPT_FILES, [['name', 'what', (app) => app.selectedName()]], (v) => `remove ${v.name}`],
-    ['Clear a room', EDIT_FILES, [['what', 'room, thing or all', (app) => app.selectedName('floor') || 'all']], (v) => `clear ${v.what}`],
-    ['Move a thing', EDIT_FILES, [['name', 'thing', () => ''], ['by', 'DX DY', () => ''], ['turn', 'degrees', () => '']], (v) => `move ${v.name} by ${v.by}${v.turn ? ' turn ' + v.turn : ''}`],
-    ['Lamp', EDIT_FILES, [['name', 'lamp', () => ''], ['how', '"off" or "scale R G B"', () => 'off']], (v) => `lamp ${v.name} ${v.how}`],
-    ['Length', {test: (f) => f === 'scale.txt'}, [['from', 'mark', () => ''], ['to', 'mark', () => ''], ['length', 'metres', () => '']], (v) => `length ${v.from} ${v.to} ${v.length}`],
-    ['Height', {test: (f) => f === 'scale.txt'}, [['what', 'ceiling or a door', () => 'ceiling'], ['height', 'metres', () => '']], (v) => `height ${v.what} ${v.height}`],
-    ['Thickness', {test: (f) => f === 'axes_fix.txt'}, [['a', 'mark', () => ''], ['b', 'mark', () => '']], (v) => `thickness ${v.a} ${v.b}`],
+    ['Clear a room', EDIT_FILES, [['what', 'room, thing or all', (app) => app.selectedName('floor') || 'all']], (v) =>
+        `clear ${v.what}`],
+    ['Move a thing', EDIT_FILES, [['name', 'thing', () => ''], ['by', 'DX DY', () => ''],
+        ['turn', 'degrees', () => '']], (v) => `move ${v.name} by ${v.by}${v.turn ? ' turn ' + v.turn : ''}`],
+    ['Lamp', EDIT_FILES, [['name', 'lamp', () => ''], ['how', '"off" or "scale R G B"', () => 'off']], (v) =>
+        `lamp ${v.name} ${v.how}`],
+    ['Length', {test: (f) => f === 'scale.txt'}, [['from', 'mark', () => ''], ['to', 'mark', () => ''],
+        ['length', 'metres', () => '']], (v) => `length ${v.from} ${v.to} ${v.length}`],
+    ['Height', {test: (f) => f === 'scale.txt'}, [['what', 'ceiling or a door', () => 'ceiling'],
+        ['height', 'metres', () => '']], (v) => `height ${v.what} ${v.height}`],
+    ['Thickness', {test: (f) => f === 'axes_fix.txt'}, [['a', 'mark', () => ''], ['b', 'mark', () => '']], (v) =>
+        `thickness ${v.a} ${v.b}`],
     ['Any statement', {test: () => true}, [['line', 'as docs/model-script.md writes it', () => '']], (v) => v.line],
 ];
 
@@ -51,8 +64,10 @@ class FormsPanel {
         }
         const options = document.createElement('form');
         options.onsubmit = (e) => e.preventDefault();
-        if (EDIT_FILES.test(this.app.file)) options.append(field('colour', 'colour to paint', this.colour || '#3355aa', 'color', (v) => { this.colour = v; }));
-        if (!SCRIPT_FILES.test(this.app.file)) options.append(field('name', 'name of the lamp, mark or material', this.name || '', 'text', (v) => { this.name = v; }));
+        if (EDIT_FILES.test(this.app.file)) options.append(field('colour', 'colour to paint', this.colour ||
+            '#3355aa', 'color', (v) => { this.colour = v; }));
+        if (!SCRIPT_FILES.test(this.app.file)) options.append(field('name', 'name of the lamp, mark or material',
+            this.name || '', 'text', (v) => { this.name = v; }));
         if (options.children.length) this.element.append(options);
     }
 
@@ -64,7 +79,8 @@ class FormsPanel {
         form.append(add);
         form.onsubmit = (e) => {
             e.preventDefault();
-            const values = Object.fromEntries([...form.elements].filter((i) => i.name).map((i) => [i.name, i.value.trim()]));
+            const values = Object.fromEntries([...form.elements].filter((i) => i.name).map((i) =>
+                [i.name, i.value.trim()]));
             this.open = '';
             this.app.write(make(values, this.app).trim().replace(/\s+/g, ' '));
         };
@@ -89,12 +105,15 @@ class SuggestedPanel {
     constructor(element, app, text) {
         this.element = element;
         this.app = app;
-        this.left = text ? text.split('\n').map((line) => line.trim()).filter((line) => line && !line.startsWith('#') && !line.startsWith('remodel-script')) : [];
-        this.comments = text ? text.split('\n').filter((line) => /^#\s/.test(line) && !/^# (remodel|input|\w+ = )/.test(line)) : [];
+        this.left = text ? text.split('\n').map((line) => line.trim()).filter((line) => line &&
+            !line.startsWith('#') && !line.startsWith('remodel-script')) : [];
+        this.comments = text ? text.split('\n').filter((line) => /^#\s/.test(line) &&
+            !/^# (remodel|input|\w+ = )/.test(line)) : [];
     }
 
     show() {
-        const box = document.createElement('details'), list = document.createElement('ol'), title = document.createElement('summary');
+        const box = document.createElement('details'), list = document.createElement('ol'),
+            title = document.createElement('summary');
         this.element.replaceChildren();
         if (!this.left.length || this.app.file !== 'model.txt') return;
         title.textContent = `${this.left.length} suggested statements`;
@@ -109,7 +128,8 @@ class SuggestedPanel {
         };
         box.append(title, all, list);
         this.left.forEach((statement, i) => {
-            const row = document.createElement('li'), text = document.createElement('input'), yes = document.createElement('button'), no = document.createElement('button');
+            const row = document.createElement('li'), text = document.createElement('input'),
+                yes = document.createElement('button'), no = document.createElement('button');
             text.value = statement;
             text.setAttribute('aria-label', 'suggested statement');
             yes.type = no.type = 'button';

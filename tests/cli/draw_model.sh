@@ -1,4 +1,4 @@
-# draw: build_model as WebAssembly makes the same bytes as the program; the page is drawn in by a headless browser. What the
+# draw_model: build_model as WebAssembly makes the same bytes as the program; the page is drawn in by a headless browser. What the
 # page's goal needs is installed only when it is asked for, so these tests skip where it is absent.
 . tests/lib.sh
 project draw
@@ -22,8 +22,8 @@ wasm() # builds it, once
 page()
 {
     local texts=${1:-scenes/room}
-    "$B/bin/draw" --name room --scene "$texts" --views room/views --axes room/model/axes.txt --points room/points/points.ply \
-        --lines room/lines --photos room/photos --records room/records --wasm "$B/wasm/build_model.wasm" --page stages/draw/page \
+    "$B/bin/draw_model" --name room --scene "$texts" --views room/views --axes room/model/axes.txt --points room/points/points.ply \
+        --lines room/lines --photos room/photos --records room/records --wasm "$B/wasm/build_model.wasm" --page stages/draw_model/page \
         --out page 2>err.txt || { cat err.txt; fail "draw"; }
 }
 
@@ -59,8 +59,8 @@ inputs_that_are_missing_are_named()
     wasm
     rm -rf page
     local rc=0
-    "$B/bin/draw" --name room --scene scenes/room --views room/views --axes room/model/axes.txt --photos room/photos --records room/records \
-        --wasm nowhere.wasm --page stages/draw/page --out page 2>err.txt || rc=$?
+    "$B/bin/draw_model" --name room --scene scenes/room --views room/views --axes room/model/axes.txt --photos room/photos --records room/records \
+        --wasm nowhere.wasm --page stages/draw_model/page --out page 2>err.txt || rc=$?
     [ $rc = 1 ] && grep -q 'nowhere.wasm is missing.*run make draw' err.txt || { cat err.txt; fail "exit $rc"; }
     [ ! -e page/index.html ] || fail "a page was left"
 }

@@ -104,7 +104,8 @@ class WasiFiles {
             fd_fdstat_set_flags: () => OK,
             fd_filestat_get: (fd, to) => {
                 const file = this.open.get(fd);
-                return file ? stat(to, 4, file.writes ? file.size : file.bytes.length) : stat(to, fd === ROOT ? 3 : 2, 0);
+                return file ? stat(to, 4, file.writes ? file.size : file.bytes.length)
+                    : stat(to, fd === ROOT ? 3 : 2, 0);
             },
             fd_seek: (fd, by, from, to) => {
                 const file = this.open.get(fd);

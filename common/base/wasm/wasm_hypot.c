@@ -1,5 +1,5 @@
-/* hypot.c - the length of (x, y), rounded as the C library of Linux rounds it, so that a model has the same bytes in a
- * page.
+/* wasm_hypot.c - the length of (x, y), rounded as the C library of Linux rounds it, so that a model has the same bytes
+ * in a page.
  *
  * The root h of the rounded sum is corrected by what is left, x^2 + y^2 - h^2, whose squares are computed exactly, as
  * sums of two numbers [Dekker 1971]. Very large and very small numbers are computed with more bits instead. */

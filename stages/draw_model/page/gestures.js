@@ -18,7 +18,8 @@ function inRectangle(app, [a, b]) {
         `${app.px(Math.max(a[0], b[0]))} ${app.px(Math.max(a[1], b[1]))}`;
 }
 
-function inPixels(app, points) { return `in ${app.photoId()} ` + points.map((p) => `${app.px(p[0])} ${app.px(p[1])}`).join(' '); }
+function inPixels(app, points) { return `in ${app.photoId()} ` +
+    points.map((p) => `${app.px(p[0])} ${app.px(p[1])}`).join(' '); }
 
 /* What most of a rectangle shows: the item of a kind, such as the wall "south" of the face "wall/south/in". */
 function itemIn(app, [a, b], kinds) {
@@ -45,45 +46,59 @@ function wallIn(app, points) {
 
 const NO_WALL = {error: 'No wall of the model is here yet: draw the wall first, and a room, then its openings.'};
 
-addTool('select', 'v', 'Select', SCRIPT_FILES, 'pixel', 'Click a part of the model; buttons below change it. Shift adds walls, for Join and Room.',
+addTool('select', 'v', 'Select', SCRIPT_FILES, 'pixel',
+    'Click a part of the model; buttons below change it. Shift adds walls, for Join and Room.',
     (app, [p], more) => app.select(app.pick(...p), more));
-addTool('wall', 'w', 'Wall', SCRIPT_FILES, 'rectangle', 'Drag a rectangle on a wall, where it has texture and nothing stands before it.',
+addTool('wall', 'w', 'Wall', SCRIPT_FILES, 'rectangle',
+    'Drag a rectangle on a wall, where it has texture and nothing stands before it.',
     (app, points) => `wall ${app.newName('wall')} ${inRectangle(app, points)}`);
-addTool('foot', 'f', 'Wall by its foot', SCRIPT_FILES, 'line', 'Set two pixels of the line where the wall meets the floor: a long line, near the camera.',
+addTool('foot', 'f', 'Wall by its foot', SCRIPT_FILES, 'line',
+    'Set two pixels of the line where the wall meets the floor: a long line, near the camera.',
     (app, points) => `wall ${app.newName('wall')} foot ${inPixels(app, points)}`);
-addTool('top', 't', 'Wall by its top', SCRIPT_FILES, 'line', 'Set two pixels of the line where the wall meets the ceiling.',
+addTool('top', 't', 'Wall by its top', SCRIPT_FILES, 'line',
+    'Set two pixels of the line where the wall meets the ceiling.',
     (app, points) => `wall ${app.newName('wall')} top ${inPixels(app, points)}`);
 addTool('corners', 'c', 'Walls by corners', SCRIPT_FILES, 'corners',
     'Set the corners of the floor, in order round the room, in any photos; Enter twice ends. End at the first corner to close the chain.',
     (app, points, photos) => {
         const at = points.map((p, i) => `corner in ${photos[i]} ${app.px(p[0])} ${app.px(p[1])}`);
-        const last = points.length - 1, near = Math.hypot(points[last][0] - points[0][0], points[last][1] - points[0][1]) * app.view.scale;
+        const last = points.length - 1, near = Math.hypot(points[last][0] - points[0][0],
+            points[last][1] - points[0][1]) * app.view.scale;
         const closed = points.length > 3 && photos[last] === photos[0] && near < 12;
         if (closed) at.pop();
         const names = [], count = closed ? at.length : at.length - 1;
         for (let i = 0; i < count; i++) names.push(app.newName('wall', names.map((n) => `wall ${n}`).join('\n')));
-        return count ? `walls ${names.join(' ')} ${at.join(' ')}${closed ? ' closed' : ''}` : {error: 'A chain needs two corners or more.'};
+        return count ? `walls ${names.join(' ')} ${at.join(' ')}${closed ? ' closed' : ''}`
+            : {error: 'A chain needs two corners or more.'};
     });
 for (const [kind, key] of [['door', 'd'], ['passage', 'p'], ['window', 'n']])
     addTool(kind, key, kind[0].toUpperCase() + kind.slice(1), SCRIPT_FILES, 'rectangle',
-        kind === 'window' ? 'Drag a rectangle round the window, on its wall.' : `Drag a rectangle round the ${kind}; it starts at the floor.`,
+        kind === 'window' ? 'Drag a rectangle round the window, on its wall.'
+            : `Drag a rectangle round the ${kind}; it starts at the floor.`,
         (app, points) => {
             const wall = wallIn(app, points);
             return wall ? `${kind} ${app.newName(kind)} on ${wall} ${inRectangle(app, points)}` : NO_WALL;
         });
-addTool('box', 'b', 'Box', SCRIPT_FILES, 'rectangle', 'Drag from one corner of its footprint on the floor to the opposite one; then give its top.',
+addTool('box', 'b', 'Box', SCRIPT_FILES, 'rectangle',
+    'Drag from one corner of its footprint on the floor to the opposite one; then give its top.',
     (app, points) => `box ${app.newName('box')} ${inRectangle(app, points)}`);
-addTool('slot', 'l', 'Skylight', SCRIPT_FILES, 'rectangle', 'Drag a rectangle on a ceiling for a skylight, on a floor for a hatch.', (app, points) => {
+addTool('slot', 'l', 'Skylight', SCRIPT_FILES, 'rectangle',
+    'Drag a rectangle on a ceiling for a skylight, on a floor for a hatch.', (app, points) => {
     const ceiling = itemIn(app, points, ['ceiling']), floor = ceiling ? null : itemIn(app, points, ['floor']);
     if (ceiling) return `skylight ${app.newName('skylight')} on ${ceiling} ${inRectangle(app, points)}`;
-    return floor ? `hatch ${app.newName('hatch')} on ${floor} ${inRectangle(app, points)}` : {error: 'No ceiling or floor of the model is here yet: make the room first.'};
+    return floor ? `hatch ${app.newName('hatch')} on ${floor} ${inRectangle(app, points)}`
+        : {error: 'No ceiling or floor of the model is here yet: make the room first.'};
 });
-addTool('adjust', 'a', 'Adjust', SCRIPT_FILES, 'rectangle', 'Select a wall, an opening or a box, then drag its place again, in any photo.', (app, points) => {
+addTool('adjust', 'a', 'Adjust', SCRIPT_FILES, 'rectangle',
+    'Select a wall, an opening or a box, then drag its place again, in any photo.', (app, points) => {
     const item = app.selected[0];
     return item ? `adjust ${item.name} ${inRectangle(app, points)}` : {error: 'Select what to adjust first.'};
 });
-addTool('move', 'm', 'Move', SCRIPT_FILES, 'drag', 'Drag a wall along its normal, an opening on its wall, a box on the floor.', (app, points) => moveItem(app, points));
-addTool('resize', 'r', 'Resize', SCRIPT_FILES, 'drag', 'Drag a side of an opening.', (app, points) => resizeOpening(app, points));
+addTool('move', 'm', 'Move', SCRIPT_FILES, 'drag',
+    'Drag a wall along its normal, an opening on its wall, a box on the floor.', (app, points) =>
+        moveItem(app, points));
+addTool('resize', 'r', 'Resize', SCRIPT_FILES, 'drag', 'Drag a side of an opening.', (app, points) =>
+    resizeOpening(app, points));
 addTool('paint', 'k', 'Paint', EDIT_FILES, 'pixel', 'Choose a colour below, then click a face.', (app, [p]) => {
     const hit = app.pick(...p);
     return hit ? `colour ${hit.face} ${app.colour()}` : {error: 'No face of the model is here.'};
@@ -115,7 +130,8 @@ function length(value) { return Script.number(value, 3); }
 function itemOf(app, face) {
     if (!face) return null;
     let [kind, name] = face.split('/');
-    const lists = {wall: 'walls', door: 'openings', passage: 'openings', window: 'openings', glass: 'openings', box: 'boxes',
+    const lists = {wall: 'walls', door: 'openings', passage: 'openings', window: 'openings', glass: 'openings',
+        box: 'boxes',
         floor: 'rooms', ceiling: 'rooms', skylight: 'slots', hatch: 'slots'};
     let of = (app.model[lists[kind]] || []).find((i) => i.name === name);
     if (!of && kind === 'glass') of = app.model.slots.find((i) => i.name === name);
@@ -135,12 +151,14 @@ function moveItem(app, [a, b]) {
     if (item.of.wall) {
         const wall = app.model.walls.find((w) => w.name === item.of.wall), to = meetPlane(ray, [...wall.normal, 0], at);
         if (!to) return {error: 'The end of the drag is not on the plane of the wall.'};
-        const along = wall.sign * ((to[0] - at[0]) * wall.direction[0] + (to[1] - at[1]) * wall.direction[1]), up = to[2] - at[2];
+        const along = wall.sign * ((to[0] - at[0]) * wall.direction[0] + (to[1] - at[1]) * wall.direction[1]),
+            up = to[2] - at[2];
         const rises = Math.abs(up) > 0.02 && item.kind === 'window';
         return `move ${item.name} by ${length(along)}${rises ? ' ' + length(up) : ''}`;
     }
     const to = meetPlane(ray, [0, 0, 1], at);
-    if (!to || item.kind === 'floor' || item.kind === 'ceiling') return {error: 'Begin to drag on a wall, an opening or a box of the model.'};
+    if (!to || item.kind === 'floor' ||
+        item.kind === 'ceiling') return {error: 'Begin to drag on a wall, an opening or a box of the model.'};
     return `move ${item.name} by ${length(to[0] - at[0])} ${length(to[1] - at[1])}`;
 }
 
@@ -156,38 +174,54 @@ function resizeOpening(app, [a, b]) {
         if (!from || !to) continue;
         const d = wall.direction, s = (p) => wall.sign * (p[0] * d[0] + p[1] * d[1]) - wall.origin;
         const [s0, s1] = [s(from), s(to)], lowIsLeft = wall.sign > 0;
-        const sides = [[lowIsLeft ? 'left' : 'right', Math.abs(s0 - o.s[0]), o.s[0] - s1], [lowIsLeft ? 'right' : 'left', Math.abs(s0 - o.s[1]), s1 - o.s[1]],
-            ['bottom', Math.abs(from[2] - o.z[0]), o.z[0] - to[2]], ['top', Math.abs(from[2] - o.z[1]), to[2] - o.z[1]]];
+        const sides = [[lowIsLeft ? 'left' : 'right', Math.abs(s0 - o.s[0]), o.s[0] - s1],
+            [lowIsLeft ? 'right' : 'left', Math.abs(s0 - o.s[1]), s1 - o.s[1]],
+            ['bottom', Math.abs(from[2] - o.z[0]), o.z[0] - to[2]],
+                ['top', Math.abs(from[2] - o.z[1]), to[2] - o.z[1]]];
         const outside = Math.max(0, o.s[0] - s0, s0 - o.s[1]) + Math.max(0, o.z[0] - from[2], from[2] - o.z[1]);
         for (const [side, off, by] of sides)
             if (!best || off + outside < best.off) best = {off: off + outside, name: o.name, side, by};
     }
-    return best && best.off < 0.6 ? `resize ${best.name} ${best.side} ${length(best.by)}` : {error: 'Begin to drag at a side of an opening.'};
+    return best && best.off < 0.6 ? `resize ${best.name} ${best.side} ${length(best.by)}`
+        : {error: 'Begin to drag at a side of an opening.'};
 }
 
 /* --------------------------------------------------------------------------------------------------------- marks */
 
 const inFile = (name) => ({test: (file) => file === name});
-addTool('mark', '', 'Mark', {test: (file) => file === 'scale.txt' || file === 'axes_fix.txt'}, 'pixel', 'Click a place on the floor that a length begins or ends at; mark it in a second photo if it is not on the floor.',
+addTool('mark', '', 'Mark', {test: (file) => file === 'scale.txt' || file === 'axes_fix.txt'}, 'pixel',
+    'Click a place on the floor that a length begins or ends at; mark it in a second photo if it is not on the floor.',
     (app, [p]) => `mark ${app.markName('mark')} ${app.photoId()} ${app.px(p[0])} ${app.px(p[1])}${app.onFloor() ? ' floor' : ''}`);
-addTool('corner', '', 'Corner', inFile('axes_fix.txt'), 'pixel', 'Click where two walls meet the floor; in a second photo give the same name.',
+addTool('corner', '', 'Corner', inFile('axes_fix.txt'), 'pixel',
+    'Click where two walls meet the floor; in a second photo give the same name.',
     (app, [p]) => `corner ${app.markName('corner')} ${app.photoId()} ${app.px(p[0])} ${app.px(p[1])}`);
-addTool('edge', '', 'Edge', inFile('axes_fix.txt'), 'pixel', 'Click a point on a line that ends in the corner with the name below.',
+addTool('edge', '', 'Edge', inFile('axes_fix.txt'), 'pixel',
+    'Click a point on a line that ends in the corner with the name below.',
     (app, [p]) => `edge ${app.markName('corner')} ${app.photoId()} ${app.px(p[0])} ${app.px(p[1])}`);
 addTool('disk', '', 'Round lamp', inFile('lights.txt'), 'line', 'Set the middle of the lamp, then a point of its rim.',
     (app, [a, b]) => `disk ${app.newName('lamp')} in ${app.photoId()} ${app.px(a[0])} ${app.px(a[1])} rim ${app.px(b[0])} ${app.px(b[1])} beta fit`);
 addTool('area', '', 'Square lamp', inFile('lights.txt'), 'corners', 'Set its four corners, in order; Enter twice ends.',
-    (app, points) => points.length === 4 ? `area ${app.newName('lamp')} ${inPixels(app, points)}` : {error: 'A square lamp has four corners.'});
+    (app, points) => points.length === 4 ? `area ${app.newName('lamp')} ${inPixels(app, points)}`
+        : {error: 'A square lamp has four corners.'});
 for (const [kind, words] of [['lit', 'that the lamp lights'], ['unlit', 'that the lamp does not light']])
-    addTool(kind, '', kind[0].toUpperCase() + kind.slice(1), inFile('lights.txt'), 'rectangle', `Drag a rectangle ${words}, on one dull material; the lamp's name is below.`,
-        (app, points) => app.named() ? `${kind} ${app.named()} ${inRectangle(app, points)}` : {error: 'Give the name of the lamp below.'});
-addTool('cone', '', 'Cone line', inFile('lights.txt'), 'line', "Set a line across the edge of the lamp's cone, on one surface.",
-    (app, points) => app.named() ? `line ${app.named()} ${inPixels(app, points)}` : {error: 'Give the name of the lamp below.'});
-addTool('material', '', 'Region', inFile('materials.txt'), 'corners', 'Set the corners of a region of one material; Enter twice ends.',
-    (app, points) => points.length > 2 ? `material ${app.named() || app.newName('material')} ${inPixels(app, points)}` : {error: 'A region has three corners or more.'});
-addTool('subject', '', 'Subject', inFile('subjects.txt'), 'rectangle', 'Drag a rectangle round a subject of the films, the most important first.',
+    addTool(kind, '', kind[0].toUpperCase() + kind.slice(1), inFile('lights.txt'), 'rectangle',
+        `Drag a rectangle ${words}, on one dull material; the lamp's name is below.`,
+        (app, points) => app.named() ? `${kind} ${app.named()} ${inRectangle(app, points)}`
+            : {error: 'Give the name of the lamp below.'});
+addTool('cone', '', 'Cone line', inFile('lights.txt'), 'line',
+    "Set a line across the edge of the lamp's cone, on one surface.",
+    (app, points) => app.named() ? `line ${app.named()} ${inPixels(app, points)}`
+        : {error: 'Give the name of the lamp below.'});
+addTool('material', '', 'Region', inFile('materials.txt'), 'corners',
+    'Set the corners of a region of one material; Enter twice ends.',
+    (app, points) => points.length > 2 ? `material ${app.named() || app.newName('material')} ${inPixels(app, points)}`
+        : {error: 'A region has three corners or more.'});
+addTool('subject', '', 'Subject', inFile('subjects.txt'), 'rectangle',
+    'Drag a rectangle round a subject of the films, the most important first.',
     (app, points) => `subject ${inRectangle(app, points).slice(3)}`);
 addTool('thing', '', 'Thing', inFile('things.txt'), 'pixel', 'Click a piece of furniture, away from its edges.',
     (app, [p]) => `thing ${app.newName('thing')} ${inPixels(app, [p])}`);
-addTool('flat', '', 'Flat thing', inFile('things.txt'), 'corners', 'Set the outline of a rug or a poster; Enter twice ends.',
-    (app, points) => points.length > 2 ? `flat ${app.newName('flat')} ${inPixels(app, points)}` : {error: 'An outline has three corners or more.'});
+addTool('flat', '', 'Flat thing', inFile('things.txt'), 'corners',
+    'Set the outline of a rug or a poster; Enter twice ends.',
+    (app, points) => points.length > 2 ? `flat ${app.newName('flat')} ${inPixels(app, points)}`
+        : {error: 'An outline has three corners or more.'});

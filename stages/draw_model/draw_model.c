@@ -1,4 +1,4 @@
-/* draw.c - writes a page in which people draw the model of a scene on its photographs.
+/* draw_model.c - writes a page in which people draw the model of a scene on its photographs.
  *
  * reads   VIEWS, AXES, POINTS, LINES, SUGGESTED, CONFIG   what build_model reads, straight edges, a first script
  *         SCENE/NAME.txt, SCENE/edits/E.txt     what people wrote of the scene
@@ -9,7 +9,7 @@
 #include "common/base/cli.h"
 #include "common/base/file_path.h"
 #include "common/product/product.h"
-#include "stages/draw/draw_data.h"
+#include "stages/draw_model/draw_data.h"
 
 static enum status write_all(const char *out, const struct draw_sources *from, const struct draw_params *params,
                              struct err *err)
@@ -51,7 +51,7 @@ int main(int argc, char **argv)
     };
     struct provenance prov = {0};
     struct err err = ERR_INIT;
-    if (cli_parse(argc, argv, "draw", opts, &prov, &err) != CLI_RUN || write_all(out, &from, &params, &err))
+    if (cli_parse(argc, argv, "draw_model", opts, &prov, &err) != CLI_RUN || write_all(out, &from, &params, &err))
         err_report(&err);
     provenance_release(&prov);
     return err_exit_code(&err);

@@ -1,5 +1,5 @@
-/* outfile.c - output files in the memory of a page: written in place, as nothing else reads them meanwhile. The build of
- * a WebAssembly module takes this file in place of common/base/outfile.c. */
+/* wasm_outfile.c - output files in the memory of a page: written in place, as nothing else reads them meanwhile. The
+ * build of a WebAssembly module takes this file in place of common/base/outfile.c. */
 #include "common/base/outfile.h"
 
 #include <stdlib.h>

@@ -12,6 +12,8 @@ function bytesFromBase64(text) {
     return bytes;
 }
 
+const NOTHING = {walls: [], openings: [], slots: [], boxes: [], rooms: [], things: [], faces: [], vertices: []};
+
 class App {
     constructor(scene, code) {
         const system = new WasiFiles(), encode = new TextEncoder();
@@ -29,7 +31,7 @@ class App {
         this.view = new PhotoView(el('canvas'));
         this.picture = new PhotoPicture(this.view, this.live);
         this.solid = new SolidPicture(el('solid'));
-        this.model = {walls: [], openings: [], slots: [], boxes: [], rooms: [], things: [], faces: [], vertices: []};
+        this.model = NOTHING;
         this.file = 'model.txt';
         this.tool = TOOLS[0];
         this.points = [];
@@ -62,7 +64,8 @@ class App {
     }
 
     begin(points) {
-        return this.live.begin({views: 'out/views', axes: 'out/model/axes.txt', points: points ? 'out/points/points.ply' : '',
+        return this.live.begin({views: 'out/views', axes: 'out/model/axes.txt', points: points
+            ? 'out/points/points.ply' : '',
             config: this.system.files.has('out/build_model.cfg') ? 'out/build_model.cfg' : ''});
     }
 
@@ -76,11 +79,13 @@ class App {
             if (packed) {
                 const parts = packed.parts.map(bytesFromBase64);
                 const stream = new Blob(parts).stream().pipeThrough(new DecompressionStream('deflate'));
-                this.system.files.set('out/points/points.ply', new Uint8Array(await new Response(stream).arrayBuffer()));
+                this.system.files.set('out/points/points.ply',
+                    new Uint8Array(await new Response(stream).arrayBuffer()));
                 const failed = this.begin(true);
                 if (failed) return this.refuse(failed);
                 this.system.files.delete('out/points/points.ply');
-                this.say(packed.step > 1 ? `Walls by rectangles use one point of ${packed.step} here; make model uses all, and may place them some mm elsewhere.` : 'Ready.');
+                this.say(packed.step > 1
+                    ? `Walls by rectangles use one point of ${packed.step} here; make model uses all, and may place them some mm elsewhere.` : 'Ready.');
             } else
                 this.say('This scene has no points: draw walls by their feet or by corners.');
             this.picture.forget();
@@ -101,9 +106,11 @@ class App {
         if (!this.tool.files.test(name)) this.tool = TOOLS.find((t) => t.files.test(name)) || TOOLS[0];
         const marks = ['scale.txt', 'axes_fix.txt', 'lights.txt', 'materials.txt', 'things.txt', 'subjects.txt'];
         const edits = this.texts.names().filter((n) => EDIT_FILES.test(n));
-        const others = this.texts.names().filter((n) => n !== 'model.txt' && !EDIT_FILES.test(n) && !marks.includes(n) && /^(objects|tour)\.txt$/.test(n));
+        const others = this.texts.names().filter((n) => n !== 'model.txt' && !EDIT_FILES.test(n) &&
+            !marks.includes(n) && /^(objects|tour)\.txt$/.test(n));
         el('file').replaceChildren();
-        for (const [title, names] of [['Model', ['model.txt']], ['Edits', edits], ['Marks', marks], ['Others', others]]) {
+        for (const [title, names] of [['Model', ['model.txt']], ['Edits', edits], ['Marks', marks],
+            ['Others', others]]) {
             const group = document.createElement('optgroup');
             group.label = title;
             for (const n of names) group.append(new Option(n, n, false, n === name));
@@ -141,7 +148,8 @@ class App {
 
     currentLine() {
         const text = el('text');
-        return document.activeElement === text || this.showLine ? text.value.slice(0, text.selectionStart).split('\n').length : 0;
+        return document.activeElement === text || this.showLine
+            ? text.value.slice(0, text.selectionStart).split('\n').length : 0;
     }
 
     /* Writes one statement, or several lines, below what the file has. */
@@ -161,20 +169,28 @@ class App {
             edit: isEdit ? this.path + this.file : '', scene: isEdit ? this.path.slice(0, -1) : ''};
         this.refused = null;
         el('refusal').hidden = true;
-        const empty = !Script.statements(this.texts.get('model.txt')).filter((s) => s.words[0] !== 'remodel-script').length;
+        const empty = !Script.statements(this.texts.get('model.txt')).filter((s) =>
+            s.words[0] !== 'remodel-script').length;
         if (this.waiting || empty) {
-            if (empty) this.model = {walls: [], openings: [], slots: [], boxes: [], rooms: [], things: [], faces: [], vertices: []};
-            this.picture.forget();
-            if (empty) el('plan').innerHTML = '<p>The plan appears with the first wall.</p>';
-            this.solid.draw(this.model);
+            if (empty) this.showNothing();
             this.draw();
             return;
         }
         const failed = this.live.build(files);
         this.notes();
-        if (failed) this.refuse(failed);
+        /* a script that only sets defaults is a beginning */
+        if (/the script describes no solid/.test(failed)) this.showNothing();
+        else if (failed) this.refuse(failed);
         else this.showModel();
         this.draw();
+    }
+
+    showNothing() {
+        this.model = NOTHING;
+        this.selected = [];
+        this.picture.forget();
+        el('plan').innerHTML = '<p>The plan appears with the first wall.</p>';
+        this.solid.draw(this.model);
     }
 
     showModel() {
@@ -189,7 +205,8 @@ class App {
     refuse(message) {
         const path = this.path + this.file, other = this.path + 'model.txt';
         this.refused = Script.refusal(message, path);
-        if (!this.refused.line && this.file !== 'model.txt' && message.includes(other + ':')) this.refused.text = message;
+        if (!this.refused.line && this.file !== 'model.txt' &&
+            message.includes(other + ':')) this.refused.text = message;
         el('refusal').textContent = message.split(this.path).join('');
         el('refusal').hidden = false;
     }
@@ -233,7 +250,8 @@ class App {
     }
 
     goToLine(line) {
-        const text = el('text'), start = text.value.split('\n').slice(0, line - 1).join('\n').length + (line > 1 ? 1 : 0);
+        const text = el('text'), start = text.value.split('\n').slice(0, line - 1).join('\n').length +
+            (line > 1 ? 1 : 0);
         text.setSelectionRange(start, start);
         text.scrollTop = Math.max(0, (line - 4) * 18);
         this.showLine = true;
@@ -277,19 +295,23 @@ class App {
 
     draw() {
         if (!this.photos) return;
-        const id = this.photoId(), current = this.currentLine(), refused = this.refused ? this.refused.line : 0, drawn = [];
+        const id = this.photoId(), current = this.currentLine(), refused = this.refused ? this.refused.line : 0,
+            drawn = [];
         for (const p of Script.pixels(this.texts.get(this.file))) {
             if (p.photo.split('@')[0] !== id) continue;
             const isRefused = p.line === refused;
             if (!el('show-drawn').checked && !isRefused && p.line !== current) continue;
-            drawn.push({...p, refused: isRefused, current: p.line === current, label: isRefused ? `refused, line ${p.line}` : p.line === current ? `line ${p.line}` : ''});
+            drawn.push({...p, refused: isRefused, current: p.line === current, label: isRefused
+                ? `refused, line ${p.line}` : p.line === current ? `line ${p.line}` : ''});
         }
         const here = this.points.filter((_, k) => this.pointPhotos[k] === id);
         const gesture = here.length ? {kind: this.tool.form === 'rectangle' ? 'rectangle' : 'line',
             points: this.cursor && here.length === this.points.length ? [...here, this.cursor] : here} : null;
-        this.picture.draw({image: this.image(this.photo), photo: this.photo, drawn, gesture, lines: this.scene.lines[id] || [],
+        this.picture.draw({image: this.image(this.photo), photo: this.photo, drawn, gesture,
+            lines: this.scene.lines[id] || [],
             cursor: this.cursor, snapped: this.snapped,
-            shown: {edges: el('show-edges').checked && this.model.faces.length, points: el('show-points').checked, lines: el('show-lines').checked, floor: el('show-floor').checked}});
+            shown: {edges: el('show-edges').checked && this.model.faces.length, points: el('show-points').checked,
+                lines: el('show-lines').checked, floor: el('show-floor').checked}});
         el('where').textContent = this.cursor ? `${id}  ${this.px(this.cursor[0])} ${this.px(this.cursor[1])}` : id;
         this.showNumbers();
     }
@@ -318,7 +340,8 @@ class App {
     }
 
     hint() {
-        const what = this.selected.length ? ` Selected: ${this.selected.map((s) => `${s.kind === 'floor' || s.kind === 'ceiling' ? 'room' : s.kind} ${s.name}`).join(', ')}.` : '';
+        const what = this.selected.length ? ` Selected: ${this.selected.map((s) => `${s.kind === 'floor' ||
+            s.kind === 'ceiling' ? 'room' : s.kind} ${s.name}`).join(', ')}.` : '';
         el('hint').textContent = this.tool.hint + what;
     }
 
@@ -339,7 +362,8 @@ class App {
         for (const l of this.scene.lines[this.photoId()] || [])
             for (let i = 0; i + 3 < l.length; i += 2) {
                 const a = [l[i], l[i + 1]], b = [l[i + 2], l[i + 3]], d = [b[0] - a[0], b[1] - a[1]];
-                const t = Math.min(1, Math.max(0, ((at[0] - a[0]) * d[0] + (at[1] - a[1]) * d[1]) / (d[0] * d[0] + d[1] * d[1] || 1)));
+                const t = Math.min(1, Math.max(0, ((at[0] - a[0]) * d[0] + (at[1] - a[1]) * d[1]) / (d[0] * d[0] +
+                    d[1] * d[1] || 1)));
                 consider([a[0] + t * d[0], a[1] + t * d[1]], 1);
             }
         this.snapped = found !== null;
@@ -347,14 +371,16 @@ class App {
     }
 
     corners() {
-        return this.picture.keep('corners' + this.photo, () => this.model.vertices.map((p) => this.live.project(this.photo, p)).filter((p) => p));
+        return this.picture.keep('corners' + this.photo, () =>
+            this.model.vertices.map((p) => this.live.project(this.photo, p)).filter((p) => p));
     }
 
     setPoint(at, more = false) {
         const tool = this.tool, corner = this.view.clamp(at);
         if (tool.form === 'pixel') return this.finish([corner], more);
         const last = this.points[this.points.length - 1];
-        if (tool.form === 'corners' && last && Math.hypot(last[0] - corner[0], last[1] - corner[1]) * this.view.scale < 2 && this.points.length > 1)
+        if (tool.form === 'corners' && last && Math.hypot(last[0] - corner[0],
+            last[1] - corner[1]) * this.view.scale < 2 && this.points.length > 1)
             return this.finish(this.points);
         this.points.push(corner);
         this.pointPhotos[this.points.length - 1] = this.photoId();
@@ -363,7 +389,8 @@ class App {
     }
 
     finish(points, more) {
-        const photos = [...this.pointPhotos], made = this.tool.make(this, points, this.tool.form === 'pixel' ? more : photos);
+        const photos = [...this.pointPhotos], made = this.tool.make(this, points, this.tool.form === 'pixel' ? more
+            : photos);
         this.points = [];
         this.pointPhotos = [];
         if (made && made.error) this.complain(made.error);
@@ -430,12 +457,14 @@ class App {
         el('zoom-in').onclick = () => this.zoom(1.5);
         el('zoom-out').onclick = () => this.zoom(1 / 1.5);
         el('zoom-all').onclick = () => { this.view.showAll(); this.draw(); };
-        for (const id of ['show-edges', 'show-points', 'show-floor', 'show-lines', 'show-drawn', 'snap']) el(id).onchange = () => this.draw();
+        for (const id of ['show-edges', 'show-points', 'show-floor', 'show-lines', 'show-drawn',
+            'snap']) el(id).onchange = () => this.draw();
         new ResizeObserver(() => {
             if (this.view.whole) this.view.showAll();
             this.draw();
         }).observe(el('stage'));
-        new ResizeObserver(() => this.solid.draw(this.model, this.selected[0] && this.selected[0].name)).observe(el('solid'));
+        new ResizeObserver(() => this.solid.draw(this.model, this.selected[0] &&
+            this.selected[0].name)).observe(el('solid'));
     }
 
     zoom(factor) {
@@ -469,7 +498,8 @@ class App {
     }
 
     pageKey(e) {
-        const control = e.ctrlKey || e.metaKey, key = e.key.toLowerCase(), inText = /^(INPUT|TEXTAREA|SELECT)$/.test(e.target.tagName) && e.target.type !== 'checkbox';
+        const control = e.ctrlKey || e.metaKey, key = e.key.toLowerCase(),
+            inText = /^(INPUT|TEXTAREA|SELECT)$/.test(e.target.tagName) && e.target.type !== 'checkbox';
         if (control && key === 's') this.save();
         else if (control && key === 'z' && !e.shiftKey) this.undo();
         else if (control && (key === 'y' || (key === 'z' && e.shiftKey))) this.redo();
@@ -477,7 +507,8 @@ class App {
         else if (!control && !e.altKey && !inText && (key === 'pagedown' || key === 'pageup'))
             this.openPhoto((this.photo + (key === 'pagedown' ? 1 : this.photos.length - 1)) % this.photos.length);
         else {
-            const tool = !control && !e.altKey && !inText && TOOLS.find((t) => t.key && t.key === key && t.files.test(this.file));
+            const tool = !control && !e.altKey && !inText && TOOLS.find((t) => t.key && t.key === key &&
+                t.files.test(this.file));
             if (!tool) return;
             this.chooseTool(tool);
             el('canvas').focus();
@@ -489,8 +520,10 @@ class App {
     redo() { this.after(this.texts.redo()); }
     after(name) {
         this.points = [];
-        if (name && name !== this.file && (this.texts.now[name] !== undefined || name === 'model.txt')) this.openFile(name);
-        else if (name && this.texts.now[this.file] === undefined && EDIT_FILES.test(this.file)) this.openFile('model.txt');
+        if (name && name !== this.file && (this.texts.now[name] !== undefined ||
+            name === 'model.txt')) this.openFile(name);
+        else if (name && this.texts.now[this.file] === undefined &&
+            EDIT_FILES.test(this.file)) this.openFile('model.txt');
     }
 
     async save() {
@@ -520,13 +553,17 @@ class App {
     }
 
     help() {
-        const keys = [['arrows', 'move the cursor by a pixel of the photo; Shift: by 20, Ctrl: by 0.1'], ['Enter', 'sets a corner, as a click does; twice ends a chain'],
-            ['Escape', 'begins the gesture again'], ['PageUp PageDown', 'other photos'], ['+ - 0', 'larger, smaller, the whole photo; the wheel does the same, Alt and drag moves it'],
+        const keys = [['arrows', 'move the cursor by a pixel of the photo; Shift: by 20, Ctrl: by 0.1'],
+            ['Enter', 'sets a corner, as a click does; twice ends a chain'],
+            ['Escape', 'begins the gesture again'], ['PageUp PageDown', 'other photos'],
+                ['+ - 0', 'larger, smaller, the whole photo; the wheel does the same, Alt and drag moves it'],
             ['Ctrl+Z Ctrl+Y', 'undo, redo'], ['Ctrl+S', 'save'], ['Tab', 'from part to part']];
         const tools = TOOLS.filter((t) => t.key).map((t) => [t.key, `${t.label}: ${t.hint}`]);
-        const rows = [...keys, ...tools].map(([k, what]) => `<tr><td><kbd>${k}</kbd></td><td>${what}</td></tr>`).join('');
+        const rows = [...keys, ...tools].map(([k, what]) =>
+            `<tr><td><kbd>${k}</kbd></td><td>${what}</td></tr>`).join('');
         el('help').innerHTML = `<h2>How to draw</h2><p>Choose a photo on the left and a tool above it. Each gesture writes one statement into the script on the right, and the model is built at once.
-            Begin with the walls, then <b>Join walls</b> and <b>Room</b>, then doors and windows; or accept what is suggested. What is refused says why: undo it, or correct its line.</p>
+            Begin with the walls, then <b>Join walls</b> and <b>Room</b>, then doors and windows;
+                or accept what is suggested. What is refused says why: undo it, or correct its line.</p>
             <table>${rows}</table><form method="dialog"><button>Close</button></form>`;
         el('help').showModal();
     }

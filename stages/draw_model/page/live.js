@@ -47,7 +47,8 @@ class Live {
 
     build(files) {
         this.system.lines.length = 0;
-        return this.call('live_build', files.script, files.things, files.edit, files.scene, files.base) ? this.error() : '';
+        return this.call('live_build', files.script, files.things, files.edit, files.scene, files.base) ? this.error()
+            : '';
     }
 
     write(folder) { return this.call('live_write', folder) ? this.error() : ''; }

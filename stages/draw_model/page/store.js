@@ -20,7 +20,8 @@ class Store {
 
     keep() {
         const kept = {};
-        for (const name of this.unsaved()) kept[name] = {from: this.onDisk[name] ?? null, to: this.texts.now[name] ?? null};
+        for (const name of this.unsaved()) kept[name] = {from: this.onDisk[name] ?? null,
+            to: this.texts.now[name] ?? null};
         try {
             if (Object.keys(kept).length) localStorage.setItem(this.key, JSON.stringify(kept));
             else localStorage.removeItem(this.key);
@@ -53,7 +54,8 @@ class Store {
     }
 
     async writeTo(folder, parts, text) {
-        if (parts.length > 1) return this.writeTo(await folder.getDirectoryHandle(parts[0], {create: true}), parts.slice(1), text);
+        if (parts.length > 1) return this.writeTo(await folder.getDirectoryHandle(parts[0], {create: true}),
+            parts.slice(1), text);
         const file = await (await folder.getFileHandle(parts[0], {create: true})).createWritable();
         await file.write(text);
         await file.close();

@@ -2,7 +2,7 @@
  *
  * Each script calls a function of the page. Texts are JSON strings; points are compressed by zlib's format, which
  * browsers read, and written as base64 in parts, because a string of a browser has a largest length. */
-#include "stages/draw/draw_data.h"
+#include "stages/draw_model/draw_data.h"
 
 #include <dirent.h>
 #include <libdeflate.h>
@@ -94,7 +94,7 @@ static enum status write_texts(FILE *to, const struct draw_sources *from, struct
                : ST_OK;
 }
 
-/* ----------------------------------------------------------------------------------------------------- straight edges */
+/* --------------------------------------------------------------------------------------------------- straight edges */
 
 /* A pixel of a view in the photo that it was made from. */
 static bool to_photo(double photo[2], const struct view *view, const struct lens *lens, double u, double v)
@@ -165,7 +165,7 @@ enum status draw_data_write_scene(const char *path, const struct draw_sources *f
     return err->status;
 }
 
-/* ------------------------------------------------------------------------------------------------------------- points */
+/* ----------------------------------------------------------------------------------------------------------- points */
 
 enum { RECORD = 45, PART = 6 << 20 }; /* bytes of a point; of a part of base64, a multiple of three */
 static const char element[] = "element vertex ", header_end[] = "end_header\n";

@@ -59,15 +59,18 @@ class SolidPicture {
             const n = see(f.normal);
             if (n[2] >= 0 || /^ceiling\//.test(f.name) || /\/(bottom|side)$/.test(f.name)) continue;
             const loop = f.loops[0];
-            faces.push({f, away: loop.reduce((sum, i) => sum + at[i][2], 0) / loop.length, light: 0.35 + 0.5 * Math.abs(n[2]) + 0.15 * Math.max(0, n[0])});
+            faces.push({f, away: loop.reduce((sum, i) => sum + at[i][2], 0) / loop.length, light: 0.35 +
+                0.5 * Math.abs(n[2]) + 0.15 * Math.max(0, n[0])});
         }
         faces.sort((a, b) => b.away - a.away);
         for (const {f, light} of faces) {
             c.beginPath();
             for (const loop of f.loops)
-                loop.forEach((i, k) => c[k ? 'lineTo' : 'moveTo'](box.width / 2 + scale * at[i][0], box.height / 2 + scale * at[i][1]));
+                loop.forEach((i, k) => c[k ? 'lineTo' : 'moveTo'](box.width / 2 + scale * at[i][0], box.height / 2 +
+                    scale * at[i][1]));
             const grey = Math.round(235 * light), on = selected && f.name.split('/')[1] === selected;
-            c.fillStyle = on ? '#c99a10' : f.glass ? 'rgba(120,190,255,.5)' : `rgb(${grey},${grey},${Math.round(grey * 0.95)})`;
+            c.fillStyle = on ? '#c99a10' : f.glass ? 'rgba(120,190,255,.5)'
+                : `rgb(${grey},${grey},${Math.round(grey * 0.95)})`;
             c.fill('evenodd');
             c.strokeStyle = on ? '#fff' : '#222';
             c.lineWidth = on ? 2 : 0.7;

@@ -1,4 +1,4 @@
-# draw, at length: all tests of the page in the room of tests/browser/room.js; the model of loft, drawn from nothing, against
+# draw_model, at length: all tests of the page in the room of tests/browser/room.js; the model of loft, drawn from nothing, against
 # the truth, where that scene was made (make SCENE=loft QUALITY=draft)
 . tests/lib.sh
 loft=$root/out/loft+draft
@@ -23,8 +23,8 @@ a_room_is_drawn_in_all_ways()
     wasm
     mkdir -p empty
     node "$root/tests/browser/room.js" room
-    "$B/bin/draw" --name room --scene empty --views room/views --axes room/model/axes.txt --points room/points/points.ply --lines room/lines \
-        --photos room/photos --records room/records --wasm "$B/wasm/build_model.wasm" --page stages/draw/page --out page
+    "$B/bin/draw_model" --name room --scene empty --views room/views --axes room/model/axes.txt --points room/points/points.ply --lines room/lines \
+        --photos room/photos --records room/records --wasm "$B/wasm/build_model.wasm" --page stages/draw_model/page --out page
     node "$root/tests/browser/draw.js" "$PWD/page" >said.txt 2>&1 || { cat said.txt; fail "the browser ended"; }
     verdicts
 }
@@ -34,8 +34,8 @@ loft_is_drawn_from_nothing()
     wasm
     [ -e "$loft/points/points.ply" ] || skip "out/loft+draft has no points; run make SCENE=loft QUALITY=draft"
     mkdir -p empty
-    "$B/bin/draw" --name loft --scene empty --views "$loft/views" --axes "$loft/model/axes.txt" --points "$loft/points/points.ply" --lines "$loft/lines" \
-        --photos "${loft%+draft}/hdr" --records "${loft%+draft}/photos" --wasm "$B/wasm/build_model.wasm" --page stages/draw/page --out page
+    "$B/bin/draw_model" --name loft --scene empty --views "$loft/views" --axes "$loft/model/axes.txt" --points "$loft/points/points.ply" --lines "$loft/lines" \
+        --photos "${loft%+draft}/hdr" --records "${loft%+draft}/photos" --wasm "$B/wasm/build_model.wasm" --page stages/draw_model/page --out page
     node "$root/tests/browser/draw_loft.js" "$PWD/page" "$root/scenes/loft/model.txt" "$root/scenes/loft/scene.txt" >said.txt 2>&1 || { cat said.txt; fail "the browser ended"; }
     verdicts
 }
