@@ -21,7 +21,8 @@ headers_and_tests_have_no_warnings_of_clang()
         fail "clang has warnings"
     for folder in common $(git ls-files 'stages/*.h' | cut -d/ -f1,2 | sort -u); do
         # shellcheck disable=SC2086 # a list of flags
-        git ls-files "$folder/*.h" | sed 's/.*/#include "&"/' | clang $CLANG_FLAGS -Werror -fsyntax-only -xc - ||
+        # common/base/wasm has headers in place of the system's
+        git ls-files "$folder/*.h" ':!common/base/wasm' | sed 's/.*/#include "&"/' | clang $CLANG_FLAGS -Werror -fsyntax-only -xc - ||
             fail "clang has warnings of headers in $folder"
     done
 }
