@@ -19,7 +19,7 @@ static struct vec3 pixel_ray(const struct view *v, int x, int y)
 /* What the pixels of a view show. Everything is owned. */
 struct view_surface {
     struct gather_point *points; /* a normal of 0 0 0: nothing, or the view is in a solid */
-    int *faces;                  /* ids; 0: nothing */
+    int *faces;                  /* ids; 0: nothing, or furniture */
     struct irradiance *irradiance;
     struct view_gloss gloss;
 };
@@ -51,7 +51,8 @@ static void find_points(struct view_surface *s, const struct gather_job *j, cons
             struct ray_hit hit;
             if (!ray_scene_hit(&j->field.model.rays, v->center, pixel_ray(v, x, y), &hit) || !hit.front) continue;
             s->points[i] = (struct gather_point){hit.point, hit.normal};
-            s->faces[i] = solid_face_id(&j->field.model.mesh, (int)hit.id);
+            if ((int)hit.id < j->field.model.mesh.face_count)
+                s->faces[i] = solid_face_id(&j->field.model.mesh, (int)hit.id);
         }
 }
 
