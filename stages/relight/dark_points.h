@@ -5,8 +5,8 @@
 #include "common/gather/irradiance.h"
 #include "stages/relight/pixels.h"
 
-/* Furniture without light before the edit, or after it, takes the mean quotient of the nearest pixels that have one, and
- * counts as bounded. Where no pixel has one, all stay. Same bits for any number of threads. ST_NOMEM. */
+/* Furniture without light before the edit, or after it, takes the mean quotient of the nearest pixels that have one,
+ * and counts as bounded. Where no pixel has one, all stay. Same bits for any number of threads. ST_NOMEM. */
 enum status dark_points_fill(float (*quotient)[4], const struct irradiance *before, const struct irradiance *after,
                              const struct pixels *p, struct err *err);
 

@@ -55,7 +55,7 @@ static void release(struct rim *r)
     *r = (struct rim){0};
 }
 
-/* ------------------------------------------------------------------------------------------------------------- nodes */
+/* ----------------------------------------------------------------------------------------------------------- nodes */
 
 static struct gather_point inside_of(const struct rim *r, int id, struct vec3 at, struct vec3 in, struct vec3 normal)
 {
@@ -138,7 +138,7 @@ static enum status make(struct rim *r, const bool *wanted, struct err *err)
     return ST_OK;
 }
 
-/* ----------------------------------------------------------------------------------------------------- interpolation */
+/* --------------------------------------------------------------------------------------------------- interpolation */
 
 struct mean {
     struct rgb light;

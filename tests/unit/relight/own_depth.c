@@ -84,7 +84,7 @@ static void what_stands_before_the_model_is_furniture(void **state)
     relit_room_release(&r);
 }
 
-/* The rim of clutter: where it shows a wall, estimated a little behind the model, the wall counts, not a point in it. */
+/* The rim of clutter: where it shows a wall, estimated a little behind the model, the wall counts. */
 static void a_rim_of_furniture_that_shows_the_wall_is_the_wall(void **state)
 {
     struct edit e = edit_of_closed_room(plain);
