@@ -21,6 +21,7 @@ rm -rf "$lib"
 mkdir -p "$lib/build/bin" "$lib/build/code" "$lib/common/make" "$lib/common/run" "$lib/configs"
 for s in $stages print_graph; do strip -o "$lib/build/bin/$s" "$build/bin/$s"; done
 for s in $stages; do cp "$build/code/$s" "$lib/build/code/"; done
+if [ -e "$build/wasm/build_model.wasm" ]; then mkdir -p "$lib/build/wasm"; cp "$build/wasm/build_model.wasm" "$lib/build/wasm/"; fi
 cp Makefile "$lib/"
 cp common/make/{stages,top,graph}.mk "$lib/common/make/"
 echo "$version" >"$lib/common/make/installed"
@@ -30,6 +31,8 @@ cp configs/* "$lib/configs/"
 for s in $stages; do
     mkdir -p "$lib/stages/$s"
     cp "stages/$s"/*.mk "$lib/stages/$s/"
+    # a page's sources, and the code that it runs if it was built
+    [ ! -d "stages/$s/page" ] || cp -r "stages/$s/page" "$lib/stages/$s/"
     for f in "stages/$s"/*.sh; do [ ! -e "$f" ] || cp "$f" "$lib/stages/$s/"; done
     [ ! -d "stages/$s/page" ] || cp -r "stages/$s/page" "$lib/stages/$s/"
 done

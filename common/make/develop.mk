@@ -1,6 +1,6 @@
 # develop.mk - what a person calls who works on the programs. An installed remodel has none of it.
 
-.PHONY: check check-long sequences fuzz bench bench-compare regress regress-accept generated deps-check deps-bench deps-deb clean install uninstall deb
+.PHONY: check check-long sequences fuzz bench bench-compare regress regress-accept generated deps-check deps-bench deps-deb deps-draw wasm clean install uninstall deb
 
 # the packages for arm64 may take the place of this machine's own, so nothing installs them unasked
 deps-check:
@@ -13,6 +13,10 @@ check: deps-check ## build and run the tests
 check-long: deps-check ## the tests that take longer: whole runs, the build with clang, its static analyser
 	+@$(BUILD) tests-build
 	+@tests/run '$(B)' $(or $(CHECKS),long)
+deps-draw:
+	+@common/run/deps.sh $(DEPS) run draw
+wasm: deps-draw ## build_model as WebAssembly, which make draw of an installed remodel needs: before make install
+	+@$(BUILD) wasm-build
 bench: deps-bench ## measure everything in tests/bench: tables and plots under out/bench
 	+@$(BUILD) bench-build
 	+@rc=0; for b in tests/bench/*.sh; do tests/bench/run "$$(basename $$b .sh)" '$(B)' || rc=1; done; exit $$rc

@@ -235,7 +235,8 @@ enum status draw_data_write_code(const char *path, const struct draw_sources *fr
     struct outfile out = {0};
     if (!path_is_file(from->wasm))
         return err_set(err, ST_IO,
-                       "%s is missing: the page needs build_model as WebAssembly; run make draw, which builds it.",
+                       "%s is missing: the page needs build_model as WebAssembly; run make draw, or make wasm before "
+                       "make install.",
                        from->wasm);
     if (!outfile_open(&out, path, err)) {
         fputs("remodel.code = \"", out.fp);

@@ -62,4 +62,21 @@ the_module_makes_the_bytes_of_loft_and_its_edits()
     [ $count = 64 ] || fail "compared $count files, wanted 64: 4 of the model, 6 of each of ten edits"
 }
 
-for t in a_room_is_drawn_in_all_ways loft_is_drawn_from_nothing the_module_makes_the_bytes_of_loft_and_its_edits; do run $t; done
+make_draw_makes_the_page_and_follows_what_people_write()
+{
+    wasm
+    photos set --views 6 --size 320x240 >/dev/null
+    mkdir -p scenes/t
+    printf '[segment_depth]\nplanes = 48\npasses = 1\nrounds = 0\nneighbours = 3\n' >scenes/t/scene.cfg
+    make -s DEPS=manual PHOTOS=set/photos SFM=set/model SCENE=t draw >log 2>&1 || { cat log; fail "make draw"; }
+    [ -s out/t/draw/index.html ] && [ -s out/t/draw/points.js ] || fail "files are missing"
+    [ "$(ls out/t/draw/photos/*.jpg | wc -l)" = 6 ] || fail "photos are missing"
+    make -s DEPS=manual SCENE=t draw >log 2>&1; touch before
+    make -s DEPS=manual SCENE=t draw >log 2>&1 || { cat log; fail "make draw again"; }
+    [ ! out/t/draw/index.html -nt before ] || fail "the page was made again"
+    printf 'remodel-script 1\nbox b from 0 0 to 1 1 top 1\n' >scenes/t/model.txt
+    make -s DEPS=manual SCENE=t draw >log 2>&1 || { cat log; fail "make draw after model.txt"; }
+    grep -q 'box b from 0 0' out/t/draw/scene.js || fail "model.txt is not in the page"
+}
+
+for t in make_draw_makes_the_page_and_follows_what_people_write a_room_is_drawn_in_all_ways loft_is_drawn_from_nothing the_module_makes_the_bytes_of_loft_and_its_edits; do run $t; done

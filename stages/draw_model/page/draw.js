@@ -33,7 +33,7 @@ class App {
         this.solid = new SolidPicture(el('solid'));
         this.model = NOTHING;
         this.file = 'model.txt';
-        this.tool = TOOLS[0];
+        this.tool = TOOLS.find((t) => t.id === (Script.statements(texts['model.txt']).length > 1 ? 'select' : 'wall'));
         this.points = [];
         this.pointPhotos = [];
         this.selected = [];

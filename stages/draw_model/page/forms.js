@@ -105,10 +105,17 @@ class SuggestedPanel {
     constructor(element, app, text) {
         this.element = element;
         this.app = app;
-        this.left = text ? text.split('\n').map((line) => line.trim()).filter((line) => line &&
-            !line.startsWith('#') && !line.startsWith('remodel-script')) : [];
-        this.comments = text ? text.split('\n').filter((line) => /^#\s/.test(line) &&
-            !/^# (remodel|input|\w+ = )/.test(line)) : [];
+        this.left = [];
+        this.after = []; /* what the suggestion says of what is missing */
+        let notes = [];
+        for (const line of (text || '').split('# Made by:')[0].split('\n').map((l) => l.trim())) {
+            if (line.startsWith('#')) notes.push(line.replace(/^#\s*/, ''));
+            else if (line && !line.startsWith('remodel-script')) {
+                this.left.push({statement: line, notes});
+                notes = [];
+            } else if (line.startsWith('remodel-script')) notes = [];
+        }
+        this.after = notes;
     }
 
     show() {
@@ -123,11 +130,18 @@ class SuggestedPanel {
         all.type = 'button';
         all.textContent = 'Accept all';
         all.onclick = () => {
-            const lines = this.left.splice(0);
+            const lines = this.left.splice(0).map((s) => s.statement);
             this.app.write(lines.join('\n'));
         };
         box.append(title, all, list);
-        this.left.forEach((statement, i) => {
+        const say = (text) => {
+            const row = document.createElement('li');
+            row.className = 'note';
+            row.textContent = text;
+            list.append(row);
+        };
+        this.left.forEach(({statement, notes}, i) => {
+            notes.forEach(say);
             const row = document.createElement('li'), text = document.createElement('input'),
                 yes = document.createElement('button'), no = document.createElement('button');
             text.value = statement;
@@ -146,6 +160,7 @@ class SuggestedPanel {
             row.append(text, yes, no);
             list.append(row);
         });
+        this.after.forEach(say);
         this.element.append(box);
     }
 }

@@ -153,7 +153,7 @@ function moveItem(app, [a, b]) {
         if (!to) return {error: 'The end of the drag is not on the plane of the wall.'};
         const along = wall.sign * ((to[0] - at[0]) * wall.direction[0] + (to[1] - at[1]) * wall.direction[1]),
             up = to[2] - at[2];
-        const rises = Math.abs(up) > 0.02 && item.kind === 'window';
+        const rises = Math.abs(up) > 0.01 * app.live.height() && item.kind === 'window';
         return `move ${item.name} by ${length(along)}${rises ? ' ' + length(up) : ''}`;
     }
     const to = meetPlane(ray, [0, 0, 1], at);
@@ -182,7 +182,7 @@ function resizeOpening(app, [a, b]) {
         for (const [side, off, by] of sides)
             if (!best || off + outside < best.off) best = {off: off + outside, name: o.name, side, by};
     }
-    return best && best.off < 0.6 ? `resize ${best.name} ${best.side} ${length(best.by)}`
+    return best && best.off < 0.25 * app.live.height() ? `resize ${best.name} ${best.side} ${length(best.by)}`
         : {error: 'Begin to drag at a side of an opening.'};
 }
 

@@ -66,6 +66,8 @@ class Live {
 
     /* null where the photo shows nothing */
     ray(photo, u, v) { return this.c.live_ray(photo, u, v) ? null : this.numbers(6); }
+    /* The ceiling's height; a usual one in metres where it is unknown. */
+    height() { return this.c.live_ceiling() || 2.5; }
     project(photo, p) { return this.c.live_project(photo, p[0], p[1], p[2]) ? null : this.numbers(2); }
     pick(photo, u, v) {
         if (this.c.live_pick(photo, u, v)) return null;

@@ -103,7 +103,7 @@ class PhotoPicture {
         }
     }
 
-    /* A grid of one unit on the floor, and the axes from the model's origin. */
+    /* A grid on the floor, 13 lines each way, of metres if rooms are about 2.5 high, and the axes from the origin. */
     drawFloor(c, photo) {
         const along = (a, b) => {
             let points = [];
@@ -124,12 +124,14 @@ class PhotoPicture {
                 flush(colour, width, dash);
             };
         };
-        for (let i = -6; i <= 6; i++) {
-            along([i, -6, 0], [i, 6, 0])('#cfd6de', 0.6);
-            along([-6, i, 0], [6, i, 0])('#cfd6de', 0.6);
+        const unit = this.live.height() / 2.5;
+        for (let k = -6; k <= 6; k++) {
+            const i = k * unit, far = 6 * unit;
+            along([i, -far, 0], [i, far, 0])('#cfd6de', 0.6);
+            along([-far, i, 0], [far, i, 0])('#cfd6de', 0.6);
         }
-        const names = [['x', [1, 0, 0], '#ff9a9a', []], ['y', [0, 1, 0], '#9affb0', [8, 3]],
-            ['z', [0, 0, 1], '#a9c8ff', [2, 3]]];
+        const names = [['x', [unit, 0, 0], '#ff9a9a', []], ['y', [0, unit, 0], '#9affb0', [8, 3]],
+            ['z', [0, 0, unit], '#a9c8ff', [2, 3]]];
         for (const [name, end, colour, dash] of names) {
             along([0, 0, 0], end)(colour, 2.5, dash);
             const at = this.live.project(photo, end);
