@@ -128,7 +128,9 @@ materials_without_gloss_change_no_number()
 make_gathers_at_points_and_views()
 {
     m irradiance GATHER_POINTS=points.txt GATHER_VIEWS="$view"
-    cmp <(grep -v '^#' $O/relight/irradiance.txt) <(grep -v '^#' two/points/irradiance.txt) || fail "make gathers something else"
+    gather 0 points "${inputs[@]}" --things $O/things --points points.txt --out made
+    cmp <(grep -v '^#' $O/relight/irradiance.txt) <(grep -v '^#' made/irradiance.txt) || fail "make gathers something else"
+    grep -q '^# input things/volume.exr' $O/relight/irradiance.txt || fail "furniture does not reach the gather"
     [ -s $O/relight/irradiance/"$view".exr ] || fail "no picture"
     [ -s $O/relight/irradiance/"$view".light.txt ] || fail "no record of the light"
     find $O/relight -type f -printf '%p %T@\n' | LC_ALL=C sort >before
