@@ -7,7 +7,7 @@
 #   clear all   all furniture is cleared
 #   moved       one piece is cleared, one stands elsewhere
 # light: `old`, the pictures of `make remodel`; `new`, the same relit. BENCH_LIGHT="old" leaves out the latter.
-#             made_room marks lamps without points that they light, so relight takes their radiance from photos that saturate.
+#             made_room marks plain walls that the lamps light, and nothing that they do not.
 #
 # psnr: over all pixels (edited.E.psnr). revealed_psnr: over what the edit reveals or puts elsewhere, after one gain for each
 # face (edited.E.revealed_psnr); revealed: these pixels, % of all. walls: the largest error of a wall of the unedited model, m.
