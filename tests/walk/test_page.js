@@ -1,9 +1,10 @@
-// node test_page.js FOLDER [--at EDIT PICTURES DB] [--between EDIT CAMERAS PICTURES DB] - opens a walk in Chromium.
+// node test_page.js FOLDER [--at EDIT PICTURES DB] [--between EDIT CAMERAS PICTURES DB] [--moved EDIT DX PICTURES DB] -
+// opens a walk in Chromium.
 //
 // Alone: the page starts, keys and clicks do what they say. --at: what the walk shows in viewpoints after an edit is
 // what render_model draws there, PICTURES/VIEW.jpg. --between: the same of given cameras, a COLMAP text model in the
 // model's frame, and PICTURES/NAME.jpg; EDIT "": the unedited rooms. DB: the least PSNR. The console stays empty in
-// each case.
+// each case. --moved: the same of the views' cameras, moved to the left by DX model units.
 'use strict';
 const fs = require('fs');
 const path = require('path');
@@ -13,7 +14,7 @@ const words = (option, count) => {
     const at = process.argv.indexOf(option);
     return at < 0 ? null : process.argv.slice(at + 1, at + 1 + count);
 };
-const at = words('--at', 3), between = words('--between', 4);
+const at = words('--at', 3), between = words('--between', 4), moved = words('--moved', 4);
 let failed = 0;
 const check = (name, fine, why) => {
     console.log(`${fine ? 'ok' : 'not ok'} ${name}${fine ? '' : `: ${why}`}`);
@@ -97,7 +98,15 @@ const main = async () => {
             for (const {name, camera} of readCameras(cameras))
                 await look(name, {camera, edit: edit || 0, photos: false}, path.join(pictures, `${name}.jpg`), least);
         }
-        if (!at && !between) {
+        if (moved) {
+            const [edit, dx, pictures, least] = moved;
+            for (const v of await browser.evaluate('walk.scene().views')) {
+                const camera = {...v, centre: v.centre.map((c, k) => c - dx * v.turn[k])};
+                const file = path.join(pictures, `${v.name}.jpg`);
+                await look(v.name, {camera, edit: edit || 0, photos: false}, file, least);
+            }
+        }
+        if (!at && !between && !moved) {
             const state = (key) =>
                 browser.evaluate(`JSON.stringify(walk.state.${key})`).then((t) => t && JSON.parse(t));
             const wait = (ms) => new Promise((take) => setTimeout(take, ms));

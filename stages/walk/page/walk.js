@@ -245,7 +245,7 @@ const drawModel = (camera, m, box, fixed = {}) => {
     painter.paint({
         camera,
         box,
-        part: fixed.inside ? 1 : S.part,
+        part: fixed.part || S.part,
         sets,
         share,
         rules: made.rules,
@@ -304,13 +304,13 @@ const fit = () => {
         canvas.width = width;
         canvas.height = height;
     }
-    painter.resize(width, height);
+    painter.resize(Math.max(1, S.part) * width, Math.max(1, S.part) * height);
 };
 S.part = 1;
 // Frames that take too long while one moves are drawn with fewer pixels; at rest all are.
 const pace = (now, rests) => {
     if (rests)
-        S.part = 1;
+        S.part = S.time < 25 ? 2 : 1; // four samples a pixel, as render_model, where it is quick
     else if (S.painted && now - S.painted < 1000) {
         S.time = 0.7 * (S.time || 40) + 0.3 * (now - S.painted);
         if (S.time > 85)
@@ -543,8 +543,8 @@ const loop = (now) => {
     if (!S.busy && (S.dirty || (rests && !was))) {
         S.dirty = false;
         S.frame++;
-        fit();
         pace(now, rests);
+        fit();
         paint();
     }
     requestAnimationFrame(loop);
@@ -954,13 +954,13 @@ window.walk = {
         for (let k = 0; k < 2; k++) {
             canvas.width = camera.width;
             canvas.height = camera.height;
-            painter.resize(camera.width, camera.height);
+            painter.resize(2 * camera.width, 2 * camera.height);
             painter.counts = {calls: 0, triangles: 0};
             painter.seen = new Map();
             S.frame++;
             choose(camera, m, true);
             modelOf(m).where = '';
-            drawModel(camera, m, [0, 0, camera.width, camera.height], {photos: spec.photos, inside: true});
+            drawModel(camera, m, [0, 0, camera.width, camera.height], {photos: spec.photos, inside: true, part: 2});
             await W.settled();
         }
         const made = modelOf(m), url = canvas.toDataURL('image/png');
@@ -1001,7 +1001,7 @@ window.walk = {
                 const t = performance.now();
                 choose(camera, 0, false);
                 choosing += performance.now() - t;
-                drawModel(camera, 0, [0, 0, width, height], {inside: true});
+                drawModel(camera, 0, [0, 0, width, height], {inside: true, part: 1});
                 gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel);
                 calls += painter.counts.calls / count;
                 triangles += painter.counts.triangles / count;
