@@ -168,7 +168,7 @@ class App {
             things: this.texts.get('things.txt') ? this.path + 'things.txt' : '',
             edit: isEdit ? this.path + this.file : '', scene: isEdit ? this.path.slice(0, -1) : ''};
         this.refused = null;
-        el('refusal').hidden = true;
+        el('refusal').hidden = el('remedy').hidden = true;
         const empty = !Script.statements(this.texts.get('model.txt')).filter((s) =>
             s.words[0] !== 'remodel-script').length;
         if (this.waiting || empty) {
@@ -209,6 +209,18 @@ class App {
             message.includes(other + ':')) this.refused.text = message;
         el('refusal').textContent = message.split(this.path).join('');
         el('refusal').hidden = false;
+        this.offer(message);
+    }
+
+    /* Without a scale lengths of homes mean nothing; a guess by the ceiling's height is offered. */
+    offer(message) {
+        const wanted = /write "set (thickness|slab|glass|leaf) NUMBER" before/.exec(message), line = this.refused.line;
+        el('remedy').hidden = !wanted || !line;
+        if (!wanted || !line) return;
+        const share = {thickness: 0.06, slab: 0.06, glass: 0.008, leaf: 0.016}[wanted[1]];
+        const statement = `set ${wanted[1]} ${Script.number(share * this.live.height(), 4)}`;
+        el('remedy-button').textContent = `Write "${statement}" before it: ${100 * share} % of the ceiling's height, a guess`;
+        el('remedy-button').onclick = () => this.texts.insert(this.file, line, statement);
     }
 
     notes() {
@@ -402,6 +414,7 @@ class App {
     complain(text) {
         el('refusal').textContent = text;
         el('refusal').hidden = false;
+        el('remedy').hidden = true;
     }
 
     listen() {

@@ -111,7 +111,7 @@ class SuggestedPanel {
         for (const line of (text || '').split('# Made by:')[0].split('\n').map((l) => l.trim())) {
             if (line.startsWith('#')) notes.push(line.replace(/^#\s*/, ''));
             else if (line && !line.startsWith('remodel-script')) {
-                this.left.push({statement: line, notes});
+                this.left.push({statement: line, notes: this.left.length ? notes : []}); /* the first are of the file */
                 notes = [];
             } else if (line.startsWith('remodel-script')) notes = [];
         }

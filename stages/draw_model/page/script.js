@@ -57,6 +57,13 @@ class Texts {
         return change.name;
     }
 
+    /* Puts a statement before a line, which counts from 1. */
+    insert(name, line, statement) {
+        const lines = this.get(name).split('\n');
+        lines.splice(line - 1, 0, statement);
+        this.set(name, lines.join('\n'));
+    }
+
     /* Adds a statement as the last line, below the head that the file begins with. */
     add(name, statement) {
         const head = HEADS[name.split(/[/.]/)[0]];
