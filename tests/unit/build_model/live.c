@@ -93,8 +93,8 @@ static void pixels_and_places_belong_together(void **state)
     assert_contains(live_error(), "found photo 1, wanted 0 to 0");
 }
 
-/* The window's head, at z = 2 on the inner face, is a line from u = 66.7 to 333.3 at v = 50. The front of the shelf, from
- * v = 164.3 to 221.4, hides its lower edge at the back, from u = 140 to 260 at v = 200. */
+/* The window's head, at z = 2 on the inner face, is a line from u = 66.7 to 333.3 at v = 50. The front of the shelf,
+ * from v = 164.3 to 221.4, hides its lower edge at the back, from u = 140 to 260 at v = 200. */
 static void edges_are_seen_or_hidden(void **state)
 {
     char text[sizeof script_text + 64];
