@@ -85,6 +85,7 @@ static enum status write_texts(FILE *to, const struct draw_sources *from, struct
             return err->status;
     if (write_file(to, "out/model/axes.txt", from->axes, err) ||
         write_file(to, "out/model/suggested.txt", from->suggested, err) ||
+        write_file(to, "out/lights/candidates.txt", from->candidates, err) ||
         write_file(to, "out/build_model.cfg", from->config, err) || file_path(name, "scenes", from->name, "", err) ||
         write_folder(to, name, from->scene, err))
         return err->status;

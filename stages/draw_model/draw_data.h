@@ -21,7 +21,8 @@ struct draw_params {
 extern const struct param draw_param_table[];
 
 struct draw_sources { /* paths; NULL: none */
-    const char *name, *scene, *views, *axes, *points, *lines, *suggested, *config, *photos, *records, *wasm, *page;
+    const char *name, *scene, *views, *axes, *points, *lines, *suggested, *candidates, *config, *photos, *records,
+        *wasm, *page;
 };
 
 /* scene.js: texts that the C code reads, the scene's own files, and the straight edges of each photo, in its pixels. */

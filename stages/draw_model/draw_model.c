@@ -1,6 +1,7 @@
 /* draw_model.c - writes a page in which people draw the model of a scene on its photographs.
  *
  * reads   VIEWS, AXES, POINTS, LINES, SUGGESTED, CONFIG   what build_model reads, straight edges, a first script
+ *         CANDIDATES                            marks of lamps that fit_lights proposes
  *         SCENE/NAME.txt, SCENE/edits/E.txt     what people wrote of the scene
  *         RECORDS/PHOTO.txt, PHOTOS/FILE        the photographs
  *         WASM                                  build_model as WebAssembly
@@ -40,6 +41,7 @@ int main(int argc, char **argv)
         CLI_STR("points", &from.points, CLI_OPTIONAL, "PLY of oriented points, for walls given by rectangles"),
         CLI_STR("lines", &from.lines, CLI_OPTIONAL, "folder of the views' straight edges, to snap to"),
         CLI_STR("suggested", &from.suggested, CLI_OPTIONAL, "a first script, to begin with"),
+        CLI_STR("candidates", &from.candidates, CLI_OPTIONAL, "marks of lamps that fit_lights proposes"),
         CLI_STR("model-config", &from.config, CLI_OPTIONAL, "effective parameters of build_model"),
         CLI_STR("photos", &from.photos, CLI_REQUIRED, "folder of the photographs"),
         CLI_STR("records", &from.records, CLI_REQUIRED, "folder of the photos' records"),

@@ -1,6 +1,7 @@
 /* rules.c - the page in which people draw a model. It needs no model: people may begin with it. */
 #include <string.h>
 
+#include "common/base/file_path.h"
 #include "common/graph/scene_rules.h"
 
 /* Sources of the page, and the code that it runs. */
@@ -36,6 +37,11 @@ RULES(draw_model)
     rule_takes(g, "--axes", PATH(g, AXES));
     rule_takes(g, "--points", PATH(g, POINTS));
     rule_takes(g, "--suggested", PATH(g, SUGGESTED_MODEL));
+    /* as far as make lights has made them: this page waits for no lamp */
+    const char *candidates = PATH(g, MARK_CANDIDATES);
+    const bool has_candidates = path_is_file(candidates);
+    rule_needs(g, graph_stamp(g, "draw-candidates.txt", has_candidates ? "yes" : "none"));
+    rule_option(g, "--candidates", has_candidates ? candidates : NULL);
     rule_needs_set(g, "lines");
     rule_option(g, "--lines", FOLDER(g, LINES, .view = ""));
     rule_takes(g, "--model-config", graph_text(g, "%s/slice/build_model.cfg", f->own));

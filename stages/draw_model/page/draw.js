@@ -50,7 +50,8 @@ class App {
         document.title = `Draw ${this.scene.name}`;
         el('title').textContent = this.scene.name;
         this.forms = new FormsPanel(el('forms'), this);
-        this.suggested = new SuggestedPanel(el('suggested'), this, this.scene.files['out/model/suggested.txt']);
+        this.suggested = [['model.txt', 'out/model/suggested.txt'], ['lights.txt', 'out/lights/candidates.txt']]
+            .map(([file, from]) => new SuggestedPanel(el('suggested'), this, file, this.scene.files[from]));
         this.store = new Store(this.scene.name, this.texts);
         this.listPhotos();
         this.listen();
@@ -121,13 +122,18 @@ class App {
         this.showText();
         this.build();
         this.forms.show();
-        this.suggested.show();
+        this.showSuggested();
     }
 
     changed() {
         this.showText();
         this.build();
-        this.suggested.show();
+        this.showSuggested();
+    }
+
+    showSuggested() {
+        el('suggested').replaceChildren();
+        for (const panel of this.suggested) panel.show();
     }
 
     showText() {

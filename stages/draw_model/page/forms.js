@@ -100,20 +100,22 @@ function field(name, what, value, type = 'text', changed = null) {
     return label;
 }
 
-/* The statements of suggested.txt, each to take, to correct or to drop. */
+/* The statements that a file of the scene's products proposes, each to take, to correct or to drop. */
 class SuggestedPanel {
-    constructor(element, app, text) {
+    /* file: that they are for */
+    constructor(element, app, file, text) {
         this.element = element;
         this.app = app;
+        this.file = file;
         this.left = [];
         this.after = []; /* what the suggestion says of what is missing */
         let notes = [];
         for (const line of (text || '').split('# Made by:')[0].split('\n').map((l) => l.trim())) {
             if (line.startsWith('#')) notes.push(line.replace(/^#\s*/, ''));
-            else if (line && !line.startsWith('remodel-script')) {
+            else if (line && !/^remodel-/.test(line)) {
                 this.left.push({statement: line, notes: this.left.length ? notes : []}); /* the first are of the file */
                 notes = [];
-            } else if (line.startsWith('remodel-script')) notes = [];
+            } else if (line) notes = [];
         }
         this.after = notes;
     }
@@ -121,10 +123,11 @@ class SuggestedPanel {
     show() {
         const box = document.createElement('details'), list = document.createElement('ol'),
             title = document.createElement('summary');
+        if (this.app.file !== this.file) return;
         this.element.replaceChildren();
-        if (!this.left.length || this.app.file !== 'model.txt') return;
+        if (!this.left.length) return;
         title.textContent = `${this.left.length} suggested statements`;
-        box.open = this.opened ?? !Script.statements(this.app.texts.get('model.txt')).length;
+        box.open = this.opened ?? !Script.statements(this.app.texts.get(this.file)).length;
         box.ontoggle = () => { this.opened = box.open; };
         const all = document.createElement('button');
         all.type = 'button';
