@@ -106,6 +106,13 @@ W.shaders = {
             colour = vec4(c * a, a);
         }`
     ],
+    clutterDepth: [
+        `layout(location=0) in vec3 p; layout(location=1) in vec2 place; uniform mat4 clip, moved;
+        out vec2 uv;
+        void main() { uv = place; gl_Position = clip * moved * vec4(p, 1.); }`,
+        `in vec2 uv; uniform sampler2D page;
+        void main() { if (texture(page, uv).a < 159. / 255.) discard; }`
+    ],
     object: [
         `layout(location=0) in vec3 p; layout(location=1) in vec3 n; uniform mat4 clip; out vec3 normal;
         void main() { normal = n; gl_Position = clip * vec4(p, 1.); }`,
@@ -408,11 +415,12 @@ ${i ? LINEAR : ''}`;
             }
             // near the first surface counts as on it: as if it were 3 % nearer
             const clip = pass ? W.clipMatrix(p.camera, p.near * 1.03, p.far * 1.03) : values.clip;
-            this.use('clutter', {...values, clip});
+            const name = pass ? 'clutter' : 'clutterDepth';
+            this.use(name, {...values, clip});
             for (const c of p.clutter) {
                 if (!c.count) continue;
                 this.bind(c.texture);
-                this.set('clutter', {moved: c.moved, weight: c.weight});
+                this.set(name, {moved: c.moved, weight: c.weight});
                 this.draw(c.buffer, c.first, c.count);
             }
         }

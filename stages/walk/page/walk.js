@@ -2,7 +2,7 @@
 'use strict';
 
 const $ = (id) => document.getElementById(id);
-const FIELD = 1.31, MOST_BYTES = 400e6, CLUTTER_VIEWS = 12, MOVING_VIEWS = 7;
+const FIELD = 1.31, MOST_BYTES = 400e6, CLUTTER_VIEWS = 12, MOVING_VIEWS = 5;
 
 W.say = (text, bad) => {
     $('told').textContent = text || '';
@@ -976,7 +976,8 @@ window.walk = {
         };
     },
     // Frames per second along the tour, with all that is needed loaded. count: frames; width x height: of the canvas.
-    speed: async (count, width, height) => {
+    // part: of the pixels along each side.
+    speed: async (count, width, height, part = 1) => {
         const frames = scene.models[0].tour.length ? scene.models[0].tour :
                                                      scene.places.map((p) => [0, ...p.centre, ...placeAxis(p)]);
         const cameras = [];
@@ -1001,7 +1002,7 @@ window.walk = {
                 const t = performance.now();
                 choose(camera, 0, false);
                 choosing += performance.now() - t;
-                drawModel(camera, 0, [0, 0, width, height], {inside: true, part: 1});
+                drawModel(camera, 0, [0, 0, width, height], {inside: true, part});
                 gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel);
                 calls += painter.counts.calls / count;
                 triangles += painter.counts.triangles / count;
