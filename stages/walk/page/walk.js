@@ -241,11 +241,12 @@ const drawModel = (camera, m, box, fixed = {}) => {
         sets = !there[0] ? [there[1], null] : !there[1] ? [there[0], null] : there;
         if (!there[0] || !there[1]) share = 0;
     }
-    const model = scene.models[m], size = S.size;
+    const model = scene.models[m], size = S.size, part = fixed.part || S.part;
+    const photos = above || fixed.photos === false ? [] : photosAt(camera, m, S.light);
     painter.paint({
         camera,
         box,
-        part: fixed.part || S.part,
+        part: photos.some((v) => v.alpha === 1) ? Math.min(1, part) : part, // several samples would blur it
         sets,
         share,
         rules: made.rules,
@@ -257,7 +258,7 @@ const drawModel = (camera, m, box, fixed = {}) => {
         kinds,
         relitKinds,
         clutter: clutterDraws(made.clutter, m),
-        photos: above || fixed.photos === false ? [] : photosAt(camera, m, S.light),
+        photos,
         objects: made.objects.length ? made.objects : null,
         near: above ? 0.05 * size : 0.01 * size,
         far: 8 * size,
