@@ -28,6 +28,7 @@ static inline const char *write_ball(struct vec3 middle, double radius, double r
                           .views = 1,
                           .view = (char *)"a",
                           .radiance = {radiance, radiance, radiance}};
+    for (int k = 0; k < THING_SIDES; k++) memcpy(thing.sides[k], thing.radiance, sizeof thing.sides[k]);
     const struct thing_list list = {&thing, 1};
     struct err err = ERR_INIT;
     for (int64_t i = 0; i < (int64_t)voxel_count(&v.grid); i++) {
