@@ -1,8 +1,9 @@
 /* chromium.js - a headless Chromium for tests of pages, driven over pipes by the DevTools protocol; no package is needed.
+ * WebGL is drawn by software.
  *
  *   const browser = await Chromium.open(folder);     its profile goes into that folder
  *   const page = await browser.page('file:///.../index.html');
- *   await page.run('1 + 1');  await page.drag([10, 10], [50, 60]);  await page.close();  browser.close(); */
+ *   await page.run('1 + 1');  await page.drag([10, 10], [50, 60]);  await page.close();  await browser.close(); */
 'use strict';
 const {spawn, spawnSync} = require('child_process');
 const fs = require('fs');
@@ -19,10 +20,10 @@ class Chromium {
         b.waiting = new Map();
         b.events = [];
         b.next = 1;
-        b.process = spawn(Chromium.find(), ['--headless', '--no-sandbox', '--disable-gpu', '--disable-dev-shm-usage',
-            '--no-first-run',
+        b.process = spawn(Chromium.find(), ['--headless', '--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader',
+            '--enable-unsafe-swiftshader', '--disable-dev-shm-usage', '--no-first-run',
             '--remote-debugging-pipe', `--user-data-dir=${profile}`, '--window-size=1400,900', 'about:blank'],
-        {stdio: ['ignore', 'ignore', 'ignore', 'pipe', 'pipe']});
+        {stdio: ['ignore', 'ignore', 'ignore', 'pipe', 'pipe'], detached: true});
         let rest = '';
         b.process.stdio[4].on('data', (data) => {
             const parts = (rest + data).split('\0');
@@ -54,7 +55,24 @@ class Chromium {
         return page;
     }
 
-    close() { this.process.kill(); }
+    /* CPU seconds of all its processes until now. */
+    cpu() {
+        let ticks = 0;
+        for (const pid of fs.readdirSync('/proc')) {
+            if (!/^\d+$/.test(pid)) continue;
+            try {
+                const w = fs.readFileSync(`/proc/${pid}/stat`, 'utf8').replace(/^.*\) /, '').split(' ');
+                if (+w[2] === this.process.pid) ticks += +w[11] + +w[12];
+            } catch (e) { /* it ended */ }
+        }
+        return ticks / 100;
+    }
+
+    async close() {
+        const ended = new Promise((done) => this.process.on('exit', done));
+        this.process.kill();
+        await Promise.race([ended, new Promise((done) => setTimeout(done, 3000))]);
+    }
 }
 
 class Page {

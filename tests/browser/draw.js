@@ -196,6 +196,6 @@ const tests = {
     } catch (e) {
         console.log(`not ok the_page_opens: ${e.message}`);
     } finally {
-        browser.close();
+        await browser.close();
     }
 })();

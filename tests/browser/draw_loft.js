@@ -96,6 +96,6 @@ function truth() {
     } catch (e) {
         console.log(`not ok ${test}: ${e.message}`);
     } finally {
-        browser.close();
+        await browser.close();
     }
 })();

@@ -46,14 +46,14 @@ a_damaged_atlas_leaves_the_page()
 scripts_are_right_without_a_browser()
 {
     command -v node >/dev/null || skip "node is not installed (Debian: nodejs)"
-    node "$root/tests/walk/test_model.js" "$root/stages/walk/page" || fail "see above"
+    node "$root/tests/browser/walk_model.js" "$root/stages/walk/page" || fail "see above"
 }
 
 the_browser_draws_what_render_model_draws()
 {
     command -v node >/dev/null || skip "node is not installed (Debian: nodejs)"
-    node -e "process.exit(require('$root/tests/walk/browser.js').find() ? 0 : 1)" || skip "chromium is not installed"
-    node "$root/tests/walk/test_page.js" "$O/walk" || fail "see above"
+    node -e "process.exit(require('$root/tests/browser/chromium.js').Chromium.find() ? 0 : 1)" || skip "chromium is not installed"
+    node "$root/tests/browser/walk_page.js" "$O/walk" || fail "see above"
 }
 
 for t in the_page_and_its_data_are_made bytes_do_not_depend_on_threads a_damaged_atlas_leaves_the_page \

@@ -1,7 +1,7 @@
 # the walk in Chromium against render_model: in viewpoints after an edit, and beside them; how quick it is
 . tests/lib.sh
 command -v node >/dev/null || { echo "skip walk: node is not installed (Debian: nodejs)"; exit 0; }
-node -e "process.exit(require('$root/tests/walk/browser.js').find() ? 0 : 1)" || { echo "skip walk: chromium is not installed"; exit 0; }
+node -e "process.exit(require('$root/tests/browser/chromium.js').Chromium.find() ? 0 : 1)" || { echo "skip walk: chromium is not installed"; exit 0; }
 project walk
 photos set --views 6 --size 320x240 >/dev/null
 boxed t "model textures remodel"
@@ -17,7 +17,7 @@ the_scene_has_its_walk()
     grep -qF 'walk/index.html' $O/index.html || fail "the page of the scene does not link to the walk"
 }
 
-viewpoints_show_what_render_model_draws() { node "$root/tests/walk/test_page.js" $O/walk --at chest $O/remodel/chest/pictures 35; }
+viewpoints_show_what_render_model_draws() { node "$root/tests/browser/walk_page.js" $O/walk --at chest $O/remodel/chest/pictures 35; }
 
 # 0.4 is a twentieth of the distance between two photos. The aim is 30 dB, which four of the six cameras reach; the others
 # have 29.6.
@@ -27,9 +27,9 @@ between_them_too()
     cp $O/views/cameras.txt cameras/; : >cameras/points3D.txt
     awk '/^#/ { next } NF == 10 { $6 += 0.4; print; print "" }' $O/views/images.txt >cameras/images.txt
     m remodel CAMERAS=cameras
-    node "$root/tests/walk/test_page.js" $O/walk --moved "" 0.4 $O/model/cameras 29
+    node "$root/tests/browser/walk_page.js" $O/walk --moved "" 0.4 $O/model/cameras 29
 }
 
-its_speed_is_measured() { WALK_SPEED=1 node "$root/tests/walk/test_page.js" $O/walk; }
+its_speed_is_measured() { WALK_SPEED=1 node "$root/tests/browser/walk_page.js" $O/walk; }
 
 for t in the_scene_has_its_walk viewpoints_show_what_render_model_draws between_them_too its_speed_is_measured; do run "$t"; done

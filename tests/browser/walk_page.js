@@ -1,4 +1,4 @@
-// node test_page.js FOLDER [--at EDIT PICTURES DB] [--between EDIT CAMERAS PICTURES DB] [--moved EDIT DX PICTURES DB] -
+// node walk_page.js FOLDER [--at EDIT PICTURES DB] [--between EDIT CAMERAS PICTURES DB] [--moved EDIT DX PICTURES DB] -
 // opens a walk in Chromium.
 //
 // Alone: the page starts, keys and clicks do what they say. --at: what the walk shows in viewpoints after an edit is
@@ -7,8 +7,9 @@
 // each case. --moved: the same of the views' cameras, moved to the left by DX model units.
 'use strict';
 const fs = require('fs');
+const os = require('os');
 const path = require('path');
-const {open} = require('./browser.js');
+const {Chromium} = require('./chromium.js');
 const folder = process.argv[2];
 const words = (option, count) => {
     const at = process.argv.indexOf(option);
@@ -46,7 +47,7 @@ const readCameras = (cameras) => {
 // one's pixels come from; where that is nothing they do not count.
 const compare = (browser, url, file, sources) => {
     const text = (f) => JSON.stringify(f && fs.existsSync(f) ? `,${fs.readFileSync(f).toString('base64')}` : '');
-    return browser.evaluate(`(async () => {
+    return browser.run(`(async () => {
         const pixels = async (url) => {
             const b = await createImageBitmap(new Blob([Uint8Array.from(atob(url.split(',')[1]), (c) => c.charCodeAt(0))]));
             const c = new OffscreenCanvas(b.width, b.height).getContext('2d');
@@ -67,19 +68,21 @@ const compare = (browser, url, file, sources) => {
 };
 
 const main = async () => {
-    const browser = await open(`file://${path.resolve(folder)}/index.html`);
+    const profile = fs.mkdtempSync(path.join(os.tmpdir(), 'walk-browser-'));
+    const chromium = await Chromium.open(profile);
+    const browser = await chromium.page(`file://${path.resolve(folder)}/index.html`, 1280, 720);
     try {
-        const first = await browser.evaluate('walk.ready()');
+        const first = await browser.run('walk.ready()');
         console.log(`# first picture after ${Math.round(first)} ms`);
         const size = fs.readdirSync(folder).reduce((s, f) => s + fs.statSync(path.join(folder, f)).size, 0);
         console.log(`# ${(size / 1e6).toFixed(1)} MB on disk`);
         check('the_walk_is_smaller_than_40_MB', size < 40e6, `${size} bytes`);
-        const lit = await browser.evaluate(
+        const lit = await browser.run(
             `(async () => { const v = walk.scene().views[0], r = await walk.picture({camera: v}); const b = await (await fetch(r.url)).blob(),
             p = await createImageBitmap(b), c = new OffscreenCanvas(p.width, p.height).getContext('2d'); c.drawImage(p, 0, 0); const d = c.getImageData(0, 0, p.width, p.height).data; let n = 0; for (let i = 0; i < d.length; i += 4) n += d[i] + d[i + 1] + d[i + 2] > 30; return n / (p.width * p.height); })()`);
         check('a_viewpoint_is_filled', lit > 0.95, `${(100 * lit).toFixed(1)} % of its pixels show something`);
         const look = async (name, spec, file, least) => {
-            const picture = await browser.evaluate(`walk.picture(${JSON.stringify(spec)})`);
+            const picture = await browser.run(`walk.picture(${JSON.stringify(spec)})`);
             const e = await compare(browser, picture.url, file, file.replace(/\.jpg$/, '-sources.png')),
                   dB = 10 * Math.log10(255 ** 2 / e);
             console.log(`# ${name}: ${dB.toFixed(1)} dB; ${picture.counts.calls} draw calls, ${
@@ -87,7 +90,7 @@ const main = async () => {
             check(`${name}_is_what_render_model_draws`, e >= 0 && dB >= +least, `${dB.toFixed(1)} dB, wanted ${least}`);
         };
         if (at) {
-            const views = await browser.evaluate('walk.scene().views'), [edit, pictures, least] = at;
+            const views = await browser.run('walk.scene().views'), [edit, pictures, least] = at;
             for (const v of views) {
                 const file = path.join(pictures, `${v.name}.jpg`);
                 if (fs.existsSync(file)) await look(v.name, {camera: v, edit}, file, least);
@@ -100,7 +103,7 @@ const main = async () => {
         }
         if (moved) {
             const [edit, dx, pictures, least] = moved;
-            for (const v of await browser.evaluate('walk.scene().views')) {
+            for (const v of await browser.run('walk.scene().views')) {
                 const camera = {...v, centre: v.centre.map((c, k) => c - dx * v.turn[k])};
                 const file = path.join(pictures, `${v.name}.jpg`);
                 await look(v.name, {camera, edit: edit || 0, photos: false}, file, least);
@@ -108,22 +111,22 @@ const main = async () => {
         }
         if (!at && !between && !moved) {
             const state = (key) =>
-                browser.evaluate(`JSON.stringify(walk.state.${key})`).then((t) => t && JSON.parse(t));
+                browser.run(`JSON.stringify(walk.state.${key})`).then((t) => t && JSON.parse(t));
             const wait = (ms) => new Promise((take) => setTimeout(take, ms));
-            await browser.evaluate('document.getElementById("rooms").focus()');
+            await browser.run('document.getElementById("rooms").focus()');
             const was = await state('eye');
             await browser.send('Input.dispatchKeyEvent', {type: 'keyDown', key: 'ArrowLeft', code: 'ArrowLeft'});
             await wait(700);
             await browser.send('Input.dispatchKeyEvent', {type: 'keyUp', key: 'ArrowLeft', code: 'ArrowLeft'});
             check('the_left_arrow_turns_left', (await state('eye')).heading > was.heading, 'the heading is the same');
-            await browser.mouse('mousePressed', 600, 400, 1);
-            await browser.mouse('mouseMoved', 700, 420, 1);
-            await browser.mouse('mouseReleased', 700, 420);
+            await browser.mouse('mousePressed', [600, 400]);
+            await browser.mouse('mouseMoved', [700, 420], {down: true});
+            await browser.mouse('mouseReleased', [700, 420]);
             await wait(100);
             check(
                 'dragging_to_the_right_turns_left', (await state('eye')).heading > was.heading,
                 'the heading is the same');
-            const count = await browser.evaluate('walk.scene().models.length');
+            const count = await browser.run('walk.scene().models.length');
             const last = Math.min(9, count - 1);
             await browser.key(`${last}`);
             check('a_digit_chooses_an_edit', (await state('edit')) === last, await state('edit'));
@@ -136,7 +139,7 @@ const main = async () => {
             await browser.key('c');
             check(
                 'c_shows_the_origin_with_its_legend',
-                await browser.evaluate(
+                await browser.run(
                     '!document.getElementById("legend").hidden && /another photograph/.test(document.getElementById("legend").textContent)'),
                 'no legend');
             await browser.key('c');
@@ -144,8 +147,8 @@ const main = async () => {
             await browser.key('Enter');
             check(
                 'enter_measures_a_surface',
-                /(m²|square units)/.test(await browser.evaluate('document.getElementById("told").textContent')),
-                await browser.evaluate('document.getElementById("told").textContent'));
+                /(m²|square units)/.test(await browser.run('document.getElementById("told").textContent')),
+                await browser.run('document.getElementById("told").textContent'));
             await browser.key('m');
             await browser.key('o');
             check('o_looks_from_above', await state('above'), 'not from above');
@@ -153,19 +156,19 @@ const main = async () => {
             const before = (await state('eye')).centre;
             await browser.key('n');
             await wait(200);
-            await browser.evaluate('walk.ready()');
+            await browser.run('walk.ready()');
             check(
                 'n_goes_to_a_photograph', (await state('move')) || (await state('eye')).centre.join() !== before.join(),
                 'nothing moves');
-            const names = await browser.evaluate(
+            const names = await browser.run(
                 '[...document.querySelectorAll("button")].every((b) => b.textContent.trim() || b.getAttribute("aria-label"))');
             check('every_button_has_a_name', names, 'a button has none');
         }
         check('the_console_is_empty', !browser.errors.length, browser.errors.join(' | '));
         if (process.env.WALK_SPEED) {
-            await browser.evaluate('walk.speed(12, 1280, 720)');
-            const begin = browser.cpu(), r = await browser.evaluate('walk.speed(24, 1280, 720)'),
-                  cpu = (browser.cpu() - begin) / 48;
+            await browser.run('walk.speed(12, 1280, 720)');
+            const begin = chromium.cpu(), r = await browser.run('walk.speed(24, 1280, 720)'),
+                  cpu = (chromium.cpu() - begin) / 48;
             const area = 1280 * 720;
             console.log(`# 1280 x 720 without a GPU: ${r.fps.toFixed(1)} frames a second as measured, ${
                 cpu.toFixed(3)} core-seconds a frame, so ${(2 / cpu).toFixed(1)} a second on 2 free cores`);
@@ -174,7 +177,8 @@ const main = async () => {
                 (area * 8 * 10 / 1e6).toFixed(0)} MB of pixels read and written`);
         }
     } finally {
-        await browser.close();
+        await chromium.close();
+        fs.rmSync(profile, {recursive: true, force: true, maxRetries: 5, retryDelay: 200});
     }
     process.exit(failed ? 1 : 0);
 };

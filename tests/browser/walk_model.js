@@ -1,4 +1,4 @@
-// node test_model.js FOLDER - the page's scripts without a browser: rays, weights of viewpoints, pieces of textures,
+// node walk_model.js FOLDER - the page's scripts without a browser: rays, weights of viewpoints, pieces of textures,
 // furniture, against values that follow from geometry.
 'use strict';
 const fs = require('fs');
