@@ -98,7 +98,7 @@ sample() # SERIES SCENE
     awk '{ v[$1] = $2 }
         END { if (v["lamp"] > 0.3) print "a lamp is off by " v["lamp"]
               if (v["irradiance50"] > 0.15) print "the median of irradiance is off by " v["irradiance50"]
-              if (v["gain"] < -0.1) print "new light costs " -v["gain"] " dB" }' "$fast/values" |
+              if (v["gain"] < -0.1) printf "new light costs %.3g dB\n", -v["gain"] }' "$fast/values" |
         while read -r cause; do fails "$2" "$cause"; done
 }
 
