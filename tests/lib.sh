@@ -156,3 +156,14 @@ reads()
     done
     return 1
 }
+
+# same_model FOLDER OTHER: the files of a model in FOLDER have the same bytes in OTHER; adds their number to `count`
+same_model()
+{
+    local f
+    for f in model.txt plan.txt merged.txt plan.svg texture.txt objects.txt; do
+        [ -e "$1/$f" ] || continue
+        cmp "$1/$f" "$2/$f" || fail "$2/$f differs"
+        count=$((count + 1))
+    done
+}

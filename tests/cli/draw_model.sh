@@ -37,7 +37,7 @@ the_module_makes_the_bytes_of_the_program()
     printf 'remodel-script 1\nremove sunny\nclear main\n' >scenes/room/edits/bare.txt
     printf 'remodel-script 1\nresize sunny left 9\n' >scenes/room/edits/far.txt
     node "$root/tests/browser/live_model.js" "$B/wasm/build_model.wasm" room scenes/room || fail "the module does not run"
-    local e f count=0
+    local e count=0
     for e in model wide bare far; do
         local edit=(); [ "$e" = model ] || edit=(--edit "scenes/room/edits/$e.txt" --scene scenes/room --base native/model/model.txt)
         if ! "$B/bin/build_model" --script scenes/room/model.txt --axes room/model/axes.txt --views room/views --points room/points/points.ply \
@@ -45,11 +45,7 @@ the_module_makes_the_bytes_of_the_program()
             grep -qxF "build_model: error: $(cat "room/live/$e/refused.txt")" err.txt || { cat err.txt "room/live/$e/refused.txt"; fail "$e is refused in other words"; }
             count=$((count + 1)); continue
         fi
-        for f in model.txt plan.txt merged.txt plan.svg texture.txt objects.txt; do
-            [ -e "native/$e/$f" ] || continue
-            cmp "native/$e/$f" "room/live/$e/$f" || fail "$e/$f differs"
-            count=$((count + 1))
-        done
+        same_model "native/$e" "room/live/$e"
     done
     [ $count = 17 ] || fail "compared $count files, wanted 17"
 }
