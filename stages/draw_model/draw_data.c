@@ -171,7 +171,8 @@ enum status draw_data_write_scene(const char *path, const struct draw_sources *f
 enum { RECORD = 45, PART = 6 << 20 }; /* bytes of a point; of a part of base64, a multiple of three */
 static const char element[] = "element vertex ", header_end[] = "end_header\n";
 
-/* Leaves every n-th point of a cloud, so that at most `most` remain. Returns n; 0: it is no cloud of this form. */
+/* Keeps one point of every n and drops the others, so that at most `most` remain. Returns n; 0: the file is not a cloud
+ * of this form. */
 static size_t thin(struct file_bytes *ply, size_t most)
 {
     char *count_at = strstr(ply->bytes, element), *end = strstr(ply->bytes, header_end), number[64];

@@ -5,8 +5,9 @@
  * the wall is the densest window of positions, refined to the weighted mean of its content (mean shift, 8 rounds).
  *
  * Hidden points are removed first: points that face away from the camera, and points behind others. The rectangle is
- * cut into cells; in each of them points farther than 1.08 times the cell's front are hidden. The front is told by
- * solid angle: points are as dense on a far wall as on a near one, so before a large room a near wall has few of them.
+ * cut into cells; in each of them points farther than 1.08 times the cell's front are hidden. The front is where the
+ * nearest 5 % of the solid angle of the cell's points end. Their number would not do: a far wall has as many points per
+ * area as a near one, hence many more in one cell.
  *
  * Beyond the source: rectangles that do not show where the wall is are refused (place_judge.c), and angled walls. The
  * normal of an angled wall is the mean normal about the fullest 5 degree bin, then three rounds of a total least
