@@ -5,25 +5,17 @@
  * then a ray that meets no face ends on the floor, which is at 0, or on the ceiling, which is where the highest wall
  * ends, if this is within the plan of the walls.
  *
- * Evidence beats the model. A segment costs its gain less on its face, and less so the surer its depth was before. What
- * still lies off its face stays only with evidence from two views, or as part of a thing that has it: adjacent segments
- * off their faces whose planes meet at the border are a thing, and a thing stays if segments on whose depth AGREEING
- * other views agree make up HELD_PART of it. Everything else takes its face, without confidence. */
+ * Evidence beats the model: a segment costs its gain less on its face, and less so the surer its depth was before. What
+ * then stands off its face is judged in before_model.c. */
 #include "stages/segment_depth/model_prior.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-#include "common/layers/layered_depth.h"
 #include "common/math/numbers.h"
 
 #define SAME_PLANE 1e-3 /* part of a plane's normal by which faces on one plane may differ */
 #define SURE_PART  0.75 /* part of the gain that a sure depth before takes away */
-#define OFF_PART   0.02 /* part of the inverse depth, and ... */
-#define OFF_STEPS  1.0  /* ... steps, from which on a segment lies off its face */
-#define MEET_STEPS 3.0  /* by which planes of one thing may differ at their border */
-#define AGREEING   0.9  /* other views, weighted with their confidence */
-#define HELD_PART  0.15 /* of a thing's pixels */
 
 static int candidate_of(struct prior_candidate *list, int *count, struct vec3 normal)
 {
@@ -96,67 +88,4 @@ enum status model_prior_make(struct plane_prior *prior, const struct view_trace 
 void model_prior_weigh(struct plane_prior *prior, double gain, const double *sure, const struct segmentation *s)
 {
     for (int i = 0; i < s->count; i++) prior->gain[i] = (float)(gain * (1 - SURE_PART * clamp(sure[i], 0, 1)));
-}
-
-static bool is_off(const struct plane_problem *p, int segment, struct plane plane)
-{
-    const struct segment *g = &p->m->segments->segments[segment];
-    const struct plane *face = problem_expects(p, segment);
-    if (!face) return false;
-    const double there = plane_at(*face, g->cx, g->cy);
-    return !(fabs(plane_at(plane, g->cx, g->cy) - there) <= fmax(OFF_PART * there, OFF_STEPS * p->step));
-}
-
-static int root_of(int *parent, int i)
-{
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-}
-
-/* Joins adjacent segments off their faces whose planes meet. */
-static void join_things(int *parent, const bool *off, const struct plane *planes, const struct plane_problem *p)
-{
-    const struct segmentation *s = p->m->segments;
-    for (int i = 0; i < s->count; i++)
-        for (int t = s->first_border[i]; off[i] && t < s->first_border[i + 1]; t++) {
-            const struct border *b = &s->borders[t];
-            if (b->other <= i || !off[b->other]) continue;
-            const double gap = plane_at(planes[i], (double)b->u, (double)b->v) -
-                               plane_at(planes[b->other], (double)b->u, (double)b->v);
-            if (fabs(gap) <= MEET_STEPS * p->step) parent[root_of(parent, i)] = root_of(parent, b->other);
-        }
-}
-
-enum status model_prior_settle(struct plane *planes, bool *inherited, const double *confidence,
-                               const struct plane_problem *p, struct err *err)
-{
-    const struct segmentation *s = p->m->segments;
-    const size_t count = (size_t)s->count + 1;
-    int *parent = malloc(count * sizeof *parent);
-    bool *off = malloc(count * sizeof *off);
-    double *pixels = calloc(count, sizeof *pixels), *held = calloc(count, sizeof *held);
-    if (!parent || !off || !pixels || !held) err_nomem(err, "things before the model", count * 21);
-    for (int i = 0; !err->status && i < s->count; i++) {
-        parent[i] = i;
-        off[i] = !given_depth_has(p->given, i) && is_off(p, i, planes[i]);
-    }
-    if (!err->status) join_things(parent, off, planes, p);
-    for (int i = 0; !err->status && i < s->count; i++) {
-        if (!off[i]) continue;
-        const int k = root_of(parent, i);
-        pixels[k] += s->segments[i].pixels;
-        if (p->cross && !inherited[i] && confidence[i] >= DEPTH_INHERITED &&
-            cross_view_support(p->cross, i, planes[i]) >= AGREEING)
-            held[k] += s->segments[i].pixels;
-    }
-    for (int i = 0; !err->status && i < s->count; i++) {
-        if (!off[i] || held[root_of(parent, i)] >= HELD_PART * pixels[root_of(parent, i)]) continue;
-        planes[i] = *problem_expects(p, i);
-        inherited[i] = true;
-    }
-    free(parent);
-    free(off);
-    free(pixels);
-    free(held);
-    return err->status;
 }

@@ -13,9 +13,4 @@ enum status model_prior_make(struct plane_prior *prior, const struct view_trace 
 /* Sets the gains. sure: of each segment, the confidence of its depth before, 0 .. 1. */
 void model_prior_weigh(struct plane_prior *prior, double gain, const double *sure, const struct segmentation *s);
 
-/* Moves what stands off the model without evidence of two views to the plane that is expected there, and marks it as
- * inherited. All arrays: of each segment. ST_NOMEM. */
-enum status model_prior_settle(struct plane *planes, bool *inherited, const double *confidence,
-                               const struct plane_problem *p, struct err *err);
-
 #endif

@@ -14,6 +14,7 @@
  *                 scene's dominant planes are offered to the whole view, and fitted to what takes them
  *   refine        local search with the same energy
  *   inherit       border areas that nothing holds where they are take over what is beside them
+ *   before_model  what stands before the solid model without evidence takes its depth, in the round that knows it
  *   depth_deviation  how far off each segment's depth may be
  *   pixel_planes  each pixel chooses among the planes around it
  *   layers        opaque interiors, and mattes at depth edges
@@ -34,6 +35,7 @@
 #include "common/capture/upright.h"
 #include "common/layers/depth_sigma.h"
 #include "common/math/numbers.h"
+#include "stages/segment_depth/before_model.h"
 #include "stages/segment_depth/depth_deviation.h"
 #include "stages/segment_depth/expand.h"
 #include "stages/segment_depth/frame_prior.h"
@@ -336,7 +338,7 @@ static enum status inherit(struct layered_depth *out, struct plane *planes, cons
     if (!confidence || !inherited) err_nomem(err, "confidences", count * sizeof *confidence);
     for (int i = 0; !err->status && i < out->segment_count; i++) confidence[i] = out->segments[i].confidence;
     if (!err->status) inherit_planes(planes, inherited, confidence, p, cautious, err);
-    if (!err->status && knows_model) model_prior_settle(planes, inherited, confidence, p, err);
+    if (!err->status && knows_model) before_model_settle(planes, inherited, confidence, p, err);
     for (int i = 0; !err->status && i < out->segment_count; i++)
         if (inherited[i]) {
             struct depth_segment *g = &out->segments[i];

@@ -2,6 +2,8 @@
 #include "stages/segment_depth/model_prior.h"
 
 #include "common/math/numbers.h"
+#include "stages/segment_depth/before_model.h"
+#include "stages/segment_depth/smooth.h"
 #include "tests/unit/box_solids.h"
 
 enum { W = 80, H = 60, CELL = 10, ACROSS = W / CELL, COUNT = ACROSS * (H / CELL), VIEWS = 3 };
@@ -17,6 +19,7 @@ static struct border borders[COUNT * 4];
 static int first_border[COUNT + 1];
 static struct view views[VIEWS];
 static double confidence_before; /* of the neighbours' depth */
+static int thing_ends;           /* the neighbours show the thing left of this column, and the wall from there on */
 
 /* A grid of square segments. */
 static struct segmentation grid(void)
@@ -151,18 +154,19 @@ static enum status read_thing(void *ctx, int view_idx, struct layered_depth *d, 
 {
     (void)ctx;
     (void)view_idx;
-    *d = (struct layered_depth){.width = W, .height = H, .segment_count = 1};
+    *d = (struct layered_depth){.width = W, .height = H, .segment_count = 2};
     d->interior.id = calloc((size_t)W * H, sizeof *d->interior.id);
-    d->segments = calloc(1, sizeof *d->segments);
+    d->segments = calloc(2, sizeof *d->segments);
     if (!d->interior.id || !d->segments) return err_nomem(err, "a depth map", 1);
-    for (int i = 0; i < W * H; i++) d->interior.id[i] = 1;
+    for (int i = 0; i < W * H; i++) d->interior.id[i] = i % W < thing_ends ? 1 : 2;
     d->segments[0] = (struct depth_segment){1, W * H, {0, 0, 1 / thing}, 0.01, confidence_before, 0};
+    d->segments[1] = (struct depth_segment){2, W * H, {0, 0, 1 / 2.0}, 0.01, confidence_before, 0};
     return ST_OK;
 }
 
 /* All lies on the wall but two adjacent segments; `sure` is the confidence of the first. The neighbours' depth is that
- * of the thing. Returns how many of the two stay. */
-static int settle(double sure, double neighbours_sure)
+ * of the thing up to column `ends`. Returns how many of the two stay; the second does not without the first. */
+static int settle(double sure, double neighbours_sure, int ends)
 {
     const struct segmentation s = grid();
     const struct camera_set set = {.views = views, .view_count = VIEWS};
@@ -172,6 +176,8 @@ static int settle(double sure, double neighbours_sure)
     double confidence[COUNT] = {0};
     bool inherited[COUNT] = {false};
     struct scene_planes scene = {.count = 1, .known = 1};
+    const struct segment_params params = SEGMENT_PARAMS_DEFAULT;
+    float *weights = smooth_border_weights(&s, CELL * CELL);
     struct matcher m = {.segments = &s};
     struct cross_view cross = {0};
     struct plane_prior prior;
@@ -180,22 +186,31 @@ static int settle(double sure, double neighbours_sure)
     views[1] = view_at(vec3_make(0.1, 0, 0), 0, 0, W, H, 40);
     views[2] = view_at(vec3_make(-0.1, 0, 0), 0, 0, W, H, 40);
     confidence_before = neighbours_sure;
+    thing_ends = ends;
     scene_planes_set(&scene, 0, prior.planes[0]);
     assert_ok(cross_view_make(&cross, &s, &set, 0, neighbours, 2, 0.02, &source, &err), err);
-    const struct plane_problem p = {.m = &m, .cross = &cross, .prior = &prior, .scene = &scene, .step = 0.02};
+    const struct plane_problem p = {.m = &m,
+                                    .cross = &cross,
+                                    .prior = &prior,
+                                    .scene = &scene,
+                                    .weights = weights,
+                                    .params = &params,
+                                    .step = 0.02};
     for (int i = 0; i < COUNT; i++) planes[i] = prior.planes[0];
     planes[FIRST] = planes[SECOND] = (struct plane){0, 0, 1 / thing};
     planes[0].c *= 1.01; /* a little off: the photos may know better */
     confidence[FIRST] = sure;
     const double slightly_off = planes[0].c;
-    assert_ok(model_prior_settle(planes, inherited, confidence, &p, &err), err);
+    assert_ok(before_model_settle(planes, inherited, confidence, &p, &err), err);
     assert_true(planes[0].c == slightly_off && !inherited[0]);
     int stay = 0;
     for (int i = FIRST; i <= SECOND; i++) {
         const bool on_the_wall = memcmp(&planes[i], &prior.planes[0], sizeof planes[i]) == 0;
         assert_true(on_the_wall == inherited[i]);
         stay += !on_the_wall;
+        assert_true(on_the_wall || i == FIRST || stay == 2);
     }
+    free(weights);
     cross_view_release(&cross);
     plane_prior_release(&prior);
     return stay;
@@ -204,15 +219,22 @@ static int settle(double sure, double neighbours_sure)
 static void what_no_other_view_confirms_is_the_face_behind_it(void **state)
 {
     (void)state;
-    assert_int_equal(settle(0.9, 0.05), 0);
-    assert_int_equal(settle(0, 0.9), 0);
+    assert_int_equal(settle(0.9, 0.05, W), 0);
+    assert_int_equal(settle(0, 0.9, W), 0);
 }
 
 /* The second segment has no confidence of its own. */
 static void a_thing_that_views_agree_on_stays_with_all_its_parts(void **state)
 {
     (void)state;
-    assert_int_equal(settle(0.9, 0.9), 2);
+    assert_int_equal(settle(0.9, 0.9, W), 2);
+}
+
+/* The second segment took the depth of the first, which the other views do not show there. */
+static void a_strip_of_wall_beside_a_thing_goes_back_to_the_wall(void **state)
+{
+    (void)state;
+    assert_int_equal(settle(0.9, 0.9, segments[SECOND].x0), 1);
 }
 
 int main(void)
@@ -224,6 +246,7 @@ int main(void)
         cmocka_unit_test(a_sure_segment_gains_less),
         cmocka_unit_test(what_no_other_view_confirms_is_the_face_behind_it),
         cmocka_unit_test(a_thing_that_views_agree_on_stays_with_all_its_parts),
+        cmocka_unit_test(a_strip_of_wall_beside_a_thing_goes_back_to_the_wall),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
