@@ -86,15 +86,20 @@ static double distance(const struct tour_graph *g, int i, int k)
     return vec3_length(vec3_sub(g->nodes[i].centre, g->nodes[k].centre));
 }
 
-/* The median distance to the nearest other node; 1 if there is none. */
+static const double ONE_PLACE = 1e-3; /* of the distance of the nodes that are farthest apart */
+
+/* The median distance to the nearest node at another place; 1 if there is none. Photos cut from one panorama have one
+ * place, but for rounding. */
 static double median_spacing(const struct tour_graph *g)
 {
-    double *nearest = malloc(((size_t)g->count + 1) * sizeof *nearest), middle = 1;
+    double *nearest = malloc(((size_t)g->count + 1) * sizeof *nearest), middle = 1, farthest = 0;
     int count = 0;
+    for (int i = 0; i < g->count; i++)
+        for (int k = 0; k < i; k++) farthest = fmax(farthest, distance(g, i, k));
     for (int i = 0; nearest && i < g->count; i++) {
         double least = INFINITY;
         for (int k = 0; k < g->count; k++)
-            if (k != i && distance(g, i, k) > 0) least = fmin(least, distance(g, i, k));
+            if (distance(g, i, k) > ONE_PLACE * farthest) least = fmin(least, distance(g, i, k));
         if (isfinite(least)) nearest[count++] = least;
     }
     if (count) {

@@ -90,6 +90,21 @@ static void without_a_scale_a_step_is_the_median_spacing(void **state)
     walk_release(&w);
 }
 
+static void photos_cut_from_one_panorama_are_no_step_apart(void **state)
+{
+    (void)state;
+    const struct box boxes[] = {HALL_OUTSIDE, HALL_INSIDE};
+    const struct place places[] = {
+        {"p1", {-2, 0, 1.5}, 0}, {"p2", {-2 + 1e-9, 0, 1.5}, 60}, {"p3", {-1, 0, 1.5}, 0}, {"p4", {-1, 1e-9, 1.5}, 60}};
+    struct walk w;
+    struct err err = ERR_INIT;
+    walk_make(&w, boxes, 2, places, 4);
+    w.axes.metric = false;
+    assert_ok(walk_graph(&w, &err), err);
+    assert_float_equal(w.g.unit, 1, 1e-6);
+    walk_release(&w);
+}
+
 static void the_shortest_way_goes_through_the_gap(void **state)
 {
     (void)state;
@@ -118,6 +133,7 @@ int main(void)
         cmocka_unit_test(a_viewpoint_near_a_thin_pane_is_left_out),
         cmocka_unit_test(a_viewpoint_inside_what_an_edit_adds_is_left_out),
         cmocka_unit_test(without_a_scale_a_step_is_the_median_spacing),
+        cmocka_unit_test(photos_cut_from_one_panorama_are_no_step_apart),
         cmocka_unit_test(the_shortest_way_goes_through_the_gap),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
