@@ -14,8 +14,8 @@
  * lines show its foot and its head. So the edges of rugs, furniture and grilles in the ceiling drop out, and so do open
  * doors.
  *
- * Lastly, walls that may be edges on others are dropped (explained_walls.c), and gaps between the ends of walls are
- * closed where a few lines show that there is a wall (closing_walls.c). */
+ * Lastly, walls that may be edges on others are dropped (explained_walls.c), gaps between the ends of walls are closed
+ * where a few lines show that there is a wall (closing_walls.c), and what is open in walls is cut out (open_walls.c). */
 #include "stages/find_frame/frame_walls.h"
 
 #include <math.h>
@@ -25,6 +25,7 @@
 #include "common/base/sort.h"
 #include "stages/find_frame/closing_walls.h"
 #include "stages/find_frame/explained_walls.h"
+#include "stages/find_frame/open_walls.h"
 #include "stages/find_frame/wall_ends.h"
 #include "stages/find_frame/wall_grid.h"
 
@@ -142,6 +143,7 @@ enum status walls_find(struct room_frame *f, const struct foot_lines *lines, con
     for (int i = 0; !err->status && i < set->view_count; i++) stations[i] = -1;
     for (int i = 0; !err->status && i < w->count; i++) stations[w->lines[i].view] = w->lines[i].station;
     if (!err->status) frame_sights_of_points(&seen, stations, set, err);
+    const int points = seen.count;
     while (!err->status) {
         struct candidate best;
         if (best_wall(&best, f, lines, used, &seen, size, err) || best.pairs < MIN_PAIRS) break;
@@ -168,6 +170,7 @@ enum status walls_find(struct room_frame *f, const struct foot_lines *lines, con
             wall_end_meet(&met, end, f, size);
             if (met.to - met.from > WALL_SHORTEST / 2 * size) f->walls[k] = met;
         }
+    if (!err->status) open_walls_cut(f, &seen, points, size, err);
     free(used);
     free(sure);
     free(values);
