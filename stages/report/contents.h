@@ -10,6 +10,7 @@
 #include "common/capture/photo_list.h"
 #include "stages/report/contents_light.h"
 #include "stages/report/contents_relit.h"
+#include "stages/report/contents_rooms.h"
 #include "stages/report/metric_rows.h"
 #include "stages/report/page_pictures.h"
 #include "stages/report/settings.h"
@@ -55,6 +56,13 @@ struct pan_card { /* the same move in 2D */
     char view[256];        /* the view that it shows; "": unknown */
     double misfit[2];      /* median error of the scene's points in the first and last frame, px; -1: unknown */
     struct picture poster; /* the first frame */
+};
+
+struct tour_card {    /* a film of a walk through the rooms */
+    char change[256]; /* "": the rooms as they are */
+    bool relit;       /* in the light that the change makes */
+    char *video;      /* file name, owned */
+    long long bytes;
 };
 
 struct effect_card {
@@ -116,7 +124,13 @@ struct contents {
     struct photo_list photos;
     struct camera_set views;
     struct lens_list lenses;
-    bool has_photos, has_views, has_remodel_page, has_walk; /* remodel/index.html, walk/index.html exist */
+    const char *folder; /* of the scene */
+    bool has_photos, has_views;
+    bool has_remodel_page, has_walk, has_draw; /* remodel/, walk/, draw/index.html exist */
+
+    struct rooms rooms; /* before and after each change */
+    struct tour_card *tours;
+    int tour_count;
 
     struct photo_card *photo_cards; /* photos.count */
     struct view_card *view_cards;   /* views.view_count */
@@ -162,6 +176,7 @@ struct contents_sources {
     const char *photos;   /* the folder of the photographs */
     const char *stages;   /* names of the pipeline's stages in data-flow order, separated by spaces */
     const char *defaults; /* default configuration, or NULL */
+    const char *scripts;  /* of the edits, or NULL */
 };
 
 /* c is empty on entry; the caller releases it, also after an error. ST_IO: there is no `folder`; ST_USAGE: `stages` is

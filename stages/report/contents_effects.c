@@ -1,4 +1,4 @@
-/* contents_effects.c - camera moves: paths, frames, videos. */
+/* contents_effects.c - camera moves: paths, frames, videos; films of walks through the rooms. */
 #include "stages/report/contents_parts.h"
 
 #include <dirent.h>
@@ -6,7 +6,10 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "common/base/array.h"
 #include "common/base/scan.h"
+
+enum { POSTER_HEIGHT = 540 };
 
 /* film: "parallax/EFFECT" */
 static enum status read_frames(struct contents *c, struct effect_card *e, const char *folder, const char *film,
@@ -30,7 +33,7 @@ static enum status read_frames(struct contents *c, struct effect_card *e, const 
             e->frames_found++;
             e->holes[i] = share_from_text(exr_attribute(&im, "remodel:holes"));
             e->unfilled[i] = share_from_text(exr_attribute(&im, "remodel:unfilled"));
-            if (i == 0) picture_from_exr(&e->poster, &im, 1, 720, &problem);
+            if (i == 0) picture_from_exr(&e->poster, &im, 1, POSTER_HEIGHT, &problem);
         }
         if (problem.status) snprintf(problem_text, sizeof problem_text, "%.*s", NOTE_SIZE - 1, problem.text);
         exr_image_release(&im);
@@ -58,7 +61,7 @@ static enum status read_pan_frame(struct contents *c, struct effect_card *e, con
         const char *view = exr_attribute(&im, "remodel:view"), *misfit = exr_attribute(&im, "remodel:misfit");
         if (view) snprintf(e->pan.view, sizeof e->pan.view, "%s", view);
         if (!misfit || !scan_double(misfit, &e->pan.misfit[end]) || !(e->pan.misfit[end] >= 0)) e->pan.misfit[end] = -1;
-        if (!end) picture_from_exr(&e->pan.poster, &im, 1, 720, &problem);
+        if (!end) picture_from_exr(&e->pan.poster, &im, 1, POSTER_HEIGHT, &problem);
     }
     exr_image_release(&im);
     if (problem.status) return contents_note(c, err, "A 2D frame of %s cannot be read. %.800s", e->name, problem.text);
@@ -142,6 +145,44 @@ enum status contents_read_effects(struct contents *c, const char *folder, struct
     free(names);
     if (!err->status && !c->effect_count)
         contents_note(c, err, "No camera move has been planned yet, so there is no video.");
+    return err->status;
+}
+
+/* ------------------------------------------------------------------------------------------------------------ tours */
+
+/* film: the folder of the tour below the scene's */
+static enum status read_tour(struct contents *c, const char *folder, const char *film, const char *change, bool relit,
+                             struct err *err)
+{
+    char path[PATH_SIZE];
+    struct tour_card tour = {.relit = relit};
+    snprintf(path, sizeof path, "%s/%s", folder, film);
+    if (!path_is_folder(path) || find_video(&tour.video, &tour.bytes, folder, PRODUCT_VIDEO, film, err) || !tour.video)
+        return err->status;
+    snprintf(tour.change, sizeof tour.change, "%s", change);
+    if (array_append(&c->tours, (size_t)c->tour_count, sizeof *c->tours, "tours", err))
+        free(tour.video);
+    else
+        c->tours[c->tour_count++] = tour;
+    return err->status;
+}
+
+enum status contents_read_tours(struct contents *c, const char *folder, struct err *err)
+{
+    static const char *const below[] = {"remodel", "relight"};
+    read_tour(c, folder, "model/tour", "", false, err);
+    for (int k = 0; k < 2; k++) {
+        struct dirent **names = NULL;
+        char path[PATH_SIZE], film[FILE_PATH];
+        snprintf(path, sizeof path, "%s/%s", folder, below[k]);
+        const int count = scandir(path, &names, NULL, alphasort);
+        for (int i = 0; i < count; i++) {
+            snprintf(film, sizeof film, "%s/%s/tour", below[k], names[i]->d_name);
+            if (!err->status && names[i]->d_name[0] != '.') read_tour(c, folder, film, names[i]->d_name, k == 1, err);
+            free(names[i]);
+        }
+        free(names);
+    }
     return err->status;
 }
 

@@ -28,6 +28,7 @@ enum status contents_read_lens(struct contents *c, const char *folder, struct er
 enum status contents_read_held(struct contents *c, const char *folder, struct err *err);
 enum status contents_check_age(struct contents *c, const char *folder, struct err *err);
 enum status contents_read_effects(struct contents *c, const char *folder, struct err *err);
+enum status contents_read_tours(struct contents *c, const char *folder, struct err *err);
 enum status contents_read_axes(struct contents *c, const char *folder, struct err *err);
 enum status contents_read_models(struct contents *c, const char *folder, struct err *err);
 void contents_find_things(struct contents *c, const char *folder);

@@ -40,9 +40,16 @@ static enum status read_runs(struct contents *c, const struct contents_sources *
     return err->status;
 }
 
+static enum status read_rooms(struct contents *c, const struct contents_sources *from, struct err *err)
+{
+    char records[PATH_SIZE];
+    snprintf(records, sizeof records, "%s/photos", from->shared);
+    return rooms_read(&c->rooms, &(struct rooms_sources){from->folder, records, from->scripts}, err);
+}
+
 enum status contents_read(struct contents *c, const struct contents_sources *from, struct err *err)
 {
-    const char *folder = from->folder;
+    const char *folder = c->folder = from->folder;
     if (stage_list_parse(&c->stages, from->stages, err)) return err->status;
     if (!path_is_folder(folder))
         return err_set(err, ST_IO, "%s is not a folder, so there is no scene to report on; make the scene first.",
@@ -52,12 +59,14 @@ enum status contents_read(struct contents *c, const struct contents_sources *fro
         contents_read_held(c, folder, err) || contents_check_age(c, folder, err) ||
         contents_read_effects(c, folder, err) || contents_read_axes(c, folder, err) ||
         contents_read_models(c, folder, err) || contents_read_textures(c, folder, err) ||
-        contents_read_light(c, folder, err) || contents_read_relit(c, folder, from->shared, err))
+        contents_read_light(c, folder, err) || contents_read_relit(c, folder, from->shared, err) ||
+        contents_read_tours(c, folder, err) || read_rooms(c, from, err))
         return err->status;
     contents_find_things(c, folder);
     char page[FILE_PATH];
     c->has_remodel_page = contents_product(page, folder, PRODUCT_REMODEL_PAGE, NULL);
     c->has_walk = contents_product(page, folder, PRODUCT_WALK_PAGE, NULL);
+    c->has_draw = contents_product(page, folder, PRODUCT_DRAW_PAGE, NULL);
     return read_runs(c, from, err);
 }
 
@@ -88,6 +97,9 @@ void contents_release(struct contents *c)
     light_contents_release(&c->light);
     for (int i = 0; i < c->relit_count; i++) relit_card_release(&c->relit[i]);
     free(c->relit);
+    for (int i = 0; i < c->tour_count; i++) free(c->tours[i].video);
+    free(c->tours);
+    rooms_release(&c->rooms);
     free(c->photo_cards);
     free(c->view_cards);
     free(c->held_cards);

@@ -25,17 +25,17 @@
 #include "common/texture/picture_record.h"
 #include "stages/report/contents_parts.h"
 
-struct relit_record { /* VIEW.txt */
+struct view_record {
     char view[256];
     const char *photo;
-    double exposure, changed, bounded, kept;
+    struct relit_record file;
 };
 
 struct relit_reading {
     struct relit_card *card;
     const struct relit_sources *from;
-    char relit[FILE_PATH];        /* "relight/EDIT" */
-    struct relit_record *records; /* owned */
+    char relit[FILE_PATH];       /* "relight/EDIT" */
+    struct view_record *records; /* owned */
     int record_count;
 };
 
@@ -93,7 +93,7 @@ static enum status read_number(struct textfile *t, const char *word, double max,
     return textfile_end(t, err);
 }
 
-static enum status read_record(struct relit_record *r, const char *path, struct err *err)
+enum status relit_record_read(struct relit_record *r, const char *path, struct err *err)
 {
     struct textfile t = {0};
     if (!product_open(&t, NULL, PRODUCT_RELIT_RECORD, path, NULL, err) && !textfile_expect_line(&t, "size", err) &&
@@ -112,16 +112,17 @@ static int is_record(const struct dirent *e)
 }
 
 /* As of edits (contents_remodel.c): what changed and is sure, not limited because it was a guess. */
-static double worth(const struct relit_record *r)
+static double worth(const struct view_record *r)
 {
-    return r->changed > r->bounded ? (r->changed - r->bounded) * (r->changed - r->bounded) / r->changed : 0;
+    const double changed = r->file.changed, bounded = r->file.bounded;
+    return changed > bounded ? (changed - bounded) * (changed - bounded) / changed : 0;
 }
 
 static int compare_records(const void *a, const void *b)
 {
-    const struct relit_record *p = a, *q = b;
+    const struct view_record *p = a, *q = b;
     if (worth(p) != worth(q)) return worth(p) < worth(q) ? 1 : -1;
-    if (p->changed != q->changed) return p->changed < q->changed ? 1 : -1;
+    if (p->file.changed != q->file.changed) return p->file.changed < q->file.changed ? 1 : -1;
     return strcmp(p->view, q->view);
 }
 
@@ -134,11 +135,11 @@ static enum status read_records(struct relit_reading *r, const char *folder, str
     for (int i = 0; i < count; i++) {
         char path[FILE_PATH], *name = names[i]->d_name;
         struct err problem = ERR_INIT;
-        struct relit_record record = {.changed = 0};
+        struct view_record record = {.photo = NULL};
         if (!err->status) file_path(path, folder, name, "", err);
         snprintf(record.view, sizeof record.view, "%.*s", (int)(strlen(name) - strlen(".txt")), name);
         const int lens = lens_list_find(r->from->lenses, record.view);
-        if (!err->status && read_record(&record, path, &problem)) {
+        if (!err->status && relit_record_read(&record.file, path, &problem)) {
             note(r->card, &problem, err);
         } else if (!err->status && lens >= 0) { /* others are of cameras that somebody gave */
             record.photo = r->from->lenses->lenses[lens].photo;
@@ -198,14 +199,14 @@ static void sight_release(struct relit_sight *s)
     picture_release(&s->truth);
 }
 
-static enum status read_truth(struct relit_sight *s, const struct relit_reading *r, const struct relit_record *record,
+static enum status read_truth(struct relit_sight *s, const struct relit_reading *r, const struct view_record *record,
                               int orientation, struct err *err)
 {
     const struct product_key key = {.edit = r->card->name, .view = record->view};
     char path[FILE_PATH];
     if (!contents_product(path, r->from->folder, PRODUCT_TRUTH_RELIT, &key)) return ST_OK;
-    return relit_read_radiance(&s->truth, r->from->folder, PRODUCT_TRUTH_RELIT, &key, record->exposure, orientation,
-                               RELIT_SIDE_HEIGHT, err);
+    return relit_read_radiance(&s->truth, r->from->folder, PRODUCT_TRUTH_RELIT, &key, record->file.exposure,
+                               orientation, RELIT_SIDE_HEIGHT, err);
 }
 
 /* The picture in the old light. Where the edit changes no pixel, as under a lamp that is switched, none is written: it
@@ -218,7 +219,7 @@ static enum status read_unlit(struct picture *p, const char *folder, const struc
     return relit_read_radiance(p, folder, PRODUCT_VIEW, key, record->exposure, orientation, RELIT_SIDE_HEIGHT, err);
 }
 
-static enum status read_sight(struct relit_sight *s, const struct relit_reading *r, const struct relit_record *record,
+static enum status read_sight(struct relit_sight *s, const struct relit_reading *r, const struct view_record *record,
                               struct err *err)
 {
     const int orientation = relit_photo_orientation(r->from->records, record->photo), height = RELIT_SIDE_HEIGHT;
@@ -226,7 +227,8 @@ static enum status read_sight(struct relit_sight *s, const struct relit_reading 
     char unlit[FILE_PATH], path[FILE_PATH];
     const struct product_key key = {.view = record->view, .name = record->view, .pictures = unlit, .relit = r->relit};
     struct picture_record before; /* the photo is shown as the picture before it was relit */
-    *s = (struct relit_sight){.changed = record->changed, .bounded = record->bounded, .kept = record->kept};
+    const struct relit_record *f = &record->file;
+    *s = (struct relit_sight){.changed = f->changed, .bounded = f->bounded, .kept = f->kept};
     snprintf(s->view, sizeof s->view, "%s", record->view);
     snprintf(s->photo, sizeof s->photo, "%s", record->photo);
     if (!file_path(unlit, r->relit, "unlit", "", err) &&
@@ -247,9 +249,9 @@ static enum status read_sights(struct relit_reading *r, int most, struct err *er
     card->sights = calloc((size_t)most + 1, sizeof *card->sights);
     if (!card->sights) return err_nomem(err, "pictures", (size_t)most * sizeof *card->sights);
     for (int i = 0; !err->status && i < r->record_count && card->sight_count < most; i++) {
-        const struct relit_record *record = &r->records[i];
+        const struct view_record *record = &r->records[i];
         struct err problem = ERR_INIT;
-        bool shown = !(record->changed > 0);
+        bool shown = !(record->file.changed > 0);
         for (int k = 0; k < card->sight_count; k++) shown |= !strcmp(card->sights[k].photo, record->photo);
         if (shown) continue;
         if (read_sight(&card->sights[card->sight_count], r, record, &problem))
@@ -273,6 +275,14 @@ enum status relit_card_read(struct relit_card *card, const struct relit_sources 
     if (!err->status && card->views && !read_rounds(&r, err)) read_sights(&r, most, err);
     free(r.records);
     return err->status;
+}
+
+enum status relit_rounds_read(struct relit_card *card, const struct relit_sources *from, const char *edit,
+                              struct err *err)
+{
+    struct relit_reading r = {.card = card, .from = from};
+    snprintf(card->name, sizeof card->name, "%s", edit);
+    return read_rounds(&r, err);
 }
 
 void relit_card_release(struct relit_card *card)

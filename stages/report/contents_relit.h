@@ -5,7 +5,7 @@
 #include "common/capture/lens_list.h"
 #include "stages/report/page_pictures.h"
 
-enum { RELIT_SHOWN = 4, RELIT_SIDE_HEIGHT = 480 }; /* views of an edit; px */
+enum { RELIT_SIDE_HEIGHT = 360 }; /* px */
 
 /* What an original view shows; all pictures are upright. */
 struct relit_sight {
@@ -32,10 +32,19 @@ struct relit_sources {
     const struct lens_list *lenses;
 };
 
+/* VIEW.txt of a relit view. */
+struct relit_record {
+    double exposure, changed, bounded, kept; /* %, as above */
+};
+enum status relit_record_read(struct relit_record *r, const char *path, struct err *err);
+
 /* At most `most` views of FOLDER/relight/EDIT. views is 0 if there are none. card is empty on entry; the caller
  * releases it in each case. What cannot be read becomes a note. ST_NOMEM. */
 enum status relit_card_read(struct relit_card *card, const struct relit_sources *from, const char *edit, int most,
                             struct err *err);
+/* The rounds of light alone. */
+enum status relit_rounds_read(struct relit_card *card, const struct relit_sources *from, const char *edit,
+                              struct err *err);
 void relit_card_release(struct relit_card *card);
 
 /* EXIF's orientation of a photo, 1 if its record cannot be read. */

@@ -1,71 +1,121 @@
-/* page.c - see page.h: the frame of the page; page_*.c hold its sections. */
+/* page.c - see page.h: the frames of the two pages; page_*.c hold their sections. */
 #include "stages/report/page.h"
 
 #include "common/base/version.h"
-#include "stages/report/page_parts.h"
-#include "stages/report/style.h"
+#include "stages/report/page_rooms.h"
 
-static void put_head(FILE *to, const char *scene, const struct contents *c)
+static void put_door(FILE *to, bool is_there, const char *address, const char *words, bool quiet)
 {
-    fputs("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" "
-          "content=\"width=device-width, initial-scale=1\">\n<meta http-equiv=\"Content-Security-Policy\" "
-          "content=\"default-src "
-          "'none'; img-src data:; media-src data:; style-src 'unsafe-inline'\">\n<meta name=\"generator\" "
-          "content=\"remodel " REMODEL_VERSION "\">\n<link rel=\"icon\" href=\"data:,\">\n<title>",
-          to);
-    html_text(to, scene);
-    fputs(" · remodel " REMODEL_VERSION "</title>\n<style>\n", to);
-    fputs(page_style, to);
-    fputs("</style>\n</head>\n<body>\n<header>\n<h1>", to);
-    html_text(to, scene);
-    fputs("</h1>\n<p class=\"lead\">", to);
+    if (is_there) fprintf(to, "<li><a%s href=\"%s\">%s</a></li>\n", quiet ? " class=\"quiet\"" : "", address, words);
+}
+
+static int count_films(const struct contents *c)
+{
+    int films = c->tour_count;
+    for (int i = 0; i < c->effect_count; i++) films += c->effects[i].video != NULL;
+    return films;
+}
+
+static enum status put_people_head(struct page *page, const char *scene, const char *numbers, const struct contents *c,
+                                   struct err *err)
+{
+    static const char *const styles[] = {"page.css"};
+    FILE *to = page->to;
+    const int films = count_films(c);
+    if (page_put_head(page, scene, "", styles, 1, err)) return err->status;
+    fputs("<p class=\"lead\">", to);
     page_put_plural(to, c->photos.count, "photograph", "photographs");
-    fputs(" · ", to);
-    page_put_plural(to, c->views.view_count, "view", "views");
-    fputs(" · ", to);
-    page_put_plural(to, c->depth_count, "depth map", "depth maps");
-    int videos = 0;
-    for (int i = 0; i < c->effect_count; i++) videos += c->effects[i].video != NULL;
-    if (page_has_videos(c)) fputs(" · ", to), page_put_plural(to, videos, "video", "videos");
-    if (c->model_count) fputs(" · ", to), page_put_plural(to, c->model_count, "model", "models");
-    fputs(" · remodel " REMODEL_VERSION "</p>\n<nav aria-label=\"Contents\">", to);
-    if (page_has_videos(c)) fputs("<a href=\"#video\">Video</a>", to);
+    if (c->rooms.change_count) fputs(" · ", to), page_put_plural(to, c->rooms.change_count, "change", "changes");
+    if (films) fputs(" · ", to), page_put_plural(to, films, "film", "films");
+    fputs("</p>\n<ul class=\"doors\">\n", to);
+    put_door(to, c->has_walk, "walk/index.html", "Walk through the rooms", false);
+    put_door(to, c->has_remodel_page, "remodel/index.html", "All about each change", true);
+    put_door(to, c->has_draw, "draw/index.html", "Draw on the photographs", true);
+    put_door(to, true, numbers, "How it was made, in numbers", true);
+    fputs("</ul>\n</header>\n<main>\n", to);
+    return ST_OK;
+}
+
+static enum status put_rooms(struct page *page, const struct contents *c, struct err *err)
+{
+    FILE *to = page->to;
+    if (!c->rooms.photo_count) return ST_OK;
+    fputs(
+        "<section id=\"rooms\" aria-labelledby=\"rooms-title\">\n<h2 id=\"rooms-title\">Before and after</h2>\n<p>Move "
+        "the line over a picture, or use the arrow keys: left of it the photograph, right of it the same place after a "
+        "change. Below each picture you choose the change, and the light: that of the day of the photographs, or the "
+        "one that the change makes.</p>\n",
+        to);
+    if (page_rooms(page, &c->rooms, err)) return err->status;
+    fputs("</section>\n", to);
+    return ST_OK;
+}
+
+enum status page_write(struct page *page, const char *scene, const char *numbers, const struct contents *c,
+                       struct err *err)
+{
+    FILE *to = page->to;
+    if (put_people_head(page, scene, numbers, c, err) || put_rooms(page, c, err) || page_films(page, c, err) ||
+        page_plan(page, c, err) || page_photos(page, c, err))
+        return err->status;
+    page_few_numbers(to, c);
+    if (c->rooms.photo_count) page_rooms_how(to, &c->rooms);
+    fputs("</main>\n<footer>Made by remodel " REMODEL_VERSION
+          ". The pictures are in the folder <code>page</code> beside "
+          "this file.</footer>\n",
+          to);
+    if (page_put_part(page, "script", "page.js", err)) return err->status;
+    fputs("</body>\n</html>\n", to);
+    return ST_OK;
+}
+
+/* --------------------------------------------------------------------------------------------------------- numbers */
+
+static enum status put_numbers_head(struct page *page, const char *scene, const char *back, const struct contents *c,
+                                    struct err *err)
+{
+    static const char *const styles[] = {"page.css", "numbers.css"};
+    FILE *to = page->to;
+    if (page_put_head(page, scene, ", in numbers", styles, 2, err)) return err->status;
+    fputs("<p class=\"lead\">How it was made, and how good it is, for those who work on it · remodel " REMODEL_VERSION
+          "</p>\n<nav aria-label=\"Contents\"><a href=\"",
+          to);
+    html_address(to, back);
+    fputs("\">The page of the scene</a>", to);
+    if (c->has_metrics || c->held.view_count) fputs("<a href=\"#evaluation\">Compared with the truth</a>", to);
+    fputs("<a href=\"#numbers\">Key numbers</a>", to);
+    if (page_has_videos(c)) fputs("<a href=\"#video\">Camera moves</a>", to);
     if (c->model_count) fputs("<a href=\"#model\">Model</a>", to);
     if (c->thing_sheet || c->thing_plan) fputs("<a href=\"#things\">Things</a>", to);
-    if (c->has_remodel_page) fputs("<a href=\"remodel/index.html\">Remodelled rooms</a>", to);
-    if (c->has_walk) fputs("<a href=\"walk/index.html\">Walk through the rooms</a>", to);
     if (c->texture_count) fputs("<a href=\"#textures\">Textures</a>", to);
     if (light_contents_any(&c->light)) fputs("<a href=\"#light\">Light</a>", to);
     if (c->relit_count) fputs("<a href=\"#relit\">Light of changes</a>", to);
-    if (c->has_metrics || c->held.view_count) fputs("<a href=\"#evaluation\">Evaluation</a>", to);
-    fputs("<a href=\"#photos\">Photographs</a>"
-          "<a href=\"#depth\">Depth</a>",
-          to);
+    fputs("<a href=\"#depth\">Depth</a>", to);
     if (c->axes_count) fputs("<a href=\"#axes\">Axes</a>", to);
-    fputs("<a href=\"#numbers\">Numbers</a>", to);
     if (c->lens_form_count) fputs("<a href=\"#lens\">Lens</a>", to);
-    fputs(
-        "<a href=\"#time\">Time and memory</a><a "
-        "href=\"#parameters\">"
-        "Parameters</a><a href=\"#warnings\">Warnings</a><a href=\"#skipped\">Left out</a></nav>\n</header>\n<main>\n",
-        to);
+    fputs("<a href=\"#time\">Time and memory</a><a href=\"#parameters\">Parameters</a><a "
+          "href=\"#warnings\">Warnings</a><a href=\"#skipped\">Left out</a></nav>\n</header>\n<main>\n",
+          to);
+    return ST_OK;
 }
 
-enum status page_write(FILE *to, const char *scene, const struct contents *c, struct err *err)
+enum status numbers_page_write(struct page *page, const char *scene, const char *back, const struct contents *c,
+                               struct err *err)
 {
-    put_head(to, scene, c);
-    if (page_videos(to, c, err) || page_models(to, c, err) || page_things(to, c, err) || page_textures(to, c, err) ||
-        page_light(to, c, err) || page_relit(to, c, err) || page_evaluation(to, c, err) || page_photos(to, c, err) ||
-        page_depths(to, c, err) || page_axes(to, c, err))
-        return err->status;
+    FILE *to = page->to;
+    if (put_numbers_head(page, scene, back, c, err) || page_evaluation(page, c, err)) return err->status;
     page_numbers(to, c);
+    if (page_videos(page, c, err)) return err->status;
+    page_models(page, c);
+    page_things(page, c);
+    if (page_textures(page, c, err) || page_light(page, c, err) || page_relit(page, c, err) ||
+        page_depths(page, c, err) || page_axes(page, c, err))
+        return err->status;
     page_lens(to, c);
     page_usage(to, c);
     page_settings(to, c);
     page_warnings(to, c);
     page_left_out(to, c);
-    fputs("</main>\n<footer>Made by remodel " REMODEL_VERSION
-          ". This file is self-contained.</footer>\n</body>\n</html>\n",
-          to);
+    fputs("</main>\n<footer>Made by remodel " REMODEL_VERSION ".</footer>\n</body>\n</html>\n", to);
     return ST_OK;
 }

@@ -1,8 +1,9 @@
 /* page_depths.c - each view beside its depth map, and the true depth where there is one. */
 #include "stages/report/page_parts.h"
 
-static enum status put_depth(FILE *to, const struct view_card *card, struct err *err)
+static enum status put_depth(struct page *page, const struct view_card *card, struct err *err)
 {
+    FILE *to = page->to;
     if (!card->depth.z) {
         fputs("<div class=\"none\">no depth yet</div>", to);
         return ST_OK;
@@ -11,25 +12,26 @@ static enum status put_depth(FILE *to, const struct view_card *card, struct err 
         fputs("<div class=\"none\">no pixel has a depth</div>", to);
         return ST_OK;
     }
-    if (page_put_picture(to, &card->depth_picture, 90, "Depth of view", card->view->name, err)) return err->status;
+    if (page_put_picture(page, &card->depth_picture, 90, "Depth of view", card->view->name, err)) return err->status;
     fprintf(to,
             "<div class=\"ramp\"></div><div class=\"ticks\"><span>%.3g</span><span>%.3g</span><span>%.3g</span></div>",
             card->near, 2 / (1 / card->near + 1 / card->far), card->far);
     return ST_OK;
 }
 
-static enum status put_view(FILE *to, const struct contents *c, const struct view_card *card, struct err *err)
+static enum status put_view(struct page *page, const struct contents *c, const struct view_card *card, struct err *err)
 {
+    FILE *to = page->to;
     fprintf(to, "<figure>\n<div class=\"pair%s\"><div>", card->truth_picture.rgb ? " three" : "");
     if (!card->picture.rgb)
         fputs("<div class=\"none\">no picture yet</div>", to);
-    else if (page_put_picture(to, &card->picture, 80, "View", card->view->name, err))
+    else if (page_put_picture(page, &card->picture, 80, "View", card->view->name, err))
         return err->status;
     fputs("</div><div>", to);
-    if (put_depth(to, card, err)) return err->status;
+    if (put_depth(page, card, err)) return err->status;
     if (card->truth_picture.rgb) {
         fputs("</div><div>", to);
-        if (page_put_picture(to, &card->truth_picture, 90, "True depth of view", card->view->name, err))
+        if (page_put_picture(page, &card->truth_picture, 90, "True depth of view", card->view->name, err))
             return err->status;
         fputs("<p class=\"under\">truth</p>", to);
     }
@@ -46,8 +48,9 @@ static enum status put_view(FILE *to, const struct contents *c, const struct vie
     return ST_OK;
 }
 
-enum status page_depths(FILE *to, const struct contents *c, struct err *err)
+enum status page_depths(struct page *page, const struct contents *c, struct err *err)
 {
+    FILE *to = page->to;
     fputs("<section id=\"depth\" aria-labelledby=\"depth-title\">\n<h2 id=\"depth-title\">Views and their depth</h2>\n",
           to);
     if (!c->views.view_count) {
@@ -66,7 +69,7 @@ enum status page_depths(FILE *to, const struct contents *c, struct err *err)
     page_put_ramp(to, false);
     fputs("\">\n", to);
     for (int i = 0; i < c->views.view_count; i++)
-        if (put_view(to, c, &c->view_cards[i], err)) return err->status;
+        if (put_view(page, c, &c->view_cards[i], err)) return err->status;
     fputs("</div>\n</section>\n", to);
     return ST_OK;
 }

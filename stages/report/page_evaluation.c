@@ -4,8 +4,9 @@
 #include "common/base/metric_kinds.h"
 #include "stages/report/page_parts.h"
 
-static enum status put_held(FILE *to, const struct contents *c, const struct held_card *card, struct err *err)
+static enum status put_held(struct page *page, const struct contents *c, const struct held_card *card, struct err *err)
 {
+    FILE *to = page->to;
     const struct picture *pictures[2] = {&card->picture, &card->frame};
     static const char *const ALT_TEXTS[2] = {"Held-out photograph", "Rendered in place of"};
     static const char *const LABELS[2] = {"photograph", "rendered"};
@@ -14,7 +15,7 @@ static enum status put_held(FILE *to, const struct contents *c, const struct hel
         fputs("<div>", to);
         if (!pictures[k]->rgb)
             fputs("<div class=\"none\">no picture yet</div>", to);
-        else if (page_put_picture(to, pictures[k], 85, ALT_TEXTS[k], card->view->name, err))
+        else if (page_put_picture(page, pictures[k], 85, ALT_TEXTS[k], card->view->name, err))
             return err->status;
         fprintf(to, "<p class=\"under\">%s</p></div>", LABELS[k]);
     }
@@ -51,8 +52,9 @@ static void put_metrics(FILE *to, const struct metric_rows *r)
     fputs("</tbody>\n</table></div>\n", to);
 }
 
-enum status page_evaluation(FILE *to, const struct contents *c, struct err *err)
+enum status page_evaluation(struct page *page, const struct contents *c, struct err *err)
 {
+    FILE *to = page->to;
     if (!c->has_metrics && !c->held.view_count) return ST_OK;
     fputs("<section id=\"evaluation\" aria-labelledby=\"evaluation-title\">\n<h2 id=\"evaluation-title\">Evaluation "
           "against truth and held-out photographs</h2>\n",
@@ -70,7 +72,7 @@ enum status page_evaluation(FILE *to, const struct contents *c, struct err *err)
     if (c->metrics.note_count) fputs("</ul>\n", to);
     if (c->held.view_count) fputs("<h3>Held-out photographs</h3>\n<div class=\"pairs\">\n", to);
     for (int i = 0; i < c->held.view_count; i++)
-        if (put_held(to, c, &c->held_cards[i], err)) return err->status;
+        if (put_held(page, c, &c->held_cards[i], err)) return err->status;
     if (c->held.view_count) fputs("</div>\n", to);
     fputs("</section>\n", to);
     return ST_OK;

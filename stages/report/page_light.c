@@ -154,14 +154,15 @@ static void put_fit_plot(FILE *to, const struct lamp_card *card)
                 100 * misfit);
 }
 
-static enum status put_lamp(FILE *to, const struct lamp_card *card, struct err *err)
+static enum status put_lamp(struct page *page, const struct lamp_card *card, struct err *err)
 {
+    FILE *to = page->to;
     fputs("<h4>", to);
     html_text(to, card->lamp->name);
     fputs("</h4>\n<div class=\"effect\"><div>", to);
     if (card->picture.rgb) {
         fputs("<figure>", to);
-        if (page_put_picture(to, &card->picture, QUALITY, "The light of lamp", card->lamp->name, err))
+        if (page_put_picture(page, &card->picture, QUALITY, "The light of lamp", card->lamp->name, err))
             return err->status;
         fputs("<figcaption>", to);
         fputs(card->lamp->beta / DEGREE < 89.5 ? "Orange: where the lamp's cone of light ends on the surfaces of the "
@@ -183,8 +184,9 @@ static enum status put_lamp(FILE *to, const struct lamp_card *card, struct err *
     return ST_OK;
 }
 
-static enum status put_lamps(FILE *to, const struct light_contents *l, struct err *err)
+static enum status put_lamps(struct page *page, const struct light_contents *l, struct err *err)
 {
+    FILE *to = page->to;
     const struct light_list *list = &l->lights;
     if (!list->lamp_count && !list->opening_count) return ST_OK;
     fputs("<h3>Lamps and windows</h3>\n<p class=\"muted\">", to);
@@ -201,7 +203,7 @@ static enum status put_lamps(FILE *to, const struct light_contents *l, struct er
         "true value 95 times in 100, as far as the calculation can tell.</p>\n",
         to);
     for (int i = 0; i < list->lamp_count; i++)
-        if (put_lamp(to, &l->lamps[i], err)) return err->status;
+        if (put_lamp(page, &l->lamps[i], err)) return err->status;
     return ST_OK;
 }
 
@@ -251,8 +253,9 @@ static void put_material_row(FILE *to, const struct material *m)
     fputs("</td></tr>\n", to);
 }
 
-static enum status put_materials(FILE *to, const struct light_contents *l, struct err *err)
+static enum status put_materials(struct page *page, const struct light_contents *l, struct err *err)
 {
+    FILE *to = page->to;
     if (!l->materials.count) return ST_OK;
     fputs(
         "<h3>Materials</h3>\n<p class=\"muted\">How the marked surfaces reflect light: the share of red, green and "
@@ -269,7 +272,7 @@ static enum status put_materials(FILE *to, const struct light_contents *l, struc
         const struct material_card *card = &l->material_cards[i];
         if (!card->residuals.rgb) continue;
         fputs("<figure>", to);
-        if (page_put_picture(to, &card->residuals, QUALITY, "Residuals of material", card->material->name, err))
+        if (page_put_picture(page, &card->residuals, QUALITY, "Residuals of material", card->material->name, err))
             return err->status;
         fputs("<figcaption><b>", to);
         html_text(to, card->material->name);
@@ -330,32 +333,34 @@ static void put_ticks(FILE *to, double low, double middle, double high, double s
             scale * low, unit, scale * middle, unit, scale * high, unit);
 }
 
-static enum status put_captioned(FILE *to, const struct picture *p, const char *alt, const char *name,
+static enum status put_captioned(struct page *page, const struct picture *p, const char *alt, const char *name,
                                  const char *caption, const double *range, struct err *err)
 {
+    FILE *to = page->to;
     if (!p->rgb) return ST_OK;
     fputs("<figure>", to);
-    if (page_put_picture(to, p, QUALITY, alt, name, err)) return err->status;
+    if (page_put_picture(page, p, QUALITY, alt, name, err)) return err->status;
     if (range) put_ticks(to, range[0], range[1], range[2], range[3], range[3] > 1 ? " %" : "");
     fprintf(to, "<figcaption>%s</figcaption></figure>\n", caption);
     return ST_OK;
 }
 
-static enum status put_view(FILE *to, const struct gather_card *g, struct err *err)
+static enum status put_view(struct page *page, const struct gather_card *g, struct err *err)
 {
+    FILE *to = page->to;
     const double *level = g->record.level;
     const double levels[4] = {level[0], sqrt(level[0] * level[1]), level[1], 1}, shares[4] = {0, 0.5, 1, 100};
     fputs("<div class=\"pairs\">\n", to);
-    if (put_captioned(to, &g->photo, "View", g->name, "The photograph.", NULL, err) ||
-        put_captioned(to, &g->white, "Light of view", g->name,
+    if (put_captioned(page, &g->photo, "View", g->name, "The photograph.", NULL, err) ||
+        put_captioned(page, &g->white, "Light of view", g->name,
                       "The light alone: the room of the model as if everything in it were painted white. The dots are "
                       "the places of the views all round below.",
                       NULL, err) ||
-        put_captioned(to, &g->level, "Irradiance of view", g->name,
+        put_captioned(page, &g->level, "Irradiance of view", g->name,
                       "How much light arrives (irradiance, in the unit of the photographs). Equal steps of colour are "
                       "equal factors.",
                       levels, err) ||
-        put_captioned(to, &g->unknown, "Unknown light of view", g->name,
+        put_captioned(page, &g->unknown, "Unknown light of view", g->name,
                       "How much of this light is made up, because no photograph shows where it comes from.", shares,
                       err))
         return err->status;
@@ -370,8 +375,9 @@ static void put_place(FILE *to, const struct light_example *e)
     fprintf(to, " at %.2f %.2f %.2f", e->point.at.x, e->point.at.y, e->point.at.z);
 }
 
-static enum status put_hemicubes(FILE *to, const struct gather_card *g, struct err *err)
+static enum status put_hemicubes(struct page *page, const struct gather_card *g, struct err *err)
 {
+    FILE *to = page->to;
     const struct light_record *r = &g->record;
     bool any = false;
     for (int i = 0; i < r->example_count; i++) any |= g->hemicubes[i].rgb != NULL;
@@ -386,7 +392,7 @@ static enum status put_hemicubes(FILE *to, const struct gather_card *g, struct e
         if (!g->hemicubes[i].rgb) continue;
         colour_of_category(i, rgb);
         fputs("<li><figure>", to);
-        if (page_put_picture(to, &g->hemicubes[i], QUALITY, "View all round, unfolded, of a place of", g->name, err))
+        if (page_put_picture(page, &g->hemicubes[i], QUALITY, "View all round, unfolded, of a place of", g->name, err))
             return err->status;
         fprintf(to, "<figcaption><i class=\"swatch\" style=\"background:#%02x%02x%02x\"></i>", rgb[0], rgb[1], rgb[2]);
         put_place(to, &r->examples[i]);
@@ -402,8 +408,9 @@ static enum status put_hemicubes(FILE *to, const struct gather_card *g, struct e
     return ST_OK;
 }
 
-static enum status put_gathers(FILE *to, const struct light_contents *l, struct err *err)
+static enum status put_gathers(struct page *page, const struct light_contents *l, struct err *err)
 {
+    FILE *to = page->to;
     if (!l->gather_count) return ST_OK;
     fputs("<h3>The light that arrives</h3>\n<p class=\"muted\">Calculated from the pictures of the surfaces, the lamps "
           "and "
@@ -419,21 +426,22 @@ static enum status put_gathers(FILE *to, const struct light_contents *l, struct 
         else
             html_text(to, g->name);
         fputs("</h4>\n", to);
-        if (g->is_view && put_view(to, g, err)) return err->status;
+        if (g->is_view && put_view(page, g, err)) return err->status;
         put_shares(to, &g->record);
         put_error(to, &g->record);
-        if (put_hemicubes(to, g, err)) return err->status;
+        if (put_hemicubes(page, g, err)) return err->status;
     }
     return ST_OK;
 }
 
-enum status page_light(FILE *to, const struct contents *c, struct err *err)
+enum status page_light(struct page *page, const struct contents *c, struct err *err)
 {
+    FILE *to = page->to;
     if (!light_contents_any(&c->light)) return ST_OK;
     fputs("<section id=\"light\" aria-labelledby=\"light-title\" style=\"--ramp:", to);
     page_put_ramp(to, true);
     fputs("\">\n<h2 id=\"light-title\">Light</h2>\n", to);
-    if (put_lamps(to, &c->light, err) || put_materials(to, &c->light, err) || put_gathers(to, &c->light, err))
+    if (put_lamps(page, &c->light, err) || put_materials(page, &c->light, err) || put_gathers(page, &c->light, err))
         return err->status;
     fputs("</section>\n", to);
     return ST_OK;

@@ -1,10 +1,9 @@
 /* page_model.c - the axes of the room, the solid models and the furniture, to be checked by eye. */
 #include "stages/report/page_parts.h"
 
-#include "common/base/base64.h"
-
-enum status page_axes(FILE *to, const struct contents *c, struct err *err)
+enum status page_axes(struct page *page, const struct contents *c, struct err *err)
 {
+    FILE *to = page->to;
     if (!c->axes_count) return ST_OK;
     fputs("<section id=\"axes\" aria-labelledby=\"axes-title\">\n<h2 id=\"axes-title\">Axes of the room</h2>\n"
           "<p class=\"muted\">x is red, y green, z blue. Yellow outlines the floor, cyan the ceiling: the rectangle of "
@@ -13,7 +12,7 @@ enum status page_axes(FILE *to, const struct contents *c, struct err *err)
           to);
     for (int i = 0; i < c->axes_count; i++) {
         fputs("<figure>", to);
-        if (page_put_picture(to, &c->axes[i].picture, 85, "Axes drawn on view", c->axes[i].view, err))
+        if (page_put_picture(page, &c->axes[i].picture, 85, "Axes drawn on view", c->axes[i].view, err))
             return err->status;
         fputs("<figcaption><b>", to);
         html_text(to, c->axes[i].view);
@@ -23,24 +22,26 @@ enum status page_axes(FILE *to, const struct contents *c, struct err *err)
     return ST_OK;
 }
 
-static enum status put_model_picture(FILE *to, const char *file, const char *type, const char *caption,
-                                     const char *name, struct err *err)
+/* A picture that stands among the scene's products. */
+static void put_model_picture(struct page *page, const char *folder, const char *file, const char *caption,
+                              const char *name)
 {
-    if (!file) return ST_OK;
+    FILE *to = page->to;
+    if (!file) return;
     fprintf(to, "<figure><img loading=\"lazy\" alt=\"%s ", caption);
     html_text(to, name);
-    fprintf(to, "\" src=\"data:image/%s;base64,", type);
-    if (base64_write_file(to, file, err)) return err->status;
-    fprintf(to, "\"><figcaption><b>");
+    fputs("\" src=\"", to);
+    page_put_product(page, folder, file);
+    fputs("\"><figcaption><b>", to);
     html_text(to, name);
     fprintf(to, "</b> %s</figcaption></figure>\n", caption);
-    return ST_OK;
 }
 
 /* Plan, view from above, and edges on the photographs. */
-enum status page_models(FILE *to, const struct contents *c, struct err *err)
+void page_models(struct page *page, const struct contents *c)
 {
-    if (!c->model_count) return ST_OK;
+    FILE *to = page->to;
+    if (!c->model_count) return;
     fputs("<section id=\"model\" aria-labelledby=\"model-title\">\n<h2 id=\"model-title\">Model</h2>\n", to);
     for (int i = 0; i < c->model_count; i++) {
         const struct model_card *m = &c->models[i];
@@ -48,15 +49,13 @@ enum status page_models(FILE *to, const struct contents *c, struct err *err)
         fputs("<h3>", to);
         html_text(to, m->name[0] ? m->name : "as photographed");
         fputs("</h3>\n<div class=\"pairs\">\n", to);
-        if (put_model_picture(to, m->plan, "svg+xml", "plan", name, err) ||
-            put_model_picture(to, m->view, "png", "from above, cut below the ceiling", name, err))
-            return err->status;
+        put_model_picture(page, c->folder, m->plan, "plan", name);
+        put_model_picture(page, c->folder, m->view, "from above, cut below the ceiling", name);
         fputs("</div>\n<details><summary>Edges on the photographs <span class=\"muted\">red: visible; thin: hidden "
               "by another part of the model; blue: glass</span></summary>\n<div class=\"pairs\">\n",
               to);
         for (int k = 0; k < m->overlay_count; k++)
-            if (put_model_picture(to, m->overlays[k], "jpeg", "edges of the model", m->overlay_ids[k], err))
-                return err->status;
+            put_model_picture(page, c->folder, m->overlays[k], "edges of the model", m->overlay_ids[k]);
         fputs("</div>\n", to);
         if (m->overlays_left_out) {
             fputs("<p class=\"muted\">", to);
@@ -68,31 +67,28 @@ enum status page_models(FILE *to, const struct contents *c, struct err *err)
         fputs("</details>\n", to);
     }
     fputs("</section>\n", to);
-    return ST_OK;
 }
 
-static enum status put_things_picture(FILE *to, const char *file, const char *alt, const char *caption, struct err *err)
+static void put_things_picture(struct page *page, const char *folder, const char *file, const char *alt,
+                               const char *caption)
 {
-    if (!file) return ST_OK;
-    fprintf(to, "<figure><img loading=\"lazy\" alt=\"%s\" src=\"data:image/svg+xml;base64,", alt);
-    if (base64_write_file(to, file, err)) return err->status;
-    fprintf(to, "\"><figcaption>%s</figcaption></figure>\n", caption);
-    return ST_OK;
+    if (!file) return;
+    fprintf(page->to, "<figure><img loading=\"lazy\" alt=\"%s\" src=\"", alt);
+    page_put_product(page, folder, file);
+    fprintf(page->to, "\"><figcaption>%s</figcaption></figure>\n", caption);
 }
 
-enum status page_things(FILE *to, const struct contents *c, struct err *err)
+void page_things(struct page *page, const struct contents *c)
 {
-    if (!c->thing_sheet && !c->thing_plan) return ST_OK;
+    FILE *to = page->to;
+    if (!c->thing_sheet && !c->thing_plan) return;
     fputs("<section id=\"things\" aria-labelledby=\"things-title\">\n<h2 id=\"things-title\">Things</h2>\n"
           "<p class=\"muted\">Furniture and whatever else is in front of the walls. An edit can clear, move or copy a "
           "thing that has a name in things.txt.</p>\n",
           to);
-    if (put_things_picture(to, c->thing_sheet, "Pictures of all things with their names",
-                           "Each thing in the view that shows it best, with its size and its support.", err) ||
-        put_things_picture(to, c->thing_plan, "Plan of the rooms with all things",
-                           "From above: the box around each thing. Dashed: it hangs on a wall or from the ceiling.",
-                           err))
-        return err->status;
+    put_things_picture(page, c->folder, c->thing_sheet, "Pictures of all things with their names",
+                       "Each thing in the view that shows it best, with its size and its support.");
+    put_things_picture(page, c->folder, c->thing_plan, "Plan of the rooms with all things",
+                       "From above: the box around each thing. Dashed: it hangs on a wall or from the ceiling.");
     fputs("</section>\n", to);
-    return ST_OK;
 }

@@ -1,11 +1,17 @@
 /* page_parts.c - see page_parts.h: the markup that sections share. */
 #include "stages/report/page_parts.h"
 
+#include <dirent.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
-#include "common/base/base64.h"
+#include "common/base/file_bytes.h"
+#include "common/base/file_path.h"
+#include "common/base/hash.h"
+#include "common/base/outfile.h"
+#include "common/base/version.h"
 #include "common/image/false_colour.h"
 
 void page_put_seconds(FILE *to, double seconds)
@@ -48,21 +54,133 @@ void page_put_tag(FILE *to, const char *text)
     fputs("</span>", to);
 }
 
-enum status page_put_picture(FILE *to, const struct picture *p, int quality, const char *alt, const char *name,
+void page_put_change(FILE *to, const char *name)
+{
+    char words[256];
+    snprintf(words, sizeof words, "%s", name);
+    for (char *c = words; *c; c++)
+        if (*c == '-' || *c == '_') *c = ' ';
+    html_text(to, words);
+}
+
+/* ------------------------------------------------------------------------------------------------------------ files */
+
+static enum status add_picture(struct page *page, const char *name, struct err *err)
+{
+    if (name_list_has(&page->pictures, name)) return ST_OK;
+    return name_list_add(&page->pictures, name, strlen(name), err);
+}
+
+/* Names the file by what identifies it; written: it is there. */
+static enum status begin_picture(struct page *page, const void *bytes, size_t size, const char *ending,
+                                 char name[PICTURE_NAME], char path[FILE_PATH], bool *written, struct err *err)
+{
+    char hash[HASH_TEXT];
+    hash_bytes(hash, bytes, size);
+    snprintf(name, PICTURE_NAME, "%.16s%s", hash, ending);
+    if (file_path(path, page->folder, name, "", err)) return err->status;
+    *written = path_is_file(path);
+    return add_picture(page, name, err);
+}
+
+enum status page_write_picture(struct page *page, const struct picture *p, int quality, char name[PICTURE_NAME],
+                               struct err *err)
+{
+    char path[FILE_PATH], ending[16];
+    bool written = false;
+    snprintf(ending, sizeof ending, "-%d%s", p->width, quality ? ".jpg" : ".png");
+    if (begin_picture(page, p->rgb, 3 * (size_t)p->width * (size_t)p->height, ending, name, path, &written, err) ||
+        written)
+        return err->status;
+    return quality ? jpeg_write(path, p->rgb, p->width, p->height, quality, err)
+                   : png_write(path, p->rgb, p->width, p->height, 3, err);
+}
+
+enum status page_put_picture(struct page *page, const struct picture *p, int quality, const char *alt, const char *name,
                              struct err *err)
 {
-    unsigned char *bytes = NULL;
-    size_t size = 0;
-    jpeg_encode(&bytes, &size, p->rgb, p->width, p->height, quality, err);
-    if (!err->status) {
-        fprintf(to, "<img width=\"%d\" height=\"%d\" alt=\"%s ", p->width, p->height, alt);
-        html_text(to, name);
-        fputs("\" src=\"data:image/jpeg;base64,", to);
-        base64_write(to, bytes, size);
-        fputs("\">", to);
-    }
-    free(bytes);
+    char file[PICTURE_NAME];
+    if (page_write_picture(page, p, quality, file, err)) return err->status;
+    fprintf(page->to, "<img loading=\"lazy\" width=\"%d\" height=\"%d\" alt=\"%s ", p->width, p->height, alt);
+    html_text(page->to, name);
+    fprintf(page->to, "\" src=\"%s%s\">", page->address, file);
+    return ST_OK;
+}
+
+enum status page_copy_picture(struct page *page, const char *file, const char *ending, char name[PICTURE_NAME],
+                              struct err *err)
+{
+    struct file_bytes bytes = {0};
+    char path[FILE_PATH];
+    bool written = false;
+    if (file_bytes_read(&bytes, file, err)) return err->status;
+    if (!begin_picture(page, bytes.bytes, bytes.size, ending, name, path, &written, err) && !written)
+        outfile_copy(path, file, err);
+    file_bytes_release(&bytes);
     return err->status;
+}
+
+void page_put_product(struct page *page, const char *folder, const char *path)
+{
+    const size_t length = strlen(folder);
+    fputs(page->scene, page->to);
+    if (!strncmp(path, folder, length)) path += length + strspn(path + length, "/");
+    html_address(page->to, path);
+}
+
+/* A name that begin_picture() gave: 16 digits, and what follows. */
+static bool is_picture_name(const char *name)
+{
+    return strspn(name, "0123456789abcdef") == 16 && strchr("-.", name[16]) && strlen(name) < PICTURE_NAME;
+}
+
+void page_remove_old(const char *folder, const struct name_list *kept)
+{
+    struct dirent **names = NULL;
+    const int count = scandir(folder, &names, NULL, alphasort);
+    for (int i = 0; i < count; i++) {
+        char path[FILE_PATH];
+        struct err none = ERR_INIT;
+        const char *name = names[i]->d_name;
+        if (is_picture_name(name) && !name_list_has(kept, name) && !file_path(path, folder, name, "", &none))
+            unlink(path);
+        free(names[i]);
+    }
+    free(names);
+}
+
+/* ------------------------------------------------------------------------------------------------------------- head */
+
+enum status page_put_part(struct page *page, const char *tag, const char *file, struct err *err)
+{
+    char path[FILE_PATH];
+    struct file_bytes part = {0};
+    if (file_path(path, page->parts, file, "", err) || file_bytes_read(&part, path, err)) return err->status;
+    fprintf(page->to, "<%s>\n", tag);
+    fwrite(part.bytes, 1, part.size, page->to);
+    fprintf(page->to, "</%s>\n", tag);
+    file_bytes_release(&part);
+    return ST_OK;
+}
+
+enum status page_put_head(struct page *page, const char *title, const char *more, const char *const *styles, int count,
+                          struct err *err)
+{
+    FILE *to = page->to;
+    fputs("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" "
+          "content=\"width=device-width, initial-scale=1\">\n<meta http-equiv=\"Content-Security-Policy\" "
+          "content=\"default-src 'none'; img-src 'self' file: data:; media-src 'self' file:; style-src "
+          "'unsafe-inline'; script-src 'unsafe-inline'\">\n<meta name=\"generator\" content=\"remodel " REMODEL_VERSION
+          "\">\n<link rel=\"icon\" href=\"data:,\">\n<title>",
+          to);
+    html_text(to, title);
+    fprintf(to, "%s</title>\n", more);
+    for (int i = 0; i < count; i++)
+        if (page_put_part(page, "style", styles[i], err)) return err->status;
+    fputs("</head>\n<body>\n<header>\n<h1>", to);
+    html_text(to, title);
+    fprintf(to, "%s</h1>\n", more);
+    return ST_OK;
 }
 
 void page_put_ramp(FILE *to, bool rising)
@@ -84,15 +202,4 @@ void page_put_view_metric(FILE *to, const struct contents *c, const char *view, 
     fprintf(to, ", %.4g ", m->value);
     if (has_unit) html_printf(to, "%s ", m->unit);
     fputs(label, to);
-}
-
-void page_put_slider(FILE *to, const char *label, const char *photo)
-{
-    fprintf(to,
-            "<input type=\"range\" min=\"0\" max=\"100\" value=\"50\" step=\"0.5\" aria-label=\"%s\" "
-            "oninput=\"this.parentNode.style.setProperty('--p',this.value+'%%')\">\n</div>\n<figcaption>Seen from "
-            "photograph <b>",
-            label);
-    html_text(to, photo);
-    fputs("</b></figcaption>\n", to);
 }

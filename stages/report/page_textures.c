@@ -4,10 +4,11 @@
 enum { QUALITY = 82, SOURCES_LISTED = 8 };
 static const double MIN_SHARE = 0.005; /* of a source that is listed */
 
-/* A relative link to a file below the page's folder. */
-static void put_link(FILE *to, const char *folder, const char *name, const char *file)
+/* A link to a file below the scene's folder. */
+static void put_link(struct page *page, const char *folder, const char *name, const char *file)
 {
-    fprintf(to, "<a href=\"%s", folder);
+    FILE *to = page->to;
+    fprintf(to, "<a href=\"%s%s", page->scene, folder);
     html_address(to, name);
     fprintf(to, "/%s\">", file);
 }
@@ -80,8 +81,9 @@ static void put_sources(FILE *to, const struct texture_card *card)
 }
 
 /* Photo, texture and sources of each view: a row for each view, or, of several views, a row for each kind. */
-static enum status put_views(FILE *to, const struct texture_card *card, struct err *err)
+static enum status put_views(struct page *page, const struct texture_card *card, struct err *err)
 {
+    FILE *to = page->to;
     static const char *const ALT[3] = {"Photograph of view", "Texture in view", "Sources of the texture in view"};
     const bool row_per_kind = card->view_count > 1 && card->name[0];
     const int columns = row_per_kind ? card->view_count : 3, count = 3 * card->view_count;
@@ -90,14 +92,15 @@ static enum status put_views(FILE *to, const struct texture_card *card, struct e
         const int kind = row_per_kind ? i / card->view_count : i % 3;
         const struct texture_view *v = &card->views[row_per_kind ? i % card->view_count : i / 3];
         const struct picture *pictures[3] = {&v->photo, &v->texture, &v->sources};
-        if (page_put_picture(to, pictures[kind], QUALITY, ALT[kind], v->name, err)) return err->status;
+        if (page_put_picture(page, pictures[kind], QUALITY, ALT[kind], v->name, err)) return err->status;
     }
     fputs("</div>\n", to);
     return ST_OK;
 }
 
-static enum status put_pages(FILE *to, const struct texture_card *card, struct err *err)
+static enum status put_pages(struct page *page, const struct texture_card *card, struct err *err)
 {
+    FILE *to = page->to;
     fputs("<details><summary>Pages <span class=\"muted\">each links to its OpenEXR file</span></summary>\n"
           "<ul class=\"strip pages\">\n",
           to);
@@ -105,8 +108,8 @@ static enum status put_pages(FILE *to, const struct texture_card *card, struct e
         char file[32];
         snprintf(file, sizeof file, "page%d.exr", i);
         fputs("<li><figure>", to);
-        put_link(to, card->name[0] ? "vdta/" : "vita", card->name, file);
-        if (page_put_picture(to, &card->pages[i], QUALITY, "Page of atlas", card->name[0] ? card->name : "VITA", err))
+        put_link(page, card->name[0] ? "vdta/" : "vita", card->name, file);
+        if (page_put_picture(page, &card->pages[i], QUALITY, "Page of atlas", card->name[0] ? card->name : "VITA", err))
             return err->status;
         fprintf(to, "</a><figcaption>%d × %d</figcaption></figure></li>\n", card->page_sizes[i][0],
                 card->page_sizes[i][1]);
@@ -118,19 +121,21 @@ static enum status put_pages(FILE *to, const struct texture_card *card, struct e
     return ST_OK;
 }
 
-static enum status put_card(FILE *to, const struct texture_card *card, struct err *err)
+static enum status put_card(struct page *page, const struct texture_card *card, struct err *err)
 {
+    FILE *to = page->to;
     fputs("<h3>", to);
     html_text(to, card->name[0] ? card->name : "All viewpoints: the view-independent atlas");
     fputs("</h3>\n", to);
-    if (put_views(to, card, err)) return err->status;
+    if (put_views(page, card, err)) return err->status;
     put_shares(to, card);
     put_sources(to, card);
-    return put_pages(to, card, err);
+    return put_pages(page, card, err);
 }
 
-enum status page_textures(FILE *to, const struct contents *c, struct err *err)
+enum status page_textures(struct page *page, const struct contents *c, struct err *err)
 {
+    FILE *to = page->to;
     if (!c->texture_count) return ST_OK;
     fputs("<section id=\"textures\" aria-labelledby=\"textures-title\">\n<h2 id=\"textures-title\">Textures</h2>\n"
           "<p class=\"muted\">For each viewpoint its photograph; the model from the same place with the texture of the "
@@ -139,7 +144,7 @@ enum status page_textures(FILE *to, const struct contents *c, struct err *err)
           to);
     put_legend(to);
     for (int i = 0; i < c->texture_count; i++)
-        if (put_card(to, &c->textures[i], err)) return err->status;
+        if (put_card(page, &c->textures[i], err)) return err->status;
     int shown = 0;
     for (int i = 0; i < c->texture_count; i++) shown += c->textures[i].name[0] != '\0';
     if (shown < c->viewpoint_count) {

@@ -3,8 +3,7 @@
 #include <stdlib.h>
 
 #include "stages/report/page_parts.h"
-
-#include "common/base/base64.h"
+#include "stages/report/score_words.h"
 
 /* 1, 2 or 5 times a power of ten, not below x. */
 static double round_up(double x)
@@ -87,50 +86,51 @@ static void put_scores(FILE *to, const struct effect_card *e)
     fputs("</dd></div>\n", to);
     for (int i = 0; i < e->path.score_count; i++) {
         const struct path_score *score = &e->path.scores[i];
+        const struct score_words *words = score_words_find(score->name);
         fputs("<div><dt>", to);
-        page_put_spaced(to, score->name);
+        if (words)
+            fputs(words->name, to);
+        else
+            page_put_spaced(to, score->name);
         fprintf(to, "</dt><dd>%.4g ", score->value);
         html_text(to, score->unit);
-        fputs("</dd></div>\n", to);
+        fprintf(to, "</dd>%s%s%s</div>\n", words ? "<dd class=\"under\">" : "", words ? words->meaning : "",
+                words ? "</dd>" : "");
     }
     fputs("</dl>\n", to);
 }
 
-/* A video inside the page. Its label is "LABEL EFFECT"; its file is parallax/EFFECT/FOLDER/video.mp4. */
-static enum status put_video(FILE *to, const struct effect_card *e, const char *video, long long bytes,
+/* A video beside the page. Its label is "LABEL EFFECT". */
+static enum status put_video(struct page *page, const struct effect_card *e, const char *video, long long bytes,
                              const struct picture *poster, const char *label, const char *folder, struct err *err)
 {
-    fputs("<video controls loop muted autoplay playsinline", to);
+    FILE *to = page->to;
+    fputs("<video controls loop muted playsinline preload=\"none\"", to);
     if (e->path.frame_count)
         fprintf(to, " width=\"%d\" height=\"%d\"", e->path.frames[0].camera.width, e->path.frames[0].camera.height);
     fprintf(to, " aria-label=\"%s ", label);
     html_text(to, e->name);
     fputs("\"", to);
     if (poster->rgb) {
-        unsigned char *jpeg = NULL;
-        size_t size = 0;
-        if (jpeg_encode(&jpeg, &size, poster->rgb, poster->width, poster->height, 80, err)) return err->status;
-        fputs(" poster=\"data:image/jpeg;base64,", to);
-        base64_write(to, jpeg, size);
-        fputs("\"", to);
-        free(jpeg);
+        char file[PICTURE_NAME];
+        if (page_write_picture(page, poster, 80, file, err)) return err->status;
+        fprintf(to, " poster=\"%s%s\"", page->address, file);
     }
-    fputs(" src=\"data:video/mp4;base64,", to);
-    if (base64_write_file(to, video, err)) return err->status;
-    fputs("\">This browser cannot play the video.</video>\n<p class=\"muted\">The same video is in <code>parallax/",
-          to);
-    html_text(to, e->name);
-    fprintf(to, "%s/video.mp4</code> beside this page (%.1f MB).</p>\n", folder, (double)bytes / 1e6);
+    fputs(" src=\"", to);
+    page_put_product(page, folder, video);
+    fprintf(to, "\">This browser cannot play the video.</video>\n<p class=\"muted\">%.1f MB.</p>\n",
+            (double)bytes / 1e6);
     return ST_OK;
 }
 
 /* The move in 2D beside the one in 3D. */
-static enum status put_pan(FILE *to, const struct effect_card *e, struct err *err)
+static enum status put_pan(struct page *page, const char *folder, const struct effect_card *e, struct err *err)
 {
+    FILE *to = page->to;
     const struct pan_card *p = &e->pan;
     fputs("<div>\n<h3>the same move in 2D</h3>\n", to);
-    if (put_video(to, e, p->video, p->video_bytes, &p->poster, "Pan and zoom over one photograph after the move",
-                  "/pan_scan", err))
+    if (put_video(page, e, p->video, p->video_bytes, &p->poster, "Pan and zoom over one photograph after the move",
+                  folder, err))
         return err->status;
     fputs("<p class=\"muted\">Crops of one photograph", to);
     if (p->view[0]) {
@@ -146,37 +146,39 @@ static enum status put_pan(FILE *to, const struct effect_card *e, struct err *er
     return ST_OK;
 }
 
-static enum status put_validity(FILE *to, const struct effect_card *e, struct err *err)
+static void put_validity(struct page *page, const char *folder, const struct effect_card *e)
 {
-    fputs("<h3>Valid viewpoints</h3>\n<figure><img loading=\"lazy\" alt=\"Valid viewpoints of ", to);
-    html_text(to, e->name);
-    fputs("\" src=\"data:image/png;base64,", to);
-    if (base64_write_file(to, e->validity, err)) return err->status;
-    fputs("\"><figcaption>Top: the start of the move; bottom: its end. Left: how far back the camera can go; right: "
-          "how far "
-          "towards the scene. Dark blue: not at all; yellow: farthest; grey: not valid. White: the "
-          "views.</figcaption></figure>\n",
+    FILE *to = page->to;
+    fputs("<h3>Where the camera may go</h3>\n<figure><img loading=\"lazy\" alt=\"Viewpoints that show no hole, of ",
           to);
-    return ST_OK;
+    html_text(to, e->name);
+    fputs("\" src=\"", to);
+    page_put_product(page, folder, e->validity);
+    fputs(
+        "\"><figcaption>Top: the start of the move; bottom: its end. Left: how far back the camera can go; right: how "
+        "far towards the scene. Dark blue: not at all; yellow: farthest; grey: too much would be missing there. White: "
+        "where photographs were taken.</figcaption></figure>\n",
+        to);
 }
 
-static enum status put_effect(FILE *to, const struct effect_card *e, struct err *err)
+static enum status put_effect(struct page *page, const char *folder, const struct effect_card *e, struct err *err)
 {
+    FILE *to = page->to;
     fprintf(to, "<article class=\"card effect%s\">\n<div>\n<h3>", e->pan.video ? " two" : "");
     page_put_spaced(to, e->name);
     fputs("</h3>\n", to);
     if (!e->video)
         fputs("<p>There is no video yet.</p>\n", to);
-    else if (put_video(to, e, e->video, e->video_bytes, &e->poster, "Rendered camera move", "", err))
+    else if (put_video(page, e, e->video, e->video_bytes, &e->poster, "Rendered camera move", folder, err))
         return err->status;
     fputs("</div>\n", to);
-    if (e->pan.video && put_pan(to, e, err)) return err->status;
+    if (e->pan.video && put_pan(page, folder, e, err)) return err->status;
     fputs("<div>\n", to);
     if (e->path.frame_count)
         put_hole_plot(to, e);
     else
         fputs("<p>The camera path is missing or cannot be read.</p>\n", to);
-    if (e->validity && put_validity(to, e, err)) return err->status;
+    if (e->validity) put_validity(page, folder, e);
     fputs("</div>\n", to);
     if (e->path.frame_count) put_scores(to, e);
     fputs("</article>\n", to);
@@ -185,13 +187,14 @@ static enum status put_effect(FILE *to, const struct effect_card *e, struct err 
 
 bool page_has_videos(const struct contents *c) { return c->effect_count || !c->model_count; }
 
-enum status page_videos(FILE *to, const struct contents *c, struct err *err)
+enum status page_videos(struct page *page, const struct contents *c, struct err *err)
 {
+    FILE *to = page->to;
     if (!page_has_videos(c)) return ST_OK;
     fputs("<section id=\"video\" aria-labelledby=\"video-title\">\n<h2 id=\"video-title\">Video</h2>\n", to);
     if (!c->effect_count) fputs("<p>No camera move has been planned yet, so there is no video.</p>\n", to);
     for (int i = 0; i < c->effect_count; i++)
-        if (put_effect(to, &c->effects[i], err)) return err->status;
+        if (put_effect(page, c->folder, &c->effects[i], err)) return err->status;
     fputs("</section>\n", to);
     return ST_OK;
 }

@@ -1,0 +1,626 @@
+/* contents_rooms.c - reads what the photographs show after each change.
+ *
+ * Records. Of each view and each change there may be a record of the picture in the old light (O/remodel/E/pictures)
+ * and one of the picture in the new light (O/relight/E). They are read first, since they say how much of a view changes
+ * and how much of that is known.
+ *
+ * Which photos are shown. Changes take turns in choosing the photo that shows them best, until ROOMS_SHOWN are chosen:
+ * what changed and is known, not guessed, times the share of this in what changed; new light counts less. A photo that
+ * most changes alter comes first. All changes that one sees in a photo can be chosen for it; what alters less than
+ * LEAST percent of it is left out.
+ *
+ * How large they are. BUDGET bytes hold all pictures of a page: their number says how many pixels each may have, at the
+ * BYTES_A_PIXEL that rooms take as JPEG.
+ *
+ * A picture of a whole photo is put together from those of its views. A view that a change leaves alone has no picture
+ * of it: there the view itself stands. */
+#include "stages/report/contents_rooms.h"
+
+#include <dirent.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/base/array.h"
+#include "common/base/parallel.h"
+#include "common/base/textfile.h"
+#include "common/capture/camera_set.h"
+#include "common/capture/lens_list.h"
+#include "common/texture/picture_made.h"
+#include "common/texture/picture_record.h"
+#include "stages/report/contents_parts.h"
+#include "stages/report/contents_relit.h"
+#include "stages/report/whole_photo.h"
+
+enum { HIGHEST = 720, LOWEST = 300, BUDGET = 6000000 };
+static const double BYTES_A_PIXEL = 0.13, LEAST = 0.5, LIGHT_WORTH = 0.3;
+static const double SIDE_SHARE = 0.25; /* of a picture's area: pictures of origins and of ratios */
+
+struct view_change { /* of a view after a change */
+    bool drawn, lit;
+    struct picture_record file; /* of drawn */
+    struct relit_record light;  /* of lit */
+};
+
+struct source_photo {
+    char photo[256];
+    const struct lens *lenses; /* of its views, which follow each other */
+    int first, count;          /* of the list of lenses */
+    bool chosen;
+};
+
+struct rooms_reading {
+    struct rooms *rooms;
+    const struct rooms_sources *from;
+    struct lens_list lenses;
+    struct view *views; /* the cameras of the lenses' views; owned */
+    struct camera_set cameras;
+    struct source_photo *photos; /* owned */
+    int photo_count;
+    struct view_change *table; /* change_count rows of lenses.count; owned */
+};
+
+static enum status note(struct rooms *rooms, const char *what, const struct err *problem, struct err *err)
+{
+    if (problem->status == ST_NOMEM) return err_set(err, ST_NOMEM, "%s", problem->text);
+    if (array_append(&rooms->notes, (size_t)rooms->note_count, sizeof *rooms->notes, "notes", err)) return err->status;
+    snprintf(rooms->notes[rooms->note_count++], sizeof *rooms->notes, "%.100s: %.800s", what, problem->text);
+    return ST_OK;
+}
+
+static struct view_change *change_of(const struct rooms_reading *r, int change, int lens)
+{
+    return &r->table[(size_t)change * (size_t)r->lenses.count + (size_t)lens];
+}
+
+/* ---------------------------------------------------------------------------------------------------------- changes */
+
+/* The comment at the beginning of a script, in one line. */
+static enum status read_about(char **about, const char *scripts, const char *edit, struct err *err)
+{
+    char path[FILE_PATH], text[2048] = "";
+    struct textfile t = {0};
+    struct err none = ERR_INIT; /* an edit without a script has no comment */
+    bool begun = false;
+    if (scripts && !file_path(path, scripts, edit, ".txt", &none) && !textfile_open(&t, path, &none)) {
+        while (textfile_next_raw(&t)) {
+            const char *line = t.cursor + strspn(t.cursor, " \t");
+            if (*line != '#' && begun) break;
+            if (*line != '#') continue;
+            begun = true;
+            line += strspn(line, "# \t");
+            const size_t length = strlen(text);
+            snprintf(text + length, sizeof text - length, "%s%s", length ? " " : "", line);
+        }
+        textfile_release(&t);
+    }
+    *about = strdup(text);
+    return *about ? ST_OK : err_nomem(err, "a comment", strlen(text));
+}
+
+static enum status read_change(struct rooms_reading *r, const char *name, struct err *err)
+{
+    struct rooms *rooms = r->rooms;
+    char model[FILE_PATH], path[FILE_PATH];
+    if (file_path(model, "remodel", name, "", err)) return err->status;
+    if (!contents_product(path, r->from->folder, PRODUCT_MODEL, &(struct product_key){.model = model})) return ST_OK;
+    if (array_append(&rooms->changes, (size_t)rooms->change_count, sizeof *rooms->changes, "changes", err))
+        return err->status;
+    struct room_change *change = &rooms->changes[rooms->change_count++];
+    *change = (struct room_change){.photos = 0};
+    snprintf(change->name, sizeof change->name, "%s", name);
+    return read_about(&change->about, r->from->scripts, name, err);
+}
+
+static enum status list_changes(struct rooms_reading *r, struct err *err)
+{
+    struct dirent **names = NULL;
+    char path[FILE_PATH];
+    if (file_path(path, r->from->folder, "remodel", "", err)) return err->status;
+    const int count = scandir(path, &names, NULL, alphasort);
+    for (int i = 0; i < count; i++) {
+        if (!err->status && names[i]->d_name[0] != '.') read_change(r, names[i]->d_name, err);
+        free(names[i]);
+    }
+    free(names);
+    return err->status;
+}
+
+/* ----------------------------------------------------------------------------------------------------- views, photos */
+
+static enum status add_photo(struct rooms_reading *r, int lens, struct err *err)
+{
+    const char *name = r->lenses.lenses[lens].photo;
+    struct source_photo *last = r->photo_count ? &r->photos[r->photo_count - 1] : NULL;
+    if (last && !strcmp(last->photo, name)) {
+        last->count++;
+        return ST_OK;
+    }
+    if (array_append(&r->photos, (size_t)r->photo_count, sizeof *r->photos, "photos", err)) return err->status;
+    struct source_photo *p = &r->photos[r->photo_count++];
+    *p = (struct source_photo){.lenses = &r->lenses.lenses[lens], .first = lens, .count = 1};
+    snprintf(p->photo, sizeof p->photo, "%s", name);
+    return ST_OK;
+}
+
+/* Cameras and photos of the views. False: there are none, which is noted. */
+static bool read_views(struct rooms_reading *r, struct err *err)
+{
+    char path[FILE_PATH], folder[FILE_PATH];
+    struct err problem = ERR_INIT;
+    if (file_path(folder, r->from->folder, "views", "", err)) return false;
+    if (product_path_below(path, r->from->folder, PRODUCT_LENSES, NULL, &problem) ||
+        lens_list_read(&r->lenses, path, NULL, &problem) ||
+        camera_set_read_cameras(&r->cameras, folder, NULL, &problem)) {
+        note(r->rooms, "the changes cannot be shown", &problem, err);
+        return false;
+    }
+    r->views = calloc((size_t)r->lenses.count + 1, sizeof *r->views);
+    if (!r->views) err_nomem(err, "views", (size_t)r->lenses.count * sizeof *r->views);
+    for (int i = 0; !err->status && i < r->lenses.count; i++) {
+        const int at = camera_set_find(&r->cameras, r->lenses.lenses[i].view);
+        if (at < 0) {
+            err_set(&problem, ST_DATA, "%s: view %s has no camera; import the cameras again.", path,
+                    r->lenses.lenses[i].view);
+            note(r->rooms, "the changes cannot be shown", &problem, err);
+            return false;
+        }
+        r->views[i] = r->cameras.views[at];
+        add_photo(r, i, err);
+    }
+    return !err->status;
+}
+
+static enum status read_view_change(struct rooms_reading *r, int change, int lens, struct err *err)
+{
+    struct view_change *v = change_of(r, change, lens);
+    const char *scene = r->from->folder, *edit = r->rooms->changes[change].name;
+    char pictures[FILE_PATH], relit[FILE_PATH], unlit[FILE_PATH], path[FILE_PATH];
+    struct err problem = ERR_INIT;
+    struct product_key key = {.name = r->lenses.lenses[lens].view, .pictures = pictures, .relit = relit};
+    snprintf(relit, sizeof relit, "relight/%s", edit);
+    snprintf(pictures, sizeof pictures, "remodel/%s/pictures", edit);
+    if (contents_product(path, scene, PRODUCT_PICTURE_RECORD, &key))
+        v->drawn = !picture_record_read(&v->file, path, NULL, &problem);
+    if (problem.status && note(r->rooms, "a picture is left out", &problem, err)) return err->status;
+    if (!contents_product(path, scene, PRODUCT_RELIT_RECORD, &key)) return ST_OK;
+    problem = (struct err)ERR_INIT;
+    if (relit_record_read(&v->light, path, &problem))
+        return note(r->rooms, "a relit picture is left out", &problem, err);
+    v->lit = true;
+    if (v->drawn) return ST_OK;
+    snprintf(unlit, sizeof unlit, "relight/%s/unlit", edit); /* relight draws it by itself */
+    key.pictures = unlit;
+    if (contents_product(path, scene, PRODUCT_PICTURE_RECORD, &key) &&
+        picture_record_read(&v->file, path, NULL, &problem))
+        return note(r->rooms, "a picture is left out", &problem, err);
+    return ST_OK;
+}
+
+static enum status read_table(struct rooms_reading *r, struct err *err)
+{
+    const size_t size = (size_t)r->rooms->change_count * (size_t)r->lenses.count;
+    r->table = calloc(size + 1, sizeof *r->table);
+    if (!r->table) return err_nomem(err, "records of pictures", size * sizeof *r->table);
+    for (int e = 0; e < r->rooms->change_count; e++)
+        for (int i = 0; i < r->lenses.count; i++) {
+            if (read_view_change(r, e, i, err)) return err->status;
+            r->rooms->changes[e].has_records |= change_of(r, e, i)->drawn || change_of(r, e, i)->lit;
+        }
+    return ST_OK;
+}
+
+/* ------------------------------------------------------------------------------------------------ what a photo shows */
+
+/* Shares of the photo: those of its views by the pixels that they know. */
+static struct room_look measure_look(const struct rooms_reading *r, const struct source_photo *p, int change)
+{
+    struct room_look look = {.change = change};
+    double all = 0, light = 0;
+    for (int i = p->first; i < p->first + p->count; i++) {
+        const struct view_change *v = change_of(r, change, i);
+        const double pixels = (double)r->views[i].width * r->views[i].height;
+        const double weight = pixels * fmax(1, 100 - v->file.shares[MADE_NOTHING]);
+        if (v->drawn) {
+            all += weight;
+            look.changed += weight * v->file.changed;
+            for (int k = 0; k < MADE_COUNT; k++) look.shares[k] += weight * v->file.shares[k];
+        }
+        if (!v->lit) continue;
+        light += weight;
+        look.light += weight * v->light.changed;
+        look.bounded += weight * v->light.bounded;
+        look.kept += weight * v->light.kept;
+    }
+    all = fmax(all, 1e-300), light = fmax(light, 1e-300);
+    look.changed /= all;
+    for (int k = 0; k < MADE_COUNT; k++) look.shares[k] /= all;
+    look.light /= light, look.bounded /= light, look.kept /= light;
+    return look;
+}
+
+static double worth(const struct room_look *look)
+{
+    const double guessed = look->shares[MADE_SYNTHESISED] + look->shares[MADE_UNSURE];
+    const double known = look->changed > guessed ? (look->changed - guessed) / look->changed : 0;
+    const double sure = look->light > look->bounded ? (look->light - look->bounded) / look->light : 0;
+    return known * known * look->changed + 1e-3 * look->changed + LIGHT_WORTH * sure * look->light;
+}
+
+static bool is_seen(const struct room_look *look) { return look->changed >= LEAST || look->light >= LEAST; }
+
+/* The photo not yet chosen that shows a change best; NULL: none shows it. */
+static struct source_photo *best_photo(const struct rooms_reading *r, int change)
+{
+    struct source_photo *best = NULL;
+    double most = 0;
+    for (int i = 0; i < r->photo_count; i++) {
+        const struct room_look look = measure_look(r, &r->photos[i], change);
+        if (r->photos[i].chosen || !is_seen(&look) || !(worth(&look) > most)) continue;
+        most = worth(&look);
+        best = &r->photos[i];
+    }
+    return best;
+}
+
+static void count_photos(struct rooms_reading *r)
+{
+    for (int i = 0; i < r->photo_count; i++) {
+        bool changed = false;
+        for (int e = 0; e < r->rooms->change_count; e++) {
+            const struct room_look look = measure_look(r, &r->photos[i], e);
+            r->rooms->changes[e].photos += is_seen(&look);
+            changed |= is_seen(&look);
+        }
+        r->rooms->photos_changed += changed;
+    }
+}
+
+static int choose_photos(struct rooms_reading *r)
+{
+    int chosen = 0;
+    for (bool any = true; any && chosen < ROOMS_SHOWN;) {
+        any = false;
+        for (int e = 0; e < r->rooms->change_count && chosen < ROOMS_SHOWN; e++) {
+            struct source_photo *p = best_photo(r, e);
+            if (!p) continue;
+            p->chosen = any = true;
+            chosen++;
+        }
+    }
+    return chosen;
+}
+
+static int compare_looks(const void *a, const void *b)
+{
+    const struct room_look *p = a, *q = b;
+    if (worth(p) != worth(q)) return worth(p) < worth(q) ? 1 : -1;
+    return (p->change > q->change) - (p->change < q->change);
+}
+
+static enum status add_room(struct rooms_reading *r, const struct source_photo *p, struct err *err)
+{
+    struct rooms *rooms = r->rooms;
+    struct room_photo *to = &rooms->photos[rooms->photo_count++];
+    memcpy(to->photo, p->photo, sizeof to->photo);
+    to->looks = calloc((size_t)rooms->change_count + 1, sizeof *to->looks);
+    if (!to->looks) return err_nomem(err, "changes of a photo", (size_t)rooms->change_count * sizeof *to->looks);
+    for (int e = 0; e < rooms->change_count; e++) {
+        const struct room_look look = measure_look(r, p, e);
+        if (is_seen(&look)) to->looks[to->look_count++] = look;
+    }
+    qsort(to->looks, (size_t)to->look_count, sizeof *to->looks, compare_looks);
+    return ST_OK;
+}
+
+static double worth_of_photo(const struct room_photo *p)
+{
+    double sum = 0;
+    for (int i = 0; i < p->look_count; i++) sum += sqrt(worth(&p->looks[i]));
+    return sum;
+}
+
+static int compare_photos(const void *a, const void *b)
+{
+    const struct room_photo *p = a, *q = b;
+    const double x = worth_of_photo(p), y = worth_of_photo(q);
+    if (x != y) return x < y ? 1 : -1;
+    return strcmp(p->photo, q->photo);
+}
+
+/* --------------------------------------------------------------------------------------------------------- pictures */
+
+struct room_job {
+    struct rooms_reading *r;
+    int height;
+    struct err *errors; /* of each photo */
+};
+
+struct layers {
+    struct image *known, *views; /* one of each view: its radiance times the exposure; the one that is drawn */
+    int count;
+};
+
+static void layers_clear(struct image *images, int count)
+{
+    for (int i = 0; images && i < count; i++) image_release(&images[i]);
+}
+
+static enum status read_radiance(struct image *im, const char *path, const struct view *view, double exposure,
+                                 struct err *err)
+{
+    static const char *const names[] = {"R", "G", "B"};
+    struct exr_image exr = {0};
+    if (!exr_read(&exr, path, names, 3, err) && (exr.width != view->width || exr.height != view->height))
+        err_set(err, ST_DATA, "%s: found %d x %d px, wanted %d x %d as its camera has; rectify the view again.", path,
+                exr.width, exr.height, view->width, view->height);
+    if (!err->status) image_init(im, exr.width, exr.height, 3, err);
+    for (int c = 0; !err->status && c < 3; c++) {
+        const struct exr_plane *plane = exr_find(&exr, names[c]);
+        if (!plane || !plane->f) {
+            err_set(err, ST_DATA, "%s: found no channel %s of floats, wanted R, G and B.", path, names[c]);
+            break;
+        }
+        for (size_t i = 0; i < (size_t)exr.width * (size_t)exr.height; i++)
+            im->data[3 * i + (size_t)c] = (float)exposure * plane->f[i];
+    }
+    exr_image_release(&exr);
+    return err->status;
+}
+
+/* A JPEG or PNG of a view, linear; scale: of its exposure to that of the page. */
+static enum status read_layer(struct image *im, const char *path, const struct view *view, double scale,
+                              struct err *err)
+{
+    struct photo photo = {0};
+    if (photo_read(&photo, path, err) || photo_to_linear(im, &photo, err)) {
+        photo_release(&photo);
+        return err->status;
+    }
+    photo_release(&photo);
+    if (im->width != view->width || im->height != view->height)
+        return err_set(err, ST_DATA, "%s: found %d x %d px, wanted %d x %d as the view has; make the picture again.",
+                       path, im->width, im->height, view->width, view->height);
+    for (size_t i = 0; scale != 1 && i < 3 * (size_t)im->width * (size_t)im->height; i++) im->data[i] *= (float)scale;
+    return ST_OK;
+}
+
+/* The exposure of the photo's pictures: that of the first that is drawn; 0: none is. */
+static double find_exposure(const struct rooms_reading *r, const struct source_photo *p)
+{
+    for (int e = 0; e < r->rooms->change_count; e++)
+        for (int i = p->first; i < p->first + p->count; i++) {
+            const struct view_change *v = change_of(r, e, i);
+            if (v->drawn) return v->file.exposure;
+            if (v->lit) return v->light.exposure;
+        }
+    return 0;
+}
+
+enum layer_kind { LAYER_AFTER, LAYER_RELIT, LAYER_MADE, LAYER_RATIO };
+
+/* The file of a layer, and what its exposure is to be multiplied by. False: there is none. */
+static bool find_layer(char path[FILE_PATH], double *scale, const struct rooms_reading *r, int change, int lens,
+                       enum layer_kind kind, double exposure)
+{
+    static const enum product_id ids[] = {PRODUCT_PICTURE_JPEG, PRODUCT_RELIT_JPEG, PRODUCT_PICTURE_SOURCES,
+                                          PRODUCT_RELIT_RATIO_PICTURE};
+    const struct view_change *v = change_of(r, change, lens);
+    const char *edit = r->rooms->changes[change].name;
+    char pictures[FILE_PATH], relit[FILE_PATH];
+    const struct product_key key = {.name = r->lenses.lenses[lens].view, .pictures = pictures, .relit = relit};
+    const bool light = kind == LAYER_RELIT || kind == LAYER_RATIO;
+    snprintf(relit, sizeof relit, "relight/%s", edit);
+    snprintf(pictures, sizeof pictures, v->drawn ? "remodel/%s/pictures" : "relight/%s/unlit", edit);
+    *scale = kind == LAYER_AFTER && v->file.exposure > 0    ? exposure / v->file.exposure
+             : kind == LAYER_RELIT && v->light.exposure > 0 ? exposure / v->light.exposure
+                                                            : 1;
+    if (light ? !v->lit : !(v->file.changed > 0)) return false;
+    return contents_product(path, r->from->folder, ids[kind], &key);
+}
+
+/* Puts a picture of the photo together. before: layers of the photo as it is, shown where a view has no layer of its
+ * own and `fallback` is NULL. p stays empty if no view has one. */
+static enum status make_layer(struct picture *p, const struct rooms_reading *r, const struct source_photo *from,
+                              const struct whole_photo *w, const struct image *before, int change, enum layer_kind kind,
+                              double exposure, const float *fallback, struct err *err)
+{
+    struct image *layers = calloc((size_t)from->count, sizeof *layers);
+    char path[FILE_PATH];
+    double scale;
+    bool any = false;
+    if (!layers) return err_nomem(err, "layers", (size_t)from->count * sizeof *layers);
+    for (int i = 0; !err->status && i < from->count; i++) {
+        const int lens = from->first + i;
+        bool found = find_layer(path, &scale, r, change, lens, kind, exposure);
+        any |= found;
+        if (!found && kind == LAYER_RELIT) found = find_layer(path, &scale, r, change, lens, LAYER_AFTER, exposure);
+        if (found) read_layer(&layers[i], path, &r->views[lens], scale, err);
+    }
+    if (!err->status && any) {
+        struct image *shown = calloc((size_t)from->count, sizeof *shown);
+        if (!shown) err_nomem(err, "layers", (size_t)from->count * sizeof *shown);
+        for (int i = 0; shown && i < from->count; i++) shown[i] = layers[i].data || fallback ? layers[i] : before[i];
+        if (shown) whole_photo_picture(p, w, shown, before, fallback, kind == LAYER_AFTER || kind == LAYER_RELIT, err);
+        free(shown);
+    }
+    layers_clear(layers, from->count);
+    free(layers);
+    return err->status;
+}
+
+static void colour_to_linear(float linear[3], const uint8_t rgb[3])
+{
+    for (int c = 0; c < 3; c++) linear[c] = linear_from_srgb((float)rgb[c] / 255);
+}
+
+static enum status make_look(struct room_look *look, const struct room_job *j, const struct source_photo *from,
+                             const struct whole_photo *w, const struct whole_photo *small, const struct image *before,
+                             double exposure, struct err *err)
+{
+    static const uint8_t grey[3] = {128, 128, 128};
+    float photo[3], same[3];
+    colour_to_linear(photo, picture_made_kind(MADE_PHOTO)->rgb);
+    colour_to_linear(same, grey);
+    if (make_layer(&look->after, j->r, from, w, before, look->change, LAYER_AFTER, exposure, NULL, err) ||
+        make_layer(&look->relit, j->r, from, w, before, look->change, LAYER_RELIT, exposure, NULL, err) ||
+        make_layer(&look->made, j->r, from, small, before, look->change, LAYER_MADE, exposure, photo, err))
+        return err->status;
+    return make_layer(&look->ratio, j->r, from, small, before, look->change, LAYER_RATIO, exposure, same, err);
+}
+
+static const struct source_photo *source_of(const struct rooms_reading *r, const char *photo)
+{
+    for (int i = 0; i < r->photo_count; i++)
+        if (!strcmp(r->photos[i].photo, photo)) return &r->photos[i];
+    return NULL;
+}
+
+static void look_release(struct room_look *look)
+{
+    picture_release(&look->after);
+    picture_release(&look->relit);
+    picture_release(&look->made);
+    picture_release(&look->ratio);
+}
+
+static enum status read_before(struct image *before, const struct rooms_reading *r, const struct source_photo *from,
+                               double exposure, struct err *err)
+{
+    for (int i = 0; !err->status && i < from->count; i++) {
+        const int lens = from->first + i;
+        char path[FILE_PATH];
+        if (!product_path_below(path, r->from->folder, PRODUCT_VIEW,
+                                &(struct product_key){.view = r->lenses.lenses[lens].view}, err))
+            read_radiance(&before[i], path, &r->views[lens], exposure, err);
+    }
+    return err->status;
+}
+
+/* The pictures of a photo. A change whose pictures cannot be read is left out; *problem says why. */
+static enum status make_room(struct room_photo *p, const struct room_job *j, struct err *problem)
+{
+    const struct rooms_reading *r = j->r;
+    const struct source_photo *from = source_of(r, p->photo);
+    const int orientation = relit_photo_orientation(r->from->records, p->photo);
+    const double exposure = find_exposure(r, from);
+    struct whole_photo w = {0}, small = {0};
+    struct image *before = calloc((size_t)from->count, sizeof *before);
+    struct err err = ERR_INIT;
+    if (!before) err_nomem(&err, "layers", (size_t)from->count * sizeof *before);
+    const struct view *views = r->views + from->first;
+    if (!err.status && !read_before(before, r, from, exposure, &err) &&
+        !whole_photo_init(&w, from->lenses, views, from->count, orientation, j->height, &err) &&
+        !whole_photo_init(&small, from->lenses, views, from->count, orientation, (int)(sqrt(SIDE_SHARE) * w.height),
+                          &err))
+        whole_photo_picture(&p->before, &w, before, before, NULL, true, &err);
+    int kept = 0;
+    for (int k = 0; !err.status && k < p->look_count; k++) {
+        struct err failed = ERR_INIT;
+        struct room_look look = p->looks[k];
+        if (!make_look(&look, j, from, &w, &small, before, exposure, &failed) && (look.after.rgb || look.relit.rgb)) {
+            p->looks[kept++] = look;
+            continue;
+        }
+        look_release(&look);
+        if (failed.status) *problem = failed;
+    }
+    p->look_count = kept;
+    if (err.status) *problem = err;
+    layers_clear(before, before ? from->count : 0);
+    free(before);
+    whole_photo_release(&w);
+    whole_photo_release(&small);
+    return problem->status;
+}
+
+static void make_rooms(void *ctx, size_t begin, size_t end, int thread)
+{
+    struct room_job *j = ctx;
+    (void)thread;
+    for (size_t i = begin; i < end; i++) make_room(&j->r->rooms->photos[i], j, &j->errors[i]);
+}
+
+/* The height of the pictures, px: so that all of them fit in the budget. */
+static int choose_height(const struct rooms_reading *r)
+{
+    double count = 0, aspect = 0;
+    for (int i = 0; i < r->rooms->photo_count; i++) {
+        const struct room_photo *p = &r->rooms->photos[i];
+        const struct camera *camera = &source_of(r, p->photo)->lenses[0].camera;
+        aspect += (double)camera->width / camera->height;
+        count += 1;
+        for (int k = 0; k < p->look_count; k++) {
+            const struct room_look *look = &p->looks[k];
+            count += (look->changed > 0) * (1 + SIDE_SHARE / 2) + (look->light > 0) * (1 + SIDE_SHARE);
+        }
+    }
+    const double pixels = BUDGET / BYTES_A_PIXEL / fmax(count, 1);
+    const double height = sqrt(pixels * fmax(r->rooms->photo_count, 1) / fmax(aspect, 1e-9));
+    return (int)fmin(HIGHEST, fmax(LOWEST, height));
+}
+
+static enum status make_pictures(struct rooms_reading *r, struct err *err)
+{
+    struct rooms *rooms = r->rooms;
+    struct room_job j = {r, choose_height(r), calloc((size_t)rooms->photo_count + 1, sizeof *j.errors)};
+    if (!j.errors) return err_nomem(err, "photos", (size_t)rooms->photo_count * sizeof *j.errors);
+    parallel_for((size_t)rooms->photo_count, 1, make_rooms, &j);
+    int kept = 0;
+    for (int i = 0; i < rooms->photo_count; i++) {
+        struct room_photo p = rooms->photos[i];
+        if (j.errors[i].status) note(rooms, "a picture is left out", &j.errors[i], err);
+        if (p.before.rgb && p.look_count) {
+            rooms->photos[kept++] = p;
+            continue;
+        }
+        picture_release(&p.before);
+        free(p.looks);
+    }
+    rooms->photo_count = kept;
+    free(j.errors);
+    return err->status;
+}
+
+static enum status read_rooms(struct rooms_reading *r, struct err *err)
+{
+    struct rooms *rooms = r->rooms;
+    if (list_changes(r, err) || !rooms->change_count || !read_views(r, err) || read_table(r, err)) return err->status;
+    count_photos(r);
+    const int chosen = choose_photos(r);
+    rooms->photos = calloc((size_t)chosen + 1, sizeof *rooms->photos);
+    if (!rooms->photos) return err_nomem(err, "photos", (size_t)chosen * sizeof *rooms->photos);
+    for (int i = 0; !err->status && i < r->photo_count; i++)
+        if (r->photos[i].chosen) add_room(r, &r->photos[i], err);
+    if (err->status) return err->status;
+    if (chosen) qsort(rooms->photos, (size_t)chosen, sizeof *rooms->photos, compare_photos);
+    return make_pictures(r, err);
+}
+
+enum status rooms_read(struct rooms *rooms, const struct rooms_sources *from, struct err *err)
+{
+    struct rooms_reading r = {.rooms = rooms, .from = from};
+    read_rooms(&r, err);
+    free(r.table);
+    free(r.photos);
+    free(r.views);
+    camera_set_release(&r.cameras);
+    lens_list_release(&r.lenses);
+    return err->status;
+}
+
+void rooms_release(struct rooms *rooms)
+{
+    for (int i = 0; i < rooms->photo_count; i++) {
+        struct room_photo *p = &rooms->photos[i];
+        for (int k = 0; k < p->look_count; k++) look_release(&p->looks[k]);
+        picture_release(&p->before);
+        free(p->looks);
+    }
+    for (int i = 0; i < rooms->change_count; i++) free(rooms->changes[i].about);
+    free(rooms->photos);
+    free(rooms->changes);
+    free(rooms->notes);
+    *rooms = (struct rooms){0};
+}
