@@ -19,9 +19,9 @@
 
 #define REPORT_STAGE "report" /* this stage, whose own log is still open */
 
-enum { NOTE_SIZE = 1024, PICTURE_HEIGHT = 240, HELD_HEIGHT = 360, AXES_HEIGHT = 480 };
+enum { NOTE_SIZE = 1024, PICTURE_HEIGHT = 180, HELD_HEIGHT = 360, AXES_HEIGHT = 400 };
 
-enum { PAGES_SHOWN = 8 }; /* of an atlas */
+enum { PAGES_SHOWN = 6, VIEWS_SHOWN = 60 }; /* of an atlas; of all, with their depth */
 
 struct photo_card {
     const struct photo_record *record;

@@ -42,9 +42,8 @@ static enum status read_runs(struct contents *c, const struct contents_sources *
 
 static enum status read_rooms(struct contents *c, const struct contents_sources *from, struct err *err)
 {
-    char records[PATH_SIZE];
-    snprintf(records, sizeof records, "%s/photos", from->shared);
-    return rooms_read(&c->rooms, &(struct rooms_sources){from->folder, records, from->scripts}, err);
+    const struct rooms_sources rooms = {from->folder, from->shared, from->photos, from->scripts};
+    return rooms_read(&c->rooms, &rooms, err);
 }
 
 enum status contents_read(struct contents *c, const struct contents_sources *from, struct err *err)

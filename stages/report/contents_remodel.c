@@ -12,7 +12,7 @@ static const enum product_id exports[] = {EXPORTS(EXPORT_PRODUCT)};
 static enum status read_edit(struct edit_card *card, const struct rooms_sources *from, const char *name,
                              struct err *err)
 {
-    const struct relit_sources light = {from->folder, from->records, NULL};
+    const struct relit_sources light = {from->folder, NULL, NULL};
     char model[FILE_PATH], film[FILE_PATH], path[FILE_PATH];
     const struct product_key key = {.model = model, .film = film};
     if (file_path(model, "remodel", name, "", err) || file_path(film, model, "tour", "", err)) return err->status;

@@ -27,13 +27,14 @@
 #include "common/base/textfile.h"
 #include "common/capture/camera_set.h"
 #include "common/capture/lens_list.h"
+#include "common/capture/photo_list.h"
 #include "common/texture/picture_made.h"
 #include "common/texture/picture_record.h"
 #include "stages/report/contents_parts.h"
 #include "stages/report/contents_relit.h"
 #include "stages/report/whole_photo.h"
 
-enum { HIGHEST = 720, LOWEST = 300, BUDGET = 6000000 };
+enum { HIGHEST = 720, LOWEST = 300, BUDGET = 5000000 };
 static const double BYTES_A_PIXEL = 0.13, LEAST = 0.5, LIGHT_WORTH = 0.3;
 static const double SIDE_SHARE = 0.25; /* of a picture's area: pictures of origins and of ratios */
 
@@ -337,9 +338,17 @@ struct room_job {
     struct err *errors; /* of each photo */
 };
 
-struct layers {
-    struct image *known, *views; /* one of each view: its radiance times the exposure; the one that is drawn */
-    int count;
+/* What is known of a photo while its pictures are made. */
+struct room_work {
+    const struct rooms_reading *r;
+    const struct source_photo *from;
+    int orientation;
+    double exposure;
+    struct whole_photo whole, small;
+    struct image *before;   /* radiance of its views times the exposure */
+    unsigned char *covered; /* whether a view shows the pixel */
+    struct picture rest;    /* the photo itself, for pixels that no view shows; empty: it cannot be read */
+    double gain[3];         /* from it to the views */
 };
 
 static void layers_clear(struct image *images, int count)
@@ -420,33 +429,33 @@ static bool find_layer(char path[FILE_PATH], double *scale, const struct rooms_r
     return contents_product(path, r->from->folder, ids[kind], &key);
 }
 
-/* Puts a picture of the photo together. before: layers of the photo as it is, shown where a view has no layer of its
- * own and `fallback` is NULL. p stays empty if no view has one. */
-static enum status make_layer(struct picture *p, const struct rooms_reading *r, const struct source_photo *from,
-                              const struct whole_photo *w, const struct image *before, int change, enum layer_kind kind,
-                              double exposure, const float *fallback, struct err *err)
+/* Puts a picture of the photo together. A view that has no layer of its own is shown as it is, or, of a picture of
+ * codes, in the colour `fallback`. p stays empty if no view has one. */
+static enum status make_layer(struct picture *p, const struct room_work *w, int change, enum layer_kind kind,
+                              const float *fallback, struct err *err)
 {
-    struct image *layers = calloc((size_t)from->count, sizeof *layers);
+    const int count = w->from->count;
+    struct image *layers = calloc((size_t)count, sizeof *layers), *shown = calloc((size_t)count, sizeof *shown);
     char path[FILE_PATH];
     double scale;
     bool any = false;
-    if (!layers) return err_nomem(err, "layers", (size_t)from->count * sizeof *layers);
-    for (int i = 0; !err->status && i < from->count; i++) {
-        const int lens = from->first + i;
-        bool found = find_layer(path, &scale, r, change, lens, kind, exposure);
+    if (!layers || !shown) err_nomem(err, "layers", (size_t)count * sizeof *layers);
+    for (int i = 0; !err->status && i < count; i++) {
+        const int lens = w->from->first + i;
+        bool found = find_layer(path, &scale, w->r, change, lens, kind, w->exposure);
         any |= found;
-        if (!found && kind == LAYER_RELIT) found = find_layer(path, &scale, r, change, lens, LAYER_AFTER, exposure);
-        if (found) read_layer(&layers[i], path, &r->views[lens], scale, err);
+        if (!found && kind == LAYER_RELIT)
+            found = find_layer(path, &scale, w->r, change, lens, LAYER_AFTER, w->exposure);
+        if (found) read_layer(&layers[i], path, &w->r->views[lens], scale, err);
+        shown[i] = layers[i].data || fallback ? layers[i] : w->before[i];
     }
-    if (!err->status && any) {
-        struct image *shown = calloc((size_t)from->count, sizeof *shown);
-        if (!shown) err_nomem(err, "layers", (size_t)from->count * sizeof *shown);
-        for (int i = 0; shown && i < from->count; i++) shown[i] = layers[i].data || fallback ? layers[i] : before[i];
-        if (shown) whole_photo_picture(p, w, shown, before, fallback, kind == LAYER_AFTER || kind == LAYER_RELIT, err);
-        free(shown);
-    }
-    layers_clear(layers, from->count);
+    if (!err->status && any &&
+        !whole_photo_picture(p, fallback ? &w->small : &w->whole, shown, w->before, fallback, !fallback, NULL, err) &&
+        !fallback && w->rest.rgb)
+        whole_photo_fill(p, w->covered, &w->rest, w->gain);
+    layers_clear(layers, count);
     free(layers);
+    free(shown);
     return err->status;
 }
 
@@ -455,19 +464,17 @@ static void colour_to_linear(float linear[3], const uint8_t rgb[3])
     for (int c = 0; c < 3; c++) linear[c] = linear_from_srgb((float)rgb[c] / 255);
 }
 
-static enum status make_look(struct room_look *look, const struct room_job *j, const struct source_photo *from,
-                             const struct whole_photo *w, const struct whole_photo *small, const struct image *before,
-                             double exposure, struct err *err)
+static enum status make_look(struct room_look *look, const struct room_work *w, struct err *err)
 {
     static const uint8_t grey[3] = {128, 128, 128};
     float photo[3], same[3];
     colour_to_linear(photo, picture_made_kind(MADE_PHOTO)->rgb);
     colour_to_linear(same, grey);
-    if (make_layer(&look->after, j->r, from, w, before, look->change, LAYER_AFTER, exposure, NULL, err) ||
-        make_layer(&look->relit, j->r, from, w, before, look->change, LAYER_RELIT, exposure, NULL, err) ||
-        make_layer(&look->made, j->r, from, small, before, look->change, LAYER_MADE, exposure, photo, err))
+    if (make_layer(&look->after, w, look->change, LAYER_AFTER, NULL, err) ||
+        make_layer(&look->relit, w, look->change, LAYER_RELIT, NULL, err) ||
+        make_layer(&look->made, w, look->change, LAYER_MADE, photo, err))
         return err->status;
-    return make_layer(&look->ratio, j->r, from, small, before, look->change, LAYER_RATIO, exposure, same, err);
+    return make_layer(&look->ratio, w, look->change, LAYER_RATIO, same, err);
 }
 
 static const struct source_photo *source_of(const struct rooms_reading *r, const char *photo)
@@ -485,41 +492,97 @@ static void look_release(struct room_look *look)
     picture_release(&look->ratio);
 }
 
-static enum status read_before(struct image *before, const struct rooms_reading *r, const struct source_photo *from,
-                               double exposure, struct err *err)
+static enum status read_before(struct room_work *w, struct err *err)
 {
-    for (int i = 0; !err->status && i < from->count; i++) {
-        const int lens = from->first + i;
+    for (int i = 0; !err->status && i < w->from->count; i++) {
+        const int lens = w->from->first + i;
         char path[FILE_PATH];
-        if (!product_path_below(path, r->from->folder, PRODUCT_VIEW,
-                                &(struct product_key){.view = r->lenses.lenses[lens].view}, err))
-            read_radiance(&before[i], path, &r->views[lens], exposure, err);
+        if (!product_path_below(path, w->r->from->folder, PRODUCT_VIEW,
+                                &(struct product_key){.view = w->r->lenses.lenses[lens].view}, err))
+            read_radiance(&w->before[i], path, &w->r->views[lens], w->exposure, err);
     }
     return err->status;
 }
 
-/* The pictures of a photo. A change whose pictures cannot be read is left out; *problem says why. */
-static enum status make_room(struct room_photo *p, const struct room_job *j, struct err *problem)
+/* The photo itself, if it can be read: its merged exposures, or the file that people gave. */
+static void read_rest(struct room_work *w, const struct photo_record *record, int height)
 {
-    const struct rooms_reading *r = j->r;
-    const struct source_photo *from = source_of(r, p->photo);
-    const int orientation = relit_photo_orientation(r->from->records, p->photo);
-    const double exposure = find_exposure(r, from);
-    struct whole_photo w = {0}, small = {0};
-    struct image *before = calloc((size_t)from->count, sizeof *before);
-    struct err err = ERR_INIT;
-    if (!before) err_nomem(&err, "layers", (size_t)from->count * sizeof *before);
-    const struct view *views = r->views + from->first;
-    if (!err.status && !read_before(before, r, from, exposure, &err) &&
-        !whole_photo_init(&w, from->lenses, views, from->count, orientation, j->height, &err) &&
-        !whole_photo_init(&small, from->lenses, views, from->count, orientation, (int)(sqrt(SIDE_SHARE) * w.height),
-                          &err))
-        whole_photo_picture(&p->before, &w, before, before, NULL, true, &err);
+    const struct rooms_sources *from = w->r->from;
+    char path[FILE_PATH];
+    struct err none = ERR_INIT;
+    struct photo photo = {0};
+    if (contents_product(path, from->shared, PRODUCT_HDR, &(struct product_key){.photo = w->from->photo})) {
+        relit_read_radiance(&w->rest, from->shared, PRODUCT_HDR, &(struct product_key){.photo = w->from->photo},
+                            w->exposure, w->orientation, height, &none);
+    } else if (from->photos && record->file && !file_path(path, from->photos, record->file, "", &none) &&
+               !photo_read(&photo, path, &none)) {
+        photo.info.orientation = w->orientation;
+        picture_from_photo(&w->rest, &photo, height, &none);
+    }
+    photo_release(&photo);
+    if (w->rest.width != w->whole.width || w->rest.height != w->whole.height) picture_release(&w->rest);
+}
+
+/* The photo before the change. What no view shows of it comes from the photo itself. */
+static enum status make_before(struct picture *p, struct room_work *w, const struct photo_record *record,
+                               struct err *err)
+{
+    bool all = true;
+    w->covered = malloc((size_t)w->whole.width * (size_t)w->whole.height);
+    if (!w->covered) return err_nomem(err, "a picture", (size_t)w->whole.width * (size_t)w->whole.height);
+    if (whole_photo_picture(p, &w->whole, w->before, w->before, NULL, true, w->covered, err)) return err->status;
+    for (size_t i = 0; i < (size_t)p->width * (size_t)p->height; i++) all &= w->covered[i];
+    if (all) return ST_OK;
+    read_rest(w, record, w->whole.height);
+    if (!w->rest.rgb) return ST_OK;
+    whole_photo_find_gain(w->gain, p, w->covered, &w->rest);
+    whole_photo_fill(p, w->covered, &w->rest, w->gain);
+    return ST_OK;
+}
+
+static enum status begin_room(struct picture *before, struct room_work *w, int height, struct err *err)
+{
+    const struct source_photo *from = w->from;
+    const struct view *views = w->r->views + from->first;
+    struct photo_record record = {0};
+    struct err unknown = ERR_INIT; /* then the picture is upright as it is */
+    char records[FILE_PATH];
+    if (file_path(records, w->r->from->shared, "photos", "", err)) return err->status;
+    w->orientation = 1;
+    if (!photo_record_read(&record, records, from->photo, NULL, &unknown) && record.info.orientation > 1)
+        w->orientation = record.info.orientation;
+    w->before = calloc((size_t)from->count, sizeof *w->before);
+    if (!w->before) err_nomem(err, "layers", (size_t)from->count * sizeof *w->before);
+    if (!err->status && !read_before(w, err) &&
+        !whole_photo_init(&w->whole, from->lenses, views, from->count, w->orientation, height, err) &&
+        !whole_photo_init(&w->small, from->lenses, views, from->count, w->orientation,
+                          (int)(sqrt(SIDE_SHARE) * w->whole.height), err))
+        make_before(before, w, &record, err);
+    photo_record_release(&record);
+    return err->status;
+}
+
+static void room_work_release(struct room_work *w)
+{
+    layers_clear(w->before, w->from->count);
+    free(w->before);
+    free(w->covered);
+    picture_release(&w->rest);
+    whole_photo_release(&w->whole);
+    whole_photo_release(&w->small);
+}
+
+/* The pictures of a photo. A change whose pictures cannot be read is left out; *problem says why. */
+static void make_room(struct room_photo *p, const struct room_job *j, struct err *problem)
+{
+    struct room_work w = {.r = j->r, .from = source_of(j->r, p->photo)};
     int kept = 0;
-    for (int k = 0; !err.status && k < p->look_count; k++) {
+    w.exposure = find_exposure(w.r, w.from);
+    begin_room(&p->before, &w, j->height, problem);
+    for (int k = 0; p->before.rgb && k < p->look_count; k++) {
         struct err failed = ERR_INIT;
         struct room_look look = p->looks[k];
-        if (!make_look(&look, j, from, &w, &small, before, exposure, &failed) && (look.after.rgb || look.relit.rgb)) {
+        if (!make_look(&look, &w, &failed) && (look.after.rgb || look.relit.rgb)) {
             p->looks[kept++] = look;
             continue;
         }
@@ -527,12 +590,7 @@ static enum status make_room(struct room_photo *p, const struct room_job *j, str
         if (failed.status) *problem = failed;
     }
     p->look_count = kept;
-    if (err.status) *problem = err;
-    layers_clear(before, before ? from->count : 0);
-    free(before);
-    whole_photo_release(&w);
-    whole_photo_release(&small);
-    return problem->status;
+    room_work_release(&w);
 }
 
 static void make_rooms(void *ctx, size_t begin, size_t end, int thread)

@@ -45,7 +45,8 @@ struct rooms {
 
 struct rooms_sources {
     const char *folder;  /* out/SCENE */
-    const char *records; /* of the photos */
+    const char *shared;  /* the folder of photo records and SfM */
+    const char *photos;  /* the folder of the photographs; NULL: unknown */
     const char *scripts; /* scenes/SCENE/edits; NULL: none */
 };
 

@@ -19,10 +19,10 @@
 #include "stages/report/texture_pictures.h"
 
 enum {
-    VIEWPOINTS_SHOWN = 12,
+    VIEWPOINTS_SHOWN = 10,
     VITA_VIEWS = 2,     /* views of the block of the view-independent atlas */
-    SIGHT_HEIGHT = 320, /* px, of the pictures of views, and of pages */
-    PAGE_HEIGHT = 264,
+    SIGHT_HEIGHT = 240, /* px, of the pictures of views, and of pages */
+    PAGE_HEIGHT = 200,
 };
 
 /* What is read for a card, beside what it shows. */

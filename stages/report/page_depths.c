@@ -12,7 +12,7 @@ static enum status put_depth(struct page *page, const struct view_card *card, st
         fputs("<div class=\"none\">no pixel has a depth</div>", to);
         return ST_OK;
     }
-    if (page_put_picture(page, &card->depth_picture, 90, "Depth of view", card->view->name, err)) return err->status;
+    if (page_put_picture(page, &card->depth_picture, 80, "Depth of view", card->view->name, err)) return err->status;
     fprintf(to,
             "<div class=\"ramp\"></div><div class=\"ticks\"><span>%.3g</span><span>%.3g</span><span>%.3g</span></div>",
             card->near, 2 / (1 / card->near + 1 / card->far), card->far);
@@ -25,13 +25,13 @@ static enum status put_view(struct page *page, const struct contents *c, const s
     fprintf(to, "<figure>\n<div class=\"pair%s\"><div>", card->truth_picture.rgb ? " three" : "");
     if (!card->picture.rgb)
         fputs("<div class=\"none\">no picture yet</div>", to);
-    else if (page_put_picture(page, &card->picture, 80, "View", card->view->name, err))
+    else if (page_put_picture(page, &card->picture, 75, "View", card->view->name, err))
         return err->status;
     fputs("</div><div>", to);
     if (put_depth(page, card, err)) return err->status;
     if (card->truth_picture.rgb) {
         fputs("</div><div>", to);
-        if (page_put_picture(page, &card->truth_picture, 90, "True depth of view", card->view->name, err))
+        if (page_put_picture(page, &card->truth_picture, 80, "True depth of view", card->view->name, err))
             return err->status;
         fputs("<p class=\"under\">truth</p>", to);
     }
@@ -68,8 +68,11 @@ enum status page_depths(struct page *page, const struct contents *c, struct err 
     fputs("<div class=\"pairs\" style=\"--ramp:", to);
     page_put_ramp(to, false);
     fputs("\">\n", to);
-    for (int i = 0; i < c->views.view_count; i++)
-        if (put_view(page, c, &c->view_cards[i], err)) return err->status;
-    fputs("</div>\n</section>\n", to);
+    const int all = c->views.view_count, shown = all < VIEWS_SHOWN ? all : VIEWS_SHOWN;
+    for (int i = 0; i < shown; i++)
+        if (put_view(page, c, &c->view_cards[(int64_t)i * all / shown], err)) return err->status;
+    fputs("</div>\n", to);
+    if (shown < all) fprintf(to, "<p>%d more views are not shown.</p>\n", all - shown);
+    fputs("</section>\n", to);
     return ST_OK;
 }

@@ -39,11 +39,6 @@ void page_few_numbers(FILE *to, const struct contents *c)
         end(to, "Half of these spots lie in the photographs within so many pixels of where they should be. Below 1 is "
                 "good.");
     }
-    if (c->depth_count) {
-        begin(to, "Distances known");
-        fprintf(to, "%.0f %%", 100 * c->known);
-        end(to, "For so much of the photographs it is known how far away it is.");
-    }
     put_seconds_of_work(to, &c->usage);
     fputs("</dl>\n</section>\n", to);
 }

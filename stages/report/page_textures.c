@@ -1,7 +1,7 @@
 /* page_textures.c - texture atlases: their pages, and the room as its views show it with their texture. */
 #include "stages/report/page_parts.h"
 
-enum { QUALITY = 82, SOURCES_LISTED = 8 };
+enum { QUALITY = 75, SOURCES_LISTED = 8 };
 static const double MIN_SHARE = 0.005; /* of a source that is listed */
 
 /* A link to a file below the scene's folder. */

@@ -10,7 +10,7 @@
  *         PHOTOS/FILE                    the photographs, for thumbnails
  *         DEFAULTS                       the default parameters; the page marks those that differ
  *         PAGE/{page.css,numbers.css,page.js}   styles and scripts, which go into the pages
- * writes  page/*.jpg, *.png, *.svg beside OUT   pictures, named by what they show
+ * writes  page/NAME.{jpg,png,svg} beside OUT   pictures, named by what they show
  *         page/numbers.html beside OUT   the page of numbers; not with --remodel
  *         OUT                            the page, last. Then pictures of an older page are removed */
 #include <string.h>
@@ -96,8 +96,8 @@ static enum status find_folder(struct job *job, struct err *err)
 static enum status check_usage(bool remodel, const struct contents_sources *from, const char *back, const char *quality,
                                struct err *err)
 {
-    if (remodel ? from->photos || from->stages || from->defaults : !from->photos || !from->stages)
-        return err_set(err, ST_USAGE, "wanted --photos and --stages, or --remodel without them; see --help.");
+    if (remodel ? from->stages || from->defaults : !from->photos || !from->stages)
+        return err_set(err, ST_USAGE, "wanted --photos and --stages, or --remodel without --stages; see --help.");
     if ((quality || back) && !remodel) return err_set(err, ST_USAGE, "--back and --quality go with --remodel.");
     return ST_OK;
 }
@@ -130,11 +130,9 @@ int main(int argc, char **argv)
     };
     struct provenance prov = {0};
     struct err err = ERR_INIT;
-    char records[FILE_PATH];
     if (cli_parse(argc, argv, "report", opts, &prov, &err) == CLI_RUN &&
-        !check_usage(remodel, &from, job.back, quality, &err) && !file_path(records, from.shared, "photos", "", &err) &&
-        !find_folder(&job, &err)) {
-        const struct remodel_sources edits = {{from.folder, records, from.scripts}, quality};
+        !check_usage(remodel, &from, job.back, quality, &err) && !find_folder(&job, &err)) {
+        const struct remodel_sources edits = {{from.folder, from.shared, from.photos, from.scripts}, quality};
         if (!(remodel ? write_remodel_page(&job, &edits, &err) : write_scene_pages(&job, &from, &err)))
             page_remove_old(job.folder, &job.pictures);
     }

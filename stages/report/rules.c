@@ -88,6 +88,7 @@ static void remodel_page_rule(struct graph *g, const struct scene_facts *f)
     rule_option(g, "--scene", f->scene);
     rule_option(g, "--folder", f->own);
     rule_option(g, "--shared", f->shared);
+    rule_photos(g, f, "--photos");
     rule_option(g, "--remodel", "");
     if (*quality && strcmp(quality, "default")) rule_option(g, "--quality", quality);
     rule_option(g, "--scripts", graph_text(g, "%s/edits", f->folder));

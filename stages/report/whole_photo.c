@@ -105,28 +105,63 @@ static void add_area(struct sum *sum, const struct whole_photo *w, const struct 
     }
 }
 
+static struct sum find_colour(const struct whole_photo *w, const struct image *layers, const struct image *known,
+                              const float fallback[3], bool smooth, int x, int y)
+{
+    const struct whole_photo_pixel *at = &w->pixels[(size_t)y * (size_t)w->width + (size_t)x];
+    struct sum sum = {{0}, 0};
+    if (at->view < 0) return sum;
+    const struct image *layer = &layers[at->view];
+    if (layer->data && smooth) {
+        add_area(&sum, w, layer, &known[at->view], x, y);
+        return sum;
+    }
+    const float *rgb = layer->data ? image_at(layer, (int)at->u, (int)at->v) : fallback;
+    return (struct sum){{(double)rgb[0], (double)rgb[1], (double)rgb[2]}, 1};
+}
+
+static unsigned char display(double linear) { return (unsigned char)(255 * srgb_from_linear((float)linear) + 0.5f); }
+
 enum status whole_photo_picture(struct picture *p, const struct whole_photo *w, const struct image *layers,
-                                const struct image *known, const float fallback[3], bool smooth, struct err *err)
+                                const struct image *known, const float fallback[3], bool smooth, unsigned char *covered,
+                                struct err *err)
 {
     if (picture_init(p, w->width, w->height, err)) return err->status;
     for (int y = 0; y < w->height; y++)
         for (int x = 0; x < w->width; x++) {
             const size_t i = (size_t)y * (size_t)w->width + (size_t)x;
-            const struct whole_photo_pixel *at = &w->pixels[i];
-            const struct image *layer = at->view < 0 ? NULL : &layers[at->view];
-            struct sum sum = {{0}, 0};
-            if (!layer) continue;
-            if (!layer->data) {
-                sum = (struct sum){{(double)fallback[0], (double)fallback[1], (double)fallback[2]}, 1};
-            } else if (smooth) {
-                add_area(&sum, w, layer, &known[at->view], x, y);
-            } else {
-                const float *rgb = image_at(layer, (int)at->u, (int)at->v);
-                sum = (struct sum){{(double)rgb[0], (double)rgb[1], (double)rgb[2]}, 1};
-            }
-            for (int c = 0; sum.weight > 0 && c < 3; c++)
-                p->rgb[3 * i + (size_t)c] =
-                    (unsigned char)(255 * srgb_from_linear((float)(sum.rgb[c] / sum.weight)) + 0.5f);
+            const struct sum sum = find_colour(w, layers, known, fallback, smooth, x, y);
+            if (covered) covered[i] = sum.weight > 0;
+            for (int c = 0; sum.weight > 0 && c < 3; c++) p->rgb[3 * i + (size_t)c] = display(sum.rgb[c] / sum.weight);
         }
     return ST_OK;
+}
+
+static double linear(unsigned char value) { return (double)linear_from_srgb((float)value / 255); }
+
+static bool is_well_exposed(const unsigned char *rgb)
+{
+    for (int c = 0; c < 3; c++)
+        if (rgb[c] < 25 || rgb[c] > 235) return false;
+    return true;
+}
+
+void whole_photo_find_gain(double gain[3], const struct picture *p, const unsigned char *covered,
+                           const struct picture *rest)
+{
+    double here[3] = {0}, there[3] = {0};
+    for (size_t i = 0; i < (size_t)p->width * (size_t)p->height; i++)
+        if (covered[i] && is_well_exposed(p->rgb + 3 * i) && is_well_exposed(rest->rgb + 3 * i))
+            for (size_t c = 0; c < 3; c++) {
+                here[c] += linear(p->rgb[3 * i + c]);
+                there[c] += linear(rest->rgb[3 * i + c]);
+            }
+    for (int c = 0; c < 3; c++) gain[c] = there[c] > 0 ? here[c] / there[c] : 1;
+}
+
+void whole_photo_fill(struct picture *p, const unsigned char *covered, const struct picture *rest, const double gain[3])
+{
+    for (size_t i = 0; i < (size_t)p->width * (size_t)p->height; i++)
+        for (size_t c = 0; !covered[i] && c < 3; c++)
+            p->rgb[3 * i + c] = display(gain[c] * linear(rest->rgb[3 * i + c]));
 }

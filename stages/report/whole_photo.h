@@ -28,9 +28,19 @@ enum status whole_photo_init(struct whole_photo *w, const struct lens *lenses, c
 void whole_photo_release(struct whole_photo *w);
 
 /* layers[i] is view i's picture, linear; one without data shows `fallback` instead. With smooth, what a pixel covers is
- * averaged; else its centre counts, for pictures whose colours are codes. What no view shows, and samples that are
- * black in `known` (of which there is one for each view), do not count; where nothing does, the picture is black. */
+ * averaged; else its centre counts, for pictures whose colours are codes. Samples that are black in `known` (of which
+ * there is one for each view) do not count; where nothing does, and where no view shows anything, the picture is
+ * black, and covered (NULL, or a byte for each pixel) is 0. */
 enum status whole_photo_picture(struct picture *p, const struct whole_photo *w, const struct image *layers,
-                                const struct image *known, const float fallback[3], bool smooth, struct err *err);
+                                const struct image *known, const float fallback[3], bool smooth, unsigned char *covered,
+                                struct err *err);
+
+/* Fills what is not covered from the photo itself, which is multiplied by its mean ratio to the picture where both are
+ * well exposed, for each colour. rest: of the size of p. */
+void whole_photo_fill(struct picture *p, const unsigned char *covered, const struct picture *rest,
+                      const double gain[3]);
+/* That ratio; 1 where they have nothing in common. */
+void whole_photo_find_gain(double gain[3], const struct picture *p, const unsigned char *covered,
+                           const struct picture *rest);
 
 #endif
