@@ -24,10 +24,12 @@
 
 #include "common/base/array.h"
 #include "common/base/parallel.h"
+#include "common/base/sort.h"
 #include "common/base/textfile.h"
 #include "common/capture/camera_set.h"
 #include "common/capture/lens_list.h"
 #include "common/capture/photo_list.h"
+#include "common/math/numbers.h"
 #include "common/texture/picture_made.h"
 #include "common/texture/picture_record.h"
 #include "stages/report/contents_parts.h"
@@ -35,11 +37,13 @@
 #include "stages/report/whole_photo.h"
 
 enum { HIGHEST = 720, LOWEST = 300, BUDGET = 5000000 };
-static const double BYTES_A_PIXEL = 0.13, LEAST = 0.5, LIGHT_WORTH = 0.3;
-static const double SIDE_SHARE = 0.25; /* of a picture's area: pictures of origins and of ratios */
+static const double BYTES_A_PIXEL = 0.13, LEAST = 0.5, LIGHT_WORTH = 0.3, COVERED = 0.9;
+static const double NEAR = 0.25, TURN = 20, LIKENESS = 0.1; /* of the spread; degrees; worth of one like another */
+static const double SIDE_SHARE = 0.25;                      /* of a picture's area: pictures of origins and of ratios */
 
 struct view_change { /* of a view after a change */
     bool drawn, lit;
+    bool unlit;                 /* drawn by relight alone, among its own pictures */
     struct picture_record file; /* of drawn */
     struct relit_record light;  /* of lit */
 };
@@ -59,6 +63,7 @@ struct rooms_reading {
     struct camera_set cameras;
     struct source_photo *photos; /* owned */
     int photo_count;
+    double spread;             /* the median distance of two photos */
     struct view_change *table; /* change_count rows of lenses.count; owned */
 };
 
@@ -177,25 +182,25 @@ static enum status read_view_change(struct rooms_reading *r, int change, int len
 {
     struct view_change *v = change_of(r, change, lens);
     const char *scene = r->from->folder, *edit = r->rooms->changes[change].name;
-    char pictures[FILE_PATH], relit[FILE_PATH], unlit[FILE_PATH], path[FILE_PATH];
+    char pictures[FILE_PATH], relit[FILE_PATH], path[FILE_PATH];
     struct err problem = ERR_INIT;
-    struct product_key key = {.name = r->lenses.lenses[lens].view, .pictures = pictures, .relit = relit};
+    const struct product_key key = {.name = r->lenses.lenses[lens].view, .pictures = pictures, .relit = relit};
     snprintf(relit, sizeof relit, "relight/%s", edit);
     snprintf(pictures, sizeof pictures, "remodel/%s/pictures", edit);
-    if (contents_product(path, scene, PRODUCT_PICTURE_RECORD, &key))
-        v->drawn = !picture_record_read(&v->file, path, NULL, &problem);
-    if (problem.status && note(r->rooms, "a picture is left out", &problem, err)) return err->status;
+    v->drawn = contents_product(path, scene, PRODUCT_PICTURE_RECORD, &key);
+    if (!v->drawn) {
+        snprintf(pictures, sizeof pictures, "relight/%s/unlit", edit);
+        v->drawn = v->unlit = contents_product(path, scene, PRODUCT_PICTURE_RECORD, &key);
+    }
+    if (v->drawn && picture_record_read(&v->file, path, NULL, &problem)) {
+        v->drawn = false;
+        if (note(r->rooms, "a picture is left out", &problem, err)) return err->status;
+    }
     if (!contents_product(path, scene, PRODUCT_RELIT_RECORD, &key)) return ST_OK;
     problem = (struct err)ERR_INIT;
     if (relit_record_read(&v->light, path, &problem))
         return note(r->rooms, "a relit picture is left out", &problem, err);
     v->lit = true;
-    if (v->drawn) return ST_OK;
-    snprintf(unlit, sizeof unlit, "relight/%s/unlit", edit); /* relight draws it by itself */
-    key.pictures = unlit;
-    if (contents_product(path, scene, PRODUCT_PICTURE_RECORD, &key) &&
-        picture_record_read(&v->file, path, NULL, &problem))
-        return note(r->rooms, "a picture is left out", &problem, err);
     return ST_OK;
 }
 
@@ -241,25 +246,64 @@ static struct room_look measure_look(const struct rooms_reading *r, const struct
     return look;
 }
 
+/* A photo of which little is left, such as one that looks straight at a new wall, tells less. */
 static double worth(const struct room_look *look)
 {
     const double guessed = look->shares[MADE_SYNTHESISED] + look->shares[MADE_UNSURE];
     const double known = look->changed > guessed ? (look->changed - guessed) / look->changed : 0;
     const double sure = look->light > look->bounded ? (look->light - look->bounded) / look->light : 0;
-    return known * known * look->changed + 1e-3 * look->changed + LIGHT_WORTH * sure * look->light;
+    const double telling = look->changed * (1 - COVERED * look->changed / 100);
+    return known * known * telling + 1e-3 * look->changed + LIGHT_WORTH * sure * look->light;
 }
 
 static bool is_seen(const struct room_look *look) { return look->changed >= LEAST || look->light >= LEAST; }
 
-/* The photo not yet chosen that shows a change best; NULL: none shows it. */
+/* The distance that half of the photos' pairs exceed; of many photos some pairs stand for all. */
+static double find_spread(const struct rooms_reading *r)
+{
+    enum { PAIRS = 4096 };
+    double *distances = malloc(PAIRS * sizeof *distances), spread = 0;
+    size_t n = 0;
+    const int step = r->photo_count / 64 + 1;
+    for (int i = 0; distances && i < r->photo_count; i += step)
+        for (int k = 0; k < i && n < PAIRS; k += step)
+            distances[n++] =
+                vec3_length(vec3_sub(r->views[r->photos[i].first].center, r->views[r->photos[k].first].center));
+    if (n) {
+        sort_doubles(distances, n);
+        spread = distances[n / 2];
+    }
+    free(distances);
+    return spread;
+}
+
+/* Whether two photos were taken from about the same place in about the same direction. */
+static bool are_alike(const struct rooms_reading *r, const struct source_photo *a, const struct source_photo *b)
+{
+    const struct view *p = &r->views[a->first], *q = &r->views[b->first];
+    return vec3_length(vec3_sub(p->center, q->center)) < NEAR * r->spread &&
+           vec3_dot(mat3_row(p->cam_from_world, 2), mat3_row(q->cam_from_world, 2)) > cos(TURN * DEGREE);
+}
+
+static bool is_like_chosen(const struct rooms_reading *r, const struct source_photo *p)
+{
+    for (int i = 0; i < r->photo_count; i++)
+        if (r->photos[i].chosen && are_alike(r, p, &r->photos[i])) return true;
+    return false;
+}
+
+/* The photo not yet chosen that shows a change best; NULL: none shows it. One like another that was chosen comes after
+ * those that are not. */
 static struct source_photo *best_photo(const struct rooms_reading *r, int change)
 {
     struct source_photo *best = NULL;
     double most = 0;
     for (int i = 0; i < r->photo_count; i++) {
         const struct room_look look = measure_look(r, &r->photos[i], change);
-        if (r->photos[i].chosen || !is_seen(&look) || !(worth(&look) > most)) continue;
-        most = worth(&look);
+        if (r->photos[i].chosen || !is_seen(&look)) continue;
+        const double value = worth(&look) * (is_like_chosen(r, &r->photos[i]) ? LIKENESS : 1);
+        if (!(value > most)) continue;
+        most = value;
         best = &r->photos[i];
     }
     return best;
@@ -421,11 +465,11 @@ static bool find_layer(char path[FILE_PATH], double *scale, const struct rooms_r
     const struct product_key key = {.name = r->lenses.lenses[lens].view, .pictures = pictures, .relit = relit};
     const bool light = kind == LAYER_RELIT || kind == LAYER_RATIO;
     snprintf(relit, sizeof relit, "relight/%s", edit);
-    snprintf(pictures, sizeof pictures, v->drawn ? "remodel/%s/pictures" : "relight/%s/unlit", edit);
+    snprintf(pictures, sizeof pictures, v->unlit ? "relight/%s/unlit" : "remodel/%s/pictures", edit);
     *scale = kind == LAYER_AFTER && v->file.exposure > 0    ? exposure / v->file.exposure
              : kind == LAYER_RELIT && v->light.exposure > 0 ? exposure / v->light.exposure
                                                             : 1;
-    if (light ? !v->lit : !(v->file.changed > 0)) return false;
+    if (light ? !v->lit : !v->drawn || !(v->file.changed > 0)) return false;
     return contents_product(path, r->from->folder, ids[kind], &key);
 }
 
@@ -646,6 +690,7 @@ static enum status read_rooms(struct rooms_reading *r, struct err *err)
     struct rooms *rooms = r->rooms;
     if (list_changes(r, err) || !rooms->change_count || !read_views(r, err) || read_table(r, err)) return err->status;
     count_photos(r);
+    r->spread = find_spread(r);
     const int chosen = choose_photos(r);
     rooms->photos = calloc((size_t)chosen + 1, sizeof *rooms->photos);
     if (!rooms->photos) return err_nomem(err, "photos", (size_t)chosen * sizeof *rooms->photos);

@@ -19,7 +19,7 @@
 #include "stages/report/texture_pictures.h"
 
 enum {
-    VIEWPOINTS_SHOWN = 10,
+    VIEWPOINTS_SHOWN = 12,
     VITA_VIEWS = 2,     /* views of the block of the view-independent atlas */
     SIGHT_HEIGHT = 240, /* px, of the pictures of views, and of pages */
     PAGE_HEIGHT = 200,

@@ -92,6 +92,7 @@ static enum status put_numbers_head(struct page *page, const char *scene, const 
     if (c->relit_count) fputs("<a href=\"#relit\">Light of changes</a>", to);
     fputs("<a href=\"#depth\">Depth</a>", to);
     if (c->axes_count) fputs("<a href=\"#axes\">Axes</a>", to);
+    if (c->photos.count) fputs("<a href=\"#photos\">Photographs</a>", to);
     if (c->lens_form_count) fputs("<a href=\"#lens\">Lens</a>", to);
     fputs("<a href=\"#time\">Time and memory</a><a href=\"#parameters\">Parameters</a><a "
           "href=\"#warnings\">Warnings</a><a href=\"#skipped\">Left out</a></nav>\n</header>\n<main>\n",
@@ -111,6 +112,7 @@ enum status numbers_page_write(struct page *page, const char *scene, const char 
     if (page_textures(page, c, err) || page_light(page, c, err) || page_relit(page, c, err) ||
         page_depths(page, c, err) || page_axes(page, c, err))
         return err->status;
+    page_photo_table(to, c);
     page_lens(to, c);
     page_usage(to, c);
     page_settings(to, c);

@@ -40,6 +40,7 @@ enum status page_relit(struct page *page, const struct contents *c, struct err *
 enum status page_evaluation(struct page *page, const struct contents *c, struct err *err);
 enum status page_depths(struct page *page, const struct contents *c, struct err *err);
 enum status page_axes(struct page *page, const struct contents *c, struct err *err);
+void page_photo_table(FILE *to, const struct contents *c);
 void page_lens(FILE *to, const struct contents *c);
 void page_numbers(FILE *to, const struct contents *c);
 void page_usage(FILE *to, const struct contents *c);

@@ -1,4 +1,4 @@
-/* page_photos.c - the photographs, small, and which of them could not be used. */
+/* page_photos.c - the photographs, small, for people; and as a table. */
 #include "stages/report/page_parts.h"
 
 static enum status put_photo(struct page *page, const struct contents *c, const struct photo_card *card,
@@ -30,4 +30,32 @@ enum status page_photos(struct page *page, const struct contents *c, struct err 
         if (put_photo(page, c, &c->photo_cards[i], err)) return err->status;
     fputs(c->photos.count ? "</ul>\n</section>\n" : "</section>\n", to);
     return ST_OK;
+}
+
+void page_photo_table(FILE *to, const struct contents *c)
+{
+    if (!c->photos.count) return;
+    fputs(
+        "<section id=\"photos\" aria-labelledby=\"photos-title\">\n<h2 id=\"photos-title\">Photographs</h2>\n<details>"
+        "<summary>Size, colours and fit of each</summary>\n<div class=\"wide\"><table>\n<thead><tr><th "
+        "scope=\"col\">File</th><th scope=\"col\" class=\"n\">Size, px</th><th scope=\"col\">Colours</th><th "
+        "scope=\"col\" class=\"n\">Views</th><th scope=\"col\" class=\"n\">Median error of its points, px</th><th "
+        "scope=\"col\"></th></tr></thead>\n<tbody>\n",
+        to);
+    for (int i = 0; i < c->photos.count; i++) {
+        const struct photo_card *card = &c->photo_cards[i];
+        const struct photo_info *info = &card->record->info;
+        fputs("<tr><th scope=\"row\">", to);
+        html_text(to, card->record->file);
+        fprintf(to, "</th><td class=\"n\">%d × %d</td><td>", info->width, info->height);
+        html_text(to, *info->colour ? info->colour : "sRGB");
+        fprintf(to, "</td><td class=\"n\">%d</td><td class=\"n\">", card->views);
+        if (card->residual > 0) fprintf(to, "%.2f", card->residual);
+        fputs("</td><td>", to);
+        if (card->held_out) page_put_tag(to, "held out");
+        if (c->has_views && !card->views && !card->held_out) page_put_tag(to, "not placed by SfM");
+        page_put_tag(to, card->problem);
+        fputs("</td></tr>\n", to);
+    }
+    fputs("</tbody>\n</table></div>\n</details>\n</section>\n", to);
 }

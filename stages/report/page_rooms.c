@@ -128,9 +128,29 @@ static enum status put_room(struct page *page, const struct rooms *rooms, const 
     return err->status;
 }
 
+/* What the changes are, in the words of their scripts; page.js shows that of the chosen one. */
+static void put_about(FILE *to, const struct rooms *rooms)
+{
+    bool any = false;
+    for (int i = 0; i < rooms->change_count; i++) {
+        const struct room_change *change = &rooms->changes[i];
+        if (!change->about[0] || !change->photos) continue;
+        fputs(any ? "<div data-change=\"" : "<dl class=\"about looks\">\n<div data-change=\"", to);
+        any = true;
+        html_text(to, change->name);
+        fputs("\"><dt>", to);
+        page_put_change(to, change->name);
+        fputs("</dt><dd>", to);
+        html_text(to, change->about);
+        fputs("</dd></div>\n", to);
+    }
+    if (any) fputs("</dl>\n", to);
+}
+
 enum status page_rooms(struct page *page, const struct rooms *rooms, struct err *err)
 {
     if (!rooms->photo_count) return ST_OK;
+    put_about(page->to, rooms);
     fputs("<div class=\"rooms\">\n", page->to);
     for (int i = 0; i < rooms->photo_count; i++)
         if (put_room(page, rooms, &rooms->photos[i], err)) return err->status;

@@ -347,8 +347,8 @@ the_page_shows_the_metrics()
     measure
     cp metrics.tsv t/
     "$B/bin/report" --scene t --folder t --shared shared --photos sim-scene/photos --stages evaluate --out page.html 2>log || { cat log; fail report; }
-    ! grep -q 'metrics.* cannot be read' page.html || fail "the page cannot read the tables"
-    for m in novel.rms_clipped edited.dark.relit_gain edited.wide.faces shell.faces_hidden radiance.scale model.ceilings; do grep -qF "<code>$m</code>" page.html || fail "the page lacks $m"; done
+    ! grep -q 'metrics.* cannot be read' page/numbers.html || fail "the page cannot read the tables"
+    for m in novel.rms_clipped edited.dark.relit_gain edited.wide.faces shell.faces_hidden radiance.scale model.ceilings; do grep -qF "<code>$m</code>" page/numbers.html || fail "the page lacks $m"; done
 }
 
 any_number_of_threads_gives_the_same_bytes()

@@ -83,14 +83,14 @@ the_page_shows_the_light()
 {
     local page=("$B/bin/report" --scene t --folder "$O" --shared "$O" --photos set/photos --stages gather_irradiance)
     rm -rf $O/relight
-    "${page[@]}" --out dark.html
-    ! grep -q 'id="light"' dark.html || fail "a section about light that is not there"
+    "${page[@]}" --out dark/index.html
+    ! grep -q 'id="light"' dark/page/numbers.html || fail "a section about light that is not there"
     cp -r two/1 $O/relight
     cp two/points/irradiance* $O/relight
-    "${page[@]}" --out lit.html
+    "${page[@]}" --out lit/index.html
     rm -rf $O/relight
-    grep -q '<h4>View '"$view"'</h4>' lit.html && grep -q '<h4>Chosen points</h4>' lit.html || fail "the page lacks the light"
-    grep -q 'Where this light comes from' lit.html || fail "the page lacks the shares"
+    grep -q '<h4>View '"$view"'</h4>' lit/page/numbers.html && grep -q '<h4>Chosen points</h4>' lit/page/numbers.html || fail "the page lacks the light"
+    grep -q 'Where this light comes from' lit/page/numbers.html || fail "the page lacks the shares"
 }
 
 # materials MODEL...: one, in the middle of the photo of the view, as fit_materials writes it

@@ -80,8 +80,8 @@ make_builds_it_and_the_page_shows_it()
     [ "$n" = "$(ls $move/pan_scan/frames | wc -l)" ] || fail "$n frames in the video"
     [ ! -e $move/frames ] || fail "it rendered the move itself"
     make -s DEPS=manual SCENE=t >log 2>&1 || { cat log; fail "make"; }
-    grep -q 'the same move in 2D' out/t/index.html || fail "the page does not show it"
-    grep -q 'Pan and zoom over one photograph' out/t/index.html || fail "the page has no video of it"
+    grep -q 'the same move in 2D' out/t/page/numbers.html || fail "the page does not show it"
+    grep -q 'Pan and zoom over one photograph' out/t/page/numbers.html || fail "the page has no video of it"
     snapshot out/t >a
     make -s DEPS=manual SCENE=t >log 2>&1 || { cat log; fail "make again"; }
     snapshot out/t >b
@@ -92,7 +92,7 @@ make_builds_it_and_the_page_shows_it()
     snapshot out/t >c
     changed b c | grep -vE '^(index.html|parallax/establishing_dolly/pan_scan/(video.mp4|frames/[0-9]*.exr))$' && fail "more was made again"
     [ "$(changed b c | wc -l)" = $((n + 2)) ] || { changed b c; fail "not everything was made again"; }
-    grep -q '<code>photo_1</code>' out/t/index.html || fail "the page shows another view"
+    grep -q '<code>photo_1</code>' out/t/page/numbers.html || fail "the page shows another view"
 }
 
 for t in bad_arguments_are_refused_with_a_sentence unreadable_files_are_named depth_maps_replace_missing_points ranges_give_the_same_bytes \

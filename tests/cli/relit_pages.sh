@@ -35,7 +35,7 @@ light_that_an_object_changes_is_shown()
 plain_make_shows_it_on_both_pages()
 {
     m all PRODUCTS="model remodel relight" RELIT_VIEWS="$view"
-    grep -q 'Light of changes' $O/index.html || fail "the page of the scene does not show the light"
+    grep -q 'In the new light' $O/index.html && grep -q 'Light of changes' $O/page/numbers.html || fail "the pages of the scene do not show the light"
     grep -q 'In the new light' $O/remodel/index.html || fail "the page of edits does not show the light"
     times >before
     m all PRODUCTS="model remodel relight" RELIT_VIEWS="$view"

@@ -149,7 +149,7 @@ every_list_of_stages_has_it()
     [ -s docs/man/mean_colour.1 ] || fail "it has no manual page"
     m depth
     m report
-    grep -q mean_colour out/t/index.html || fail "the page does not list it"
+    grep -q mean_colour out/t/page/numbers.html || fail "the page does not list it"
 }
 
 no_other_file_is_changed_by_hand()

@@ -20,7 +20,7 @@ BRACKETED := yes" ] || { cat out/t/photos/photos.mk; fail "wrong views"; }
     grep -aq 'exact' out/t/views/photo_3.exr || fail "the view is not marked as exact radiometry"
     grep -aq 'hdr/photo_3.exr' out/t/views/photo_3.exr || fail "the view is not made from the merged exposures"
     [ -s out/t/parallax/establishing_dolly/video.mp4 ] && [ -s out/t/index.html ] || fail "no video or no page"
-    grep -q 'hdr_merge' out/t/index.html || fail "the page does not show the merge"
+    grep -q 'hdr_merge' out/t/page/numbers.html || fail "the page does not show the merge"
 }
 
 the_next_make_does_nothing()

@@ -92,9 +92,9 @@ a_lost_frame_is_rendered_and_measured_again()
 the_page_shows_what_was_measured()
 {
     run_scene HOLDOUT=3 >log || { cat log; fail "make"; }
-    grep -q 'holdout.psnr_covered' out/t+holdout3/index.html || fail "the page has no table"
-    [ "$(grep -o 'alt="Held-out photograph' out/t+holdout3/index.html | wc -l)" = 2 ] || fail "the held-out photos are not shown"
-    [ "$(grep -o 'alt="True depth of view' out/t+holdout3/index.html | wc -l)" = 4 ] || fail "the truth is not shown"
+    grep -q 'holdout.psnr_covered' out/t+holdout3/page/numbers.html || fail "the page has no table"
+    [ "$(grep -o 'alt="Held-out photograph' out/t+holdout3/page/numbers.html | wc -l)" = 2 ] || fail "the held-out photos are not shown"
+    [ "$(grep -o 'alt="True depth of view' out/t+holdout3/page/numbers.html | wc -l)" = 4 ] || fail "the truth is not shown"
     all_products out/t+holdout3 >a
     run_scene HOLDOUT=3 >log
     all_products out/t+holdout3 >b

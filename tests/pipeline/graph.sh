@@ -11,8 +11,8 @@ chain_from_photos_to_video()
     make -s DEPS=manual PHOTOS=set/photos SFM=set/model SCENE=t >first.log 2>&1 || { cat first.log; fail "make failed"; }
     [ -s out/t/parallax/establishing_dolly/video.mp4 ] || fail "no video"
     [ -s out/t/index.html ] || fail "no page"
-    grep -qE '100\.0 % known, [0-9.]+ % inherited' out/t/index.html || fail "the page does not show how much depth is inherited"
-    grep -q 'Inherited depth.*most in photo_[0-9] (' out/t/index.html || fail "the page does not name the views with the most inherited depth"
+    grep -qE '100\.0 % known, [0-9.]+ % inherited' out/t/page/numbers.html || fail "the page does not show how much depth is inherited"
+    grep -q 'Inherited depth.*most in photo_[0-9] (' out/t/page/numbers.html || fail "the page does not name the views with the most inherited depth"
     tail -n 2 first.log | matches 'video  out/t/parallax/establishing_dolly/video.mp4' || fail "the run does not end with the video's path"
     n=$(ffprobe -v error -count_frames -select_streams v -show_entries stream=nb_read_frames,pix_fmt,codec_name,width,height -of csv=p=0 out/t/parallax/establishing_dolly/video.mp4)
     [ "$n" = "h264,160,120,yuv420p,6" ] || fail "the video is $n, wanted h264,160,120,yuv420p,6"

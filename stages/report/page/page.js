@@ -45,7 +45,8 @@ class Room {
         }
         this.box = make('input', {type: 'checkbox'});
         changed(this.box, () => { this.real = this.box.checked; this.show(); });
-        row.append(lights, make('label', {class: 'real'}, this.box, ' show what is real'));
+        if (this.looks.some((l) => l.lit)) row.append(lights);
+        row.append(make('label', {class: 'real'}, this.box, ' show what is real'));
         this.frame.after(row);
         this.over = make('img', {class: 'over', alt: '', hidden: ''});
         this.after.after(this.over);
@@ -90,7 +91,9 @@ class Room {
 // One choice for all pictures; those that do not show the change are hidden.
 const addChoiceForAll = (rooms, section) => {
     const changes = new Map(rooms.flatMap((r) => r.looks.map((l) => [l.change, l.name])));
-    const count = make('span', {role: 'status'}), lit = rooms.some((r) => r.looks.some((l) => l.lit));
+    const about = new Map([...document.querySelectorAll('.about > div')].map(
+        (e) => [e.dataset.change, e.querySelector('dd').textContent]));
+    const count = make('p', {role: 'status'}), lit = rooms.some((r) => r.looks.some((l) => l.lit));
     const select = make('select', {id: 'change-all'}, make('option', {value: ''}, 'each picture its own'),
         ...[...changes].sort((a, b) => a[1].localeCompare(b[1])).map(([c, n]) => make('option', {value: c}, n)));
     select.addEventListener('change', () => {
@@ -100,7 +103,8 @@ const addChoiceForAll = (rooms, section) => {
             if (!select.value) room.choose(room.looks[0].change);
             shown += !room.figure.hidden;
         }
-        count.textContent = select.value ? `${shown} of these ${rooms.length} photographs show it` : '';
+        count.textContent = !select.value ? '' :
+            `${about.get(select.value) || ''} ${shown} of these ${rooms.length} photographs show it.`;
     });
     const row = make('div', {class: 'choose all'}, make('label', {}, 'Show in all pictures: ', select));
     if (lit) {
@@ -113,8 +117,7 @@ const addChoiceForAll = (rooms, section) => {
         }
         row.append(lights);
     }
-    row.append(count);
-    section.before(row);
+    section.before(row, count);
 };
 
 const rooms = [...document.querySelectorAll('figure.room')].map((figure, i) => new Room(figure, i));

@@ -1,33 +1,31 @@
-/* page.c - pages of an empty scene, of a photograph with an odd name, of changed parameters, of some stages. */
+/* page.c - the two pages of an empty scene, of a photograph with an odd name, of changed parameters, of some stages. */
 #include "stages/report/page.h"
 
+#include "tests/unit/report/scratch_page.h"
 #include "tests/unit/scratch.h"
 
 #include "common/base/outfile.h"
 
-/* The page of the scratch folder; the caller frees it. */
-static char *page_of(const char *scene, const char *defaults)
+/* The page of numbers, or the one for people, of the scratch folder; the caller frees it. */
+static char *any_page(const char *scene, const char *defaults, bool numbers)
 {
-    const struct contents_sources from = {scratch, scratch, scratch_path("originals"), "rectify sfm other report",
-                                          defaults};
-    struct contents c = {0};
-    struct err err = ERR_INIT;
-    char *text = NULL;
-    size_t size;
-    FILE *to = open_memstream(&text, &size);
-    assert_int_equal(contents_read(&c, &from, &err), ST_OK);
-    assert_int_equal(page_write(to, scene, &c, &err), ST_OK);
-    fclose(to);
-    contents_release(&c);
-    contents_release(&c);
-    return text;
+    const struct contents_sources from = {.folder = scratch,
+                                          .shared = scratch,
+                                          .photos = scratch_path("originals"),
+                                          .stages = "rectify sfm other report",
+                                          .defaults = defaults};
+    return scratch_page_of(&from, scene, numbers);
 }
+
+static char *page_of(const char *scene, const char *defaults) { return any_page(scene, defaults, true); }
+
+static char *people_page(const char *scene) { return any_page(scene, NULL, false); }
 
 static void missing_products_are_listed(void **state)
 {
     char *page = page_of("<b>&", NULL);
     (void)state;
-    assert_non_null(strstr(page, "<h1>&lt;b&gt;&amp;</h1>"));
+    assert_non_null(strstr(page, "<h1>&lt;b&gt;&amp;, in numbers</h1>"));
     assert_null(strstr(page, "<b>&"));
     assert_non_null(strstr(page, "No camera move has been planned yet"));
     assert_non_null(strstr(page, "There are no views yet."));
@@ -38,19 +36,105 @@ static void missing_products_are_listed(void **state)
     free(page);
 }
 
-static void the_page_of_remodelled_rooms_is_linked_if_there_is_one(void **state)
+static void an_empty_scene_has_a_page_for_people(void **state)
 {
-    static const char link[] = "<a href=\"remodel/index.html\">Remodelled rooms</a>";
-    struct err err = ERR_INIT;
-    char *page = page_of("scene", NULL);
+    char *page = people_page("<b>&");
     (void)state;
-    assert_null(strstr(page, link));
+    assert_contains(page, "<h1>&lt;b&gt;&amp;</h1>");
+    assert_contains(page, "There is no film yet.");
+    assert_contains(page, "No photographs are listed yet.");
+    assert_contains(page, "<a class=\"quiet\" href=\"page/numbers.html\">How it was made, in numbers</a>");
+    assert_lacks(page, "id=\"rooms\"");
+    assert_lacks(page, "id=\"few-numbers\"");
+    assert_lacks(page, "http://");
+    assert_lacks(page, "https://");
     free(page);
-    assert_ok(outfile_make_folders(scratch_path("remodel"), &err), err);
-    scratch_write("remodel/index.html", "");
-    page = page_of("scene", NULL);
-    assert_non_null(strstr(page, link));
+}
+
+static void other_pages_are_linked_if_they_exist(void **state)
+{
+    static const char *const links[][2] = {{"remodel", "href=\"remodel/index.html\">All about each change</a>"},
+                                           {"walk", "href=\"walk/index.html\">Walk through the rooms</a>"},
+                                           {"draw", "href=\"draw/index.html\">Draw on the photographs</a>"}};
+    (void)state;
+    for (int i = 0; i < 3; i++) {
+        struct err err = ERR_INIT;
+        char name[64];
+        char *page = people_page("scene");
+        assert_lacks(page, links[i][1]);
+        free(page);
+        assert_ok(outfile_make_folders(scratch_path(links[i][0]), &err), err);
+        snprintf(name, sizeof name, "%s/index.html", links[i][0]);
+        scratch_write(name, "");
+        page = people_page("scene");
+        assert_contains(page, links[i][1]);
+        free(page);
+    }
+}
+
+static void films_are_linked_and_named_in_ordinary_words(void **state)
+{
+    struct err err = ERR_INIT;
+    (void)state;
+    assert_ok(outfile_make_folders(scratch_path("parallax/dolly_zoom+pull_focus"), &err), err);
+    assert_ok(outfile_make_folders(scratch_path("relight/no-wall/tour"), &err), err);
+    scratch_write("parallax/dolly_zoom+pull_focus/video.mp4", "film");
+    scratch_write("relight/no-wall/tour/video.mp4", "film");
+    char *page = people_page("scene");
+    assert_contains(page, "src=\"parallax/dolly_zoom%2Bpull_focus/video.mp4\"");
+    assert_contains(page, "The camera moves while it zooms the other way");
+    assert_contains(page, "src=\"relight/no-wall/tour/video.mp4\"");
+    assert_contains(page, "A walk through the rooms after the change: no wall, in the new light");
     free(page);
+}
+
+static void scores_have_ordinary_names(void **state)
+{
+    struct err err = ERR_INIT;
+    (void)state;
+    assert_ok(outfile_make_folders(scratch_path("parallax/dolly_in/path"), &err), err);
+    scratch_write("parallax/dolly_in/path/cameras.txt", "1 PINHOLE 6 4 5 5 3 2\n");
+    scratch_write("parallax/dolly_in/path/images.txt", "1 1 0 0 0 0 0 0 1 0001.exr\n\n");
+    scratch_write("parallax/dolly_in/path/points3D.txt", "");
+    scratch_write("parallax/dolly_in/path.txt", "remodel-path 1\neffect dolly_in\nfps 30\nscore worst_h 1.5 \"\"\n"
+                                                "score length_of_thesis 2 \"scene units\"\nscore shot_1 3 s\n"
+                                                "frames 1\nframe 0001 0 0 0\n");
+    char *page = page_of("scene", NULL);
+    assert_contains(page, "<dt>largest holes</dt><dd>1.5 </dd><dd class=\"under\">how large the gaps");
+    assert_contains(page, "<dt>length by the coarse search</dt><dd>2 scene units</dd>");
+    assert_contains(page, "<dt>shot 1</dt><dd>3 s</dd></div>");
+    assert_lacks(page, "thesis");
+    assert_lacks(page, "worst h");
+    free(page);
+}
+
+static void a_picture_is_written_once_and_old_ones_are_removed(void **state)
+{
+    static unsigned char grey[6 * 4 * 3];
+    const struct picture p = {6, 4, grey};
+    struct page page;
+    struct err err = ERR_INIT;
+    char *text, folder[PATH_MAX], first[PICTURE_NAME], second[PICTURE_NAME], third[PICTURE_NAME];
+    size_t size;
+    (void)state;
+    scratch_page_begin(&page, &text, &size, folder, "page/", "");
+    assert_ok(page_write_picture(&page, &p, 80, first, &err), err);
+    assert_ok(page_write_picture(&page, &p, 80, second, &err), err);
+    grey[0] = 9;
+    assert_ok(page_write_picture(&page, &p, 0, third, &err), err);
+    assert_string_equal(first, second);
+    assert_string_not_equal(first, third);
+    assert_int_equal(page.pictures.count, 2);
+    scratch_write("page/0123456789abcdef-8.jpg", "of an older page");
+    scratch_write("page/numbers.html", "");
+    page_remove_old(folder, &page.pictures);
+    char name[128];
+    snprintf(name, sizeof name, "page/%s", third);
+    assert_int_equal(access(scratch_path(name), F_OK), 0);
+    assert_int_not_equal(access(scratch_path("page/0123456789abcdef-8.jpg"), F_OK), 0);
+    assert_int_equal(access(scratch_path("page/numbers.html"), F_OK), 0);
+    scratch_page_end(&page);
+    free(text);
 }
 
 static void things_are_shown_if_there_are_any(void **state)
@@ -65,19 +149,19 @@ static void things_are_shown_if_there_are_any(void **state)
     page = page_of("scene", NULL);
     assert_contains(page, "<a href=\"#things\">Things</a>");
     assert_contains(page, "<h2 id=\"things-title\">Things</h2>");
-    assert_contains(page, "src=\"data:image/svg+xml;base64,PHN2Zy8+\"");
+    assert_contains(page, "src=\"../things/sheet.svg\"");
     assert_lacks(page, "Plan of the rooms");
     free(page);
     scratch_write("things/plan.svg", "<svg></svg>");
     page = page_of("scene", NULL);
-    assert_contains(page,
-                    "alt=\"Plan of the rooms with all things\" src=\"data:image/svg+xml;base64,PHN2Zz48L3N2Zz4=\"");
+    assert_contains(page, "alt=\"Plan of the rooms with all things\" src=\"../things/plan.svg\"");
     free(page);
 }
 
 static void a_missing_scene_is_an_error(void **state)
 {
-    const struct contents_sources from = {scratch_path("no-such-scene"), scratch, scratch, "rectify", NULL};
+    const struct contents_sources from = {
+        .folder = scratch_path("no-such-scene"), .shared = scratch, .photos = scratch, .stages = "rectify"};
     struct contents c = {0};
     struct err err = ERR_INIT;
     (void)state;
@@ -102,11 +186,14 @@ static void photographs_are_shown_and_unlisted_ones_named(void **state)
     assert_int_equal(photo_record_write(&r, scratch_path("photos"), &err), ST_OK);
     scratch_write("photos/list.txt", "a_b \"a <b>.jpg\"\n");
 
-    char *page = page_of("scene", NULL);
-    assert_non_null(strstr(page, "alt=\"Photograph a &lt;b&gt;.jpg\" src=\"data:image/jpeg;base64,/9j/"));
-    assert_non_null(strstr(page, "6 × 4</span>, P3 &amp; more"));
-    assert_non_null(strstr(page, "<b>unused.JPG</b> is in the folder"));
-    assert_null(strstr(page, "not placed by SfM")); /* there are no views yet */
+    char *page = people_page("scene");
+    assert_contains(page,
+                    "<img loading=\"lazy\" width=\"6\" height=\"4\" alt=\"Photograph a &lt;b&gt;.jpg\" src=\"page/");
+    assert_lacks(page, "could not be placed"); /* there are no views yet */
+    free(page);
+    page = page_of("scene", NULL);
+    assert_contains(page, "<b>unused.JPG</b> is in the folder");
+    assert_contains(page, "P3 &amp; more");
     free(page);
 }
 
@@ -198,7 +285,11 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(missing_products_are_listed, scratch_make, scratch_remove),
-        cmocka_unit_test_setup_teardown(the_page_of_remodelled_rooms_is_linked_if_there_is_one, scratch_make,
+        cmocka_unit_test_setup_teardown(an_empty_scene_has_a_page_for_people, scratch_make, scratch_remove),
+        cmocka_unit_test_setup_teardown(other_pages_are_linked_if_they_exist, scratch_make, scratch_remove),
+        cmocka_unit_test_setup_teardown(films_are_linked_and_named_in_ordinary_words, scratch_make, scratch_remove),
+        cmocka_unit_test_setup_teardown(scores_have_ordinary_names, scratch_make, scratch_remove),
+        cmocka_unit_test_setup_teardown(a_picture_is_written_once_and_old_ones_are_removed, scratch_make,
                                         scratch_remove),
         cmocka_unit_test_setup_teardown(things_are_shown_if_there_are_any, scratch_make, scratch_remove),
         cmocka_unit_test_setup_teardown(a_missing_scene_is_an_error, scratch_make, scratch_remove),

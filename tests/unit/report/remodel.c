@@ -1,8 +1,11 @@
-/* remodel.c - the page of remodelled rooms: edits with their pictures, plans, films and exports; what is missing, odd
- * names, links. */
+/* remodel.c - photographs before and after edits; the page of remodelled rooms with plans, films and exports; what is
+ * missing, odd names, links. */
 #include "stages/report/page_remodel.h"
 
+#include "tests/unit/report/scratch_page.h"
 #include "tests/unit/scratch.h"
+
+#include <math.h>
 
 #include "common/base/outfile.h"
 #include "common/capture/lens_list.h"
@@ -54,6 +57,13 @@ static void put_views(void)
         snprintf(text + strlen(text), sizeof text - strlen(text), "%s %s PINHOLE 8 8 8 8 4 4 turn 1 0 0 0\n",
                  views[i][0], views[i][1]);
     put("views/lenses.txt", text);
+    put("views/cameras.txt", "1 PINHOLE 8 8 8 8 4 4\n");
+    put("views/points3D.txt", "");
+    text[0] = '\0';
+    for (int i = 0; i < 4; i++)
+        snprintf(text + strlen(text), sizeof text - strlen(text), "%d 1 0 0 0 %d 0 0 1 %s.exr\n\n", i + 1, 10 * i,
+                 views[i][0]);
+    put("views/images.txt", text);
     for (int i = 0; i < 4; i++) put_view(views[i][0]);
 }
 
@@ -91,17 +101,6 @@ static void put_edit(const char *edit)
     put_sight(edit, "c", 0, 0);
 }
 
-static void put_radiance(const char *name)
-{
-    struct exr_image im = {0};
-    struct err err = ERR_INIT;
-    assert_ok(exr_image_init(&im, SIDE, SIDE, &err), err);
-    for (int k = 0; k < 3; k++)
-        assert_ok(exr_add_plane(&im, (const char *const[]){"R", "G", "B"}[k], EXR_HALF, NULL, &err), err);
-    assert_ok(exr_write(&im, scratch_path(name), &prov, &err), err);
-    exr_image_release(&im);
-}
-
 /* A view of an edit in the light that it makes. */
 static void put_relit(const char *edit, const char *view, double changed)
 {
@@ -135,7 +134,7 @@ static void read_all(struct remodel_contents *c)
     char scripts[PATH_MAX];
     struct err err = ERR_INIT;
     snprintf(scripts, sizeof scripts, "%s", scratch_path("edits"));
-    const struct remodel_sources from = {scratch, scratch_path("photos"), scripts, page_quality};
+    const struct remodel_sources from = {{scratch, scratch, NULL, scripts}, page_quality};
     *c = (struct remodel_contents){0};
     assert_ok(remodel_contents_read(c, &from, &err), err);
 }
@@ -144,13 +143,14 @@ static void read_all(struct remodel_contents *c)
 static char *page_of(const char *scene, const char *back)
 {
     struct remodel_contents c;
+    struct page page;
     struct err err = ERR_INIT;
-    char *text = NULL;
+    char *text = NULL, folder[PATH_MAX];
     size_t size;
     read_all(&c);
-    FILE *to = open_memstream(&text, &size);
-    assert_ok(remodel_page_write(to, scene, back, &c, &err), err);
-    fclose(to);
+    scratch_page_begin(&page, &text, &size, folder, "../page/", "../");
+    assert_ok(remodel_page_write(&page, scene, back, &c, &err), err);
+    scratch_page_end(&page);
     remodel_contents_release(&c);
     return text;
 }
@@ -168,6 +168,9 @@ static int count_words(const char *page, const char *words)
 }
 
 /* ------------------------------------------------------------------------------------------------------------ links */
+
+/* A link to a picture of the page; returns whether it is one. */
+static bool is_picture(const char *link) { return !strncmp(link, "../page/", 8); }
 
 static void expect_target(const char *page, const char *link, size_t length)
 {
@@ -191,7 +194,8 @@ static void expect_target(const char *page, const char *link, size_t length)
     if (access(scratch_path(path), F_OK)) fail_msg("a link leads to %s, which is not there", path);
 }
 
-/* Each link leads to a place on the page, or to a file beside it. Returns how many lead to files. */
+/* Each link leads to a place on the page, or to a file beside it. Returns how many lead to files that are no pictures
+ * of the page. */
 static int expect_links(const char *page)
 {
     static const char *const begins[] = {" href=\"", " src=\""};
@@ -202,52 +206,62 @@ static int expect_links(const char *page)
             const size_t length = strcspn(at, "\"");
             if (!strncmp(at, "data:", 5)) continue;
             expect_target(page, at, length);
-            files += *at != '#';
+            files += *at != '#' && !is_picture(at);
         }
     return files;
 }
 
 /* ------------------------------------------------------------------------------------------------------------ tests */
 
-static void the_views_that_an_edit_changes_most_are_shown_one_of_each_photo(void **state)
+static void each_photo_has_one_picture_and_all_changes_that_it_shows(void **state)
 {
     struct remodel_contents c;
     (void)state;
     put_views();
     put_edit("no-wall");
-    put_guess("past-the-border", "a", 60, 90, 0); /* it shows little of what it changes */
-    put_guess("past-the-border", "c", 10, 0, 0);
-    put(in_edit("past-the-border", "model", ".txt"), "");
+    put_guess("door", "c", 5, 0, 0);
+    put(in_edit("door", "model", ".txt"), "");
     read_all(&c);
-    assert_int_equal(c.edit_count, 2);
-    const struct edit_card *card = &c.edits[0];
-    assert_string_equal(card->name, "no-wall");
-    assert_true(card->views == 4 && card->changed == 3 && card->sight_count == 2);
-    assert_string_equal(card->sights[0].view, "b@0");
-    assert_string_equal(card->sights[0].photo, "b");
-    assert_string_equal(card->sights[1].view, "a");
-    assert_true(card->sights[0].before.width == SIDE && card->sights[0].after.height == SIDE);
-    assert_string_equal(c.edits[1].sights[0].view, "c");
+    const struct rooms *rooms = &c.rooms;
+    assert_int_equal(rooms->change_count, 2);
+    assert_string_equal(rooms->changes[0].name, "door");
+    assert_int_equal(rooms->changes[0].photos, 1);
+    assert_int_equal(rooms->changes[1].photos, 2); /* a and b: c does not change */
+    assert_int_equal(rooms->photo_count, 3);
+    for (int i = 0; i < 3; i++) {
+        const struct room_photo *p = &rooms->photos[i];
+        assert_int_equal(p->look_count, 1);
+        assert_true(p->before.width == SIDE && p->before.height == SIDE);
+        assert_true(p->looks[0].after.width == SIDE && !p->looks[0].relit.rgb);
+        /* 0.25 times the exposure of 1.5, and the grey of the edit's picture */
+        assert_int_equal(p->before.rgb[0], 165);
+        assert_in_range(p->looks[0].after.rgb[0], 98, 100);
+    }
+    assert_string_equal(rooms->photos[0].photo, "b");
+    assert_true(fabs(rooms->photos[0].looks[0].changed - 27.5) < 1e-9); /* of b@0 and b@1 */
     remodel_contents_release(&c);
     remodel_contents_release(&c);
 }
 
-static void views_whose_pixels_are_known_come_before_those_that_are_guessed(void **state)
+static void what_is_known_comes_before_what_is_guessed(void **state)
 {
     struct remodel_contents c;
     (void)state;
     put_views();
     put(in_edit("no-wall", "model", ".txt"), "");
-    put_guess("no-wall", "a", 40, 0, 36);  /* most changes, and most is guessed */
-    put_guess("no-wall", "b@0", 8, 0, 8);  /* all is */
-    put_guess("no-wall", "b@1", 12, 0, 1); /* less changes, and it is known */
-    put_guess("no-wall", "c", 20, 0, 20);
+    put_guess("no-wall", "a", 40, 0, 40); /* most changes, and all is guessed */
+    put_guess("no-wall", "b@0", 12, 0, 1);
+    put_guess("no-wall", "b@1", 12, 0, 1);
+    put_guess("no-wall", "c", 97, 0, 0); /* hardly anything of the photo is left */
+    put_guess("open", "a", 20, 0, 0);    /* of the changes in a photo the one that tells most is shown first */
+    put(in_edit("open", "model", ".txt"), "");
     read_all(&c);
-    const struct edit_card *card = &c.edits[0];
-    assert_true(card->changed == 4 && card->sight_count == 3);
-    assert_string_equal(card->sights[0].view, "b@1");
-    assert_string_equal(card->sights[1].view, "a");
-    assert_string_equal(card->sights[2].view, "c");
+    assert_int_equal(c.rooms.photo_count, 3);
+    assert_string_equal(c.rooms.photos[0].photo, "a");
+    assert_int_equal(c.rooms.photos[0].look_count, 2);
+    assert_string_equal(c.rooms.changes[c.rooms.photos[0].looks[0].change].name, "open");
+    assert_string_equal(c.rooms.photos[1].photo, "c");
+    assert_string_equal(c.rooms.photos[2].photo, "b");
     remodel_contents_release(&c);
 }
 
@@ -260,7 +274,7 @@ static void the_page_has_pictures_plans_films_and_exports(void **state)
         "remodel-script 1\n# The wall <goes>,\n# and the light comes in.\nremove wall\n# no more\n");
     put("model/plan.svg", "<svg xmlns=\"http://www.w3.org/2000/svg\"/>");
     put("model/tour/video.mp4", "film");
-    put(in_edit("no-wall", "plan", ".svg"), "<svg xmlns=\"http://www.w3.org/2000/svg\"/>");
+    put(in_edit("no-wall", "plan", ".svg"), "<svg xmlns=\"http://www.w3.org/2000/svg\"> </svg>");
     put(in_edit("no-wall", "tour/video", ".mp4"), "film");
     put(in_edit("no-wall", "export/model", ".obj"), "o");
     put(in_edit("no-wall", "export/model", ".glb"), "g");
@@ -269,25 +283,28 @@ static void the_page_has_pictures_plans_films_and_exports(void **state)
     expect_words(page, "<h1>loft, remodelled</h1>");
     expect_words(page, "<h2>no wall</h2>");
     expect_words(page, "<p>The wall &lt;goes&gt;, and the light comes in.</p>");
-    expect_words(page, "Seen from photograph <b>b</b>");
+    expect_words(page, "<p>2 photographs show it.</p>");
+    expect_words(page, "data-photo=\"Photograph b\"");
     expect_words(page, "60 % of this picture is the photograph, 30 % comes from other photographs, 10 % is guessed");
-    assert_int_equal(count_words(page, "<div class=\"ba\">"), 2);
-    assert_int_equal(count_words(page, "data:image/jpeg;base64,"), 6); /* before, after, sources */
-    assert_int_equal(count_words(page, "data:image/svg+xml;base64,"), 2);
+    assert_int_equal(count_words(page, "<figure class=\"room\""), 2);
+    assert_int_equal(count_words(page, "data-made=\"../page/"), 2);
+    assert_int_equal(count_words(page, ".svg\"><figcaption>Plan "), 2);
     assert_int_equal(count_words(page, "<video "), 2);
     assert_int_equal(expect_links(page), 5);
+    assert_null(strstr(page, "base64"));
     assert_null(strstr(page, "There "));
     free(page);
 }
 
-static void an_edit_is_shown_in_the_light_that_it_makes(void **state)
+static void new_light_is_in_the_same_picture_as_the_change(void **state)
 {
+    struct remodel_contents c;
     (void)state;
     put_views();
     put_edit("no-wall");
     char *page = page_of("loft", NULL);
     expect_words(page, "a new window does not brighten the room yet");
-    assert_null(strstr(page, "<h3>In the new light</h3>"));
+    assert_null(strstr(page, "class=\"new\""));
     free(page);
     put_relit("no-wall", "a", 40);
     put_relit("no-wall", "b@0", 20);
@@ -297,14 +314,20 @@ static void an_edit_is_shown_in_the_light_that_it_makes(void **state)
         "remodel-light-rounds 1\nsamples 9\nbounded 1\nsettled yes\nround 1 change 0.5 left "
         "unknown\nround 2 change 0.1 left 0.025\n");
     put("relight/no-wall/objects.txt", "remodel-object-light 1\n");
-    put("evaluate/relit/no-wall/a.exr", "");
-    put_radiance("evaluate/relit/no-wall/a.exr");
+    read_all(&c);
+    assert_int_equal(c.rooms.photo_count, 2);
+    for (int i = 0; i < 2; i++) {
+        const struct room_look *look = &c.rooms.photos[i].looks[0];
+        assert_true(look->after.rgb && look->relit.rgb && look->made.rgb && look->ratio.rgb);
+        /* 128 of exposure 2, shown at the exposure of 1.5 */
+        assert_in_range(look->relit.rgb[0], 111, 113);
+        assert_in_range(look->ratio.rgb[0], 127, 129);
+    }
+    remodel_contents_release(&c);
     page = page_of("loft", NULL);
-    expect_words(page, "<h3>In the new light</h3>");
-    assert_int_equal(count_words(page, "<b>new light</b>"), 2); /* a, and b@1 of photo b; c does not change */
-    assert_int_equal(count_words(page, "<b class=\"of k2\">truth</b>"), 1);
-    assert_int_equal(count_words(page, "data:image/jpeg;base64,"), 6 + 5 + 4);
+    assert_int_equal(count_words(page, "<a class=\"new\""), 2);
     expect_words(page, "The light changes on 40 % of this picture. On 7 % the change is a cautious guess (striped)");
+    expect_words(page, "The light changes on 25 % of this picture."); /* of b@0 and b@1 */
     expect_words(page, " 3 % keeps its light");
     expect_words(page,
                  "Light was followed from wall to wall 2 times; by that a place may miss up to 2.5 % of its light.");
@@ -316,8 +339,31 @@ static void an_edit_is_shown_in_the_light_that_it_makes(void **state)
     page = page_of("loft", NULL);
     expect_words(page, "1 time; how much of it is still missing is unknown, more than was asked for.");
     expect_words(page, "a.txt:4: found &quot;140&quot;");
-    expect_words(page, "light: a relit picture is left out: ");
-    assert_int_equal(count_words(page, "<b>new light</b>"), 1); /* b@0 */
+    expect_words(page, "b@1.jpg");
+    assert_int_equal(count_words(page, "<a class=\"new\""), 0); /* b cannot be read, a has no new light */
+    assert_int_equal(count_words(page, "<figure class=\"room\""), 1);
+    free(page);
+}
+
+static void a_lamp_that_is_switched_changes_the_light_alone(void **state)
+{
+    struct remodel_contents c;
+    (void)state;
+    put_views();
+    put(in_edit("lamp", "model", ".txt"), "");
+    put_relit("lamp", "a", 60);
+    struct picture_record same = {SIDE, SIDE, 1.5, 0, {0}};
+    struct err err = ERR_INIT;
+    same.shares[MADE_PHOTO] = 100;
+    assert_ok(picture_record_write(&same, scratch_path("relight/lamp/unlit/a.txt"), &prov, &err), err);
+    read_all(&c);
+    assert_int_equal(c.rooms.photo_count, 1);
+    assert_null(c.rooms.photos[0].looks[0].after.rgb);
+    assert_non_null(c.rooms.photos[0].looks[0].relit.rgb);
+    remodel_contents_release(&c);
+    char *page = page_of("loft", NULL);
+    expect_words(page, "In the old light this change alters nothing here.");
+    assert_null(strstr(page, "not made yet: <code>make remodel"));
     free(page);
 }
 
@@ -365,8 +411,8 @@ static void a_picture_that_cannot_be_read_is_left_out_with_the_reason(void **sta
     char *page = page_of("loft", NULL);
     expect_words(page, "b@0.txt:3: found &quot;nan&quot;");
     expect_words(page, "b@1.jpg");
-    assert_int_equal(count_words(page, "<div class=\"ba\">"), 1);
-    expect_words(page, "Seen from photograph <b>a</b>");
+    assert_int_equal(count_words(page, "<figure class=\"room\""), 1);
+    expect_words(page, "data-photo=\"Photograph a\"");
     free(page);
     put(in_edit("no-wall", "pictures/a", ".jpg"), "");
     page = page_of("loft", NULL);
@@ -400,7 +446,7 @@ static void the_page_links_back_to_that_of_the_scene(void **state)
     put("remodel/index.html", "");
     put("index.html", "");
     char *page = page_of("loft", "../index.html");
-    expect_words(page, "<a href=\"../index.html\">How it was made</a>");
+    expect_words(page, "<a href=\"../index.html\">The page of the scene</a>");
     assert_int_equal(expect_links(page), 1);
     free(page);
 }
@@ -408,10 +454,11 @@ static void the_page_links_back_to_that_of_the_scene(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(the_views_that_an_edit_changes_most_are_shown_one_of_each_photo, empty_scratch),
-        cmocka_unit_test_setup(views_whose_pixels_are_known_come_before_those_that_are_guessed, empty_scratch),
+        cmocka_unit_test_setup(each_photo_has_one_picture_and_all_changes_that_it_shows, empty_scratch),
+        cmocka_unit_test_setup(what_is_known_comes_before_what_is_guessed, empty_scratch),
         cmocka_unit_test_setup(the_page_has_pictures_plans_films_and_exports, empty_scratch),
-        cmocka_unit_test_setup(an_edit_is_shown_in_the_light_that_it_makes, empty_scratch),
+        cmocka_unit_test_setup(new_light_is_in_the_same_picture_as_the_change, empty_scratch),
+        cmocka_unit_test_setup(a_lamp_that_is_switched_changes_the_light_alone, empty_scratch),
         cmocka_unit_test_setup(what_was_not_made_is_said_and_not_linked, empty_scratch),
         cmocka_unit_test_setup(a_picture_that_cannot_be_read_is_left_out_with_the_reason, empty_scratch),
         cmocka_unit_test_setup(odd_names_are_escaped_and_their_links_lead_to_the_files, empty_scratch),

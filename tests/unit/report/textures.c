@@ -426,8 +426,8 @@ static void the_page_shows_each_viewpoint_and_the_vita(void **state)
     assert_int_equal(count_of(page, "alt=\"Sources of the texture in view p01\""), 1);
     assert_int_equal(count_of(page, "style=\"--n:3\""), 2);
     assert_int_equal(count_of(page, "style=\"--n:2\""), 1); /* side by side */
-    assert_contains(page, "<a href=\"vdta/p00/page0.exr\"><img");
-    assert_contains(page, "<a href=\"vita/page0.exr\"><img");
+    assert_contains(page, "<a href=\"../vdta/p00/page0.exr\"><img");
+    assert_contains(page, "<a href=\"../vita/page0.exr\"><img");
     assert_contains(page, "warped from 1 view, ");
     assert_contains(page, "6 tiles on 1 page.");
     assert_lacks(page, "more viewpoint");
