@@ -106,12 +106,13 @@ $(GRAPH_MAIN): $(B)/rules.def
 $(B)/lib/bench.a: $(call objs,tests/bench/*.cc tests/bench/*/*.c)
 	$(archive)
 
-# what a product depends on is the code, not the file: code/STAGE is a checksum of the stripped program, rewritten only if that
-# changed. stripped/STAGE has the time of the program that was looked at. Temporary files stay there: make install and
-# others read code/ while runs of scenes look at the same programs
-$(B)/stripped/%: $(B)/bin/%
+# what a product depends on is the code, not the file: code/STAGE is a checksum of the stripped program and of the parts of
+# its page, rewritten only if that changed. stripped/STAGE has the time of the newest file that was looked at. Temporary
+# files stay there: make install and others read code/ while runs of scenes look at the same programs
+$(B)/stripped/%: $(B)/bin/% $$(wildcard stages/$$*/page/*)
 	+@[ -e $< ] || exit 0; mkdir -p $(@D) $(B)/code; t=$@.$$$$; touch -r $< $$t; $(STRIP) -s -o $$t.bin $<; \
-	  cksum <$$t.bin >$$t.tmp; rm $$t.bin; cmp -s $$t.tmp $(B)/code/$* && rm $$t.tmp || mv $$t.tmp $(B)/code/$*; mv $$t $@
+	  for f in $(wordlist 2,99,$^); do [ ! $$f -nt $$t ] || touch -r $$f $$t; done; \
+	  cat $$t.bin $(wordlist 2,99,$^) | cksum >$$t.tmp; rm $$t.bin; cmp -s $$t.tmp $(B)/code/$* && rm $$t.tmp || mv $$t.tmp $(B)/code/$*; mv $$t $@
 
 # archives may need each other; libraries that nothing needs are left out
 link = $(call say,LD $@)mkdir -p $(@D); $(CC) $(CFLAGS) -o $@ $(filter %.o,$^) -Wl,--start-group $(filter %.a,$^) -Wl,--end-group \

@@ -1,5 +1,5 @@
-/* contents_remodel.c - reads what there is of each edit beside its pictures (contents_rooms.c): plans, models and films,
- * which are linked where they exist. For what does not exist, the page says which goal of make makes it. */
+/* contents_remodel.c - reads what there is of each edit beside its pictures (contents_rooms.c): plans, models, films.
+ * They are linked where they exist. For what does not exist, the page says which goal of make makes it. */
 #include "stages/report/contents_remodel.h"
 
 #include <stdlib.h>

@@ -133,7 +133,7 @@ static enum status list_changes(struct rooms_reading *r, struct err *err)
     return err->status;
 }
 
-/* ----------------------------------------------------------------------------------------------------- views, photos */
+/* ---------------------------------------------------------------------------------------------------- views, photos */
 
 static enum status add_photo(struct rooms_reading *r, int lens, struct err *err)
 {
@@ -217,7 +217,7 @@ static enum status read_table(struct rooms_reading *r, struct err *err)
     return ST_OK;
 }
 
-/* ------------------------------------------------------------------------------------------------ what a photo shows */
+/* ----------------------------------------------------------------------------------------------- what a photo shows */
 
 /* Shares of the photo: those of its views by the pixels that they know. */
 static struct room_look measure_look(const struct rooms_reading *r, const struct source_photo *p, int change)

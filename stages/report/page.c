@@ -100,7 +100,7 @@ static enum status put_numbers_head(struct page *page, const char *scene, const 
     return ST_OK;
 }
 
-enum status numbers_page_write(struct page *page, const char *scene, const char *back, const struct contents *c,
+enum status page_write_numbers(struct page *page, const char *scene, const char *back, const struct contents *c,
                                struct err *err)
 {
     FILE *to = page->to;

@@ -12,7 +12,7 @@
  * ST_NOMEM; ST_IO: a picture cannot be written. */
 enum status page_write(struct page *page, const char *scene, const char *numbers, const struct contents *c,
                        struct err *err);
-enum status numbers_page_write(struct page *page, const char *scene, const char *back, const struct contents *c,
+enum status page_write_numbers(struct page *page, const char *scene, const char *back, const struct contents *c,
                                struct err *err);
 
 #endif

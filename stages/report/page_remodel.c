@@ -60,7 +60,7 @@ static void put_exports(FILE *to, const struct edit_card *card, const char *name
 
 static void put_film(FILE *to, const char *folder, const char *caption)
 {
-    fputs("<figure><video controls preload=\"metadata\" src=\"", to);
+    fprintf(to, "<figure><video controls playsinline preload=\"metadata\" aria-label=\"%s\" src=\"", caption);
     html_address(to, folder);
     fprintf(to, "/tour/video.mp4\"></video><figcaption>%s</figcaption></figure>\n", caption);
 }

@@ -62,7 +62,7 @@ static enum status write_scene_pages(struct job *job, const struct contents_sour
     snprintf(back, sizeof back, "../%s", file);
     if (!contents_read(&contents, from, err) && !file_path(numbers, job->folder, "numbers.html", "", err)) {
         if (!begin_page(&w, job, numbers, "", "../", err))
-            numbers_page_write(&w.page, job->scene, back, &contents, err);
+            page_write_numbers(&w.page, job->scene, back, &contents, err);
         end_page(&w, job, err);
         if (!err->status && !begin_page(&w, job, job->out, "page/", "", err))
             page_write(&w.page, job->scene, "page/numbers.html", &contents, err);

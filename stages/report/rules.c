@@ -19,15 +19,6 @@ static const char *steps_before(struct graph *g, const struct scene_facts *f)
     return graph_text(g, "%s pan_scan", steps);
 }
 
-/* The parts that go into the pages. */
-static void rule_takes_parts(struct graph *g)
-{
-    static const char *const parts[] = {"page.css", "numbers.css", "page.js"};
-    for (size_t i = 0; i < sizeof parts / sizeof *parts; i++)
-        rule_needs(g, graph_text(g, "stages/report/page/%s", parts[i]));
-    rule_option(g, "--page", "stages/report/page");
-}
-
 static void scene_page_rule(struct graph *g, const struct scene_facts *f)
 {
     struct name_list stages = {0};
@@ -51,7 +42,7 @@ static void scene_page_rule(struct graph *g, const struct scene_facts *f)
     rule_option(g, "--defaults", "configs/default.cfg");
     rule_option(g, "--stages", graph_text(g, "'%s'", scene_setting("STAGES")));
     if (f->edits.count) rule_option(g, "--scripts", graph_text(g, "%s/edits", f->folder));
-    rule_takes_parts(g);
+    rule_option(g, "--page", "stages/report/page");
     rule_option(g, "--out", PATH(g, PAGE));
     name_list_release(&stages);
 }
@@ -93,7 +84,7 @@ static void remodel_page_rule(struct graph *g, const struct scene_facts *f)
     if (*quality && strcmp(quality, "default")) rule_option(g, "--quality", quality);
     rule_option(g, "--scripts", graph_text(g, "%s/edits", f->folder));
     if (says_yes(scene_page)) rule_option(g, "--back", "../index.html");
-    rule_takes_parts(g);
+    rule_option(g, "--page", "stages/report/page");
     rule_option(g, "--out", PATH(g, REMODEL_PAGE));
     name_list_release(&edits);
     name_list_release(&true_edits);

@@ -58,4 +58,11 @@ films_and_given_cameras_are_relit()
     awk -F'\t' '$1 == "edited.chest.flicker95" { n++; bad += $2 > 5 } END { exit n != 1 || bad }' metrics.tsv || { grep flicker metrics.tsv; fail "the film flickers, or was not measured"; }
 }
 
-for t in make_relight_adds_the_light_to_the_page_of_edits light_that_an_object_changes_is_shown plain_make_shows_it_on_both_pages films_and_given_cameras_are_relit; do run "$t"; done
+the_browser_compares_before_and_after()
+{
+    command -v node >/dev/null || skip "node is not installed (Debian: nodejs)"
+    node -e "process.exit(require('$root/tests/browser/chromium.js').Chromium.find() ? 0 : 1)" || skip "chromium is not installed"
+    node "$root/tests/browser/report_page.js" "$O" || fail "see above"
+}
+
+for t in make_relight_adds_the_light_to_the_page_of_edits light_that_an_object_changes_is_shown plain_make_shows_it_on_both_pages the_browser_compares_before_and_after films_and_given_cameras_are_relit; do run "$t"; done

@@ -33,7 +33,8 @@ class Room {
     addControls() {
         const id = (name) => `${name}${this.number}`, changed = (e, act) => e.addEventListener('change', act);
         const row = make('div', {class: 'choose'});
-        this.select = make('select', {id: id('change')}, ...this.looks.map((l) => make('option', {value: l.change}, l.name)));
+        this.select = make('select', {id: id('change')},
+            ...this.looks.map((l) => make('option', {value: l.change}, l.name)));
         changed(this.select, () => this.choose(this.select.value));
         row.append(make('label', {}, 'Change ', this.select));
         this.lights = {};
@@ -106,7 +107,8 @@ const addChoiceForAll = (rooms, section) => {
         count.textContent = !select.value ? '' :
             `${about.get(select.value) || ''} ${shown} of these ${rooms.length} photographs show it.`;
     });
-    const row = make('div', {class: 'choose all'}, make('label', {}, 'Show in all pictures: ', select));
+    const row = make('div', {class: 'choose all'});
+    if (changes.size > 1) row.append(make('label', {}, 'Show in all pictures: ', select));
     if (lit) {
         const lights = make('fieldset', {class: 'light'}, make('legend', {}, 'Light'));
         for (const [value, words] of [['day', 'old'], ['new', 'new']]) {

@@ -42,7 +42,7 @@ static inline char *scratch_page_of(const struct contents_sources *from, const c
     scratch_page_begin(&page, &text, &size, folder, numbers ? "" : "page/", numbers ? "../" : "");
     assert_ok(contents_read(&c, from, &err), err);
     if (numbers)
-        assert_ok(numbers_page_write(&page, scene, "../index.html", &c, &err), err);
+        assert_ok(page_write_numbers(&page, scene, "../index.html", &c, &err), err);
     else
         assert_ok(page_write(&page, scene, "page/numbers.html", &c, &err), err);
     scratch_page_end(&page);
