@@ -119,12 +119,11 @@ const tryTheChoices = async (page) => {
                 if (!fresh || fresh.disabled) continue;
                 const src = () => f.querySelector('.after').getAttribute('src');
                 fresh.click();
-                const a = src();
-                day.click();
-                const b = src();
+                const a = src(), over = f.querySelector('.over');
                 f.querySelector('input[type=checkbox]').click();
-                const over = f.querySelector('.over');
-                return {a, b, over: !over.hidden && over.getAttribute('src')};
+                const shown = !over.hidden && over.getAttribute('src');
+                day.click();
+                return {a, b: src(), over: shown};
             }
         return null;
     })()`);
