@@ -82,8 +82,8 @@ static enum status put_numbers_head(struct page *page, const char *scene, const 
           to);
     html_address(to, back);
     fputs("\">The page of the scene</a>", to);
-    if (c->has_metrics || c->held.view_count) fputs("<a href=\"#evaluation\">Compared with the truth</a>", to);
     fputs("<a href=\"#numbers\">Key numbers</a>", to);
+    if (c->has_metrics || c->held.view_count) fputs("<a href=\"#evaluation\">Compared with the truth</a>", to);
     if (page_has_videos(c)) fputs("<a href=\"#video\">Camera moves</a>", to);
     if (c->model_count) fputs("<a href=\"#model\">Model</a>", to);
     if (c->thing_sheet || c->thing_plan) fputs("<a href=\"#things\">Things</a>", to);
@@ -104,9 +104,9 @@ enum status page_write_numbers(struct page *page, const char *scene, const char 
                                struct err *err)
 {
     FILE *to = page->to;
-    if (put_numbers_head(page, scene, back, c, err) || page_evaluation(page, c, err)) return err->status;
+    if (put_numbers_head(page, scene, back, c, err)) return err->status;
     page_numbers(to, c);
-    if (page_videos(page, c, err)) return err->status;
+    if (page_evaluation(page, c, err) || page_videos(page, c, err)) return err->status;
     page_models(page, c);
     page_things(page, c);
     if (page_textures(page, c, err) || page_light(page, c, err) || page_relit(page, c, err) ||

@@ -56,18 +56,21 @@ void page_numbers(FILE *to, const struct contents *c)
         put_number_head(to, "Views");
         fprintf(to, "%d", c->views.view_count);
         fputs("</td><td class=\"how\">", to);
-        if (c->has_photos) fprintf(to, "%d of %d photographs placed by SfM", placed, c->photos.count);
+        fputs("pinhole pictures that the photographs were turned into", to);
+        if (c->has_photos) fprintf(to, "; %d of %d photographs could be placed", placed, c->photos.count);
         fputs("</td></tr>\n", to);
-        put_number_head(to, "Sparse points");
+        put_number_head(to, "Points in space");
         fprintf(to, "%d", m->point_count);
         fputs("</td><td class=\"how\">", to);
-        if (m->point_count) fprintf(to, "each seen by %.1f views on average", c->track_mean);
+        if (m->point_count) fprintf(to, "spots that several photographs show; %.1f views on average", c->track_mean);
         fputs("</td></tr>\n", to);
         if (m->point_count) {
-            put_number_head(to, "Reprojection error");
+            put_number_head(to, "Fit of these points");
             fprintf(to, "%.2f px", c->error_median);
             fputs("</td><td class=\"how\">", to);
-            fprintf(to, "median, recomputed in the rectified views; root mean square %.2f px</td></tr>\n",
+            fprintf(to,
+                    "half of them lie in the views within so many pixels of where they should be (reprojection "
+                    "error); root mean square %.2f px</td></tr>\n",
                     c->error_rms);
         }
     }
@@ -75,8 +78,8 @@ void page_numbers(FILE *to, const struct contents *c)
         put_number_head(to, "Segments");
         fprintf(to, "%lld", c->segments);
         fputs("</td><td class=\"how\">", to);
-        fprintf(to, "in %d depth maps, %.0f per view</td></tr>\n", c->depth_count,
-                (double)c->segments / c->depth_count);
+        fprintf(to, "patches of a view that have one plane, in %d depth maps, %.0f per view</td></tr>\n",
+                c->depth_count, (double)c->segments / c->depth_count);
         put_number_head(to, "Known depth");
         fprintf(to, "%.2f %%", 100 * c->known);
         put_number_tail(to, "of the views' pixels; the others are masked or outside the lens");
@@ -85,7 +88,7 @@ void page_numbers(FILE *to, const struct contents *c)
     for (int i = 0; i < c->effect_count; i++) {
         const struct effect_card *e = &c->effects[i];
         if (!e->path.frame_count) continue;
-        put_number_head(to, "Video");
+        put_number_head(to, "Film");
         page_put_seconds(to, e->path.frame_count / e->path.fps);
         fputs("</td><td class=\"how\">", to);
         html_text(to, e->name);
