@@ -219,6 +219,16 @@ enum status point_cloud_read(struct point_cloud *cloud, const char *path, struct
     return err->status;
 }
 
+size_t point_cloud_thin(struct point_cloud *cloud, size_t most)
+{
+    const size_t wanted = most ? most : 1, step = (cloud->count + wanted - 1) / wanted;
+    if (step <= 1) return 1;
+    const size_t kept = (cloud->count + step - 1) / step;
+    for (size_t i = 0; i < kept; i++) cloud->points[i] = cloud->points[i * step];
+    cloud->count = kept;
+    return step;
+}
+
 void point_cloud_release(struct point_cloud *cloud)
 {
     if (!cloud) return;

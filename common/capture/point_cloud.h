@@ -32,6 +32,8 @@ enum status point_cloud_write(const struct point_cloud *cloud, const char *path,
 /* Reads only files of point_cloud_write(). ST_DATA, with the line of the header or the point: other headers, a wrong
  * file size, values that are not finite, normals of another length, confidence outside 0 .. 1, no view. */
 enum status point_cloud_read(struct point_cloud *cloud, const char *path, struct provenance *prov, struct err *err);
+/* Keeps one point of every n, in their order, so that at most `most` remain (0: one). Returns n. */
+size_t point_cloud_thin(struct point_cloud *cloud, size_t most);
 void point_cloud_release(struct point_cloud *cloud);
 
 static inline struct vec3 cloud_normal(const struct cloud_point *p)

@@ -1,11 +1,9 @@
-/* draw_data.c - scripts that hand data to the page; see draw_data.h.
+/* draw_data.c - scripts that hand texts to the page; see draw_data.h.
  *
- * Each script calls a function of the page. Texts are JSON strings; points are compressed by zlib's format, which
- * browsers read, and written as base64 in parts, because a string of a browser has a largest length. */
+ * Each script calls a function of the page. Texts are JSON strings. */
 #include "stages/draw_model/draw_data.h"
 
 #include <dirent.h>
-#include <libdeflate.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -25,7 +23,7 @@
 const struct param draw_param_table[] = {DRAW_PARAMS(PARAM_ROW) PARAM_END};
 #undef PARAM_STRUCT
 
-static void write_string(FILE *to, const char *text, size_t size)
+void draw_data_write_string(FILE *to, const char *text, size_t size)
 {
     putc('"', to);
     for (size_t i = 0; i < size; i++) {
@@ -46,9 +44,9 @@ static enum status write_file(FILE *to, const char *name, const char *path, stru
     struct file_bytes file = {0};
     if (!path || !path_is_file(path) || file_bytes_read(&file, path, err)) return err->status;
     fputs(",\n", to);
-    write_string(to, name, strlen(name));
+    draw_data_write_string(to, name, strlen(name));
     fputs(": ", to);
-    write_string(to, file.bytes, file.size);
+    draw_data_write_string(to, file.bytes, file.size);
     file_bytes_release(&file);
     return ST_OK;
 }
@@ -86,6 +84,7 @@ static enum status write_texts(FILE *to, const struct draw_sources *from, struct
     if (write_file(to, "out/model/axes.txt", from->axes, err) ||
         write_file(to, "out/model/suggested.txt", from->suggested, err) ||
         write_file(to, "out/lights/candidates.txt", from->candidates, err) ||
+        write_file(to, "out/lights/lights.txt", from->lights, err) ||
         write_file(to, "out/build_model.cfg", from->config, err) || file_path(name, "scenes", from->name, "", err) ||
         write_folder(to, name, from->scene, err))
         return err->status;
@@ -137,7 +136,7 @@ static enum status write_lines(FILE *to, const struct draw_sources *from, struct
         line_list_read(&lines, path, NULL, err);
         if (strcmp(photo, lens->photo)) {
             fputs(*photo ? "],\n" : "\n", to);
-            write_string(to, lens->photo, strlen(lens->photo));
+            draw_data_write_string(to, lens->photo, strlen(lens->photo));
             fputs(": [", to);
             photo = lens->photo;
             more = false;
@@ -155,80 +154,18 @@ enum status draw_data_write_scene(const char *path, const struct draw_sources *f
     struct outfile out = {0};
     if (outfile_open(&out, path, err)) return err->status;
     fputs("remodel.scene = {\"name\": ", out.fp);
-    write_string(out.fp, from->name, strlen(from->name));
+    draw_data_write_string(out.fp, from->name, strlen(from->name));
     fputs(", \"files\": {\"\": \"\"", out.fp);
     write_texts(out.fp, from, err);
     fputs("},\n\"lines\": {", out.fp);
     if (!err->status && from->lines) write_lines(out.fp, from, err);
-    fputs("}};\n", out.fp);
+    fputs("},\n\"masks\": {", out.fp);
+    if (!err->status) draw_masks_write(out.fp, from, err);
+    fputs("},\n\"things\": ", out.fp);
+    if (!err->status) draw_things_write(out.fp, from, err);
+    fputs("};\n", out.fp);
     if (!err->status) outfile_commit(&out, err);
     outfile_discard(&out);
-    return err->status;
-}
-
-/* ----------------------------------------------------------------------------------------------------------- points */
-
-enum { RECORD = 45, PART = 6 << 20 }; /* bytes of a point; of a part of base64, a multiple of three */
-static const char element[] = "element vertex ", header_end[] = "end_header\n";
-
-/* Keeps one point of every n and drops the others, so that at most `most` remain. Returns n; 0: the file is not a cloud
- * of this form. */
-static size_t thin(struct file_bytes *ply, size_t most)
-{
-    char *count_at = strstr(ply->bytes, element), *end = strstr(ply->bytes, header_end), number[64];
-    if (!count_at || !end) return 0;
-    char *const records = end + strlen(header_end);
-    const size_t head = (size_t)(records - ply->bytes), count = (ply->size - head) / RECORD,
-                 step = (count + most - 1) / most;
-    if (step <= 1) return 1;
-    const size_t kept = (count + step - 1) / step;
-    for (size_t i = 0; i < kept; i++) memmove(records + i * RECORD, records + i * step * RECORD, RECORD);
-    /* the number keeps its width, so that the head does */
-    char *digits = count_at + strlen(element);
-    const int width = (int)strcspn(digits, "\n");
-    snprintf(number, sizeof number, "%0*zu", width, kept);
-    memcpy(digits, number, (size_t)width);
-    ply->size = head + kept * RECORD;
-    return step;
-}
-
-static enum status write_points(FILE *to, struct file_bytes *ply, const struct draw_sources *from,
-                                const struct draw_params *params, struct err *err)
-{
-    const size_t step = thin(ply, (size_t)params->max_points);
-    if (!step) return err_set(err, ST_DATA, "%s is not a point cloud of remodel; make the points again.", from->points);
-    struct libdeflate_compressor *c = libdeflate_alloc_compressor(1);
-    const size_t room = c ? libdeflate_zlib_compress_bound(c, ply->size) : 0;
-    unsigned char *packed = malloc(room + 1);
-    const size_t size = c && packed ? libdeflate_zlib_compress(c, ply->bytes, ply->size, packed, room) : 0;
-    if (!size) err_nomem(err, "the points of a page", room);
-    fprintf(to, "remodel.points({\"step\": %zu, \"size\": %zu, \"parts\": [", step, ply->size);
-    for (size_t at = 0; at < size; at += PART) {
-        fputs(at ? ",\n\"" : "\n\"", to);
-        base64_write(to, packed + at, size - at < PART ? size - at : PART);
-        putc('"', to);
-    }
-    fputs("]});\n", to);
-    free(packed);
-    libdeflate_free_compressor(c);
-    return err->status;
-}
-
-enum status draw_data_write_points(const char *path, const struct draw_sources *from, const struct draw_params *params,
-                                   struct err *err)
-{
-    struct outfile out = {0};
-    struct file_bytes ply = {0};
-    if (from->points && file_bytes_read(&ply, from->points, err)) return err->status;
-    if (!outfile_open(&out, path, err)) {
-        if (from->points)
-            write_points(out.fp, &ply, from, params, err);
-        else
-            fputs("remodel.points(null);\n", out.fp);
-        if (!err->status) outfile_commit(&out, err);
-    }
-    outfile_discard(&out);
-    file_bytes_release(&ply);
     return err->status;
 }
 

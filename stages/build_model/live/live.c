@@ -14,6 +14,7 @@
 #include "common/base/version.h"
 #include "common/model/scene_inputs.h"
 #include "stages/build_model/building/building.h"
+#include "stages/build_model/live/draft.h"
 #include "stages/build_model/live/live_json.h"
 #include "stages/build_model/picture/overlay_edges.h"
 #include "stages/build_model/picture/plan_picture.h"
@@ -26,6 +27,7 @@ static struct {
     int inputs; /* of prov, without those of a model */
     struct building building;
     bool built;
+    struct draft draft;          /* of `building` against the rooms as they were photographed */
     struct building_files files; /* of `building`; only `base` and `scene` stay */
     char base[FILE_PATH], scene[FILE_PATH];
     struct err err;
@@ -48,6 +50,7 @@ static const char *given(const char *text) { return text && *text ? text : NULL;
 
 void live_end(void)
 {
+    draft_release(&live.draft);
     building_release(&live.building);
     place_memory_free(live.placer.memory);
     place_release(&live.placer);
@@ -117,6 +120,7 @@ int live_build(const char *script, const char *things, const char *edit, const c
         building_release(&made);
         return live.err.status;
     }
+    draft_end(&live.draft);
     building_release(&live.building);
     live.building = made;
     live.built = true;
@@ -183,6 +187,15 @@ static void begin_numbers(void)
     free(live.numbers);
     live.numbers = NULL;
     live.number_count = 0;
+}
+
+int live_plan_place(void)
+{
+    double place[3];
+    if (!is_built()) return live.err.status;
+    plan_picture_place(&live.building.plan, &live.placer, place);
+    begin_numbers();
+    return add_numbers(place, 3);
 }
 
 static const struct photo_camera *camera_of(int photo)
@@ -295,4 +308,65 @@ int live_pick(int photo, double u, double v)
     const struct vec3 at = vec3_add(from, vec3_scale(ray, nearest));
     const double numbers[3] = {at.x, at.y, at.z};
     return add_numbers(numbers, 3);
+}
+
+/* ------------------------------------------------------------------------------------------------------------ draft */
+
+int live_thing(const char *name, double x, double y, double z, double radius)
+{
+    live.err = (struct err)ERR_INIT;
+    return draft_add_thing(&live.draft, name, vec3_make(x, y, z), radius, &live.err);
+}
+
+unsigned char *live_mask(int photo, int columns, int rows)
+{
+    if (!camera_of(photo)) return NULL;
+    return draft_mask_of(&live.draft, photo, columns, rows, &live.err);
+}
+
+int live_draft(const char *script, const char *things)
+{
+    const struct building_files files = {.script = script, .things = given(things)};
+    if (!is_built()) return live.err.status;
+    draft_end(&live.draft);
+    provenance_keep(&live.prov, live.inputs);
+    if (building_make(&live.draft.before, &files, &live.in.axes, &live.placer, &live.prov, &live.err) ||
+        draft_begin(&live.draft, &live.building, &live.err))
+        draft_end(&live.draft);
+    return live.err.status;
+}
+
+int live_draft_rows(int photo, int columns, int rows, int first, int count)
+{
+    const struct photo_camera *c = camera_of(photo);
+    if (!c) return -1;
+    if (!draft_is_begun(&live.draft) || columns < 1 || rows < 1) {
+        err_set(&live.err, ST_USAGE, "the draft of an edit was not begun.");
+        return -1;
+    }
+    for (int y = first; y < first + count && y < rows; y++)
+        for (int x = 0; x < columns && !live.err.status; x++) {
+            const double u = (x + 0.5) * c->lens.width / columns, v = (y + 0.5) * c->lens.height / rows;
+            const struct draft_pixel p = draft_pixel_of(&live.draft, &live.placer, photo, u, v);
+            add_numbers((const double[]){p.kind, p.photo, p.at[0], p.at[1], p.at[2]}, 5);
+        }
+    return live.err.status ? -1 : (int)(live.number_count / 5);
+}
+
+int live_shared(int photo, int other, int columns, int rows)
+{
+    const struct photo_camera *c = camera_of(other) ? camera_of(photo) : NULL;
+    for (int y = 0; c && draft_is_begun(&live.draft) && y < rows; y++)
+        for (int x = 0; x < columns && !live.err.status; x++) {
+            double at[4] = {(x + 0.5) * c->lens.width / columns, (y + 0.5) * c->lens.height / rows};
+            if (draft_other_pixel(&live.draft, &live.placer, photo, at[0], at[1], other, at + 2)) add_numbers(at, 4);
+        }
+    return live.err.status ? -1 : (int)(live.number_count / 4);
+}
+
+int live_draft_gone(void)
+{
+    begin_numbers();
+    for (int i = 0; i < live.draft.thing_count; i++) add_numbers(&(double){live.draft.things[i].is_gone}, 1);
+    return live.err.status ? -1 : live.draft.thing_count;
 }

@@ -31,6 +31,7 @@ int live_build(const char *script, const char *things, const char *edit, const c
  * base also texture.txt and objects.txt. */
 int live_write(const char *folder);
 int live_write_plan(const char *path); /* plan.svg of it */
+int live_plan_place(void);             /* left, top and scale of plan.svg: plan_picture.h */
 
 /* JSON, valid until the next call of the same function; NULL after a failure. */
 const char *live_model(void);  /* the plan and the faces of the last model: live_json.h */
@@ -55,6 +56,23 @@ int live_project(int photo, double x, double y, double z);
 /* The ceiling's height, 0 if it is unknown, and whether units are metres. */
 double live_ceiling(void);
 int live_is_metric(void);
+
+/* Furniture, in the order of its numbers from 1: its middle, and the radius of a ball that holds it; and memory for
+ * which of it a photo shows, on a grid of its pixels, for the caller to fill; NULL after a failure. live_begin()
+ * forgets both. */
+int live_thing(const char *name, double x, double y, double z, double radius);
+unsigned char *live_mask(int photo, int columns, int rows);
+/* Compares the last model, of an edit, with the rooms of the script alone: a draft of what make remodel draws. Building
+ * a model forgets it. */
+int live_draft(const char *script, const char *things);
+/* Rows of a grid over a photo; for each cell its kind (0: what a photo shows at a pixel, 1: a colour, 2: what no photo
+ * shows), the photo, then u and v of the pixel or the albedo. Returns how many cells there are, or -1. */
+int live_draft_rows(int photo, int columns, int rows, int first, int count);
+/* Pixels of a grid over a photo that another one shows too, in the rooms as they were photographed: u, v in both.
+ * Returns how many there are, or -1. */
+int live_shared(int photo, int other, int columns, int rows);
+/* For each piece of furniture whether the edit takes it from its place, 0 or 1. Returns how many there are. */
+int live_draft_gone(void);
 
 #pragma GCC visibility pop
 

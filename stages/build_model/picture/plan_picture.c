@@ -214,18 +214,35 @@ static void put_plan(const struct sheet *s, const struct plan *plan, const struc
     put_cameras(s, placer, PICTURE_FRUSTUM * unit);
 }
 
+static struct sheet sheet_of(const struct plan *plan, const struct placer *placer, double low[2], double high[2],
+                             double *margin)
+{
+    find_bounds(plan, placer, low, high);
+    const double wide = fmax(high[0] - low[0], high[1] - low[1]);
+    *margin = 0.06 * wide;
+    return (struct sheet){NULL, low[0] - *margin, high[1] + *margin, 1000 / (wide + 2 * *margin)};
+}
+
+void plan_picture_place(const struct plan *plan, const struct placer *placer, double place[3])
+{
+    double low[2], high[2], margin;
+    const struct sheet s = sheet_of(plan, placer, low, high, &margin);
+    place[0] = s.left;
+    place[1] = s.top;
+    place[2] = s.scale;
+}
+
 enum status plan_picture_write(const struct plan *plan, const struct placer *placer, bool metric, const char *path,
                                struct err *err)
 {
     struct outfile f = {0};
-    double low[2], high[2];
+    double low[2], high[2], margin;
     if (outfile_open(&f, path, err)) return err->status;
     const locale_t before = uselocale(scan_c_locale());
-    find_bounds(plan, placer, low, high);
-    const double wide = fmax(high[0] - low[0], high[1] - low[1]), margin = 0.06 * wide;
-    const double scale = 1000 / (wide + 2 * margin);
+    struct sheet s = sheet_of(plan, placer, low, high, &margin);
+    const double wide = fmax(high[0] - low[0], high[1] - low[1]), scale = s.scale;
     const double unit = (plan->ceiling > 0 ? plan->ceiling : 0.3 * wide) / 2.5;
-    const struct sheet s = {f.fp, low[0] - margin, high[1] + margin, scale};
+    s.to = f.fp;
     const double width = scale * (high[0] - low[0] + 2 * margin), height = scale * (high[1] - low[1] + 3 * margin);
     fprintf(f.fp,
             "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %.0f %.0f\" role=\"img\" aria-label=\"Plan of the "

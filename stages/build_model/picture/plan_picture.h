@@ -11,5 +11,7 @@
  * are metres. */
 enum status plan_picture_write(const struct plan *plan, const struct placer *placer, bool metric, const char *path,
                                struct err *err);
+/* Where the picture has a point x, y of the model: x px = place[2] (x - place[0]), y px = place[2] (place[1] - y). */
+void plan_picture_place(const struct plan *plan, const struct placer *placer, double place[3]);
 
 #endif

@@ -6,12 +6,6 @@
 
 const el = (id) => document.getElementById(id);
 
-function bytesFromBase64(text) {
-    const binary = atob(text), bytes = new Uint8Array(binary.length);
-    for (let i = 0; i < bytes.length; i++) bytes[i] = binary.charCodeAt(i);
-    return bytes;
-}
-
 const NOTHING = {walls: [], openings: [], slots: [], boxes: [], rooms: [], things: [], faces: [], vertices: []};
 
 class App {
@@ -39,20 +33,25 @@ class App {
         this.selected = [];
         this.refused = null;
         this.hasPoints = scene.files['out/points'] !== undefined;
-        this.images = new Map();
+        this.marks = new Marks(this);
     }
 
     start() {
         const failed = this.begin(false);
         if (failed) return this.refuse(failed);
-        this.photos = this.live.json('live_photos');
+        const references = Object.entries(remodel.references).map(([id, [width, height]]) => ({id, width, height,
+            isReference: true}));
+        this.photos = [...this.live.json('live_photos'), ...references];
         this.photo = 0;
+        this.pictures = new Photos(this.photos, () => this.draw());
+        this.masks = new Masks(this.scene.masks, this.pictures, this.texts, () => this.draw());
+        this.draft = new Draft(this.live, this.pictures, this.scene, () => this.showDraft());
         document.title = `Draw ${this.scene.name}`;
         el('title').textContent = this.scene.name;
         this.forms = new FormsPanel(el('forms'), this);
         this.suggested = [['model.txt', 'out/model/suggested.txt'], ['lights.txt', 'out/lights/candidates.txt']]
             .map(([file, from]) => new SuggestedPanel(el('suggested'), this, file, this.scene.files[from]));
-        this.store = new Store(this.scene.name, this.texts);
+        this.store = new Store(this.scene.name, this.texts, this.masks);
         this.listPhotos();
         this.listen();
         const kept = this.store.restore();
@@ -78,17 +77,15 @@ class App {
         remodel.points = async (packed) => {
             this.waiting = false;
             if (packed) {
-                const parts = packed.parts.map(bytesFromBase64);
-                const stream = new Blob(parts).stream().pipeThrough(new DecompressionStream('deflate'));
-                this.system.files.set('out/points/points.ply',
-                    new Uint8Array(await new Response(stream).arrayBuffer()));
+                this.system.files.set('out/points/points.ply', plyOfPoints(packed, await unpack(packed.parts)));
                 const failed = this.begin(true);
                 if (failed) return this.refuse(failed);
                 this.system.files.delete('out/points/points.ply');
-                this.say(packed.step > 1
-                    ? `Walls by rectangles use one point of ${packed.step} here; make model uses all, and may place them some mm elsewhere.` : 'Ready.');
+                this.say(packed.every > 1
+                    ? `Walls by rectangles use one point of ${packed.every} here; make model uses all, and may place them some mm elsewhere.` : 'Ready.');
             } else
                 this.say('This scene has no points: draw walls by their feet or by corners.');
+            await this.draft.takeThings(this.photos.map((p) => p.id));
             this.picture.forget();
             this.build();
             this.ready = true;
@@ -105,7 +102,8 @@ class App {
         this.file = name;
         this.points = [];
         if (!this.tool.files.test(name)) this.tool = TOOLS.find((t) => t.files.test(name)) || TOOLS[0];
-        const marks = ['scale.txt', 'axes_fix.txt', 'lights.txt', 'materials.txt', 'things.txt', 'subjects.txt'];
+        const marks = ['scale.txt', 'axes_fix.txt', 'lights.txt', 'materials.txt', 'things.txt', 'subjects.txt',
+            'masks.txt', 'lri.txt'], says = {'masks.txt': 'masks of photos', 'lri.txt': 'lri.txt (reference images)'};
         const edits = this.texts.names().filter((n) => EDIT_FILES.test(n));
         const others = this.texts.names().filter((n) => n !== 'model.txt' && !EDIT_FILES.test(n) &&
             !marks.includes(n) && /^(objects|tour)\.txt$/.test(n));
@@ -114,7 +112,7 @@ class App {
             ['Others', others]]) {
             const group = document.createElement('optgroup');
             group.label = title;
-            for (const n of names) group.append(new Option(n, n, false, n === name));
+            for (const n of names) group.append(new Option(says[n] || n, n, false, n === name));
             if (names.length) el('file').append(group);
         }
         el('file').value = name;
@@ -123,6 +121,8 @@ class App {
         this.build();
         this.forms.show();
         this.showSuggested();
+        if (name === 'lri.txt' && !this.photos[this.photo].isReference && this.photos.some((p) =>
+            p.isReference)) this.openPhoto(this.photos.findIndex((p) => p.isReference));
     }
 
     changed() {
@@ -170,7 +170,11 @@ class App {
     build() {
         const put = (name, text) => this.system.files.set(this.path + name, new TextEncoder().encode(text));
         for (const name of this.texts.names()) put(name, this.texts.get(name));
-        const isEdit = EDIT_FILES.test(this.file), files = {script: this.path + 'model.txt',
+        const isEdit = EDIT_FILES.test(this.file);
+        this.draft.stop();
+        this.draft.ready = false;
+        el('compare').hidden = !isEdit;
+        const files = {script: this.path + 'model.txt',
             things: this.texts.get('things.txt') ? this.path + 'things.txt' : '',
             edit: isEdit ? this.path + this.file : '', scene: isEdit ? this.path.slice(0, -1) : ''};
         this.refused = null;
@@ -179,6 +183,7 @@ class App {
             s.words[0] !== 'remodel-script').length;
         if (this.waiting || empty) {
             if (empty) this.showNothing();
+            this.showMarks();
             this.draw();
             return;
         }
@@ -187,8 +192,40 @@ class App {
         /* a script that only sets defaults is a beginning */
         if (/the script describes no solid/.test(failed)) this.showNothing();
         else if (failed) this.refuse(failed);
-        else this.showModel();
+        else {
+            this.showModel();
+            if (isEdit) this.beginDraft(files);
+        }
+        this.showMarks();
         this.draw();
+    }
+
+    /* The draft begins a little after the last change, so that typing stays quick. */
+    beginDraft(files) {
+        const failed = this.draft.begin(files);
+        if (failed) this.draft.about = `Without a draft: ${failed}`;
+        clearTimeout(this.draftTimer);
+        this.draftTimer = setTimeout(() => this.makeDraft(), 120);
+        this.showDraft();
+    }
+
+    makeDraft() {
+        if (this.draft.ready && !this.photos[this.photo].isReference) this.draft.make(this.photo);
+    }
+
+    showDraft() {
+        el('draft-note').textContent = this.draft.about || 'The draft is being made.';
+        this.draw();
+    }
+
+    showMarks() {
+        this.marks.read();
+        this.marks.draw(el('plan'));
+        el('meant').replaceChildren(...this.marks.sentences.map((text) => {
+            const item = document.createElement('li');
+            item.textContent = text;
+            return item;
+        }));
     }
 
     showNothing() {
@@ -278,36 +315,40 @@ class App {
 
     /* ------------------------------------------------------------------------------------------------------ photos */
 
-    image(i) {
-        if (!this.images.has(i)) {
-            const image = new Image();
-            image.onload = () => this.draw();
-            image.src = `photos/${encodeURIComponent(this.photos[i].id)}.jpg`;
-            this.images.set(i, image);
-        }
-        return this.images.get(i);
-    }
-
     listPhotos() {
-        el('photos').replaceChildren(...this.photos.map((p, i) => {
+        const title = (text) => {
+            const e = document.createElement('span');
+            e.className = 'group';
+            e.textContent = text;
+            return e;
+        };
+        this.buttons = this.photos.map((p, i) => {
             const button = document.createElement('button'), image = document.createElement('img');
             button.type = 'button';
-            image.loading = 'lazy';
-            image.src = `photos/${encodeURIComponent(p.id)}.jpg`;
+            image.src = this.pictures.small(p.id);
             image.alt = '';
             button.append(image, p.id);
             button.onclick = () => this.openPhoto(i);
             return button;
-        }));
+        });
+        const first = this.photos.findIndex((p) => p.isReference);
+        el('photos').replaceChildren(...this.buttons);
+        if (first >= 0) this.buttons[first].before(title('Reference images'));
     }
 
     openPhoto(i) {
         this.photo = i;
         if (this.tool.form !== 'corners') this.points = [];
-        [...el('photos').children].forEach((b, k) => b.setAttribute('aria-pressed', k === i));
-        el('photos').children[i].scrollIntoView({block: 'nearest'});
+        this.buttons.forEach((b, k) => b.setAttribute('aria-pressed', k === i));
+        this.buttons[i].scrollIntoView({block: 'nearest'});
         this.view.setPhoto(this.photos[i].width, this.photos[i].height);
         this.cursor = this.view.size.map((s) => s / 2);
+        if (this.draft.ready) {
+            this.draft.picture = null;
+            this.draft.about = '';
+            this.showDraft();
+            this.makeDraft();
+        }
         this.draw();
     }
 
@@ -325,11 +366,16 @@ class App {
         const here = this.points.filter((_, k) => this.pointPhotos[k] === id);
         const gesture = here.length ? {kind: this.tool.form === 'rectangle' ? 'rectangle' : 'line',
             points: this.cursor && here.length === this.points.length ? [...here, this.cursor] : here} : null;
-        this.picture.draw({image: this.image(this.photo), photo: this.photo, drawn, gesture,
+        const known = !this.photos[this.photo].isReference, overlay = this.file === 'masks.txt' &&
+            this.masks.overlay(id);
+        this.picture.draw({image: this.pictures.image(id), photo: this.photo, drawn, gesture,
+            mask: overlay && overlay.canvas, draft: EDIT_FILES.test(this.file) && this.draft.picture,
+            split: el('split').value / 100,
             lines: this.scene.lines[id] || [],
             cursor: this.cursor, snapped: this.snapped,
-            shown: {edges: el('show-edges').checked && this.model.faces.length, points: el('show-points').checked,
-                lines: el('show-lines').checked, floor: el('show-floor').checked}});
+            shown: {edges: known && el('show-edges').checked && this.model.faces.length,
+                points: known && el('show-points').checked,
+                lines: el('show-lines').checked, floor: known && el('show-floor').checked}});
         el('where').textContent = this.cursor ? `${id}  ${this.px(this.cursor[0])} ${this.px(this.cursor[1])}` : id;
         this.showNumbers();
     }
@@ -372,7 +418,7 @@ class App {
             const d = Math.hypot(p[0] - at[0], p[1] - at[1]) * weight;
             if (d < best) best = d, found = p;
         };
-        if (el('show-edges').checked && this.model.faces.length) {
+        if (el('show-edges').checked && this.model.faces.length && !this.photos[this.photo].isReference) {
             const dots = this.picture.edges(this.photo);
             for (let i = 0; i < dots.length; i += 3) if (dots[i + 2] & 1) consider([dots[i], dots[i + 1]], 1.5);
             for (const p of this.corners()) consider(p, 0.7);
@@ -425,7 +471,7 @@ class App {
 
     listen() {
         const canvas = el('canvas');
-        let from = null, pan = null;
+        let from = null, pan = null, grip = false;
         canvas.addEventListener('pointerdown', (e) => {
             canvas.focus();
             canvas.setPointerCapture(e.pointerId);
@@ -434,6 +480,10 @@ class App {
                 return;
             }
             this.showLine = false;
+            if (this.isOnGrip(e)) {
+                grip = true;
+                return;
+            }
             from = [e.clientX, e.clientY];
             this.cursor = this.snap(this.view.toPhoto(e));
             this.setPoint(this.cursor, e.shiftKey);
@@ -445,10 +495,17 @@ class App {
                 this.draw();
                 return;
             }
+            if (grip) {
+                el('split').value = 100 * this.view.toPhoto(e)[0] / this.view.size[0];
+                this.draw();
+                return;
+            }
+            canvas.style.cursor = this.isOnGrip(e) ? 'ew-resize' : '';
             this.cursor = this.snap(this.view.toPhoto(e));
             this.draw();
         });
         canvas.addEventListener('pointerup', (e) => {
+            grip = false;
             const moved = from && Math.hypot(e.clientX - from[0], e.clientY - from[1]) > 4;
             from = pan = null;
             if (!moved || !this.points.length || this.tool.form === 'corners') return;
@@ -476,6 +533,7 @@ class App {
         el('zoom-in').onclick = () => this.zoom(1.5);
         el('zoom-out').onclick = () => this.zoom(1 / 1.5);
         el('zoom-all').onclick = () => { this.view.showAll(); this.draw(); };
+        el('split').oninput = () => this.draw();
         for (const id of ['show-edges', 'show-points', 'show-floor', 'show-lines', 'show-drawn',
             'snap']) el(id).onchange = () => this.draw();
         new ResizeObserver(() => {
@@ -484,6 +542,13 @@ class App {
         }).observe(el('stage'));
         new ResizeObserver(() => this.solid.draw(this.model, this.selected[0] &&
             this.selected[0].name)).observe(el('solid'));
+    }
+
+    /* The pointer is on the grip of the border, which lies at the foot of the photo. */
+    isOnGrip(e) {
+        if (!EDIT_FILES.test(this.file) || !this.draft.picture) return false;
+        const r = el('canvas').getBoundingClientRect(), [x, y] = this.picture.grip(el('split').value / 100);
+        return Math.hypot(e.clientX - r.left - x, e.clientY - r.top - y) < 14;
     }
 
     zoom(factor) {
@@ -519,7 +584,8 @@ class App {
     pageKey(e) {
         const control = e.ctrlKey || e.metaKey, key = e.key.toLowerCase(),
             inText = /^(INPUT|TEXTAREA|SELECT)$/.test(e.target.tagName) && e.target.type !== 'checkbox';
-        if (control && key === 's') this.save();
+        if (!control && !e.altKey && !inText && /^[[\]]$/.test(key) && !el('compare').hidden) this.moveBorder(key === '[' ? -5 : 5);
+        else if (control && key === 's') this.save();
         else if (control && key === 'z' && !e.shiftKey) this.undo();
         else if (control && (key === 'y' || (key === 'z' && e.shiftKey))) this.redo();
         else if (!control && !e.altKey && !inText && e.key === '?') this.help();
@@ -533,6 +599,11 @@ class App {
             el('canvas').focus();
         }
         e.preventDefault();
+    }
+
+    moveBorder(by) {
+        el('split').value = +el('split').value + by;
+        this.draw();
     }
 
     undo() { this.after(this.texts.undo()); }
@@ -576,6 +647,7 @@ class App {
             ['Enter', 'sets a corner, as a click does; twice ends a chain'],
             ['Escape', 'begins the gesture again'], ['PageUp PageDown', 'other photos'],
                 ['+ - 0', 'larger, smaller, the whole photo; the wheel does the same, Alt and drag moves it'],
+            ['[ ]', 'of an edit: move the border between the photo and the draft of the edited room'],
             ['Ctrl+Z Ctrl+Y', 'undo, redo'], ['Ctrl+S', 'save'], ['Tab', 'from part to part']];
         const tools = TOOLS.filter((t) => t.key).map((t) => [t.key, `${t.label}: ${t.hint}`]);
         const rows = [...keys, ...tools].map(([k, what]) =>

@@ -37,6 +37,8 @@ const FORMS = [
     ['Any statement', {test: () => true}, [['line', 'as docs/model-script.md writes it', () => '']], (v) => v.line],
 ];
 
+const CORNERS = ['left bottom', 'right bottom', 'right top', 'left top'];
+
 class FormsPanel {
     constructor(element, app) {
         this.element = element;
@@ -66,10 +68,32 @@ class FormsPanel {
         options.onsubmit = (e) => e.preventDefault();
         if (EDIT_FILES.test(this.app.file)) options.append(field('colour', 'colour to paint', this.colour ||
             '#3355aa', 'color', (v) => { this.colour = v; }));
-        if (!SCRIPT_FILES.test(this.app.file)) options.append(field('name', 'name of the lamp, mark or material',
+        if (this.app.file === 'lri.txt') this.cornerFields(options);
+        else if (/^(scale|axes_fix|lights|materials)\.txt$/.test(this.app.file)) options.append(field('name', 'name of the lamp, mark or material',
             this.name || '', 'text', (v) => { this.name = v; }));
         if (options.children.length) this.element.append(options);
     }
+
+    /* Which corner of which opening the next click is. */
+    cornerFields(form) {
+        const opening = field('opening', 'opening', this.opening || '', 'text', (v) => { this.opening = v; });
+        const names = document.createElement('datalist');
+        names.id = 'openings';
+        for (const o of this.app.model.openings) names.append(new Option(o.name));
+        opening.querySelector('input').setAttribute('list', 'openings');
+        const label = document.createElement('label'), choice = document.createElement('select');
+        choice.name = 'corner';
+        this.corner = this.corner || CORNERS[0];
+        for (const c of CORNERS) choice.append(new Option(c, c, false, c === this.corner));
+        choice.onchange = () => { this.corner = choice.value; };
+        label.append('corner, seen from inside ', choice);
+        const outer = field('outer', 'on the outer face', '', 'checkbox');
+        outer.querySelector('input').checked = this.outer || false;
+        outer.querySelector('input').onchange = (e) => { this.outer = e.target.checked; };
+        form.append(opening, names, label, outer);
+    }
+
+    nextCorner() { this.corner = CORNERS[(CORNERS.indexOf(this.corner) + 1) % CORNERS.length]; }
 
     fields([label, , fields, make]) {
         const form = document.createElement('form');

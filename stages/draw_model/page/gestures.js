@@ -219,6 +219,37 @@ addTool('material', '', 'Region', inFile('materials.txt'), 'corners',
 addTool('subject', '', 'Subject', inFile('subjects.txt'), 'rectangle',
     'Drag a rectangle round a subject of the films, the most important first.',
     (app, points) => `subject ${inRectangle(app, points).slice(3)}`);
+for (const [kind, words] of [['hide', 'to ignore, such as somebody who walked through the picture'], ['show', 'that count after all']]) {
+    addTool(kind, '', kind === 'hide' ? 'Hide' : 'Show again', inFile('masks.txt'), 'corners',
+        `Set the corners round pixels ${words}; Enter twice ends. Save writes masks/PHOTO.png.`,
+        (app, points) => points.length > 2 ? `${kind} ${inPixels(app, points)}`
+            : {error: 'An outline has three corners or more.'});
+    addTool(kind + '-box', '', kind === 'hide' ? 'Hide rectangle' : 'Show rectangle', inFile('masks.txt'), 'rectangle',
+        `Drag a rectangle round pixels ${words}. Save writes masks/PHOTO.png.`,
+        (app, [a, b]) => `${kind} ${inPixels(app, [a, [b[0], a[1]], b, [a[0], b[1]]])}`);
+}
+
+/* A mark of a reference image; why it cannot be one. */
+function onReference(app, make) {
+    if (app.photos[app.photo].isReference) return make();
+    return {error: app.photos.some((p) => p.isReference) ? 'Choose a reference image first: they are below the photos.'
+        : 'This scene has no reference images yet: make lri makes them (LRI=FOLDER); then make draw again.'};
+}
+addTool('lri-corner', '', 'Corner of an opening', inFile('lri.txt'), 'pixel',
+    'Name the opening below and say which corner; click it in a reference image. The next corner follows by itself.',
+    (app, [p]) => onReference(app, () => {
+        const opening = (app.forms.opening || '').trim();
+        if (!opening) return {error: 'Give the name of a door, passage or window of the model below.'};
+        const statement = `corner ${app.photoId()} ${opening} ${app.forms.corner} ${app.px(p[0])} ${app.px(p[1])}${app.forms.outer ? ' outer' : ''}`;
+        app.forms.nextCorner();
+        return statement;
+    }));
+addTool('lri-in', '', 'Taken in this opening', inFile('lri.txt'), 'pixel',
+    'Name the opening below; click the reference image that was taken in it, looking straight out.',
+    (app) => onReference(app, () => (app.forms.opening || '').trim() ? `in ${app.photoId()} ${app.forms.opening.trim()} looking out`
+        : {error: 'Give the name of a door, passage or window of the model below.'}));
+addTool('horizon', '', 'Horizon', inFile('lri.txt'), 'line', 'Set two pixels of the horizon, far apart.',
+    (app, points) => onReference(app, () => `horizon ${inPixels(app, points).slice(3)}`));
 addTool('thing', '', 'Thing', inFile('things.txt'), 'pixel', 'Click a piece of furniture, away from its edges.',
     (app, [p]) => `thing ${app.newName('thing')} ${inPixels(app, [p])}`);
 addTool('flat', '', 'Flat thing', inFile('things.txt'), 'corners',

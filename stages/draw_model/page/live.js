@@ -68,6 +68,37 @@ class Live {
     ray(photo, u, v) { return this.c.live_ray(photo, u, v) ? null : this.numbers(6); }
     /* The ceiling's height; a usual one in metres where it is unknown. */
     height() { return this.c.live_ceiling() || 2.5; }
+    /* kind, photo and three numbers of each cell of a row: live_draft_rows */
+    draftRows(photo, columns, rows, row) {
+        const count = this.c.live_draft_rows(photo, columns, rows, row, 1);
+        if (count < 0) throw new Error(this.error());
+        return this.numbers(5 * count);
+    }
+
+    /* u, v here and there of places that two photos show */
+    shared(photo, other, columns, rows) {
+        const count = this.c.live_shared(photo, other, columns, rows);
+        return count > 0 ? this.numbers(4 * count) : new Float64Array(0);
+    }
+
+    fillMask(photo, columns, rows, cells) {
+        const at = this.c.live_mask(photo, columns, rows);
+        if (at) new Uint8Array(this.c.memory.buffer, at, columns * rows).set(cells.subarray(0, columns * rows));
+    }
+
+    gone() {
+        const count = this.c.live_draft_gone();
+        return count > 0 ? [...this.numbers(count)] : [];
+    }
+
+    /* {left, top, scale} of plan.svg */
+    planPlace() {
+        if (this.c.live_plan_place()) return null;
+        const [left, top, scale] = this.numbers(3);
+        return {left, top, scale};
+    }
+
+    isMetric() { return this.c.live_is_metric() !== 0; }
     project(photo, p) { return this.c.live_project(photo, p[0], p[1], p[2]) ? null : this.numbers(2); }
     pick(photo, u, v) {
         if (this.c.live_pick(photo, u, v)) return null;

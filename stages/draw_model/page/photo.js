@@ -24,8 +24,10 @@ class PhotoPicture {
     draw(what) {
         const c = this.view.begin(), [x, y] = this.view.toScreen(0, 0);
         c.imageSmoothingEnabled = this.view.scale < 3;
-        if (what.image && what.image.complete && what.image.naturalWidth)
-            c.drawImage(what.image, x, y, this.view.size[0] * this.view.scale, this.view.size[1] * this.view.scale);
+        const size = this.view.size.map((s) => s * this.view.scale);
+        if (what.image) c.drawImage(what.image, x, y, ...size);
+        if (what.draft) this.drawDraft(c, what, [x, y], size);
+        if (what.mask) c.drawImage(what.mask, x, y, ...size);
         if (what.shown.points) this.drawPoints(c, what.photo);
         if (what.shown.lines) this.drawLines(c, what.lines);
         if (what.shown.floor) this.drawFloor(c, what.photo);
@@ -33,6 +35,40 @@ class PhotoPicture {
         for (const d of what.drawn) this.drawMark(c, d, d.refused ? 'refused' : d.current ? 'current' : 'mark');
         if (what.gesture) this.drawMark(c, what.gesture, 'gesture');
         if (what.cursor) this.drawCursor(c, what.cursor, what.snapped);
+    }
+
+    /* Where the border's grip is on the screen. */
+    grip(split) {
+        const [x, y] = this.view.toScreen(split * this.view.size[0], this.view.size[1]), [w, h] = this.view.box();
+        return [Math.min(w - 12, Math.max(12, x)), Math.min(h, y) - 24];
+    }
+
+    /* Right of the border the pixels that change. */
+    drawDraft(c, what, [x, y], size) {
+        const at = x + what.split * size[0];
+        c.save();
+        c.beginPath();
+        c.rect(at, y, size[0] + x - at, size[1]);
+        c.clip();
+        c.imageSmoothingEnabled = true;
+        c.drawImage(what.draft, x, y, ...size);
+        c.restore();
+        c.beginPath();
+        c.moveTo(at, y);
+        c.lineTo(at, y + size[1]);
+        this.stroke(c, '#ffffff', 1.5);
+        const [gx, gy] = this.grip(what.split);
+        c.beginPath();
+        c.arc(gx, gy, 12, 0, 7);
+        c.fillStyle = '#ffd24a';
+        c.fill();
+        c.lineWidth = 2;
+        c.strokeStyle = '#000';
+        c.stroke();
+        c.beginPath();
+        c.moveTo(gx - 3, gy - 5), c.lineTo(gx - 8, gy), c.lineTo(gx - 3, gy + 5);
+        c.moveTo(gx + 3, gy - 5), c.lineTo(gx + 8, gy), c.lineTo(gx + 3, gy + 5);
+        c.stroke();
     }
 
     path(c, points, close) {

@@ -122,8 +122,16 @@ const Script = {
                     list.push({line, photo: words[i + 1], kind: 'corners', points: [numbers.slice(0, 2)]});
             }
             for (const c of corners) list.push({line, photo: c.photo, kind: 'corners', points: c.points});
-            if (words[0] === 'mark' && words.length >= 5)
-                list.push({line, photo: words[2], kind: 'corners', points: [[+words[3], +words[4]]]});
+            if (/^(mark|corner|edge|point)$/.test(words[0]) && words.length >= 5 && !words.includes('in')) {
+                /* of lri.txt: "corner IMAGE OPENING left bottom X Y" */
+                const at = Number.isNaN(+words[3]) ? 1 : words[0] === 'point' ? 1 : 2, first = words[0] === 'point' ? 2
+                    : at === 1 ? 5 : 3;
+                list.push({line, photo: words[at], kind: 'corners', points: [[+words[first], +words[first + 1]]]});
+            }
+            if (words[0] === 'subject' && words.length >= 6) list.push({line, photo: words[1], kind: 'rectangle',
+                points: [[+words[2], +words[3]], [+words[4], +words[5]]]});
+            if (words[0] === 'horizon' && words.length >= 6) list.push({line, photo: words[1], kind: 'line',
+                points: [[+words[2], +words[3]], [+words[4], +words[5]]]});
         }
         return list;
     },

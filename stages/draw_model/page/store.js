@@ -3,9 +3,10 @@
 'use strict';
 
 class Store {
-    constructor(scene, texts) {
+    constructor(scene, texts, masks) {
         this.key = 'remodel draw ' + scene;
         this.texts = texts;
+        this.masks = masks;
         this.scene = scene;
         this.onDisk = {...texts.now}; /* as the page was made, or saved since */
         this.folder = null;
@@ -38,19 +39,32 @@ class Store {
         return names;
     }
 
+    /* What is to be written of these files: [path, text or bytes]. What was drawn on masks becomes pictures. */
+    async contents(names) {
+        const list = names.filter((n) => n !== 'masks.txt').map((n) => [n, this.texts.now[n]]);
+        if (names.includes('masks.txt'))
+            for (const id of this.masks.ids(`${this.onDisk['masks.txt'] || ''}\n${this.texts.now['masks.txt']}`))
+                if (this.masks.draw(id, 8)) list.push([`masks/${id}.png`, await this.masks.png(id)]);
+        return list;
+    }
+
     /* Returns what was done, as a sentence. */
     async save() {
         const names = this.unsaved().filter((name) => this.texts.now[name] !== undefined);
         if (!names.length) return 'Nothing to save.';
-        if (window.showDirectoryPicker) {
+        const before = {...this.texts.now};
+        if (window.showDirectoryPicker)
             this.folder = this.folder || await window.showDirectoryPicker({id: 'remodel', mode: 'readwrite'});
-            for (const name of names) await this.writeTo(this.folder, name.split('/'), this.texts.now[name]);
-        } else
-            for (const name of names) this.download(name.split('/').pop(), this.texts.now[name]);
-        for (const name of names) this.onDisk[name] = this.texts.now[name];
+        const list = await this.contents(names), files = list.map(([path]) => path);
+        for (const [path, what] of list)
+            if (this.folder) await this.writeTo(this.folder, path.split('/'), what);
+            else this.download(path.split('/').pop(), what);
+        for (const name of names) this.onDisk[name] = before[name];
         this.keep();
-        return window.showDirectoryPicker ? `Saved ${names.join(', ')}.`
-            : `Downloaded ${names.join(', ')}: put ${names.length > 1 ? 'them' : 'it'} into scenes/${this.scene}/${names.some((n) => n.includes('/')) ? ' (edits into its folder edits)' : ''}.`;
+        if (this.folder) return `Saved ${files.join(', ')} in the folder ${this.folder.name}.`;
+        const deeper = ['edits', 'masks'].filter((f) => files.some((n) => n.startsWith(f + '/')));
+        return `Downloaded ${files.join(', ')}: put ${files.length > 1 ? 'them' : 'it'} into scenes/${this.scene}/` +
+            `${deeper.map((f) => `, those of ${f} into its folder ${f}`).join('')}.`;
     }
 
     async writeTo(folder, parts, text) {
@@ -63,8 +77,9 @@ class Store {
 
     download(name, text) {
         const link = document.createElement('a');
-        link.href = URL.createObjectURL(new Blob([text], {type: 'text/plain'}));
+        link.href = URL.createObjectURL(new Blob([text]));
         link.download = name;
         link.click();
+        setTimeout(() => URL.revokeObjectURL(link.href), 60000);
     }
 }
