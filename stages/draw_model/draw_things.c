@@ -103,8 +103,8 @@ static void write_list(FILE *to, const struct thing_list *list)
         const struct vec3 middle = vec3_scale(vec3_add(t->low, t->high), 0.5);
         fputs(i ? ",\n{\"name\": " : "\n{\"name\": ", to);
         draw_data_write_string(to, t->name, strlen(t->name));
-        fprintf(to, ", \"middle\": [%.6g, %.6g, %.6g], \"radius\": %.6g}", middle.x, middle.y, middle.z,
-                vec3_length(vec3_sub(t->high, middle)));
+        fprintf(to, ", \"middle\": [%.6g, %.6g, %.6g], \"radius\": %.6g, \"hangs\": %d}", middle.x, middle.y, middle.z,
+                vec3_length(vec3_sub(t->high, middle)), t->support == THING_ON_CEILING);
     }
 }
 

@@ -185,7 +185,7 @@ static bool is_gone(const struct texture_map *map, const struct draft_thing *t)
         const struct texture_thing *said = &map->things[i];
         if (!strcmp(said->name, t->name)) return said->kind != TEXTURE_THING_KEEP;
     }
-    return texture_map_clears(map, t->middle);
+    return !t->is_fixed && texture_map_clears(map, t->middle);
 }
 
 /* --------------------------------------------------------------------------------------------------------- photos */
@@ -304,11 +304,12 @@ bool draft_other_pixel(const struct draft *d, const struct placer *placer, int p
 
 /* ------------------------------------------------------------------------------------------------------ beginning */
 
-enum status draft_add_thing(struct draft *d, const char *name, struct vec3 middle, double radius, struct err *err)
+enum status draft_add_thing(struct draft *d, const char *name, struct vec3 middle, double radius, bool is_fixed,
+                            struct err *err)
 {
     if (array_append(&d->things, (size_t)d->thing_count, sizeof *d->things, "things", err)) return err->status;
     struct draft_thing *t = &d->things[d->thing_count];
-    *t = (struct draft_thing){.name = strdup(name), .middle = middle, .radius = radius};
+    *t = (struct draft_thing){.name = strdup(name), .middle = middle, .radius = radius, .is_fixed = is_fixed};
     if (!t->name) return err_nomem(err, "a thing's name", strlen(name));
     d->thing_count++;
     return ST_OK;

@@ -25,6 +25,7 @@ struct draft_thing {
     char *name; /* owned */
     struct vec3 middle;
     double radius;
+    bool is_fixed; /* to the ceiling: places that are cleared leave it */
     bool is_gone;
 };
 
@@ -48,7 +49,8 @@ struct draft {
 };
 
 /* Furniture and masks stay when the model changes. radius: of a ball that holds the thing. */
-enum status draft_add_thing(struct draft *d, const char *name, struct vec3 middle, double radius, struct err *err);
+enum status draft_add_thing(struct draft *d, const char *name, struct vec3 middle, double radius, bool is_fixed,
+                            struct err *err);
 /* The mask of a photo, all 0, for the caller to fill; NULL after a failure. */
 unsigned char *draft_mask_of(struct draft *d, int photo, int columns, int rows, struct err *err);
 

@@ -312,10 +312,10 @@ int live_pick(int photo, double u, double v)
 
 /* ------------------------------------------------------------------------------------------------------------ draft */
 
-int live_thing(const char *name, double x, double y, double z, double radius)
+int live_thing(const char *name, double x, double y, double z, double radius, int hangs)
 {
     live.err = (struct err)ERR_INIT;
-    return draft_add_thing(&live.draft, name, vec3_make(x, y, z), radius, &live.err);
+    return draft_add_thing(&live.draft, name, vec3_make(x, y, z), radius, hangs != 0, &live.err);
 }
 
 unsigned char *live_mask(int photo, int columns, int rows)

@@ -57,10 +57,11 @@ int live_project(int photo, double x, double y, double z);
 double live_ceiling(void);
 int live_is_metric(void);
 
-/* Furniture, in the order of its numbers from 1: its middle, and the radius of a ball that holds it; and memory for
+/* Furniture, in the order of its numbers from 1: its middle, the radius of a ball that holds it, and whether it hangs
+ * from the ceiling, which leaves it where a place is cleared; and memory for
  * which of it a photo shows, on a grid of its pixels, for the caller to fill; NULL after a failure. live_begin()
  * forgets both. */
-int live_thing(const char *name, double x, double y, double z, double radius);
+int live_thing(const char *name, double x, double y, double z, double radius, int hangs);
 unsigned char *live_mask(int photo, int columns, int rows);
 /* Compares the last model, of an edit, with the rooms of the script alone: a draft of what make remodel draws. Building
  * a model forgets it. */

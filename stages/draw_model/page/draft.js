@@ -19,7 +19,7 @@ class Draft {
         if (!this.scene.things) return;
         const masks = [];
         for (const [id, m] of Object.entries(this.scene.things.photos)) masks.push([id, m, await unpack(m.parts)]);
-        for (const t of this.scene.things.list) this.live.call('live_thing', t.name, ...t.middle, t.radius);
+        for (const t of this.scene.things.list) this.live.call('live_thing', t.name, ...t.middle, t.radius, t.hangs);
         for (const [id, m, cells] of masks)
             if (names.includes(id)) this.live.fillMask(names.indexOf(id), m.columns, m.rows, cells);
     }
@@ -87,11 +87,11 @@ class Draft {
         if (!own) return null;
         for (let i = 0; i < cells.length; i += 5)
             if (cells[i] === 0 && cells[i + 1] !== photo) sources.set(cells[i + 1], null);
-        for (const k of sources.keys()) {
+        await Promise.all([...sources.keys()].map(async (k) => {
             const pixels = await this.photos.pixelsOf(this.photos.list[k].id);
-            if (run !== this.running) return null;
-            if (pixels) sources.set(k, {pixels, gain: this.gain(photo, k, own, pixels)});
-        }
+            if (pixels && run === this.running) sources.set(k, {pixels, gain: this.gain(photo, k, own, pixels)});
+        }));
+        if (run !== this.running) return null;
         sources.set(photo, {pixels: own, gain: [1, 1, 1]});
         const light = this.light(own), image = new ImageData(columns, rows), to = image.data;
         const counts = {stays: 0, taken: 0, colour: 0, unseen: 0}, size = this.photos.list[photo];

@@ -533,6 +533,7 @@ class App {
         el('zoom-in').onclick = () => this.zoom(1.5);
         el('zoom-out').onclick = () => this.zoom(1 / 1.5);
         el('zoom-all').onclick = () => { this.view.showAll(); this.draw(); };
+        el('plan-larger').onclick = () => this.enlargePlan();
         el('split').oninput = () => this.draw();
         for (const id of ['show-edges', 'show-points', 'show-floor', 'show-lines', 'show-drawn',
             'snap']) el(id).onchange = () => this.draw();
@@ -585,6 +586,7 @@ class App {
         const control = e.ctrlKey || e.metaKey, key = e.key.toLowerCase(),
             inText = /^(INPUT|TEXTAREA|SELECT)$/.test(e.target.tagName) && e.target.type !== 'checkbox';
         if (!control && !e.altKey && !inText && /^[[\]]$/.test(key) && !el('compare').hidden) this.moveBorder(key === '[' ? -5 : 5);
+        else if (!control && !e.altKey && !inText && key === '.') this.enlargePlan();
         else if (control && key === 's') this.save();
         else if (control && key === 'z' && !e.shiftKey) this.undo();
         else if (control && (key === 'y' || (key === 'z' && e.shiftKey))) this.redo();
@@ -599,6 +601,12 @@ class App {
             el('canvas').focus();
         }
         e.preventDefault();
+    }
+
+    enlargePlan() {
+        const on = el('pictures').classList.toggle('larger');
+        el('plan-larger').setAttribute('aria-pressed', on);
+        this.showMarks();
     }
 
     moveBorder(by) {
@@ -648,7 +656,7 @@ class App {
             ['Escape', 'begins the gesture again'], ['PageUp PageDown', 'other photos'],
                 ['+ - 0', 'larger, smaller, the whole photo; the wheel does the same, Alt and drag moves it'],
             ['[ ]', 'of an edit: move the border between the photo and the draft of the edited room'],
-            ['Ctrl+Z Ctrl+Y', 'undo, redo'], ['Ctrl+S', 'save'], ['Tab', 'from part to part']];
+            ['.', 'the plan larger'], ['Ctrl+Z Ctrl+Y', 'undo, redo'], ['Ctrl+S', 'save'], ['Tab', 'from part to part']];
         const tools = TOOLS.filter((t) => t.key).map((t) => [t.key, `${t.label}: ${t.hint}`]);
         const rows = [...keys, ...tools].map(([k, what]) =>
             `<tr><td><kbd>${k}</kbd></td><td>${what}</td></tr>`).join('');

@@ -26,22 +26,19 @@ const away = (a, b) => Math.hypot(...a.map((v, k) => v - b[k]));
 class Marks {
     constructor(app) { this.app = app; }
 
-    /* Fills `shapes` and `sentences` from all files; sentences: of the file that is open. */
+    /* Fills `shapes` and `sentences` from the file that is open. */
     read() {
         this.shapes = [];
         this.sentences = [];
+        const file = this.app.file;
         const readers = {'scale.txt': 'scale', 'axes_fix.txt': 'axes', 'lights.txt': 'lights', 'things.txt': 'things',
             'materials.txt': 'materials', 'subjects.txt': 'subjects', 'lri.txt': 'references', 'masks.txt': 'masks'};
-        for (const [file, reader] of Object.entries(readers)) {
-            this.isOpen = file === this.app.file;
-            this[reader](this.statements(file));
-        }
-        this.isOpen = EDIT_FILES.test(this.app.file);
-        if (this.isOpen) this.edit(this.statements(this.app.file));
+        if (readers[file]) this[readers[file]](this.statements(file));
+        else if (EDIT_FILES.test(file)) this.edit(this.statements(file));
     }
 
     statements(file) { return Script.statements(this.app.texts.get(file)).map((s) => s.words); }
-    say(text) { if (this.isOpen) this.sentences.push(text); }
+    say(text) { this.sentences.push(text); }
     length(v) { return `${v.toFixed(this.app.live.isMetric() ? 3 : 4)}${this.app.live.isMetric() ? ' m' : ' units'}`; }
 
     photo(view) { return this.app.photos.findIndex((p) => !p.isReference && p.id === view.split('@')[0]); }
@@ -286,22 +283,34 @@ class Marks {
         };
         const group = document.createElementNS('http://www.w3.org/2000/svg', 'g');
         group.setAttribute('class', 'marks');
+        /* px of the screen, whatever size the plan has */
+        const box = svg.viewBox.baseVal, shown = svg.getBoundingClientRect();
+        const px = Math.max(box.width / (shown.width || 1), box.height / (shown.height || 1));
         const at = (p) => [place.scale * (p[0] - place.left), place.scale * (place.top - p[1])];
         const path = (list) => list.map((p, i) => `${i ? 'L' : 'M'}${at(p).map((v) => v.toFixed(1)).join(' ')}`).join('');
+        const cross = (x, y, r, attributes, upright) => make('path', {...attributes, d: `M${x - r * px} ${y - r * px}l${2 * r * px} ${2 * r *
+            px}m0 ${-2 * r * px}l${-2 * r * px} ${2 * r * px}` + (upright ? `M${x - 1.4 * r * px} ${y}h${2.8 * r * px}M${x} ${y - 1.4 * r * px}v${2.8 * r *
+            px}` : '')}), names = [];
         for (const s of this.shapes) {
             const [x, y] = at(s.at[0]), inside = {class: 'mark ' + s.kind};
             if (s.form === 'area') make('path', {...inside, d: path(s.at) + 'Z'});
             else if (s.form === 'line') make('path', {...inside, d: path(s.at)});
-            else if (s.form === 'lamp') make('path', {...inside, d: `M${x - 9} ${y}h18M${x} ${y - 9}v18M${x - 6} ${y -
-                6}l12 12M${x + 6} ${y - 6}l-12 12`});
-            else if (s.form === 'corner') make('path', {...inside, d: `M${x} ${y - 22}V${y}H${x + 22}`});
-            else if (/^(gone|unlit|clear)$/.test(s.kind)) make('path', {...inside, d: `M${x - 6} ${y - 6}l12 12M${x +
-                6} ${y - 6}l-12 12`});
-            else make('circle', {...inside, cx: x, cy: y, r: 5});
+            else if (s.form === 'lamp') cross(x, y, 8, inside, true);
+            else if (s.form === 'corner') make('path', {...inside, d: `M${x} ${y - 14 * px}V${y}H${x + 14 * px}`});
+            else if (/^(gone|unlit|clear)$/.test(s.kind)) cross(x, y, 4, inside, false);
+            else make('circle', {...inside, cx: x, cy: y, r: 3.5 * px});
             if (!s.label) continue;
             const middle = s.form === 'line' || s.form === 'area' ? s.at.map(at).reduce((m, p) => [m[0] + p[0] /
-                s.at.length, m[1] + p[1] / s.at.length], [0, 0]) : [x, y - 14];
-            make('text', {x: middle[0].toFixed(1), y: middle[1].toFixed(1), class: 'mark-name'}, s.label);
+                s.at.length, m[1] + p[1] / s.at.length], [0, 0]) : [x, y - 10 * px];
+            names.push([s.label, ...middle]);
+        }
+        /* names that would lie on another one are left to the sentences */
+        const placed = [];
+        for (const [label, x, y] of names) {
+            const w = 3.6 * px * label.length, h = 6.5 * px;
+            if (placed.some((p) => Math.abs(p[0] - x) < p[2] + w && Math.abs(p[1] - y) < 2 * h)) continue;
+            placed.push([x, y, w]);
+            make('text', {x: x.toFixed(1), y: y.toFixed(1), class: 'mark-name', style: `font-size:${11 * px}px`}, label);
         }
         svg.append(group);
     }

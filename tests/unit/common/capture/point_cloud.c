@@ -190,12 +190,30 @@ static void a_missing_file_is_named(void **state)
     assert_int_not_equal(point_cloud_read(&cloud, scratch, NULL, &err), ST_OK); /* a folder */
 }
 
+static void an_even_share_is_kept(void **state)
+{
+    struct cloud_point points[10];
+    (void)state;
+    for (int i = 0; i < 10; i++)
+        points[i] = (struct cloud_point){.position = {i, 0, 0}, .normal = {0, 0, 1}, .views = 1};
+    struct point_cloud cloud = {points, 10, 0.25};
+    assert_int_equal(point_cloud_thin(&cloud, 10), 1);
+    assert_int_equal(cloud.count, 10);
+    assert_int_equal(point_cloud_thin(&cloud, 4), 3);
+    assert_int_equal(cloud.count, 4);
+    for (int i = 0; i < 4; i++) assert_float_equal(cloud.points[i].position.x, 3 * i, 0);
+    assert_int_equal(point_cloud_thin(&cloud, 0), 4);
+    assert_int_equal(cloud.count, 1);
+    cloud.count = 0;
+    assert_int_equal(point_cloud_thin(&cloud, 5), 1);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_file_has_the_documented_bytes), cmocka_unit_test(points_round_trip),
         cmocka_unit_test(empty_and_large_clouds_round_trip), cmocka_unit_test(broken_files_are_rejected_with_a_reason),
-        cmocka_unit_test(a_missing_file_is_named),
+        cmocka_unit_test(a_missing_file_is_named),           cmocka_unit_test(an_even_share_is_kept),
     };
     return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
 }
