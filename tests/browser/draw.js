@@ -1,8 +1,7 @@
 /* draw.js FOLDER [TEST...] - tests of the page that `draw` wrote for the room of room.js, by pointer events and keys; prints "ok NAME"
  * or "not ok NAME: WHY" for each. FOLDER/profile gets the browser's files. */
 'use strict';
-const {Chromium} = require('./chromium.js');
-const {Hand, check} = require('./hand.js');
+const {check, runTests} = require('./hand.js');
 const {project} = require('./room.js');
 const n = (v) => String(+v.toFixed(2));
 const folder = process.argv[2], chosen = process.argv.slice(3);
@@ -70,49 +69,6 @@ const tests = {
         check(await hand.last() === 'wall wall1 in p0 200 120 440 300', 'redo did not bring it back');
     },
 
-    async what_is_refused_is_said_at_its_line(hand) {
-        const cases = [
-            ['a wall with few points', ROOM, () => hand.drag('wall', 'p0', [[100, 100], [104, 103]]),
-                /rectangle 100 100 104 103 in p0 contains \d+ visible points/],
-            ['a wall on the floor', ROOM, () => hand.drag('wall', 'p0', [[250, 440], [400, 478]]), /model\.txt:8: /],
-            ['a foot above the horizon', ROOM, () => hand.clicks('foot', 'p0', [[100, 50], [500, 50]]),
-                /model\.txt:8: .*(floor|horizon)/],
-            ['a foot across the room', ROOM, () => hand.clicks('foot', 'p0',
-                [project('p0', [3, 0.1, 0]), project('p0', [1, 0.6, 0])]), /model\.txt:8: .*degrees/],
-            ['a door beside its wall', ROOM, () => hand.form('Any statement',
-                {line: 'door out on wall1 from 3.5 0 to 4.5 2'}), /model\.txt:8: .*out/],
-            ['a door above the ceiling', ROOM, () => hand.form('Any statement',
-                {line: 'door high on wall1 from 1 0 to 2 2.6'}), /model\.txt:8: .*high/],
-            ['two openings at one place', ROOM + 'window a on wall1 from 1 1 to 2 2\n', () =>
-                hand.form('Any statement', {line: 'window b on wall1 from 1.5 1 to 2.5 2'}), /model\.txt:9: .*b/],
-            ['a join of parallel walls', ROOM, () => hand.form('Join walls', {walls: 'wall1 wall3'}), /model\.txt:8: /],
-            ['a room of walls that are not joined',
-                'remodel-script 1\nwall a from 0 0 to 3 0\nwall b from 3 1 to 3 3\nwall c from 2 3 to 0 3\n', () =>
-                    hand.form('Room', {name: 'r', walls: 'a b c', ceiling: ''}), /model\.txt:5: /],
-            ['a name that is taken', ROOM, () => hand.form('Any statement', {line: 'wall wall1 from 0 0 to 1 0'}),
-                /model\.txt:8: .*wall1/],
-            ['a name that is unknown', ROOM, () => hand.form('Remove', {name: 'nothing'}), /model\.txt:8: .*nothing/],
-            ['a statement that is unknown', ROOM, () => hand.form('Any statement',
-                {line: 'dor a on wall1 from 1 0 to 2 2'}), /model\.txt:8: .*did you mean door/],
-            ['a wall that is too thin', ROOM, () => hand.form('Heights and thickness',
-                {what: 'thickness', value: '0'}), /model\.txt:8: .*thickness/],
-            ['a split outside of its wall', ROOM, () => hand.form('Split wall',
-                {wall: 'wall1', from: '5', to: '6', into: 'w'}), /model\.txt:8: /],
-            ['a ceiling below the floor', ROOM, () => hand.form('Change', {name: 'room1', how: 'ceiling -1'}),
-                /model\.txt:8: /],
-        ];
-        for (const [what, text, gesture, wanted] of cases) {
-            await hand.begin(text);
-            await gesture();
-            const said = await hand.refusal(),
-                marked = await hand.page.run("(document.querySelector('#numbers b') || {}).textContent");
-            check(wanted.test(said), `${what}: said "${said}", wanted ${wanted}; the text is\n${await hand.text()}`);
-            check(marked && marked.includes(/model\.txt:(\d+)/.exec(said + 'model.txt:8')[1]),
-                `${what}: line ${marked} is marked, after "${said}"`);
-            check((await hand.model()).walls.length > 0 || text !== ROOM, `${what}: the last model is gone`);
-        }
-    },
-
     async edits_are_gestures_on_the_model(hand) {
         const text = ROOM + 'window sunny on wall3 from 1.2 0.9 to 2.8 2.1\nbox chest from 1.5 0.2 to 2.5 0.7 top 0.8\n', edit = 'edits/wide.txt';
         const start = async () => hand.begin(text, {[edit]: 'remodel-script 1\n'});
@@ -175,27 +131,4 @@ const tests = {
     },
 };
 
-(async () => {
-    const browser = await Chromium.open(folder + '/profile');
-    try {
-        const page = await browser.page(`file://${folder}/index.html`), hand = new Hand(page);
-        await page.until('app.ready', 60);
-        await page.run('localStorage.clear()');
-        for (const [name, test] of Object.entries(tests)) {
-            if (chosen.length && !chosen.includes(name)) continue;
-            try {
-                await test(hand, browser);
-                console.log(`ok ${name}`);
-            } catch (e) {
-                console.log(`not ok ${name}: ${e.message}`);
-                await page.screenshot(`${folder}/${name}.png`);
-            }
-        }
-        if (page.errors.length) console.log(`not ok the_console_has_no_error: ${page.errors.join('; ')}`);
-        else console.log('ok the_console_has_no_error');
-    } catch (e) {
-        console.log(`not ok the_page_opens: ${e.message}`);
-    } finally {
-        await browser.close();
-    }
-})();
+runTests(tests, folder, chosen);

@@ -1,5 +1,6 @@
 /* hand.js - what a person does with the page of `draw`, for tests: gestures by pointer events, and what the page says. */
 'use strict';
+const {Chromium} = require('./chromium.js');
 
 function check(right, why) { if (!right) throw new Error(why); }
 
@@ -15,7 +16,9 @@ class Hand {
         for (const [name, t] of Object.entries(edits)) await this.page.run(`app.texts.set('${name}', ${JSON.stringify(t)}); app.openFile('${name}')`);
     }
 
-    screen([u, v]) {
+    /* Where a pixel of the photo is on the screen, once the page was laid out. */
+    async screen([u, v]) {
+        await this.page.run('new Promise((done) => setTimeout(done, 0))');
         return this.page.run(`(() => { const r = app.view.canvas.getBoundingClientRect(), q = app.view.toScreen(${u}, ${v}); return [r.left + q[0], r.top + q[1]]; })()`);
     }
 
@@ -29,6 +32,17 @@ class Hand {
         await this.press('tool-' + tool);
         await this.photo(photo);
         await this.page.drag(await this.screen(a), await this.screen(b));
+    }
+
+    /* Sets two pixels by keys: the drag of one who has no pointer. */
+    async keys(tool, photo, list) {
+        await this.press('tool-' + tool);
+        await this.photo(photo);
+        await this.page.run("document.getElementById('canvas').focus()");
+        for (const p of list) {
+            await this.page.run(`app.cursor = ${JSON.stringify(p)}`);
+            await this.page.key('Enter');
+        }
     }
 
     async clicks(tool, photo, list) {
@@ -46,4 +60,31 @@ class Hand {
     }
 }
 
-module.exports = {Hand, check};
+/* Runs tests by name, each with a Hand on the page in `folder`, and prints "ok NAME" or "not ok NAME: WHY". chosen: those
+ * to run; none: all. FOLDER/profile gets the browser's files. */
+async function runTests(tests, folder, chosen) {
+    const browser = await Chromium.open(folder + '/profile');
+    try {
+        const page = await browser.page(`file://${folder}/index.html`), hand = new Hand(page);
+        await page.until('app.ready', 60);
+        await page.run('localStorage.clear()');
+        for (const [name, test] of Object.entries(tests)) {
+            if (chosen.length && !chosen.includes(name)) continue;
+            try {
+                await test(hand, browser);
+                console.log(`ok ${name}`);
+            } catch (e) {
+                console.log(`not ok ${name}: ${e.message}`);
+                await page.screenshot(`${folder}/${name}.png`);
+            }
+        }
+        if (page.errors.length) console.log(`not ok the_console_has_no_error: ${page.errors.join('; ')}`);
+        else console.log('ok the_console_has_no_error');
+    } catch (e) {
+        console.log(`not ok the_page_opens: ${e.message}`);
+    } finally {
+        await browser.close();
+    }
+}
+
+module.exports = {Hand, check, runTests};

@@ -1,5 +1,5 @@
-/* room.js FOLDER - a made-up scene, exactly known: a room of 4 x 3 x 2.5 m, four photographs, points on its walls and its
- * floor, as files that build_model and draw read. Walls: south y = 0, east x = 4, north y = 3, west x = 0. */
+/* room.js FOLDER [bare] - a made-up scene, exactly known: a room of 4 x 3 x 2.5 m, four photographs, points on its walls and its
+ * floor, as files that build_model and draw read. Walls: south y = 0, east x = 4, north y = 3, west x = 0. bare: its scale and its ceiling are unknown. */
 'use strict';
 const fs = require('fs');
 const zlib = require('zlib');
@@ -94,7 +94,7 @@ function crc(bytes) {
     return (c ^ 0xffffffff) >>> 0;
 }
 
-function write(folder) {
+function write(folder, isBare) {
     const put = (name, text) => {
         fs.mkdirSync(`${folder}/${name}`.replace(/\/[^/]*$/, ''), {recursive: true});
         fs.writeFileSync(`${folder}/${name}`, text);
@@ -108,8 +108,10 @@ function write(folder) {
     put('views/lenses.txt', 'remodel-lenses 1\n' + photos.map((c) =>
         `${c.id} ${c.id} ${lens} turn 1 0 0 0\n`).join(''));
     put('model/axes.txt',
-        'remodel-axes 1\nrotation 1 0 0 0\ntranslation 0 0 0\nscale 1 metres\nceiling 2.5\nthickness none\n' +
-        'error tilt 0\nerror heading 0\nerror floor 0\nerror ceiling 0\nerror scale 0\n');
+        'remodel-axes 1\nrotation 1 0 0 0\ntranslation 0 0 0\n' +
+        (isBare ? 'scale 1 unknown\nceiling none\n' : 'scale 1 metres\nceiling 2.5\n') +
+        'thickness none\nerror tilt 0\nerror heading 0\nerror floor 0\n' +
+        (isBare ? 'error ceiling none\nerror scale none\n' : 'error ceiling 0\nerror scale 0\n'));
     put('points/points.ply', ply());
     for (const c of photos) {
         put(`photos/${c.id}.png`, png(c));
@@ -120,5 +122,5 @@ function write(folder) {
     put('lines/p0.txt', 'remodel-lines 1\nline 100 100 300 120\n');
 }
 
-if (require.main === module) write(process.argv[2]);
+if (require.main === module) write(process.argv[2], process.argv[3] === 'bare');
 module.exports = {photos, project, ROOM};

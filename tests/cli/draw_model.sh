@@ -22,7 +22,7 @@ wasm() # builds it, once
 page()
 {
     local texts=${1:-scenes/room}
-    "$B/bin/draw_model" --name room --scene "$texts" --views room/views --axes room/model/axes.txt --points room/points/points.ply \
+    "$B/bin/draw_model" "${@:2}" --name room --scene "$texts" --views room/views --axes room/model/axes.txt --points room/points/points.ply \
         --lines room/lines --photos room/photos --records room/records --wasm "$B/wasm/build_model.wasm" --page stages/draw_model/page \
         --out page 2>err.txt || { cat err.txt; fail "draw"; }
 }
@@ -55,10 +55,28 @@ inputs_that_are_missing_are_named()
     wasm
     rm -rf page
     local rc=0
-    "$B/bin/draw_model" --name room --scene scenes/room --views room/views --axes room/model/axes.txt --photos room/photos --records room/records \
+    "$B/bin/draw_model" "${@:2}" --name room --scene scenes/room --views room/views --axes room/model/axes.txt --photos room/photos --records room/records \
         --wasm nowhere.wasm --page stages/draw_model/page --out page 2>err.txt || rc=$?
     [ $rc = 1 ] && grep -q 'nowhere.wasm is missing.*run make draw' err.txt || { cat err.txt; fail "exit $rc"; }
     [ ! -e page/index.html ] || fail "a page was left"
+}
+
+verdicts()
+{
+    cat said.txt
+    grep -q '^ok the_console_has_no_error' said.txt || fail "$(grep -m1 '^not ok' said.txt || echo "the tests did not end")"
+    ! grep -q '^not ok' said.txt || fail "$(grep -m1 '^not ok' said.txt)"
+}
+
+# Points of the page, as points.js has them, against the file: within half of a step, normals within a degree.
+points_are_small_and_near_their_places()
+{
+    wasm
+    page scenes/room
+    node "$root/tests/browser/points.js" page room/points/points.ply >said.txt 2>&1 || { cat said.txt; fail "the points differ"; }
+    cat said.txt
+    page scenes/room --set max_points=1000
+    node "$root/tests/browser/points.js" page room/points/points.ply 12 >said.txt 2>&1 || { cat said.txt; fail "the thinned points differ"; }
 }
 
 the_page_is_drawn_in()
@@ -67,9 +85,9 @@ the_page_is_drawn_in()
     command -v chromium >/dev/null || skip "chromium is absent"
     mkdir -p empty; page empty
     timeout 100 node "$root/tests/browser/draw.js" "$PWD/page" the_room_is_drawn_from_nothing keys_draw_as_the_pointer_does >said.txt 2>&1 || { cat said.txt; fail "the browser ended"; }
-    cat said.txt
-    grep -q '^ok the_console_has_no_error' said.txt || fail "$(grep -m1 '^not ok' said.txt || echo "the tests did not end")"
-    ! grep -q '^not ok' said.txt || fail "$(grep -m1 '^not ok' said.txt)"
+    verdicts
+    timeout 100 node "$root/tests/browser/draw_marks.js" "$PWD/page" the_draft_shows_the_edited_room what_is_saved_is_in_the_folder >said.txt 2>&1 || { cat said.txt; fail "the browser ended"; }
+    verdicts
 }
 
-for t in the_module_makes_the_bytes_of_the_program inputs_that_are_missing_are_named the_page_is_drawn_in; do run $t; done
+for t in the_module_makes_the_bytes_of_the_program inputs_that_are_missing_are_named points_are_small_and_near_their_places the_page_is_drawn_in; do run $t; done

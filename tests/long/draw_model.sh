@@ -25,7 +25,22 @@ a_room_is_drawn_in_all_ways()
     node "$root/tests/browser/room.js" room
     "$B/bin/draw_model" --name room --scene empty --views room/views --axes room/model/axes.txt --points room/points/points.ply --lines room/lines \
         --photos room/photos --records room/records --wasm "$B/wasm/build_model.wasm" --page stages/draw_model/page --out page
-    node "$root/tests/browser/draw.js" "$PWD/page" >said.txt 2>&1 || { cat said.txt; fail "the browser ended"; }
+    local part
+    for part in draw draw_marks draw_refusals; do
+        node "$root/tests/browser/$part.js" "$PWD/page" >said.txt 2>&1 || { cat said.txt; fail "the browser ended"; }
+        verdicts
+    done
+}
+
+# without a scale, a ceiling and points: what is refused, and offered
+a_room_without_a_scale_is_drawn()
+{
+    wasm
+    mkdir -p empty
+    node "$root/tests/browser/room.js" bare bare
+    "$B/bin/draw_model" --name bare --scene empty --views bare/views --axes bare/model/axes.txt --lines bare/lines \
+        --photos bare/photos --records bare/records --wasm "$B/wasm/build_model.wasm" --page stages/draw_model/page --out barepage
+    node "$root/tests/browser/draw_bare.js" "$PWD/barepage" >said.txt 2>&1 || { cat said.txt; fail "the browser ended"; }
     verdicts
 }
 
@@ -66,7 +81,7 @@ make_draw_makes_the_page_and_follows_what_people_write()
     printf '[segment_depth]\nplanes = 48\npasses = 1\nrounds = 0\nneighbours = 3\n' >scenes/t/scene.cfg
     make -s DEPS=manual PHOTOS=set/photos SFM=set/model SCENE=t draw >log 2>&1 || { cat log; fail "make draw"; }
     [ -s out/t/draw/index.html ] && [ -s out/t/draw/points.js ] || fail "files are missing"
-    [ "$(ls out/t/draw/photos/*.jpg | wc -l)" = 6 ] || fail "photos are missing"
+    [ "$(ls out/t/draw/photos/*.js | wc -l)" = 6 ] || fail "photos are missing"
     make -s DEPS=manual SCENE=t draw >log 2>&1; touch before
     make -s DEPS=manual SCENE=t draw >log 2>&1 || { cat log; fail "make draw again"; }
     [ ! out/t/draw/index.html -nt before ] || fail "the page was made again"
@@ -75,4 +90,4 @@ make_draw_makes_the_page_and_follows_what_people_write()
     grep -q 'box b from 0 0' out/t/draw/scene.js || fail "model.txt is not in the page"
 }
 
-for t in make_draw_makes_the_page_and_follows_what_people_write a_room_is_drawn_in_all_ways loft_is_drawn_from_nothing the_module_makes_the_bytes_of_loft_and_its_edits; do run $t; done
+for t in make_draw_makes_the_page_and_follows_what_people_write a_room_is_drawn_in_all_ways a_room_without_a_scale_is_drawn loft_is_drawn_from_nothing the_module_makes_the_bytes_of_loft_and_its_edits; do run $t; done

@@ -1,6 +1,6 @@
-/* draft.c - where an edited room takes the colours of a photo's pixels: a room of 4 x 3 x 2.5 m, seen by two cameras that
- * look south, a from (2, 1.5, 1.25) and b from (0.9, 1.2, 0.6). A point x, y, z is at u = 200 + 200 (cx - x) / (cy - y)
- * and v = 150 + 200 (cz - z) / (cy - y). */
+/* draft.c - where an edited room takes the colours of a photo's pixels: a room of 4 x 3 x 2.5 m, seen by two cameras
+ * that look south, a from (2, 1.5, 1.25) and b from (0.9, 1.2, 0.6). A point x, y, z is at
+ * u = 200 + 200 (cx - x) / (cy - y) and v = 150 + 200 (cz - z) / (cy - y). */
 #include "stages/build_model/live/live.h"
 
 #include <math.h>
