@@ -29,8 +29,9 @@ static void rule_needs_edit(struct graph *g, const struct scene_facts *f, const 
 
 RULES(walk)
 {
-    static const char *const parts[] = {"index.html", "walk.css", "space.js", "model.js",
-                                        "load.js",    "draw.js",  "plan.js",  "walk.js"};
+    static const char *const parts[] = {"index.html", "walk.css", "space.js",    "model.js",   "load.js",    "draw.js",
+                                        "plan.js",    "state.js", "textures.js", "picture.js", "measure.js", "move.js",
+                                        "tools.js",   "input.js", "probe.js",    "walk.js"};
     const char *before = "textures outdoors exposure things tour-path";
     if (scene_asks_for(f, "remodel")) before = graph_text(g, "%s remodel", before);
     if (scene_asks_for(f, "relight")) before = graph_text(g, "%s relight", before);
