@@ -2,7 +2,12 @@
  *
  * The furniture of a view is drawn as a mesh over a grid of its pixels. A point of the grid has the depth of the
  * nearest pixel of furniture within a cell of it, so that all cells that hold such a pixel have four corners; how much
- * of a pixel is furniture, its alpha, cuts the outline. */
+ * of a pixel is furniture, its alpha, cuts the outline.
+ *
+ * A second grid holds what the view sees, furniture or not, by which it confirms or denies the furniture of other
+ * views, as in render_model (clutter_blend.c): of the pixels around a point the nearest depth, the least confidence and
+ * the largest part that is furniture. A view must not deny what another one shows because outlines are off by a
+ * pixel. */
 #include "stages/walk/view_texture.h"
 
 #include <libdeflate.h>
@@ -14,13 +19,17 @@
 #include "common/capture/view_image.h"
 #include "common/clutter/clutter_view.h"
 #include "common/image/photo.h"
+#include "common/layers/depth_sigma.h"
 #include "common/product/product.h"
 #include "common/texture/picture_made.h"
 #include "stages/walk/atlas_texture.h"
 #include "stages/walk/data_file.h"
 
 enum { DEPTH_LEVELS = 65535, THINGS = 255, LEVEL = 9 };
-static const float LEAST = 0.25f; /* of a pixel, from which it is furniture with a depth of its own */
+enum { SIGHT_STEPS = 256 };           /* levels of 1 / z for each factor of e: 0.4 % */
+static const double SIGHT_LOG = 8;    /* factors of e below the largest 1 / z: the level 1 */
+static const double MAX_SLACK = 0.03; /* relative uncertainty of a depth that is 255 */
+static const float LEAST = 0.25f;     /* of a pixel, from which it is furniture with a depth of its own */
 
 static enum status read_clutter(struct clutter_view *clutter, const struct walk_scene *s, int at,
                                 const struct pane_fronts *panes, struct err *err)
@@ -46,30 +55,42 @@ static enum status read_clutter(struct clutter_view *clutter, const struct walk_
     return err->status;
 }
 
-/* 1 / z of the furniture at a pixel, scene units; 0: there is none. */
-static double inverse_depth(const struct clutter_view *c, int x, int y, float *cover)
+/* 1 / z of the furniture at a pixel, scene units; 0: there is none. *slack: its relative uncertainty. */
+static double inverse_depth(const struct clutter_view *c, int x, int y, float *cover, float *slack)
 {
     float rgba[4];
     layer_view_photo(&c->layers, x, y, rgba);
     *cover = rgba[3];
+    *slack = 0;
     if (rgba[3] < LEAST) return 0;
     const struct texel *t = &c->layers.texels[(size_t)(y + 1) * (size_t)c->layers.stride + (size_t)(x + 1)];
     const uint32_t first = t->id[0] & ~TEXEL_JOINED, id = first ? first : t->id[1] & ~TEXEL_JOINED;
     if (!id) return 0;
     const double *plane = c->depth.segments[id - 1].plane;
+    *slack = (float)fmin(MAX_SLACK, depth_width(&c->depth.segments[id - 1]));
     return fmax(0, plane[0] * (x + 0.5) + plane[1] * (y + 0.5) + plane[2]);
 }
 
 /* The depths of a view's pixels, and how much of each is furniture. */
 struct pixels {
     double *inverse;
+    float *slack;
     unsigned char *cover;
+    struct clutter_view clutter; /* {0}: there are no depth maps */
 };
+
+static void pixels_release(struct pixels *p)
+{
+    free(p->inverse);
+    free(p->slack);
+    free(p->cover);
+    clutter_view_release(&p->clutter);
+}
 
 struct grid {
     int columns, rows, step;
     double *inverse;
-    unsigned char *thing;
+    float *slack;
 };
 
 static void find_point(struct grid *g, const struct pixels *p, const struct view *view, int i, int j)
@@ -79,11 +100,12 @@ static void find_point(struct grid *g, const struct pixels *p, const struct view
     for (int v = y - g->step; v < y + g->step; v++)
         for (int u = x - g->step; u < x + g->step; u++) {
             if (u < 0 || v < 0 || u >= view->width || v >= view->height) continue;
-            const double inverse = p->inverse[(size_t)v * (size_t)view->width + (size_t)u];
+            const size_t at = (size_t)v * (size_t)view->width + (size_t)u;
             const double away = hypot(u + 0.5 - x, v + 0.5 - y);
-            if (!(inverse > 0) || away >= nearest) continue;
+            if (!(p->inverse[at] > 0) || away >= nearest) continue;
             nearest = away;
-            g->inverse[(size_t)j * (size_t)g->columns + (size_t)i] = inverse;
+            g->inverse[(size_t)j * (size_t)g->columns + (size_t)i] = p->inverse[at];
+            g->slack[(size_t)j * (size_t)g->columns + (size_t)i] = p->slack[at];
         }
 }
 
@@ -111,9 +133,10 @@ static enum status write_grid(FILE *to, const struct walk_scene *s, int at, cons
     g.columns = (view->width + g.step - 1) / g.step + 1;
     g.rows = (view->height + g.step - 1) / g.step + 1;
     const size_t points = (size_t)g.columns * (size_t)g.rows;
-    unsigned char *bytes = calloc(3, points);
+    unsigned char *bytes = calloc(4, points);
     g.inverse = calloc(points, sizeof *g.inverse);
-    if (!bytes || !g.inverse) err_nomem(err, "a grid of depths", points * (3 + sizeof *g.inverse));
+    g.slack = calloc(points, sizeof *g.slack);
+    if (!bytes || !g.inverse || !g.slack) err_nomem(err, "a grid of depths", points * (4 + sizeof *g.inverse));
     double most = 0;
     for (int j = 0; !err->status && j < g.rows; j++)
         for (int i = 0; i < g.columns; i++) {
@@ -125,15 +148,67 @@ static enum status write_grid(FILE *to, const struct walk_scene *s, int at, cons
         const int level = (int)fmax(1, DEPTH_LEVELS * g.inverse[k] / most + 0.5);
         const double u = (double)(k % (size_t)g.columns) * g.step, v = (double)(k / (size_t)g.columns) * g.step;
         const uint32_t thing = thing_volume_at(volume, view_unproject(view, u, v, s->in.axes.scale / g.inverse[k]));
-        bytes[k] = (unsigned char)(level & 255); /* planes of low bytes, high bytes, things: they pack better */
+        bytes[k] = (unsigned char)(level & 255); /* planes of low bytes, high bytes, things, slack: they pack better */
         bytes[points + k] = (unsigned char)(level >> 8);
         bytes[2 * points + k] = thing <= THINGS ? (unsigned char)thing : 0;
+        bytes[3 * points + k] = (unsigned char)((double)g.slack[k] / MAX_SLACK * 255 + 0.5);
     }
     fprintf(to, ",\"columns\":%d,\"rows\":%d,\"most\":", g.columns, g.rows);
     data_write_number(to, most / s->in.axes.scale);
     fputs(",\"depth\":", to);
-    if (!err->status) write_packed(to, bytes, 3 * points, err);
+    if (!err->status) write_packed(to, bytes, 4 * points, err);
     free(g.inverse);
+    free(g.slack);
+    free(bytes);
+    return err->status;
+}
+
+/* What the view sees around a point of the grid. */
+static struct clutter_sight find_sight(const struct clutter_view *c, const struct view *view, int x, int y, int reach)
+{
+    struct clutter_sight sight = {.sure = UINT8_MAX};
+    for (int v = y - reach; v < y + reach; v++)
+        for (int u = x - reach; u < x + reach; u++) {
+            if (u < 0 || v < 0 || u >= view->width || v >= view->height) continue;
+            const struct clutter_sight *s = &c->sight[(size_t)v * (size_t)view->width + (size_t)u];
+            if (!(s->nearest > 0)) continue;
+            sight.nearest = fmaxf(sight.nearest, s->nearest);
+            if (s->sure < sight.sure) sight.sure = s->sure;
+            if (s->shows > sight.shows) sight.shows = s->shows;
+        }
+    return sight;
+}
+
+/* Planes of bytes: low and high ones of the differences of levels along a row, confidence, share of furniture. */
+static enum status write_sight(FILE *to, const struct walk_scene *s, int at, const struct clutter_view *c,
+                               struct err *err)
+{
+    const struct view *view = &s->cameras[at];
+    const int step = s->params->grid, columns = (view->width + step - 1) / step + 1,
+              rows = (view->height + step - 1) / step + 1, reach = step / 2 > 1 ? step / 2 : 1;
+    const size_t points = (size_t)columns * (size_t)rows, pixels = (size_t)view->width * (size_t)view->height;
+    unsigned char *bytes = calloc(4, points);
+    double most = 0;
+    for (size_t i = 0; i < pixels; i++) most = fmax(most, (double)c->sight[i].nearest);
+    if (!bytes) err_nomem(err, "a grid of depths", 4 * points);
+    for (int j = 0; !err->status && j < rows; j++) {
+        unsigned before = 0;
+        for (int i = 0; i < columns; i++) {
+            const size_t k = (size_t)j * (size_t)columns + (size_t)i;
+            const struct clutter_sight sight = find_sight(c, view, i * step, j * step, reach);
+            const double log_inverse = sight.nearest > 0 ? log((double)sight.nearest / most) + SIGHT_LOG : 0;
+            const unsigned level = sight.nearest > 0 ? 1 + (unsigned)(fmax(0, log_inverse) * SIGHT_STEPS + 0.5) : 0;
+            bytes[k] = (unsigned char)((level - before) & 255);
+            bytes[points + k] = (unsigned char)((level - before) >> 8 & 255);
+            bytes[2 * points + k] = sight.nearest > 0 ? sight.sure : 0;
+            bytes[3 * points + k] = sight.shows;
+            before = level;
+        }
+    }
+    fputs(",\"seen\":", to);
+    data_write_number(to, most / s->in.axes.scale);
+    fputs(",\"sight\":", to);
+    if (!err->status) write_packed(to, bytes, 4 * points, err);
     free(bytes);
     return err->status;
 }
@@ -143,19 +218,18 @@ static enum status find_pixels(struct pixels *p, const struct walk_scene *s, int
 {
     const struct view *view = &s->cameras[at];
     const size_t pixels = (size_t)view->width * (size_t)view->height;
-    struct clutter_view clutter = {0};
     p->inverse = calloc(pixels, sizeof *p->inverse);
+    p->slack = calloc(pixels, sizeof *p->slack);
     p->cover = calloc(pixels, 1);
-    if (!p->inverse || !p->cover) return err_nomem(err, "depths", pixels * (1 + sizeof *p->inverse));
-    if (!s->files->depth || read_clutter(&clutter, s, at, panes, err)) return err->status;
+    if (!p->inverse || !p->slack || !p->cover) return err_nomem(err, "depths", pixels * (5 + sizeof *p->inverse));
+    if (!s->files->depth || read_clutter(&p->clutter, s, at, panes, err)) return err->status;
     for (int y = 0; y < view->height; y++)
         for (int x = 0; x < view->width; x++) {
             const size_t i = (size_t)y * (size_t)view->width + (size_t)x;
             float cover;
-            p->inverse[i] = inverse_depth(&clutter, x, y, &cover);
+            p->inverse[i] = inverse_depth(&p->clutter, x, y, &cover, &p->slack[i]);
             p->cover[i] = (unsigned char)(fminf(1, fmaxf(0, cover)) * (255 - VIEW_ALPHA_SEEN));
         }
-    clutter_view_release(&clutter);
     return ST_OK;
 }
 
@@ -178,12 +252,11 @@ enum status view_texture_write(FILE *to, const struct walk_scene *s, int at, con
     fputs("{\"picture\":", to);
     if (!err->status && !atlas_texture_bytes(&rgba, &im, alpha, err))
         atlas_texture_encode(to, rgba, view->width, view->height, s->params->photo_quality, s->params->effort, err);
-    if (!err->status && s->files->depth) write_grid(to, s, at, &p, err);
+    if (!err->status && s->files->depth && !write_grid(to, s, at, &p, err)) write_sight(to, s, at, &p.clutter, err);
     putc('}', to);
     image_release(&photo);
     image_release(&im);
-    free(p.inverse);
-    free(p.cover);
+    pixels_release(&p);
     free(alpha);
     free(rgba);
     return err->status;

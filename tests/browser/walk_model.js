@@ -101,7 +101,7 @@ const tests = {
         const camera = lookAt([2, 1.5, 1.25], Math.PI),
               chosen = W.chooseClutter(scene, camera, W.clutterPlaces(model, camera, true), 12);
         assert(chosen.length > 0 && chosen.every(([i]) => i < 4));
-        near(chosen.reduce((s, c) => s + c[1], 0), 1);
+        assert(chosen.every(([, fade]) => fade > 0 && fade <= 1));
     },
     pieces_cover_a_face_once() {
         const model = room();  // the floor in two tiles of 2 x 3 m, 100 texels a metre, cut at x = 2
@@ -135,24 +135,73 @@ const tests = {
     },
     furniture_stands_at_its_depth_and_goes_with_its_edit() {
         const model = room(), scene = {...sceneOf(model, [[0.5, 1.5, 1.25]]), grid: 50}, view = scene.views[0];
-        const bytes = new Uint8Array(27);  // 3 x 3 points at 1 / z = 0.5, thing 1
+        const bytes = new Uint8Array(36);  // 3 x 3 points at 1 / z = 0.5, thing 1, slack 0.03
         for (let k = 0; k < 9; k++) {
             bytes[k] = bytes[9 + k] = 255;
             bytes[18 + k] = 1;
+            bytes[27 + k] = 255;
         }
         const grid = W.clutterGrid(scene, view, {columns: 3, rows: 3, most: 0.5}, bytes);
-        for (let k = 0; k < 9; k++) near(grid.points[5 * k], 2.5, 1e-5);
-        assert.strictEqual(grid.cells.length, 4);
+        for (let k = 0; k < 9; k++) near(grid.points[6 * k], 2.5, 1e-5);
+        near(grid.points[5], 1.03, 1e-5);
+        assert.strictEqual(grid.cells.length, 1);  // one square of two cells each way: it is flat
         model.things = ['stays'];
-        assert.strictEqual(W.clutterCells(model, grid, 0).length, 24);
+        assert.strictEqual(W.clutterCells(model, grid, 0).length, 6);
         model.things = ['gone'];
         assert.strictEqual(W.clutterCells(model, grid, 0).length, 0);
-        assert.strictEqual(W.clutterCells(model, grid, 1).length, 24);
+        assert.strictEqual(W.clutterCells(model, grid, 1).length, 6);
         model.things = ['stays'];
-        model.zones = [{keep: 0, low: 0, high: 2.5, corners: [2, 0, 4, 0, 4, 3, 2, 3]}];
-        assert(W.clutterCells(model, grid, 0).length < 24);
+        model.zones = [{keep: 0, low: -9, high: 2.5, corners: [2, -9, 4, -9, 4, 9, 2, 9]}];
+        assert.strictEqual(W.clutterCells(model, grid, 0).length, 12);  // its upper half is above the zone
+        model.zones[0] = {keep: 0, low: -9, high: 9, corners: [2, -9, 4, -9, 4, 2, 2, 2]};  // the right half
+        assert.strictEqual(W.clutterCells(model, grid, 0).length, 18);  // one of four cells is cleared: what is near the ceiling stays
         model.things = ['kept'];
-        assert.strictEqual(W.clutterCells(model, grid, 0).length, 24);
+        assert.strictEqual(W.clutterCells(model, grid, 0).length, 6);
+    },
+    squares_cover_a_surface_once_without_cracks() {
+        const columns = 21, rows = 17, inverse = new Float32Array(columns * rows), things = new Uint8Array(columns * rows);
+        for (let k = 0; k < columns * rows; k++) {  // a plane, and a nearer one on the right with a hole
+            const i = k % columns, j = Math.floor(k / columns);
+            inverse[k] = i < 11 ? 0.2 + 0.002 * i + 0.001 * j : i === 15 && j === 6 ? 0 : 0.5;
+        }
+        const covered = new Uint8Array(columns * rows), edges = new Map();
+        const blocks = W.clutterBlocks(inverse, things, columns, rows);
+        for (const [, k, n, around] of blocks) {
+            for (let j = 0; j < n; j++)
+                for (let i = 0; i < n; i++) covered[k + j * columns + i]++;
+            around.forEach((a, i) => edges.set(`${a} ${around[(i + 1) % around.length]}`, true));
+        }
+        for (let j = 0; j + 1 < rows; j++)
+            for (let i = 0; i + 1 < columns; i++) {
+                const hole = (i === 14 || i === 15) && (j === 5 || j === 6);
+                assert.strictEqual(covered[j * columns + i], i === 10 || hole ? 0 : 1, `cell ${i} ${j}`);
+            }
+        assert(blocks.some((b) => b[2] === 4) && blocks.length < 140);
+        for (const e of edges.keys()) {  // each edge is its neighbour's too, or has a gap or the border beside it
+            const [a, b] = e.split(' ').map(Number);
+            if (edges.has(`${b} ${a}`)) continue;
+            const [x, y] = [a, b].map((k) => [k % columns, Math.floor(k / columns)]), [dx, dy] = [y[0] - x[0], y[1] - x[1]];
+            // outside is to the right of the way, seen with rows going down
+            const i = dy > 0 ? x[0] - 1 : dy < 0 ? x[0] : Math.min(x[0], y[0]),
+                  j = dx > 0 ? x[1] : dx < 0 ? x[1] - 1 : Math.min(x[1], y[1]);
+            const free = i < 0 || j < 0 || i + 1 >= columns || j + 1 >= rows || !covered[j * columns + i];
+            assert(free, `the edge ${x} to ${y} has no partner`);
+        }
+    },
+    what_a_view_sees_is_unpacked() {
+        const levels = [1, 1025, 2049, 0], bytes = new Uint8Array(16);  // 8, 4, 0 factors of e below 2; nothing
+        let before = 0;
+        levels.forEach((x, k) => {
+            bytes[k] = (x - before) & 255;
+            bytes[4 + k] = ((x - before) >> 8) & 255;
+            bytes[8 + k] = 51;
+            bytes[12 + k] = 255;
+            before = x;
+        });
+        const t = W.clutterSight({columns: 4, rows: 1, seen: 2}, bytes);
+        [2 * Math.exp(-8), 2 * Math.exp(-4), 2, 0].forEach((x, k) => near(t[4 * k], x, 1e-6));
+        near(t[1], 0.2);
+        near(t[2], 1);
     },
     from_above_ceilings_are_off() {
         const inside = room().faces.filter((f) => W.isInside(room(), f)).map((f) => f.name);

@@ -10,9 +10,49 @@
 
 // Pictures are blended as squares of sRGB, which are nearly linear in light: the way there and back is exact and quick,
 // where textures of sRGB take half of the time when software draws.
-const LINEAR = 'vec3 linear(vec3 c) { return c * c; }\n';
+// White stands for more light than a picture holds, a lamp or the sky: it stays white where something covers part of it.
+const LINEAR = `vec3 linear(vec3 c) { return c * c * (min(min(c.r, c.g), c.b) > .992 ? 3. : 1.); }
+`;
 W.squared = (linear) =>
     linear.map((x) => Math.min(1, x <= 0.0031308 ? 12.92 * x : 1.055 * x ** (1 / 2.4) - 0.055) ** 2);
+
+// Furniture of a view, with what the other views say of it: see clutter_blend.c of render_model. A view whose nearest
+// surface is behind a point, or that shows the model's own surface there, denies it, one with furniture there confirms
+// it; one whose view of it is hidden has no vote. A thing that was found from many views is denied only by views that
+// look through it. vote: the weight of this view, and how opaque the point is.
+W.WITNESSES = 12;
+W.VOTE = `layout(location=0) in vec3 p; layout(location=1) in vec2 place; layout(location=3) in float slack;
+uniform mat4 clip, moved, toView[12]; uniform vec4 stands[12], sizes[12]; uniform vec3 eye; uniform int own, count;
+uniform float spacing; uniform highp sampler2DArray sight;
+out vec2 uv, vote;
+void main() {
+    uv = place;
+    gl_Position = clip * moved * vec4(p, 1.);
+    vec3 a = eye - p;
+    float la = length(a), agreeing = 0., confirmed = 0., denied = 0., tolerance = .015 + fract(slack);
+    vote = vec2(0);
+    for (int k = 0; k < count; k++) {
+        vec3 q = (toView[k] * vec4(p, 1.)).xyz, b = stands[k].xyz - p;
+        vec2 at = q.xy / q.z, size = sizes[k].xy;
+        if (q.z <= 0. || at.x < 0. || at.y < 0. || at.x >= size.x || at.y >= size.y) continue;
+        vec4 s = texelFetch(sight, ivec3(at / spacing + .5, k), 0);
+        float beyond = s.x > 0. ? 1. / (q.z * s.x) - 1. : 0., lb = length(b);
+        bool mine = k == own;
+        if (!mine && (s.x <= 0. || beyond < -tolerance)) continue;
+        float penalty = length(a / la - b / lb) + .1 * max(0., lb / la - 1.);
+        vec2 off = min(at, size - at);
+        float weight = stands[k].w * clamp(min(off.x, off.y) / (.05 * max(size.x, size.y)), .001, 1.) /
+            (.0064 + penalty * penalty);
+        float here = mine ? 1. : (1. - smoothstep(tolerance, 2. * tolerance, beyond)) * (slack >= 1. ? 1. : s.z);
+        confirmed += weight * s.y * here;
+        agreeing += weight * here;
+        denied += weight * s.y * (1. - here);
+        if (mine) vote.x = weight;
+    }
+    if (agreeing > 0.)
+        vote.y = smoothstep(.45, .75, agreeing / (agreeing + denied)) * smoothstep(.2, .45, confirmed / agreeing);
+    vote.x *= .01;
+}`;
 
 W.shaders = {
     // faces
@@ -92,26 +132,25 @@ W.shaders = {
     ],
     // furniture
     clutter: [
-        `layout(location=0) in vec3 p; layout(location=1) in vec2 place; uniform mat4 clip, moved;
-        out vec2 uv;
-        void main() { uv = place; gl_Position = clip * moved * vec4(p, 1.); }`,
-        `in vec2 uv; uniform sampler2D page; uniform float weight; uniform int made; uniform vec3 kinds[9]; out vec4 colour;
+        W.VOTE, `in vec2 uv; in vec2 vote; uniform sampler2D page; uniform int made; uniform vec3 kinds[9];
+        layout(location=0) out vec4 colour; layout(location=1) out vec4 all;
         void main() {
             vec4 t = texture(page, uv);
             float a = clamp((t.a * 255. - 15.) / 240., 0., 1.);
-            if (a < .6) discard;
+            if (a < .02) discard;
+            all = vec4(vote.x);
+            a *= vote.y;
             t.rgb = linear(t.rgb);
             vec3 c = made == 1 ? mix(kinds[7], kinds[7] * dot(t.rgb, vec3(.2126, .7152, .0722)) * 2., .5) : t.rgb;
-            a *= max(weight, .001);
+            a *= vote.x;
             colour = vec4(c * a, a);
         }`
     ],
     clutterDepth: [
-        `layout(location=0) in vec3 p; layout(location=1) in vec2 place; uniform mat4 clip, moved;
-        out vec2 uv;
-        void main() { uv = place; gl_Position = clip * moved * vec4(p, 1.); }`,
-        `in vec2 uv; uniform sampler2D page;
-        void main() { if (texture(page, uv).a < 159. / 255.) discard; }`
+        W.VOTE, `in vec2 uv; in vec2 vote; uniform sampler2D page;
+        void main() {
+            if (clamp((texture(page, uv).a * 255. - 15.) / 240., 0., 1.) * vote.y < .5) discard;
+        }`
     ],
     object: [
         `layout(location=0) in vec3 p; layout(location=1) in vec3 n; uniform mat4 clip; out vec3 normal;
@@ -122,16 +161,19 @@ W.shaders = {
     show: [
         `layout(location=0) in vec3 p; out vec2 uv; uniform vec2 part;
         void main() { gl_Position = vec4(p.xy, 0., 1.); uv = (p.xy * .5 + .5) * part; }`,
-        `in vec2 uv; uniform sampler2D shell, clutter; uniform int furniture; out vec4 colour;
+        `in vec2 uv; uniform sampler2D shell, clutter, all; uniform int furniture; out vec4 colour;
         void main() {
             vec3 c = texture(shell, uv).rgb;
-            if (furniture == 1) { vec4 f = texture(clutter, uv); if (f.a > 0.) c = f.rgb / f.a; }
+            if (furniture == 1) {
+                vec4 f = texture(clutter, uv);
+                if (f.a > 0.) c = mix(c, f.rgb / f.a, min(1., f.a / texture(all, uv).r));
+            }
             colour = vec4(sqrt(clamp(c, 0., 1.)), 1.);
         }`
     ],
 };
 
-W.integers = new Set(['made', 'kind', 'furniture', 'change', 'shell', 'clutter']);  // uniforms
+W.integers = new Set(['made', 'kind', 'furniture', 'change', 'shell', 'clutter', 'own', 'count', 'sight', 'all']);  // uniforms
 
 class Painter {
     constructor(canvas) {
@@ -220,6 +262,7 @@ ${i ? LINEAR : ''}`;
         for (const b of this.targets || []) {
             gl.deleteFramebuffer(b.frame);
             gl.deleteTexture(b.colour);
+            if (b.all) gl.deleteTexture(b.all);
         }
         if (this.depth) gl.deleteRenderbuffer(this.depth);
         Object.assign(this, {width, height});
@@ -237,6 +280,15 @@ ${i ? LINEAR : ''}`;
             gl.framebufferRenderbuffer(gl.FRAMEBUFFER, gl.DEPTH_STENCIL_ATTACHMENT, gl.RENDERBUFFER, this.depth);
             return {colour, frame};
         });
+        // of furniture: the weights of all that was drawn in a pixel
+        const all = gl.createTexture();
+        gl.bindTexture(gl.TEXTURE_2D, all);
+        gl.texStorage2D(gl.TEXTURE_2D, 1, this.floats ? gl.R16F : gl.R8, width, height);
+        gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.LINEAR);
+        gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.LINEAR);
+        gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT1, gl.TEXTURE_2D, all, 0);
+        gl.drawBuffers([gl.COLOR_ATTACHMENT0, gl.COLOR_ATTACHMENT1]);
+        this.targets[1].all = all;
     }
     use(name, values) {
         const gl = this.gl, {program, places} = this.programs[name];
@@ -251,6 +303,10 @@ ${i ? LINEAR : ''}`;
             if (at === undefined) continue;
             if (key === 'kinds')
                 gl.uniform3fv(at, v);
+            else if (key === 'toView')
+                gl.uniformMatrix4fv(at, false, v);
+            else if (key === 'stands' || key === 'sizes')
+                gl.uniform4fv(at, v);
             else if (W.integers.has(key))
                 gl.uniform1i(at, v);
             else if (typeof v === 'number')
@@ -299,7 +355,7 @@ ${i ? LINEAR : ''}`;
     /* p: what to draw:
      *   camera, box (x y width height of the canvas), part (of its pixels along each side: less while it must be
      * quick), solid, sets: [first, second] viewpoint or null, share, vita, rules, outdoors, light: {set, most},
-     * clutter: [{texture, buffer, first, count, moved, weight}], photos: [{view, texture, alpha, change}], objects,
+     * clutter: {draws: [{texture, buffer, first, count, moved, own, eye}], witnesses}, grid, photos: [{view, texture, alpha, change}], objects,
      * made (0, or 1: colours of origin), kinds, near, far */
     paint(p) {
         const gl = this.gl, {camera} = p, clip = W.clipMatrix(camera, p.near, p.far),
@@ -384,10 +440,12 @@ ${i ? LINEAR : ''}`;
             this.use('sky', {...values, lens: [fx * w, -fy * h, cx * w - 1, 1 - cy * h], turn: t});
             this.draw(this.square, 0, 4, true);
         }
-        if (p.clutter.length) this.paintClutter(p, values);
+        if (p.clutter.draws.length) this.paintClutter(p, values);
         gl.disable(gl.DEPTH_TEST);
         gl.activeTexture(gl.TEXTURE1);
         gl.bindTexture(gl.TEXTURE_2D, this.targets[1].colour);
+        gl.activeTexture(gl.TEXTURE3);
+        gl.bindTexture(gl.TEXTURE_2D, this.targets[1].all);
         gl.activeTexture(gl.TEXTURE0);
         if (p.photos.length) this.paintPhotos(p, values);
         gl.bindFramebuffer(gl.FRAMEBUFFER, null);
@@ -397,13 +455,44 @@ ${i ? LINEAR : ''}`;
         this.use('show', {
             shell: 0,
             clutter: 1,
+            all: 3,
             part: [wide / this.width, high / this.height],
-            furniture: p.clutter.length && !p.photos.length ? 1 : 0
+            furniture: p.clutter.draws.length && !p.photos.length ? 1 : 0
         });
         this.draw(this.square, 0, 4, true);
     }
+    // The views that vote on furniture: what each sees, a layer of a texture, and where it stands.
+    witnesses(list) {
+        const gl = this.gl, high = [0, 1].map((k) => Math.max(...list.map((w) => w.size[k])));
+        const toView = new Float32Array(16 * W.WITNESSES), stands = new Float32Array(4 * W.WITNESSES),
+              sizes = new Float32Array(4 * W.WITNESSES);
+        gl.activeTexture(gl.TEXTURE2);
+        if (!this.sight || this.sight.size.some((x, k) => x < high[k])) {
+            if (this.sight) gl.deleteTexture(this.sight.texture);
+            this.sight = {texture: gl.createTexture(), size: high, layers: []};
+            gl.bindTexture(gl.TEXTURE_2D_ARRAY, this.sight.texture);
+            gl.texStorage3D(gl.TEXTURE_2D_ARRAY, 1, gl.RGBA16F, ...high, W.WITNESSES);
+            gl.texParameteri(gl.TEXTURE_2D_ARRAY, gl.TEXTURE_MIN_FILTER, gl.NEAREST);
+            gl.texParameteri(gl.TEXTURE_2D_ARRAY, gl.TEXTURE_MAG_FILTER, gl.NEAREST);
+        }
+        gl.bindTexture(gl.TEXTURE_2D_ARRAY, this.sight.texture);
+        list.forEach((w, k) => {
+            const {view} = w, r = view.turn, [fx, fy, cx, cy] = view.lens;
+            if (this.sight.layers[k] !== w.number)
+                gl.texSubImage3D(gl.TEXTURE_2D_ARRAY, 0, 0, 0, k, ...w.size, 1, gl.RGBA, gl.FLOAT, w.sight);
+            this.sight.layers[k] = w.number;
+            const rows = [0, 3, 6].map((i) => [r[i], r[i + 1], r[i + 2], -W.dot(r.slice(i, i + 3), view.centre)]);
+            for (let c = 0; c < 4; c++)
+                toView.set([fx * rows[0][c] + cx * rows[2][c], fy * rows[1][c] + cy * rows[2][c], rows[2][c], 0],
+                    16 * k + 4 * c);
+            stands.set([...view.centre, w.fade], 4 * k);
+            sizes.set([view.width, view.height, 0, 0], 4 * k);
+        });
+        gl.activeTexture(gl.TEXTURE0);
+        return {toView, stands, sizes, count: list.length, sight: 2};
+    }
     paintClutter(p, values) {
-        const gl = this.gl;
+        const gl = this.gl, votes = this.witnesses(p.clutter.witnesses);
         gl.bindFramebuffer(gl.FRAMEBUFFER, this.targets[1].frame);
         gl.clear(gl.COLOR_BUFFER_BIT);
         for (const pass of [0, 1]) {
@@ -413,14 +502,14 @@ ${i ? LINEAR : ''}`;
                 gl.enable(gl.BLEND);
                 gl.blendFunc(gl.ONE, gl.ONE);
             }
-            // near the first surface counts as on it: as if it were 3 % nearer
-            const clip = pass ? W.clipMatrix(p.camera, p.near * 1.03, p.far * 1.03) : values.clip;
+            // near the first surface counts as on it: as if it were 7 % nearer
+            const nearer = pass ? 1.07 : 1, clip = W.clipMatrix(p.camera, p.near * nearer, p.far * nearer);
             const name = pass ? 'clutter' : 'clutterDepth';
-            this.use(name, {...values, clip});
-            for (const c of p.clutter) {
+            this.use(name, {...values, ...votes, clip, spacing: p.grid});
+            for (const c of p.clutter.draws) {
                 if (!c.count) continue;
                 this.bind(c.texture);
-                this.set(name, {moved: c.moved, weight: c.weight});
+                this.set(name, {moved: c.moved, own: c.own, eye: c.eye});
                 this.draw(c.buffer, c.first, c.count);
             }
         }
@@ -432,10 +521,11 @@ ${i ? LINEAR : ''}`;
         gl.bindFramebuffer(gl.FRAMEBUFFER, this.targets[0].frame);
         gl.enable(gl.BLEND);
         gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
-        if (p.clutter.length) {
+        if (p.clutter.draws.length) {
             gl.bindTexture(gl.TEXTURE_2D, this.targets[1].colour);
             this.use('lay', {
                 shell: 0,
+                all: 3,
                 part: [gl.getParameter(gl.VIEWPORT)[2] / this.width, gl.getParameter(gl.VIEWPORT)[3] / this.height]
             });
             this.draw(this.square, 0, 4, true);
@@ -458,7 +548,11 @@ ${i ? LINEAR : ''}`;
     }
 }
 W.shaders.lay = [
-    W.shaders.show[0], `in vec2 uv; uniform sampler2D shell; out vec4 colour;
-    void main() { vec4 f = texture(shell, uv); if (f.a <= 0.) discard; colour = vec4(f.rgb / f.a, 1.); }`
+    W.shaders.show[0], `in vec2 uv; uniform sampler2D shell, all; out vec4 colour;
+    void main() {
+        vec4 f = texture(shell, uv);
+        if (f.a <= 0.) discard;
+        colour = vec4(f.rgb / f.a, min(1., f.a / texture(all, uv).r));
+    }`
 ];
 W.Painter = Painter;

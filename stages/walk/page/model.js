@@ -56,10 +56,10 @@ W.hit = (model, from, along, most = Infinity, glass = true) => {
     }
     return best && {t: least, face: best, point: W.add(from, along, least)};
 };
-W.blocked = (model, from, along, most) => {
+W.blocked = (model, from, along, most, glass = true) => {
     for (const f of model.faces) {
         const slope = W.dot(f.n, along);
-        if (slope === 0) continue;
+        if (slope === 0 || (f.pane && !glass)) continue;
         const t = (f.d - W.dot(f.n, from)) / slope;
         if (!(t > 1e-6 && t < most)) continue;
         const [i, j] = f.axes;
@@ -123,7 +123,7 @@ W.clutterPlaces = (model, camera, fine) =>
     W.samples(model, camera, fine ? 16 : 8, fine ? 12 : 6)
         .flatMap((s) => [0.5, 1].map((part) => W.add(W.scale(camera.centre, 1 - part), s.point, part)));
 
-// The views that furniture is drawn from, with their weights: [[view, weight], ...], best first.
+// The views that furniture is drawn from: [[view, fade], ...], best first. fade falls to 0 as a view leaves the choice.
 W.chooseClutter = (scene, camera, places, most) => {
     const scores = new Float64Array(scene.views.length);
     for (const point of places) {
@@ -133,24 +133,17 @@ W.chooseClutter = (scene, camera, places, most) => {
             const [x, y, z] = W.project(view, point);
             if (!(z > 0) || x < 0 || y < 0 || x >= view.width || y >= view.height) return;
             const a = W.add(camera.centre, point, -1), b = W.add(view.centre, point, -1);
+            if (W.blocked(scene.models[0], view.centre, W.scale(b, -1), 0.98, false)) return;
             const la = W.length(a), lb = W.length(b);
             const chord = W.length(W.add(W.scale(a, 1 / la), b, -1 / lb)) + 0.1 * Math.max(0, lb / la - 1);
-            weights.push([i, 1 / (0.005 + chord * chord) ** 2, b]);
+            weights.push([i, 1 / (0.005 + chord * chord) ** 2]);
             sum += weights[weights.length - 1][1];
         });
-        for (const [i, w, b] of weights) {
-            if (W.blocked(scene.models[0], scene.views[i].centre, W.scale(b, -1), 0.97)) continue;
-            scores[i] += w / sum;
-        }
+        for (const [i, w] of weights) scores[i] += w / sum;
     }
     const order = [...scores.keys()].filter((i) => scores[i] > 0).sort((a, b) => scores[b] - scores[a]);
-    const next = order.length > most ? scores[order[most]] : 0, chosen = [];
-    for (const i of order.slice(0, most)) {
-        const fade = Math.min(1, 3 * (1 - next / scores[i]));
-        if (fade > 0) chosen.push([i, scores[i] * fade]);
-    }
-    const all = chosen.reduce((sum, c) => sum + c[1], 0);
-    return chosen.map(([i, w]) => [i, w / all]);
+    const next = order.length > most ? scores[order[most]] : 0;
+    return order.slice(0, most).map((i) => [i, Math.min(1, 3 * (1 - next / scores[i]))]).filter((c) => c[1] > 0);
 };
 
 // --- meshes
@@ -268,25 +261,74 @@ W.atlasMesh = (model, atlas, free, wanted = () => true) => {
 W.solidMesh = (model, wanted = () => true) =>
     new Float32Array(model.faces.filter((f) => f.shown && wanted(f)).flatMap((f) => f.corners.flat()));
 
-// A view's furniture: {points: x y z u v of the grid, cells: thing and corners}
+// A view's furniture: {points: x y z u v of the grid and slack, 1 more in a thing that was found, columns, cells}
 W.clutterGrid = (scene, view, grid, bytes) => {
     const {columns, rows, most} = grid, count = columns * rows, step = scene.grid, [fx, fy, cx, cy] = view.lens;
-    const points = new Float32Array(5 * count), inverse = new Float32Array(count), things = bytes.subarray(2 * count);
+    const points = new Float32Array(6 * count), inverse = new Float32Array(count), things = bytes.subarray(2 * count);
     for (let k = 0; k < count; k++) {
         inverse[k] = ((bytes[k] + 256 * bytes[count + k]) / 65535) * most;
         if (!inverse[k]) continue;
         const u = (k % columns) * step, v = Math.floor(k / columns) * step, z = 1 / inverse[k];
         const p = W.add(W.turnBack(view.turn, [((u - cx) / fx) * z, ((v - cy) / fy) * z, z]), view.centre);
-        points.set([...p, u / view.width, v / view.height], 5 * k);
+        points.set([...p, u / view.width, v / view.height, (0.03 / 255) * bytes[3 * count + k] + (things[k] ? 1 : 0)], 6 * k);
     }
-    const cells = [];
-    for (let j = 0; j + 1 < rows; j++)
-        for (let i = 0; i + 1 < columns; i++) {
-            const k = j * columns + i, c = [k, k + 1, k + columns, k + columns + 1], d = c.map((x) => inverse[x]);
-            const low = Math.min(...d), high = Math.max(...d);
-            if (low > 0 && high < 1.08 * low) cells.push([c.map((x) => things[x]).find((x) => x) || 0, c]);
+    return {points, columns, cells: W.clutterBlocks(inverse, things, columns, rows)};
+};
+
+// Squares of a grid that lie on one surface: [thing, first point, side in cells, points around], as large as their
+// surface is flat there, which a plane is in 1 / z. Points of smaller neighbours are among those around a square, so
+// that no crack opens between them.
+W.clutterBlocks = (inverse, things, columns, rows) => {
+    const taken = new Uint8Array(columns * rows), used = new Uint8Array(columns * rows), blocks = [];
+    const isFlat = (k, n) => {
+        const d = (i, j) => inverse[k + j * columns + i], least = 0.02 * d(0, 0);
+        for (let j = 0; j <= n; j++)
+            for (let i = 0; i <= n; i++) {
+                const s = i / n, t = j / n;
+                const flat = (1 - t) * ((1 - s) * d(0, 0) + s * d(n, 0)) + t * ((1 - s) * d(0, n) + s * d(n, n));
+                if (!(d(i, j) > 0 && Math.abs(d(i, j) - flat) < least)) return false;
+            }
+        return true;
+    };
+    for (const n of [4, 2, 1])
+        for (let j = 0; j + n < rows; j += n)
+            for (let i = 0; i + n < columns; i += n) {
+                const k = j * columns + i, corners = [k, k + n * columns, k + n * (columns + 1), k + n];
+                if (taken[k]) continue;
+                if (n > 1) {
+                    if (!isFlat(k, n)) continue;
+                } else {
+                    const d = corners.map((c) => inverse[c]), low = Math.min(...d);
+                    if (!(low > 0 && Math.max(...d) < 1.08 * low)) continue;
+                }
+                for (let y = 0; y < n; y++) taken.fill(1, k + y * columns, k + y * columns + n);
+                corners.forEach((c) => (used[c] = 1));
+                blocks.push([corners.map((c) => things[c]).find((x) => x) || 0, k, n]);
+            }
+    for (const block of blocks) {
+        const [, k, n] = block, around = [];
+        for (const [from, by] of [
+                 [k, columns], [k + n * columns, 1], [k + n * (columns + 1), -columns], [k + n, -1]
+             ])
+            for (let i = 0; i < n; i++)
+                if (used[from + i * by]) around.push(from + i * by);
+        block.push(around);
+    }
+    return blocks;
+};
+
+// What a view sees at the points of its grid, as texels: 1 / z of the nearest surface, confidence, share of furniture.
+W.clutterSight = (grid, bytes) => {
+    const {columns, rows, seen} = grid, count = columns * rows, texels = new Float32Array(4 * count);
+    for (let j = 0; j < rows; j++)
+        for (let i = 0, level = 0; i < columns; i++) {
+            const k = j * columns + i;
+            level = (level + bytes[k] + 256 * bytes[count + k]) & 65535;
+            texels[4 * k] = level ? seen * Math.exp((level - 1) / 256 - 8) : 0;
+            texels[4 * k + 1] = bytes[2 * count + k] / 255;
+            texels[4 * k + 2] = bytes[3 * count + k] / 255;
         }
-    return {points, cells};
+    return texels;
 };
 
 // The cells that a model shows where the photographs have them (thing 0), or those of one thing: corners of triangles.
@@ -303,13 +345,24 @@ W.clutterCells = (model, grid, thing, below) => {
         }
         return gone;
     };
-    for (const [id, c] of grid.cells) {
-        if ((thing && id !== thing) || grid.points[5 * c[0] + 2] > limit) continue;
-        if (!thing) {
-            const fate = id ? model.things[id - 1] : 'stays', p = grid.points.subarray(5 * c[0], 5 * c[0] + 3);
-            if (fate === 'gone' || (fate === 'stays' && model.zones.length && p[2] <= ceiling && cleared(p))) continue;
-        }
-        list.push(c[0], c[2], c[1], c[1], c[2], c[3]);
+    const shown = (id, k) => {
+        const p = grid.points.subarray(6 * k, 6 * k + 3);
+        if (p[2] > limit) return false;
+        if (thing) return id === thing;
+        const fate = id ? model.things[id - 1] : 'stays';
+        return fate !== 'gone' && !(fate === 'stays' && model.zones.length && p[2] <= ceiling && cleared(p));
+    };
+    const {columns} = grid;
+    for (const [id, k, n, around] of grid.cells) {
+        const all = [k, k + n, k + n * columns, k + n * (columns + 1)].map((c) => shown(id, c));
+        if (n === 1 ? all[0] : all.every((x) => x)) {
+            for (let i = 1; i + 1 < around.length; i++) list.push(around[0], around[i], around[i + 1]);
+        } else if (all.some((x) => x))  // a part of it
+            for (let j = 0; j < n; j++)
+                for (let i = 0; i < n; i++) {
+                    const c = k + j * columns + i;
+                    if (shown(id, c)) list.push(c, c + columns, c + 1, c + 1, c + columns, c + columns + 1);
+                }
     }
     return new Uint32Array(list);
 };

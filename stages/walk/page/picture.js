@@ -3,13 +3,15 @@
 
 const STILL = new Float32Array([1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]);
 
-// What is drawn of a view's furniture in a model.
-const clutterDraws = (list, m) => {
-    const model = scene.models[m], draws = [];
-    for (const [v, weight] of list) {
+// What is drawn of furniture in a model: {draws, witnesses}, the views that vote on it.
+const clutterDraws = (list, m, camera) => {
+    const model = scene.models[m], draws = [], witnesses = [];
+    for (const [v, fade] of list) {
         const i = scene.places.findIndex((p) => v >= p.first && v < p.first + p.count), photo = photoOf(i);
         const view = photo && photo[v - scene.places[i].first];
-        if (!view || !view.grid) continue;
+        if (!view || !view.sight) continue;
+        witnesses.push({number: v, fade, view: view.view, sight: view.sight, size: view.size});
+        if (!view.grid) continue;
         const key = `${v} ${m} ${S.above ? 'above' : ''}`, p = places[i];
         if (!p.cells[key]) {
             const parts = [[0, STILL]];
@@ -18,20 +20,28 @@ const clutterDraws = (list, m) => {
                 parts.push(
                     [t.id, new Float32Array([r[0], r[3], r[6], 0, r[1], r[4], r[7], 0, r[2], r[5], r[8], 0, ...d, 1])]);
             }
-            p.cells[key] = parts.map(([thing, moved]) => {
+            p.cells[key] = parts.map(([thing, moved], k) => {
                 const cells = W.clutterCells(model, view.grid, thing, S.above && 0.78);
                 return {
                     moved,
+                    placed: k ? model.placed[k - 1] : null,
                     first: 0,
                     count: cells.length,
-                    buffer: cells.length && painter.buffer(view.grid.points, [[0, 3], [1, 2]], cells)
+                    buffer: cells.length && painter.buffer(view.grid.points, [[0, 3], [1, 2], [3, 1]], cells)
                 };
             });
         }
         for (const c of p.cells[key])
-            if (c.count) draws.push({...c, texture: view.texture, weight});
+            if (c.count)
+                draws.push({
+                    ...c,
+                    texture: view.texture,
+                    own: witnesses.length - 1,
+                    // where the camera stands beside the thing at its old place
+                    eye: c.placed ? W.turnBack(c.placed.turn, W.add(camera.centre, c.placed.shift, -1)) : camera.centre
+                });
     }
-    return draws;
+    return {draws, witnesses};
 };
 
 // The photographs of the viewpoint that a camera stands in, and how much they cover.
@@ -94,7 +104,8 @@ const drawModel = (camera, m, box, fixed = {}) => {
         made: S.made ? 1 : 0,
         kinds,
         relitKinds,
-        clutter: clutterDraws(made.clutter, m),
+        clutter: clutterDraws(made.clutter, m, camera),
+        grid: scene.grid,
         photos,
         objects: made.objects.length ? made.objects : null,
         near: above ? 0.05 * size : 0.01 * size,

@@ -47,6 +47,10 @@ const photoOf = (i) => {
             p.photo = await Promise.all(list.map(async (v, k) => {
                 const made = {texture: painter.texture(await W.picture(v.picture)), view: scene.views[place.first + k]};
                 if (v.depth && v.most > 0) made.grid = W.clutterGrid(scene, made.view, v, await W.unpack(v.depth));
+                if (v.sight) {
+                    made.sight = W.clutterSight(v, await W.unpack(v.sight));
+                    made.size = [v.columns, v.rows];
+                }
                 return made;
             }));
             makeRoom();
