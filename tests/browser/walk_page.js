@@ -160,6 +160,67 @@ const main = async () => {
             check(
                 'n_goes_to_a_photograph', (await state('move')) || (await state('eye')).centre.join() !== before.join(),
                 'nothing moves');
+            // fingers, as they come from a screen that is touched
+            const fingers = (type, points) => browser.send('Input.dispatchTouchEvent', {
+                type,
+                touchPoints: points.map(([x, y], id) => ({x, y, id}))
+            });
+            const drag = async (from, by, steps = 10) => {
+                await fingers('touchStart', from);
+                for (let k = 1; k <= steps; k++)
+                    await fingers('touchMove', from.map((p, i) => p.map((x, c) => x + (by[i][c] * k) / steps)));
+                await fingers('touchEnd', []);
+                await wait(50);
+            };
+            const close = (a, b, e) => Math.abs(a - b) < e;
+            const begin = (centre, heading) => browser.run(`{ const s = walk.state; s.move = s.tour = s.above = null; s.field = 1.31;
+                s.eye = {centre: ${JSON.stringify(centre)}, heading: ${heading}, up: 0}; }`);
+            const place = await browser.run('walk.scene().places[0].centre');
+            await begin(place, 0.5);
+            await drag([[600, 300]], [[100, 0]]);
+            let eye = await state('eye');
+            check(
+                'one_finger_turns_by_what_it_moves',
+                close(eye.heading, 0.5 + (1.31 * 100) / 1280, 1e-6) && eye.centre.join() === place.join(),
+                JSON.stringify(eye));
+            await begin(place, 0.5);
+            await drag([[500, 300], [700, 300]], [[-100, 0], [100, 0]]);
+            eye = await state('eye');
+            check(
+                'two_fingers_spread_to_twice_their_distance_halve_the_field',
+                close(await state('field'), 1.31 / 2, 1e-6) && close(eye.heading, 0.5, 1e-9), await state('field'));
+            const free = await browser.run(`(() => { for (let h = 0; h < 6.28; h += 0.2) {
+                const to = ${JSON.stringify(place)}.map((x, k) => x + [Math.cos(h), Math.sin(h), 0][k] * 0.11 * walk.state.size);
+                if (!W.hit(walk.scene().models[walk.state.edit], ${JSON.stringify(place)}, [Math.cos(h), Math.sin(h), 0], 0.2 * walk.state.size)) return h; }
+                return 0; })()`);
+            const size = await state('size');
+            await begin(place, free);
+            await drag([[500, 400], [700, 400]], [[0, -100], [0, -100]]);
+            eye = await state('eye');
+            const gone = [0, 1].map((k) => eye.centre[k] - place[k]);
+            check(
+                'two_fingers_moved_up_by_100_px_walk_a_tenth_of_the_rooms',
+                close(gone[0], 0.1 * size * Math.cos(free), 1e-3 * size) &&
+                    close(gone[1], 0.1 * size * Math.sin(free), 1e-3 * size),
+                `${gone} of ${size}, heading ${free}`);
+            check('two_fingers_moved_together_do_not_zoom', close(await state('field'), 1.31, 1e-6), await state('field'));
+            await begin(place, 0.5);
+            await fingers('touchStart', [[600, 420]]);
+            await fingers('touchEnd', []);
+            await wait(50);
+            check('a_short_touch_goes_there', await state('move'), 'nothing moves');
+            await fingers('touchStart', [[500, 300], [700, 300]]);
+            await browser.run('{ walk.state.move = null; }');
+            await fingers('touchEnd', []);
+            await wait(50);
+            check('a_touch_of_two_fingers_goes_nowhere', !(await state('move')), 'it moves');
+            await browser.key('o');
+            const away = (await state('above')).away;
+            await drag([[500, 300], [700, 300]], [[50, 0], [-50, 0]]);
+            check(
+                'from_above_two_fingers_closed_to_half_go_twice_as_far',
+                close((await state('above')).away, Math.min(3 * size, 2 * away), 1e-6), (await state('above')).away);
+            await browser.key('o');
             const names = await browser.run(
                 '[...document.querySelectorAll("button")].every((b) => b.textContent.trim() || b.getAttribute("aria-label"))');
             check('every_button_has_a_name', names, 'a button has none');

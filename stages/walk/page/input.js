@@ -24,11 +24,7 @@ const keyDown = (e) => {
     }
     if (held[key]) {
         e.preventDefault();
-        S.move = null;
-        if (S.tour) {
-            S.tour = null;
-            buttons();
-        }
+        stay();
         S.keys.add(held[key]);
         if (e.shiftKey && (key === 'ArrowLeft' || key === 'ArrowRight')) {
             S.keys.delete(held[key]);
@@ -90,51 +86,59 @@ const zoom = (by) => {
     touch();
 };
 
-// Mouse and fingers: one turns, two walk and zoom, a short touch goes there.
+// Mouse and fingers. One finger turns, a short touch goes there; two fingers moved together walk, spread they zoom.
 const fingers = new Map();
-const down = (e) => {
-    canvas.setPointerCapture(e.pointerId);
-    canvas.focus({preventScroll: true});
-    fingers.set(e.pointerId, {x: e.clientX, y: e.clientY, still: true, time: performance.now()});
-};
-const moveFinger = (e) => {
-    const f = fingers.get(e.pointerId);
-    if (!f) return;
-    const dx = e.clientX - f.x, dy = e.clientY - f.y;
-    if (f.still && Math.hypot(dx, dy) < 5) return;
-    const others = [...fingers.values()].filter((o) => o !== f);
-    f.still = false;
-    canvas.classList.add('turning');
+const WALK = 0.001;  // of the rooms' size for each pixel that both fingers move
+const stay = () => {
     S.move = null;
     if (S.tour) {
         S.tour = null;
         buttons();
     }
-    if (others.length) {
-        others[0].still = false;
-        const was = Math.hypot(f.x - others[0].x, f.y - others[0].y), is = Math.hypot(e.clientX - others[0].x, e.clientY - others[0].y);
+};
+const walkBy = (forward, aside) => {
+    const c = Math.cos(S.eye.heading), s = Math.sin(S.eye.heading),
+          to = W.add(S.eye.centre, [forward * c + aside * s, forward * s - aside * c, 0]), there = reach(S.eye.centre, to);
+    if (inRooms(there)) S.eye.centre = there;
+};
+const turnBy = (heading, up) => {
+    const at = S.above || S.eye, most = S.above ? -0.25 : 1.4, least = S.above ? -1.55 : -1.4;
+    at.heading += heading;
+    at.up = Math.min(most, Math.max(least, at.up + up));
+};
+const down = (e) => {
+    canvas.setPointerCapture(e.pointerId);
+    canvas.focus({preventScroll: true});
+    fingers.set(e.pointerId, {x: e.clientX, y: e.clientY, still: true});
+    if (fingers.size > 1) fingers.forEach((f) => (f.still = false));
+};
+const moveFinger = (e) => {
+    const f = fingers.get(e.pointerId), other = [...fingers.values()].find((o) => o !== f);
+    if (!f) return;
+    const dx = e.clientX - f.x, dy = e.clientY - f.y;
+    if (f.still && Math.hypot(dx, dy) < 5) return;
+    const was = other && Math.hypot(f.x - other.x, f.y - other.y);
+    Object.assign(f, {x: e.clientX, y: e.clientY, still: false});
+    canvas.classList.add('turning');
+    stay();
+    if (other) {
+        const is = Math.hypot(f.x - other.x, f.y - other.y);
+        if (is > 1 && was > 1) zoom(was / is);
         if (S.above)
-            zoom(was / is);
-        else {
-            const c = Math.cos(S.eye.heading), s = Math.sin(S.eye.heading), far = (0.006 * (is - was) * S.size) / 6;
-            const there = reach(S.eye.centre, W.add(S.eye.centre, [c, s, 0], far));
-            if (inRooms(there)) S.eye.centre = there;
-        }
+            turnBy(0.003 * dx, -0.003 * dy);
+        else  // half of it: the other finger brings the other half
+            walkBy(-0.5 * WALK * S.size * dy, -0.5 * WALK * S.size * dx);
     } else {
-        const turn = S.above ? 0.006 : S.field / Math.max(canvas.clientWidth, canvas.clientHeight),
-              at = S.above || S.eye;
-        at.heading += turn * dx;
-        at.up = S.above ? Math.min(-0.25, Math.max(-1.55, at.up - turn * dy)) :
-                          Math.min(1.4, Math.max(-1.4, at.up + turn * dy));
+        const turn = S.above ? 0.006 : S.field / Math.max(canvas.clientWidth, canvas.clientHeight);
+        turnBy(turn * dx, S.above ? -turn * dy : turn * dy);
     }
-    Object.assign(f, {x: e.clientX, y: e.clientY});
     S.moved = performance.now();
     touch();
 };
 const up = (e) => {
     const f = fingers.get(e.pointerId);
     fingers.delete(e.pointerId);
-    canvas.classList.remove('turning');
+    if (!fingers.size) canvas.classList.remove('turning');
     if (f && f.still && e.type === 'pointerup') {
         const box = canvas.getBoundingClientRect();
         pressed(e.clientX - box.left, e.clientY - box.top);

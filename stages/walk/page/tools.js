@@ -144,7 +144,7 @@ const build = () => {
         box([255, 205, 40], 'yellow over it: relit') + '<div id="aimed"></div>';
     $('help').innerHTML = `<h2>Walk through ${W.escape(scene.name)}</h2><table>
 <tr><td>drag, <kbd>←</kbd> <kbd>→</kbd>, <kbd>PgUp</kbd> <kbd>PgDn</kbd></td><td>look around</td></tr>
-<tr><td>click, <kbd>↑</kbd> <kbd>↓</kbd>, <kbd>A</kbd> <kbd>D</kbd></td><td>go there; walk; step aside. On a touch screen, two fingers walk.</td></tr>
+<tr><td>click, <kbd>↑</kbd> <kbd>↓</kbd>, <kbd>A</kbd> <kbd>D</kbd></td><td>go there; walk; step aside. On a touch screen: one finger turns, a touch goes there, two fingers moved together walk, spread they zoom.</td></tr>
 <tr><td>circles on the floor, blue dots on the plan, <kbd>N</kbd> <kbd>P</kbd></td><td>go where a photograph was taken: there you see it as it is</td></tr>
 <tr><td>wheel, <kbd>+</kbd> <kbd>-</kbd>, <kbd>R</kbd></td><td>nearer, wider, back to normal</td></tr>
 <tr><td><kbd>0</kbd> to <kbd>9</kbd>, <kbd>X</kbd></td><td>the rooms as they are, or after a change; the next change</td></tr>
