@@ -274,28 +274,38 @@ static enum picture_made made_of(const uint16_t *rgb)
     return MADE_NOTHING;
 }
 
-enum status view_texture_write_change(FILE *to, const struct walk_scene *s, const char *jpeg, const char *sources,
-                                      struct err *err)
+enum status view_texture_write_change(FILE *to, const struct walk_scene *s, int at, const char *jpeg,
+                                      const char *sources, struct err *err)
 {
+    const struct view *view = &s->in.set.views[at];
     struct photo picture = {0}, made = {0};
+    struct image seen = {0};
     unsigned char *rgba = NULL;
-    if (!photo_read(&picture, jpeg, err) && sources) photo_read(&made, sources, err);
-    if (!err->status && sources && (made.info.width != picture.info.width || made.info.height != picture.info.height))
-        err_set(err, ST_DATA, "%s has %d x %d pixels, but %s has %d x %d. Run make remodel again.", sources,
-                made.info.width, made.info.height, jpeg, picture.info.width, picture.info.height);
-    const size_t pixels = (size_t)picture.info.width * (size_t)picture.info.height;
-    if (!err->status && !(rgba = malloc(4 * pixels))) err_nomem(err, "a picture", 4 * pixels);
+    const size_t pixels = (size_t)view->width * (size_t)view->height;
+    if (photo_read(&picture, jpeg, err) || (sources && photo_read(&made, sources, err)) ||
+        (!sources && view_image_read(&seen, s->files->views, view, NULL, err)))
+        goto done;
+    if (picture.info.width != view->width || picture.info.height != view->height ||
+        (sources && (made.info.width != view->width || made.info.height != view->height))) {
+        const struct photo *wrong = sources && picture.info.width == view->width ? &made : &picture;
+        err_set(err, ST_DATA, "%s has %d x %d pixels, but view %s has %d x %d. Run make %s again.",
+                wrong == &made ? sources : jpeg, wrong->info.width, wrong->info.height, view->name, view->width,
+                view->height, sources ? "remodel" : "relight");
+        goto done;
+    }
+    if (!(rgba = malloc(4 * pixels))) err_nomem(err, "a picture", 4 * pixels);
     for (size_t i = 0; !err->status && i < pixels; i++) {
         const enum picture_made kind = sources ? made_of(made.samples + 3 * i) : MADE_PHOTO;
-        const bool shown = !sources || (kind != MADE_NOTHING && kind != MADE_PHOTO);
+        const bool shown = sources ? kind != MADE_NOTHING && kind != MADE_PHOTO : seen.data[4 * i + 3] > 0;
         for (size_t c = 0; c < 3; c++) rgba[4 * i + c] = (unsigned char)picture.samples[3 * i + c];
         rgba[4 * i + 3] = shown ? (unsigned char)(VIEW_ALPHA_MADE + VIEW_ALPHA_STEP * (int)kind) : 0;
     }
     if (!err->status)
-        atlas_texture_encode(to, rgba, picture.info.width, picture.info.height, s->params->photo_quality,
-                             s->params->effort, err);
+        atlas_texture_encode(to, rgba, view->width, view->height, s->params->photo_quality, s->params->effort, err);
+done:
     free(rgba);
     photo_release(&picture);
     photo_release(&made);
+    image_release(&seen);
     return err->status;
 }

@@ -16,10 +16,10 @@ enum status view_texture_write(FILE *to, const struct walk_scene *s, int view, c
                                struct err *err);
 
 /* Writes a JPEG of an edited or relit view. sources: PNG of what its pixels come from; where that is the photo itself,
- * the picture is transparent; elsewhere alpha is VIEW_ALPHA_MADE + VIEW_ALPHA_STEP enum picture_made. NULL: all of it
- * is shown. */
+ * the picture is transparent; elsewhere alpha is VIEW_ALPHA_MADE + VIEW_ALPHA_STEP enum picture_made. NULL: a relit
+ * view, which is shown where the photo shows something. ST_DATA: the sizes differ from the view's. */
 enum { VIEW_ALPHA_MADE = 100, VIEW_ALPHA_STEP = 15 };
-enum status view_texture_write_change(FILE *to, const struct walk_scene *s, const char *jpeg, const char *sources,
-                                      struct err *err);
+enum status view_texture_write_change(FILE *to, const struct walk_scene *s, int view, const char *jpeg,
+                                      const char *sources, struct err *err);
 
 #endif

@@ -159,9 +159,9 @@ static enum status write_changes(const struct data_job *j, const struct walk_vie
         if (!find_picture(jpeg, folder, relit ? PRODUCT_RELIT_JPEG : PRODUCT_PICTURE_JPEG, view, err))
             fputs("null", f.fp);
         else if (relit)
-            view_texture_write_change(f.fp, s, jpeg, NULL, err);
+            view_texture_write_change(f.fp, s, p->first + i, jpeg, NULL, err);
         else if (find_picture(sources, folder, PRODUCT_PICTURE_SOURCES, view, err))
-            view_texture_write_change(f.fp, s, jpeg, sources, err);
+            view_texture_write_change(f.fp, s, p->first + i, jpeg, sources, err);
         else
             fputs("null", f.fp);
     }

@@ -203,6 +203,27 @@ const tests = {
         near(t[1], 0.2);
         near(t[2], 1);
     },
+    furniture_takes_the_change_of_light_of_the_faces_around_it() {
+        const model = room(), size = [4, 3, 2.5], data = new Uint8Array(4 * 60 * 10);
+        const tiles = model.faces.map((f, k) => {  // 10 x 10 texels for each face
+            const [i, j] = f.axes, row = (a, x) => [0, 1, 2].map((c) => (c === a ? 10 / size[a] : 0)).concat(x);
+            return [f.id, 0, 10 * k, 0, 10, 10, [...row(i, 10 * k), ...row(j, 0), 0, 0, 0, 1]];
+        });
+        const fill = (face, byte) => {
+            for (let y = 0; y < 10; y++)
+                for (let x = 0; x < 10; x++) data.set([byte, byte, byte, 255], 4 * (60 * y + 10 * face + x));
+        };
+        const light = {atlas: {tiles}, most: 4}, pages = [{width: 60, height: 10, data}];
+        const half = Math.round(255 * (1 / 8) ** (1 / 2.2));  // the byte of a factor of 1 / 2
+        for (let k = 0; k < 6; k++) fill(k, half);
+        const even = W.lightVolume(model, light, pages), count = even.texels.length / 4;
+        assert.deepStrictEqual(even.size, [20, 15, 13]);
+        for (let k = 0; k < count; k++) near(even.texels[4 * k], 0.5, 0.01);
+        fill(0, 255);  // four times as much from the floor
+        const lower = W.lightVolume(model, light, pages).texels, column = 20 * 7 + 10, level = 20 * 15;
+        for (let z = 0; z < 13; z++) assert(lower[4 * (column + z * level)] > 0.5 && lower[4 * (column + z * level)] < 4);
+        assert(lower[4 * column] > lower[4 * (column + 12 * level)]);  // more beside the floor than below the ceiling
+    },
     from_above_ceilings_are_off() {
         const inside = room().faces.filter((f) => W.isInside(room(), f)).map((f) => f.name);
         assert(!inside.includes('ceiling') && inside.includes('floor') && inside.includes('north/in'));

@@ -77,10 +77,28 @@ const main = async () => {
         const size = fs.readdirSync(folder).reduce((s, f) => s + fs.statSync(path.join(folder, f)).size, 0);
         console.log(`# ${(size / 1e6).toFixed(1)} MB on disk`);
         check('the_walk_is_smaller_than_40_MB', size < 40e6, `${size} bytes`);
-        const lit = await browser.run(
-            `(async () => { const v = walk.scene().views[0], r = await walk.picture({camera: v}); const b = await (await fetch(r.url)).blob(),
-            p = await createImageBitmap(b), c = new OffscreenCanvas(p.width, p.height).getContext('2d'); c.drawImage(p, 0, 0); const d = c.getImageData(0, 0, p.width, p.height).data; let n = 0; for (let i = 0; i < d.length; i += 4) n += d[i] + d[i + 1] + d[i + 2] > 30; return n / (p.width * p.height); })()`);
+        // the share of a picture's pixels that show something
+        const filled = (spec) => browser.run(`(async () => {
+            const r = await walk.picture(${spec}), p = await createImageBitmap(await (await fetch(r.url)).blob());
+            const c = new OffscreenCanvas(p.width, p.height).getContext('2d');
+            c.drawImage(p, 0, 0);
+            const d = c.getImageData(0, 0, p.width, p.height).data;
+            let n = 0;
+            for (let i = 0; i < d.length; i += 4) n += d[i] + d[i + 1] + d[i + 2] > 30;
+            return n / (p.width * p.height);
+        })()`);
+        const lit = await filled('{camera: walk.scene().views[0]}');
         check('a_viewpoint_is_filled', lit > 0.95, `${(100 * lit).toFixed(1)} % of its pixels show something`);
+        // relit pictures of a photo that fills a part of its views leave the rest to the rooms
+        const relit = fs.readdirSync(folder).map((f) => f.match(/^light-(.*)-([^-]*)\.js$/)).find((m) => m);
+        if (relit) {
+            const names = await browser.run('walk.scene().views.map((v) => v.name)');
+            for (const [k, name] of names.entries()) {
+                if (!name.startsWith(`${relit[2]}@`)) continue;
+                const part = await filled(`{camera: walk.scene().views[${k}], edit: '${relit[1]}', light: true}`);
+                check(`${name}_is_filled_in_new_light`, part > 0.95, `${(100 * part).toFixed(1)} % of its pixels`);
+            }
+        }
         const look = async (name, spec, file, least) => {
             const picture = await browser.run(`walk.picture(${JSON.stringify(spec)})`);
             const e = await compare(browser, picture.url, file, file.replace(/\.jpg$/, '-sources.png')),

@@ -23,11 +23,14 @@ W.squared = (linear) =>
 W.WITNESSES = 12;
 W.VOTE = `layout(location=0) in vec3 p; layout(location=1) in vec2 place; layout(location=3) in float slack;
 uniform mat4 clip, moved, toView[12]; uniform vec4 stands[12], sizes[12]; uniform vec3 eye; uniform int own, count;
-uniform float spacing; uniform highp sampler2DArray sight;
-out vec2 uv, vote;
+uniform float spacing; uniform highp sampler2DArray sight; uniform int lit; uniform vec3 low, high;
+uniform highp sampler3D volume;
+out vec2 uv, vote; out vec3 light;
 void main() {
     uv = place;
-    gl_Position = clip * moved * vec4(p, 1.);
+    vec4 there = moved * vec4(p, 1.);
+    gl_Position = clip * there;
+    light = lit == 1 ? pow(textureLod(volume, (there.xyz - low) / (high - low), 0.).rgb, vec3(.9)) : vec3(1);
     vec3 a = eye - p;
     float la = length(a), agreeing = 0., confirmed = 0., denied = 0., tolerance = .015 + fract(slack);
     vote = vec2(0);
@@ -132,7 +135,7 @@ W.shaders = {
     ],
     // furniture
     clutter: [
-        W.VOTE, `in vec2 uv; in vec2 vote; uniform sampler2D page; uniform int made; uniform vec3 kinds[9];
+        W.VOTE, `in vec2 uv, vote; in vec3 light; uniform sampler2D page; uniform int made; uniform vec3 kinds[9];
         layout(location=0) out vec4 colour; layout(location=1) out vec4 all;
         void main() {
             vec4 t = texture(page, uv);
@@ -140,7 +143,7 @@ W.shaders = {
             if (a < .02) discard;
             all = vec4(vote.x);
             a *= vote.y;
-            t.rgb = linear(t.rgb);
+            t.rgb = linear(t.rgb) * light;
             vec3 c = made == 1 ? mix(kinds[7], kinds[7] * dot(t.rgb, vec3(.2126, .7152, .0722)) * 2., .5) : t.rgb;
             a *= vote.x;
             colour = vec4(c * a, a);
@@ -173,7 +176,7 @@ W.shaders = {
     ],
 };
 
-W.integers = new Set(['made', 'kind', 'furniture', 'change', 'shell', 'clutter', 'own', 'count', 'sight', 'all']);  // uniforms
+W.integers = new Set(['made', 'kind', 'furniture', 'change', 'shell', 'clutter', 'own', 'count', 'sight', 'all', 'lit', 'volume']);  // uniforms
 
 class Painter {
     constructor(canvas) {
@@ -248,6 +251,17 @@ ${i ? LINEAR : ''}`;
         const made = {texture: t, size: [picture.width, picture.height], bytes: 4 * picture.width * picture.height};
         if (picture.close) picture.close();
         return made;
+    }
+    // Colours in space: {size, low, high, texels}.
+    volume(v) {
+        const gl = this.gl, t = gl.createTexture();
+        gl.bindTexture(gl.TEXTURE_3D, t);
+        gl.texImage3D(gl.TEXTURE_3D, 0, gl.RGBA16F, ...v.size, 0, gl.RGBA, gl.FLOAT, v.texels);
+        for (const side of [gl.TEXTURE_WRAP_S, gl.TEXTURE_WRAP_T, gl.TEXTURE_WRAP_R])
+            gl.texParameteri(gl.TEXTURE_3D, side, gl.CLAMP_TO_EDGE);
+        gl.texParameteri(gl.TEXTURE_3D, gl.TEXTURE_MIN_FILTER, gl.LINEAR);
+        gl.texParameteri(gl.TEXTURE_3D, gl.TEXTURE_MAG_FILTER, gl.LINEAR);
+        return {texture: t, low: v.low, high: v.high};
     }
     drop(t) {
         if (t) this.gl.deleteTexture(t.texture);
@@ -492,7 +506,10 @@ ${i ? LINEAR : ''}`;
         return {toView, stands, sizes, count: list.length, sight: 2};
     }
     paintClutter(p, values) {
-        const gl = this.gl, votes = this.witnesses(p.clutter.witnesses);
+        const gl = this.gl, votes = this.witnesses(p.clutter.witnesses), volume = p.light && p.light.volume;
+        gl.activeTexture(gl.TEXTURE4);
+        gl.bindTexture(gl.TEXTURE_3D, volume ? volume.texture : null);
+        gl.activeTexture(gl.TEXTURE0);
         gl.bindFramebuffer(gl.FRAMEBUFFER, this.targets[1].frame);
         gl.clear(gl.COLOR_BUFFER_BIT);
         for (const pass of [0, 1]) {
@@ -505,7 +522,16 @@ ${i ? LINEAR : ''}`;
             // near the first surface counts as on it: as if it were 7 % nearer
             const nearer = pass ? 1.07 : 1, clip = W.clipMatrix(p.camera, p.near * nearer, p.far * nearer);
             const name = pass ? 'clutter' : 'clutterDepth';
-            this.use(name, {...values, ...votes, clip, spacing: p.grid});
+            this.use(name, {
+                ...values,
+                ...votes,
+                clip,
+                spacing: p.grid,
+                lit: volume && pass ? 1 : 0,
+                volume: 4,
+                low: volume ? volume.low : [0, 0, 0],
+                high: volume ? volume.high : [1, 1, 1]
+            });
             for (const c of p.clutter.draws) {
                 if (!c.count) continue;
                 this.bind(c.texture);

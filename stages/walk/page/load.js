@@ -35,3 +35,9 @@ W.unpack = async (base64) => {
 };
 W.picture = (base64) => createImageBitmap(
     new Blob([W.bytes(base64)], {type: 'image/webp'}), {premultiplyAlpha: 'none', colorSpaceConversion: 'none'});
+// The bytes of a picture.
+W.pixels = (picture) => {
+    const c = new OffscreenCanvas(picture.width, picture.height).getContext('2d');
+    c.drawImage(picture, 0, 0);
+    return c.getImageData(0, 0, picture.width, picture.height);
+};

@@ -366,3 +366,47 @@ W.clutterCells = (model, grid, thing, below) => {
     }
     return new Uint32Array(list);
 };
+
+// How an edit changes the light in the space of the rooms, for furniture, whose own change nobody computed: at each
+// point of a lattice the mean of the factors of the faces around it. {size, low, high, texels}
+W.lightVolume = (model, light, pages) => {
+    const {low, high} = model, way = W.add(high, low, -1), most = Math.max(...way), ways = [];
+    const size = way.map((x) => Math.max(2, Math.round((20 * x) / most)));
+    const texels = new Float32Array(4 * size[0] * size[1] * size[2]);
+    for (let x = -1; x <= 1; x++)
+        for (let y = -1; y <= 1; y++)
+            for (let z = -1; z <= 1; z++)
+                if ((x || y || z) && Math.abs(x) + Math.abs(y) + Math.abs(z) !== 2) ways.push(W.unit([x, y, z]));
+    const tiles = new Map();
+    for (const t of light.atlas.tiles) {
+        if (!tiles.has(t[0])) tiles.set(t[0], []);
+        tiles.get(t[0]).push(t);
+    }
+    const factor = (face, point) => {
+        for (const [, page, x, y, w, h, m] of tiles.get(face.id) || []) {
+            if (!seesPlane(m, face.n)) continue;
+            const [u, v, d] = W.place(m, point), i = Math.floor(u / d), j = Math.floor(v / d);
+            const {data, width} = pages[page];
+            if (!(d > 0) || i < x || j < y || i >= x + w || j >= y + h) continue;
+            const k = 4 * (j * width + i);
+            return data[k + 3] ? [0, 1, 2].map((c) => light.most * (data[k + c] / 255) ** 2.2) : null;
+        }
+        return null;
+    };
+    for (let k = 0, at = 0; k < size[2]; k++)
+        for (let j = 0; j < size[1]; j++)
+            for (let i = 0; i < size[0]; i++, at += 4) {
+                const p = [i, j, k].map((n, c) => low[c] + ((n + 0.5) / size[c]) * way[c]);
+                let sum = [0, 0, 0], count = 0;
+                for (const along of ways) {
+                    const hit = W.hit(model, p, along, Infinity, false);
+                    if (!hit || W.dot(hit.face.n, along) > 0) continue;  // from behind: outside of the rooms
+                    const f = factor(hit.face, hit.point);
+                    if (!f) continue;
+                    sum = W.add(sum, f);
+                    count++;
+                }
+                texels.set(count ? [...W.scale(sum, 1 / count), 1] : [1, 1, 1, 1], at);
+            }
+    return {size, low, high, texels};
+};

@@ -22,7 +22,7 @@ window.walk = {
               {camera} = spec;
         Object.assign(S, {light: !!spec.light, made: !!spec.made, above: null, busy: true});
         const size = [canvas.width, canvas.height];
-        for (let k = 0; k < 2; k++) {
+        for (let k = 0; k < 3; k++) {  // the photograph, then what changes it
             canvas.width = camera.width;
             canvas.height = camera.height;
             painter.resize(2 * camera.width, 2 * camera.height);

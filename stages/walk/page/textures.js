@@ -65,7 +65,7 @@ const changesOf = (name, i) => {
     if (!pictures.has(file)) return undefined;
     if (!(file in p.changes)) {
         p.changes[file] = null;
-        W.load(file).then(async (list) => {
+        p.asked[file] = W.load(file).then(async (list) => {
             W.forget(file);
             p.changes[file] =
                 list && await Promise.all(list.map(async (t) => t && painter.texture(await W.picture(t))));
@@ -119,8 +119,11 @@ const lightOf = (m) => {
                                 ({...f, rules: [{kind: 'place', from: f.id, m: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0]}]}))
                     },
                     l.atlas, true);
-            const pages = await Promise.all(l.textures.map(async (t) => painter.texture(await W.picture(t))));
-            made.light = {set: {buffer: painter.buffer(data, [[0, 3], [1, 3], [2, 4]]), draws, pages}, most: l.most};
+            const pictures = await Promise.all(l.textures.map((t) => W.picture(t))), pixels = pictures.map(W.pixels);
+            const pages = pictures.map((picture) => painter.texture(picture));
+            const volume = scene.clutter ? painter.volume(W.lightVolume(model, l, pixels)) : null;
+            const buffer = painter.buffer(data, [[0, 3], [1, 3], [2, 4]]);
+            made.light = {set: {buffer, draws, pages}, most: l.most, volume};
             touch();
         });
     }
