@@ -78,7 +78,7 @@ static enum status find_patches(struct outdoors_sun *s, const struct outdoors *o
 {
     if (field_atlas_read(&s->atlas, vita, model->rays.ids, prov, err) || list_planes(&s->planes, &model->rays, err))
         return err->status;
-    const struct sun_scene scene = {&model->rays, &s->atlas, s->planes};
+    const struct atlas_scene scene = {&model->rays, &s->atlas, s->planes};
     if (sun_search(&s->search, &scene, err) || !s->search.found) return err->status;
     s->direction = s->search.fit.direction;
     s->source = source_at(o, s->direction) == OUTDOORS_REFERENCE ? SUN_HIDDEN : SUN_PATCHES;
@@ -152,7 +152,7 @@ double outdoors_paint_sun(struct outdoors *o, struct vec3 direction, double radi
 enum status outdoors_sun_add(struct outdoors_sun *s, struct outdoors *o, const struct outdoors_model *model,
                              struct err *err)
 {
-    const struct sun_scene scene = {&model->rays, &s->atlas, s->planes};
+    const struct atlas_scene scene = {&model->rays, &s->atlas, s->planes};
     if (s->source != SUN_PATCHES) return ST_OK;
     if (sun_light_measure(&s->light, &scene, o, &s->search.edges, s->direction, s->search.fit.radius, err))
         return err->status;

@@ -43,7 +43,7 @@ static struct vec3 disk_direction(struct vec3 d, double radius, int k)
     return sun_aside(d, k * 2.399963229728653, radius * sqrt((k + 0.5) / DISK));
 }
 
-void sun_shares(float *share, const struct sun_texels *texels, const struct model_rays *model, struct vec3 direction,
+void sun_shares(float *share, const struct atlas_squares *texels, const struct model_rays *model, struct vec3 direction,
                 double radius)
 {
     struct vec3 disk[RAY_PACKET * ((DISK + RAY_PACKET - 1) / RAY_PACKET)], from[RAY_PACKET];
@@ -51,7 +51,7 @@ void sun_shares(float *share, const struct sun_texels *texels, const struct mode
     for (int k = 0; k < DISK; k++) disk[k] = disk_direction(direction, radius, k);
     for (int k = 0; k < RAY_PACKET; k++) reach[k] = INFINITY;
     for (int i = 0; i < texels->count; i++) {
-        const struct sun_texel *t = &texels->list[i];
+        const struct atlas_square *t = &texels->list[i];
         share[i] = 0;
         if (!(vec3_dot(t->normal, direction) > GRAZING)) continue;
         int seen = 0;
@@ -69,7 +69,7 @@ void sun_shares(float *share, const struct sun_texels *texels, const struct mode
 /* ----------------------------------------------------------------------------------------------- sums of deviations */
 
 struct fitting {
-    const struct sun_texels *texels;
+    const struct atlas_squares *texels;
     const struct model_rays *model;
     uint8_t *parts;     /* of each pair; owned */
     float *differences; /* of each pair: the logarithm of a to b; owned */
@@ -90,7 +90,7 @@ static void add_tile(struct sums *s, const struct fitting *f, const float *share
     for (int q = 0; q < QUOTIENTS; q++) {
         double sums[PARTS] = {0}, total = 0;
         for (int i = first; i < end; i++) {
-            const struct sun_pair *p = &f->texels->pairs[i];
+            const struct atlas_pair *p = &f->texels->pairs[i];
             const double a = (double)share[p->a], b = (double)share[p->b];
             if (a == b) continue;
             const double expected = f->sign * log((1 + quotients[q] * a) / (1 + quotients[q] * b));
@@ -111,7 +111,7 @@ static void add_tile(struct sums *s, const struct fitting *f, const float *share
 
 static void add_pairs(struct sums *s, const struct fitting *f, const float *share)
 {
-    const struct sun_texels *t = f->texels;
+    const struct atlas_squares *t = f->texels;
     *s = (struct sums){{0}, {0}};
     for (int first = 0, i = 0; i < t->pair_count; i++) {
         const int tile = t->list[t->pairs[first].a].tile;
@@ -269,14 +269,14 @@ static void climb(struct sun_fit *f, struct grid *g, struct fitting *fit)
 
 static enum status prepare(struct fitting *fit, struct err *err)
 {
-    const struct sun_texels *t = fit->texels;
+    const struct atlas_squares *t = fit->texels;
     const size_t count = (size_t)t->pair_count + 1;
     const double size = PART * t->side;
     fit->parts = malloc(count);
     fit->differences = malloc(count * sizeof *fit->differences);
     if (!fit->parts || !fit->differences) return err_nomem(err, "pairs", count * 5);
     for (int i = 0; i < t->pair_count; i++) {
-        const struct sun_texel *a = &t->list[t->pairs[i].a], *b = &t->list[t->pairs[i].b];
+        const struct atlas_square *a = &t->list[t->pairs[i].a], *b = &t->list[t->pairs[i].b];
         const int64_t x = (int64_t)floor(a->at.x / size), y = (int64_t)floor(a->at.y / size);
         const int64_t z = (int64_t)floor(a->at.z / size);
         fit->parts[i] = (uint8_t)((uint64_t)(x + 3 * y + 5 * z) % PARTS);
@@ -285,7 +285,7 @@ static enum status prepare(struct fitting *fit, struct err *err)
     return ST_OK;
 }
 
-enum status sun_fit_edges(struct sun_fit *f, const struct sun_texels *texels, const struct model_rays *model,
+enum status sun_fit_edges(struct sun_fit *f, const struct atlas_squares *texels, const struct model_rays *model,
                           struct err *err)
 {
     struct fitting fit = {.texels = texels, .model = model, .sign = 1};

@@ -2,7 +2,7 @@
 #ifndef REMODEL_SUN_FIT_H
 #define REMODEL_SUN_FIT_H
 
-#include "stages/bake_outdoors/sun_texels.h"
+#include "common/gather/atlas_squares.h"
 
 struct sun_fit {
     struct vec3 direction; /* unit, towards the sun, model frame */
@@ -14,11 +14,11 @@ struct sun_fit {
 
 /* Refines f->direction. texels: squares close to the edges of its patches. ST_NOMEM. Same bits for any number of
  * threads. */
-enum status sun_fit_edges(struct sun_fit *f, const struct sun_texels *texels, const struct model_rays *model,
+enum status sun_fit_edges(struct sun_fit *f, const struct atlas_squares *texels, const struct model_rays *model,
                           struct err *err);
 
 /* Sets share[i] to the part of the sun's disk that square i sees. */
-void sun_shares(float *share, const struct sun_texels *texels, const struct model_rays *model, struct vec3 direction,
+void sun_shares(float *share, const struct atlas_squares *texels, const struct model_rays *model, struct vec3 direction,
                 double radius);
 
 /* A unit direction `degrees` off a unit direction, at an angle (radians) around it. */

@@ -7,7 +7,7 @@ static void look(const void *ctx, const struct vec3 from[RAY_PACKET], struct vec
                  const struct vec3 direction[RAY_PACKET], unsigned active, struct light_look seen[RAY_PACKET])
 {
     const struct sun_indoors *in = ctx;
-    const struct sun_scene *s = in->scene;
+    const struct atlas_scene *s = in->scene;
     struct vec3 origin[RAY_PACKET];
     struct ray_hit hits[RAY_PACKET];
     for (int k = 0; k < RAY_PACKET; k++)

@@ -2,13 +2,13 @@
 #ifndef REMODEL_SUN_INDOORS_H
 #define REMODEL_SUN_INDOORS_H
 
+#include "common/gather/atlas_squares.h"
 #include "common/gather/irradiance.h"
 #include "common/texture/outdoors.h"
-#include "stages/bake_outdoors/sun_texels.h"
 
 /* What a gather sees: the textures of the model, and through its openings the outdoors without the sun. */
 struct sun_indoors {
-    const struct sun_scene *scene;
+    const struct atlas_scene *scene;
     const struct outdoors *outdoors;
 };
 

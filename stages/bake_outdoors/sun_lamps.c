@@ -5,7 +5,7 @@
  * it arrives: the ceiling lamp makes the floor below it brighter than the floor beside it. Where lamps are is unknown
  * at this stage, so that a grid of them is supposed below all ceilings, most of which turn out to be dark.
  *
- * Mathematics. The model is cut into about SQUARES squares (sun_texels.c). Square i of face f has radiance L_i and
+ * Mathematics. The model is cut into about SQUARES squares (atlas_squares.c). Square i of face f has radiance L_i and
  * irradiance E_i from what is known; lamp j of intensity a_j adds F_ij a_j, with F_ij = cos_i cos_j / r^2 where nothing
  * lies between. The face reflects a share k_f. Each colour on its own,
  *     log L_i = log k_f + log(E_i + sum_j F_ij a_j) + noise of the texture,
@@ -109,7 +109,7 @@ static enum status list_lamps(struct sun_lamps *l, const struct model_rays *mode
 struct rows {
     const struct sun_indoors *in;
     const struct sun_lamps *lamps;
-    struct sun_texel *list;
+    struct atlas_square *list;
     double (*known)[3]; /* irradiance */
     float *factors;     /* of each row and lamp */
     int count;
@@ -121,7 +121,7 @@ static void fill_range(void *ctx, size_t begin, size_t end, int thread)
     const struct light_field field = sun_indoors_field(r->in);
     (void)thread;
     for (size_t i = begin; i < end; i++) {
-        const struct sun_texel *t = &r->list[i];
+        const struct atlas_square *t = &r->list[i];
         struct irradiance e;
         ray_irradiance_to(&e, &field, (struct gather_point){t->at, t->normal}, TARGET, MOST_RAYS, i);
         r->known[i][0] = e.value.r, r->known[i][1] = e.value.g, r->known[i][2] = e.value.b;
@@ -132,27 +132,27 @@ static void fill_range(void *ctx, size_t begin, size_t end, int thread)
 }
 
 /* Keeps the squares that the sun does not reach. */
-static enum status list_rows(struct rows *r, const struct sun_texels *edges, struct vec3 direction, double radius,
+static enum status list_rows(struct rows *r, const struct atlas_squares *edges, struct vec3 direction, double radius,
                              struct err *err)
 {
-    const struct sun_scene *scene = r->in->scene;
-    struct sun_texels squares = {0};
-    struct sun_places near = {0};
+    const struct atlas_scene *scene = r->in->scene;
+    struct atlas_squares squares = {0};
+    struct atlas_places near = {0};
     float *share = NULL;
-    const double side = sun_texels_side(scene, SQUARES);
-    if (side > 0) sun_texels_list(&squares, scene, side, 1, NULL, err);
+    const double side = atlas_squares_side(scene, SQUARES);
+    if (side > 0) atlas_squares_list(&squares, scene, side, 1, NULL, err);
     if (!err->status && !(share = malloc(((size_t)squares.count + 1) * sizeof *share)))
         err_nomem(err, "squares", (size_t)squares.count * sizeof *share);
-    if (!err->status && !sun_places_list(&near, edges, NULL, scene->atlas->atlas.tile_count, err)) {
+    if (!err->status && !atlas_places_list(&near, edges, NULL, scene->atlas->atlas.tile_count, err)) {
         sun_shares(share, &squares, scene->model, direction, radius);
         for (int i = 0; i < squares.count; i++)
-            if (share[i] == 0 && !sun_places_near(&near, squares.list[i].tile, squares.list[i].at, squares.side))
+            if (share[i] == 0 && !atlas_places_near(&near, squares.list[i].tile, squares.list[i].at, squares.side))
                 squares.list[r->count++] = squares.list[i];
         r->list = squares.list;
         squares.list = NULL;
     }
-    sun_texels_release(&squares);
-    sun_places_release(&near);
+    atlas_squares_release(&squares);
+    atlas_places_release(&near);
     free(share);
     return err->status;
 }
@@ -317,7 +317,7 @@ static enum status fit_colour(struct sun_lamps *l, const struct rows *r, int col
     return err->status;
 }
 
-enum status sun_lamps_fit(struct sun_lamps *l, const struct sun_indoors *in, const struct sun_texels *edges,
+enum status sun_lamps_fit(struct sun_lamps *l, const struct sun_indoors *in, const struct atlas_squares *edges,
                           struct vec3 direction, double radius, struct err *err)
 {
     struct rows rows = {.in = in, .lamps = l};

@@ -14,7 +14,7 @@ struct sun_lamps {
 /* Fits lamps to how bright unlit surfaces are. edges: squares close to the edges of the sun's patches; direction and
  * radius (degrees) are the sun's. The caller releases l, also after a failure. ST_NOMEM. Same bits for any number of
  * threads. */
-enum status sun_lamps_fit(struct sun_lamps *l, const struct sun_indoors *in, const struct sun_texels *edges,
+enum status sun_lamps_fit(struct sun_lamps *l, const struct sun_indoors *in, const struct atlas_squares *edges,
                           struct vec3 direction, double radius, struct err *err);
 void sun_lamps_release(struct sun_lamps *l);
 

@@ -48,7 +48,7 @@ struct place {
     double lamps; /* share of its light that fitted lamps give */
 };
 
-static struct place *find_place(struct place *places, int *count, const struct sun_texel *t, double size)
+static struct place *find_place(struct place *places, int *count, const struct atlas_square *t, double size)
 {
     const int64_t x = (int64_t)floor(t->at.x / size), y = (int64_t)floor(t->at.y / size);
     const int64_t z = (int64_t)floor(t->at.z / size);
@@ -61,7 +61,7 @@ static struct place *find_place(struct place *places, int *count, const struct s
     return &places[(*count)++];
 }
 
-static void add_square(struct place *p, const struct sun_texel *t, double share)
+static void add_square(struct place *p, const struct atlas_square *t, double share)
 {
     const bool lit = share > LIT;
     if (!lit && !(share < DARK)) return;
@@ -161,8 +161,8 @@ static void sum_up(struct sun_light *l, const struct place *places, int count, s
     l->error = hypot(spread, UNSURE * l->lamps);
 }
 
-enum status sun_light_measure(struct sun_light *l, const struct sun_scene *scene, const struct outdoors *o,
-                              const struct sun_texels *texels, struct vec3 direction, double radius, struct err *err)
+enum status sun_light_measure(struct sun_light *l, const struct atlas_scene *scene, const struct outdoors *o,
+                              const struct atlas_squares *texels, struct vec3 direction, double radius, struct err *err)
 {
     struct place *places = malloc(MOST * sizeof *places);
     struct weighted *scratch = malloc(MOST * sizeof *scratch);

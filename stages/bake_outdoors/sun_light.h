@@ -14,7 +14,8 @@ struct sun_light {
 
 /* texels: squares close to the edges of the patches of a sun of this direction and radius (degrees); o: the outdoors
  * without it. ST_NOMEM. */
-enum status sun_light_measure(struct sun_light *l, const struct sun_scene *scene, const struct outdoors *o,
-                              const struct sun_texels *texels, struct vec3 direction, double radius, struct err *err);
+enum status sun_light_measure(struct sun_light *l, const struct atlas_scene *scene, const struct outdoors *o,
+                              const struct atlas_squares *texels, struct vec3 direction, double radius,
+                              struct err *err);
 
 #endif

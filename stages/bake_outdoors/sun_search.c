@@ -5,7 +5,7 @@
  * opening. The right direction is the one at which the edges between lit and unlit are edges of the picture: brighter
  * on the lit side, in all three colours.
  *
- * Mathematics. The view-independent atlas is cut into squares (sun_texels.c); pairs of squares a small distance apart
+ * Mathematics. The view-independent atlas is cut into squares (atlas_squares.c); pairs of squares a small distance apart
  * on one face have nearly the same indirect light, so that the logarithm of their quotient is that of the sun's light
  * plus the texture's noise, which has no sign. A direction's contrast is the mean over the pairs that it parts, and its
  * score that mean times the square root of their number: a mean in units of its chance deviation, but for a constant.
@@ -52,7 +52,7 @@ static double angle_between(struct vec3 a, struct vec3 b)
 
 /* ------------------------------------------------------------------------------------------------------------ score */
 
-static void light_squares(bool *lit, const struct sun_texels *texels, const struct model_rays *model,
+static void light_squares(bool *lit, const struct atlas_squares *texels, const struct model_rays *model,
                           struct vec3 to_sun)
 {
     struct vec3 from[RAY_PACKET], direction[RAY_PACKET];
@@ -64,7 +64,7 @@ static void light_squares(bool *lit, const struct sun_texels *texels, const stru
     }
     for (int i = 0; i <= texels->count; i++) {
         if (i < texels->count) {
-            const struct sun_texel *t = &texels->list[i];
+            const struct atlas_square *t = &texels->list[i];
             lit[i] = false;
             if (!(vec3_dot(t->normal, to_sun) > GRAZING)) continue;
             from[waiting] = vec3_add(t->at, vec3_scale(t->normal, 4 * model->rays.epsilon));
@@ -79,7 +79,7 @@ static void light_squares(bool *lit, const struct sun_texels *texels, const stru
 }
 
 /* How much brighter a is than b, by the colour in which the difference is least. */
-static double quotient(const struct sun_texel *a, const struct sun_texel *b)
+static double quotient(const struct atlas_square *a, const struct atlas_square *b)
 {
     double least = INFINITY;
     for (int c = 0; c < 3; c++) {
@@ -92,13 +92,13 @@ static double quotient(const struct sun_texel *a, const struct sun_texel *b)
     return clamp(least, -CUT, CUT);
 }
 
-static struct sun_evidence judge(const struct sun_texels *texels, const bool *lit)
+static struct sun_evidence judge(const struct atlas_squares *texels, const bool *lit)
 {
     struct sun_evidence e = {0};
     double sum = 0;
     int agree = 0;
     for (int i = 0; i < texels->pair_count; i++) {
-        const struct sun_pair *p = &texels->pairs[i];
+        const struct atlas_pair *p = &texels->pairs[i];
         if (lit[p->a] == lit[p->b]) continue;
         const double d = lit[p->a] ? quotient(&texels->list[p->a], &texels->list[p->b])
                                    : quotient(&texels->list[p->b], &texels->list[p->a]);
@@ -117,7 +117,7 @@ static struct sun_evidence judge(const struct sun_texels *texels, const bool *li
 
 struct survey {
     const struct model_rays *model;
-    const struct sun_texels *texels;
+    const struct atlas_squares *texels;
     const struct vec3 *directions;
     struct sun_evidence *evidence;
     bool *lit; /* a thread's own part of it has texels->count elements */
@@ -135,7 +135,7 @@ static void survey_range(void *ctx, size_t begin, size_t end, int thread)
 
 /* Evidence for each direction. */
 static enum status survey(struct sun_evidence *evidence, const struct vec3 *directions, int count,
-                          const struct sun_texels *texels, const struct model_rays *model, struct err *err)
+                          const struct atlas_squares *texels, const struct model_rays *model, struct err *err)
 {
     struct survey s = {model, texels, directions, evidence, NULL};
     const size_t size = (size_t)parallel_threads() * (size_t)(texels->count + 1);
@@ -186,18 +186,18 @@ static int find_peaks(struct peak peaks[PEAKS], const struct vec3 *directions, c
 
 /* Coarse squares at which the light changes in directions near one. */
 struct edges {
-    const struct sun_texels *coarse;
-    struct sun_places places;
+    const struct atlas_squares *coarse;
+    struct atlas_places places;
 };
 
 static bool is_near_edge(const void *ctx, int tile, struct vec3 at)
 {
     const struct edges *e = ctx;
-    return sun_places_near(&e->places, tile, at, 1.5 * e->coarse->side);
+    return atlas_places_near(&e->places, tile, at, 1.5 * e->coarse->side);
 }
 
 /* Marks the squares whose light changes within NEAR degrees of a direction. */
-static enum status mark_edges(bool *edge, const struct sun_texels *coarse, const struct model_rays *model,
+static enum status mark_edges(bool *edge, const struct atlas_squares *coarse, const struct model_rays *model,
                               struct vec3 direction, struct err *err)
 {
     const size_t count = (size_t)coarse->count + 1;
@@ -211,7 +211,7 @@ static enum status mark_edges(bool *edge, const struct sun_texels *coarse, const
             for (int i = 0; i < coarse->count; i++) edge[i] |= lit[i] != other[i];
         }
         for (int i = 0; i < coarse->pair_count; i++) {
-            const struct sun_pair *p = &coarse->pairs[i];
+            const struct atlas_pair *p = &coarse->pairs[i];
             if (lit[p->a] != lit[p->b]) edge[p->a] = edge[p->b] = true;
         }
     }
@@ -221,7 +221,7 @@ static enum status mark_edges(bool *edge, const struct sun_texels *coarse, const
 }
 
 /* Moves a direction uphill. */
-static enum status climb(struct peak *peak, const struct sun_texels *texels, const struct model_rays *model,
+static enum status climb(struct peak *peak, const struct atlas_squares *texels, const struct model_rays *model,
                          double step, struct err *err)
 {
     bool *lit = malloc(((size_t)texels->count + 1) * sizeof *lit);
@@ -246,27 +246,27 @@ static enum status climb(struct peak *peak, const struct sun_texels *texels, con
 }
 
 /* Also lists the squares close to the edges, which the caller releases. */
-static enum status refine(struct peak *peak, struct sun_texels *fine, const struct edges *edges,
-                          const struct sun_scene *scene, struct err *err)
+static enum status refine(struct peak *peak, struct atlas_squares *fine, const struct edges *edges,
+                          const struct atlas_scene *scene, struct err *err)
 {
-    const struct sun_filter filter = {is_near_edge, edges};
-    if (sun_texels_list(fine, scene, FINER * edges->coarse->side, FINE_GAP, &filter, err) ||
+    const struct atlas_filter filter = {is_near_edge, edges};
+    if (atlas_squares_list(fine, scene, FINER * edges->coarse->side, FINE_GAP, &filter, err) ||
         climb(peak, fine, scene->model, STEP / 2, err))
         return err->status;
     peak->fit.direction = peak->direction;
     return sun_fit_edges(&peak->fit, fine, scene->model, err);
 }
 
-static enum status refine_peak(struct peak *peak, struct sun_texels *fine, const struct sun_texels *coarse,
-                               const struct sun_scene *scene, struct err *err)
+static enum status refine_peak(struct peak *peak, struct atlas_squares *fine, const struct atlas_squares *coarse,
+                               const struct atlas_scene *scene, struct err *err)
 {
     bool *edge = calloc((size_t)coarse->count + 1, sizeof *edge);
     struct edges edges = {.coarse = coarse};
     if (!edge) err_nomem(err, "squares", (size_t)coarse->count);
     if (!err->status && !mark_edges(edge, coarse, scene->model, peak->direction, err) &&
-        !sun_places_list(&edges.places, coarse, edge, scene->atlas->atlas.tile_count, err))
+        !atlas_places_list(&edges.places, coarse, edge, scene->atlas->atlas.tile_count, err))
         refine(peak, fine, &edges, scene, err);
-    sun_places_release(&edges.places);
+    atlas_places_release(&edges.places);
     free(edge);
     return err->status;
 }
@@ -281,20 +281,20 @@ static bool is_sun(const struct sun_search *s)
 }
 
 /* Refines the peaks, and keeps the one that explains most. */
-static enum status choose_peak(struct sun_search *s, struct peak *peaks, int count, const struct sun_texels *coarse,
-                               const struct sun_scene *scene, struct err *err)
+static enum status choose_peak(struct sun_search *s, struct peak *peaks, int count, const struct atlas_squares *coarse,
+                               const struct atlas_scene *scene, struct err *err)
 {
     for (int k = 0; !err->status && k < count; k++) {
-        struct sun_texels fine = {0};
+        struct atlas_squares fine = {0};
         refine_peak(&peaks[k], &fine, coarse, scene, err);
         if (!err->status && (k == 0 || peaks[k].fit.gain > s->fit.gain)) {
-            const struct sun_texels other = s->edges;
+            const struct atlas_squares other = s->edges;
             s->fit = peaks[k].fit;
             s->evidence = peaks[k].evidence;
             s->edges = fine;
             fine = other;
         }
-        sun_texels_release(&fine);
+        atlas_squares_release(&fine);
     }
     for (int k = 0; !err->status && k < count; k++)
         if (angle_between(peaks[k].fit.direction, s->fit.direction) >= APART)
@@ -303,7 +303,7 @@ static enum status choose_peak(struct sun_search *s, struct peak *peaks, int cou
     return err->status;
 }
 
-static enum status search(struct sun_search *s, const struct sun_texels *coarse, const struct sun_scene *scene,
+static enum status search(struct sun_search *s, const struct atlas_squares *coarse, const struct atlas_scene *scene,
                           struct err *err)
 {
     const int count = list_directions(NULL);
@@ -321,14 +321,14 @@ static enum status search(struct sun_search *s, const struct sun_texels *coarse,
     return err->status;
 }
 
-void sun_search_release(struct sun_search *s) { sun_texels_release(&s->edges); }
+void sun_search_release(struct sun_search *s) { atlas_squares_release(&s->edges); }
 
-enum status sun_search(struct sun_search *s, const struct sun_scene *scene, struct err *err)
+enum status sun_search(struct sun_search *s, const struct atlas_scene *scene, struct err *err)
 {
-    struct sun_texels coarse = {0};
-    const double side = sun_texels_side(scene, COARSE);
+    struct atlas_squares coarse = {0};
+    const double side = atlas_squares_side(scene, COARSE);
     *s = (struct sun_search){0};
-    if (side > 0 && !sun_texels_list(&coarse, scene, side, GAP, NULL, err)) search(s, &coarse, scene, err);
-    sun_texels_release(&coarse);
+    if (side > 0 && !atlas_squares_list(&coarse, scene, side, GAP, NULL, err)) search(s, &coarse, scene, err);
+    atlas_squares_release(&coarse);
     return err->status;
 }

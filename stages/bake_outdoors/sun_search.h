@@ -18,12 +18,12 @@ struct sun_search {
     struct sun_fit fit;           /* of the best direction, found or not */
     struct sun_evidence evidence; /* its own */
     double next;                  /* the gain of the next best direction, far from it */
-    struct sun_texels edges;      /* squares close to the edges of its patches; owned */
+    struct atlas_squares edges;   /* squares close to the edges of its patches; owned */
 };
 
 /* Looks for the direction over all patches at once. Nothing is found where no direction explains bright texels better
  * than chance does. The caller releases s, also after a failure. ST_NOMEM. Same bits for any number of threads. */
-enum status sun_search(struct sun_search *s, const struct sun_scene *scene, struct err *err);
+enum status sun_search(struct sun_search *s, const struct atlas_scene *scene, struct err *err);
 
 void sun_search_release(struct sun_search *s);
 

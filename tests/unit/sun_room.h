@@ -145,7 +145,7 @@ static void uniform_outdoors(struct outdoors *o, float radiance)
 static void make_sky_light(void)
 {
     const struct field_atlas black = {.ids = 0};
-    const struct sun_scene scene = {&model, &black, planes};
+    const struct atlas_scene scene = {&model, &black, planes};
     struct outdoors o = {0};
     uniform_outdoors(&o, 1);
     const struct sun_indoors in = {&scene, &o};

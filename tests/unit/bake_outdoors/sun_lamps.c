@@ -19,12 +19,12 @@ static void fit_room(struct sun_lamps *l, double intensity)
 {
     struct field_atlas atlas = {0};
     struct outdoors o = {0};
-    struct sun_texels edges = {0};
+    struct atlas_squares edges = {0};
     struct err err = ERR_INIT;
     uniform_outdoors(&o, 1);
     const struct room_lamp light = {{1.7, 2.4, 2.6}, intensity};
     make_atlas(&atlas, SCALE, shade, &light);
-    const struct sun_scene scene = {&model, &atlas, planes};
+    const struct atlas_scene scene = {&model, &atlas, planes};
     const struct sun_indoors in = {&scene, &o};
     assert_ok(sun_lamps_fit(l, &in, &edges, vec3_make(0, 1, 0), 1, &err), err);
     outdoors_release(&o);

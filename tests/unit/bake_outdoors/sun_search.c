@@ -80,7 +80,7 @@ static void search_under(struct sun_search *found, struct sun_light *light, cons
     struct outdoors o = {0};
     struct err err = ERR_INIT;
     make_atlas(&atlas, SCALE, shade, s);
-    const struct sun_scene scene = {&model, &atlas, planes};
+    const struct atlas_scene scene = {&model, &atlas, planes};
     *found = (struct sun_search){0};
     assert_ok(sun_search(found, &scene, &err), err);
     uniform_outdoors(&o, SKY);

@@ -1,9 +1,9 @@
-/* sun_texels.c - see sun_texels.h.
+/* atlas_squares.c - see atlas_squares.h.
  *
  * Squares are cut from each tile of the atlas, whole texels wide. A square counts if photographs show at least half of
  * it: texels that were synthesised continue whatever light was beside them, across the edge of a patch of sun. Two
  * squares are a pair if they are `gap` squares apart along one side of their tile. */
-#include "stages/bake_outdoors/sun_texels.h"
+#include "common/gather/atlas_squares.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -11,11 +11,11 @@
 
 #define DARKEST 1e-6 /* radiance: darker squares count as that dark */
 
-void sun_texels_release(struct sun_texels *s)
+void atlas_squares_release(struct atlas_squares *s)
 {
     free(s->list);
     free(s->pairs);
-    *s = (struct sun_texels){0};
+    *s = (struct atlas_squares){0};
 }
 
 /* Texels a unit of length. */
@@ -26,7 +26,7 @@ static double scale_of(const struct atlas_tile *t)
 }
 
 /* A texel's radiance; false: no photograph shows it. */
-static bool read_texel(struct rgb *radiance, const struct sun_scene *s, const struct atlas_tile *t, int x, int y)
+static bool read_texel(struct rgb *radiance, const struct atlas_scene *s, const struct atlas_tile *t, int x, int y)
 {
     if (!field_atlas_has(s->atlas, t, x, y)) return false;
     const struct vec3 at = field_atlas_place(t, s->planes[t->face], x, y);
@@ -35,7 +35,7 @@ static bool read_texel(struct rgb *radiance, const struct sun_scene *s, const st
     return texel.source == LIGHT_TEXTURE;
 }
 
-double sun_texels_side(const struct sun_scene *scene, int wanted)
+double atlas_squares_side(const struct atlas_scene *scene, int wanted)
 {
     const struct atlas *a = &scene->atlas->atlas;
     struct rgb radiance;
@@ -54,8 +54,8 @@ double sun_texels_side(const struct sun_scene *scene, int wanted)
 /* --------------------------------------------------------------------------------------------------------- squares */
 
 struct cutting {
-    const struct sun_scene *scene;
-    const struct sun_filter *filter;
+    const struct atlas_scene *scene;
+    const struct atlas_filter *filter;
     int tile, stride;
 };
 
@@ -88,11 +88,11 @@ static struct vec3 middle_of(const struct cutting *c, int left, int top)
                       0.5);
 }
 
-static bool cut(struct sun_texel *s, const struct cutting *c, int column, int row)
+static bool cut(struct atlas_square *s, const struct cutting *c, int column, int row)
 {
     double rgb[3];
     const int left = column * c->stride, top = row * c->stride;
-    *s = (struct sun_texel){.tile = c->tile, .column = column, .row = row, .at = middle_of(c, left, top)};
+    *s = (struct atlas_square){.tile = c->tile, .column = column, .row = row, .at = middle_of(c, left, top)};
     s->normal = c->scene->planes[c->scene->atlas->atlas.tiles[c->tile].face].normal;
     if (c->filter && !c->filter->keep(c->filter->ctx, c->tile, s->at)) return false;
     if (!average(rgb, c, left, top)) return false;
@@ -101,27 +101,27 @@ static bool cut(struct sun_texel *s, const struct cutting *c, int column, int ro
 }
 
 /* Pairs of the squares from `first` on, which are those of one tile; grid: their indices by row and column. */
-static void pair_up(struct sun_texels *s, int first, const int *grid, int columns, int rows, int gap)
+static void pair_up(struct atlas_squares *s, int first, const int *grid, int columns, int rows, int gap)
 {
     for (int i = first; i < s->count; i++) {
-        const struct sun_texel *t = &s->list[i];
+        const struct atlas_square *t = &s->list[i];
         const int right = t->column + gap < columns ? grid[t->row * columns + t->column + gap] : -1;
         const int below = t->row + gap < rows ? grid[(t->row + gap) * columns + t->column] : -1;
-        if (right >= 0) s->pairs[s->pair_count++] = (struct sun_pair){i, right};
-        if (below >= 0) s->pairs[s->pair_count++] = (struct sun_pair){i, below};
+        if (right >= 0) s->pairs[s->pair_count++] = (struct atlas_pair){i, right};
+        if (below >= 0) s->pairs[s->pair_count++] = (struct atlas_pair){i, below};
     }
 }
 
-static enum status cut_tile(struct sun_texels *s, const struct cutting *c, int gap, struct err *err)
+static enum status cut_tile(struct atlas_squares *s, const struct cutting *c, int gap, struct err *err)
 {
     const struct atlas_tile *t = &c->scene->atlas->atlas.tiles[c->tile];
     const int columns = t->width / c->stride, rows = t->height / c->stride, first = s->count;
     const size_t squares = (size_t)columns * (size_t)rows, most = (size_t)s->count + squares;
     if (!squares) return ST_OK;
     int *grid = malloc(squares * sizeof *grid);
-    struct sun_texel *list = realloc(s->list, most * sizeof *list);
+    struct atlas_square *list = realloc(s->list, most * sizeof *list);
     if (list) s->list = list;
-    struct sun_pair *pairs = realloc(s->pairs, ((size_t)s->pair_count + 2 * squares) * sizeof *pairs);
+    struct atlas_pair *pairs = realloc(s->pairs, ((size_t)s->pair_count + 2 * squares) * sizeof *pairs);
     if (pairs) s->pairs = pairs;
     if (!grid || !list || !pairs) err_nomem(err, "texels of a face", most * sizeof *list);
     for (int row = 0; !err->status && row < rows; row++)
@@ -135,11 +135,11 @@ static enum status cut_tile(struct sun_texels *s, const struct cutting *c, int g
     return err->status;
 }
 
-enum status sun_texels_list(struct sun_texels *s, const struct sun_scene *scene, double side, int gap,
-                            const struct sun_filter *filter, struct err *err)
+enum status atlas_squares_list(struct atlas_squares *s, const struct atlas_scene *scene, double side, int gap,
+                               const struct atlas_filter *filter, struct err *err)
 {
     const struct atlas *a = &scene->atlas->atlas;
-    *s = (struct sun_texels){.side = side};
+    *s = (struct atlas_squares){.side = side};
     for (int k = 0; !err->status && k < a->tile_count; k++) {
         const int stride = (int)lround(side * scale_of(&a->tiles[k]));
         const struct cutting c = {scene, filter, k, stride > 1 ? stride : 1};
@@ -148,12 +148,12 @@ enum status sun_texels_list(struct sun_texels *s, const struct sun_scene *scene,
     return err->status;
 }
 
-enum status sun_places_list(struct sun_places *p, const struct sun_texels *squares, const bool *marked, int tiles,
-                            struct err *err)
+enum status atlas_places_list(struct atlas_places *p, const struct atlas_squares *squares, const bool *marked,
+                              int tiles, struct err *err)
 {
     int count = 0;
-    *p = (struct sun_places){malloc(((size_t)squares->count + 1) * sizeof *p->at),
-                             calloc((size_t)tiles + 1, sizeof *p->first)};
+    *p = (struct atlas_places){malloc(((size_t)squares->count + 1) * sizeof *p->at),
+                               calloc((size_t)tiles + 1, sizeof *p->first)};
     if (!p->at || !p->first) return err_nomem(err, "squares", (size_t)squares->count * sizeof *p->at);
     for (int i = 0, tile = 0; i <= squares->count; i++) {
         const int next = i < squares->count ? squares->list[i].tile : tiles;
@@ -163,7 +163,7 @@ enum status sun_places_list(struct sun_places *p, const struct sun_texels *squar
     return ST_OK;
 }
 
-bool sun_places_near(const struct sun_places *p, int tile, struct vec3 at, double reach)
+bool atlas_places_near(const struct atlas_places *p, int tile, struct vec3 at, double reach)
 {
     for (int i = p->first[tile]; i < p->first[tile + 1]; i++) {
         const struct vec3 d = vec3_sub(at, p->at[i]);
@@ -172,9 +172,9 @@ bool sun_places_near(const struct sun_places *p, int tile, struct vec3 at, doubl
     return false;
 }
 
-void sun_places_release(struct sun_places *p)
+void atlas_places_release(struct atlas_places *p)
 {
     free(p->at);
     free(p->first);
-    *p = (struct sun_places){0};
+    *p = (struct atlas_places){0};
 }
