@@ -25,6 +25,7 @@
 #include "stages/fit_lights/lamp_picture.h"
 #include "stages/fit_lights/mark_candidates.h"
 #include "stages/fit_lights/solve.h"
+#include "stages/fit_lights/unseen_lamps.h"
 
 #define PARAM_STRUCT struct fit_lights_params
 static const struct param fit_lights_param_table[] = {FIT_LIGHTS_PARAMS(PARAM_ROW) GATHER_PARAMS(PARAM_ROW) PARAM_END};
@@ -42,6 +43,8 @@ struct job {
     struct thing_surfaces things;
     struct field_surfaces furniture; /* of things */
     struct model_rays furnished;     /* the model with them: what throws shadows */
+    struct model_field field;        /* with its lamps off; empty without --vita */
+    struct unseen_lamps unseen;
 };
 
 static enum status read_things(struct job *j, struct err *err)
@@ -76,13 +79,10 @@ static enum status check_params(const void *values, struct err *err)
     return gather_params_check(&g, err);
 }
 
-/* From the field of the textured model, whose lamps, as declared, are off. */
-static enum status gather_indirect(struct job *j, struct err *err)
+/* The field of the textured model, with its lamps, as declared, off. */
+static enum status read_field(struct job *j, struct err *err)
 {
     char declared[FILE_PATH];
-    struct model_field field = {0};
-    struct gatherer *gatherer = NULL;
-    const struct gather_params params = gather_params_of(&j->params);
     const struct model_field_files files = {.model = j->model_path,
                                             .vita = j->vita,
                                             .outdoors = j->outdoors,
@@ -90,25 +90,33 @@ static enum status gather_indirect(struct job *j, struct err *err)
                                             .surfaces = j->things.count ? &j->furniture : NULL};
     if (!product_path_in(declared, j->out, PRODUCT_LIGHTS_DECLARED, NULL, err) &&
         !light_list_write(&j->scene.lights, declared, &j->prov, err))
-        model_field_read(&field, &files, &j->prov, err);
+        model_field_read(&j->field, &files, &j->prov, err);
     if (!err->status && j->references)
-        model_field_read_references(&field, j->references, &j->model.in.axes, &j->prov, err);
-    if (!err->status && !gatherer_make(&gatherer, &params, err)) {
-        model_field_switch_lamp(&field, -1, false);
-        indirect_gather(&j->indirect, &j->scene, &field.field, gatherer);
-    }
-    gatherer_free(gatherer);
-    model_field_release(&field);
+        model_field_read_references(&j->field, j->references, &j->model.in.axes, &j->prov, err);
+    if (!err->status) model_field_switch_lamp(&j->field, -1, false);
     return err->status;
 }
 
+static enum status gather_indirect(struct job *j, struct err *err)
+{
+    struct gatherer *gatherer = NULL;
+    const struct gather_params params = gather_params_of(&j->params);
+    if (!gatherer_make(&gatherer, &params, err)) indirect_gather(&j->indirect, &j->scene, &j->field.field, gatherer);
+    gatherer_free(gatherer);
+    return err->status;
+}
+
+static bool looks_for_unseen(const struct job *j) { return j->vita && strcmp(j->params.unseen, "no") != 0; }
+
 static enum status find_indirect(struct job *j, struct err *err)
 {
-    if (!j->indirect.count) return ST_OK;
-    if (!j->indirect_path && !j->vita)
+    if (j->indirect.count && !j->indirect_path && !j->vita)
         return err_set(err, ST_USAGE,
                        "%s marks points, so --vita is needed, for the indirect light there, or --indirect.", j->lamps);
-    if (!j->indirect_path) return gather_indirect(j, err);
+    const bool is_gathered = j->indirect.count && !j->indirect_path;
+    if ((is_gathered || looks_for_unseen(j)) && read_field(j, err)) return err->status;
+    if (is_gathered) return gather_indirect(j, err);
+    if (!j->indirect.count) return ST_OK;
     return indirect_read(&j->indirect, &j->scene, &j->model.in.axes, j->indirect_path, &j->prov, err);
 }
 
@@ -130,13 +138,32 @@ static enum status write_lights(struct job *j, const struct solved_lights *s, co
     char path[FILE_PATH];
     if (product_path_in(path, j->out, PRODUCT_MARK_CANDIDATES, NULL, err) ||
         mark_candidates_write(&j->scene, &j->notes, &j->model, j->views, j->ids, &j->params, path, &j->prov, err) ||
-        product_path_in(path, j->out, PRODUCT_LIGHT_FIT, NULL, err) || solve_write(s, in, path, &j->prov, err) ||
-        lamp_pictures_write(&j->scene, &j->model, j->views, j->out, err) ||
-        product_path_in(path, j->out, PRODUCT_LIGHTS, NULL, err) ||
-        light_list_write(&j->scene.lights, path, &j->prov, err))
+        product_path_in(path, j->out, PRODUCT_LIGHT_FIT, NULL, err) ||
+        solve_write(s, in, &j->unseen, &j->model, path, &j->prov, err) ||
+        lamp_pictures_write(&j->scene, &j->model, j->views, j->out, err))
         return err->status;
     report(&j->scene.lights, s);
-    return ST_OK;
+    unseen_lamps_report(&j->unseen, &j->model);
+    if (!unseen_lamps_add(&j->unseen, &j->scene.lights, err) &&
+        !product_path_in(path, j->out, PRODUCT_LIGHTS, NULL, err))
+        light_list_write(&j->scene.lights, path, &j->prov, err);
+    return err->status;
+}
+
+/* Fits the lamps; then, if lamps are found that nobody marked, once more in their light. */
+static enum status solve(struct job *j, struct solved_lights *solved, const struct solve_inputs *in, struct err *err)
+{
+    if (solve_lights(solved, in, err) || !looks_for_unseen(j)) return err->status;
+    if (unseen_lamps_gather(&j->unseen, &j->field, err) ||
+        unseen_lamps_find(&j->unseen, &j->field, &j->scene, &j->model, &j->furnished, j->views, &j->params, &j->prov,
+                          err))
+        return err->status;
+    if (!j->unseen.count || !j->unseen.are_used || !j->notes.count) return ST_OK;
+    unseen_lamps_light(&j->unseen, j->indirect.at, &j->scene, &j->furnished);
+    solve_release(solved);
+    if (solve_lights(solved, in, err)) return err->status;
+    return unseen_lamps_find(&j->unseen, &j->field, &j->scene, &j->model, &j->furnished, j->views, &j->params, &j->prov,
+                             err);
 }
 
 static enum status fit(struct job *j, struct err *err)
@@ -150,7 +177,7 @@ static enum status fit(struct job *j, struct err *err)
     if (!err->status) direct_light_make(&direct, &j->scene, &j->furnished, err);
     const struct solve_inputs in = {&j->scene,      &j->notes, &seen, &direct, (const double(*)[3])j->indirect.at,
                                     &j->model.rays, &j->params};
-    if (!err->status && !solve_lights(&solved, &in, err)) write_lights(j, &solved, &in, err);
+    if (!err->status && !solve(j, &solved, &in, err)) write_lights(j, &solved, &in, err);
     solve_release(&solved);
     direct_light_release(&direct);
     observe_release(&seen);
@@ -219,6 +246,8 @@ int main(int argc, char **argv)
     }
     err_report(&err);
     indirect_release(&j.indirect);
+    unseen_lamps_release(&j.unseen);
+    model_field_release(&j.field);
     lit_scene_release(&j.scene);
     lit_model_release(&j.model);
     model_rays_release(&j.furnished);

@@ -18,7 +18,10 @@
     X(seen_error, double, 0.02, 0.001, 1, "",                                                                        \
       "relative error of a lamp's radiance, or of its lower bound, as views show it")                                \
     X(click, double, 0.5, 0, 100, "px", "assumed error of the marked centre of a lamp, for the interval of beta")    \
-    X(max_clutter, double, 0.5, 0, 1, "", "clutter of a view's pixel from which it does not show a point of the model")
+    X(max_clutter, double, 0.5, 0, 1, "",                                                                            \
+      "clutter of a view's pixel from which it does not show a point of the model")                                  \
+    X(unseen, choice, "use", 0, 0, "use|say|no",                                                                     \
+      "lamps that no photo shows, found by the light that they throw: used as lights, said only, or not looked for")
 
 struct fit_lights_params {
     FIT_LIGHTS_PARAMS(PARAM_FIELD)

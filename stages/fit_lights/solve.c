@@ -580,8 +580,8 @@ static void write_point(const struct solved_lights *s, const struct solve_inputs
             p->indirect[1], p->indirect[2], name);
 }
 
-enum status solve_write(const struct solved_lights *s, const struct solve_inputs *in, const char *path,
-                        const struct provenance *prov, struct err *err)
+enum status solve_write(const struct solved_lights *s, const struct solve_inputs *in, const struct unseen_lamps *unseen,
+                        const struct lit_model *model, const char *path, const struct provenance *prov, struct err *err)
 {
     struct outfile f = {0};
     product_begin(&f, PRODUCT_LIGHT_FIT, path, prov, err);
@@ -593,6 +593,7 @@ enum status solve_write(const struct solved_lights *s, const struct solve_inputs
     for (int k = 0; !err->status && k < s->mark_count; k++) write_mark(s, in, k, f.fp);
     for (int i = 0; !err->status && i < s->point_count; i++)
         if (s->points[i].kind != POINT_ACROSS) write_point(s, in, i, f.fp);
+    if (!err->status) unseen_lamps_print(unseen, model, f.fp);
     if (!err->status) outfile_commit(&f, err);
     outfile_discard(&f);
     return err->status;

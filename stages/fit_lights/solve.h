@@ -4,6 +4,7 @@
 
 #include "stages/fit_lights/light_fit.h"
 #include "stages/fit_lights/solve_inputs.h"
+#include "stages/fit_lights/unseen_lamps.h"
 
 /* Where a lamp's radiance comes from. LAMP_UNKNOWN: from nothing, it is 0. */
 enum lamp_source { LAMP_GIVEN, LAMP_FITTED, LAMP_MEASURED, LAMP_BOUND, LAMP_UNKNOWN };
@@ -33,8 +34,9 @@ struct solved_lights {
 enum status solve_lights(struct solved_lights *s, const struct solve_inputs *in, struct err *err);
 void solve_release(struct solved_lights *s);
 
-/* fit.txt (docs/formats.md). */
-enum status solve_write(const struct solved_lights *s, const struct solve_inputs *in, const char *path,
-                        const struct provenance *prov, struct err *err);
+/* fit.txt (docs/formats.md). unseen, model: lamps that nobody marked, and the model that they were found in. */
+enum status solve_write(const struct solved_lights *s, const struct solve_inputs *in, const struct unseen_lamps *unseen,
+                        const struct lit_model *model, const char *path, const struct provenance *prov,
+                        struct err *err);
 
 #endif
