@@ -5,10 +5,11 @@
  * opening. The right direction is the one at which the edges between lit and unlit are edges of the picture: brighter
  * on the lit side, in all three colours.
  *
- * Mathematics. The view-independent atlas is cut into squares (atlas_squares.c); pairs of squares a small distance apart
- * on one face have nearly the same indirect light, so that the logarithm of their quotient is that of the sun's light
- * plus the texture's noise, which has no sign. A direction's contrast is the mean over the pairs that it parts, and its
- * score that mean times the square root of their number: a mean in units of its chance deviation, but for a constant.
+ * Mathematics. The view-independent atlas is cut into squares (atlas_squares.c); pairs of squares a small distance
+ * apart on one face have nearly the same indirect light, so that the logarithm of their quotient is that of the sun's
+ * light plus the texture's noise, which has no sign. A direction's contrast is the mean over the pairs that it parts,
+ * and its score that mean times the square root of their number: a mean in units of its chance deviation, but for a
+ * constant.
  * The quotient of a pair is the least of those of the three colours, because paint and carpets differ in colour and
  * light hardly does, and is cut off at CUT, so that a few lamps and mirrors do not decide.
  *   1. All directions, in a grid of STEP degrees, with squares of which COARSE cover the model.

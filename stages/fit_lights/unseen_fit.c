@@ -157,7 +157,7 @@ static double usual_intensity(const struct trial *t, int colour)
     return most > 0 ? 1 / most : 0;
 }
 
-/* Sets a and the loss: over powers of 2, then by thirds between the neighbours of the best [Kiefer 1953]. */
+/* Sets a and the loss: over powers of 2, then by a narrowing interval about the best [Kiefer 1953]. */
 static void fit_intensity(struct trial *t, int colour)
 {
     const double usual = usual_intensity(t, colour);
@@ -223,7 +223,7 @@ static int list_places(struct vec3 list[MOST_PLACES], const struct unseen_light 
     return count;
 }
 
-/* ------------------------------------------------------------------------------------------------------------ search */
+/* ----------------------------------------------------------------------------------------------------------- search */
 
 struct search {
     struct unseen_light *l;

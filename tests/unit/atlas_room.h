@@ -131,7 +131,7 @@ struct room_lamp {
     double intensity; /* straight down */
 };
 
-static double room_lamp_at(const struct room_lamp *l, struct vec3 p, struct vec3 normal)
+static inline double room_lamp_at(const struct room_lamp *l, struct vec3 p, struct vec3 normal)
 {
     const struct vec3 d = vec3_sub(l->at, p);
     const double r2 = vec3_dot(d, d);
