@@ -16,16 +16,23 @@ static int count_films(const struct contents *c)
     return films;
 }
 
+static int count_drawn(const struct rooms *rooms)
+{
+    int drawn = 0;
+    for (int i = 0; i < rooms->change_count; i++) drawn += rooms->changes[i].has_records;
+    return drawn;
+}
+
 static enum status put_people_head(struct page *page, const char *scene, const char *numbers, const struct contents *c,
                                    struct err *err)
 {
     static const char *const styles[] = {"page.css"};
     FILE *to = page->to;
-    const int films = count_films(c);
+    const int films = count_films(c), changes = count_drawn(&c->rooms);
     if (page_put_head(page, scene, "", styles, 1, err)) return err->status;
     fputs("<p class=\"lead\">", to);
     page_put_plural(to, c->photos.count, "photograph", "photographs");
-    if (c->rooms.change_count) fputs(" · ", to), page_put_plural(to, c->rooms.change_count, "change", "changes");
+    if (changes) fputs(" · ", to), page_put_plural(to, changes, "change", "changes");
     if (films) fputs(" · ", to), page_put_plural(to, films, "film", "films");
     fputs("</p>\n<ul class=\"doors\">\n", to);
     put_door(to, c->has_walk, "walk/index.html", "Walk through the rooms", false);
@@ -36,17 +43,31 @@ static enum status put_people_head(struct page *page, const char *scene, const c
     return ST_OK;
 }
 
+/* The changes that nobody drew. */
+static void put_undrawn(FILE *to, const struct rooms *rooms)
+{
+    int count = 0;
+    for (int i = 0; i < rooms->change_count; i++) {
+        if (rooms->changes[i].has_records) continue;
+        fputs(count++ ? ", " : "<p class=\"muted\">Without pictures yet: ", to);
+        page_put_change(to, rooms->changes[i].name);
+    }
+    if (count) fputs(". They are drawn by <code>make remodel</code>, each with <code>EDIT=NAME</code>.</p>\n", to);
+}
+
 static enum status put_rooms(struct page *page, const struct contents *c, struct err *err)
 {
     FILE *to = page->to;
-    if (!c->rooms.photo_count) return ST_OK;
-    fputs(
-        "<section id=\"rooms\" aria-labelledby=\"rooms-title\">\n<h2 id=\"rooms-title\">Before and after</h2>\n<p>Move "
-        "the line over a picture, or use the arrow keys: left of it the photograph, right of it the same place after a "
-        "change. Below each picture you choose the change, and the light: that of the day of the photographs, or the "
-        "one that the change makes.</p>\n",
-        to);
+    if (!c->rooms.change_count) return ST_OK;
+    fputs("<section id=\"rooms\" aria-labelledby=\"rooms-title\">\n<h2 id=\"rooms-title\">Before and after</h2>\n", to);
+    if (c->rooms.photo_count)
+        fputs("<p>Move the line over a picture, or use the arrow keys: left of it the photograph, right of it the same "
+              "place after a change. Below each picture you choose the change, and the light: that of the day of the "
+              "photographs, or the one that the change makes. <a href=\"#how\">What is real in these pictures</a> is "
+              "said at the end.</p>\n",
+              to);
     if (page_rooms(page, &c->rooms, err)) return err->status;
+    put_undrawn(to, &c->rooms);
     fputs("</section>\n", to);
     return ST_OK;
 }
@@ -59,7 +80,7 @@ enum status page_write(struct page *page, const char *scene, const char *numbers
         page_plan(page, c, err) || page_photos(page, c, err))
         return err->status;
     page_few_numbers(to, c);
-    if (c->rooms.photo_count) page_rooms_how(to, &c->rooms);
+    if (c->rooms.photo_count || c->rooms.note_count) page_rooms_how(to, &c->rooms);
     fputs("</main>\n<footer>Made by remodel " REMODEL_VERSION
           ". The pictures are in the folder <code>page</code> beside "
           "this file.</footer>\n",
