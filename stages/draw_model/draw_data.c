@@ -23,21 +23,6 @@
 const struct param draw_param_table[] = {DRAW_PARAMS(PARAM_ROW) PARAM_END};
 #undef PARAM_STRUCT
 
-void draw_data_write_string(FILE *to, const char *text, size_t size)
-{
-    putc('"', to);
-    for (size_t i = 0; i < size; i++) {
-        const unsigned char c = (unsigned char)text[i];
-        if (c == '\n')
-            fputs("\\n", to);
-        else if (c < ' ' || c == 127)
-            fprintf(to, "\\u%04x", c);
-        else
-            fprintf(to, c == '"' || c == '\\' ? "\\%c" : "%c", c);
-    }
-    putc('"', to);
-}
-
 /* "NAME": "its text", if there is such a file. */
 static enum status write_file(FILE *to, const char *name, const char *path, struct err *err)
 {

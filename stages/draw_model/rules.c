@@ -23,8 +23,8 @@ static void needs_texts(struct graph *g, const struct scene_facts *f)
         rule_needs(g, graph_text(g, "%s/edits/%s.txt", f->folder, f->edits.names[i]));
 }
 
-/* A product that may be there: the page shows what it says, and does not wait for it. folder: passed in its place; NULL:
- * the product is. option: NULL: it is passed already. */
+/* A product that may be there: the page shows what it says, and does not wait for it. folder: passed in its place;
+ * NULL: the product is. option: NULL: it is passed already. */
 static void takes_if_made(struct graph *g, const char *option, const char *path, const char *folder)
 {
     const bool is_made = path_is_file(path);
