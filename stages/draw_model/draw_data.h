@@ -9,7 +9,7 @@
 
 /* name, type, default, min, max, unit, help */
 #define DRAW_PARAMS(X)                                                                                        \
-    X(max_points, int, 1000000, 1000, 20000000, "",                                                           \
+    X(max_points, int, 2000000, 1000, 20000000, "",                                                           \
       "points that the page has at most, for walls drawn by rectangles; of more points it has an even share") \
     X(photo_side, int, 4096, 64, 20000, "px", "length of the longer side of the page's photographs at most")  \
     X(photo_quality, int, 85, 1, 100, "", "JPEG quality of the page's photographs")                           \

@@ -69,6 +69,15 @@ const tests = {
         check(await hand.last() === 'wall wall1 in p0 200 120 440 300', 'redo did not bring it back');
     },
 
+    /* Curtains hide where a window ends: a little beyond the edge of the wall is at the edge. */
+    async an_opening_a_little_beyond_its_wall_ends_at_it(hand) {
+        await hand.begin(ROOM);
+        await hand.drag('window', 'p2', [project('p2', [1.2, 3, 2.54]), project('p2', [2.8, 3, 0.9])]);
+        check(await hand.refusal() === '', await hand.refusal());
+        const z = (await hand.model()).openings[0].z;
+        check(z[1] < 2.5 && z[1] > 2.48, `the window reaches up to ${z[1]}`);
+    },
+
     async edits_are_gestures_on_the_model(hand) {
         const text = ROOM + 'window sunny on wall3 from 1.2 0.9 to 2.8 2.1\nbox chest from 1.5 0.2 to 2.5 0.7 top 0.8\n', edit = 'edits/wide.txt';
         const start = async () => hand.begin(text, {[edit]: 'remodel-script 1\n'});

@@ -6,7 +6,7 @@ const {project} = require('./room.js');
 const WALLS = 'remodel-script 1\nset ceiling 2.5\nset thickness 0.1\nwall south from 4 0 to 0 0\nwall west from 0 0 to 0 3\n' +
     'wall north from 0 3 to 4 3\nwall east from 4 3 to 4 0\njoin south west north east south\n';
 const at = project;
-const remedy = (hand) => hand.page.run("document.getElementById('remedy').hidden ? '' : document.getElementById('remedy-button').textContent");
+const remedy = (hand) => hand.page.run("document.getElementById('remedy-button').hidden ? '' : document.getElementById('remedy-button').textContent");
 
 runTests({
     async a_wall_by_a_rectangle_wants_points(hand) {

@@ -252,13 +252,15 @@ class App {
             message.includes(other + ':')) this.refused.text = message;
         el('refusal').textContent = message.split(this.path).join('');
         el('refusal').hidden = false;
+        el('undo-it').hidden = !this.texts.done.length;
         this.offer(message);
     }
 
     /* Without a scale lengths of homes mean nothing; a guess by the ceiling's height is offered. */
     offer(message) {
         const wanted = /write "set (thickness|slab|glass|leaf) NUMBER" before/.exec(message), line = this.refused.line;
-        el('remedy').hidden = !wanted || !line;
+        el('remedy').hidden = false;
+        el('remedy-button').hidden = !wanted || !line;
         if (!wanted || !line) return;
         const share = {thickness: 0.06, slab: 0.06, glass: 0.008, leaf: 0.016}[wanted[1]];
         const statement = `set ${wanted[1]} ${Script.number(share * this.live.height(), 4)}`;
@@ -410,15 +412,17 @@ class App {
     }
 
     /* The nearest corner or edge of the model, or straight edge of the photo, within 8 px of the screen. */
-    snap(at) {
+    snap(at, isOff) {
         this.snapped = false;
-        if (!el('snap').checked) return at;
+        if (isOff || !el('snap').checked) return at;
         let best = 8 / this.view.scale, found = null;
         const consider = (p, weight) => {
             const d = Math.hypot(p[0] - at[0], p[1] - at[1]) * weight;
             if (d < best) best = d, found = p;
         };
-        if (el('show-edges').checked && this.model.faces.length && !this.photos[this.photo].isReference) {
+        /* an opening that reaches the edge of its wall is refused */
+        const toModel = !/^(door|passage|window|slot)$/.test(this.tool.id) && !this.photos[this.photo].isReference;
+        if (el('show-edges').checked && this.model.faces.length && toModel) {
             const dots = this.picture.edges(this.photo);
             for (let i = 0; i < dots.length; i += 3) if (dots[i + 2] & 1) consider([dots[i], dots[i + 1]], 1.5);
             for (const p of this.corners()) consider(p, 0.7);
@@ -448,7 +452,7 @@ class App {
             return this.finish(this.points);
         this.points.push(corner);
         this.pointPhotos[this.points.length - 1] = this.photoId();
-        if (tool.form !== 'corners' && this.points.length === 2) return this.finish(this.points);
+        if (this.points.length === (tool.id === 'area' ? 4 : tool.form === 'corners' ? Infinity : 2)) return this.finish(this.points);
         this.draw();
     }
 
@@ -485,7 +489,7 @@ class App {
                 return;
             }
             from = [e.clientX, e.clientY];
-            this.cursor = this.snap(this.view.toPhoto(e));
+            this.cursor = this.snap(this.view.toPhoto(e), e.ctrlKey);
             this.setPoint(this.cursor, e.shiftKey);
         });
         canvas.addEventListener('pointermove', (e) => {
@@ -501,7 +505,7 @@ class App {
                 return;
             }
             canvas.style.cursor = this.isOnGrip(e) ? 'ew-resize' : '';
-            this.cursor = this.snap(this.view.toPhoto(e));
+            this.cursor = this.snap(this.view.toPhoto(e), e.ctrlKey);
             this.draw();
         });
         canvas.addEventListener('pointerup', (e) => {
@@ -509,7 +513,7 @@ class App {
             const moved = from && Math.hypot(e.clientX - from[0], e.clientY - from[1]) > 4;
             from = pan = null;
             if (!moved || !this.points.length || this.tool.form === 'corners') return;
-            this.cursor = this.snap(this.view.toPhoto(e));
+            this.cursor = this.snap(this.view.toPhoto(e), e.ctrlKey);
             this.setPoint(this.cursor);
         });
         canvas.addEventListener('contextmenu', (e) => e.preventDefault());
@@ -526,7 +530,7 @@ class App {
             el('text').addEventListener(type, () => { this.showLine = false; this.draw(); });
         el('file').onchange = () => this.openFile(el('file').value);
         el('new-edit').onclick = () => this.newEdit();
-        el('undo').onclick = () => this.undo();
+        el('undo').onclick = el('undo-it').onclick = () => this.undo();
         el('redo').onclick = () => this.redo();
         el('save').onclick = () => this.save();
         el('help-button').onclick = () => this.help();
@@ -653,7 +657,7 @@ class App {
     help() {
         const keys = [['arrows', 'move the cursor by a pixel of the photo; Shift: by 20, Ctrl: by 0.1'],
             ['Enter', 'sets a corner, as a click does; twice ends a chain'],
-            ['Escape', 'begins the gesture again'], ['PageUp PageDown', 'other photos'],
+            ['Ctrl', 'held while clicking: without snapping'], ['Escape', 'begins the gesture again'], ['PageUp PageDown', 'other photos'],
                 ['+ - 0', 'larger, smaller, the whole photo; the wheel does the same, Alt and drag moves it'],
             ['[ ]', 'of an edit: move the border between the photo and the draft of the edited room'],
             ['.', 'the plan larger'], ['Ctrl+Z Ctrl+Y', 'undo, redo'], ['Ctrl+S', 'save'], ['Tab', 'from part to part']];

@@ -149,9 +149,9 @@ class SuggestedPanel {
             title = document.createElement('summary');
         if (this.app.file !== this.file) return;
         this.element.replaceChildren();
-        if (!this.left.length) return;
-        title.textContent = `${this.left.length} suggested statements`;
-        box.open = this.opened ?? !Script.statements(this.app.texts.get(this.file)).length;
+        if (!this.left.length && !this.after.length) return;
+        title.textContent = this.left.length ? `${this.left.length} suggested statements` : 'What the suggestion says of the rest';
+        box.open = this.opened ?? (!this.left.length || !Script.statements(this.app.texts.get(this.file)).length);
         box.ontoggle = () => { this.opened = box.open; };
         const all = document.createElement('button');
         all.type = 'button';
@@ -160,7 +160,7 @@ class SuggestedPanel {
             const lines = this.left.splice(0).map((s) => s.statement);
             this.app.write(lines.join('\n'));
         };
-        box.append(title, all, list);
+        box.append(title, ...(this.left.length ? [all] : []), list);
         const say = (text) => {
             const row = document.createElement('li');
             row.className = 'note';

@@ -44,6 +44,25 @@ function wallIn(app, points) {
     return found ? found.wall : null;
 }
 
+/* Pixels of an opening, where they are a little beyond the edge of its wall moved onto it: clicks are not exact, and an
+ * opening that reaches beyond is refused. */
+function insideWall(app, name, points) {
+    const wall = app.model.walls.find((w) => w.name === name), little = 0.03 * app.live.height(),
+        inside = 0.002 * app.live.height();
+    return points.map((pixel) => {
+        const ray = wall && app.ray(...pixel), n = wall && [...wall.normal, 0];
+        const at = ray && meetPlane(ray, n, [wall.normal[0] * wall.at, wall.normal[1] * wall.at, 0]);
+        if (!at) return pixel;
+        const d = wall.direction, s = wall.sign * (at[0] * d[0] + at[1] * d[1]) - wall.origin;
+        const move = (v, low, high) => v > high - inside && v < high + little ? high - inside - v : v < low + inside &&
+            v > low - little ? low + inside - v : 0;
+        const by = wall.sign * move(s, ...wall.span), up = at[2] > wall.top - inside && at[2] < wall.top + little
+            ? wall.top - inside - at[2] : 0;
+        const to = by || up ? app.live.project(app.photo, [at[0] + by * d[0], at[1] + by * d[1], at[2] + up]) : null;
+        return to ? [...to] : pixel;
+    });
+}
+
 const NO_WALL = {error: 'No wall of the model is here yet: draw the wall first, and a room, then its openings.'};
 
 addTool('select', 'v', 'Select', SCRIPT_FILES, 'pixel',
@@ -77,7 +96,8 @@ for (const [kind, key] of [['door', 'd'], ['passage', 'p'], ['window', 'n']])
             : `Drag a rectangle round the ${kind}; it starts at the floor.`,
         (app, points) => {
             const wall = wallIn(app, points);
-            return wall ? `${kind} ${app.newName(kind)} on ${wall} ${inRectangle(app, points)}` : NO_WALL;
+            return wall ? `${kind} ${app.newName(kind)} on ${wall} ${inRectangle(app, insideWall(app, wall, points))}`
+                : NO_WALL;
         });
 addTool('box', 'b', 'Box', SCRIPT_FILES, 'rectangle',
     'Drag from one corner of its footprint on the floor to the opposite one; then give its top.',
@@ -200,7 +220,7 @@ addTool('edge', '', 'Edge', inFile('axes_fix.txt'), 'pixel',
     (app, [p]) => `edge ${app.markName('corner')} ${app.photoId()} ${app.px(p[0])} ${app.px(p[1])}`);
 addTool('disk', '', 'Round lamp', inFile('lights.txt'), 'line', 'Set the middle of the lamp, then a point of its rim.',
     (app, [a, b]) => `disk ${app.newName('lamp')} in ${app.photoId()} ${app.px(a[0])} ${app.px(a[1])} rim ${app.px(b[0])} ${app.px(b[1])} beta fit`);
-addTool('area', '', 'Square lamp', inFile('lights.txt'), 'corners', 'Set its four corners, in order; Enter twice ends.',
+addTool('area', '', 'Square lamp', inFile('lights.txt'), 'corners', 'Set its four corners, in order.',
     (app, points) => points.length === 4 ? `area ${app.newName('lamp')} ${inPixels(app, points)}`
         : {error: 'A square lamp has four corners.'});
 for (const [kind, words] of [['lit', 'that the lamp lights'], ['unlit', 'that the lamp does not light']])
